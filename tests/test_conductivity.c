@@ -34,7 +34,7 @@ static struct conduction follow(struct bed *bed, double emissivity, struct condu
     for (uint32_t i = 0; i < bed->n; ++i) all[i] = emissivity;
     rule.emissivity = all;
     fibrad_run run = {.threads = 1};
-    ck_assert_int_eq(conduction_emitters(bed, -1, "bed", emits, &result), 0);
+    ck_assert_int_eq(conduction_emitters(bed, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
     ck_assert_int_eq(conduction_follow(bed, emits, &rule, &run, &result), FIBRAD_OK);
     free(all);
     free(emits);
@@ -75,13 +75,13 @@ START_TEST(gaps_across_axes) {
         struct bed bed = cell_of(2, 2, 7);
         ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.x = 1, .z = 1.9, .r = 1}), 0);
         for (int i = 0; i < 2; ++i) bed.z[i] += shift * .7;
-        ck_assert_int_eq(conduction_emitters(&bed, -1, "bed", emits, &result), 0);
+        ck_assert_int_eq(conduction_emitters(&bed, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
         ck_assert_double_eq_tol(result.growth[0], 3.1 * 3.1 / 14, 1e-12);
         ck_assert_double_eq(result.growth[2], 0);
         bed_free(&bed);
     }
     struct bed loose = cell_of(2.5, 2.2, 2);
-    ck_assert_int_eq(conduction_emitters(&loose, -1, "bed", emits, &result), 0);
+    ck_assert_int_eq(conduction_emitters(&loose, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
     ck_assert_double_eq_tol(result.growth[0], .04 / 4.4, 1e-12);
     ck_assert_double_eq_tol(result.growth[1], .25 / 5, 1e-12);
     ck_assert_double_eq_tol(result.growth[2], .04 / 4.4 + .25 / 5, 1e-12);
@@ -162,14 +162,14 @@ START_TEST(solid_fraction) {
     struct conduction result;
     struct bed cubic = cell_of(2, 2, 2), centred = cell_of(4 / sqrt(3), 4 / sqrt(3), 4 / sqrt(3)), open;
     ck_assert_int_eq(bed_add(&centred, &(struct bed_sphere){2 / sqrt(3), 2 / sqrt(3), 2 / sqrt(3), 1, 0, 0}), 0);
-    ck_assert_int_eq(conduction_emitters(&cubic, -1, "bed", emits, &result), 0);
+    ck_assert_int_eq(conduction_emitters(&cubic, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
     ck_assert_double_eq_tol(result.solid_fraction, PI / 6, 1e-14);
-    ck_assert_int_eq(conduction_emitters(&centred, -1, "bed", emits, &result), 0);
+    ck_assert_int_eq(conduction_emitters(&centred, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
     ck_assert_double_eq_tol(result.solid_fraction, PI * sqrt(3) / 8, 1e-14);
     bed_init(&open);
     ck_assert_int_eq(bed_make_copies(&open, &cubic, (const uint32_t[]){16, 16, 16}), 0);
     memset(open.period, 0, sizeof open.period);
-    ck_assert_int_eq(conduction_emitters(&open, -1, "bed", emits, &result), 0);
+    ck_assert_int_eq(conduction_emitters(&open, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
     ck_assert_double_eq_tol(result.solid_fraction, PI / 6, .02);
     bed_free(&cubic);
     bed_free(&centred);
@@ -289,7 +289,7 @@ START_TEST(watts_and_files) {
     ck_assert_double_eq_tol(json_of(json, "F_E_x"), 1.2005, .05);
     ck_assert_double_eq_tol(json_of(json, "solid_fraction"), PI / 6, 1e-12);
     char *text = read_file(csv);
-    const char *head = "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable,F_E_steady,F_E_steady_error\n";
+    const char *head = "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable,F_E_steady,F_E_steady_error,k_star\n";
     ck_assert_int_eq(strncmp(text, head, strlen(head)), 0);
     ck_assert_int_eq(sscanf(text + strlen(head), "%c,%lf,%lf,%lf,%lf,", &axis, &factor, &factor_error, &k, &k_error),
                      5);
@@ -342,7 +342,7 @@ START_TEST(between_plates) {
             csv, "-o", json);
     double between = 0, off = 0;
     char *text = read_file(csv);
-    ck_assert_int_eq(sscanf(strchr(text, '\n') + 1, "z,%*f,%*f,,,1,%lf,%lf\n", &between, &off), 2);
+    ck_assert_int_eq(sscanf(strchr(text, '\n') + 1, "z,%*f,%*f,,,1,%lf,%lf,\n", &between, &off), 2);
     ck_assert_double_eq_tol(between / value_of("F_E_steady_z"), 1, 1e-3);
     ck_assert_double_eq_tol(off / value_of("F_E_steady_z_error"), 1, .05);
     free(text);

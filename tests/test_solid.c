@@ -1,6 +1,17 @@
-/* test_solid.c - spheres that conduct: the option --solid-conductivity. SPDX-License-Identifier: MIT */
+/* test_solid.c - spheres that conduct: the option --solid-conductivity, where a ball gives off what it absorbs, and the
+ * conductivity of beds. SPDX-License-Identifier: MIT
+ *
+ * Truth: spherical harmonics. */
+#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_sf_legendre.h>
+
+#include "bed/conduction.h"
+#include "bed/packing.h"
+#include "exchange/conducting.h"
 #include "frames/solid_option.h"
 #include "program.h"
+
+#define PI 3.14159265358979323846
 
 /* ---- the option ----------------------------------------------------------------------------------------------------
  */
@@ -63,11 +74,390 @@ START_TEST(no_relative_conductivity) {
 }
 END_TEST
 
+/* ---- a ball ---------------------------------------------------------------------------------------------------------
+ */
+
+/* Number `count` of the random sequence, and a random point of the unit sphere from the two that follow. */
+static double draw(uint64_t *count) { return bed_make_random(7, (*count)++); }
+static void draw_point(uint64_t *count, double point[3]) {
+    const double height = 2 * draw(count) - 1, turn = 2 * PI * draw(count), ring = sqrt(1 - height * height);
+    point[0] = ring * cos(turn), point[1] = ring * sin(turn), point[2] = height;
+}
+
+/* Of a pattern of degree l a/(a + l) is given off: the mean of Legendre's polynomial of the cosine. */
+START_TEST(patterns_of_a_ball) {
+    enum { DRAWS = 200000, DEGREES = 8 };
+    static const double a[] = {.001, .1, 1, 5, 100};
+    for (size_t k = 0; k < sizeof a / sizeof *a; ++k) {
+        double mean[DEGREES + 1] = {0}, turned[3] = {0};
+        uint64_t count = 0;
+        for (int n = 0; n < DRAWS; ++n) {
+            double from[3], even[3], to[3];
+            draw_point(&count, from), draw_point(&count, even);
+            const double u[] = {draw(&count), draw(&count)};
+            memcpy(to, from, sizeof to);
+            fibrad_conduct(1 / a[k], u, even, to);
+            ck_assert_double_eq_tol(to[0] * to[0] + to[1] * to[1] + to[2] * to[2], 1, 1e-12);
+            const double cosine = fmax(-1, fmin(1, from[0] * to[0] + from[1] * to[1] + from[2] * to[2]));
+            double p[DEGREES + 1];
+            gsl_sf_legendre_Pl_array(DEGREES, cosine, p);
+            for (int l = 0; l <= DEGREES; ++l) mean[l] += p[l] / DRAWS;
+            for (int axis = 0; axis < 3; ++axis) turned[axis] += (to[axis] - cosine * from[axis]) / DRAWS;
+        }
+        for (int l = 0; l <= DEGREES; ++l) ck_assert_double_eq_tol(mean[l], a[k] / (a[k] + l), 4 / sqrt(DRAWS));
+        for (int axis = 0; axis < 3; ++axis) ck_assert_double_eq_tol(turned[axis], 0, 4 / sqrt(DRAWS));
+    }
+}
+END_TEST
+
+/* The ends of all ranges give unit vectors. */
+START_TEST(extremes_of_a_ball) {
+    static const double u[] = {0, 1e-300, .5, 1 - 0x1p-53}, exponent[] = {0, 1e-12, 1, 1e6, 1e300, INFINITY};
+    const double n[] = {0, 0, 1}, even[] = {0, .6, .8};
+    for (int k = 0; k < 4 * 4 * 6 * 2; ++k) {
+        double to[3];
+        const double pair[] = {u[k % 4], u[k / 4 % 4]};
+        memcpy(to, n, sizeof to);
+        const double above = fibrad_conduct(exponent[k / 16 % 6], pair, k / 96 ? n : even, to);
+        ck_assert_double_eq_tol(to[0] * to[0] + to[1] * to[1] + to[2] * to[2], 1, 1e-12);
+        ck_assert(above >= 0 && above <= 1);
+    }
+}
+END_TEST
+
+/* ---- beds -----------------------------------------------------------------------------------------------------------
+ */
+
+/* F_E of walks. */
+static struct conduction walk(const struct bed *bed, const double *emissivity, const double *conductivity,
+                              double error) {
+    struct conduction result;
+    unsigned char *emits = malloc(bed->n);
+    fibrad_run run = {.threads = 1};
+    const struct conduction_rule rule = {
+        .emissivity = emissivity, .conductivity = conductivity, .axis = -1, .error = error, .max_rays = 100000000};
+    ck_assert_ptr_nonnull(emits);
+    ck_assert_int_eq(conduction_emitters(bed, -1, CONDUCTION_MARGIN_WALK, "bed", emits, &result), 0);
+    ck_assert_int_eq(conduction_follow(bed, emits, &rule, &run, &result), FIBRAD_OK);
+    free(emits);
+    return result;
+}
+
+/* Touching spheres in a simple cubic lattice: harmonics up to degrees 9 and 13, and 1.2e7 rays, right to .0005. */
+START_TEST(simple_cubic) {
+    static const struct {
+        double k_star, factor[2]; /* at emissivities 1 and .6 */
+    } known[] = {{.01, {.2376, .2373}}, {.1, {.3591, .3430}},  {.3, {.5294, .4614}},       {1, {.8006, .5979}},
+                 {3, {1.0136, .6745}},  {10, {1.1350, .7099}}, {INFINITY, {1.2001, .7270}}};
+    struct bed bed;
+    bed_init(&bed);
+    ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.r = 1}), 0);
+    for (int axis = 0; axis < 3; ++axis) bed.period[axis] = 2;
+    const double emissivity = _i % 2 ? .6 : 1, truth = known[_i / 2].factor[_i % 2];
+    const struct conduction found = walk(&bed, &emissivity, &known[_i / 2].k_star, .03);
+    double mean = 0, square = 0;
+    for (int axis = 0; axis < 3; ++axis) mean += found.factor[axis] / 3, square += pow(found.error[axis] / 3, 2);
+    ck_assert_double_le(sqrt(square), .03 * truth);
+    ck_assert_double_eq_tol(mean, truth, 3 * sqrt(square) + .01 * truth); /* .01: rare flights along channels */
+    ck_assert_double_eq(found.k_star, known[_i / 2].k_star);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A plain solution by harmonics: degrees up to DEGREE of the radiosity J of each sphere, whose overlaps come from rays.
+ * sigma T^4 rises by `period` along z from one image of the bed to the next. */
+enum { SPHERES = 8u, DEGREE = 5, TERMS = (DEGREE + 1) * (DEGREE + 1), UNKNOWN = SPHERES * TERMS, RAYS = 20000 };
+
+/* Real harmonics at a point of the unit sphere; the mean square of each is 1. */
+static void harmonics(const double n[3], double y[TERMS]) {
+    const double turn = atan2(n[1], n[0]), height = fmax(-1, fmin(1, n[2]));
+    for (int l = 0; l <= DEGREE; ++l)
+        for (int m = 0; m <= l; ++m) {
+            const double p = sqrt((m > 0 ? 2 : 1) * 4 * PI) * gsl_sf_legendre_sphPlm(l, m, height);
+            y[l * l + l + m] = p * cos(m * turn);
+            if (m > 0) y[l * l + l - m] = p * sin(m * turn);
+        }
+}
+
+/* Whether a ray meets sphere j, displaced by `image` periods, before the length *least. at: where the ray is from. */
+static bool meets(const struct bed *bed, uint32_t j, const double image[3], const double at[3], const double w[3],
+                  double *least, double n[3]) {
+    const double c[] = {bed->x[j], bed->y[j], bed->z[j]};
+    double e[3], along = 0, square = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        e[axis] = c[axis] + image[axis] * bed->period[axis] - at[axis];
+        along += e[axis] * w[axis], square += e[axis] * e[axis];
+    }
+    const double half = bed->r[j] * bed->r[j] - (square - along * along);
+    if (!(half > 0 && along > 0 && along - sqrt(half) < *least)) return false;
+    *least = along - sqrt(half);
+    for (int axis = 0; axis < 3; ++axis) n[axis] = (*least * w[axis] - e[axis]) / bed->r[j];
+    return true;
+}
+
+/* The first sphere that a ray from sphere i meets, or an image of it. n: where, on that sphere. Returns the length. All
+ * images within two periods of a point are tried. Then the point moves on by a period. */
+static double first_met(const struct bed *bed, uint32_t i, const double from[3], const double w[3], uint32_t *sphere,
+                        double n[3], double *images) {
+    double least = INFINITY;
+    for (int step = 0; !(least <= step * bed->period[0]); ++step)
+        for (uint32_t j = 0; j < bed->n; ++j)
+            for (int k = 0; k < 125; ++k) {
+                const double c[] = {bed->x[j], bed->y[j], bed->z[j]};
+                double image[] = {k % 5 - 2, k / 5 % 5 - 2, k / 25 - 2};
+                for (int axis = 0; axis < 3; ++axis)
+                    image[axis] += round((from[axis] + step * bed->period[0] * w[axis] - c[axis]) / bed->period[axis]);
+                if (j == i && image[0] == 0 && image[1] == 0 && image[2] == 0) continue;
+                if (meets(bed, j, image, from, w, &least, n)) *sphere = j, *images = image[2];
+            }
+    return least;
+}
+
+/* What rays tell: overlap[a][b] is the mean of harmonic a where a ray leaves times harmonic b where it ends; shift[a]
+ * that of a and the rise; and sums over rays of lengths along z. */
+struct overlaps {
+    double overlap[UNKNOWN][UNKNOWN], shift[UNKNOWN], leaving[UNKNOWN], arriving[UNKNOWN], rise;
+};
+
+static void trace_overlaps(const struct bed *bed, struct overlaps *o) {
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double area = 4 * PI * bed->r[i] * bed->r[i];
+        for (int ray = 0; ray < RAYS; ++ray) {
+            double from[3], w[3], to[3], y[TERMS], z[TERMS], at[3], images = 0, norm = 0;
+            uint32_t j = 0;
+            draw_point(&count, from), draw_point(&count, w);
+            for (int axis = 0; axis < 3; ++axis) w[axis] += from[axis], norm += w[axis] * w[axis];
+            for (int axis = 0; axis < 3; ++axis) w[axis] /= sqrt(norm);
+            const double *const centre[] = {bed->x, bed->y, bed->z};
+            for (int axis = 0; axis < 3; ++axis) at[axis] = centre[axis][i] + bed->r[i] * from[axis];
+            const double length = first_met(bed, i, at, w, &j, to, &images) * w[2], rise = images * bed->period[2];
+            harmonics(from, y), harmonics(to, z);
+            for (uint32_t a = 0; a < TERMS; ++a) {
+                double *row = &o->overlap[i * TERMS + a][j * TERMS];
+                for (int b = 0; b < TERMS; ++b) row[b] += y[a] * z[b] / RAYS;
+                o->shift[i * TERMS + a] += y[a] * rise / RAYS;
+                o->leaving[i * TERMS + a] += area * y[a] * length / RAYS;
+                o->arriving[j * TERMS + a] += area * z[a] * length / RAYS;
+            }
+            o->rise += area * rise * length / RAYS;
+        }
+    }
+}
+
+/* F_E along z. J_l = (1 - e_l) H_l with 1/e_l = 1/e + 1/(2 k* l), and e_0 = 0: no sphere gains anything. */
+static double factor_by_harmonics(const struct bed *bed, const double *emissivity, const double *conductivity) {
+    struct overlaps *o = calloc(1, sizeof *o);
+    gsl_matrix *matrix = gsl_matrix_calloc(UNKNOWN, UNKNOWN);
+    gsl_vector *right = gsl_vector_calloc(UNKNOWN), *j = gsl_vector_calloc(UNKNOWN);
+    gsl_permutation *order = gsl_permutation_alloc(UNKNOWN);
+    int sign;
+    double flux = 0, diameter = 0;
+    ck_assert(o && matrix && right && j && order);
+    trace_overlaps(bed, o);
+    for (size_t a = 0; a < UNKNOWN; ++a) {
+        const size_t i = a / TERMS, l = (size_t)sqrt((double)(a % TERMS));
+        const double back = l == 0 ? 1 : 1 - 1 / (1 / emissivity[i] + 1 / (2 * conductivity[i] * (double)l));
+        for (size_t b = 0; b < UNKNOWN; ++b)
+            gsl_matrix_set(matrix, a, b, a == 0 ? b == 0 : (a == b) - back * o->overlap[a][b]);
+        gsl_vector_set(right, a, a == 0 ? 0 : back * o->shift[a]);
+    }
+    ck_assert_int_eq(gsl_linalg_LU_decomp(matrix, order, &sign), 0);
+    ck_assert_int_eq(gsl_linalg_LU_solve(matrix, order, right, j), 0);
+    for (size_t a = 0; a < UNKNOWN; ++a) flux += (o->leaving[a] - o->arriving[a]) / 2 * gsl_vector_get(j, a);
+    flux -= o->rise / 2;
+    for (size_t i = 0; i < SPHERES; ++i) { /* through the spheres: what they absorb and give off elsewhere */
+        const size_t a = i * TERMS + 2;
+        double arrives = o->shift[a];
+        for (size_t b = 0; b < UNKNOWN; ++b) arrives += o->overlap[a][b] * gsl_vector_get(j, b);
+        flux -= 4 * PI * pow(bed->r[i], 3) / sqrt(3) * (arrives - gsl_vector_get(j, a));
+        diameter += 2 * bed->r[i] / SPHERES;
+    }
+    gsl_permutation_free(order), gsl_vector_free(j), gsl_vector_free(right), gsl_matrix_free(matrix);
+    free(o);
+    return -flux / (bed->period[0] * bed->period[1] * bed->period[2] * diameter);
+}
+
+/* Random spheres of all sizes, emissivities and conductivities. */
+START_TEST(random_beds) {
+    static const double low[] = {1, .7}, fraction[] = {.5, .45};
+    double emissivity[SPHERES], conductivity[SPHERES];
+    struct bed bed;
+    bed_init(&bed);
+    ck_assert_int_eq(bed_make_packing(&bed, SPHERES, low[_i], 2 - low[_i], fraction[_i], 3), 0);
+    for (uint32_t i = 0; i < bed.n; ++i) {
+        emissivity[i] = _i == 0 ? .8 : .3 + .7 * bed_make_random(1, i);
+        conductivity[i] = _i == 0 ? .3 : .1 * pow(30, bed_make_random(2, i));
+    }
+    const double truth = factor_by_harmonics(&bed, emissivity, conductivity);
+    const struct conduction found = walk(&bed, emissivity, conductivity, .007);
+    ck_assert_double_eq_tol(found.factor[2], truth, .015 * truth);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A bed with open ends: its core has F_E of the periodic bed that it is cut from. */
+START_TEST(open_beds) {
+    struct bed cell, bed;
+    bed_init(&cell), bed_init(&bed);
+    ck_assert_int_eq(bed_make_packing(&cell, 1000, 1, 1, .55, 1), 0);
+    ck_assert_int_eq(bed_make_copies(&bed, &cell, (const uint32_t[]){2, 2, 2}), 0);
+    memset(bed.period, 0, sizeof bed.period);
+    double *emissivity = malloc(bed.n * sizeof *emissivity), *conductivity = malloc(bed.n * sizeof *conductivity);
+    ck_assert(emissivity && conductivity);
+    for (uint32_t i = 0; i < bed.n; ++i) emissivity[i] = .9, conductivity[i] = 2;
+    const struct conduction open = walk(&bed, emissivity, conductivity, .01),
+                            whole = walk(&cell, emissivity, conductivity, .01);
+    double found = 0, truth = 0, square = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        found += open.factor[axis] / 3, truth += whole.factor[axis] / 3;
+        square += pow(open.error[axis] / 3, 2) + pow(whole.error[axis] / 3, 2);
+    }
+    ck_assert_double_gt(open.escaped, 0);
+    ck_assert_double_eq_tol(found, truth, 3 * sqrt(square) + .01 * truth); /* .01: other spheres */
+    free(emissivity), free(conductivity);
+    bed_free(&cell), bed_free(&bed);
+}
+END_TEST
+
+/* With k* of 1e6 F_E is that of spheres with one temperature. All spheres at temperatures on a line, or at those at
+ * which they gain nothing: docs/heat.md has the difference, .4 %. */
+START_TEST(good_conductors) {
+    double emissivity[300], conductivity[300];
+    struct bed bed;
+    bed_init(&bed);
+    ck_assert_int_eq(bed_make_packing(&bed, 300, .8, 1.2, .55, 1), 0);
+    for (uint32_t i = 0; i < bed.n; ++i) emissivity[i] = .8, conductivity[i] = 1e6;
+    const struct conduction solid = walk(&bed, emissivity, conductivity, .007),
+                            one = walk(&bed, emissivity, NULL, .007);
+    double found = 0, truth = 0, square = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        found += solid.factor[axis] / 3, truth += one.factor[axis] / 3;
+        square += pow(solid.error[axis] / 3, 2) + pow(one.error[axis] / 3, 2);
+    }
+    ck_assert_double_eq_tol(found, truth, 3 * sqrt(square) + .004 * truth);
+    ck_assert(isnan(one.k_star) && solid.k_star_range[0] == 1e6);
+    bed_free(&bed);
+}
+END_TEST
+
+/* What the kernel refuses. */
+START_TEST(refusals) {
+    static _Alignas(64) unsigned char memory[40000], room[2000000];
+    const double at[] = {0, 0, 0}, r = 1;
+    const fibrad_spheres spheres = {at, at + 1, at + 2, &r, 1, .stride = 3};
+    const fibrad_body floor = {.kind = FIBRAD_BODY_PLANE, .plane = {2, 0, -1}};
+    double emissivity = .5, conductivity = 1, grey = .5;
+    fibrad_displacement moved;
+    for (int k = 0; k < 6; ++k) {
+        const fibrad_scene_config config = {.period = {3, 3, 0}, .body = &floor, .bodies = k == 4};
+        fibrad_scene *scene;
+        fibrad_work work = {.memory = {room, sizeof room}};
+        ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, &config, &spheres, NULL), FIBRAD_OK);
+        fibrad_exchange_rule rule = {
+            .emissivity = &emissivity, .conductivity = &conductivity, .body_emissivity = &grey, .paths = 16};
+        conductivity = k == 1 ? NAN : k == 2 ? 0 : 1;
+        if (k == 3) rule.flights = FIBRAD_FLIGHTS_MAX + 1;
+        if (k == 5) rule.cutoff = 3;
+        const int wanted = k == 0 ? FIBRAD_OK : k < 4 ? FIBRAD_E_ARGUMENT : FIBRAD_E_UNSUPPORTED;
+        ck_assert_int_eq(fibrad_exchange_walk(scene, &work, 0, &rule, &moved), wanted);
+        rule.conductivity = NULL;
+        ck_assert_int_eq(fibrad_exchange_walk(scene, &work, 0, &rule, &moved), FIBRAD_E_ARGUMENT);
+    }
+}
+END_TEST
+
+/* ---- the program ----------------------------------------------------------------------------------------------------
+ */
+
+#define CELL "x,y,z,r,ks,nothing\n0,0,0,30,13.6,\n"
+#define OF_CELL                                                                                                        \
+    write_file("cell.csv", CELL), "--periodic", "60,60,60", "--emissivity", "1", "--rays", "2000", "--temperature"
+
+/* k* in the summary, the table and the objects, and the same from a number, a column and a table of T. */
+START_TEST(outputs) {
+    const char *csv = in_folder("k.csv"), *json = in_folder("k.json"), *summary = in_folder("s.json");
+    const double k_star = 13.6 / (4 * .06 * 5.670374419e-8 * 1e9);
+    char table[300], *text[3];
+    snprintf(table, sizeof table, "@%s", write_file("table.csv", "500,3.6\n1500,23.6\n"));
+    const char *const solid[] = {"13.6", "ks", table};
+    for (int k = 0; k < 3; ++k) {
+        SUCCEED("conductivity", OF_CELL, "1000", "--length-unit", "mm", "--solid-conductivity", solid[k], "--threads",
+                k ? "3" : "1", "-o", csv, "-o", json, "--json", summary);
+        ck_assert_double_eq_tol(json_of(summary, "k_star"), k_star, 1e-12);
+        char *object = read_file(json);
+        ck_assert_double_eq_tol(strtod(strstr(object, "\"k_star_max\":") + 13, NULL), k_star, 1e-12);
+        free(object);
+        ck_assert_double_eq_tol(json_of(summary, "k_x_W_mK"), json_of(summary, "F_E_x") * 13.6 / k_star, 1e-9);
+        ck_assert(!strstr(printed, "isothermal") && !strstr(printed, "k_star_min"));
+        text[k] = read_file(csv);
+        ck_assert_double_eq_tol(strtod(strrchr(text[k], ',') + 1, NULL), k_star, 1e-12);
+        ck_assert_str_eq(text[k], text[0]);
+    }
+    for (int k = 0; k < 3; ++k) free(text[k]);
+}
+END_TEST
+
+/* One temperature a sphere is right to 5 % above k* = 11 or so in a simple cubic lattice: F_E 1.135 of 1.200 at 10. */
+START_TEST(how_isothermal) {
+    double above = 0;
+    SUCCEED("conductivity", OF_CELL, "1000", "--length-unit", "mm");
+    const char *line = strstr(printed, "\nisothermal right to 5 % for k_s above ");
+    ck_assert_ptr_nonnull(line);
+    ck_assert_int_eq(sscanf(line, "\nisothermal right to 5 %% for k_s above %lf W/(m K)\n", &above), 1);
+    ck_assert_double_eq_tol(above, 11 * 4 * .06 * 5.670374419e-8 * 1e9, 25);
+    SUCCEED("conductivity", OF_CELL, "1000");
+    ck_assert_ptr_null(strstr(printed, "isothermal")); /* no unit */
+}
+END_TEST
+
+START_TEST(mistakes) {
+    static const struct {
+        const char *temperature, *unit, *solid, *more, *message;
+        int status;
+    } cases[] = {
+        {"1000", "mm", "0", NULL, "--solid-conductivity: 0 is not within 1e-06 and 1e+12", 2},
+        {"1000", "mm", "-3", NULL, "--solid-conductivity: -3 is not within", 2},
+        {"1000", "mm", "nan", NULL, "no column nan", 3},
+        {"1000", "mm", "nothing", NULL, "cell.csv:2:", 3},
+        {"1000", "mm", "missing", NULL, "missing", 3},
+        {"1000", "mm", "1:5", NULL, "type", 3},
+        {"1000", "mm", "@none.csv", NULL, "none.csv", 4},
+        {"1000", "mm", "1e-6", NULL, "cell.csv:2: sphere 0: k_s/(4 d sigma T^3) is 7.3", 3},
+        {"1000", "mm", "5", "--steady", "--steady: spheres have one temperature; leave out --solid-conductivity", 2},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+        const int status = RUN("conductivity", OF_CELL, cases[k].temperature, "--length-unit", cases[k].unit,
+                               "--solid-conductivity", cases[k].solid, "-o", in_folder("k.csv"), cases[k].more);
+        ck_assert_msg(status == cases[k].status && strstr(said, cases[k].message), "%zu: %d %s", k, status, said);
+        ck_assert_ptr_eq(strchr(said, '\n') + 1, said + strlen(said));
+        ck_assert_int_ne(access(in_folder("k.csv"), F_OK), 0);
+    }
+    ck_assert_int_eq(RUN("conductivity", OF_CELL, "1000", "--solid-conductivity", "5"), 2);
+    ck_assert_ptr_nonnull(strstr(said, "names no unit of length, which --solid-conductivity needs"));
+    ck_assert_int_eq(RUN("conductivity", MONO, "--emissivity=.5", "--solid-conductivity=5"), 2);
+    ck_assert_ptr_nonnull(strstr(said, "--solid-conductivity needs --temperature"));
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("solid");
     TCase *option = suite_case(suite, "option");
     tcase_add_checked_fixture(option, make_folder, remove_folder);
     tcase_add_test(option, relative_conductivities);
     tcase_add_test(option, no_relative_conductivity);
+    TCase *ball = suite_case(suite, "ball"), *beds = suite_case(suite, "beds");
+    tcase_add_test(ball, patterns_of_a_ball);
+    tcase_add_test(ball, extremes_of_a_ball);
+    tcase_add_loop_test(beds, simple_cubic, 0, 14);
+    tcase_add_loop_test(beds, random_beds, 0, 2);
+    tcase_add_test(beds, good_conductors);
+    tcase_add_test(beds, open_beds);
+    tcase_add_test(beds, refusals);
+    TCase *program = suite_case(suite, "program");
+    tcase_add_checked_fixture(program, make_folder, remove_folder);
+    tcase_add_test(program, outputs);
+    tcase_add_test(program, how_isothermal);
+    tcase_add_test(program, mistakes);
     return suite_run(suite);
 }

@@ -23,6 +23,12 @@
 #define GROWTH     8.0     /* largest ratio of all paths after a round to those before */
 #define BATCH_MOST (FIBRAD_PATHS_MAX / PARTS * PARTS)
 
+/* What F_E of spheres that conduct is of that of spheres with one temperature where conduction_isothermal looks. */
+#define RIGHT 0.95
+
+/* Flights whose displacements are correlated if an effective emissivity is below 0.1, and below 0.01. */
+enum { FLIGHTS_SLOW = 24, FLIGHTS_SLOWEST = 48 };
+
 /* A standard error is unreliable if the concentration is larger than this. The square root of the concentration is the
  * relative standard error of the variance. If the variances of groups have a tail of index a < 1, the concentration
  * tends to 1 - a however many groups there are: 1/4 for flights along channels, 1/2 for flights in slabs
@@ -39,7 +45,8 @@ struct core {
     double low[3], high[3], volume;
 };
 
-static int find_core(const struct bed *bed, int wanted, const char *file, double diameter, struct core *core) {
+static int find_core(const struct bed *bed, int wanted, double margin, const char *file, double diameter,
+                     struct core *core) {
     const double *at[3] = {bed->x, bed->y, bed->z};
     core->volume = 1;
     for (int axis = 0; axis < 3; ++axis) {
@@ -54,15 +61,15 @@ static int find_core(const struct bed *bed, int wanted, const char *file, double
             low = fmin(low, at[axis][i]), lowest = fmin(lowest, at[axis][i] - bed->r[i]);
             high = fmax(high, at[axis][i]), highest = fmax(highest, at[axis][i] + bed->r[i]);
         }
-        core->low[axis] = low + CONDUCTION_MARGIN * diameter;
-        core->high[axis] = high - CONDUCTION_MARGIN * diameter;
+        core->low[axis] = low + margin * diameter;
+        core->high[axis] = high - margin * diameter;
         const bool thin = !(core->high[axis] > core->low[axis]);
         if (thin && wanted >= 0 && wanted != axis) core->low[axis] = lowest, core->high[axis] = highest;
         if (thin && (wanted < 0 || wanted == axis))
             return message_at(
                 STATUS_INPUT, file, 0,
                 "the bed is too thin along the open axis %c, where at least %g mean diameters are needed%s", 'x' + axis,
-                2 * CONDUCTION_MARGIN, wanted < 0 ? "; --axis computes F_E along another axis" : "");
+                2 * margin, wanted < 0 ? "; --axis computes F_E along another axis" : "");
         core->volume *= core->high[axis] - core->low[axis];
     }
     return STATUS_OK;
@@ -130,14 +137,14 @@ static int find_growth(const struct bed *bed, struct conduction *result) {
 }
 
 /* The volume of the emitters is that of their spheres over the solid fraction of the core. */
-int conduction_emitters(const struct bed *bed, int axis, const char *file, unsigned char *emits,
+int conduction_emitters(const struct bed *bed, int axis, double margin, const char *file, unsigned char *emits,
                         struct conduction *result) {
     struct core core;
     double solid = 0, emitting = 0;
-    *result = (struct conduction){.temperature = NAN};
+    *result = (struct conduction){.temperature = NAN, .k_star = NAN};
     for (int a = 0; a < 3; ++a) result->steady[a] = result->steady_error[a] = NAN;
     for (uint32_t i = 0; i < bed->n; ++i) result->diameter += 2 * bed->r[i] / bed->n;
-    const int status = find_core(bed, axis, file, result->diameter, &core);
+    const int status = find_core(bed, axis, margin, file, result->diameter, &core);
     if (status) return status;
     for (uint32_t i = 0; i < bed->n; ++i) {
         const double volume = 4 * PI / 3 * pow(bed->r[i], 3);
@@ -166,12 +173,14 @@ struct tally {
 };
 
 /* Adds a batch of `paths` paths from each emitter, in the order of spheres, so that threads change no bit. */
-static void add_batch(struct tally *tally, const struct bed *bed, const unsigned char *emits, const double *emissivity,
-                      uint32_t paths, struct conduction *result) {
+static void add_batch(struct tally *tally, const struct bed *bed, const unsigned char *emits,
+                      const struct conduction_rule *rule, uint32_t paths, struct conduction *result) {
     for (uint32_t i = 0; i < bed->n; ++i) {
         if (!emits[i]) continue;
         const fibrad_displacement *moved = &tally->moved[i];
-        const double emission = 4 * PI * bed->r[i] * bed->r[i] * emissivity[i] * paths;
+        const double emissivity =
+            rule->conductivity ? 1 : rule->emissivity[i]; /* all that a walk arrives with goes on */
+        const double emission = 4 * PI * bed->r[i] * bed->r[i] * emissivity * paths;
         const double weight = emission / (2 * result->volume * result->diameter);
         for (int axis = 0; axis < 3; ++axis) {
             const double variance = pow(weight * moved->error[axis], 2);
@@ -179,7 +188,7 @@ static void add_batch(struct tally *tally, const struct bed *bed, const unsigned
             tally->variance[axis] += variance;
             tally->fourth[axis] += variance * variance;
         }
-        const double expected = paths * pow(emissivity[i] * pow(bed->r[i], 4), 2);
+        const double expected = paths * pow(emissivity * pow(bed->r[i], 4), 2);
         tally->expected += expected;
         tally->expected_fourth += expected * expected;
         tally->lost += emission * (1 - moved->absorbed);
@@ -223,8 +232,11 @@ static int follow_round(const struct bed *bed, const unsigned char *emits, const
     struct round_progress round = {.run = run, .batches = batches};
     for (; round.batch < batches; ++round.batch) {
         const uint32_t share = (uint32_t)(paths / batches + (round.batch < paths % batches));
-        const fibrad_exchange_rule how = {
-            .emissivity = rule->emissivity, .paths = share, .seed = rule->seed + tally->batches * 0x9e3779b97f4a7c15u};
+        const fibrad_exchange_rule how = {.emissivity = rule->emissivity,
+                                          .conductivity = rule->conductivity,
+                                          .flights = result->flights,
+                                          .paths = share,
+                                          .seed = rule->seed + tally->batches * 0x9e3779b97f4a7c15u};
         fibrad_run own = {.threads =
                               result->emitters == 1 ? 1 : run->threads, /* batches are too short for several threads */
                           .progress = run->progress ? round_stage : NULL,
@@ -232,7 +244,7 @@ static int follow_round(const struct bed *bed, const unsigned char *emits, const
         const int status = fibrad_displacements(&scene, &spheres, &how, emits, &own, tally->moved, NULL);
         run->fault = own.fault;
         if (status) return status;
-        add_batch(tally, bed, emits, rule->emissivity, share, result);
+        add_batch(tally, bed, emits, rule, share, result);
     }
     read_tally(tally, result);
     return FIBRAD_OK;
@@ -270,12 +282,27 @@ static int search(const struct bed *bed, const unsigned char *emits, const struc
     return FIBRAD_OK;
 }
 
+/* Describes k* of the spheres, and chooses the flights whose displacements are correlated. What keeps displacements
+ * correlated is reflection: that of patterns of degree 1 included, whose emissivity is 1/(1/e + 1/(2 k*)). */
+static void describe_conducting(const struct bed *bed, const struct conduction_rule *rule, struct conduction *result) {
+    double least = 1, low = INFINITY, high = 0, sum = 0;
+    if (!rule->conductivity) return;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double k = rule->conductivity[i];
+        low = fmin(low, k), high = fmax(high, k), sum += k / bed->n;
+        least = fmin(least, conduction_effective(rule->emissivity[i], k));
+    }
+    result->k_star = sum, result->k_star_range[0] = low, result->k_star_range[1] = high;
+    result->flights = least >= .1 ? FIBRAD_FLIGHTS_DEFAULT : least >= .01 ? FLIGHTS_SLOW : FLIGHTS_SLOWEST;
+}
+
 int conduction_follow(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
                       fibrad_run *run, struct conduction *result) {
     struct tally tally = {.moved = calloc(bed->n, sizeof *tally.moved)};
     if (!tally.moved) return FIBRAD_E_MEMORY;
     const uint32_t batches = (uint32_t)ceil(GROUPS / result->emitters);
     const double begun = progress_clock();
+    describe_conducting(bed, rule, result);
     result->axis = rule->axis;
     const int status = rule->paths > 0 ? follow_round(bed, emits, rule, run,
                                                       (uint32_t)fmax(1, fmin(batches, (double)rule->paths / PARTS)),
@@ -284,6 +311,46 @@ int conduction_follow(const struct bed *bed, const unsigned char *emits, const s
     result->seconds = progress_clock() - begun;
     free(tally.moved);
     return status;
+}
+
+/* The sum of F_E over the wanted axes, from PILOT paths, with all emissivities times `scale`. */
+static int follow_pilot(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
+                        double scale, fibrad_run *run, const struct conduction *of, double *sum) {
+    struct conduction result = *of;
+    struct conduction_rule scaled = *rule;
+    struct tally tally = {.moved = calloc(bed->n, sizeof *tally.moved)};
+    double *emissivity = malloc(bed->n * sizeof *emissivity);
+    int status = tally.moved && emissivity ? FIBRAD_OK : FIBRAD_E_MEMORY;
+    for (uint32_t i = 0; i < bed->n && !status; ++i) emissivity[i] = scale * rule->emissivity[i];
+    scaled.emissivity = emissivity;
+    const uint64_t paths = (uint64_t)ceil(PILOT / PARTS / of->emitters) * PARTS;
+    if (!status) status = follow_round(bed, emits, &scaled, run, 1, paths, &tally, &result);
+    *sum = 0;
+    for (int axis = 0; axis < 3; ++axis) *sum += conduction_wants(of, axis) ? result.factor[axis] : 0;
+    free(tally.moved);
+    free(emissivity);
+    return status;
+}
+
+/* F_E of spheres that conduct is about that of spheres with one temperature and the emissivity 1/(1/e + 1/(2 k*)). The
+ * paths of both emissivities are the same, so that their noise hardly counts. Between them F_E is a power of e. */
+int conduction_isothermal(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
+                          fibrad_run *run, const struct conduction *result, double metre, double *conductivity) {
+    double grey, less, area = 0, weighted = 0;
+    int status = follow_pilot(bed, emits, rule, 1, run, result, &grey);
+    if (!status) status = follow_pilot(bed, emits, rule, RIGHT, run, result, &less);
+    if (status) return status;
+    const double power = log(less / grey) / log(RIGHT), over = pow(RIGHT, -1 / power) - 1; /* e/(2 k*) */
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        area += pow(bed->r[i], 2);
+        weighted += pow(bed->r[i], 2) * rule->emissivity[i] * 2 * bed->r[i] * metre;
+    }
+    *conductivity = weighted / area / (2 * over) * 4 * FIBRAD_STEFAN_BOLTZMANN * pow(result->temperature, 3);
+    return FIBRAD_OK;
+}
+
+double conduction_effective(double emissivity, double relative) {
+    return emissivity > 0 ? 1 / (1 / emissivity + 1 / (2 * relative)) : 0;
 }
 
 bool conduction_wants(const struct conduction *result, int axis) { return result->axis < 0 || result->axis == axis; }

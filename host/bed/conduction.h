@@ -1,7 +1,11 @@
 /* conduction.h - effective radiative conductivity of a bed of grey spheres. SPDX-License-Identifier: MIT
  *
  * The temperature is linear with gradient g, and each sphere has the temperature at its centre. Then the spheres of a
- * volume V carry along the gradient the flux k g = g/(2 V) sum over i, j of 4 sigma T^3 A_i e_i D_ij dz_ij^2. */
+ * volume V carry along the gradient the flux k g = g/(2 V) sum over i, j of 4 sigma T^3 A_i e_i D_ij dz_ij^2.
+ *
+ * If spheres conduct, temperatures differ from point to point of each sphere, and no sphere gains heat. Then the flux
+ * is that of walks, which no sphere ends: k g = g/(2 V) 4 sigma T^3 A <z^2> with the area A of all spheres and the mean
+ * square displacement a flight <z^2>. */
 #ifndef CONDUCTION_H
 #define CONDUCTION_H
 
@@ -12,10 +16,13 @@
 
 /* Along open axes only spheres emit whose centres lie at least so many mean diameters inside the outermost centres. */
 #define CONDUCTION_MARGIN 4.0
+/* The same for spheres that conduct: walks get farther than the emission of one sphere. */
+#define CONDUCTION_MARGIN_WALK 8.0
 
 struct conduction_rule {
-    const double *emissivity; /* [n] of the spheres */
-    int axis;                 /* the axis whose error counts; -1: all three */
+    const double *emissivity;   /* [n] of the spheres */
+    const double *conductivity; /* [n] k* of the spheres; NULL: each sphere has one temperature */
+    int axis;                   /* the axis whose error counts; -1: all three */
     uint64_t seed;
     uint64_t paths;    /* from each emitter; 0: as many as `error` needs */
     double error;      /* standard error allowed, over F_E */
@@ -30,30 +37,41 @@ struct conduction {
     uint32_t emitters;
     uint64_t paths; /* from each emitter */
     uint64_t rays;
+    uint32_t flights;                  /* of a path whose displacements are correlated; 0: spheres do not conduct */
     double factor[3], error[3];        /* F_E per axis and its standard error */
     double steady[3], steady_error[3]; /* F_E between plates, set by the caller; NaN: not known */
     int axis;                          /* the wanted axis; -1: all three */
     double temperature;                /* [K]; NaN: k is not known */
     double k[3], k_error[3];           /* [W/(m K)] */
+    double k_star, k_star_range[2];    /* mean, least and largest k*; NaN: spheres do not conduct */
     /* increase of F_E if flights may be e times as long, because of slabs without spheres */
     double growth[3];
     /* concentration of the variance in few groups of paths: sum of squares over squared sum, less that due to sizes */
     double concentration[3];
-    double escaped; /* fraction of the emission that no sphere absorbs */
+    double escaped; /* fraction of the emission that no sphere absorbs; of walks: of the paths that leave the bed */
     bool stopped;   /* max_rays has ended the search before the error was reached */
     double seconds; /* time of computing [s] */
 };
 
 /* Marks the spheres that emit, emits [n], for F_E along `axis`. axis -1: along all three axes. If one axis is wanted,
  * the bed may be too thin for the margin along another one; then all spheres along that other axis emit. Sets volume,
- * solid_fraction, diameter, emitters and growth. file: name of the bed in messages. Status 0, STATUS_INPUT if the bed
- * is too thin or has too few emitters, or STATUS_MEMORY. */
-int conduction_emitters(const struct bed *bed, int axis, const char *file, unsigned char *emits,
+ * solid_fraction, diameter, emitters and growth. margin: CONDUCTION_MARGIN or CONDUCTION_MARGIN_WALK. file: name of the
+ * bed in messages. Status 0, STATUS_INPUT if the bed is too thin or has too few emitters, or STATUS_MEMORY. */
+int conduction_emitters(const struct bed *bed, int axis, double margin, const char *file, unsigned char *emits,
                         struct conduction *result);
 
 /* Follows the paths of the emitters and sets the other results. Returns a status of the library. */
 int conduction_follow(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
                       fibrad_run *run, struct conduction *result);
+
+/* Estimates the conductivity of the solid [W/(m K)] at which F_E is 95 % of `result`, that of spheres with one
+ * temperature, at result->temperature. metre: the bed's unit of length [m]. Returns a status of the library. */
+int conduction_isothermal(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
+                          fibrad_run *run, const struct conduction *result, double metre, double *conductivity);
+
+/* The emissivity at which a sphere with one temperature reflects patterns of degree 1 as a sphere of relative
+ * conductivity k* does: 1/(1/e + 1/(2 k*)). */
+double conduction_effective(double emissivity, double relative);
 
 /* How far long flights along an axis impair F_E and its standard error. */
 enum conduction_flights {

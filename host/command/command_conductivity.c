@@ -7,8 +7,8 @@
 
 #include "bed/conduction.h"
 #include "cli/message.h"
-#include "frames/bed_options.h"
 #include "command/commands.h"
+#include "frames/solid_option.h"
 #include "heat/steady.h"
 #include "plot/plot_conduction.h"
 
@@ -16,6 +16,7 @@ enum { KEY_AXIS = KEY_OWN, KEY_CONDUCTIVITY_TEMPERATURE, KEY_MAX_RAYS, KEY_STEAD
 
 static const struct option conductivity_table[] = {
     {OPTION_EMISSIVITY},
+    {OPTION_SOLID_CONDUCTIVITY},
     {KEY_CONDUCTIVITY_TEMPERATURE, "temperature", "T", "mean temperature, for k [none: F_E only]"},
     {OPTION_TEMPERATURE_UNIT},
     {KEY_AXIS, "axis", "x|y|z", "axis of F_E and of --error [all three]"},
@@ -36,12 +37,13 @@ static const struct option conductivity_table[] = {
 
 struct conductivity_request {
     struct bed_options bed;
-    struct quantity emissivity;
+    struct quantity emissivity, solid;
     const char *at;     /* --temperature; NULL: not given */
     double zero;        /* 0 of the unit of temperature [K] */
     double temperature; /* [K] */
     struct conduction_rule rule;
     bool steady;
+    double isothermal;        /* [W/(m K)] of conduction_isothermal; NaN: not known */
     struct steady between[3]; /* results between plates along each axis; 0 spheres: not computed */
 };
 
@@ -49,24 +51,28 @@ static int conductivity_help(void) {
     puts("fibrad conductivity FILE... --emissivity E [options]\n\n"
          "Exchange factor F_E = k/(4 sigma T^3 d) of a bed of grey diffuse spheres along each axis. k is the\n"
          "radiative conductivity of the bed [W/(m K)]. d is the mean diameter of the spheres [m]. Each sphere has\n"
-         "one temperature.\n");
+         "one temperature, unless --solid-conductivity says how well it conducts.\n");
     options_print(conductivity_table);
     printf("\n" FILES_MORE "\n"
            "F_E is that of a linear field of temperature. All spheres absorb. Along open axes only spheres at least\n"
-           "%g mean diameters inside the outermost centres emit. With --axis a bed may be too thin for this along\n"
+           "%g mean diameters (%g with --solid-conductivity) inside the outermost centres emit. With --axis a bed may "
+           "be too thin for this along\n"
            "another axis. Then all spheres along that other axis emit. Where a periodic bed has gaps, flights may be\n"
            "so long that F_E does not exist, or that its standard error cannot be estimated. Then there is a\n"
            "warning.\n"
            "\n",
-           CONDUCTION_MARGIN);
+           CONDUCTION_MARGIN, CONDUCTION_MARGIN_WALK);
     puts("Standard output ends with lines `key value`. F_E_x, F_E_y and F_E_z are the exchange factors.\n"
          "F_E_x_error, F_E_y_error and F_E_z_error are their estimated standard errors. `unreliable` names the\n"
          "axes whose errors are not reliable. With --temperature there are also k_x_W_mK to k_z_W_mK and\n"
-         "k_x_W_mK_error to k_z_W_mK_error.\n"
+         "k_x_W_mK_error to k_z_W_mK_error. With --solid-conductivity k_star is k_s/(4 d sigma T^3), and F_E is\n"
+         "that of spheres whose temperatures differ from point to point. Without it, where the unit of length is\n"
+         "known, the line `isothermal` says for which k_s one temperature a sphere is right to 5 %.\n"
          "\n"
          "Examples:\n"
          "  fibrad conductivity packing.dump --emissivity 0.8\n"
          "  fibrad conductivity packing.dump --emissivity 0.8 --axis z --temperature 1200 -o k.csv\n"
+         "  fibrad conductivity pebbles.dump --emissivity 0.8 --temperature 1300 --solid-conductivity 30\n"
          "  fibrad conductivity cell.csv --periodic 2,2,2 --emissivity 0.4 --error 0.001");
     return STATUS_OK;
 }
@@ -92,6 +98,8 @@ static int conductivity_take(struct conductivity_request *request, const struct 
     switch (key) {
     case KEY_EMISSIVITY:
         return quantity_option("--emissivity", value, 0, 1, &request->emissivity);
+    case KEY_SOLID_CONDUCTIVITY:
+        return solid_option(value, &request->solid);
     case KEY_CONDUCTIVITY_TEMPERATURE:
         request->at = value;
         return STATUS_OK;
@@ -130,12 +138,16 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
     if (request->at) request->temperature += request->zero;
     if (!request->emissivity.given && request->bed.files > 0)
         return message(STATUS_USAGE, "--emissivity is missing; see fibrad conductivity --help");
+    if (request->solid.given && !request->at) return message(STATUS_USAGE, "--solid-conductivity needs --temperature");
+    if (request->solid.given && request->steady)
+        return message(STATUS_USAGE, "--steady: spheres have one temperature; leave out --solid-conductivity");
     if (rule->error > 0 && rule->paths > 0) return message(STATUS_USAGE, "--error chooses the rays; leave out --rays");
     if (rule->max_rays > 0 && rule->paths > 0)
         return message(STATUS_USAGE, "--max-rays is for --error; leave out --rays");
     if (rule->error == 0) rule->error = 0.003;
     if (rule->max_rays == 0) rule->max_rays = 50000000;
     bed_options_quantity(&request->bed, &request->emissivity, NULL);
+    bed_options_quantity(&request->bed, &request->solid, NULL);
     return bed_options_check(&request->bed, "conductivity", CONTENT_CONDUCTION);
 }
 
@@ -181,6 +193,7 @@ static void conductivity_report(struct conductivity_request *request, const stru
     char unreliable[4];
     bed_options_report(&request->bed, bed, &none, NULL);
     quantity_report(&request->emissivity, "emissivity", report);
+    if (request->solid.given) solid_report(&request->solid, result->k_star, result->k_star_range, report);
     report_count(report, "emitters", result->emitters);
     report_value(report, "diameter", result->diameter, 6);
     report_value(report, "solid_fraction", result->solid_fraction, 4);
@@ -194,6 +207,11 @@ static void conductivity_report(struct conductivity_request *request, const stru
                       conduction_worst(&request->rule, result), "F_E; more --max-rays would help");
     axes_with(result, FLIGHTS_ENDLESS | FLIGHTS_RARE, unreliable);
     report_text(report, "unreliable", *unreliable ? unreliable : "none");
+    if (!isnan(request->isothermal)) {
+        char text[80];
+        snprintf(text, sizeof text, "right to 5 %% for k_s above %.3g W/(m K)", request->isothermal);
+        report_text(report, "isothermal", text);
+    }
     if (!isnan(result->temperature)) {
         report_value(report, "temperature_K", result->temperature, 6);
         report_axes(report, result, "k_%c_W_mK%s", result->k, result->k_error);
@@ -206,7 +224,10 @@ static void conductivity_report(struct conductivity_request *request, const stru
 static void conductivity_warn(const struct conductivity_request *request, const struct conduction *result) {
     const char *file = request->bed.name;
     char axes[4];
-    if (result->escaped > 1e-3)
+    if (result->flights > 0 && result->escaped > 0.05)
+        message_at(STATUS_OK, file, 0, "warning: %.2g of the paths leave the bed; a larger bed has a surer F_E",
+                   result->escaped);
+    if (result->flights == 0 && result->escaped > 1e-3)
         message_at(STATUS_OK, file, 0, "warning: %.2g of what the core emits leaves the bed; F_E is too low",
                    result->escaped);
     if (axes_with(result, FLIGHTS_ENDLESS, axes))
@@ -219,6 +240,16 @@ static void conductivity_warn(const struct conductivity_request *request, const 
                    "warning: F_E along %s rests on a few long flights, as through a channel without spheres. Its "
                    "standard error is unreliable",
                    axes);
+}
+
+/* Where the unit of length is known, finds how well the solid must conduct for one temperature a sphere. */
+static int conductivity_isothermal(struct conductivity_request *request, const struct bed *bed,
+                                   const unsigned char *emits, double metres, const struct conduction *result) {
+    fibrad_run run = bed_options_run(&request->bed);
+    request->isothermal = NAN;
+    if (request->solid.given || !(request->temperature > 0) || !bed_options_unit(&request->bed, bed)) return STATUS_OK;
+    const int status = conduction_isothermal(bed, emits, &request->rule, &run, result, metres, &request->isothermal);
+    return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
 /* Follows the paths of a bed. Refuses a bed that emits nothing. */
@@ -248,20 +279,39 @@ static int conductivity_steady(struct conductivity_request *request, const struc
     return status;
 }
 
+/* With --solid-conductivity finds k* of all spheres, *relative [n]. Free it also after an error. */
+static int conductivity_solid(struct conductivity_request *request, const struct bed *bed, double *metres,
+                              double **relative) {
+    if (!request->solid.given) return STATUS_OK;
+    double *solid = NULL, *temperature = malloc(bed->n * sizeof *temperature);
+    *relative = malloc(bed->n * sizeof **relative);
+    int status = temperature && *relative ? STATUS_OK : message_memory();
+    for (uint32_t i = 0; i < bed->n && !status; ++i) temperature[i] = request->temperature;
+    if (!status) status = solid_values(&request->bed, bed, &request->solid, &solid, metres);
+    if (!status) status = solid_relative(&request->bed, bed, &request->solid, temperature, *metres, solid, *relative);
+    free(solid);
+    free(temperature);
+    return status;
+}
+
 static int conductivity_compute(struct conductivity_request *request, struct bed *bed, struct conduction *result) {
     const char *file = request->bed.name;
-    double *emissivity = NULL, metres;
+    const double margin = request->solid.given ? CONDUCTION_MARGIN_WALK : CONDUCTION_MARGIN;
+    double *emissivity = NULL, *relative = NULL, metres;
     unsigned char *emits = calloc(bed->n, 1);
     int status = emits ? STATUS_OK : message_memory();
     if (!status && request->at) status = bed_options_metres(&request->bed, bed, &metres);
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
-    request->rule.emissivity = emissivity;
-    if (!status) status = conduction_emitters(bed, request->rule.axis, file, emits, result);
+    if (!status) status = conductivity_solid(request, bed, &metres, &relative);
+    request->rule.emissivity = emissivity, request->rule.conductivity = relative;
+    if (!status) status = conduction_emitters(bed, request->rule.axis, margin, file, emits, result);
     if (!status) status = conductivity_follow(request, bed, emits, result);
     if (!status && request->at) conduction_at(result, request->temperature, metres);
+    if (!status) status = conductivity_isothermal(request, bed, emits, metres, result);
     if (!status) status = conductivity_steady(request, bed, result);
     free(emits);
     free(emissivity);
+    free(relative);
     return status;
 }
 
@@ -282,5 +332,7 @@ static int conductivity_frame(void *conductivity_request, struct bed *bed) {
 int command_conductivity(int argc, char **argv) {
     struct conductivity_request request;
     const int status = conductivity_parse(&request, argc, argv);
-    return bed_options_end(&request.bed, status, conductivity_help, conductivity_frame, &request);
+    const int ended = bed_options_end(&request.bed, status, conductivity_help, conductivity_frame, &request);
+    quantity_free(&request.solid);
+    return ended;
 }

@@ -34,13 +34,10 @@ int solid_relative(const struct bed_options *options, const struct bed *bed, con
     return STATUS_OK;
 }
 
-void solid_report(const struct quantity *solid, const double *relative, uint32_t n, struct report *report) {
-    double low = INFINITY, high = 0, sum = 0;
-    for (uint32_t i = 0; i < n; ++i)
-        low = fmin(low, relative[i]), high = fmax(high, relative[i]), sum += relative[i] / n;
+void solid_report(const struct quantity *solid, double mean, const double range[2], struct report *report) {
     quantity_report(solid, "solid_conductivity", report);
-    report_value(report, "k_star", sum, 4);
-    if (low == high) return;
-    report_value(report, "k_star_min", low, 4);
-    report_value(report, "k_star_max", high, 4);
+    report_value(report, "k_star", mean, 4);
+    if (range[0] == range[1]) return;
+    report_value(report, "k_star_min", range[0], 4);
+    report_value(report, "k_star_max", range[1], 4);
 }

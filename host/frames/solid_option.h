@@ -32,7 +32,7 @@ int solid_values(struct bed_options *options, const struct bed *bed, const struc
 int solid_relative(const struct bed_options *options, const struct bed *bed, const struct quantity *solid,
                    const double *temperature, double metres, double *conductivity, double *relative);
 
-/* Reports --solid-conductivity and the mean k* of spheres, and the least and the largest one if they differ. */
-void solid_report(const struct quantity *solid, const double *relative, uint32_t n, struct report *report);
+/* Reports --solid-conductivity and the mean k* of the spheres, and the least and the largest one if they differ. */
+void solid_report(const struct quantity *solid, double mean, const double range[2], struct report *report);
 
 #endif

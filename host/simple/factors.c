@@ -99,14 +99,17 @@ int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres 
     return status;
 }
 
-/* Checks the emissivities of all spheres, since paths may meet each of them. The fault names the first invalid one. */
-static int check_emissivities(fibrad_job *job, const fibrad_exchange_rule *rule) {
+/* Checks what is given of all spheres, since paths may meet each of them. The fault names the first invalid one. */
+static int check_spheres(fibrad_job *job, const fibrad_exchange_rule *rule) {
     if (!rule || (!rule->emissivity && job->facts.spheres > 0)) return FIBRAD_E_ARGUMENT;
-    for (uint32_t i = 0; i < job->facts.spheres; ++i)
-        if (!(rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1)) {
-            if (job->run) job->run->fault = (fibrad_fault){i, i, UINT32_MAX, 0, FIBRAD_WHY_EMISSIVITY};
-            return FIBRAD_E_ARGUMENT;
-        }
+    for (uint32_t i = 0; i < job->facts.spheres; ++i) {
+        const bool grey = rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1;
+        const bool solid = !rule->conductivity || rule->conductivity[i] >= FIBRAD_RELATIVE_CONDUCTIVITY_MIN;
+        if (grey && solid) continue;
+        const int why = grey ? FIBRAD_WHY_CONDUCTIVITY : FIBRAD_WHY_EMISSIVITY;
+        if (job->run) job->run->fault = (fibrad_fault){i, i, UINT32_MAX, 0, why};
+        return FIBRAD_E_ARGUMENT;
+    }
     return FIBRAD_OK;
 }
 
@@ -134,7 +137,7 @@ int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_sphe
     int status = fibrad_job_open(&job, config, spheres, run);
     if (!status) status = check_options(options, 0);
     if (!status) status = fibrad_job_scratch(&job, options->scratch);
-    if (!status) status = check_emissivities(&job, rule);
+    if (!status) status = check_spheres(&job, rule);
     if (!status) status = run_exchange(&job, rule, options, factors);
     fibrad_job_close(&job);
     return status;
@@ -151,6 +154,7 @@ static int displacement_of(const void *rule, const fibrad_scene *scene, fibrad_w
     const struct displacement_rule *how = rule;
     (void)rays;
     *row = (fibrad_row){0};
+    if (how->rule->conductivity) return fibrad_exchange_walk(scene, work, i, how->rule, &how->to[i]);
     return fibrad_exchange_displacement(scene, work, i, how->rule, &how->to[i]);
 }
 
@@ -162,7 +166,7 @@ int fibrad_displacements(const fibrad_scene_config *config, const fibrad_spheres
     const struct displacement_rule how = {rule, displacement};
     int status = fibrad_job_open(&job, config, spheres, run);
     if (!status && !displacement) status = FIBRAD_E_ARGUMENT;
-    if (!status) status = check_emissivities(&job, rule);
+    if (!status) status = check_spheres(&job, rule);
     if (!status) status = fibrad_job_rows(&job, displacement_of, &how, wanted, NULL, &report);
     if (!status && facts) *facts = job.facts;
     fibrad_job_close(&job);

@@ -193,7 +193,8 @@ int write_heat_csv(FILE *file, const struct contents *what, bool first) {
 int write_conduction_csv(FILE *file, const struct contents *what, bool first) {
     const struct conduction *conduction = what->conduction;
     struct csv csv = {0};
-    begin_csv(&csv, file, what, "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable,F_E_steady,F_E_steady_error", first);
+    begin_csv(&csv, file, what, "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable,F_E_steady,F_E_steady_error,k_star",
+              first);
     for (int axis = 0; axis < 3; ++axis) {
         if (!conduction_wants(conduction, axis)) continue;
         char *at = csv.line + csv.columns;
@@ -208,6 +209,7 @@ int write_conduction_csv(FILE *file, const struct contents *what, bool first) {
         *at++ = conduction_flights(conduction, axis) == FLIGHTS_SETTLED ? '1' : '0';
         at = put_error(put_comma(at), conduction->steady[axis]);
         at = put_error(put_comma(at), conduction->steady_error[axis]);
+        at = put_error(put_comma(at), conduction->k_star);
         end_line(&csv, at, "");
     }
     return STATUS_OK;

@@ -144,6 +144,11 @@ int write_conduction_json(FILE *file, const struct contents *what, bool first) {
     const char *comma = "";
     (void)first;
     json_frame(file, what, "conduction");
+    if (!isnan(conduction->k_star)) {
+        json_entry(file, "k_star", conduction->k_star);
+        json_entry(file, "k_star_min", conduction->k_star_range[0]);
+        json_entry(file, "k_star_max", conduction->k_star_range[1]);
+    }
     fputs(",\"axes\":[", file);
     for (int axis = 0; axis < 3; ++axis) {
         if (!conduction_wants(conduction, axis)) continue;

@@ -51,6 +51,7 @@ static fibrad_paths paths_of(const exchange_task *task, fibrad_workspace *space,
                           .cut = task->rule->cutoff > 0 || scene->region,
                           .cutoff = task->rule->cutoff > 0 ? task->rule->cutoff / scene->r[place] : __builtin_inf(),
                           .emissivity = task->rule->emissivity,
+                          .conductivity = task->rule->conductivity,
                           .wall_emissivity = task->wall_emissivity,
                           .stream = fibrad_random_start(task->rule->seed, fibrad_scene_id(scene, i)),
                           .back = UINT32_MAX};
@@ -237,6 +238,21 @@ int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i
     return status;
 }
 
+/* The mean over `count` of what all parts have added up, and its standard error by their spread. */
+static void read_squares(const fibrad_paths *paths, double count, fibrad_displacement *displacement) {
+    for (int axis = 0; axis < 3; axis++) {
+        double sum = 0, square = 0;
+        for (int part = 0; part < FIBRAD_DISPLACEMENT_PARTS; part++) sum += paths->square[part][axis];
+        for (int part = 0; part < FIBRAD_DISPLACEMENT_PARTS; part++) {
+            double difference = paths->square[part][axis] - sum / FIBRAD_DISPLACEMENT_PARTS;
+            square += difference * difference;
+        }
+        displacement->square[axis] = sum / count;
+        displacement->error[axis] =
+            fibrad_sqrt(square * FIBRAD_DISPLACEMENT_PARTS / (FIBRAD_DISPLACEMENT_PARTS - 1)) / count;
+    }
+}
+
 int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
                                  const fibrad_exchange_rule *rule, fibrad_displacement *displacement) {
     exchange_task task;
@@ -256,20 +272,36 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
     work->triangle = paths.back;
     if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
     if (!fibrad_finite(paths.absorbed)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
-    for (int axis = 0; axis < 3; axis++) {
-        double sum = 0, square = 0;
-        for (int part = 0; part < FIBRAD_DISPLACEMENT_PARTS; part++) sum += paths.square[part][axis];
-        for (int part = 0; part < FIBRAD_DISPLACEMENT_PARTS; part++) {
-            double difference = paths.square[part][axis] - sum / FIBRAD_DISPLACEMENT_PARTS;
-            square += difference * difference;
-        }
-        displacement->square[axis] = sum / count;
-        displacement->error[axis] =
-            fibrad_sqrt(square * FIBRAD_DISPLACEMENT_PARTS / (FIBRAD_DISPLACEMENT_PARTS - 1)) / count;
+    read_squares(&paths, count, displacement);
+    for (int axis = 0; axis < 3; axis++)
         if (paths.left > 0 && paths.absorbed > 0) /* it would have gone on, and as far at least */
             displacement->error[axis] += displacement->square[axis] * (paths.left / paths.absorbed);
-    }
     displacement->absorbed = paths.absorbed / count;
     displacement->rays = paths.rays;
+    return FIBRAD_OK;
+}
+
+int fibrad_exchange_walk(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
+                         fibrad_displacement *displacement) {
+    exchange_task task;
+    fibrad_workspace *space;
+    int status = exchange_begin(&task, scene, i, rule);
+    if (status == FIBRAD_OK &&
+        (work == NULL || displacement == NULL || rule->conductivity == NULL || rule->flights > FIBRAD_FLIGHTS_MAX))
+        status = FIBRAD_E_ARGUMENT;
+    if (status == FIBRAD_OK &&
+        (scene->container.walls || scene->mesh.triangles > 0 || scene->region || rule->cutoff > 0))
+        status = FIBRAD_E_UNSUPPORTED;
+    if (status == FIBRAD_OK)
+        status = fibrad_work_open(work, scene, fibrad_tracer_least(), fibrad_tracer_best(scene), &space);
+    if (status != FIBRAD_OK) return status;
+    const uint64_t count = rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT;
+    fibrad_paths paths = paths_of(&task, space, scene, i);
+    paths.flights = rule->flights > 0 ? rule->flights : FIBRAD_FLIGHTS_DEFAULT;
+    fibrad_paths_function *follow = FIBRAD_VERSION_OF(fibrad_paths_follow, scene->facts.isa);
+    follow(&paths, 0, count);
+    if (!fibrad_finite(paths.origins)) return FIBRAD_E_ARGUMENT; /* a number on the way was not valid */
+    *displacement = (fibrad_displacement){.absorbed = 1 - paths.lost / (double)count, .rays = paths.rays};
+    if (paths.origins > 0) read_squares(&paths, paths.origins, displacement);
     return FIBRAD_OK;
 }

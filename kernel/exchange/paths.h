@@ -22,6 +22,8 @@ typedef struct fibrad_paths {
     bool cut;                       /* whether there is a cutoff or a known region */
     double cutoff;                  /* from the centre of the sphere, in its radii; infinity: none */
     const double *emissivity;       /* [spheres], by the caller's index; NULL: all are black */
+    const double *conductivity;     /* [spheres], relative, by the caller's index; NULL: one temperature a sphere */
+    uint32_t flights;               /* above 0: a walk, see below */
     const double *wall_emissivity;  /* [FIBRAD_SLOTS], by slot */
     bool boxed;                     /* paths from a side of a closed box, where all is black */
     double behind[FIBRAD_CYLINDER]; /* out, if boxed: weight that spheres keep from each wall */
@@ -35,8 +37,10 @@ typedef struct fibrad_paths {
     /* L^2, out: sum over absorption by spheres times the squared displacement along each axis, path k in part k mod
      * FIBRAD_DISPLACEMENT_PARTS. The displacement is between the centres of the two spheres. */
     double square[FIBRAD_DISPLACEMENT_PARTS][3];
-    uint64_t rays; /* out: rays traced */
-    uint32_t back; /* out: a triangle seen from a side that belongs to no wall; set it to UINT32_MAX, none */
+    double origins; /* out, of a walk: flights that have been correlated */
+    double lost;    /* out, of a walk: paths that have left the bed */
+    uint64_t rays;  /* out: rays traced */
+    uint32_t back;  /* out: a triangle seen from a side that belongs to no wall; set it to UINT32_MAX, none */
 } fibrad_paths;
 
 /* Emissivities by slot from those by wall. NULL: all walls are black. Openings are black. Errors: FIBRAD_E_ARGUMENT. */
@@ -51,7 +55,12 @@ static inline int fibrad_paths_emissivities(const fibrad_scene *scene, const dou
     return FIBRAD_OK;
 }
 
-/* Follows paths begin to end - 1, and adds to the sums. */
+/* Follows paths begin to end - 1, and adds to the sums.
+ *
+ * In a walk no path ends. A path is at its start as if it had just arrived there. At each sphere it is reflected, or it
+ * is absorbed and given off at another point. One step is the way from one arrival to the next. There are 2 n steps, n
+ * being `flights`. To square[][axis] each of the first n adds its length along the axis times (its length + twice those
+ * of the next n - 1 steps + that of the step after these). */
 typedef void fibrad_paths_function(fibrad_paths *paths, uint64_t begin, uint64_t end);
 FIBRAD_DECLARE_VERSIONS(fibrad_paths_function, fibrad_paths_follow);
 

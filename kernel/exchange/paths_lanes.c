@@ -3,6 +3,7 @@
 #include "base/lanes/laned.h"
 #include "base/elementary.h"
 #include "base/lanes/turn.h"
+#include "exchange/conducting.h"
 #include "exchange/paths.h"
 #include "scene/walls.h"
 #include "scene/surroundings.h"
@@ -104,14 +105,18 @@ static void find_point(const fibrad_scene *scene, const struct grey_path *path, 
     }
 }
 
-/* Where a path is, from the centre of the sphere left first and in its radii. */
-static void find_start(const fibrad_paths *paths, const struct grey_path *path, double start[3]) {
+/* Where a path is, from the centre of the sphere left first [L]. */
+static void find_place(const fibrad_paths *paths, const struct grey_path *path, double at[3]) {
     const fibrad_scene *scene = paths->tracer->scene;
-    for (int axis = 0; axis < 3; axis++) {
-        const double from_centre =
-            path->place != FIBRAD_NONE ? scene->r[path->place] * path->n[axis] : path->point[axis];
-        start[axis] = (path->centre[axis] + from_centre) * paths->inverse;
-    }
+    for (int axis = 0; axis < 3; axis++)
+        at[axis] = path->centre[axis] +
+                   (path->place != FIBRAD_NONE ? scene->r[path->place] * path->n[axis] : path->point[axis]);
+}
+
+/* The same in radii of that sphere. */
+static void find_start(const fibrad_paths *paths, const struct grey_path *path, double start[3]) {
+    find_place(paths, path, start);
+    for (int axis = 0; axis < 3; axis++) start[axis] *= paths->inverse;
 }
 
 /* How far a ray goes until it leaves the ball about the sphere left first [L]; below 0: it begins outside. */
@@ -292,6 +297,54 @@ static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]
     paths->left += path.weight;
 }
 
+/* A path arrives at a sphere that conducts. It is reflected there, or absorbed and given off at another point. */
+static void scatter(fibrad_paths *paths, struct grey_path *path, uint32_t leg) {
+    const uint32_t i = paths->tracer->scene->order[path->place];
+    const double emissivity = paths->emissivity[i], conductivity = paths->conductivity[i];
+    double draw[3], even[3];
+    if (!(emissivity >= 0 && emissivity <= 1 && conductivity >= FIBRAD_RELATIVE_CONDUCTIVITY_MIN))
+        paths->origins = __builtin_nan("");
+    for (uint32_t d = 0; d < 3; d++)
+        draw[d] = fibrad_fraction(fibrad_random_ahead(path->own, (UINT64_C(1) << 32) + 3 * leg + d));
+    if (!(draw[2] < emissivity)) return;
+    next_sphere_point(paths, path, even);
+    fibrad_conduct(2 * conductivity / emissivity, draw, even, path->n);
+}
+
+/* Adds what the first flights of a walk have to do with those that follow. at[0] to at[steps]: where the flights end.
+ */
+static void correlate(fibrad_paths *paths, uint64_t k, double at[][3], uint32_t steps) {
+    double *square = paths->square[k % FIBRAD_DISPLACEMENT_PARTS];
+    const uint32_t n = paths->flights, origins = steps < n ? steps : n;
+    paths->origins += origins;
+    for (uint32_t step = 1; step <= origins; step++) {
+        const uint32_t last = step + n < steps ? step + n : steps, before = step + n - 1 < steps ? step + n - 1 : steps;
+        for (int axis = 0; axis < 3; axis++) {
+            const double here = at[step][axis], length = here - at[step - 1][axis];
+            square[axis] += length * (length + (at[last][axis] - here) + (at[before][axis] - here));
+        }
+    }
+}
+
+static void follow_walk(fibrad_paths *paths, uint64_t k) {
+    struct grey_path path = {
+        .k = k, .own = {fibrad_random_ahead(paths->stream, 8 + k)}, .place = paths->place, .triangle = FIBRAD_NO_SIDE};
+    double at[2 * FIBRAD_FLIGHTS_MAX + 1][3], w[3];
+    uint32_t steps = 0;
+    next_sphere_point(paths, &path, path.n);
+    find_place(paths, &path, at[0]);
+    while (steps < 2 * paths->flights) {
+        scatter(paths, &path, steps);
+        draw_direction(paths, &path, w);
+        if (trace_leg(paths, &path, w) != FIBRAD_NONE) {
+            paths->lost++;
+            break;
+        }
+        find_place(paths, &path, at[++steps]);
+    }
+    correlate(paths, k, at, steps);
+}
+
 /* Follows PATH_BATCH paths of one leg in a box, or fewer: each to the wall that it meets, or would meet but for a
  * sphere. */
 static void follow_boxed(fibrad_paths *paths, uint32_t paths_left, uint32_t sobol[PATH_BATCH][8]) {
@@ -330,7 +383,9 @@ void LANED(fibrad_paths_follow)(fibrad_paths *paths, uint64_t begin, uint64_t en
             at = (uint32_t)k + b;
             fibrad_copy(batch[b], point, sizeof point);
         }
-        if (paths->boxed)
+        if (paths->flights > 0)
+            follow_walk(paths, k);
+        else if (paths->boxed)
             follow_boxed(paths, count, batch);
         else
             follow_path(paths, k, batch[0]);

@@ -354,6 +354,24 @@ static int hash_tolerance(const struct scene *s, int isa) {
     return 0;
 }
 
+/* Walks of spheres that conduct. */
+static int hash_walk(const struct scene *s, const fibrad_scene *scene, const fibrad_exchange_rule *of) {
+    static double conductivity[SPHERES];
+    fibrad_exchange_rule rule = *of;
+    for (uint32_t i = 0; i < s->n; i++) conductivity[i] = i % 7 == 0 ? __builtin_inf() : .01 * (1 << i % 11);
+    rule.conductivity = conductivity, rule.flights = 5;
+    hash_begin();
+    for (uint32_t i = 0; i < s->n; i += 4) {
+        fibrad_displacement displacement;
+        if (fibrad_exchange_walk(scene, &work, i, &rule, &displacement) != FIBRAD_OK) return 1;
+        for (int axis = 0; axis < 3; axis++)
+            hash_number(displacement.square[axis]), hash_number(displacement.error[axis]);
+        hash_number(displacement.absorbed), hash_word(displacement.rays);
+    }
+    tell(s->name, "walk");
+    return 0;
+}
+
 /* Exchange rows by a fixed number of paths and to a tolerance, their matrix, and displacements. */
 static int hash_exchange(const struct scene *s, int isa) {
     fibrad_scene *scene;
@@ -389,7 +407,7 @@ static int hash_exchange(const struct scene *s, int isa) {
         hash_number(displacement.absorbed), hash_word(displacement.rays);
     }
     tell(s->name, "spread");
-    return 0;
+    return bodies == 0 && s->bounds == PERIODIC ? hash_walk(s, scene, &rule) : 0;
 }
 
 /* Rows of a part of a bed: beams by areas and by points, turned ones, cast and exchange, with a cutoff, a known region

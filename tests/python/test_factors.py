@@ -268,6 +268,16 @@ def test_conductivity_of_a_face_centred_lattice():
     assert moved.absorbed == pytest.approx(1, abs=1e-3) and (moved.error > 0).all() and (moved.rays > 200000).all()
 
 
+def test_conductivity_of_spheres_that_conduct():
+    """F_E = .8006 in a simple cubic lattice of touching black spheres at k* = 1, by harmonics (test_solid.c)."""
+    moved = fibrad.displacements([[0, 0, 0]], 0.5, 1.0, box=[1, 1, 1], conductivity=1.0, paths=40000)
+    assert np.pi / 2 * moved.square.mean() == pytest.approx(0.8006, rel=0.05)
+    assert moved.absorbed == pytest.approx(1, abs=1e-3) and moved.rays == pytest.approx(40000 * 24, rel=1e-3)
+    for wrong in (0.0, -1.0, np.nan):
+        with pytest.raises(fibrad.InputError, match="conductivity of sphere 0"):
+            fibrad.displacements([[0, 0, 0]], 0.5, 1.0, conductivity=wrong)
+
+
 @pytest.mark.parametrize("x, r, text, spheres", [
     ([0, 0, 0], 1, r"x has the shape \(3,\)", ()),
     ([[0, 0]], 1, r"\(1, 2\)", ()),

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._call import Call, Progress
 from ._library import BeamRule, BedFactors, BedOptions, CastRule, Displacement, ExchangeRule, SurfaceRule, library
-from ._limits import DIRECTIONS, LENGTH_MAX, NODES
+from ._limits import DIRECTIONS, FLIGHTS_MAX, LENGTH_MAX, NODES, RELATIVE_CONDUCTIVITY_MIN
 from ._scene import Container, Packing, Walls, pointer
 from ._values import marks, per_sphere, real, refuse, whole
 
@@ -219,10 +219,14 @@ class _Job:
                           "no more directions or paths are possible", stacklevel=3)
         return factors
 
-    def exchange_rule(self, emissivity: ArrayLike, wall_emissivity: Any, **values: Any) -> Any:
+    def exchange_rule(self, emissivity: ArrayLike, wall_emissivity: Any, conductivity: Optional[ArrayLike] = None,
+                      **values: Any) -> Any:
         self._emissivity = per_sphere("emissivity", emissivity, self.packing.n, 0, 1, self.packing.names)
         self._wall_emissivity = self.container.per_wall("wall_emissivity", wall_emissivity, 0, 1)
+        self._conductivity = None if conductivity is None else per_sphere(
+            "conductivity", conductivity, self.packing.n, RELATIVE_CONDUCTIVITY_MIN, np.inf, self.packing.names)
         return ExchangeRule(emissivity=pointer(self._emissivity), body_emissivity=pointer(self._wall_emissivity),
+                            conductivity=pointer(self._conductivity),
                             **values)
 
 
@@ -383,34 +387,42 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Displacements:
-    """How far the emission of each sphere is carried: from its centre to the centre of the sphere that absorbs."""
+    """How far the emission of each sphere is carried: from its centre to the centre of the sphere that absorbs.
+
+    Of spheres that conduct: how far a path gets in a flight."""
 
     square: NDArray[np.float64]
     """[L^2] (n, 3) mean square displacement along each axis."""
     error: NDArray[np.float64]
     """[L^2] (n, 3) estimated standard error of `square`."""
     absorbed: NDArray[np.float64]
-    """(n,) fraction of the emission that spheres absorb."""
+    """(n,) fraction of the emission that spheres absorb. Of spheres that conduct: of the paths that stay in the bed."""
     rays: NDArray[np.uint64]
     """(n,) rays traced."""
 
 
 def displacements(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: Optional[ArrayLike] = None,
-                  walls: Optional[Walls] = None, wall_emissivity: Any = None, paths: Optional[int] = None,
-                  seed: Optional[int] = None, cutoff: Optional[float] = None, wanted: Optional[ArrayLike] = None,
+                  walls: Optional[Walls] = None, wall_emissivity: Any = None, conductivity: Optional[ArrayLike] = None,
+                  paths: Optional[int] = None, flights: Optional[int] = None, seed: Optional[int] = None, cutoff: Optional[float] = None, wanted: Optional[ArrayLike] = None,
                   ids: Optional[ArrayLike] = None, threads: Optional[int] = None,
                   progress: Optional[Progress] = None) -> Displacements:
     """Mean square displacements of radiation.
 
     The conductivity of a bed follows from them. For equal spheres of diameter d, solid fraction phi and emissivity e in
-    a periodic box it is ``k = 4 sigma T**3 * 3 phi e square.mean(axis=0) / d``.
+    a periodic box it is ``k = 4 sigma T**3 * 3 phi e square.mean(axis=0) / d``. With ``conductivity`` the spheres
+    conduct, temperatures differ from point to point of each sphere, and the factor e is left out.
 
     Parameters
     ----------
     x, r, emissivity, box, walls, wall_emissivity, seed, cutoff, wanted, ids, threads, progress
         As for `exchange_factors`. Spheres that are not wanted have zeros.
+    conductivity : (n,) array or float, optional
+        Relative conductivities of the spheres, ``k_s / (4 d sigma T**3)``, at least 1e-6, inf for one temperature.
+        Without walls and cutoff. Default: each sphere has one temperature.
     paths : int, optional
         Paths from each sphere. Default: 400.
+    flights : int, optional
+        With ``conductivity``: flights whose displacements are correlated, 1 to 256. Default: 12.
 
     Returns
     -------
@@ -422,8 +434,9 @@ def displacements(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: Opt
         As for `view_factors`.
     """
     job = _Job(x, r, box, walls, ids, wanted, threads, progress)
-    rule = job.exchange_rule(emissivity, wall_emissivity, paths=whole("paths", paths, 1, 2**28),
-                             seed=whole("seed", seed, *_SEED), cutoff=real("cutoff", cutoff, *_FAR))
+    rule = job.exchange_rule(emissivity, wall_emissivity, conductivity, paths=whole("paths", paths, 1, 2**28),
+                             seed=whole("seed", seed, *_SEED), cutoff=real("cutoff", cutoff, *_FAR),
+                             flights=whole("flights", flights, 1, FLIGHTS_MAX))
     found: NDArray[Any] = np.zeros(job.packing.n, Displacement)
     job.call(library.fibrad_displacements, rule, job.wanted, job.run, found.ctypes.data, None)
     return Displacements(*(np.ascontiguousarray(found[name]) for name in ("square", "error", "absorbed", "rays")))
