@@ -83,7 +83,9 @@ typedef struct fibrad_insitu fibrad_insitu;
 
 /* How rows are made. The same on all ranks. Zeroed: all defaults.
  *
- * The default cutoff is the largest diameter plus 8 mean radii, or plus 10 mean radii if an emissivity is below 0.4. */
+ * The default cutoff is as long as the number of particles allows that ranks send each other, but no longer than the
+ * bed. It is the largest diameter plus 8 mean radii, times the highest power of 1.25 with which a cube of twice that
+ * side has no more than 1e5 particles and images. Rows take about as long with any cutoff. */
 typedef struct fibrad_insitu_config {
     double cutoff;       /* L, as in fibrad_exchange_rule, at least the largest diameter; 0: see above */
     uint32_t directions; /* as in fibrad_exchange_rule; 0: its default */
@@ -128,6 +130,10 @@ typedef struct fibrad_insitu_totals {
     double surroundings;            /* sigma K^4 L^2 */
     double body[FIBRAD_BODIES_MAX]; /* sigma K^4 L^2, [bodies of the rows] */
 } fibrad_insitu_totals;
+
+/* Where facts.beyond is above this, the cutoff biases powers of surroundings and walls by as much or some times more.
+ */
+#define FIBRAD_BEYOND_MUCH 0.005
 
 /* Facts of the last rows, of all ranks together except halo and bytes. */
 typedef struct fibrad_insitu_facts {

@@ -10,18 +10,15 @@
 #include "couple/ranks/coarse_map.h"
 #include "fibrad_mesh.h"
 
-#define THREADS_MAX 1024
-#define CUTOFF_RADII                                                                                                   \
-    8 /* mean radii beyond the largest diameter: 1.4e-4 of the emission leaves it at emissivity 0.8                    \
-       */
-#define CUTOFF_DARK    10 /* the same for emissivities below DARK_BELOW, since reflections carry radiation farther */
-#define DARK_BELOW     0.4
-#define CELLS_A_CUTOFF 8    /* cells of the coarse map per cutoff */
-#define REACH_RADII    1.5  /* beyond the cutoff: largest radii within which spheres matter to a row, fibrad.h */
-#define PERIODS_MAX    100  /* as far as the kernel's beams go */
-#define OPENINGS_MAX   6    /* one a side */
-#define PART_LEAST     1e-3 /* a particle whose radius would be reduced to less is left out */
-#define BACKS_MOST     0.1  /* part of all particles that may see what belongs to no wall */
+#define THREADS_MAX  1024
+#define CUTOFF_RADII 8    /* mean radii beyond the largest diameter, the least default cutoff */
+#define CUTOFF_COUNT 1e5  /* particles in a cube that may be sent for the default cutoff, see below */
+#define CELL_RADII   0.25 /* width of the cells of the coarse map, in mean radii */
+#define REACH_RADII  1.5  /* beyond the cutoff: largest radii within which spheres matter to a row, fibrad.h */
+#define PERIODS_MAX  100  /* as far as the kernel's beams go */
+#define OPENINGS_MAX 6    /* one a side */
+#define PART_LEAST   1e-3 /* a particle whose radius would be reduced to less is left out */
+#define BACKS_MOST   0.1  /* part of all particles that may see what belongs to no wall */
 
 /* ---- begin and end ---- */
 
@@ -128,7 +125,7 @@ struct insitu_build {
     fibrad_insitu_set *to;
     const fibrad_insitu_bed *bed;
     uint64_t step;
-    double period[3], cutoff, radius_max, reach;
+    double period[3], cutoff, radius_max, radius_mean, reach;
     size_t halo;
     fibrad_plane opening[OPENINGS_MAX];
     fibrad_occupancy map;
@@ -226,6 +223,31 @@ static int begin_bed(struct insitu_build *b) {
     return fibrad_agree(b->s->comm, status, b->s->message);
 }
 
+/* How many particles and images a cube of side 2 R about the middle of the bed has. Infinity: the cube has too many
+ * periods. span: of the centres. */
+static double count_within(const struct insitu_build *b, const double span[3], double particles, double radius) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double period = b->period[axis], wide = span[axis] + 2 * b->radius_max;
+        if (period > 0 && !(radius + REACH_RADII * b->radius_max < PERIODS_MAX * period)) return INFINITY;
+        particles *= period > 0 ? (period + 2 * radius) / period : fmin(1, 2 * radius / wide);
+    }
+    return particles;
+}
+
+/* A cutoff hardly changes the time that rows take, but the number of particles that are sent. So the default is as long
+ * as that number allows, and no longer than the bed. ends: high and -low of centres. */
+static double default_cutoff(const struct insitu_build *b, const double ends[6], double particles) {
+    double span[3], longest = 0, cutoff = 2 * b->radius_max + CUTOFF_RADII * b->radius_mean;
+    for (int axis = 0; axis < 3; ++axis) {
+        span[axis] = ends[axis] + ends[axis + 3];
+        longest += span[axis] * span[axis];
+        if (b->period[axis] > 0) longest = INFINITY;
+    }
+    longest = sqrt(longest) + 2 * b->radius_max;
+    while (cutoff < longest && count_within(b, span, particles, 1.25 * cutoff) <= CUTOFF_COUNT) cutoff *= 1.25;
+    return cutoff;
+}
+
 /* Finds extents, radii and the cutoff. They must be the same to the bit whoever owns which particle. So the mean radius
  * comes from a sum of whole numbers. */
 static int measure_bed(struct insitu_build *b) {
@@ -255,10 +277,8 @@ static int measure_bed(struct insitu_build *b) {
         if (!isnan(b->bed->opening[k].at)) continue;
         opening->at = opening->upper ? most[8 + opening->axis] : -most[11 + opening->axis];
     }
-    b->cutoff = config->cutoff;
-    if (!(b->cutoff > 0) && sum[0])
-        b->cutoff = 2 * b->radius_max + (-most[1] < DARK_BELOW ? CUTOFF_DARK : CUTOFF_RADII) *
-                                            ((double)sum[1] / (double)sum[0] / 0x1p32 * b->radius_max);
+    if (sum[0]) b->radius_mean = (double)sum[1] / (double)sum[0] / 0x1p32 * b->radius_max;
+    b->cutoff = config->cutoff > 0 || !sum[0] ? config->cutoff : default_cutoff(b, most + 2, (double)sum[0]);
     if (b->cutoff < 2 * b->radius_max)
         status = fibrad_refuse(b->s->message, FIBRAD_E_ARGUMENT,
                                "the cutoff %g is less than the diameter of the largest particle, %g", b->cutoff,
@@ -572,7 +592,7 @@ int fibrad_insitu_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_t 
         status = find_halo(&b);
         if (!status) status = part_overlaps(&b);
         if (!status)
-            status = fibrad_coarse_map(s->comm, b.cutoff / CELLS_A_CUTOFF, b.radius_max, to->particle.at, to->own,
+            status = fibrad_coarse_map(s->comm, CELL_RADII * b.radius_mean, b.radius_max, to->particle.at, to->own,
                                        &s->mark, &b.map);
     }
     if (!status) status = link_present(&b);

@@ -428,11 +428,12 @@ void FixFibrad::make_rows() {
     rows_made++;
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(insitu, &facts);
-    if (facts.beyond > 0.01 && !cut_warned && comm->me == 0)
+    if (facts.beyond > FIBRAD_BEYOND_MUCH && !cut_warned && comm->me == 0)
         error->warning(
-            FLERR, text("fix fibrad: the cutoff leaves out %.2g %% of what particles emit: `cutoff` should be larger",
-                        100 * facts.beyond));
-    cut_warned = cut_warned || facts.beyond > 0.01;
+            FLERR,
+            text("fix fibrad: %.2g %% of what particles emit goes beyond the cutoff %g: `cutoff` should be larger",
+                 100 * facts.beyond, facts.cutoff));
+    cut_warned = cut_warned || facts.beyond > FIBRAD_BEYOND_MUCH;
     tell_strays();
     if (!rows_file.empty())
         check(fibrad_insitu_write(insitu, (rows_file + "." + std::to_string(update->ntimestep)).c_str()));

@@ -58,6 +58,7 @@ struct Driver {
     std::vector<double> emissivity, gain;                         /* [own] */
     fibrad_insitu_totals totals;                                  /* of the current powers */
     bool radiates;                                                /* there are powers */
+    bool told_cut;                                                /* the warning about the cutoff was given */
     bool told[FIBRAD_REMARKS];                                    /* strays of each kind were told of */
     LAMMPS_NS::bigint since;                                      /* first step in which the current powers heat */
     double heat, heat_surroundings, heat_body[FIBRAD_BODIES_MAX]; /* heat by radiation before that step */
@@ -319,6 +320,15 @@ void make_rows(Driver *driver) {
     if (mesh_walls_face(&driver->triangles, MPI_COMM_WORLD, &bed) != 0) stop(WRONG_INPUT, "out of memory");
     check(driver, fibrad_insitu_rows(driver->radiation, &bed, (uint64_t)driver->lmp->update->ntimestep));
     tell_strays(driver);
+    fibrad_insitu_facts facts;
+    fibrad_insitu_facts_get(driver->radiation, &facts);
+    if (!(facts.beyond > FIBRAD_BEYOND_MUCH) || driver->told_cut) return;
+    if (rank() == 0)
+        std::fprintf(stderr,
+                     "fibrad_liggghts: warning: %.2g %% of what particles emit goes beyond the cutoff %g: a larger "
+                     "--cutoff\n",
+                     100 * facts.beyond, facts.cutoff);
+    driver->told_cut = true;
 }
 
 /* Computes powers. If particles have come or gone since the last rows, makes new rows before. */

@@ -11,7 +11,7 @@ done
 test -n "${LOAD:-}" || test -e /usr/include/lammps/fix.h || { echo "SKIP fix fibrad: no liblammps-dev (make deps-couple)" && exit; }
 . tests/couple/mpi.sh
 
-$MAKE -s --no-print-directory "$BUILD/tests/couple/serial_bed" "$BUILD/tests/couple/sorted_rows" || exit 1
+$MAKE -s --no-print-directory "$BUILD/tests/couple/serial_bed" "$BUILD/tests/couple/sorted_rows" "$BUILD/fibrad" || exit 1
 test -n "${LOAD:-}" || { LOAD=$BUILD/couple/fibrad.lmp && $MAKE -s --no-print-directory "$LOAD" || exit 1; }
 work=$BUILD/couple/check_lammps
 rm -rf "$work"
@@ -81,8 +81,8 @@ balance() {
 awk '/^[0-9]+ 1 / && ($3 >= 6 || $4 >= 6) { next } { print }' tests/data/mono2000.dump >"$work/quarter.dump"
 as_data "$work/quarter.dump" >"$work/quarter.data"
 awk '/^[0-9]+ 1 / { print $1, $3, $4, $5, $6, $7 }' "$work/quarter.dump" |
-    tee "$work/quarter" | "$BUILD/tests/couple/serial_bed" 50 20 40 100 >"$work/serial.out"
-whole=(data "$work/quarter.data" cutoff 40)
+    tee "$work/quarter" | "$BUILD/tests/couple/serial_bed" 50 20 4000 100 >"$work/serial.out"
+whole=(data "$work/quarter.data" cutoff 4000)
 
 for np in 1 2 4; do
     run $np frozen$np frozen.lmp "${whole[@]}"
@@ -101,7 +101,7 @@ same empty "ranks without particles"
 run 4 balance frozen.lmp "${whole[@]}" grid "1 1 4" also "fix b all balance 10 1.0 shift z 10 1.01"
 same balance "balance during the run"
 run 2 first frozen.lmp "${whole[@]}" steps 25 also "restart 25 $work/at.*"
-run 4 restarted frozen.lmp data "$work/at.25" cutoff 40 restarted yes steps 25
+run 4 restarted frozen.lmp data "$work/at.25" cutoff 4000 restarted yes steps 25
 same restarted "restart in the middle, from np 2 to np 4"
 
 # ---- rows -------------------------------------------------------------------------------------------------------------
@@ -121,6 +121,17 @@ for bed in poly2000 monoper2000; do
         verdict "rows of $bed, np $np: the same bytes" $?
     done
 done
+
+# ---- the sky above a bed, against fibrad heat ---------------------------------------------------------------------------
+awk 'NF == 8 && /^[0-9]/ { $2 = 2 - $1%2 } { print }' tests/data/monoper2000.dump >"$work/types.dump"
+as_data tests/data/monoper2000.dump >"$work/flat.data"
+run 1 sky frozen.lmp data "$work/flat.data" boundary "p p f" steps 0 also "set group all d_T 1000"
+found=$("$BUILD/fibrad" heat "$work/types.dump" --emissivity 1:.5,2:.8 --temperature 1000 --ambient 300 --wall zmin=0 \
+    --wall-temperature 1000 --wall-emissivity .9 --directions 600 2>/dev/null |
+    awk '$1 == "surroundings_W" { print $2; exit }')
+awk '$1 == "Step" { getline; print $3; exit }' "$work/sky.log" |
+    awk -v heat="${found:-0}" '{ d = $1/heat - 1; printf "%.2g", d; exit !(heat > 0 && d*d < 8e-3^2) }' >"$work/sky.error"
+verdict "the sky above a flat bed gets what fibrad heat says ($(cat "$work/sky.error"))" $?
 
 # ---- walls of triangles -------------------------------------------------------------------------------------------------
 # box WIDE HIGH: a box from 0 to WIDE and HIGH as a text file, one solid for each side
@@ -209,7 +220,7 @@ verdict "rerun has powers" $?
 
 # ---- temperatures that LAMMPS steps -------------------------------------------------------------------------------------
 if "$LMP" -h | grep -q 'heat/flow'; then
-    "$BUILD/tests/couple/serial_bed" 50 1000 40 100 <"$work/quarter" >"$work/serial.out"
+    "$BUILD/tests/couple/serial_bed" 50 1000 4000 100 <"$work/quarter" >"$work/serial.out"
     run 2 heatflow heatflow.lmp data "$work/quarter.data"
     near "$work/serial.out" "$work/heatflow.out" 1e-10 "frozen bed by fix heat/flow against one scene"
     run 2 falls heatflow.lmp data "$work/quarter.data" boundary "p p f" falls yes conducts 2e5 steps 2000 heat 10

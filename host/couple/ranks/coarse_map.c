@@ -67,6 +67,18 @@ static bool find_cells(const fibrad_occupancy *map, const fibrad_particle *p, in
     return touches;
 }
 
+/* Whether a sphere touches a cell. */
+static bool touches_cell(const fibrad_occupancy *map, const fibrad_particle *p, const int64_t cell[3]) {
+    double square = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double width = (map->high[axis] - map->low[axis]) / map->cells[axis];
+        const double low = map->low[axis] + ((double)cell[axis] - MARGIN) * width;
+        const double d = fmax(0, fmax(low - p->x[axis], p->x[axis] - low - (1 + 2 * MARGIN) * width));
+        square += d * d;
+    }
+    return square <= p->radius * p->radius;
+}
+
 /* The number of a cell within the periodic box. */
 static int64_t wrap_cell(int64_t cell, int64_t cells) { return (cell % cells + cells) % cells; }
 
@@ -78,6 +90,7 @@ static void mark_sphere(const fibrad_occupancy *map, const fibrad_particle *p, u
     for (int64_t k = first[2]; k <= last[2]; ++k)
         for (int64_t j = first[1]; j <= last[1]; ++j)
             for (int64_t i = first[0]; i <= last[0]; ++i) {
+                if (!touches_cell(map, p, (const int64_t[]){i, j, k})) continue;
                 const int64_t cell = wrap_cell(i, n[0]) + n[0] * (wrap_cell(j, n[1]) + n[1] * wrap_cell(k, n[2]));
                 mark[cell / 64] |= (uint64_t)1 << cell % 64;
             }
