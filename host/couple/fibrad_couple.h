@@ -2,8 +2,8 @@
  *
  * Index
  *   link    values of particles that other ranks own  fibrad_link_new, _forward, _reverse, _free
- *   insitu  rows and powers while particles move      fibrad_insitu_new, _rows, _powers, _write, _message, _remark,
- *                                                     _facts_get, _free
+ *   insitu  rows and powers while particles move      fibrad_insitu_new, _rows, _follow, _powers, _write, _message,
+ * _remark, _facts_get, _free
  *
  * Use         1. fibrad_insitu_new once.
  *             2. fibrad_insitu_rows every so many steps, with the particles that each rank owns at that time.
@@ -168,6 +168,15 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
  *            _BACK: a side of a triangle is seen that belongs to no wall, by more than a tenth of all particles;
  * strict: by one _MEMORY Cost     that of fibrad_exchange_row for each particle */
 int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
+
+/* Makes rows of those particles alone that have come since the last rows, and keeps the others where they are. What a
+ * new and an old particle exchange follows from the new row alone. What gone particles would get is given back to the
+ * rest of each row. If more than a tenth of all particles have come or gone since fibrad_insitu_rows made all rows,
+ * makes all rows.
+ *   Input    as fibrad_insitu_rows; the number of walls must be that of the last rows
+ *   Errors   as fibrad_insitu_rows
+ *   Cost     about 2 microseconds for each particle and 10 ns for each entry, and the new rows */
+int fibrad_insitu_follow(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
 /* Net radiative power of each particle that this rank owns now.
  *   Output   power[state->n]: [sigma K^4 L^2], above 0 where heat is gained

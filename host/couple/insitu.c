@@ -18,6 +18,7 @@
 #define PERIODS_MAX  100  /* as far as the kernel's beams go */
 #define OPENINGS_MAX 6    /* one a side */
 #define PART_LEAST   1e-3 /* a particle whose radius would be reduced to less is left out */
+#define CHANGED_MOST 0.1  /* part of all particles that may come or go before all rows are made anew */
 #define BACKS_MOST   0.1  /* part of all particles that may see what belongs to no wall */
 
 /* ---- begin and end ---- */
@@ -126,7 +127,10 @@ struct insitu_build {
     const fibrad_insitu_bed *bed;
     uint64_t step;
     double period[3], cutoff, radius_max, radius_mean, reach;
-    size_t halo;
+    size_t own, halo; /* particles of the scene: of this rank, and others behind them */
+    size_t fresh;     /* the first of them get rows */
+    bool follows;     /* old rows are kept */
+    fibrad_follow follow;
     fibrad_plane opening[OPENINGS_MAX];
     fibrad_occupancy map;
     fibrad_scene *scene;
@@ -213,7 +217,7 @@ static int take_particles(struct insitu_build *b) {
         if (takes_part(b, &p, &status)) particle[own++] = p;
         if (status) return status;
     }
-    b->to->own = own;
+    b->own = own;
     return FIBRAD_OK;
 }
 
@@ -254,10 +258,10 @@ static int measure_bed(struct insitu_build *b) {
     const fibrad_particle *particle = b->to->particle.at;
     const fibrad_insitu_config *config = &b->s->config;
     double most[14] = {0, -1}; /* radius, -emissivity, high and -low of centres, high and -low of surfaces */
-    uint64_t sum[2] = {b->to->own, 0};
+    uint64_t sum[2] = {b->own, 0};
     int status = FIBRAD_OK;
     for (int k = 2; k < 14; ++k) most[k] = -INFINITY;
-    for (size_t i = 0; i < b->to->own; ++i) {
+    for (size_t i = 0; i < b->own; ++i) {
         most[0] = fmax(most[0], particle[i].radius);
         most[1] = fmax(most[1], -particle[i].emissivity);
         for (int axis = 0; axis < 3; ++axis) {
@@ -268,7 +272,7 @@ static int measure_bed(struct insitu_build *b) {
         }
     }
     MPI_Allreduce(MPI_IN_PLACE, most, 14, MPI_DOUBLE, MPI_MAX, b->s->comm);
-    for (size_t i = 0; i < b->to->own; ++i) sum[1] += (uint64_t)llround(particle[i].radius / most[0] * 0x1p32);
+    for (size_t i = 0; i < b->own; ++i) sum[1] += (uint64_t)llround(particle[i].radius / most[0] * 0x1p32);
     MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_UINT64_T, MPI_SUM, b->s->comm);
     b->to->facts = (fibrad_insitu_facts){.particles = sum[0], .step = b->step};
     b->radius_max = most[0];
@@ -322,14 +326,14 @@ static int link_present(struct insitu_build *b) {
 
 static int find_halo(struct insitu_build *b) {
     fibrad_insitu_set *to = b->to;
-    return fibrad_halo(b->s->comm, b->period, b->reach, &to->particle, to->own, &b->s->sent, &b->halo);
+    return fibrad_halo(b->s->comm, b->period, b->reach, &to->particle, b->own, &b->s->sent, &b->halo);
 }
 
 /* Reduces the radii of own particles, and leaves out those of which next to nothing would remain. */
 static void reduce_radii(struct insitu_build *b, const double *part) {
     fibrad_particle *p = b->to->particle.at;
     size_t own = 0;
-    for (size_t i = 0; i < b->to->own; ++i) {
+    for (size_t i = 0; i < b->own; ++i) {
         char why[FIBRAD_MESSAGE];
         if (part[i] < PART_LEAST) {
             fibrad_refuse(why, 0, "particle %" PRIu64 " at (%.6g, %.6g, %.6g): another has the same centre", p[i].id,
@@ -340,16 +344,16 @@ static void reduce_radii(struct insitu_build *b, const double *part) {
         p[own] = p[i];
         p[own++].radius *= part[i];
     }
-    b->to->own = own;
+    b->own = own;
 }
 
 /* Makes particles smaller whose centre lies inside another, and tells the other ranks. */
 static int part_overlaps(struct insitu_build *b) {
     fibrad_insitu *s = b->s;
     fibrad_remark *remark = &b->remark[FIBRAD_REMARK_OVERLAP];
-    int status = fibrad_block_fit(&s->emissivity, b->to->own, sizeof(double));
+    int status = fibrad_block_fit(&s->emissivity, b->own, sizeof(double));
     double *part = s->emissivity.at;
-    if (!status) status = fibrad_overlaps(b->to->particle.at, b->to->own, b->to->own + b->halo, part, remark);
+    if (!status) status = fibrad_overlaps(b->to->particle.at, b->own, b->own + b->halo, part, remark);
     status = fibrad_agree(s->comm, status, s->message);
     if (status) return status;
     fibrad_remark_agree(s->comm, remark);
@@ -381,7 +385,7 @@ static int name_scene_fault(const struct insitu_build *b, int status, const uint
 /* Makes the scene of the particles of this rank and those around them. Images are spheres of their own. */
 static int make_scene(struct insitu_build *b) {
     fibrad_insitu *s = b->s;
-    const size_t n = b->to->own + b->halo;
+    const size_t n = b->own + b->halo;
     const fibrad_particle *p = b->to->particle.at;
     if (n > FIBRAD_SPHERES_MAX) return FIBRAD_E_MEMORY;
     fibrad_triangles triangles = {0};
@@ -442,12 +446,12 @@ static int skip_row(struct insitu_build *b, int status, uint32_t i, int thread) 
 
 /* Lists the particles of this rank in the order of the cells. */
 static int list_own(struct insitu_build *b) {
-    const size_t n = b->to->own + b->halo;
+    const size_t n = b->own + b->halo;
     if (fibrad_block_fit(&b->s->order, n, sizeof(uint32_t))) return FIBRAD_E_MEMORY;
     uint32_t *order = b->s->order.at, count = 0;
     for (uint32_t k = 0; k < n; ++k) {
         const uint32_t i = fibrad_scene_sphere(b->scene, k);
-        if (i < b->to->own) order[count++] = i;
+        if (i < b->fresh) order[count++] = i;
     }
     return FIBRAD_OK;
 }
@@ -464,7 +468,7 @@ static int compute_rows(struct insitu_build *b) {
                                        .cutoff = b->cutoff,
                                        .tolerance = s->config.tolerance};
     const uint32_t *order = s->order.at;
-    const int64_t own = (int64_t)b->to->own;
+    const int64_t own = (int64_t)b->fresh;
     int status = FIBRAD_OK;
     for (int t = 0; t < s->config.threads; ++t) fibrad_rows_clear(&b->to->rows[t]);
 #pragma omp parallel for schedule(static) num_threads(s->config.threads)
@@ -500,37 +504,65 @@ static int check_backs(struct insitu_build *b) {
     return fibrad_refuse(b->s->message, FIBRAD_E_BACK, "%s", remark->message);
 }
 
-/* Leaves out particles of other ranks that no row sees, and numbers the columns anew. */
+/* Doubles the factors of new rows to particles that have a row already, which does not know of the new ones. */
+static void double_new_to_old(const struct insitu_build *b) {
+    fibrad_row row;
+    for (int t = 0; t < b->s->config.threads; ++t)
+        for (size_t at = 0; fibrad_rows_read(&b->to->rows[t], &at, &row);)
+            for (uint32_t k = 0; k < row.length; ++k)
+                if (b->follow.has[row.col[k]]) row.f[k] *= 2;
+}
+
+/* Numbers the columns of new rows: those with new rows, what is kept of the old columns, and what else is seen. */
 static int number_columns(struct insitu_build *b) {
     fibrad_insitu_set *to = b->to;
-    const size_t n = to->own + b->halo;
+    const size_t n = b->own + b->halo, kept = b->follow.kept + b->follow.kept_seen;
     const int threads = b->s->config.threads;
     fibrad_row row;
-    if (fibrad_block_fit(&b->s->order, n, sizeof(uint32_t))) return FIBRAD_E_MEMORY;
+    if (fibrad_block_fit(&b->s->order, n, sizeof(uint32_t)) || fibrad_block_fit(&to->id, n + kept, sizeof(uint64_t)))
+        return FIBRAD_E_MEMORY;
     uint32_t *number = b->s->order.at;
     uint64_t *id = to->id.at;
     memset(number, 0, n * sizeof *number);
     for (int t = 0; t < threads; ++t)
         for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);)
             for (uint32_t k = 0; k < row.length; ++k) number[row.col[k]] = 1;
-    uint32_t columns = 0;
-    for (size_t i = 0; i < n; ++i)
-        if (i < to->own || number[i]) {
-            id[columns] = id[i];
-            number[i] = columns++;
-        }
+    memmove(id + b->fresh + kept, id + b->fresh, (n - b->fresh) * sizeof *id);
+    const uint64_t *seen = id + kept;
+    size_t columns = b->fresh;
+    const uint64_t *old = b->s->set.id.at;
+    for (size_t c = 0; b->follows && c < b->s->set.columns; ++c)
+        if (b->follow.there[c]) id[columns++] = old[c];
+    for (size_t i = 0; i < n; ++i) {
+        if (i >= b->fresh && !number[i]) continue;
+        number[i] = (uint32_t)(i < b->fresh ? i : columns);
+        if (i >= b->fresh) id[columns++] = seen[i];
+    }
     to->columns = columns;
     for (int t = 0; t < threads; ++t)
         for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);)
             for (uint32_t k = 0; k < row.length; ++k) row.col[k] = number[row.col[k]];
-    if (fibrad_block_fit(&to->weight, columns, sizeof(double)) ||
-        fibrad_block_fit(&to->emission, columns, sizeof(double)) ||
-        fibrad_block_fit(&to->power, columns, sizeof(double)) ||
+    return FIBRAD_OK;
+}
+
+/* Lists the particles that are at home here: those with new rows, then those whose old rows are kept. */
+static int list_home(struct insitu_build *b) {
+    fibrad_insitu_set *to = b->to;
+    const fibrad_insitu_set *set = &b->s->set;
+    to->own = b->fresh + b->follow.kept;
+    if (fibrad_block_fit(&to->particle, to->own, sizeof(fibrad_particle)) ||
+        fibrad_block_fit(&to->weight, to->columns, sizeof(double)) ||
+        fibrad_block_fit(&to->emission, to->columns, sizeof(double)) ||
+        fibrad_block_fit(&to->power, to->columns, sizeof(double)) ||
         fibrad_block_fit(&b->s->value, b->bed->n + to->own, sizeof(double)))
         return FIBRAD_E_MEMORY;
-    const fibrad_particle *p = to->particle.at;
+    fibrad_particle *p = to->particle.at;
+    const fibrad_particle *old = set->particle.at;
+    size_t own = b->fresh;
+    for (size_t c = 0; b->follows && c < set->own; ++c)
+        if (b->follow.there[c]) p[own++] = old[c];
     double *weight = to->weight.at;
-    memset(weight, 0, columns * sizeof *weight);
+    memset(weight, 0, to->columns * sizeof *weight);
     for (size_t i = 0; i < to->own; ++i) weight[i] = 4 * acos(-1) * p[i].radius * p[i].radius * p[i].emissivity;
     return FIBRAD_OK;
 }
@@ -539,8 +571,51 @@ static int make_rows(struct insitu_build *b) {
     int status = make_scene(b);
     if (!status) status = list_own(b);
     if (!status) status = compute_rows(b);
+    if (!status && b->follows) double_new_to_old(b);
     if (!status) status = number_columns(b);
+    if (!status && b->follows) status = fibrad_follow_keep(&b->follow, b->s, b->to, b->fresh);
+    if (!status) status = list_home(b);
     return fibrad_agree(b->s->comm, status, b->s->message);
+}
+
+/* Finds how many particles have come and gone. All rows are made if they are too many, none if none have come. */
+static int find_changes(struct insitu_build *b) {
+    fibrad_insitu *s = b->s;
+    const int status = fibrad_follow_find(&b->follow, s, b->to->particle.at, b->own, 0);
+    if (status) return status;
+    b->to->changed = s->set.changed + b->follow.came + b->follow.gone;
+    b->follows = (double)b->to->changed <= CHANGED_MOST * (double)b->to->facts.particles;
+    if (!b->follows) b->to->changed = b->follow.kept = b->follow.kept_seen = 0;
+    if (b->follows && !b->follow.came) b->own = 0;
+    return FIBRAD_OK;
+}
+
+/* Puts particles first that need rows. */
+static int choose_fresh(struct insitu_build *b) {
+    fibrad_follow_free(&b->follow);
+    b->follow = (fibrad_follow){0};
+    const int status = fibrad_follow_find(&b->follow, b->s, b->to->particle.at, b->own, b->halo);
+    if (status) return status;
+    fibrad_particle *p = b->to->particle.at;
+    b->fresh = 0;
+    for (size_t i = 0; i < b->own; ++i) {
+        if (b->follow.has[i]) continue;
+        const fibrad_particle first = p[i];
+        p[i] = p[b->fresh], p[b->fresh] = first;
+        b->follow.has[i] = b->follow.has[b->fresh], b->follow.has[b->fresh++] = 0;
+    }
+    return FIBRAD_OK;
+}
+
+/* Gathers the particles of the scene, and chooses those that get rows. */
+static int gather_bed(struct insitu_build *b) {
+    int status = find_halo(b);
+    if (!status) status = part_overlaps(b);
+    if (!status)
+        status = fibrad_coarse_map(b->s->comm, CELL_RADII * b->radius_mean, b->radius_max, b->to->particle.at, b->own,
+                                   &b->s->mark, &b->map);
+    b->fresh = b->own;
+    return !status && b->follows ? choose_fresh(b) : status;
 }
 
 /* Writes the sentence on strays of one kind; "" if there are none. */
@@ -580,28 +655,24 @@ static void sum_facts(struct insitu_build *b) {
     for (int kind = 0; kind < FIBRAD_REMARKS; ++kind) tell_remark(&b->remark[kind], kind, to->remark[kind].message);
 }
 
-int fibrad_insitu_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_t step) {
+static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_t step, bool follows) {
     if (!s) return FIBRAD_E_ARGUMENT;
     struct insitu_build b = {.s = s, .to = &s->next, .bed = bed, .step = step};
     s->message[0] = 0;
     int status = begin_bed(&b);
     const double begun = MPI_Wtime();
     if (!status) status = measure_bed(&b);
-    if (!status && b.to->facts.particles) {
-        fibrad_insitu_set *to = b.to;
-        status = find_halo(&b);
-        if (!status) status = part_overlaps(&b);
-        if (!status)
-            status = fibrad_coarse_map(s->comm, CELL_RADII * b.radius_mean, b.radius_max, to->particle.at, to->own,
-                                       &s->mark, &b.map);
-    }
-    if (!status) status = link_present(&b);
+    b.to->changed = 0;
+    if (!status && follows && s->ready && s->set.bodies == bed->bodies) status = find_changes(&b);
+    if (!status && b.to->facts.particles && !(b.follows && !b.follow.came)) status = gather_bed(&b);
     if (!status) status = make_rows(&b);
     if (!status) status = check_backs(&b);
+    if (!status) status = link_present(&b);
     if (!status) {
         fibrad_link_free(b.to->seen);
         status = fibrad_link_new(&b.to->seen, s->comm, b.to->id.at, b.to->own, b.to->columns, NULL);
     }
+    fibrad_follow_free(&b.follow);
     if (status) {
         if (!s->message[0]) fibrad_refuse(s->message, status, "%s", fibrad_status_text(status));
         return status;
@@ -614,4 +685,12 @@ int fibrad_insitu_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_t 
     s->ready = 1;
     s->seconds_rows += MPI_Wtime() - begun;
     return FIBRAD_OK;
+}
+
+int fibrad_insitu_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_t step) {
+    return make_new_rows(s, bed, step, false);
+}
+
+int fibrad_insitu_follow(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_t step) {
+    return make_new_rows(s, bed, step, true);
 }

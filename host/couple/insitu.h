@@ -24,8 +24,9 @@ typedef struct fibrad_insitu_set {
     fibrad_link *present;  /* connects particles of present owners with home particles */
     fibrad_block now;      /* uint64_t [now_n + own], ids of the present owner, then those at home */
     size_t now_n;          /* number of particles of the present owner */
-    uint64_t all,
-        hash; /* number of particles of all ranks, and the sum of the hashes of their ids; with those left out */
+    uint64_t all;          /* number of particles of all ranks, with those left out */
+    uint64_t hash;         /* sum of the hashes of their ids */
+    uint64_t changed;      /* number of particles that have come or gone since all rows were made */
     fibrad_insitu_facts facts;
     fibrad_remark remark[FIBRAD_REMARKS];
 } fibrad_insitu_set;
@@ -43,5 +44,27 @@ struct fibrad_insitu {
     fibrad_block value;                  /* double, of present owners' particles, then of home particles */
     double seconds_rows, seconds_powers; /* s, so far */
 };
+
+/* Rows that are made only for particles that have come. Begin with zeroes; free with fibrad_follow_free. */
+typedef struct fibrad_follow {
+    unsigned char *there;   /* [columns of the old set] whether the particle is still there */
+    unsigned char *has;     /* [particles of the new scene] whether it has a row already */
+    uint64_t came, gone;    /* numbers of particles, on all ranks */
+    size_t kept, kept_seen; /* numbers of old particles at home here, and of other old columns, that are still there */
+} fibrad_follow;
+
+/* Collective. Tells for ids in use whether a rank owns them: known[all - own]. id as for fibrad_link_new. Errors, on
+ * all ranks: _MEMORY. */
+int fibrad_link_known(MPI_Comm comm, const uint64_t *id, size_t own, size_t all, unsigned char *known);
+
+/* Collective. Finds which particles of the old rows are still there, and which of particle[own + halo] have a row. */
+int fibrad_follow_find(fibrad_follow *follow, const fibrad_insitu *insitu, const fibrad_particle *particle, size_t own,
+                       size_t halo);
+
+/* Puts the old rows of particles that are still there behind the new rows, of `fresh` particles, with the columns
+ * [fresh][kept][kept seen]. What gone particles would get counts as beyond. Errors: _MEMORY. */
+int fibrad_follow_keep(const fibrad_follow *follow, const fibrad_insitu *insitu, fibrad_insitu_set *to, size_t fresh);
+
+void fibrad_follow_free(fibrad_follow *follow);
 
 #endif

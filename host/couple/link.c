@@ -142,7 +142,7 @@ static int answer(struct making *m, size_t entries) {
     for (size_t k = 0; k < questions && !status; ++k) {
         const uint32_t number = *find_id(&m->table, question[k]);
         if (number == UINT32_MAX) blame(m, question[k]);
-        reply[k] = number == UINT32_MAX ? (struct owner){question[k], 0, 0} : entry[number];
+        reply[k] = number == UINT32_MAX ? (struct owner){question[k], UINT32_MAX, 0} : entry[number];
     }
     status = fibrad_deal(m->comm, status, reply, m->got, sizeof *reply, &m->arrived[REPLIES], 0, m->answers);
     free(reply);
@@ -274,6 +274,25 @@ int fibrad_link_new(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_
         made = NULL;
     }
     if (link) *link = made;
+    return status;
+}
+
+int fibrad_link_known(MPI_Comm comm, const uint64_t *id, size_t own, size_t all, unsigned char *known) {
+    fibrad_block arrived[ARRIVALS] = {{0}};
+    struct making m = {.comm = comm, .id = id, .arrived = arrived};
+    MPI_Comm_rank(comm, &m.rank);
+    MPI_Comm_size(comm, &m.ranks);
+    uint32_t *slot = malloc((all - own + 1) * sizeof *slot);
+    int status = slot && all <= INT_MAX ? open_making(&m, own, all - own) : FIBRAD_E_MEMORY;
+    status = fibrad_agree(comm, status, NULL);
+    if (!status) status = enter_owned(&m, own);
+    const size_t entries = status ? 0 : fibrad_count_sum(m.got, m.ranks);
+    if (!status) status = ask_directory(&m, own, all - own, slot);
+    if (!status) status = answer(&m, entries);
+    const struct owner *reply = arrived[REPLIES].at;
+    for (size_t k = 0; k < all - own && !status; ++k) known[k] = reply[slot[k]].rank != UINT32_MAX;
+    close_making(&m);
+    free(slot);
     return status;
 }
 

@@ -166,6 +166,8 @@ int fibrad_insitu_write(fibrad_insitu *s, const char *path) {
     if (!s) return FIBRAD_E_ARGUMENT;
     s->message[0] = 0;
     int status = s->ready ? FIBRAD_OK : fibrad_refuse(s->message, FIBRAD_E_STATE, "there are no rows to write");
+    if (!status && s->set.changed)
+        status = fibrad_refuse(s->message, FIBRAD_E_STATE, "particles have come or gone since all rows were made");
     if (!status && (!path || strlen(path) + 32 > PATH_BYTES))
         status = fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "the name for the files of rows is empty or too long");
     status = fibrad_agree(s->comm, status, s->message);

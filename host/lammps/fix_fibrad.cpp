@@ -6,8 +6,10 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "input.h"
 #include "modify.h"
 #include "update.h"
+#include "variable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,9 +72,9 @@ class FixFibrad::Words {
 };
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
-    : Fix(lammps, narg, arg), temperature(), surroundings(-1), sigma(0), initial(0), config(), meshes(),
-      insitu(nullptr), totals(), warned(false), cut_warned(false), told(), set_up(-1), begun(0), before(), rows_made(0),
-      powers_found(0) {
+    : Fix(lammps, narg, arg), temperature(), surroundings{-1, ""}, sampling(false), accuracy(false), sigma(0),
+      initial(0), config(), meshes(), insitu(nullptr), totals(), warned(false), cut_warned(false), told(), set_up(-1),
+      begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // the default of docs/lammps.md
@@ -88,7 +90,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
         else if (key == "cp")
             cp = read_property(words);
         else if (key == "surroundings")
-            surroundings = words.number("the temperature of the surroundings", 0, huge);
+            surroundings = read_kelvins(words, "the temperature of the surroundings");
         else if (key == "wall")
             read_wall(words);
         else if (key == "temperature")
@@ -98,11 +100,13 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
         else if (key == "cutoff")
             config.cutoff = words.number("the cutoff", 0, huge);
         else if (key == "tolerance")
-            config.tolerance = words.number("the tolerance", 0, 1);
+            config.tolerance = words.number("the tolerance", 0, 1), sampling = true;
         else if (key == "directions")
-            config.directions = words.count("directions", FIBRAD_DIRECTIONS_MIN);
+            config.directions = words.count("directions", FIBRAD_DIRECTIONS_MIN), sampling = true;
         else if (key == "paths")
-            config.paths = words.count("paths", 1);
+            config.paths = words.count("paths", 1), sampling = true;
+        else if (key == "accuracy")
+            read_accuracy(words);
         else if (key == "seed")
             config.seed = utils::bnumeric(FLERR, words.next().c_str(), false, lmp);
         else if (key == "threads")
@@ -116,12 +120,14 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
         else
             error->all(FLERR, "fix fibrad: there is no keyword `" + key + "`");
     }
+    if (accuracy && sampling)
+        error->all(FLERR, std::string("fix fibrad: `accuracy` excludes `directions`, `paths` and `tolerance`"));
     if (!emissivity.given()) error->all(FLERR, std::string("fix fibrad: `emissivity` is missing"));
     for (double e : emissivity.of_type)
         if (!(e >= 0 && e <= 1)) error->all(FLERR, text("fix fibrad: emissivity must be within 0 and 1, not %g", e));
     for (double c : cp.of_type)
         if (!(c > 0)) error->all(FLERR, text("fix fibrad: cp must be above 0, not %g", c));
-    if (heat_every && surroundings < 0)
+    if (heat_every && surroundings.variable.empty() && surroundings.value < 0)
         error->all(
             FLERR,
             std::string("fix fibrad: `surroundings T` is missing, the temperature of what surrounds the particles"));
@@ -187,7 +193,7 @@ void FixFibrad::read_wall(Words &words) {
         body.plane.axis = face / 2;
         body.plane.upper = face % 2;
     }
-    wall_temperature.push_back(words.number("a wall's temperature", 0, huge));
+    wall_kelvins.push_back(read_kelvins(words, "a wall's temperature"));
     wall_emissivity.push_back(words.number("a wall's emissivity", 0, 1));
     const bool at = words.next_is("at");
     if (at) {
@@ -213,9 +219,9 @@ void FixFibrad::read_opening(Words &words, int face) {
 
 // wall mesh FILE T e [name NAME] [both | normals | auto] [solids] [scale S]
 void FixFibrad::read_mesh(Words &words) {
-    const double huge = 1e300;
     const std::string path = words.next();
-    const double t = words.number("a wall's temperature", 0, huge), e = words.number("a wall's emissivity", 0, 1);
+    const Temperature t = read_kelvins(words, "a wall's temperature");
+    const double e = words.number("a wall's emissivity", 0, 1);
     const uint32_t first = (uint32_t)walls.size();
     std::string name;
     mesh_file file = {};
@@ -248,7 +254,7 @@ void FixFibrad::read_mesh(Words &words) {
     fibrad_body body = {};
     body.kind = FIBRAD_BODY_MESH;
     walls.insert(walls.end(), bodies, body);
-    wall_temperature.insert(wall_temperature.end(), bodies, t);
+    wall_kelvins.insert(wall_kelvins.end(), bodies, t);
     wall_emissivity.insert(wall_emissivity.end(), bodies, e);
     wall_face.insert(wall_face.end(), bodies, -1);
     if (comm->me == 0) describe_meshes(first, bodies, path);
@@ -261,6 +267,26 @@ void FixFibrad::describe_meshes(uint32_t first, uint32_t bodies, const std::stri
         say(text("fix fibrad: f_%s[%d] is of wall %s, %u triangles of ", id, 6 + (int)k, meshes.meshes.name[k],
                  mesh_triangles(mesh_of_body(&meshes.meshes, k), k)) +
             path);
+}
+
+// T | v_NAME
+FixFibrad::Temperature FixFibrad::read_kelvins(Words &words, const char *what) {
+    const std::string word = words.next();
+    if (word.compare(0, 2, "v_") == 0) return {0, word.substr(2)};
+    const double value = utils::numeric(FLERR, word.c_str(), false, lmp);
+    if (!(value >= 0 && value < HUGE_VAL))
+        error->all(FLERR, text("fix fibrad: %s must not be below 0: %g", what, value));
+    return {value, ""};
+}
+
+// low | normal | high
+void FixFibrad::read_accuracy(Words &words) {
+    const std::string word = words.next();
+    if (word != "low" && word != "normal" && word != "high")
+        error->all(FLERR, "fix fibrad: `accuracy` is low, normal or high, not `" + word + "`");
+    accuracy = true;
+    if (word == "low") config.directions = 21, config.paths = 50;
+    if (word == "high") config.directions = 144, config.paths = 1600;
 }
 
 // a number | type V1 V2 ... | d_NAME
@@ -293,6 +319,11 @@ void FixFibrad::init() {
     if (domain->triclinic) error->all(FLERR, std::string("fix fibrad: the box must not be triclinic"));
     if (strstr(update->integrate_style, "respa"))
         error->all(FLERR, std::string("fix fibrad: run_style must be verlet"));
+    for (const fibrad_body &body : walls)
+        if (body.kind == FIBRAD_BODY_CYLINDER && (domain->periodicity[0] || domain->periodicity[1]))
+            error->all(FLERR,
+                       std::string("fix fibrad: wall zcylinder needs open axes x and y (boundary f f p): what is in "
+                                   "it has no images beyond it"));
     for (const fibrad_plane &opening : openings)
         if (domain->periodicity[opening.axis])
             error->all(FLERR, std::string("fix fibrad: wall ") + "xyz"[opening.axis] + (opening.upper ? "hi" : "lo") +
@@ -344,11 +375,13 @@ void FixFibrad::post_run() {
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(insitu, &facts);
     const double rows = facts.seconds_rows - before.seconds_rows, powers = facts.seconds_powers - before.seconds_powers;
-    say(text("fix fibrad: rows made %d times in %.3g s, powers %d times in %.3g s, %.0f %% of the run", rows_made, rows,
-             powers_found, powers, 100 * (rows + powers) / std::max(MPI_Wtime() - begun, 1e-9)));
+    say(text(
+        "fix fibrad: rows made %d times, followed %d times, in %.3g s, powers %d times in %.3g s, %.0f %% of the run",
+        rows_made, rows_followed, rows, powers_found, powers,
+        100 * (rows + powers) / std::max(MPI_Wtime() - begun, 1e-9)));
     begun = MPI_Wtime();
     before = facts;
-    rows_made = powers_found = 0;
+    rows_made = rows_followed = powers_found = 0;
 }
 
 void FixFibrad::say(const std::string &sentence) {
@@ -390,7 +423,8 @@ void FixFibrad::select() {
         }
 }
 
-void FixFibrad::make_rows() {
+// follow: only particles that have come since the last rows get new ones.
+void FixFibrad::make_rows(bool follow) {
     select();
     std::vector<double> x, radius;
     for (int i : member) {
@@ -418,14 +452,14 @@ void FixFibrad::make_rows() {
     bed.emissivity = e.data();
     const bigint number = update->ntimestep / rows_every * rows_every;
     if (mesh_walls_face(&meshes, world, &bed)) error->all(FLERR, std::string("fix fibrad: out of memory"));
-    const int status = fibrad_insitu_rows(insitu, &bed, (uint64_t)number);
+    const int status = (follow ? fibrad_insitu_follow : fibrad_insitu_rows)(insitu, &bed, (uint64_t)number);
     if (status == FIBRAD_E_BACK)
         error->all(FLERR, std::string("fix fibrad: ") + fibrad_insitu_message(insitu) +
                               "; with the word `both` both sides of a mesh are the wall");
     if (status == FIBRAD_E_ENDLESS)
         error->all(FLERR, std::string("fix fibrad: ") + fibrad_insitu_message(insitu) + ", `wall zhi open`");
     check(status);
-    rows_made++;
+    (follow ? rows_followed : rows_made)++;
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(insitu, &facts);
     if (facts.beyond > FIBRAD_BEYOND_MUCH && !cut_warned && comm->me == 0)
@@ -435,7 +469,7 @@ void FixFibrad::make_rows() {
                  100 * facts.beyond, facts.cutoff));
     cut_warned = cut_warned || facts.beyond > FIBRAD_BEYOND_MUCH;
     tell_strays();
-    if (!rows_file.empty())
+    if (!rows_file.empty() && !follow)
         check(fibrad_insitu_write(insitu, (rows_file + "." + std::to_string(update->ntimestep)).c_str()));
 }
 
@@ -470,7 +504,27 @@ void FixFibrad::refuse_second() {
     }
 }
 
+// Evaluates the variables. A variable may use computes, which are then needed at steps of heat.
+void FixFibrad::find_temperatures() {
+    const auto kelvins = [this](const Temperature &t) {
+        if (t.variable.empty()) return t.value;
+        const int k = input->variable->find(t.variable.c_str());
+        if (k < 0 || !input->variable->equalstyle(k))
+            error->all(FLERR, "fix fibrad: there is no equal-style variable `" + t.variable + "`");
+        const double value = input->variable->compute_equal(k);
+        if (!(value >= 0 && value < HUGE_VAL))
+            error->all(FLERR, text("fix fibrad: the temperature v_%s is %g", t.variable.c_str(), value));
+        return value;
+    };
+    modify->clearstep_compute();
+    surroundings.value = kelvins(surroundings);
+    wall_temperature.clear();
+    for (const Temperature &t : wall_kelvins) wall_temperature.push_back(kelvins(t));
+    modify->addstep_compute(update->ntimestep + heat_every);
+}
+
 void FixFibrad::find_powers() {
+    find_temperatures();
     select();
     double *of_atom = vector(temperature);
     std::vector<double> t, power(member.size());
@@ -482,14 +536,14 @@ void FixFibrad::find_powers() {
 
     fibrad_insitu_state state = {};
     state.sigma = sigma;
-    state.surroundings = surroundings;
+    state.surroundings = surroundings.value;
     state.body_temperature = wall_temperature.data();
     state.n = member.size();
     state.id = tags.data();
     state.temperature = t.data();
     int status = fibrad_insitu_powers(insitu, &state, power.data(), &totals);
     if (status == FIBRAD_E_STATE) { // particles have come or gone since the rows were made
-        make_rows();
+        make_rows(true);
         status = fibrad_insitu_powers(insitu, &state, power.data(), &totals);
     }
     check(status);

@@ -48,6 +48,12 @@ class FixFibrad : public Fix {
         bool given() const { return !of_type.empty() || !of_atom.empty(); }
     };
 
+    // A temperature [K]: a number, or an equal-style variable of the script, read at each new power.
+    struct Temperature {
+        double value;
+        std::string variable; // name without v_; empty: none
+    };
+
     // Reading the arguments of the fix.
     class Words;
     void read_wall(Words &);
@@ -56,6 +62,8 @@ class FixFibrad : public Fix {
     void describe_meshes(uint32_t first, uint32_t bodies, const std::string &path);
     void read_temperature(Words &);
     Property read_property(Words &);
+    Temperature read_kelvins(Words &, const char *what);
+    void read_accuracy(Words &);
 
     // Vectors of atoms, of LAMMPS or of fix property/atom.
     double *vector(const std::string &name);      // NULL: there is none, or this rank has no atoms
@@ -65,8 +73,9 @@ class FixFibrad : public Fix {
     double mass(int i) const;
 
     // Steps of the simulation.
-    void select(); // finds member and tags
-    void make_rows();
+    void find_temperatures(); // of walls and surroundings, from variables
+    void select();            // finds member and tags
+    void make_rows(bool follow = false);
     void find_powers();
     void check_step(const std::vector<double> &temperature); // refuses steps of heat that are not stable
     void check(int status);                                  // stops with the message of an error
@@ -79,12 +88,15 @@ class FixFibrad : public Fix {
     Property emissivity, cp;
     std::string temperature; // name of the vector of temperatures
     std::string rows_file;   // files to write rows to; empty: none
-    double surroundings;     // temperature
-    double sigma;            // in units of the simulation
-    double initial;          // temperature of new atoms
+    Temperature surroundings;
+    bool sampling;  // directions, paths or tolerance are given
+    bool accuracy;  // accuracy is given
+    double sigma;   // in units of the simulation
+    double initial; // temperature of new atoms
     fibrad_insitu_config config;
     std::vector<fibrad_body> walls;
     std::vector<fibrad_plane> openings;
+    std::vector<Temperature> wall_kelvins;
     std::vector<double> wall_temperature, wall_emissivity;
     mesh_walls meshes;
     std::vector<int> wall_face; // [walls], 2 axis + upper if the wall moves with a face of the box, else -1
@@ -102,7 +114,7 @@ class FixFibrad : public Fix {
     // Since the beginning of the run.
     double begun;               // s, time when the run began
     fibrad_insitu_facts before; // facts when the run began
-    int rows_made, powers_found;
+    int rows_made, rows_followed, powers_found;
 };
 
 } // namespace LAMMPS_NS

@@ -296,7 +296,8 @@ void tell_strays(Driver *driver) {
     }
 }
 
-void make_rows(Driver *driver) {
+/* follow: only particles that have come since the last rows get new ones. */
+void make_rows(Driver *driver, bool follow) {
     const LAMMPS_NS::Atom *atom = driver->lmp->atom;
     const LAMMPS_NS::Domain *domain = driver->lmp->domain;
     fibrad_insitu_bed bed{};
@@ -318,7 +319,8 @@ void make_rows(Driver *driver) {
     bed.emissivity = driver->emissivity.data();
     follow_meshes(driver);
     if (mesh_walls_face(&driver->triangles, MPI_COMM_WORLD, &bed) != 0) stop(WRONG_INPUT, "out of memory");
-    check(driver, fibrad_insitu_rows(driver->radiation, &bed, (uint64_t)driver->lmp->update->ntimestep));
+    const auto make = follow ? fibrad_insitu_follow : fibrad_insitu_rows;
+    check(driver, make(driver->radiation, &bed, (uint64_t)driver->lmp->update->ntimestep));
     tell_strays(driver);
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(driver->radiation, &facts);
@@ -346,7 +348,7 @@ void make_powers(Driver *driver) {
     state.temperature = driver->temperature->vector_atom;
     int status = fibrad_insitu_powers(driver->radiation, &state, driver->gain.data(), &driver->totals);
     if (status == FIBRAD_E_STATE) {
-        make_rows(driver);
+        make_rows(driver, true);
         status = fibrad_insitu_powers(driver->radiation, &state, driver->gain.data(), &driver->totals);
     }
     check(driver, status);
@@ -370,7 +372,7 @@ void radiate(void *context, LAMMPS_NS::bigint step, int n, int *, double **, dou
     count_heat(driver, first);
     take_particles(driver);
     check_time_step(driver);
-    if (!driver->radiates || step % driver->options.rows == 0) make_rows(driver);
+    if (!driver->radiates || step % driver->options.rows == 0) make_rows(driver, false);
     make_powers(driver);
     double *source = driver->source->vector_atom, *power = driver->power->vector_atom;
     for (int i = 0; i < n; ++i) {

@@ -204,6 +204,16 @@ run 4 equal moving.lmp hot 300 steps 2000
 awk 'NF == 2 && /^[0-9]+ / { n++; if ($2 != 300) bad++ } END { exit !(n && !bad) }' "$work/equal.out"
 verdict "equal temperatures stay equal to the bit" $?
 
+# ---- temperatures of walls in time --------------------------------------------------------------------------------------
+for floor in 1000 v_hot; do
+    run 2 "steady.$floor" frozen.lmp "${whole[@]}" steps 3 floor "zlo $floor 0.9 at 0"
+done
+run 2 rising frozen.lmp "${whole[@]}" steps 10 floor "zlo v_hot 0.9 at 0" rise 100
+near "$work/steady.1000.out" "$work/steady.v_hot.out" 1e-300 "a wall with a constant variable"
+awk '$1 == "Step" { n = 1 } n && $1 == 0 { first = $4 } n && $1 == 10 { last = $4; n = 0 }
+    END { exit !(last/first > 10) }' "$work/rising.log"
+verdict "a wall that a variable heats" $?
+
 # ---- strays -----------------------------------------------------------------------------------------------------------
 # LAMMPS goes on with centres inside others and beyond walls. So does radiation.
 run 2 soft soft.lmp
@@ -248,6 +258,11 @@ fails "particle.* 10 .*inside" "a centre inside another particle" also "set atom
 fails "beyond wall 1, zlo" "a centre beyond a wall" floor "zlo 1000 0.9 at 1" strict yes
 fails "rad and bad both radiate from atom" "two fixes on one particle" \
     also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1"
+fails "no equal-style variable" "a variable that is not there" floor "zlo v_none 0.9"
+fails "excludes" "accuracy beside paths" \
+    also "fix bad all fibrad 0 1 emissivity 1 surroundings 300 cp 1 paths 50 accuracy low"
+fails "open axes x and y" "a cylinder with periodic axes" boundary "p p f" \
+    also "fix bad all fibrad 0 1 emissivity 1 surroundings 300 cp 1 wall zcylinder 50 300 1"
 fails "emissivity" "emissivity out of range" also "fix bad all fibrad 1 1 emissivity 1.5 surroundings 300 cp 1"
 fails "$work/none.stl: No such file" "a mesh that is not there" \
     also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1 wall mesh $work/none.stl 300 1"

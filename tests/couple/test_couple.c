@@ -685,6 +685,89 @@ static void strays_do_not_end_a_run(void) {
     close_pile(&known);
 }
 
+/* ---- particles that come and go --------------------------------------------------------------------------------- */
+
+/* A part without the particles whose number in the whole bed is a multiple of `of`. */
+static struct pile without(const struct pile *all, size_t of) {
+    struct pile p = *all;
+    open_pile(&p, all->bed.n);
+    memcpy(p.body, all->body, 2 * sizeof *p.body);
+    memcpy(p.body_emissivity, all->body_emissivity, 2 * sizeof *p.body_emissivity);
+    p.bed.n = 0;
+    for (size_t i = 0; i < all->bed.n; ++i) {
+        const size_t n = p.bed.n;
+        if (i % of == 0) continue;
+        p.id[n] = all->id[i], p.radius[n] = all->radius[i];
+        memcpy(p.x + 3 * n, all->x + 3 * i, 3 * sizeof *p.x);
+        p.emissivity[n] = all->emissivity[i], p.temperature[n] = all->temperature[i];
+        p.bed.n++;
+    }
+    return p;
+}
+
+/* Powers of all particles of the whole bed by number, summed over ranks; 0 for those that are not in the part. */
+static double *gather_powers(const struct pile *all, const struct pile *part) {
+    double *power = memory_of(all->bed.n, sizeof *power);
+    for (size_t i = 0; i < all->bed.n; ++i) {
+        power[i] = 0;
+        for (size_t k = 0; k < part->bed.n; ++k)
+            if (part->id[k] == all->id[i]) power[i] = part->power[k];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, power, (int)all->bed.n, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    return power;
+}
+
+/* Follows a bed from `before` to `after`, in which particles have other owners. Powers keep energy, are the same as on
+ * one rank, and are near those of new rows. */
+static void follow_changes(const struct kind *kind, const struct pile *all, const struct pile *before,
+                           const struct pile *after, double bound) {
+    struct pile old = part_of(before, 0), now = part_of(after, 1);
+    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, 2), *t = insitu_of(MPI_COMM_WORLD, kind, 1);
+    fibrad_insitu_totals totals, exact;
+    make_rows(s, &old, 4);
+    make_rows(t, &now, 4);
+    const fibrad_insitu_state state = state_of(&now);
+    CHECK(fibrad_insitu_follow(s, &now.bed, 4) == FIBRAD_OK);
+    CHECK(fibrad_insitu_powers(t, &state, now.power, &exact) == FIBRAD_OK);
+    double *expected = gather_powers(all, &now);
+    CHECK(fibrad_insitu_powers(s, &state, now.power, &totals) == FIBRAD_OK);
+    double *found = gather_powers(all, &now), error = 0, norm = 0, emitted = 0, alone[2] = {0};
+    for (size_t i = 0; i < all->bed.n; ++i)
+        error += pow(found[i] - expected[i], 2), norm += pow(expected[i], 2), emitted += fabs(found[i]);
+    CHECK(error < bound * bound * norm);
+    CHECK(fabs(totals.particles + totals.surroundings + totals.body[0] + totals.body[1]) < 1e-13 * emitted);
+    if (rank == 0) { /* the same by one rank */
+        fibrad_insitu *u = insitu_of(MPI_COMM_SELF, kind, 1);
+        const fibrad_insitu_state whole = state_of(after);
+        make_rows(u, before, 4);
+        CHECK(fibrad_insitu_follow(u, &after->bed, 4) == FIBRAD_OK);
+        CHECK(fibrad_insitu_powers(u, &whole, after->power, &totals) == FIBRAD_OK);
+        for (size_t k = 0; k < after->bed.n; ++k)
+            for (size_t i = 0; i < all->bed.n; ++i)
+                if (after->id[k] == all->id[i]) alone[0] = fmax(alone[0], fabs(after->power[k] - found[i]));
+        CHECK(alone[0] < 1e-12 * sqrt(norm));
+        fibrad_insitu_free(u);
+    }
+    CHECK(fibrad_insitu_write(s, path_of("followed")) == FIBRAD_E_STATE);
+    fibrad_insitu_free(s);
+    fibrad_insitu_free(t);
+    close_pile(&old);
+    close_pile(&now);
+    free(expected);
+    free(found);
+}
+
+static void rows_follow_particles(void) {
+    static const struct kind kind = {"followed", 5, {1, 1, 0}, FLOORS, {.8, .5}, 0, 1, 0};
+    struct pile all = pile_of(&kind), some = without(&all, 20), others = without(&all, 31);
+    follow_changes(&kind, &all, &all, &some, .12);
+    follow_changes(&kind, &all, &some, &all, .12);
+    follow_changes(&kind, &all, &some, &others, .12);
+    close_pile(&all);
+    close_pile(&some);
+    close_pile(&others);
+}
+
 /* ---- refusals -------------------------------------------------------------------------------------------------- */
 
 /* The same status and the same message on all ranks, which has the words. */
@@ -863,6 +946,7 @@ int main(int argc, char **argv) {
     temperatures_are_those_of_the_kernel(OPEN, 0); /* no cutoff: larger than the bed */
     temperatures_are_those_of_the_kernel(FLOORS, 1000);
     strays_do_not_end_a_run();
+    rows_follow_particles();
     refusals();
     int sum[2] = {checks, failures};
     MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
