@@ -1,13 +1,16 @@
-/* bench_instructions.c - instructions of a window of the beam method, in every instruction set.
+/* bench_instructions.c - instructions of a window of the beam method and of a circle of silhouettes, in every
+ * instruction set.
  * SPDX-License-Identifier: MIT
  *
  *     bench_instructions [quick | SPHERES]
  *
  * CSV on standard output: the bed of bench_window, periodic, of equal spheres (20,000), solid fraction 0.58; 200 rows
  * of spheres spread over all of it, 100 directions each; instructions a window, the row's setting up and writing out
- * shared among them. The library is built by bench/count_cc.sh and counts its own instructions (`make bench-counted`):
- * the figures depend on sources, compiler and flags alone, so that the smallest difference of two versions shows. Not
- * counted are the C library's copying, and the no-operations that align loops, 0.5 % of what the processor executes. */
+ * shared among them. A line `circle`: three tasks of silhouettes spread over the bed, 100 lines; instructions a circle,
+ * near lists and pairs shared among them. The library is built by bench/count_cc.sh and counts its own instructions
+ * (`make bench-counted`): the figures depend on sources, compiler and flags alone, so that the smallest difference of
+ * two versions shows. Not counted are the C library's copying, and the no-operations that align loops, 0.5 % of what
+ * the processor executes. */
 #include "bed/packing.h"
 #include "bench_bed.h"
 
@@ -32,6 +35,27 @@ static uint64_t count(const fibrad_scene *scene, uint32_t n, uint32_t points, ui
     return ended - begun;
 }
 
+/* Instructions of a circle: three tasks spread over the bed. */
+static double count_circles(const fibrad_scene *scene, uint32_t n) {
+    const fibrad_silhouette_rule rule = {.lines = DIRECTIONS};
+    const size_t size = fibrad_silhouettes_size(scene, &rule);
+    void *block = malloc(size);
+    fibrad_silhouettes *s = NULL;
+    bench_check("silhouettes", fibrad_silhouettes_init(&s, block, size, scene, &rule));
+    const uint32_t tasks = fibrad_silhouettes_tasks(s);
+    fibrad_work work = BENCH_GROWING;
+    fibrad_pairs pairs = BENCH_GROWING;
+    bench_check("silhouettes", fibrad_silhouettes_task(s, &work, 0, &pairs)); /* work memory grows */
+    const uint64_t begun = instructions_counted[0];
+    for (uint32_t k = 1; k < 6; k += 2)
+        bench_check("silhouettes", fibrad_silhouettes_task(s, &work, k * tasks / 6, &pairs));
+    const uint64_t ended = instructions_counted[0];
+    free(work.memory.block);
+    free(pairs.memory.block);
+    free(block);
+    return (double)(ended - begun) * tasks / (3. * DIRECTIONS * n);
+}
+
 int main(int argc, char **argv) {
     const bool quick = argc == 2 && strcmp(argv[1], "quick") == 0;
     const uint32_t n = quick ? 500 : argc == 2 ? (uint32_t)atol(argv[1]) : 20000, rows = quick ? 5 : 200;
@@ -50,6 +74,7 @@ int main(int argc, char **argv) {
             if (counted == 0) return fprintf(stderr, "bench_instructions: the library does not count\n"), 1;
             printf("%s,%u,%.1f\n", fibrad_isa_name(isa), points[k], (double)counted / (rows * DIRECTIONS));
         }
+        if (scene) printf("%s,circle,%.1f\n", fibrad_isa_name(isa), count_circles(scene, n));
         free(block);
     }
     bed_free(&bed);

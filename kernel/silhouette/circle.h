@@ -3,7 +3,7 @@
  *
  * All lines of one direction meet the spheres in the order of the depths of their centres. On the circle of sphere k,
  * let a be the last sphere before the depth of k that covers a point, and b the first one after it. docs/methods.md
- * section 5 has the method.
+ * section 12 has the method.
  *
  * Lengths are in units of a power of two of L, the same for all spheres. Across a line, each sphere has one projected
  * centre, to the bit, on whichever circle it is seen. Hence circles that nearly coincide agree on who covers whom. */
