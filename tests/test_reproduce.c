@@ -86,6 +86,14 @@ START_TEST(exchange_factors) {
 }
 END_TEST
 
+/* The cubic lattice against the independent program, per cent: three standard errors of 0.5 %. */
+START_TEST(conducting) {
+    int lines;
+    ck_assert_double_le(largest("conducting", "check", &lines), 1.5);
+    ck_assert_int_eq(lines, 10);
+}
+END_TEST
+
 START_TEST(formulas) {
     /* the values of Vortmeyer's model as they were printed */
     static const double vortmeyer[5][2] = {{.2, .25}, {.35, .33}, {.6, .54}, {.85, .85}, {1, 1.12}};
@@ -124,6 +132,7 @@ int main(void) {
     tcase_add_test(cases, pebbles_by_rays);
     tcase_add_test(cases, conductivity);
     tcase_add_test(cases, exchange_factors);
+    tcase_add_test(cases, conducting);
     tcase_add_test(cases, formulas);
     tcase_add_test(cases, usage);
     return suite_run(suite);

@@ -44,7 +44,7 @@ typedef int experiment(struct reproduce *reproduce);
 
 experiment reproduce_fig3, reproduce_fig4, reproduce_third_sphere, reproduce_fig10, reproduce_table1,
     reproduce_pebble_pair, reproduce_pebble_rays, reproduce_pebble_bed, reproduce_conductivity, reproduce_correlations,
-    reproduce_exchange, reproduce_exchange_wall, reproduce_faces;
+    reproduce_conducting, reproduce_exchange, reproduce_exchange_wall, reproduce_faces;
 
 /* ---- rows of a bed, one thread ---- */
 
@@ -68,9 +68,9 @@ int rows_row(struct rows *rows, const fibrad_bed_options *method, uint32_t i, fi
 
 /* ---- grey spheres of one emissivity, one thread ---- */
 
-/* F_E of a periodic bed of unit spheres, as the mean of three axes, with `paths` paths from each sphere. Returns a
- * status. */
-int grey_conduction(const struct bed *bed, double emissivity, uint32_t paths, double *factor);
+/* F_E of a periodic bed of unit spheres, as the mean of three axes, with `paths` paths from each sphere. conductivity:
+ * k* = k_s/(4 sigma T^3 d) of the spheres; INFINITY: each has one temperature. Returns a status. */
+int grey_conduction(const struct bed *bed, double emissivity, double conductivity, uint32_t paths, double *factor);
 
 /* Exchange factors of a bed in a scene. The emissivities of spheres in `rule` are not used. Free the factors with
  * fibrad_bed_free. Returns a status. */

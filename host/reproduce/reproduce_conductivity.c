@@ -33,7 +33,7 @@ static int conductivities(struct bed beds[1 + LATTICES], double factor[1 + LATTI
     if (!status) status = lattice_cell(&beds[3], 2 * sqrt(2), 4, site);
     for (int k = 0; k <= LATTICES; ++k)
         for (int e = 0; e < EMISSIVITIES && !status; ++e)
-            status = grey_conduction(&beds[k], emissivities[e], paths[k], &factor[k][e]);
+            status = grey_conduction(&beds[k], emissivities[e], INFINITY, paths[k], &factor[k][e]);
     return status;
 }
 
@@ -94,7 +94,7 @@ static int random_beds(const double porosity[PACKINGS], double factor[PACKINGS][
         bed_init(&bed);
         status = bed_make_jammed(&bed, 2000, 1 - porosity[k], 1000, 1);
         for (int e = 0; e < EMISSIVITIES && !status; ++e)
-            status = grey_conduction(&bed, emissivities[e], 100, &factor[k][e]);
+            status = grey_conduction(&bed, emissivities[e], INFINITY, 100, &factor[k][e]);
         bed_free(&bed);
     }
     return status;
@@ -132,4 +132,83 @@ int reproduce_correlations(struct reproduce *reproduce) {
             fputc('\n', reproduce->data);
         }
     return reproduce_figure(reproduce, "correlations", correlations_script);
+}
+
+/* Spheres that conduct: k*, and F_E of the cubic lattice from 1.2e7 rays along its axes and spherical harmonics up to
+ * degree 13, an independent program. Right to 0.0005. */
+enum { CONDUCTIVITIES = 5, CONDUCTING = 2 };
+static const double conducting_emissivity[CONDUCTING] = {1, .6},
+                    exact_lattice[CONDUCTIVITIES][1 + CONDUCTING] = {{.1, .3591, .3430},
+                                                                     {.3, .5294, .4614},
+                                                                     {1, .8006, .5979},
+                                                                     {3, 1.0136, .6745},
+                                                                     {10, 1.1350, .7099}};
+
+/* F_E of the cubic lattice and of a random bed of porosity RANDOM_POROSITY, for one k*. */
+#define RANDOM_POROSITY .414
+static int conducting_beds(const struct bed bed[2], double conductivity, double factor[2][CONDUCTING]) {
+    static const uint32_t paths[2] = {100000, 40};
+    int status = STATUS_OK;
+    for (int b = 0; b < 2; ++b)
+        for (int e = 0; e < CONDUCTING && !status; ++e)
+            status = grey_conduction(&bed[b], conducting_emissivity[e], conductivity, paths[b], &factor[b][e]);
+    return status;
+}
+
+/* Compares the lattice with the exact values and the fit, the random bed with correlations. Writes a line of data. */
+static void compare_conducting(struct reproduce *reproduce, const double *exact, double factor[2][CONDUCTING]) {
+    const double k = exact[0];
+    fprintf(reproduce->data, "%g", k);
+    for (int e = 0; e < CONDUCTING; ++e) {
+        const double emissivity = conducting_emissivity[e], fit = correlation_singh_kaviany(emissivity, .476, k);
+        char what[80];
+        snprintf(what, sizeof what, "F_E, simple cubic, emissivity %g, k* %g", emissivity, k);
+        reproduce_compare(reproduce, what, SOURCE_CHECK, "", exact[1 + e], factor[0][e]);
+        reproduce_compare(reproduce, what, SOURCE_PAPER, "", fit, factor[0][e]);
+        fprintf(reproduce->data, ",%.5f,%.5f,%.5f,%.5f", exact[1 + e], factor[0][e], fit, factor[1][e]);
+        for (int c = 0; c < CORRELATIONS; ++c) {
+            const double theirs = correlations[c].factor(emissivity, RANDOM_POROSITY, k);
+            snprintf(what, sizeof what, "F_E, %s, random, emissivity %g, k* %g", correlations[c].name, emissivity, k);
+            reproduce_compare(reproduce, what, SOURCE_PAPER, "", theirs, factor[1][e]);
+            fprintf(reproduce->data, ",%.5f", theirs);
+        }
+    }
+    fputc('\n', reproduce->data);
+}
+
+static const char conducting_script[] =
+    "set xlabel 'k* = k_s/(4 {/Symbol s} T^3 d)'\nset ylabel 'F_E'\nset logscale x\nset format x '%g'\n"
+    "set yrange [0:1.3]\nset key top left\n"
+    "plot $data using 1:2 with points pt 6 ps 1.5 lc 1 title 'cubic lattice, emissivity 1: exact', \\\n"
+    "     $data using 1:3 with lines lw 2 lc 1 title 'ours', \\\n"
+    "     $data using 1:4 with lines dt 2 lc 1 title 'Singh, Kaviany (1994)', \\\n"
+    "     $data using 1:11 with points pt 4 ps 1.5 lc 2 title 'emissivity 0.6: exact', \\\n"
+    "     $data using 1:12 with lines lw 2 lc 2 title 'ours', \\\n"
+    "     $data using 1:13 with lines dt 2 lc 2 title 'Singh, Kaviany (1994)', \\\n"
+    "     $data using 1:5 pt 0 lw 2 lc 3 title 'random bed, porosity 0.414, emissivity 1: ours', \\\n"
+    "     $data using 1:7 pt 0 dt 3 lc 3 title 'Breitbach-Barthels', \\\n"
+    "     $data using 1:10 pt 0 dt 4 lc 3 title 'Kunii-Smith'\n";
+
+int reproduce_conducting(struct reproduce *reproduce) {
+    struct bed bed[2];
+    bed_init(&bed[0]);
+    bed_init(&bed[1]);
+    int status = lattice_cell(&bed[0], 2, 1, (const double[][3]){{0}});
+    if (!status) status = bed_make_packing(&bed[1], 2000, 1, 1, 1 - RANDOM_POROSITY, 1);
+    fputs("k", reproduce->data);
+    for (int e = 0; e < CONDUCTING; ++e) {
+        fprintf(reproduce->data, ",e%g_exact,e%g_ours,e%g_fit,e%g_random", conducting_emissivity[e],
+                conducting_emissivity[e], conducting_emissivity[e], conducting_emissivity[e]);
+        for (int c = 0; c < CORRELATIONS; ++c)
+            fprintf(reproduce->data, ",e%g_%s", conducting_emissivity[e], correlations[c].name);
+    }
+    fputc('\n', reproduce->data);
+    for (int k = 0; k < CONDUCTIVITIES && !status; ++k) {
+        double factor[2][CONDUCTING];
+        status = conducting_beds(bed, exact_lattice[k][0], factor);
+        if (!status) compare_conducting(reproduce, exact_lattice[k], factor);
+    }
+    bed_free(&bed[0]);
+    bed_free(&bed[1]);
+    return status ? status : reproduce_figure(reproduce, "conducting", conducting_script);
 }

@@ -1,4 +1,5 @@
 /* reproduce_grey.c - grey spheres of one emissivity, on one thread. SPDX-License-Identifier: MIT */
+#include <math.h>
 #include <stdlib.h>
 
 #include "bed/bed_scene.h"
@@ -18,15 +19,16 @@ static double *constant(uint32_t n, double value) {
     return e;
 }
 
-int grey_conduction(const struct bed *bed, double emissivity, uint32_t paths, double *factor) {
+int grey_conduction(const struct bed *bed, double emissivity, double conductivity, uint32_t paths, double *factor) {
     const fibrad_scene_config box = bed_scene(bed, NULL);
     const fibrad_spheres spheres = bed_spheres(bed);
+    const bool conducts = conductivity < INFINITY;
     struct progress bar = {0};
     fibrad_run run = one_thread(&bar);
-    double *e = constant(bed->n, emissivity), square = 0;
+    double *e = constant(bed->n, emissivity), *k = constant(bed->n, conductivity), square = 0;
     fibrad_displacement *moved = calloc(bed->n, sizeof *moved);
-    int status = e && moved ? STATUS_OK : message_memory();
-    const fibrad_exchange_rule rule = {.emissivity = e, .paths = paths};
+    int status = e && k && moved ? STATUS_OK : message_memory();
+    const fibrad_exchange_rule rule = {.emissivity = e, .conductivity = conducts ? k : NULL, .paths = paths};
     if (!status) {
         status = fibrad_displacements(&box, &spheres, &rule, NULL, &run, moved, NULL);
         progress_stop(&bar);
@@ -34,8 +36,10 @@ int grey_conduction(const struct bed *bed, double emissivity, uint32_t paths, do
     }
     for (uint32_t i = 0; i < bed->n && !status; ++i)
         for (int axis = 0; axis < 3; ++axis) square += moved[i].square[axis] / 3;
-    *factor = 4 * PI * emissivity * square / (2 * bed->period[0] * bed->period[1] * bed->period[2] * 2);
+    const double per_area = conducts ? 1 : emissivity; /* a walk counts flights, a path emissions */
+    *factor = 4 * PI * per_area * square / (2 * bed->period[0] * bed->period[1] * bed->period[2] * 2);
     free(moved);
+    free(k);
     free(e);
     return status;
 }
