@@ -393,7 +393,7 @@ typedef struct fibrad_work {
  *            entries: most spheres that one row sees; 200 in a packed bed
  *   Scenes with walls take FIBRAD_WORK_WALLS more. Scenes with triangles take FIBRAD_WORK_TRIANGLES more. */
 #define FIBRAD_WORK_BYTES(discs, entries) (28672 + (size_t)(discs)*768 + (size_t)(entries)*96)
-#define FIBRAD_WORK_WALLS                 21504
+#define FIBRAD_WORK_WALLS                 29760
 #define FIBRAD_WORK_TRIANGLES             26784
 
 /* ---- row ------------------------------------------------------------------------------------------------------- */
@@ -567,9 +567,14 @@ int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
  *   4. fibrad_silhouettes_row delivers a row. Several threads may ask for rows at the same time.
  *   5. fibrad_matrix_init with rule.reciprocal = 1 makes a matrix of the rows.
  *
- * Scenes with walls, openings, triangles or a known region are FIBRAD_E_UNSUPPORTED. Use fibrad_beam_row for these. */
+ * Planes, openings and a cylinder hide nothing from spheres. What a sphere gives to all of them is exact for the lines.
+ * Windows of the directions in which it is open share that out, as in beam rows.
+ *
+ * Scenes with triangles are FIBRAD_E_UNSUPPORTED, since triangles hide spheres. So are scenes with a known region, and
+ * there is no cutoff: a machine that has a part of a bed knows what hides within the cutoff of each of its own spheres
+ * alone. Use fibrad_beam_row for these. */
 typedef struct fibrad_silhouette_rule {
-    uint32_t lines; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: FIBRAD_DIRECTIONS_DEFAULT */
+    uint32_t lines; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: FIBRAD_LINES_DEFAULT */
     uint64_t turn;  /* seed of a random rotation of all lines together; 0: no rotation */
 } fibrad_silhouette_rule;
 
@@ -582,6 +587,11 @@ typedef struct fibrad_pairs {
 
 typedef struct fibrad_silhouettes fibrad_silhouettes; /* the lines of a scene, and where the pairs of each sphere are */
 
+/* The least number of lines, not below `lines`, for which there is a built-in set. Such a set is spread best, and takes
+ * no time to make. Without one: `lines`.
+ *   Errors   none */
+uint32_t fibrad_silhouettes_lines(uint32_t lines);
+
 /* Bytes that fibrad_silhouettes_init needs: 72 per line and 16 per sphere.
  *   Input    as fibrad_silhouettes_init
  *   Errors   0 */
@@ -593,7 +603,7 @@ size_t fibrad_silhouettes_size(const fibrad_scene *scene, const fibrad_silhouett
  *            rule: NULL for all defaults
  *   Output   silhouettes: a pointer into memory
  *   Errors   _ARGUMENT, _SIZE, _STATE
- *            _UNSUPPORTED: there are walls, openings, triangles or a known region
+ *            _UNSUPPORTED: there are triangles or a known region
  *   Cost     microseconds; up to 1 s if there is no table of as many lines, kernel/sample/line.h */
 int fibrad_silhouettes_init(fibrad_silhouettes **silhouettes, void *memory, size_t size, const fibrad_scene *scene,
                             const fibrad_silhouette_rule *rule);
@@ -627,11 +637,12 @@ int fibrad_silhouettes_join(fibrad_silhouettes *silhouettes, const fibrad_pairs 
 
 /* Row i of the view factors. row->symmetric is 1.
  *   Input    i: 0 to spheres - 1
- *   Output   row
+ *   Output   row; row->directions is the number of lines
  *   Errors   as fibrad_beam_row
  *            _STATE: the pairs are not joined, or have changed since
  *            _SUM: a task was not done, or done twice
- *   Cost     20 ns per entry */
+ *   Cost     20 ns per entry; among walls a microsecond for each direction in which the sphere is open
+ *   Source   docs/methods.md */
 int fibrad_silhouettes_row(const fibrad_silhouettes *silhouettes, fibrad_work *work, uint32_t i, fibrad_row *row);
 
 /* ---- matrix ---------------------------------------------------------------------------------------------------- */
@@ -656,6 +667,7 @@ typedef void fibrad_parallel(void *context, uint32_t pieces, fibrad_piece *piece
  *
  *   the rows hold                          set
  *   view factors by beams, exact areas     nothing
+ *   view factors by silhouettes            reciprocal = 1
  *   view factors by rays or by points      sampled = 1
  *   exchange factors                       emissivity, and body_emissivity with body_row
  *   any of these, also rows of walls       body_row
@@ -670,6 +682,7 @@ typedef struct fibrad_matrix_rule {
     fibrad_parallel *parallel;       /* used by all calls for this matrix; NULL: the calling thread does all */
     void *context;                   /* handed to parallel */
     int sampled;                     /* 1: view factors by rays or points */
+    int reciprocal;                  /* 1: rows by silhouettes: nothing is averaged */
 } fibrad_matrix_rule;
 
 /* A matrix of factors in compressed rows. The arrays belong to the matrix that they were read from. If walls have no
@@ -712,7 +725,8 @@ size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, ui
  *            rule: NULL for all defaults
  *   Output   matrix: a pointer into memory
  *            sphere: the sphere whose row is missing or repeated; may be NULL
- *   Errors   _ARGUMENT: also an entry from or to a sphere of emissivity 0
+ *   Errors   _ARGUMENT: also an entry from or to a sphere of emissivity 0; or with rule->reciprocal a row whose
+ *            symmetric is 0
  *            _SIZE
  *            _STATE: a row is missing, repeated or of another scene, or a collection's block was moved
  *   Cost     O(spheres + entries) */
@@ -723,6 +737,7 @@ int fibrad_matrix_init(fibrad_matrix **matrix, void *memory, size_t size, const 
  * fibrad_matrix_close does the tasks that are left. Rows i and j both estimate A_i F_ij = A_j F_ji, A = 4 pi r^2. The
  * average is w_i A_i F_ij + w_j A_j F_ji with
  *   view factors by exact areas   w_i = w_j = 1/2
+ *   view factors by silhouettes   both are equal already, and are copied
  *   sampled view factors          w_i = A_j/(A_i + A_j), w_j = A_i/(A_i + A_j)
  *   exchange factors              the same weights, D instead of F, and A times the emissivity instead of A
  *   Input    task: 0 to rule->tasks - 1

@@ -18,7 +18,7 @@ START_TEST(help_and_version) {
     SUCCEED("bed", "--help");
     static const char *const options[] = {"--method",  "--directions", "--areas",    "--points", "--cutoff",
                                           "--targets", "--threads",    "--periodic", "--frame",  "--positions",
-                                          "--raw",     "--plot",       "-o",         "[233]",    "Example"};
+                                          "--raw",     "--plot",       "-o",         "[233;",    "Example"};
     for (size_t k = 0; k < sizeof options / sizeof *options; ++k) ck_assert(strstr(printed, options[k]) != NULL);
     ck_assert(strstr(printed, "--nf") && strstr(printed, "--rays"));
     SUCCEED("pair", "1", "--help");

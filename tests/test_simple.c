@@ -25,24 +25,54 @@ static bool same_factors(const fibrad_factors *a, const fibrad_factors *b) {
            (a->bodies == 0 || memcmp(a->body, b->body, n * a->bodies * sizeof *a->body) == 0);
 }
 
-/* The same by the kernel, rows in the order of the spheres. */
+/* Adds all rows by silhouettes to a collection. */
+static void rows_by_silhouettes(const fibrad_scene *scene, uint32_t n, uint32_t lines, fibrad_work *work,
+                                fibrad_rows *rows) {
+    const fibrad_silhouette_rule rule = {.lines = lines};
+    const size_t size = fibrad_silhouettes_size(scene, &rule);
+    void *block = malloc(size);
+    fibrad_silhouettes *s;
+    fibrad_pairs pairs = {.memory.resize = fibrad_heap_resize};
+    fibrad_memory index = {.resize = fibrad_heap_resize};
+    fibrad_row row = {.rows = rows};
+    ck_assert_int_eq(fibrad_silhouettes_init(&s, block, size, scene, &rule), FIBRAD_OK);
+    for (uint32_t task = 0; task < fibrad_silhouettes_tasks(s); task++)
+        ck_assert_int_eq(fibrad_silhouettes_task(s, work, task, &pairs), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_silhouettes_join(s, &pairs, 1, &index), FIBRAD_OK);
+    for (uint32_t i = 0; i < n; i++) ck_assert_int_eq(fibrad_silhouettes_row(s, work, i, &row), FIBRAD_OK);
+    free(pairs.memory.block);
+    free(index.block);
+    free(block);
+}
+
+/* Adds all rows by beams to a collection. */
+static void rows_one_by_one(const fibrad_scene *scene, uint32_t n, uint32_t bodies, const fibrad_beam_rule *rule,
+                            fibrad_work *work, fibrad_rows *rows) {
+    fibrad_row row = {.rows = rows};
+    for (uint32_t i = 0; i < n; i++) {
+        ck_assert_int_eq(fibrad_beam_row(scene, work, i, rule, &row), FIBRAD_OK);
+        double sum = row.escaped;
+        for (uint32_t k = 0; k < row.length; k++) sum += row.f[k];
+        for (uint32_t b = 0; b < bodies; b++) sum += row.body[b];
+        ck_assert_double_eq_tol(sum, 1, 1e-12); /* the row is shown where it stands */
+    }
+}
+
+/* The same by the kernel, rows in the order of the spheres: raw ones by beams, or all by silhouettes. */
 static void *kernel_matrix(const struct bed *bed, const fibrad_scene_config *config, const fibrad_beam_rule *rule,
-                           fibrad_factors *factors) {
+                           bool raw, fibrad_factors *factors) {
     fibrad_scene *scene = scene_with(bed, config);
     fibrad_work work = {.memory.resize = fibrad_heap_resize};
     fibrad_rows rows = {.memory.resize = fibrad_heap_resize};
-    fibrad_row row = {.rows = &rows};
-    for (uint32_t i = 0; i < bed->n; i++) {
-        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, rule, &row), FIBRAD_OK);
-        double sum = row.escaped;
-        for (uint32_t k = 0; k < row.length; k++) sum += row.f[k];
-        for (uint32_t b = 0; b < (config ? config->bodies : 0); b++) sum += row.body[b];
-        ck_assert_double_eq_tol(sum, 1, 1e-12); /* the row is shown where it stands */
-    }
-    const size_t size = fibrad_matrix_size(scene, &rows, 1, NULL);
+    if (raw)
+        rows_one_by_one(scene, bed->n, config ? config->bodies : 0, rule, &work, &rows);
+    else
+        rows_by_silhouettes(scene, bed->n, rule->directions, &work, &rows);
+    const fibrad_matrix_rule how = {.raw = raw, .reciprocal = !raw};
+    const size_t size = fibrad_matrix_size(scene, &rows, 1, &how);
     void *block = malloc(size);
     fibrad_matrix *matrix;
-    ck_assert_int_eq(fibrad_matrix_init(&matrix, block, size, scene, &rows, 1, NULL, NULL), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_matrix_init(&matrix, block, size, scene, &rows, 1, &how, NULL), FIBRAD_OK);
     ck_assert_int_eq(fibrad_matrix_close(matrix), FIBRAD_OK);
     ck_assert_int_eq(fibrad_matrix_read(matrix, factors), FIBRAD_OK);
     free(work.memory.block);
@@ -59,7 +89,7 @@ START_TEST(view_factors_are_the_kernels) {
     const fibrad_spheres spheres = spheres_of(&bed);
     const fibrad_beam_rule rule = {.directions = 40};
     fibrad_factors expected;
-    void *block = kernel_matrix(&bed, &config, &rule, &expected);
+    void *block = kernel_matrix(&bed, &config, &rule, false, &expected);
     for (int t = 0; t < 3; t++) {
         fibrad_run run = {.threads = threads[t]};
         fibrad_bed_factors *factors;
@@ -103,12 +133,12 @@ START_TEST(long_rows_are_divided) {
     const fibrad_beam_rule rule = {.directions = 60};
     unsigned char two[300] = {[1] = 1, [200] = 1};
     fibrad_factors expected;
-    void *block = kernel_matrix(&bed, &config, &rule, &expected);
+    void *block = kernel_matrix(&bed, &config, &rule, true, &expected);
     fibrad_bed_factors *factors, *alone[3];
     for (int t = 0; t < 3; t++) {
         struct calls calls = {0};
         fibrad_run run = {.threads = threads[t], .progress = count_calls, .context = &calls};
-        fibrad_bed_options options = {.beam = &rule};
+        fibrad_bed_options options = {.beam = &rule, .raw = 1};
         ck_assert_int_eq(fibrad_view_factors(&config, &spheres, &options, &run, &factors), FIBRAD_OK);
         ck_assert(same_factors(&factors->matrix, &expected));
         ck_assert_uint_eq(factors->directions, 60);
@@ -407,7 +437,7 @@ START_TEST(progress_and_cancelling) {
         fibrad_run run = {.threads = threads[t], .progress = count_calls, .context = &calls};
         fibrad_bed_factors *factors;
         ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &options, &run, &factors), FIBRAD_OK);
-        ck_assert(calls.ends == 1 && calls.total == 200 && calls.count >= 2);
+        ck_assert(calls.ends == 2 && calls.total == 200 && calls.count >= 4); /* circles, rows */
         fibrad_bed_free(factors);
         for (uint64_t at = 1; at <= 2; at++) {
             calls = (struct calls){.stop_at = at};

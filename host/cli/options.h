@@ -66,7 +66,8 @@ enum {
 #define OPTIONS_METHODS                                                                                                \
     {KEY_DIRECTIONS, "directions", "N",                                                                                \
      "beam: number of directions, " TEXT_DIRECTIONS                                                                    \
-     "; the error falls as N^-1.5 [" TEXT_OF(FIBRAD_DIRECTIONS_DEFAULT) "]"},                                          \
+     "; for all rows of a bed number of lines, each followed both ways; the error falls as N^-1.5 [" TEXT_OF(          \
+         FIBRAD_DIRECTIONS_DEFAULT) "; lines " TEXT_OF(FIBRAD_LINES_DEFAULT) "]"},                                     \
         {KEY_AREAS, "areas", "KIND",                                                                                   \
          "beam: visible areas, exact or points; points are faster and less accurate [exact]"},                         \
         {KEY_POINTS, "points", "M", "beam: points per window, 64, 128 or 256; implies --areas points [256]"},          \

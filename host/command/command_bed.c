@@ -142,7 +142,7 @@ static int bed_choose(struct bed_request *request) {
         request->options.beam = beam;
     const int status = options_beam_rule(&request->beam, beam);
     beam->tolerance = request->error;
-    if (request->error > 0) beam->directions = 0; /* the library chooses */
+    beam->directions = request->beam.directions; /* 0: the library chooses */
     return status;
 }
 

@@ -54,6 +54,17 @@ static int run_rule(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
     return status ? status : fibrad_job_factors(job, how, &report, factors);
 }
 
+/* Computes all rows by silhouettes, and their matrix. _UNSUPPORTED: too many spheres overlap, or there are too many
+ * pairs. */
+static int run_all_rows(fibrad_job *job, const fibrad_beam_rule *beam, fibrad_matrix_rule how,
+                        fibrad_bed_factors **factors) {
+    fibrad_job_report report;
+    how.reciprocal = 1;
+    if (beam && beam->tolerance > 0) return fibrad_job_tolerance(job, NULL, beam, &how, factors);
+    const int status = fibrad_job_silhouettes(job, beam, &report);
+    return status ? status : fibrad_job_factors(job, &how, &report, factors);
+}
+
 /* A rule for rows of black walls, which makes them about as accurate as the rows of spheres. */
 static fibrad_exchange_rule black_bodies(const fibrad_job *job, const fibrad_bed_options *options) {
     const fibrad_beam_rule *beam = options->beam;
@@ -79,7 +90,11 @@ static int run_options(fibrad_job *job, const fibrad_bed_options *options, fibra
     if (status) return status;
     if (options->surface) return run_rule(job, row_by_surface, options->surface, options, &how, factors);
     if (options->cast) return run_rule(job, row_by_rays, options->cast, options, &how, factors);
-    if (beam && beam->tolerance > 0 && !options->raw && !options->wanted)
+    if (!how.raw && fibrad_job_has_silhouettes(job, beam)) {
+        const int done = run_all_rows(job, beam, how, factors);
+        if (done != FIBRAD_E_UNSUPPORTED) return done;
+    }
+    if (beam && beam->tolerance > 0 && !how.raw)
         return fibrad_job_tolerance(job, fibrad_job_beam_row, beam, &how, factors);
     return run_rule(job, fibrad_job_beam_row, beam, options, &how, factors);
 }

@@ -39,7 +39,7 @@ extern "C" {
 /* A function of the caller that shows progress. The thread that made the call calls it at the beginning and the end of
  * each stage, and up to 20 times a second in between.
  *   Input    context: fibrad_run.context
- *            stage: "walls", "rows", "triangles", "beams", "sweeps" or "steps"
+ *            stage: "walls", "circles", "rows", "triangles", "beams", "sweeps" or "steps"
  *            done: number of things done
  *            total: number of all things; 0: not known
  *   Output   0 to go on; else the call stops and returns FIBRAD_E_CANCELLED */
@@ -55,7 +55,11 @@ typedef struct fibrad_run {
 
 /* ---- factors --------------------------------------------------------------------------------------------------- */
 
-/* Which rows of a bed are computed, and how. NULL or zeroed: all rows by the default beam rule, reciprocal and closed.
+/* Which rows of a bed are computed, and how. NULL or zeroed: all rows, reciprocal and closed.
+ *
+ * All rows are computed by silhouettes along lines if the beam rule has neither points nor a cutoff, `raw` is 0, and
+ * the scene has neither triangles nor a known region. The beam rule's number of directions is then that of lines, each
+ * followed both ways; 0 stands for FIBRAD_LINES_DEFAULT. Other rows are computed one by one by beams.
  *
  * At most one of beam, surface and cast is set. If the beam rule has a tolerance, there are two cases. Rows that are
  * averaged all have the same number of directions, that of the worst row. Raw rows each have the number they need.
@@ -81,7 +85,7 @@ typedef struct fibrad_bed_factors {
     fibrad_scene_facts facts; /* of the scene */
     const double *body_area;  /* L^2, [bodies], as fibrad_scene_body_area */
     int threads;              /* threads used */
-    uint32_t directions;      /* most directions of a row; 0: a method without directions */
+    uint32_t directions;      /* most directions of a row, or lines; 0: a method without directions */
     uint64_t fallbacks;       /* windows that the robust method for areas resolved */
     uint64_t rays;            /* exchange: rays traced */
     double seconds;           /* s, time of computing, without the two checks below */

@@ -1,9 +1,10 @@
 /* tolerance.c - numbers of directions and paths for a tolerance. SPDX-License-Identifier: MIT
  *
- * Rows of view factors that are averaged have one number of directions, for only then are their sums at most 1. The
- * worst rows of a pilot run, computed by themselves, tell the number. If the estimated errors are too large after
- * averaging, the number is raised. Each row of exchange factors has a tolerance of its own. This tolerance is lowered
- * until the worst row has, after averaging, the error that the caller allows. */
+ * Rows of view factors that are averaged have one number of directions, for only then are their sums at most 1. By
+ * silhouettes the number grows from set to set. By beams the worst rows of a pilot run, computed by themselves, tell
+ * it. If the estimated errors are too large after averaging, the number is raised. Each row of exchange factors has a
+ * tolerance of its own. This tolerance is lowered until the worst row has, after averaging, the error that the caller
+ * allows. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,12 +68,15 @@ int fibrad_job_tolerance(fibrad_job *job, fibrad_job_row *row, const fibrad_beam
     double *error = malloc(((size_t)n + 1) * sizeof *error);
     unsigned char *wanted = calloc((size_t)n + 1, 1);
     int status = error && wanted ? FIBRAD_OK : FIBRAD_E_MEMORY;
-    if (!status && n > 0) status = find_directions(job, row, *rule, error, wanted, &used.directions);
+    if (row && !status && n > 0) status = find_directions(job, row, *rule, error, wanted, &used.directions);
     free(error);
     free(wanted);
     used.tolerance = 0;
+    if (!row && !used.directions) used.directions = PILOT;
     while (!status) {
-        status = fibrad_job_rows(job, row, &used, NULL, NULL, &report);
+        if (!row) used.directions = fibrad_silhouettes_lines(used.directions);
+        status =
+            row ? fibrad_job_rows(job, row, &used, NULL, NULL, &report) : fibrad_job_silhouettes(job, &used, &report);
         if (!status) status = fibrad_job_factors(job, average, &report, factors);
         if (status) break;
         const double worst = worst_error(&(*factors)->matrix);

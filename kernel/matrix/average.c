@@ -39,7 +39,26 @@ static void transpose_part(fibrad_matrix *m, const fibrad_matrix_part *part) {
     }
 }
 
+/* Rows that are reciprocal already. */
+static void copy_part(fibrad_matrix *m, fibrad_matrix_part *part) {
+    const fibrad_sparse *to = &m->result;
+    uint64_t at = part->first;
+    for (uint32_t i = part->begin; i < part->end; i++) {
+        const uint32_t length = m->row[i]->length;
+        to->start[i] = at;
+        fibrad_copy(to->col + at, fibrad_record_col(m->row[i]), length * sizeof *to->col);
+        fibrad_copy(to->f + at, fibrad_record_f(m->row[i]), length * sizeof *to->f);
+        at += length;
+    }
+    part->filled = at;
+    part->done = 1;
+}
+
 void fibrad_matrix_average_part(fibrad_matrix *m, fibrad_matrix_part *part) {
+    if (m->reciprocal) {
+        copy_part(m, part);
+        return;
+    }
     const fibrad_sparse *to = &m->result;
     const double *r = m->r;
     uint64_t at = part->first, there = part->transposed;

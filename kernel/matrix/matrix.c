@@ -47,9 +47,10 @@ static bool entries_emit(const fibrad_record *row, const double *emissivity) {
 }
 
 /* The number of all entries of the collections. UINT64_MAX: their rows belong to walls other than those of the
- * scene, or they have entries that the emissivities exclude. emissivity NULL: none. */
-static uint64_t entries_of(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
-                           const double *emissivity) {
+ * scene, they have entries that the emissivities exclude, or they should be `reciprocal` and are not. emissivity NULL:
+ * none. */
+static uint64_t entries_of(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count, const double *emissivity,
+                           bool reciprocal) {
     uint64_t entries = 0;
     for (uint32_t c = 0; c < count; c++) {
         size_t at = 0;
@@ -58,6 +59,7 @@ static uint64_t entries_of(const fibrad_scene *scene, const fibrad_rows *rows, u
             if (row->sphere >= scene->facts.spheres || row->bodies != scene->facts.bodies) return UINT64_MAX;
             if (row->length > 0 && col[row->length - 1] >= scene->facts.spheres) return UINT64_MAX;
             if (emissivity != NULL && !entries_emit(row, emissivity)) return UINT64_MAX;
+            if (reciprocal && row->symmetric == 0) return UINT64_MAX;
         }
     }
     return entries;
@@ -92,8 +94,9 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
 static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                              const fibrad_matrix_rule *rule) {
     if ((rows == NULL && count > 0) || !matrix_rule_valid(scene, rule)) return false;
-    const uint64_t entries = entries_of(scene, rows, count, rule != NULL ? rule->emissivity : NULL);
-    *m = (fibrad_matrix){.bodies = scene->facts.bodies, .tasks = tasks_of(rule)};
+    const bool reciprocal = rule != NULL && rule->reciprocal;
+    const uint64_t entries = entries_of(scene, rows, count, rule != NULL ? rule->emissivity : NULL, reciprocal);
+    *m = (fibrad_matrix){.bodies = scene->facts.bodies, .tasks = tasks_of(rule), .reciprocal = reciprocal};
     m->raw = rule != NULL && rule->raw;
     m->exchange = rule != NULL && rule->emissivity != NULL;
     m->sampled = m->exchange || (rule != NULL && rule->sampled);
@@ -102,7 +105,7 @@ static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const 
     m->parallel = rule != NULL ? rule->parallel : NULL;
     m->context = rule != NULL ? rule->context : NULL;
     m->result.n = scene->facts.spheres;
-    m->result.capacity = m->raw ? entries : 2 * entries + (m->drop > 0 ? m->result.n : 0);
+    m->result.capacity = m->raw ? entries : (m->reciprocal ? 1 : 2) * entries + (m->drop > 0 ? m->result.n : 0);
     return entries < UINT64_MAX / 4 && m->result.capacity <= SIZE_MAX;
 }
 
@@ -182,7 +185,7 @@ static void measure_part(void *matrix, uint32_t p) {
     fibrad_matrix *m = matrix;
     fibrad_matrix_part *part = &m->part[p];
     for (uint32_t i = part->begin; i < part->end; i++) copy_rest(m, i), part->transposed += m->row[i]->length;
-    part->last = part->transposed + fibrad_matrix_count_part(m, part);
+    part->last = part->transposed + (m->reciprocal ? 0 : fibrad_matrix_count_part(m, part));
 }
 
 /* Divides the rows into parts with about as many entries each. A part has a range of the result for its rows of the
@@ -229,7 +232,7 @@ int fibrad_matrix_init(fibrad_matrix **out, void *memory, size_t size, const fib
     if (m->raw)
         copy_raw(m);
     else
-        divide(m, (m->result.capacity - (m->drop > 0 ? m->result.n : 0)) / 2);
+        divide(m, (m->result.capacity - (m->drop > 0 ? m->result.n : 0)) / (m->reciprocal ? 1 : 2));
     m->given = rows, m->given_count = count, m->given_serial = serial_of(rows, count);
     m->open = true;
     *out = m;

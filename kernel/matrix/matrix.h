@@ -29,6 +29,7 @@ struct fibrad_matrix {
     fibrad_sparse result;
     uint32_t bodies, tasks;
     bool raw, exchange, open, closed;
+    bool reciprocal;          /* the rows are so already */
     bool sampled;             /* exchange factors, or view factors by rays or points: averaged by variances */
     const fibrad_rows *given; /* [given_count], the collections; given_serial is the sum of their changes so far */
     uint32_t given_count;

@@ -9,6 +9,19 @@
 #include "row/window_lanes.h"
 #include "window/clip_lanes.h"
 
+/* The directions of a rule. */
+typedef struct beam_frames {
+    uint32_t directions;
+    bool turned;
+    double turn[9];
+} beam_frames;
+
+static void frame_of_beam(const void *from, uint32_t k, uint32_t points, double frame[9]) {
+    const beam_frames *frames = from;
+    fibrad_beam_frame(k, frames->directions, points, frame);
+    if (frames->turned) fibrad_rotate_axes(frames->turn, frame);
+}
+
 int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i,
                              const fibrad_beam_rule *rule, const fibrad_beam_range *range, fibrad_row *row) {
     static const double centre[3] = {0, 0, 0};
@@ -22,7 +35,9 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     work->areas.fallbacks = 0;
     work->windows = directions;
     fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, FIBRAD_BEAM_STRIDE);
-    double open[2] = {0, 0}, turn[9], parts[2] = {0, 0};
+    double open[2] = {0, 0}, parts[2] = {0, 0};
+    beam_frames frames = {.directions = directions, .turned = rule->turn != 0};
+    const fibrad_window_set set = {frame_of_beam, &frames, directions, directions, points, frames.turned};
     if (scene->container.walls) {
         work->walls->view = fibrad_wall_view_of(scene, work->place, work->cut, work->reach);
         fibrad_zero(&work->walls->sums, sizeof work->walls->sums);
@@ -30,18 +45,17 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     }
     work->entries.addends = range->addends;
     if (range->part != NULL) fibrad_beam_replay(work, range, directions, open);
-    if (rule->turn != 0) fibrad_rotation(rule->turn, turn);
+    if (frames.turned) fibrad_rotation(rule->turn, frames.turn);
     for (uint32_t k = range->from; k < range->to; k++) {
         double frame[9];
-        fibrad_beam_frame(k, directions, points, frame);
-        if (rule->turn != 0) fibrad_rotate_axes(turn, frame);
+        frame_of_beam(&frames, k, points, frame);
         work->entries.end = k == 0 || k == directions - 1;
         double rest = LANED(fibrad_beam_window)(work, frame, &window, k);
         if (work->disc.count > work->disc.capacity || work->areas.overflow) return fibrad_work_discs_missed(work);
         const bool meets = work->met != NULL && work->met->any;
         if (meets) LANED(fibrad_mesh_count)(work, frame, k);
         if (scene->container.walls)
-            LANED(fibrad_walls_share)(work, frame, meets && points == 0 ? &work->met->points : &window, k, rule, rest);
+            LANED(fibrad_walls_share)(work, frame, meets && points == 0 ? &work->met->points : &window, k, &set, rest);
         else if (work->cut && rest != 0 && fibrad_work_met(work, centre, frame + 6) == FIBRAD_BEYOND)
             fibrad_work_slot(work, FIBRAD_BEYOND, k, rest);
         else if (range->addends != NULL)
@@ -57,7 +71,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     double scale = points > 0 ? 1.0 / ((double)directions * points) : 1 / (directions * FIBRAD_PI);
     int status = fibrad_entries_row(&work->entries, scene, scale, row);
     if (status != FIBRAD_OK) return status;
-    if (scene->container.walls) LANED(fibrad_walls_complete)(work, rule, parts);
+    if (scene->container.walls) LANED(fibrad_walls_complete)(work, &set, parts);
     fibrad_entries_slots(&work->entries, scene, work->wall);
     row->escaped = (open[0] + open[1] + work->wall[FIBRAD_ESCAPED]) * scale;
     row->beyond = work->wall[FIBRAD_BEYOND] * scale;

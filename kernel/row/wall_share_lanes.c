@@ -320,49 +320,46 @@ static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, 
 }
 
 void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t k,
-                               const fibrad_beam_rule *rule, double rest) {
+                               const fibrad_window_set *set, double rest) {
     if (rest == 0) {
         work->walls->sums.hidden[k / 64] |= UINT64_C(1) << k % 64;
         if (work->entries.addends != NULL) fibrad_addends_put(work->entries.addends, FIBRAD_ADD_HIDDEN, k, 0);
         return;
     }
-    const double whole = rule->points > 0 ? rule->points : FIBRAD_PI;
-    fibrad_wall_window window = {.frame = frame, .k = k, .n = rule->directions, .open = rest, .part = 1};
+    const double whole = set->points > 0 ? set->points : FIBRAD_PI;
+    fibrad_wall_window window = {.frame = frame, .k = k, .n = set->directions, .open = rest, .part = 1};
     window.hidden = fibrad_max(0, whole - rest);
     if (points->count > 0) window.part = 0.4 + 0.6 * rest / whole;
     if (work->walls->view.cut)
         window.part *= 1.25; /* there is no solid angle here that corrects the unevenness of the discs */
     if (points->count == 0) fibrad_areas_slope(&work->areas, work->disc.resolved, window.slope);
     fibrad_wall_window_begin(&window, &work->walls->view);
-    if (!fibrad_wall_window_simple(&window, &work->walls->view, rule->turn != 0, &work->walls->sums))
+    if (!fibrad_wall_window_simple(&window, &work->walls->view, set->turned, &work->walls->sums))
         share_by_lines(work, points, &window);
 }
 
 /* Adds to `all` of the regions what hidden windows would see. */
-static void add_hidden(fibrad_workspace *work, const fibrad_beam_rule *rule) {
+static void add_hidden(fibrad_workspace *work, const fibrad_window_set *set) {
     fibrad_points *all = &work->walls->points;
-    double turn[9];
     all_points(HIDDEN_POINTS, all);
-    if (rule->turn != 0) fibrad_rotation(rule->turn, turn);
-    for (uint32_t k = 0; k < rule->directions; k++) {
+    for (uint32_t k = 0; k < set->count; k++) {
         if ((work->walls->sums.hidden[k / 64] >> k % 64 & 1) == 0) continue;
         double frame[9];
-        fibrad_beam_frame(k, rule->directions, HIDDEN_POINTS, frame);
-        if (rule->turn != 0) fibrad_rotate_axes(turn, frame);
-        fibrad_wall_window window = {.frame = frame, .k = k, .n = rule->directions, .hidden = 1, .part = 1};
+        set->frame(set->from, k, HIDDEN_POINTS, frame);
+        fibrad_wall_window window = {.frame = frame, .k = k, .n = set->directions, .hidden = 1, .part = 1};
         fibrad_wall_window_begin(&window, &work->walls->view);
-        if (!fibrad_wall_window_simple(&window, &work->walls->view, rule->turn != 0, &work->walls->sums))
+        if (!fibrad_wall_window_simple(&window, &work->walls->view, set->turned, &work->walls->sums))
             share_by_lines(work, all, &window);
     }
 }
 
-void LANED(fibrad_walls_complete)(fibrad_workspace *work, const fibrad_beam_rule *rule, double parts[2]) {
+void LANED(fibrad_walls_complete)(fibrad_workspace *work, const fibrad_window_set *set, double parts[2]) {
     double open = 0;
     for (uint32_t region = 0; region < FIBRAD_REGIONS; region++)
         for (int part = 0; part < 4; part++) open += work->walls->sums.open[region][part];
     parts[0] = parts[1] = 0;
     if (!(open > 0)) return;
     const double apart = fibrad_wall_apart(&work->walls->view);
-    if (apart > 0) add_hidden(work, rule);
-    fibrad_wall_factors(&work->walls->sums, &work->walls->view, rule->directions, apart, work->wall, parts);
+    if (apart > 0) add_hidden(work, set);
+    fibrad_wall_factors(&work->walls->sums, &work->walls->view, set->directions, apart, work->wall, parts);
 }

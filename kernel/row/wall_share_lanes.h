@@ -6,13 +6,23 @@
 #include "work/work.h"
 #include "window/points.h"
 
+/* The windows of a row. */
+typedef struct fibrad_window_set {
+    void (*frame)(const void *from, uint32_t k, uint32_t points, double frame[9]); /* that of window k */
+    const void *from;                                                              /* handed to it */
+    uint32_t count;                                                                /* windows have numbers below this */
+    uint32_t directions;                                                           /* how many windows there are */
+    uint32_t points;                                                               /* of a window; 0: areas are exact */
+    bool turned; /* directions do not pair off across z */
+} fibrad_window_set;
+
 /* Adds the open part of window k of a row, which meets no sphere, to work->walls->sums by what it meets. Lines that
  * are cut are added to work->wall. rest: the size of the open part. points: as fibrad_beam_window has left them.
  * With points->count 0 areas are exact, and the discs of `work` tell which points are open. */
 void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t k,
-                               const fibrad_beam_rule *rule, double rest);
+                               const fibrad_window_set *set, double rest);
 
 /* Adds the view factors of walls to work->wall[] when all windows are done. parts: as in fibrad_wall_factors. */
-void LANED(fibrad_walls_complete)(fibrad_workspace *work, const fibrad_beam_rule *rule, double parts[2]);
+void LANED(fibrad_walls_complete)(fibrad_workspace *work, const fibrad_window_set *set, double parts[2]);
 
 #endif

@@ -118,7 +118,7 @@ typedef struct fibrad_circles {
     double origin[3]; /* L */
     double scale;     /* 1/L, a power of two */
     double period[3]; /* of the scene, scaled */
-    double grid;      /* a number whose ulp projected centres are multiples of; 0: of none */
+    double grid;      /* a number whose ulp projected centres are multiples of */
     bool periodic;
     bool apart; /* what lies beyond all spheres has a name of its own for each line and sense */
     /* the sphere in hand, and what is to be followed of its circles */
@@ -130,6 +130,7 @@ typedef struct fibrad_circles {
     double across[9];   /* the frame, ... */
     double shift[3][3]; /* ... and one period of each axis along it */
     double centre[3];   /* projected */
+    double farthest;    /* along periodic axes spheres farther apart than this exchange nothing */
     uint32_t half;      /* 0: an even line, 1: an odd one */
     fibrad_circle_stretch stretch;
 } fibrad_circles;

@@ -86,7 +86,7 @@ static inline void find_arcs(const fibrad_circles *c, fibrad_circle_side *side, 
     const vd own = vd_set1(c->r), zero = vd_set1(0), tiny = vd_set1(TINY);
     vd square = u * u + v * v, sum = r + own, larger = r - own;
     vd apart = sum * sum - square, within = square - larger * larger;
-    vm there = vd_le(zero, depth), covers = vd_le(within, tiny) & there;
+    vm there = vd_le(zero, depth) & vd_le(depth, vd_set1(c->farthest)), covers = vd_le(within, tiny) & there;
     vm touches = vd_lt(tiny, apart) & vd_lt(tiny, within) & there;
     covers = covers & (side->sense > 0 ? vd_le(zero, larger) : vd_lt(zero, larger));
     vd along = square - larger * sum, root = vd_sqrt(vd_max(zero, apart * within)), size = 2 * c->r * square;
@@ -522,6 +522,30 @@ static inline int64_t units_of(double sum) {
     return bits - zero;
 }
 
+/* The area of a piece about an origin, in units of a pair. */
+static double piece_area(const fibrad_circles *c, uint32_t k, const fibrad_circle_discs *disc, uint32_t origin) {
+    const fibrad_circle_pieces *piece = &c->pieces;
+    const double sine = piece->sine[k + 1] - piece->sine[k], cosine = piece->cosine[k + 1] - piece->cosine[k];
+    const double half = c->r / 2, area = half * c->r * (piece->angle[k + 1] - piece->angle[k]);
+    return (area - half * (disc->u[origin] * sine - disc->v[origin] * cosine)) * disc->weight[origin];
+}
+
+/* Spheres that lie farther apart than lines are followed do not exchange what a piece takes from both. It is taken from
+ * what each exchanges with what lies beyond all spheres. */
+static void part_distant(fibrad_circles *c, fibrad_pair_table *table) {
+    const fibrad_circle_discs *behind = &c->seen[0], *ahead = &c->seen[1];
+    fibrad_circle_pieces *piece = &c->pieces;
+    for (uint32_t k = 0; k < piece->count; k++) {
+        const uint32_t a = piece->first[k], b = piece->next[k];
+        if (a == behind->count || b == ahead->count || behind->depth[a] + ahead->depth[b] <= c->farthest) continue;
+        const int64_t of_a = units_of(piece_area(c, k, behind, a) + UNITS);
+        const int64_t of_b = units_of(piece_area(c, k, ahead, b) + UNITS);
+        fibrad_pair_add(table, c->near.sphere[behind->slot[a]], c->side[1].nothing, c->half, -of_a);
+        fibrad_pair_add(table, c->near.sphere[ahead->slot[b]], c->side[0].nothing, c->half, -of_b);
+        piece->past[k] = UNITS;
+    }
+}
+
 /* Adds the areas of all pieces. The table is asked for its slots ahead, since they are seldom in the nearest cache. */
 static void add_pieces(fibrad_circles *c, fibrad_pair_table *table) {
     const fibrad_circle_discs *behind = &c->seen[0], *ahead = &c->seen[1];
@@ -745,6 +769,10 @@ static void begin_line(fibrad_circles *c, const fibrad_line *line, uint32_t numb
         c->centre[axis] = (c->centre[axis] + c->grid) - c->grid;
         for (int k = 0; k < 3; k++) c->shift[axis][k] = (a[k] * c->period[k] + c->grid) - c->grid;
     }
+    c->farthest = __builtin_inf();
+    for (int axis = 0; axis < 3; axis++)
+        if (c->period[axis] > 0 && line->frame[6 + axis] != 0)
+            c->farthest = fibrad_min(c->farthest, FIBRAD_PERIODS * c->period[axis] / fibrad_abs(line->frame[6 + axis]));
 }
 
 /* A point of the circle. */
@@ -792,6 +820,7 @@ static int follow(fibrad_workspace *work, fibrad_circles *c, double begin, doubl
     }
     find_angles(c);
     find_areas(c);
+    if (c->periodic) part_distant(c, table);
     add_pieces(c, table);
     if (c->marched > first_marched) add_sums(c, work->place, first_marched, c->marched, table);
     c->marched = first_marched;

@@ -9,8 +9,10 @@
 #include "sample/line.h"
 #include "scene/grid_walk.h"
 #include "silhouette/circle_lanes.h"
+#include "silhouette/open_lanes.h"
 
-#define AHEAD        16u      /* how many pairs ahead memory is asked for */
+#define AHEAD 16u /* how many pairs ahead memory is asked for */
+
 #define TASK_CIRCLES 256u     /* circles of each line in a task: those near each other share pairs in the cache */
 #define TABLE_BEST   0x10000u /* slots of a task's table, ... */
 #define TABLE_LEAST  0x2000u  /* ... and the least */
@@ -41,16 +43,22 @@ static fibrad_silhouettes *silhouettes_layout(fibrad_arena *arena, fibrad_silhou
 /* The numbers that follow from the arguments; _ARGUMENT, _UNSUPPORTED. */
 static int silhouettes_dimension(fibrad_silhouettes *s, const fibrad_scene *scene, const fibrad_silhouette_rule *rule) {
     uint32_t lines = rule != NULL ? rule->lines : 0;
-    if (lines == 0) lines = FIBRAD_DIRECTIONS_DEFAULT;
+    if (lines == 0) lines = FIBRAD_LINES_DEFAULT;
     if (lines < FIBRAD_DIRECTIONS_MIN || lines > FIBRAD_DIRECTIONS_MAX) return FIBRAD_E_ARGUMENT;
     *s = (fibrad_silhouettes){.scene = scene, .hash = scene->hash, .lines = lines, .spheres = scene->facts.spheres};
-    return scene->container.walls || scene->mesh.triangles > 0 || scene->region ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
+    return scene->mesh.triangles > 0 || scene->region ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
 }
 
 static size_t silhouettes_bytes(fibrad_silhouettes fields) {
     fibrad_arena arena = {0};
     silhouettes_layout(&arena, &fields);
     return fibrad_arena_total(&arena);
+}
+
+uint32_t fibrad_silhouettes_lines(uint32_t lines) {
+    for (uint32_t n = lines; n <= FIBRAD_LINES_EVEN_MAX; n++)
+        if (fibrad_lines_tabled(n)) return n;
+    return lines;
 }
 
 size_t fibrad_silhouettes_size(const fibrad_scene *scene, const fibrad_silhouette_rule *rule) {
@@ -181,12 +189,17 @@ static size_t circles_bytes(uint32_t slots) {
     return fibrad_arena_total(&arena);
 }
 
-/* A power of two whose ulp is the grid of projected centres: with periods sums of centres and shifts are exact. */
+/* A number whose ulp is the grid of projected centres. Centres that differ by rounding alone then coincide. With
+ * periods sums of centres and shifts are exact, and 128 extents are within range. */
 static double centre_grid(const fibrad_scene *scene, double scale) {
     double extent = 0, grid = 1;
-    for (int axis = 0; axis < 3; axis++) extent += (scene->box_high[axis] - scene->box_low[axis]) * scale;
+    bool periodic = false;
+    for (int axis = 0; axis < 3; axis++) {
+        extent += (scene->box_high[axis] - scene->box_low[axis]) * scale;
+        periodic = periodic || scene->period[axis] > 0;
+    }
     while (grid < extent) grid *= 2;
-    return grid * 0x1.8p6; /* 2^-46 of the extent, and 128 of it within range */
+    return grid * (periodic ? 0x1.8p6 : 0x1.8p3); /* 2^-46 or 2^-49 of the extent */
 }
 
 static void begin_circles(const fibrad_scene *scene, fibrad_circles *c) {
@@ -195,12 +208,13 @@ static void begin_circles(const fibrad_scene *scene, fibrad_circles *c) {
     while (c->scale * scene->facts.radius_max >= 2) c->scale /= 2;
     while (c->scale * scene->facts.radius_max < 1) c->scale *= 2;
     c->periodic = false;
+    c->apart = scene->container.walls;
     for (int axis = 0; axis < 3; axis++) {
         c->origin[axis] = scene->box_low[axis];
         c->period[axis] = scene->period[axis] * c->scale;
         c->periodic = c->periodic || scene->period[axis] > 0;
     }
-    c->grid = c->periodic ? centre_grid(scene, c->scale) : 0;
+    c->grid = centre_grid(scene, c->scale);
     c->near.radius[c->near.nowhere] = 1;
     for (int k = 0; k < FIBRAD_LANES_MAX; k++) c->near.fill[k] = c->near.nowhere;
     for (int axis = 0; axis < 3; axis++)
@@ -321,7 +335,9 @@ int fibrad_silhouettes_task(const fibrad_silhouettes *s, fibrad_work *work, uint
 /* ---- rows ------------------------------------------------------------------------------------------------------- */
 
 /* Whether a pair is of two spheres. */
-static bool is_mutual(const fibrad_pair *pair) { return pair->second != FIBRAD_NONE && pair->second != pair->first; }
+static bool is_mutual(const fibrad_pair *pair) {
+    return !fibrad_pair_opens(pair->second) && pair->second != pair->first;
+}
 
 /* Counts the pairs of each sphere. start[k + 1] becomes where those of sphere k begin. */
 static void count_by_sphere(fibrad_silhouettes *s) {
@@ -391,9 +407,15 @@ typedef struct pair_entry {
     uint32_t place, unused[3];
 } pair_entry;
 
-/* Lists all pairs of the sphere at a position, and what it exchanges with the surroundings. _WORK */
-static int gather_pairs(const fibrad_silhouettes *s, fibrad_workspace *space, uint32_t place, int64_t open[2],
-                        uint32_t *count) {
+/* The caller's number of a sphere. Numbers from that of all spheres on stand for 2 line + sense, or for all of them. */
+static uint32_t key_number(const fibrad_silhouettes *s, uint32_t name) {
+    if (!fibrad_pair_opens(name)) return s->scene->order[name];
+    const uint32_t which = name - FIBRAD_PAIR_OPEN, all = 2 * s->lines;
+    return s->spheres + (which < all ? which : all);
+}
+
+/* Lists all pairs of the sphere at a position, with keys of the others' numbers. _WORK */
+static int gather_pairs(const fibrad_silhouettes *s, fibrad_workspace *space, uint32_t place, uint32_t *count) {
     fibrad_entries *entries = &space->entries;
     pair_entry *to = (pair_entry *)(void *)entries->part;
     uint32_t n = 0;
@@ -401,13 +423,9 @@ static int gather_pairs(const fibrad_silhouettes *s, fibrad_workspace *space, ui
         if (k + AHEAD < s->all) __builtin_prefetch(numbered_pair(s, s->index[k + AHEAD]));
         const fibrad_pair *pair = numbered_pair(s, s->index[k]);
         const uint32_t other = pair->first != place ? pair->first : pair->second;
-        if (other == FIBRAD_NONE) {
-            open[0] += pair->sum[0], open[1] += pair->sum[1];
-            continue;
-        }
         if (n < entries->capacity) {
             to[n] = (pair_entry){{pair->sum[0], pair->sum[1]}, other, {0}};
-            entries->key[0][n] = (uint64_t)s->scene->order[other] << 32 | n;
+            entries->key[0][n] = (uint64_t)key_number(s, other) << 32 | n;
         }
         n++;
     }
@@ -429,29 +447,65 @@ static double entry_factor(const fibrad_silhouettes *s, const int64_t sum[2], do
 /* Half the difference of the halves of a set errs this much more than the whole: docs/accuracy.md. */
 #define HALVES_ERROR 0.4
 
+/* Adds up the pairs from number *k on that have one key. */
+static const pair_entry *add_alike(const fibrad_workspace *space, const uint64_t *key, uint32_t count, uint32_t *k,
+                                   int64_t sum[2]) {
+    const pair_entry *entry = (const pair_entry *)(const void *)space->entries.part;
+    const pair_entry *first = &entry[(uint32_t)key[*k]];
+    const uint64_t name = key[*k] >> 32;
+    sum[0] = sum[1] = 0;
+    for (; *k < count && key[*k] >> 32 == name; ++*k)
+        for (int half = 0; half < 2; half++) sum[half] += entry[(uint32_t)key[*k]].sum[half];
+    return first;
+}
+
+#define OPEN_LEAST 0x1p14 /* units: less than 1e-9 of the sphere's disc is left to what other lines say */
+
+/* Shares what is open out to walls. open: of all lines together, a fraction of the row; which [named]: lines and senses
+ * in which it is. */
+static int share_among_walls(const fibrad_silhouettes *s, fibrad_workspace *space, uint32_t place, double open,
+                             const uint64_t *which, uint32_t named, fibrad_row *row) {
+    const fibrad_scene *scene = s->scene;
+    const fibrad_open_lines lines = {s->line, s->lines, which, named};
+    double parts[2], sum = 0;
+    const int status = FIBRAD_VERSION_OF(fibrad_open_share, scene->facts.isa)(space, scene, place, &lines, parts);
+    if (status != FIBRAD_OK) return status;
+    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) sum += space->wall[slot] = fibrad_max(0, space->wall[slot]);
+    const double scale = sum > 0 ? open / sum : 0, unit = 1 / (2 * FIBRAD_PI * s->lines);
+    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) space->wall[slot] *= scale;
+    row->escaped = space->wall[FIBRAD_ESCAPED];
+    row->error = fibrad_sqrt(row->error * row->error + HALVES_ERROR * HALVES_ERROR * parts[0] * (unit * unit));
+    fibrad_row_cut(scene, place, space->wall, row);
+    fibrad_row_bodies(scene, space->wall, row);
+    return FIBRAD_OK;
+}
+
 static int row_of_pairs(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *silhouettes,
                         fibrad_row *row) {
     const fibrad_silhouettes *s = silhouettes;
-    const pair_entry *entry = (const pair_entry *)(const void *)space->entries.part;
     const uint32_t place = scene->place[i];
     const double r = scene->r[place], unit = 1 / (FIBRAD_PAIR_UNITS * 2 * FIBRAD_PI * s->lines);
-    int64_t open[2] = {0, 0};
+    int64_t sum[2], open[2] = {0, 0};
     double square = 0;
-    uint32_t count, n = 0;
-    const int status = gather_pairs(s, space, place, open, &count);
+    uint32_t count, n = 0, named = 0, k = 0;
+    const int status = gather_pairs(s, space, place, &count);
     if (status != FIBRAD_OK) return status;
-    const uint64_t *key =
-        fibrad_sort_keys(space->entries.key[0], space->entries.key[1], count, 32, scene->facts.spheres - 1);
-    for (uint32_t k = 0, end; k < count; k = end) {
-        const pair_entry *first = &entry[(uint32_t)key[k]];
-        int64_t sum[2] = {0, 0};
-        for (end = k; end < count && key[end] >> 32 == key[k] >> 32; end++)
-            for (int half = 0; half < 2; half++) sum[half] += entry[(uint32_t)key[end]].sum[half];
-        const double ratio = fibrad_min(1, scene->r[first->place] / r), area = unit * (ratio * ratio);
-        const double f = entry_factor(s, sum, first->place == place ? 2 * area : area, &square);
+    uint64_t *const *list = space->entries.key;
+    const uint64_t *key = fibrad_sort_keys(list[0], list[1], count, 32, s->spheres + 2 * s->lines);
+    uint64_t *which = key == list[0] ? list[1] : list[0];
+    while (k < count && key[k] >> 32 < s->spheres) {
+        const pair_entry *entry = add_alike(space, key, count, &k, sum);
+        const double ratio = fibrad_min(1, scene->r[entry->place] / r), area = unit * (ratio * ratio);
+        const double f = entry_factor(s, sum, entry->place == place ? 2 * area : area, &square);
         if (f <= 0) continue; /* what has cancelled, to rounding */
-        if (n < row->capacity) row->col[n] = scene->order[first->place], row->f[n] = f;
+        if (n < row->capacity) row->col[n] = scene->order[entry->place], row->f[n] = f;
         n++;
+    }
+    while (k < count) {
+        which[named] = (key[k] >> 32) - s->spheres;
+        (void)add_alike(space, key, count, &k, sum);
+        named += (double)(sum[0] + sum[1]) > OPEN_LEAST;
+        open[0] += sum[0], open[1] += sum[1];
     }
     row->length = n;
     if (n > row->capacity) return FIBRAD_E_CAPACITY;
@@ -461,6 +515,10 @@ static int row_of_pairs(const fibrad_scene *scene, fibrad_workspace *space, uint
     row->directions = s->lines;
     row->fallbacks = 0;
     row->symmetric = 1;
+    if (scene->container.walls) {
+        const int shared = share_among_walls(s, space, place, row->escaped, which, named, row);
+        if (shared != FIBRAD_OK) return shared;
+    }
     return fibrad_row_checked(scene, row);
 }
 

@@ -32,8 +32,8 @@ typedef struct fibrad_wall_sums {
     double open[FIBRAD_REGIONS][4]; /* the open part, an area or points, in four parts as in fibrad_entries */
     double all[FIBRAD_REGIONS][4];  /* the same if nothing were hidden, in windows */
     double mixed[FIBRAD_REGIONS];   /* the open part times the hidden part */
-    uint64_t hidden[FIBRAD_DIRECTIONS_MAX / 64]; /* bit k: window k is hidden and does not count in `all` */
-    fibrad_addends *addends;                     /* NULL, or a list of terms that are to be added later */
+    uint64_t hidden[2 * FIBRAD_DIRECTIONS_MAX / 64 + 1]; /* bit k: window k is hidden and does not count in `all` */
+    fibrad_addends *addends;                             /* NULL, or a list of terms that are to be added later */
 } fibrad_wall_sums;
 
 /* Adds the value of window k of n to part k mod 4 of a sum. In differences between parts the first and the last
