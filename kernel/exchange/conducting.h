@@ -28,9 +28,9 @@ static inline void fibrad_turn_by(double x, const double even[3], double n[3]) {
     for (int axis = 0; axis < 3; axis++) n[axis] = (1 - x) * n[axis] + sine * across[axis];
 }
 
-/* Moves n, the outward normal where a ball absorbs, to where the ball gives that off. exponent: 1/a; infinite: anywhere.
- * u: two even random numbers in [0, 1). even: a random point of the unit sphere. Returns the fraction of P_t, for the t
- * drawn, that is above its least value, 0 to 1. */
+/* Moves n, the outward normal where a ball absorbs, to where the ball gives that off. exponent: 1/a; infinite:
+ * anywhere. u: two even random numbers in [0, 1). even: a random point of the unit sphere. Returns the fraction of P_t,
+ * for the t drawn, that is above its least value, 0 to 1. */
 static inline double fibrad_conduct(double exponent, const double u[2], const double even[3], double n[3]) {
     const double t = u[0] > 0 ? fibrad_exp(fibrad_max(-800, exponent * fibrad_log(1 - u[0]))) : 1;
     if (t > FIBRAD_CONDUCTED_NOWHERE) return 1;
