@@ -48,11 +48,17 @@ static inline vd circle_place(vd cosine, vd sine, vd size) {
 #define SECTORS    30
 #define ALL_AROUND 0x3fffffff
 
+/* Places in sectors from the beginning of the stretch; those outside it become its ends. */
+static inline vd sectors_from_begin(const fibrad_circle_stretch *stretch, vd place) {
+    vd at = (place - stretch->begin) * stretch->sectors;
+    if (!(stretch->radius < __builtin_inf())) return at;
+    return vd_min(vd_set1(SECTORS), vd_max(vd_set1(0), at));
+}
+
 /* The sectors that an arc covers whole, and those that it touches; a few less and a few more at most. */
-static inline void find_sectors(const fibrad_circle_stretch *stretch, vd from, vd to, vm wraps, vd *inner, vd *outer) {
+static inline void find_sectors(vd from, vd to, vm wraps, vd *inner, vd *outer) {
     const vd zero = vd_set1(0), all = vd_set1(ALL_AROUND);
-    const double scale = stretch->sectors, shift = -stretch->begin * scale;
-    vd last = vd_power_of_two(to * scale + (shift - .5)), first = vd_power_of_two(from * scale + (shift + .5));
+    vd last = vd_power_of_two(to - .5), first = vd_power_of_two(from + .5);
     vd within = last - first, touched = 2 * last - .5 * first;
     *inner = vd_select(wraps, all + within, vd_max(zero, within));
     *outer = vd_select(wraps, all + vd_min(zero, touched), touched);
@@ -99,15 +105,10 @@ static inline void find_arcs(const fibrad_circles *c, fibrad_circle_side *side, 
     covers = covers | (touches & vd_lt(along, zero) & vd_le(zero, step) & vd_lt(step, vd_set1(1)));
     touches = touches & vm_not(narrow & wraps & vd_lt(vd_set1(-1), step));
     vd inner, outer;
-    if (c->stretch.radius < __builtin_inf()) {
-        const vd first = vd_set1(c->stretch.begin), last = vd_set1(c->stretch.end);
-        find_sectors(&c->stretch, vd_min(last, vd_max(first, from)), vd_min(last, vd_max(first, end)), wraps, &inner,
-                     &outer);
+    find_sectors(sectors_from_begin(&c->stretch, from), sectors_from_begin(&c->stretch, end), wraps, &inner, &outer);
+    if (c->stretch.radius < __builtin_inf())
         cut_to_stretch(&c->stretch, to + (side->sense > 0 ? FIBRAD_CIRCLE_ROOM : 0), wraps, &from, &end, &covers,
                        &touches);
-    } else {
-        find_sectors(&c->stretch, from, end, wraps, &inner, &outer);
-    }
     vm known = vd_le(depth, vd_set1(side->known * (1 - 1e-12) * c->r)); /* deeper ones may be hidden by others */
     inner = vd_select(covers, vd_set1(ALL_AROUND), vd_select(touches, inner, zero));
     vd_store_numbers(side->inner + to, vd_select(known, inner, zero));
