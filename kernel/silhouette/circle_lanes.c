@@ -18,13 +18,10 @@ static inline uint32_t lowest_bit(uint64_t x) { return (uint32_t)__builtin_ctzll
 /* The component of near spheres along an axis of the line's frame, relative to the sphere in hand. */
 static inline vd component_across(const fibrad_circles *c, int axis, vd x, vd y, vd z, const uint32_t *place) {
     const double *across = c->across + 3 * axis, *shift = c->shift[axis];
-    vd at = across[0] * x + across[1] * y + across[2] * z;
-    if (c->periodic) {
-        at = (at + c->grid) - c->grid;
-        if (c->images)
-            at += shift[0] * vd_gather(c->near.away[0], place) + shift[1] * vd_gather(c->near.away[1], place) +
-                  shift[2] * vd_gather(c->near.away[2], place);
-    }
+    vd at = ((across[0] * x + across[1] * y + across[2] * z) + c->grid) - c->grid;
+    if (c->images)
+        at += shift[0] * vd_gather(c->near.away[0], place) + shift[1] * vd_gather(c->near.away[1], place) +
+              shift[2] * vd_gather(c->near.away[2], place);
     return at - c->centre[axis];
 }
 
@@ -766,7 +763,6 @@ static void begin_line(fibrad_circles *c, const fibrad_line *line, uint32_t numb
     for (int axis = 0; axis < 3; axis++) {
         const double *a = c->across + 3 * axis;
         c->centre[axis] = a[0] * c->at[0] + a[1] * c->at[1] + a[2] * c->at[2];
-        if (!c->periodic) continue;
         c->centre[axis] = (c->centre[axis] + c->grid) - c->grid;
         for (int k = 0; k < 3; k++) c->shift[axis][k] = (a[k] * c->period[k] + c->grid) - c->grid;
     }
