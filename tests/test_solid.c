@@ -424,7 +424,6 @@ START_TEST(mistakes) {
         {"1000", "mm", "1:5", NULL, "type", 3},
         {"1000", "mm", "@none.csv", NULL, "none.csv", 4},
         {"1000", "mm", "1e-6", NULL, "cell.csv:2: sphere 0: k_s/(4 d sigma T^3) is 7.3", 3},
-        {"1000", "mm", "5", "--steady", "--steady: spheres have one temperature; leave out --solid-conductivity", 2},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
         const int status = RUN("conductivity", OF_CELL, cases[k].temperature, "--length-unit", cases[k].unit,

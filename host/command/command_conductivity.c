@@ -139,8 +139,6 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
     if (!request->emissivity.given && request->bed.files > 0)
         return message(STATUS_USAGE, "--emissivity is missing; see fibrad conductivity --help");
     if (request->solid.given && !request->at) return message(STATUS_USAGE, "--solid-conductivity needs --temperature");
-    if (request->solid.given && request->steady)
-        return message(STATUS_USAGE, "--steady: spheres have one temperature; leave out --solid-conductivity");
     if (rule->error > 0 && rule->paths > 0) return message(STATUS_USAGE, "--error chooses the rays; leave out --rays");
     if (rule->max_rays > 0 && rule->paths > 0)
         return message(STATUS_USAGE, "--max-rays is for --error; leave out --rays");
@@ -271,7 +269,8 @@ static int conductivity_steady(struct conductivity_request *request, const struc
         request->between[axis] = (struct steady){0};
         if (!request->steady || !conduction_wants(result, axis) || !steady_possible(bed, axis)) continue;
         any = true;
-        status = steady_conduction(&request->bed, bed, request->rule.emissivity, axis, &request->between[axis]);
+        status = steady_conduction(&request->bed, bed, request->rule.emissivity, request->rule.conductivity, axis,
+                                   &request->between[axis]);
         result->steady[axis] = request->between[axis].factor, result->steady_error[axis] = request->between[axis].error;
     }
     if (request->steady && !any)

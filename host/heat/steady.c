@@ -32,30 +32,51 @@ static struct walls steady_plates(const struct bed *bed, int axis) {
     return plates;
 }
 
+/* Temperatures of the plates, T over that between them. Where spheres conduct they differ so little that k* is the same
+ * everywhere. */
+#define HOTTER 1.0005
+#define COLDER 0.9995
+
+/* T^4 of a temperature T, 0 at the upper plate and 1 at the lower one. */
+static double steady_share(double t, const double plate[2]) {
+    return (gsl_pow_4(t) - gsl_pow_4(plate[1])) / (gsl_pow_4(plate[0]) - gsl_pow_4(plate[1]));
+}
+
 /* Finds sigma T^4 of the spheres if it is 1 at the lower plate and 0 at the upper one, and the powers of the plates. */
 static int steady_solve(struct bed_options *options, const struct bed *bed, const struct walls *plates,
-                        const double *emissivity, double *emission, double power[2], double error[2]) {
+                        const double *emissivity, const double *relative, double *emission, double power[2],
+                        double error[2]) {
     const fibrad_scene_config scene = bed_scene(bed, plates);
     const fibrad_spheres spheres = bed_spheres(bed);
     fibrad_run run = bed_options_run(options);
     fibrad_radiation *radiation = NULL;
     double *unknown = malloc(bed->n * sizeof *unknown), *given = calloc(bed->n, sizeof *given);
-    double *gained = malloc(bed->n * sizeof *gained);
-    int status = unknown && given && gained ? FIBRAD_OK : FIBRAD_E_MEMORY;
-    for (uint32_t i = 0; i < bed->n && !status; ++i) unknown[i] = NAN;
+    double *gained = malloc(bed->n * sizeof *gained), *conductivity = malloc(bed->n * sizeof *conductivity);
+    const double plate[2] = {relative ? HOTTER : 1, relative ? COLDER : 0};
+    int status = unknown && given && gained && conductivity ? FIBRAD_OK : FIBRAD_E_MEMORY;
+    for (uint32_t i = 0; i < bed->n && !status; ++i) {
+        unknown[i] = NAN;
+        conductivity[i] = relative ? relative[i] * 8 * bed->r[i] : INFINITY; /* sigma and T between the plates are 1 */
+    }
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);
-    sources.sigma = 1, sources.surroundings = 0;
+    sources.sigma = 1, sources.surroundings = relative ? 1 : 0;
+    sources.conductivity = relative ? conductivity : NULL;
     sources.temperature = unknown, sources.emissivity = emissivity, sources.power = given;
-    sources.body_temperature = (const double[]){1, 0}, sources.body_emissivity = (const double[]){1, 1};
+    sources.body_temperature = plate, sources.body_emissivity = (const double[]){1, 1};
     fibrad_heat_result result = {.power = gained, .body_power = power, .body_error = error, .temperature = emission};
     if (!status) status = fibrad_radiation_new(&radiation, &scene, &spheres, NULL, &run);
     if (!status) status = fibrad_radiation_solve(radiation, &sources, &result);
-    for (uint32_t i = 0; i < bed->n && !status; ++i) emission[i] = gsl_pow_4(emission[i]);
+    for (uint32_t i = 0; i < bed->n && !status; ++i) emission[i] = steady_share(emission[i], plate);
+    for (int k = 0; k < 2; ++k) {
+        power[k] /= gsl_pow_4(plate[0]) - gsl_pow_4(plate[1]);
+        error[k] /= gsl_pow_4(plate[0]) - gsl_pow_4(plate[1]);
+    }
     fibrad_radiation_free(radiation);
     free(unknown);
     free(given);
     free(gained);
+    free(conductivity);
     return bed_options_status(options, bed, status, &run.fault);
 }
 
@@ -77,8 +98,8 @@ static void steady_fit(const struct bed *bed, int axis, const struct walls *plat
     *slope_error = sqrt(cov11);
 }
 
-int steady_conduction(struct bed_options *options, const struct bed *bed, const double *emissivity, int axis,
-                      struct steady *steady) {
+int steady_conduction(struct bed_options *options, const struct bed *bed, const double *emissivity,
+                      const double *relative, int axis, struct steady *steady) {
     const double begun = progress_clock();
     struct bed open = *bed;
     open.period[axis] = 0;
@@ -86,7 +107,7 @@ int steady_conduction(struct bed_options *options, const struct bed *bed, const 
     double *emission = malloc(bed->n * sizeof *emission), *place = malloc(bed->n * sizeof *place);
     double power[2], error[2], diameter = 0, slope = NAN, slope_error = NAN;
     int status = emission && place ? STATUS_OK : message_memory();
-    if (!status) status = steady_solve(options, &open, &plates, emissivity, emission, power, error);
+    if (!status) status = steady_solve(options, &open, &plates, emissivity, relative, emission, power, error);
     if (!status) steady_fit(&open, axis, &plates, emission, place, steady, &slope, &slope_error);
     if (!status && steady->spheres < FITTED_MIN)
         status =
