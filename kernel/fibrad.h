@@ -556,9 +556,10 @@ void fibrad_rows_clear(fibrad_rows *rows);
 int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
 
 /* ---- silhouettes --------------------------------------------------------------------------------------------- */
-/* All rows of a scene at once. The circle in which a sphere appears along a line tells what its neighbours exchange
- * with it and with each other, in both directions of the line. The rows are reciprocal and closed to rounding, without
- * averaging. At equal numbers of lines and directions they err about half as much as averaged beam rows.
+/* All rows of a scene at once. Seen along a line, the silhouette of a sphere is a circle. What lies before and behind
+ * each piece of this circle tells what the sphere exchanges with its neighbours, and what these exchange with each
+ * other, in both directions of the line. The rows are reciprocal and closed to rounding, without averaging. At equal
+ * numbers of lines and directions they err about half as much as averaged beam rows.
  *
  *   1. fibrad_silhouettes_init makes the set of lines.
  *   2. fibrad_silhouettes_task does a task. Several threads may do different tasks at the same time. Each thread has a
@@ -567,18 +568,19 @@ int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
  *   4. fibrad_silhouettes_row delivers a row. Several threads may ask for rows at the same time.
  *   5. fibrad_matrix_init with rule.reciprocal = 1 makes a matrix of the rows.
  *
- * Planes, openings and a cylinder hide nothing from spheres. What a sphere gives to all of them is exact for the lines.
- * Windows of the directions in which it is open share that out, as in beam rows.
+ * Planes, openings and a cylinder hide no sphere from another. For the lines taken, the factor from a sphere to all of
+ * them together is exact. Windows of the directions in which the sphere is open divide this factor among them, as in
+ * beam rows.
  *
- * Scenes with triangles are FIBRAD_E_UNSUPPORTED, since triangles hide spheres. So are scenes with a known region, and
- * there is no cutoff: a machine that has a part of a bed knows what hides within the cutoff of each of its own spheres
- * alone. Use fibrad_beam_row for these. */
+ * Scenes with triangles are FIBRAD_E_UNSUPPORTED, since triangles hide spheres. Scenes with a known region are, too,
+ * and there is no cutoff. The reason is that a machine with a part of a bed knows all obstacles only within the cutoff
+ * of its own spheres. Use fibrad_beam_row for such scenes. */
 typedef struct fibrad_silhouette_rule {
     uint32_t lines; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: FIBRAD_LINES_DEFAULT */
     uint64_t turn;  /* seed of a random rotation of all lines together; 0: no rotation */
 } fibrad_silhouette_rule;
 
-/* What pairs of spheres exchange, as one thread has found it. Set `memory`, and zero the rest. */
+/* A collection: what pairs of spheres exchange, from the tasks of one thread. Set `memory`, and zero the rest. */
 typedef struct fibrad_pairs {
     fibrad_memory memory; /* 24 bytes for each pair */
     size_t count;         /* of the library: number of pairs so far */
@@ -587,8 +589,8 @@ typedef struct fibrad_pairs {
 
 typedef struct fibrad_silhouettes fibrad_silhouettes; /* the lines of a scene, and where the pairs of each sphere are */
 
-/* The least number of lines, not below `lines`, for which there is a built-in set. Such a set is spread best, and takes
- * no time to make. Without one: `lines`.
+/* The least number of lines, not below `lines`, for which there is a built-in set. A built-in set is spread best, and
+ * takes no time to make. If there is none of `lines` or more, the result is `lines`.
  *   Errors   none */
 uint32_t fibrad_silhouettes_lines(uint32_t lines);
 
@@ -604,7 +606,7 @@ size_t fibrad_silhouettes_size(const fibrad_scene *scene, const fibrad_silhouett
  *   Output   silhouettes: a pointer into memory
  *   Errors   _ARGUMENT, _SIZE, _STATE
  *            _UNSUPPORTED: there are triangles or a known region
- *   Cost     microseconds; up to 1 s if there is no table of as many lines, kernel/sample/line.h */
+ *   Cost     microseconds; up to 1 s if there is no built-in set of so many lines */
 int fibrad_silhouettes_init(fibrad_silhouettes **silhouettes, void *memory, size_t size, const fibrad_scene *scene,
                             const fibrad_silhouette_rule *rule);
 
@@ -612,9 +614,9 @@ int fibrad_silhouettes_init(fibrad_silhouettes **silhouettes, void *memory, size
  *   Errors   0 */
 uint32_t fibrad_silhouettes_tasks(const fibrad_silhouettes *silhouettes);
 
-/* Does one task, and appends its pairs to a collection. All tasks take about as long: a sphere far larger than its
- * neighbours is divided over many. Each task must be done once. After an error the collection has
- * the pairs that it had before.
+/* Does one task, and appends its pairs to a collection. All tasks take about equally long: a sphere far larger than its
+ * neighbours is divided over many tasks. Each task must be done once. After an error the collection has the pairs that
+ * it had before.
  *   Input    task: 0 to fibrad_silhouettes_tasks - 1
  *            work, pairs: of the calling thread
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY
@@ -639,7 +641,7 @@ int fibrad_silhouettes_join(fibrad_silhouettes *silhouettes, const fibrad_pairs 
  *   Input    i: 0 to spheres - 1
  *   Output   row; row->directions is the number of lines
  *   Errors   as fibrad_beam_row
- *            _STATE: the pairs are not joined, or have changed since
+ *            _STATE: the pairs are not joined, or have changed since they were joined
  *            _SUM: a task was not done, or done twice
  *   Cost     20 ns per entry; among walls a microsecond for each direction in which the sphere is open
  *   Source   docs/methods.md */
@@ -898,9 +900,9 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
 /* How fast radiation spreads through a bed of spheres that conduct. Temperatures differ from point to point of each
  * sphere, and no sphere gains heat on balance. A path starts at sphere i as if it had arrived there. At each sphere the
  * path is reflected, or it is absorbed and given off at another point of the sphere. The path goes on for 2 n flights,
- * n = rule->flights. `square` is the mean square displacement a flight, in the limit of many flights. What more than n
- * flights have to do with each other is left out. In a cubic lattice of emissivity 1 the sum of `square` is 0.2 % too
- * large with n = 12 at k* = 0.1, and with n = 24 at k* = 0.01.
+ * n = rule->flights. `square` is the mean square displacement per flight, in the limit of many flights. The correlation
+ * of flights that are more than n flights apart is left out. So in a cubic lattice of emissivity 1 the sum of `square`
+ * is 0.2 % too large with n = 12 at k* = 0.1, and with n = 24 at k* = 0.01.
  *   Input    i: 0 to spheres - 1; paths start evenly on its surface
  *            rule: needed
  *   Output   displacement; absorbed: fraction of the paths that did not leave the bed

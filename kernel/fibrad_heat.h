@@ -105,13 +105,14 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * may have temperatures of their own if the wall has a given temperature. An endless wall (fibrad.h) must have a given
  * temperature, unless it reflects everything.
  *
- * A sphere with a conductivity conducts heat and has no one temperature. Its temperature is the mean of its surface.
- * Inside, a steady state is assumed, and sources or stores of heat that are spread evenly. Emission is linear in
- * temperature about the mean (docs/methods_heat.md section 13). A conductivity k_s [W/(m K)] is k_s/metres where L is
- * `metres` long. Emissivities of 0 and 1 are allowed. `uniform` is not.
+ * A sphere with a finite conductivity has a temperature that differs from point to point. `temperature` is then the
+ * mean over its surface. The inside is taken to be steady, and sources or stores of heat to be spread evenly inside.
+ * Emission is linear in temperature about the mean (docs/methods_heat.md section 13). If one L is `metres` metres long,
+ * a conductivity of k_s [W/(m K)] is given as k_s/metres. Emissivities of 0 and 1 are allowed. `uniform` is not
+ * allowed.
  *
  * The residual is relative to the differences of emission. tolerance = 0 stands for 1e-3, or for 1e-5 if a temperature
- * is unknown and its hold is 0. side_temperature goes by the caller's numbers of triangles. If sides share a patch,
+ * is unknown and its hold is 0. side_temperature is in the order of the caller's triangles. If sides share a patch,
  * each of them emits the mean of all of them. */
 typedef struct fibrad_heat_sources {
     const double *temperature; /* K, [spheres], 0 to FIBRAD_TEMPERATURE_MAX; NaN: unknown */
@@ -144,8 +145,8 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources);
  *            _UNSUPPORTED: the temperature of an endless wall is unknown, fault.why is FIBRAD_WHY_ENDLESS */
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_fault *fault);
 
-/* Begins a solution. The solution begins with the radiosities of the last one, if there is one. The sources are not
- * needed after the call, but for `light`, which must stay until the solution is read.
+/* Begins a solution. The solution begins with the radiosities of the last one, if there is one. After the call only the
+ * array `light` is still needed. It must stay until the solution is read.
  *   Errors   as fibrad_heat_check
  *            _STATE: a task is not traced, or the scene has changed
  *   Cost     O(patches) */
@@ -170,13 +171,13 @@ int fibrad_heat_step(fibrad_heat *heat, int *solved);
 
 /* The solution. The arrays belong to the caller. Where a field may be NULL, NULL means that it is not wanted.
  *
- * A net power is above 0 where a surface gains heat. In a steady state a
- * surface gives off the negative of its net power from inside.
- * least_temperature, largest_temperature and centre_temperature are those of spheres that conduct. Of other spheres
- * they are the temperature. Temperatures are those found and those given. A temperature is NaN if the emissivity is 0,
- * or if only a temperature below zero would give the power. body_temperature of an insulated wall is the fourth root of
- * its mean T^4. The same holds for a mesh whose sides have temperatures of their own. The root mean square error of the
- * powers of all spheres is sqrt(error_patches^2 + error_beams^2). */
+ * A net power is above 0 where a surface gains heat. In a steady state a surface gives off the negative of its net
+ * power from inside. least_temperature, largest_temperature and centre_temperature differ only on spheres with a finite
+ * conductivity. For any other sphere all three are its temperature. The arrays hold temperatures that were found and
+ * those that were given. A temperature is NaN if the emissivity is 0, or if only a temperature below zero would give
+ * the power. body_temperature of an insulated wall is the fourth root of its mean T^4. The same holds for a mesh whose
+ * sides have temperatures of their own. The root mean square error of the powers of all spheres is sqrt(error_patches^2
+ * + error_beams^2). */
 typedef struct fibrad_heat_result {
     double *power;                  /* sigma K^4 L^2, [spheres], out: net power */
     double *body_power;             /* sigma K^4 L^2, [bodies], out: net power; NULL without walls */

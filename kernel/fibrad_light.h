@@ -1,13 +1,16 @@
 /* fibrad_light.h - light from outside that falls on a bed: sun or lasers.
  *
- * Light of one direction is a bundle of parallel rays. It comes from outside, enters by what is open of the container,
- * and ends on the first sphere or wall that it meets. What a sphere takes of it is the area of its shadow disc that no
- * sphere and no wall hides from the light. These areas are exact.
+ * Light of one direction is a bundle of parallel rays. It comes from outside, enters through the open faces of the
+ * container, and ends on the first sphere or wall that it meets. Across the light a sphere is seen as a disc. The
+ * sphere takes the light on that part of its disc which no sphere and no wall hides from the light. The areas of these
+ * parts are exact.
  *
- * Sequence   1. fibrad_light_empty tells where the light would end if there were no spheres.
- *            2. fibrad_light_spheres tells for ranges of spheres what they take, and from whom.
- *            What ends on a wall, or leaves, is that of step 1 less that of all ranges of step 2.
- *            fibrad_heat_shine does the same, and puts the light on the patches of a heat problem.
+ * Sequence   1. fibrad_light_empty tells how much light would end on each wall, or leave, if there were no spheres.
+ *            2. fibrad_light_spheres tells how much light each sphere of a range takes. It also tells how much of that
+ *               light would have ended on each wall, or left.
+ *            The light that ends on a wall is the number of step 1 less the numbers of all ranges of step 2. The same
+ *            holds for the light that leaves.
+ *            fibrad_heat_shine does step 2 for a heat problem, and puts the light on patches.
  * Units      as in fibrad.h. A power is in units of flux times L^2. With a flux of 1 it is an area.
  * Words      Memory, errors and the layout of comments are as in fibrad.h.
  * Source     docs/methods_heat.md, Light from outside. docs/heat.md says what is assumed.
@@ -24,21 +27,23 @@ extern "C" {
 
 /* The cross-section of light. */
 typedef enum fibrad_light_shape {
-    FIBRAD_LIGHT_ALL = 0,  /* what the open faces let in; without walls and periods what meets the box of the spheres */
-    FIBRAD_LIGHT_DISC = 1, /* what passes through a disc across the middle direction; fibrad_light.centre, radius */
+    FIBRAD_LIGHT_ALL = 0,  /* what open faces let in; without walls and periods what meets the box of the spheres */
+    FIBRAD_LIGHT_DISC = 1, /* what passes a disc at right angles to `direction`; fibrad_light.centre, radius */
     FIBRAD_LIGHT_BOX = 2   /* what passes through a rectangle at the end of the bed in z; fibrad_light.low, high */
 } fibrad_light_shape;
 
-/* Light from outside. Zero but for direction and flux: parallel light on all that is open.
+/* Light from outside. If all fields but direction and flux are zero, the light is parallel and falls on all that is
+ * open.
  *
  * Light with a half-angle has directions that fill a cone evenly. Each direction carries an equal part of the flux. The
  * sun's half-angle is FIBRAD_SUN_HALF_ANGLE.
  *
- * The box of the spheres is that of their centres, wider by the largest radius on all sides. On periodic axes a disc or
- * rectangle is repeated, and must not be wider than a period. Spheres lie behind the disc as seen from the light. */
+ * The box of the spheres is the box of their centres, wider by the largest radius on all sides. On periodic axes a disc
+ * or rectangle is repeated, and must not be wider than a period. All spheres must lie behind the disc as seen from the
+ * light. */
 typedef struct fibrad_light {
     double direction[3];    /* the way that the light goes, of any length above 0 */
-    double flux;            /* sigma K^4 (W/m2 if sigma is in W/(m2 K4)), across the direction; 0 to FIBRAD_POWER_MAX */
+    double flux;            /* sigma K^4 (W/m2 if sigma is in W/(m2 K4)), across the light; 0 to FIBRAD_POWER_MAX */
     double half_angle;      /* rad, of the cone, 0 to FIBRAD_HALF_ANGLE_MAX; 0: parallel */
     uint32_t directions;    /* of the cone, up to FIBRAD_LIGHT_DIRECTIONS_MAX; 0: FIBRAD_LIGHT_DIRECTIONS_DEFAULT */
     int shape;              /* a fibrad_light_shape */
@@ -57,19 +62,22 @@ typedef struct fibrad_light_ends {
 /* Where light ends if there are no spheres.
  *   Output   ends: spheres is 0, the others add up to the power of the light
  *            fault: which sphere is at fault, and why; may be NULL
- *   Errors   _ARGUMENT: fault.why is FIBRAD_WHY_LIGHT, a number is out of range; FIBRAD_WHY_DARK, no open face lets the
- *            light in; or FIBRAD_WHY_FOOTPRINT, a sphere lies before the disc
+ *   Errors   _ARGUMENT: fault.why tells which
+ *              FIBRAD_WHY_LIGHT: a number is out of range
+ *              FIBRAD_WHY_DARK: no open face lets the light in
+ *              FIBRAD_WHY_FOOTPRINT: the light meets a sphere before the disc
  *            _UNSUPPORTED: triangles or a known region
  *            _WORK, _MEMORY
  *   Cost     as a row of ten directions */
 int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibrad_light *light, fibrad_light_ends *ends,
                        fibrad_fault *fault);
 
-/* The light that some spheres meet first. Several threads may ask for different spheres at the same time.
+/* The light that comes to some spheres straight from outside. Several threads may ask for different spheres at the same
+ * time.
  *   Input    from, to: spheres from to to - 1, up to the number of spheres
- *   Output   power[to - from]: what each sphere takes, reflected or absorbed
- *            kept: `spheres` is the sum of them, the others are what they keep from walls and from leaving, and add up
- *            to it
+ *   Output   power[to - from]: the light that each sphere meets, whether it is then absorbed or reflected
+ *            kept: `spheres` is the sum of `power`. `body` and `through` tell where this light would have ended without
+ *            these spheres. They add up to `spheres`.
  *   Errors   as fibrad_light_empty
  *   Cost     2 microseconds for each sphere and direction */
 int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fibrad_light *light, uint32_t from,
@@ -77,12 +85,14 @@ int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fib
 
 /* ---- light on patches --------------------------------------------------------------------------------------------
  * Light is of short wavelength, thermal radiation of long wavelength. A surface absorbs the two with different
- * emissivities, and light does not turn into light of another kind. So light has a solution of its own:
+ * absorptivities. Reflected light stays light. So light has a solution of its own:
  *   1. fibrad_heat_shine for each task of each light, fibrad_heat_shine_walls for each light. They add to `hits`.
- *   2. fibrad_heat_begin with all temperatures 0, absorptivities in the place of emissivities, and `light` = hits. Its
- *      net powers are what is absorbed of the light. That of the surroundings is what is reflected.
- *   3. What a surface absorbs is added to its power in the solution of thermal radiation. fibrad_heat_keep_light leaves
- *      in `hits` what insulated walls absorb, and that solution has it as `light`. */
+ *   2. fibrad_heat_begin with all temperatures 0, absorptivities in the place of emissivities, and `light` = hits. The
+ *      net powers of this solution are the light that is absorbed. The net power of the surroundings is the light that
+ *      is reflected.
+ *   3. Thermal radiation has a second solution. The light that a surface absorbs is added to the power of the surface.
+ *      For insulated walls fibrad_heat_keep_light leaves in `hits` what they absorb. This is the `light` of the second
+ *      solution. */
 
 /* Number of patches of a heat problem.
  *   Errors   0 if heat is NULL */
@@ -92,8 +102,8 @@ uint32_t fibrad_heat_patches(const fibrad_heat *heat);
  *   Errors   0 if heat is NULL */
 uint32_t fibrad_heat_shine_tasks(const fibrad_heat *heat);
 
-/* Adds the light that the spheres of a task meet first to their patches. Several threads may do different tasks at the
- * same time.
+/* Adds to the patches of the spheres of a task the light that comes to them straight from outside. Several threads may
+ * do different tasks at the same time.
  *   Input    task: 0 to fibrad_heat_shine_tasks - 1
  *   Output   hits[fibrad_heat_patches]: added to
  *            kept: as fibrad_light_spheres
@@ -101,7 +111,8 @@ uint32_t fibrad_heat_shine_tasks(const fibrad_heat *heat);
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,
                       double *hits, fibrad_light_ends *kept);
 
-/* Adds to the patches of walls the light that ends on them. Which patches of a wall are lit is known from rays.
+/* Adds to the patches of walls the light that comes to them straight from outside. Rays tell which patches of a wall
+ * are lit.
  *   Input    ends: of fibrad_light_empty, less `kept` of all tasks
  *   Output   hits[fibrad_heat_patches]: added to
  *   Errors   as fibrad_heat_shine */
@@ -114,7 +125,7 @@ int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fi
  *   Errors   _ARGUMENT */
 int fibrad_heat_sum_light(const fibrad_heat *heat, const double *hits, double *power, double *body_power);
 
-/* Replaces hits by what patches of insulated walls absorb in the solution in hand. All others get 0.
+/* Replaces hits by the light that patches of insulated walls absorb in the present solution. All other patches get 0.
  *   Input    insulated[bodies]: not 0: insulated
  *            hits[fibrad_heat_patches]: the `light` of the solution
  *   Errors   _ARGUMENT

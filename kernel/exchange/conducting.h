@@ -2,19 +2,19 @@
  *
  * The ball is steady inside, and its net power is 0. Let e be its emissivity, k* its relative conductivity and
  * a = e/(2 k*). Of what the ball absorbs in a pattern of degree l (spherical harmonics) it gives off a/(a + l) in the
- * same pattern: docs/methods_heat.md section 14. So what is absorbed at a point is given off at the angle g from it
- * with the density
+ * same pattern: docs/methods_heat.md section 14. So what is absorbed at one point is given off at the angle g from that
+ * point with the density
  *
- *     K(g) = integral over t from 0 to 1 of a t^(a-1) P_t(g),   P_t(g) = (1 - t^2)/(4 pi (1 + t^2 - 2 t cos g)^(3/2)),
+ *     K(g) = integral over t from 0 to 1 of a t^(a-1) P_t(g),   P_t(g) = (1 - t^2)/(4 pi (1 + t^2 - 2 t cos g)^(3/2)).
  *
- * and t = U^(1/a), with U even in [0, 1], has the density a t^(a-1). P_t is Poisson's kernel, whose integral has an
- * inverse in closed form. P_t is least opposite the point: 4 pi P_t >= (1 - t)/(1 + t)^2. */
+ * Let U be an even random number in [0, 1]. Then t = U^(1/a) has the density a t^(a-1). P_t is Poisson's kernel, whose
+ * integral has an inverse in closed form. P_t is least opposite the point: 4 pi P_t >= (1 - t)/(1 + t)^2. */
 #ifndef FIBRAD_EXCHANGE_CONDUCTING_H
 #define FIBRAD_EXCHANGE_CONDUCTING_H
 
 #include "base/elementary.h"
 
-/* Below the first t all points are equally likely. Above the second one the point is the same. */
+/* Below the first t all points are equally likely. Above the second t heat is given off where it was absorbed. */
 #define FIBRAD_CONDUCTED_ANYWHERE 1e-9
 #define FIBRAD_CONDUCTED_NOWHERE  (1 - 1e-12)
 
@@ -28,9 +28,9 @@ static inline void fibrad_turn_by(double x, const double even[3], double n[3]) {
     for (int axis = 0; axis < 3; axis++) n[axis] = (1 - x) * n[axis] + sine * across[axis];
 }
 
-/* Moves n, the outward normal where a ball absorbs, to where the ball gives that off. exponent: 1/a; infinite:
- * anywhere. u: two even random numbers in [0, 1). even: a random point of the unit sphere. Returns the fraction of P_t,
- * for the t drawn, that is above its least value, 0 to 1. */
+/* Moves n from the outward normal where a ball absorbs to the normal where the ball gives the absorbed heat off.
+ * exponent: 1/a. If it is infinite, all points are equally likely. u: two even random numbers in [0, 1). even: a random
+ * point of the unit sphere. Returns the fraction of P_t, for the t drawn, that is above its least value, 0 to 1. */
 static inline double fibrad_conduct(double exponent, const double u[2], const double even[3], double n[3]) {
     const double t = u[0] > 0 ? fibrad_exp(fibrad_max(-800, exponent * fibrad_log(1 - u[0]))) : 1;
     if (t > FIBRAD_CONDUCTED_NOWHERE) return 1;

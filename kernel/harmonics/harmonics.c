@@ -59,7 +59,8 @@ static double patch_means(uint32_t side, uint32_t orbit, uint32_t kind, uint32_t
     return angle / (4 * FIBRAD_PI);
 }
 
-/* Makes the columns of a kind orthonormal, each to those before it: twice, as the first time leaves rounding errors. */
+/* Makes each column of a kind orthonormal to the columns before it. This is done twice, since the first time leaves
+ * rounding errors. */
 static void orthonormalise(double *value, uint32_t orbits, uint32_t each) {
     for (uint32_t q = 0; q < each; q++)
         for (int time = 0; time < 2; time++) {
@@ -103,11 +104,12 @@ void fibrad_harmonics_make(fibrad_harmonics *h) {
     }
 }
 
-/* From one patch to the next and back is a wave; what is within a patch is half as long and less. */
+/* The shortest wave on patches goes from one patch to the next and back. Waves within a patch are half as long or
+ * shorter. */
 double fibrad_harmonics_within(const fibrad_harmonics *h) { return 4 * h->side; }
 
-/* Areas of the own patches of a sphere, which are those of the harmonics, with all that lies on them, and sums of area
- * times pattern. */
+/* The own patches of a sphere are those that the harmonics have. Their areas, with all further patches that lie on
+ * them, and their sums of area times pattern. */
 typedef struct own_patches {
     double area[PATCHES], sum[PATCHES];
 } own_patches;
@@ -128,9 +130,9 @@ static void gather_own(const fibrad_harmonics *h, const fibrad_harmonics_patches
     }
 }
 
-/* Patterns times roots of areas, by octant, and roots of shares of the sphere: as they are, and as beams measured them.
- * The rotation that takes the latter to the former takes a pattern that is even to the harmonic of degree 0, and the
- * harmonics stay orthogonal whatever was measured. */
+/* Patterns times roots of areas, by octant. Also the roots of the true shares of the sphere, and of the shares that
+ * beams measured. The rotation that takes the measured roots to the true ones takes a pattern with one value everywhere
+ * to the harmonic of degree 0. The harmonics stay orthogonal, whatever was measured. */
 typedef struct octants {
     double value[PATCHES], area[PATCHES], share[PATCHES], measured[PATCHES];
     uint32_t patches;
@@ -192,8 +194,8 @@ static double filter_kind(const fibrad_harmonics *h, uint32_t kind, const double
     return product;
 }
 
-/* What varies within own patches that are divided: adds `by` times that to `to`. Returns the sum of A times pattern
- * times what was added. */
+/* Adds to `to` what varies within own patches that are divided, times `by`. Returns the sum of A times pattern times
+ * what was added. */
 static double filter_within(const fibrad_harmonics *h, const fibrad_harmonics_patches *on, double by,
                             const own_patches *own, const double *pattern, double *to) {
     double product = 0;

@@ -1,12 +1,14 @@
 /* harmonics.h - spherical harmonics on the patches of a sphere. SPDX-License-Identifier: MIT
  *
- * A pattern over the patches of a sphere is a sum of harmonics. A filter multiplies the harmonics of each degree by a
- * number of their own. It is symmetric under areas: the sum of A u filter(v) is that of A v filter(u). With numbers of
- * 0 and more that sum is 0 or more for u = v. Areas A are those that beams have measured.
+ * A pattern over the patches of a sphere is a sum of harmonics. A filter has one number for each degree, and multiplies
+ * the harmonics of that degree by it. The filter is symmetric with areas as weights: the sum of A u filter(v) is the
+ * sum of A v filter(u). If no number is below 0, that sum is not below 0 for u = v. The areas A are those that beams
+ * have measured.
  *
  * Harmonics are x^a y^b z^c times a polynomial in x^2 and y^2, with a, b, c 0 or 1: a "kind". Mirrored at a plane of
  * the cube of patches, a kind keeps its values or changes all signs. So sums over the patches of an octant are enough.
- * Each kind has the degrees a + b + c, and 2, 4, ... more. What is left of a kind is treated as its next degree. */
+ * Each kind has the degrees a + b + c, a + b + c + 2, and so on. The part of a pattern that the harmonics of a kind
+ * leave over is treated as the next degree of the kind. */
 #ifndef FIBRAD_HARMONICS_H
 #define FIBRAD_HARMONICS_H
 
@@ -18,7 +20,7 @@
 #define FIBRAD_HARMONICS_OF_KIND 10u
 #define FIBRAD_HARMONICS_DEGREES 12u
 
-/* What varies within patches of the cube that are divided has this number of a filter. */
+/* The filter's number for what varies within patches of the cube that are divided. */
 #define FIBRAD_HARMONICS_WITHIN FIBRAD_HARMONICS_DEGREES
 
 /* Harmonics on the patches of a cube, or on its fours: groups of four patches. */

@@ -1,12 +1,14 @@
 /* conduct.c - spheres that conduct, so that their surfaces are not at one temperature. SPDX-License-Identifier: MIT
  *
- * In a steady state, with sources even inside, a surface temperature whose pattern is a harmonic of degree l conducts
- * the flux k l T/r inwards. Emission is linear in T about the mean T0 of the surface. So what is absorbed, w = N J/A,
- * and emission E have w = 2 K l E there, K = k/(4 d sigma T0^3), d the diameter. With J = E - (1 - eps) w/eps,
+ * The inside is steady, and sources are spread evenly inside. If the surface temperature T is a harmonic of degree l,
+ * the flux k l T/r is conducted inwards. Emission is linear in T about the mean T0 of the surface. Let w = N J/A be the
+ * flux that is absorbed, E the emission, d the diameter and K = k/(4 d sigma T0^3). Then w = 2 K l E in degree l. With
+ * J = E - (1 - eps) w/eps,
  *
  *     w = g J,   1/g = 1/eps_l - 1,   1/eps_l = 1/eps + 1/(2 K l).
  *
- * The mean of a surface has eps itself. 1/(2 K), called unevenness here, is 0 for a sphere at one temperature. */
+ * The mean over a surface has the emissivity eps itself. 1/(2 K) is called unevenness here. It is 0 for a sphere at one
+ * temperature. */
 #include "heat/problem.h"
 
 #define NUMBERS (FIBRAD_HARMONICS_WITHIN + 1)
@@ -33,7 +35,7 @@ static double filter_sphere(const fibrad_heat *heat, uint32_t b, const double by
     return fibrad_harmonics_filter(harmonics_of(heat), &on, by, pattern + first, to != NULL ? to + first : NULL);
 }
 
-/* g by degree. 0 for the mean, which is dealt with apart. */
+/* g by degree. It is 0 for the mean, which is treated elsewhere. */
 static void find_gains(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) {
     const double eps = heat->sources.emissivity[b];
     by[0] = 0;
@@ -43,7 +45,7 @@ static void find_gains(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) 
     }
 }
 
-/* 1/(1 + g), likewise. */
+/* 1/(1 + g) by degree. It is 0 for the mean, too. */
 static void find_dampings(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) {
     find_gains(heat, b, by);
     for (uint32_t k = 1; k < NUMBERS; k++) by[k] = 1 / (1 + by[k]);
@@ -118,7 +120,7 @@ double fibrad_heat_pattern_curvature(const fibrad_heat *heat, uint32_t b) {
     return filter_sphere(heat, b, by, heat->solution.direction, NULL);
 }
 
-/* What the pattern of emission is of that of J, by degree: g/(2 K l). */
+/* The ratio of the pattern of emission to the pattern of J, by degree: g/(2 K l). */
 static void find_emitted(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) {
     find_gains(heat, b, by);
     for (uint32_t k = 1; k < NUMBERS; k++) by[k] *= heat->sources.unevenness[b] / degree_of(heat, k);

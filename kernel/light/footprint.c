@@ -1,8 +1,9 @@
 /* footprint.c - the cross-section of light by where it enters and where it would end. SPDX-License-Identifier: MIT
  *
- * The planes that a line meets towards the light, at most one for each axis, and the first of them, tell whether light
- * comes along the line. Which of two planes is first depends on the side of a line in u and v. So the cross-section of
- * what enters by one plane has straight sides, and likewise that of what ends on one plane. */
+ * A line towards the light meets at most one plane for each axis. These planes, and which of them is met first, tell
+ * whether light comes along the line. Which of two planes is met first depends on the side of a straight line in u and
+ * v. So the cross-section of the light that enters by one plane has straight sides. The same holds for light that ends
+ * on one plane. */
 #include "light/footprint.h"
 #include "base/constants.h"
 #include "base/elementary.h"
@@ -181,8 +182,9 @@ static void add_circle(const fibrad_footprint *f, const fibrad_container *c, dou
     add_disc(f, centre, c->radius, x, y, p);
 }
 
-/* The outline of the box, which is convex: each of its sides is seen by one of its two faces across the axis. Corners
- * follow each other as edges along the axes do whose directions across the light turn by half a turn in all. */
+/* The outline of the box as seen along the light, which is convex. Of the two faces across each axis one is lit. The
+ * corners of the outline follow from edges along the axes. These are taken in the order of their directions across the
+ * light, which turn by half a turn in all. */
 static void add_outline(const fibrad_footprint *f, fibrad_light_polygon *p) {
     double edge[3][2], at[3];
     int order[3] = {0, 1, 2};
@@ -206,7 +208,7 @@ static void add_outline(const fibrad_footprint *f, fibrad_light_polygon *p) {
     }
 }
 
-/* One period of the strip that a bed makes which is periodic along an axis. */
+/* One period of the strip that is the cross-section of a bed periodic along one axis. */
 static void add_strip(const fibrad_footprint *f, int axis, fibrad_light_polygon *p) {
     const double size = f->high[axis] - f->low[axis], along[2] = {size * f->frame[axis], size * f->frame[3 + axis]};
     const double length = fibrad_sqrt(along[0] * along[0] + along[1] * along[1]);

@@ -1,8 +1,8 @@
 /* footprint.h - the cross-section of light before it meets a sphere, in convex pieces. SPDX-License-Identifier: MIT
  *
- * Places across the light have the coordinates u and v. A piece is what enters the container by one face and would end
- * at one slot if there were no spheres. Pieces tile the cross-section, but for those that are to be taken off. A circle
- * that is seen at a slant, or that bounds a beam, is a polygon of the same area. */
+ * Places across the light have the coordinates u and v. A piece is the light that enters the container through one face
+ * and would end at one slot if there were no spheres. Counted with their signs, the pieces cover the cross-section
+ * once. A circle that is seen at a slant, or that bounds a beam, is replaced by a polygon of the same area. */
 #ifndef FIBRAD_LIGHT_FOOTPRINT_H
 #define FIBRAD_LIGHT_FOOTPRINT_H
 
@@ -82,8 +82,8 @@ void fibrad_footprint_make(fibrad_footprint *f, const fibrad_scene *scene, const
 /* u and v of a place. */
 void fibrad_footprint_place(const fibrad_footprint *f, const double at[3], double uv[2]);
 
-/* Image number `image` of a place, nearest to the middle of a beam that is repeated or beside that. False: there is no
- * such image. Light on all that is open has the place itself alone. */
+/* Image number `image` of a place: the image nearest to the middle of a repeated beam, or one beside it. False: there
+ * is no such image. If light falls on all that is open, the place itself is the only image. */
 bool fibrad_footprint_image(const fibrad_footprint *f, const double uv[2], uint32_t image, double at[2]);
 
 /* Adds to `area` by slot [L^2] what the open region of a completed window takes from the light that would end there.
@@ -91,10 +91,10 @@ bool fibrad_footprint_image(const fibrad_footprint *f, const double uv[2], uint3
 void fibrad_footprint_share(fibrad_footprint *f, const fibrad_areas *areas, double open, const double uv[2], double r,
                             double area[FIBRAD_SLOTS]);
 
-/* Whether light reaches a place across it. *piece: by which piece; may be NULL. */
+/* Whether there is light at a place. *piece: the piece that it belongs to; may be NULL. */
 bool fibrad_footprint_lights(const fibrad_footprint *f, const double uv[2], uint32_t *piece);
 
-/* Where light enters that has the place uv in a piece [L]. */
+/* Where the light of a piece at the place uv enters the container [L]. */
 void fibrad_footprint_enters(const fibrad_footprint *f, uint32_t piece, const double uv[2], double at[3]);
 
 #endif

@@ -1,10 +1,11 @@
 /* footprint_share.c - what of the open region of a window lies in a piece of light. SPDX-License-Identifier: MIT
  *
- * Green's theorem, with half the integral of x dy - y dx about the middle of the window, along the boundary of the open
- * region within the piece. Arcs are cut by the lines of the piece. Between them the boundary goes along these lines:
- * along each of them the region begins where its own boundary crosses the line one way, and ends where it crosses the
- * other way. So a line needs no list of crossings, but a sum over them: the integral along a line up to x is c x/2, c
- * being its distance from the middle and x counted along it. What lies beyond the neighbouring lines is cut off x. */
+ * By Green's theorem the area of the open region within the piece is half the integral of x dy - y dx along its
+ * boundary, about the middle of the window. Arcs are cut by the lines of the piece. Between arcs the boundary goes
+ * along these lines. On a line the region begins where its own boundary crosses the line one way, and ends where it
+ * crosses the line the other way. The integral along a line up to x is c x/2. c is the distance of the line from the
+ * middle, and x is counted along the line. So a line needs no list of crossings, only a sum over them. x is limited to
+ * the stretch between the neighbouring lines. */
 #include "base/constants.h"
 #include "base/elementary.h"
 #include "light/footprint.h"
@@ -44,7 +45,7 @@ static arc_crossings crossings_of(const fibrad_open_arc *arc, const double p[2],
     return at;
 }
 
-/* What Green's theorem says of the arc from p to q. */
+/* The integral of Green's theorem along the arc from p to q. */
 static double arc_integral(const fibrad_open_arc *arc, const double p[2], const double q[2]) {
     const double sine = fibrad_max(0, cross(p, q)), cosine = p[0] * q[0] + p[1] * q[1];
     const double angle =
@@ -129,8 +130,8 @@ static void bound_edges(fibrad_footprint *f, uint32_t edges) {
     }
 }
 
-/* The open area within all edges near the window. Rounding may put the end of an arc on two sides of a line. Then the
- * crossings do not pair, and the lines move a little. */
+/* The open area within all edges near the window. Rounding may put the end of an arc on both sides of a line. Then
+ * there are not as many crossings outwards as inwards, and the lines are moved a little. */
 #define ATTEMPTS 8
 #define SHIFT    1e-12
 static double area_within(fibrad_footprint *f, const fibrad_areas *areas, uint32_t edges) {

@@ -1,4 +1,4 @@
-/* light.c - what spheres and walls meet first of light from outside. SPDX-License-Identifier: MIT */
+/* light.c - the light that comes to spheres and walls straight from outside. SPDX-License-Identifier: MIT */
 #include "light/light.h"
 #include "base/constants.h"
 

@@ -1,7 +1,7 @@
 /* shine.c - light from outside on the patches of a heat problem. SPDX-License-Identifier: MIT
  *
- * What a sphere takes is known exactly. The points of its window that are lit tell on which of its patches. What a wall
- * takes is known from what the spheres leave, and rays tell on which of its patches. */
+ * The light that a sphere takes is known exactly. The lit points of its window tell on which of its patches the light
+ * falls. A wall takes the light that the spheres leave to it. Rays tell on which of its patches this light falls. */
 #include "base/random.h"
 #include "heat/problem.h"
 #include "heat/wall_patch.h"
@@ -92,7 +92,7 @@ static int shine_on_sphere(const fibrad_heat *heat, fibrad_workspace *space, uin
     return FIBRAD_OK;
 }
 
-/* The same with work memory that grows. The footprint is lost when it does. */
+/* The same with work memory that grows. When it grows, the footprint is lost. */
 static int shine_and_grow(const fibrad_heat *heat, fibrad_work *work, fibrad_workspace **space,
                           const fibrad_light *light, uint32_t k, uint32_t place, double *hits,
                           fibrad_light_ends *kept) {

@@ -5,8 +5,8 @@
  * let a be the last sphere before the depth of k that covers a point, and b the first one after it. docs/methods.md
  * section 12 has the method.
  *
- * Lengths are in units of a power of two of L, the same for all spheres. Across a line, each sphere has one projected
- * centre, to the bit, on whichever circle it is seen. Hence circles that nearly coincide agree on who covers whom. */
+ * Lengths are in units of a power of two of L, the same for all spheres. For each line, a sphere has one projected
+ * centre, the same to the bit for all circles. Hence circles that nearly coincide agree on who covers whom. */
 #ifndef FIBRAD_SILHOUETTE_CIRCLE_H
 #define FIBRAD_SILHOUETTE_CIRCLE_H
 
@@ -21,8 +21,8 @@
     (2 * FIBRAD_LANES_MAX) /* near spheres that are first asked whether they touch the circle                          \
                             */
 
-/* Where on a circle: tan(t/2) of the angle t for t within a quarter turn of 0, and 2 + tan((t - pi)/2) on the other
- * half. A turn is from -1 to 3. */
+/* A place on a circle is a number from -1 to 3 for a whole turn. For angles t within a quarter turn of 0 it is
+ * tan(t/2). On the other half of the circle it is 2 + tan((t - pi)/2). */
 #define FIBRAD_CIRCLE_BEGIN (-1.0)
 #define FIBRAD_CIRCLE_END   3.0
 
@@ -52,7 +52,7 @@ typedef struct fibrad_circle_side {
     uint32_t nothing;                   /* the name of what lies beyond all spheres */
 } fibrad_circle_side;
 
-/* Those that may be seen, in any order. Element `count` stands for what lies beyond all spheres. */
+/* The discs of a side that may be seen, in any order. Element `count` stands for what lies beyond all spheres. */
 typedef struct fibrad_circle_discs {
     _Alignas(64) double u[FIBRAD_CIRCLE_ROOM];
     double v[FIBRAD_CIRCLE_ROOM], depth[FIBRAD_CIRCLE_ROOM], r[FIBRAD_CIRCLE_ROOM];
@@ -83,9 +83,9 @@ typedef struct fibrad_circle_pieces {
     uint32_t count;
 } fibrad_circle_pieces;
 
-/* Near spheres, as work->near has them, and from element near.capacity on those that a march has found. The elements
- * `nothing` and nothing + 1, the last ones, stand for what lies beyond all spheres, behind and before. The element
- * `nowhere` before them fills vectors up: a sphere so far away that no circle touches it. */
+/* Near spheres, as work->near has them, and from element near.capacity on those that a march has found. The last two
+ * elements, `nothing` and nothing + 1, stand for what lies beyond all spheres, behind and before. The element before
+ * them, `nowhere`, is a sphere so far away that no circle touches it. It fills vectors up. */
 typedef struct fibrad_circle_near {
     double *home[3], *radius, *away[3]; /* position, radius, and how many periods away the image is */
     uint32_t *sphere;

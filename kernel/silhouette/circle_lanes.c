@@ -119,7 +119,7 @@ static inline void find_arcs(const fibrad_circles *c, fibrad_circle_side *side, 
     vd_store(side->to + to, vd_select(covers, vd_set1(NOWHERE - 3 + side->sense), end));
 }
 
-/* Leaves of near spheres those whose discs touch the stretch; a few others may stay. How many. */
+/* Keeps the near spheres whose discs touch the stretch. A few others may stay. Returns how many are kept. */
 static uint32_t leave_touching(const fibrad_circles *c, uint32_t *place, uint32_t count) {
     const fibrad_circle_stretch *stretch = &c->stretch;
     const vd own = vd_set1(c->r), zero = vd_set1(0);
@@ -578,7 +578,7 @@ static void count_periods(const fibrad_workspace *work, fibrad_circles *c, int a
     }
 }
 
-/* Takes the near spheres of the shell over. */
+/* Takes over the near spheres of the shell. */
 static void take_shell(const fibrad_workspace *work, fibrad_circles *c) {
     const fibrad_scene *scene = work->scene;
     const double *home[3] = {scene->x, scene->y, scene->z};
@@ -598,7 +598,7 @@ static void take_shell(const fibrad_workspace *work, fibrad_circles *c) {
     c->homes = end;
 }
 
-/* Takes the spheres that a march has found over, as near ones. The first of their places. */
+/* Takes over the spheres that a march has found, as near ones. Returns the first of their places. */
 static uint32_t take_marched(const fibrad_workspace *work, fibrad_circles *c, const double frame[9]) {
     const fibrad_scene *scene = work->scene;
     const fibrad_discs *disc = &work->disc;
@@ -684,7 +684,7 @@ static bool find_among(const fibrad_workspace *work, fibrad_circles *c, uint32_t
 #define SHORTEST 1e-6 /* stretch of a circle */
 #define TOO_MANY (-1) /* discs touch the stretch of the circle, which must be shorter */
 
-/* Finds the discs of the next shell on a side. TOO_MANY */
+/* Finds the discs of the next shell on a side. Error: TOO_MANY */
 static int find_in_shell(fibrad_workspace *work, fibrad_circles *c, uint32_t shell, uint32_t side) {
     uint32_t *place = work->disc.near;
     const double sense = c->side[side].sense, *d = c->frame + 6, w[3] = {sense * d[0], sense * d[1], sense * d[2]};
@@ -693,7 +693,7 @@ static int find_in_shell(fibrad_workspace *work, fibrad_circles *c, uint32_t she
     return find_among(work, c, side, place, count) ? FIBRAD_OK : TOO_MANY;
 }
 
-/* Finds the discs of a march on a side. TOO_MANY */
+/* Finds the discs of a march on a side. Error: TOO_MANY */
 static int find_by_march(fibrad_workspace *work, fibrad_circles *c, uint32_t number) {
     fibrad_circle_side *side = &c->side[number];
     const fibrad_tube tube = tube_of(c, side->sense);
@@ -802,7 +802,7 @@ static void begin_stretch(fibrad_circles *c, double begin, double end) {
     }
 }
 
-/* Adds what a stretch of the circle of the sphere in hand says along the line in hand. TOO_MANY */
+/* Adds what a stretch of the present sphere's circle contributes along the present line. Error: TOO_MANY */
 static int follow(fibrad_workspace *work, fibrad_circles *c, double begin, double end, fibrad_pair_table *table) {
     bool done[2] = {false, false};
     const uint32_t first_marched = c->marched;

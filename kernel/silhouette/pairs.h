@@ -9,8 +9,8 @@
  * lines stay below 2^63. Whole numbers add up to the same bits in any order. */
 #define FIBRAD_PAIR_UNITS 0x1p44
 
-/* What lies beyond all spheres has the name FIBRAD_NONE. Where it matters along which line and in which sense it is
- * seen, 0 along the line and 1 against it, it has the name FIBRAD_PAIR_OPEN + 2 line + sense. */
+/* What lies beyond all spheres has the name FIBRAD_NONE. Sometimes it matters along which line and in which sense it is
+ * seen. Then its name is FIBRAD_PAIR_OPEN + 2 line + sense. The sense is 0 along the line and 1 against it. */
 #define FIBRAD_PAIR_OPEN 0x80000000u
 static inline bool fibrad_pair_opens(uint32_t name) { return name >= FIBRAD_PAIR_OPEN; }
 

@@ -40,7 +40,7 @@ static fibrad_silhouettes *silhouettes_layout(fibrad_arena *arena, fibrad_silhou
     return place;
 }
 
-/* The numbers that follow from the arguments; _ARGUMENT, _UNSUPPORTED. */
+/* The numbers that follow from the arguments. Errors: _ARGUMENT, _UNSUPPORTED. */
 static int silhouettes_dimension(fibrad_silhouettes *s, const fibrad_scene *scene, const fibrad_silhouette_rule *rule) {
     uint32_t lines = rule != NULL ? rule->lines : 0;
     if (lines == 0) lines = FIBRAD_LINES_DEFAULT;
@@ -436,7 +436,7 @@ static int gather_pairs(const fibrad_silhouettes *s, fibrad_workspace *space, ui
     return FIBRAD_E_WORK;
 }
 
-/* What of a row follows from sums over even and over odd lines, and what their means differ by. */
+/* The parts of a row that follow from sums over even and over odd lines, and the difference of their means. */
 static double entry_factor(const fibrad_silhouettes *s, const int64_t sum[2], double scale, double *square) {
     const uint32_t odd = s->lines / 2, even = s->lines - odd;
     const double difference = ((double)sum[0] / even - (double)sum[1] / odd) * (s->lines * scale / 2);
