@@ -25,8 +25,8 @@ static const struct option conductivity_table[] = {
      "standard error allowed, relative to F_E, 1e-4 to 1; paths are added until it is met [0.003]"},
     {KEY_MAX_RAYS, "max-rays", "N", "about the most rays that --error may take in all [5e7]"},
     {KEY_STEADY, "steady", NULL,
-     "compute also F_E of the bed between two black plates, for spheres whose net power is 0, along each axis whose "
-     "other two axes are periodic"},
+     "compute also F_E of the bed between two black plates, for spheres whose net power is 0. This is done along each "
+     "axis whose other two axes are periodic"},
     {KEY_SEED, "seed", "S", "seed of paths and directions [0]"},
     OPTIONS_INPUT,
     {'o', "output", "OUT", "write F_E and k of each axis: .csv .json, - for standard output [summary only]"},
@@ -67,7 +67,7 @@ static int conductivity_help(void) {
          "axes whose errors are not reliable. With --temperature there are also k_x_W_mK to k_z_W_mK and\n"
          "k_x_W_mK_error to k_z_W_mK_error. With --solid-conductivity k_star is k_s/(4 d sigma T^3), and F_E is\n"
          "that of spheres whose temperatures differ from point to point. Without it, where the unit of length is\n"
-         "known, the line `isothermal` says for which k_s one temperature a sphere is right to 5 %.\n"
+         "known, the line `isothermal` says above which k_s one temperature for each sphere is right to 5 %.\n"
          "\n"
          "Examples:\n"
          "  fibrad conductivity packing.dump --emissivity 0.8\n"

@@ -4,8 +4,8 @@
 
 #include "frames/bed_options.h"
 
-/* The emissivity of a bed's face: what spheres and walls of one temperature send out through the open faces, over what
- * black faces would. */
+/* The emissivity of a bed's face: what spheres and walls of one temperature send out through the open faces, divided by
+ * what black faces would send out. */
 struct face {
     bool wanted;
     double area; /* of all open faces, in the bed's unit of length squared */

@@ -11,28 +11,29 @@ enum { KEY_IRRADIATE = KEY_OWN + 200, KEY_ABSORPTIVITY, KEY_WALL_ABSORPTIVITY, K
 /* Rows of the table of options. */
 #define OPTIONS_LIGHT                                                                                                  \
     {KEY_IRRADIATE, "irradiate", "LIGHT",                                                                              \
-     "light from outside, DX,DY,DZ:FLUX, the way it goes and its W/m2 across that way; see below [none]"},             \
+     "light from outside, DX,DY,DZ:FLUX: its direction, and its W/m2 across that direction; see below [none]"},        \
         {KEY_ABSORPTIVITY, "absorptivity", "A",                                                                        \
          "absorptivity of all spheres for that light, 0 to 1, or TYPE:A,..., or a column of the file [emissivity]"},   \
         {KEY_WALL_ABSORPTIVITY, "wall-absorptivity", "LIST",                                                           \
          "absorptivities of walls for that light, as --wall-emissivity [--wall-emissivity]"},                          \
         {KEY_PROFILE, "profile", "AXIS[:BINS]:OUT",                                                                    \
-         "what is absorbed of the light along x, y or z, .csv, .svg or .png; a bin is one mean diameter [none]"},      \
+         "write the absorbed light against x, y or z: .csv, .svg or .png; a bin is one mean diameter [none]"},         \
     {                                                                                                                  \
-        KEY_FACE, "face", NULL, "find the emissivity of the open face of the bed, all at one temperature, see below"   \
+        KEY_FACE, "face", NULL, "find the emissivity of the open face of the bed, which has one temperature"           \
     }
 
 /* A paragraph of --help. */
 #define LIGHT_MORE                                                                                                     \
     "--irradiate: several are allowed. LIGHT is DX,DY,DZ:FLUX and may go on with\n"                                    \
     "  :half-angle=MRAD       directions fill a cone; :half-angle=sun is 4.65\n"                                       \
-    "  :disc=X,Y,Z,R          a beam through a disc across the way, before the bed\n"                                  \
+    "  :disc=X,Y,Z,R          a beam through a disc of radius R at right angles to it, before the bed\n"               \
     "  :box=X1,X2,Y1,Y2       a beam through a rectangle at the end of the bed in z\n"                                 \
     "Lengths are in the unit of the file. Without disc or box the light falls on all that is open. Between\n"          \
-    "side walls the light needs an opening (zmax=H:open), whose place is the rim. Light is absorbed with the\n"        \
-    "absorptivity and reflected with the rest. What is absorbed heats: powers are those of both bands. The\n"          \
-    ".csv then has the columns absorbed_first_W and absorbed_W. Those of the surroundings are what goes\n"             \
-    "through without having met anything, and all that leaves.\n"
+    "side walls the light needs an opening at the height H of their rim (zmax=H:open). A surface absorbs the\n"        \
+    "fraction --absorptivity of the light, is heated by it, and reflects the rest. q_W is the net power of\n"          \
+    "light and thermal radiation together. The .csv has two more columns: absorbed_first_W is what is\n"               \
+    "absorbed of light straight from outside, absorbed_W is all light that is absorbed. For the surroundings\n"        \
+    "they are the light that leaves without having met anything, and all light that leaves.\n"
 
 /* Arguments of the options. Begin with zeroes. */
 struct light_options {
@@ -68,8 +69,9 @@ int light_begin(struct light_state *state, const struct light_options *options, 
                 const struct walls *walls, const double *emissivity, const double *wall_emissivity);
 void light_free(struct light_state *state);
 
-/* Computes what is absorbed, in units of the bed's length squared, and adds it to the powers of the sources, which then
- * are those of thermal radiation. Without light does nothing. Returns a status of the library. */
+/* Computes the light that is absorbed, in units of the bed's length squared, and adds it to the powers of the sources.
+ * These are then the sources of thermal radiation. Without light the function does nothing. Returns a status of the
+ * library. */
 int light_absorb(struct light_state *state, const struct bed *bed, const struct walls *walls,
                  fibrad_radiation *radiation, fibrad_heat_sources *sources);
 
