@@ -16,7 +16,7 @@
 /* Below this, the unevenness of a sphere changes no result. */
 #define EVEN 1e-9
 
-/* Harmonics of the level in hand. */
+/* Harmonics of the present level. */
 static const fibrad_harmonics *harmonics_of(const fibrad_heat *heat) {
     return &heat->harmonics[heat->solution.group > 1];
 }
@@ -88,7 +88,7 @@ static void find_fluxes(const fibrad_heat *heat, uint32_t b, double *flux) {
         flux[a] = heat->solution.area[a] > 0 ? heat->solution.net[a] / heat->solution.area[a] : 0;
 }
 
-/* Takes the mean of a sphere off, which would leave rounding errors in products. */
+/* Subtracts the mean of a sphere, which would leave rounding errors in products. */
 static void take_mean_off(const fibrad_heat *heat, uint32_t b, double *value) {
     double sum = 0, area = 0;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
