@@ -386,6 +386,9 @@ void fibrad_heat_start(fibrad_heat *heat);
 
 /* The temperature of an emission, which is relative to that of the surroundings. NaN: the temperature would be below
  * zero. */
-double fibrad_heat_temperature(const fibrad_heat *heat, double emission);
+static inline double fibrad_heat_temperature(const fibrad_heat *heat, double emission) {
+    const double t0 = heat->sources.surroundings, power = emission / heat->sources.sigma + (t0 * t0) * (t0 * t0);
+    return power >= 0 ? fibrad_sqrt(fibrad_sqrt(power)) : __builtin_nan("");
+}
 
 #endif

@@ -291,11 +291,6 @@ void fibrad_heat_start(fibrad_heat *heat) {
     }
 }
 
-double fibrad_heat_temperature(const fibrad_heat *heat, double emission) {
-    const double t0 = heat->sources.surroundings, power = emission / heat->sources.sigma + (t0 * t0) * (t0 * t0);
-    return power >= 0 ? fibrad_sqrt(fibrad_sqrt(power)) : __builtin_nan("");
-}
-
 /* Where nothing says how high emissions are: lowers all, so that their mean is that of the surroundings. */
 static void sink(fibrad_heat *heat) {
     double sum = 0, weights = 0;

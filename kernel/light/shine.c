@@ -133,7 +133,7 @@ static int count_rays(const fibrad_heat *heat, const fibrad_footprint *f, uint32
     for (uint32_t n = 0; n < rays; n++) {
         double x[4], uv[2], at[3];
         uint32_t piece;
-        fibrad_hit hit;
+        fibrad_hit hit = {0};
         fibrad_heat_ray_coordinates(k, n, x);
         for (int a = 0; a < 2; a++) uv[a] = f->bound_low[a] + x[a] * (f->bound_high[a] - f->bound_low[a]);
         if (!fibrad_footprint_lights(f, uv, &piece)) continue;

@@ -16,7 +16,7 @@ typedef struct beam_frames {
     double turn[9];
 } beam_frames;
 
-static void frame_of_beam(const void *from, uint32_t k, uint32_t points, double frame[9]) {
+static void LANED(frame_of_beam)(const void *from, uint32_t k, uint32_t points, double frame[9]) {
     const beam_frames *frames = from;
     fibrad_beam_frame(k, frames->directions, points, frame);
     if (frames->turned) fibrad_rotate_axes(frames->turn, frame);
@@ -37,7 +37,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, FIBRAD_BEAM_STRIDE);
     double open[2] = {0, 0}, parts[2] = {0, 0};
     beam_frames frames = {.directions = directions, .turned = rule->turn != 0};
-    const fibrad_window_set set = {frame_of_beam, &frames, directions, directions, points, frames.turned};
+    const fibrad_window_set set = {LANED(frame_of_beam), &frames, directions, directions, points, frames.turned};
     if (scene->container.walls) {
         work->walls->view = fibrad_wall_view_of(scene, work->place, work->cut, work->reach);
         fibrad_zero(&work->walls->sums, sizeof work->walls->sums);
@@ -48,7 +48,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     if (frames.turned) fibrad_rotation(rule->turn, frames.turn);
     for (uint32_t k = range->from; k < range->to; k++) {
         double frame[9];
-        frame_of_beam(&frames, k, points, frame);
+        LANED(frame_of_beam)(&frames, k, points, frame);
         work->entries.end = k == 0 || k == directions - 1;
         double rest = LANED(fibrad_beam_window)(work, frame, &window, k);
         if (work->disc.count > work->disc.capacity || work->areas.overflow) return fibrad_work_discs_missed(work);

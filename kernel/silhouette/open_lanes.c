@@ -8,7 +8,7 @@
 /* Windows are numbered so that even lines have even numbers: first those along the lines, then those against them. */
 static uint32_t against(uint32_t lines) { return (lines + 3) / 4 * 4; }
 
-static void frame_of_window(const void *lines, uint32_t k, uint32_t points, double frame[9]) {
+static void LANED(frame_of_window)(const void *lines, uint32_t k, uint32_t points, double frame[9]) {
     const fibrad_open_lines *open = lines;
     const uint32_t first = against(open->lines), back = k >= first, line = back ? k - first : k;
     (void)points; /* windows are not turned against each other */
@@ -20,7 +20,7 @@ static void frame_of_window(const void *lines, uint32_t k, uint32_t points, doub
 
 int LANED(fibrad_open_share)(fibrad_workspace *space, const fibrad_scene *scene, uint32_t place,
                              const fibrad_open_lines *open, double parts[2]) {
-    const fibrad_window_set set = {.frame = frame_of_window,
+    const fibrad_window_set set = {.frame = LANED(frame_of_window),
                                    .from = open,
                                    .count = against(open->lines) + open->lines,
                                    .directions = 2 * open->lines,
@@ -36,7 +36,7 @@ int LANED(fibrad_open_share)(fibrad_workspace *space, const fibrad_scene *scene,
     for (uint32_t n = 0; n < open->count; n++) {
         const uint32_t which = (uint32_t)open->which[n], k = which / 2 + which % 2 * against(open->lines);
         double frame[9];
-        frame_of_window(open, k, 0, frame);
+        LANED(frame_of_window)(open, k, 0, frame);
         const double rest = LANED(fibrad_beam_window)(space, frame, &areas, k);
         if (space->disc.count > space->disc.capacity || space->areas.overflow) return fibrad_work_discs_missed(space);
         if (rest == 0) continue;

@@ -467,7 +467,7 @@ static int share_among_walls(const fibrad_silhouettes *s, fibrad_workspace *spac
                              const uint64_t *which, uint32_t named, fibrad_row *row) {
     const fibrad_scene *scene = s->scene;
     const fibrad_open_lines lines = {s->line, s->lines, which, named};
-    double parts[2], sum = 0;
+    double parts[2] = {0, 0}, sum = 0;
     const int status = FIBRAD_VERSION_OF(fibrad_open_share, scene->facts.isa)(space, scene, place, &lines, parts);
     if (status != FIBRAD_OK) return status;
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) sum += space->wall[slot] = fibrad_max(0, space->wall[slot]);
