@@ -45,8 +45,8 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* All but two of 48 estimates above the truth, or nearly so: rows of a lattice err together. No more than 4 times it on
- * the median. */
+/* All but two of 48 estimates are above the error of a raw row, or nearly so: rows of a lattice err together. Those of
+ * rows from silhouettes are above half the error. On the median no estimate is more than 4 times the error. */
 START_TEST(estimates_are_honest) {
     struct bed bed = beds[_i].make();
     unsigned char wanted[1000];
@@ -67,7 +67,7 @@ START_TEST(estimates_are_honest) {
         qsort(ratio, count, sizeof *ratio, ascending);
         printf("%s, %s: estimate over error %.2f %.2f %.2f\n", beds[_i].name, raw ? "raw" : "averaged", ratio[2],
                ratio[count / 2], ratio[count - 3]);
-        ck_assert_double_ge(ratio[2], _i == 3 && raw ? .85 : 1);
+        ck_assert_double_ge(ratio[2], !raw ? .5 : _i == 3 ? .85 : 1);
         ck_assert_double_lt(ratio[count / 2], 4);
     }
     fibrad_bed_free(truth);
@@ -95,7 +95,7 @@ START_TEST(tolerance_is_met) {
         printf("%s, %s: %u directions for %g, estimate %.2g\n", beds[_i].name, raw ? "raw" : "averaged",
                factors->directions, wanted, largest);
         ck_assert_uint_le(above, 1);
-        ck_assert_double_gt(largest, wanted / 4);
+        ck_assert_double_gt(largest, wanted / 5);
         ck_assert_double_le(factors->closure_error, 1e-12);
         if (!raw) ck_assert_double_lt(factors->reciprocity_error, 1e-14);
         fibrad_bed_free(factors);

@@ -447,6 +447,9 @@ static double entry_factor(const fibrad_silhouettes *s, const int64_t sum[2], do
 /* Half the difference of the halves of a set errs this much more than the whole: docs/accuracy.md. */
 #define HALVES_ERROR 0.4
 
+/* The same of what walls share. Their shares err in ways that both halves have in common. */
+#define WALLS_ERROR 0.8
+
 /* Adds up the pairs from number *k on that have one key. */
 static const pair_entry *add_alike(const fibrad_workspace *space, const uint64_t *key, uint32_t count, uint32_t *k,
                                    int64_t sum[2]) {
@@ -474,7 +477,7 @@ static int share_among_walls(const fibrad_silhouettes *s, fibrad_workspace *spac
     const double scale = sum > 0 ? open / sum : 0, unit = 1 / (2 * FIBRAD_PI * s->lines);
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) space->wall[slot] *= scale;
     row->escaped = space->wall[FIBRAD_ESCAPED];
-    row->error = fibrad_sqrt(row->error * row->error + HALVES_ERROR * HALVES_ERROR * parts[0] * (unit * unit));
+    row->error = fibrad_sqrt(row->error * row->error + WALLS_ERROR * WALLS_ERROR * parts[0] * (unit * unit));
     fibrad_row_cut(scene, place, space->wall, row);
     fibrad_row_bodies(scene, space->wall, row);
     return FIBRAD_OK;
