@@ -68,10 +68,11 @@ static int take_light(const char *text, struct light_options *options) {
     fibrad_light light = {.flux = 0};
     char *part[8];
     size_t parts = 0;
-    for (; rest && parts < sizeof part / sizeof *part; ++parts) {
-        part[parts] = rest;
-        rest = strchr(rest, ':');
-        if (rest) *rest++ = 0;
+    while (rest && parts < sizeof part / sizeof *part) {
+        char *colon = strchr(rest, ':');
+        part[parts++] = rest;
+        if (colon) *colon = 0;
+        rest = colon ? colon + 1 : NULL;
     }
     if (parts < 2 || rest) return message(STATUS_USAGE, "--irradiate: '%.60s' is not DX,DY,DZ:FLUX", text);
     int status = light_numbers(part[0], "DX,DY,DZ", 3, light.direction);

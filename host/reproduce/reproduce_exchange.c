@@ -18,7 +18,7 @@ static const fibrad_exchange_rule rule = {.directions = 144, .paths = 400};
 static int make_bed(struct bed *bed, int column) {
     bed_init(bed);
     return column < DENSE ? bed_make_shaken(bed, CELLS, johnson_fraction[column], 1)
-                          : bed_make_jammed(bed, SPHERES, johnson_fraction[column], 1000, 1);
+                          : bed_make_jammed(bed, SPHERES, johnson_fraction[DENSE], 1000, 1);
 }
 
 static int make_layer(struct bed *bed, int column) {

@@ -265,6 +265,7 @@ static int run_silhouettes(struct circle_tasks *circles, fibrad_memory *index, f
 
 int fibrad_job_silhouettes(fibrad_job *job, const fibrad_beam_rule *beam, fibrad_job_report *report) {
     const fibrad_silhouette_rule rule = rule_of(beam);
+    if (rule.lines > FIBRAD_LINES_EVEN_MAX) return FIBRAD_E_UNSUPPORTED;
     const size_t threads = (size_t)job->team.threads, size = fibrad_silhouettes_size(job->scene, &rule);
     fibrad_scratch *store = calloc(threads + 1, sizeof *store); /* of the pairs, and of their index */
     fibrad_memory index = {.resize = fibrad_scratch_resize, .context = store ? &store[threads] : NULL};
@@ -280,7 +281,7 @@ int fibrad_job_silhouettes(fibrad_job *job, const fibrad_beam_rule *beam, fibrad
     free(store);
     free(circles.pairs);
     free(block);
-    return status;
+    return status == FIBRAD_E_SUM ? FIBRAD_E_UNSUPPORTED : status;
 }
 
 /* ---- matrix --------------------------------------------------------------------------------------------------------

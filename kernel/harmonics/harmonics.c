@@ -211,7 +211,7 @@ static double filter_within(const fibrad_harmonics *h, const fibrad_harmonics_pa
 
 /* Gives each patch what its own patch has. */
 static void spread_octants(const fibrad_harmonics *h, const fibrad_harmonics_patches *on, octants *in, double *to) {
-    double own[PATCHES];
+    double own[PATCHES] = {0};
     transform(in->value, h->orbits);
     rotate(in, in->share, in->measured);
     for (uint32_t k = 0; k < in->patches; k++)

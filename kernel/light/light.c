@@ -69,7 +69,7 @@ static int take_one(const fibrad_scene *scene, fibrad_workspace *space, uint32_t
                     fibrad_light_ends *kept) {
     fibrad_footprint *f = fibrad_light_footprint(space);
     const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
-    double area[FIBRAD_SLOTS] = {0}, open, uv[2];
+    double area[FIBRAD_SLOTS] = {0}, open = 0, uv[2];
     const int status = FIBRAD_VERSION_OF(fibrad_sunlit, scene->facts.isa)(scene, space, place, f->frame, NULL, &open);
     if (status != FIBRAD_OK) return status;
     fibrad_footprint_place(f, centre, uv);

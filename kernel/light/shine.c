@@ -76,7 +76,7 @@ static int shine_on_sphere(const fibrad_heat *heat, fibrad_workspace *space, uin
     fibrad_footprint *f = fibrad_light_footprint(space);
     fibrad_points points = {.count = 0};
     const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
-    double area[FIBRAD_SLOTS] = {0}, open, sum = 0;
+    double area[FIBRAD_SLOTS] = {0}, open = 0, sum = 0;
     shining s = {.heat = heat, .f = f, .place = place, .r = scene->r[place]};
     const int status =
         FIBRAD_VERSION_OF(fibrad_sunlit, scene->facts.isa)(scene, space, place, f->frame, &points, &open);

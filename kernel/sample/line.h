@@ -14,10 +14,9 @@
 
 #include "sample/tables.h"
 
-/* Sets of up to this many lines are spread evenly; larger ones are Fibonacci sets of directions. */
-#define FIBRAD_LINES_EVEN_MAX 2048
-
-/* Whether the set of n lines is in a table of this build (FIBRAD_TABLE_LINES). A tabled set costs about ten
+/* Sets of up to FIBRAD_LINES_EVEN_MAX lines are spread evenly. Larger sets are Fibonacci sets of directions.
+ *
+ * Whether the set of n lines is in a table of this build (FIBRAD_TABLE_LINES). A tabled set costs about ten
  * operations a line. Any other set of up to FIBRAD_LINES_EVEN_MAX lines costs about 60 times n^2/2 pairs with two
  * square roots each: 2.4 ms for 100 lines, 0.24 s for 1,000. */
 bool fibrad_lines_tabled(uint32_t n);

@@ -29,7 +29,7 @@ def at_first_progress(action):
 def test_progress(small):
     calls = []
     fibrad.view_factors(small.x, small.r, directions=50, progress=lambda *call: calls.append(call))
-    assert calls[0] == ("rows", 0, small.n) and calls[-1] == ("rows", small.n, small.n)
+    assert calls[0][:2] == ("circles", 0) and calls[-1] == ("rows", small.n, small.n)
     calls.clear()
     heat = fibrad.Heat(small.x, small.r, progress=lambda *call: calls.append(call))
     assert {stage for stage, _, _ in calls} == {"beams"}
@@ -130,7 +130,7 @@ def test_other_threads_run_meanwhile(mono):
     counter.start()
     try:
         with pytest.raises(fibrad.Cancelled):
-            fibrad.view_factors(mono.x, mono.r, **ENDLESS, progress=progress)
+            fibrad.view_factors(mono.x, mono.r, **ENDLESS, raw=True, progress=progress)
     finally:
         stop.set()
         counter.join()
