@@ -22,7 +22,7 @@ faults=$(
 
     find kernel host -name '*.c' -exec awk '
         /^(static|FIBRAD_INLINE)[^=;]*\(/ && !/;$/ {
-            sub(/\(.*/, ""); sub(/.*[ *]/, ""); print $0 " " FILENAME
+            sub(/LANED\(/, ""); sub(/[()].*/, ""); sub(/.*[ *]/, ""); print $0 " " FILENAME
         }' {} + | sort -u | awk '
         $1 == last { print $2 " and " file ": static " $1 } { last = $1; file = $2 }'
 
