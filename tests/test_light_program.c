@@ -18,7 +18,7 @@ static double fractions(void) { return value_of("absorbed") + value_of("reflecte
 START_TEST(what_is_absorbed_is_said_and_written) {
     const char *csv = in_folder("q.csv"), *profile = in_folder("p.csv");
     ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:1000", "--absorptivity", ".5",
-                          "--wall-absorptivity", "zmin=.25,0", "-o", csv, "--profile", "z:2:.csv" + 0, "--quiet"),
+                          "--wall-absorptivity", "zmin=.25,0", "-o", csv, "--profile", "z:2:.csv", "--quiet"),
                      2); /* a profile needs a name */
     char option[400];
     snprintf(option, sizeof option, "z:2:%s", profile);

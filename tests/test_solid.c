@@ -352,7 +352,7 @@ START_TEST(refusals) {
     for (int k = 0; k < 6; ++k) {
         const fibrad_scene_config config = {.period = {3, 3, 0}, .body = &floor, .bodies = k == 4};
         fibrad_scene *scene;
-        fibrad_work work = {.memory = {room, sizeof room}};
+        fibrad_work work = {.memory = {.block = room, .size = sizeof room}};
         ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, &config, &spheres, NULL), FIBRAD_OK);
         fibrad_exchange_rule rule = {
             .emissivity = &emissivity, .conductivity = &conductivity, .body_emissivity = &grey, .paths = 16};
