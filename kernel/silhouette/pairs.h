@@ -20,10 +20,10 @@ typedef struct fibrad_pair {
     int64_t sum[2]; /* over even and over odd lines */
 } fibrad_pair;
 
-/* The pairs of a collection. */
+/* The pairs of a collection; NULL if it has no block. */
 static inline fibrad_pair *fibrad_pairs_of(const fibrad_pairs *pairs) {
     unsigned char *block = pairs->memory.block;
-    return (fibrad_pair *)(void *)(block + ((size_t) - (uintptr_t)block & 7));
+    return block == NULL ? NULL : (fibrad_pair *)(void *)(block + ((size_t) - (uintptr_t)block & 7));
 }
 
 /* Sums of pairs that a task meets often: open addressing. */
