@@ -226,6 +226,16 @@ START_TEST(rows_in_files) {
 }
 END_TEST
 
+/* A line of this set runs nearly along the layers of the bed. There a circle meets so many images that it is followed
+ * in stretches. */
+START_TEST(a_line_along_layers) {
+    SUCCEED("bed", PERIODIC, "--directions", "362");
+    ck_assert_double_eq(value_of("directions"), 362);
+    ck_assert_double_lt(value_of("closure_max"), 1e-13);
+    ck_assert_double_lt(value_of("reciprocity_max"), 1e-15);
+}
+END_TEST
+
 START_TEST(targets_and_formats) {
     const char *all = in_folder("all.csv"), *some = in_folder("some.csv"), *matrix = in_folder("all.mtx");
     SUCCEED("bed", PERIODIC, "--positions", "--directions", "21", "--raw", "-o", all);
@@ -607,6 +617,7 @@ int main(void) {
     tcase_add_test(tests, walls);
     tcase_add_test(tests, a_box_without_a_lid);
     tcase_add_test(tests, rays);
+    tcase_add_test(tests, a_line_along_layers);
     tcase_add_test(tests, rows_in_files);
     tcase_add_test(tests, targets_and_formats);
     tcase_add_test(tests, frames_periods_and_ids);

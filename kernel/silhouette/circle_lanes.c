@@ -55,7 +55,7 @@ static inline vd sectors_from_begin(const fibrad_circle_stretch *stretch, vd pla
 /* The sectors that an arc covers whole, and those that it touches; a few less and a few more at most. */
 static inline void find_sectors(vd from, vd to, vm wraps, vd *inner, vd *outer) {
     const vd zero = vd_set1(0), all = vd_set1(ALL_AROUND);
-    vd last = vd_power_of_two(to - .5), first = vd_power_of_two(from + .5);
+    vd last = vd_power_of_two(vd_max(zero, to - .5)), first = vd_power_of_two(vd_min(vd_set1(SECTORS), from + .5));
     vd within = last - first, touched = 2 * last - .5 * first;
     *inner = vd_select(wraps, all + within, vd_max(zero, within));
     *outer = vd_select(wraps, all + vd_min(zero, touched), touched);
@@ -538,8 +538,9 @@ static void part_distant(fibrad_circles *c, fibrad_pair_table *table) {
         if (a == behind->count || b == ahead->count || behind->depth[a] + ahead->depth[b] <= c->farthest) continue;
         const int64_t of_a = units_of(piece_area(c, k, behind, a) + UNITS);
         const int64_t of_b = units_of(piece_area(c, k, ahead, b) + UNITS);
-        fibrad_pair_add(table, c->near.sphere[behind->slot[a]], c->side[1].nothing, c->half, -of_a);
-        fibrad_pair_add(table, c->near.sphere[ahead->slot[b]], c->side[0].nothing, c->half, -of_b);
+        const int64_t even = c->half == 0 ? -1 : 0, odd = -1 - even;
+        fibrad_pair_add(table, c->near.sphere[behind->slot[a]], c->side[1].nothing, even * of_a, odd * of_a);
+        fibrad_pair_add(table, c->near.sphere[ahead->slot[b]], c->side[0].nothing, even * of_b, odd * of_b);
         piece->past[k] = UNITS;
     }
 }
