@@ -223,8 +223,7 @@ int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
     return status;
 }
 
-/* ---- silhouettes ---------------------------------------------------------------------------------------------------
- */
+/* ---- silhouettes ------------------------------------------------------------------------------------------------ */
 
 static fibrad_silhouette_rule rule_of(const fibrad_beam_rule *beam) {
     return beam ? (fibrad_silhouette_rule){beam->directions, beam->turn} : (fibrad_silhouette_rule){0};
@@ -281,11 +280,10 @@ int fibrad_job_silhouettes(fibrad_job *job, const fibrad_beam_rule *beam, fibrad
     free(store);
     free(circles.pairs);
     free(block);
-    return status == FIBRAD_E_SUM ? FIBRAD_E_UNSUPPORTED : status;
+    return status;
 }
 
-/* ---- matrix --------------------------------------------------------------------------------------------------------
- */
+/* ---- matrix ----------------------------------------------------------------------------------------------------- */
 
 /* The number of tasks of averaging: some per thread. If rows are in files, there are more, so that the bytes that one
  * task writes stay in memory. */

@@ -51,7 +51,7 @@ bool fibrad_job_has_silhouettes(const fibrad_job *job, const fibrad_beam_rule *r
 
 /* Empties the collections of the team and computes all rows into them, by silhouettes along as many lines as the rule
  * has directions. Errors: as fibrad_silhouettes_task and _row; run->fault is set.
- * _UNSUPPORTED: more than FIBRAD_LINES_EVEN_MAX lines, too many overlaps, or a row that does not add up to 1. */
+ * _UNSUPPORTED: more than FIBRAD_LINES_EVEN_MAX lines, or too many overlaps. */
 int fibrad_job_silhouettes(fibrad_job *job, const fibrad_beam_rule *rule, fibrad_job_report *report);
 
 /* Makes the matrix of the rows that the team has collected. Errors: as fibrad_matrix_init, _MEMORY. */
