@@ -13,8 +13,7 @@
 
 #define PI 3.14159265358979323846
 
-/* ---- the option ----------------------------------------------------------------------------------------------------
- */
+/* ---- the option -------------------------------------------------------------------------------------------------- */
 
 /* Two spheres of radii 3 and 1 mm, of types 1 and 2. */
 static struct bed two_spheres(void) {
@@ -74,8 +73,7 @@ START_TEST(no_relative_conductivity) {
 }
 END_TEST
 
-/* ---- a ball ---------------------------------------------------------------------------------------------------------
- */
+/* ---- a ball ------------------------------------------------------------------------------------------------------ */
 
 /* Number `count` of the random sequence, and a random point of the unit sphere from the two that follow. */
 static double draw(uint64_t *count) { return bed_make_random(7, (*count)++); }
@@ -125,8 +123,7 @@ START_TEST(extremes_of_a_ball) {
 }
 END_TEST
 
-/* ---- beds -----------------------------------------------------------------------------------------------------------
- */
+/* ---- beds ------------------------------------------------------------------------------------------------------- */
 
 /* F_E of walks. */
 static struct conduction walk(const struct bed *bed, const double *emissivity, const double *conductivity,
@@ -143,6 +140,13 @@ static struct conduction walk(const struct bed *bed, const double *emissivity, c
     return result;
 }
 
+/* The mean of F_E over the axes. Adds the square of its standard error. */
+static double mean_factor(const struct conduction *of, double *square) {
+    double mean = 0;
+    for (int axis = 0; axis < 3; ++axis) mean += of->factor[axis] / 3, *square += pow(of->error[axis] / 3, 2);
+    return mean;
+}
+
 /* Touching spheres in a simple cubic lattice: harmonics up to degrees 9 and 13, and 1.2e7 rays, right to .0005. */
 START_TEST(simple_cubic) {
     static const struct {
@@ -155,8 +159,8 @@ START_TEST(simple_cubic) {
     for (int axis = 0; axis < 3; ++axis) bed.period[axis] = 2;
     const double emissivity = _i % 2 ? .6 : 1, truth = known[_i / 2].factor[_i % 2];
     const struct conduction found = walk(&bed, &emissivity, &known[_i / 2].k_star, .03);
-    double mean = 0, square = 0;
-    for (int axis = 0; axis < 3; ++axis) mean += found.factor[axis] / 3, square += pow(found.error[axis] / 3, 2);
+    double square = 0;
+    const double mean = mean_factor(&found, &square);
     ck_assert_double_le(sqrt(square), .03 * truth);
     ck_assert_double_eq_tol(mean, truth, 3 * sqrt(square) + .01 * truth); /* .01: rare flights along channels */
     ck_assert_double_eq(found.k_star, known[_i / 2].k_star);
@@ -308,11 +312,8 @@ START_TEST(open_beds) {
     for (uint32_t i = 0; i < bed.n; ++i) emissivity[i] = .9, conductivity[i] = 2;
     const struct conduction open = walk(&bed, emissivity, conductivity, .01),
                             whole = walk(&cell, emissivity, conductivity, .01);
-    double found = 0, truth = 0, square = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        found += open.factor[axis] / 3, truth += whole.factor[axis] / 3;
-        square += pow(open.error[axis] / 3, 2) + pow(whole.error[axis] / 3, 2);
-    }
+    double square = 0;
+    const double found = mean_factor(&open, &square), truth = mean_factor(&whole, &square);
     ck_assert_double_gt(open.escaped, 0);
     ck_assert_double_eq_tol(found, truth, 3 * sqrt(square) + .01 * truth); /* .01: other spheres */
     free(emissivity), free(conductivity);
@@ -330,11 +331,8 @@ START_TEST(good_conductors) {
     for (uint32_t i = 0; i < bed.n; ++i) emissivity[i] = .8, conductivity[i] = 1e6;
     const struct conduction solid = walk(&bed, emissivity, conductivity, .007),
                             one = walk(&bed, emissivity, NULL, .007);
-    double found = 0, truth = 0, square = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        found += solid.factor[axis] / 3, truth += one.factor[axis] / 3;
-        square += pow(solid.error[axis] / 3, 2) + pow(one.error[axis] / 3, 2);
-    }
+    double square = 0;
+    const double found = mean_factor(&solid, &square), truth = mean_factor(&one, &square);
     ck_assert_double_eq_tol(found, truth, 3 * sqrt(square) + .004 * truth);
     ck_assert(isnan(one.k_star) && solid.k_star_range[0] == 1e6);
     bed_free(&bed);
@@ -367,8 +365,7 @@ START_TEST(refusals) {
 }
 END_TEST
 
-/* ---- the program ----------------------------------------------------------------------------------------------------
- */
+/* ---- the program ------------------------------------------------------------------------------------------------- */
 
 #define CELL "x,y,z,r,ks,nothing\n0,0,0,30,13.6,\n"
 #define OF_CELL                                                                                                        \

@@ -202,24 +202,33 @@ static int owner_of(const struct pile *p, size_t i, int spread) {
     }
 }
 
-/* What this rank owns of a pile, in another order, some of it in other periods. */
-static struct pile part_of(const struct pile *all, int spread) {
+/* A pile without particles, with the walls of another and room for its particles. */
+static struct pile emptied(const struct pile *all) {
     struct pile p = *all;
     open_pile(&p, all->bed.n);
     memcpy(p.body, all->body, 2 * sizeof *p.body);
     memcpy(p.body_emissivity, all->body_emissivity, 2 * sizeof *p.body_emissivity);
     p.bed.n = 0;
+    return p;
+}
+
+static void take_particle(struct pile *p, const struct pile *from, size_t i) {
+    const size_t n = p->bed.n++;
+    p->id[n] = from->id[i], p->radius[n] = from->radius[i];
+    memcpy(p->x + 3 * n, from->x + 3 * i, 3 * sizeof *p->x);
+    p->emissivity[n] = from->emissivity[i], p->temperature[n] = from->temperature[i];
+}
+
+/* What this rank owns of a pile, in another order, some of it in other periods. */
+static struct pile part_of(const struct pile *all, int spread) {
+    struct pile p = emptied(all);
     for (size_t k = all->bed.n; k-- > 0;) {
         const size_t i = all->bed.n % 7 ? 7 * k % all->bed.n : k; /* all once */
         if (owner_of(all, i, spread) != rank) continue;
-        const size_t n = p.bed.n++;
-        p.id[n] = all->id[i];
-        for (size_t axis = 0; axis < 3; ++axis)
-            p.x[3 * n + axis] =
-                all->x[3 * i + axis] + (p.bed.periodic[axis] ? ((int)(p.id[n] % 5) - 2) * (p.bed.high[0] + 1) : 0);
-        p.radius[n] = all->radius[i];
-        p.emissivity[n] = all->emissivity[i];
-        p.temperature[n] = all->temperature[i];
+        take_particle(&p, all, i);
+        double *x = p.x + 3 * (p.bed.n - 1);
+        for (int axis = 0; axis < 3; ++axis)
+            x[axis] += p.bed.periodic[axis] ? ((int)(all->id[i] % 5) - 2) * (p.bed.high[0] + 1) : 0;
     }
     return p;
 }
@@ -624,21 +633,12 @@ static void go_astray(struct pile *p) {
 
 /* The same bed without the particles that are left out, with the radii that the others have in the rows. */
 static struct pile without_strays(const struct pile *astray) {
-    struct pile p = *astray;
-    const double largest = fmax(p.radius[DEEP], p.radius[DEEP + 1]);
-    open_pile(&p, astray->bed.n);
-    memcpy(p.body, astray->body, 2 * sizeof *p.body);
-    memcpy(p.body_emissivity, astray->body_emissivity, 2 * sizeof *p.body_emissivity);
-    p.bed.n = 0;
+    struct pile p = emptied(astray);
+    const double largest = fmax(astray->radius[DEEP], astray->radius[DEEP + 1]);
     for (size_t i = 0; i < astray->bed.n; ++i) {
-        const size_t n = p.bed.n;
         if (i == FLOWN || i == SUNK || i == SWALLOWED || i == SWALLOWED + 1) continue;
-        p.id[n] = astray->id[i];
-        memcpy(p.x + 3 * n, astray->x + 3 * i, 3 * sizeof *p.x);
-        p.radius[n] = astray->radius[i] * (i == DEEP || i == DEEP + 1 ? .5 / largest * (1 - 1e-9) : 1);
-        p.emissivity[n] = astray->emissivity[i];
-        p.temperature[n] = astray->temperature[i];
-        p.bed.n++;
+        take_particle(&p, astray, i);
+        if (i == DEEP || i == DEEP + 1) p.radius[p.bed.n - 1] *= .5 / largest * (1 - 1e-9);
     }
     return p;
 }
@@ -689,19 +689,9 @@ static void strays_do_not_end_a_run(void) {
 
 /* A part without the particles whose number in the whole bed is a multiple of `of`. */
 static struct pile without(const struct pile *all, size_t of) {
-    struct pile p = *all;
-    open_pile(&p, all->bed.n);
-    memcpy(p.body, all->body, 2 * sizeof *p.body);
-    memcpy(p.body_emissivity, all->body_emissivity, 2 * sizeof *p.body_emissivity);
-    p.bed.n = 0;
-    for (size_t i = 0; i < all->bed.n; ++i) {
-        const size_t n = p.bed.n;
-        if (i % of == 0) continue;
-        p.id[n] = all->id[i], p.radius[n] = all->radius[i];
-        memcpy(p.x + 3 * n, all->x + 3 * i, 3 * sizeof *p.x);
-        p.emissivity[n] = all->emissivity[i], p.temperature[n] = all->temperature[i];
-        p.bed.n++;
-    }
+    struct pile p = emptied(all);
+    for (size_t i = 0; i < all->bed.n; ++i)
+        if (i % of != 0) take_particle(&p, all, i);
     return p;
 }
 
