@@ -261,7 +261,7 @@ calls: lib lib-host $(BUILD)/libhost.a
 symbols: lib lib-host
 	BUILD=$(BUILD) tests/check_symbols.sh
 
-FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*/*.[ch] host/*/*/*.[ch] host/*/*.cpp tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch])
+FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*/*.[ch] host/*/*/*.[ch] host/*/*/*.cpp host/couple/lammps/debian/fmt/*.h tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch])
 
 ## format: every source is formatted by .clang-format (to repair: clang-format -i FILE)
 format:
@@ -452,5 +452,5 @@ clean:
 
 ## help: this list
 help:
-	@sed -n 's/^## \([^:]*\): /  \1\t/p' Makefile $(wildcard host/*/*.mk) | expand -t 16
+	@sed -n 's/^## \([^:]*\): /  \1\t/p' Makefile $(wildcard host/*/*.mk host/*/*/*.mk) | expand -t 16
 	@echo "  Settable: CC AR CFLAGS LDFLAGS PREFIX DESTDIR BUILD ISAS TABLES PIC WERROR"

@@ -42,7 +42,7 @@ COUPLE_PRODUCTS = $(BUILD)/couple/libfibrad_couple.a $(BUILD)/couple/example
 COUPLE_DEPS     = $(filter deps-couple,$(MAKECMDGOALS))
 
 # couplings with other codes add to these lists
-include $(wildcard host/lammps/*.mk host/liggghts/*.mk)
+include $(wildcard host/couple/lammps/*.mk host/couple/liggghts/*.mk)
 
 # what docs/scale.md rests on: mpirun -np 2 build/couple/ranks tests/data/monoper2000.dump 2 0.8
 $(BUILD)/couple/ranks: bench/ranks.c $(COUPLE_LIBS)

@@ -13,7 +13,7 @@
 
 #include "fibrad_heat.h"
 #include "base/sobol.h"
-#include "harmonics/harmonics.h"
+#include "sample/harmonics.h"
 #include "mesh/mesh_patch.h"
 #include "scene/scene.h"
 #include "work/work.h"

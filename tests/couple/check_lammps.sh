@@ -2,7 +2,7 @@
 # check_lammps.sh - fix fibrad in LAMMPS on 1, 2 and 4 ranks: the same temperatures as on one scene without ranks, the same
 # bytes of rows, energy in moving beds, and failures that end all ranks. SPDX-License-Identifier: MIT
 #
-# LMP and LOAD may name another LAMMPS and a script that loads the fix into it: host/lammps/newer.sh does.
+# LMP and LOAD may name another LAMMPS and a script that loads the fix into it: host/couple/lammps/newer.sh does.
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${MPICC:=mpicc}" "${MPIRUN:=mpirun}" "${LMP:=lmp}"
 for program in "$MPICC" "$MPIRUN" "$LMP"; do

@@ -10,7 +10,7 @@ fi
 . tests/couple/mpi.sh
 
 $MAKE -s --no-print-directory "$BUILD/couple/fibrad_liggghts" "$BUILD/fibrad" || exit 1
-driver=$(pwd)/$BUILD/couple/fibrad_liggghts fibrad=$(pwd)/$BUILD/fibrad example=$(pwd)/host/liggghts/hot_floor.liggghts
+driver=$(pwd)/$BUILD/couple/fibrad_liggghts fibrad=$(pwd)/$BUILD/fibrad example=$(pwd)/host/couple/liggghts/hot_floor.liggghts
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 1
 cd "$work" || exit 1
 faults=0

@@ -23,7 +23,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "liggghts/liggghts_options.h"
+#include "couple/liggghts/liggghts_options.h"
 
 using LAMMPS_NS::Fix;
 using LAMMPS_NS::LAMMPS;

@@ -1,5 +1,5 @@
 /* liggghts_options.cpp - the options of the driver of LIGGGHTS. SPDX-License-Identifier: MIT */
-#include "liggghts/liggghts_options.h"
+#include "couple/liggghts/liggghts_options.h"
 
 #include <getopt.h>
 

@@ -1,6 +1,6 @@
 /* harmonics.c - spherical harmonics on the patches of a sphere. SPDX-License-Identifier: MIT */
 #include "base/constants.h"
-#include "harmonics/harmonics.h"
+#include "sample/harmonics.h"
 #include "sample/sphere_patch.h"
 
 #define OCTANTS FIBRAD_HARMONICS_KINDS

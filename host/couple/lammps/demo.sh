@@ -8,7 +8,7 @@ rm -rf "$out"
 mkdir -p "$out"
 
 . tests/couple/mpi.sh
-run_mpi 2 "$LMP" -in host/lammps/pour.lmp -log "$out/log" -var load "$LOAD" -var out "$out"
+run_mpi 2 "$LMP" -in host/couple/lammps/pour.lmp -log "$out/log" -var load "$LOAD" -var out "$out"
 
 # T against time, and the balance: columns step, time, heat, powers of sky and floor, mean and largest T; a step of heat
 # takes 50 time steps

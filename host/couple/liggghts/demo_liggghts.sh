@@ -4,7 +4,7 @@
 set -eu
 : "${BUILD:=build}"
 . tests/couple/mpi.sh
-out=$BUILD/demo-liggghts script=host/liggghts/hot_floor.liggghts
+out=$BUILD/demo-liggghts script=host/couple/liggghts/hot_floor.liggghts
 mkdir -p "$out"
 
 { cat $script && echo 'run 10000'; } >"$out/conduction.in"

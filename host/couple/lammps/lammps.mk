@@ -8,7 +8,7 @@ LAMMPS_SIZES  = -DLAMMPS_SMALLBIG
 
 LAMMPS_FLAGS  = $(COUPLE_CXX) -fPIC $(LAMMPS_SIZES)
 LAMMPS_LINK   = -shared -fopenmp -Wl,--exclude-libs,ALL
-FIX           = host/lammps/fix_fibrad.cpp
+FIX           = host/couple/lammps/fix_fibrad.cpp
 
 LAMMPS_PRODUCTS  = $(if $(LAMMPS_SOURCE),$(BUILD)/couple/fibrad_plugin.so,$(BUILD)/couple/fix_fibrad.so $(BUILD)/couple/fibrad.lmp)
 COUPLE_PRODUCTS += $(LAMMPS_PRODUCTS)
@@ -18,17 +18,17 @@ lammps: $(LAMMPS_PRODUCTS)
 
 # C++14: the headers of Debian's LAMMPS want no more
 $(BUILD)/couple/fix_fibrad.so: $(FIX) $(COUPLE_MESH_LIB) $(COUPLE_LIBS) | need-lammps
-	$(MPICXX) -std=c++14 $(LAMMPS_FLAGS) -isystem host/lammps/debian -isystem $(LAMMPS_INCLUDE) $(LAMMPS_LINK) \
+	$(MPICXX) -std=c++14 $(LAMMPS_FLAGS) -isystem host/couple/lammps/debian -isystem $(LAMMPS_INCLUDE) $(LAMMPS_LINK) \
 	    $(FIX) $(COUPLE_MESH_LIB) $(COUPLE_LIBS) $(ZLIB_LIBS) -llammps -o $@
 
-$(BUILD)/couple/fibrad.lmp: host/lammps/fibrad.lmp.in $(BUILD)/couple/fix_fibrad.so
+$(BUILD)/couple/fibrad.lmp: host/couple/lammps/fibrad.lmp.in $(BUILD)/couple/fix_fibrad.so
 	sed 's|@FIX@|$(abspath $(@D))/fix_fibrad.so|' $< > $@
 
-$(BUILD)/couple/fibrad_plugin.so: $(FIX) host/lammps/fibrad_plugin.cpp $(COUPLE_MESH_LIB) $(COUPLE_LIBS)
+$(BUILD)/couple/fibrad_plugin.so: $(FIX) host/couple/lammps/fibrad_plugin.cpp $(COUPLE_MESH_LIB) $(COUPLE_LIBS)
 	$(MPICXX) -std=c++17 $(LAMMPS_FLAGS) -isystem $(LAMMPS_SOURCE)/src $(LAMMPS_LINK) \
-	    $(FIX) host/lammps/fibrad_plugin.cpp $(COUPLE_MESH_LIB) $(COUPLE_LIBS) $(ZLIB_LIBS) -o $@
+	    $(FIX) host/couple/lammps/fibrad_plugin.cpp $(COUPLE_MESH_LIB) $(COUPLE_LIBS) $(ZLIB_LIBS) -o $@
 
-$(BUILD)/couple/fix_fibrad.so $(BUILD)/couple/fibrad_plugin.so: Makefile host/lammps/lammps.mk
+$(BUILD)/couple/fix_fibrad.so $(BUILD)/couple/fibrad_plugin.so: Makefile host/couple/lammps/lammps.mk
 
 -include $(BUILD)/couple/fix_fibrad.d $(BUILD)/couple/fibrad_plugin.d
 
@@ -50,4 +50,4 @@ need-lammps: | $(COUPLE_DEPS)
 ## demo-lammps: pebbles poured onto a hot floor in LAMMPS on 2 ranks: energy balance, T against time, picture, ParaView
 demo-lammps: deps deps-couple
 	@$(MAKE) -s --no-print-directory lammps
-	@BUILD=$(BUILD) MPIRUN=$(MPIRUN) host/lammps/demo.sh
+	@BUILD=$(BUILD) MPIRUN=$(MPIRUN) host/couple/lammps/demo.sh
