@@ -11,8 +11,10 @@
 #define FEW_PATHS  4u
 #define USUAL_RAYS 1024u
 
-/* Up to so many directions, windows by 256 points are as good as by exact areas and take a third of the time. */
-#define BY_POINTS 144u
+/* Up to so many directions, windows by 256 points are as good as by exact areas and take a third of the time. With
+ * fewer directions than usual the error is that of the directions, and 64 points take two thirds of that. */
+#define BY_POINTS     144u
+#define BY_FEW_POINTS (FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT - 1)
 
 /* What of the tolerance the first leg may take: about as much time then goes into beams as into paths at emissivity
  * 0.8, and less at lower ones. */
@@ -57,6 +59,14 @@ static fibrad_paths paths_of(const exchange_task *task, fibrad_workspace *space,
                           .back = UINT32_MAX};
 }
 
+/* Asks the beams for the first legs of as many paths as the rule has, or as there is room for. */
+static void want_legs(const fibrad_paths *paths, const fibrad_exchange_rule *rule) {
+    fibrad_legs *legs = paths->tracer->legs;
+    const uint64_t wanted = rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT;
+    legs->wanted = wanted < FIBRAD_LEGS ? (uint32_t)wanted : FIBRAD_LEGS;
+    for (uint32_t d = 0; d < 4; d++) legs->shift[d] = fibrad_random_ahead(paths->stream, d);
+}
+
 /* The first leg: a beam row, and the error of what it makes spheres and walls absorb. */
 static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_exchange_rule *rule,
                      fibrad_row *row, double *error) {
@@ -65,7 +75,7 @@ static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_
                              .turn = rule->seed};
     int status = fibrad_beam_complete(&beam, &beam);
     for (;;) {
-        beam.points = beam.directions <= BY_POINTS ? 256 : 0;
+        beam.points = beam.directions <= BY_FEW_POINTS ? 64 : beam.directions <= BY_POINTS ? 256 : 0;
         if (status == FIBRAD_OK) status = fibrad_beam_compute(scene, space, i, &beam, row);
         if (status != FIBRAD_OK) return status;
         double most = 0;
@@ -188,14 +198,18 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     double beam_error, body[FIBRAD_BODIES_MAX], wall[FIBRAD_SLOTS], scale = 0;
     if (rule->emissivity[i] == 0) return empty_row(scene, row);
     fibrad_row leg = fibrad_row_scratch(space, body);
+    fibrad_paths paths = paths_of(task, space, scene, i);
+    want_legs(&paths, rule);
+    space->legs = paths.tracer->legs;
     int status = first_leg(scene, space, i, rule, &leg, &beam_error);
+    space->legs = NULL;
     if (status != FIBRAD_OK) return status;
 
     keep_first_leg(&space->entries, &leg);
     fibrad_copy(wall, space->wall, sizeof wall);
     const double carried = reflected_of(task, &leg, wall), met = 1 - leg.escaped - leg.beyond;
     const double weight = carried > 0 ? carried / fibrad_max(carried, met) : 0;
-    fibrad_paths paths = paths_of(task, space, scene, i);
+    paths.legs = paths.tracer->legs;
     paths.entries = &space->entries;
     fibrad_work_begin(space, scene, paths.place, rule->cutoff, (fibrad_stride){0});
     if (!fibrad_finite(carried)) return FIBRAD_E_ARGUMENT;

@@ -17,6 +17,7 @@ typedef struct fibrad_paths {
     fibrad_tracer *tracer;
     uint32_t place; /* position of the sphere that paths leave; FIBRAD_NONE: they leave a wall, without a cutoff */
     uint32_t from;  /* paths from a wall: its slot */
+    const fibrad_legs *legs;        /* NULL, or the first legs of the first paths */
     const fibrad_sobol *sobol;      /* paths from a wall: even points */
     double inverse;                 /* 1/L, of the radius of the sphere */
     bool cut;                       /* whether there is a cutoff or a known region */

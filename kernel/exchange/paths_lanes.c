@@ -19,6 +19,8 @@
 /* Coordinates that are quasi-random: those of the start and of the first two directions. Two more than four save a
  * tenth to a fifth of the rays. */
 #define QUASI_COORDINATES FIBRAD_SOBOL_DIMENSIONS
+/* Known first legs are used in steps of this prime, so that the first paths are from windows of all directions. */
+#define LEG_STRIDE UINT64_C(2654435761)
 
 /* A path so far. */
 struct grey_path {
@@ -169,20 +171,46 @@ static void reach_wall(const fibrad_scene *scene, struct grey_path *path, uint32
     path->place = FIBRAD_NONE;
 }
 
-/* Traces one ray, to a sphere (FIBRAD_NONE) or to a wall or a mesh, whose slot is returned; FIBRAD_ESCAPED,
- * FIBRAD_BEYOND: it meets none of them, or what is nobody's. */
-static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3]) {
+/* The sphere that a first leg meets, if it is known. */
+static void meet_known(const fibrad_paths *paths, const fibrad_leg *leg, fibrad_hit *hit) {
+    const fibrad_scene *scene = paths->tracer->scene;
+    const double unit = scene->r[paths->place], r = scene->r[leg->sphere] * paths->inverse;
+    const double *c = leg->centre, *w = leg->w, *n = leg->n;
+    const double e[3] = {c[0] - n[0], c[1] - n[1], c[2] - n[2]};
+    const double along = e[0] * w[0] + e[1] * w[1] + e[2] * w[2];
+    const double across[3] = {e[0] - along * w[0], e[1] - along * w[1], e[2] - along * w[2]};
+    const double square = r * r - (across[0] * across[0] + across[1] * across[1] + across[2] * across[2]);
+    const double root = fibrad_sqrt(fibrad_max(0, square)), scale = 1 / r;
+    *hit = (fibrad_hit){.side = FIBRAD_NO_SIDE, .sphere = leg->sphere, .distance = unit * fibrad_max(0, along - root)};
+    for (int axis = 0; axis < 3; axis++) {
+        hit->centre[axis] = unit * c[axis];
+        hit->normal[axis] = -(across[axis] + root * w[axis]) * scale;
+    }
+}
+
+/* Whether the sphere that a leg meets can be told without tracing a ray. */
+static bool is_met_known(const fibrad_paths *paths, const fibrad_leg *leg) {
+    const fibrad_scene *scene = paths->tracer->scene;
+    return leg != NULL && leg->sphere != FIBRAD_NONE && scene->clear == NULL &&
+           !fibrad_walls_cut_place(scene, leg->sphere);
+}
+
+/* Traces one ray, unless `known` tells what it meets, to a sphere (FIBRAD_NONE) or to a wall or a mesh, whose slot is
+ * returned; FIBRAD_ESCAPED, FIBRAD_BEYOND: it meets none of them, or what is nobody's. */
+static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3], const fibrad_leg *known) {
     const fibrad_scene *scene = paths->tracer->scene;
     fibrad_hit hit;
     double centre[3], point[3], distance;
-    paths->rays++;
+    paths->rays += !is_met_known(paths, known);
     find_point(scene, path, centre, point);
     if (path->place != FIBRAD_NONE) {
         const uint32_t behind = fibrad_walls_behind(scene, path->place, path->n, point);
         if (behind != FIBRAD_NONE) reach_wall(scene, path, behind, FIBRAD_NO_SIDE, point);
         if (behind != FIBRAD_NONE) return behind;
     }
-    if (path->place != FIBRAD_NONE)
+    if (is_met_known(paths, known))
+        meet_known(paths, known, &hit);
+    else if (path->place != FIBRAD_NONE)
         LANED(fibrad_trace)(paths->tracer, path->place, path->n, w, &hit);
     else
         LANED(fibrad_trace_point)(scene, path->point, w, path->triangle, &hit);
@@ -269,6 +297,19 @@ static void start_at_wall(const fibrad_paths *paths, struct grey_path *path) {
     fibrad_wall_normal(scene, paths->from, path->point, path->n);
 }
 
+/* The direction in which a path goes on. Of a path whose first leg is known the first two are. */
+static void next_direction(const fibrad_paths *paths, struct grey_path *path, const fibrad_leg *known, uint32_t leg,
+                           double w[3]) {
+    if (known == NULL || leg > 1) {
+        draw_direction(paths, path, w);
+        return;
+    }
+    for (int axis = 0; axis < 3 && leg == 0; axis++) w[axis] = known->w[axis];
+    if (leg == 0) return;
+    const double(*even)[FIBRAD_LEGS_ROOM] = paths->legs->even;
+    direction_about(path->n, (double[3]){even[0][path->k], even[1][path->k], even[2][path->k]}, w);
+}
+
 static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]) {
     struct grey_path path = {.k = k,
                              .sobol = sobol,
@@ -276,13 +317,20 @@ static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]
                              .weight = 1,
                              .place = paths->place,
                              .triangle = FIBRAD_NO_SIDE};
-    next_sphere_point(paths, &path, path.n);
+    const fibrad_leg *known = NULL;
+    if (paths->legs != NULL && k < paths->legs->length) {
+        path.k = k * LEG_STRIDE % paths->legs->length;
+        known = &paths->legs->leg[path.k];
+        fibrad_copy(path.n, known->n, sizeof path.n);
+    } else {
+        next_sphere_point(paths, &path, path.n);
+    }
     if (path.place == FIBRAD_NONE) start_at_wall(paths, &path);
     for (uint32_t leg = 0; leg < PATH_LEGS && path.weight > 0; leg++) {
         const bool counts = leg > 0 || paths->first;
         double w[3];
-        draw_direction(paths, &path, w);
-        const uint32_t met = trace_leg(paths, &path, w);
+        next_direction(paths, &path, known, leg, w);
+        const uint32_t met = trace_leg(paths, &path, w, leg == 0 ? known : NULL);
         if (met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND) {
             if (counts) *(met == FIBRAD_ESCAPED ? &paths->escaped : &paths->beyond) += path.weight;
             return;
@@ -336,7 +384,7 @@ static void follow_walk(fibrad_paths *paths, uint64_t k) {
     while (steps < 2 * paths->flights) {
         scatter(paths, &path, steps);
         draw_direction(paths, &path, w);
-        if (trace_leg(paths, &path, w) != FIBRAD_NONE) {
+        if (trace_leg(paths, &path, w, NULL) != FIBRAD_NONE) {
             paths->lost++;
             break;
         }

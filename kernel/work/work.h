@@ -120,6 +120,25 @@ typedef struct fibrad_work_plan {
     size_t extra;     /* bytes for other methods */
 } fibrad_work_plan;
 
+/* The first leg of a path: a beam of a window. */
+typedef struct fibrad_leg {
+    double n[3], w[3]; /* outward normal of sphere i where the beam leaves, and direction of the beam */
+    double centre[3];  /* of the sphere that the beam meets, in radii of sphere i, from the centre of sphere i */
+    uint32_t sphere;   /* place of the sphere met; FIBRAD_NONE: not known */
+} fibrad_leg;
+
+/* First legs that a beam row takes from its windows, equally many from each. */
+#define FIBRAD_LEGS      2048u
+#define FIBRAD_LEGS_ROOM (FIBRAD_LEGS + FIBRAD_LANES_MAX)
+typedef struct fibrad_legs {
+    uint64_t shift[4];                       /* of the four coordinates of each leg */
+    uint32_t wanted, length;                 /* wanted: at most FIBRAD_LEGS */
+    _Alignas(64) double x[FIBRAD_LEGS_ROOM]; /* where the beams pass their windows */
+    double y[FIBRAD_LEGS_ROOM];              /* [same] */
+    double even[3][FIBRAD_LEGS_ROOM];        /* points of the unit sphere, for the directions in which paths go on */
+    fibrad_leg leg[FIBRAD_LEGS];
+} fibrad_legs;
+
 /* The inside of a fibrad_work. Only `extra` lasts from one call to the next. */
 typedef struct fibrad_workspace {
     uint64_t seal;           /* shows that this block is laid out */
@@ -148,6 +167,7 @@ typedef struct fibrad_workspace {
     uint32_t back;             /* a triangle seen from a side that belongs to no wall; UINT32_MAX: none */
     bool cut;                  /* whether there is a cutoff or a known region */
     fibrad_wall_room *walls;   /* NULL unless plan.walls */
+    fibrad_legs *legs;         /* NULL, or first legs that a beam row takes from its windows */
     double wall[FIBRAD_SLOTS]; /* by slot: areas, points or rays; then factors */
 } fibrad_workspace;
 
