@@ -19,6 +19,7 @@
  *   silhouettes  all rows at once, without averaging    fibrad_silhouettes_size, _init, _tasks, _task, _join, _row
  *   drift      which rows may stay when spheres move    fibrad_drift_row, _partners
  *   exchange   factors after reflections (grey)         fibrad_exchange_row, _body, _body_mean, _displacement
+ *              spheres that conduct                     fibrad_node_emissivity, fibrad_exchange_walk
  *              powers from rows                         fibrad_rows_flow, fibrad_flow
  *
  * Other headers
@@ -823,7 +824,8 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
  *   directions, tolerance   used               not used           not used                      not used
  *   cutoff                  used               used               must be 0                     must be 0
  *   paths, seed             used               used               used                          used
- *   conductivity            not used           not used           not used                      needed
+ *   conductivity            with nodes         not used           with nodes                    needed
+ *   node_emissivity         spheres conduct    not used           spheres conduct               not used
  *   flights                 not used           not used           not used                      used */
 typedef struct fibrad_exchange_rule {
     const double *emissivity;      /* [spheres], 0 to 1 */
@@ -836,8 +838,26 @@ typedef struct fibrad_exchange_rule {
     /* [spheres], relative conductivity k* = k_s/(4 d sigma T^3) with the conductivity k_s of the solid, the diameter d
      * and the mean temperature T; from FIBRAD_RELATIVE_CONDUCTIVITY_MIN, INFINITY: the sphere has one temperature */
     const double *conductivity;
-    uint32_t flights; /* of _walk, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
+    const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: one temperature a sphere */
+    uint32_t flights;              /* of _walk, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
 } fibrad_exchange_rule;
+
+/* The emissivity of the node of a sphere that conducts, whose temperature differs from point to point. Let E_i be
+ * sigma T_i^4 at the mean temperature of sphere i, about which emission is linear. Let q_i be its net power, A_i its
+ * area, e_i its emissivity and n_i that of its node. Rows with rule->node_emissivity are exchange factors D_ij between
+ * the node values N_i, with A_i n_i D_ij = A_j n_j D_ji:
+ *
+ *     q_i = sum over j of A_i n_i D_ij (N_j - N_i),   N_i = E_i - (1/n_i - 1/e_i) q_i/A_i.
+ *
+ * j counts walls and surroundings, too, whose N is E. So the powers follow from a linear system. No factor is below 0.
+ * A matrix of such rows takes the emissivities of the nodes (fibrad_matrix_rule).
+ *   Input    emissivity: 0 to 1
+ *            conductivity: k*, from FIBRAD_RELATIVE_CONDUCTIVITY_MIN; INFINITY: the result is the emissivity
+ *   Output   above 0 to the emissivity; 0 if the emissivity is 0
+ *   Errors   NaN: a number is out of its range
+ *   Cost     0.1 microseconds
+ *   Source   docs/methods_heat.md section 15 */
+double fibrad_node_emissivity(double emissivity, double conductivity);
 
 /* Row i of the exchange factors of a scene. row->f holds D_ij. Factors to walls, `escaped` and `beyond` count all
  * reflections, too. Their sum is 1 to rounding. The row of a sphere of emissivity 0 is empty, and its sum is 0. No
@@ -848,7 +868,8 @@ typedef struct fibrad_exchange_rule {
  *            rays: rays traced; may be NULL
  *   Errors   as fibrad_beam_row. The emissivities of sphere i, of walls, and of spheres that are met are checked.
  *   Cost     the beam row, and 0.1 to 0.2 microseconds per ray. A path has about 2 rays at emissivity 0.8 and 14 at
- *            0.2. If work memory may grow, this function takes up to 6 MB more, for speed.
+ *            0.2. Of spheres that conduct, the emissivity of the nodes counts. If work memory may grow, this function
+ *            takes up to 6 MB more, for speed.
  *   Source   docs/methods_heat.md section 2 */
 int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
                         fibrad_row *row, uint64_t *rays);

@@ -116,9 +116,8 @@ START_TEST(extremes_of_a_ball) {
         double to[3];
         const double pair[] = {u[k % 4], u[k / 4 % 4]};
         memcpy(to, n, sizeof to);
-        const double above = fibrad_conduct(exponent[k / 16 % 6], pair, k / 96 ? n : even, to);
+        fibrad_conduct(exponent[k / 16 % 6], pair, k / 96 ? n : even, to);
         ck_assert_double_eq_tol(to[0] * to[0] + to[1] * to[1] + to[2] * to[2], 1, 1e-12);
-        ck_assert(above >= 0 && above <= 1);
     }
 }
 END_TEST

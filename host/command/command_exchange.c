@@ -6,15 +6,19 @@
 
 #include "bed/bed_scene.h"
 #include "cli/message.h"
-#include "frames/bed_options.h"
 #include "command/commands.h"
+#include "frames/solid_option.h"
 #include "plot/plot_bed.h"
 #include "write/write.h"
 
-enum { KEY_DROP = KEY_OWN };
+enum { KEY_DROP = KEY_OWN, KEY_EXCHANGE_TEMPERATURE };
 
 static const struct option exchange_table[] = {
     {OPTION_EMISSIVITY},
+    {OPTION_SOLID_CONDUCTIVITY},
+    {KEY_EXCHANGE_TEMPERATURE, "temperature", "T",
+     "mean temperatures of the spheres, for --solid-conductivity: a number, or TYPE:T,..., or a column of the file"},
+    {OPTION_TEMPERATURE_UNIT},
     {KEY_RAYS, "rays", "N", "paths from each sphere, for reflections; the error falls as N^-0.5 [400]"},
     {KEY_DIRECTIONS, "directions", "N",
      "directions of beams, for the way to the first surface, " TEXT_DIRECTIONS
@@ -38,7 +42,8 @@ static const struct option exchange_table[] = {
 struct exchange_request {
     struct bed_options bed;
     const char *wall_emissivity;
-    struct quantity emissivity;
+    struct quantity emissivity, solid, temperature;
+    double zero; /* 0 of the unit of temperature [K] */
     struct walls walls;
     fibrad_exchange_rule rule;
     fibrad_bed_options options;
@@ -59,12 +64,20 @@ static int exchange_help(void) {
          "in square metres and T in kelvins. A sphere of emissivity 0 reflects everything. It has no row and no\n"
          "column.\n"
          "\n"
+         "--solid-conductivity: Temperatures differ from point to point of each sphere. D_ij then is between nodes\n"
+         "of emissivities n_i (`node_emissivity` in .npz and .json), and N_i takes the place of sigma T_i^4. The net\n"
+         "power q_i is the sum over j of A_i n_i D_ij (N_j - N_i), N_i = sigma T_i^4 - (1/n_i - 1/e_i) q_i/A_i. So\n"
+         "the powers follow from a linear system. Walls and surroundings have N = sigma T^4. k* = k_s/(4 d sigma T^3)\n"
+         "is that at --temperature, whatever the temperatures are for which D_ij is used.\n"
+         "\n"
          "Several frames go into one .csv or .json with their numbers. If OUT has a *, each frame has a file.\n"
          "Standard output ends with a summary of each frame, one `key value` on a line.\n"
          "\n"
          "Examples:\n"
          "  fibrad exchange packing.dump --emissivity 0.8 --error 0.01 -o D.csv\n"
          "  fibrad exchange packing.dump --emissivity 1:0.8,2:0.3 --frame all -o 'D.*.npz'\n"
+         "  fibrad exchange pebbles.csv --length-unit m --emissivity 0.8 --temperature T --solid-conductivity 30 -o "
+         "D.npz\n"
          "  fibrad exchange packing.csv --emissivity e --wall box --wall-emissivity zmin=0.3,0.9 --rays 2000 -o D.npz");
     return STATUS_OK;
 }
@@ -74,6 +87,12 @@ static int exchange_take(struct exchange_request *request, const struct options 
     switch (key) {
     case KEY_EMISSIVITY:
         return quantity_option("--emissivity", value, 0, 1, &request->emissivity);
+    case KEY_SOLID_CONDUCTIVITY:
+        return solid_option(value, &request->solid);
+    case KEY_EXCHANGE_TEMPERATURE: /* --temperature-unit may follow */
+        return quantity_option("--temperature", value, -KELVIN_OF_0_CELSIUS, TEMPERATURE_MAX, &request->temperature);
+    case KEY_TEMPERATURE_UNIT:
+        return temperature_unit_option(value, &request->zero);
     case KEY_RAYS:
         request->counted = true;
         return options_count("--rays", value, 1, FIBRAD_PATHS_MAX, &request->rule.paths);
@@ -105,8 +124,13 @@ static int exchange_check(struct exchange_request *request) {
         return message(STATUS_USAGE, "--error chooses rays and directions; leave out --rays and --directions");
     if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw");
+    if (request->solid.given != request->temperature.given)
+        return message(STATUS_USAGE, "--solid-conductivity and --temperature need each other; %s is missing",
+                       request->solid.given ? "--temperature" : "--solid-conductivity");
     request->options.scratch = request->bed.scratch;
     bed_options_quantity(&request->bed, &request->emissivity, NULL);
+    bed_options_quantity(&request->bed, &request->solid, NULL);
+    bed_options_quantity(&request->bed, &request->temperature, request->zero > 0 ? "C" : "K");
     return bed_options_check(&request->bed, "exchange", CONTENT_MATRIX);
 }
 
@@ -118,6 +142,20 @@ static int exchange_parse(struct exchange_request *request, int argc, char **arg
     return status ? status : exchange_check(request);
 }
 
+/* Reports conductivities of the solid, and emissivities of nodes. */
+static void exchange_report_solid(struct exchange_request *request, uint32_t n) {
+    const double *relative = request->rule.conductivity, *node = request->rule.node_emissivity;
+    struct report *report = &request->bed.report;
+    double mean = 0, mean_node = 0, range[2] = {INFINITY, 0};
+    for (uint32_t i = 0; i < n; ++i) {
+        range[0] = fmin(range[0], relative[i]), range[1] = fmax(range[1], relative[i]);
+        mean += relative[i] / n, mean_node += node[i] / n;
+    }
+    quantity_report(&request->temperature, request->zero > 0 ? "temperature_C" : "temperature_K", report);
+    solid_report(&request->solid, mean, range, report);
+    report_value(report, "node_emissivity", mean_node, 6);
+}
+
 static void exchange_report(struct exchange_request *request, const struct contents *what) {
     const fibrad_bed_factors *factors = what->factors;
     struct report *report = &request->bed.report;
@@ -126,6 +164,7 @@ static void exchange_report(struct exchange_request *request, const struct conte
     bed_options_report(&request->bed, what->bed, what->walls, &factors->facts);
     quantity_report(&request->emissivity, "emissivity", report);
     wall_values_report(what->walls, request->rule.body_emissivity, "_emissivity", 6, report);
+    if (request->solid.given) exchange_report_solid(request, what->bed->n);
     report_count(report, "directions", factors->directions);
     report_count(report, "rays", factors->rays);
     if (request->rule.tolerance > 0)
@@ -162,9 +201,30 @@ static int exchange_matrix(struct exchange_request *request, struct bed *bed) {
     return status;
 }
 
+/* With --solid-conductivity finds k* and the emissivity of the node of each sphere, *relative [2 n]. Free it also after
+ * an error. */
+static int exchange_solid(struct exchange_request *request, const struct bed *bed, double **relative) {
+    fibrad_exchange_rule *rule = &request->rule;
+    double *solid = NULL, *temperature = NULL, metres;
+    if (!request->solid.given) return STATUS_OK;
+    double *node = (*relative = malloc(2 * bed->n * sizeof **relative)) ? *relative + bed->n : NULL;
+    int status = node ? STATUS_OK : message_memory();
+    if (!status)
+        status = quantity_values(&request->temperature, bed, request->bed.name, "temperature in kelvins", request->zero,
+                                 0, TEMPERATURE_MAX, &temperature);
+    if (!status) status = solid_values(&request->bed, bed, &request->solid, &solid, &metres);
+    if (!status) status = solid_relative(&request->bed, bed, &request->solid, temperature, metres, solid, *relative);
+    for (uint32_t i = 0; i < bed->n && !status; ++i)
+        node[i] = fibrad_node_emissivity(rule->emissivity[i], (*relative)[i]);
+    rule->conductivity = *relative, rule->node_emissivity = node;
+    free(solid);
+    free(temperature);
+    return status;
+}
+
 static int exchange_frame(void *exchange_request, struct bed *bed) {
     struct exchange_request *request = exchange_request;
-    double *emissivity = NULL, wall_emissivity[WALLS_MAX];
+    double *emissivity = NULL, *relative = NULL, wall_emissivity[WALLS_MAX];
     const char *file = request->bed.name;
     int status = bed_options_walls(&request->bed, bed, &request->walls);
     if (!status) status = wall_emissivities(request->wall_emissivity, &request->walls, wall_emissivity);
@@ -172,13 +232,17 @@ static int exchange_frame(void *exchange_request, struct bed *bed) {
     request->rule.emissivity = emissivity;
     request->rule.body_emissivity = wall_emissivity;
     request->options.bodies = 1;
+    if (!status) status = exchange_solid(request, bed, &relative);
     if (!status) status = exchange_matrix(request, bed);
     free(emissivity);
+    free(relative);
     return status;
 }
 
 int command_exchange(int argc, char **argv) {
     struct exchange_request request = {0};
     const int status = exchange_parse(&request, argc, argv);
-    return bed_options_end(&request.bed, status, exchange_help, exchange_frame, &request);
+    const int ended = bed_options_end(&request.bed, status, exchange_help, exchange_frame, &request);
+    quantity_free(&request.solid);
+    return ended;
 }

@@ -117,9 +117,12 @@ int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres 
 /* Checks what is given of all spheres, since paths may meet each of them. The fault names the first invalid one. */
 static int check_spheres(fibrad_job *job, const fibrad_exchange_rule *rule) {
     if (!rule || (!rule->emissivity && job->facts.spheres > 0)) return FIBRAD_E_ARGUMENT;
+    if (rule->node_emissivity && !rule->conductivity) return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < job->facts.spheres; ++i) {
         const bool grey = rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1;
-        const bool solid = !rule->conductivity || rule->conductivity[i] >= FIBRAD_RELATIVE_CONDUCTIVITY_MIN;
+        const double node = rule->node_emissivity ? rule->node_emissivity[i] : 0;
+        const bool solid = !rule->conductivity || (rule->conductivity[i] >= FIBRAD_RELATIVE_CONDUCTIVITY_MIN &&
+                                                   node >= 0 && node <= rule->emissivity[i]);
         if (grey && solid) continue;
         const int why = grey ? FIBRAD_WHY_CONDUCTIVITY : FIBRAD_WHY_EMISSIVITY;
         if (job->run) job->run->fault = (fibrad_fault){i, i, UINT32_MAX, 0, why};
@@ -136,7 +139,7 @@ static int run_exchange(fibrad_job *job, const fibrad_exchange_rule *rule, const
     walls.paths = fibrad_job_body_paths(job, PER_PATH * (uint64_t)(rule->paths ? rule->paths : 400));
     const int status = plan_matrix(job, options, &walls, body_row, &how);
     if (status) return status;
-    how.emissivity = rule->emissivity;
+    how.emissivity = rule->node_emissivity ? rule->node_emissivity : rule->emissivity;
     if (rule->tolerance > 0 && !how.raw) return fibrad_job_exchange(job, row_by_paths, rule, &how, factors);
     return run_rule(job, row_by_paths, rule, options, &how, factors);
 }

@@ -107,15 +107,17 @@ static void write_wall_row(struct csv *csv, uint32_t k) {
 static int write_walls(struct csv *csv) {
     const struct contents *what = csv->what;
     const struct bed *bed = what->bed;
+    const double *emissivity = what->grey ? what->grey->emissivity : NULL;
     char name[BODY_NAME];
+    if (what->grey && what->grey->node_emissivity) emissivity = what->grey->node_emissivity;
     for (uint32_t k = 0; k < what->walls->count; ++k) {
         if (interrupt_status()) return interrupt_status();
         const double weight = what->factors->body_area[k] * (what->grey ? what->grey->body_emissivity[k] : 1);
         if (!(weight > 0 && weight < INFINITY)) continue;
         for (uint32_t j = 0; j < bed->n; ++j)
             write_entry(csv, FIRST_WALL - (int64_t)k, bed_name(bed, j),
-                        4 * M_PI * bed->r[j] * bed->r[j] * (what->grey ? what->grey->emissivity[j] : 1) *
-                            wall_factor(what, j, k) / weight,
+                        4 * M_PI * bed->r[j] * bed->r[j] * (emissivity ? emissivity[j] : 1) * wall_factor(what, j, k) /
+                            weight,
                         contents_body(what, k, name));
         write_wall_row(csv, k);
     }

@@ -96,6 +96,8 @@ int write_json(FILE *file, const struct contents *what, bool first) {
     json_reals(file, ",", "escaped", matrix->escaped, matrix->n, 1, what->wanted);
     json_reals(file, ",", "beyond", matrix->beyond, matrix->n, 1, what->wanted);
     json_reals(file, ",", "error", matrix->error, matrix->n, 1, what->wanted);
+    if (what->grey && what->grey->node_emissivity)
+        json_reals(file, ",", "node_emissivity", what->grey->node_emissivity, matrix->n, 1, NULL);
     for (uint32_t k = 0; k < walls; ++k)
         json_reals(file, k > 0 ? "," : ",\"walls\":{", contents_body(what, k, name), matrix->body + k, matrix->n, walls,
                    what->wanted);

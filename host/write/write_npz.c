@@ -201,6 +201,8 @@ static void add_rows(struct arrays *arrays, const struct contents *what, char na
     add_array(arrays, (struct array){"error.npy", "f8", matrix->error, n, 0});
     add_array(arrays, (struct array){"computed.npy", "u1", what->wanted, n, 0});
     if (what->grey) add_array(arrays, (struct array){"emissivity.npy", "f8", what->grey->emissivity, n, 0});
+    if (what->grey && what->grey->node_emissivity)
+        add_array(arrays, (struct array){"node_emissivity.npy", "f8", what->grey->node_emissivity, n, 0});
     if (walls == 0) return;
     add_array(arrays, (struct array){"body.npy", "f8", matrix->body, n, walls});
     add_array(arrays, wall_names(what, names));

@@ -12,6 +12,7 @@ static int body_begin(const fibrad_scene *scene, uint32_t body, const fibrad_exc
                       double wall_emissivity[FIBRAD_SLOTS]) {
     if (scene == NULL || rule == NULL) return FIBRAD_E_ARGUMENT;
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
+    if (!fibrad_nodes_given(rule)) return FIBRAD_E_ARGUMENT;
     if (body >= scene->facts.bodies || part >= FIBRAD_BODY_PARTS || rule->paths > FIBRAD_PATHS_MAX)
         return FIBRAD_E_ARGUMENT;
     const int status = fibrad_paths_emissivities(scene, rule->body_emissivity, wall_emissivity);
@@ -82,6 +83,7 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
     *row = (fibrad_body_row){0};
     if (wall_emissivity[scene->slot[body]] == 0) return FIBRAD_OK;
 
+    const bool nodes = rule->node_emissivity != NULL;
     const bool black = rule->emissivity == NULL && rule->body_emissivity == NULL;
     fibrad_sobol sobol;
     fibrad_sobol_make(&sobol);
@@ -92,7 +94,9 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
                           .place = FIBRAD_NONE,
                           .from = slot,
                           .sobol = &sobol,
-                          .emissivity = rule->emissivity,
+                          .emissivity = nodes ? rule->node_emissivity : rule->emissivity,
+                          .surface = rule->emissivity,
+                          .conductivity = nodes ? rule->conductivity : NULL,
                           .wall_emissivity = wall_emissivity,
                           .boxed = black && is_box(scene),
                           .stream = fibrad_random_start(rule->seed, UINT64_MAX - own),

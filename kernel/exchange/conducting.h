@@ -8,15 +8,26 @@
  *     K(g) = integral over t from 0 to 1 of a t^(a-1) P_t(g),   P_t(g) = (1 - t^2)/(4 pi (1 + t^2 - 2 t cos g)^(3/2)).
  *
  * Let U be an even random number in [0, 1]. Then t = U^(1/a) has the density a t^(a-1). P_t is Poisson's kernel, whose
- * integral has an inverse in closed form. P_t is least opposite the point: 4 pi P_t >= (1 - t)/(1 + t)^2. */
+ * integral has an inverse in closed form.
+ *
+ * P_t is least opposite the point: 4 pi P_t >= (1 - t)/(1 + t)^2. The mean m of this least value over t is the even
+ * part of K. The rest is (1 - m) K'. In K' t has a density in proportion to t^a (3 + t)/(1 + t)^2, and the distance
+ * (1 + t) s between (0, 0, t) and the point on the unit sphere follows from an even random number U:
+ *
+ *     (1 - s)^2 (2 + s)/s = 4 t^2 (3 + t) U/((1 + t)^2 (1 - t)). */
 #ifndef FIBRAD_EXCHANGE_CONDUCTING_H
 #define FIBRAD_EXCHANGE_CONDUCTING_H
 
+#include "base/constants.h"
 #include "base/elementary.h"
+#include "base/random.h"
 
 /* Below the first t all points are equally likely. Above the second t heat is given off where it was absorbed. */
 #define FIBRAD_CONDUCTED_ANYWHERE 1e-9
 #define FIBRAD_CONDUCTED_NOWHERE  (1 - 1e-12)
+
+/* Random numbers of fibrad_conduct_above. All trials fail once in 10^11 times. */
+#define FIBRAD_CONDUCTED_DRAWS 127
 
 /* Moves the unit vector n by the angle whose cosine is 1 - x, towards or away from `even`, a random unit vector. */
 static inline void fibrad_turn_by(double x, const double even[3], double n[3]) {
@@ -28,20 +39,54 @@ static inline void fibrad_turn_by(double x, const double even[3], double n[3]) {
     for (int axis = 0; axis < 3; axis++) n[axis] = (1 - x) * n[axis] + sine * across[axis];
 }
 
+/* Moves n to the point at that distance from t n, away from it by an angle towards or away from `even`. */
+static inline void fibrad_turn_to(double distance, double t, const double even[3], double n[3]) {
+    const double x = (distance - (1 - t)) * (distance + (1 - t)) / (2 * t);
+    fibrad_turn_by(fibrad_min(fibrad_max(x, 0), 2), even, n);
+}
+
 /* Moves n from the outward normal where a ball absorbs to the normal where the ball gives the absorbed heat off.
  * exponent: 1/a. If it is infinite, all points are equally likely. u: two even random numbers in [0, 1). even: a random
- * point of the unit sphere. Returns the fraction of P_t, for the t drawn, that is above its least value, 0 to 1. */
-static inline double fibrad_conduct(double exponent, const double u[2], const double even[3], double n[3]) {
+ * point of the unit sphere. */
+static inline void fibrad_conduct(double exponent, const double u[2], const double even[3], double n[3]) {
     const double t = u[0] > 0 ? fibrad_exp(fibrad_max(-800, exponent * fibrad_log(1 - u[0]))) : 1;
-    if (t > FIBRAD_CONDUCTED_NOWHERE) return 1;
+    if (t > FIBRAD_CONDUCTED_NOWHERE) return;
     if (t < FIBRAD_CONDUCTED_ANYWHERE) {
         for (int axis = 0; axis < 3; axis++) n[axis] = even[axis];
-        return 0;
+        return;
     }
-    const double least = 1 / (1 + t), rho = least + 2 * t * u[1] / ((1 - t) * (1 + t)), distance = 1 / rho;
-    const double x = (distance - (1 - t)) * (distance + (1 - t)) / (2 * t), share = least * distance;
-    fibrad_turn_by(fibrad_min(fibrad_max(x, 0), 2), even, n);
-    return 1 - share * share * share;
+    const double rho = 1 / (1 + t) + 2 * t * u[1] / ((1 - t) * (1 + t));
+    fibrad_turn_to(1 / rho, t, even, n);
 }
+
+/* Draws t of K'. At least a third of all trials succeed. */
+static inline double fibrad_conducted_depth(double a, fibrad_random random, uint64_t first) {
+    double t = 1;
+    for (uint64_t k = first; k < first + FIBRAD_CONDUCTED_DRAWS - 1; k += 2) {
+        const double u = 1 - fibrad_fraction(fibrad_random_ahead(random, k));
+        t = fibrad_exp(fibrad_max(-800, fibrad_log(u) / (a + 1)));
+        if (3 * (1 + t) * (1 + t) * fibrad_fraction(fibrad_random_ahead(random, k + 1)) < 3 + t) break;
+    }
+    return t;
+}
+
+/* Does what fibrad_conduct does, for K' instead of K. a: e/(2 k*). Takes random numbers first to
+ * first + FIBRAD_CONDUCTED_DRAWS - 1. The equation for s is s^3 - p s + 2 = 0. Its root between 0 and 1 is
+ * 2 sqrt(p/3) sin(q/3), sin q = (3/p)^(3/2). */
+static inline void fibrad_conduct_above(double a, fibrad_random random, uint64_t first, const double even[3],
+                                        double n[3]) {
+    const double t = fibrad_max(FIBRAD_CONDUCTED_ANYWHERE, fibrad_conducted_depth(a, random, first));
+    const double u = fibrad_fraction(fibrad_random_ahead(random, first + FIBRAD_CONDUCTED_DRAWS - 1));
+    if (t > FIBRAD_CONDUCTED_NOWHERE) return;
+    const double more = 4 * t * t * (3 + t) * u / ((1 + t) * (1 + t) * (1 - t)), p = 3 + more;
+    const double angle =
+        fibrad_quarter_angle(fibrad_sqrt(more * (p * p + 3 * p + 9)), 5.196152422706632); /* 27^(1/2) */
+    double sine, cosine;
+    fibrad_sincos_turn(angle / (6 * FIBRAD_PI), &sine, &cosine);
+    fibrad_turn_to(2 * fibrad_sqrt(p / 3) * sine * (1 + t), t, even, n);
+}
+
+/* m, the even part of K, 0 to 1. a: e/(2 k*). */
+double fibrad_conducted_evenly(double a);
 
 #endif

@@ -23,6 +23,7 @@
 /* A rule, with the emissivities of walls by slot, and what comes out of it besides the row. */
 typedef struct exchange_task {
     const fibrad_exchange_rule *rule;
+    const double *emissivity; /* [spheres], of nodes if spheres conduct */
     double wall_emissivity[FIBRAD_SLOTS];
     uint64_t rays;
 } exchange_task;
@@ -36,7 +37,7 @@ static int exchange_begin(exchange_task *task, const fibrad_scene *scene, uint32
     if (i >= scene->facts.spheres || (bodies > 0 && rule->body_emissivity == NULL)) return FIBRAD_E_ARGUMENT;
     if (!(rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1) || rule->paths > FIBRAD_PATHS_MAX)
         return FIBRAD_E_ARGUMENT;
-    *task = (exchange_task){.rule = rule};
+    *task = (exchange_task){.rule = rule, .emissivity = rule->emissivity};
     const int status = fibrad_paths_emissivities(scene, rule->body_emissivity, task->wall_emissivity);
     if (status != FIBRAD_OK) return status;
     const bool valid =
@@ -52,8 +53,8 @@ static fibrad_paths paths_of(const exchange_task *task, fibrad_workspace *space,
                           .inverse = 1 / scene->r[place],
                           .cut = task->rule->cutoff > 0 || scene->region,
                           .cutoff = task->rule->cutoff > 0 ? task->rule->cutoff / scene->r[place] : __builtin_inf(),
-                          .emissivity = task->rule->emissivity,
-                          .conductivity = task->rule->conductivity,
+                          .emissivity = task->emissivity,
+                          .surface = task->rule->emissivity,
                           .wall_emissivity = task->wall_emissivity,
                           .stream = fibrad_random_start(task->rule->seed, fibrad_scene_id(scene, i)),
                           .back = UINT32_MAX};
@@ -68,8 +69,9 @@ static void want_legs(const fibrad_paths *paths, const fibrad_exchange_rule *rul
 }
 
 /* The first leg: a beam row, and the error of what it makes spheres and walls absorb. */
-static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_exchange_rule *rule,
+static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const exchange_task *task,
                      fibrad_row *row, double *error) {
+    const fibrad_exchange_rule *rule = task->rule;
     fibrad_beam_rule beam = {.directions = rule->directions > 0 ? rule->directions : FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT,
                              .cutoff = rule->cutoff,
                              .turn = rule->seed};
@@ -79,7 +81,7 @@ static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_
         if (status == FIBRAD_OK) status = fibrad_beam_compute(scene, space, i, &beam, row);
         if (status != FIBRAD_OK) return status;
         double most = 0;
-        for (uint32_t k = 0; k < row->length; k++) most = fibrad_max(most, rule->emissivity[row->col[k]]);
+        for (uint32_t k = 0; k < row->length; k++) most = fibrad_max(most, task->emissivity[row->col[k]]);
         for (uint32_t b = 0; b < scene->facts.bodies; b++)
             if (row->body[b] > 0) most = fibrad_max(most, rule->body_emissivity[b]);
         *error = most * row->error;
@@ -94,7 +96,7 @@ static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_
 static double reflected_of(const exchange_task *task, const fibrad_row *row, const double wall[FIBRAD_SLOTS]) {
     uint64_t units = 0;
     for (uint32_t k = 0; k < row->length; k++) {
-        const double part = row->f[k] * (1 - task->rule->emissivity[row->col[k]]);
+        const double part = row->f[k] * (1 - task->emissivity[row->col[k]]);
         if (!(part >= 0 && part <= 2)) return __builtin_nan("");
         units += (uint64_t)(part * 0x1p60);
     }
@@ -169,13 +171,12 @@ static void keep_first_leg(fibrad_entries *entries, fibrad_row *leg) {
 }
 
 /* Adds the first leg to the scaled sums of the paths. */
-static void add_first_leg(fibrad_workspace *work, const fibrad_exchange_rule *rule, const fibrad_row *row,
-                          double scale) {
+static void add_first_leg(fibrad_workspace *work, const double *of_sphere, const fibrad_row *row, double scale) {
     fibrad_entries *entries = &work->entries;
     for (uint32_t k = 0; k < entries->length; k++)
         for (int part = 0; part < 4; part++) entries->part[k][part] *= scale;
     for (uint32_t k = 0; k < row->length; k++) {
-        const double emissivity = rule->emissivity[row->col[k]];
+        const double emissivity = of_sphere[row->col[k]];
         for (uint32_t part = 0; part < 4 && emissivity > 0; part++)
             fibrad_entries_add(entries, fibrad_entries_of(entries, work->scene->place[row->col[k]]), part,
                                0.25 * row->f[k] * emissivity);
@@ -196,12 +197,12 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     exchange_task *task = *(exchange_task *const *)of;
     const fibrad_exchange_rule *rule = task->rule;
     double beam_error, body[FIBRAD_BODIES_MAX], wall[FIBRAD_SLOTS], scale = 0;
-    if (rule->emissivity[i] == 0) return empty_row(scene, row);
+    if (task->emissivity[i] == 0) return empty_row(scene, row);
     fibrad_row leg = fibrad_row_scratch(space, body);
     fibrad_paths paths = paths_of(task, space, scene, i);
     want_legs(&paths, rule);
     space->legs = paths.tracer->legs;
-    int status = first_leg(scene, space, i, rule, &leg, &beam_error);
+    int status = first_leg(scene, space, i, task, &leg, &beam_error);
     space->legs = NULL;
     if (status != FIBRAD_OK) return status;
 
@@ -211,6 +212,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     const double weight = carried > 0 ? carried / fibrad_max(carried, met) : 0;
     paths.legs = paths.tracer->legs;
     paths.entries = &space->entries;
+    if (rule->node_emissivity != NULL) paths.conductivity = rule->conductivity;
     fibrad_work_begin(space, scene, paths.place, rule->cutoff, (fibrad_stride){0});
     if (!fibrad_finite(carried)) return FIBRAD_E_ARGUMENT;
     if (carried > 0) { /* what no path has found counts as escaped or, with a cutoff, beyond, and as an error */
@@ -219,15 +221,15 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
         space->back = paths.back;
         if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
         double sum = fibrad_paths_sum(&paths);
-        scale = sum > 0 ? carried / sum : 0;
+        scale = sum != 0 ? carried / sum : 0;
         if (sum == 0) *(paths.cut ? &paths.beyond : &paths.escaped) = carried, scale = 1, beam_error += carried;
     }
     /* the first leg adds the same to all parts: it would leave nothing but rounding */
     const double paths_error = fibrad_min(carried, scale * spread_of_parts(&space->entries, weight));
-    add_first_leg(space, rule, &leg, scale);
+    add_first_leg(space, task->emissivity, &leg, scale);
     if (space->entries.missed > 0) return fibrad_work_entries_missed(space);
     const double error = fibrad_sqrt(paths_error * paths_error + beam_error * beam_error) + lost_of(&paths, carried);
-    if (!fibrad_finite(error + scale)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
+    if (!fibrad_finite(error + scale)) return FIBRAD_E_ARGUMENT; /* a number on the way was not valid */
     status = fibrad_entries_row(&space->entries, scene, 1, row);
     if (status != FIBRAD_OK) return status;
     row->error = error;
@@ -246,6 +248,8 @@ int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i
     exchange_task task, *handle = &task;
     int status = exchange_begin(&task, scene, i, rule);
     if (status != FIBRAD_OK) return status;
+    if (rule->node_emissivity != NULL) task.emissivity = rule->node_emissivity;
+    if (!fibrad_nodes_given(rule) || !(task.emissivity[i] <= rule->emissivity[i])) return FIBRAD_E_ARGUMENT;
     const fibrad_row_method method = {exchange_compute, &handle, fibrad_tracer_least(), fibrad_tracer_best(scene)};
     status = fibrad_row_run(scene, work, i, &method, row);
     if (status == FIBRAD_OK && rays != NULL) *rays = task.rays;
@@ -285,7 +289,7 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
     const double count = (double)fibrad_paths_begin(&paths, rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT);
     work->triangle = paths.back;
     if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
-    if (!fibrad_finite(paths.absorbed)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
+    if (!fibrad_finite(paths.absorbed)) return FIBRAD_E_ARGUMENT; /* a number on the way was not valid */
     read_squares(&paths, count, displacement);
     for (int axis = 0; axis < 3; axis++)
         if (paths.left > 0 && paths.absorbed > 0) /* it would have gone on, and as far at least */
@@ -311,6 +315,7 @@ int fibrad_exchange_walk(const fibrad_scene *scene, fibrad_work *work, uint32_t 
     if (status != FIBRAD_OK) return status;
     const uint64_t count = rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT;
     fibrad_paths paths = paths_of(&task, space, scene, i);
+    paths.conductivity = rule->conductivity;
     paths.flights = rule->flights > 0 ? rule->flights : FIBRAD_FLIGHTS_DEFAULT;
     fibrad_paths_function *follow = FIBRAD_VERSION_OF(fibrad_paths_follow, scene->facts.isa);
     follow(&paths, 0, count);

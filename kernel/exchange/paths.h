@@ -2,7 +2,8 @@
  * MIT
  *
  * A path carries a weight, 1 at first. Every surface that the path meets absorbs a fraction of the weight. The path
- * goes on with the remaining weight, in a random direction by the cosine law. */
+ * goes on with the remaining weight, in a random direction by the cosine law. From a sphere that conducts the path goes
+ * on either where it arrived, or from the point to which the sphere has conducted it. */
 #ifndef FIBRAD_EXCHANGE_PATHS_H
 #define FIBRAD_EXCHANGE_PATHS_H
 
@@ -22,8 +23,9 @@ typedef struct fibrad_paths {
     double inverse;                 /* 1/L, of the radius of the sphere */
     bool cut;                       /* whether there is a cutoff or a known region */
     double cutoff;                  /* from the centre of the sphere, in its radii; infinity: none */
-    const double *emissivity;       /* [spheres], by the caller's index; NULL: all are black */
+    const double *emissivity;       /* [spheres], by the caller's index: what is absorbed; NULL: all are black */
     const double *conductivity;     /* [spheres], relative, by the caller's index; NULL: one temperature a sphere */
+    const double *surface;          /* [spheres], then: emissivities of the surfaces; emissivity: those of nodes */
     uint32_t flights;               /* above 0: a walk, see below */
     const double *wall_emissivity;  /* [FIBRAD_SLOTS], by slot */
     bool boxed;                     /* paths from a side of a closed box, where all is black */
@@ -54,6 +56,11 @@ static inline int fibrad_paths_emissivities(const fibrad_scene *scene, const dou
         wall[scene->slot[b]] = emissivity;
     }
     return FIBRAD_OK;
+}
+
+/* Whether emissivities of nodes come with what they follow from. */
+static inline bool fibrad_nodes_given(const fibrad_exchange_rule *rule) {
+    return rule->node_emissivity == NULL || (rule->emissivity != NULL && rule->conductivity != NULL);
 }
 
 /* Follows paths begin to end - 1, and adds to the sums.

@@ -310,6 +310,22 @@ static void next_direction(const fibrad_paths *paths, struct grey_path *path, co
     direction_about(path->n, (double[3]){even[0][path->k], even[1][path->k], even[2][path->k]}, w);
 }
 
+/* A path goes on from a sphere that conducts: where it was reflected, or where the sphere gives off what it has
+ * absorbed and does not keep. */
+static void leave_sphere(fibrad_paths *paths, struct grey_path *path, uint32_t leg) {
+    const uint32_t i = paths->tracer->scene->order[path->place];
+    const double surface = paths->surface[i], node = paths->emissivity[i], conductivity = paths->conductivity[i];
+    const uint64_t first = UINT64_C(2) << 32 | (uint64_t)leg << 8;
+    double even[3];
+    if (!(surface >= node && surface <= 1 && conductivity >= FIBRAD_RELATIVE_CONDUCTIVITY_MIN)) {
+        paths->absorbed = __builtin_nan("");
+        return;
+    }
+    if (fibrad_fraction(fibrad_random_ahead(path->own, first)) * (1 - node) < 1 - surface) return;
+    next_sphere_point(paths, path, even);
+    fibrad_conduct_above(surface / (2 * conductivity), path->own, first + 1, even, path->n);
+}
+
 static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]) {
     struct grey_path path = {.k = k,
                              .sobol = sobol,
@@ -341,6 +357,7 @@ static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]
             if (draw * ROULETTE_WEIGHT >= path.weight) return;
             path.weight = ROULETTE_WEIGHT;
         }
+        if (met == FIBRAD_NONE && paths->conductivity != NULL) leave_sphere(paths, &path, leg);
     }
     paths->left += path.weight;
 }
@@ -348,7 +365,7 @@ static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]
 /* A path arrives at a sphere that conducts. It is reflected there, or absorbed and given off at another point. */
 static void scatter(fibrad_paths *paths, struct grey_path *path, uint32_t leg) {
     const uint32_t i = paths->tracer->scene->order[path->place];
-    const double emissivity = paths->emissivity[i], conductivity = paths->conductivity[i];
+    const double emissivity = paths->surface[i], conductivity = paths->conductivity[i];
     double draw[3], even[3];
     if (!(emissivity >= 0 && emissivity <= 1 && conductivity >= FIBRAD_RELATIVE_CONDUCTIVITY_MIN))
         paths->origins = __builtin_nan("");
