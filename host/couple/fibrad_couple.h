@@ -111,6 +111,8 @@ typedef struct fibrad_insitu_bed {
     const double *x;                          /* L, [n][3], centres */
     const double *radius;                     /* L, [n] */
     const double *emissivity;                 /* [n], 0 to 1; 0 reflects everything */
+    /* [n], k* as in fibrad_exchange_rule, at the temperatures of this call; NULL: infinite, one temperature each */
+    const double *conductivity;
 } fibrad_insitu_bed;
 
 /* Temperatures for which powers are computed. All ranks together have the particles of the rows. */
@@ -184,7 +186,9 @@ int fibrad_insitu_follow(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, ui
  *   Errors   _ARGUMENT: a temperature or sigma is out of its range
  *            _STATE: there are no rows, or the ids are not those of the rows
  *            _MEMORY
- *   Cost     2 ns per entry, and some messages */
+ *            _UNSOLVABLE: rows of particles that conduct are too inaccurate for powers
+ *   Cost     2 ns per entry, and some messages. If particles conduct, some 10 to 40 times as much: `temperature` is
+ *            then the mean of each particle, and conjugate gradients find the node values */
 int fibrad_insitu_powers(fibrad_insitu *insitu, const fibrad_insitu_state *state, double *power,
                          fibrad_insitu_totals *totals);
 

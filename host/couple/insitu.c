@@ -51,8 +51,8 @@ static void close_set(fibrad_insitu_set *set, int threads) {
     free(set->rows);
     fibrad_link_free(set->seen);
     fibrad_link_free(set->present);
-    fibrad_block *const blocks[] = {&set->particle, &set->id,  &set->weight, &set->emission,
-                                    &set->power,    &set->now, NULL};
+    fibrad_block *const blocks[] = {&set->particle, &set->id,    &set->weight, &set->root,
+                                    &set->emission, &set->power, &set->now,    NULL};
     free_blocks(blocks);
 }
 
@@ -90,7 +90,8 @@ void fibrad_insitu_free(fibrad_insitu *s) {
     close_set(&s->next, s->config.threads);
     for (int t = 0; t < s->config.threads; ++t) free(s->work[t].memory.block);
     free(s->work);
-    fibrad_block *const blocks[] = {&s->scene, &s->order, &s->emissivity, &s->mark, &s->sent, &s->value, NULL};
+    fibrad_block *const blocks[] = {&s->scene, &s->order,  &s->emissivity, &s->mark,
+                                    &s->sent,  &s->solver, &s->value,      NULL};
     free_blocks(blocks);
     MPI_Comm_free(&s->comm);
     free(s);
@@ -103,7 +104,8 @@ const char *fibrad_insitu_remark(const fibrad_insitu *s, int kind) {
 }
 
 static size_t set_bytes(const fibrad_insitu_set *set, int threads) {
-    size_t sum = set->particle.size + set->id.size + set->weight.size + set->emission.size + set->power.size;
+    size_t sum =
+        set->particle.size + set->id.size + set->weight.size + set->emission.size + set->power.size + set->root.size;
     for (int t = 0; t < threads; ++t) sum += set->rows[t].memory.size;
     return sum + set->now.size;
 }
@@ -114,7 +116,7 @@ void fibrad_insitu_facts_get(const fibrad_insitu *s, fibrad_insitu_facts *facts)
     facts->seconds_rows = s->seconds_rows;
     facts->seconds_powers = s->seconds_powers;
     facts->bytes = set_bytes(&s->set, s->config.threads) + set_bytes(&s->next, s->config.threads) + s->scene.size +
-                   s->order.size + s->emissivity.size + s->mark.size + s->sent.size + s->value.size;
+                   s->order.size + s->emissivity.size + s->mark.size + s->sent.size + s->solver.size + s->value.size;
     for (int t = 0; t < s->config.threads; ++t) facts->bytes += s->work[t].memory.size;
 }
 
@@ -204,7 +206,11 @@ static int take_particles(struct insitu_build *b) {
     if (fibrad_block_fit(&b->to->particle, bed->n, sizeof(fibrad_particle))) return FIBRAD_E_MEMORY;
     fibrad_particle *particle = b->to->particle.at;
     for (size_t i = 0; i < bed->n; ++i) {
-        fibrad_particle p = {.id = bed->id[i], .radius = bed->radius[i], .emissivity = bed->emissivity[i]};
+        fibrad_particle p = {.id = bed->id[i],
+                             .radius = bed->radius[i],
+                             .emissivity = bed->emissivity[i],
+                             .conductivity = bed->conductivity ? bed->conductivity[i] : INFINITY};
+        p.node = fibrad_node_emissivity(p.emissivity, p.conductivity);
         for (int axis = 0; axis < 3; ++axis) {
             const double x = bed->x[3 * i + (size_t)axis], period = b->period[axis];
             if (!(fabs(x) <= FIBRAD_LENGTH_MAX)) return refuse_particle(message, p.id, "a coordinate is not finite");
@@ -214,6 +220,10 @@ static int take_particles(struct insitu_build *b) {
             return refuse_particle(message, p.id, "its radius is not above 0");
         if (!(p.emissivity >= 0 && p.emissivity <= 1))
             return refuse_particle(message, p.id, "its emissivity is not between 0 and 1");
+        if (isnan(p.node))
+            return fibrad_refuse(message, FIBRAD_E_ARGUMENT,
+                                 "particle %" PRIu64 ": its relative conductivity %g is not at least %g", p.id,
+                                 p.conductivity, FIBRAD_RELATIVE_CONDUCTIVITY_MIN);
         if (takes_part(b, &p, &status)) particle[own++] = p;
         if (status) return status;
     }
@@ -257,13 +267,14 @@ static double default_cutoff(const struct insitu_build *b, const double ends[6],
 static int measure_bed(struct insitu_build *b) {
     const fibrad_particle *particle = b->to->particle.at;
     const fibrad_insitu_config *config = &b->s->config;
-    double most[14] = {0, -1}; /* radius, -emissivity, high and -low of centres, high and -low of surfaces */
+    double most[15] = {0, -1}; /* radius, -emissivity, high and -low of centres and of surfaces, whether it conducts */
     uint64_t sum[2] = {b->own, 0};
     int status = FIBRAD_OK;
     for (int k = 2; k < 14; ++k) most[k] = -INFINITY;
     for (size_t i = 0; i < b->own; ++i) {
         most[0] = fmax(most[0], particle[i].radius);
-        most[1] = fmax(most[1], -particle[i].emissivity);
+        most[1] = fmax(most[1], -particle[i].node);
+        most[14] = fmax(most[14], particle[i].node < particle[i].emissivity);
         for (int axis = 0; axis < 3; ++axis) {
             most[2 + axis] = fmax(most[2 + axis], particle[i].x[axis]);
             most[5 + axis] = fmax(most[5 + axis], -particle[i].x[axis]);
@@ -271,7 +282,7 @@ static int measure_bed(struct insitu_build *b) {
             most[11 + axis] = fmax(most[11 + axis], particle[i].radius - particle[i].x[axis]);
         }
     }
-    MPI_Allreduce(MPI_IN_PLACE, most, 14, MPI_DOUBLE, MPI_MAX, b->s->comm);
+    MPI_Allreduce(MPI_IN_PLACE, most, 15, MPI_DOUBLE, MPI_MAX, b->s->comm);
     for (size_t i = 0; i < b->own; ++i) sum[1] += (uint64_t)llround(particle[i].radius / most[0] * 0x1p32);
     MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_UINT64_T, MPI_SUM, b->s->comm);
     b->to->facts = (fibrad_insitu_facts){.particles = sum[0], .step = b->step};
@@ -290,6 +301,7 @@ static int measure_bed(struct insitu_build *b) {
     b->to->facts.cutoff = b->cutoff;
     b->reach = b->cutoff + REACH_RADII * b->radius_max;
     b->to->emissive = -most[1] < 1;
+    b->to->conducts = most[14] > 0;
     for (uint32_t k = 0; k < b->bed->bodies; ++k) b->to->emissive |= b->bed->body_emissivity[k] < 1;
     for (int axis = 0; axis < 3; ++axis) {
         const bool periodic = b->period[axis] > 0;
@@ -393,11 +405,14 @@ static int make_scene(struct insitu_build *b) {
     memcpy(triangles.period, b->period, sizeof triangles.period);
     const size_t size = fibrad_scene_size((uint32_t)n, 1) + fibrad_triangles_size(triangles.n, (uint32_t)n);
     if (fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&b->to->id, n, sizeof(uint64_t)) ||
-        fibrad_block_fit(&s->emissivity, n, sizeof(double)))
+        fibrad_block_fit(&s->emissivity, 3 * n, sizeof(double)))
         return FIBRAD_E_MEMORY;
     uint64_t *id = b->to->id.at;
     double *emissivity = s->emissivity.at;
-    for (size_t i = 0; i < n; ++i) id[i] = p[i].id, emissivity[i] = p[i].emissivity;
+    for (size_t i = 0; i < n; ++i) {
+        id[i] = p[i].id, emissivity[i] = p[i].emissivity;
+        emissivity[n + i] = p[i].conductivity, emissivity[2 * n + i] = p[i].node;
+    }
     fibrad_scene_config config = {0}; /* without particles: an empty scene */
     if (n)
         config = (fibrad_scene_config){.body = b->bed->body,
@@ -460,7 +475,11 @@ static int list_own(struct insitu_build *b) {
  * list for any number of threads. */
 static int compute_rows(struct insitu_build *b) {
     fibrad_insitu *s = b->s;
-    const fibrad_exchange_rule rule = {.emissivity = s->emissivity.at,
+    const double *emissivity = s->emissivity.at;
+    const size_t n = b->own + b->halo;
+    const fibrad_exchange_rule rule = {.emissivity = emissivity,
+                                       .conductivity = b->to->conducts ? emissivity + n : NULL,
+                                       .node_emissivity = b->to->conducts ? emissivity + 2 * n : NULL,
                                        .body_emissivity = b->bed->body_emissivity,
                                        .directions = s->config.directions,
                                        .paths = s->config.paths,
@@ -552,6 +571,8 @@ static int list_home(struct insitu_build *b) {
     to->own = b->fresh + b->follow.kept;
     if (fibrad_block_fit(&to->particle, to->own, sizeof(fibrad_particle)) ||
         fibrad_block_fit(&to->weight, to->columns, sizeof(double)) ||
+        fibrad_block_fit(&to->root, to->own, sizeof(double)) ||
+        fibrad_block_fit(&b->s->solver, to->conducts ? 4 * to->own : 0, sizeof(double)) ||
         fibrad_block_fit(&to->emission, to->columns, sizeof(double)) ||
         fibrad_block_fit(&to->power, to->columns, sizeof(double)) ||
         fibrad_block_fit(&b->s->value, b->bed->n + to->own, sizeof(double)))
@@ -563,7 +584,7 @@ static int list_home(struct insitu_build *b) {
         if (b->follow.there[c]) p[own++] = old[c];
     double *weight = to->weight.at;
     memset(weight, 0, to->columns * sizeof *weight);
-    for (size_t i = 0; i < to->own; ++i) weight[i] = 4 * acos(-1) * p[i].radius * p[i].radius * p[i].emissivity;
+    for (size_t i = 0; i < to->own; ++i) weight[i] = 4 * acos(-1) * p[i].radius * p[i].radius * p[i].node;
     return FIBRAD_OK;
 }
 
@@ -628,6 +649,32 @@ static void tell_remark(const fibrad_remark *remark, int kind, char *message) {
                       remark->count > 1 ? "are" : "is", done[kind], remark->message);
 }
 
+/* Finds what stands between nodes and particles that conduct. A row says what its particle emits, and the other rows
+ * say the same a second time. The mean of both takes the place of A n, so that the system for powers is positive in
+ * spite of the noise of the rows. */
+static void find_resistances(struct insitu_build *b) {
+    fibrad_insitu_set *to = b->to;
+    const double *weight = to->weight.at;
+    const fibrad_particle *p = to->particle.at;
+    double *sum = to->power.at, *root = to->root.at;
+    fibrad_row row;
+    memset(sum, 0, to->columns * sizeof *sum);
+    for (int t = 0; t < b->s->config.threads; ++t)
+        for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);) {
+            const double all = row.beyond < 1 ? weight[row.sphere] / (1 - row.beyond) : 0;
+            double rest = row.escaped;
+            for (uint32_t k = 0; k < b->bed->bodies; ++k) rest += row.body[k];
+            sum[row.sphere] += all * rest;
+            for (uint32_t k = 0; k < row.length; ++k) {
+                sum[row.sphere] += 0.5 * all * row.f[k];
+                sum[row.col[k]] += 0.5 * all * row.f[k];
+            }
+        }
+    fibrad_link_reverse(to->seen, sum, 1);
+    for (size_t i = 0; i < to->own; ++i)
+        root[i] = p[i].node > 0 && sum[i] > 0 ? sqrt((1 - p[i].node / p[i].emissivity) / sum[i]) : 0;
+}
+
 /* Sums the facts of the rows over all ranks. */
 static void sum_facts(struct insitu_build *b) {
     fibrad_insitu_set *to = b->to;
@@ -664,6 +711,7 @@ static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_
     if (!status) status = measure_bed(&b);
     b.to->changed = 0;
     if (!status && follows && s->ready && s->set.bodies == bed->bodies) status = find_changes(&b);
+    if (b.follows) b.to->conducts |= s->set.conducts;
     if (!status && b.to->facts.particles && !(b.follows && !b.follow.came)) status = gather_bed(&b);
     if (!status) status = make_rows(&b);
     if (!status) status = check_backs(&b);
@@ -677,6 +725,7 @@ static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_
         if (!s->message[0]) fibrad_refuse(s->message, status, "%s", fibrad_status_text(status));
         return status;
     }
+    if (b.to->conducts) find_resistances(&b);
     sum_facts(&b);
     b.to->bodies = bed->bodies;
     const fibrad_insitu_set made = s->next;

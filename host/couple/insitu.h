@@ -15,10 +15,12 @@ typedef struct fibrad_insitu_set {
     size_t own, columns;   /* numbers of rows and of columns */
     fibrad_block particle; /* fibrad_particle [own + halo], when the rows were made, moved into the box */
     fibrad_block id;       /* uint64_t [columns] */
-    fibrad_block weight;   /* L^2, double [columns], area times emissivity */
+    fibrad_block weight;   /* L^2, double [columns], area times emissivity of the node */
+    fibrad_block root;     /* 1/L, double [own], square root of (1/n - 1/e)/A, see powers.c; unused unless conducts */
     fibrad_block emission; /* double [columns], sigma T^4 */
     fibrad_block power;    /* double [columns], net power by the rows on this rank */
     uint32_t bodies;       /* number of walls */
+    int conducts;          /* 1: some particles have a finite k* */
     int emissive;          /* 1: exchange factors; 0: all emissivities are 1 */
     fibrad_link *seen;     /* connects home particles with columns */
     fibrad_link *present;  /* connects particles of present owners with home particles */
@@ -41,6 +43,7 @@ struct fibrad_insitu {
     fibrad_insitu_set next;                            /* rows that are being made, in the memory of older rows */
     int ready;                                         /* 1: there are rows */
     fibrad_block scene, order, emissivity, mark, sent; /* scratch while rows are made */
+    fibrad_block solver;                               /* double [4 own], where particles conduct: see powers.c */
     fibrad_block value;                  /* double, of present owners' particles, then of home particles */
     double seconds_rows, seconds_powers; /* s, so far */
 };

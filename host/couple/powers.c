@@ -76,14 +76,63 @@ static int follow_particles(fibrad_insitu *s, const fibrad_insitu_state *state) 
 
 static double fourth(double t) { return t * t * t * t; }
 
-/* Finds the powers by the rows of this rank: of columns (set->power), walls and surroundings. */
-static int flow_at_home(fibrad_insitu *s, const fibrad_insitu_state *state, fibrad_flow *flow) {
+/* Finds the powers that follow from the emissions of particles at home: of these particles (set->power), and adds those
+ * of walls and surroundings by the rows of this rank. */
+static int flow_home(fibrad_insitu *s, fibrad_flow *flow) {
     fibrad_insitu_set *set = &s->set;
     int status = FIBRAD_OK;
+    fibrad_link_forward(set->seen, set->emission.at, 1);
     memset(flow->power, 0, set->columns * sizeof *flow->power);
-    flow->surroundings_emission = sigma_of(state) * fourth(state->surroundings);
     for (int t = 0; t < s->config.threads && !status; ++t)
         status = fibrad_rows_flow(&set->rows[t], (uint32_t)set->columns, set->bodies, flow);
+    fibrad_link_reverse(set->seen, flow->power, 1);
+    return status;
+}
+
+/* The sum of products over the particles of all ranks. */
+static double dot(const fibrad_insitu *s, const double *a, const double *b) {
+    double sum = 0;
+    for (size_t i = 0; i < s->set.own; ++i) sum += a[i] * b[i];
+    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, s->comm);
+    return sum;
+}
+
+#define NODES_RESIDUAL 1e-10 /* of the node values, relative */
+#define NODES_STEPS    500
+
+/* Finds node values N from the emissions E of particles that conduct, in set->emission. The particles' powers are
+ * q = q(E) + L (E - N), L being positive, and N = E - S q with the diagonal S = root^2. With q = y/root
+ *
+ *     (1 - root L root) y = root q(E),
+ *
+ * which conjugate gradients solve. Source: docs/methods_heat.md section 15. */
+static int solve_nodes(fibrad_insitu *s, const fibrad_flow *known) {
+    fibrad_insitu_set *set = &s->set;
+    const double *root = set->root.at, none[FIBRAD_BODIES_MAX] = {0};
+    double *emission = set->emission.at, *power = set->power.at, unused[FIBRAD_BODIES_MAX] = {0};
+    double *y = s->solver.at, *r = y + set->own, *p = r + set->own, *given = p + set->own;
+    fibrad_flow at_given = *known, change = {.weight = known->weight, .body_emission = none, .body_power = unused};
+    at_given.body_power = unused;
+    change.emission = emission, change.power = power;
+    for (size_t i = 0; i < set->own; ++i) given[i] = emission[i];
+    int status = flow_home(s, &at_given);
+    for (size_t i = 0; i < set->own; ++i) y[i] = 0, r[i] = p[i] = root[i] * power[i];
+    double square = dot(s, r, r);
+    const double enough = NODES_RESIDUAL * NODES_RESIDUAL * square;
+    for (int step = 0; square > enough && step < NODES_STEPS; ++step) {
+        for (size_t i = 0; i < set->own; ++i) emission[i] = root[i] * p[i];
+        const int done = flow_home(s, &change);
+        if (done) status = done;
+        for (size_t i = 0; i < set->own; ++i) power[i] = p[i] + root[i] * power[i];
+        const double along = dot(s, p, power), length = square / along;
+        if (!(along > 0)) return FIBRAD_E_UNSOLVABLE;
+        for (size_t i = 0; i < set->own; ++i) y[i] += length * p[i], r[i] -= length * power[i];
+        const double before = square;
+        square = dot(s, r, r);
+        for (size_t i = 0; i < set->own; ++i) p[i] = r[i] + square / before * p[i];
+    }
+    for (size_t i = 0; i < set->own; ++i) emission[i] = given[i] - root[i] * y[i];
+    if (!(square <= enough)) status = FIBRAD_E_UNSOLVABLE;
     return status;
 }
 
@@ -107,15 +156,20 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
     if (n) memcpy(value, state->temperature, n * sizeof *value);
     fibrad_link_forward(set->present, value, 1);
     for (size_t i = 0; i < set->own; ++i) emission[i] = sigma * fourth(home[i]);
-    fibrad_link_forward(set->seen, emission, 1);
 
     fibrad_flow flow = {.weight = set->weight.at,
                         .emission = emission,
                         .body_emission = wall[0],
+                        .surroundings_emission = sigma * fourth(state->surroundings),
                         .power = set->power.at,
                         .body_power = wall[1]};
-    status = flow_at_home(s, state, &flow);
-    fibrad_link_reverse(set->seen, flow.power, 1);
+    if (set->conducts) {
+        status = fibrad_agree(s->comm, solve_nodes(s, &flow), NULL);
+        if (status == FIBRAD_E_UNSOLVABLE)
+            return fibrad_refuse(s->message, status,
+                                 "the rows are too inaccurate for particles that conduct so little: take more paths");
+    }
+    if (!status) status = flow_home(s, &flow);
     for (size_t i = 0; i < set->own; ++i) sum[0] += flow.power[i];
     sum[1] = flow.surroundings_power;
     sum[2] = status != FIBRAD_OK;

@@ -63,7 +63,7 @@ static void put_row(const fibrad_insitu_set *set, const fibrad_row *row, size_t 
     to->beyond[i] = row->beyond;
     to->error[i] = row->error;
     to->radius[i] = p->radius;
-    to->emissivity[i] = p->emissivity;
+    to->emissivity[i] = p->node;
     memcpy(to->x + 3 * i, p->x, sizeof p->x);
     if (set->bodies) memcpy(to->body + i * set->bodies, row->body, set->bodies * sizeof *to->body);
 }

@@ -131,7 +131,29 @@ found=$("$BUILD/fibrad" heat "$work/types.dump" --emissivity 1:.5,2:.8 --tempera
     awk '$1 == "surroundings_W" { print $2; exit }')
 awk '$1 == "Step" { getline; print $3; exit }' "$work/sky.log" |
     awk -v heat="${found:-0}" '{ d = $1/heat - 1; printf "%.2g", d; exit !(heat > 0 && d*d < 8e-3^2) }' >"$work/sky.error"
-verdict "the sky above a flat bed gets what fibrad heat says ($(cat "$work/sky.error"))" $?
+status=$?
+verdict "the sky above a flat bed gets what fibrad heat says ($(cat "$work/sky.error"))" $status
+
+# ---- particles that conduct, against fibrad heat ------------------------------------------------------------------------
+awk 'BEGIN { print "id,type,x,y,z,radius,T" } { print $1 "," 2 - $1%2 "," $2 "," $3 "," $4 "," $5 "," $6 }' \
+    "$work/quarter" >"$work/quarter.csv"
+"$BUILD/fibrad" heat "$work/quarter.csv" --emissivity 1:.5,2:.8 --temperature T --ambient 300 --wall zmin=0 \
+    --wall-temperature 1000 --wall-emissivity .9 --solid-conductivity 1:4,2:12 --directions 600 --length-unit m \
+    -o "$work/conduct.csv" >/dev/null 2>&1
+for np in 1 2; do
+    run $np conduct$np frozen.lmp "${whole[@]}" steps 0 strict "no solid type 4 12 accuracy high" \
+        also "dump powers all custom 1 $work/powers$np id f_rad"
+    awk -F'[ ,]' 'NR == FNR && $1 ~ /^[0-9]/ { q[$1] = $3 } NR > FNR && NF == 2 && $1 in q {
+            d = $2 - q[$1]; n++; off += d*d; all += q[$1]^2 }
+        END { printf "%.2g", sqrt(off/all); exit !(n == 499 && off < .05^2*all) }' \
+        "$work/conduct.csv" "$work/powers$np" >"$work/conduct.error"
+    status=$?
+    verdict "powers of particles that conduct are those of fibrad heat, np $np ($(cat "$work/conduct.error"))" $status
+    run $np conducts$np frozen.lmp "${whole[@]}" strict "no solid 10"
+done
+near "$work/conducts1.out" "$work/conducts2.out" 1e-8 "a bed that conducts, np 1 and 2"
+run 1 conductor frozen.lmp "${whole[@]}" strict "no solid 1e9"
+near "$work/frozen1.out" "$work/conductor.out" .01 "particles of a good conductor"
 
 # ---- walls of triangles -------------------------------------------------------------------------------------------------
 # box WIDE HIGH: a box from 0 to WIDE and HIGH as a text file, one solid for each side

@@ -109,7 +109,7 @@ static void links(void) {
 struct pile {
     fibrad_insitu_bed bed;
     uint64_t *id;
-    double *x, *radius, *emissivity, *temperature, *power;
+    double *x, *radius, *emissivity, *conductivity, *temperature, *power;
     fibrad_body *body;
     double *body_emissivity;
 };
@@ -119,11 +119,13 @@ static void open_pile(struct pile *p, size_t n) {
     p->x = memory_of(3 * n, sizeof *p->x);
     p->radius = memory_of(n, sizeof *p->radius);
     p->emissivity = memory_of(n, sizeof *p->emissivity);
+    p->conductivity = memory_of(n, sizeof *p->conductivity);
     p->temperature = memory_of(n, sizeof *p->temperature);
     p->power = memory_of(n, sizeof *p->power);
     p->body = memory_of(2, sizeof *p->body);
     p->body_emissivity = memory_of(2, sizeof *p->body_emissivity);
     p->bed.id = p->id, p->bed.x = p->x, p->bed.radius = p->radius, p->bed.emissivity = p->emissivity;
+    p->bed.conductivity = p->conductivity;
     p->bed.body = p->body, p->bed.body_emissivity = p->body_emissivity;
 }
 
@@ -132,6 +134,7 @@ static void close_pile(struct pile *p) {
     free(p->x);
     free(p->radius);
     free(p->emissivity);
+    free(p->conductivity);
     free(p->temperature);
     free(p->power);
     free(p->body);
@@ -142,6 +145,9 @@ enum walls { OPEN, FLOORS, TUBE, PIPE };
 
 /* Both ends of a pipe, where its particles end. */
 static const fibrad_plane ends[] = {{2, 0, NAN}, {2, 1, NAN}};
+
+/* Least k* of the particles of the next piles, the largest is 10 times that. 0: infinite. */
+static double conducting;
 
 /* What a bed of side^3 particles is like. */
 struct kind {
@@ -173,6 +179,7 @@ static struct pile pile_of(const struct kind *kind) {
         memcpy(p.x + 3 * n, x, sizeof x);
         p.radius[n] = .75 + .25 * random_of(id, 3);
         p.emissivity[n] = kind->emissivity[i % 2];
+        p.conductivity[n] = conducting > 0 ? conducting * pow(10, random_of(id, 5)) : INFINITY;
         p.temperature[n] = 600 + 800 * random_of(id, 4);
     }
     if (kind->walls == FLOORS)
@@ -216,7 +223,8 @@ static void take_particle(struct pile *p, const struct pile *from, size_t i) {
     const size_t n = p->bed.n++;
     p->id[n] = from->id[i], p->radius[n] = from->radius[i];
     memcpy(p->x + 3 * n, from->x + 3 * i, 3 * sizeof *p->x);
-    p->emissivity[n] = from->emissivity[i], p->temperature[n] = from->temperature[i];
+    p->emissivity[n] = from->emissivity[i], p->conductivity[n] = from->conductivity[i];
+    p->temperature[n] = from->temperature[i];
 }
 
 /* What this rank owns of a pile, in another order, some of it in other periods. */
@@ -415,6 +423,25 @@ static void powers_keep_energy(const struct kind *kind) {
     fibrad_insitu_free(s);
     close_pile(&all);
     close_pile(&part);
+}
+
+/* However little a particle conducts, alone it loses A e (E - E of the surroundings). */
+static void a_lone_particle(void) {
+    static const double relative[] = {.001, .1, 10};
+    for (int k = 0; k < 3; ++k) {
+        const uint64_t id = 5;
+        const double x[3] = {0}, r = 2, e = .7, t = 900, loss = 4 * acos(-1) * r * r * e * FIBRAD_STEFAN_BOLTZMANN;
+        const fibrad_insitu_bed bed = {
+            .n = rank == 0, .id = &id, .x = x, .radius = &r, .emissivity = &e, .conductivity = &relative[k]};
+        const fibrad_insitu_state state = {.surroundings = 400, .n = bed.n, .id = &id, .temperature = &t};
+        fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, &(struct kind){0}, 1);
+        fibrad_insitu_totals totals;
+        double power;
+        CHECK(fibrad_insitu_rows(s, &bed, 0) == FIBRAD_OK);
+        CHECK(fibrad_insitu_powers(s, &state, &power, &totals) == FIBRAD_OK);
+        CHECK(fabs(totals.particles / (loss * (pow(400, 4) - pow(t, 4))) - 1) < 1e-9);
+        fibrad_insitu_free(s);
+    }
 }
 
 /* Rows of another step have another noise; those of the same step are the same. */
@@ -747,12 +774,12 @@ static void follow_changes(const struct kind *kind, const struct pile *all, cons
     free(found);
 }
 
-static void rows_follow_particles(void) {
-    static const struct kind kind = {"followed", 5, {1, 1, 0}, FLOORS, {.8, .5}, 0, 1, 0};
+static void rows_follow_particles(double bound) {
+    const struct kind kind = {"followed", 5, {1, 1, 0}, FLOORS, {.8, .5}, 0, 1, 0};
     struct pile all = pile_of(&kind), some = without(&all, 20), others = without(&all, 31);
-    follow_changes(&kind, &all, &all, &some, .12);
-    follow_changes(&kind, &all, &some, &all, .12);
-    follow_changes(&kind, &all, &some, &others, .12);
+    follow_changes(&kind, &all, &all, &some, bound);
+    follow_changes(&kind, &all, &some, &all, bound);
+    follow_changes(&kind, &all, &some, &others, bound);
     close_pile(&all);
     close_pile(&some);
     close_pile(&others);
@@ -936,7 +963,14 @@ int main(int argc, char **argv) {
     temperatures_are_those_of_the_kernel(OPEN, 0); /* no cutoff: larger than the bed */
     temperatures_are_those_of_the_kernel(FLOORS, 1000);
     strays_do_not_end_a_run();
-    rows_follow_particles();
+    rows_follow_particles(.12);
+    conducting = .1;
+    rows_are_those_of_one_rank(&kinds[0]);
+    powers_keep_energy(&kinds[3]);
+    powers_keep_energy(&kinds[7]);
+    rows_follow_particles(.15);
+    conducting = 0;
+    a_lone_particle();
     refusals();
     int sum[2] = {checks, failures};
     MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_INT, MPI_SUM, MPI_COMM_WORLD);

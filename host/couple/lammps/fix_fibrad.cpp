@@ -89,6 +89,8 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
             emissivity = read_property(words);
         else if (key == "cp")
             cp = read_property(words);
+        else if (key == "solid")
+            solid = read_property(words);
         else if (key == "surroundings")
             surroundings = read_kelvins(words, "the temperature of the surroundings");
         else if (key == "wall")
@@ -127,6 +129,12 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
         if (!(e >= 0 && e <= 1)) error->all(FLERR, text("fix fibrad: emissivity must be within 0 and 1, not %g", e));
     for (double c : cp.of_type)
         if (!(c > 0)) error->all(FLERR, text("fix fibrad: cp must be above 0, not %g", c));
+    for (size_t type = 1; type < solid.of_type.size(); type++)
+        if (!(solid.of_type[type] > 0))
+            error->all(FLERR,
+                       text("fix fibrad: the conductivity of the solid must be above 0, not %g", solid.of_type[type]));
+    if (solid.given() && !heat_every)
+        error->all(FLERR, std::string("fix fibrad: `solid` needs temperatures: NEVERY must be above 0"));
     if (heat_every && surroundings.variable.empty() && surroundings.value < 0)
         error->all(
             FLERR,
@@ -337,6 +345,7 @@ void FixFibrad::init() {
                        "fix fibrad: wall " + name + " is on a face that moves with the particles: say where (at POS)");
     }
     if (!emissivity.of_atom.empty()) need(emissivity.of_atom);
+    if (!solid.of_atom.empty()) need(solid.of_atom);
     if (!heat_every) return;
 
     if (temperature.empty()) temperature = known("temperature") && known("heatflow") ? "temperature" : "d_T";
@@ -431,7 +440,7 @@ void FixFibrad::make_rows(bool follow) {
         x.insert(x.end(), atom->x[i], atom->x[i] + 3);
         radius.push_back(atom->radius[i]);
     }
-    const std::vector<double> e = values(emissivity);
+    const std::vector<double> e = values(emissivity), relative = conductivities();
     for (size_t w = 0; w < walls.size(); w++)
         if (wall_face[w] >= 0) walls[w].plane.at = (wall_face[w] % 2 ? domain->boxhi : domain->boxlo)[wall_face[w] / 2];
 
@@ -450,6 +459,7 @@ void FixFibrad::make_rows(bool follow) {
     bed.x = x.data();
     bed.radius = radius.data();
     bed.emissivity = e.data();
+    bed.conductivity = solid.given() ? relative.data() : nullptr;
     const bigint number = update->ntimestep / rows_every * rows_every;
     if (mesh_walls_face(&meshes, world, &bed)) error->all(FLERR, std::string("fix fibrad: out of memory"));
     const int status = (follow ? fibrad_insitu_follow : fibrad_insitu_rows)(insitu, &bed, (uint64_t)number);
@@ -526,12 +536,8 @@ void FixFibrad::find_temperatures() {
 void FixFibrad::find_powers() {
     find_temperatures();
     select();
-    double *of_atom = vector(temperature);
-    std::vector<double> t, power(member.size());
-    for (int i : member) {
-        if (of_atom[i] == 0) of_atom[i] = initial;
-        t.push_back(of_atom[i]);
-    }
+    const std::vector<double> t = temperatures();
+    std::vector<double> power(member.size());
     check_step(t);
 
     fibrad_insitu_state state = {};
@@ -550,6 +556,26 @@ void FixFibrad::find_powers() {
     powers_found++;
     std::fill(q.begin(), q.end(), 0.0);
     for (size_t k = 0; k < member.size(); k++) q[member[k]] = power[k];
+}
+
+std::vector<double> FixFibrad::temperatures() {
+    double *of_atom = vector(temperature);
+    std::vector<double> t;
+    for (int i : member) {
+        if (of_atom[i] == 0) of_atom[i] = initial;
+        t.push_back(of_atom[i]);
+    }
+    return t;
+}
+
+// k* = k_s/(4 d sigma T^3), at the present temperatures. The rows keep it until they are made again.
+std::vector<double> FixFibrad::conductivities() {
+    if (!solid.given()) return {};
+    std::vector<double> relative = values(solid);
+    const std::vector<double> t = temperatures();
+    for (size_t k = 0; k < relative.size(); k++)
+        relative[k] /= 8 * atom->radius[member[k]] * sigma * t[k] * t[k] * t[k];
+    return relative;
 }
 
 // Checks that steps of temperatures are stable: 4 sigma T^3 A e dt < m cp. Then no particle overshoots its

@@ -70,6 +70,8 @@ class FixFibrad : public Fix {
     bool known(const std::string &name);          // whether any rank has the vector
     void need(const std::string &name);           // stops with an error if a rank with atoms lacks the vector
     std::vector<double> values(const Property &); // [member]
+    std::vector<double> temperatures();           // [member], of new atoms the initial one
+    std::vector<double> conductivities();         // [member], relative; empty: infinite
     double mass(int i) const;
 
     // Steps of the simulation.
@@ -84,10 +86,10 @@ class FixFibrad : public Fix {
     void refuse_second(); // stops if another fix radiates from a particle of this one
 
     // Arguments of the fix.
-    int heat_every, rows_every; // steps from powers to powers, and from rows to rows; heat_every 0: no powers
-    Property emissivity, cp;
-    std::string temperature; // name of the vector of temperatures
-    std::string rows_file;   // files to write rows to; empty: none
+    int heat_every, rows_every;     // steps from powers to powers, and from rows to rows; heat_every 0: no powers
+    Property emissivity, cp, solid; // solid: conductivity of the solid, energy/(time length K); not given: infinite
+    std::string temperature;        // name of the vector of temperatures
+    std::string rows_file;          // files to write rows to; empty: none
     Temperature surroundings;
     bool sampling;  // directions, paths or tolerance are given
     bool accuracy;  // accuracy is given

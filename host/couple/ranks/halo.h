@@ -8,7 +8,8 @@
 /* A particle in a message. It has 6 words, so that coordinates are doubles with a stride. */
 typedef struct fibrad_particle {
     uint64_t id;
-    double x[3], radius, emissivity; /* [L] */
+    double x[3], radius;                   /* [L] */
+    double emissivity, conductivity, node; /* k*, and the emissivity of the node, fibrad_node_emissivity */
 } fibrad_particle;
 
 /* Collective. Appends to particle[own] the particles of other ranks, and the periodic images of particles of all ranks,
