@@ -90,7 +90,7 @@ static int flow_home(fibrad_insitu *s, fibrad_flow *flow) {
 }
 
 /* The sum of products over the particles of all ranks. */
-static double dot(const fibrad_insitu *s, const double *a, const double *b) {
+static double inner_product(const fibrad_insitu *s, const double *a, const double *b) {
     double sum = 0;
     for (size_t i = 0; i < s->set.own; ++i) sum += a[i] * b[i];
     MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, s->comm);
@@ -117,18 +117,18 @@ static int solve_nodes(fibrad_insitu *s, const fibrad_flow *known) {
     for (size_t i = 0; i < set->own; ++i) given[i] = emission[i];
     int status = flow_home(s, &at_given);
     for (size_t i = 0; i < set->own; ++i) y[i] = 0, r[i] = p[i] = root[i] * power[i];
-    double square = dot(s, r, r);
+    double square = inner_product(s, r, r);
     const double enough = NODES_RESIDUAL * NODES_RESIDUAL * square;
     for (int step = 0; square > enough && step < NODES_STEPS; ++step) {
         for (size_t i = 0; i < set->own; ++i) emission[i] = root[i] * p[i];
         const int done = flow_home(s, &change);
         if (done) status = done;
         for (size_t i = 0; i < set->own; ++i) power[i] = p[i] + root[i] * power[i];
-        const double along = dot(s, p, power), length = square / along;
+        const double along = inner_product(s, p, power), length = square / along;
         if (!(along > 0)) return FIBRAD_E_UNSOLVABLE;
         for (size_t i = 0; i < set->own; ++i) y[i] += length * p[i], r[i] -= length * power[i];
         const double before = square;
-        square = dot(s, r, r);
+        square = inner_product(s, r, r);
         for (size_t i = 0; i < set->own; ++i) p[i] = r[i] + square / before * p[i];
     }
     for (size_t i = 0; i < set->own; ++i) emission[i] = given[i] - root[i] * y[i];
