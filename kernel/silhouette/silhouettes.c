@@ -22,7 +22,8 @@ struct fibrad_silhouettes {
     uint64_t hash;
     uint32_t lines, spheres;
     fibrad_line *line;         /* [lines] */
-    uint64_t *stretch;         /* [spheres + 1], by position in scene order: how many those before it take */
+    uint32_t *sequence;        /* [spheres], positions in scene order, in the order in which tasks take them */
+    uint64_t *stretch;         /* [spheres + 1], in the order of `sequence`: how many those before it take */
     uint64_t *start;           /* [spheres + 1], by position in scene order: where its pairs are in `index` */
     const uint32_t *index;     /* [start[spheres]], pairs, numbered through all collections; NULL: not joined */
     const fibrad_pairs *pairs; /* [count], collections that were joined */
@@ -35,6 +36,7 @@ struct fibrad_silhouettes {
 static fibrad_silhouettes *silhouettes_layout(fibrad_arena *arena, fibrad_silhouettes *s) {
     fibrad_silhouettes *place = fibrad_arena_take(arena, 1, sizeof *place);
     s->line = fibrad_arena_take(arena, s->lines, sizeof *s->line);
+    s->sequence = fibrad_arena_take(arena, s->spheres, sizeof *s->sequence);
     s->stretch = fibrad_arena_take(arena, (size_t)s->spheres + 1, sizeof *s->stretch);
     s->start = fibrad_arena_take(arena, (size_t)s->spheres + 1, sizeof *s->start);
     return place;
@@ -134,12 +136,43 @@ static uint64_t sphere_stretches(const fibrad_scene *scene, uint32_t place, doub
     return some > 1 ? (uint64_t)some : 1;
 }
 
+#define CURVE_BITS 10 /* of a coordinate */
+
+/* Spreads the bits of a number below 2^CURVE_BITS: two zeros after each. */
+static uint32_t spread_bits(uint32_t x) {
+    x = (x | x << 16) & 0x030000ff;
+    x = (x | x << 8) & 0x0300f00f;
+    x = (x | x << 4) & 0x030c30c3;
+    return (x | x << 2) & 0x09249249;
+}
+
+/* Orders the spheres along a curve that fills space (Morton 1966). The spheres of a task then lie in a compact region
+ * and share most of their pairs. */
+static void make_sequence(fibrad_silhouettes *s) {
+    const fibrad_scene *scene = s->scene;
+    const double *coordinate[3] = {scene->x, scene->y, scene->z};
+    double edge = 0;
+    for (int axis = 0; axis < 3; axis++) edge = fibrad_max(edge, scene->box_high[axis] - scene->box_low[axis]);
+    const double scale = edge > 0 ? ((1 << CURVE_BITS) - 1) / edge : 0;
+    for (uint32_t k = 0; k < s->spheres; k++) {
+        uint64_t curve = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            const double at = coordinate[axis][k] - scene->box_low[axis]; /* strays lie outside the box */
+            curve |= spread_bits((uint32_t)(fibrad_max(0, fibrad_min(edge, at)) * scale)) << axis;
+        }
+        s->stretch[k] = curve << 32 | k;
+    }
+    const uint64_t *sorted = fibrad_sort_keys(s->stretch, s->start, s->spheres, 32, (1 << 3 * CURVE_BITS) - 1);
+    for (uint32_t k = 0; k < s->spheres; k++) s->sequence[k] = (uint32_t)sorted[k];
+}
+
 static void count_stretches(fibrad_silhouettes *s) {
     const fibrad_scene *scene = s->scene;
     double mean = 0;
     for (uint32_t k = 0; k < s->spheres; k++) mean += scene->r[k] / s->spheres;
     s->stretch[0] = 0;
-    for (uint32_t k = 0; k < s->spheres; k++) s->stretch[k + 1] = s->stretch[k] + sphere_stretches(scene, k, mean);
+    for (uint32_t k = 0; k < s->spheres; k++)
+        s->stretch[k + 1] = s->stretch[k] + sphere_stretches(scene, s->sequence[k], mean);
 }
 
 int fibrad_silhouettes_init(fibrad_silhouettes **out, void *memory, size_t size, const fibrad_scene *scene,
@@ -154,6 +187,7 @@ int fibrad_silhouettes_init(fibrad_silhouettes **out, void *memory, size_t size,
     fibrad_silhouettes *s = silhouettes_layout(&arena, &fields);
     *s = fields;
     make_lines(s, rule != NULL ? rule->turn : 0);
+    make_sequence(s);
     count_stretches(s);
     *out = s;
     return FIBRAD_OK;
@@ -264,7 +298,7 @@ static int empty_table(fibrad_pair_table *table, fibrad_pairs *pairs) {
     return FIBRAD_OK;
 }
 
-/* The sphere to which a stretch belongs. */
+/* The sphere to which a stretch belongs, in the order of `sequence`. */
 static uint32_t sphere_of_stretch(const fibrad_silhouettes *s, uint64_t stretch) {
     uint32_t low = 0, high = s->spheres - 1;
     while (low < high) {
@@ -283,16 +317,16 @@ static double place_of_stretch(uint64_t k, uint64_t count) {
     return (place + 5) - 5; /* on the grid of places */
 }
 
-/* Follows stretches [from, to) of the circles of a sphere. */
-static int follow_sphere(const fibrad_silhouettes *s, fibrad_workspace *space, fibrad_circles *c, uint32_t place,
+/* Follows stretches [from, to) of the circles of a sphere, number k of `sequence`. */
+static int follow_sphere(const fibrad_silhouettes *s, fibrad_workspace *space, fibrad_circles *c, uint32_t k,
                          uint64_t from, uint64_t to, fibrad_pair_table *table, fibrad_pairs *pairs) {
-    const uint64_t count = s->stretch[place + 1] - s->stretch[place];
+    const uint64_t count = s->stretch[k + 1] - s->stretch[k];
     int status = FIBRAD_OK;
     c->begin = c->next = place_of_stretch(from, count), c->end = place_of_stretch(to, count);
     c->step = (FIBRAD_CIRCLE_END - FIBRAD_CIRCLE_BEGIN) / (double)count;
     for (uint32_t line = 0; line < s->lines && status == FIBRAD_OK;) {
-        status = FIBRAD_VERSION_OF(fibrad_circle_lines, s->scene->facts.isa)(space, c, place, s->line, &line, s->lines,
-                                                                             table);
+        status = FIBRAD_VERSION_OF(fibrad_circle_lines, s->scene->facts.isa)(space, c, s->sequence[k], s->line, &line,
+                                                                             s->lines, table);
         const bool full = !fibrad_pair_room(table, FIBRAD_CIRCLE_ENDS + FIBRAD_NEAR_MOST);
         if (status == FIBRAD_OK && full) status = empty_table(table, pairs);
     }
@@ -305,9 +339,9 @@ static int follow_stretches(const fibrad_silhouettes *s, fibrad_workspace *space
     fibrad_pair_table table;
     fibrad_circles *c = open_circles(space, s->scene, &table);
     int status = FIBRAD_OK;
-    for (uint32_t place = sphere_of_stretch(s, from); from < to && status == FIBRAD_OK; place++) {
-        const uint64_t first = s->stretch[place], last = s->stretch[place + 1], end = last < to ? last : to;
-        status = follow_sphere(s, space, c, place, from - first, end - first, &table, pairs);
+    for (uint32_t k = sphere_of_stretch(s, from); from < to && status == FIBRAD_OK; k++) {
+        const uint64_t first = s->stretch[k], last = s->stretch[k + 1], end = last < to ? last : to;
+        status = follow_sphere(s, space, c, k, from - first, end - first, &table, pairs);
         from = end;
     }
     return status != FIBRAD_OK ? status : empty_table(&table, pairs);
