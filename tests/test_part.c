@@ -30,7 +30,7 @@ START_TEST(rows_depend_on_what_is_near) {
     make_kind(&m, &kinds[_i]);
     fibrad_scene *whole = part_scene(&m.part);
     const double cutoffs[] = {2.5, 4.25};
-    for (uint32_t i = 0; i < m.part.n; i += m.part.n / (m.mesh ? 2 : 9))
+    for (uint32_t i = 0; i < m.part.n; i += m.part.n / (m.mesh ? 2 : 5))
         for (int c = 0; c < 2; c++) {
             const double reach = (cutoffs[c] + radius_most(&m.part)) * (1 + 1e-9);
             uint32_t own = UINT32_MAX, again = UINT32_MAX;

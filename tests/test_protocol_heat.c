@@ -224,11 +224,11 @@ START_TEST(steps_and_reads_too_early) {
 }
 END_TEST
 
-/* A solution given up half-way, in any of its sweeps, leaves nothing behind. */
+/* A solution given up half-way, in every third of its sweeps, leaves nothing behind. */
 START_TEST(begun_anew_in_between) {
     const struct contents c = contents_of(10);
     struct problem *book = by_the_book(&c);
-    for (uint32_t until = 0; until < book->result.sweeps; until++) {
+    for (uint32_t until = 0; until < book->result.sweeps; until += 3) {
         struct problem *p = begin_problem(&c, 0);
         trace_all(p);
         p->sources.surroundings = 3;

@@ -16,14 +16,23 @@ fault() {
     faults=1
 }
 
-# kernel NAME PREFIX FLAGS TABLES ISAS: builds the archive and lists what it takes
+# kernel NAME PREFIX FLAGS TABLES ISAS [LIKE]: builds the archive; with LIKE, from the objects of that one that know no tables
 kernel() {
     rm -rf "${folder:?}/$1"
+    test -z "${6:-}" || like "$1" "$6"
     $MAKE -s BUILD="$folder/$1" CC="$2gcc" AR="$2ar" HOSTCC="$HOSTCC" ISAS="$5" PIC= WERROR=-Werror \
         CFLAGS="-Os -ffunction-sections -fdata-sections -fstack-usage $3" \
         TABLES="-DFIBRAD_PORT_HEADER='\"smoke_port.h\"' -I$here $4" lib >"$folder/log" 2>&1 && return
     fault "$1: the kernel does not build"
     head -n 5 "$folder/log"
+}
+
+# like NAME OTHER: the objects of OTHER that are the same for all tables
+like() {
+    cp -rp "$folder/$2" "$folder/$1"
+    rm -f "$folder/$1/libfibrad.a" "$folder/$1/tables.o"
+    find "$folder/$1" -name '*.d' -exec grep -l 'sample/tables\.h' {} + | sed 's/d$/o/' | xargs rm -f
+    find "$folder/$1" -name '*.d' -delete
 }
 
 # program NAME PREFIX FLAGS: links the smoke program; nothing but libgcc may be needed
@@ -81,7 +90,7 @@ if command -v arm-none-eabi-gcc >/dev/null; then
     run m7 qemu-system-arm -M mps2-an500 -display none -monitor none -serial none \
         -chardev stdio,id=text -semihosting-config enable=on,target=native,chardev=text -kernel "$folder/m7/smoke"
     sizes m7 arm-none-eabi-
-    kernel m7-all-tables arm-none-eabi- "$m7" "" scalar
+    kernel m7-all-tables arm-none-eabi- "$m7" "" scalar m7
     sizes m7-all-tables arm-none-eabi-
 else
     echo "SKIP Cortex-M7: no arm-none-eabi-gcc on this machine"
