@@ -9,6 +9,8 @@
 #define AXIS_MAX  0x1p20
 #define MARGIN    1e-6 /* in widths of a cell, far above rounding */
 
+#define CELLS_AT_ONCE 64 /* along x */
+
 #define TRIM_ROUNDS 16
 #define TRIM_UNITS  0x1p16 /* units per side of the box: squares of 2^31 positions fit into a sum */
 
@@ -67,33 +69,45 @@ static bool find_cells(const fibrad_occupancy *map, const fibrad_particle *p, in
     return touches;
 }
 
-/* Whether a sphere touches a cell. */
-static bool touches_cell(const fibrad_occupancy *map, const fibrad_particle *p, const int64_t cell[3]) {
-    double square = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double width = (map->high[axis] - map->low[axis]) / map->cells[axis];
-        const double low = map->low[axis] + ((double)cell[axis] - MARGIN) * width;
-        const double d = fmax(0, fmax(low - p->x[axis], p->x[axis] - low - (1 + 2 * MARGIN) * width));
-        square += d * d;
-    }
-    return square <= p->radius * p->radius;
+/* The square of the distance along an axis from the centre of a sphere to a cell. */
+static double square_to_cell(const fibrad_occupancy *map, const fibrad_particle *p, int axis, int64_t cell) {
+    const double width = (map->high[axis] - map->low[axis]) / map->cells[axis];
+    const double low = map->low[axis] + ((double)cell - MARGIN) * width;
+    const double before = low - p->x[axis], behind = p->x[axis] - low - (1 + 2 * MARGIN) * width;
+    const double d = before > behind ? before : behind;
+    return d > 0 ? d * d : 0;
 }
 
 /* The number of a cell within the periodic box. */
-static int64_t wrap_cell(int64_t cell, int64_t cells) { return (cell % cells + cells) % cells; }
+static int64_t wrap_cell(int64_t cell, int64_t cells) {
+    return cell >= 0 && cell < cells ? cell : (cell % cells + cells) % cells;
+}
+
+/* Marks the cells of a row along x that a sphere touches: those whose square[] is at most `most`. */
+static void mark_row(uint64_t *mark, const double *square, int64_t count, double most, int64_t row, int64_t at,
+                     int64_t cells) {
+    for (int64_t i = 0; i < count; ++i) {
+        const int64_t cell = row + wrap_cell(at + i, cells);
+        mark[cell / 64] |= (uint64_t)(square[i] <= most) << cell % 64;
+    }
+}
 
 static void mark_sphere(const fibrad_occupancy *map, const fibrad_particle *p, uint64_t *mark) {
     int64_t first[3], last[3];
     const int64_t n[3] = {map->cells[0], map->cells[1], map->cells[2]};
     for (int axis = 0; axis < 3; ++axis)
         if (!find_cells(map, p, axis, &first[axis], &last[axis])) return;
-    for (int64_t k = first[2]; k <= last[2]; ++k)
-        for (int64_t j = first[1]; j <= last[1]; ++j)
-            for (int64_t i = first[0]; i <= last[0]; ++i) {
-                if (!touches_cell(map, p, (const int64_t[]){i, j, k})) continue;
-                const int64_t cell = wrap_cell(i, n[0]) + n[0] * (wrap_cell(j, n[1]) + n[1] * wrap_cell(k, n[2]));
-                mark[cell / 64] |= (uint64_t)1 << cell % 64;
+    for (int64_t from = first[0]; from <= last[0]; from += CELLS_AT_ONCE) {
+        double square[CELLS_AT_ONCE];
+        const int64_t left = last[0] + 1 - from, count = left < CELLS_AT_ONCE ? left : CELLS_AT_ONCE;
+        for (int64_t i = 0; i < count; ++i) square[i] = square_to_cell(map, p, 0, from + i);
+        for (int64_t k = first[2]; k <= last[2]; ++k)
+            for (int64_t j = first[1]; j <= last[1]; ++j) {
+                const double most = p->radius * p->radius - square_to_cell(map, p, 1, j) - square_to_cell(map, p, 2, k);
+                const int64_t row = n[0] * (wrap_cell(j, n[1]) + n[1] * wrap_cell(k, n[2]));
+                if (most >= 0) mark_row(mark, square, count, most, row, from, n[0]);
             }
+    }
 }
 
 int fibrad_coarse_map(MPI_Comm comm, double width, double radius, const fibrad_particle *particle, size_t own,
