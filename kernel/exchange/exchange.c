@@ -196,7 +196,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
                             fibrad_row *row) {
     exchange_task *task = *(exchange_task *const *)of;
     const fibrad_exchange_rule *rule = task->rule;
-    double beam_error, body[FIBRAD_BODIES_MAX], wall[FIBRAD_SLOTS], scale = 0;
+    double beam_error = 0, body[FIBRAD_BODIES_MAX], wall[FIBRAD_SLOTS], scale = 0;
     if (task->emissivity[i] == 0) return empty_row(scene, row);
     fibrad_row leg = fibrad_row_scratch(space, body);
     fibrad_paths paths = paths_of(task, space, scene, i);
