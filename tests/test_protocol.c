@@ -194,7 +194,7 @@ static void assert_row_as_fresh(struct problem *p, fibrad_work *kept, uint32_t i
 START_TEST(work_kept_while_scenes_change) {
     const struct contents c = contents_of(20);
     struct problem *p = begin_problem(&c, 0);
-    fibrad_work fixed = work_fixed(block_of(1 << 19), 1 << 19);
+    fibrad_work fixed = work_fixed(block_of(1 << 18), 1 << 18);
     for (int what = 0; what < 16; what++) {
         const struct contents d = what % 8 == 7 ? contents_of((uint64_t)what) : changed(&c, what % 8);
         build(p, what % 2 ? &c : &d);
@@ -212,7 +212,7 @@ END_TEST
 START_TEST(work_in_another_block) {
     const struct contents c = contents_of(21);
     struct problem *p = begin_problem(&c, 0);
-    size_t size = 1 << 19;
+    size_t size = 1 << 18;
     unsigned char *block = block_of(size);
     fibrad_work work = work_fixed(block, size);
     for (int what = 0; what < 6; what++) {
@@ -226,7 +226,7 @@ START_TEST(work_in_another_block) {
         block = other;
         work.memory.block = other + shift;
     }
-    for (; size > 445000; size -= size / 32) { /* reflections ask for 442 KB */
+    for (; size > 160000; size -= size / 8) { /* the least for reflections is some 150 KB */
         work.memory.size = size;
         assert_row_as_fresh(p, &work, 3);
     }

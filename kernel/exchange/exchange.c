@@ -11,6 +11,9 @@
 #define FEW_PATHS  4u
 #define USUAL_RAYS 1024u
 
+/* So many paths at most begin with legs of the beam row. */
+#define LEGS_MOST 2048u
+
 /* Up to so many directions, windows by 256 points are as good as by exact areas and take a third of the time. With
  * fewer directions than usual the error is that of the directions, and 64 points take two thirds of that. */
 #define BY_POINTS     144u
@@ -60,12 +63,16 @@ static fibrad_paths paths_of(const exchange_task *task, fibrad_workspace *space,
                           .back = UINT32_MAX};
 }
 
-/* Asks the beams for the first legs of as many paths as the rule has, or as there is room for. */
-static void want_legs(const fibrad_paths *paths, const fibrad_exchange_rule *rule) {
-    fibrad_legs *legs = paths->tracer->legs;
-    const uint64_t wanted = rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT;
-    legs->wanted = wanted < FIBRAD_LEGS ? (uint32_t)wanted : FIBRAD_LEGS;
-    for (uint32_t d = 0; d < 4; d++) legs->shift[d] = fibrad_random_ahead(paths->stream, d);
+/* Asks the beams for the first legs of the first paths. _WORK */
+static int want_legs(fibrad_workspace *space, const fibrad_paths *paths, const fibrad_exchange_rule *rule) {
+    const uint64_t count = rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT;
+    const uint32_t wanted = count < LEGS_MOST ? (uint32_t)count : LEGS_MOST;
+    space->needed = space->plan;
+    space->needed.legs = wanted;
+    if (wanted > space->plan.legs) return FIBRAD_E_WORK;
+    space->legs.wanted = wanted;
+    for (uint32_t d = 0; d < 4; d++) space->legs.shift[d] = fibrad_random_ahead(paths->stream, d);
+    return FIBRAD_OK;
 }
 
 /* The first leg: a beam row, and the error of what it makes spheres and walls absorb. */
@@ -200,17 +207,16 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     if (task->emissivity[i] == 0) return empty_row(scene, row);
     fibrad_row leg = fibrad_row_scratch(space, body);
     fibrad_paths paths = paths_of(task, space, scene, i);
-    want_legs(&paths, rule);
-    space->legs = paths.tracer->legs;
-    int status = first_leg(scene, space, i, task, &leg, &beam_error);
-    space->legs = NULL;
+    int status = want_legs(space, &paths, rule);
+    if (status == FIBRAD_OK) status = first_leg(scene, space, i, task, &leg, &beam_error);
+    space->legs.wanted = 0;
     if (status != FIBRAD_OK) return status;
 
     keep_first_leg(&space->entries, &leg);
     fibrad_copy(wall, space->wall, sizeof wall);
     const double carried = reflected_of(task, &leg, wall), met = 1 - leg.escaped - leg.beyond;
     const double weight = carried > 0 ? carried / fibrad_max(carried, met) : 0;
-    paths.legs = paths.tracer->legs;
+    paths.legs = &space->legs;
     paths.entries = &space->entries;
     if (rule->node_emissivity != NULL) paths.conductivity = rule->conductivity;
     fibrad_work_begin(space, scene, paths.place, rule->cutoff, (fibrad_stride){0});

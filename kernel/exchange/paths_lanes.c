@@ -201,14 +201,15 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
     const fibrad_scene *scene = paths->tracer->scene;
     fibrad_hit hit;
     double centre[3], point[3], distance;
-    paths->rays += !is_met_known(paths, known);
+    if (!is_met_known(paths, known)) known = NULL;
+    paths->rays += known == NULL;
     find_point(scene, path, centre, point);
     if (path->place != FIBRAD_NONE) {
         const uint32_t behind = fibrad_walls_behind(scene, path->place, path->n, point);
         if (behind != FIBRAD_NONE) reach_wall(scene, path, behind, FIBRAD_NO_SIDE, point);
         if (behind != FIBRAD_NONE) return behind;
     }
-    if (is_met_known(paths, known))
+    if (known != NULL)
         meet_known(paths, known, &hit);
     else if (path->place != FIBRAD_NONE)
         LANED(fibrad_trace)(paths->tracer, path->place, path->n, w, &hit);
@@ -306,8 +307,7 @@ static void next_direction(const fibrad_paths *paths, struct grey_path *path, co
     }
     for (int axis = 0; axis < 3 && leg == 0; axis++) w[axis] = known->w[axis];
     if (leg == 0) return;
-    const double(*even)[FIBRAD_LEGS_ROOM] = paths->legs->even;
-    direction_about(path->n, (double[3]){even[0][path->k], even[1][path->k], even[2][path->k]}, w);
+    direction_about(path->n, known->even, w);
 }
 
 /* A path goes on from a sphere that conducts: where it was reflected, or where the sphere gives off what it has

@@ -21,7 +21,6 @@ static void tracer_layout(fibrad_arena *arena, uint32_t lists, fibrad_tracer *tr
     tracer->nearby = fibrad_arena_take(arena, lists, sizeof *tracer->nearby);
     for (int k = 0; k < 2; k++) tracer->key[k] = fibrad_arena_take(arena, CANDIDATES, sizeof *tracer->key[k]);
     tracer->candidate = fibrad_arena_take(arena, CANDIDATES, sizeof *tracer->candidate);
-    tracer->legs = fibrad_arena_take(arena, 1, sizeof *tracer->legs);
 }
 
 /* Bytes of a tracer with a number of lists, which is a power of two. */

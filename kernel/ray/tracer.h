@@ -37,7 +37,6 @@ typedef struct fibrad_tracer {
     fibrad_nearby *nearby; /* [lists] */
     uint64_t *key[2];      /* [] scratch: clearances and numbers of spheres that may be listed */
     struct fibrad_candidate *candidate;
-    fibrad_legs *legs; /* room for first legs of paths */
 } fibrad_tracer;
 
 /* Extra bytes of work memory for a tracer: with the fewest lists, and with the best number: that of the spheres, at

@@ -47,14 +47,14 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     work->entries.addends = range->addends;
     if (range->part != NULL) fibrad_beam_replay(work, range, directions, open);
     if (frames.turned) fibrad_rotation(rule->turn, frames.turn);
-    if (work->legs != NULL) LANED(begin_legs)(work->legs);
+    LANED(begin_legs)(&work->legs);
     for (uint32_t k = range->from; k < range->to; k++) {
         double frame[9];
         LANED(frame_of_beam)(&frames, k, points, frame);
         work->entries.end = k == 0 || k == directions - 1;
         double rest = LANED(fibrad_beam_window)(work, frame, &window, k);
         if (work->disc.count > work->disc.capacity || work->areas.overflow) return fibrad_work_discs_missed(work);
-        if (work->legs != NULL) LANED(take_legs)(work, frame, k);
+        LANED(take_legs)(work, frame, k);
         const bool meets = work->met != NULL && work->met->any;
         if (meets) LANED(fibrad_mesh_count)(work, frame, k);
         if (scene->container.walls)

@@ -12,12 +12,11 @@
 #include "base/random.h"
 #include "work/work.h"
 
-/* Makes the places in windows and the points of the unit sphere. */
+/* Makes the first coordinates of normals along the axes of windows, and the even points. */
 static void LANED(begin_legs)(fibrad_legs *legs) {
-    const vd one = vd_set1(1);
     legs->length = 0;
     for (uint32_t k = 0; k < legs->wanted; k += VD_LANES) {
-        _Alignas(64) double at[4][VD_LANES];
+        _Alignas(64) double at[4][VD_LANES], to[4][VD_LANES];
         vd cosine, sine;
         for (uint32_t lane = 0; lane < VD_LANES; lane++)
             for (int d = 0; d < 4; d++) {
@@ -26,13 +25,15 @@ static void LANED(begin_legs)(fibrad_legs *legs) {
             }
         vd ring = vd_sqrt(vd_load(at[0])), height = vd_load(at[2]);
         vd_turn(vd_load(at[1]), &cosine, &sine);
-        vd_store(legs->x + k, ring * cosine);
-        vd_store(legs->y + k, ring * sine);
-        ring = vd_sqrt(4 * height * (one - height));
+        vd_store(to[0], ring * cosine);
+        vd_store(to[1], ring * sine);
+        ring = vd_sqrt(4 * height * (1 - height));
         vd_turn(vd_load(at[3]), &cosine, &sine);
-        vd_store(legs->even[0] + k, ring * cosine);
-        vd_store(legs->even[1] + k, ring * sine);
-        vd_store(legs->even[2] + k, one - (height + height));
+        vd_store(to[2], ring * cosine);
+        vd_store(to[3], ring * sine);
+        for (uint32_t lane = 0; lane < VD_LANES && k + lane < legs->wanted; lane++)
+            legs->leg[k + lane] = (fibrad_leg){.n = {to[0][lane], to[1][lane]},
+                                               .even = {to[2][lane], to[3][lane], 1 - (at[2][lane] + at[2][lane])}};
     }
 }
 
@@ -55,13 +56,13 @@ static uint32_t LANED(first_disc)(const fibrad_discs *disc, double x, double y, 
 
 /* Takes the legs of window k. */
 static void LANED(take_legs)(fibrad_workspace *work, const double frame[9], uint32_t k) {
-    fibrad_legs *legs = work->legs;
+    fibrad_legs *legs = &work->legs;
     const fibrad_discs *disc = &work->disc;
     const uint32_t end = (uint32_t)((uint64_t)legs->wanted * (k + 1) / work->windows);
     for (uint32_t at = legs->length; at < end; at++) {
         fibrad_leg *leg = &legs->leg[at];
-        const double x = legs->x[at], y = legs->y[at], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
         double depth;
+        const double x = leg->n[0], y = leg->n[1], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
         const uint32_t first = LANED(first_disc)(disc, x, y, &depth);
         leg->sphere = first != FIBRAD_NONE ? fibrad_work_sphere(work, first) : FIBRAD_NONE;
         for (int axis = 0; axis < 3; axis++) {

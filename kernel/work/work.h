@@ -118,25 +118,22 @@ typedef struct fibrad_work_plan {
     uint32_t discs;   /* discs of one window, hidden ones included */
     uint32_t entries; /* different spheres and slots seen by one row */
     size_t extra;     /* bytes for other methods */
+    uint32_t legs;    /* first legs of paths that a beam row takes */
 } fibrad_work_plan;
 
 /* The first leg of a path: a beam of a window. */
 typedef struct fibrad_leg {
     double n[3], w[3]; /* outward normal of sphere i where the beam leaves, and direction of the beam */
+    double even[3];    /* an even point of the unit sphere, by which the path goes on */
     double centre[3];  /* of the sphere that the beam meets, in radii of sphere i, from the centre of sphere i */
     uint32_t sphere;   /* place of the sphere met; FIBRAD_NONE: not known */
 } fibrad_leg;
 
 /* First legs that a beam row takes from its windows, equally many from each. */
-#define FIBRAD_LEGS      2048u
-#define FIBRAD_LEGS_ROOM (FIBRAD_LEGS + FIBRAD_LANES_MAX)
 typedef struct fibrad_legs {
-    uint64_t shift[4];                       /* of the four coordinates of each leg */
-    uint32_t wanted, length;                 /* wanted: at most FIBRAD_LEGS */
-    _Alignas(64) double x[FIBRAD_LEGS_ROOM]; /* where the beams pass their windows */
-    double y[FIBRAD_LEGS_ROOM];              /* [same] */
-    double even[3][FIBRAD_LEGS_ROOM];        /* points of the unit sphere, for the directions in which paths go on */
-    fibrad_leg leg[FIBRAD_LEGS];
+    uint64_t shift[4];       /* of the four coordinates of each leg */
+    uint32_t wanted, length; /* wanted: at most plan.legs; 0: the row takes none */
+    fibrad_leg *leg;         /* [plan.legs] */
 } fibrad_legs;
 
 /* The inside of a fibrad_work. Only `extra` lasts from one call to the next. */
@@ -149,6 +146,7 @@ typedef struct fibrad_workspace {
     fibrad_discs disc;
     fibrad_areas areas;
     fibrad_entries entries;
+    fibrad_legs legs;
     fibrad_met *met;      /* NULL unless plan.met */
     void *extra;          /* [plan.extra] */
     uint64_t extra_owner; /* who wrote the contents of `extra`; 0: nobody; each method has its number */
@@ -167,7 +165,6 @@ typedef struct fibrad_workspace {
     uint32_t back;             /* a triangle seen from a side that belongs to no wall; UINT32_MAX: none */
     bool cut;                  /* whether there is a cutoff or a known region */
     fibrad_wall_room *walls;   /* NULL unless plan.walls */
-    fibrad_legs *legs;         /* NULL, or first legs that a beam row takes from its windows */
     double wall[FIBRAD_SLOTS]; /* by slot: areas, points or rays; then factors */
 } fibrad_workspace;
 
