@@ -77,7 +77,7 @@ END_TEST
 START_TEST(exchange_factors) {
     int lines;
     run_experiment("exchange");
-    ck_assert_double_le(largest_of("paper", "at 2.0 r", &lines), 2);
+    ck_assert_double_le(largest_of("paper", "at 2.0 r", &lines), 1.5);
     ck_assert_int_eq(lines, 10);
     ck_assert_double_le(largest_of("paper", "at 2.4 r", &lines), 2.5);
     ck_assert_double_le(largest_of("paper", "at 3.0 r", &lines), 4);

@@ -13,7 +13,7 @@
  * middle. */
 enum { CELLS = 7, DENSE = 4, SPHERES = 4 * CELLS * CELLS * CELLS, STRIDE = 5, WALL_PATHS = 100 };
 #define LAYER .617
-static const fibrad_exchange_rule rule = {.directions = 144, .paths = 400};
+static const fibrad_exchange_rule rule = {.directions = 144, .paths = 1600};
 
 static int make_bed(struct bed *bed, int column) {
     bed_init(bed);
