@@ -187,8 +187,9 @@ int fibrad_insitu_follow(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, ui
  *            _STATE: there are no rows, or the ids are not those of the rows
  *            _MEMORY
  *            _UNSOLVABLE: rows of particles that conduct are too inaccurate for powers
- *   Cost     2 ns per entry, and some messages. If particles conduct, some 10 to 40 times as much: `temperature` is
- *            then the mean of each particle, and conjugate gradients find the node values */
+ *   Cost     2 ns per entry, and some messages. If particles conduct, `temperature` is the mean of each particle, and
+ *            conjugate gradients find the node values. This took 9 times as long at k* = 5, 27 times at k* = 1 and
+ *            140 times at k* = 0.3, for 4,096 particles of emissivity 0.8 */
 int fibrad_insitu_powers(fibrad_insitu *insitu, const fibrad_insitu_state *state, double *power,
                          fibrad_insitu_totals *totals);
 

@@ -11,8 +11,8 @@
  * integral has an inverse in closed form.
  *
  * P_t is least opposite the point: 4 pi P_t >= (1 - t)/(1 + t)^2. The mean m of this least value over t is the even
- * part of K. The rest is (1 - m) K'. In K' t has a density in proportion to t^a (3 + t)/(1 + t)^2, and the distance
- * (1 + t) s between (0, 0, t) and the point on the unit sphere follows from an even random number U:
+ * part of K. The rest is (1 - m) K'. In K' t has a density in proportion to t^a (3 + t)/(1 + t)^2. Let (1 + t) s be
+ * the distance between (0, 0, t) and the point on the unit sphere. It follows from an even random number U:
  *
  *     (1 - s)^2 (2 + s)/s = 4 t^2 (3 + t) U/((1 + t)^2 (1 - t)). */
 #ifndef FIBRAD_EXCHANGE_CONDUCTING_H

@@ -5,7 +5,7 @@
 
 #include "couple/ranks/collective.h"
 
-/* A particle in a message. It has 6 words, so that coordinates are doubles with a stride. */
+/* A particle in a message. It consists of words alone, so that coordinates are doubles with a stride. */
 typedef struct fibrad_particle {
     uint64_t id;
     double x[3], radius;                   /* [L] */
