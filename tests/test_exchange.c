@@ -332,7 +332,7 @@ START_TEST(same_bits_always) {
     fibrad_work work = work_growing();
     ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, 70, &rule, &displacement), FIBRAD_OK);
     work_free(&work);
-    const size_t room = FIBRAD_WORK_BYTES(256, 150) + ((size_t)1 << 17) + sizeof(fibrad_legs);
+    const size_t room = FIBRAD_WORK_BYTES(256, 150) + ((size_t)1 << 17);
     int isa[ISAS_MOST];
     const int sets = isas_there(isa);
     for (int k = 0; k < 2 * sets; k++) { /* with much memory and with little */
