@@ -43,7 +43,7 @@ static double factor_of_opposite(double x, double y) {
  * exchange. */
 static void shares_in_empty_box(const fibrad_scene *scene, uint32_t from, double share[FIBRAD_CYLINDER]) {
     const fibrad_container *c = &scene->container;
-    const uint32_t own = from / 2;
+    const uint32_t own = fibrad_face_axis(from);
     double area[3], opposite[3], beside[3];
     for (uint32_t axis = 0; axis < 3; axis++) {
         const uint32_t u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -52,11 +52,11 @@ static void shares_in_empty_box(const fibrad_scene *scene, uint32_t from, double
         opposite[axis] = factor_of_opposite((c->high[u] - c->low[u]) / across, (c->high[v] - c->low[v]) / across);
         beside[axis] = area[axis] * (1 - opposite[axis]);
     }
-    share[from] = 0, share[from ^ 1] = opposite[own];
+    share[from] = 0, share[fibrad_face_opposite(from)] = opposite[own];
     for (uint32_t turn = 1; turn < 3; turn++) {
         const uint32_t axis = (own + turn) % 3, third = 3 - own - axis;
-        share[2 * axis] = fibrad_max(0, (beside[own] + beside[axis] - beside[third]) / (4 * area[own]));
-        share[2 * axis + 1] = share[2 * axis];
+        const double each = fibrad_max(0, (beside[own] + beside[axis] - beside[third]) / (4 * area[own]));
+        share[fibrad_face(axis, false)] = share[fibrad_face(axis, true)] = each;
     }
 }
 

@@ -163,7 +163,7 @@ static void reach_wall(const fibrad_scene *scene, struct grey_path *path, uint32
         path->point[axis] -= whole;
         path->centre[axis] += whole;
     }
-    path->triangle = wall < FIBRAD_WALLS ? FIBRAD_NO_SIDE : side / 2;
+    path->triangle = wall < FIBRAD_WALLS ? FIBRAD_NO_SIDE : fibrad_side_triangle(side);
     if (wall < FIBRAD_WALLS)
         fibrad_wall_normal(scene, wall, path->point, path->n);
     else
@@ -230,7 +230,7 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
                              ? fibrad_surroundings_side(scene, point, w, ball, hit.side, hit.distance, &distance)
                              : fibrad_surroundings_met(scene, point, w, ball, &distance);
     if (met == FIBRAD_NONE) {
-        paths->back = scene->mesh.number[hit.side / 2];
+        paths->back = fibrad_side_number(&scene->mesh, hit.side);
         return FIBRAD_BEYOND;
     }
     if (met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND) return met;
@@ -263,38 +263,17 @@ static void absorb_at_surface(fibrad_paths *paths, struct grey_path *path, uint3
     fibrad_entries_add(paths->entries, entry, (uint32_t)(path->k % 4), absorbed);
 }
 
-/* An even point on the part of a wall inside all others, within one period of periodic axes. */
+/* Starts a path at one of evenly spread points of the wall or mesh that paths leave. */
 static void start_at_wall(const fibrad_paths *paths, struct grey_path *path) {
     const fibrad_scene *scene = paths->tracer->scene;
-    const fibrad_container *c = &scene->container;
     const double share[2] = {path_coordinate(paths, path, 0), path_coordinate(paths, path, 1)};
-    const bool round = c->radius < __builtin_inf();
-    double low[3], size[3], sine, cosine;
-    if (paths->from >= FIBRAD_MESHES) {
-        const uint32_t side = fibrad_mesh_point(&scene->mesh, paths->from - FIBRAD_MESHES, share, path->point);
+    if (fibrad_slot_is_mesh(paths->from)) {
+        const uint32_t side = fibrad_mesh_point(&scene->mesh, fibrad_slot_mesh(paths->from), share, path->point);
         fibrad_mesh_normal(&scene->mesh, side, path->n);
-        path->triangle = side / 2;
+        path->triangle = fibrad_side_triangle(side);
         return;
     }
-    for (int axis = 0; axis < 3; axis++) {
-        low[axis] = scene->period[axis] > 0 ? 0 : c->low[axis];
-        size[axis] = scene->period[axis] > 0 ? scene->period[axis] : c->high[axis] - c->low[axis];
-    }
-    if (paths->from < FIBRAD_CYLINDER) {
-        const uint32_t axis = paths->from / 2;
-        path->point[axis] = paths->from % 2 == 0 ? c->low[axis] : c->high[axis];
-        for (uint32_t side = 0; side < 2 && !round; side++) {
-            const uint32_t along = (axis + 1 + side) % 3;
-            path->point[along] = low[along] + size[along] * share[side];
-        }
-    } else {
-        path->point[2] = low[2] + size[2] * share[1];
-    }
-    if (round) {
-        const double radius = paths->from < FIBRAD_CYLINDER ? c->radius * fibrad_sqrt(share[1]) : c->radius;
-        fibrad_sincos_turn(share[0], &sine, &cosine);
-        path->point[0] = c->axis[0] + radius * cosine, path->point[1] = c->axis[1] + radius * sine;
-    }
+    fibrad_wall_even_point(scene, paths->from, share, path->point);
     fibrad_wall_normal(scene, paths->from, path->point, path->n);
 }
 

@@ -14,7 +14,7 @@ static uint64_t plan_hash_start(const fibrad_furnace *f) {
     uint64_t hash = fibrad_hash_word(fibrad_mix(c->seed), f->restarts);
     hash = fibrad_hash_word(hash, (uint64_t)f->physics);
     for (int a = 0; a < 3; a++) hash = fibrad_hash_number(fibrad_hash_word(hash, c->cells[a]), c->size[a]);
-    for (int w = 0; w < 6; w++)
+    for (uint32_t w = 0; w < 6; w++)
         hash = fibrad_hash_number(fibrad_hash_number(hash, c->wall_temperature[w]), c->wall_emissivity[w]);
     for (int k = 0; k < 4; k++) hash = fibrad_hash_number(hash, medium[k]);
     return hash;
@@ -32,10 +32,10 @@ static double plan_powers(fibrad_furnace *f, bool anew) {
         f->traced[k] = f->at.e[k];
         total += fibrad_abs(f->power[k]);
     }
-    for (int w = 0; w < 6; w++) {
+    for (uint32_t w = 0; w < 6; w++) {
         double power = anew ? fibrad_patch_power(f, w) : 0;
-        for (size_t p = 0; p < f->patches[w / 2]; p++) f->power[f->wall_source[w] + p] = power;
-        total += fibrad_abs(power) * (double)f->patches[w / 2];
+        for (size_t p = 0; p < f->patches[fibrad_face_axis(w)]; p++) f->power[f->wall_source[w] + p] = power;
+        total += fibrad_abs(power) * (double)f->patches[fibrad_face_axis(w)];
     }
     return total;
 }

@@ -17,7 +17,8 @@
 #include "base/elementary.h"
 #include "base/random.h"
 
-#define PLANE_NONE 1e300 /* m: distance of a plane that the bundle never meets */
+#define PLANE_NONE 1e300      /* m: distance of a plane that the bundle never meets */
+#define WALL_NONE  UINT32_MAX /* the bundle is on no wall */
 
 /* place in units of cells, so that planes are at whole numbers; direction; weight in units of the tally */
 typedef struct furnace_bundle {
@@ -35,42 +36,52 @@ static void bundle_scatter(furnace_bundle *r, double u, double v) {
 }
 
 /* A direction away from wall w, by the cosine law, from two numbers in [0, 1). */
-static void bundle_leave_wall(furnace_bundle *r, int w, double u, double v) {
+static void bundle_leave_wall(furnace_bundle *r, uint32_t w, double u, double v) {
     double rho = fibrad_sqrt(u), z = fibrad_sqrt(1 - u), sine, cosine;
     fibrad_sincos_turn(v, &sine, &cosine);
-    int a = w / 2;
-    r->direction[a] = w % 2 ? -z : z;
-    r->direction[(a + 1) % 3] = rho * cosine;
-    r->direction[(a + 2) % 3] = rho * sine;
+    r->direction[fibrad_face_axis(w)] = fibrad_face_is_upper(w) ? -z : z;
+    r->direction[fibrad_face_along(w, 0)] = rho * cosine;
+    r->direction[fibrad_face_along(w, 1)] = rho * sine;
 }
 
 /* The cell along axis a at `place` [cells]. */
-static size_t bundle_cell(const fibrad_furnace *f, int a, double place) {
+static size_t bundle_cell(const fibrad_furnace *f, uint32_t a, double place) {
     size_t k = place > 0 ? (size_t)(int64_t)place : 0;
     return k < f->config.cells[a] ? k : f->config.cells[a] - 1;
 }
 
-/* Index of the patch of a wall across axis a at the position of the bundle. */
-static size_t bundle_patch(const fibrad_furnace *f, int a, const furnace_bundle *r) {
-    int b = a == 0 ? 1 : 0, c = a == 2 ? 1 : 2;
+/* The axes along which the patches of wall w are numbered, the fastest first. */
+static void bundle_axes(uint32_t w, uint32_t *fast, uint32_t *slow) {
+    *fast = fibrad_face_axis(w) == 0 ? 1 : 0, *slow = fibrad_face_axis(w) == 2 ? 1 : 2;
+}
+
+/* Index of the patch of wall w at the position of the bundle. */
+static size_t bundle_patch(const fibrad_furnace *f, uint32_t w, const furnace_bundle *r) {
+    uint32_t b, c;
+    bundle_axes(w, &b, &c);
     return bundle_cell(f, b, r->at[b]) + f->config.cells[b] * bundle_cell(f, c, r->at[c]);
 }
 
-/* The start of bundle k of the plan, which source s emits. Returns the wall that the bundle leaves. -1: none. */
-static int bundle_start(const fibrad_furnace *f, uint64_t k, size_t s, furnace_bundle *r) {
+/* Where wall w crosses its axis [cells]. */
+static double bundle_wall_at(const fibrad_furnace *f, uint32_t w) {
+    return fibrad_face_is_upper(w) ? f->config.cells[fibrad_face_axis(w)] : 0;
+}
+
+/* The start of bundle k of the plan, which source s emits. Returns the wall that the bundle leaves, or WALL_NONE. */
+static uint32_t bundle_start(const fibrad_furnace *f, uint64_t k, size_t s, furnace_bundle *r) {
     double u[5];
     for (int d = 0; d < 5; d++) u[d] = fibrad_quasirandom(5, d, f->origin + k, f->config.seed);
     r->weight = f->power[s] / ((double)(f->first[s + 1] - f->first[s]) * f->bundle_power) * FIBRAD_TALLY_UNIT;
     if (s < f->cells) {
-        for (int a = 0; a < 3; a++) r->at[a] = (double)(s / f->cell_stride[a] % f->config.cells[a]) + u[2 + a];
+        for (uint32_t a = 0; a < 3; a++) r->at[a] = (double)(s / f->cell_stride[a] % f->config.cells[a]) + u[2 + a];
         bundle_scatter(r, u[0], u[1]);
-        return -1;
+        return WALL_NONE;
     }
-    int w = 0;
+    uint32_t w = 0, b, c;
     while (w < 5 && s >= f->wall_source[w + 1]) w++;
-    int a = w / 2, b = a == 0 ? 1 : 0, c = a == 2 ? 1 : 2;
+    bundle_axes(w, &b, &c);
     size_t patch = s - f->wall_source[w];
-    r->at[a] = w % 2 ? (double)f->config.cells[a] : 0;
+    r->at[fibrad_face_axis(w)] = bundle_wall_at(f, w);
     r->at[b] = (double)(patch % f->config.cells[b]) + u[2];
     r->at[c] = (double)(patch / f->config.cells[b]) + u[3];
     bundle_leave_wall(r, w, u[0], u[1]);
@@ -78,28 +89,29 @@ static int bundle_start(const fibrad_furnace *f, uint64_t k, size_t s, furnace_b
 }
 
 /* Finds the cells per metre along the direction, and the distance [m] to the next wall. Returns this wall. */
-static int bundle_find_wall(const fibrad_furnace *f, const furnace_bundle *r, double speed[3], double *distance) {
-    int wall = 0;
+static uint32_t bundle_find_wall(const fibrad_furnace *f, const furnace_bundle *r, double speed[3], double *distance) {
+    uint32_t wall = 0;
     *distance = PLANE_NONE;
-    for (int a = 0; a < 3; a++) {
+    for (uint32_t a = 0; a < 3; a++) {
         speed[a] = r->direction[a] / f->step[a];
         double way = speed[a] > 0 ? f->config.cells[a] - r->at[a] : -r->at[a];
         double t = fibrad_abs(speed[a]) * PLANE_NONE > fibrad_abs(way) ? fibrad_max(way / speed[a], 0) : PLANE_NONE;
         if (t < *distance) {
             *distance = t;
-            wall = 2 * a + (speed[a] > 0);
+            wall = fibrad_face(a, speed[a] > 0);
         }
     }
     return wall;
 }
 
-/* Advances the bundle by `distance`. If w is not -1, the bundle is then on wall w. */
-static void bundle_advance(const fibrad_furnace *f, furnace_bundle *r, const double speed[3], double distance, int w) {
-    for (int a = 0; a < 3; a++) {
+/* Advances the bundle by `distance`. If w is not WALL_NONE, the bundle is then on wall w. */
+static void bundle_advance(const fibrad_furnace *f, furnace_bundle *r, const double speed[3], double distance,
+                           uint32_t w) {
+    for (uint32_t a = 0; a < 3; a++) {
         double place = r->at[a] + speed[a] * distance;
         r->at[a] = fibrad_min(fibrad_max(place, 0), f->config.cells[a]);
     }
-    if (w >= 0) r->at[w / 2] = w % 2 ? f->config.cells[w / 2] : 0;
+    if (w != WALL_NONE) r->at[fibrad_face_axis(w)] = bundle_wall_at(f, w);
 }
 
 static double bundle_free_path(double extinction, fibrad_random *random) {
@@ -118,7 +130,7 @@ static void bundle_add_moments(fibrad_moments *moments, double f0, double f1, do
 static void bundle_cross_faces(const fibrad_furnace *f, fibrad_furnace_tally *tally, const furnace_bundle *r,
                                const double speed[3], const double end[3]) {
     double absorption = f->config.absorption;
-    for (int a = 0; a < 3; a++) {
+    for (uint32_t a = 0; a < 3; a++) {
         bool up = speed[a] > 0;
         double from = up ? fibrad_floor(r->at[a]) + 1 : -fibrad_floor(-r->at[a]) - 1; /* first plane ahead */
         double to = up ? fibrad_min(-fibrad_floor(-end[a]), f->config.cells[a]) - 1
@@ -126,7 +138,7 @@ static void bundle_cross_faces(const fibrad_furnace *f, fibrad_furnace_tally *ta
         int64_t crossings = (int64_t)(up ? to - from : from - to) + 1;
         if (crossings <= 0) continue;
 
-        int b = (a + 1) % 3, c = (a + 2) % 3;
+        uint32_t b = (a + 1) % 3, c = (a + 2) % 3;
         double interval = 1 / fibrad_abs(speed[a]), t = (from - r->at[a]) / speed[a];
         double weight = r->weight * fibrad_exp(-absorption * t), decay = fibrad_exp(-absorption * interval);
         double cosine = fibrad_abs(r->direction[a]);
@@ -145,41 +157,43 @@ static void bundle_cross_faces(const fibrad_furnace *f, fibrad_furnace_tally *ta
     }
 }
 
-/* Index of the face on wall w at the position of the bundle. */
-static size_t bundle_wall_face(const fibrad_furnace *f, int w, const furnace_bundle *r) {
-    int a = w / 2, b = (a + 1) % 3, c = (a + 2) % 3;
-    size_t last = w % 2 ? f->config.cells[a] * f->face_stride[a][a] : 0;
-    return last + bundle_cell(f, b, r->at[b]) * f->face_stride[a][b] +
-           bundle_cell(f, c, r->at[c]) * f->face_stride[a][c];
+/* The moments of radiation that leaves wall w, or that arrives there, at the position of the bundle. */
+static fibrad_moments *bundle_at_wall(const fibrad_furnace *f, fibrad_furnace_tally *tally, uint32_t w, bool leaves,
+                                      const furnace_bundle *r) {
+    uint32_t a = fibrad_face_axis(w), b = fibrad_face_along(w, 0), c = fibrad_face_along(w, 1);
+    size_t last = fibrad_face_is_upper(w) ? f->config.cells[a] * f->face_stride[a][a] : 0;
+    size_t face =
+        last + bundle_cell(f, b, r->at[b]) * f->face_stride[a][b] + bundle_cell(f, c, r->at[c]) * f->face_stride[a][c];
+    return &tally->moment[a][leaves == fibrad_face_is_upper(w)][face];
 }
 
 /* Adds diffuse radiation that leaves wall w by its mean moments. The moments of the one direction sampled would be
  * noisier. */
-static void bundle_add_departure(const fibrad_furnace *f, fibrad_furnace_tally *tally, int w, const furnace_bundle *r) {
-    bundle_add_moments(&tally->moment[w / 2][w % 2][bundle_wall_face(f, w, r)], r->weight, r->weight * (2.0 / 3),
-                       r->weight / 2);
+static void bundle_add_departure(const fibrad_furnace *f, fibrad_furnace_tally *tally, uint32_t w,
+                                 const furnace_bundle *r) {
+    bundle_add_moments(bundle_at_wall(f, tally, w, true, r), r->weight, r->weight * (2.0 / 3), r->weight / 2);
 }
 
-static void bundle_trace_attenuated(const fibrad_furnace *f, fibrad_furnace_tally *tally, furnace_bundle *r, int wall,
-                                    fibrad_random *random) {
+static void bundle_trace_attenuated(const fibrad_furnace *f, fibrad_furnace_tally *tally, furnace_bundle *r,
+                                    uint32_t wall, fibrad_random *random) {
     double least = 0.02 * fibrad_abs(r->weight);
-    if (wall >= 0) bundle_add_departure(f, tally, wall, r);
+    if (wall != WALL_NONE) bundle_add_departure(f, tally, wall, r);
     for (;;) {
         double speed[3], distance, path = bundle_free_path(f->config.scattering, random);
         wall = bundle_find_wall(f, r, speed, &distance);
         if (path < distance) {
             distance = path;
-            wall = -1;
+            wall = WALL_NONE;
         }
         furnace_bundle end = *r;
         bundle_advance(f, &end, speed, distance, wall);
         bundle_cross_faces(f, tally, r, speed, end.at);
         *r = end;
         r->weight *= fibrad_exp(-f->config.absorption * distance);
-        if (wall >= 0) {
-            double cosine = fibrad_abs(r->direction[wall / 2]), weight = r->weight;
-            bundle_add_moments(&tally->moment[wall / 2][wall % 2 ? 0 : 1][bundle_wall_face(f, wall, r)], weight,
-                               weight * cosine, weight * cosine * cosine);
+        if (wall != WALL_NONE) {
+            double cosine = fibrad_abs(r->direction[fibrad_face_axis(wall)]), weight = r->weight;
+            bundle_add_moments(bundle_at_wall(f, tally, wall, false, r), weight, weight * cosine,
+                               weight * cosine * cosine);
             r->weight *= 1 - f->config.wall_emissivity[wall];
             bundle_add_departure(f, tally, wall, r);
         }
@@ -189,7 +203,7 @@ static void bundle_trace_attenuated(const fibrad_furnace *f, fibrad_furnace_tall
             r->weight *= 5;
         }
         double u = fibrad_random_next(random), v = fibrad_random_next(random);
-        if (wall >= 0)
+        if (wall != WALL_NONE)
             bundle_leave_wall(r, wall, u, v);
         else
             bundle_scatter(r, u, v);
@@ -203,7 +217,7 @@ static void bundle_measure_path(const fibrad_furnace *f, fibrad_furnace_tally *t
                                 const double speed[3], double distance) {
     double next[3], interval[3], weight = r->weight / fibrad_cell_diagonal(f), t = 0;
     size_t left[3], cell = 0, stride[3];
-    for (int a = 0; a < 3; a++) {
+    for (uint32_t a = 0; a < 3; a++) {
         bool up = speed[a] > 0;
         size_t here = bundle_cell(f, a, r->at[a]);
         left[a] = up ? f->config.cells[a] - 1 - here : here; /* planes between the cell and the wall */
@@ -229,20 +243,20 @@ static void bundle_trace_equilibrium(const fibrad_furnace *f, fibrad_furnace_tal
     double extinction = f->config.absorption + f->config.scattering;
     for (;;) {
         double speed[3], distance, path = bundle_free_path(extinction, random);
-        int wall = bundle_find_wall(f, r, speed, &distance);
+        uint32_t wall = bundle_find_wall(f, r, speed, &distance);
         if (path < distance) {
             distance = path;
-            wall = -1;
+            wall = WALL_NONE;
         }
         bundle_measure_path(f, tally, r, speed, distance);
         bundle_advance(f, r, speed, distance, wall);
-        if (wall >= 0 && fibrad_random_next(random) < f->config.wall_emissivity[wall]) {
-            size_t patch = f->wall_source[wall] - f->cells + bundle_patch(f, wall / 2, r);
+        if (wall != WALL_NONE && fibrad_random_next(random) < f->config.wall_emissivity[wall]) {
+            size_t patch = f->wall_source[wall] - f->cells + bundle_patch(f, wall, r);
             tally->absorbed[patch] += (int64_t)r->weight;
             return;
         }
         double u = fibrad_random_next(random), v = fibrad_random_next(random);
-        if (wall >= 0)
+        if (wall != WALL_NONE)
             bundle_leave_wall(r, wall, u, v);
         else
             bundle_scatter(r, u, v);
@@ -275,7 +289,7 @@ int fibrad_furnace_trace(const fibrad_furnace *furnace, fibrad_furnace_tally *ta
     for (uint64_t k = first; k < first + count; k++) {
         while (f->first[s + 1] <= k) s++;
         furnace_bundle r;
-        int wall = bundle_start(f, k, s, &r);
+        uint32_t wall = bundle_start(f, k, s, &r);
         fibrad_random random = fibrad_random_start(f->config.seed, f->origin + k);
         if (f->physics == FIBRAD_FURNACE_ATTENUATED)
             bundle_trace_attenuated(f, tally, &r, wall, &random);

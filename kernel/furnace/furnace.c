@@ -19,7 +19,7 @@ static bool furnace_config_valid(const fibrad_furnace_config *c) {
             return false;
     }
     double widest = 0;
-    for (int w = 0; w < 6; w++) {
+    for (uint32_t w = 0; w < 6; w++) {
         if (!furnace_in_range(c->wall_temperature[w], 1e-3, 1e9) || !furnace_in_range(c->wall_emissivity[w], 0, 1))
             return false;
         widest = fibrad_max(widest, c->wall_emissivity[w]);
@@ -80,8 +80,8 @@ static double furnace_median_wall(const fibrad_furnace *f) {
     double best = 0, least = DBL_MAX;
     for (int m = 0; m < 6; m++) {
         double sum = 0;
-        for (int w = 0; w < 6; w++) {
-            double area = fibrad_face_area(f, w / 2) * (double)f->patches[w / 2];
+        for (uint32_t w = 0; w < 6; w++) {
+            double area = fibrad_face_area(f, fibrad_face_axis(w)) * (double)f->patches[fibrad_face_axis(w)];
             sum += f->config.wall_emissivity[w] * area * fibrad_abs(f->wall_e[w] - f->wall_e[m]);
         }
         if (sum < least) {
@@ -127,7 +127,7 @@ int fibrad_furnace_init(fibrad_furnace **furnace, void *memory, size_t size, con
     if (status != FIBRAD_OK) return status;
     fibrad_zero(memory, needed);
     fibrad_furnace *f = furnace_lay_out(&arena, config);
-    for (int w = 0; w < 6; w++) {
+    for (uint32_t w = 0; w < 6; w++) {
         double t2 = config->wall_temperature[w] * config->wall_temperature[w];
         f->wall_e[w] = FIBRAD_STEFAN_BOLTZMANN * t2 * t2;
     }

@@ -1,13 +1,12 @@
 /* furnace.h - what the files of the furnace share. SPDX-License-Identifier: MIT
  *
  * Cells are numbered with x fastest. The faces of axis a are numbered likewise; there is one layer more of them
- * along a. The patches of each wall are numbered likewise too. The order of walls is x = 0, x = X, y = 0, y = Y, z =
- * 0, z = Z. */
+ * along a. The patches of each wall are numbered likewise too. The order of walls is that of base/faces.h. */
 #ifndef FIBRAD_FURNACE_FURNACE_H
 #define FIBRAD_FURNACE_FURNACE_H
 
+#include "base/faces.h"
 #include "base/random.h"
-#include "fibrad_furnace.h"
 #include "fibrad_furnace.h"
 
 /* A mapping of the box onto itself: axis a becomes axis[a], reversed if flip[a]. */
@@ -78,14 +77,14 @@ static inline bool fibrad_tally_fits(const fibrad_furnace *f, const fibrad_furna
 static inline double fibrad_cell_volume(const fibrad_furnace *f) { return f->step[0] * f->step[1] * f->step[2]; }
 
 /* Area of a face across axis a. */
-static inline double fibrad_face_area(const fibrad_furnace *f, int a) {
+static inline double fibrad_face_area(const fibrad_furnace *f, uint32_t a) {
     return f->step[(a + 1) % 3] * f->step[(a + 2) % 3];
 }
 
 /* What a patch of wall w emits above the reference E [W]. */
-static inline double fibrad_patch_power(const fibrad_furnace *f, int w) {
+static inline double fibrad_patch_power(const fibrad_furnace *f, uint32_t w) {
     double net = f->config.wall_emissivity[w] * (f->wall_e[w] - f->reference);
-    return net * fibrad_face_area(f, w / 2);
+    return net * fibrad_face_area(f, fibrad_face_axis(w));
 }
 
 static inline double fibrad_cell_diagonal(const fibrad_furnace *f) {

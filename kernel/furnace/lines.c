@@ -78,10 +78,11 @@ static void line_set_sums(fibrad_furnace *f) {
 }
 
 static void line_set_walls(fibrad_furnace *f) {
-    for (int w = 0; w < 6; w++) {
-        int a = w / 2;
-        const double *out = f->at.flux[a][w % 2], *in = f->at.flux[a][1 - w % 2];
-        size_t stride = f->face_stride[a][a], last = w % 2 ? stride * f->config.cells[a] : 0;
+    for (uint32_t w = 0; w < 6; w++) {
+        uint32_t a = fibrad_face_axis(w);
+        bool upper = fibrad_face_is_upper(w);
+        const double *out = f->at.flux[a][upper], *in = f->at.flux[a][!upper];
+        size_t stride = f->face_stride[a][a], last = upper ? stride * f->config.cells[a] : 0;
         double sum = 0;
         for (size_t p = 0; p < f->patches[a]; p++) {
             size_t face = p % stride + p / stride * stride * (f->config.cells[a] + 1) + last;

@@ -9,7 +9,7 @@ static fibrad_furnace_tally *tally_lay_out(fibrad_arena *arena, const fibrad_fur
     fibrad_furnace_tally count = {0}, *t = tally != NULL ? tally : &count;
     fibrad_copy(t->cells, f->config.cells, sizeof t->cells);
     size_t head = arena->used;
-    for (int a = 0; a < 3; a++) {
+    for (uint32_t a = 0; a < 3; a++) {
         for (int g = 0; g < 2; g++) t->moment[a][g] = fibrad_arena_take(arena, f->faces[a], sizeof *t->moment[a][g]);
     }
     t->path = fibrad_arena_take(arena, f->cells, sizeof *t->path);
@@ -40,7 +40,7 @@ int fibrad_furnace_tally_init(fibrad_furnace_tally **tally, void *memory, size_t
 
 int fibrad_furnace_tally_add(fibrad_furnace_tally *to, const fibrad_furnace_tally *from) {
     if (to == NULL || from == NULL || to == from) return FIBRAD_E_ARGUMENT;
-    for (int a = 0; a < 3; a++) {
+    for (uint32_t a = 0; a < 3; a++) {
         if (to->cells[a] != from->cells[a]) return FIBRAD_E_STATE;
     }
     if (from->series == 0) return FIBRAD_OK;
@@ -59,17 +59,19 @@ static bool tally_is_complete(const fibrad_furnace *f, const fibrad_furnace_tall
 }
 
 /* The image of index i of n along axis a under a symmetry, for cells or faces. */
-static size_t tally_image(const fibrad_symmetry *s, int a, size_t i, size_t n) { return s->flip[a] ? n - 1 - i : i; }
+static size_t tally_image(const fibrad_symmetry *s, uint32_t a, size_t i, size_t n) {
+    return s->flip[a] ? n - 1 - i : i;
+}
 
 /* The mean of moment m over the images of face i[] of axis a, hemisphere g, as power per area [W/m2]. */
-static double tally_mean_moment(const fibrad_furnace *f, const fibrad_furnace_tally *t, int a, int g, int m,
+static double tally_mean_moment(const fibrad_furnace *f, const fibrad_furnace_tally *t, uint32_t a, int g, int m,
                                 const size_t i[3]) {
     int64_t sum = 0;
     for (uint32_t k = 0; k < f->symmetries; k++) {
         const fibrad_symmetry *s = &f->symmetry[k];
         const size_t *stride = f->face_stride[s->axis[a]];
         size_t face = 0;
-        for (int b = 0; b < 3; b++)
+        for (uint32_t b = 0; b < 3; b++)
             face += tally_image(s, b, i[b], f->config.cells[b] + (a == b ? 1 : 0)) * stride[s->axis[b]];
         sum += t->moment[s->axis[a]][g ^ s->flip[a]][face].f[m];
     }
@@ -77,11 +79,11 @@ static double tally_mean_moment(const fibrad_furnace *f, const fibrad_furnace_ta
 }
 
 /* Theta and flux of all faces of axis a, hemisphere g. The reference E adds the moments of isotropic radiation. */
-static void tally_set_theta(fibrad_furnace *f, const fibrad_furnace_tally *t, int a, int g,
+static void tally_set_theta(fibrad_furnace *f, const fibrad_furnace_tally *t, uint32_t a, int g,
                             fibrad_furnace_estimator estimator) {
     static const double isotropic[3] = {1, 2.0 / 3, 0.5};
     size_t n[3], i[3], face = 0;
-    for (int b = 0; b < 3; b++) n[b] = f->config.cells[b] + (a == b ? 1 : 0);
+    for (uint32_t b = 0; b < 3; b++) n[b] = f->config.cells[b] + (a == b ? 1 : 0);
     for (i[2] = 0; i[2] < n[2]; i[2]++) {
         for (i[1] = 0; i[1] < n[1]; i[1]++) {
             for (i[0] = 0; i[0] < n[0]; i[0]++, face++) {
@@ -99,7 +101,7 @@ static void tally_set_theta(fibrad_furnace *f, const fibrad_furnace_tally *t, in
 
 /* The transverse term of axis a, hemisphere g. It is the residual of the hemisphere's equation in each cell for the
  * fluxes of the bundles and the E that they carried. With this term the heat-flux equations return these fluxes. */
-static void tally_set_transverse(fibrad_furnace *f, int a, int g, fibrad_furnace_scatter scatter) {
+static void tally_set_transverse(fibrad_furnace *f, uint32_t a, int g, fibrad_furnace_scatter scatter) {
     size_t stride = f->face_stride[a][a], block = stride * f->config.cells[a];
     const double *theta = f->at.theta[a][g], *flux = f->at.flux[a][g];
     double d = f->step[a], thickness = (f->config.absorption + f->config.scattering) * d;
@@ -121,11 +123,11 @@ int fibrad_furnace_estimate(fibrad_furnace *furnace, const fibrad_furnace_tally 
         return FIBRAD_E_ARGUMENT;
     if (scatter != FIBRAD_SCATTER_SIX_FLUX && scatter != FIBRAD_SCATTER_EXACT) return FIBRAD_E_ARGUMENT;
     if (!tally_is_complete(f, tally, FIBRAD_FURNACE_ATTENUATED)) return FIBRAD_E_STATE;
-    for (int a = 0; a < 3; a++) {
+    for (uint32_t a = 0; a < 3; a++) {
         for (int g = 0; g < 2; g++) tally_set_theta(f, tally, a, g, estimator);
     }
     fibrad_furnace_balance(f);
-    for (int a = 0; a < 3; a++) {
+    for (uint32_t a = 0; a < 3; a++) {
         for (int g = 0; g < 2; g++) {
             if (transverse)
                 tally_set_transverse(f, a, g, scatter);
@@ -149,7 +151,7 @@ static void tally_set_e(fibrad_furnace *f, const fibrad_furnace_tally *tally, do
                 for (uint32_t k = 0; k < f->symmetries; k++) {
                     const fibrad_symmetry *s = &f->symmetry[k];
                     size_t to = 0;
-                    for (int b = 0; b < 3; b++) to += tally_image(s, b, i[b], n[b]) * f->cell_stride[s->axis[b]];
+                    for (uint32_t b = 0; b < 3; b++) to += tally_image(s, b, i[b], n[b]) * f->cell_stride[s->axis[b]];
                     sum += tally->path[to];
                 }
                 f->at.e[cell] = f->reference + own + (double)sum * per_path;
@@ -165,11 +167,11 @@ int fibrad_furnace_equilibrium(fibrad_furnace *furnace, const fibrad_furnace_tal
     if (!tally_is_complete(f, tally, FIBRAD_FURNACE_EQUILIBRIUM)) return FIBRAD_E_STATE;
     double unit = f->bundle_power / FIBRAD_TALLY_UNIT;
     tally_set_e(f, tally, unit);
-    for (int w = 0; w < 6; w++) {
+    for (uint32_t w = 0; w < 6; w++) {
         const int64_t *absorbed = tally->absorbed + (f->wall_source[w] - f->cells);
-        double area = fibrad_face_area(f, w / 2), emitted = fibrad_patch_power(f, w);
+        double area = fibrad_face_area(f, fibrad_face_axis(w)), emitted = fibrad_patch_power(f, w);
         f->at.power[w] = 0;
-        for (size_t p = 0; p < f->patches[w / 2]; p++) {
+        for (size_t p = 0; p < f->patches[fibrad_face_axis(w)]; p++) {
             double net = emitted - (double)absorbed[p] * unit;
             f->at.wall[w][p] = net / area;
             f->at.power[w] += net;

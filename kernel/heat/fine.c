@@ -70,20 +70,18 @@ static double point_on_sphere(uint32_t face, double a, double b, double normal[3
 static double point_on_wall(const fibrad_heat *heat, uint32_t wall, const double share[2], double at[3],
                             double normal[3]) {
     const fibrad_container *c = &heat->scene->container;
-    const fibrad_heat_wall *part = &heat->wall[wall];
-    double stretched = 1;
+    double stretched = 1, coordinate[2];
+    fibrad_heat_wall_coordinates(heat, wall, share, coordinate);
     if (wall == FIBRAD_CYLINDER) {
         const double turn = 4 * share[0], quarter = fibrad_min(fibrad_floor(turn), 3), t = turn - quarter;
         const double square = (1 - t) * (1 - t) + t * t, r = c->radius / fibrad_sqrt(square);
         const double along = r * (1 - t), across = r * t;
         at[0] = c->axis[0] + (quarter == 0 ? along : quarter == 1 ? -across : quarter == 2 ? -along : across);
         at[1] = c->axis[1] + (quarter == 0 ? across : quarter == 1 ? along : quarter == 2 ? -across : -along);
-        at[2] = part->low[1] + share[1] * part->size[1];
+        at[2] = coordinate[1];
         stretched = 2 / (FIBRAD_PI * square);
     } else {
-        at[wall / 2] = wall % 2 == 0 ? c->low[wall / 2] : c->high[wall / 2];
-        for (uint32_t side = 0; side < 2; side++)
-            at[(wall / 2 + 1 + side) % 3] = part->low[side] + share[side] * part->size[side];
+        fibrad_wall_point(c, wall, coordinate, at);
     }
     fibrad_wall_normal(heat->scene, wall, at, normal);
     return stretched;

@@ -331,7 +331,7 @@ static bool same_triangles(const fibrad_heat *heat, const fibrad_scene *scene) {
     const uint32_t *first = heat->first + fibrad_heat_body(heat, FIBRAD_MESHES);
     bool same = mesh->triangles == heat->triangles;
     for (uint32_t s = 0; same && s < 2 * mesh->triangles; s++) {
-        const uint32_t m = mesh->mesh[s / 2][s % 2], patch = heat->cut[2 * (size_t)mesh->number[s / 2] + s % 2].patch;
+        const uint32_t m = fibrad_side_mesh(mesh, s), patch = heat->cut[fibrad_side_given(mesh, s)].patch;
         same = m == FIBRAD_NO_MESH || fibrad_mesh_area(mesh, m) == 0
                    ? patch == UINT32_MAX
                    : patch >= first[m] - first[0] && patch < first[m + 1] - first[0];

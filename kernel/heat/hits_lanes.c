@@ -243,7 +243,7 @@ static fibrad_heat_beam *keep_meshed(const fibrad_heat *heat, fibrad_workspace *
         LANED(fibrad_mesh_place)(work, frame, HIT_POINTS * word + p, at);
         const uint32_t patch = fibrad_heat_mesh_patch(heat, side, at);
         if (patch == FIBRAD_NONE)
-            work->back = heat->scene->mesh.number[side / 2];
+            work->back = fibrad_side_number(&heat->scene->mesh, side);
         else
             beam = keep_other(heat, work, k, leave[p], patch, true, beam);
     }
@@ -306,14 +306,14 @@ static int follow_ray(const fibrad_heat *heat, fibrad_workspace *work, uint32_t 
     const bool starts = slot < FIBRAD_WALLS ? fibrad_heat_wall_ray(heat, slot, k, origin, w)
                                             : fibrad_heat_mesh_ray(heat, slot - FIBRAD_MESHES, k, origin, w, &side);
     if (!starts) return FIBRAD_OK;
-    LANED(fibrad_trace_point)(heat->scene, origin, w, side == FIBRAD_NO_SIDE ? side : side / 2, &hit);
+    LANED(fibrad_trace_point)(heat->scene, origin, w, side == FIBRAD_NO_SIDE ? side : fibrad_side_triangle(side), &hit);
     if (hit.sphere != FIBRAD_NONE) return FIBRAD_OK;
     ray->from =
         slot < FIBRAD_WALLS ? fibrad_heat_wall_patch(heat, slot, origin) : fibrad_heat_mesh_patch(heat, side, origin);
     if (fibrad_heat_fine_of(heat, ray->from) != FIBRAD_NONE) return FIBRAD_OK; /* these have rays of their own */
     ray->to = fibrad_heat_ends(heat, origin, w, hit.side, hit.distance);
     if (ray->to == FIBRAD_NONE) {
-        work->back = heat->scene->mesh.number[hit.side / 2];
+        work->back = fibrad_side_number(&heat->scene->mesh, hit.side);
         return FIBRAD_E_BACK;
     }
     if (fibrad_heat_fine_of(heat, ray->to) != FIBRAD_NONE) return FIBRAD_OK;
@@ -362,7 +362,7 @@ static bool keep_fine_ray(const fibrad_heat *heat, fibrad_workspace *work, uint3
     if (to != FIBRAD_NONE)
         keep_other(heat, work, ray->k, beam->from, to, true, beam);
     else
-        work->back = scene->mesh.number[hit.side / 2];
+        work->back = fibrad_side_number(&scene->mesh, hit.side);
     return to != FIBRAD_NONE;
 }
 

@@ -264,7 +264,7 @@ static inline size_t fibrad_heat_other_block(const fibrad_heat *heat, uint32_t o
 /* The slot to which wall k reflects beyond its patches: the opposite plane, or itself for an endless cylinder.
  * FIBRAD_WALLS: to the surroundings. Between two walls of emissivity 0, all radiation comes from the surroundings. */
 static inline uint32_t fibrad_heat_facing(const fibrad_heat *heat, uint32_t k) {
-    const uint32_t other = k == FIBRAD_CYLINDER ? k : k ^ 1;
+    const uint32_t other = k == FIBRAD_CYLINDER ? k : fibrad_face_opposite(k);
     const bool white = heat->sources.wall_emissivity[k] == 0 && heat->sources.wall_emissivity[other] == 0;
     return heat->wall[other].unbounded && !white ? other : FIBRAD_WALLS;
 }

@@ -611,7 +611,7 @@ int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temper
         const size_t to = (size_t)(cut - heat->cut);
         double q = __builtin_nan(""), t = q;
         if (cut->patch != UINT32_MAX) {
-            const uint32_t m = mesh->mesh[s / 2][s % 2], b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
+            const uint32_t m = fibrad_side_mesh(mesh, s), b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
             const side_sum sum = sum_of_side(heat, cut);
             if (sum.area > 0) q = heat->sources.emissivity[b] > 0 ? sum.net / sum.area + beyond[m] : 0;
             t = temperature_of_side(heat, b, cut, &sum);

@@ -62,7 +62,7 @@ static int source_why(const radiator *s) {
 
 /* The temperature of a side of a mesh, its own or its body's. */
 static double side_temperature(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t side, double of_body) {
-    const double own = s->side_temperature[2 * (size_t)heat->scene->mesh.number[side / 2] + side % 2];
+    const double own = s->side_temperature[fibrad_side_given(&heat->scene->mesh, side)];
     return is_given(own) ? own : of_body;
 }
 

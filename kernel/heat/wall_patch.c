@@ -98,8 +98,7 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
         if (!(scene->wall_area[k] > 0)) continue;
         wall->size[0] = 1;
         for (uint32_t side = k == FIBRAD_CYLINDER; side < 2; side++)
-            wall->unbounded |=
-                stretch(scene, k == FIBRAD_CYLINDER ? 2 : (k / 2 + 1 + side) % 3, &wall->low[side], &wall->size[side]);
+            wall->unbounded |= stretch(scene, fibrad_wall_along(k, side), &wall->low[side], &wall->size[side]);
         area += fibrad_heat_wall_area(heat, k);
     }
     for (uint32_t m = 0; m < heat->meshes; m++)
@@ -145,13 +144,8 @@ static double around(double x, double y) {
     return (x < 0 ? 2 - t : t < 0 ? 4 + t : t) / 4;
 }
 
-/* The axis along a side of the rectangle of a wall. */
-static uint32_t axis_along(uint32_t wall, uint32_t side) {
-    return wall == FIBRAD_CYLINDER ? 2 : (wall / 2 + 1 + side) % 3;
-}
-
 bool fibrad_heat_wall_wraps(const fibrad_heat *heat, uint32_t wall, uint32_t side) {
-    return (wall == FIBRAD_CYLINDER && side == 0) || heat->scene->period[axis_along(wall, side)] > 0;
+    return (wall == FIBRAD_CYLINDER && side == 0) || heat->scene->period[fibrad_wall_along(wall, side)] > 0;
 }
 
 bool fibrad_heat_wall_place(const fibrad_heat *heat, uint32_t wall, const double at[3], double place[2]) {
@@ -159,7 +153,7 @@ bool fibrad_heat_wall_place(const fibrad_heat *heat, uint32_t wall, const double
     const fibrad_scene *scene = heat->scene;
     bool inside = true;
     for (uint32_t side = 0; side < 2; side++) {
-        const uint32_t axis = axis_along(wall, side);
+        const uint32_t axis = fibrad_wall_along(wall, side);
         double share = (at[axis] - w->low[side]) / w->size[side];
         if (wall == FIBRAD_CYLINDER && side == 0)
             share = around(at[0] - scene->container.axis[0], at[1] - scene->container.axis[1]);
@@ -250,7 +244,7 @@ static uint32_t side_of_ray(const fibrad_heat *heat, uint32_t mesh, uint32_t k, 
     double before;
     const uint32_t side = own->side[fibrad_mesh_side_at(own, mesh, (k + .5) / rays * area, &before)];
     const uint32_t first = (uint32_t)(before / area * rays + .5), number = k > first ? k - first : 0;
-    const uint64_t seed = fibrad_mix(2 * (2 * (uint64_t)own->number[side / 2] + side % 2) + number % 2);
+    const uint64_t seed = fibrad_mix(2 * fibrad_side_given(own, side) + number % 2);
     fibrad_sobol_move(&heat->sobol, 0, number / 2, point);
     for (int d = 0; d < 4; d++) x[d] = even_coordinate(point, seed, d);
     return side;
@@ -261,7 +255,7 @@ bool fibrad_heat_mesh_ray(const fibrad_heat *heat, uint32_t mesh, uint32_t k, do
     const fibrad_mesh *own = &heat->scene->mesh;
     double x[4], n[3];
     *side = side_of_ray(heat, mesh, k, x);
-    fibrad_mesh_triangle_point(own, *side / 2, x, origin);
+    fibrad_mesh_triangle_point(own, fibrad_side_triangle(*side), x, origin);
     if (!fibrad_walls_hold(&heat->scene->container, origin)) return false;
     fibrad_mesh_normal(own, *side, n);
     fibrad_heat_direction(x + 2, n, w);
@@ -269,25 +263,16 @@ bool fibrad_heat_mesh_ray(const fibrad_heat *heat, uint32_t mesh, uint32_t k, do
 }
 
 bool fibrad_heat_wall_ray(const fibrad_heat *heat, uint32_t wall, uint32_t k, double origin[3], double w[3]) {
-    const fibrad_heat_wall *part = &heat->wall[wall];
     const fibrad_container *c = &heat->scene->container;
-    double x[4], normal[3], sine, cosine;
+    double x[4], normal[3], coordinate[2];
     fibrad_heat_ray_coordinates(wall, k, x);
-    if (wall == FIBRAD_CYLINDER) {
-        fibrad_sincos_turn(x[0], &sine, &cosine);
-        origin[0] = c->axis[0] + c->radius * cosine, origin[1] = c->axis[1] + c->radius * sine;
-        origin[2] = part->low[1] + x[1] * part->size[1];
-    } else {
-        origin[wall / 2] = wall % 2 == 0 ? c->low[wall / 2] : c->high[wall / 2];
-        for (uint32_t side = 0; side < 2; side++)
-            origin[(wall / 2 + 1 + side) % 3] = part->low[side] + x[side] * part->size[side];
-        if (!fibrad_walls_hold(c, origin)) return false;
-    }
+    fibrad_heat_wall_coordinates(heat, wall, x, coordinate);
+    fibrad_wall_point(c, wall, coordinate, origin);
+    if (fibrad_slot_is_plane(wall) && !fibrad_walls_hold(c, origin)) return false;
     fibrad_wall_normal(heat->scene, wall, origin, normal);
-    /* across the normal: the next axis for planes, the tangent for the cylinder; and along z, or the third axis */
-    double across[3] = {-normal[1], normal[0], 0}, along[3] = {0, 0, 1};
-    if (wall < FIBRAD_CYLINDER)
-        for (uint32_t a = 0; a < 3; a++) across[a] = a == (wall / 2 + 1) % 3, along[a] = a == (wall / 2 + 2) % 3;
+    double across[3] = {-normal[1], normal[0], 0}, along[3] = {0, 0, 0}; /* along the edges of the wall */
+    along[fibrad_wall_along(wall, 1)] = 1;
+    for (uint32_t a = 0; a < 3 && fibrad_slot_is_plane(wall); a++) across[a] = a == fibrad_wall_along(wall, 0);
     cosine_direction(x + 2, normal, across, along, w);
     return true;
 }

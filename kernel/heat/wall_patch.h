@@ -14,6 +14,14 @@ void fibrad_heat_cut_meshes(fibrad_heat *heat);
 /* The area of the part of a wall that is cut [L2]. */
 double fibrad_heat_wall_area(const fibrad_heat *heat, uint32_t wall);
 
+/* The coordinates of a point of a wall along its edges, as fibrad_wall_point takes them, from its shares of the edges
+ * of the rectangle. */
+static inline void fibrad_heat_wall_coordinates(const fibrad_heat *heat, uint32_t wall, const double share[2],
+                                                double coordinate[2]) {
+    const fibrad_heat_wall *w = &heat->wall[wall];
+    for (int edge = 0; edge < 2; edge++) coordinate[edge] = w->low[edge] + share[edge] * w->size[edge];
+}
+
 /* Where on a wall a place on it [L] is, in squares; false: beyond the part that is cut. Whether squares at one end of a
  * side are next to those at the other. */
 bool fibrad_heat_wall_place(const fibrad_heat *heat, uint32_t wall, const double at[3], double place[2]);

@@ -258,7 +258,7 @@ static ways_out planes_met(const fibrad_footprint *f, const fibrad_scene *scene,
 }
 
 static uint32_t slot_facing(const fibrad_footprint *f, uint32_t axis, double sense) {
-    return 2 * axis + (sense * f->frame[6 + axis] > 0);
+    return fibrad_face(axis, sense * f->frame[6 + axis] > 0);
 }
 
 /* Depth towards the light at which the line u, v meets a plane: constant + its product with the other two numbers. */

@@ -1,6 +1,6 @@
 /* mesh.h - triangles in a tree of boxes. SPDX-License-Identifier: MIT
  *
- * Triangles are numbered in the order of the tree. Side 2 t is the front of triangle t, and side 2 t + 1 is its back. A
+ * Triangles are numbered in the order of the tree. Each has two sides, front and back. A
  * line meets a triangle if three areas in the plane across the line have one sign. For two triangles at an edge, their
  * areas at this edge are exactly opposite. Hence nothing passes between the triangles. A triangle that is seen edge-on
  * is not met. */
@@ -48,6 +48,23 @@ typedef struct fibrad_mesh {
     double *area;           /* L^2, [2 triangles], sum of the areas from the first side of the mesh to this side */
     uint32_t first[FIBRAD_BODIES_MAX + 1]; /* first element of side and area of each mesh */
 } fibrad_mesh;
+
+/* The side of a triangle, and back. */
+static inline uint32_t fibrad_side(uint32_t triangle, bool back) { return 2 * triangle + back; }
+static inline uint32_t fibrad_side_triangle(uint32_t side) { return side / 2; }
+static inline bool fibrad_side_is_back(uint32_t side) { return side % 2 != 0; }
+
+/* Of a side: the mesh, or FIBRAD_NO_MESH; the caller's number of the triangle; the side of the triangle with this
+ * number. */
+static inline uint8_t fibrad_side_mesh(const fibrad_mesh *mesh, uint32_t side) {
+    return mesh->mesh[fibrad_side_triangle(side)][fibrad_side_is_back(side)];
+}
+static inline uint32_t fibrad_side_number(const fibrad_mesh *mesh, uint32_t side) {
+    return mesh->number[fibrad_side_triangle(side)];
+}
+static inline uint64_t fibrad_side_given(const fibrad_mesh *mesh, uint32_t side) {
+    return fibrad_side(fibrad_side_number(mesh, side), fibrad_side_is_back(side));
+}
 
 static inline void fibrad_mesh_corners(const fibrad_mesh *mesh, uint32_t triangle, double corner[3][3]) {
     for (int k = 0; k < 3; k++)

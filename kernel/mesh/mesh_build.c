@@ -219,15 +219,16 @@ uint32_t fibrad_mesh_highest(const fibrad_mesh *mesh, int axis) {
 static void list_sides(fibrad_mesh *mesh) {
     uint32_t end[FIBRAD_BODIES_MAX + 1] = {0};
     for (uint32_t s = 0; s < 2 * mesh->triangles; s++)
-        if (mesh->mesh[s / 2][s % 2] != FIBRAD_NO_MESH) end[mesh->mesh[s / 2][s % 2] + 1]++;
+        if (fibrad_side_mesh(mesh, s) != FIBRAD_NO_MESH) end[fibrad_side_mesh(mesh, s) + 1]++;
     for (uint32_t m = 0; m < FIBRAD_BODIES_MAX; m++) end[m + 1] += end[m];
     fibrad_copy(mesh->first, end, sizeof mesh->first);
     for (uint32_t s = 0; s < 2 * mesh->triangles; s++) {
-        const uint8_t m = mesh->mesh[s / 2][s % 2];
+        const uint8_t m = fibrad_side_mesh(mesh, s);
         if (m == FIBRAD_NO_MESH) continue;
         const uint32_t at = end[m]++;
         mesh->side[at] = s;
-        mesh->area[at] = fibrad_mesh_triangle_area(mesh, s / 2) + (at > mesh->first[m] ? mesh->area[at - 1] : 0);
+        mesh->area[at] =
+            fibrad_mesh_triangle_area(mesh, fibrad_side_triangle(s)) + (at > mesh->first[m] ? mesh->area[at - 1] : 0);
     }
 }
 

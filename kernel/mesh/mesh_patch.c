@@ -22,7 +22,7 @@ static uint32_t halvings_for(double own, double area) {
 
 static void middle_of_side(const fibrad_mesh *mesh, uint32_t side, double middle[3]) {
     double c[3][3];
-    fibrad_mesh_corners(mesh, side / 2, c);
+    fibrad_mesh_corners(mesh, fibrad_side_triangle(side), c);
     for (int axis = 0; axis < 3; axis++) middle[axis] = (c[0][axis] + c[1][axis] + c[2][axis]) / 3;
 }
 
@@ -63,14 +63,14 @@ static uint32_t cut_large(const fibrad_mesh *mesh, uint32_t number, double area,
 }
 
 /* Joins the small fronts or the small backs. */
-static uint32_t join_small(const fibrad_mesh *mesh, uint32_t number, uint32_t back, double area, uint32_t next,
+static uint32_t join_small(const fibrad_mesh *mesh, uint32_t number, bool back, double area, uint32_t next,
                            fibrad_mesh_cut *cut) {
     joint_patch patch = {0};
     bool begun = false;
     for (uint32_t k = mesh->first[number]; k < mesh->first[number + 1]; k++) {
         const double own = area_of_side(mesh, number, k);
         const uint32_t side = mesh->side[k];
-        if (side % 2 != back || halvings_for(own, area) > 0) continue;
+        if (fibrad_side_is_back(side) != back || halvings_for(own, area) > 0) continue;
         if (!begun || !joins(mesh, side, own, area, &patch)) begin_joint(mesh, side, &patch), next += begun;
         begun = true;
         patch.area += own;
@@ -83,8 +83,8 @@ uint32_t fibrad_mesh_cut_sides(const fibrad_mesh *mesh, uint32_t number, double 
                                fibrad_mesh_cut *cut) {
     if (!(fibrad_mesh_area(mesh, number) > 0)) return 0;
     uint32_t next = cut_large(mesh, number, area, first, cut);
-    for (uint32_t back = 0; back < 2; back++) next = join_small(mesh, number, back, area, next, cut);
-    return next - first;
+    next = join_small(mesh, number, false, area, next, cut);
+    return join_small(mesh, number, true, area, next, cut) - first;
 }
 
 /* The barycentric coordinates of a place on a triangle, none below 0. On periodic axes the image of the place next
@@ -107,12 +107,12 @@ static void find_shares(const fibrad_mesh *mesh, uint32_t triangle, const double
 }
 
 uint32_t fibrad_mesh_patch_at(const fibrad_mesh *mesh, const fibrad_mesh_cut *cut, uint32_t side, const double at[3]) {
-    const fibrad_mesh_cut own = cut[2 * (size_t)mesh->number[side / 2] + side % 2];
+    const fibrad_mesh_cut own = cut[fibrad_side_given(mesh, side)];
     double c[3][3], share[3], square[3] = {0, 0, 0}; /* square: squared length of the edge opposite each corner */
     uint32_t number = 0;
     if (own.halvings == 0) return own.patch;
-    find_shares(mesh, side / 2, at, share);
-    fibrad_mesh_corners(mesh, side / 2, c);
+    find_shares(mesh, fibrad_side_triangle(side), at, share);
+    fibrad_mesh_corners(mesh, fibrad_side_triangle(side), c);
     for (int k = 0; k < 3; k++)
         for (int axis = 0; axis < 3; axis++) {
             const double edge = c[(k + 1) % 3][axis] - c[(k + 2) % 3][axis];

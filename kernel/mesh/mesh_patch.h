@@ -22,7 +22,7 @@ uint32_t fibrad_mesh_cut_sides(const fibrad_mesh *mesh, uint32_t number, double 
 
 /* The cut of a side. */
 static inline fibrad_mesh_cut *fibrad_mesh_cut_of(const fibrad_mesh *mesh, fibrad_mesh_cut *cut, uint32_t side) {
-    return &cut[2 * (size_t)mesh->number[side / 2] + side % 2];
+    return &cut[fibrad_side_given(mesh, side)];
 }
 
 /* The patch at a place [L] on a side of a mesh, or on an image of it. */

@@ -61,7 +61,7 @@ typedef struct first_side {
  * images to the side. */
 static bool begins_in_plane(const fibrad_mesh *mesh, const sheared_ray *ray, uint32_t t) {
     double normal[3], height = 0;
-    fibrad_mesh_normal(mesh, 2 * t, normal);
+    fibrad_mesh_normal(mesh, fibrad_side(t, false), normal);
     for (int axis = 0; axis < 3; axis++) height += normal[axis] * (mesh->corner[0][axis][t] - ray->origin[axis]);
     return fibrad_abs(height) <= mesh->grain;
 }
@@ -78,12 +78,12 @@ static void meet_triangle(const fibrad_mesh *mesh, const sheared_ray *ray, uint3
     const double c = at[0][0] * at[1][1] - at[0][1] * at[1][0], sum = a + b + c;
     if (!((a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0)) || sum == 0) return;
     const double distance = (a * along[0] + b * along[1] + c * along[2]) / sum * ray->inverse;
-    const uint32_t back = sum > 0;
+    const bool back = sum > 0;
     const double key = back ? distance + mesh->grain : distance;
     if (!(distance > (back ? mesh->grain : ray->begin))) return;
     if (key > first->key || (key == first->key && mesh->number[t] >= first->number)) return;
     if (t == ray->except && begins_in_plane(mesh, ray, t)) return;
-    *first = (first_side){fibrad_max(0, distance), key, 2 * t + back, mesh->number[t]};
+    *first = (first_side){fibrad_max(0, distance), key, fibrad_side(t, back), mesh->number[t]};
 }
 
 /* Enters a node. Visits the boxes that the ray may meet within the length `to`, which is in units of boxes, the
@@ -168,7 +168,7 @@ fibrad_mesh_hit fibrad_mesh_first(const fibrad_mesh *mesh, const double origin[3
 
 void fibrad_mesh_normal(const fibrad_mesh *mesh, uint32_t side, double normal[3]) {
     double c[3][3], a[3], b[3], square = 0, longest = 0;
-    fibrad_mesh_corners(mesh, side / 2, c);
+    fibrad_mesh_corners(mesh, fibrad_side_triangle(side), c);
     for (int axis = 0; axis < 3; axis++) a[axis] = c[1][axis] - c[0][axis], b[axis] = c[2][axis] - c[0][axis];
     for (int axis = 0; axis < 3; axis++) {
         const int next = (axis + 1) % 3, last = (axis + 2) % 3;
@@ -176,7 +176,7 @@ void fibrad_mesh_normal(const fibrad_mesh *mesh, uint32_t side, double normal[3]
         longest = fibrad_max(longest, fibrad_abs(normal[axis]));
     }
     for (int axis = 0; axis < 3; axis++) normal[axis] /= longest, square += normal[axis] * normal[axis];
-    const double scale = (side % 2 == 0 ? 1 : -1) / fibrad_sqrt(square);
+    const double scale = (fibrad_side_is_back(side) ? -1 : 1) / fibrad_sqrt(square);
     for (int axis = 0; axis < 3; axis++) normal[axis] *= scale;
 }
 

@@ -201,7 +201,7 @@ static bool count_side(fibrad_workspace *work, const struct cast_ray *ray, const
     const uint32_t slot =
         fibrad_surroundings_side(scene, origin, ray->frame + 6, ball, met.side, met.distance, &length);
     if (slot == FIBRAD_NONE)
-        work->back = scene->mesh.number[met.side / 2];
+        work->back = fibrad_side_number(&scene->mesh, met.side);
     else
         fibrad_entries_add(&work->entries, fibrad_entries_of(&work->entries, scene->facts.spheres + slot), k, 1);
     return true;

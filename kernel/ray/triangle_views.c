@@ -29,7 +29,7 @@ static int count_ray(const fibrad_scene *scene, uint32_t side, const double poin
                      view_counts *counts, uint32_t *seen) {
     double distance;
     fibrad_hit hit = {.sphere = FIBRAD_NONE};
-    FIBRAD_VERSION_OF(fibrad_trace_point, scene->facts.isa)(scene, point, w, side / 2, &hit);
+    FIBRAD_VERSION_OF(fibrad_trace_point, scene->facts.isa)(scene, point, w, fibrad_side_triangle(side), &hit);
     counts->rays++;
     if (hit.sphere != FIBRAD_NONE) {
         counts->spheres++;
@@ -38,27 +38,28 @@ static int count_ray(const fibrad_scene *scene, uint32_t side, const double poin
     const uint32_t wall = scene->container.walls ? fibrad_walls_exit(scene, point, w, &distance) : FIBRAD_NONE;
     const bool meshed = hit.side != FIBRAD_NO_SIDE && (wall == FIBRAD_NONE || hit.distance < distance);
     counts->bodies += meshed || (wall != FIBRAD_NONE && !fibrad_is_opening(&scene->container, wall));
-    *seen = meshed ? hit.side / 2 : *seen;
+    *seen = meshed ? fibrad_side_triangle(hit.side) : *seen;
     return meshed && fibrad_scene_slot(scene, hit.side) == FIBRAD_NONE ? FIBRAD_E_BACK : FIBRAD_OK;
 }
 
 static int view_of_side(const fibrad_scene *scene, const fibrad_sobol *sobol, uint32_t side, uint32_t rays,
                         fibrad_side_view *view, uint32_t *seen) {
     const fibrad_mesh *mesh = &scene->mesh;
-    const uint64_t shift = fibrad_mix(2 * (uint64_t)mesh->number[side / 2] + side % 2);
+    const uint64_t shift = fibrad_mix(fibrad_side_given(mesh, side));
     view_counts counts = {0, 0, 0};
     double normal[3], point[3], w[3], x[4];
     uint32_t bits[8] = {0};
     int status = FIBRAD_OK;
     *view = (fibrad_side_view){__builtin_nan(""), __builtin_nan(""), __builtin_nan("")};
-    if (fibrad_scene_slot(scene, side) == FIBRAD_NONE || !(fibrad_mesh_triangle_area(mesh, side / 2) > 0))
+    if (fibrad_scene_slot(scene, side) == FIBRAD_NONE ||
+        !(fibrad_mesh_triangle_area(mesh, fibrad_side_triangle(side)) > 0))
         return FIBRAD_OK;
     fibrad_mesh_normal(mesh, side, normal);
     for (uint32_t k = 0; k < rays && status == FIBRAD_OK; k++) {
         fibrad_sobol_move(sobol, k > 0 ? k - 1 : 0, k, bits);
         for (uint64_t d = 0; d < 4; d++)
             x[d] = fibrad_fraction(((uint64_t)bits[d] << 32 | UINT64_C(1) << 31) ^ fibrad_mix(shift + d));
-        fibrad_mesh_triangle_point(mesh, side / 2, x, point);
+        fibrad_mesh_triangle_point(mesh, fibrad_side_triangle(side), x, point);
         if (!fibrad_walls_hold(&scene->container, point) || !direction_from(normal, x + 2, w)) continue;
         status = count_ray(scene, side, point, w, &counts, seen);
     }
@@ -79,7 +80,7 @@ int fibrad_triangle_views(const fibrad_scene *scene, uint32_t place, uint32_t ra
     int status = FIBRAD_OK;
     fibrad_sobol_make(&sobol);
     for (uint32_t back = 0; back < 2 && status == FIBRAD_OK; back++)
-        status = view_of_side(scene, &sobol, 2 * place + back, rays, &view[back], &seen);
+        status = view_of_side(scene, &sobol, fibrad_side(place, back), rays, &view[back], &seen);
     *triangle = scene->mesh.number[status == FIBRAD_E_BACK ? seen : place];
     return status;
 }

@@ -356,8 +356,8 @@ void LANED(fibrad_mesh_count)(fibrad_workspace *work, const double frame[9], uin
         const uint32_t slot = slot_met(work, frame, p);
         if (slot == FIBRAD_NONE) {
             if (work->back == UINT32_MAX)
-                work->back =
-                    scene->mesh.number[side / 2]; /* a part of a row has the same triangle at fault as the row */
+                work->back = fibrad_side_number(&scene->mesh,
+                                                side); /* a part of a row has the same triangle at fault as the row */
             continue;
         }
         const uint32_t entry = fibrad_entries_of(&work->entries, scene->facts.spheres + slot);

@@ -218,7 +218,7 @@ static void add_cuts(const fibrad_wall_view *view, const wall_lines *lines, uint
             const bool up = n < 3 && line.w[n] >= 0;
             const bool there = n == 3 || (up ? view->high[n] : -view->low[n]) < __builtin_inf();
             most = share[lane];
-            wall = n == 3 ? FIBRAD_CYLINDER : there ? fibrad_slot_of_plane(n, up) : FIBRAD_WALLS;
+            wall = n == 3 ? FIBRAD_CYLINDER : there ? fibrad_face(n, up) : FIBRAD_WALLS;
         }
         if (sums->cuts[wall]++ == 0) sums->first_cut[wall] = line;
     }

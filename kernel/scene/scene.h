@@ -69,7 +69,7 @@ struct fibrad_scene {
 
 /* The slot of a side of a triangle. FIBRAD_NONE: the side belongs to no wall. */
 static inline uint32_t fibrad_scene_slot(const fibrad_scene *scene, uint32_t side) {
-    const uint8_t mesh = scene->mesh.mesh[side / 2][side % 2];
+    const uint8_t mesh = fibrad_side_mesh(&scene->mesh, side);
     return mesh != FIBRAD_NO_MESH ? fibrad_slot_of_mesh(mesh) : FIBRAD_NONE;
 }
 

@@ -5,11 +5,12 @@
 #ifndef FIBRAD_SCENE_SLOTS_H
 #define FIBRAD_SCENE_SLOTS_H
 
+#include "base/faces.h"
 #include "base/port.h"
 #include "fibrad.h"
 
 /* Slots:
- *   0 to 5     planes: x low, x high, y low, y high, z low, z high
+ *   0 to 5     planes, in the order of base/faces.h
  *   6          the cylinder
  *   7          the surroundings
  *   8          not known: `beyond` of a row
@@ -25,11 +26,6 @@
 static inline bool fibrad_slot_of_body(uint32_t slot) { return slot < FIBRAD_WALLS || slot >= FIBRAD_MESHES; }
 
 static inline bool fibrad_slot_is_plane(uint32_t slot) { return slot < FIBRAD_CYLINDER; }
-
-/* The slot of the plane across an axis, and back. */
-static inline uint32_t fibrad_slot_of_plane(uint32_t axis, bool upper) { return 2 * axis + upper; }
-static inline uint32_t fibrad_slot_axis(uint32_t slot) { return slot / 2; }
-static inline bool fibrad_slot_is_upper(uint32_t slot) { return slot % 2 != 0; }
 
 /* The slot of a mesh, and back. */
 static inline uint32_t fibrad_slot_of_mesh(uint32_t mesh) { return FIBRAD_MESHES + mesh; }

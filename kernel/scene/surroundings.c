@@ -176,6 +176,7 @@ int fibrad_triangle_ray(const fibrad_scene *scene, const double origin[3], const
             return FIBRAD_E_ARGUMENT;
     const fibrad_mesh_hit met = fibrad_mesh_first(&scene->mesh, origin, w, length, FIBRAD_NO_SIDE);
     *hit = (fibrad_triangle_hit){.triangle = UINT32_MAX, .distance = met.distance};
-    if (met.side != FIBRAD_NO_SIDE) hit->triangle = scene->mesh.number[met.side / 2], hit->back = met.side % 2;
+    if (met.side != FIBRAD_NO_SIDE)
+        hit->triangle = fibrad_side_number(&scene->mesh, met.side), hit->back = fibrad_side_is_back(met.side);
     return FIBRAD_OK;
 }

@@ -2,6 +2,7 @@
 #include "scene/walls.h"
 
 #include "base/constants.h"
+#include "base/elementary.h"
 
 #define INFINITE   __builtin_inf()
 #define BALL_SLACK 1e-12 /* rounding error of a length, relative */
@@ -13,7 +14,7 @@ static bool wall_length_valid(double length) { return fibrad_abs(length) <= FIBR
 static uint32_t slot_of_plane(const fibrad_plane *plane) {
     const int axis = plane->axis, upper = plane->upper;
     const bool valid = axis >= 0 && axis < 3 && (upper == 0 || upper == 1) && wall_length_valid(plane->at);
-    return valid ? fibrad_slot_of_plane((uint32_t)axis, upper) : FIBRAD_WALLS;
+    return valid ? fibrad_face((uint32_t)axis, upper) : FIBRAD_WALLS;
 }
 
 static uint32_t slot_of_body(const fibrad_body *body) {
@@ -33,7 +34,7 @@ typedef struct found_walls {
 /* Notes a plane. FIBRAD_E_ARGUMENT: the plane is not valid, its side has a plane already, or its axis is periodic. */
 static int find_plane(const fibrad_scene_config *config, const fibrad_plane *plane, found_walls *found) {
     const uint32_t slot = slot_of_plane(plane);
-    if (slot == FIBRAD_WALLS || found->plane[slot] != NULL || config->period[fibrad_slot_axis(slot)] > 0)
+    if (slot == FIBRAD_WALLS || found->plane[slot] != NULL || config->period[fibrad_face_axis(slot)] > 0)
         return FIBRAD_E_ARGUMENT;
     found->plane[slot] = plane;
     return FIBRAD_OK;
@@ -52,8 +53,7 @@ static int find_body(const fibrad_scene_config *config, const fibrad_body *body,
 static bool axis_is_closed(const fibrad_scene_config *config, const found_walls *found, uint32_t axis) {
     const bool periodic = config->period[axis] > 0 || (config->occupancy != NULL && config->occupancy->periodic[axis]);
     return periodic ||
-           (found->plane[fibrad_slot_of_plane(axis, false)] != NULL &&
-            found->plane[fibrad_slot_of_plane(axis, true)] != NULL) ||
+           (found->plane[fibrad_face(axis, false)] != NULL && found->plane[fibrad_face(axis, true)] != NULL) ||
            (found->cylinder && axis < 2);
 }
 
@@ -71,8 +71,8 @@ int fibrad_walls_check(const fibrad_scene_config *config) {
     bool closed = true, across = false;
     uint32_t walled = 0;
     for (uint32_t axis = 0; axis < 3; axis++) {
-        const fibrad_plane *low = found.plane[fibrad_slot_of_plane(axis, false)];
-        const fibrad_plane *high = found.plane[fibrad_slot_of_plane(axis, true)];
+        const fibrad_plane *low = found.plane[fibrad_face(axis, false)];
+        const fibrad_plane *high = found.plane[fibrad_face(axis, true)];
         if (low != NULL && high != NULL && !(low->at < high->at)) return FIBRAD_E_ARGUMENT;
         walled += low != NULL || high != NULL;
         across = across || (axis < 2 && (low != NULL || high != NULL || config->period[axis] > 0));
@@ -93,12 +93,16 @@ static double wall_area_of(const fibrad_scene *scene, uint32_t slot) {
     const double radius = scene->container.radius;
     if (slot == FIBRAD_CYLINDER) return 2 * FIBRAD_PI * radius * container_extent(scene, 2);
     if (radius < INFINITE) return FIBRAD_PI * radius * radius;
-    const uint32_t axis = fibrad_slot_axis(slot);
-    return container_extent(scene, (axis + 1) % 3) * container_extent(scene, (axis + 2) % 3);
+    return container_extent(scene, fibrad_face_along(slot, 0)) * container_extent(scene, fibrad_face_along(slot, 1));
 }
 
 static void set_plane(fibrad_container *c, const fibrad_plane *plane) {
     (plane->upper ? c->high : c->low)[plane->axis] = plane->at;
+}
+
+/* Where a plane crosses its axis [L]. */
+static double end_of_axis(const fibrad_container *c, uint32_t slot) {
+    return (fibrad_face_is_upper(slot) ? c->high : c->low)[fibrad_face_axis(slot)];
 }
 
 void fibrad_walls_build(fibrad_scene *scene, const fibrad_scene_config *config) {
@@ -137,9 +141,9 @@ bool fibrad_walls_hold(const fibrad_container *c, const double at[3]) {
 }
 
 double fibrad_walls_away(const fibrad_container *c, uint32_t slot, const double at[3]) {
-    const uint32_t axis = fibrad_slot_axis(slot);
+    const uint32_t axis = fibrad_face_axis(slot);
     if (fibrad_slot_is_plane(slot))
-        return fibrad_slot_is_upper(slot) ? c->high[axis] - at[axis] : at[axis] - c->low[axis];
+        return fibrad_face_is_upper(slot) ? c->high[axis] - at[axis] : at[axis] - c->low[axis];
     const double x = at[0] - c->axis[0], y = at[1] - c->axis[1];
     return c->radius - fibrad_sqrt(x * x + y * y);
 }
@@ -147,7 +151,7 @@ double fibrad_walls_away(const fibrad_container *c, uint32_t slot, const double 
 bool fibrad_walls_hold_ball(const fibrad_container *c, const double centre[3], double radius) {
     for (uint32_t slot = 0; slot < FIBRAD_CYLINDER; slot++)
         if (fibrad_is_opening(c, slot) && !(radius - fibrad_walls_away(c, slot, centre) <=
-                                            BALL_SLACK * (radius + fibrad_abs(centre[fibrad_slot_axis(slot)]))))
+                                            BALL_SLACK * (radius + fibrad_abs(centre[fibrad_face_axis(slot)]))))
             return false;
     return true;
 }
@@ -192,7 +196,7 @@ uint32_t fibrad_walls_exit(const fibrad_scene *scene, const double origin[3], co
         if (w[axis] == 0) continue;
         const bool high = w[axis] > 0;
         const double t = ((high ? c->high[axis] : c->low[axis]) - origin[axis]) / w[axis];
-        if (t < least) least = t, wall = fibrad_slot_of_plane(axis, high);
+        if (t < least) least = t, wall = fibrad_face(axis, high);
     }
     const double across = w[0] * w[0] + w[1] * w[1];
     if (c->radius < INFINITE && across > 0) {
@@ -209,10 +213,43 @@ uint32_t fibrad_walls_exit(const fibrad_scene *scene, const double origin[3], co
 void fibrad_wall_normal(const fibrad_scene *scene, uint32_t wall, const double at[3], double normal[3]) {
     normal[0] = normal[1] = normal[2] = 0;
     if (fibrad_slot_is_plane(wall)) {
-        normal[fibrad_slot_axis(wall)] = fibrad_slot_is_upper(wall) ? -1 : 1;
+        normal[fibrad_face_axis(wall)] = fibrad_face_is_upper(wall) ? -1 : 1;
         return;
     }
     const double x = scene->container.axis[0] - at[0], y = scene->container.axis[1] - at[1];
     const double radius = fibrad_sqrt(x * x + y * y);
     normal[0] = x / radius, normal[1] = y / radius;
+}
+
+/* Sets x and y to the point at a distance [L] and an angle [turns] from the axis of the cylinder. */
+static void turn_about_axis(const fibrad_container *c, double radius, double turns, double at[3]) {
+    double sine, cosine;
+    fibrad_sincos_turn(turns, &sine, &cosine);
+    at[0] = c->axis[0] + radius * cosine, at[1] = c->axis[1] + radius * sine;
+}
+
+void fibrad_wall_point(const fibrad_container *c, uint32_t wall, const double coordinate[2], double at[3]) {
+    if (wall == FIBRAD_CYLINDER) {
+        turn_about_axis(c, c->radius, coordinate[0], at);
+        at[2] = coordinate[1];
+        return;
+    }
+    at[fibrad_face_axis(wall)] = end_of_axis(c, wall);
+    for (uint32_t edge = 0; edge < 2; edge++) at[fibrad_face_along(wall, edge)] = coordinate[edge];
+}
+
+void fibrad_wall_even_point(const fibrad_scene *scene, uint32_t wall, const double share[2], double at[3]) {
+    const fibrad_container *c = &scene->container;
+    double coordinate[2] = {share[0], 0};
+    if (fibrad_slot_is_plane(wall) && c->radius < INFINITE) {
+        at[fibrad_face_axis(wall)] = end_of_axis(c, wall);
+        turn_about_axis(c, c->radius * fibrad_sqrt(share[1]), share[0], at);
+        return;
+    }
+    for (uint32_t edge = wall == FIBRAD_CYLINDER; edge < 2; edge++) {
+        const uint32_t axis = fibrad_wall_along(wall, edge);
+        const double low = scene->period[axis] > 0 ? 0 : c->low[axis];
+        coordinate[edge] = low + container_extent(scene, axis) * share[edge];
+    }
+    fibrad_wall_point(c, wall, coordinate, at);
 }

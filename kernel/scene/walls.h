@@ -1,8 +1,8 @@
 /* walls.h - the planes and the cylinder of a scene. They bound a convex container. SPDX-License-Identifier: MIT
  *
  * A new kind of wall needs: a check (fibrad_walls_check), its data in fibrad_container (fibrad_walls_build), the
- * point where a line meets it (fibrad_walls_exit), its normal, its area and its distance from a point. Meshes are in
- * mesh/mesh.h. surroundings.h has the slot in which a ray ends, whatever it meets. */
+ * point where a line meets it (fibrad_walls_exit), its normal, its area, its points, and its distance from a point.
+ * Meshes are in mesh/mesh.h. surroundings.h has the slot in which a ray ends, whatever it meets. */
 #ifndef FIBRAD_SCENE_WALLS_H
 #define FIBRAD_SCENE_WALLS_H
 
@@ -55,5 +55,18 @@ uint32_t fibrad_walls_exit(const fibrad_scene *scene, const double origin[3], co
 
 /* The unit normal of a wall at a point on it [L]. It points inwards. */
 void fibrad_wall_normal(const fibrad_scene *scene, uint32_t wall, const double at[3], double normal[3]);
+
+/* The axis along edge 0 or edge 1 of a plane, and along edge 1 of the cylinder. Edge 0 of the cylinder goes around it.
+ */
+static inline uint32_t fibrad_wall_along(uint32_t wall, uint32_t edge) {
+    return wall == FIBRAD_CYLINDER ? 2 : fibrad_face_along(wall, edge);
+}
+
+/* The point [L] of a wall at two coordinates along its edges [L; turns around the cylinder]. */
+void fibrad_wall_point(const fibrad_container *container, uint32_t wall, const double coordinate[2], double at[3]);
+
+/* The point [L] of a wall for two numbers from 0 to 1. Evenly spread numbers give evenly spread points on the part of
+ * the wall inside all others, within one period of each periodic axis. */
+void fibrad_wall_even_point(const fibrad_scene *scene, uint32_t wall, const double share[2], double at[3]);
 
 #endif

@@ -145,9 +145,10 @@ FIBRAD_INLINE void note_side(fibrad_workspace *work, uint32_t p, vm meet, vd sid
     _Alignas(64) double sides[VD_LANES];
     vd_store(sides, side);
     for (; equal != 0; equal &= equal - 1) {
-        const uint32_t *number = work->scene->mesh.number, lane = (uint32_t)__builtin_ctz(equal);
+        const fibrad_mesh *mesh = &work->scene->mesh;
+        const uint32_t lane = (uint32_t)__builtin_ctz(equal);
         const uint32_t own = (uint32_t)sides[lane], other = (uint32_t)lines->side[p + lane];
-        if (number[own / 2] < number[other / 2]) lines->side[p + lane] = own;
+        if (fibrad_side_number(mesh, own) < fibrad_side_number(mesh, other)) lines->side[p + lane] = own;
     }
 }
 
@@ -156,7 +157,7 @@ FIBRAD_INLINE void note_side(fibrad_workspace *work, uint32_t p, vm meet, vd sid
 FIBRAD_INLINE void meet_parallel(fibrad_workspace *work, uint32_t k, uint32_t first, double grain) {
     const fibrad_lines *lines = &work->met->lines;
     const fibrad_faces *faces = &work->met->faces;
-    const bool back = (uint32_t)faces->side[k] % 2 == 1;
+    const bool back = fibrad_side_is_back((uint32_t)faces->side[k]);
     const double shift = back ? grain : -grain, more = back ? grain : 0;
     for (uint32_t p = first; p < first + FIBRAD_LINE_BLOCK; p += VD_LANES) {
         const vd u = vd_load(lines->place[0] + p), v = vd_load(lines->place[1] + p), s = vd_load(lines->exit + p);

@@ -116,7 +116,7 @@ static uint32_t slot_of_region(const fibrad_wall_view *view, uint32_t region) {
     const uint32_t axis = region % 4, up = region / 4 >> axis & 1;
     if (axis == 3) return FIBRAD_CYLINDER;
     const double away = up ? view->high[axis] : -view->low[axis];
-    return away < __builtin_inf() ? fibrad_slot_of_plane(axis, up) : FIBRAD_ESCAPED;
+    return away < __builtin_inf() ? fibrad_face(axis, up) : FIBRAD_ESCAPED;
 }
 
 static double all_parts(const double part[4]) { return (part[0] + part[2]) + (part[1] + part[3]); }
