@@ -1,13 +1,12 @@
-/* body_row.c - what a wall's emission is absorbed by, along paths. SPDX-License-Identifier: MIT
+/* body_row.c - what absorbs the emission of a wall, by paths. SPDX-License-Identifier: MIT
  *
- * Paths come in parts, each of even points moved at random on its own, so that the spread of the parts is that of their
- * mean. */
+ * The paths come in parts. Each part begins at evenly spread points, which are moved at random, part by part. So the
+ * spread of the parts tells the error of their mean. */
 #include "base/constants.h"
 #include "base/elementary.h"
 #include "exchange/paths.h"
 #include "row/row.h"
 
-/* Checks the arguments. */
 static int body_begin(const fibrad_scene *scene, uint32_t body, const fibrad_exchange_rule *rule, uint32_t part,
                       double wall_emissivity[FIBRAD_SLOTS]) {
     if (scene == NULL || rule == NULL) return FIBRAD_E_ARGUMENT;
@@ -21,7 +20,7 @@ static int body_begin(const fibrad_scene *scene, uint32_t body, const fibrad_exc
     return whole ? FIBRAD_OK : FIBRAD_E_UNSUPPORTED;
 }
 
-/* Whether bodies and openings are the six sides of a box, and nothing else but spheres is there. */
+/* Whether the walls and openings are the six sides of a box, and there is no other wall. */
 static bool is_box(const fibrad_scene *scene) {
     bool box = true;
     for (uint32_t b = 0; b < scene->facts.bodies; b++) box = box && scene->slot[b] < FIBRAD_CYLINDER;
@@ -29,8 +28,8 @@ static bool is_box(const fibrad_scene *scene) {
     return box;
 }
 
-/* What a side of a black box sends to the one opposite, over all that it sends, if nothing is in between: sides x times
- * y, the distance being 1. Source: Siegel, Howell, Thermal Radiation Heat Transfer, configuration C-11. */
+/* The view factor between two opposite sides of an empty box. Each side has the edges x and y, and their distance is 1.
+ * Source: Siegel, Howell, Thermal Radiation Heat Transfer, configuration C-11. */
 static double factor_of_opposite(double x, double y) {
     const double lx = fibrad_sqrt(1 + x * x), ly = fibrad_sqrt(1 + y * y);
     const double log = fibrad_log(lx * ly / fibrad_sqrt(1 + x * x + y * y));
@@ -39,8 +38,8 @@ static double factor_of_opposite(double x, double y) {
     return 2 / (FIBRAD_PI * x * y) * sum;
 }
 
-/* What a side of an empty box sends to each side. What is left over for the sides beside each determines what these
- * exchange. */
+/* The view factors from a side of an empty box to each side. A side sends to the four sides beside it what it does not
+ * send to the side opposite. These remainders of all three pairs of sides determine the factors between neighbours. */
 static void shares_in_empty_box(const fibrad_scene *scene, uint32_t from, double share[FIBRAD_CYLINDER]) {
     const fibrad_container *c = &scene->container;
     const uint32_t own = fibrad_face_axis(from);
@@ -60,7 +59,8 @@ static void shares_in_empty_box(const fibrad_scene *scene, uint32_t from, double
     }
 }
 
-/* Of what each wall of an empty box would get spheres keep what they have kept of the paths there. */
+/* An empty box would give a known fraction to each wall. Of the paths towards that wall spheres have stopped a
+ * fraction. Spheres get this fraction of the known fraction, and the wall gets the rest. */
 static void share_out_box(fibrad_paths *paths, double followed) {
     double share[FIBRAD_CYLINDER];
     shares_in_empty_box(paths->tracer->scene, paths->from, share);
@@ -89,7 +89,7 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
     fibrad_sobol_make(&sobol);
     const uint32_t wanted = rule->paths > 0 ? rule->paths : FIBRAD_BODY_PATHS_DEFAULT;
     const uint32_t slot = scene->slot[body], count = (wanted + FIBRAD_BODY_PARTS - 1) / FIBRAD_BODY_PARTS;
-    const uint64_t own = (uint64_t)slot * FIBRAD_BODY_PARTS + part; /* no sphere's number: from the highest down */
+    const uint64_t own = (uint64_t)slot * FIBRAD_BODY_PARTS + part; /* streams of walls count down, those of ids up */
     fibrad_paths paths = {.tracer = fibrad_tracer_of(space, scene),
                           .place = FIBRAD_NONE,
                           .from = slot,
@@ -107,7 +107,7 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
     if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
     if (paths.boxed) share_out_box(&paths, (double)followed);
     const double sum = fibrad_paths_sum(&paths);
-    if (!fibrad_finite(sum)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
+    if (!fibrad_finite(sum)) return FIBRAD_E_ARGUMENT; /* a path met an emissivity that is NaN */
     row->rays = paths.rays;
     row->error = paths.left > 0 ? paths.left / (paths.left + sum) : 0;
     if (sum == 0) {
@@ -123,7 +123,7 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
     return fibrad_sum_checked(all);
 }
 
-/* What differs from an empty box by chance may come out below zero: it is 0, and the others share the rest. */
+/* By chance a factor may be below 0. Such a factor becomes 0, and the others are scaled so that the sum is 1. */
 static void body_row_settle(fibrad_body_row *row) {
     double below = 0;
     for (uint32_t b = 0; b < FIBRAD_BODIES_MAX; b++) {

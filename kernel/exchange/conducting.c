@@ -1,13 +1,13 @@
-/* conducting.c - the part of what a ball absorbs that is given off evenly. SPDX-License-Identifier: MIT */
+/* conducting.c - the part of the absorbed heat that a ball gives off evenly. SPDX-License-Identifier: MIT */
 #include "exchange/conducting.h"
 
 #include "fibrad.h"
 
-/* From here on Euler's series is right to rounding, see below. */
+/* From here on the series of above_leading is right to rounding. */
 #define SERIES_FROM 24
 
-/* 2 z b - 1, with b the integral of t^(z - 1/2)/(1 + t) over t from 0 to 1: a series in 1/z^2 whose coefficients are
- * Euler's numbers over 4^k. z: above SERIES_FROM. */
+/* Let b be the integral of t^(z - 1/2)/(1 + t) over t from 0 to 1. The function returns 2 z b - 1. This is a series in
+ * 1/z^2 whose coefficients are Euler's numbers over 4^k. z: above SERIES_FROM. */
 static double above_leading(double z) {
     static const double coefficient[] = {-1.0 / 4,     5.0 / 16,        -61.0 / 64,
                                          1385.0 / 256, -50521.0 / 1024, 2702765.0 / 4096};
@@ -17,8 +17,8 @@ static double above_leading(double z) {
     return sum;
 }
 
-/* m = 1 - a + a (2 a - 1) b with the integral b of t^a/(1 + t). Where a is large, the leading terms cancel in closed
- * form. Where it is small, b follows from b at a + 24: both together are a sum of 24 terms. */
+/* m = 1 - a + a (2 a - 1) b, b being the integral of t^a/(1 + t) over t from 0 to 1. For large a the leading terms
+ * cancel in closed form. For small a, b follows from b at a + 24 by 24 steps of b(a - 1) = 1/a - b(a). */
 double fibrad_conducted_evenly(double a) {
     if (a >= SERIES_FROM) {
         const double z = a + 0.5;

@@ -10,9 +10,10 @@
  * Let U be an even random number in [0, 1]. Then t = U^(1/a) has the density a t^(a-1). P_t is Poisson's kernel, whose
  * integral has an inverse in closed form.
  *
- * P_t is least opposite the point: 4 pi P_t >= (1 - t)/(1 + t)^2. The mean m of this least value over t is the even
- * part of K. The rest is (1 - m) K'. In K' t has a density in proportion to t^a (3 + t)/(1 + t)^2. Let (1 + t) s be
- * the distance between (0, 0, t) and the point on the unit sphere. It follows from an even random number U:
+ * P_t is least opposite the point: 4 pi P_t >= (1 - t)/(1 + t)^2. Let m be the mean of this least value over t. Then
+ * K = m/(4 pi) + (1 - m) K'. In K' the density of t is in proportion to t^a (3 + t)/(1 + t)^2. Let the point of
+ * absorption be (0, 0, 1), and let (1 + t) s be the distance between (0, 0, t) and the point where heat is given off.
+ * An even random number U gives s:
  *
  *     (1 - s)^2 (2 + s)/s = 4 t^2 (3 + t) U/((1 + t)^2 (1 - t)). */
 #ifndef FIBRAD_EXCHANGE_CONDUCTING_H
@@ -22,14 +23,14 @@
 #include "base/elementary.h"
 #include "base/random.h"
 
-/* Below the first t all points are equally likely. Above the second t heat is given off where it was absorbed. */
+/* Below the first value of t all points are equally likely. Above the second the heat stays where it was absorbed. */
 #define FIBRAD_CONDUCTED_ANYWHERE 1e-9
 #define FIBRAD_CONDUCTED_NOWHERE  (1 - 1e-12)
 
-/* Random numbers of fibrad_conduct_above. All trials fail once in 10^11 times. */
+/* Random numbers that fibrad_conduct_above may use. They do not suffice once in 10^11 times. */
 #define FIBRAD_CONDUCTED_DRAWS 127
 
-/* Moves the unit vector n by the angle whose cosine is 1 - x, towards or away from `even`, a random unit vector. */
+/* Turns the unit vector n by the angle whose cosine is 1 - x, in the plane of n and of `even`, a random unit vector. */
 static inline void fibrad_turn_by(double x, const double even[3], double n[3]) {
     const double along = even[0] * n[0] + even[1] * n[1] + even[2] * n[2];
     const double across[3] = {even[0] - along * n[0], even[1] - along * n[1], even[2] - along * n[2]};
@@ -39,7 +40,7 @@ static inline void fibrad_turn_by(double x, const double even[3], double n[3]) {
     for (int axis = 0; axis < 3; axis++) n[axis] = (1 - x) * n[axis] + sine * across[axis];
 }
 
-/* Moves n to the point at that distance from t n, away from it by an angle towards or away from `even`. */
+/* Turns n, in the plane of n and `even`, to a point of the unit sphere at a given distance from t n. */
 static inline void fibrad_turn_to(double distance, double t, const double even[3], double n[3]) {
     const double x = (distance - (1 - t)) * (distance + (1 - t)) / (2 * t);
     fibrad_turn_by(fibrad_min(fibrad_max(x, 0), 2), even, n);
@@ -59,7 +60,7 @@ static inline void fibrad_conduct(double exponent, const double u[2], const doub
     fibrad_turn_to(1 / rho, t, even, n);
 }
 
-/* Draws t of K'. At least a third of all trials succeed. */
+/* Draws t by the density that it has in K'. At least a third of all trials succeed. */
 static inline double fibrad_conducted_depth(double a, fibrad_random random, uint64_t first) {
     double t = 1;
     for (uint64_t k = first; k < first + FIBRAD_CONDUCTED_DRAWS - 1; k += 2) {
@@ -70,9 +71,9 @@ static inline double fibrad_conducted_depth(double a, fibrad_random random, uint
     return t;
 }
 
-/* Does what fibrad_conduct does, for K' instead of K. a: e/(2 k*). Takes random numbers first to
- * first + FIBRAD_CONDUCTED_DRAWS - 1. The equation for s is s^3 - p s + 2 = 0. Its root between 0 and 1 is
- * 2 sqrt(p/3) sin(q/3), sin q = (3/p)^(3/2). */
+/* Does what fibrad_conduct does, for K' instead of K. a: e/(2 k*). The function uses the random numbers from `first` to
+ * first + FIBRAD_CONDUCTED_DRAWS - 1. The equation for s has the form s^3 - p s + 2 = 0. Its root between 0 and 1 is 2
+ * sqrt(p/3) sin(q/3) with sin q = (3/p)^(3/2). */
 static inline void fibrad_conduct_above(double a, fibrad_random random, uint64_t first, const double even[3],
                                         double n[3]) {
     const double t = fibrad_max(FIBRAD_CONDUCTED_ANYWHERE, fibrad_conducted_depth(a, random, first));

@@ -1,37 +1,37 @@
 /* exchange.c - exchange factors of grey diffuse spheres, and how far emission is carried. SPDX-License-Identifier: MIT
  *
- * What a sphere emits is absorbed in part where it first arrives, which the beam method computes far more accurately
- * than paths do. Only what is reflected there is followed along paths; all of it arrives somewhere, so the paths' sum
- * is scaled to it, and the row closes. */
+ * A beam row tells where the emission of a sphere first arrives. It is far more accurate than paths. Of what arrives, a
+ * part is absorbed there. Only the reflected part is followed along paths. All of it arrives somewhere. So the sums
+ * over paths are scaled to the reflected part, and the row adds up to 1. */
 #include "exchange/paths.h"
 #include "row/beam.h"
 
-/* So many paths tell whether there are mirrors: that most of what paths carry is left at their end, or that they take
- * more rays than this on the mean. */
+/* The first few paths tell whether they run among mirrors. They do if most of their weight is left at their end, or if
+ * a path takes more than the usual number of rays on the mean. */
 #define FEW_PATHS  4u
 #define USUAL_RAYS 1024u
 
-/* So many paths at most begin with legs of the beam row. */
+/* Most paths that begin with legs of the beam row. */
 #define LEGS_MOST 2048u
 
-/* Up to so many directions, windows by 256 points are as good as by exact areas and take a third of the time. With
- * fewer directions than usual the error is that of the directions, and 64 points take two thirds of that. */
+/* Up to BY_POINTS directions, windows of 256 points are as good as exact areas and take a third of the time. Up to
+ * BY_FEW_POINTS directions, the error comes from the directions, and 64 points take two thirds of the time of 256. */
 #define BY_POINTS     144u
 #define BY_FEW_POINTS (FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT - 1)
 
-/* What of the tolerance the first leg may take: about as much time then goes into beams as into paths at emissivity
- * 0.8, and less at lower ones. */
+/* The share of the tolerance that the first leg may take. At an emissivity of 0.8 beams and paths then take about as
+ * much time. At lower emissivities beams take less. */
 #define BEAM_SHARE 0.5
 
-/* A rule, with the emissivities of walls by slot, and what comes out of it besides the row. */
+/* One call: the rule, emissivities, and the number of rays that the call has traced. */
 typedef struct exchange_task {
     const fibrad_exchange_rule *rule;
-    const double *emissivity; /* [spheres], of nodes if spheres conduct */
-    double wall_emissivity[FIBRAD_SLOTS];
-    uint64_t rays;
+    const double *emissivity;             /* [spheres], of nodes if spheres conduct */
+    double wall_emissivity[FIBRAD_SLOTS]; /* by slot */
+    uint64_t rays;                        /* out */
 } exchange_task;
 
-/* Checks a rule and begins a task. FIBRAD_E_ARGUMENT, _STATE. */
+/* Checks a rule and begins a task. Errors: FIBRAD_E_ARGUMENT, _STATE. */
 static int exchange_begin(exchange_task *task, const fibrad_scene *scene, uint32_t i,
                           const fibrad_exchange_rule *rule) {
     if (scene == NULL || rule == NULL || rule->emissivity == NULL) return FIBRAD_E_ARGUMENT;
@@ -63,7 +63,7 @@ static fibrad_paths paths_of(const exchange_task *task, fibrad_workspace *space,
                           .back = UINT32_MAX};
 }
 
-/* Asks the beams for the first legs of the first paths. _WORK */
+/* Asks the beam row for the first legs of the first paths. Error: FIBRAD_E_WORK. */
 static int want_legs(fibrad_workspace *space, const fibrad_paths *paths, const fibrad_exchange_rule *rule) {
     const uint64_t count = rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT;
     const uint32_t wanted = count < LEGS_MOST ? (uint32_t)count : LEGS_MOST;
@@ -75,7 +75,7 @@ static int want_legs(fibrad_workspace *space, const fibrad_paths *paths, const f
     return FIBRAD_OK;
 }
 
-/* The first leg: a beam row, and the error of what it makes spheres and walls absorb. */
+/* Computes the first leg of all emission, a beam row. error: of what spheres and walls absorb there. */
 static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const exchange_task *task,
                      fibrad_row *row, double *error) {
     const fibrad_exchange_rule *rule = task->rule;
@@ -98,8 +98,8 @@ static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_
     }
 }
 
-/* How much of the first leg is reflected; wall: factors by slot. NaN: an emissivity is not valid. What spheres reflect
- * is summed in whole numbers, so that the order of columns, the caller's, plays no part. */
+/* The fraction of the first leg that is reflected. wall: factors by slot. NaN: an emissivity is not valid. The sum over
+ * spheres is a sum of whole numbers. So it does not depend on the order of the columns, which is the caller's. */
 static double reflected_of(const exchange_task *task, const fibrad_row *row, const double wall[FIBRAD_SLOTS]) {
     uint64_t units = 0;
     for (uint32_t k = 0; k < row->length; k++) {
@@ -130,8 +130,9 @@ uint64_t fibrad_paths_begin(fibrad_paths *paths, uint64_t count) {
     return count;
 }
 
-/* The error of the sums over all paths, Euclidean: the spread of four parts of them, as two might agree by chance in
- * rows of few entries, and a path more, of usual weight, which may end where none has. */
+/* The Euclidean error of the sums over all paths, from the spread of four parts of the paths. Two parts might agree by
+ * chance in rows of few entries. `weight`, that of one more path, is added, since a path may end where none has ended so
+ * far. */
 static double spread_of_parts(const fibrad_entries *entries, double weight) {
     double square = 0;
     for (uint32_t k = 0; k < entries->length; k++) {
@@ -141,13 +142,14 @@ static double spread_of_parts(const fibrad_entries *entries, double weight) {
     return fibrad_sqrt(4.0 / 3 * square + weight * weight);
 }
 
-/* What is left of what the paths carry, of the emission. */
+/* The fraction of the emission that paths still carry where they were broken off. */
 static double lost_of(const fibrad_paths *paths, double carried) {
     return paths->left > 0 ? carried * (paths->left / (paths->left + fibrad_paths_sum(paths))) : 0;
 }
 
-/* Follows paths until their error is not above `wanted` (0: as many as the rule says). Where reflecting surfaces are so
- * small that no path meets one, up to 64 times as many; no more where mirrors leave more than `wanted` anyway. */
+/* Follows paths until their error is at most `wanted`. 0: the function follows as many paths as the rule says. If the
+ * reflecting surfaces are so small that no path meets one, it follows up to 64 times as many. If paths that were broken
+ * off among mirrors leave a greater error than `wanted`, it stops. */
 static void follow_paths(fibrad_paths *paths, const fibrad_exchange_rule *rule, double carried, double weight,
                          double wanted) {
     fibrad_paths_function *follow = FIBRAD_VERSION_OF(fibrad_paths_follow, paths->tracer->scene->facts.isa);
@@ -169,7 +171,8 @@ static void follow_paths(fibrad_paths *paths, const fibrad_exchange_rule *rule, 
     } while (done < next);
 }
 
-/* Moves the first leg out of the way of the paths' entries, into the scratch of their sort. */
+/* The entries of paths overwrite the row of the first leg. This function moves the row to where entries will be
+ * sorted. */
 static void keep_first_leg(fibrad_entries *entries, fibrad_row *leg) {
     fibrad_copy(entries->key[0], leg->f, leg->length * sizeof *leg->f);
     fibrad_copy(entries->key[1], leg->col, leg->length * sizeof *leg->col);
@@ -221,7 +224,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     if (rule->node_emissivity != NULL) paths.conductivity = rule->conductivity;
     fibrad_work_begin(space, scene, paths.place, rule->cutoff, (fibrad_stride){0});
     if (!fibrad_finite(carried)) return FIBRAD_E_ARGUMENT;
-    if (carried > 0) { /* what no path has found counts as escaped or, with a cutoff, beyond, and as an error */
+    if (carried > 0) { /* if all paths end nowhere, what they carry counts as escaped or beyond, and as an error */
         double left = rule->tolerance * rule->tolerance - beam_error * beam_error, least = 0.5 * rule->tolerance;
         follow_paths(&paths, rule, carried, weight, fibrad_max(fibrad_sqrt(fibrad_max(left, 0)), least));
         space->back = paths.back;
@@ -230,12 +233,12 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
         scale = sum != 0 ? carried / sum : 0;
         if (sum == 0) *(paths.cut ? &paths.beyond : &paths.escaped) = carried, scale = 1, beam_error += carried;
     }
-    /* the first leg adds the same to all parts: it would leave nothing but rounding */
+    /* before add_first_leg, which adds the same to all parts */
     const double paths_error = fibrad_min(carried, scale * spread_of_parts(&space->entries, weight));
     add_first_leg(space, task->emissivity, &leg, scale);
     if (space->entries.missed > 0) return fibrad_work_entries_missed(space);
     const double error = fibrad_sqrt(paths_error * paths_error + beam_error * beam_error) + lost_of(&paths, carried);
-    if (!fibrad_finite(error + scale)) return FIBRAD_E_ARGUMENT; /* a number on the way was not valid */
+    if (!fibrad_finite(error + scale)) return FIBRAD_E_ARGUMENT; /* a number that a path met is not valid */
     status = fibrad_entries_row(&space->entries, scene, 1, row);
     if (status != FIBRAD_OK) return status;
     row->error = error;
@@ -262,7 +265,7 @@ int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i
     return status;
 }
 
-/* The mean over `count` of what all parts have added up, and its standard error by their spread. */
+/* The sum over all parts divided by `count`, and the standard error from the spread of the parts. */
 static void read_squares(const fibrad_paths *paths, double count, fibrad_displacement *displacement) {
     for (int axis = 0; axis < 3; axis++) {
         double sum = 0, square = 0;
@@ -295,10 +298,10 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
     const double count = (double)fibrad_paths_begin(&paths, rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT);
     work->triangle = paths.back;
     if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
-    if (!fibrad_finite(paths.absorbed)) return FIBRAD_E_ARGUMENT; /* a number on the way was not valid */
+    if (!fibrad_finite(paths.absorbed)) return FIBRAD_E_ARGUMENT; /* a number that a path met is not valid */
     read_squares(&paths, count, displacement);
     for (int axis = 0; axis < 3; axis++)
-        if (paths.left > 0 && paths.absorbed > 0) /* it would have gone on, and as far at least */
+        if (paths.left > 0 && paths.absorbed > 0) /* paths that were broken off would have gone at least as far */
             displacement->error[axis] += displacement->square[axis] * (paths.left / paths.absorbed);
     displacement->absorbed = paths.absorbed / count;
     displacement->rays = paths.rays;
@@ -325,7 +328,7 @@ int fibrad_exchange_walk(const fibrad_scene *scene, fibrad_work *work, uint32_t 
     paths.flights = rule->flights > 0 ? rule->flights : FIBRAD_FLIGHTS_DEFAULT;
     fibrad_paths_function *follow = FIBRAD_VERSION_OF(fibrad_paths_follow, scene->facts.isa);
     follow(&paths, 0, count);
-    if (!fibrad_finite(paths.origins)) return FIBRAD_E_ARGUMENT; /* a number on the way was not valid */
+    if (!fibrad_finite(paths.origins)) return FIBRAD_E_ARGUMENT; /* a number that a path met is not valid */
     *displacement = (fibrad_displacement){.absorbed = 1 - paths.lost / (double)count, .rays = paths.rays};
     if (paths.origins > 0) read_squares(&paths, paths.origins, displacement);
     return FIBRAD_OK;

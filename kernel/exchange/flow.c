@@ -1,11 +1,11 @@
-/* flow.c - powers from rows of exchange factors, a part of a bed at a time. SPDX-License-Identifier: MIT */
+/* flow.c - powers from rows of exchange factors, one collection of rows at a time. SPDX-License-Identifier: MIT */
 #include "work/record.h"
 
-/* What is beyond of a row that knows something. */
+/* A row with more than this beyond the cutoff says nothing about powers. */
 #define BEYOND_MOST (1 - 1e-12)
 
 static bool all_finite(const double *values, uint32_t count) {
-    double sum = 0; /* NaN once a value is not finite, since no sum of zeros is */
+    double sum = 0; /* a value that is not finite makes it NaN for good */
     for (uint32_t k = 0; k < count; k++) sum += values[k] - values[k];
     return sum == 0;
 }
@@ -24,7 +24,8 @@ static bool record_fits(const fibrad_record *row, const fibrad_flow *flow, uint3
     return fibrad_finite(flow->weight[row->sphere]) && fibrad_finite(row->beyond) && fibrad_finite(row->escaped);
 }
 
-/* Adds what one row says. */
+/* Adds the power that one row exchanges. Nothing is known about what is beyond the row. So the known factors are scaled
+ * to add up to 1. An entry counts half, because the row of the other sphere adds the other half. */
 static void add_row(const fibrad_record *row, fibrad_flow *flow) {
     const uint32_t *col = fibrad_record_col(row);
     const double *f = fibrad_record_f(row), *body = fibrad_record_body(row), *emission = flow->emission;

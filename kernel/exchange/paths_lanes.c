@@ -10,16 +10,16 @@
 
 /* Points of the unit sphere are made this many at a time. */
 #define PATH_BATCH 8
-/* A path ends after so many legs, in case no surface absorbs anything; what it still carries is an error. */
+/* A path is broken off after so many legs, in case no surface absorbs. The weight that is left counts as an error. */
 #define PATH_LEGS 32768u
-/* Russian roulette: a path of weight w below this survives with probability w/ROULETTE_WEIGHT, and then has this
- * weight. Of 0.05, 0.1, 0.2 and 0.4 this gave the least error in a given number of rays, at emissivities of 0.3 and
- * 0.8. */
+/* Russian roulette: a path whose weight w is below this survives with probability w/ROULETTE_WEIGHT. Its weight is then
+ * ROULETTE_WEIGHT. Of 0.05, 0.1, 0.2 and 0.4 this value gave the least error for a given number of rays, at
+ * emissivities of 0.3 and 0.8. */
 #define ROULETTE_WEIGHT 0.2
-/* Coordinates that are quasi-random: those of the start and of the first two directions. Two more than four save a
- * tenth to a fifth of the rays. */
+/* The first coordinates of a path are quasi-random: those of its start and of its first two directions. Six such
+ * coordinates take a tenth to a fifth fewer rays than four. */
 #define QUASI_COORDINATES FIBRAD_SOBOL_DIMENSIONS
-/* Known first legs are used in steps of this prime, so that the first paths are from windows of all directions. */
+/* Known first legs are taken in steps of this prime. So the first paths come from windows of all directions. */
 #define LEG_STRIDE UINT64_C(2654435761)
 
 /* A path so far. */
@@ -28,18 +28,19 @@ struct grey_path {
     uint64_t k;
     fibrad_random own; /* numbers of this path alone */
     double weight;
-    double centre[3]; /* [L] of the sphere, from that of the sphere left first; at a wall: of the scene's origin */
-    double n[3];
-    uint32_t place;        /* of the sphere; FIBRAD_NONE: it is at a wall */
-    double point[3];       /* [L] then: where */
-    uint32_t triangle;     /* then: on which; FIBRAD_NO_SIDE: at a plane or a cylinder */
-    uint32_t used;         /* how many of all its points are used up */
-    const uint32_t *sobol; /* [8] of a path from a wall */
+    /* [L] from the centre of the sphere left first: centre of the present sphere; at a wall: origin of the scene */
+    double centre[3];
+    double n[3];           /* normal where the path is */
+    uint32_t place;        /* position of the sphere; FIBRAD_NONE: the path is at a wall */
+    double point[3];       /* [L] at a wall: where */
+    uint32_t triangle;     /* at a mesh: on which; FIBRAD_NO_SIDE: at a plane or a cylinder */
+    uint32_t used;         /* points of the unit sphere that are used up */
+    const uint32_t *sobol; /* [8] the point of Sobol's sequence of a path from a wall */
 };
 
-/* Coordinate d of a path. The first QUASI_COORDINATES are, from spheres, those of the additive recurrence with the
- * steps g^-1 ... g^-6, g^7 = g + 1, in units of 2^-64, as for the rays of ray/cast_lanes.c, and from walls those of
- * Sobol's sequence; all others are random. */
+/* Coordinate d of a path. The first QUASI_COORDINATES coordinates of paths from spheres are those of the additive
+ * recurrence with the steps g^-1 ... g^-6, g^7 = g + 1, in units of 2^-64, as for the rays of ray/cast_lanes.c. Those
+ * of paths from walls are of Sobol's sequence. All further coordinates are random. */
 static double path_coordinate(const fibrad_paths *paths, const struct grey_path *path, uint32_t d) {
     static const uint64_t step[QUASI_COORDINATES] = {UINT64_C(0xe60e2b722b53aeeb), UINT64_C(0xcebd76d9edb6a8ef),
                                                      UINT64_C(0xb9c9aa3a51d00b65), UINT64_C(0xa6f5777f6f88983f),
@@ -63,8 +64,8 @@ static void make_even(double at[2][PATH_BATCH], double even[3][PATH_BATCH]) {
     }
 }
 
-/* The next PATH_BATCH points of the unit sphere: the first is where the path starts, each further one belongs to a
- * direction. */
+/* Makes the next PATH_BATCH points of the unit sphere. The first point of a path is where it starts. Each further point
+ * belongs to a direction. */
 static void make_sphere_points(const fibrad_paths *paths, struct grey_path *path) {
     _Alignas(64) double at[2][PATH_BATCH];
     for (uint32_t b = 0; b < PATH_BATCH; b++)
@@ -79,7 +80,8 @@ static void next_sphere_point(const fibrad_paths *paths, struct grey_path *path,
     for (int axis = 0; axis < 3; axis++) at[axis] = path->even[axis][b];
 }
 
-/* A direction by the cosine law about the normal: that of the normal plus a uniform point of the unit sphere. */
+/* A direction by the cosine law about the normal n. It is the direction of n + even, `even` being a random point of the
+ * unit sphere. */
 static void direction_about(const double n[3], const double even[3], double w[3]) {
     for (int axis = 0; axis < 3; axis++) w[axis] = n[axis] + even[axis];
     double square = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
@@ -97,7 +99,7 @@ static void draw_direction(const fibrad_paths *paths, struct grey_path *path, do
     direction_about(path->n, even, w);
 }
 
-/* Where a path is in the scene [L]: at a wall, or on a sphere, whose centre is told, too. */
+/* The point of the scene [L] where a path is. centre: out: of the sphere on which the point lies; 0 at a wall. */
 static void find_point(const fibrad_scene *scene, const struct grey_path *path, double centre[3], double point[3]) {
     const double *const of_axis[3] = {scene->x, scene->y, scene->z};
     for (int axis = 0; axis < 3; axis++) {
@@ -107,7 +109,7 @@ static void find_point(const fibrad_scene *scene, const struct grey_path *path, 
     }
 }
 
-/* Where a path is, from the centre of the sphere left first [L]. */
+/* The point where a path is, relative to the centre of the sphere left first [L]. */
 static void find_place(const fibrad_paths *paths, const struct grey_path *path, double at[3]) {
     const fibrad_scene *scene = paths->tracer->scene;
     for (int axis = 0; axis < 3; axis++)
@@ -115,20 +117,21 @@ static void find_place(const fibrad_paths *paths, const struct grey_path *path, 
                    (path->place != FIBRAD_NONE ? scene->r[path->place] * path->n[axis] : path->point[axis]);
 }
 
-/* The same in radii of that sphere. */
+/* The same point in radii of that sphere. */
 static void find_start(const fibrad_paths *paths, const struct grey_path *path, double start[3]) {
     find_place(paths, path, start);
     for (int axis = 0; axis < 3; axis++) start[axis] *= paths->inverse;
 }
 
-/* How far a ray goes until it leaves the ball about the sphere left first [L]; below 0: it begins outside. */
+/* The length of a ray [L] up to the end of the cutoff's ball. Below 0: the ray begins outside the ball. */
 static double ball_length(const fibrad_paths *paths, const struct grey_path *path, const double w[3]) {
     double start[3];
     find_start(paths, path, start);
     return fibrad_ball_exit(start, w, paths->cutoff) * paths->tracer->scene->r[paths->place];
 }
 
-/* Whether a ray is within what is known up to some length. Most are by the triangle inequality. */
+/* Whether a ray stays within the cutoff and the known region up to a length. For most rays the triangle inequality
+ * tells. */
 static bool is_known(const fibrad_paths *paths, const struct grey_path *path, const double w[3], double length) {
     const fibrad_scene *scene = paths->tracer->scene;
     double start[3], centre[3], point[3], rest = paths->cutoff - length * paths->inverse;
@@ -141,7 +144,7 @@ static bool is_known(const fibrad_paths *paths, const struct grey_path *path, co
     return length <= fibrad_region_exit(scene, point, w);
 }
 
-/* The triangle that a ray meets, whatever spheres there are before it. */
+/* Sets the hit to the triangle that a ray meets if there are no spheres. */
 static void look_past(const fibrad_scene *scene, const struct grey_path *path, const double point[3], const double w[3],
                       fibrad_hit *hit) {
     const uint32_t except = path->place != FIBRAD_NONE ? FIBRAD_NO_SIDE : path->triangle;
@@ -158,7 +161,7 @@ static void reach_wall(const fibrad_scene *scene, struct grey_path *path, uint32
         path->centre[axis] -= centre[axis];
         path->point[axis] = at[axis];
         if (scene->period[axis] == 0) continue;
-        /* into a box that does not depend on the spheres */
+        /* back to the first period, so that the point does not depend on where the spheres are */
         double whole = scene->period[axis] * fibrad_floor(path->point[axis] / scene->period[axis]);
         path->point[axis] -= whole;
         path->centre[axis] += whole;
@@ -171,7 +174,7 @@ static void reach_wall(const fibrad_scene *scene, struct grey_path *path, uint32
     path->place = FIBRAD_NONE;
 }
 
-/* The sphere that a first leg meets, if it is known. */
+/* Sets the hit to where a known first leg meets its sphere. */
 static void meet_known(const fibrad_paths *paths, const fibrad_leg *leg, fibrad_hit *hit) {
     const fibrad_scene *scene = paths->tracer->scene;
     const double unit = scene->r[paths->place], r = scene->r[leg->sphere] * paths->inverse;
@@ -188,15 +191,16 @@ static void meet_known(const fibrad_paths *paths, const fibrad_leg *leg, fibrad_
     }
 }
 
-/* Whether the sphere that a leg meets can be told without tracing a ray. */
+/* Whether the leg tells the sphere that it meets, so that no ray need be traced. */
 static bool is_met_known(const fibrad_paths *paths, const fibrad_leg *leg) {
     const fibrad_scene *scene = paths->tracer->scene;
     return leg != NULL && leg->sphere != FIBRAD_NONE && scene->clear == NULL &&
            !fibrad_walls_cut_place(scene, leg->sphere);
 }
 
-/* Traces one ray, unless `known` tells what it meets, to a sphere (FIBRAD_NONE) or to a wall or a mesh, whose slot is
- * returned; FIBRAD_ESCAPED, FIBRAD_BEYOND: it meets none of them, or what is nobody's. */
+/* Moves a path along w to what it meets. Returns FIBRAD_NONE for a sphere, and the slot for a wall or a mesh.
+ * FIBRAD_ESCAPED and FIBRAD_BEYOND: the path ends. A side that belongs to no wall counts as beyond. A ray is traced
+ * unless `known` tells what the path meets. */
 static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3], const fibrad_leg *known) {
     const fibrad_scene *scene = paths->tracer->scene;
     fibrad_hit hit;
@@ -239,7 +243,8 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
     return met;
 }
 
-/* Subtracts from the path what the surface met absorbs, and adds that to the surface if it counts. */
+/* Takes from the path what the surface absorbs. Adds it to the sums if `counts`. wall: slot; FIBRAD_NONE: the surface
+ * is a sphere. */
 static void absorb_at_surface(fibrad_paths *paths, struct grey_path *path, uint32_t wall, bool counts) {
     const fibrad_scene *scene = paths->tracer->scene;
     double emissivity = 1;
@@ -249,7 +254,7 @@ static void absorb_at_surface(fibrad_paths *paths, struct grey_path *path, uint3
         emissivity = paths->emissivity[scene->order[path->place]];
     double absorbed = path->weight * emissivity;
     path->weight -= absorbed;
-    if (!counts || emissivity == 0) return; /* no entry of what absorbs nothing */
+    if (!counts || emissivity == 0) return; /* spheres that absorb nothing have no entry */
     if (wall != FIBRAD_NONE) {
         paths->wall[wall] += absorbed;
         return;
@@ -277,7 +282,7 @@ static void start_at_wall(const fibrad_paths *paths, struct grey_path *path) {
     fibrad_wall_normal(scene, paths->from, path->point, path->n);
 }
 
-/* The direction in which a path goes on. Of a path whose first leg is known the first two are. */
+/* The direction of a leg. A known first leg also tells the direction after it. */
 static void next_direction(const fibrad_paths *paths, struct grey_path *path, const fibrad_leg *known, uint32_t leg,
                            double w[3]) {
     if (known == NULL || leg > 1) {
@@ -289,8 +294,8 @@ static void next_direction(const fibrad_paths *paths, struct grey_path *path, co
     direction_about(path->n, known->even, w);
 }
 
-/* A path goes on from a sphere that conducts: where it was reflected, or where the sphere gives off what it has
- * absorbed and does not keep. */
+/* The point from which a path leaves a sphere that conducts. Either the path was reflected and stays where it is. Or
+ * the sphere has absorbed it, and gives off elsewhere what its node does not keep. */
 static void leave_sphere(fibrad_paths *paths, struct grey_path *path, uint32_t leg) {
     const uint32_t i = paths->tracer->scene->order[path->place];
     const double surface = paths->surface[i], node = paths->emissivity[i], conductivity = paths->conductivity[i];
@@ -341,7 +346,7 @@ static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]
     paths->left += path.weight;
 }
 
-/* A path arrives at a sphere that conducts. It is reflected there, or absorbed and given off at another point. */
+/* A walk arrives at a sphere. It is reflected there, or absorbed and given off at another point. */
 static void scatter(fibrad_paths *paths, struct grey_path *path, uint32_t leg) {
     const uint32_t i = paths->tracer->scene->order[path->place];
     const double emissivity = paths->surface[i], conductivity = paths->conductivity[i];
@@ -355,8 +360,7 @@ static void scatter(fibrad_paths *paths, struct grey_path *path, uint32_t leg) {
     fibrad_conduct(2 * conductivity / emissivity, draw, even, path->n);
 }
 
-/* Adds what the first flights of a walk have to do with those that follow. at[0] to at[steps]: where the flights end.
- */
+/* Adds the products of flights that fibrad_paths_function tells. at[0] to at[steps]: the ends of the flights. */
 static void correlate(fibrad_paths *paths, uint64_t k, double at[][3], uint32_t steps) {
     double *square = paths->square[k % FIBRAD_DISPLACEMENT_PARTS];
     const uint32_t n = paths->flights, origins = steps < n ? steps : n;
@@ -389,8 +393,7 @@ static void follow_walk(fibrad_paths *paths, uint64_t k) {
     correlate(paths, k, at, steps);
 }
 
-/* Follows PATH_BATCH paths of one leg in a box, or fewer: each to the wall that it meets, or would meet but for a
- * sphere. */
+/* Follows up to PATH_BATCH paths of one leg in a box, each to the wall that it would meet without spheres. */
 static void follow_boxed(fibrad_paths *paths, uint32_t paths_left, uint32_t sobol[PATH_BATCH][8]) {
     const fibrad_scene *scene = paths->tracer->scene;
     _Alignas(64) double at[2][PATH_BATCH] = {{0}}, even[3][PATH_BATCH];
