@@ -35,7 +35,7 @@ static double filter_sphere(const fibrad_heat *heat, uint32_t b, const double by
     return fibrad_harmonics_filter(harmonics_of(heat), &on, by, pattern + first, to != NULL ? to + first : NULL);
 }
 
-/* g by degree. It is 0 for the mean, which is treated elsewhere. */
+/* g by degree. It is 0 for the mean, which solve.c treats. */
 static void find_gains(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) {
     const double eps = heat->sources.emissivity[b];
     by[0] = 0;
@@ -45,7 +45,7 @@ static void find_gains(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) 
     }
 }
 
-/* 1/(1 + g) by degree. It is 0 for the mean, too. */
+/* 1/(1 + g) by degree. For the mean it is 0 as well. */
 static void find_dampings(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) {
     find_gains(heat, b, by);
     for (uint32_t k = 1; k < NUMBERS; k++) by[k] = 1 / (1 + by[k]);
@@ -82,18 +82,16 @@ static void average_groups(const fibrad_heat *heat, uint32_t b, double *value) {
     }
 }
 
-/* What is absorbed per area. */
+/* The flux that each patch of a sphere absorbs. */
 static void find_fluxes(const fibrad_heat *heat, uint32_t b, double *flux) {
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
         flux[a] = heat->solution.area[a] > 0 ? heat->solution.net[a] / heat->solution.area[a] : 0;
 }
 
-/* Subtracts the mean of a sphere, which would leave rounding errors in products. */
+/* Subtracts from values on a sphere their mean, which would leave rounding errors in products. */
 static void take_mean_off(const fibrad_heat *heat, uint32_t b, double *value) {
-    double sum = 0, area = 0;
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
-        sum += heat->solution.area[a] * value[a], area += heat->solution.area[a];
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) value[a] -= sum / area;
+    const double mean = fibrad_heat_mean(heat, b, value);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) value[a] -= mean;
 }
 
 double fibrad_heat_pattern_residual(fibrad_heat *heat, uint32_t b, double shift) {

@@ -1,4 +1,4 @@
-/* fine.c - patches divided where something small is near. SPDX-License-Identifier: MIT */
+/* fine.c - divides patches near small spheres. SPDX-License-Identifier: MIT */
 #include "base/constants.h"
 #include "base/elementary.h"
 #include "base/random.h"
@@ -8,31 +8,32 @@
 #include "scene/grid_walk.h"
 #include "scene/walls.h"
 
-/* Lengths of the edges of patches over the height of a small sphere's centre above the surface, for 96 patches of a
- * sphere: above which they are divided at all, and what is aimed at below the sphere. Equal spheres that touch have
- * .36. It may grow with the square of the distance, as light that comes back falls with its fourth power. */
+/* Let the height be the distance of a small sphere's centre from the surface. Fours are divided if the edges of patches
+ * exceed FINE_FROM heights. Below the sphere the aim is FINE_EDGE heights. Both hold for FINE_PATCHES patches of a
+ * sphere. Two equal spheres that touch have .36. Farther away edges may grow with the square of the distance, since
+ * light that comes back falls with its fourth power. */
 #define FINE_FROM    .8
 #define FINE_EDGE    .36
-#define FINE_HEIGHT  6.0 /* of a centre above the surface, in radii: from farther away little comes back */
-#define FINE_LOWEST  .5  /* as for spheres that overlap the surface */
-#define FINE_REACH   1.5 /* no farther from the centre of a sphere than so many radii anything asks for fine patches */
-#define FINE_UNLIKE  .95 /* nor where no sphere is smaller than so much of the largest */
-#define FINE_WIDE    5   /* fours of a wall across and along which are looked at below a sphere */
+#define FINE_HEIGHT  6.0 /* largest height, in radii of the small sphere; from farther away little comes back */
+#define FINE_LOWEST  .5  /* least height that is used, in radii: spheres may overlap the surface */
+#define FINE_REACH   1.5 /* small spheres are searched within this many radii about the centre of a large one */
+#define FINE_UNLIKE  .95 /* nothing is divided unless a sphere has less than this part of the largest radius */
+#define FINE_WIDE    5   /* a square of this many fours by this many is looked at below a sphere on a wall */
 #define FINE_LEVELS  20u
 #define FINE_PATCHES 96.0
-#define FINE_RAYS    64u /* of each four, for 10,752 beams of a sphere, in proportion to these */
+#define FINE_RAYS    64u /* rays of each fine four, if a sphere has FINE_BEAMS beams; in proportion to beams */
 #define FINE_BEAMS   10752.0
-#define FINE_DENSER  4.0 /* times as many rays at the least, by area, as a sphere has beams */
+#define FINE_DENSER  4.0 /* least number of rays per area, over the beams per area of a sphere */
 
-/* A small sphere near a body: its centre, from that of a sphere or in the scene, and its height above the surface [L].
- */
+/* A small sphere near a body. */
 struct near_sphere {
-    double centre[3], height;
+    double centre[3]; /* L, relative to the centre of a sphere, or in the scene */
+    double height;    /* L, of the centre above the surface */
 };
 
 static bool is_sphere(const fibrad_heat *heat, uint32_t body) { return body < heat->spheres; }
 
-/* Fours across and along on a face of a sphere's cube, or on a wall. */
+/* Own fours along both edges of a face of a sphere's cube, or of a wall. */
 static void grid_of(const fibrad_heat *heat, uint32_t body, uint32_t fours[2]) {
     const fibrad_heat_wall *wall = &heat->wall[is_sphere(heat, body) ? 0 : body - heat->spheres];
     fours[0] = (is_sphere(heat, body) ? heat->side : wall->squares[0]) / 2;
@@ -53,7 +54,7 @@ static double four_area(const fibrad_heat *heat, uint32_t body) {
     return area / fours_of(heat, body);
 }
 
-/* A place a, b, [-1, 1], on a face of a sphere's cube. Returns the solid angle per area there. */
+/* The normal at a, b, each from -1 to 1, on a face of a sphere's cube. Returns the solid angle per area there. */
 static double point_on_sphere(uint32_t face, double a, double b, double normal[3]) {
     static const double frame[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     const double s = fibrad_patch_unmapped(a), t = fibrad_patch_unmapped(b),
@@ -66,7 +67,8 @@ static double point_on_sphere(uint32_t face, double a, double b, double normal[3
     return 4 / (5 - 3 * s * s) * (4 / (5 - 3 * t * t)) * (inverse * inverse * inverse);
 }
 
-/* A place on a wall by its shares of the rectangle. Returns the area over that of a rectangle as large. */
+/* The point and the normal at shares of the edges of a wall's rectangle. Returns the area on the wall over the area on
+ * the rectangle. */
 static double point_on_wall(const fibrad_heat *heat, uint32_t wall, const double share[2], double at[3],
                             double normal[3]) {
     const fibrad_container *c = &heat->scene->container;
@@ -87,7 +89,8 @@ static double point_on_wall(const fibrad_heat *heat, uint32_t wall, const double
     return stretched;
 }
 
-/* Where a four is on the rectangle of its wall, or on a face of its sphere's cube, whose number is returned: shares. */
+/* The extent of a four in shares of the edges of its wall's rectangle, or of the face of its sphere's cube. Returns the
+ * number of this face. */
 static uint32_t extent_of(const fibrad_heat *heat, const fibrad_heat_four *four, double low[2], double size[2]) {
     uint32_t fours[2];
     grid_of(heat, four->body, fours);
@@ -115,7 +118,8 @@ double fibrad_heat_fine_point(const fibrad_heat *heat, const fibrad_heat_four *f
     return solid * (2 * r * size[0]) * (2 * r * size[1]);
 }
 
-/* The solid angle between the middle of a face of a cube and the place s, t on it, negative in two of the quarters. */
+/* The solid angle of the rectangle between the middle of a face of a cube and the point s, t on it. Its sign is that of
+ * s t. */
 static double solid_angle(double s, double t) {
     const double angle = fibrad_quarter_angle(fibrad_sqrt(1 + s * s + t * t), fibrad_abs(s * t));
     return s * t < 0 ? -angle : angle;
@@ -168,8 +172,14 @@ static uint32_t add_nodes(fibrad_heat *heat, uint32_t n) {
     return begin;
 }
 
-/* Divides one of a body's own fours for a small sphere, and those it is divided into; without room for nodes, only
- * counts them. The node of a four says where those of its fours begin; 0: it is not divided. */
+/* One of the four fours that a four is divided into. */
+static fibrad_heat_four child_of(fibrad_heat_four four, uint32_t k) {
+    four.level++, four.x = 2 * four.x + k / 2, four.y = 2 * four.y + k % 2;
+    return four;
+}
+
+/* Divides one of a body's own fours for a small sphere, again and again. The node of a four is the index of the node of
+ * its first child. 0: the four is not divided. Without an array of nodes the function only counts them. */
 static void divide_four(fibrad_heat *heat, uint32_t body, uint32_t own, const struct near_sphere *near) {
     struct {
         fibrad_heat_four four;
@@ -189,14 +199,13 @@ static void divide_four(fibrad_heat *heat, uint32_t body, uint32_t own, const st
             heat->division.node[node] = add_nodes(heat, FIBRAD_HEAT_FOUR);
         if (heat->division.node != NULL) children = heat->division.node[node];
         for (uint32_t k = 0; k < FIBRAD_HEAT_FOUR; k++) {
-            wait[waiting].four = (fibrad_heat_four){
-                .body = body, .own = own, .level = four.level + 1, .x = 2 * four.x + k / 2, .y = 2 * four.y + k % 2};
+            wait[waiting].four = child_of(four, k);
             wait[waiting++].node = children + k;
         }
     }
 }
 
-/* Whether a small sphere asks for fine patches on a body at all. */
+/* Whether a small sphere of radius r needs fine patches on a body. Sets near->height to its least value. */
 static bool asks_for_fine(const fibrad_heat *heat, uint32_t body, double r, struct near_sphere *near) {
     const double finer = fibrad_sqrt(FINE_PATCHES / heat->config.patches);
     const double edge = .5 * fibrad_sqrt(four_area(heat, body));
@@ -205,7 +214,7 @@ static bool asks_for_fine(const fibrad_heat *heat, uint32_t body, double r, stru
     return edge > FINE_FROM * finer * near->height;
 }
 
-/* Gives a body its nodes, if it has none. */
+/* Adds or counts the nodes of a body's own fours, the first time that it is called for a body. */
 static void begin_body(fibrad_heat *heat, uint32_t body, bool *begun) {
     const uint32_t n = fours_of(heat, body);
     if (!*begun && heat->division.node != NULL) heat->division.root[body] = add_nodes(heat, n);
@@ -213,7 +222,7 @@ static void begin_body(fibrad_heat *heat, uint32_t body, bool *begun) {
     *begun = true;
 }
 
-/* Divides the fours of a sphere for those near it. */
+/* Divides the fours of a sphere for the smaller spheres near it. */
 static void divide_sphere(fibrad_heat *heat, uint32_t body) {
     const fibrad_scene *scene = heat->scene;
     const double r = scene->r[body], reach = r * FINE_REACH,
@@ -270,7 +279,7 @@ static void divide_wall(fibrad_heat *heat, uint32_t wall) {
     }
 }
 
-/* Divides the fours of all bodies, or counts the nodes. Number 0 is none. */
+/* Divides the fours of all bodies, or counts the nodes. No four has node 0. */
 static void divide_bodies(fibrad_heat *heat) {
     const fibrad_scene *scene = heat->scene;
     heat->division.nodes = 1;
@@ -287,7 +296,7 @@ uint64_t fibrad_heat_count_nodes(const fibrad_heat *heat) {
     return fields.division.nodes;
 }
 
-/* The fours that are fine, level by level. */
+/* Lists the fine fours of a body, level by level. */
 static void number_fours(fibrad_heat *heat, uint32_t body) {
     struct {
         fibrad_heat_four four;
@@ -310,11 +319,7 @@ static void number_fours(fibrad_heat *heat, uint32_t body) {
                 if (next == 0 || next >= FIBRAD_HEAT_FINE) continue;
                 found++;
                 for (uint32_t k = FIBRAD_HEAT_FOUR; k-- > 0;) {
-                    wait[waiting].four = (fibrad_heat_four){.body = body,
-                                                            .own = own,
-                                                            .level = four.level + 1,
-                                                            .x = 2 * four.x + k / 2,
-                                                            .y = 2 * four.y + k % 2};
+                    wait[waiting].four = child_of(four, k);
                     wait[waiting++].node = next + k;
                 }
             }
@@ -322,7 +327,8 @@ static void number_fours(fibrad_heat *heat, uint32_t body) {
     }
 }
 
-/* Rays of a fine four, about: enough for it, and more by area than beams or rays that they take the place of. */
+/* About how many rays a fine four sends out: at least a fixed number, and at least as many as the beams or rays that
+ * they replace. */
 static double rays_of_four(const fibrad_heat *heat, uint32_t body, uint32_t level) {
     const double area = four_area(heat, body) * fibrad_power_of_two(-2 * (int64_t)level);
     const double replaced = is_sphere(heat, body) ? FINE_DENSER * heat->beams / fours_of(heat, body) *
@@ -366,8 +372,9 @@ void fibrad_heat_divide_fours(fibrad_heat *heat) {
     put_in_rows(heat);
 }
 
-/* A point of a plane at height h below a sphere sees the part r^2 h/s^3 of it, s its distance: of what the sphere sends
- * out r^2/(8 h^2) comes back. */
+/* Let a sphere be at the height h above a plane. The view factor from a point of the plane, at the distance s from the
+ * centre, to the sphere is r^2 h/s^3. Hence r^2/(8 h^2) of the sphere's radiation comes back if the plane reflects
+ * all. */
 double fibrad_heat_comes_back(const fibrad_heat *heat, uint32_t sphere) {
     if (heat->triangles == 0) return 0;
     const double clear = heat->scene->clear[sphere], height = fibrad_max(clear, FINE_LOWEST);
@@ -385,7 +392,7 @@ uint32_t fibrad_heat_fine_of(const fibrad_heat *heat, uint32_t patch) {
     return FIBRAD_NONE;
 }
 
-/* The most that the area of a four would be if all of it were as at some place [L2]. */
+/* The largest result of fibrad_heat_fine_point on a four, of nine points [L^2]. */
 static double most_of(const fibrad_heat *heat, const fibrad_heat_four *four) {
     double at[3], normal[3], most = 0;
     for (int k = 0; k < 9; k++)
@@ -393,13 +400,13 @@ static double most_of(const fibrad_heat *heat, const fibrad_heat_four *four) {
     return most;
 }
 
-/* The share of a sphere's area that one of its own fours has. */
+/* The area of one of a sphere's own fours over the area of the sphere. */
 static double share_of(const fibrad_heat *heat, uint32_t own) {
     const fibrad_heat_four four = {.own = own};
     return area_of(heat, &four) / (four_area(heat, 0) * fours_of(heat, 0));
 }
 
-/* So rays of fine patches stand for the area of the beams that they replace, and all of a sphere for its own. */
+/* With this factor the rays of a fine four stand for as much area as the beams that they replace. */
 void fibrad_heat_balance(fibrad_heat *heat) {
     if (heat->spheres == 0) return;
     for (uint32_t own = 0; own < fours_of(heat, 0); own++) heat->division.balance[own] = 0;
@@ -416,8 +423,8 @@ static uint64_t seed_of(const fibrad_heat *heat, const fibrad_heat_four *four) {
                       ((uint64_t)four->x << 32 | four->y));
 }
 
-/* Goes on to the next four of a row that sends out rays. Their number is by area, and what is rounded off goes to the
- * next one. */
+/* Goes on to the next four of a row that sends out rays. The number of rays is in proportion to the area. What is
+ * rounded off is added to the next four. */
 static bool next_four(const fibrad_heat *heat, uint32_t row, fibrad_heat_fine_rays *rays) {
     const fibrad_heat_fine *fine = &heat->division.fine[row - heat->spheres];
     while (rays->left == 0 && rays->fours < fine->count) {
@@ -437,7 +444,7 @@ bool fibrad_heat_fine_ray(const fibrad_heat *heat, uint32_t row, fibrad_heat_fin
         &heat->division.four[heat->division.fine[row - heat->spheres].first + rays->fours - 1];
     const uint64_t seed = seed_of(heat, &heat->division.four[heat->division.fine[row - heat->spheres].first]);
     double x[4], area, chance;
-    do { /* places where the image is stretched less are left out more often */
+    do { /* a point is rejected more often where the four has less area per share of its edges */
         fibrad_heat_ray_coordinates(seed, rays->k, x);
         area = fibrad_heat_fine_point(heat, own, x[0], x[1], rays->at, rays->normal);
         chance = fibrad_fraction(fibrad_mix(seed + FIBRAD_GOLDEN * ++rays->k));

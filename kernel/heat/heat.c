@@ -1,5 +1,5 @@
-/* heat.c - lays out a heat problem and has its beams followed.
- * SPDX-License-Identifier: MIT */
+/* heat.c - lays out a heat problem, moves it to another scene, and has its beams followed. SPDX-License-Identifier: MIT
+ */
 #include "base/arena.h"
 #include "base/constants.h"
 #include "base/dispatch.h"
@@ -12,9 +12,9 @@
 #include "sample/direction.h"
 
 #define HEAT_THIN_MAX  2u
-#define HEAT_KEPT      36u /* beams of each patch that are not to be thinned out */
+#define HEAT_KEPT      36u /* beams are thinned out only if each patch of a sphere keeps this many */
 #define HEAT_NODES_MAX (1u << 26)
-#define SPARE_NODES    1024u /* for fine patches that come with a move */
+#define SPARE_NODES    1024u /* room for fine patches that the bed needs after it has moved */
 
 static fibrad_heat_config heat_config_of(const fibrad_heat_config *config) {
     fibrad_heat_config c = {0};
@@ -26,10 +26,10 @@ static fibrad_heat_config heat_config_of(const fibrad_heat_config *config) {
     return c;
 }
 
-/* Squares along an edge of the cube; 0: no such number of patches. */
+/* Patches along an edge of a sphere's cube. 0: there is no such number of patches. */
 static uint32_t side_of(uint32_t patches) { return patches == 24 ? 2 : patches == 96 ? 4 : patches == 384 ? 8 : 0; }
 
-/* Whether a completed configuration fits a scene; FIBRAD_E_ARGUMENT, _UNSUPPORTED, _STATE. */
+/* Checks a completed configuration against a scene. Errors: FIBRAD_E_ARGUMENT, _UNSUPPORTED, _STATE. */
 static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
     fibrad_disc_points set;
     if (scene == NULL) return FIBRAD_E_ARGUMENT;
@@ -43,14 +43,14 @@ static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
     return !valid ? FIBRAD_E_ARGUMENT : c->cutoff > 0 || scene->region ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
 }
 
-/* How many bodies of a scene are meshes. */
 static uint32_t meshes_of(const fibrad_scene *scene) {
     uint32_t meshes = 0;
     for (uint32_t b = 0; b < scene->facts.bodies; b++) meshes += scene->slot[b] >= FIBRAD_MESHES;
     return meshes;
 }
 
-/* The numbers that follow from a valid configuration and a scene, without fine patches; how meshes are cut stays. */
+/* Sets the numbers that follow from a valid configuration and a scene. Fine patches are not counted. heat->of_mesh is
+ * taken as it is. */
 static void dimension(fibrad_heat *heat, const fibrad_heat_config *config, const fibrad_scene *scene) {
     const uint32_t spheres = scene->facts.spheres;
     heat->config = *config;
@@ -74,8 +74,8 @@ static void dimension(fibrad_heat *heat, const fibrad_heat_config *config, const
     for (uint32_t m = 0; m < heat->meshes; m++) heat->patches += heat->of_mesh[m];
 }
 
-/* A fourth more patches and rays of walls, and fine patches, than this scene has: when the bed moves they may become
- * more. */
+/* Makes room for a fourth more patches of walls, rays of walls and fine patches than this scene has. A bed that has
+ * moved may need them. */
 static void add_room(fibrad_heat *heat, uint32_t nodes) {
     const uint32_t of_walls = heat->patches - heat->spheres * heat->config.patches;
     heat->division.nodes_capacity = nodes + (nodes > 1 ? nodes / 4 + SPARE_NODES : 0);
@@ -87,7 +87,7 @@ static uint32_t tasks_for(uint32_t rows, uint32_t rays) {
     return rows + (rays + FIBRAD_HEAT_TASK - 1) / FIBRAD_HEAT_TASK;
 }
 
-/* Takes the arrays from the arena; the object itself is to be copied to the address returned. */
+/* Takes the arrays from the arena. The caller copies the object itself to the address that is returned. */
 static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     fibrad_heat *place = fibrad_arena_take(arena, 1, sizeof *place);
     const uint32_t spheres = heat->spheres, patches = heat->patches_capacity, nodes = heat->division.nodes_capacity;
@@ -137,7 +137,7 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     return place;
 }
 
-/* The numbers of a new problem, with room for a bed that moves, and for the beams. FIBRAD_E_UNSUPPORTED. */
+/* Sets the numbers of a new problem, with room for a bed that moves and for the beams. Error: FIBRAD_E_UNSUPPORTED. */
 static int dimension_anew(fibrad_heat *heat, const fibrad_heat_config *config, const fibrad_scene *scene) {
     dimension(heat, config, scene);
     fibrad_heat_cut_meshes(heat);
@@ -149,7 +149,6 @@ static int dimension_anew(fibrad_heat *heat, const fibrad_heat_config *config, c
     return FIBRAD_OK;
 }
 
-/* The bytes that a problem of these numbers takes. */
 static size_t heat_bytes(fibrad_heat fields) {
     fibrad_arena arena = {0};
     heat_layout(&arena, &fields);
@@ -163,7 +162,6 @@ size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *sc
     return dimension_anew(&fields, &c, scene) == FIBRAD_OK ? heat_bytes(fields) : 0;
 }
 
-/* How many patches a body has. */
 static uint32_t patches_of(const fibrad_heat *heat, uint32_t b) {
     const uint32_t mesh = fibrad_heat_body(heat, FIBRAD_MESHES), beyond = fibrad_heat_beyond(heat, 0);
     const uint32_t fine =
@@ -174,7 +172,7 @@ static uint32_t patches_of(const fibrad_heat *heat, uint32_t b) {
     return b < beyond + FIBRAD_WALLS ? heat->wall[b - beyond].unbounded : 1;
 }
 
-/* Numbers the patches through, and tells how many beams leave each sphere per area. */
+/* Sets the first patch of each body, and how many beams leave each sphere per area. */
 static void number_patches(fibrad_heat *heat) {
     const fibrad_scene *scene = heat->scene;
     heat->first[0] = 0;
@@ -183,7 +181,7 @@ static void number_patches(fibrad_heat *heat) {
         heat->density[b] = heat->beams / (4 * FIBRAD_PI * scene->r[b] * scene->r[b]);
 }
 
-/* Which patch of its sphere each beam leaves. */
+/* Finds the patch of its sphere that each beam leaves. */
 static void find_origins(fibrad_heat *heat) {
     const uint32_t points = heat->config.points;
     fibrad_disc_points set = {NULL, NULL};
@@ -199,7 +197,7 @@ static void find_origins(fibrad_heat *heat) {
     }
 }
 
-/* Begins with a scene: nothing is traced. */
+/* Prepares a problem for its scene. No beam has been followed. */
 static void forget_beams(fibrad_heat *heat) {
     fibrad_heat_divide_fours(heat);
     heat->patches += FIBRAD_HEAT_FOUR * heat->division.fours;
@@ -239,7 +237,7 @@ int fibrad_heat_init(fibrad_heat **out, void *memory, size_t size, const fibrad_
     return FIBRAD_OK;
 }
 
-/* Puts `each` values per sphere into the order of another scene; scratch has room for them. */
+/* Puts values, `each` per sphere, into the order of another scene. scratch: [each n] */
 static void reorder(double *value, uint32_t each, const fibrad_scene *scene, const uint32_t *old_place, uint32_t n,
                     double *scratch) {
     for (uint32_t place = 0; place < n; place++)
@@ -248,7 +246,7 @@ static void reorder(double *value, uint32_t each, const fibrad_scene *scene, con
     fibrad_copy(value, scratch, (size_t)n * each * sizeof *value);
 }
 
-/* Whether the patches of all walls are as many as before. */
+/* Whether all planes and the cylinder have as many patches in one problem as in the other. */
 static bool same_patches(const fibrad_heat *a, const fibrad_heat *b) {
     bool same = true;
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
@@ -258,7 +256,8 @@ static bool same_patches(const fibrad_heat *a, const fibrad_heat *b) {
     return same;
 }
 
-/* Takes the radiosities of the last solution along. Patches of walls that are cut otherwise begin anew. */
+/* Puts the radiosities of the last solution in the order of the next scene. If planes or the cylinder have another
+ * number of patches there, their patches begin with the emission of their wall. */
 static void carry_over(fibrad_heat *heat, const fibrad_heat *next) {
     const uint32_t n = heat->spheres, each = heat->config.patches;
     uint32_t *old_place = (uint32_t *)(void *)heat->solution.source;
@@ -281,20 +280,12 @@ static void carry_over(fibrad_heat *heat, const fibrad_heat *next) {
     fibrad_copy(heat->solution.detail + to, heat->solution.direction, of_meshes);
 }
 
-/* The mean of values, per area, over the patches of a body. */
-static double mean_of_body(const fibrad_heat *heat, uint32_t b, const double *value) {
-    double sum = 0, area = 0;
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
-        sum += heat->solution.area[a] * value[a], area += heat->solution.area[a];
-    return area > 0 ? sum / area : 0;
-}
-
-/* Leaves fine patches out. Own patches that were divided take the mean of their body. */
+/* Removes fine patches. Own patches that were divided take the mean of their body. */
 static void drop_fine(fibrad_heat *heat) {
     if (heat->division.fours == 0) return;
     uint32_t to = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        const double mean = mean_of_body(heat, b, heat->solution.radiosity);
+        const double mean = fibrad_heat_mean(heat, b, heat->solution.radiosity);
         const bool has_fine = b < fibrad_heat_body(heat, FIBRAD_MESHES) && heat->division.root[b] != FIBRAD_NONE;
         const uint32_t end = has_fine ? fibrad_heat_first_fine(heat, b) : heat->first[b + 1];
         for (uint32_t a = heat->first[b]; a < end; a++, to++) {
@@ -308,7 +299,7 @@ static void drop_fine(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++) heat->first[b + 1] = heat->first[b] + patches_of(heat, b);
 }
 
-/* Makes room for fine patches, which begin with the mean of their body. */
+/* Makes room for fine patches among the radiosities. They begin with the mean of their body. */
 static void add_fine(fibrad_heat *heat) {
     uint32_t from = heat->patches - FIBRAD_HEAT_FOUR * heat->division.fours;
     for (uint32_t b = heat->bodies; heat->division.fours > 0 && b-- > 0;) {
@@ -325,7 +316,7 @@ static void add_fine(fibrad_heat *heat) {
     }
 }
 
-/* Whether a scene has the same triangles, each of the same bodies. */
+/* Whether a scene has as many triangles as the problem, and each side belongs to the same wall as before. */
 static bool same_triangles(const fibrad_heat *heat, const fibrad_scene *scene) {
     const fibrad_mesh *mesh = &scene->mesh;
     const uint32_t *first = heat->first + fibrad_heat_body(heat, FIBRAD_MESHES);

@@ -13,18 +13,18 @@
 #include "scene/walls.h"
 #include "row/window_lanes.h"
 
-#define HIT_POINTS 64 /* of a window at a time */
+#define HIT_POINTS 64 /* points of a window that are treated together, a "word" */
 
-/* Some points of a window: which disc hides each, and where on the sphere it is met. */
+/* Points of a word whose beams are kept: the disc that each beam meets, and where it meets the sphere. */
 struct hit_window {
-    _Alignas(64) double u[HIT_POINTS], v[HIT_POINTS], w[HIT_POINTS]; /* normals in the frame of the window */
-    _Alignas(64) double face[HIT_POINTS], x[HIT_POINTS], y[HIT_POINTS];
+    _Alignas(64) double u[HIT_POINTS], v[HIT_POINTS], w[HIT_POINTS];    /* normals in the frame of the window */
+    _Alignas(64) double face[HIT_POINTS], x[HIT_POINTS], y[HIT_POINTS]; /* of the cube; place on it [squares] */
     uint32_t point[HIT_POINTS], disc[HIT_POINTS];
     uint32_t count;
-    uint64_t behind; /* points that leave their sphere behind a wall */
+    uint64_t behind; /* bits of points where beams leave their own sphere behind a wall */
 };
 
-/* Patch numbers, 0 to 6 side^2 - 1, of the normals of all points. */
+/* Finds the patch numbers, 0 to 6 side^2 - 1, of the normals of all points. */
 static void number_patches_of(struct hit_window *p, const double frame[9], uint32_t side, uint16_t *patch) {
     const vd zero = vd_set1(0), one = vd_set1(1), half = vd_set1(.5 * side);
     double axes[9];
@@ -53,7 +53,7 @@ static void number_patches_of(struct hit_window *p, const double frame[9], uint3
         patch[k] = (uint16_t)fibrad_patch_number((uint32_t)p->face[k], (uint32_t)p->x[k], (uint32_t)p->y[k], side);
 }
 
-/* Counts a beam of window k to a fine patch; returns it. */
+/* Counts a beam of window k that meets a fine patch. Returns the beam. */
 static fibrad_heat_beam fine_beam(const fibrad_heat *heat, fibrad_workspace *work, uint32_t k, uint16_t from,
                                   uint32_t fine) {
     const uint32_t row = heat->division.four[fine / FIBRAD_HEAT_FOUR].row;
@@ -63,14 +63,14 @@ static fibrad_heat_beam fine_beam(const fibrad_heat *heat, fibrad_workspace *wor
                               (uint16_t)(fine - FIBRAD_HEAT_FOUR * heat->division.fine[row - heat->spheres].first)};
 }
 
-/* The points of a word that are kept: all, or half of them, by turns those whose numbers have an even number of ones
- * (Thue, Morse) and the others. */
+/* The points of a word whose beams are kept: all, or half of them. The halves are the numbers with an even and with an
+ * odd number of ones (Thue, Morse). They take turns. */
 static uint64_t kept_points(uint32_t turn, uint32_t thin) {
     const uint64_t half = 0x9669699669969669;
     return thin == 1 ? UINT64_MAX : turn % 2 == 0 ? half : ~half;
 }
 
-/* The points of a word that meet a triangle first. */
+/* The points of a word whose beams end on a triangle. */
 static uint64_t meshed_points(const fibrad_workspace *work, uint32_t word) {
     uint64_t bits = 0;
     if (work->met == NULL || !work->met->any) return 0;
@@ -79,8 +79,8 @@ static uint64_t meshed_points(const fibrad_workspace *work, uint32_t word) {
     return bits;
 }
 
-/* Which of some points of a word lie behind a wall, where their beams leave, side 1, or enter, side -1, the sphere at a
- * place, whose disc is u, v, r. */
+/* Which of the given points lie behind a wall. The points are on the sphere at `place`, whose disc is u, v, r. side: 1:
+ * where beams leave the sphere; -1: where beams arrive there. */
 static uint64_t points_behind(const fibrad_workspace *work, const double frame[9], const float *x, const float *y,
                               uint64_t points, uint32_t place, const double disc[3], double side) {
     const fibrad_scene *scene = work->scene;
@@ -99,16 +99,16 @@ static uint64_t points_behind(const fibrad_workspace *work, const double frame[9
     return behind;
 }
 
-/* Takes points that a disc hides out of its entry: walls get them, which counts them as open. */
+/* Takes points away from the disc that hides them, and counts them as open, so that walls get them. */
 static void give_to_walls(fibrad_workspace *work, uint32_t disc, uint32_t k, uint64_t bits, uint64_t *seen) {
     *seen |= bits;
     for (; bits != 0; bits &= bits - 1)
         fibrad_entries_add(&work->entries, work->near.entry[work->disc.near[disc]], k, -1);
 }
 
-/* Lists points of a word that are kept and the discs that hide them, the first that covers each: those in `kept`, and
- * one of each sphere that is seen for the first time, whose entry is `known` or later; all of a sphere with fine
- * patches. What lies behind a wall is hidden by none. */
+/* Lists the points of a word whose beams are kept, each with the first disc that covers it. Kept are the points in
+ * `kept`, at least one point of each sphere that this window sees for the first time (its entry is `known` or later),
+ * and all points on spheres with fine patches. Points behind a wall count as open. */
 static void find_hit_discs(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9],
                            fibrad_points *points, uint32_t window, uint32_t word, uint64_t kept, uint32_t known,
                            struct hit_window *p) {
@@ -140,7 +140,7 @@ static void find_hit_discs(const fibrad_heat *heat, fibrad_workspace *work, cons
     points->seen[word] |= p->behind;
 }
 
-/* Normals where the points x, y meet their discs. */
+/* Finds the normals where the beams of points x, y meet their spheres. */
 static void find_hit_normals(const fibrad_workspace *work, const float *x, const float *y, struct hit_window *p) {
     for (uint32_t k = 0; k < p->count; k++) {
         const uint32_t d = p->disc[k];
@@ -155,10 +155,11 @@ static void find_hit_normals(const fibrad_workspace *work, const float *x, const
     }
 }
 
-/* A window stands for all directions nearer to its own than to others. To distinguish far walls, the beam of
- * each open point has a direction of its own, from a disc about that of the window whose density falls towards its rim;
- * another point of the set chooses it. Where spheres hide part of a window, its neighbours are hidden in part too, and
- * the disc is smaller, or walls would be met that are hidden: docs/methods.md, section 9. */
+/* A window stands for all directions that are nearer to its own than to another. Far walls take directions of their own
+ * to tell apart. So the beam of each open point has a direction of its own, from a disc about the direction of the
+ * window. The density falls towards the rim of the disc. Another point of the set chooses the direction. If spheres
+ * hide a part of the window, they hide a part of its neighbours, too. The disc is then smaller. Otherwise beams would
+ * meet walls that are hidden: docs/methods.md, section 9. */
 #define HIT_SPREAD 2.25 /* radius of the disc if the window is open, times sqrt n */
 
 /* The patch that the beam of open point p of window k meets. */
@@ -190,7 +191,7 @@ static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *wo
     return fibrad_heat_leaves(heat, origin, w);
 }
 
-/* Keeps the beams of a word of window k that meet spheres; returns where the next ones go. */
+/* Keeps the beams of a word of window k that meet spheres. Returns the end of the beams that are kept. */
 static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9],
                                    fibrad_points *points, uint32_t k, uint32_t word, uint64_t kept, uint32_t known,
                                    fibrad_heat_beam *beam) {
@@ -217,7 +218,8 @@ static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, fibrad_workspace *wo
     return beam;
 }
 
-/* Counts, and if it is kept or the first one keeps, a beam of window k to a patch that is of no sphere. */
+/* Counts a beam of window k to a patch that belongs to no sphere. Keeps the beam if `kept`, or if it is the first one
+ * to its block of patches. */
 static fibrad_heat_beam *keep_other(const fibrad_heat *heat, fibrad_workspace *work, uint32_t k, uint16_t from,
                                     uint32_t patch, bool kept, fibrad_heat_beam *beam) {
     const uint32_t fine = fibrad_heat_fine_of(heat, patch);
@@ -232,7 +234,7 @@ static fibrad_heat_beam *keep_other(const fibrad_heat *heat, fibrad_workspace *w
     return beam;
 }
 
-/* Keeps the beams of a word that meet triangles first, all of them. */
+/* Keeps all beams of a word that meet triangles. */
 static fibrad_heat_beam *keep_meshed(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9],
                                      const fibrad_points *points, uint32_t k, uint32_t word, fibrad_heat_beam *beam) {
     const uint16_t *leave = heat->leave + (size_t)k * heat->config.points + HIT_POINTS * word;
@@ -250,7 +252,7 @@ static fibrad_heat_beam *keep_meshed(const fibrad_heat *heat, fibrad_workspace *
     return beam;
 }
 
-/* The same of those that meet none: all of them where there are walls. */
+/* Keeps the beams of a word that meet neither a sphere nor a triangle. If there are walls, it keeps all of them. */
 static fibrad_heat_beam *keep_escapes(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9],
                                       const fibrad_points *points, uint32_t k, uint32_t word, uint64_t kept,
                                       fibrad_heat_beam *beam) {
@@ -296,7 +298,7 @@ static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t p
     return fibrad_heat_keep(heat, work, place, (uint32_t)(beam - first));
 }
 
-/* Follows ray k of the wall or mesh of a slot; *ray: what it connects. */
+/* Follows ray k of the wall of a slot. ray: out: the patches that it connects. */
 static int follow_ray(const fibrad_heat *heat, fibrad_workspace *work, uint32_t slot, uint32_t k, double density,
                       fibrad_heat_ray *ray) {
     uint32_t side = FIBRAD_NO_SIDE;
@@ -321,8 +323,9 @@ static int follow_ray(const fibrad_heat *heat, fibrad_workspace *work, uint32_t 
     return FIBRAD_OK;
 }
 
-/* Keeps what a ray of a row of fine fours meets, at *next, which then goes on; false: the back of a triangle. Beams of
- * a cap behind a wall tell all that the two exchange. */
+/* Follows a ray of a row of fine fours, and keeps it at *next, which moves on. False: the ray meets a side that belongs
+ * to no wall. A ray from a wall into the cap of a sphere behind it is left out: beams of the cap tell what the two
+ * exchange. */
 static bool keep_fine_ray(const fibrad_heat *heat, fibrad_workspace *work, uint32_t body,
                           const fibrad_heat_fine_rays *ray, fibrad_heat_beam **next) {
     const fibrad_scene *scene = heat->scene;

@@ -6,8 +6,9 @@
 #include "heat/problem.h"
 #include "work/work.h"
 
-/* Keeps the beams of the sphere at place `task`; from the number of spheres on, fills a part of heat->ray.
- * FIBRAD_E_WORK: the work memory is too small; _SIZE: that of the beams is. */
+/* Follows the beams of one task. The tasks are, in this order: spheres by their position, rows of fine fours, and
+ * stretches of heat->ray. Errors: FIBRAD_E_WORK: the work memory is too small; FIBRAD_E_SIZE: the memory of the problem
+ * is; FIBRAD_E_BACK. */
 typedef int fibrad_heat_follow_function(fibrad_heat *heat, fibrad_workspace *work, uint32_t task);
 
 FIBRAD_DECLARE_VERSIONS(fibrad_heat_follow_function, fibrad_heat_follow);

@@ -1,28 +1,29 @@
 /* pencils.c - how the beams of a sphere are kept. SPDX-License-Identifier: MIT
  *
- * A row has about a hundred other ends, and its beams go by these: so an end of a beam is a patch of a known body, and
- * takes a byte. How much two bodies exchange is known from all beams; where on them the light leaves and arrives, from
- * those that are kept, each of which stands for as many. */
+ * The beams of a row are sorted by what they meet, about a hundred bodies. So the end of a beam is a patch of a known
+ * body, which takes one byte. All beams that were followed tell how much two bodies exchange. Those that are kept tell
+ * where on the bodies light leaves and arrives. Each of them stands for an equal number of beams. */
 #include "heat/fine.h"
 #include "heat/pencils.h"
+#include "heat/wall_patch.h"
 #include "base/arena.h"
 #include "base/constants.h"
 
-/* Others that a row in a bed sees, times the solid fraction, over the root of its beams: in random beds of equal
- * spheres 0.75 at solid fraction 0.6, 1.1 at 0.2, of which there is room for more. */
+/* Number of bodies that a row sees, times the solid fraction, over the square root of its beams. Measured in random
+ * beds of equal spheres: 0.75 at the solid fraction 0.6, and 1.1 at 0.2. */
 #define ROOM_PENCILS 1.3
 
-/* Strands that N beams make between P patches of each sphere, over sqrt(N P), besides one for each eight beams, and
- * bundles over sqrt(N P/4), at solid fraction 1/2 and above: 2.9 to 3.9 and 1.6 to 2.8 up to P = 96, 4.8 and 4 at 384,
- * for N from 1,000 to 50,000. */
+/* Let N beams connect spheres of P patches. They make N/8 strands and ROOM_STRANDS sqrt(N P) more, and ROOM_BUNDLES
+ * sqrt(N P/4) bundles. Measured at solid fractions from 1/2 on, for N from 1,000 to 50,000: 2.9 to 3.9 and 1.6 to 2.8
+ * up to P = 96, 4.8 and 4 at P = 384. */
 #define ROOM_STRANDS      4.5
 #define ROOM_BUNDLES      3.4
 #define ROOM_STRANDS_WIDE 6.8
 #define ROOM_BUNDLES_WIDE 5.0
 
-#define ROOM_NODE 200.0 /* bytes of rays from a fine four, of which there are fewer than nodes */
+#define ROOM_NODE 200.0 /* bytes of the rays of a fine four; there are fewer fine fours than nodes */
 
-/* Of so many beams at the most those that are left when some are joined; none are at no solid fraction. */
+/* About how many strands or bundles are left when beams are joined. `most` holds at solid fractions from 1/2 on. */
 static double room_joined(double beams, double most, double fraction) {
     return fibrad_min(beams, most + (beams - most) * fibrad_max(0, 1 - 2 * fraction));
 }
@@ -42,7 +43,7 @@ static struct heat_pool pool_of(size_t pencil_bytes, size_t links) {
     return pool;
 }
 
-/* Whether what is kept so far fits. */
+/* Whether there is room for what is kept so far. */
 static bool pool_suffices(fibrad_heat *heat) {
     const size_t links = fibrad_add_at_once(&heat->pencils.links, 0);
     return pool_of(fibrad_add_at_once(&heat->pencils.used, 0), links).bytes <= heat->pencils.room;
@@ -50,7 +51,7 @@ static bool pool_suffices(fibrad_heat *heat) {
 
 static size_t whole_of(double number) { return number < (double)(SIZE_MAX / 2) ? (size_t)number : SIZE_MAX; }
 
-/* Beams that meet walls are all kept; by reciprocity they are as many as the walls are large. */
+/* All beams that meet walls are kept. By reciprocity their number is in proportion to the area of the walls. */
 size_t fibrad_heat_room(const fibrad_heat *heat) {
     const fibrad_scene *scene = heat->scene;
     const double n = heat->spheres, beams = heat->beams, spacing = scene->spacing;
@@ -61,9 +62,7 @@ size_t fibrad_heat_room(const fibrad_heat *heat) {
         solid += 4. / 3 * FIBRAD_PI * r * r * r, surface += 4 * FIBRAD_PI * r * r;
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
-        if (scene->wall_area[k] > 0)
-            walls += heat->wall[k].size[0] * heat->wall[k].size[1] *
-                     (k == FIBRAD_CYLINDER ? 2 * FIBRAD_PI * scene->container.radius : 1);
+        if (scene->wall_area[k] > 0) walls += fibrad_heat_wall_area(heat, k);
     for (uint32_t m = 0; m < heat->meshes; m++) walls += fibrad_mesh_area(&scene->mesh, m);
     const double others = 2 * FIBRAD_WALLS + heat->meshes + 2;
     const double blocks = others + (heat->patches - n * heat->config.patches) / FIBRAD_HEAT_BLOCK;
@@ -83,15 +82,15 @@ size_t fibrad_heat_room(const fibrad_heat *heat) {
     return pool_of(whole_of(1.1 * n * bytes + of_fine + 4096), whole_of(1.1 * n * all)).bytes;
 }
 
-/* Beams of an entry from four patches to four: how many by which of these, and a bit for each of which there are any.
- */
+/* Beams of an entry from one four to another: their number for each pair of patches, and a bit for each pair that has
+ * any. */
 #define PAIRS (FIBRAD_HEAT_FOUR * FIBRAD_HEAT_FOUR)
 struct four_patches {
     uint16_t from, to;
     uint32_t some, count[PAIRS];
 };
 
-/* A pencil that is being written, and where it goes. */
+/* A pencil that is being written, its place in memory, and the number of pencils written before. */
 struct pencil_draft {
     fibrad_heat_pencil pencil;
     fibrad_heat_bundle bundle[FIBRAD_HEAT_STRANDS];
@@ -100,29 +99,30 @@ struct pencil_draft {
     uint32_t written;
 };
 
-/* What a row takes of work->extra. */
+/* The parts of work->extra that a row uses. */
 struct row_scratch {
     fibrad_heat_beam *beam, *sorted;
     unsigned char *pencils;
     struct four_patches *fours;
-    uint16_t *seen; /* which of `fours` connects each two, counted from 1 */
+    uint16_t *seen; /* index in `fours` of each pair of fours, counted from 1 */
 };
 
-/* Fours of patches that the other end of a beam may have, at the most, and pairs with those of a sphere. */
+/* The most fours at the other end of a beam. */
 static uint32_t fours_stride(const fibrad_heat *heat) {
     const uint32_t most = heat->division.nodes_capacity > 1 ? FIBRAD_HEAT_PATCHES_MAX : heat->config.patches;
     return (most > FIBRAD_HEAT_BLOCK ? most : FIBRAD_HEAT_BLOCK) / FIBRAD_HEAT_FOUR;
 }
 
+/* The most pairs of fours at both ends. */
 static size_t fours_pairs(const fibrad_heat *heat) {
     const uint32_t most = heat->division.nodes_capacity > 1 ? FIBRAD_HEAT_PATCHES_MAX : heat->config.patches;
     return (size_t)(most / FIBRAD_HEAT_FOUR) * fours_stride(heat);
 }
 
-/* A pencil, bundle and strand of one beam take the most. */
+/* The most bytes of a beam: it has a pencil, a bundle and a strand of its own. */
 #define BEAM_BYTES (sizeof(fibrad_heat_pencil) + sizeof(fibrad_heat_bundle) + 1)
 
-/* Puts beams in the order of their entries; counts[e] is then how many those of entry e and before are. */
+/* Sorts beams by their entries. counts: out: [entries] number of the beams of each entry and all before it. */
 static void sort_beams(const fibrad_heat_beam *beam, uint32_t count, fibrad_heat_beam *sorted, uint64_t *counts,
                        uint32_t entries) {
     uint64_t sum = 0;
@@ -132,8 +132,8 @@ static void sort_beams(const fibrad_heat_beam *beam, uint32_t count, fibrad_heat
     for (uint32_t k = 0; k < count; k++) sorted[counts[beam[k].entry]++] = beam[k];
 }
 
-/* Joins beams of an entry that connect the same fours of patches, in the order of first sight; returns how many such
- * pairs there are. `seen` is zero, and is so again. */
+/* Joins the beams of an entry that connect the same two fours. Returns the number of such pairs. They are in the order
+ * of their first beam. `seen` is zero before and after. */
 static uint32_t join_beams(const fibrad_heat *heat, const fibrad_heat_beam *beam, uint64_t count,
                            const struct row_scratch *scratch) {
     const uint32_t stride = fours_stride(heat);
@@ -154,7 +154,7 @@ static uint32_t join_beams(const fibrad_heat *heat, const fibrad_heat_beam *beam
     return joined;
 }
 
-/* Writes what there is of a pencil, and begins another one. */
+/* Writes the pencil if it has beams, and begins another one. */
 static void write_pencil(struct pencil_draft *draft) {
     fibrad_heat_pencil *pencil = &draft->pencil;
     const size_t bytes = pencil->bundles * sizeof *draft->bundle;
@@ -167,7 +167,7 @@ static void write_pencil(struct pencil_draft *draft) {
     pencil->bundles = pencil->strands = 0;
 }
 
-/* Adds a bundle, more where it has more beams than one can count. */
+/* Adds the beams between two fours as a bundle. If they are too many for one bundle, it adds several. */
 static void write_bundle(struct pencil_draft *draft, const struct four_patches *fours) {
     fibrad_heat_pencil *pencil = &draft->pencil;
     fibrad_heat_bundle *bundle = NULL;
@@ -187,8 +187,8 @@ static void write_bundle(struct pencil_draft *draft, const struct four_patches *
     }
 }
 
-/* Writes the pencils of a row, one for each entry, more where that has more strands than one can count. Returns how
- * many end on spheres of other parts. */
+/* Writes the pencils of a row, one for each entry. An entry with too many strands has several. Returns the number of
+ * pencils that end on rows of other parts. */
 static uint32_t write_row(const fibrad_heat *heat, uint32_t place, const fibrad_entries *entries,
                           const struct row_scratch *scratch, size_t *bytes) {
     struct pencil_draft draft = {.to = scratch->pencils};
@@ -196,7 +196,7 @@ static uint32_t write_row(const fibrad_heat *heat, uint32_t place, const fibrad_
     uint64_t begin = 0;
     uint32_t links = 0;
     for (uint32_t e = 0; e < entries->length; begin = entries->key[0][e++]) {
-        if (entries->key[0][e] == begin) continue; /* seen, but a triangle hid it */
+        if (entries->key[0][e] == begin) continue; /* triangles hide this sphere */
         const double *part = entries->part[e], even = part[0] + part[2], odd = part[1] + part[3];
         const uint64_t beams = entries->key[0][e] - begin;
         const uint32_t body = entries->sphere[e], joined = join_beams(heat, scratch->sorted + begin, beams, scratch);
@@ -212,7 +212,7 @@ static uint32_t write_row(const fibrad_heat *heat, uint32_t place, const fibrad_
     return links;
 }
 
-/* Bytes of beams as they come and in order, of pencils, of fours and of `seen`, which follow each other. */
+/* Bytes of the arrays of row_scratch, which follow each other: both arrays of beams, pencils, fours, seen. */
 static void scratch_bytes(const fibrad_heat *heat, size_t bytes[4]) {
     const size_t beams = heat->beams, pairs = fours_pairs(heat);
     bytes[0] = 2 * beams * sizeof(fibrad_heat_beam);
@@ -241,14 +241,14 @@ static struct row_scratch divide_scratch(const fibrad_heat *heat, unsigned char 
 int fibrad_heat_keep(fibrad_heat *heat, const fibrad_workspace *work, uint32_t place, uint32_t count) {
     const fibrad_entries *entries = &work->entries;
     fibrad_heat_row *row = &heat->pencils.row[place];
-    if (!pool_suffices(heat)) return FIBRAD_E_SIZE; /* and so for all rows to come */
+    if (!pool_suffices(heat)) return FIBRAD_E_SIZE; /* from the first row without room on, all rows fail */
     const struct row_scratch scratch = divide_scratch(heat, work->extra);
     sort_beams(scratch.beam, count, scratch.sorted, entries->key[0], entries->length);
     fibrad_zero(scratch.seen, fours_pairs(heat) * sizeof *scratch.seen);
     const uint32_t more = write_row(heat, place, entries, &scratch, &row->bytes);
     row->begin = fibrad_add_at_once(&heat->pencils.used, row->bytes);
     fibrad_add_at_once(&heat->pencils.links, more);
-    /* of threads that add at once, whoever adds last sees all of it */
+    /* if threads add at once, the last one sees the sum of all */
     if (!pool_suffices(heat)) return FIBRAD_E_SIZE;
     fibrad_copy(heat->pencils.pool + row->begin, scratch.pencils, row->bytes);
     return FIBRAD_OK;

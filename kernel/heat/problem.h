@@ -23,7 +23,7 @@
 #define FIBRAD_HEAT_FOUR          4u   /* patches of a four */
 #define FIBRAD_HEAT_BLOCK         256u /* patches of a wall that may be in one pencil */
 #define FIBRAD_HEAT_OTHERS        64u  /* bodies that are not spheres, rounded up */
-#define FIBRAD_HEAT_EXTRAPOLATION 0.4  /* share of the difference of both levels that patches without size change */
+#define FIBRAD_HEAT_EXTRAPOLATION 0.4  /* of the difference between both levels, added for patches without size */
 
 #define FIBRAD_HEAT_FINE (UINT32_C(1) << 31) /* plus the number of a fine four: a node without children */
 
@@ -128,26 +128,26 @@ typedef struct fibrad_heat_pencils {
     size_t *first_link; /* [rows + 2] */
 } fibrad_heat_pencils;
 
-/* The least and the largest of what the emission of a sphere's surface is above its mean, at both levels. */
+/* The least and the largest emission on a sphere's surface minus the mean emission, at both levels. */
 typedef struct fibrad_heat_span {
     double low, high, coarse_low, coarse_high;
 } fibrad_heat_span;
 
-/* What is given of a solution. E is counted from that of the surroundings. */
+/* What is given for a solution. Emissions E are differences from the emission of the surroundings. */
 typedef struct fibrad_heat_given {
     double *emissivity, *emission; /* [bodies], eps and E */
-    double *drive, *hold;          /* [bodies], unknown temperature: gives off drive - hold E; hold < 0: given */
+    double *drive, *hold;          /* [bodies], hold < 0: E is given; else E is unknown, and drive - hold E given off */
     double *temperature;           /* K, [bodies], given or found; NaN: none */
     double *conductivity;          /* sigma K^3 L, [spheres] */
     double *unevenness;            /* [spheres], 4 r sigma T^3/conductivity; 0: at one temperature (conduct.c) */
     bool conducts;                 /* some sphere has an unevenness above 0 */
-    bool roughly;                  /* unevennesses are of temperatures that are hardly known yet */
+    bool roughly;                  /* unevennesses are of first guesses of temperatures */
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
     bool insulated[FIBRAD_HEAT_OTHERS];                                /* by body, from the first wall on */
     double *lift; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
     bool lifted[FIBRAD_BODIES_MAX]; /* [meshes], whether sides of the mesh have temperatures */
     const double *light;            /* [patches] power that arrives from outside, the caller's; NULL: none */
-    bool afloat;                    /* the sources fix differences of emission, but not their level */
+    bool afloat;                    /* the sources fix differences of emissions, but not their level */
     double sigma, surroundings;
     double tolerance;
     uint32_t limit; /* sweeps after which to stop */
@@ -161,8 +161,8 @@ typedef struct fibrad_heat_solution {
     uint32_t group;          /* patches that have one J: 1, 4, or all of a body */
     uint32_t sweeps;         /* so far */
     double slope;            /* residual times preconditioned residual */
-    double scale;            /* to which the slope is compared */
-    double smallest;         /* slope of rounding errors */
+    double scale;            /* the slope is compared with this */
+    double smallest;         /* a slope below this is rounding error */
     double *area;            /* L^2, [patches], by the beams */
     double *radiosity, *net; /* [patches], J and the net flow N J */
     double *detail;          /* [patches], J minus J of the coarser level */
@@ -175,7 +175,7 @@ typedef struct fibrad_heat_solution {
     fibrad_heat_span *span;  /* [spheres] */
 } fibrad_heat_solution;
 
-/* What tells errors. */
+/* From which errors are estimated. */
 typedef struct fibrad_heat_samples {
     double *halves;         /* [bodies], power by even directions minus power by odd directions */
     fibrad_heat_seen *seen; /* [spheres] */
@@ -190,7 +190,7 @@ struct fibrad_heat {
     uint32_t spheres, meshes, triangles;            /* numbers of them */
     uint32_t given_bodies, slot[FIBRAD_BODIES_MAX]; /* number of walls, and their slots */
     uint32_t openings;                              /* bit k: slot k is an opening */
-    uint32_t bodies;                                /* number of bodies, see above */
+    uint32_t bodies;                                /* number of bodies, see the top of this file */
     uint32_t patches, patches_capacity;             /* number of patches, and room */
     uint32_t side;                                  /* patches of a sphere along an edge of its cube */
     double patch_area;                              /* L^2, about the area of a patch of a wall */
@@ -232,10 +232,19 @@ static inline uint32_t fibrad_heat_body(const fibrad_heat *heat, uint32_t slot) 
 static inline uint32_t fibrad_heat_beyond(const fibrad_heat *heat, uint32_t wall) {
     return heat->spheres + FIBRAD_WALLS + heat->meshes + wall;
 }
-/* The first patch of all meshes. The lift of the patches of a body, NULL: no side has a temperature of its own. */
+/* The mean by area of values on the patches of a body. */
+static inline double fibrad_heat_mean(const fibrad_heat *heat, uint32_t body, const double *value) {
+    double sum = 0, area = 0;
+    for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++)
+        sum += heat->solution.area[a] * value[a], area += heat->solution.area[a];
+    return area > 0 ? sum / area : 0;
+}
+
+/* The first patch of all meshes. */
 static inline uint32_t fibrad_heat_first_meshed(const fibrad_heat *heat) {
     return heat->first[fibrad_heat_body(heat, FIBRAD_MESHES)];
 }
+/* The lift of the patches of a body. NULL: no side has a temperature of its own. */
 static inline const double *fibrad_heat_lift(const fibrad_heat *heat, uint32_t body) {
     const uint32_t mesh = body - fibrad_heat_body(heat, FIBRAD_MESHES);
     const bool meshed = body >= fibrad_heat_body(heat, FIBRAD_MESHES) && mesh < heat->meshes;
@@ -337,7 +346,8 @@ static inline uint32_t fibrad_heat_fine_patch(const fibrad_heat *heat, uint32_t 
     return FIBRAD_HEAT_FOUR * (node - FIBRAD_HEAT_FINE) + (2 * u >= 1 ? 2u : 0u) + (2 * v >= 1 ? 1u : 0u);
 }
 
-/* The fine patch of a sphere at a place on a face of its cube [squares], whose patch is known; FIBRAD_NONE. */
+/* The fine patch of a sphere at a place on a face of its cube [squares]. patch: the own patch there. FIBRAD_NONE: there
+ * is no fine patch. */
 static inline uint32_t fibrad_heat_fine_on_face(const fibrad_heat *heat, uint32_t sphere, uint32_t patch, double x,
                                                 double y) {
     const double u = x / 2 - fibrad_min(fibrad_floor(x / 2), heat->side / 2 - 1),
@@ -358,27 +368,27 @@ static inline uint32_t fibrad_heat_part_begin(const fibrad_heat *heat, uint32_t 
 /* Whether the scene is still the one in which the beams were followed. */
 static inline bool fibrad_heat_scene_kept(const fibrad_heat *heat) { return heat->scene->hash == heat->hash; }
 
-/* Whether the surface of a body is not at one temperature. */
+/* Whether the surface of a body has more than one temperature. */
 static inline bool fibrad_heat_conducts(const fibrad_heat *heat, uint32_t body) {
     return body < heat->spheres && heat->sources.unevenness[body] > 0;
 }
 
-/* conduct.c: the fraction of the light on a body that leaves where it arrived: what is reflected, and what is emitted
- * as the surface is hotter there. For patterns as fine as patches. */
+/* conduct.c: the fraction of the light on a patch that leaves from the same patch. It is reflected there, or it is
+ * emitted because the patch is hotter than the rest of the body. */
 double fibrad_heat_sent_back(const fibrad_heat *heat, uint32_t body);
 
 /* Finds the unevenness of all spheres from their emissions. Returns the largest relative change. */
 double fibrad_heat_find_unevenness(fibrad_heat *heat);
 
-/* What one preconditioned iteration would change of the pattern of J on a sphere, to be sent, and `shift` everywhere.
- * Returns the residual times that, without `shift`. Needs the patches of the sphere in heat->solution.gathered. */
+/* Sends, from the patches of a sphere, what one preconditioned iteration would change of the pattern of J, plus
+ * `shift`. Returns the product of the residual and the change without `shift`. The function overwrites
+ * heat->solution.gathered of the sphere. */
 double fibrad_heat_pattern_residual(fibrad_heat *heat, uint32_t sphere, double shift);
 
-/* The sum of A times direction times g times direction, without the mean. */
+/* The sum over the patches of a sphere of A p g p, p being the search direction without its mean. */
 double fibrad_heat_pattern_curvature(const fibrad_heat *heat, uint32_t sphere);
 
-/* Finds how far emission on the surfaces of spheres is from its mean: heat->solution.span. Changes
- * heat->solution.gathered. */
+/* Finds heat->solution.span of all spheres. The function overwrites heat->solution.gathered. */
 void fibrad_heat_find_spans(fibrad_heat *heat);
 
 /* solve.c: prepares the first sweep of a solution. */

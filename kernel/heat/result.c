@@ -1,55 +1,56 @@
-/* result.c - hands out powers, temperatures and what errors they may have. SPDX-License-Identifier: MIT
+/* result.c - hands out powers and temperatures with their estimated errors. SPDX-License-Identifier: MIT
  *
- * By how much even and odd beams of a body differ, and what patches change of the power of a sphere, is one sample of
- * the error of its power, and may be small by chance. Errors of bodies of one kind turn out to be as what they
- * exchange, times a normal number. So the estimate is, in squares, one half what the body's own sample says, one half
- * what all samples together say. What patches change of the power of a wall is smooth, and stands for itself. */
+ * Two differences tell the error of a sphere's power: that between even and odd beams, and that between the two levels
+ * of patches. They are one sample of the error, which may be small by chance. It turns out that the errors of bodies of
+ * one kind are what they exchange times a normal random number. So all samples of a kind together tell the error, too.
+ * The square of the estimate is the mean of two squares: that from the body's own sample, and that from all samples.
+ * The difference between the two levels of a wall is smooth. It is taken as it is. */
 #include "base/constants.h"
 #include "heat/fine.h"
 #include "heat/wall_patch.h"
 #include "scene/walls.h"
 
-/* Errors over what they are told from, as measured: docs/methods_heat.md section 9. */
+/* Errors over the quantities from which they are estimated. Measured: docs/methods_heat.md section 9. */
 #define PATCH_ERROR  .2 /* with PATCHES */
 #define PATCHES      96.0
-#define WALL_PATCHES .5 /* of walls over that of spheres */
+#define WALL_PATCHES .5 /* factor for walls */
 #define BEAM_ERROR   .7
-#define LONE_ERROR   1.2 /* more, times the share of spheres that are met in one direction */
+#define LONE_ERROR   1.2 /* times the share of spheres that only even or only odd directions meet */
 #define UNSEEN_ERROR .25 /* over what one direction brings */
 #define RAY_ERROR    1.75
-#define RAY_SAMPLES  16  /* of a mesh, at the most */
-#define FEW_ERROR    .25 /* over beams per patch: patches that few leave send back along each */
-#define FEW_SEEN     1.3 /* likewise of walls that a sphere sees, whose beams are less even */
-#define FEW_WALLS    .65 /* and of walls themselves */
+#define RAY_SAMPLES  16  /* most samples of a mesh */
+#define FEW_ERROR    .25 /* times patches over beams: if few beams leave a patch, it sends light back along the same */
+#define FEW_SEEN     1.3 /* the same for walls that a sphere sees, whose beams are less even */
+#define FEW_WALLS    .65 /* the same for walls themselves */
 #define SPOT_ERROR   .7
-#define SPAN_ERROR   .03 /* of the extremes of a surface, over by how much they differ from its mean */
-#define SAMPLES      3   /* with fewer of a kind, those of the other kind make up for them */
+#define SPAN_ERROR   .03 /* of the extremes of a surface, over their difference from its mean */
+#define SAMPLES      3   /* if a kind has fewer samples, those of the other kind are taken as well */
 
 static double squared(double x) { return x * x; }
 
-/* Areas of patches, and how their radiosities are spread. */
+/* The area of patches, and mean and variance of their radiosities. */
 typedef struct heat_spread {
     double area, mean, variance;
 } heat_spread;
 
-/* Errors of the spheres or of the walls, and what they exchange: sums of squares. */
+/* Of all spheres, or of all walls: number of samples, sum of squared errors, sum of squares of what they exchange. */
 typedef struct error_pool {
     double samples, errors, exchanges;
 } error_pool;
 
-/* By how much even and odd rays of walls and meshes differ: sums over those that send them, and over stretches of the
- * sides of a mesh, all of which have sequences of their own, of squares. */
+/* Squares of the differences between even and odd rays. They are sums over all walls that send rays. The rays of a mesh
+ * are divided into stretches, which have sequences of their own. */
 typedef struct ray_samples {
-    double squares[FIBRAD_HEAT_OTHERS]; /* of the power of each body, from the first that is no sphere */
-    double outside;                     /* of that of the surroundings */
-    double more;                        /* samples than there are walls and meshes */
+    double squares[FIBRAD_HEAT_OTHERS]; /* of the power of each body that is not a sphere */
+    double outside;                     /* of the power of the surroundings */
+    double more;                        /* number of samples minus number of walls */
 } ray_samples;
 
 typedef struct heat_errors {
     ray_samples rays;
     heat_spread all;
-    double few;         /* error over power, where all that a sphere sends out meets spheres that reflect all */
-    double dim[2];      /* what spheres and walls reflect, on the mean by area */
+    double few;         /* error over power of a sphere among spheres that reflect all, from few beams per patch */
+    double dim[2];      /* mean reflectivity by area of spheres, and of walls */
     double walls;       /* error of what walls send out */
     error_pool pool[2]; /* of spheres, of walls */
 } heat_errors;
@@ -69,22 +70,23 @@ static heat_spread spread_of(const fibrad_heat *heat, uint32_t b) {
     return spread_over(heat, heat->first[b], heat->first[b + 1]);
 }
 
-/* Emissivity times area times how far the radiosities of all are from the body's own. */
+/* What a body exchanges: emissivity times area times the root mean square difference of all radiosities from its own.
+ */
 static double exchange_of(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     const heat_spread own = spread_of(heat, b);
     return heat->sources.emissivity[b] * own.area *
            fibrad_sqrt(errors->all.variance + squared(own.mean - errors->all.mean));
 }
 
-/* The number of the body that a patch belongs to, counted from the first body that is not a sphere. The search begins
- * at body `guess`: rays come in the order of the bodies. */
+/* The number of the body of a patch, counted from the first body that is not a sphere. The search begins at body
+ * `guess`, since rays are in the order of the bodies. */
 static uint32_t other_of_patch(const fibrad_heat *heat, uint32_t patch, uint32_t guess) {
     const uint32_t *first = heat->first + heat->spheres, bodies = heat->bodies - heat->spheres;
     while (patch < first[guess] || patch >= first[guess + 1]) guess = guess + 1 < bodies ? guess + 1 : 0;
     return guess;
 }
 
-/* Adds the rays of a stretch to the samples. */
+/* Adds the difference between the even and the odd rays of a stretch to the samples. */
 static void sample_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, ray_samples *samples) {
     const uint32_t bodies = heat->bodies - heat->spheres;
     double half[FIBRAD_HEAT_OTHERS] = {0}, outside = 0;
@@ -103,7 +105,7 @@ static void sample_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, r
     samples->outside += squared(outside);
 }
 
-/* Into how many samples the rays of a slot are divided. */
+/* The number of samples into which the rays of a slot are divided. */
 static uint32_t stretches_of(const fibrad_heat *heat, uint32_t slot) {
     if (slot < FIBRAD_MESHES) return 1;
     const uint32_t *side = heat->scene->mesh.first + (slot - FIBRAD_MESHES);
@@ -122,30 +124,32 @@ static void sample_all_rays(const fibrad_heat *heat, ray_samples *samples) {
     }
 }
 
-/* Squares of what rays, and what beams and rays, miss of what a body gets. */
+/* The square of the error of what rays bring a body. */
 static double missed_by_rays(const heat_errors *errors, const fibrad_heat *heat, uint32_t b) {
     return b >= heat->spheres ? squared(RAY_ERROR) * errors->rays.squares[b - heat->spheres] : 0;
 }
 
-/* Square of the error of what beams bring a body over the difference of even and odd ones. Directions are even, so they
- * err by less in a sphere that several of them meet. Whether a far one is met by one of them or none is chance. */
+/* The square of the error of what beams bring a body, over the squared difference between even and odd beams.
+ * Directions are evenly spread. So the error of a sphere that several of them meet is smaller than the difference.
+ * Whether one direction meets a far sphere or none does is chance. */
 static double beam_error(const fibrad_heat *heat, uint32_t b) {
     const fibrad_heat_seen *seen = &heat->samples.seen[b];
     const double lone = b < heat->spheres && seen->squares > 0 ? seen->lone / seen->squares : 0;
     return squared(BEAM_ERROR) + squared(LONE_ERROR * lone);
 }
 
+/* The square of the error of what beams and rays bring a body. */
 static double missed_of(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     return beam_error(heat, b) * squared(heat->samples.halves[b]) + missed_by_rays(errors, heat, b);
 }
 
-/* Square of the error that no beam tells: there may be spheres between the directions that meet none. */
+/* The square of an error that no beam tells: between the directions that meet no sphere there may be spheres. */
 static double unseen_error(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     const double free = fibrad_max(0, 1 - heat->samples.seen[b].met / heat->beams);
     return free * squared(UNSEEN_ERROR / heat->config.directions * exchange_of(heat, errors, b));
 }
 
-/* The fewer the patches, the less they tell. */
+/* The error that remains after extrapolation has changed a value by `change`. It is larger if there are few patches. */
 static double extrapolation_error(const fibrad_heat *heat, double change) {
     return PATCH_ERROR * fibrad_sqrt(fibrad_sqrt(PATCHES / heat->config.patches)) * change;
 }
@@ -155,8 +159,7 @@ static double patch_error(const fibrad_heat *heat, uint32_t b) {
     return (b < heat->spheres ? 1 : WALL_PATCHES) * extrapolation_error(heat, change);
 }
 
-/* Square of the error over the power of a sphere, as few of its beams meet each patch of spheres, or of walls, whose
- * patches are of one area. */
+/* The square of the error over the power of a sphere that comes from few beams on each patch of spheres and walls. */
 static double few_of_sphere(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     const double *reflected = heat->samples.seen[b].reflected;
     const double walls =
@@ -164,7 +167,7 @@ static double few_of_sphere(const fibrad_heat *heat, const heat_errors *errors, 
     return reflected[0] / heat->beams * squared(errors->few) + squared(walls);
 }
 
-/* Likewise of a wall: by beams of spheres, and by rays, of which half are its own. */
+/* The same for a wall, which beams of spheres and rays meet. Half of the rays are its own. */
 static double few_of_wall(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     const uint32_t k = b - heat->spheres, slot = k < FIBRAD_WALLS ? k : FIBRAD_MESHES + (k - FIBRAD_WALLS);
     const fibrad_heat_rays *sent = &heat->sent[slot];
@@ -177,7 +180,7 @@ static double few_of_wall(const fibrad_heat *heat, const heat_errors *errors, ui
     return squared(FEW_WALLS * (by_rays + by_beams));
 }
 
-/* Square of the error that a body's own beams and patches tell, and the walls it sees. */
+/* The square of the error that a body's own sample tells, with that of the walls that it sees. */
 static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     const double eps = heat->sources.emissivity[b];
     const double few = b < heat->spheres ? few_of_sphere(heat, errors, b) : few_of_wall(heat, errors, b);
@@ -187,7 +190,7 @@ static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint
            squared(seen * errors->walls);
 }
 
-/* Error from light that goes back and forth between a sphere and a mesh whose patches are too large for it. */
+/* The error from light that goes back and forth between a sphere and a mesh whose patches are too large. */
 static double spot_error(const fibrad_heat *heat, uint32_t b) {
     const uint32_t mesh = fibrad_heat_body(heat, FIBRAD_MESHES);
     double back = 0;
@@ -197,7 +200,7 @@ static double spot_error(const fibrad_heat *heat, uint32_t b) {
 }
 
 static heat_errors errors_of(const fibrad_heat *heat) {
-    const uint32_t end = fibrad_heat_beyond(heat, 0); /* of bodies that have patches of their own */
+    const uint32_t end = fibrad_heat_beyond(heat, 0); /* end of the spheres and walls */
     double areas[2] = {0, 0};
     heat_errors errors = {.all = spread_over(heat, 0, heat->patches)};
     sample_all_rays(heat, &errors.rays);
@@ -223,9 +226,9 @@ static heat_errors errors_of(const fibrad_heat *heat) {
     return errors;
 }
 
-/* Square of the estimated error of a body's power. */
+/* The square of the estimated error of a body's power. */
 static double power_error_of(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
-    if (heat->sources.hold[b] >= 0) return 0; /* it is given */
+    if (heat->sources.hold[b] >= 0) return 0; /* the power is given */
     const double exchange = exchange_of(heat, errors, b);
     const int own = b >= heat->spheres;
     double sum = 0, samples = 0;
@@ -240,7 +243,7 @@ static double power_error_of(const fibrad_heat *heat, const heat_errors *errors,
     return exchange > 0 ? squared(smooth) + (own_error(heat, errors, b) + pooled) / 2 : 0;
 }
 
-/* Area that rays bring to the surroundings. */
+/* The area for which the rays between walls and surroundings stand. */
 static double rays_outside(const fibrad_heat *heat) {
     bool outside[FIBRAD_HEAT_OTHERS] = {0};
     const uint32_t bodies = heat->bodies - heat->spheres;
@@ -256,8 +259,8 @@ static double rays_outside(const fibrad_heat *heat) {
     return area;
 }
 
-/* Square of what beams miss of the power that spheres give to the surroundings: as many samples as there are spheres,
- * whose own errors make up for them where they are few. */
+/* The square of the error of the power that spheres give to the surroundings. Each sphere is a sample. If fewer than
+ * SAMPLES spheres see the surroundings, the errors of their own powers are taken as well. */
 static double missed_by_spheres(const fibrad_heat *heat, const heat_errors *errors) {
     double square = 0, spheres = 0, all = 0;
     for (uint32_t b = 0; b < heat->spheres; b++)
@@ -268,7 +271,8 @@ static double missed_by_spheres(const fibrad_heat *heat, const heat_errors *erro
     return (spheres * square + (SAMPLES - spheres) * all) / SAMPLES;
 }
 
-/* Square of what rays miss of the power that walls do, as of what these exchange. */
+/* The square of the error of the power that walls give to the surroundings. Its relative error is taken to be that of
+ * what walls exchange with each other. */
 static double missed_by_walls(const fibrad_heat *heat, const heat_errors *errors) {
     double missed = 0, exchanges = 0;
     for (uint32_t b = heat->spheres; b < fibrad_heat_beyond(heat, 0); b++)
@@ -278,8 +282,9 @@ static double missed_by_walls(const fibrad_heat *heat, const heat_errors *errors
     return missed / exchanges * squared(rays_outside(heat)) * (errors->all.variance + squared(errors->all.mean));
 }
 
-/* Square of the estimated error of the power of the surroundings: what extrapolation has changed, what walls send out
- * wrongly, and what even and odd beams differ by, one half as this says by itself, one half by its shares. */
+/* The square of the estimated error of the power of the surroundings. It has the error of extrapolation, that of what
+ * walls send out, and that of beams and rays. Of the last the square is a mean of two: from the sample of the
+ * surroundings alone, and from the samples of spheres and walls. */
 static double surroundings_error_of(const fibrad_heat *heat, const heat_errors *errors) {
     double halves = 0, changed = 0, area = 0, unseen = 0;
     for (uint32_t b = heat->spheres; b < heat->bodies; b++) {
@@ -325,27 +330,28 @@ static bool is_found(const fibrad_heat *heat, uint32_t b) {
     return heat->sources.hold[b] >= 0 || is_insulated(heat, b);
 }
 
-/* Squares of what beams miss of the emission of a body, as its own sample says, and of how far it is from all others'
- * radiosities. */
+/* The square of the error of a body's emission from beams, as its own sample tells. */
 static double missed_emission(const fibrad_heat *heat, const heat_errors *errors, uint32_t b, double area) {
     return missed_of(heat, errors, b) / squared(area);
 }
 
-/* What extrapolation has changed of it may be wrong by this. */
+/* The error of a body's emission that remains after extrapolation. */
 static double changed_emission(const fibrad_heat *heat, uint32_t b) {
     return extrapolation_error(heat, heat->sources.emission[b] - heat->solution.coarse_emission[b]);
 }
 
+/* The mean square difference of all radiosities from the body's own. */
 static double distance_of(const heat_errors *errors, const heat_spread *own) {
     return errors->all.variance + squared(own->mean - errors->all.mean);
 }
 
-/* All emissions that are found rise and fall together, as far above those that are given as the powers of these are
- * wrong: the mean of the latter by power, and the relative error. */
+/* All emissions that are found have an error in common: if the powers of the bodies with given emissions are wrong, all
+ * differences between found and given emissions are wrong by the same factor. */
 typedef struct heat_level {
-    double given, error;
-    double missed[2]; /* of spheres, of walls: mean square of what beams miss, over that of distances */
-    double changed;   /* mean square error of spheres from extrapolation, which insulated walls share */
+    double given;     /* mean of given emissions, weighted by power */
+    double error;     /* the relative error in common */
+    double missed[2]; /* of spheres, of walls: sum of missed_emission over sum of distance_of */
+    double changed;   /* mean square of changed_emission of spheres, which also serves insulated walls */
 } heat_level;
 
 static heat_level level_found(const fibrad_heat *heat, const heat_errors *errors) {
@@ -372,8 +378,9 @@ static heat_level level_found(const fibrad_heat *heat, const heat_errors *errors
     return level;
 }
 
-/* Estimated error of a temperature that was found: what extrapolation changed of its emission, what beams miss of it,
- * one half as its own say and one half as all do, what walls send out wrongly, and what it has in common with all. */
+/* The estimated error of a temperature that was found. The error of its emission has four parts: that of extrapolation;
+ * that of beams, as the mean of the squares from its own sample and from all samples; that of what walls send out; and
+ * that which all have in common. */
 static double temperature_error_of(const fibrad_heat *heat, const heat_errors *errors, const heat_level *level,
                                    uint32_t b, double temperature) {
     const double slope = 4 * heat->sources.sigma * temperature * temperature * temperature;
@@ -397,16 +404,17 @@ typedef struct measured {
     double value, error;
 } measured;
 
-/* The temperature in the centre of a sphere: q r^2/(6 k) above the mean of its surface, for a source q that is even
- * inside. */
+/* The temperature in the centre of a sphere. It is q r^2/(6 k) above the mean of the surface, for a source of q per
+ * volume that is uniform inside. */
 static measured centre_of(const fibrad_heat *heat, uint32_t b, measured surface, double power_error) {
     const double slope = 1 / (8 * FIBRAD_PI * heat->scene->r[b] * heat->sources.conductivity[b]);
     return (measured){surface.value - slope * heat->solution.power[b],
                       fibrad_sqrt(squared(surface.error) + squared(slope * power_error))};
 }
 
-/* By how much the surface of a sphere is hotter at the hottest patch than on the mean, or at the coldest one. What
- * extrapolation changes of it is its error, and a part of it all, as light comes from few directions. */
+/* The temperature of the hottest or coldest patch of a sphere minus the mean of its surface. fine, coarse: the same for
+ * emissions, at both levels. The error is what extrapolation changes, plus a fraction of the value itself, since light
+ * comes from few directions. */
 static measured surface_extreme(const fibrad_heat *heat, uint32_t b, double fine, double coarse) {
     const double t = heat->sources.temperature[b], slope = 4 * heat->sources.sigma * t * t * t;
     const double change = FIBRAD_HEAT_EXTRAPOLATION * (fine - coarse);
@@ -414,7 +422,7 @@ static measured surface_extreme(const fibrad_heat *heat, uint32_t b, double fine
     return (measured){(fine + change) / slope, fibrad_sqrt(squared(change) + squared(SPAN_ERROR * fine)) / slope};
 }
 
-/* The temperatures on the surface and in the centre of a sphere that conducts. */
+/* Hands out the temperatures on the surface and in the centre of a sphere. */
 static void read_inside(const fibrad_heat *heat, uint32_t b, measured mean, double power_error,
                         const fibrad_heat_result *result) {
     const fibrad_heat_span *span = &heat->solution.span[b];
@@ -430,15 +438,12 @@ static void read_inside(const fibrad_heat *heat, uint32_t b, measured mean, doub
     if (result->centre_error != NULL) result->centre_error[i] = centre.error;
 }
 
-/* The temperature at which an insulated wall would emit what it sends back. */
+/* The temperature at which a black wall would emit what an insulated wall sends back. */
 static double insulated_temperature(const fibrad_heat *heat, uint32_t b) {
-    double sum = 0, area = 0;
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
-        sum += heat->solution.area[a] * heat->solution.radiosity[a], area += heat->solution.area[a];
-    return fibrad_heat_temperature(heat, area > 0 ? sum / area : 0);
+    return fibrad_heat_temperature(heat, fibrad_heat_mean(heat, b, heat->solution.radiosity));
 }
 
-/* Temperatures and their errors. Returns whether all that are unknown were found. */
+/* Hands out temperatures and their errors. Returns whether all unknown ones were found. */
 static bool read_temperatures(const fibrad_heat *heat, const fibrad_heat_result *result) {
     const heat_errors errors = errors_of(heat);
     const heat_level level = level_found(heat, &errors);
@@ -463,7 +468,7 @@ static bool read_temperatures(const fibrad_heat *heat, const fibrad_heat_result 
     return found;
 }
 
-/* What a wall takes of what arrives at its patches; radiosities are counted from that of the surroundings. */
+/* The power that a wall absorbs at its patches. Radiosities are differences from that of the surroundings. */
 static double absorbed_by(const fibrad_heat *heat, uint32_t b) {
     const double black = heat->sources.sigma * squared(squared(heat->sources.surroundings));
     double arrives = 0;
@@ -472,19 +477,19 @@ static double absorbed_by(const fibrad_heat *heat, uint32_t b) {
     return heat->sources.emissivity[b] * arrives;
 }
 
-/* The power of the body of a slot; where it is an opening or there is none, that of the surroundings. */
+/* The result for the power of a slot. If the slot is an opening or empty: that of the surroundings. */
 static double *power_of_slot(const fibrad_heat *heat, uint32_t slot, fibrad_heat_result *result) {
     for (uint32_t b = 0; b < heat->given_bodies; b++)
         if (heat->slot[b] == slot) return &result->body_power[b];
     return &result->surroundings_power;
 }
 
-/* A net flow, and the area that it arrives at. */
+/* A net flow, and the area for which its rays stand. */
 typedef struct patch_flow {
     double net, area;
 } patch_flow;
 
-/* What the patches of the wall that wall k faces send beyond the patches of wall k. */
+/* The flow from the patches of the wall that faces wall k to where wall k goes on beyond its patches. */
 static patch_flow flow_of_facing(const fibrad_heat *heat, uint32_t k) {
     const uint32_t facing = fibrad_heat_facing(heat, k), a = heat->first[fibrad_heat_beyond(heat, k)];
     patch_flow flow = {0, 0};
@@ -499,9 +504,9 @@ static patch_flow flow_of_facing(const fibrad_heat *heat, uint32_t k) {
     return flow;
 }
 
-/* Adds to wall k what it takes of what arrives beyond its patches, and the rest to what it faces. The patches of a wall
- * that faces another one have their power of the other's light already. What they send beyond the patches of the other
- * adds up to about 0 for both walls together: each gets half. So the powers of a pair are those of its patches. */
+/* Shares out the power that arrives beyond the patches of wall k. Wall k gets what it absorbs, and what it faces gets
+ * the rest. The flow between the patches of the facing wall and this place is left out of that: for both walls together
+ * such flows add up to about 0, so each wall gets half of them. The powers of a pair are then those of its patches. */
 static void read_beyond(const fibrad_heat *heat, uint32_t k, fibrad_heat_result *result) {
     const uint32_t beyond = fibrad_heat_beyond(heat, k), a = heat->first[beyond];
     if (a == heat->first[beyond + 1]) return;
@@ -535,7 +540,7 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     return read_temperatures(heat, result) ? FIBRAD_OK : FIBRAD_E_UNSOLVABLE;
 }
 
-/* The patches of a side, and what they gain and how they radiate together. */
+/* Sums over the patches of a side: areas, net flows, areas times radiosities. */
 typedef struct side_sum {
     double area, net, radiosity;
 } side_sum;
@@ -550,10 +555,10 @@ static side_sum sum_of_side(const fibrad_heat *heat, const fibrad_mesh_cut *cut)
     return sum;
 }
 
-/* Areas of the sides of a mesh whose patches are met, and what these gain. */
+/* The area of those sides of a mesh whose patches are met, and their net flow. */
 typedef struct mesh_gain {
     double area, net;
-    bool whole; /* no plane or cylinder cuts it: areas are those of the triangles, else those the beams have */
+    bool whole; /* no plane or cylinder cuts the mesh; areas are then those of triangles, else those from beams */
 } mesh_gain;
 
 static bool is_within_walls(const fibrad_scene *scene, uint32_t triangle) {
@@ -571,8 +576,8 @@ static mesh_gain gain_of_mesh(const fibrad_heat *heat, uint32_t m) {
     mesh_gain gain = {0, 0, true};
     for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
         const side_sum sum = sum_of_side(heat, fibrad_mesh_cut_of(mesh, heat->cut, mesh->side[k]));
-        const double area = fibrad_mesh_triangle_area(mesh, mesh->side[k] / 2);
-        gain.whole = gain.whole && is_within_walls(heat->scene, mesh->side[k] / 2);
+        const double area = fibrad_mesh_triangle_area(mesh, fibrad_side_triangle(mesh->side[k]));
+        gain.whole = gain.whole && is_within_walls(heat->scene, fibrad_side_triangle(mesh->side[k]));
         if (sum.area > 0) gain.area += area, gain.net += area * (sum.net / sum.area);
     }
     if (!gain.whole) gain.area = gain.net = 0;
@@ -581,14 +586,13 @@ static mesh_gain gain_of_mesh(const fibrad_heat *heat, uint32_t m) {
     return gain;
 }
 
-/* What a mesh gains per area beyond what its patches do: extrapolation, and what residuals leave. */
+/* The power of a mesh per area minus the net flow of its patches per area: from extrapolation and residuals. */
 static double flux_beyond_patches(const fibrad_heat *heat, uint32_t m) {
     const mesh_gain gain = gain_of_mesh(heat, m);
     const double power = heat->solution.power[fibrad_heat_body(heat, FIBRAD_MESHES + m)];
     return gain.area > 0 ? (power - gain.net) / gain.area : 0;
 }
 
-/* The temperature of a side that has patches. */
 static double temperature_of_side(const fibrad_heat *heat, uint32_t b, const fibrad_mesh_cut *cut,
                                   const side_sum *sum) {
     if (is_insulated(heat, b))

@@ -1,30 +1,34 @@
-/* solve.c - radiosities by conjugate gradients, a sweep over all beams a step. SPDX-License-Identifier: MIT
+/* solve.c - finds radiosities by conjugate gradients, one sweep over all beams a step. SPDX-License-Identifier: MIT
  *
- * With K the exchange areas between patches, A = K 1 their areas and rho = 1 - eps, the radiosities solve
+ * Let K be the exchange areas between patches, A = K 1 the areas of the patches and rho = 1 - eps. The radiosities J
+ * solve
  *
- *     (A/rho - K) J = A eps/rho E,
+ *     (A/rho - K) J = A eps/rho E.
  *
- * a symmetric positive definite system. A sweep forms the net flows N J = K J - A J beam by beam, each beam giving to
- * one end what it takes from the other: they add up to zero whatever J is, and are zero where all J are equal. Times
- * rho/A the residual is eps (E - J) + rho N J/A: what one Jacobi iteration would change. Patches with rho = 0 have J =
- * E and take no part. On the coarser level J is the same on the patches of a group. For that the residuals of a group
- * are replaced by their mean, and all vectors stay within such J; the finer level goes on from there.
+ * This system is symmetric and positive definite. A sweep forms the net flows N J = K J - A J beam by beam. Each beam
+ * gives to one end what it takes from the other. So the net flows add up to zero whatever J is, and they are zero where
+ * all J are equal. The residual times rho/A is eps (E - J) + rho N J/A. One Jacobi iteration would change J by this.
+ * Patches with rho = 0 have J = E and are left out of the search.
  *
- * Patches of a mesh may each have an emission of their own. On the coarser level it is eps times what the patch emits
- * more than its body that J differs by within a group: within such J the system is the same.
+ * There are two levels. On the coarser level all patches of a group have the same J: the residuals of a group are
+ * replaced by their mean. The finer level begins with the solution of the coarser one.
  *
- * Light from outside that arrives at a patch is part of its net flow: it arrives like what the other patches send, and
- * never changes.
+ * Patches of a mesh may have emissions of their own. On the coarser level the J of such a patch differs from that of
+ * its group by a constant: eps times the difference between the emissions of the patch and of the mesh. The system for
+ * the rest of J is the same.
  *
- * A body of unknown temperature gives off S - h E. From q = A eps/rho (<J> - E) = h E - S, <J> the mean over it,
+ * Light from outside is part of the net flow of a patch. It never changes.
  *
- *     E = (rho S + A eps <J>)/D,    D = rho h + A eps,
+ * A body of unknown temperature gives off S - h E. Let q be its net power and <J> the mean of J over its surface. From
+ * q = A eps/rho (<J> - E) = h E - S follows
  *
- * which leaves a system of J alone that is symmetric as before. Its residuals are dealt with in two parts, none of
- * which divides by eps or rho: their mean r = eps (S - h <J>)/D + q/A, changed by r/(1 + eps h/D), and the rest,
- * changed as that of other bodies about the mean. A black body sends J = E all over.
+ *     E = (rho S + A eps <J>)/D,    D = rho h + A eps.
  *
- * On a sphere that conducts the mean of J is dealt with as above, and the rest as conduct.c says. */
+ * This leaves a system of J alone, which is symmetric as before. Its residuals have two parts. Neither part divides by
+ * eps or rho. One is their mean r = eps (S - h <J>)/D + q/A. It changes J by r/(1 + eps h/D). The other part is what
+ * differs from the mean. It is treated as on other bodies. A black body has J = E everywhere.
+ *
+ * On a sphere that conducts the mean of J is treated as above. conduct.c treats the rest. */
 #include "heat/problem.h"
 #include "heat/pencils.h"
 #include "heat/sweep.h"
@@ -34,16 +38,10 @@ typedef struct free_body {
     double area, radiosity, net, divisor;
 } free_body;
 
+/* Whether the temperature of a body is unknown. */
 static bool is_free(const fibrad_heat *heat, uint32_t body) { return heat->sources.hold[body] >= 0; }
 
-/* The mean of values per area, or the sum of values, over the patches of a body. */
-static double mean_over(const fibrad_heat *heat, uint32_t body, const double *value) {
-    double sum = 0, area = 0;
-    for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++)
-        sum += heat->solution.area[a] * value[a], area += heat->solution.area[a];
-    return area > 0 ? sum / area : 0;
-}
-
+/* The sum of values over the patches of a body. */
 static double sum_over(const fibrad_heat *heat, uint32_t body, const double *value) {
     double sum = 0;
     for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++) sum += value[a];
@@ -52,12 +50,12 @@ static double sum_over(const fibrad_heat *heat, uint32_t body, const double *val
 
 static free_body free_body_of(const fibrad_heat *heat, uint32_t b) {
     const double eps = heat->sources.emissivity[b], area = sum_over(heat, b, heat->solution.area);
-    return (free_body){area, mean_over(heat, b, heat->solution.radiosity),
+    return (free_body){area, fibrad_heat_mean(heat, b, heat->solution.radiosity),
                        area > 0 ? sum_over(heat, b, heat->solution.net) / area : 0,
                        (1 - eps) * heat->sources.hold[b] + area * eps};
 }
 
-/* What the mean residual of a body of unknown temperature is, where it and what it receives are at one emission. */
+/* eps (S - h E)/D: the mean residual of a body of unknown temperature if <J> and all that it receives are E. */
 static double drive_at(const fibrad_heat *heat, uint32_t b, const free_body *body, double emission) {
     return heat->sources.emissivity[b] * (heat->sources.drive[b] - heat->sources.hold[b] * emission) / body->divisor;
 }
@@ -67,14 +65,15 @@ static double stiffness(const fibrad_heat *heat, uint32_t b, const free_body *bo
     return 1 + heat->sources.emissivity[b] * heat->sources.hold[b] / body->divisor;
 }
 
-/* Patches from a on that share one J, up to `end`. */
+/* The end of the group of patches that begins at a, at most `end`. */
 static uint32_t end_of_group(uint32_t a, uint32_t end, uint32_t group) { return end - a > group ? a + group : end; }
 
 static uint32_t group_end(const fibrad_heat *heat, uint32_t a, uint32_t end) {
     return end_of_group(a, end, heat->solution.group);
 }
 
-/* What one Jacobi iteration would change of a body of given temperature. Returns the residual times that. */
+/* Sends what one Jacobi iteration would change on a body of given temperature. Returns the product of the residual and
+ * this change. */
 static double given_residual(fibrad_heat *heat, uint32_t b) {
     const double eps = heat->sources.emissivity[b];
     const double *lift = fibrad_heat_lift(heat, b);
@@ -97,7 +96,7 @@ static double given_residual(fibrad_heat *heat, uint32_t b) {
     return slope;
 }
 
-/* The same of a body of unknown temperature. */
+/* The same for a body of unknown temperature. */
 static double free_residual(fibrad_heat *heat, uint32_t b) {
     const double eps = heat->sources.emissivity[b], rho = 1 - eps;
     const uint32_t end = heat->first[b + 1];
@@ -121,14 +120,14 @@ static double free_residual(fibrad_heat *heat, uint32_t b) {
     return slope;
 }
 
-/* Whether the mean of J over a sphere that conducts is what it emits, as it reflects next to nothing. If such a mean
- * were searched for, rounding errors of J would count 1/rho times. */
+/* Whether a sphere that conducts reflects next to nothing. The mean of its J is then set to its emission. In a search
+ * for this mean rounding errors of J would count 1/rho times. */
 #define NEXT_TO_NOTHING 1e-9
 static bool has_black_mean(const fibrad_heat *heat, uint32_t b) {
     return !is_free(heat, b) && 1 - heat->sources.emissivity[b] < NEXT_TO_NOTHING;
 }
 
-/* The same of a sphere that conducts. */
+/* What given_residual does, for a sphere that conducts. */
 static double conducting_residual(fibrad_heat *heat, uint32_t b) {
     const double eps = heat->sources.emissivity[b];
     const free_body body = free_body_of(heat, b);
@@ -145,7 +144,7 @@ static double conducting_residual(fibrad_heat *heat, uint32_t b) {
     return slope + fibrad_heat_pattern_residual(heat, b, shift);
 }
 
-/* The changes of all patches, to be sent. */
+/* Sends the changes of all patches. Returns the product of residuals and changes. */
 static double find_residual(fibrad_heat *heat) {
     double slope = 0;
     for (uint32_t b = 0; b < heat->bodies; b++)
@@ -155,7 +154,7 @@ static double find_residual(fibrad_heat *heat) {
     return slope;
 }
 
-/* Emissions of the bodies of unknown temperature. */
+/* Finds the emissions of the bodies of unknown temperature. */
 static void find_emissions(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (!is_free(heat, b)) continue;
@@ -167,14 +166,15 @@ static void find_emissions(fibrad_heat *heat) {
     }
 }
 
-/* Emissivity times area of a body whose power and emission are not both told by others; 0 of the rest. */
+/* Emissivity times area of a body. 0: the sources give its power. */
 static double emitting(const fibrad_heat *heat, uint32_t body) {
     return heat->sources.hold[body] != 0 ? heat->sources.emissivity[body] * sum_over(heat, body, heat->solution.area)
                                          : 0;
 }
 
-/* Net powers of the bodies. Those that reflect all have none, and some give off a given power: what residuals leave of
- * theirs goes to the others, by emissivity times area. */
+/* Finds the net powers of the bodies. The power of a body that reflects all is 0, and the power of some bodies is
+ * given. Their net flows differ from that by residuals. The differences are shared out among the other bodies, by
+ * emissivity times area. */
 static void find_powers(const fibrad_heat *heat, double *power) {
     double left = 0, weights = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
@@ -186,15 +186,16 @@ static void find_powers(const fibrad_heat *heat, double *power) {
     for (uint32_t b = 0; b < heat->bodies && weights > 0; b++) power[b] += left * (emitting(heat, b) / weights);
 }
 
-/* What is nothing but rounding in a sum of squares. */
+/* The relative rounding error of a sum of squares. */
 #define ROUNDING 1e-28
 
-/* Where temperatures are found of spheres that conduct: the tolerance with which these are found for the first time,
- * and the relative change of unevenness that no longer matters. */
+/* Unevenness depends on temperatures. If temperatures of spheres that conduct are unknown, they are first found to the
+ * tolerance ROUGH. A relative change of unevenness below SETTLED no longer matters. */
 #define ROUGH   1e-2
 #define SETTLED 1e-3
 
-/* Emissivity times area times the square of how far the emission of each patch is from that of its body. */
+/* The sum over the patches of a mesh of emissivity times area times the square of the difference between the emissions
+ * of patch and mesh. */
 static double lifted_squares(const fibrad_heat *heat, uint32_t b) {
     const double *lift = fibrad_heat_lift(heat, b);
     double sum = 0;
@@ -204,7 +205,7 @@ static double lifted_squares(const fibrad_heat *heat, uint32_t b) {
     return sum;
 }
 
-/* Likewise of the light that patches reflect first. */
+/* The sum over the patches of a body of the square of light per area times area and reflectivity. */
 static double light_squares(const fibrad_heat *heat, uint32_t b) {
     double sum = 0;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && heat->sources.light != NULL; a++)
@@ -214,8 +215,8 @@ static double light_squares(const fibrad_heat *heat, uint32_t b) {
     return sum;
 }
 
-/* What residuals are compared with: how much emission differs from its mean, what is given off, what arrives from
- * outside, and, for rounding, emission itself. */
+/* Finds the scale with which residuals are compared. It has three parts: how much emissions differ from their mean,
+ * powers that are given off, and light from outside. The limit of rounding follows from the emissions themselves. */
 static void find_scale(fibrad_heat *heat) {
     double weights = 0, sum = 0, largest = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
@@ -238,8 +239,8 @@ static void find_scale(fibrad_heat *heat) {
     heat->solution.smallest = ROUNDING * fibrad_max(largest, heat->solution.scale);
 }
 
-/* Whether there are temperatures that give the powers: something is given, or the powers add up to zero, those of light
- * included. */
+/* Whether there are temperatures that lead to the given powers. This is so if a temperature or a `hold` is given.
+ * Otherwise the powers and the light must add up to zero. */
 #define BALANCED 1e-9
 static bool solvable(fibrad_heat *heat) {
     double sum = 0, sizes = 0;
@@ -254,23 +255,23 @@ static bool solvable(fibrad_heat *heat) {
     return held || fibrad_abs(sum) <= BALANCED * sizes;
 }
 
-/* Lifts the radiosities of black spheres that conduct so that their means are what they emit. */
+/* Shifts the radiosities of each black sphere that conducts, so that their mean is its emission. */
 static void lift_black(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->spheres && heat->sources.conducts; b++) {
         if (!fibrad_heat_conducts(heat, b) || !has_black_mean(heat, b)) continue;
-        const double more = heat->sources.emission[b] - mean_over(heat, b, heat->solution.radiosity);
+        const double more = heat->sources.emission[b] - fibrad_heat_mean(heat, b, heat->solution.radiosity);
         for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) heat->solution.radiosity[a] += more;
     }
 }
 
-/* Makes the next sweep one of the radiosities. */
+/* Has the next sweep form the net flows of the radiosities. */
 static void send_radiosities(fibrad_heat *heat, fibrad_heat_phase phase) {
     lift_black(heat);
     for (uint32_t a = 0; a < heat->patches; a++) fibrad_heat_send(heat, a, heat->solution.radiosity[a]);
     heat->solution.phase = phase;
 }
 
-/* Makes the next sweep the one for the error, which knows of no more than the coarser level does. */
+/* Has the next sweep form what tells the error. Patches of a four send their mean. */
 static void send_means(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++)
         for (uint32_t a = heat->first[b], next; a < heat->first[b + 1]; a = next) {
@@ -291,7 +292,7 @@ void fibrad_heat_start(fibrad_heat *heat) {
     }
 }
 
-/* Where nothing says how high emissions are: lowers all, so that their mean is that of the surroundings. */
+/* If the sources do not fix the level of emissions: shifts all, so that their mean is that of the surroundings. */
 static void sink(fibrad_heat *heat) {
     double sum = 0, weights = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
@@ -303,9 +304,10 @@ static void sink(fibrad_heat *heat) {
     for (uint32_t a = 0; a < heat->patches; a++) heat->solution.radiosity[a] -= mean;
 }
 
-/* Takes the finer powers and adds what patches without size would change. Where radiosities are smooth the error falls
- * with the area of patches, and a third of the difference from the coarser powers would be right; near contacts they
- * are not quite, and this is what settled beds ask for: docs/methods_heat.md section 6. */
+/* Finds the powers of the finer level and extrapolates them to patches without size. If radiosities were smooth, the
+ * error would fall with the area of patches, and a third of the difference between both levels would be right. Near
+ * contacts they are not quite smooth. FIBRAD_HEAT_EXTRAPOLATION is right for settled beds: docs/methods_heat.md section
+ * 6. */
 static void finish_powers(fibrad_heat *heat) {
     find_powers(heat, heat->solution.power);
     find_emissions(heat);
@@ -326,7 +328,7 @@ static void finish_powers(fibrad_heat *heat) {
     send_means(heat);
 }
 
-/* Whether the radiosities of the level in hand are good enough. */
+/* Whether the radiosities of the present level are good enough. */
 static bool level_solved(const fibrad_heat *heat) {
     const double tolerance =
         heat->sources.roughly ? fibrad_max(ROUGH, heat->sources.tolerance) : heat->sources.tolerance;
@@ -334,8 +336,7 @@ static bool level_solved(const fibrad_heat *heat) {
            heat->solution.sweeps >= heat->sources.limit;
 }
 
-/* Finds what temperatures make of the unevenness of spheres. Whether the coarser level is to be solved again as they
- * have changed. */
+/* Finds the unevenness of spheres anew. Returns whether it has changed so much that the level must be solved again. */
 static bool unsettled(fibrad_heat *heat) {
     if (!heat->sources.conducts || heat->solution.sweeps >= heat->sources.limit) return false;
     find_emissions(heat);
@@ -344,7 +345,7 @@ static bool unsettled(fibrad_heat *heat) {
     return fibrad_heat_find_unevenness(heat) > SETTLED || rough;
 }
 
-/* The direction to search next: the residual, and `keep` of the last direction. */
+/* Sets and sends the next search direction: the change that was sent, plus `keep` times the last direction. */
 static void turn_direction(fibrad_heat *heat, double keep) {
     for (uint32_t a = 0; a < heat->patches; a++) {
         heat->solution.direction[a] = fibrad_heat_sent(heat, a) + (keep != 0 ? keep * heat->solution.direction[a] : 0);
@@ -352,8 +353,8 @@ static void turn_direction(fibrad_heat *heat, double keep) {
     }
 }
 
-/* From the coarser level to the finer one, with the detail that an earlier solution had. Until this one has its own,
- * `detail` holds what is to be taken from it. */
+/* Goes from the coarser level to the finer one. The detail of an earlier solution is added to the radiosities. Until
+ * finish_powers, `detail` has minus the radiosities of the coarser level. */
 static void refine_patches(fibrad_heat *heat) {
     find_powers(heat, heat->solution.coarse);
     find_emissions(heat);
@@ -369,7 +370,7 @@ static void refine_patches(fibrad_heat *heat) {
     send_radiosities(heat, FIBRAD_HEAT_FIRST);
 }
 
-/* Goes on with the search, or with the finer level, if there is something left to do. */
+/* Decides what comes after a sweep: the next step of the search, the finer level, or the end. */
 static void search_on(fibrad_heat *heat, bool restart) {
     const double last = heat->solution.slope;
     heat->solution.slope = find_residual(heat);
@@ -387,7 +388,8 @@ static void search_on(fibrad_heat *heat, bool restart) {
     heat->solution.phase = FIBRAD_HEAT_STEPS;
 }
 
-/* The product of the search direction with its image, over a body of given temperature. */
+/* The part of a body of given temperature in the product of the search direction p with the matrix times p. product: N
+ * p. */
 static double given_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
     double sum = 0;
     if (heat->sources.emissivity[b] == 1) return 0;
@@ -399,9 +401,9 @@ static double given_curvature(const fibrad_heat *heat, uint32_t b, const double 
     return sum;
 }
 
-/* The same of unknown temperature: what differs from the mean counts as above, the mean for what holds it. */
+/* The same for a body of unknown temperature. The mean of p counts by eps h/D, the rest as above. */
 static double free_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
-    const double eps = heat->sources.emissivity[b], mean = mean_over(heat, b, heat->solution.direction);
+    const double eps = heat->sources.emissivity[b], mean = fibrad_heat_mean(heat, b, heat->solution.direction);
     const double share = eps < 1 ? eps / (1 - eps) : 0;
     const free_body body = free_body_of(heat, b);
     if (!(body.area > 0)) return 0;
@@ -413,9 +415,9 @@ static double free_curvature(const fibrad_heat *heat, uint32_t b, const double *
     return sum;
 }
 
-/* The same of a sphere that conducts. */
+/* The same for a sphere that conducts. */
 static double conducting_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
-    const double eps = heat->sources.emissivity[b], mean = mean_over(heat, b, heat->solution.direction);
+    const double eps = heat->sources.emissivity[b], mean = fibrad_heat_mean(heat, b, heat->solution.direction);
     const free_body body = free_body_of(heat, b);
     if (!(body.area > 0)) return 0;
     const double share = is_free(heat, b)          ? stiffness(heat, b, &body) - 1
@@ -426,7 +428,7 @@ static double conducting_curvature(const fibrad_heat *heat, uint32_t b, const do
     return sum;
 }
 
-/* Goes along the direction whose product with N is `product`, as far as the error falls. */
+/* Moves the radiosities along the search direction to where the error is least. product: N times the direction. */
 static void advance_radiosities(fibrad_heat *heat, const double *product) {
     double curvature = 0;
     for (uint32_t b = 0; b < heat->bodies; b++)
@@ -441,7 +443,7 @@ static void advance_radiosities(fibrad_heat *heat, const double *product) {
     }
 }
 
-/* What the sweep in hand was for; FIBRAD_E_UNSOLVABLE. */
+/* Does what the sweep was made for. Error: FIBRAD_E_UNSOLVABLE. */
 static int end_sweep(fibrad_heat *heat) {
     const double *sum = fibrad_heat_gathered(heat);
     if (heat->solution.phase == FIBRAD_HEAT_CHECK) {

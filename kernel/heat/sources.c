@@ -1,9 +1,9 @@
-/* sources.c - what radiates, and where radiosities begin. SPDX-License-Identifier: MIT */
+/* sources.c - checks the sources of a solution, and sets the first radiosities. SPDX-License-Identifier: MIT */
 #include "base/port.h"
 #include "heat/problem.h"
 
 #define HEAT_TOLERANCE  1e-3
-#define FREE_TOLERANCE  1e-5 /* where temperatures are unknown: errors of long waves are larger than their residuals */
+#define FREE_TOLERANCE  1e-5 /* if temperatures are unknown: errors over long distances exceed their residuals */
 #define HEAT_SWEEPS_MAX 1000u
 #define HOLD_MAX        1e60
 
@@ -14,11 +14,11 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources) {
 
 static bool is_share(double x) { return x >= 0 && x <= 1; }
 
-/* Within these bounds no square of an emission, nor its product with areas, leaves the range of doubles. */
+/* Within these bounds squares of emissions, and their products with areas, stay within the range of doubles. */
 static bool is_temperature(double t) { return t >= 0 && t <= FIBRAD_TEMPERATURE_MAX; }
 static bool is_sigma(double sigma) { return sigma >= FIBRAD_SIGMA_MIN && sigma <= FIBRAD_SIGMA_MAX; }
 
-/* What the sources say of one body. */
+/* What the sources give for one body. */
 typedef struct radiator {
     double temperature, emissivity, power, hold, reference; /* NaN: not given */
 } radiator;
@@ -46,7 +46,7 @@ static radiator of_opening(const fibrad_heat_sources *s) {
 
 static bool is_given(double temperature) { return temperature == temperature; }
 
-/* What is wrong with a body. */
+/* The reason why a body is not valid. FIBRAD_WHY_UNSAID: it is valid. */
 static int source_why(const radiator *s) {
     if (!is_share(s->emissivity)) return FIBRAD_WHY_EMISSIVITY;
     if (is_given(s->temperature)) {
@@ -60,13 +60,13 @@ static int source_why(const radiator *s) {
     return s->emissivity > 0 || s->power == 0 ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_REFLECTS;
 }
 
-/* The temperature of a side of a mesh, its own or its body's. */
+/* The temperature of a side of a mesh. A side without a temperature of its own has that of the mesh. */
 static double side_temperature(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t side, double of_body) {
     const double own = s->side_temperature[fibrad_side_given(&heat->scene->mesh, side)];
     return is_given(own) ? own : of_body;
 }
 
-/* Whether the sides of a body have temperatures only where it has one. */
+/* Whether the temperatures of the sides of a wall are valid. Only a mesh whose temperature is given may have any. */
 static bool sides_valid(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
     const fibrad_mesh *mesh = &heat->scene->mesh;
     bool valid = true;
@@ -80,14 +80,14 @@ static bool sides_valid(const fibrad_heat *heat, const fibrad_heat_sources *s, u
     return valid;
 }
 
-/* Whether a wall goes on for ever whose temperature is to be found: what it gives off then has no bound. */
+/* Whether a wall is endless and of unknown temperature. What it gives off would have no bound. */
 static bool is_endless_unknown(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
     const radiator source = of_body(s, b);
     const uint32_t slot = heat->slot[b];
     return slot < FIBRAD_WALLS && heat->wall[slot].unbounded && source.emissivity > 0 && !is_given(source.temperature);
 }
 
-/* What is wrong with a wall. */
+/* The reason why a wall is not valid. */
 static int wall_why(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
     const radiator source = of_body(s, b);
     const int why = source_why(&source);
@@ -103,7 +103,7 @@ static bool light_valid(const fibrad_heat *heat, const double *light) {
     return valid;
 }
 
-/* What is wrong with all sources at once. */
+/* The reason why the sources as a whole are not valid. */
 static int sources_why(const fibrad_heat *heat, const fibrad_heat_sources *s) {
     if (heat->spheres > 0 && (s->temperature == NULL || s->emissivity == NULL)) return FIBRAD_WHY_MISSING;
     if (heat->given_bodies > 0 && (s->body_temperature == NULL || s->body_emissivity == NULL))
@@ -134,25 +134,27 @@ int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *s, fib
     return found.why == FIBRAD_WHY_ENDLESS ? FIBRAD_E_UNSUPPORTED : FIBRAD_E_ARGUMENT;
 }
 
-/* sigma (T^4 - T0^4), T0 being that of the surroundings: all emission and radiosity is counted from theirs. */
+/* sigma (T^4 - T0^4), T0 being the temperature of the surroundings. All emissions and radiosities are such differences.
+ */
 static double emission_of(const fibrad_heat_sources *s, double t) {
     const double t0 = s->surroundings;
     return s->sigma * (t * t + t0 * t0) * (t + t0) * (t - t0);
 }
 
-/* The temperature at which a mesh emits as much as its sides do, each with its own. */
+/* The temperature at which a mesh would emit as much as its sides do at their own temperatures. */
 static double mean_temperature(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t m, double of_body) {
     const fibrad_mesh *mesh = &heat->scene->mesh;
     double sum = 0, area = 0;
     for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
         const double t = side_temperature(heat, s, mesh->side[k], of_body);
-        const double own = fibrad_mesh_triangle_area(mesh, mesh->side[k] / 2);
+        const double own = fibrad_mesh_triangle_area(mesh, fibrad_side_triangle(mesh->side[k]));
         sum += own * (t * t) * (t * t), area += own;
     }
     return area > 0 ? fibrad_sqrt(fibrad_sqrt(sum / area)) : of_body;
 }
 
-/* Finds by how much each patch of a mesh emits more than the mesh at some temperature: the mean of its sides. */
+/* Finds the lift of each patch of a mesh: its emission minus that of the mesh at the temperature `mean`. A patch of
+ * several sides has their mean. */
 static void lift_patches(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t m, double of_body, double mean) {
     const fibrad_mesh *mesh = &heat->scene->mesh;
     const uint32_t *first = heat->first + fibrad_heat_body(heat, FIBRAD_MESHES + m);
@@ -162,7 +164,7 @@ static void lift_patches(fibrad_heat *heat, const fibrad_heat_sources *s, uint32
     for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
         const fibrad_mesh_cut cut = *fibrad_mesh_cut_of(mesh, heat->cut, mesh->side[k]);
         if (cut.patch == UINT32_MAX) continue;
-        const double own = fibrad_mesh_triangle_area(mesh, mesh->side[k] / 2);
+        const double own = fibrad_mesh_triangle_area(mesh, fibrad_side_triangle(mesh->side[k]));
         const double more = emission_of(s, side_temperature(heat, s, mesh->side[k], of_body)) - emission_of(s, mean);
         const uint32_t from = fibrad_heat_first_meshed(heat) + cut.patch - first[0];
         for (uint32_t a = from; a < from + (UINT32_C(1) << cut.halvings); a++) lift[a] += own * more, area[a] += own;
@@ -170,7 +172,7 @@ static void lift_patches(fibrad_heat *heat, const fibrad_heat_sources *s, uint32
     for (uint32_t a = 0; a < first[1] - first[0]; a++) lift[a] = area[a] > 0 ? lift[a] / area[a] : 0;
 }
 
-/* Widens a range of emissions by that of a body, if it emits and one is known. */
+/* Widens a range of emissions by the emission of a body, if it emits and its temperature or reference is given. */
 static void widen_range(double range[2], const fibrad_heat_sources *s, const radiator *source) {
     const double t = is_given(source->temperature) ? source->temperature : source->reference;
     if (source->emissivity == 0 || !is_given(t)) return;
@@ -178,8 +180,8 @@ static void widen_range(double range[2], const fibrad_heat_sources *s, const rad
     range[0] = fibrad_min(range[0], emission), range[1] = fibrad_max(range[1], emission);
 }
 
-/* The middle of what spheres and walls emit, where the radiosities of those that reflect all begin: so nothing flows
- * where all that emit do so alike. 0: none of them emits. */
+/* The middle of the range of emissions. Radiosities of surfaces that reflect all begin here. So nothing flows if all
+ * that emit have the same emission. 0: no surface emits. */
 static double middle_emission(const fibrad_heat *heat, const fibrad_heat_sources *s) {
     double range[2] = {__builtin_inf(), -__builtin_inf()};
     for (uint32_t i = 0; i < heat->spheres; i++) {
@@ -202,7 +204,8 @@ static double middle_emission(const fibrad_heat *heat, const fibrad_heat_sources
     return range[0] <= range[1] ? range[0] + 0.5 * (range[1] - range[0]) : 0;
 }
 
-/* The emission of a body, given or to begin with: that of its reference, of the last solution, or `middle`. */
+/* The emission of a body if it is given. Otherwise the emission with which the search begins: that of its reference, of
+ * the last solution, or `middle`. */
 static double first_emission(const fibrad_heat *heat, const fibrad_heat_sources *s, double middle, uint32_t b,
                              const radiator *source) {
     if (source->emissivity == 0) return middle;
@@ -211,8 +214,8 @@ static double first_emission(const fibrad_heat *heat, const fibrad_heat_sources 
     return heat->solution.warm ? heat->sources.emission[b] + emission_of(s, heat->sources.surroundings) : middle;
 }
 
-/* Sets emissivity and emission, and moves the radiosities of an earlier solution up or down with the latter; the
- * coarser level begins with what it had of it. */
+/* Sets emissivity and emission of a body. The radiosities of an earlier solution are shifted by the change of emission.
+ * Their detail is taken off, since the coarser level comes first. */
 static void set_emission(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b, double eps, double emission) {
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
         if (heat->solution.warm && !s->uniform && (eps < 1 || fibrad_heat_conducts(heat, b)))
@@ -233,7 +236,7 @@ static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double mid
     heat->sources.drive[b] = source->power + (source->hold > 0 ? source->hold * emission_of(s, source->reference) : 0);
 }
 
-/* Adds to the radiosities of a mesh, or takes off, what its patches emit more than it does. */
+/* Adds `times` emissivity times lift to the radiosities of a mesh. */
 static void shift_radiosities(fibrad_heat *heat, uint32_t b, double times) {
     const double *lift = fibrad_heat_lift(heat, b);
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && lift != NULL; a++)
@@ -253,8 +256,9 @@ static void set_mesh(fibrad_heat *heat, const fibrad_heat_sources *s, double mid
     shift_radiosities(heat, b, 1);
 }
 
-/* What lies beyond the patches of a wall receives no more than the surroundings send, or what it faces, its area being
- * infinite; so it is like a black body of that radiosity. */
+/* The radiosity of an endless wall beyond its patches. There it receives what the surroundings send, or the wall that
+ * it faces. What the patches send is nothing beside that. So the part beyond the patches is like a black body of this
+ * radiosity. */
 static double radiosity_beyond(const fibrad_heat *heat, uint32_t k) {
     const uint32_t facing = fibrad_heat_facing(heat, k);
     const double taken = fibrad_heat_taken_beyond(heat, k),
@@ -285,7 +289,7 @@ static void set_walls(fibrad_heat *heat, const fibrad_heat_sources *s, double mi
     set_emission(heat, s, heat->bodies - 1, 1, 0);
 }
 
-/* What spheres conduct, and how uneven they are with the emissions that the solution begins with. */
+/* Sets the conductivities of spheres, and their unevenness at the emissions with which the search begins. */
 static void set_conduction(fibrad_heat *heat, const fibrad_heat_sources *s) {
     bool found = false;
     for (uint32_t b = 0; b < heat->spheres; b++) {

@@ -1,19 +1,24 @@
-/* sweep.c - net flows between patches, a sweep over all beams. SPDX-License-Identifier: MIT
+/* sweep.c - net flows between patches, by a sweep over all beams. SPDX-License-Identifier: MIT
  *
- * A beam brings one end what it takes from the other: flows add up to zero whatever is sent, and are zero where all
- * send alike. A part of the spheres goes through all beams that its spheres send out, and for both ends of those
- * between two of its own; beams that go from part to part are gone through by both. So no sum is anybody else's. */
+ * A beam brings one end what it takes from the other. So flows add up to zero whatever patches send. They are zero if
+ * all patches send the same.
+ *
+ * The spheres are divided into parts. The sweep of a part changes only the sums of its own spheres. A beam between two
+ * spheres of one part is visited once and serves both ends. A beam between two parts is visited by both, and each
+ * serves its own end. */
 #include "heat/sweep.h"
 
 #define AHEAD  8
 #define BEYOND (FIBRAD_WALLS + 1)
 
-/* Halves of rays are independent, so that by how much they differ is their error; those of directions differ by more.
- */
+/* Errors are told from the difference between even and odd rays, or between even and odd directions. Halves of rays are
+ * independent, so their difference is their error. Even and odd directions differ by more than their error. So
+ * differences of rays are enlarged by this factor. */
 #define RAYS_WEIGHT 2.5
-/* A beam stands for the area 1/(n + m) if its two surfaces send out n and m beams per area: so the beams either way
- * together tell what the two exchange, those of the denser one counting as much more as there are more of them. One
- * that is kept stands for several. In the sweep for the error those by even directions count more than odd ones. */
+/* The area that a beam of a pencil stands for. If its two surfaces send out n and m beams per area, this is 1/(n + m).
+ * So the beams of both together tell what they exchange. The share is the number of beams that were followed for each
+ * beam that was kept. In the sweep for the error, the share is the difference between even and odd directions
+ * instead. */
 static double beam_area(const fibrad_heat *heat, uint32_t owner, const fibrad_heat_pencil *pencil) {
     const double other = pencil->body < heat->rows ? heat->density[pencil->body] : 0;
     const double check = pencil->tilt / 32767. * (owner < heat->spheres ? 1 : RAYS_WEIGHT);
@@ -21,14 +26,15 @@ static double beam_area(const fibrad_heat *heat, uint32_t owner, const fibrad_he
     return share / (heat->density[owner] + other);
 }
 
-/* What the owner of a pencil and its other end send, and where it is gathered what beams bring them. */
+/* What both ends of a pencil send, and the sums of what each end receives. The owner is the row that has the pencil. */
 struct pencil_ends {
     const double *owner, *other;
     double *to_owner, *to_other;
     double area; /* of a beam */
 };
 
-/* What beams bring one end they take from the other; both ends have their areas. */
+/* Adds the flow of each strand to one end and takes it from the other end. areas: the sums are areas, so the flow is
+ * added to both ends. */
 FIBRAD_INLINE void bring_strands(const fibrad_heat_pencil *pencil, const struct pencil_ends *ends, bool areas) {
     const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
     const uint8_t *strand = fibrad_heat_strands(pencil), *end = strand + pencil->strands;
@@ -45,7 +51,7 @@ FIBRAD_INLINE void bring_strands(const fibrad_heat_pencil *pencil, const struct 
     }
 }
 
-/* The same where all patches of fours send alike. The first ones gather for all. */
+/* The same if all patches of a four send the same. The first patch of each four gathers for all four. */
 static void bring_bundles(const fibrad_heat_pencil *pencil, const struct pencil_ends *ends) {
     const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
     for (uint32_t k = 0; k < pencil->bundles; k++) {
@@ -56,28 +62,31 @@ static void bring_bundles(const fibrad_heat_pencil *pencil, const struct pencil_
     }
 }
 
-/* Where the patches of the other end of a pencil begin. */
+/* The first patch of the other end of a pencil. */
 static size_t other_end(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
     const uint32_t body = pencil->body;
     return body < heat->rows ? fibrad_heat_first_of_row(heat, body) : fibrad_heat_other_block(heat, body);
 }
 
-/* Many beams meet the few patches that lie beyond the walls and their patches; one sum of all would lose digits. So
- * what has come to them lately is moved to a longer sum. */
+/* Many beams meet the few patches of the surroundings and beyond endless walls. One sum of all their flows would lose
+ * digits. So short sums are moved into long ones again and again. */
 static void set_aside(const fibrad_heat *heat, double *to, double sum[BEYOND]) {
     const uint32_t first = heat->first[fibrad_heat_beyond(heat, 0)], others = fibrad_heat_others(heat);
     for (uint32_t b = first; b < heat->patches; b++) sum[b - first] += to[b - others], to[b - others] = 0;
 }
 
-/* What sweeps of a part have in common: where it gathers what patches that are not of spheres are brought, and what is
- * not its own to gather; and, in the first sweep of all, whose sums are areas, what the ends of beams then send. */
+/* What the sweep of a part works with. */
 struct gathering {
-    bool areas, coarse;
-    double *walls, away[BEYOND];
-    double none[FIBRAD_HEAT_PATCHES_MAX], one[FIBRAD_HEAT_PATCHES_MAX], waste[FIBRAD_HEAT_PATCHES_MAX];
+    bool areas;          /* the sums are areas */
+    bool coarse;         /* patches of a four send the same */
+    double *walls;       /* what patches receive that are not of spheres */
+    double away[BEYOND]; /* long sums of set_aside */
+    double none[FIBRAD_HEAT_PATCHES_MAX],
+        one[FIBRAD_HEAT_PATCHES_MAX];      /* what both ends send if sums are areas: 0, 1 */
+    double waste[FIBRAD_HEAT_PATCHES_MAX]; /* sums of ends that other parts gather for */
 };
 
-/* Brings its ends what the beams of a pencil do: those that this part gathers for. */
+/* Adds the flows of a pencil to the sums of both ends. */
 static void bring_ends(const fibrad_heat *heat, uint32_t owner, const fibrad_heat_pencil *pencil, double *to_owner,
                        double *to_other, const struct gathering *g) {
     const struct pencil_ends ends = {
@@ -95,7 +104,7 @@ static void bring_ends(const fibrad_heat *heat, uint32_t owner, const fibrad_hea
         bring_strands(pencil, &ends, false);
 }
 
-/* How many beams of its owner a pencil stands for. */
+/* The number of beams that a pencil stands for. */
 static double beams_of(const fibrad_heat_pencil *pencil) {
     const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
     uint32_t beams = 0;
@@ -103,20 +112,20 @@ static double beams_of(const fibrad_heat_pencil *pencil) {
     return (double)pencil->share * beams;
 }
 
-/* What the other end of a pencil reflects. */
+/* The reflectivity of the other end of a pencil. */
 static double reflectivity_of(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
     return fibrad_heat_sent_back(heat, pencil->body < heat->rows ? fibrad_heat_body_of_row(heat, pencil->body)
                                                                  : fibrad_heat_other_body(heat, pencil->body));
 }
 
-/* Notes how many beams meet another sphere, and by how much even and odd ones differ. */
+/* Adds the beams that meet another sphere, and the square of the difference between even and odd ones. */
 static void note_sphere(fibrad_heat_seen *seen, const fibrad_heat_pencil *pencil, double beams) {
     const double tilt = pencil->tilt / 32767., square = beams * tilt * (beams * tilt);
     seen->met += beams, seen->squares += square;
     if (tilt == 1 || tilt == -1) seen->lone += square;
 }
 
-/* What the beams of a pencil to another body bring the surroundings, if that is theirs. */
+/* The flow to the surroundings of a pencil whose other end is not a sphere. */
 static double escaping_flow(const fibrad_heat *heat, uint32_t owner, const fibrad_heat_pencil *pencil) {
     const double outside = fibrad_heat_outside(heat, fibrad_heat_other_body(heat, pencil->body));
     const double *mine = heat->solution.source + fibrad_heat_first_of_row(heat, owner);
@@ -132,7 +141,7 @@ static double escaping_flow(const fibrad_heat *heat, uint32_t owner, const fibra
     return outside > 0 ? outside * beam_area(heat, owner, pencil) * flow : 0;
 }
 
-/* Notes what a pencil tells of the sphere that it leaves, in the sweep for the error. */
+/* Adds to heat->samples what a pencil tells about the sphere that it leaves. */
 static void note_pencil(const fibrad_heat *heat, uint32_t row, const fibrad_heat_pencil *pencil) {
     const uint32_t body = fibrad_heat_body_of_row(heat, row);
     const bool other = pencil->body >= heat->rows;
@@ -144,7 +153,7 @@ static void note_pencil(const fibrad_heat *heat, uint32_t row, const fibrad_heat
     if (pencil->body < heat->spheres) note_sphere(&heat->samples.seen[body], pencil, beams);
 }
 
-/* Where a row gathers: one of a wall does so with what its part brings to walls. */
+/* The sums of a row. A row of fine fours of a wall has them among those of walls. */
 static double *gathered_by(const fibrad_heat *heat, uint32_t row, const struct gathering *g) {
     const uint32_t first = fibrad_heat_first_of_row(heat, row), others = fibrad_heat_others(heat);
     return first < others ? heat->solution.gathered + first : g->walls + (first - others);
@@ -188,7 +197,7 @@ static void sweep_row(const fibrad_heat *heat, uint32_t row, struct gathering *g
     sweep_beams_of_others(heat, row, gathered_by(heat, row, g), g);
 }
 
-/* The spheres and the rows of fine fours of a part. */
+/* Sweeps the spheres and the rows of fine fours of a part. */
 static void sweep_rows(const fibrad_heat *heat, uint32_t part, struct gathering *g) {
     const uint32_t n = heat->spheres, *place = heat->sequence, begin = fibrad_heat_part_begin(heat, n, part),
                    end = fibrad_heat_part_begin(heat, n, part + 1);
@@ -218,7 +227,7 @@ static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, st
     }
 }
 
-/* All of a part but the note that it is done. */
+/* Sweeps the rows and the rays of a part. */
 static void sweep_part(fibrad_heat *heat, uint32_t part) {
     const uint32_t others = fibrad_heat_others(heat), of_walls = heat->patches - others;
     const bool areas = heat->solution.phase == FIBRAD_HEAT_AREA;
@@ -227,7 +236,7 @@ static void sweep_part(fibrad_heat *heat, uint32_t part) {
     for (uint32_t a = 0; a < FIBRAD_HEAT_PATCHES_MAX; a++) g.one[a] = 1;
     fibrad_zero(g.walls, of_walls * sizeof *g.walls);
     sweep_rows(heat, part, &g);
-    if (heat->solution.phase != FIBRAD_HEAT_CHECK) /* their errors are found by those who send them: result.c */
+    if (heat->solution.phase != FIBRAD_HEAT_CHECK) /* result.c finds the errors of rays wall by wall */
         sweep_rays(heat, fibrad_heat_part_begin(heat, heat->rays, part),
                    fibrad_heat_part_begin(heat, heat->rays, part + 1), &g);
     set_aside(heat, g.walls, g.away);
@@ -255,19 +264,19 @@ const double *fibrad_heat_gathered(fibrad_heat *heat) {
     return heat->solution.gathered;
 }
 
-/* Which spheres make up the parts. The bed is halved across its longest extent again and again: so few beams go from
- * part to part, and spheres that follow each other are near each other. */
-#define FEW_SPHERES 32u /* that need not be near each other in any sequence */
-#define HALVES_MAX  64  /* of ranges that wait */
+/* The bed is divided into parts by halving it across its longest extent again and again. So few beams go from part to
+ * part, and spheres that follow each other in the sequence are near each other. */
+#define FEW_SPHERES 32u /* a range with fewer spheres is not halved further */
+#define HALVES_MAX  64  /* most ranges that wait to be halved */
 
-/* Spheres of the sequence, and the parts they are of. */
+/* A range of spheres in the sequence, and the range of parts to which they belong. */
 struct bed_range {
     uint32_t begin, end, first, last;
 };
 
 static bool sphere_before(const double *x, uint32_t a, uint32_t b) { return x[a] != x[b] ? x[a] < x[b] : a < b; }
 
-/* Moves the spheres of smaller x before place `cut` of a range. */
+/* Reorders a range so that the spheres before position `cut` have smaller x than those after it. */
 static void split_range(uint32_t *sphere, struct bed_range range, uint32_t cut, const double *x) {
     uint32_t begin = range.begin, end = range.end;
     while (end - begin > 1) {
@@ -280,7 +289,7 @@ static void split_range(uint32_t *sphere, struct bed_range range, uint32_t cut, 
             const uint32_t other = sphere[low];
             sphere[low++] = sphere[--high], sphere[high] = other;
         }
-        /* nothing is between them but the middle one */
+        /* between high and low there is at most the middle sphere */
         if (cut >= low && cut <= high) return;
         if (cut < low)
             end = low;
@@ -289,7 +298,7 @@ static void split_range(uint32_t *sphere, struct bed_range range, uint32_t cut, 
     }
 }
 
-/* The coordinates along which a range is longest. */
+/* The coordinates, x, y or z, along which a range is longest. */
 static const double *longest_extent(const fibrad_heat *heat, struct bed_range range) {
     const double *const of[3] = {heat->scene->x, heat->scene->y, heat->scene->z};
     double longest = -1;
@@ -305,7 +314,7 @@ static const double *longest_extent(const fibrad_heat *heat, struct bed_range ra
     return along;
 }
 
-/* Rows of fine fours are of the part of their sphere; those of walls go to all parts in turn. */
+/* Rows of fine fours belong to the part of their sphere. Those of walls belong to all parts in turn. */
 static void divide_fine_rows(fibrad_heat *heat) {
     for (uint32_t row = heat->spheres; row < heat->rows; row++) {
         const uint32_t body = fibrad_heat_body_of_row(heat, row);

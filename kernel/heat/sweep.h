@@ -1,17 +1,17 @@
-/* sweep.h - what a sweep over all beams is given and brings. SPDX-License-Identifier: MIT */
+/* sweep.h - what patches send in a sweep over all beams, and what the sweep gathers. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_HEAT_SWEEP_H
 #define FIBRAD_HEAT_SWEEP_H
 
 #include "heat/problem.h"
 
-/* Puts the spheres into the sequence of sweeps, and each into a part. */
+/* Chooses the sequence of spheres in sweeps, and the part of each row. */
 void fibrad_heat_divide(fibrad_heat *heat);
 
-/* What patch a sends out in the next sweep, and what it was told to send. */
+/* Sets, and returns, what patch a sends in the next sweep. */
 static inline void fibrad_heat_send(fibrad_heat *heat, uint32_t a, double value) { heat->solution.source[a] = value; }
 static inline double fibrad_heat_sent(const fibrad_heat *heat, uint32_t a) { return heat->solution.source[a]; }
 
-/* The net flow to each patch [patches] once all parts are swept, or its area in the first sweep of all. */
+/* The net flow to each patch after all parts are swept: [patches]. After the sweep FIBRAD_HEAT_AREA: areas. */
 const double *fibrad_heat_gathered(fibrad_heat *heat);
 
 #endif

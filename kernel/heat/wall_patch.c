@@ -5,13 +5,15 @@
 #include "heat/wall_patch.h"
 #include "scene/walls.h"
 
-/* Patches of walls are about as large as those of the spheres, unless that makes more of them than FEW and a fourth of
- * those of the spheres. What spheres and walls exchange is known from the beams of the spheres, which are spread far
- * more evenly than rays; rays of walls tell what walls exchange with each other. Where there is a bed between them that
- * is little, so that a few of each patch do, but RAYS_MIN in all, and RAYS_PER_BEAM for each beam of one sphere: so
- * what walls exchange gets better, too, where more beams are asked for; and where more rays are. */
+/* Patches of walls are about as large as those of spheres. Their number is limited: to FEW times the patches of one
+ * sphere plus a fourth of the patches of all spheres.
+ *
+ * Beams of spheres tell what spheres and walls exchange. Rays of walls only tell what walls exchange with each other.
+ * Behind a bed that is little. So a few rays of each patch suffice. There are at least FIBRAD_WALL_RAYS_DEFAULT or
+ * `wall_rays` in all, and RAYS_PER_BEAM for each beam of one sphere. So more beams make the exchange of walls better,
+ * too. */
 #define FEW            16.0 /* times the patches of a sphere */
-#define OUTSIDE        4.0  /* times as many may lie on triangles beyond walls */
+#define OUTSIDE        4.0  /* patches of meshes, also outside the walls, may be this many times the limit */
 #define RAYS_PER_PATCH 8.0
 #define RAYS_PER_BEAM  6.0
 
@@ -26,8 +28,8 @@ static double container_size(const fibrad_scene *scene) {
     return longest > 0 ? longest : 1;
 }
 
-/* What of a wall is cut, along one axis: all of it, or where it goes on for ever, the bed and as much on either side.
- */
+/* The stretch of a wall along one axis that is cut into patches: all of it, or, if the wall is endless, the bed and as
+ * much on either side. Returns whether the wall is endless. */
 static bool stretch(const fibrad_scene *scene, uint32_t axis, double *low, double *size) {
     const fibrad_container *c = &scene->container;
     double wide = 0;
@@ -39,7 +41,7 @@ static bool stretch(const fibrad_scene *scene, uint32_t axis, double *low, doubl
     else if (c->radius < __builtin_inf() && axis < 2)
         from = c->axis[axis] - c->radius, to = c->axis[axis] + c->radius;
     double begin = scene->box_low[axis], end = scene->box_high[axis];
-    if (scene->facts.spheres == 0) { /* no bed, but walls that may be anywhere */
+    if (scene->facts.spheres == 0) { /* no bed tells where walls are */
         wide = container_size(scene);
         begin = end = fibrad_finite(from) ? from : fibrad_finite(to) ? to : 0;
     }
@@ -59,12 +61,12 @@ static uint32_t squares(double length, double square) {
     return 2 * (uint32_t)fibrad_max(1, fibrad_floor(fibrad_min(length / square, 1e5) / 2 + .5));
 }
 
-/* Rays with even and odd numbers have a sequence each, moved by another seed for each wall. */
+/* Even and odd rays have a sequence each. The seed is that of the wall. */
 void fibrad_heat_ray_coordinates(uint64_t seed, uint32_t k, double x[4]) {
     for (int d = 0; d < 4; d++) x[d] = fibrad_quasirandom(4, d, k / 2, 2 * seed + k % 2);
 }
 
-/* Has a wall or a mesh of some area send out rays, after those of all before it. */
+/* Sets the rays of a wall of a given area. They are numbered after those of all walls before it. */
 static void send_rays(fibrad_heat *heat, uint32_t slot, double area, double density) {
     fibrad_heat_rays *sent = &heat->sent[slot];
     *sent = (fibrad_heat_rays){.first = heat->rays};
@@ -74,7 +76,7 @@ static void send_rays(fibrad_heat *heat, uint32_t slot, double area, double dens
     heat->rays += sent->count;
 }
 
-/* Area of a mesh within the walls, by even points of it. */
+/* The area of a mesh inside the planes and the cylinder, from evenly spread points. */
 #define INSIDE_POINTS 1024u
 static double area_inside(const fibrad_scene *scene, uint32_t m) {
     const double area = fibrad_mesh_area(&scene->mesh, m);
@@ -138,7 +140,8 @@ uint32_t fibrad_heat_mesh_patch(const fibrad_heat *heat, uint32_t side, const do
     return fibrad_heat_first_meshed(heat) + fibrad_mesh_patch_at(&heat->scene->mesh, heat->cut, side, at);
 }
 
-/* Where on the square around the origin that leans on its corners, (1, 0) being 0, the other corners 1/4, 1/2, 3/4. */
+/* The position of a direction on the square with the corners (1, 0), (0, 1), (-1, 0) and (0, -1). These corners have
+ * the positions 0, 1/4, 1/2 and 3/4. */
 static double around(double x, double y) {
     const double t = y / (fibrad_abs(x) + fibrad_abs(y));
     return (x < 0 ? 2 - t : t < 0 ? 4 + t : t) / 4;
@@ -211,7 +214,7 @@ uint32_t fibrad_heat_leaves(const fibrad_heat *heat, const double origin[3], con
     return fibrad_heat_ends(heat, origin, w, FIBRAD_NO_SIDE, 0);
 }
 
-/* A direction by the cosine law, by two numbers, about a normal and two axes across it. */
+/* A direction by the cosine law from two numbers in [0, 1). normal, across, along: orthogonal unit vectors. */
 static void cosine_direction(const double x[2], const double normal[3], const double across[3], const double along[3],
                              double w[3]) {
     const double ring = fibrad_sqrt(x[0]), up = fibrad_sqrt(1 - x[0]);
@@ -230,13 +233,14 @@ void fibrad_heat_direction(const double x[2], const double n[3], double w[3]) {
     cosine_direction(x, n, across, along, w);
 }
 
-/* Coordinate d of point k of Sobol's sequence moved at random, even and odd points apart. */
+/* Coordinate d of a point of Sobol's sequence, moved at random. */
 static double even_coordinate(const uint32_t point[8], uint64_t seed, int d) {
     return fibrad_fraction(fibrad_mix(seed ^ fibrad_quasirandom_step(4, d)) ^ (uint64_t)point[d] << 32);
 }
 
-/* The side that ray k of a mesh leaves, and its coordinates there. Sides send out rays one after another, each as many
- * as its area asks for, and by a sequence of its own: one of all, cut into triangles, errs by more. */
+/* The side that ray k of a mesh leaves, and the four coordinates of the ray. Sides send out their rays one after
+ * another, in proportion to their areas. Each side has a sequence of its own: one sequence for the whole mesh has
+ * larger errors. */
 static uint32_t side_of_ray(const fibrad_heat *heat, uint32_t mesh, uint32_t k, double x[4]) {
     const fibrad_mesh *own = &heat->scene->mesh;
     const double rays = heat->sent[FIBRAD_MESHES + mesh].count, area = fibrad_mesh_area(own, mesh);

@@ -210,7 +210,7 @@ uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const doubl
     const uint32_t low = fibrad_mesh_side_at(mesh, number, at, &before);
     const double own = mesh->area[low] - before;
     const double of_own[2] = {own > 0 ? fibrad_max(0, fibrad_min(1, (at - before) / own)) : 0, share[1]};
-    fibrad_mesh_triangle_point(mesh, mesh->side[low] / 2, of_own, point);
+    fibrad_mesh_triangle_point(mesh, fibrad_side_triangle(mesh->side[low]), of_own, point);
     return mesh->side[low];
 }
 
