@@ -235,10 +235,10 @@ typedef struct fibrad_body {
  * depend on any other sphere or on the order of the spheres, not in a single bit.
  *
  * The fraction `beyond`. Row i knows the space within the cutoff of centre i. If the scene has a known region, row i
- * knows only the part within that region. Radiation may leave the known space before it meets anything. Then its way on
- * outside decides.
+ * knows only the part within that region. Radiation may leave the known space before it meets anything. What it counts
+ * as then depends on its further way, outside the known space.
  *
- *   occupancy  known region  the way on                                     counts as
+ *   occupancy  known region  the further way                                counts as
  *   given      any           passes through no marked cell before its end   the wall at its end, or `escaped`
  *   given      any           passes through a marked cell                   `beyond`
  *   none       none          misses the box of all spheres                  the wall at its end, or `escaped`
@@ -247,7 +247,8 @@ typedef struct fibrad_body {
  *
  * A way that is longer than 100 periods of the occupancy counts as `beyond`. Triangles are walls here.
  *
- * Beams and rays of view factors see the spheres of a scene outside its known region. Reflections do not. */
+ * A scene may have spheres outside its known region. Beams and rays of view factors meet them. Reflected paths do not.
+ */
 /* Where a bed has spheres: the marked cells of a box. There is no part of any sphere in other cells or outside the box.
  * The occupancy must stay as it is while the scene is used. All machines use the same one.
  *
@@ -317,7 +318,7 @@ const char *fibrad_why_text(int why);
 
 /* Where a fault is. */
 typedef struct fibrad_fault {
-    uint32_t first, second; /* the two spheres at fault; equal if one is; both n if none is */
+    uint32_t first, second; /* the spheres at fault; equal: only one is at fault; both n: none is */
     uint32_t triangle;      /* the triangle at fault; UINT32_MAX: none */
     uint32_t wall;          /* 1 + the index of the wall at fault; 0: none */
     int why;                /* a fibrad_why */
@@ -440,11 +441,11 @@ typedef struct fibrad_beam_rule {
  *
  * A beam has the shadow disc of sphere i as its window and one direction of the rule. The row is the mean of what all
  * windows see. With exact areas, the error of the entries falls as directions^-1.5. The error of factors to walls falls
- * a little more slowly. A wall that nothing hides gets its solid angle. With points, the entries and `escaped` are
- * counts of points over the number of all points. Images of one sphere share one entry. Sphere i may see its own
- * images. A beam ends after 100 periods. The tolerance may
- * ask for more than FIBRAD_DIRECTIONS_MAX directions. The row is then made with FIBRAD_DIRECTIONS_MAX directions, and
- * row->error is above the tolerance.
+ * a little more slowly. A wall that nothing hides gets its solid angle. With points, an entry is the number of points
+ * that meet the sphere over the number of all points. `escaped` is such a fraction, too. Images of one sphere share one
+ * entry. Sphere i may see its own images. A beam ends after 100 periods. If the tolerance asks for more than
+ * FIBRAD_DIRECTIONS_MAX directions, the row is made with FIBRAD_DIRECTIONS_MAX directions, and row->error is above the
+ * tolerance.
  *   Input    i: 0 to spheres - 1
  *            rule: NULL for all defaults
  *   Output   row
@@ -557,10 +558,10 @@ void fibrad_rows_clear(fibrad_rows *rows);
 int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
 
 /* ---- silhouettes --------------------------------------------------------------------------------------------- */
-/* All rows of a scene at once. Seen along a line, the silhouette of a sphere is a circle. What lies before and behind
- * each piece of this circle tells what the sphere exchanges with its neighbours, and what these exchange with each
- * other, in both directions of the line. The rows are reciprocal and closed to rounding, without averaging. At equal
- * numbers of lines and directions they err about half as much as averaged beam rows.
+/* All rows of a scene at once. Seen along a line, the silhouette of a sphere is a circle. Each piece of the circle has
+ * a nearest sphere or wall before it and one behind it. These tell what the sphere exchanges with its neighbours, and
+ * what its neighbours exchange past its rim, in both directions of the line. The rows are reciprocal and closed to
+ * rounding, without averaging. With as many lines as directions, they err about half as much as averaged beam rows.
  *
  *   1. fibrad_silhouettes_init makes the set of lines.
  *   2. fibrad_silhouettes_task does a task. Several threads may do different tasks at the same time. Each thread has a
@@ -569,13 +570,13 @@ int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
  *   4. fibrad_silhouettes_row delivers a row. Several threads may ask for rows at the same time.
  *   5. fibrad_matrix_init with rule.reciprocal = 1 makes a matrix of the rows.
  *
- * Planes, openings and a cylinder hide no sphere from another. For the lines taken, the factor from a sphere to all of
- * them together is exact. Windows of the directions in which the sphere is open divide this factor among them, as in
- * beam rows.
+ * Planes, openings and a cylinder hide no sphere from another. For the given lines, the sum of a sphere's factors to
+ * all of them is exact. In the directions in which the sphere is open, windows as in beam rows divide this sum among
+ * them.
  *
- * Scenes with triangles are FIBRAD_E_UNSUPPORTED, since triangles hide spheres. Scenes with a known region are, too,
- * and there is no cutoff. The reason is that a machine with a part of a bed knows all obstacles only within the cutoff
- * of its own spheres. Use fibrad_beam_row for such scenes. */
+ * Scenes with triangles are FIBRAD_E_UNSUPPORTED, since triangles hide spheres. Scenes with a known region are
+ * FIBRAD_E_UNSUPPORTED, and there is no cutoff, since a machine with a part of a bed knows all obstacles only within
+ * the cutoff of its own spheres. Use fibrad_beam_row for such scenes. */
 typedef struct fibrad_silhouette_rule {
     uint32_t lines; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: FIBRAD_LINES_DEFAULT */
     uint64_t turn;  /* seed of a random rotation of all lines together; 0: no rotation */
@@ -590,8 +591,8 @@ typedef struct fibrad_pairs {
 
 typedef struct fibrad_silhouettes fibrad_silhouettes; /* the lines of a scene, and where the pairs of each sphere are */
 
-/* The least number of lines, not below `lines`, for which there is a built-in set. A built-in set is spread best, and
- * takes no time to make. If there is none of `lines` or more, the result is `lines`.
+/* The size of the smallest built-in set that has at least `lines` lines. Built-in sets are spread best, and take no
+ * time to make. If no built-in set is large enough, the result is `lines`.
  *   Errors   none */
 uint32_t fibrad_silhouettes_lines(uint32_t lines);
 
@@ -600,7 +601,7 @@ uint32_t fibrad_silhouettes_lines(uint32_t lines);
  *   Errors   0 */
 size_t fibrad_silhouettes_size(const fibrad_scene *scene, const fibrad_silhouette_rule *rule);
 
-/* Begins.
+/* Makes the set of lines of a scene.
  *   Input    memory[size]
  *            scene: must stay as it is while the object is used
  *            rule: NULL for all defaults
@@ -824,8 +825,8 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
  *   directions, tolerance   used               not used           not used                      not used
  *   cutoff                  used               used               must be 0                     must be 0
  *   paths, seed             used               used               used                          used
- *   conductivity            with nodes         not used           with nodes                    needed
- *   node_emissivity         spheres conduct    not used           spheres conduct               not used
+ *   conductivity            if spheres conduct not used           if spheres conduct            needed
+ *   node_emissivity         if spheres conduct not used           if spheres conduct            not used
  *   flights                 not used           not used           not used                      used */
 typedef struct fibrad_exchange_rule {
     const double *emissivity;      /* [spheres], 0 to 1 */
@@ -842,15 +843,16 @@ typedef struct fibrad_exchange_rule {
     uint32_t flights;              /* of _walk, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
 } fibrad_exchange_rule;
 
-/* The emissivity of the node of a sphere that conducts, whose temperature differs from point to point. Let E_i be
- * sigma T_i^4 at the mean temperature of sphere i, about which emission is linear. Let q_i be its net power, A_i its
- * area, e_i its emissivity and n_i that of its node. Rows with rule->node_emissivity are exchange factors D_ij between
- * the node values N_i, with A_i n_i D_ij = A_j n_j D_ji:
+/* The emissivity of a node. The temperature of a sphere that conducts differs from point to point. In rows with
+ * rule->node_emissivity such a sphere is represented by a node, which has one value N_i. Let E_i be sigma T_i^4 at the
+ * mean temperature of sphere i. Emission is taken to be linear in T about T_i. Let q_i be the net power of the sphere,
+ * A_i its area, e_i its emissivity and n_i the emissivity of its node. The rows are exchange factors D_ij between
+ * nodes, with A_i n_i D_ij = A_j n_j D_ji:
  *
  *     q_i = sum over j of A_i n_i D_ij (N_j - N_i),   N_i = E_i - (1/n_i - 1/e_i) q_i/A_i.
  *
- * j counts walls and surroundings, too, whose N is E. So the powers follow from a linear system. No factor is below 0.
- * A matrix of such rows takes the emissivities of the nodes (fibrad_matrix_rule).
+ * Walls and surroundings are among j. Their N is E. So the powers follow from a linear system. No factor is below 0.
+ * For the matrix of such rows, set fibrad_matrix_rule.emissivity to the emissivities of the nodes.
  *   Input    emissivity: 0 to 1
  *            conductivity: k*, from FIBRAD_RELATIVE_CONDUCTIVITY_MIN; INFINITY: the result is the emissivity
  *   Output   above 0 to the emissivity; 0 if the emissivity is 0
@@ -868,7 +870,7 @@ double fibrad_node_emissivity(double emissivity, double conductivity);
  *            rays: rays traced; may be NULL
  *   Errors   as fibrad_beam_row. The emissivities of sphere i, of walls, and of spheres that are met are checked.
  *   Cost     the beam row, and 0.1 to 0.2 microseconds per ray. A path has about 2 rays at emissivity 0.8 and 14 at
- *            0.2. Of spheres that conduct, the emissivity of the nodes counts. If work memory may grow, this function
+ *            0.2. For spheres that conduct, take the emissivity of the nodes. If work memory may grow, this function
  *            takes up to 6 MB more, for speed.
  *   Source   docs/methods_heat.md section 2 */
 int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,

@@ -97,7 +97,7 @@ double fibrad_furnace_temperature(double e);
  *   Source   docs/furnace.md */
 int fibrad_furnace_theta(fibrad_furnace *furnace, double theta);
 
-/* A quarter of the incident radiation, which the medium scatters. */
+/* What the medium scatters is a quarter of the incident radiation. This says how that quarter is computed. */
 typedef enum fibrad_furnace_scatter {
     FIBRAD_SCATTER_SIX_FLUX = 0, /* a sixth of the sum of the six fluxes, as in the paper */
     FIBRAD_SCATTER_EXACT = 1     /* E - source/(4 absorption), exact in equilibrium */
@@ -180,8 +180,7 @@ int fibrad_furnace_trace(const fibrad_furnace *furnace, fibrad_furnace_tally *ta
  *   Cost     O(cells) */
 int fibrad_furnace_tally_add(fibrad_furnace_tally *to, const fibrad_furnace_tally *from);
 
-/* Which ratio is taken for Theta. F_n is the sum of w cos^n over the bundles that cross a face, w being their energy.
- * */
+/* Which ratio is taken for Theta. F_n is the sum of w cos^n over the bundles that cross a face. w is their energy. */
 typedef enum fibrad_furnace_estimator {
     FIBRAD_THETA_DEFINITION = 0, /* F1/F0, the ratio of equations 1 and 2; 2/3 for isotropic radiation */
     FIBRAD_THETA_PAPER = 1       /* F2/F1, equation 9 read for bundles of energy; 3/4 for isotropic radiation */

@@ -52,7 +52,7 @@ typedef struct fibrad_heat fibrad_heat;
 size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *scene);
 
 /* Makes a heat problem. The scene must stay as it is until fibrad_heat_move.
- *   Input    memory[size]: at least fibrad_heat_size bytes. All bytes above are used for beams.
+ *   Input    memory[size]: at least fibrad_heat_size bytes. Further bytes are used for beams.
  *            config: NULL for all defaults
  *            scene: radii FIBRAD_HEAT_RADIUS_MIN to 1/FIBRAD_HEAT_RADIUS_MIN L
  *   Output   heat: a pointer into memory
@@ -64,7 +64,7 @@ int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad
 /* Goes on with another scene, or with the same scene rebuilt in place. All tasks must be traced again. The next
  * solution begins with the last one.
  *   Input    scene: the same number of spheres, the same walls in the same order, the same openings, and the same
- *            triangles, each of the same wall. Positions and sizes may be others.
+ *            triangles, each of the same wall. Positions and sizes may differ.
  *   Errors   _ARGUMENT, _STATE
  *            _SIZE: the walls have grown too much for the memory
  *            _UNSUPPORTED: a known region */
@@ -192,14 +192,14 @@ typedef struct fibrad_heat_result {
     double error_beams;             /* sigma K^4 L^2, out: root mean square error of power from beams */
     double residual;                /* out: of the radiosities, as `tolerance` */
     uint32_t sweeps;                /* out */
-    double *body_absorbed;          /* sigma K^4 L^2, [bodies], out: absorbed; if endless, near the bed; or NULL */
+    double *body_absorbed;          /* sigma K^4 L^2, [bodies], out: absorbed on body_area; may be NULL */
     double surroundings_error;      /* sigma K^4 L^2, out: estimated error of surroundings_power */
-    double *body_area;              /* L^2, [bodies], out: the area of body_power; if endless, near the bed; or NULL */
-    double *least_temperature;      /* K, [spheres], out: least of the surface; may be NULL */
-    double *largest_temperature;    /* K, [spheres], out: largest of the surface; may be NULL */
-    double *centre_temperature;     /* K, [spheres], out; may be NULL */
-    double *surface_error;          /* K, [spheres], out: estimated error of least and largest; may be NULL */
-    double *centre_error;           /* K, [spheres], out: estimated error of centre_temperature; may be NULL */
+    double *body_area;           /* L^2, [bodies], out: area; of an endless wall the part near the bed; may be NULL */
+    double *least_temperature;   /* K, [spheres], out: least of the surface; may be NULL */
+    double *largest_temperature; /* K, [spheres], out: largest of the surface; may be NULL */
+    double *centre_temperature;  /* K, [spheres], out; may be NULL */
+    double *surface_error;       /* K, [spheres], out: estimated error of least and largest; may be NULL */
+    double *centre_error;        /* K, [spheres], out: estimated error of centre_temperature; may be NULL */
 } fibrad_heat_result;
 
 /* Reads the solution.

@@ -56,7 +56,7 @@
 #define FIBRAD_HEAT_PATCHES_MAX        384
 #define FIBRAD_HEAT_PARTS_DEFAULT      8
 #define FIBRAD_HEAT_PARTS_MAX          1024
-#define FIBRAD_WALL_RAYS_DEFAULT       262144 /* at the least */
+#define FIBRAD_WALL_RAYS_DEFAULT       262144 /* least number of rays from all walls together */
 #define FIBRAD_WALL_RAYS_MAX           (1u << 30)
 
 /* Light from outside */

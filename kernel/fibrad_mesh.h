@@ -15,8 +15,8 @@
  * Spheres  A triangle may cut a sphere, as in settled beds. A part of the sphere's surface then lies beyond the
  *          triangle, as seen from the centre of the sphere. What this part emits meets the triangle at once.
  * Edges    Two triangles share an edge if their corners have equal coordinates. Nothing passes between them.
- * Walls    Planes and the cylinder bound the scene. The part of a triangle beyond a plane or the cylinder has no
- * effect. Periods  Triangles repeat along the periodic axes of the scene. Their corners may lie outside the box.
+ * Walls    Planes and the cylinder bound the scene. What lies beyond them of a triangle has no effect.
+ * Periods  Triangles repeat along the periodic axes of the scene. Their corners may lie outside the box.
  * Bounds   Let 2 l be the largest extent of all triangles together along any axis. No coordinate of corners, spheres
  *          and planes may be above 3e13 l. Let m = 2 + (extent of all triangles along an axis + largest diameter of a
  *          sphere)/period. The product of m over all periodic axes may be at most 4096. Otherwise fibrad_scene_init
@@ -44,7 +44,7 @@ extern "C" {
  *   const fibrad_triangles square = {.x = &at[0][0], .y = &at[0][1], .z = &at[0][2], .stride = 3, .vertices = 4,
  *                                    .corner = &corner[0][0], .front = front, .n = 2}; */
 typedef struct fibrad_triangles {
-    const double *x, *y, *z; /* L, vertex v is x[v stride], y[v stride], z[v stride]; at most as of spheres */
+    const double *x, *y, *z; /* L, vertex v is x[v stride], y[v stride], z[v stride]; bounds as of fibrad_spheres */
     uint32_t stride;         /* doubles; 0: 1 */
     uint32_t vertices;       /* number of vertices */
     const uint32_t *corner;  /* [n][3], vertices of each triangle; a triangle without area is never met */
@@ -84,7 +84,7 @@ typedef struct fibrad_side_view {
     double escaped; /* fraction that reaches the surroundings */
 } fibrad_side_view;
 
-/* The views of both sides of one triangle, by quasi-random rays from even points of the side. The result for a triangle
+/* The views of both sides of one triangle, by quasi-random rays from evenly spread points. The result for a triangle
  * does not depend on other calls.
  *   Input    place: 0 to triangles - 1, position in the order of the scene; neighbours in space mostly follow each
  *            other

@@ -71,10 +71,10 @@ int fibrad_surface_pair(double r1, double r2, double gap, const fibrad_spheres *
 /* Row i of the view factors of a scene, pair by pair.
  *
  * The obstacles of a pair are the spheres within the cutoff of sphere i. Sphere 1 of a pair is the one of lower index.
- * The z axis of a pair goes from sphere 1 to sphere 2. The x axis is a x z, where a is the coordinate axis that z has
- * least of, the first of equals. Hence rows are reciprocal, except for obstacles within the cutoff of one sphere of the
- * pair only. row->symmetric is 1. row->escaped is 1 - the sum of f. row->error is the root of the sum of the squared
- * errors of the pairs.
+ * The z axis of a pair goes from sphere 1 to sphere 2. The x axis is the cross product of a and z. a is the coordinate
+ * axis along which z has its smallest component. If several components are equally small, the first one counts. Hence
+ * rows are reciprocal, except for obstacles within the cutoff of one sphere of the pair only. row->symmetric is 1.
+ * row->escaped is 1 - the sum of f. row->error is the root of the sum of the squared errors of the pairs.
  *   Input    i: 0 to spheres - 1
  *            rule: NULL for all defaults
  *   Output   row
