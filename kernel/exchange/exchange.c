@@ -131,8 +131,8 @@ uint64_t fibrad_paths_begin(fibrad_paths *paths, uint64_t count) {
 }
 
 /* The Euclidean error of the sums over all paths, from the spread of four parts of the paths. Two parts might agree by
- * chance in rows of few entries. `weight`, that of one more path, is added, since a path may end where none has ended so
- * far. */
+ * chance in rows of few entries. `weight`, that of one more path, is added, since a path may end where none has ended
+ * so far. */
 static double spread_of_parts(const fibrad_entries *entries, double weight) {
     double square = 0;
     for (uint32_t k = 0; k < entries->length; k++) {
