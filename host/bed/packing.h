@@ -23,9 +23,9 @@ int bed_make_jammed(struct bed *bed, uint32_t n, double fraction, uint32_t sweep
 int bed_make_layer(struct bed *bed, uint32_t n, double fraction, uint32_t sweeps, uint64_t seed);
 
 /* Fills an empty bed with 4 cells^3 unit spheres at a solid fraction. They begin on a face-centred cubic lattice. Then
- * each moves at random 100 times, where it stays apart from others. Up to a fraction of about 0.5 the bed is then a
- * fluid of hard spheres, which has fewer contacts than a bed that was pushed apart. Above it keeps some of the order of
- * the lattice. Status 0, STATUS_MEMORY, or that of a signal. */
+ * each sphere tries 100 random moves. A move that would overlap another sphere is not made. Up to a solid fraction of
+ * about 0.5 the bed is then a fluid of hard spheres, which has fewer contacts than a bed that was pushed apart. At
+ * larger fractions the bed keeps some of the order of the lattice. Status 0, STATUS_MEMORY, or that of a signal. */
 int bed_make_shaken(struct bed *bed, uint32_t cells, double fraction, uint64_t seed);
 
 /* As bed_make_packing, with spheres of two sizes: `large` spheres of radius `ratio`, which come first, and spheres of

@@ -11,8 +11,11 @@
 
 static const char *const plane_names[PLANES] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
 
-static fibrad_body plane_at(int number, double at) {
-    return (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {number / 2, number % 2, at}};
+/* The plane of a side, whose number is that of its name in plane_names. */
+static fibrad_plane plane_at(int number, double at) { return (fibrad_plane){number / 2, number % 2, at}; }
+
+static fibrad_body wall_at(int number, double at) {
+    return (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = plane_at(number, at)};
 }
 
 static bool is_cylinder(const fibrad_body *wall) { return wall->kind == FIBRAD_BODY_CYLINDER; }
@@ -70,7 +73,7 @@ static int add_wall(struct wall_options *options, fibrad_body wall, bool placed)
 
 static int add_opening(struct walls *walls, int number, double at) {
     if (plane_of_side(walls, number)) return named_twice(plane_names[number]);
-    walls->opening[walls->openings++] = (fibrad_plane){number / 2, number % 2, at};
+    walls->opening[walls->openings++] = plane_at(number, at);
     return STATUS_OK;
 }
 
@@ -116,7 +119,7 @@ static int take_plane(const char *word, size_t length, const char **text, struct
         if (placed && !take_number(text, &at))
             return message(STATUS_USAGE, "--wall: %s= needs a number, or the word open", plane_names[k]);
         if (placed && take_text(text, ":open")) return add_opening(&options->walls, k, at);
-        return add_wall(options, plane_at(k, at), placed);
+        return add_wall(options, wall_at(k, at), placed);
     }
     return message(STATUS_USAGE,
                    "--wall: '%.40s' is none of auto, box, xmin ... zmax, cylinder:X,Y,R, mesh:FILE and NAME=mesh:FILE",
@@ -240,7 +243,7 @@ static int add_planes_of_box(struct wall_options *options, const struct bed *bed
                           "--wall auto needs a box in the file; --wall box takes the ends of the spheres");
     for (int k = 0; k < PLANES; ++k) {
         const bool wanted = options->box || (options->automatic && !(bed->period[k / 2] > 0));
-        if (wanted && !plane_of_side(&options->walls, k)) add_wall(options, plane_at(k, 0), false);
+        if (wanted && !plane_of_side(&options->walls, k)) add_wall(options, wall_at(k, 0), false);
     }
     return STATUS_OK;
 }

@@ -123,8 +123,8 @@ static double furnace_largest_change(const struct furnace_run *run, double *befo
     return largest;
 }
 
-/* The change of E of each cell that alone would balance the cell, by the divergence that bundles have measured [W/m2].
- */
+/* The change of E of each cell that would balance the cell if no other cell changed [W/m2]. The divergence is that
+ * which bundles have measured. */
 static void furnace_local_change(const struct furnace_run *run, double *local) {
     const fibrad_furnace_config *c = &run->config;
     for (size_t k = 0; k < furnace_cells(run); k++)

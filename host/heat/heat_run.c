@@ -128,9 +128,9 @@ static void heat_scale(const struct bed *bed, uint32_t walls, double square_metr
     result->error_beams *= square_metres;
 }
 
-/* Defaults. _BEGIN: directions with --error. _BRIGHT: directions if the mean emissivity is at most BRIGHT and patches
- * are at most PATCHES_BRIGHT; patches then err more than so few directions do, the fewest for which half of the beams
- * are left out. _DARK: directions otherwise. Source: docs/heat.md, Settings. */
+/* Default numbers of directions. _BEGIN: with --error. _BRIGHT: if the mean emissivity is at most BRIGHT and there are
+ * at most PATCHES_BRIGHT patches. Patches then err more than so few directions do. With still fewer directions all
+ * beams would be kept instead of half of them. _DARK: otherwise. Source: docs/heat.md, Settings. */
 enum {
     DIRECTIONS_BEGIN = 72,
     DIRECTIONS_DARK = FIBRAD_HEAT_DIRECTIONS_DEFAULT,
@@ -140,9 +140,8 @@ enum {
 #define BRIGHT 0.35
 #define POINTS 64
 
-/* Its configuration with directions for the emissivities of a bed. */
-/* problem->config with defaults filled in. The number of directions follows from the emissivities of the bed, and with
- * problem->error is the one to begin with. */
+/* problem->config with defaults filled in. The number of directions follows from the emissivities of the bed. With
+ * problem->error it is the number to begin with. */
 static fibrad_heat_config heat_config(const struct heat_problem *problem, const struct bed *bed) {
     fibrad_heat_config config = problem->config;
     double areas = 0, sum = 0;

@@ -373,7 +373,8 @@ static void print_summary(struct time_run *m, const double *before, double secon
     report_end(report);
 }
 
-/* Inside, spheres are taken to be steady. Warns where a sphere takes longer for that than a step, or than all of it. */
+/* The inside of each sphere is taken to be steady. Warns if a sphere takes longer to become steady than a step, or than
+ * the whole run. */
 static void warn_lag(const struct time_run *m) {
     const double step = m->steps > 0 ? m->time->until / (double)m->steps : m->time->until;
     if (!(m->lag > 0)) return;

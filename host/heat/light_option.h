@@ -81,8 +81,8 @@ int light_refuse(const struct light_state *state, const struct bed *bed, int sta
 /* Multiplies all powers by a number. */
 void light_scale(struct light_state *state, uint32_t spheres, uint32_t walls, double factor);
 
-/* What of the light heats an insulated wall, or any other: adds to the net powers of a result what is absorbed, and to
- * its errors. */
+/* Adds the absorbed light to the net powers of a result, and its errors to theirs. Insulated walls are left out: they
+ * give off what they absorb. */
 void light_add(const struct light_state *state, const fibrad_heat_sources *sources, uint32_t spheres, uint32_t walls,
                fibrad_heat_result *result);
 

@@ -18,8 +18,8 @@ struct light_bins {
     double width;
 };
 
-/* Divides the extent of the spheres along the axis. A bin is one mean diameter, if their number is not given, but the
- * last may reach beyond. Status 0 or STATUS_MEMORY. */
+/* Divides the extent of the spheres along the axis into bins. If the number of bins is not given, a bin is one mean
+ * diameter wide, and the last one may reach beyond the spheres. Status 0 or STATUS_MEMORY. */
 static int make_bins(const struct light_options *options, const struct bed *bed, struct light_bins *bins) {
     const double *at = options->axis == 'x' ? bed->x : options->axis == 'y' ? bed->y : bed->z;
     double low = INFINITY, high = -INFINITY, diameter = 0;

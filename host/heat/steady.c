@@ -32,8 +32,7 @@ static struct walls steady_plates(const struct bed *bed, int axis) {
     return plates;
 }
 
-/* Temperatures of the plates, T over that between them. Where spheres conduct they differ so little that k* is the same
- * everywhere. */
+/* Temperatures of the plates over their mean. They differ so little that k* of spheres is the same everywhere. */
 #define HOTTER 1.0005
 #define COLDER 0.9995
 

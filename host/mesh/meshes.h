@@ -57,12 +57,12 @@ int meshes_take(struct meshes *meshes, const struct mesh_file *file, const struc
  * STATUS_MEMORY. */
 int meshes_face(struct meshes *meshes, const fibrad_spheres *spheres, const double period[3]);
 
-/* 1: this side of a triangle is a wall, and the triangle is of a closed component with a wall on one side only. -1: the
- * other side is that wall. 0: any other triangle. */
+/* For a triangle of a closed component with a wall on one side only: 1 if this side is the wall, -1 if the other side
+ * is. 0: any other triangle. */
 int meshes_side(const struct meshes *meshes, uint32_t triangle, bool back);
 
-/* The name of a wall behind which a sphere lies wholly, of a closed component with a wall on one side only. NULL: there
- * is none. Cost: all triangles are looked at. */
+/* A sphere may lie wholly behind the wall of a closed component that has a wall on one side only. Returns the name of
+ * this wall. NULL: there is none. Cost: all triangles are looked at. */
 const char *meshes_beyond(const struct meshes *meshes, const double centre[3], double r, const double period[3]);
 
 /* The mesh of a triangle or of a wall. NULL: there is none. */

@@ -106,8 +106,7 @@ static int begin(fibrad_network *w, fibrad_team *team, const fibrad_heat_sources
 }
 
 /* Finds the next search direction: the preconditioned residual plus `keep` times the last direction. Returns residual
- * times preconditioned residual. *missing: 1 if a sphere misses more power than `allowed` and than rounding explains.
- */
+ * times preconditioned residual. *missing: 1 if a sphere misses more power than both `allowed` and rounding error. */
 static double turn(fibrad_network *w, const fibrad_heat_sources *s, const double *allowed, double last, int *missing) {
     const double rounding = 1e-14;
     const uint32_t n = w->factors->matrix.n;

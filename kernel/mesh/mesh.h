@@ -1,9 +1,8 @@
 /* mesh.h - triangles in a tree of boxes. SPDX-License-Identifier: MIT
  *
- * Triangles are numbered in the order of the tree. Each has two sides, front and back. A
- * line meets a triangle if three areas in the plane across the line have one sign. For two triangles at an edge, their
- * areas at this edge are exactly opposite. Hence nothing passes between the triangles. A triangle that is seen edge-on
- * is not met. */
+ * Triangles are numbered in the order of the tree. Each has two sides, front and back. A line meets a triangle if three
+ * areas in the plane across the line have one sign. If two triangles share an edge, their areas at this edge are
+ * exactly opposite. Hence nothing passes between the triangles. A triangle that is seen edge-on is not met. */
 #ifndef FIBRAD_MESH_MESH_H
 #define FIBRAD_MESH_MESH_H
 
@@ -26,8 +25,8 @@
  * mesh->extent. A box that does not exist has negative edges. */
 typedef struct fibrad_mesh_node {
     float middle[3][FIBRAD_MESH_WIDE], half[3][FIBRAD_MESH_WIDE];
-    uint32_t child[FIBRAD_MESH_WIDE]; /* a node: 16 times its index. A leaf: 16 times its first triangle, plus the
-                                         number of its triangles */
+    uint32_t child[FIBRAD_MESH_WIDE]; /* 16 times the index of a node; or, for a leaf, 16 times its first triangle
+                                         plus the number of its triangles */
 } fibrad_mesh_node;
 
 static inline uint32_t fibrad_mesh_leaf(uint32_t child) { return child % 16; } /* number of triangles; 0: a node */
@@ -49,13 +48,13 @@ typedef struct fibrad_mesh {
     uint32_t first[FIBRAD_BODIES_MAX + 1]; /* first element of side and area of each mesh */
 } fibrad_mesh;
 
-/* The side of a triangle, and back. */
+/* The side of a triangle; the triangle of a side, and whether the side is its back. */
 static inline uint32_t fibrad_side(uint32_t triangle, bool back) { return 2 * triangle + back; }
 static inline uint32_t fibrad_side_triangle(uint32_t side) { return side / 2; }
 static inline bool fibrad_side_is_back(uint32_t side) { return side % 2 != 0; }
 
-/* Of a side: the mesh, or FIBRAD_NO_MESH; the caller's number of the triangle; the side of the triangle with this
- * number. */
+/* The mesh of a side, or FIBRAD_NO_MESH; the caller's number of its triangle; the number of the side in the caller's
+ * order, which is 2 times that number, plus 1 for backs. */
 static inline uint8_t fibrad_side_mesh(const fibrad_mesh *mesh, uint32_t side) {
     return mesh->mesh[fibrad_side_triangle(side)][fibrad_side_is_back(side)];
 }

@@ -64,14 +64,12 @@ bool LANED(fibrad_surface_filter)(fibrad_surface_task *task, const fibrad_surfac
     return hidden;
 }
 
-/* Fills `list` with the obstacles that can hide a part of sphere 2 from the node (x, y, z) of sphere 1. Their
- * positions are relative to the node. Their power
- * c
- * ^2 - r^2 takes the place of the radius. Returns true if all of sphere 2 is hidden. As seen from the node, sphere 2
- * and an obstacle are two cones. The scalar product of their axes tells whether they are apart and whether one lies
- * within the other. Obstacles below the horizon of the node do not count. Obstacles beyond the farthest visible
- * points of sphere 2 do not count either; these are as far as a tangent is long. From a node inside an obstacle
- * nothing is visible. */
+/* Fills `list` with the obstacles that can hide a part of sphere 2 from the node (x, y, z) of sphere 1. The positions
+ * in the list are relative to the node. The power c^2 - r^2 takes the place of the radius. Returns true if all of
+ * sphere 2 is hidden. As seen from the node, sphere 2 and an obstacle are two cones. The scalar product of their axes
+ * tells whether they are apart and whether one lies within the other. Obstacles below the horizon of the node do not
+ * count. The farthest visible points of sphere 2 are as far as a tangent is long. Obstacles beyond them do not count.
+ * From a node inside an obstacle nothing is visible. */
 static bool obstacles_of_node(const fibrad_surface_task *task, double x, double y, double z, fibrad_obstacles *list) {
     const fibrad_obstacles *all = &task->obstacles;
     const double axis_z = task->d - z, far2 = x * x + y * y + axis_z * axis_z;
