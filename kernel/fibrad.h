@@ -19,7 +19,8 @@
  *   silhouettes  all rows at once, without averaging    fibrad_silhouettes_size, _init, _tasks, _task, _join, _row
  *   drift      which rows may stay when spheres move    fibrad_drift_row, _partners
  *   exchange   factors after reflections (grey)         fibrad_exchange_row, _body, _body_mean, _displacement
- *              spheres that conduct                     fibrad_node_emissivity, fibrad_exchange_walk
+ *              spheres that conduct                     fibrad_relative_conductivity, fibrad_node_emissivity,
+ *                                                       fibrad_exchange_walk
  *              powers from rows                         fibrad_rows_flow, fibrad_flow
  *
  * Other headers
@@ -836,12 +837,20 @@ typedef struct fibrad_exchange_rule {
     uint64_t seed;    /* of random numbers, with the sphere's id; also the `turn` of the first leg */
     double cutoff;    /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
     double tolerance; /* the error allowed; directions and paths are added until it is met; 0: none */
-    /* [spheres], relative conductivity k* = k_s/(4 d sigma T^3) with the conductivity k_s of the solid, the diameter d
-     * and the mean temperature T; from FIBRAD_RELATIVE_CONDUCTIVITY_MIN, INFINITY: the sphere has one temperature */
+    /* [spheres], fibrad_relative_conductivity of each, from FIBRAD_RELATIVE_CONDUCTIVITY_MIN; INFINITY: the sphere has
+     * one temperature */
     const double *conductivity;
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: one temperature a sphere */
     uint32_t flights;              /* of _walk, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
 } fibrad_exchange_rule;
+
+/* The relative conductivity k* = k_s/(4 d sigma T^3) of a sphere of diameter d. The smaller k* is, the more does
+ * temperature differ from point to point of the sphere.
+ *   Input    conductivity: k_s of the solid. In SI units [W/(m K)]
+ *            radius, temperature: of the sphere. In SI units [m], [K]
+ *            sigma: the Stefan-Boltzmann constant in the same units, in SI units FIBRAD_STEFAN_BOLTZMANN
+ *   Output   INFINITY at the temperature 0; NaN if an argument is NaN */
+double fibrad_relative_conductivity(double conductivity, double radius, double temperature, double sigma);
 
 /* The emissivity of a node. The temperature of a sphere that conducts differs from point to point. In rows with
  * rule->node_emissivity such a sphere is represented by a node, which has one value N_i. Let E_i be sigma T_i^4 at the

@@ -141,7 +141,7 @@ int conduction_emitters(const struct bed *bed, int axis, double margin, const ch
                         struct conduction *result) {
     struct core core;
     double solid = 0, emitting = 0;
-    *result = (struct conduction){.temperature = NAN, .k_star = NAN};
+    *result = (struct conduction){.temperature = NAN};
     for (int a = 0; a < 3; ++a) result->steady[a] = result->steady_error[a] = NAN;
     for (uint32_t i = 0; i < bed->n; ++i) result->diameter += 2 * bed->r[i] / bed->n;
     const int status = find_core(bed, axis, margin, file, result->diameter, &core);
@@ -285,14 +285,13 @@ static int search(const struct bed *bed, const unsigned char *emits, const struc
 /* Describes k* of the spheres, and chooses the flights whose displacements are correlated. What keeps displacements
  * correlated is reflection: that of patterns of degree 1 included, whose emissivity is 1/(1/e + 1/(2 k*)). */
 static void describe_conducting(const struct bed *bed, const struct conduction_rule *rule, struct conduction *result) {
-    double least = 1, low = INFINITY, high = 0, sum = 0;
+    double least = 1;
     if (!rule->conductivity) return;
     for (uint32_t i = 0; i < bed->n; ++i) {
         const double k = rule->conductivity[i];
-        low = fmin(low, k), high = fmax(high, k), sum += k / bed->n;
+        k_star_add(&result->k_star, k);
         least = fmin(least, conduction_effective(rule->emissivity[i], k));
     }
-    result->k_star = sum, result->k_star_range[0] = low, result->k_star_range[1] = high;
     result->flights = least >= .1 ? FIBRAD_FLIGHTS_DEFAULT : least >= .01 ? FLIGHTS_SLOW : FLIGHTS_SLOWEST;
 }
 
@@ -348,6 +347,15 @@ int conduction_isothermal(const struct bed *bed, const unsigned char *emits, con
     *conductivity = weighted / area / (2 * over) * 4 * FIBRAD_STEFAN_BOLTZMANN * pow(result->temperature, 3);
     return FIBRAD_OK;
 }
+
+void k_star_add(struct k_star *all, double relative) {
+    if (isnan(relative)) return;
+    if (all->spheres++ == 0) all->least = INFINITY;
+    all->least = fmin(all->least, relative), all->largest = fmax(all->largest, relative);
+    all->sum += relative;
+}
+
+double k_star_mean(const struct k_star *all) { return all->sum / all->spheres; }
 
 double conduction_effective(double emissivity, double relative) {
     return emissivity > 0 ? 1 / (1 / emissivity + 1 / (2 * relative)) : 0;

@@ -19,6 +19,18 @@
 /* The same for spheres that conduct: walks get farther than the emission of one sphere. */
 #define CONDUCTION_MARGIN_WALK 8.0
 
+/* The relative conductivities k* of the spheres of a bed, fibrad_relative_conductivity. Begin with zeroes. */
+struct k_star {
+    double sum, least, largest;
+    uint32_t spheres; /* whose k* were added; 0: spheres do not conduct */
+};
+
+/* Adds k* of a sphere. NaN, of a sphere without a temperature, is left out. */
+void k_star_add(struct k_star *all, double relative);
+
+/* The mean of all that were added. */
+double k_star_mean(const struct k_star *all);
+
 struct conduction_rule {
     const double *emissivity;   /* [n] of the spheres */
     const double *conductivity; /* [n] k* of the spheres; NULL: each sphere has one temperature */
@@ -43,7 +55,7 @@ struct conduction {
     int axis;                          /* the wanted axis; -1: all three */
     double temperature;                /* [K]; NaN: k is not known */
     double k[3], k_error[3];           /* [W/(m K)] */
-    double k_star, k_star_range[2];    /* mean, least and largest k*; NaN: spheres do not conduct */
+    struct k_star k_star;
     /* increase of F_E if flights may be e times as long, because of slabs without spheres */
     double growth[3];
     /* concentration of the variance in few groups of paths: sum of squares over squared sum, less that due to sizes */

@@ -191,7 +191,7 @@ static void conductivity_report(struct conductivity_request *request, const stru
     char unreliable[4];
     bed_options_report(&request->bed, bed, &none, NULL);
     quantity_report(&request->emissivity, "emissivity", report);
-    if (request->solid.given) solid_report(&request->solid, result->k_star, result->k_star_range, report);
+    if (request->solid.given) solid_report(&request->solid, &result->k_star, report);
     report_count(report, "emitters", result->emitters);
     report_value(report, "diameter", result->diameter, 6);
     report_value(report, "solid_fraction", result->solid_fraction, 4);

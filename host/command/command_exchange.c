@@ -146,13 +146,11 @@ static int exchange_parse(struct exchange_request *request, int argc, char **arg
 static void exchange_report_solid(struct exchange_request *request, uint32_t n) {
     const double *relative = request->rule.conductivity, *node = request->rule.node_emissivity;
     struct report *report = &request->bed.report;
-    double mean = 0, mean_node = 0, range[2] = {INFINITY, 0};
-    for (uint32_t i = 0; i < n; ++i) {
-        range[0] = fmin(range[0], relative[i]), range[1] = fmax(range[1], relative[i]);
-        mean += relative[i] / n, mean_node += node[i] / n;
-    }
+    struct k_star all = {0};
+    double mean_node = 0;
+    for (uint32_t i = 0; i < n; ++i) k_star_add(&all, relative[i]), mean_node += node[i] / n;
     quantity_report(&request->temperature, request->zero > 0 ? "temperature_C" : "temperature_K", report);
-    solid_report(&request->solid, mean, range, report);
+    solid_report(&request->solid, &all, report);
     report_value(report, "node_emissivity", mean_node, 6);
 }
 

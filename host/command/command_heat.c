@@ -252,16 +252,11 @@ static int heat_parse(struct heat_request *request, int argc, char **argv) {
 /* Reports conductivities of the solid, and what surfaces and centres are like. */
 static void heat_print_solid(struct heat_request *request, const struct bed *bed, const struct heat_report *heat) {
     struct report *report = &request->bed.report;
-    double mean = 0, range[2] = {INFINITY, 0};
-    uint32_t n = 0;
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        const double t = heat->result.temperature[i], d = 2 * bed->r[i] * heat->metres;
-        const double relative = request->problem.solid[i] / (4 * d * FIBRAD_STEFAN_BOLTZMANN * t * t * t);
-        if (isnan(t)) continue; /* it reflects all */
-        range[0] = fmin(range[0], relative), range[1] = fmax(range[1], relative);
-        mean += relative, ++n;
-    }
-    if (n > 0) solid_report(&request->solid, mean / n, range, report);
+    struct k_star all = {0};
+    for (uint32_t i = 0; i < bed->n; ++i) /* a sphere that reflects all has no temperature */
+        k_star_add(&all, fibrad_relative_conductivity(request->problem.solid[i], bed->r[i] * heat->metres,
+                                                      heat->result.temperature[i], FIBRAD_STEFAN_BOLTZMANN));
+    if (all.spheres > 0) solid_report(&request->solid, &all, report);
     report_measured(report, "surface_min_K", heat->surface_min, heat->surface_error);
     report_measured(report, "surface_max_K", heat->surface_max, heat->surface_error);
     report_measured(report, "surface_span_K", heat->surface_span, heat->surface_error);

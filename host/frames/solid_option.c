@@ -1,8 +1,6 @@
 /* solid_option.c - the conductivity of the solid that spheres are made of. SPDX-License-Identifier: MIT */
 #include "frames/solid_option.h"
 
-#include <math.h>
-
 #include "cli/message.h"
 
 int solid_option(const char *text, struct quantity *solid) {
@@ -24,8 +22,8 @@ int solid_relative(const struct bed_options *options, const struct bed *bed, con
                    const double *temperature, double metres, double *conductivity, double *relative) {
     quantity_follow(solid, bed, temperature, conductivity);
     for (uint32_t i = 0; i < bed->n; ++i) {
-        const double d = 2 * bed->r[i] * metres;
-        relative[i] = conductivity[i] / (4 * d * FIBRAD_STEFAN_BOLTZMANN * pow(temperature[i], 3));
+        relative[i] =
+            fibrad_relative_conductivity(conductivity[i], bed->r[i] * metres, temperature[i], FIBRAD_STEFAN_BOLTZMANN);
         if (relative[i] < FIBRAD_RELATIVE_CONDUCTIVITY_MIN)
             return message_at(STATUS_INPUT, options->name, bed->line[i],
                               "sphere %lld: k_s/(4 d sigma T^3) is %g; it must be at least %g",
@@ -34,10 +32,10 @@ int solid_relative(const struct bed_options *options, const struct bed *bed, con
     return STATUS_OK;
 }
 
-void solid_report(const struct quantity *solid, double mean, const double range[2], struct report *report) {
+void solid_report(const struct quantity *solid, const struct k_star *all, struct report *report) {
     quantity_report(solid, "solid_conductivity", report);
-    report_value(report, "k_star", mean, 4);
-    if (range[0] == range[1]) return;
-    report_value(report, "k_star_min", range[0], 4);
-    report_value(report, "k_star_max", range[1], 4);
+    report_value(report, "k_star", k_star_mean(all), 4);
+    if (all->least == all->largest) return;
+    report_value(report, "k_star_min", all->least, 4);
+    report_value(report, "k_star_max", all->largest, 4);
 }

@@ -5,6 +5,7 @@
 #ifndef SOLID_OPTION_H
 #define SOLID_OPTION_H
 
+#include "bed/conduction.h"
 #include "frames/bed_options.h"
 
 /* Bounds of k_s [W/(m K)]. */
@@ -33,6 +34,6 @@ int solid_relative(const struct bed_options *options, const struct bed *bed, con
                    const double *temperature, double metres, double *conductivity, double *relative);
 
 /* Reports --solid-conductivity and the mean k* of the spheres, and the least and the largest one if they differ. */
-void solid_report(const struct quantity *solid, double mean, const double range[2], struct report *report);
+void solid_report(const struct quantity *solid, const struct k_star *all, struct report *report);
 
 #endif

@@ -211,7 +211,7 @@ int write_conduction_csv(FILE *file, const struct contents *what, bool first) {
         *at++ = conduction_flights(conduction, axis) == FLIGHTS_SETTLED ? '1' : '0';
         at = put_error(put_comma(at), conduction->steady[axis]);
         at = put_error(put_comma(at), conduction->steady_error[axis]);
-        at = put_error(put_comma(at), conduction->k_star);
+        at = put_error(put_comma(at), k_star_mean(&conduction->k_star));
         end_line(&csv, at, "");
     }
     return STATUS_OK;

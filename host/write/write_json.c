@@ -146,10 +146,10 @@ int write_conduction_json(FILE *file, const struct contents *what, bool first) {
     const char *comma = "";
     (void)first;
     json_frame(file, what, "conduction");
-    if (!isnan(conduction->k_star)) {
-        json_entry(file, "k_star", conduction->k_star);
-        json_entry(file, "k_star_min", conduction->k_star_range[0]);
-        json_entry(file, "k_star_max", conduction->k_star_range[1]);
+    if (conduction->k_star.spheres > 0) {
+        json_entry(file, "k_star", k_star_mean(&conduction->k_star));
+        json_entry(file, "k_star_min", conduction->k_star.least);
+        json_entry(file, "k_star_max", conduction->k_star.largest);
     }
     fputs(",\"axes\":[", file);
     for (int axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,4 @@
-/* conducting.c - the part of the absorbed heat that a ball gives off evenly. SPDX-License-Identifier: MIT */
+/* conducting.c - relative conductivity, and what a ball gives off evenly. SPDX-License-Identifier: MIT */
 #include "exchange/conducting.h"
 
 #include "fibrad.h"
@@ -28,6 +28,10 @@ double fibrad_conducted_evenly(double a) {
     double b = (1 + above_leading(z)) / (2 * z);
     for (int k = SERIES_FROM; k > 0; k--) b = 1 / (a + k) - b;
     return 1 - a + a * (2 * a - 1) * b;
+}
+
+double fibrad_relative_conductivity(double conductivity, double radius, double temperature, double sigma) {
+    return conductivity / (8 * radius * sigma * temperature * temperature * temperature);
 }
 
 double fibrad_node_emissivity(double emissivity, double conductivity) {

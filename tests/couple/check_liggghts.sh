@@ -89,6 +89,27 @@ run none 2 'setforce 0 0 0' 200 -in bed
 echo "$(value own conduction_and_sources) $(value none conduction_and_sources)" |
     awk '{ printf "a source of 1.176 J brings %.4f J\n", $1 - $2; exit !($1 - $2 > 1.1 && $1 - $2 < 1.18) }' || complain "the own source is lost"
 
+# Particles that conduct, at 1000 K on a floor of 1200 K: the powers of fibrad heat, where one temperature a particle
+# would bring 15 % more; energy, at temperatures that rise
+sed 's/initial_temperature 300/initial_temperature 1000/' bed >warm
+radiation='--emissivity 0.8 --surroundings 900 --wall zlo=1200,0.9 --solid-conductivity 0.68'
+"$fibrad" heat bed.csv --emissivity 0.8 --temperature 1000 --ambient 900 --wall zmin=0 --wall-temperature 1200 --wall-emissivity 0.9 \
+    --length-unit m --directions 600 --solid-conductivity 0.68 -o heat.csv >/dev/null 2>&1 || complain "no powers of fibrad heat"
+for ranks in 1 2; do
+    { cat warm && echo 'fix fibradPower all property/atom fibradPower scalar yes no no 0' &&
+        echo "dump powers all custom 1 powers$ranks id f_fibradPower" && echo 'dump_modify powers sort id format "%d %.17g"'; } >conduct$ranks
+    run conducts$ranks $ranks 'setforce 0 0 0' 0 -in conduct$ranks --tolerance 0.01
+    awk -F'[ ,]' -v ranks=$ranks 'NR == FNR && $1 ~ /^[0-9]/ { q[$1 + 1] = $3 }
+        NR > FNR && NF == 3 && $1 in q { off += ($2 - q[$1])^2; all += q[$1]^2; found += $2; truth += q[$1]; n++ }
+        END {
+            printf "%d rank(s): powers that conduct %.4f W, %.4f W by patches; each off by %.2g\n", ranks, found, truth, sqrt(off / all)
+            exit !(n == 294 && (found / truth - 1)^2 < 1e-4 && off < .08^2 * all) }' heat.csv powers$ranks ||
+        complain "$ranks rank(s): particles that conduct have other powers"
+done
+run warming 2 'setforce 0 0 0' 400 -in warm --rows 200
+energy warming 400
+radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
+
 # Meshes of the script. A box of triangles against planes in its place
 quad() { # NAME CORNER CORNER CORNER CORNER: two triangles
     printf 'solid %s\n' "$1"
@@ -164,11 +185,17 @@ refuse 1 2 "--surroundings is missing" -in bed --emissivity 0.8 --steps 1
 refuse 1 2 "the script is missing" --emissivity 0.8 --surroundings 300 --steps 1
 refuse 1 2 "unknown option: --bad" -in bed --bad 3
 refuse 1 2 "'1.2' is not a number from 0 to 1" -in bed --emissivity 1.2
+refuse 1 2 "solid-conductivity: '0' is not a number above 0" -in bed --solid-conductivity 0
+refuse 1 2 "solid-conductivity: '5,nan' is not a number above 0" -in bed --solid-conductivity 5,nan
 refuse 1 2 "none of SIDE=T,E" -in bed --wall floor=300,1
 refuse 1 2 "neither ID=E" -in bed --mesh lid=0.9:up
 refuse 1 2 "'lid=700,0.9' is of a mesh that was named already" -in bed --mesh lid=0.9 --mesh lid=700,0.9
 refuse 1 2 "not a multiple" -in bed --emissivity 1 --surroundings 300 --steps 1 --every 20 --rows 30
 refuse 2 3 "2 emissivities for 1 types" -in bed --emissivity .5,.6 --surroundings 300 --steps 1
+# shellcheck disable=SC2086
+refuse 2 3 "2 conductivities of the solid for 1 types" -in bed $radiation --solid-conductivity 5,6 --steps 1
+# shellcheck disable=SC2086
+refuse 2 3 "step 0: particle [0-9]*: its relative conductivity .* is not at least 1e-06" -in bed $radiation --solid-conductivity 1e-9 --steps 1
 # shellcheck disable=SC2086
 refuse 2 3 "cools down in" -in bed $radiation --steps 1 --every 1000000 --rows 1000000
 # shellcheck disable=SC2086

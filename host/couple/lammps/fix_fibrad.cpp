@@ -568,13 +568,13 @@ std::vector<double> FixFibrad::temperatures() {
     return t;
 }
 
-// k* = k_s/(4 d sigma T^3), at the present temperatures. The rows keep it until they are made again.
+// k* at the present temperatures. The rows keep it until they are made again.
 std::vector<double> FixFibrad::conductivities() {
     if (!solid.given()) return {};
     std::vector<double> relative = values(solid);
     const std::vector<double> t = temperatures();
     for (size_t k = 0; k < relative.size(); k++)
-        relative[k] /= 8 * atom->radius[member[k]] * sigma * t[k] * t[k] * t[k];
+        relative[k] = fibrad_relative_conductivity(relative[k], atom->radius[member[k]], t[k], sigma);
     return relative;
 }
 

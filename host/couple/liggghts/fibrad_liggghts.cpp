@@ -56,6 +56,7 @@ struct Driver {
     Fix *temperature, *source, *power, *capacity;                 /* properties of particles, and of types */
     std::vector<uint64_t> id;                                     /* [own] */
     std::vector<double> emissivity, gain;                         /* [own] */
+    std::vector<double> conductivity;                             /* [own], k* when rows are made; empty: infinite */
     fibrad_insitu_totals totals;                                  /* of the current powers */
     bool radiates;                                                /* there are powers */
     bool told_cut;                                                /* the warning about the cutoff was given */
@@ -110,15 +111,22 @@ void find_properties(Driver *driver) {
     driver->power = property(driver, "fibradPower", "property/atom", "scalar", "fix fibradPower");
 }
 
+/* Makes one value for all types a value per type. */
+void expand(std::vector<double> *values, int ntypes, const char *what) {
+    const size_t types = (size_t)ntypes, given = values->size();
+    if (given > 1 && given != types)
+        stop(WRONG_INPUT, std::to_string(given) + " " + what + " for " + std::to_string(types) + " types");
+    if (given == 1) values->resize(types, values->front());
+}
+
 void find_units(Driver *driver) {
     const char *units = driver->lmp->update->unit_style;
     const bool cgs = std::strcmp(units, "cgs") == 0;
     if (!cgs && std::strcmp(units, "si") != 0) stop(WRONG_INPUT, std::string("units are si or cgs, not ") + units);
     driver->sigma = cgs ? 1e3 * FIBRAD_STEFAN_BOLTZMANN : FIBRAD_STEFAN_BOLTZMANN;
-    const size_t types = (size_t)driver->lmp->atom->ntypes, given = driver->options.emissivity.size();
-    if (given != 1 && given != types)
-        stop(WRONG_INPUT, std::to_string(given) + " emissivities for " + std::to_string(types) + " types");
-    driver->options.emissivity.resize(types, driver->options.emissivity[0]);
+    const int types = driver->lmp->atom->ntypes;
+    expand(&driver->options.emissivity, types, "emissivities");
+    expand(&driver->options.solid, types, "conductivities of the solid");
 }
 
 void place_walls(Driver *driver) {
@@ -176,6 +184,17 @@ void take_particles(Driver *driver) {
         driver->id[i] = (uint64_t)atom->tag[i];
         driver->emissivity[i] = driver->options.emissivity[(size_t)atom->type[i] - 1];
     }
+}
+
+/* Finds k* at the present temperatures. The rows keep it until they are made again. */
+void find_conductivities(Driver *driver) {
+    const LAMMPS_NS::Atom *atom = driver->lmp->atom;
+    driver->conductivity.clear();
+    if (driver->options.solid.empty()) return;
+    for (int i = 0; i < atom->nlocal; ++i)
+        driver->conductivity.push_back(
+            fibrad_relative_conductivity(driver->options.solid[(size_t)atom->type[i] - 1], atom->radius[i],
+                                         driver->temperature->vector_atom[i], driver->sigma));
 }
 
 double heat_capacity(const Driver *driver, int i) {
@@ -317,6 +336,8 @@ void make_rows(Driver *driver, bool follow) {
     bed.x = bed.n > 0 ? atom->x[0] : nullptr;
     bed.radius = atom->radius;
     bed.emissivity = driver->emissivity.data();
+    find_conductivities(driver);
+    bed.conductivity = driver->options.solid.empty() ? nullptr : driver->conductivity.data();
     follow_meshes(driver);
     if (mesh_walls_face(&driver->triangles, MPI_COMM_WORLD, &bed) != 0) stop(WRONG_INPUT, "out of memory");
     const auto make = follow ? fibrad_insitu_follow : fibrad_insitu_rows;

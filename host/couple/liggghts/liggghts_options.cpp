@@ -14,6 +14,7 @@ namespace {
 
 const struct option names[] = {{"in", required_argument, nullptr, 'i'},
                                {"emissivity", required_argument, nullptr, 'e'},
+                               {"solid-conductivity", required_argument, nullptr, 'k'},
                                {"surroundings", required_argument, nullptr, 'T'},
                                {"wall", required_argument, nullptr, 'w'},
                                {"mesh", required_argument, nullptr, 'm'},
@@ -141,6 +142,9 @@ const char *take(int key, const char *text, liggghts_options *options) {
     case 'e':
         return numbers(text, 0, 1, &options->emissivity) ? nullptr
                                                          : "is not a number from 0 to 1, nor one for each type";
+    case 'k':
+        return numbers(text, 1e-300, 1e300, &options->solid) ? nullptr
+                                                             : "is not a number above 0, nor one for each type";
     case 'T':
         return number(text, 0, 1e9, &options->surroundings) ? nullptr : "is not a temperature";
     case 'w':
@@ -221,6 +225,9 @@ void liggghts_options_help() {
         "  -in SCRIPT               the script; a run in the script is without radiation\n"
         "  --steps N                steps to run with radiation\n"
         "  --emissivity E[,E...]    of all particles, 0 to 1, or of each type\n"
+        "  --solid-conductivity K[,K...]  of the solid of all particles, or of each type, in si W/(m K) [infinite: one "
+        "temperature\n"
+        "                           a particle]\n"
         "  --surroundings T         temperature [K] of what is seen where there is neither particle nor wall\n"
         "  --wall SIDE=T,E[,AT]     a plane wall that radiates: xlo ... zhi, temperature [K], emissivity, place [fixed "
         "end of the box]\n"

@@ -26,6 +26,7 @@ struct liggghts_options {
     const char *script = nullptr;
     const char *rows_file = nullptr; /* --write */
     std::vector<double> emissivity;  /* one for all types, or one per type */
+    std::vector<double> solid;       /* the same of the conductivity of the solid; empty: infinite */
     double surroundings = -1;        /* below 0: not given */
     std::vector<radiant_wall> walls;
     std::vector<fibrad_plane> openings; /* at NaN: at the end of the particles */
