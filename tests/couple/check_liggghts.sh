@@ -106,8 +106,8 @@ for ranks in 1 2; do
             exit !(n == 294 && (found / truth - 1)^2 < 1e-4 && off < .08^2 * all) }' heat.csv powers$ranks ||
         complain "$ranks rank(s): particles that conduct have other powers"
 done
-run warming 2 'setforce 0 0 0' 400 -in warm --rows 200
-energy warming 400
+run warming 2 'setforce 0 0 0' 600 -in warm --rows 300
+energy warming 600
 radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
 
 # Meshes of the script. A box of triangles against planes in its place
