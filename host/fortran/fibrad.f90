@@ -2,7 +2,7 @@
 !
 ! Index
 !   walls      fibrad_plane, fibrad_cylinder, fibrad_mesh; fibrad_triangles
-!   factors    fibrad_view_factors, fibrad_exchange_factors; fibrad_factors
+!   factors    fibrad_view_factors, fibrad_exchange_factors, fibrad_displacements; fibrad_factors
 !   heat       fibrad_heat: new, move, solve, settle, shine, free
 !   time       fibrad_transient: new, move, advance, free
 !   status     fibrad_status_text, fibrad_version, fibrad_layouts_agree
@@ -28,7 +28,7 @@ module fibrad
     implicit none
     private
     public :: fibrad_plane, fibrad_cylinder, fibrad_mesh, fibrad_view_factors, fibrad_exchange_factors
-    public :: fibrad_status_text, fibrad_version, fibrad_layouts_agree
+    public :: fibrad_displacements, fibrad_status_text, fibrad_version, fibrad_layouts_agree
 
     integer, parameter, public :: fibrad_ok = 0, fibrad_e_argument = -1, fibrad_e_geometry = -6, fibrad_e_state = -8, &
                                   fibrad_e_unsupported = -10, fibrad_e_memory = -11, fibrad_e_unsolvable = -13, &
@@ -156,6 +156,11 @@ module fibrad
         type(c_ptr) :: conductivity = c_null_ptr, node_emissivity = c_null_ptr
         integer(c_int32_t) :: flights = 0
     end type c_exchange_rule
+
+    type, bind(C) :: c_displacement
+        real(c_double) :: square(3) = 0, error(3) = 0, absorbed = 0
+        integer(c_int64_t) :: rays = 0
+    end type c_displacement
 
     type, bind(C) :: c_heat_config
         integer(c_int32_t) :: directions = 0, points = 0, patches = 0, parts = 0
@@ -291,6 +296,23 @@ module fibrad
             integer(c_int) :: c_exchange_factors
         end function c_exchange_factors
 
+        function c_displacements(config, spheres, rule, wanted, run, displacement, facts) bind(C, name="fibrad_displacements")
+            import :: c_int, c_ptr, c_scene_config, c_spheres, c_exchange_rule, c_run, c_displacement
+            type(c_scene_config), intent(in) :: config
+            type(c_spheres), intent(in) :: spheres
+            type(c_exchange_rule), intent(in) :: rule
+            type(c_ptr), value :: wanted, facts
+            type(c_run), intent(inout) :: run
+            type(c_displacement), intent(inout) :: displacement(*)
+            integer(c_int) :: c_displacements
+        end function c_displacements
+
+        function c_node_emissivity(emissivity, conductivity) bind(C, name="fibrad_node_emissivity")
+            import :: c_double
+            real(c_double), value :: emissivity, conductivity
+            real(c_double) :: c_node_emissivity
+        end function c_node_emissivity
+
         subroutine c_bed_free(factors) bind(C, name="fibrad_bed_free")
             import :: c_ptr
             type(c_ptr), value :: factors
@@ -404,6 +426,7 @@ module fibrad
         real(c_double), allocatable :: wall_wall(:, :) ! (walls, walls), element (j, i) from wall i to wall j
         real(c_double), allocatable :: wall_escaped(:) ! (walls), factors from walls to the surroundings
         real(c_double), allocatable :: wall_error(:)   ! (walls), estimated error of wall_wall and wall_escaped
+        real(c_double), allocatable :: node_emissivity(:) ! (n), of spheres that conduct; else not allocated
         integer :: directions = 0 ! most directions of a row
         integer :: threads = 0    ! threads used
         real(c_double) :: seconds = 0           ! s, of computing
@@ -523,15 +546,19 @@ contains
     !   tolerance        the error allowed in each row; directions and paths are added until it is met; absent: none
     !   cutoff           [L] spheres farther away are left out; absent: none
     !   raw              .true.: rows as they were computed, not averaged
+    !   conductivity     (n) relative conductivities k_s/(4 d sigma T^3), from 1e-6, of spheres whose temperatures differ
+    !                    from point to point. Factors are then between nodes of emissivities factors%node_emissivity,
+    !                    and powers follow from a linear system (fibrad_node_emissivity in fibrad.h). Absent: each
+    !                    sphere has one temperature.
     subroutine fibrad_exchange_factors(x, y, z, r, emissivity, factors, status, box, walls, wall_emissivity, directions, &
-                                       paths, tolerance, cutoff, raw, threads, fault, triangles)
+                                       paths, tolerance, cutoff, raw, threads, fault, triangles, conductivity)
         real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:), emissivity(:)
         type(fibrad_factors), intent(out) :: factors
         integer, intent(out) :: status
         real(c_double), intent(in), optional :: box(3), tolerance, cutoff
         type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
         type(fibrad_triangles), intent(in), optional :: triangles
-        real(c_double), intent(in), optional, contiguous, target :: wall_emissivity(:)
+        real(c_double), intent(in), optional, contiguous, target :: wall_emissivity(:), conductivity(:)
         integer, intent(in), optional :: directions, paths, threads
         logical, intent(in), optional :: raw
         integer, intent(out), optional :: fault(2)
@@ -540,13 +567,21 @@ contains
         type(c_bed_options) :: options
         type(c_run) :: run
         type(c_ptr) :: found
+        real(c_double), allocatable, target :: node(:)
+        integer :: i
         call set_run(run, threads, fault)
         status = check_sizes(size(x), size(y), size(z), size(r), size(emissivity))
         if (status == fibrad_ok) status = check_sizes(count_walls(walls), count_values(wall_emissivity))
+        if (status == fibrad_ok .and. present(conductivity)) status = check_sizes(size(x), size(conductivity))
         if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
         rule%emissivity = c_loc(emissivity)
         if (present(wall_emissivity)) rule%body_emissivity = c_loc(wall_emissivity)
+        if (present(conductivity)) then
+            rule%conductivity = c_loc(conductivity)
+            node = [(c_node_emissivity(emissivity(i), conductivity(i)), i = 1, size(x))]
+            rule%node_emissivity = c_loc(node)
+        end if
         if (present(directions)) rule%directions = int(directions, c_int32_t)
         if (present(paths)) rule%paths = int(paths, c_int32_t)
         if (present(tolerance)) rule%tolerance = tolerance
@@ -554,8 +589,61 @@ contains
         options%raw = flag(raw)
         status = c_exchange_factors(scene_of(box, walls, mesh), spheres_of(x, y, z, r), rule, options, run, found)
         call tell_fault(run%fault, size(x), fault)
-        if (status == fibrad_ok) call take_factors(found, factors)
+        if (status /= fibrad_ok) return
+        call take_factors(found, factors)
+        call move_alloc(node, factors%node_emissivity)
     end subroutine fibrad_exchange_factors
+
+    ! How far the emission of each sphere is carried, from which the conductivity of a bed follows. Of spheres that
+    ! conduct: how far a path gets in a flight. In a periodic box equal spheres of diameter d, solid fraction phi and
+    ! emissivity e have k = 4 sigma T^3 3 phi e sum(square(axis, :))/(n d); if they conduct, e is left out.
+    !   square        (3, n) [L^2] mean square displacement along each axis, from centre to centre
+    !   error         (3, n) [L^2] its estimated standard error
+    !   absorbed      (n) fraction of the emission that spheres absorb; if they conduct, of paths that stay in the bed
+    !   conductivity  (n) as for fibrad_exchange_factors, without walls
+    !   paths         from each sphere; absent: 400
+    !   flights       with conductivity: flights whose displacements are correlated, 1 to 256; absent: 12
+    subroutine fibrad_displacements(x, y, z, r, emissivity, square, status, box, walls, wall_emissivity, conductivity, &
+                                    paths, flights, error, absorbed, threads, fault, triangles)
+        real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:), emissivity(:)
+        real(c_double), intent(out) :: square(:, :)
+        integer, intent(out) :: status
+        real(c_double), intent(in), optional :: box(3)
+        type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
+        real(c_double), intent(in), optional, contiguous, target :: wall_emissivity(:), conductivity(:)
+        integer, intent(in), optional :: paths, flights, threads
+        real(c_double), intent(out), optional :: error(:, :), absorbed(:)
+        integer, intent(out), optional :: fault(2)
+        type(fibrad_triangles), intent(in), optional :: triangles
+        type(walls_of_c), target :: mesh
+        type(c_exchange_rule) :: rule
+        type(c_run) :: run
+        type(c_displacement), allocatable :: found(:)
+        integer :: i
+        call set_run(run, threads, fault)
+        status = check_sizes(size(x), size(y), size(z), size(r), size(emissivity))
+        if (status == fibrad_ok) status = check_sizes(3 * size(x), size(square))
+        if (status == fibrad_ok .and. present(error)) status = check_sizes(3 * size(x), size(error))
+        if (status == fibrad_ok .and. present(absorbed)) status = check_sizes(size(x), size(absorbed))
+        if (status == fibrad_ok .and. present(conductivity)) status = check_sizes(size(x), size(conductivity))
+        if (status == fibrad_ok) status = check_sizes(count_walls(walls), count_values(wall_emissivity))
+        if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
+        if (status /= fibrad_ok) return
+        rule%emissivity = c_loc(emissivity)
+        if (present(wall_emissivity)) rule%body_emissivity = c_loc(wall_emissivity)
+        if (present(conductivity)) rule%conductivity = c_loc(conductivity)
+        if (present(paths)) rule%paths = int(paths, c_int32_t)
+        if (present(flights)) rule%flights = int(flights, c_int32_t)
+        allocate (found(size(x)))
+        status = c_displacements(scene_of(box, walls, mesh), spheres_of(x, y, z, r), rule, c_null_ptr, run, found, c_null_ptr)
+        call tell_fault(run%fault, size(x), fault)
+        if (status /= fibrad_ok) return
+        do i = 1, size(x)
+            square(:, i) = found(i)%square
+            if (present(error)) error(:, i) = found(i)%error
+            if (present(absorbed)) absorbed(i) = found(i)%absorbed
+        end do
+    end subroutine fibrad_displacements
 
     ! Makes the heat problem of a bed and traces its beams.
     !   directions  of beams from each sphere, 8 to 65536; absent: 168
@@ -953,6 +1041,7 @@ contains
         type(c_factors) :: factors
         type(c_bed_factors) :: bed_factors
         type(c_exchange_rule) :: exchange_rule
+        type(c_displacement) :: displacement
         type(c_heat_config) :: heat_config
         type(c_heat_sources) :: heat_sources
         type(c_heat_result) :: heat_result
@@ -968,7 +1057,8 @@ contains
             agrees('scene_facts', c_sizeof(scene_facts)), agrees('run', c_sizeof(run)), &
             agrees('beam_rule', c_sizeof(beam_rule)), agrees('bed_options', c_sizeof(bed_options)), &
             agrees('factors', c_sizeof(factors)), agrees('bed_factors', c_sizeof(bed_factors)), &
-            agrees('exchange_rule', c_sizeof(exchange_rule)), agrees('heat_config', c_sizeof(heat_config)), &
+            agrees('exchange_rule', c_sizeof(exchange_rule)), agrees('displacement', c_sizeof(displacement)), &
+            agrees('heat_config', c_sizeof(heat_config)), &
             agrees('heat_sources', c_sizeof(heat_sources)), agrees('heat_result', c_sizeof(heat_result)), &
             agrees('light', c_sizeof(light)), agrees('light_sources', c_sizeof(light_sources)), &
             agrees('light_result', c_sizeof(light_result)), &

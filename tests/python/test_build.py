@@ -22,7 +22,7 @@ size_t fibrad_host_sizeof(const char *name) { return %d; }
 """
 FUNCTIONS = ("view_factors exchange_factors displacements radiation_new radiation_move radiation_solve "
              "radiation_describe radiation_free bed_free transient_new transient_move transient_powers "
-             "transient_advance transient_describe transient_free radiation_sides radiation_shine").split()
+             "transient_advance transient_describe transient_free radiation_sides radiation_shine node_emissivity").split()
 
 
 @pytest.fixture(name="backend")

@@ -278,6 +278,31 @@ def test_conductivity_of_spheres_that_conduct():
             fibrad.displacements([[0, 0, 0]], 0.5, 1.0, conductivity=wrong)
 
 
+def test_exchange_between_nodes(small):
+    """Spheres that conduct have the powers of patches; D is reciprocal with the emissivities of nodes."""
+    n, relative = small.n, np.geomspace(0.2, 5, small.n)
+    e, kelvins = np.linspace(0.5, 0.9, n), 900 + 40 * small.x[:, 2]
+    found = fibrad.exchange_factors(small.x, small.r, e, conductivity=relative, directions=400, paths=10000)
+    area, node = 4 * np.pi * small.r**2, found.node_emissivity
+    assert ((0 < node) & (node < e)).all() and sums(found) == pytest.approx(1, abs=1e-12)
+    weighted = scipy.sparse.diags(area * node) @ found.matrix
+    assert abs(weighted - weighted.T).max() < 1e-12 * area.max()
+    flow = (weighted - scipy.sparse.diags(area * node)).toarray()  # q = flow N + sky, N = emission - resistance q
+    sky = area * node * found.escaped * fibrad.STEFAN_BOLTZMANN * 800.0**4
+    emission, resistance = fibrad.STEFAN_BOLTZMANN * kelvins**4, (1 / node - 1 / e) / area
+    power = np.linalg.solve(np.eye(n) + flow * resistance, flow @ emission + sky)
+    with fibrad.Heat(small.x, small.r, directions=1000) as heat:
+        solid = relative * 8 * small.r * fibrad.STEFAN_BOLTZMANN * kelvins**3
+        truth = heat.solve(kelvins, e, surroundings=800.0, conductivity=solid).spheres
+        isothermal = heat.solve(kelvins, e, surroundings=800.0).spheres
+    off, apart = np.linalg.norm(power - truth), np.linalg.norm(isothermal - truth)
+    assert off < 0.02 * np.linalg.norm(truth) and off < 0.15 * apart, (off, apart, np.linalg.norm(truth))
+    assert fibrad.exchange_factors(small.x, small.r, e).node_emissivity is None
+    for wrong in (0.0, -1.0, np.nan):
+        with pytest.raises(fibrad.InputError, match="conductivity of sphere 0"):
+            fibrad.exchange_factors([[0, 0, 0]], 0.5, 1.0, conductivity=wrong)
+
+
 @pytest.mark.parametrize("x, r, text, spheres", [
     ([0, 0, 0], 1, r"x has the shape \(3,\)", ()),
     ([[0, 0]], 1, r"\(1, 2\)", ()),

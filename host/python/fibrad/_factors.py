@@ -101,6 +101,8 @@ class Factors:
     """Largest ``|sum - 1|`` of a raw row."""
     reciprocity_error: float
     """Largest ``|A_i F_ij - A_j F_ji| / max(A_i, A_j)``. NaN if rows are missing."""
+    node_emissivity: Optional[NDArray[np.float64]]
+    """(n,) emissivities of the nodes of spheres that conduct. None: spheres do not conduct."""
     directions: int
     """Most directions of a row. 0: a method without directions."""
     fallbacks: int
@@ -141,7 +143,8 @@ class Factors:
 
     def save(self, path: Folder) -> None:
         """Writes a .npz file, as the program does. ``scipy.sparse.load_npz`` reads the matrix from the file. The file
-        also has `escaped`, `beyond` and `error`, and, if there are any, `ids` and the factors of walls."""
+        also has `escaped`, `beyond` and `error`, and, if there are any, `ids`, `node_emissivity` and the factors of
+        walls."""
         if not os.fspath(path).endswith(".npz"):
             raise refuse(f"{os.fspath(path)!r} does not end in .npz")
         arrays: dict[str, Any] = {
@@ -149,6 +152,8 @@ class Factors:
             "data": self.data, "escaped": self.escaped, "beyond": self.beyond, "error": self.error}
         if self.ids is not None:
             arrays["ids"] = self.ids
+        if self.node_emissivity is not None:
+            arrays["node_emissivity"] = self.node_emissivity
         if self.wall_names:
             arrays |= {"body": self.walls, "wall_names": np.array([name.encode() for name in self.wall_names]),
                        "wall_area": self.wall_area}
@@ -161,7 +166,8 @@ class Factors:
                 f"{self.seconds:.3g} s>")
 
 
-def _factors(owner: _Owner, wall_names: tuple[str, ...], ids: Optional[NDArray[np.uint64]]) -> Factors:
+def _factors(owner: _Owner, wall_names: tuple[str, ...], ids: Optional[NDArray[np.uint64]],
+             nodes: Optional[NDArray[np.float64]]) -> Factors:
     found = owner.factors.contents
     matrix = found.matrix
     n, walls = matrix.n, matrix.bodies
@@ -177,7 +183,7 @@ def _factors(owner: _Owner, wall_names: tuple[str, ...], ids: Optional[NDArray[n
         wall_error=_array(owner, matrix.body_error, (walls,)) if matrix.body_error else None, ids=ids,
         wall_correction=matrix.body_correction if matrix.body_body else None,
         wall_closure=matrix.body_closure if matrix.body_body else None, closure_error=found.closure_error,
-        reciprocity_error=found.reciprocity_error, directions=found.directions, fallbacks=found.fallbacks,
+        reciprocity_error=found.reciprocity_error, node_emissivity=nodes, directions=found.directions, fallbacks=found.fallbacks,
         rays=found.rays, overlap=found.facts.overlap_max, threads=found.threads, seconds=found.seconds)
 
 
@@ -192,6 +198,7 @@ class _Job:
         self.marks = marks(wanted, self.packing.n)
         self.wanted = pointer(self.marks, ctypes.POINTER(ctypes.c_ubyte))
         self._call = Call(threads, progress)
+        self._nodes: Optional[NDArray[np.float64]] = None
 
     def call(self, function: Any, *arguments: Any) -> None:
         status = self._call(function, self.container.config, self.packing.spheres, *arguments)
@@ -205,7 +212,7 @@ class _Job:
     def factors(self, function: Any, tolerance: Optional[float], *arguments: Any) -> Factors:
         owner = _Owner()
         self.call(function, *arguments, self.run, ctypes.byref(owner.factors))
-        factors = _factors(owner, self.container.names, self.packing.ids)
+        factors = _factors(owner, self.container.names, self.packing.ids, self._nodes)
         if factors.overlap > _OVERLAP:
             warnings.warn(f"two spheres overlap by {factors.overlap:.3g} of a radius", stacklevel=3)
         if (factors.wall_closure or 0) > _CLOSED:
@@ -226,8 +233,15 @@ class _Job:
         self._conductivity = None if conductivity is None else per_sphere(
             "conductivity", conductivity, self.packing.n, RELATIVE_CONDUCTIVITY_MIN, np.inf, self.packing.names)
         return ExchangeRule(emissivity=pointer(self._emissivity), body_emissivity=pointer(self._wall_emissivity),
-                            conductivity=pointer(self._conductivity),
-                            **values)
+                            conductivity=pointer(self._conductivity), **values)
+
+    def between_nodes(self, rule: Any) -> Any:
+        """The rule for exchange factors: between nodes, if spheres conduct."""
+        if self._conductivity is not None:
+            node = map(library.fibrad_node_emissivity, self._emissivity, self._conductivity)
+            self._nodes = np.fromiter(node, np.float64, self.packing.n)
+            rule.node_emissivity = pointer(self._nodes)
+        return rule
 
 
 def _beam_rule(values: dict[str, Any], cutoff: float) -> Any:
@@ -341,7 +355,8 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
 
 
 def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: Optional[ArrayLike] = None,
-                     walls: Optional[Walls] = None, wall_emissivity: Any = None, tolerance: Optional[float] = None,
+                     walls: Optional[Walls] = None, wall_emissivity: Any = None,
+                     conductivity: Optional[ArrayLike] = None, tolerance: Optional[float] = None,
                      directions: Optional[int] = None, paths: Optional[int] = None, seed: Optional[int] = None,
                      cutoff: Optional[float] = None, wanted: Optional[ArrayLike] = None, raw: bool = False,
                      drop: float = 0.0, ids: Optional[ArrayLike] = None, threads: Optional[int] = None,
@@ -351,6 +366,11 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
     D_ij is the fraction of the emission of sphere i that sphere j absorbs, directly or after diffuse reflections. The
     net power of sphere i is ``sum_j A_i e_i D_ij sigma (T_j**4 - T_i**4)``, where j counts walls and surroundings, too.
 
+    With ``conductivity`` the spheres conduct, and temperatures differ from point to point of each sphere. D_ij then is
+    between nodes of emissivities n_i, `Factors.node_emissivity`. The net power is ``q_i = sum_j A_i n_i D_ij (N_j -
+    N_i)`` with ``N_i = sigma T_i**4 - (1 / n_i - 1 / e_i) q_i / A_i`` and the mean temperature T_i of the surface, a
+    linear system. Walls and surroundings have ``N = sigma T**4``.
+
     Parameters
     ----------
     x, r, box, walls, cutoff, wanted, raw, drop, ids, threads, scratch, progress
@@ -359,6 +379,9 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
         Emissivities of the spheres, 0 to 1.
     wall_emissivity : mapping or float
         Emissivities of the walls by name, or one for all, 0 to 1. Needed with walls.
+    conductivity : (n,) array or float, optional
+        Relative conductivities of the spheres, ``k_s / (4 d sigma T**3)``, at least 1e-6, inf for one temperature.
+        Default: each sphere has one temperature.
     tolerance : float, optional
         The error allowed in every row. Directions and paths are added until it is met. Default: none.
     directions : int, optional
@@ -378,12 +401,12 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
         As for `view_factors`.
     """
     job = _Job(x, r, box, walls, ids, wanted, threads, progress)
-    rule = job.exchange_rule(emissivity, wall_emissivity, directions=whole("directions", directions, *DIRECTIONS),
+    rule = job.exchange_rule(emissivity, wall_emissivity, conductivity, directions=whole("directions", directions, *DIRECTIONS),
                              paths=whole("paths", paths, 1, 2**28), seed=whole("seed", seed, *_SEED),
                              cutoff=real("cutoff", cutoff, *_FAR), tolerance=real("tolerance", tolerance, 0, 1))
     options = BedOptions(wanted=job.wanted, raw=bool(raw), bodies=1, drop=real("drop", drop, 0, 1),
                          scratch=_folder(scratch))
-    return job.factors(library.fibrad_exchange_factors, tolerance, rule, options)
+    return job.factors(library.fibrad_exchange_factors, tolerance, job.between_nodes(rule), options)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

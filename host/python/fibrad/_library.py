@@ -100,6 +100,7 @@ def _declare(library: ctypes.CDLL) -> None:
     bed: list[Any] = [POINTER(SceneConfig), POINTER(Spheres)]
     library.fibrad_version.restype = library.fibrad_status_text.restype = library.fibrad_why_text.restype = c_char_p
     library.fibrad_host_sizeof.argtypes, library.fibrad_host_sizeof.restype = [c_char_p], c_size_t
+    library.fibrad_node_emissivity.argtypes, library.fibrad_node_emissivity.restype = [c_double, c_double], c_double
     library.fibrad_view_factors.argtypes = [*bed, POINTER(BedOptions), POINTER(Run), POINTER(POINTER(BedFactors))]
     library.fibrad_exchange_factors.argtypes = [*bed, POINTER(ExchangeRule), POINTER(BedOptions), POINTER(Run),
                                                 POINTER(POINTER(BedFactors))]
