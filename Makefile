@@ -97,7 +97,7 @@ COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
 .PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols calls format house bench bench-quick \
-    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed sanitized threads lint cppcheck nightly deps deps-ci man install install-lib clean help need-libraries need-check
+    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed sanitized threads clang-warnings lint cppcheck nightly deps deps-ci man install install-lib clean help need-libraries need-check
 
 ## all: build/fibrad and the libraries (the default)
 all: $(BUILD)/fibrad lib lib-host
@@ -236,7 +236,7 @@ test: deps
 	@echo "Building the tests"
 	@$(MAKE) -s --no-print-directory programs all man dist
 	@BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" \
-	    tests/run.sh $(SCRIPTS) $(TEST_PROGRAMS) $(COUPLE_SCRIPTS)
+	    tests/run.sh $(COUPLE_SCRIPTS) $(SCRIPTS) $(TEST_PROGRAMS)
 
 ## run-programs: build and run the test programs without the scripts
 run-programs: programs
@@ -320,9 +320,11 @@ golden: $(BUILD)/fibrad
 mutate:
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" tests/mutate.sh
 
-# One build under the sanitizers serves the fuzzers and the tests.
+# One build under the sanitizers serves the fuzzers and the tests: of scalar code and of the widest lanes that run here.
 SANITIZE  = address,undefined
-SANITIZED = $(MAKE) -s --no-print-directory BUILD=$(BUILD)/sanitized CC=clang LDFLAGS=-fsanitize=$(SANITIZE) \
+SANITIZED_ISAS = scalar $(if $(shell grep -m 1 avx512dq /proc/cpuinfo),avx512,$(lastword $(filter-out avx512,$(ISAS))))
+ALL_ISAS  = BUILD=$(BUILD)/nightly SANITIZED_ISAS="$(ISAS)"
+SANITIZED = $(MAKE) -s --no-print-directory BUILD=$(BUILD)/sanitized ISAS="$(SANITIZED_ISAS)" CC=clang LDFLAGS=-fsanitize=$(SANITIZE) \
             CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE) -fno-sanitize-recover=undefined"
 
 ## sanitized: tests of memory, protocols and readers under the address and undefined behaviour sanitizers
@@ -356,7 +358,7 @@ fuzz: fuzz-programs
 	done
 
 ## fuzz-fixed: the same with a fixed number of inputs, the same ones every time (a minute)
-FUZZ_RUNS = read:40000 kernel:2000 host:300
+FUZZ_RUNS = read:13000 kernel:700 host:100
 # what comparisons show would bring addresses in, which differ from run to run: -use_cmp=0
 fuzz-fixed: fuzz-programs
 	@echo $(FUZZ_RUNS) | tr ' ' '\n' | xargs -P 2 -I{} sh -ec 'run={}; target=$${run%:*}; \
@@ -373,6 +375,17 @@ threads:
 	    TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1" OMP_TOOL_LIBRARIES=libarcher.so \
 	    $(BUILD)/threads/fibrad bed $(DEMO_BED) --directions 21 --threads $$t -o $(BUILD)/threads/F.mtx || exit 1; \
 	done
+
+# $(1): flags, $(2): sources
+clang_warns = printf '%s\n' $(2) | xargs -P 2 -n 10 clang -fsyntax-only $(filter-out -MMD -MP,$(1)) -Werror
+
+## clang-warnings: the warnings of clang are errors; it reads all sources for every instruction set, and makes no code
+clang-warnings: need-libraries need-check
+	$(call clang_warns,$(KERNEL_FLAGS),$(KERNEL))
+	$(foreach isa,$(ISAS),$(call clang_warns,$(KERNEL_FLAGS) $(FLAGS_$(isa)) \
+	    -DFIBRAD_LANES_HEADER='"base/lanes/vec_$(isa).h"' -DFIBRAD_ISA_SUFFIX=_$(isa),$(LANED)) &&) true
+	$(call clang_warns,$(SIMPLE_FLAGS),$(SIMPLE))
+	$(call clang_warns,$(TEST_FLAGS),$(HOST) host/main.c $(TESTS))
 
 LINT_FLAGS   = -Ikernel -Ihost -D_XOPEN_SOURCE=700
 LINT_SCALAR  = -DFIBRAD_LANES_HEADER='"base/lanes/vec_scalar.h"' -DFIBRAD_ISA_SUFFIX=_scalar
@@ -392,10 +405,13 @@ cppcheck:
 	    --suppress=missingIncludeSystem --suppressions-list=.cppcheck $(LINT_FLAGS) $(LINT_SCALAR) kernel host
 
 ## nightly: what .ci/run leaves out since it takes long: all bits, all sanitizers, clang-tidy, benches, a longer hunt
-nightly: bits threads lint bench-quick
+nightly: bits threads lint bench-quick programs
+	BUILD=$(BUILD) NIGHTLY=1 CK_DEFAULT_TIMEOUT=3600 $(BUILD)/tests/test_reproduce
+	FIBRAD_TEST_SCENES=20000 CK_DEFAULT_TIMEOUT=3600 $(BUILD)/tests/test_silhouette_scenes
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
-	$(MAKE) sanitized OF_MEMORY="$(filter-out accuracy furnace reference reproduce,$(TESTS:tests/test_%.c=%))"
-	$(MAKE) fuzz FUZZ_SECONDS=900
+	$(MAKE) sanitized $(ALL_ISAS) OF_MEMORY="$(filter-out accuracy furnace reference reproduce,$(TESTS:tests/test_%.c=%))"
+	$(MAKE) fuzz-fixed $(ALL_ISAS) FUZZ_RUNS="read:40000 kernel:2000 host:300"
+	$(MAKE) fuzz $(ALL_ISAS) FUZZ_SECONDS=900
 
 ## reproduce: the numbers of the papers beside ours, and their plots into docs/figures
 reproduce: $(BUILD)/fibrad

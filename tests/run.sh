@@ -1,9 +1,9 @@
 #!/bin/sh
 # run.sh PROGRAM|SCRIPT... - runs tests and ends with "N passed, N failed". SPDX-License-Identifier: MIT
 #
-# Two run at a time; the scripts of tests/couple one after the other, since they build the same. A libcheck program counts by its own
-# summary, a script as one test. A program that ends without a summary, or with another exit status than its failures
-# demand, counts as one failure more.
+# Two run at a time; check_made.sh runs by itself at the end, since it removes what others use. A libcheck program counts
+# by its own summary, a script as one test. A program that ends without a summary, or with another exit status than its
+# failures demand, counts as one failure more.
 set -u
 logs=${BUILD:=build}/tests/logs
 export BUILD
@@ -12,10 +12,10 @@ export BUILD
 if test "${1:-}" = --one; then
     name=${2##*/}
     log=$logs/$name.log
-    begun=$(date +%s)
     "$2" >"$log" 2>&1
     status=$?
-    took=$(($(date +%s) - begun))
+    times >"$logs/$name.times" # of this shell, then of what it ran
+    took=$(tail -n 1 "$logs/$name.times" | tr ms '  ' | awk '{ printf "%.1f", 60*($1 + $3) + $2 + $4 }')
     summary=$(sed -n 's/^[0-9]*%: Checks: \([0-9]*\), Failures: \([0-9]*\), Errors: \([0-9]*\)$/\1 \2 \3/p' "$log")
     case $name in
     *.sh) test $status -eq 0 && summary="1 0 0" || summary="1 1 0" ;;
@@ -27,7 +27,7 @@ if test "${1:-}" = --one; then
     good=$(($1 - bad))
     if test $status -ne 0 && test $bad -eq 0; then bad=1; fi
     echo "$good $bad $(grep -c '^SKIP' "$log")" >"$logs/$name.counts"
-    printf '%-44s %4d passed %3d failed %4d s\n' "$name" $good $bad $took
+    printf '%-44s %4d passed %3d failed %6s s of processor\n' "$name" $good $bad "$took"
     if test $bad -ne 0; then sed 's/^/    /' "$log"; else grep '^SKIP' "$log"; fi
     exit 0
 fi
@@ -37,8 +37,8 @@ export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-300}"
 tests=$#
 rm -rf "$logs"
 mkdir -p "$logs"
-printf '%s\n' "$@" | grep -v tests/couple/ | xargs -r -n 1 -P 2 "$0" --one
-printf '%s\n' "$@" | grep tests/couple/ | xargs -r -n 1 "$0" --one
+printf '%s\n' "$@" | grep -v check_made | xargs -r -n 1 -P 2 "$0" --one
+printf '%s\n' "$@" | grep check_made | xargs -r -n 1 "$0" --one
 
 set -- 0 0 0 0
 for counts in "$logs"/*.counts; do

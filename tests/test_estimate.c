@@ -206,7 +206,8 @@ START_TEST(estimates_count_walls) {
         for (int step = 0; step < 4; step++) {
             const fibrad_beam_rule rule = {.directions = 61u << 2 * step, .tolerance = step == 3 ? 1e-3 : 0};
             const fibrad_beam_rule tolerant = {.tolerance = of->fraction > .1 ? 3e-3 : 1e-2};
-            fibrad_bed_factors *factors = rows_among(&bed, &config, step < 3 ? &rule : &tolerant, raw, NULL);
+            fibrad_bed_factors *factors =
+                rows_among(&bed, &config, step < 3 ? &rule : &tolerant, raw, raw ? wanted : NULL);
             for (uint32_t i = 0; i < bed.n; i++) {
                 if (!wanted[i]) continue;
                 const fibrad_row here = matrix_row(&factors->matrix, i), there = matrix_row(&truth->matrix, i);

@@ -6,7 +6,7 @@ START_TEST(powers_add_up_to_zero) {
     for (uint32_t i = 0; i < p.bed.n; i++)
         p.temperature[i] = 300 + 700 * bed_make_random(1, i), p.emissivity[i] = bed_make_random(2, i);
     p.walls = box_about(&p.bed);
-    p.walls.planes = (uint32_t)_i; /* some of the walls, one or two of them without end */
+    p.walls.planes = 21 * (uint32_t)_i % 64; /* none, all, one an axis and others */
     p.walls.open = openings_of(p.walls.planes);
     p.config.directions = 30;
     for (int k = 0; k < FIBRAD_WALLS; k++) p.wall_temperature[k] = 400 + 100 * k, p.wall_emissivity[k] = .15 * k;
@@ -160,7 +160,7 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("heat invariants");
     TCase *tests = suite_case(suite, "heat invariants");
-    tcase_add_loop_test(tests, powers_add_up_to_zero, 0, 64);
+    tcase_add_loop_test(tests, powers_add_up_to_zero, 0, 16);
     tcase_add_test(tests, the_order_of_the_work_changes_no_bit);
     tcase_add_test(tests, the_order_of_bodies_changes_but_roundings);
     tcase_add_test(tests, instruction_sets_change_no_bit);

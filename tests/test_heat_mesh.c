@@ -194,7 +194,7 @@ static struct problem *thirty(void) {
 START_TEST(a_box_of_twelve_triangles_is_a_box_of_planes) {
     for (uint32_t cells = 1; cells <= 12; cells += 11) {
         struct problem *planes = thirty(), *mesh = thirty();
-        planes->config = mesh->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 1000000};
+        planes->config = mesh->config = (fibrad_heat_config){.directions = 700, .patches = 384, .wall_rays = 300000};
         make_planes(planes, 0, 1), make_box(mesh, 0, 1, cells);
         trace_and_solve(planes), trace_and_solve(mesh);
         const double spheres = distance_of(mesh->power, planes->power, 30), walls = distance_of(mesh->q, planes->q, 6);
@@ -351,7 +351,7 @@ START_TEST(a_shelf_between_planes) {
     const double origin[3] = {-.4, -.3, .5}, a[3] = {2, 0, 0}, b[3] = {0, 2, 0};
     make_planes(both, 0, 1), make_planes(half, 0, 1);
     both->bodies = 8, half->body[5].plane.at = .5;
-    both->config = half->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 1000000};
+    both->config = half->config = (fibrad_heat_config){.directions = 700, .patches = 384, .wall_rays = 300000};
     add_sheet(both->mesh, origin, a, b, 2, 6, 7);
     for (uint32_t i = 0; i < 30; i++) {
         both->bed.z[i] = .5 * both->bed.z[i] + (i < 8 ? .5 : 0), both->bed.r[i] *= .5; /* the first lie above it */
@@ -445,7 +445,7 @@ static void turn_all(struct problem *p, const double turn[9]) {
 
 START_TEST(a_tilted_box_is_the_same) {
     struct problem *p = thirty(), *turned = thirty();
-    p->config = turned->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 1000000};
+    p->config = turned->config = (fibrad_heat_config){.directions = 700, .patches = 384, .wall_rays = 300000};
     make_box(p, 0, 1, 2), make_box(turned, 0, 1, 2);
     turn_all(turned, tilt);
     trace_and_solve(p), trace_and_solve(turned);
@@ -487,7 +487,7 @@ START_TEST(estimates_of_errors_are_honest) {
     struct problem *truth = thirty();
     uint32_t beyond = 0;
     double errors[2] = {0}, estimates[2] = {0};
-    truth->config = (fibrad_heat_config){.directions = 4000, .patches = 384, .wall_rays = 1000000};
+    truth->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 300000};
     make_planes(truth, 0, 1);
     trace_and_solve(truth);
     for (uint32_t cells = 1; cells <= 16; cells *= 2) {
@@ -518,7 +518,7 @@ START_TEST(fluxes_through_triangles) {
     const double origin[3] = {-3, -3, 1.5}, a[3] = {6, 0, 0}, b[3] = {0, 6, 0};
     struct problem *p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, .8);
     double flux[2 * PIECES], temperature[2 * PIECES], sum = 0;
-    p->bodies = 1, p->wall_temperature[0] = 1, p->wall_emissivity[0] = .7, p->config.directions = 2000;
+    p->bodies = 1, p->wall_temperature[0] = 1, p->wall_emissivity[0] = .7, p->config.directions = 700;
     add_sheet(p->mesh, origin, b, a, CELLS, 0, FIBRAD_NO_BODY); /* its front is below */
     ck_assert_int_eq(fibrad_heat_read_sides(NULL, flux, temperature), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(trace(p), FIBRAD_OK);
@@ -571,7 +571,7 @@ START_TEST(faces_with_temperatures_of_their_own) {
     static double side[2 * 12 * 144], flux[2 * 12 * 144], found[2 * 12 * 144];
     for (uint32_t cells = 1; cells <= 12; cells += 11) {
         struct problem *bodies = thirty(), *one = thirty();
-        bodies->config = one->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 1000000};
+        bodies->config = one->config = (fibrad_heat_config){.directions = 700, .patches = 384, .wall_rays = 300000};
         make_box(bodies, 0, 1, cells);
         one->bodies = 1, one->wall_temperature[0] = 1.7, one->wall_emissivity[0] = .6;
         add_box(one->mesh, 0, 1, cells, true);

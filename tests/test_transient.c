@@ -230,7 +230,7 @@ START_TEST(bed_against_runge_kutta) {
     double expected[N], temperature[N], power[N], slope[N];
     memcpy(expected, f.temperature, sizeof expected);
     memcpy(temperature, f.temperature, sizeof temperature);
-    runge_kutta(&f, &factors->matrix, duration, 20000, expected);
+    runge_kutta(&f, &factors->matrix, duration, 5000, expected);
     fibrad_transient *t = transient_of(&f.bed, &f.scene, &config);
     fibrad_span span = {temperature, f.capacity, duration, .body_temperature = end, .power = power};
     ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_OK);

@@ -1,14 +1,14 @@
 #!/bin/sh
 # check_couple.sh - links, rows and powers over MPI by 1, 2, 3 and 4 ranks, and the example. SPDX-License-Identifier: MIT
 set -u
-: "${BUILD:=build}" "${MAKE:=make}" "${MPICC:=mpicc}" "${MPIRUN:=mpirun}"
+: "${BUILD:=build}" "${MPICC:=mpicc}" "${MPIRUN:=mpirun}"
 if ! command -v "$MPICC" >/dev/null || ! command -v "$MPIRUN" >/dev/null; then
     echo "SKIP couplings: no MPI (Debian: openmpi-bin, libopenmpi-dev; make deps-couple)"
     exit 0
 fi
 . tests/couple/mpi.sh
 
-$MAKE -s --no-print-directory "$BUILD/couple/test_couple" "$BUILD/couple/example" || exit 1
+make_one_by_one "$BUILD/couple/test_couple" "$BUILD/couple/example" || exit 1
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 1
 faults=0
 

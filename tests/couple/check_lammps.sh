@@ -4,15 +4,15 @@
 #
 # LMP and LOAD may name another LAMMPS and a script that loads the fix into it: host/couple/lammps/newer.sh does.
 set -u
-: "${BUILD:=build}" "${MAKE:=make}" "${MPICC:=mpicc}" "${MPIRUN:=mpirun}" "${LMP:=lmp}"
+: "${BUILD:=build}" "${MPICC:=mpicc}" "${MPIRUN:=mpirun}" "${LMP:=lmp}"
 for program in "$MPICC" "$MPIRUN" "$LMP"; do
     command -v "$program" >/dev/null || { echo "SKIP fix fibrad: no $program on this machine (make deps-couple)" && exit; }
 done
 test -n "${LOAD:-}" || test -e /usr/include/lammps/fix.h || { echo "SKIP fix fibrad: no liblammps-dev (make deps-couple)" && exit; }
 . tests/couple/mpi.sh
 
-$MAKE -s --no-print-directory "$BUILD/tests/couple/serial_bed" "$BUILD/tests/couple/sorted_rows" "$BUILD/fibrad" || exit 1
-test -n "${LOAD:-}" || { LOAD=$BUILD/couple/fibrad.lmp && $MAKE -s --no-print-directory "$LOAD" || exit 1; }
+make_one_by_one "$BUILD/tests/couple/serial_bed" "$BUILD/tests/couple/sorted_rows" "$BUILD/fibrad" || exit 1
+test -n "${LOAD:-}" || { LOAD=$BUILD/couple/fibrad.lmp && make_one_by_one "$LOAD" || exit 1; }
 work=$BUILD/couple/check_lammps
 rm -rf "$work"
 mkdir -p "$work"

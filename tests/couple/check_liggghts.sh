@@ -2,14 +2,14 @@
 # check_liggghts.sh - LIGGGHTS with radiation beside conduction by 1 and 2 ranks: energy, temperatures, a source of the
 # script's own, rows for fibrad join, messages. SPDX-License-Identifier: MIT
 set -u
-: "${BUILD:=build}" "${MAKE:=make}" "${MPICC:=mpicc}" "${MPIRUN:=mpirun}"
+: "${BUILD:=build}" "${MPICC:=mpicc}" "${MPIRUN:=mpirun}"
 if ! test -f /usr/include/liggghts/library.h || ! command -v "$MPICC" >/dev/null; then
     echo "SKIP LIGGGHTS: not there (Debian: libliggghts-dev, openmpi-bin, libopenmpi-dev; make deps-couple)"
     exit 0
 fi
 . tests/couple/mpi.sh
 
-$MAKE -s --no-print-directory "$BUILD/couple/fibrad_liggghts" "$BUILD/fibrad" || exit 1
+make_one_by_one "$BUILD/couple/fibrad_liggghts" "$BUILD/fibrad" || exit 1
 driver=$(pwd)/$BUILD/couple/fibrad_liggghts fibrad=$(pwd)/$BUILD/fibrad example=$(pwd)/host/couple/liggghts/hot_floor.liggghts
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 1
 cd "$work" || exit 1

@@ -11,3 +11,8 @@ run_mpi() { # RANKS PROGRAM...
     shift
     "${MPIRUN:-mpirun}" -np "$ranks_run" "$@" 2>&1
 }
+
+# Scripts that run at once have parts in common.
+make_one_by_one() {
+    flock "$BUILD/couple.lock" "${MAKE:-make}" -s --no-print-directory "$@"
+}
