@@ -321,7 +321,7 @@ START_TEST(open_beds) {
 END_TEST
 
 /* With k* of 1e6 F_E is that of spheres with one temperature. All spheres at temperatures on a line, or at those at
- * which they gain nothing: docs/heat.md has the difference, .4 %. */
+ * which they gain nothing: docs/heat.md has the difference, .1 %. */
 START_TEST(good_conductors) {
     double emissivity[300], conductivity[300];
     struct bed bed;

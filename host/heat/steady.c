@@ -10,7 +10,7 @@
 #include "bed/bed_scene.h"
 #include "cli/message.h"
 
-enum { FITTED_MIN = 40 };
+enum { FITTED_MIN = 40, DIRECTIONS = 400 };
 
 bool steady_possible(const struct bed *bed, int axis) {
     return bed->period[(axis + 1) % 3] > 0 && bed->period[(axis + 2) % 3] > 0;
@@ -64,7 +64,8 @@ static int steady_solve(struct bed_options *options, const struct bed *bed, cons
     sources.temperature = unknown, sources.emissivity = emissivity, sources.power = given;
     sources.body_temperature = plate, sources.body_emissivity = (const double[]){1, 1};
     fibrad_heat_result result = {.power = gained, .body_power = power, .body_error = error, .temperature = emission};
-    if (!status) status = fibrad_radiation_new(&radiation, &scene, &spheres, NULL, &run);
+    const fibrad_heat_config config = {.directions = DIRECTIONS};
+    if (!status) status = fibrad_radiation_new(&radiation, &scene, &spheres, &config, &run);
     if (!status) status = fibrad_radiation_solve(radiation, &sources, &result);
     for (uint32_t i = 0; i < bed->n && !status; ++i) emission[i] = steady_share(emission[i], plate);
     for (int k = 0; k < 2; ++k) {
