@@ -464,6 +464,7 @@ static inline vd arc_tangent(vd x) {
     vd size = vd_abs(x);
     vm far = vd_lt(vd_set1(0x1.a827999fcef32p-2), size);
     vd near = vd_select(far, (size - 1) / (size + 1), size), square = near * near, sum = vd_set1(factor[12]);
+#pragma GCC unroll 12
     for (int k = 11; k >= 0; k--) sum = sum * square + factor[k];
     vd angle = vd_select(far, vd_set1(FIBRAD_PI / 4), vd_set1(0)) + near * sum;
     return vd_select(vd_lt(x, vd_set1(0)), 0 - angle, angle);
