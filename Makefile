@@ -406,7 +406,6 @@ cppcheck:
 
 ## nightly: what .ci/run leaves out since it takes long: all bits, all sanitizers, clang-tidy, benches, a longer hunt
 nightly: bits threads lint bench-quick programs
-	BUILD=$(BUILD) NIGHTLY=1 CK_DEFAULT_TIMEOUT=3600 $(BUILD)/tests/test_reproduce
 	FIBRAD_TEST_SCENES=20000 CK_DEFAULT_TIMEOUT=3600 $(BUILD)/tests/test_silhouette_scenes
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
 	$(MAKE) sanitized $(ALL_ISAS) OF_MEMORY="$(filter-out accuracy furnace reference reproduce,$(TESTS:tests/test_%.c=%))"

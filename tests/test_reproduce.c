@@ -1,5 +1,4 @@
-/* test_reproduce.c - the experiments come out as published; three long ones only with NIGHTLY in the environment.
- * SPDX-License-Identifier: MIT */
+/* test_reproduce.c - the experiments come out as published. SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -130,13 +129,11 @@ int main(void) {
     tcase_add_test(cases, figure_3);
     tcase_add_test(cases, third_sphere);
     tcase_add_test(cases, pebbles);
+    tcase_add_test(cases, pebbles_by_rays);
+    tcase_add_test(cases, conductivity);
     tcase_add_test(cases, exchange_factors);
+    tcase_add_test(cases, conducting);
     tcase_add_test(cases, formulas);
     tcase_add_test(cases, usage);
-    if (getenv("NIGHTLY") != NULL) {
-        tcase_add_test(cases, pebbles_by_rays);
-        tcase_add_test(cases, conductivity);
-        tcase_add_test(cases, conducting);
-    }
     return suite_run(suite);
 }
