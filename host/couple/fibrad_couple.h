@@ -81,6 +81,13 @@ void fibrad_link_free(fibrad_link *link);
 /* The rows of a bed, and what is needed to make them. */
 typedef struct fibrad_insitu fibrad_insitu;
 
+/* Directions and paths of each row. docs/lammps.md has errors and times. */
+typedef enum fibrad_accuracy {
+    FIBRAD_ACCURACY_NORMAL = 0, /* 48 directions, 120 paths */
+    FIBRAD_ACCURACY_LOW = 1,    /* 26, 36 */
+    FIBRAD_ACCURACY_HIGH = 2    /* 144, 1600 */
+} fibrad_accuracy;
+
 /* How rows are made. The same on all ranks. Zeroed: all defaults.
  *
  * The default cutoff is as long as the number of particles allows that ranks send each other, but no longer than the
@@ -88,12 +95,13 @@ typedef struct fibrad_insitu fibrad_insitu;
  * side has no more than 1e5 particles and images. Rows take about as long with any cutoff. */
 typedef struct fibrad_insitu_config {
     double cutoff;       /* L, as in fibrad_exchange_rule, at least the largest diameter; 0: see above */
-    uint32_t directions; /* as in fibrad_exchange_rule; 0: its default */
-    uint32_t paths;      /* as in fibrad_exchange_rule; 0: its default */
+    uint32_t directions; /* as in fibrad_exchange_rule; 0: those of `accuracy` */
+    uint32_t paths;      /* as in fibrad_exchange_rule; 0: those of `accuracy` */
     double tolerance;    /* as in fibrad_exchange_rule; 0: none */
     uint64_t seed;       /* of random numbers, together with the step and the id of the particle */
     int threads;         /* of each rank, 1 to 1024; 0: 1 */
     int strict;          /* 1: strays are errors; 0: they are left out, or smaller, see above */
+    int accuracy;        /* a fibrad_accuracy */
 } fibrad_insitu_config;
 
 /* The bed for which rows are made. Box, walls, openings and triangles are the same on all ranks. */

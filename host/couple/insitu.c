@@ -28,11 +28,26 @@ static void *resize_on_heap(void *context, void *block, size_t size) {
     return realloc(block, size);
 }
 
+/* What a fibrad_accuracy stands for. */
+static const struct {
+    uint32_t directions, paths;
+} samples[] = {
+    [FIBRAD_ACCURACY_NORMAL] = {48, 120}, [FIBRAD_ACCURACY_LOW] = {26, 36}, [FIBRAD_ACCURACY_HIGH] = {144, 1600}};
+
 static bool config_valid(const fibrad_insitu_config *c) {
     const bool directions =
         !c->directions || (c->directions >= FIBRAD_DIRECTIONS_MIN && c->directions <= FIBRAD_DIRECTIONS_MAX);
     return c->cutoff >= 0 && isfinite(c->cutoff) && directions && c->paths <= FIBRAD_PATHS_MAX && c->tolerance >= 0 &&
-           isfinite(c->tolerance) && c->threads >= 0 && c->threads <= THREADS_MAX && (c->strict == 0 || c->strict == 1);
+           isfinite(c->tolerance) && c->threads >= 0 && c->threads <= THREADS_MAX &&
+           (c->strict == 0 || c->strict == 1) && c->accuracy >= FIBRAD_ACCURACY_NORMAL &&
+           c->accuracy <= FIBRAD_ACCURACY_HIGH;
+}
+
+/* Puts numbers in the place of zeroes. */
+static void complete_config(fibrad_insitu_config *c) {
+    if (!c->directions) c->directions = samples[c->accuracy].directions;
+    if (!c->paths) c->paths = samples[c->accuracy].paths;
+    if (!c->threads) c->threads = 1;
 }
 
 static int open_set(fibrad_insitu_set *set, int threads) {
@@ -62,7 +77,7 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
     if (s) {
         if (config) s->config = *config;
         if (!insitu || !config_valid(&s->config)) status = FIBRAD_E_ARGUMENT;
-        if (!s->config.threads) s->config.threads = 1;
+        if (!status) complete_config(&s->config);
     }
     if (!status) status = open_set(&s->set, s->config.threads);
     if (!status) status = open_set(&s->next, s->config.threads);

@@ -256,7 +256,7 @@ FIBRAD_INLINE void follow_points(const fibrad_points *points, const fibrad_wall_
                 lines.wide[axis] = frame[6 + axis] + aside * window->wide;
             }
             meet_walls(window, view, round, &lines);
-            if (view->cut) weight = weight_uncut(view, &lines, weight, sums);
+            if (view->cut && !hidden) weight = weight_uncut(view, &lines, weight, sums);
             for (uint32_t part = 0; part < sums->octants; part++)
                 add_octant(&lines, round, several, hidden, weight, lane % 8, &sums->part[part]);
         }

@@ -53,8 +53,12 @@ int main(int count, char **argument) {
 
     for (long step = 0; step <= steps; step++) {
         if (step % every == 0) {
-            fibrad_exchange_rule rule = {
-                .emissivity = emissivity, .body_emissivity = &floor_emissivity, .cutoff = cutoff};
+            fibrad_exchange_rule rule = {/* defaults of fibrad_insitu_config */
+                                         .emissivity = emissivity,
+                                         .body_emissivity = &floor_emissivity,
+                                         .directions = 48,
+                                         .paths = 120,
+                                         .cutoff = cutoff};
             fibrad_rows_clear(&rows);
             for (uint32_t i = 0; i < n; i++) {
                 double body;

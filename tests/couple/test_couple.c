@@ -342,7 +342,7 @@ static int strict; /* of the next objects */
 
 static fibrad_insitu *insitu_of(MPI_Comm comm, const struct kind *kind, int threads) {
     const fibrad_insitu_config config = {
-        .cutoff = kind->cutoff, .paths = 100, .seed = 3, .threads = threads, .strict = strict};
+        .cutoff = kind->cutoff, .directions = 50, .paths = 100, .seed = 3, .threads = threads, .strict = strict};
     fibrad_insitu *s;
     CHECK(fibrad_insitu_new(&s, comm, &config) == FIBRAD_OK);
     return s;
@@ -573,8 +573,11 @@ static void step_by_kernel(struct pile *p, double cutoff) {
     fibrad_scene *scene = NULL;
     fibrad_work work = {.memory.resize = grow};
     CHECK(fibrad_scene_init(&scene, block, size, &config, &spheres, NULL) == FIBRAD_OK);
-    fibrad_exchange_rule rule = {
-        .emissivity = p->emissivity, .body_emissivity = p->body_emissivity, .paths = 100, .cutoff = cutoff};
+    fibrad_exchange_rule rule = {.emissivity = p->emissivity,
+                                 .body_emissivity = p->body_emissivity,
+                                 .directions = 50,
+                                 .paths = 100,
+                                 .cutoff = cutoff};
     uint32_t *col = memory_of((size_t)n * n, sizeof *col);
     double *f = memory_of((size_t)n * n, sizeof *f), *emission = memory_of(n, sizeof *emission);
     fibrad_row *row = memory_of(n, sizeof *row);
@@ -914,6 +917,7 @@ static void files_are_refused(fibrad_insitu *s) {
 static void refusals(void) {
     fibrad_insitu *s = NULL;
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.cutoff = -1}) == FIBRAD_E_ARGUMENT && !s);
+    CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.accuracy = 3}) == FIBRAD_E_ARGUMENT && !s);
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.threads = rank == 0 ? -1 : 1}) ==
               FIBRAD_E_ARGUMENT &&
           !s);

@@ -293,8 +293,8 @@ void FixFibrad::read_accuracy(Words &words) {
     if (word != "low" && word != "normal" && word != "high")
         error->all(FLERR, "fix fibrad: `accuracy` is low, normal or high, not `" + word + "`");
     accuracy = true;
-    if (word == "low") config.directions = 21, config.paths = 50;
-    if (word == "high") config.directions = 144, config.paths = 1600;
+    if (word == "low") config.accuracy = FIBRAD_ACCURACY_LOW;
+    if (word == "high") config.accuracy = FIBRAD_ACCURACY_HIGH;
 }
 
 // a number | type V1 V2 ... | d_NAME

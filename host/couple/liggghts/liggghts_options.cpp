@@ -22,6 +22,7 @@ const struct option names[] = {{"in", required_argument, nullptr, 'i'},
                                {"every", required_argument, nullptr, 'E'},
                                {"rows", required_argument, nullptr, 'R'},
                                {"cutoff", required_argument, nullptr, 'c'},
+                               {"accuracy", required_argument, nullptr, 'a'},
                                {"tolerance", required_argument, nullptr, 't'},
                                {"seed", required_argument, nullptr, 'S'},
                                {"write", required_argument, nullptr, 'W'},
@@ -124,6 +125,13 @@ bool mesh(const char *text, radiant_mesh *mesh) {
     return mesh->sides != SIDES_NORMALS || std::strcmp(colon, ":normals") == 0;
 }
 
+bool accuracy(const char *text, int *value) {
+    static const char *const words[] = {"normal", "low", "high"}; /* in the order of fibrad_accuracy */
+    for (*value = 0; *value < 3; ++*value)
+        if (std::strcmp(text, words[*value]) == 0) return true;
+    return false;
+}
+
 /* Takes the argument of an option. Returns what is wrong with the argument. NULL: nothing. */
 const char *take(int key, const char *text, liggghts_options *options) {
     radiant_wall one;
@@ -171,6 +179,8 @@ const char *take(int key, const char *text, liggghts_options *options) {
     case 'c':
         return number(text, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &options->config.cutoff) ? nullptr
                                                                                            : "is not a length above 0";
+    case 'a':
+        return accuracy(text, &options->config.accuracy) ? nullptr : "is none of low, normal and high";
     case 't':
         return number(text, 1e-5, 1, &options->config.tolerance) ? nullptr : "is not within 1e-5 and 1";
     default:
@@ -242,6 +252,7 @@ void liggghts_options_help() {
         "  --rows N                 compute exchange factors every N steps, a multiple of --every [1000]\n"
         "  --cutoff R               particles with centres farther apart than R do not see each other [as long "
         "as costs little: docs/coupling.md]\n"
+        "  --accuracy WORD          low, normal or high: directions and paths of each row, docs/lammps.md [normal]\n"
         "  --tolerance E            estimated error of each row, 1e-5 to 1 [none]\n"
         "  --seed S                 seed of paths and directions [0]\n"
         "  --strict                 end the run when a centre lies inside another particle or beyond a wall\n"
