@@ -7,7 +7,7 @@
 # every 260 steps, those of the others every 500. Needs `make lammps`.
 set -eu
 : "${BUILD:=build}" "${MPIRUN:=mpirun}" "${LMP:=lmp}"
-. tests/couple/mpi.sh # shellcheck disable=SC1091
+. tests/couple/mpi.sh
 np=$1 dump=$2 wide=$3
 shift 3
 work=$BUILD/bench/slide
