@@ -99,11 +99,11 @@ for ranks in 1 2; do
     { cat warm && echo 'fix fibradPower all property/atom fibradPower scalar yes no no 0' &&
         echo "dump powers all custom 1 powers$ranks id f_fibradPower" && echo 'dump_modify powers sort id format "%d %.17g"'; } >conduct$ranks
     run conducts$ranks $ranks 'setforce 0 0 0' 0 -in conduct$ranks --tolerance 0.01
-    awk -F'[ ,]' -v ranks=$ranks 'NR == FNR && $1 ~ /^[0-9]/ { q[$1 + 1] = $3 }
+    awk -F'[ ,]' -v ranks="$ranks" 'NR == FNR && $1 ~ /^[0-9]/ { q[$1 + 1] = $3 }
         NR > FNR && NF == 3 && $1 in q { off += ($2 - q[$1])^2; all += q[$1]^2; found += $2; truth += q[$1]; n++ }
         END {
             printf "%d rank(s): powers that conduct %.4f W, %.4f W by patches; each off by %.2g\n", ranks, found, truth, sqrt(off / all)
-            exit !(n == 294 && (found / truth - 1)^2 < 1e-4 && off < .08^2 * all) }' heat.csv powers$ranks ||
+            exit !(n == 294 && (found / truth - 1)^2 < 1e-4 && off < .08^2 * all) }' heat.csv "powers$ranks" ||
         complain "$ranks rank(s): particles that conduct have other powers"
 done
 run warming 2 'setforce 0 0 0' 600 -in warm --rows 300
