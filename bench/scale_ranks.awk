@@ -32,7 +32,7 @@ function row(all, ranks,    n, side, halo, near, lists, map, deals, bytes, messa
 BEGIN {
     pi = atan2(0, -1); volume = 4 / 3 * pi / .588; cutoff = 10; reach = cutoff + 1.5
     latency = 2e-6; bandwidth = 1e9                    # [s], [bytes/s] of a rank: stated
-    seconds_row = 2.8e-4; seconds_heat = 5e-7          # of a particle at emissivity 0.8: measured
-    fixed = 7e6; particle = 4000; other = 1200         # bytes of a rank: measured
+    seconds_row = 7.5e-5; seconds_heat = 3e-7          # of a particle at emissivity 0.8: measured
+    fixed = 7e6; particle = 3700; other = 1200         # bytes of a rank: measured
     row(1e6, 1); row(1e6, 100); row(1e6, 1e4); row(1e7, 1e4); row(1e8, 100); row(1e8, 1e4); row(1e9, 1e4); row(1e10, 1e4)
 }
