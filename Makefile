@@ -451,15 +451,18 @@ install: install-lib $(BUILD)/fibrad man
 
 PC_FILES = kernel/fibrad.pc.in host/simple/fibrad_host.pc.in
 
+# installs files for pkg-config
+install_pc = version=$$(sed -n 's/^\#define FIBRAD_VERSION "\(.*\)"/\1/p' kernel/fibrad.h); for pc in $(1:.in=); do \
+	    sed -e 's|@PREFIX@|$(PREFIX)|' -e "s|@VERSION@|$$version|" $$pc.in \
+	        > $(DESTDIR)$(PREFIX)/lib/pkgconfig/$${pc\#\#*/} || exit 1; done
+
 ## install-lib: the same without the program
 install-lib: lib lib-host
 	install -d $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(PREFIX)/lib/pkgconfig
 	install -m 644 $(HEADERS) $(DESTDIR)$(PREFIX)/include
 	install -m 644 $(BUILD)/libfibrad.a $(BUILD)/libfibrad_host.a $(SHARED) $(DESTDIR)$(PREFIX)/lib
 	ln -sf $(notdir $(SHARED)) $(DESTDIR)$(PREFIX)/lib/libfibrad.so
-	version=$$(sed -n 's/^#define FIBRAD_VERSION "\(.*\)"/\1/p' kernel/fibrad.h); for pc in $(PC_FILES:.in=); do \
-	    sed -e 's|@PREFIX@|$(PREFIX)|' -e "s|@VERSION@|$$version|" $$pc.in \
-	        > $(DESTDIR)$(PREFIX)/lib/pkgconfig/$${pc##*/} || exit 1; done
+	$(call install_pc,$(PC_FILES))
 
 ## clean: remove all that was built
 clean:

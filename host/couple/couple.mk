@@ -49,12 +49,18 @@ $(BUILD)/couple/ranks: bench/ranks.c $(COUPLE_LIBS)
 	$(MPICC) $(CFLAGS) $(COUPLE_FLAGS) $(LDFLAGS) $< $(COUPLE_LIBS) -lm -o $@
 
 ## couple: libfibrad_couple.a, fix fibrad of LAMMPS and the driver of LIGGGHTS, into build/couple (on a fresh machine: make deps-couple couple)
-.PHONY: couple couple-lib need-mpi test-couple deps-couple
+.PHONY: couple couple-lib install-couple need-mpi test-couple deps-couple
 
 couple: $(COUPLE_PRODUCTS)
 
 ## couple-lib: libfibrad_couple.a and its example alone (needs MPI)
 couple-lib: $(BUILD)/couple/libfibrad_couple.a $(BUILD)/couple/example
+
+## install-couple: libfibrad_couple.a, its header and .pc file, beside what install-lib installs
+install-couple: install-lib $(BUILD)/couple/libfibrad_couple.a
+	install -m 644 host/couple/fibrad_couple.h $(DESTDIR)$(PREFIX)/include
+	install -m 644 $(BUILD)/couple/libfibrad_couple.a $(DESTDIR)$(PREFIX)/lib
+	$(call install_pc,host/couple/fibrad_couple.pc.in)
 
 $(BUILD)/couple/libfibrad_couple.a: $(COUPLE_OBJECTS)
 	@mkdir -p $(@D)

@@ -1,5 +1,6 @@
 #!/bin/sh
-# check_couple.sh - links, rows and powers over MPI by 1, 2, 3 and 4 ranks, and the example. SPDX-License-Identifier: MIT
+# check_couple.sh - links, rows and powers over MPI by 1, 2, 3 and 4 ranks, and the example, built in the
+# tree and against the installed library. SPDX-License-Identifier: MIT
 set -u
 : "${BUILD:=build}" "${MPICC:=mpicc}" "${MPIRUN:=mpirun}"
 if ! command -v "$MPICC" >/dev/null || ! command -v "$MPIRUN" >/dev/null; then
@@ -22,4 +23,12 @@ for ranks in 1 2; do
     run_mpi $ranks "$BUILD/couple/example" | tee "$work/$ranks"
 done
 awk '{ exit !($1 > 0 && $1 == $4) }' "$work/1" && cmp "$work/1" "$work/2" || faults=1
+
+# the same program, with what pkg-config says of the installed library
+make_one_by_one install-couple BUILD="$BUILD" PREFIX="$work/usr" || exit 1
+sed 's|couple/fibrad_couple.h|fibrad_couple.h|' host/couple/example.c >"$work/installed.c"
+flags=$(PKG_CONFIG_PATH="$work/usr/lib/pkgconfig" pkg-config --cflags --libs fibrad_couple)
+# shellcheck disable=SC2086  # a list of flags
+"$MPICC" -std=c99 "$work/installed.c" $flags -o "$work/installed" && run_mpi 1 "$work/installed" >"$work/3" &&
+    cmp "$work/1" "$work/3" || faults=1
 exit $faults
