@@ -65,6 +65,20 @@ START_TEST(files_have_insides) {
 }
 END_TEST
 
+/* A pebble at 300 K on a floor of 1200 K: linear emission fails where the solid conducts badly. A warning says so. */
+START_TEST(surfaces_below_zero_are_named) {
+    const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,30\n");
+    const char *conductivity[] = {"2", "200"};
+    for (int k = 0; k < 2; ++k) {
+        SUCCEED("heat", file, "--length-unit", "mm", "--emissivity", "1", "--temperature", "300", "--ambient", "0",
+                "--wall", "zmin=-30", "--wall-temperature", "1200", "--wall-emissivity", "1", "--solid-conductivity",
+                conductivity[k]);
+        ck_assert_int_eq(value_of("surface_min_K") < 0, k == 0);
+        ck_assert_int_eq(strstr(said, "one.csv:2: warning: sphere 0: its surface comes out at -") != NULL, k == 0);
+    }
+}
+END_TEST
+
 /* A table over temperature is taken at the temperature that is found. */
 START_TEST(conductivity_follows_temperature) {
     const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,30\n0,0,70,30\n"), *q = in_folder("q.csv");
@@ -131,6 +145,7 @@ int main(void) {
     tcase_add_checked_fixture(tests, make_folder, remove_folder);
     tcase_add_test(tests, a_pebble_with_a_source);
     tcase_add_test(tests, files_have_insides);
+    tcase_add_test(tests, surfaces_below_zero_are_named);
     tcase_add_test(tests, conductivity_follows_temperature);
     tcase_add_test(tests, insides_lag_in_time);
     tcase_add_test(tests, what_cannot_be);

@@ -21,6 +21,7 @@ enum kind {
     ABSOLUTE_ZERO,
     HEAT_CAPACITY,
     DENSITY,
+    COLD_SURFACE,
     WALLS_OPEN,
     WALLS_APART,
     CLOSING
@@ -233,4 +234,15 @@ void warn_matter(struct warned *warned, const struct bed *bed, const double *cap
     if (rho < bed->n && is_new(warned, DENSITY))
         message_at(STATUS_OK, warned->file, bed->line[rho],
                    "warning: the density is %g kg/m3; solids have some 100 to 20,000", density[rho]);
+}
+
+void warn_surfaces(struct warned *warned, const struct bed *bed, const double *least) {
+    uint32_t coldest = 0;
+    for (uint32_t i = 1; i < bed->n; ++i)
+        if (least[i] < least[coldest] || isnan(least[coldest])) coldest = i;
+    if (least[coldest] < 0 && is_new(warned, COLD_SURFACE))
+        message_at(STATUS_OK, warned->file, bed->line[coldest],
+                   "warning: sphere %lld: its surface comes out at %.0f K in one place; --solid-conductivity is for "
+                   "surfaces whose temperature differs little from its mean",
+                   (long long)bed_name(bed, coldest), least[coldest]);
 }

@@ -46,6 +46,9 @@ void warn_temperatures(struct warned *warned, const struct bed *bed, const struc
 /* Warns if heat capacities [J/(kg K)] or densities [kg/m3], both [bed->n], are not those of solids. */
 void warn_matter(struct warned *warned, const struct bed *bed, const double *capacity, const double *density);
 
+/* Warns if part of a surface comes out colder than 0 K. least: [bed->n], K, or NaN. */
+void warn_surfaces(struct warned *warned, const struct bed *bed, const double *least);
+
 /* Warns if rows of walls and rows of spheres contradict each other, or if closing changes a row of a sphere by more
  * than its error. */
 void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_factors *matrix);

@@ -228,7 +228,10 @@ static int heat_once(struct bed_options *options, const struct heat_problem *pro
     if (status) return status;
     heat_temperatures(bed, &sources, report);
     light_add(problem->light, &sources, bed->n, problem->walls.count, &report->result);
-    if (problem->solid) heat_surfaces(bed, report);
+    if (problem->solid) {
+        heat_surfaces(bed, report);
+        warn_surfaces(&options->warned, bed, report->result.least_temperature);
+    }
     heat_scale(bed, problem->walls.count, report->metres * report->metres, &report->result);
     light_scale(problem->light, bed->n, problem->walls.count, report->metres * report->metres);
     heat_summarise(bed, &sources, problem->walls.count, report);
