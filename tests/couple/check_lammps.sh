@@ -293,10 +293,11 @@ fails "empty.stl: the file is empty" "an empty mesh" \
     also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1 wall mesh $work/empty.stl 300 1"
 fails "sees the back of wall 1.*both" "the back of a mesh" \
     also "fix bad all fibrad 0 1 emissivity 1 surroundings 300 cp 1 wall mesh $work/box.stl 300 1 normals"
-for words in "solid 0" "solid -4" "solid type 4 0" "solid nan"; do
+for words in "solid 0" "solid -4" "solid type 4 0"; do
     fails "conductivity of the solid must be above 0" "$words" strict "no $words"
 done
-fails "a value per type" "a conductivity for one of two types" strict "no solid type 4"
+fails "instead of 'nan'" "a conductivity that is no number" strict "no solid nan"
+fails "a word is missing" "a conductivity for one of two types" strict "no solid type 4"
 fails "property/atom d_none" "conductivities that are not there" strict "no solid d_none"
 fails "NEVERY must be above 0" "conductivities without temperatures" heat 0 strict "no solid 4"
 fails "property/atom d_none" "temperatures that are not there" \
