@@ -370,6 +370,36 @@ END_TEST
 #define OF_CELL                                                                                                        \
     write_file("cell.csv", CELL), "--periodic", "60,60,60", "--emissivity", "1", "--rays", "2000", "--temperature"
 
+/* Eight copies of a random bed, one above the other; `period` becomes that of a copy. */
+static const char *write_tower(double period[3]) {
+    char *text = malloc(60 * 8 * 80), *at = text + sprintf(text, "x,y,z,r\n");
+    struct bed bed;
+    bed_init(&bed);
+    ck_assert_int_eq(bed_make_packing(&bed, 60, 1, 1, .55, 1), 0);
+    for (int copy = 0; copy < 8; ++copy)
+        for (uint32_t i = 0; i < bed.n; ++i)
+            at += sprintf(at, "%.15g,%.15g,%.15g,%g\n", bed.x[i], bed.y[i], bed.z[i] + copy * bed.period[2], bed.r[i]);
+    memcpy(period, bed.period, sizeof bed.period);
+    bed_free(&bed);
+    const char *file = write_file("tower.csv", text);
+    free(text);
+    return file;
+}
+
+/* Paths in a periodic bed, and patches of the same bed between plates. */
+START_TEST(paths_and_patches_of_a_random_bed) {
+    static const double k_star[] = {1, .1, .01}, most[] = {.01, .01, .02};
+    double period[3];
+    char solid[30], periods[100];
+    const char *file = write_tower(period);
+    snprintf(periods, sizeof periods, "%.17g,%.17g,%.17g", period[0], period[1], 8 * period[2]);
+    snprintf(solid, sizeof solid, "%.17g", k_star[_i] * 8e-3 * 5.670374419e-8 * 1e9);
+    SUCCEED("conductivity", file, "--periodic", periods, "--axis", "z", "--emissivity", "0.8", "--temperature", "1000",
+            "--length-unit", "mm", "--error", "0.003", "--steady", "--solid-conductivity", solid);
+    ck_assert_double_eq_tol(value_of("F_E_steady_z") / value_of("F_E_z"), 1, most[_i]);
+}
+END_TEST
+
 /* k* in the summary, the table and the objects, and the same from a number, a column and a table of T. */
 START_TEST(outputs) {
     const char *csv = in_folder("k.csv"), *json = in_folder("k.json"), *summary = in_folder("s.json");
@@ -452,6 +482,7 @@ int main(void) {
     TCase *program = suite_case(suite, "program");
     tcase_add_checked_fixture(program, make_folder, remove_folder);
     tcase_add_test(program, outputs);
+    tcase_add_loop_test(program, paths_and_patches_of_a_random_bed, 0, 3);
     tcase_add_test(program, how_isothermal);
     tcase_add_test(program, mistakes);
     return suite_run(suite);
