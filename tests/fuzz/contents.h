@@ -191,7 +191,7 @@ static inline size_t size_of(const struct contents *c) {
 
 static inline int build(fibrad_scene **scene, void *memory, size_t size, struct contents *c) {
     fibrad_spheres spheres = {.x = c->x, .y = c->y, .z = c->z, .r = c->r, .n = c->n, .id = c->ids ? c->id : NULL};
-    fibrad_fault fault = {0, 0, 0};
+    fibrad_fault fault = {0};
     *scene = NULL;
     contents_complete(c);
     const int status = CALL(fibrad_scene_init(scene, memory, size, &c->config, &spheres, &fault));
