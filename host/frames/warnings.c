@@ -237,12 +237,11 @@ void warn_matter(struct warned *warned, const struct bed *bed, const double *cap
 }
 
 void warn_surfaces(struct warned *warned, const struct bed *bed, const double *least) {
-    uint32_t coldest = 0;
-    for (uint32_t i = 1; i < bed->n; ++i)
-        if (least[i] < least[coldest] || isnan(least[coldest])) coldest = i;
-    if (least[coldest] < 0 && is_new(warned, COLD_SURFACE))
-        message_at(STATUS_OK, warned->file, bed->line[coldest],
+    uint32_t i = 0;
+    while (i < bed->n && !(least[i] < 0)) ++i;
+    if (i < bed->n && is_new(warned, COLD_SURFACE))
+        message_at(STATUS_OK, warned->file, bed->line[i],
                    "warning: sphere %lld: its surface comes out at %.0f K in one place; --solid-conductivity is for "
                    "surfaces whose temperature differs little from its mean",
-                   (long long)bed_name(bed, coldest), least[coldest]);
+                   (long long)bed_name(bed, i), least[i]);
 }
