@@ -104,7 +104,7 @@ typedef enum fibrad_status {
     FIBRAD_E_CANCELLED = -12,   /* A progress function has asked to stop. */
     FIBRAD_E_UNSOLVABLE = -13,  /* No temperatures give the powers that were asked for. */
     FIBRAD_E_BACK = -14,        /* A side of a triangle that belongs to no wall was seen. Its number is written. */
-    FIBRAD_E_SUM = -15,     /* A row does not add up to 1 within 1e-9: a fault of the library, or a changed row part */
+    FIBRAD_E_SUM = -15,     /* A row's sum is not 1 within 1e-9. The library has a fault, or a row part has changed. */
     FIBRAD_E_ENDLESS = -16, /* The walls form a tube or a corner without end. Add a wall or an opening. */
     FIBRAD_E_FILE = -17     /* A file cannot be made, written or renamed. Only functions of the host return this. */
 } fibrad_status;
@@ -183,14 +183,14 @@ int fibrad_direction(uint32_t k, uint32_t n, double direction[3]);
 int fibrad_pair_exact(double r1, double r2, double gap, double *f12);
 
 /* ---- scene ----------------------------------------------------------------------------------------------------- */
-/* The spheres of a scene. The centre of sphere i is x[i stride], y[i stride], z[i stride]. Its radius is r[i stride_r].
- * Example: double at[n][3] is {&at[0][0], &at[0][1], &at[0][2], r, n, .stride = 3}. */
+/* The spheres of a scene. The centre of sphere i is at x[i * stride], y[i * stride], z[i * stride]. The radius of
+ * sphere i is r[i * stride_r]. Example: double at[n][3] is {&at[0][0], &at[0][1], &at[0][2], r, n, .stride = 3}. */
 typedef struct fibrad_spheres {
-    const double *x, *y, *z;   /* L, [n], at most FIBRAD_LENGTH_MAX and 3e13 times the smallest radius; NULL if n = 0 */
+    const double *x, *y, *z;   /* L, [n], at most FIBRAD_LENGTH_MAX and at most 3e13 smallest radii; NULL if n = 0 */
     const double *r;           /* L, [n], FIBRAD_LENGTH_MIN to FIBRAD_LENGTH_MAX; NULL if n = 0 */
     uint32_t n;                /* 0 to FIBRAD_SPHERES_MAX */
     uint32_t stride, stride_r; /* doubles; 0: 1 */
-    const uint64_t *id;        /* [n], seeds of random paths, decide ties; NULL: the index is the id */
+    const uint64_t *id;        /* [n], ids seed random paths and decide ties; NULL: the index is the id */
 } fibrad_spheres;
 
 typedef enum fibrad_body_kind {
@@ -224,20 +224,20 @@ typedef struct fibrad_plane {
  * that is periodic along an axis counts as a period. */
 typedef struct fibrad_body {
     int kind;           /* a fibrad_body_kind */
-    fibrad_plane plane; /* of FIBRAD_BODY_PLANE */
+    fibrad_plane plane; /* used by FIBRAD_BODY_PLANE */
     struct {
         double x, y, radius; /* L, position of the axis, and radius above 0 */
-    } cylinder;              /* of FIBRAD_BODY_CYLINDER */
+    } cylinder;              /* used by FIBRAD_BODY_CYLINDER */
 } fibrad_body;
 
-/* Divided beds. A machine has some spheres of a bed. It computes the rows of its own spheres with a cutoff. Row i
- * depends on the spheres with centres within cutoff + 1.5 R of centre i, R being the largest radius. If no spheres
- * overlap, the distance is cutoff + R. Row i also depends on the walls, the occupancy and the ids. Row i does not
- * depend on any other sphere or on the order of the spheres, not in a single bit.
+/* Divided beds. Several machines may divide the spheres of a bed. Each machine computes the rows of its own spheres,
+ * with a cutoff. Let R be the largest radius. Row i depends on the spheres whose centres lie within cutoff + 1.5 R of
+ * centre i. If no spheres overlap, row i depends only on those within cutoff + R. Row i also depends on the walls, the
+ * occupancy and the ids. No other sphere changes a bit of row i. The order of the spheres changes no bit either.
  *
  * The fraction `beyond`. Row i knows the space within the cutoff of centre i. If the scene has a known region, row i
- * knows only the part within that region. Radiation may leave the known space before it meets anything. What it counts
- * as then depends on its further way, outside the known space.
+ * knows only the part within that region. Radiation may leave the known space before it meets anything. The further way
+ * of this radiation, outside the known space, then decides what the radiation counts as.
  *
  *   occupancy  known region  the further way                                counts as
  *   given      any           passes through no marked cell before its end   the wall at its end, or `escaped`
@@ -246,12 +246,12 @@ typedef struct fibrad_body {
  *   none       none          passes through the box of all spheres          `beyond`
  *   none       given         any                                            `beyond`
  *
- * A way that is longer than 100 periods of the occupancy counts as `beyond`. Triangles are walls here.
+ * A way that is longer than 100 periods of the occupancy counts as `beyond`. In this table triangles are walls.
  *
- * A scene may have spheres outside its known region. Beams and rays of view factors meet them. Reflected paths do not.
- */
+ * A scene may have spheres outside its known region. Beams and rays of view factors meet these spheres. Reflected paths
+ * do not meet them. */
 /* Where a bed has spheres: the marked cells of a box. There is no part of any sphere in other cells or outside the box.
- * The occupancy must stay as it is while the scene is used. All machines use the same one.
+ * The occupancy must stay as it is while the scene is used. All machines use the same occupancy.
  *
  * Cell (x, y, z) has the number k = x + cells[0] (y + cells[1] z). It is marked if bit k % 64 of mark[k / 64] is 1. */
 typedef struct fibrad_occupancy {
@@ -298,7 +298,7 @@ typedef enum fibrad_why {
     FIBRAD_WHY_REFLECTS = 10,     /* A surface of emissivity 0 cannot give off a power. */
     FIBRAD_WHY_HOLD = 11,         /* hold or reference is out of range. */
     FIBRAD_WHY_ENDLESS = 12,      /* An endless wall has no temperature. */
-    FIBRAD_WHY_SIDE = 13,         /* The temperature of a triangle's side is out of range, or its wall has none. */
+    FIBRAD_WHY_SIDE = 13,         /* A side's temperature is out of range, or is given although the wall has none. */
     FIBRAD_WHY_SURROUNDINGS = 14, /* The temperature of the surroundings is missing or out of range. */
     FIBRAD_WHY_SIGMA = 15,        /* sigma is out of range. */
     FIBRAD_WHY_TOLERANCE = 16,    /* A tolerance is out of range. */
@@ -308,7 +308,7 @@ typedef enum fibrad_why {
     FIBRAD_WHY_DARK = 20,         /* No open face lets a light in. */
     FIBRAD_WHY_FOOTPRINT = 21,    /* A sphere lies before the disc of a light. */
     FIBRAD_WHY_CONDUCTIVITY = 22, /* A conductivity is not above 0. */
-    FIBRAD_WHY_UNIFORM = 23       /* Spheres that conduct have no uniform radiosity. */
+    FIBRAD_WHY_UNIFORM = 23       /* `uniform` is set although spheres conduct. */
 } fibrad_why;
 
 /* The cause of a fault as English words. The words continue a sentence that begins with the name of a sphere or a wall.
@@ -319,7 +319,7 @@ const char *fibrad_why_text(int why);
 
 /* Where a fault is. */
 typedef struct fibrad_fault {
-    uint32_t first, second; /* the spheres at fault; equal: only one is at fault; both n: none is */
+    uint32_t first, second; /* the spheres at fault; equal: one sphere; both n: no sphere */
     uint32_t triangle;      /* the triangle at fault; UINT32_MAX: none */
     uint32_t wall;          /* 1 + the index of the wall at fault; 0: none */
     int why;                /* a fibrad_why */
@@ -337,9 +337,9 @@ size_t fibrad_scene_size(uint32_t n, int ids);
 
 /* Makes a scene.
  *
- * Centres on a periodic axis are moved into the box. The box begins at the least coordinate. Spheres may overlap each
- * other and the walls, as they do in settled beds. No centre may lie inside another sphere or beyond a wall. A part of
- * a sphere may lie beyond a wall. Whatever leaves this part meets the wall at once.
+ * Centres on a periodic axis are moved into the box. The box begins at the least coordinate of all centres. Spheres may
+ * overlap each other and the walls, as they do in settled beds. No centre may lie inside another sphere or beyond a
+ * wall. A part of a sphere may lie beyond a wall. Whatever leaves this part meets the wall at once.
  *   Input    memory[size]: at least fibrad_scene_size(n, ids) + fibrad_triangles_size(triangles, n) bytes
  *            config: NULL for all defaults
  *            spheres
@@ -388,12 +388,12 @@ uint32_t fibrad_scene_sphere(const fibrad_scene *scene, uint32_t k);
 typedef struct fibrad_work {
     fibrad_memory memory;
     void *inside;      /* of the library; NULL at first */
-    uint32_t triangle; /* out: the triangle, after FIBRAD_E_BACK */
+    uint32_t triangle; /* out: after FIBRAD_E_BACK, the triangle whose side was seen */
 } fibrad_work;
 
 /* Bytes of fixed work memory for beam rows, as a constant expression.
- *   Input    discs: most spheres that lie in the way of one window, hidden ones included; 64 in a packed bed
- *            entries: most spheres that one row sees; 200 in a packed bed
+ *   Input    discs: largest number of spheres in the way of one window, hidden ones included; 64 in a packed bed
+ *            entries: largest number of spheres that one row sees; 200 in a packed bed
  *   Scenes with walls take FIBRAD_WORK_WALLS more. Scenes with triangles take FIBRAD_WORK_TRIANGLES more. */
 #define FIBRAD_WORK_BYTES(discs, entries) (28672 + (size_t)(discs)*768 + (size_t)(entries)*96)
 #define FIBRAD_WORK_WALLS                 29760
@@ -422,14 +422,14 @@ typedef struct fibrad_row {
     uint32_t length;     /* out: number of entries */
     double escaped;      /* out: fraction that reaches the surroundings, through an opening or past everything */
     double beyond;       /* out: fraction whose target the row does not know */
-    double error;        /* out: estimated error of the row, on the median twice the true error */
+    double error;        /* out: estimated error of the row; in the median it is twice the true error */
     uint32_t directions; /* out: directions taken; 0 by rays */
     uint32_t fallbacks;  /* out: windows that the slower, robust method for areas resolved; 0 by rays */
     int symmetric;       /* out: 1 if A_i F_ij = A_j F_ji holds without averaging */
 } fibrad_row;
 
-/* How a beam row is integrated. Zeroed: FIBRAD_DIRECTIONS_DEFAULT directions, exact areas, no cutoff, no
- * tolerance. directions = 0 with a tolerance: rows begin with FIBRAD_DIRECTIONS_FIRST. */
+/* How a beam row is integrated. Zeroed: FIBRAD_DIRECTIONS_DEFAULT directions, exact areas, no cutoff, no tolerance. If
+ * directions is 0 and there is a tolerance, rows begin with FIBRAD_DIRECTIONS_FIRST directions. */
 typedef struct fibrad_beam_rule {
     uint32_t directions; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: see above */
     uint32_t points;     /* 0: exact visible areas; 64, 128 or 256: that many points per window */
@@ -440,13 +440,13 @@ typedef struct fibrad_beam_rule {
 
 /* Row i of the view factors of a scene, by parallel beams.
  *
- * A beam has the shadow disc of sphere i as its window and one direction of the rule. The row is the mean of what all
- * windows see. With exact areas, the error of the entries falls as directions^-1.5. The error of factors to walls falls
- * a little more slowly. A wall that nothing hides gets its solid angle. With points, an entry is the number of points
- * that meet the sphere over the number of all points. `escaped` is such a fraction, too. Images of one sphere share one
- * entry. Sphere i may see its own images. A beam ends after 100 periods. If the tolerance asks for more than
- * FIBRAD_DIRECTIONS_MAX directions, the row is made with FIBRAD_DIRECTIONS_MAX directions, and row->error is above the
- * tolerance.
+ * There is one beam for each direction of the rule. The window of a beam is the shadow disc of sphere i along the
+ * direction. The row is the mean of what all windows see. With exact areas, the error of the entries falls as
+ * directions^-1.5. The error of factors to walls falls a little more slowly. A wall that nothing hides gets its solid
+ * angle. With points, an entry is the number of points that meet the sphere over the number of all points. `escaped` is
+ * such a fraction, too. Images of one sphere share one entry. Sphere i may see its own images. A beam ends after 100
+ * periods. If the tolerance asks for more than FIBRAD_DIRECTIONS_MAX directions, the row is made with
+ * FIBRAD_DIRECTIONS_MAX directions, and row->error is above the tolerance.
  *   Input    i: 0 to spheres - 1
  *            rule: NULL for all defaults
  *   Output   row
@@ -466,7 +466,7 @@ int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
  *   Source   docs/methods.md section 3 */
 uint32_t fibrad_directions_for(uint32_t directions, double error, double tolerance);
 
-/* What some directions of a beam row give. Set `memory`, and zero the rest. */
+/* The terms that some directions of a beam row give. Set `memory`, and zero the rest. */
 typedef struct fibrad_row_part {
     fibrad_memory memory;         /* takes 16 bytes for each sphere that a window sees */
     uint64_t key;                 /* of the library: the row, rule and scene of this part; 0: none */
@@ -474,8 +474,8 @@ typedef struct fibrad_row_part {
     uint32_t from, to, fallbacks; /* of the library: the directions, and the windows left to the robust method */
 } fibrad_row_part;
 
-/* Part of a beam row: what directions `from` to `to` - 1 of the row give. Several threads may compute different parts
- * of one row at the same time.
+/* Part of a beam row: the terms that directions `from` to `to` - 1 of the row give. Several threads may compute
+ * different parts of one row at the same time.
  *   Input    work: of the calling thread
  *            i: 0 to spheres - 1
  *            rule: as for fibrad_beam_row; NULL for all defaults
@@ -551,8 +551,9 @@ int fibrad_rows_add(fibrad_rows *rows, const fibrad_row *row, uint32_t bodies);
  *   Errors   none */
 void fibrad_rows_clear(fibrad_rows *rows);
 
-/* Reads the next row of a collection. The arrays of `row` lie in the collection, and row->rows is NULL. They are valid
- * until a row is appended. The caller may write the columns, to number the spheres anew. The columns must then ascend.
+/* Reads the next row of a collection. The arrays of `row` lie in the collection, and row->rows is NULL. The arrays are
+ * valid until a row is appended. The caller may write the columns, to number the spheres anew. The new columns must
+ * ascend, too.
  *   Input    at: 0 at the first call; each call moves `at` to the next row
  *   Output   row
  *   Errors   none. Returns 1, or 0 after the last row. */
@@ -560,24 +561,25 @@ int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
 
 /* ---- silhouettes --------------------------------------------------------------------------------------------- */
 /* All rows of a scene at once. Seen along a line, the silhouette of a sphere is a circle. Each piece of the circle has
- * a nearest sphere or wall before it and one behind it. These tell what the sphere exchanges with its neighbours, and
- * what its neighbours exchange past its rim, in both directions of the line. The rows are reciprocal and closed to
- * rounding, without averaging. With as many lines as directions, they err about half as much as averaged beam rows.
+ * a nearest sphere or wall before it and one behind it. From these two surfaces follows what the sphere exchanges with
+ * its neighbours. What the neighbours exchange past the rim of the sphere follows, too. A line serves both of its
+ * directions. The rows are reciprocal and closed to rounding, without averaging. The error of rows by n lines is about
+ * half the error of averaged beam rows by n directions.
  *
  *   1. fibrad_silhouettes_init makes the set of lines.
- *   2. fibrad_silhouettes_task does a task. Several threads may do different tasks at the same time. Each thread has a
- *      fibrad_pairs of its own.
+ *   2. fibrad_silhouettes_task does a task. Several threads may do different tasks at the same time. Each thread has
+ *      its own fibrad_pairs.
  *   3. fibrad_silhouettes_join puts all pairs together, once all tasks are done.
  *   4. fibrad_silhouettes_row delivers a row. Several threads may ask for rows at the same time.
  *   5. fibrad_matrix_init with rule.reciprocal = 1 makes a matrix of the rows.
  *
  * Planes, openings and a cylinder hide no sphere from another. For the given lines, the sum of a sphere's factors to
- * all of them is exact. In the directions in which the sphere is open, windows as in beam rows divide this sum among
- * them.
+ * all planes, openings and the cylinder is exact. Windows, as in beam rows, divide this sum among the walls. Only the
+ * directions in which the sphere is open need such windows.
  *
  * Scenes with triangles are FIBRAD_E_UNSUPPORTED, since triangles hide spheres. Scenes with a known region are
- * FIBRAD_E_UNSUPPORTED, and there is no cutoff, since a machine with a part of a bed knows all obstacles only within
- * the cutoff of its own spheres. Use fibrad_beam_row for such scenes. */
+ * FIBRAD_E_UNSUPPORTED, too. Such a scene is a part of a bed, and its machine knows all obstacles only within the
+ * cutoff of its own spheres. For the same reason the rule has no cutoff. Use fibrad_beam_row for such scenes. */
 typedef struct fibrad_silhouette_rule {
     uint32_t lines; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: FIBRAD_LINES_DEFAULT */
     uint64_t turn;  /* seed of a random rotation of all lines together; 0: no rotation */
@@ -625,7 +627,7 @@ uint32_t fibrad_silhouettes_tasks(const fibrad_silhouettes *silhouettes);
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY
  *            _CAPACITY: fixed pairs->memory is too small; pairs->memory.needed is a size that helps
  *            _UNSUPPORTED: about 200 spheres overlap at one point of a circle
- *   Cost     about a microsecond a line and sphere in a packed bed
+ *   Cost     about a microsecond per line and sphere in a packed bed
  *   Source   docs/methods.md */
 int fibrad_silhouettes_task(const fibrad_silhouettes *silhouettes, fibrad_work *work, uint32_t task,
                             fibrad_pairs *pairs);
@@ -651,8 +653,8 @@ int fibrad_silhouettes_join(fibrad_silhouettes *silhouettes, const fibrad_pairs 
 int fibrad_silhouettes_row(const fibrad_silhouettes *silhouettes, fibrad_work *work, uint32_t i, fibrad_row *row);
 
 /* ---- matrix ---------------------------------------------------------------------------------------------------- */
-/* The row of a wall, as fibrad_exchange_body makes it. All its factors together are 1. They are 0 if the wall's
- * emissivity is 0. */
+/* The row of a wall, as fibrad_exchange_body makes it. The factors of the row add up to 1. If the emissivity of the
+ * wall is 0, all factors of the row are 0. */
 typedef struct fibrad_body_row {
     double body[FIBRAD_BODIES_MAX]; /* factor to each wall; in one batch a factor near 0 may be below 0 by chance */
     double spheres;                 /* factor to all spheres together */
@@ -675,7 +677,7 @@ typedef void fibrad_parallel(void *context, uint32_t pieces, fibrad_piece *piece
  *   view factors by silhouettes            reciprocal = 1
  *   view factors by rays or by points      sampled = 1
  *   exchange factors                       emissivity, and body_emissivity with body_row
- *   any of these, also rows of walls       body_row
+ *   any of these, with rows of walls       body_row
  *   rows to be left as they are            raw = 1 */
 typedef struct fibrad_matrix_rule {
     const double *emissivity;        /* [spheres], 0 to 1: the rows hold exchange factors; NULL: view factors */
@@ -687,16 +689,16 @@ typedef struct fibrad_matrix_rule {
     fibrad_parallel *parallel;       /* used by all calls for this matrix; NULL: the calling thread does all */
     void *context;                   /* handed to parallel */
     int sampled;                     /* 1: view factors by rays or points */
-    int reciprocal;                  /* 1: rows by silhouettes: nothing is averaged */
+    int reciprocal;                  /* 1: the rows are by silhouettes, and none is averaged */
 } fibrad_matrix_rule;
 
 /* A matrix of factors in compressed rows. The arrays belong to the matrix that they were read from. If walls have no
  * rows, the three arrays body_body, body_escaped and body_error are NULL. Their elements for an endless wall are NaN.
  *
- * `changed` tells whether the raw rows agree with each other. Raw row i gives some of its radiation to walls, to the
- * surroundings and to `beyond`. The matrix gives them other fractions. The change of row i is the root of the sum of
- * the squared differences. `changed` is the largest change over the error of its row. A value well above 1 means that
- * the raw rows contradict each other by more than their errors. */
+ * `changed` tells whether the raw rows agree with each other. Raw row i gives fractions of its radiation to walls, to
+ * the surroundings and to `beyond`. The matrix changes these fractions. The change of row i is the root of the sum of
+ * the squared differences. `changed` is the largest ratio of a row's change to the row's error. A value well above 1
+ * means that the raw rows contradict each other by more than their errors. */
 typedef struct fibrad_factors {
     uint32_t n, bodies;         /* numbers of spheres and of walls */
     const uint64_t *start;      /* [n + 1], row i is elements start[i] to start[i + 1] - 1 of col and f */
@@ -758,16 +760,16 @@ int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
  *   2. View factors by exact areas: F_ij is multiplied by min(s_i, s_j), s_i = min(1, 1/sum of row i).
  *      Other factors: F_ij is multiplied by u_i u_j such that u_i (sum over j of F_ij u_j + rest_i) = 1. rest_i is what
  *      raw row i gives to walls, surroundings and `beyond` together.
- *   3. Factors to walls, `escaped` and `beyond` are scaled to what the entries leave of 1. A row without any of them
- *      takes the proportions of all spheres together.
+ *   3. Factors to walls, `escaped` and `beyond` are scaled so that the sum of the row is 1. If all of them are 0 in a
+ *      row, they get the proportions that they have in all rows together.
  *   4. Rows of walls: A_b F_bi = A_i F_ib. Then all factors are multiplied by u_p u_q, p and q being spheres or walls.
- *      In some beds that triangles cut, no such u exist. Then the rows of spheres are closed, the factors among walls
- *      stay those of their paths, and body_closure equals body_correction.
- *   5. Entries below `drop` are removed in pairs. The others are scaled so that the sums stay. What no scaling can
- *      restore goes to F_ii.
+ *      If triangles cut a bed, such u may not exist. Then the rows of spheres are closed. The factors among walls stay
+ *      as the paths have given them, and body_closure equals body_correction.
+ *   5. Entries below `drop` are removed in pairs. The other entries are scaled so that the sums of the rows stay. The
+ *      part of a sum that no scaling can restore is added to F_ii.
  *   Errors   _ARGUMENT
  *            _STATE: the matrix is closed already, or the rows have changed
- *   Cost     O(entries), and some 40 times as much for step 4, step 5 and factors that are not by exact areas
+ *   Cost     O(entries). Step 4, step 5 and factors that are not by exact areas take some 40 times as long.
  *   Source   docs/methods.md section 5, docs/methods_heat.md sections 3 and 4 */
 int fibrad_matrix_close(fibrad_matrix *matrix);
 
@@ -788,9 +790,9 @@ int fibrad_matrix_reciprocity(const fibrad_matrix *matrix, double *largest);
 /* Estimates the error of an old row after the spheres have moved:
  *   error = 2 sqrt(sum over j of (F_ij delta_ij/w_ij)^2),   F_ij = r_j^2/(4 d^2),   w_ij = min(r_j, max(d - r_j, r_i)).
  * delta_ij [L] is the change of the vector from sphere i to sphere j. d [L] is the smaller one of the two distances of
- * their centres. j runs over the spheres that the old row sees. Errors of successive steps may be added up. Walls, and
- * spheres that come into sight, are not counted. fibrad_drift_partners counts spheres that come into sight.
- *   Input    before, now: the scene of the row and the present scene; the same spheres, the same periods
+ * their centres. j runs over the spheres that the old row sees. Errors of successive steps may be added up. Walls are
+ * not counted. Spheres that come into sight are not counted here: fibrad_drift_partners counts them.
+ *   Input    before, now: the scene of the row and the present scene. Both have the same spheres and the same periods.
  *            i: 0 to spheres - 1
  *            col[length]: columns of the old row
  *   Output   error
@@ -800,12 +802,12 @@ int fibrad_matrix_reciprocity(const fibrad_matrix *matrix, double *largest);
 int fibrad_drift_row(const fibrad_scene *before, const fibrad_scene *now, uint32_t i, const uint32_t *col,
                      uint32_t length, double *error);
 
-/* Adds to the error of old rows what a new row of sphere i reveals. If F_ij has grown, F_ji has grown as well, and the
- * old row j does not know. Where F_ij has more than doubled,
+/* Adds to the error of old rows what a new row of sphere i reveals. If F_ij has grown, F_ji has grown as well, but the
+ * old row j still has the smaller F_ji. Where F_ij has more than doubled,
  *   error[j] = sqrt(error[j]^2 + (2 (F_ij new - F_ij old) A_i/A_j)^2).
  * The last bits of `error` depend on the order of the calls.
  *   Input    i: 0 to spheres - 1
- *            before, row: the old and the new row i; col, f, length, columns ascending, f 0 to 2
+ *            before, row: the old and the new row i. Both have col, f and length. Columns ascend, and f is 0 to 2.
  *            error[spheres]: errors of all rows
  *   Output   error[spheres]
  *   Errors   _ARGUMENT, _STATE
@@ -817,23 +819,24 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
 /* ---- exchange -------------------------------------------------------------------------------------------------- */
 /* How exchange factors are computed. All surfaces are grey and diffuse. A surface of emissivity 0 reflects everything.
  *
- * Radiation first travels from sphere i to the surface that it meets. This first leg is a beam row, with 256 points per
- * window up to 144 directions and exact areas above. Then paths follow the reflections.
+ * Radiation first travels from sphere i to the surface that it meets. This first leg is a beam row. With up to 144
+ * directions the beam row takes 256 points per window. With more directions it takes exact areas. Then paths follow the
+ * reflections.
  *
- *   field                   _row               _displacement      _body                         _walk
- *   emissivity              needed             needed             NULL: all spheres are black   needed
- *   body_emissivity         needed with walls  needed with walls  NULL: all walls are black     no walls
- *   directions, tolerance   used               not used           not used                      not used
- *   cutoff                  used               used               must be 0                     must be 0
- *   paths, seed             used               used               used                          used
- *   conductivity            if spheres conduct not used           if spheres conduct            needed
- *   node_emissivity         if spheres conduct not used           if spheres conduct            not used
- *   flights                 not used           not used           not used                      used */
+ *   field                   _row                 _displacement        _body                         _walk
+ *   emissivity              needed               needed               NULL: all spheres are black   needed
+ *   body_emissivity         needed with walls    needed with walls    NULL: all walls are black     no walls
+ *   directions, tolerance   used                 not used             not used                      not used
+ *   cutoff                  used                 used                 must be 0                     must be 0
+ *   paths, seed             used                 used                 used                          used
+ *   conductivity            if spheres conduct   not used             if spheres conduct            needed
+ *   node_emissivity         if spheres conduct   not used             if spheres conduct            not used
+ *   flights                 not used             not used             not used                      used */
 typedef struct fibrad_exchange_rule {
     const double *emissivity;      /* [spheres], 0 to 1 */
     const double *body_emissivity; /* [bodies], 0 to 1 */
     uint32_t directions;           /* of the first leg; 0: FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT */
-    uint32_t paths;   /* 1 to FIBRAD_PATHS_MAX; 0: FIBRAD_PATHS_DEFAULT, of _body FIBRAD_BODY_PATHS_DEFAULT */
+    uint32_t paths;   /* 1 to FIBRAD_PATHS_MAX; 0: FIBRAD_PATHS_DEFAULT, in _body FIBRAD_BODY_PATHS_DEFAULT */
     uint64_t seed;    /* of random numbers, with the sphere's id; also the `turn` of the first leg */
     double cutoff;    /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
     double tolerance; /* the error allowed; directions and paths are added until it is met; 0: none */
@@ -844,8 +847,8 @@ typedef struct fibrad_exchange_rule {
     uint32_t flights;              /* of _walk, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
 } fibrad_exchange_rule;
 
-/* The relative conductivity k* = k_s/(4 d sigma T^3) of a sphere of diameter d. The smaller k* is, the more does
- * temperature differ from point to point of the sphere.
+/* The relative conductivity k* = k_s/(4 d sigma T^3) of a sphere of diameter d. The smaller k* is, the more the
+ * temperature differs from point to point on the sphere.
  *   Input    conductivity: k_s of the solid. In SI units [W/(m K)]
  *            radius, temperature: of the sphere. In SI units [m], [K]
  *            sigma: the Stefan-Boltzmann constant in the same units, in SI units FIBRAD_STEFAN_BOLTZMANN
@@ -871,16 +874,16 @@ double fibrad_relative_conductivity(double conductivity, double radius, double t
 double fibrad_node_emissivity(double emissivity, double conductivity);
 
 /* Row i of the exchange factors of a scene. row->f holds D_ij. Factors to walls, `escaped` and `beyond` count all
- * reflections, too. Their sum is 1 to rounding. The row of a sphere of emissivity 0 is empty, and its sum is 0. No
- * other row has an entry for such a sphere. The error falls as directions^-1.5 and paths^-0.5.
+ * reflections, too. The sum of the row is 1 to rounding. The row of a sphere of emissivity 0 is empty, and its sum is
+ * 0. No other row has an entry for such a sphere. The error falls as directions^-1.5 and paths^-0.5.
  *   Input    i: 0 to spheres - 1
  *            rule: needed
  *   Output   row
  *            rays: rays traced; may be NULL
  *   Errors   as fibrad_beam_row. The emissivities of sphere i, of walls, and of spheres that are met are checked.
  *   Cost     the beam row, and 0.1 to 0.2 microseconds per ray. A path has about 2 rays at emissivity 0.8 and 14 at
- *            0.2. For spheres that conduct, take the emissivity of the nodes. If work memory may grow, this function
- *            takes up to 6 MB more, for speed.
+ *            0.2. For spheres that conduct, the emissivity of the nodes counts. If work memory may grow, this
+ *            function takes up to 6 MB more, for speed.
  *   Source   docs/methods_heat.md section 2 */
 int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
                         fibrad_row *row, uint64_t *rays);
@@ -904,7 +907,7 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
                          uint32_t part, fibrad_body_row *row);
 
 /* The mean of all batches of a wall's row. The error is the standard error of the mean, from the spread of the batches,
- * plus what was lost among mirrors. A mean below 0 becomes 0, and the other factors are scaled.
+ * plus the fraction lost among mirrors. A mean below 0 becomes 0, and the other factors are scaled.
  *   Input    part[FIBRAD_BODY_PARTS]: all batches
  *   Output   mean
  *   Errors   _ARGUMENT */
@@ -929,13 +932,13 @@ typedef struct fibrad_displacement {
 int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
                                  const fibrad_exchange_rule *rule, fibrad_displacement *displacement);
 
-/* How fast radiation spreads through a bed of spheres that conduct. Temperatures differ from point to point of each
- * sphere, and no sphere gains heat on balance. A path starts at sphere i as if it had arrived there. At each sphere the
- * path is reflected, or it is absorbed and given off at another point of the sphere. The path goes on for 2 n flights,
- * n = rule->flights. `square` is the mean square displacement per flight, in the limit of many flights. The correlation
- * of flights that are more than n flights apart is left out. So in a cubic lattice of emissivity 1 the sum of `square`
- * is 0.2 % too large with n = 12 at k* = 0.1, and with n = 24 at k* = 0.01.
- *   Input    i: 0 to spheres - 1; paths start evenly on its surface
+/* How fast radiation spreads through a bed of spheres that conduct. Temperatures differ from point to point on each
+ * sphere, and the net power of every sphere is 0. A path starts at sphere i as if it had arrived there. At each sphere
+ * the path is reflected, or it is absorbed and given off at another point of the sphere. The path goes on for 2 n
+ * flights, n = rule->flights. `square` is the mean square displacement per flight, in the limit of many flights. The
+ * correlation of flights that are more than n flights apart is left out. For example, in a cubic lattice of emissivity
+ * 1 the sum of `square` is 0.2 % too large with n = 12 at k* = 0.1. The same holds for n = 24 at k* = 0.01.
+ *   Input    i: 0 to spheres - 1. The starts of the paths are spread evenly over the surface of sphere i.
  *            rule: needed
  *   Output   displacement; absorbed: fraction of the paths that did not leave the bed
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY
@@ -948,7 +951,7 @@ int fibrad_exchange_walk(const fibrad_scene *scene, fibrad_work *work, uint32_t 
 /* Emissions and powers of spheres, walls and surroundings. Let e be the unit of emission, W/m2 for example. Powers are
  * in e L^2 and above 0 where heat is gained. fibrad_rows_flow adds to the powers: set them to 0 first. */
 typedef struct fibrad_flow {
-    const double *weight;         /* L^2, [spheres], area times emissivity, 4 pi r^2 eps; read where there is a row */
+    const double *weight;         /* L^2, [spheres], area times emissivity, 4 pi r^2 eps; read for spheres with a row */
     const double *emission;       /* e, [spheres], sigma T^4 */
     const double *body_emission;  /* e, [bodies], sigma T^4 of each wall */
     double surroundings_emission; /* e, sigma T^4 of the surroundings */
@@ -961,8 +964,8 @@ typedef struct fibrad_flow {
  *
  * An entry D_ij moves the power A_i eps_i D_ij (E_j - E_i)/2 from sphere j to sphere i. The other half comes from row
  * j, on this or on another machine. A factor to a wall or to the surroundings moves the full power, since walls and
- * surroundings have no rows here. All factors of a row are first multiplied by 1/(1 - beyond). What sphere i gains, the
- * others lose to the bit. Nothing flows between equal emissions.
+ * surroundings have no rows here. All factors of a row are first multiplied by 1/(1 - beyond). Sphere i gains exactly
+ * what the others lose, to the bit. Nothing flows between equal emissions.
  *   Input    rows: a collection, added in its order
  *            spheres, bodies: lengths of the arrays in `flow`
  *   Output   flow: the powers

@@ -16,8 +16,8 @@
  *            3. fibrad_furnace_tally_add adds the tallies up.
  *            4. fibrad_furnace_estimate or fibrad_furnace_equilibrium evaluates the sum.
  *            Repeat from step 1 with the same tallies. After a restart the tallies must be empty. A tally knows which
- *            bundles it holds. FIBRAD_E_STATE: a bundle is missing or was traced twice, or a tally belongs to another
- *            furnace or restart.
+ *            bundles it holds. A call returns FIBRAD_E_STATE if a bundle is missing or was traced twice, or if a tally
+ *            belongs to another furnace or restart.
  * Units      metres, watts and kelvins. Words, memory, errors and the layout of comments are as in fibrad.h.
  * Source     docs/furnace.md. "The paper" is L. Zhao and others, J. Univ. Sci. Technol. Beijing 27 (2005) 423.
  *
@@ -37,8 +37,8 @@ extern "C" {
 typedef struct fibrad_furnace_config {
     double size[3];             /* m, edges of the box, 1e-9 to 1e9 */
     uint32_t cells[3];          /* along each axis, at least 1; the product at most FIBRAD_FURNACE_CELLS_MAX */
-    double absorption;          /* 1/m; times any edge of a cell 1e-9 to 1e9 */
-    double scattering;          /* 1/m; times any edge of a cell 0 to 1e9 */
+    double absorption;          /* 1/m; its product with any edge of a cell is 1e-9 to 1e9 */
+    double scattering;          /* 1/m; its product with any edge of a cell is 0 to 1e9 */
     double source;              /* W/m3, net emission of the medium, -1e30 to 1e30 */
     double wall_temperature[6]; /* K, 1e-3 to 1e9 */
     double wall_emissivity[6];  /* 0 to 1, not all 0 */
@@ -97,7 +97,7 @@ double fibrad_furnace_temperature(double e);
  *   Source   docs/furnace.md */
 int fibrad_furnace_theta(fibrad_furnace *furnace, double theta);
 
-/* What the medium scatters is a quarter of the incident radiation. This says how that quarter is computed. */
+/* What the medium scatters is a quarter of the incident radiation. This rule says how the quarter is computed. */
 typedef enum fibrad_furnace_scatter {
     FIBRAD_SCATTER_SIX_FLUX = 0, /* a sixth of the sum of the six fluxes, as in the paper */
     FIBRAD_SCATTER_EXACT = 1     /* E - source/(4 absorption), exact in equilibrium */
@@ -112,7 +112,7 @@ typedef struct fibrad_furnace_report {
 /* Solves the heat-flux equations for E and the fluxes, with the present Theta and transverse term. A sweep solves every
  * line of cells exactly between its two walls. The sweeps end when no cell changes by more than the tolerance.
  *   Input    tolerance: [W/m2], above 0
- *            sweeps_max: sweeps after which to stop; no error, read the report
+ *            sweeps_max: sweeps after which to stop. To stop there is no error: the report has `change`.
  *   Output   report
  *   Errors   _ARGUMENT: also if a change of E is not finite, because of values that the caller has written into the
  *            arrays. All arrays but theta are then undefined.
@@ -121,15 +121,15 @@ typedef struct fibrad_furnace_report {
 int fibrad_furnace_solve(fibrad_furnace *furnace, fibrad_furnace_scatter scatter, double tolerance, uint32_t sweeps_max,
                          fibrad_furnace_report *report);
 
-/* Sets divergence, six_flux, wall and power from the fluxes. For fluxes that another solver has written.
+/* Sets divergence, six_flux, wall and power from the fluxes. Call this for fluxes that another solver has written.
  *   Errors   _ARGUMENT
  *   Cost     O(cells) */
 int fibrad_furnace_balance(fibrad_furnace *furnace);
 
 /* What bundles of rays do. */
 typedef enum fibrad_furnace_physics {
-    FIBRAD_FURNACE_ATTENUATED = 0, /* The medium absorbs from bundles and emits bundles by E. They give Theta. */
-    FIBRAD_FURNACE_EQUILIBRIUM = 1 /* The medium emits again what it absorbs: direct Monte Carlo. They give E. */
+    FIBRAD_FURNACE_ATTENUATED = 0, /* The medium absorbs from bundles and emits bundles by E. Bundles give Theta. */
+    FIBRAD_FURNACE_EQUILIBRIUM = 1 /* The medium emits again what it absorbs: direct Monte Carlo. Bundles give E. */
 } fibrad_furnace_physics;
 
 /* Plans the bundles to be traced next. Transport is linear and tallies are additive. Hence there are two kinds of

@@ -6,8 +6,8 @@
  * Method     Surfaces are cut into patches. Beams of points connect the patches that see each other. A beam carries
  *            radiation both ways. Hence nothing flows at equal temperatures, and all powers add up to zero. The
  *            radiosities J = eps E + (1 - eps) H, with E = sigma T^4 and the irradiation H, follow by conjugate
- *            gradients. They are found first on coarse patches, four times as large, and then on the patches
- *            themselves. Powers and temperatures are extrapolated from both to patches without size.
+ *            gradients. The radiosities are found first on coarse patches, four times as large, and then on the
+ *            patches themselves. Powers and temperatures are extrapolated from both results to patches of size 0.
  * Sequence   1. fibrad_heat_init
  *            2. fibrad_heat_trace for every task
  *            3. fibrad_heat_begin
@@ -36,9 +36,8 @@ typedef struct fibrad_heat_config {
         directions;   /* of beams from each sphere, FIBRAD_DIRECTIONS_MIN to _MAX; 0: FIBRAD_HEAT_DIRECTIONS_DEFAULT */
     uint32_t points;  /* of each beam: 64, 128 or 256; 0: FIBRAD_HEAT_POINTS_DEFAULT */
     uint32_t patches; /* of each sphere: 24, 96 or 384; 0: FIBRAD_HEAT_PATCHES_DEFAULT */
-    uint32_t
-        parts;     /* of a sweep, for as many threads, 1 to FIBRAD_HEAT_PARTS_MAX; changes the last bits; 0: _DEFAULT */
-    double cutoff; /* must be 0, else FIBRAD_E_UNSUPPORTED */
+    uint32_t parts;   /* of a sweep, for threads, 1 to FIBRAD_HEAT_PARTS_MAX; changes the last bits; 0: _DEFAULT */
+    double cutoff;    /* must be 0, else FIBRAD_E_UNSUPPORTED */
     uint32_t wall_rays; /* least number of rays from all walls together, at most FIBRAD_WALL_RAYS_MAX; 0: see above */
 } fibrad_heat_config;
 
@@ -93,7 +92,7 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *
  *   a sphere with             temperature  power     hold, reference
  *   a given temperature       T            0 or NaN  not used
- *   a given power P           NaN          P         0, NaN or where the search for the temperature begins
+ *   a given power P           NaN          P         0, and R where the search for T begins, or NaN
  *   a power that varies       NaN          P         h, R: the sphere gives off P - h sigma (T^4 - R^4)
  *   emissivity 0              T            0 or NaN  not used
  *                             NaN          0         0, NaN
@@ -106,20 +105,20 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * temperature, unless it reflects everything.
  *
  * A sphere with a finite conductivity has a temperature that differs from point to point. `temperature` is then the
- * mean over its surface. The inside is taken to be steady, and sources or stores of heat to be spread evenly inside.
- * Emission is linear in temperature about the mean (docs/methods_heat.md section 13). If one L is `metres` metres long,
- * a conductivity of k_s [W/(m K)] is given as k_s/metres. Emissivities of 0 and 1 are allowed. `uniform` is not
- * allowed.
+ * mean over its surface. The inside is taken to be steady. Sources and stores of heat are taken to be spread evenly
+ * inside. Emission is linear in temperature about the mean (docs/methods_heat.md section 13). If one L is `metres`
+ * metres long, a conductivity of k_s [W/(m K)] is given as k_s/metres. Emissivities of 0 and 1 are allowed. `uniform`
+ * is not allowed.
  *
  * The residual is relative to the differences of emission. tolerance = 0 stands for 1e-3, or for 1e-5 if a temperature
  * is unknown and its hold is 0. side_temperature is in the order of the caller's triangles. If sides share a patch,
- * each of them emits the mean of all of them. */
+ * each side emits the mean of their emissions. */
 typedef struct fibrad_heat_sources {
     const double *temperature; /* K, [spheres], 0 to FIBRAD_TEMPERATURE_MAX; NaN: unknown */
     const double *emissivity;  /* [spheres], 0 to 1 */
-    const double *power;       /* sigma K^4 L^2, [spheres], up to FIBRAD_POWER_MAX, above 0 gives off; NULL: all NaN */
-    const double *hold;        /* L^2, [spheres], 0 to 1e60; NULL: all 0 */
-    const double *reference;   /* K, [spheres], as temperature; NULL: all NaN */
+    const double *power;     /* sigma K^4 L^2, [spheres], up to FIBRAD_POWER_MAX, given off if above 0; NULL: all NaN */
+    const double *hold;      /* L^2, [spheres], 0 to 1e60; NULL: all 0 */
+    const double *reference; /* K, [spheres], as temperature; NULL: all NaN */
     const double *body_temperature; /* K, [bodies], as temperature; NULL without walls */
     const double *body_emissivity;  /* [bodies], 0 to 1; NULL without walls */
     const double *body_power;       /* sigma K^4 L^2, [bodies], as power; NULL: all NaN */
@@ -166,7 +165,7 @@ int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
  *            _STATE: a part was not swept, no solution was begun, or the scene has changed
  *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, and the powers do not add up to zero
  *   If all temperatures are unknown, nothing escapes, and the powers do add up to zero, the level of the temperatures
- *   is free. Then the mean emission, weighted by emissivity and area, is that of the surroundings. */
+ *   is free. The mean emission, weighted by emissivity and area, is then set to that of the surroundings. */
 int fibrad_heat_step(fibrad_heat *heat, int *solved);
 
 /* The solution. The arrays belong to the caller. Where a field may be NULL, NULL means that it is not wanted.

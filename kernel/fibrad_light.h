@@ -1,13 +1,14 @@
 /* fibrad_light.h - light from outside that falls on a bed: sun or lasers.
  *
- * Light of one direction is a bundle of parallel rays. It comes from outside, enters through the open faces of the
- * container, and ends on the first sphere or wall that it meets. Across the light a sphere is seen as a disc. The
+ * Light of one direction is a bundle of parallel rays. The rays come from outside and enter through the open faces of
+ * the container. Each ray ends on the first sphere or wall that it meets. Seen along the light, a sphere is a disc. The
  * sphere takes the light on that part of its disc which no sphere and no wall hides from the light. The areas of these
  * parts are exact.
  *
- * Sequence   1. fibrad_light_empty tells how much light would end on each wall, or leave, if there were no spheres.
+ * Sequence   1. fibrad_light_empty tells how much light would end on each wall if there were no spheres. It also tells
+ *               how much light would leave the bed.
  *            2. fibrad_light_spheres tells how much light each sphere of a range takes. It also tells how much of that
- *               light would have ended on each wall, or left.
+ *               light would have ended on each wall, or left the bed, without these spheres.
  *            The light that ends on a wall is the number of step 1 less the numbers of all ranges of step 2. The same
  *            holds for the light that leaves.
  *            fibrad_heat_shine does step 2 for a heat problem, and puts the light on patches.
@@ -27,9 +28,10 @@ extern "C" {
 
 /* The cross-section of light. */
 typedef enum fibrad_light_shape {
-    FIBRAD_LIGHT_ALL = 0,  /* what open faces let in; without walls and periods what meets the box of the spheres */
-    FIBRAD_LIGHT_DISC = 1, /* what passes a disc at right angles to `direction`; fibrad_light.centre, radius */
-    FIBRAD_LIGHT_BOX = 2   /* what passes through a rectangle at the end of the bed in z; fibrad_light.low, high */
+    FIBRAD_LIGHT_ALL =
+        0, /* all light through open faces; without walls and periods all that meets the box of spheres */
+    FIBRAD_LIGHT_DISC = 1, /* light that passes a disc at right angles to `direction`; fibrad_light.centre, radius */
+    FIBRAD_LIGHT_BOX = 2   /* light that passes a rectangle at the end of the bed in z; fibrad_light.low, high */
 } fibrad_light_shape;
 
 /* Light from outside. If all fields but direction and flux are zero, the light is parallel and falls on all that is
@@ -62,7 +64,7 @@ typedef struct fibrad_light_ends {
 /* Where light ends if there are no spheres.
  *   Output   ends: spheres is 0, the others add up to the power of the light
  *            fault: which sphere is at fault, and why; may be NULL
- *   Errors   _ARGUMENT: fault.why tells which
+ *   Errors   _ARGUMENT: fault.why tells the cause
  *              FIBRAD_WHY_LIGHT: a number is out of range
  *              FIBRAD_WHY_DARK: no open face lets the light in
  *              FIBRAD_WHY_FOOTPRINT: the light meets a sphere before the disc
@@ -84,15 +86,16 @@ int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fib
                          uint32_t to, double *power, fibrad_light_ends *kept);
 
 /* ---- light on patches --------------------------------------------------------------------------------------------
- * Light is of short wavelength, thermal radiation of long wavelength. A surface absorbs the two with different
- * absorptivities. Reflected light stays light. So light has a solution of its own:
- *   1. fibrad_heat_shine for each task of each light, fibrad_heat_shine_walls for each light. They add to `hits`.
- *   2. fibrad_heat_begin with all temperatures 0, absorptivities in the place of emissivities, and `light` = hits. The
- *      net powers of this solution are the light that is absorbed. The net power of the surroundings is the light that
- *      is reflected.
+ * Light has short wavelengths. Thermal radiation has long wavelengths. A surface absorbs the two with different
+ * absorptivities. Reflected light stays light. So light has its own solution:
+ *   1. Call fibrad_heat_shine for each task of each light, and fibrad_heat_shine_walls for each light. Both functions
+ *      add to `hits`.
+ *   2. Call fibrad_heat_begin with all temperatures 0, absorptivities in the place of emissivities, and `light` = hits.
+ *      The net powers of this solution are the light that is absorbed. The net power of the surroundings is the light
+ *      that is reflected.
  *   3. Thermal radiation has a second solution. The light that a surface absorbs is added to the power of the surface.
- *      For insulated walls fibrad_heat_keep_light leaves in `hits` what they absorb. This is the `light` of the second
- *      solution. */
+ *      Insulated walls have no power of their own: call fibrad_heat_keep_light. `hits` then holds the light that
+ *      insulated walls absorb. Hand `hits` to the second solution as `light`. */
 
 /* Number of patches of a heat problem.
  *   Errors   0 if heat is NULL */

@@ -15,7 +15,7 @@
  * Spheres  A triangle may cut a sphere, as in settled beds. A part of the sphere's surface then lies beyond the
  *          triangle, as seen from the centre of the sphere. What this part emits meets the triangle at once.
  * Edges    Two triangles share an edge if their corners have equal coordinates. Nothing passes between them.
- * Walls    Planes and the cylinder bound the scene. What lies beyond them of a triangle has no effect.
+ * Walls    Planes and the cylinder bound the scene. The part of a triangle that lies beyond them has no effect.
  * Periods  Triangles repeat along the periodic axes of the scene. Their corners may lie outside the box.
  * Bounds   Let 2 l be the largest extent of all triangles together along any axis. No coordinate of corners, spheres
  *          and planes may be above 3e13 l. Let m = 2 + (extent of all triangles along an axis + largest diameter of a
@@ -51,7 +51,7 @@ typedef struct fibrad_triangles {
     const uint32_t *front;   /* [n], wall of each front side; FIBRAD_NO_BODY: none */
     const uint32_t *back;    /* [n], wall of each back side; FIBRAD_NO_BODY: none; NULL: none for all */
     uint32_t n;              /* number of triangles, 0 to FIBRAD_TRIANGLES_MAX */
-    double period[3];        /* L, repeats the triangles alone, along an open axis of the scene; 0: no repetition */
+    double period[3];        /* L, repeats only the triangles, along an open axis of the scene; 0: no repetition */
 } fibrad_triangles;
 
 /* Bytes that n triangles add to fibrad_scene_size(spheres, ids): 135 per triangle and 4 per sphere.
@@ -76,7 +76,7 @@ typedef struct fibrad_triangle_hit {
 int fibrad_triangle_ray(const fibrad_scene *scene, const double origin[3], const double w[3], double length,
                         fibrad_triangle_hit *hit);
 
-/* What a side of a triangle sees: fractions of the radiation that leaves the side by the cosine law. All three are NaN
+/* What a side of a triangle sees: fractions of the radiation that leaves the side by the cosine law. All fields are NaN
  * if the side belongs to no wall, or if no point of the side lies within the planes and the cylinder. */
 typedef struct fibrad_side_view {
     double spheres; /* fraction that meets spheres */

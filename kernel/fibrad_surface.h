@@ -30,13 +30,13 @@ typedef enum fibrad_surface_flags {
 
 /* How a factor is integrated. Zeroed: FIBRAD_NODES_DEFAULT nodes, corrected, no cutoff, the best instruction set.
  *
- * isa is used by fibrad_surface_pair only. FIBRAD_ISA_BEST asks the machine at every call. Under a hypervisor that
- * takes longer than the pair. Other values are not checked against the machine: take the value that fibrad_isa_best has
- * returned once. */
+ * isa is used by fibrad_surface_pair only. FIBRAD_ISA_BEST asks the machine at every call. Under a hypervisor this
+ * question takes longer than the pair. Other values are not checked against the machine: take the value that
+ * fibrad_isa_best has returned once. */
 typedef struct fibrad_surface_rule {
     uint32_t nodes; /* on each sphere, a Fibonacci number, FIBRAD_NODES_MIN to _MAX; 0: FIBRAD_NODES_DEFAULT */
     uint32_t flags; /* 0 or FIBRAD_SURFACE_NO_CORRECTION */
-    double cutoff;  /* L, used by rows only, as in fibrad_beam_rule; at most 100 periods; 0: none, not if periodic */
+    double cutoff;  /* L, used by rows only, as in fibrad_beam_rule; at most 100 periods; 0: none, if not periodic */
     int isa;        /* a fibrad_isa, see above */
 } fibrad_surface_rule;
 
@@ -73,8 +73,9 @@ int fibrad_surface_pair(double r1, double r2, double gap, const fibrad_spheres *
  * The obstacles of a pair are the spheres within the cutoff of sphere i. Sphere 1 of a pair is the one of lower index.
  * The z axis of a pair goes from sphere 1 to sphere 2. The x axis is the cross product of a and z. a is the coordinate
  * axis along which z has its smallest component. If several components are equally small, the first one counts. Hence
- * rows are reciprocal, except for obstacles within the cutoff of one sphere of the pair only. row->symmetric is 1.
- * row->escaped is 1 - the sum of f. row->error is the root of the sum of the squared errors of the pairs.
+ * rows i and j sum a pair alike, and rows are reciprocal. An obstacle that lies within the cutoff of only one sphere of
+ * the pair breaks this reciprocity. row->symmetric is 1. row->escaped is 1 - the sum of f. row->error is the root of
+ * the sum of the squared errors of the pairs.
  *   Input    i: 0 to spheres - 1
  *            rule: NULL for all defaults
  *   Output   row

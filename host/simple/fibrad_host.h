@@ -15,11 +15,11 @@
  * Words     Units, words, defaults and the layout of comments are as in fibrad.h.
  * Bits      Every result and every error is the same for any number of threads.
  * Threads   An object belongs to one thread at a time. Different objects are independent.
- * Errors    as the kernel functions that a call uses, and FIBRAD_E_MEMORY, FIBRAD_E_CANCELLED. With `scratch` also
- *           FIBRAD_E_FILE: no file can be made in this folder. After an error the out-pointer is NULL, and there is
- *           nothing to free.
- * Fork      OpenMP's threads do not survive fork(). A process may have called a function of this header with more than
- *           one thread. Then a forked child must not call one: the child would hang.
+ * Errors    A call returns the errors of the kernel functions that it uses, and FIBRAD_E_MEMORY and FIBRAD_E_CANCELLED.
+ *           With `scratch` it may also return FIBRAD_E_FILE: no file can be made in this folder. After an error the
+ *           out-pointer is NULL, and there is nothing to free.
+ * Fork      OpenMP's threads do not survive fork(). If a process has used more than one thread in this library, its
+ *           forked children must call no function of this header. They would hang.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_HOST_H
@@ -58,14 +58,15 @@ typedef struct fibrad_run {
 /* Which rows of a bed are computed, and how. NULL or zeroed: all rows, reciprocal and closed.
  *
  * All rows are computed by silhouettes along lines if the beam rule has neither points nor a cutoff, `raw` is 0, and
- * the scene has neither triangles nor a known region. The beam rule's number of directions is then that of lines, each
- * followed both ways; 0 stands for FIBRAD_LINES_DEFAULT. Other rows are computed one by one by beams.
+ * the scene has neither triangles nor a known region. The number of lines is then beam->directions, where 0 stands for
+ * FIBRAD_LINES_DEFAULT. Each line is followed both ways. Otherwise beams compute the rows one by one.
  *
  * At most one of beam, surface and cast is set. If the beam rule has a tolerance, there are two cases. Rows that are
- * averaged all have the same number of directions, that of the worst row. Raw rows each have the number they need.
+ * averaged all have the same number of directions, which is that of the worst row. If `raw` is 1, each row has the
+ * number of directions that it needs.
  *
  * Rows of walls are computed if `bodies` is 1, all rows are wanted, and the rule has no cutoff. All rows are then
- * closed together, which changes what spheres exchange within its error.
+ * closed together. This changes the factors between spheres, by less than their errors.
  *
  * Files in the scratch folder take 24 to 36 bytes per entry of the raw rows and 24 per entry of the matrix. */
 typedef struct fibrad_bed_options {
@@ -85,7 +86,7 @@ typedef struct fibrad_bed_factors {
     fibrad_scene_facts facts; /* of the scene */
     const double *body_area;  /* L^2, [bodies], as fibrad_scene_body_area */
     int threads;              /* threads used */
-    uint32_t directions;      /* most directions of a row, or lines; 0: a method without directions */
+    uint32_t directions;      /* largest number of directions of a row, or lines; 0: the method has none */
     uint64_t fallbacks;       /* windows that the robust method for areas resolved */
     uint64_t rays;            /* exchange: rays traced */
     double seconds;           /* s, time of computing, without the two checks below */
@@ -184,10 +185,10 @@ typedef void fibrad_emissivity_law(void *context, const double *temperature, con
                                    double *emissivity, double *body_emissivity);
 
 /* Net powers and temperatures with emissivities that follow a law. The call solves again until the emissivities change
- * by at most 1e-5. The law may also change the array of sources->conductivity, which settles to 1e-4, relative.
+ * by at most 1e-5. The law may also change the elements of sources->conductivity. They settle to 1e-4, relative.
  *   Input    sources: emissivity and body_emissivity are not used
  *            context: handed to law
- *            emissivity[spheres], body_emissivity[bodies]: to begin with, used where temperatures are unknown
+ *            emissivity[spheres], body_emissivity[bodies]: first values, used where temperatures are unknown
  *   Output   emissivity, body_emissivity: those of the solution
  *            result: temperature, and body_temperature with walls, must be set
  *   Errors   as fibrad_radiation_solve
@@ -195,7 +196,8 @@ typedef void fibrad_emissivity_law(void *context, const double *temperature, con
 int fibrad_radiation_settle(fibrad_radiation *radiation, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
                             void *context, double *emissivity, double *body_emissivity, fibrad_heat_result *result);
 
-/* Light from outside, and what absorbs it. Zeroed but for lights and absorptivities: no wall is insulated. */
+/* Light from outside, and what absorbs it. Set the lights and the absorptivities. If all else is zero, no wall is
+ * insulated. */
 typedef struct fibrad_light_sources {
     const fibrad_light *light; /* [lights] */
     uint32_t lights;
@@ -215,20 +217,21 @@ typedef struct fibrad_light_result {
     double *body_absorbed_first; /* sigma K^4 L^2, [bodies], out; NULL without walls */
     double *body_absorbed_error; /* sigma K^4 L^2, [bodies], out; may be NULL */
     double incident;             /* sigma K^4 L^2, out: what all lights bring */
-    double transmitted;          /* sigma K^4 L^2, out: leaves without having met anything */
-    double reflected;            /* sigma K^4 L^2, out: leaves after reflections, on whichever side */
+    double transmitted;          /* sigma K^4 L^2, out: light that leaves without having met anything */
+    double reflected;            /* sigma K^4 L^2, out: light that leaves after reflections, on any side */
     double error;                /* sigma K^4 L^2, out: estimated error of reflected */
     uint32_t sweeps;             /* out */
     uint32_t lights;             /* out: lights that were taken; after an error of a light, those before it */
     const double *insulated; /* [patches], out: light of fibrad_heat_sources for the thermal radiation; NULL: none */
 } fibrad_light_result;
 
-/* What a bed absorbs of light from outside. The sum of `absorbed` and `body_absorbed`, with `reflected` and
- * `transmitted`, is `incident`, to rounding.
+/* What a bed absorbs of light from outside. All elements of `absorbed` and `body_absorbed`, `reflected` and
+ * `transmitted` add up to `incident`, to rounding.
  *
- * What is absorbed heats. Add it to the power of a surface whose temperature is to be found, and to the net power of a
- * surface whose temperature is given. What insulated walls absorb they give off as thermal radiation: hand
- * result->insulated to fibrad_radiation_solve as sources.light. It lasts until the next move or shine.
+ * Absorbed light heats a surface. If the temperature of the surface is to be found, add the absorbed light to its
+ * power. If the temperature is given, add the absorbed light to the net power. An insulated wall gives off the absorbed
+ * light as thermal radiation: hand result->insulated to fibrad_radiation_solve as sources.light. This array lasts until
+ * the next move or shine.
  *   Output   result
  *   Errors   as fibrad_light_empty and fibrad_radiation_solve
  *            _UNSOLVABLE: nothing absorbs the light, and it cannot leave
@@ -253,12 +256,12 @@ typedef struct fibrad_transient fibrad_transient;
 
 /* How net radiative powers are found.
  *
- *   CORRECTED  by exchange factors, which patches correct from time to time. Powers are those of patches. For many
- *              steps at the same positions. The temperatures of walls are given.
- *   PATCHES    by patches in every stage of a step. For a step or two at the same positions, and for walls whose
- *              temperatures are found.
- *   FACTORS    by exchange factors alone. Powers are 2 to 5 % off. Takes little memory. The temperatures of walls are
- *              given, and walls gain from spheres only.
+ *   CORRECTED  by exchange factors, which patches correct from time to time. Powers are as accurate as by patches. Take
+ *              this method for many steps at the same positions. The temperatures of walls must be given.
+ *   PATCHES    by patches in every stage of a step. Take this method for a step or two at the same positions, and for
+ *              walls whose temperatures are found.
+ *   FACTORS    by exchange factors alone. Powers are 2 to 5 % off. The method takes little memory. The temperatures of
+ *              walls must be given, and walls gain from spheres only.
  *
  * Exchange factors are computed by the first step after a move. */
 typedef enum fibrad_transient_method {
@@ -270,7 +273,7 @@ typedef enum fibrad_transient_method {
 /* How a bed is followed in time. Zeroed: CORRECTED. */
 typedef struct fibrad_transient_config {
     int method;                    /* a fibrad_transient_method */
-    fibrad_exchange_rule exchange; /* for exchange factors, but for its emissivities: those of the sources count */
+    fibrad_exchange_rule exchange; /* for exchange factors; its emissivities are not used: the sources have them */
     fibrad_heat_config heat;       /* for patches, as for fibrad_radiation_new; points 0: 128 if CORRECTED */
 } fibrad_transient_config;
 
@@ -280,7 +283,7 @@ typedef struct fibrad_transient_config {
  *            config: NULL for all defaults
  *            run: as for fibrad_radiation_new
  *   Output   transient: free with fibrad_transient_free
- *   Errors   as fibrad_scene_init; except by FACTORS as fibrad_radiation_new
+ *   Errors   as fibrad_scene_init; also as fibrad_radiation_new, but not by FACTORS
  *   Source   docs/methods_heat.md section 11 */
 int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres,
                          const fibrad_transient_config *config, fibrad_run *run);
