@@ -1,24 +1,44 @@
-/* suite.h - a test program of libcheck: its cases, and what its main returns. SPDX-License-Identifier: MIT */
+/* suite.h - a test program of libcheck: its tests and its main. SPDX-License-Identifier: MIT
+ *
+ * TEST(name) {...} is a test. LOOP_TEST(name, count) {...} is one that runs for _i from 0 below count. Both need no
+ * other entry: a function before main adds the test to the suite. FIXTURE(before, after) has functions that are called
+ * before and after each test of the program; either may be NULL. */
 #ifndef TESTS_SUITE_H
 #define TESTS_SUITE_H
 
 #include <check.h>
 #include <stdlib.h>
 
-/* A further case of the suite. Each test has 300 seconds, unless CK_DEFAULT_TIMEOUT says otherwise: it takes seconds,
- * and a slow or loaded machine is no failure. */
-static inline TCase *suite_case(Suite *suite, const char *name) {
+#define TEST(name) LOOP_TEST(name, 1)
+
+#define LOOP_TEST(name, count)                                                                                         \
+    static void name(int _i);                                                                                          \
+    BEFORE_MAIN(name##_is_added) {                                                                                     \
+        static const TTest test = {#name, name, __FILE__, __LINE__};                                                   \
+        tcase_add_loop_test(suite_case(), &test, 0, (int)(count));                                                     \
+    }                                                                                                                  \
+    static void name(int _i CK_ATTRIBUTE_UNUSED)
+
+#define FIXTURE(before, after)                                                                                         \
+    BEFORE_MAIN(fixture_is_added) { tcase_add_checked_fixture(suite_case(), before, after); }
+
+#define BEFORE_MAIN(name) __attribute__((constructor)) static void name(void)
+
+/* All tests of the program. Each has 300 seconds, unless CK_DEFAULT_TIMEOUT says otherwise: it takes seconds, and a
+ * slow or loaded machine is no failure. */
+static inline TCase *suite_case(void) {
+    static TCase *all;
     setenv("CK_DEFAULT_TIMEOUT", "300", 0);
-    TCase *tcase = tcase_create(name);
-    suite_add_tcase(suite, tcase);
-    return tcase;
+    if (!all) all = tcase_create("all");
+    return all;
 }
 
-/* Runs all cases. Returns the exit status. */
-static inline int suite_run(Suite *suite) {
+int main(int argc, char **argv) {
+    Suite *suite = suite_create(argc > 0 ? argv[0] : "");
+    suite_add_tcase(suite, suite_case());
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner);
+    const int failed = srunner_ntests_failed(runner);
     srunner_free(runner);
     return failed != 0;
 }

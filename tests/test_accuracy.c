@@ -27,7 +27,7 @@ static double error_of(const struct bed *bed, uint32_t i, uint32_t directions, d
     return sqrt(square);
 }
 
-START_TEST(lattices) {
+TEST(lattices) {
     for (int kind = 0; kind < 3; kind++) {
         struct bed bed = lattice("pif"[kind], 8);
         double error = error_of(&bed, 0, 4181, 1e-5);
@@ -36,9 +36,8 @@ START_TEST(lattices) {
         bed_free(&bed);
     }
 }
-END_TEST
 
-START_TEST(small_scenes) {
+TEST(small_scenes) {
     double worst = 0;
     for (uint64_t seed = 0; seed < 12; seed++) {
         struct bed bed = packing(3 + (uint32_t)(seed % 6), .3, 1.2, .3, seed, false);
@@ -49,11 +48,10 @@ START_TEST(small_scenes) {
     printf("3 to 8 spheres: %.2g\n", worst);
     ck_assert_double_lt(worst, 3e-5);
 }
-END_TEST
 
 /* A pair with an obstacle that touches both, one that touches their common tangent cone from outside, one that touches
  * it from inside, and one in the middle. */
-START_TEST(tangent_obstacles) {
+TEST(tangent_obstacles) {
     double h = sqrt(3);
     struct bed beds[] = {bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2, 1}, {h, 0, 1, 1}}),
                          bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 4, 1}, {1.5, 0, 2, .5}}),
@@ -67,10 +65,9 @@ START_TEST(tangent_obstacles) {
         bed_free(&beds[b]);
     }
 }
-END_TEST
 
 /* The error falls as n^-1.5: eight-fold from n to 4 n, on the mean over rows. Truth: the same with many directions. */
-START_TEST(error_falls_as_it_should) {
+TEST(error_falls_as_it_should) {
     struct bed bed = packing(300, .8, 1.2, .55, 5, true);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_work work = work_growing();
@@ -92,15 +89,4 @@ START_TEST(error_falls_as_it_should) {
     free(scene);
     work_free(&work);
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("accuracy");
-    TCase *tcase = suite_case(suite, "accuracy");
-    tcase_add_test(tcase, lattices);
-    tcase_add_test(tcase, small_scenes);
-    tcase_add_test(tcase, tangent_obstacles);
-    tcase_add_test(tcase, error_falls_as_it_should);
-    return suite_run(suite);
 }

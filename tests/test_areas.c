@@ -122,7 +122,7 @@ static double random_in(double low, double high) {
     return low + (high - low) * bed_make_random(77, count++);
 }
 
-START_TEST(random_windows) {
+TEST(random_windows) {
     double worst = 0;
     for (int round = 0; round < 3000; round++) {
         struct window w = {0};
@@ -138,9 +138,8 @@ START_TEST(random_windows) {
     ck_assert_double_lt(worst, 1e-12);
     ck_assert_double_eq(fallbacks_part(), 0);
 }
-END_TEST
 
-START_TEST(hundreds_of_discs) {
+TEST(hundreds_of_discs) {
     double worst = 0;
     for (int round = 0; round < 10; round++) {
         struct window w = {0};
@@ -154,10 +153,9 @@ START_TEST(hundreds_of_discs) {
     ck_assert_double_lt(worst, 1e-12);
     ck_assert_double_eq(fallbacks_part(), 0);
 }
-END_TEST
 
 /* Discs 1e-6 to 1e6 times as large as the window, their edges across it. */
-START_TEST(large_and_small_discs) {
+TEST(large_and_small_discs) {
     for (int power = -6; power <= 6; power++) {
         double worst = 0;
         for (int round = 0; round < 200; round++) {
@@ -175,10 +173,9 @@ START_TEST(large_and_small_discs) {
         ck_assert_double_lt(worst, 1e-14 * fmax(100, 10 * pow(10, power)));
     }
 }
-END_TEST
 
 /* What lattices do: circles that are tangent, identical, concentric, or meet in one point, exactly and almost. */
-START_TEST(degenerate_windows) {
+TEST(degenerate_windows) {
     static const double nudges[] = {0, 0x1p-52, -0x1p-52, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9, 1e-6, -1e-6};
     double worst = 0;
     for (size_t a = 0; a < sizeof nudges / sizeof *nudges; a++)
@@ -216,10 +213,9 @@ START_TEST(degenerate_windows) {
         }
     printf("degenerate windows: %.2g, left to arrangements %.3g\n", worst, fallbacks_part());
 }
-END_TEST
 
 /* Perfect lattices seen along symmetry axes and next to them. */
-START_TEST(lattices_along_their_axes) {
+TEST(lattices_along_their_axes) {
     static const double axes[][3] = {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 1, 2}, {0, 1, 2}, {1, 2, 3}};
     double worst = 0;
     for (int kind = 0; kind < 3; kind++)
@@ -253,11 +249,10 @@ START_TEST(lattices_along_their_axes) {
     printf("lattices along their axes: %.2g, left to arrangements %.3g\n", worst, fallbacks_part());
     ck_assert_double_lt(worst, 1e-11);
 }
-END_TEST
 
 /* Both methods on windows whose circles meet in multiples of 1/4 ... 1/8 of a radius, or as much beside them as
  * decides between the two. */
-START_TEST(clipping_against_accounts) {
+TEST(clipping_against_accounts) {
     fibrad_areas areas = areas_make();
     double worst = 0, clipped[MOST + 1], robust[MOST + 1], many[MOST + 1];
     uint32_t left[2] = {0, 0}; /* to arrangements, by clipping as usual and in the way of many discs */
@@ -287,7 +282,6 @@ START_TEST(clipping_against_accounts) {
     for (int way = 0; way < 2; way++) ck_assert(part[way] > .05 && part[way] < .5); /* all have been tried */
     areas_free(&areas);
 }
-END_TEST
 
 #define WIDER(isa)                                                                                                     \
     begin_function fibrad_areas_begin_##isa;                                                                           \
@@ -319,7 +313,7 @@ WIDER(neon)
 
 /* In all instruction sets the same windows are degenerate, and the areas have the same bits: [1] in the way of many
  * discs. */
-START_TEST(bits_of_windows) {
+TEST(bits_of_windows) {
     const struct method *const methods[][2] = {
         [FIBRAD_ISA_SCALAR] = {&both, &dense},
 #ifdef FIBRAD_WITH_SSE2
@@ -361,11 +355,10 @@ START_TEST(bits_of_windows) {
     }
     areas_free(&areas);
 }
-END_TEST
 
 /* Many small discs, then large ones and a degenerate one: the arrangement begins in memory that dense clipping has
  * filled, and its lanes beyond the last arc must not look up what is no circle. */
-START_TEST(arrangement_after_dense_clipping) {
+TEST(arrangement_after_dense_clipping) {
     fibrad_areas areas = areas_make();
     const struct method *const methods[] = {
         &dense,
@@ -402,10 +395,9 @@ START_TEST(arrangement_after_dense_clipping) {
     ck_assert_uint_gt(areas.fallbacks, 100); /* where nothing has hidden the point of contact before */
     areas_free(&areas);
 }
-END_TEST
 
 /* What clipping must not decide is done by arrangements, and counted; ordinary windows are not. */
-START_TEST(doubts) {
+TEST(doubts) {
     const struct window degenerate[] = {
         {.n = 1, .u = {0}, .v = {0}, .r = {1}},                                            /* equal to the window */
         {.n = 2, .u = {.5, .5}, .v = {.1, .1}, .r = {.4, .4}},                             /* identical */
@@ -436,7 +428,6 @@ START_TEST(doubts) {
         ck_assert_msg(fallbacks_part() == 0, "window %zu was degenerate", p);
     }
 }
-END_TEST
 
 /* What is open of a window of random discs at depths of their own, its direction turned by (du, dv). */
 static double open_turned(fibrad_areas *areas, const struct method *method, const struct window *w, const double *depth,
@@ -449,7 +440,7 @@ static double open_turned(fibrad_areas *areas, const struct method *method, cons
 }
 
 /* The slope of the open area is its derivative. */
-START_TEST(slope_of_the_open_area) {
+TEST(slope_of_the_open_area) {
     fibrad_areas areas = areas_make();
     uint32_t there = 0;
     for (uint64_t seed = 0; seed < 300; seed++) {
@@ -477,21 +468,4 @@ START_TEST(slope_of_the_open_area) {
     }
     ck_assert_uint_gt(there, 300);
     areas_free(&areas);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("areas");
-    TCase *tcase = suite_case(suite, "areas");
-    tcase_add_test(tcase, random_windows);
-    tcase_add_test(tcase, hundreds_of_discs);
-    tcase_add_test(tcase, large_and_small_discs);
-    tcase_add_test(tcase, degenerate_windows);
-    tcase_add_test(tcase, lattices_along_their_axes);
-    tcase_add_test(tcase, clipping_against_accounts);
-    tcase_add_test(tcase, bits_of_windows);
-    tcase_add_test(tcase, arrangement_after_dense_clipping);
-    tcase_add_test(tcase, doubts);
-    tcase_add_test(tcase, slope_of_the_open_area);
-    return suite_run(suite);
 }

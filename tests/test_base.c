@@ -34,7 +34,7 @@ static size_t size_of(size_t n) {
     return fibrad_arena_total(&counting);
 }
 
-START_TEST(arena_counts_what_it_hands_out) {
+TEST(arena_counts_what_it_hands_out) {
     for (size_t n = 0; n < 200; n++) {
         const size_t size = size_of(n), offset = n % FIBRAD_ALIGNMENT; /* every offset from a boundary */
         unsigned char *whole = aligned_alloc(FIBRAD_ALIGNMENT, (size / FIBRAD_ALIGNMENT + 4) * FIBRAD_ALIGNMENT);
@@ -61,9 +61,8 @@ START_TEST(arena_counts_what_it_hands_out) {
         free(whole);
     }
 }
-END_TEST
 
-START_TEST(arena_refuses_what_it_cannot_hold) {
+TEST(arena_refuses_what_it_cannot_hold) {
     static _Alignas(FIBRAD_ALIGNMENT) unsigned char block[256];
     fibrad_arena arena = {block, 0, sizeof block};
     ck_assert_ptr_eq(fibrad_arena_take(&arena, 1, 65), block);
@@ -80,9 +79,8 @@ START_TEST(arena_refuses_what_it_cannot_hold) {
     ck_assert_ptr_eq(fibrad_arena_take(&arena, 2, 64), block + 128);
     ck_assert_ptr_null(fibrad_arena_take(&arena, 1, 1));
 }
-END_TEST
 
-START_TEST(arena_sums_that_overflow_count_as_no_size) {
+TEST(arena_sums_that_overflow_count_as_no_size) {
     static const struct {
         size_t count, bytes;
     } huge[] = {{SIZE_MAX, 1}, {SIZE_MAX, 8},        {SIZE_MAX / 2 + 1, 2}, {SIZE_MAX / 8, 8},   {SIZE_MAX - 63, 1},
@@ -96,9 +94,8 @@ START_TEST(arena_sums_that_overflow_count_as_no_size) {
         ck_assert_uint_eq(fibrad_arena_total(&arena), 0);
     }
 }
-END_TEST
 
-START_TEST(floor_agrees_with_the_c_library) {
+TEST(floor_agrees_with_the_c_library) {
     static const double values[] = {0,
                                     -0.5,
                                     0.5,
@@ -130,9 +127,8 @@ START_TEST(floor_agrees_with_the_c_library) {
     ck_assert_double_eq(fibrad_floor(INFINITY), INFINITY);
     ck_assert_double_eq(fibrad_floor(-INFINITY), -INFINITY);
 }
-END_TEST
 
-START_TEST(port_does_what_it_says) {
+TEST(port_does_what_it_says) {
     ck_assert(fibrad_finite(0) && fibrad_finite(DBL_MAX) && fibrad_finite(-DBL_MAX) && fibrad_finite(5e-324));
     ck_assert(!fibrad_finite(INFINITY) && !fibrad_finite(-INFINITY) && !fibrad_finite(NAN));
     ck_assert_double_eq(fibrad_abs(-3.5), 3.5);
@@ -155,7 +151,6 @@ START_TEST(port_does_what_it_says) {
     fibrad_zero(to + 2, 4);
     ck_assert_mem_eq(to, "-a\0\0\0\0", 7);
 }
-END_TEST
 
 /* What the processor claims to offer, from the kernel of the operating system. */
 static int offered(const char *flag) {
@@ -171,7 +166,7 @@ static int offered(const char *flag) {
     return found;
 }
 
-START_TEST(best_instruction_set_is_what_the_machine_offers) {
+TEST(best_instruction_set_is_what_the_machine_offers) {
     fibrad_isa best = fibrad_isa_best();
     ck_assert_int_eq(fibrad_isa_choose(FIBRAD_ISA_BEST), (int)best);
     ck_assert_int_eq(fibrad_isa_choose((int)best), (int)best);
@@ -187,9 +182,8 @@ START_TEST(best_instruction_set_is_what_the_machine_offers) {
     if (best >= FIBRAD_ISA_AVX2) ck_assert_int_ne(offered("avx2"), 0);
     if (best >= FIBRAD_ISA_AVX512) ck_assert_int_ne(offered("avx512vl"), 0);
 }
-END_TEST
 
-START_TEST(worst_keeps_nan) {
+TEST(worst_keeps_nan) {
     double worst = 0, least = 9;
     worst_of(&worst, 2), worst_of(&worst, 1), least_of(&least, 3), least_of(&least, 4);
     ck_assert_double_eq(worst, 2);
@@ -202,18 +196,4 @@ START_TEST(worst_keeps_nan) {
     ck_assert_double_nan(worst);
     ck_assert_double_nan(least);
     ck_assert(!(worst <= 1e300) && !(least >= -1e300));
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("base");
-    TCase *tests = suite_case(suite, "base");
-    tcase_add_test(tests, arena_counts_what_it_hands_out);
-    tcase_add_test(tests, arena_refuses_what_it_cannot_hold);
-    tcase_add_test(tests, arena_sums_that_overflow_count_as_no_size);
-    tcase_add_test(tests, floor_agrees_with_the_c_library);
-    tcase_add_test(tests, port_does_what_it_says);
-    tcase_add_test(tests, best_instruction_set_is_what_the_machine_offers);
-    tcase_add_test(tests, worst_keeps_nan);
-    return suite_run(suite);
 }

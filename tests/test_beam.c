@@ -38,7 +38,7 @@ static void beam_in(size_t size, const fibrad_scene *scene, uint32_t i, const fi
     free(block);
 }
 
-START_TEST(two_spheres_match_the_exact_pair) {
+TEST(two_spheres_match_the_exact_pair) {
     static const double cases[][3] = {{1, 1, 0},   {1, 1, .5}, {1, .3, 0}, {.3, 1, .1},
                                       {1, 3, .01}, {1, 10, 0}, {1, 1, 4}};
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
@@ -55,10 +55,9 @@ START_TEST(two_spheres_match_the_exact_pair) {
         bed_free(&bed);
     }
 }
-END_TEST
 
 /* A sphere wholly behind another of the same size in line: hidden but for nothing at all, if touching or not. */
-START_TEST(hidden_sphere_is_not_seen) {
+TEST(hidden_sphere_is_not_seen) {
     struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 4, 3}, {0, 0, 9, 1}});
     fibrad_row row = beam(&bed, 0, (fibrad_beam_rule){.directions = 1000}, FIBRAD_ISA_BEST);
     ck_assert_uint_eq(row.length, 1);
@@ -69,7 +68,6 @@ START_TEST(hidden_sphere_is_not_seen) {
     row_free(&row);
     bed_free(&bed);
 }
-END_TEST
 
 /* Spheres of radius r about one of radius 1, in layers up to 42 r above it. */
 static void check_shell(uint32_t count, double r) {
@@ -87,16 +85,15 @@ static void check_shell(uint32_t count, double r) {
     bed_free(&bed);
 }
 
-START_TEST(many_arcs_are_no_fallback) {
+TEST(many_arcs_are_no_fallback) {
     check_shell(60, .1);
     check_shell(400, .1);
     check_shell(20000, 5e-4);
 }
-END_TEST
 
 /* Discs far larger than the window are left to the robust method; not so hundreds of small ones before a large sphere,
  * nor what beds have. */
-START_TEST(fallbacks_are_counted) {
+TEST(fallbacks_are_counted) {
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 4}});
     for (uint32_t k = 0; k < 1000; k++) {
         double w[3];
@@ -124,9 +121,8 @@ START_TEST(fallbacks_are_counted) {
     }
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(raw_rows_close) {
+TEST(raw_rows_close) {
     struct bed beds[] = {packing(300, .8, 1.2, .55, 7, false), packing(300, .5, 2, .5, 8, true), lattice('p', 6),
                          lattice('i', 6), lattice('f', 6)};
     for (size_t b = 0; b < sizeof beds / sizeof *beds; b++) {
@@ -152,7 +148,6 @@ START_TEST(raw_rows_close) {
         bed_free(&beds[b]);
     }
 }
-END_TEST
 
 /* What sphere i sees along w down to depth `deepest`, by exact slicing of all discs in the order of their depths: adds
  * areas to seen[j]. */
@@ -178,7 +173,7 @@ static void slice(const struct bed *bed, uint32_t i, const double w[3], double d
 }
 
 /* Also where large spheres become known before small ones that lie in front of them. */
-START_TEST(rows_match_sliced_windows) {
+TEST(rows_match_sliced_windows) {
     struct bed beds[] = {packing(200, .05, 2, .05, 40, false),
                          packing(200, .5, 2, .3, 41, false),
                          strewn(600, 42),
@@ -200,10 +195,9 @@ START_TEST(rows_match_sliced_windows) {
         bed_free(&beds[b]);
     }
 }
-END_TEST
 
 /* A layer of spheres leaves the box of the grid no extent, and strays are beside it. No near spheres are kept. */
-START_TEST(strays_beside_a_layer) {
+TEST(strays_beside_a_layer) {
     struct bed bed;
     bed_init(&bed);
     for (int k = 0; k < 49; k++) add_sphere(&bed, 0, 3 * (k % 7) + .1 * (k / 7), 3 * (k / 7), 1);
@@ -228,9 +222,8 @@ START_TEST(strays_beside_a_layer) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(points_agree_with_areas) {
+TEST(points_agree_with_areas) {
     struct bed bed = packing(300, .8, 1.2, .55, 7, true);
     double square = 0;
     for (uint32_t i = 0; i < 20; i++) {
@@ -243,9 +236,8 @@ START_TEST(points_agree_with_areas) {
     ck_assert_double_lt(sqrt(square / 20), 5e-4);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(same_bits_in_every_instruction_set) {
+TEST(same_bits_in_every_instruction_set) {
     struct bed bed = packing(300, .5, 1.5, .55, 3, true);
     int isa[ISAS_MOST];
     const int sets = isas_there(isa);
@@ -262,11 +254,10 @@ START_TEST(same_bits_in_every_instruction_set) {
         }
     bed_free(&bed);
 }
-END_TEST
 
 /* Whether spheres are kept near or looked up along each direction is a matter of speed: with the least memory there is
  * room for few of them. */
-START_TEST(work_memory_is_a_matter_of_speed) {
+TEST(work_memory_is_a_matter_of_speed) {
     struct bed beds[] = {packing(300, .5, 1.5, .55, 3, true), packing(400, .4, 1, .05, 4, false), lattice('p', 9),
                          packing(400, .8, 1.2, .01, 5, true)};
     for (size_t b = 0; b < sizeof beds / sizeof *beds; b++) {
@@ -288,10 +279,9 @@ START_TEST(work_memory_is_a_matter_of_speed) {
         bed_free(&beds[b]);
     }
 }
-END_TEST
 
 /* The same for a sphere so large that the first shell ends within a radius of it. */
-START_TEST(work_memory_of_a_large_sphere) {
+TEST(work_memory_of_a_large_sphere) {
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 5}});
     for (int k = 0; k < 19 * 19 * 19; k++) {
         double x = .8 * (k % 19 - 9), y = .8 * (k / 19 % 19 - 9) + .1, z = .8 * (k / 361 - 9) + .2;
@@ -313,11 +303,10 @@ START_TEST(work_memory_of_a_large_sphere) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* Nor does it matter in which order the spheres come, though a window that begins with many discs of two sizes has a
  * grid chosen by their mean radius. */
-START_TEST(order_of_spheres_changes_no_bit) {
+TEST(order_of_spheres_changes_no_bit) {
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}}), turned = bed_of(0, NULL);
     for (int k = 0; k < 13 * 13 * 13; k++) {
         double x = .32 * (k % 13 - 6) + .003 * (k % 7), y = .32 * (k / 13 % 13 - 6) + .002 * (k % 11);
@@ -336,9 +325,8 @@ START_TEST(order_of_spheres_changes_no_bit) {
     row_free(&row), row_free(&other);
     bed_free(&bed), bed_free(&turned);
 }
-END_TEST
 
-START_TEST(scaling_by_powers_of_two_changes_no_bit) {
+TEST(scaling_by_powers_of_two_changes_no_bit) {
     struct bed bed = packing(200, .8, 1.2, .5, 5, true), scaled = packing(200, .8, 1.2, .5, 5, true);
     fibrad_row row = beam(&bed, 11, (fibrad_beam_rule){.directions = 233, .cutoff = 9}, FIBRAD_ISA_BEST);
     for (int k = -400; k <= 400; k += 100) {
@@ -356,11 +344,10 @@ START_TEST(scaling_by_powers_of_two_changes_no_bit) {
     bed_free(&bed);
     bed_free(&scaled);
 }
-END_TEST
 
 /* Rounding of the coordinates is all that a translation or a permutation changes. A rotation changes how the directions
  * lie: two estimates of the same row, each within the rule's error. */
-START_TEST(moved_beds_have_the_same_rows) {
+TEST(moved_beds_have_the_same_rows) {
     struct bed bed = packing(200, .8, 1.2, .5, 5, false), moved = packing(200, .8, 1.2, .5, 5, false);
     fibrad_beam_rule rule = {.directions = 2000};
     uint32_t last = bed.n - 1;
@@ -392,10 +379,9 @@ START_TEST(moved_beds_have_the_same_rows) {
     bed_free(&bed);
     bed_free(&moved);
 }
-END_TEST
 
 /* A periodic box is the box and its copies all around; images of one sphere share its entry. */
-START_TEST(periodic_images_are_copies) {
+TEST(periodic_images_are_copies) {
     struct bed bed = packing(60, .8, 1.2, .5, 9, true), copies = packing(60, .8, 1.2, .5, 9, false);
     double side = bed.period[0];
     uint32_t n = bed.n;
@@ -418,10 +404,9 @@ START_TEST(periodic_images_are_copies) {
     bed_free(&bed);
     bed_free(&copies);
 }
-END_TEST
 
 /* A lone sphere in a small periodic box sees only itself. */
-START_TEST(sphere_sees_its_own_images) {
+TEST(sphere_sees_its_own_images) {
     struct bed bed = bed_of(1, (const double[][4]){{.5, .5, .5, 1}});
     for (int axis = 0; axis < 3; axis++) bed.period[axis] = 2;
     fibrad_row row = beam(&bed, 0, (fibrad_beam_rule){.directions = 500}, FIBRAD_ISA_BEST);
@@ -431,9 +416,8 @@ START_TEST(sphere_sees_its_own_images) {
     row_free(&row);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(cutoff_takes_out_what_lies_beyond) {
+TEST(cutoff_takes_out_what_lies_beyond) {
     struct bed bed = lattice('f', 8), within = lattice('f', 4);
     fibrad_row cut = beam(&bed, 0, (fibrad_beam_rule){.cutoff = 4}, FIBRAD_ISA_BEST);
     fibrad_row row = beam(&within, 0, (fibrad_beam_rule){0}, FIBRAD_ISA_BEST);
@@ -445,10 +429,9 @@ START_TEST(cutoff_takes_out_what_lies_beyond) {
     bed_free(&bed);
     bed_free(&within);
 }
-END_TEST
 
 /* The same where spheres are looked up along each beam, for want of room in the near list. */
-START_TEST(cutoff_along_each_beam) {
+TEST(cutoff_along_each_beam) {
     struct bed bed = strewn(300, 45), within = bed_of(0, NULL);
     for (uint32_t j = 0; j < bed.n; j++) {
         double x = bed.x[j] - bed.x[50], y = bed.y[j] - bed.y[50], z = bed.z[j] - bed.z[50];
@@ -480,10 +463,9 @@ START_TEST(cutoff_along_each_beam) {
     bed_free(&bed);
     bed_free(&within);
 }
-END_TEST
 
 /* Contacts that overlap a little differ little from contacts that do not. */
-START_TEST(overlap_changes_rows_continuously) {
+TEST(overlap_changes_rows_continuously) {
     double last = -1;
     for (int step = -20; step <= 20; step++) {
         double gap = step * 1e-4;
@@ -496,11 +478,10 @@ START_TEST(overlap_changes_rows_continuously) {
         bed_free(&bed);
     }
 }
-END_TEST
 
 /* Of two spheres that overlap, side by side across a beam to the bit, one comes before the other's window and not the
  * other way round, as if it were a hair's breadth ahead: it sees the lens that the two discs have in common. */
-START_TEST(spheres_at_equal_depth_are_seen_once) {
+TEST(spheres_at_equal_depth_are_seen_once) {
     for (uint32_t k = 4; k < 12; k++) {
         double w[3], sum[3], lens = 0;
         ck_assert_int_eq(fibrad_direction(k, 34, w), FIBRAD_OK);
@@ -523,9 +504,8 @@ START_TEST(spheres_at_equal_depth_are_seen_once) {
         ck_assert_double_eq_tol(sum[1], sum[2], 1e-7);
     }
 }
-END_TEST
 
-START_TEST(crowded_rows_say_what_they_need) {
+TEST(crowded_rows_say_what_they_need) {
     struct bed bed = packing(300, .2, 2, .45, 6, false);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     uint32_t largest = 0;
@@ -567,10 +547,9 @@ START_TEST(crowded_rows_say_what_they_need) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* A sphere with six neighbours has six entries: room for five is too little, and room for six enough. */
-START_TEST(a_row_needs_an_entry_for_every_sphere_seen) {
+TEST(a_row_needs_an_entry_for_every_sphere_seen) {
     struct bed bed = lattice('p', 2);
     ck_assert_uint_eq(bed.n, 7);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -591,10 +570,9 @@ START_TEST(a_row_needs_an_entry_for_every_sphere_seen) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* The numbers of random paths are nothing to beams. */
-START_TEST(ids_change_no_beam) {
+TEST(ids_change_no_beam) {
     struct bed bed = packing(150, .5, 1.5, .5, 3, true);
     fibrad_spheres spheres = spheres_of(&bed);
     uint64_t id[150];
@@ -613,11 +591,10 @@ START_TEST(ids_change_no_beam) {
     free(block), free(without);
     bed_free(&bed);
 }
-END_TEST
 
 /* A sphere far beyond the others, as large as to be seen: only its direction and its angle matter. A small one there is
  * nothing. */
-START_TEST(strays_are_seen_however_far) {
+TEST(strays_are_seen_however_far) {
     struct bed bed = packing(60, .8, 1.2, .5, 3, false);
     fibrad_beam_rule rule = {.directions = 50};
     fibrad_row alone = beam(&bed, 7, rule, 0);
@@ -644,10 +621,9 @@ START_TEST(strays_are_seen_however_far) {
     row_free(&alone);
     bed_free(&bed);
 }
-END_TEST
 
 /* Where one marches outside the grid, with and without periods across. */
-START_TEST(strays_are_met_on_the_way) {
+TEST(strays_are_met_on_the_way) {
     const fibrad_beam_rule rule = {.directions = 2000};
     for (int periods = 0; periods < 3; periods++) {
         struct bed bed = packing(60, .8, 1.2, .5, 3, true);
@@ -672,10 +648,9 @@ START_TEST(strays_are_met_on_the_way) {
         bed_free(&bed);
     }
 }
-END_TEST
 
 /* Not a sphere deeper, although beams look farther ahead at once. */
-START_TEST(beams_end_after_100_periods) {
+TEST(beams_end_after_100_periods) {
     const fibrad_beam_rule rule = {.directions = 4000};
     const double period = 3;
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}}), copies = bed_of(0, NULL);
@@ -699,9 +674,8 @@ START_TEST(beams_end_after_100_periods) {
     free(seen);
     bed_free(&bed), bed_free(&copies);
 }
-END_TEST
 
-START_TEST(bad_arguments_are_refused) {
+TEST(bad_arguments_are_refused) {
     struct bed bed = lattice('p', 3);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_work work = work_growing();
@@ -729,38 +703,4 @@ START_TEST(bad_arguments_are_refused) {
     free(scene);
     work_free(&work);
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("beam");
-    TCase *tcase = suite_case(suite, "beam");
-    tcase_add_test(tcase, two_spheres_match_the_exact_pair);
-    tcase_add_test(tcase, hidden_sphere_is_not_seen);
-    tcase_add_test(tcase, fallbacks_are_counted);
-    tcase_add_test(tcase, many_arcs_are_no_fallback);
-    tcase_add_test(tcase, raw_rows_close);
-    tcase_add_test(tcase, rows_match_sliced_windows);
-    tcase_add_test(tcase, strays_beside_a_layer);
-    tcase_add_test(tcase, points_agree_with_areas);
-    tcase_add_test(tcase, same_bits_in_every_instruction_set);
-    tcase_add_test(tcase, work_memory_is_a_matter_of_speed);
-    tcase_add_test(tcase, work_memory_of_a_large_sphere);
-    tcase_add_test(tcase, order_of_spheres_changes_no_bit);
-    tcase_add_test(tcase, scaling_by_powers_of_two_changes_no_bit);
-    tcase_add_test(tcase, moved_beds_have_the_same_rows);
-    tcase_add_test(tcase, periodic_images_are_copies);
-    tcase_add_test(tcase, sphere_sees_its_own_images);
-    tcase_add_test(tcase, cutoff_takes_out_what_lies_beyond);
-    tcase_add_test(tcase, cutoff_along_each_beam);
-    tcase_add_test(tcase, overlap_changes_rows_continuously);
-    tcase_add_test(tcase, spheres_at_equal_depth_are_seen_once);
-    tcase_add_test(tcase, a_row_needs_an_entry_for_every_sphere_seen);
-    tcase_add_test(tcase, crowded_rows_say_what_they_need);
-    tcase_add_test(tcase, ids_change_no_beam);
-    tcase_add_test(tcase, strays_are_seen_however_far);
-    tcase_add_test(tcase, strays_are_met_on_the_way);
-    tcase_add_test(tcase, beams_end_after_100_periods);
-    tcase_add_test(tcase, bad_arguments_are_refused);
-    return suite_run(suite);
 }

@@ -23,7 +23,7 @@ static double least_gap(const struct bed *bed) {
     return least;
 }
 
-START_TEST(packing) {
+TEST(packing) {
     static const uint32_t sizes[] = {1, 10, 100, 700};
     for (int k = 0; k < 4; k++) {
         struct bed bed, again;
@@ -45,11 +45,10 @@ START_TEST(packing) {
         bed_free(&again);
     }
 }
-END_TEST
 
 /* Spheres of a layer stay between its faces. Shaken beds do not overlap, keep their solid fraction, and have lost the
  * order of their lattice: neighbours stand at all distances. */
-START_TEST(layers_and_shaken_beds) {
+TEST(layers_and_shaken_beds) {
     struct bed layer, shaken;
     bed_init(&layer);
     bed_init(&shaken);
@@ -77,9 +76,8 @@ START_TEST(layers_and_shaken_beds) {
     bed_free(&layer);
     bed_free(&shaken);
 }
-END_TEST
 
-START_TEST(copies) {
+TEST(copies) {
     struct bed tile, bed;
     bed_init(&tile);
     bed_init(&bed);
@@ -94,9 +92,8 @@ START_TEST(copies) {
     bed_free(&tile);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(fcc) {
+TEST(fcc) {
     struct bed bed;
     bed_init(&bed);
     ck_assert_int_eq(bed_make_fcc(&bed, 1, 4, 0), 0);
@@ -110,9 +107,8 @@ START_TEST(fcc) {
     ck_assert_double_eq_tol(mean, .775, .02);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(random_numbers) {
+TEST(random_numbers) {
     double mean = 0, product = 0;
     enum { COUNT = 100000 };
     for (int k = 0; k < COUNT; k++) {
@@ -123,16 +119,4 @@ START_TEST(random_numbers) {
     }
     ck_assert_double_eq_tol(mean, .5, .005);
     ck_assert_double_eq_tol(product, 0, .002);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("bed_make");
-    TCase *cases = suite_case(suite, "bed_make");
-    tcase_add_test(cases, packing);
-    tcase_add_test(cases, layers_and_shaken_beds);
-    tcase_add_test(cases, copies);
-    tcase_add_test(cases, fcc);
-    tcase_add_test(cases, random_numbers);
-    return suite_run(suite);
 }

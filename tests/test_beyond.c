@@ -2,7 +2,7 @@
 #include "part_beds.h"
 
 /* A cutoff, or a known region, that holds the whole bed and its walls changes no bit. */
-START_TEST(nothing_is_beyond_what_holds_all) {
+LOOP_TEST(nothing_is_beyond_what_holds_all, 2) {
     struct made m;
     make_kind(&m, &kinds[_i]);
     for (int occupied = 0; occupied < 2; occupied++) {
@@ -30,7 +30,6 @@ START_TEST(nothing_is_beyond_what_holds_all) {
     }
     free_made(&m);
 }
-END_TEST
 
 /* Whether the way along w from some length on is clear of marked cells: in steps so small that they miss corners
  * alone. */
@@ -63,7 +62,7 @@ static void draw_even(fibrad_random *random, double w[3]) {
 }
 
 /* Rays of our own: all spheres tried, cells looked up by small steps. */
-START_TEST(beyond_is_what_rays_say) {
+LOOP_TEST(beyond_is_what_rays_say, 1) {
     struct made m;
     make_kind(&m, &kinds[_i]); /* open or periodic, without walls */
     struct part *p = &m.part;
@@ -119,11 +118,10 @@ START_TEST(beyond_is_what_rays_say) {
     free(scene);
     free_made(&m);
 }
-END_TEST
 
 /* The walk through the cells against small steps, which miss nothing but corners: boxes with few marks, periodic or
  * not, rays from anywhere. */
-START_TEST(cells_are_walked_one_by_one) {
+TEST(cells_are_walked_one_by_one) {
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, .1}});
     struct part p = part_of(&bed, (fibrad_scene_config){0});
     fibrad_random random = fibrad_random_start(6, 1);
@@ -178,10 +176,9 @@ START_TEST(cells_are_walked_one_by_one) {
     part_free(&p);
     bed_free(&bed);
 }
-END_TEST
 
 /* What is reflected towards a sphere outside the known region is beyond. Beams see it. */
-START_TEST(reflections_end_at_the_known_region) {
+TEST(reflections_end_at_the_known_region) {
     struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2.5, 1}, {2.2, 0, 1.25, 1}});
     struct part p = part_of(&bed, (fibrad_scene_config){.known_low = {-2, 0, 0}, .known_high = {1.1, 0, 0}});
     fibrad_scene *scene = part_scene(&p);
@@ -207,10 +204,9 @@ START_TEST(reflections_end_at_the_known_region) {
     part_free(&p);
     bed_free(&bed);
 }
-END_TEST
 
 /* One sphere that flies far above a bed must not hide the sky of those at its top. */
-START_TEST(a_flying_sphere_leaves_the_sky) {
+TEST(a_flying_sphere_leaves_the_sky) {
     struct bed bed = packing(700, .6, 1, .5, 11, true);
     const double side = bed.period[0];
     bed.period[2] = 0;
@@ -239,10 +235,9 @@ START_TEST(a_flying_sphere_leaves_the_sky) {
     part_free(&p);
     bed_free(&bed);
 }
-END_TEST
 
 /* The known region ends half way up a can: a lone sphere sends a fraction there that is a solid angle over 4 pi. */
-START_TEST(a_known_region_ends_in_a_can) {
+TEST(a_known_region_ends_in_a_can) {
     const fibrad_body body[] = {plane_at(2, 0, -40), plane_at(2, 1, 40), cylinder_at(0, 0, 10)};
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 35, 1}});
     struct part p = part_of(
@@ -280,17 +275,4 @@ START_TEST(a_known_region_ends_in_a_can) {
     free(scene), free(told);
     part_free(&p);
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("beyond");
-    TCase *tests = suite_case(suite, "beyond");
-    tcase_add_loop_test(tests, nothing_is_beyond_what_holds_all, 0, 2);
-    tcase_add_test(tests, cells_are_walked_one_by_one);
-    tcase_add_test(tests, reflections_end_at_the_known_region);
-    tcase_add_test(tests, a_flying_sphere_leaves_the_sky);
-    tcase_add_loop_test(tests, beyond_is_what_rays_say, 0, 1);
-    tcase_add_test(tests, a_known_region_ends_in_a_can);
-    return suite_run(suite);
 }

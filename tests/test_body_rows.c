@@ -71,7 +71,7 @@ static double discs(double r, double h) {
 static const fibrad_beam_rule fine = {.tolerance = 3e-4};
 
 /* What sides of a box exchange is known but for what spheres take of it: here nothing. */
-START_TEST(empty_box) {
+TEST(empty_box) {
     struct bed none = bed_of(0, NULL);
     const double size[3] = {1, 1.5, .6};
     fibrad_body wall[6];
@@ -93,9 +93,8 @@ START_TEST(empty_box) {
     }
     fibrad_bed_free(f);
 }
-END_TEST
 
-START_TEST(empty_cylinder) {
+TEST(empty_cylinder) {
     struct bed none = bed_of(0, NULL);
     const double r = 1.5, h = 2;
     const fibrad_body wall[3] = {cylinder_at(3, -4, r), plane_at(2, 0, 1), plane_at(2, 1, 1 + h)};
@@ -109,10 +108,9 @@ START_TEST(empty_cylinder) {
     ck_assert_double_eq_tol(between(f, 0, 0), 1 - 2 * side_end, 4e-4);
     fibrad_bed_free(f);
 }
-END_TEST
 
 /* Walls missing: what they would get escapes. Periods: as a box without end. Walls without bounds: no row of theirs. */
-START_TEST(open_and_periodic) {
+TEST(open_and_periodic) {
     struct bed none = bed_of(0, NULL);
     const fibrad_body box[] = {plane_at(0, 0, 0), plane_at(0, 1, 1), plane_at(1, 0, 0), plane_at(1, 1, 1),
                                plane_at(2, 0, 0)};
@@ -148,10 +146,9 @@ START_TEST(open_and_periodic) {
     ck_assert_double_eq(between(f, 0, 0), 0);
     fibrad_bed_free(f);
 }
-END_TEST
 
 /* Between grey plates D_12 = e_2/(1 - (1 - e_1)(1 - e_2)), and D_11 is that with e_1 for what plate 2 reflects. */
-START_TEST(grey_plates) {
+TEST(grey_plates) {
     struct bed plates = bed_of(0, NULL);
     plates.period[0] = plates.period[1] = 1;
     const fibrad_body two[] = {plane_at(2, 0, 0), plane_at(2, 1, 2)};
@@ -165,7 +162,6 @@ START_TEST(grey_plates) {
     ck_assert_double_eq_tol(between(f, 1, 1), .7 * .6 / all, 3e-3);
     fibrad_bed_free(f);
 }
-END_TEST
 
 /* ---- paths by other means: nothing of the kernel's --------------------------------------------------------------- */
 
@@ -290,7 +286,7 @@ static void follow(const struct room *room, uint32_t b, uint64_t *state, double 
 
 /* Grey rooms with few spheres and with many: rows of walls are those of plain paths within the noise of these and the
  * error stated; the balances hold; the correction is small. */
-START_TEST(against_plain_walls) {
+LOOP_TEST(against_plain_walls, 6) {
     enum { PATHS = 150000 };
     struct room room = make_room(_i % 3, _i < 3 ? 3 : 25, (uint64_t)_i);
     const bool black = _i % 2 != 0;
@@ -320,11 +316,10 @@ START_TEST(against_plain_walls) {
     fibrad_bed_free(f);
     bed_free(&room.bed);
 }
-END_TEST
 
 /* A bed that fills the space between black plates: what the plates see of each other is next to nothing, and what
  * spheres leave over is no measure of it. */
-START_TEST(plates_and_a_dense_bed) {
+TEST(plates_and_a_dense_bed) {
     struct bed bed = packing(400, .5, 1, .55, 4, true);
     const double top = bed.period[2];
     bed.period[2] = 0;
@@ -348,10 +343,9 @@ START_TEST(plates_and_a_dense_bed) {
     fibrad_bed_free(f), fibrad_bed_free(alone);
     bed_free(&bed);
 }
-END_TEST
 
 /* Two ends of a flat cylinder see little but each other, and so do plates: sums that add up all the same. */
-START_TEST(flat_rooms) {
+TEST(flat_rooms) {
     struct bed bed = bed_of(2, (const double[][4]){{1, 2, .02, .015}, {-9, 4, .021, .019}});
     const fibrad_body tube[3] = {cylinder_at(0, 0, 80), plane_at(2, 0, 0), plane_at(2, 1, .04)};
     fibrad_bed_factors *f =
@@ -366,11 +360,10 @@ START_TEST(flat_rooms) {
     fibrad_bed_free(f);
     bed_free(&bed);
 }
-END_TEST
 
 /* Reflectors have empty rows, and nothing goes to them; bodies in another order have the same rows but for noise, and a
  * room laid on its side too. */
-START_TEST(other_orders_and_axes) {
+TEST(other_orders_and_axes) {
     struct room room = make_room(0, 12, 5);
     room.wall_e[3] = 0, room.e[2] = 0;
     const fibrad_exchange_rule rule = {
@@ -404,10 +397,9 @@ START_TEST(other_orders_and_axes) {
     fibrad_bed_free(f), fibrad_bed_free(g);
     bed_free(&room.bed), bed_free(&turned);
 }
-END_TEST
 
 /* Errors asked for are kept; raw rows are what the paths say. */
-START_TEST(tolerance_and_raw_rows) {
+TEST(tolerance_and_raw_rows) {
     struct room room = make_room(0, 6, 9);
     const fibrad_scene_config config = {.body = room.wall, .bodies = 6};
     fibrad_exchange_rule rule = {.emissivity = room.e, .body_emissivity = room.wall_e, .tolerance = 2e-3};
@@ -429,10 +421,9 @@ START_TEST(tolerance_and_raw_rows) {
     fibrad_bed_free(f), fibrad_bed_free(truth), fibrad_bed_free(raw);
     bed_free(&room.bed);
 }
-END_TEST
 
 /* The same bits for any number of threads and any instruction set. */
-START_TEST(same_bits_of_bodies) {
+TEST(same_bits_of_bodies) {
     struct room room = make_room(1, 12, 3);
     const fibrad_exchange_rule rule = {.emissivity = room.e, .body_emissivity = room.wall_e};
     const fibrad_spheres spheres = spheres_of(&room.bed);
@@ -458,9 +449,8 @@ START_TEST(same_bits_of_bodies) {
     fibrad_bed_free(first);
     bed_free(&room.bed);
 }
-END_TEST
 
-START_TEST(bad_arguments_of_bodies) {
+TEST(bad_arguments_of_bodies) {
     struct room room = make_room(2, 3, 1);
     const fibrad_scene_config config = {
         .body = room.wall, .bodies = room.walls, .opening = &room.opening, .openings = room.openings};
@@ -503,10 +493,9 @@ START_TEST(bad_arguments_of_bodies) {
     free(scene), free(endless);
     bed_free(&room.bed);
 }
-END_TEST
 
 /* Paths end in an opening as they do at a black plane: rows of spheres and bodies, and what is carried. */
-START_TEST(paths_end_in_openings) {
+TEST(paths_end_in_openings) {
     struct room room = make_room(2, 12, 5);
     room.wall[5] = plane_at(2, 1, room.opening.at), room.wall_e[5] = 1;
     const fibrad_scene_config open = {.body = room.wall, .bodies = 5, .opening = &room.opening, .openings = 1};
@@ -542,11 +531,10 @@ START_TEST(paths_end_in_openings) {
     free(scene[0]), free(scene[1]);
     bed_free(&room.bed);
 }
-END_TEST
 
 /* A sphere in a box, and rows of walls that send all to it: so it can give each wall but its share of its own area, and
  * no matrix is reciprocal and closed. Rows of walls stay as they are, and that is said. */
-START_TEST(rows_that_contradict_each_other) {
+TEST(rows_that_contradict_each_other) {
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     fibrad_body wall[6];
     fibrad_body_row body_row[6];
@@ -587,11 +575,10 @@ START_TEST(rows_that_contradict_each_other) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* A square of two triangles and its images above and below it: each side sees what faces it, of its own triangle,
  * too. */
-START_TEST(a_plate_and_its_images) {
+TEST(a_plate_and_its_images) {
     enum { EDGE = 4 };
     struct mesh *mesh = mesh_new();
     const uint32_t v[4] = {mesh_vertex(mesh, 0, 0, .5), mesh_vertex(mesh, EDGE, 0, .5),
@@ -607,11 +594,10 @@ START_TEST(a_plate_and_its_images) {
     free(mesh);
     bed_free(&bed);
 }
-END_TEST
 
 /* In a periodic box triangles that lie across it face their images; what spheres send to them, by beams, and what they
  * send to spheres, by paths, are the same. */
-START_TEST(triangles_face_their_images) {
+TEST(triangles_face_their_images) {
     struct mesh *mesh = mesh_new();
     struct bed bed = bed_of(3, (const double[][4]){{2, 2, 3, .9}, {7, 3, 6, .7}, {4, 7, 1, .8}});
     for (int axis = 0; axis < 3; axis++) bed.period[axis] = 9;
@@ -625,26 +611,4 @@ START_TEST(triangles_face_their_images) {
     fibrad_bed_free(f);
     free(mesh);
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("body_rows");
-    TCase *cases = suite_case(suite, "body_rows");
-    tcase_add_test(cases, empty_box);
-    tcase_add_test(cases, empty_cylinder);
-    tcase_add_test(cases, open_and_periodic);
-    tcase_add_test(cases, grey_plates);
-    tcase_add_loop_test(cases, against_plain_walls, 0, 6);
-    tcase_add_test(cases, plates_and_a_dense_bed);
-    tcase_add_test(cases, flat_rooms);
-    tcase_add_test(cases, other_orders_and_axes);
-    tcase_add_test(cases, tolerance_and_raw_rows);
-    tcase_add_test(cases, same_bits_of_bodies);
-    tcase_add_test(cases, rows_that_contradict_each_other);
-    tcase_add_test(cases, a_plate_and_its_images);
-    tcase_add_test(cases, triangles_face_their_images);
-    tcase_add_test(cases, bad_arguments_of_bodies);
-    tcase_add_test(cases, paths_end_in_openings);
-    return suite_run(suite);
 }

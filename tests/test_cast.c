@@ -28,7 +28,7 @@ static struct bed pair(double r1, double r2, double distance, uint32_t k) {
     return bed_of(2, (const double[][4]){{0, 0, 0, r1}, {distance * w[0], distance * w[1], distance * w[2], r2}});
 }
 
-START_TEST(two_spheres_match_the_exact_pair) {
+TEST(two_spheres_match_the_exact_pair) {
     static const double cases[][3] = {{1, 1, 0},   {1, .3, 0},  {.3, 1, .1}, {1, 3, .01}, {1, 10, 0},
                                       {10, 1, .1}, {1, 1, -.2}, {1, 3, -.1}, {3, 1, -.3}};
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++)
@@ -51,10 +51,9 @@ START_TEST(two_spheres_match_the_exact_pair) {
             ck_assert_double_lt(sqrt(error), random ? .5 / sqrt(20000) * 1.3 : .0012);
         }
 }
-END_TEST
 
 /* Unit spheres H apart: error at 200,000 rays, mean length and angle of the rays, as docs/reproduction.md has them. */
-START_TEST(pebble_table) {
+TEST(pebble_table) {
     static const struct {
         double h, error, length, angle;
     } table[] = {{2, .003, .3590, 30.84},
@@ -87,7 +86,6 @@ START_TEST(pebble_table) {
         ck_assert_double_eq_tol(angle, table[t].angle, .03);
     }
 }
-END_TEST
 
 /* Ray number k from the unit sphere: origin and direction. */
 static void ray(uint32_t i, uint32_t k, const fibrad_cast_rule *rule, double o[3], double w[3]) {
@@ -151,7 +149,7 @@ static void check_every_ray(const struct bed *bed, int random) {
 }
 
 /* Radii from 1 to 10; then the same spheres swollen until they overlap. */
-START_TEST(rays_meet_the_first_sphere) {
+TEST(rays_meet_the_first_sphere) {
     struct bed bed = packing(400, .2, 2, .5, 11, false);
     check_every_ray(&bed, 0);
     check_every_ray(&bed, 1);
@@ -159,11 +157,10 @@ START_TEST(rays_meet_the_first_sphere) {
     check_every_ray(&bed, 0);
     bed_free(&bed);
 }
-END_TEST
 
 /* Of two spheres that overlap by almost a radius, a ray may meet first the one that is deeper, and perhaps not looked
  * up yet. How far shells reach hangs on the scene as a whole, here on a speck behind; what is met must not. */
-START_TEST(deeper_spheres_are_met_first) {
+TEST(deeper_spheres_are_met_first) {
     for (double depth = 12; depth < 60; depth += .31) {
         double f[2][2];
         for (int k = 0; k < 2; k++) {
@@ -184,9 +181,8 @@ START_TEST(deeper_spheres_are_met_first) {
         ck_assert_double_eq(f[0][1], f[1][1]);
     }
 }
-END_TEST
 
-START_TEST(rays_agree_with_beams) {
+TEST(rays_agree_with_beams) {
     struct bed beds[] = {packing(300, .8, 1.2, .55, 7, true), packing(300, .3, 2, .5, 8, true)};
     for (size_t b = 0; b < 2; b++) {
         fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
@@ -215,9 +211,8 @@ START_TEST(rays_agree_with_beams) {
         bed_free(&beds[b]);
     }
 }
-END_TEST
 
-START_TEST(seeds) {
+TEST(seeds) {
     struct bed bed = packing(200, .8, 1.2, .5, 5, true);
     for (int random = 0; random <= 1; random++) {
         fibrad_row a = cast(&bed, 3, (fibrad_cast_rule){1000, random, 7, 0}, FIBRAD_ISA_BEST);
@@ -231,9 +226,8 @@ START_TEST(seeds) {
     }
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(same_bits_in_every_instruction_set) {
+TEST(same_bits_in_every_instruction_set) {
     struct bed bed = packing(300, .5, 1.5, .55, 3, true);
     int isa[ISAS_MOST];
     const int sets = isas_there(isa);
@@ -259,10 +253,9 @@ START_TEST(same_bits_in_every_instruction_set) {
         }
     bed_free(&bed);
 }
-END_TEST
 
 /* Whether spheres are kept near, or looked up along each ray for want of room; overlapping ones included. */
-START_TEST(room_is_a_matter_of_speed) {
+TEST(room_is_a_matter_of_speed) {
     struct bed beds[] = {packing(300, .5, 1.5, .55, 3, true), packing(400, .4, 1, .05, 4, false),
                          packing(400, .2, 2, .5, 11, false), lattice('p', 9)};
     for (uint32_t i = 0; i < beds[2].n; i++) beds[2].r[i] *= 1.05;
@@ -290,9 +283,8 @@ START_TEST(room_is_a_matter_of_speed) {
         bed_free(&beds[b]);
     }
 }
-END_TEST
 
-START_TEST(scaling_by_powers_of_two_changes_no_bit) {
+TEST(scaling_by_powers_of_two_changes_no_bit) {
     struct bed bed = packing(200, .8, 1.2, .5, 5, true), scaled = packing(200, .8, 1.2, .5, 5, true);
     fibrad_row row = cast(&bed, 11, (fibrad_cast_rule){2000, 0, 0, 9}, FIBRAD_ISA_BEST);
     for (int k = -400; k <= 400; k += 100) {
@@ -309,10 +301,9 @@ START_TEST(scaling_by_powers_of_two_changes_no_bit) {
     bed_free(&bed);
     bed_free(&scaled);
 }
-END_TEST
 
 /* However far the shells reach, which again hangs on a speck. */
-START_TEST(rays_end_after_100_periods) {
+TEST(rays_end_after_100_periods) {
     double escaped = NAN;
     for (int speck = 0; speck < 5; speck++) {
         struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, -20 * pow(3, speck), 1e-6}});
@@ -325,10 +316,9 @@ START_TEST(rays_end_after_100_periods) {
         bed_free(&bed);
     }
 }
-END_TEST
 
 /* Spheres beyond the cutoff neither receive nor block. */
-START_TEST(cutoff) {
+TEST(cutoff) {
     struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}, {0, 0, 40, 30}});
     fibrad_row all = cast(&bed, 0, (fibrad_cast_rule){.rays = 5000}, FIBRAD_ISA_BEST);
     fibrad_row near = cast(&bed, 0, (fibrad_cast_rule){.rays = 5000, .cutoff = 3}, FIBRAD_ISA_BEST);
@@ -343,9 +333,8 @@ START_TEST(cutoff) {
     row_free(&none);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(refusals_and_capacities) {
+TEST(refusals_and_capacities) {
     struct bed bed = packing(200, .8, 1.2, .5, 5, true);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_work work = work_growing();
@@ -399,23 +388,4 @@ START_TEST(refusals_and_capacities) {
     free(block);
     free(scene);
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("cast");
-    TCase *tests = suite_case(suite, "cast");
-    tcase_add_test(tests, two_spheres_match_the_exact_pair);
-    tcase_add_test(tests, pebble_table);
-    tcase_add_test(tests, rays_meet_the_first_sphere);
-    tcase_add_test(tests, deeper_spheres_are_met_first);
-    tcase_add_test(tests, rays_agree_with_beams);
-    tcase_add_test(tests, seeds);
-    tcase_add_test(tests, same_bits_in_every_instruction_set);
-    tcase_add_test(tests, room_is_a_matter_of_speed);
-    tcase_add_test(tests, scaling_by_powers_of_two_changes_no_bit);
-    tcase_add_test(tests, rays_end_after_100_periods);
-    tcase_add_test(tests, cutoff);
-    tcase_add_test(tests, refusals_and_capacities);
-    return suite_run(suite);
 }

@@ -1,20 +1,21 @@
 /* test_cli.c - the program on beds. SPDX-License-Identifier: MIT */
 #include "program.h"
 
+FIXTURE(make_folder, remove_folder)
+
 #define FRAME(number, marks, rows)                                                                                     \
     "ITEM: TIMESTEP\n" number "\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS " marks                                    \
     "\n0 8\n0 8\n0 8\nITEM: ATOMS radius x y z id\n" rows
 
-START_TEST(surface_method) {
+TEST(surface_method) {
     SUCCEED("bed", POLY, "--method", "surface", "--cutoff", "3");
     ck_assert_double_eq(value_of("nf"), 55);
     const double sum = value_of("row_sum_max"), error = value_of("error_estimate");
     SUCCEED("bed", POLY, "--cutoff", "3");
     ck_assert_double_eq_tol(value_of("row_sum_max"), sum, 3 * error);
 }
-END_TEST
 
-START_TEST(tolerance) {
+TEST(tolerance) {
     SUCCEED("bed", POLY, "--error", "0.01");
     ck_assert_double_le(value_of("error_estimate"), .01);
     ck_assert_double_gt(value_of("error_estimate"), .002);
@@ -29,9 +30,8 @@ START_TEST(tolerance) {
     ck_assert(strstr(said, "warning: --error 1e-07 is not reached") != NULL);
     ck_assert_double_gt(value_of("error_reached"), 1e-7);
 }
-END_TEST
 
-START_TEST(summary) {
+TEST(summary) {
     SUCCEED("bed", POLY, "--directions", "34");
     static const char *const keys[] = {"spheres",     "directions",      "threads",        "seconds",
                                        "nonzeros",    "row_sum_min",     "row_sum_max",    "escaped_mean",
@@ -49,9 +49,8 @@ START_TEST(summary) {
     ck_assert_double_gt(value_of("overlap_max"), 0);
     ck_assert_str_eq(said, "");
 }
-END_TEST
 
-START_TEST(same_bytes_for_any_threads) {
+TEST(same_bytes_for_any_threads) {
     static const char *const threads[] = {"1", "2", "7"};
     char *first = NULL;
     for (int k = 0; k < 3; ++k) {
@@ -68,10 +67,9 @@ START_TEST(same_bytes_for_any_threads) {
     }
     free(first);
 }
-END_TEST
 
 /* In a box rows add up to 1 with the walls, nothing escapes, and the walls' own rows are reciprocal. */
-START_TEST(walls) {
+TEST(walls) {
     enum { SPHERES = 2000, WALLS = 6 };
     static double sum[SPHERES], to[SPHERES][WALLS], wall_sum[WALLS], between[WALLS][WALLS];
     char *first = NULL;
@@ -127,7 +125,6 @@ START_TEST(walls) {
     ck_assert_int_eq(RUN("bed", MONO, "--wall", "zmin=2"), 3);
     expect_message(MONO ":", "lies beyond the wall zmin");
 }
-END_TEST
 
 /* Number `column`, from 0, of the line of a .csv that ends so; NAN: there is none. */
 static double number_of_line(const char *path, const char *end, int column) {
@@ -143,7 +140,7 @@ static double number_of_line(const char *path, const char *end, int column) {
 }
 
 /* A box without a lid against one whose lid is black and as hot as the surroundings. */
-START_TEST(a_box_without_a_lid) {
+TEST(a_box_without_a_lid) {
     const char *open = in_folder("open.csv"), *closed = in_folder("closed.csv"), *json = in_folder("open.json");
     char lid[100];
 #define STATE "--length-unit=mm", "--emissivity=.6", "--temperature=500", "--ambient=300", "--directions=30"
@@ -164,11 +161,10 @@ START_TEST(a_box_without_a_lid) {
     SUCCEED("bed", PERIODIC, "--directions=13", "--wall", "zmin,zmax=open");
     ck_assert_double_gt(value_of("escaped_mean"), 0);
 }
-END_TEST
 
 /* The rows of a target list are those of --raw, and the matrix market file holds the same as the CSV file. */
 /* The same rays whoever follows them; other seeds, other rays. */
-START_TEST(rays) {
+TEST(rays) {
     static const char *const methods[] = {"cast", "mc"};
     for (int m = 0; m < 2; ++m) {
         char *text[3];
@@ -187,7 +183,6 @@ START_TEST(rays) {
         for (int k = 0; k < 3; ++k) free(text[k]);
     }
 }
-END_TEST
 
 /* A file of the test's folder, whatever its bytes. */
 static char *read_bytes(const char *name, size_t *size) {
@@ -198,7 +193,7 @@ static char *read_bytes(const char *name, size_t *size) {
 }
 
 /* What is kept in files is written as what is kept in memory, and nothing else is left. */
-START_TEST(rows_in_files) {
+TEST(rows_in_files) {
     static const char *const names[2][3] = {{"a.csv", "a.npz", "a.json"}, {"b.csv", "b.npz", "b.json"}};
     const char *scratch = in_folder("scratch");
     ck_assert_int_eq(mkdir(scratch, 0777), 0);
@@ -224,19 +219,17 @@ START_TEST(rows_in_files) {
     ck_assert_int_eq(RUN("exchange", MONO, "--emissivity=.5", "--scratch", PERIODIC, "-o", in_folder("D.csv")), 4);
     ck_assert_int_eq(remove_files(0), 0);
 }
-END_TEST
 
 /* A line of this set runs nearly along the layers of the bed. There a circle meets so many images that it is followed
  * in stretches. */
-START_TEST(a_line_along_layers) {
+TEST(a_line_along_layers) {
     SUCCEED("bed", PERIODIC, "--directions", "362");
     ck_assert_double_eq(value_of("directions"), 362);
     ck_assert_double_lt(value_of("closure_max"), 1e-13);
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-15);
 }
-END_TEST
 
-START_TEST(targets_and_formats) {
+TEST(targets_and_formats) {
     const char *all = in_folder("all.csv"), *some = in_folder("some.csv"), *matrix = in_folder("all.mtx");
     SUCCEED("bed", PERIODIC, "--positions", "--directions", "21", "--raw", "-o", all);
     ck_assert_double_lt(value_of("closure_max"), 1e-12);
@@ -266,10 +259,9 @@ START_TEST(targets_and_formats) {
     free(some_text);
     free(matrix_text);
 }
-END_TEST
 
 /* Two spheres seen through periodic faces, in the open, from a CSV file and from standard input. */
-START_TEST(frames_periods_and_ids) {
+TEST(frames_periods_and_ids) {
     const char *dump = write_file("two.dump", FRAME("0", "ff ff ff", "1 1 4 4 70\n1 7 4 4 5\n")
                                                   FRAME("1", "pp ff ff", "1 1 4 4 70\n1 7 4 4 5\n"));
     SUCCEED("bed", dump, "--frame", "0");
@@ -290,7 +282,6 @@ START_TEST(frames_periods_and_ids) {
     ck_assert_double_eq(value_of("row_sum_min"), across);
     input = "/dev/null";
 }
-END_TEST
 
 /* The lines i,T_K,q_W of a file: how many, their sum and the largest q, and one of them. */
 static int read_powers(const char *path, double *sum, double *largest, long wanted, double *temperature,
@@ -311,7 +302,7 @@ static int read_powers(const char *path, double *sum, double *largest, long want
 }
 
 /* Temperatures of spheres and walls whose powers are given; why there are none. */
-START_TEST(temperatures) {
+TEST(temperatures) {
     const char *file = write_file("warm.csv", "x,y,z,r,eps,type\n0,0,0,1,.5,1\n3,0,0,1,.8,2\n0,2.5,0,.7,0,1\n");
     const char *out = in_folder("q.csv");
     double sum, largest, t = 0, q = 0;
@@ -379,7 +370,6 @@ START_TEST(temperatures) {
                      3);
     expect_message(file, "sphere 2 has emissivity 0 and cannot give off 4 W");
 }
-END_TEST
 
 /* Root mean square difference of T^4 of the spheres of two .csv, over that of the first. */
 static double emission_difference(const char *path, const char *other) {
@@ -399,7 +389,7 @@ static double emission_difference(const char *path, const char *other) {
 }
 
 /* --error holds for temperatures that are found, too, of spheres and walls. */
-START_TEST(temperatures_to_an_error) {
+TEST(temperatures_to_an_error) {
     enum { SIDE = 3 };
     char bed[2000] = "x,y,z,r\n";
     for (int i = 0; i < SIDE * SIDE * SIDE; ++i)
@@ -421,9 +411,8 @@ START_TEST(temperatures_to_an_error) {
     }
     ck_assert_double_le(4 * fabs(wall[1] / wall[0] - 1), .004);
 }
-END_TEST
 
-START_TEST(powers) {
+TEST(powers) {
     const char *file = write_file("hot.csv", "x,y,z,r,eps,T\n0,0,0,1,.5,600\n2,0,0,1,.8,300\n0,2.5,0,.7,1,450\n");
     const char *out = in_folder("q.csv");
     double sum, largest, t = 0, q = 0;
@@ -481,11 +470,10 @@ START_TEST(powers) {
     ck_assert_int_eq(RUN("heat", cold, "--emissivity", "1", "--temperature", "T", "--ambient", "0"), 3);
     expect_message(cold, "the temperature in kelvins is -1; it must be within 0 and 1e+09");
 }
-END_TEST
 
 /* Rows of the .csv close with surroundings (-1) and walls (-2, -3, ...) and are reciprocal with areas times
  * emissivity; the bytes do not depend on the number of threads. */
-START_TEST(exchange_factors) {
+TEST(exchange_factors) {
     enum { N = 12 };
     static double d[N][N];
     double sum[N] = {0}, weight[N];
@@ -530,10 +518,9 @@ START_TEST(exchange_factors) {
     ck_assert_int_eq(RUN("exchange", file, "--emissivity", "e", "--wall-emissivity", "0.5"), 2);
     remove_files(0);
 }
-END_TEST
 
 /* One sphere a cell: the simple cubic lattice, black; any number of threads. */
-START_TEST(conductivity) {
+TEST(conductivity) {
     const char *cell = write_file("cell.csv", "x,y,z,r,eps\n0,0,0,1,1\n");
     SUCCEED("conductivity", cell, "--periodic", "2,2,2", "--emissivity", "eps", "--rays", "40000", "--threads", "1");
     const double first = value_of("F_E_z");
@@ -551,9 +538,8 @@ START_TEST(conductivity) {
     expect_message(cell, "too thin along the open axis z");
     remove_files(0);
 }
-END_TEST
 
-START_TEST(points_and_cutoff) {
+TEST(points_and_cutoff) {
     SUCCEED("bed", POLY, "--directions", "34", "--points", "64");
     ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
@@ -564,9 +550,8 @@ START_TEST(points_and_cutoff) {
     ck_assert_double_gt(value_of("beyond_mean"), .1); /* other spheres, for the most part */
     ck_assert_double_lt(value_of("closure_max"), 1e-12);
 }
-END_TEST
 
-START_TEST(paraview_and_picture) {
+TEST(paraview_and_picture) {
     const char *points = in_folder("bed.vtp"), *svg = in_folder("bed.svg"), *png = in_folder("bed.png");
     SUCCEED("bed", MONO, "--directions", "21", "-o", points, "--plot", svg);
     char *text = read_file(points);
@@ -583,9 +568,8 @@ START_TEST(paraview_and_picture) {
     free(text);
     ck_assert_int_eq(remove_files(0), 3);
 }
-END_TEST
 
-START_TEST(picture_without_gnuplot) {
+TEST(picture_without_gnuplot) {
     char *path = strdup(getenv("PATH"));
     ck_assert_int_eq(setenv("PATH", folder, 1), 0);
     ck_assert_int_eq(
@@ -596,39 +580,10 @@ START_TEST(picture_without_gnuplot) {
     expect_message("", "gnuplot");
     ck_assert_int_eq(remove_files(0), 1); /* a.csv alone */
 }
-END_TEST
 
-START_TEST(progress_when_asked) {
+TEST(progress_when_asked) {
     SUCCEED("bed", MONO, "--directions", "21", "--progress");
     ck_assert_ptr_nonnull(strstr(said, "2000 of 2000 rows"));
     SUCCEED("bed", MONO, "--directions", "21");
     ck_assert_ptr_null(strstr(said, "2000 of 2000 rows"));
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("cli");
-    TCase *tests = suite_case(suite, "cli");
-    tcase_add_checked_fixture(tests, make_folder, remove_folder);
-    tcase_add_test(tests, surface_method);
-    tcase_add_test(tests, summary);
-    tcase_add_test(tests, tolerance);
-    tcase_add_test(tests, same_bytes_for_any_threads);
-    tcase_add_test(tests, walls);
-    tcase_add_test(tests, a_box_without_a_lid);
-    tcase_add_test(tests, rays);
-    tcase_add_test(tests, a_line_along_layers);
-    tcase_add_test(tests, rows_in_files);
-    tcase_add_test(tests, targets_and_formats);
-    tcase_add_test(tests, frames_periods_and_ids);
-    tcase_add_test(tests, exchange_factors);
-    tcase_add_test(tests, powers);
-    tcase_add_test(tests, temperatures);
-    tcase_add_test(tests, temperatures_to_an_error);
-    tcase_add_test(tests, conductivity);
-    tcase_add_test(tests, points_and_cutoff);
-    tcase_add_test(tests, paraview_and_picture);
-    tcase_add_test(tests, picture_without_gnuplot);
-    tcase_add_test(tests, progress_when_asked);
-    return suite_run(suite);
 }

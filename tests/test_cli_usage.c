@@ -3,6 +3,8 @@
 
 #include "program.h"
 
+FIXTURE(make_folder, remove_folder)
+
 #define FRAME(number, marks, rows)                                                                                     \
     "ITEM: TIMESTEP\n" number "\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS " marks                                    \
     "\n0 8\n0 8\n0 8\nITEM: ATOMS radius x y z id\n" rows
@@ -10,7 +12,7 @@
 #define W(n)                                                                                                           \
     { .whole = (n) }
 
-START_TEST(help_and_version) {
+TEST(help_and_version) {
     SUCCEED("--help");
     ck_assert(strstr(printed, "bed") && strstr(printed, "pair"));
     SUCCEED("--version");
@@ -25,7 +27,6 @@ START_TEST(help_and_version) {
     ck_assert(strstr(printed, "--obstacle") && strstr(printed, "--check") && strstr(printed, "--rays"));
     ck_assert_str_eq(said, "");
 }
-END_TEST
 
 static const struct {
     const char *arguments[9], *reason;
@@ -169,19 +170,18 @@ static const struct {
     {{"pair", "1", "1", "1", "--obstacle", "0,0,3,1"}, "sphere 2 and obstacle 1"},
 };
 
-START_TEST(bad_usage) {
+LOOP_TEST(bad_usage, sizeof misuse / sizeof *misuse) {
     ck_assert_int_eq(finish(start(misuse[_i].arguments)), 2);
     expect_message("", misuse[_i].reason);
     ck_assert_str_eq(printed, "");
 }
-END_TEST
 
 static double pair(const char *r1, const char *r2, const char *gap) {
     SUCCEED("pair", r1, r2, gap, "--method=exact");
     return value_of("F12");
 }
 
-START_TEST(exact_pair) {
+TEST(exact_pair) {
     const double pi = 3.14159265358979323846;
     ck_assert_double_eq_tol(pair("1", "1", "0"), 0.5 - 4 / (3 * pi), 1e-15);
     ck_assert_double_eq_tol(pair("1", "1", "1"), 0.0295903122505504314, 1e-16);
@@ -189,9 +189,8 @@ START_TEST(exact_pair) {
     ck_assert_double_eq_tol(pair("1", "0.3", ".05"), 0.09 * pair("0.3", "1", ".05"), 1e-16);
     ck_assert_double_gt(pair("1", "1", "-.01"), pair("1", "1", "0"));
 }
-END_TEST
 
-START_TEST(exact_pair_checked) {
+TEST(exact_pair_checked) {
     SUCCEED("pair", "1", "0.3", "0.05", "--check");
     const double f12 = value_of("F12");
     ck_assert_double_eq(value_of("kernel"), f12);
@@ -204,17 +203,15 @@ START_TEST(exact_pair_checked) {
     SUCCEED("pair", "1", "0.3", "-0.05", "--check");
     ck_assert_double_eq_tol(value_of("gsl_lens") / value_of("F12"), 1, 1e-12);
 }
-END_TEST
 
-START_TEST(beam_pair) {
+TEST(beam_pair) {
     SUCCEED("pair", "1", "1", "0", "--method", "beam", "--directions", "10000");
     ck_assert_double_eq_tol(value_of("F12"), 0.0755868184216124, 1e-6);
     SUCCEED("pair", "1", "1", "0", "--method", "beam", "--directions", "10000", "--points", "256");
     ck_assert_double_eq_tol(value_of("F12"), 0.0755868184216124, 1e-3);
 }
-END_TEST
 
-START_TEST(cast_pair) {
+TEST(cast_pair) {
     SUCCEED("pair", "1", "1", "0", "--method", "cast", "--rays", "200000");
     ck_assert_double_eq_tol(value_of("F12"), 0.0755868184216124, 5e-4);
     ck_assert_double_eq_tol(value_of("mean_ray_length"), 0.359, 0.005);
@@ -228,9 +225,8 @@ START_TEST(cast_pair) {
     SUCCEED("pair", "1", "1", "2000", "--method", "cast", "--rays", "10");
     ck_assert_double_eq(value_of("F12"), 0);
 }
-END_TEST
 
-START_TEST(blocked_pair) {
+TEST(blocked_pair) {
     SUCCEED("pair", "1", "1", "2", "--obstacle", "0.5,0,2,0.4");
     const double exact = value_of("F12");
     ck_assert_double_lt(exact, 0.9 * pair("1", "1", "2"));
@@ -246,7 +242,6 @@ START_TEST(blocked_pair) {
     const double beside = value_of("F12");
     ck_assert_double_eq_tol(beside, pair("1", "1", "2"), 1e-9);
 }
-END_TEST
 
 static const struct {
     const char *text, *place, *reason;
@@ -267,7 +262,7 @@ static const struct {
     {FRAME("0", "ff pp ff", "1 4 0 4 70\n1 4 8 4 5\n"), ":11: ", "line 10"}, /* the same place in the box */
 };
 
-START_TEST(bad_input) {
+LOOP_TEST(bad_input, sizeof bad_beds / sizeof *bad_beds) {
     char place[300];
     const char *bed = write_file("bad.bed", bad_beds[_i].text);
     ck_assert_int_eq(RUN("bed", bed, "-o", in_folder("out.csv"), "--plot", in_folder("out.svg")), 3);
@@ -276,7 +271,6 @@ START_TEST(bad_input) {
     ck_assert_str_eq(printed, "");
     ck_assert_int_eq(remove_files(0), 1); /* bad.bed alone */
 }
-END_TEST
 
 union word {
     uint64_t whole;
@@ -367,7 +361,7 @@ static const char *write_words(const char *name, const union word *words, size_t
 }
 
 /* As many walls as a scene may have. */
-START_TEST(joined_with_many_walls) {
+TEST(joined_with_many_walls) {
     enum { WALLS = 32 };
     union word words[9 + 1 + 2 + WALLS + 8];
     const union word head[] = {
@@ -379,9 +373,8 @@ START_TEST(joined_with_many_walls) {
     const char *path = write_words("many.0.rows", words, sizeof words);
     SUCCEED("join", path, "--raw", "-o", in_folder("D.csv"));
 }
-END_TEST
 
-START_TEST(joined) {
+TEST(joined) {
     const char *zero = write_words(rank_names[0], rank_rows[0], 8 * rank_words[0]);
     const char *one = write_words(rank_names[1], rank_rows[1], 8 * rank_words[1]);
     const char *csv = in_folder("D.csv"), *mtx = in_folder("D.mtx");
@@ -432,7 +425,6 @@ START_TEST(joined) {
     ck_assert_ptr_nonnull(strstr(said, "\nspheres 3\n"));
     remove_files(0);
 }
-END_TEST
 
 /* One word of one rank's file changed. */
 static const struct {
@@ -466,7 +458,7 @@ static const struct {
     {0, 35, R(NAN), "id 1099511627781: its centre"},
 };
 
-START_TEST(bad_rows) {
+LOOP_TEST(bad_rows, sizeof damaged_rows / sizeof *damaged_rows) {
     const char *files[RANKS];
     for (int k = 0; k < RANKS; ++k) {
         union word words[WORDS];
@@ -479,9 +471,8 @@ START_TEST(bad_rows) {
     ck_assert_str_eq(printed, "");
     ck_assert_int_eq(remove_files(0), RANKS); /* no D.csv */
 }
-END_TEST
 
-START_TEST(missing_rows) {
+TEST(missing_rows) {
     const char *zero = write_words(rank_names[0], rank_rows[0], 8 * rank_words[0]);
     const char *one = write_words(rank_names[1], rank_rows[1], 8 * rank_words[1]);
     ck_assert_int_eq(RUN("join", zero), 3);
@@ -499,9 +490,8 @@ START_TEST(missing_rows) {
     expect_message("", "ids 10 and 30: ");
     remove_files(0);
 }
-END_TEST
 
-START_TEST(file_trouble) {
+TEST(file_trouble) {
     const char *bed = write_file("a.csv", "x,y,z,r\n0,0,0,1\n3,0,0,1\n");
     ck_assert_int_eq(RUN("bed", "no/such.dump"), 4);
     expect_message("no/such.dump: ", "No such file");
@@ -515,10 +505,9 @@ START_TEST(file_trouble) {
     expect_message("standard output", "No space left");
     ck_assert_int_eq(remove_files(0), 1);
 }
-END_TEST
 
 /* A disc that fills up, as far as a limit on the size of files can play it. */
-START_TEST(full_disc) {
+TEST(full_disc) {
     struct rlimit before;
     ck_assert_int_eq(getrlimit(RLIMIT_FSIZE, &before), 0);
     const struct rlimit limit = {100000, before.rlim_max};
@@ -534,7 +523,6 @@ START_TEST(full_disc) {
     ck_assert_int_eq(remove_files(0), 0);
     ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &before), 0);
 }
-END_TEST
 
 /* Whether a process has a file of the test's folder open besides standard output and error. It may have no name. */
 static int has_output_open(pid_t process) {
@@ -555,7 +543,7 @@ static int has_output_open(pid_t process) {
 }
 
 /* Far more work than a test has time for, stopped when the program has its output open. */
-START_TEST(interrupted) {
+LOOP_TEST(interrupted, 2) {
     static const int signals[] = {SIGINT, SIGTERM};
     const char *out = in_folder("F.csv");
     const pid_t process = start(LIST("bed", MONO, "--directions", "65536", "-o", out));
@@ -564,27 +552,4 @@ START_TEST(interrupted) {
     ck_assert_int_eq(finish(process), 128 + signals[_i]);
     expect_message("", "interrupted");
     ck_assert_int_eq(remove_files(0), 0);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("cli usage");
-    TCase *tests = suite_case(suite, "cli usage");
-    tcase_add_checked_fixture(tests, make_folder, remove_folder);
-    tcase_add_test(tests, help_and_version);
-    tcase_add_loop_test(tests, bad_usage, 0, (int)(sizeof misuse / sizeof *misuse));
-    tcase_add_test(tests, exact_pair);
-    tcase_add_test(tests, exact_pair_checked);
-    tcase_add_test(tests, beam_pair);
-    tcase_add_test(tests, cast_pair);
-    tcase_add_test(tests, blocked_pair);
-    tcase_add_loop_test(tests, bad_input, 0, (int)(sizeof bad_beds / sizeof *bad_beds));
-    tcase_add_test(tests, joined);
-    tcase_add_test(tests, joined_with_many_walls);
-    tcase_add_loop_test(tests, bad_rows, 0, (int)(sizeof damaged_rows / sizeof *damaged_rows));
-    tcase_add_test(tests, missing_rows);
-    tcase_add_test(tests, file_trouble);
-    tcase_add_test(tests, full_disc);
-    tcase_add_loop_test(tests, interrupted, 0, 2);
-    return suite_run(suite);
 }

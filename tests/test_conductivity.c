@@ -5,6 +5,8 @@
 #include "bed/packing.h"
 #include "program.h"
 
+FIXTURE(make_folder, remove_folder)
+
 #define PI 3.14159265358979323846
 
 /* ---- by the functions -------------------------------------------------------------------------------------------- */
@@ -44,7 +46,7 @@ static struct conduction follow(struct bed *bed, double emissivity, struct condu
 
 /* Two layers of touching spheres, in the hollows of each other, and a gap of 8: flights of up to 100 periods along it.
  * With cells twice as wide F_E grows by h^2/(P d) ln 2; across it does not. */
-START_TEST(slab_grows_with_the_logarithm) {
+TEST(slab_grows_with_the_logarithm) {
     const double height = 8, period = 2 + sqrt(2) + height, growth = height * height / (period * 2);
     struct conduction narrow, wide;
     struct bed bed = cell_of(2, 2, period), four;
@@ -64,11 +66,10 @@ START_TEST(slab_grows_with_the_logarithm) {
     ck_assert_int_eq(conduction_flights(&narrow, 2), FLIGHTS_SETTLED);
     ck_assert_double_eq_tol(wide.factor[2], narrow.factor[2], 4 * hypot(narrow.error[2], wide.error[2]));
 }
-END_TEST
 
 /* Gaps are found wherever they are in the period, and none where spheres overlap in projection; slabs across all axes
  * add up. */
-START_TEST(gaps_across_axes) {
+TEST(gaps_across_axes) {
     unsigned char emits[2];
     struct conduction result;
     for (int shift = -7; shift <= 7; ++shift) {
@@ -87,10 +88,9 @@ START_TEST(gaps_across_axes) {
     ck_assert_double_eq_tol(result.growth[2], .04 / 4.4 + .25 / 5, 1e-12);
     bed_free(&loose);
 }
-END_TEST
 
 /* Random beds are settled, and over seeds F_E is spread as the standard errors say, or less: paths are quasi-random. */
-START_TEST(errors_are_those_of_seeds) {
+TEST(errors_are_those_of_seeds) {
     enum { SEEDS = 30 };
     double factor[SEEDS][3], estimate[3] = {0};
     struct bed packing;
@@ -116,11 +116,10 @@ START_TEST(errors_are_those_of_seeds) {
         ck_assert_double_gt(sqrt(spread / estimate[axis]), .3);
     }
 }
-END_TEST
 
 /* A wide channel along x through a random bed: flights have no mean fourth power. Told with most seeds, and never
  * across it. */
-START_TEST(channel_is_told) {
+TEST(channel_is_told) {
     struct bed packing, bed;
     bed_init(&packing);
     bed_init(&bed);
@@ -143,10 +142,9 @@ START_TEST(channel_is_told) {
     bed_free(&bed);
     ck_assert_int_ge(told, 4); /* on the mean 6 */
 }
-END_TEST
 
 /* Few large spheres among small ones: they have most of the variance, and yet it is no few flights. */
-START_TEST(mixtures_are_settled) {
+TEST(mixtures_are_settled) {
     struct bed bed;
     bed_init(&bed);
     ck_assert_int_eq(bed_make_two_sizes(&bed, 3, 5, .5, 1), 0);
@@ -154,10 +152,9 @@ START_TEST(mixtures_are_settled) {
         follow(&bed, .8, (struct conduction_rule){.axis = -1, .error = .02, .max_rays = 4000000});
     for (int axis = 0; axis < 3; ++axis) ck_assert_int_eq(conduction_flights(&result, axis), FLIGHTS_SETTLED);
 }
-END_TEST
 
 /* Exact for lattices; of an open bed that of its core. */
-START_TEST(solid_fraction) {
+TEST(solid_fraction) {
     unsigned char emits[16 * 16 * 16];
     struct conduction result;
     struct bed cubic = cell_of(2, 2, 2), centred = cell_of(4 / sqrt(3), 4 / sqrt(3), 4 / sqrt(3)), open;
@@ -175,7 +172,6 @@ START_TEST(solid_fraction) {
     bed_free(&centred);
     bed_free(&open);
 }
-END_TEST
 
 /* ---- by the program ---------------------------------------------------------------------------------------------- */
 
@@ -193,7 +189,7 @@ static void expect_said(const char *what) { ck_assert_msg(strstr(said, what) != 
 
 /* A settled bed in a box twice as high as it is: F_E along the gap does not exist, and no search for its error begins.
  */
-START_TEST(gap_is_told) {
+TEST(gap_is_told) {
     CONDUCTIVITY(PERIODIC, "--periodic", "12,12,26.6648", "--emissivity", "0.8", "--error", "0.02");
     expect_said("monoper2000.dump: warning: F_E along xy does not exist");
     ck_assert_int_eq(strncmp(text_of("unreliable"), "xy\n", 3), 0);
@@ -203,9 +199,8 @@ START_TEST(gap_is_told) {
     ck_assert_str_eq(said, "");
     ck_assert_int_eq(strncmp(text_of("unreliable"), "none\n", 5), 0);
 }
-END_TEST
 
-START_TEST(rays_have_a_ceiling) {
+TEST(rays_have_a_ceiling) {
     CONDUCTIVITY(PERIODIC, "--emissivity", "0.8", "--error", "0.0005", "--max-rays", "3e5");
     expect_said("monoper2000.dump: warning: --error 0.0005 is not reached: 0.00");
     ck_assert_double_gt(value_of("error_reached"), .0005);
@@ -216,10 +211,9 @@ START_TEST(rays_have_a_ceiling) {
     expect_said("--max-rays is for --error; leave out --rays");
     ck_assert_int_eq(RUN("conductivity", PERIODIC, "--emissivity", "0.8", "--max-rays", "0"), 2);
 }
-END_TEST
 
 /* Along an open axis z of a bed that is periodic across it; the error of z alone counts. */
-START_TEST(one_axis) {
+TEST(one_axis) {
     CONDUCTIVITY(PERIODIC, "--emissivity", "0.8", "--rays", "50");
     const double factor = value_of("F_E_z");
     CONDUCTIVITY(PERIODIC, "--emissivity", "0.8", "--rays", "50", "--axis", "z");
@@ -239,13 +233,12 @@ START_TEST(one_axis) {
     ck_assert_int_eq(RUN("conductivity", gap, "--periodic", "2,2,10", "--emissivity", "1", "--axis", "q"), 2);
     expect_said("--axis: 'q' is none of x, y and z");
 }
-END_TEST
 
 #define LAYER 31 /* spheres along an edge, an odd number */
 
 /* A layer of black spheres, thin along an open axis: F_E along x is 2 pi r^2/(V d) times the sum of F x^2, here from
  * view factors of the sphere in the middle of a large layer. */
-START_TEST(across_a_thin_bed) {
+TEST(across_a_thin_bed) {
     const double pitch = 2.2;
     char middle[20], *text = calloc(LAYER * LAYER, 40);
     const char *const periods = "15.4,15.4,0", *out = in_folder("F.csv");
@@ -273,10 +266,9 @@ START_TEST(across_a_thin_bed) {
     ck_assert_double_eq_tol(value_of("F_E_x"), wanted, 3 * value_of("F_E_x_error") + .002 * wanted);
     expect_said("of what the core emits leaves the bed");
 }
-END_TEST
 
 /* k = F_E 4 sigma T^3 d, in the summary, the table and the object alike. */
-START_TEST(watts_and_files) {
+TEST(watts_and_files) {
     char axis;
     double factor, factor_error, k, k_error;
     const char *cell = write_file("cell.csv", "x,y,z,r\n0,0,0,3\n"), *csv = in_folder("k.csv"),
@@ -317,10 +309,9 @@ START_TEST(watts_and_files) {
     ck_assert_int_eq(RUN("conductivity", mirror, "--periodic", "2,2,2", "--emissivity", "0"), 3);
     expect_said("the emissivities are all 0");
 }
-END_TEST
 
 /* The same bytes for any number of threads, batches and rounds notwithstanding. */
-START_TEST(threads_change_nothing) {
+TEST(threads_change_nothing) {
     static const char *const threads[] = {"1", "3"};
     char *text[2];
     const char *cell = write_file("cell.csv", "x,y,z,r\n0,0,0,1\n1,1,1,0.5\n"), *out = in_folder("k.csv");
@@ -332,11 +323,10 @@ START_TEST(threads_change_nothing) {
     ck_assert_str_eq(text[0], text[1]);
     free(text[0]), free(text[1]);
 }
-END_TEST
 
 /* Between plates spheres settle at temperatures of their own; the flux is that of the linear field all the same. Sides
  * that are open have none. */
-START_TEST(between_plates) {
+TEST(between_plates) {
     const char *csv = in_folder("k.csv"), *json = in_folder("k.json");
     SUCCEED("conductivity", PERIODIC, "--periodic", "12,12,0", "--emissivity", "1", "--axis", "z", "--steady", "-o",
             csv, "-o", json);
@@ -356,25 +346,4 @@ START_TEST(between_plates) {
                          "--error", ".1", "--steady"),
                      2);
     expect_message(PERIODIC, "--steady: the two axes across it must be periodic");
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("conductivity");
-    TCase *functions = suite_case(suite, "functions"), *program = suite_case(suite, "program");
-    tcase_add_checked_fixture(program, make_folder, remove_folder);
-    tcase_add_test(functions, slab_grows_with_the_logarithm);
-    tcase_add_test(functions, gaps_across_axes);
-    tcase_add_test(functions, errors_are_those_of_seeds);
-    tcase_add_test(functions, channel_is_told);
-    tcase_add_test(functions, mixtures_are_settled);
-    tcase_add_test(functions, solid_fraction);
-    tcase_add_test(program, gap_is_told);
-    tcase_add_test(program, rays_have_a_ceiling);
-    tcase_add_test(program, one_axis);
-    tcase_add_test(program, across_a_thin_bed);
-    tcase_add_test(program, watts_and_files);
-    tcase_add_test(program, threads_change_nothing);
-    tcase_add_test(program, between_plates);
-    return suite_run(suite);
 }

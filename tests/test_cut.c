@@ -27,7 +27,7 @@ static fibrad_scene *above(double height, int axis, int upper, fibrad_body *plan
     return scene;
 }
 
-START_TEST(lone_sphere_by_beams) {
+TEST(lone_sphere_by_beams) {
     static const uint32_t directions[] = {9, 100, 233}, points[] = {0, 128};
     fibrad_work work = work_growing();
     fibrad_row row = row_of(1);
@@ -46,9 +46,8 @@ START_TEST(lone_sphere_by_beams) {
     row_free(&row);
     work_free(&work);
 }
-END_TEST
 
-START_TEST(lone_sphere_by_rays) {
+TEST(lone_sphere_by_rays) {
     const double emissivity = .5, black = 1, grey = .2;
     fibrad_work work = work_growing();
     fibrad_row row = row_of(2);
@@ -75,7 +74,6 @@ START_TEST(lone_sphere_by_rays) {
     row_free(&row);
     work_free(&work);
 }
-END_TEST
 
 /* ---- heat ------------------------------------------------------------------------------------------------------- */
 
@@ -104,7 +102,7 @@ static struct heat heat_of(const struct bed *bed, const fibrad_body *plane, cons
     return heat;
 }
 
-START_TEST(lone_sphere_by_heat) {
+TEST(lone_sphere_by_heat) {
     const double hot = 1, black = 1, cold_black[] = {0, 1};
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     for (size_t k = 0; k < HEIGHTS; k++)
@@ -118,7 +116,6 @@ START_TEST(lone_sphere_by_heat) {
         }
     bed_free(&bed);
 }
-END_TEST
 
 /* ---- several spheres -------------------------------------------------------------------------------------------- */
 
@@ -175,7 +172,7 @@ static double distance_of(const fibrad_row *row, const double f[SOME + 2]) {
 }
 
 /* Rays, paths and heat know the caps as they are; rows by beams know what they get on the mean. */
-START_TEST(some_spheres) {
+TEST(some_spheres) {
     double f[SOME][SOME + 2], by_rays = 0, by_beams = 0, by_points = 0, reciprocity = 0;
     struct bed bed = bed_of(SOME, some);
     const fibrad_body floor = plane_at(2, 0, 0);
@@ -204,10 +201,9 @@ START_TEST(some_spheres) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* Rows are reciprocal and closed as ever. */
-START_TEST(matrix_of_some) {
+TEST(matrix_of_some) {
     struct bed bed = bed_of(SOME, some);
     const fibrad_body floor = plane_at(2, 0, 0);
     fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor, .bodies = 1});
@@ -222,9 +218,8 @@ START_TEST(matrix_of_some) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(heat_of_some) {
+TEST(heat_of_some) {
     double f[SOME][SOME + 2], worst = 0, black[SOME], grey[SOME], warm[SOME];
     struct bed bed = bed_of(SOME, some);
     const fibrad_body floor = plane_at(2, 0, 0);
@@ -251,10 +246,9 @@ START_TEST(heat_of_some) {
     ck_assert_double_eq_tol(even.plane, 0, 1e-9);
     bed_free(&bed);
 }
-END_TEST
 
 /* Beside a cylinder lines that graze it meet it again, of which the mean does not know. */
-START_TEST(beside_a_cylinder) {
+TEST(beside_a_cylinder) {
     struct bed bed = bed_of(1, (const double[][4]){{3.4, 0, 0, 1}});
     const fibrad_body body[] = {cylinder_at(0, 0, 4), plane_at(2, 0, -1.2), plane_at(2, 1, 1.2)};
     fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = 3});
@@ -267,18 +261,4 @@ START_TEST(beside_a_cylinder) {
     work_free(&work);
     free(scene);
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("cut");
-    TCase *tcase = suite_case(suite, "cut");
-    tcase_add_test(tcase, lone_sphere_by_beams);
-    tcase_add_test(tcase, lone_sphere_by_rays);
-    tcase_add_test(tcase, lone_sphere_by_heat);
-    tcase_add_test(tcase, some_spheres);
-    tcase_add_test(tcase, matrix_of_some);
-    tcase_add_test(tcase, heat_of_some);
-    tcase_add_test(tcase, beside_a_cylinder);
-    return suite_run(suite);
 }

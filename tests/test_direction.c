@@ -11,7 +11,7 @@
 static const uint32_t SIZES[] = {8, 9, 55, 144, 233, 1000, 4181, 10946, 10947, 65535, 65536};
 enum { SIZE_COUNT = sizeof SIZES / sizeof SIZES[0] };
 
-START_TEST(directions_agree_with_the_c_library) {
+LOOP_TEST(directions_agree_with_the_c_library, SIZE_COUNT) {
     uint32_t n = SIZES[_i];
     uint64_t remainder = 0;
     for (uint32_t k = 0; k < n; k++, remainder = golden_next(remainder)) {
@@ -24,9 +24,8 @@ START_TEST(directions_agree_with_the_c_library) {
         ck_assert_double_le(fabs(sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) - 1), 1e-15);
     }
 }
-END_TEST
 
-START_TEST(azimuths_are_rounded_once) {
+TEST(azimuths_are_rounded_once) {
     uint64_t remainder = 0;
     for (uint32_t k = 0; k < FIBRAD_DIRECTIONS_MAX; k++, remainder = golden_next(remainder)) {
         double c, s;
@@ -35,9 +34,8 @@ START_TEST(azimuths_are_rounded_once) {
         ck_assert_ldouble_le(fabsl(s - sinl(golden_angle(remainder))), half_ulp(s) + GOLDEN_TOLERANCE);
     }
 }
-END_TEST
 
-START_TEST(sums_have_the_bits_of_the_table) {
+TEST(sums_have_the_bits_of_the_table) {
 #if FIBRAD_TABLE_AZIMUTHS > 0
     for (uint32_t k = 0; k < FIBRAD_TABLE_AZIMUTHS; k++) {
         double sum[2];
@@ -46,9 +44,8 @@ START_TEST(sums_have_the_bits_of_the_table) {
     }
 #endif
 }
-END_TEST
 
-START_TEST(set_is_balanced) {
+LOOP_TEST(set_is_balanced, SIZE_COUNT) {
     uint32_t n = SIZES[_i];
     double sum[3] = {0}, square[3][3] = {{0}};
     for (uint32_t k = 0; k < n; k++) {
@@ -64,10 +61,9 @@ START_TEST(set_is_balanced) {
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++) ck_assert_double_le(fabs(square[a][b] - (a == b ? n / 3.0 : 0)), 1);
 }
-END_TEST
 
 /* A hexagonal packing of n points has the distance sqrt(8 pi/sqrt 3)/sqrt n = 3.81/sqrt n. */
-START_TEST(nearest_neighbours_keep_their_distance) {
+LOOP_TEST(nearest_neighbours_keep_their_distance, SIZE_COUNT) {
     enum { LARGEST = 4181 };
     static double d[LARGEST][3];
     uint32_t n = SIZES[_i];
@@ -84,9 +80,8 @@ START_TEST(nearest_neighbours_keep_their_distance) {
     ck_assert_double_gt(closest * sqrt(n), 2.6);
     ck_assert_double_lt(farthest * sqrt(n), 3.81);
 }
-END_TEST
 
-START_TEST(polar_form_is_the_direction) {
+TEST(polar_form_is_the_direction) {
     for (uint32_t k = 0; k < 233; k++) {
         fibrad_polar p = fibrad_direction_polar(k, 233);
         double d[3];
@@ -96,9 +91,8 @@ START_TEST(polar_form_is_the_direction) {
         ck_assert_double_eq(d[2], p.z);
     }
 }
-END_TEST
 
-START_TEST(bad_arguments_are_refused) {
+TEST(bad_arguments_are_refused) {
     static const uint32_t bad[][2] = {{0, 0},          {0, 7},          {8, 8},
                                       {233, 233},      {0, 65537},      {65536, 65536},
                                       {UINT32_MAX, 8}, {0, UINT32_MAX}, {UINT32_MAX, UINT32_MAX}};
@@ -108,18 +102,4 @@ START_TEST(bad_arguments_are_refused) {
         ck_assert(d[0] == 7 && d[1] == 8 && d[2] == 9);
     }
     ck_assert_int_eq(fibrad_direction(0, 8, NULL), FIBRAD_E_ARGUMENT);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("direction");
-    TCase *tests = suite_case(suite, "direction");
-    tcase_add_loop_test(tests, directions_agree_with_the_c_library, 0, SIZE_COUNT);
-    tcase_add_test(tests, azimuths_are_rounded_once);
-    tcase_add_test(tests, sums_have_the_bits_of_the_table);
-    tcase_add_loop_test(tests, set_is_balanced, 0, SIZE_COUNT);
-    tcase_add_loop_test(tests, nearest_neighbours_keep_their_distance, 0, SIZE_COUNT);
-    tcase_add_test(tests, polar_form_is_the_direction);
-    tcase_add_test(tests, bad_arguments_are_refused);
-    return suite_run(suite);
 }

@@ -39,7 +39,7 @@ static int ascending(const void *a, const void *b) {
 }
 
 /* The factor of two spheres alone, which is known, as their distance changes. */
-START_TEST(estimate_bounds_the_change_of_a_pair) {
+TEST(estimate_bounds_the_change_of_a_pair) {
     static const double ratios[] = {.1, .3, 1, 3, 10}, gaps[] = {0, .01, .1, 1, 10, 100}, moves[] = {-1e-3, 1e-4, 1e-2};
     for (size_t k = 0; k < 5 * 6 * 3; k++) {
         double r = ratios[k % 5], gap = gaps[k / 5 % 6], move = moves[k / 30], from, to;
@@ -61,9 +61,8 @@ START_TEST(estimate_bounds_the_change_of_a_pair) {
         bed_free(&moved);
     }
 }
-END_TEST
 
-START_TEST(estimates_hold_in_beds) {
+TEST(estimates_hold_in_beds) {
     struct bed beds[] = {packing(300, .8, 1.2, .55, 7, true), packing(300, .8, 1.2, .4, 7, false),
                          packing(300, .3, 1.5, .5, 3, true)};
     const fibrad_beam_rule rule = {.directions = 200};
@@ -94,10 +93,9 @@ START_TEST(estimates_hold_in_beds) {
             }
     for (size_t b = 0; b < 3; b++) bed_free(&beds[b]);
 }
-END_TEST
 
 /* Nothing moves against anything else, also where spheres leave the box on one side and come in on the other. */
-START_TEST(moving_as_a_whole_is_no_error) {
+TEST(moving_as_a_whole_is_no_error) {
     struct bed bed = packing(200, .8, 1.2, .5, 2, true), moved = copy_of(&bed);
     for (uint32_t i = 0; i < bed.n; i++) moved.x[i] += 3, moved.y[i] -= 2.5;
     fibrad_scene *before = scene_of(&bed, FIBRAD_ISA_BEST), *now = scene_of(&moved, FIBRAD_ISA_BEST);
@@ -111,10 +109,9 @@ START_TEST(moving_as_a_whole_is_no_error) {
     bed_free(&bed);
     bed_free(&moved);
 }
-END_TEST
 
 /* A sphere goes to a free place far away: it comes into the sight of rows that see nothing move. */
-START_TEST(what_comes_into_sight_is_found) {
+TEST(what_comes_into_sight_is_found) {
     struct bed bed = packing(400, .8, 1.2, .4, 9, true);
     bed.r[0] = .5;
     struct bed now = copy_of(&bed);
@@ -153,10 +150,9 @@ START_TEST(what_comes_into_sight_is_found) {
     bed_free(&bed);
     bed_free(&now);
 }
-END_TEST
 
 /* The estimate counts spheres alone: walls may have moved, or be others. */
-START_TEST(walls_that_move_are_not_counted) {
+TEST(walls_that_move_are_not_counted) {
     struct bed bed = packing(100, .8, 1.2, .4, 1, false);
     fibrad_body wall = plane_at(2, 1, 30);
     fibrad_scene_config config = {.body = &wall, .bodies = 1};
@@ -174,9 +170,8 @@ START_TEST(walls_that_move_are_not_counted) {
     free(open);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(bad_arguments_are_refused) {
+TEST(bad_arguments_are_refused) {
     struct bed bed = packing(50, .8, 1.2, .4, 1, true), less = packing(49, .8, 1.2, .4, 1, true), open = copy_of(&bed);
     open.period[1] = 0;
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST), *other = scene_of(&less, FIBRAD_ISA_BEST);
@@ -208,17 +203,4 @@ START_TEST(bad_arguments_are_refused) {
     bed_free(&bed);
     bed_free(&less);
     bed_free(&open);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("drift");
-    TCase *tests = suite_case(suite, "drift");
-    tcase_add_test(tests, estimate_bounds_the_change_of_a_pair);
-    tcase_add_test(tests, estimates_hold_in_beds);
-    tcase_add_test(tests, moving_as_a_whole_is_no_error);
-    tcase_add_test(tests, what_comes_into_sight_is_found);
-    tcase_add_test(tests, walls_that_move_are_not_counted);
-    tcase_add_test(tests, bad_arguments_are_refused);
-    return suite_run(suite);
 }

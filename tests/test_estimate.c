@@ -15,6 +15,7 @@ static const struct {
     const char *name;
     struct bed (*make)(void);
 } beds[] = {{"random", random_bed}, {"sparse", sparse_bed}, {"sizes 1:4", unequal_bed}, {"cubic", cubic_bed}};
+enum { BEDS = sizeof beds / sizeof *beds };
 
 static fibrad_bed_factors *rows(const struct bed *bed, const fibrad_beam_rule *rule, bool raw,
                                 const unsigned char *wanted) {
@@ -47,7 +48,7 @@ static int ascending(const void *a, const void *b) {
 
 /* All but two of 48 estimates are above the error of a raw row, or nearly so: rows of a lattice err together. Those of
  * rows from silhouettes are above half the error. On the median no estimate is more than 4 times the error. */
-START_TEST(estimates_are_honest) {
+LOOP_TEST(estimates_are_honest, BEDS) {
     struct bed bed = beds[_i].make();
     unsigned char wanted[1000];
     fibrad_bed_factors *truth = truth_of(&bed, wanted);
@@ -73,10 +74,9 @@ START_TEST(estimates_are_honest) {
     fibrad_bed_free(truth);
     bed_free(&bed);
 }
-END_TEST
 
 /* The rows asked for are that accurate, by the truth and by their own account; averaged ones closed and reciprocal. */
-START_TEST(tolerance_is_met) {
+LOOP_TEST(tolerance_is_met, BEDS) {
     struct bed bed = beds[_i].make();
     unsigned char of_truth[1000];
     fibrad_bed_factors *truth = truth_of(&bed, of_truth);
@@ -103,10 +103,9 @@ START_TEST(tolerance_is_met) {
     fibrad_bed_free(truth);
     bed_free(&bed);
 }
-END_TEST
 
 /* A row alone takes what it needs, whatever the room it was given, and holds the row of that many directions. */
-START_TEST(rows_by_themselves) {
+TEST(rows_by_themselves) {
     struct bed bed = random_bed();
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_work work = work_growing();
@@ -135,7 +134,6 @@ START_TEST(rows_by_themselves) {
     work_free(&work);
     bed_free(&bed);
 }
-END_TEST
 
 /* Scenes among walls: spheres of a packing, in a box or a cylinder of `room` times their extent. */
 static const struct scene_in_walls {
@@ -192,7 +190,7 @@ static fibrad_bed_factors *rows_among(const struct bed *bed, const fibrad_scene_
 
 /* Estimates count walls: the true error lies above twice the estimate in 5 % of rows at most, and the estimate on the
  * median not above five times the error. Tolerances are met likewise. */
-START_TEST(estimates_count_walls) {
+LOOP_TEST(estimates_count_walls, SCENES) {
     const struct scene_in_walls *of = &scenes_in_walls[_i];
     struct bed bed = packing(of->spheres, of->low, of->high, of->fraction, 5 + (uint64_t)_i, false);
     fibrad_body body[6];
@@ -230,10 +228,9 @@ START_TEST(estimates_count_walls) {
     fibrad_bed_free(truth);
     bed_free(&bed);
 }
-END_TEST
 
 /* Where no number of directions does, the most there is. */
-START_TEST(out_of_reach) {
+TEST(out_of_reach) {
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1, 2, 3, 1}});
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_work work = work_growing();
@@ -249,10 +246,9 @@ START_TEST(out_of_reach) {
     work_free(&work);
     bed_free(&bed);
 }
-END_TEST
 
 /* A row of one sphere: halves of the directions may agree by chance. Truth: the closed form. */
-START_TEST(one_entry_is_no_luck) {
+TEST(one_entry_is_no_luck) {
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, .3}, {.33003, 0, 0, .03}});
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_work work = work_growing();
@@ -272,7 +268,6 @@ START_TEST(one_entry_is_no_luck) {
     work_free(&work);
     bed_free(&bed);
 }
-END_TEST
 
 /* ---- exchange factors ------------------------------------------------------------------------------------------- */
 
@@ -286,7 +281,7 @@ static fibrad_bed_factors *exchange(const struct bed *bed, const fibrad_exchange
 }
 
 /* Large and small, nearly touching. Truth: paths of others, and a million of ours from the small sphere: .1880. */
-START_TEST(small_beside_large_exchange) {
+TEST(small_beside_large_exchange) {
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, .3}, {.33003, 0, 0, .03}});
     const double emissivity[] = {.6, .6}, truth = .1880;
     double square = 0;
@@ -304,10 +299,9 @@ START_TEST(small_beside_large_exchange) {
     ck_assert_double_le(sqrt(square), .002);
     bed_free(&bed);
 }
-END_TEST
 
 /* View factors by rays and by points, averaged: the small sphere knows better. Truth: the closed form. */
-START_TEST(small_beside_large_sampled) {
+LOOP_TEST(small_beside_large_sampled, 2) {
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, .3}, {.33003, 0, 0, .03}});
     const fibrad_spheres spheres = bed_spheres(&bed);
     const fibrad_beam_rule points = {.points = 64};
@@ -325,7 +319,6 @@ START_TEST(small_beside_large_sampled) {
     fibrad_bed_free(f);
     bed_free(&bed);
 }
-END_TEST
 
 /* Beds whose exchange factors have a tolerance. */
 static const struct {
@@ -336,7 +329,7 @@ static const struct {
 
 /* The tolerance is reached by all rows, in truth and as estimated. Truth: raw rows of ten times as many directions, and
  * a hundred times as many paths. */
-START_TEST(tolerance_of_exchange_is_met) {
+LOOP_TEST(tolerance_of_exchange_is_met, sizeof greys / sizeof *greys) {
     const double tolerance = greys[_i].tolerance;
     struct bed bed = packing(greys[_i].n, greys[_i].smallest, 1, greys[_i].fraction, greys[_i].seed, false);
     double *e = calloc(bed.n, sizeof *e), worst = 0, square = 0;
@@ -367,21 +360,4 @@ START_TEST(tolerance_of_exchange_is_met) {
     fibrad_bed_free(truth);
     free(e);
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    const int count = sizeof beds / sizeof *beds;
-    Suite *suite = suite_create("estimate");
-    TCase *tcase = suite_case(suite, "estimate");
-    tcase_add_loop_test(tcase, estimates_are_honest, 0, count);
-    tcase_add_loop_test(tcase, tolerance_is_met, 0, count);
-    tcase_add_loop_test(tcase, estimates_count_walls, 0, SCENES);
-    tcase_add_test(tcase, rows_by_themselves);
-    tcase_add_test(tcase, out_of_reach);
-    tcase_add_test(tcase, one_entry_is_no_luck);
-    tcase_add_test(tcase, small_beside_large_exchange);
-    tcase_add_loop_test(tcase, small_beside_large_sampled, 0, 2);
-    tcase_add_loop_test(tcase, tolerance_of_exchange_is_met, 0, sizeof greys / sizeof *greys);
-    return suite_run(suite);
 }

@@ -30,7 +30,7 @@ static double whole(const fibrad_row *row) {
 }
 
 /* Black spheres: exchange factors are view factors, to the bit. */
-START_TEST(black_is_the_beam_row) {
+TEST(black_is_the_beam_row) {
     struct bed bed = packing(200, .5, 1, .5, 1, true);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     double *e = constant(bed.n, 1);
@@ -54,11 +54,10 @@ START_TEST(black_is_the_beam_row) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* A sphere alone sees nothing; two far apart exchange e F e' of what the first emits, and 1 - e' of F goes on its way.
  */
-START_TEST(one_and_two_spheres) {
+TEST(one_and_two_spheres) {
     const double e[2] = {.3, .6};
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {30, 0, 0, 2}});
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -73,11 +72,10 @@ START_TEST(one_and_two_spheres) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* What black walls absorb at once has all the error of the beams, however little the spheres absorb, and counts for the
  * tolerance. */
-START_TEST(walls_count_for_the_first_leg) {
+TEST(walls_count_for_the_first_leg) {
     const double e[2] = {.5, .02}, walls_e[6] = {1, 1, 1, 1, 1, 1};
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {2.2, .5, .3, 1}});
     fibrad_body walls[6];
@@ -98,10 +96,9 @@ START_TEST(walls_count_for_the_first_leg) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* Two so far apart that hardly a path meets the other: rows end, closed, and say how much is not known. */
-START_TEST(hardly_seen) {
+TEST(hardly_seen) {
     const double e[2] = {.3, .6};
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1e4, 0, 0, 1}});
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -115,12 +112,11 @@ START_TEST(hardly_seen) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* A sphere in a much larger closed box of grey walls: it is met again by what they reflect. Walls and sphere then
  * nearly form an enclosure of two: of what the sphere emits it gets back, by the balance of two grey surfaces with F_12
  * = 1 and F_21 = A_1/A_2,  D_11 = (1 - e_2) F_21 e_1/(1 - (1 - e_2)(1 - F_21) - (1 - e_2) F_21 (1 - e_1)). */
-START_TEST(sphere_in_a_grey_box) {
+TEST(sphere_in_a_grey_box) {
     struct bed bed = bed_of(1, (const double[][4]){{.1, -.2, .3, 1}});
     const fibrad_body walls[] = {plane_at(0, 0, -4), plane_at(0, 1, 4),  plane_at(1, 0, -4),
                                  plane_at(1, 1, 4),  plane_at(2, 0, -4), plane_at(2, 1, 4)};
@@ -142,7 +138,6 @@ START_TEST(sphere_in_a_grey_box) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* Paths by other means: absorbed as a whole where a random number says so, ray by ray in the bed itself. */
 static void plain(const struct bed *bed, const double *e, uint32_t i, uint32_t paths, double *d) {
@@ -182,7 +177,7 @@ static void plain(const struct bed *bed, const double *e, uint32_t i, uint32_t p
 
 /* Unequal spheres of unequal emissivities, some of them 0, against plain paths: entry by entry within the noise of
  * these. */
-START_TEST(against_plain_paths) {
+LOOP_TEST(against_plain_paths, 4) {
     enum { PATHS = 200000 };
     struct bed bed = packing(60, .4, 1, .45, 8, _i % 2 == 0);
     double *e = calloc(bed.n, sizeof *e), *d = calloc(bed.n, sizeof *d);
@@ -207,7 +202,6 @@ START_TEST(against_plain_paths) {
     free(d);
     bed_free(&bed);
 }
-END_TEST
 
 static void assert_empty(const fibrad_row *row, uint32_t bodies) {
     ck_assert(row->length == 0 && row->escaped == 0 && row->beyond == 0 && row->error == 0);
@@ -216,7 +210,7 @@ static void assert_empty(const fibrad_row *row, uint32_t bodies) {
 
 /* The row and the displacement of a sphere of emissivity 0 are empty, and no other row has a factor to it; the other
  * rows are those of emissivity 1e-6, but for what that absorbs. */
-START_TEST(reflectors_have_empty_rows) {
+TEST(reflectors_have_empty_rows) {
     struct bed bed = packing(80, .5, 1, .5, 6, false);
     const fibrad_body walls[] = {plane_at(0, 0, bed.x[0] - 50), plane_at(0, 1, bed.x[0] + 50)};
     fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 2});
@@ -266,10 +260,9 @@ START_TEST(reflectors_have_empty_rows) {
     free(e), free(nearly), free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* In a closed bed where all others reflect, a sphere gets back all that it emits, two share it. */
-START_TEST(all_light_comes_back) {
+TEST(all_light_comes_back) {
     struct bed bed = packing(40, .5, 1, .5, 6, true);
     double *e = calloc(bed.n, sizeof *e);
     e[11] = .7;
@@ -287,10 +280,9 @@ START_TEST(all_light_comes_back) {
     free(e), free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* The error falls as stated and is estimated honestly. */
-START_TEST(error_and_its_estimate) {
+TEST(error_and_its_estimate) {
     struct bed bed = packing(300, 1, 1, .55, 3, true);
     double *e = constant(bed.n, .5);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -316,10 +308,9 @@ START_TEST(error_and_its_estimate) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* Row i in any instruction set, after any other row, with room for a few lists of near spheres: the same bits. */
-START_TEST(same_bits_always) {
+TEST(same_bits_always) {
     struct bed bed = packing(150, .3, 1, .5, 6, false);
     const fibrad_body walls[] = {plane_at(0, 0, bed.x[0] - 50), plane_at(0, 1, bed.x[0] + 50)};
     fibrad_scene_config config = {.isa = FIBRAD_ISA_SCALAR, .body = walls, .bodies = 2};
@@ -359,7 +350,6 @@ START_TEST(same_bits_always) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* F_E of a lattice of unit spheres. */
 static double factor(const struct bed *bed, double solid, double emissivity, uint32_t paths) {
@@ -380,7 +370,7 @@ static double factor(const struct bed *bed, double solid, double emissivity, uin
 }
 
 /* Body- and face-centred lattices, two emissivities, against values from other programs (DESIGN: to 1-2 %). */
-START_TEST(conductivity_of_lattices) {
+TEST(conductivity_of_lattices) {
     const double b = 4 / sqrt(3), f = 2 * sqrt(2);
     struct bed centred = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {b / 2, b / 2, b / 2, 1}});
     struct bed faces =
@@ -393,12 +383,11 @@ START_TEST(conductivity_of_lattices) {
     bed_free(&centred);
     bed_free(&faces);
 }
-END_TEST
 
 /* In a chain of two spheres a period the one emits to the other: the displacement counts periods and takes the nearest
  * image as it is met. Contact factors to both sides: mean square 2 F 2^2 along the chain when all is absorbed at once.
  */
-START_TEST(displacement_in_a_chain) {
+TEST(displacement_in_a_chain) {
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {2, 0, 0, 1}});
     bed.period[0] = 4;
     double *e = constant(2, 1), exact;
@@ -421,10 +410,9 @@ START_TEST(displacement_in_a_chain) {
     work_free(&work);
     bed_free(&bed);
 }
-END_TEST
 
 /* Rows of a whole bed, averaged with areas A e and balanced: reciprocal and closed; dropping keeps the sums. */
-START_TEST(rows_keep_the_books) {
+TEST(rows_keep_the_books) {
     struct bed bed = packing(120, .5, 1, .5, 12, true);
     const uint32_t n = bed.n;
     double *e = calloc(n, sizeof *e), *target = calloc(n, sizeof *target), *mean = calloc(n, sizeof *mean), largest;
@@ -481,10 +469,9 @@ START_TEST(rows_keep_the_books) {
     free(e), free(target), free(mean), free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* Spheres in another order, each with the number it had: the same paths. Without: others. */
-START_TEST(paths_go_by_the_numbers_of_spheres) {
+TEST(paths_go_by_the_numbers_of_spheres) {
     struct bed bed = packing(100, .5, 1, .5, 4, true), turned = bed_of(0, NULL);
     uint64_t id[100], same[100];
     for (uint32_t i = 0; i < 100; i++) {
@@ -521,9 +508,8 @@ START_TEST(paths_go_by_the_numbers_of_spheres) {
     bed_free(&bed);
     bed_free(&turned);
 }
-END_TEST
 
-START_TEST(bad_arguments) {
+TEST(bad_arguments) {
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}});
     const fibrad_body wall = plane_at(2, 0, -2);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -593,11 +579,10 @@ START_TEST(bad_arguments) {
     free(walled);
     bed_free(&bed);
 }
-END_TEST
 
 /* Two small spheres in a room of mirrors, which light leaves by its thousandth of a thousandth a leg: paths end, what
  * they leave is in the error. Truth: light that has been everywhere is absorbed by areas times emissivities. */
-START_TEST(mirrors_end_in_the_error) {
+TEST(mirrors_end_in_the_error) {
     struct bed bed = bed_of(2, (const double[][4]){{.3, .5, .5, .05}, {.7, .5, .5, .05}});
     const fibrad_body walls[] = {plane_at(0, 0, 0), plane_at(0, 1, 1), plane_at(1, 0, 0),
                                  plane_at(1, 1, 1), plane_at(2, 0, 0), plane_at(2, 1, 1)};
@@ -628,27 +613,4 @@ START_TEST(mirrors_end_in_the_error) {
     free(scene);
     work_free(&work);
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("exchange");
-    TCase *cases = suite_case(suite, "exchange");
-    tcase_add_test(cases, black_is_the_beam_row);
-    tcase_add_test(cases, one_and_two_spheres);
-    tcase_add_test(cases, walls_count_for_the_first_leg);
-    tcase_add_test(cases, hardly_seen);
-    tcase_add_test(cases, sphere_in_a_grey_box);
-    tcase_add_loop_test(cases, against_plain_paths, 0, 4);
-    tcase_add_test(cases, reflectors_have_empty_rows);
-    tcase_add_test(cases, all_light_comes_back);
-    tcase_add_test(cases, error_and_its_estimate);
-    tcase_add_test(cases, same_bits_always);
-    tcase_add_test(cases, conductivity_of_lattices);
-    tcase_add_test(cases, displacement_in_a_chain);
-    tcase_add_test(cases, rows_keep_the_books);
-    tcase_add_test(cases, paths_go_by_the_numbers_of_spheres);
-    tcase_add_test(cases, mirrors_end_in_the_error);
-    tcase_add_test(cases, bad_arguments);
-    return suite_run(suite);
 }

@@ -10,6 +10,8 @@
 #include "scenes.h"
 #include "simple/fibrad_host.h"
 
+FIXTURE(make_folder, remove_folder)
+
 #define PI 3.14159265358979323846
 
 /* ---- a ball ------------------------------------------------------------------------------------------------------ */
@@ -20,7 +22,7 @@ static double least_share(double power, void *a) {
     return (1 - t) / ((1 + t) * (1 + t));
 }
 
-START_TEST(emissivities_of_nodes) {
+TEST(emissivities_of_nodes) {
     gsl_integration_workspace *space = gsl_integration_workspace_alloc(1000);
     double a[] = {.01, .1, 1, 7, 23.99, 24, 24.01, 100, 2000, 4e5};
     for (size_t k = 0; k < sizeof a / sizeof *a; ++k) {
@@ -37,10 +39,9 @@ START_TEST(emissivities_of_nodes) {
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k)
         ck_assert(isnan(fibrad_node_emissivity(wrong[k][0], wrong[k][1])));
 }
-END_TEST
 
 /* Of degree l a/(a + l) is given off: all of it by what is not given off evenly. */
-START_TEST(patterns_that_are_not_even) {
+TEST(patterns_that_are_not_even) {
     enum { DRAWS = 200000, DEGREES = 8 };
     static const double a[] = {1e-6, .04, .5, 4, 100};
     for (size_t k = 0; k < sizeof a / sizeof *a; ++k) {
@@ -62,7 +63,6 @@ START_TEST(patterns_that_are_not_even) {
             ck_assert_double_le(fabs(mean[l] - a[k] / (a[k] + l) / rest), 4 / sqrt(DRAWS));
     }
 }
-END_TEST
 
 /* ---- a ball in a box --------------------------------------------------------------------------------------------- */
 
@@ -145,13 +145,12 @@ static double to_side(double r, double e, double relative) {
 
 /* A ball in a black box: what is conducted from one side of it to another. */
 static const double ball_k[] = {.1, .3, 2, .3}, ball_e[] = {1, .8, .5, 1};
-START_TEST(by_a_ball) {
+LOOP_TEST(by_a_ball, 4) {
     const double r = .8, a = ball_e[_i] / (2 * ball_k[_i]);
     const double truth = by_ball(r, ball_e[_i], a), direct = to_side(r, 1, INFINITY);
     const double found = to_side(r, ball_e[_i], ball_k[_i]) - direct;
     ck_assert_double_le(fabs(found / truth - 1), .005);
 }
-END_TEST
 
 /* ---- beds -------------------------------------------------------------------------------------------------------- */
 
@@ -243,7 +242,7 @@ static double differ(const double *a, const double *b, uint32_t n) {
 
 /* Powers by rows are those by patches, beyond the noise of paths, which two seeds tell. */
 static const double bed_k[] = {.1, .1, 1, 10, 0}, bed_e[] = {.8, 1, .6, .8, 0};
-START_TEST(powers_are_those_of_patches) {
+LOOP_TEST(powers_are_those_of_patches, 5) {
     struct hot_bed h = hot_bed(120, bed_e[_i], bed_k[_i]);
     double truth[MOST], found[2][MOST], mean[MOST];
     powers_by_patches(&h, truth);
@@ -260,10 +259,9 @@ START_TEST(powers_are_those_of_patches) {
     ck_assert_double_le(sqrt(fmax(0, off * off - noise * noise)), .01);
     bed_free(&h.bed);
 }
-END_TEST
 
 /* Spheres of one temperature have today's rows, to the bit. k* = 1e6 has the same powers within the noise. */
-START_TEST(good_conductors) {
+TEST(good_conductors) {
     struct hot_bed h = hot_bed(100, .7, INFINITY);
     double power[2][MOST];
     const fibrad_spheres spheres = spheres_of(&h.bed);
@@ -283,11 +281,10 @@ START_TEST(good_conductors) {
     fibrad_bed_free(all);
     bed_free(&h.bed);
 }
-END_TEST
 
 /* Numbers that cannot be: nodes without conductivities, above the emissivity, k* too small or NaN; of the sphere itself
  * and of one that paths meet. */
-START_TEST(refusals) {
+TEST(refusals) {
     const struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2, 1}});
     const double black[] = {.5, .5};
     fibrad_scene *scene = scene_of(&bed, 0);
@@ -311,7 +308,6 @@ START_TEST(refusals) {
     row_free(&row), work_free(&work);
     free(scene);
 }
-END_TEST
 
 /* ---- the program ------------------------------------------------------------------------------------------------- */
 
@@ -319,7 +315,7 @@ static const char *pebbles(void) {
     return write_file("bed.csv", "x,y,z,radius,k,T\n0,0,0,30,2,1000\n70,0,0,30,3,1200\n0,70,0,30,4,1500\n");
 }
 
-START_TEST(outputs) {
+TEST(outputs) {
     const char *json = in_folder("D.json"), *npz = in_folder("D.npz");
     SUCCEED("exchange", pebbles(), "--length-unit", "mm", "--emissivity", "0.8", "--solid-conductivity", "k",
             "--temperature", "T", "-o", json, "-o", npz);
@@ -340,9 +336,8 @@ START_TEST(outputs) {
     ck_assert_ptr_null(strstr(text, "node_emissivity"));
     free(text);
 }
-END_TEST
 
-START_TEST(mistakes) {
+TEST(mistakes) {
     static const struct {
         const char *solid, *temperature, *reason;
         int status;
@@ -371,20 +366,4 @@ START_TEST(mistakes) {
     ck_assert_int_eq(RUN("exchange", file, "--emissivity", "0.8", "--solid-conductivity", "5", "--temperature", "900"),
                      2);
     ck_assert_ptr_nonnull(strstr(said, "--length-unit"));
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("exchange factors of spheres that conduct");
-    TCase *tests = suite_case(suite, "exchange factors of spheres that conduct");
-    tcase_add_checked_fixture(tests, make_folder, remove_folder);
-    tcase_add_test(tests, emissivities_of_nodes);
-    tcase_add_test(tests, patterns_that_are_not_even);
-    tcase_add_loop_test(tests, by_a_ball, 0, 4);
-    tcase_add_loop_test(tests, powers_are_those_of_patches, 0, 5);
-    tcase_add_test(tests, good_conductors);
-    tcase_add_test(tests, refusals);
-    tcase_add_test(tests, outputs);
-    tcase_add_test(tests, mistakes);
-    return suite_run(suite);
 }

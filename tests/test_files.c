@@ -4,6 +4,8 @@
 #include "cli/output.h"
 #include "program.h"
 
+FIXTURE(make_folder, remove_folder)
+
 #define ATOMS "ITEM: ATOMS id type x y z radius T\n"
 
 /* Three spheres in the order of their ids, and out of it. */
@@ -43,7 +45,7 @@ static double power_of(const char *path, const char *begin, const char *end) {
 /* ---- walls and surroundings ------------------------------------------------------------------------------------- */
 
 /* Temperatures go by the walls' names, whatever order they were named in. */
-START_TEST(wall_temperatures_by_name) {
+TEST(wall_temperatures_by_name) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED)), *out = in_folder("q.csv");
     static const char *const lists[] = {"zmin=1200,zmax=300,700", "700,zmax=300,zmin=1200"};
     char *first = NULL;
@@ -65,10 +67,9 @@ START_TEST(wall_temperatures_by_name) {
     }
     free(first);
 }
-END_TEST
 
 /* No temperature is made up: that of the surroundings is asked for where something can get there. */
-START_TEST(surroundings_are_asked_for) {
+TEST(surroundings_are_asked_for) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED));
     static const char *const open[] = {"zmin", "zmin,zmax", "cylinder:4,4,6,zmin=open,zmax=open",
                                        "cylinder:4,4,6,zmin,zmax=open"};
@@ -85,11 +86,10 @@ START_TEST(surroundings_are_asked_for) {
     ck_assert_int_eq(RUN(HEAT, bed, "--periodic", "8,8,0"), 2);
     expect_message("", "--ambient is missing");
 }
-END_TEST
 
 /* Some spheres with a temperature and the others with a power, by columns with blanks or nan, by a number for the
  * others and by types: the same to the byte; what is given comes out again. */
-START_TEST(temperatures_and_powers_mixed) {
+TEST(temperatures_and_powers_mixed) {
 #define MIXED                                                                                                          \
     "heat", "--emissivity", ".6", "--directions", "21", "--patches", "24", "--length-unit", "m", "--ambient", "300"
     static const char *const words[][4] = {{"--temperature", "2:900", "--power", "1:40"},
@@ -131,12 +131,11 @@ START_TEST(temperatures_and_powers_mixed) {
     ck_assert_int_eq(RUN("heat", bed, "--emissivity", "T", "--temperature", "600", "--ambient", "300"), 3);
     expect_message(bed, "T is not a number: ''");
 }
-END_TEST
 
 /* ---- units ------------------------------------------------------------------------------------------------------ */
 
 /* The same numbers in another unit of length: powers by its square; factors as they are. */
-START_TEST(units_of_length) {
+TEST(units_of_length) {
     static const struct {
         const char *units, *option;
         double metres;
@@ -176,9 +175,8 @@ START_TEST(units_of_length) {
     ck_assert_int_eq(RUN(HEAT, cgs, write_file("si.dump", frame("si", "0", "3", SORTED)), "--ambient", "300"), 2);
     expect_message(in_folder("si.dump"), "the unit of length is 1 m, but that of the files before is 0.01 m");
 }
-END_TEST
 
-START_TEST(degrees_celsius) {
+TEST(degrees_celsius) {
     const char *kelvins = write_file("k.csv", "x,y,z,r,T\n0,0,0,.01,600\n.03,0,0,.01,300\n");
     const char *celsius = write_file("c.csv", "x,y,z,r,T\n0,0,0,.01,326.85\n.03,0,0,.01,26.85\n");
     const char *one = in_folder("one.csv"), *two = in_folder("two.csv");
@@ -191,10 +189,9 @@ START_TEST(degrees_celsius) {
         ck_assert_double_eq_tol(power_of(two, begin[k], ""), q, 1e-11 * fabs(q));
     }
 }
-END_TEST
 
 /* Names of columns may say their unit, which is not to be another one. */
-START_TEST(units_of_temperature_columns) {
+TEST(units_of_temperature_columns) {
     const char *kelvins = write_file("k.csv", "x,y,z,r,T [K]\n0,0,0,.01,300\n"), *out = in_folder("q.csv");
     const char *celsius = write_file("c.csv", "x,y,z,r,T [C]\n0,0,0,.01,26.85\n"), *other = in_folder("p.csv");
     ck_assert_int_eq(RUN(HEAT, kelvins, "--temperature-unit", "C", "--ambient", "20"), 3);
@@ -205,12 +202,11 @@ START_TEST(units_of_temperature_columns) {
     SUCCEED(HEAT, celsius, "--ambient", "16.85", "--temperature-unit", "C", "-o", other);
     ck_assert_double_eq_tol(power_of(other, "0,", ""), power_of(out, "0,", ""), 1e-9);
 }
-END_TEST
 
 /* ---- names ------------------------------------------------------------------------------------------------------ */
 
 /* The order of a file is no matter: spheres go by their ids. */
-START_TEST(ids_in_any_order) {
+TEST(ids_in_any_order) {
     static const char *const rows[] = {SORTED, UNSORTED};
     static const char *const endings[] = {"F.csv", "F.mtx", "F.npz", "F.vtp", "F.json"};
     for (int format = 0; format < 5; ++format) {
@@ -240,9 +236,8 @@ START_TEST(ids_in_any_order) {
     ck_assert_int_eq(RUN("bed", bed, "--targets", "8-19"), 2);
     expect_message("", "there is no sphere 8 in frame 0 of ");
 }
-END_TEST
 
-START_TEST(ambiguous_ids) {
+TEST(ambiguous_ids) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "2", "3 1 1 4 4 1 9\n3 1 4 4 4 1 9\n"));
     ck_assert_int_eq(RUN("bed", bed), 3);
     expect_message(bed, ":11: the id 3 occurs in line 10, too");
@@ -255,9 +250,8 @@ START_TEST(ambiguous_ids) {
     ck_assert_int_eq(RUN("bed", bed), 3);
     expect_message(bed, "sphere 7"); /* messages, too */
 }
-END_TEST
 
-START_TEST(values_by_type) {
+TEST(values_by_type) {
     const char *bed = write_file("bed.csv", "x,y,z,type,T\n0,0,0,1,600\n.03,0,0,2,300\n0,.03,0,1,300\n");
     const char *same =
         write_file("same.csv", "x,y,z,r,e,T\n0,0,0,.01,.3,600\n.03,0,0,.015,0,300\n0,.03,0,.01,.3,300\n");
@@ -276,7 +270,6 @@ START_TEST(values_by_type) {
     SUCCEED("bed", bed, "--radius", ".01");
     ck_assert_double_eq(value_of("radius_max"), .01);
 }
-END_TEST
 
 /* ---- frames ----------------------------------------------------------------------------------------------------- */
 
@@ -293,7 +286,7 @@ static const char *write_frames(const char *name, int frames) {
 }
 
 /* All frames at once are those one by one, to the bit. */
-START_TEST(all_frames) {
+TEST(all_frames) {
     const char *bed = write_frames("bed.dump", 3), *all = in_folder("all.csv");
     static const char *const number[] = {"0", "1", "2"}, *const begin[] = {"0,100,", "1,250,", "2,900,"};
     SUCCEED(HEAT, bed, "--frame", "all", "--ambient", "300", "-o", all, "-o", in_folder("q.*.vtp"), "-o",
@@ -326,9 +319,8 @@ START_TEST(all_frames) {
     free(text);
     ck_assert_int_eq(remove_files(0), 8);
 }
-END_TEST
 
-START_TEST(some_frames) {
+TEST(some_frames) {
     const char *bed = write_frames("bed.dump", 3), *out = in_folder("F.csv");
     SUCCEED("bed", bed, "--frame", "0:3:2", "--directions", "8", "-o", out);
     char *text = read_file(out);
@@ -348,10 +340,9 @@ START_TEST(some_frames) {
     ck_assert_int_eq(RUN("bed", bed, "--frame", "all", "-o", in_folder("F.npz")), 2);
     expect_message(in_folder("F.npz"), "holds one frame");
 }
-END_TEST
 
 /* A series of files, by a pattern that the shell has left alone, is one run. */
-START_TEST(several_files) {
+TEST(several_files) {
     char names[300], expected[400];
     const char *first = write_frames("bed.1.dump", 1), *out = in_folder("F.csv");
     write_frames("bed.2.dump", 2);
@@ -385,10 +376,9 @@ START_TEST(several_files) {
     ck_assert_int_eq(RUN("bed", "-", first, "-"), 2);
     expect_message("standard input", "once only");
 }
-END_TEST
 
 /* A series may begin before the first sphere is there. */
-START_TEST(empty_files_of_a_series) {
+TEST(empty_files_of_a_series) {
     const char *empty = write_file("0.dump", frame(NULL, "0", "0", "")), *bed = write_frames("1.dump", 1);
     SUCCEED("bed", empty, bed, "--directions", "8");
     expect_message(empty, "warning: frame 0 is empty and is left out");
@@ -397,10 +387,9 @@ START_TEST(empty_files_of_a_series) {
     ck_assert_int_eq(RUN("bed", empty, empty), 3);
     ck_assert_ptr_nonnull(strstr(said, "there are no spheres in any of the files"));
 }
-END_TEST
 
 /* What a simulation is still writing: the frames before are computed, with a word. */
-START_TEST(truncated_last_frame) {
+TEST(truncated_last_frame) {
     const char *bed = write_frames("bed.dump", 3);
     struct stat there;
     ck_assert_int_eq(stat(bed, &there), 0);
@@ -412,10 +401,9 @@ START_TEST(truncated_last_frame) {
     expect_message(bed, "the last whole frame is 1");
     ck_assert_int_eq(RUN("bed", bed, "--frame", "2", "--directions", "8"), 3);
 }
-END_TEST
 
 /* Radii that are given reach frames that have more spheres than those before. */
-START_TEST(radii_of_growing_frames) {
+TEST(radii_of_growing_frames) {
     static const int counts[] = {2, 300};
     const char *bed = in_folder("bed.dump"), *all = in_folder("all.csv"), *last = in_folder("last.csv");
     FILE *file = fopen(bed, "w");
@@ -433,11 +421,10 @@ START_TEST(radii_of_growing_frames) {
     ck_assert_str_eq(frame, strchr(expected, '\n'));
     free(text), free(expected);
 }
-END_TEST
 
 /* ---- what is said ----------------------------------------------------------------------------------------------- */
 
-START_TEST(summary_says_what_was_computed) {
+TEST(summary_says_what_was_computed) {
     const char *bed = write_file("bed.dump", frame("cgs", "700", "3", SORTED)), *json = in_folder("q.json");
     static const char *const lines[] = {
         "\nframe 0\n",          "\ntimestep 700\n",           "\nspheres 3\n",          "\nlength_unit cgs\n",
@@ -455,9 +442,8 @@ START_TEST(summary_says_what_was_computed) {
     for (const char *line = strtok(printed, "\n"); line; line = strtok(NULL, "\n")) /* no digits that mean nothing */
         ck_assert_msg(strlen(line) < 60, "%s", line);
 }
-END_TEST
 
-START_TEST(quiet_and_streams) {
+TEST(quiet_and_streams) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED));
     SUCCEED("bed", bed, "--quiet", "--progress", "-o", in_folder("F.csv"));
     ck_assert_str_eq(printed, "");
@@ -471,11 +457,10 @@ START_TEST(quiet_and_streams) {
             "--progress");
     ck_assert_ptr_nonnull(strstr(said, " sweeps, "));
 }
-END_TEST
 
 /* What does not fit is said before the work begins, with what would help. */
 /* No two results of a run go to one place, the summary among them. */
-START_TEST(one_place_each) {
+TEST(one_place_each) {
     const char *bed = write_frames("bed.dump", 2), *name = in_folder("q.1.json");
     static const char *const more[][4] = {{"-o", "q.1.json"}, {"-o", "q.*.json"}, {"-o", "-", "--format", "json"}};
     for (int k = 0; k < 3; ++k) {
@@ -492,7 +477,6 @@ START_TEST(one_place_each) {
     ck_assert_ptr_null(strstr(printed, "\nfile"));
     ck_assert_ptr_nonnull(strstr(said, "\nframe 1\n"));
 }
-END_TEST
 
 #define CORNER(x, y) "vertex " x " " y " 0\n"
 #define FLOOR                                                                                                          \
@@ -500,7 +484,7 @@ END_TEST
         CORNER("-9", "17") "endloop\nendfacet\nendsolid s\n"
 
 /* No output takes the place of a file that the run reads, whichever of them it is. */
-START_TEST(inputs_stay) {
+TEST(inputs_stay) {
     static const char *const names[] = {"bed.dump", "floor.0.vtp", "eps.csv", "room.json", "lid.json", "sides.svg"};
     static const char *const texts[] = {NULL, FLOOR, "300 .5\n900 .6\n", "0 300\n9 310\n", "0 700\n9 710\n", "650\n"};
     static const char *const outputs[] = {"-o", "--wall-vtp", "-o", "--json", "-o", "--plot"};
@@ -536,20 +520,18 @@ START_TEST(inputs_stay) {
     ck_assert_int_eq(RUN("bed", "-", "-o", path[0]), 2);
     input = "/dev/null";
 }
-END_TEST
 
 /* Where nothing is emitted, there are no rows, and their figures are 0. */
-START_TEST(summary_of_no_rows) {
+TEST(summary_of_no_rows) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED));
     SUCCEED("exchange", bed, "--emissivity", "0");
     ck_assert_double_eq(value_of("row_sum_min"), 0);
     ck_assert_double_eq(value_of("row_sum_max"), 0);
     ck_assert_double_eq(value_of("escaped_mean"), 0);
 }
-END_TEST
 
 /* A million spheres and 1.7e7 beams of each: more than any machine has that runs this. */
-START_TEST(too_little_memory) {
+TEST(too_little_memory) {
     enum { SIDE = 100, LINE = 20 };
     char *text = malloc(SIDE * SIDE * SIDE * LINE), *at = text;
     ck_assert_ptr_nonnull(text);
@@ -566,10 +548,9 @@ START_TEST(too_little_memory) {
     ck_assert_ptr_nonnull(strstr(said, "fewer --directions"));
     ck_assert_int_eq(remove_files(0), 1);
 }
-END_TEST
 
 /* A furnace's summary as JSON, its fields on standard output, its progress when asked for. */
-START_TEST(furnace_outputs) {
+TEST(furnace_outputs) {
     const char *json = in_folder("s.json"), *csv = in_folder("f.csv");
 #define FURNACE "furnace", "--case", "1", "--method", "mc", "--cells", "3,3,6", "--bundles", "20000"
     SUCCEED(FURNACE, "--json", json, "-o", csv);
@@ -592,9 +573,8 @@ START_TEST(furnace_outputs) {
     ck_assert_int_eq(RUN(FURNACE, "-o", csv, "--json", csv), 2);
     expect_message(csv, "is given twice");
 }
-END_TEST
 
-START_TEST(versions_and_help) {
+TEST(versions_and_help) {
     SUCCEED("-V");
     ck_assert_int_eq(strncmp(printed, "fibrad ", 7), 0);
     SUCCEED("help");
@@ -603,10 +583,9 @@ START_TEST(versions_and_help) {
     ck_assert_ptr_nonnull(strstr(printed, "--wall-temperature"));
     ck_assert_int_eq(RUN("help", "nothing"), 2);
 }
-END_TEST
 
 /* What ends without a word leaves nothing behind, where files need no name until they are complete. */
-START_TEST(nothing_is_left_by_what_is_killed) {
+TEST(nothing_is_left_by_what_is_killed) {
     char place[] = "/tmp/fibrad_killed_XXXXXX", path[64];
     ck_assert_ptr_nonnull(mkdtemp(place));
     snprintf(path, sizeof path, "%s/out", place);
@@ -635,38 +614,4 @@ START_TEST(nothing_is_left_by_what_is_killed) {
     char command[80];
     snprintf(command, sizeof command, "rm -r %s", place);
     ck_assert_int_eq(system(command), 0);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("files");
-    TCase *asked = suite_case(suite, "asked"), *named = suite_case(suite, "named"),
-          *frames = suite_case(suite, "frames"), *summaries = suite_case(suite, "said");
-    TCase *const cases[] = {asked, named, frames, summaries};
-    for (int k = 0; k < 4; ++k) tcase_add_checked_fixture(cases[k], make_folder, remove_folder);
-    tcase_add_test(asked, wall_temperatures_by_name);
-    tcase_add_test(asked, surroundings_are_asked_for);
-    tcase_add_test(asked, temperatures_and_powers_mixed);
-    tcase_add_test(asked, units_of_length);
-    tcase_add_test(asked, degrees_celsius);
-    tcase_add_test(asked, units_of_temperature_columns);
-    tcase_add_test(named, ids_in_any_order);
-    tcase_add_test(named, ambiguous_ids);
-    tcase_add_test(named, values_by_type);
-    tcase_add_test(frames, all_frames);
-    tcase_add_test(frames, some_frames);
-    tcase_add_test(frames, several_files);
-    tcase_add_test(frames, empty_files_of_a_series);
-    tcase_add_test(frames, radii_of_growing_frames);
-    tcase_add_test(frames, truncated_last_frame);
-    tcase_add_test(summaries, summary_says_what_was_computed);
-    tcase_add_test(summaries, quiet_and_streams);
-    tcase_add_test(summaries, one_place_each);
-    tcase_add_test(summaries, inputs_stay);
-    tcase_add_test(summaries, nothing_is_left_by_what_is_killed);
-    tcase_add_test(summaries, summary_of_no_rows);
-    tcase_add_test(summaries, too_little_memory);
-    tcase_add_test(summaries, furnace_outputs);
-    tcase_add_test(summaries, versions_and_help);
-    return suite_run(suite);
 }

@@ -37,7 +37,7 @@ static fibrad_rows exchange_rows(const fibrad_scene *scene, uint32_t n, const fi
 }
 
 /* Powers add up to zero; nothing flows between equals; a part of the rows gives a part of the powers. */
-START_TEST(what_one_gains_others_lose) {
+TEST(what_one_gains_others_lose) {
     struct bed bed = packing(60, .6, 1, .5, 9, false);
     const fibrad_body body[] = {plane_at(2, 0, -1), plane_at(0, 0, -1)};
     const fibrad_plane open[] = {{0, 1, 9}, {1, 0, -2}, {1, 1, 9}, {2, 1, 9}};
@@ -89,10 +89,9 @@ START_TEST(what_one_gains_others_lose) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* In a closed box of spheres alone the powers are those of the averaged matrix. */
-START_TEST(powers_are_those_of_the_averaged_matrix) {
+TEST(powers_are_those_of_the_averaged_matrix) {
     struct bed bed = packing(80, .7, 1, .5, 3, true);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     double e[80];
@@ -118,9 +117,8 @@ START_TEST(powers_are_those_of_the_averaged_matrix) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(bad_regions_and_occupancies_are_refused) {
+TEST(bad_regions_and_occupancies_are_refused) {
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
     struct part p = part_of(&bed, (fibrad_scene_config){0});
     const uint64_t mark[1] = {1};
@@ -162,10 +160,9 @@ START_TEST(bad_regions_and_occupancies_are_refused) {
     part_free(&p);
     bed_free(&bed);
 }
-END_TEST
 
 /* Whatever a scene is made from tells it from others: rows of the one do not go into a matrix of the other. */
-START_TEST(surroundings_tell_scenes_apart) {
+TEST(surroundings_tell_scenes_apart) {
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
     struct part p = part_of(&bed, (fibrad_scene_config){0});
     uint64_t mark[2] = {1, 0};
@@ -194,9 +191,8 @@ START_TEST(surroundings_tell_scenes_apart) {
     part_free(&p);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(bad_flows_are_refused) {
+TEST(bad_flows_are_refused) {
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
     uint32_t col[] = {0, 1};
     double f[] = {.1, .2}, body[] = {.3}, e[] = {1, 1};
@@ -244,16 +240,4 @@ START_TEST(bad_flows_are_refused) {
     powers_free(&p);
     rows_free(&rows);
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("flow");
-    TCase *tests = suite_case(suite, "flow");
-    tcase_add_test(tests, what_one_gains_others_lose);
-    tcase_add_test(tests, powers_are_those_of_the_averaged_matrix);
-    tcase_add_test(tests, bad_regions_and_occupancies_are_refused);
-    tcase_add_test(tests, surroundings_tell_scenes_apart);
-    tcase_add_test(tests, bad_flows_are_refused);
-    return suite_run(suite);
 }

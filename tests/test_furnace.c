@@ -4,6 +4,8 @@
 static struct furnace_run run;
 static void free_run(void) { furnace_free(&run); }
 
+FIXTURE(NULL, free_run)
+
 /* The larger of two numbers, NaN if either is: fmax would drop it. */
 static double larger(double a, double b) { return isnan(a) || a >= b ? a : b; }
 
@@ -27,7 +29,7 @@ static void compute(const fibrad_furnace_config *config, const struct furnace_op
 }
 
 /* a: what the walls give is what the medium takes, whatever the method. */
-START_TEST(energy_balance) {
+TEST(energy_balance) {
     static const struct {
         enum furnace_method method;
         double theta;
@@ -52,10 +54,9 @@ START_TEST(energy_balance) {
         }
     }
 }
-END_TEST
 
 /* b: walls of one temperature, no source: T is theirs everywhere. */
-START_TEST(uniform_temperature) {
+TEST(uniform_temperature) {
     fibrad_furnace_config config = coarse_case(2, 5);
     config.source = 0;
     for (int w = 0; w < 6; w++) config.wall_temperature[w] = 900;
@@ -74,7 +75,6 @@ START_TEST(uniform_temperature) {
         free(block);
     }
 }
-END_TEST
 
 /* A layer of thickness tau between black walls of 1000 and 500 K, without source. Sides that reflect all make a column
  * of it for constant Theta; for bundles it is wide instead. */
@@ -93,7 +93,7 @@ static double slab_flux(void) {
 }
 
 /* c: with constant Theta the flux is 1/(1 + tau/(2 Theta)). */
-START_TEST(slab_constant_theta) {
+TEST(slab_constant_theta) {
     static const double taus[] = {0.5, 1, 2}, thetas[] = {1, 0.75, 2.0 / 3};
     for (int k = 0; k < 9; k++) {
         double tau = taus[k / 3], theta = thetas[k % 3];
@@ -103,11 +103,10 @@ START_TEST(slab_constant_theta) {
         ck_assert_double_eq_tol(slab_flux(), 1 / (1 + tau / (2 * theta)), 1e-7);
     }
 }
-END_TEST
 
 /* c: with Theta measured by its definition the method is exact in a slab, as is the one with the transverse term and
  * Monte Carlo; the paper's estimator is not. Exact values: the integral equation of the grey layer in equilibrium. */
-START_TEST(slab_measured_theta) {
+TEST(slab_measured_theta) {
     static const double taus[] = {0.5, 1, 2}, exact[] = {0.7042, 0.5534, 0.3901}, paper[] = {0.7378, 0.5895, 0.4223};
     for (int k = 0; k < 3; k++) {
         fibrad_furnace_config config = slab(taus[k], 1e5, 20);
@@ -125,7 +124,6 @@ START_TEST(slab_measured_theta) {
         ck_assert_double_eq_tol(slab_flux(), exact[k], 0.0015);
     }
 }
-END_TEST
 
 /* Computes both cases and keeps E of the first. */
 static double *both_cases(uint32_t across, const struct furnace_options *options, double power[2][4]) {
@@ -142,7 +140,7 @@ static double *both_cases(uint32_t across, const struct furnace_options *options
 }
 
 /* d: with constant Theta, scattering adds Theta S/6 (1/ka2 - 1/ka1) to E and nothing to the fluxes. */
-START_TEST(scattering_constant_theta) {
+TEST(scattering_constant_theta) {
     static const double thetas[] = {1, 2.0 / 3, 0.75};
     for (int k = 0; k < 3; k++) {
         struct furnace_options options = options_for(FURNACE_MCHF, thetas[k], 1);
@@ -153,11 +151,10 @@ START_TEST(scattering_constant_theta) {
         free(first);
     }
 }
-END_TEST
 
 /* e: by exact transfer it adds S/4 (1/ka2 - 1/ka1). To Monte Carlo in equilibrium, absorption and scattering are the
  * same event: its bundles take the same ways. With the transverse term the two runs are independent. */
-START_TEST(scattering_exact) {
+TEST(scattering_exact) {
     const double added = 5000.0 / 4 * (1 / 0.15 - 1 / 0.5);
     struct furnace_options options = options_for(FURNACE_MC, 0, 50000);
     double power[2][4], *first = both_cases(8, &options, power), mean = 0;
@@ -176,10 +173,9 @@ START_TEST(scattering_exact) {
     for (int w = 0; w < 3; w++) ck_assert_double_eq_tol(power[0][w], power[1][w], 0.5);
     free(first);
 }
-END_TEST
 
 /* f: isotropic radiation has Theta 2/3 or 3/4, and so has what leaves the walls of any box. */
-START_TEST(isotropic_theta) {
+TEST(isotropic_theta) {
     static const double isotropic[2] = {2.0 / 3, 0.75};
     for (int estimator = 0; estimator < 2; estimator++) {
         fibrad_furnace_config config = coarse_case(2, 6);
@@ -200,7 +196,6 @@ START_TEST(isotropic_theta) {
                 ck_assert_double_eq_tol(run.at.theta[a][p % 2][p], isotropic[estimator], 1e-12);
     }
 }
-END_TEST
 
 static void expect(const double t[3], const double *power, double kelvin, double kilowatts) {
     double own[4];
@@ -211,7 +206,7 @@ static void expect(const double t[3], const double *power, double kelvin, double
     }
 }
 
-START_TEST(constant_theta_numbers) {
+TEST(constant_theta_numbers) {
     static const struct {
         double theta, t[2][3], power[3];
     } numbers[] = {{1, {{1001.9, 959.1, 920.1}, {1018.5, 978.0, 941.4}}, {240.73, -145.65, -175.08}},
@@ -225,9 +220,8 @@ START_TEST(constant_theta_numbers) {
         expect(numbers[k / 2].t[k % 2], numbers[k / 2].power, 0.1, 0.02);
     }
 }
-END_TEST
 
-START_TEST(transverse_numbers) {
+TEST(transverse_numbers) {
     static const double t[3] = {1078.9, 979.7, 907.9}, power[3] = {215.525, -97.003, -198.522};
     fibrad_furnace_config config = furnace_case(2);
     struct furnace_options options = options_for(FURNACE_MCHF_X, 0, 1000000);
@@ -238,10 +232,9 @@ START_TEST(transverse_numbers) {
         ck_assert_double_eq_tol(t_here / reference, 1, 0.005);
     }
 }
-END_TEST
 
 /* The literal method has the errors it was found to have. */
-START_TEST(literal_numbers) {
+TEST(literal_numbers) {
     static const double t[2][3] = {{1030.2, 950.0, 891.0}, {1023.5, 951.3, 896.6}};
     static const double power[2][3] = {{223.2, -122.4, -180.8}, {229.0, -128.6, -180.4}};
     for (int estimator = 0; estimator < 2; estimator++) {
@@ -253,12 +246,11 @@ START_TEST(literal_numbers) {
         expect(t[estimator], power[estimator], 6, 1);
     }
 }
-END_TEST
 
 /* Temperatures and powers of the Monte Carlo method: the discrete ordinates method, 8 x 12 x 12 directions on
  * 40 x 40 x 80 cells, agrees within 0.7 K with these numbers; the standard error of this run is 0.5 K. From the same
  * field 1/Theta on the axis at z = 0, 0.8, ... 3.2 m (z+) and 0, 0.8, 1.6, 2, 2.4, 2.8, 3.2 m (z-). */
-START_TEST(monte_carlo_numbers) {
+TEST(monte_carlo_numbers) {
     static const double t[3] = {1057.8, 951.1, 871.4}, power[3] = {215.525, -97.003, -198.522};
     static const double z_up[] = {0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.8, 3.6, 4},
                         z_down[] = {0, 0.8, 1.6, 2.0, 2.4, 2.8, 3.2};
@@ -281,7 +273,6 @@ START_TEST(monte_carlo_numbers) {
             ck_assert_double_eq_tol(1 / furnace_axis_theta(&run, 1, z_down[k]), down[estimator][k], 0.01);
     }
 }
-END_TEST
 
 /* Net power of the wall z = 0 [kW] by exact integration along the lines of z: in a cell of constant source J and
  * constant Theta, q approaches J/beta as exp(-beta x/Theta). The walls are satisfied by iteration. */
@@ -308,7 +299,7 @@ static double integrated_power(double theta) {
 }
 
 /* The trapezoidal rule differs from exact integration by the square of the cell. */
-START_TEST(lines_are_of_second_order) {
+TEST(lines_are_of_second_order) {
     double before = 0;
     for (uint32_t across = 4; across <= 16; across *= 2) {
         fibrad_furnace_config config = coarse_case(1, across);
@@ -323,9 +314,8 @@ START_TEST(lines_are_of_second_order) {
     ck_assert_double_le(before, 0.2);
     ck_assert_double_gt(before, 0);
 }
-END_TEST
 
-START_TEST(threads_change_nothing) {
+TEST(threads_change_nothing) {
     for (int method = FURNACE_MCHF; method <= FURNACE_MC; method++) {
         fibrad_furnace_config config = coarse_case(2, 5);
         struct furnace_options options = options_for((enum furnace_method)method, 0, 30000);
@@ -342,10 +332,9 @@ START_TEST(threads_change_nothing) {
         ck_assert_mem_ne(e, run.at.e, sizeof e);
     }
 }
-END_TEST
 
 /* A box without any symmetry, and the same box with its axes exchanged: cell (i, j, k) becomes (k, i, j). */
-START_TEST(axes_are_alike) {
+TEST(axes_are_alike) {
     static const double size[3] = {1, 1.5, 2.5}, t[6] = {700, 900, 1000, 500, 1200, 400},
                         eps[6] = {0.5, 0.9, 0.2, 1, 0.8, 0.6};
     static const uint32_t cells[3] = {4, 5, 6};
@@ -381,10 +370,9 @@ START_TEST(axes_are_alike) {
     }
     ck_assert_double_gt(difference, 0); /* the bundles are not the same */
 }
-END_TEST
 
 /* What more bundles for the same field find lies within the noise; tallies of parts add up to the whole. */
-START_TEST(parts_add_up) {
+TEST(parts_add_up) {
     fibrad_furnace_config config = coarse_case(2, 4);
     size_t size = fibrad_furnace_size(&config);
     void *block = allocate(size), *tally_block[3];
@@ -424,7 +412,6 @@ START_TEST(parts_add_up) {
     for (int k = 0; k < 3; k++) free(tally_block[k]);
     free(block);
 }
-END_TEST
 
 /* A box of square cross-section with a plan of bundles. E inside is without symmetry. The walls about the axis are
  * alike, or differ in the last digits of their emissivities; since they have the reference temperature, they send no
@@ -479,7 +466,7 @@ static void assert_mean_of_images(const fibrad_furnace_arrays *with, const fibra
     ck_assert_double_gt(difference, 0.02); /* the images are not alike */
 }
 
-START_TEST(symmetries_take_the_mean) {
+TEST(symmetries_take_the_mean) {
     for (int physics = 0; physics < 2; physics++) {
         struct box box[2];
         for (int k = 0; k < 2; k++) {
@@ -497,28 +484,4 @@ START_TEST(symmetries_take_the_mean) {
             for (int k = 0; k < 6; k++) assert_mean_of_images(&box[0].at, &box[1].at, k / 2, k % 2);
         for (int k = 0; k < 2; k++) free_box(&box[k]);
     }
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("furnace");
-    TCase *tests = suite_case(suite, "furnace");
-    tcase_add_checked_fixture(tests, NULL, free_run);
-    tcase_add_test(tests, uniform_temperature);
-    tcase_add_test(tests, parts_add_up);
-    tcase_add_test(tests, symmetries_take_the_mean);
-    tcase_add_test(tests, energy_balance);
-    tcase_add_test(tests, slab_constant_theta);
-    tcase_add_test(tests, slab_measured_theta);
-    tcase_add_test(tests, scattering_constant_theta);
-    tcase_add_test(tests, scattering_exact);
-    tcase_add_test(tests, isotropic_theta);
-    tcase_add_test(tests, constant_theta_numbers);
-    tcase_add_test(tests, monte_carlo_numbers);
-    tcase_add_test(tests, transverse_numbers);
-    tcase_add_test(tests, literal_numbers);
-    tcase_add_test(tests, lines_are_of_second_order);
-    tcase_add_test(tests, threads_change_nothing);
-    tcase_add_test(tests, axes_are_alike);
-    return suite_run(suite);
 }

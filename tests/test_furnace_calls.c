@@ -1,7 +1,7 @@
 /* test_furnace_calls.c - arguments, memory and the order of calls of a furnace. SPDX-License-Identifier: MIT */
 #include "furnaces.h"
 
-START_TEST(elementary_functions) {
+TEST(elementary_functions) {
     for (int k = 0; k < 200000; k++) {
         double x = -690 + 700.0 * k / 200000, u = (k + 0.5) / 200000, sine, cosine;
         ck_assert_double_le(fabs(fibrad_exp(x) - exp(x)), 4e-16 * exp(x));
@@ -13,9 +13,8 @@ START_TEST(elementary_functions) {
     ck_assert_double_eq(fibrad_exp(-1000), 0);
     ck_assert_double_eq(fibrad_log(1), 0);
 }
-END_TEST
 
-START_TEST(bad_configurations) {
+TEST(bad_configurations) {
     const fibrad_furnace_config good = furnace_case(1);
     ck_assert_uint_gt(fibrad_furnace_size(&good), 0);
     ck_assert_uint_eq(fibrad_furnace_size(NULL), 0);
@@ -62,9 +61,8 @@ START_TEST(bad_configurations) {
         ck_assert_msg(fibrad_furnace_size(&bad) == 0, "configuration %d", k);
     }
 }
-END_TEST
 
-START_TEST(memory) {
+TEST(memory) {
     fibrad_furnace_config config = coarse_case(1, 2);
     size_t size = fibrad_furnace_size(&config);
     unsigned char *block = allocate(size + 128);
@@ -102,7 +100,6 @@ START_TEST(memory) {
     free(tally_block);
     free(block);
 }
-END_TEST
 
 static void emit(struct box *box, fibrad_furnace_physics physics, int restart) {
     ck_assert_int_eq(fibrad_furnace_emit(box->furnace, physics, 2000, restart, &box->planned), FIBRAD_OK);
@@ -127,7 +124,7 @@ static void assert_refused(struct box *box, int tally, fibrad_furnace_physics ph
     ck_assert_mem_eq(power, box->at.power, sizeof power);
 }
 
-START_TEST(bad_arguments) {
+TEST(bad_arguments) {
     const fibrad_furnace_config config = coarse_case(1, 4);
     struct box box = make_box(&config);
     fibrad_furnace *furnace = box.furnace;
@@ -179,9 +176,8 @@ START_TEST(bad_arguments) {
     fibrad_furnace_fields(furnace, NULL);
     free_box(&box);
 }
-END_TEST
 
-START_TEST(no_plan) {
+TEST(no_plan) {
     const fibrad_furnace_config config = coarse_case(1, 4);
     const double wrong[] = {NAN, INFINITY, -INFINITY, 1e300, 1e25};
     struct box box = make_box(&config);
@@ -208,10 +204,9 @@ START_TEST(no_plan) {
     }
     free_box(&box);
 }
-END_TEST
 
 /* Every bundle once, in any order and any tallies, is accepted; anything else is refused. */
-START_TEST(every_bundle_once) {
+TEST(every_bundle_once) {
     /* parts of a hundredth of the plan, traced that often: 1 but for these */
     static const struct {
         int missing[3], repeated[3];
@@ -246,10 +241,9 @@ START_TEST(every_bundle_once) {
         free_box(&box);
     }
 }
-END_TEST
 
 /* A tally and an equal one, added: all bundles twice. */
-START_TEST(tallies_added_twice) {
+TEST(tallies_added_twice) {
     const fibrad_furnace_config config = coarse_case(2, 4);
     struct box box = make_box(&config);
     emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
@@ -265,9 +259,8 @@ START_TEST(tallies_added_twice) {
     assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
     free_box(&box);
 }
-END_TEST
 
-START_TEST(further_plans) {
+TEST(further_plans) {
     const fibrad_furnace_config config = coarse_case(2, 4);
     struct box box = make_box(&config);
     emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
@@ -294,10 +287,9 @@ START_TEST(further_plans) {
     assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
     free_box(&box);
 }
-END_TEST
 
 /* In equilibrium a further plan has no bundles, and changes no result. */
-START_TEST(further_plan_of_equilibrium) {
+TEST(further_plan_of_equilibrium) {
     const fibrad_furnace_config config = coarse_case(2, 4);
     struct box box = make_box(&config);
     double e[BOX_CELLS], power[6];
@@ -313,10 +305,9 @@ START_TEST(further_plan_of_equilibrium) {
     ck_assert_mem_eq(power, box.at.power, sizeof power);
     free_box(&box);
 }
-END_TEST
 
 /* Tallies from before a restart, whether it is asked for or follows from another physics. */
-START_TEST(restarts) {
+TEST(restarts) {
     const fibrad_furnace_config config = coarse_case(2, 4);
     for (int physics = 0; physics < 2; physics++) {
         struct box box = make_box(&config);
@@ -336,10 +327,9 @@ START_TEST(restarts) {
         free_box(&box);
     }
 }
-END_TEST
 
 /* Tallies of a furnace of other cells, and of the same cells but another seed, medium, wall or E. */
-START_TEST(other_furnaces) {
+TEST(other_furnaces) {
     for (int difference = 0; difference < 6; difference++) {
         fibrad_furnace_config config = coarse_case(2, 4), changed = config;
         if (difference == 0) changed.cells[2] = 7;
@@ -365,10 +355,9 @@ START_TEST(other_furnaces) {
         free_box(&other);
     }
 }
-END_TEST
 
 /* A furnace made anew in the same memory does not know the tallies of the former one. */
-START_TEST(furnace_made_anew) {
+TEST(furnace_made_anew) {
     fibrad_furnace_config config = coarse_case(2, 4);
     struct box box = make_box(&config);
     emit(&box, FIBRAD_FURNACE_EQUILIBRIUM, 1);
@@ -380,10 +369,9 @@ START_TEST(furnace_made_anew) {
     assert_refused(&box, 0, FIBRAD_FURNACE_EQUILIBRIUM);
     free_box(&box);
 }
-END_TEST
 
 /* Furnaces that are equal in all have equal plans: two processes may share the work. */
-START_TEST(equal_furnaces) {
+TEST(equal_furnaces) {
     const fibrad_furnace_config config = coarse_case(2, 4);
     struct box one = make_box(&config), two = make_box(&config);
     emit(&one, FIBRAD_FURNACE_ATTENUATED, 1);
@@ -398,10 +386,9 @@ START_TEST(equal_furnaces) {
     free_box(&one);
     free_box(&two);
 }
-END_TEST
 
 /* Walls of one temperature, no source, E theirs: no bundles, and an empty tally is complete. */
-START_TEST(nothing_to_trace) {
+TEST(nothing_to_trace) {
     fibrad_furnace_config config = coarse_case(2, 4);
     config.source = 0;
     for (int w = 0; w < 6; w++) config.wall_temperature[w] = 900;
@@ -414,11 +401,10 @@ START_TEST(nothing_to_trace) {
     }
     free_box(&box);
 }
-END_TEST
 
 /* What the caller may write is refused if it is NaN or infinite, wherever it stands, also in a solved field, where all
  * other cells have converged. */
-START_TEST(solve_refuses_nan) {
+TEST(solve_refuses_nan) {
     const fibrad_furnace_config config = coarse_case(2, 4);
     const double wrong[] = {NAN, INFINITY, -INFINITY};
     fibrad_furnace_report report;
@@ -439,26 +425,4 @@ START_TEST(solve_refuses_nan) {
             free_box(&box);
         }
     }
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("furnace calls");
-    TCase *tests = suite_case(suite, "furnace calls");
-    tcase_add_test(tests, elementary_functions);
-    tcase_add_test(tests, bad_configurations);
-    tcase_add_test(tests, bad_arguments);
-    tcase_add_test(tests, memory);
-    tcase_add_test(tests, solve_refuses_nan);
-    tcase_add_test(tests, no_plan);
-    tcase_add_test(tests, every_bundle_once);
-    tcase_add_test(tests, tallies_added_twice);
-    tcase_add_test(tests, further_plans);
-    tcase_add_test(tests, further_plan_of_equilibrium);
-    tcase_add_test(tests, restarts);
-    tcase_add_test(tests, other_furnaces);
-    tcase_add_test(tests, furnace_made_anew);
-    tcase_add_test(tests, equal_furnaces);
-    tcase_add_test(tests, nothing_to_trace);
-    return suite_run(suite);
 }

@@ -10,7 +10,7 @@ static void assert_still(struct problem *p) {
         ck_assert_double_le(fabs(p->wall_power[k]), 1e-10 * emission(p->temperature[0]));
 }
 
-START_TEST(nothing_flows_in_a_closed_box_at_one_temperature) {
+TEST(nothing_flows_in_a_closed_box_at_one_temperature) {
     struct problem p = problem_of(packing(60, .6, 1.2, .5, 3, false), 3, .5);
     p.walls = box_about(&p.bed);
     for (uint32_t i = 0; i < p.bed.n; i++) p.emissivity[i] = (double)(i % 11) / 10;
@@ -28,18 +28,16 @@ START_TEST(nothing_flows_in_a_closed_box_at_one_temperature) {
     assert_still(&p);
     free_problem(&p);
 }
-END_TEST
 
-START_TEST(nothing_flows_in_a_periodic_bed_at_one_temperature) {
+TEST(nothing_flows_in_a_periodic_bed_at_one_temperature) {
     struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 2, .3);
     p.config.directions = 40;
     trace_and_solve(&p);
     assert_still(&p);
     free_problem(&p);
 }
-END_TEST
 
-START_TEST(a_grey_sphere_in_black_surroundings) {
+TEST(a_grey_sphere_in_black_surroundings) {
     for (int walls = 0; walls < 2; walls++) {
         struct problem p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .3);
         if (walls) p.walls = box_of(20);
@@ -50,10 +48,9 @@ START_TEST(a_grey_sphere_in_black_surroundings) {
         free_problem(&p);
     }
 }
-END_TEST
 
 /* As between a sphere and a concentric one of the area of the box, whose walls are lit evenly enough. */
-START_TEST(a_grey_sphere_in_a_large_grey_box) {
+TEST(a_grey_sphere_in_a_large_grey_box) {
     struct problem p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .3);
     p.walls = box_of(20);
     for (int k = 0; k < FIBRAD_WALLS; k++) p.wall_temperature[k] = 1, p.wall_emissivity[k] = .05;
@@ -61,9 +58,8 @@ START_TEST(a_grey_sphere_in_a_large_grey_box) {
     assert_near(p.result.power[0], 4 * PI * (1 - 16) / (1 / .3 + 4 * PI / 9600 * (1 / .05 - 1)), 1e-3);
     free_problem(&p);
 }
-END_TEST
 
-START_TEST(two_parallel_grey_walls) {
+TEST(two_parallel_grey_walls) {
     struct problem p = problem_of(bed_of(1, (const double[][4]){{.2, .3, .5, 1e-4}}), 1, .5);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, 0, 1}};
     p.bed.period[0] = p.bed.period[1] = 2;
@@ -74,10 +70,9 @@ START_TEST(two_parallel_grey_walls) {
     ck_assert_double_eq(p.result.surroundings_power, 0);
     free_problem(&p);
 }
-END_TEST
 
 /* Half of the 10,752 beams meet the plane, but for 6. Estimates are made of one sample each: they hold on the mean. */
-START_TEST(a_black_sphere_touches_a_black_plane) {
+TEST(a_black_sphere_touches_a_black_plane) {
     struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, 1);
     double estimate[FIBRAD_WALLS], errors = 0, estimates = 0;
     p.result.body_error = estimate;
@@ -96,11 +91,10 @@ START_TEST(a_black_sphere_touches_a_black_plane) {
     p.scene = NULL, p.heat = NULL;
     free_problem(&p);
 }
-END_TEST
 
 /* Between endless plates without a period, and in a tube with one, light goes to and fro: a mote sees the
  * radiosities of plates that have only each other, and in a tube that of a black body. */
-START_TEST(a_mote_between_endless_walls) {
+TEST(a_mote_between_endless_walls) {
     struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, .01}}), 2, .5);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -.5, .5}};
     p.wall_temperature[4] = 3, p.wall_emissivity[4] = .8;
@@ -119,11 +113,10 @@ START_TEST(a_mote_between_endless_walls) {
     assert_near(p.result.power[0], .5 * 4e-4 * PI * (81 - 16), 1e-2);
     free_problem(&p);
 }
-END_TEST
 
 /* Plates with a period, as in closed form, whatever the mote is. */
 /* A pair without end has the powers of an area, which is told: those of infinite parallel plates. */
-START_TEST(a_pair_of_endless_plates) {
+TEST(a_pair_of_endless_plates) {
     double area[FIBRAD_WALLS];
     struct problem p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1e-3}, {.3, .1, 0, 1e-3}}), 2, 1e-3);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -.5, .5}};
@@ -142,9 +135,8 @@ START_TEST(a_pair_of_endless_plates) {
     p.scene = NULL, p.heat = NULL;
     free_problem(&p);
 }
-END_TEST
 
-START_TEST(a_mote_between_periodic_plates) {
+TEST(a_mote_between_periodic_plates) {
     struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, .01}}), 2, .5);
     p.bed.period[0] = p.bed.period[1] = 1;
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -.5, .5}};
@@ -155,12 +147,11 @@ START_TEST(a_mote_between_periodic_plates) {
     assert_near(p.wall_power[4], -p.wall_power[5], 1e-3);
     free_problem(&p);
 }
-END_TEST
 
 /* A plane without end reflects what comes from the surroundings, and from the sphere. With two equal spheres in each
  * other's mirror, and nothing from beyond, a perfect mirror is not what a diffuse wall is; but a sphere between two
  * white walls without end at its own temperature must neither gain nor lose, whatever the walls' temperature. */
-START_TEST(white_walls_take_nothing) {
+TEST(white_walls_take_nothing) {
     struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, .4);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -1.5, 1.5}};
     p.wall_emissivity[4] = p.wall_emissivity[5] = 0;
@@ -175,9 +166,8 @@ START_TEST(white_walls_take_nothing) {
     ck_assert_double_gt(-p.result.power[0], .4 * 16 * 4 * PI / 2); /* yet half as much at least */
     free_problem(&p);
 }
-END_TEST
 
-START_TEST(view_factors_between_the_walls_of_a_cube) {
+TEST(view_factors_between_the_walls_of_a_cube) {
     struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
     p.walls = box_of(.5);
     p.wall_temperature[4] = 1;
@@ -186,10 +176,9 @@ START_TEST(view_factors_between_the_walls_of_a_cube) {
     for (int k = 0; k < 4; k++) assert_near(p.wall_power[k], 0.2000438, 5e-3);
     free_problem(&p);
 }
-END_TEST
 
 /* More beams, more rays: what walls exchange, without many spheres, would otherwise stay as it is. */
-START_TEST(walls_exchange_better_with_more_beams) {
+TEST(walls_exchange_better_with_more_beams) {
     struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
     p.walls = box_of(.5);
     p.wall_temperature[4] = 1;
@@ -203,10 +192,9 @@ START_TEST(walls_exchange_better_with_more_beams) {
     ck_assert_msg(sqrt(square) < 7e-4, "off by %g", sqrt(square));
     free_problem(&p);
 }
-END_TEST
 
 /* Each wall has an estimate of its own error, above which it is seldom by more than a factor of two. */
-START_TEST(walls_know_their_errors) {
+TEST(walls_know_their_errors) {
     double error[6], ratio = 0;
     uint32_t low = 0;
     for (uint32_t hot = 0; hot < 6; hot++) {
@@ -226,9 +214,8 @@ START_TEST(walls_know_their_errors) {
     ck_assert_double_lt(ratio, 1);
     ck_assert_double_gt(ratio, .05);
 }
-END_TEST
 
-START_TEST(view_factors_between_the_walls_of_a_cylinder) {
+TEST(view_factors_between_the_walls_of_a_cylinder) {
     struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -1, 1}, .cylinder = {0, 0, 1}};
     p.wall_temperature[4] = 1;
@@ -238,11 +225,10 @@ START_TEST(view_factors_between_the_walls_of_a_cylinder) {
     assert_near(p.wall_power[6], PI * (1 - lids), 5e-3);
     free_problem(&p);
 }
-END_TEST
 
 /* Walls without spheres: a box anywhere, and walls without end, whose patches must lie on the inner side of the others
  * although there is no bed to tell where. */
-START_TEST(walls_alone) {
+TEST(walls_alone) {
     struct problem p = problem_of(bed_of(0, NULL), 0, 1);
     p.walls = (struct walls){.planes = 63, .at = {49, 50, -20, -19, 7, 8}};
     p.wall_temperature[4] = 1;
@@ -268,16 +254,14 @@ START_TEST(walls_alone) {
     p.scene = NULL, p.heat = NULL;
     free_problem(&p);
 }
-END_TEST
 
-START_TEST(two_black_spheres_in_contact) {
+TEST(two_black_spheres_in_contact) {
     struct problem p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1.2, 1.6, 0, 1}}), 1, 1);
     p.temperature[1] = 0;
     trace_and_solve(&p);
     assert_near(p.result.power[1], 4 * PI * 0.0755868184216124, 1e-2);
     free_problem(&p);
 }
-END_TEST
 
 /* Powers from view factors, each sphere of one radiosity, by going round until nothing changes. */
 static void radiosities_by_hand(const struct problem *p, const fibrad_factors *m, double *power) {
@@ -299,7 +283,7 @@ static void radiosities_by_hand(const struct problem *p, const fibrad_factors *m
     free(radiosity);
 }
 
-START_TEST(one_radiosity_per_sphere) {
+TEST(one_radiosity_per_sphere) {
     struct problem p = problem_of(packing(80, .6, 1, .5, 8, false), 1, 1);
     for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + bed_make_random(3, i);
     p.sources.surroundings = .5, p.sources.uniform = 1, p.config.directions = 400;
@@ -325,7 +309,6 @@ START_TEST(one_radiosity_per_sphere) {
     free(power);
     free_problem(&p);
 }
-END_TEST
 
 /* Every third sphere reflects all. */
 static struct problem reflecting(bool uniform) {
@@ -356,7 +339,7 @@ static double difference_of_powers(const double *a, const double *b, uint32_t n)
 
 /* Reflectors gain nothing, whatever their temperature, which changes no bit; all the same as at emissivity 1e-6. The
  * others' powers are those of paths, or of one radiosity each, that of a reflector being what arrives. */
-START_TEST(reflectors_gain_nothing) {
+LOOP_TEST(reflectors_gain_nothing, 2) {
     const bool uniform = _i == 1;
     struct problem p = reflecting(uniform);
     double *truth = calloc(p.bed.n, sizeof *truth), *first = calloc(p.bed.n, sizeof *first);
@@ -391,11 +374,10 @@ START_TEST(reflectors_gain_nothing) {
     free(truth), free(first);
     free_problem(&p);
 }
-END_TEST
 
 /* A bed that reflects all, in the open and between walls that do so, too: nothing flows, and no time is lost; also
  * after a solution in which much flowed. */
-START_TEST(all_reflect) {
+LOOP_TEST(all_reflect, 4) {
     struct problem p = reflecting(_i % 2 == 1);
     if (_i / 2 == 1) p.walls = box_about(&p.bed);
     for (int k = 0; k < FIBRAD_WALLS; k++) p.wall_temperature[k] = 3, p.wall_emissivity[k] = 0;
@@ -417,10 +399,9 @@ START_TEST(all_reflect) {
     }
     free_problem(&p);
 }
-END_TEST
 
 /* Two spheres that see each other and the surroundings: two equations, with the view factor that black ones have. */
-START_TEST(two_radiosities) {
+TEST(two_radiosities) {
     static const double t[] = {1.8, .6}, eps[] = {.3, .8};
     struct problem p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 1.2, 1.6, .5}}), 1, 1);
     double area[2], f[2], exact;
@@ -448,31 +429,4 @@ START_TEST(two_radiosities) {
         assert_near(p.result.surroundings_power, -p.result.power[0] - p.result.power[1], 1e-9);
     }
     free_problem(&p);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("heat");
-    TCase *tests = suite_case(suite, "heat");
-    tcase_add_test(tests, nothing_flows_in_a_closed_box_at_one_temperature);
-    tcase_add_test(tests, nothing_flows_in_a_periodic_bed_at_one_temperature);
-    tcase_add_test(tests, a_grey_sphere_in_black_surroundings);
-    tcase_add_test(tests, a_grey_sphere_in_a_large_grey_box);
-    tcase_add_test(tests, two_parallel_grey_walls);
-    tcase_add_test(tests, a_black_sphere_touches_a_black_plane);
-    tcase_add_test(tests, a_mote_between_endless_walls);
-    tcase_add_test(tests, a_pair_of_endless_plates);
-    tcase_add_test(tests, a_mote_between_periodic_plates);
-    tcase_add_test(tests, white_walls_take_nothing);
-    tcase_add_test(tests, view_factors_between_the_walls_of_a_cube);
-    tcase_add_test(tests, walls_exchange_better_with_more_beams);
-    tcase_add_test(tests, walls_know_their_errors);
-    tcase_add_test(tests, view_factors_between_the_walls_of_a_cylinder);
-    tcase_add_test(tests, walls_alone);
-    tcase_add_test(tests, two_black_spheres_in_contact);
-    tcase_add_test(tests, one_radiosity_per_sphere);
-    tcase_add_test(tests, two_radiosities);
-    tcase_add_loop_test(tests, reflectors_gain_nothing, 0, 2);
-    tcase_add_loop_test(tests, all_reflect, 0, 4);
-    return suite_run(suite);
 }

@@ -1,7 +1,7 @@
 /* test_heat_arguments.c - arguments, and memory that is too small. SPDX-License-Identifier: MIT */
 #include "heat_problem.h"
 
-START_TEST(arguments_are_checked) {
+TEST(arguments_are_checked) {
     struct problem p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}}), 1, .5);
     p.config = (fibrad_heat_config){.directions = 8};
     trace(&p);
@@ -70,10 +70,9 @@ START_TEST(arguments_are_checked) {
     p.heat = first;
     free_problem(&p);
 }
-END_TEST
 
 /* Hardly any room in a bed: the call says so, and what it asks for is enough. */
-START_TEST(work_memory_may_be_too_small) {
+TEST(work_memory_may_be_too_small) {
     struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 1, 1);
     p.config.directions = 8;
     trace(&p);
@@ -95,7 +94,6 @@ START_TEST(work_memory_may_be_too_small) {
     free(block);
     free_problem(&p);
 }
-END_TEST
 
 /* Bytes of the pool up to the last link. */
 static size_t pool_end(const fibrad_heat *heat) {
@@ -114,7 +112,7 @@ static int trace_again(struct problem *p) {
 
 /* Links begin on a boundary behind the pencils: room for both without the gap is too small, and nothing is written
  * behind it; room up to the last link, in whole alignments, suffices. */
-START_TEST(nothing_is_written_behind_the_room_for_beams) {
+TEST(nothing_is_written_behind_the_room_for_beams) {
     for (uint32_t directions = 8; directions < 12; directions++) {
         struct problem p = problem_of(packing(30, 1, 1, .55, 5, true), 1, .5);
         p.config.directions = directions;
@@ -132,11 +130,10 @@ START_TEST(nothing_is_written_behind_the_room_for_beams) {
         free_problem(&p);
     }
 }
-END_TEST
 
 /* The room for beams is what the block has: too little of it is told by the tasks that find none; more than enough
  * changes no bit. */
-START_TEST(the_room_for_beams_may_be_too_small) {
+TEST(the_room_for_beams_may_be_too_small) {
     struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .5);
     double power[2][100];
     p.temperature[0] = 2, p.config.directions = 24;
@@ -157,15 +154,4 @@ START_TEST(the_room_for_beams_may_be_too_small) {
     ck_assert_int_eq(trace_again(&p), FIBRAD_E_SIZE);
     ck_assert_int_eq(fibrad_heat_begin(p.heat, &p.sources), FIBRAD_E_STATE);
     free_problem(&p);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("heat arguments");
-    TCase *tests = suite_case(suite, "heat arguments");
-    tcase_add_test(tests, arguments_are_checked);
-    tcase_add_test(tests, work_memory_may_be_too_small);
-    tcase_add_test(tests, the_room_for_beams_may_be_too_small);
-    tcase_add_test(tests, nothing_is_written_behind_the_room_for_beams);
-    return suite_run(suite);
 }

@@ -65,7 +65,7 @@ static double slope_along(const struct problem *p, int axis) {
 /* Between black plates irradiation is of degrees 0 and 1 alone: half of E1 + E2, and half of E1 - E2 times the cosine.
  */
 static const double plates_k[] = {.01, .3, 1, 100}, plates_e[] = {1, 1, .5, .9};
-START_TEST(a_sphere_between_black_plates) {
+LOOP_TEST(a_sphere_between_black_plates, 4) {
     struct problem p = one_sphere(.5, NAN, plates_e[_i]);
     const double a = plates_e[_i] / (2 * plates_k[_i]), hot = 1.0005, cold = .9995;
     const double half = (emission(hot) - emission(cold)) / 2, truth = a / (a + 1) * half;
@@ -87,7 +87,6 @@ START_TEST(a_sphere_between_black_plates) {
     ck_assert_double_eq(centre[0], found[0]);
     free_problem(&p);
 }
-END_TEST
 
 /* What arrives at the place at cosine mu of a unit sphere from a black one of emission 1, of some radius, centred at
  * some distance on the axis: rays over its disc as seen from there, as far as they are above the horizon. */
@@ -117,7 +116,7 @@ static void expand(double radius, double distance, double coefficient[DEGREES + 
 
 /* A cold sphere, lit from one side by a hot one: what it sends out from patch to patch is the series. */
 static const double half_k[] = {.01, .1, 1, 10}, half_e[] = {1, .7, 1, .3};
-START_TEST(one_side_lit) {
+LOOP_TEST(one_side_lit, 4) {
     const double k = half_k[_i], e = half_e[_i], radius = 3, distance = 6;
     struct problem p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, distance, radius}}), 1, 1);
     double h[DEGREES + 1], squares = 0, errors = 0;
@@ -140,9 +139,8 @@ START_TEST(one_side_lit) {
     assert_near(emission(found[0]), h[0], 3e-3);
     free_problem(&p);
 }
-END_TEST
 
-START_TEST(an_even_source_in_black_surroundings) {
+TEST(an_even_source_in_black_surroundings) {
     const double q = 2.5, k = .3, e = .6;
     struct problem p = one_sphere(2, NAN, e);
     conductivity[0] = k, p.sources.conductivity = conductivity, p.sources.surroundings = 1;
@@ -157,7 +155,6 @@ START_TEST(an_even_source_in_black_surroundings) {
     assert_near(largest[0], t, 1e-4);
     free_problem(&p);
 }
-END_TEST
 
 /* A bed in a box, of which some spheres have temperatures, some powers and some nothing but the rest. */
 static struct problem mixed_bed(double high) {
@@ -178,7 +175,7 @@ static struct problem mixed_bed(double high) {
 }
 
 static const double unlike[] = {1, 5};
-START_TEST(powers_add_up_to_zero) {
+LOOP_TEST(powers_add_up_to_zero, 2) {
     double largest_power;
     struct problem p = mixed_bed(unlike[_i]);
     trace_and_solve(&p);
@@ -196,9 +193,8 @@ START_TEST(powers_add_up_to_zero) {
     }
     free_problem(&p);
 }
-END_TEST
 
-START_TEST(nothing_flows_at_one_temperature) {
+LOOP_TEST(nothing_flows_at_one_temperature, 2) {
     struct problem p = mixed_bed(unlike[_i]);
     for (int k = 0; k < FIBRAD_WALLS; k++) p.wall_temperature[k] = 2;
     for (uint32_t i = 0; i < p.bed.n; i++) power[i] = isnan(p.temperature[i]) ? 0 : NAN;
@@ -210,10 +206,9 @@ START_TEST(nothing_flows_at_one_temperature) {
     }
     free_problem(&p);
 }
-END_TEST
 
 /* Temperatures that were found, once given, ask for the powers that they were found from. */
-START_TEST(temperatures_and_powers_belong_together) {
+TEST(temperatures_and_powers_belong_together) {
     struct problem p = mixed_bed(1);
     double given[MOST], low[MOST];
     p.sources.tolerance = 1e-7;
@@ -231,7 +226,6 @@ START_TEST(temperatures_and_powers_belong_together) {
     }
     free_problem(&p);
 }
-END_TEST
 
 static double difference(const double *a, const double *b, uint32_t n) {
     double sum = 0, squares = 0;
@@ -251,7 +245,7 @@ static void powers_of(double k_star, double emissivity, double out[MOST]) {
     free_problem(&p);
 }
 
-START_TEST(what_conducts_well_is_as_before) {
+TEST(what_conducts_well_is_as_before) {
     double before[MOST] = {0}, now[MOST] = {0};
     for (int black = 0; black < 2; black++) {
         powers_of(0, black ? 1 : .6, before);
@@ -263,17 +257,15 @@ START_TEST(what_conducts_well_is_as_before) {
         ck_assert_double_gt(difference(now, before, 40), 1e-2);
     }
 }
-END_TEST
 
-START_TEST(nearly_black_is_as_black) {
+TEST(nearly_black_is_as_black) {
     double black[MOST] = {0}, nearly[MOST] = {0};
     powers_of(.3, 1, black);
     powers_of(.3, 1 - 1e-12, nearly);
     ck_assert_double_le(difference(nearly, black, 40), 1e-7);
 }
-END_TEST
 
-START_TEST(the_order_of_the_work_changes_no_bit) {
+TEST(the_order_of_the_work_changes_no_bit) {
     struct problem p = mixed_bed(1), q = mixed_bed(1);
     q.backwards = true, q.isa = FIBRAD_ISA_SCALAR;
     trace_and_solve(&p);
@@ -285,13 +277,12 @@ START_TEST(the_order_of_the_work_changes_no_bit) {
     free_problem(&p);
     free_problem(&q);
 }
-END_TEST
 
 /* The conductivity of a simple cubic lattice of touching spheres, over 4 sigma T^3 d: from rays and harmonics to
  * degrees 9 and 13, docs/validation.md. */
 static const double lattice_k[] = {.01, .1, .1, 1, 1, 10}, lattice_e[] = {1, 1, .6, 1, .6, 1},
                     lattice_f[] = {.2376, .3591, .3430, .8006, .5979, 1.1350};
-START_TEST(a_simple_cubic_lattice) {
+LOOP_TEST(a_simple_cubic_lattice, 6) {
     enum { LAYERS = 24 };
     double spheres[LAYERS][4], x[2] = {0, 0}, xy[2] = {0, 0};
     for (int i = 0; i < LAYERS; i++) spheres[i][0] = spheres[i][1] = 0, spheres[i][2] = i + .5, spheres[i][3] = .5;
@@ -311,9 +302,8 @@ START_TEST(a_simple_cubic_lattice) {
     assert_near(p.wall_power[5] / -slope, lattice_f[_i], lattice_k[_i] < .1 ? .02 : .01);
     free_problem(&p);
 }
-END_TEST
 
-START_TEST(conductivities_are_above_zero) {
+TEST(conductivities_are_above_zero) {
     static const double wrong[] = {0, -1, -INFINITY, NAN};
     struct problem p = one_sphere(1, 1, .5);
     fibrad_fault fault;
@@ -330,22 +320,4 @@ START_TEST(conductivities_are_above_zero) {
     ck_assert_int_eq(fibrad_heat_check(p.heat, &p.sources, &fault), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fault.why, FIBRAD_WHY_UNIFORM);
     free_problem(&p);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("spheres that conduct");
-    TCase *tests = suite_case(suite, "spheres that conduct");
-    tcase_add_loop_test(tests, a_sphere_between_black_plates, 0, 4);
-    tcase_add_loop_test(tests, one_side_lit, 0, 4);
-    tcase_add_test(tests, an_even_source_in_black_surroundings);
-    tcase_add_loop_test(tests, powers_add_up_to_zero, 0, 2);
-    tcase_add_loop_test(tests, nothing_flows_at_one_temperature, 0, 2);
-    tcase_add_test(tests, temperatures_and_powers_belong_together);
-    tcase_add_test(tests, what_conducts_well_is_as_before);
-    tcase_add_test(tests, nearly_black_is_as_black);
-    tcase_add_test(tests, the_order_of_the_work_changes_no_bit);
-    tcase_add_loop_test(tests, a_simple_cubic_lattice, 0, 6);
-    tcase_add_test(tests, conductivities_are_above_zero);
-    return suite_run(suite);
 }

@@ -104,7 +104,7 @@ static double exact_exchange(const struct bed *bed, uint32_t i, uint32_t j) {
 }
 
 /* Black spheres in the open. */
-START_TEST(spheres_and_their_surroundings) {
+TEST(spheres_and_their_surroundings) {
     struct honesty honesty = {0};
     for (uint64_t seed = 1; seed <= 60; seed++) {
         struct given g = {.bed = apart(seed, 6, 9)};
@@ -120,7 +120,6 @@ START_TEST(spheres_and_their_surroundings) {
     }
     expect_honest(&honesty);
 }
-END_TEST
 
 /* Beds of black spheres in the open, so far apart that each one meets another by a direction or two, or by none. */
 static void expect_honest_powers(uint64_t beds, uint32_t spheres, double size) {
@@ -145,14 +144,12 @@ static void expect_honest_powers(uint64_t beds, uint32_t spheres, double size) {
     expect_honest(&of_surroundings);
 }
 
-START_TEST(two_spheres_alone) { expect_honest_powers(300, 2, 9); }
-END_TEST
+TEST(two_spheres_alone) { expect_honest_powers(300, 2, 9); }
 
-START_TEST(spheres_far_apart) { expect_honest_powers(20, 20, 30); }
-END_TEST
+TEST(spheres_far_apart) { expect_honest_powers(20, 20, 30); }
 
 /* Black boxes without a lid, with next to nothing in them: rays of walls tell what the opening gets. */
-START_TEST(a_box_and_its_opening) {
+TEST(a_box_and_its_opening) {
     struct honesty honesty = {0};
     for (uint64_t seed = 1; seed <= 30; seed++) {
         const double size[3] = {drawn(seed, 0, .5, 1.5), drawn(seed, 1, .5, 1.5), drawn(seed, 2, .5, 1.5)};
@@ -173,7 +170,6 @@ START_TEST(a_box_and_its_opening) {
     }
     expect_honest(&honesty);
 }
-END_TEST
 
 /* A prism of `sides` about the z axis, of triangles seen from within, open at the top. */
 static struct mesh *cup_of(uint32_t sides, double radius, double height) {
@@ -193,7 +189,7 @@ static struct mesh *cup_of(uint32_t sides, double radius, double height) {
 
 /* Black cups of triangles at one temperature, with a small sphere as hot: all that leaves goes through the lid. Rays of
  * the cup alone tell how much; they are even on each triangle, so that more of them help. */
-START_TEST(a_cup_of_triangles) {
+TEST(a_cup_of_triangles) {
     struct honesty honesty = {0}, of_cup = {0};
     for (uint64_t seed = 1; seed <= 20; seed++) {
         const double radius = drawn(seed, 0, .5, 1.5), height = drawn(seed, 1, .5, 2.5);
@@ -212,28 +208,13 @@ START_TEST(a_cup_of_triangles) {
     expect_honest(&of_cup);
     ck_assert_msg(honesty.errors / honesty.scenes < pow(5.5e-4, 2), "off by %g", sqrt(honesty.errors / honesty.scenes));
 }
-END_TEST
 
 /* What nothing reaches has no power, and no error. */
-START_TEST(no_surroundings) {
+TEST(no_surroundings) {
     struct given g = {.bed = bed_of(1, (const double[][4]){{0, 0, 0, .5}}), .temperature = {1}};
     g.scene.bodies = 6;
     for (uint32_t k = 0; k < 6; k++) g.body[k] = plane_at((int)k / 2, k % 2, k % 2 ? 1 : -1);
     solve(&g);
     ck_assert(g.result.surroundings_power == 0 && g.result.surroundings_error == 0);
     ck_assert(g.error[0] > 0 && g.wall_error[0] > 0);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("heat_errors");
-    TCase *surroundings = suite_case(suite, "surroundings");
-    tcase_add_test(surroundings, spheres_and_their_surroundings);
-    tcase_add_test(surroundings, a_box_and_its_opening);
-    tcase_add_test(surroundings, a_cup_of_triangles);
-    tcase_add_test(surroundings, no_surroundings);
-    TCase *powers = suite_case(suite, "powers");
-    tcase_add_test(powers, two_spheres_alone);
-    tcase_add_test(powers, spheres_far_apart);
-    return suite_run(suite);
 }

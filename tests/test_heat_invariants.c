@@ -1,7 +1,7 @@
 /* test_heat_invariants.c - net powers under every setting that must not matter. SPDX-License-Identifier: MIT */
 #include "heat_problem.h"
 
-START_TEST(powers_add_up_to_zero) {
+LOOP_TEST(powers_add_up_to_zero, 16) {
     struct problem p = problem_of(packing(150, .4, 1.6, .5, 9, false), 1, .5);
     for (uint32_t i = 0; i < p.bed.n; i++)
         p.temperature[i] = 300 + 700 * bed_make_random(1, i), p.emissivity[i] = bed_make_random(2, i);
@@ -21,7 +21,6 @@ START_TEST(powers_add_up_to_zero) {
     }
     free_problem(&p);
 }
-END_TEST
 
 static void assert_same_bits(const struct problem *p, const struct problem *q) {
     ck_assert_int_eq(memcmp(p->result.power, q->result.power, p->bed.n * sizeof(double)), 0);
@@ -42,16 +41,15 @@ static struct problem small_problem(int isa, bool backwards, bool turned) {
     return p;
 }
 
-START_TEST(the_order_of_the_work_changes_no_bit) {
+TEST(the_order_of_the_work_changes_no_bit) {
     struct problem p = small_problem(FIBRAD_ISA_BEST, false, false), q = small_problem(FIBRAD_ISA_BEST, true, false);
     assert_same_bits(&p, &q);
     free_problem(&p);
     free_problem(&q);
 }
-END_TEST
 
 /* Walls listed from the last to the first are the same walls. */
-START_TEST(the_order_of_bodies_changes_but_roundings) {
+TEST(the_order_of_bodies_changes_but_roundings) {
     struct problem p = small_problem(FIBRAD_ISA_BEST, false, false), q = small_problem(FIBRAD_ISA_BEST, false, true);
     double largest;
     (void)sum_of_powers(&p, &largest);
@@ -64,9 +62,8 @@ START_TEST(the_order_of_bodies_changes_but_roundings) {
     free_problem(&p);
     free_problem(&q);
 }
-END_TEST
 
-START_TEST(instruction_sets_change_no_bit) {
+TEST(instruction_sets_change_no_bit) {
     struct problem p = small_problem(FIBRAD_ISA_SCALAR, false, false);
     int isa[ISAS_MOST];
     for (int k = isas_there(isa); k-- > 1;) {
@@ -76,9 +73,8 @@ START_TEST(instruction_sets_change_no_bit) {
     }
     free_problem(&p);
 }
-END_TEST
 
-START_TEST(an_earlier_solution_saves_sweeps_and_changes_little) {
+TEST(an_earlier_solution_saves_sweeps_and_changes_little) {
     struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .3);
     p.config.directions = 40, p.sources.tolerance = 1e-6;
     for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + bed_make_random(3, i);
@@ -96,11 +92,10 @@ START_TEST(an_earlier_solution_saves_sweeps_and_changes_little) {
     free(power);
     free_problem(&p);
 }
-END_TEST
 
 /* A periodic bed as a whole, by a third of the box: the same bed, but its spheres come in another order along the
  * cells. What is carried over goes with the spheres, so that next to nothing is left to do. */
-START_TEST(an_earlier_solution_goes_with_the_spheres) {
+TEST(an_earlier_solution_goes_with_the_spheres) {
     struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .3);
     p.config.directions = 40, p.sources.tolerance = 1e-6;
     for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + bed_make_random(3, i);
@@ -126,9 +121,8 @@ START_TEST(an_earlier_solution_goes_with_the_spheres) {
     free(before);
     free_problem(&p);
 }
-END_TEST
 
-START_TEST(the_error_is_as_estimated) {
+TEST(the_error_is_as_estimated) {
     double truth[100], each[100], *power = NULL;
     for (int k = 0; k < 3; k++) {
         static const fibrad_heat_config configs[] = {
@@ -154,18 +148,4 @@ START_TEST(the_error_is_as_estimated) {
         }
         free_problem(&p);
     }
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("heat invariants");
-    TCase *tests = suite_case(suite, "heat invariants");
-    tcase_add_loop_test(tests, powers_add_up_to_zero, 0, 16);
-    tcase_add_test(tests, the_order_of_the_work_changes_no_bit);
-    tcase_add_test(tests, the_order_of_bodies_changes_but_roundings);
-    tcase_add_test(tests, instruction_sets_change_no_bit);
-    tcase_add_test(tests, an_earlier_solution_saves_sweeps_and_changes_little);
-    tcase_add_test(tests, an_earlier_solution_goes_with_the_spheres);
-    tcase_add_test(tests, the_error_is_as_estimated);
-    return suite_run(suite);
 }

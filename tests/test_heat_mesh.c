@@ -191,7 +191,7 @@ static struct problem *thirty(void) {
 
 /* ---- against other walls, and closed forms ---- */
 
-START_TEST(a_box_of_twelve_triangles_is_a_box_of_planes) {
+TEST(a_box_of_twelve_triangles_is_a_box_of_planes) {
     for (uint32_t cells = 1; cells <= 12; cells += 11) {
         struct problem *planes = thirty(), *mesh = thirty();
         planes->config = mesh->config = (fibrad_heat_config){.directions = 700, .patches = 384, .wall_rays = 300000};
@@ -205,10 +205,9 @@ START_TEST(a_box_of_twelve_triangles_is_a_box_of_planes) {
         free_problem(planes), free_problem(mesh);
     }
 }
-END_TEST
 
 /* A cup: five planes and an opening, and five sheets of triangles without a lid; hot walls, and insulated ones. */
-START_TEST(a_cup_of_triangles_is_one_of_planes_and_an_opening) {
+TEST(a_cup_of_triangles_is_one_of_planes_and_an_opening) {
     struct problem *p[2] = {thirty(), thirty()};
     for (int k = 0; k < 2; k++) {
         p[k]->config = (fibrad_heat_config){.directions = 2000, .wall_rays = 1000000};
@@ -232,9 +231,8 @@ START_TEST(a_cup_of_triangles_is_one_of_planes_and_an_opening) {
     }
     free_problem(p[0]), free_problem(p[1]);
 }
-END_TEST
 
-START_TEST(a_grey_sphere_in_a_black_cube) {
+TEST(a_grey_sphere_in_a_black_cube) {
     for (uint32_t cells = 1; cells <= 16; cells *= 4) {
         struct problem *p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .5);
         p->bodies = 1, p->wall_temperature[0] = 1;
@@ -245,10 +243,9 @@ START_TEST(a_grey_sphere_in_a_black_cube) {
         free_problem(p);
     }
 }
-END_TEST
 
 /* Between a sphere and the walls of a large box, which are lit evenly enough: as between concentric spheres. */
-START_TEST(a_grey_sphere_in_a_large_grey_cube) {
+TEST(a_grey_sphere_in_a_large_grey_cube) {
     struct problem *p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .3);
     p->bodies = 1, p->wall_temperature[0] = 1, p->wall_emissivity[0] = .05;
     add_box(p->mesh, -20, 20, 1, true);
@@ -256,9 +253,8 @@ START_TEST(a_grey_sphere_in_a_large_grey_cube) {
     assert_near(p->power[0], 4 * PI * (1 - 16) / (1 / .3 + 4 * PI / 9600 * (1 / .05 - 1)), 2e-3);
     free_problem(p);
 }
-END_TEST
 
-START_TEST(nothing_flows_at_one_temperature) {
+TEST(nothing_flows_at_one_temperature) {
     struct problem *p = thirty();
     make_box(p, 0, 1, 3);
     for (uint32_t i = 0; i < 30; i++) p->temperature[i] = 3;
@@ -272,7 +268,6 @@ START_TEST(nothing_flows_at_one_temperature) {
     ck_assert_double_le(imbalance(p), 1e-12);
     free_problem(p);
 }
-END_TEST
 
 /* Two plates without end, the upper one of triangles or a plane, and a sheet between them that has two sides and gives
  * off nothing: a plate as its own shield. */
@@ -294,7 +289,7 @@ static struct problem *plates(bool planes, uint32_t cells, bool shield) {
     return p;
 }
 
-START_TEST(two_plates_and_a_shield) {
+TEST(two_plates_and_a_shield) {
     for (int planes = 0; planes < 2; planes++)
         for (uint32_t cells = 1; cells <= 5; cells += 4) {
             struct problem *p = plates(planes == 1, cells, false);
@@ -313,10 +308,9 @@ START_TEST(two_plates_and_a_shield) {
             free_problem(p);
         }
 }
-END_TEST
 
 /* Patches of an insulated sheet, of one body, are at their own temperatures: they send back what they get. */
-START_TEST(an_insulated_sheet_lets_nothing_through) {
+TEST(an_insulated_sheet_lets_nothing_through) {
     struct problem *p = plates(false, 2, true);
     p->insulated[2] = 1;
     trace_and_solve(p);
@@ -326,10 +320,9 @@ START_TEST(an_insulated_sheet_lets_nothing_through) {
     assert_near(pow(p->found[2], 4), (81 + 16) / 2., 1e-3);
     free_problem(p);
 }
-END_TEST
 
 /* A black sphere sees a square as its centre does, where no tangent plane cuts it. */
-START_TEST(a_black_sphere_sees_a_plate) {
+TEST(a_black_sphere_sees_a_plate) {
     const double distance[] = {1.5, 4, 25};
     for (int k = 0; k < 3; k++) {
         const double d = distance[k], origin[3] = {d, -d, -d}, a[3] = {0, 0, 2 * d}, b[3] = {0, 2 * d, 0};
@@ -342,11 +335,10 @@ START_TEST(a_black_sphere_sees_a_plate) {
         free_problem(p);
     }
 }
-END_TEST
 
 /* A box of planes in two halves by a sheet of two sides, which sticks out: each half is as alone. The planes are black,
  * as their patches do not end at the sheet. */
-START_TEST(a_shelf_between_planes) {
+TEST(a_shelf_between_planes) {
     struct problem *both = thirty(), *half = thirty();
     const double origin[3] = {-.4, -.3, .5}, a[3] = {2, 0, 0}, b[3] = {0, 2, 0};
     make_planes(both, 0, 1), make_planes(half, 0, 1);
@@ -374,11 +366,10 @@ START_TEST(a_shelf_between_planes) {
     ck_assert_double_le(imbalance(both), 1e-12);
     free_problem(both), free_problem(half);
 }
-END_TEST
 
 /* ---- spheres cut by triangles ---- */
 
-START_TEST(spheres_that_triangles_cut) {
+TEST(spheres_that_triangles_cut) {
     const double deep = .02;
     struct problem *cut = problem_of(bed_of(8, (const double[][4]){{-1, -1, -1, 1},
                                                                    {1, -1, -1, 1},
@@ -410,11 +401,10 @@ START_TEST(spheres_that_triangles_cut) {
     for (uint32_t i = 0; i < 8; i++) ck_assert_double_le(fabs(cut->power[i]), 1e-8);
     free_problem(cut);
 }
-END_TEST
 
 /* ---- what must not matter ---- */
 
-START_TEST(threads_and_instruction_sets_change_no_bit) {
+TEST(threads_and_instruction_sets_change_no_bit) {
     int isa[ISAS_MOST];
     const int sets = isas_there(isa);
     double power[30], q[6];
@@ -430,7 +420,6 @@ START_TEST(threads_and_instruction_sets_change_no_bit) {
         free_problem(p);
     }
 }
-END_TEST
 
 static const double tilt[9] = {4. / 9, -1. / 9, 8. / 9, 4. / 9, 8. / 9, -1. / 9, -7. / 9, 4. / 9, 4. / 9};
 
@@ -443,7 +432,7 @@ static void turn_all(struct problem *p, const double turn[9]) {
     }
 }
 
-START_TEST(a_tilted_box_is_the_same) {
+TEST(a_tilted_box_is_the_same) {
     struct problem *p = thirty(), *turned = thirty();
     p->config = turned->config = (fibrad_heat_config){.directions = 700, .patches = 384, .wall_rays = 300000};
     make_box(p, 0, 1, 2), make_box(turned, 0, 1, 2);
@@ -453,10 +442,9 @@ START_TEST(a_tilted_box_is_the_same) {
     ck_assert_double_le(distance_of(turned->q, p->q, 6), 3e-3);
     free_problem(p), free_problem(turned);
 }
-END_TEST
 
 /* A mesh that moves: the next solution begins where the last one ended, whatever the order of its triangles. */
-START_TEST(a_mesh_moves) {
+TEST(a_mesh_moves) {
     struct problem *p = thirty();
     make_box(p, 0, 1, 9);
     trace_and_solve(p);
@@ -481,9 +469,8 @@ START_TEST(a_mesh_moves) {
     free(other), free(next);
     free_problem(p);
 }
-END_TEST
 
-START_TEST(estimates_of_errors_are_honest) {
+TEST(estimates_of_errors_are_honest) {
     struct problem *truth = thirty();
     uint32_t beyond = 0;
     double errors[2] = {0}, estimates[2] = {0};
@@ -509,11 +496,10 @@ START_TEST(estimates_of_errors_are_honest) {
     }
     free_problem(truth);
 }
-END_TEST
 
 /* Fluxes through triangles add up to the powers of their bodies; a plate that faces a hot sphere is lit most where it
  * is nearest, and an insulated one hottest there. */
-START_TEST(fluxes_through_triangles) {
+TEST(fluxes_through_triangles) {
     enum { CELLS = 16, PIECES = 2 * CELLS * CELLS };
     const double origin[3] = {-3, -3, 1.5}, a[3] = {6, 0, 0}, b[3] = {0, 6, 0};
     struct problem *p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, .8);
@@ -542,7 +528,6 @@ START_TEST(fluxes_through_triangles) {
     ck_assert_double_gt(temperature[2 * middle], 1.3 * temperature[0]);
     free_problem(p);
 }
-END_TEST
 
 /* ---- temperatures of triangles ---- */
 
@@ -567,7 +552,7 @@ static double gain_of_body(const struct problem *p, const double *flux, uint32_t
 
 /* A box whose faces have temperatures of their own is as one whose faces are bodies; fluxes of faces are their powers,
  * whether triangles are cut into patches or share them, and the next solution begins with this one. */
-START_TEST(faces_with_temperatures_of_their_own) {
+TEST(faces_with_temperatures_of_their_own) {
     static double side[2 * 12 * 144], flux[2 * 12 * 144], found[2 * 12 * 144];
     for (uint32_t cells = 1; cells <= 12; cells += 11) {
         struct problem *bodies = thirty(), *one = thirty();
@@ -616,7 +601,6 @@ START_TEST(faces_with_temperatures_of_their_own) {
         free_problem(bodies), free_problem(one);
     }
 }
-END_TEST
 
 /* What a place at height 1 receives of a black square at height 0 in temperatures T(x, y). */
 static double received_at(double x, double y, double temperature(double x, double y)) {
@@ -663,13 +647,12 @@ static double linear(double x, double y) { return 1 + x + .5 * y; }
 /* A hot cell of ten by ten. */
 static double spot(double x, double y) { return x > .3 && x < .4 && y > .6 && y < .7 ? 3 : 0; }
 
-START_TEST(squares_with_fields_of_temperature) {
+TEST(squares_with_fields_of_temperature) {
     check_squares(linear, 3e-2, 4e-3); /* not constant on triangles */
     check_squares(spot, .3, 3e-2);
 }
-END_TEST
 
-START_TEST(temperatures_of_triangles_that_are_refused) {
+TEST(temperatures_of_triangles_that_are_refused) {
     struct problem *p = problem_of(bed_of(1, (const double[][4]){{.5, .5, .5, .2}}), 2, .8);
     double side[24];
     p->bodies = 1, p->wall_temperature[0] = 1;
@@ -691,11 +674,10 @@ START_TEST(temperatures_of_triangles_that_are_refused) {
     ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_E_ARGUMENT);
     free_problem(p);
 }
-END_TEST
 
 /* ---- patches ---- */
 
-START_TEST(patches_have_the_area_of_the_mesh) {
+TEST(patches_have_the_area_of_the_mesh) {
     struct problem *p = thirty();
     const double origin[3] = {-3, 0, 5}, a[3] = {7, 0, 0}, b[3] = {.1, .2, 0};
     make_box(p, 0, 1, 20);
@@ -742,12 +724,11 @@ START_TEST(patches_have_the_area_of_the_mesh) {
     free(cut);
     free_problem(p);
 }
-END_TEST
 
 /* ---- soups ---- */
 
 /* Triangles at random, some without area, slivers, twice the same, through spheres and each other. */
-START_TEST(soups_have_finite_powers_that_add_up) {
+TEST(soups_have_finite_powers_that_add_up) {
     for (uint64_t seed = 0; seed < 8; seed++) {
         struct problem *p = problem_of(thirty_spheres(), 1, .5);
         for (int axis = 0; axis < 3; axis++) p->bed.period[axis] = seed == 7 && axis == 1;
@@ -779,11 +760,10 @@ START_TEST(soups_have_finite_powers_that_add_up) {
         free_problem(p);
     }
 }
-END_TEST
 
 /* ---- what is refused ---- */
 
-START_TEST(a_back_that_is_seen_is_named) {
+TEST(a_back_that_is_seen_is_named) {
     struct problem *p = thirty();
     const double origin[3] = {-9, -9, .5}, a[3] = {20, 0, 0}, b[3] = {0, 20, 0};
     make_planes(p, 0, 1);
@@ -797,32 +777,4 @@ START_TEST(a_back_that_is_seen_is_named) {
     ck_assert_double_le(imbalance(p), 1e-12);
     ck_assert(p->result.surroundings_power == 0);
     free_problem(p);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("heat_mesh");
-    TCase *tests = suite_case(suite, "heat among triangles");
-    tcase_add_test(tests, a_box_of_twelve_triangles_is_a_box_of_planes);
-    tcase_add_test(tests, a_cup_of_triangles_is_one_of_planes_and_an_opening);
-    tcase_add_test(tests, a_grey_sphere_in_a_black_cube);
-    tcase_add_test(tests, a_grey_sphere_in_a_large_grey_cube);
-    tcase_add_test(tests, nothing_flows_at_one_temperature);
-    tcase_add_test(tests, two_plates_and_a_shield);
-    tcase_add_test(tests, an_insulated_sheet_lets_nothing_through);
-    tcase_add_test(tests, a_black_sphere_sees_a_plate);
-    tcase_add_test(tests, a_shelf_between_planes);
-    tcase_add_test(tests, spheres_that_triangles_cut);
-    tcase_add_test(tests, threads_and_instruction_sets_change_no_bit);
-    tcase_add_test(tests, a_tilted_box_is_the_same);
-    tcase_add_test(tests, a_mesh_moves);
-    tcase_add_test(tests, estimates_of_errors_are_honest);
-    tcase_add_test(tests, fluxes_through_triangles);
-    tcase_add_test(tests, faces_with_temperatures_of_their_own);
-    tcase_add_test(tests, squares_with_fields_of_temperature);
-    tcase_add_test(tests, temperatures_of_triangles_that_are_refused);
-    tcase_add_test(tests, patches_have_the_area_of_the_mesh);
-    tcase_add_test(tests, soups_have_finite_powers_that_add_up);
-    tcase_add_test(tests, a_back_that_is_seen_is_named);
-    return suite_run(suite);
 }

@@ -75,7 +75,7 @@ static const struct spot_case spot_cases[] = {
      2},
     {{{.43, .56, .01001, .01}}, {1000}, {.6}, {-36.747829}, {.0066}, 1}};
 
-START_TEST(a_small_sphere_and_the_spot_under_it) {
+LOOP_TEST(a_small_sphere_and_the_spot_under_it, sizeof spot_cases / sizeof *spot_cases) {
     const struct spot_case *c = &spot_cases[_i];
     struct problem p = problem_of(bed_of(c->n, c->spheres), 0, 0);
     double largest, error[2];
@@ -96,10 +96,9 @@ START_TEST(a_small_sphere_and_the_spot_under_it) {
     }
     free_problem(&p);
 }
-END_TEST
 
 /* The same after a move from apart, and back: fine patches come and go. */
-START_TEST(fine_patches_come_and_go_with_a_move) {
+TEST(fine_patches_come_and_go_with_a_move) {
     static const double near[2][4] = {{0, 0, 0, .3}, {.315015, 0, 0, .015}},
                         far[2][4] = {{0, 0, 0, .3}, {1, 0, 0, .015}};
     struct problem p = problem_of(bed_of(2, near), 1, .3), q = problem_of(bed_of(2, far), 1, .3);
@@ -117,11 +116,10 @@ START_TEST(fine_patches_come_and_go_with_a_move) {
     ck_assert_int_eq(fibrad_heat_move(q.heat, p.scene), FIBRAD_E_SIZE);
     free_problem(&p), free_problem(&q);
 }
-END_TEST
 
 /* Parts have as many spheres as each other, to one, and near each other: in a bed of a thousand few pencils, of which
  * links are kept, go from part to part. More parts than spheres leave some empty. */
-START_TEST(parts_are_compact_and_even) {
+TEST(parts_are_compact_and_even) {
     for (uint32_t parts = 1; parts <= 64; parts *= 8) {
         struct problem p = problem_of(packing(1000, .5, 10, .5, 3, false), 1, 1);
         p.config.directions = 8, p.config.parts = parts;
@@ -142,12 +140,11 @@ START_TEST(parts_are_compact_and_even) {
         free_problem(&p);
     }
 }
-END_TEST
 
 /* Beams leave and meet a sphere at the patch that is there: the places that they leave are about as many in each patch;
  * all of a patch, and those that they meet, lie within 20 degrees of their mean. Those kept are some of those followed,
  * and stand for all; bundles have as many as their strands. */
-START_TEST(a_patch_of_a_sphere_is_one_place) {
+TEST(a_patch_of_a_sphere_is_one_place) {
     struct problem p = problem_of(packing(12, .5, 1.5, .5, 7, false), 1, 1);
     trace(&p);
     const fibrad_heat *heat = p.heat;
@@ -191,11 +188,10 @@ START_TEST(a_patch_of_a_sphere_is_one_place) {
     ck_assert_double_gt(leaving, cos(PI / 9));
     free_problem(&p);
 }
-END_TEST
 
 /* The same of a cylinder's wall, and of rays that go there. Patches are even on the square that leans on its corners,
  * which makes them 2/pi to 4/pi of their mean as wide on the cylinder. */
-START_TEST(a_patch_of_a_cylinder_is_one_place) {
+TEST(a_patch_of_a_cylinder_is_one_place) {
     enum { TURNS = 2048, UPS = 128 };
     struct problem p = problem_of(bed_of(1, (const double[][4]){{.3, -.2, .4, 1e-4}}), 1, 1);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -.5, 1.5}, .cylinder = {.3, -.2, 1}};
@@ -234,16 +230,4 @@ START_TEST(a_patch_of_a_cylinder_is_one_place) {
     ck_assert_uint_eq(missed, 0);
     free(mean);
     free_problem(&p);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("heat patches");
-    TCase *tests = suite_case(suite, "heat patches");
-    tcase_add_test(tests, parts_are_compact_and_even);
-    tcase_add_loop_test(tests, a_small_sphere_and_the_spot_under_it, 0, sizeof spot_cases / sizeof *spot_cases);
-    tcase_add_test(tests, fine_patches_come_and_go_with_a_move);
-    tcase_add_test(tests, a_patch_of_a_sphere_is_one_place);
-    tcase_add_test(tests, a_patch_of_a_cylinder_is_one_place);
-    return suite_run(suite);
 }

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: MIT */
 #include "heat_problem.h"
 
-START_TEST(powers_are_those_of_paths) {
+LOOP_TEST(powers_are_those_of_paths, 3) {
     static const struct {
         double low, high, spheres, walls, bar;
     } cases[] = {{1, 1, .3, .5, .01}, {.5, 1.5, .3, .4, .015}, {1, 1, .8, .9, .015}};
@@ -19,10 +19,9 @@ START_TEST(powers_are_those_of_paths) {
     ck_assert_msg(sqrt(difference / size) < cases[_i].bar, "off by %g", sqrt(difference / size));
     free_problem(&p);
 }
-END_TEST
 
 /* Box and cylinder of grey walls, open above, or above and on one side, against paths that end in the surroundings. */
-START_TEST(powers_in_open_containers_are_those_of_paths) {
+LOOP_TEST(powers_in_open_containers_are_those_of_paths, 3) {
     struct problem p = problem_of(packing(24, .5, 1.5, .55, 11, false), 1, .4);
     p.walls = box_about(&p.bed);
     p.walls.open = _i == 1 ? 34 : 32, p.walls.planes = 63 & ~p.walls.open;
@@ -47,12 +46,11 @@ START_TEST(powers_in_open_containers_are_those_of_paths) {
     ck_assert_msg(sqrt(difference / size) < .015, "off by %g", sqrt(difference / size));
     free_problem(&p);
 }
-END_TEST
 
 /* What it is about: an opening is a black plane at the temperature of the surroundings, whose power is theirs. To the
  * bit, but that powers of several openings are added: those of spheres and other walls, their errors, temperatures that
  * are found, one opening or several, with plates that face them without end, insulated walls, one radiosity each. */
-START_TEST(an_opening_is_a_black_plane_as_hot_as_the_surroundings) {
+TEST(an_opening_is_a_black_plane_as_hot_as_the_surroundings) {
     static const struct {
         uint32_t planes, open;
         double radius;
@@ -97,11 +95,10 @@ START_TEST(an_opening_is_a_black_plane_as_hot_as_the_surroundings) {
         free_problem(&p[0]), free_problem(&p[1]);
     }
 }
-END_TEST
 
 /* Four pairs of a hot and a cold sphere in a cylinder whose wall reflects most, each pair a quarter of a turn from the
  * next: what the wall throws from one to the other depends on where it is lit. */
-START_TEST(powers_beside_the_wall_of_a_cylinder) {
+TEST(powers_beside_the_wall_of_a_cylinder) {
     struct bed bed = bed_of(0, NULL);
     double power[2] = {0, 0}, truth[2] = {0, 0};
     for (int k = 0; k < 8; k++) {
@@ -120,7 +117,6 @@ START_TEST(powers_beside_the_wall_of_a_cylinder) {
     for (uint32_t i = 0; i < 8; i++) assert_near(p.result.power[i], power[i % 2], .004);
     free_problem(&p);
 }
-END_TEST
 
 /* k_rad/(4 sigma T^3 d) of a periodic bed along z, from the powers at emissions 2 + cos kz, k such that `waves` waves
  * fit into the box. */
@@ -158,7 +154,7 @@ static struct bed column(char kind, int cells) {
 
 /* Along the channels of the simple cubic lattice light goes so far that a value hangs on the length of the bed; at low
  * emissivity programs differ by 5 %. */
-START_TEST(conduction_of_lattices) {
+LOOP_TEST(conduction_of_lattices, 3) {
     static const struct {
         char kind;
         int cells;
@@ -171,10 +167,9 @@ START_TEST(conduction_of_lattices) {
     for (int k = 0; k < 5; k++) assert_near(even_conduction(&p, .2 * (k + 1)), lattices[_i].known[k], lattices[_i].bar);
     free_problem(&p);
 }
-END_TEST
 
 /* A small random bed conducts a few per cent more or less than a large one, but alike at all emissivities. */
-START_TEST(conduction_of_a_random_bed) {
+TEST(conduction_of_a_random_bed) {
     static const double known[][2] = {{.2, .276}, {.4, .433}, {.6, .610}, {.8, .815}};
     struct bed one = packing(120, 1, 1, .586, 2, true), bed;
     bed_init(&bed);
@@ -189,17 +184,4 @@ START_TEST(conduction_of_a_random_bed) {
     p.sources.uniform = 1;
     assert_near(even_conduction(&p, .2), black, .03);
     free_problem(&p);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("heat paths");
-    TCase *tests = suite_case(suite, "heat paths");
-    tcase_add_loop_test(tests, powers_are_those_of_paths, 0, 3);
-    tcase_add_loop_test(tests, powers_in_open_containers_are_those_of_paths, 0, 3);
-    tcase_add_test(tests, powers_beside_the_wall_of_a_cylinder);
-    tcase_add_loop_test(tests, conduction_of_lattices, 0, 3);
-    tcase_add_test(tests, conduction_of_a_random_bed);
-    tcase_add_test(tests, an_opening_is_a_black_plane_as_hot_as_the_surroundings);
-    return suite_run(suite);
 }

@@ -1,6 +1,8 @@
 /* test_heat_solid.c - `heat --solid-conductivity`: the program and its files. SPDX-License-Identifier: MIT */
 #include "program.h"
 
+FIXTURE(make_folder, remove_folder)
+
 #define SIGMA 5.670374419e-8
 
 static const char *spheres(void) {
@@ -19,7 +21,7 @@ static double entry(const char *file, int i, int k) {
 }
 
 /* A sphere with an even source in surroundings of 900 K: its surface is at one temperature, and its centre hotter. */
-START_TEST(a_pebble_with_a_source) {
+TEST(a_pebble_with_a_source) {
     const double power = 500, r = 30, k = 8, area = 4 * M_PI * 1e-6 * r * r;
     const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,30\n"), *q = in_folder("q.csv");
     SUCCEED("heat", file, "--length-unit", "mm", "--emissivity", "0.8", "--power", "500", "--ambient", "900",
@@ -32,10 +34,9 @@ START_TEST(a_pebble_with_a_source) {
     ck_assert_double_le(fabs(value_of("centre_max_K") / (t + rise) - 1), 1e-3);
     ck_assert_double_le(fabs(value_of("k_star") / (k / (8 * r * 1e-3 * SIGMA * t * t * t)) - 1), 1e-3);
 }
-END_TEST
 
 /* All columns, in all files; walls and surroundings have none. */
-START_TEST(files_have_insides) {
+TEST(files_have_insides) {
     const char *file = spheres(), *q = in_folder("q.csv"), *json = in_folder("q.json"), *vtp = in_folder("q.vtp");
     SUCCEED("heat", file, "--length-unit", "m", "--emissivity", "0.8", "--temperature", "T", "--power", "P",
             "--ambient", "600", "--solid-conductivity", "k", "-o", q, "-o", json, "-o", vtp);
@@ -63,10 +64,9 @@ START_TEST(files_have_insides) {
     ck_assert_ptr_null(strstr(text, "T_min_K"));
     free(text);
 }
-END_TEST
 
 /* A pebble at 300 K on a floor of 1200 K: linear emission fails where the solid conducts badly. A warning says so. */
-START_TEST(surfaces_below_zero_are_named) {
+TEST(surfaces_below_zero_are_named) {
     const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,30\n");
     const char *conductivity[] = {"2", "200"};
     for (int k = 0; k < 2; ++k) {
@@ -77,10 +77,9 @@ START_TEST(surfaces_below_zero_are_named) {
         ck_assert_int_eq(strstr(said, "one.csv:2: warning: sphere 0: its surface comes out at -") != NULL, k == 0);
     }
 }
-END_TEST
 
 /* A table over temperature is taken at the temperature that is found. */
-START_TEST(conductivity_follows_temperature) {
+TEST(conductivity_follows_temperature) {
     const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,30\n0,0,70,30\n"), *q = in_folder("q.csv");
     char table[300];
     snprintf(table, sizeof table, "@%s", write_file("k.csv", "T,k\n500,10\n1500,2\n"));
@@ -89,10 +88,9 @@ START_TEST(conductivity_follows_temperature) {
     const double t = entry(q, 0, 1), k = 10 - 8 * (t - 500) / 1000;
     ck_assert_double_le(fabs((entry(q, 0, 8) - t) / (400 / (8 * M_PI * .03 * k)) - 1), 1e-3);
 }
-END_TEST
 
 /* In time insides are steady; who takes steps shorter than that lasts is told so. */
-START_TEST(insides_lag_in_time) {
+TEST(insides_lag_in_time) {
     const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,0.03\n0.07,0,0,0.03\n"), *q = in_folder("q.csv");
     for (int quick = 0; quick < 2; ++quick) {
         SUCCEED("heat", file, "--length-unit", "m", "--emissivity", "0.8", "--temperature", "1000", "--ambient", "600",
@@ -108,9 +106,8 @@ START_TEST(insides_lag_in_time) {
         ck_assert_double_gt(entry(q, 0, 9), entry(q, 0, 2)); /* it cools from within */
     }
 }
-END_TEST
 
-START_TEST(what_cannot_be) {
+TEST(what_cannot_be) {
     const char *file = spheres();
     static const struct {
         const char *value, *more, *reason;
@@ -136,18 +133,4 @@ START_TEST(what_cannot_be) {
                          "--solid-conductivity", "5"),
                      2);
     ck_assert_ptr_nonnull(strstr(said, "--length-unit"));
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("heat of spheres that conduct");
-    TCase *tests = suite_case(suite, "heat of spheres that conduct");
-    tcase_add_checked_fixture(tests, make_folder, remove_folder);
-    tcase_add_test(tests, a_pebble_with_a_source);
-    tcase_add_test(tests, files_have_insides);
-    tcase_add_test(tests, surfaces_below_zero_are_named);
-    tcase_add_test(tests, conductivity_follows_temperature);
-    tcase_add_test(tests, insides_lag_in_time);
-    tcase_add_test(tests, what_cannot_be);
-    return suite_run(suite);
 }

@@ -48,7 +48,7 @@ static double sum_of(const fibrad_light_ends *ends) {
 
 static fibrad_light along(double x, double y, double z) { return (fibrad_light){.direction = {x, y, z}, .flux = 1}; }
 
-START_TEST(a_lone_sphere_takes_its_shadow) {
+TEST(a_lone_sphere_takes_its_shadow) {
     const double one[][4] = {{.3, -.2, .7, 1.7}};
     struct bed bed = bed_of(1, one);
     for (uint64_t k = 0; k < 40; k++) {
@@ -65,7 +65,6 @@ START_TEST(a_lone_sphere_takes_its_shadow) {
     }
     bed_free(&bed);
 }
-END_TEST
 
 /* Three layers of touching unit spheres. */
 static struct bed layers(double x, double y, bool hexagonal) {
@@ -78,7 +77,7 @@ static struct bed layers(double x, double y, bool hexagonal) {
     return bed;
 }
 
-START_TEST(a_simple_cubic_bed_is_lit_in_its_first_layer) {
+TEST(a_simple_cubic_bed_is_lit_in_its_first_layer) {
     struct bed bed = layers(8, 8, false);
     const fibrad_body floor_body = plane_at(2, 0, -1);
     for (int walled = 0; walled < 2; walled++) {
@@ -93,9 +92,8 @@ START_TEST(a_simple_cubic_bed_is_lit_in_its_first_layer) {
     }
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(a_hexagonal_layer_takes_nine_tenths) {
+TEST(a_hexagonal_layer_takes_nine_tenths) {
     struct bed bed = layers(8, 4 * sqrt(3), true);
     const fibrad_scene_config config = {.period = {8, 4 * sqrt(3), 0}};
     const fibrad_light light = along(0, 0, -1);
@@ -104,7 +102,6 @@ START_TEST(a_hexagonal_layer_takes_nine_tenths) {
     free(lit.power);
     bed_free(&bed);
 }
-END_TEST
 
 /* A bed, its walls for both, and a light. */
 struct course {
@@ -192,7 +189,7 @@ static void extent_of(const struct bed *bed, double low[3], double high[3], doub
 
 enum { RAYS = 400 };
 
-START_TEST(a_box_with_an_open_top_as_by_rays) {
+TEST(a_box_with_an_open_top_as_by_rays) {
     static const double d[][3] = {{.5, .3, -.8}, {-.2, .1, -1}, {0, 0, -1}, {0, -.4, -1}};
     for (int k = 0; k < 4; k++) {
         struct course c;
@@ -207,9 +204,8 @@ START_TEST(a_box_with_an_open_top_as_by_rays) {
         compare(&c, &light, middle, 6, RAYS);
     }
 }
-END_TEST
 
-START_TEST(a_corner_that_is_open_on_three_sides_as_by_rays) {
+TEST(a_corner_that_is_open_on_three_sides_as_by_rays) {
     struct course c;
     struct bed bed = packing(20, .4, .8, .3, 4, false);
     double low[3], high[3], middle[3];
@@ -220,9 +216,8 @@ START_TEST(a_corner_that_is_open_on_three_sides_as_by_rays) {
     const fibrad_light light = along(.6, -.5, -.7);
     compare(&c, &light, middle, 6, RAYS);
 }
-END_TEST
 
-START_TEST(a_cup_as_by_rays) {
+TEST(a_cup_as_by_rays) {
     static const double d[][3] = {{.5, .3, -.8}, {0, .1, -1}, {0, 0, -1}};
     for (int k = 0; k < 3; k++) {
         struct course c;
@@ -241,9 +236,8 @@ START_TEST(a_cup_as_by_rays) {
         compare(&c, &light, middle, 6, RAYS);
     }
 }
-END_TEST
 
-START_TEST(a_disc_of_light_as_by_rays) {
+TEST(a_disc_of_light_as_by_rays) {
     for (int k = 0; k < 4; k++) {
         struct course c;
         struct bed bed = packing(20, .4, .8, .3, 6, k >= 2);
@@ -258,18 +252,4 @@ START_TEST(a_disc_of_light_as_by_rays) {
         for (int a = 0; a < 3; a++) light.centre[a] = middle[a] - 8 * c.d[a] + .1;
         compare(&c, &light, light.centre, light.radius, RAYS);
     }
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("light");
-    TCase *tcase = suite_case(suite, "first hits");
-    tcase_add_test(tcase, a_lone_sphere_takes_its_shadow);
-    tcase_add_test(tcase, a_simple_cubic_bed_is_lit_in_its_first_layer);
-    tcase_add_test(tcase, a_hexagonal_layer_takes_nine_tenths);
-    tcase_add_test(tcase, a_box_with_an_open_top_as_by_rays);
-    tcase_add_test(tcase, a_corner_that_is_open_on_three_sides_as_by_rays);
-    tcase_add_test(tcase, a_cup_as_by_rays);
-    tcase_add_test(tcase, a_disc_of_light_as_by_rays);
-    return suite_run(suite);
 }

@@ -90,7 +90,7 @@ static double absorb_plain(const struct plain_bed *p, const double d[3], double 
     return all;
 }
 
-START_TEST(a_settled_bed_absorbs_as_plain_rays_say) {
+TEST(a_settled_bed_absorbs_as_plain_rays_say) {
     struct bed bed = read_settled("tests/data/monoper2000.dump");
     struct plain_bed plain = plain_bed_of(&bed);
     const fibrad_scene_config config = {.period = {12, 12, 0}};
@@ -115,10 +115,9 @@ START_TEST(a_settled_bed_absorbs_as_plain_rays_say) {
     plain_free(&plain);
     bed_free(&bed);
 }
-END_TEST
 
 /* A floor that light reaches between few spheres, by what it absorbs itself and what it sends back. */
-START_TEST(a_floor_alone_absorbs_what_it_absorbs) {
+TEST(a_floor_alone_absorbs_what_it_absorbs) {
     const double far_away[][4] = {{0, 0, 1, .5}};
     struct bed bed = bed_of(1, far_away);
     const fibrad_body body = plane_at(2, 0, 0);
@@ -139,10 +138,9 @@ START_TEST(a_floor_alone_absorbs_what_it_absorbs) {
     }
     bed_free(&bed);
 }
-END_TEST
 
 /* Light in a closed cup that reflects all ends on the sphere or outside, whatever its walls do. */
-START_TEST(white_walls_absorb_nothing) {
+TEST(white_walls_absorb_nothing) {
     const double one[][4] = {{0, 0, .6, .5}};
     struct bed bed = bed_of(1, one);
     fibrad_body body[5];
@@ -156,11 +154,10 @@ START_TEST(white_walls_absorb_nothing) {
     free_absorbed(&a);
     bed_free(&bed);
 }
-END_TEST
 
 /* Kirchhoff: what a bed of one temperature sends out through its open face, over what a black face would, is the mean
  * of what it absorbs of light from all sides, by the cosine law. */
-START_TEST(emissivity_of_a_face_is_its_mean_absorptance) {
+TEST(emissivity_of_a_face_is_its_mean_absorptance) {
     struct bed bed = packing(40, .5, .5, .5, 9, true);
     const double side = bed.period[0], floor_at = -.5;
     bed.period[2] = 0;
@@ -192,15 +189,4 @@ START_TEST(emissivity_of_a_face_is_its_mean_absorptance) {
     printf("face: emissivity %.4f, mean absorptance %.4f\n", emissivity, mean);
     ck_assert_double_eq_tol(emissivity, mean, .01);
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("light in heat");
-    TCase *tcase = suite_case(suite, "reflections");
-    tcase_add_test(tcase, a_floor_alone_absorbs_what_it_absorbs);
-    tcase_add_test(tcase, white_walls_absorb_nothing);
-    tcase_add_test(tcase, emissivity_of_a_face_is_its_mean_absorptance);
-    tcase_add_test(tcase, a_settled_bed_absorbs_as_plain_rays_say);
-    return suite_run(suite);
 }

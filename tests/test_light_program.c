@@ -13,9 +13,11 @@ static void begin(void) {
     bed = write_file("bed.csv", "x,y,z,radius\n.5,.5,.5,.5\n1.5,.5,.5,.5\n.5,1.5,.5,.5\n1.5,1.5,1.2,.5\n");
 }
 
+FIXTURE(begin, remove_folder)
+
 static double fractions(void) { return value_of("absorbed") + value_of("reflected") + value_of("transmitted"); }
 
-START_TEST(what_is_absorbed_is_said_and_written) {
+TEST(what_is_absorbed_is_said_and_written) {
     const char *csv = in_folder("q.csv"), *profile = in_folder("p.csv");
     ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:1000", "--absorptivity", ".5",
                           "--wall-absorptivity", "zmin=.25,0", "-o", csv, "--profile", "z:2:.csv", "--quiet"),
@@ -43,9 +45,8 @@ START_TEST(what_is_absorbed_is_said_and_written) {
     ck_assert_ptr_eq(strstr(text, "z_low,z_high,spheres,absorbed_first_W,absorbed_W\n0,0.85,3,"), text);
     free(text);
 }
-END_TEST
 
-START_TEST(light_heats) {
+TEST(light_heats) {
     const char *wall = "zmin=insulated,insulated";
     SUCCEED("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--wall", CUP,
             "--wall-temperature", wall, "--power", "0", "--irradiate", "0,0,-1:1000");
@@ -58,10 +59,9 @@ START_TEST(light_heats) {
             "--heat-capacity", "800", "--density", "2500");
     ck_assert_double_eq_tol(value_of("supplied_J"), 10 * 1000 * M_PI, 1);
 }
-END_TEST
 
 /* An endless floor of equal spheres has an emissivity; a black cavity with a lid that is open has 1. */
-START_TEST(faces_have_an_emissivity) {
+TEST(faces_have_an_emissivity) {
     ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--face"), 0);
     ck_assert_double_eq_tol(value_of("face_area_m2"), 4, 1e-9);
     ck_assert_double_gt(value_of("face_emissivity"), .9);
@@ -71,9 +71,8 @@ START_TEST(faces_have_an_emissivity) {
     ck_assert_int_eq(HEAT("--temperature", "300", "--wall", "box", "--face"), 2);
     expect_message("--face: the bed has no open face", "");
 }
-END_TEST
 
-START_TEST(refused_lights_are_named) {
+TEST(refused_lights_are_named) {
     static const struct {
         const char *light, *wall, *place, *reason;
     } refused[] = {
@@ -112,16 +111,4 @@ START_TEST(refused_lights_are_named) {
     ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--absorptivity", "0",
                           "--wall-absorptivity", "0"),
                      0);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("light by the program");
-    TCase *tcase = suite_case(suite, "heat --irradiate");
-    tcase_add_checked_fixture(tcase, begin, remove_folder);
-    tcase_add_test(tcase, what_is_absorbed_is_said_and_written);
-    tcase_add_test(tcase, light_heats);
-    tcase_add_test(tcase, faces_have_an_emissivity);
-    tcase_add_test(tcase, refused_lights_are_named);
-    return suite_run(suite);
 }

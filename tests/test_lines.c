@@ -90,18 +90,17 @@ static void check_lengths(uint32_t n) {
     for (uint32_t k = 0; k < n; k++) ck_assert_double_le(fabs(sqrt(cosine(line[k], line[k])) - 1), 1e-15);
 }
 
-START_TEST(tables_are_those_that_the_header_names) {
+TEST(tables_are_those_that_the_header_names) {
     int found = 0;
     for (uint32_t n = 8; n <= FIBRAD_DIRECTIONS_MAX; n++)
         if (fibrad_lines_tabled(n)) ck_assert_uint_eq(TABLED[found++], n);
     ck_assert(found == TABLED_COUNT || TABLED[found] > FIBRAD_TABLE_LINES);
     ck_assert(!fibrad_lines_tabled(0) && !fibrad_lines_tabled(UINT32_MAX));
 }
-END_TEST
 
 /* Discrepancies: 0.568 for the best sets of any size, 0.580 for tables, whose halves count as well, 0.605 for half a
  * Fibonacci set, 0.814 for a Fibonacci set. */
-START_TEST(tables_are_even) {
+LOOP_TEST(tables_are_even, TABLED_COUNT) {
     const uint32_t n = TABLED[_i];
     const bool tabled = n <= FIBRAD_TABLE_LINES;
     fibrad_lines_make(n, line, tabled ? NULL : scratch);
@@ -114,9 +113,8 @@ START_TEST(tables_are_even) {
     take_fibonacci(n, n);
     ck_assert_double_lt(whole, 0.8 * discrepancy(n, 0, 1));
 }
-END_TEST
 
-START_TEST(any_number_is_nearly_as_even) {
+TEST(any_number_is_nearly_as_even) {
     for (uint32_t n = 8; n <= 300; n++) {
         fibrad_lines_make(n, line, scratch);
         check_lengths(n);
@@ -124,13 +122,12 @@ START_TEST(any_number_is_nearly_as_even) {
         ck_assert_double_lt(fmax(discrepancy(n, 0, 2), discrepancy(n, 1, 2)), n < 32 ? 0.72 : 0.68);
     }
 }
-END_TEST
 
 /* Numbers that are not tabled, beside tabled ones. */
 static const uint32_t BETWEEN[] = {55, 56, 99, 100, 233, 300, 511, 600};
 enum { BETWEEN_COUNT = sizeof BETWEEN / sizeof BETWEEN[0] };
 
-START_TEST(harmonics_are_integrated_better_than_by_directions) {
+LOOP_TEST(harmonics_are_integrated_better_than_by_directions, BETWEEN_COUNT) {
     const uint32_t n = BETWEEN[_i];
     const int most = (int)(0.7 * sqrt(n));
     fibrad_lines_make(n, line, scratch);
@@ -138,9 +135,8 @@ START_TEST(harmonics_are_integrated_better_than_by_directions) {
     take_fibonacci(n, n);
     ck_assert_double_lt(lines, 0.55 * harmonics(n, most));
 }
-END_TEST
 
-START_TEST(shadows_have_less_error) {
+LOOP_TEST(shadows_have_less_error, BETWEEN_COUNT) {
     const uint32_t n = BETWEEN[_i];
     fibrad_lines_make(n, line, scratch);
     const double whole = shadow_error(n, 0, 1), even = shadow_error(n, 0, 2), odd = shadow_error(n, 1, 2);
@@ -150,9 +146,8 @@ START_TEST(shadows_have_less_error) {
     take_fibonacci(n, 2 * n);
     ck_assert_double_lt(whole, 0.65 * shadow_error(n, 0, 1));
 }
-END_TEST
 
-START_TEST(many_lines_are_directions) {
+TEST(many_lines_are_directions) {
     const uint32_t sizes[] = {LARGEST + 1, 10000, FIBRAD_DIRECTIONS_MAX};
     for (int i = 0; i < 3; i++) {
         fibrad_lines_make(sizes[i], line, NULL);
@@ -163,7 +158,6 @@ START_TEST(many_lines_are_directions) {
         }
     }
 }
-END_TEST
 
 /* FNV-1a over the bits of numbers, the lowest byte first. */
 static uint64_t hash_of(uint64_t hash, const double *number, size_t count) {
@@ -175,7 +169,7 @@ static uint64_t hash_of(uint64_t hash, const double *number, size_t count) {
     return hash;
 }
 
-START_TEST(bits_are_pinned) {
+TEST(bits_are_pinned) {
     const uint32_t sizes[] = {8, 9, 50, 99, 100, 101, 300, 1000, 2048};
     uint64_t hash = 0xcbf29ce484222325;
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
@@ -184,9 +178,8 @@ START_TEST(bits_are_pinned) {
     }
     ck_assert_msg(hash == PINNED || FIBRAD_TABLE_LINES < LARGEST, "hash %#llx", (unsigned long long)hash);
 }
-END_TEST
 
-START_TEST(exchanges_make_halves_more_even) {
+TEST(exchanges_make_halves_more_even) {
     const uint32_t n = 150;
     const fibrad_line_steps steps = {100, 1.5, 0.8, 0};
     take_fibonacci(n, 2 * n);
@@ -195,19 +188,4 @@ START_TEST(exchanges_make_halves_more_even) {
     fibrad_lines_halve(n, line, scratch);
     ck_assert_double_le(fabs(discrepancy(n, 0, 1) - whole), 1e-9);
     ck_assert_double_lt(discrepancy(n, 0, 2) + discrepancy(n, 1, 2), 0.98 * halves);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("lines");
-    TCase *tests = suite_case(suite, "lines");
-    tcase_add_test(tests, tables_are_those_that_the_header_names);
-    tcase_add_loop_test(tests, tables_are_even, 0, TABLED_COUNT);
-    tcase_add_test(tests, any_number_is_nearly_as_even);
-    tcase_add_loop_test(tests, harmonics_are_integrated_better_than_by_directions, 0, BETWEEN_COUNT);
-    tcase_add_loop_test(tests, shadows_have_less_error, 0, BETWEEN_COUNT);
-    tcase_add_test(tests, many_lines_are_directions);
-    tcase_add_test(tests, bits_are_pinned);
-    tcase_add_test(tests, exchanges_make_halves_more_even);
-    return suite_run(suite);
 }

@@ -57,7 +57,7 @@ static double *squares(const struct bed *bed, const double *emissivity) {
 }
 
 /* What is received is never more than a sphere's own disc: sums stay at most 1 with exact areas. */
-START_TEST(averaging_makes_rows_reciprocal) {
+TEST(averaging_makes_rows_reciprocal) {
     struct bed beds[] = {packing(400, .8, 1.2, .55, 7, true), packing(400, .3, 1.5, .5, 8, false), lattice('f', 5)};
     for (size_t b = 0; b < 3; b++) {
         fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
@@ -87,9 +87,8 @@ START_TEST(averaging_makes_rows_reciprocal) {
         bed_free(&beds[b]);
     }
 }
-END_TEST
 
-START_TEST(averaging_by_hand) {
+TEST(averaging_by_hand) {
     const double r[] = {1, 2, 1}; /* areas 1 : 4 : 1; 0 sees 1, nobody sees 0 but 2, and 2 sees itself */
     struct matrix m =
         matrix_by_hand(3, r, (uint64_t[]){0, 1, 1, 3}, (uint32_t[]){1, 0, 2}, (double[]){.5, .25, .125}, NULL);
@@ -103,11 +102,10 @@ START_TEST(averaging_by_hand) {
     for (int i = 0; i < 3; i++) ck_assert_double_eq(m.factors.escaped[i], escaped[i]);
     matrix_free(&m);
 }
-END_TEST
 
 /* Sphere 0 sees 25 others that do not see it, and nobody says what else is seen: closing gives the rest of each row to
  * the surroundings, whatever its error is. */
-START_TEST(what_closing_changes) {
+TEST(what_closing_changes) {
     enum { N = 26 };
     double r[N], f[N];
     uint64_t start[N + 1] = {0};
@@ -124,10 +122,9 @@ START_TEST(what_closing_changes) {
         matrix_free(&m);
     }
 }
-END_TEST
 
 /* Factors of 0 stand where they were. */
-START_TEST(averaging_nothing) {
+TEST(averaging_nothing) {
     const double r[] = {1, 2};
     const fibrad_matrix_rule rules[] = {{0}, {.raw = 1}};
     for (int k = 0; k < 2; k++) {
@@ -145,10 +142,9 @@ START_TEST(averaging_nothing) {
     for (uint32_t i = 0; i < 2; i++) ck_assert_double_eq(matrix_total(&m.factors, i), 1);
     matrix_free(&m);
 }
-END_TEST
 
 /* Entry by entry the formula of the header. */
-START_TEST(averaging_entry_by_entry) {
+TEST(averaging_entry_by_entry) {
     struct bed bed = packing(120, .3, 1.5, .5, 9, false);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     const fibrad_beam_rule rule = {.directions = 34};
@@ -167,11 +163,10 @@ START_TEST(averaging_entry_by_entry) {
     matrix_free(&raw), matrix_free(&out);
     bed_free(&bed);
 }
-END_TEST
 
 /* The estimate follows from how far the mean is off the raw row, and is half the raw one at least; rows that are
  * symmetric by themselves keep theirs. */
-START_TEST(errors_of_averaged_rows) {
+TEST(errors_of_averaged_rows) {
     struct bed bed = packing(120, .3, 1.5, .5, 9, false);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34});
@@ -196,10 +191,9 @@ START_TEST(errors_of_averaged_rows) {
     matrix_free(&raw), matrix_free(&out), matrix_free(&kept);
     bed_free(&bed);
 }
-END_TEST
 
 /* Points err by their number, and a cutoff opens rows that others close. */
-START_TEST(limiting_keeps_reciprocity) {
+TEST(limiting_keeps_reciprocity) {
     struct bed bed = packing(400, .8, 1.2, .58, 7, true);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     const fibrad_beam_rule rule = {.directions = 55, .points = 64};
@@ -221,10 +215,9 @@ START_TEST(limiting_keeps_reciprocity) {
     matrix_free(&raw), matrix_free(&limited);
     bed_free(&bed);
 }
-END_TEST
 
 /* A_i emissivity_i D_ij is symmetric, each row counts by its partner's area, and rows that were closed are. */
-START_TEST(exchange_factors_are_balanced) {
+TEST(exchange_factors_are_balanced) {
     struct bed bed = packing(150, .5, 1.5, .5, 3, true);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     double *emissivity = calloc(bed.n, sizeof *emissivity);
@@ -260,12 +253,11 @@ START_TEST(exchange_factors_are_balanced) {
     matrix_free(&raw), matrix_free(&out), matrix_free(&view);
     bed_free(&bed);
 }
-END_TEST
 
 /* S_01 = (4 (3 A_0 D_01) + A_1 D_10)/5 with A = 4 pi (1, 4), in units of the largest emissivity, and what rows leave
  * over are closed by factors u: D_01 u_0 u_1, and u_0 times the rest of row 0. Where all emissivities are equal, areas
  * alone count. */
-START_TEST(exchange_by_hand) {
+TEST(exchange_by_hand) {
     const double r[] = {1, 2}, emissivity[] = {.9, .3};
     const uint64_t start[] = {0, 2, 4};
     const uint32_t col[] = {0, 1, 0, 1};
@@ -290,11 +282,10 @@ START_TEST(exchange_by_hand) {
     for (int k = 0; k < 4; k++) ck_assert_double_eq_tol(m.factors.f[k], reciprocal[k], 2e-15);
     matrix_free(&m);
 }
-END_TEST
 
 /* Spheres of emissivity 0 between two others: their rows stay empty, the others are to the bit what they are without
  * them; also where little entries are dropped, and as raw rows. */
-START_TEST(empty_rows_stay_empty) {
+TEST(empty_rows_stay_empty) {
     const double r[] = {1, 2}, emissivity[] = {.9, .3}, f[] = {.2, .5, .2, .25};
     const double r_all[] = {5, 1, .3, 2}, emissivity_all[] = {0, .9, 0, .3};
     for (int raw = 0; raw <= 1; raw++)
@@ -317,10 +308,9 @@ START_TEST(empty_rows_stay_empty) {
             matrix_free(&two), matrix_free(&four);
         }
 }
-END_TEST
 
 /* All reflect: a matrix of empty rows. */
-START_TEST(all_rows_empty) {
+TEST(all_rows_empty) {
     const double r[] = {1, 2}, emissivity[] = {0, 0};
     struct matrix m = matrix_by_hand(2, r, (uint64_t[]){0, 0, 0}, (uint32_t[]){0}, (double[]){0},
                                      &(fibrad_matrix_rule){.emissivity = emissivity, .drop = .1});
@@ -328,10 +318,9 @@ START_TEST(all_rows_empty) {
     ck_assert(m.factors.start[2] == 0 && reciprocity(&m) == 0);
     matrix_free(&m);
 }
-END_TEST
 
 /* Rows of a walled bed with reflectors, made reciprocal and closed. */
-START_TEST(reflectors_in_a_walled_bed) {
+TEST(reflectors_in_a_walled_bed) {
     struct bed bed = packing(120, .5, 1.5, .45, 3, false);
     const fibrad_body floor_plane = plane_at(2, 0, -100);
     fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
@@ -358,9 +347,8 @@ START_TEST(reflectors_in_a_walled_bed) {
     rows_free(&rows), work_free(&work);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(dropping_keeps_the_books) {
+TEST(dropping_keeps_the_books) {
     struct bed bed = packing(400, .7, 1.3, .55, 17, true);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 233});
@@ -388,10 +376,9 @@ START_TEST(dropping_keeps_the_books) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* A threshold that equals an entry: both of a pair must go, or neither. */
-START_TEST(dropping_at_the_threshold) {
+TEST(dropping_at_the_threshold) {
     uint32_t gone = 0, stayed = 0;
     for (uint64_t k = 0; k < 2000; k++) {
         const double r[2] = {.1 + bed_make_random(9, 3 * k), .1 + bed_make_random(9, 3 * k + 1)};
@@ -414,10 +401,9 @@ START_TEST(dropping_at_the_threshold) {
     ck_assert_uint_gt(stayed, 1000); /* the other one is above the threshold, or the entry itself is not below */
     ck_assert_uint_eq(stayed + gone, 2000);
 }
-END_TEST
 
 /* A star: what its centre gives away cannot be given back to the leaves by any scaling. */
-START_TEST(dropping_where_no_scaling_exists) {
+TEST(dropping_where_no_scaling_exists) {
     const double r[] = {1, 1, 1, 1};
     static const uint64_t start[] = {0, 2, 5, 7, 8};
     static const uint32_t col[] = {1, 2, 0, 2, 3, 0, 1, 1};
@@ -431,10 +417,9 @@ START_TEST(dropping_where_no_scaling_exists) {
     ck_assert_double_eq(matrix_factor(&m.factors, 0, 2), 0);
     matrix_free(&whole), matrix_free(&m);
 }
-END_TEST
 
 /* Pairs of which one factor is missing, on either side of the diagonal: it counts in full. */
-START_TEST(lone_factors_are_not_reciprocal) {
+TEST(lone_factors_are_not_reciprocal) {
     const double r[] = {1, 2, 1};
     const fibrad_matrix_rule raw = {.raw = 1};
     struct matrix above =
@@ -453,10 +438,9 @@ START_TEST(lone_factors_are_not_reciprocal) {
     ck_assert_double_le(reciprocity(&exchange), 1e-16);
     matrix_free(&above), matrix_free(&below), matrix_free(&diagonal), matrix_free(&exchange);
 }
-END_TEST
 
 /* Raw rows are what they were, in the order of the spheres, and what is missing is empty. */
-START_TEST(raw_rows_stay_as_they_are) {
+TEST(raw_rows_stay_as_they_are) {
     struct bed bed = packing(100, .5, 1.5, .4, 3, false);
     const fibrad_body floor_plane = plane_at(2, 0, -100);
     fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
@@ -490,28 +474,4 @@ START_TEST(raw_rows_stay_as_they_are) {
     row_free(&row), rows_free(&rows), work_free(&work);
     matrix_free(&m);
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("matrix");
-    TCase *tests = suite_case(suite, "matrix");
-    tcase_add_test(tests, averaging_makes_rows_reciprocal);
-    tcase_add_test(tests, averaging_by_hand);
-    tcase_add_test(tests, what_closing_changes);
-    tcase_add_test(tests, averaging_nothing);
-    tcase_add_test(tests, averaging_entry_by_entry);
-    tcase_add_test(tests, errors_of_averaged_rows);
-    tcase_add_test(tests, limiting_keeps_reciprocity);
-    tcase_add_test(tests, exchange_factors_are_balanced);
-    tcase_add_test(tests, exchange_by_hand);
-    tcase_add_test(tests, empty_rows_stay_empty);
-    tcase_add_test(tests, all_rows_empty);
-    tcase_add_test(tests, reflectors_in_a_walled_bed);
-    tcase_add_test(tests, dropping_keeps_the_books);
-    tcase_add_test(tests, dropping_at_the_threshold);
-    tcase_add_test(tests, dropping_where_no_scaling_exists);
-    tcase_add_test(tests, lone_factors_are_not_reciprocal);
-    tcase_add_test(tests, raw_rows_stay_as_they_are);
-    return suite_run(suite);
 }

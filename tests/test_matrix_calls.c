@@ -38,7 +38,7 @@ static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows
 }
 
 /* No bit depends on the number of tasks, on who averages them, nor on how rows are spread over collections. */
-START_TEST(tasks_change_no_bit) {
+TEST(tasks_change_no_bit) {
     struct bed bed = packing(150, .3, 1.5, .5, 3, true);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     double *emissivity = calloc(bed.n, sizeof *emissivity);
@@ -70,9 +70,8 @@ START_TEST(tasks_change_no_bit) {
     free(emissivity), free(scene);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(calls_out_of_order) {
+TEST(calls_out_of_order) {
     const double r[] = {1, 2, 1};
     fibrad_scene *scene = apart(3, r);
     fibrad_rows rows = {.memory = memory_growing()};
@@ -116,10 +115,9 @@ START_TEST(calls_out_of_order) {
     rows_free(&rows);
     free(scene);
 }
-END_TEST
 
 /* A row that is missing or there twice, in one collection or in two, is named, and there is no matrix. */
-START_TEST(rows_missing_or_double) {
+TEST(rows_missing_or_double) {
     const double r[] = {1, 2, 1, 1, 3}, f = .5;
     fibrad_scene *scene = apart(5, r);
     const uint32_t col = 2;
@@ -163,10 +161,9 @@ START_TEST(rows_missing_or_double) {
     matrix_free(&empty);
     free(scene);
 }
-END_TEST
 
 /* At every offset the same bits, nothing written beside the block, and a byte less is too little. */
-START_TEST(matrix_blocks_of_any_alignment) {
+TEST(matrix_blocks_of_any_alignment) {
     struct bed bed = packing(60, .5, 1.5, .5, 3, true);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34});
@@ -203,9 +200,8 @@ START_TEST(matrix_blocks_of_any_alignment) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(bad_matrices_are_refused) {
+TEST(bad_matrices_are_refused) {
     const double r[] = {1, 2}, f = .5;
     fibrad_scene *scene = apart(2, r);
     uint32_t col = 1;
@@ -251,13 +247,12 @@ START_TEST(bad_matrices_are_refused) {
     rows_free(&rows), rows_free(&stranger), rows_free(&seen), rows_free(&walled);
     free(scene);
 }
-END_TEST
 
 static bool same_collection(const fibrad_rows *a, const fibrad_rows *b) {
     return a->count == b->count && a->entries == b->entries;
 }
 
-START_TEST(bad_rows_are_refused) {
+TEST(bad_rows_are_refused) {
     fibrad_rows rows = {.memory = memory_growing()};
     uint32_t col[] = {1, 3}, descending[] = {3, 1}, equal[] = {1, 1};
     double f[] = {.1, .2}, body[] = {.5};
@@ -306,11 +301,10 @@ START_TEST(bad_rows_are_refused) {
     rows_free(&rows);
     fibrad_rows_clear(NULL);
 }
-END_TEST
 
 /* Rows by the kernel and rows added come out alike, with one and the other in one collection, which is then emptied and
  * used again without more memory. */
-START_TEST(rows_added_are_rows_computed) {
+TEST(rows_added_are_rows_computed) {
     struct bed bed = packing(50, .5, 1.5, .4, 3, false);
     const fibrad_body walls[] = {plane_at(2, 0, -100), plane_at(2, 1, 500)};
     fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 2});
@@ -350,11 +344,10 @@ START_TEST(rows_added_are_rows_computed) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* Fixed memory: what a row lacks is said, nothing is lost or written beside the block, and with as much memory the row
  * goes in. At every offset of the block. */
-START_TEST(collections_in_fixed_memory) {
+TEST(collections_in_fixed_memory) {
     struct bed bed = packing(40, .5, 1.5, .4, 3, false);
     fibrad_scene *scene = scene_of(&bed, 0);
     fibrad_work work = work_growing();
@@ -407,9 +400,8 @@ START_TEST(collections_in_fixed_memory) {
     row_free(&row), rows_free(&plenty), work_free(&work);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(collections_that_grow) {
+TEST(collections_that_grow) {
     struct bed bed = packing(60, .5, 1.5, .4, 3, false);
     fibrad_scene *scene = scene_of(&bed, 0);
     const fibrad_beam_rule rule = {.directions = 13};
@@ -442,10 +434,9 @@ START_TEST(collections_that_grow) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* Rows come back as they went in, also empty ones, with columns that may be written. */
-START_TEST(rows_read_one_by_one) {
+TEST(rows_read_one_by_one) {
     uint32_t col[] = {3, 5, 9};
     double f[] = {.25, .125, .0625}, body[] = {.5};
     const fibrad_row in = {.col = col,
@@ -482,21 +473,4 @@ START_TEST(rows_read_one_by_one) {
     ck_assert_int_eq(fibrad_rows_read(&rows, NULL, &out), 0);
     ck_assert_int_eq(fibrad_rows_read(&rows, &at, NULL), 0);
     rows_free(&rows);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("matrix calls");
-    TCase *tests = suite_case(suite, "matrix calls");
-    tcase_add_test(tests, tasks_change_no_bit);
-    tcase_add_test(tests, calls_out_of_order);
-    tcase_add_test(tests, rows_missing_or_double);
-    tcase_add_test(tests, matrix_blocks_of_any_alignment);
-    tcase_add_test(tests, bad_matrices_are_refused);
-    tcase_add_test(tests, bad_rows_are_refused);
-    tcase_add_test(tests, rows_added_are_rows_computed);
-    tcase_add_test(tests, collections_in_fixed_memory);
-    tcase_add_test(tests, collections_that_grow);
-    tcase_add_test(tests, rows_read_one_by_one);
-    return suite_run(suite);
 }

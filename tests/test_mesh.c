@@ -37,7 +37,7 @@ static double solid_angle(double v[3][3]) {
 }
 
 /* A triangle whose plane does not cut the sphere: F is its solid angle over 4 pi. */
-START_TEST(a_sphere_and_a_triangle) {
+TEST(a_sphere_and_a_triangle) {
     double square = 0, worst[3] = {0};
     const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     enum { CASES = 60 };
@@ -89,10 +89,9 @@ START_TEST(a_sphere_and_a_triangle) {
     struct bed own = bed;
     bed_free(&own);
 }
-END_TEST
 
 /* Spheres behind a large screen are too small for points of the window; what is seen of them goes to the screen. */
-START_TEST(small_spheres_behind) {
+TEST(small_spheres_behind) {
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     struct mesh *mesh = mesh_new();
     uint32_t v[4];
@@ -115,7 +114,6 @@ START_TEST(small_spheres_behind) {
     free(mesh);
     bed_free(&bed);
 }
-END_TEST
 
 /* ---- containers -------------------------------------------------------------------------------------------------- */
 
@@ -134,7 +132,7 @@ static struct bed crowd(uint32_t n, uint64_t seed) {
 }
 
 /* A box of twelve triangles is a box of planes; spheres are cut by it by 2 %. */
-START_TEST(a_box_of_triangles) {
+TEST(a_box_of_triangles) {
     static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
     struct bed bed = crowd(60, 3);
     struct mesh *mesh = mesh_new();
@@ -170,10 +168,9 @@ START_TEST(a_box_of_triangles) {
     free(scene), free(other), free(mesh);
     bed_free(&bed);
 }
-END_TEST
 
 /* A tube with two lids of facets is nearly a cylinder with two planes; along x as along z. */
-START_TEST(a_drum) {
+TEST(a_drum) {
     struct bed bed = bed_of(0, NULL);
     srand(11);
     while (bed.n < 40) {
@@ -229,10 +226,9 @@ START_TEST(a_drum) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* A plane within a box that poles of a mesh stand through: what is beyond plays no part. */
-START_TEST(tubes_through_walls) {
+TEST(tubes_through_walls) {
     const struct bed bed = bed_of(2, (const double[][4]){{.2, .5, .5, .1}, {.75, .5, .4, .12}});
     fibrad_scene *scene[2];
     fibrad_row row[2];
@@ -263,11 +259,10 @@ START_TEST(tubes_through_walls) {
     struct bed own = bed;
     bed_free(&own);
 }
-END_TEST
 
 /* An open mesh within planes or a cylinder: windows of which so little is open that no point lies there give it to what
  * lies behind, so that sums are 1, and walls get what they get by points. */
-START_TEST(open_meshes_within_walls) {
+TEST(open_meshes_within_walls) {
     struct bed bed = crowd(150, 11);
     struct mesh *mesh = mesh_new();
     for (uint32_t k = 0; k < 3; k++) mesh_vertex(mesh, k == 1 ? .9 : .1, k == 2 ? .8 : .2, .3 + .2 * k);
@@ -306,12 +301,11 @@ START_TEST(open_meshes_within_walls) {
     free(mesh);
     bed_free(&bed);
 }
-END_TEST
 
 /* ---- sides ------------------------------------------------------------------------------------------------------- */
 
 /* A plate that nobody's back faces a sphere ends the row and is named; with a body of its own it takes its part. */
-START_TEST(sides_of_nobody) {
+TEST(sides_of_nobody) {
     const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     struct mesh *mesh = mesh_new();
     fibrad_work work = work_growing();
@@ -358,9 +352,8 @@ START_TEST(sides_of_nobody) {
     struct bed own = bed;
     bed_free(&own);
 }
-END_TEST
 
-START_TEST(bad_triangles_are_named) {
+TEST(bad_triangles_are_named) {
     const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     struct mesh *mesh = mesh_new();
     const double low[3] = {-2, -2, -2}, high[3] = {2, 2, 2};
@@ -385,7 +378,6 @@ START_TEST(bad_triangles_are_named) {
     struct bed own = bed;
     bed_free(&own);
 }
-END_TEST
 
 /* A triangle of some size at (x, 0, z) about a sphere of radius 1 at the origin, repeated with a period along some
  * axes: the status of its scene, and the triangle at fault. */
@@ -425,7 +417,7 @@ static void expect_rows(const fibrad_scene *scene) {
 
 /* Triangles have the bounds of spheres: too small, too far, or too many at one place they are refused, at the bounds
  * all ends well. */
-START_TEST(triangles_have_bounds) {
+TEST(triangles_have_bounds) {
     static const double small[] = {1e-14, 1e-30, 1e-37, 1e-50, 1e-200},
                         short_period[] = {1e-3, 1e-6, 1e-8, 1e-11, 1e-200};
     fibrad_scene *scene = NULL;
@@ -471,10 +463,9 @@ START_TEST(triangles_have_bounds) {
     }
     free(scene);
 }
-END_TEST
 
 /* Fins as tall as can be, between which lines go up for ever. */
-START_TEST(tall_fins_are_left) {
+TEST(tall_fins_are_left) {
     static const double top[] = {1e2, 1e4, 1e6};
     const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     for (int k = 0; k < 3; k++) {
@@ -493,13 +484,12 @@ START_TEST(tall_fins_are_left) {
     struct bed own = bed;
     bed_free(&own);
 }
-END_TEST
 
 /* ---- rays, periods, bits ------------------------------------------------------------------------------------------
  */
 
 /* The nearest triangle of many, by the tree and one by one. */
-START_TEST(rays_through_the_tree) {
+TEST(rays_through_the_tree) {
     struct mesh *mesh = mesh_new();
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, .01}});
     srand(5);
@@ -546,10 +536,9 @@ START_TEST(rays_through_the_tree) {
     free(scene), free(mesh);
     bed_free(&bed);
 }
-END_TEST
 
 /* A periodic bed with a tube is one of many copies of both. */
-START_TEST(periodic_meshes) {
+TEST(periodic_meshes) {
     struct bed bed = bed_of(2, (const double[][4]){{.2, .2, .3, .19}, {.25, .75, .7, .2}}), many = bed_of(0, NULL);
     struct mesh *mesh = mesh_new(), *copies = mesh_new();
     enum { FAR = 6 };
@@ -583,10 +572,9 @@ START_TEST(periodic_meshes) {
     free(scene), free(other), free(mesh), free(copies);
     bed_free(&bed), bed_free(&many);
 }
-END_TEST
 
 /* What FIBRAD_WORK_TRIANGLES says is enough. */
-START_TEST(work_among_triangles) {
+TEST(work_among_triangles) {
     static unsigned char block[FIBRAD_WORK_BYTES(64, 64) + FIBRAD_WORK_TRIANGLES + 64];
     static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
     struct bed bed = crowd(20, 4);
@@ -603,11 +591,10 @@ START_TEST(work_among_triangles) {
     free(scene), free(mesh);
     bed_free(&bed);
 }
-END_TEST
 
 /* A sphere that sees all others, as many as work memory begins with, and three meshes besides: there are more entries
  * than spheres, in memory that grows and in as much as FIBRAD_WORK_BYTES says. */
-START_TEST(more_entries_than_spheres) {
+TEST(more_entries_than_spheres) {
     enum { N = 1024 };
     static unsigned char block[FIBRAD_WORK_BYTES(512, N) + FIBRAD_WORK_TRIANGLES];
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
@@ -642,11 +629,10 @@ START_TEST(more_entries_than_spheres) {
     free(scene), free(mesh);
     bed_free(&bed);
 }
-END_TEST
 
 /* Soups of triangles and spheres, slivers, doubled and coplanar ones, corners on spheres: sums are 1, beams and rays
  * agree, and bits are the same in every instruction set and for triangles in any order. */
-START_TEST(soups) {
+TEST(soups) {
     srand(9);
     int isa[ISAS_MOST];
     const int isas = isas_there(isa);
@@ -701,10 +687,9 @@ START_TEST(soups) {
         bed_free(&bed);
     }
 }
-END_TEST
 
 /* Exchange in a closed grey box of triangles is that of planes, and rows of meshes are. */
-START_TEST(grey_meshes) {
+TEST(grey_meshes) {
     static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1}, wall[6] = {.8, .3, .5, 1, .2, .6};
     struct bed bed = crowd(30, 8);
     struct mesh *mesh = mesh_new();
@@ -740,27 +725,4 @@ START_TEST(grey_meshes) {
     work_free(&work);
     free(mesh);
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("mesh");
-    TCase *tests = suite_case(suite, "mesh");
-    tcase_add_test(tests, a_sphere_and_a_triangle);
-    tcase_add_test(tests, small_spheres_behind);
-    tcase_add_test(tests, a_box_of_triangles);
-    tcase_add_test(tests, a_drum);
-    tcase_add_test(tests, tubes_through_walls);
-    tcase_add_test(tests, open_meshes_within_walls);
-    tcase_add_test(tests, sides_of_nobody);
-    tcase_add_test(tests, bad_triangles_are_named);
-    tcase_add_test(tests, triangles_have_bounds);
-    tcase_add_test(tests, tall_fins_are_left);
-    tcase_add_test(tests, rays_through_the_tree);
-    tcase_add_test(tests, periodic_meshes);
-    tcase_add_test(tests, work_among_triangles);
-    tcase_add_test(tests, more_entries_than_spheres);
-    tcase_add_test(tests, soups);
-    tcase_add_test(tests, grey_meshes);
-    return suite_run(suite);
 }

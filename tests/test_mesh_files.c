@@ -6,6 +6,8 @@
 #include "soups.h"
 #include "read/vtk/vtk_grid.h"
 
+FIXTURE(make_folder, remove_folder)
+
 static struct soup cube(void) {
     struct soup soup = {0};
     soup_cube(&soup, 4);
@@ -27,7 +29,7 @@ static void assert_cube(const char *path, bool text) {
     stl_free(&stl);
 }
 
-START_TEST(the_same_in_every_form) {
+TEST(the_same_in_every_form) {
     const struct soup soup = cube();
     const char *text = write_solid("a.stl", &soup), *binary = write_binary("b.stl", &soup, "made by a test", 0);
     assert_cube(text, true);
@@ -40,7 +42,6 @@ START_TEST(the_same_in_every_form) {
     fclose(file);
     assert_cube(in_folder("d.stl"), true);
 }
-END_TEST
 
 #define FACET(corners) "solid s\nfacet normal 0 0 1\nouter loop\n" corners "endloop\nendfacet\nendsolid s\n"
 
@@ -69,10 +70,11 @@ static void refuse(const char *path, const char *line, const char *reason) {
     expect_message(place, reason);
 }
 
-START_TEST(broken_text_is_refused) { refuse(write_file("x.stl", broken[_i].text), broken[_i].line, broken[_i].reason); }
-END_TEST
+LOOP_TEST(broken_text_is_refused, sizeof broken / sizeof *broken) {
+    refuse(write_file("x.stl", broken[_i].text), broken[_i].line, broken[_i].reason);
+}
 
-START_TEST(broken_binaries_are_refused) {
+TEST(broken_binaries_are_refused) {
     struct soup soup = cube();
     refuse(write_binary("x.stl", &soup, "", 1), "", "685 bytes; a binary STL file of 12 triangles has 684");
     refuse(write_binary("x.stl", &soup, "solid", -50), "", "634 bytes");
@@ -84,7 +86,6 @@ START_TEST(broken_binaries_are_refused) {
     ck_assert_int_eq(RUN("bed", MONO, "--wall", "mesh:nothing.stl"), 4);
     expect_message("nothing.stl: ", "No such file");
 }
-END_TEST
 
 /* ---- surfaces --------------------------------------------------------------------------------------------------- */
 
@@ -98,7 +99,7 @@ static struct surface surface_of(const struct soup *soup, double scale) {
     return surface;
 }
 
-START_TEST(corners_are_welded) {
+TEST(corners_are_welded) {
     struct soup soup = cube();
     for (int trial = 0; trial < 50; ++trial) {
         for (uint32_t t = 0; t < soup.n && trial > 0; ++t)
@@ -115,9 +116,8 @@ START_TEST(corners_are_welded) {
         surface_free(&s);
     }
 }
-END_TEST
 
-START_TEST(what_is_not_sound_is_counted) {
+TEST(what_is_not_sound_is_counted) {
     struct soup soup = cube();
     const double a[3] = {-4, -4, -4}, b[3] = {4, -4, -4}, middle[3] = {0, -4, -4}, far[3] = {0, -9, 0};
     soup_add(&soup, a, b, b);      /* no corner of its own */
@@ -132,7 +132,6 @@ START_TEST(what_is_not_sound_is_counted) {
     ck_assert_uint_eq(s.open, 4);
     surface_free(&s);
 }
-END_TEST
 
 /* ---- sides ------------------------------------------------------------------------------------------------------ */
 
@@ -159,7 +158,7 @@ static void assert_side(const struct meshes *meshes, uint32_t t, const double po
 }
 
 /* A cube whose triangles are wound at random; spheres within, or around it. */
-START_TEST(sides_of_a_cube) {
+TEST(sides_of_a_cube) {
     for (int trial = 0; trial < 40; ++trial) {
         struct soup soup = cube();
         if (trial > 0) soup_flip(&soup, trial == 1);
@@ -189,9 +188,8 @@ START_TEST(sides_of_a_cube) {
         meshes_free(&about);
     }
 }
-END_TEST
 
-START_TEST(sides_of_a_funnel) {
+TEST(sides_of_a_funnel) {
     for (int trial = 0; trial < 20; ++trial) {
         struct soup soup = {0};
         soup_cone(&soup, 1, 2, (const double[]){0, 5}, (const double[]){1, 4}, 24);
@@ -204,10 +202,9 @@ START_TEST(sides_of_a_funnel) {
         meshes_free(&meshes);
     }
 }
-END_TEST
 
 /* A tube in a box, of one file: its outside, the box's inside. */
-START_TEST(sides_of_a_tube_in_a_box) {
+TEST(sides_of_a_tube_in_a_box) {
     for (int trial = 0; trial < 20; ++trial) {
         struct soup soup = cube();
         soup_cone(&soup, 1, 0, (const double[]){-3.9, 3.9}, (const double[]){.5, .5}, 12);
@@ -227,9 +224,8 @@ START_TEST(sides_of_a_tube_in_a_box) {
         meshes_free(&meshes);
     }
 }
-END_TEST
 
-START_TEST(sides_that_are_asked_for) {
+TEST(sides_that_are_asked_for) {
     struct soup soup = cube();
     double centre[3][8] = {{0}, {0}, {0}};
     struct meshes both = faced(&soup, SIDES_BOTH, 1, centre), normals = faced(&soup, SIDES_NORMALS, 1, centre);
@@ -261,7 +257,6 @@ START_TEST(sides_that_are_asked_for) {
     for (uint32_t t = 0; t < soup.n; ++t) ck_assert(strip.front[t] == 0 && strip.back[t] == 0);
     meshes_free(&strip);
 }
-END_TEST
 
 /* ---- the option ------------------------------------------------------------------------------------------------- */
 
@@ -274,7 +269,7 @@ static const char *wall_of(const char *before, const char *path, const char *aft
     return text[next];
 }
 
-START_TEST(names_of_meshes) {
+TEST(names_of_meshes) {
     const struct soup soup = cube();
     const char *path = write_solid("my-box.v2.stl", &soup), *two = in_folder("two.stl");
     FILE *file = fopen(two, "w");
@@ -304,7 +299,6 @@ START_TEST(names_of_meshes) {
     }
     ck_assert_int_eq(walls_option("mesh:", &(struct wall_options){0}), 2);
 }
-END_TEST
 
 /* An array of doubles of a .vtp, [n] at least. */
 static void vtp_array(const char *path, const char *name, double *values, size_t n) {
@@ -340,7 +334,7 @@ static double gain_of(const char *path, const char *name, size_t first, size_t n
 #define BED "x,y,z,r,T\n-1,0,0,1,500\n1.1,0,0,1,600\n0,2,1,.5,700\n"
 
 /* A closed mesh about a bed gets what six planes get; its triangles, as ParaView reads them. */
-START_TEST(rows_in_a_closed_mesh) {
+TEST(rows_in_a_closed_mesh) {
     struct soup soup = cube();
     soup_flip(&soup, 0);
     const char *bed = write_file("bed.csv", BED), *box = write_solid("box.stl", &soup), *out = in_folder("w.vtp");
@@ -372,10 +366,9 @@ START_TEST(rows_in_a_closed_mesh) {
     ck_assert_int_eq(RUN("bed", bed, "--wall-vtp", out), 2);
     expect_message("--wall-vtp", "no --wall mesh:FILE");
 }
-END_TEST
 
 /* A cube in the slice of a picture: its outline, in pieces of the triangles. */
-START_TEST(slice_through_a_mesh) {
+TEST(slice_through_a_mesh) {
     const struct soup soup = cube();
     struct wall_options options = {0};
     struct bed bed;
@@ -408,10 +401,9 @@ START_TEST(slice_through_a_mesh) {
     bed_free(&bed);
     walls_free(&options);
 }
-END_TEST
 
 /* What is seen from behind, and what lies there. */
-START_TEST(backs_of_meshes) {
+TEST(backs_of_meshes) {
     struct soup soup = {0};
     soup_box(&soup, (const double[]){-3, -3, -3}, (const double[]){0, 3, 3});
     const char *bed = write_file("bed.csv", BED "5,0,0,1,300\n"), *text = write_solid("half.stl", &soup);
@@ -433,7 +425,6 @@ START_TEST(backs_of_meshes) {
     expect_message(
         text, "warning: the mesh is not closed: 4 edges belong to one triangle, 0 to more than two; components: 1");
 }
-END_TEST
 
 /* ---- heat of triangles ------------------------------------------------------------------------------------------ */
 
@@ -451,7 +442,7 @@ static const char *write_column(const char *name, const char *head, int n, doubl
 #define STATE "--emissivity", "0.7", "--temperature", "T", "--wall-emissivity", "0.6", "--wall-vtp"
 
 /* What triangles gain adds up to what the summary says of their walls. */
-START_TEST(heat_of_triangles) {
+TEST(heat_of_triangles) {
     const struct soup soup = cube();
     const char *bed = write_file("bed.csv", BED), *box = write_solid("box.stl", &soup), *out = in_folder("q.vtp");
     SUCCEED("heat", bed, "--length-unit", "cm", "--wall", wall_of("mesh:", box, ""), "--wall-temperature", "400", STATE,
@@ -489,7 +480,6 @@ START_TEST(heat_of_triangles) {
             in_folder("t.*.vtp"), "--until", "10", "--heat-capacity", "800", "--density", "2500");
     ck_assert_double_gt(gain_of(in_folder("t.0.vtp"), "flux_W_m2", 0, 12), 1);
 }
-END_TEST
 
 /* Each triangle in four. */
 static void quarter(struct soup *soup) {
@@ -505,7 +495,7 @@ static void quarter(struct soup *soup) {
 }
 
 /* Fluxes of the triangles of a cube with one hot side come closer to those of many rays as there are more. */
-START_TEST(more_rays_for_triangles) {
+TEST(more_rays_for_triangles) {
     static struct soup soup;
     static double flux[3][768];
     const char *out = in_folder("q.vtp"), *const rays[] = {"1", "2000000", "4000000"}, *column = in_folder("T.csv");
@@ -531,10 +521,9 @@ START_TEST(more_rays_for_triangles) {
     ck_assert_int_eq(RUN("heat", bed, "--length-unit", "m", "--wall-rays", "0"), 2);
     expect_message("--wall-rays", "0");
 }
-END_TEST
 
 /* Triangles with temperatures from a file, in the order of the mesh's, whatever of it is left out. */
-START_TEST(temperatures_of_triangles) {
+TEST(temperatures_of_triangles) {
     struct soup soup = {0};
     const double flat[3] = {0, 0, 0};
     soup_add(&soup, flat, flat, flat);
@@ -578,30 +567,4 @@ START_TEST(temperatures_of_triangles) {
                          "--heat-capacity", "800", "--density", "2500", "--model", "factors"),
                      2);
     ck_assert_ptr_nonnull(strstr(said, "--model factors: triangles cannot have temperatures of their own"));
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("mesh_files");
-    TCase *files = suite_case(suite, "files"), *sides = suite_case(suite, "sides"),
-          *option = suite_case(suite, "option"), *heat = suite_case(suite, "heat");
-    TCase *const cases[] = {files, sides, option, heat};
-    for (int k = 0; k < 4; ++k) tcase_add_checked_fixture(cases[k], make_folder, remove_folder);
-    tcase_add_test(files, the_same_in_every_form);
-    tcase_add_loop_test(files, broken_text_is_refused, 0, (int)(sizeof broken / sizeof *broken));
-    tcase_add_test(files, broken_binaries_are_refused);
-    tcase_add_test(files, corners_are_welded);
-    tcase_add_test(files, what_is_not_sound_is_counted);
-    tcase_add_test(sides, sides_of_a_cube);
-    tcase_add_test(sides, sides_of_a_funnel);
-    tcase_add_test(sides, sides_of_a_tube_in_a_box);
-    tcase_add_test(sides, sides_that_are_asked_for);
-    tcase_add_test(option, names_of_meshes);
-    tcase_add_test(option, rows_in_a_closed_mesh);
-    tcase_add_test(option, slice_through_a_mesh);
-    tcase_add_test(option, backs_of_meshes);
-    tcase_add_test(heat, heat_of_triangles);
-    tcase_add_test(heat, more_rays_for_triangles);
-    tcase_add_test(heat, temperatures_of_triangles);
-    return suite_run(suite);
 }

@@ -18,7 +18,7 @@ static double relative(double value, double truth) { return fabs(value / truth -
 
 /* Values in 113-bit arithmetic from the integral over the distance of the discs, made by data/generate_pair_exact.c:
  * radius ratios to 1e4, gaps from 1e-300 to 1e12, overlaps to all but the centre. Both ways round, and reciprocity. */
-START_TEST(true_values) {
+TEST(true_values) {
     FILE *file = fopen("tests/data/pair_exact.csv", "r");
     ck_assert_msg(file != NULL, "tests/data/pair_exact.csv: run the tests from the top of the tree");
     char line[256];
@@ -35,9 +35,8 @@ START_TEST(true_values) {
     fclose(file);
     ck_assert_int_gt(lines, 700);
 }
-END_TEST
 
-START_TEST(closed_values) {
+TEST(closed_values) {
     const double pi = 3.14159265358979323846;
     ck_assert_double_le(relative(exact(1, 1, 0), 0.5 - 4 / (3 * pi)), 1e-15);
     ck_assert_double_le(relative(exact(1, 1, 0), 0.0755868184216124), 1e-14);
@@ -47,9 +46,8 @@ START_TEST(closed_values) {
     ck_assert_double_le(fabs(exact(1, 1, -2 + 1e-15) - 0.5), 1e-14);
     ck_assert_double_le(fabs(exact(1, 2, -2 + 1e-15) - 0.5), 1e-7);
 }
-END_TEST
 
-START_TEST(far_field) {
+TEST(far_field) {
     for (double gap = 1e8; gap < 1e13; gap *= 10) {
         const double d = 3 + gap;
         ck_assert_double_le(relative(exact(2, 1, gap), 0.25 / d / d), 2e-15);
@@ -59,10 +57,9 @@ START_TEST(far_field) {
     ck_assert_double_le(exact(1e-150, 1e150, DBL_MAX), 1e-317);
     ck_assert_double_le(exact(1e150, 1e-150, DBL_MAX), 0);
 }
-END_TEST
 
 /* The polar-angle formula and the lens integral share neither variable nor integrand with the kernel's. */
-START_TEST(quadratures_of_gsl) {
+TEST(quadratures_of_gsl) {
     static const double radius[] = {1, 0.7, 0.1, 1e-3, 1e-4};
     static const double gap[] = {0, 1e-12, 1e-6, 1e-3, 0.1, 1, 6, 100, 1e6};
     static const double overlap[] = {-1e-9, -1e-6, -1e-4, -0.01, -0.5, -1.5};
@@ -86,13 +83,12 @@ START_TEST(quadratures_of_gsl) {
     ck_assert_int_ne(exact_gsl_polar(1, 1, -0.1, &f12, &abserr), 0);
     ck_assert_int_ne(exact_gsl_lens(1, 1, -2, &f12, &abserr), 0);
 }
-END_TEST
 
 static const double scene[][3] = {{1, 1, 0},     {1, 0.3, 1e-12},  {0.7, 1.3, 1e-5}, {1e-4, 1, 0.3}, {2, 3, 1e8},
                                   {1, 1, -1e-9}, {1.5, 0.2, -0.1}, {1, 1, -1.9},     {3e3, 0.3, 40}, {1, 0.9999, 2}};
 
 /* Powers of two from 1e-144 to 1e144 change no bit. */
-START_TEST(scaling_by_two) {
+TEST(scaling_by_two) {
     for (size_t i = 0; i < sizeof scene / sizeof *scene; i++)
         for (int k = -480; k <= 480; k += 6) {
             const double *s = scene[i];
@@ -100,20 +96,18 @@ START_TEST(scaling_by_two) {
             ck_assert_msg(scaled == exact(s[0], s[1], s[2]), "scene %d scaled by 2^%d", (int)i, k);
         }
 }
-END_TEST
 
-START_TEST(scaling_by_ten) {
+TEST(scaling_by_ten) {
     for (size_t i = 0; i < sizeof scene / sizeof *scene; i++)
         for (int k = -145; k <= 145; k += 10) {
             const double *s = scene[i], unit = pow(10, k);
             ck_assert_double_le(relative(exact(s[0] * unit, s[1] * unit, s[2] * unit), exact(s[0], s[1], s[2])), 1e-14);
         }
 }
-END_TEST
 
 /* F falls with the gap, on both sides of contact and across it, in steps down to where its slope meets rounding, and
  * moves no more than the step allows: no jump. */
-START_TEST(sweep_across_contact) {
+TEST(sweep_across_contact) {
     static const double radius[] = {1, 0.5, 0.01, 1e-4};
     for (size_t i = 0; i < sizeof radius / sizeof *radius; i++)
         for (int exponent = -13; exponent <= -3; exponent++) {
@@ -128,9 +122,8 @@ START_TEST(sweep_across_contact) {
             }
         }
 }
-END_TEST
 
-START_TEST(falls_with_the_gap) {
+TEST(falls_with_the_gap) {
     static const double radius[] = {1, 0.5, 0.01, 1e-4};
     for (size_t i = 0; i < sizeof radius / sizeof *radius; i++) {
         const double r = radius[i];
@@ -147,10 +140,9 @@ START_TEST(falls_with_the_gap) {
         }
     }
 }
-END_TEST
 
 /* At the ends of the range nothing leaves it. A sphere before a plane, or in it, sees it in half of all directions. */
-START_TEST(extremes) {
+TEST(extremes) {
     const double large = 1e150, small = 1e-150, contact = exact(1, 1, 0);
     ck_assert_double_eq_tol(exact(large, large, 0), contact, 1e-15);
     ck_assert_double_eq_tol(exact(small, small, 0), contact, 1e-15);
@@ -161,9 +153,8 @@ START_TEST(extremes) {
         ck_assert_double_eq(exact(large, small, gaps[k]), 0);
     }
 }
-END_TEST
 
-START_TEST(arguments) {
+TEST(arguments) {
     static const double bad[][3] = {
         {0, 1, 1},         {1, 0, 1},     {-1, 1, 1},       {1, -1, 1},       {NAN, 1, 1},
         {1, NAN, 1},       {1, 1, NAN},   {INFINITY, 1, 1}, {1, INFINITY, 1}, {1, 1, INFINITY},
@@ -176,21 +167,4 @@ START_TEST(arguments) {
         ck_assert_double_eq(f12, 42);
     }
     ck_assert_int_eq(fibrad_pair_exact(1, 1, 1, NULL), FIBRAD_E_ARGUMENT);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("pair_exact");
-    TCase *all = suite_case(suite, "pair exact");
-    tcase_add_test(all, true_values);
-    tcase_add_test(all, closed_values);
-    tcase_add_test(all, far_field);
-    tcase_add_test(all, quadratures_of_gsl);
-    tcase_add_test(all, scaling_by_two);
-    tcase_add_test(all, scaling_by_ten);
-    tcase_add_test(all, sweep_across_contact);
-    tcase_add_test(all, falls_with_the_gap);
-    tcase_add_test(all, extremes);
-    tcase_add_test(all, arguments);
-    return suite_run(suite);
 }

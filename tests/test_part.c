@@ -25,7 +25,7 @@ static struct part part_near(const struct part *p, uint32_t i, double distance, 
 }
 
 /* Rows depend on what is near, to the bit, whatever else there is and in whatever order. */
-START_TEST(rows_depend_on_what_is_near) {
+LOOP_TEST(rows_depend_on_what_is_near, KINDS) {
     struct made m;
     make_kind(&m, &kinds[_i]);
     fibrad_scene *whole = part_scene(&m.part);
@@ -53,10 +53,9 @@ START_TEST(rows_depend_on_what_is_near) {
     free(whole);
     free_made(&m);
 }
-END_TEST
 
 /* Displacements likewise. */
-START_TEST(displacements_depend_on_what_is_near) {
+TEST(displacements_depend_on_what_is_near) {
     struct made m;
     make_kind(&m, &kinds[3]);
     fibrad_scene *whole = part_scene(&m.part);
@@ -83,12 +82,11 @@ START_TEST(displacements_depend_on_what_is_near) {
     free(whole), free(e);
     free_made(&m);
 }
-END_TEST
 
 /* A periodic bed, and an open one with images of the same ids. Coordinates have few digits, so that images are where
  * they should be to the bit. Factors to all images of a sphere together are those to it: counts of points to the bit,
  * sums of paths to rounding. */
-START_TEST(images_are_spheres_of_the_same_id) {
+TEST(images_are_spheres_of_the_same_id) {
     struct made m;
     make_kind(&m, &kinds[4]);
     struct part *p = &m.part;
@@ -134,10 +132,9 @@ START_TEST(images_are_spheres_of_the_same_id) {
     free(periodic);
     free_made(&m);
 }
-END_TEST
 
 /* Triangles beyond the cutoff are met where no sphere is on the way. */
-START_TEST(far_triangles_are_met) {
+TEST(far_triangles_are_met) {
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     struct mesh *mesh = mesh_new();
     mesh_box(mesh, (const double[]){-30, -20, -10}, (const double[]){40, 50, 60}, 0);
@@ -154,10 +151,9 @@ START_TEST(far_triangles_are_met) {
     free(mesh);
     bed_free(&bed);
 }
-END_TEST
 
 /* Triangles that repeat where spheres do not are as good as their copies. */
-START_TEST(triangles_repeat_alone) {
+TEST(triangles_repeat_alone) {
     struct bed bed = bed_of(1, (const double[][4]){{.3, .4, 0, .45}});
     double seen[2][METHODS];
     enum { FAR = 40 };
@@ -187,10 +183,9 @@ START_TEST(triangles_repeat_alone) {
     }
     bed_free(&bed);
 }
-END_TEST
 
 /* Lattices have spheres at equal depth and paths that meet two at once. Ids decide, not the order. */
-START_TEST(ids_decide_among_equals) {
+LOOP_TEST(ids_decide_among_equals, 3) {
     static const char lattices[] = {'p', 'i', 'f'};
     struct bed bed = lattice(lattices[_i], 4.1);
     for (uint32_t i = 0; i < bed.n; i++) bed.x[i] *= .9375, bed.y[i] *= .9375, bed.z[i] *= .9375;
@@ -214,10 +209,9 @@ START_TEST(ids_decide_among_equals) {
     part_free(&p);
     bed_free(&bed);
 }
-END_TEST
 
 /* Turned rows err in all ways: their mean over many turns comes to the fine row, each is off by what it says. */
-START_TEST(turned_rows_average_to_the_fine_one) {
+LOOP_TEST(turned_rows_average_to_the_fine_one, 3) {
     enum { TURNS = 300 };
     struct bed bed = packing(120, .5, 1, .45, 4, false);
     const fibrad_body floor_below = plane_at(2, 0, -1);
@@ -254,10 +248,9 @@ START_TEST(turned_rows_average_to_the_fine_one) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* Turned directions need not pair off; the floor still has half of what a free sphere sends out, cut or not. */
-START_TEST(a_floor_below_turned_directions) {
+LOOP_TEST(a_floor_below_turned_directions, 2) {
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 3, 1}});
     const fibrad_body floor_below = plane_at(2, 0, 0);
     fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_below, .bodies = 1});
@@ -275,19 +268,4 @@ START_TEST(a_floor_below_turned_directions) {
     work_free(&work);
     free(scene);
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("part");
-    TCase *tests = suite_case(suite, "part");
-    tcase_add_loop_test(tests, rows_depend_on_what_is_near, 0, KINDS);
-    tcase_add_test(tests, displacements_depend_on_what_is_near);
-    tcase_add_test(tests, images_are_spheres_of_the_same_id);
-    tcase_add_test(tests, far_triangles_are_met);
-    tcase_add_test(tests, triangles_repeat_alone);
-    tcase_add_loop_test(tests, ids_decide_among_equals, 0, 3);
-    tcase_add_loop_test(tests, turned_rows_average_to_the_fine_one, 0, 3);
-    tcase_add_loop_test(tests, a_floor_below_turned_directions, 0, 2);
-    return suite_run(suite);
 }

@@ -9,6 +9,18 @@
 
 static char folder[] = "/tmp/fibrad_plot_XXXXXX", path[sizeof folder + 8];
 
+static void make_folder(void) {
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/a.svg", folder);
+}
+
+static void remove_folder(void) {
+    remove(path);
+    rmdir(folder);
+}
+
+FIXTURE(make_folder, remove_folder)
+
 /* Draws by a function with its data, and returns the picture, to be freed. */
 typedef int draw_function(const struct output *output, const void *what);
 
@@ -69,7 +81,7 @@ static char *picture_of_bed(double size, bool walled) {
 }
 
 /* Beds in metres with grains of any size have axes with short numbers and names. */
-START_TEST(small_and_large_beds) {
+LOOP_TEST(small_and_large_beds, 4) {
     static const struct {
         double size;
         const char *power;
@@ -84,9 +96,8 @@ START_TEST(small_and_large_beds) {
     ck_assert_int_eq(strstr(svg, word) != NULL, cases[_i].power != NULL);
     free(svg);
 }
-END_TEST
 
-START_TEST(a_bed_between_walls) {
+TEST(a_bed_between_walls) {
     char *svg = picture_of_bed(1, true);
     assert_texts_inside(svg);
     assert_tells(svg, "Fraction to walls and out of the bed");
@@ -94,14 +105,13 @@ START_TEST(a_bed_between_walls) {
     assert_tells(svg, "stroke='rgb(140, 140, 140)'"); /* the wall */
     free(svg);
 }
-END_TEST
 
 /* ---- heat -------------------------------------------------------------------------------------------------------- */
 
 static int draw_heat(const struct output *output, const void *what) { return plot_heat(output, "bed's.dump", what); }
 
 /* Three spheres in millimetres: what gains, what loses, and who else. */
-START_TEST(where_heat_goes) {
+TEST(where_heat_goes) {
     struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1e-3}, {.003, 0, 0, 1e-3}, {0, 0, .004, 1e-3}});
     const double temperature[] = {300, 1200.5, 777}, power[] = {1.5, -4.25, .25};
     const double wall_temperature[] = {412, 900}, wall_power[] = {3.125, -.5};
@@ -149,11 +159,10 @@ START_TEST(where_heat_goes) {
     free(svg);
     bed_free(&bed);
 }
-END_TEST
 
 /* Names are shown as they are, and those of many walls stand aslant, apart from each other; temperatures that were
  * found are shown by height. */
-START_TEST(many_walls) {
+TEST(many_walls) {
     struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1}});
     static struct meshes meshes;
     static struct walls walls = {.count = 9, .meshes = &meshes};
@@ -180,11 +189,10 @@ START_TEST(many_walls) {
     free(svg);
     bed_free(&bed);
 }
-END_TEST
 
 /* ---- exchange and conductivity ----------------------------------------------------------------------------------- */
 
-START_TEST(exchange_factors_shown) {
+TEST(exchange_factors_shown) {
     struct bed bed = packing(60, .4, .6, .4, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     double emissivity[60];
@@ -203,13 +211,12 @@ START_TEST(exchange_factors_shown) {
     fibrad_bed_free(factors);
     bed_free(&bed);
 }
-END_TEST
 
 static int draw_conduction(const struct output *output, const void *what) {
     return plot_conduction(output, "folder/bed_1.dump", what);
 }
 
-START_TEST(conductivity_shown) {
+TEST(conductivity_shown) {
     struct conduction what = {.solid_fraction = .61,
                               .emitters = 49,
                               .factor = {.75, .76, .77},
@@ -231,22 +238,4 @@ START_TEST(conductivity_shown) {
     assert_tells(svg, ">z<");
     ck_assert(!strstr(svg, ">x<") && !strstr(svg, "k = "));
     free(svg);
-}
-END_TEST
-
-int main(void) {
-    if (!mkdtemp(folder)) return 1;
-    snprintf(path, sizeof path, "%s/a.svg", folder);
-    Suite *suite = suite_create("plot");
-    TCase *cases = suite_case(suite, "plot");
-    tcase_add_loop_test(cases, small_and_large_beds, 0, 4);
-    tcase_add_test(cases, a_bed_between_walls);
-    tcase_add_test(cases, where_heat_goes);
-    tcase_add_test(cases, many_walls);
-    tcase_add_test(cases, exchange_factors_shown);
-    tcase_add_test(cases, conductivity_shown);
-    const int status = suite_run(suite);
-    remove(path);
-    rmdir(folder);
-    return status;
 }

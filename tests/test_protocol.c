@@ -1,7 +1,7 @@
 /* test_protocol.c - calls at the wrong time, and scenes rebuilt in place. SPDX-License-Identifier: MIT */
 #include "heat_calls.h"
 
-START_TEST(sources_missing) {
+TEST(sources_missing) {
     const struct contents c = contents_of(11);
     struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
     const fibrad_heat_sources zeroed = {0}, good = p->sources;
@@ -44,10 +44,9 @@ START_TEST(sources_missing) {
     end_problem(p);
     end_problem(book);
 }
-END_TEST
 
 /* Zero is a temperature and an emissivity. */
-START_TEST(zero_is_a_value) {
+TEST(zero_is_a_value) {
     const struct contents c = contents_of(12);
     struct problem *p = begin_problem(&c, 0);
     trace_all(p);
@@ -75,7 +74,6 @@ START_TEST(zero_is_a_value) {
     ck_assert_double_le(fabs(sum), 1e-12 * largest);
     end_problem(p);
 }
-END_TEST
 
 enum { CHANGES = 9 };
 
@@ -90,7 +88,7 @@ static void assert_other_scene(struct problem *p) {
 }
 
 /* The scene is rebuilt with other contents at each stage, and then as it was. */
-START_TEST(other_contents_in_place) {
+LOOP_TEST(other_contents_in_place, CHANGES) {
     const struct contents c = contents_of(13);
     struct problem *book = by_the_book(&c);
     const struct contents other = changed(&c, _i);
@@ -106,10 +104,9 @@ START_TEST(other_contents_in_place) {
     end_problem(p);
     end_problem(book);
 }
-END_TEST
 
 /* The same, but the second scene is not even made. */
-START_TEST(no_contents_in_place) {
+TEST(no_contents_in_place) {
     const struct contents c = contents_of(14);
     struct problem *book = by_the_book(&c);
     struct contents bad = c;
@@ -128,10 +125,9 @@ START_TEST(no_contents_in_place) {
     end_problem(p);
     end_problem(book);
 }
-END_TEST
 
 /* Nor is there anything else to be had of what has become of such a scene. */
-START_TEST(nothing_of_no_scene) {
+TEST(nothing_of_no_scene) {
     const struct contents c = contents_of(14);
     struct contents bad = c;
     bad.x[9] = bad.x[8], bad.y[9] = bad.y[8], bad.z[9] = bad.z[8];
@@ -160,7 +156,6 @@ START_TEST(nothing_of_no_scene) {
     rows_free(&rows);
     end_problem(p);
 }
-END_TEST
 
 /* What is kept in work memory between calls: rows in fresh memory and in old, after the scene was rebuilt in place. */
 static void assert_row_as_fresh(struct problem *p, fibrad_work *kept, uint32_t i) {
@@ -191,7 +186,7 @@ static void assert_row_as_fresh(struct problem *p, fibrad_work *kept, uint32_t i
     row_free(&b);
 }
 
-START_TEST(work_kept_while_scenes_change) {
+TEST(work_kept_while_scenes_change) {
     const struct contents c = contents_of(20);
     struct problem *p = begin_problem(&c, 0);
     fibrad_work fixed = work_fixed(block_of(1 << 18), 1 << 18);
@@ -206,10 +201,9 @@ START_TEST(work_kept_while_scenes_change) {
     free(fixed.memory.block);
     end_problem(p);
 }
-END_TEST
 
 /* The block of work memory is exchanged for another, moved, overwritten by the caller's realloc, or made smaller. */
-START_TEST(work_in_another_block) {
+TEST(work_in_another_block) {
     const struct contents c = contents_of(21);
     struct problem *p = begin_problem(&c, 0);
     size_t size = 1 << 18;
@@ -233,7 +227,6 @@ START_TEST(work_in_another_block) {
     free(block);
     end_problem(p);
 }
-END_TEST
 
 static fibrad_rows rows_from(const fibrad_scene *scene, uint32_t begin, uint32_t end) {
     fibrad_work work = work_growing();
@@ -244,7 +237,7 @@ static fibrad_rows rows_from(const fibrad_scene *scene, uint32_t begin, uint32_t
     return rows;
 }
 
-START_TEST(matrix_calls_out_of_order) {
+TEST(matrix_calls_out_of_order) {
     const struct contents c = contents_of(22);
     struct problem *p = begin_problem(&c, 0);
     fibrad_rows rows = rows_from(p->scene, 0, N);
@@ -280,10 +273,9 @@ START_TEST(matrix_calls_out_of_order) {
     rows_free(&rows);
     end_problem(p);
 }
-END_TEST
 
 /* Rows missing, in two collections at once, twice in one, or of something else. */
-START_TEST(matrix_of_wrong_rows) {
+TEST(matrix_of_wrong_rows) {
     const struct contents c = contents_of(23);
     struct problem *p = begin_problem(&c, 0);
     fibrad_rows rows[4] = {rows_from(p->scene, 0, 5), rows_from(p->scene, 5, N), rows_from(p->scene, 4, 6)};
@@ -342,10 +334,9 @@ START_TEST(matrix_of_wrong_rows) {
     free(block);
     end_problem(p);
 }
-END_TEST
 
 /* A row that is refused leaves a collection as it was. */
-START_TEST(refused_rows_are_not_appended) {
+TEST(refused_rows_are_not_appended) {
     const struct contents c = contents_of(24);
     struct problem *p = begin_problem(&c, 0);
     static unsigned char memory[1 << 12];
@@ -373,10 +364,9 @@ START_TEST(refused_rows_are_not_appended) {
     work_free(&work);
     end_problem(p);
 }
-END_TEST
 
 /* A row that was appended to a collection and is then given its own arrays no more: its capacity says so. */
-START_TEST(row_reused_after_appending) {
+TEST(row_reused_after_appending) {
     struct bed bed = packing(60, .8, 1.2, .5, 3, false);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_work work = work_growing();
@@ -394,10 +384,9 @@ START_TEST(row_reused_after_appending) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* Rows of another scene, rows that change while their matrix is made, and a matrix that failed in place. */
-START_TEST(matrix_of_changing_rows) {
+TEST(matrix_of_changing_rows) {
     struct bed bed = packing(60, .8, 1.2, .5, 3, false), other = packing(60, .8, 1.2, .5, 4, false);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST), *another = scene_of(&other, FIBRAD_ISA_BEST);
     fibrad_rows rows = rows_from(scene, 0, 60), more = rows_from(scene, 0, 1), fewer = rows_from(scene, 1, 60);
@@ -423,23 +412,4 @@ START_TEST(matrix_of_changing_rows) {
     free(rows.memory.block), free(more.memory.block), free(fewer.memory.block);
     free(scene), free(another);
     bed_free(&bed), bed_free(&other);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("protocol");
-    TCase *tests = suite_case(suite, "protocol");
-    tcase_add_test(tests, sources_missing);
-    tcase_add_test(tests, zero_is_a_value);
-    tcase_add_loop_test(tests, other_contents_in_place, 0, CHANGES);
-    tcase_add_test(tests, no_contents_in_place);
-    tcase_add_test(tests, nothing_of_no_scene);
-    tcase_add_test(tests, work_kept_while_scenes_change);
-    tcase_add_test(tests, work_in_another_block);
-    tcase_add_test(tests, matrix_calls_out_of_order);
-    tcase_add_test(tests, matrix_of_wrong_rows);
-    tcase_add_test(tests, refused_rows_are_not_appended);
-    tcase_add_test(tests, row_reused_after_appending);
-    tcase_add_test(tests, matrix_of_changing_rows);
-    return suite_run(suite);
 }

@@ -21,7 +21,7 @@ static void assert_no_begin(struct problem *p) {
 }
 
 /* Every fibrad_heat_trace has returned an error, and the caller did not look. */
-START_TEST(traces_that_failed) {
+TEST(traces_that_failed) {
     const struct contents c = contents_of(1);
     struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0xa5);
     unsigned char small[64];
@@ -40,14 +40,13 @@ START_TEST(traces_that_failed) {
     end_problem(p);
     end_problem(book);
 }
-END_TEST
 
 static void *no_more(void *context, void *block, size_t size) {
     (void)context, (void)block, (void)size;
     return NULL;
 }
 
-START_TEST(traces_without_memory) {
+TEST(traces_without_memory) {
     const struct contents c = contents_of(2);
     struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
     fibrad_work work = {.memory = {.resize = no_more}};
@@ -61,10 +60,9 @@ START_TEST(traces_without_memory) {
     end_problem(p);
     end_problem(book);
 }
-END_TEST
 
 /* Nothing is traced, whatever was in the block before. */
-START_TEST(nothing_traced) {
+TEST(nothing_traced) {
     static const int fills[] = {0, 1, 0x5a, 0xff};
     const struct contents c = contents_of(3);
     struct problem *book = by_the_book(&c);
@@ -80,10 +78,9 @@ START_TEST(nothing_traced) {
     }
     end_problem(book);
 }
-END_TEST
 
 /* One task is left out, the first, the last, one of spheres and one of walls among them. */
-START_TEST(one_task_not_traced) {
+TEST(one_task_not_traced) {
     const struct contents c = contents_of(4);
     struct problem *book = by_the_book(&c);
     ck_assert_uint_gt(tasks_of(book), N + 1);
@@ -101,9 +98,8 @@ START_TEST(one_task_not_traced) {
     }
     end_problem(book);
 }
-END_TEST
 
-START_TEST(tasks_and_parts_out_of_range) {
+TEST(tasks_and_parts_out_of_range) {
     const struct contents c = contents_of(5);
     struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
     const uint32_t tasks = tasks_of(p), beyond[] = {0, 1, 1000, UINT32_MAX - tasks};
@@ -130,9 +126,8 @@ START_TEST(tasks_and_parts_out_of_range) {
     end_problem(p);
     end_problem(book);
 }
-END_TEST
 
-START_TEST(tasks_traced_twice) {
+TEST(tasks_traced_twice) {
     const struct contents c = contents_of(6);
     struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0xff);
     for (uint32_t k = 0; k < tasks_of(p); k++)
@@ -147,10 +142,9 @@ START_TEST(tasks_traced_twice) {
     end_problem(p);
     end_problem(book);
 }
-END_TEST
 
 /* One of the parts is left out of every sweep at first, and made up for. */
-START_TEST(one_part_not_swept) {
+TEST(one_part_not_swept) {
     const struct contents c = contents_of(7);
     struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
     trace_all(p);
@@ -173,9 +167,8 @@ START_TEST(one_part_not_swept) {
     end_problem(p);
     end_problem(book);
 }
-END_TEST
 
-START_TEST(parts_swept_twice) {
+TEST(parts_swept_twice) {
     const struct contents c = contents_of(8);
     struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
     trace_all(p);
@@ -193,9 +186,8 @@ START_TEST(parts_swept_twice) {
     end_problem(p);
     end_problem(book);
 }
-END_TEST
 
-START_TEST(steps_and_reads_too_early) {
+TEST(steps_and_reads_too_early) {
     const struct contents c = contents_of(9);
     struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
     trace_all(p);
@@ -222,10 +214,9 @@ START_TEST(steps_and_reads_too_early) {
     end_problem(p);
     end_problem(book);
 }
-END_TEST
 
 /* A solution given up half-way, in every third of its sweeps, leaves nothing behind. */
-START_TEST(begun_anew_in_between) {
+TEST(begun_anew_in_between) {
     const struct contents c = contents_of(10);
     struct problem *book = by_the_book(&c);
     for (uint32_t until = 0; until < book->result.sweeps; until += 3) {
@@ -247,9 +238,8 @@ START_TEST(begun_anew_in_between) {
     }
     end_problem(book);
 }
-END_TEST
 
-START_TEST(moved_before_the_first_solution) {
+TEST(moved_before_the_first_solution) {
     const struct contents c = contents_of(15), d = contents_of(16);
     struct problem *book = by_the_book(&d);
     for (int stage = MADE; stage <= SWEPT; stage++) {
@@ -266,11 +256,10 @@ START_TEST(moved_before_the_first_solution) {
     }
     end_problem(book);
 }
-END_TEST
 
 /* A warm start takes fewer sweeps to the same powers; in place and to a scene elsewhere; with spheres in other cells
  * (mirrored), too. */
-START_TEST(moved_after_a_solution) {
+TEST(moved_after_a_solution) {
     const struct contents c = contents_of(17);
     for (int far = 0; far < 2; far++) {
         struct contents d = c;
@@ -303,10 +292,9 @@ START_TEST(moved_after_a_solution) {
         end_problem(book);
     }
 }
-END_TEST
 
 /* What was moved there and back again has the bits of a second solution where nothing was moved. */
-START_TEST(moved_there_and_back) {
+TEST(moved_there_and_back) {
     const struct contents c = contents_of(18), d = changed(&c, 3);
     struct problem *p = begin_problem(&c, 0), *still = begin_problem(&c, 0);
     trace_all(p), trace_all(still);
@@ -323,10 +311,9 @@ START_TEST(moved_there_and_back) {
     end_problem(p);
     end_problem(still);
 }
-END_TEST
 
 /* Refused, a move leaves everything as it was: the solution can be read, and another one begun. */
-START_TEST(moves_refused) {
+TEST(moves_refused) {
     const struct contents c = contents_of(19);
     struct problem *book = by_the_book(&c), *p = by_the_book(&c);
     unsigned char *block = block_of(p->scene_size);
@@ -366,25 +353,4 @@ START_TEST(moves_refused) {
     free(block);
     end_problem(p);
     end_problem(book);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("protocol heat");
-    TCase *tests = suite_case(suite, "protocol heat");
-    tcase_add_test(tests, traces_that_failed);
-    tcase_add_test(tests, traces_without_memory);
-    tcase_add_test(tests, nothing_traced);
-    tcase_add_test(tests, one_task_not_traced);
-    tcase_add_test(tests, tasks_and_parts_out_of_range);
-    tcase_add_test(tests, tasks_traced_twice);
-    tcase_add_test(tests, one_part_not_swept);
-    tcase_add_test(tests, parts_swept_twice);
-    tcase_add_test(tests, steps_and_reads_too_early);
-    tcase_add_test(tests, begun_anew_in_between);
-    tcase_add_test(tests, moved_before_the_first_solution);
-    tcase_add_test(tests, moved_after_a_solution);
-    tcase_add_test(tests, moved_there_and_back);
-    tcase_add_test(tests, moves_refused);
-    return suite_run(suite);
 }

@@ -28,6 +28,8 @@ static void remove_file(void) {
     bed_free(&bed);
 }
 
+FIXTURE(make_file, remove_file)
+
 static void write_file(const char *text, size_t size) {
     FILE *file = fopen(path, "wb");
     ck_assert_ptr_nonnull(file);
@@ -90,24 +92,22 @@ static void expect_refusal(const char *text, size_t size, const struct read_opti
     ck_assert_ptr_eq(strchr(said, '\n'), said + strlen(said) - 1);
 }
 
-START_TEST(csv_in_any_order) {
+TEST(csv_in_any_order) {
     ck_assert_int_eq(try("name,r,z,y,x\r\n\"a,\"\"b\",0.5, 3 ,\"2\",1\r\n\n# comment\nb , 1e-1,-3,-2,-1"), 0);
     ck_assert_uint_eq(bed.n, 2);
     expect_sphere(0, 1, 2, 3, 0.5, 2);
     expect_sphere(1, -1, -2, -3, 0.1, 5);
     ck_assert(bed.period[0] == 0 && bed.period[1] == 0 && bed.period[2] == 0);
 }
-END_TEST
 
-START_TEST(csv_after_byte_order_mark_and_comments) {
+TEST(csv_after_byte_order_mark_and_comments) {
     ck_assert_int_eq(try("\xEF\xBB\xBF# made by hand\n\nx,y,z,diameter\n1,2,3,1\n"), 0);
     expect_sphere(0, 1, 2, 3, 0.5, 4);
     ck_assert_int_eq(try("\xEF\xBB\xBFx,y,z,radius\n1,2,3,1\n"), 0);
     expect_sphere(0, 1, 2, 3, 1, 2);
 }
-END_TEST
 
-START_TEST(further_columns_by_name) {
+TEST(further_columns_by_name) {
     const char *const names[] = {"emissivity", "T"};
     const char text[] = "T,x,y,z,r,emissivity,id\n300,0,0,0,1,0.8,17\n400,3,0,0,1,0.9,4\n";
     const char *const units[] = {NULL, "K"};
@@ -128,10 +128,9 @@ START_TEST(further_columns_by_name) {
     const char lacking[] = "x,y,z,r,emissivity,id\n0,0,0,1,1,1\n";
     expect_refusal(lacking, sizeof lacking - 1, &options, 1, "no column T; there are x, y, z, r, emissivity, id");
 }
-END_TEST
 
 /* Columns whose names have units, by either name. */
-START_TEST(columns_with_units) {
+TEST(columns_with_units) {
     static const char *const wanted[] = {"T", "T [C]", "T (\302\260C)", "T_[C]", "T [K]"};
     static const struct {
         const char *column;
@@ -151,20 +150,18 @@ START_TEST(columns_with_units) {
             if (!status) ck_assert_double_eq(bed.extra[0], 20.5);
         }
 }
-END_TEST
 
 /* Of many names in a header, as many as there is room for. */
-START_TEST(many_columns) {
+TEST(many_columns) {
     char text[5000] = "x,y,r";
     for (int k = 0; k < 500; ++k) snprintf(text + strlen(text), 20, ",c%d", k);
     strcat(text, "\n");
     expect_refusal(text, strlen(text), &(struct read_options){0}, 1, "no column z; there are x, y, r, c0, c1");
     ck_assert_ptr_nonnull(strstr(said, " ... (503 in all)"));
 }
-END_TEST
 
 /* Spheres go by their ids; --positions leaves these alone. */
-START_TEST(ids) {
+TEST(ids) {
     static const struct {
         const char *id[2], *reason;
         unsigned line;
@@ -189,10 +186,9 @@ START_TEST(ids) {
     ck_assert_int_eq(try("id,x,y,z,r\n7.0,1,0,0,1\n1.000e+00,3,0,0,1\n2e2,5,0,0,1\n"), 0); /* reals */
     ck_assert(bed.id[0] == 1 && bed.id[1] == 7 && bed.id[2] == 200);
 }
-END_TEST
 
 /* Separators, decimal commas, names in any case, units, headers in comments. */
-START_TEST(tables) {
+TEST(tables) {
     static const struct {
         const char *text, *units;
     } good[] = {
@@ -220,9 +216,8 @@ START_TEST(tables) {
     ck_assert_int_eq(try("R,x,y,z,r\n0.3,1,2,3,0.5\n"), 0);
     ck_assert_double_eq(bed.r[0], 0.5);
 }
-END_TEST
 
-START_TEST(without_radii) {
+TEST(without_radii) {
     const char *const names[] = {"type"};
     const struct read_options options = {.no_radius = true, .extra = names, .extras = 1};
     const char text[] = "x,y,z,type\n1,2,3,7\n";
@@ -235,10 +230,9 @@ START_TEST(without_radii) {
     ck_assert_int_eq(try_options(plain, sizeof plain - 1, &options), 0);
     ck_assert(isnan(bed.r[0]) && bed.extra[0] == 7 && bed.timestep == 70);
 }
-END_TEST
 
 /* Numbers have the bits of strtod, however they are written. */
-START_TEST(numbers) {
+TEST(numbers) {
     static const char *const odd[] = {"0",
                                       "-0",
                                       "+7.",
@@ -272,13 +266,12 @@ START_TEST(numbers) {
     }
     for (size_t k = 0; k < sizeof none / sizeof *none; ++k) ck_assert_msg(!number_read(none[k], &value), "%s", none[k]);
 }
-END_TEST
 
 #define FRAME(bounds, columns)                                                                                         \
     "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS" bounds "\n-1 3\n0 10\n0 2e1\nITEM: ATOMS " columns \
     "\n"
 
-START_TEST(dump_columns_by_name) {
+TEST(dump_columns_by_name) {
     ck_assert_int_eq(try(FRAME(" pp ff mm ", "id type z y x radius ") "9 1 3 2 1 .5 \n4 1 6 5 4 1 \n"), 0);
     ck_assert_uint_eq(bed.n, 2);
     expect_sphere(0, 4, 5, 6, 1, 11); /* by id */
@@ -286,9 +279,8 @@ START_TEST(dump_columns_by_name) {
     ck_assert(bed.period[0] == 4 && bed.period[1] == 0 && bed.period[2] == 0);
     ck_assert(bed.low[0] == -1 && bed.high[2] == 20);
 }
-END_TEST
 
-START_TEST(dump_scaled_unwrapped_diameter) {
+TEST(dump_scaled_unwrapped_diameter) {
     ck_assert_int_eq(try(FRAME("", "xs ys zs diameter") "0.25 0.5 1 3\n0 0 0 1\n"), 0);
     expect_sphere(0, 0, 5, 20, 1.5, 10);
     expect_sphere(1, -1, 0, 0, 0.5, 11);
@@ -298,14 +290,13 @@ START_TEST(dump_scaled_unwrapped_diameter) {
     ck_assert_int_eq(try(FRAME(" pp pp pp", "xs x y z radius") "0.5 1 2 3 1\n0 0 0 0 1\n"), 0);
     expect_sphere(0, 1, 2, 3, 1, 10);
 }
-END_TEST
 
 #define TWO_FRAMES                                                                                                     \
     FRAME(" pp pp pp", "x y z radius")                                                                                 \
     "0 0 0 1\n3 0 0 1\n"                                                                                               \
     "ITEM: UNITS\nlj\nITEM: TIME\n0.5\nITEM: TIMESTEP\n8\nITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS r z y x\n4 3 2 1\n"
 
-START_TEST(dump_frames) {
+TEST(dump_frames) {
     struct read_options options = {0};
     for (int k = 0; k < 2; ++k) {
         ck_assert_int_eq(try_options(TWO_FRAMES, strlen(TWO_FRAMES), &options), 0);
@@ -326,7 +317,6 @@ START_TEST(dump_frames) {
     const char csv[] = "x,y,z,r\n0,0,0,1\n";
     expect_refusal(csv, sizeof csv - 1, &options, 0, "there is no frame 2");
 }
-END_TEST
 
 /* Goes through the frames wanted of the file; returns their numbers as digits. */
 static const char *frames_of(const char *text, size_t size, struct frames frames, int *status) {
@@ -353,7 +343,7 @@ static const char *frames_of(const char *text, size_t size, struct frames frames
 #define DATA_ROW    " 0 0 0 1 0 0 0 0 0 0 0\n"
 #define DATA_FRAME  "2 0.5 0 0 0 1 1 1\n0 0 0" DATA_ROW "3 0 0" DATA_ROW
 
-START_TEST(ranges) {
+LOOP_TEST(ranges, 19) {
     static const struct {
         const char *text;
         struct frames frames;
@@ -390,7 +380,6 @@ START_TEST(ranges) {
     ck_assert_str_eq(seen, cases[_i].seen);
     ck_assert_msg(strstr(said, cases[_i].said) && (*said != 0) == (*cases[_i].said != 0), "%s", said);
 }
-END_TEST
 
 /* The file, packed by gzip. */
 static size_t pack(const char *text, size_t size, char *to, size_t room) {
@@ -405,7 +394,7 @@ static size_t pack(const char *text, size_t size, char *to, size_t room) {
     return packed;
 }
 
-START_TEST(gzip) {
+TEST(gzip) {
     char text[20000], packed[20000];
     size_t size = 0;
     int status;
@@ -436,9 +425,8 @@ START_TEST(gzip) {
     ck_assert_int_eq(try_options(packed, short_bytes - 9, &(struct read_options){0}), STATUS_INPUT);
     ck_assert_msg(strstr(said, "the gzip file is cut off"), "%s", said);
 }
-END_TEST
 
-START_TEST(dump_without_tilt) {
+TEST(dump_without_tilt) {
     const char text[] =
         "ITEM: UNITS\ncgs \nITEM: TIME\n0.5\nITEM: TIMESTEP\n 7 \nITEM: NUMBER OF ATOMS\n1 \nITEM: BOX BOUNDS xy xz "
         "yz pp ff pp\n-1 3 0\n0 10 0\n0 20 0.0\nITEM: ATOMS xs y z radius\n0.25 0 0 1\n";
@@ -448,13 +436,12 @@ START_TEST(dump_without_tilt) {
     ck_assert_str_eq(bed.units, "cgs");
     ck_assert_int_eq(bed.timestep, 7);
 }
-END_TEST
 
 #define DATA_HEAD                                                                                                      \
     "LAMMPS data file via write_data, version 2 Aug 2023, timestep = 30, units = si\n\n2 atoms\n2 atom types\n\n"      \
     "-1 3 xlo xhi\n0 10 ylo yhi\n0 2e1 zlo zhi\n"
 
-START_TEST(data_files) {
+TEST(data_files) {
     static const char *const good[] = {
         DATA_HEAD
         "0 0 0 xy xz yz\n\nMasses\n\n1 1\n2 1\n\nAtoms # sphere\n\n9 1 1 2500 1 2 3 0 0 0\n4 2 2 2500 4 5 6 1 0 -1\n\n"
@@ -475,9 +462,8 @@ START_TEST(data_files) {
         ck_assert_msg(strstr(said, "warning: the file does not say which axes are periodic"), "%s", said);
     }
 }
-END_TEST
 
-START_TEST(xyz) {
+TEST(xyz) {
     ck_assert_int_eq(
         try("2\nLattice=\"4 0 0 0 5 0 0 0 6\" Origin=\"-1 0 1\" Properties=species:S:1:id:I:1:pos:R:3:velo:R:3:"
             "Radius:R:1 pbc=\"T F 1\"\nA 9 1 2 3 0 0 0 0.5\nB 4 4 5 6 0 0 0 1\n"),
@@ -490,15 +476,13 @@ START_TEST(xyz) {
     ck_assert_int_eq(try("1\nProperties=pos:R:3:r:R:1 Lattice=\"4 0 0 0 5 0 0 0 6\"\n1 2 3 1"), 0);
     ck_assert(bed.period[0] == 4 && bed.period[1] == 5 && bed.period[2] == 6);
 }
-END_TEST
 
-START_TEST(mercury) {
+TEST(mercury) {
     ck_assert_int_eq(try("2 0.5 0 0 -1 4 5 6 \n1 2 3 0 0 0 0.5 0 0 0 0 0 0 0\n4 5 6 0 0 0 1 0 0 0 0 0 0 1\n"), 0);
     ck_assert_uint_eq(bed.n, 2);
     expect_sphere(1, 4, 5, 6, 1, 3);
     ck_assert(!bed.ids && bed.low[2] == -1 && bed.high[0] == 4 && bed.period[0] == 0);
 }
-END_TEST
 
 #define VTK_HEAD "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n1 2 3 4 5 6\n"
 #define VTP(array)                                                                                                     \
@@ -507,7 +491,7 @@ END_TEST
     "NumberOfComponents=\"3\" format=\"ascii\">1 2 3 4 5 6</DataArray></Points></Piece></PolyData></VTKFile>\n"
 #define ARRAY(name, text) "<DataArray type=\"Float64\" Name=\"" name "\" format=\"ascii\">" text "</DataArray>"
 
-START_TEST(vtk) {
+TEST(vtk) {
     static const char *const good[] = {
         VTK_HEAD "VERTICES 2 4\n1 0 1 1\nPOINT_DATA 2\nVECTORS v float\n0 0 0 0 0 0\nSCALARS radius double 1\n"
                  "LOOKUP_TABLE default\n0.5 1\nSCALARS id int\nLOOKUP_TABLE default\n4 9\n",
@@ -526,17 +510,15 @@ START_TEST(vtk) {
         expect_sphere(1, 4, 5, 6, 1, 0);
     }
 }
-END_TEST
 
-START_TEST(yade) {
+TEST(yade) {
     ck_assert_int_eq(try("#format x_y_z_r_matId\n# comment\n1\t2\t3\t0.5\t0\n4 5 6 1 0\n"), 0);
     ck_assert_uint_eq(bed.n, 2);
     expect_sphere(0, 1, 2, 3, 0.5, 3);
     expect_sphere(1, 4, 5, 6, 1, 4);
 }
-END_TEST
 
-START_TEST(settled_beds) {
+TEST(settled_beds) {
     static const struct {
         const char *file;
         double period, radius_min, radius_max;
@@ -556,10 +538,9 @@ START_TEST(settled_beds) {
         }
     }
 }
-END_TEST
 
 /* More spheres than the arrays begin with. */
-START_TEST(growth) {
+TEST(growth) {
     enum { N = 5000 };
     char *text = malloc(64 * N), *end = text;
     ck_assert_ptr_nonnull(text);
@@ -574,7 +555,6 @@ START_TEST(growth) {
         ck_assert_int_eq(bed.id[i], i + 1);
     }
 }
-END_TEST
 
 #define HEAD   "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n"
 #define BOX    "ITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n"
@@ -725,13 +705,12 @@ static const struct {
     {5, HEAD "1\n" HEAD "1\n" BOX ATOMS SPHERE, "a frame begins where atoms of the one before are missing"},
 };
 
-START_TEST(faults) {
+LOOP_TEST(faults, sizeof refused / sizeof *refused) {
     expect_refusal(refused[_i].text, strlen(refused[_i].text), &(struct read_options){0}, refused[_i].line,
                    refused[_i].reason);
 }
-END_TEST
 
-START_TEST(binary_data) {
+TEST(binary_data) {
     const char zeros[] = "x,y,z,r\n0,0,0,\0001\n";
     expect_refusal(zeros, sizeof zeros - 1, &(struct read_options){0}, 2, "binary data");
     expect_refusal("\x1f\x8b\x08 gzip", 8, &(struct read_options){0}, 0, "the gzip file is damaged");
@@ -741,46 +720,11 @@ START_TEST(binary_data) {
     expect_refusal(endless, 3 << 20, &(struct read_options){0}, 1, "the line has no end");
     free(endless);
 }
-END_TEST
 
-START_TEST(unreadable) {
+TEST(unreadable) {
     static const char *const paths[] = {"no/such/file.csv", "tests"};
     for (size_t k = 0; k < 2; ++k) {
         bed_free(&bed);
         ck_assert_int_eq(read_bed(paths[k], &(struct read_options){0}, &bed), STATUS_FILE);
     }
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("read");
-    TCase *formats = suite_case(suite, "formats"), *bad = suite_case(suite, "faults");
-    tcase_add_checked_fixture(formats, make_file, remove_file);
-    tcase_add_checked_fixture(bad, make_file, remove_file);
-    tcase_add_test(formats, csv_in_any_order);
-    tcase_add_test(formats, csv_after_byte_order_mark_and_comments);
-    tcase_add_test(formats, further_columns_by_name);
-    tcase_add_test(formats, columns_with_units);
-    tcase_add_test(formats, many_columns);
-    tcase_add_test(formats, dump_columns_by_name);
-    tcase_add_test(formats, dump_scaled_unwrapped_diameter);
-    tcase_add_test(formats, dump_frames);
-    tcase_add_test(formats, ids);
-    tcase_add_test(formats, tables);
-    tcase_add_test(formats, without_radii);
-    tcase_add_test(formats, numbers);
-    tcase_add_loop_test(formats, ranges, 0, 19);
-    tcase_add_test(formats, gzip);
-    tcase_add_test(formats, dump_without_tilt);
-    tcase_add_test(formats, data_files);
-    tcase_add_test(formats, xyz);
-    tcase_add_test(formats, mercury);
-    tcase_add_test(formats, vtk);
-    tcase_add_test(formats, yade);
-    tcase_add_test(formats, settled_beds);
-    tcase_add_test(formats, growth);
-    tcase_add_loop_test(bad, faults, 0, (int)(sizeof refused / sizeof *refused));
-    tcase_add_test(bad, binary_data);
-    tcase_add_test(bad, unreadable);
-    return suite_run(suite);
 }

@@ -25,6 +25,8 @@ static void make_file(void) {
 
 static void remove_file(void) { unlink(path); }
 
+FIXTURE(make_file, remove_file)
+
 /* Reads a text as a file and keeps what was said. */
 static int try(const char *text) {
     FILE *file = fopen(path, "w");
@@ -46,7 +48,7 @@ static int try(const char *text) {
 
 #define WALLS "wall sides 900 0.7\nwall z0 1200 0.85\nwall z1 400 .7\n"
 
-START_TEST(good_files) {
+TEST(good_files) {
     static const char *const texts[] = {
         "size 2 2 4\ncells 20 20 40\nabsorption 0.15\nscattering 0.35\nsource 5000\n" WALLS,
         "# upside down\r\n\n" WALLS "\tsource 5e3 # W/m3\nscattering .35\n  cells 20 20 40\nabsorption .15\nsize 2 2 4",
@@ -72,9 +74,8 @@ START_TEST(good_files) {
     ck_assert_double_eq(config.scattering, 0);
     ck_assert_double_eq(config.source, 0);
 }
-END_TEST
 
-START_TEST(bad_files) {
+TEST(bad_files) {
     static const struct {
         const char *text, *line, *reason;
     } files[] = {
@@ -116,10 +117,9 @@ START_TEST(bad_files) {
     unlink(path);
     ck_assert_int_eq(read_furnace("no/such/box.txt", &config), STATUS_FILE);
 }
-END_TEST
 
 /* Both writers, read back: positions in the box, T and E that belong together, as many values as cells. */
-START_TEST(written_fields) {
+TEST(written_fields) {
     fibrad_furnace_config box = furnace_case(1);
     struct furnace_options options = {.method = FURNACE_HFM, .threads = 1, .quiet = true};
     struct furnace_run run;
@@ -158,15 +158,4 @@ START_TEST(written_fields) {
     furnace_free(&run);
     ck_assert(write_furnace_find("box.vtk") == NULL);
     ck_assert(write_furnace_find(".csv") == NULL);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("read_furnace");
-    TCase *files = suite_case(suite, "files");
-    tcase_add_checked_fixture(files, make_file, remove_file);
-    tcase_add_test(files, good_files);
-    tcase_add_test(files, bad_files);
-    tcase_add_test(files, written_fields);
-    return suite_run(suite);
 }

@@ -18,6 +18,8 @@ static void add(double x_, double y_, double z_, double r_) {
 
 static void start(void) { spheres.n = 0; }
 
+FIXTURE(start, NULL)
+
 /* Touching, nearly touching, far, small and large spheres about the first. */
 static void crowd(void) {
     add(0, 0, 0, 1);
@@ -47,7 +49,7 @@ static double pair(uint32_t i, uint32_t j, double tolerance) {
     return value;
 }
 
-START_TEST(unobstructed) {
+TEST(unobstructed) {
     static const double scene[][3] = {{1, 1, 0},      {1, 0.7, 0.3}, {0.7, 1, 0.3},    {1, 1, -0.05},
                                       {0.3, 2, -0.2}, {2, 0.05, 1},  {0.05, 2, 0.001}, {1e-150, 1e-150, 1e-150}};
     for (size_t k = 0; k < sizeof scene / sizeof *scene; k++) {
@@ -66,9 +68,8 @@ START_TEST(unobstructed) {
         ck_assert_double_le(fabs(sum - 1), 1e-8);
     }
 }
-END_TEST
 
-START_TEST(rows_close_and_agree_with_pairs) {
+TEST(rows_close_and_agree_with_pairs) {
     crowd();
     for (uint32_t i = 0; i < 3; i++) {
         const double sum = row(i, 1e-6);
@@ -78,9 +79,8 @@ START_TEST(rows_close_and_agree_with_pairs) {
             if (j != i) ck_assert_double_le(fabs(pair(i, j, 3e-6) - f[j]), 1e-7);
     }
 }
-END_TEST
 
-START_TEST(pairs_are_reciprocal) {
+TEST(pairs_are_reciprocal) {
     crowd();
     for (uint32_t i = 0; i < spheres.n; i++)
         for (uint32_t j = 0; j < i; j++) {
@@ -88,9 +88,8 @@ START_TEST(pairs_are_reciprocal) {
             ck_assert_msg(fabs(there - back) < 1e-7, "%u, %u: %.12g %.12g", i, j, there, back);
         }
 }
-END_TEST
 
-START_TEST(tighter_tolerance_stays_within_the_estimate) {
+TEST(tighter_tolerance_stays_within_the_estimate) {
     crowd();
     double fine[MAX];
     row(0, 2e-8);
@@ -100,9 +99,8 @@ START_TEST(tighter_tolerance_stays_within_the_estimate) {
         for (uint32_t j = 0; j < spheres.n; j++) ck_assert_double_le(fabs(f[j] - fine[j]), report.error);
     }
 }
-END_TEST
 
-START_TEST(hidden) {
+TEST(hidden) {
     /* equal spheres in a line: the lens of the outer discs lies inside the middle one at every angle */
     add(0, 0, 0, 1);
     add(0, 0, 5, 1);
@@ -118,10 +116,9 @@ START_TEST(hidden) {
     x[2] = 1.9;
     ck_assert_double_lt(pair(0, 1, 1e-9), exact * (1 - 1e-5));
 }
-END_TEST
 
 /* Rays from random points of sphere 0 by the cosine law: nothing in common with beams, slices or cubature. */
-START_TEST(random_rays) {
+TEST(random_rays) {
     enum { RAYS = 400000 };
     crowd();
     uint64_t state = 1;
@@ -154,10 +151,9 @@ START_TEST(random_rays) {
         ck_assert_msg(fabs(seen - truth) < 5 * sqrt(truth / RAYS) + 1e-5, "%u: rays %g, row %g", j, seen, truth);
     }
 }
-END_TEST
 
 /* Row sums of the face-centred cubic lattice of touching unit spheres within a centre distance (DESIGN's table). */
-START_TEST(face_centred_cubic) {
+TEST(face_centred_cubic) {
     static const double reach[] = {2, 3, 4}, sum[] = {0.8626, 0.9651, 0.9973};
     const double half = sqrt(2.0);
     for (int k = 0; k < 3; k++) {
@@ -176,9 +172,8 @@ START_TEST(face_centred_cubic) {
         for (uint32_t j = 2; j < 13 && k == 0; j++) ck_assert_double_le(fabs(f[j] - f[1]), 2e-5);
     }
 }
-END_TEST
 
-START_TEST(arguments) {
+TEST(arguments) {
     const struct reference_rule rule = {1e-3, 1000}, scarce = {1e-9, 1000};
     crowd();
     ck_assert_int_eq(reference_row(&spheres, 8, &rule, f, &escaped, &report), REFERENCE_ARGUMENT);
@@ -193,20 +188,4 @@ START_TEST(arguments) {
     ck_assert_int_eq(reference_pair(&spheres, 0, 1, &rule, f, &report), REFERENCE_ARGUMENT);
     x[1] = 0;
     ck_assert_int_eq(reference_row(&spheres, 0, &rule, f, &escaped, &report), REFERENCE_ARGUMENT);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("reference");
-    TCase *all = suite_case(suite, "reference");
-    tcase_add_checked_fixture(all, start, NULL);
-    tcase_add_test(all, unobstructed);
-    tcase_add_test(all, rows_close_and_agree_with_pairs);
-    tcase_add_test(all, pairs_are_reciprocal);
-    tcase_add_test(all, tighter_tolerance_stays_within_the_estimate);
-    tcase_add_test(all, hidden);
-    tcase_add_test(all, random_rays);
-    tcase_add_test(all, face_centred_cubic);
-    tcase_add_test(all, arguments);
-    return suite_run(suite);
 }

@@ -9,6 +9,13 @@
 
 static char directory[200];
 
+static void name_directory(void) {
+    const char *build = getenv("BUILD");
+    snprintf(directory, sizeof directory, "%.100s/tests/reproduce", build ? build : "build");
+}
+
+FIXTURE(name_directory, NULL)
+
 static void run_experiment(char *experiment) {
     char *arguments[] = {"--only", experiment, "--no-plots", "-o", directory};
     ck_assert_int_eq(command_reproduce(5, arguments), 0);
@@ -37,44 +44,39 @@ static double largest(char *experiment, const char *source, int *lines) {
     return largest_of(source, "", lines);
 }
 
-START_TEST(figure_3) {
+TEST(figure_3) {
     int lines;
     ck_assert_double_le(largest("fig3", "check", &lines), .01);
     ck_assert_int_eq(lines, 24);
 }
-END_TEST
 
-START_TEST(third_sphere) {
+TEST(third_sphere) {
     int lines;
     ck_assert_double_le(largest("fig7-9", "check", &lines), .1);
     ck_assert_int_eq(lines, 8);
 }
-END_TEST
 
-START_TEST(pebbles) {
+TEST(pebbles) {
     int lines;
     ck_assert_double_le(largest("pebble-pair", "check", &lines), .05); /* per cent */
     ck_assert_int_eq(lines, 15);
 }
-END_TEST
 
-START_TEST(pebbles_by_rays) {
+TEST(pebbles_by_rays) {
     int lines;
     ck_assert_double_le(largest("pebble-rays", "paper", &lines), 3.2); /* per cent; the paper's own error */
     ck_assert_int_eq(lines, 15);
 }
-END_TEST
 
-START_TEST(conductivity) {
+TEST(conductivity) {
     int lines;
     ck_assert_double_le(largest("conductivity", "check", &lines), 1.2); /* per cent; other random beds */
     ck_assert_int_eq(lines, 16);
 }
-END_TEST
 
 /* Johnson, Tari, Baker: their tables and ours up to three radii at all solid fractions, and further where beds are
  * loose and hence random. Per cent. */
-START_TEST(exchange_factors) {
+TEST(exchange_factors) {
     int lines;
     run_experiment("exchange");
     ck_assert_double_le(largest_of("paper", "at 2.0 r", &lines), 1.5);
@@ -84,17 +86,15 @@ START_TEST(exchange_factors) {
     ck_assert_double_le(largest_of("paper", "at 7.0 r, solid fraction 0.25", &lines), 5);
     ck_assert_int_eq(lines, 2);
 }
-END_TEST
 
 /* The cubic lattice against the independent program, per cent: three standard errors of 0.5 %. */
-START_TEST(conducting) {
+TEST(conducting) {
     int lines;
     ck_assert_double_le(largest("conducting", "check", &lines), 1.5);
     ck_assert_int_eq(lines, 10);
 }
-END_TEST
 
-START_TEST(formulas) {
+TEST(formulas) {
     /* the values of Vortmeyer's model as they were printed */
     static const double vortmeyer[5][2] = {{.2, .25}, {.35, .33}, {.6, .54}, {.85, .85}, {1, 1.12}};
     for (int k = 0; k < 5; k++)
@@ -111,29 +111,10 @@ START_TEST(formulas) {
     ck_assert_double_eq_tol(correlation_singh_kaviany(1, .476, INFINITY), 1.089, .001);
     ck_assert_double_eq_tol(correlation_singh_kaviany(.6, .476, .1), .317, .001);
 }
-END_TEST
 
-START_TEST(usage) {
+TEST(usage) {
     char *unknown[] = {"--only", "fig99"}, *file[] = {"fig3"}, *nowhere[] = {"-o", "/nonexistent/folder"};
     ck_assert_int_eq(command_reproduce(2, unknown), 2);
     ck_assert_int_eq(command_reproduce(1, file), 2);
     ck_assert_int_eq(command_reproduce(2, nowhere), 4);
-}
-END_TEST
-
-int main(void) {
-    const char *build = getenv("BUILD");
-    snprintf(directory, sizeof directory, "%.100s/tests/reproduce", build ? build : "build");
-    Suite *suite = suite_create("reproduce");
-    TCase *cases = suite_case(suite, "reproduce");
-    tcase_add_test(cases, figure_3);
-    tcase_add_test(cases, third_sphere);
-    tcase_add_test(cases, pebbles);
-    tcase_add_test(cases, pebbles_by_rays);
-    tcase_add_test(cases, conductivity);
-    tcase_add_test(cases, exchange_factors);
-    tcase_add_test(cases, conducting);
-    tcase_add_test(cases, formulas);
-    tcase_add_test(cases, usage);
-    return suite_run(suite);
 }

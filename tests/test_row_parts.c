@@ -50,7 +50,7 @@ static void compare_rows(const struct bed *bed, const fibrad_scene_config *confi
     free(scene);
 }
 
-START_TEST(spheres_alone) {
+TEST(spheres_alone) {
     struct bed bed = strewn(SPHERES, 3), box = packing(120, .8, 1.2, .55, 4, true);
     double seen[2] = {0, 0};
     compare_rows(&bed, &(fibrad_scene_config){0}, 0, seen);
@@ -60,9 +60,8 @@ START_TEST(spheres_alone) {
     bed_free(&bed);
     bed_free(&box);
 }
-END_TEST
 
-START_TEST(among_walls) {
+TEST(among_walls) {
     struct bed bed = strewn(SPHERES, 5);
     const fibrad_body planes[] = {plane_at(0, 0, -.3), plane_at(0, 1, 1.3), plane_at(1, 0, -.3),
                                   plane_at(1, 1, 1.3), plane_at(2, 0, -.3), plane_at(2, 1, 1.3)};
@@ -75,9 +74,8 @@ START_TEST(among_walls) {
     ck_assert_double_gt(seen[1], 20);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(among_triangles) {
+TEST(among_triangles) {
     struct bed bed = strewn(SPHERES, 6);
     struct mesh *mesh = mesh_new();
     double seen[2] = {0, 0};
@@ -88,10 +86,9 @@ START_TEST(among_triangles) {
     free(mesh);
     bed_free(&bed);
 }
-END_TEST
 
 /* Parts of another row, rule or scene, in another order or not all are told from those that make the row. */
-START_TEST(parts_that_do_not_fit) {
+TEST(parts_that_do_not_fit) {
     struct bed bed = strewn(50, 7), other_bed = strewn(50, 8);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST), *other = scene_of(&other_bed, FIBRAD_ISA_BEST);
     fibrad_work work = work_growing();
@@ -125,10 +122,9 @@ START_TEST(parts_that_do_not_fit) {
     bed_free(&bed);
     bed_free(&other_bed);
 }
-END_TEST
 
 /* Terms that were changed on the way leave no row that looks right. */
-START_TEST(parts_that_were_changed) {
+TEST(parts_that_were_changed) {
     struct bed bed = strewn(50, 7);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_work work = work_growing();
@@ -150,10 +146,9 @@ START_TEST(parts_that_were_changed) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* Fixed memory that is too small says how much would do. */
-START_TEST(fixed_memory_of_a_part) {
+TEST(fixed_memory_of_a_part) {
     struct bed bed = strewn(50, 9);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_work work = work_growing();
@@ -170,7 +165,6 @@ START_TEST(fixed_memory_of_a_part) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* A resize function that fails once, when it is asked for the time `fails`. */
 struct supply {
@@ -183,7 +177,7 @@ static void *resize_but_once(void *context, void *block, size_t size) {
 }
 
 /* Memory that is refused once is an error, whenever that is; asked again, the part is that of memory in plenty. */
-START_TEST(memory_that_is_refused_once) {
+TEST(memory_that_is_refused_once) {
     struct bed bed = strewn(50, 9);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_work work = work_growing();
@@ -213,10 +207,9 @@ START_TEST(memory_that_is_refused_once) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* A block of no bytes is too small, as one of some bytes may be; no block of some bytes is no block. */
-START_TEST(blocks_of_size_zero) {
+TEST(blocks_of_size_zero) {
     struct bed bed = strewn(50, 9);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_work work = work_growing();
@@ -243,7 +236,6 @@ START_TEST(blocks_of_size_zero) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* Arrays that are too small: the length that a row of a method says is the one with which the next call succeeds, and
  * until then nothing is written. */
@@ -276,7 +268,7 @@ static void ask_and_repeat(const fibrad_scene *scene, const fibrad_beam_rule *be
     work_free(&work);
 }
 
-START_TEST(the_length_that_is_asked_for_suffices) {
+TEST(the_length_that_is_asked_for_suffices) {
     struct bed bed = packing(100, .5, 1.5, .3, 4, false);
     const fibrad_body floor = plane_at(2, 0, -100);
     fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor, .bodies = 1});
@@ -289,20 +281,4 @@ START_TEST(the_length_that_is_asked_for_suffices) {
     ask_and_repeat(scene, NULL, &exchange);
     free(scene);
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("row_parts");
-    TCase *tcase = suite_case(suite, "row_parts");
-    tcase_add_test(tcase, spheres_alone);
-    tcase_add_test(tcase, among_walls);
-    tcase_add_test(tcase, among_triangles);
-    tcase_add_test(tcase, parts_that_do_not_fit);
-    tcase_add_test(tcase, parts_that_were_changed);
-    tcase_add_test(tcase, fixed_memory_of_a_part);
-    tcase_add_test(tcase, memory_that_is_refused_once);
-    tcase_add_test(tcase, blocks_of_size_zero);
-    tcase_add_test(tcase, the_length_that_is_asked_for_suffices);
-    return suite_run(suite);
 }

@@ -5,7 +5,7 @@
 
 /* Sizes at every offset of the block: a byte less is too little, nothing is written beside the block, and rows have the
  * same bits. */
-START_TEST(sizes_hold) {
+TEST(sizes_hold) {
     static unsigned char memory[64 + FIBRAD_SCENE_BYTES(500) + 64];
     for (uint32_t n = 0; n <= 500; n += n < 40 ? 1 : 53) {
         const size_t size = fibrad_scene_size(n, 0), offset = n * 7 % 64;
@@ -31,10 +31,9 @@ START_TEST(sizes_hold) {
     ck_assert_uint_eq(fibrad_scene_size(UINT32_MAX, 1), 0);
     if (sizeof(size_t) > 4) ck_assert_uint_gt(fibrad_scene_size(FIBRAD_SPHERES_MAX, 1), FIBRAD_SPHERES_MAX * 52.);
 }
-END_TEST
 
 /* Scene and work memory at each of the 64 offsets from a boundary. */
-START_TEST(blocks_of_any_alignment) {
+TEST(blocks_of_any_alignment) {
     struct bed bed = packing(80, .5, 1, .4, 3, true);
     fibrad_scene *aligned = scene_of(&bed, 0);
     struct matrix expected = matrix_by_beams(aligned, &(fibrad_beam_rule){.directions = 34}, true);
@@ -64,10 +63,9 @@ START_TEST(blocks_of_any_alignment) {
     matrix_free(&expected);
     bed_free(&bed);
 }
-END_TEST
 
 /* Places as x[n][3], radii as every fifth number, against arrays of their own. */
-START_TEST(strides_change_no_bit) {
+TEST(strides_change_no_bit) {
     struct bed bed = packing(150, .5, 1, .4, 3, false);
     double(*at)[3] = calloc(bed.n, sizeof *at), *r = calloc((size_t)5 * bed.n, sizeof *r);
     for (uint32_t k = 0; k < 5 * bed.n; k++) r[k] = NAN;
@@ -96,10 +94,9 @@ START_TEST(strides_change_no_bit) {
     free(block), free(plain), free(at), free(r);
     bed_free(&bed);
 }
-END_TEST
 
 /* A bed may be empty: a scene without rows, and a matrix of none. */
-START_TEST(no_spheres) {
+TEST(no_spheres) {
     static unsigned char memory[FIBRAD_SCENE_BYTES(0)];
     const fibrad_spheres none = {.n = 0};
     const fibrad_body floor_plane = plane_at(2, 0, 0);
@@ -134,11 +131,10 @@ START_TEST(no_spheres) {
         work_free(&work);
     }
 }
-END_TEST
 
 /* Each sphere comes once along the cells, and most that follow each other are neighbours: on average less than 4 radii
  * apart in a cube of 16, where two taken at random are 11 apart. */
-START_TEST(spheres_along_the_cells) {
+TEST(spheres_along_the_cells) {
     struct bed bed = packing(500, 1, 1, .5, 4, false);
     fibrad_scene *scene = scene_of(&bed, 0);
     bool *seen = calloc(bed.n, sizeof *seen);
@@ -158,9 +154,8 @@ START_TEST(spheres_along_the_cells) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(bad_configurations_are_refused) {
+TEST(bad_configurations_are_refused) {
     static unsigned char memory[FIBRAD_SCENE_BYTES(1)];
     const double zero = 0, one = 1;
     const fibrad_spheres good = {&zero, &zero, &zero, &one, .n = 1},
@@ -190,10 +185,9 @@ START_TEST(bad_configurations_are_refused) {
     ck_assert_ptr_null(scene);
     ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, NULL, &good, NULL), FIBRAD_OK);
 }
-END_TEST
 
 /* An instruction set that this build or this machine lacks is said to be missing, with any spheres. */
-START_TEST(missing_instruction_sets) {
+TEST(missing_instruction_sets) {
     struct bed bed = lattice('p', 3);
     int isa[ISAS_MOST];
     const int sets = isas_there(isa);
@@ -217,7 +211,6 @@ START_TEST(missing_instruction_sets) {
     ck_assert(best);
     bed_free(&bed);
 }
-END_TEST
 
 static int fault_of(const struct bed *bed, fibrad_fault *fault) {
     fibrad_scene *scene = NULL;
@@ -226,7 +219,7 @@ static int fault_of(const struct bed *bed, fibrad_fault *fault) {
     return status;
 }
 
-START_TEST(faults_name_their_spheres) {
+TEST(faults_name_their_spheres) {
     fibrad_fault fault;
     static const double broken[] = {NAN, INFINITY, -INFINITY};
     for (int b = 0; b < 3; b++)
@@ -269,10 +262,9 @@ START_TEST(faults_name_their_spheres) {
     ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_GEOMETRY);
     bed_free(&bed);
 }
-END_TEST
 
 /* Coordinates outside the periodic box, among them some whose quotient by the period rounds up to a whole number. */
-START_TEST(any_image_of_a_centre_will_do) {
+TEST(any_image_of_a_centre_will_do) {
     struct bed bed = bed_of(2, (const double[][4]){{2.1, 0, 0, .5}, {14.559999999999999, 3, 0, .5}});
     for (int axis = 0; axis < 3; axis++) {
         struct bed turned = bed_of(2, (const double[][4]){{0, 0, 0, .5}, {3, 3, 3, .5}});
@@ -294,10 +286,9 @@ START_TEST(any_image_of_a_centre_will_do) {
         ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, &config, &spheres, NULL), FIBRAD_OK);
     }
 }
-END_TEST
 
 /* A particle that a simulation has lost must not make one cell of all the others. */
-START_TEST(strays_do_not_spread_the_cells) {
+TEST(strays_do_not_spread_the_cells) {
     struct bed bed = packing(4000, .5, .6, .5, 30, false);
     bed.x[17] = 1e6, bed.y[99] = -1e9, bed.z[3000] = 1e12;
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_SCALAR);
@@ -308,9 +299,8 @@ START_TEST(strays_do_not_spread_the_cells) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(overlap_is_reported) {
+TEST(overlap_is_reported) {
     struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 5, 2}, {0, .98, 2.2, .5}});
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_scene_facts facts;
@@ -329,10 +319,9 @@ START_TEST(overlap_is_reported) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* Random boxes: every sphere whose centre, or image's centre, lies within must come up, and none twice. */
-START_TEST(walks_find_what_is_there) {
+TEST(walks_find_what_is_there) {
     struct bed beds[] = {packing(500, .1, 1.6, .4, 21, false), packing(500, .5, .6, .5, 22, true), lattice('p', 5)};
     beds[1].period[1] = 0;
     uint64_t count = 0;
@@ -376,10 +365,9 @@ START_TEST(walks_find_what_is_there) {
         bed_free(&beds[b]);
     }
 }
-END_TEST
 
 /* Building is linear: cells never outnumber spheres by more than a few, and no cell is crowded. */
-START_TEST(cells_follow_the_spheres) {
+TEST(cells_follow_the_spheres) {
     static const double spans[][3] = {{1, 1, 1}, {1000, 1, 1}, {1, 1e6, 1e6}, {1e-3, 1, 1e3}};
     for (size_t s = 0; s < sizeof spans / sizeof *spans; s++) {
         struct bed bed;
@@ -397,33 +385,11 @@ START_TEST(cells_follow_the_spheres) {
         bed_free(&bed);
     }
 }
-END_TEST
 
 /* Found by fuzzing: rounding left both coordinates out of the box between them, and the choice of cells had no end. */
-START_TEST(one_stray_beside_equal_coordinates) {
+TEST(one_stray_beside_equal_coordinates) {
     struct bed bed = bed_of(1, (const double[][4]){{20, 0, 0, 1}});
     for (int i = 0; i < 30; i++) add_sphere(&bed, 1.3, 2.5 * i, 0, 1);
     free(scene_of(&bed, FIBRAD_ISA_BEST));
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("scene");
-    TCase *tcase = suite_case(suite, "scene");
-    tcase_add_test(tcase, sizes_hold);
-    tcase_add_test(tcase, blocks_of_any_alignment);
-    tcase_add_test(tcase, strides_change_no_bit);
-    tcase_add_test(tcase, no_spheres);
-    tcase_add_test(tcase, spheres_along_the_cells);
-    tcase_add_test(tcase, bad_configurations_are_refused);
-    tcase_add_test(tcase, missing_instruction_sets);
-    tcase_add_test(tcase, faults_name_their_spheres);
-    tcase_add_test(tcase, any_image_of_a_centre_will_do);
-    tcase_add_test(tcase, strays_do_not_spread_the_cells);
-    tcase_add_test(tcase, overlap_is_reported);
-    tcase_add_test(tcase, walks_find_what_is_there);
-    tcase_add_test(tcase, cells_follow_the_spheres);
-    tcase_add_test(tcase, one_stray_beside_equal_coordinates);
-    return suite_run(suite);
 }

@@ -78,7 +78,7 @@ static void close_to(double value, double truth, double error) {
 }
 
 /* A sphere alone gives off A eps sigma (T^4 - T0^4), less what holds it. */
-START_TEST(one_sphere) {
+TEST(one_sphere) {
     static const double eps[] = {.1, .5, 1}, hold[] = {0, 3, 1e6};
     for (int k = 0; k < 9; k++) {
         struct settled s;
@@ -97,10 +97,9 @@ START_TEST(one_sphere) {
         bed_free(&s.bed);
     }
 }
-END_TEST
 
 /* Between endless plates, without spheres: q = sigma (T1^4 - T2^4)/(1/e1 + 1/e2 - 1). */
-START_TEST(plates) {
+TEST(plates) {
     struct settled s;
     begin(&s, bed_of(0, NULL));
     s.scene.period[0] = s.scene.period[1] = 2;
@@ -114,11 +113,10 @@ START_TEST(plates) {
     ck_assert_double_eq(s.found.wall_temperature[1], 500);
     bed_free(&s.bed);
 }
-END_TEST
 
 /* Powers of given temperatures, given back for every other body: the temperatures. Exactly so with one radiosity per
  * body; with patches both extrapolate, so that squares of what that changes remain. */
-START_TEST(there_and_back) {
+TEST(there_and_back) {
     for (int uniform = 0; uniform < 2; uniform++) {
         struct settled s;
         double temperature[N], wall_temperature[WALLS];
@@ -143,10 +141,9 @@ START_TEST(there_and_back) {
         bed_free(&s.bed);
     }
 }
-END_TEST
 
 /* In a box at one temperature bodies that give off nothing have it too. */
-START_TEST(equilibrium) {
+TEST(equilibrium) {
     struct settled s;
     begin_box(&s, 3);
     s.sources.power = s.power, s.sources.body_power = s.wall_power, s.sources.insulated = s.insulated;
@@ -161,10 +158,9 @@ START_TEST(equilibrium) {
     for (int k = 0; k < WALLS; k++) close_to(s.found.wall_temperature[k], 700, 1e-12);
     bed_free(&s.bed);
 }
-END_TEST
 
 /* An insulated wall is one that reflects all, but has a temperature: between those about it. */
-START_TEST(insulated) {
+TEST(insulated) {
     struct settled s;
     double power[N];
     begin_box(&s, 5);
@@ -180,10 +176,9 @@ START_TEST(insulated) {
     ck_assert(s.found.wall_temperature[3] > 300 && s.found.wall_temperature[3] < 1200);
     bed_free(&s.bed);
 }
-END_TEST
 
 /* Nothing has a given temperature: powers add up to zero, or there is no solution. */
-START_TEST(afloat) {
+TEST(afloat) {
     struct settled s;
     double sum = 0, weights = 0;
     begin_box(&s, 9);
@@ -211,7 +206,6 @@ START_TEST(afloat) {
     ck_assert_int_eq(settle(&s), FIBRAD_OK);
     bed_free(&s.bed);
 }
-END_TEST
 
 /* eps = .9 - T/2000, of spheres and of the floor. */
 static void falling(void *calls, const double *temperature, const double *body_temperature, double *emissivity,
@@ -222,7 +216,7 @@ static void falling(void *calls, const double *temperature, const double *body_t
 }
 
 /* A sphere alone whose emissivity falls with its temperature, given or found: A eps(T) sigma (T^4 - T0^4) = W. */
-START_TEST(emissivity_of_temperature) {
+TEST(emissivity_of_temperature) {
     for (int given = 0; given < 2; ++given) {
         struct settled s;
         fibrad_radiation *radiation;
@@ -244,9 +238,8 @@ START_TEST(emissivity_of_temperature) {
         bed_free(&s.bed);
     }
 }
-END_TEST
 
-START_TEST(refused) {
+TEST(refused) {
     struct settled s;
     begin_box(&s, 1);
     s.temperature[3] = unknown; /* and no powers */
@@ -271,19 +264,4 @@ START_TEST(refused) {
     s.scene.bodies = 2, s.wall_temperature[1] = unknown; /* walls without end */
     ck_assert_int_eq(settle(&s), FIBRAD_E_UNSUPPORTED);
     bed_free(&s.bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("settled");
-    TCase *tcase = suite_case(suite, "settled");
-    tcase_add_test(tcase, one_sphere);
-    tcase_add_test(tcase, plates);
-    tcase_add_test(tcase, there_and_back);
-    tcase_add_test(tcase, equilibrium);
-    tcase_add_test(tcase, insulated);
-    tcase_add_test(tcase, afloat);
-    tcase_add_test(tcase, emissivity_of_temperature);
-    tcase_add_test(tcase, refused);
-    return suite_run(suite);
 }

@@ -264,35 +264,17 @@ static struct bed giants(struct chance *chance, uint32_t lines) {
 
 static const struct bounds usual = {1e-12, 1e-13};
 
-START_TEST(heaps) { compare_scenes("heap", 6000, usual, open_heap); }
-END_TEST
+TEST(heaps) { compare_scenes("heap", 6000, usual, open_heap); }
 
 /* Radii differ by up to a thousand. Of 20,000 scenes one differs by 1.1e-12. */
-START_TEST(sizes_far_apart) { compare_scenes("sizes", 4000, (struct bounds){2e-12, 1e-13}, sizes_apart); }
-END_TEST
+TEST(sizes_far_apart) { compare_scenes("sizes", 4000, (struct bounds){2e-12, 1e-13}, sizes_apart); }
 
-START_TEST(spheres_that_overlap) { compare_scenes("overlap", 4000, usual, overlaps); }
-END_TEST
+TEST(spheres_that_overlap) { compare_scenes("overlap", 4000, usual, overlaps); }
 
-START_TEST(periodic_scenes) { compare_scenes("periods", 3000, usual, periods); }
-END_TEST
+TEST(periodic_scenes) { compare_scenes("periods", 3000, usual, periods); }
 
 /* Windows find 1e-10 of spheres that rounding alone lets look past others. */
-START_TEST(lattices) { compare_scenes("lattice", 2000, (struct bounds){1e-9, 1e-13}, lattice_along); }
-END_TEST
+TEST(lattices) { compare_scenes("lattice", 2000, (struct bounds){1e-9, 1e-13}, lattice_along); }
 
 /* Coordinates are of the order of the large sphere's radius, areas of the order of the small one's. */
-START_TEST(giants_among_small_ones) { compare_scenes("giant", 1000, (struct bounds){4e-11, 3e-13}, giants); }
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("silhouette_scenes");
-    TCase *tcase = suite_case(suite, "silhouettes and windows");
-    tcase_add_test(tcase, heaps);
-    tcase_add_test(tcase, sizes_far_apart);
-    tcase_add_test(tcase, spheres_that_overlap);
-    tcase_add_test(tcase, periodic_scenes);
-    tcase_add_test(tcase, lattices);
-    tcase_add_test(tcase, giants_among_small_ones);
-    return suite_run(suite);
-}
+TEST(giants_among_small_ones) { compare_scenes("giant", 1000, (struct bounds){4e-11, 3e-13}, giants); }

@@ -240,7 +240,7 @@ static void compare_kernel(struct bed bed, const char *what) {
     bed_free(&bed);
 }
 
-START_TEST(kernel_agrees_with_windows) {
+TEST(kernel_agrees_with_windows) {
     for (uint64_t seed = 1; seed <= 3; seed++) {
         compare_kernel(packing(40, .3, 1, .1 * (double)seed, seed, false), "an open bed");
         compare_kernel(strewn(60, seed), "small among large ones");
@@ -250,38 +250,33 @@ START_TEST(kernel_agrees_with_windows) {
         compare_kernel(bed, "an overlap");
     }
 }
-END_TEST
 
-START_TEST(open_beds) {
+TEST(open_beds) {
     for (uint64_t seed = 1; seed <= 6; seed++)
         compare_methods(packing(40, .3, 1, .1 * (double)seed, seed, false), 30, 0, "an open bed");
 }
-END_TEST
 
-START_TEST(sizes_far_apart) {
+TEST(sizes_far_apart) {
     for (uint64_t seed = 1; seed <= 3; seed++) compare_methods(strewn(60, seed), 30, 0, "small among large ones");
 }
-END_TEST
 
 /* A period of about four diameters: three images on either side close all windows. */
-START_TEST(periodic_beds) {
+TEST(periodic_beds) {
     for (uint64_t seed = 1; seed <= 3; seed++)
         compare_methods(packing(40, .6, 1, .55, seed, true), 12, 3, "a periodic bed");
 }
-END_TEST
 
 /* A line that begins within another sphere meets it at once if the other's centre lies ahead. */
-START_TEST(spheres_that_overlap) {
+TEST(spheres_that_overlap) {
     for (uint64_t seed = 1; seed <= 4; seed++) {
         struct bed bed = packing(50, .4, 1, .4, seed, false);
         for (uint32_t i = 0; i < bed.n; i++) bed.r[i] *= 1.02 + .05 * (double)seed * bed_make_random(seed, i);
         compare_methods(bed, 30, 0, "an overlap");
     }
 }
-END_TEST
 
 /* Of some directions circles coincide, or nearly do. */
-START_TEST(lattices) {
+TEST(lattices) {
     static const double off[] = {0, 1e-16, 1e-14, 1e-12, 1e-10, 1e-8};
     for (const char *kind = "pif"; *kind != '\0'; kind++)
         for (size_t k = 0; k < sizeof off / sizeof *off; k++) {
@@ -289,17 +284,4 @@ START_TEST(lattices) {
             for (uint32_t i = 0; i < bed.n; i++) bed.x[i] += off[k] * bed.z[i], bed.y[i] -= off[k] / 3 * bed.z[i];
             compare_methods(bed, 32, 0, "a lattice");
         }
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("silhouettes");
-    TCase *tcase = suite_case(suite, "silhouettes");
-    tcase_add_test(tcase, kernel_agrees_with_windows);
-    tcase_add_test(tcase, open_beds);
-    tcase_add_test(tcase, sizes_far_apart);
-    tcase_add_test(tcase, periodic_beds);
-    tcase_add_test(tcase, spheres_that_overlap);
-    tcase_add_test(tcase, lattices);
-    return suite_run(suite);
 }

@@ -81,7 +81,7 @@ static void *kernel_matrix(const struct bed *bed, const fibrad_scene_config *con
     return block;
 }
 
-START_TEST(view_factors_are_the_kernels) {
+TEST(view_factors_are_the_kernels) {
     struct bed bed = packing(300, .8, 1.2, .5, 3, false);
     const fibrad_body body[] = {plane_at(2, 0, -20), cylinder_at(10, 10, 60)};
     const fibrad_plane opening = {2, 1, 90};
@@ -107,7 +107,6 @@ START_TEST(view_factors_are_the_kernels) {
     free(block);
     bed_free(&bed);
 }
-END_TEST
 
 struct calls {
     uint64_t count, done, total, stop_at; /* stop_at: the call that asks to stop */
@@ -125,7 +124,7 @@ static int count_calls(void *context, const char *stage, uint64_t done, uint64_t
 }
 
 /* Rows of spheres far larger than most are divided over threads, and all rows where they are fewer than threads. */
-START_TEST(long_rows_are_divided) {
+TEST(long_rows_are_divided) {
     struct bed bed = strewn(300, 3);
     const fibrad_body floor = plane_at(2, 0, -.3);
     const fibrad_scene_config config = {.body = &floor, .bodies = 1};
@@ -154,10 +153,9 @@ START_TEST(long_rows_are_divided) {
     free(block);
     bed_free(&bed);
 }
-END_TEST
 
 /* Every other method and option: the same for any number of threads. */
-START_TEST(nothing_depends_on_threads) {
+TEST(nothing_depends_on_threads) {
     struct bed bed = packing(200, .8, 1.2, .5, 3, true);
     const fibrad_scene_config config = box_of(&bed);
     const fibrad_spheres spheres = spheres_of(&bed);
@@ -193,9 +191,8 @@ START_TEST(nothing_depends_on_threads) {
     }
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(exchange_does_not_depend_on_threads) {
+TEST(exchange_does_not_depend_on_threads) {
     struct bed bed = packing(150, .8, 1.2, .5, 3, true);
     const fibrad_scene_config config = box_of(&bed);
     const fibrad_spheres spheres = spheres_of(&bed);
@@ -221,10 +218,9 @@ START_TEST(exchange_does_not_depend_on_threads) {
     fibrad_bed_free(first);
     bed_free(&bed);
 }
-END_TEST
 
 /* Spheres that reflect all have empty rows, which are no fault of closure; a bed of nothing else is empty. */
-START_TEST(reflectors_have_empty_rows) {
+TEST(reflectors_have_empty_rows) {
     struct bed bed = packing(150, .8, 1.2, .5, 3, true);
     const fibrad_scene_config config = box_of(&bed);
     const fibrad_spheres spheres = spheres_of(&bed);
@@ -249,7 +245,6 @@ START_TEST(reflectors_have_empty_rows) {
         }
     bed_free(&bed);
 }
-END_TEST
 
 /* Whether an address is in a file of the folder; so it is where the system does not say. */
 static bool is_filed(const void *address, const char *folder) {
@@ -266,7 +261,7 @@ static bool is_filed(const void *address, const char *folder) {
 }
 
 /* Rows and matrix in files are those in memory, walls and all, for any number of threads; nothing is left behind. */
-START_TEST(factors_in_files) {
+TEST(factors_in_files) {
     char folder[] = "/tmp/fibrad_filed_XXXXXX";
     struct bed bed = packing(300, .8, 1.2, .5, 3, false);
     const fibrad_body body[] = {plane_at(2, 0, -20), cylinder_at(10, 10, 60)};
@@ -300,10 +295,9 @@ START_TEST(factors_in_files) {
     ck_assert_ptr_null(none);
     bed_free(&bed);
 }
-END_TEST
 
 /* A file that may not grow any more is an error. */
-START_TEST(full_disk) {
+TEST(full_disk) {
     struct bed bed = packing(300, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     struct rlimit limit;
@@ -319,11 +313,10 @@ START_TEST(full_disk) {
     ck_assert_ptr_null(none);
     bed_free(&bed);
 }
-END_TEST
 
 /* ---- errors ------------------------------------------------------------------------------------------------------ */
 
-START_TEST(faults_name_spheres) {
+TEST(faults_name_spheres) {
     struct bed bed = packing(100, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     fibrad_bed_factors *factors = (void *)&bed;
@@ -354,11 +347,10 @@ START_TEST(faults_name_spheres) {
     ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, NULL, &factors), FIBRAD_E_ARGUMENT);
     bed_free(&bed);
 }
-END_TEST
 
 /* Of several rows that fail the same is named for any number of threads, divided or not; a call that is cancelled names
  * none. */
-START_TEST(faults_of_divided_rows) {
+TEST(faults_of_divided_rows) {
     struct bed bed = strewn(300, 3);
     struct mesh *mesh = mesh_new();
     const fibrad_spheres spheres = spheres_of(&bed);
@@ -382,9 +374,8 @@ START_TEST(faults_of_divided_rows) {
     free(mesh);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(arguments) {
+TEST(arguments) {
     struct bed bed = packing(10, .8, 1.2, .4, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     fibrad_bed_factors *factors;
@@ -424,11 +415,10 @@ START_TEST(arguments) {
     fibrad_bed_free(factors);
     bed_free(&bed);
 }
-END_TEST
 
 /* ---- progress ---------------------------------------------------------------------------------------------------- */
 
-START_TEST(progress_and_cancelling) {
+TEST(progress_and_cancelling) {
     struct bed bed = packing(200, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     const fibrad_bed_options options = {.beam = &(fibrad_beam_rule){.directions = 200}};
@@ -448,10 +438,9 @@ START_TEST(progress_and_cancelling) {
     }
     bed_free(&bed);
 }
-END_TEST
 
 /* Rows that are divided do not report each by itself. */
-START_TEST(progress_of_short_rows) {
+TEST(progress_of_short_rows) {
     struct bed bed = bed_of(0, NULL);
     for (int k = 0; k < 400; k++) add_sphere(&bed, 9 * k, 0, 0, 1);
     for (int k = 0; k < 8000; k++) add_sphere(&bed, .1 * k, 99, 0, .01);
@@ -468,7 +457,6 @@ START_TEST(progress_of_short_rows) {
     fibrad_bed_free(factors);
     bed_free(&bed);
 }
-END_TEST
 
 /* ---- heat -------------------------------------------------------------------------------------------------------- */
 
@@ -488,7 +476,7 @@ static void powers(fibrad_radiation *radiation, const fibrad_heat_sources *sourc
     ck_assert_int_eq(fibrad_radiation_solve(radiation, sources, &result), FIBRAD_OK);
 }
 
-START_TEST(radiation_moves) {
+TEST(radiation_moves) {
     struct bed bed = packing(N, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed), fewer = {bed.x, bed.y, bed.z, bed.r, N - 1, 0, 0, NULL};
     const fibrad_heat_config config = {.directions = 20, .patches = 24};
@@ -543,7 +531,6 @@ START_TEST(radiation_moves) {
     }
     bed_free(&bed);
 }
-END_TEST
 
 /* How often beams were begun again. */
 struct returns {
@@ -559,7 +546,7 @@ static int count_returns(void *context, const char *stage, uint64_t done, uint64
 }
 
 /* A bed that comes apart sees more others than there is room for: it gets more, and all is as if it had begun so. */
-START_TEST(radiation_gets_more_room) {
+TEST(radiation_gets_more_room) {
     enum { MANY = 800 };
     struct bed bed = packing(MANY, 1, 1, .6, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
@@ -584,9 +571,8 @@ START_TEST(radiation_gets_more_room) {
     fibrad_radiation_free(radiation);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(radiation_with_walls) {
+TEST(radiation_with_walls) {
     struct bed bed = packing(N, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     double temperature[N], emissivity[N], power[N], wall_power[6], wall_temperature[6], wall_emissivity[6];
@@ -614,7 +600,6 @@ START_TEST(radiation_with_walls) {
     fibrad_radiation_free(radiation);
     bed_free(&bed);
 }
-END_TEST
 
 /* A law that is asked how often, and answers something else than an emissivity the time `fails`. */
 struct law {
@@ -632,7 +617,7 @@ static void follow_law(void *context, const double *temperature, const double *b
 }
 
 /* Laws get temperatures, and what they answer is looked at each time. */
-START_TEST(laws_are_checked) {
+TEST(laws_are_checked) {
     const fibrad_spheres one = {&(double){0}, &(double){0}, &(double){0}, &(double){1}, .n = 1};
     const fibrad_body floor = plane_at(2, 0, -3);
     const double temperature = 400, wrong[] = {NAN, -.1, 1.1, INFINITY};
@@ -662,28 +647,4 @@ START_TEST(laws_are_checked) {
             FIBRAD_E_ARGUMENT);
     }
     fibrad_radiation_free(radiation);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("simple");
-    TCase *factors = suite_case(suite, "factors"), *errors = suite_case(suite, "errors"),
-          *heat = suite_case(suite, "heat");
-    tcase_add_test(factors, view_factors_are_the_kernels);
-    tcase_add_test(factors, long_rows_are_divided);
-    tcase_add_test(factors, nothing_depends_on_threads);
-    tcase_add_test(factors, exchange_does_not_depend_on_threads);
-    tcase_add_test(factors, reflectors_have_empty_rows);
-    tcase_add_test(factors, factors_in_files);
-    tcase_add_test(errors, full_disk);
-    tcase_add_test(errors, faults_name_spheres);
-    tcase_add_test(errors, faults_of_divided_rows);
-    tcase_add_test(errors, arguments);
-    tcase_add_test(errors, progress_and_cancelling);
-    tcase_add_test(errors, progress_of_short_rows);
-    tcase_add_test(heat, radiation_moves);
-    tcase_add_test(heat, radiation_gets_more_room);
-    tcase_add_test(heat, radiation_with_walls);
-    tcase_add_test(heat, laws_are_checked);
-    return suite_run(suite);
 }

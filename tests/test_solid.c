@@ -11,6 +11,8 @@
 #include "frames/solid_option.h"
 #include "program.h"
 
+FIXTURE(make_folder, remove_folder)
+
 #define PI 3.14159265358979323846
 
 /* ---- the option -------------------------------------------------------------------------------------------------- */
@@ -27,7 +29,7 @@ static struct bed two_spheres(void) {
 }
 
 /* Numbers, tables over T and lists of types: k* = k_s/(4 d sigma T^3). */
-START_TEST(relative_conductivities) {
+TEST(relative_conductivities) {
     static const double sigma = 5.670374419e-8, temperature[] = {1000, 500};
     char by_type[300];
     snprintf(by_type, sizeof by_type, "1:@%s,2:20", write_file("k.csv", "T,k\n900,3\n1100,5\n"));
@@ -49,10 +51,9 @@ START_TEST(relative_conductivities) {
     }
     bed_free(&bed);
 }
-END_TEST
 
 /* What has no k*. */
-START_TEST(no_relative_conductivity) {
+TEST(no_relative_conductivity) {
     struct bed bed = two_spheres();
     struct bed_options options = {.name = "bed"};
     struct quantity solid;
@@ -71,7 +72,6 @@ START_TEST(no_relative_conductivity) {
     free(conductivity);
     bed_free(&bed);
 }
-END_TEST
 
 /* ---- a ball ------------------------------------------------------------------------------------------------------ */
 
@@ -83,7 +83,7 @@ static void draw_point(uint64_t *count, double point[3]) {
 }
 
 /* Of a pattern of degree l a/(a + l) is given off: the mean of Legendre's polynomial of the cosine. */
-START_TEST(patterns_of_a_ball) {
+TEST(patterns_of_a_ball) {
     enum { DRAWS = 200000, DEGREES = 8 };
     static const double a[] = {.001, .1, 1, 5, 100};
     for (size_t k = 0; k < sizeof a / sizeof *a; ++k) {
@@ -106,10 +106,9 @@ START_TEST(patterns_of_a_ball) {
         for (int axis = 0; axis < 3; ++axis) ck_assert_double_eq_tol(turned[axis], 0, 4 / sqrt(DRAWS));
     }
 }
-END_TEST
 
 /* The ends of all ranges give unit vectors. */
-START_TEST(extremes_of_a_ball) {
+TEST(extremes_of_a_ball) {
     static const double u[] = {0, 1e-300, .5, 1 - 0x1p-53}, exponent[] = {0, 1e-12, 1, 1e6, 1e300, INFINITY};
     const double n[] = {0, 0, 1}, even[] = {0, .6, .8};
     for (int k = 0; k < 4 * 4 * 6 * 2; ++k) {
@@ -120,7 +119,6 @@ START_TEST(extremes_of_a_ball) {
         ck_assert_double_eq_tol(to[0] * to[0] + to[1] * to[1] + to[2] * to[2], 1, 1e-12);
     }
 }
-END_TEST
 
 /* ---- beds ------------------------------------------------------------------------------------------------------- */
 
@@ -147,7 +145,7 @@ static double mean_factor(const struct conduction *of, double *square) {
 }
 
 /* Touching spheres in a simple cubic lattice: harmonics up to degrees 9 and 13, and 1.2e7 rays, right to .0005. */
-START_TEST(simple_cubic) {
+LOOP_TEST(simple_cubic, 14) {
     static const struct {
         double k_star, factor[2]; /* at emissivities 1 and .6 */
     } known[] = {{.01, {.2376, .2373}}, {.1, {.3591, .3430}},  {.3, {.5294, .4614}},       {1, {.8006, .5979}},
@@ -165,7 +163,6 @@ START_TEST(simple_cubic) {
     ck_assert_double_eq(k_star_mean(&found.k_star), known[_i / 2].k_star);
     bed_free(&bed);
 }
-END_TEST
 
 /* A plain solution by harmonics: degrees up to DEGREE of the radiosity J of each sphere, whose overlaps come from rays.
  * sigma T^4 rises by `period` along z from one image of the bed to the next. */
@@ -282,7 +279,7 @@ static double factor_by_harmonics(const struct bed *bed, const double *emissivit
 }
 
 /* Random spheres of all sizes, emissivities and conductivities. */
-START_TEST(random_beds) {
+LOOP_TEST(random_beds, 2) {
     static const double low[] = {1, .7}, fraction[] = {.5, .45};
     double emissivity[SPHERES], conductivity[SPHERES];
     struct bed bed;
@@ -297,10 +294,9 @@ START_TEST(random_beds) {
     ck_assert_double_eq_tol(found.factor[2], truth, .015 * truth);
     bed_free(&bed);
 }
-END_TEST
 
 /* A bed with open ends: its core has F_E of the periodic bed that it is cut from. */
-START_TEST(open_beds) {
+TEST(open_beds) {
     struct bed cell, bed;
     bed_init(&cell), bed_init(&bed);
     ck_assert_int_eq(bed_make_packing(&cell, 1000, 1, 1, .55, 1), 0);
@@ -318,11 +314,10 @@ START_TEST(open_beds) {
     free(emissivity), free(conductivity);
     bed_free(&cell), bed_free(&bed);
 }
-END_TEST
 
 /* With k* of 1e6 F_E is that of spheres with one temperature. All spheres at temperatures on a line, or at those at
  * which they gain nothing: docs/heat.md has the difference, .1 %. */
-START_TEST(good_conductors) {
+TEST(good_conductors) {
     double emissivity[300], conductivity[300];
     struct bed bed;
     bed_init(&bed);
@@ -336,10 +331,9 @@ START_TEST(good_conductors) {
     ck_assert(isnan(k_star_mean(&one.k_star)) && solid.k_star.least == 1e6);
     bed_free(&bed);
 }
-END_TEST
 
 /* What the kernel refuses. */
-START_TEST(refusals) {
+TEST(refusals) {
     static _Alignas(64) unsigned char memory[40000], room[2000000];
     const double at[] = {0, 0, 0}, r = 1;
     const fibrad_spheres spheres = {at, at + 1, at + 2, &r, 1, .stride = 3};
@@ -362,7 +356,6 @@ START_TEST(refusals) {
         ck_assert_int_eq(fibrad_exchange_walk(scene, &work, 0, &rule, &moved), FIBRAD_E_ARGUMENT);
     }
 }
-END_TEST
 
 /* ---- the program ------------------------------------------------------------------------------------------------- */
 
@@ -387,7 +380,7 @@ static const char *write_tower(double period[3]) {
 }
 
 /* Paths in a periodic bed, and patches of the same bed between plates. */
-START_TEST(paths_and_patches_of_a_random_bed) {
+LOOP_TEST(paths_and_patches_of_a_random_bed, 3) {
     static const double k_star[] = {1, .1, .01}, most[] = {.01, .01, .02};
     double period[3];
     char solid[30], periods[100];
@@ -398,10 +391,9 @@ START_TEST(paths_and_patches_of_a_random_bed) {
             "--length-unit", "mm", "--error", "0.003", "--steady", "--solid-conductivity", solid);
     ck_assert_double_eq_tol(value_of("F_E_steady_z") / value_of("F_E_z"), 1, most[_i]);
 }
-END_TEST
 
 /* k* in the summary, the table and the objects, and the same from a number, a column and a table of T. */
-START_TEST(outputs) {
+TEST(outputs) {
     const char *csv = in_folder("k.csv"), *json = in_folder("k.json"), *summary = in_folder("s.json");
     const double k_star = 13.6 / (4 * .06 * 5.670374419e-8 * 1e9);
     char table[300], *text[3];
@@ -422,10 +414,9 @@ START_TEST(outputs) {
     }
     for (int k = 0; k < 3; ++k) free(text[k]);
 }
-END_TEST
 
 /* One temperature a sphere is right to 5 % above k* = 11 or so in a simple cubic lattice: F_E 1.135 of 1.200 at 10. */
-START_TEST(how_isothermal) {
+TEST(how_isothermal) {
     double above = 0;
     SUCCEED("conductivity", OF_CELL, "1000", "--length-unit", "mm");
     const char *line = strstr(printed, "\nisothermal right to 5 % for k_s above ");
@@ -435,9 +426,8 @@ START_TEST(how_isothermal) {
     SUCCEED("conductivity", OF_CELL, "1000");
     ck_assert_ptr_null(strstr(printed, "isothermal")); /* no unit */
 }
-END_TEST
 
-START_TEST(mistakes) {
+TEST(mistakes) {
     static const struct {
         const char *temperature, *unit, *solid, *more, *message;
         int status;
@@ -462,28 +452,4 @@ START_TEST(mistakes) {
     ck_assert_ptr_nonnull(strstr(said, "names no unit of length, which --solid-conductivity needs"));
     ck_assert_int_eq(RUN("conductivity", MONO, "--emissivity=.5", "--solid-conductivity=5"), 2);
     ck_assert_ptr_nonnull(strstr(said, "--solid-conductivity needs --temperature"));
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("solid");
-    TCase *option = suite_case(suite, "option");
-    tcase_add_checked_fixture(option, make_folder, remove_folder);
-    tcase_add_test(option, relative_conductivities);
-    tcase_add_test(option, no_relative_conductivity);
-    TCase *ball = suite_case(suite, "ball"), *beds = suite_case(suite, "beds");
-    tcase_add_test(ball, patterns_of_a_ball);
-    tcase_add_test(ball, extremes_of_a_ball);
-    tcase_add_loop_test(beds, simple_cubic, 0, 14);
-    tcase_add_loop_test(beds, random_beds, 0, 2);
-    tcase_add_test(beds, good_conductors);
-    tcase_add_test(beds, open_beds);
-    tcase_add_test(beds, refusals);
-    TCase *program = suite_case(suite, "program");
-    tcase_add_checked_fixture(program, make_folder, remove_folder);
-    tcase_add_test(program, outputs);
-    tcase_add_loop_test(program, paths_and_patches_of_a_random_bed, 0, 3);
-    tcase_add_test(program, how_isothermal);
-    tcase_add_test(program, mistakes);
-    return suite_run(suite);
 }

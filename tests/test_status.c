@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-START_TEST(numbers_never_change) {
+TEST(numbers_never_change) {
     ck_assert_int_eq(FIBRAD_OK, 0);
     ck_assert_int_eq(FIBRAD_E_ARGUMENT, -1);
     ck_assert_int_eq(FIBRAD_E_SIZE, -2);
@@ -27,9 +27,8 @@ START_TEST(numbers_never_change) {
     ck_assert_int_eq(FIBRAD_E_ENDLESS, -16);
     ck_assert_int_eq(FIBRAD_E_FILE, -17);
 }
-END_TEST
 
-START_TEST(each_status_has_its_own_text) {
+TEST(each_status_has_its_own_text) {
     for (int a = FIBRAD_E_FILE; a <= FIBRAD_OK; a++) {
         const char *text = fibrad_status_text(a);
         ck_assert_uint_gt(strlen(text), 0);
@@ -38,40 +37,25 @@ START_TEST(each_status_has_its_own_text) {
         for (int b = FIBRAD_E_FILE; b < a; b++) ck_assert_str_ne(text, fibrad_status_text(b));
     }
 }
-END_TEST
 
-START_TEST(other_numbers_have_a_text) {
+TEST(other_numbers_have_a_text) {
     static const int others[] = {1, 1000, -100, -1000, -2147483647 - 1, 2147483647};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         ck_assert_ptr_nonnull(fibrad_status_text(others[i]));
         ck_assert_str_eq(fibrad_status_text(others[i]), fibrad_status_text(1));
     }
 }
-END_TEST
 
-START_TEST(version_is_the_headers) {
+TEST(version_is_the_headers) {
     int major, minor, patch, read = -1;
     ck_assert_str_eq(fibrad_version(), FIBRAD_VERSION);
     ck_assert_int_eq(sscanf(fibrad_version(), "%d.%d.%d%n", &major, &minor, &patch, &read), 3);
     ck_assert_int_eq(read, (int)strlen(fibrad_version()));
 }
-END_TEST
 
-START_TEST(instruction_sets_have_names) {
+TEST(instruction_sets_have_names) {
     static const char *const names[] = {"best", "scalar", "sse2", "avx2", "avx512", "neon"};
     for (int isa = FIBRAD_ISA_BEST; isa <= FIBRAD_ISA_NEON; isa++) ck_assert_str_eq(fibrad_isa_name(isa), names[isa]);
     ck_assert_str_eq(fibrad_isa_name(-1), "?");
     ck_assert_str_eq(fibrad_isa_name(6), "?");
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("status");
-    TCase *tests = suite_case(suite, "status");
-    tcase_add_test(tests, numbers_never_change);
-    tcase_add_test(tests, each_status_has_its_own_text);
-    tcase_add_test(tests, other_numbers_have_a_text);
-    tcase_add_test(tests, version_is_the_headers);
-    tcase_add_test(tests, instruction_sets_have_names);
-    return suite_run(suite);
 }

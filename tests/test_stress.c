@@ -63,7 +63,7 @@ static void move(struct bed *to, const struct bed *from, double factor, const do
 
 /* ---- scale and place -------------------------------------------------------------------------------------------- */
 
-START_TEST(pairs_at_every_scale) {
+TEST(pairs_at_every_scale) {
     double two = 0, ten = 0;
     for (uint64_t k = 0; k < rounds(200, 20000); k++) {
         double r1 = pow(10, random_in(1, -3, 0)), r2 = pow(10, random_in(1, -3, 0));
@@ -78,9 +78,8 @@ START_TEST(pairs_at_every_scale) {
     report("pairs times 2^k, k = -400 ... 400: results with other bits", two, 0);
     report("pairs times 10^k, k = -100 ... 100: relative", ten, 1e-13);
 }
-END_TEST
 
-START_TEST(rows_at_every_scale) {
+TEST(rows_at_every_scale) {
     static const double nowhere[3] = {0, 0, 0};
     struct bed bed = packing(100, .5, 1.5, .5, 3, false), scaled = packing(100, .5, 1.5, .5, 3, false);
     fibrad_row row = beam(&bed, 42, 55), cast = rays(&bed, 42, 500);
@@ -106,11 +105,10 @@ START_TEST(rows_at_every_scale) {
     bed_free(&bed);
     bed_free(&scaled);
 }
-END_TEST
 
 /* Moved coordinates are rounded; the row of the rounded bed, moved back without a further rounding, tells how much of
  * the loss is the kernel's own. */
-START_TEST(rows_far_from_the_origin) {
+TEST(rows_far_from_the_origin) {
     for (int e = 3; e <= 9; e += 2) {
         double offset = pow(10, e), own = 0, loss = 0, away[3] = {offset, -.7 * offset, .3 * offset};
         double back[3] = {-away[0], -away[1], -away[2]};
@@ -133,13 +131,12 @@ START_TEST(rows_far_from_the_origin) {
         report(attack, loss, 4 * 0x1p-52 * offset);
     }
 }
-END_TEST
 
 /* ---- contact ---------------------------------------------------------------------------------------------------- */
 
 /* Gaps from an overlap of half the smaller radius to 1e12 radii, in steps that are fine near contact: F falls, and two
  * neighbours differ by no more than the slope there allows. */
-START_TEST(pairs_across_contact) {
+TEST(pairs_across_contact) {
     static const double ratios[] = {1, .5, .1, 1e-3, 1e-6, 2, 10, 1e3, 1e6};
     double rise = 0, jump = 0;
     for (size_t q = 0; q < sizeof ratios / sizeof *ratios; q++) {
@@ -163,10 +160,9 @@ START_TEST(pairs_across_contact) {
     report("pairs, overlap .5 to gap 1e12, ratios 1e-6 ... 1e6: F rises by", rise, 1e-15);
     report("pairs across contact: F jumps by", jump, 2e-15);
 }
-END_TEST
 
 /* The same for beams: in every direction the disc moves out as the gap grows. */
-START_TEST(beams_across_contact) {
+TEST(beams_across_contact) {
     double rise = 0, jump = 0;
     for (uint64_t seed = 0; seed < rounds(2, 20); seed++) {
         double r2 = pow(10, random_in(2, -.7, .7)), t = random_in(2, 0, 1), p = random_in(2, 0, 6.28);
@@ -188,9 +184,8 @@ START_TEST(beams_across_contact) {
     report("beams across contact, overlap .5 to gap .5: F rises by", rise, 1e-15);
     report("beams across contact: F jumps by", jump, 1e-15);
 }
-END_TEST
 
-START_TEST(radius_ratios) {
+TEST(radius_ratios) {
     double reciprocity = 0, from_small = 0, from_large = 0, open = 0;
     for (int e = -60; e <= 60; e += all() ? 1 : 10) {
         double r2 = pow(10, e / 10.0);
@@ -215,7 +210,6 @@ START_TEST(radius_ratios) {
     report("radius ratios 1 ... 1e6, beams from the larger sphere: F", from_large, 1e-4);
     report("radius ratios 1e-6 ... 1e6: sum + escaped - 1", open, 1e-12);
 }
-END_TEST
 
 /* ---- windows ---------------------------------------------------------------------------------------------------- */
 
@@ -223,7 +217,7 @@ END_TEST
 
 /* Discs drawn from few places and radii, so that they are equal, concentric, tangent within and without, as large as
  * the window, and meet by threes and more in one point; one in two is then moved by an ulp or a little more. */
-START_TEST(degenerate_windows) {
+TEST(degenerate_windows) {
     double worst = 0, open = 0;
     fibrad_arena arena = {0};
     fibrad_areas areas;
@@ -270,11 +264,10 @@ START_TEST(degenerate_windows) {
     report("degenerate windows and 1 ulp beside them: visible area", worst, 1.5e-8);
     report("degenerate windows: sum of areas + rest - pi", open, 1.5e-8);
 }
-END_TEST
 
 /* Lattices turned so that an axis of theirs lies along one of the beams, or a little off it: the row agrees with that
  * of the lattice with every sphere moved by 1e-9, as no single beam may matter that much. */
-START_TEST(lattices_along_the_beams) {
+TEST(lattices_along_the_beams) {
     static const double axes[][3] = {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}};
     double worst = 0, open = 0;
     for (int kind = 0; kind < 3; kind++)
@@ -310,13 +303,12 @@ START_TEST(lattices_along_the_beams) {
     report("SC, BCC, FCC along the beams, against 1e-9 beside them", worst, 1e-7);
     report("SC, BCC, FCC along the beams: sum + escaped - 1", open, 1e-9); /* as for degenerate windows */
 }
-END_TEST
 
 /* ---- obstacles -------------------------------------------------------------------------------------------------- */
 
 /* An obstacle moves across a pair: F is never negative nor above the free F, and changes by no more than the area its
  * edge sweeps, 2 r/pi per step and unit area. */
-START_TEST(obstacle_across_a_pair) {
+TEST(obstacle_across_a_pair) {
     double negative = 0, above = 0, jump = 0, left = 0;
     for (uint64_t seed = 0; seed < rounds(3, 30); seed++) {
         double r2 = random_in(5, .3, 2), gap = random_in(5, 1.2, 3), r = random_in(5, .05, .5),
@@ -345,10 +337,9 @@ START_TEST(obstacle_across_a_pair) {
     report("obstacle across a pair: F jumps by", jump, 1e-14);
     report("obstacle gone: F differs from the free F by", left, 1e-14);
 }
-END_TEST
 
 /* A dilute periodic box is opaque at last: of what leaves a sphere only a few beams find a channel without end. */
-START_TEST(sight_through_many_periods) {
+TEST(sight_through_many_periods) {
     struct bed bed = bed_of(1, (const double[][4]){{.1, .2, .3, .2}});
     for (int axis = 0; axis < 3; axis++) bed.period[axis] = 1;
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -362,7 +353,6 @@ START_TEST(sight_through_many_periods) {
     work_free(&work);
     bed_free(&bed);
 }
-END_TEST
 
 /* ---- random scenes ---------------------------------------------------------------------------------------------- */
 
@@ -479,7 +469,7 @@ static void random_scene(struct seen *seen, void *scene_memory, size_t scene_siz
     }
 }
 
-START_TEST(random_scenes) {
+TEST(random_scenes) {
     struct seen seen = {0};
     size_t size = FIBRAD_SCENE_BYTES(9);
     void *memory = block_of(size);
@@ -497,22 +487,4 @@ START_TEST(random_scenes) {
     report("random scenes: closed row sums above 1 by", seen.closed, 1e-14);
     report("random scenes: closed matrices, sum + escaped - 1", seen.total, 1e-14);
     report("random scenes: closed matrices, reciprocity", seen.reciprocity, 1e-14);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("stress");
-    TCase *tcase = suite_case(suite, "stress");
-    tcase_add_test(tcase, pairs_at_every_scale);
-    tcase_add_test(tcase, rows_at_every_scale);
-    tcase_add_test(tcase, rows_far_from_the_origin);
-    tcase_add_test(tcase, pairs_across_contact);
-    tcase_add_test(tcase, beams_across_contact);
-    tcase_add_test(tcase, radius_ratios);
-    tcase_add_test(tcase, degenerate_windows);
-    tcase_add_test(tcase, lattices_along_the_beams);
-    tcase_add_test(tcase, obstacle_across_a_pair);
-    tcase_add_test(tcase, sight_through_many_periods);
-    tcase_add_test(tcase, random_scenes);
-    return suite_run(suite);
 }

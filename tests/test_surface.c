@@ -57,7 +57,7 @@ static double factor(const scene *s, uint32_t nodes, uint32_t flags, int isa, fi
 /* ---- tests ---- */
 
 /* docs/reproduction.md: largest relative error over the gaps, per cent. */
-START_TEST(published_errors) {
+TEST(published_errors) {
     static const double radius[] = {.1, .3, .7, 1};
     static const struct {
         uint32_t nodes;
@@ -79,9 +79,8 @@ START_TEST(published_errors) {
             ck_assert_double_eq_tol(100 * worst, table[t].error[p], .01);
         }
 }
-END_TEST
 
-START_TEST(equals_plain_sum) {
+TEST(equals_plain_sum) {
     for (uint32_t k = 0; k < 150; k++) {
         scene s;
         make_scene(&s, k);
@@ -94,9 +93,8 @@ START_TEST(equals_plain_sum) {
         ck_assert_double_eq_tol(factor(&s, nodes, 0, FIBRAD_ISA_BEST, NULL), raw / unblocked * exact, 1e-12 * exact);
     }
 }
-END_TEST
 
-START_TEST(skips_change_nothing) {
+TEST(skips_change_nothing) {
     static const uint32_t skip[] = {FIBRAD_SURFACE_NO_HORIZON, FIBRAD_SURFACE_NO_REGION, FIBRAD_SURFACE_NO_EXACT,
                                     FIBRAD_SURFACE_NO_HIDDEN};
     uint32_t hidden = 0, clear = 0, fewer_tests = 0, partly = 0;
@@ -125,9 +123,8 @@ START_TEST(skips_change_nothing) {
     ck_assert_uint_gt(fewer_tests, 200);
     ck_assert_uint_gt(partly, 200);
 }
-END_TEST
 
-START_TEST(same_bits_in_every_instruction_set) {
+TEST(same_bits_in_every_instruction_set) {
     int isa[ISAS_MOST];
     const int sets = isas_there(isa);
     for (int set = 1; set < sets; set++) {
@@ -141,10 +138,9 @@ START_TEST(same_bits_in_every_instruction_set) {
         }
     }
 }
-END_TEST
 
 /* The third sphere touches both: after the correction the error at 55 nodes against 987 is a third of the raw one. */
-START_TEST(third_sphere_touching_both) {
+TEST(third_sphere_touching_both) {
     static const struct {
         double radius, raw, corrected;
     } table[] = {{.1, 1.8, 1.81}, {.3, 1.6, .7}, {.7, 4.84, 1.3}, {1, 5.15, 1.5}};
@@ -164,9 +160,8 @@ START_TEST(third_sphere_touching_both) {
         ck_assert_double_le(100 * corrected, table[t].corrected);
     }
 }
-END_TEST
 
-START_TEST(scales_with_the_unit) {
+TEST(scales_with_the_unit) {
     scene s;
     make_scene(&s, 7);
     const double f = factor(&s, 55, 0, FIBRAD_ISA_BEST, NULL);
@@ -180,10 +175,9 @@ START_TEST(scales_with_the_unit) {
         ck_assert_double_eq_tol(factor(&t, 55, 0, FIBRAD_ISA_BEST, NULL), f, 1e-12 * f);
     }
 }
-END_TEST
 
 /* Scratch memory on any boundary of a double, no more of it than is said; obstacles at any stride. */
-START_TEST(scratch_and_strides_change_no_bit) {
+TEST(scratch_and_strides_change_no_bit) {
     static double room[8 + FIBRAD_SURFACE_SCRATCH(MOST) + 8], at[MOST][3], r[5 * MOST];
     for (uint32_t k = 0; k < 200; k++) {
         scene s;
@@ -207,10 +201,9 @@ START_TEST(scratch_and_strides_change_no_bit) {
         ck_assert(memcmp(&f, &h, sizeof f) == 0);
     }
 }
-END_TEST
 
 /* An instruction set that is not built in is said to be missing. */
-START_TEST(instruction_sets_not_built_in) {
+TEST(instruction_sets_not_built_in) {
     static const int lacking[] = {
 #ifndef FIBRAD_WITH_SSE2
         FIBRAD_ISA_SSE2,
@@ -232,9 +225,8 @@ START_TEST(instruction_sets_not_built_in) {
         ck_assert(f12 == 42);
     }
 }
-END_TEST
 
-START_TEST(refuses_what_is_wrong) {
+TEST(refuses_what_is_wrong) {
     double f12 = 42, x = 0, y = 5, z = 0, r = 1;
     fibrad_spheres o = {.x = &x, .y = &y, .z = &z, .r = &r, .n = 1};
     const fibrad_surface_rule good = {0}, many = {.nodes = 56}, flags = {.flags = 32}, isa = {.isa = 9};
@@ -252,20 +244,4 @@ START_TEST(refuses_what_is_wrong) {
     r = 1, y = INFINITY;
     ck_assert_int_eq(fibrad_surface_pair(1, 1, 0, &o, &good, scratch, &f12, NULL), FIBRAD_E_ARGUMENT);
     ck_assert(f12 == 42);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("surface");
-    TCase *cases = suite_case(suite, "surface");
-    tcase_add_test(cases, published_errors);
-    tcase_add_test(cases, equals_plain_sum);
-    tcase_add_test(cases, skips_change_nothing);
-    tcase_add_test(cases, same_bits_in_every_instruction_set);
-    tcase_add_test(cases, third_sphere_touching_both);
-    tcase_add_test(cases, scales_with_the_unit);
-    tcase_add_test(cases, scratch_and_strides_change_no_bit);
-    tcase_add_test(cases, instruction_sets_not_built_in);
-    tcase_add_test(cases, refuses_what_is_wrong);
-    return suite_run(suite);
 }

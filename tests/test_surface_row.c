@@ -77,7 +77,7 @@ static double plain(uint32_t i, uint32_t j, uint32_t nodes) {
     return ratio * (blocked / unblocked * exact);
 }
 
-START_TEST(equals_plain_sums) {
+TEST(equals_plain_sums) {
     make(150, false);
     uint32_t entries = 0;
     for (uint32_t i = 0; i < bed.n; i += 10) {
@@ -91,9 +91,8 @@ START_TEST(equals_plain_sums) {
     }
     ck_assert_uint_gt(entries, 300);
 }
-END_TEST
 
-START_TEST(skips_and_instruction_sets_change_no_bit) {
+TEST(skips_and_instruction_sets_change_no_bit) {
     static uint32_t col_first[MOST];
     static double f_first[MOST];
     int isa[ISAS_MOST];
@@ -119,10 +118,9 @@ START_TEST(skips_and_instruction_sets_change_no_bit) {
         }
     }
 }
-END_TEST
 
 /* The rows of both methods are as far apart as the estimate of the surface method says, which is the coarser one. */
-START_TEST(agrees_with_beams) {
+TEST(agrees_with_beams) {
     make(300, true);
     static uint32_t beam_col[MOST];
     static double beam_f[MOST];
@@ -141,9 +139,8 @@ START_TEST(agrees_with_beams) {
     ck_assert_double_lt(sqrt(difference / estimate), 1.5);
     ck_assert_double_gt(sqrt(difference / estimate), 0.5);
 }
-END_TEST
 
-START_TEST(reciprocal_without_cutoff) {
+TEST(reciprocal_without_cutoff) {
     make(60, false);
     static double all[60][60];
     for (uint32_t i = 0; i < bed.n; i++) {
@@ -158,10 +155,9 @@ START_TEST(reciprocal_without_cutoff) {
             ck_assert_double_le(fabs(there - back), 1e-15 * there);
         }
 }
-END_TEST
 
 /* The rows of a matrix are as they were but for rounding, and as accurate as they said. */
-START_TEST(rows_of_a_matrix) {
+TEST(rows_of_a_matrix) {
     make(60, false);
     fibrad_rows rows = {.memory = memory_growing()};
     for (uint32_t i = 0; i < bed.n; i++)
@@ -182,9 +178,8 @@ START_TEST(rows_of_a_matrix) {
     rows_free(&rows);
     matrix_free(&raw), matrix_free(&m);
 }
-END_TEST
 
-START_TEST(tells_what_it_needs) {
+TEST(tells_what_it_needs) {
     make(200, true);
     const fibrad_surface_rule rule = {.cutoff = CUTOFF};
     static uint32_t col_enough[MOST];
@@ -207,11 +202,10 @@ START_TEST(tells_what_it_needs) {
     ck_assert_uint_eq(row.length, enough.length);
     work_free_fixed(&little);
 }
-END_TEST
 
 /* Three periods each way: 7^3 images in the cube. A hundred and more are refused, as is what would need more memory
  * than can be had. */
-START_TEST(bounds_the_search_for_images) {
+TEST(bounds_the_search_for_images) {
     make(60, true);
     const double period = bed.period[0];
     fibrad_row row = {.col = col, .f = f, .capacity = MOST};
@@ -234,9 +228,8 @@ START_TEST(bounds_the_search_for_images) {
     ck_assert_double_eq_tol((double)little.memory.needed, 4. / 3 * 3.14159265358979 * 1e6 * 132, 3e4 * 132 + 1e6);
     ck_assert_int_eq(fibrad_surface_row(scene, &little, 0, &more, &row), FIBRAD_E_ARGUMENT);
 }
-END_TEST
 
-START_TEST(refuses_what_is_wrong) {
+TEST(refuses_what_is_wrong) {
     make(20, true);
     fibrad_row row = {.col = col, .f = f, .capacity = MOST, .length = 77};
     const fibrad_surface_rule good = {.cutoff = CUTOFF}, many = {.nodes = 54, .cutoff = CUTOFF},
@@ -266,19 +259,4 @@ START_TEST(refuses_what_is_wrong) {
     ck_assert_int_eq(fibrad_surface_row(cut, &work, 0, NULL, &row), FIBRAD_E_UNSUPPORTED);
     free(cut);
     bed_free(&one);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("surface row");
-    TCase *cases = suite_case(suite, "surface row");
-    tcase_add_test(cases, equals_plain_sums);
-    tcase_add_test(cases, skips_and_instruction_sets_change_no_bit);
-    tcase_add_test(cases, agrees_with_beams);
-    tcase_add_test(cases, reciprocal_without_cutoff);
-    tcase_add_test(cases, rows_of_a_matrix);
-    tcase_add_test(cases, tells_what_it_needs);
-    tcase_add_test(cases, bounds_the_search_for_images);
-    tcase_add_test(cases, refuses_what_is_wrong);
-    return suite_run(suite);
 }

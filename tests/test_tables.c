@@ -12,7 +12,7 @@ static void assert_rounded(double value, long double truth) {
     ck_assert_ldouble_le(fabsl((long double)value - truth), half_ulp(value) + GOLDEN_TOLERANCE);
 }
 
-START_TEST(fibonacci_numbers_are_right) {
+TEST(fibonacci_numbers_are_right) {
     uint64_t previous = 1, current = 1, earlier = 0;
     for (int i = 2; i < 93; i++) {
         uint64_t sum = previous + current;
@@ -23,9 +23,8 @@ START_TEST(fibonacci_numbers_are_right) {
     ck_assert_uint_eq(current, FIBONACCI_93);
     ck_assert_uint_eq(earlier, FIBONACCI_91);
 }
-END_TEST
 
-START_TEST(azimuths_are_multiples_of_the_golden_angle) {
+TEST(azimuths_are_multiples_of_the_golden_angle) {
     uint64_t remainder = 0;
     ck_assert_int_eq(FIBRAD_TABLE_AZIMUTHS, 10946);
     for (uint32_t k = 0; k < FIBRAD_TABLE_AZIMUTHS; k++, remainder = golden_next(remainder)) {
@@ -35,7 +34,6 @@ START_TEST(azimuths_are_multiples_of_the_golden_angle) {
         ck_assert_ldouble_le(fabsl((long double)cos * cos + (long double)sin * sin - 1), 2.5e-16L);
     }
 }
-END_TEST
 
 /* Both parts together must lie on the unit circle to twice the precision: with c + c' and s + s' their parts,
  * c^2 + s^2 - 1 is found exactly by fused multiplication and must be -2 (c c' + s s'). */
@@ -51,16 +49,15 @@ static void assert_long_angle(const fibrad_long_angle *a, uint64_t remainder) {
     ck_assert_double_le(fabs(excess + c2_rest + s2_rest + 2 * (a->cos * a->cos_rest + a->sin * a->sin_rest)), 1e-31);
 }
 
-START_TEST(long_angles_have_twice_the_precision) {
+TEST(long_angles_have_twice_the_precision) {
     uint64_t remainder = 0;
     for (uint32_t k = 0; k < FIBRAD_DIRECTIONS_MAX; k++, remainder = golden_next(remainder)) {
         if (k < FIBRAD_TABLE_STRIDE) assert_long_angle(&fibrad_table_near[k], remainder);
         if (k % FIBRAD_TABLE_STRIDE == 0) assert_long_angle(&fibrad_table_far[k / FIBRAD_TABLE_STRIDE], remainder);
     }
 }
-END_TEST
 
-START_TEST(disc_points_are_sunflowers) {
+TEST(disc_points_are_sunflowers) {
     for (uint32_t m = 64; m <= 256; m *= 2) {
         fibrad_disc_points points;
         ck_assert_int_eq(fibrad_disc_points_get(m, &points), FIBRAD_OK);
@@ -84,18 +81,16 @@ START_TEST(disc_points_are_sunflowers) {
         ck_assert_double_eq_tol(sum_square, m / 2.0, 1e-5);
     }
 }
-END_TEST
 
-START_TEST(other_disc_sets_are_not_built_in) {
+TEST(other_disc_sets_are_not_built_in) {
     static const uint32_t others[] = {0, 1, 32, 63, 65, 127, 192, 255, 257, 512, UINT32_MAX};
     fibrad_disc_points points = {NULL, NULL};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
         ck_assert_int_eq(fibrad_disc_points_get(others[i], &points), FIBRAD_E_TABLE);
     ck_assert_ptr_null(points.x);
 }
-END_TEST
 
-START_TEST(surface_nodes_follow_the_mapped_lattice) {
+TEST(surface_nodes_follow_the_mapped_lattice) {
     uint32_t rules = 0;
     for (uint32_t before = 5, n = 8; n <= 987; rules++) {
         fibrad_surface_nodes nodes;
@@ -130,9 +125,8 @@ START_TEST(surface_nodes_follow_the_mapped_lattice) {
     }
     ck_assert_uint_eq(rules, 11);
 }
-END_TEST
 
-START_TEST(surface_weights_integrate_over_the_sphere) {
+TEST(surface_weights_integrate_over_the_sphere) {
     fibrad_surface_nodes nodes; /* mean of z^2 is 1/3, of x^2 too, of x z 0 */
     ck_assert_int_eq(fibrad_surface_nodes_get(987, &nodes), FIBRAD_OK);
     double zz = 0, xx = 0, xz = 0;
@@ -146,26 +140,10 @@ START_TEST(surface_weights_integrate_over_the_sphere) {
     ck_assert_double_eq_tol(xx, 1 / 3.0, 1e-5);
     ck_assert_double_eq_tol(xz, 0, 1e-5);
 }
-END_TEST
 
-START_TEST(other_surface_rules_are_not_built_in) {
+TEST(other_surface_rules_are_not_built_in) {
     static const uint32_t others[] = {0, 1, 5, 7, 9, 12, 14, 100, 986, 988, 1597, UINT32_MAX};
     fibrad_surface_nodes nodes;
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
         ck_assert_int_eq(fibrad_surface_nodes_get(others[i], &nodes), FIBRAD_E_TABLE);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("tables");
-    TCase *tests = suite_case(suite, "tables");
-    tcase_add_test(tests, fibonacci_numbers_are_right);
-    tcase_add_test(tests, azimuths_are_multiples_of_the_golden_angle);
-    tcase_add_test(tests, long_angles_have_twice_the_precision);
-    tcase_add_test(tests, disc_points_are_sunflowers);
-    tcase_add_test(tests, other_disc_sets_are_not_built_in);
-    tcase_add_test(tests, surface_nodes_follow_the_mapped_lattice);
-    tcase_add_test(tests, surface_weights_integrate_over_the_sphere);
-    tcase_add_test(tests, other_surface_rules_are_not_built_in);
-    return suite_run(suite);
 }

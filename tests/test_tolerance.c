@@ -4,12 +4,14 @@
 
 #include "fibrad.h"
 
+FIXTURE(make_folder, remove_folder)
+
 #define SIGMA 5.670374419e-8
 #define BOX   "xmin=0,xmax=1,ymin=0,ymax=1,zmin=0,zmax=1"
 
 /* Two black spheres in a black box, as far above its T^4 as below: each wall takes much, and next to nothing on
  * balance. Powers are those of the closed form of two spheres. */
-START_TEST(walls_by_what_they_absorb) {
+TEST(walls_by_what_they_absorb) {
     const double t[2] = {1000, 700}, wall = 887.3643, r = .15;
     const double place[2][3] = {{.3, .35, .4}, {.65, .6, .55}};
     char text[300], temperature[40];
@@ -38,10 +40,9 @@ START_TEST(walls_by_what_they_absorb) {
     free(read);
     ck_assert_double_lt(sqrt(error / square), .003);
 }
-END_TEST
 
 /* An obstacle in the two spheres: visible areas jump, and the default error is one that can be had. */
-START_TEST(pair_behind_an_overlapping_obstacle) {
+TEST(pair_behind_an_overlapping_obstacle) {
     SUCCEED("pair", "1", "1", ".2", "--obstacle", ".9,0,1.1,.5");
     ck_assert_str_eq(said, "");
     ck_assert_double_lt(value_of("evaluations"), 200000);
@@ -50,14 +51,13 @@ START_TEST(pair_behind_an_overlapping_obstacle) {
     SUCCEED("pair", "1", "1", ".2", "--obstacle", ".9,0,1.1,.5", "--method", "beam", "--directions", "20000");
     ck_assert_double_eq_tol(value_of("F12"), f, 1e-5);
 }
-END_TEST
 
 /* What is asked of a command and cannot be had. */
 static const char *const unreached[][16] = {
     {"bed", "--error", "1e-7", "--points", "64"},
     {"heat", "--length-unit", "m", "--emissivity", ".9", "--temperature", "T", "--ambient", "300", "--error", "1e-5"}};
 
-START_TEST(a_warning_where_it_is_not_reached) {
+LOOP_TEST(a_warning_where_it_is_not_reached, sizeof unreached / sizeof *unreached) {
     const char *arguments[40] = {0}, *json = in_folder("run.json");
     int count = 0;
     for (; unreached[_i][count]; ++count) arguments[count] = unreached[_i][count];
@@ -69,15 +69,4 @@ START_TEST(a_warning_where_it_is_not_reached) {
     ck_assert_msg(strstr(said, "is not reached") != NULL, "%s", said);
     ck_assert_msg(strstr(text, "is not reached") != NULL, "%s", text);
     free(text);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("tolerance");
-    TCase *program = suite_case(suite, "program");
-    tcase_add_checked_fixture(program, make_folder, remove_folder);
-    tcase_add_test(program, walls_by_what_they_absorb);
-    tcase_add_test(program, pair_behind_an_overlapping_obstacle);
-    tcase_add_loop_test(program, a_warning_where_it_is_not_reached, 0, sizeof unreached / sizeof *unreached);
-    return suite_run(suite);
 }

@@ -126,7 +126,7 @@ static void follow(const struct bed *bed, const struct versions *version, int li
     work_free(&work);
 }
 
-START_TEST(random_beds) {
+LOOP_TEST(random_beds, sizeof versions / sizeof *versions) {
     const struct versions *version = &versions[_i];
     if (version->isa > (int)fibrad_isa_best()) return;
     for (int kind = 0; kind < 4; kind++) {
@@ -135,29 +135,26 @@ START_TEST(random_beds) {
         bed_free(&bed);
     }
 }
-END_TEST
 
 /* Large spheres, near enough to be listed, behind small ones that are not. */
-START_TEST(small_spheres_before_large_ones) {
+TEST(small_spheres_before_large_ones) {
     for (uint64_t seed = 50; seed < 53; seed++) {
         struct bed bed = strewn(600, seed);
         follow(&bed, &versions[0], EACH, 0, 3000, 3);
         bed_free(&bed);
     }
 }
-END_TEST
 
 /* Spheres that overlap by up to a third of a radius. */
-START_TEST(overlaps) {
+TEST(overlaps) {
     struct bed bed = packing(100, .7, 1, .45, 5, true);
     for (uint32_t i = 0; i < bed.n; i++) bed.r[i] *= 1.15;
     follow(&bed, &versions[0], FEW, 2, 500, 4);
     bed_free(&bed);
 }
-END_TEST
 
 /* One large sphere with thousands of small ones about it: more than a list holds. */
-START_TEST(large_among_small) {
+TEST(large_among_small) {
     struct bed bed;
     bed_init(&bed);
     add_sphere(&bed, 0, 0, 0, 1);
@@ -169,10 +166,9 @@ START_TEST(large_among_small) {
     follow(&bed, &versions[0], EACH, 0, 1500, 3);
     bed_free(&bed);
 }
-END_TEST
 
 /* More small spheres that overlap a large one than there is room for: no list at all. */
-START_TEST(studded_sphere) {
+TEST(studded_sphere) {
     struct bed bed;
     bed_init(&bed);
     add_sphere(&bed, 0, 0, 0, 1);
@@ -184,10 +180,9 @@ START_TEST(studded_sphere) {
     follow(&bed, &versions[0], EACH, 0, 1400, 3);
     bed_free(&bed);
 }
-END_TEST
 
 /* One sphere a period: most of what it sees are images of itself. Rays along the channels of a lattice meet nothing. */
-START_TEST(one_sphere_and_its_images) {
+TEST(one_sphere_and_its_images) {
     struct bed bed = bed_of(1, (const double[][4]){{.3, .4, .5, 1}});
     bed.period[0] = 2, bed.period[1] = 2.5, bed.period[2] = 3;
     follow(&bed, &versions[0], FEW, 12, 200, 5);
@@ -198,10 +193,9 @@ START_TEST(one_sphere_and_its_images) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* A stray sphere far off is seen, and sees the others. */
-START_TEST(stray) {
+TEST(stray) {
     struct bed bed = packing(200, .5, 1, .3, 9, false);
     add_sphere(&bed, 4e6, 10, 10, 1e5);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -230,9 +224,8 @@ START_TEST(stray) {
     work_free(&work);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(from_points) {
+TEST(from_points) {
     for (int periodic = 0; periodic <= 1; periodic++) {
         struct bed bed = packing(150, .3, 1, .4, 11, periodic);
         fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -252,10 +245,9 @@ START_TEST(from_points) {
         bed_free(&bed);
     }
 }
-END_TEST
 
 /* All instruction sets, and any number of lists, give the same bits. */
-START_TEST(same_bits_everywhere) {
+TEST(same_bits_everywhere) {
     struct bed bed = packing(400, .2, 1, .55, 2, true);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_work work[2];
@@ -282,7 +274,6 @@ START_TEST(same_bits_everywhere) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* The ray along x from the first of two spheres: its length, and whether the list it takes was there before. */
 static double length_along_x(fibrad_tracer *tracer, bool *kept) {
@@ -294,7 +285,7 @@ static double length_along_x(fibrad_tracer *tracer, bool *kept) {
 }
 
 /* Lists are kept from call to call, but not for another scene in the same place. */
-START_TEST(lists_belong_to_contents) {
+TEST(lists_belong_to_contents) {
     static unsigned char memory[FIBRAD_SCENE_BYTES(2)];
     fibrad_work work = work_growing();
     static const double distances[] = {5, 5, 7, 7, 5};
@@ -313,10 +304,9 @@ START_TEST(lists_belong_to_contents) {
     }
     work_free(&work);
 }
-END_TEST
 
 /* A block too small is left alone and what it lacks is said; a large enough one, of any alignment, is not left. */
-START_TEST(memory) {
+TEST(memory) {
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_workspace *space = NULL;
@@ -347,11 +337,10 @@ START_TEST(memory) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* Two spheres that overlap, met at the same length and depth: the lower id is met first, whatever the order. Of images,
  * that is of spheres of one id, the one at the lower coordinate. */
-START_TEST(ids_decide_what_is_met_first) {
+TEST(ids_decide_what_is_met_first) {
     const double x[] = {3, 3, 0}, y[] = {.5, -.5, 0}, z[] = {0, 0, 0}, r[] = {1, 1, .25}, w[] = {1, 0, 0};
     for (int order = 0; order < 2; order++)
         for (uint64_t lower = 0; lower < 3; lower++) { /* the upper sphere's id, the lower one's, neither is less */
@@ -374,23 +363,4 @@ START_TEST(ids_decide_what_is_met_first) {
             work_free(&work);
             free(block);
         }
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("trace");
-    TCase *cases = suite_case(suite, "trace");
-    tcase_add_loop_test(cases, random_beds, 0, sizeof versions / sizeof *versions);
-    tcase_add_test(cases, small_spheres_before_large_ones);
-    tcase_add_test(cases, overlaps);
-    tcase_add_test(cases, large_among_small);
-    tcase_add_test(cases, studded_sphere);
-    tcase_add_test(cases, one_sphere_and_its_images);
-    tcase_add_test(cases, stray);
-    tcase_add_test(cases, ids_decide_what_is_met_first);
-    tcase_add_test(cases, from_points);
-    tcase_add_test(cases, same_bits_everywhere);
-    tcase_add_test(cases, lists_belong_to_contents);
-    tcase_add_test(cases, memory);
-    return suite_run(suite);
 }

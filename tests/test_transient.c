@@ -43,7 +43,7 @@ static double temperature_after(double a, double from, double ts, double time) {
 }
 
 /* One sphere in black surroundings, automatic steps: cooling and heating, in spans of any length. */
-START_TEST(one_sphere_cools) {
+TEST(one_sphere_cools) {
     static const double begin[] = {1500, 300, 310}, around[] = {300, 1500, 300};
     const double r = .01, eps = .7, capacity = 25;
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
@@ -65,10 +65,9 @@ START_TEST(one_sphere_cools) {
     fibrad_transient_free(t);
     bed_free(&bed);
 }
-END_TEST
 
 /* Errors at steps of h, h/2, h/4 are as 16, 4, 1. */
-START_TEST(second_order) {
+TEST(second_order) {
     const double r = .01, eps = .7, capacity = 25, a = 4 * M_PI * r * r * eps * SIGMA / capacity;
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
     fibrad_transient *t = transient_of(&bed, NULL, NULL);
@@ -88,7 +87,6 @@ START_TEST(second_order) {
     fibrad_transient_free(t);
     bed_free(&bed);
 }
-END_TEST
 
 /* T/2000, counting how often it is asked. */
 static void proportional(void *calls, const double *temperature, const double *body_temperature, double *emissivity,
@@ -100,7 +98,7 @@ static void proportional(void *calls, const double *temperature, const double *b
 }
 
 /* Emissivity T/2000 at 0 K: 1/T^4 grows by 4 A sigma/(2000 C) a second; by automatic steps, and of second order. */
-START_TEST(emissivity_follows) {
+TEST(emissivity_follows) {
     const double r = .01, capacity = 25, first = .6, rate = 4 * M_PI * r * r * SIGMA / (2000 * capacity);
     const double duration = 2 / (4 * rate * pow(1200, 4)), expected = pow(pow(1200, -4) + 4 * rate * duration, -.25);
     const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_PATCHES};
@@ -130,7 +128,6 @@ START_TEST(emissivity_follows) {
     fibrad_transient_free(factors);
     bed_free(&bed);
 }
-END_TEST
 
 /* A bed on a hot floor, under a roof, periodic sideways. */
 enum { N = 60 };
@@ -162,7 +159,7 @@ static void furnace_init(struct furnace *f) {
 
 /* What spheres lose, less their powers, is what walls and surroundings get: by factors and by patches, at loose and at
  * tight tolerances, whether steps are long or short. */
-START_TEST(energy_is_kept) {
+TEST(energy_is_kept) {
     struct furnace f;
     furnace_init(&f);
     for (int method = 0; method < 3; method++) {
@@ -188,7 +185,6 @@ START_TEST(energy_is_kept) {
     }
     bed_free(&f.bed);
 }
-END_TEST
 
 /* The same by Runge and Kutta's explicit scheme, from the factors themselves. */
 static void slopes(const struct furnace *f, const fibrad_factors *d, double time, double duration, const double *t,
@@ -217,7 +213,7 @@ static void runge_kutta(const struct furnace *f, const fibrad_factors *d, double
 }
 
 /* Powers and a wall that cools while the spheres do; the powers at the end go with the temperatures. */
-START_TEST(bed_against_runge_kutta) {
+TEST(bed_against_runge_kutta) {
     struct furnace f;
     furnace_init(&f);
     const fibrad_exchange_rule rule = {
@@ -243,10 +239,9 @@ START_TEST(bed_against_runge_kutta) {
     fibrad_bed_free(factors);
     bed_free(&f.bed);
 }
-END_TEST
 
 /* A mote between two large spheres follows them at once; steps are those of the large ones. */
-START_TEST(motes_are_no_limit) {
+TEST(motes_are_no_limit) {
     enum { MOTE = 2 };
     static const double place[][4] = {{0, 0, 0, 1}, {3, 0, 0, 1}, {1.5, 0, 0, 1e-3}, {1.5, .1, 0, 1e-2}};
     const double emissivity[] = {.8, .6, .5, .5};
@@ -272,10 +267,9 @@ START_TEST(motes_are_no_limit) {
     }
     ck_assert_uint_le(steps[1], steps[0] + 2);
 }
-END_TEST
 
 /* Reflecting all, a sphere has its power and nothing else. A power that is drawn makes it as cold as it goes. */
-START_TEST(powers_alone) {
+TEST(powers_alone) {
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}});
     const double capacity[] = {2, 4}, power[] = {10, -20}, emissivity[] = {0, 0};
     double temperature[] = {300, 300};
@@ -292,10 +286,9 @@ START_TEST(powers_alone) {
     fibrad_transient_free(t);
     bed_free(&bed);
 }
-END_TEST
 
 /* By patches as by factors, and a move in between. */
-START_TEST(patches_as_factors) {
+TEST(patches_as_factors) {
     struct furnace f;
     furnace_init(&f);
     double temperature[3][N];
@@ -318,10 +311,9 @@ START_TEST(patches_as_factors) {
     }
     bed_free(&f.bed);
 }
-END_TEST
 
 /* Any number of threads: the same bits. */
-START_TEST(threads_change_nothing) {
+TEST(threads_change_nothing) {
     struct furnace f;
     furnace_init(&f);
     const fibrad_spheres spheres = spheres_of(&f.bed);
@@ -340,9 +332,8 @@ START_TEST(threads_change_nothing) {
     }
     bed_free(&f.bed);
 }
-END_TEST
 
-START_TEST(what_is_refused) {
+TEST(what_is_refused) {
     struct furnace f;
     furnace_init(&f);
     const fibrad_spheres spheres = spheres_of(&f.bed), fewer = {f.bed.x, f.bed.y, f.bed.z, f.bed.r, N - 1, 0, 0, NULL};
@@ -380,21 +371,4 @@ START_TEST(what_is_refused) {
     fibrad_transient_free(t);
     fibrad_transient_free(NULL);
     bed_free(&f.bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("transient");
-    TCase *tcase = suite_case(suite, "transient");
-    tcase_add_test(tcase, one_sphere_cools);
-    tcase_add_test(tcase, emissivity_follows);
-    tcase_add_test(tcase, second_order);
-    tcase_add_test(tcase, energy_is_kept);
-    tcase_add_test(tcase, bed_against_runge_kutta);
-    tcase_add_test(tcase, motes_are_no_limit);
-    tcase_add_test(tcase, powers_alone);
-    tcase_add_test(tcase, patches_as_factors);
-    tcase_add_test(tcase, threads_change_nothing);
-    tcase_add_test(tcase, what_is_refused);
-    return suite_run(suite);
 }

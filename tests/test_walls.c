@@ -143,7 +143,7 @@ static double to_disc(double R, double s, double d) {
 static const struct container box10 = {.planes = 63, .at = {0, 10, 0, 10, 0, 10}};
 static const struct container can10 = {.planes = 48, .at = {0, 0, 0, 0, 0, 10}, .cylinder = {5, 5, 5}};
 
-START_TEST(bad_walls_are_refused) {
+TEST(bad_walls_are_refused) {
     const double spheres[][4] = {{5, 5, 5, 1}, {2, 5, 5, 1}, {5, 5, 9.5, 1}};
     struct bed bed = bed_of(3, spheres);
     fibrad_scene *scene = NULL;
@@ -210,10 +210,9 @@ START_TEST(bad_walls_are_refused) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* What this version does not compute: meshes, more than seven bodies, a known region. */
-START_TEST(what_is_not_supported) {
+TEST(what_is_not_supported) {
     struct bed bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
     fibrad_scene *scene = NULL;
     fibrad_fault fault;
@@ -230,10 +229,9 @@ START_TEST(what_is_not_supported) {
     ck_assert_ptr_null(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* A row of a scene with bodies needs room for them; nothing is written behind it. */
-START_TEST(rows_need_room_for_bodies) {
+TEST(rows_need_room_for_bodies) {
     struct bed bed = bed_of(2, (const double[][4]){{5, 5, 5, 1}, {2, 5, 5, 1}});
     fibrad_scene *scene = scene_in(&bed, &can10, 0);
     fibrad_work work = work_growing();
@@ -252,10 +250,9 @@ START_TEST(rows_need_room_for_bodies) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* Factors follow the index of the body, with the same bits, whatever the order in which bodies are named. */
-START_TEST(bodies_in_any_order) {
+TEST(bodies_in_any_order) {
     struct bed bed = packing(60, .6, 1.4, .3, 3, false);
     const struct container walls[] = {{.planes = 63, .at = {-3, 40, -4, 41, -5, 42}},
                                       {.planes = 48, .at = {[4] = -3, [5] = 40}, .cylinder = {5, 6, 30}}};
@@ -272,11 +269,10 @@ START_TEST(bodies_in_any_order) {
         }
     bed_free(&bed);
 }
-END_TEST
 
 /* What meets an opening is what a plane in its place would get, to the bit, by every method; but for that nothing
  * changes, and spheres do not reach beyond it. */
-START_TEST(openings_take_what_planes_would) {
+TEST(openings_take_what_planes_would) {
     struct bed bed = packing(80, .6, 1.4, .4, 3, false);
     double top = -1e9;
     for (uint32_t i = 0; i < bed.n; i++) worst_of(&top, bed.z[i] + bed.r[i]);
@@ -314,7 +310,6 @@ START_TEST(openings_take_what_planes_would) {
     work_free(&work);
     bed_free(&bed);
 }
-END_TEST
 
 /* The status for walls and openings about a sphere at (5, 5, 5) of radius 1. */
 static int status_of(const struct container *walls, const double period[3], fibrad_fault *fault) {
@@ -333,7 +328,7 @@ static int status_of(const struct container *walls, const double period[3], fibr
 }
 
 /* Of all containers: those across several axes that are not closed, and cylinders without ends, are endless. */
-START_TEST(walls_without_an_end_are_refused) {
+TEST(walls_without_an_end_are_refused) {
     for (uint32_t periods = 0; periods < 8; periods++)
         for (uint32_t sides = 0; sides < 64; sides++)
             for (uint32_t open = 0; open < 64; open += 21)
@@ -359,9 +354,8 @@ START_TEST(walls_without_an_end_are_refused) {
                     if (expected != FIBRAD_OK) ck_assert(fault.first == 1 && fault.second == 1);
                 }
 }
-END_TEST
 
-START_TEST(bad_openings_are_refused) {
+TEST(bad_openings_are_refused) {
     const double none[3] = {0, 0, 0}, along_z[3] = {0, 0, 20};
     fibrad_fault fault;
     struct container walls = {.open = 32, .at = {[5] = 6}};
@@ -393,9 +387,8 @@ START_TEST(bad_openings_are_refused) {
                      FIBRAD_E_ARGUMENT);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(areas_of_walls) {
+TEST(areas_of_walls) {
     struct bed bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
     const struct container walls[] = {{.planes = 63, .at = {0, 10, 1, 10, 3, 10}},
                                       can10,
@@ -427,7 +420,6 @@ START_TEST(areas_of_walls) {
     ck_assert_double_nan(fibrad_scene_body_area(NULL, 0));
     bed_free(&bed);
 }
-END_TEST
 
 /* How far a place lies within a wall. */
 static double within(const struct container *walls, uint32_t wall, const double at[3]) {
@@ -469,7 +461,7 @@ static void assert_exit(const fibrad_scene *scene, const struct container *walls
 
 /* On from the wall it met, a ray comes to another one, or to the same cylinder farther on, and back outwards it is at
  * once at the same; also where rounding or more has put the place beyond the wall. */
-START_TEST(a_ray_leaves_through_the_first_wall) {
+TEST(a_ray_leaves_through_the_first_wall) {
     const struct container walls[] = {box10,
                                       can10,
                                       {.planes = 1},
@@ -509,10 +501,9 @@ START_TEST(a_ray_leaves_through_the_first_wall) {
     }
     bed_free(&bed);
 }
-END_TEST
 
 /* Nothing hides the plane: its solid angle is half of all. */
-START_TEST(half_of_a_sphere_sees_a_plane) {
+TEST(half_of_a_sphere_sees_a_plane) {
     const uint32_t directions[] = {8, 9, 100, 101, 233, 987, 1000};
     for (size_t k = 0; k < sizeof directions / sizeof *directions; k++)
         for (uint32_t wall = 0; wall < 6; wall++) {
@@ -531,11 +522,10 @@ START_TEST(half_of_a_sphere_sees_a_plane) {
     ck_assert(row.escaped == 0);
     row_free(&row);
 }
-END_TEST
 
 /* In boxes of 2.5 to 1000 radii, walls that touch the sphere included: as solid angles say, with no error to speak of.
  */
-START_TEST(sphere_in_a_box) {
+TEST(sphere_in_a_box) {
     srand(2);
     const uint32_t directions[3] = {50, 233, 987};
     for (int k = 0; k < 3; k++)
@@ -561,11 +551,10 @@ START_TEST(sphere_in_a_box) {
             row_free(&row);
         }
 }
-END_TEST
 
 /* Distances of .002 to 1.5 radii of a sphere to a wall, others far: from outside the wall's reach to where it cuts the
  * sphere, factors change little by little. */
-START_TEST(factors_are_smooth_where_walls_touch) {
+TEST(factors_are_smooth_where_walls_touch) {
     double before[6] = {0};
     for (int k = 0; k <= 400; k++) {
         const double away = 1.2 - .001 * k;
@@ -579,12 +568,11 @@ START_TEST(factors_are_smooth_where_walls_touch) {
         row_free(&row);
     }
 }
-END_TEST
 
 /* On top of a heap in a wide box and a wide cylinder: the factors of a row to its walls at 233 directions, against
  * many.
  */
-START_TEST(walls_of_a_heap) {
+TEST(walls_of_a_heap) {
     struct bed bed = packing(150, .8, 1.2, .5, 1, false);
     const struct container walls[] = {{.planes = 63, .at = {-20, 40, -9, 30, -1, 50}},
                                       {.planes = 48, .at = {[4] = -1, [5] = 30}, .cylinder = {6, 6, 25}}};
@@ -608,9 +596,8 @@ START_TEST(walls_of_a_heap) {
     }
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(sphere_in_a_cylinder) {
+TEST(sphere_in_a_cylinder) {
     srand(3);
     for (int t = 0; t < 40; t++) {
         double R = 1.5 * pow(200, t / 39.), h = R * uniform(.8, 3) + 2, z = uniform(1, h - 1), s = uniform(0, R - 1);
@@ -629,10 +616,9 @@ START_TEST(sphere_in_a_cylinder) {
         }
     }
 }
-END_TEST
 
 /* Within the walls of a container, slit or cylinder spheres see each other as without, and the walls get the rest. */
-START_TEST(walls_take_what_escapes) {
+TEST(walls_take_what_escapes) {
     struct bed bed = packing(150, .8, 1.2, .4, 1, false);
     double low[3] = {1e9, 1e9, 1e9}, high[3] = {-1e9, -1e9, -1e9};
     for (uint32_t i = 0; i < bed.n; i++)
@@ -673,10 +659,9 @@ START_TEST(walls_take_what_escapes) {
     work_free(&work);
     bed_free(&bed);
 }
-END_TEST
 
 /* Walls on the open axis of a periodic bed. */
-START_TEST(walls_of_a_periodic_bed) {
+TEST(walls_of_a_periodic_bed) {
     struct bed bed = packing(120, 1, 1, .3, 2, true);
     bed.period[2] = 0;
     double low = 1e9, high = -1e9;
@@ -699,9 +684,8 @@ START_TEST(walls_of_a_periodic_bed) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
-START_TEST(same_bits_in_every_instruction_set) {
+TEST(same_bits_in_every_instruction_set) {
     struct bed bed = packing(60, .6, 1.4, .3, 3, false);
     struct container walls[2] = {{.planes = 63, .at = {-3, 40, -3, 40, -3, 40}},
                                  {.planes = 16, .open = 32, .at = {-3, 40, -3, 40, -3, 40}}};
@@ -724,11 +708,10 @@ START_TEST(same_bits_in_every_instruction_set) {
         }
     bed_free(&bed);
 }
-END_TEST
 
 /* Another order of the spheres and another unit of length change nothing but rounding; other axes no more than the
  * rule's error. */
-START_TEST(order_scale_and_axes) {
+TEST(order_scale_and_axes) {
     const struct container box = {.planes = 63, .at = {-2, 14, -3, 16, -4, 15}};
     struct bed bed = packing(50, .8, 1.2, .2, 4, false), other, turned;
     bed_init(&other);
@@ -755,7 +738,6 @@ START_TEST(order_scale_and_axes) {
     bed_free(&other);
     bed_free(&turned);
 }
-END_TEST
 
 /* A matrix of three rows, which are reciprocal, in a scene with three bodies. */
 static struct matrix closed(const double body[3][3], const double escaped[3]) {
@@ -781,7 +763,7 @@ static struct matrix closed(const double body[3][3], const double escaped[3]) {
 }
 
 /* Averaged rows close too, whatever the method's error. */
-START_TEST(closing_rows) {
+TEST(closing_rows) {
     struct matrix m = closed((const double[][3]){{.2, .1, 0}, {0, 0, 0}, {0, 0, .2}}, (const double[]){.1, 0, 0});
     const double(*body)[3] = (const double(*)[3])m.factors.body, *escaped = m.factors.escaped;
     ck_assert_double_eq_tol(body[0][0], .25, 1e-15);
@@ -802,7 +784,6 @@ START_TEST(closing_rows) {
     for (int k = 0; k < 9; k++) ck_assert(m.factors.body[k] == 0);
     matrix_free(&m);
 }
-END_TEST
 
 static const char *const misspelt[] = {"",
                                        "wall",
@@ -838,11 +819,10 @@ static const char *const misspelt[] = {"",
                                        "box:open=zmax:open=zmax",
                                        "zmax=open:3"};
 
-START_TEST(misspelt_option) {
+LOOP_TEST(misspelt_option, sizeof misspelt / sizeof *misspelt) {
     struct wall_options options = {0};
     ck_assert_int_eq(walls_option(misspelt[_i], &options), 2);
 }
-END_TEST
 
 /* Checks the walls that options place: their places in order, `at` by place, the cylinder's axis and radius. */
 static void assert_walls(const struct wall_options *options, const struct bed *bed, uint32_t count,
@@ -867,7 +847,7 @@ static void assert_walls(const struct wall_options *options, const struct bed *b
     }
 }
 
-START_TEST(option_places_walls) {
+TEST(option_places_walls) {
     struct bed bed = bed_of(2, (const double[][4]){{1, 2, 3, 1}, {4, 6, 8, 2}});
     struct wall_options options = {0}, box = {0}, automatic = {0}, clash = {0}, beyond = {0}, mixed = {0};
     struct walls walls;
@@ -896,10 +876,9 @@ START_TEST(option_places_walls) {
     assert_walls(&(struct wall_options){0}, &bed, 0, NULL, NULL, NULL);
     bed_free(&bed);
 }
-END_TEST
 
 /* Openings are no walls; they stand at the end of the spheres, whatever the box of the file, or where they are put. */
-START_TEST(option_places_openings) {
+TEST(option_places_openings) {
     struct bed bed = bed_of(2, (const double[][4]){{1, 2, 3, 1}, {4, 6, 8, 2}});
     struct wall_options options = {0};
     struct walls walls;
@@ -918,33 +897,4 @@ START_TEST(option_places_openings) {
     bed.period[0] = 200;
     ck_assert_int_eq(walls_of(&options, &bed, "bed", &walls), 2); /* across a periodic axis */
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("walls");
-    TCase *tests = suite_case(suite, "walls");
-    tcase_add_test(tests, bad_walls_are_refused);
-    tcase_add_test(tests, what_is_not_supported);
-    tcase_add_test(tests, rows_need_room_for_bodies);
-    tcase_add_test(tests, bodies_in_any_order);
-    tcase_add_test(tests, openings_take_what_planes_would);
-    tcase_add_test(tests, walls_without_an_end_are_refused);
-    tcase_add_test(tests, bad_openings_are_refused);
-    tcase_add_test(tests, areas_of_walls);
-    tcase_add_test(tests, a_ray_leaves_through_the_first_wall);
-    tcase_add_test(tests, half_of_a_sphere_sees_a_plane);
-    tcase_add_test(tests, sphere_in_a_box);
-    tcase_add_test(tests, sphere_in_a_cylinder);
-    tcase_add_test(tests, factors_are_smooth_where_walls_touch);
-    tcase_add_test(tests, walls_of_a_heap);
-    tcase_add_test(tests, walls_take_what_escapes);
-    tcase_add_test(tests, walls_of_a_periodic_bed);
-    tcase_add_test(tests, same_bits_in_every_instruction_set);
-    tcase_add_test(tests, order_scale_and_axes);
-    tcase_add_test(tests, closing_rows);
-    tcase_add_loop_test(tests, misspelt_option, 0, (int)(sizeof misspelt / sizeof *misspelt));
-    tcase_add_test(tests, option_places_walls);
-    tcase_add_test(tests, option_places_openings);
-    return suite_run(suite);
 }

@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: MIT */
 #include "program.h"
 
+FIXTURE(make_folder, remove_folder)
+
 #define BOX(kind, low, high) "ITEM: BOX BOUNDS " kind "\n" low " " high "\n" low " " high "\n" low " " high "\n"
 #define FRAME(step, box, columns, rows)                                                                                \
     "ITEM: TIMESTEP\n" step "\nITEM: NUMBER OF ATOMS\n3\n" box "ITEM: ATOMS id x y z radius" columns "\n" rows
@@ -103,7 +105,7 @@ static int count_of(const char *text, const char *what) {
     return count;
 }
 
-START_TEST(one_warning_each) {
+LOOP_TEST(one_warning_each, sizeof said_of / sizeof *said_of) {
     const char *const *words = said_of[_i].words, *more = said_of[_i].more, *reason = said_of[_i].reason;
     const char *arguments[40] = {0}, *json = in_folder("summary.json");
     const int mesh = more && strncmp(more, "solid", 5) == 0;
@@ -134,11 +136,10 @@ START_TEST(one_warning_each) {
     ck_assert_int_eq(count_of(text, "\"warnings\": ["), said_of[_i].more && !mesh ? 2 : 1);
     free(text);
 }
-END_TEST
 
 /* Walls about a box of centres stand at the surfaces, those of a real box where it ends, and a sphere that has left a
  * real box is refused as before. */
-START_TEST(walls_at_surfaces) {
+TEST(walls_at_surfaces) {
     const char *bed = write_file("bed.dump", FRAME("0", SHRUNK, "", ROWS("", "", "")));
     static const char *const names[] = {"xmin", "ymin", "zmin", "xmax", "ymax", "zmax"};
     char key[40];
@@ -158,11 +159,10 @@ START_TEST(walls_at_surfaces) {
                      3);
     ck_assert_ptr_nonnull(strstr(said, "the centre of sphere 3 lies beyond the wall xmax"));
 }
-END_TEST
 
 /* The summary has the ends of a mesh. */
 /* A plate through a bed: what closing takes from spheres that it cuts, rows do not know. Raw rows all add up to one. */
-START_TEST(closing_that_changes_much) {
+TEST(closing_that_changes_much) {
     char wall[300];
     snprintf(wall, sizeof wall, "auto,m=mesh:%s:both",
              write_file("m.stl", "solid s\n" FACET("1 2 3", "11 3 9", "4 11 15") "endsolid s\n"));
@@ -173,9 +173,8 @@ START_TEST(closing_that_changes_much) {
     const char *closure = strstr(printed, "\nclosure_max ");
     ck_assert(closure != NULL && strtod(closure + 13, NULL) < 1e-12);
 }
-END_TEST
 
-START_TEST(mesh_extents_are_said) {
+TEST(mesh_extents_are_said) {
     char wall[300];
     const char *json = in_folder("summary.json");
     snprintf(wall, sizeof wall, "m=mesh:%s:scale=2", write_file("m.stl", CORNER(".3")));
@@ -184,16 +183,4 @@ START_TEST(mesh_extents_are_said) {
     char *text = read_file(json);
     ck_assert_ptr_nonnull(strstr(text, "\"warnings\": []}"));
     free(text);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("warnings");
-    TCase *program = suite_case(suite, "program");
-    tcase_add_checked_fixture(program, make_folder, remove_folder);
-    tcase_add_loop_test(program, one_warning_each, 0, sizeof said_of / sizeof *said_of);
-    tcase_add_test(program, walls_at_surfaces);
-    tcase_add_test(program, closing_that_changes_much);
-    tcase_add_test(program, mesh_extents_are_said);
-    return suite_run(suite);
 }

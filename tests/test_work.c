@@ -92,7 +92,7 @@ static struct output expected(int function, const fibrad_scene *scene, uint32_t 
 
 /* From none on, memory as the kernel asks for it: it asks for more each time, but not often, and for what it has asked
  * last the same call goes through on other memory at once. */
-START_TEST(fixed_memory_step_by_step) {
+LOOP_TEST(fixed_memory_step_by_step, SCENES *FUNCTIONS) {
     struct bed bed = bed_number(_i / FUNCTIONS);
     const int function = _i % FUNCTIONS;
     fibrad_scene *scene = scene_number(_i / FUNCTIONS, &bed);
@@ -124,10 +124,9 @@ START_TEST(fixed_memory_step_by_step) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* One growing work memory and one of each other kind for all scenes and functions in turn. */
-START_TEST(any_scenes_and_functions_in_turn) {
+TEST(any_scenes_and_functions_in_turn) {
     struct bed bed[SCENES];
     fibrad_scene *scene[SCENES];
     for (int k = 0; k < SCENES; k++) bed[k] = bed_number(k), scene[k] = scene_number(k, &bed[k]);
@@ -159,10 +158,9 @@ START_TEST(any_scenes_and_functions_in_turn) {
     work_free(&growing), work_free_fixed(&little), free(block);
     for (int k = 0; k < SCENES; k++) free(scene[k]), bed_free(&bed[k]);
 }
-END_TEST
 
 /* Scenes that are made anew in the place of others, between calls with the same work memory. */
-START_TEST(scenes_made_anew_in_the_same_place) {
+TEST(scenes_made_anew_in_the_same_place) {
     const size_t size = fibrad_scene_size(150, 0);
     void *block = block_of(size);
     fibrad_work work = work_growing();
@@ -183,10 +181,9 @@ START_TEST(scenes_made_anew_in_the_same_place) {
     work_free(&work);
     free(block);
 }
-END_TEST
 
 /* The caller may hand over another block at any time, which holds anything. */
-START_TEST(other_blocks_at_any_time) {
+TEST(other_blocks_at_any_time) {
     struct bed bed = bed_number(0);
     fibrad_scene *scene = scene_of(&bed, 0);
     const size_t size = 4u << 20;
@@ -206,10 +203,9 @@ START_TEST(other_blocks_at_any_time) {
     free(blocks[0]), free(blocks[1]), free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* A fixed block at each of the 64 offsets, nothing written beside it. */
-START_TEST(blocks_of_any_alignment) {
+LOOP_TEST(blocks_of_any_alignment, FUNCTIONS) {
     struct bed bed = bed_number(1);
     fibrad_scene *scene = scene_of(&bed, 0);
     const int function = _i;
@@ -232,11 +228,10 @@ START_TEST(blocks_of_any_alignment) {
     free(block), free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* FIBRAD_E_MEMORY at each call of the resize function in turn: nothing is written, and the next call, which gets
  * memory, has the right result. */
-START_TEST(memory_that_is_refused) {
+LOOP_TEST(memory_that_is_refused, FUNCTIONS) {
     struct bed bed = bed_number(2);
     fibrad_scene *scene = scene_of(&bed, 0);
     const int function = _i;
@@ -264,11 +259,10 @@ START_TEST(memory_that_is_refused) {
     free(scene);
     bed_free(&bed);
 }
-END_TEST
 
 /* What FIBRAD_WORK_BYTES says is enough is enough, at any offset: for a packed bed, for a sphere that meets hundreds in
  * a window, and for one that meets six. */
-START_TEST(bytes_that_are_enough) {
+TEST(bytes_that_are_enough) {
     static unsigned char packed[FIBRAD_WORK_BYTES(64, 200) + 64], hundreds[FIBRAD_WORK_BYTES(1000, 1000) + 64],
         six[FIBRAD_WORK_BYTES(6, 6) + 64], walls[FIBRAD_WORK_BYTES(64, 3) + FIBRAD_WORK_WALLS + 64];
     struct bed bed = packing(600, .8, 1.2, .6, 7, true), around = bed_of(1, (const double[][4]){{0, 0, 0, 4}});
@@ -300,7 +294,6 @@ START_TEST(bytes_that_are_enough) {
     for (int k = 0; k < 4; k++) free(scenes[k]);
     bed_free(&bed), bed_free(&around), bed_free(&lone), bed_free(&between);
 }
-END_TEST
 
 /* The powers of a bed before a floor, in a heat problem that begins `offset` bytes into `block`. */
 static void powers_in(unsigned char *block, size_t size, size_t offset, const fibrad_scene *scene, uint32_t n,
@@ -335,7 +328,7 @@ static void powers_in(unsigned char *block, size_t size, size_t offset, const fi
 }
 
 /* A heat problem at offsets of all kinds: the same bits, nothing written beside it, and a byte less is too little. */
-START_TEST(heat_blocks_of_any_alignment) {
+TEST(heat_blocks_of_any_alignment) {
     struct bed bed = packing(20, .8, 1.2, .5, 7, false);
     const fibrad_body floor_plane = plane_at(2, 0, -3);
     fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
@@ -354,19 +347,4 @@ START_TEST(heat_blocks_of_any_alignment) {
     ck_assert(first[0] != 0 && isfinite(first[0]));
     free(block), free(scene);
     bed_free(&bed);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("work");
-    TCase *tcase = suite_case(suite, "work");
-    tcase_add_loop_test(tcase, fixed_memory_step_by_step, 0, SCENES * FUNCTIONS);
-    tcase_add_test(tcase, any_scenes_and_functions_in_turn);
-    tcase_add_test(tcase, scenes_made_anew_in_the_same_place);
-    tcase_add_test(tcase, other_blocks_at_any_time);
-    tcase_add_loop_test(tcase, blocks_of_any_alignment, 0, FUNCTIONS);
-    tcase_add_loop_test(tcase, memory_that_is_refused, 0, FUNCTIONS);
-    tcase_add_test(tcase, bytes_that_are_enough);
-    tcase_add_test(tcase, heat_blocks_of_any_alignment);
-    return suite_run(suite);
 }

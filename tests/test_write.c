@@ -111,7 +111,7 @@ static void assert_shortest(double value) {
 }
 
 /* Numbers as printf has them, to the last digit: of all sizes, and those that are hard to round. */
-START_TEST(numbers) {
+TEST(numbers) {
     uint64_t state = 88172645463325252u;
     char ours[2 * TEXT_NUMBER], theirs[2 * TEXT_NUMBER];
     for (int k = 0; k < 500000; ++k) {
@@ -143,9 +143,8 @@ START_TEST(numbers) {
     ck_assert_str_eq(fgets(ours, sizeof ours, file), "null0.5");
     fclose(file);
 }
-END_TEST
 
-START_TEST(csv) {
+TEST(csv) {
     for (int ids = 0; ids < 2; ++ids) {
         write_matrix(write_csv, ids, NULL);
         expect_begin("i,j,F\n");
@@ -162,11 +161,10 @@ START_TEST(csv) {
         ck_assert_int_eq(*line, 0);
     }
 }
-END_TEST
 
 /* After each sphere's row the surroundings, -1, and the walls from -2 on; then the rows of walls of finite area. The
  * column body says what they are. */
-START_TEST(csv_of_walls) {
+TEST(csv_of_walls) {
     char all[1000];
     write_matrix(write_csv, true, &walls);
     snprintf(all, sizeof all,
@@ -198,10 +196,9 @@ START_TEST(csv_of_walls) {
     write_text(write_csv, &(struct contents){.bed = &bed, .factors = &cut, .walls = &nameless, .grey = &grey}, true);
     ck_assert_ptr_nonnull(strstr(text, "\n0,-1,0.5,surroundings\n0,-2,0.125,beyond\n"));
 }
-END_TEST
 
 /* Rows of walls: after what a wall sends to the spheres; nothing from walls without bounds, of which they are null. */
-START_TEST(rows_of_walls) {
+TEST(rows_of_walls) {
     static const double between[] = {0.5, 0.25, NAN, NAN}, leaves[] = {0.125, NAN}, off[] = {0.0625, NAN};
     fibrad_bed_factors whole = factors;
     whole.matrix.body_body = between, whole.matrix.body_escaped = leaves, whole.matrix.body_error = off;
@@ -216,10 +213,9 @@ START_TEST(rows_of_walls) {
         strstr(text, "\"zmin\":[0.25,0.125,0]},\"wall_rows\":{\"cylinder\":{\"walls\":[0.5,0.25],\"escaped\":0.125,"
                      "\"error\":0.0625},\"zmin\":{\"walls\":[null,null],\"escaped\":null,\"error\":null}}}\n"));
 }
-END_TEST
 
 /* Frames and files are columns; a header comes once. */
-START_TEST(series) {
+TEST(series) {
     struct contents what = {.bed = &bed, .factors = &factors, .series = true};
     write_text(write_csv, &what, true);
     expect_begin("frame,timestep,i,j,F\n0,1200,0,70,");
@@ -232,10 +228,9 @@ START_TEST(series) {
     write_heat(write_heat_csv, &(struct contents){.bed = &bed, .series = true});
     expect_begin("frame,timestep,i,T_K,q_W,q_error_W,T_error_K,body\n0,1200,0,600,");
 }
-END_TEST
 
 /* Surroundings at no temperature are not there. */
-START_TEST(heat) {
+TEST(heat) {
     char all[1000];
     for (int closed = 0; closed < 2; ++closed) {
         sources.surroundings = closed ? NAN : 300;
@@ -253,10 +248,9 @@ START_TEST(heat) {
     write_heat(write_heat_csv, &(struct contents){.bed = &plain});
     ck_assert_ptr_null(strstr(text, "\n-1,"));
 }
-END_TEST
 
 /* As JSON, bare of NaN and of control characters; tests/check_written.sh has Python read it. */
-START_TEST(json) {
+TEST(json) {
     struct contents what = {
         .bed = &bed, .factors = &factors, .wanted = wanted, .walls = &walls, .file = "a\n\"b\\.csv"};
     char all[1000];
@@ -275,9 +269,8 @@ START_TEST(json) {
              shortest(kelvins[1]), shortest(kelvins[2]));
     ck_assert_str_eq(text, all);
 }
-END_TEST
 
-START_TEST(matrix_market) {
+LOOP_TEST(matrix_market, 2) {
     write_matrix(write_mtx, _i == 1, NULL);
     const char banner[] = "%%MatrixMarket matrix coordinate real general\n";
     ck_assert_int_eq(strncmp(text, banner, strlen(banner)), 0);
@@ -296,7 +289,6 @@ START_TEST(matrix_market) {
         }
     ck_assert_str_eq(line, "\n");
 }
-END_TEST
 
 /* Decodes the inline binary array of a name; returns the number of 8-byte values. */
 static size_t array(const char *name, void *values, size_t capacity) {
@@ -326,7 +318,7 @@ static size_t array(const char *name, void *values, size_t capacity) {
     return length / 8;
 }
 
-START_TEST(paraview) {
+TEST(paraview) {
     double values[9];
     int64_t whole[3];
     write_matrix(write_vtp, false, NULL);
@@ -369,7 +361,6 @@ START_TEST(paraview) {
     ck_assert_uint_eq(array("emissivity", values, 3), 3);
     ck_assert_int_eq(memcmp(values, r, sizeof r), 0);
 }
-END_TEST
 
 /* Where the data of the next member begin, behind the 128 bytes of its array's header. */
 static const char *next_member(const char *at, const char *name, uint64_t bytes) {
@@ -384,7 +375,7 @@ static const char *next_member(const char *at, const char *name, uint64_t bytes)
 }
 
 /* tests/check_npz.sh has Python and SciPy open such files. */
-START_TEST(numpy) {
+TEST(numpy) {
     const int64_t shape[] = {3, 3};
     const uint64_t large[] = {1, 2, UINT64_MAX}; /* in place of the ids */
     const struct array ids = {"ids.npy", "u8", large, 3, 0};
@@ -435,10 +426,9 @@ START_TEST(numpy) {
     at = next_member(at, "wall_error.npy", 16) + 16;
     ck_assert_mem_eq(at, "PK\1\2", 4);
 }
-END_TEST
 
 /* Over the rows that were computed. */
-START_TEST(summaries) {
+TEST(summaries) {
     struct summary summary;
     summary_make(&summary, &(struct contents){.bed = &bed, .factors = &factors, .wanted = wanted, .walls = &walls});
     ck_assert_double_eq(summary.row_sum_min, row_sum[2]);
@@ -450,7 +440,6 @@ START_TEST(summaries) {
     ck_assert_double_eq_tol(summary.error_rms, sqrt(0.00125), 1e-17);
     ck_assert_double_eq_tol(summary.closure_max, 1 - 0.25 - row_sum[2], 1e-15);
 }
-END_TEST
 
 static char folder[200], path[220];
 
@@ -465,6 +454,8 @@ static void remove_folder(void) {
     unlink(path);
     ck_assert_int_eq(rmdir(folder), 0); /* nothing else was left there */
 }
+
+FIXTURE(make_folder, remove_folder)
 
 static int count_files(void) {
     int count = 0;
@@ -483,7 +474,7 @@ static void expect_file(const char *content) {
     ck_assert_str_eq(text, content);
 }
 
-START_TEST(complete_or_not_at_all) {
+TEST(complete_or_not_at_all) {
     struct output output;
     umask(027);
     ck_assert_int_eq(output_open(&output, path), 0);
@@ -512,11 +503,10 @@ START_TEST(complete_or_not_at_all) {
     ck_assert_int_eq(count_files(), 1);
     ck_assert_int_eq(output_close(&output, STATUS_OK), STATUS_OK);
 }
-END_TEST
 
 /* A link stays and leads to what was written, which keeps its permissions; it may lead nowhere yet, but not in a
  * circle. */
-START_TEST(links) {
+TEST(links) {
     char link_to[220], other[220];
     struct output output;
     struct stat there;
@@ -544,10 +534,9 @@ START_TEST(links) {
     unlink(other);
     unlink(link_to);
 }
-END_TEST
 
 /* What is read stays, under any of its names, whichever of the two is opened first. */
-START_TEST(inputs_stay) {
+TEST(inputs_stay) {
     char read[240], link_to[240];
     struct output output;
     snprintf(read, sizeof read, "%s/read.csv", folder);
@@ -565,10 +554,9 @@ START_TEST(inputs_stay) {
     unlink(read);
     ck_assert_int_eq(count_files(), 0);
 }
-END_TEST
 
 /* What cannot be replaced is written to as it is: standard output by any of its names, pipes, devices. */
-START_TEST(written_at_once) {
+TEST(written_at_once) {
     struct output output;
     FILE *file = tmpfile();
     const int before = dup(STDOUT_FILENO);
@@ -598,16 +586,14 @@ START_TEST(written_at_once) {
     ck_assert_int_eq(output_flush(&output), STATUS_FILE);
     ck_assert_int_eq(output_close(&output, STATUS_FILE), STATUS_FILE);
 }
-END_TEST
 
-START_TEST(unwritable) {
+TEST(unwritable) {
     struct output output;
     ck_assert_int_eq(output_open(&output, folder), STATUS_FILE);
     ck_assert_int_eq(output_open(&output, "no/such/folder/out.csv"), STATUS_FILE);
     ck_assert_int_eq(output_close(&output, STATUS_FILE), STATUS_FILE);
     ck_assert_int_eq(count_files(), 0);
 }
-END_TEST
 
 /* ---- outputs ---------------------------------------------------------------------------------------------------- */
 
@@ -648,7 +634,7 @@ static const struct {
              {{"a.npz"}, CONTENT_MATRIX, true, 2},
              {{"--format=vtp", "-"}, CONTENT_HEAT, true, 2}};
 
-START_TEST(outputs_asked) {
+LOOP_TEST(outputs_asked, sizeof asked / sizeof *asked) {
     struct outputs outputs = {0};
     int status = 0;
     for (int k = 0; k < 4 && asked[_i].word[k] && !status; ++k) {
@@ -662,14 +648,13 @@ START_TEST(outputs_asked) {
     if (!status) status = outputs_check(&outputs, asked[_i].content, asked[_i].series);
     ck_assert_int_eq(status, asked[_i].status);
 }
-END_TEST
 
 static struct contents frame_of(const struct bed *of) {
     return (struct contents){.bed = of, .sources = &sources, .result = &result, .series = true};
 }
 
 /* Three frames into files of their own, which stay whatever comes later, and into one, which must be whole. */
-START_TEST(outputs_written) {
+TEST(outputs_written) {
     struct bed numbered[] = {bed, plain, plain};
     numbered[0].frame = -2, numbered[1].frame = 10, numbered[2].frame = 8;
     const struct contents frames[] = {frame_of(&numbered[0]), frame_of(&numbered[1]), frame_of(&numbered[2])};
@@ -708,10 +693,9 @@ START_TEST(outputs_written) {
         ck_assert_int_eq(count_files(), 0);
     }
 }
-END_TEST
 
 /* Places where nothing can be written are found before the work, those of frames, too. */
-START_TEST(outputs_unwritable) {
+TEST(outputs_unwritable) {
     static const char *const names[] = {"no/such.csv", "no/*.csv"};
     for (int k = 0; k < 2; ++k) {
         struct outputs outputs = {0};
@@ -723,10 +707,9 @@ START_TEST(outputs_unwritable) {
         ck_assert_int_eq(count_files(), 0);
     }
 }
-END_TEST
 
 /* A dump, read back by our own reader, two frames of it; boxes of files, of periods, and of spheres. */
-START_TEST(dump_read_back) {
+TEST(dump_read_back) {
     static const char *const columns[] = {"T_K", "q_W"};
     struct bed first = bed, second = bed;
     memcpy(first.units, "cgs", 4);
@@ -764,32 +747,4 @@ START_TEST(dump_read_back) {
         }
         bed_free(&back);
     }
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("write");
-    TCase *formats = suite_case(suite, "formats"), *files = suite_case(suite, "files");
-    tcase_add_test(formats, csv);
-    tcase_add_test(formats, csv_of_walls);
-    tcase_add_test(formats, rows_of_walls);
-    tcase_add_test(formats, numbers);
-    tcase_add_test(formats, series);
-    tcase_add_test(formats, heat);
-    tcase_add_test(formats, json);
-    tcase_add_loop_test(formats, matrix_market, 0, 2);
-    tcase_add_test(formats, summaries);
-    tcase_add_test(formats, paraview);
-    tcase_add_test(formats, numpy);
-    tcase_add_checked_fixture(files, make_folder, remove_folder);
-    tcase_add_test(files, complete_or_not_at_all);
-    tcase_add_test(files, unwritable);
-    tcase_add_test(files, links);
-    tcase_add_test(files, inputs_stay);
-    tcase_add_test(files, written_at_once);
-    tcase_add_loop_test(files, outputs_asked, 0, sizeof asked / sizeof *asked);
-    tcase_add_test(files, outputs_written);
-    tcase_add_test(files, outputs_unwritable);
-    tcase_add_test(files, dump_read_back);
-    return suite_run(suite);
 }
