@@ -42,7 +42,6 @@ static int draw_lattice(double low, uint64_t seed, double sums[METHODS][DISTANCE
 
 static void report_lattice(struct reproduce *reproduce, double fraction, uint32_t draws,
                            double sums[DRAWS][METHODS][DISTANCES], const double *check) {
-    char what[80];
     for (int m = 0; m < METHODS; ++m)
         for (int d = 0; d < DISTANCES; ++d) {
             double mean = 0, square = 0, least = INFINITY, most = -INFINITY;
@@ -55,10 +54,12 @@ static void report_lattice(struct reproduce *reproduce, double fraction, uint32_
             const double spread = draws > 1 ? sqrt(square / (draws - 1)) : 0;
             fprintf(reproduce->data, "%g,%s,%g,%.6f,%.6f,%.6f,%.6f\n", fraction, names[m], distances[d], mean, spread,
                     least, most);
-            snprintf(what, sizeof what, "%s, solid %g, D = %g: mean of %u", names[m], fraction, distances[d], draws);
-            if (check && m != 1) reproduce_compare(reproduce, what, SOURCE_CHECK, "", check[d], mean);
-            snprintf(what, sizeof what, "%s, solid %g, D = 6: sum at least", names[m], fraction);
-            if (distances[d] == 6) reproduce_compare(reproduce, what, SOURCE_PAPER, "", .95, mean);
+            if (check && m != 1)
+                reproduce_compare(reproduce, SOURCE_CHECK, "", check[d], mean, "%s, solid %g, D = %g: mean of %u",
+                                  names[m], fraction, distances[d], draws);
+            if (distances[d] == 6)
+                reproduce_compare(reproduce, SOURCE_PAPER, "", .95, mean, "%s, solid %g, D = 6: sum at least", names[m],
+                                  fraction);
         }
 }
 
@@ -211,20 +212,18 @@ static int time_bed(struct reproduce *reproduce, struct rows *rows, double publi
     fprintf(reproduce->data, "%u,%g,%.4g,%.4g,%u,%.4g,%.4g,%g,%u,%.4g,%.4g,%u,%.4g,%.4g\n", rows->n, published,
             surface_seconds, error, beam_rule.directions, beam_seconds, beam_error, published_mc, cast.rule.rays,
             cast.seconds, cast.error, mc.rule.rays, mc.seconds, mc.error);
-    char what[80];
-    snprintf(what, sizeof what, "N = %u, surface, 55 nodes, row error %.1e", rows->n, error);
-    reproduce_compare(reproduce, what, SOURCE_PAPER, "s", published, surface_seconds);
-    snprintf(what, sizeof what, "N = %u, beam, %u directions, row error %.1e", rows->n, beam_rule.directions,
-             beam_error);
-    reproduce_compare(reproduce, what, "", "s", NAN, beam_seconds);
-    snprintf(what, sizeof what, "N = %u, cast, %u rays, row error %.1e", rows->n, cast.rule.rays, cast.error);
-    reproduce_compare(reproduce, what, "", "s", NAN, cast.seconds);
-    snprintf(what, sizeof what, "N = %u, mc, %u rays, row error %.1e", rows->n, mc.rule.rays, mc.error);
-    reproduce_compare(reproduce, what, SOURCE_PAPER, "s", published_mc, mc.seconds);
-    snprintf(what, sizeof what, "N = %u, seconds mc : surface", rows->n);
-    reproduce_compare(reproduce, what, SOURCE_PAPER, "", published_mc / published, mc.seconds / surface_seconds);
-    snprintf(what, sizeof what, "N = %u, seconds surface : beam", rows->n);
-    reproduce_compare(reproduce, what, "", "", NAN, surface_seconds / beam_seconds);
+    reproduce_compare(reproduce, SOURCE_PAPER, "s", published, surface_seconds,
+                      "N = %u, surface, 55 nodes, row error %.1e", rows->n, error);
+    reproduce_compare(reproduce, "", "s", NAN, beam_seconds, "N = %u, beam, %u directions, row error %.1e", rows->n,
+                      beam_rule.directions, beam_error);
+    reproduce_compare(reproduce, "", "s", NAN, cast.seconds, "N = %u, cast, %u rays, row error %.1e", rows->n,
+                      cast.rule.rays, cast.error);
+    reproduce_compare(reproduce, SOURCE_PAPER, "s", published_mc, mc.seconds, "N = %u, mc, %u rays, row error %.1e",
+                      rows->n, mc.rule.rays, mc.error);
+    reproduce_compare(reproduce, SOURCE_PAPER, "", published_mc / published, mc.seconds / surface_seconds,
+                      "N = %u, seconds mc : surface", rows->n);
+    reproduce_compare(reproduce, "", "", NAN, surface_seconds / beam_seconds, "N = %u, seconds surface : beam",
+                      rows->n);
     return STATUS_OK;
 }
 

@@ -64,12 +64,13 @@ int reproduce_conductivity(struct reproduce *reproduce) {
         fprintf(reproduce->data, "%g,%.5f,%.5f,%.5f,%.5f,%.5f\n", emissivities[e], factor[0][e], factor[1][e],
                 factor[2][e], factor[3][e], factor[0][EMISSIVITIES - 1]);
         for (int k = 0; k <= LATTICES; ++k) {
-            char what[80];
-            snprintf(what, sizeof what, "F_E, %s, emissivity %g", name[k], emissivities[e]);
-            if (!isnan(check[k][e])) reproduce_compare(reproduce, what, SOURCE_CHECK, "", check[k][e], factor[k][e]);
+            if (!isnan(check[k][e]))
+                reproduce_compare(reproduce, SOURCE_CHECK, "", check[k][e], factor[k][e], "F_E, %s, emissivity %g",
+                                  name[k], emissivities[e]);
             if (k == 1)
-                reproduce_compare(reproduce, what, SOURCE_PAPER, "",
-                                  correlation_singh_kaviany(emissivities[e], .476, INFINITY), factor[k][e]);
+                reproduce_compare(reproduce, SOURCE_PAPER, "",
+                                  correlation_singh_kaviany(emissivities[e], .476, INFINITY), factor[k][e],
+                                  "F_E, %s, emissivity %g", name[k], emissivities[e]);
         }
     }
     return reproduce_figure(reproduce, "conductivity", conductivity_script);
@@ -122,11 +123,10 @@ int reproduce_correlations(struct reproduce *reproduce) {
         for (int e = 0; e < EMISSIVITIES; ++e) {
             fprintf(reproduce->data, "%g,%g,%.5f", porosity[k], emissivities[e], factor[k][e]);
             for (int c = 0; c < CORRELATIONS; ++c) {
-                char what[80];
                 const double theirs = correlations[c].factor(emissivities[e], porosity[k], INFINITY);
-                snprintf(what, sizeof what, "F_E, %s, porosity %g, emissivity %g", correlations[c].name, porosity[k],
-                         emissivities[e]);
-                reproduce_compare(reproduce, what, SOURCE_PAPER, "", theirs, factor[k][e]);
+                reproduce_compare(reproduce, SOURCE_PAPER, "", theirs, factor[k][e],
+                                  "F_E, %s, porosity %g, emissivity %g", correlations[c].name, porosity[k],
+                                  emissivities[e]);
                 fprintf(reproduce->data, ",%.5f", theirs);
             }
             fputc('\n', reproduce->data);
@@ -161,15 +161,14 @@ static void compare_conducting(struct reproduce *reproduce, const double *exact,
     fprintf(reproduce->data, "%g", k);
     for (int e = 0; e < CONDUCTING; ++e) {
         const double emissivity = conducting_emissivity[e], fit = correlation_singh_kaviany(emissivity, .476, k);
-        char what[80];
-        snprintf(what, sizeof what, "F_E, simple cubic, emissivity %g, k* %g", emissivity, k);
-        reproduce_compare(reproduce, what, SOURCE_CHECK, "", exact[1 + e], factor[0][e]);
-        reproduce_compare(reproduce, what, SOURCE_PAPER, "", fit, factor[0][e]);
+        static const char cubic[] = "F_E, simple cubic, emissivity %g, k* %g";
+        reproduce_compare(reproduce, SOURCE_CHECK, "", exact[1 + e], factor[0][e], cubic, emissivity, k);
+        reproduce_compare(reproduce, SOURCE_PAPER, "", fit, factor[0][e], cubic, emissivity, k);
         fprintf(reproduce->data, ",%.5f,%.5f,%.5f,%.5f", exact[1 + e], factor[0][e], fit, factor[1][e]);
         for (int c = 0; c < CORRELATIONS; ++c) {
             const double theirs = correlations[c].factor(emissivity, RANDOM_POROSITY, k);
-            snprintf(what, sizeof what, "F_E, %s, random, emissivity %g, k* %g", correlations[c].name, emissivity, k);
-            reproduce_compare(reproduce, what, SOURCE_PAPER, "", theirs, factor[1][e]);
+            reproduce_compare(reproduce, SOURCE_PAPER, "", theirs, factor[1][e],
+                              "F_E, %s, random, emissivity %g, k* %g", correlations[c].name, emissivity, k);
             fprintf(reproduce->data, ",%.5f", theirs);
         }
     }

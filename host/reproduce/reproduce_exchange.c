@@ -129,10 +129,11 @@ static int compare_tables(struct reproduce *reproduce, const struct johnson_tabl
         for (int t = 0; t < JOHNSON_TABLES; ++t)
             for (int c = 0; c < JOHNSON_FRACTIONS; ++c) {
                 const double theirs = table[t].row[k][1 + c], ours = fit_at(&fit[t][c][k]);
-                char what[80];
-                snprintf(what, sizeof what, "D to %s at %.1f r, solid fraction %g, emissivity %g",
-                         to_wall ? "a wall" : "a sphere", table[t].row[k][0], johnson_fraction[c], table[t].emissivity);
-                if (theirs > 0) reproduce_compare(reproduce, what, SOURCE_PAPER, "", theirs, ours);
+                if (theirs > 0)
+                    reproduce_compare(reproduce, SOURCE_PAPER, "", theirs, ours,
+                                      "D to %s at %.1f r, solid fraction %g, emissivity %g",
+                                      to_wall ? "a wall" : "a sphere", table[t].row[k][0], johnson_fraction[c],
+                                      table[t].emissivity);
                 fprintf(reproduce->data, theirs > 0 ? ",%g,%.5g" : ",,%.5g", theirs > 0 ? theirs : ours, ours);
             }
         fputc('\n', reproduce->data);

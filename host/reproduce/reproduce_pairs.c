@@ -39,7 +39,6 @@ int reproduce_fig3(struct reproduce *reproduce) {
     } check[] = {{34, {-21.78, -16.18, -15.97, -10.05}}, {55, {-2.17, -1.50, -4.62, -4.76}},
                  {89, {12.96, .47, -4.79, -5.40}},       {144, {13.45, -2.82, -3.59, -3.94}},
                  {233, {6.50, -2.21, -1.69, -1.66}},     {610, {-.27, -.05, -.15, -.13}}};
-    char what[64];
     fputs("p1,nodes,gap,F,exact,error_percent\n", reproduce->data);
     for (int p = 0; p < RADII; ++p)
         for (size_t k = 0; k < sizeof nodes / sizeof *nodes; ++k) {
@@ -53,10 +52,11 @@ int reproduce_fig3(struct reproduce *reproduce) {
             double theirs = NAN;
             for (size_t c = 0; c < sizeof check / sizeof *check; ++c)
                 if (check[c].nodes == nodes[k]) theirs = check[c].error[p];
-            snprintf(what, sizeof what, "largest error, p1 = %g, N_F = %u", radii[p], nodes[k]);
-            reproduce_compare(reproduce, what, SOURCE_CHECK, "%", theirs, worst);
-            snprintf(what, sizeof what, "largest |error|, p1 = %g, N_F = 55: at most", radii[p]);
-            if (nodes[k] == 55) reproduce_compare(reproduce, what, SOURCE_PAPER, "%", 5, fabs(worst));
+            reproduce_compare(reproduce, SOURCE_CHECK, "%", theirs, worst, "largest error, p1 = %g, N_F = %u", radii[p],
+                              nodes[k]);
+            if (nodes[k] == 55)
+                reproduce_compare(reproduce, SOURCE_PAPER, "%", 5, fabs(worst),
+                                  "largest |error|, p1 = %g, N_F = 55: at most", radii[p]);
         }
     return reproduce_figure(
         reproduce, "fig3",
@@ -78,16 +78,15 @@ int reproduce_fig4(struct reproduce *reproduce) {
                    {2, 1.605e-2, 1.615e-2},
                    {3, 1.017e-2, 1.021e-2},
                    {4, .698e-2, .704e-2}};
-    char what[64];
-    reproduce_compare(reproduce, "exact, in contact: 1/2 - 4/(3 pi)", SOURCE_PAPER, "", .5 - 4 / (3 * PI),
-                      exact_factor(1, 0));
+    reproduce_compare(reproduce, SOURCE_PAPER, "", .5 - 4 / (3 * PI), exact_factor(1, 0),
+                      "exact, in contact: 1/2 - 4/(3 pi)");
     for (size_t k = 0; k < sizeof pebbles / sizeof *pebbles; ++k) {
         const double gap = pebbles[k].gap;
-        snprintf(what, sizeof what, "surface, 55 nodes, not corrected, H = %g: numerical", gap + 2);
-        reproduce_compare(reproduce, what, SOURCE_PAPER, "", pebbles[k].numerical,
-                          surface_factor(1, gap, NULL, 55, FIBRAD_SURFACE_NO_CORRECTION));
-        snprintf(what, sizeof what, "exact, H = %g: rays", gap + 2);
-        reproduce_compare(reproduce, what, SOURCE_PAPER, "", pebbles[k].rays, exact_factor(1, gap));
+        reproduce_compare(reproduce, SOURCE_PAPER, "", pebbles[k].numerical,
+                          surface_factor(1, gap, NULL, 55, FIBRAD_SURFACE_NO_CORRECTION),
+                          "surface, 55 nodes, not corrected, H = %g: numerical", gap + 2);
+        reproduce_compare(reproduce, SOURCE_PAPER, "", pebbles[k].rays, exact_factor(1, gap), "exact, H = %g: rays",
+                          gap + 2);
     }
     fputs("gap,surface,corrected,exact,point_source,far_field\n", reproduce->data);
     for (int k = 0; k <= 60; ++k) {
@@ -169,21 +168,15 @@ static int third_sphere(struct reproduce *reproduce, double r, double gap, doubl
 
 static void compare_third(struct reproduce *reproduce, double r, const struct worst *worst, double raw,
                           double corrected) {
-    char what[64];
-    snprintf(what, sizeof what, "p1 = %g: |error| against 987 nodes: under", r);
-    reproduce_compare(reproduce, what, SOURCE_PAPER, "%", 6, fabs(worst->raw));
-    snprintf(what, sizeof what, "p1 = %g: |error| against 987 nodes", r);
-    reproduce_compare(reproduce, what, SOURCE_CHECK, "%", raw, fabs(worst->raw));
-    snprintf(what, sizeof what, "p1 = %g: the same, corrected", r);
-    reproduce_compare(reproduce, what, SOURCE_CHECK, "%", corrected, fabs(worst->corrected));
-    snprintf(what, sizeof what, "p1 = %g: error, truth, any azimuth", r);
-    reproduce_compare(reproduce, what, "", "%", NAN, worst->raw_truth);
-    snprintf(what, sizeof what, "p1 = %g: the same, corrected", r);
-    reproduce_compare(reproduce, what, "", "%", NAN, worst->corrected_truth);
-    snprintf(what, sizeof what, "p1 = %g: error of 987 nodes, truth", r);
-    reproduce_compare(reproduce, what, "", "%", NAN, worst->raw_987);
-    snprintf(what, sizeof what, "p1 = %g: the same, corrected", r);
-    reproduce_compare(reproduce, what, "", "%", NAN, worst->corrected_987);
+    reproduce_compare(reproduce, SOURCE_PAPER, "%", 6, fabs(worst->raw), "p1 = %g: |error| against 987 nodes: under",
+                      r);
+    reproduce_compare(reproduce, SOURCE_CHECK, "%", raw, fabs(worst->raw), "p1 = %g: |error| against 987 nodes", r);
+    reproduce_compare(reproduce, SOURCE_CHECK, "%", corrected, fabs(worst->corrected), "p1 = %g: the same, corrected",
+                      r);
+    reproduce_compare(reproduce, "", "%", NAN, worst->raw_truth, "p1 = %g: error, truth, any azimuth", r);
+    reproduce_compare(reproduce, "", "%", NAN, worst->corrected_truth, "p1 = %g: the same, corrected", r);
+    reproduce_compare(reproduce, "", "%", NAN, worst->raw_987, "p1 = %g: error of 987 nodes, truth", r);
+    reproduce_compare(reproduce, "", "%", NAN, worst->corrected_987, "p1 = %g: the same, corrected", r);
 }
 
 int reproduce_third_sphere(struct reproduce *reproduce) {

@@ -87,23 +87,22 @@ int reproduce_pebble_pair(struct reproduce *reproduce) {
                  {5, 1.017e-2, 1.021e-2, 3.621, 3.5668, 10.51, 10.56},
                  {6, .698e-2, .704e-2, 4.597, 4.5824, 8.73, 8.75}};
     enum { ROWS = sizeof table / sizeof *table };
-    char what[64];
     for (int k = 0; k < ROWS; ++k) {
         const double h = table[k].h;
         double f12 = 0, sum, length, angle;
         fibrad_pair_exact(1, 1, h - 2, &f12);
         pair_of(h, &sum, &length, &angle);
-#define COMPARE(text, source, unit, theirs, ours)                                                                      \
-    (snprintf(what, sizeof what, "H = %g: " text, h), reproduce_compare(reproduce, what, source, unit, theirs, ours))
-        COMPARE("F, rays", SOURCE_PAPER, "", table[k].rays, f12);
-        COMPARE("F, numerical", SOURCE_PAPER, "", table[k].numerical, f12);
-        COMPARE("F, by directions", SOURCE_CHECK, "", f12, sum);
-        COMPARE("mean ray length", SOURCE_PAPER, "r", table[k].length, length);
-        COMPARE("mean ray length", SOURCE_CHECK, "r", table[k].length_check, length);
-        COMPARE("mean angle", SOURCE_PAPER, "deg", table[k].angle, angle);
-        COMPARE("mean angle", SOURCE_CHECK, "deg", table[k].angle_check, angle);
-        COMPARE("received within 30 deg; cosine law", SOURCE_PAPER, "", .25, share_within(h, PI / 6));
-        COMPARE("received within 60 deg; cosine law", SOURCE_PAPER, "", .75, share_within(h, PI / 3));
+        reproduce_compare(reproduce, SOURCE_PAPER, "", table[k].rays, f12, "H = %g: F, rays", h);
+        reproduce_compare(reproduce, SOURCE_PAPER, "", table[k].numerical, f12, "H = %g: F, numerical", h);
+        reproduce_compare(reproduce, SOURCE_CHECK, "", f12, sum, "H = %g: F, by directions", h);
+        reproduce_compare(reproduce, SOURCE_PAPER, "r", table[k].length, length, "H = %g: mean ray length", h);
+        reproduce_compare(reproduce, SOURCE_CHECK, "r", table[k].length_check, length, "H = %g: mean ray length", h);
+        reproduce_compare(reproduce, SOURCE_PAPER, "deg", table[k].angle, angle, "H = %g: mean angle", h);
+        reproduce_compare(reproduce, SOURCE_CHECK, "deg", table[k].angle_check, angle, "H = %g: mean angle", h);
+        reproduce_compare(reproduce, SOURCE_PAPER, "", .25, share_within(h, PI / 6),
+                          "H = %g: received within 30 deg; cosine law", h);
+        reproduce_compare(reproduce, SOURCE_PAPER, "", .75, share_within(h, PI / 3),
+                          "H = %g: received within 60 deg; cosine law", h);
     }
     fputs("angle_degrees,cosine,H2,H3,H4,H6\n", reproduce->data);
     for (int degrees = 0; degrees <= 90; degrees += 2) {
@@ -170,12 +169,11 @@ static void report_bed(struct reproduce *reproduce, double fraction, const struc
                      {60, "from centre to centre within 3 diameters", .99, NAN},
                      {70, "from centre to surface within 3 diameters", .99, NAN},
                      {80, "from surface to surface within 3 diameters", .99, NAN}};
-    char what[80];
     for (size_t k = 0; k < sizeof published / sizeof *published; ++k) {
-        snprintf(what, sizeof what, "solid %g, %s: factor, over", fraction, published[k].distance);
-        reproduce_compare(reproduce, what, SOURCE_PAPER, "", published[k].factor, within->factor[published[k].bin]);
-        snprintf(what, sizeof what, "solid %g, %s: spheres, under", fraction, published[k].distance);
-        reproduce_compare(reproduce, what, SOURCE_PAPER, "", published[k].spheres, within->spheres[published[k].bin]);
+        reproduce_compare(reproduce, SOURCE_PAPER, "", published[k].factor, within->factor[published[k].bin],
+                          "solid %g, %s: factor, over", fraction, published[k].distance);
+        reproduce_compare(reproduce, SOURCE_PAPER, "", published[k].spheres, within->spheres[published[k].bin],
+                          "solid %g, %s: spheres, under", fraction, published[k].distance);
     }
     for (int b = 0; b < BINS; ++b)
         fprintf(reproduce->data, "%g,%.1f,%.6f,%.3f\n", fraction, b * BIN, within->factor[b], within->spheres[b]);

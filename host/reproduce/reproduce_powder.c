@@ -94,9 +94,8 @@ int reproduce_faces(struct reproduce *reproduce) {
             static const char *const name[3] = {"emissivity, Sih-Barlow", "emissivity, two streams",
                                                 "absorptance from above, two streams"};
             for (int c = 0; c < 3; ++c) {
-                char what[80];
-                snprintf(what, sizeof what, "%s, porosity %g, spheres %g", name[c], porosity, solid);
-                reproduce_compare(reproduce, what, SOURCE_PAPER, "", theirs[c], ours[c]);
+                reproduce_compare(reproduce, SOURCE_PAPER, "", theirs[c], ours[c], "%s, porosity %g, spheres %g",
+                                  name[c], porosity, solid);
             }
             fprintf(reproduce->data, "%g,%g,%.5f,%.5f,%.5f,%.5f,%.5f\n", porosity, solid, ours[0], theirs[0], theirs[1],
                     ours[2], theirs[2]);

@@ -71,7 +71,6 @@ int reproduce_pebble_rays(struct reproduce *reproduce) {
                  {4, 1.605e-2, 2.620, 13.35, .9},
                  {5, 1.017e-2, 3.621, 10.51, 1.2},
                  {6, .698e-2, 4.597, 8.73, 1.5}};
-    char what[80];
     fputs("H,cast_F,cast_error_percent,cast_length,cast_angle_degrees,mc_error_percent,cast_rays_for_1_percent,"
           "mc_rays_for_1_percent\n",
           reproduce->data);
@@ -85,15 +84,16 @@ int reproduce_pebble_rays(struct reproduce *reproduce) {
         if (status) return status;
         const double random_needed =
             RAYS * pow(100 * random.error, 2); /* the error of random rays falls as rays^-1/2 */
-#define COMPARE(text, source, unit, theirs, ours)                                                                      \
-    (snprintf(what, sizeof what, "H = %g: " text, h), reproduce_compare(reproduce, what, source, unit, theirs, ours))
-        COMPARE("F, 200,000 rays, mean of 24 orientations", SOURCE_PAPER, "", table[t].f12, quasi.f12);
-        COMPARE("mean ray length", SOURCE_PAPER, "r", table[t].length, quasi.length);
-        COMPARE("mean angle", SOURCE_PAPER, "deg", table[t].angle, quasi.angle);
-        COMPARE("error of F, 200,000 rays, RMS; its bar", SOURCE_CHECK, "%", table[t].bar, 100 * quasi.error);
-        COMPARE("error of F, 200,000 random rays, RMS", "", "%", NAN, 100 * random.error);
-        COMPARE("rays for an error of 1 %%", "", "", NAN, needed);
-        COMPARE("random rays for an error of 1 %%", "", "", NAN, random_needed);
+        reproduce_compare(reproduce, SOURCE_PAPER, "", table[t].f12, quasi.f12,
+                          "H = %g: F, 200,000 rays, mean of 24 orientations", h);
+        reproduce_compare(reproduce, SOURCE_PAPER, "r", table[t].length, quasi.length, "H = %g: mean ray length", h);
+        reproduce_compare(reproduce, SOURCE_PAPER, "deg", table[t].angle, quasi.angle, "H = %g: mean angle", h);
+        reproduce_compare(reproduce, SOURCE_CHECK, "%", table[t].bar, 100 * quasi.error,
+                          "H = %g: error of F, 200,000 rays, RMS; its bar", h);
+        reproduce_compare(reproduce, "", "%", NAN, 100 * random.error, "H = %g: error of F, 200,000 random rays, RMS",
+                          h);
+        reproduce_compare(reproduce, "", "", NAN, needed, "H = %g: rays for an error of 1 %%", h);
+        reproduce_compare(reproduce, "", "", NAN, random_needed, "H = %g: random rays for an error of 1 %%", h);
         fprintf(reproduce->data, "%g,%.6g,%.4f,%.5f,%.4f,%.4f,%u,%.0f\n", h, quasi.f12, 100 * quasi.error, quasi.length,
                 quasi.angle, 100 * random.error, needed, random_needed);
     }
