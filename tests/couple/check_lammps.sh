@@ -236,6 +236,24 @@ awk '$1 == "Step" { n = 1 } n && $1 == 0 { first = $4 } n && $1 == 10 { last = $
     END { exit !(last/first > 10) }' "$work/rising.log"
 verdict "a wall that a variable heats" $?
 
+# ---- walls that store heat ----------------------------------------------------------------------------------------------
+# floor NAME: its temperature at the last step
+floor() { awk '$1 == "Step" { n = 1 } n && NF == 5 && $1 ~ /^[0-9]/ { t = $5 } /^Loop/ { n = 0 } END { print t + 0 }' CONVFMT=%.17g OFMT=%.17g "$work/$1.log"; }
+"$BUILD/tests/couple/serial_bed" 50 20 4000 100 1e7 <"$work/quarter" >"$work/serial_floor.out"
+stores="zlo 1000 0.9 at 0 capacity 1e7"
+for np in 1 2 4; do
+    run $np stores$np frozen.lmp "${whole[@]}" floor "$stores"
+    near "$work/serial_floor.out" "$work/stores$np.out" 1e-10 "a floor that stores heat against one scene, np $np"
+    awk -v t="$(floor stores$np)" '$1 == "floor" { d = $2 - t; printf "%.2g", d; exit !(d*d < 1e-20 && $2 < 990) }' \
+        "$work/serial_floor.out" >"$work/floor.error"
+    verdict "its temperature, np $np ($(cat "$work/floor.error") K)" $?
+done
+run 2 stored frozen.lmp "${whole[@]}" floor "$stores" steps 25 also "restart 25 $work/floor.*"
+run 4 restored frozen.lmp data "$work/floor.25" cutoff 4000 restarted yes steps 25 floor "$stores"
+near "$work/stores1.out" "$work/restored.out" 1e-10 "a floor that stores heat, restarted"
+run 2 warming moving.lmp hot 1000 steps 4000 capacity "capacity 2e4" stored 2e4
+balance warming 20e-3 0 1e-3 150 "energy of moving particles and a floor that stores heat"
+
 # ---- strays -----------------------------------------------------------------------------------------------------------
 # LAMMPS goes on with centres inside others and beyond walls. So does radiation.
 run 2 soft soft.lmp
@@ -281,6 +299,9 @@ fails "beyond wall 1, zlo" "a centre beyond a wall" floor "zlo 1000 0.9 at 1" st
 fails "rad and bad both radiate from atom" "two fixes on one particle" \
     also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1"
 fails "no equal-style variable" "a variable that is not there" floor "zlo v_none 0.9"
+fails "has a temperature of its own, not v_hot" "a capacity beside a variable" floor "zlo v_hot 0.9 capacity 3e5"
+fails "too long for wall 1" "steps of heat too long for a wall" floor "zlo 1000 0.9 at 0 capacity 1e4" heat 1
+fails "capacity must be in" "a capacity of 0" floor "zlo 1000 0.9 capacity 0"
 fails "excludes" "accuracy beside paths" \
     also "fix bad all fibrad 0 1 emissivity 1 surroundings 300 cp 1 paths 50 accuracy low"
 fails "open axes x and y" "a cylinder with periodic axes" boundary "p p f" \

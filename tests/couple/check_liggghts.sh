@@ -170,6 +170,50 @@ echo "$(value joined_low wall_1_F) $(value joined_high wall_1_F) $(value joined_
     off = $3 / $2 - 1; exit !(NF == 3 && $1 > 1.2 * $2 && off * off < 1e-8) }' || complain "rows do not follow a mesh that moves"
 radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
 
+# A drum of triangles that turns once and stores heat. Its temperature follows from factors of `fibrad exchange` of
+# frames, too, and what particles and drum lose goes to the ends. Both sides are the wall, since pebbles in the corners
+# of drum and ends see the back of the shell
+awk -v pi=3.14159265358979 'BEGIN {
+    print "solid drum"
+    for (k = 0; k < 24; k++) for (t = 0; t < 2; t++) {
+        print "facet normal 0 0 0\nouter loop"
+        for (c = 0; c < 3; c++) {
+            turn = (k + (t ? c > 0 : c == 1)) * pi / 12
+            print "vertex", (t ? c == 1 : c > 0) ? 0 : .048, .024 + .0235 * cos(turn), .024 + .0235 * sin(turn)
+        }
+        print "endloop\nendfacet"
+    }
+    print "endsolid" }' >drum.stl
+sed -e '/^fix \(floor\|front\|back\)/d' -e 's/thermalCapacity peratomtype 5/thermalCapacity peratomtype 50/' \
+    -e 's/^region bed.*/region bed cylinder x .024 .024 .0202 .003 .045 units box/' \
+    -e '/^fix heat/i fix drum all mesh/surface file drum.stl type 1\nfix shell all wall/gran model hertz tangential history mesh n_meshes 1 meshes drum\nfix turn all move/mesh mesh drum rotate origin .024 .024 .024 axis 1 0 0 period .4' \
+    "$example" >drum
+{ echo 'dump frames all custom 1000 *.frame id x y z radius f_Temp' && echo 'dump shells all mesh/stl 1000 *.shell drum'; } >>drum
+radiation='--emissivity 0.8 --surroundings 300 --wall xlo=600,.9 --wall xhi=600,.9'
+run turning 2 nve/sphere 20000 -in drum --rows 500 --mesh drum=1200,.7:both --capacity drum=.5
+echo "$(value turning heat_before) $(value turning heat_after) $(value turning radiation_xlo) $(value turning radiation_xhi) \
+    $(value turning temperature_drum)" | awk '{
+    lost = ($2 - $1 + $3 + $4 + .5 * ($5 - 1200)) / ($2 - $1)
+    printf "a drum cools to %.3f K; energy off by %.1e\n", $5, lost
+    exit !(NF == 5 && $2 > $1 && lost * lost < 1e-24) }' || complain "a drum that stores heat: energy is not kept"
+for step in $(seq 0 1000 20000); do
+    mv "$step.shell" shell.stl
+    "$fibrad" exchange "$step.frame" --emissivity .8 --wall mesh:shell.stl:both,xmin=0,xmax=.048 --wall-emissivity .9,shell=.7 --raw \
+        --quiet -o factors.csv 2>/dev/null || complain "no factors of step $step" >&2
+    # what particles send to the drum, and what it sends to them at 1 K
+    awk -F'[ ,]' 'NR == FNR && NF == 7 && $1 ~ /^[0-9]/ { e[$1] = 5.670374419e-8 * $6^4 }
+        NR > FNR && $1 > 0 && $4 == "shell" { weight = 3.6e-5 * 3.14159265358979 * .8 * $3; sum += weight * e[$1]; all += weight }
+        END { printf "%.9g %.9g\n", sum, all * 5.670374419e-8 }' "$step.frame" factors.csv
+done | awk -v found="$(value turning temperature_drum)" '
+    NR == 1 { t = 1200 }
+    NR > 1 { for (k = .005; k < 1; k += .01) t += (a + k * ($1 - a) - (g + k * ($2 - g)) * t^4) * 2e-4 / .5 }
+    { a = $1; g = $2 }
+    END {
+        off = (found - t) / (1200 - t)
+        printf "by factors of frames to %.3f K, %.2g of its change\n", t, off
+        exit !(NR == 21 && off * off < 1e-4) }' || complain "the drum has another temperature than by factors of frames"
+radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
+
 # Messages: exit status, words; one line of the driver's, whatever the number of ranks. The ranks write messages into a
 # file themselves: mpirun now and then loses the last line of a rank that fails.
 refuse() { # RANKS STATUS WORDS OPTIONS...
@@ -193,6 +237,11 @@ refuse 1 2 "solid-conductivity: '5,nan' is not a number above 0" -in bed --solid
 refuse 1 2 "none of SIDE=T,E" -in bed --wall floor=300,1
 refuse 1 2 "neither ID=E" -in bed --mesh lid=0.9:up
 refuse 1 2 "'lid=700,0.9' is of a mesh that was named already" -in bed --mesh lid=0.9 --mesh lid=700,0.9
+refuse 1 2 "'zlo=0' is not NAME=C" -in bed --capacity zlo=0
+# shellcheck disable=SC2086
+refuse 2 3 "capacity zhi: no --wall or --mesh" -in bed $radiation --steps 1 --capacity zhi=5
+# shellcheck disable=SC2086
+refuse 2 3 "wall zlo cools down in" -in bed $radiation --steps 1 --capacity zlo=1e-6
 refuse 1 2 "not a multiple" -in bed --emissivity 1 --surroundings 300 --steps 1 --every 20 --rows 30
 refuse 2 3 "2 emissivities for 1 types" -in bed --emissivity .5,.6 --surroundings 300 --steps 1
 # shellcheck disable=SC2086

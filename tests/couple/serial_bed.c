@@ -1,7 +1,8 @@
 /* serial_bed.c - a frozen bed above a hot floor, on one scene of the kernel: what simulators over ranks must agree
  * with.
  *
- * serial_bed STEPS NROWS CUTOFF DT < BED > TEMPERATURES. Lines of BED are `id x y z r T`, of TEMPERATURES `id T`.
+ * serial_bed STEPS NROWS CUTOFF DT [CAPACITY] < BED > TEMPERATURES. Lines of BED are `id x y z r T`, of TEMPERATURES
+ * `id T`. With a heat capacity [J/K] the temperature of the floor follows what it gets. The last line is `floor T`.
  * Emissivity 0.5 for odd ids and 0.8 for even ones, floor z = 0 of 1000 K and emissivity 0.9, surroundings 300 K,
  * density 2500, 800 J/(kg K); a step of heat of DT seconds in each of STEPS, new rows at multiples of NROWS.
  *
@@ -28,10 +29,11 @@ static void stop_unless(int status) {
 }
 
 int main(int count, char **argument) {
-    if (count != 5) return 2;
+    if (count != 5 && count != 6) return 2;
     const long steps = atol(argument[1]), every = atol(argument[2]);
     const double cutoff = atof(argument[3]), dt = atof(argument[4]), pi = 4 * atan(1), sigma = FIBRAD_STEFAN_BOLTZMANN;
-    const double floor_emissivity = 0.9, floor_emission = sigma * pow(1000, 4);
+    const double floor_emissivity = 0.9, capacity = count == 6 ? atof(argument[5]) : HUGE_VAL;
+    double floor_t = 1000;
 
     uint32_t n = 0;
     unsigned long long number;
@@ -72,6 +74,7 @@ int main(int count, char **argument) {
             emission[i] = sigma * t[i] * t[i] * t[i] * t[i];
             power[i] = 0;
         }
+        const double floor_emission = sigma * pow(floor_t, 4);
         double floor_power = 0;
         fibrad_flow flow = {.weight = weight,
                             .emission = emission,
@@ -81,8 +84,10 @@ int main(int count, char **argument) {
                             .body_power = &floor_power};
         stop_unless(fibrad_rows_flow(&rows, n, 1, &flow));
         for (uint32_t i = 0; i < n; i++) t[i] += power[i] * dt / (2500 * 4 * pi / 3 * r[i] * r[i] * r[i] * 800);
+        floor_t += floor_power * dt / capacity;
     }
     for (uint32_t i = 0; i < n; i++) printf("%llu %.17g\n", (unsigned long long)id[i], t[i]);
+    printf("floor %.17g\n", floor_t);
     free(memory);
     free(work.memory.block);
     free(rows.memory.block);

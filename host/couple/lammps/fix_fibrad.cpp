@@ -73,8 +73,9 @@ class FixFibrad::Words {
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     : Fix(lammps, narg, arg), temperature(), surroundings{-1, ""}, sampling(false), accuracy(false), sigma(0),
-      initial(0), config(), meshes(), insitu(nullptr), totals(), warned(false), cut_warned(false), told(), set_up(-1),
-      begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
+      initial(0), config(), meshes(), insitu(nullptr), totals(), warned(false), wall_warned(false), cut_warned(false),
+      told(), set_up(-1), powers_at(0), weighed(false), begun(0), before(), rows_made(0), rows_followed(0),
+      powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // the default of docs/lammps.md
@@ -154,7 +155,8 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     nevery = heat_every ? heat_every : rows_every;
     scalar_flag = vector_flag = peratom_flag = 1;
     size_peratom_cols = 0;
-    size_vector = 5 + (int)walls.size() + 3;
+    size_vector = 5 + (int)walls.size() + 3 + (int)walls.size();
+    restart_global = wall_heat.any();
     global_freq = peratom_freq = 1;
     extscalar = extvector = 0;
     maxexchange = 1;
@@ -179,7 +181,8 @@ void FixFibrad::read_temperature(Words &words) {
         error->all(FLERR, "fix fibrad: `temperature` is followed by d_NAME, not `" + temperature + "`");
 }
 
-// wall FACE T e [at POS] | wall FACE open [at POS] | wall zcylinder R T e [at X Y] | wall mesh ...
+// wall FACE T e [at POS] [capacity C] | wall FACE open [at POS] | wall zcylinder R T e [at X Y] [capacity C] |
+// wall mesh ...
 void FixFibrad::read_wall(Words &words) {
     static const char *const faces[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi", "zcylinder"};
     const std::string name = words.next();
@@ -203,9 +206,8 @@ void FixFibrad::read_wall(Words &words) {
     }
     wall_kelvins.push_back(read_kelvins(words, "a wall's temperature"));
     wall_emissivity.push_back(words.number("a wall's emissivity", 0, 1));
-    const bool at = words.next_is("at");
+    const bool at = words.take("at");
     if (at) {
-        words.next();
         if (face == 6) {
             body.cylinder.x = words.number("x of the cylinder", -huge, huge);
             body.cylinder.y = words.number("y of the cylinder", -huge, huge);
@@ -213,6 +215,7 @@ void FixFibrad::read_wall(Words &words) {
             body.plane.at = words.number("the place of a wall", -huge, huge);
         }
     }
+    wall_heat.capacity.push_back(words.take("capacity") ? read_capacity(words, wall_kelvins.back()) : 0);
     walls.push_back(body);
     wall_face.push_back(at || face == 6 ? -1 : face);
 }
@@ -225,12 +228,20 @@ void FixFibrad::read_opening(Words &words, int face) {
     openings.push_back(opening);
 }
 
-// wall mesh FILE T e [name NAME] [both | normals | auto] [solids] [scale S]
+// C, of a wall whose temperature is t
+double FixFibrad::read_capacity(Words &words, const Temperature &t) {
+    if (!t.variable.empty())
+        error->all(FLERR, "fix fibrad: a wall with a capacity has a temperature of its own, not v_" + t.variable);
+    return words.number("a wall's capacity", 1e-300, 1e300);
+}
+
+// wall mesh FILE T e [name NAME] [both | normals | auto] [solids] [scale S] [capacity C]
 void FixFibrad::read_mesh(Words &words) {
     const std::string path = words.next();
     const Temperature t = read_kelvins(words, "a wall's temperature");
     const double e = words.number("a wall's emissivity", 0, 1);
     const uint32_t first = (uint32_t)walls.size();
+    double capacity = 0;
     std::string name;
     mesh_file file = {};
     file.path = path.c_str();
@@ -248,6 +259,8 @@ void FixFibrad::read_mesh(Words &words) {
             file.scale = words.number("the scale of a mesh", 1e-12, 1e12);
         else if (words.take("name"))
             name = words.next();
+        else if (words.take("capacity"))
+            capacity = read_capacity(words, t);
         else
             more = false;
     }
@@ -264,6 +277,7 @@ void FixFibrad::read_mesh(Words &words) {
     walls.insert(walls.end(), bodies, body);
     wall_kelvins.insert(wall_kelvins.end(), bodies, t);
     wall_emissivity.insert(wall_emissivity.end(), bodies, e);
+    wall_heat.capacity.insert(wall_heat.capacity.end(), bodies, capacity);
     wall_face.insert(wall_face.end(), bodies, -1);
     if (comm->me == 0) describe_meshes(first, bodies, path);
 }
@@ -412,8 +426,11 @@ void FixFibrad::end_of_step() {
     if (update->ntimestep == set_up) return;
     if (update->ntimestep % rows_every == 0) make_rows();
     if (!heat_every) return;
+    const bool lammps_steps = temperature == "temperature"; // particles then get powers until the next ones
+    if (lammps_steps) heat_walls(update->ntimestep - powers_at);
     find_powers();
-    if (temperature == "temperature") return;
+    if (lammps_steps) return;
+    heat_walls(heat_every);
     double *t = vector(temperature);
     const std::vector<double> capacity = values(cp);
     for (size_t k = 0; k < member.size(); k++) {
@@ -470,6 +487,7 @@ void FixFibrad::make_rows(bool follow) {
         error->all(FLERR, std::string("fix fibrad: ") + fibrad_insitu_message(insitu) + ", `wall zhi open`");
     check(status);
     (follow ? rows_followed : rows_made)++;
+    weighed = false;
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(insitu, &facts);
     if (facts.beyond > FIBRAD_BEYOND_MUCH && !cut_warned && comm->me == 0)
@@ -528,22 +546,21 @@ void FixFibrad::find_temperatures() {
     };
     modify->clearstep_compute();
     surroundings.value = kelvins(surroundings);
-    wall_temperature.clear();
-    for (const Temperature &t : wall_kelvins) wall_temperature.push_back(kelvins(t));
+    for (Temperature &t : wall_kelvins) t.value = kelvins(t);
     modify->addstep_compute(update->ntimestep + heat_every);
 }
 
 void FixFibrad::find_powers() {
     find_temperatures();
     select();
-    const std::vector<double> t = temperatures();
+    const std::vector<double> t = temperatures(), of_walls = wall_temperatures();
     std::vector<double> power(member.size());
     check_step(t);
 
     fibrad_insitu_state state = {};
     state.sigma = sigma;
     state.surroundings = surroundings.value;
-    state.body_temperature = wall_temperature.data();
+    state.body_temperature = of_walls.data();
     state.n = member.size();
     state.id = tags.data();
     state.temperature = t.data();
@@ -553,9 +570,26 @@ void FixFibrad::find_powers() {
         status = fibrad_insitu_powers(insitu, &state, power.data(), &totals);
     }
     check(status);
+    if (!weighed) check(wall_heat.weigh(insitu, state));
+    weighed = true;
+    check_walls();
     powers_found++;
+    powers_at = update->ntimestep;
     std::fill(q.begin(), q.end(), 0.0);
     for (size_t k = 0; k < member.size(); k++) q[member[k]] = power[k];
+}
+
+std::vector<double> FixFibrad::wall_temperatures() const {
+    std::vector<double> t;
+    for (const Temperature &of_wall : wall_kelvins) t.push_back(of_wall.value);
+    return t;
+}
+
+// Gives walls the heat that the present powers bring in so many steps.
+void FixFibrad::heat_walls(bigint steps) {
+    std::vector<double> t = wall_temperatures();
+    wall_heat.step(totals.body, update->dt * (double)steps, &t);
+    for (size_t k = 0; k < t.size(); k++) wall_kelvins[k].value = t[k];
 }
 
 std::vector<double> FixFibrad::temperatures() {
@@ -605,15 +639,28 @@ void FixFibrad::check_step(const std::vector<double> &t) {
     if (worst.ratio == HUGE_VAL)
         error->all(FLERR, std::string("fix fibrad: the temperature ") + (cp.of_atom.empty() ? "" : "or cp ") + "of " +
                               name + " is not set, or not above 0");
-    const int most = (int)(heat_every / worst.ratio * (1 - 1e-9));
-    if (worst.ratio >= 1)
+    judge_step(name, worst.ratio, warned);
+}
+
+// Ends the run if steps of heat are longer than stable ones. Warns once if they are longer than half of that.
+void FixFibrad::judge_step(const std::string &name, double ratio, bool &told_of) {
+    if (ratio < 0.5 || (ratio < 1 && told_of)) return;
+    const int most = (int)(heat_every / ratio * (1 - 1e-9));
+    if (ratio >= 1)
         error->all(FLERR, "fix fibrad: steps of heat are too long for " + name +
                               (most ? ": NEVERY must be at most " + std::to_string(most)
                                     : "; the time step itself is too long"));
-    warned = true;
+    told_of = true;
     if (comm->me == 0)
         error->warning(FLERR, "fix fibrad: steps of heat are long for " + name +
-                                  text(": %.2g times the longest stable step", worst.ratio));
+                                  text(": %.2g times the longest stable step", ratio));
+}
+
+// The same for walls that store heat, with what they exchange with particles.
+void FixFibrad::check_walls() {
+    size_t wall = 0;
+    const double ratio = wall_heat.ratio(wall_temperatures(), update->dt * heat_every, &wall);
+    judge_step(text("wall %d", (int)wall + 1), ratio, wall_warned);
 }
 
 void FixFibrad::check(int status) {
@@ -661,7 +708,10 @@ double FixFibrad::compute_vector(int n) {
     const double first[] = {totals.surroundings, facts.beyond, facts.error, facts.seconds_rows, facts.seconds_powers};
     const double strays[] = {(double)facts.outside, (double)facts.overlapping, (double)facts.behind};
     const int last = 5 + (int)walls.size();
-    return n < 5 ? first[n] : n < last ? totals.body[n - 5] : strays[n - last];
+    return n < 5          ? first[n]
+           : n < last     ? totals.body[n - 5]
+           : n < last + 3 ? strays[n - last]
+                          : wall_kelvins[n - last - 3].value;
 }
 
 double FixFibrad::memory_usage() {
@@ -692,6 +742,26 @@ int FixFibrad::pack_exchange(int i, double *buffer) {
 int FixFibrad::unpack_exchange(int i, double *buffer) {
     q[i] = buffer[0];
     return 1;
+}
+
+// ---- restarts: temperatures of walls that store heat ----------------------------------------------------------------
+
+void FixFibrad::write_restart(FILE *file) {
+    if (comm->me) return;
+    std::vector<double> kept = wall_temperatures();
+    kept.insert(kept.begin(), (double)walls.size());
+    const int bytes = (int)(kept.size() * sizeof(double));
+    fwrite(&bytes, sizeof bytes, 1, file);
+    fwrite(kept.data(), sizeof(double), kept.size(), file);
+}
+
+void FixFibrad::restart(char *buffer) {
+    const double *kept = (const double *)buffer;
+    if (kept[0] != (double)walls.size())
+        error->all(FLERR,
+                   text("fix fibrad: there are %d walls, but %g in the restart file", (int)walls.size(), kept[0]));
+    for (size_t k = 0; k < walls.size(); k++)
+        if (wall_heat.capacity[k] > 0) wall_kelvins[k].value = kept[1 + k];
 }
 
 // ---- loading --------------------------------------------------------------------------------------------------------

@@ -14,6 +14,7 @@
 #include "fix.h"
 
 #include "couple/walls/mesh_walls.h"
+#include "couple/walls/wall_heat.h"
 
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ class FixFibrad : public Fix {
     void set_arrays(int) override;
     int pack_exchange(int, double *) override;
     int unpack_exchange(int, double *) override;
+    void write_restart(FILE *) override;
+    void restart(char *) override;
     static void *create(void *lmp, int narg, char **arg);
 
   private:
@@ -50,7 +53,7 @@ class FixFibrad : public Fix {
 
     // A temperature [K]: a number, or an equal-style variable of the script, read at each new power.
     struct Temperature {
-        double value;
+        double value;         // at present
         std::string variable; // name without v_; empty: none
     };
 
@@ -58,6 +61,7 @@ class FixFibrad : public Fix {
     class Words;
     void read_wall(Words &);
     void read_opening(Words &, int face);
+    double read_capacity(Words &, const Temperature &);
     void read_mesh(Words &);
     void describe_meshes(uint32_t first, uint32_t bodies, const std::string &path);
     void read_temperature(Words &);
@@ -73,17 +77,21 @@ class FixFibrad : public Fix {
     std::vector<double> temperatures();           // [member], of new atoms the initial one
     std::vector<double> conductivities();         // [member], relative; empty: infinite
     double mass(int i) const;
+    std::vector<double> wall_temperatures() const; // [walls]
 
     // Steps of the simulation.
     void find_temperatures(); // of walls and surroundings, from variables
     void select();            // finds member and tags
     void make_rows(bool follow = false);
     void find_powers();
+    void heat_walls(bigint steps);
     void check_step(const std::vector<double> &temperature); // refuses steps of heat that are not stable
-    void check(int status);                                  // stops with the message of an error
-    void say(const std::string &);                           // a line in the log
-    void tell_strays();                                      // says once of each kind what was done with strays
-    void refuse_second(); // stops if another fix radiates from a particle of this one
+    void check_walls();
+    void judge_step(const std::string &name, double ratio, bool &told_of);
+    void check(int status);        // stops with the message of an error
+    void say(const std::string &); // a line in the log
+    void tell_strays();            // says once of each kind what was done with strays
+    void refuse_second();          // stops if another fix radiates from a particle of this one
 
     // Arguments of the fix.
     int heat_every, rows_every;     // steps from powers to powers, and from rows to rows; heat_every 0: no powers
@@ -99,7 +107,8 @@ class FixFibrad : public Fix {
     std::vector<fibrad_body> walls;
     std::vector<fibrad_plane> openings;
     std::vector<Temperature> wall_kelvins;
-    std::vector<double> wall_temperature, wall_emissivity;
+    std::vector<double> wall_emissivity;
+    WallHeat wall_heat;
     mesh_walls meshes;
     std::vector<int> wall_face; // [walls], 2 axis + upper if the wall moves with a face of the box, else -1
 
@@ -109,9 +118,12 @@ class FixFibrad : public Fix {
     std::vector<double> q;       // [nmax], power of each atom
     std::vector<int> member;     // atoms of the group that this rank owns
     std::vector<uint64_t> tags;  // [member], their ids
-    bool warned, cut_warned;     // whether the warnings about steps and about the cutoff were given
+    bool warned, wall_warned;    // whether the warnings about steps of particles and of walls were given
+    bool cut_warned;             // whether the warning about the cutoff was given
     bool told[FIBRAD_REMARKS];   // whether strays of each kind were told of
     bigint set_up;               // step of the last setup
+    bigint powers_at;            // step of the last powers
+    bool weighed;                // whether wall_heat knows the present rows
 
     // Since the beginning of the run.
     double begun;               // s, time when the run began

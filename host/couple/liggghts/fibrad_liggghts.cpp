@@ -53,6 +53,8 @@ struct Driver {
     std::vector<script_mesh> mesh; /* the last walls of `body` */
     mesh_walls triangles;          /* of all meshes, at the last rows */
     std::vector<double> body_temperature, body_emissivity;
+    WallHeat wall_heat;
+    bool weighed;                                                 /* wall_heat knows the present rows */
     Fix *temperature, *source, *power, *capacity;                 /* properties of particles, and of types */
     std::vector<uint64_t> id;                                     /* [own] */
     std::vector<double> emissivity, gain;                         /* [own] */
@@ -171,6 +173,17 @@ void find_meshes(Driver *driver) {
     }
 }
 
+/* Takes --capacity. */
+void find_capacities(Driver *driver) {
+    driver->wall_heat.capacity.resize(driver->body.size());
+    for (const wall_capacity &given : driver->options.capacities) {
+        const auto at = std::find(driver->body_name.begin(), driver->body_name.end(), given.name);
+        if (at == driver->body_name.end())
+            stop(WRONG_INPUT, "--capacity " + given.name + ": no --wall or --mesh has this name");
+        driver->wall_heat.capacity[(size_t)(at - driver->body_name.begin())] = given.capacity;
+    }
+}
+
 /* ---- while it runs ---------------------------------------------------------------------------------------------- */
 
 /* Takes ids and emissivities of the particles that this rank owns now. */
@@ -222,6 +235,19 @@ void check_time_step(const Driver *driver) {
     std::snprintf(text, sizeof text,
                   "particle %d cools down in %.2g of the time between powers: a smaller --every or time step", all.id,
                   1 / all.ratio);
+    stop(WRONG_INPUT, text);
+}
+
+/* The same for walls that store heat. */
+void check_walls(const Driver *driver) {
+    size_t wall = 0;
+    const double seconds = driver->lmp->update->dt * (double)driver->options.every;
+    const double ratio = driver->wall_heat.ratio(driver->body_temperature, seconds, &wall);
+    if (!(ratio > 1)) return;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "wall %.60s cools down in %.2g of the time between powers: a smaller --every or time step",
+                  driver->body_name[wall].c_str(), 1 / ratio);
     stop(WRONG_INPUT, text);
 }
 
@@ -342,6 +368,7 @@ void make_rows(Driver *driver, bool follow) {
     if (mesh_walls_face(&driver->triangles, MPI_COMM_WORLD, &bed) != 0) stop(WRONG_INPUT, "out of memory");
     const auto make = follow ? fibrad_insitu_follow : fibrad_insitu_rows;
     check(driver, make(driver->radiation, &bed, (uint64_t)driver->lmp->update->ntimestep));
+    driver->weighed = false;
     tell_strays(driver);
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(driver->radiation, &facts);
@@ -354,12 +381,19 @@ void make_rows(Driver *driver, bool follow) {
     driver->told_cut = true;
 }
 
+/* The temperatures of meshes that the script gives. They are taken from the script or, if `give`, given to it. */
+void share_temperatures(Driver *driver, bool give) {
+    const size_t first = driver->body.size() - driver->mesh.size();
+    for (size_t m = 0; m < driver->mesh.size(); ++m) {
+        if (driver->options.meshes[m].temperature >= 0) continue;
+        double &of_script = (*mesh_temperature(driver->mesh[m].fix))(0), &ours = driver->body_temperature[first + m];
+        (give ? of_script : ours) = give ? ours : of_script;
+    }
+}
+
 /* Computes powers. If particles have come or gone since the last rows, makes new rows before. */
 void make_powers(Driver *driver) {
-    const size_t first = driver->body.size() - driver->mesh.size();
-    for (size_t m = 0; m < driver->mesh.size(); ++m)
-        if (driver->options.meshes[m].temperature < 0)
-            driver->body_temperature[first + m] = (*mesh_temperature(driver->mesh[m].fix))(0);
+    share_temperatures(driver, false);
     fibrad_insitu_state state{};
     state.sigma = driver->sigma;
     state.surroundings = driver->options.surroundings;
@@ -373,15 +407,21 @@ void make_powers(Driver *driver) {
         status = fibrad_insitu_powers(driver->radiation, &state, driver->gain.data(), &driver->totals);
     }
     check(driver, status);
+    if (!driver->weighed) check(driver, driver->wall_heat.weigh(driver->radiation, state));
+    driver->weighed = true;
+    check_walls(driver);
 }
 
-/* Adds the heat that the current powers have brought in the steps before `now`. */
+/* Adds the heat that the current powers have brought in the steps before `now`, also to walls that store it. */
 void count_heat(Driver *driver, LAMMPS_NS::bigint now) {
     if (!driver->radiates) return;
     const double seconds = driver->lmp->update->dt * (double)(now - driver->since);
     driver->heat += seconds * driver->totals.particles;
     driver->heat_surroundings += seconds * driver->totals.surroundings;
     for (size_t k = 0; k < driver->body.size(); ++k) driver->heat_body[k] += seconds * driver->totals.body[k];
+    share_temperatures(driver, false);
+    driver->wall_heat.step(driver->totals.body, seconds, &driver->body_temperature);
+    share_temperatures(driver, true);
 }
 
 /* The callback of the fix external. In the setup of a run no temperatures are integrated, so powers heat from the next
@@ -426,6 +466,8 @@ void print_summary(const Driver *driver, double before, double after, double sec
     std::printf("radiation_surroundings %.17g\n", driver->heat_surroundings);
     for (size_t k = 0; k < driver->body.size(); ++k)
         std::printf("radiation_%s %.17g\n", driver->body_name[k].c_str(), driver->heat_body[k]);
+    for (size_t k = 0; k < driver->body.size(); ++k)
+        std::printf("temperature_%s %.17g\n", driver->body_name[k].c_str(), driver->body_temperature[k]);
     std::printf("conduction_and_sources %.17g\n", after - before - driver->heat);
     std::printf("outside %" PRIu64 "\noverlapping %" PRIu64 "\nbehind %" PRIu64 "\n", facts.outside, facts.overlapping,
                 facts.behind);
@@ -441,6 +483,7 @@ void run_script(Driver *driver) {
     find_properties(driver);
     place_walls(driver);
     find_meshes(driver);
+    find_capacities(driver);
     if (driver->lmp->atom->rmass == nullptr || driver->lmp->atom->radius == nullptr)
         stop(WRONG_INPUT, "the script's particles have no radius: atom_style granular");
     if (fibrad_insitu_new(&driver->radiation, MPI_COMM_WORLD, &driver->options.config) != FIBRAD_OK)

@@ -18,6 +18,7 @@ const struct option names[] = {{"in", required_argument, nullptr, 'i'},
                                {"surroundings", required_argument, nullptr, 'T'},
                                {"wall", required_argument, nullptr, 'w'},
                                {"mesh", required_argument, nullptr, 'm'},
+                               {"capacity", required_argument, nullptr, 'C'},
                                {"steps", required_argument, nullptr, 's'},
                                {"every", required_argument, nullptr, 'E'},
                                {"rows", required_argument, nullptr, 'R'},
@@ -125,6 +126,14 @@ bool mesh(const char *text, radiant_mesh *mesh) {
     return mesh->sides != SIDES_NORMALS || std::strcmp(colon, ":normals") == 0;
 }
 
+/* Reads NAME=C. */
+bool capacity(const char *text, wall_capacity *capacity) {
+    const char *equals = std::strchr(text, '=');
+    if (equals == nullptr || equals == text) return false;
+    capacity->name.assign(text, equals);
+    return number(equals + 1, 1e-300, 1e300, &capacity->capacity);
+}
+
 bool accuracy(const char *text, int *value) {
     static const char *const words[] = {"normal", "low", "high"}; /* in the order of fibrad_accuracy */
     for (*value = 0; *value < 3; ++*value)
@@ -137,6 +146,7 @@ const char *take(int key, const char *text, liggghts_options *options) {
     radiant_wall one;
     fibrad_plane open;
     radiant_mesh triangles;
+    wall_capacity heat;
     switch (key) {
     case 'x':
         options->config.strict = 1;
@@ -169,6 +179,10 @@ const char *take(int key, const char *text, liggghts_options *options) {
         for (const radiant_mesh &other : options->meshes)
             if (other.id == triangles.id) return "is of a mesh that was named already";
         options->meshes.push_back(triangles);
+        return nullptr;
+    case 'C':
+        if (!capacity(text, &heat)) return "is not NAME=C, with a name of a wall or mesh and C above 0";
+        options->capacities.push_back(heat);
         return nullptr;
     case 's':
         return whole(text, 0, &options->steps) ? nullptr : "is not a number of steps";
@@ -248,6 +262,9 @@ void liggghts_options_help() {
         "  --mesh ID=[T,]E          the script's fix mesh/surface ID radiates: temperature [the script's], emissivity; "
         "behind\n"
         "                           that :both or :normals for sides other than those that particles are on\n"
+        "  --capacity NAME=C        the temperature of a --wall or --mesh follows the radiation that it gets: its heat "
+        "capacity, in\n"
+        "                           si J/K [it stays as it is]\n"
         "  --every N                compute powers every N steps [20]\n"
         "  --rows N                 compute exchange factors every N steps, a multiple of --every [1000]\n"
         "  --cutoff R               particles with centres farther apart than R do not see each other [as long "

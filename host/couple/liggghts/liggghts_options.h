@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "couple/walls/mesh_walls.h"
+#include "couple/walls/wall_heat.h"
 
 /* A wall that radiates. */
 struct radiant_wall {
@@ -22,6 +23,12 @@ struct radiant_mesh {
     double temperature, emissivity; /* temperature below 0: that of the script */
 };
 
+/* The heat capacity of a wall or mesh. */
+struct wall_capacity {
+    std::string name;
+    double capacity;
+};
+
 struct liggghts_options {
     const char *script = nullptr;
     const char *rows_file = nullptr; /* --write */
@@ -31,6 +38,7 @@ struct liggghts_options {
     std::vector<radiant_wall> walls;
     std::vector<fibrad_plane> openings; /* at NaN: at the end of the particles */
     std::vector<radiant_mesh> meshes;
+    std::vector<wall_capacity> capacities;
     long every = 20, rows = 1000, steps = -1; /* steps below 0: not given */
     fibrad_insitu_config config{};
 };
