@@ -600,7 +600,7 @@ static const struct {
     {6, "c\n1 atoms\n0 1 xlo xhi\n0 1 ylo yhi\n0 1 zlo zhi\nAtoms # atomic\n\n1 1 0 0 0\n",
      "this is a LAMMPS data file of style atomic: it has no radii; --radius gives them"},
     {3, "c\n1 atoms\nAtoms\n1 1 0 0 0\n", "style atomic: it has no radii"},
-    {3, "c\n1 atoms\nAtoms # hybrid\n1 1 0 0 0 1 1\n", "style hybrid, which does not say of what"},
+    {3, "c\n1 atoms\nAtoms # hybrid\n1 1 0 0 0 1 1\n", "style hybrid without its parts"},
     {3, "c\n1 atoms\nAtoms # body\n1 1 0 0 0 1 1\n", "style body, whose columns are not known"},
     {4, "c\n1 atoms\nAtoms\n1 1 1 1 0 0 0\n", "the style of the atoms is not said"},
     {3, "c\n1 atoms\n0.1 0 0 xy xz yz\nAtoms # sphere\n1 1 1 1 0 0 0\n", "the box is tilted"},

@@ -92,7 +92,7 @@ double bed_end(const struct bed *bed, int axis, bool upper) {
     return bed_reach(bed, axis, upper);
 }
 
-/* A box is one about centres if an end lies this deep in a sphere, in radii: no sphere is pressed so far into a real
+/* A box is a box about centres if an end lies this deep in a sphere, in radii. No sphere is pressed so far into a real
  * wall. A centre may lie beyond such an end by rounding only. */
 #define SHRUNK_DEPTH  0.5
 #define SHRUNK_BEYOND 1.001
@@ -129,7 +129,7 @@ static void sort_names(struct named *name, struct named *room, uint32_t n) {
     for (int shift = 0; shift < 64; shift += 8) {
         uint32_t start[257] = {0};
         for (uint32_t k = 0; k < n; ++k) ++start[((uint64_t)name[k].id >> shift & 255) + 1];
-        if (start[((uint64_t)name[0].id >> shift & 255) + 1] == n) continue; /* all alike */
+        if (start[((uint64_t)name[0].id >> shift & 255) + 1] == n) continue; /* all ids have the same eight bits */
         for (int digit = 0; digit < 256; ++digit) start[digit + 1] += start[digit];
         for (uint32_t k = 0; k < n; ++k) room[start[(uint64_t)name[k].id >> shift & 255]++] = name[k];
         memcpy(name, room, n * sizeof *name);

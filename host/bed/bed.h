@@ -46,8 +46,8 @@ int bed_keep(struct bed *bed, const char *const *text, size_t n);
 /* The lower or upper end of a bed along an axis: that of the file's box, or else that of the spheres. */
 double bed_end(const struct bed *bed, int axis, bool upper);
 
-/* The coordinate of a wall at the lower or upper end: that of bed_end. LAMMPS may shrink a box to one about centres.
- * Then the wall stands at the end of the spheres, and *moved is set. */
+/* The coordinate of a wall at the lower or upper end: that of bed_end. LAMMPS may shrink a box until its faces pass
+ * through centres. Then the wall lies at the end of the spheres, and *moved is set. */
 double bed_wall_end(const struct bed *bed, int axis, bool upper, bool *moved);
 
 /* The least or largest coordinate of the spheres of a bed along an axis. */

@@ -28,7 +28,7 @@ static int bed_misplaced(const struct bed *bed, const char *file, uint32_t i) {
                       (long long)bed_name(bed, i));
 }
 
-/* Refuses two spheres that overlap too much. The message names the line of the one that comes later in the file. */
+/* Refuses two spheres that overlap too much. The message names the line of the sphere that comes later in the file. */
 static int bed_overlap(const struct bed *bed, const char *file, uint32_t first, uint32_t second) {
     const uint32_t later = bed->line[first] < bed->line[second] ? second : first;
     const uint32_t other = later == first ? second : first;

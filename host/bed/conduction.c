@@ -16,14 +16,14 @@
 /* Fewest emitters of a bed with an open axis. */
 #define EMITTERS 40u
 
-/* Numbers of a search for --error. The kernel compares the paths of a group in PARTS parts. */
+/* Constants of a search for --error. The kernel compares the paths of a group in PARTS parts. */
 #define PILOT      50000.0 /* paths of the first round, in all */
 #define GROUPS     256.0   /* fewest groups of a round */
 #define PARTS      16u     /* the paths of a group are a multiple */
 #define GROWTH     8.0     /* largest ratio of all paths after a round to those before */
 #define BATCH_MOST (FIBRAD_PATHS_MAX / PARTS * PARTS)
 
-/* What F_E of spheres that conduct is of that of spheres with one temperature where conduction_isothermal looks. */
+/* conduction_isothermal looks for the conductivity at which F_E is this part of F_E of spheres with one temperature. */
 #define RIGHT 0.95
 
 /* Flights whose displacements are correlated if an effective emissivity is below 0.1, and below 0.01. */
@@ -179,7 +179,7 @@ static void add_batch(struct tally *tally, const struct bed *bed, const unsigned
         if (!emits[i]) continue;
         const fibrad_displacement *moved = &tally->moved[i];
         const double emissivity =
-            rule->conductivity ? 1 : rule->emissivity[i]; /* all that a walk arrives with goes on */
+            rule->conductivity ? 1 : rule->emissivity[i]; /* a walk loses nothing where it arrives */
         const double emission = 4 * PI * bed->r[i] * bed->r[i] * emissivity * paths;
         const double weight = emission / (2 * result->volume * result->diameter);
         for (int axis = 0; axis < 3; ++axis) {
@@ -282,8 +282,8 @@ static int search(const struct bed *bed, const unsigned char *emits, const struc
     return FIBRAD_OK;
 }
 
-/* Describes k* of the spheres, and chooses the flights whose displacements are correlated. What keeps displacements
- * correlated is reflection: that of patterns of degree 1 included, whose emissivity is 1/(1/e + 1/(2 k*)). */
+/* Describes k* of the spheres, and chooses the flights whose displacements are correlated. Reflection keeps
+ * displacements correlated. Patterns of degree 1 are reflected, too: their emissivity is 1/(1/e + 1/(2 k*)). */
 static void describe_conducting(const struct bed *bed, const struct conduction_rule *rule, struct conduction *result) {
     double least = 1;
     if (!rule->conductivity) return;

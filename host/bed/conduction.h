@@ -3,9 +3,9 @@
  * The temperature is linear with gradient g, and each sphere has the temperature at its centre. Then the spheres of a
  * volume V carry along the gradient the flux k g = g/(2 V) sum over i, j of 4 sigma T^3 A_i e_i D_ij dz_ij^2.
  *
- * If spheres conduct, temperatures differ from point to point of each sphere, and no sphere gains heat. Then the flux
- * is that of walks, which no sphere ends: k g = g/(2 V) 4 sigma T^3 A <z^2> with the area A of all spheres and the mean
- * square displacement a flight <z^2>. */
+ * If spheres conduct, temperatures differ from point to point on each sphere, and the net power of each sphere is 0.
+ * The flux is then that of walks, which go on at every sphere: k g = g/(2 V) 4 sigma T^3 A <z^2>. A is the area of all
+ * spheres. <z^2> is the mean square displacement of a flight. */
 #ifndef CONDUCTION_H
 #define CONDUCTION_H
 
@@ -14,7 +14,8 @@
 #include "bed/bed.h"
 #include "simple/fibrad_host.h"
 
-/* Along open axes only spheres emit whose centres lie at least so many mean diameters inside the outermost centres. */
+/* Along open axes only inner spheres emit. Their centres lie at least so many mean diameters inside the outermost
+ * centres. */
 #define CONDUCTION_MARGIN 4.0
 /* The same for spheres that conduct: walks get farther than the emission of one sphere. */
 #define CONDUCTION_MARGIN_WALK 8.0
@@ -25,7 +26,7 @@ struct k_star {
     uint32_t spheres; /* whose k* were added; 0: spheres do not conduct */
 };
 
-/* Adds k* of a sphere. NaN, of a sphere without a temperature, is left out. */
+/* Adds k* of a sphere. A sphere without a temperature has NaN and is left out. */
 void k_star_add(struct k_star *all, double relative);
 
 /* The mean of all that were added. */
@@ -58,7 +59,7 @@ struct conduction {
     struct k_star k_star;
     /* increase of F_E if flights may be e times as long, because of slabs without spheres */
     double growth[3];
-    /* concentration of the variance in few groups of paths: sum of squares over squared sum, less that due to sizes */
+    /* concentration of the variance in few groups of paths: sum of squares over squared sum, less the part of sizes */
     double concentration[3];
     double escaped; /* fraction of the emission that no sphere absorbs; of walks: of the paths that leave the bed */
     bool stopped;   /* max_rays has ended the search before the error was reached */

@@ -97,7 +97,7 @@ static bool sweep_cells(struct bed *bed, double edge, struct cells *cells) {
     return overlap;
 }
 
-/* How pack() goes on: up to `sweeps` sweeps; `layer`: between two faces across z instead of a period. */
+/* What pack() does: at most `sweeps` sweeps. layer: the spheres lie between two faces across z instead of a period. */
 struct pushing {
     uint32_t sweeps;
     bool layer;

@@ -18,8 +18,8 @@ int bed_make_packing(struct bed *bed, uint32_t n, double low, double high, doubl
 int bed_make_jammed(struct bed *bed, uint32_t n, double fraction, uint32_t sweeps, uint64_t seed);
 
 /* As bed_make_jammed, as a layer: a cube that is periodic in x and y, with two faces, z = 0 and z = bed->high[2], that
- * no sphere crosses. bed->period[2] is 0. `fraction` is that of the whole cube; near the faces there are other numbers
- * of spheres than in the middle. In the end the spheres are shaken, as in bed_make_shaken. */
+ * no sphere crosses. bed->period[2] is 0. `fraction` is the solid fraction of the whole cube. The fraction near the
+ * faces differs from that in the middle. In the end the spheres are shaken, as in bed_make_shaken. */
 int bed_make_layer(struct bed *bed, uint32_t n, double fraction, uint32_t sweeps, uint64_t seed);
 
 /* Fills an empty bed with 4 cells^3 unit spheres at a solid fraction. They begin on a face-centred cubic lattice. Then

@@ -30,7 +30,7 @@
 enum { QUANTITY_TYPES_MAX = 64 };
 struct quantity {
     bool given;
-    bool some;          /* spheres may have no value: NaN */
+    bool some;          /* some spheres may have no value: NaN */
     double value;       /* for all spheres, if there is no column */
     const char *column; /* name of the column of values or, if types > 0, of types; NULL: none */
     size_t index;       /* of the column in bed->extra */
@@ -78,8 +78,8 @@ struct wall_tables {
 void wall_tables_free(struct wall_tables *tables);
 
 /* Reads such a list of values from low to high. word: a word that is allowed as a value and gives INFINITY; NULL: none.
- * text NULL: no list. tables NULL: tables are not allowed. The value of a wall with a table is that at time 0; with a
- * column the first number. Status 0, STATUS_USAGE if there is no wall of a name, or as curve_read. */
+ * text NULL: no list. tables NULL: tables are not allowed. The value of a wall with a table is that at time 0. With a
+ * column it is the first number. Status 0, STATUS_USAGE if there is no wall of a name, or as curve_read. */
 int wall_list(const char *option, const char *text, const char *word, double low, double high,
               const struct walls *walls, struct wall_tables *tables, struct wall_list *list);
 

@@ -17,9 +17,9 @@ struct walls {
     uint32_t count;
     fibrad_body body[WALLS_MAX];
     uint32_t openings;
-    fibrad_plane opening[PLANES]; /* at NaN: at the end of the spheres, before the bed is known */
+    fibrad_plane opening[PLANES]; /* at: NaN if the plane lies at the end of the spheres and the bed is not known yet */
     struct meshes *meshes;        /* owned by the options; NULL: none */
-    bool moved; /* a wall stands at the end of the spheres, since the file's box ends within spheres */
+    bool moved; /* some wall lies at the end of the spheres, since the file's box ends within spheres */
 };
 
 /* Walls of all options --wall. Begin with zeroes; free with walls_free. */
@@ -47,7 +47,7 @@ struct wall_options {
     "  cylinder:X,Y,R         a cylinder parallel to the z axis\n"                                                     \
     "  mesh:FILE              triangles of an STL file, in the bed's unit of length; the wall is named after FILE\n"   \
     "  NAME=mesh:FILE         the same, with a name\n"                                                                 \
-    "A side that is named besides auto or box stands where it says. Walls must not form a tube or a corner\n"          \
+    "A side that is named beside auto or box lies where its name says. Walls must not form a tube or a corner\n"       \
     "without end. If they do, make the missing side a wall or an opening. Of a mesh, the sides on which\n"             \
     "spheres lie belong to the wall. Other sides must not be seen. mesh:FILE:WORD says more:\n"                        \
     "  both                   both sides belong to the wall\n"                                                         \

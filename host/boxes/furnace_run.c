@@ -97,7 +97,7 @@ static int furnace_trace_plan(struct furnace_run *run, fibrad_furnace_physics ph
 }
 
 static int furnace_solve_lines(struct furnace_run *run, const struct furnace_options *options) {
-    /* Far below any noise. The powers of the walls then balance the source to 1e-7. */
+    /* This is far below any noise. The powers of the walls then balance the source to 1e-7. */
     double tolerance = 1e-9 * run->at.e[0];
     fibrad_furnace_report report = {0};
     run->sweeps = 0;
@@ -140,9 +140,9 @@ static int furnace_estimate(struct furnace_run *run, const struct furnace_option
 
 /* Solves the heat-flux equations with measured coefficients. Each iteration traces bundles for the present E, estimates
  * the coefficients from all bundles so far, and solves for a new E. With the transverse term, the equations correct
- * errors of E that extend over many cells in full, but errors that differ from cell to cell only by about half: in a
- * thin cell the derivative of the six fluxes with respect to E is 6 a/Theta, that of its emission is 4 a. The other
- * half is added from the balance of the cell. So convergence is four times as fast. */
+ * errors of E that extend over many cells in full. They correct only about half of an error that differs from cell to
+ * cell: in a thin cell the derivative of the six fluxes with respect to E is 6 a/Theta, that of the emission is 4 a.
+ * The other half is added from the balance of the cell. So convergence is four times as fast. */
 static int furnace_iterate(struct furnace_run *run, const struct furnace_options *options, double *before,
                            double *local) {
     const fibrad_furnace_config *c = &run->config;

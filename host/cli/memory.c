@@ -1,4 +1,4 @@
-/* memory.c - checks before the work begins that memory or disk suffice. SPDX-License-Identifier: MIT */
+/* memory.c - checks, before the work begins, whether memory or disk suffice. SPDX-License-Identifier: MIT */
 #include "cli/memory.h"
 
 #include <math.h>

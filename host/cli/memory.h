@@ -1,4 +1,4 @@
-/* memory.h - checks before the work begins that memory or disk suffice. SPDX-License-Identifier: MIT */
+/* memory.h - checks, before the work begins, whether memory or disk suffice. SPDX-License-Identifier: MIT */
 #ifndef MEMORY_H
 #define MEMORY_H
 

@@ -10,16 +10,16 @@
 
 /* An option of a command. A table of them ends with a name of NULL. */
 struct option {
-    int key;              /* above 0; if it is a letter, such as 'o', there is a short form -o */
+    int key;              /* above 0; a letter, such as 'o', is also the short form -o */
     const char *name;     /* without the dashes */
-    const char *argument; /* its name in the help; NULL: the option takes none */
-    const char *help;     /* NULL: not shown */
+    const char *argument; /* name of the argument in the help; NULL: the option takes no argument */
+    const char *help;     /* NULL: the help does not show the option */
 };
 
 /* Keys that commands share. Keys of one command begin with KEY_OWN. */
 enum {
     KEY_HELP = 'h',
-    KEY_LONG = 256, /* no short form from here on */
+    KEY_LONG = 256, /* larger keys have no short form */
     KEY_DIRECTIONS,
     KEY_AREAS,
     KEY_POINTS,

@@ -145,7 +145,7 @@ static bool name_temporary(struct output *output, int *number) {
     char link[LINK_PATH];
     bool named = false;
     link_path(link, *number);
-    for (int k = 0; !named && k < 100; ++k) { /* never replaces a file */
+    for (int k = 0; !named && k < 100; ++k) { /* link() never replaces a file */
         snprintf(output->temporary, strlen(output->target) + 64, "%s.%ld-%d.tmp", output->target, (long)getpid(), k);
         if (unnamed)
             named = linkat(AT_FDCWD, link, AT_FDCWD, output->temporary, AT_SYMLINK_FOLLOW) == 0;

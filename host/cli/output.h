@@ -11,7 +11,7 @@ struct output {
     const char *path;
     char *target;    /* the path without symbolic links */
     char *temporary; /* temporary name in the folder of the target; NULL: written at once */
-    bool unnamed;    /* the file has no name yet, not even a temporary one; not all systems have such files */
+    bool unnamed;    /* the file has no name yet, not even a temporary one; some systems have no such files */
     FILE *file;      /* NULL: not open */
 };
 
@@ -36,8 +36,8 @@ int output_open(struct output *output, const char *path);
 /* Flushes the file. Status 0, or STATUS_FILE if something could not be written. */
 int output_flush(const struct output *output);
 
-/* Closes the file. If `status`, that of the work so far, and closing are without error, the file gets its name; else
- * the file is removed. Does nothing if the file is not open. Returns status, or STATUS_FILE. */
+/* Closes the file. `status` is that of the work so far. If neither the work nor closing has an error, the file gets its
+ * name. Otherwise the file is removed. Does nothing if the file is not open. Returns status, or STATUS_FILE. */
 int output_close(struct output *output, int status);
 
 #endif

@@ -25,7 +25,7 @@ static const struct option bed_table[] = {
     {KEY_CUTOFF, "cutoff", "D", "spheres with centres farther apart than D do not see each other [none]"},
     {KEY_TARGETS, "targets", "LIST", "rows that are wanted, 3,7,10-19 for example; a list implies --raw [all]"},
     {KEY_RAW, "raw", NULL, "leave the rows as they were computed [averaged and closed: A_i F_ij = A_j F_ji]"},
-    {KEY_DROP, "drop", "D", "drop entries below D; the others take over, and rows stay closed and reciprocal [0]"},
+    {KEY_DROP, "drop", "D", "drop entries below D and enlarge the others, so that rows stay closed and reciprocal [0]"},
     {OPTION_WALL},
     {OPTION_WALL_VTP},
     OPTIONS_INPUT,
@@ -58,9 +58,9 @@ static int bed_help(void) {
     puts("\n" FILES_MORE "\n" WALLS_MORE "\n"
          "A factor to a wall is the fraction that arrives there directly. In .csv the surroundings are j = -1 and\n"
          "walls are j = -2, -3, ... with their names in the column `body`, so that rows add up to 1. Rows i = -2,\n"
-         "-3, ... are those of walls that are not endless. There are none with --targets or --cutoff. .vtp has an\n"
-         "array for each wall. .mtx has spheres only. `beyond` is what leaves the cutoff where there may be more\n"
-         "spheres.\n"
+         "-3, ... are those of walls that are not endless. With --targets or --cutoff there are no such rows. .vtp\n"
+         "has an array for each wall. .mtx has spheres only. `beyond` is the fraction that leaves the cutoff where\n"
+         "there may be more spheres.\n"
          "\n"
          "Several frames go into one .csv or .json with their numbers. If OUT has a *, each frame has a file.\n"
          "Standard output ends with a summary of each frame, one `key value` on a line. `wall_NAME_F` is the mean\n"

@@ -23,7 +23,7 @@ static const struct option conductivity_table[] = {
     {KEY_RAYS, "rays", "N", "paths from each sphere; the error falls as N^-0.5 [as many as --error needs]"},
     {KEY_ERROR, "error", "E",
      "standard error allowed, relative to F_E, 1e-4 to 1; paths are added until it is met [0.003]"},
-    {KEY_MAX_RAYS, "max-rays", "N", "about the most rays that --error may take in all [5e7]"},
+    {KEY_MAX_RAYS, "max-rays", "N", "approximate limit of the rays that --error may take in all [5e7]"},
     {KEY_STEADY, "steady", NULL,
      "compute also F_E of the bed between two black plates, for spheres whose net power is 0. This is done along each "
      "axis whose other two axes are periodic"},
@@ -66,8 +66,9 @@ static int conductivity_help(void) {
          "F_E_x_error, F_E_y_error and F_E_z_error are their estimated standard errors. `unreliable` names the\n"
          "axes whose errors are not reliable. With --temperature there are also k_x_W_mK to k_z_W_mK and\n"
          "k_x_W_mK_error to k_z_W_mK_error. With --solid-conductivity k_star is k_s/(4 d sigma T^3), and F_E is\n"
-         "that of spheres whose temperatures differ from point to point. Without it, where the unit of length is\n"
-         "known, the line `isothermal` says above which k_s one temperature for each sphere is right to 5 %.\n"
+         "that of spheres whose temperatures differ from point to point. Without --solid-conductivity, if the unit\n"
+         "of length is known, the line `isothermal` has a k_s. Above this k_s, F_E with one temperature for each\n"
+         "sphere is right to 5 %.\n"
          "\n"
          "Examples:\n"
          "  fibrad conductivity packing.dump --emissivity 0.8\n"
@@ -240,7 +241,7 @@ static void conductivity_warn(const struct conductivity_request *request, const 
                    axes);
 }
 
-/* Where the unit of length is known, finds how well the solid must conduct for one temperature a sphere. */
+/* If the unit of length is known, finds the k_s above which F_E with one temperature a sphere is right. */
 static int conductivity_isothermal(struct conductivity_request *request, const struct bed *bed,
                                    const unsigned char *emits, double metres, const struct conduction *result) {
     fibrad_run run = bed_options_run(&request->bed);

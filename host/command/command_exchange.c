@@ -29,7 +29,7 @@ static const struct option exchange_table[] = {
     {OPTION_WALL_VTP},
     {OPTION_WALL_EMISSIVITY},
     {KEY_RAW, "raw", NULL, "leave the rows as they were computed [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]"},
-    {KEY_DROP, "drop", "D", "drop entries below D; the others take over, and rows stay closed and reciprocal [0]"},
+    {KEY_DROP, "drop", "D", "drop entries below D and enlarge the others, so that rows stay closed and reciprocal [0]"},
     {KEY_SEED, "seed", "S", "seed of paths and directions [0]"},
     OPTIONS_INPUT,
     {'o', "output", "OUT", "write the factors: .csv .mtx .npz .json, - for standard output [summary only]"},
@@ -68,7 +68,7 @@ static int exchange_help(void) {
          "of emissivities n_i (`node_emissivity` in .npz and .json), and N_i takes the place of sigma T_i^4. The net\n"
          "power q_i is the sum over j of A_i n_i D_ij (N_j - N_i), N_i = sigma T_i^4 - (1/n_i - 1/e_i) q_i/A_i. So\n"
          "the powers follow from a linear system. Walls and surroundings have N = sigma T^4. k* = k_s/(4 d sigma T^3)\n"
-         "is that at --temperature, whatever the temperatures are for which D_ij is used.\n"
+         "is taken at --temperature. D_ij keeps this k*, whatever temperatures D_ij is used with.\n"
          "\n"
          "Several frames go into one .csv or .json with their numbers. If OUT has a *, each frame has a file.\n"
          "Standard output ends with a summary of each frame, one `key value` on a line.\n"

@@ -29,8 +29,8 @@ static const struct option table[] = {
     {KEY_CELLS, "cells", "NX,NY,NZ", "numbers of cells along the axes [20,20,40 for the cases, else as FILE says]"},
     {KEY_BUNDLES, "bundles", "N", "approximate number of bundles of rays, 1 to 4294967296 [8000000; mc 20000000]"},
     {KEY_SEED, "seed", "S", "seed of the bundles [1]"},
-    {KEY_TOLERANCE, "tolerance", "K", "outer iterations end when no temperature changes by more [0.1]"},
-    {KEY_OUTERS, "outers", "N", "most outer iterations [50]"},
+    {KEY_TOLERANCE, "tolerance", "K", "outer iterations end when no temperature changes by more than this [0.1]"},
+    {KEY_OUTERS, "outers", "N", "largest number of outer iterations [50]"},
     {OPTION_THREADS},
     {'o', "output", "OUT",
      "write the fields of all cells: .csv or .vti (ParaView), - for standard output [summary only]"},
@@ -103,7 +103,7 @@ static int furnace_parse_cells(const char *text, uint32_t cells[3]) {
     return STATUS_OK;
 }
 
-/* The argument of --plot may be left out. The next word is the argument only if it ends like a picture. */
+/* The argument of --plot may be left out. The next word is the argument only if it has the ending of a picture. */
 static void furnace_take_plot(struct request *request, struct options *options) {
     request->plot = "furnace.png";
     if (options->at < options->argc && plot_ending(options->argv[options->at]))

@@ -81,15 +81,15 @@ static int heat_help(void) {
          "A net power is above 0 where heat is gained. Where a power is given, the temperature is found [K].\n");
     options_print(heat_table);
     puts("\n" FILES_MORE "\n" WALLS_MORE "\n"
-         "Each sphere has a temperature or a power. Types that one list leaves out, and blanks or nan in one\n"
-         "column, have the other one. A single number beside a list or column is for the spheres that this leaves\n"
-         "out. A power is given off from inside, so that the net power is its negative. An insulated wall sends\n"
-         "back all that arrives, point by point. A sphere of emissivity 0 reflects everything. It gains nothing\n"
-         "and has no temperature.\n"
+         "Each sphere has a temperature or a power. If the list of one option leaves out a type, or its column has\n"
+         "a blank or nan, the other option gives the value. A single number beside a list or column is for the\n"
+         "spheres that the list or column leaves out. A power is given off from inside, so that the net power is\n"
+         "its negative. An insulated wall sends back all that arrives, point by point. A sphere of emissivity 0\n"
+         "reflects everything, gains nothing and has no temperature.\n"
          "\n"
          "--error E holds for the powers of the spheres together, for each wall, and for T^4 where temperatures\n"
-         "are found. Each error is relative to a root mean square. Errors below 1e-3 E of what is emitted count as\n"
-         "met.\n"
+         "are found. Each error is relative to a root mean square. An error below 1e-3 E of what is emitted is\n"
+         "small enough in any case.\n"
          "\n" LIGHT_MORE "\n"
          "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
          "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
@@ -228,7 +228,7 @@ static int heat_check_request(struct heat_request *request) {
                        "--error is for --model patches; --model spheres has an error that no directions reduce");
     if (request->solid.given && (request->problem.sources.uniform || request->problem.by_factors))
         return message(STATUS_USAGE,
-                       "--solid-conductivity is for --model patches: other models know no sides of a sphere");
+                       "--solid-conductivity is for --model patches: in other models a sphere has no sides");
     bed_options_quantity(&request->bed, &request->emissivity, NULL);
     if (request->solid.given && request->light.lights > 0)
         return message(STATUS_USAGE, "--solid-conductivity and --irradiate: which side of a sphere light heats is not "
@@ -249,7 +249,7 @@ static int heat_parse(struct heat_request *request, int argc, char **argv) {
     return status ? status : heat_check_request(request);
 }
 
-/* Reports conductivities of the solid, and what surfaces and centres are like. */
+/* Reports conductivities of the solid, and extreme temperatures of surfaces and centres. */
 static void heat_print_solid(struct heat_request *request, const struct bed *bed, const struct heat_report *heat) {
     struct report *report = &request->bed.report;
     struct k_star all = {0};
@@ -371,8 +371,8 @@ static int heat_arrays(fibrad_heat_result *result, uint32_t n, bool conducts) {
     return status;
 }
 
-/* Finds the conductivities of the solid, and room for them in the unit of the library. In time powers are in watts, and
- * sigma has the square of the unit of length. */
+/* Finds the conductivities of the solid, and allocates room for them in the unit of the library. In time powers are in
+ * watts, and sigma has the square of the unit of length. */
 static int heat_solid(struct heat_request *request, const struct bed *bed) {
     struct heat_problem *problem = &request->problem;
     double metres;

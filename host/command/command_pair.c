@@ -231,7 +231,7 @@ static int pair_facts(const struct pair_request *request, fibrad_scene_facts *fa
     return status;
 }
 
-/* The exact factor with obstacles. report_wanted warns if the error is missed, be it given or the default. */
+/* The exact factor with obstacles. report_wanted warns if the error is not reached: that of --error, or the default. */
 static int pair_reference(struct pair_request *request, double *f12) {
     const fibrad_spheres spheres = pair_spheres(request, 0);
     fibrad_scene_facts facts;

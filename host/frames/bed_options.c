@@ -153,7 +153,7 @@ int bed_options_take(struct bed_options *options, const struct options *parsed, 
     case 'o':
         return outputs_add(&options->outputs, value);
     default:
-        return STATUS_USAGE; /* OPTIONS_BAD: the message is out */
+        return STATUS_USAGE; /* OPTIONS_BAD: the message has been printed */
     }
 }
 

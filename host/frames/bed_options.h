@@ -84,8 +84,8 @@ struct bed_options {
     struct report report;
 };
 
-/* Takes FILE, -o, --plot, --wall, --wall-vtp and the options of this header. Any other key counts as OPTIONS_BAD, after
- * which the message is out. Status 0, STATUS_HELP, STATUS_USAGE, STATUS_FILE or STATUS_MEMORY. */
+/* Takes FILE, -o, --plot, --wall, --wall-vtp and the options of this header. Any other key counts as OPTIONS_BAD, whose
+ * message has been printed. Status 0, STATUS_HELP, STATUS_USAGE, STATUS_FILE or STATUS_MEMORY. */
 int bed_options_take(struct bed_options *options, const struct options *parsed, int key);
 
 /* Asks for the column of a quantity, if it has one, and sets quantity->index. unit: expected unit of the values; NULL:
@@ -107,7 +107,7 @@ int bed_options_end(struct bed_options *options, int status, int (*help)(void), 
 /* Threads and progress bar for calls of the library. The bar is part of the options. */
 fibrad_run bed_options_run(struct bed_options *options);
 
-/* Ends the bar after a call of the library. If the call has failed, prints a message. Returns the exit status, as
+/* Ends the bar after a call of the library. Prints a message if the call has failed. Returns the exit status, as
  * bed_status. */
 int bed_options_status(struct bed_options *options, const struct bed *bed, int status, const fibrad_fault *fault);
 

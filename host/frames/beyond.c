@@ -12,7 +12,7 @@
 #include "simple/heap.h"
 
 enum { CROSSINGS_MOST = 10000 };
-#define STEP_BEHIND 1e-6 /* over the mean edge: the ray goes on so far behind a triangle that it has met */
+#define STEP_BEHIND 1e-6 /* in mean edges: the ray goes on from a point so far behind the triangle that it has met */
 
 /* Finds a direction across open axes only. False: all axes are periodic. */
 static bool open_direction(const struct bed *bed, double w[3]) {

@@ -31,11 +31,11 @@ void warn_periods(struct warned *warned, const struct bed *bed, const double per
 /* Warns if radii without a unit are too large for metres. */
 void warn_unit(struct warned *warned, const struct bed *bed);
 
-/* Warns of large overlaps. Small ones are common in DEM; large ones make factors mean little. */
+/* Warns of large overlaps. Small overlaps are common in DEM. Factors of spheres with large overlaps mean little. */
 void warn_overlap(struct warned *warned, const struct bed *bed, const fibrad_scene_facts *facts);
 
 /* Warns if a plane or a cylinder cuts spheres deeply, if a mesh differs much from the bed in size or place, and if the
- * file's box ends within spheres, so that it cannot be one of walls. */
+ * file's box ends within spheres, so that the box cannot be made of walls. */
 void warn_walls(struct warned *warned, const struct bed *bed, const struct walls *walls);
 
 /* Warns if temperatures look like degrees Celsius taken as kelvins, or if some are 0 K. zero: 0 of the unit of the

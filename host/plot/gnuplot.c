@@ -61,7 +61,7 @@ void gnuplot_name(FILE *script, const char *path) {
     }
 }
 
-/* Whether the picture has its end. gnuplot reports no error if the disk is full. */
+/* Whether the picture is complete, by its last bytes. gnuplot reports no error if the disk is full. */
 static bool picture_whole(int picture) {
     char tail[32];
     const off_t size = lseek(picture, 0, SEEK_END);
@@ -72,8 +72,8 @@ static bool picture_whole(int picture) {
     return false;
 }
 
-/* Says why the picture failed. If the disk is full, writing fails here, too: the first try fills the room that is left.
- */
+/* Prints why the picture failed. To find a full disk, writes more bytes: they fill the room that is left, and then
+ * writing fails. */
 static int picture_failed(const struct output *picture) {
     static const char more[65536];
     for (int tries = 0; tries < 2; tries++)

@@ -7,7 +7,8 @@
 
 #include "cli/message.h"
 
-/* Distance of two centres, or of their nearest images in a periodic bed. i = j: of a sphere from its nearest image. */
+/* Distance of two centres, or of their nearest images in a periodic bed. i = j: distance of a sphere from its nearest
+ * image. */
 static double distance_of_pair(const struct bed *bed, uint32_t i, uint32_t j) {
     const double between[3] = {bed->x[j] - bed->x[i], bed->y[j] - bed->y[i], bed->z[j] - bed->z[i]};
     double square = 0, shortest = INFINITY;

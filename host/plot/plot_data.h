@@ -7,7 +7,7 @@
 enum {
     PLOT_DISTANCES = 110, /* bins of the distance, up to PLOT_DISTANCE_MAX */
     PLOT_FACTORS = 60,    /* bins of log10 F, from PLOT_FACTOR_MIN to 0 */
-    PLOT_ROWS = 4000      /* most rows for quantiles */
+    PLOT_ROWS = 4000      /* largest number of rows for quantiles */
 };
 #define PLOT_DISTANCE_MAX 5.5
 #define PLOT_FACTOR_MIN   (-6.0)

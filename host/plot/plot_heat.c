@@ -62,8 +62,8 @@ static int ascending_sizes(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* The end of the colour scale: the power that one sphere of fifty exceeds, so that a few large powers do not make all
- * other spheres grey. 0: out of memory. */
+/* The end of the colour scale. One sphere of fifty exceeds this power. So a few large powers do not make all other
+ * spheres grey. 0: out of memory. */
 static double power_shown(const struct heat_shown *what) {
     const uint32_t n = what->bed->n;
     double *power = malloc(n * sizeof *power);

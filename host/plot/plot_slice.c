@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-/* A wall farther from the bed than this part of the bed's length is not shown: the bed would become too small. */
+/* A wall is shown if its distance from the bed is at most this part of the bed's length. With farther walls the bed
+ * would become too small in the picture. */
 #define FAR_WALL 0.3
 
 /* The least and largest coordinate of spheres along an axis. */
@@ -160,7 +161,7 @@ static void print_walls(FILE *script, const struct plot_slice *slice, const doub
         }
     }
     cut_meshes(slice, print_cut, &lines);
-    fputs("NaN NaN NaN\nEND\n", script); /* a block without a line is an error */
+    fputs("NaN NaN NaN\nEND\n", script); /* gnuplot takes a block without a line as an error */
 }
 
 static void print_circles(FILE *script, const struct plot_slice *slice, const double *value,

@@ -1,8 +1,8 @@
 /* read.c - finds the format of a file and reads the wanted frames. SPDX-License-Identifier: MIT
  *
- * A frame is first skipped and kept in memory, to see that it is complete and, for the last frame, that no other one
- * follows. Then it is read from memory. So pipes can be read, in which there is no way back. Errors within a frame that
- * is not wanted do not matter. */
+ * A frame is first skipped and kept in memory. This shows whether the frame is complete, and whether another frame
+ * follows. Then the frame is read from memory. So pipes can be read, in which there is no way back. Errors within a
+ * frame that is not wanted do not matter. */
 #include "read/read.h"
 
 #include <inttypes.h>
@@ -52,7 +52,7 @@ static bool wants_frame(const struct reader *r) {
            (frames->step <= 1 || (r->frame - frames->begin) % frames->step == 0);
 }
 
-/* Whether only blank lines follow. Of a gzip file that was cut off this is unknown: *end is false. */
+/* Whether only blank lines follow. If a gzip file was cut off, this is unknown: *end is false. */
 static int at_end(struct lines *lines, bool *end) {
     bool more;
     int status;
@@ -62,7 +62,8 @@ static int at_end(struct lines *lines, bool *end) {
     return status;
 }
 
-/* The file ends: says whether a frame is missing or incomplete. An incomplete frame behind wanted ones is a warning. */
+/* Reports, at the end of the file, a missing or incomplete frame. An incomplete frame behind wanted ones is a warning.
+ */
 static int report_end_of_file(const struct reader *r, enum found found, const char *lack) {
     const struct source *source = &r->source;
     const bool part = found == FOUND_PART || source->lines.truncated;

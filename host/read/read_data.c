@@ -143,12 +143,12 @@ static int find_style(struct source *source, const char *style, size_t *more, co
     if (k == sizeof styles / sizeof *styles)
         return message_at(
             STATUS_INPUT, lines->name, lines->number,
-            "this is a LAMMPS data file of style %.40s, whose columns are not known; those of style sphere are known",
+            "this is a LAMMPS data file of style %.40s, whose columns are not known; columns of style sphere are known",
             style);
     if (source->options.no_radius || strstr(styles[k].columns, "diameter"))
         return source_columns(source, styles[k].columns, bed);
     if (hybrid)
-        return source_fail(source, "this is a LAMMPS data file of style hybrid, which does not say of what; write "
+        return source_fail(source, "this is a LAMMPS data file of style hybrid without its parts; write "
                                    "`Atoms # hybrid sphere` if columns are id type x y z diameter density ...");
     return message_at(STATUS_INPUT, lines->name, lines->number,
                       "this is a LAMMPS data file of style %s: it has no radii; --radius gives them", style);

@@ -45,7 +45,7 @@ static const struct {
     const char *text, *what;
 } texts[] = {
     {"{", "JSON; export the spheres as CSV"},
-    {"<", "XML of a kind that has no spheres to be read"},
+    {"<", "XML without spheres that fibrad can read"},
     {"#!/", "a script"},
     {"import ", "a Python program"},
     {"from ", "a Python program"},
@@ -59,7 +59,7 @@ static const struct {
     {"i,j,F", "view factors, as fibrad bed writes them; give the file of the spheres"},
     {"i,j,D", "exchange factors, as fibrad exchange writes them; give the file of the spheres"},
     {"i,T_K,q_W",
-     "powers, as fibrad heat writes them, without places of spheres; give the file of the spheres, or write .dump"},
+     "powers, as fibrad heat writes them, without centres of spheres; give the file of the spheres, or write .dump"},
     {"axis,F_E,", "conductivities, as fibrad conductivity writes them; give the file of the spheres"},
 };
 

@@ -14,7 +14,7 @@ struct frames {
 struct read_options {
     struct frames frames;
     bool positions;           /* ids are not used: spheres are in the order of the file */
-    bool periods_given;       /* by --periodic: no warning if the file names no periods */
+    bool periods_given;       /* periods come from --periodic: no warning if the file names none */
     bool no_radius;           /* radii are not read; bed->r is NaN */
     bool series;              /* one of a series of files: a file without spheres is no error */
     const char *const *extra; /* [extras] names of further columns, all of numbers */

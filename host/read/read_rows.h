@@ -12,7 +12,7 @@
 struct joined {
     uint32_t n, bodies;
     uint64_t ranks, step;
-    bool emissive;               /* rows have exchange factors; else view factors */
+    bool emissive;               /* the rows have exchange factors; false: view factors */
     double cutoff;               /* [L] */
     uint64_t *id;                /* [n] ascending */
     double *x;                   /* [n][3] [L] */

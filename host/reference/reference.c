@@ -63,8 +63,8 @@ static double below(const struct slicer *s, const struct arc *arc, double x1, do
     return (x2 - x1) * (disc->v + arc->half * (y1 + y2) / 2) + arc->half * square(disc->r) * cap(chord / disc->r);
 }
 
-/* Whether the arcs may change at a point. They cannot if the point lies outside the window, or well inside a disc
- * before `last` other than `own`. */
+/* Whether the arcs may change at a point. They cannot change if the point lies outside the window, or well inside a
+ * disc before `last` other than `own`. */
 static bool matters(const struct slicer *s, double x, double y, uint32_t own, uint32_t last) {
     const double room = 1e-9;
     if (x * x + y * y > 1 + room) return false;
@@ -327,9 +327,10 @@ static void evaluate(struct integral *in, const struct cell *cell, const uint32_
         }
 }
 
-/* Adds a cell to the sum. `whole` is its value by one application of the rule. The cell is divided into quarters until
- * whole and quarters agree. Their difference counts as error; it is mostly the error of the whole. Agreement may be an
- * accident. So if the cell of which this one is a quarter was far off (inherited), this one is divided once more. */
+/* Adds a cell to the sum. `whole` is the value of the cell by one application of the rule. The cell is divided into
+ * quarters until whole and quarters agree. Their difference counts as error. The difference is mostly the error of the
+ * whole. Agreement may be an accident. So if the parent cell was far off (inherited), this cell is divided once more.
+ */
 static void refine_cell(struct integral *in, const struct cell *cell, const double *whole, const uint32_t *near,
                         uint32_t count, int depth, double inherited) {
     if (in->evaluations > in->max_evaluations) return;

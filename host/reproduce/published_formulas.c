@@ -1,7 +1,7 @@
 /* published_formulas.c - correlations for the conductivity of beds and for the emissivity of their faces.
  * SPDX-License-Identifier: MIT
  *
- * "Read" says where a formula was read. Where that is not the original paper, it is a second source. */
+ * "Read" says where a formula was read. A source that is not the original paper is called a second source. */
 #include <math.h>
 
 #include "reproduce/published.h"

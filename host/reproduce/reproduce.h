@@ -27,8 +27,9 @@ struct reproduce {
 #define SOURCE_PAPER "paper"
 #define SOURCE_CHECK "check"
 
-/* Writes a line with their number and ours, to standard output and to comparison.csv. theirs NAN: there is none. If the
- * unit is "%", the difference is in points, else in per cent. what: format of the text that says what is compared. */
+/* Writes a line with the published number and ours, to standard output and to comparison.csv. theirs NAN: nothing was
+ * published. If the unit is "%", the difference is in points, else in per cent. what: format of the text that says what
+ * is compared. */
 void reproduce_compare(struct reproduce *reproduce, const char *source, const char *unit, double theirs, double ours,
                        const char *what, ...) __attribute__((format(printf, 6, 7)));
 

@@ -172,8 +172,8 @@ static int fewest_directions(struct rows *rows, const struct truth *truth, doubl
     }
 }
 
-/* A method of rays with an error, and its time for all rows. All rows by rays take about the same time, so some rows
- * tell the time of all. */
+/* A method of rays with an error, and its time for all rows. All rows by rays take about the same time, so the time of
+ * some rows gives the time of all. */
 struct rays_at {
     fibrad_cast_rule rule;
     double error, seconds;

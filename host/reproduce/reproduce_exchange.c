@@ -26,8 +26,8 @@ static int make_layer(struct bed *bed, int column) {
     return bed_make_layer(bed, SPHERES, column < DENSE ? johnson_fraction[column] : LAYER, 1000, 1);
 }
 
-/* A straight line through factors near one distance, by least squares: sums of 1, u, u^2, f and u f, where u is the
- * distance from that one. So a factor at contact, where all data lie on one side, is not a mean over a bin. */
+/* A straight line through factors near one distance, by least squares: sums of 1, u, u^2, f and u f. u is the distance
+ * less that one distance. At contact all data lie on one side, so a mean over a bin would be wrong there. */
 struct line_fit {
     double sum[5];
 };

@@ -124,7 +124,7 @@ enum { PEBBLES = 1000, SAMPLE = 100, BINS = 81 };
 #define BIN 0.1 /* [radii] of the centre distance, up to 8 */
 
 struct within {
-    double factor[BINS], spheres[BINS]; /* means over the sample of sums within each distance */
+    double factor[BINS], spheres[BINS]; /* sums of factors within each distance, as means over the sample */
 };
 
 /* The distance between the centres of the nearest images of two spheres. */

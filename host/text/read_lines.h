@@ -16,7 +16,7 @@ struct lines {
     char *text;       /* the current line, without the end of line; NULL: none */
     size_t length;
     bool ended;     /* an end of line follows the line, not the end of the file */
-    bool truncated; /* the file is a gzip file that was cut off, and its end has been read */
+    bool truncated; /* the file is a gzip file that was cut off, and all of it has been read */
 
     /* The buffer has the kept lines from `kept` on, the current line, and unread bytes from `next` to `end`. */
     char *buffer;

@@ -36,8 +36,8 @@ static uint64_t scaled_rounded(const struct scaled *scaled) {
     return below + (rest > half || (rest == half && below & 1));
 }
 
-/* Rounds to a multiple of `unit`. `digits` are rounded already. If they look like a half, the exact number tells on
- * which side of the half it lies. */
+/* Rounds to a multiple of `unit`. `digits` are rounded already. If the digits end in a half, the exact number decides
+ * on which side of the half it lies. */
 static uint64_t rounded_further(const struct scaled *scaled, uint64_t digits, uint64_t unit) {
     const uint64_t up = (digits + unit / 2) / unit * unit;
     if (digits % unit != unit / 2) return up;

@@ -21,7 +21,7 @@ struct format {
 
 enum { OUTPUTS_MAX = 8 };
 
-/* A frame that was written, for the .pvd of a series. */
+/* A frame that was written. The .pvd of a series lists such frames. */
 struct written {
     int64_t number;
     double time; /* [s], or the timestep */
@@ -33,7 +33,7 @@ struct outputs {
     size_t count;
     struct {
         const char *path; /* "-": standard output */
-        const char *star; /* the * in the path, which means a file per frame; NULL: one file */
+        const char *star; /* the * in the path; it means a file for each frame; NULL: one file */
         const struct format *format;
         struct output file; /* without a star */
         bool begun;         /* the file has a frame */
@@ -62,7 +62,7 @@ int outputs_check(struct outputs *outputs, enum content content, bool series);
 /* Whether an output has the columns of the input, too. */
 bool outputs_keep(const struct outputs *outputs);
 
-/* Opens all outputs before any work is done. For a path with `*`, a file is opened for a test and removed. Call
+/* Opens all outputs before any work is done. For a path with `*`, a file is opened as a test and removed. Call
  * outputs_close also after an error. Status as output_open. */
 int outputs_open(struct outputs *outputs);
 

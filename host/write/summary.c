@@ -42,7 +42,7 @@ void summary_make(struct summary *summary, const struct contents *what) {
     for (uint32_t i = 0; i < matrix->n; ++i)
         if (has_row(what, i)) add_summary(summary, matrix, i, rows);
     for (uint32_t k = 0; matrix->body_body && k < matrix->bodies; ++k)
-        summary->wall_error_max = fmax(summary->wall_error_max, matrix->body_error[k]); /* fmax ignores NaN */
+        summary->wall_error_max = fmax(summary->wall_error_max, matrix->body_error[k]); /* fmax() ignores NaN */
     summary->escaped_mean /= rows;
     summary->beyond_mean /= rows;
     summary->error_rms = sqrt(summary->error_rms);

@@ -23,8 +23,8 @@ enum { ARRAYS_MAX = 24 };
 /* The results of one frame: a matrix, heat or conduction. Fields of the others are 0. */
 struct contents {
     const struct bed *bed;
-    const struct walls *walls; /* NULL: neither walls nor surroundings are written. kind 0: the wall is not known, only
-                                * that there is one */
+    const struct walls *walls; /* NULL: neither walls nor surroundings are written. kind 0: nothing is known of the
+                                * wall, only that there is one */
     const char *file;          /* for a column of the names of several files; NULL: one file */
     bool series;               /* with columns frame and timestep, for several frames */
     const double *time;        /* [s] for a column of several times; NULL: one time */
@@ -38,8 +38,8 @@ struct contents {
     const struct side_arrays *of_sides; /* values of the triangles of meshes; NULL: none */
 
     const fibrad_heat_sources *sources; /* [K]; surroundings NaN: the bed is closed */
-    const fibrad_light_result *light;   /* [W], what is absorbed of light from outside; NULL: there is none */
-    const fibrad_heat_result *result;   /* [W], [K]; arrays of insides: all or none, others are set */
+    const fibrad_light_result *light;   /* [W], light from outside that is absorbed; NULL: there is no light */
+    const fibrad_heat_result *result;   /* [W], [K]; arrays of insides are all set or all NULL, other arrays are set */
 
     const struct conduction *conduction;
 };
@@ -83,7 +83,7 @@ double summary_row(const fibrad_factors *matrix, uint32_t i);
 void summary_make(struct summary *summary, const struct contents *what);
 
 /* Reports a summary, with the number of entries, the reciprocity and the areas of finite walls. The closure is the
- * worst of the raw rows and of the rows written. */
+ * larger one of the raw rows' and the written rows'. */
 void summary_report(const struct summary *summary, const struct contents *what, struct report *report);
 
 #endif

@@ -19,7 +19,7 @@ enum { SURROUNDINGS = -1, FIRST_WALL = -2 };
 struct csv {
     FILE *file;
     const struct contents *what;
-    bool named;     /* there is a column body */
+    bool named;     /* the file has a column body */
     size_t columns; /* length of the columns file, frame, timestep and time_s, with which all lines begin */
     char line[2 * PATH_MAX + 16 * TEXT_NUMBER];
 };
@@ -140,7 +140,7 @@ int write_csv(FILE *file, const struct contents *what, bool first) {
 /* Puts a number. NaN: puts nothing. */
 static char *put_error(char *to, double error) { return isnan(error) ? to : text_real(to, error); }
 
-/* Puts the columns of a sphere that conducts. i = UINT32_MAX: of what is no sphere. */
+/* Puts the columns of a sphere that conducts. i = UINT32_MAX: the line belongs to a wall or the surroundings. */
 static char *put_inside(char *at, const struct contents *what, uint32_t i) {
     for (size_t k = 0; k < INSIDE_COLUMNS && what->result->least_temperature; ++k) {
         at = put_comma(at);
@@ -149,7 +149,7 @@ static char *put_inside(char *at, const struct contents *what, uint32_t i) {
     return at;
 }
 
-/* i: of a sphere, or UINT32_MAX. light[2]: what is absorbed of light from outside, first and in all. */
+/* i: index of a sphere, or UINT32_MAX. light[2]: light from outside that is absorbed, first and in all. */
 static void write_power(struct csv *csv, int64_t name, uint32_t i, const char *body, double temperature, double power,
                         double power_error, double temperature_error, const double light[2]) {
     char *at = put_comma(text_whole(csv->line + csv->columns, name));

@@ -1,7 +1,7 @@
 /* write_vtp.c - VTK XML polydata for ParaView, with one point and vertex per sphere. SPDX-License-Identifier: MIT
  *
- * Missing values are NaN, as those of rows that were not computed. Text arrays could not hold NaN, so arrays are
- * binary. */
+ * Missing values, such as those of rows that were not computed, are NaN. Arrays of text could not hold NaN, so arrays
+ * are binary. */
 #include <math.h>
 #include <stdlib.h>
 

@@ -18,7 +18,7 @@ struct legacy {
     struct vtk_grid *grid;
     const char *at;    /* the next byte to be read */
     const char *line;  /* the last line that take_words has read */
-    bool binary;       /* else text */
+    bool binary;       /* false: text */
     bool fifth;        /* version 5.0 or later: cells are offsets and connectivity */
     bool on_points;    /* the arrays that follow are on points, not on cells */
     uint64_t tuples;   /* length of these arrays */
@@ -115,8 +115,8 @@ static int take_points(struct legacy *legacy, uint64_t n, const char *type) {
     return legacy_array(legacy, type, 3 * n, &legacy->grid->points);
 }
 
-/* Skips cells: `CELLS n size` and size numbers. From version 5.0 on, `CELLS n m`, and arrays of n offsets and m numbers
- * follow with keywords of their own. */
+/* Skips cells: `CELLS n size` and size numbers. From version 5.0 on the line is `CELLS n m`. Arrays of n offsets and of
+ * m numbers follow, each with a keyword. */
 static int take_cells(struct legacy *legacy, uint64_t n, uint64_t size) {
     legacy->sizes[0] = n;
     legacy->sizes[1] = size;

@@ -1,7 +1,8 @@
 /* vtk_xml.c - points and arrays of VTK's XML files, .vtp and .vtu. SPDX-License-Identifier: MIT
  *
- * An array is text or base64 in the tag that declares the array, or it is appended: at an offset in the last tag of the
- * file, as base64 or bytes. Binary data begin with the number of bytes, or with a list of blocks that zlib has packed.
+ * An array is text or base64 in the tag that declares the array. Or the array is appended: it stands at an offset in
+ * the last tag of the file, as base64 or bytes. Binary data begin with the number of bytes, or with a list of blocks
+ * that zlib has packed.
  */
 #include <ctype.h>
 #include <inttypes.h>
@@ -148,7 +149,7 @@ static bool take_size(const struct xml *xml, struct stream *stream, uint64_t *si
 static int take_plain(const struct xml *xml, struct stream *stream, unsigned char *to, uint64_t bytes) {
     uint64_t size;
     if (!take_size(xml, stream, &size) || size != bytes || !take_bytes(stream, to, bytes))
-        return xml_fail(xml, "an array is damaged, or has not the size it should have");
+        return xml_fail(xml, "an array is damaged or has the wrong size");
     return STATUS_OK;
 }
 
@@ -213,14 +214,16 @@ static int xml_file(struct xml *xml, const struct tag *tag) {
     attribute(tag, "compressor", value);
     xml->packed = *value != 0;
     if (xml->packed && strcmp(value, "vtkZLibDataCompressor") != 0)
-        return vtk_fail(xml->grid, xml->at, "its arrays are packed by %.40s; zlib can be read", value);
+        return vtk_fail(xml->grid, xml->at, "its arrays are packed by %.40s; only arrays packed by zlib can be read",
+                        value);
     return STATUS_OK;
 }
 
 static int take_piece(struct xml *xml, const struct tag *tag) {
     const uint64_t n = number_of(tag, "NumberOfPoints", 0);
     if (n == 0) return STATUS_OK;
-    if (xml->pieces++ > 0) return xml_fail(xml, "a file of more than one piece; one can be read");
+    if (xml->pieces++ > 0)
+        return xml_fail(xml, "the file has more than one piece; only files of one piece can be read");
     if (n > UINT32_MAX) return xml_fail(xml, "too many points");
     xml->grid->n = n;
     return STATUS_OK;
