@@ -3,7 +3,7 @@
  * Index
  *   link    values of particles that other ranks own  fibrad_link_new, _forward, _reverse, _free
  *   insitu  rows and powers while particles move      fibrad_insitu_new, _rows, _follow, _powers, _write, _message,
- * _remark, _facts_get, _free
+ *                                                     _remark, _facts_get, _free, fibrad_accuracy_named
  *
  * Use         1. fibrad_insitu_new once.
  *             2. fibrad_insitu_rows every so many steps, with the particles that each rank owns at that time.
@@ -19,17 +19,20 @@
  *             equal temperature.
  * Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
  * Collective  All functions are collective over the communicator, except fibrad_link_free, fibrad_insitu_message,
- *             fibrad_insitu_remark and fibrad_insitu_facts_get. Every rank calls them, and all ranks get the same
- * status. Errors      After an error, fibrad_insitu_message has a sentence, the same on all ranks, which names
- * particles by id. The object is as it was before the call. Strays      Simulations go on with particles of which no
- * scene can be made. So do rows, unless config.strict is set. A particle is left out whose centre lies beyond a plane
- * or the cylinder, or that reaches beyond an opening. It exchanges nothing and is in nobody's way until rows are made
- * when it is back. If a centre lies inside another particle, both have smaller radii in the rows: d/max(r_i, r_j) of
- * theirs, which puts the centre on the surface. If less than a thousandth of a radius would remain, the particle is
- * left out. A particle that sees a side of a triangle that belongs to no wall has no row. If more than a tenth of all
- * particles do, that is an error: then the sides are wrong. fibrad_insitu_remark tells what was done. Units       One
- * length unit L, which the caller chooses. Powers are in sigma K^4 L^2. Words       Words and the layout of comments
- * are as in fibrad.h. Source      docs/coupling.md
+ *             fibrad_insitu_remark, fibrad_insitu_facts_get and fibrad_accuracy_named. Every rank calls them, and all
+ *             ranks get the same status.
+ * Errors      After an error, fibrad_insitu_message has a sentence, the same on all ranks, which names particles by
+ *             id. The object is as it was before the call.
+ * Strays      Simulations go on with particles of which no scene can be made. So do rows, unless config.strict is set.
+ *             A particle is left out whose centre lies beyond a plane or the cylinder, or that reaches beyond an
+ *             opening. It exchanges nothing and is in nobody's way until rows are made when it is back. If a centre
+ *             lies inside another particle, both have smaller radii in the rows: d/max(r_i, r_j) of theirs, which puts
+ *             the centre on the surface. If less than a thousandth of a radius would remain, the particle is left out.
+ *             A particle that sees a side of a triangle that belongs to no wall has no row. If more than a tenth of
+ *             all particles do, that is an error: then the sides are wrong. fibrad_insitu_remark tells what was done.
+ * Units       One length unit L, which the caller chooses. Powers are in sigma K^4 L^2.
+ * Words       Words and the layout of comments are as in fibrad.h.
+ * Source      docs/coupling.md
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_H
@@ -87,6 +90,11 @@ typedef enum fibrad_accuracy {
     FIBRAD_ACCURACY_LOW = 1,    /* 26, 36 */
     FIBRAD_ACCURACY_HIGH = 2    /* 144, 1600 */
 } fibrad_accuracy;
+
+/* The fibrad_accuracy of the name low, normal or high. Not collective.
+ *   Output   -1: there is no such name
+ *   Errors   none */
+int fibrad_accuracy_named(const char *name);
 
 /* How rows are made. The same on all ranks. Zeroed: all defaults.
  *
@@ -176,7 +184,9 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
  *            particle reaches beyond an opening
  *            _ENDLESS: walls, as for fibrad_scene_init
  *            _BACK: a side of a triangle is seen that belongs to no wall, by more than a tenth of all particles;
- * strict: by one _MEMORY Cost     that of fibrad_exchange_row for each particle */
+ *            strict: by one
+ *            _MEMORY
+ *   Cost     that of fibrad_exchange_row for each particle */
 int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
 /* Makes rows of those particles alone that have come since the last rows, and keeps the others where they are. What a

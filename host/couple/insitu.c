@@ -30,9 +30,17 @@ static void *resize_on_heap(void *context, void *block, size_t size) {
 
 /* What a fibrad_accuracy stands for. */
 static const struct {
+    const char *name;
     uint32_t directions, paths;
-} samples[] = {
-    [FIBRAD_ACCURACY_NORMAL] = {48, 120}, [FIBRAD_ACCURACY_LOW] = {26, 36}, [FIBRAD_ACCURACY_HIGH] = {144, 1600}};
+} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 48, 120},
+               [FIBRAD_ACCURACY_LOW] = {"low", 26, 36},
+               [FIBRAD_ACCURACY_HIGH] = {"high", 144, 1600}};
+
+int fibrad_accuracy_named(const char *name) {
+    for (int k = FIBRAD_ACCURACY_NORMAL; k <= FIBRAD_ACCURACY_HIGH && name; ++k)
+        if (!strcmp(samples[k].name, name)) return k;
+    return -1;
+}
 
 static bool config_valid(const fibrad_insitu_config *c) {
     const bool directions =

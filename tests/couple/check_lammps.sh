@@ -302,6 +302,7 @@ fails "no equal-style variable" "a variable that is not there" floor "zlo v_none
 fails "has a temperature of its own, not v_hot" "a capacity beside a variable" floor "zlo v_hot 0.9 capacity 3e5"
 fails "too long for wall 1" "steps of heat too long for a wall" floor "zlo 1000 0.9 at 0 capacity 1e4" heat 1
 fails "capacity must be in" "a capacity of 0" floor "zlo 1000 0.9 capacity 0"
+fails "low, normal or high, not .fine" "an accuracy that is not there" strict "no accuracy fine"
 fails "excludes" "accuracy beside paths" \
     also "fix bad all fibrad 0 1 emissivity 1 surroundings 300 cp 1 paths 50 accuracy low"
 fails "open axes x and y" "a cylinder with periodic axes" boundary "p p f" \

@@ -242,6 +242,9 @@ refuse 1 2 "'zlo=0' is not NAME=C" -in bed --capacity zlo=0
 refuse 2 3 "capacity zhi: no --wall or --mesh" -in bed $radiation --steps 1 --capacity zhi=5
 # shellcheck disable=SC2086
 refuse 2 3 "wall zlo cools down in" -in bed $radiation --steps 1 --capacity zlo=1e-6
+refuse 1 2 "'fine' is none of low, normal and high" -in bed --accuracy fine
+# shellcheck disable=SC2086
+refuse 1 2 "--accuracy excludes --tolerance" -in bed $radiation --steps 1 --tolerance 0.01 --accuracy high
 refuse 1 2 "not a multiple" -in bed --emissivity 1 --surroundings 300 --steps 1 --every 20 --rows 30
 refuse 2 3 "2 emissivities for 1 types" -in bed --emissivity .5,.6 --surroundings 300 --steps 1
 # shellcheck disable=SC2086

@@ -918,6 +918,10 @@ static void refusals(void) {
     fibrad_insitu *s = NULL;
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.cutoff = -1}) == FIBRAD_E_ARGUMENT && !s);
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.accuracy = 3}) == FIBRAD_E_ARGUMENT && !s);
+    CHECK(fibrad_accuracy_named("normal") == FIBRAD_ACCURACY_NORMAL);
+    CHECK(fibrad_accuracy_named("low") == FIBRAD_ACCURACY_LOW);
+    CHECK(fibrad_accuracy_named("high") == FIBRAD_ACCURACY_HIGH);
+    CHECK(fibrad_accuracy_named("") == -1 && fibrad_accuracy_named("High") == -1 && fibrad_accuracy_named(NULL) == -1);
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.threads = rank == 0 ? -1 : 1}) ==
               FIBRAD_E_ARGUMENT &&
           !s);

@@ -304,11 +304,9 @@ FixFibrad::Temperature FixFibrad::read_kelvins(Words &words, const char *what) {
 // low | normal | high
 void FixFibrad::read_accuracy(Words &words) {
     const std::string word = words.next();
-    if (word != "low" && word != "normal" && word != "high")
-        error->all(FLERR, "fix fibrad: `accuracy` is low, normal or high, not `" + word + "`");
     accuracy = true;
-    if (word == "low") config.accuracy = FIBRAD_ACCURACY_LOW;
-    if (word == "high") config.accuracy = FIBRAD_ACCURACY_HIGH;
+    config.accuracy = fibrad_accuracy_named(word.c_str());
+    if (config.accuracy < 0) error->all(FLERR, "fix fibrad: `accuracy` is low, normal or high, not `" + word + "`");
 }
 
 // a number | type V1 V2 ... | d_NAME

@@ -134,13 +134,6 @@ bool capacity(const char *text, wall_capacity *capacity) {
     return number(equals + 1, 1e-300, 1e300, &capacity->capacity);
 }
 
-bool accuracy(const char *text, int *value) {
-    static const char *const words[] = {"normal", "low", "high"}; /* in the order of fibrad_accuracy */
-    for (*value = 0; *value < 3; ++*value)
-        if (std::strcmp(text, words[*value]) == 0) return true;
-    return false;
-}
-
 /* Takes the argument of an option. Returns what is wrong with the argument. NULL: nothing. */
 const char *take(int key, const char *text, liggghts_options *options) {
     radiant_wall one;
@@ -194,7 +187,9 @@ const char *take(int key, const char *text, liggghts_options *options) {
         return number(text, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &options->config.cutoff) ? nullptr
                                                                                            : "is not a length above 0";
     case 'a':
-        return accuracy(text, &options->config.accuracy) ? nullptr : "is none of low, normal and high";
+        options->accuracy = true;
+        options->config.accuracy = fibrad_accuracy_named(text);
+        return options->config.accuracy >= 0 ? nullptr : "is none of low, normal and high";
     case 't':
         return number(text, 1e-5, 1, &options->config.tolerance) ? nullptr : "is not within 1e-5 and 1";
     default:
@@ -208,6 +203,7 @@ const char *check(const liggghts_options *options) {
     if (options->emissivity.empty()) return "--emissivity is missing: one number for all types, or E1,E2... for each";
     if (options->surroundings < 0) return "--surroundings is missing, the temperature of the surroundings";
     if (options->steps < 0) return "--steps is missing, the number of steps with radiation";
+    if (options->accuracy && options->config.tolerance > 0) return "--accuracy excludes --tolerance";
     if (options->rows % options->every != 0) return "--rows is not a multiple of --every";
     return nullptr;
 }
