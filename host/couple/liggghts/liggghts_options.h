@@ -39,7 +39,7 @@ struct liggghts_options {
     std::vector<fibrad_plane> openings; /* at NaN: at the end of the particles */
     std::vector<radiant_mesh> meshes;
     std::vector<wall_capacity> capacities;
-    bool accuracy = false; /* --accuracy is given */
+    bool accuracy = false;                    /* --accuracy is given */
     long every = 20, rows = 1000, steps = -1; /* steps below 0: not given */
     fibrad_insitu_config config{};
 };
