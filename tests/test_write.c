@@ -640,10 +640,10 @@ LOOP_TEST(outputs_asked, sizeof asked / sizeof *asked) {
     for (int k = 0; k < 4 && asked[_i].word[k] && !status; ++k) {
         const char *word = asked[_i].word[k];
         if (strncmp(word, "--format=", 9) == 0)
-            status = outputs_format(&outputs, word + 9);
+            status = outputs_format(word + 9, &outputs);
         else
             status =
-                outputs_add(&outputs, strcmp(word, "-") == 0 || strcmp(word, ".csv") == 0 ? word : in_place(k, word));
+                outputs_add(strcmp(word, "-") == 0 || strcmp(word, ".csv") == 0 ? word : in_place(k, word), &outputs);
     }
     if (!status) status = outputs_check(&outputs, asked[_i].content, asked[_i].series);
     ck_assert_int_eq(status, asked[_i].status);
@@ -662,8 +662,8 @@ TEST(outputs_written) {
         struct outputs outputs = {0};
         const char *const input = in_place(0, "q.8.csv");
         ck_assert_int_eq(output_spare(input), 0);
-        ck_assert_int_eq(outputs_add(&outputs, in_place(1, "q.*.csv")), 0);
-        ck_assert_int_eq(outputs_add(&outputs, path), 0);
+        ck_assert_int_eq(outputs_add(in_place(1, "q.*.csv"), &outputs), 0);
+        ck_assert_int_eq(outputs_add(path, &outputs), 0);
         ck_assert_int_eq(outputs_check(&outputs, CONTENT_HEAT, true), 0);
         ck_assert(outputs_report(&outputs, false).text == stdout);
         ck_assert_int_eq(outputs_open(&outputs), 0);
@@ -699,8 +699,8 @@ TEST(outputs_unwritable) {
     static const char *const names[] = {"no/such.csv", "no/*.csv"};
     for (int k = 0; k < 2; ++k) {
         struct outputs outputs = {0};
-        ck_assert_int_eq(outputs_add(&outputs, path), 0);
-        ck_assert_int_eq(outputs_add(&outputs, in_place(0, names[k])), 0);
+        ck_assert_int_eq(outputs_add(path, &outputs), 0);
+        ck_assert_int_eq(outputs_add(in_place(0, names[k]), &outputs), 0);
         ck_assert_int_eq(outputs_check(&outputs, CONTENT_HEAT, false), 0);
         ck_assert_int_eq(outputs_open(&outputs), STATUS_FILE);
         ck_assert_int_eq(outputs_close(&outputs, STATUS_FILE), STATUS_FILE);

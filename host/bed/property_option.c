@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bed/units.h"
 #include "cli/message.h"
 #include "cli/options.h"
 
@@ -81,6 +82,18 @@ int quantity_option(const char *what, const char *text, double low, double high,
 
 int table_option(const char *what, const char *text, double low, double high, struct quantity *quantity) {
     return take_quantity(what, text, low, high, true, quantity);
+}
+
+int emissivity_option(const char *text, void *quantity) {
+    return quantity_option("--emissivity", text, 0, 1, quantity);
+}
+
+int emissivity_curves_option(const char *text, void *quantity) {
+    return table_option("--emissivity", text, 0, 1, quantity);
+}
+
+int temperature_option(const char *text, void *quantity) { /* --temperature-unit may follow */
+    return quantity_option("--temperature", text, -KELVIN_OF_0_CELSIUS, TEMPERATURE_MAX, quantity);
 }
 
 void quantity_free(struct quantity *quantity) {

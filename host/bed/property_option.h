@@ -15,16 +15,19 @@
 #define TEMPERATURE_MAX 1e9
 
 /* Rows of tables of options, without braces. */
-#define OPTION_EMISSIVITY                                                                                              \
-    KEY_EMISSIVITY, "emissivity", "E", "emissivity of all spheres, 0 to 1, or TYPE:E,..., or a column of the file"
-#define OPTION_EMISSIVITY_CURVES                                                                                       \
-    KEY_EMISSIVITY, "emissivity", "E",                                                                                 \
+#define OPTION_EMISSIVITY(request, field)                                                                              \
+    0, "emissivity", "E", "emissivity of all spheres, 0 to 1, or TYPE:E,..., or a column of the file",                 \
+        TO_FUNCTION(emissivity_option, request, field)
+#define OPTION_EMISSIVITY_CURVES(request, field)                                                                       \
+    0, "emissivity", "E",                                                                                              \
         "emissivity of all spheres, 0 to 1, or @TABLE of temperatures [K] and emissivities, or "                       \
         "TYPE:E,TYPE:@TABLE,..., "                                                                                     \
-        "or a column of the file"
-#define OPTION_WALL_EMISSIVITY                                                                                         \
-    KEY_WALL_EMISSIVITY, "wall-emissivity", "LIST",                                                                    \
-        "emissivities of walls, 0 to 1, zmin=0.3,0.9 for example; a number without a name is for all others [1]"
+        "or a column of the file",                                                                                     \
+        TO_FUNCTION(emissivity_curves_option, request, field)
+#define OPTION_WALL_EMISSIVITY(request, field)                                                                         \
+    0, "wall-emissivity", "LIST",                                                                                      \
+        "emissivities of walls, 0 to 1, zmin=0.3,0.9 for example; a number without a name is for all others [1]",      \
+        TO_TEXT(request, field)
 
 /* A quantity of spheres that an option gives: a number for all spheres, a value for each type, or a column. */
 enum { QUANTITY_TYPES_MAX = 64 };
@@ -44,6 +47,11 @@ struct quantity {
  * [K] and values. Status 0, STATUS_USAGE, or as curve_read. */
 int quantity_option(const char *what, const char *text, double low, double high, struct quantity *quantity);
 int table_option(const char *what, const char *text, double low, double high, struct quantity *quantity);
+
+/* Take the arguments of --emissivity and --temperature into a quantity. */
+int emissivity_option(const char *text, void *quantity);
+int emissivity_curves_option(const char *text, void *quantity);
+int temperature_option(const char *text, void *quantity);
 
 /* Frees the tables of a quantity. */
 void quantity_free(struct quantity *quantity);

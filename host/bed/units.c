@@ -44,9 +44,9 @@ bool unit_is(const char *name, const char *unit) {
     return strcmp(name, unit) == 0;
 }
 
-int temperature_unit_option(const char *text, double *zero) {
+int temperature_unit_option(const char *text, void *zero) {
     if (strcmp(text, "K") != 0 && strcmp(text, "C") != 0)
         return message(STATUS_USAGE, "--temperature-unit: '%.40s' is neither K nor C", text);
-    *zero = *text == 'C' ? KELVIN_OF_0_CELSIUS : 0;
+    *(double *)zero = *text == 'C' ? KELVIN_OF_0_CELSIUS : 0;
     return STATUS_OK;
 }

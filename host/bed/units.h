@@ -16,12 +16,12 @@ bool unit_is(const char *name, const char *unit);
 
 #define KELVIN_OF_0_CELSIUS 273.15
 
-/* A row of a table of options, without braces. */
-#define OPTION_TEMPERATURE_UNIT                                                                                        \
-    KEY_TEMPERATURE_UNIT, "temperature-unit", "UNIT",                                                                  \
-        "unit of the temperatures that are given, K or C; results are in K [K]"
+/* A row of a table of options, without braces. The field gets 0 of the unit [K]. */
+#define OPTION_TEMPERATURE_UNIT(request, field)                                                                        \
+    0, "temperature-unit", "UNIT", "unit of the temperatures that are given, K or C; results are in K [K]",            \
+        TO_FUNCTION(temperature_unit_option, request, field)
 
-/* Reads the argument of --temperature-unit. *zero: 0 of the unit [K]. Status 0 or STATUS_USAGE. */
-int temperature_unit_option(const char *text, double *zero);
+/* Takes the argument of --temperature-unit into a double. Status 0 or STATUS_USAGE. */
+int temperature_unit_option(const char *text, void *zero);
 
 #endif

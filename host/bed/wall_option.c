@@ -209,7 +209,8 @@ static int take_mesh(const char *word, size_t length, const char **text, struct 
     return status;
 }
 
-int walls_option(const char *text, struct wall_options *options) {
+int walls_option(const char *text, void *wall_options) {
+    struct wall_options *options = wall_options;
     for (;;) {
         const char *word = text;
         const size_t length = strcspn(word, ",=:");

@@ -29,12 +29,7 @@ struct wall_options {
     bool automatic, box;    /* the words auto and box; their planes are added when the bed is known */
 };
 
-/* Rows of a table of options, without braces, and a paragraph of --help. */
-#define OPTION_WALL                                                                                                    \
-    KEY_WALL, "wall", "LIST",                                                                                          \
-        "walls: auto, box, xmin, xmax, ymin, ymax, zmin, zmax, cylinder:X,Y,R, mesh:FILE; see below [none]"
-#define OPTION_WALL_VTP                                                                                                \
-    KEY_WALL_VTP, "wall-vtp", "OUT", "write the triangles of the walls of mesh:FILE, a .vtp for ParaView [none]"
+/* A paragraph of --help. */
 #define WALLS_MORE                                                                                                     \
     "Walls: LIST has one or more of these, separated by commas.\n"                                                     \
     "  auto                   the sides of the file's box on its open axes\n"                                          \
@@ -66,7 +61,7 @@ int wall_unknown(const char *option, const struct walls *walls, const char *name
 int walls_refuse_endless(const struct walls *walls, const struct bed *bed);
 
 /* Reads an argument of --wall, and the files of its meshes. Status 0, STATUS_USAGE, or as meshes_add. */
-int walls_option(const char *text, struct wall_options *options);
+int walls_option(const char *text, void *wall_options);
 void walls_free(struct wall_options *options);
 
 /* Places the walls about a bed whose periods are final. meshes_face finds the sides of meshes later. file: name of the

@@ -11,54 +11,101 @@
 
 #include "cli/message.h"
 
-static int unknown_option(const struct options *options, const char *name, int length) {
-    message(STATUS_USAGE, "unknown option %.*s; see fibrad %s --help", length, name, options->command);
-    return OPTIONS_BAD;
+/* A walk along the arguments behind the name of a command. */
+struct walk {
+    const char *command;
+    const struct option *table;
+    char *request;
+    int argc, at;
+    char **argv;
+    bool plain; /* `--` has come: no options follow */
+};
+
+int option_help(const char *text, void *request) {
+    (void)text;
+    (void)request;
+    return STATUS_HELP;
 }
 
-/* Sets options->value to `inline_value`, the text behind = or behind the letter, or else to the next argument. */
-static int take_argument(struct options *options, const struct option *option, const char *inline_value) {
-    options->name = option->name;
-    options->value = inline_value;
-    if (!option->argument && inline_value) {
-        message(STATUS_USAGE, "--%s takes no argument", option->name);
-        return OPTIONS_BAD;
+/* Puts the argument of an option into its field. */
+static int put_argument(const struct walk *walk, const struct option *option, const char *text) {
+    void *field = walk->request + option->field;
+    char what[40];
+    snprintf(what, sizeof what, "--%s", option->name);
+    switch (option->kind) {
+    case OPTION_FLAG:
+        *(bool *)field = true;
+        return STATUS_OK;
+    case OPTION_TEXT:
+        *(const char **)field = text;
+        return STATUS_OK;
+    case OPTION_NUMBER:
+        return options_number(what, text, option->low, option->high, field);
+    case OPTION_COUNT:
+        return options_count(what, text, (uint32_t)option->low, (uint32_t)option->high, field);
+    case OPTION_WHOLE:
+        return options_whole(what, text, (uint64_t)option->low,
+                             option->high < INFINITY ? (uint64_t)option->high : UINT64_MAX, field);
+    default:
+        return option->take(text, field);
     }
-    if (option->argument && !inline_value) {
-        if (options->at == options->argc) {
-            message(STATUS_USAGE, "--%s needs an argument: %s", option->name, option->argument);
-            return OPTIONS_BAD;
-        }
-        options->value = options->argv[options->at++];
+}
+
+/* Takes an option. inline_value: the text behind = or behind the letter; NULL: the argument is the next one. */
+static int take_option(struct walk *walk, const struct option *option, const char *inline_value) {
+    const char *next = walk->at < walk->argc ? walk->argv[walk->at] : NULL;
+    if (!option->argument && inline_value) return message(STATUS_USAGE, "--%s takes no argument", option->name);
+    if (option->kind == OPTION_OPTIONAL && next) {
+        const int status = put_argument(walk, option, next);
+        walk->at += status != OPTION_LEFT;
+        if (status != OPTION_LEFT) return status;
     }
-    return option->key;
+    if (!option->argument || inline_value) return put_argument(walk, option, inline_value);
+    if (!next) return message(STATUS_USAGE, "--%s needs an argument: %s", option->name, option->argument);
+    ++walk->at;
+    return put_argument(walk, option, next);
 }
 
 static bool is_positional(const char *text) {
     return text[0] != '-' || text[1] == 0 || text[1] == '.' || isdigit((unsigned char)text[1]);
 }
 
-int options_next(struct options *options) {
-    if (options->at == options->argc) return OPTIONS_END;
-    const char *text = options->argv[options->at++];
-    if (!options->plain && strcmp(text, "--") == 0) {
-        options->plain = true;
-        return options_next(options);
+/* The option of a name of `length` characters. NULL: there is none. */
+static const struct option *find_option(const struct option *table, const char *name, size_t length) {
+    for (; table->name; ++table)
+        if (strlen(table->name) == length && strncmp(table->name, name, length) == 0) return table;
+    return NULL;
+}
+
+static int take_next(struct walk *walk) {
+    const char *text = walk->argv[walk->at++];
+    const struct option *option = NULL;
+    size_t length = 2;
+    if (!walk->plain && strcmp(text, "--") == 0) {
+        walk->plain = true;
+        return STATUS_OK;
     }
-    if (options->plain || is_positional(text)) {
-        options->value = text;
-        return OPTIONS_POSITIONAL;
+    if (walk->plain || is_positional(text)) {
+        option = find_option(walk->table, "", 0);
+        return option ? put_argument(walk, option, text)
+                      : message(STATUS_USAGE, "'%.40s': %s takes options only", text, walk->command);
     }
     if (text[1] != '-') {
-        for (const struct option *option = options->table; option->name; ++option)
-            if (option->key == text[1]) return take_argument(options, option, text[2] ? text + 2 : NULL);
-        return unknown_option(options, text, 2);
+        for (option = walk->table; option->name && option->letter != text[1];) ++option;
+        if (option->name) return take_option(walk, option, text[2] ? text + 2 : NULL);
+    } else {
+        length += strcspn(text + 2, "=");
+        option = length > 2 ? find_option(walk->table, text + 2, length - 2) : NULL;
+        if (option) return take_option(walk, option, text[length] ? text + length + 1 : NULL);
     }
-    const size_t length = strcspn(text + 2, "=");
-    for (const struct option *option = options->table; option->name; ++option)
-        if (strlen(option->name) == length && strncmp(option->name, text + 2, length) == 0)
-            return take_argument(options, option, text[2 + length] ? text + 3 + length : NULL);
-    return unknown_option(options, text, (int)length + 2);
+    return message(STATUS_USAGE, "unknown option %.*s; see fibrad %s --help", (int)length, text, walk->command);
+}
+
+int options_read(const char *command, const struct option *table, int argc, char **argv, void *request) {
+    struct walk walk = {.command = command, .table = table, .request = request, .argc = argc, .argv = argv};
+    int status = STATUS_OK;
+    while (!status && walk.at < argc) status = take_next(&walk);
+    return status;
 }
 
 /* Prints a text in lines of at most HELP_WIDTH columns. The first line goes on at column HELP_TEXT; the others begin
@@ -78,8 +125,8 @@ void options_print(const struct option *table) {
     for (; table->name; ++table) {
         char left[64];
         if (!table->help) continue;
-        if (table->key < KEY_LONG)
-            snprintf(left, sizeof left, "-%c, --%s %s", table->key, table->name,
+        if (table->letter)
+            snprintf(left, sizeof left, "-%c, --%s %s", table->letter, table->name,
                      table->argument ? table->argument : "");
         else
             snprintf(left, sizeof left, "--%s %s", table->name, table->argument ? table->argument : "");
@@ -130,73 +177,53 @@ int options_numbers(const char *what, const char *text, int capacity, double *va
     return message(STATUS_USAGE, "%s: more than %d numbers", what, capacity);
 }
 
-int options_file(const char *text, const char **file) {
-    if (*file) return message(STATUS_USAGE, "one FILE is allowed, not also '%.60s'", text);
-    *file = text;
+int option_points(const char *text, void *points) {
+    if (strcmp(text, "64") != 0 && strcmp(text, "128") != 0 && strcmp(text, "256") != 0)
+        return message(STATUS_USAGE, "--points: '%.40s' is not built in; 64, 128 and 256 are", text);
+    *(uint32_t *)points = (uint32_t)strtoul(text, NULL, 10);
     return STATUS_OK;
 }
 
-int options_threads(const char *text, int *threads) {
-    uint32_t count = 0;
-    const int status = options_count("--threads", text, 1, 1024, &count);
-    *threads = (int)count;
-    return status;
-}
-
-int options_method(const char *text, enum method *method) {
+int option_method(const char *text, void *method) {
     static const char *const names[] = {"exact", "beam", "surface", "cast", "mc"};
     for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
         if (strcmp(text, names[k]) == 0) {
-            *method = (enum method)k;
+            *(enum method *)method = (enum method)k;
             return STATUS_OK;
         }
     return message(STATUS_USAGE, "--method: '%.40s' is not a method", text);
 }
 
-int options_beam(int key, const char *text, struct beam_options *beam) {
-    switch (key) {
-    case KEY_DIRECTIONS:
-        return options_count("--directions", text, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX, &beam->directions);
-    case KEY_AREAS:
-        if (strcmp(text, "exact") != 0 && strcmp(text, "points") != 0)
-            return message(STATUS_USAGE, "--areas: '%.40s' is neither exact nor points", text);
-        beam->areas = text;
-        return STATUS_OK;
-    default:
-        if (strcmp(text, "64") != 0 && strcmp(text, "128") != 0 && strcmp(text, "256") != 0)
-            return message(STATUS_USAGE, "--points: '%.40s' is not built in; 64, 128 and 256 are", text);
-        beam->points = (uint32_t)strtoul(text, NULL, 10);
-        return STATUS_OK;
-    }
-}
-
-int options_beam_rule(const struct beam_options *beam, fibrad_beam_rule *rule) {
-    const bool exact = beam->areas && strcmp(beam->areas, "exact") == 0;
-    if (exact && beam->points) return message(STATUS_USAGE, "--points contradicts --areas exact");
-    rule->directions = beam->directions ? beam->directions : FIBRAD_DIRECTIONS_DEFAULT;
-    rule->points = beam->points;
-    if (beam->areas && !exact && !beam->points) rule->points = 256;
-    return STATUS_OK;
-}
-
-int options_cast(int key, const char *text, fibrad_cast_rule *rule) {
-    if (key == KEY_SEED) return options_whole("--seed", text, 0, UINT64_MAX, &rule->seed);
-    return options_count("--rays", text, 1, UINT32_MAX, &rule->rays);
-}
-
-int options_surface(int key, const char *text, fibrad_surface_rule *rule) {
-    if (key == KEY_NO_CORRECTION) {
-        rule->flags |= FIBRAD_SURFACE_NO_CORRECTION;
-        return STATUS_OK;
-    }
-    const int status = options_count("--nf", text, 1, UINT32_MAX, &rule->nodes);
+int option_nodes(const char *text, void *nodes) {
+    uint32_t *wanted = nodes;
+    const int status = options_count("--nf", text, 1, UINT32_MAX, wanted);
     char sizes[64] = "";
     int length = 0;
     for (uint32_t size = FIBRAD_NODES_MIN, next = 13, sum; size <= FIBRAD_NODES_MAX && !status;
          size = next, next = sum) {
-        if (rule->nodes == size) return STATUS_OK;
+        if (*wanted == size) return STATUS_OK;
         length += snprintf(sizes + length, sizeof sizes - (size_t)length, "%s%" PRIu32, length ? ", " : "", size);
         sum = size + next;
     }
     return status ? status : message(STATUS_USAGE, "--nf: %.40s is not built in; %s are", text, sizes);
+}
+
+int methods_check(struct method_options *m) {
+    const bool exact = m->areas && strcmp(m->areas, "exact") == 0, points = m->areas && strcmp(m->areas, "points") == 0;
+    const bool cast = m->method == METHOD_CAST || m->method == METHOD_MC;
+    if (m->areas && !exact && !points)
+        return message(STATUS_USAGE, "--areas: '%.40s' is neither exact nor points", m->areas);
+    if ((m->beam.directions || m->beam.points || m->areas) && m->method != METHOD_BEAM)
+        return message(STATUS_USAGE, "--directions, --areas and --points are for --method beam");
+    if ((m->surface.nodes || m->plain) && m->method != METHOD_SURFACE)
+        return message(STATUS_USAGE, "--nf and --no-correction are for --method surface");
+    if ((m->cast.rays || m->seed) && !cast)
+        return message(STATUS_USAGE, "--rays and --seed are for --method cast and mc");
+    if (exact && m->beam.points) return message(STATUS_USAGE, "--points contradicts --areas exact");
+    if (points && !m->beam.points) m->beam.points = 256;
+    if (m->plain) m->surface.flags |= FIBRAD_SURFACE_NO_CORRECTION;
+    if (!m->surface.nodes) m->surface.nodes = FIBRAD_NODES_DEFAULT;
+    if (!m->cast.rays) m->cast.rays = FIBRAD_RAYS_DEFAULT;
+    m->cast.random = m->method == METHOD_MC;
+    return m->seed ? options_whole("--seed", m->seed, 0, UINT64_MAX, &m->cast.seed) : STATUS_OK;
 }

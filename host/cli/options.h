@@ -3,53 +3,49 @@
 #define OPTIONS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "fibrad.h"
 #include "fibrad_surface.h"
 
-/* An option of a command. A table of them ends with a name of NULL. */
-struct option {
-    int key;              /* above 0; a letter, such as 'o', is also the short form -o */
-    const char *name;     /* without the dashes */
-    const char *argument; /* name of the argument in the help; NULL: the option takes no argument */
-    const char *help;     /* NULL: the help does not show the option */
+/* What becomes of the argument of an option. */
+enum option_kind {
+    OPTION_FUNCTION, /* a function takes it */
+    OPTION_OPTIONAL, /* likewise; the argument may be left out */
+    OPTION_FLAG,     /* there is none: a bool becomes true */
+    OPTION_TEXT,     /* a const char * */
+    OPTION_NUMBER,   /* a double from low to high */
+    OPTION_COUNT,    /* a uint32_t or int from low to high */
+    OPTION_WHOLE     /* a uint64_t from low to high, which may be INFINITY */
 };
 
-/* Keys that commands share. Keys of one command begin with KEY_OWN. */
-enum {
-    KEY_HELP = 'h',
-    KEY_LONG = 256, /* larger keys have no short form */
-    KEY_DIRECTIONS,
-    KEY_AREAS,
-    KEY_POINTS,
-    KEY_METHOD,
-    KEY_NF,
-    KEY_NO_CORRECTION,
-    KEY_RAYS,
-    KEY_SEED,
-    KEY_ERROR,
-    KEY_RAW,
-    KEY_EMISSIVITY,
-    KEY_SOLID_CONDUCTIVITY,
-    KEY_WALL,
-    KEY_WALL_VTP,
-    KEY_WALL_EMISSIVITY,
-    KEY_PERIODIC,
-    KEY_FRAME,
-    KEY_THREADS,
-    KEY_POSITIONS,
-    KEY_RADIUS,
-    KEY_LENGTH_UNIT,
-    KEY_TEMPERATURE_UNIT,
-    KEY_JSON,
-    KEY_QUIET,
-    KEY_FORMAT,
-    KEY_PLOT,
-    KEY_PROGRESS,
-    KEY_SCRATCH,
-    KEY_OWN
+/* Takes an argument into a field of the request. text NULL: the option has no argument. Status 0, or another one that
+ * ends the command. OPTION_LEFT: the text is no argument of an OPTION_OPTIONAL. */
+typedef int option_take(const char *text, void *field);
+enum { OPTION_LEFT = -1 };
+
+/* An option of a command. Its argument goes into a field of the command's request. A table of options ends with a name
+ * of NULL. */
+struct option {
+    char letter;          /* of the short form, 'o' for -o; 0: none */
+    const char *name;     /* without the dashes; "": arguments that belong to no option */
+    const char *argument; /* name of the argument in the help; NULL: the option takes no argument */
+    const char *help;     /* NULL: the help does not show the option */
+    enum option_kind kind;
+    size_t field; /* its place in the request */
+    double low, high;
+    option_take *take;
 };
+
+/* The fields of a row from `kind` on. */
+#define TO_FUNCTION(take, request, field)    OPTION_FUNCTION, offsetof(request, field), 0, 0, take
+#define TO_REQUEST(take)                     OPTION_FUNCTION, 0, 0, 0, take /* the field is the whole request */
+#define TO_FLAG(request, field)              OPTION_FLAG, offsetof(request, field), 0, 0, NULL
+#define TO_TEXT(request, field)              OPTION_TEXT, offsetof(request, field), 0, 0, NULL
+#define TO_NUMBER(request, field, low, high) OPTION_NUMBER, offsetof(request, field), low, high, NULL
+#define TO_COUNT(request, field, low, high)  OPTION_COUNT, offsetof(request, field), low, high, NULL
+#define TO_WHOLE(request, field, low, high)  OPTION_WHOLE, offsetof(request, field), low, high, NULL
 
 /* The text of a macro that is a number, for help texts. */
 #define TEXT_OF(macro)   TEXT_OF_IT(macro)
@@ -59,48 +55,16 @@ enum {
 #define TEXT_DIRECTIONS TEXT_OF(FIBRAD_DIRECTIONS_MIN) " to " TEXT_OF(FIBRAD_DIRECTIONS_MAX)
 
 /* Rows of tables, without braces. */
-#define OPTION_THREADS KEY_THREADS, "threads", "T", "number of threads, 1 to 1024 [all cores]"
-#define OPTION_HELP    KEY_HELP, "help", NULL, "this text"
+#define OPTION_THREADS(request, field)                                                                                 \
+    0, "threads", "T", "number of threads, 1 to 1024 [all cores]", TO_COUNT(request, field, 1, 1024)
+#define OPTION_HELP 'h', "help", NULL, "this text", TO_REQUEST(option_help)
 
-/* Rows of the options that the methods of view factors take, with braces. */
-#define OPTIONS_METHODS                                                                                                \
-    {KEY_DIRECTIONS, "directions", "N",                                                                                \
-     "beam: number of directions, " TEXT_DIRECTIONS                                                                    \
-     "; for all rows of a bed number of lines, each followed both ways; the error falls as N^-1.5 [" TEXT_OF(          \
-         FIBRAD_DIRECTIONS_DEFAULT) "; lines " TEXT_OF(FIBRAD_LINES_DEFAULT) "]"},                                     \
-        {KEY_AREAS, "areas", "KIND",                                                                                   \
-         "beam: visible areas, exact or points; points are faster and less accurate [exact]"},                         \
-        {KEY_POINTS, "points", "M", "beam: points per window, 64, 128 or 256; implies --areas points [256]"},          \
-        {KEY_NF, "nf", "N",                                                                                            \
-         "surface: nodes on each sphere, a Fibonacci number from " TEXT_OF(FIBRAD_NODES_MIN) " to " TEXT_OF(           \
-             FIBRAD_NODES_MAX) " [" TEXT_OF(FIBRAD_NODES_DEFAULT) "]"},                                                \
-        {KEY_NO_CORRECTION, "no-correction", NULL,                                                                     \
-         "surface: plain sums [corrected by the exact factor without obstacles]"},                                     \
-        {KEY_RAYS, "rays", "N",                                                                                        \
-         "cast, mc: rays from a sphere; the error falls as N^-0.6 (cast) or N^-0.5 (mc) [" TEXT_OF(                    \
-             FIBRAD_RAYS_DEFAULT) "]"},                                                                                \
-    {                                                                                                                  \
-        KEY_SEED, "seed", "S", "cast, mc: seed of the rays [0]"                                                        \
-    }
+/* Returns STATUS_HELP. */
+int option_help(const char *text, void *request);
 
-/* What options_next returns besides keys. */
-enum { OPTIONS_POSITIONAL = 0, OPTIONS_END = -1, OPTIONS_BAD = -2 };
-
-/* A walk along the arguments. Set the first four fields, zero the others. */
-struct options {
-    const char *command;
-    const struct option *table;
-    int argc; /* the arguments behind the command's name */
-    char **argv;
-    int at;
-    bool plain;        /* `--` has come: all arguments that follow are positional */
-    const char *value; /* out: the option's argument, or the positional argument */
-    const char *name;  /* out: the option's name */
-};
-
-/* Takes the next argument. Returns a key of the table, OPTIONS_POSITIONAL, OPTIONS_END, or OPTIONS_BAD after a message.
- * An argument that begins like a negative number is positional. */
-int options_next(struct options *options);
+/* Reads all arguments of a command into its request. Status 0, or that of the first argument that is refused. An
+ * argument that begins like a negative number is no option. Behind `--` there are no options. */
+int options_read(const char *command, const struct option *table, int argc, char **argv, void *request);
 
 /* Prints the table, each option with its help. */
 void options_print(const struct option *table);
@@ -114,34 +78,54 @@ int options_count(const char *what, const char *text, uint32_t low, uint32_t hig
 /* Reads up to `capacity` numbers with commas in between. *count: how many. Status 0 or STATUS_USAGE. */
 int options_numbers(const char *what, const char *text, int capacity, double *values, int *count);
 
-/* Takes the one FILE of a command. *file: NULL before. Status 0 or STATUS_USAGE. */
-int options_file(const char *text, const char **file);
+/* Takes the argument of --points, 64, 128 or 256, into a uint32_t. */
+int option_points(const char *text, void *points);
 
-/* Takes the argument of --threads. Status 0 or STATUS_USAGE. */
-int options_threads(const char *text, int *threads);
+/* ---- methods of view factors ---- */
 
 /* Methods by name, in the order of the enum. */
 enum method { METHOD_EXACT, METHOD_BEAM, METHOD_SURFACE, METHOD_CAST, METHOD_MC };
 
-/* Reads the name of a method. Status 0 or STATUS_USAGE. */
-int options_method(const char *text, enum method *method);
-
-/* Options of a beam rule. 0 or NULL: not given. */
-struct beam_options {
-    uint32_t directions, points;
-    const char *areas;
+/* What the options of methods say. 0 or NULL: not given. */
+struct method_options {
+    enum method method;
+    fibrad_beam_rule beam;
+    fibrad_surface_rule surface;
+    fibrad_cast_rule cast;
+    const char *areas, *seed;
+    bool plain; /* --no-correction */
 };
 
-/* Takes KEY_DIRECTIONS, KEY_AREAS or KEY_POINTS. Status 0 or STATUS_USAGE. */
-int options_beam(int key, const char *text, struct beam_options *beam);
+int option_method(const char *text, void *method);
+int option_nodes(const char *text, void *nodes);
 
-/* Makes the rule of these options. Status 0, or STATUS_USAGE if they contradict each other. */
-int options_beam_rule(const struct beam_options *beam, fibrad_beam_rule *rule);
+/* Rows of the options, with braces, for a request with a field `methods`. The row of --method is the command's. */
+#define OPTIONS_METHODS(request)                                                                                       \
+    {0, "directions", "N",                                                                                             \
+     "beam: number of directions, " TEXT_DIRECTIONS                                                                    \
+     "; for all rows of a bed number of lines, each followed both ways; the error falls as N^-1.5 [" TEXT_OF(          \
+         FIBRAD_DIRECTIONS_DEFAULT) "; lines " TEXT_OF(FIBRAD_LINES_DEFAULT) "]",                                      \
+     TO_COUNT(request, methods.beam.directions, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX)},                        \
+        {0, "areas", "KIND", "beam: visible areas, exact or points; points are faster and less accurate [exact]",      \
+         TO_TEXT(request, methods.areas)},                                                                             \
+        {0, "points", "M", "beam: points per window, 64, 128 or 256; implies --areas points [256]",                    \
+         TO_FUNCTION(option_points, request, methods.beam.points)},                                                    \
+        {0, "nf", "N",                                                                                                 \
+         "surface: nodes on each sphere, a Fibonacci number from " TEXT_OF(FIBRAD_NODES_MIN) " to " TEXT_OF(           \
+             FIBRAD_NODES_MAX) " [" TEXT_OF(FIBRAD_NODES_DEFAULT) "]",                                                 \
+         TO_FUNCTION(option_nodes, request, methods.surface.nodes)},                                                   \
+        {0, "no-correction", NULL, "surface: plain sums [corrected by the exact factor without obstacles]",            \
+         TO_FLAG(request, methods.plain)},                                                                             \
+        {0, "rays", "N",                                                                                               \
+         "cast, mc: rays from a sphere; the error falls as N^-0.6 (cast) or N^-0.5 (mc) [" TEXT_OF(                    \
+             FIBRAD_RAYS_DEFAULT) "]",                                                                                 \
+         TO_COUNT(request, methods.cast.rays, 1, UINT32_MAX)},                                                         \
+    {                                                                                                                  \
+        0, "seed", "S", "cast, mc: seed of the rays [0]", TO_TEXT(request, methods.seed)                               \
+    }
 
-/* Takes KEY_NF or KEY_NO_CORRECTION. Status 0 or STATUS_USAGE. */
-int options_surface(int key, const char *text, fibrad_surface_rule *rule);
-
-/* Takes KEY_RAYS or KEY_SEED. Status 0 or STATUS_USAGE. */
-int options_cast(int key, const char *text, fibrad_cast_rule *rule);
+/* Completes the rules when all options have been read. Directions that are not given stay 0. Refuses options of other
+ * methods, and those that contradict each other. Status 0 or STATUS_USAGE. */
+int methods_check(struct method_options *methods);
 
 #endif

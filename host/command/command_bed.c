@@ -14,42 +14,48 @@
 #include "plot/plot_bed.h"
 #include "write/write.h"
 
-enum { KEY_CUTOFF = KEY_OWN, KEY_TARGETS, KEY_DROP };
-
-static const struct option bed_table[] = {
-    {KEY_METHOD, "method", "NAME",
-     "beam (parallel beams), surface (nodes on surfaces), cast (quasi-random rays) or mc (random rays) [beam]"},
-    OPTIONS_METHODS,
-    {KEY_ERROR, "error", "E",
-     "beam: error allowed in every row, estimated, 1e-7 to 1; directions are added until it is met [none]"},
-    {KEY_CUTOFF, "cutoff", "D", "spheres with centres farther apart than D do not see each other [none]"},
-    {KEY_TARGETS, "targets", "LIST", "rows that are wanted, 3,7,10-19 for example; a list implies --raw [all]"},
-    {KEY_RAW, "raw", NULL, "leave the rows as they were computed [averaged and closed: A_i F_ij = A_j F_ji]"},
-    {KEY_DROP, "drop", "D", "drop entries below D and enlarge the others, so that rows stay closed and reciprocal [0]"},
-    {OPTION_WALL},
-    {OPTION_WALL_VTP},
-    OPTIONS_INPUT,
-    {'o', "output", "OUT",
-     "write the matrix (.csv .mtx .npz .json, - for standard output) or the spheres (.vtp) [summary only]"},
-    {OPTION_FORMAT},
-    {KEY_PLOT, "plot", "OUT", "draw a picture by gnuplot, .svg or .png [none]"},
-    {OPTION_SCRATCH},
-    OPTIONS_RUN,
-    {0, NULL, NULL, NULL}};
-
 struct bed_request {
     struct bed_options bed;
     const char *targets;
-    enum method method;
-    struct beam_options beam;
-    fibrad_beam_rule beam_rule;
-    fibrad_surface_rule surface;
-    fibrad_cast_rule cast;
+    struct method_options methods;
     double cutoff, error; /* 0: none */
-    bool beam_given, surface_given, cast_given;
+    bool raw;
     struct walls walls;
     fibrad_bed_options options;
 };
+
+/* Takes the argument of --targets, unless it is `all`. */
+static int take_targets(const char *text, void *targets) {
+    const bool all = strcmp(text, "all") == 0;
+    *(const char **)targets = all ? NULL : text;
+    return all ? STATUS_OK : targets_mark(text, NULL, 0, "", NULL);
+}
+
+static const struct option bed_table[] = {
+    {0, "method", "NAME",
+     "beam (parallel beams), surface (nodes on surfaces), cast (quasi-random rays) or mc (random rays) [beam]",
+     TO_FUNCTION(option_method, struct bed_request, methods.method)},
+    OPTIONS_METHODS(struct bed_request),
+    {0, "error", "E",
+     "beam: error allowed in every row, estimated, 1e-7 to 1; directions are added until it is met [none]",
+     TO_NUMBER(struct bed_request, error, 1e-7, 1)},
+    {0, "cutoff", "D", "spheres with centres farther apart than D do not see each other [none]",
+     TO_NUMBER(struct bed_request, cutoff, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX)},
+    {0, "targets", "LIST", "rows that are wanted, 3,7,10-19 for example; a list implies --raw [all]",
+     TO_FUNCTION(take_targets, struct bed_request, targets)},
+    {0, "raw", NULL, "leave the rows as they were computed [averaged and closed: A_i F_ij = A_j F_ji]",
+     TO_FLAG(struct bed_request, raw)},
+    {0, "drop", "D", "drop entries below D and enlarge the others, so that rows stay closed and reciprocal [0]",
+     TO_NUMBER(struct bed_request, options.drop, 0, 1)},
+    OPTIONS_WALL,
+    OPTIONS_INPUT,
+    {OPTION_BED_OUTPUT(
+        "write the matrix (.csv .mtx .npz .json, - for standard output) or the spheres (.vtp) [summary only]")},
+    {OPTION_BED_FORMAT},
+    {OPTION_PLOT("draw a picture by gnuplot, .svg or .png [none]")},
+    {OPTION_SCRATCH},
+    OPTIONS_RUN,
+    {.name = NULL}};
 
 static int bed_help(void) {
     puts("fibrad bed FILE... [options]\n\n"
@@ -78,79 +84,31 @@ static int bed_help(void) {
     return STATUS_OK;
 }
 
-static int bed_take(struct bed_request *request, const struct options *options, int key) {
-    const char *value = options->value;
-    int status = STATUS_OK;
-    switch (key) {
-    case KEY_METHOD:
-        status = options_method(value, &request->method);
-        if (!status && request->method == METHOD_EXACT)
-            status = message(STATUS_USAGE, "--method %s is for pairs only", value);
-        break;
-    case KEY_DIRECTIONS:
-    case KEY_AREAS:
-    case KEY_POINTS:
-        request->beam_given = true;
-        return options_beam(key, value, &request->beam);
-    case KEY_NF:
-    case KEY_NO_CORRECTION:
-        request->surface_given = true;
-        return options_surface(key, value, &request->surface);
-    case KEY_RAYS:
-    case KEY_SEED:
-        request->cast_given = true;
-        return options_cast(key, value, &request->cast);
-    case KEY_CUTOFF:
-        return options_number("--cutoff", value, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &request->cutoff);
-    case KEY_ERROR:
-        return options_number("--error", value, 1e-7, 1, &request->error);
-    case KEY_TARGETS:
-        request->targets = strcmp(value, "all") == 0 ? NULL : value;
-        if (request->targets) status = targets_mark(value, NULL, 0, "", NULL);
-        break;
-    case KEY_RAW:
-        request->options.raw = 1;
-        break;
-    case KEY_DROP:
-        return options_number("--drop", value, 0, 1, &request->options.drop);
-    default:
-        return bed_options_take(&request->bed, options, key);
-    }
-    return status;
-}
-
-/* Fills the rule of the method. Refuses options of other methods. */
+/* Chooses the rule of the method. Refuses options of other methods. */
 static int bed_choose(struct bed_request *request) {
-    fibrad_beam_rule *beam = &request->beam_rule;
-    if (request->beam_given && request->method != METHOD_BEAM)
-        return message(STATUS_USAGE, "--directions, --areas and --points are for --method beam");
-    if (request->error > 0 && request->method != METHOD_BEAM)
+    struct method_options *methods = &request->methods;
+    fibrad_beam_rule *beam = &methods->beam;
+    if (methods->method == METHOD_EXACT) return message(STATUS_USAGE, "--method exact is for pairs only");
+    if (request->error > 0 && methods->method != METHOD_BEAM)
         return message(STATUS_USAGE, "--error is for --method beam");
-    if (request->error > 0 && request->beam.directions > 0)
+    if (request->error > 0 && beam->directions > 0)
         return message(STATUS_USAGE, "--error chooses the directions; leave out --directions");
-    if (request->surface_given && request->method != METHOD_SURFACE)
-        return message(STATUS_USAGE, "--nf and --no-correction are for --method surface");
-    if (request->cast_given && request->method != METHOD_CAST && request->method != METHOD_MC)
-        return message(STATUS_USAGE, "--rays and --seed are for --method cast and mc");
-    beam->cutoff = request->surface.cutoff = request->cast.cutoff = request->cutoff;
-    request->cast.random = request->method == METHOD_MC;
-    if (request->method == METHOD_SURFACE)
-        request->options.surface = &request->surface;
-    else if (request->method != METHOD_BEAM)
-        request->options.cast = &request->cast;
+    beam->tolerance = request->error;
+    beam->cutoff = methods->surface.cutoff = methods->cast.cutoff = request->cutoff;
+    if (methods->method == METHOD_SURFACE)
+        request->options.surface = &methods->surface;
+    else if (methods->method != METHOD_BEAM)
+        request->options.cast = &methods->cast;
     else
         request->options.beam = beam;
-    const int status = options_beam_rule(&request->beam, beam);
-    beam->tolerance = request->error;
-    beam->directions = request->beam.directions; /* 0: the library chooses */
-    return status;
+    return methods_check(methods);
 }
 
 /* Checks that need no computation. */
 static int bed_check(struct bed_request *request) {
     int status = bed_options_check(&request->bed, "bed", CONTENT_MATRIX);
     if (status) return status;
-    if (request->targets) request->options.raw = 1;
+    request->options.raw = request->raw || request->targets;
     request->options.scratch = request->bed.scratch;
     if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw or --targets");
@@ -158,11 +116,8 @@ static int bed_check(struct bed_request *request) {
 }
 
 static int bed_parse(struct bed_request *request, int argc, char **argv) {
-    struct options options = {.command = "bed", .table = bed_table, .argc = argc, .argv = argv};
-    *request = (struct bed_request){
-        .method = METHOD_BEAM, .surface.nodes = FIBRAD_NODES_DEFAULT, .cast.rays = FIBRAD_RAYS_DEFAULT};
-    int status = STATUS_OK;
-    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = bed_take(request, &options, key);
+    *request = (struct bed_request){.methods.method = METHOD_BEAM};
+    const int status = options_read("bed", bed_table, argc, argv, request);
     return status ? status : bed_check(request);
 }
 
@@ -171,14 +126,14 @@ static void bed_report(struct bed_request *request, const struct contents *what,
     const fibrad_bed_factors *factors = what->factors;
     struct report *report = &request->bed.report;
     bed_options_report(&request->bed, what->bed, what->walls, &factors->facts);
-    report_text(report, "method", methods[request->method]);
-    if (request->method == METHOD_BEAM)
+    report_text(report, "method", methods[request->methods.method]);
+    if (request->methods.method == METHOD_BEAM)
         report_count(report, "directions", factors->directions);
-    else if (request->method == METHOD_SURFACE)
-        report_count(report, "nf", request->surface.nodes);
+    else if (request->methods.method == METHOD_SURFACE)
+        report_count(report, "nf", request->methods.surface.nodes);
     else
-        report_count(report, "rays", request->cast.rays);
-    if (request->beam_rule.points > 0) report_count(report, "points", request->beam_rule.points);
+        report_count(report, "rays", request->methods.cast.rays);
+    if (request->methods.beam.points > 0) report_count(report, "points", request->methods.beam.points);
     if (request->cutoff > 0) report_value(report, "cutoff", request->cutoff, 9);
     if (request->error > 0)
         report_wanted(report, request->bed.name, request->error, request->error,
@@ -187,7 +142,7 @@ static void bed_report(struct bed_request *request, const struct contents *what,
     report_count(report, "threads", (uint64_t)factors->threads);
     report_value(report, "seconds", factors->seconds, 3);
     summary_report(summary, what, report);
-    if (request->method == METHOD_BEAM) report_count(report, "fallbacks", factors->fallbacks);
+    if (request->methods.method == METHOD_BEAM) report_count(report, "fallbacks", factors->fallbacks);
     report_end(report);
 }
 
@@ -260,11 +215,11 @@ static int bed_frame(void *bed_request, struct bed *bed) {
     struct bed_request *request = bed_request;
     fibrad_bed_factors *factors = NULL;
     const bool periodic = bed->period[0] > 0 || bed->period[1] > 0 || bed->period[2] > 0;
-    if (request->method == METHOD_SURFACE && request->cutoff == 0 && periodic)
+    if (request->methods.method == METHOD_SURFACE && request->cutoff == 0 && periodic)
         return message(STATUS_USAGE, "--method surface needs a --cutoff in a periodic box");
     int status = bed_options_walls(&request->bed, bed, &request->walls);
     if (status) return status;
-    if (request->method == METHOD_SURFACE && request->walls.count + request->walls.openings > 0)
+    if (request->methods.method == METHOD_SURFACE && request->walls.count + request->walls.openings > 0)
         return message(STATUS_USAGE, "--wall is for the methods beam, cast and mc");
     unsigned char *marks = NULL;
     if (request->targets) {

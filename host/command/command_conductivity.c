@@ -12,29 +12,6 @@
 #include "heat/steady.h"
 #include "plot/plot_conduction.h"
 
-enum { KEY_AXIS = KEY_OWN, KEY_CONDUCTIVITY_TEMPERATURE, KEY_MAX_RAYS, KEY_STEADY };
-
-static const struct option conductivity_table[] = {
-    {OPTION_EMISSIVITY},
-    {OPTION_SOLID_CONDUCTIVITY},
-    {KEY_CONDUCTIVITY_TEMPERATURE, "temperature", "T", "mean temperature, for k [none: F_E only]"},
-    {OPTION_TEMPERATURE_UNIT},
-    {KEY_AXIS, "axis", "x|y|z", "axis of F_E and of --error [all three]"},
-    {KEY_RAYS, "rays", "N", "paths from each sphere; the error falls as N^-0.5 [as many as --error needs]"},
-    {KEY_ERROR, "error", "E",
-     "standard error allowed, relative to F_E, 1e-4 to 1; paths are added until it is met [0.003]"},
-    {KEY_MAX_RAYS, "max-rays", "N", "approximate limit of the rays that --error may take in all [5e7]"},
-    {KEY_STEADY, "steady", NULL,
-     "compute also F_E of the bed between two black plates, for spheres whose net power is 0. This is done along each "
-     "axis whose other two axes are periodic"},
-    {KEY_SEED, "seed", "S", "seed of paths and directions [0]"},
-    OPTIONS_INPUT,
-    {'o', "output", "OUT", "write F_E and k of each axis: .csv .json, - for standard output [summary only]"},
-    {OPTION_FORMAT},
-    {KEY_PLOT, "plot", "OUT", "draw F_E along the axes by gnuplot, .svg or .png [none]"},
-    OPTIONS_RUN,
-    {0, NULL, NULL, NULL}};
-
 struct conductivity_request {
     struct bed_options bed;
     struct quantity emissivity, solid;
@@ -46,6 +23,46 @@ struct conductivity_request {
     double isothermal;        /* [W/(m K)] of conduction_isothermal; NaN: not known */
     struct steady between[3]; /* results between plates along each axis; 0 spheres: not computed */
 };
+
+static int take_axis(const char *text, void *axis) {
+    if (strcmp(text, "x") != 0 && strcmp(text, "y") != 0 && strcmp(text, "z") != 0)
+        return message(STATUS_USAGE, "--axis: '%.40s' is none of x, y and z", text);
+    *(int *)axis = text[0] - 'x';
+    return STATUS_OK;
+}
+
+/* Reads --max-rays, which may be written like 2e8. */
+static int take_rays(const char *text, void *rays) {
+    double value;
+    const int status = options_number("--max-rays", text, 1, 1e15, &value);
+    *(uint64_t *)rays = (uint64_t)value;
+    return status;
+}
+
+static const struct option conductivity_table[] = {
+    {OPTION_EMISSIVITY(struct conductivity_request, emissivity)},
+    {OPTION_SOLID_CONDUCTIVITY(struct conductivity_request, solid)},
+    {0, "temperature", "T", "mean temperature, for k [none: F_E only]", TO_TEXT(struct conductivity_request, at)},
+    {OPTION_TEMPERATURE_UNIT(struct conductivity_request, zero)},
+    {0, "axis", "x|y|z", "axis of F_E and of --error [all three]",
+     TO_FUNCTION(take_axis, struct conductivity_request, rule.axis)},
+    {0, "rays", "N", "paths from each sphere; the error falls as N^-0.5 [as many as --error needs]",
+     TO_WHOLE(struct conductivity_request, rule.paths, 1, FIBRAD_PATHS_MAX)},
+    {0, "error", "E", "standard error allowed, relative to F_E, 1e-4 to 1; paths are added until it is met [0.003]",
+     TO_NUMBER(struct conductivity_request, rule.error, 1e-4, 1)},
+    {0, "max-rays", "N", "approximate limit of the rays that --error may take in all [5e7]",
+     TO_FUNCTION(take_rays, struct conductivity_request, rule.max_rays)},
+    {0, "steady", NULL,
+     "compute also F_E of the bed between two black plates, for spheres whose net power is 0. This is done along each "
+     "axis whose other two axes are periodic",
+     TO_FLAG(struct conductivity_request, steady)},
+    {0, "seed", "S", "seed of paths and directions [0]", TO_WHOLE(struct conductivity_request, rule.seed, 0, INFINITY)},
+    OPTIONS_INPUT,
+    {OPTION_BED_OUTPUT("write F_E and k of each axis: .csv .json, - for standard output [summary only]")},
+    {OPTION_BED_FORMAT},
+    {OPTION_PLOT("draw F_E along the axes by gnuplot, .svg or .png [none]")},
+    OPTIONS_RUN,
+    {.name = NULL}};
 
 static int conductivity_help(void) {
     puts("fibrad conductivity FILE... --emissivity E [options]\n\n"
@@ -78,59 +95,10 @@ static int conductivity_help(void) {
     return STATUS_OK;
 }
 
-static int take_axis(const char *text, int *axis) {
-    if (strcmp(text, "x") != 0 && strcmp(text, "y") != 0 && strcmp(text, "z") != 0)
-        return message(STATUS_USAGE, "--axis: '%.40s' is none of x, y and z", text);
-    *axis = text[0] - 'x';
-    return STATUS_OK;
-}
-
-/* Reads --max-rays, which may be written like 2e8. */
-static int take_rays(const char *text, uint64_t *rays) {
-    double value;
-    const int status = options_number("--max-rays", text, 1, 1e15, &value);
-    *rays = (uint64_t)value;
-    return status;
-}
-
-static int conductivity_take(struct conductivity_request *request, const struct options *options, int key) {
-    const char *value = options->value;
-    struct conduction_rule *rule = &request->rule;
-    switch (key) {
-    case KEY_EMISSIVITY:
-        return quantity_option("--emissivity", value, 0, 1, &request->emissivity);
-    case KEY_SOLID_CONDUCTIVITY:
-        return solid_option(value, &request->solid);
-    case KEY_CONDUCTIVITY_TEMPERATURE:
-        request->at = value;
-        return STATUS_OK;
-    case KEY_TEMPERATURE_UNIT:
-        return temperature_unit_option(value, &request->zero);
-    case KEY_AXIS:
-        return take_axis(value, &rule->axis);
-    case KEY_RAYS:
-        return options_whole("--rays", value, 1, FIBRAD_PATHS_MAX, &rule->paths);
-    case KEY_ERROR:
-        return options_number("--error", value, 1e-4, 1, &rule->error);
-    case KEY_MAX_RAYS:
-        return take_rays(value, &rule->max_rays);
-    case KEY_SEED:
-        return options_whole("--seed", value, 0, UINT64_MAX, &rule->seed);
-    case KEY_STEADY:
-        request->steady = true;
-        return STATUS_OK;
-    default:
-        return bed_options_take(&request->bed, options, key);
-    }
-}
-
 static int conductivity_parse(struct conductivity_request *request, int argc, char **argv) {
-    struct options options = {.command = "conductivity", .table = conductivity_table, .argc = argc, .argv = argv};
     *request = (struct conductivity_request){.rule.axis = -1};
     struct conduction_rule *rule = &request->rule;
-    int status = STATUS_OK;
-    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
-        status = conductivity_take(request, &options, key);
+    int status = options_read("conductivity", conductivity_table, argc, argv, request);
     if (status) return status;
     if (request->at)
         status =

@@ -11,34 +11,6 @@
 #include "plot/plot_bed.h"
 #include "write/write.h"
 
-enum { KEY_DROP = KEY_OWN, KEY_EXCHANGE_TEMPERATURE };
-
-static const struct option exchange_table[] = {
-    {OPTION_EMISSIVITY},
-    {OPTION_SOLID_CONDUCTIVITY},
-    {KEY_EXCHANGE_TEMPERATURE, "temperature", "T",
-     "mean temperatures of the spheres, for --solid-conductivity: a number, or TYPE:T,..., or a column of the file"},
-    {OPTION_TEMPERATURE_UNIT},
-    {KEY_RAYS, "rays", "N", "paths from each sphere, for reflections; the error falls as N^-0.5 [400]"},
-    {KEY_DIRECTIONS, "directions", "N",
-     "directions of beams, for the way to the first surface, " TEXT_DIRECTIONS
-     " [" TEXT_OF(FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT) "]"},
-    {KEY_ERROR, "error", "E",
-     "error allowed in every row, estimated, 1e-5 to 1; rays and directions are added until it is met [none]"},
-    {OPTION_WALL},
-    {OPTION_WALL_VTP},
-    {OPTION_WALL_EMISSIVITY},
-    {KEY_RAW, "raw", NULL, "leave the rows as they were computed [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]"},
-    {KEY_DROP, "drop", "D", "drop entries below D and enlarge the others, so that rows stay closed and reciprocal [0]"},
-    {KEY_SEED, "seed", "S", "seed of paths and directions [0]"},
-    OPTIONS_INPUT,
-    {'o', "output", "OUT", "write the factors: .csv .mtx .npz .json, - for standard output [summary only]"},
-    {OPTION_FORMAT},
-    {KEY_PLOT, "plot", "OUT", "draw the bed and its factors by gnuplot, .svg or .png [none]"},
-    {OPTION_SCRATCH},
-    OPTIONS_RUN,
-    {0, NULL, NULL, NULL}};
-
 struct exchange_request {
     struct bed_options bed;
     const char *wall_emissivity;
@@ -47,8 +19,39 @@ struct exchange_request {
     struct walls walls;
     fibrad_exchange_rule rule;
     fibrad_bed_options options;
-    bool counted; /* --rays or --directions was given */
+    bool raw;
 };
+
+static const struct option exchange_table[] = {
+    {OPTION_EMISSIVITY(struct exchange_request, emissivity)},
+    {OPTION_SOLID_CONDUCTIVITY(struct exchange_request, solid)},
+    {0, "temperature", "T",
+     "mean temperatures of the spheres, for --solid-conductivity: a number, or TYPE:T,..., or a column of the file",
+     TO_FUNCTION(temperature_option, struct exchange_request, temperature)},
+    {OPTION_TEMPERATURE_UNIT(struct exchange_request, zero)},
+    {0, "rays", "N", "paths from each sphere, for reflections; the error falls as N^-0.5 [400]",
+     TO_COUNT(struct exchange_request, rule.paths, 1, FIBRAD_PATHS_MAX)},
+    {0, "directions", "N",
+     "directions of beams, for the way to the first surface, " TEXT_DIRECTIONS
+     " [" TEXT_OF(FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT) "]",
+     TO_COUNT(struct exchange_request, rule.directions, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX)},
+    {0, "error", "E",
+     "error allowed in every row, estimated, 1e-5 to 1; rays and directions are added until it is met [none]",
+     TO_NUMBER(struct exchange_request, rule.tolerance, 1e-5, 1)},
+    OPTIONS_WALL,
+    {OPTION_WALL_EMISSIVITY(struct exchange_request, wall_emissivity)},
+    {0, "raw", NULL, "leave the rows as they were computed [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]",
+     TO_FLAG(struct exchange_request, raw)},
+    {0, "drop", "D", "drop entries below D and enlarge the others, so that rows stay closed and reciprocal [0]",
+     TO_NUMBER(struct exchange_request, options.drop, 0, 1)},
+    {0, "seed", "S", "seed of paths and directions [0]", TO_WHOLE(struct exchange_request, rule.seed, 0, INFINITY)},
+    OPTIONS_INPUT,
+    {OPTION_BED_OUTPUT("write the factors: .csv .mtx .npz .json, - for standard output [summary only]")},
+    {OPTION_BED_FORMAT},
+    {OPTION_PLOT("draw the bed and its factors by gnuplot, .svg or .png [none]")},
+    {OPTION_SCRATCH},
+    OPTIONS_RUN,
+    {.name = NULL}};
 
 static int exchange_help(void) {
     puts("fibrad exchange FILE... --emissivity E [options]\n\n"
@@ -82,47 +85,13 @@ static int exchange_help(void) {
     return STATUS_OK;
 }
 
-static int exchange_take(struct exchange_request *request, const struct options *options, int key) {
-    const char *value = options->value;
-    switch (key) {
-    case KEY_EMISSIVITY:
-        return quantity_option("--emissivity", value, 0, 1, &request->emissivity);
-    case KEY_SOLID_CONDUCTIVITY:
-        return solid_option(value, &request->solid);
-    case KEY_EXCHANGE_TEMPERATURE: /* --temperature-unit may follow */
-        return quantity_option("--temperature", value, -KELVIN_OF_0_CELSIUS, TEMPERATURE_MAX, &request->temperature);
-    case KEY_TEMPERATURE_UNIT:
-        return temperature_unit_option(value, &request->zero);
-    case KEY_RAYS:
-        request->counted = true;
-        return options_count("--rays", value, 1, FIBRAD_PATHS_MAX, &request->rule.paths);
-    case KEY_DIRECTIONS:
-        request->counted = true;
-        return options_count("--directions", value, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX,
-                             &request->rule.directions);
-    case KEY_ERROR:
-        return options_number("--error", value, 1e-5, 1, &request->rule.tolerance);
-    case KEY_WALL_EMISSIVITY:
-        request->wall_emissivity = value;
-        return STATUS_OK;
-    case KEY_RAW:
-        request->options.raw = 1;
-        return STATUS_OK;
-    case KEY_DROP:
-        return options_number("--drop", value, 0, 1, &request->options.drop);
-    case KEY_SEED:
-        return options_whole("--seed", value, 0, UINT64_MAX, &request->rule.seed);
-    default:
-        return bed_options_take(&request->bed, options, key);
-    }
-}
-
 static int exchange_check(struct exchange_request *request) {
     if (!request->emissivity.given && request->bed.files > 0)
         return message(STATUS_USAGE, "--emissivity is missing; see fibrad exchange --help");
-    if (request->rule.tolerance > 0 && request->counted)
+    if (request->rule.tolerance > 0 && (request->rule.paths > 0 || request->rule.directions > 0))
         return message(STATUS_USAGE, "--error chooses rays and directions; leave out --rays and --directions");
-    if (request->options.drop > 0 && request->options.raw)
+    request->options.raw = request->raw;
+    if (request->options.drop > 0 && request->raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw");
     if (request->solid.given != request->temperature.given)
         return message(STATUS_USAGE, "--solid-conductivity and --temperature need each other; %s is missing",
@@ -135,10 +104,7 @@ static int exchange_check(struct exchange_request *request) {
 }
 
 static int exchange_parse(struct exchange_request *request, int argc, char **argv) {
-    struct options options = {.command = "exchange", .table = exchange_table, .argc = argc, .argv = argv};
-    int status = STATUS_OK;
-    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
-        status = exchange_take(request, &options, key);
+    const int status = options_read("exchange", exchange_table, argc, argv, request);
     return status ? status : exchange_check(request);
 }
 

@@ -17,31 +17,6 @@
 #include "text/report.h"
 #include "write/write_furnace.h"
 
-enum { KEY_CASE = KEY_OWN, KEY_THETA, KEY_SCATTER, KEY_CELLS, KEY_BUNDLES, KEY_TOLERANCE, KEY_OUTERS };
-
-static const struct option table[] = {
-    {KEY_CASE, "case", "1|2", "published furnace instead of FILE: 1 without scattering, 2 with scattering"},
-    {KEY_METHOD, "method", "NAME", "hfm, mchf, mchf-x or mc, see above [mchf-x]"},
-    {KEY_THETA, "theta", "WHICH",
-     "mchf: Theta by its definition, as in the paper, or a constant up to 1: definition, paper or a number "
-     "[definition]"},
-    {KEY_SCATTER, "scatter", "KIND", "scattering source, six_flux or exact [exact for mchf-x, else six_flux]"},
-    {KEY_CELLS, "cells", "NX,NY,NZ", "numbers of cells along the axes [20,20,40 for the cases, else as FILE says]"},
-    {KEY_BUNDLES, "bundles", "N", "approximate number of bundles of rays, 1 to 4294967296 [8000000; mc 20000000]"},
-    {KEY_SEED, "seed", "S", "seed of the bundles [1]"},
-    {KEY_TOLERANCE, "tolerance", "K", "outer iterations end when no temperature changes by more than this [0.1]"},
-    {KEY_OUTERS, "outers", "N", "largest number of outer iterations [50]"},
-    {OPTION_THREADS},
-    {'o', "output", "OUT",
-     "write the fields of all cells: .csv or .vti (ParaView), - for standard output [summary only]"},
-    {KEY_FORMAT, "format", "NAME", "format of -o -, csv or vti"},
-    {KEY_PLOT, "plot", NULL, "[OUT] draw the centre plane by gnuplot, .png or .svg [furnace.png]"},
-    {KEY_JSON, "json", "OUT", "write the summary as JSON, with all digits [none]"},
-    {KEY_QUIET, "quiet", NULL, "print no progress and no report of the outer iterations on standard error"},
-    {KEY_PROGRESS, "progress", NULL, "show progress even if standard error is not a terminal [off]"},
-    {OPTION_HELP},
-    {0, NULL, NULL, NULL}};
-
 static const char *const methods[] = {"hfm", "mchf", "mchf-x", "mc"};
 
 struct request {
@@ -52,6 +27,84 @@ struct request {
     write_furnace_function *write;
     struct furnace_options run;
 };
+
+static int furnace_choose(const char *what, const char *text, const char *const *names, int count, int *choice) {
+    for (*choice = 0; *choice < count; ++*choice)
+        if (strcmp(text, names[*choice]) == 0) return STATUS_OK;
+    return message(STATUS_USAGE, "--%s: unknown '%.40s'; see fibrad furnace --help", what, text);
+}
+
+static int take_numbers_of_cells(const char *text, void *cells) {
+    double values[3], product = 1;
+    int count, status = options_numbers("--cells", text, 3, values, &count);
+    if (status) return status;
+    bool good = count == 3;
+    for (int a = 0; a < count; a++) {
+        good = good && values[a] >= 1 && values[a] <= FIBRAD_FURNACE_CELLS_MAX && values[a] == floor(values[a]);
+        product *= values[a];
+    }
+    if (!good || product > FIBRAD_FURNACE_CELLS_MAX)
+        return message(STATUS_USAGE, "--cells: '%.40s' is not three whole numbers NX,NY,NZ, at most %u cells", text,
+                       FIBRAD_FURNACE_CELLS_MAX);
+    for (int a = 0; a < 3; a++) ((uint32_t *)cells)[a] = (uint32_t)values[a];
+    return STATUS_OK;
+}
+
+static int take_method(const char *text, void *method) {
+    int choice = 0;
+    const int status = furnace_choose("method", text, methods, 4, &choice);
+    *(enum furnace_method *)method = (enum furnace_method)choice;
+    return status;
+}
+
+static int take_furnace_file(const char *text, void *file) {
+    const char **path = file;
+    if (*path) return message(STATUS_USAGE, "one FILE is allowed, not also '%.60s'", text);
+    *path = text;
+    return STATUS_OK;
+}
+
+/* The argument of --plot may be left out. The next word is the argument only if it has the ending of a picture. */
+static int take_plot(const char *next, void *plot) {
+    if (next && !plot_ending(next)) return OPTION_LEFT;
+    *(const char **)plot = next ? next : "furnace.png";
+    return STATUS_OK;
+}
+
+static const struct option table[] = {
+    {0, "", NULL, NULL, TO_FUNCTION(take_furnace_file, struct request, file)},
+    {0, "case", "1|2", "published furnace instead of FILE: 1 without scattering, 2 with scattering",
+     TO_COUNT(struct request, number, 1, 2)},
+    {0, "method", "NAME", "hfm, mchf, mchf-x or mc, see above [mchf-x]",
+     TO_FUNCTION(take_method, struct request, run.method)},
+    {0, "theta", "WHICH",
+     "mchf: Theta by its definition, as in the paper, or a constant up to 1: definition, paper or a number "
+     "[definition]",
+     TO_TEXT(struct request, theta)},
+    {0, "scatter", "KIND", "scattering source, six_flux or exact [exact for mchf-x, else six_flux]",
+     TO_TEXT(struct request, scatter)},
+    {0, "cells", "NX,NY,NZ", "numbers of cells along the axes [20,20,40 for the cases, else as FILE says]",
+     TO_FUNCTION(take_numbers_of_cells, struct request, cells)},
+    {0, "bundles", "N", "approximate number of bundles of rays, 1 to 4294967296 [8000000; mc 20000000]",
+     TO_WHOLE(struct request, run.bundles, 1, 0x1p32)},
+    {0, "seed", "S", "seed of the bundles [1]", TO_WHOLE(struct request, seed, 0, INFINITY)},
+    {0, "tolerance", "K", "outer iterations end when no temperature changes by more than this [0.1]",
+     TO_NUMBER(struct request, run.tolerance, 1e-6, 1e6)},
+    {0, "outers", "N", "largest number of outer iterations [50]", TO_COUNT(struct request, run.outer_max, 1, 1000000)},
+    {OPTION_THREADS(struct request, run.threads)},
+    {'o', "output", "OUT",
+     "write the fields of all cells: .csv or .vti (ParaView), - for standard output [summary only]",
+     TO_TEXT(struct request, out)},
+    {0, "format", "NAME", "format of -o -, csv or vti", TO_TEXT(struct request, format)},
+    {0, "plot", NULL, "[OUT] draw the centre plane by gnuplot, .png or .svg [furnace.png]", OPTION_OPTIONAL,
+     offsetof(struct request, plot), 0, 0, take_plot},
+    {0, "json", "OUT", "write the summary as JSON, with all digits [none]", TO_TEXT(struct request, json)},
+    {0, "quiet", NULL, "print no progress and no report of the outer iterations on standard error",
+     TO_FLAG(struct request, run.quiet)},
+    {0, "progress", NULL, "show progress even if standard error is not a terminal [off]",
+     TO_FLAG(struct request, run.progress)},
+    {OPTION_HELP},
+    {.name = NULL}};
 
 static int furnace_help(void) {
     puts("fibrad furnace --case 1|2 [options]\n"
@@ -79,96 +132,6 @@ static int furnace_help(void) {
          "  fibrad furnace --case 2 --method mchf --theta paper\n"
          "  fibrad furnace box.txt --method mc --bundles 20000000 -o box.vti");
     return STATUS_OK;
-}
-
-static int furnace_choose(const char *what, const char *text, const char *const *names, int count, int *choice) {
-    for (*choice = 0; *choice < count; ++*choice)
-        if (strcmp(text, names[*choice]) == 0) return STATUS_OK;
-    return message(STATUS_USAGE, "--%s: unknown '%.40s'; see fibrad furnace --help", what, text);
-}
-
-static int furnace_parse_cells(const char *text, uint32_t cells[3]) {
-    double values[3], product = 1;
-    int count, status = options_numbers("--cells", text, 3, values, &count);
-    if (status) return status;
-    bool good = count == 3;
-    for (int a = 0; a < count; a++) {
-        good = good && values[a] >= 1 && values[a] <= FIBRAD_FURNACE_CELLS_MAX && values[a] == floor(values[a]);
-        product *= values[a];
-    }
-    if (!good || product > FIBRAD_FURNACE_CELLS_MAX)
-        return message(STATUS_USAGE, "--cells: '%.40s' is not three whole numbers NX,NY,NZ, at most %u cells", text,
-                       FIBRAD_FURNACE_CELLS_MAX);
-    for (int a = 0; a < 3; a++) cells[a] = (uint32_t)values[a];
-    return STATUS_OK;
-}
-
-/* The argument of --plot may be left out. The next word is the argument only if it has the ending of a picture. */
-static void furnace_take_plot(struct request *request, struct options *options) {
-    request->plot = "furnace.png";
-    if (options->at < options->argc && plot_ending(options->argv[options->at]))
-        request->plot = options->argv[options->at++];
-}
-
-static int furnace_take_option(struct request *request, struct options *options, int key) {
-    const char *value = options->value;
-    struct furnace_options *run = &request->run;
-    uint64_t whole = 0;
-    int status = STATUS_OK, choice = 0;
-    switch (key) {
-    case OPTIONS_POSITIONAL:
-        return options_file(value, &request->file);
-    case KEY_HELP:
-        return STATUS_HELP;
-    case KEY_CASE:
-        status = options_whole("--case", value, 1, 2, &whole);
-        request->number = (int)whole;
-        break;
-    case KEY_METHOD:
-        status = furnace_choose("method", value, methods, 4, &choice);
-        run->method = (enum furnace_method)choice;
-        break;
-    case KEY_THETA:
-        request->theta = value;
-        break;
-    case KEY_SCATTER:
-        request->scatter = value;
-        break;
-    case KEY_CELLS:
-        return furnace_parse_cells(value, request->cells);
-    case KEY_BUNDLES:
-        return options_whole("--bundles", value, 1, (uint64_t)1 << 32, &run->bundles);
-    case KEY_SEED:
-        return options_whole("--seed", value, 0, UINT64_MAX, &request->seed);
-    case KEY_TOLERANCE:
-        return options_number("--tolerance", value, 1e-6, 1e6, &run->tolerance);
-    case KEY_OUTERS:
-        return options_count("--outers", value, 1, 1000000, &run->outer_max);
-    case KEY_THREADS:
-        return options_threads(value, &run->threads);
-    case KEY_PLOT:
-        furnace_take_plot(request, options);
-        break;
-    case KEY_QUIET:
-        run->quiet = true;
-        break;
-    case KEY_PROGRESS:
-        run->progress = true;
-        break;
-    case KEY_JSON:
-        request->json = value;
-        break;
-    case KEY_FORMAT:
-        request->format = value;
-        break;
-    case 'o':
-        request->out = value;
-        break;
-    default:
-        status = STATUS_USAGE;
-        break; /* OPTIONS_BAD: the message is out */
-    }
-    return status;
 }
 
 static int furnace_check_theta(struct request *request) {
@@ -223,14 +186,11 @@ static int furnace_check_request(struct request *request) {
 }
 
 static int furnace_parse(struct request *request, int argc, char **argv) {
-    struct options options = {.command = "furnace", .table = table, .argc = argc, .argv = argv};
     *request = (struct request){
         .seed = 1,
         .run = {.method = FURNACE_MCHF_X, .tolerance = 0.1, .outer_max = 50},
     };
-    int status = STATUS_OK;
-    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
-        status = furnace_take_option(request, &options, key);
+    const int status = options_read("furnace", table, argc, argv, request);
     return status ? status : furnace_check_request(request);
 }
 

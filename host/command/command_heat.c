@@ -14,55 +14,6 @@
 #include "heat/heat_run.h"
 #include "plot/plot_heat.h"
 
-enum {
-    KEY_TEMPERATURE = KEY_OWN,
-    KEY_POWER,
-    KEY_AMBIENT,
-    KEY_WALL_TEMPERATURE,
-    KEY_WALL_POWER,
-    KEY_MODEL,
-    KEY_PATCHES,
-    KEY_WALL_RAYS
-};
-
-static const struct option heat_table[] = {
-    {OPTION_EMISSIVITY_CURVES},
-    {OPTION_SOLID_CONDUCTIVITY},
-    {KEY_TEMPERATURE, OPTION_TEMPERATURE},
-    {KEY_POWER, OPTION_POWER},
-    {KEY_AMBIENT, OPTION_AMBIENT},
-    {OPTION_WALL},
-    {OPTION_WALL_VTP},
-    {KEY_WALL_TEMPERATURE, OPTION_WALL_TEMPERATURE},
-    {KEY_WALL_POWER, OPTION_WALL_POWER},
-    {OPTION_WALL_EMISSIVITY},
-    {OPTION_TEMPERATURE_UNIT},
-    OPTIONS_LIGHT,
-    {KEY_MODEL, "model", "NAME",
-     "patches (reflections from point to point), spheres (one radiosity for each sphere, for emissivities near 1) or, "
-     "with --until, factors (exchange factors, powers 2 to 5 % off) [patches; with --until factors that patches "
-     "correct]"},
-    {KEY_PATCHES, "patches", "P", "patches of each sphere, 24, 96 or 384 [" TEXT_OF(FIBRAD_HEAT_PATCHES_DEFAULT) "]"},
-    {KEY_DIRECTIONS, "directions", "N",
-     "directions of beams, " TEXT_DIRECTIONS
-     " [" TEXT_OF(FIBRAD_HEAT_DIRECTIONS_DEFAULT) "; 112 if the mean emissivity is 0.35 or less]"},
-    {KEY_POINTS, "points", "M", "points of each beam, 64, 128 or 256 [64; with --until 128]"},
-    {KEY_WALL_RAYS, "wall-rays", "N",
-     "least number of rays from all walls, up to 2^30; errors of triangles fall as N^-0.5 [" TEXT_OF(
-         FIBRAD_WALL_RAYS_DEFAULT) ", more with many "
-                                   "beams or patches]"},
-    {KEY_ERROR, "error", "E",
-     "error allowed in powers, estimated, relative to their root mean square, 1e-5 to 1; directions and patches are "
-     "added until it is met; see below [none]"},
-    OPTIONS_TIME,
-    OPTIONS_INPUT,
-    {'o', "output", "OUT",
-     "write the powers: .csv .dump (OVITO) .vtp (ParaView) .json, - for standard output [summary only]"},
-    {OPTION_FORMAT},
-    {KEY_PLOT, "plot", "OUT", "draw a picture by gnuplot, .svg or .png [none]"},
-    OPTIONS_RUN,
-    {0, NULL, NULL, NULL}};
-
 struct heat_request {
     struct bed_options bed;
     struct given_options given;
@@ -71,9 +22,80 @@ struct heat_request {
     struct face face;
     const char *wall_emissivity;
     struct quantity emissivity, solid;
-    bool counted; /* --directions, --points, --patches or --wall-rays was given */
     struct heat_problem problem;
 };
+
+static int take_patches(const char *text, void *of_sphere) {
+    uint32_t *patches = of_sphere;
+    const int status = options_count("--patches", text, 1, UINT32_MAX, patches);
+    if (!status && *patches != 24 && *patches != 96 && *patches != 384)
+        return message(STATUS_USAGE, "--patches: %.40s is not built in; 24, 96 and 384 are", text);
+    return status;
+}
+
+static int take_model(const char *text, void *heat_problem) {
+    struct heat_problem *problem = heat_problem;
+    problem->sources.uniform = strcmp(text, "spheres") == 0;
+    problem->by_patches = problem->sources.uniform || strcmp(text, "patches") == 0;
+    problem->by_factors = strcmp(text, "factors") == 0;
+    if (problem->by_patches || problem->by_factors) return STATUS_OK;
+    return message(STATUS_USAGE, "--model: '%.40s' is none of patches, spheres and factors", text);
+}
+
+static const struct option heat_table[] = {
+    {OPTION_EMISSIVITY_CURVES(struct heat_request, emissivity)},
+    {OPTION_SOLID_CONDUCTIVITY(struct heat_request, solid)},
+    {0, "temperature", "T",
+     "temperature of all spheres, or TYPE:T,..., or a column of the file, blank or nan for spheres of --power",
+     TO_FUNCTION(temperature_option, struct heat_request, given.temperature)},
+    {0, "power", "W",
+     "power that spheres of unknown temperature give off from inside, a number, TYPE:W,..., or a column of the "
+     "file, blank or nan for spheres of --temperature [W]",
+     TO_FUNCTION(given_power_option, struct heat_request, given.power)},
+    {0, "ambient", "T", "temperature of the black surroundings; needed unless walls and periods close the bed",
+     TO_TEXT(struct heat_request, given.ambient)},
+    OPTIONS_WALL,
+    {0, "wall-temperature", "LIST",
+     "temperatures of walls, zmin=1200,zmax=insulated,300 for example; a number without a name is for all others; "
+     "NAME=triangles:FILE is a column of numbers, one for each triangle of the mesh",
+     TO_TEXT(struct heat_request, given.wall_temperature)},
+    {0, "wall-power", "LIST", "powers that walls of unknown temperature give off, zmin=500 for example [W]",
+     TO_TEXT(struct heat_request, given.wall_power)},
+    {OPTION_WALL_EMISSIVITY(struct heat_request, wall_emissivity)},
+    {OPTION_TEMPERATURE_UNIT(struct heat_request, given.zero)},
+    OPTIONS_LIGHT(struct heat_request),
+    {0, "face", NULL, "find the emissivity of the open face of the bed, which has one temperature",
+     TO_FLAG(struct heat_request, face.wanted)},
+    {0, "model", "NAME",
+     "patches (reflections from point to point), spheres (one radiosity for each sphere, for emissivities near 1) or, "
+     "with --until, factors (exchange factors, powers 2 to 5 % off) [patches; with --until factors that patches "
+     "correct]",
+     TO_FUNCTION(take_model, struct heat_request, problem)},
+    {0, "patches", "P", "patches of each sphere, 24, 96 or 384 [" TEXT_OF(FIBRAD_HEAT_PATCHES_DEFAULT) "]",
+     TO_FUNCTION(take_patches, struct heat_request, problem.config.patches)},
+    {0, "directions", "N",
+     "directions of beams, " TEXT_DIRECTIONS
+     " [" TEXT_OF(FIBRAD_HEAT_DIRECTIONS_DEFAULT) "; 112 if the mean emissivity is 0.35 or less]",
+     TO_COUNT(struct heat_request, problem.config.directions, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX)},
+    {0, "points", "M", "points of each beam, 64, 128 or 256 [64; with --until 128]",
+     TO_FUNCTION(option_points, struct heat_request, problem.config.points)},
+    {0, "wall-rays", "N",
+     "least number of rays from all walls, up to 2^30; errors of triangles fall as N^-0.5 [" TEXT_OF(
+         FIBRAD_WALL_RAYS_DEFAULT) ", more with many "
+                                   "beams or patches]",
+     TO_COUNT(struct heat_request, problem.config.wall_rays, 1, FIBRAD_WALL_RAYS_MAX)},
+    {0, "error", "E",
+     "error allowed in powers, estimated, relative to their root mean square, 1e-5 to 1; directions and patches are "
+     "added until it is met; see below [none]",
+     TO_NUMBER(struct heat_request, problem.error, 1e-5, 1)},
+    OPTIONS_TIME(struct heat_request),
+    OPTIONS_INPUT,
+    {OPTION_BED_OUTPUT(
+        "write the powers: .csv .dump (OVITO) .vtp (ParaView) .json, - for standard output [summary only]")},
+    {OPTION_BED_FORMAT},
+    {OPTION_PLOT("draw a picture by gnuplot, .svg or .png [none]")},
+    OPTIONS_RUN,
+    {.name = NULL}};
 
 static int heat_help(void) {
     puts("fibrad heat FILE... --emissivity E --temperature T --ambient T [options]\n\n"
@@ -125,91 +147,11 @@ static int heat_help(void) {
     return STATUS_OK;
 }
 
-static int take_patches(const char *text, uint32_t *patches) {
-    const int status = options_count("--patches", text, 1, UINT32_MAX, patches);
-    if (!status && *patches != 24 && *patches != 96 && *patches != 384)
-        return message(STATUS_USAGE, "--patches: %.40s is not built in; 24, 96 and 384 are", text);
-    return status;
-}
-
-static int take_model(const char *text, struct heat_problem *problem) {
-    problem->sources.uniform = strcmp(text, "spheres") == 0;
-    problem->by_patches = problem->sources.uniform || strcmp(text, "patches") == 0;
-    problem->by_factors = strcmp(text, "factors") == 0;
-    if (problem->by_patches || problem->by_factors) return STATUS_OK;
-    return message(STATUS_USAGE, "--model: '%.40s' is none of patches, spheres and factors", text);
-}
-
-static int take_beams(struct heat_request *request, const char *text, int key) {
-    struct beam_options beam = {0};
-    const int status = options_beam(key, text, &beam);
-    request->counted = true;
-    if (key == KEY_DIRECTIONS) request->problem.config.directions = beam.directions;
-    if (key == KEY_POINTS) request->problem.config.points = beam.points;
-    return status;
-}
-
-static int heat_take(struct heat_request *request, const struct options *options, int key) {
-    const char *value = options->value;
-    switch (key) {
-    case KEY_EMISSIVITY:
-        return table_option("--emissivity", value, 0, 1, &request->emissivity);
-    case KEY_SOLID_CONDUCTIVITY:
-        return solid_option(value, &request->solid);
-    case KEY_TEMPERATURE:
-        return given_temperature_option(value, &request->given);
-    case KEY_POWER:
-        return given_power_option(value, &request->given);
-    case KEY_TEMPERATURE_UNIT:
-        return temperature_unit_option(value, &request->given.zero);
-    case KEY_AMBIENT:
-        request->given.ambient = value;
-        return STATUS_OK;
-    case KEY_WALL_TEMPERATURE:
-        request->given.wall_temperature = value;
-        return STATUS_OK;
-    case KEY_WALL_POWER:
-        request->given.wall_power = value;
-        return STATUS_OK;
-    case KEY_WALL_EMISSIVITY:
-        request->wall_emissivity = value;
-        return STATUS_OK;
-    case KEY_MODEL:
-        return take_model(value, &request->problem);
-    case KEY_PATCHES:
-        request->counted = true;
-        return take_patches(value, &request->problem.config.patches);
-    case KEY_DIRECTIONS:
-    case KEY_POINTS:
-        return take_beams(request, value, key);
-    case KEY_WALL_RAYS:
-        request->counted = true;
-        return options_count("--wall-rays", value, 1, FIBRAD_WALL_RAYS_MAX, &request->problem.config.wall_rays);
-    case KEY_ERROR:
-        return options_number("--error", value, 1e-5, 1, &request->problem.error);
-    case KEY_IRRADIATE:
-    case KEY_ABSORPTIVITY:
-    case KEY_WALL_ABSORPTIVITY:
-    case KEY_PROFILE:
-        return light_option(key, value, &request->light);
-    case KEY_FACE:
-        request->face.wanted = true;
-        return STATUS_OK;
-    case KEY_UNTIL:
-    case KEY_CAPACITY:
-    case KEY_DENSITY:
-    case KEY_STEP:
-    case KEY_TIMES:
-    case KEY_EVERY:
-        return time_option(key, value, &request->time);
-    default:
-        return bed_options_take(&request->bed, options, key);
-    }
-}
-
 static int heat_check_request(struct heat_request *request) {
     request->bed.timed = request->given.timed = request->time.until > 0;
     request->problem.zero = request->given.zero;
+    const fibrad_heat_config *config = &request->problem.config;
+    const bool counted = config->directions > 0 || config->points > 0 || config->patches > 0 || config->wall_rays > 0;
     int status = bed_options_check(&request->bed, "heat", CONTENT_HEAT);
     if (status) return status;
     if (request->given.timed && request->problem.error > 0)
@@ -219,7 +161,7 @@ static int heat_check_request(struct heat_request *request) {
     if (!request->given.timed && request->problem.by_factors)
         return message(STATUS_USAGE, "--model factors is for --until");
     if (!request->emissivity.given) return message(STATUS_USAGE, "--emissivity is missing; see fibrad heat --help");
-    if (request->problem.error > 0 && request->counted)
+    if (request->problem.error > 0 && counted)
         return message(
             STATUS_USAGE,
             "--error chooses directions and patches; leave out --directions, --points, --patches and --wall-rays");
@@ -241,12 +183,12 @@ static int heat_check_request(struct heat_request *request) {
 }
 
 static int heat_parse(struct heat_request *request, int argc, char **argv) {
-    struct options options = {.command = "heat", .table = heat_table, .argc = argc, .argv = argv};
-    *request = (struct heat_request){.problem.config = {.patches = 96}};
+    *request = (struct heat_request){.bed.files = 0};
     fibrad_heat_sources_init(&request->problem.sources);
-    int status = STATUS_OK;
-    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = heat_take(request, &options, key);
-    return status ? status : heat_check_request(request);
+    int status = options_read("heat", heat_table, argc, argv, request);
+    if (!status) status = heat_check_request(request);
+    if (request->problem.config.patches == 0) request->problem.config.patches = FIBRAD_HEAT_PATCHES_DEFAULT;
+    return status;
 }
 
 /* Reports conductivities of the solid, and extreme temperatures of surfaces and centres. */

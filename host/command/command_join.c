@@ -13,17 +13,6 @@
 #include "simple/heap.h"
 #include "write/outputs.h"
 
-static const struct option join_table[] = {
-    {KEY_RAW, "raw", NULL, "leave the rows as they were computed [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]"},
-    {'o', "output", "OUT",
-     "write the factors (.csv .mtx .npz .json, - for standard output) or the spheres (.vtp) [summary only]"},
-    {OPTION_FORMAT},
-    {KEY_POSITIONS, "positions", NULL, "name spheres by positions from 0, in the order of ids [by ids]"},
-    {KEY_JSON, "json", "OUT", "write the summary as JSON, with all digits [none]"},
-    {KEY_QUIET, "quiet", NULL, "print no summary"},
-    {OPTION_HELP},
-    {0, NULL, NULL, NULL}};
-
 struct join_request {
     const char **files; /* [count] */
     size_t count;
@@ -31,6 +20,28 @@ struct join_request {
     bool raw, positions, quiet;
     struct report report;
 };
+
+static int take_rows_file(const char *path, void *join_request) {
+    struct join_request *request = join_request;
+    request->files[request->count++] = path;
+    return STATUS_OK;
+}
+
+static const struct option join_table[] = {
+    {0, "", NULL, NULL, TO_REQUEST(take_rows_file)},
+    {0, "raw", NULL, "leave the rows as they were computed [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]",
+     TO_FLAG(struct join_request, raw)},
+    {OPTION_OUTPUT(
+        "write the factors (.csv .mtx .npz .json, - for standard output) or the spheres (.vtp) [summary only]",
+        struct join_request, outputs)},
+    {OPTION_FORMAT(struct join_request, outputs)},
+    {0, "positions", NULL, "name spheres by positions from 0, in the order of ids [by ids]",
+     TO_FLAG(struct join_request, positions)},
+    {0, "json", "OUT", "write the summary as JSON, with all digits [none]",
+     TO_TEXT(struct join_request, outputs.summary)},
+    {0, "quiet", NULL, "print no summary", TO_FLAG(struct join_request, quiet)},
+    {OPTION_HELP},
+    {.name = NULL}};
 
 static int join_help(void) {
     puts("fibrad join FILE.rows... [options]\n\n"
@@ -53,38 +64,8 @@ static int join_help(void) {
     return STATUS_OK;
 }
 
-static int join_take(struct join_request *request, const struct options *options, int key) {
-    switch (key) {
-    case OPTIONS_POSITIONAL:
-        request->files[request->count++] = options->value;
-        return STATUS_OK;
-    case KEY_HELP:
-        return STATUS_HELP;
-    case KEY_RAW:
-        request->raw = true;
-        return STATUS_OK;
-    case KEY_POSITIONS:
-        request->positions = true;
-        return STATUS_OK;
-    case KEY_JSON:
-        request->outputs.summary = options->value;
-        return STATUS_OK;
-    case KEY_QUIET:
-        request->quiet = true;
-        return STATUS_OK;
-    case KEY_FORMAT:
-        return outputs_format(&request->outputs, options->value);
-    case 'o':
-        return outputs_add(&request->outputs, options->value);
-    default:
-        return STATUS_USAGE; /* OPTIONS_BAD: the message is out */
-    }
-}
-
 static int join_parse(struct join_request *request, int argc, char **argv) {
-    struct options options = {.command = "join", .table = join_table, .argc = argc, .argv = argv};
-    int status = STATUS_OK;
-    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = join_take(request, &options, key);
+    int status = options_read("join", join_table, argc, argv, request);
     if (!status && request->count == 0) status = message(STATUS_USAGE, "FILE is missing; see fibrad join --help");
     return status ? status : outputs_check(&request->outputs, CONTENT_MATRIX, false);
 }

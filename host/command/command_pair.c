@@ -14,26 +14,11 @@
 #include "text/report.h"
 #include "simple/heap.h"
 
-enum { KEY_OBSTACLE = KEY_OWN, KEY_CHECK };
-
 /* With obstacles: default errors, a larger one if spheres overlap, since visible areas then jump; and most directions.
  */
 #define ERROR_APART   1e-9
 #define ERROR_OVERLAP 1e-5
 #define DIRECTIONS    5000000
-
-static const struct option pair_table[] = {
-    {KEY_METHOD, "method", "NAME",
-     "exact, beam (parallel beams), surface (nodes on surfaces), cast (quasi-random rays) or mc (random rays) [exact]"},
-    {KEY_OBSTACLE, "obstacle", "X,Y,Z,R", "a sphere in the way; may be repeated [none]"},
-    {KEY_ERROR, "error", "E",
-     "exact, with obstacles: error allowed, estimated, relative to the factor without obstacles, 1e-12 to 1 [1e-9; "
-     "1e-5 if spheres overlap, where each further digit takes ten times as long]"},
-    {KEY_CHECK, "check", NULL, "compare the exact factor with two of GSL's quadratures [off]"},
-    OPTIONS_METHODS,
-    {KEY_JSON, "json", "OUT", "write the output as JSON, with all digits [none]"},
-    {OPTION_HELP},
-    {0, NULL, NULL, NULL}};
 
 enum { SPHERES_MAX = 1000 };
 
@@ -43,16 +28,60 @@ struct pair_request {
     /* sphere 1, sphere 2, obstacles */
     uint32_t n;
     double x[SPHERES_MAX], y[SPHERES_MAX], z[SPHERES_MAX], r[SPHERES_MAX];
-    enum method method;
-    struct beam_options beam;
-    fibrad_beam_rule rule;
-    fibrad_surface_rule surface;
-    fibrad_cast_rule cast;
+    struct method_options methods;
     double error;     /* 0: not given */
     const char *json; /* NULL: not given */
     struct report report;
-    bool beam_given, surface_given, cast_given, check;
+    bool check;
 };
+
+static int take_obstacle(const char *text, void *pair_request) {
+    struct pair_request *request = pair_request;
+    double sphere[4];
+    int count;
+    const int status = options_numbers("--obstacle", text, 4, sphere, &count);
+    if (status) return status;
+    if (count != 4 || !(sphere[3] > 0))
+        return message(STATUS_USAGE, "--obstacle: '%.60s' is not X,Y,Z,R with R above 0", text);
+    if (request->n == SPHERES_MAX) return message(STATUS_USAGE, "more than %d obstacles", SPHERES_MAX - 2);
+    const uint32_t i = request->n++;
+    request->x[i] = sphere[0];
+    request->y[i] = sphere[1];
+    request->z[i] = sphere[2];
+    request->r[i] = sphere[3];
+    return STATUS_OK;
+}
+
+static int take_length(const char *text, void *pair_request) {
+    struct pair_request *request = pair_request;
+    switch (request->given++) {
+    case 0:
+        return options_number("R1", text, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &request->r1);
+    case 1:
+        return options_number("R2", text, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &request->r2);
+    case 2:
+        return options_number("GAP", text, -FIBRAD_LENGTH_MAX, FIBRAD_LENGTH_MAX, &request->gap);
+    default:
+        return message(STATUS_USAGE, "three lengths are allowed, not also '%.40s'; see fibrad pair --help", text);
+    }
+}
+
+static const struct option pair_table[] = {
+    {0, "", NULL, NULL, TO_REQUEST(take_length)},
+    {0, "method", "NAME",
+     "exact, beam (parallel beams), surface (nodes on surfaces), cast (quasi-random rays) or mc (random rays) [exact]",
+     TO_FUNCTION(option_method, struct pair_request, methods.method)},
+    {0, "obstacle", "X,Y,Z,R", "a sphere in the way; may be repeated [none]", TO_REQUEST(take_obstacle)},
+    {0, "error", "E",
+     "exact, with obstacles: error allowed, estimated, relative to the factor without obstacles, 1e-12 to 1 [1e-9; "
+     "1e-5 if spheres overlap, where each further digit takes ten times as long]",
+     TO_NUMBER(struct pair_request, error, 1e-12, 1)},
+    {0, "check", NULL, "compare the exact factor with two of GSL's quadratures [off]",
+     TO_FLAG(struct pair_request, check)},
+    OPTIONS_METHODS(struct pair_request),
+    {0, "json", "OUT", "write the output as JSON, with all digits [none]", TO_TEXT(struct pair_request, json)},
+    {OPTION_HELP},
+    {.name = NULL}};
 
 static int pair_help(void) {
     puts("fibrad pair R1 R2 GAP [options]\n\n"
@@ -70,93 +99,21 @@ static int pair_help(void) {
     return STATUS_OK;
 }
 
-static int take_obstacle(struct pair_request *request, const char *text) {
-    double sphere[4];
-    int count;
-    const int status = options_numbers("--obstacle", text, 4, sphere, &count);
-    if (status) return status;
-    if (count != 4 || !(sphere[3] > 0))
-        return message(STATUS_USAGE, "--obstacle: '%.60s' is not X,Y,Z,R with R above 0", text);
-    if (request->n == SPHERES_MAX) return message(STATUS_USAGE, "more than %d obstacles", SPHERES_MAX - 2);
-    const uint32_t i = request->n++;
-    request->x[i] = sphere[0];
-    request->y[i] = sphere[1];
-    request->z[i] = sphere[2];
-    request->r[i] = sphere[3];
-    return STATUS_OK;
-}
-
-static int take_length(struct pair_request *request, const char *text) {
-    switch (request->given++) {
-    case 0:
-        return options_number("R1", text, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &request->r1);
-    case 1:
-        return options_number("R2", text, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &request->r2);
-    case 2:
-        return options_number("GAP", text, -FIBRAD_LENGTH_MAX, FIBRAD_LENGTH_MAX, &request->gap);
-    default:
-        return message(STATUS_USAGE, "three lengths are allowed, not also '%.40s'; see fibrad pair --help", text);
-    }
-}
-
-static int pair_take(struct pair_request *request, const struct options *options, int key) {
-    switch (key) {
-    case OPTIONS_POSITIONAL:
-        return take_length(request, options->value);
-    case KEY_HELP:
-        return STATUS_HELP;
-    case KEY_METHOD:
-        return options_method(options->value, &request->method);
-    case KEY_OBSTACLE:
-        return take_obstacle(request, options->value);
-    case KEY_CHECK:
-        request->check = true;
-        return STATUS_OK;
-    case KEY_ERROR:
-        return options_number("--error", options->value, 1e-12, 1, &request->error);
-    case KEY_JSON:
-        request->json = options->value;
-        return STATUS_OK;
-    case KEY_NF:
-    case KEY_NO_CORRECTION:
-        request->surface_given = true;
-        return options_surface(key, options->value, &request->surface);
-    case KEY_RAYS:
-    case KEY_SEED:
-        request->cast_given = true;
-        return options_cast(key, options->value, &request->cast);
-    case OPTIONS_BAD:
-        return STATUS_USAGE;
-    default:
-        request->beam_given = true;
-        return options_beam(key, options->value, &request->beam);
-    }
-}
-
 static int pair_parse(struct pair_request *request, int argc, char **argv) {
-    struct options options = {.command = "pair", .table = pair_table, .argc = argc, .argv = argv};
-    request->cast.rays = FIBRAD_RAYS_DEFAULT;
     request->n = 2; /* obstacles behind spheres 1 and 2 */
-    int status = STATUS_OK;
-    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = pair_take(request, &options, key);
+    const int status = options_read("pair", pair_table, argc, argv, request);
     if (status) return status;
     if (request->given < 3) return message(STATUS_USAGE, "R1, R2 and GAP are needed; see fibrad pair --help");
-    if (request->check && (request->method != METHOD_EXACT || request->n > 2))
+    if (request->check && (request->methods.method != METHOD_EXACT || request->n > 2))
         return message(STATUS_USAGE, "--check is for the exact factor without obstacles");
-    if (request->error > 0 && (request->method != METHOD_EXACT || request->n == 2))
+    if (request->error > 0 && (request->methods.method != METHOD_EXACT || request->n == 2))
         return message(STATUS_USAGE, "--error is for the exact factor with obstacles");
-    if (request->beam_given && request->method != METHOD_BEAM)
-        return message(STATUS_USAGE, "--directions, --areas and --points are for --method beam");
-    if (request->surface_given && request->method != METHOD_SURFACE)
-        return message(STATUS_USAGE, "--nf and --no-correction are for --method surface");
-    if (request->cast_given && request->method != METHOD_CAST && request->method != METHOD_MC)
-        return message(STATUS_USAGE, "--rays and --seed are for --method cast and mc");
     if (request->gap <= -2 * fmin(request->r1, request->r2))
         return message(STATUS_USAGE, "GAP: %g: one sphere lies inside the other", request->gap);
     request->r[0] = request->r1;
     request->r[1] = request->r2;
     request->z[1] = request->r1 + request->r2 + request->gap;
-    return options_beam_rule(&request->beam, &request->rule);
+    return methods_check(&request->methods);
 }
 
 static int report_check(struct report *report, const char *name, int error, double value, double abserr, double f12) {
@@ -270,7 +227,7 @@ static uint32_t find_column(const fibrad_row *row, uint32_t j) {
 /* The factor from sphere i to sphere j, by beams of sphere i. */
 static int beam_factor(struct few *few, struct pair_request *request, uint32_t i, uint32_t j, double *f) {
     fibrad_row row = {.col = few->col, .f = few->f, .capacity = SPHERES_MAX};
-    const int status = fibrad_beam_row(few->scene, &few->work, i, &request->rule, &row);
+    const int status = fibrad_beam_row(few->scene, &few->work, i, &request->methods.beam, &row);
     if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
     const uint32_t k = find_column(&row, j);
     *f = k < row.length ? row.f[k] : 0;
@@ -293,15 +250,14 @@ static int pair_beam(struct few *few, struct pair_request *request, double *f12)
 
 /* F12 by rays from sphere 1. */
 static int pair_cast(struct few *few, struct pair_request *request, double *f12) {
-    fibrad_cast_rule rule = request->cast;
+    const fibrad_cast_rule *rule = &request->methods.cast;
     fibrad_row row = {.col = few->col, .f = few->f, .capacity = SPHERES_MAX};
-    rule.random = request->method == METHOD_MC;
     const int status =
-        fibrad_cast_row(few->scene, &few->work, 0, &rule, &row, &(fibrad_cast_means){few->length, few->angle});
+        fibrad_cast_row(few->scene, &few->work, 0, rule, &row, &(fibrad_cast_means){few->length, few->angle});
     if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
     const uint32_t k = find_column(&row, 1);
     *f12 = k < row.length ? row.f[k] : 0;
-    report_count(&request->report, "rays", rule.rays);
+    report_count(&request->report, "rays", rule->rays);
     report_value(&request->report, "error_estimate", row.error, 3);
     if (k < row.length) {
         report_value(&request->report, "mean_ray_length", few->length[k], 17);
@@ -315,7 +271,8 @@ static int pair_rows(struct pair_request *request, double *f12) {
     if (!few) return message_memory();
     few->work.memory.resize = fibrad_heap_resize;
     int status = pair_scene(request, &few->scene, &few->block);
-    if (!status) status = request->method == METHOD_BEAM ? pair_beam(few, request, f12) : pair_cast(few, request, f12);
+    if (!status)
+        status = request->methods.method == METHOD_BEAM ? pair_beam(few, request, f12) : pair_cast(few, request, f12);
     free(few->block);
     free(few->work.memory.block);
     free(few);
@@ -330,8 +287,8 @@ static int pair_surface(struct pair_request *request, double *f12) {
     if (status) return status;
     double *scratch = malloc(FIBRAD_SURFACE_SCRATCH(obstacles.n) * sizeof *scratch);
     if (!scratch) return message_memory();
-    status = fibrad_surface_pair(request->r1, request->r2, request->gap, &obstacles, &request->surface, scratch, f12,
-                                 &facts);
+    status = fibrad_surface_pair(request->r1, request->r2, request->gap, &obstacles, &request->methods.surface, scratch,
+                                 f12, &facts);
     free(scratch);
     if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
     report_value(&request->report, "error_estimate", facts.error, 3);
@@ -341,9 +298,9 @@ static int pair_surface(struct pair_request *request, double *f12) {
 static int pair_compute(struct pair_request *request) {
     double f12 = 0;
     int status;
-    if (request->method == METHOD_SURFACE)
+    if (request->methods.method == METHOD_SURFACE)
         status = pair_surface(request, &f12);
-    else if (request->method != METHOD_EXACT)
+    else if (request->methods.method != METHOD_EXACT)
         status = pair_rows(request, &f12);
     else
         status = request->n > 2 ? pair_reference(request, &f12) : pair_exact(request, &f12);

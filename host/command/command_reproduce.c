@@ -11,15 +11,6 @@
 #include "command/commands.h"
 #include "reproduce/reproduce.h"
 
-enum { KEY_ONLY = KEY_OWN, KEY_NO_PLOTS };
-
-static const struct option reproduce_table[] = {
-    {'o', "output", "DIR", "write CSV files and plots into this folder [none]"},
-    {KEY_ONLY, "only", "NAME", "run this experiment only [all]"},
-    {KEY_NO_PLOTS, "no-plots", NULL, "write CSV files only [off]"},
-    {OPTION_HELP},
-    {0, NULL, NULL, NULL}};
-
 static const struct {
     const char *name, *what;
     experiment *run;
@@ -41,6 +32,27 @@ static const struct {
     {"faces", "grey spheres: emissivity and absorptance of the face of a bed", reproduce_faces},
 };
 enum { EXPERIMENTS = sizeof experiments / sizeof *experiments };
+
+struct reproduce_request {
+    const char *directory;
+    int only; /* number of the experiment; -1: all */
+    bool no_plots;
+};
+
+static int take_experiment(const char *name, void *only) {
+    int k = EXPERIMENTS - 1;
+    while (k >= 0 && strcmp(experiments[k].name, name) != 0) --k;
+    *(int *)only = k;
+    return k >= 0 ? STATUS_OK : message(STATUS_USAGE, "no experiment %.40s; see fibrad reproduce --help", name);
+}
+
+static const struct option reproduce_table[] = {
+    {'o', "output", "DIR", "write CSV files and plots into this folder [none]",
+     TO_TEXT(struct reproduce_request, directory)},
+    {0, "only", "NAME", "run this experiment only [all]", TO_FUNCTION(take_experiment, struct reproduce_request, only)},
+    {0, "no-plots", NULL, "write CSV files only [off]", TO_FLAG(struct reproduce_request, no_plots)},
+    {OPTION_HELP},
+    {.name = NULL}};
 
 static int reproduce_help(void) {
     puts("fibrad reproduce [options]\n\n"
@@ -81,35 +93,16 @@ static int open_directory(struct reproduce *reproduce, char **path) {
 }
 
 int command_reproduce(int argc, char **argv) {
-    struct options options = {.command = "reproduce", .table = reproduce_table, .argc = argc, .argv = argv};
-    struct reproduce reproduce = {.plots = true};
-    int only = -1;
-    for (int key; (key = options_next(&options)) != OPTIONS_END;) switch (key) {
-        case 'o':
-            reproduce.directory = options.value;
-            break;
-        case KEY_HELP:
-            return reproduce_help();
-        case KEY_NO_PLOTS:
-            reproduce.plots = false;
-            break;
-        case KEY_ONLY:
-            for (only = EXPERIMENTS - 1; only >= 0 && strcmp(experiments[only].name, options.value) != 0;) --only;
-            if (only < 0)
-                return message(STATUS_USAGE, "no experiment %.40s; see fibrad reproduce --help", options.value);
-            break;
-        case OPTIONS_BAD:
-            return STATUS_USAGE;
-        default:
-            return message(STATUS_USAGE, "'%.40s': reproduce takes options only", options.value);
-        }
-
+    struct reproduce_request request = {.only = -1};
+    int status = options_read("reproduce", reproduce_table, argc, argv, &request);
+    if (status) return status == STATUS_HELP ? reproduce_help() : status;
+    struct reproduce reproduce = {.directory = request.directory, .plots = !request.no_plots};
     char *path = NULL;
-    int status = open_directory(&reproduce, &path);
+    status = open_directory(&reproduce, &path);
     if (!status)
         printf("%-12s %-70s %-5s %12s %12s     %s\n", "experiment", "what", "from", "theirs", "ours", "difference");
     for (int k = 0; k < EXPERIMENTS && !status; ++k)
-        if (only < 0 || only == k) status = run_experiment(&reproduce, k);
+        if (request.only < 0 || request.only == k) status = run_experiment(&reproduce, k);
     status = output_close(&reproduce.comparison, status);
     free(path);
     return status;

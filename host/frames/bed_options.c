@@ -15,9 +15,16 @@
 #include "frames/beyond.h"
 #include "plot/gnuplot.h"
 
-static int take_period(const char *text, double period[3]) {
+int bed_radius_option(const char *text, void *radius) {
+    return quantity_option("--radius", text, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, radius);
+}
+
+int bed_period_option(const char *text, void *bed_options) {
+    struct bed_options *options = bed_options;
+    double *period = options->period;
     int count = 3;
     const int status = strcmp(text, "none") == 0 ? STATUS_OK : options_numbers("--periodic", text, 3, period, &count);
+    options->periodic = true;
     if (status) return status;
     if (count != 3 || period[0] < 0 || period[1] < 0 || period[2] < 0)
         return message(STATUS_USAGE, "--periodic: '%.60s' is neither none nor three lengths LX,LY,LZ", text);
@@ -59,7 +66,7 @@ static int order_of_names(const void *a, const void *b) {
 }
 
 /* Takes the name of a file, or a pattern in quotes that the shell has not expanded. */
-static int take_file(struct bed_options *options, const char *name) {
+int bed_files_option(const char *name, void *options) {
     struct stat there;
     glob_t found;
     if (!strpbrk(name, "*?[") || stat(name, &there) == 0) return add_file(options, name);
@@ -72,7 +79,8 @@ static int take_file(struct bed_options *options, const char *name) {
 }
 
 /* Reads --frame: K, all, A:B, A:B:STEP or -1. */
-static int take_frames(const char *text, struct bed_options *options) {
+int bed_frames_option(const char *text, void *bed_options) {
+    struct bed_options *options = bed_options;
     struct frames frames = {0, INT64_MAX, 1};
     char *end = (char *)text;
     const char *digits = "0123456789";
@@ -92,69 +100,26 @@ static int take_frames(const char *text, struct bed_options *options) {
     return STATUS_OK;
 }
 
-static int take_length_unit(const char *text, struct bed_options *options) {
+int bed_unit_option(const char *text, void *unit) {
     double metres;
     if (!unit_of_length(text, &metres) || metres == 0)
         return message(STATUS_USAGE, "--length-unit: '%.40s' is none of " UNITS_LENGTH, text);
-    options->length_unit = text;
+    *(const char **)unit = text;
     return STATUS_OK;
 }
 
-static int take_scratch(const char *folder, struct bed_options *options) {
+int bed_scratch_option(const char *folder, void *scratch) {
     struct stat there;
-    options->scratch = folder;
+    *(const char **)scratch = folder;
     if (stat(folder, &there) != 0 || access(folder, W_OK | X_OK) != 0)
         return message_at(STATUS_FILE, folder, 0, "%s", strerror(errno));
     return S_ISDIR(there.st_mode) ? STATUS_OK : message_at(STATUS_FILE, folder, 0, "is not a folder");
 }
 
-int bed_options_take(struct bed_options *options, const struct options *parsed, int key) {
-    const char *value = parsed->value;
-    switch (key) {
-    case OPTIONS_POSITIONAL:
-        return take_file(options, value);
-    case KEY_HELP:
-        return STATUS_HELP;
-    case KEY_PERIODIC:
-        options->periodic = true;
-        return take_period(value, options->period);
-    case KEY_FRAME:
-        return take_frames(value, options);
-    case KEY_WALL:
-        return walls_option(value, &options->walls);
-    case KEY_WALL_VTP:
-        options->wall_vtp = true;
-        return outputs_add_meshes(&options->outputs, value);
-    case KEY_THREADS:
-        return options_threads(value, &options->threads);
-    case KEY_POSITIONS:
-        options->positions = true;
-        return STATUS_OK;
-    case KEY_RADIUS:
-        return quantity_option("--radius", value, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &options->radius);
-    case KEY_LENGTH_UNIT:
-        return take_length_unit(value, options);
-    case KEY_SCRATCH:
-        return take_scratch(value, options);
-    case KEY_PLOT:
-        options->outputs.picture = value;
-        return STATUS_OK;
-    case KEY_JSON:
-        options->outputs.summary = value;
-        return STATUS_OK;
-    case KEY_QUIET:
-        options->quiet = options->progress.quiet = true;
-        return STATUS_OK;
-    case KEY_PROGRESS:
-        options->progress.forced = true;
-        return STATUS_OK;
-    case KEY_FORMAT:
-        return outputs_format(&options->outputs, value);
-    case 'o':
-        return outputs_add(&options->outputs, value);
-    default:
-        return STATUS_USAGE; /* OPTIONS_BAD: the message has been printed */
-    }
+int bed_meshes_option(const char *path, void *bed_options) {
+    struct bed_options *options = bed_options;
+    options->wall_vtp = true;
+    return outputs_add_meshes(path, &options->outputs);
 }
 
 void bed_options_quantity(struct bed_options *options, struct quantity *quantity, const char *unit) {
@@ -175,6 +140,7 @@ static bool is_series(const struct bed_options *options) { return options->range
 int bed_options_check(struct bed_options *options, const char *command, enum content content) {
     const char *picture = options->outputs.picture;
     options->command = command;
+    options->progress.quiet = options->quiet;
     if (options->files == 0) return message(STATUS_USAGE, "FILE is missing; see fibrad %s --help", command);
     bed_options_quantity(options, &options->radius, NULL);
     if (picture && !plot_ending(picture))

@@ -19,27 +19,50 @@
 #include "simple/fibrad_host.h"
 #include "write/outputs.h"
 
-/* Rows of a table of options, without the outermost braces. */
+/* Rows of tables of options of commands whose request begins with a struct bed_options, without the outermost braces.
+ */
 #define OPTIONS_INPUT                                                                                                  \
-    {KEY_RADIUS, "radius", "R", "radius of all spheres, or TYPE:R,..., or a column of the file [r or radius]"},        \
-        {KEY_LENGTH_UNIT, "length-unit", "UNIT", "unit of length of files that name none: " UNITS_LENGTH " [m]"},      \
-        {KEY_PERIODIC, "periodic", "LX,LY,LZ",                                                                         \
-         "lengths of the periodic box, 0 for an open axis, or none [as the file says]"},                               \
-        {KEY_FRAME, "frame", "K", "frame of the file, from 0, -1 for the last, all, A:B or A:B:STEP without B [-1]"},  \
+    {0, "", NULL, NULL, TO_REQUEST(bed_files_option)},                                                                 \
+        {0, "radius", "R", "radius of all spheres, or TYPE:R,..., or a column of the file [r or radius]",              \
+         TO_FUNCTION(bed_radius_option, struct bed_options, radius)},                                                  \
+        {0, "length-unit", "UNIT", "unit of length of files that name none: " UNITS_LENGTH " [m]",                     \
+         TO_FUNCTION(bed_unit_option, struct bed_options, length_unit)},                                               \
+        {0, "periodic", "LX,LY,LZ", "lengths of the periodic box, 0 for an open axis, or none [as the file says]",     \
+         TO_REQUEST(bed_period_option)},                                                                               \
+        {0, "frame", "K", "frame of the file, from 0, -1 for the last, all, A:B or A:B:STEP without B [-1]",           \
+         TO_REQUEST(bed_frames_option)},                                                                               \
     {                                                                                                                  \
-        KEY_POSITIONS, "positions", NULL, "name spheres by their positions in the file, from 0 [by ids]"               \
+        0, "positions", NULL, "name spheres by their positions in the file, from 0 [by ids]",                          \
+            TO_FLAG(struct bed_options, positions)                                                                     \
     }
 #define OPTIONS_RUN                                                                                                    \
-    {OPTION_THREADS}, {KEY_JSON, "json", "OUT", "write the summary as JSON, with all digits [none]"},                  \
-        {KEY_QUIET, "quiet", NULL, "print no summary and no progress"},                                                \
-        {KEY_PROGRESS, "progress", NULL, "show progress even if standard error is not a terminal [off]"}, {            \
+    {OPTION_THREADS(struct bed_options, threads)},                                                                     \
+        {0, "json", "OUT", "write the summary as JSON, with all digits [none]",                                        \
+         TO_TEXT(struct bed_options, outputs.summary)},                                                                \
+        {0, "quiet", NULL, "print no summary and no progress", TO_FLAG(struct bed_options, quiet)},                    \
+        {0, "progress", NULL, "show progress even if standard error is not a terminal [off]",                          \
+         TO_FLAG(struct bed_options, progress.forced)},                                                                \
+    {                                                                                                                  \
         OPTION_HELP                                                                                                    \
     }
+#define OPTIONS_WALL                                                                                                   \
+    {0, "wall", "LIST",                                                                                                \
+     "walls: auto, box, xmin, xmax, ymin, ymax, zmin, zmax, cylinder:X,Y,R, mesh:FILE; see below [none]",              \
+     TO_FUNCTION(walls_option, struct bed_options, walls)},                                                            \
+    {                                                                                                                  \
+        0, "wall-vtp", "OUT", "write the triangles of the walls of mesh:FILE, a .vtp for ParaView [none]",             \
+            TO_REQUEST(bed_meshes_option)                                                                              \
+    }
 
-/* For commands that make matrices. */
+/* Rows without braces: -o with its help, --format, --plot with its help, and --scratch for commands that make matrices.
+ */
+#define OPTION_BED_OUTPUT(help) OPTION_OUTPUT(help, struct bed_options, outputs)
+#define OPTION_BED_FORMAT       OPTION_FORMAT(struct bed_options, outputs)
+#define OPTION_PLOT(help)       0, "plot", "OUT", help, TO_TEXT(struct bed_options, outputs.picture)
 #define OPTION_SCRATCH                                                                                                 \
-    KEY_SCRATCH, "scratch", "FOLDER",                                                                                  \
-        "keep rows and matrix in temporary files of this folder, with the same results [in memory]"
+    0, "scratch", "FOLDER",                                                                                            \
+        "keep rows and matrix in temporary files of this folder, with the same results [in memory]",                   \
+        TO_FUNCTION(bed_scratch_option, struct bed_options, scratch)
 
 /* A paragraph of --help about the files. */
 #define FILES_MORE                                                                                                     \
@@ -84,9 +107,9 @@ struct bed_options {
     struct report report;
 };
 
-/* Takes FILE, -o, --plot, --wall, --wall-vtp and the options of this header. Any other key counts as OPTIONS_BAD, whose
- * message has been printed. Status 0, STATUS_HELP, STATUS_USAGE, STATUS_FILE or STATUS_MEMORY. */
-int bed_options_take(struct bed_options *options, const struct options *parsed, int key);
+/* Functions of the rows above. Status 0, STATUS_USAGE, STATUS_FILE or STATUS_MEMORY. */
+option_take bed_files_option, bed_radius_option, bed_unit_option, bed_period_option, bed_frames_option,
+    bed_meshes_option, bed_scratch_option;
 
 /* Asks for the column of a quantity, if it has one, and sets quantity->index. unit: expected unit of the values; NULL:
  * none. Quantities without a unit may share a column, such as that of types. */

@@ -3,7 +3,7 @@
 
 #include "cli/message.h"
 
-int solid_option(const char *text, struct quantity *solid) {
+int solid_option(const char *text, void *solid) {
     return table_option("--solid-conductivity", text, SOLID_CONDUCTIVITY_MIN, SOLID_CONDUCTIVITY_MAX, solid);
 }
 

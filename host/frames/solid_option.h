@@ -13,13 +13,14 @@
 #define SOLID_CONDUCTIVITY_MAX 1e12
 
 /* A row of a table of options, without braces. */
-#define OPTION_SOLID_CONDUCTIVITY                                                                                      \
-    KEY_SOLID_CONDUCTIVITY, "solid-conductivity", "K",                                                                 \
+#define OPTION_SOLID_CONDUCTIVITY(request, field)                                                                      \
+    0, "solid-conductivity", "K",                                                                                      \
         "thermal conductivity of the solid of the spheres [W/(m K)], or @TABLE of temperatures [K] and "               \
-        "conductivities, or TYPE:K,TYPE:@TABLE,..., or a column of the file [infinite: one temperature a sphere]"
+        "conductivities, or TYPE:K,TYPE:@TABLE,..., or a column of the file [infinite: one temperature a sphere]",     \
+        TO_FUNCTION(solid_option, request, field)
 
-/* Reads the argument of --solid-conductivity. Status as table_option. */
-int solid_option(const char *text, struct quantity *solid);
+/* Takes the argument of --solid-conductivity into a quantity. Status as table_option. */
+int solid_option(const char *text, void *solid);
 
 /* Finds k_s of all spheres, *conductivity [n], and the unit of length [m], which must be known. A table gives one of
  * its values. Free *conductivity also after an error. Status as quantity_values and bed_options_metres, or STATUS_USAGE

@@ -9,12 +9,8 @@
 
 #define POWER_MAX 1e30 /* [W] largest absolute value of an option; far below FIBRAD_POWER_MAX */
 
-int given_temperature_option(const char *text, struct given_options *options) { /* --temperature-unit may follow */
-    return quantity_option("--temperature", text, -KELVIN_OF_0_CELSIUS, TEMPERATURE_MAX, &options->temperature);
-}
-
-int given_power_option(const char *text, struct given_options *options) {
-    return quantity_option("--power", text, -POWER_MAX, POWER_MAX, &options->power);
+int given_power_option(const char *text, void *power) {
+    return quantity_option("--power", text, -POWER_MAX, POWER_MAX, power);
 }
 
 int given_check(struct given_options *options, struct bed_options *bed) {

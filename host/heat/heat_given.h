@@ -4,23 +4,6 @@
 
 #include "frames/bed_options.h"
 
-/* Rows of tables of options, without braces. Each command adds its own key. */
-#define OPTION_TEMPERATURE                                                                                             \
-    "temperature", "T",                                                                                                \
-        "temperature of all spheres, or TYPE:T,..., or a column of the file, blank or nan for spheres of --power"
-#define OPTION_POWER                                                                                                   \
-    "power", "W",                                                                                                      \
-        "power that spheres of unknown temperature give off from inside, a number, TYPE:W,..., or a column of the "    \
-        "file, blank or nan for spheres of --temperature [W]"
-#define OPTION_AMBIENT                                                                                                 \
-    "ambient", "T", "temperature of the black surroundings; needed unless walls and periods close the bed"
-#define OPTION_WALL_TEMPERATURE                                                                                        \
-    "wall-temperature", "LIST",                                                                                        \
-        "temperatures of walls, zmin=1200,zmax=insulated,300 for example; a number without a name is for all others; " \
-        "NAME=triangles:FILE is a column of numbers, one for each triangle of the mesh"
-#define OPTION_WALL_POWER                                                                                              \
-    "wall-power", "LIST", "powers that walls of unknown temperature give off, zmin=500 for example [W]"
-
 /* Arguments of the options. Begin with zeroes. */
 struct given_options {
     struct quantity temperature, power;
@@ -42,9 +25,8 @@ struct given {
     double *side_temperature;  /* [2 triangles] [K] as in fibrad_heat_sources; NULL: no side has one of its own */
 };
 
-/* Read the arguments of --temperature and --power. Status 0 or STATUS_USAGE. */
-int given_temperature_option(const char *text, struct given_options *options);
-int given_power_option(const char *text, struct given_options *options);
+/* Takes the argument of --power into a quantity. Status 0 or STATUS_USAGE. */
+int given_power_option(const char *text, void *power);
 
 /* Checks the options when all have been read, and asks `bed` for the columns they name. Status 0 or STATUS_USAGE. */
 int given_check(struct given_options *options, struct bed_options *bed);

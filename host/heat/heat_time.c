@@ -11,30 +11,17 @@
 #include "cli/message.h"
 #include "plot/plot_time.h"
 
-#define SECONDS_MAX 1e15
 enum { TIMES_MAX = 10000 };
 
-static int step_option(const char *text, double *step) {
-    *step = 0;
-    return strcmp(text, "auto") == 0 ? STATUS_OK : options_number("--step", text, 1 / SECONDS_MAX, SECONDS_MAX, step);
+int capacity_option(const char *text, void *capacity) {
+    return quantity_option("--heat-capacity", text, 1e-12, 1e12, capacity);
 }
 
-int time_option(int key, const char *text, struct time_options *time) {
-    switch (key) {
-    case KEY_UNTIL:
-        return options_number("--until", text, 1 / SECONDS_MAX, SECONDS_MAX, &time->until);
-    case KEY_CAPACITY:
-        return quantity_option("--heat-capacity", text, 1e-12, 1e12, &time->capacity);
-    case KEY_DENSITY:
-        return quantity_option("--density", text, 1e-12, 1e12, &time->density);
-    case KEY_STEP:
-        return step_option(text, &time->step);
-    case KEY_EVERY:
-        return options_number("--every", text, 1 / SECONDS_MAX, SECONDS_MAX, &time->every);
-    default:
-        time->times = text;
-        return STATUS_OK;
-    }
+int density_option(const char *text, void *density) { return quantity_option("--density", text, 1e-12, 1e12, density); }
+
+int step_option(const char *text, void *step) {
+    *(double *)step = 0;
+    return strcmp(text, "auto") == 0 ? STATUS_OK : options_number("--step", text, 1 / SECONDS_MAX, SECONDS_MAX, step);
 }
 
 int time_check(struct time_options *time, struct bed_options *bed) {

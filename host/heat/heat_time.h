@@ -4,19 +4,25 @@
 
 #include "heat/heat_run.h"
 
-/* Rows of a table of options, without the outermost braces. */
-enum { KEY_UNTIL = KEY_OWN + 100, KEY_CAPACITY, KEY_DENSITY, KEY_STEP, KEY_TIMES, KEY_EVERY };
-#define OPTIONS_TIME                                                                                                   \
-    {KEY_UNTIL, "until", "S", "follow the temperatures up to S seconds, from those given [powers at one time]"},       \
-        {KEY_CAPACITY, "heat-capacity", "C",                                                                           \
-         "specific heat of the spheres, a number, TYPE:C,..., or a column of the file [J/(kg K)]"},                    \
-        {KEY_DENSITY, "density", "RHO",                                                                                \
-         "density of the spheres, a number, TYPE:RHO,..., or a column of the file [kg/m3]"},                           \
-        {KEY_STEP, "step", "S", "longest step in seconds, or auto for steps with errors of 1e-4 [auto]"},              \
-        {KEY_TIMES, "times", "LIST", "times of output in seconds, 0,10,60 for example [the end]"}, {                   \
-        KEY_EVERY, "every", "S", "output every S seconds, from 0 on"                                                   \
-    }
+#define SECONDS_MAX 1e15
 
+/* Rows of a table of options, without the outermost braces, for a request with a field `time`. */
+#define OPTIONS_TIME(request)                                                                                          \
+    {0, "until", "S", "follow the temperatures up to S seconds, from those given [powers at one time]",                \
+     TO_NUMBER(request, time.until, 1 / SECONDS_MAX, SECONDS_MAX)},                                                    \
+        {0, "heat-capacity", "C",                                                                                      \
+         "specific heat of the spheres, a number, TYPE:C,..., or a column of the file [J/(kg K)]",                     \
+         TO_FUNCTION(capacity_option, request, time.capacity)},                                                        \
+        {0, "density", "RHO", "density of the spheres, a number, TYPE:RHO,..., or a column of the file [kg/m3]",       \
+         TO_FUNCTION(density_option, request, time.density)},                                                          \
+        {0, "step", "S", "longest step in seconds, or auto for steps with errors of 1e-4 [auto]",                      \
+         TO_FUNCTION(step_option, request, time.step)},                                                                \
+        {0, "times", "LIST", "times of output in seconds, 0,10,60 for example [the end]",                              \
+         TO_TEXT(request, time.times)},                                                                                \
+    {                                                                                                                  \
+        0, "every", "S", "output every S seconds, from 0 on",                                                          \
+            TO_NUMBER(request, time.every, 1 / SECONDS_MAX, SECONDS_MAX)                                               \
+    }
 /* Arguments of the options. Begin with zeroes. */
 struct time_options {
     double until, step, every; /* [s] 0: not given, automatic, not given */
@@ -24,8 +30,8 @@ struct time_options {
     const char *times;
 };
 
-/* Reads the argument of one of the options. Status 0 or STATUS_USAGE. */
-int time_option(int key, const char *text, struct time_options *time);
+/* Functions of the rows above. */
+option_take capacity_option, density_option, step_option;
 
 /* Checks the options when all have been read, and asks `bed` for the columns they name. Without --until the other
  * options are refused. Status 0 or STATUS_USAGE. */

@@ -60,7 +60,8 @@ static int take_part(const char *text, fibrad_light *light) {
     return message(STATUS_USAGE, "--irradiate: '%.60s' is none of half-angle=, disc= and box=", text);
 }
 
-static int take_light(const char *text, struct light_options *options) {
+int irradiate_option(const char *text, void *light_options) {
+    struct light_options *options = light_options;
     char copy[TEXT_MAX], *rest = copy;
     if (strlen(text) >= sizeof copy) return message(STATUS_USAGE, "--irradiate: the text is too long");
     if (options->lights == LIGHTS_MAX) return message(STATUS_USAGE, "--irradiate: more than %d lights", LIGHTS_MAX);
@@ -86,7 +87,8 @@ static int take_light(const char *text, struct light_options *options) {
     return status;
 }
 
-static int take_profile(const char *text, struct light_options *options) {
+int profile_option(const char *text, void *light_options) {
+    struct light_options *options = light_options;
     const char *rest = text + 1;
     if (!strchr("xyz", text[0]) || !text[0] || *rest != ':')
         return message(STATUS_USAGE, "--profile: '%.60s' is not AXIS:OUT or AXIS:BINS:OUT", text);
@@ -104,18 +106,8 @@ static int take_profile(const char *text, struct light_options *options) {
     return message(STATUS_USAGE, "--profile: '%.60s' ends in none of .csv, .svg and .png", rest);
 }
 
-int light_option(int key, const char *text, struct light_options *options) {
-    switch (key) {
-    case KEY_IRRADIATE:
-        return take_light(text, options);
-    case KEY_ABSORPTIVITY:
-        return quantity_option("--absorptivity", text, 0, 1, &options->absorptivity);
-    case KEY_WALL_ABSORPTIVITY:
-        options->wall_absorptivity = text;
-        return STATUS_OK;
-    default:
-        return take_profile(text, options);
-    }
+int absorptivity_option(const char *text, void *absorptivity) {
+    return quantity_option("--absorptivity", text, 0, 1, absorptivity);
 }
 
 int light_check(struct light_options *options, struct bed_options *bed, const struct quantity *of_emissivity) {

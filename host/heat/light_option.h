@@ -6,20 +6,22 @@
 #include "frames/bed_options.h"
 
 enum { LIGHTS_MAX = 32 };
-enum { KEY_IRRADIATE = KEY_OWN + 200, KEY_ABSORPTIVITY, KEY_WALL_ABSORPTIVITY, KEY_PROFILE, KEY_FACE };
 
-/* Rows of the table of options. */
-#define OPTIONS_LIGHT                                                                                                  \
-    {KEY_IRRADIATE, "irradiate", "LIGHT",                                                                              \
-     "light from outside, DX,DY,DZ:FLUX: its direction, and its W/m2 across that direction; see below [none]"},        \
-        {KEY_ABSORPTIVITY, "absorptivity", "A",                                                                        \
-         "absorptivity of all spheres for that light, 0 to 1, or TYPE:A,..., or a column of the file [emissivity]"},   \
-        {KEY_WALL_ABSORPTIVITY, "wall-absorptivity", "LIST",                                                           \
-         "absorptivities of walls for that light, as --wall-emissivity [--wall-emissivity]"},                          \
-        {KEY_PROFILE, "profile", "AXIS[:BINS]:OUT",                                                                    \
-         "write the absorbed light against x, y or z: .csv, .svg or .png; a bin is one mean diameter [none]"},         \
+/* Rows of the table of options, for a request with a field `light`. */
+#define OPTIONS_LIGHT(request)                                                                                         \
+    {0, "irradiate", "LIGHT",                                                                                          \
+     "light from outside, DX,DY,DZ:FLUX: its direction, and its W/m2 across that direction; see below [none]",         \
+     TO_FUNCTION(irradiate_option, request, light)},                                                                   \
+        {0, "absorptivity", "A",                                                                                       \
+         "absorptivity of all spheres for that light, 0 to 1, or TYPE:A,..., or a column of the file [emissivity]",    \
+         TO_FUNCTION(absorptivity_option, request, light.absorptivity)},                                               \
+        {0, "wall-absorptivity", "LIST",                                                                               \
+         "absorptivities of walls for that light, as --wall-emissivity [--wall-emissivity]",                           \
+         TO_TEXT(request, light.wall_absorptivity)},                                                                   \
     {                                                                                                                  \
-        KEY_FACE, "face", NULL, "find the emissivity of the open face of the bed, which has one temperature"           \
+        0, "profile", "AXIS[:BINS]:OUT",                                                                               \
+            "write the absorbed light against x, y or z: .csv, .svg or .png; a bin is one mean diameter [none]",       \
+            TO_FUNCTION(profile_option, request, light)                                                                \
     }
 
 /* A paragraph of --help. */
@@ -57,8 +59,8 @@ struct light_state {
     fibrad_light_result result; /* with these arrays; [W] when the bed is solved */
 };
 
-/* Takes the argument of an option KEY_IRRADIATE to KEY_PROFILE. Status 0 or STATUS_USAGE. */
-int light_option(int key, const char *text, struct light_options *options);
+/* Functions of the rows above. Status 0 or STATUS_USAGE. */
+option_take irradiate_option, absorptivity_option, profile_option;
 
 /* Checks the options when all have been read. of_emissivity: that of --emissivity. Status 0 or STATUS_USAGE. */
 int light_check(struct light_options *options, struct bed_options *bed, const struct quantity *of_emissivity);

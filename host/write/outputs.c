@@ -42,7 +42,8 @@ static const struct format *format_of_ending(const char *path) {
     return NULL;
 }
 
-int outputs_add(struct outputs *outputs, const char *path) {
+int outputs_add(const char *path, void *all) {
+    struct outputs *outputs = all;
     const char *star = strchr(path, '*');
     if (outputs->count == OUTPUTS_MAX) return message(STATUS_USAGE, "-o: at most %d are allowed", OUTPUTS_MAX);
     if (star && strchr(star + 1, '*')) return message_at(STATUS_USAGE, path, 0, "has more than one *");
@@ -52,14 +53,16 @@ int outputs_add(struct outputs *outputs, const char *path) {
     return STATUS_OK;
 }
 
-int outputs_add_meshes(struct outputs *outputs, const char *path) {
+int outputs_add_meshes(const char *path, void *all) {
+    struct outputs *outputs = all;
     static const struct format meshes = {"vtp", {write_mesh_vtp, write_mesh_vtp}, false, false};
-    const int status = outputs_add(outputs, path);
+    const int status = outputs_add(path, outputs);
     if (!status) outputs->to[outputs->count - 1].format = &meshes;
     return status;
 }
 
-int outputs_format(struct outputs *outputs, const char *name) {
+int outputs_format(const char *name, void *all) {
+    struct outputs *outputs = all;
     if (outputs->format) return message(STATUS_USAGE, "--format may be given only once");
     for (int k = 0; k < FORMATS; ++k)
         if (strcmp(formats[k].name, name) == 0) outputs->format = &formats[k];

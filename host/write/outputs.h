@@ -46,14 +46,16 @@ struct outputs {
     size_t frames, room;
 };
 
-/* Rows of a table of options, without braces. */
-#define OPTION_FORMAT                                                                                                  \
-    KEY_FORMAT, "format", "NAME", "format of each -o without an ending that names one, such as -o - [by the ending]"
+/* Rows of a table of options, without braces. help: of -o. */
+#define OPTION_OUTPUT(help, request, field) 'o', "output", "OUT", help, TO_FUNCTION(outputs_add, request, field)
+#define OPTION_FORMAT(request, field)                                                                                  \
+    0, "format", "NAME", "format of each -o without an ending that names one, such as -o - [by the ending]",           \
+        TO_FUNCTION(outputs_format, request, field)
 
-/* Take the argument of -o, --wall-vtp or --format. Status 0 or STATUS_USAGE. */
-int outputs_add(struct outputs *outputs, const char *path);
-int outputs_add_meshes(struct outputs *outputs, const char *path);
-int outputs_format(struct outputs *outputs, const char *name);
+/* Take the argument of -o, --wall-vtp or --format into the outputs. Status 0 or STATUS_USAGE. */
+int outputs_add(const char *path, void *outputs);
+int outputs_add_meshes(const char *path, void *outputs);
+int outputs_format(const char *name, void *outputs);
 
 /* Checks when all options have been read that the outputs can hold the contents and have different paths. series: there
  * may be several frames. Status 0 or STATUS_USAGE. */
