@@ -1,4 +1,5 @@
-/* bench.h - what all benches print first, clocks, memory, and what becomes of errors. SPDX-License-Identifier: MIT */
+/* bench.h - what all benches print first, clocks, memory, and the end of a bench after an error.
+ * SPDX-License-Identifier: MIT */
 #ifndef BENCH_H
 #define BENCH_H
 
@@ -9,7 +10,7 @@
 
 #include "simple/fibrad_host.h"
 
-/* Processor time of this thread, which others on the machine disturb least [s]. */
+/* Processor time of this thread [s]. Other work on the machine disturbs processor time least. */
 static inline double bench_thread_seconds(void) {
     struct timespec now;
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -30,13 +31,13 @@ static inline void *bench_array(size_t count, size_t size) {
     return array;
 }
 
-/* Empty work memory or rows that grow on the heap; memory.block is to be freed. */
+/* Empty work memory or rows that grow on the heap. The caller frees memory.block. */
 #define BENCH_GROWING                                                                                                  \
     {                                                                                                                  \
         .memory = {.resize = fibrad_heap_resize }                                                                      \
     }
 
-/* One line `# key: value` each. `make bench` hands commit and flags over in the environment. */
+/* Prints a line `# key: value` for each fact of the run. `make bench` sets commit and flags in the environment. */
 static inline void bench_preamble(const char *what, int threads) {
     const char *commit = getenv("BENCH_COMMIT"), *flags = getenv("BENCH_FLAGS");
     char cpu[200] = "unknown\n", line[200];

@@ -1,12 +1,12 @@
-/* bench_areas.c - exact visible areas alone: both methods in every instruction set there is, one thread.
+/* bench_areas.c - exact visible areas alone: both methods in every instruction set of this machine, one thread.
  * SPDX-License-Identifier: MIT
  *
  *     bench_areas [quick]
  *
- * CSV on standard output: microseconds per window, processor time, the least of rounds in which all take turns; the
- * part of the windows that clipping left to the arrangement; and how many times as long that takes in scalar, the
- * reference. The windows are those of a periodic random bed of equal spheres, solid fraction 0.6, with their discs
- * sorted. */
+ * The bench writes CSV to standard output. `microseconds` is processor time per window: the least of several rounds, in
+ * which all methods take turns. The next column is the part of the windows that clipping left to the arrangement. The
+ * last column is the time of the scalar arrangement, which is the reference, over this time. The windows are those of a
+ * periodic random bed of equal spheres, solid fraction 0.6, with their discs sorted. */
 #include <math.h>
 
 #include "window/areas.h"
@@ -39,7 +39,7 @@ static void add(struct method *method, const char *name, const char *isa, begin_
     *method = (struct method){name, isa, begin, disc, end, INFINITY, 0};
 }
 
-/* The two methods of an instruction set; clipping takes discs in one call, which is given one. */
+/* The two methods of an instruction set. Clipping takes all discs in one call. */
 #define DECLARE(isa)                                                                                                   \
     begin_function fibrad_areas_begin_##isa, fibrad_arrangement_begin_##isa;                                           \
     disc_function fibrad_arrangement_disc_##isa;                                                                       \
@@ -63,7 +63,7 @@ DECLARE(avx2)
 DECLARE(avx512)
 #endif
 
-/* Those of this machine; the scalar arrangement comes first. */
+/* The instruction sets of this machine. The scalar arrangement comes first. */
 static int methods_list(struct method methods[METHODS]) {
     int n = 0;
     METHOD(arrangement, scalar);
@@ -80,7 +80,7 @@ static int methods_list(struct method methods[METHODS]) {
     return n;
 }
 
-/* The nearest discs before the window of sphere i, unit radius, in direction k of n. */
+/* The nearest discs before the window of sphere i in direction k of n. The window has the radius 1. */
 static void look(struct window *window, const struct bed *bed, uint32_t i, uint32_t k, uint32_t n) {
     double w[3] = {0};
     fibrad_direction(k, n, w);

@@ -2,7 +2,8 @@
  *
  *     bench_beam [quick]
  *
- * CSV on standard output; bed and truth are those of centre.h. Times are processor times, the least of three rounds. */
+ * The bench writes CSV to standard output. centre.h makes the bed and the true rows. Times are processor times, the
+ * least of three rounds. */
 #include "centre.h"
 
 static void bench(struct centre *centre, const struct bench_method *method, const char *kind, uint32_t setting) {

@@ -1,6 +1,6 @@
 /* bench_bed.h - scenes of beds, rows by any method, and factors of whole beds. SPDX-License-Identifier: MIT
  *
- * All of this ends the program when something fails. */
+ * Each function ends the program if something fails. */
 #ifndef BENCH_BED_H
 #define BENCH_BED_H
 
@@ -18,7 +18,7 @@ static inline fibrad_scene_config bench_config(const struct bed *bed, int isa) {
     return (fibrad_scene_config){.isa = isa, .period = {bed->period[0], bed->period[1], bed->period[2]}};
 }
 
-/* The scene of a bed in *block, which is to be freed. NULL: no such instruction set in this library. */
+/* The scene of a bed in *block, which the caller frees. NULL: this library has no such instruction set. */
 static inline fibrad_scene *bench_scene(const struct bed *bed, int isa, void **block) {
     const fibrad_spheres spheres = bench_spheres(bed);
     const fibrad_scene_config config = bench_config(bed, isa);
@@ -30,14 +30,14 @@ static inline fibrad_scene *bench_scene(const struct bed *bed, int isa, void **b
     return scene;
 }
 
-/* A row with arrays of its own, which are to be freed. */
+/* A row with its own arrays, which the caller frees. */
 static inline fibrad_row bench_arrays(uint32_t capacity) {
     return (fibrad_row){.col = bench_array(capacity, sizeof(uint32_t)),
                         .f = bench_array(capacity, sizeof(double)),
                         .capacity = capacity};
 }
 
-/* A method is the one of these rules that is set. */
+/* The rule of a method. Just one of these fields is set. */
 struct bench_method {
     const char *name;
     const fibrad_beam_rule *beam;
@@ -57,7 +57,7 @@ static inline void bench_row(const fibrad_scene *scene, fibrad_work *work, const
     bench_check("row", bench_try_row(scene, work, method, i, row));
 }
 
-/* Factors of a whole bed, to be freed with fibrad_bed_free. */
+/* Factors of a whole bed. The caller frees them by fibrad_bed_free. */
 static inline fibrad_bed_factors *bench_factors(const struct bed *bed, const fibrad_bed_options *options, int threads) {
     const fibrad_spheres spheres = bench_spheres(bed);
     const fibrad_scene_config config = bench_config(bed, FIBRAD_ISA_BEST);
@@ -67,7 +67,7 @@ static inline fibrad_bed_factors *bench_factors(const struct bed *bed, const fib
     return factors;
 }
 
-/* Entries of a row, wherever they are. */
+/* The entries of a row, in its own arrays or in a collection. */
 struct bench_entries {
     const uint32_t *col;
     const double *f;

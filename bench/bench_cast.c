@@ -2,10 +2,10 @@
  *
  *     bench_cast [quick]
  *
- * CSV on standard output. `pair`: unit spheres at centre distance 2 ... 6; the error is that of F12 in per cent, root
- * mean square over 24 orientations of the pair. `bed`: random periodic beds of 1,000 to 20,000 spheres, radii 0.8-1.2,
- * solid fraction 0.55; root mean square of the Euclidean error of 20 rows, the truth being 10,000 beams. Seconds are
- * those of one thread in the rows. */
+ * The bench writes CSV to standard output. Lines `pair` have unit spheres at the centre distances 2 ... 6. Their error
+ * is that of F12 in per cent, as root mean square over 24 orientations of the pair. Lines `bed` have random periodic
+ * beds of 1,000 to 20,000 spheres, radii 0.8-1.2, solid fraction 0.55. Their error is the root mean square of the
+ * Euclidean errors of 20 rows, against 10,000 beams. Seconds are those of one thread in the rows. */
 #include "bed/packing.h"
 #include "bench_bed.h"
 
@@ -90,7 +90,8 @@ int main(int argc, char **argv) {
     bench_preamble("bench_cast: pairs: error in per cent of F12; beds: Euclidean error of a row", 1);
     puts("scene,method,distance_or_spheres,rays,error,error_estimate,nanoseconds_per_ray");
     for (int random = 0; random <= 1; ++random)
-        for (int r = 0; r < (quick ? 1 : 3 - random); ++r) /* the most rays at random take as long, for nothing new */
+        for (int r = 0; r < (quick ? 1 : 3 - random);
+             ++r) /* so many random rays would take as long and show nothing new */
             for (int h = 2; h <= 6; ++h) bench_pair(&work, random, rays[r], h);
     for (size_t s = 0; s < (quick ? 1 : sizeof spheres / sizeof *spheres) && !status; ++s)
         status = bench_bed(&work, spheres[s], quick);

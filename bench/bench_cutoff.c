@@ -2,16 +2,18 @@
  *
  *     bench_cutoff [quick]
  *
- * CSV on standard output. Random periodic bed of equal spheres, solid fraction 0.588. By emissivity and cutoff [radii],
- * relative to the same rows without a cutoff, from the same paths:
- *   beyond                        the fraction that is cut off
- *   flux_dropped, flux            of a hot sphere among cold ones: 1 - D_ii; what is cut off dropped, and given back
- *   conductivity_dropped, conductivity    mean square displacement along the axes, likewise
- */
+ * The bench writes CSV to standard output. The bed is a random periodic bed of equal spheres, solid fraction 0.588.
+ * There is a line for each emissivity and cutoff [radii]. All columns but `beyond` are relative to the same rows
+ * without a cutoff, from the same paths.
+ *   beyond                  the fraction that is cut off
+ *   flux_dropped            what a hot sphere loses to cold ones, 1 - D_ii; the fraction that is cut off is dropped
+ *   flux                    the same; the fraction that is cut off is given back to the row
+ *   conductivity_dropped    mean square displacement along the axes; the fraction is dropped
+ *   conductivity            the same; the fraction is given back */
 #include "bed/packing.h"
 #include "bench_bed.h"
 
-/* Means over spheres i = 0, STEP, 2 STEP ... of what one row says. */
+/* Quantities of a row, as means over the spheres i = 0, STEP, 2 STEP ... */
 struct means {
     double beyond, kept, flux, square;
 };

@@ -1,11 +1,12 @@
-/* bench_embree.c - peer: rays through Embree on the rows of bench_beam. SPDX-License-Identifier: MIT
+/* bench_embree.c - a peer: rays through Embree on the rows of bench_beam. SPDX-License-Identifier: MIT
  *
  *     bench_embree [quick]
  *
- * CSV as bench_beam's; built where Embree 3 is found. Spheres as sphere points, packets of 16 rays, one thread. Rays
- * leave evenly over the sphere by the cosine law. `owen`: a Sobol sequence in four dimensions with Owen's scrambling,
- * once for all, and another digital shift for each row; `mc`: pseudo-random numbers. Numbers are made beforehand and
- * not timed, which favours the peer; timed is what turns them into rays, and tracing. */
+ * The bench is built if Embree 3 is found. It writes CSV with the columns of bench_beam. Spheres are sphere points of
+ * Embree. Rays are traced in packets of 16, by one thread. They leave evenly over the sphere by the cosine law. Lines
+ * `owen` take a Sobol sequence in four dimensions with Owen's scrambling. The scrambling is the same for all rows. Each
+ * row has another digital shift. Lines `mc` take pseudo-random numbers. The numbers are made beforehand and are not
+ * timed, which favours the peer. The time is that of making rays from numbers, and of tracing. */
 #include "centre.h"
 #include "embree_rays.h"
 

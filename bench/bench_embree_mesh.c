@@ -1,14 +1,16 @@
-/* bench_embree_mesh.c - peer: rows beside a bundle of tubes in a settled bed, by beams and by rays through Embree.
+/* bench_embree_mesh.c - a peer: rows beside a bundle of tubes in a settled bed, by beams and by rays through Embree.
  * SPDX-License-Identifier: MIT
  *
  *     bench_embree_mesh [quick | BED]
  *
- * CSV on standard output. Seven tubes of 5,000 triangles stand in a bed from which the spheres that meet them are taken
- * (BED, of which the 5,000 spheres nearest to the middle tube's centre stay; else a random one); rows: of the spheres
- * nearest to the tubes, to all spheres and, as one more entry, to the tubes. Truth: beams with exact areas, many
- * directions. As in bench_embree, one thread, processor time of the rows alone, numbers for rays made beforehand;
- * error: root mean square over the entries that truly are, and Euclidean of a row; `tubes`: that of the entry of tubes.
- */
+ * The bench writes CSV to standard output. Seven tubes of 5,000 triangles stand in a bed. The spheres that meet a tube
+ * are taken out. If BED is given, the 5,000 spheres nearest to the centre of the middle tube stay. Otherwise the bed is
+ * random. The rows are those of the spheres nearest to the tubes. A row has an entry for each sphere, and one entry for
+ * all tubes. The true rows are by beams with exact areas and many directions.
+ *
+ * As in bench_embree, one thread does the work, times are processor times of the rows alone, and numbers for rays are
+ * made beforehand. Errors are the root mean square over all entries that are not 0 in the true rows, and the Euclidean
+ * error of a row. `tubes` is the error of the entry for the tubes. */
 #include "bed/packing.h"
 #include "bench_triangles.h"
 #include "embree_rays.h"
@@ -60,7 +62,7 @@ static int by_size(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Takes from a bed the spheres clear of the tubes, no more than `most`, those nearest to the middle. */
+/* Takes from a bed the spheres that meet no tube: at most `most` of them, those nearest to the middle. */
 static void take_clear(struct bundle *b, const struct bed *from, uint32_t most) {
     double *away = bench_array(from->n, sizeof *away);
     uint32_t clear = 0;
@@ -76,7 +78,7 @@ static void take_clear(struct bundle *b, const struct bed *from, uint32_t most) 
     free(away);
 }
 
-/* The spheres nearest to tubes, of those that are near the middle. */
+/* The spheres near the middle that are nearest to tubes. */
 static void find_rows(struct bundle *b) {
     double least = 0;
     for (b->rows = 0; b->rows < ROWS; ++b->rows) {
@@ -91,7 +93,7 @@ static void find_rows(struct bundle *b) {
     }
 }
 
-/* Squares of errors, of all entries and of that to tubes. */
+/* Sums of squared errors: of all entries, and of the entry for the tubes. */
 struct bundle_error {
     double square, tubes;
     uint64_t entries;

@@ -2,9 +2,9 @@
  *
  *     bench_error [quick]
  *
- * CSV on standard output. Bed: 1000 spheres, radii 0.8-1.2, solid fraction 0.55, open; rows: those at least 4 away from
- * its faces. Truth: exact areas with 40000 directions. `averaged`: the error of (V_ij + V_ji)/2A_i instead of V_ij/A_i.
- */
+ * The bench writes CSV to standard output. The bed has 1000 spheres, radii 0.8-1.2, solid fraction 0.55, and is open.
+ * The rows are those of spheres at least 4 away from its faces. The true rows have exact areas and 40000 directions.
+ * `averaged` is the error of (V_ij + V_ji)/2A_i instead of V_ij/A_i. */
 #include "bed/packing.h"
 #include "bench_bed.h"
 

@@ -1,12 +1,13 @@
-/* bench_estimate.c - is the error that a row claims above its true one? SPDX-License-Identifier: MIT
+/* bench_estimate.c - whether the estimated error of a row is above its true error. SPDX-License-Identifier: MIT
  *
  *     bench_estimate [quick | BED...]
  *
- * CSV on standard output: true Euclidean errors and estimates of rows at equal distances in several beds, raw and
- * averaged with their partners, from 50 to 6400 directions. `honest`: per cent of true errors below the estimate;
- * `low`, `median`, `high`: estimate over true error, 5 %, 50 % and 95 % of rows below. Truth: exact areas with 40000
- * directions. Beds: those of tests/data, random beds, a lattice, scenes of 3 to 8 spheres, and files named as
- * arguments; `quick`: the last scenes alone. Run it from the project's root. */
+ * The bench writes CSV to standard output. In several beds, rows of spheres at equal steps of the index are computed
+ * with 50 to 6400 directions, raw and averaged. A line compares their estimates with their true Euclidean errors.
+ * `honest` is the per cent of true errors below the estimate. `low`, `median` and `high` are quantiles of the estimate
+ * over the true error: 5 %, 50 % and 95 % of the rows lie below. The true rows have exact areas and 40000 directions.
+ * The beds are those of tests/data, random beds, a lattice, scenes of 3 to 8 spheres, and files named as arguments.
+ * `quick` runs these scenes alone. Run the bench from the project's root. */
 #include "bed/packing.h"
 #include "bench_bed.h"
 #include "read/read.h"
@@ -14,7 +15,10 @@
 enum { ROWS = 64, SCENES = 32, SAMPLES = 512 };
 
 static const uint32_t directions[] = {50, 100, 200, 400, 800, 1600, 6400};
-enum { STEPS = sizeof directions / sizeof *directions, ALL_ROWS = 4 }; /* averaged up to 400 only, for the time */
+enum {
+    STEPS = sizeof directions / sizeof *directions,
+    ALL_ROWS = 4
+}; /* averaged rows have at most 400 directions, since more take too long */
 
 /* Errors and estimates of rows of one kind. */
 struct samples {

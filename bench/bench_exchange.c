@@ -2,14 +2,15 @@
  *
  *     bench_exchange [quick]
  *
- * CSV on standard output. Random periodic bed of 2,000 equal spheres, solid fraction 0.586; root mean square of the
- * Euclidean error of ROWS rows, not averaged with their partners, the truth being 3,200 beams and 600,000 paths;
- * error as estimated; seconds of one thread for a row; rays traced for a row, without beams. Methods:
- *   analog    random paths, each absorbed as a whole where a random number says so
- *   expected  quasi-random paths that leave at each surface what it absorbs
- *   beam      fibrad_exchange_row: the first leg by beams, the others by such paths
- *   rows      fibrad_exchange_factors: all rows of the bed, tolerance 0.01, two threads; directions: the most of a row
- */
+ * The bench writes CSV to standard output. The bed is a random periodic bed of 2,000 equal spheres, solid fraction
+ * 0.586. The true error is the root mean square of the Euclidean errors of ROWS raw rows, against 3,200 beams and
+ * 600,000 paths. Further columns are the estimated error, the seconds of one thread for a row, and the rays traced for
+ * a row, without beams. The methods are
+ *   analog    random paths; each path is absorbed as a whole when a random number says so
+ *   expected  quasi-random paths that leave at each surface what the surface absorbs
+ *   beam      fibrad_exchange_row: beams for the first leg, quasi-random paths for the others
+ *   rows      fibrad_exchange_factors: all rows of the bed, tolerance 0.01, two threads; directions are the most of a
+ * row */
 #include "base/elementary.h"
 #include "bed/packing.h"
 #include "bench_bed.h"
@@ -39,7 +40,7 @@ static struct bench open_bench(const struct bed *bed) {
 
 static uint32_t target(const struct bench *bench, uint32_t k) { return k * (bench->n / ROWS); }
 
-/* What a method makes of row i: into bench->sum, its estimated error and its rays. */
+/* Computes row i by a method: entries go into bench->sum, with the estimated error and the rays. */
 typedef void method(struct bench *bench, uint32_t i, uint32_t paths, uint32_t directions, double *error,
                     uint64_t *rays);
 

@@ -2,10 +2,11 @@
  *
  *     bench_furnace [quick | REFERENCE_BUNDLES [LARGEST_BUNDLES [THREADS]]]
  *
- * CSV on standard output. Errors are those of
- * temperatures, in per cent of a Monte Carlo run with REFERENCE_BUNDLES (2e7) bundles and another seed on the same
- * 20 x 20 x 40 cells: largest of all cells, largest in the plane y = 1 m, root mean square. Up to LARGEST_BUNDLES
- * (2e6). The table of docs/furnace.md: bench_furnace 100000000 16000000, some minutes. */
+ * The bench writes CSV to standard output. Errors are those of temperatures, in per cent. The reference is a Monte
+ * Carlo run with REFERENCE_BUNDLES (2e7) bundles and another seed, on the same 20 x 20 x 40 cells. There are three
+ * errors: the largest of all cells, the largest in the plane y = 1 m, and the root mean square. The numbers of bundles
+ * rise up to LARGEST_BUNDLES (2e6). The table of docs/furnace.md is by bench_furnace 100000000 16000000, which takes
+ * some minutes. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -91,7 +92,7 @@ int main(int argc, char **argv) {
                 fibrad_furnace_config config = furnace_case(number);
                 status = furnace_run(&config, &options, &run);
                 if (!status) print_row(number, methods[m].name, &run, reference);
-                if (status == STATUS_INPUT) status = STATUS_OK; /* too few bundles for mchf: there is no such point */
+                if (status == STATUS_INPUT) status = STATUS_OK; /* mchf needs more bundles: there is no such point */
                 furnace_free(&run);
             }
         }

@@ -2,11 +2,14 @@
  *
  *     bench_heat [quick | copies N...]
  *
- * CSV on standard output. Without arguments: a random bed of 500 equal spheres in a periodic box, solid fraction 0.58,
- * temperatures at random; `quick`: 100. `copies N`: N copies side by side of a settled bed of 2,000 spheres, periodic
- * to both sides, open to 300 K above and below, with the temperatures of its file; 10 take a minute and 0.4 GB, 500 (a
- * million spheres; emissivity 0.8 alone) a quarter of an hour and 17 GB. Run it where tests/data is. The reference has
- * 384 patches, 400 directions of 128 points; of copies it is that of one of them, which all have the same powers. */
+ * The bench writes CSV to standard output. Without arguments, the bed is a random bed of 500 equal spheres in a
+ * periodic box, solid fraction 0.58, at random temperatures. With `quick` it has 100 spheres. With `copies N` there are
+ * N copies, side by side, of a settled bed of 2,000 spheres with the temperatures of its file. This bed is periodic to
+ * both sides and open to 300 K above and below. 10 copies take a minute and 0.4 GB. 500 copies are a million spheres;
+ * with emissivity 0.8 alone they take a quarter of an hour and 17 GB. Run the bench where tests/data is.
+ *
+ * The reference has 384 patches and 400 directions of 128 points. For copies it is computed for one copy, since all
+ * copies have the same powers. */
 #include <malloc.h>
 #include <unistd.h>
 
@@ -16,11 +19,11 @@
 
 enum { PARTS = 8 };
 
-enum { MANY = 100 }; /* copies: one emissivity will do */
+enum { MANY = 100 }; /* copies: one emissivity suffices */
 
 struct heat {
     double traced, solved; /* [s] */
-    double bytes;          /* that were used of the block */
+    double bytes;          /* bytes of the block that were used */
     fibrad_heat_result result;
 };
 
@@ -39,7 +42,7 @@ static struct heat solve(const fibrad_scene *scene, const fibrad_heat_config *co
     fibrad_work work = BENCH_GROWING;
     fibrad_heat *heat;
     const double begun = bench_thread_seconds();
-    void *block = malloc(size); /* pages are cleared where they are used */
+    void *block = malloc(size); /* the system clears pages when they are used */
     bench_check("heat", fibrad_heat_init(&heat, block, size, config, scene));
     for (uint32_t task = 0; task < fibrad_heat_tasks(heat); task++)
         bench_check("trace", fibrad_heat_trace(heat, &work, task));
@@ -80,7 +83,7 @@ static void fill(double *values, uint32_t n, double value) {
     for (uint32_t i = 0; i < n; i++) values[i] = value;
 }
 
-/* All settings, on a random bed. */
+/* Runs all settings on a random bed. */
 static void bench_settings(bool quick) {
     static const uint32_t patches[] = {24, 96, 384},
                           rules[][2] = {{36, 64}, {72, 64}, {168, 64}, {288, 64}, {72, 128}, {168, 128}};
@@ -108,7 +111,7 @@ static void bench_settings(bool quick) {
     bed_free(&bed);
 }
 
-/* The settled bed; its temperatures are bed->extra. */
+/* The settled bed. bed->extra has its temperatures. */
 static void read_tile(struct bed *tile) {
     static const char *const column[] = {"v_T"};
     bed_init(tile);
@@ -117,7 +120,7 @@ static void read_tile(struct bed *tile) {
     tile->period[2] = 0;
 }
 
-/* The defaults, on copies of a settled bed. */
+/* Runs the defaults on copies of a settled bed. */
 static void bench_copies(uint32_t copies) {
     struct bed tile, bed;
     void *tile_block, *block;
@@ -147,7 +150,8 @@ static void bench_copies(uint32_t copies) {
 
 int main(int argc, char **argv) {
     const bool copies = argc > 2 && strcmp(argv[1], "copies") == 0;
-    mallopt(M_MMAP_THRESHOLD, 1 << 16); /* large blocks come from the system each time, so that their pages count */
+    mallopt(M_MMAP_THRESHOLD,
+            1 << 16); /* large blocks come from the system each time, so that each run pays for its pages */
     bench_preamble("net powers: error over their root mean square, and processor seconds of one thread", 1);
     puts("spheres,emissivity,patches,directions,points,trace_s,solve_s,sweeps,bytes_per_sphere,error,estimate");
     for (int k = 2; k < argc && copies; k++) bench_copies((uint32_t)strtoul(argv[k], NULL, 10));

@@ -4,19 +4,22 @@
  *
  *     bench_instructions [quick | SPHERES]
  *
- * CSV on standard output: the bed of bench_window, periodic, of equal spheres (20,000), solid fraction 0.58; 200 rows
- * of spheres spread over all of it, 100 directions each; instructions a window, the row's setting up and writing out
- * shared among them. A line `circle`: three tasks of silhouettes spread over the bed, 100 lines; instructions a circle,
- * near lists and pairs shared among them. The library is built by bench/count_cc.sh and counts its own instructions
- * (`make bench-counted`): the figures depend on sources, compiler and flags alone, so that the smallest difference of
- * two versions shows. Not counted are the C library's copying, and the no-operations that align loops, 0.5 % of what
- * the processor executes. */
+ * The bench writes CSV to standard output. The bed is that of bench_window: periodic, of equal spheres (20,000), solid
+ * fraction 0.58. For windows, 200 rows of spheres spread over all of the bed are computed with 100 directions each. The
+ * instructions of a window contain its share of setting up and writing out the row. A line `circle` has three tasks of
+ * silhouettes spread over the bed, with 100 lines. The instructions of a circle contain its share of near lists and
+ * pairs.
+ *
+ * The library is built by bench/count_cc.sh and counts its own instructions (`make bench-counted`). The figures depend
+ * on sources, compiler and flags alone. So they show the smallest difference between two versions. Two things are not
+ * counted: copies by the C library, and the no-operations that align loops. The latter are 0.5 % of what the processor
+ * executes. */
 #include "bed/packing.h"
 #include "bench_bed.h"
 
 enum { DIRECTIONS = 100, CAPACITY = 4096 };
 
-/* What objects of bench/count_cc.sh have executed; the second word is theirs. */
+/* The number of instructions that objects of bench/count_cc.sh have executed. These objects need the second word. */
 uint64_t instructions_counted[2];
 
 /* Instructions of `rows` rows spread over the bed; 0: nothing is counted. */

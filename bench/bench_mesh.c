@@ -1,13 +1,16 @@
-/* bench_mesh.c - walls of triangles: what they cost and how they err, against planes, a cylinder and closed forms.
+/* bench_mesh.c - time and error of walls of triangles, against planes, a cylinder and closed forms.
  * SPDX-License-Identifier: MIT
  *
  *     bench_mesh [quick | BED]
  *
- * CSV on standard output, one thread, exact areas but where points are named. Time: a bed (20,000 spheres, solid
- * fraction 0.58) between six planes, between the same as 100,000 triangles, and open; processor time of rows of 100
- * directions, the least of rounds in which all take turns: all of every tenth row, and those rows that see no wall.
- * Errors, root mean square over rows: of a sphere and a triangle, whose factor is a solid angle; of a box of 12
- * triangles and a cylinder of 2,000 facets, against planes and cylinder in many directions. */
+ * The bench writes CSV to standard output. It runs on one thread, with exact areas where no points are named.
+ *
+ * Times are those of a bed (20,000 spheres, solid fraction 0.58) between six planes, between the same walls as 100,000
+ * triangles, and open. They are processor times of rows of 100 directions: the least of several rounds, in which all
+ * take turns. One line has every tenth row. Another line has only those of these rows that see no wall.
+ *
+ * Errors are root mean squares over rows. A triangle beside a sphere has its solid angle as its true factor. A box of
+ * 12 triangles and a cylinder of 2,000 facets are compared with planes and a cylinder in many directions. */
 #include "bed/packing.h"
 #include "bench_triangles.h"
 #include "read/read.h"
@@ -17,7 +20,7 @@ enum { CAPACITY = 20000, ROUNDS = 3, BODIES = 6, SETTINGS = 7 };
 
 static const double pi = 3.14159265358979323846;
 
-/* A row with room for bodies. */
+/* A row with room for factors to walls. */
 static fibrad_row row_in(uint32_t capacity) {
     fibrad_row row = bench_arrays(capacity);
     row.body = bench_array(BODIES, sizeof *row.body);
@@ -40,7 +43,7 @@ static void find_ends(const struct bed *bed, double low[3], double high[3]) {
 /* ---- time -------------------------------------------------------------------------------------------------------- */
 enum { OPEN, PLANES, TRIANGLES, SCENES };
 
-/* The rows that see no wall: how many, listed first. */
+/* Lists the rows that see no wall first. Returns their number. */
 static uint32_t find_deep(const fibrad_scene *scene, fibrad_work *work, fibrad_row *row, uint32_t n, uint32_t step,
                           uint32_t *list) {
     const fibrad_beam_rule rule = {.directions = 100};
@@ -127,7 +130,7 @@ static double solid_angle(double v[3][3]) {
     return 2 * fabs(atan2(volume, r[0] * r[1] * r[2] + dot[0] * r[2] + dot[1] * r[0] + dot[2] * r[1]));
 }
 
-/* A triangle in a plane 1.05 to 30 radii away that may be seen near its edges; returns its factor. */
+/* Makes a triangle in a plane 1.05 to 30 radii away. Returns its factor. */
 static double random_triangle(struct bench_triangles *triangles, uint64_t seed) {
     double rotation[9], v[3][3];
     const double away = 1.05 * pow(30 / 1.05, bed_make_random(seed, 0)),
@@ -177,7 +180,7 @@ static void bench_polygons(uint64_t cases, int few) {
     bed_free(&bed);
 }
 
-/* Rows in the same container twice: a few directions through triangles, and many without. */
+/* Computes rows in the same container twice: with triangles and few directions, and without triangles and many. */
 static void bench_container(const char *name, const struct bed *bed, fibrad_scene *scene, fibrad_scene *smooth,
                             uint32_t bodies, int few) {
     fibrad_work work = BENCH_GROWING;
@@ -225,7 +228,7 @@ static void bench_boxes(const struct bed *bed, int few) {
     bench_triangles_free(&triangles);
 }
 
-/* Those spheres of a bed that lie within its cylinder. */
+/* The spheres of a bed that lie within its cylinder. */
 static void bench_cylinders(const struct bed *from, int few) {
     enum { FACETS = 1000 };
     double low[3], high[3], middle[2];

@@ -1,6 +1,8 @@
-/* bench_pair.c - two free spheres: nanoseconds a call, the kernel beside GSL's quadrature. SPDX-License-Identifier: MIT
+/* bench_pair.c - two free spheres: nanoseconds a call, by the kernel and by GSL's quadrature.
+ * SPDX-License-Identifier: MIT
  *
- * CSV on standard output; the best of some rounds. Difference: the largest |kernel/GSL - 1| over the radii. */
+ * The bench writes CSV to standard output. Times are the best of several rounds. `difference` is the largest
+ * |kernel/GSL - 1| over the radii. */
 #include <math.h>
 
 #include "bench.h"
@@ -10,7 +12,7 @@ enum { RADII = 16 };
 
 static double radius(int k) { return 0.1 * pow(100, k / (RADII - 1.0)); }
 
-/* Nanoseconds a call, over all radii; their factors go to f. */
+/* Nanoseconds a call, as mean over all radii. f gets the factors. */
 static double by_kernel(double gap, int times, double f[RADII]) {
     double best = INFINITY;
     for (int round = 0; round < 5; ++round) {

@@ -3,16 +3,19 @@
  *
  *     bench_powers [quick | EMISSIVITY...]      default 0.3 0.8
  *
- * CSV on standard output. The settled bed of 2,000 equal spheres of tests/data, where it is run, open to 300 K;
- * `quick`: a random bed of 100. A hundred temperatures on one geometry: those of the file turn, in equal steps, into
- * 1300 K less those of the file. Processor seconds of one thread, for one solution, geometry and all; for the hundred,
- * geometry once (by patches every third is solved and counts threefold); and for one after all spheres have moved by
- * 0.02 of a radius. Error: root mean square over the powers', of the first, the last and two temperatures in between,
- * against 384 patches, 400 directions of 128 points.
+ * The bench writes CSV to standard output. The bed is the settled bed of 2,000 equal spheres of tests/data, open to 300
+ * K. Run the bench where tests/data is. With `quick` the bed is a random bed of 100 spheres. A hundred fields of
+ * temperature go in equal steps from the temperatures of the file to 1300 K less those temperatures.
  *
- * `patches`: fibrad_radiation with so many patches, directions and points. `factors`: powers by D, by the tolerance of
- * its rows. `corrected`, as fibrad_transient has it: D of tolerance 0.03 and what default patches add, compared anew
- * when powers by D have changed by a tenth. */
+ * Seconds are processor seconds of one thread. There are three columns: one solution, its geometry included; the
+ * hundred fields, with the geometry once (by patches every third field is solved and counts threefold); and one
+ * solution after all spheres have moved by 0.02 of a radius. The error is the root mean square error over the root mean
+ * square of the powers, against 384 patches and 400 directions of 128 points. It is taken over the first field, the
+ * last field and two fields in between.
+ *
+ * Lines `patches` are by fibrad_radiation with so many patches, directions and points. Lines `factors` are powers by D,
+ * with the tolerance of its rows. Lines `corrected` are as in fibrad_transient: D of tolerance 0.03, corrected by the
+ * default patches. The correction is computed anew when powers by D have changed by a tenth. */
 #include "bed/packing.h"
 #include "bench_bed.h"
 #include "read/read.h"
@@ -29,11 +32,11 @@ struct powers {
     fibrad_scene_config config;
     int fields;
     const double *given;    /* [n] the first temperatures */
-    double *temperature;    /* [n] those in hand */
+    double *temperature;    /* [n] the present temperatures */
     double *emissivity;     /* [n] */
     double *truth[CHECKS];  /* [n] */
     double *power, *change; /* [n] */
-    double square, size;    /* of errors and powers, where they were compared */
+    double square, size;    /* sums of squares of errors and powers that were compared */
 };
 
 static void set_field(struct powers *p, int field) {
@@ -44,7 +47,7 @@ static void set_field(struct powers *p, int field) {
 
 static int field_of_check(const struct powers *p, int check) { return check * (p->fields - 1) / (CHECKS - 1); }
 
-/* Compares the powers in hand with the truth, if there is one of this field. */
+/* Compares the present powers with the true ones, if this field has true ones. */
 static void compare(struct powers *p, int field) {
     for (int c = 0; c < CHECKS; c++)
         for (uint32_t i = 0; i < p->bed.n && field == field_of_check(p, c); i++) {
@@ -83,7 +86,7 @@ static void print_costs(struct powers *p, const char *way, const char *setting, 
     p->square = p->size = 0;
 }
 
-/* Seconds of a solution after a move; the bed moves on. */
+/* Moves the bed. Returns the seconds of the solution after the move. */
 static double move_patches(struct powers *p, fibrad_radiation *radiation) {
     double seconds = 0;
     for (int m = 0; m < MOVES; m++) {
@@ -160,7 +163,7 @@ static void bench_factors_alone(struct powers *p, double tolerance) {
     fibrad_bed_free(factors);
 }
 
-/* How far the powers by D have gone since they were compared, over their norm. */
+/* The change of the powers by D since the last correction, over their norm. */
 static double gone(const struct powers *p, const double *compared) {
     double square = 0, size = 0;
     for (uint32_t i = 0; i < p->bed.n; i++)
@@ -234,5 +237,5 @@ int main(int argc, char **argv) {
         for (size_t s = 0; s < (quick ? 1 : 3); s++) bench_factors_alone(&p, tolerances[s]);
         bench_corrected(&p);
     }
-    return 0; /* memory goes with the program */
+    return 0; /* memory is freed when the program ends */
 }

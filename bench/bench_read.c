@@ -1,7 +1,8 @@
 /* bench_read.c - reading a million spheres from a LAMMPS dump, sorted and not, plain and packed by gzip.
  * SPDX-License-Identifier: MIT
  *
- * Ids stand in a fixed order that is none; numbers have the six digits that LAMMPS writes. */
+ * In the dump that is not sorted, the order of the ids is fixed, but is neither ascending nor descending. Numbers have
+ * the six digits that LAMMPS writes. */
 #include <inttypes.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -11,7 +12,7 @@
 
 enum { REPEATS = 5 };
 
-/* A dump of n spheres; the id of row k is k, or k times a number that has no factor in common with n. */
+/* Writes a dump of n spheres. The id of row k is k, or k times a number that has no factor in common with n. */
 static void bench_dump(gzFile file, uint32_t n, uint64_t step) {
     gzprintf(file, "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n%u\nITEM: BOX BOUNDS pp pp ff\n0 1\n0 1\n0 1\n", n);
     gzprintf(file, "ITEM: ATOMS id type x y z radius v_T\n");

@@ -2,11 +2,12 @@
  *
  *     bench_scale [quick | SPHERES...]      default 1000 10000 100000
  *
- * CSV on standard output. Periodic random beds, radii 0.8-1.2, solid fraction 0.55; above 10,000 spheres copies of one
- * of 10,000 side by side. One and two threads; from half a million on two only. All rows, exact areas, averaged.
- * `seconds` by the clock on the wall; `processor_us` is processor time of all threads per window (sphere and
- * direction), which others on the machine disturb less. `bytes`: the most memory the process ever had, so numbers of
- * spheres must rise. */
+ * The bench writes CSV to standard output. The beds are periodic random beds, radii 0.8-1.2, solid fraction 0.55. Above
+ * 10,000 spheres a bed consists of copies of one of 10,000, side by side. One thread and two threads take turns. From
+ * half a million spheres on there are two threads only. All rows are computed with exact areas and averaged. `seconds`
+ * is elapsed time. `processor_us` is the processor time of all threads per window (sphere and direction), which others
+ * on the machine disturb less. `bytes` is the largest memory that the process has ever had, so the numbers of spheres
+ * must rise. */
 #include <errno.h>
 #include <sys/resource.h>
 
@@ -22,7 +23,7 @@ static double peak_bytes(void) {
     return 1024.0 * (double)usage.ru_maxrss;
 }
 
-/* The bed of n spheres, or of the next number of whole copies. */
+/* The bed of n spheres, or of the next larger number that is a whole number of copies. */
 static int make_bed(struct bed *bed, uint32_t n) {
     bed_init(bed);
     if (n <= TILE) return bed_make_packing(bed, n, 0.8, 1.2, 0.55, 1);

@@ -1,12 +1,14 @@
-/* bench_sizes.c - rows of beds of two sizes of spheres, against those of one. SPDX-License-Identifier: MIT
+/* bench_sizes.c - rows of beds of two sizes of spheres, against those of one size. SPDX-License-Identifier: MIT
  *
  *     bench_sizes [quick]
  *
- * CSV on standard output. Periodic random beds, solid fraction 0.55, in which spheres of radius 1 and of radius `ratio`
- * take up equal volumes; 100 directions, exact areas, one thread. For each size: rows, entries of a row, processor time
- * of a row and of an entry; and its ratio to the time of an entry in the bed of equal spheres. Then the seconds of all
- * rows of a shell, averaged, 50 directions, by one thread and by two: a sphere of radius 1 and 20,000 of 5e-4, at
- * random 0.6e-3 to 21e-3 above its surface. */
+ * The bench writes CSV to standard output. The beds are periodic random beds, solid fraction 0.55. In each bed, spheres
+ * of radius 1 and of radius `ratio` take up equal volumes. Rows have 100 directions and exact areas, on one thread. For
+ * each size there are the number of rows, the entries of a row, the processor time of a row and that of an entry. The
+ * last column is the time of an entry over that in the bed of equal spheres.
+ *
+ * Then all rows of a shell are computed, averaged, with 50 directions, by one thread and by two. The shell has a sphere
+ * of radius 1 and 20,000 spheres of radius 5e-4, at random 0.6e-3 to 21e-3 above its surface. */
 #include "bed/packing.h"
 #include "bench_bed.h"
 
@@ -35,7 +37,7 @@ static void print(double ratio, const char *size, const struct cost *cost, doubl
     fflush(stdout);
 }
 
-/* Large spheres come first in the bed. Of the small ones, every `skip`th is enough. */
+/* Large spheres come first in the bed. Every `skip`th small sphere is enough. */
 static int bench(double ratio, uint32_t large, uint32_t skip, double *equal) {
     struct bed bed;
     bed_init(&bed);

@@ -1,10 +1,11 @@
-/* bench_skips.c - what is saved by each thing that is left out. SPDX-License-Identifier: MIT
+/* bench_skips.c - the time that each skipped step saves. SPDX-License-Identifier: MIT
  *
  *     bench_skips [quick | windows]
  *
- * CSV on standard output, one thread: processor time with and without each skip that can be turned off by an argument,
- * and rows of sparse scenes against the number of spheres. `windows`: one line, microseconds per window in the middle
- * of a random bed and a hash of the rows, for bench/skips.sh, which turns the others off in the source. */
+ * The bench writes CSV to standard output, on one thread. It has the processor time with and without each skip that an
+ * argument can turn off. It also has rows of sparse scenes against the number of spheres. With `windows` it writes one
+ * line: microseconds per window in the middle of a random bed, and a hash of the rows. bench/skips.sh uses this line.
+ * It turns the other skips off in the source. */
 #include "bed/packing.h"
 #include "bench_bed.h"
 #include "surface/surface_lanes.h"
@@ -20,7 +21,7 @@ struct rows_of {
     double scene_seconds;
 };
 
-/* Makes the scene of a bed that is given. */
+/* Makes the scene of a given bed. */
 static void begin(struct rows_of *rows) {
     const double begun = bench_thread_seconds();
     rows->scene = bench_scene(&rows->bed, FIBRAD_ISA_BEST, &rows->block);
@@ -37,7 +38,7 @@ static void end(struct rows_of *rows) {
     bed_free(&rows->bed);
 }
 
-/* Row i. Fixed work memory is replaced by as little as the row cannot do without, which has no room for near spheres.
+/* Computes row i. Fixed work memory gets the least size that the row needs. Such memory has no room for near spheres.
  */
 static void row_by(struct rows_of *rows, const struct bench_method *method, uint32_t i) {
     fibrad_memory *memory = &rows->work.memory;
@@ -57,8 +58,7 @@ static uint64_t hash(uint64_t h, const void *bytes, size_t count) {
     return h;
 }
 
-/* Microseconds a row, over every `step`th row: the least of three rounds, as others may use the machine.
- */
+/* Microseconds a row, over every `step`th row: the least of three rounds, since others may use the machine. */
 static double time_rows(struct rows_of *rows, uint32_t step, const struct bench_method *method, uint64_t *bits,
                         double *entries) {
     const fibrad_row *row = &rows->row;

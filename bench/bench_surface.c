@@ -1,4 +1,5 @@
-/* bench_surface.c - what does the surface method cost: a pair, a ray-sphere test, a bed? SPDX-License-Identifier: MIT
+/* bench_surface.c - times of the surface method: a pair, a test of a ray against a sphere, a bed.
+ * SPDX-License-Identifier: MIT
  *
  *     bench_surface [quick] */
 #include "bed/packing.h"
@@ -14,7 +15,7 @@ static void bench_pair(const char *what, int isa, double gap, const fibrad_spher
     rule.isa = isa;
     fibrad_surface_facts facts;
     double best = INFINITY, f12 = 0;
-    for (int round = 0; round < 7; ++round) { /* the best of some: others may use the machine */
+    for (int round = 0; round < 7; ++round) { /* the best of several rounds, since others may use the machine */
         const double begun = bench_thread_seconds();
         for (int k = 0; k < times; ++k)
             bench_check("pair", fibrad_surface_pair(1, 1, gap, obstacles, &rule, scratch, &f12, &facts));
@@ -25,12 +26,12 @@ static void bench_pair(const char *what, int isa, double gap, const fibrad_spher
 }
 
 static void bench_pairs(int isa, int times) {
-    /* one obstacle in the way of a touching pair, touching both */
+    /* one obstacle in the way of a touching pair; it touches both spheres */
     double x[OBSTACLES] = {sqrt(3)}, y[OBSTACLES] = {0}, z[OBSTACLES] = {1}, r[OBSTACLES] = {1};
     const fibrad_spheres one = {x, y, z, r, .n = 1};
     bench_pair("touching pair with one obstacle 55", isa, 0, &one, &(fibrad_surface_rule){0}, times);
     bench_pair("touching pair with one obstacle 987", isa, 0, &one, &(fibrad_surface_rule){.nodes = 987}, times);
-    /* many behind sphere 2, which hide nothing and are all tested */
+    /* many obstacles behind sphere 2, which hide nothing and are all tested */
     for (int k = 0; k < OBSTACLES; ++k) x[k] = 0.1 * (k % 8), y[k] = 0.1 * (k / 8), z[k] = 6, r[k] = 0.1;
     const fibrad_spheres many = {x, y, z, r, .n = OBSTACLES};
     bench_pair("every ray against 64 obstacles 55", isa, 1, &many,

@@ -1,11 +1,13 @@
-/* bench_tolerance.c - what `fibrad heat --error` takes, and keeps, among walls. SPDX-License-Identifier: MIT
+/* bench_tolerance.c - how long `fibrad heat --error` takes among walls, and whether the error is kept.
+ * SPDX-License-Identifier: MIT
  *
- * Scenes of 10 to 300 spheres in boxes, cylinders and meshes go to the program as files, with the error that is asked
- * for; its powers are compared with those by paths. Errors of spheres are root mean squares over that of their powers,
- * those of walls over the larger of their power and what they absorb, less twice the noise of the truth where it is
- * asked whether a figure is within twice its estimate.
- * Arguments: `quick`, or [scenes [paths from each sphere [first scene [error]]]]; FIBRAD: the program [build/fibrad];
- * TRUTH: a folder in which the truth is kept [none]. */
+ * Scenes of 10 to 300 spheres in boxes, cylinders and meshes go to the program as files, with an error. The powers of
+ * the program are compared with those by paths. Errors of spheres are root mean squares over the root mean square of
+ * their powers. The error of a wall is divided by the larger of its power and what it absorbs. When an error is
+ * compared with twice its estimate, twice the noise of the paths is subtracted first.
+ *
+ * The arguments are `quick`, or [scenes [paths from each sphere [first scene [error]]]]. The environment may have
+ * FIBRAD, the program [build/fibrad], and TRUTH, a folder that keeps the powers by paths [none]. */
 #define _POSIX_C_SOURCE 200809L
 #include "room.h"
 
@@ -48,7 +50,7 @@ static void write_spheres(const char *folder, const struct room *room) {
     fclose(file);
 }
 
-/* A wall of a box in squares of two triangles each, seen from within. */
+/* Writes a wall of a box as squares of two triangles. Their fronts are inside. */
 static void write_wall(const char *folder, const struct room *room, const char *name, int wall, int squares) {
     char path[40];
     snprintf(path, sizeof path, "%s.stl", name);
@@ -70,7 +72,7 @@ static void write_wall(const char *folder, const struct room *room, const char *
     fclose(file);
 }
 
-/* What is told of a wall. */
+/* What the options say of a wall. */
 static void write_place(FILE *command, const struct room *room, const struct kind *kind, int wall, const char *folder) {
     const char *name = wall_name_of(room, kind, wall);
     if (room->round && wall == 2)
@@ -111,7 +113,7 @@ struct answer {
     double directions, patches;
 };
 
-/* The powers of the .csv, by bodies; walls are i = -2, -3 ... */
+/* Reads the powers of spheres and walls from the .csv. Walls are i = -2, -3 ... */
 static void read_powers(const char *folder, const struct room *room, struct answer *answer) {
     const double unit = FIBRAD_STEFAN_BOLTZMANN * 1e12;
     char line[400];
@@ -180,7 +182,7 @@ static double rms(const double *v, int n) {
     return sqrt(sum / n);
 }
 
-/* The largest v of a wall over the larger of its power and what it absorbs. */
+/* The largest ratio of v of a wall to the larger of its power and what it absorbs. */
 static double worst_wall(const struct room *room, const struct truth *truth, const double *v) {
     double worst = 0;
     for (int b = room->spheres; b < room->spheres + room->walls; b++) {
@@ -191,7 +193,7 @@ static double worst_wall(const struct room *room, const struct truth *truth, con
     return worst;
 }
 
-/* How many of the bodies [from, to) err by more than twice their estimate. */
+/* The number of bodies [from, to) whose errors are more than twice their estimates. */
 static int low_estimates(const struct answer *answer, const struct truth *truth, int from, int to) {
     int low = 0;
     for (int b = from; b < to; b++)

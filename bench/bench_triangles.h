@@ -5,7 +5,7 @@
 #include "bench_bed.h"
 #include "fibrad_mesh.h"
 
-/* Triangles that are added up to the number there is room for. */
+/* Triangles that are added one by one, and the number there is room for. */
 struct bench_triangles {
     struct fibrad_triangles list;
     double *at; /* [vertices][3] */
@@ -32,7 +32,7 @@ static inline uint32_t bench_vertex(struct bench_triangles *t, double x, double 
     return t->list.vertices++;
 }
 
-/* Corners counter-clockwise as seen from the front; nobody sees the back. */
+/* Adds a square. Its corners go counter-clockwise as seen from the front. Nothing may see the back. */
 static inline void bench_triangle(struct bench_triangles *t, uint32_t a, uint32_t b, uint32_t c, uint32_t body) {
     uint32_t *corner = t->corner + 3 * (size_t)t->list.n;
     corner[0] = a, corner[1] = b, corner[2] = c;
@@ -45,8 +45,8 @@ static inline void bench_quad(struct bench_triangles *t, const uint32_t v[4], ui
     bench_triangle(t, v[0], v[2], v[3], body);
 }
 
-/* A box, seen from within, each face cut into cells^2 squares of two triangles; its faces are bodies 0 to 5, as those
- * of bench_planes are. */
+/* Adds a box whose fronts are inside. Each face has cells^2 squares of two triangles. The faces are bodies 0 to 5, as
+ * those of bench_planes. */
 static inline void bench_box(struct bench_triangles *t, const double low[3], const double high[3], uint32_t cells) {
     for (uint32_t face = 0; face < 6; ++face) {
         const uint32_t axis = face / 2, upper = face % 2, first = t->list.vertices, row = cells + 1;
@@ -66,7 +66,7 @@ static inline void bench_box(struct bench_triangles *t, const double low[3], con
     }
 }
 
-/* A tube about the line (x, y), seen from without or within, of rings of facets of two triangles. */
+/* Adds a tube about the line (x, y), whose fronts are outside or inside. It has rings of facets of two triangles. */
 static inline void bench_tube(struct bench_triangles *t, const double middle[2], double radius, const double ends[2],
                               uint32_t facets, uint32_t rings, bool outside, uint32_t body) {
     const uint32_t first = t->list.vertices;
@@ -89,7 +89,7 @@ static inline void bench_planes(fibrad_body body[6], const double low[3], const 
         body[k] = (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {k / 2, k % 2, (k % 2 ? high : low)[k / 2]}};
 }
 
-/* The scene of a bed with bodies and triangles (NULL: none) in *block, which is to be freed. */
+/* The scene of a bed with bodies and triangles (NULL: none) in *block, which the caller frees. */
 static inline fibrad_scene *bench_scene_in(const struct bed *bed, const fibrad_body *body, uint32_t bodies,
                                            const struct bench_triangles *t, void **block) {
     const fibrad_spheres spheres = bench_spheres(bed);

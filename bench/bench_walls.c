@@ -1,6 +1,6 @@
-/* bench_walls.c - error of net powers among spheres and grey walls against paths. SPDX-License-Identifier: MIT
+/* bench_walls.c - error of net powers of spheres among grey walls, against paths. SPDX-License-Identifier: MIT
  *
- * Arguments: `quick`, or [scenes [paths from each sphere [first scene]]]. */
+ * The arguments are `quick`, or [scenes [paths from each sphere [first scene]]]. */
 #include "room.h"
 
 static const struct kind kinds[] = {
@@ -60,7 +60,7 @@ static struct answer solve(const struct room *room, const fibrad_heat_config *co
     return answer;
 }
 
-/* Worst ratio over the walls of v[wall] to the larger of their power and 5 % of what they absorb. */
+/* The largest ratio of v[wall] to the larger of the wall's power and 5 % of what the wall absorbs. */
 static double worst_wall(const struct room *room, const struct truth *truth, const double *v) {
     double worst = 0;
     for (int b = room->spheres; b < room->spheres + room->walls; b++) {
@@ -81,8 +81,8 @@ static int in_order(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Estimates over true errors of all bodies of a scene, and how many of those are below one half: too low to be told
- * from noise are errors below twice the truth's. */
+/* Collects estimates over true errors of all bodies of a scene. Counts the bodies whose error, less twice the noise of
+ * the true power, is more than twice the estimate. */
 struct honesty {
     double ratio[KINDS * BODIES_MAX];
     int bodies, low;

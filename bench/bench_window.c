@@ -1,12 +1,13 @@
-/* bench_window.c - rows of a large bed by beams: what a window costs in every instruction set, with areas and points.
+/* bench_window.c - time of a window of beams in a large bed, in every instruction set, with areas and with points.
  * SPDX-License-Identifier: MIT
  *
  *     bench_window [quick | SPHERES]
  *
- * CSV on standard output: one thread, processor time, the least of rounds in which all take turns. A periodic random
- * bed of equal spheres (20,000), solid fraction 0.58; rows of spheres spread over all of it, set up anew each, of 100
- * directions: microseconds a window, the row's setting up and writing out shared among them. These two alone, in
- * microseconds a row: from the difference to rows of 400 directions. */
+ * The bench writes CSV to standard output. Times are processor times of one thread: the least of several rounds, in
+ * which all take turns. The bed is a periodic random bed of equal spheres (20,000), solid fraction 0.58. Rows of
+ * spheres spread over all of the bed are set up anew and have 100 directions. One column has microseconds per window,
+ * with its share of setting up and writing out the row. Another column has the time of setting up and writing out
+ * alone, in microseconds per row. It follows from the difference to rows of 400 directions. */
 #include "bed/packing.h"
 #include "bench_bed.h"
 

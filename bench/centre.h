@@ -1,8 +1,9 @@
-/* centre.h - rows in the middle of a random bed and their true values, for methods to be measured by.
+/* centre.h - rows in the middle of a random bed and their true values, to measure methods by.
  * SPDX-License-Identifier: MIT
  *
- * Bed: radii 0.8-1.2, solid fraction 0.55, open; rows: the spheres nearest to its centre. Truth: beams with exact
- * areas, as in docs/accuracy.md, where they stand against an adaptive reference. */
+ * The bed has radii 0.8-1.2, the solid fraction 0.55, and is open. The rows are those of the spheres nearest to its
+ * centre. The true rows are by beams with exact areas. docs/accuracy.md compares such rows with an adaptive
+ * reference. */
 #ifndef CENTRE_H
 #define CENTRE_H
 
@@ -34,14 +35,14 @@ static inline void centre_find(struct centre *centre, double edge) {
     }
 }
 
-/* A row by one of the kernel's methods, over all n columns. */
+/* Computes a row by one of the kernel's methods, as an array of all n columns. */
 static inline void centre_row(struct centre *centre, const struct bench_method *method, uint32_t i, double *full) {
     bench_row(centre->scene, &centre->work, method, i, &centre->row);
     memset(full, 0, centre->bed.n * sizeof *full);
     for (uint32_t k = 0; k < centre->row.length; ++k) full[centre->row.col[k]] = centre->row.f[k];
 }
 
-/* Makes bed, scene and truth; the program ends without freeing them. Status of bed_make_packing. */
+/* Makes bed, scene and true rows. The program ends without freeing them. Status as bed_make_packing. */
 static inline int centre_make(struct centre *centre, uint32_t spheres, uint32_t rows, uint32_t directions) {
     struct bed *bed = &centre->bed;
     void *block;
@@ -62,7 +63,7 @@ static inline int centre_make(struct centre *centre, uint32_t spheres, uint32_t 
     return 0;
 }
 
-/* Adds up squares of a row's errors, and how many entries the row truly has. */
+/* Adds up squares of a row's errors, and counts the entries that the true row has. */
 struct centre_error {
     double square;
     uint64_t entries, rows;
@@ -78,7 +79,7 @@ static inline void centre_add_error(const struct centre *centre, uint32_t k, con
     sum->rows++;
 }
 
-/* One line: method, setting, microseconds a row, error per entry (root mean square) and of a row (Euclidean). */
+/* Prints a line: method, setting, microseconds a row, error of an entry (root mean square) and of a row (Euclidean). */
 static inline void centre_print(const char *method, const char *kind, uint32_t setting, double seconds,
                                 const struct centre_error *sum) {
     printf("%s,%s,%u,%.1f,%.3g,%.3g\n", method, kind, setting, 1e6 * seconds / (double)sum->rows,

@@ -36,7 +36,7 @@ static inline void make_sobol(uint32_t v[DIMENSIONS][BITS]) {
         }
 }
 
-/* Flips each digit at random, depending on all digits before it. */
+/* Flips each digit at random. The choice depends on all digits before it. */
 static inline uint32_t scramble(uint32_t x, uint64_t seed) {
     uint32_t out = 0;
     for (int bit = 31; bit >= 0; --bit) {
@@ -75,7 +75,7 @@ static inline void set_ray(struct RTCRayHit16 *packet, int lane, const float cen
     packet->ray.dir_x[lane] = x * (1 + sign * nx * nx * a) + y * b + z * nx;
     packet->ray.dir_y[lane] = x * sign * b + y * (sign + ny * ny * a) + z * ny;
     packet->ray.dir_z[lane] = -x * sign * nx - y * ny + z * nz;
-    packet->ray.tnear[lane] = 1e-4f; /* past the sphere it starts on */
+    packet->ray.tnear[lane] = 1e-4f; /* the ray begins beyond the surface of its own sphere */
     packet->ray.tfar[lane] = INFINITY;
     packet->ray.time[lane] = 0;
     packet->ray.mask[lane] = UINT32_MAX;
@@ -84,7 +84,8 @@ static inline void set_ray(struct RTCRayHit16 *packet, int lane, const float cen
     packet->hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
 }
 
-/* Counts what the rays from sphere i meet: spheres, geometry 0, by their number, and geometry 1 as number n. */
+/* Counts what the rays from sphere i meet. Geometry 0 has the spheres, which are counted by their numbers. Geometry 1
+ * counts as number n. */
 static inline void trace_row(RTCScene scene, const float *spheres, uint32_t n, uint32_t i, const uint32_t *u,
                              uint32_t rays, uint32_t *hits) {
     static const _Alignas(64) int valid[PACKET] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
@@ -103,7 +104,7 @@ static inline void trace_row(RTCScene scene, const float *spheres, uint32_t n, u
     }
 }
 
-/* Attaches the spheres of a bed as geometry 0; the array belongs to Embree. Ends the program if it cannot. */
+/* Attaches the spheres of a bed as geometry 0. The array belongs to Embree. Ends the program if this fails. */
 static inline float *attach_spheres(RTCDevice device, RTCScene scene, const struct bed *bed) {
     RTCGeometry points = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
     float *spheres =

@@ -1,8 +1,9 @@
 /* ranks.c - rows and powers over ranks: seconds, entries, halos and memory, for docs/scale.md. SPDX-License-Identifier:
  * MIT
  *
- * mpirun -np P build/couple/ranks DUMP COPIES EMISSIVITY: the bed of a LAMMPS dump (columns id type x y z radius),
- * repeated COPIES times along each axis that is periodic, divided into bricks. One line of CSV after the header. */
+ * mpirun -np P build/couple/ranks DUMP COPIES EMISSIVITY: the bed is that of a LAMMPS dump (columns id type x y z
+ * radius), repeated COPIES times along each periodic axis. The bed is divided into bricks, one for each rank. The
+ * program writes a header and one line of CSV. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,7 +24,7 @@ static void fail(const char *what) {
     MPI_Abort(MPI_COMM_WORLD, 1);
 }
 
-/* Whether this rank owns a place of the box. */
+/* Whether this rank owns a point of the box. */
 static int own_place(const fibrad_insitu_bed *bed, const double x[3]) {
     int ranks, rank, dims[3] = {0, 0, 0}, owner = 0;
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
@@ -100,7 +101,8 @@ int main(int argc, char **argv) {
     const fibrad_insitu_state state = {.surroundings = 300, .n = b.bed.n, .id = b.id, .temperature = b.temperature};
     if (fibrad_insitu_new(&radiation, MPI_COMM_WORLD, NULL)) fail("out of memory");
     if (fibrad_insitu_rows(radiation, &b.bed, 1)) fail(fibrad_insitu_message(radiation));
-    if (fibrad_insitu_rows(radiation, &b.bed, 2)) fail(fibrad_insitu_message(radiation)); /* memory of both sets */
+    if (fibrad_insitu_rows(radiation, &b.bed, 2))
+        fail(fibrad_insitu_message(radiation)); /* memory of both sets of rows */
     for (int k = 0; k < HEATS; ++k)
         if (fibrad_insitu_powers(radiation, &state, b.power, NULL)) fail(fibrad_insitu_message(radiation));
     fibrad_insitu_facts_get(radiation, &facts);

@@ -1,9 +1,10 @@
-/* room.h - unequal grey spheres between grey walls, and the truth about them by paths. SPDX-License-Identifier: MIT
+/* room.h - unequal grey spheres between grey walls, and their powers by paths. SPDX-License-Identifier: MIT
  *
- * Random scenes in boxes of six walls, or in a cylinder with two ends. The truth follows paths one by one, with
- * geometry and random numbers of its own: from body i, of area A and emissivity e, n_i paths, each surface absorbing
- * its share of their weight. What i and j exchange is what the paths of both bring to the other over n_i/(A_i e_i) +
- * n_j/(A_j e_j); the standard error is that of BATCHES means. */
+ * Scenes are random. The walls are six walls of a box, or a cylinder with two ends. The paths are followed one by one,
+ * with geometry and random numbers that share nothing with the kernel. From body i, of area A_i and emissivity e_i, n_i
+ * paths start. Each surface on a path absorbs its share of the path's weight. The exchange of i and j is the weight
+ * that the paths of both bring to the other one, over n_i/(A_i e_i) + n_j/(A_j e_j). The standard error is that of the
+ * means of BATCHES batches. */
 #ifndef BENCH_ROOM_H
 #define BENCH_ROOM_H
 
@@ -16,10 +17,11 @@ enum { SPHERES_MAX = 300, WALLS_MAX = 6, BODIES_MAX = SPHERES_MAX + WALLS_MAX, B
 
 static const double pi = 3.14159265358979323846;
 
-/* Spheres, then walls: of a box two across each axis, of a cylinder about the z axis two ends and itself. */
+/* Bodies: the spheres, then the walls. A box has two walls across each axis. A cylinder about the z axis has two ends
+ * and itself. */
 struct room {
     double x[SPHERES_MAX], y[SPHERES_MAX], z[SPHERES_MAX], r[SPHERES_MAX];
-    double size[3]; /* the box from 0 to size; a cylinder has the radius size[0] and the height size[2] */
+    double size[3]; /* the box goes from 0 to size; a cylinder has the radius size[0] and the height size[2] */
     int spheres, walls, round;
     double emissivity[BODIES_MAX], temperature[BODIES_MAX];
 };
@@ -28,7 +30,7 @@ struct truth {
     double power[BODIES_MAX], noise[BODIES_MAX];
 };
 
-/* ---- random numbers: xorshift64*, and Halton's points, shifted at random, for where a path starts and first goes ---
+/* ---- random numbers: xorshift64*, and Halton's points, shifted at random, for start and first direction of a path ---
  */
 static inline double draw(uint64_t *state) {
     *state ^= *state >> 12;
@@ -60,15 +62,15 @@ static inline uint64_t seed_of(uint64_t a, uint64_t b) {
 }
 
 /* ---- scenes ------------------------------------------------------------------------------------------------------ */
-/* Kinds of scenes. Spheres have radii of 1 to `least`, the largest first, so that all find room; in a lattice each has
- * a cube of side 2 to itself, within which it may lie anywhere. */
+/* Kinds of scenes. Spheres have radii of 1 to `least`. The largest are put first, so that all find room. In a lattice
+ * each sphere lies anywhere within its own cube of side 2. */
 struct kind {
     const char *name;
     int round, spheres, lattice; /* lattice: spheres along an edge of the box; 0: none */
-    double size;                 /* of the box, give or take a sixth; of a cylinder .65 of that is the radius */
+    double size;                 /* of the box, changed by up to a sixth; the radius of a cylinder is .65 of it */
     double least;
-    int white;     /* walls of emissivity 0, from the first on */
-    double dim[2]; /* emissivities of walls; 0: as of spheres, .15 to 1 */
+    int white;     /* number of walls of emissivity 0: the first ones */
+    double dim[2]; /* emissivities of walls; 0: .15 to 1, as for spheres */
     int mesh;      /* squares along an edge of a wall that is a mesh; 0: walls are planes and cylinders */
 };
 
@@ -82,7 +84,7 @@ static inline int fits(const struct room *room, int i, double gap) {
     return 1;
 }
 
-/* Where sphere i might be along an axis. */
+/* A trial coordinate of sphere i along an axis. */
 static inline double place(const struct room *room, int i, int axis, uint64_t *state) {
     const double low = room->round && axis < 2 ? -room->size[0] : 0;
     const double high = room->size[room->round && axis < 2 ? 0 : axis], r = room->r[i];
@@ -140,7 +142,7 @@ static inline void leave(const double n[3], struct numbers *numbers, double w[3]
     for (int a = 0; a < 3; a++) w[a] /= sqrt(square);
 }
 
-/* An even point on a body, and the normal there. */
+/* A point that is spread evenly over a body, and the normal there. */
 static inline void start(const struct room *room, int body, struct numbers *numbers, double o[3], double n[3]) {
     const int wall = body - room->spheres;
     const double turn = 2 * pi * next(numbers), share = next(numbers);
@@ -164,7 +166,7 @@ static inline void start(const struct room *room, int body, struct numbers *numb
     }
 }
 
-/* The wall that a ray from inside meets, and how far away. The wall `from` is not met again, unless it is round. */
+/* The wall that a ray from inside meets, and its distance. The wall `from` is not met again, unless it is round. */
 static inline int wall_met(const struct room *room, int from, const double o[3], const double w[3], double *distance) {
     int met = -1;
     *distance = INFINITY;
@@ -182,7 +184,7 @@ static inline int wall_met(const struct room *room, int from, const double o[3],
     return room->spheres + met;
 }
 
-/* The body that a ray meets; moves o there and sets the normal. */
+/* The body that a ray meets. Moves o to the point and sets the normal. */
 static inline int meet(const struct room *room, int from, double o[3], const double w[3], double n[3]) {
     double nearest;
     int body = wall_met(room, from, o, w, &nearest);
@@ -205,7 +207,7 @@ static inline int meet(const struct room *room, int from, double o[3], const dou
     return body;
 }
 
-/* Adds to got[] what the bodies absorb of paths from one of them. */
+/* Follows paths from one body. Adds to got[] what each body absorbs of them. */
 static inline void follow(const struct room *room, int body, long paths, uint64_t seed, double *got) {
     struct numbers numbers = {.state = seed};
     for (int d = 0; d < EVEN; d++) numbers.shift[d] = draw(&numbers.state);

@@ -28,7 +28,7 @@ static inline fibrad_furnace_config coarse_case(int number, uint32_t across) {
 
 enum { TALLIES = 4, BOX_CELLS = 4 * 4 * 8 };
 
-/* A small furnace with some tallies, all empty. */
+/* A small furnace and empty tallies. */
 struct box {
     fibrad_furnace_config config;
     fibrad_furnace *furnace;

@@ -1,4 +1,4 @@
-/* heat_calls.h - a heat problem in blocks of its own, for tests of calls. SPDX-License-Identifier: MIT */
+/* heat_calls.h - a heat problem in its own blocks of memory, for tests of calls. SPDX-License-Identifier: MIT */
 #ifndef TESTS_HEAT_CALLS_H
 #define TESTS_HEAT_CALLS_H
 
@@ -20,7 +20,7 @@ struct problem {
     fibrad_heat_result result;
 };
 
-/* What a problem is made of. */
+/* The scene, the sources and the memory of a problem. */
 struct contents {
     double x[N], y[N], z[N], r[N];
     fibrad_body body[BODIES];
@@ -30,7 +30,7 @@ struct contents {
 
 static const fibrad_heat_config heat_config = {.directions = 24, .patches = 24, .parts = PARTS};
 
-/* Spheres in two layers between a floor, a ceiling and one side wall; open on the other sides. */
+/* Spheres in two layers between a floor, a ceiling and one side wall. The other sides are open. */
 static inline struct contents contents_of(uint64_t seed) {
     struct contents c = {.body = {plane_at(2, 0, -1.2), plane_at(2, 1, 3.4), plane_at(1, 0, -1.3)}, .n = N};
     for (uint32_t i = 0; i < N; i++) {
@@ -56,7 +56,7 @@ static inline int build_at(void *block, size_t size, const struct contents *c, f
     return fibrad_scene_init(scene, block, size, &config, &spheres, NULL);
 }
 
-/* Makes the scene in its place, where another one may be. */
+/* Makes the scene in its block, which may have another scene. */
 static inline void build(struct problem *p, const struct contents *c) {
     ck_assert_int_eq(build_at(p->scene_block, p->scene_size, c, &p->scene), FIBRAD_OK);
 }
@@ -72,7 +72,7 @@ static inline void set_sources(struct problem *p) {
     p->result.power = p->power, p->result.body_power = p->body_power;
 }
 
-/* A problem as far as fibrad_heat_init; what was in the block before is `fill`. */
+/* Makes a problem by fibrad_heat_init. All bytes of the block are `fill` before. */
 static inline struct problem *begin_problem(const struct contents *c, int fill) {
     struct problem *p = calloc(1, sizeof *p);
     p->scene_size = fibrad_scene_size(N, 0);
@@ -105,7 +105,7 @@ static inline void sweep_all(struct problem *p) {
     for (uint32_t k = 0; k < PARTS; k++) ck_assert_int_eq(fibrad_heat_sweep(p->heat, k), FIBRAD_OK);
 }
 
-/* From fibrad_heat_begin on. */
+/* Solves a problem, from fibrad_heat_begin on. */
 static inline void solve(struct problem *p) {
     ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
     for (int solved = 0; !solved;) {
@@ -115,7 +115,7 @@ static inline void solve(struct problem *p) {
     ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
 }
 
-/* Powers by the book. */
+/* Powers of a problem when all calls come in the right order. */
 static inline struct problem *by_the_book(const struct contents *c) {
     struct problem *p = begin_problem(c, 0xa5);
     trace_all(p);
@@ -129,7 +129,7 @@ static inline void assert_same_powers(const struct problem *p, const struct prob
     ck_assert_mem_eq(&p->result.surroundings_power, &book->result.surroundings_power, sizeof(double));
 }
 
-/* What may not be called before `begin` is not called. */
+/* Asserts that all calls that need fibrad_heat_begin are refused before it. */
 static inline void assert_nothing_to_solve(struct problem *p) {
     int solved = 77;
     memset(p->power, 0x11, sizeof p->power);
@@ -142,7 +142,7 @@ static inline void assert_nothing_to_solve(struct problem *p) {
     ck_assert_mem_eq(power, p->power, sizeof power);
 }
 
-/* Contents a little other than those. */
+/* Contents with one change, which `what` selects. */
 static inline struct contents changed(const struct contents *from, int what) {
     struct contents c = *from;
     double swap;
@@ -180,7 +180,7 @@ static inline struct contents changed(const struct contents *from, int what) {
     return c;
 }
 
-/* A problem of which so many stages are done: nothing, traced, begun and swept, solved. */
+/* Stages of a problem: made, traced, begun and swept, solved. */
 enum { MADE, TRACED, SWEPT, SOLVED, STAGES };
 
 static inline void advance_to(struct problem *p, int from, int to) {

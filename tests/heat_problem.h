@@ -1,4 +1,4 @@
-/* heat_problem.h - a heat problem for tests: a bed, its walls, what is given and what comes out.
+/* heat_problem.h - a heat problem for tests: a bed, its walls, the sources and the results.
  * SPDX-License-Identifier: MIT */
 #ifndef TESTS_HEAT_PROBLEM_H
 #define TESTS_HEAT_PROBLEM_H
@@ -19,12 +19,12 @@
 /* Walls by slot: 0 to 5 are planes across the axes, x low, x high, y low, y high, z low, z high; 6 is a cylinder. */
 struct walls {
     uint32_t planes;    /* sum of 1 << slot */
-    uint32_t open;      /* of openings likewise */
-    double at[6];       /* where plane k stands on its axis */
+    uint32_t open;      /* sum of 1 << slot of openings */
+    double at[6];       /* coordinate of plane k on its axis */
     double cylinder[3]; /* x and y of its axis, and its radius; radius 0: none */
 };
 
-/* A bed, what is about it, and what came out. */
+/* A bed, its walls and surroundings, and the results. */
 struct problem {
     struct bed bed;
     struct walls walls;
@@ -194,8 +194,8 @@ static inline void diffuse(const double n[3], double u, double v, double w[3]) {
     for (int k = 0; k < 3; k++) w[k] = sqrt(u) * (cosine * a[k] + sine * b[k]) + sqrt(1 - u) * n[k];
 }
 
-/* The first thing a ray meets from `o` on along w, by trying all: sphere k, or n + wall; UINT32_MAX: nothing. The new
- * place and normal. */
+/* The first surface that a ray meets from `o` on along w, by trying all: sphere k, or n + wall. UINT32_MAX: none. Sets
+ * the point and the normal there. */
 static inline uint32_t first_met(const struct problem *p, uint32_t from, double o[3], const double w[3],
                                  double normal[3]) {
     const struct bed *bed = &p->bed;
@@ -234,7 +234,7 @@ static inline uint32_t first_met(const struct problem *p, uint32_t from, double 
     return met;
 }
 
-/* Net power of sphere i: what it absorbs of the emission that paths backwards from it come from. */
+/* Net power of sphere i by paths that are followed backwards. Each path brings the emission of its last surface. */
 static inline double power_by_paths(const struct problem *p, uint32_t i, uint32_t paths) {
     double sum = 0;
     for (uint32_t k = 0; k < paths; k++) {
@@ -259,7 +259,7 @@ static inline double power_by_paths(const struct problem *p, uint32_t i, uint32_
     return p->emissivity[i] * sphere_area(&p->bed, i) * (sum / paths - emission(p->temperature[i]));
 }
 
-/* Where a box of some planes would be endless, the others. */
+/* The planes that are missing if a box of some planes would be endless. */
 static inline uint32_t openings_of(uint32_t planes) {
     const int axes = ((planes & 3) > 0) + ((planes & 12) > 0) + ((planes & 48) > 0);
     return axes > 1 ? 63 & ~planes : 0;

@@ -5,7 +5,7 @@
 #include "scenes.h"
 #include "suite.h"
 
-/* Spheres of these radii, too far apart to see each other: rows are made by hand. */
+/* Spheres of these radii, so far apart that the tests can make their rows by hand. */
 static inline fibrad_scene *apart(uint32_t n, const double *r) {
     struct bed bed;
     bed_init(&bed);

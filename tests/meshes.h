@@ -9,7 +9,7 @@
 
 enum { MESH_VERTICES = 40000, MESH_TRIANGLES = 20000 };
 
-/* Triangles that grow; `bodies` are all meshes. */
+/* Triangles that are added one by one. All `bodies` are meshes. */
 struct mesh {
     double at[MESH_VERTICES][3];
     uint32_t corner[MESH_TRIANGLES][3], front[MESH_TRIANGLES], back[MESH_TRIANGLES];
@@ -45,13 +45,13 @@ static inline void mesh_triangle(struct mesh *mesh, uint32_t a, uint32_t b, uint
     mesh->front[t] = front, mesh->back[t] = back;
 }
 
-/* Four corners, counter-clockwise from the front. */
+/* Adds a rectangle of four corners, counter-clockwise as seen from the front. */
 static inline void mesh_quad(struct mesh *mesh, const uint32_t v[4], uint32_t front, uint32_t back) {
     mesh_triangle(mesh, v[0], v[1], v[2], front, back);
     mesh_triangle(mesh, v[0], v[2], v[3], front, back);
 }
 
-/* A box, seen from within; side 2 axis + upper is body `first` + 2 axis + upper. */
+/* Adds a box whose fronts are inside. Side 2 axis + upper is body `first` + 2 axis + upper. */
 static inline void mesh_box(struct mesh *mesh, const double low[3], const double high[3], uint32_t first) {
     uint32_t v[8];
     for (uint32_t k = 0; k < 8; k++)
@@ -64,7 +64,7 @@ static inline void mesh_box(struct mesh *mesh, const double low[3], const double
         }
 }
 
-/* A tube of so many facets about the line (x, y), from z = low to high; outside: its front is. */
+/* Adds a tube of `facets` facets about the line (x, y), from z = low to high. outside: the fronts are outside. */
 static inline void mesh_tube(struct mesh *mesh, double x, double y, double radius, double low, double high,
                              uint32_t facets, uint32_t rings, bool outside, uint32_t front, uint32_t back) {
     const uint32_t first = mesh->triangles.vertices;

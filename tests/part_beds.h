@@ -10,7 +10,7 @@
 #include "meshes.h"
 #include "suite.h"
 
-/* Spheres with ids below `ids`, and what else a scene has. */
+/* Spheres with ids below `ids`, and the configuration of their scene. */
 struct part {
     double *x, *y, *z, *r;
     uint64_t *id;
@@ -42,7 +42,7 @@ static inline struct part part_of(const struct bed *bed, fibrad_scene_config con
     return p;
 }
 
-/* The shortest way along an axis. */
+/* The shortest distance along an axis, by way of a period or not. */
 static inline double way_along(const struct part *p, int axis, double from, double to) {
     const double period = p->config.period[axis], way = to - from;
     return period > 0 ? way - period * floor(way / period + .5) : way;
@@ -68,7 +68,7 @@ static inline fibrad_scene *part_scene(const struct part *p) {
     return scene;
 }
 
-/* An occupancy that marks all cells the boxes about spheres reach into. free(mark) frees it. */
+/* An occupancy that marks all cells that boxes about spheres reach into. free(mark) frees the occupancy. */
 static inline fibrad_occupancy occupancy_of(const struct part *p, const double low[3], const double high[3],
                                             uint32_t cells) {
     fibrad_occupancy o = {.cells = {cells, cells, cells}};
@@ -115,7 +115,7 @@ static inline double *emissivities_of(const struct part *p) {
     return e;
 }
 
-/* Methods for rows: beams by areas, by points, turned; cast; exchange, turned, to a tolerance. */
+/* Methods for rows: beams by areas, by points, and turned; cast; exchange, also turned and to a tolerance. */
 enum { METHODS = 8 };
 
 static const double wall_emissivity[7] = {.4, .9, 0, 1, .6, .3, .5};
@@ -171,7 +171,7 @@ static inline void expect_same_named(const struct named_row *a, const struct nam
     ck_assert_msg(a->row.length == b->row.length && a->rays == b->rays, "%s: length, rays", what);
 }
 
-/* Beds of all kinds; the box that they are in. */
+/* Beds of all kinds, and the box that they are in. */
 struct kind {
     const char *name;
     char lattice;   /* 0: a packing */
@@ -199,7 +199,7 @@ struct made {
     double low[3], high[3];
 };
 
-/* A tube among the spheres; a high box about them, or, on periodic axes, the floor and the lid of one. */
+/* Adds a tube among the spheres, and a high box about them. On periodic axes the box has only a floor and a lid. */
 static inline void make_mesh(struct made *m, const double period[3], fibrad_scene_config *config) {
     const double wide = period[0] > 0 ? 0 : .5;
     const double low[3] = {m->low[0] - wide, m->low[1] - wide, m->low[2] - .5};
@@ -218,7 +218,7 @@ static inline void make_mesh(struct made *m, const double period[3], fibrad_scen
     config->triangles = &m->mesh->triangles;
 }
 
-/* The made bed stays where it is: its scene's configuration points into it. */
+/* The bed must stay where it is, since the configuration of its scene points into it. */
 static inline void make_kind(struct made *m, const struct kind *k) {
     struct bed bed;
     if (k->lattice != 0) {

@@ -1,6 +1,6 @@
 /* plain_light.h - light in a bed by plain rays, which share nothing with the kernel. SPDX-License-Identifier: MIT
  *
- * A ray goes from cell to cell of a grid, each of which lists the spheres that reach into it. It ends on the nearest
+ * A ray goes from cell to cell of a grid. Each cell lists the spheres that reach into it. The ray ends on the nearest
  * sphere, on a wall, or outside. Diffuse reflections follow the cosine law. */
 #ifndef TESTS_PLAIN_LIGHT_H
 #define TESTS_PLAIN_LIGHT_H
@@ -13,8 +13,8 @@
 
 enum { PLAIN_SIDES = 6, PLAIN_CYLINDER = 6, PLAIN_OUTSIDE = 7, PLAIN_ENDS = 8 };
 
-/* A bed within planes, low and high, infinite where there is none, and a cylinder along z of the radius `round`,
- * infinite if there is none. */
+/* A bed within planes at low and high, and within a cylinder along z of the radius `round`. Infinite numbers mean that
+ * there is no plane or cylinder. */
 struct plain_bed {
     const struct bed *bed;
     double low[3], high[3], axis[2], round;
@@ -24,7 +24,7 @@ struct plain_bed {
     uint32_t *first, *sphere;
 };
 
-/* Where a ray ends: on a sphere, if sphere >= 0, else at one of PLAIN_ENDS. */
+/* Where a ray ends: on a sphere if sphere >= 0, otherwise at one of PLAIN_ENDS. */
 struct plain_end {
     int64_t sphere;
     int side;
@@ -37,7 +37,7 @@ static inline int plain_cell(const struct plain_bed *p, int axis, double x) {
 
 static inline int plain_wrap(int k, int n) { return (k % n + n) % n; }
 
-/* Counts, or with `list` lists, the spheres of each cell. */
+/* Counts the spheres of each cell. With `list` it lists them. */
 static inline void plain_fill(struct plain_bed *p, bool list) {
     const struct bed *bed = p->bed;
     const double *place[3] = {bed->x, bed->y, bed->z};
@@ -91,7 +91,7 @@ static inline struct plain_bed plain_bed_of(const struct bed *bed) {
 
 static inline void plain_free(struct plain_bed *p) { free(p->first), free(p->sphere); }
 
-/* The length of a ray to a sphere [or infinity], the image nearest to a place on the ray. */
+/* The length of a ray to a sphere, or infinity. The image nearest to a point on the ray counts. */
 static inline double plain_meet(const struct plain_bed *p, uint32_t i, const double at[3], const double w[3],
                                 const double near[3], double centre[3]) {
     const double *place[3] = {p->bed->x, p->bed->y, p->bed->z};
@@ -109,7 +109,7 @@ static inline double plain_meet(const struct plain_bed *p, uint32_t i, const dou
     return t > 1e-9 ? t : INFINITY;
 }
 
-/* The wall that a ray leaves by. */
+/* The wall through which a ray leaves. */
 static inline double plain_leave(const struct plain_bed *p, const double at[3], const double w[3], int *side) {
     double nearest = INFINITY;
     *side = PLAIN_OUTSIDE;
@@ -128,8 +128,8 @@ static inline double plain_leave(const struct plain_bed *p, const double at[3], 
     return nearest;
 }
 
-/* Moves a place on a line along w to where the line enters by an opening, or to 100 before the place if nothing is
- * there. False: the line enters by a wall, or not at all. */
+/* Moves a point on a line along w to where the line enters by an opening. If nothing is there, moves the point back by
+ * 100. False: the line enters by a wall, or not at all. */
 static inline bool plain_enter(const struct plain_bed *p, double at[3], const double w[3]) {
     double last = -INFINITY, first = INFINITY;
     bool open = true;

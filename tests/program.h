@@ -1,6 +1,7 @@
-/* program.h - runs the program and keeps what it says: exit statuses, messages, files. SPDX-License-Identifier: MIT
+/* program.h - runs the program and keeps its exit statuses, messages and files. SPDX-License-Identifier: MIT
  *
- * Runs $BUILD/fibrad (default: build/fibrad) from the project's root. One folder a test: make_folder, remove_folder. */
+ * Runs $BUILD/fibrad (default: build/fibrad) from the project's root. Each test has a folder: make_folder,
+ * remove_folder. */
 #ifndef TEST_PROGRAM_H
 #define TEST_PROGRAM_H
 
@@ -35,7 +36,7 @@ static inline void make_folder(void) {
     snprintf(stderr_path, sizeof stderr_path, "%s/stderr", folder);
 }
 
-/* The place of a file in the test's folder; 32 may be in use at once. */
+/* The path of a file in the test's folder. 32 paths may be in use at once. */
 static inline const char *in_folder(const char *name) {
     static char paths[32][300];
     static int next;
@@ -44,7 +45,7 @@ static inline const char *in_folder(const char *name) {
     return paths[next];
 }
 
-/* Removes all files of the folder but those called stdout and stderr, or those too; returns how many were removed. */
+/* Removes all files of the folder, also stdout and stderr if asked for. Returns their number. */
 static inline int remove_files(int outputs_too) {
     int count = 0;
     DIR *list = opendir(folder);
@@ -147,7 +148,7 @@ static inline double value_of(const char *key) {
     return value;
 }
 
-/* The figure of this key in a file that --json wrote, with all its digits; its last run's. */
+/* The number of a key in a file of --json, with all digits. The last run in the file counts. */
 static inline double json_of(const char *path, const char *key) {
     char *text = read_file(path), wanted[80];
     const char *at = NULL;
@@ -159,7 +160,7 @@ static inline double json_of(const char *path, const char *key) {
     return value;
 }
 
-/* One line on standard error, beginning with `fibrad: ` and then the place, holding the reason. */
+/* Asserts that standard error has one line: `fibrad: `, the place, and then the reason. */
 static inline void expect_message(const char *place, const char *reason) {
     char begin[400];
     snprintf(begin, sizeof begin, "fibrad: %s", place);

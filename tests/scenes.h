@@ -30,7 +30,7 @@ static inline void add_sphere(struct bed *bed, double x, double y, double z, dou
     ck_assert_int_eq(bed_add(bed, &(struct bed_sphere){.x = x, .y = y, .z = z, .r = r}), 0);
 }
 
-/* A bed of the spheres listed, (x, y, z, r) each. */
+/* A bed of the listed spheres. Each has (x, y, z, r). */
 static inline struct bed bed_of(uint32_t n, const double spheres[][4]) {
     struct bed bed;
     bed_init(&bed);
@@ -38,8 +38,8 @@ static inline struct bed bed_of(uint32_t n, const double spheres[][4]) {
     return bed;
 }
 
-/* A cubic lattice of touching unit spheres about the origin, the first sphere there: 'p' simple, 'i' body-centred, 'f'
- * face-centred, out to centre distance `reach`. */
+/* A cubic lattice of touching unit spheres about the origin, where the first sphere lies. 'p': simple, 'i':
+ * body-centred, 'f': face-centred. Centres are at most `reach` from the origin. */
 static inline struct bed lattice(char kind, double reach) {
     static const double basis[4][3] = {{0, 0, 0}, {0, .5, .5}, {.5, 0, .5}, {.5, .5, 0}}, centre[3] = {.5, .5, .5};
     double side = kind == 'p' ? 2 : kind == 'i' ? 4 / sqrt(3) : 2 * sqrt(2);
@@ -59,7 +59,7 @@ static inline struct bed lattice(char kind, double reach) {
     return bed;
 }
 
-/* A random bed of n spheres, radii in [low, high], solid fraction given; open, or periodic as made. */
+/* A random bed of n spheres with radii in [low, high] and a given solid fraction. The bed is periodic or is made open. */
 static inline struct bed packing(uint32_t n, double low, double high, double fraction, uint64_t seed, bool periodic) {
     struct bed bed;
     bed_init(&bed);
@@ -68,7 +68,7 @@ static inline struct bed packing(uint32_t n, double low, double high, double fra
     return bed;
 }
 
-/* A few large spheres, and n - 6 small ones strewn about them, in a unit cube. */
+/* A unit cube with a few large spheres, and with n - 6 small spheres at random about them. */
 static inline struct bed strewn(uint32_t n, uint64_t seed) {
     struct bed bed = bed_of(0, NULL);
     for (uint64_t at = 0; bed.n < n; at += 4) {
@@ -88,8 +88,8 @@ static inline struct bed strewn(uint32_t n, uint64_t seed) {
 
 #define ISAS_MOST 4
 
-/* The instruction sets to compare, scalar first: those this build and this machine have. The others
- * of its kind are skips, which tests/run.sh counts. Returns how many there are. */
+/* The instruction sets that this build and this machine have, scalar first. Prints the others of this kind of machine
+ * as skips, which tests/run.sh counts. Returns the number of sets. */
 static inline int isas_there(int isa[ISAS_MOST]) {
 #ifdef __aarch64__
     static const int of_machine[] = {FIBRAD_ISA_SCALAR, FIBRAD_ISA_NEON};
@@ -126,8 +126,8 @@ static inline fibrad_body cylinder_at(double x, double y, double radius) {
     return (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {x, y, radius}};
 }
 
-/* A scene of a bed in its periodic box; config: NULL or what else there is, its period is not used. Returns the status;
- * free(*scene) frees the scene. */
+/* A scene of a bed in its periodic box. config: walls and the like, or NULL. The period of config is not used. Returns
+ * the status. free(*scene) frees the scene. */
 static inline int scene_try(fibrad_scene **scene, const struct bed *bed, const fibrad_scene_config *config,
                             fibrad_fault *fault) {
     fibrad_scene_config whole = config != NULL ? *config : (fibrad_scene_config){0};
@@ -178,7 +178,7 @@ static inline void *source_resize(void *context, void *block, size_t size) {
     ck_assert_ptr_nonnull(whole);
     memset(whole, 0xff, size + 64);
     if (block != NULL) memcpy(to, block, source->size < size ? source->size : size);
-    if (source->whole != NULL) memset(source->whole, 0xee, source->size); /* of no further use */
+    if (source->whole != NULL) memset(source->whole, 0xee, source->size); /* no bytes of the old block are needed */
     free(source->whole);
     source->whole = whole, source->size = size;
     return to;
@@ -192,14 +192,14 @@ static inline fibrad_work work_fixed(void *block, size_t size) {
     return (fibrad_work){.memory = {.block = block, .size = size}};
 }
 
-/* Frees memory that has grown; a fixed block is the caller's. */
+/* Frees memory that has grown. A fixed block belongs to the caller. */
 static inline void work_free(fibrad_work *work) {
     if (work->memory.resize != NULL) free(work->memory.block);
     *work = (fibrad_work){0};
 }
 
-/* After a call with fixed memory from malloc, at first none: more of it, as much as the kernel asks for, and true if
- * the call is to be repeated. */
+/* For calls with fixed memory from malloc, which is empty at first. If the call asked for more, allocates as much as
+ * the kernel asked for. True: repeat the call. */
 static inline bool work_again(fibrad_work *work, int status) {
     if (status != FIBRAD_E_WORK) return false;
     ck_assert_uint_gt(work->memory.needed, work->memory.size);
@@ -276,7 +276,7 @@ static inline bool same_bits_with(const fibrad_row *a, const fibrad_row *b, uint
 
 /* ---- matrices --------------------------------------------------------------------------------------------------- */
 
-/* The beam rows of all spheres of a scene, in order. rule: NULL: all defaults. */
+/* The beam rows of all spheres of a scene, in order. rule NULL: all defaults. */
 static inline fibrad_rows rows_by_beams(const fibrad_scene *scene, const fibrad_beam_rule *rule) {
     fibrad_scene_facts facts;
     fibrad_scene_describe(scene, &facts);
@@ -295,7 +295,7 @@ struct matrix {
     fibrad_factors factors;
 };
 
-/* The matrix of `count` collections of rows, averaged and closed. rule: NULL: view factors. */
+/* The matrix of `count` collections of rows, averaged and closed. rule NULL: view factors. */
 static inline struct matrix matrix_of(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                                       const fibrad_matrix_rule *rule) {
     struct matrix m = {NULL, {0}};
@@ -311,7 +311,7 @@ static inline struct matrix matrix_of(const fibrad_scene *scene, const fibrad_ro
     return m;
 }
 
-/* The view factors of a scene by beams; raw: as the rows are. */
+/* The view factors of a scene by beams. raw: the rows are not averaged. */
 static inline struct matrix matrix_by_beams(const fibrad_scene *scene, const fibrad_beam_rule *beam, bool raw) {
     fibrad_rows rows = rows_by_beams(scene, beam);
     const struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = raw});
@@ -324,7 +324,7 @@ static inline void matrix_free(struct matrix *m) {
     *m = (struct matrix){NULL, {0}};
 }
 
-/* Row i of a matrix, not to be freed nor written. */
+/* Row i of a matrix. The caller neither frees nor writes it. */
 static inline fibrad_row matrix_row(const fibrad_factors *m, uint32_t i) {
     const uint64_t begin = m->start[i];
     fibrad_row row = {.sphere = i, .length = (uint32_t)(m->start[i + 1] - begin)};
@@ -341,7 +341,7 @@ static inline double matrix_factor(const fibrad_factors *m, uint32_t i, uint32_t
     return row_factor(&row, j);
 }
 
-/* Sum of the factors of row i to spheres; with bodies, escaped and beyond: matrix_total. */
+/* Sum of the factors of row i to spheres. matrix_total also has bodies, escaped and beyond. */
 static inline double matrix_sum(const fibrad_factors *m, uint32_t i) {
     const fibrad_row row = matrix_row(m, i);
     return row_sum(&row);

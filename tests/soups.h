@@ -25,7 +25,7 @@ static inline void soup_add(struct soup *soup, const double a[3], const double b
     ++soup->n;
 }
 
-/* A box, its fronts outside. */
+/* Adds a box whose fronts are outside. */
 static inline void soup_box(struct soup *soup, const double low[3], const double high[3]) {
     static const int face[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     double v[8][3];
@@ -41,7 +41,7 @@ static inline void soup_cube(struct soup *soup, double half) {
     soup_box(soup, (const double[]){-half, -half, -half}, (const double[]){half, half, half});
 }
 
-/* A cone about z of n facets, open at both ends, its fronts outside. */
+/* Adds a cone of n facets about z, open at both ends, whose fronts are outside. */
 static inline void soup_cone(struct soup *soup, double x, double y, const double z[2], const double radius[2], int n) {
     for (int k = 0; k < n; ++k) {
         double p[4][3];
@@ -65,7 +65,7 @@ static inline void soup_flip(struct soup *soup, int all) {
     }
 }
 
-/* Binary, with `bytes` more or less than there should be. */
+/* Writes a binary file with `bytes` bytes too many or, if negative, too few. */
 static inline const char *write_binary(const char *name, const struct soup *soup, const char *head, long bytes) {
     static unsigned char data[84 + 50 * SOUP_MOST + 100];
     const char *path = in_folder(name);
@@ -87,7 +87,7 @@ static inline const char *write_binary(const char *name, const struct soup *soup
     return path;
 }
 
-/* Text; `end` is that of lines, `digits` those of numbers. */
+/* Writes a file of text. `end` ends the lines. Numbers have `digits` digits. */
 static inline void print_solid(FILE *file, const char *name, const struct soup *soup, const char *end, int digits) {
     fprintf(file, "solid %s%s", name, end);
     for (uint32_t t = 0; t < soup->n; ++t) {
@@ -109,7 +109,7 @@ static inline const char *write_solid(const char *name, const struct soup *soup)
     return path;
 }
 
-/* The same bytes, packed. */
+/* Writes the same bytes, packed by gzip. */
 static inline const char *pack_file(const char *name, const char *from) {
     const char *path = in_folder(name);
     char block[4096];

@@ -1,4 +1,4 @@
-/* surface_plain.h - the surface method as published, ray by ray, nothing left out: what the tests compare with.
+/* surface_plain.h - the surface method as published, ray by ray, without shortcuts, for comparison.
  * SPDX-License-Identifier: MIT */
 #ifndef SURFACE_PLAIN_H
 #define SURFACE_PLAIN_H
@@ -34,7 +34,7 @@ static uint32_t plain_nodes(point *p, uint32_t n, double r, double centre_z, dou
     return n;
 }
 
-/* The distance of the obstacle's centre from the segment is below its radius. */
+/* Whether the distance of the obstacle's centre from the segment is below the obstacle's radius. */
 static int plain_blocked(const double from[3], const double e[3], double ee, const fibrad_spheres *o, uint32_t k) {
     const double c[3] = {o->x[k] - from[0], o->y[k] - from[1], o->z[k] - from[2]};
     const double t = fmin(1, fmax(0, (c[0] * e[0] + c[1] * e[1] + c[2] * e[2]) / ee));
