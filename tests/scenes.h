@@ -59,7 +59,7 @@ static inline struct bed lattice(char kind, double reach) {
     return bed;
 }
 
-/* A random bed of n spheres with radii in [low, high] and a given solid fraction. The bed is periodic or is made open. */
+/* A random bed of n spheres with radii in [low, high] and a given solid fraction. The bed is periodic or open. */
 static inline struct bed packing(uint32_t n, double low, double high, double fraction, uint64_t seed, bool periodic) {
     struct bed bed;
     bed_init(&bed);
