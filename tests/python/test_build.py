@@ -85,7 +85,7 @@ def test_no_source_distribution(backend, tmp_path):
 
 
 def test_without_tools(backend, tmp_path, monkeypatch):
-    """Without a compiler, a library that is there will do; without both there is a plain sentence."""
+    """Without a compiler, the build takes the library that is there. Without both, it ends with a plain sentence."""
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setenv("CC", "cc -O3")
     assert backend.build_wheel(str(tmp_path))

@@ -30,7 +30,7 @@ def _version():
 
 
 def _build_library():
-    """Brings libfibrad.so up to date; where there are no tools, the one that is there will do."""
+    """Brings libfibrad.so up to date. Without make or a compiler, takes the library that is there."""
     compiler = os.environ.get("CC", "cc")
     missing = [tool for tool in ("make", compiler.split()[0]) if not shutil.which(tool)]
     if missing and not LIBRARY.exists():

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # cooling.py - a bed of hot spheres cools on a floor. SPDX-License-Identifier: MIT
-"""Usage: cooling.py [TIMES]. Temperatures every ten seconds; steps choose themselves, and the energy is kept."""
+"""Usage: cooling.py [TIMES]. Prints temperatures every ten seconds. Steps are automatic, and the energy is kept."""
 import sys
 
 import numpy as np

@@ -1,8 +1,9 @@
 # ovito_modifier.py - a modifier function for OVITO: what particles see, their powers. SPDX-License-Identifier: MIT
-"""In OVITO: Add modification > Python script, and paste this file; or in a script: pipeline.modifiers.append(modify).
+"""In OVITO: Add modification > Python script, and paste this file. In a script: pipeline.modifiers.append(modify).
 
-Particles need radii. Each gets `Escaped`, the fraction of its view that leaves the bed, and `Seen`, the number of
-particles it sees; where there are temperatures also `Radiative Power`, for positions in metres and kelvins.
+Particles need radii. Each particle gets `Escaped`, the fraction of its view that leaves the bed, and `Seen`, the number
+of particles that it sees. If particles have temperatures [K] and positions are in metres, each particle also gets
+`Radiative Power`.
 """
 import numpy as np
 

@@ -1,6 +1,6 @@
 # yade_radiation.py - spheres of YADE on a hot floor are heated by radiation. SPDX-License-Identifier: MIT
-"""Run it as `yade -n -x yade_radiation.py`; YADE's Python has to find fibrad. PyRunner calls radiate() now and then:
-positions are taken from O.bodies, the net powers change the temperatures, which are kept here by the bodies' ids."""
+"""Run `yade -n -x yade_radiation.py`. YADE's Python must find fibrad. PyRunner calls radiate() at regular steps.
+Positions are those of O.bodies. Net powers change the temperatures, which this file keeps by the ids of the bodies."""
 import numpy as np
 
 import fibrad

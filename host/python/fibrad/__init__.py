@@ -7,8 +7,8 @@
 0.03
 
 `view_factors`, `exchange_factors` and `displacements` compute whole beds. `Heat` gives net powers and temperatures.
-`Heat.shine` has what is absorbed of `Light` from outside.
-`Transient` follows temperatures in time. `read` and `Mesh.from_stl` read files.
+`Heat.shine` finds how much `Light` from outside each surface absorbs. `Transient` follows temperatures in time. `read`
+and `Mesh.from_stl` read files.
 
 Positions are arrays (n, 3), radii are arrays (n,). The surroundings lie outside the bed and are black. A wall is a
 plane, a cylinder or a `Mesh`. A view factor is the fraction of the radiation leaving a sphere that reaches another

@@ -34,7 +34,7 @@ _Self = TypeVar("_Self", bound="Bed")
 
 
 class Bed:
-    """The common part of `Heat` and `Transient`. The functions of the library are fibrad_KIND_new, ..., KIND being
+    """The common part of `Heat` and `Transient`. The functions of the library are fibrad_KIND_new and so on. KIND is
     `_kind`."""
 
     _kind: str

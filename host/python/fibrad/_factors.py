@@ -320,7 +320,7 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
     raw : bool
         True: rows as they were computed. False: averaged, so that ``A_i F_ij = A_j F_ji``, and closed.
     drop : float
-        Entries below this, 0 to 1, are dropped. The other entries of the row take over, so that the sum stays.
+        Entries below this, 0 to 1, are dropped. The other entries of the row are enlarged, so that the sum stays.
     ids : (n,) array of whole numbers, optional
         Names of the spheres, from 0. Messages use them. They seed random paths and decide ties.
     threads : int, optional
@@ -339,7 +339,7 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
     Raises
     ------
     InputError
-        A value is out of its range, or the spheres cannot all be there. The attribute ``spheres`` names those at fault.
+        A value is out of its range, or the spheres overlap too much. The attribute ``spheres`` has those at fault.
     OutOfMemory
         There is no more memory.
     Cancelled
@@ -366,10 +366,10 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
     D_ij is the fraction of the emission of sphere i that sphere j absorbs, directly or after diffuse reflections. The
     net power of sphere i is ``sum_j A_i e_i D_ij sigma (T_j**4 - T_i**4)``, where j counts walls and surroundings, too.
 
-    With ``conductivity`` the spheres conduct, and temperatures differ from point to point of each sphere. D_ij then is
+    With ``conductivity`` the spheres conduct, and temperatures differ from point to point on each sphere. D_ij is then
     between nodes of emissivities n_i, `Factors.node_emissivity`. The net power is ``q_i = sum_j A_i n_i D_ij (N_j -
-    N_i)`` with ``N_i = sigma T_i**4 - (1 / n_i - 1 / e_i) q_i / A_i`` and the mean temperature T_i of the surface, a
-    linear system. Walls and surroundings have ``N = sigma T**4``.
+    N_i)`` with ``N_i = sigma T_i**4 - (1 / n_i - 1 / e_i) q_i / A_i`` and the mean temperature T_i of the surface. This
+    is a linear system. Walls and surroundings have ``N = sigma T**4``.
 
     Parameters
     ----------

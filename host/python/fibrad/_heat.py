@@ -162,7 +162,7 @@ class Heat(Bed):
         Returns
         -------
         Absorbed
-            For `solve`, until the next `shine` or `move`.
+            Hand it to `solve`. It is valid until the next `shine` or `move`.
 
         Raises
         ------
@@ -225,7 +225,7 @@ class Heat(Bed):
         sigma : float
             [W/(m2 K4)] Emission is ``sigma T**4``.
         light : Absorbed, optional
-            The last `shine` of this bed. What is absorbed heats. Net powers are those of light and thermal radiation
+            The last `shine` of this bed. Absorbed light heats. Net powers are those of light and thermal radiation
             together.
         conductivity : (n,) array or float, optional
             [W/(m K)] Conductivities of the solid, above 0. Temperatures of spheres are then means of their surfaces.
@@ -254,7 +254,7 @@ class Heat(Bed):
             powers = np.where(np.isnan(kelvins), powers, math.nan)
         conducts = None if conductivity is None else per_sphere("conductivity", conductivity, n, 5e-324, math.inf, names)
         if conducts is not None and uniform:
-            raise refuse("conductivity is given, and uniform is True: one radiosity knows no sides of a sphere")
+            raise refuse("conductivity is given, and uniform is True: with one radiosity a sphere has no sides")
         if conducts is not None and light is not None:
             raise refuse("conductivity and light are given: which side of a sphere light heats is not known yet")
         of_bodies = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
