@@ -49,8 +49,8 @@
  *   exchange factor  D_ij is the fraction of the emission of sphere i that sphere j absorbs, directly or after diffuse
  *                    reflections.
  *   window           The shadow disc of sphere i along one direction. Beams measure what each window sees.
- *   row              Row i holds all factors from sphere i. An entry is one factor of a row. Its column is the index of
- *                    the sphere that receives.
+ *   row              Row i holds all factors from sphere i. An entry is one factor of a row. The column of an entry
+ *                    is the index of the sphere that receives.
  *   error of a row   The root of the sum of the squared errors of the row's factors.
  *
  * Conventions
@@ -58,10 +58,10 @@
  *             Temperatures are absolute.
  *   Comments  The comment of a field begins with its unit and its shape. x[n] is an array of n elements. A range
  *             "a to b" includes both ends. "out" marks a field that the function writes.
- *   Memory    The caller owns every block. A block may have any alignment. It must stay in place while its object is
- *             used. There is no free. An `_init` function makes an object inside a block and returns a pointer into the
- *             block. Its twin `_size` returns the number of bytes that the object takes. `_size` returns 0 if `_init`
- *             would return an error other than FIBRAD_E_SIZE.
+ *   Memory    The caller owns every block. A block may have any alignment. A block must stay in place while its object
+ *             is used. No function frees a block. An `_init` function makes an object inside a block and returns a
+ *             pointer into the block. Its twin `_size` returns the number of bytes that the object takes. `_size`
+ *             returns 0 if `_init` would return an error other than FIBRAD_E_SIZE.
  *   Threads   Threads may share const objects. A fibrad_work or a fibrad_rows belongs to one thread at a time.
  *   Errors    A function that can fail returns FIBRAD_OK or a negative fibrad_status. After an error the outputs are
  *             as before, except where the function's comment says otherwise. A null pointer is FIBRAD_E_ARGUMENT. A
@@ -93,7 +93,7 @@ typedef enum fibrad_status {
     FIBRAD_E_ARGUMENT = -1,     /* A pointer is null, or a value is out of its range, NaN or infinite. */
     FIBRAD_E_SIZE = -2,         /* The block is smaller than the `_size` function says. */
     FIBRAD_E_ALIGNMENT = -3,    /* Reserved. No function asks for an alignment. */
-    FIBRAD_E_CAPACITY = -4,     /* An output is too small. The function has written what it needs. */
+    FIBRAD_E_CAPACITY = -4,     /* An output is too small. The function has written the size that it needs. */
     FIBRAD_E_TABLE = -5,        /* That number of samples is not built in. */
     FIBRAD_E_GEOMETRY = -6,     /* A centre lies inside another sphere, or a sphere reaches beyond an opening. */
     FIBRAD_E_WORK = -7,         /* Fixed work memory is too small. work.memory.needed is the size that suffices. */
@@ -103,7 +103,7 @@ typedef enum fibrad_status {
     FIBRAD_E_MEMORY = -11,      /* A resize function or the heap has no more memory. */
     FIBRAD_E_CANCELLED = -12,   /* A progress function has asked to stop. */
     FIBRAD_E_UNSOLVABLE = -13,  /* No temperatures give the powers that were asked for. */
-    FIBRAD_E_BACK = -14,        /* A side of a triangle that belongs to no wall was seen. Its number is written. */
+    FIBRAD_E_BACK = -14,        /* A side that belongs to no wall was seen. The number of its triangle is written. */
     FIBRAD_E_SUM = -15,     /* A row's sum is not 1 within 1e-9. The library has a fault, or a row part has changed. */
     FIBRAD_E_ENDLESS = -16, /* The walls form a tube or a corner without end. Add a wall or an opening. */
     FIBRAD_E_FILE = -17     /* A file cannot be made, written or renamed. Only functions of the host return this. */
@@ -184,7 +184,8 @@ int fibrad_pair_exact(double r1, double r2, double gap, double *f12);
 
 /* ---- scene ----------------------------------------------------------------------------------------------------- */
 /* The spheres of a scene. The centre of sphere i is at x[i * stride], y[i * stride], z[i * stride]. The radius of
- * sphere i is r[i * stride_r]. Example: double at[n][3] is {&at[0][0], &at[0][1], &at[0][2], r, n, .stride = 3}. */
+ * sphere i is r[i * stride_r].
+ * Example: double at[n][3] is {&at[0][0], &at[0][1], &at[0][2], r, n, .stride = 3}. */
 typedef struct fibrad_spheres {
     const double *x, *y, *z;   /* L, [n], at most FIBRAD_LENGTH_MAX and at most 3e13 smallest radii; NULL if n = 0 */
     const double *r;           /* L, [n], FIBRAD_LENGTH_MIN to FIBRAD_LENGTH_MAX; NULL if n = 0 */
@@ -218,10 +219,10 @@ typedef struct fibrad_plane {
  * counts as `escaped`. An opening has no index, no temperature and no emissivity. All rules for planes hold for
  * openings.
  *
- * Endless walls. An endless wall has an infinite area. A single plane may be endless. So may two planes across the same
- * axis. Planes across several axes are allowed only if each axis has two planes or a period. A cylinder is allowed only
- * if the z axis has two planes or a period. Otherwise fibrad_scene_init returns FIBRAD_E_ENDLESS. An occupancy
- * that is periodic along an axis counts as a period. */
+ * Endless walls. An endless wall has an infinite area. A single plane may be endless. Two planes across the same axis
+ * may be endless, too. Planes across several axes are allowed only if each axis has two planes or a period. A cylinder
+ * is allowed only if the z axis has two planes or a period. Otherwise fibrad_scene_init returns FIBRAD_E_ENDLESS. An
+ * occupancy that is periodic along an axis counts as a period. */
 typedef struct fibrad_body {
     int kind;           /* a fibrad_body_kind */
     fibrad_plane plane; /* used by FIBRAD_BODY_PLANE */
@@ -232,7 +233,7 @@ typedef struct fibrad_body {
 
 /* Divided beds. Several machines may divide the spheres of a bed. Each machine computes the rows of its own spheres,
  * with a cutoff. Let R be the largest radius. Row i depends on the spheres whose centres lie within cutoff + 1.5 R of
- * centre i. If no spheres overlap, row i depends only on those within cutoff + R. Row i also depends on the walls, the
+ * centre i. If no spheres overlap, the distance cutoff + R suffices. Row i also depends on the walls, the
  * occupancy and the ids. No other sphere changes a bit of row i. The order of the spheres changes no bit either.
  *
  * The fraction `beyond`. Row i knows the space within the cutoff of centre i. If the scene has a known region, row i
@@ -732,8 +733,8 @@ size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, ui
  *            rule: NULL for all defaults
  *   Output   matrix: a pointer into memory
  *            sphere: the sphere whose row is missing or repeated; may be NULL
- *   Errors   _ARGUMENT: also an entry from or to a sphere of emissivity 0; or with rule->reciprocal a row whose
- *            symmetric is 0
+ *   Errors   _ARGUMENT: also if an entry is from or to a sphere of emissivity 0, or if rule->reciprocal is 1 and a row
+ *            has symmetric = 0
  *            _SIZE
  *            _STATE: a row is missing, repeated or of another scene, or a collection's block was moved
  *   Cost     O(spheres + entries) */
@@ -960,7 +961,7 @@ typedef struct fibrad_flow {
     double surroundings_power;    /* e L^2, in and out */
 } fibrad_flow;
 
-/* Adds the powers that follow from rows of exchange factors. There may be rows for some of the spheres only.
+/* Adds the powers that follow from rows of exchange factors. The collection may have rows of some spheres only.
  *
  * An entry D_ij moves the power A_i eps_i D_ij (E_j - E_i)/2 from sphere j to sphere i. The other half comes from row
  * j, on this or on another machine. A factor to a wall or to the surroundings moves the full power, since walls and

@@ -112,7 +112,7 @@ typedef struct fibrad_furnace_report {
 /* Solves the heat-flux equations for E and the fluxes, with the present Theta and transverse term. A sweep solves every
  * line of cells exactly between its two walls. The sweeps end when no cell changes by more than the tolerance.
  *   Input    tolerance: [W/m2], above 0
- *            sweeps_max: sweeps after which to stop. To stop there is no error: the report has `change`.
+ *            sweeps_max: sweeps after which to stop. Stopping is no error: the report has the change.
  *   Output   report
  *   Errors   _ARGUMENT: also if a change of E is not finite, because of values that the caller has written into the
  *            arrays. All arrays but theta are then undefined.

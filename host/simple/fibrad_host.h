@@ -36,8 +36,8 @@ extern "C" {
 
 /* ---- run ------------------------------------------------------------------------------------------------------- */
 
-/* A function of the caller that shows progress. The thread that made the call calls it at the beginning and the end of
- * each stage, and up to 20 times a second in between.
+/* A function of the caller that shows progress. The thread that made the call runs this function at the beginning and
+ * the end of each stage, and up to 20 times a second in between.
  *   Input    context: fibrad_run.context
  *            stage: "walls", "circles", "rows", "triangles", "beams", "sweeps" or "steps"
  *            done: number of things done
@@ -176,7 +176,7 @@ int fibrad_radiation_solve(fibrad_radiation *radiation, const fibrad_heat_source
  *            _STATE: there is no solution of this bed */
 int fibrad_radiation_sides(const fibrad_radiation *radiation, double *flux, double *temperature);
 
-/* A function of the caller: emissivities that depend on temperatures. The thread that made the call calls it. Where a
+/* A function of the caller: emissivities that depend on temperatures. The thread that made the call runs it. Where a
  * temperature is NaN, the function leaves the emissivity as it is. A temperature is NaN if it is not known yet, if the
  * wall is insulated, or if the emissivity is 0.
  *   Input    temperature[spheres], body_temperature[bodies]: [K]
