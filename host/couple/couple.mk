@@ -10,7 +10,7 @@ COUPLE := $(filter-out host/couple/example.c,$(call sources,host/couple/*.c host
 
 COUPLE_WALLS = host/couple/walls/mesh_walls.c
 
-# walls of triangles, for programs that read files of them; a library of its own, since it has names of the program
+# walls of triangles and tables, for programs that read files of them; a library of its own, since it has names of the program
 COUPLE_MESH = $(COUPLE_WALLS) \
     host/cli/interrupt.c \
     host/cli/message.c \
@@ -21,6 +21,7 @@ COUPLE_MESH = $(COUPLE_WALLS) \
     host/mesh/sides.c \
     host/mesh/stl.c \
     host/mesh/weld.c \
+    host/text/read_curve.c \
     host/text/read_lines.c \
     host/text/read_number.c
 

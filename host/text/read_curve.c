@@ -2,7 +2,7 @@
 #include "text/read_curve.h"
 
 #include <ctype.h>
-#include <gsl/gsl_interp.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "cli/message.h"
@@ -92,10 +92,40 @@ void curve_free(struct curve *curve) {
     *curve = (struct curve){0};
 }
 
+/* Number of points of a curve up to x. `with`: a point at x is one of them. */
+static size_t points_up_to(const struct curve *curve, double x, bool with) {
+    size_t low = 0, high = curve->n;
+    while (low < high) {
+        const size_t k = (low + high) / 2;
+        if (curve->x[k] < x || (with && curve->x[k] == x))
+            low = k + 1;
+        else
+            high = k;
+    }
+    return low;
+}
+
 double curve_at(const struct curve *curve, double x) {
     const double *at = curve->x;
     if (!(x > at[0])) return curve->y[0];
     if (x >= at[curve->n - 1]) return curve->y[curve->n - 1];
-    const size_t k = gsl_interp_bsearch(at, x, 0, curve->n - 1);
+    const size_t k = points_up_to(curve, x, true) - 1;
     return curve->y[k] + (curve->y[k + 1] - curve->y[k]) * ((x - at[k]) / (at[k + 1] - at[k]));
+}
+
+double curve_advance(const struct curve *curve, double x, double area) {
+    const bool up = area > 0;
+    for (;;) {
+        /* y is a straight line until the next point, and does not change outside of all points */
+        const size_t k = points_up_to(curve, x, up), n = curve->n;
+        const bool inside = k > 0 && k < n;
+        const double slope = inside ? (curve->y[k] - curve->y[k - 1]) / (curve->x[k] - curve->x[k - 1]) : 0;
+        const double y = curve_at(curve, x);
+        const bool last = up ? k == n : k == 0;
+        const double end = last ? x : curve->x[up ? k : k - 1];
+        const double until = (y + curve_at(curve, end)) / 2 * (end - x);
+        if (last || fabs(area) <= fabs(until)) return x + 2 * area / (y + sqrt(fmax(0, y * y + 2 * slope * area)));
+        area -= until;
+        x = end;
+    }
 }

@@ -22,4 +22,8 @@ void curve_free(struct curve *curve);
 /* The value at x. */
 double curve_at(const struct curve *curve, double x);
 
+/* The end of the way from x on which the integral of y is `area`, which may be below 0. y is above 0. With a heat
+ * capacity over temperature: the temperature that a heat leads to. */
+double curve_advance(const struct curve *curve, double x, double area);
+
 #endif

@@ -254,6 +254,23 @@ near "$work/stores1.out" "$work/restored.out" 1e-10 "a floor that stores heat, r
 run 2 warming moving.lmp hot 1000 steps 4000 capacity "capacity 2e4" stored 2e4
 balance warming 20e-3 0 1e-3 150 "energy of moving particles and a floor that stores heat"
 
+# ---- tables over temperature --------------------------------------------------------------------------------------------
+# table NAME T VALUE T VALUE
+table() { printf '# of the test\nT,value\n%s,%s\n%s,%s\n' "$2" "$3" "$4" "$5" >"$work/$1"; }
+table half 300 .5 900 .5
+table most 300 .8 900 .8
+table constant 300 800 900 800
+run 2 tables frozen.lmp "${whole[@]}" cp "table $work/constant" radiates "type table $work/half table $work/most"
+near "$work/frozen1.out" "$work/tables.out" 1e-10 "tables of one value"
+table steep 300 .2 700 .8
+run 1 steep frozen.lmp "${whole[@]}" steps 0 radiates "table $work/steep" also "set group all d_T 600"
+run 1 number frozen.lmp "${whole[@]}" steps 0 radiates .65 also "set group all d_T 600"
+test -n "$(walls steep)" && test "$(walls steep)" = "$(walls number)"
+verdict "an emissivity of a table" $?
+table warmer 300 .02 1000 .04
+run 2 tabled moving.lmp hot 1000 steps 4000 cp "table $work/warmer" enthalpy "0.02*(c_T-300)+0.01/700*(c_T-300)^2"
+balance tabled 20e-3 0 1e-3 150 "energy of moving particles with a table of cp"
+
 # ---- strays -----------------------------------------------------------------------------------------------------------
 # LAMMPS goes on with centres inside others and beyond walls. So does radiation.
 run 2 soft soft.lmp
@@ -303,6 +320,10 @@ fails "has a temperature of its own, not v_hot" "a capacity beside a variable" f
 fails "too long for wall 1" "steps of heat too long for a wall" floor "zlo 1000 0.9 at 0 capacity 1e4" heat 1
 fails "capacity must be in" "a capacity of 0" floor "zlo 1000 0.9 capacity 0"
 fails "low, normal or high, not .fine" "an accuracy that is not there" strict "no accuracy fine"
+table wrong 300 .5 900 1.5
+fails "wrong:4: the emissivity is 1.5; it must be within 0 and 1" "a table out of range" radiates "table $work/wrong"
+fails "$work/none: No such file" "a table that is not there" cp "table $work/none"
+fails ".table. needs temperatures" "a table without temperatures" heat 0 radiates "table $work/half"
 fails "excludes" "accuracy beside paths" \
     also "fix bad all fibrad 0 1 emissivity 1 surroundings 300 cp 1 paths 50 accuracy low"
 fails "open axes x and y" "a cylinder with periodic axes" boundary "p p f" \

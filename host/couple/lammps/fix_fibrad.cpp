@@ -11,6 +11,10 @@
 #include "update.h"
 #include "variable.h"
 
+extern "C" {
+#include "cli/message.h"
+}
+
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
@@ -53,6 +57,8 @@ class FixFibrad::Words {
             lmp->error->all(FLERR, text("fix fibrad: %s must be in [%g, %g], not %g", what, low, high, value));
         return value;
     }
+    double number() { return utils::numeric(FLERR, next().c_str(), false, lmp); }
+    bool next_is_vector() const { return more() && words[at].compare(0, 2, "d_") == 0; } // of fix property/atom
     int count(const char *what, int low) {
         const int value = utils::inumeric(FLERR, next().c_str(), false, lmp);
         if (value < low) lmp->error->all(FLERR, text("fix fibrad: %s must be at least %d, not %d", what, low, value));
@@ -87,11 +93,11 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     while (words.more()) {
         const std::string key = words.next();
         if (key == "emissivity")
-            emissivity = read_property(words);
+            emissivity = read_property(words, "emissivity", 0, 1);
         else if (key == "cp")
-            cp = read_property(words);
+            cp = read_property(words, "heat capacity", 1e-300, huge);
         else if (key == "solid")
-            solid = read_property(words);
+            solid = read_property(words, "conductivity", 1e-300, huge);
         else if (key == "surroundings")
             surroundings = read_kelvins(words, "the temperature of the surroundings");
         else if (key == "wall")
@@ -136,6 +142,8 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
                        text("fix fibrad: the conductivity of the solid must be above 0, not %g", solid.of_type[type]));
     if (solid.given() && !heat_every)
         error->all(FLERR, std::string("fix fibrad: `solid` needs temperatures: NEVERY must be above 0"));
+    if (!emissivity.table.empty() && !heat_every)
+        error->all(FLERR, std::string("fix fibrad: `table` needs temperatures: NEVERY must be above 0"));
     if (heat_every && surroundings.variable.empty() && surroundings.value < 0)
         error->all(
             FLERR,
@@ -309,23 +317,56 @@ void FixFibrad::read_accuracy(Words &words) {
     if (config.accuracy < 0) error->all(FLERR, "fix fibrad: `accuracy` is low, normal or high, not `" + word + "`");
 }
 
-// a number | type V1 V2 ... | d_NAME
-FixFibrad::Property FixFibrad::read_property(Words &words) {
+// VALUE | type VALUE VALUE ... | d_NAME
+FixFibrad::Property FixFibrad::read_property(Words &words, const char *what, double low, double high) {
     Property property;
-    const double huge = 1e300;
-    if (words.next_is("type")) {
-        words.next();
-        property.of_type.push_back(1); // types count from 1
-        for (int type = 1; type <= atom->ntypes; type++)
-            property.of_type.push_back(words.number("a value per type", 0, huge));
+    if (words.next_is_vector()) {
+        property.of_atom = words.next();
         return property;
     }
-    const std::string word = words.next();
-    if (word.compare(0, 2, "d_") == 0)
-        property.of_atom = word;
-    else
-        property.of_type.assign(atom->ntypes + 1, utils::numeric(FLERR, word.c_str(), false, lmp));
+    const size_t types = (size_t)atom->ntypes;
+    const bool by_type = words.take("type");
+    Table table;
+    property.of_type.assign(types + 1, by_type ? 1 : read_value(words, what, low, high, &table)); // types count from 1
+    property.table.assign(types + 1, table);
+    for (size_t type = 1; by_type && type <= types; type++)
+        property.of_type[type] = read_value(words, what, low, high, &property.table[type]);
+    const auto given = [](const Table &t) { return t.given(); };
+    if (std::none_of(property.table.begin(), property.table.end(), given)) property.table.clear();
     return property;
+}
+
+// number | table FILE; of a table one of its values
+double FixFibrad::read_value(Words &words, const char *what, double low, double high, Table *table) {
+    if (!words.take("table")) return words.number();
+    *table = read_table(words.next(), what, low, high);
+    return table->value[0];
+}
+
+static void keep_line(void *context, const char *line) { *(std::string *)context = line; }
+
+// Rank 0 reads the file.
+FixFibrad::Table FixFibrad::read_table(const std::string &path, const char *what, double low, double high) {
+    curve read = {};
+    std::string message;
+    int status = 0;
+    if (comm->me == 0) {
+        message_redirect(keep_line, &message);
+        status = curve_read(path.c_str(), what, low, high, &read);
+        message_redirect(nullptr, nullptr);
+    }
+    int size[] = {status, (int)read.n};
+    MPI_Bcast(size, 2, MPI_INT, 0, world);
+    Table table;
+    table.kelvin.assign(read.x, read.x + read.n);
+    table.value.assign(read.y, read.y + read.n);
+    curve_free(&read);
+    if (size[0]) error->all(FLERR, "fix fibrad: " + message);
+    table.kelvin.resize(size[1]);
+    table.value.resize(size[1]);
+    MPI_Bcast(table.kelvin.data(), size[1], MPI_DOUBLE, 0, world);
+    MPI_Bcast(table.value.data(), size[1], MPI_DOUBLE, 0, world);
+    return table;
 }
 
 // ---- before and after a run ---------------------------------------------------------------------------------------
@@ -433,7 +474,10 @@ void FixFibrad::end_of_step() {
     const std::vector<double> capacity = values(cp);
     for (size_t k = 0; k < member.size(); k++) {
         const int i = member[k];
-        t[i] += q[i] * update->dt * heat_every / (mass(i) * capacity[k]);
+        const double heat = q[i] * update->dt * heat_every;
+        const Table *table = cp.table.empty() ? nullptr : &cp.table[atom->type[i]];
+        const curve points = table ? table->points() : curve();
+        t[i] = points.n ? curve_advance(&points, t[i], heat / mass(i)) : t[i] + heat / (mass(i) * capacity[k]);
     }
 }
 
@@ -691,6 +735,12 @@ std::vector<double> FixFibrad::values(const Property &property) {
     if (!property.given()) return value;
     const double *of_atom = property.of_atom.empty() ? nullptr : vector(property.of_atom);
     for (int i : member) value.push_back(of_atom ? of_atom[i] : property.of_type[atom->type[i]]);
+    if (property.table.empty()) return value;
+    const std::vector<double> t = temperatures();
+    for (size_t k = 0; k < member.size(); k++) {
+        const curve points = property.table[atom->type[member[k]]].points();
+        if (points.n) value[k] = curve_at(&points, t[k]);
+    }
     return value;
 }
 

@@ -16,6 +16,10 @@
 #include "couple/walls/mesh_walls.h"
 #include "couple/walls/wall_heat.h"
 
+extern "C" {
+#include "text/read_curve.h"
+}
+
 #include <string>
 #include <vector>
 
@@ -44,9 +48,17 @@ class FixFibrad : public Fix {
     static void *create(void *lmp, int narg, char **arg);
 
   private:
-    // A value for each atom: a number for all, a number for each type, or a vector of fix property/atom.
+    // Values over temperature. Empty: none.
+    struct Table {
+        std::vector<double> kelvin, value;
+        bool given() const { return !value.empty(); }
+        curve points() const { return {(double *)kelvin.data(), (double *)value.data(), value.size()}; }
+    };
+
+    // A value for each atom: a number for all, a number or table for each type, or a vector of fix property/atom.
     struct Property {
         std::vector<double> of_type; // [ntypes + 1], by type; empty: not given, or of_atom is set
+        std::vector<Table> table;    // [ntypes + 1], by type; empty: there are no tables
         std::string of_atom;         // "d_NAME", the vector; empty: of_type is set
         bool given() const { return !of_type.empty() || !of_atom.empty(); }
     };
@@ -65,7 +77,9 @@ class FixFibrad : public Fix {
     void read_mesh(Words &);
     void describe_meshes(uint32_t first, uint32_t bodies, const std::string &path);
     void read_temperature(Words &);
-    Property read_property(Words &);
+    Property read_property(Words &, const char *what, double low, double high);
+    double read_value(Words &, const char *what, double low, double high, Table *);
+    Table read_table(const std::string &path, const char *what, double low, double high);
     Temperature read_kelvins(Words &, const char *what);
     void read_accuracy(Words &);
 
