@@ -17,9 +17,6 @@
 #define FIBRAD_CIRCLE_DISCS 240u
 #define FIBRAD_CIRCLE_ROOM  (FIBRAD_CIRCLE_DISCS + 3 * FIBRAD_LANES_MAX)
 #define FIBRAD_CIRCLE_ENDS  (4 * FIBRAD_CIRCLE_ROOM)
-#define FIBRAD_CIRCLE_MANY                                                                                             \
-    (2 * FIBRAD_LANES_MAX) /* near spheres that are first asked whether they touch the circle                          \
-                            */
 
 /* A place on a circle is a number from -1 to 3 for a whole turn. For angles t within a quarter turn of 0 it is
  * tan(t/2). On the other half of the circle it is 2 + tan((t - pi)/2). */
@@ -31,34 +28,29 @@ typedef struct fibrad_line {
     double frame[9];
 } fibrad_line;
 
-/* Discs behind or before a sphere that may touch its circle, in any order. */
+/* Discs behind or before a sphere, in any order, as floats know them: to a bound. */
 typedef struct fibrad_circle_side {
-    _Alignas(64) double u[FIBRAD_CIRCLE_ROOM]; /* centre relative to that of the sphere */
-    double v[FIBRAD_CIRCLE_ROOM];
-    double depth[FIBRAD_CIRCLE_ROOM]; /* away from the sphere */
-    double r[FIBRAD_CIRCLE_ROOM];
-    double from[FIBRAD_CIRCLE_ROOM]; /* the arc that the disc covers of the stretch; ends beyond all places are outside
-                                        it */
-    double to[FIBRAD_CIRCLE_ROOM];   /* less than `from` if the disc covers the place where the stretch begins */
-    float key[FIBRAD_CIRCLE_ROOM];   /* the depth, rounded */
-    uint32_t inner[FIBRAD_CIRCLE_ROOM]; /* sectors of the stretch that the disc covers whole, as bits, ... */
-    uint32_t outer[FIBRAD_CIRCLE_ROOM]; /* ... and those of which it covers some; 0: the disc does not count */
+    _Alignas(64) float low[FIBRAD_CIRCLE_ROOM]; /* the depth away from the sphere, in its radii, is between these */
+    float high[FIBRAD_CIRCLE_ROOM];
+    uint32_t inner[FIBRAD_CIRCLE_ROOM]; /* sectors of the stretch that the disc certainly covers whole, as bits, ... */
+    uint32_t outer[FIBRAD_CIRCLE_ROOM]; /* ... and those of which it may cover some; 0: the disc does not count */
     uint32_t slot[FIBRAD_CIRCLE_ROOM];  /* number among the near spheres */
-    uint32_t count;                     /* whole vectors of floats */
-    double known;                       /* all discs down to this depth are found */
+    uint32_t last;                      /* end of the list */
+    double known;                       /* all discs down to this depth are found, in radii of the sphere */
     double sense;                       /* 1: before the sphere; -1: behind it */
-    uint32_t last;                      /* end of those that are not filled up */
     bool closed, open;                  /* nothing, or something, of the stretch is certainly open to that depth */
     uint32_t nothing;                   /* the name of what lies beyond all spheres */
 } fibrad_circle_side;
 
 /* The discs of a side that may be seen, in any order. Element `count` stands for what lies beyond all spheres. */
 typedef struct fibrad_circle_discs {
-    _Alignas(64) double u[FIBRAD_CIRCLE_ROOM];
-    double v[FIBRAD_CIRCLE_ROOM], depth[FIBRAD_CIRCLE_ROOM], r[FIBRAD_CIRCLE_ROOM];
-    double from[FIBRAD_CIRCLE_ROOM], to[FIBRAD_CIRCLE_ROOM];
-    double weight[FIBRAD_CIRCLE_ROOM]; /* units per area */
-    float key[FIBRAD_CIRCLE_ROOM];
+    _Alignas(64) double u[FIBRAD_CIRCLE_ROOM]; /* centre relative to that of the sphere */
+    double v[FIBRAD_CIRCLE_ROOM], depth[FIBRAD_CIRCLE_ROOM];
+    double from[FIBRAD_CIRCLE_ROOM]; /* the arc that the disc covers of the stretch; ends beyond all places are outside
+                                        it */
+    double to[FIBRAD_CIRCLE_ROOM];   /* less than `from` if the disc covers the place where the stretch begins */
+    double weight[FIBRAD_CIRCLE_ROOM];   /* units per area */
+    float key[FIBRAD_CIRCLE_ROOM];       /* the depth, rounded */
     uint32_t rank[FIBRAD_CIRCLE_ROOM];   /* the nearest has rank 0 */
     uint32_t number[FIBRAD_CIRCLE_ROOM]; /* of the disc that has a rank */
     uint32_t slot[FIBRAD_CIRCLE_ROOM];
@@ -87,7 +79,9 @@ typedef struct fibrad_circle_pieces {
  * elements, `nothing` and nothing + 1, stand for what lies beyond all spheres, behind and before. The element before
  * them, `nowhere`, is a sphere so far away that no circle touches it. It fills vectors up. */
 typedef struct fibrad_circle_near {
-    double *home[3], *radius, *away[3]; /* position, radius, and how many periods away the image is */
+    double (*ball)[4]; /* position and radius */
+    float (*seen)[4];  /* position relative to the sphere in hand, and radius, in radii of that sphere */
+    double (*away)[4]; /* how many periods away the image is along each axis */
     uint32_t *sphere;
     int64_t *sum[2];                 /* what is exchanged with the sphere in hand, in units, over even and odd lines */
     uint32_t fill[FIBRAD_LANES_MAX]; /* `nowhere` */

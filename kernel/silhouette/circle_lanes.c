@@ -15,13 +15,12 @@ static inline uint32_t lowest_bit(uint64_t x) { return (uint32_t)__builtin_ctzll
 
 /* ---- discs and their arcs --------------------------------------------------------------------------------------- */
 
-/* The component of near spheres along an axis of the line's frame, relative to the sphere in hand. */
-static inline vd component_across(const fibrad_circles *c, int axis, vd x, vd y, vd z, const uint32_t *place) {
+/* The component of near spheres along an axis of the line's frame, relative to the sphere in hand. away: how many
+ * periods away the spheres are; NULL: all are at home. */
+static inline vd component_across(const fibrad_circles *c, int axis, const vd ball[4], const vd *away) {
     const double *across = c->across + 3 * axis, *shift = c->shift[axis];
-    vd at = ((across[0] * x + across[1] * y + across[2] * z) + c->grid) - c->grid;
-    if (c->images)
-        at += shift[0] * vd_gather(c->near.away[0], place) + shift[1] * vd_gather(c->near.away[1], place) +
-              shift[2] * vd_gather(c->near.away[2], place);
+    vd at = ((across[0] * ball[0] + across[1] * ball[1] + across[2] * ball[2]) + c->grid) - c->grid;
+    if (away != NULL) at += shift[0] * away[0] + shift[1] * away[1] + shift[2] * away[2];
     return at - c->centre[axis];
 }
 
@@ -31,7 +30,7 @@ static bool tie_lies_ahead(const fibrad_workspace *work, const fibrad_circles *c
     const uint64_t own = fibrad_scene_rank(work->scene, work->place);
     if (rank != own) return rank > own;
     for (int axis = 0; axis < 3; axis++)
-        if (c->near.away[axis][place] != 0) return c->near.away[axis][place] > 0;
+        if (c->near.away[place][axis] != 0) return c->near.away[place][axis] > 0;
     return false;
 }
 
@@ -41,39 +40,17 @@ static inline vd circle_place(vd cosine, vd sine, vd size) {
     return vd_select(vd_lt(cosine, vd_set1(0)), 2 - tangent, tangent);
 }
 
-/* Sectors of a stretch, as bits of a number, of which doubles have all digits. */
-#define SECTORS    30
-#define ALL_AROUND 0x3fffffff
-
-/* Places in sectors from the beginning of the stretch; those outside it become its ends. */
-static inline vd sectors_from_begin(const fibrad_circle_stretch *stretch, vd place) {
-    vd at = (place - stretch->begin) * stretch->sectors;
-    if (!(stretch->radius < __builtin_inf())) return at;
-    return vd_min(vd_set1(SECTORS), vd_max(vd_set1(0), at));
-}
-
-/* The sectors that an arc covers whole, and those that it touches; a few less and a few more at most. */
-static inline void find_sectors(vd from, vd to, vm wraps, vd *inner, vd *outer) {
-    const vd zero = vd_set1(0), all = vd_set1(ALL_AROUND);
-    vd last = vd_power_of_two(vd_max(zero, to - .5)), first = vd_power_of_two(vd_min(vd_set1(SECTORS), from + .5));
-    vd within = last - first, touched = 2 * last - .5 * first;
-    *inner = vd_select(wraps, all + within, vd_max(zero, within));
-    *outer = vd_select(wraps, all + vd_min(zero, touched), touched);
-}
-
-/* Leaves of the arcs of discs what lies on the stretch in hand. Ends outside it are moved beyond all ends, each to a
- * place of its own; `to` stays less than `from` where the disc covers the beginning of the stretch. */
-static inline void cut_to_stretch(const fibrad_circle_stretch *stretch, uint32_t number, vm wraps, vd *from, vd *to,
-                                  vm *covers, vm *touches) {
-    _Alignas(64) static const double lane[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+/* Leaves of the arcs of discs what lies on the stretch in hand. Ends outside it are moved to `far`, a place beyond all
+ * ends for each disc; `to` stays less than `from` where the disc covers the beginning of the stretch. */
+static inline void cut_to_stretch(const fibrad_circle_stretch *stretch, vd far, vm wraps, vd *from, vd *to, vm *covers,
+                                  vm *touches) {
     const vd begin = vd_set1(stretch->begin), end = vd_set1(stretch->end);
     vm past_from = vd_le(*from, begin), past_to = vd_le(*to, begin);
     vm within = (past_from & vm_not(past_to)) | (wraps & (past_from | vm_not(past_to)));
     vm from_outside = past_from | vd_le(end, *from), to_outside = past_to | vd_le(end, *to);
     vm none = from_outside & to_outside;
-    vd far = NOWHERE + 2 * (vd_load(lane) + number);
     *covers = *covers | (*touches & none & within);
-    *touches = *touches & (vm_not(none) | within);
+    *touches = *touches & vm_not(none);
     *from = vd_select(from_outside, far + 1, *from);
     *to = vd_select(to_outside, far, *to);
 }
@@ -82,153 +59,206 @@ static inline void cut_to_stretch(const fibrad_circle_stretch *stretch, uint32_t
  * arc has
  *   cos h = (x^2 + r^2 - R^2)/(2 x r),   sin h = sqrt(((R + r)^2 - x^2)(x^2 - (R - r)^2))/(2 x r).
  * The factors are the same numbers on both circles, so that circles that nearly touch agree. Of two circles that
- * coincide the one farther along the line counts as the larger one. Discs that do not lie on the side, or do not cover
- * any of the circle, get no sectors. */
-static inline void find_arcs(const fibrad_circles *c, fibrad_circle_side *side, uint32_t to, vd u, vd v, vd depth,
-                             vd r) {
+ * coincide the one farther along the line counts as the larger one. Discs that are not there, or do not cover any of
+ * the stretch, get an empty arc at `far`, a place beyond all ends for each disc. */
+static inline void find_arcs(const fibrad_circles *c, double sense, vd u, vd v, vd r, vm there, vd far, vd *from,
+                             vd *to) {
     const vd own = vd_set1(c->r), zero = vd_set1(0), tiny = vd_set1(TINY);
     vd square = u * u + v * v, sum = r + own, larger = r - own;
     vd apart = sum * sum - square, within = square - larger * larger;
-    vm there = vd_le(zero, depth) & vd_le(depth, vd_set1(c->farthest)), covers = vd_le(within, tiny) & there;
-    vm touches = vd_lt(tiny, apart) & vd_lt(tiny, within) & there;
-    covers = covers & (side->sense > 0 ? vd_le(zero, larger) : vd_lt(zero, larger));
+    vm covers = vd_le(within, tiny) & there, touches = vd_lt(tiny, apart) & vd_lt(tiny, within) & there;
+    covers = covers & (sense > 0 ? vd_le(zero, larger) : vd_lt(zero, larger));
     vd along = square - larger * sum, root = vd_sqrt(vd_max(zero, apart * within)), size = 2 * c->r * square;
     vd u_along = u * along, v_along = v * along, u_root = u * root, v_root = v * root;
-    vd from = circle_place(u_along + v_root, v_along - u_root, size);
+    vd begin = circle_place(u_along + v_root, v_along - u_root, size);
     vd end = circle_place(u_along - v_root, v_along + u_root, size);
-    vd step = end - from;
+    vd step = end - begin;
     vm wraps = vd_lt(step, zero), narrow = vd_le(zero, along);
     /* the ends of an arc that is nearly empty, or nearly all, may have changed places */
     covers = covers | (touches & vd_lt(along, zero) & vd_le(zero, step) & vd_lt(step, vd_set1(1)));
     touches = touches & vm_not(narrow & wraps & vd_lt(vd_set1(-1), step));
-    vd inner, outer;
-    find_sectors(sectors_from_begin(&c->stretch, from), sectors_from_begin(&c->stretch, end), wraps, &inner, &outer);
-    if (c->stretch.radius < __builtin_inf())
-        cut_to_stretch(&c->stretch, to + (side->sense > 0 ? FIBRAD_CIRCLE_ROOM : 0), wraps, &from, &end, &covers,
-                       &touches);
-    vm known = vd_le(depth, vd_set1(side->known * (1 - 1e-12) * c->r)); /* deeper ones may be hidden by others */
-    inner = vd_select(covers, vd_set1(ALL_AROUND), vd_select(touches, inner, zero));
-    vd_store_numbers(side->inner + to, vd_select(known, inner, zero));
-    vd_store_numbers(side->outer + to, vd_select(covers, vd_set1(ALL_AROUND), vd_select(touches, outer, zero)));
-    vd_store(side->u + to, u);
-    vd_store(side->v + to, v);
-    vd_store(side->r + to, r);
-    vd_store(side->depth + to, depth);
-    vd_store_float(side->key + to, depth);
-    vd_store(side->from + to, vd_select(covers, vd_set1(NOWHERE - 2 + side->sense), from));
-    vd_store(side->to + to, vd_select(covers, vd_set1(NOWHERE - 3 + side->sense), end));
+    if (c->stretch.radius < __builtin_inf()) cut_to_stretch(&c->stretch, far, wraps, &begin, &end, &covers, &touches);
+    *from = vd_select(covers, vd_set1(NOWHERE - 2 + sense), vd_select(touches, begin, far));
+    *to = vd_select(covers, vd_set1(NOWHERE - 3 + sense), vd_select(touches, end, far + 1));
 }
 
-/* Keeps the near spheres whose discs touch the stretch. A few others may stay. Returns how many are kept. */
-static uint32_t leave_touching(const fibrad_circles *c, uint32_t *place, uint32_t count) {
-    const fibrad_circle_stretch *stretch = &c->stretch;
-    const vd own = vd_set1(c->r), zero = vd_set1(0);
-    uint32_t n = 0;
-    vd_copy_numbers(place + count, c->near.fill);
+/* Finds the discs of the near spheres that are listed as seen. */
+static void find_discs(const fibrad_workspace *work, const fibrad_circles *c, uint32_t number,
+                       fibrad_circle_discs *disc) {
+    _Alignas(64) static const double lane[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const double sense = c->side[number].sense;
+    const vd zero = vd_set1(0), farthest = vd_set1(c->farthest);
+    const uint32_t count = disc->count;
+    vd_copy_numbers(disc->slot + count, c->near.fill);
     for (uint32_t k = 0; k < count; k += VD_LANES) {
-        const uint32_t *at = place + k;
-        vd x = vd_gather(c->near.home[0], at), y = vd_gather(c->near.home[1], at), z = vd_gather(c->near.home[2], at);
-        vd u = component_across(c, 0, x, y, z, at), v = component_across(c, 1, x, y, z, at);
-        vd r = vd_gather(c->near.radius, at), sum = r + own, least = vd_max(zero, own - r), square = u * u + v * v;
-        vd reach = r + stretch->radius;
-        vm touches = vd_lt(square, sum * sum) & vd_le(least * least, square);
-        u -= stretch->u, v -= stretch->v;
-        touches = touches & vd_lt(u * u + v * v, reach * reach);
-        n += vd_compress_numbers(place + n, vm_bits(touches), at);
-    }
-    return n;
-}
-
-/* Appends the near spheres at `place`. There must be room for `count` discs and a vector. */
-static void find_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_circle_side *side, uint32_t *place,
-                       uint32_t count) {
-    const size_t first = side->count;
-    size_t k = 0;
-    vd_copy_numbers(place + count, c->near.fill);
-    for (; k < count; k += VD_LANES) {
-        const uint32_t *at = place + k, to = (uint32_t)(first + k);
-        vd x = vd_gather(c->near.home[0], at), y = vd_gather(c->near.home[1], at), z = vd_gather(c->near.home[2], at);
-        vd u = component_across(c, 0, x, y, z, at), v = component_across(c, 1, x, y, z, at);
-        vd depth = side->sense * component_across(c, 2, x, y, z, at);
-        find_arcs(c, side, to, u, v, depth, vd_gather(c->near.radius, at));
-        const uint32_t tied = vm_bits(vd_le(depth, vd_set1(0)) & vd_le(vd_set1(0), depth));
+        const uint32_t *at = disc->slot + k;
+        vd ball[4], images[4], *away = c->images ? images : NULL, from, to;
+        vd_gather_four(c->near.ball, at, ball);
+        if (c->images) vd_gather_four(c->near.away, at, images);
+        vd u = component_across(c, 0, ball, away), v = component_across(c, 1, ball, away), r = ball[3];
+        vd depth = sense * component_across(c, 2, ball, away);
+        const uint32_t tied = vm_bits(vd_le(depth, zero) & vd_le(zero, depth));
         for (uint32_t l = 0; tied >> l != 0; l++)
-            if (tied >> l & 1 && tie_lies_ahead(work, c, at[l]) != (side->sense > 0))
-                side->inner[to + l] = side->outer[to + l] = 0;
-        vd_copy_numbers(side->slot + to, at);
+            if (tied >> l & 1 && tie_lies_ahead(work, c, at[l]) != (sense > 0)) depth = vd_replace(depth, l, -1);
+        vd far = NOWHERE + 2 * (vd_load(lane) + (number * FIBRAD_CIRCLE_ROOM + k));
+        find_arcs(c, sense, u, v, r, vd_le(zero, depth) & vd_le(depth, farthest), far, &from, &to);
+        vd_store(disc->u + k, u);
+        vd_store(disc->v + k, v);
+        vd_store(disc->depth + k, depth);
+        vd_store_float(disc->key + k, depth);
+        vd_store(disc->weight + k, FIBRAD_PAIR_UNITS / (r * r));
+        vd_store(disc->from + k, from);
+        vd_store(disc->to + k, to);
     }
-    fibrad_zero(side->inner + first + k, FIBRAD_LANES_MAX * sizeof *side->inner);
-    fibrad_zero(side->outer + first + k, FIBRAD_LANES_MAX * sizeof *side->outer);
-    side->last = (uint32_t)first + count;
-    side->count = (uint32_t)(first + k + VF_LANES - 1) / VF_LANES * VF_LANES;
-}
-
-/* Lists the near spheres of a shell that overlap the beam of the sphere in hand, by a cull in floats. */
-static uint32_t cull_shell(fibrad_workspace *work, const double w[3], uint32_t shell, uint32_t *place) {
-    fibrad_sight sight = work->near.all;
-    size_t begin = shell > 0 ? work->near.end[shell - 1] : 0, end = work->near.end[shell];
-    if (shell == 0) sight = *LANED(fibrad_near_sight)(&work->near, w), end = sight.count;
-    uint32_t *to = place;
-    vf wx = vf_set1((float)w[0]), wy = vf_set1((float)w[1]), wz = vf_set1((float)w[2]);
-    for (size_t j = begin; j < end; j += VF_LANES) {
-        vf depth = wx * vf_load(sight.x + j) + wy * vf_load(sight.y + j) + wz * vf_load(sight.z + j);
-        to += vn_compress(to, vf_lt_bits(vf_load(sight.e + j), depth), sight.near + j);
-    }
-    return (uint32_t)(to - place);
+    disc->u[count] = disc->v[count] = disc->weight[count] = 0;
+    disc->depth[count] = __builtin_inf();
+    disc->slot[count] = c->near.nothing + number;
 }
 
 /* ---- discs that may be seen ------------------------------------------------------------------------------------- */
 
+/* Sectors of a stretch, as bits of a number. */
+#define SECTORS    30
+#define ALL_AROUND 0x3fffffffu
+#define BOTH_ENDS  0x20000001u /* the first sector and the last one */
+
+/* Bounds of errors of floats: of a length, over the sum of coordinates and radius, and of a place, in sectors. */
+#define LENGTH_ERROR 4e-7f
+#define PLACE_ERROR  0.1f
+
+static inline vf float_place(vf cosine, vf sine, vf size) {
+    vf tangent = sine / (size + vf_abs(cosine));
+    return vf_select(vf_lt(cosine, vf_set1(0)), 2 - tangent, tangent);
+}
+
+/* A place in sectors from the beginning of the stretch. Places outside the stretch become its ends. */
+static inline vf sector_place(vf at) { return vf_min(vf_set1(SECTORS), vf_max(vf_set1(0), at)); }
+
+/* The sectors that an arc certainly covers whole, and those that it may touch. */
+static inline void find_sectors(const fibrad_circle_stretch *stretch, vf from, vf to, vn *inner, vn *outer) {
+    const float per = (float)stretch->sectors, begin = (float)stretch->begin;
+    const vn none = vn_zero(), all = vn_set1(ALL_AROUND);
+    vw wraps = vf_lt(to, from);
+    /* one end of the arc may have passed the place where a turn begins */
+    vw passed = vf_lt(vf_set1(2 - PLACE_ERROR / per), vf_max(vf_abs(from - 1), vf_abs(to - 1)));
+    from = (from - begin) * per, to = (to - begin) * per;
+    vf first = sector_place(from + (PLACE_ERROR + 0.5f)), last = sector_place(to - (PLACE_ERROR + 0.5f));
+    vn covered = vn_sub(vn_power_of_two(last), vn_power_of_two(first));
+    covered = vn_select(wraps, vn_sub(all, vn_sub(none, covered)), vn_select(vf_lt(first, last), covered, none));
+    first = sector_place(from - (PLACE_ERROR + 0.5f)), last = sector_place(to + (PLACE_ERROR + 0.5f));
+    vn open = vn_select(vf_lt(last, first), vn_sub(vn_power_of_two(first), vn_power_of_two(last)), none);
+    vn touched = vn_select(wraps, vn_sub(all, open), vn_sub(vn_power_of_two(last), vn_power_of_two(first)));
+    *inner = vn_select(passed, covered & vn_set1(~BOTH_ENDS), covered);
+    *outer = vn_select(passed, touched | vn_set1(BOTH_ENDS), touched);
+}
+
+/* Finds, in floats, which sectors some discs certainly cover and which they may touch. A disc of which floats say too
+ * little covers none and may touch all. Lengths are in radii of the sphere in hand. */
+static inline void look_at_discs(const fibrad_circles *c, fibrad_circle_side *side, uint32_t to, vf u, vf v, vf depth,
+                                 vf r) {
+    const float per = (float)c->stretch.sectors, gap = 2 * PLACE_ERROR / per;
+    const vn none = vn_zero(), all = vn_set1(ALL_AROUND);
+    vf error = LENGTH_ERROR * (vf_abs(u) + vf_abs(v) + vf_abs(depth) + r), small = 100 * error;
+    vf square = u * u + v * v, x = vf_sqrt(square), sum = r + 1, larger = r - 1;
+    vf apart = (sum - x) * (sum + x), within = (x - larger) * (x + larger), along = within - 2 * larger;
+    vf root = vf_sqrt(vf_max(vf_set1(0), apart * within)), size = 2 * square;
+    vf u_along = u * along, v_along = v * along, u_root = u * root, v_root = v * root;
+    vf from = float_place(u_along + v_root, v_along - u_root, size);
+    vf end = float_place(u_along - v_root, v_along + u_root, size), step = vf_abs(end - from);
+    /* where two circles nearly touch, places err by about the root of the error of a length */
+    vw vague = vf_lt(vf_set1(2 * PLACE_ERROR * PLACE_ERROR), error * vf_min(r, vf_set1(1)) * (per * per));
+    vague = vague | vf_lt(x, small) | vf_lt(step, vf_set1(gap)) | vf_lt(vf_set1(4 - gap), step);
+    vw covers = vf_lt(x + error, larger) & vf_lt(small, x);
+    vw misses = (vf_lt(sum + error, x) | vf_lt(x + error, 0 - larger)) & vf_lt(small, x);
+    vn inner, outer;
+    find_sectors(&c->stretch, from, end, &inner, &outer);
+    vf high = depth + error;
+    inner = vn_select(covers, all, vn_select(vague, none, inner));
+    inner = vn_select(vf_lt(vf_set1((float)side->known), high), none, inner); /* deeper ones may be hidden by others */
+    vn_store(side->inner + to, inner);
+    vn_store(side->outer + to, vn_select(misses, none, vn_select(covers | vague, all, outer)));
+    vf_storeu(side->low + to, depth - error);
+    vf_storeu(side->high + to, high);
+}
+
+/* Ends the list of discs of a side. */
+static void end_side(fibrad_circle_side *side, uint32_t last) {
+    side->last = last;
+    fibrad_zero(side->inner + last, FIBRAD_LANES_MAX * sizeof *side->inner);
+    fibrad_zero(side->outer + last, FIBRAD_LANES_MAX * sizeof *side->outer);
+}
+
+/* Where more discs may be added: whole vectors of each instruction set. */
+static uint32_t side_end(const fibrad_circle_side *side) {
+    return (side->last + FIBRAD_LANES_MAX - 1) / FIBRAD_LANES_MAX * FIBRAD_LANES_MAX;
+}
+
+static inline vf along_axis(const double a[3], const vf x[4]) {
+    return (float)a[0] * x[0] + (float)a[1] * x[1] + (float)a[2] * x[2];
+}
+
+/* Adds near spheres to those of a side. There must be room, and a vector of places must follow. */
+static void add_discs(const fibrad_circles *c, fibrad_circle_side *side, const uint32_t *place, uint32_t count) {
+    const uint32_t first = side_end(side);
+    for (uint32_t k = 0; k < count; k += VF_LANES) {
+        vf x[4];
+        vf_gather_four(c->near.seen, place + k, x);
+        look_at_discs(c, side, first + k, along_axis(c->frame, x), along_axis(c->frame + 3, x),
+                      (float)side->sense * along_axis(c->frame + 6, x), x[3]);
+    }
+    fibrad_copy(side->slot + first, place, count * sizeof *place);
+    end_side(side, first + count);
+}
+
+/* Leaves discs out that touch no sector. */
+static void leave_touching(fibrad_circle_side *side) {
+    uint32_t n = 0;
+    for (uint32_t k = 0; k < side->last; k += VF_LANES) {
+        const uint32_t bits = vn_some_bits(side->outer + k);
+        vf_compress(side->low + n, bits, vf_load(side->low + k));
+        vf_compress(side->high + n, bits, vf_load(side->high + k));
+        vn_compress(side->inner + n, bits, side->inner + k);
+        vn_compress(side->slot + n, bits, side->slot + k);
+        n += vn_compress(side->outer + n, bits, side->outer + k);
+    }
+    end_side(side, n);
+}
+
 #define BLOCK (VF_LANES == 16 ? 1 : VF_LANES == 8 ? 2 : 4) /* vectors that share what is the same in all lanes */
 
-/* The sectors that the discs nearer than each disc cover together. Those that are filled up cover none. */
+/* The sectors that discs certainly nearer than each disc cover together. */
 static inline void find_covered(const fibrad_circle_side *side, uint32_t *covered) {
     const size_t count = side->last;
     for (size_t k = 0; k < count; k += BLOCK * VF_LANES) {
         vf at[BLOCK];
         vn all[BLOCK];
 #pragma GCC unroll 4
-        for (int b = 0; b < BLOCK; b++) at[b] = vf_load(side->key + k + b * VF_LANES), all[b] = vn_set1(0);
+        for (int b = 0; b < BLOCK; b++) at[b] = vf_load(side->low + k + b * VF_LANES), all[b] = vn_set1(0);
         for (size_t m = 0; m < count; m += 4)
 #pragma GCC unroll 4
             for (size_t l = 0; l < 4; l++) {
                 const vn inner = vn_set1(side->inner[m + l]);
-                const vf key = vf_set1(side->key[m + l]);
+                const vf high = vf_set1(side->high[m + l]);
 #pragma GCC unroll 4
-                for (int b = 0; b < BLOCK; b++) all[b] = vn_or_lt(all[b], inner, key, at[b]);
+                for (int b = 0; b < BLOCK; b++) all[b] = vn_or_lt(all[b], inner, high, at[b]);
             }
 #pragma GCC unroll 4
         for (int b = 0; b < BLOCK; b++) vn_store(covered + k + b * VF_LANES, all[b]);
     }
 }
 
-/* Lists the discs of a side but those whose sectors are all covered by nearer ones. */
-static void list_seen(const fibrad_circles *c, uint32_t number, fibrad_circle_side *side, fibrad_circle_discs *seen) {
+/* Finds the discs of a side but those whose sectors are all covered by nearer ones. */
+static void find_seen(const fibrad_workspace *work, const fibrad_circles *c, uint32_t number,
+                      fibrad_circle_discs *seen) {
     _Alignas(64) uint32_t covered[FIBRAD_CIRCLE_ROOM];
+    const fibrad_circle_side *side = &c->side[number];
     uint32_t n = 0;
     find_covered(side, covered);
-    for (uint32_t k = 0; k < side->last; k += VF_LANES) {
-        const uint32_t bits = vn_beyond_bits(vn_load(side->outer + k), vn_load(covered + k));
-        for (uint32_t part = 0; part < VF_LANES / VD_LANES; part++) {
-            const uint32_t from = k + part * VD_LANES, some = bits >> part * VD_LANES & ((1u << VD_LANES) - 1);
-            vd_compress(seen->u + n, some, vd_load(side->u + from));
-            vd_compress(seen->v + n, some, vd_load(side->v + from));
-            vd_compress(seen->r + n, some, vd_load(side->r + from));
-            vd_compress(seen->depth + n, some, vd_load(side->depth + from));
-            vd_compress(seen->from + n, some, vd_load(side->from + from));
-            vd_compress(seen->to + n, some, vd_load(side->to + from));
-            n += vd_compress_numbers(seen->slot + n, some, side->slot + from);
-        }
-    }
+    for (uint32_t k = 0; k < side->last; k += VF_LANES)
+        n +=
+            vn_compress(seen->slot + n, vn_beyond_bits(vn_load(side->outer + k), vn_load(covered + k)), side->slot + k);
     seen->count = n;
-    for (uint32_t k = 0; k <= n; k += VD_LANES) {
-        vd r = vd_load(seen->r + k);
-        vd_store(seen->weight + k, FIBRAD_PAIR_UNITS / (r * r));
-        vd_store_float(seen->key + k, vd_load(seen->depth + k));
-    }
-    seen->u[n] = seen->v[n] = seen->weight[n] = 0;
-    seen->depth[n] = __builtin_inf();
-    seen->slot[n] = c->near.nothing + number;
+    find_discs(work, c, number, seen);
 }
 
 /* Whether the discs found of a side leave certainly nothing open, or certainly something. */
@@ -251,8 +281,8 @@ static bool disc_nearer(const fibrad_workspace *work, const fibrad_circles *c, c
     const uint64_t second = fibrad_scene_rank(work->scene, c->near.sphere[there]);
     if (rank != second) return (rank < second) == ahead;
     for (int axis = 0; axis < 3; axis++) {
-        const double *away = c->near.away[axis];
-        if (away[at] != away[there]) return (away[at] < away[there]) == ahead;
+        const double one = c->near.away[at][axis], other_one = c->near.away[there][axis];
+        if (one != other_one) return (one < other_one) == ahead;
     }
     return false;
 }
@@ -568,59 +598,47 @@ static void add_pieces(fibrad_circles *c, fibrad_pair_table *table) {
 
 /* ---- the circle ------------------------------------------------------------------------------------------------- */
 
-/* Finds how many periods away the images of the near spheres [from, to) lie along an axis. */
-static void count_periods(const fibrad_workspace *work, fibrad_circles *c, int axis, uint32_t from, uint32_t to) {
+/* Takes over a near sphere j. place: relative to the sphere in hand, in radii of that sphere, as r is. */
+static void take_near(const fibrad_workspace *work, fibrad_circles *c, uint32_t k, uint32_t j, const double place[3],
+                      double r) {
     const fibrad_scene *scene = work->scene;
-    const double *home = axis == 0 ? scene->x : axis == 1 ? scene->y : scene->z;
-    const double *place = axis == 0 ? work->near.x : axis == 1 ? work->near.y : work->near.z;
-    for (uint32_t k = from; k < to; k++) {
-        const double at = place[k] * work->unit + (work->centre[axis] - home[work->near.sphere[k]]);
-        c->near.away[axis][k] = fibrad_floor(at / scene->period[axis] + .5);
-        c->images = c->images || c->near.away[axis][k] != 0;
+    const double home[3] = {scene->x[j], scene->y[j], scene->z[j]};
+    c->near.sphere[k] = j;
+    c->near.sum[0][k] = c->near.sum[1][k] = 0;
+    c->near.ball[k][3] = scene->r[j] * c->scale;
+    c->near.seen[k][3] = (float)r;
+    for (int axis = 0; axis < 3; axis++) {
+        const double at = place[axis] * work->unit + (work->centre[axis] - home[axis]), period = scene->period[axis];
+        const double away = period > 0 ? fibrad_floor(at / period + .5) : 0;
+        c->near.ball[k][axis] = (home[axis] - c->origin[axis]) * c->scale;
+        c->near.away[k][axis] = away;
+        c->near.seen[k][axis] = (float)place[axis];
+        c->images = c->images || away != 0;
     }
 }
 
-/* Takes over the near spheres of the shell. */
+/* Takes over the near spheres of the shell. Those of radius 0 fill it up. */
 static void take_shell(const fibrad_workspace *work, fibrad_circles *c) {
-    const fibrad_scene *scene = work->scene;
-    const double *home[3] = {scene->x, scene->y, scene->z};
-    const uint32_t *sphere = work->near.sphere, end = work->near.end[0];
-    const vd scale = vd_set1(c->scale), zero = vd_set1(0);
-    for (int axis = 0; axis < 3; axis++) {
-        const vd origin = vd_set1(c->origin[axis]);
-        for (uint32_t k = 0; k < end; k += VD_LANES) {
-            vd_store(c->near.home[axis] + k, (vd_gather(home[axis], sphere + k) - origin) * scale);
-            vd_store(c->near.away[axis] + k, zero);
-        }
-        if (scene->period[axis] > 0) count_periods(work, c, axis, 0, end);
+    const fibrad_near *near = &work->near;
+    c->homes = near->end[0];
+    for (uint32_t k = 0; k < c->homes; k++) {
+        const double place[3] = {near->x[k], near->y[k], near->z[k]};
+        if (near->r[k] > 0)
+            take_near(work, c, k, near->sphere[k], place, near->r[k]);
+        else
+            c->near.sum[0][k] = c->near.sum[1][k] = 0;
     }
-    for (uint32_t k = 0; k < end; k += VD_LANES) vd_store(c->near.radius + k, vd_gather(scene->r, sphere + k) * scale);
-    fibrad_copy(c->near.sphere, sphere, end * sizeof *sphere);
-    for (int half = 0; half < 2; half++) fibrad_zero(c->near.sum[half], end * sizeof(int64_t));
-    c->homes = end;
 }
 
 /* Takes over the spheres that a march has found, as near ones. Returns the first of their places. */
 static uint32_t take_marched(const fibrad_workspace *work, fibrad_circles *c, const double frame[9]) {
-    const fibrad_scene *scene = work->scene;
     const fibrad_discs *disc = &work->disc;
-    const double *coordinate[3] = {scene->x, scene->y, scene->z};
     const uint32_t first = c->marched;
     for (uint32_t k = 0; k < disc->count; k++) {
-        const uint32_t at = c->marched++, j = c->near.sphere[at] = fibrad_work_sphere(work, k);
-        c->near.radius[at] = scene->r[j] * c->scale;
-        c->near.sum[0][at] = c->near.sum[1][at] = 0;
-        for (int axis = 0; axis < 3; axis++) {
-            const double home = coordinate[axis][j];
-            const double place =
-                disc->u[k] * frame[axis] + disc->v[k] * frame[3 + axis] + disc->depth[k] * frame[6 + axis];
-            c->near.home[axis][at] = (home - c->origin[axis]) * c->scale;
-            c->near.away[axis][at] = 0;
-            if (scene->period[axis] > 0)
-                c->near.away[axis][at] =
-                    fibrad_floor((place * work->unit + (work->centre[axis] - home)) / scene->period[axis] + .5);
-            c->images = c->images || c->near.away[axis][at] != 0;
-        }
+        double place[3];
+        for (int axis = 0; axis < 3; axis++)
+            place[axis] = disc->u[k] * frame[axis] + disc->v[k] * frame[3 + axis] + disc->depth[k] * frame[6 + axis];
+        take_near(work, c, c->marched++, fibrad_work_sphere(work, k), place, disc->r[k]);
     }
     return first;
 }
@@ -642,43 +660,53 @@ static fibrad_tube tube_of(const fibrad_circles *c, double sense) {
     return (fibrad_tube){stretch->u * inverse, sense * stretch->v * inverse, stretch->radius * inverse};
 }
 
+/* Lists the near spheres of the shell that overlap the beam of the sphere in hand, by a cull in floats. */
+static uint32_t cull_shell(fibrad_workspace *work, const fibrad_circles *c, double sense, uint32_t *place) {
+    const double *d = c->frame + 6, w[3] = {sense * d[0], sense * d[1], sense * d[2]};
+    const fibrad_sight sight = *LANED(fibrad_near_sight)(&work->near, w);
+    const vf wx = vf_set1((float)w[0]), wy = vf_set1((float)w[1]), wz = vf_set1((float)w[2]);
+    uint32_t n = 0;
+    for (uint32_t j = 0; j < sight.count; j += VF_LANES) {
+        vf depth = wx * vf_load(sight.x + j) + wy * vf_load(sight.y + j) + wz * vf_load(sight.z + j);
+        n += vn_compress(place + n, vf_lt_bits(vf_load(sight.e + j), depth), sight.near + j);
+    }
+    return n;
+}
+
 /* Leaves of the discs found on a side those that are seen somewhere on the stretch. */
 static void prune(const fibrad_workspace *work, fibrad_circles *c, uint32_t number) {
     fibrad_circle_side *side = &c->side[number];
     fibrad_circle_discs *seen = &c->seen[number];
     bool met[FIBRAD_CIRCLE_ROOM] = {false};
-    uint32_t n = 0;
-    list_seen(c, number, side, seen);
+    find_seen(work, c, number, seen);
     order_seen(work, c, seen, number == 1);
     c->seen[1 - number].count = c->seen[1 - number].number[0] = 0;
     divide_stretch(c);
     for (uint32_t k = 0; k < c->pieces.count; k++) met[(number == 0 ? c->pieces.first : c->pieces.next)[k]] = true;
-    for (uint32_t k = 0; k < seen->count; k++)
-        if (met[k]) c->order[n++] = seen->slot[k];
-    side->count = 0;
-    find_discs(work, c, side, c->order, n);
+    for (uint32_t k = 0, n = 0; k < side->last; k++) {
+        const bool listed = n < seen->count && side->slot[k] == seen->slot[n];
+        if (!listed || !met[n]) side->outer[k] = 0;
+        n += listed;
+    }
+    leave_touching(side);
 }
 
-/* Finds discs among near spheres, as many at a time as there is room for. False: too many touch the stretch. */
-static bool find_among(const fibrad_workspace *work, fibrad_circles *c, uint32_t number, uint32_t *place,
-                       uint32_t count) {
+/* Adds discs just found, as many at a time as there is room for. False: too many touch the stretch. */
+static bool add_found(const fibrad_workspace *work, fibrad_circles *c, uint32_t number, uint32_t *place,
+                      uint32_t count) {
     fibrad_circle_side *side = &c->side[number];
-    if (count > FIBRAD_CIRCLE_MANY) count = leave_touching(c, place, count);
-    if (side->count + count <= FIBRAD_CIRCLE_DISCS) {
-        find_discs(work, c, side, place, count);
-        return true;
-    }
+    const bool many = count > 2 * FIBRAD_LANES_MAX;
+    fibrad_copy(place + count, c->near.fill, sizeof c->near.fill);
     for (uint32_t k = 0, some; k < count; k += some) {
-        uint32_t room = FIBRAD_CIRCLE_DISCS - side->count, after[FIBRAD_LANES_MAX];
+        uint32_t room = FIBRAD_CIRCLE_DISCS - side_end(side);
         if (room < count - k && room < FIBRAD_CIRCLE_DISCS / 2) {
             prune(work, c, number);
-            room = FIBRAD_CIRCLE_DISCS - side->count;
+            room = FIBRAD_CIRCLE_DISCS - side_end(side);
             if (room < FIBRAD_CIRCLE_DISCS / 4) return false;
         }
         some = room < count - k ? room : count - k;
-        fibrad_copy(after, place + k + some, sizeof after); /* written, too, in the last vector */
-        find_discs(work, c, side, place + k, some);
-        fibrad_copy(place + k + some, after, sizeof after);
+        add_discs(c, side, place + k, some);
+        if (many) leave_touching(side);
     }
     return true;
 }
@@ -686,13 +714,13 @@ static bool find_among(const fibrad_workspace *work, fibrad_circles *c, uint32_t
 #define SHORTEST 1e-6 /* stretch of a circle */
 #define TOO_MANY (-1) /* discs touch the stretch of the circle, which must be shorter */
 
-/* Finds the discs of the next shell on a side. Error: TOO_MANY */
-static int find_in_shell(fibrad_workspace *work, fibrad_circles *c, uint32_t shell, uint32_t side) {
+/* Finds the discs of the shell on a side. Error: TOO_MANY */
+static int find_in_shell(fibrad_workspace *work, fibrad_circles *c, uint32_t number) {
     uint32_t *place = work->disc.near;
-    const double sense = c->side[side].sense, *d = c->frame + 6, w[3] = {sense * d[0], sense * d[1], sense * d[2]};
-    const uint32_t count = cull_shell(work, w, shell, place);
-    c->side[side].known = work->near.limit[shell];
-    return find_among(work, c, side, place, count) ? FIBRAD_OK : TOO_MANY;
+    const double sense = c->side[number].sense;
+    const uint32_t count = cull_shell(work, c, sense, place);
+    c->side[number].known = work->near.limit[0];
+    return add_found(work, c, number, place, count) ? FIBRAD_OK : TOO_MANY;
 }
 
 /* Finds the discs of a march on a side. Error: TOO_MANY */
@@ -711,7 +739,7 @@ static int find_by_march(fibrad_workspace *work, fibrad_circles *c, uint32_t num
     if (count > work->disc.capacity) return fibrad_work_discs_missed(work);
     const uint32_t first = take_marched(work, c, w);
     for (uint32_t k = 0; k < count; k++) place[k] = first + k;
-    return find_among(work, c, number, place, count) ? FIBRAD_OK : TOO_MANY;
+    return add_found(work, c, number, place, count) ? FIBRAD_OK : TOO_MANY;
 }
 
 /* Finds the discs of the shell, then of marches on sides that are not done. Few circles need more than the shell.
@@ -724,7 +752,7 @@ static int find_more(fibrad_workspace *work, fibrad_circles *c, uint32_t shell, 
     }
     for (uint32_t side = 0; side < 2 && status == FIBRAD_OK; side++)
         if (shell < work->near.shells)
-            status = find_in_shell(work, c, shell, side);
+            status = find_in_shell(work, c, side);
         else if (!done[side])
             status = find_by_march(work, c, side);
     return status;
@@ -747,7 +775,7 @@ static void meet(fibrad_workspace *work, fibrad_circles *c, bool done[2]) {
     }
     if (open && closed) return; /* it is known already where to look further */
     for (uint32_t s = 0; s < 2; s++) {
-        list_seen(c, s, &c->side[s], &c->seen[s]);
+        find_seen(work, c, s, &c->seen[s]);
         order_seen(work, c, &c->seen[s], s == 1);
     }
     divide_stretch(c);
@@ -798,7 +826,7 @@ static void begin_stretch(fibrad_circles *c, double begin, double end) {
         c->stretch.radius = fibrad_max(chord_between(first, middle), chord_between(middle, last)) + 1e-12 * c->r;
     }
     for (int s = 0; s < 2; s++) {
-        c->side[s].count = 0;
+        c->side[s].last = 0;
         c->side[s].known = -1;
         c->side[s].sense = s == 0 ? -1 : 1;
     }

@@ -203,11 +203,9 @@ static fibrad_circles *circles_layout(fibrad_arena *arena, uint32_t slots, fibra
                                       fibrad_pair_table *table) {
     fibrad_circles *place = fibrad_arena_take(arena, 1, sizeof *place);
     const size_t room = FIBRAD_NEAR_MOST + 8 * FIBRAD_CIRCLE_ROOM;
-    for (int axis = 0; axis < 3; axis++) {
-        near->home[axis] = fibrad_arena_take(arena, room, sizeof(double));
-        near->away[axis] = fibrad_arena_take(arena, room, sizeof(double));
-    }
-    near->radius = fibrad_arena_take(arena, room, sizeof(double));
+    near->ball = fibrad_arena_take(arena, room, sizeof *near->ball);
+    near->away = fibrad_arena_take(arena, room, sizeof *near->away);
+    near->seen = fibrad_arena_take(arena, room, sizeof *near->seen);
     near->sphere = fibrad_arena_take(arena, room, sizeof(uint32_t));
     for (int half = 0; half < 2; half++) near->sum[half] = fibrad_arena_take(arena, room, sizeof(int64_t));
     near->nothing = (uint32_t)room - 2, near->nowhere = (uint32_t)room - 3;
@@ -249,10 +247,10 @@ static void begin_circles(const fibrad_scene *scene, fibrad_circles *c) {
         c->periodic = c->periodic || scene->period[axis] > 0;
     }
     c->grid = centre_grid(scene, c->scale);
-    c->near.radius[c->near.nowhere] = 1;
     for (int k = 0; k < FIBRAD_LANES_MAX; k++) c->near.fill[k] = c->near.nowhere;
     for (int axis = 0; axis < 3; axis++)
-        c->near.home[axis][c->near.nowhere] = 0x1p100, c->near.away[axis][c->near.nowhere] = 0;
+        c->near.ball[c->near.nowhere][axis] = 0x1p100, c->near.away[c->near.nowhere][axis] = 0;
+    c->near.ball[c->near.nowhere][3] = 1;
 }
 
 /* Lays scratch memory out for circles, with as large a table as there is room for. */
