@@ -48,7 +48,7 @@ static double path_coordinate(const fibrad_paths *paths, const struct grey_path 
     if (d >= QUASI_COORDINATES) return fibrad_fraction(fibrad_random_ahead(path->own, d));
     const uint64_t shift = fibrad_random_ahead(paths->stream, d);
     if (paths->place != FIBRAD_NONE) return fibrad_fraction(shift + path->k * step[d]);
-    return fibrad_fraction(shift ^ (uint64_t)path->sobol[d] << 32);
+    return fibrad_fraction(shift ^ (uint64_t)path->sobol[d] << 32); /* NOLINT: paths from walls have a point */
 }
 
 /* Points of the unit sphere from pairs of coordinates. */

@@ -106,15 +106,16 @@ typedef struct fibrad_circles {
     uint32_t order[FIBRAD_CIRCLE_ENDS];
     uint64_t key[FIBRAD_CIRCLE_ENDS]; /* discs that cover the pieces; pairs of what is met behind and before */
     fibrad_circle_near near;
-    bool images;             /* whether some near spheres are images of others */
     uint32_t homes, marched; /* ends of the lists of near spheres: those of shells, those that marches have found */
+    bool images;             /* whether some near spheres are images of others */
+    bool periodic;
+    bool apart;    /* what lies beyond all spheres has a name of its own for each line and sense */
+    uint32_t half; /* of the line in hand: 0: even, 1: odd */
     const fibrad_scene *scene;
     double origin[3]; /* L */
     double scale;     /* 1/L, a power of two */
     double period[3]; /* of the scene, scaled */
     double grid;      /* a number whose ulp projected centres are multiples of */
-    bool periodic;
-    bool apart; /* what lies beyond all spheres has a name of its own for each line and sense */
     /* the sphere in hand, and what is to be followed of its circles */
     double at[3], r;
     double begin, end, step; /* places, and the usual length of a stretch */
@@ -125,7 +126,6 @@ typedef struct fibrad_circles {
     double shift[3][3]; /* ... and one period of each axis along it */
     double centre[3];   /* projected */
     double farthest;    /* along periodic axes spheres farther apart than this exchange nothing */
-    uint32_t half;      /* 0: an even line, 1: an odd one */
     fibrad_circle_stretch stretch;
 } fibrad_circles;
 

