@@ -90,7 +90,7 @@ refused 3 'cold.csv:2: the temperature is -1' --temperature T --ambient "@$work/
 refused 2 'a table needs the name of its wall' "$@" --temperature T --wall zmin=-30 --wall-temperature "@$work/back.csv"
 refused 2 'there is no wall zmax' "$@" --temperature T --wall zmin=-30 --wall-temperature "zmax=@$work/ramp.csv,zmin=3"
 refused 2 '3 does not lie above' "$@" --temperature T --times 5,3
-refused 2 '90 does not lie above the one before, within 0 and 60' "$@" --temperature T --times 90
+refused 2 '90 is not above the time before, or not within 0 and 60' "$@" --temperature T --times 90
 refused 2 'cannot be combined' "$@" --temperature T --times 5 --every 3
 refused 2 'put \* into its name' "$@" --temperature T -o "$work/x.vtp"
 refused 2 'model factors: emissivities cannot follow' "$@" --temperature T --emissivity "@$work/eps.csv" --model factors

@@ -107,7 +107,7 @@ static const struct {
      "two numbers have no name; name the walls, xmin=400 for example"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=3", "--wall=zmin"},
      "--wall-temperature: zmin has no value; give zmin=NUMBER"},
-    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--power=4"}, "a sphere has one of them only"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--power=4"}, "a sphere has only one of them"},
     {{"heat", MONO, "--emissivity=.5", "--power=1e40"}, "--power: 1e40 is not within"},
     {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin", "--wall-power=zmin=1",
       "--wall-temperature=zmin=3"},

@@ -37,9 +37,10 @@ struct conduction_rule {
     const double *conductivity; /* [n] k* of the spheres; NULL: each sphere has one temperature */
     int axis;                   /* the axis whose error counts; -1: all three */
     uint64_t seed;
-    uint64_t paths;    /* from each emitter; 0: as many as `error` needs */
-    double error;      /* standard error allowed, over F_E */
-    uint64_t max_rays; /* most rays of a search for `error`; its first few paths are followed in any case */
+    uint64_t paths; /* from each emitter; 0: as many as `error` needs */
+    double error;   /* standard error allowed, over F_E */
+    uint64_t
+        max_rays; /* largest number of rays of a search for `error`; its first few paths are followed in any case */
 };
 
 /* The emitters, and the results. */

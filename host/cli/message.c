@@ -9,7 +9,7 @@
 static void (*redirected)(void *context, const char *line);
 static void *redirected_context;
 
-enum { WARNINGS = 32 }; /* most warnings that are kept */
+enum { WARNINGS = 32 }; /* largest number of warnings that are kept */
 static char *warning[WARNINGS];
 static size_t warnings;
 

@@ -20,9 +20,8 @@ int given_check(struct given_options *options, struct bed_options *bed) {
     if (options->timed && !t->given)
         return message(STATUS_USAGE, "--until needs --temperature, the temperatures at the beginning");
     if (!options->timed && t->given && !t->column && p->given && !p->column)
-        return message(
-            STATUS_USAGE,
-            "--temperature and --power: a sphere has one of them only; at least one must be a list or a column");
+        return message(STATUS_USAGE, "--temperature and --power: a sphere has only one of them; at least one of the "
+                                     "options must be a list or a column");
     if (t->value < -options->zero) return message(STATUS_USAGE, "--temperature: %g is below absolute zero", t->value);
     t->some = p->given && !options->timed;
     p->some = true;
@@ -112,8 +111,8 @@ static int given_sides(const struct walls *walls, double zero, struct given *giv
     return status;
 }
 
-/* One quantity, temperature or power, has a column or a list. The other quantity has one number: that is for the
- * spheres that the column or list leaves out. */
+/* One quantity, temperature or power, has a column or a list. If the other quantity has one number, the number is for
+ * the spheres that the column or list leaves out. */
 static int leave_out(const char *option, const struct quantity *number, const double *others, uint32_t n,
                      double *values) {
     bool used = false;
@@ -126,7 +125,7 @@ static int leave_out(const char *option, const struct quantity *number, const do
     if (used) return STATUS_OK;
     return message(
         STATUS_USAGE,
-        "%s %g is for no sphere: each sphere has the other quantity; a blank or nan in that column leaves a sphere out",
+        "%s %g is for no sphere: each sphere has the other quantity; a blank or nan in its column leaves a sphere out",
         option, number->value);
 }
 

@@ -239,7 +239,7 @@ static int heat_once(struct bed_options *options, const struct heat_problem *pro
     return STATUS_OK;
 }
 
-/* Most rays between walls. */
+/* Largest number of rays between walls. */
 #define WALL_RAYS_MOST (1u << 23)
 
 /* Estimated errors over those that --error allows. */

@@ -17,7 +17,7 @@ struct heat_problem {
     double zero;                          /* [K] 0 of the unit of the tables */
     double *emissivity;                   /* [spheres] sources.emissivity; changes where a table over T is given */
     const struct quantity *of_emissivity; /* the option, which has the tables */
-    struct face *face;                    /* what is found of the open face */
+    struct face *face;                    /* results for the open face */
     struct light_state *light;            /* light from outside; its options NULL: there is none */
     /* [spheres] conductivities of the solid [W/(m K)], which change where a table over T is given, and the same in the
      * unit of sources.conductivity; NULL: spheres have one temperature each */

@@ -134,7 +134,7 @@ static int find_times(const struct time_run *m, double **times, bool **output, s
     n += (size_t)listed;
     for (size_t k = 0; k < n; ++k)
         if (!(t[k] >= 0 && t[k] <= o->until && (k == 0 || t[k] > t[k - 1])))
-            return message(STATUS_USAGE, "--times: %g does not lie above the one before, within 0 and %g s", t[k],
+            return message(STATUS_USAGE, "--times: %g is not above the time before, or not within 0 and %g s", t[k],
                            o->until);
     if (!o->times && (n == 0 || t[n - 1] < o->until)) t[n++] = o->until;
     outputs = n;
@@ -167,8 +167,9 @@ static int find_capacities(struct time_run *m, double metres, double **capacity)
     if (!status) warn_matter(&m->options->warned, &m->bed, *capacity, density);
     for (uint32_t i = 0; i < m->bed.n && !status; ++i) {
         if (!(m->span.temperature[i] > 0))
-            status = message_at(STATUS_INPUT, m->options->name, m->bed.line[i],
-                                "the temperature is %g K; to begin with it must be above 0", m->span.temperature[i]);
+            status =
+                message_at(STATUS_INPUT, m->options->name, m->bed.line[i],
+                           "the temperature is %g K; the initial temperature must be above 0", m->span.temperature[i]);
         const double r = m->bed.r[i] * metres, store = (*capacity)[i] * density[i];
         if (m->problem->solid) m->lag = fmax(m->lag, r * r * store / (M_PI * M_PI * m->problem->solid[i]));
         (*capacity)[i] = store * (4. / 3 * M_PI) * gsl_pow_3(r);
@@ -218,8 +219,8 @@ static int library_status(struct time_run *m, int status) {
                       m->now, m->time->step > 0 ? "; --step auto takes shorter steps" : "");
 }
 
-/* What is absorbed of light from outside heats all the time. An insulated wall would have to give off as thermal
- * radiation what it absorbs. */
+/* Absorbed light heats surfaces all the time. An insulated wall would have to give off as thermal radiation what it
+ * absorbs. */
 static int absorb_light(struct time_run *m) {
     struct light_state *light = m->problem->light;
     const struct walls *walls = &m->problem->walls;

@@ -29,7 +29,7 @@ enum reference_status {
 /* The effort of a computation. */
 struct reference_rule {
     double tolerance;         /* error allowed; row: in each F; pair: in F over the unobstructed F */
-    uint64_t max_evaluations; /* most directions; each takes 2 to 50 microseconds */
+    uint64_t max_evaluations; /* largest number of directions; each takes 2 to 50 microseconds */
 };
 
 /* The outcome of a computation. */

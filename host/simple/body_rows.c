@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-/* Most paths from each wall. All numbers of paths are powers of two: so many points are spread most evenly and err half
- * as much as a similar number of points. */
+/* Largest number of paths from each wall. All numbers of paths are powers of two: so many points are spread most evenly
+ * and err half as much as a similar number of points. */
 #define PATHS_MOST (1u << 24)
 
 /* In large beds the paths from a wall cost about as much as one row in SPHERES_PER_SHARE: all walls take some percent

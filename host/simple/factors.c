@@ -26,7 +26,8 @@ static int check_options(const fibrad_bed_options *options, int most) {
     return rules <= most && options->drop >= 0 && options->drop <= 1 ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
 }
 
-/* Paths from a wall for each direction of beams of a sphere, and for each path of a sphere. They cost about as much. */
+/* Paths from a wall for each direction of beams of a sphere, and for each path of a sphere. So many paths of a wall
+ * take about as long as the direction or the path. */
 enum { PER_DIRECTION = 64, PER_PATH = 8 };
 
 /* Error allowed in the row of a wall before averaging, over the error allowed after averaging. */
@@ -114,7 +115,7 @@ int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres 
     return status;
 }
 
-/* Checks what is given of all spheres, since paths may meet each of them. The fault names the first invalid one. */
+/* Checks the properties of all spheres, since paths may meet each of them. The fault names the first invalid sphere. */
 static int check_spheres(fibrad_job *job, const fibrad_exchange_rule *rule) {
     if (!rule || (!rule->emissivity && job->facts.spheres > 0)) return FIBRAD_E_ARGUMENT;
     if (rule->node_emissivity && !rule->conductivity) return FIBRAD_E_ARGUMENT;

@@ -13,7 +13,7 @@
 #define PARTS_EACH   4  /* parts of a divided row per thread */
 #define PARTS_MAX    256
 #define AVERAGES     4  /* tasks of averaging per thread: several, so that a late thread does not delay the others */
-#define AVERAGES_MAX 64 /* most tasks of averaging, unless there are more threads: each task reads all rows */
+#define AVERAGES_MAX 64 /* at most so many tasks of averaging, unless there are more threads: each reads all rows */
 #define FILED_MAX    256
 /* Bytes that a task of averaging writes if rows are in a file. It writes in no order, so its bytes must fit in memory.
  */

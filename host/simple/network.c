@@ -17,7 +17,7 @@ struct fibrad_network {
     double *weight;                                           /* [n] A e */
     double *diagonal;                                         /* [n] of L */
     double *outside;                                          /* [n] conductance to walls and surroundings */
-    double *emission, *hold, *residual, *direction, *product; /* [n] each, of the solution in hand */
+    double *emission, *hold, *residual, *direction, *product; /* [n] each, of the present solution */
 };
 
 enum { ARRAYS = 8 };
@@ -126,7 +126,7 @@ static double turn(fibrad_network *w, const fibrad_heat_sources *s, const double
     return product;
 }
 
-/* Goes along the direction to the least error. */
+/* Moves the emissions along the search direction to the least error. */
 static void go(fibrad_network *w, const fibrad_heat_sources *s, double product) {
     const uint32_t n = w->factors->matrix.n;
     double curvature = 0;

@@ -194,7 +194,7 @@ int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sour
 }
 
 #define LIGHT_TOLERANCE 1e-5
-#define ROUNDING        1e-14 /* of areas that add up to what comes in */
+#define ROUNDING        1e-14 /* relative rounding error of areas that add up to the area of a light */
 
 /* One light that falls on a bed. */
 struct shine_tasks {
@@ -210,14 +210,14 @@ static int shine_task(void *tasks, int thread, uint32_t task) {
                              &t->kept[task]);
 }
 
-/* Takes from `ends` what the spheres of a task keep. */
+/* Subtracts from `ends` the light that the spheres of a task keep. */
 static void take_kept(const fibrad_light_ends *kept, uint32_t bodies, fibrad_light_ends *ends) {
     ends->spheres += kept->spheres;
     ends->through -= kept->through;
     for (uint32_t b = 0; b < bodies; ++b) ends->body[b] -= kept->body[b];
 }
 
-/* Adds the first hits of one light, and what it brings and what of it leaves at once to the result. */
+/* Adds the first hits of one light. Adds to the result what the light brings, and what of it leaves at once. */
 static int shine_one(struct shine_tasks *t, uint32_t bodies, fibrad_light_result *result) {
     fibrad_radiation *r = t->radiation;
     fibrad_light_ends ends;
@@ -247,7 +247,7 @@ static int shine_all(fibrad_radiation *r, const fibrad_light_sources *s, uint32_
     return status;
 }
 
-/* Solves for what is absorbed: temperatures are 0, and absorptivities stand for emissivities. */
+/* Solves for the light that is absorbed. Temperatures are 0, and absorptivities take the place of emissivities. */
 static int absorb(fibrad_radiation *r, const fibrad_light_sources *s, uint32_t bodies, fibrad_light_result *result) {
     double *zero = calloc(r->n + bodies + (size_t)1, sizeof *zero);
     if (!zero) return FIBRAD_E_MEMORY;

@@ -1,10 +1,10 @@
 /* tolerance.c - numbers of directions and paths for a tolerance. SPDX-License-Identifier: MIT
  *
  * Rows of view factors that are averaged have one number of directions, for only then are their sums at most 1. By
- * silhouettes the number grows from set to set. By beams the worst rows of a pilot run, computed by themselves, tell
- * it. If the estimated errors are too large after averaging, the number is raised. Each row of exchange factors has a
- * tolerance of its own. This tolerance is lowered until the worst row has, after averaging, the error that the caller
- * allows. */
+ * silhouettes the number grows from set to set. By beams the number follows from the worst rows of a pilot run, which
+ * are computed by themselves. If the estimated errors are too large after averaging, the number is raised. Each row of
+ * exchange factors has its own tolerance. This tolerance is lowered until the worst row has, after averaging, the error
+ * that the caller allows. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

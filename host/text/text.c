@@ -118,7 +118,7 @@ static char *put_point(char *to, const char *digits, int count, int before) {
 }
 
 char *text_real(char *to, double value) {
-    enum { ZEROS = 4 }; /* most zeros before the digits; smaller numbers have an exponent */
+    enum { ZEROS = 4 }; /* largest number of zeros before the digits; smaller numbers have an exponent */
     char text[ZEROS + DIGITS] = "0000";
     uint64_t digits;
     int power;

@@ -11,7 +11,7 @@
 #define FEW_PATHS  4u
 #define USUAL_RAYS 1024u
 
-/* Most paths that begin with legs of the beam row. */
+/* Largest number of paths that begin with legs of the beam row. */
 #define LEGS_MOST 2048u
 
 /* Up to BY_POINTS directions, windows of 256 points are as good as exact areas and take a third of the time. Up to

@@ -46,7 +46,7 @@ typedef struct fibrad_heat_bundle {
 /* Bits of a strand: FIBRAD_HEAT_LAST in the last strand of a bundle, the patch of the four that the strand leaves and
  * the one that it meets, number of beams - 1. */
 #define FIBRAD_HEAT_LAST    0x80u
-#define FIBRAD_HEAT_STRAND  8u /* most beams */
+#define FIBRAD_HEAT_STRAND  8u /* largest number of beams */
 #define FIBRAD_HEAT_STRANDS UINT8_MAX
 
 /* Position of the pencils of a row in heat->pencils.pool [bytes]. A link is a pencil that ends on a row of another

@@ -18,7 +18,7 @@
 #define LONE_ERROR   1.2 /* times the share of spheres that only even or only odd directions meet */
 #define UNSEEN_ERROR .25 /* over what one direction brings */
 #define RAY_ERROR    1.75
-#define RAY_SAMPLES  16  /* most samples of a mesh */
+#define RAY_SAMPLES  16  /* largest number of samples of a mesh */
 #define FEW_ERROR    .25 /* times patches over beams: if few beams leave a patch, it sends light back along the same */
 #define FEW_SEEN     1.3 /* the same for walls that a sphere sees, whose beams are less even */
 #define FEW_WALLS    .65 /* the same for walls themselves */

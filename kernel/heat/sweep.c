@@ -267,7 +267,7 @@ const double *fibrad_heat_gathered(fibrad_heat *heat) {
 /* The bed is divided into parts by halving it across its longest extent again and again. So few beams go from part to
  * part, and spheres that follow each other in the sequence are near each other. */
 #define FEW_SPHERES 32u /* a range with fewer spheres is not halved further */
-#define HALVES_MAX  64  /* most ranges that wait to be halved */
+#define HALVES_MAX  64  /* largest number of ranges that wait to be halved */
 
 /* A range of spheres in the sequence, and the range of parts to which they belong. */
 struct bed_range {

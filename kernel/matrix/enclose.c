@@ -10,7 +10,7 @@
 
 #define CLOSED_TO     1e-14
 #define CLOSED_ENOUGH 1e-9 /* otherwise the sums contradict reciprocity, and no factors u bring them to 1 */
-#define OWN_STEPS     60   /* most steps of Newton's method; about five suffice unless sums contradict each other */
+#define OWN_STEPS     60   /* limit of Newton's steps; about five suffice unless sums contradict each other */
 #define JOINT_STEPS   200
 
 /* The factor from one wall to another. */

@@ -361,7 +361,7 @@ static int check_overlaps(fibrad_scene *scene, fibrad_fault *fault) {
     return FIBRAD_OK;
 }
 
-#define MESH_IMAGES 4096 /* most images of all meshes at one place */
+#define MESH_IMAGES 4096 /* largest number of images of all meshes at one place */
 
 /* The cube root of the volume per sphere. */
 static double spacing_of(const fibrad_scene *scene) {

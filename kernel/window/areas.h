@@ -11,7 +11,7 @@
 #include "base/port.h"
 #include "window/dense.h"
 
-#define FIBRAD_PIECES 48 /* about the number of pieces that are integrated together */
+#define FIBRAD_PIECES 48 /* approximate number of pieces that are integrated together */
 
 /* Pieces of the open region's boundary that discs have hidden. The occluder is the disc that has hidden a piece. By
  * Green's theorem each piece adds an area to its occluder and subtracts it from the disc on whose circle the piece
@@ -25,7 +25,7 @@ typedef struct fibrad_pieces {
     uint32_t count;
 } fibrad_pieces;
 
-#define FIBRAD_BOUNDARY 48 /* most arcs that bound the open region in clipping */
+#define FIBRAD_BOUNDARY 48 /* largest number of arcs that bound the open region in clipping */
 
 /* The boundary of the open region in clipping. An arc goes counter-clockwise about c from c + p to c + q and is
  * shorter than half a circle. Each arc has a slot. The slots have no particular order. */

@@ -13,9 +13,9 @@ typedef struct fibrad_face_search {
     double near;    /* if a triangle is nearer than this, lines do not spread */
     double slack;   /* lengths below this may be rounding errors */
     bool cut;       /* whether triangles may cut sphere i */
-    double nearest; /* about the least depth of the triangles found */
+    double nearest; /* approximate least depth of the triangles found */
     double shallow; /* no triangle found is less deep */
-    double most;    /* most images of a stretch; a stretch with more ends the search */
+    double most;    /* largest number of images of a stretch; a stretch with more ends the search */
     double rest;    /* the depth at which the search has ended */
     double stretch; /* length of a stretch of depths */
     double from, to;
