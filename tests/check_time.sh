@@ -89,7 +89,7 @@ refused 3 'cold.csv:2: the temperature is -1' "$@" --temperature T --wall zmin=-
 refused 3 'cold.csv:2: the temperature is -1' --temperature T --ambient "@$work/cold.csv" --heat-capacity 1 --density 1 --until 9
 refused 2 'a table needs the name of its wall' "$@" --temperature T --wall zmin=-30 --wall-temperature "@$work/back.csv"
 refused 2 'there is no wall zmax' "$@" --temperature T --wall zmin=-30 --wall-temperature "zmax=@$work/ramp.csv,zmin=3"
-refused 2 '3 does not lie above' "$@" --temperature T --times 5,3
+refused 2 '3 is not above the time before' "$@" --temperature T --times 5,3
 refused 2 '90 is not above the time before, or not within 0 and 60' "$@" --temperature T --times 90
 refused 2 'cannot be combined' "$@" --temperature T --times 5 --every 3
 refused 2 'put \* into its name' "$@" --temperature T -o "$work/x.vtp"
