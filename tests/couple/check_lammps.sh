@@ -271,6 +271,15 @@ table warmer 300 .02 1000 .04
 run 2 tabled moving.lmp hot 1000 steps 4000 cp "table $work/warmer" enthalpy "0.02*(c_T-300)+0.01/700*(c_T-300)^2"
 balance tabled 20e-3 0 1e-3 150 "energy of moving particles with a table of cp"
 
+# ---- two groups -----------------------------------------------------------------------------------------------------------
+run 1 both frozen.lmp "${whole[@]}" steps 1
+sed -n '/^Temperatures/,$p' "$work/quarter.data" >"$work/begin"
+for np in 1 2; do
+    run $np group$np frozen.lmp "${whole[@]}" steps 1 group odd strict "no group2 even"
+    grep -E '^[0-9]*[13579] ' "$work/both.out" | cat - <(grep -E '^[0-9]*[02468] ' "$work/begin") >"$work/expected"
+    near "$work/expected" "$work/group$np.out" 1e-10 "a second group is seen and keeps its temperatures, np $np"
+done
+
 # ---- strays -----------------------------------------------------------------------------------------------------------
 # LAMMPS goes on with centres inside others and beyond walls. So does radiation.
 run 2 soft soft.lmp
@@ -324,6 +333,9 @@ table wrong 300 .5 900 1.5
 fails "wrong:4: the emissivity is 1.5; it must be within 0 and 1" "a table out of range" radiates "table $work/wrong"
 fails "$work/none: No such file" "a table that is not there" cp "table $work/none"
 fails ".table. needs temperatures" "a table without temperatures" heat 0 radiates "table $work/half"
+fails "rad and bad both radiate from atom" "two fixes on one particle of a second group" group odd \
+    also "fix bad even fibrad 1 1 emissivity 1 surroundings 300 cp 1 group2 odd"
+fails "no group .none" "a group that is not there" strict "no group2 none"
 fails "excludes" "accuracy beside paths" \
     also "fix bad all fibrad 0 1 emissivity 1 surroundings 300 cp 1 paths 50 accuracy low"
 fails "open axes x and y" "a cylinder with periodic axes" boundary "p p f" \

@@ -2,10 +2,10 @@
  * SPDX-License-Identifier: MIT. LAMMPS is GPL-2: so are binaries made with its headers. */
 #include "fix_fibrad.h"
 
-#include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "group.h"
 #include "input.h"
 #include "modify.h"
 #include "update.h"
@@ -78,10 +78,10 @@ class FixFibrad::Words {
 };
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
-    : Fix(lammps, narg, arg), temperature(), surroundings{-1, ""}, sampling(false), accuracy(false), sigma(0),
-      initial(0), config(), meshes(), insitu(nullptr), totals(), warned(false), wall_warned(false), cut_warned(false),
-      told(), set_up(-1), powers_at(0), weighed(false), begun(0), before(), rows_made(0), rows_followed(0),
-      powers_found(0) {
+    : Fix(lammps, narg, arg), temperature(), kept_bit(0), surroundings{-1, ""}, sampling(false), accuracy(false),
+      sigma(0), initial(0), config(), meshes(), insitu(nullptr), totals(), warned(false), wall_warned(false),
+      cut_warned(false), told(), set_up(-1), powers_at(0), weighed(false), begun(0), before(), rows_made(0),
+      rows_followed(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // the default of docs/lammps.md
@@ -104,6 +104,8 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
             read_wall(words);
         else if (key == "temperature")
             read_temperature(words);
+        else if (key == "group2")
+            read_group(words);
         else if (key == "initial")
             initial = words.number("the initial temperature", 0, huge);
         else if (key == "cutoff")
@@ -187,6 +189,14 @@ void FixFibrad::read_temperature(Words &words) {
     temperature = words.next();
     if (temperature != "temperature" && temperature.compare(0, 2, "d_") != 0)
         error->all(FLERR, "fix fibrad: `temperature` is followed by d_NAME, not `" + temperature + "`");
+}
+
+// Takes the name of a group.
+void FixFibrad::read_group(Words &words) {
+    const std::string name = words.next();
+    const int number = group->find(name);
+    if (number < 0) error->all(FLERR, "fix fibrad: there is no group `" + name + "`");
+    kept_bit = group->bitmask[number];
 }
 
 // wall FACE T e [at POS] [capacity C] | wall FACE open [at POS] | wall zcylinder R T e [at X Y] [capacity C] |
@@ -474,6 +484,7 @@ void FixFibrad::end_of_step() {
     const std::vector<double> capacity = values(cp);
     for (size_t k = 0; k < member.size(); k++) {
         const int i = member[k];
+        if (!(atom->mask[i] & groupbit)) continue;
         const double heat = q[i] * update->dt * heat_every;
         const Table *table = cp.table.empty() ? nullptr : &cp.table[atom->type[i]];
         const curve points = table ? table->points() : curve();
@@ -485,7 +496,7 @@ void FixFibrad::select() {
     member.clear();
     tags.clear();
     for (int i = 0; i < atom->nlocal; i++)
-        if (atom->mask[i] & groupbit) {
+        if (takes_part(i)) {
             member.push_back(i);
             tags.push_back((uint64_t)atom->tag[i]);
         }
@@ -557,16 +568,16 @@ void FixFibrad::tell_strays() {
 // seen.
 void FixFibrad::refuse_second() {
     bigint outside = 0;
-    for (int i = 0; i < atom->nlocal; i++) outside += !(atom->mask[i] & groupbit);
+    for (int i = 0; i < atom->nlocal; i++) outside += !takes_part(i);
     MPI_Allreduce(MPI_IN_PLACE, &outside, 1, MPI_LMP_BIGINT, MPI_SUM, world);
     if (outside)
-        say(text("fix fibrad: %.0f particles outside the group neither radiate nor are in the way", (double)outside));
+        say(text("fix fibrad: %.0f particles outside the groups neither radiate nor are in the way", (double)outside));
     for (int k = 0; k < modify->nfix && heat_every; k++) {
         const FixFibrad *other = dynamic_cast<FixFibrad *>(modify->fix[k]);
         if (!other || other == this || !other->heat_every) continue;
         tagint shared = 0;
         for (int i = 0; i < atom->nlocal; i++)
-            if (atom->mask[i] & groupbit && atom->mask[i] & other->groupbit) shared = std::max(shared, atom->tag[i]);
+            if (takes_part(i) && other->takes_part(i)) shared = std::max(shared, atom->tag[i]);
         MPI_Allreduce(MPI_IN_PLACE, &shared, 1, MPI_LMP_TAGINT, MPI_MAX, world);
         if (shared)
             error->all(FLERR, std::string("fix fibrad: the fixes ") + id + " and " + other->id +
@@ -666,11 +677,12 @@ void FixFibrad::check_step(const std::vector<double> &t) {
     for (size_t k = 0; k < member.size(); k++) {
         const int i = member[k];
         const double area = 16 * std::atan(1) * atom->radius[i] * atom->radius[i];
+        const bool stepped = cp.given() && atom->mask[i] & groupbit;
         double ratio = HUGE_VAL;
-        if (t[k] > 0 && t[k] < HUGE_VAL && (capacity.empty() || capacity[k] > 0))
-            ratio = cp.given() ? 4 * sigma * t[k] * t[k] * t[k] * area * e[k] * update->dt * heat_every /
-                                     (mass(i) * capacity[k])
-                               : 0;
+        if (t[k] > 0 && t[k] < HUGE_VAL && (!stepped || capacity[k] > 0))
+            ratio = stepped ? 4 * sigma * t[k] * t[k] * t[k] * area * e[k] * update->dt * heat_every /
+                                  (mass(i) * capacity[k])
+                            : 0;
         if (ratio > worst.ratio) worst.ratio = ratio, tag = atom->tag[i];
     }
     MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
@@ -778,7 +790,7 @@ void FixFibrad::copy_arrays(int i, int j, int) { q[j] = q[i]; }
 // Sets the values of a new atom. Its place in the vectors may have been that of another atom.
 void FixFibrad::set_arrays(int i) {
     q[i] = 0;
-    if (!(atom->mask[i] & groupbit)) return;
+    if (!takes_part(i)) return;
     if (double *t = temperature.empty() ? nullptr : vector(temperature)) t[i] = initial;
 }
 

@@ -11,6 +11,7 @@
 #ifndef LMP_FIX_FIBRAD_H
 #define LMP_FIX_FIBRAD_H
 
+#include "atom.h"
 #include "fix.h"
 
 #include "couple/walls/mesh_walls.h"
@@ -77,6 +78,7 @@ class FixFibrad : public Fix {
     void read_mesh(Words &);
     void describe_meshes(uint32_t first, uint32_t bodies, const std::string &path);
     void read_temperature(Words &);
+    void read_group(Words &);
     Property read_property(Words &, const char *what, double low, double high);
     double read_value(Words &, const char *what, double low, double high, Table *);
     Table read_table(const std::string &path, const char *what, double low, double high);
@@ -95,7 +97,8 @@ class FixFibrad : public Fix {
 
     // Steps of the simulation.
     void find_temperatures(); // of walls and surroundings, from variables
-    void select();            // finds member and tags
+    bool takes_part(int i) const { return atom->mask[i] & (groupbit | kept_bit); }
+    void select(); // finds member and tags
     void make_rows(bool follow = false);
     void find_powers();
     void heat_walls(bigint steps);
@@ -112,6 +115,7 @@ class FixFibrad : public Fix {
     Property emissivity, cp, solid; // solid: conductivity of the solid, energy/(time length K); not given: infinite
     std::string temperature;        // name of the vector of temperatures
     std::string rows_file;          // files to write rows to; empty: none
+    int kept_bit;                   // of group2, whose temperatures this fix does not step; 0: none
     Temperature surroundings;
     bool sampling;  // directions, paths or tolerance are given
     bool accuracy;  // accuracy is given
