@@ -1,4 +1,4 @@
-/* test_cli_usage.c - usage of the program, pairs, trouble, rows of ranks. SPDX-License-Identifier: MIT */
+/* test_cli_usage.c - usage of the program, pairs, faults, rows of ranks. SPDX-License-Identifier: MIT */
 #include <time.h>
 
 #include "program.h"
@@ -282,7 +282,7 @@ union word {
 
 #define FAR 1099511627781u /* an id of more than 32 bits */
 
-/* The rows of three grey spheres with a wall, 10 and FAR of rank 0, 30 of rank 1. */
+/* The rows of three grey spheres with a wall. Rank 0 has 10 and FAR, rank 1 has 30. */
 enum { RANKS = 2, WORDS = 42 };
 
 static const union word rank_rows[RANKS][WORDS] = {{W(0x3153574f52424946),
@@ -360,7 +360,7 @@ static const char *write_words(const char *name, const union word *words, size_t
     return path;
 }
 
-/* As many walls as a scene may have. */
+/* The largest number of walls that a scene may have. */
 TEST(joined_with_many_walls) {
     enum { WALLS = 32 };
     union word words[9 + 1 + 2 + WALLS + 8];
@@ -416,7 +416,7 @@ TEST(joined) {
     ck_assert_int_eq(RUN("join", zero, csv, "-o", csv), 2);
     expect_message(csv, "is read in this run");
     const char *both = in_folder("both.json");
-    ck_assert_int_eq(RUN("join", zero, one, "-o", both, "--json", both), 2); /* the one would replace the other */
+    ck_assert_int_eq(RUN("join", zero, one, "-o", both, "--json", both), 2); /* one output would replace the other */
     expect_message(both, "is given twice");
     ck_assert_int_eq(RUN("join", zero, one, "--json", one), 2);
     expect_message(one, "is read in this run");
@@ -426,7 +426,7 @@ TEST(joined) {
     remove_files(0);
 }
 
-/* One word of one rank's file changed. */
+/* One changed word in the file of one rank. */
 static const struct {
     int rank, word;
     union word value;
@@ -506,7 +506,7 @@ TEST(file_trouble) {
     ck_assert_int_eq(remove_files(0), 1);
 }
 
-/* A disc that fills up, as far as a limit on the size of files can play it. */
+/* A disk that fills up. A limit on the size of files takes the place of the full disk. */
 TEST(full_disc) {
     struct rlimit before;
     ck_assert_int_eq(getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -524,7 +524,8 @@ TEST(full_disc) {
     ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &before), 0);
 }
 
-/* Whether a process has a file of the test's folder open besides standard output and error. It may have no name. */
+/* Whether a process has a file of the test's folder open, besides standard output and error. The file may have no
+ * name. */
 static int has_output_open(pid_t process) {
     char files[64], place[400];
     int found = 0;
@@ -542,7 +543,7 @@ static int has_output_open(pid_t process) {
     return found;
 }
 
-/* Far more work than a test has time for, stopped when the program has its output open. */
+/* The run has far more work than a test has time for. The signal comes when the program has its output open. */
 LOOP_TEST(interrupted, 2) {
     static const int signals[] = {SIGINT, SIGTERM};
     const char *out = in_folder("F.csv");

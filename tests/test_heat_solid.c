@@ -10,7 +10,7 @@ static const char *spheres(void) {
                       "x,y,z,radius,k,T,P\n0,0,0,0.03,2,1000,\n0.07,0,0,0.03,3,,500\n0,0.07,0,0.03,4,1500,\n");
 }
 
-/* Column k of the line of sphere i in a .csv; both from 0. */
+/* Column k of the line of sphere i in a .csv. Both are counted from 0. */
 static double entry(const char *file, int i, int k) {
     char *text = read_file(file), *at = text;
     for (int line = 0; line <= i; ++line) ck_assert_ptr_nonnull(at = strchr(at, '\n') + 1);
@@ -20,7 +20,8 @@ static double entry(const char *file, int i, int k) {
     return value;
 }
 
-/* A sphere with an even source in surroundings of 900 K: its surface is at one temperature, and its centre hotter. */
+/* A sphere with a source that is spread evenly, in surroundings of 900 K. Its surface is at one temperature, and its
+ * centre is hotter. */
 TEST(a_pebble_with_a_source) {
     const double power = 500, r = 30, k = 8, area = 4 * M_PI * 1e-6 * r * r;
     const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,30\n"), *q = in_folder("q.csv");
@@ -35,7 +36,7 @@ TEST(a_pebble_with_a_source) {
     ck_assert_double_le(fabs(value_of("k_star") / (k / (8 * r * 1e-3 * SIGMA * t * t * t)) - 1), 1e-3);
 }
 
-/* All columns, in all files; walls and surroundings have none. */
+/* All files have all columns. Walls and surroundings have no values in them. */
 TEST(files_have_insides) {
     const char *file = spheres(), *q = in_folder("q.csv"), *json = in_folder("q.json"), *vtp = in_folder("q.vtp");
     SUCCEED("heat", file, "--length-unit", "m", "--emissivity", "0.8", "--temperature", "T", "--power", "P",
@@ -65,7 +66,7 @@ TEST(files_have_insides) {
     free(text);
 }
 
-/* A pebble at 300 K on a floor of 1200 K: linear emission fails where the solid conducts badly. A warning says so. */
+/* A pebble at 300 K on a floor of 1200 K. If the solid conducts badly, linear emission fails, and a warning says so. */
 TEST(surfaces_below_zero_are_named) {
     const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,30\n");
     const char *conductivity[] = {"2", "200"};
@@ -78,7 +79,7 @@ TEST(surfaces_below_zero_are_named) {
     }
 }
 
-/* A table over temperature is taken at the temperature that is found. */
+/* A table over temperature is read at the temperature that is found. */
 TEST(conductivity_follows_temperature) {
     const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,30\n0,0,70,30\n"), *q = in_folder("q.csv");
     char table[300];
@@ -89,7 +90,8 @@ TEST(conductivity_follows_temperature) {
     ck_assert_double_le(fabs((entry(q, 0, 8) - t) / (400 / (8 * M_PI * .03 * k)) - 1), 1e-3);
 }
 
-/* In time insides are steady; who takes steps shorter than that lasts is told so. */
+/* In time, insides are taken to be steady. A warning says if steps are shorter than the time in which an inside becomes
+ * steady. */
 TEST(insides_lag_in_time) {
     const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,0.03\n0.07,0,0,0.03\n"), *q = in_folder("q.csv");
     for (int quick = 0; quick < 2; ++quick) {
@@ -103,7 +105,7 @@ TEST(insides_lag_in_time) {
         else
             ck_assert_str_eq(said, "");
         ck_assert_double_lt(entry(q, 0, 6), entry(q, 0, 7));
-        ck_assert_double_gt(entry(q, 0, 9), entry(q, 0, 2)); /* it cools from within */
+        ck_assert_double_gt(entry(q, 0, 9), entry(q, 0, 2)); /* the sphere cools, so its centre is hotter */
     }
 }
 

@@ -1,7 +1,7 @@
-/* test_light_program.c - fibrad heat --irradiate: what it says, writes and refuses. SPDX-License-Identifier: MIT */
+/* test_light_program.c - what fibrad heat --irradiate reports, writes and refuses. SPDX-License-Identifier: MIT */
 #include "program.h"
 
-static const char *bed; /* four spheres of radius 0.5 in a cup of side 2, the lid of which is at 2.5 */
+static const char *bed; /* four spheres of radius 0.5 in a cup of side 2, whose lid is at 2.5 */
 
 #define CUP "xmin=0,xmax=2,ymin=0,ymax=2,zmin=0,zmax=2.5:open"
 #define HEAT(...)                                                                                                      \
@@ -50,9 +50,9 @@ TEST(light_heats) {
     const char *wall = "zmin=insulated,insulated";
     SUCCEED("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--wall", CUP,
             "--wall-temperature", wall, "--power", "0", "--irradiate", "0,0,-1:1000");
-    /* all of it is absorbed, and leaves through the lid */
+    /* all light is absorbed, and all heat leaves through the lid */
     ck_assert_double_eq_tol(value_of("absorbed"), 1, 1e-6);
-    ck_assert_double_eq_tol(value_of("surroundings_W"), 0, 1e-4); /* what comes in goes out */
+    ck_assert_double_eq_tol(value_of("surroundings_W"), 0, 1e-4); /* as much leaves as comes in */
     ck_assert_double_gt(value_of("temperature_min_K"), 300);
     SUCCEED("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--wall", CUP,
             "--wall-temperature", "0", "--temperature", "300", "--irradiate", "0,0,-1:1000", "--until", "10",
@@ -60,7 +60,7 @@ TEST(light_heats) {
     ck_assert_double_eq_tol(value_of("supplied_J"), 10 * 1000 * M_PI, 1);
 }
 
-/* An endless floor of equal spheres has an emissivity; a black cavity with a lid that is open has 1. */
+/* An endless floor of equal spheres has an emissivity. A black cavity with an open lid has 1. */
 TEST(faces_have_an_emissivity) {
     ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--face"), 0);
     ck_assert_double_eq_tol(value_of("face_area_m2"), 4, 1e-9);

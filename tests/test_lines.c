@@ -23,8 +23,8 @@ enum { TABLED_COUNT = sizeof TABLED / sizeof TABLED[0] };
 
 static double cosine(const vector p, const vector q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; }
 
-/* Mean square error over spherical caps (Stolarsky) of the lines `first`, `first` + `by`, ... and their opposites,
- * times their number to the power 3/2, with which that of the best sets shrinks. */
+/* Mean square error of the lines `first`, `first` + `by`, ... and their opposites over spherical caps (Stolarsky),
+ * times the number of lines to the power 3/2. The error of the best sets falls with this power. */
 static double discrepancy(uint32_t n, uint32_t first, uint32_t by) {
     double sum = 0;
     uint32_t count = 0;
@@ -38,7 +38,7 @@ static double discrepancy(uint32_t n, uint32_t first, uint32_t by) {
     return (8.0 / 3 - sum / count / count) * pow(count, 1.5);
 }
 
-/* Mean square error over all harmonics of even degree from 2 to `most`, of mean square 1. */
+/* Mean square error over all harmonics of even degree from 2 to `most`. Each harmonic has the mean square 1. */
 static double harmonics(uint32_t n, int most) {
     double sum = 0;
     for (uint32_t i = 0; i < n; i++)
@@ -53,17 +53,18 @@ static double harmonics(uint32_t n, int most) {
     return sum / n / n;
 }
 
-/* Area in which two unit discs overlap whose centres are x apart. */
+/* Area in which two unit discs overlap. Their centres are x apart. */
 static double overlap(double x) { return x >= 2 ? 0 : 2 * acos(x / 2) - x / 2 * sqrt(4 - x * x); }
 
-/* Overlap of the shadows of two unit spheres 2.5 apart along direction d; the spheres lie one behind the other along a.
- */
+/* Overlap of the shadows of two unit spheres along direction d. The spheres are 2.5 apart, one behind the other along
+ * a. */
 static double shadow(const vector a, const vector d) {
     double t = cosine(a, d);
     return overlap(2.5 * sqrt(fmax(0, 1 - t * t)));
 }
 
-/* Relative root mean square error of the mean of shadow(), over 1,000 axes, by lines `first`, `first` + `by`, ... */
+/* Relative root mean square error of the mean of shadow() over the lines `first`, `first` + `by`, ..., for 1,000
+ * axes. */
 static double shadow_error(uint32_t n, uint32_t first, uint32_t by) {
     enum { AXES = 1000, STEPS = 100000 };
     double truth = 0, square = 0;
@@ -98,8 +99,8 @@ TEST(tables_are_those_that_the_header_names) {
     ck_assert(!fibrad_lines_tabled(0) && !fibrad_lines_tabled(UINT32_MAX));
 }
 
-/* Discrepancies: 0.568 for the best sets of any size, 0.580 for tables, whose halves count as well, 0.605 for half a
- * Fibonacci set, 0.814 for a Fibonacci set. */
+/* Discrepancies are 0.568 for the best sets of any size, and 0.580 for tables, whose halves are even, too. They are
+ * 0.605 for half a Fibonacci set and 0.814 for a Fibonacci set. */
 LOOP_TEST(tables_are_even, TABLED_COUNT) {
     const uint32_t n = TABLED[_i];
     const bool tabled = n <= FIBRAD_TABLE_LINES;
@@ -123,7 +124,7 @@ TEST(any_number_is_nearly_as_even) {
     }
 }
 
-/* Numbers that are not tabled, beside tabled ones. */
+/* Numbers of lines without a table, beside numbers with one. */
 static const uint32_t BETWEEN[] = {55, 56, 99, 100, 233, 300, 511, 600};
 enum { BETWEEN_COUNT = sizeof BETWEEN / sizeof BETWEEN[0] };
 

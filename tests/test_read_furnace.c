@@ -1,5 +1,5 @@
-/* test_read_furnace.c - box files: every key, every fault with its line; what is written. SPDX-License-Identifier: MIT
- */
+/* test_read_furnace.c - box files: every key, every fault with its line, and what is written. SPDX-License-Identifier:
+ * MIT */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +12,7 @@
 #include "write/write_furnace.h"
 
 static char path[200];
-static char said[4096]; /* on standard error by the last `try` */
+static char said[4096]; /* text on standard error of the last `try` */
 static fibrad_furnace_config config;
 
 static void make_file(void) {
@@ -27,7 +27,7 @@ static void remove_file(void) { unlink(path); }
 
 FIXTURE(make_file, remove_file)
 
-/* Reads a text as a file and keeps what was said. */
+/* Reads a text as a file and keeps the messages. */
 static int try(const char *text) {
     FILE *file = fopen(path, "w");
     ck_assert_ptr_nonnull(file);
@@ -118,7 +118,8 @@ TEST(bad_files) {
     ck_assert_int_eq(read_furnace("no/such/box.txt", &config), STATUS_FILE);
 }
 
-/* Both writers, read back: positions in the box, T and E that belong together, as many values as cells. */
+/* The files of both writers are read back. Positions lie in the box, T and E belong together, and there are as many
+ * values as cells. */
 TEST(written_fields) {
     fibrad_furnace_config box = furnace_case(1);
     struct furnace_options options = {.method = FURNACE_HFM, .threads = 1, .quiet = true};

@@ -20,7 +20,7 @@ static void start(void) { spheres.n = 0; }
 
 FIXTURE(start, NULL)
 
-/* Touching, nearly touching, far, small and large spheres about the first. */
+/* Touching, nearly touching, far, small and large spheres about the first one. */
 static void crowd(void) {
     add(0, 0, 0, 1);
     add(2, 0, 0, 1);
@@ -60,7 +60,7 @@ TEST(unobstructed) {
         const double d = s[0] + s[1] + s[2];
         add(0.1 * d, -0.2 * d, 0.3 * d, s[0]);
         add(0.1 * d + 0.48 * d, -0.2 * d + 0.6 * d, 0.3 * d - 0.64 * d, s[1]);
-        /* visible areas of overlapping spheres jump where the centres are level: rows converge slowly */
+        /* visible areas of overlapping spheres jump where the centres have equal depths, so rows converge slowly */
         const double tolerance = s[2] < 0 ? 1e-4 : 1e-7, sum = row(0, tolerance), value = pair(0, 1, 1e-8);
         ck_assert_msg(fabs(value / exact - 1) < 1e-8, "pair %zu: %.12g, exact %.12g", k, value, exact);
         ck_assert_msg(fabs(f[1] - exact) < tolerance, "row %zu: %.12g, exact %.12g", k, f[1], exact);
@@ -101,14 +101,14 @@ TEST(tighter_tolerance_stays_within_the_estimate) {
 }
 
 TEST(hidden) {
-    /* equal spheres in a line: the lens of the outer discs lies inside the middle one at every angle */
+    /* equal spheres in a line: at every angle the lens of the outer discs lies inside the middle disc */
     add(0, 0, 0, 1);
     add(0, 0, 5, 1);
     add(0, 0, 2.5, 1);
     ck_assert_double_eq(pair(0, 1, 1e-9), 0);
     row(0, 1e-6);
     ck_assert_double_eq(f[1], 0);
-    /* an obstacle to the side that does not reach the beam changes nothing */
+    /* an obstacle beside the beam changes nothing */
     double exact;
     fibrad_pair_exact(1, 1, 3, &exact);
     x[2] = 2.001;
@@ -117,7 +117,8 @@ TEST(hidden) {
     ck_assert_double_lt(pair(0, 1, 1e-9), exact * (1 - 1e-5));
 }
 
-/* Rays from random points of sphere 0 by the cosine law: nothing in common with beams, slices or cubature. */
+/* Rays start at random points of sphere 0 and follow the cosine law. They share nothing with beams, slices or
+ * cubature. */
 TEST(random_rays) {
     enum { RAYS = 400000 };
     crowd();
@@ -152,7 +153,7 @@ TEST(random_rays) {
     }
 }
 
-/* Row sums of the face-centred cubic lattice of touching unit spheres within a centre distance (DESIGN's table). */
+/* Row sums of the face-centred cubic lattice of touching unit spheres within a distance of centres. */
 TEST(face_centred_cubic) {
     static const double reach[] = {2, 3, 4}, sum[] = {0.8626, 0.9651, 0.9973};
     const double half = sqrt(2.0);
@@ -168,7 +169,7 @@ TEST(face_centred_cubic) {
                 }
         ck_assert_double_le(fabs(row(0, 2e-5) - 1), 1e-8);
         ck_assert_msg(fabs(1 - escaped - sum[k]) < 1e-4, "reach %g: %.6f", reach[k], 1 - escaped);
-        /* all twelve neighbours alike, in spite of the cubature's axes */
+        /* all twelve neighbours are alike, although the cubature has axes */
         for (uint32_t j = 2; j < 13 && k == 0; j++) ck_assert_double_le(fabs(f[j] - f[1]), 2e-5);
     }
 }

@@ -1,4 +1,4 @@
-/* test_reproduce.c - the experiments come out as published. SPDX-License-Identifier: MIT */
+/* test_reproduce.c - the experiments give what was published. SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@ static void run_experiment(char *experiment) {
     ck_assert_int_eq(command_reproduce(5, arguments), 0);
 }
 
-/* The largest |difference| of the last experiment, over lines whose source is `source` and that contain `what`. */
+/* The largest |difference| of the last experiment over the lines with this `source` that contain `what`. */
 static double largest_of(const char *source, const char *what, int *lines) {
     char path[240], line[400];
     snprintf(path, sizeof path, "%s/comparison.csv", directory);
@@ -64,18 +64,18 @@ TEST(pebbles) {
 
 TEST(pebbles_by_rays) {
     int lines;
-    ck_assert_double_le(largest("pebble-rays", "paper", &lines), 3.2); /* per cent; the paper's own error */
+    ck_assert_double_le(largest("pebble-rays", "paper", &lines), 3.2); /* per cent: the paper's own error */
     ck_assert_int_eq(lines, 15);
 }
 
 TEST(conductivity) {
     int lines;
-    ck_assert_double_le(largest("conductivity", "check", &lines), 1.2); /* per cent; other random beds */
+    ck_assert_double_le(largest("conductivity", "check", &lines), 1.2); /* per cent: the check has other random beds */
     ck_assert_int_eq(lines, 16);
 }
 
-/* Johnson, Tari, Baker: their tables and ours up to three radii at all solid fractions, and further where beds are
- * loose and hence random. Per cent. */
+/* The tables of Johnson, Tari, Baker agree with ours up to three radii at all solid fractions. In loose beds, which are
+ * random, they agree farther out. Bounds are in per cent. */
 TEST(exchange_factors) {
     int lines;
     run_experiment("exchange");
@@ -87,7 +87,7 @@ TEST(exchange_factors) {
     ck_assert_int_eq(lines, 2);
 }
 
-/* The cubic lattice against the independent program, per cent: three standard errors of 0.5 %. */
+/* The cubic lattice against the independent program, in per cent: three standard errors of 0.5 %. */
 TEST(conducting) {
     int lines;
     ck_assert_double_le(largest("conducting", "check", &lines), 1.5);
@@ -100,7 +100,7 @@ TEST(formulas) {
     for (int k = 0; k < 5; k++)
         ck_assert_double_eq_tol(correlation_vortmeyer(vortmeyer[k][0], .4, INFINITY), vortmeyer[k][1], .005);
     for (double porosity = .3; porosity < .6; porosity += .1) {
-        /* black spheres: both cells are one; no conduction: the black void in parallel is left, or nothing */
+        /* black spheres: both cells are the same; no conduction: only the black void in parallel is left, or nothing */
         ck_assert_double_eq_tol(correlation_breitbach_barthels(1, porosity, 3),
                                 correlation_zehner_bauer_schluender(1, porosity, 3), 1e-14);
         ck_assert_double_eq_tol(correlation_breitbach_barthels(.5, porosity, 1e-14),

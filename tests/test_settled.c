@@ -1,5 +1,5 @@
-/* test_settled.c - temperatures that are found for given powers: against closed forms, and against the powers that the
- * same temperatures have when they are given. SPDX-License-Identifier: MIT */
+/* test_settled.c - temperatures that are found for given powers, against closed forms, and against the powers that
+ * follow from the same temperatures. SPDX-License-Identifier: MIT */
 #include "scenes.h"
 #include "simple/fibrad_host.h"
 #include "suite.h"
@@ -8,7 +8,7 @@ enum { N = 40, WALLS = 6 };
 
 static const double pi = 3.14159265358979323846, sigma = FIBRAD_STEFAN_BOLTZMANN, unknown = NAN;
 
-/* A bed in a box, or in the open, and all that goes in and comes out. */
+/* A bed in a box or in the open, its sources and its results. */
 struct settled {
     struct bed bed;
     fibrad_body body[WALLS];
@@ -77,7 +77,7 @@ static void close_to(double value, double truth, double error) {
                   value / truth - 1);
 }
 
-/* A sphere alone gives off A eps sigma (T^4 - T0^4), less what holds it. */
+/* A sphere alone gives off A eps sigma (T^4 - T0^4), less the term of `hold`. */
 TEST(one_sphere) {
     static const double eps[] = {.1, .5, 1}, hold[] = {0, 3, 1e6};
     for (int k = 0; k < 9; k++) {
@@ -114,8 +114,9 @@ TEST(plates) {
     bed_free(&s.bed);
 }
 
-/* Powers of given temperatures, given back for every other body: the temperatures. Exactly so with one radiosity per
- * body; with patches both extrapolate, so that squares of what that changes remain. */
+/* Powers follow from given temperatures. Then the powers of every other body are given, and the temperatures must come
+ * back. With one radiosity per body they come back exactly. Both solutions by patches extrapolate, so a difference of
+ * second order remains. */
 TEST(there_and_back) {
     for (int uniform = 0; uniform < 2; uniform++) {
         struct settled s;
@@ -142,7 +143,7 @@ TEST(there_and_back) {
     }
 }
 
-/* In a box at one temperature bodies that give off nothing have it too. */
+/* In a box at one temperature, bodies that give off nothing have the same temperature. */
 TEST(equilibrium) {
     struct settled s;
     begin_box(&s, 3);
@@ -159,7 +160,7 @@ TEST(equilibrium) {
     bed_free(&s.bed);
 }
 
-/* An insulated wall is one that reflects all, but has a temperature: between those about it. */
+/* An insulated wall reflects all, but has a temperature between those of the bodies about it. */
 TEST(insulated) {
     struct settled s;
     double power[N];
@@ -177,7 +178,7 @@ TEST(insulated) {
     bed_free(&s.bed);
 }
 
-/* Nothing has a given temperature: powers add up to zero, or there is no solution. */
+/* If no temperature is given, powers must add up to zero, or there is no solution. */
 TEST(afloat) {
     struct settled s;
     double sum = 0, weights = 0;
@@ -202,12 +203,12 @@ TEST(afloat) {
     for (uint32_t i = 0; i < N; i++) ck_assert_double_eq_tol(s.found.power[i], -s.power[i], 1e-6 * 1000);
     s.power[0] = -999;
     ck_assert_int_eq(settle(&s), FIBRAD_E_UNSOLVABLE);
-    s.wall_temperature[0] = 800; /* which takes up the rest */
+    s.wall_temperature[0] = 800; /* this wall takes up the rest */
     ck_assert_int_eq(settle(&s), FIBRAD_OK);
     bed_free(&s.bed);
 }
 
-/* eps = .9 - T/2000, of spheres and of the floor. */
+/* The emissivity of spheres and of the floor: .9 - T/2000. */
 static void falling(void *calls, const double *temperature, const double *body_temperature, double *emissivity,
                     double *body_emissivity) {
     ++*(int *)calls;
@@ -215,7 +216,8 @@ static void falling(void *calls, const double *temperature, const double *body_t
     if (body_emissivity && !isnan(body_temperature[0])) body_emissivity[0] = .9 - body_temperature[0] / 2000;
 }
 
-/* A sphere alone whose emissivity falls with its temperature, given or found: A eps(T) sigma (T^4 - T0^4) = W. */
+/* A sphere alone has an emissivity that falls with its temperature. Whether the temperature or the power is given, A
+ * eps(T) sigma (T^4 - T0^4) is the power. */
 TEST(emissivity_of_temperature) {
     for (int given = 0; given < 2; ++given) {
         struct settled s;
@@ -250,7 +252,7 @@ TEST(refused) {
     ck_assert_int_eq(settle(&s), FIBRAD_E_ARGUMENT);
     s.power[3] = 10, s.emissivity[3] = 0;
     ck_assert_int_eq(settle(&s), FIBRAD_E_ARGUMENT);
-    s.emissivity[3] = .5, s.power[3] = -1e7; /* more than it can take up */
+    s.emissivity[3] = .5, s.power[3] = -1e7; /* more than the sphere can take up */
     ck_assert_int_eq(settle(&s), FIBRAD_E_UNSOLVABLE);
     ck_assert(isnan(s.found.temperature[3]) && s.found.temperature[2] == s.temperature[2]);
     s.power[3] = 10, s.hold[3] = 1, s.sources.hold = s.hold; /* held at what? */

@@ -26,7 +26,8 @@ typedef struct scene {
     fibrad_spheres obstacles;
 } scene;
 
-/* Obstacles between, beside and behind two spheres; some scenes have one that hides all, some have overlaps. */
+/* Makes obstacles between, beside and behind two spheres. In some scenes one obstacle hides all. Some scenes have
+ * overlaps. */
 static void make_scene(scene *s, uint32_t k) {
     state = k;
     s->r1 = uniform(.5, 2);
@@ -56,7 +57,7 @@ static double factor(const scene *s, uint32_t nodes, uint32_t flags, int isa, fi
 
 /* ---- tests ---- */
 
-/* docs/reproduction.md: largest relative error over the gaps, per cent. */
+/* docs/reproduction.md: largest relative error over the gaps, in per cent. */
 TEST(published_errors) {
     static const double radius[] = {.1, .3, .7, 1};
     static const struct {
@@ -117,7 +118,7 @@ TEST(skips_change_nothing) {
             partly += f > 0 && with.blocked < with.unblocked;
         }
     }
-    /* each skip was put to use */
+    /* each skip was used */
     ck_assert_uint_ge(hidden, 20);
     ck_assert_uint_gt(clear, 20);
     ck_assert_uint_gt(fewer_tests, 200);
@@ -139,7 +140,8 @@ TEST(same_bits_in_every_instruction_set) {
     }
 }
 
-/* The third sphere touches both: after the correction the error at 55 nodes against 987 is a third of the raw one. */
+/* The third sphere touches both spheres. After the correction the error at 55 nodes against 987 is a third of the raw
+ * error. */
 TEST(third_sphere_touching_both) {
     static const struct {
         double radius, raw, corrected;
@@ -176,7 +178,7 @@ TEST(scales_with_the_unit) {
     }
 }
 
-/* Scratch memory on any boundary of a double, no more of it than is said; obstacles at any stride. */
+/* Scratch memory begins on any boundary of a double and has no more than the stated size. Obstacles have any stride. */
 TEST(scratch_and_strides_change_no_bit) {
     static double room[8 + FIBRAD_SURFACE_SCRATCH(MOST) + 8], at[MOST][3], r[5 * MOST];
     for (uint32_t k = 0; k < 200; k++) {
@@ -202,7 +204,7 @@ TEST(scratch_and_strides_change_no_bit) {
     }
 }
 
-/* An instruction set that is not built in is said to be missing. */
+/* An instruction set that is not built in is reported as missing. */
 TEST(instruction_sets_not_built_in) {
     static const int lacking[] = {
 #ifndef FIBRAD_WITH_SSE2

@@ -35,8 +35,8 @@ TEST(azimuths_are_multiples_of_the_golden_angle) {
     }
 }
 
-/* Both parts together must lie on the unit circle to twice the precision: with c + c' and s + s' their parts,
- * c^2 + s^2 - 1 is found exactly by fused multiplication and must be -2 (c c' + s s'). */
+/* Both parts together must lie on the unit circle to twice the precision. Let c + c' and s + s' be the parts. Fused
+ * multiplication finds c^2 + s^2 - 1 exactly. It must be -2 (c c' + s s'). */
 static void assert_long_angle(const fibrad_long_angle *a, uint64_t remainder) {
     assert_rounded(a->cos, cosl(golden_angle(remainder)));
     assert_rounded(a->sin, sinl(golden_angle(remainder)));
@@ -45,7 +45,7 @@ static void assert_long_angle(const fibrad_long_angle *a, uint64_t remainder) {
     double c2 = a->cos * a->cos, c2_rest = fma(a->cos, a->cos, -c2);
     double s2 = a->sin * a->sin, s2_rest = fma(a->sin, a->sin, -s2);
     double large = fmax(c2, s2), small = fmin(c2, s2);
-    double excess = (large - 1) + small; /* exact: the larger is at least 1/2 */
+    double excess = (large - 1) + small; /* this is exact, since the larger part is at least 1/2 */
     ck_assert_double_le(fabs(excess + c2_rest + s2_rest + 2 * (a->cos * a->cos_rest + a->sin * a->sin_rest)), 1e-31);
 }
 
@@ -76,7 +76,8 @@ TEST(disc_points_are_sunflowers) {
             sum_y += y;
             sum_square += x * x + y * y;
         }
-        ck_assert_double_gt(closest * sqrt(m), 1.4); /* evenly spread: a square grid of as many has 1.77 */
+        ck_assert_double_gt(closest * sqrt(m),
+                            1.4); /* evenly spread points: a square grid of as many points has 1.77 */
         ck_assert_double_le(hypot(sum_x, sum_y), 1);
         ck_assert_double_eq_tol(sum_square, m / 2.0, 1e-5);
     }
@@ -127,7 +128,7 @@ TEST(surface_nodes_follow_the_mapped_lattice) {
 }
 
 TEST(surface_weights_integrate_over_the_sphere) {
-    fibrad_surface_nodes nodes; /* mean of z^2 is 1/3, of x^2 too, of x z 0 */
+    fibrad_surface_nodes nodes; /* the mean of z^2 is 1/3, that of x^2 too, that of x z is 0 */
     ck_assert_int_eq(fibrad_surface_nodes_get(987, &nodes), FIBRAD_OK);
     double zz = 0, xx = 0, xz = 0;
     for (uint32_t k = 0; k < nodes.n; k++) {

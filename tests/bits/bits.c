@@ -14,7 +14,7 @@
 
 #define SPHERES 300
 #define WALLS   7
-#define DISCS   2048 /* a perfect lattice is seen through for a hundred periods */
+#define DISCS   2048 /* rays look through a perfect lattice for a hundred periods */
 
 /* ---- FNV-1a ----------------------------------------------------------------------------------------------------- */
 
@@ -38,7 +38,7 @@ static void tell(const char *scene, const char *what) { printf("%s %s %016" PRIx
 
 static uint64_t state;
 
-/* Uniform in [low, high): exact arithmetic but for one rounding each. */
+/* A number that is uniform in [low, high). The arithmetic is exact but for one rounding each. */
 static double random_in(double low, double high) {
     state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
     return low + (high - low) * ((double)(state >> 11) / 9007199254740992.0);
@@ -46,11 +46,11 @@ static double random_in(double low, double high) {
 
 static double x[SPHERES], y[SPHERES], z[SPHERES], r[SPHERES];
 
-/* What bounds a scene: nothing; periods; six planes; a cylinder with a plane at either end; planes at both ends of z
- * and periods across; a plane below, without end. */
+/* The bounds of a scene: nothing; periods; six planes; a cylinder with a plane at either end; planes at both ends of z
+ * with periods across; an endless plane below. */
 enum { OPEN, PERIODIC, BOX, CAN, SLAB, FLOOR };
 
-/* What a scene is made of: sites of a grid, filled in order, moved at random. */
+/* The spheres of a scene: sites of a grid, filled in order and moved at random. */
 static const struct scene {
     const char *name;
     uint32_t n, side; /* spheres; sites per axis */
@@ -64,7 +64,7 @@ static const struct scene {
     {"settled", 300, 7, 1.96, .02, .98, 1.02, OPEN, 0}, {"cutoff", 216, 6, 2.05, .1, .8, 1.1, PERIODIC, 4.5},
 };
 
-/* Small ones, for what takes long or needs walls. */
+/* Small scenes, for methods that take long or need walls. */
 static const struct scene small[] = {
     {"cube", 27, 3, 2.1, .1, .75, 1.1, PERIODIC, 0}, {"box", 27, 3, 2.1, .1, .75, 1.1, BOX, 0},
     {"can", 25, 3, 2.1, .1, .75, 1.1, CAN, 0},       {"slab", 18, 3, 2.1, .1, .75, 1.1, SLAB, 0},
@@ -92,9 +92,9 @@ static uint32_t col[SPHERES];
 static double f[SPHERES], on_body[WALLS];
 
 static uint32_t bodies;
-static uint32_t wall_of[WALLS]; /* x low, x high, y low, y high, z low, z high, cylinder: which of these each body is */
+static uint32_t wall_of[WALLS]; /* the wall of each body: x low, x high, y low, y high, z low, z high or cylinder */
 
-/* A row with room for all there is. */
+/* A row with room for all spheres and walls. */
 static fibrad_row row_here(void) { return (fibrad_row){.col = col, .f = f, .body = on_body, .capacity = SPHERES}; }
 
 static void hash_factors(const fibrad_factors *factors) {
@@ -103,7 +103,7 @@ static void hash_factors(const fibrad_factors *factors) {
     for (uint64_t k = 0; k < factors->start[factors->n]; k++) hash_word(factors->col[k]), hash_number(factors->f[k]);
 }
 
-/* Numbers of bodies by wall, 0 for those that are not there. */
+/* Factors of bodies by wall. Walls that do not exist have 0. */
 static void hash_walls(const double *of_body) {
     double wall[WALLS] = {0};
     for (uint32_t b = 0; b < bodies; b++) wall[wall_of[b]] = of_body[b];
@@ -146,7 +146,7 @@ static void add_body(fibrad_body *body, uint32_t wall, fibrad_body fields) {
     body[bodies++] = fields;
 }
 
-/* Makes the scene; its bodies are in the order of wall_of. part: NULL, or known region, occupancy and ids. */
+/* Makes the scene. Its bodies are in the order of wall_of. part: NULL, or known region, occupancy and ids. */
 static int scene_part(void *memory, size_t size, const struct scene *s, int isa, const fibrad_scene_config *part,
                       const uint64_t *id, fibrad_scene **scene) {
     const double low = -.95, high = s->spacing * (s->side - 1) - low, middle = (low + high) / 2;
@@ -176,20 +176,20 @@ static int set_up(const struct scene *s, int isa, fibrad_scene **scene) {
     return scene_at(scene_memory, sizeof scene_memory, s, isa, scene);
 }
 
-/* Puts the rows together by a rule. */
+/* Makes a matrix of the rows by a rule. */
 static int matrix_of(const fibrad_scene *scene, const fibrad_matrix_rule *rule, fibrad_factors *factors,
                      double *reciprocity) {
     fibrad_matrix *matrix;
     if (fibrad_matrix_init(&matrix, matrix_memory, sizeof matrix_memory, scene, &rows, 1, rule, NULL) != FIBRAD_OK)
         return 1;
-    /* some of the tasks; closing does the others */
+    /* only some of the tasks: closing does the others */
     for (uint32_t k = rule->tasks; k-- > rule->tasks / 2;)
         if (fibrad_matrix_average(matrix, k) != FIBRAD_OK) return 1;
     return fibrad_matrix_close(matrix) != FIBRAD_OK || fibrad_matrix_read(matrix, factors) != FIBRAD_OK ||
            fibrad_matrix_reciprocity(matrix, reciprocity) != FIBRAD_OK;
 }
 
-/* All rows of a scene, and what is made of them. */
+/* Hashes all rows of a scene and the matrices made of them. */
 static int hash_beam(const struct scene *s, int isa, uint32_t points) {
     static const char *const names[] = {"areas", "points64", "points128", "", "points256"};
     static const fibrad_matrix_rule raw = {.raw = 1}, drop = {.drop = 1e-3, .tasks = 7};
@@ -221,7 +221,7 @@ static int hash_beam(const struct scene *s, int isa, uint32_t points) {
     return 0;
 }
 
-/* Raw rows by the surface method, of every seventh sphere. */
+/* Hashes raw rows by the surface method, of every seventh sphere. */
 static int hash_surface(const struct scene *s, int isa) {
     fibrad_scene *scene;
     if (set_up(s, isa, &scene)) return 1;
@@ -237,7 +237,7 @@ static int hash_surface(const struct scene *s, int isa) {
     return 0;
 }
 
-/* Raw rows by rays, of every seventh sphere, and their mean lengths and angles. */
+/* Hashes raw rows by rays, of every seventh sphere, with their mean lengths and angles. */
 static int hash_cast(const struct scene *s, int isa, int random) {
     static double length[SPHERES], angle[SPHERES];
     fibrad_scene *scene;
@@ -258,10 +258,10 @@ static int hash_cast(const struct scene *s, int isa, int random) {
 /* ---- heat, exchange, walls, what moves: small scenes ------------------------------------------------------------ */
 
 static double temperature[SPHERES], emissivity[SPHERES], power[SPHERES];
-static double wall_temperature[WALLS], wall_emissivity[WALLS]; /* of all walls, and of the bodies there are: */
+static double wall_temperature[WALLS], wall_emissivity[WALLS]; /* values of all walls, and of the existing bodies: */
 static double body_temperature[WALLS], body_emissivity[WALLS], body_power[WALLS];
 
-/* Temperatures, and emissivities between two bounds, of all spheres and walls. */
+/* Temperatures and emissivities of all spheres and walls, between two bounds. */
 static fibrad_heat_sources sources_of(const struct scene *s, uint64_t seed, double lowest, double highest) {
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);
@@ -313,7 +313,7 @@ static int hash_matrix(const struct scene *s, const fibrad_scene *scene, const f
     return 0;
 }
 
-/* Rows with what meets walls, and their matrix. */
+/* Rows with factors to walls, and their matrix. */
 static int hash_closed(const struct scene *s, int isa, uint32_t points) {
     static const char *const names[] = {"areas.walls", "points64.walls", "points128.walls", "", "points256.walls"};
     fibrad_scene *scene;
@@ -335,7 +335,7 @@ static int hash_closed(const struct scene *s, int isa, uint32_t points) {
     return points == 0 && hash_matrix(s, scene, &(fibrad_matrix_rule){.tasks = 3}, "areas.closed");
 }
 
-/* Beam rows to a tolerance, by areas and by points, and the directions that would be next. */
+/* Beam rows to a tolerance, by areas and by points, and the next number of directions. */
 static int hash_tolerance(const struct scene *s, int isa) {
     fibrad_scene *scene;
     if (set_up(s, isa, &scene)) return 1;
@@ -410,8 +410,8 @@ static int hash_exchange(const struct scene *s, int isa) {
     return bodies == 0 && s->bounds == PERIODIC ? hash_walk(s, scene, &rule) : 0;
 }
 
-/* Rows of a part of a bed: beams by areas and by points, turned ones, cast and exchange, with a cutoff, a known region
- * and an occupancy, and the powers that follow. */
+/* Rows of a part of a bed with a cutoff, a known region and an occupancy: beams by areas, by points and turned, cast
+ * and exchange. The powers that follow from them are hashed, too. */
 static int hash_part(const struct scene *s, int isa) {
     static const char *const names[] = {"cut", "region", "part"};
     static const uint64_t mark[] = {UINT64_C(0x0f3c55aa00ff9981)};
@@ -466,7 +466,7 @@ static int hash_part(const struct scene *s, int isa) {
     return 0;
 }
 
-/* What rows say of a bed in which a few spheres have moved: some a little, some so far that others come into sight. */
+/* Drift in a bed in which a few spheres have moved: some a little, some so far that they come into sight of others. */
 static int hash_moved(const struct scene *s, int isa) {
     static unsigned char now_memory[FIBRAD_SCENE_BYTES(SPHERES)];
     static uint32_t old_col[SPHERES];
@@ -496,7 +496,7 @@ static int hash_moved(const struct scene *s, int isa) {
 
 static unsigned char heat_memory[12 << 20];
 
-/* The beams of all surfaces. */
+/* Traces the beams of all surfaces. */
 static int heat_trace(const struct scene *s, int isa, const fibrad_heat_config *config, fibrad_heat **heat) {
     fibrad_scene *scene;
     if (set_up(s, isa, &scene) || fibrad_heat_init(heat, heat_memory, sizeof heat_memory, config, scene) != FIBRAD_OK)
@@ -520,7 +520,7 @@ static int heat_solve(const struct scene *s, fibrad_heat *heat, const fibrad_hea
     return 0;
 }
 
-/* Powers: anew, from the solution before, and from it without coming to an end. */
+/* Powers: first from the beginning, then from the last solution, then from it with too few sweeps to converge. */
 static int hash_heat(const struct scene *s, int isa) {
     const fibrad_heat_config config = {.directions = 40, .parts = 3};
     fibrad_heat *heat;
@@ -570,7 +570,7 @@ static int hash_small(const struct scene *s, int isa) {
         failed |= hash_closed(s, isa, points);
     failed |= hash_tolerance(s, isa);
     failed |= hash_exchange(s, isa);
-    return s->bounds == SLAB ? failed : failed | hash_heat(s, isa); /* the rays of walls take long */
+    return s->bounds == SLAB ? failed : failed | hash_heat(s, isa); /* rays of walls take long */
 }
 
 /* ---- furnace ---------------------------------------------------------------------------------------------------- */

@@ -1,5 +1,5 @@
-/* sorted_rows.c - all rows of the files PREFIX.0.rows, PREFIX.1.rows, ... as bytes, in the order of their ids, so that
- * two divisions of one bed can be compared: sorted_rows PREFIX > BYTES. SPDX-License-Identifier: MIT */
+/* sorted_rows.c - writes all rows of the files PREFIX.0.rows, PREFIX.1.rows, ... as bytes, in the order of their ids.
+ * So two divisions of one bed can be compared: sorted_rows PREFIX > BYTES. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

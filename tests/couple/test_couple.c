@@ -1,8 +1,8 @@
-/* test_couple.c - links, rows and powers over MPI against one rank, and against the kernel alone. Any number of ranks.
- * SPDX-License-Identifier: MIT
+/* test_couple.c - links, rows and powers over MPI, against one rank and against the kernel alone, on any number of
+ * ranks. SPDX-License-Identifier: MIT
  *
- * test_couple FOLDER: where files of rows are written. Rank 0 alone makes the rows of whole beds on MPI_COMM_SELF, the
- * same whatever the ranks, so that runs of other numbers of ranks have the same reference. */
+ * test_couple FOLDER: files of rows go into FOLDER. Rank 0 alone makes the rows of whole beds on MPI_COMM_SELF.
+ * These rows do not depend on the number of ranks, so all runs have the same reference. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -42,7 +42,8 @@ static void *memory_of(size_t count, size_t size) {
 
 enum { OWNED = 150, USED = 400, WIDTH = 3 };
 
-/* Id k of a rank, of all 64 bits, 0 and the largest among them; what a rank uses k-th; what it adds to that. */
+/* Id k of a rank. Ids have all 64 bits, and 0 and the largest number are among them. Further: the k-th id that a rank
+ * uses, and the value that it adds for this id. */
 static uint64_t owned_id(int owner, int k) {
     if (owner == 0 && k == 0) return 0;
     return owner == 0 && k == 1 ? UINT64_MAX : hash_of((uint64_t)owner, (uint64_t)k);
@@ -78,7 +79,7 @@ static void links(void) {
         for (int k = 0; k < USED; ++k) same = same && value[own + k][0] == 0 && value[own + k][WIDTH - 1] == 0;
         for (int k = 0; k < own; ++k)
             for (int c = 0; c < WIDTH; ++c) {
-                double sum = value_of(id[k], c); /* whole numbers: exact in any order */
+                double sum = value_of(id[k], c); /* sums of whole numbers are exact in any order */
                 for (int user = 0; user < ranks; ++user)
                     for (int u = 0; u < USED; ++u)
                         if (used_id(user, u) == id[k]) sum += added_by(user, u, c);
@@ -88,10 +89,10 @@ static void links(void) {
     }
     fibrad_link_free(link);
 
-    if (rank == ranks - 1) id[all - 1] = 77, id[all - 2] = 55; /* two that nobody owns */
+    if (rank == ranks - 1) id[all - 1] = 77, id[all - 2] = 55; /* two ids that no rank owns */
     CHECK(fibrad_link_new(&link, MPI_COMM_WORLD, id, (size_t)own, all, &culprit) == FIBRAD_E_ARGUMENT && !link);
     CHECK(culprit == 55);
-    if (own) id[own - 1] = id[0], culprit = 1; /* twice on each rank: the least is 0, of rank 0 */
+    if (own) id[own - 1] = id[0], culprit = 1; /* an id that each rank has twice: the least is 0, of rank 0 */
     CHECK(fibrad_link_new(&link, MPI_COMM_WORLD, id, (size_t)own, (size_t)own, &culprit) == FIBRAD_E_ARGUMENT && !link);
     CHECK(culprit == 0);
     CHECK(fibrad_link_new(&link, MPI_COMM_WORLD, NULL, 0, 0, NULL) == FIBRAD_OK);
@@ -103,9 +104,9 @@ static void links(void) {
 
 /* ---- beds ------------------------------------------------------------------------------------------------------ */
 
-#define PITCH 2.125 /* with all coordinates a multiple of 2^-20, so that moving by a period is exact */
+#define PITCH 2.125 /* all coordinates are multiples of 2^-20, so that moving by a period is exact */
 
-/* Particles, all or those of a rank; what else the bed has. */
+/* Particles, all or those of a rank, and the rest of the bed. */
 struct pile {
     fibrad_insitu_bed bed;
     uint64_t *id;
@@ -143,13 +144,13 @@ static void close_pile(struct pile *p) {
 
 enum walls { OPEN, FLOORS, TUBE, PIPE };
 
-/* Both ends of a pipe, where its particles end. */
+/* Both ends of a pipe, where the particles end. */
 static const fibrad_plane ends[] = {{2, 0, NAN}, {2, 1, NAN}};
 
-/* Least k* of the particles of the next piles, the largest is 10 times that. 0: infinite. */
+/* Least k* of the particles of the next piles. The largest is 10 times as large. 0: infinite. */
 static double conducting;
 
-/* What a bed of side^3 particles is like. */
+/* The properties of a bed of side^3 particles. */
 struct kind {
     const char *name;
     int side, periodic[3];
@@ -159,7 +160,7 @@ struct kind {
     int threads, spread;
 };
 
-/* A lattice moved about by up to a tenth of its pitch, in a box that begins at -1. */
+/* A lattice whose particles are moved by up to a tenth of its pitch, in a box that begins at -1. */
 static struct pile pile_of(const struct kind *kind) {
     const int side = kind->side;
     const double box = PITCH * side;
@@ -193,7 +194,7 @@ static struct pile pile_of(const struct kind *kind) {
     return p;
 }
 
-/* Who owns a particle: by chance, by height, the last rank all, all but rank 0. */
+/* The owner of a particle: by chance, by height, the last rank owns all, all ranks but rank 0. */
 enum { SPREADS = 4 };
 static int owner_of(const struct pile *p, size_t i, int spread) {
     const int chance = (int)(hash_of(p->id[i], 5) % (uint64_t)ranks);
@@ -209,7 +210,7 @@ static int owner_of(const struct pile *p, size_t i, int spread) {
     }
 }
 
-/* A pile without particles, with the walls of another and room for its particles. */
+/* A pile without particles. It has the walls of another pile and room for its particles. */
 static struct pile emptied(const struct pile *all) {
     struct pile p = *all;
     open_pile(&p, all->bed.n);
@@ -227,7 +228,7 @@ static void take_particle(struct pile *p, const struct pile *from, size_t i) {
     p->temperature[n] = from->temperature[i];
 }
 
-/* What this rank owns of a pile, in another order, some of it in other periods. */
+/* The part of a pile that this rank owns, in another order. Some particles are moved by periods. */
 static struct pile part_of(const struct pile *all, int spread) {
     struct pile p = emptied(all);
     for (size_t k = all->bed.n; k-- > 0;) {
@@ -279,8 +280,8 @@ static struct rows_file read_rows(const char *name, int of) {
 
 static bool equal_words(const void *a, const void *b, size_t words) { return memcmp(a, b, words * 8) == 0; }
 
-/* Whether row i of one file is row k of another, to the bit; and closed, or empty at
- * emissivity 0, with ascending columns. */
+/* Whether row i of one file is row k of another, to the bit. The row must be closed, or empty at emissivity 0, and its
+ * columns must ascend. */
 static bool same_row(const struct rows_file *a, size_t i, const struct rows_file *b, size_t k) {
     const uint64_t length = a->start[i + 1] - a->start[i], bodies = a->head.bodies;
     if (length != b->start[k + 1] - b->start[k]) return false;
@@ -306,7 +307,7 @@ static size_t place_of(const struct rows_file *r, uint64_t id) {
     return k;
 }
 
-/* The rows of all ranks in the files `part` are those of the one file `whole`. */
+/* Compares the rows of all ranks in the files `part` with those of the one file `whole`. */
 static void compare_files(const char *part, const char *whole) {
     if (rank) return;
     struct rows_file b = read_rows(whole, 0);
@@ -354,7 +355,7 @@ static void make_rows(fibrad_insitu *s, const struct pile *p, uint64_t step) {
     if (status) fprintf(stderr, "%s\n", fibrad_insitu_message(s));
 }
 
-/* The rows of all ranks, whoever owns what, are those of one rank that owns all. */
+/* The rows of all ranks, whichever rank owns which particles, are those of one rank that owns all. */
 static void rows_are_those_of_one_rank(const struct kind *kind) {
     struct pile all = pile_of(kind);
     if (rank == 0) {
@@ -364,7 +365,7 @@ static void rows_are_those_of_one_rank(const struct kind *kind) {
         fibrad_insitu_free(self);
     }
     fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, kind->threads);
-    for (int again = 0; again < 2; ++again) { /* first others, so that the memory holds something */
+    for (int again = 0; again < 2; ++again) { /* first other rows, so that the memory is not empty */
         struct pile part = part_of(&all, again ? kind->spread : (kind->spread + 1) % SPREADS);
         make_rows(s, &part, again ? 7 : 6);
         close_pile(&part);
@@ -392,7 +393,7 @@ static fibrad_insitu_state state_of(const struct pile *p) {
                                  .temperature = p->temperature};
 }
 
-/* What goes in comes out, and nothing flows between equal temperatures, to the bit. */
+/* Powers add up to zero. Between equal temperatures nothing flows, to the bit. */
 static void powers_keep_energy(const struct kind *kind) {
     struct pile all = pile_of(kind), part = part_of(&all, kind->spread);
     fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, 1);
@@ -425,7 +426,7 @@ static void powers_keep_energy(const struct kind *kind) {
     close_pile(&part);
 }
 
-/* However little a particle conducts, alone it loses A e (E - E of the surroundings). */
+/* A lone particle loses A e (E - E of the surroundings), however little it conducts. */
 static void a_lone_particle(void) {
     static const double relative[] = {.001, .1, 10};
     for (int k = 0; k < 3; ++k) {
@@ -444,7 +445,7 @@ static void a_lone_particle(void) {
     }
 }
 
-/* Rows of another step have another noise; those of the same step are the same. */
+/* Rows of another step have other noise. Rows of the same step are the same. */
 static void steps_change_noise(void) {
     const struct kind *kind = &kinds[1];
     struct pile all = pile_of(kind), part = part_of(&all, 0);
@@ -506,8 +507,8 @@ static void the_map_has_all(const struct kind *kind) {
     close_pile(&part);
 }
 
-/* One particle far above the bed, or lost so far away that its box would have too wide cells, takes nothing of the sky
- * of the others but what it hides. */
+/* A particle far above the bed hides only a little of the sky of the others. So does a particle so far away that its
+ * box would make the cells too wide. */
 static void the_sky_stays_open(void) {
     const struct kind kinds_of_sky[] = {{"sky", 5, {1, 1, 0}, OPEN, {.8, .8}, 5, 1, 0},
                                         {"lost", 5, {0, 0, 0}, OPEN, {.8, .8}, 5, 1, 0}};
@@ -530,7 +531,7 @@ static void the_sky_stays_open(void) {
     }
 }
 
-/* A particle larger than all others together sees them, and they it: the default cutoff has its diameter. */
+/* A particle larger than all others together sees them, and they see it: the default cutoff contains its diameter. */
 static void large_particles_are_seen(void) {
     const struct kind kind = {"large", 4, {0, 0, 0}, OPEN, {.8, .8}, 0, 1, 0};
     struct pile all = pile_of(&kind);
@@ -563,7 +564,7 @@ static void *grow(void *context, void *block, size_t size) {
     return realloc(block, size);
 }
 
-/* Temperatures after all steps by the kernel's rows in one scene, and sums written down as they are meant. */
+/* Temperatures after all steps by rows of the kernel in one scene, with sums written as in the formula. */
 static void step_by_kernel(struct pile *p, double cutoff) {
     const uint32_t n = (uint32_t)p->bed.n, bodies = p->bed.bodies;
     const fibrad_scene_config config = {.body = p->body, .bodies = bodies};
@@ -612,7 +613,7 @@ static void step_by_kernel(struct pile *p, double cutoff) {
     free(body);
 }
 
-/* Particles change ranks and places at every third step; the rows stay where they were made. */
+/* Particles change ranks and positions at every third step. The rows stay where they were made. */
 static void temperatures_are_those_of_the_kernel(enum walls walls, double cutoff) {
     const struct kind kind = {"reference", 6, {0, 0, 0}, walls, {.3, .8}, 1000, 1, 0};
     struct pile all = pile_of(&kind), expected = pile_of(&kind);
@@ -653,7 +654,7 @@ static void temperatures_are_those_of_the_kernel(enum walls walls, double cutoff
 
 enum { FLOWN = 5, SUNK = 11, DEEP = 20, SWALLOWED = 30 };
 
-/* Puts one particle above the ceiling, one below the floor, one inside another, and two at the same place. */
+/* Puts one particle above the ceiling, one below the floor, one inside another, and two at the same point. */
 static void go_astray(struct pile *p) {
     p->x[3 * FLOWN + 2] = 1e3;
     p->x[3 * SUNK + 2] = -1.25;
@@ -661,7 +662,7 @@ static void go_astray(struct pile *p) {
     memcpy(p->x + 3 * SWALLOWED, p->x + 3 * SWALLOWED + 3, 3 * sizeof *p->x);
 }
 
-/* The same bed without the particles that are left out, with the radii that the others have in the rows. */
+/* The same bed without the particles that are left out. The others have the radii that they have in the rows. */
 static struct pile without_strays(const struct pile *astray) {
     struct pile p = emptied(astray);
     const double largest = fmax(astray->radius[DEEP], astray->radius[DEEP + 1]);
@@ -673,7 +674,7 @@ static struct pile without_strays(const struct pile *astray) {
     return p;
 }
 
-/* Rows go on with strays: powers are those of the bed without them, and strays have none. */
+/* Rows go on with strays. Powers are those of the bed without the strays, and strays have none. */
 static void strays_do_not_end_a_run(void) {
     static const struct kind kind = {"strays", 4, {1, 1, 0}, FLOORS, {.8, .5}, 4, 1, 0};
     struct pile all = pile_of(&kind);
@@ -691,7 +692,7 @@ static void strays_do_not_end_a_run(void) {
         size_t k = 0;
         while (k < known.bed.n && known.id[k] != part.id[i]) ++k;
         const double power = k < known.bed.n ? known.power[k] : 0;
-        CHECK(fabs(part.power[i] - power) <= 1e-7 * fabs(power)); /* the reduced radii are rounded otherwise */
+        CHECK(fabs(part.power[i] - power) <= 1e-7 * fabs(power)); /* the reduced radii are rounded in another way */
         most = fmax(most, fabs(power)), sum += part.power[i];
     }
     CHECK(most > 0 || part.bed.n == 0);
@@ -704,7 +705,7 @@ static void strays_do_not_end_a_run(void) {
     CHECK(strstr(fibrad_insitu_remark(s, FIBRAD_REMARK_OVERLAP), "the centre of one lies inside the other"));
     CHECK(strcmp(fibrad_insitu_remark(s, FIBRAD_REMARK_BACK), "") == 0);
     CHECK(strcmp(fibrad_insitu_remark(t, FIBRAD_REMARK_OUTSIDE), "") == 0);
-    for (size_t i = 0; i < part.bed.n; ++i) /* another particle in place of one that is left out: new rows */
+    for (size_t i = 0; i < part.bed.n; ++i) /* another particle in the place of one that is left out, so rows are new */
         if (part.id[i] == all.id[FLOWN]) part.id[i] = 12345;
     CHECK(fibrad_insitu_powers(s, &state[0], part.power, NULL) == FIBRAD_E_STATE);
     fibrad_insitu_free(s);
@@ -725,7 +726,7 @@ static struct pile without(const struct pile *all, size_t of) {
     return p;
 }
 
-/* Powers of all particles of the whole bed by number, summed over ranks; 0 for those that are not in the part. */
+/* Powers of all particles of the whole bed by number, summed over ranks. Particles that are not in the part have 0. */
 static double *gather_powers(const struct pile *all, const struct pile *part) {
     double *power = memory_of(all->bed.n, sizeof *power);
     for (size_t i = 0; i < all->bed.n; ++i) {
@@ -790,7 +791,7 @@ static void rows_follow_particles(double bound) {
 
 /* ---- refusals -------------------------------------------------------------------------------------------------- */
 
-/* The same status and the same message on all ranks, which has the words. */
+/* Asserts the same status and the same message on all ranks. The message contains `words`. */
 static void check_refused(const fibrad_insitu *s, int status, int expected, const char *words) {
     char message[2][256] = {{0}};
     int first = status;
@@ -899,7 +900,7 @@ static void powers_are_refused(fibrad_insitu *s, const struct pile *good) {
     close_pile(&part);
 }
 
-/* One rank cannot write its file: none is left. */
+/* If one rank cannot write its file, no file is left. */
 static void files_are_refused(fibrad_insitu *s) {
     char name[4200];
     snprintf(name, sizeof name, "%s.%d.rows.tmp", path_of("refused"), ranks - 1);
@@ -913,7 +914,7 @@ static void files_are_refused(fibrad_insitu *s) {
     check_refused(s, fibrad_insitu_write(s, NULL), FIBRAD_E_ARGUMENT, "is empty or too long");
 }
 
-/* After all refusals the object is as it was. */
+/* After all refusals the object is as before. */
 static void refusals(void) {
     fibrad_insitu *s = NULL;
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.cutoff = -1}) == FIBRAD_E_ARGUMENT && !s);

@@ -43,19 +43,20 @@ static void rule(void) {
     }
 }
 
-/* Squared lengths over d^2: the range of u = s^2 is [a, b]; p = 1 - b, w = 1 - a, both from the gap. */
+/* Squared lengths over d^2. The range of u = s^2 is [a, b]; p = 1 - b and w = 1 - a are formed from the gap. */
 struct pair {
     quad a, p, w, q;
 };
 
-/* sqrt((b-u)(u-a))/(1 + sqrt(1-u)) at distances `below` from a and `above` from the upper end (b, or d^2 if p < 0). */
+/* sqrt((b-u)(u-a))/(1 + sqrt(1-u)) at the distance `below` from a and `above` from the upper end (b, or d^2 if p <
+ * 0). */
 static quad integrand(const struct pair *g, quad below, quad above) {
     quad x = g->p > 0 ? g->p + above : above;    /* 1 - u */
     quad rest = g->p > 0 ? above : above - g->p; /* b - u */
     return sqrtq(rest * below) / (1 + sqrtq(x));
 }
 
-/* Tanh-sinh quadrature between two distances from the upper end, `far` > `near`. */
+/* Tanh-sinh quadrature between two distances from the upper end, where `far` > `near`. */
 static quad panel(const struct pair *g, quad whole, quad near, quad far) {
     const quad h = 1 / 64.0Q;
     quad sum = 0, length = far - near;

@@ -6,17 +6,17 @@
 #include "simple/fibrad_host.h"
 #include "contents.h"
 
-/* Everything about one bed. */
+/* A bed and all objects made of it. */
 struct session {
     struct contents contents;
     fibrad_spheres spheres;
     fibrad_run run;
-    uint32_t reports; /* until progress asks to stop */
+    uint32_t reports; /* number of reports until progress asks to stop */
     double emissivity[SPHERES], body_emissivity[BODIES];
     fibrad_radiation *radiation;
     fibrad_transient *transient;
     bool solved, powers; /* there is a solution of this bed */
-    uint32_t asked;      /* how often the law of emissivities was asked */
+    uint32_t asked;      /* number of calls of the law of emissivities */
     uint8_t law;
 };
 
@@ -33,7 +33,7 @@ static void any_run(struct session *s) {
     if (kind == 200) s->run.threads = (int)number();
 }
 
-/* Where the contents say now. */
+/* The spheres of the present contents. */
 static const fibrad_spheres *spheres_of(struct session *s) {
     struct contents *c = &s->contents;
     s->spheres = (fibrad_spheres){.x = c->x, .y = c->y, .z = c->z, .r = c->r, .n = c->n, .id = c->ids ? c->id : NULL};
@@ -142,15 +142,15 @@ static void try_displacements(struct session *s) {
 
 /* ---- heat ------------------------------------------------------------------------------------------------------- */
 
-/* What radiates, and the arrays that say so. */
+/* The sources and their arrays. */
 struct sources {
     fibrad_heat_sources sources;
     double temperature[SPHERES], power[SPHERES], body_temperature[BODIES], body_power[BODIES], side[2 * TRIANGLES];
     unsigned char insulated[BODIES];
-    bool usual; /* no number is beyond what a bed has */
+    bool usual; /* no number is out of the usual range of a bed */
 };
 
-/* known: all temperatures of spheres. in_time: powers act beside them. */
+/* known: all temperatures of spheres are given. in_time: powers act beside temperatures. */
 static void any_sources(struct session *s, struct sources *all, bool known, bool in_time) {
     fibrad_heat_sources *f = &all->sources;
     const uint8_t which = byte();
@@ -177,7 +177,7 @@ static void any_sources(struct session *s, struct sources *all, bool known, bool
     if (which > 200 && s->contents.triangles.n > 0) f->side_temperature = all->side;
 }
 
-/* Powers add up to zero. */
+/* Asserts that powers add up to zero. */
 static void check_powers(const struct session *s, const fibrad_heat_result *result) {
     double sum = result->surroundings_power, size = fabs(sum);
     for (uint32_t i = 0; i < s->contents.n; i++) sum += result->power[i], size += fabs(result->power[i]);
@@ -196,12 +196,12 @@ static fibrad_heat_config any_heat_config(void) {
     return config;
 }
 
-/* Moves some spheres, seldom to where they cannot be. */
+/* Moves some spheres, seldom to forbidden positions. */
 static void move_some(struct session *s) {
     for (int k = byte() % 4; k > 0 && s->contents.n > 0; k--) s->contents.x[number() % s->contents.n] += length() / 64;
 }
 
-/* Emissivities that fall with temperature; seldom what is none, from some call on. */
+/* Emissivities that fall with temperature. Seldom, from some call on, values that are no emissivities. */
 static void law(void *context, const double *temperature, const double *body_temperature, double *emissivity,
                 double *body_emissivity) {
     struct session *s = context;
@@ -256,7 +256,7 @@ static void try_radiation(struct session *s) {
         s->solved = status == FIBRAD_OK;
         if (s->solved && all.usual) check_powers(s, &result);
         for (uint32_t i = 0; i < s->contents.n && s->solved; i++) REQUIRE(emissivity[i] >= 0 && emissivity[i] <= 1);
-        if (status != FIBRAD_OK) { /* what is known of a solution then is not promised */
+        if (status != FIBRAD_OK) { /* after an error the header promises nothing about the solution */
             fibrad_radiation_free(s->radiation);
             s->radiation = NULL;
         }

@@ -10,7 +10,7 @@
 
 /* ---- scenes and rows -------------------------------------------------------------------------------------------- */
 
-/* Everything about one scene, and about what is made of it. */
+/* A scene and all objects made of it. */
 struct session {
     struct contents contents;
     void *block, *memory; /* of the scene */
@@ -21,19 +21,19 @@ struct session {
     fibrad_rows rows;
     struct supply rows_supply;
     uint32_t version; /* how often the contents have changed */
-    /* heat: what the header says of its state */
+    /* the heat problem, and its state by the header */
     fibrad_heat *heat;
     void *heat_block, *other_block, *other_memory; /* and of a second scene */
     fibrad_heat_config heat_config;
     uint32_t heat_version, tasks, parts;
     unsigned char *traced, swept[16];
     bool begun, solved, of_other;
-    bool measured; /* temperatures and sigma are such that powers are compared with rounding */
-    bool unknown;  /* some temperatures are not given */
-    bool wide;     /* the input asks for all there is: parts of rows, rows of bodies, triangles, unknown temperatures */
+    bool measured; /* temperatures and sigma allow powers to be compared with rounding */
+    bool unknown;  /* some temperatures are unknown */
+    bool wide;     /* the input asks for everything: parts of rows, rows of bodies, triangles, unknown temperatures */
 };
 
-/* Where nothing moves, no row is off. */
+/* If nothing moves, the drift of every row is 0. */
 static void check_unmoved(const fibrad_scene *scene, uint32_t n, const fibrad_row *row) {
     double error[SPHERES] = {0}, moved;
     REQUIRE(fibrad_drift_row(scene, scene, row->sphere, row->col, row->length, &moved) == FIBRAD_OK && moved == 0);
@@ -43,7 +43,7 @@ static void check_unmoved(const fibrad_scene *scene, uint32_t n, const fibrad_ro
 
 enum { BEAM, CAST, RAYS, SURFACE, EXCHANGE, METHODS };
 
-/* How the next row is computed. */
+/* The method of the next row. */
 struct method {
     int kind;
     fibrad_beam_rule beam;
@@ -72,13 +72,13 @@ static void any_method(struct method *m) {
     if (which > 150 && which <= 200) m->beam.turn = which;
     if (which == 105) m->exchange.tolerance = .1 + fabs(coordinate());
     if (which == 106) m->exchange.paths = FIBRAD_PATHS_MAX + number() % 2;
-    /* that of the sphere whose row it is is checked: all the same if it is none */
+    /* the emissivity of the row's own sphere is checked, so all are the same if it is not valid */
     const double bad = coordinate();
     for (uint32_t i = 0; i < SPHERES; i++) {
         const uint8_t k = byte() % 32;
         m->emissivity[i] = which == 109 ? bad : k < 26 ? .05 + .037 * k : 0;
     }
-    /* where little is absorbed paths go on for long */
+    /* if little is absorbed, paths go on for long */
     for (uint32_t b = 0; b < BODIES; b++) m->body_emissivity[b] = b < PLANES ? .2 + .8 * share() : .1 * b;
     if (which == 107) m->body_emissivity[byte() % PLANES] = coordinate() + .2;
     if (which == 108) m->exchange.body_emissivity = NULL;
@@ -104,7 +104,7 @@ static int row_by(const struct session *s, fibrad_work *work, const struct metho
     }
 }
 
-/* One row into arrays of just the size stated, or into the collection. */
+/* One row into arrays of just the stated size, or into the collection. */
 static void try_row(struct session *s) {
     struct method m;
     any_method(&m);
@@ -160,13 +160,13 @@ static void try_displacement(struct session *s) {
     const uint32_t i = number() % (s->contents.n + 1);
     const int status = CALL(fibrad_exchange_displacement(s->scene, &s->work, i, &m.exchange, &d));
     if (status != FIBRAD_OK) return;
-    /* few paths may absorb more than they carried: some go on for others that ended */
+    /* few paths may absorb more than they carried, since some go on for others that have ended */
     REQUIRE(d.absorbed >= 0 && isfinite(d.absorbed));
     REQUIRE(m.emissivity[i] > 0 ? d.rays >= m.exchange.paths : d.rays == 0 && d.absorbed == 0);
     for (int axis = 0; axis < 3; axis++) REQUIRE(d.square[axis] >= 0 && d.error[axis] >= 0 && isfinite(d.square[axis]));
 }
 
-/* Powers from whatever rows there are: what some gain others lose. */
+/* Powers from any rows: some gain what others lose. */
 static void try_flow(struct session *s) {
     double weight[SPHERES], emission[SPHERES], power[SPHERES] = {0}, body_emission[BODIES + 1];
     double body_power[BODIES + 1] = {0}, sum, size;
@@ -187,7 +187,7 @@ static void try_flow(struct session *s) {
     if (size < 1e3) REQUIRE(fabs(sum) < 1e-9);
 }
 
-/* The same spheres, some of them elsewhere, in a second scene. */
+/* The same spheres in a second scene, some of them at other positions. */
 static fibrad_scene *other_scene(struct session *s, struct contents *c) {
     fibrad_scene *other = NULL;
     *c = s->contents;
@@ -219,14 +219,14 @@ static void try_drift(struct session *s) {
     for (uint32_t j = 0; j < s->contents.n; j++) REQUIRE(error[j] >= 0 && isfinite(error[j]));
 }
 
-/* Work memory exchanged for another, or the contents of the scene for others. */
+/* Replaces the work memory, or the contents of the scene. */
 static void exchange_work(struct session *s) {
     supply_end(&s->supply);
-    void *inside = byte() % 2 ? s->work.inside : NULL; /* what it was is no matter */
+    void *inside = byte() % 2 ? s->work.inside : NULL; /* the former value does not matter */
     s->work = (fibrad_work){.memory = any_memory(&s->supply), .inside = inside};
 }
 
-/* In place. False: there is no scene any more. */
+/* Rebuilds the scene in place. False: there is no scene any more. */
 static bool rebuild(struct session *s) {
     const uint32_t i = s->contents.n > 0 ? number() % s->contents.n : 0;
     const bool other = byte() % 2;
@@ -239,7 +239,7 @@ static bool rebuild(struct session *s) {
 
 /* ---- matrices --------------------------------------------------------------------------------------------------- */
 
-/* Raw rows that add up to 1 at most: with exchange factors, those of the matrix do then, too. */
+/* Raw rows that add up to 1 at most. If so, rows of exchange factors in a matrix do so, too. */
 static bool modest;
 
 /* A closed matrix. */
@@ -268,8 +268,8 @@ static void check_matrix(const fibrad_matrix *matrix, const fibrad_matrix_rule *
     }
 }
 
-/* A matrix of collections: `expected` is the status, or FIBRAD_E_ARGUMENT if anything may come. of_rows: emissivities
- * of exchange rows, or NULL. */
+/* A matrix of collections. expected: the status; FIBRAD_E_ARGUMENT: any status is allowed. of_rows: emissivities of
+ * exchange rows, or NULL. */
 static void try_matrix(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count, uint32_t n, int expected,
                        const double *of_rows) {
     double emissivity[SPHERES];
@@ -315,7 +315,7 @@ static void try_matrix(const fibrad_scene *scene, const fibrad_rows *rows, uint3
     free(block);
 }
 
-/* All rows of the scene by one method into two collections, in any order; seldom one too few or too many. */
+/* All rows of the scene by one method into two collections, in any order. Seldom a row is missing or repeated. */
 static void try_bed(struct session *s) {
     struct method m;
     any_method(&m);
@@ -348,7 +348,7 @@ static void try_bed(struct session *s) {
     supply_end(&supply[0]), supply_end(&supply[1]);
 }
 
-/* Rows by hand, sound or not. */
+/* Rows made by hand, valid or not. */
 static void try_rows(void) {
     struct contents c = {.n = 1 + number() % 8};
     plain = tame = true;
@@ -435,7 +435,7 @@ static void trace_task(struct session *s, uint32_t task) {
     if (status == FIBRAD_OK) s->traced[task] = 1;
 }
 
-/* What stands for temperatures that are not given. */
+/* The powers and other values of bodies whose temperatures are unknown. */
 struct unknowns {
     double power[SPHERES], hold[SPHERES], reference[SPHERES], body_power[BODIES], side[2 * TRIANGLES];
     unsigned char insulated[BODIES];
@@ -521,7 +521,7 @@ static void step(struct session *s) {
     s->solved = solved, s->begun = !solved;
 }
 
-/* Powers add up to zero, but for rounding of what is emitted. */
+/* Asserts that powers add up to zero, but for rounding of the emissions. */
 static void read_powers(struct session *s) {
     double power[SPHERES], body_power[BODIES];
     double temperature[SPHERES], error[SPHERES], flux[2 * TRIANGLES], side[2 * TRIANGLES];
@@ -540,7 +540,7 @@ static void read_powers(struct session *s) {
     REQUIRE(!(result.error_patches < 0) && !(result.error_beams < 0) && !(result.residual < 0));
 }
 
-/* To a second scene, or back to the first. */
+/* Moves to a second scene, or back to the first one. */
 static void move_heat(struct session *s) {
     struct contents moved;
     fibrad_scene *to = s->scene;
@@ -581,7 +581,7 @@ static void try_heat(struct session *s) {
     case 6:
         begin_solution(s);
         break;
-    case 7: /* by the book, as far as it goes */
+    case 7: /* the calls in the right order, as far as possible */
         for (int k = 0; k < 60 && s->begun && kept(s); k++) {
             for (uint32_t part = 0; part < s->parts; part++)
                 if (!s->swept[part]) sweep_part(s, part);
@@ -598,7 +598,7 @@ static void try_heat(struct session *s) {
 
 /* ---- what only wide inputs try ---------------------------------------------------------------------------------- */
 
-/* A beam row in parts, of any memory, is to the bit the row in one piece. */
+/* A beam row in parts, with any memory, has the bits of the row in one piece. */
 static void try_parts(struct session *s) {
     enum { PARTS = 3 };
     struct method m;
@@ -639,7 +639,7 @@ static void try_parts(struct session *s) {
     for (uint32_t k = 0; k < PARTS; k++) supply_end(&supply[k]);
 }
 
-/* The row of a body: all it emits goes somewhere. */
+/* The row of a body: all that it emits ends somewhere. */
 static bool any_body_row(struct session *s, const fibrad_exchange_rule *rule, uint32_t body, fibrad_body_row *mean) {
     fibrad_body_row part[FIBRAD_BODY_PARTS];
     for (uint32_t k = 0; k < FIBRAD_BODY_PARTS; k++) {
@@ -664,7 +664,7 @@ static bool any_body_row(struct session *s, const fibrad_exchange_rule *rule, ui
     return true;
 }
 
-/* The matrix of all spheres and bodies: rows of spheres by exchange or by beams, those of bodies by paths. */
+/* The matrix of all spheres and bodies. Rows of spheres are exchange or beam rows, those of bodies come from paths. */
 static void try_bodies(struct session *s) {
     struct method m;
     any_method(&m);
@@ -701,7 +701,7 @@ static void try_bodies(struct session *s) {
     free(block), supply_end(&supply);
 }
 
-/* Rays against triangles, from anywhere, and what their sides see. */
+/* Rays against triangles, from any point, and the views of their sides. */
 static void try_triangles(struct session *s) {
     const uint32_t n = s->contents.triangles.n;
     double origin[3] = {coordinate(), coordinate(), coordinate()}, w[3] = {0, 0, 1};
@@ -726,7 +726,7 @@ static void try_triangles(struct session *s) {
     }
 }
 
-/* All rows of the collection, one after the other. */
+/* Reads all rows of the collection, one after the other. */
 static void read_rows(struct session *s) {
     size_t position = 0;
     uint32_t count = 0;
@@ -810,7 +810,7 @@ static void try_scene(bool walled, bool meshed) {
 
 /* ---- furnace ---------------------------------------------------------------------------------------------------- */
 
-/* From 1e-12 to 1e12, mostly near 1; now and then what is none. */
+/* A number from 1e-12 to 1e12, mostly near 1. Sometimes it is not a positive number. */
 static double positive(void) {
     uint8_t b = byte();
     return b < 200 ? exp2((b - 100) / 25.0) : b < 245 ? pow(10, b - 222.) : coordinate();
@@ -832,7 +832,7 @@ static void try_furnace(void) {
         reflected = fmin(reflected, 1 - config.wall_emissivity[w]);
     }
     for (int a = 0; a < 3; a++) thickness += (config.absorption + config.scattering) * config.size[a];
-    /* bundles go on for long where little is lost */
+    /* if little is lost, bundles go on for long */
     bool quick = thickness < 30 && thickness > .1 && config.scattering < 20 * config.absorption;
 
     size_t size = fibrad_furnace_size(&config);

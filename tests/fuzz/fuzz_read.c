@@ -16,7 +16,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* A bed that is read must be sound. What is packed or in binary may have more spheres than bytes. */
+/* A bed that is read must be sound. Packed and binary files may have more spheres than bytes. */
 static void check_bed(const struct bed *bed, bool radii) {
     if (bed->n == 0) abort();
     for (uint32_t i = 0; i < bed->n; i++) {
