@@ -288,6 +288,11 @@ awk '/^[0-9]/ { if ($4 > 0) left++; if ($5 > 0) smaller++ } END { exit !(left &&
     test "$(grep -c 'left out until back; particle [0-9]* at .* beyond wall 1, zlo' "$work/soft.log")" -eq 1 &&
     test "$(grep -c 'the centre of one lies inside the other' "$work/soft.log")" -eq 1
 verdict "strays are counted and told of once" $?
+# cases as LAMMPS' own examples, with the three lines of the fix
+for case in chute drum hopper; do
+    run 2 $case $case.lmp && ! grep -q '^ERROR' "$work/$case.log" && balance $case 10e-3 0 1e-3 200 "energy in a $case"
+    verdict "a $case to its end" $?
+done
 run 1 rerun rerun.lmp data "$work/quarter.data"
 near "$work/rerun.out" "$work/rerun.out.after" 1e-300 "rerun steps no temperatures"
 awk '$1 == "Step" { n = 0 } n++ && NF == 2 && ($1 == 0 || $1 == 10) { power[$1] = $2 }

@@ -32,7 +32,7 @@ $(BUILD)/couple/fix_fibrad.so $(BUILD)/couple/fibrad_plugin.so: Makefile host/co
 
 -include $(BUILD)/couple/fix_fibrad.d $(BUILD)/couple/fibrad_plugin.d
 
-COUPLE_SCRIPTS += tests/couple/check_lammps.sh
+COUPLE_SCRIPTS += tests/couple/check_lammps.sh tests/couple/check_pages.sh
 
 # programs that check_lammps.sh compares with
 LAMMPS_CHECKS = $(BUILD)/tests/couple/serial_bed $(BUILD)/tests/couple/sorted_rows
