@@ -102,10 +102,10 @@ ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 ## all: build/fibrad and the libraries (the default)
 all: $(BUILD)/fibrad lib lib-host
 
-## lib: build/libfibrad.a alone; needs nothing but a C compiler
+## lib: build/libfibrad.a alone; needs only a C compiler
 lib: $(BUILD)/libfibrad.a
 
-## lib-host: build/libfibrad_host.a, and libfibrad.so, which has libfibrad.a in it; need OpenMP
+## lib-host: build/libfibrad_host.a and libfibrad.so, which contains both libraries; needs OpenMP
 lib-host: $(BUILD)/libfibrad_host.a $(BUILD)/libfibrad.so
 
 $(BUILD)/libfibrad.a: $(KERNEL_OBJECTS)
@@ -163,7 +163,7 @@ $(BUILD)/libfibrad.so: $(SHARED)
 $(BUILD)/fibrad: $(BUILD)/host/main.o $(LIBRARIES)
 	$(CC) $(LDFLAGS) -fopenmp $^ $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
 
-## lib-files: libfibrad_files.so, which fibrad.read and Mesh.from_stl of Python take; needs zlib
+## lib-files: libfibrad_files.so for fibrad.read and Mesh.from_stl of Python; needs zlib
 lib-files: $(BUILD)/libfibrad_files.so
 
 $(BUILD)/libfibrad_files.so: $(FILES_OBJECTS) $(BUILD)/libfibrad.a
@@ -215,7 +215,7 @@ include host/couple/couple.mk
 # ---- what one does with them ----------------------------------------------------------------------------------------
 DEMO_BED = tests/data/mono2000.dump
 
-## demo: install what is missing, build, compute the view factors of a settled bed of 2,000 spheres, plot them
+## demo: install missing packages, build, compute the view factors of a settled bed of 2,000 spheres, plot them
 demo: deps
 	@echo "Building $(BUILD)/fibrad"
 	@$(MAKE) -s --no-print-directory $(BUILD)/fibrad
@@ -231,7 +231,7 @@ dist: $(BUILD)/dist/fibrad.c
 $(BUILD)/dist/fibrad.c: $(BUILD)/tables.c $(KERNEL) $(LANED) $(wildcard kernel/*.h kernel/*/*.h kernel/*/*/*.h) kernel/join.sh
 	kernel/join.sh $(abspath $<) $(abspath $(@D)) $(KERNEL) $(LANED)
 
-## test: install what is missing, build and run all tests
+## test: install missing packages, build and run all tests
 test: deps
 	@echo "Building the tests"
 	@$(MAKE) -s --no-print-directory programs all man dist
@@ -257,13 +257,13 @@ house:
 calls: lib lib-host $(BUILD)/libhost.a
 	BUILD=$(BUILD) tests/check_calls.sh
 
-## symbols: libfibrad.a defines only fibrad_*, asks for nothing but memory copying, holds no variables; what others export
+## symbols: libfibrad.a defines only fibrad_*, needs only memory copying and has no variables; what other libraries export
 symbols: lib lib-host
 	BUILD=$(BUILD) tests/check_symbols.sh
 
 FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*/*.[ch] host/*/*/*.[ch] host/*/*/*.cpp host/couple/lammps/debian/fmt/*.h tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch])
 
-## format: every source is formatted by .clang-format (to repair: clang-format -i FILE)
+## format: every source has the format of .clang-format (to repair: clang-format -i FILE)
 format:
 	clang-format --dry-run --Werror $(FORMATTED)
 
@@ -277,7 +277,7 @@ bench: $(BENCH_PROGRAMS) bench-peers bench-counted
 	    out='docs/figures/beam_error.svg'" bench/plot_beam.gp
 	gnuplot -e "in='$(BUILD)/bench/bench_scale.csv'; out='docs/figures/scale.svg'" bench/plot_scale.gp
 
-## bench-quick: build all benches and run the smallest case of each: do they still work?
+## bench-quick: build all benches and run the smallest case of each, to see that they work
 bench-quick: $(BENCH_PROGRAMS) bench-peers bench-counted
 	@set -e; mkdir -p $(BUILD)/bench/quick; for b in $(notdir $(ALL_BENCHES)); do \
 	    test -x $(BUILD)/bench/$$b || continue; echo "$$b quick"; \
@@ -299,24 +299,24 @@ bench-counted: $(filter-out %/libfibrad.a,$(LIBRARIES))
 	    $(MAKE) -s --no-print-directory $(COUNT_PROGRAMS) ;; \
 	*) echo "Instructions are only counted on x86-64 and aarch64" ;; esac
 
-## skips: what the skips save that no argument turns off, each turned off in a copy of the kernel (some minutes)
+## skips: time that skipped steps save; each skip without an argument is turned off in a copy of the kernel (some minutes)
 skips:
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" bench/skips.sh
 
-## stress: try to break the numerics in every way we could think of; one line per attack (some minutes)
+## stress: attacks on the numerics, one line for each attack (some minutes)
 stress: $(BUILD)/tests/test_stress $(BUILD)/tests/test_areas
 	STRESS=1 CK_DEFAULT_TIMEOUT=3600 $(BUILD)/tests/test_stress
 	$(BUILD)/tests/test_areas
 
-## bits: the pinned bits of all compilers, levels, instruction sets and processors there are (some minutes)
+## bits: compare bits with the pinned ones for all compilers, levels, instruction sets and processors (some minutes)
 bits: $(BUILD)/fibrad
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_bits.sh all
 
-## golden: pin the bits anew, after a deliberate change of results
+## golden: pin the present bits, after a deliberate change of results
 golden: $(BUILD)/fibrad
 	BUILD=$(BUILD) MAKE="$(MAKE)" HOSTCC="$(HOSTCC)" tests/check_bits.sh pin
 
-## mutate: break the kernel line by line and see that the tests notice (some minutes)
+## mutate: break the kernel in one line after the other and see that the tests notice (some minutes)
 mutate:
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" tests/mutate.sh
 
@@ -357,7 +357,7 @@ fuzz: fuzz-programs
 	        -artifact_prefix=$(FUZZ)/$$target- $(FUZZ)/found_$$target tests/fuzz/corpus_$$target; \
 	done
 
-## fuzz-fixed: the same with a fixed number of inputs, the same ones every time (a minute)
+## fuzz-fixed: fuzz with a fixed number of inputs, the same ones every time (a minute)
 FUZZ_RUNS = read:13000 kernel:700 host:100
 # what comparisons show would bring addresses in, which differ from run to run: -use_cmp=0
 fuzz-fixed: fuzz-programs
@@ -367,7 +367,7 @@ fuzz-fixed: fuzz-programs
 	        $(FUZZ)/fixed_$$target tests/fuzz/corpus_$$target >$(FUZZ)/$$target.log 2>&1; \
 	    then grep -h "^Done\|calls" $(FUZZ)/$$target.log; else tail -n 60 $(FUZZ)/$$target.log; exit 1; fi'
 
-## threads: the program under the thread sanitizer, with clang's OpenMP, which tells it about its barriers
+## threads: the program under the thread sanitizer, with clang's OpenMP, whose barriers the sanitizer knows
 threads:
 	@$(MAKE) -s --no-print-directory BUILD=$(BUILD)/threads CC=clang CFLAGS="-O1 -g -fsanitize=thread" \
 	    LDFLAGS=-fsanitize=thread $(BUILD)/threads/fibrad
@@ -379,7 +379,7 @@ threads:
 # $(1): flags, $(2): sources
 clang_warns = printf '%s\n' $(2) | xargs -P 2 -n 10 clang -fsyntax-only $(filter-out -MMD -MP,$(1)) -Werror
 
-## clang-warnings: the warnings of clang are errors; it reads all sources for every instruction set, and makes no code
+## clang-warnings: clang reads all sources for every instruction set, without making code; its warnings are errors
 clang-warnings: need-libraries need-check
 	$(call clang_warns,$(KERNEL_FLAGS),$(KERNEL))
 	$(foreach isa,$(ISAS),$(call clang_warns,$(KERNEL_FLAGS) $(FLAGS_$(isa)) \
@@ -390,7 +390,7 @@ clang-warnings: need-libraries need-check
 LINT_FLAGS   = -Ikernel -Ihost -D_XOPEN_SOURCE=700
 LINT_SCALAR  = -DFIBRAD_LANES_HEADER='"base/lanes/vec_scalar.h"' -DFIBRAD_ISA_SUFFIX=_scalar
 
-## lint: cppcheck and clang-tidy, with the exceptions that .cppcheck and .clang-tidy give reasons for
+## lint: cppcheck and clang-tidy; .cppcheck and .clang-tidy have the exceptions and their reasons
 lint: cppcheck
 	printf '%s\n' $(KERNEL) $(LANED) | xargs -I{} -P 2 clang-tidy --quiet {} -- -std=c11 $(LINT_FLAGS) $(LINT_SCALAR)
 	printf '%s\n' $(SIMPLE) $(HOST) host/main.c $(wildcard kernel/sample/generate_*.c) | xargs -I{} -P 2 \
@@ -404,7 +404,7 @@ cppcheck:
 	cppcheck --quiet --std=c11 --error-exitcode=1 --enable=warning,portability,performance \
 	    --suppress=missingIncludeSystem --suppressions-list=.cppcheck $(LINT_FLAGS) $(LINT_SCALAR) kernel host
 
-## nightly: what .ci/run leaves out since it takes long: all bits, all sanitizers, clang-tidy, benches, a longer hunt
+## nightly: long checks that .ci/run leaves out: all bits, all sanitizers, clang-tidy, benches, longer fuzzing
 nightly: bits threads lint bench-quick programs
 	FIBRAD_TEST_SCENES=20000 CK_DEFAULT_TIMEOUT=3600 $(BUILD)/tests/test_silhouette_scenes
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
@@ -423,7 +423,7 @@ DEPS = .ci/deps
 deps:
 	@$(DEPS) libc6-dev pkg-config libgsl-dev zlib1g-dev check gnuplot-nox
 
-## deps-ci: install what .ci/run needs besides
+## deps-ci: install the further packages that .ci/run needs
 deps-ci:
 	@$(DEPS) g++ clang clang-format clang-tidy cppcheck libomp-dev libclang-rt-14-dev shellcheck \
 	    gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user \
@@ -456,7 +456,7 @@ install_pc = version=$$(sed -n 's/^\#define FIBRAD_VERSION "\(.*\)"/\1/p' kernel
 	    sed -e 's|@PREFIX@|$(PREFIX)|' -e "s|@VERSION@|$$version|" $$pc.in \
 	        > $(DESTDIR)$(PREFIX)/lib/pkgconfig/$${pc\#\#*/} || exit 1; done
 
-## install-lib: the same without the program
+## install-lib: install without the program
 install-lib: lib lib-host
 	install -d $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(PREFIX)/lib/pkgconfig
 	install -m 644 $(HEADERS) $(DESTDIR)$(PREFIX)/include

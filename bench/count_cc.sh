@@ -3,10 +3,10 @@
 #
 #     make CC="bench/count_cc.sh gcc" HOSTCC=gcc lib
 #
-# x86-64 and aarch64, one thread. The compiler's assembly is left as it is, but before each block, from a label or jump
-# to the next, the number of its instructions is added to instructions_counted, all registers and flags being kept.
-# Repeated string instructions count once; what is called in other libraries does not count. The caller defines
-# uint64_t instructions_counted[2], of which the second is scratch.
+# For x86-64 and aarch64, and for one thread. A block goes from a label or jump to the next one. Code before each
+# block adds the number of its instructions to instructions_counted and keeps all registers and flags. Otherwise the
+# compiler's assembly stays as it is. Repeated string instructions count once. Instructions of other libraries do not
+# count. The caller defines uint64_t instructions_counted[2], of which the second is scratch.
 set -eu
 case " $* " in
 *" -c "*" -o "*) ;;

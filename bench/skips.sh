@@ -1,8 +1,9 @@
 #!/bin/sh
-# skips.sh - what do the skips save that no argument turns off? SPDX-License-Identifier: MIT
+# skips.sh - the time that the skips save which no argument turns off. SPDX-License-Identifier: MIT
 #
-# Builds copies of the library, each with one line of the kernel changed as bench/skips.txt says, and runs bench_skips
-# in all of them, by turns. CSV on standard output; status 1 if a skip changes a result or its line is not there.
+# Builds copies of the library, each with one line of the kernel changed as bench/skips.txt says. Runs bench_skips in
+# all of them, in turns. Writes CSV to standard output. The status is 1 if a skip changes a result or if its line is
+# missing.
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}"
 tree=$BUILD/skips rounds=3

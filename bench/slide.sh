@@ -1,10 +1,10 @@
 #!/bin/bash
-# slide.sh - the time that radiation takes beside LAMMPS in a bed that slides, and the error of temperatures. docs/lammps.md
-# has a table of it. SPDX-License-Identifier: MIT
+# slide.sh - the time of radiation beside that of LAMMPS in a bed that slides, and the error of temperatures.
+# docs/lammps.md has the table. SPDX-License-Identifier: MIT
 #
 # bench/slide.sh NP DUMP WIDE WORDS...: DUMP is a bed in a box from 0 to WIDE (columns id type x y z radius T). Each of
-# WORDS is some keywords of fix fibrad, such as "accuracy low". The first of them is the reference. Its rows are made
-# every 260 steps, those of the others every 500. Needs `make lammps`.
+# WORDS has keywords of fix fibrad, such as "accuracy low". The first of them is the reference. Its rows are made every
+# 260 steps, those of the others every 500 steps. The script needs `make lammps`.
 set -eu
 : "${BUILD:=build}" "${MPIRUN:=mpirun}" "${LMP:=lmp}"
 . tests/couple/mpi.sh

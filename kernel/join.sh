@@ -2,9 +2,9 @@
 # join.sh TABLES FOLDER SOURCE... - writes the whole kernel as FOLDER/fibrad.c and FOLDER/fibrad.h.
 # SPDX-License-Identifier: MIT
 #
-# TABLES is the generated tables.c; the sources are those of the kernel, laned ones (*_lanes.c) included. Headers go in
-# where they are first included. The laned sources stand once: the file includes itself once per instruction set, with
-# pragmas that choose it, and macros that give each static function, type and table of them a name of its own.
+# TABLES is the generated tables.c. The sources are those of the kernel, laned ones (*_lanes.c) included. A header
+# stands where it is first included. The laned sources stand once. The file includes itself once per instruction set.
+# Pragmas then choose the set, and macros give each static function, type and table of the laned sources its own name.
 set -eu
 tables=$1 to=$2
 shift 2
@@ -21,8 +21,8 @@ lanes_headers=$(grep -lE '\<(LANED\(|v[dfmn]_[a-z_0-9]+\(|vd |vf )' ./*/*.h ./*/
     grep -vE '^base/lanes/(laned|places|vec_[a-z0-9]*)\.h$|^base/preamble')
 headers=$(find . -name '*.h' | sed 's|^\./||' | sort | grep / | grep -vE '^base/lanes/(vec_|places)|^base/preamble' | grep -vxF "$lanes_headers")
 
-# expand FILE...: the files with their headers, each of which goes in once; what stays an #include is printed. A header
-# in the list $skip is left for later; macros of a source end with it.
+# expand FILE...: prints the files with their headers. Each header goes in once. An #include that stays is printed. A
+# header in the list $skip is left for later. The macros of a source end with the source.
 expand() {
     # shellcheck disable=SC2086  # a list
     awk -v skip=" $(printf '%s ' $skip) " '

@@ -2,9 +2,9 @@
 # check_bits.sh [all|pin|VARIANT...] - the kernel's results have their pinned bits for every instruction set, compiler,
 # optimisation level, processor and number of threads. SPDX-License-Identifier: MIT
 #
-# The bits of tests/golden/bits.txt are those of tests/bits/bits.c; matrix.sha256 is that of a whole bed's file. After a
-# deliberate change of the results: make golden, which is check_bits.sh pin. A variant is COMPILER:LEVEL. Without
-# arguments: the library in BUILD, since all variants take minutes.
+# tests/bits/bits.c prints the hashes of tests/golden/bits.txt. matrix.sha256 is the hash of the file of a whole bed.
+# After a deliberate change of the results run `make golden`, which calls check_bits.sh pin. A variant is
+# COMPILER:LEVEL. All variants take minutes, so without arguments only the library in BUILD is checked.
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${HOSTCC:=cc}"
 faults=0

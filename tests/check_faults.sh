@@ -1,7 +1,7 @@
 #!/bin/sh
-# check_faults.sh - the program when the machine fails it: disc full, folder gone, signals, no memory, killed. Each is
-# really done. Never a partial file under the name asked for; one message; the exit status of the manual.
-# SPDX-License-Identifier: MIT
+# check_faults.sh - the program when the machine fails: disk full, folder gone, signals, no memory, killed. The script
+# makes each of these faults happen. There must be no partial file under the given name, one message, and the exit
+# status of the manual. SPDX-License-Identifier: MIT
 set -u
 : "${BUILD:=build}"
 fibrad=$(pwd)/$BUILD/fibrad
@@ -9,7 +9,7 @@ bed=$(pwd)/tests/data/mono2000.dump
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 1
 faults=0
 
-# verdict WHAT STATUS-FOUND STATUS-WANTED MESSAGE: also no result may be there, nor anything left of it
+# verdict WHAT STATUS-FOUND STATUS-WANTED MESSAGE: compares them. There must be no result and no part of one
 verdict() {
     test "$2" = "$3" || complain "$1: exit status $2 instead of $3"
     grep -q "^fibrad: .*$4" "$work/err" || complain "$1: no message with '$4': $(cat "$work/err")"
@@ -29,7 +29,7 @@ until_open() {
     until ls -l "/proc/$1/fd" 2>/dev/null | grep "$work" | grep -qv "$work/err"; do sleep 0.05; done
 }
 
-# Signals in the midst of far more work than there is time for
+# Signals during far more work than there is time for
 for pair in INT:130 TERM:143 HUP:129; do
     "$fibrad" bed "$bed" --directions 65536 -o "$work/F.csv" >/dev/null 2>"$work/err" &
     until_open $!
@@ -45,7 +45,7 @@ kill -s INT $!
 wait $!
 verdict "SIGINT, furnace" $? 130 interrupted
 
-# Killed outright: nothing under the name asked for; a temporary file may stay, the next run does not mind it
+# Killed at once: no file has the given name. A temporary file may stay, and does not disturb the next run
 "$fibrad" bed "$bed" --directions 65536 -o "$work/F.csv" >/dev/null 2>&1 &
 until_open $!
 kill -s KILL $!
@@ -54,7 +54,7 @@ test -e "$work/F.csv" && complain "SIGKILL: a partial file"
 "$fibrad" bed "$bed" --directions 8 -o "$work/F.csv" >/dev/null 2>"$work/err" || complain "after SIGKILL: $(cat "$work/err")"
 test -s "$work/F.csv" || complain "after SIGKILL: no file"
 
-# An older result stays as it is when the new one fails
+# An older result stays as it is if the new run fails
 cp "$work/F.csv" "$work/old"
 (ulimit -f 64 && exec "$fibrad" bed "$bed" --directions 34 -o "$work/F.csv") >/dev/null 2>"$work/err"
 status=$?
@@ -62,7 +62,7 @@ cmp -s "$work/old" "$work/F.csv" || complain "a failed run changed the older res
 rm -f "$work"/F.*
 verdict "limit of file sizes" $status 4 "F.csv: cannot be written: File too large"
 
-# A reader of standard output that has left: a pipe whose other end was open and is closed
+# The reader of standard output ends: a pipe whose other end is closed
 mkfifo "$work/pipe"
 exec 3<>"$work/pipe"
 exec 4>"$work/pipe"
@@ -71,7 +71,7 @@ exec 3<&-
 verdict "SIGPIPE" $? 4 "standard output: Broken pipe"
 exec 4>&-
 
-# A disc that is full, if one may be mounted
+# A full disk, if this machine may mount one
 mkdir "$work/disc"
 if mount -t tmpfs -o size=100k tmpfs "$work/disc" 2>/dev/null; then
     for ending in csv mtx vtp; do
@@ -87,7 +87,7 @@ else
     echo "SKIP disc full: no right to mount one"
 fi
 
-# The folder of the output is gone when the file is to get its name
+# The folder of the output is gone when the file shall get its name
 mkdir "$work/gone"
 "$fibrad" bed "$bed" --directions 4000 --threads 1 -o "$work/gone/F.csv" >/dev/null 2>"$work/err" &
 until_open $!
@@ -97,7 +97,7 @@ kill -s CONT $!
 wait $!
 verdict "folder gone" $? 4 "F.csv: cannot be written: No such file"
 
-# Not enough memory, from too little to start with to nearly enough: a clean failure or a complete result
+# Not enough memory, from too little at the start to nearly enough: a clean failure or a complete result
 "$fibrad" bed "$bed" --directions 21 --threads 1 -o "$work/F.csv" >/dev/null 2>&1
 mv "$work/F.csv" "$work/whole"
 refused=0

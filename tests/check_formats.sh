@@ -22,7 +22,7 @@ by_id() {
     awk -F , -v OFS=, 'NR > 1 { $1 += $1 >= 0; $2 += $2 >= 0 } { print }' "$1" >"$work/named" && mv "$work/named" "$1"
 }
 
-# Are there the same pairs, but for tiny factors, with the same factors within an error?
+# Whether both files have the same pairs, but for tiny factors, and the same factors within an error
 close_to() {
     awk -F , -v error="$1" '
         function off(a, b) { return a - b > error || b - a > error }
@@ -56,11 +56,11 @@ check 1e-13 lammps_units.dump.gz # coordinates are fractions of the box
 check 1e-13 semicolons.csv       # millimetres
 for bed in liggghts.vtp yade_ascii.vtu yade_packed.vtu; do check 1e-5 $bed; done # floats of four bytes
 
-# a style that is not said, said
+# a file without a style, with the style added
 sed 's/^Atoms # hybrid/& sphere/' $beds/lammps_hybrid.data >"$work/hybrid.data"
 beds=$work check 0 hybrid.data
 
-# what the program writes it reads, too
+# the program reads the files that it writes
 "$BUILD/fibrad" bed tests/data/formats/settled.csv --directions 34 -o "$work/own.vtp" >/dev/null 2>&1
 beds=$work check 0 own.vtp
 

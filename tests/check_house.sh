@@ -1,20 +1,20 @@
 #!/bin/sh
 # check_house.sh - the order of the house. SPDX-License-Identifier: MIT
 #
-# No circle of includes among files; at most sixteen sources in a folder; no two sources, and no two static functions of
-# kernel and host, share a name; the field's words and not our own; prose of README.md and docs within 120 columns, links
-# there to files and headings that exist; the lines of tests/mutants.txt stand once. Which folder may include which:
-# tests/check_map.sh.
+# Files have no circle of includes. A folder has at most sixteen sources. No two sources, and no two static functions of
+# kernel and host, share a name. The banned words below do not occur. Prose of README.md and docs is within 120 columns,
+# and its links lead to files and headings that exist. Each line of tests/mutants.txt stands once in its file.
+# tests/check_map.sh checks which folder includes which.
 set -u
 
-# what the field has other words for, or what says less than a plain verb; the changelog has names of before
+# banned: the field has other words for these, or a plain verb says more; the changelog may have old names
 words='accounts|taker|takers|doubtful|in doubt|emergence|sieve|sieves|plain sweep|gets farther|had better|books|fibrad_moved_[a-z]*'
 
 faults=$(
     find kernel host -name '*.[ch]' | sed 's|.*/||' | sort | uniq -d | sed 's/$/: a name of two sources/'
     find kernel host -name '*.[ch]' | sed 's|/[^/]*$||' | sort | uniq -c | awk '$1 > 16 {print $2 ": " $1 " sources"}'
 
-    # a module is what a .c and a .h of one name make up
+    # a .c and a .h of one name are one module
     for tree in kernel host; do
         find $tree -name '*.[ch]' -exec grep -HE '^#include "[a-z_]+/' {} + | sed "s|^$tree/||; s|:#include \"| |; s|\"\$||; s/\.[ch]\>//g" |
             awk '$1 != $2' | tsort 2>&1 >/dev/null | sed "s|^|a circle of includes in $tree: |"

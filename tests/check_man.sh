@@ -1,6 +1,6 @@
 #!/bin/sh
-# check_man.sh - manual pages have all that --help says, and groff and mandoc are content with them; completion in bash
-# knows commands, options and files. SPDX-License-Identifier: MIT
+# check_man.sh - manual pages have the whole text of --help, and groff and mandoc accept them. Completion in bash offers
+# commands, options and files. SPDX-License-Identifier: MIT
 set -u
 : "${BUILD:=build}" "${MAKE:=make}"
 export LC_ALL=C
@@ -18,7 +18,8 @@ commands=$(sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p' "$work/help")
 count=$(echo "$commands" | wc -w)
 test "$count" -ge 8 || fault "only $count commands"
 
-# ---- pages: as many as commands, and one; all words of the help in their order but headings and synopsis --------------
+# ---- pages: as many as commands, and one; all words of the help in their order but headings and synopsis
+# --------------
 words() { sed 's/  */\n/g' | grep -v '^$'; }
 if command -v groff >/dev/null; then
     for name in "" $commands; do
@@ -44,8 +45,9 @@ if command -v mandoc >/dev/null; then
 fi
 test "$(find "$BUILD/man" -type f | wc -l)" = $((count + 1)) || fault "other files in $BUILD/man"
 
-# ---- completion --------------------------------------------------------------------------------------------------------
-# complete WORD...: what is offered for the last word
+# ---- completion
+# -------------------------------------------------------------------------------------------------------- complete
+# WORD...: the completions of the last word
 complete_words() {
     (cd "$work/files" && bash -c '
         source "$0"

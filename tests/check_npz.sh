@@ -1,5 +1,5 @@
 #!/bin/sh
-# check_npz.sh - a matrix as .npz: the same to the reader in docs/examples, to Python's zipfile and to SciPy.
+# check_npz.sh - a matrix as .npz: the reader in docs/examples, Python's zipfile and SciPy find the same matrix.
 # SPDX-License-Identifier: MIT
 set -eu
 : "${BUILD:=build}" "${CC:=cc}"
@@ -12,7 +12,7 @@ for bed in tests/data/mono2000.dump "$work/apart.csv"; do # the second has no en
         "$BUILD/fibrad" bed "$bed" --directions 8 --cutoff 3 --threads 2 -o "$work/F.$ending" >"$work/summary" 2>&1
     done
     "$work/read_npz" "$work/F.npz" >"$work/read.csv"
-    # the same entries to the bit, in other digits
+    # the entries are the same to the bit; their digits differ
     awk -F, 'NR == FNR { if (!/,surroundings$|,beyond$|^i/) known[n++] = $1 "," $2 " " $3; next }
         FNR > 1 { split(known[m++], one, " "); bad += one[1] != $1 "," $2 || one[2] + 0 != $3 + 0 } END { exit bad > 0 || m != n }' \
         "$work/F.csv" "$work/read.csv"
@@ -82,7 +82,7 @@ assert a['computed'].sum() == 99 and a['computed'][row[7]] and not a['computed']
 END
 fi
 
-# rows of a simulation whose ids are as large as can be
+# rows of a simulation with the largest possible ids
 if command -v python3 >/dev/null; then
     python3 - "$work/D.0.rows" <<'END'
 import struct, sys

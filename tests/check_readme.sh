@@ -1,6 +1,6 @@
 #!/bin/sh
-# check_readme.sh - every line of the program in README.md runs: with settled beds under the names that README.md has; so
-# does every recipe of docs/recipes.md, with the output that stands there. SPDX-License-Identifier: MIT
+# check_readme.sh - every line of the program in README.md runs, with settled beds under the names of README.md. Every
+# recipe of docs/recipes.md runs, too, and has the output of the page. SPDX-License-Identifier: MIT
 set -u
 : "${BUILD:=build}" "${CC:=cc}"
 case $BUILD in /*) PATH=$BUILD:$PATH ;; *) PATH=$PWD/$BUILD:$PATH ;; esac

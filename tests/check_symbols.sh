@@ -1,7 +1,7 @@
 #!/bin/sh
-# check_symbols.sh - libfibrad.a defines only fibrad_*, asks for nothing but copying and clearing of memory, and has no
-# variables and no constructors; libfibrad_host.a defines only fibrad_*, asks for a heap, mapped files and OpenMP besides, and
-# has no variables. SPDX-License-Identifier: MIT
+# check_symbols.sh - libfibrad.a defines only fibrad_*, needs only copying and clearing of memory, and has no
+# variables and no constructors. libfibrad_host.a defines only fibrad_*, needs a heap, mapped files and OpenMP
+# besides, and has no variables. SPDX-License-Identifier: MIT
 set -u
 library=${BUILD:=build}/libfibrad.a
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 1

@@ -1,6 +1,6 @@
 #!/bin/sh
-# check_tables.sh - the tables have their pinned bits, smaller tables give the same directions, and lines do without.
-# SPDX-License-Identifier: MIT
+# check_tables.sh - the tables have their pinned bits, smaller tables give the same directions, and lines need no
+# tables. SPDX-License-Identifier: MIT
 set -u
 : "${BUILD:=build}" "${CC:=cc}"
 pinned=$(cut -d ' ' -f 1 tests/golden/tables.sha256)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# check_time.sh - fibrad heat --until: against a closed form, tables of time, series, and what is refused.
+# check_time.sh - fibrad heat --until: closed forms, tables of time, series, and refusals.
 # SPDX-License-Identifier: MIT
 set -u
 : "${BUILD:=build}"
@@ -45,7 +45,7 @@ for law in "@$work/eps.csv" "1:@$work/eps.csv"; do
         $2 == 5 && ($4 + q > 1e-3 * q || $4 + q < -1e-3 * q) { exit 1 }' "$work/law.csv" || fault "$law: powers of another emissivity"
 done
 
-# In a closed black box that follows a table a mote follows the walls; tables bend at their times, in their unit.
+# In a closed black box whose temperature follows a table, a mote follows the walls. Tables have times and a unit.
 printf '# seconds, degrees\ntime,T\n0,27\n100,827\n500,827\n' >"$work/ramp.csv"
 printf '0,0,0,0.001,300\n' | sed '1i x,y,z,r,T' >"$work/mote.csv"
 table=xmin=@$work/ramp.csv,xmax=@$work/ramp.csv,ymin=@$work/ramp.csv,ymax=@$work/ramp.csv
@@ -57,7 +57,7 @@ awk -F , '$2 == 0 { t[$1] = $3 } END { exit !(t[50] > 690 && t[50] < 700.15 && t
     "$work/mote.out.csv" || fault "the mote does not follow the walls: $(grep ',0,' "$work/mote.out.csv")"
 is "$(value wall_zmin_K)" 1100.15 1e-3 || fault "wall_zmin_K is $(value wall_zmin_K)"
 
-# Powers, fixed steps, all models; what is supplied is stored or given away.
+# Powers, fixed steps and all models. The energy supplied is stored or given off.
 for model in factors patches; do
     march tests/data/formats/lammps.dump --temperature 900 --power 2 --ambient 300 --until 20 --step 5 --model "$model" \
         --patches 24 --directions 36 -o "$work/$model.json" --plot "$work/$model.svg" || fault "$(cat "$work/errors")"

@@ -1,8 +1,8 @@
 #!/bin/sh
-# check_written.sh - powers and factors as others read them: Python's csv and json, VTK's reader, LAMMPS' own of dumps.
-# SPDX-License-Identifier: MIT
+# check_written.sh - other readers read powers and factors: Python's csv and json, VTK's reader, LAMMPS' reader of
+# dumps. SPDX-License-Identifier: MIT
 #
-# All formats of one run hold the same numbers, to the bit, by the same ids, whatever the order of the file was.
+# All formats of one run have the same numbers to the bit, by the same ids, whatever the order of the input file.
 set -eu
 : "${BUILD:=build}"
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT

@@ -1,9 +1,10 @@
 #!/bin/sh
-# mutate.sh - do the tests notice when the kernel is broken? SPDX-License-Identifier: MIT
+# mutate.sh - checks that the tests notice when the kernel is broken. SPDX-License-Identifier: MIT
 #
-# Breaks a copy of the kernel in one line at a time, as tests/mutants.txt says, and runs the quick tests (not the pinned
-# bits, which notice anything) until one fails. Ends with status 1 if a break goes unnoticed, does not compile, or the
-# line is no longer there. With numbers as arguments, these breaks alone, counted from 1. JOBS breaks at a time.
+# Breaks a copy of the kernel in one line at a time, as tests/mutants.txt says. Runs the quick tests until one fails,
+# but not the pinned bits, which notice any change. Ends with status 1 if a break is not noticed or does not compile,
+# or if the line no longer exists. Arguments are numbers of breaks, counted from 1; without arguments all breaks are
+# made. JOBS breaks run at a time.
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${JOBS:=$(nproc 2>/dev/null || echo 1)}"
 export BUILD MAKE CC
@@ -11,7 +12,7 @@ tests="base pair_exact surface matrix scene direction drift areas furnace surfac
 whole=$BUILD/mutate/whole # built and unbroken; every break starts from a copy
 export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-60}"
 
-# build TREE TEST: what the break does not touch is there already
+# build TREE TEST: objects that the break does not change exist already
 build() {
     $MAKE -s -C "$1" BUILD=build CC="$CC" CFLAGS=-O1 ISAS=scalar "build/tests/test_$2" >"$1/log" 2>&1
 }
@@ -20,7 +21,7 @@ run() {
     (cd "$1" && timeout 1200 "build/tests/test_$2") >"$1/log" 2>&1
 }
 
-# one NUMBER: breaks, tries and tells about it in one line
+# one NUMBER: makes a break, runs the tests and prints one line
 one() {
     IFS='|' read -r file old new <<LINE
 $(awk -v number="$1" '!/^#/ && ++n == number' tests/mutants.txt)

@@ -1,9 +1,9 @@
 #!/bin/sh
 # run.sh PROGRAM|SCRIPT... - runs tests and ends with "N passed, N failed". SPDX-License-Identifier: MIT
 #
-# Two run at a time; check_made.sh runs by itself at the end, since it removes what others use. A libcheck program counts
-# by its own summary, a script as one test. A program that ends without a summary, or with another exit status than its
-# failures demand, counts as one failure more.
+# Two tests run at a time. check_made.sh runs by itself at the end, since it removes files that others use. A libcheck
+# program counts by its own summary, a script counts as one test. A program that ends without a summary, or whose exit
+# status contradicts its summary, counts as one more failure.
 set -u
 logs=${BUILD:=build}/tests/logs
 export BUILD
@@ -32,7 +32,7 @@ if test "${1:-}" = --one; then
     exit 0
 fi
 
-# A loaded machine is no failure: no test program sets a limit of seconds of its own.
+# A loaded machine is no failure, so no test program has its own limit of time.
 export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-300}"
 tests=$#
 rm -rf "$logs"

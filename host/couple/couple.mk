@@ -57,7 +57,7 @@ couple: $(COUPLE_PRODUCTS)
 ## couple-lib: libfibrad_couple.a and its example alone (needs MPI)
 couple-lib: $(BUILD)/couple/libfibrad_couple.a $(BUILD)/couple/example
 
-## install-couple: libfibrad_couple.a, its header and .pc file, beside what install-lib installs
+## install-couple: install-lib, and libfibrad_couple.a with its header and .pc file
 install-couple: install-lib $(BUILD)/couple/libfibrad_couple.a
 	install -m 644 host/couple/fibrad_couple.h $(DESTDIR)$(PREFIX)/include
 	install -m 644 $(BUILD)/couple/libfibrad_couple.a $(DESTDIR)$(PREFIX)/lib
@@ -94,7 +94,7 @@ $(COUPLE_OBJECTS) $(COUPLE_MESH_OBJECTS) $(COUPLE_PRODUCTS): Makefile host/coupl
 
 -include $(COUPLE_OBJECTS:.o=.d) $(COUPLE_MESH_OBJECTS:.o=.d) $(BUILD)/couple/example.d $(BUILD)/couple/test_couple.d
 
-## test-couple: build and run the tests of the couplings; skips them, with a word, where packages are missing
+## test-couple: build and run the tests of the couplings; tests are skipped, with a message, if packages are missing
 test-couple:
 	@BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/run.sh $(COUPLE_SCRIPTS)
 

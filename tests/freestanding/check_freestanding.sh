@@ -1,6 +1,7 @@
 #!/bin/sh
-# check_freestanding.sh [pin] - the kernel on machines without an operating system or a C library: it builds, runs from
-# static memory with the bits of this machine, and docs/embedding.md tells its true sizes. SPDX-License-Identifier: MIT
+# check_freestanding.sh [pin] - the kernel on machines without an operating system or a C library. The kernel must
+# build, run from static memory and have the bits of this machine, and docs/embedding.md must have its true sizes.
+# SPDX-License-Identifier: MIT
 #
 # `pin` writes the sizes into the table of docs/embedding.md, between the lines "footprint".
 set -u
@@ -16,7 +17,8 @@ fault() {
     faults=1
 }
 
-# kernel NAME PREFIX FLAGS TABLES ISAS [LIKE]: builds the archive; with LIKE, from the objects of that one that know no tables
+# kernel NAME PREFIX FLAGS TABLES ISAS [LIKE]: builds the archive; with LIKE, from the objects of that one that know
+# no tables
 kernel() {
     rm -rf "${folder:?}/$1"
     test -z "${6:-}" || like "$1" "$6"
@@ -27,7 +29,7 @@ kernel() {
     head -n 5 "$folder/log"
 }
 
-# like NAME OTHER: the objects of OTHER that are the same for all tables
+# like NAME OTHER: takes the objects of OTHER that are the same for all tables
 like() {
     cp -rp "$folder/$2" "$folder/$1"
     rm -f "$folder/$1/libfibrad.a" "$folder/$1/tables.o"
@@ -45,7 +47,7 @@ program() {
     head -n 5 "$folder/log"
 }
 
-# run NAME EMULATOR...: the smoke program prints what it prints here
+# run NAME EMULATOR...: the smoke program must print the same as on this machine
 run() {
     name=$1
     shift

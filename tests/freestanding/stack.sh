@@ -1,9 +1,10 @@
 #!/bin/sh
 # stack.sh OBJDUMP FOLDER - bytes of stack that the deepest chain of calls takes. SPDX-License-Identifier: MIT
 #
-# Frames come from the compiler (-fstack-usage), calls from the disassembly; calls through pointers are added by name:
-# those of fibrad_surface_factor, of fibrad_row_run to the methods, of fibrad_matrix_share to the pieces, and of
-# fibrad_walls_complete to the frames of windows. The caller's functions that resize memory and share out work are not counted. Fails on recursion, on frames without a bound and on other such calls.
+# Sizes of frames come from the compiler (-fstack-usage), calls from the disassembly. Calls through pointers are added
+# by name: those of fibrad_surface_factor, of fibrad_row_run to the methods, of fibrad_matrix_share to the pieces, and
+# of fibrad_walls_complete to the frames of windows. The caller's functions that resize memory and divide work are not
+# counted. The script fails on recursion, on frames without a bound and on other calls through pointers.
 set -u
 find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $6}' >"$2/frames"
 {
