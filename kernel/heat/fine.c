@@ -18,10 +18,10 @@
 #define FINE_LOWEST  .5  /* least height that is used, in radii: spheres may overlap the surface */
 #define FINE_REACH   1.5 /* small spheres are searched within this many radii about the centre of a large one */
 #define FINE_UNLIKE  .95 /* nothing is divided unless a sphere has less than this part of the largest radius */
-#define FINE_WIDE    5   /* a square of this many fours by this many is looked at below a sphere on a wall */
+#define FINE_WIDE    5   /* below a sphere near a wall, a square of this many fours by this many is looked at */
 #define FINE_LEVELS  20u
 #define FINE_PATCHES 96.0
-#define FINE_RAYS    64u /* rays of each fine four, if a sphere has FINE_BEAMS beams; in proportion to beams */
+#define FINE_RAYS    64u /* rays of a fine four at FINE_BEAMS beams per sphere; in proportion to the beams */
 #define FINE_BEAMS   10752.0
 #define FINE_DENSER  4.0 /* least number of rays per area, over the beams per area of a sphere */
 

@@ -155,11 +155,11 @@ static void find_hit_normals(const fibrad_workspace *work, const float *x, const
     }
 }
 
-/* A window stands for all directions that are nearer to its own than to another. Far walls take directions of their own
- * to tell apart. So the beam of each open point has a direction of its own, from a disc about the direction of the
- * window. The density falls towards the rim of the disc. Another point of the set chooses the direction. If spheres
- * hide a part of the window, they hide a part of its neighbours, too. The disc is then smaller. Otherwise beams would
- * meet walls that are hidden: docs/methods.md, section 9. */
+/* A window stands for all directions that are nearer to its own than to another. This is too coarse for far walls,
+ * which have several patches within these directions. So the beam of each open point has a direction of its own, from a
+ * disc about the direction of the window. The density falls towards the rim of the disc. Another point of the set
+ * chooses the direction. If spheres hide a part of the window, they hide a part of its neighbours, too. The disc is
+ * then smaller. Otherwise beams would meet walls that are hidden: docs/methods.md, section 9. */
 #define HIT_SPREAD 2.25 /* radius of the disc if the window is open, times sqrt n */
 
 /* The patch that the beam of open point p of window k meets. */
@@ -275,10 +275,11 @@ static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t p
     work->windows = heat->config.directions;
     work->extra_owner = 0;
     fibrad_work_begin(work, heat->scene, place, 0, FIBRAD_BEAM_STRIDE);
-    /* spheres of a lattice, which are all alike, do not all keep the same half */
+    /* a turn by chance: the spheres of a lattice, which are all alike, must not all keep the same half */
     const uint32_t turn = (uint32_t)(fibrad_mix(fibrad_scene_rank(heat->scene, place)) & 1);
     for (uint32_t k = 0; k < heat->config.directions; k++) {
-        /* spheres that triangles have hidden so far are seen for the first time yet */
+        /* spheres that triangles have hidden so far have not been seen, so that each window may see them for the first
+         * time */
         const uint32_t known = heat->triangles > 0 ? 0 : work->entries.length;
         double frame[9];
         fibrad_beam_frame(k, heat->config.directions, points.count, frame);

@@ -107,19 +107,19 @@ struct row_scratch {
     uint16_t *seen; /* index in `fours` of each pair of fours, counted from 1 */
 };
 
-/* The most fours at the other end of a beam. */
+/* The largest number of fours at the other end of a beam. */
 static uint32_t fours_stride(const fibrad_heat *heat) {
     const uint32_t most = heat->division.nodes_capacity > 1 ? FIBRAD_HEAT_PATCHES_MAX : heat->config.patches;
     return (most > FIBRAD_HEAT_BLOCK ? most : FIBRAD_HEAT_BLOCK) / FIBRAD_HEAT_FOUR;
 }
 
-/* The most pairs of fours at both ends. */
+/* The largest number of pairs of fours at both ends. */
 static size_t fours_pairs(const fibrad_heat *heat) {
     const uint32_t most = heat->division.nodes_capacity > 1 ? FIBRAD_HEAT_PATCHES_MAX : heat->config.patches;
     return (size_t)(most / FIBRAD_HEAT_FOUR) * fours_stride(heat);
 }
 
-/* The most bytes of a beam: it has a pencil, a bundle and a strand of its own. */
+/* The largest number of bytes of a beam, which has a pencil, a bundle and a strand of its own. */
 #define BEAM_BYTES (sizeof(fibrad_heat_pencil) + sizeof(fibrad_heat_bundle) + 1)
 
 /* Sorts beams by their entries. counts: out: [entries] number of the beams of each entry and all before it. */

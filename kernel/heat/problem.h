@@ -23,7 +23,7 @@
 #define FIBRAD_HEAT_FOUR          4u   /* patches of a four */
 #define FIBRAD_HEAT_BLOCK         256u /* patches of a wall that may be in one pencil */
 #define FIBRAD_HEAT_OTHERS        64u  /* bodies that are not spheres, rounded up */
-#define FIBRAD_HEAT_EXTRAPOLATION 0.4  /* of the difference between both levels, added for patches without size */
+#define FIBRAD_HEAT_EXTRAPOLATION 0.4  /* extrapolation adds this part of the difference of both levels */
 
 #define FIBRAD_HEAT_FINE (UINT32_C(1) << 31) /* plus the number of a fine four: a node without children */
 

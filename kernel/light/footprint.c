@@ -11,7 +11,7 @@
 
 #define NO_FACE 3u
 
-/* Axes of the planes that lines meet one way, and where these are [L]. */
+/* The planes that lines meet in one direction: the axes across which they lie, and their places [L]. */
 typedef struct ways_out {
     uint32_t count, axis[3];
     double at[3];
@@ -151,7 +151,7 @@ static double polygon_area(const fibrad_light_polygon *p) {
     return .5 * sum;
 }
 
-/* Turns a polygon whose corners are clockwise. */
+/* Reverses the corners of a polygon if they run clockwise. */
 static void turn_polygon(fibrad_light_polygon *p) {
     if (polygon_area(p) >= 0) return;
     for (uint32_t k = 0; 2 * k + 1 < p->corners; k++)
@@ -246,7 +246,8 @@ static void add_rectangle(const fibrad_footprint *f, const fibrad_light *light, 
     turn_polygon(p);
 }
 
-/* Planes that lines along the light meet: towards it, sense 1, or the way that it goes, -1. */
+/* The planes that lines along the light meet: on the way towards the light if sense is 1, on the way from it if sense
+ * is -1. */
 static ways_out planes_met(const fibrad_footprint *f, const fibrad_scene *scene, double sense) {
     ways_out out = {0, {0}, {0}};
     for (uint32_t a = 0; a < 3; a++) {
@@ -261,13 +262,13 @@ static uint32_t slot_facing(const fibrad_footprint *f, uint32_t axis, double sen
     return fibrad_face(axis, sense * f->frame[6 + axis] > 0);
 }
 
-/* Depth towards the light at which the line u, v meets a plane: constant + its product with the other two numbers. */
+/* The line u, v meets a plane at the depth depth[0] u + depth[1] v + depth[2] towards the light. */
 static void depth_at_plane(const fibrad_footprint *f, uint32_t axis, double at, double depth[3]) {
     const double w = f->frame[6 + axis];
     depth[0] = 0 - f->frame[axis] / w, depth[1] = 0 - f->frame[3 + axis] / w, depth[2] = (at - f->origin[axis]) / w;
 }
 
-/* The lines on one side of which plane k of those that are met is the first. */
+/* The lines that bound where plane k is the first of the planes that are met. */
 static uint32_t add_first(const fibrad_footprint *f, const ways_out *out, uint32_t k, double sense,
                           fibrad_light_line *line) {
     double own[3], other[3];
@@ -295,7 +296,7 @@ static uint32_t lines_of(const fibrad_light_polygon *p, fibrad_light_line *line)
     return count;
 }
 
-/* Takes off a polygon what lies outside a line. */
+/* Cuts off the part of a polygon that lies outside a line. */
 static void cut_polygon(fibrad_light_polygon *p, const fibrad_light_line *line, fibrad_light_polygon *scratch) {
     scratch->corners = 0;
     for (uint32_t k = 0; k < p->corners; k++) {
@@ -311,7 +312,8 @@ static void cut_polygon(fibrad_light_polygon *p, const fibrad_light_line *line, 
     p->corners = scratch->corners;
 }
 
-/* The polygon of all light, whose sides become common lines where light ends there, but for those between periods. */
+/* Finds the polygon of all light. Its sides become lines of all pieces, except sides between one period and the
+ * next. */
 static void find_outline(fibrad_footprint *f, const fibrad_scene *scene, const fibrad_light *light) {
     const fibrad_container *c = &scene->container;
     const bool round = fibrad_finite(c->radius), level = f->frame[6] == 0 && f->frame[7] == 0;
@@ -345,7 +347,8 @@ static void find_outline(fibrad_footprint *f, const fibrad_scene *scene, const f
         for (int n = 0; n < 2; n++) f->image[k][n] = scene->period[periodic[k]] * f->frame[3 * n + periodic[k]];
 }
 
-/* What bounds a beam besides its own sides: walls along the light, and the end of the cylinder where it enters. */
+/* Adds lines that bound a beam besides its own sides: walls along the light, and the end of the cylinder by which the
+ * light enters. */
 static void bound_beam(fibrad_footprint *f, const fibrad_scene *scene) {
     const fibrad_container *c = &scene->container;
     for (int a = 0; a < 3; a++)

@@ -22,7 +22,7 @@ typedef struct fibrad_light_line {
 
 typedef struct fibrad_light_piece {
     uint32_t slot; /* where its light ends */
-    double sign;   /* -1: the piece is to be taken off */
+    double sign;   /* -1: the piece is subtracted */
     double area;   /* L^2 */
     uint32_t face; /* axis of the plane through which it enters; 3: none */
     double from;   /* L, where that plane is */
@@ -37,12 +37,12 @@ typedef struct fibrad_light_polygon {
     double at[FIBRAD_LIGHT_LINES][2];
 } fibrad_light_polygon;
 
-/* A line near a window, lengths in its radii: the stretch of the line that bounds the piece, and what the boundary of
- * the open region does there. */
+/* A line near a window, with lengths in radii of the window. It has the stretch that bounds the piece, and sums over
+ * the places where the boundary of the open region crosses the line. */
 typedef struct fibrad_light_edge {
     fibrad_light_line line;
     double low, high, sum;
-    int32_t balance; /* crossings outwards minus crossings inwards: 0 */
+    int32_t balance; /* crossings outwards minus crossings inwards, 0 in the end */
 } fibrad_light_edge;
 
 /* A part of an arc, and the first edge that may still cut it. */

@@ -10,9 +10,10 @@
 #include "base/elementary.h"
 #include "light/footprint.h"
 
-/* Where an arc crosses a line: at most once each way, as places from the arc's centre. */
+/* Where an arc leaves the inner side of a line and where it enters it, each at most once. Places are relative to the
+ * arc's centre. */
 typedef struct arc_crossings {
-    bool leaves, enters; /* it goes outwards, inwards */
+    bool leaves, enters; /* whether the arc does so */
     bool begins_inside;
     double out[2], back[2];
 } arc_crossings;
@@ -38,7 +39,8 @@ static arc_crossings crossings_of(const fibrad_open_arc *arc, const double p[2],
     } else if (first ? height < arc->r : height > -arc->r) {
         at.leaves = at.enters = arc_holds(p, q, n, first ? 1 : -1);
     }
-    for (int a = 0; a < 2; a++) { /* counter-clockwise, so outwards where the arc is behind along the line */
+    /* an arc is counter-clockwise, so it goes outwards at the crossing that comes first along the line */
+    for (int a = 0; a < 2; a++) {
         const double t = a == 0 ? -n[1] : n[0];
         at.out[a] = height * n[a] - root * t, at.back[a] = height * n[a] + root * t;
     }
@@ -61,7 +63,7 @@ typedef struct region_sum {
     double area;
 } region_sum;
 
-/* Notes that the boundary of the region, left of which it lies, crosses an edge at a place. */
+/* Notes that the boundary of the region crosses an edge at a place. The region lies to the left of its boundary. */
 static void note_crossing(fibrad_light_edge *edge, const double centre[2], const double at[2], int outwards) {
     const double x[2] = {centre[0] + at[0], centre[1] + at[1]};
     const double t = fibrad_max(edge->low, fibrad_min(edge->high, along(&edge->line, x)));
@@ -78,7 +80,7 @@ static void cross_edges(const region_sum *sum, const fibrad_open_arc *arc, int s
     }
 }
 
-/* Adds what is inside all edges of the last arc of the list, and puts what is cut off it at the end of the list. */
+/* Adds the part of an arc inside all edges, and appends the parts that were cut off to the list. */
 static double inside_of_arc(fibrad_footprint *f, const fibrad_open_arc *arc, uint32_t edges, fibrad_light_arc part,
                             uint32_t *parts) {
     for (uint32_t e = part.next; e < edges; e++) {

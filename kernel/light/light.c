@@ -19,7 +19,7 @@ int fibrad_light_check(const fibrad_scene *scene, const fibrad_light *light, fib
 int fibrad_light_open(const fibrad_scene *scene, fibrad_work *work, size_t extra, fibrad_workspace **space) {
     const size_t bytes = sizeof(fibrad_footprint) + FIBRAD_ALIGNMENT + extra;
     const int status = fibrad_work_open(work, scene, bytes, bytes, space);
-    if (status == FIBRAD_OK) (*space)->extra_owner = 0; /* whoever had it loses it */
+    if (status == FIBRAD_OK) (*space)->extra_owner = 0; /* who used `extra` before must write it again */
     return status;
 }
 

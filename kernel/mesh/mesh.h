@@ -14,7 +14,7 @@
 #define FIBRAD_NO_SIDE UINT32_MAX
 #define FIBRAD_NO_MESH UINT8_MAX
 
-#define FIBRAD_MESH_WIDE  8u  /* boxes of a node, and most triangles of a leaf */
+#define FIBRAD_MESH_WIDE  8u  /* boxes of a node, and largest number of triangles in a leaf */
 #define FIBRAD_MESH_DEPTH 64u /* greatest depth of the tree */
 
 /* A long line is divided into this many pieces at most, which search for images one by one. A line ends after 100

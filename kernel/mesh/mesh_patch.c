@@ -12,7 +12,7 @@ static double area_of_side(const fibrad_mesh *mesh, uint32_t number, uint32_t k)
     return mesh->area[k] - (k > mesh->first[number] ? mesh->area[k - 1] : 0);
 }
 
-/* How often a side is halved so that its patches have about a given area. Never just once. */
+/* How often a side is halved so that its patches have about a given area: never, or at least twice. */
 static uint32_t halvings_for(double own, double area) {
     uint32_t halvings = 0;
     if (own < 2 * area) return 0;
