@@ -1,5 +1,5 @@
-/* ranks.c - rows and powers over ranks: seconds, entries, halos and memory, for docs/scale.md. SPDX-License-Identifier:
- * MIT
+/* ranks.c - rows and powers over ranks: seconds, entries, halos and memory, for docs/scale.md.
+ * SPDX-License-Identifier: MIT
  *
  * mpirun -np P build/couple/ranks DUMP COPIES EMISSIVITY: the bed is that of a LAMMPS dump (columns id type x y z
  * radius), repeated COPIES times along each periodic axis. The bed is divided into bricks, one for each rank. The

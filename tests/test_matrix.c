@@ -1,5 +1,5 @@
-/* test_matrix.c - matrices of view and exchange factors: averaged, closed, thinned out, raw. SPDX-License-Identifier:
- * MIT */
+/* test_matrix.c - matrices of view and exchange factors: averaged, closed, thinned out, raw.
+ * SPDX-License-Identifier: MIT */
 #include "matrices.h"
 
 /* A matrix of rows by hand. */

@@ -1,5 +1,5 @@
-/* test_read_furnace.c - box files: every key, every fault with its line, and what is written. SPDX-License-Identifier:
- * MIT */
+/* test_read_furnace.c - box files: every key, every fault with its line, and what is written.
+ * SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

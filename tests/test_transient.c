@@ -1,5 +1,5 @@
-/* test_transient.c - temperatures in time, against closed forms, quadrature and each other. SPDX-License-Identifier:
- * MIT */
+/* test_transient.c - temperatures in time, against closed forms, quadrature and each other.
+ * SPDX-License-Identifier: MIT */
 #include "scenes.h"
 #include "simple/fibrad_host.h"
 #include "suite.h"

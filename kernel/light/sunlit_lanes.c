@@ -1,5 +1,5 @@
-/* sunlit_lanes.c - the window of a sphere towards a light. Compiled once per instruction set. SPDX-License-Identifier:
- * MIT
+/* sunlit_lanes.c - the window of a sphere towards a light. Compiled once per instruction set.
+ * SPDX-License-Identifier: MIT
  *
  * For a single window it does not pay to list near spheres. So they are found by a march through the grid. */
 #include FIBRAD_LANES_HEADER

@@ -1,5 +1,5 @@
-/* tracer.h - rays from sphere to sphere. Each ray ends at the first sphere that it meets. SPDX-License-Identifier:
- * MIT
+/* tracer.h - rays from sphere to sphere. Each ray ends at the first sphere that it meets.
+ * SPDX-License-Identifier: MIT
  *
  * A ray that leaves a sphere mostly meets one of the nearest spheres. So each sphere has a list of its near spheres
  * in the order of their clearance, which is the distance from its centre to their surface. A ray looks at them in

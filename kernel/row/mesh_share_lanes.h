@@ -1,5 +1,5 @@
-/* mesh_share_lanes.h - what triangles take of a window from spheres and from the open part. SPDX-License-Identifier:
- * MIT */
+/* mesh_share_lanes.h - what triangles take of a window from spheres and from the open part.
+ * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_ROW_MESH_SHARE_LANES_H
 #define FIBRAD_ROW_MESH_SHARE_LANES_H
 

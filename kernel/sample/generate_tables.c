@@ -1,5 +1,5 @@
-/* generate_tables.c - writes the kernel's tables of Fibonacci samples to standard output. SPDX-License-Identifier:
- * MIT
+/* generate_tables.c - writes the kernel's tables of Fibonacci samples to standard output.
+ * SPDX-License-Identifier: MIT
  *
  * All numbers are computed in fixed point with 224 binary places, from whole numbers alone: pi by Machin's formula,
  * the golden angle from sqrt 5. Each entry is rounded once at the end. The program uses no inexact floating-point

@@ -1,5 +1,5 @@
-/* linux.h - text and exit status by Linux calls, of which the including file has made call(). SPDX-License-Identifier:
- * MIT */
+/* linux.h - text and exit status by Linux calls, of which the including file has made call().
+ * SPDX-License-Identifier: MIT */
 #ifndef FREESTANDING_LINUX_H
 #define FREESTANDING_LINUX_H
 

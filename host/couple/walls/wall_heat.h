@@ -1,5 +1,5 @@
-/* wall_heat.h - walls that store heat: their temperatures follow the radiation that they get. SPDX-License-Identifier:
- * MIT */
+/* wall_heat.h - walls that store heat: their temperatures follow the radiation that they get.
+ * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_WALL_HEAT_H
 #define FIBRAD_COUPLE_WALL_HEAT_H
 
