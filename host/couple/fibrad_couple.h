@@ -190,9 +190,9 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
 int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
 /* Makes rows of those particles alone that have come since the last rows, and keeps the others where they are. What a
- * new and an old particle exchange follows from the new row alone. What gone particles would get is given back to the
- * rest of each row. If more than a tenth of all particles have come or gone since fibrad_insitu_rows made all rows,
- * makes all rows.
+ * new and an old particle exchange follows from the new row alone. What particles that have gone would get goes to the
+ * rest of each row. If more than a tenth of all particles have come or gone since fibrad_insitu_rows made all rows, the
+ * function makes all rows.
  *   Input    as fibrad_insitu_rows; the number of walls must be that of the last rows
  *   Errors   as fibrad_insitu_rows
  *   Cost     about 2 microseconds for each particle and 10 ns for each entry, and the new rows */

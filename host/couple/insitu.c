@@ -11,11 +11,11 @@
 #include "fibrad_mesh.h"
 
 #define THREADS_MAX  1024
-#define CUTOFF_RADII 8    /* mean radii beyond the largest diameter, the least default cutoff */
+#define CUTOFF_RADII 8    /* least default cutoff: the largest diameter plus this many mean radii */
 #define CUTOFF_COUNT 1e5  /* particles in a cube that may be sent for the default cutoff, see below */
 #define CELL_RADII   0.25 /* width of the cells of the coarse map, in mean radii */
-#define REACH_RADII  1.5  /* beyond the cutoff: largest radii within which spheres matter to a row, fibrad.h */
-#define PERIODS_MAX  100  /* as far as the kernel's beams go */
+#define REACH_RADII  1.5  /* spheres this many largest radii beyond the cutoff still matter to a row: fibrad.h */
+#define PERIODS_MAX  100  /* the kernel's beams go this far */
 #define OPENINGS_MAX 6    /* one a side */
 #define PART_LEAST   1e-3 /* a particle whose radius would be reduced to less is left out */
 #define CHANGED_MOST 0.1  /* part of all particles that may come or go before all rows are made anew */
@@ -51,7 +51,7 @@ static bool config_valid(const fibrad_insitu_config *c) {
            c->accuracy <= FIBRAD_ACCURACY_HIGH;
 }
 
-/* Puts numbers in the place of zeroes. */
+/* Replaces zeroes by the numbers for which they stand. */
 static void complete_config(fibrad_insitu_config *c) {
     if (!c->directions) c->directions = samples[c->accuracy].directions;
     if (!c->paths) c->paths = samples[c->accuracy].paths;
@@ -634,7 +634,7 @@ static int find_changes(struct insitu_build *b) {
     return FIBRAD_OK;
 }
 
-/* Puts particles first that need rows. */
+/* Puts the particles that need rows first. */
 static int choose_fresh(struct insitu_build *b) {
     fibrad_follow_free(&b->follow);
     b->follow = (fibrad_follow){0};

@@ -62,7 +62,7 @@ struct Driver {
     fibrad_insitu_totals totals;                                  /* of the current powers */
     bool radiates;                                                /* there are powers */
     bool told_cut;                                                /* the warning about the cutoff was given */
-    bool told[FIBRAD_REMARKS];                                    /* strays of each kind were told of */
+    bool told[FIBRAD_REMARKS];                                    /* a message on strays of each kind was given */
     LAMMPS_NS::bigint since;                                      /* first step in which the current powers heat */
     double heat, heat_surroundings, heat_body[FIBRAD_BODIES_MAX]; /* heat by radiation before that step */
 };

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#define OPENING_SLACK 1e-12 /* a particle may reach so much beyond an opening, as in fibrad_scene_init */
+#define OPENING_SLACK 1e-12 /* a particle may reach this much beyond an opening, as in fibrad_scene_init */
 #define INSIDE_SLACK  1e-9  /* catches a centre at the surface of another particle whatever the rounding */
 
 /* ---- bounds ---- */
@@ -94,7 +94,7 @@ static size_t coarse_cell(const struct cells *c, const double x[3]) {
                     c->count[0] * (coarse_place(c, 1, x[1]) + c->count[1] * coarse_place(c, 2, x[2])));
 }
 
-/* Sizes the cells: two mean radii wide, or wider if there would be more than some per particle. */
+/* Sizes the cells: two mean radii wide, or wider if there would be too many per particle. */
 static size_t size_cells(struct cells *c, const fibrad_particle *p, size_t n) {
     double high[3] = {-INFINITY, -INFINITY, -INFINITY}, sum = 0, cells;
     for (int axis = 0; axis < 3; ++axis) c->low[axis] = INFINITY;

@@ -7,7 +7,7 @@
 
 #include "couple/ranks/halo.h"
 
-/* The walls and openings around a bed, the same on all ranks. Openings have places. */
+/* The walls and openings around a bed, the same on all ranks. The place of each opening is known. */
 typedef struct fibrad_bounds {
     const fibrad_body *body;     /* [bodies] */
     const fibrad_plane *opening; /* [openings] */
