@@ -3,7 +3,7 @@
  * The inside is steady, and sources are spread evenly inside. If the surface temperature T is a harmonic of degree l,
  * the flux k l T/r is conducted inwards. Emission is linear in T about the mean T0 of the surface. Let w = N J/A be the
  * flux that is absorbed, E the emission, d the diameter and K = k/(4 d sigma T0^3). Then w = 2 K l E in degree l. With
- * J = E - (1 - eps) w/eps,
+ * J = E + (1 - eps) w/eps,
  *
  *     w = g J,   1/g = 1/eps_l - 1,   1/eps_l = 1/eps + 1/(2 K l).
  *

@@ -24,6 +24,7 @@
 #define FIBRAD_HEAT_BLOCK         256u /* patches of a wall that may be in one pencil */
 #define FIBRAD_HEAT_OTHERS        64u  /* bodies that are not spheres, rounded up */
 #define FIBRAD_HEAT_EXTRAPOLATION 0.4  /* extrapolation adds this part of the difference of both levels */
+#define FIBRAD_HEAT_ROUGH         1e-2 /* tolerance of the first temperatures of spheres that conduct */
 
 #define FIBRAD_HEAT_FINE (UINT32_C(1) << 31) /* plus the number of a fine four: a node without children */
 
@@ -141,7 +142,7 @@ typedef struct fibrad_heat_given {
     double *conductivity;          /* sigma K^3 L, [spheres] */
     double *unevenness;            /* [spheres], 4 r sigma T^3/conductivity; 0: at one temperature (conduct.c) */
     bool conducts;                 /* some sphere has an unevenness above 0 */
-    bool roughly;                  /* unevennesses are of first guesses of temperatures */
+    double rough;                  /* tolerance while unevennesses are of temperatures still to be found better */
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
     bool insulated[FIBRAD_HEAT_OTHERS];                                /* by body, from the first wall on */
     double *lift; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */

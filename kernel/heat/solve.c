@@ -189,9 +189,10 @@ static void find_powers(const fibrad_heat *heat, double *power) {
 /* The relative rounding error of a sum of squares. */
 #define ROUNDING 1e-28
 
-/* Unevenness depends on temperatures. If temperatures of spheres that conduct are unknown, they are first found to the
- * tolerance ROUGH. A relative change of unevenness below SETTLED no longer matters. */
-#define ROUGH   1e-2
+/* Unevenness depends on temperatures. If temperatures of spheres that conduct are unknown, unevenness and temperatures
+ * are found in turn. The first temperatures are found to the tolerance FIBRAD_HEAT_ROUGH, later ones to WITHIN times
+ * the last change of unevenness. A relative change of unevenness below SETTLED no longer matters. */
+#define WITHIN  .03
 #define SETTLED 1e-3
 
 /* The sum over the patches of a mesh of emissivity times area times the square of the difference between the emissions
@@ -330,8 +331,7 @@ static void finish_powers(fibrad_heat *heat) {
 
 /* Whether the radiosities of the present level are good enough. */
 static bool level_solved(const fibrad_heat *heat) {
-    const double tolerance =
-        heat->sources.roughly ? fibrad_max(ROUGH, heat->sources.tolerance) : heat->sources.tolerance;
+    const double tolerance = fibrad_max(heat->sources.rough, heat->sources.tolerance);
     return heat->solution.slope <= fibrad_max(tolerance * tolerance * heat->solution.scale, heat->solution.smallest) ||
            heat->solution.sweeps >= heat->sources.limit;
 }
@@ -340,9 +340,10 @@ static bool level_solved(const fibrad_heat *heat) {
 static bool unsettled(fibrad_heat *heat) {
     if (!heat->sources.conducts || heat->solution.sweeps >= heat->sources.limit) return false;
     find_emissions(heat);
-    const bool rough = heat->sources.roughly;
-    heat->sources.roughly = false;
-    return fibrad_heat_find_unevenness(heat) > SETTLED || rough;
+    const bool rough = heat->sources.rough > heat->sources.tolerance;
+    const double change = fibrad_heat_find_unevenness(heat);
+    heat->sources.rough = change > SETTLED ? fibrad_min(FIBRAD_HEAT_ROUGH, WITHIN * change) : 0;
+    return change > SETTLED || rough;
 }
 
 /* Sets and sends the next search direction: the change that was sent, plus `keep` times the last direction. */

@@ -297,7 +297,7 @@ static void set_conduction(fibrad_heat *heat, const fibrad_heat_sources *s) {
         found = found || heat->sources.hold[b] >= 0;
     }
     fibrad_heat_find_unevenness(heat);
-    heat->sources.roughly = heat->sources.conducts && found && !heat->solution.warm;
+    heat->sources.rough = heat->sources.conducts && found && !heat->solution.warm ? FIBRAD_HEAT_ROUGH : 0;
 }
 
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
