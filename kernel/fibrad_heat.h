@@ -110,6 +110,10 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * metres long, a conductivity of k_s [W/(m K)] is given as k_s/metres. Emissivities of 0 and 1 are allowed. `uniform`
  * is not allowed.
  *
+ * `absorbed` is light that patches have absorbed. Of a sphere with a finite conductivity it heats the lit patches more
+ * than others. An insulated wall sends it out at the same patch as thermal radiation. On all other bodies it is not
+ * used. `power` of a sphere and body_power must contain the sum of it.
+ *
  * The residual is relative to the differences of emission. tolerance = 0 stands for 1e-3, or for 1e-5 if a temperature
  * is unknown and its hold is 0. side_temperature is in the order of the caller's triangles. If sides share a patch,
  * each side emits the mean of their emissions. */
@@ -131,6 +135,7 @@ typedef struct fibrad_heat_sources {
     const double *side_temperature; /* K, [2 triangles], fronts and backs in turn; NaN: the wall's; NULL: all NaN */
     const double *light; /* sigma K^4 L^2, [fibrad_heat_patches], arrives from outside; NULL: none; fibrad_light.h */
     const double *conductivity; /* sigma K^3 L, [spheres], above 0; infinity: one temperature; NULL: all infinity */
+    const double *absorbed;     /* sigma K^4 L^2, [fibrad_heat_patches], light that heats; NULL: none; fibrad_light.h */
 } fibrad_heat_sources;
 
 /* Zeroes the sources, sets sigma = FIBRAD_STEFAN_BOLTZMANN, and sets surroundings = NaN. NaN is refused, so that no
@@ -145,7 +150,7 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources);
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_fault *fault);
 
 /* Begins a solution. The solution begins with the radiosities of the last one, if there is one. After the call only the
- * array `light` is still needed. It must stay until the solution is read.
+ * arrays `light` and `absorbed` are still needed. They must stay until the solution is read.
  *   Errors   as fibrad_heat_check
  *            _STATE: a task is not traced, or the scene has changed
  *   Cost     O(patches) */

@@ -93,9 +93,9 @@ int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fib
  *   2. Call fibrad_heat_begin with all temperatures 0, absorptivities in the place of emissivities, and `light` = hits.
  *      The net powers of this solution are the light that is absorbed. The net power of the surroundings is the light
  *      that is reflected.
- *   3. Thermal radiation has a second solution. The light that a surface absorbs is added to the power of the surface.
- *      Insulated walls have no power of their own: call fibrad_heat_keep_light. `hits` then holds the light that
- *      insulated walls absorb. Hand `hits` to the second solution as `light`. */
+ *   3. Call fibrad_heat_keep_light. `hits` then holds the light that patches absorb. Thermal radiation has a second
+ *      solution. Hand `hits` to it as `absorbed`. The light that a surface absorbs is added to the power of the
+ * surface. Insulated walls have no power of their own. */
 
 /* Number of patches of a heat problem.
  *   Errors   0 if heat is NULL */
@@ -128,12 +128,11 @@ int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fi
  *   Errors   _ARGUMENT */
 int fibrad_heat_sum_light(const fibrad_heat *heat, const double *hits, double *power, double *body_power);
 
-/* Replaces hits by the light that patches of insulated walls absorb in the present solution. All other patches get 0.
- *   Input    insulated[bodies]: not 0: insulated
- *            hits[fibrad_heat_patches]: the `light` of the solution
+/* Replaces hits by the light that patches of spheres and walls absorb in the present solution.
+ *   Input    hits[fibrad_heat_patches]: the `light` of the solution
  *   Errors   _ARGUMENT
  *            _STATE: there is no solution, or the scene has changed */
-int fibrad_heat_keep_light(const fibrad_heat *heat, const unsigned char *insulated, double *hits);
+int fibrad_heat_keep_light(const fibrad_heat *heat, double *hits);
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,6 @@
 /* test_heat_conduct.c - spheres that conduct, against closed forms and themselves. SPDX-License-Identifier: MIT */
 #include "heat/fine.h"
+#include "fibrad_light.h"
 #include "heat_problem.h"
 
 /* Results inside of spheres, for beds of up to so many. */
@@ -137,6 +138,56 @@ LOOP_TEST(one_side_lit, 4) {
     }
     ck_assert_double_le(sqrt(errors / squares), 1e-2);
     assert_near(emission(found[0]), h[0], 3e-3);
+    free_problem(&p);
+}
+
+/* The light on all patches: parallel light down z, of flux 1. */
+static double *shine_down(const struct problem *p) {
+    const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
+    fibrad_work work = work_growing();
+    double *hits = calloc(fibrad_heat_patches(p->heat), sizeof *hits);
+    for (uint32_t task = 0; task < fibrad_heat_shine_tasks(p->heat); task++) {
+        fibrad_light_ends kept;
+        ck_assert_int_eq(fibrad_heat_shine(p->heat, &work, &light, task, hits, &kept), FIBRAD_OK);
+    }
+    work_free(&work);
+    return hits;
+}
+
+/* A sphere that absorbs parallel light and gives it off to nothing. In degree l its emission is u c/(1 + e u), with u
+ * = 1/(2 k* l) and c of what it absorbs, which is the cosine on the lit half. */
+LOOP_TEST(parallel_light_from_one_side, 4) {
+    enum { POINTS = 20000 };
+    const double k = half_k[_i], e = half_e[_i], t = pow(1 / (4 * e), .25);
+    struct problem p = one_sphere(.7, NAN, e);
+    double emitted[DEGREES + 1] = {0}, value[DEGREES + 1], squares = 0, errors = 0, top = 0, bottom = 0;
+    for (int n = 0; n < POINTS; n++) {
+        legendre((n + .5) / POINTS, value);
+        for (int l = 0; l <= DEGREES; l++) emitted[l] += (l + .5) * (n + .5) / POINTS * value[l] / POINTS;
+    }
+    emitted[0] /= e;
+    for (int l = 1; l <= DEGREES; l++) emitted[l] /= 2 * k * l + e;
+    p.config.directions = 20000, p.config.points = 256;
+    conduct(&p, k, t);
+    find_temperatures(&p, PI * .49);
+    trace(&p);
+    double *hits = shine_down(&p);
+    p.sources.absorbed = hits, p.sources.tolerance = 1e-8;
+    solve(&p);
+    for (uint32_t a = 0; a < p.heat->config.patches; a++) {
+        double truth = emitted[0];
+        patch_means(&p, a, 2, value);
+        for (int l = 1; l <= DEGREES; l++) truth += emitted[l] * value[l];
+        const double area = p.heat->solution.area[a], error = p.heat->solution.radiosity[a] / e - truth;
+        errors += area * error * error, squares += area * truth * truth;
+    }
+    for (int l = 1; l <= DEGREES; l++) top += emitted[l], bottom += emitted[l] * (l % 2 ? -1 : 1);
+    ck_assert_double_le(sqrt(errors / squares), 1e-2);
+    assert_near(found[0], t, 1e-3);
+    ck_assert_double_le(fabs(largest[0] - found[0] - top / (4 * t * t * t)), fmax(.02 * t, 2 * surface_error[0]));
+    ck_assert_double_le(fabs(least[0] - found[0] - bottom / (4 * t * t * t)), fmax(.02 * t, 2 * surface_error[0]));
+    ck_assert_double_eq_tol(centre[0], found[0], 1e-9 * t); /* the light is absorbed on the surface */
+    free(hits);
     free_problem(&p);
 }
 
@@ -301,6 +352,30 @@ LOOP_TEST(a_simple_cubic_lattice, 6) {
     const double n = LAYERS / 2., slope = (n * xy[1] - x[0] * xy[0]) / (n * x[1] - x[0] * x[0]);
     assert_near(p.wall_power[5] / -slope, lattice_f[_i], lattice_k[_i] < .1 ? .02 : .01);
     free_problem(&p);
+}
+
+/* Light changes no sum of powers. If it is even on each sphere, or if spheres do not conduct, it changes nothing. */
+TEST(light_adds_up_and_even_light_changes_nothing) {
+    struct problem p = mixed_bed(1), q = mixed_bed(1);
+    double largest_power;
+    trace(&p), solve(&p);
+    double *light = calloc(fibrad_heat_patches(p.heat), sizeof *light);
+    for (uint32_t a = 0; a < p.heat->first[p.bed.n]; a++) light[a] = 2 * p.heat->solution.area[a];
+    trace(&q), q.sources.absorbed = light, solve(&q);
+    for (uint32_t i = 0; i < p.bed.n; i++)
+        ck_assert_double_le(fabs(p.result.power[i] - q.result.power[i]), 1e-9 * fabs(p.result.power[i]));
+    for (uint32_t a = 0; a < p.heat->first[p.bed.n]; a++) light[a] *= a % 7;
+    solve(&q);
+    const double sum = sum_of_powers(&q, &largest_power);
+    ck_assert_double_le(fabs(sum), 1e-12 * largest_power);
+    for (uint32_t i = 0; i < p.bed.n; i++) conductivity[i] = INFINITY;
+    solve(&p), solve(&p), solve(&q), q.sources.absorbed = NULL, solve(&q);
+    for (uint32_t i = 0; i < p.bed.n; i++)
+        ck_assert_double_le(fabs(p.result.power[i] - q.result.power[i]), 1e-3 * largest_power);
+    light[0] = -1, q.sources.absorbed = light;
+    ck_assert_int_eq(fibrad_heat_check(q.heat, &q.sources, NULL), FIBRAD_E_ARGUMENT);
+    free(light);
+    free_problem(&p), free_problem(&q);
 }
 
 TEST(conductivities_are_above_zero) {

@@ -60,6 +60,32 @@ TEST(light_heats) {
     ck_assert_double_eq_tol(value_of("supplied_J"), 10 * 1000 * M_PI, 1);
 }
 
+/* Spheres that conduct are hotter where they are lit. If they conduct well, nothing changes. Powers add up. */
+TEST(lit_sides_are_hotter) {
+    const char *csv = in_folder("lit.csv");
+    double mean[3], span[3], leaves[3];
+    for (int k = 0; k < 3; ++k) {
+        const char *solid = k == 0 ? "1e9" : k == 1 ? "1" : "0.1";
+        ck_assert_int_eq(
+            HEAT("--power", "0", "--wall", CUP, "--irradiate", "0,0,-1:1e4", "--solid-conductivity", solid, "-o", csv),
+            0);
+        mean[k] = value_of("temperature_mean_K"), span[k] = value_of("surface_span_K");
+        leaves[k] = value_of("surroundings_W");
+        ck_assert_double_le(fabs(value_of("balance_of_emission")), 1e-12);
+        ck_assert_double_le(fabs(value_of("balance_of_light")), 1e-12);
+    }
+    ck_assert_int_eq(HEAT("--power", "0", "--wall", CUP, "--irradiate", "0,0,-1:1e4"), 0);
+    ck_assert_double_eq_tol(mean[0], value_of("temperature_mean_K"), .02);
+    ck_assert_double_eq_tol(leaves[0], value_of("surroundings_W"), 1e-4 * fabs(leaves[0]));
+    ck_assert_double_lt(span[0], 1e-3);
+    ck_assert(span[1] > 50 && span[2] > span[1]);
+    ck_assert_double_gt(leaves[1], leaves[0]); /* lit sides are what the sky sees */
+    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:1e4", "--solid-conductivity",
+                          "1", "--until", "10", "--heat-capacity", "800", "--density", "2500"),
+                     2);
+    expect_message("--solid-conductivity and --irradiate with --until", "leave one out");
+}
+
 /* An endless floor of equal spheres has an emissivity. A black cavity with an open lid has 1. */
 TEST(faces_have_an_emissivity) {
     ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--face"), 0);

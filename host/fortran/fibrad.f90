@@ -177,6 +177,7 @@ module fibrad
         integer(c_int32_t) :: sweeps_max = 0
         integer(c_int) :: uniform = 0
         type(c_ptr) :: side_temperature = c_null_ptr, light = c_null_ptr, conductivity = c_null_ptr
+        type(c_ptr) :: absorbed = c_null_ptr
     end type c_heat_sources
 
     ! Light from outside: fibrad_light in fibrad_light.h. Set direction and flux.
@@ -190,7 +191,7 @@ module fibrad
     type, bind(C) :: c_light_sources
         type(c_ptr) :: light = c_null_ptr
         integer(c_int32_t) :: lights = 0
-        type(c_ptr) :: absorptivity = c_null_ptr, body_absorptivity = c_null_ptr, insulated = c_null_ptr
+        type(c_ptr) :: absorptivity = c_null_ptr, body_absorptivity = c_null_ptr
         real(c_double) :: tolerance = 0
         integer(c_int) :: uniform = 0
     end type c_light_sources
@@ -200,7 +201,7 @@ module fibrad
         type(c_ptr) :: body_absorbed = c_null_ptr, body_absorbed_first = c_null_ptr, body_absorbed_error = c_null_ptr
         real(c_double) :: incident = 0, transmitted = 0, reflected = 0, error = 0
         integer(c_int32_t) :: sweeps = 0, lights = 0
-        type(c_ptr) :: insulated = c_null_ptr
+        type(c_ptr) :: patches = c_null_ptr
     end type c_light_result
 
     type, bind(C) :: c_heat_result

@@ -71,7 +71,7 @@ int face_solve(struct face *face, const fibrad_heat_sources *sources, uint32_t s
     for (uint32_t i = 0; i < spheres && !status; ++i) temperature[i] = FACE_TEMPERATURE;
     for (uint32_t k = 0; k < walls; ++k) wall_temperature[k] = FACE_TEMPERATURE;
     same.temperature = temperature, same.body_temperature = wall_temperature, same.surroundings = 0;
-    same.power = same.body_power = same.hold = same.reference = same.side_temperature = same.light = NULL;
+    same.power = same.body_power = same.hold = same.reference = same.side_temperature = same.absorbed = NULL;
     same.conductivity = NULL; /* all of a sphere has one temperature */
     if (!status) status = fibrad_radiation_solve(radiation, &same, &result);
     const double black = same.sigma * gsl_pow_4(FACE_TEMPERATURE) * face->area;

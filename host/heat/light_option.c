@@ -170,7 +170,7 @@ static void add_absorbed(struct light_state *state, const struct bed *bed, const
     for (uint32_t k = 0; k < walls->count; ++k)
         state->wall_power[k] = (sources->body_power ? sources->body_power[k] : NAN) + state->wall[k];
     sources->power = state->power, sources->body_power = state->wall_power;
-    sources->light = state->result.insulated;
+    sources->absorbed = state->result.patches;
 }
 
 int light_absorb(struct light_state *state, const struct bed *bed, const struct walls *walls,
@@ -181,7 +181,6 @@ int light_absorb(struct light_state *state, const struct bed *bed, const struct 
                                   .light = options->light,
                                   .absorptivity = state->absorptivity,
                                   .body_absorptivity = state->of_walls,
-                                  .insulated = sources->insulated,
                                   .uniform = sources->uniform};
     state->result = (fibrad_light_result){.absorbed = state->absorbed,
                                           .absorbed_first = state->first,

@@ -196,14 +196,12 @@ typedef void fibrad_emissivity_law(void *context, const double *temperature, con
 int fibrad_radiation_settle(fibrad_radiation *radiation, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
                             void *context, double *emissivity, double *body_emissivity, fibrad_heat_result *result);
 
-/* Light from outside, and what absorbs it. Set the lights and the absorptivities. If all else is zero, no wall is
- * insulated. */
+/* Light from outside, and what absorbs it. Set the lights and the absorptivities. */
 typedef struct fibrad_light_sources {
     const fibrad_light *light; /* [lights] */
     uint32_t lights;
     const double *absorptivity;      /* [spheres], 0 to 1, of the light */
     const double *body_absorptivity; /* [bodies], 0 to 1; NULL without walls */
-    const unsigned char *insulated;  /* [bodies], as in fibrad_heat_sources; NULL: no wall is insulated */
     double tolerance;                /* as in fibrad_heat_sources; 0: 1e-5 */
     int uniform;                     /* as in fibrad_heat_sources */
 } fibrad_light_sources;
@@ -222,7 +220,7 @@ typedef struct fibrad_light_result {
     double error;                /* sigma K^4 L^2, out: estimated error of reflected */
     uint32_t sweeps;             /* out */
     uint32_t lights;             /* out: lights that were taken; after an error of a light, those before it */
-    const double *insulated; /* [patches], out: light of fibrad_heat_sources for the thermal radiation; NULL: none */
+    const double *patches;       /* [patches], out: absorbed of fibrad_heat_sources for the thermal radiation */
 } fibrad_light_result;
 
 /* What a bed absorbs of light from outside. All elements of `absorbed` and `body_absorbed`, `reflected` and
@@ -230,8 +228,8 @@ typedef struct fibrad_light_result {
  *
  * Absorbed light heats a surface. If the temperature of the surface is to be found, add the absorbed light to its
  * power. If the temperature is given, add the absorbed light to the net power. An insulated wall gives off the absorbed
- * light as thermal radiation: hand result->insulated to fibrad_radiation_solve as sources.light. This array lasts until
- * the next move or shine.
+ * light as thermal radiation, and a sphere that conducts is hotter where it is lit: hand result->patches to
+ * fibrad_radiation_solve as sources.absorbed. This array lasts until the next move or shine.
  *   Output   result
  *   Errors   as fibrad_light_empty and fibrad_radiation_solve
  *            _UNSOLVABLE: nothing absorbs the light, and it cannot leave

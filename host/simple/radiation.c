@@ -284,15 +284,15 @@ int fibrad_radiation_shine(fibrad_radiation *r, const fibrad_light_sources *s, f
     free(r->light);
     r->light = calloc(fibrad_heat_patches(r->heat) + (size_t)1, sizeof *r->light);
     if (!r->light) return FIBRAD_E_MEMORY;
-    result->incident = result->transmitted = 0, result->insulated = NULL;
+    result->incident = result->transmitted = 0, result->patches = NULL;
     int status = shine_all(r, s, facts.bodies, result);
     if (!status) status = fibrad_heat_sum_light(r->heat, r->light, result->absorbed_first, result->body_absorbed_first);
     for (uint32_t i = 0; i < r->n && !status; ++i) result->absorbed_first[i] *= s->absorptivity[i];
     for (uint32_t b = 0; b < facts.bodies && !status; ++b) result->body_absorbed_first[b] *= s->body_absorptivity[b];
     if (!status) status = absorb(r, s, facts.bodies, result);
-    if (status || !s->insulated) return status;
-    result->insulated = r->light;
-    return fibrad_heat_keep_light(r->heat, s->insulated, r->light);
+    if (status) return status;
+    result->patches = r->light;
+    return fibrad_heat_keep_light(r->heat, r->light);
 }
 
 void fibrad_radiation_describe(const fibrad_radiation *r, fibrad_scene_facts *facts, fibrad_fault *fault) {

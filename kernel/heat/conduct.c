@@ -7,6 +7,8 @@
  *
  *     w = g J,   1/g = 1/eps_l - 1,   1/eps_l = 1/eps + 1/(2 K l).
  *
+ * If light of the flux a is absorbed besides, w + a is conducted, and w = g (J - a/(2 K l)).
+ *
  * The mean over a surface has the emissivity eps itself. 1/(2 K) is called unevenness here. It is 0 for a sphere at one
  * temperature. */
 #include "heat/problem.h"
@@ -65,7 +67,7 @@ double fibrad_heat_find_unevenness(fibrad_heat *heat) {
         const double slope = t > 0 && heat->sources.emissivity[b] > 0 ? 4 * heat->sources.sigma * t * t * t : 0;
         const double uneven = heat->scene->r[b] * slope / heat->sources.conductivity[b];
         heat->sources.unevenness[b] = uneven > EVEN ? uneven : 0;
-        heat->sources.conducts = heat->sources.conducts || uneven > EVEN;
+        heat->sources.conducts = heat->sources.conducts || heat->sources.conductivity[b] < __builtin_inf();
         change = fibrad_max(change, fibrad_abs(heat->sources.unevenness[b] - last) / fibrad_max(last, EVEN));
     }
     return change;
@@ -124,14 +126,46 @@ static void find_emitted(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]
     for (uint32_t k = 1; k < NUMBERS; k++) by[k] *= heat->sources.unevenness[b] / degree_of(heat, k);
 }
 
+/* Filters the light per area that patches of a sphere have absorbed. Overwrites heat->solution.gathered. */
+static double filter_absorbed(fibrad_heat *heat, uint32_t b, const double by[NUMBERS], double *to) {
+    double *flux = heat->solution.gathered;
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+        flux[a] = heat->solution.area[a] > 0 ? heat->sources.absorbed[a] / heat->solution.area[a] : 0;
+    take_mean_off(heat, b, flux);
+    return filter_sphere(heat, b, by, flux, to);
+}
+
+double fibrad_heat_add_absorbed(fibrad_heat *heat, uint32_t b) {
+    double by[NUMBERS], damping[NUMBERS], *more = heat->solution.source;
+    find_emitted(heat, b, by);
+    filter_absorbed(heat, b, by, more);
+    take_mean_off(heat, b, more);
+    average_groups(heat, b, more);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+        heat->solution.net[a] += heat->solution.area[a] * more[a];
+    find_dampings(heat, b, damping);
+    for (uint32_t k = 0; k < NUMBERS; k++) by[k] *= by[k] * damping[k];
+    return filter_absorbed(heat, b, by, NULL);
+}
+
+/* Adds to the emissions of a sphere what light adds to them. */
+static void add_heated(fibrad_heat *heat, uint32_t b, double *emission) {
+    double by[NUMBERS], *more = heat->solution.source;
+    find_emitted(heat, b, by);
+    for (uint32_t k = 1; k < NUMBERS; k++) by[k] = (1 - by[k]) * heat->sources.unevenness[b] / degree_of(heat, k);
+    filter_absorbed(heat, b, by, more);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) emission[a] += more[a];
+}
+
 void fibrad_heat_find_spans(fibrad_heat *heat) {
-    double *emission = heat->solution.gathered;
+    double *emission = heat->solution.direction;
     for (uint32_t b = 0; b < heat->spheres; b++) {
         fibrad_heat_span *span = &heat->solution.span[b];
         double by[NUMBERS], low = 0, high = 0;
         if (fibrad_heat_conducts(heat, b)) {
             find_emitted(heat, b, by);
             filter_sphere(heat, b, by, heat->solution.radiosity, emission);
+            if (heat->sources.absorbed != NULL) add_heated(heat, b, emission);
             average_groups(heat, b, emission);
             for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
                 low = fibrad_min(low, emission[a]), high = fibrad_max(high, emission[a]);

@@ -141,13 +141,14 @@ typedef struct fibrad_heat_given {
     double *temperature;           /* K, [bodies], given or found; NaN: none */
     double *conductivity;          /* sigma K^3 L, [spheres] */
     double *unevenness;            /* [spheres], 4 r sigma T^3/conductivity; 0: at one temperature (conduct.c) */
-    bool conducts;                 /* some sphere has an unevenness above 0 */
+    bool conducts;                 /* some sphere has a finite conductivity */
     double rough;                  /* tolerance while unevennesses are of temperatures still to be found better */
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
     bool insulated[FIBRAD_HEAT_OTHERS];                                /* by body, from the first wall on */
     double *lift; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
     bool lifted[FIBRAD_BODIES_MAX]; /* [meshes], whether sides of the mesh have temperatures */
     const double *light;            /* [patches] power that arrives from outside, the caller's; NULL: none */
+    const double *absorbed;         /* [patches] light that patches have absorbed, the caller's; NULL: none */
     bool afloat;                    /* the sources fix differences of emissions, but not their level */
     double sigma, surroundings;
     double tolerance;
@@ -369,6 +370,11 @@ static inline uint32_t fibrad_heat_part_begin(const fibrad_heat *heat, uint32_t 
 /* Whether the scene is still the one in which the beams were followed. */
 static inline bool fibrad_heat_scene_kept(const fibrad_heat *heat) { return heat->scene->hash == heat->hash; }
 
+/* Whether a body is an insulated wall. */
+static inline bool fibrad_heat_is_insulated(const fibrad_heat *heat, uint32_t body) {
+    return body >= heat->spheres && heat->sources.insulated[body - heat->spheres];
+}
+
 /* Whether the surface of a body has more than one temperature. */
 static inline bool fibrad_heat_conducts(const fibrad_heat *heat, uint32_t body) {
     return body < heat->spheres && heat->sources.unevenness[body] > 0;
@@ -386,10 +392,22 @@ double fibrad_heat_find_unevenness(fibrad_heat *heat);
  * heat->solution.gathered of the sphere. */
 double fibrad_heat_pattern_residual(fibrad_heat *heat, uint32_t sphere, double shift);
 
+/* Adds to the net flows of a sphere what stands for the pattern of light that its patches have absorbed. Returns the
+ * sum over the patches of residual times change of a J that is even. */
+double fibrad_heat_add_absorbed(fibrad_heat *heat, uint32_t sphere);
+
+/* The light that a sphere has absorbed. */
+static inline double fibrad_heat_absorbed(const fibrad_heat *heat, uint32_t sphere) {
+    double sum = 0;
+    for (uint32_t a = heat->first[sphere]; a < heat->first[sphere + 1] && heat->sources.absorbed != NULL; a++)
+        sum += heat->sources.absorbed[a];
+    return sum;
+}
+
 /* The sum over the patches of a sphere of A p g p, p being the search direction without its mean. */
 double fibrad_heat_pattern_curvature(const fibrad_heat *heat, uint32_t sphere);
 
-/* Finds heat->solution.span of all spheres. The function overwrites heat->solution.gathered. */
+/* Finds heat->solution.span of all spheres. The function overwrites heat->solution.gathered, source and direction. */
 void fibrad_heat_find_spans(fibrad_heat *heat);
 
 /* solve.c: prepares the first sweep of a solution. */

@@ -321,13 +321,8 @@ static void read_errors(const fibrad_heat *heat, fibrad_heat_result *result) {
     result->error_beams = fibrad_sqrt((all - patches) / spheres);
 }
 
-/* Whether a body is a wall or a mesh that is insulated. */
-static bool is_insulated(const fibrad_heat *heat, uint32_t b) {
-    return b >= heat->spheres && heat->sources.insulated[b - heat->spheres];
-}
-
 static bool is_found(const fibrad_heat *heat, uint32_t b) {
-    return heat->sources.hold[b] >= 0 || is_insulated(heat, b);
+    return heat->sources.hold[b] >= 0 || fibrad_heat_is_insulated(heat, b);
 }
 
 /* The square of the error of a body's emission from beams, as its own sample tells. */
@@ -388,8 +383,8 @@ static double temperature_error_of(const fibrad_heat *heat, const heat_errors *e
     if (!is_found(heat, b) || !(slope > 0) || !(own.area > 0)) return 0;
     const double eps = heat->sources.emissivity[b], held = fibrad_max(0, heat->sources.hold[b]);
     const double share = held > 0 ? eps * own.area / (eps * own.area + held) : 1;
-    const double emission = is_insulated(heat, b) ? own.mean : heat->sources.emission[b];
-    const double changed = is_insulated(heat, b) ? level->changed : squared(changed_emission(heat, b));
+    const double emission = fibrad_heat_is_insulated(heat, b) ? own.mean : heat->sources.emission[b];
+    const double changed = fibrad_heat_is_insulated(heat, b) ? level->changed : squared(changed_emission(heat, b));
     const double missed =
         (missed_emission(heat, errors, b, own.area) + level->missed[b >= heat->spheres] * distance_of(errors, &own)) /
         2;
@@ -405,10 +400,10 @@ typedef struct measured {
 } measured;
 
 /* The temperature in the centre of a sphere. It is q r^2/(6 k) above the mean of the surface, for a source of q per
- * volume that is uniform inside. */
+ * volume that is uniform inside. Such a source gives off the net power and the light that is absorbed. */
 static measured centre_of(const fibrad_heat *heat, uint32_t b, measured surface, double power_error) {
     const double slope = 1 / (8 * FIBRAD_PI * heat->scene->r[b] * heat->sources.conductivity[b]);
-    return (measured){surface.value - slope * heat->solution.power[b],
+    return (measured){surface.value - slope * (heat->solution.power[b] + fibrad_heat_absorbed(heat, b)),
                       fibrad_sqrt(squared(surface.error) + squared(slope * power_error))};
 }
 
@@ -460,7 +455,8 @@ static bool read_temperatures(const fibrad_heat *heat, const fibrad_heat_result 
     for (uint32_t k = 0; k < heat->given_bodies; k++) {
         const uint32_t b = fibrad_heat_body(heat, heat->slot[k]);
         if (heat->sources.hold[b] >= 0) found = found && heat->sources.temperature[b] >= 0;
-        const double t = is_insulated(heat, b) ? insulated_temperature(heat, b) : heat->sources.temperature[b];
+        const double t =
+            fibrad_heat_is_insulated(heat, b) ? insulated_temperature(heat, b) : heat->sources.temperature[b];
         if (result->body_temperature != NULL) result->body_temperature[k] = t;
         if (result->body_temperature_error != NULL)
             result->body_temperature_error[k] = temperature_error_of(heat, &errors, &level, b, t);
@@ -595,7 +591,7 @@ static double flux_beyond_patches(const fibrad_heat *heat, uint32_t m) {
 
 static double temperature_of_side(const fibrad_heat *heat, uint32_t b, const fibrad_mesh_cut *cut,
                                   const side_sum *sum) {
-    if (is_insulated(heat, b))
+    if (fibrad_heat_is_insulated(heat, b))
         return sum->area > 0 ? fibrad_heat_temperature(heat, sum->radiosity / sum->area) : __builtin_nan("");
     const double *lift = fibrad_heat_lift(heat, b);
     if (lift == NULL) return heat->sources.temperature[b];

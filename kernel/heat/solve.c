@@ -17,7 +17,8 @@
  * its group by a constant: eps times the difference between the emissions of the patch and of the mesh. The system for
  * the rest of J is the same.
  *
- * Light from outside is part of the net flow of a patch. It never changes.
+ * Light from outside is part of the net flow of a patch. So is light that an insulated wall has absorbed. It never
+ * changes.
  *
  * A body of unknown temperature gives off S - h E. Let q be its net power and <J> the mean of J over its surface. From
  * q = A eps/rho (<J> - E) = h E - S follows
@@ -206,12 +207,18 @@ static double lifted_squares(const fibrad_heat *heat, uint32_t b) {
     return sum;
 }
 
+/* Light that arrives at a patch of body b: from outside, or what an insulated wall sends out again. */
+static double light_on(const fibrad_heat *heat, uint32_t b, uint32_t patch) {
+    const bool again = heat->sources.absorbed != NULL && fibrad_heat_is_insulated(heat, b);
+    return (heat->sources.light != NULL ? heat->sources.light[patch] : 0) + (again ? heat->sources.absorbed[patch] : 0);
+}
+
 /* The sum over the patches of a body of the square of light per area times area and reflectivity. */
 static double light_squares(const fibrad_heat *heat, uint32_t b) {
     double sum = 0;
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && heat->sources.light != NULL; a++)
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
         if (heat->solution.area[a] > 0)
-            sum += (1 - heat->sources.emissivity[b]) * heat->sources.light[a] * heat->sources.light[a] /
+            sum += (1 - heat->sources.emissivity[b]) * light_on(heat, b, a) * light_on(heat, b, a) /
                    heat->solution.area[a];
     return sum;
 }
@@ -240,6 +247,12 @@ static void find_scale(fibrad_heat *heat) {
     heat->solution.smallest = ROUNDING * fibrad_max(largest, heat->solution.scale);
 }
 
+/* Adds the light that spheres which conduct have absorbed to their net flows and to the scale. */
+static void heat_by_light(fibrad_heat *heat) {
+    for (uint32_t b = 0; b < heat->spheres && heat->sources.absorbed != NULL; b++)
+        if (fibrad_heat_conducts(heat, b)) heat->solution.scale += fibrad_heat_add_absorbed(heat, b);
+}
+
 /* Whether there are temperatures that lead to the given powers. This is so if a temperature or a `hold` is given.
  * Otherwise the powers and the light must add up to zero. */
 #define BALANCED 1e-9
@@ -248,8 +261,9 @@ static bool solvable(fibrad_heat *heat) {
     bool held = false;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         held = held || emitting(heat, b) > 0;
-        const double light = heat->sources.light != NULL ? sum_over(heat, b, heat->sources.light) : 0;
         if (heat->sources.hold[b] == 0) sum += heat->sources.drive[b], sizes += fibrad_abs(heat->sources.drive[b]);
+        double light = 0;
+        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) light += light_on(heat, b, a);
         sum += light, sizes += light;
     }
     heat->sources.afloat = !held;
@@ -461,10 +475,12 @@ static int end_sweep(fibrad_heat *heat) {
         send_radiosities(heat, FIBRAD_HEAT_FIRST);
         return FIBRAD_OK;
     case FIBRAD_HEAT_FIRST:
-        for (uint32_t a = 0; a < heat->patches; a++)
-            heat->solution.net[a] = heat->sources.light != NULL ? sum[a] + heat->sources.light[a] : sum[a];
+        for (uint32_t b = 0; b < heat->bodies; b++)
+            for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+                heat->solution.net[a] = sum[a] + light_on(heat, b, a);
         if (!solvable(heat)) return FIBRAD_E_UNSOLVABLE;
         find_scale(heat);
+        heat_by_light(heat);
         search_on(heat, true);
         return FIBRAD_OK;
     default:

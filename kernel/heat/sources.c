@@ -110,7 +110,7 @@ static int sources_why(const fibrad_heat *heat, const fibrad_heat_sources *s) {
         return FIBRAD_WHY_MISSING;
     if (!is_temperature(s->surroundings)) return FIBRAD_WHY_SURROUNDINGS;
     if (!is_sigma(s->sigma)) return FIBRAD_WHY_SIGMA;
-    if (!light_valid(heat, s->light)) return FIBRAD_WHY_LIGHT;
+    if (!light_valid(heat, s->light) || !light_valid(heat, s->absorbed)) return FIBRAD_WHY_LIGHT;
     if (s->uniform && s->conductivity != NULL) return FIBRAD_WHY_UNIFORM;
     return s->tolerance >= 0 && s->tolerance < 1 ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_TOLERANCE;
 }
@@ -314,7 +314,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     }
     set_walls(heat, sources, middle);
     for (uint32_t b = 0; b < heat->bodies; b++) unknown = unknown || heat->sources.hold[b] == 0;
-    heat->sources.light = sources->light;
+    heat->sources.light = sources->light, heat->sources.absorbed = sources->absorbed;
     heat->sources.sigma = sources->sigma, heat->sources.surroundings = sources->surroundings;
     heat->solution.group = sources->uniform ? UINT32_MAX : FIBRAD_HEAT_FOUR;
     heat->sources.tolerance = sources->tolerance > 0 ? sources->tolerance : unknown ? FREE_TOLERANCE : HEAT_TOLERANCE;

@@ -1,8 +1,10 @@
 /* shine.c - light from outside on the patches of a heat problem. SPDX-License-Identifier: MIT
  *
  * The light that a sphere takes is known exactly. The lit points of its window tell on which of its patches the light
- * falls. A wall takes the light that the spheres leave to it. Rays tell on which of its patches this light falls. */
+ * falls. On a free sphere each patch gets exactly what falls on it. A wall takes the light that the spheres leave to
+ * it. Rays tell on which of its patches this light falls. */
 #include "base/random.h"
+#include "heat/fine.h"
 #include "heat/problem.h"
 #include "heat/wall_patch.h"
 #include "light/light.h"
@@ -11,6 +13,7 @@
 
 #define SHINE_SPHERES 64u     /* of a task */
 #define SHINE_RAYS    131072u /* of a light */
+#define SHINE_RULE    4u      /* points along an edge of a patch, for what falls on it */
 
 uint32_t fibrad_heat_patches(const fibrad_heat *heat) { return heat != NULL ? heat->patches : 0; }
 
@@ -18,28 +21,91 @@ uint32_t fibrad_heat_shine_tasks(const fibrad_heat *heat) {
     return heat != NULL ? (heat->spheres + SHINE_SPHERES - 1) / SHINE_SPHERES : 0;
 }
 
+/* How the points of windows stand for patches of the cube, for light of one direction. The weight of a patch is what
+ * falls on it if nothing is before the sphere, over the number of points there. A patch without a point is lit if the
+ * point next to it is. */
+typedef struct spread {
+    double weight[FIBRAD_HEAT_PATCHES_MAX];
+    uint32_t next[FIBRAD_HEAT_PATCHES_MAX]; /* FIBRAD_NONE: the patch has points, or is on the dark side */
+} spread;
+
 /* A sphere in the light: its place and window, and what of the light it takes. */
 typedef struct shining {
     const fibrad_heat *heat;
     const fibrad_footprint *f;
+    const spread *how;
     uint32_t place;
     double uv[2], r;
     bool whole; /* all that is open is lit */
 } shining;
 
-/* The patch of a sphere at a place in its window. */
-static uint32_t patch_in_window(const shining *s, double x, double y) {
+static spread *shares_of(const fibrad_workspace *space) { return (void *)fibrad_light_scratch(space); }
+
+/* The patch of the cube at a place in the window, and the place on the face of the cube. */
+static uint32_t patch_in_window(const shining *s, double x, double y, double at[2]) {
     const double up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
-    double normal[3], at[2];
+    double normal[3];
     for (int a = 0; a < 3; a++) normal[a] = x * s->f->frame[a] + y * s->f->frame[3 + a] + up * s->f->frame[6 + a];
     const uint32_t face = fibrad_patch_place(normal, s->heat->side, at);
-    const uint32_t patch = fibrad_patch_number(face, (uint32_t)at[0], (uint32_t)at[1], s->heat->side);
+    return fibrad_patch_number(face, (uint32_t)at[0], (uint32_t)at[1], s->heat->side);
+}
+
+/* Adds a power times the weight of a point to the patch there, which may be fine. Returns the weight. */
+static double shine_on_point(const shining *s, double x, double y, double power, double *hits) {
+    double at[2];
+    const uint32_t patch = patch_in_window(s, x, y, at);
+    if (hits == NULL) return s->how->weight[patch];
     const uint32_t fine = s->heat->division.root[s->place] != FIBRAD_NONE
                               ? fibrad_heat_fine_on_face(s->heat, s->place, patch, at[0], at[1])
                               : FIBRAD_NONE;
-    if (fine == FIBRAD_NONE) return s->heat->first[s->place] + patch;
-    return fibrad_heat_first_fine(s->heat, s->place) +
-           (fine - FIBRAD_HEAT_FOUR * s->heat->division.first_four[s->place]);
+    const uint32_t on = fine == FIBRAD_NONE ? s->heat->first[s->place] + patch
+                                            : fibrad_heat_first_fine(s->heat, s->place) +
+                                                  (fine - FIBRAD_HEAT_FOUR * s->heat->division.first_four[s->place]);
+    hits[on] += power * s->how->weight[patch];
+    return s->how->weight[patch];
+}
+
+/* What light of flux 1 brings to a patch of the cube of sphere 0, if nothing is before it. middle: out: where it falls
+ * in the window, times that. */
+static double falls_on(const fibrad_heat *heat, const double frame[9], uint32_t patch, double middle[2]) {
+    const fibrad_heat_four four = {.own = patch / FIBRAD_HEAT_FOUR};
+    double sum = 0, at[3], n[3];
+    middle[0] = middle[1] = 0;
+    for (uint32_t k = 0; k < SHINE_RULE * SHINE_RULE; k++) {
+        const double u = (k / SHINE_RULE + .5) / SHINE_RULE, v = (k % SHINE_RULE + .5) / SHINE_RULE;
+        const double area =
+            fibrad_heat_fine_point(heat, &four, .5 * ((patch >> 1 & 1) + u), .5 * ((patch & 1) + v), at, n);
+        const double falls = area * fibrad_max(0, n[0] * frame[6] + n[1] * frame[7] + n[2] * frame[8]);
+        for (int axis = 0; axis < 2; axis++)
+            middle[axis] += falls * (n[0] * frame[3 * axis] + n[1] * frame[3 * axis + 1] + n[2] * frame[3 * axis + 2]);
+        sum += falls;
+    }
+    return sum;
+}
+
+/* The point of a window that is next to a place. */
+static uint32_t next_point(const fibrad_disc_points *set, double x, double y) {
+    uint32_t next = 0;
+    double least = __builtin_inf();
+    for (uint32_t p = 0; p < FIBRAD_SUNLIT_POINTS; p++) {
+        const double dx = set->x[p] - x, dy = set->y[p] - y;
+        if (dx * dx + dy * dy < least) least = dx * dx + dy * dy, next = p;
+    }
+    return next;
+}
+
+static void find_spread(const fibrad_heat *heat, const fibrad_footprint *f, spread *how) {
+    const shining s = {.heat = heat, .f = f};
+    fibrad_disc_points set;
+    double at[2];
+    fibrad_zero(how, sizeof *how);
+    if (fibrad_disc_points_get(FIBRAD_SUNLIT_POINTS, &set) != FIBRAD_OK) return;
+    for (uint32_t p = 0; p < FIBRAD_SUNLIT_POINTS; p++) how->weight[patch_in_window(&s, set.x[p], set.y[p], at)]++;
+    for (uint32_t a = 0; a < heat->config.patches; a++) {
+        const double count = how->weight[a], falls = falls_on(heat, f->frame, a, at);
+        how->weight[a] = count > 0 ? falls / count : falls;
+        how->next[a] = count > 0 || !(falls > 0) ? FIBRAD_NONE : next_point(&set, at[0] / falls, at[1] / falls);
+    }
 }
 
 static bool is_lit(const shining *s, const fibrad_points *points, uint32_t p) {
@@ -56,17 +122,30 @@ static void middle_of_corners(const fibrad_areas *areas, double middle[2]) {
     for (int a = 0; a < 2; a++) middle[a] = corners > 0 ? sum[a] / corners : 0;
 }
 
-/* Spreads a power over the patches that the lit points of a window are on. */
+/* Spreads a power over the patches that the lit points of a window are on. Returns the sum of the weights. */
+static double spread_on_patches(const shining *s, const fibrad_points *points, double power, double *hits) {
+    double sum = 0;
+    for (uint32_t p = 0; p < points->count; p++)
+        if (is_lit(s, points, p)) sum += shine_on_point(s, points->set.x[p], points->set.y[p], power, hits);
+    for (uint32_t a = 0; a < s->heat->config.patches; a++) {
+        if (s->how->next[a] == FIBRAD_NONE || fibrad_heat_is_divided(s->heat, s->place, a / FIBRAD_HEAT_FOUR)) continue;
+        if (!is_lit(s, points, s->how->next[a])) continue;
+        sum += s->how->weight[a];
+        if (hits != NULL) hits[s->heat->first[s->place] + a] += power * s->how->weight[a];
+    }
+    return sum;
+}
+
 static void spread_on_sphere(const shining *s, const fibrad_points *points, const fibrad_areas *areas, double power,
                              double *hits) {
-    uint32_t count = 0;
-    for (uint32_t p = 0; p < points->count; p++) count += is_lit(s, points, p);
-    for (uint32_t p = 0; p < points->count && count > 0; p++)
-        if (is_lit(s, points, p)) hits[patch_in_window(s, points->set.x[p], points->set.y[p])] += power / count;
-    if (count > 0) return;
-    double middle[2];
+    const double sum = spread_on_patches(s, points, 0, NULL);
+    double middle[2], at[2];
+    if (sum > 0) {
+        spread_on_patches(s, points, power / sum, hits);
+        return;
+    }
     middle_of_corners(areas, middle);
-    hits[patch_in_window(s, middle[0], middle[1])] += power;
+    hits[s->heat->first[s->place] + patch_in_window(s, middle[0], middle[1], at)] += power;
 }
 
 /* Adds what the sphere at a place takes in one direction. */
@@ -77,7 +156,7 @@ static int shine_on_sphere(const fibrad_heat *heat, fibrad_workspace *space, uin
     fibrad_points points = {.count = 0};
     const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
     double area[FIBRAD_SLOTS] = {0}, open = 0, sum = 0;
-    shining s = {.heat = heat, .f = f, .place = place, .r = scene->r[place]};
+    shining s = {.heat = heat, .f = f, .how = shares_of(space), .place = place, .r = scene->r[place]};
     const int status =
         FIBRAD_VERSION_OF(fibrad_sunlit, scene->facts.isa)(scene, space, place, f->frame, &points, &open);
     if (status != FIBRAD_OK || !(open > 0)) return status;
@@ -92,7 +171,13 @@ static int shine_on_sphere(const fibrad_heat *heat, fibrad_workspace *space, uin
     return FIBRAD_OK;
 }
 
-/* The same with work memory that grows. When it grows, the footprint is lost. */
+/* Makes footprint and spread of direction k of a light. */
+static void make_ready(const fibrad_heat *heat, fibrad_workspace *space, const fibrad_light *light, uint32_t k) {
+    fibrad_footprint_make(fibrad_light_footprint(space), heat->scene, light, k);
+    find_spread(heat, fibrad_light_footprint(space), shares_of(space));
+}
+
+/* The same with work memory that grows. When it grows, footprint and spread are lost. */
 static int shine_and_grow(const fibrad_heat *heat, fibrad_work *work, fibrad_workspace **space,
                           const fibrad_light *light, uint32_t k, uint32_t place, double *hits,
                           fibrad_light_ends *kept) {
@@ -101,7 +186,7 @@ static int shine_and_grow(const fibrad_heat *heat, fibrad_work *work, fibrad_wor
     while (status == FIBRAD_E_WORK) {
         status = fibrad_work_grow(work, space);
         if (status != FIBRAD_OK) return status;
-        fibrad_footprint_make(fibrad_light_footprint(*space), heat->scene, light, k);
+        make_ready(heat, *space, light, k);
         status = shine_on_sphere(heat, *space, place, flux, hits, kept);
     }
     return status;
@@ -114,13 +199,13 @@ int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_l
         return FIBRAD_E_ARGUMENT;
     if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     int status = fibrad_light_check(heat->scene, light, NULL);
-    if (status == FIBRAD_OK) status = fibrad_light_open(heat->scene, work, 0, &space);
+    if (status == FIBRAD_OK) status = fibrad_light_open(heat->scene, work, sizeof(spread), &space);
     if (status != FIBRAD_OK) return status;
     const uint32_t begin = task * SHINE_SPHERES;
     const uint32_t end = heat->spheres - begin < SHINE_SPHERES ? heat->spheres : begin + SHINE_SPHERES;
     *kept = (fibrad_light_ends){0};
     for (uint32_t k = 0; k < fibrad_light_count(light) && status == FIBRAD_OK; k++) {
-        fibrad_footprint_make(fibrad_light_footprint(space), heat->scene, light, k);
+        make_ready(heat, space, light, k);
         for (uint32_t place = begin; place < end && status == FIBRAD_OK; place++)
             status = shine_and_grow(heat, work, &space, light, k, place, hits, kept);
     }
@@ -203,16 +288,19 @@ int fibrad_heat_sum_light(const fibrad_heat *heat, const double *hits, double *p
     return FIBRAD_OK;
 }
 
-int fibrad_heat_keep_light(const fibrad_heat *heat, const unsigned char *insulated, double *hits) {
-    if (heat == NULL || hits == NULL || (heat->given_bodies > 0 && insulated == NULL)) return FIBRAD_E_ARGUMENT;
+/* Leaves in hits what the patches of a body absorb. All of them together absorb its power. */
+static void keep_on_body(const fibrad_heat *heat, uint32_t b, double *hits) {
+    double sum = 0;
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) sum += fibrad_max(0, heat->solution.net[a]);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && sum > 0; a++)
+        hits[a] = fibrad_max(0, heat->solution.net[a]) / sum * fibrad_max(0, heat->solution.power[b]);
+}
+
+int fibrad_heat_keep_light(const fibrad_heat *heat, double *hits) {
+    if (heat == NULL || hits == NULL) return FIBRAD_E_ARGUMENT;
     if (heat->solution.phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     fibrad_zero(hits, heat->patches * sizeof *hits);
-    for (uint32_t b = 0; b < heat->given_bodies; b++) {
-        const uint32_t own = fibrad_heat_body(heat, heat->slot[b]);
-        double sum = 0;
-        for (uint32_t a = heat->first[own]; a < heat->first[own + 1]; a++) sum += fibrad_max(0, heat->solution.net[a]);
-        for (uint32_t a = heat->first[own]; a < heat->first[own + 1] && sum > 0 && insulated[b]; a++)
-            hits[a] = fibrad_max(0, heat->solution.net[a]) / sum * fibrad_max(0, heat->solution.power[own]);
-    }
+    for (uint32_t b = 0; b < heat->spheres; b++) keep_on_body(heat, b, hits);
+    for (uint32_t k = 0; k < heat->given_bodies; k++) keep_on_body(heat, fibrad_heat_body(heat, heat->slot[k]), hits);
     return FIBRAD_OK;
 }

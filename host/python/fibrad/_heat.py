@@ -144,8 +144,7 @@ class Heat(Bed):
                  ids: Optional[ArrayLike] = None, threads: Optional[int] = None, progress: Optional[Progress] = None):
         super().__init__(x, r, box, walls, ids, heat_config(directions, points, patches), Call(threads, progress))
 
-    def shine(self, lights: Union[Light, Iterable[Light]], absorptivity: ArrayLike, *, wall_absorptivity: Any = None,
-              insulated: Collection[str] = ()) -> Absorbed:
+    def shine(self, lights: Union[Light, Iterable[Light]], absorptivity: ArrayLike, *, wall_absorptivity: Any = None) -> Absorbed:
         """What spheres and walls absorb of light from outside.
 
         Parameters
@@ -156,8 +155,6 @@ class Heat(Bed):
             Absorptivities of the spheres for the light, 0 to 1. The rest is reflected.
         wall_absorptivity : mapping or float
             Absorptivities of the walls by name, or one for all, 0 to 1. Needed with walls.
-        insulated : names, optional
-            Walls that are insulated in `solve`. They give off as thermal radiation what they absorb.
 
         Returns
         -------
@@ -172,20 +169,18 @@ class Heat(Bed):
         container, names, n = self._container, self._packing.names, self.n
         shares = per_sphere("absorptivity", absorptivity, n, 0, 1, names)
         of_walls = container.per_wall("wall_absorptivity", wall_absorptivity, 0, 1, frozenset())
-        container.known("insulated", frozenset(insulated))
-        closed = np.array([wall in insulated for wall in container.names], np.uint8)
         array = lights_of(lights)
         arrays = {name: np.zeros(n) for name in ("absorbed", "absorbed_first", "absorbed_error")}
         arrays |= {name: np.zeros(len(container.names)) for name in ("body_absorbed", "body_absorbed_first")}
         sources = LightSources(light=array, lights=len(array), absorptivity=pointer(shares),
-                               body_absorptivity=pointer(of_walls), insulated=pointers({"insulated": closed})["insulated"])
+                               body_absorptivity=pointer(of_walls))
         result = LightResult(**{name: pointer(values) for name, values in arrays.items()})
         self._use(library.fibrad_radiation_shine, self._packing, sources, result)
         walls = {name: dict(zip(container.names, arrays[name].tolist())) for name in ("body_absorbed", "body_absorbed_first")}
         return Absorbed(spheres=arrays["absorbed"], first=arrays["absorbed_first"], errors=arrays["absorbed_error"],
                         walls=walls["body_absorbed"], walls_first=walls["body_absorbed_first"], incident=result.incident,
                         transmitted=result.transmitted, reflected=result.reflected, error=result.error,
-                        insulated=frozenset(insulated), _patches=result.insulated, _of=self)
+                        _patches=result.patches, _of=self)
 
     def solve(self, temperature: Optional[ArrayLike], emissivity: Union[ArrayLike, Callable[[Any], ArrayLike]], *,
               power: Optional[ArrayLike] = None, surroundings: Optional[float] = None, wall_temperature: Any = None,
@@ -255,14 +250,12 @@ class Heat(Bed):
         conducts = None if conductivity is None else per_sphere("conductivity", conductivity, n, 5e-324, math.inf, names)
         if conducts is not None and uniform:
             raise refuse("conductivity is given, and uniform is True: with one radiosity a sphere has no sides")
-        if conducts is not None and light is not None:
-            raise refuse("conductivity and light are given: which side of a sphere light heats is not known yet")
         of_bodies = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
         if light is not None:
-            if light._of is not self or light.insulated != frozenset(insulated):
-                raise refuse("light is of another bed, or was absorbed with other insulated walls")
+            if light._of is not self:
+                raise refuse("light is of another bed")
             powers = add(powers, light.spheres)
-            walls_absorb = np.array([0.0 if wall in light.insulated else light.walls[wall] for wall in container.names])
+            walls_absorb = np.array([0.0 if wall in insulated else light.walls[wall] for wall in container.names])
             of_bodies["body_power"] = add(of_bodies.get("body_power"), walls_absorb)
         if surroundings is None and not container.closed():
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
@@ -274,7 +267,7 @@ class Heat(Bed):
                               conductivity=pointer(conducts),
                               **pointers(of_bodies))
         if light is not None:
-            sources.light = patches_pointer(light)
+            sources.absorbed = patches_pointer(light)
         of_spheres = {name: np.zeros(n) for name in _OF_SPHERES}
         of_walls = {name: np.zeros(len(container.names)) for name in ("body_power", "body_temperature", "body_error")}
         result = HeatResult(**{name: pointer(array) for name, array in (of_spheres | of_walls).items()})

@@ -68,7 +68,7 @@ HeatConfig = _structure("heat_config", ("directions points patches parts", c_uin
 HeatSources = _structure("heat_sources", ("temperature emissivity power hold reference", DOUBLES),
                          ("body_temperature body_emissivity body_power", DOUBLES), ("insulated", POINTER(c_ubyte)),
                          ("surroundings sigma tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int),
-                         ("side_temperature light conductivity", DOUBLES))
+                         ("side_temperature light conductivity absorbed", DOUBLES))
 HeatResult = _structure("heat_result", ("power body_power", DOUBLES), ("surroundings_power", c_double),
                         ("temperature body_temperature power_error body_error", DOUBLES),
                         ("temperature_error body_temperature_error", DOUBLES),
@@ -81,12 +81,11 @@ LightStructure = _structure("light", ("direction", c_double * 3), ("flux half_an
                             ("shape", c_int), ("centre", c_double * 3), ("radius", c_double),
                             ("low high", c_double * 2))
 LightSources = _structure("light_sources", ("light", POINTER(LightStructure)), ("lights", c_uint32),
-                          ("absorptivity body_absorptivity", DOUBLES), ("insulated", POINTER(c_ubyte)),
-                          ("tolerance", c_double), ("uniform", c_int))
+                          ("absorptivity body_absorptivity", DOUBLES), ("tolerance", c_double), ("uniform", c_int))
 LightResult = _structure("light_result", ("absorbed absorbed_first absorbed_error", DOUBLES),
                          ("body_absorbed body_absorbed_first body_absorbed_error", DOUBLES),
                          ("incident transmitted reflected error", c_double), ("sweeps lights", c_uint32),
-                         ("insulated", c_void_p))
+                         ("patches", c_void_p))
 TransientConfig = _structure("transient_config", ("method", c_int), ("exchange", ExchangeRule), ("heat", HeatConfig))
 Span = _structure("span", ("temperature capacity", DOUBLES), ("duration", c_double),
                   ("body_temperature surroundings", DOUBLES), ("step tolerance", c_double),

@@ -62,8 +62,6 @@ class Absorbed:
     """[W] leaves after reflections, on whichever side."""
     error: float
     """[W] estimated error of `reflected`."""
-    insulated: frozenset[str]
-    """Walls that give off as thermal radiation what they absorb."""
     _patches: Any
     _of: Any
 
