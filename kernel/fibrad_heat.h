@@ -110,9 +110,9 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * metres long, a conductivity of k_s [W/(m K)] is given as k_s/metres. Emissivities of 0 and 1 are allowed. `uniform`
  * is not allowed.
  *
- * `absorbed` is light that patches have absorbed. Of a sphere with a finite conductivity it heats the lit patches more
- * than others. An insulated wall sends it out at the same patch as thermal radiation. On all other bodies it is not
- * used. `power` of a sphere and body_power must contain the sum of it.
+ * `absorbed` is light that patches have absorbed. On a sphere with a finite conductivity it heats the lit patches more
+ * than others. An insulated wall sends it out at the same patch as thermal radiation. For other spheres and walls
+ * `absorbed` is not used. `power` of a sphere and body_power of a wall must contain the sum over its patches.
  *
  * The residual is relative to the differences of emission. tolerance = 0 stands for 1e-3, or for 1e-5 if a temperature
  * is unknown and its hold is 0. side_temperature is in the order of the caller's triangles. If sides share a patch,

@@ -94,8 +94,8 @@ int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fib
  *      The net powers of this solution are the light that is absorbed. The net power of the surroundings is the light
  *      that is reflected.
  *   3. Call fibrad_heat_keep_light. `hits` then holds the light that patches absorb. Thermal radiation has a second
- *      solution. Hand `hits` to it as `absorbed`. The light that a surface absorbs is added to the power of the
- * surface. Insulated walls have no power of their own. */
+ *      solution. Hand `hits` to it as `absorbed`, and add the light that a surface absorbs to the power of the surface.
+ *      Insulated walls have no power of their own. */
 
 /* Number of patches of a heat problem.
  *   Errors   0 if heat is NULL */
