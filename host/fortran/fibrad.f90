@@ -428,7 +428,7 @@ module fibrad
         real(c_double), allocatable :: wall_escaped(:) ! (walls), factors from walls to the surroundings
         real(c_double), allocatable :: wall_error(:)   ! (walls), estimated error of wall_wall and wall_escaped
         real(c_double), allocatable :: node_emissivity(:) ! (n), of spheres that conduct; else not allocated
-        integer :: directions = 0 ! most directions of a row
+        integer :: directions = 0 ! largest number of directions of a row
         integer :: threads = 0    ! threads used
         real(c_double) :: seconds = 0           ! s, of computing
         real(c_double) :: closure_error = 0     ! largest |sum - 1| of a raw row
@@ -595,9 +595,9 @@ contains
         call move_alloc(node, factors%node_emissivity)
     end subroutine fibrad_exchange_factors
 
-    ! How far the emission of each sphere is carried, from which the conductivity of a bed follows. Of spheres that
-    ! conduct: how far a path gets in a flight. In a periodic box equal spheres of diameter d, solid fraction phi and
-    ! emissivity e have k = 4 sigma T^3 3 phi e sum(square(axis, :))/(n d); if they conduct, e is left out.
+    ! How far the emission of each sphere is carried. The conductivity of a bed follows from it. If spheres conduct, the
+    ! result is how far a path gets in a flight. In a periodic box equal spheres of diameter d, solid fraction phi and
+    ! emissivity e have k = 4 sigma T^3 3 phi e sum(square(axis, :))/(n d). If they conduct, e is left out.
     !   square        (3, n) [L^2] mean square displacement along each axis, from centre to centre
     !   error         (3, n) [L^2] its estimated standard error
     !   absorbed      (n) fraction of the emission that spheres absorb; if they conduct, of paths that stay in the bed
