@@ -306,6 +306,9 @@ if "$LMP" -h | grep -q 'heat/flow'; then
     near "$work/serial.out" "$work/heatflow.out" 1e-10 "frozen bed by fix heat/flow against one scene"
     run 2 falls heatflow.lmp data "$work/quarter.data" boundary "p p f" falls yes conducts 2e5 steps 2000 heat 10
     balance falls 10e-3 1 1e-6 200 "energy of a falling bed with conduction"
+    run 2 stores heatflow.lmp data "$work/quarter.data" boundary "p p f" falls yes conducts 2e5 steps 2000 heat 10 \
+        capacity "capacity 1e5" stored 1e5
+    balance stores 10e-3 1 1e-6 200 "energy of a falling bed and a floor that stores heat"
 fi
 
 # ---- a box that is empty at first --------------------------------------------------------------------------------------

@@ -444,6 +444,7 @@ void FixFibrad::setup(int) {
 }
 
 void FixFibrad::post_run() {
+    follow_heatflow();
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(insitu, &facts);
     const double rows = facts.seconds_rows - before.seconds_rows, powers = facts.seconds_powers - before.seconds_powers;
@@ -475,10 +476,9 @@ void FixFibrad::end_of_step() {
     if (update->ntimestep == set_up) return;
     if (update->ntimestep % rows_every == 0) make_rows();
     if (!heat_every) return;
-    const bool lammps_steps = temperature == "temperature"; // particles then get powers until the next ones
-    if (lammps_steps) heat_walls(update->ntimestep - powers_at);
+    follow_heatflow();
     find_powers();
-    if (lammps_steps) return;
+    if (temperature == "temperature") return;
     heat_walls(heat_every);
     double *t = vector(temperature);
     const std::vector<double> capacity = values(cp);
@@ -643,6 +643,13 @@ void FixFibrad::heat_walls(bigint steps) {
     std::vector<double> t = wall_temperatures();
     wall_heat.step(totals.body, update->dt * (double)steps, &t);
     for (size_t k = 0; k < t.size(); k++) wall_kelvins[k].value = t[k];
+}
+
+// LAMMPS heats particles by the present powers until there are new ones. So are walls.
+void FixFibrad::follow_heatflow() {
+    if (temperature != "temperature") return;
+    heat_walls(update->ntimestep - powers_at);
+    powers_at = update->ntimestep;
 }
 
 std::vector<double> FixFibrad::temperatures() {

@@ -102,6 +102,7 @@ class FixFibrad : public Fix {
     void make_rows(bool follow = false);
     void find_powers();
     void heat_walls(bigint steps);
+    void follow_heatflow();
     void check_step(const std::vector<double> &temperature); // refuses steps of heat that are not stable
     void check_walls();
     void judge_step(const std::string &name, double ratio, bool &told_of);
