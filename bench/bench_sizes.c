@@ -5,7 +5,8 @@
  * The bench writes CSV to standard output. The beds are periodic random beds, solid fraction 0.55. In each bed, spheres
  * of radius 1 and of radius `ratio` take up equal volumes. Rows have 100 directions and exact areas, on one thread. For
  * each size there are the number of rows, the entries of a row, the processor time of a row and that of an entry. The
- * last column is the time of an entry over that in the bed of equal spheres.
+ * last column is the time of an entry over that in the bed of equal spheres. The size "whole" stands for all rows of
+ * the bed at once, by silhouettes.
  *
  * Then all rows of a shell are computed, averaged, with 50 directions, by one thread and by two. The shell has a sphere
  * of radius 1 and 20,000 spheres of radius 5e-4, at random 0.6e-3 to 21e-3 above its surface. */
@@ -37,8 +38,24 @@ static void print(double ratio, const char *size, const struct cost *cost, doubl
     fflush(stdout);
 }
 
-/* Large spheres come first in the bed. Every `skip`th small sphere is enough. */
-static int bench(double ratio, uint32_t large, uint32_t skip, double *equal) {
+/* All rows at once. whole: time of an entry, which the bed of equal spheres sets. */
+static void bench_whole(double ratio, const struct bed *bed, double *whole) {
+    const fibrad_spheres spheres = bench_spheres(bed);
+    const fibrad_scene_config config = bench_config(bed, FIBRAD_ISA_BEST);
+    const fibrad_bed_options options = {.beam = &(fibrad_beam_rule){.directions = DIRECTIONS}};
+    fibrad_run run = {.threads = 1};
+    fibrad_bed_factors *factors;
+    const double begun = bench_thread_seconds();
+    bench_check("whole", fibrad_view_factors(&config, &spheres, &options, &run, &factors));
+    const struct cost cost = {bench_thread_seconds() - begun, (double)factors->matrix.start[bed->n], bed->n};
+    if (ratio <= 1) *whole = cost.seconds / cost.entries;
+    print(ratio, "whole", &cost, *whole);
+    fibrad_bed_free(factors);
+}
+
+/* Large spheres come first in the bed. Every `skip`th small sphere is enough. equal: times of an entry of single rows,
+ * and of all rows at once. */
+static int bench(double ratio, uint32_t large, uint32_t skip, double equal[2]) {
     struct bed bed;
     bed_init(&bed);
     const int status =
@@ -55,10 +72,11 @@ static int bench(double ratio, uint32_t large, uint32_t skip, double *equal) {
     for (uint32_t i = split; i < bed.n; i += skip) add(&small_cost, scene, &work, i, DIRECTIONS, &row);
     const double scale = (double)(bed.n - split) / small_cost.rows, entries = small_cost.entries * scale;
     const struct cost all = {large_cost.seconds + scale * small_cost.seconds, large_cost.entries + entries, bed.n};
-    if (ratio <= 1) *equal = all.seconds / all.entries;
-    if (split > 0) print(ratio, "large", &large_cost, *equal);
-    if (split > 0) print(ratio, "small", &small_cost, *equal);
-    print(ratio, "all", &all, *equal);
+    if (ratio <= 1) equal[0] = all.seconds / all.entries;
+    if (split > 0) print(ratio, "large", &large_cost, equal[0]);
+    if (split > 0) print(ratio, "small", &small_cost, equal[0]);
+    print(ratio, "all", &all, equal[0]);
+    bench_whole(ratio, &bed, &equal[1]);
     free(work.memory.block);
     free(row.col);
     free(row.f);
@@ -107,10 +125,10 @@ int main(int argc, char **argv) {
     const bool quick = argc == 2 && strcmp(argv[1], "quick") == 0;
     bench_preamble("bench_sizes: periodic random beds, 100 directions, exact areas", 1);
     puts("ratio,size,rows,entries_per_row,us_per_row,us_per_entry,over_equal");
-    double equal = 1;
-    int status = bench(1, quick ? 200 : 2000, 1, &equal);
-    if (!status) status = bench(4, quick ? 4 : 40, quick ? 4 : 2, &equal);
-    if (!status && !quick) status = bench(10, 10, 10, &equal);
+    double equal[2] = {1, 1};
+    int status = bench(1, quick ? 200 : 2000, 1, equal);
+    if (!status) status = bench(4, quick ? 4 : 40, quick ? 4 : 2, equal);
+    if (!status && !quick) status = bench(10, 10, 10, equal);
     if (!status) status = bench_shell(quick ? 500 : 20000);
     return status;
 }
