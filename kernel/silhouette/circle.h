@@ -13,7 +13,7 @@
 #include "silhouette/pairs.h"
 #include "work/work.h"
 
-/* Discs of one side that a circle, or a sector of a circle, may have. */
+/* The largest number of discs of one side that a circle, or a stretch of a circle, may have. */
 #define FIBRAD_CIRCLE_DISCS 240u
 #define FIBRAD_CIRCLE_ROOM  (FIBRAD_CIRCLE_DISCS + 3 * FIBRAD_LANES_MAX)
 #define FIBRAD_CIRCLE_ENDS  (4 * FIBRAD_CIRCLE_ROOM)
@@ -28,9 +28,9 @@ typedef struct fibrad_line {
     double frame[9];
 } fibrad_line;
 
-/* Discs behind or before a sphere, in any order, as floats know them: to a bound. */
+/* Discs behind or before a sphere, in any order. Floats give bounds of what they cover. */
 typedef struct fibrad_circle_side {
-    _Alignas(64) float low[FIBRAD_CIRCLE_ROOM]; /* the depth away from the sphere, in its radii, is between these */
+    _Alignas(64) float low[FIBRAD_CIRCLE_ROOM]; /* bounds of the depth away from the sphere, in its radii */
     float high[FIBRAD_CIRCLE_ROOM];
     uint32_t inner[FIBRAD_CIRCLE_ROOM]; /* sectors of the stretch that the disc certainly covers whole, as bits, ... */
     uint32_t outer[FIBRAD_CIRCLE_ROOM]; /* ... and those of which it may cover some; 0: the disc does not count */
@@ -38,7 +38,7 @@ typedef struct fibrad_circle_side {
     uint32_t last;                      /* end of the list */
     double known;                       /* all discs down to this depth are found, in radii of the sphere */
     double sense;                       /* 1: before the sphere; -1: behind it */
-    bool closed, open;                  /* nothing, or something, of the stretch is certainly open to that depth */
+    bool closed, open;                  /* down to that depth certainly nothing, something, is open */
     uint32_t nothing;                   /* the name of what lies beyond all spheres */
 } fibrad_circle_side;
 
@@ -46,13 +46,12 @@ typedef struct fibrad_circle_side {
 typedef struct fibrad_circle_discs {
     _Alignas(64) double u[FIBRAD_CIRCLE_ROOM]; /* centre relative to that of the sphere */
     double v[FIBRAD_CIRCLE_ROOM], depth[FIBRAD_CIRCLE_ROOM];
-    double from[FIBRAD_CIRCLE_ROOM]; /* the arc that the disc covers of the stretch; ends beyond all places are outside
-                                        it */
+    double from[FIBRAD_CIRCLE_ROOM]; /* the arc that the disc covers; ends outside the stretch lie beyond all places */
     double to[FIBRAD_CIRCLE_ROOM];   /* less than `from` if the disc covers the place where the stretch begins */
     double weight[FIBRAD_CIRCLE_ROOM];   /* units per area */
     float key[FIBRAD_CIRCLE_ROOM];       /* the depth, rounded */
-    uint32_t rank[FIBRAD_CIRCLE_ROOM];   /* the nearest has rank 0 */
-    uint32_t number[FIBRAD_CIRCLE_ROOM]; /* of the disc that has a rank */
+    uint32_t rank[FIBRAD_CIRCLE_ROOM];   /* 0 for the nearest disc */
+    uint32_t number[FIBRAD_CIRCLE_ROOM]; /* the disc of each rank */
     uint32_t slot[FIBRAD_CIRCLE_ROOM];
     uint32_t count;
 } fibrad_circle_discs;
@@ -61,8 +60,8 @@ typedef struct fibrad_circle_discs {
 typedef struct fibrad_circle_ends {
     _Alignas(64) double at[FIBRAD_CIRCLE_ENDS];
     float key[FIBRAD_CIRCLE_ENDS];       /* the place, rounded */
-    uint64_t own[FIBRAD_CIRCLE_ENDS];    /* the disc whose end it is, as a bit, ... */
-    uint64_t nearer[FIBRAD_CIRCLE_ENDS]; /* ... and those of its side that are nearer */
+    uint64_t own[FIBRAD_CIRCLE_ENDS];    /* the bit of the disc to which the end belongs */
+    uint64_t nearer[FIBRAD_CIRCLE_ENDS]; /* the bits of the discs of the same side that are nearer */
     uint32_t count;
 } fibrad_circle_ends;
 
@@ -75,7 +74,7 @@ typedef struct fibrad_circle_pieces {
     uint32_t count;
 } fibrad_circle_pieces;
 
-/* Near spheres, as work->near has them, and from element near.capacity on those that a march has found. The last two
+/* The near spheres of work->near. From element near.capacity on there are those that a march has found. The last two
  * elements, `nothing` and nothing + 1, stand for what lies beyond all spheres, behind and before. The element before
  * them, `nowhere`, is a sphere so far away that no circle touches it. It fills vectors up. */
 typedef struct fibrad_circle_near {
@@ -93,7 +92,7 @@ typedef struct fibrad_circle_near {
 typedef struct fibrad_circle_stretch {
     double begin, end;   /* places */
     double sectors;      /* 30 over its length */
-    double u, v, radius; /* a disc that contains it, about a point of it; infinity: the whole circle */
+    double u, v, radius; /* a disc that contains it, about a point of it; infinity: it is the whole circle */
 } fibrad_circle_stretch;
 
 /* What scratch memory holds while circles of one task are followed. */
@@ -109,21 +108,21 @@ typedef struct fibrad_circles {
     uint32_t homes, marched; /* ends of the lists of near spheres: those of shells, those that marches have found */
     bool images;             /* whether some near spheres are images of others */
     bool periodic;
-    bool apart;    /* what lies beyond all spheres has a name of its own for each line and sense */
-    uint32_t half; /* of the line in hand: 0: even, 1: odd */
+    bool apart;    /* what lies beyond all spheres has a different name for each line and sense */
+    uint32_t half; /* whether the line in hand is even, 0, or odd, 1 */
     const fibrad_scene *scene;
     double origin[3]; /* L */
     double scale;     /* 1/L, a power of two */
     double period[3]; /* of the scene, scaled */
-    double grid;      /* a number whose ulp projected centres are multiples of */
+    double grid;      /* projected centres are multiples of the ulp of this number */
     /* the sphere in hand, and what is to be followed of its circles */
     double at[3], r;
     double begin, end, step; /* places, and the usual length of a stretch */
-    double next;             /* where the line in hand goes on */
+    double next;             /* the place from which the line in hand goes on */
     /* the line in hand */
     const double *frame;
     double across[9];   /* the frame, ... */
-    double shift[3][3]; /* ... and one period of each axis along it */
+    double shift[3][3]; /* one period of each axis, projected onto that frame */
     double centre[3];   /* projected */
     double farthest;    /* along periodic axes spheres farther apart than this exchange nothing */
     fibrad_circle_stretch stretch;

@@ -7,10 +7,10 @@
 #include "silhouette/circle_lanes.h"
 #include "work/neighbours_lanes.h"
 
-#define NOWHERE 9.0    /* beyond the end of a circle, and some less */
-#define TINY    1e-200 /* squares that count as 0: between these and 0 numbers lose digits */
+#define NOWHERE 9.0    /* a place beyond the end of a circle, as are places a little below it */
+#define TINY    1e-200 /* smaller squares count as 0, since numbers near 0 lose digits */
 
-/* The number of the lowest bit that is set. Not 0. */
+/* The number of the lowest bit that is set. x is not 0. */
 static inline uint32_t lowest_bit(uint64_t x) { return (uint32_t)__builtin_ctzll(x); }
 
 /* ---- discs and their arcs --------------------------------------------------------------------------------------- */
@@ -24,7 +24,8 @@ static inline vd component_across(const fibrad_circles *c, int axis, const vd ba
     return at - c->centre[axis];
 }
 
-/* Of spheres at the same depth, the lower id is in front; of images of one sphere, the one less shifted. */
+/* Of two spheres at the same depth, the one with the lower id is in front. Of two images of one sphere, the one that is
+ * shifted less is in front. */
 static bool tie_lies_ahead(const fibrad_workspace *work, const fibrad_circles *c, uint32_t place) {
     const uint64_t rank = fibrad_scene_rank(work->scene, c->near.sphere[place]);
     const uint64_t own = fibrad_scene_rank(work->scene, work->place);
@@ -40,8 +41,8 @@ static inline vd circle_place(vd cosine, vd sine, vd size) {
     return vd_select(vd_lt(cosine, vd_set1(0)), 2 - tangent, tangent);
 }
 
-/* Leaves of the arcs of discs what lies on the stretch in hand. Ends outside it are moved to `far`, a place beyond all
- * ends for each disc; `to` stays less than `from` where the disc covers the beginning of the stretch. */
+/* Cuts the arcs of discs to the stretch in hand. Ends outside it are moved to `far`, a place beyond all ends for each
+ * disc. `to` stays less than `from` if the disc covers the beginning of the stretch. */
 static inline void cut_to_stretch(const fibrad_circle_stretch *stretch, vd far, vm wraps, vd *from, vd *to, vm *covers,
                                   vm *touches) {
     const vd begin = vd_set1(stretch->begin), end = vd_set1(stretch->end);
@@ -82,7 +83,7 @@ static inline void find_arcs(const fibrad_circles *c, double sense, vd u, vd v, 
     *to = vd_select(covers, vd_set1(NOWHERE - 3 + sense), vd_select(touches, end, far + 1));
 }
 
-/* Finds the discs of the near spheres that are listed as seen. */
+/* Finds the discs of the near spheres that are listed in seen->slot. */
 static void find_discs(const fibrad_workspace *work, const fibrad_circles *c, uint32_t number,
                        fibrad_circle_discs *disc) {
     _Alignas(64) static const double lane[8] = {0, 1, 2, 3, 4, 5, 6, 7};
@@ -122,7 +123,8 @@ static void find_discs(const fibrad_workspace *work, const fibrad_circles *c, ui
 #define ALL_AROUND 0x3fffffffu
 #define BOTH_ENDS  0x20000001u /* the first sector and the last one */
 
-/* Bounds of errors of floats: of a length, over the sum of coordinates and radius, and of a place, in sectors. */
+/* LENGTH_ERROR bounds the error of a length, over the sum of coordinates and radius. PLACE_ERROR bounds the error of a
+ * place, in sectors. */
 #define LENGTH_ERROR 4e-7f
 #define PLACE_ERROR  0.1f
 
@@ -152,8 +154,8 @@ static inline void find_sectors(const fibrad_circle_stretch *stretch, vf from, v
     *outer = vn_select(passed, touched | vn_set1(BOTH_ENDS), touched);
 }
 
-/* Finds, in floats, which sectors some discs certainly cover and which they may touch. A disc of which floats say too
- * little covers none and may touch all. Lengths are in radii of the sphere in hand. */
+/* Finds, in floats, which sectors some discs certainly cover and which they may touch. If the floats are not accurate
+ * enough for a disc, it covers none and may touch all. Lengths are in radii of the sphere in hand. */
 static inline void look_at_discs(const fibrad_circles *c, fibrad_circle_side *side, uint32_t to, vf u, vf v, vf depth,
                                  vf r) {
     const float per = (float)c->stretch.sectors, gap = 2 * PLACE_ERROR / per;
@@ -174,7 +176,7 @@ static inline void look_at_discs(const fibrad_circles *c, fibrad_circle_side *si
     find_sectors(&c->stretch, from, end, &inner, &outer);
     vf high = depth + error;
     inner = vn_select(covers, all, vn_select(vague, none, inner));
-    inner = vn_select(vf_lt(vf_set1((float)side->known), high), none, inner); /* deeper ones may be hidden by others */
+    inner = vn_select(vf_lt(vf_set1((float)side->known), high), none, inner); /* unknown discs may hide it */
     vn_store(side->inner + to, inner);
     vn_store(side->outer + to, vn_select(misses, none, vn_select(covers | vague, all, outer)));
     vf_storeu(side->low + to, depth - error);
@@ -188,7 +190,7 @@ static void end_side(fibrad_circle_side *side, uint32_t last) {
     fibrad_zero(side->outer + last, FIBRAD_LANES_MAX * sizeof *side->outer);
 }
 
-/* Where more discs may be added: whole vectors of each instruction set. */
+/* The place where more discs may be added. It leaves whole vectors of each instruction set. */
 static uint32_t side_end(const fibrad_circle_side *side) {
     return (side->last + FIBRAD_LANES_MAX - 1) / FIBRAD_LANES_MAX * FIBRAD_LANES_MAX;
 }
@@ -210,7 +212,7 @@ static void add_discs(const fibrad_circles *c, fibrad_circle_side *side, const u
     end_side(side, first + count);
 }
 
-/* Leaves discs out that touch no sector. */
+/* Removes discs that touch no sector. */
 static void leave_touching(fibrad_circle_side *side) {
     uint32_t n = 0;
     for (uint32_t k = 0; k < side->last; k += VF_LANES) {
@@ -226,7 +228,7 @@ static void leave_touching(fibrad_circle_side *side) {
 
 #define BLOCK (VF_LANES == 16 ? 1 : VF_LANES == 8 ? 2 : 4) /* vectors that share what is the same in all lanes */
 
-/* The sectors that discs certainly nearer than each disc cover together. */
+/* For each disc finds the sectors that certainly nearer discs cover together. */
 static inline void find_covered(const fibrad_circle_side *side, uint32_t *covered) {
     const size_t count = side->last;
     for (size_t k = 0; k < count; k += BLOCK * VF_LANES) {
@@ -248,7 +250,7 @@ static inline void find_covered(const fibrad_circle_side *side, uint32_t *covere
     }
 }
 
-/* Finds the discs of a side but those whose sectors are all covered by nearer ones. */
+/* Finds the discs of a side, except those whose sectors nearer discs cover. */
 static void find_seen(const fibrad_workspace *work, const fibrad_circles *c, uint32_t number,
                       fibrad_circle_discs *seen) {
     _Alignas(64) uint32_t covered[FIBRAD_CIRCLE_ROOM];
@@ -262,7 +264,7 @@ static void find_seen(const fibrad_workspace *work, const fibrad_circles *c, uin
     find_discs(work, c, number, seen);
 }
 
-/* Whether the discs found of a side leave certainly nothing open, or certainly something. */
+/* Finds whether the known discs of a side certainly leave nothing open, or certainly leave something open. */
 static void judge_side(fibrad_circle_side *side) {
     const size_t count = side->last;
     uint32_t inner = 0, outer = 0;
@@ -288,8 +290,9 @@ static bool disc_nearer(const fibrad_workspace *work, const fibrad_circles *c, c
     return false;
 }
 
-/* Sorts numbers from 0 on by their keys: counts, in lanes, how many keys lie before each. False: some keys are equal,
- * and the order is not written. Keys and ranks are written up to the next block, and keys four beyond it. */
+/* Sorts numbers from 0 on by their keys. To do so, it counts for each key, in lanes, how many keys are less. False:
+ * some keys are equal, and the order is not written. Keys and ranks are written up to the next block, and keys four
+ * beyond it. */
 static inline bool order_keys(float *key, size_t count, uint32_t *rank, uint32_t *order) {
     size_t sum = 0;
     for (size_t b = 0; b < BLOCK; b++) vf_storeu(key + count + b * VF_LANES, vf_set1(__builtin_inff()));
@@ -317,7 +320,7 @@ static inline bool order_keys(float *key, size_t count, uint32_t *rank, uint32_t
     return sum == count * (count - 1) / 2; /* equal keys share the lowest of their ranks */
 }
 
-/* Finds which disc is the nearest, the second nearest ... of a side. */
+/* Sorts the discs of a side from the nearest to the farthest. */
 static void order_seen(const fibrad_workspace *work, const fibrad_circles *c, fibrad_circle_discs *disc, bool ahead) {
     const uint32_t count = disc->count;
     uint32_t *order = disc->number;
@@ -337,11 +340,11 @@ static void order_seen(const fibrad_workspace *work, const fibrad_circles *c, fi
 
 /* ---- pieces ----------------------------------------------------------------------------------------------------- */
 
-/* Discs are bits of a word, one half for each side, in the order of their depths. */
+/* Each disc is a bit of a word, which has one half for each side. The bits are in the order of the depths. */
 #define HALF  32u
-#define RANKS 30u /* so many discs of a side have a bit; the next one stands for the surroundings */
+#define RANKS 30u /* number of discs of a side that have a bit; the next bit stands for the surroundings */
 
-/* Lists the ends of all arcs, and after them a place beyond all. */
+/* Lists the ends of all arcs, and after them a place beyond all ends. */
 static void list_ends(fibrad_circles *c) {
     fibrad_circle_ends *ends = &c->ends;
     size_t n = 0;
@@ -358,8 +361,8 @@ static void list_ends(fibrad_circles *c) {
     ends->count = (uint32_t)n;
 }
 
-/* Finds the bits of the discs whose ends are listed. Returns those that cover where the stretch begins; what lies
- * beyond all spheres covers all of it. */
+/* Finds the bits of the discs whose ends are listed. Returns the bits of those that cover the beginning of the stretch.
+ * What lies beyond all spheres covers the whole stretch. */
 static uint64_t find_bits(fibrad_circles *c) {
     uint64_t covers = 0;
     size_t n = 0;
@@ -401,7 +404,7 @@ static void find_pieces(fibrad_circles *c) {
     }
 }
 
-/* The nearest of a set of discs, the surroundings among them. */
+/* The nearest disc of a set. The surroundings are one of the discs. */
 static uint32_t nearest_in_set(const uint64_t *set) {
     uint32_t word = 0;
     while (set[word] == 0) word++;
@@ -421,7 +424,7 @@ static void sort_ends(const fibrad_circle_ends *ends, uint32_t *order) {
     order[ends->count] = ends->count;
 }
 
-/* The same as find_pieces for any number of discs, and for ends at one place. */
+/* Does the same as find_pieces, for any number of discs, and for ends at one place. */
 static void find_pieces_of_many(fibrad_circles *c) {
     const fibrad_circle_ends *ends = &c->ends;
     fibrad_circle_pieces *to = &c->pieces;
@@ -464,12 +467,12 @@ static void divide_stretch(fibrad_circles *c) {
         find_pieces_of_many(c);
     fibrad_circle_pieces *piece = &c->pieces;
     uint32_t k = piece->count;
-    do /* computed, too, in whole vectors */
+    do /* vectors are computed as a whole, so these must have values */
         piece->at[k] = c->stretch.end, piece->first[k] = piece->next[k] = 0;
     while (++k % VD_LANES != 0);
 }
 
-/* The greatest depth that is met on a side; infinity: something beyond all spheres is. */
+/* The greatest depth that is met on a side. Infinity: the lines of some piece meet no sphere. */
 static double deepest_met(const fibrad_circles *c, int side) {
     const uint32_t *met = side == 0 ? c->pieces.first : c->pieces.next;
     double most = 0;
@@ -517,12 +520,12 @@ static void find_angles(fibrad_circles *c) {
     }
 }
 
-/* A double in which the lowest digit counts whole numbers; whole numbers from -2^51 to 2^51 are added to it. */
+/* the lowest digit of this double counts whole numbers; numbers from -2^51 to 2^51 are added to it */
 #define UNITS 0x1.8p52
 
-/* The areas that arcs add, in units of the pairs. About a point o, that of an arc is
- *   r^2 (t2 - t1)/2 - r (o_x (sin t2 - sin t1) - o_y (cos t2 - cos t1))/2.
- * The origin of a pair is the centre of the smaller sphere; of equal ones, of the one that is met first. */
+/* Finds the areas that arcs add, in units of the pairs. About a point o, the area of an arc is r^2 (t2 - t1)/2 - r (o_x
+ * (sin t2 - sin t1) - o_y (cos t2 - cos t1))/2. The origin of a pair is the centre of the smaller sphere. If both are
+ * equal, it is the centre of the one that is met first. */
 static void find_areas(fibrad_circles *c) {
     const fibrad_circle_discs *behind = &c->seen[0], *ahead = &c->seen[1];
     fibrad_circle_pieces *piece = &c->pieces;
@@ -545,7 +548,7 @@ static void find_areas(fibrad_circles *c) {
     }
 }
 
-/* The whole number added to UNITS. */
+/* The whole number that was added to UNITS. */
 static inline int64_t units_of(double sum) {
     const double none = UNITS;
     int64_t bits, zero;
@@ -562,8 +565,8 @@ static double piece_area(const fibrad_circles *c, uint32_t k, const fibrad_circl
     return (area - half * (disc->u[origin] * sine - disc->v[origin] * cosine)) * disc->weight[origin];
 }
 
-/* Spheres that lie farther apart than lines are followed do not exchange what a piece takes from both. It is taken from
- * what each exchanges with what lies beyond all spheres. */
+/* If two spheres lie farther apart than lines are followed, they exchange nothing. A piece then takes its area from
+ * what each of them exchanges with what lies beyond all spheres. */
 static void part_distant(fibrad_circles *c, fibrad_pair_table *table) {
     const fibrad_circle_discs *behind = &c->seen[0], *ahead = &c->seen[1];
     fibrad_circle_pieces *piece = &c->pieces;
@@ -579,7 +582,8 @@ static void part_distant(fibrad_circles *c, fibrad_pair_table *table) {
     }
 }
 
-/* Adds the areas of all pieces. The table is asked for its slots ahead, since they are seldom in the nearest cache. */
+/* Adds the areas of all pieces. The slots of the table are fetched ahead, since they are seldom in the nearest
+ * cache. */
 static void add_pieces(fibrad_circles *c, fibrad_pair_table *table) {
     const fibrad_circle_discs *behind = &c->seen[0], *ahead = &c->seen[1];
     const fibrad_circle_pieces *piece = &c->pieces;
@@ -601,7 +605,8 @@ static void add_pieces(fibrad_circles *c, fibrad_pair_table *table) {
 
 /* ---- the circle ------------------------------------------------------------------------------------------------- */
 
-/* Takes over a near sphere j. place: relative to the sphere in hand, in radii of that sphere, as r is. */
+/* Enters a near sphere j as element k. place: relative to the sphere in hand, in radii of that sphere. r: in these
+ * radii, too. */
 static void take_near(const fibrad_workspace *work, fibrad_circles *c, uint32_t k, uint32_t j, const double place[3],
                       double r) {
     const fibrad_scene *scene = work->scene;
@@ -620,7 +625,7 @@ static void take_near(const fibrad_workspace *work, fibrad_circles *c, uint32_t 
     }
 }
 
-/* Takes over the near spheres of the shell. Those of radius 0 fill it up. */
+/* Enters the near spheres of the shell. Elements of radius 0 fill the shell up. */
 static void take_shell(const fibrad_workspace *work, fibrad_circles *c) {
     const fibrad_near *near = &work->near;
     c->homes = near->end[0];
@@ -633,7 +638,7 @@ static void take_shell(const fibrad_workspace *work, fibrad_circles *c) {
     }
 }
 
-/* Takes over the spheres that a march has found, as near ones. Returns the first of their places. */
+/* Enters the spheres that a march has found among the near ones. Returns the first of their places. */
 static uint32_t take_marched(const fibrad_workspace *work, fibrad_circles *c, const double frame[9]) {
     const fibrad_discs *disc = &work->disc;
     const uint32_t first = c->marched;
@@ -646,7 +651,7 @@ static uint32_t take_marched(const fibrad_workspace *work, fibrad_circles *c, co
     return first;
 }
 
-/* Adds what the sphere exchanges with a near one, over all lines or since the last time. */
+/* Adds what the sphere has exchanged with some near ones since the last call. */
 static void add_sums(fibrad_circles *c, uint32_t own, uint32_t from, uint32_t to, fibrad_pair_table *table) {
     for (uint32_t k = from; k < to; k++) {
         if (c->near.sum[0][k] == 0 && c->near.sum[1][k] == 0) continue;
@@ -655,7 +660,7 @@ static void add_sums(fibrad_circles *c, uint32_t own, uint32_t from, uint32_t to
     }
 }
 
-/* What a march must look at. Seen from behind, the second axis of the frame is turned round. */
+/* The part of the beam that a march must look at. Seen from behind, the second axis of the frame is reversed. */
 static fibrad_tube tube_of(const fibrad_circles *c, double sense) {
     const fibrad_circle_stretch *stretch = &c->stretch;
     const double inverse = 1 / c->r;
@@ -676,7 +681,7 @@ static uint32_t cull_shell(fibrad_workspace *work, const fibrad_circles *c, doub
     return n;
 }
 
-/* Leaves of the discs found on a side those that are seen somewhere on the stretch. */
+/* Keeps, of the known discs of a side, those that are seen somewhere on the stretch. */
 static void prune(const fibrad_workspace *work, fibrad_circles *c, uint32_t number) {
     fibrad_circle_side *side = &c->side[number];
     fibrad_circle_discs *seen = &c->seen[number];
@@ -694,7 +699,7 @@ static void prune(const fibrad_workspace *work, fibrad_circles *c, uint32_t numb
     leave_touching(side);
 }
 
-/* Adds discs just found, as many at a time as there is room for. False: too many touch the stretch. */
+/* Adds discs that were just found, as many at a time as there is room for. False: too many discs touch the stretch. */
 static bool add_found(const fibrad_workspace *work, fibrad_circles *c, uint32_t number, uint32_t *place,
                       uint32_t count) {
     fibrad_circle_side *side = &c->side[number];
@@ -715,9 +720,9 @@ static bool add_found(const fibrad_workspace *work, fibrad_circles *c, uint32_t 
 }
 
 #define SHORTEST 1e-6 /* stretch of a circle */
-#define TOO_MANY (-1) /* discs touch the stretch of the circle, which must be shorter */
+#define TOO_MANY (-1) /* the error: too many discs touch the stretch, which must be shorter */
 
-/* Finds the discs of the shell on a side. Error: TOO_MANY */
+/* Finds the discs of the shell on a side. Error: TOO_MANY. */
 static int find_in_shell(fibrad_workspace *work, fibrad_circles *c, uint32_t number) {
     uint32_t *place = work->disc.near;
     const double sense = c->side[number].sense;
@@ -726,7 +731,7 @@ static int find_in_shell(fibrad_workspace *work, fibrad_circles *c, uint32_t num
     return add_found(work, c, number, place, count) ? FIBRAD_OK : TOO_MANY;
 }
 
-/* Finds the discs of a march on a side. Error: TOO_MANY */
+/* Finds the discs of a march on a side. Error: TOO_MANY. */
 static int find_by_march(fibrad_workspace *work, fibrad_circles *c, uint32_t number) {
     fibrad_circle_side *side = &c->side[number];
     const fibrad_tube tube = tube_of(c, side->sense);
@@ -745,8 +750,8 @@ static int find_by_march(fibrad_workspace *work, fibrad_circles *c, uint32_t num
     return add_found(work, c, number, place, count) ? FIBRAD_OK : TOO_MANY;
 }
 
-/* Finds the discs of the shell, then of marches on sides that are not done. Few circles need more than the shell.
- * TOO_MANY */
+/* Finds the discs of the next shell. If there is none, finds those of a march on each side that is not done. Few
+ * circles need more than one shell. Error: TOO_MANY. */
 static int find_more(fibrad_workspace *work, fibrad_circles *c, uint32_t shell, const bool done[2]) {
     int status = FIBRAD_OK;
     if (shell == 0 && work->near.shells == 0 && !work->near.full) {
@@ -761,13 +766,13 @@ static int find_more(fibrad_workspace *work, fibrad_circles *c, uint32_t shell, 
     return status;
 }
 
-/* Whether there is no disc deeper than all that are known. */
+/* Whether there is no disc deeper than the known ones. */
 static bool at_horizon(const fibrad_workspace *work, const fibrad_circle_side *side, const double d[3]) {
     const double w[3] = {side->sense * d[0], side->sense * d[1], side->sense * d[2]};
     return side->known >= work->clear && side->known >= fibrad_near_horizon(work, w);
 }
 
-/* Finds what is met on the stretch, and on which sides nothing can come before it. */
+/* Finds what is met on the stretch, and on which sides deeper discs cannot change this. */
 static void meet(fibrad_workspace *work, fibrad_circles *c, bool done[2]) {
     bool open = false, closed = true;
     for (int s = 0; s < 2; s++) {
@@ -776,7 +781,7 @@ static void meet(fibrad_workspace *work, fibrad_circles *c, bool done[2]) {
         open = open || (!done[s] && c->side[s].open);
         closed = closed && (done[s] || c->side[s].open);
     }
-    if (open && closed) return; /* it is known already where to look further */
+    if (open && closed) return; /* it is known already on which sides to look further */
     for (uint32_t s = 0; s < 2; s++) {
         find_seen(work, c, s, &c->seen[s]);
         order_seen(work, c, &c->seen[s], s == 1);
@@ -816,7 +821,7 @@ static double chord_between(const double a[2], const double b[2]) {
     return fibrad_sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]));
 }
 
-/* Begins a stretch of the circle, at most to a place. */
+/* Begins a stretch of the circle between two places. */
 static void begin_stretch(fibrad_circles *c, double begin, double end) {
     c->stretch = (fibrad_circle_stretch){.begin = begin, .end = end, .radius = __builtin_inf()};
     c->stretch.sectors = SECTORS / (end - begin);
@@ -835,7 +840,7 @@ static void begin_stretch(fibrad_circles *c, double begin, double end) {
     }
 }
 
-/* Adds what a stretch of the present sphere's circle contributes along the present line. Error: TOO_MANY */
+/* Adds the contribution of a stretch of the present sphere's circle along the present line. Error: TOO_MANY. */
 static int follow(fibrad_workspace *work, fibrad_circles *c, double begin, double end, fibrad_pair_table *table) {
     bool done[2] = {false, false};
     const uint32_t first_marched = c->marched;
@@ -857,7 +862,7 @@ static int follow(fibrad_workspace *work, fibrad_circles *c, double begin, doubl
     return FIBRAD_OK;
 }
 
-/* Follows the line in hand as far as the table has room. Stretches become shorter where too many discs touch them. */
+/* Follows the line in hand as long as the table has room. If too many discs touch a stretch, it is made shorter. */
 static int follow_line(fibrad_workspace *work, fibrad_circles *c, fibrad_pair_table *table) {
     double step = c->step;
     while (c->next < c->end && fibrad_pair_room(table, FIBRAD_CIRCLE_ENDS)) {

@@ -11,7 +11,7 @@ static uint32_t against(uint32_t lines) { return (lines + 3) / 4 * 4; }
 static void LANED(frame_of_window)(const void *lines, uint32_t k, uint32_t points, double frame[9]) {
     const fibrad_open_lines *open = lines;
     const uint32_t first = against(open->lines), back = k >= first, line = back ? k - first : k;
-    (void)points; /* windows are not turned against each other */
+    (void)points; /* a window is not turned against the others */
     for (int axis = 0; axis < 9; axis++) {
         const double along = line < open->lines ? open->line[line].frame[axis] : 0;
         frame[axis] = back && axis >= 3 ? -along : along;

@@ -14,7 +14,7 @@
 #define FIBRAD_PAIR_OPEN 0x80000000u
 static inline bool fibrad_pair_opens(uint32_t name) { return name >= FIBRAD_PAIR_OPEN; }
 
-/* A pair, in a collection. first < second, positions in scene order or names. */
+/* A pair in a collection. `first` is less than `second`. Both are positions in scene order, or names. */
 typedef struct fibrad_pair {
     uint32_t first, second;
     int64_t sum[2]; /* over even and over odd lines */
@@ -26,7 +26,7 @@ static inline fibrad_pair *fibrad_pairs_of(const fibrad_pairs *pairs) {
     return block == NULL ? NULL : (fibrad_pair *)(void *)(block + ((size_t) - (uintptr_t)block & 7));
 }
 
-/* Sums of pairs that a task meets often: open addressing. */
+/* The sums of a pair in the table of a task. The table has open addressing. */
 typedef struct fibrad_pair_sum {
     uint64_t key; /* first << 32 | second; UINT64_MAX: free */
     int64_t sum[2];
@@ -38,24 +38,24 @@ typedef struct fibrad_pair_table {
     int shift; /* 64 less the bits of `slots` */
 } fibrad_pair_table;
 
-/* Whether a table has room for some more pairs, and half as many free slots left. */
+/* Whether a table has room for so many more pairs, and keeps a fourth of its slots free. */
 static inline bool fibrad_pair_room(const fibrad_pair_table *table, uint32_t pairs) {
     return table->used + pairs <= table->slots / 4 * 3;
 }
 
 static inline uint64_t fibrad_pair_key(uint32_t i, uint32_t j) {
-    const uint32_t low = i < j ? i : j, high = i < j ? j : i; /* a branch could not be predicted */
+    const uint32_t low = i < j ? i : j, high = i < j ? j : i; /* no branch: it could not be predicted */
     return (uint64_t)low << 32 | high;
 }
 
-/* Where a table looks for a key first. */
+/* The slot where a search for a key begins. */
 static inline uint32_t fibrad_pair_place(const fibrad_pair_table *table, uint64_t key) {
     key *= FIBRAD_GOLDEN;
-    key = (key ^ key >> 32) * FIBRAD_GOLDEN; /* once would place pairs of neighbours side by side */
+    key = (key ^ key >> 32) * FIBRAD_GOLDEN; /* one product would place pairs of neighbours side by side */
     return (uint32_t)(key >> table->shift);
 }
 
-/* The slot of a key, looked for from a place on. */
+/* The slot of a key. The search begins at a slot. */
 static inline fibrad_pair_sum *fibrad_pair_slot(fibrad_pair_table *table, uint64_t key, uint32_t at) {
     while (table->slot[at].key != key) {
         if (table->slot[at].key == UINT64_MAX) {

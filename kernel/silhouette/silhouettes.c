@@ -11,10 +11,10 @@
 #include "silhouette/circle_lanes.h"
 #include "silhouette/open_lanes.h"
 
-#define AHEAD 16u /* how many pairs ahead memory is asked for */
+#define AHEAD 16u /* memory is fetched ahead by this many pairs */
 
-#define TASK_CIRCLES 256u     /* circles of each line in a task: those near each other share pairs in the cache */
-#define TABLE_BEST   0x10000u /* slots of a task's table, ... */
+#define TASK_CIRCLES 256u     /* circles of each line in a task; circles near each other share pairs in the cache */
+#define TABLE_BEST   0x10000u /* slots of a task's table */
 #define TABLE_LEAST  0x2000u  /* ... and the least */
 
 struct fibrad_silhouettes {
@@ -23,12 +23,12 @@ struct fibrad_silhouettes {
     uint32_t lines, spheres;
     fibrad_line *line;         /* [lines] */
     uint32_t *sequence;        /* [spheres], positions in scene order, in the order in which tasks take them */
-    uint64_t *stretch;         /* [spheres + 1], in the order of `sequence`: how many those before it take */
+    uint64_t *stretch;         /* [spheres + 1], in the order of `sequence`: stretches of those before */
     uint64_t *start;           /* [spheres + 1], by position in scene order: where its pairs are in `index` */
     const uint32_t *index;     /* [start[spheres]], pairs, numbered through all collections; NULL: not joined */
     const fibrad_pairs *pairs; /* [count], collections that were joined */
     uint32_t count;
-    uint64_t serial, all; /* changes of these collections, and entries of `index` */
+    uint64_t serial, all; /* number of changes of these collections, and of elements of `index` */
 };
 
 /* ---- the object ------------------------------------------------------------------------------------------------- */
@@ -81,7 +81,8 @@ static void make_frame(const double d[3], double frame[9]) {
     }
 }
 
-/* Makes the lines in the last third of the frames, and from them the frames, first to last. */
+/* Makes the lines in the last third of the memory for frames. Then makes the frames from the lines, from the first to
+ * the last. */
 static void make_lines(fibrad_silhouettes *s, uint64_t seed) {
     double *all = s->line[0].frame, turn[9], (*line)[3] = (double(*)[3])(void *)(all + (size_t)6 * s->lines);
     fibrad_lines_make(s->lines, line, all);
@@ -94,7 +95,7 @@ static void make_lines(fibrad_silhouettes *s, uint64_t seed) {
     }
 }
 
-/* Spheres that may touch circles of a sphere, and their radii. */
+/* The number of spheres that may touch circles of a sphere, and the sum of their radii. */
 typedef struct nearby {
     double count, radii;
 } nearby;
@@ -117,11 +118,11 @@ static nearby count_nearby(const fibrad_scene *scene, const fibrad_level *level,
     return found;
 }
 
-#define STRETCH_LENGTH 8.0  /* mean radii of the neighbours, half of it: an ordinary circle has about this length */
-#define STRETCH_DISCS  32.0 /* on both sides, at the least */
+#define STRETCH_LENGTH 8.0  /* mean radii of the neighbours: half a stretch; an ordinary circle is about as long */
+#define STRETCH_DISCS  32.0 /* least number of discs on both sides together */
 
-/* In how many stretches the circles of a sphere are followed. Discs that touch a circle are the part sqrt(r/R) of all
- * that are near, or less. */
+/* The number of stretches in which the circles of a sphere are followed. At most the part sqrt(r/R) of all near discs
+ * touches a circle. */
 static uint64_t sphere_stretches(const fibrad_scene *scene, uint32_t place, double mean) {
     nearby all = {0, 0};
     const double r = scene->r[place];
@@ -221,8 +222,8 @@ static size_t circles_bytes(uint32_t slots) {
     return fibrad_arena_total(&arena);
 }
 
-/* A number whose ulp is the grid of projected centres. Centres that differ by rounding alone then coincide. With
- * periods sums of centres and shifts are exact, and 128 extents are within range. */
+/* A number whose ulp is the grid of projected centres. Centres that differ by rounding alone then coincide. If there
+ * are periods, sums of centres and shifts are exact, and 128 extents are within range. */
 static double centre_grid(const fibrad_scene *scene, double scale) {
     double extent = 0, grid = 1;
     bool periodic = false;
@@ -253,7 +254,7 @@ static void begin_circles(const fibrad_scene *scene, fibrad_circles *c) {
     c->near.ball[c->near.nowhere][3] = 1;
 }
 
-/* Lays scratch memory out for circles, with as large a table as there is room for. */
+/* Lays out scratch memory for circles. The table is as large as the memory allows. */
 static fibrad_circles *open_circles(fibrad_workspace *space, const fibrad_scene *scene, fibrad_pair_table *table) {
     fibrad_circle_near near;
     uint32_t slots = TABLE_BEST;
@@ -367,7 +368,7 @@ int fibrad_silhouettes_task(const fibrad_silhouettes *s, fibrad_work *work, uint
 
 /* ---- rows ------------------------------------------------------------------------------------------------------- */
 
-/* Whether a pair is of two spheres. */
+/* Whether both members of a pair are spheres. */
 static bool is_mutual(const fibrad_pair *pair) {
     return !fibrad_pair_opens(pair->second) && pair->second != pair->first;
 }
@@ -434,20 +435,21 @@ static const fibrad_pair *numbered_pair(const fibrad_silhouettes *s, uint32_t nu
     return fibrad_pairs_of(&s->pairs[c]) + number;
 }
 
-/* Sums of one entry, kept where rows by beams have their parts. */
+/* The sums of one entry. They use the memory in which rows by beams keep their parts. */
 typedef struct pair_entry {
     int64_t sum[2];
     uint32_t place, unused[3];
 } pair_entry;
 
-/* The caller's number of a sphere. Numbers from that of all spheres on stand for 2 line + sense, or for all of them. */
+/* The number of a sphere in the caller's order. Numbers from the number of spheres on stand for 2 line + sense, or for
+ * all lines and senses together. */
 static uint32_t key_number(const fibrad_silhouettes *s, uint32_t name) {
     if (!fibrad_pair_opens(name)) return s->scene->order[name];
     const uint32_t which = name - FIBRAD_PAIR_OPEN, all = 2 * s->lines;
     return s->spheres + (which < all ? which : all);
 }
 
-/* Lists all pairs of the sphere at a position, with keys of the others' numbers. _WORK */
+/* Lists all pairs of the sphere at a position. The keys have the numbers of the other members. Error: _WORK. */
 static int gather_pairs(const fibrad_silhouettes *s, fibrad_workspace *space, uint32_t place, uint32_t *count) {
     fibrad_entries *entries = &space->entries;
     pair_entry *to = (pair_entry *)(void *)entries->part;
@@ -469,7 +471,8 @@ static int gather_pairs(const fibrad_silhouettes *s, fibrad_workspace *space, ui
     return FIBRAD_E_WORK;
 }
 
-/* The parts of a row that follow from sums over even and over odd lines, and the difference of their means. */
+/* The factor that follows from the sums over even and over odd lines. Adds the square of the difference of their
+ * means. */
 static double entry_factor(const fibrad_silhouettes *s, const int64_t sum[2], double scale, double *square) {
     const uint32_t odd = s->lines / 2, even = s->lines - odd;
     const double difference = ((double)sum[0] / even - (double)sum[1] / odd) * (s->lines * scale / 2);
@@ -477,10 +480,10 @@ static double entry_factor(const fibrad_silhouettes *s, const int64_t sum[2], do
     return (double)(sum[0] + sum[1]) * scale;
 }
 
-/* Half the difference of the halves of a set errs this much more than the whole: docs/accuracy.md. */
+/* The error of the whole set over half the difference of its two halves: docs/accuracy.md. */
 #define HALVES_ERROR 0.4
 
-/* The same of what walls share. Their shares err in ways that both halves have in common. */
+/* The same for the shares of walls. Both halves have errors of these shares in common. */
 #define WALLS_ERROR 0.8
 
 /* Adds up the pairs from number *k on that have one key. */
@@ -495,10 +498,10 @@ static const pair_entry *add_alike(const fibrad_workspace *space, const uint64_t
     return first;
 }
 
-#define OPEN_LEAST 0x1p14 /* units: less than 1e-9 of the sphere's disc is left to what other lines say */
+#define OPEN_LEAST 0x1p14 /* units; a smaller open part, below 1e-9 of the disc, is divided as other lines say */
 
-/* Shares what is open out to walls. open: of all lines together, a fraction of the row; which [named]: lines and senses
- * in which it is. */
+/* Divides the open part of a row among walls. open: of all lines together, as a fraction of the row. which [named]:
+ * lines and senses in which the sphere is open. */
 static int share_among_walls(const fibrad_silhouettes *s, fibrad_workspace *space, uint32_t place, double open,
                              const uint64_t *which, uint32_t named, fibrad_row *row) {
     const fibrad_scene *scene = s->scene;
@@ -533,7 +536,7 @@ static int row_of_pairs(const fibrad_scene *scene, fibrad_workspace *space, uint
         const pair_entry *entry = add_alike(space, key, count, &k, sum);
         const double ratio = fibrad_min(1, scene->r[entry->place] / r), area = unit * (ratio * ratio);
         const double f = entry_factor(s, sum, entry->place == place ? 2 * area : area, &square);
-        if (f <= 0) continue; /* what has cancelled, to rounding */
+        if (f <= 0) continue; /* sums that have cancelled, to rounding */
         if (n < row->capacity) row->col[n] = scene->order[entry->place], row->f[n] = f;
         n++;
     }
