@@ -823,12 +823,14 @@ void FixFibrad::write_restart(FILE *file) {
 }
 
 void FixFibrad::restart(char *buffer) {
-    const double *kept = (const double *)buffer;
-    if (kept[0] != (double)walls.size())
-        error->all(FLERR,
-                   text("fix fibrad: there are %d walls, but %g in the restart file", (int)walls.size(), kept[0]));
+    double there;
+    memcpy(&there, buffer, sizeof there);
+    if (there != (double)walls.size())
+        error->all(FLERR, text("fix fibrad: there are %d walls, but %g in the restart file", (int)walls.size(), there));
+    std::vector<double> kept(walls.size());
+    memcpy(kept.data(), buffer + sizeof there, kept.size() * sizeof(double));
     for (size_t k = 0; k < walls.size(); k++)
-        if (wall_heat.capacity[k] > 0) wall_kelvins[k].value = kept[1 + k];
+        if (wall_heat.capacity[k] > 0) wall_kelvins[k].value = kept[k];
 }
 
 // ---- loading --------------------------------------------------------------------------------------------------------
