@@ -236,6 +236,32 @@ TEST(a_flying_sphere_leaves_the_sky) {
     bed_free(&bed);
 }
 
+/* A flat bed above a floor keeps its sky. Lines of windows that look along the bed have directions of their own, of
+ * which some pass through nearer spheres into the bed. */
+TEST(a_cutoff_leaves_the_sky_of_a_flat_bed) {
+    struct bed bed = packing(700, .6, 1, .5, 11, true);
+    const double side = bed.period[0];
+    bed.period[2] = 0;
+    const fibrad_body floor = plane_at(2, 0, -1);
+    struct part p = part_of(&bed, (fibrad_scene_config){.body = &floor, .bodies = 1});
+    const fibrad_occupancy o = occupancy_of(&p, (double[3]){0, 0, -1}, (double[3]){side, side, side + 1}, 128);
+    p.config.occupancy = &o;
+    fibrad_scene *scene = part_scene(&p);
+    double sky[2] = {0}, beyond = 0;
+    for (uint32_t i = 0; i < p.n; i++)
+        for (int cut = 0; cut < 2; cut++) {
+            struct named_row row = row_by(&p, scene, i, 0, cut ? 20 : 0);
+            sky[cut] += row.row.escaped, beyond += row.row.beyond;
+            named_free(&row);
+        }
+    ck_assert_double_eq_tol(sky[1] / sky[0], 1, 3e-3);
+    ck_assert_double_lt(beyond / sky[0], 3e-3);
+    free(scene);
+    free((void *)(uintptr_t)o.mark);
+    part_free(&p);
+    bed_free(&bed);
+}
+
 /* The known region ends half way up a can: a lone sphere sends a fraction there that is a solid angle over 4 pi. */
 TEST(a_known_region_ends_in_a_can) {
     const fibrad_body body[] = {plane_at(2, 0, -40), plane_at(2, 1, 40), cylinder_at(0, 0, 10)};

@@ -290,6 +290,16 @@ static void add_points(fibrad_wall_room *walls, const fibrad_points *points, con
         }
 }
 
+/* The slot at which a line ends that is cut. If some cells are marked, the direction of the window decides whether the
+ * way is clear, as it decides which nearer spheres hide the line. A line with a direction of its own may pass through
+ * such a sphere into marked cells. */
+static uint32_t end_of_cut(const fibrad_workspace *work, const fibrad_wall_line *line, const double direction[3]) {
+    const uint32_t met = fibrad_work_met(work, line->origin, line->w);
+    if (work->scene->occupancy.mark == NULL) return met;
+    const uint32_t along = fibrad_work_met(work, line->origin, direction);
+    return met == FIBRAD_BEYOND || along == FIBRAD_BEYOND ? along : met;
+}
+
 /* Divides a window between walls by lines. */
 static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, const fibrad_wall_window *window) {
     fibrad_wall_room *walls = work->walls;
@@ -314,7 +324,7 @@ static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, 
         if (sums->cuts[wall] == 0)
             continue; /* the way of one line decides for all lines that would meet the same wall */
         const fibrad_wall_line *first = &sums->first_cut[wall];
-        fibrad_work_slot(work, fibrad_work_met(work, first->origin, first->w), window->k,
+        fibrad_work_slot(work, end_of_cut(work, first, window->frame + 6), window->k,
                          window->open * sums->cuts[wall] / points->open);
     }
 }
