@@ -95,6 +95,10 @@ static inline void end_problem(struct problem *p) {
     free(p);
 }
 
+/* Before a problem that ends with its block. */
+static inline void end_owned(struct problem **p) { end_problem(*p); }
+#define ENDED OWNED_BY(end_owned)
+
 static inline uint32_t tasks_of(const struct problem *p) { return fibrad_heat_tasks(p->heat); }
 
 static inline void trace_all(struct problem *p) {

@@ -61,6 +61,8 @@ static inline void free_heat(struct problem *p) {
     free(p->heat);
 }
 
+#define OWNED_PROBLEM OWNED_BY(free_problem) struct problem
+
 static inline void free_problem(struct problem *p) {
     free_heat(p);
     free(p->temperature);
@@ -96,11 +98,10 @@ static inline void build_scene(struct problem *p) {
 }
 
 static inline void trace_beams(struct problem *p) {
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     const uint32_t tasks = fibrad_heat_tasks(p->heat);
     for (uint32_t k = 0; k < tasks; k++)
         ck_assert_int_eq(fibrad_heat_trace(p->heat, &work, mirrored(p, k, tasks)), FIBRAD_OK);
-    work_free(&work);
 }
 
 static inline void trace(struct problem *p) {

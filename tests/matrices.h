@@ -7,12 +7,10 @@
 
 /* Spheres of these radii, so far apart that the tests can make their rows by hand. */
 static inline fibrad_scene *apart(uint32_t n, const double *r) {
-    struct bed bed;
+    OWNED_BED bed;
     bed_init(&bed);
     for (uint32_t i = 0; i < n; i++) add_sphere(&bed, 1000. * (i + 1), 0, 0, r[i]);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    bed_free(&bed);
-    return scene;
+    return scene_of(&bed, FIBRAD_ISA_BEST);
 }
 
 /* Rows by hand, in the arrays of a compressed matrix. */

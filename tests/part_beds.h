@@ -123,8 +123,8 @@ static const double wall_emissivity[7] = {.4, .9, 0, 1, .6, .3, .5};
 static inline struct named_row row_by(const struct part *p, const fibrad_scene *scene, uint32_t i, int method,
                                       double cutoff) {
     struct named_row out = {.row = row_of(p->n), .by_id = calloc(p->ids, sizeof(double))};
-    double *e = emissivities_of(p);
-    fibrad_work work = work_growing();
+    OWNED double *e = emissivities_of(p);
+    OWNED_WORK work = work_growing();
     const fibrad_beam_rule beam = {.directions = method == 2 ? 34 : 55,
                                    .points = method == 0   ? 0
                                              : method == 1 ? 64
@@ -151,8 +151,6 @@ static inline struct named_row row_by(const struct part *p, const fibrad_scene *
     }
     ck_assert_double_eq_tol(sum, 1, 1e-12);
     ck_assert(out.row.beyond >= 0 && out.row.escaped >= -1e-15);
-    work_free(&work);
-    free(e);
     return out;
 }
 
@@ -220,7 +218,7 @@ static inline void make_mesh(struct made *m, const double period[3], fibrad_scen
 
 /* The bed must stay where it is, since the configuration of its scene points into it. */
 static inline void make_kind(struct made *m, const struct kind *k) {
-    struct bed bed;
+    OWNED_BED bed;
     if (k->lattice != 0) {
         bed = lattice(k->lattice, 7.9);
         for (uint32_t i = 0; i < bed.n; i++) bed.x[i] *= .97, bed.y[i] *= .97, bed.z[i] *= .97; /* overlaps */
@@ -246,7 +244,6 @@ static inline void make_kind(struct made *m, const struct kind *k) {
     m->part = part_of(&bed, config);
     m->occupancy = occupancy_of(&m->part, m->low, m->high, 5);
     m->part.config.occupancy = &m->occupancy;
-    bed_free(&bed);
 }
 
 static inline void free_made(struct made *m) {

@@ -11,6 +11,7 @@
 
 #include "bed/packing.h"
 #include "fibrad_mesh.h"
+#include "owned.h"
 #include "worst.h"
 
 static inline void *block_of(size_t size) {
@@ -280,12 +281,11 @@ static inline bool same_bits_with(const fibrad_row *a, const fibrad_row *b, uint
 static inline fibrad_rows rows_by_beams(const fibrad_scene *scene, const fibrad_beam_rule *rule) {
     fibrad_scene_facts facts;
     fibrad_scene_describe(scene, &facts);
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     fibrad_rows rows = {.memory = memory_growing()};
     for (uint32_t i = 0; i < facts.spheres; i++)
         ck_assert_int_eq(fibrad_beam_row(scene, &work, i, rule, &(fibrad_row){.rows = &rows}), FIBRAD_OK);
     ck_assert_uint_eq(rows.count, facts.spheres);
-    work_free(&work);
     return rows;
 }
 
@@ -313,9 +313,8 @@ static inline struct matrix matrix_of(const fibrad_scene *scene, const fibrad_ro
 
 /* The view factors of a scene by beams. raw: the rows are not averaged. */
 static inline struct matrix matrix_by_beams(const fibrad_scene *scene, const fibrad_beam_rule *beam, bool raw) {
-    fibrad_rows rows = rows_by_beams(scene, beam);
+    OWNED_ROWS rows = rows_by_beams(scene, beam);
     const struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = raw});
-    rows_free(&rows);
     return m;
 }
 

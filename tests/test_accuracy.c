@@ -13,37 +13,32 @@ static double error_of(const struct bed *bed, uint32_t i, uint32_t directions, d
     struct reference_rule rule = {tolerance, 2000000};
     ck_assert_int_eq(reference_row(&spheres, i, &rule, f, &escaped, &report), REFERENCE_OK);
 
-    fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(bed->n);
+    OWNED fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(bed->n);
     ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = directions}, &row), FIBRAD_OK);
     double square = 0;
     for (uint32_t j = 0; j < bed->n; j++) square += pow(row_factor(&row, j) - f[j], 2);
     ck_assert_double_eq_tol(row.escaped, escaped, 3e-5);
-    row_free(&row);
-    free(scene);
-    work_free(&work);
     free(f);
     return sqrt(square);
 }
 
 TEST(lattices) {
     for (int kind = 0; kind < 3; kind++) {
-        struct bed bed = lattice("pif"[kind], 8);
+        OWNED_BED bed = lattice("pif"[kind], 8);
         double error = error_of(&bed, 0, 4181, 1e-5);
         printf("lattice %c, %u spheres: %.2g\n", "pif"[kind], bed.n, error);
         ck_assert_double_lt(error, 3e-5);
-        bed_free(&bed);
     }
 }
 
 TEST(small_scenes) {
     double worst = 0;
     for (uint64_t seed = 0; seed < 12; seed++) {
-        struct bed bed = packing(3 + (uint32_t)(seed % 6), .3, 1.2, .3, seed, false);
+        OWNED_BED bed = packing(3 + (uint32_t)(seed % 6), .3, 1.2, .3, seed, false);
         double error = error_of(&bed, 0, 4181, 1e-6);
         worst_of(&worst, error);
-        bed_free(&bed);
     }
     printf("3 to 8 spheres: %.2g\n", worst);
     ck_assert_double_lt(worst, 3e-5);
@@ -68,25 +63,20 @@ TEST(tangent_obstacles) {
 
 /* The error falls as n^-1.5: eight-fold from n to 4 n, on the mean over rows. Truth: the same with many directions. */
 TEST(error_falls_as_it_should) {
-    struct bed bed = packing(300, .8, 1.2, .55, 5, true);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
+    OWNED_BED bed = packing(300, .8, 1.2, .55, 5, true);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
     double mean[3] = {0};
     for (uint32_t i = 0; i < 10; i++) {
-        fibrad_row truth = row_of(bed.n), row = row_of(bed.n);
+        OWNED_ROW truth = row_of(bed.n), row = row_of(bed.n);
         ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 30000}, &truth), FIBRAD_OK);
         for (int k = 0; k < 3; k++) {
             fibrad_beam_rule rule = {.directions = 100u << 2 * k};
             ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
             mean[k] += row_distance(&row, &truth) / 10;
         }
-        row_free(&truth);
-        row_free(&row);
     }
     printf("n = 100, 400, 1600: %.2g %.2g %.2g\n", mean[0], mean[1], mean[2]);
     ck_assert_double_gt(mean[0] / mean[2], 35);
     ck_assert_double_lt(mean[2], 1.2e-4);
-    free(scene);
-    work_free(&work);
-    bed_free(&bed);
 }

@@ -227,7 +227,7 @@ TEST(lattices_along_their_axes) {
                 double e[3] = {w[2], 0, -w[0]}, side = sqrt(e[0] * e[0] + e[2] * e[2]);
                 e[0] /= side, e[2] /= side;
                 double g[3] = {w[1] * e[2] - w[2] * e[1], w[2] * e[0] - w[0] * e[2], w[0] * e[1] - w[1] * e[0]};
-                struct bed bed = lattice("pif"[kind], 9);
+                OWNED_BED bed = lattice("pif"[kind], 9);
                 struct window window = {0};
                 double depth[MOST];
                 for (uint32_t i = 1; i < bed.n; i++) {
@@ -244,7 +244,6 @@ TEST(lattices_along_their_axes) {
                     depth[to] = d, window.u[to] = u, window.v[to] = v;
                 }
                 worst_of(&worst, error_of(&window));
-                bed_free(&bed);
             }
     printf("lattices along their axes: %.2g, left to arrangements %.3g\n", worst, fallbacks_part());
     ck_assert_double_lt(worst, 1e-11);

@@ -37,7 +37,7 @@ static size_t size_of(size_t n) {
 TEST(arena_counts_what_it_hands_out) {
     for (size_t n = 0; n < 200; n++) {
         const size_t size = size_of(n), offset = n % FIBRAD_ALIGNMENT; /* every offset from a boundary */
-        unsigned char *whole = aligned_alloc(FIBRAD_ALIGNMENT, (size / FIBRAD_ALIGNMENT + 4) * FIBRAD_ALIGNMENT);
+        OWNED unsigned char *whole = aligned_alloc(FIBRAD_ALIGNMENT, (size / FIBRAD_ALIGNMENT + 4) * FIBRAD_ALIGNMENT);
         unsigned char *block = whole + FIBRAD_ALIGNMENT + offset;
         memset(whole, 0x5a, (size / FIBRAD_ALIGNMENT + 4) * FIBRAD_ALIGNMENT);
         fibrad_arena arena;
@@ -58,7 +58,6 @@ TEST(arena_counts_what_it_hands_out) {
         memset(o.b, 0, n * sizeof *o.b);
         for (size_t i = 0; i < FIBRAD_ALIGNMENT; i++) ck_assert_uint_eq(block[size + i], 0x5a);
         for (size_t i = 0; i < FIBRAD_ALIGNMENT + offset; i++) ck_assert_uint_eq(whole[i], 0x5a);
-        free(whole);
     }
 }
 

@@ -5,13 +5,11 @@
 #include "suite.h"
 
 static fibrad_row beam(const struct bed *bed, uint32_t i, fibrad_beam_rule rule, int isa) {
-    fibrad_scene *scene = scene_of(bed, isa);
-    fibrad_work work = work_growing();
+    OWNED fibrad_scene *scene = scene_of(bed, isa);
+    OWNED_WORK work = work_growing();
     fibrad_row row = row_of(bed->n);
     ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
     ck_assert_uint_eq(row.sphere, i);
-    free(scene);
-    work_free(&work);
     return row;
 }
 
@@ -31,11 +29,10 @@ static size_t beam_in_little(const fibrad_scene *scene, uint32_t i, const fibrad
 
 /* The same with a fixed block of so many bytes, which suffices. */
 static void beam_in(size_t size, const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule, fibrad_row *row) {
-    void *block = malloc(size);
+    OWNED void *block = malloc(size);
     ck_assert_ptr_nonnull(block);
     fibrad_work work = work_fixed(block, size);
     ck_assert_int_eq(fibrad_beam_row(scene, &work, i, rule, row), FIBRAD_OK);
-    free(block);
 }
 
 TEST(two_spheres_match_the_exact_pair) {
@@ -43,22 +40,20 @@ TEST(two_spheres_match_the_exact_pair) {
                                       {1, 3, .01}, {1, 10, 0}, {1, 1, 4}};
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         const double *p = cases[c];
-        struct bed bed = bed_of(
+        OWNED_BED bed = bed_of(
             2, (const double[][4]){{0, 0, 0, p[0]}, {.3 * (p[0] + p[1] + p[2]), 0, .4 * (p[0] + p[1] + p[2]), p[1]}});
         bed.y[1] = sqrt(.75) * (p[0] + p[1] + p[2]);
         double exact;
         ck_assert_int_eq(fibrad_pair_exact(p[0], p[1], p[2], &exact), FIBRAD_OK);
-        fibrad_row row = beam(&bed, 0, (fibrad_beam_rule){.directions = 4181}, FIBRAD_ISA_BEST);
+        OWNED_ROW row = beam(&bed, 0, (fibrad_beam_rule){.directions = 4181}, FIBRAD_ISA_BEST);
         ck_assert_uint_eq(row.length, 1);
         ck_assert_double_eq_tol(row.f[0], exact, 3e-5);
-        row_free(&row);
-        bed_free(&bed);
     }
 }
 
 /* A sphere wholly behind another of the same size in line: hidden but for nothing at all, if touching or not. */
 TEST(hidden_sphere_is_not_seen) {
-    struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 4, 3}, {0, 0, 9, 1}});
+    OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 4, 3}, {0, 0, 9, 1}});
     fibrad_row row = beam(&bed, 0, (fibrad_beam_rule){.directions = 1000}, FIBRAD_ISA_BEST);
     ck_assert_uint_eq(row.length, 1);
     ck_assert_uint_eq(row.col[0], 1);
@@ -66,23 +61,20 @@ TEST(hidden_sphere_is_not_seen) {
     row = beam(&bed, 2, (fibrad_beam_rule){.directions = 1000}, FIBRAD_ISA_BEST);
     ck_assert_uint_eq(row.length, 1);
     row_free(&row);
-    bed_free(&bed);
 }
 
 /* Spheres of radius r about one of radius 1, in layers up to 42 r above it. */
 static void check_shell(uint32_t count, double r) {
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     for (uint32_t k = 0; k < count; k++) {
         double w[3];
         fibrad_direction(k, count, w);
         const double d = 1 + r * (1.2 + 41 * fmod(k * .618033988749895, 1));
         add_sphere(&bed, d * w[0], d * w[1], d * w[2], r);
     }
-    fibrad_row row = beam(&bed, 0, (fibrad_beam_rule){.directions = 8}, FIBRAD_ISA_BEST);
+    OWNED_ROW row = beam(&bed, 0, (fibrad_beam_rule){.directions = 8}, FIBRAD_ISA_BEST);
     ck_assert_uint_eq(row.fallbacks, 0);
     ck_assert_double_eq_tol(row_sum(&row) + row.escaped, 1, 1e-12);
-    row_free(&row);
-    bed_free(&bed);
 }
 
 TEST(many_arcs_are_no_fallback) {
@@ -104,10 +96,9 @@ TEST(fallbacks_are_counted) {
     ck_assert_uint_eq(row.fallbacks, 0);
     ck_assert_double_eq_tol(row_sum(&row) + row.escaped, 1, 1e-12);
     row_free(&row);
-    struct bed two = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, -2002, 2000}});
+    OWNED_BED two = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, -2002, 2000}});
     row = beam(&two, 0, (fibrad_beam_rule){.directions = 55}, FIBRAD_ISA_BEST);
     ck_assert_uint_gt(row.fallbacks, 20);
-    bed_free(&two);
     row_free(&row);
     row = beam(&bed, 0, (fibrad_beam_rule){.directions = 55, .points = 64}, FIBRAD_ISA_BEST);
     ck_assert_uint_eq(row.fallbacks, 0);
@@ -129,7 +120,7 @@ TEST(raw_rows_close) {
         for (uint32_t points = 0; points <= 256; points = points == 0 ? 64 : 2 * points) {
             for (uint32_t i = 0; i < beds[b].n; i += 17) {
                 fibrad_beam_rule rule = {.directions = 144, .points = points};
-                fibrad_row row = beam(&beds[b], i, rule, FIBRAD_ISA_BEST);
+                OWNED_ROW row = beam(&beds[b], i, rule, FIBRAD_ISA_BEST);
                 for (uint32_t k = 0; k < row.length; k++) {
                     ck_assert_double_gt(row.f[k], 0);
                     ck_assert(k == 0 || row.col[k] > row.col[k - 1]);
@@ -142,7 +133,6 @@ TEST(raw_rows_close) {
                     ck_assert_double_eq_tol(count, total, 1e-7);
                     ck_assert_double_eq_tol(row.f[0] * total, round(row.f[0] * total), 1e-9);
                 }
-                row_free(&row);
             }
         }
         bed_free(&beds[b]);
@@ -187,10 +177,9 @@ TEST(rows_match_sliced_windows) {
                 ck_assert_int_eq(fibrad_direction(k, 34, w), FIBRAD_OK);
                 slice(&beds[b], i, w, INFINITY, seen);
             }
-            fibrad_row row = beam(&beds[b], i, (fibrad_beam_rule){.directions = 34}, FIBRAD_ISA_BEST);
+            OWNED_ROW row = beam(&beds[b], i, (fibrad_beam_rule){.directions = 34}, FIBRAD_ISA_BEST);
             for (uint32_t j = 0; j < beds[b].n; j++)
                 ck_assert_double_eq_tol(row_factor(&row, j), seen[j] / (34 * acos(-1)), 1e-10);
-            row_free(&row);
         }
         bed_free(&beds[b]);
     }
@@ -198,12 +187,12 @@ TEST(rows_match_sliced_windows) {
 
 /* A layer of spheres leaves the box of the grid no extent, and strays are beside it. No near spheres are kept. */
 TEST(strays_beside_a_layer) {
-    struct bed bed;
+    OWNED_BED bed;
     bed_init(&bed);
     for (int k = 0; k < 49; k++) add_sphere(&bed, 0, 3 * (k % 7) + .1 * (k / 7), 3 * (k / 7), 1);
     add_sphere(&bed, 40, 9, 8, 2);
     add_sphere(&bed, -60, 7, 11, 3);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     const fibrad_beam_rule rule = {.directions = 2000};
     for (uint32_t i = 3; i < bed.n; i += 4) {
         double seen[600] = {0}, w[3], strays = 0;
@@ -211,48 +200,39 @@ TEST(strays_beside_a_layer) {
             ck_assert_int_eq(fibrad_direction(k, rule.directions, w), FIBRAD_OK);
             slice(&bed, i, w, INFINITY, seen);
         }
-        fibrad_row row = row_of(bed.n);
+        OWNED_ROW row = row_of(bed.n);
         beam_in_little(scene, i, &rule, &row);
         for (uint32_t j = 0; j < bed.n; j++)
             ck_assert_double_eq_tol(row_factor(&row, j), seen[j] / (rule.directions * acos(-1)), 1e-10);
         for (uint32_t j = 49; j < bed.n; j++) strays += row_factor(&row, j);
         ck_assert_double_gt(strays, 0);
-        row_free(&row);
     }
-    free(scene);
-    bed_free(&bed);
 }
 
 TEST(points_agree_with_areas) {
-    struct bed bed = packing(300, .8, 1.2, .55, 7, true);
+    OWNED_BED bed = packing(300, .8, 1.2, .55, 7, true);
     double square = 0;
     for (uint32_t i = 0; i < 20; i++) {
-        fibrad_row exact = beam(&bed, i, (fibrad_beam_rule){.directions = 2000}, FIBRAD_ISA_BEST);
-        fibrad_row points = beam(&bed, i, (fibrad_beam_rule){.directions = 2000, .points = 256}, FIBRAD_ISA_BEST);
+        OWNED_ROW exact = beam(&bed, i, (fibrad_beam_rule){.directions = 2000}, FIBRAD_ISA_BEST);
+        OWNED_ROW points = beam(&bed, i, (fibrad_beam_rule){.directions = 2000, .points = 256}, FIBRAD_ISA_BEST);
         square += pow(row_distance(&exact, &points), 2);
-        row_free(&exact);
-        row_free(&points);
     }
     ck_assert_double_lt(sqrt(square / 20), 5e-4);
-    bed_free(&bed);
 }
 
 TEST(same_bits_in_every_instruction_set) {
-    struct bed bed = packing(300, .5, 1.5, .55, 3, true);
+    OWNED_BED bed = packing(300, .5, 1.5, .55, 3, true);
     int isa[ISAS_MOST];
     const int sets = isas_there(isa);
     for (uint32_t points = 0; points <= 128; points += 128)
         for (uint32_t i = 0; i < bed.n; i += 23) {
             fibrad_beam_rule rule = {.directions = 100, .points = points};
-            fibrad_row scalar = beam(&bed, i, rule, FIBRAD_ISA_SCALAR);
+            OWNED_ROW scalar = beam(&bed, i, rule, FIBRAD_ISA_SCALAR);
             for (int s = 1; s < sets; s++) {
-                fibrad_row row = beam(&bed, i, rule, isa[s]);
+                OWNED_ROW row = beam(&bed, i, rule, isa[s]);
                 ck_assert_msg(same_bits(&scalar, &row), "row %u differs in %s", i, fibrad_isa_name(isa[s]));
-                row_free(&row);
             }
-            row_free(&scalar);
         }
-    bed_free(&bed);
 }
 
 /* Whether spheres are kept near or looked up along each direction is a matter of speed: with the least memory there is
@@ -261,9 +241,9 @@ TEST(work_memory_is_a_matter_of_speed) {
     struct bed beds[] = {packing(300, .5, 1.5, .55, 3, true), packing(400, .4, 1, .05, 4, false), lattice('p', 9),
                          packing(400, .8, 1.2, .01, 5, true)};
     for (size_t b = 0; b < sizeof beds / sizeof *beds; b++) {
-        fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
-        fibrad_row row = row_of(beds[b].n), grown = row_of(beds[b].n);
-        fibrad_work work = work_growing();
+        OWNED fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
+        OWNED_ROW row = row_of(beds[b].n), grown = row_of(beds[b].n);
+        OWNED_WORK work = work_growing();
         for (uint32_t i = 0; i < beds[b].n; i += 31) {
             ck_assert_int_eq(fibrad_beam_row(scene, &work, i, NULL, &grown), FIBRAD_OK);
             const size_t least = beam_in_little(scene, i, NULL, &row);
@@ -273,25 +253,22 @@ TEST(work_memory_is_a_matter_of_speed) {
                 ck_assert(same_bits(&row, &grown));
             }
         }
-        row_free(&row), row_free(&grown);
-        work_free(&work);
-        free(scene);
         bed_free(&beds[b]);
     }
 }
 
 /* The same for a sphere so large that the first shell ends within a radius of it. */
 TEST(work_memory_of_a_large_sphere) {
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 5}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 5}});
     for (int k = 0; k < 19 * 19 * 19; k++) {
         double x = .8 * (k % 19 - 9), y = .8 * (k / 19 % 19 - 9) + .1, z = .8 * (k / 361 - 9) + .2;
         double d = sqrt(x * x + y * y + z * z);
         if (d > 5.3 && d < 8) add_sphere(&bed, x, y, z, .3);
     }
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_row rows[3] = {row_of(bed.n), row_of(bed.n), row_of(bed.n)};
     const fibrad_beam_rule rule = {.directions = 8};
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     const size_t least = beam_in_little(scene, 0, &rule, &rows[0]);
     beam_in(16 * least, scene, 0, &rule, &rows[1]);
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rule, &rows[2]), FIBRAD_OK);
@@ -299,15 +276,12 @@ TEST(work_memory_of_a_large_sphere) {
     ck_assert(same_bits(&rows[0], &rows[2]));
     ck_assert_double_gt(row_sum(&rows[0]), .8);
     for (int k = 0; k < 3; k++) row_free(&rows[k]);
-    work_free(&work);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* Nor does it matter in which order the spheres come, though a window that begins with many discs of two sizes has a
  * grid chosen by their mean radius. */
 TEST(order_of_spheres_changes_no_bit) {
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}}), turned = bed_of(0, NULL);
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}}), turned = bed_of(0, NULL);
     for (int k = 0; k < 13 * 13 * 13; k++) {
         double x = .32 * (k % 13 - 6) + .003 * (k % 7), y = .32 * (k / 13 % 13 - 6) + .002 * (k % 11);
         double z = .32 * (k / 169 - 6) + .004 * (k % 5), d = sqrt(x * x + y * y + z * z);
@@ -316,19 +290,17 @@ TEST(order_of_spheres_changes_no_bit) {
     for (uint32_t i = bed.n; i-- > 0;) add_sphere(&turned, bed.x[i], bed.y[i], bed.z[i], bed.r[i]);
     const uint32_t last = bed.n - 1;
     const fibrad_beam_rule rule = {.directions = 200};
-    fibrad_row row = beam(&bed, 0, rule, FIBRAD_ISA_BEST), other = beam(&turned, last, rule, FIBRAD_ISA_BEST);
+    OWNED_ROW row = beam(&bed, 0, rule, FIBRAD_ISA_BEST), other = beam(&turned, last, rule, FIBRAD_ISA_BEST);
     ck_assert_uint_eq(row.length, other.length);
     for (uint32_t k = 0; k < row.length; k++) {
         ck_assert_uint_eq(row.col[k], last - other.col[row.length - 1 - k]);
         ck_assert_double_eq(row.f[k], other.f[row.length - 1 - k]);
     }
-    row_free(&row), row_free(&other);
-    bed_free(&bed), bed_free(&turned);
 }
 
 TEST(scaling_by_powers_of_two_changes_no_bit) {
-    struct bed bed = packing(200, .8, 1.2, .5, 5, true), scaled = packing(200, .8, 1.2, .5, 5, true);
-    fibrad_row row = beam(&bed, 11, (fibrad_beam_rule){.directions = 233, .cutoff = 9}, FIBRAD_ISA_BEST);
+    OWNED_BED bed = packing(200, .8, 1.2, .5, 5, true), scaled = packing(200, .8, 1.2, .5, 5, true);
+    OWNED_ROW row = beam(&bed, 11, (fibrad_beam_rule){.directions = 233, .cutoff = 9}, FIBRAD_ISA_BEST);
     for (int k = -400; k <= 400; k += 100) {
         for (uint32_t i = 0; i < bed.n; i++) {
             scaled.x[i] = ldexp(bed.x[i], k), scaled.y[i] = ldexp(bed.y[i], k), scaled.z[i] = ldexp(bed.z[i], k);
@@ -340,15 +312,12 @@ TEST(scaling_by_powers_of_two_changes_no_bit) {
         ck_assert(same_bits(&row, &other));
         row_free(&other);
     }
-    row_free(&row);
-    bed_free(&bed);
-    bed_free(&scaled);
 }
 
 /* Rounding of the coordinates is all that a translation or a permutation changes. A rotation changes how the directions
  * lie: two estimates of the same row, each within the rule's error. */
 TEST(moved_beds_have_the_same_rows) {
-    struct bed bed = packing(200, .8, 1.2, .5, 5, false), moved = packing(200, .8, 1.2, .5, 5, false);
+    OWNED_BED bed = packing(200, .8, 1.2, .5, 5, false), moved = packing(200, .8, 1.2, .5, 5, false);
     fibrad_beam_rule rule = {.directions = 2000};
     uint32_t last = bed.n - 1;
     for (uint32_t i = 0; i <= last; i++)
@@ -376,13 +345,11 @@ TEST(moved_beds_have_the_same_rows) {
     ck_assert_double_lt(row_distance(&row, &other), 3e-4);
     row_free(&other);
     row_free(&row);
-    bed_free(&bed);
-    bed_free(&moved);
 }
 
 /* A periodic box is the box and its copies all around; images of one sphere share its entry. */
 TEST(periodic_images_are_copies) {
-    struct bed bed = packing(60, .8, 1.2, .5, 9, true), copies = packing(60, .8, 1.2, .5, 9, false);
+    OWNED_BED bed = packing(60, .8, 1.2, .5, 9, true), copies = packing(60, .8, 1.2, .5, 9, false);
     double side = bed.period[0];
     uint32_t n = bed.n;
     for (int a = -3; a <= 3; a++)
@@ -392,59 +359,48 @@ TEST(periodic_images_are_copies) {
                     add_sphere(&copies, bed.x[i] + a * side, bed.y[i] + b * side, bed.z[i] + c * side, bed.r[i]);
     fibrad_beam_rule rule = {.directions = 233, .cutoff = 2.5 * side};
     for (uint32_t i = 0; i < n; i += 13) {
-        fibrad_row one = beam(&bed, i, rule, FIBRAD_ISA_BEST), all = beam(&copies, i, rule, FIBRAD_ISA_BEST);
-        double *sum = calloc(n, sizeof *sum);
+        OWNED_ROW one = beam(&bed, i, rule, FIBRAD_ISA_BEST), all = beam(&copies, i, rule, FIBRAD_ISA_BEST);
+        OWNED double *sum = calloc(n, sizeof *sum);
         for (uint32_t k = 0; k < all.length; k++) sum[all.col[k] % n] += all.f[k];
         for (uint32_t j = 0; j < n; j++) ck_assert_double_eq_tol(row_factor(&one, j), sum[j], 1e-12);
         ck_assert_double_eq_tol(one.escaped, all.escaped, 1e-12);
-        free(sum);
-        row_free(&one);
-        row_free(&all);
     }
-    bed_free(&bed);
-    bed_free(&copies);
 }
 
 /* A lone sphere in a small periodic box sees only itself. */
 TEST(sphere_sees_its_own_images) {
-    struct bed bed = bed_of(1, (const double[][4]){{.5, .5, .5, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{.5, .5, .5, 1}});
     for (int axis = 0; axis < 3; axis++) bed.period[axis] = 2;
-    fibrad_row row = beam(&bed, 0, (fibrad_beam_rule){.directions = 500}, FIBRAD_ISA_BEST);
+    OWNED_ROW row = beam(&bed, 0, (fibrad_beam_rule){.directions = 500}, FIBRAD_ISA_BEST);
     ck_assert_uint_eq(row.length, 1);
     ck_assert_double_eq_tol(row.f[0] + row.escaped, 1, 1e-12);
     ck_assert_double_gt(row.f[0], .99);
-    row_free(&row);
-    bed_free(&bed);
 }
 
 TEST(cutoff_takes_out_what_lies_beyond) {
-    struct bed bed = lattice('f', 8), within = lattice('f', 4);
-    fibrad_row cut = beam(&bed, 0, (fibrad_beam_rule){.cutoff = 4}, FIBRAD_ISA_BEST);
-    fibrad_row row = beam(&within, 0, (fibrad_beam_rule){0}, FIBRAD_ISA_BEST);
+    OWNED_BED bed = lattice('f', 8), within = lattice('f', 4);
+    OWNED_ROW cut = beam(&bed, 0, (fibrad_beam_rule){.cutoff = 4}, FIBRAD_ISA_BEST);
+    OWNED_ROW row = beam(&within, 0, (fibrad_beam_rule){0}, FIBRAD_ISA_BEST);
     ck_assert_uint_eq(cut.length, row.length);
     ck_assert_double_eq_tol(cut.escaped + cut.beyond, row.escaped, 1e-14);
     ck_assert_double_eq_tol(row_sum(&cut), row_sum(&row), 1e-14);
-    row_free(&cut);
-    row_free(&row);
-    bed_free(&bed);
-    bed_free(&within);
 }
 
 /* The same where spheres are looked up along each beam, for want of room in the near list. */
 TEST(cutoff_along_each_beam) {
-    struct bed bed = strewn(300, 45), within = bed_of(0, NULL);
+    OWNED_BED bed = strewn(300, 45), within = bed_of(0, NULL);
     for (uint32_t j = 0; j < bed.n; j++) {
         double x = bed.x[j] - bed.x[50], y = bed.y[j] - bed.y[50], z = bed.z[j] - bed.z[50];
         if (x * x + y * y + z * z <= .3 * .3) add_sphere(&within, bed.x[j], bed.y[j], bed.z[j], bed.r[j]);
     }
     uint32_t own = 0;
     while (within.x[own] != bed.x[50]) own++;
-    fibrad_row row = beam(&within, own, (fibrad_beam_rule){.directions = 200}, FIBRAD_ISA_BEST);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_ROW row = beam(&within, own, (fibrad_beam_rule){.directions = 200}, FIBRAD_ISA_BEST);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     const fibrad_beam_rule rule = {.directions = 200, .cutoff = .3};
     size_t size = 0;
     for (int room = 0; room < 3; room++) {
-        fibrad_row cut = row_of(bed.n);
+        OWNED_ROW cut = row_of(bed.n);
         if (room == 0)
             size = beam_in_little(scene, 50, &rule, &cut);
         else
@@ -456,12 +412,7 @@ TEST(cutoff_along_each_beam) {
             ck_assert_double_eq(bed.x[cut.col[k]], within.x[row.col[k]]);
             ck_assert_double_eq_tol(cut.f[k], row.f[k], 1e-12);
         }
-        row_free(&cut);
     }
-    row_free(&row);
-    free(scene);
-    bed_free(&bed);
-    bed_free(&within);
 }
 
 /* Contacts that overlap a little differ little from contacts that do not. */
@@ -469,13 +420,11 @@ TEST(overlap_changes_rows_continuously) {
     double last = -1;
     for (int step = -20; step <= 20; step++) {
         double gap = step * 1e-4;
-        struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2 + gap, 1}, {0, 1.8, 1 + gap, 1}});
-        fibrad_row row = beam(&bed, 0, (fibrad_beam_rule){.directions = 987}, FIBRAD_ISA_BEST);
+        OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2 + gap, 1}, {0, 1.8, 1 + gap, 1}});
+        OWNED_ROW row = beam(&bed, 0, (fibrad_beam_rule){.directions = 987}, FIBRAD_ISA_BEST);
         double f = row_factor(&row, 1);
         if (last >= 0) ck_assert_double_eq_tol(f, last, 3e-4);
         last = f;
-        row_free(&row);
-        bed_free(&bed);
     }
 }
 
@@ -487,16 +436,14 @@ TEST(spheres_at_equal_depth_are_seen_once) {
         ck_assert_int_eq(fibrad_direction(k, 34, w), FIBRAD_OK);
         for (int side = -1; side <= 1; side++) {
             double ahead = 1e-9 * side, f[2];
-            struct bed bed = bed_of(
+            OWNED_BED bed = bed_of(
                 2, (const double[][4]){{0, 0, 0, .5}, {w[1] + ahead * w[0], ahead * w[1] - w[0], ahead * w[2], .5}});
             for (uint32_t i = 0; i < 2; i++) {
-                fibrad_row row = beam(&bed, i, (fibrad_beam_rule){.directions = 34}, FIBRAD_ISA_BEST);
+                OWNED_ROW row = beam(&bed, i, (fibrad_beam_rule){.directions = 34}, FIBRAD_ISA_BEST);
                 f[i] = row_factor(&row, 1 - i);
-                row_free(&row);
             }
             sum[side + 1] = f[0] + f[1];
             lens += side * (f[0] - f[1]) / 2;
-            bed_free(&bed);
         }
         double apart = sqrt(w[0] * w[0] + w[1] * w[1]), area = 2 * acos(apart) - 2 * apart * fabs(w[2]);
         ck_assert_double_eq_tol(lens, area / (34 * acos(-1)), 1e-7);
@@ -506,14 +453,14 @@ TEST(spheres_at_equal_depth_are_seen_once) {
 }
 
 TEST(crowded_rows_say_what_they_need) {
-    struct bed bed = packing(300, .2, 2, .45, 6, false);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_BED bed = packing(300, .2, 2, .45, 6, false);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     uint32_t largest = 0;
     for (uint32_t i = 0; i < bed.n; i++)
         if (bed.r[i] > bed.r[largest]) largest = i;
-    fibrad_row plenty = beam(&bed, largest, (fibrad_beam_rule){0}, FIBRAD_ISA_BEST);
+    OWNED_ROW plenty = beam(&bed, largest, (fibrad_beam_rule){0}, FIBRAD_ISA_BEST);
 
-    fibrad_row row = row_of(bed.n);
+    OWNED_ROW row = row_of(bed.n);
     row.capacity = 0;
     row.escaped = row.error = row.beyond = -5;
     row.sphere = row.directions = 12345;
@@ -541,22 +488,18 @@ TEST(crowded_rows_say_what_they_need) {
     ck_assert(for_work > 0 && for_row == 1);
     ck_assert(same_bits(&row, &plenty));
     ck_assert_uint_eq(row.sphere, largest);
-    row_free(&row);
-    row_free(&plenty);
     work_free_fixed(&work);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* A sphere with six neighbours has six entries: room for five is too little, and room for six enough. */
 TEST(a_row_needs_an_entry_for_every_sphere_seen) {
-    struct bed bed = lattice('p', 2);
+    OWNED_BED bed = lattice('p', 2);
     ck_assert_uint_eq(bed.n, 7);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
     for (uint32_t entries = 0; entries <= 7; entries++)
         for (int rays = 0; rays < 2; rays++) {
-            fibrad_row row = row_of(bed.n);
+            OWNED_ROW row = row_of(bed.n);
             for (uint32_t k = 0; k < bed.n; k++) row.col[k] = 99, row.f[k] = -1;
             row.capacity = entries;
             ck_assert_int_eq(rays ? fibrad_cast_row(scene, &work, 0, NULL, &row, NULL)
@@ -564,16 +507,12 @@ TEST(a_row_needs_an_entry_for_every_sphere_seen) {
                              entries < 6 ? FIBRAD_E_CAPACITY : FIBRAD_OK);
             ck_assert_uint_eq(row.length, 6);
             for (uint32_t k = entries < 6 ? 0 : 6; k < bed.n; k++) ck_assert(row.col[k] == 99 && row.f[k] == -1);
-            row_free(&row);
         }
-    work_free(&work);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* The numbers of random paths are nothing to beams. */
 TEST(ids_change_no_beam) {
-    struct bed bed = packing(150, .5, 1.5, .5, 3, true);
+    OWNED_BED bed = packing(150, .5, 1.5, .5, 3, true);
     fibrad_spheres spheres = spheres_of(&bed);
     uint64_t id[150];
     for (uint32_t i = 0; i < bed.n; i++) id[i] = 0x9e3779b97f4a7c15u * (i + 1);
@@ -581,23 +520,21 @@ TEST(ids_change_no_beam) {
     fibrad_scene_config config = {0};
     memcpy(config.period, bed.period, sizeof config.period);
     const size_t size = fibrad_scene_size(bed.n, 1);
-    void *block = block_of(size);
+    OWNED void *block = block_of(size);
     fibrad_scene *with = NULL, *without = scene_of(&bed, 0);
     ck_assert_int_eq(fibrad_scene_init(&with, block, size, &config, &spheres, NULL), FIBRAD_OK);
     memset(id, 0, sizeof id); /* copied */
-    struct matrix a = matrix_by_beams(with, NULL, true), b = matrix_by_beams(without, NULL, true);
+    OWNED_MATRIX a = matrix_by_beams(with, NULL, true), b = matrix_by_beams(without, NULL, true);
     ck_assert(matrix_same_bits(&a.factors, &b.factors));
-    matrix_free(&a), matrix_free(&b);
-    free(block), free(without);
-    bed_free(&bed);
+    free(without);
 }
 
 /* A sphere far beyond the others, as large as to be seen: only its direction and its angle matter. A small one there is
  * nothing. */
 TEST(strays_are_seen_however_far) {
-    struct bed bed = packing(60, .8, 1.2, .5, 3, false);
+    OWNED_BED bed = packing(60, .8, 1.2, .5, 3, false);
     fibrad_beam_rule rule = {.directions = 50};
-    fibrad_row alone = beam(&bed, 7, rule, 0);
+    OWNED_ROW alone = beam(&bed, 7, rule, 0);
     add_sphere(&bed, 0, 0, 0, 1);
     const uint32_t stray = bed.n - 1;
     for (int k = 0; k < 27; k++) {
@@ -618,34 +555,29 @@ TEST(strays_are_seen_however_far) {
             row_free(&seen);
         }
     }
-    row_free(&alone);
-    bed_free(&bed);
 }
 
 /* Where one marches outside the grid, with and without periods across. */
 TEST(strays_are_met_on_the_way) {
     const fibrad_beam_rule rule = {.directions = 2000};
     for (int periods = 0; periods < 3; periods++) {
-        struct bed bed = packing(60, .8, 1.2, .5, 3, true);
+        OWNED_BED bed = packing(60, .8, 1.2, .5, 3, true);
         const double side = bed.period[0];
         for (int axis = periods; axis < 3; axis++) bed.period[axis] = 0;
         for (int k = 0; k < 4; k++)
             add_sphere(&bed, periods > 0 ? 0 : side * (3 * k - 4), periods > 1 ? side / 2 : side * (5 - 4 * k),
                        side * (k % 2 ? 3 + k : -2 - 2 * k), 1);
-        fibrad_scene *scene = scene_of(&bed, 0);
-        fibrad_work more = work_growing();
+        OWNED fibrad_scene *scene = scene_of(&bed, 0);
+        OWNED_WORK more = work_growing();
         uint32_t strays_seen = 0;
         for (uint32_t i = 50; i < bed.n; i++) {
-            fibrad_row a = row_of(bed.n), b = row_of(bed.n);
+            OWNED_ROW a = row_of(bed.n), b = row_of(bed.n);
             beam_in_little(scene, i, &rule, &a);
             ck_assert_int_eq(fibrad_beam_row(scene, &more, i, &rule, &b), FIBRAD_OK);
             ck_assert(same_bits(&a, &b));
             strays_seen += a.length > 0 && a.col[a.length - 1] >= 60;
-            row_free(&a), row_free(&b);
         }
         ck_assert_uint_gt(strays_seen, 3);
-        free(scene), work_free(&more);
-        bed_free(&bed);
     }
 }
 
@@ -653,7 +585,7 @@ TEST(strays_are_met_on_the_way) {
 TEST(beams_end_after_100_periods) {
     const fibrad_beam_rule rule = {.directions = 4000};
     const double period = 3;
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}}), copies = bed_of(0, NULL);
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}}), copies = bed_of(0, NULL);
     for (int k = 0; k < 12; k++)
         add_sphere(&bed, .2 * k, (60 + 15 * k) * cos(2.4 * k), (60 + 15 * k) * sin(2.4 * k), 1);
     for (int image = 0; image <= 400; image++) /* 0, -1, 1, -2, 2 ... periods away */
@@ -667,19 +599,17 @@ TEST(beams_end_after_100_periods) {
     }
     for (uint32_t j = bed.n; j < copies.n; j++) seen[j % bed.n] += seen[j];
     bed.period[0] = period;
-    fibrad_row row = beam(&bed, 0, rule, FIBRAD_ISA_BEST);
+    OWNED_ROW row = beam(&bed, 0, rule, FIBRAD_ISA_BEST);
     for (uint32_t j = 0; j < bed.n; j++)
         ck_assert_double_eq_tol(row_factor(&row, j), seen[j] / (rule.directions * acos(-1)), 1e-10);
-    row_free(&row);
     free(seen);
-    bed_free(&bed), bed_free(&copies);
 }
 
 TEST(bad_arguments_are_refused) {
-    struct bed bed = lattice('p', 3);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(bed.n);
+    OWNED_BED bed = lattice('p', 3);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(bed.n);
     row.length = 77;
     ck_assert_int_eq(fibrad_beam_row(NULL, &work, 0, NULL, &row), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_beam_row(scene, NULL, 0, NULL, &row), FIBRAD_E_ARGUMENT);
@@ -699,8 +629,4 @@ TEST(bad_arguments_are_refused) {
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &arrays), FIBRAD_E_ARGUMENT);
     arrays = row, arrays.body = NULL; /* there are none */
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &arrays), FIBRAD_OK);
-    row_free(&row);
-    free(scene);
-    work_free(&work);
-    bed_free(&bed);
 }

@@ -26,7 +26,7 @@ static double least_gap(const struct bed *bed) {
 TEST(packing) {
     static const uint32_t sizes[] = {1, 10, 100, 700};
     for (int k = 0; k < 4; k++) {
-        struct bed bed, again;
+        OWNED_BED bed, again;
         bed_init(&bed);
         bed_init(&again);
         ck_assert_int_eq(bed_make_packing(&bed, sizes[k], .8, 1.2, .55, 7), 0);
@@ -41,15 +41,13 @@ TEST(packing) {
         ck_assert_double_eq_tol(solid / pow(bed.period[0], 3), .55, 1e-12);
         ck_assert_int_eq(bed_make_packing(&again, sizes[k], .8, 1.2, .55, 7), 0);
         ck_assert(memcmp(bed.x, again.x, bed.n * sizeof *bed.x) == 0);
-        bed_free(&bed);
-        bed_free(&again);
     }
 }
 
 /* Spheres of a layer stay between its faces. Shaken beds do not overlap, keep their solid fraction, and have lost the
  * order of their lattice: neighbours stand at all distances. */
 TEST(layers_and_shaken_beds) {
-    struct bed layer, shaken;
+    OWNED_BED layer, shaken;
     bed_init(&layer);
     bed_init(&shaken);
     ck_assert_int_eq(bed_make_layer(&layer, 300, .45, 2000, 3), 0);
@@ -73,12 +71,10 @@ TEST(layers_and_shaken_beds) {
             near += square < 2.25 * 2.25;
         }
     ck_assert_int_ge(near, 256); /* of a fluid some 1.6 a sphere, of the lattice none */
-    bed_free(&layer);
-    bed_free(&shaken);
 }
 
 TEST(copies) {
-    struct bed tile, bed;
+    OWNED_BED tile, bed;
     bed_init(&tile);
     bed_init(&bed);
     ck_assert_int_eq(bed_make_packing(&tile, 60, .8, 1.2, .55, 7), 0);
@@ -89,12 +85,10 @@ TEST(copies) {
     ck_assert_double_eq(bed.period[1], tile.period[1]);
     ck_assert_double_eq(bed.period[2], 2 * tile.period[2]);
     for (uint32_t k = 0; k < bed.n; k++) ck_assert_double_eq(bed.r[k], tile.r[k / 6]);
-    bed_free(&tile);
-    bed_free(&bed);
 }
 
 TEST(fcc) {
-    struct bed bed;
+    OWNED_BED bed;
     bed_init(&bed);
     ck_assert_int_eq(bed_make_fcc(&bed, 1, 4, 0), 0);
     ck_assert_uint_eq(bed.n, 1 + 12 + 6 + 24 + 12); /* shells at 2, 2.83, 3.46, 4 */
@@ -105,7 +99,6 @@ TEST(fcc) {
     double mean = 0;
     for (uint32_t i = 1; i < bed.n; i++) mean += bed.r[i] / (bed.n - 1);
     ck_assert_double_eq_tol(mean, .775, .02);
-    bed_free(&bed);
 }
 
 TEST(random_numbers) {

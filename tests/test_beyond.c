@@ -7,9 +7,9 @@ LOOP_TEST(nothing_is_beyond_what_holds_all, 2) {
     make_kind(&m, &kinds[_i]);
     for (int occupied = 0; occupied < 2; occupied++) {
         m.part.config.occupancy = occupied ? &m.occupancy : NULL;
-        fibrad_scene *plain = part_scene(&m.part);
+        OWNED fibrad_scene *plain = part_scene(&m.part);
         for (int axis = 0; axis < 3; axis++) m.part.config.known_low[axis] = -99, m.part.config.known_high[axis] = 99;
-        fibrad_scene *known = part_scene(&m.part);
+        OWNED fibrad_scene *known = part_scene(&m.part);
         memset(m.part.config.known_low, 0, sizeof m.part.config.known_low);
         memset(m.part.config.known_high, 0, sizeof m.part.config.known_high);
         for (uint32_t i = 3; i < m.part.n; i += 150)
@@ -26,7 +26,6 @@ LOOP_TEST(nothing_is_beyond_what_holds_all, 2) {
                 }
                 named_free(&expected), named_free(&cut);
             }
-        free(plain), free(known);
     }
     free_made(&m);
 }
@@ -66,7 +65,7 @@ LOOP_TEST(beyond_is_what_rays_say, 1) {
     struct made m;
     make_kind(&m, &kinds[_i]); /* open or periodic, without walls */
     struct part *p = &m.part;
-    fibrad_scene *scene = part_scene(p);
+    OWNED fibrad_scene *scene = part_scene(p);
     const double cutoff = 4;
     double largest = 0;
     for (uint32_t i = 0; i < p->n; i += p->n / 7) {
@@ -115,14 +114,13 @@ LOOP_TEST(beyond_is_what_rays_say, 1) {
         largest = fmax(largest, fmin(expected, sky));
     }
     if (_i == 0) ck_assert_double_gt(largest, .02); /* some rows have both */
-    free(scene);
     free_made(&m);
 }
 
 /* The walk through the cells against small steps, which miss nothing but corners: boxes with few marks, periodic or
  * not, rays from anywhere. */
 TEST(cells_are_walked_one_by_one) {
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, .1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, .1}});
     struct part p = part_of(&bed, (fibrad_scene_config){0});
     fibrad_random random = fibrad_random_start(6, 1);
     int missed = 0, clear = 0, rays = 0;
@@ -135,7 +133,7 @@ TEST(cells_are_walked_one_by_one) {
                                     .periodic = {round & 1, round >> 1 & 1, round >> 2 & 1},
                                     .mark = mark};
         p.config.occupancy = &o;
-        fibrad_scene *scene = part_scene(&p);
+        OWNED fibrad_scene *scene = part_scene(&p);
         for (int k = 0; k < 20; k++) {
             double from[3], w[3], distance;
             draw_even(&random, w);
@@ -152,7 +150,6 @@ TEST(cells_are_walked_one_by_one) {
             missed += expected && met == FIBRAD_BEYOND; /* corners */
             clear += expected, rays++;
         }
-        free(scene);
     }
     ck_assert_int_lt(missed, rays / 50);
     ck_assert_int_gt(clear, rays / 4);
@@ -164,30 +161,28 @@ TEST(cells_are_walked_one_by_one) {
                                        .periodic = {which & 1, which >> 1 & 1, which >> 2 & 1},
                                        .mark = (const uint64_t[]){0}};
         p.config.occupancy = &none;
-        fibrad_scene *scene = part_scene(&p);
+        OWNED fibrad_scene *scene = part_scene(&p);
         double distance;
         for (int axis = 0; axis < 3; axis++) {
             const double w[3] = {axis == 0, axis == 1 ? -1 : 0, axis == 2}, from[3] = {.3, .3, .3};
             const uint32_t met = fibrad_surroundings_met(scene, from, w, 0, &distance);
             ck_assert_uint_eq(met, none.periodic[axis] ? FIBRAD_BEYOND : FIBRAD_ESCAPED);
         }
-        free(scene);
     }
     part_free(&p);
-    bed_free(&bed);
 }
 
 /* What is reflected towards a sphere outside the known region is beyond. Beams see it. */
 TEST(reflections_end_at_the_known_region) {
-    struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2.5, 1}, {2.2, 0, 1.25, 1}});
+    OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2.5, 1}, {2.2, 0, 1.25, 1}});
     struct part p = part_of(&bed, (fibrad_scene_config){.known_low = {-2, 0, 0}, .known_high = {1.1, 0, 0}});
-    fibrad_scene *scene = part_scene(&p);
+    OWNED fibrad_scene *scene = part_scene(&p);
     const fibrad_occupancy none = {.high = {1, 1, 1}, .cells = {1, 1, 1}, .mark = (const uint64_t[]){0}};
     p.config.occupancy = &none;
-    fibrad_scene *told = part_scene(&p);
+    OWNED fibrad_scene *told = part_scene(&p);
     const double e[] = {.5, 1e-3, .9}; /* the third absorbs what it receives, and receives from the second */
-    fibrad_work work = work_growing();
-    fibrad_row beam = row_of(3), row = row_of(3), clear = row_of(3);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW beam = row_of(3), row = row_of(3), clear = row_of(3);
     const fibrad_exchange_rule rule = {.emissivity = e, .paths = 4000};
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 50, .points = 256}, &beam),
                      FIBRAD_OK);
@@ -198,23 +193,19 @@ TEST(reflections_end_at_the_known_region) {
     ck_assert_double_eq(row_factor(&clear, 2), row_factor(&row, 2));
     ck_assert_double_gt(row.beyond, .3);
     ck_assert_double_eq(clear.beyond, 0);
-    row_free(&beam), row_free(&row), row_free(&clear);
-    work_free(&work);
-    free(scene), free(told);
     part_free(&p);
-    bed_free(&bed);
 }
 
 /* One sphere that flies far above a bed must not hide the sky of those at its top. */
 TEST(a_flying_sphere_leaves_the_sky) {
-    struct bed bed = packing(700, .6, 1, .5, 11, true);
+    OWNED_BED bed = packing(700, .6, 1, .5, 11, true);
     const double side = bed.period[0];
     bed.period[2] = 0;
     add_sphere(&bed, side / 2, side / 2, 100, 1);
     struct part p = part_of(&bed, (fibrad_scene_config){0});
     const fibrad_occupancy o = occupancy_of(&p, (double[3]){0, 0, -1}, (double[3]){side, side, 101.5}, 128);
     fibrad_scene *told;
-    fibrad_scene *untold = part_scene(&p);
+    OWNED fibrad_scene *untold = part_scene(&p);
     p.config.occupancy = &o;
     told = part_scene(&p);
     uint32_t top = 0;
@@ -230,10 +221,9 @@ TEST(a_flying_sphere_leaves_the_sky) {
         ck_assert_double_gt(lost.row.beyond, .8 * all.row.escaped);
         named_free(&all), named_free(&cut), named_free(&lost);
     }
-    free(told), free(untold);
+    free(told);
     free((void *)(uintptr_t)o.mark);
     part_free(&p);
-    bed_free(&bed);
 }
 
 /* A flat bed above a floor keeps its sky. Lines of windows that look along the bed have directions of their own, of
@@ -265,10 +255,10 @@ TEST(a_cutoff_leaves_the_sky_of_a_flat_bed) {
 /* The known region ends half way up a can: a lone sphere sends a fraction there that is a solid angle over 4 pi. */
 TEST(a_known_region_ends_in_a_can) {
     const fibrad_body body[] = {plane_at(2, 0, -40), plane_at(2, 1, 40), cylinder_at(0, 0, 10)};
-    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 35, 1}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 35, 1}});
     struct part p = part_of(
         &bed, (fibrad_scene_config){.body = body, .bodies = 3, .known_low = {0, 0, -1000}, .known_high = {0, 0, 20}});
-    fibrad_scene *scene = part_scene(&p);
+    OWNED fibrad_scene *scene = part_scene(&p);
     const double share = .5 * (1 - 20 / sqrt(500)), below = .5 * (1 - 40 / sqrt(1700));
     for (int method = 0; method < METHODS; method++) {
         struct named_row row = row_by(&p, scene, 0, method, 0);
@@ -286,7 +276,7 @@ TEST(a_known_region_ends_in_a_can) {
         .low = {-20, -20, -60}, .high = {20, 20, 60}, .cells = {1, 1, 1}, .mark = (const uint64_t[]){0}};
     fibrad_scene_config config = p.config;
     p.config.occupancy = &none;
-    fibrad_scene *told = part_scene(&p);
+    OWNED fibrad_scene *told = part_scene(&p);
     for (int method = 0; method < METHODS; method++) {
         struct named_row row = row_by(&p, told, 0, method, 0);
         ck_assert_double_eq(row.row.beyond, 0);
@@ -298,7 +288,5 @@ TEST(a_known_region_ends_in_a_can) {
     struct named_row row = row_by(&p, scene, 1, 0, 0);
     ck_assert_double_gt(row.row.beyond, .9);
     named_free(&row);
-    free(scene), free(told);
     part_free(&p);
-    bed_free(&bed);
 }

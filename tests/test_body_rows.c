@@ -320,7 +320,7 @@ LOOP_TEST(against_plain_walls, 6) {
 /* A bed that fills the space between black plates: what the plates see of each other is next to nothing, and what
  * spheres leave over is no measure of it. */
 TEST(plates_and_a_dense_bed) {
-    struct bed bed = packing(400, .5, 1, .55, 4, true);
+    OWNED_BED bed = packing(400, .5, 1, .55, 4, true);
     const double top = bed.period[2];
     bed.period[2] = 0;
     const fibrad_body two[] = {plane_at(2, 0, -.5), plane_at(2, 1, top + .5)};
@@ -341,12 +341,11 @@ TEST(plates_and_a_dense_bed) {
         ck_assert_double_lt(row_distance(&with, &without), 2 * alone->matrix.error[i] + 1e-6);
     }
     fibrad_bed_free(f), fibrad_bed_free(alone);
-    bed_free(&bed);
 }
 
 /* Two ends of a flat cylinder see little but each other, and so do plates: sums that add up all the same. */
 TEST(flat_rooms) {
-    struct bed bed = bed_of(2, (const double[][4]){{1, 2, .02, .015}, {-9, 4, .021, .019}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{1, 2, .02, .015}, {-9, 4, .021, .019}});
     const fibrad_body tube[3] = {cylinder_at(0, 0, 80), plane_at(2, 0, 0), plane_at(2, 1, .04)};
     fibrad_bed_factors *f =
         factors_of(&bed, &(fibrad_scene_config){.body = tube, .bodies = 3}, NULL, &(fibrad_bed_options){0});
@@ -358,7 +357,6 @@ TEST(flat_rooms) {
     check_balance(&bed, f, NULL, NULL);
     ck_assert_double_eq_tol(between(f, 0, 1), 1, 1e-4);
     fibrad_bed_free(f);
-    bed_free(&bed);
 }
 
 /* Reflectors have empty rows, and nothing goes to them; bodies in another order have the same rows but for noise, and a
@@ -502,7 +500,7 @@ TEST(paths_end_in_openings) {
     fibrad_scene *scene[2] = {scene_with(&room.bed, &open),
                               scene_with(&room.bed, &(fibrad_scene_config){.body = room.wall, .bodies = 6})};
     const fibrad_exchange_rule rule = {.emissivity = room.e, .body_emissivity = room.wall_e};
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     for (uint32_t k = 0; k < 10; k++) {
         const uint32_t b = k / 2;
         const fibrad_exchange_rule *how = k % 2 ? &rule : &(fibrad_exchange_rule){0};
@@ -527,7 +525,6 @@ TEST(paths_end_in_openings) {
         ck_assert_double_le(row_distance(&row[0], &row[1]), 0);
         row_free(&row[0]), row_free(&row[1]);
     }
-    work_free(&work);
     free(scene[0]), free(scene[1]);
     bed_free(&room.bed);
 }
@@ -535,14 +532,14 @@ TEST(paths_end_in_openings) {
 /* A sphere in a box, and rows of walls that send all to it: so it can give each wall but its share of its own area, and
  * no matrix is reciprocal and closed. Rows of walls stay as they are, and that is said. */
 TEST(rows_that_contradict_each_other) {
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     fibrad_body wall[6];
     fibrad_body_row body_row[6];
     for (int b = 0; b < 6; b++) wall[b] = plane_at(b / 2, b % 2, b % 2 ? 2 : -2);
     for (int b = 0; b < 6; b++) body_row[b] = (fibrad_body_row){.spheres = 1, .error = 1e-3};
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = wall, .bodies = 6});
-    fibrad_work work = work_growing();
-    fibrad_rows rows = {.memory = memory_growing()};
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = wall, .bodies = 6});
+    OWNED_WORK work = work_growing();
+    OWNED_ROWS rows = {.memory = memory_growing()};
     fibrad_row row = {.rows = &rows};
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &row), FIBRAD_OK);
     for (int closed = 0; closed < 2; closed++) { /* what walls send to each other is what is left over, or nothing */
@@ -550,7 +547,7 @@ TEST(rows_that_contradict_each_other) {
         const double left = 1 - 4 * PI / 6 / 16, between = closed ? left / 5 : 0;
         for (int b = 0; b < 36; b++) body_row[b / 6].body[b % 6] = b % 7 == 0 ? 0 : between;
         const size_t size = fibrad_matrix_size(scene, &rows, 1, &rule);
-        void *block = malloc(size);
+        OWNED void *block = malloc(size);
         fibrad_matrix *matrix;
         fibrad_factors f;
         ck_assert_int_eq(fibrad_matrix_init(&matrix, block, size, scene, &rows, 1, &rule, NULL), FIBRAD_OK);
@@ -568,38 +565,31 @@ TEST(rows_that_contradict_each_other) {
         if (!closed) ck_assert_double_eq_tol(worst, left, .01);
         if (closed) ck_assert_double_lt(worst, 1e-12);
         ck_assert_double_ge(f.body_correction + 1e-12, f.body_closure);
-        free(block);
     }
-    work_free(&work);
-    rows_free(&rows);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* A square of two triangles and its images above and below it: each side sees what faces it, of its own triangle,
  * too. */
 TEST(a_plate_and_its_images) {
     enum { EDGE = 4 };
-    struct mesh *mesh = mesh_new();
+    OWNED struct mesh *mesh = mesh_new();
     const uint32_t v[4] = {mesh_vertex(mesh, 0, 0, .5), mesh_vertex(mesh, EDGE, 0, .5),
                            mesh_vertex(mesh, EDGE, EDGE, .5), mesh_vertex(mesh, 0, EDGE, .5)};
     mesh_quad(mesh, v, 0, 0);
-    struct bed bed = bed_of(1, (const double[][4]){{100, 0, 1, 1e-3}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{100, 0, 1, 1e-3}});
     bed.period[2] = 3;
     const fibrad_scene_config config = {.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles};
     fibrad_bed_factors *f =
         factors_of(&bed, &config, NULL, &(fibrad_bed_options){.beam = &(fibrad_beam_rule){.directions = 1000}});
     ck_assert_double_eq_tol(between(f, 0, 0), opposite(EDGE, EDGE, 3), 6e-3);
     fibrad_bed_free(f);
-    free(mesh);
-    bed_free(&bed);
 }
 
 /* In a periodic box triangles that lie across it face their images; what spheres send to them, by beams, and what they
  * send to spheres, by paths, are the same. */
 TEST(triangles_face_their_images) {
-    struct mesh *mesh = mesh_new();
-    struct bed bed = bed_of(3, (const double[][4]){{2, 2, 3, .9}, {7, 3, 6, .7}, {4, 7, 1, .8}});
+    OWNED struct mesh *mesh = mesh_new();
+    OWNED_BED bed = bed_of(3, (const double[][4]){{2, 2, 3, .9}, {7, 3, 6, .7}, {4, 7, 1, .8}});
     for (int axis = 0; axis < 3; axis++) bed.period[axis] = 9;
     mesh_triangle(mesh, mesh_vertex(mesh, 1, 8, 1), mesh_vertex(mesh, 8, 5, 2), mesh_vertex(mesh, 3, 1, 8), 0, 0);
     const fibrad_scene_config config = {.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles};
@@ -609,6 +599,4 @@ TEST(triangles_face_their_images) {
     ck_assert_double_gt(between(f, 0, 0), .3);
     ck_assert_double_lt(f->matrix.body_correction, .02);
     fibrad_bed_free(f);
-    free(mesh);
-    bed_free(&bed);
 }

@@ -10,14 +10,12 @@
 #define PI 3.14159265358979323846
 
 static fibrad_row cast(const struct bed *bed, uint32_t i, fibrad_cast_rule rule, int isa) {
-    fibrad_scene *scene = scene_of(bed, isa);
-    fibrad_work work = work_growing();
+    OWNED fibrad_scene *scene = scene_of(bed, isa);
+    OWNED_WORK work = work_growing();
     fibrad_row row = row_of(bed->n);
     ck_assert_int_eq(fibrad_cast_row(scene, &work, i, &rule, &row, NULL), FIBRAD_OK);
     ck_assert_uint_eq(row.sphere, i);
     ck_assert_int_eq(row.symmetric, 0);
-    free(scene);
-    work_free(&work);
     return row;
 }
 
@@ -37,14 +35,12 @@ TEST(two_spheres_match_the_exact_pair) {
             double exact, error = 0, estimate = 0;
             ck_assert_int_eq(fibrad_pair_exact(p[0], p[1], p[2], &exact), FIBRAD_OK);
             for (uint32_t k = 0; k < 24; k++) {
-                struct bed bed = pair(p[0], p[1], p[0] + p[1] + p[2], k);
-                fibrad_row row = cast(&bed, 0, (fibrad_cast_rule){20000, random, k, 0}, FIBRAD_ISA_BEST);
+                OWNED_BED bed = pair(p[0], p[1], p[0] + p[1] + p[2], k);
+                OWNED_ROW row = cast(&bed, 0, (fibrad_cast_rule){20000, random, k, 0}, FIBRAD_ISA_BEST);
                 ck_assert_uint_eq(row.length, 1);
                 ck_assert_double_eq_tol(row.f[0] + row.escaped, 1, 1e-15);
                 error += pow(row.f[0] - exact, 2) / 24;
                 estimate += pow(row.error, 2) / 24;
-                row_free(&row);
-                bed_free(&bed);
             }
             ck_assert_msg(error < 2.25 * estimate, "%g %g %g random %d: error %g, estimate %g", p[0], p[1], p[2],
                           random, sqrt(error), sqrt(estimate));
@@ -65,10 +61,10 @@ TEST(pebble_table) {
         double exact, error = 0, length = 0, angle = 0;
         ck_assert_int_eq(fibrad_pair_exact(1, 1, table[t].h - 2, &exact), FIBRAD_OK);
         for (uint32_t k = 0; k < 24; k++) {
-            struct bed bed = pair(1, 1, table[t].h, k);
-            fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-            fibrad_work work = work_growing();
-            fibrad_row row = row_of(2);
+            OWNED_BED bed = pair(1, 1, table[t].h, k);
+            OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+            OWNED_WORK work = work_growing();
+            OWNED_ROW row = row_of(2);
             double lengths[2], angles[2];
             const fibrad_cast_rule rule = {.rays = 200000, .seed = k};
             const fibrad_cast_means means = {lengths, angles};
@@ -76,10 +72,6 @@ TEST(pebble_table) {
             error += pow(row.f[0] / exact - 1, 2) / 24;
             length += lengths[0] / 24;
             angle += angles[0] * 180 / PI / 24;
-            free(scene);
-            work_free(&work);
-            row_free(&row);
-            bed_free(&bed);
         }
         ck_assert_msg(sqrt(error) < table[t].error, "H = %g: %.2f %%", table[t].h, 100 * sqrt(error));
         ck_assert_double_eq_tol(length, table[t].length, .004);
@@ -130,7 +122,7 @@ static uint32_t first_met(const struct bed *bed, uint32_t i, const double o[3], 
 
 static void check_every_ray(const struct bed *bed, int random) {
     const fibrad_cast_rule rule = {.rays = 4000, .random = random, .seed = 5};
-    uint32_t *count = calloc(bed->n + 1, sizeof *count);
+    OWNED uint32_t *count = calloc(bed->n + 1, sizeof *count);
     for (uint32_t i = 0; i < bed->n; i += 37) {
         memset(count, 0, (bed->n + 1) * sizeof *count);
         for (uint32_t k = 0; k < rule.rays; k++) {
@@ -138,24 +130,21 @@ static void check_every_ray(const struct bed *bed, int random) {
             ray(i, k, &rule, o, w);
             count[first_met(bed, i, o, w)]++;
         }
-        fibrad_row row = cast(bed, i, rule, FIBRAD_ISA_BEST);
+        OWNED_ROW row = cast(bed, i, rule, FIBRAD_ISA_BEST);
         for (uint32_t j = 0; j < bed->n; j++)
             ck_assert_msg(fabs(row_factor(&row, j) * rule.rays - count[j]) < .5,
                           "row %u: %u rays meet sphere %u, not %g", i, count[j], j, row_factor(&row, j) * rule.rays);
         ck_assert_double_eq_tol(row.escaped * rule.rays, count[bed->n], .5);
-        row_free(&row);
     }
-    free(count);
 }
 
 /* Radii from 1 to 10; then the same spheres swollen until they overlap. */
 TEST(rays_meet_the_first_sphere) {
-    struct bed bed = packing(400, .2, 2, .5, 11, false);
+    OWNED_BED bed = packing(400, .2, 2, .5, 11, false);
     check_every_ray(&bed, 0);
     check_every_ray(&bed, 1);
     for (uint32_t i = 0; i < bed.n; i++) bed.r[i] *= 1.05;
     check_every_ray(&bed, 0);
-    bed_free(&bed);
 }
 
 /* Of two spheres that overlap by almost a radius, a ray may meet first the one that is deeper, and perhaps not looked
@@ -164,18 +153,15 @@ TEST(deeper_spheres_are_met_first) {
     for (double depth = 12; depth < 60; depth += .31) {
         double f[2][2];
         for (int k = 0; k < 2; k++) {
-            struct bed bed = bed_of(
+            OWNED_BED bed = bed_of(
                 4, (const double[][4]){
                        {0, 0, 0, 1}, {0, 0, depth, 10}, {9.9, 0, depth + 1.5, 10}, {0, 0, k == 0 ? -20 : -2000, 1e-6}});
-            fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-            fibrad_work work = work_growing();
-            fibrad_row row = row_of(4);
+            OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+            OWNED_WORK work = work_growing();
+            OWNED_ROW row = row_of(4);
             ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 3000}, &row, NULL),
                              FIBRAD_OK);
             for (uint32_t j = 0; j < 2; j++) f[k][j] = row_factor(&row, j + 1);
-            row_free(&row);
-            free(scene), work_free(&work);
-            bed_free(&bed);
         }
         ck_assert_double_eq(f[0][0], f[1][0]);
         ck_assert_double_eq(f[0][1], f[1][1]);
@@ -185,9 +171,9 @@ TEST(deeper_spheres_are_met_first) {
 TEST(rays_agree_with_beams) {
     struct bed beds[] = {packing(300, .8, 1.2, .55, 7, true), packing(300, .3, 2, .5, 8, true)};
     for (size_t b = 0; b < 2; b++) {
-        fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
-        fibrad_work work = work_growing();
-        fibrad_row ours = row_of(beds[b].n), beams = row_of(beds[b].n);
+        OWNED fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
+        OWNED_WORK work = work_growing();
+        OWNED_ROW ours = row_of(beds[b].n), beams = row_of(beds[b].n);
         for (int random = 0; random <= 1; random++) {
             double error = 0, estimate = 0, bias = 0;
             for (uint32_t i = 0; i < 30; i++) {
@@ -204,31 +190,23 @@ TEST(rays_agree_with_beams) {
             ck_assert_double_lt(sqrt(error), random ? .009 : .005);
             ck_assert_double_lt(fabs(bias), 2e-4);
         }
-        row_free(&ours);
-        row_free(&beams);
-        free(scene);
-        work_free(&work);
         bed_free(&beds[b]);
     }
 }
 
 TEST(seeds) {
-    struct bed bed = packing(200, .8, 1.2, .5, 5, true);
+    OWNED_BED bed = packing(200, .8, 1.2, .5, 5, true);
     for (int random = 0; random <= 1; random++) {
-        fibrad_row a = cast(&bed, 3, (fibrad_cast_rule){1000, random, 7, 0}, FIBRAD_ISA_BEST);
-        fibrad_row same = cast(&bed, 3, (fibrad_cast_rule){1000, random, 7, 0}, FIBRAD_ISA_BEST);
-        fibrad_row other = cast(&bed, 3, (fibrad_cast_rule){1000, random, 8, 0}, FIBRAD_ISA_BEST);
+        OWNED_ROW a = cast(&bed, 3, (fibrad_cast_rule){1000, random, 7, 0}, FIBRAD_ISA_BEST);
+        OWNED_ROW same = cast(&bed, 3, (fibrad_cast_rule){1000, random, 7, 0}, FIBRAD_ISA_BEST);
+        OWNED_ROW other = cast(&bed, 3, (fibrad_cast_rule){1000, random, 8, 0}, FIBRAD_ISA_BEST);
         ck_assert(same_bits(&a, &same));
         ck_assert(!same_bits(&a, &other));
-        row_free(&a);
-        row_free(&same);
-        row_free(&other);
     }
-    bed_free(&bed);
 }
 
 TEST(same_bits_in_every_instruction_set) {
-    struct bed bed = packing(300, .5, 1.5, .55, 3, true);
+    OWNED_BED bed = packing(300, .5, 1.5, .55, 3, true);
     int isa[ISAS_MOST];
     const int sets = isas_there(isa);
     for (int random = 0; random <= 1; random++)
@@ -236,22 +214,17 @@ TEST(same_bits_in_every_instruction_set) {
             const fibrad_cast_rule rule = {1001, random, i, 0};
             double length[2][300], angle[2][300];
             for (int k = 0; k < sets; k++) {
-                fibrad_scene *scene = scene_of(&bed, isa[k]);
-                fibrad_work work = work_growing();
-                fibrad_row scalar = cast(&bed, i, rule, FIBRAD_ISA_SCALAR), row = row_of(bed.n);
+                OWNED fibrad_scene *scene = scene_of(&bed, isa[k]);
+                OWNED_WORK work = work_growing();
+                OWNED_ROW scalar = cast(&bed, i, rule, FIBRAD_ISA_SCALAR), row = row_of(bed.n);
                 const int which = k > 0;
                 const fibrad_cast_means means = {length[which], angle[which]};
                 ck_assert_int_eq(fibrad_cast_row(scene, &work, i, &rule, &row, &means), FIBRAD_OK);
                 ck_assert_msg(same_bits(&scalar, &row), "row %u differs in %s", i, fibrad_isa_name(isa[k]));
                 ck_assert_mem_eq(length[0], length[which], row.length * sizeof(double));
                 ck_assert_mem_eq(angle[0], angle[which], row.length * sizeof(double));
-                row_free(&scalar);
-                row_free(&row);
-                free(scene);
-                work_free(&work);
             }
         }
-    bed_free(&bed);
 }
 
 /* Whether spheres are kept near, or looked up along each ray for want of room; overlapping ones included. */
@@ -260,7 +233,7 @@ TEST(room_is_a_matter_of_speed) {
                          packing(400, .2, 2, .5, 11, false), lattice('p', 9)};
     for (uint32_t i = 0; i < beds[2].n; i++) beds[2].r[i] *= 1.05;
     for (size_t b = 0; b < sizeof beds / sizeof *beds; b++) {
-        fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
+        OWNED fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
         fibrad_row rows[2] = {row_of(beds[b].n), row_of(beds[b].n)};
         for (uint32_t i = 0; i < beds[b].n; i += 31) {
             for (int which = 0; which < 2; which++) {
@@ -279,66 +252,55 @@ TEST(room_is_a_matter_of_speed) {
         }
         row_free(&rows[0]);
         row_free(&rows[1]);
-        free(scene);
         bed_free(&beds[b]);
     }
 }
 
 TEST(scaling_by_powers_of_two_changes_no_bit) {
-    struct bed bed = packing(200, .8, 1.2, .5, 5, true), scaled = packing(200, .8, 1.2, .5, 5, true);
-    fibrad_row row = cast(&bed, 11, (fibrad_cast_rule){2000, 0, 0, 9}, FIBRAD_ISA_BEST);
+    OWNED_BED bed = packing(200, .8, 1.2, .5, 5, true), scaled = packing(200, .8, 1.2, .5, 5, true);
+    OWNED_ROW row = cast(&bed, 11, (fibrad_cast_rule){2000, 0, 0, 9}, FIBRAD_ISA_BEST);
     for (int k = -400; k <= 400; k += 100) {
         for (uint32_t i = 0; i < bed.n; i++) {
             scaled.x[i] = ldexp(bed.x[i], k), scaled.y[i] = ldexp(bed.y[i], k), scaled.z[i] = ldexp(bed.z[i], k);
             scaled.r[i] = ldexp(bed.r[i], k);
         }
         for (int axis = 0; axis < 3; axis++) scaled.period[axis] = ldexp(bed.period[axis], k);
-        fibrad_row other = cast(&scaled, 11, (fibrad_cast_rule){2000, 0, 0, ldexp(9, k)}, FIBRAD_ISA_BEST);
+        OWNED_ROW other = cast(&scaled, 11, (fibrad_cast_rule){2000, 0, 0, ldexp(9, k)}, FIBRAD_ISA_BEST);
         ck_assert(same_bits(&row, &other));
-        row_free(&other);
     }
-    row_free(&row);
-    bed_free(&bed);
-    bed_free(&scaled);
 }
 
 /* However far the shells reach, which again hangs on a speck. */
 TEST(rays_end_after_100_periods) {
     double escaped = NAN;
     for (int speck = 0; speck < 5; speck++) {
-        struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, -20 * pow(3, speck), 1e-6}});
+        OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, -20 * pow(3, speck), 1e-6}});
         bed.period[0] = 3;
         for (int k = 0; k < 8; k++) add_sphere(&bed, .2 * k, 300 * cos(2.4 * k), 300 * sin(2.4 * k), 1.5);
-        fibrad_row row = cast(&bed, 0, (fibrad_cast_rule){.rays = 20000}, FIBRAD_ISA_BEST);
+        OWNED_ROW row = cast(&bed, 0, (fibrad_cast_rule){.rays = 20000}, FIBRAD_ISA_BEST);
         if (speck == 0) escaped = row.escaped;
         ck_assert_double_eq(row.escaped, escaped);
-        row_free(&row);
-        bed_free(&bed);
     }
 }
 
 /* Spheres beyond the cutoff neither receive nor block. */
 TEST(cutoff) {
-    struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}, {0, 0, 40, 30}});
-    fibrad_row all = cast(&bed, 0, (fibrad_cast_rule){.rays = 5000}, FIBRAD_ISA_BEST);
-    fibrad_row near = cast(&bed, 0, (fibrad_cast_rule){.rays = 5000, .cutoff = 3}, FIBRAD_ISA_BEST);
-    fibrad_row none = cast(&bed, 0, (fibrad_cast_rule){.rays = 5000, .cutoff = 2.9}, FIBRAD_ISA_BEST);
+    OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}, {0, 0, 40, 30}});
+    OWNED_ROW all = cast(&bed, 0, (fibrad_cast_rule){.rays = 5000}, FIBRAD_ISA_BEST);
+    OWNED_ROW near = cast(&bed, 0, (fibrad_cast_rule){.rays = 5000, .cutoff = 3}, FIBRAD_ISA_BEST);
+    OWNED_ROW none = cast(&bed, 0, (fibrad_cast_rule){.rays = 5000, .cutoff = 2.9}, FIBRAD_ISA_BEST);
     ck_assert_uint_eq(all.length, 2);
     ck_assert_uint_eq(near.length, 1);
     ck_assert_double_eq(near.f[0], all.f[0]);
     ck_assert_uint_eq(none.length, 0);
     ck_assert_double_eq(none.beyond, 1); /* where the other sphere is */
-    row_free(&all);
-    row_free(&near);
-    row_free(&none);
-    bed_free(&bed);
 }
 
 TEST(refusals_and_capacities) {
-    struct bed bed = packing(200, .8, 1.2, .5, 5, true);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_BED bed = packing(200, .8, 1.2, .5, 5, true);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_work work = work_growing();
-    fibrad_rows rows = {.memory = memory_growing()};
+    OWNED_ROWS rows = {.memory = memory_growing()};
     fibrad_row row = row_of(200), small = {.capacity = 0};
     const fibrad_cast_rule bad[] = {{.random = 2}, {.random = -1}, {.cutoff = -1}, {.cutoff = NAN}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
@@ -361,15 +323,13 @@ TEST(refusals_and_capacities) {
     ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, NULL, &added, NULL), FIBRAD_OK);
     ck_assert_uint_eq(added.length, row.length);
     ck_assert_double_eq(added.error, row.error);
-    struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
+    OWNED_MATRIX m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
     const fibrad_row kept = matrix_row(&m.factors, 0);
     ck_assert(same_bits(&row, &kept));
-    matrix_free(&m);
-    rows_free(&rows);
     work_free(&work);
 
     /* too little work memory: what it asks for makes it succeed, with the same bits */
-    fibrad_row again = row_of(200);
+    OWNED_ROW again = row_of(200);
     void *block = block_of(64);
     work = work_fixed(block, 64);
     int status;
@@ -384,8 +344,5 @@ TEST(refusals_and_capacities) {
     }
     ck_assert(same_bits(&row, &again));
     row_free(&row);
-    row_free(&again);
     free(block);
-    free(scene);
-    bed_free(&bed);
 }

@@ -206,11 +206,9 @@ TEST(rows_in_files) {
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
     for (int k = 0; k < 3; ++k) {
         size_t first, second;
-        char *kept = read_bytes(names[0][k], &first), *filed = read_bytes(names[1][k], &second);
+        OWNED char *kept = read_bytes(names[0][k], &first), *filed = read_bytes(names[1][k], &second);
         ck_assert_uint_eq(first, second);
         ck_assert_int_eq(memcmp(kept, filed, first), 0);
-        free(kept);
-        free(filed);
     }
     ck_assert_int_eq(rmdir(scratch), 0); /* empty */
     remove_files(0);
@@ -236,7 +234,7 @@ TEST(targets_and_formats) {
     SUCCEED("bed", PERIODIC, "--positions", "--directions", "21", "--raw", "-o", matrix);
     SUCCEED("bed", PERIODIC, "--positions", "--directions", "21", "--targets", "1999,0,7-9,8", "-o", some);
     ck_assert(isnan(value_of("reciprocity_max")));
-    char *all_text = read_file(all), *some_text = read_file(some), *matrix_text = read_file(matrix);
+    OWNED char *all_text = read_file(all), *some_text = read_file(some), *matrix_text = read_file(matrix);
     char *row = strchr(some_text, '\n') + 1, *entry = matrix_text;
     for (int k = 0; k < 3; ++k) entry = strchr(entry, '\n') + 1;
     for (char *line = strchr(all_text, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
@@ -255,9 +253,6 @@ TEST(targets_and_formats) {
     }
     ck_assert_int_eq(*row, 0);
     ck_assert_str_eq(entry, "\n");
-    free(all_text);
-    free(some_text);
-    free(matrix_text);
 }
 
 /* Two spheres seen through periodic faces, in the open, from a CSV file and from standard input. */
@@ -274,9 +269,8 @@ TEST(frames_periods_and_ids) {
     ck_assert_double_eq(value_of("row_sum_min"), across);
     SUCCEED("bed", dump, "--periodic", "none", "--targets", "70", "-o", in_folder("ids.csv"));
     ck_assert_double_lt(value_of("row_sum_min"), 0.01);
-    char *text = read_file(in_folder("ids.csv"));
+    OWNED char *text = read_file(in_folder("ids.csv"));
     ck_assert_int_eq(strncmp(text, "i,j,F,body\n70,5,", 16), 0);
-    free(text);
     input = dump;
     SUCCEED("bed", "-");
     ck_assert_double_eq(value_of("row_sum_min"), across);
@@ -458,9 +452,8 @@ TEST(powers) {
     SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "T", "--ambient", "0", "--error", "0.01", "-o",
             in_folder("q.vtp"));
     ck_assert_double_le(value_of("error_rms_W") / value_of("power_rms_W"), .01);
-    char *vtp = read_file(in_folder("q.vtp"));
+    OWNED char *vtp = read_file(in_folder("q.vtp"));
     ck_assert(strstr(vtp, "Name=\"power_W\"") && strstr(vtp, "Name=\"temperature_K\"") && strstr(vtp, "</VTKFile>"));
-    free(vtp);
     SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "T", "--ambient", "0", "--model", "spheres");
     ck_assert_double_eq(value_of("directions"), 112); /* fewer where patches err more */
     SUCCEED("heat", file, "--emissivity", ".5", "--temperature", "T", "--ambient", "0");
@@ -491,7 +484,7 @@ TEST(exchange_factors) {
     ck_assert_double_lt(value_of("error_estimate"), .1);
     SUCCEED("exchange", file, "--emissivity", "e", "--rays", "300", "--wall", "zmin=-1.5,zmax=4", "--wall-emissivity",
             "zmin=0.5,zmax=0", "--threads", "3", "-o", other);
-    char *text = read_file(out), *again = read_file(other);
+    OWNED char *text = read_file(out), *again = read_file(other);
     ck_assert_str_eq(text, again);
     ck_assert_int_eq(strncmp(text, "i,j,D,body\n", 11), 0);
     for (char *line = strchr(text, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
@@ -507,8 +500,6 @@ TEST(exchange_factors) {
         ck_assert_double_eq_tol(sum[i], 1, 1e-12);
         for (int j = 0; j < N; ++j) ck_assert_double_eq_tol(weight[i] * d[i][j], weight[j] * d[j][i], 1e-14);
     }
-    free(text);
-    free(again);
     SUCCEED("exchange", file, "--emissivity", "0.6", "--error", "0.02", "--drop", "0.001", "--threads", "2");
     ck_assert_double_lt(value_of("error_estimate"), .04);
     ck_assert_double_lt(value_of("closure_max"), 1e-12);
@@ -570,13 +561,12 @@ TEST(paraview_and_picture) {
 }
 
 TEST(picture_without_gnuplot) {
-    char *path = strdup(getenv("PATH"));
+    OWNED char *path = strdup(getenv("PATH"));
     ck_assert_int_eq(setenv("PATH", folder, 1), 0);
     ck_assert_int_eq(
         RUN("bed", write_file("a.csv", "x,y,z,r\n0,0,0,1\n"), "--plot", in_folder("a.png"), "-o", in_folder("F.csv")),
         4);
     ck_assert_int_eq(setenv("PATH", path, 1), 0);
-    free(path);
     expect_message("", "gnuplot");
     ck_assert_int_eq(remove_files(0), 1); /* a.csv alone */
 }

@@ -30,16 +30,14 @@ static struct bed copy_of(const struct bed *bed) {
 /* F_E and what belongs to it, all spheres of this emissivity. Frees the bed. */
 static struct conduction follow(struct bed *bed, double emissivity, struct conduction_rule rule) {
     struct conduction result;
-    double *all = malloc(bed->n * sizeof *all);
-    unsigned char *emits = malloc(bed->n);
+    OWNED double *all = malloc(bed->n * sizeof *all);
+    OWNED unsigned char *emits = malloc(bed->n);
     ck_assert(all && emits);
     for (uint32_t i = 0; i < bed->n; ++i) all[i] = emissivity;
     rule.emissivity = all;
     fibrad_run run = {.threads = 1};
     ck_assert_int_eq(conduction_emitters(bed, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
     ck_assert_int_eq(conduction_follow(bed, emits, &rule, &run, &result), FIBRAD_OK);
-    free(all);
-    free(emits);
     bed_free(bed);
     return result;
 }
@@ -73,27 +71,25 @@ TEST(gaps_across_axes) {
     unsigned char emits[2];
     struct conduction result;
     for (int shift = -7; shift <= 7; ++shift) {
-        struct bed bed = cell_of(2, 2, 7);
+        OWNED_BED bed = cell_of(2, 2, 7);
         ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.x = 1, .z = 1.9, .r = 1}), 0);
         for (int i = 0; i < 2; ++i) bed.z[i] += shift * .7;
         ck_assert_int_eq(conduction_emitters(&bed, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
         ck_assert_double_eq_tol(result.growth[0], 3.1 * 3.1 / 14, 1e-12);
         ck_assert_double_eq(result.growth[2], 0);
-        bed_free(&bed);
     }
-    struct bed loose = cell_of(2.5, 2.2, 2);
+    OWNED_BED loose = cell_of(2.5, 2.2, 2);
     ck_assert_int_eq(conduction_emitters(&loose, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
     ck_assert_double_eq_tol(result.growth[0], .04 / 4.4, 1e-12);
     ck_assert_double_eq_tol(result.growth[1], .25 / 5, 1e-12);
     ck_assert_double_eq_tol(result.growth[2], .04 / 4.4 + .25 / 5, 1e-12);
-    bed_free(&loose);
 }
 
 /* Random beds are settled, and over seeds F_E is spread as the standard errors say, or less: paths are quasi-random. */
 TEST(errors_are_those_of_seeds) {
     enum { SEEDS = 30 };
     double factor[SEEDS][3], estimate[3] = {0};
-    struct bed packing;
+    OWNED_BED packing;
     bed_init(&packing);
     ck_assert_int_eq(bed_make_packing(&packing, 300, 1, 1, .55, 1), 0);
     for (int seed = 0; seed < SEEDS; ++seed) {
@@ -107,7 +103,6 @@ TEST(errors_are_those_of_seeds) {
             estimate[axis] += pow(result.error[axis], 2) / SEEDS;
         }
     }
-    bed_free(&packing);
     for (int axis = 0; axis < 3; ++axis) {
         double mean = 0, spread = 0;
         for (int seed = 0; seed < SEEDS; ++seed) mean += factor[seed][axis] / SEEDS;
@@ -120,7 +115,7 @@ TEST(errors_are_those_of_seeds) {
 /* A wide channel along x through a random bed: flights have no mean fourth power. Told with most seeds, and never
  * across it. */
 TEST(channel_is_told) {
-    struct bed packing, bed;
+    OWNED_BED packing, bed;
     bed_init(&packing);
     bed_init(&bed);
     ck_assert_int_eq(bed_make_packing(&packing, 300, 1, 1, .5, 1), 0);
@@ -129,7 +124,6 @@ TEST(channel_is_told) {
         if (hypot(packing.y[i] - edge / 2, packing.z[i] - edge / 2) > 3)
             ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){packing.x[i], packing.y[i], packing.z[i], 1, 0, 0}), 0);
     memcpy(bed.period, packing.period, sizeof bed.period);
-    bed_free(&packing);
     int told = 0;
     for (uint64_t seed = 0; seed < 8; ++seed) {
         struct bed copy = copy_of(&bed);
@@ -139,7 +133,6 @@ TEST(channel_is_told) {
         ck_assert_int_eq(conduction_flights(&result, 1), FLIGHTS_SETTLED);
         ck_assert_int_eq(conduction_flights(&result, 2), FLIGHTS_SETTLED);
     }
-    bed_free(&bed);
     ck_assert_int_ge(told, 4); /* on the mean 6 */
 }
 
@@ -157,7 +150,7 @@ TEST(mixtures_are_settled) {
 TEST(solid_fraction) {
     unsigned char emits[16 * 16 * 16];
     struct conduction result;
-    struct bed cubic = cell_of(2, 2, 2), centred = cell_of(4 / sqrt(3), 4 / sqrt(3), 4 / sqrt(3)), open;
+    OWNED_BED cubic = cell_of(2, 2, 2), centred = cell_of(4 / sqrt(3), 4 / sqrt(3), 4 / sqrt(3)), open;
     ck_assert_int_eq(bed_add(&centred, &(struct bed_sphere){2 / sqrt(3), 2 / sqrt(3), 2 / sqrt(3), 1, 0, 0}), 0);
     ck_assert_int_eq(conduction_emitters(&cubic, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
     ck_assert_double_eq_tol(result.solid_fraction, PI / 6, 1e-14);
@@ -168,9 +161,6 @@ TEST(solid_fraction) {
     memset(open.period, 0, sizeof open.period);
     ck_assert_int_eq(conduction_emitters(&open, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
     ck_assert_double_eq_tol(result.solid_fraction, PI / 6, .02);
-    bed_free(&cubic);
-    bed_free(&centred);
-    bed_free(&open);
 }
 
 /* ---- by the program ---------------------------------------------------------------------------------------------- */

@@ -20,40 +20,36 @@ static const double heights[] = {0, .5, .9};
 
 /* A unit sphere whose centre lies at a height above a plane across some axis. */
 static fibrad_scene *above(double height, int axis, int upper, fibrad_body *plane) {
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     *plane = plane_at(axis, upper, upper ? height : -height);
     fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = plane, .bodies = 1});
-    bed_free(&bed);
     return scene;
 }
 
 TEST(lone_sphere_by_beams) {
     static const uint32_t directions[] = {9, 100, 233}, points[] = {0, 128};
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(1);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(1);
     fibrad_body plane;
     for (size_t k = 0; k < HEIGHTS; k++)
         for (int wall = 0; wall < 6; wall++) {
-            fibrad_scene *scene = above(heights[k], wall / 2, wall % 2, &plane);
+            OWNED fibrad_scene *scene = above(heights[k], wall / 2, wall % 2, &plane);
             for (int n = 0; n < 6; n++) {
                 const fibrad_beam_rule rule = {.directions = directions[n / 2], .points = points[n % 2]};
                 ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rule, &row), FIBRAD_OK);
                 ck_assert_double_eq_tol(row.body[0], to_plane(heights[k]), 1e-14);
                 ck_assert_double_eq_tol(row.escaped, 1 - to_plane(heights[k]), 1e-14);
             }
-            free(scene);
         }
-    row_free(&row);
-    work_free(&work);
 }
 
 TEST(lone_sphere_by_rays) {
     const double emissivity = .5, black = 1, grey = .2;
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(2);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(2);
     fibrad_body plane;
     for (size_t k = 0; k < HEIGHTS; k++) {
-        fibrad_scene *scene = above(heights[k], 2, 0, &plane);
+        OWNED fibrad_scene *scene = above(heights[k], 2, 0, &plane);
         const double expected = to_plane(heights[k]);
         ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 200000}, &row, NULL), FIBRAD_OK);
         ck_assert_double_eq_tol(row.body[0], expected, 2e-4);
@@ -69,10 +65,7 @@ TEST(lone_sphere_by_rays) {
         rule.body_emissivity = &black, rule.emissivity = &black;
         ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, 0, &rule, &displacement), FIBRAD_OK);
         ck_assert_double_eq_tol(displacement.absorbed, 0, 1e-14);
-        free(scene);
     }
-    row_free(&row);
-    work_free(&work);
 }
 
 /* ---- heat ------------------------------------------------------------------------------------------------------- */
@@ -104,7 +97,7 @@ static struct heat heat_of(const struct bed *bed, const fibrad_body *plane, cons
 
 TEST(lone_sphere_by_heat) {
     const double hot = 1, black = 1, cold_black[] = {0, 1};
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     for (size_t k = 0; k < HEIGHTS; k++)
         for (int wall = 0; wall < 6; wall++) {
             const fibrad_body plane = plane_at(wall / 2, wall % 2, wall % 2 ? heights[k] : -heights[k]);
@@ -114,7 +107,6 @@ TEST(lone_sphere_by_heat) {
             ck_assert_double_eq_tol(heat.sky, 4 * PI * (1 - to_plane(heights[k])), 2e-2);
             ck_assert_double_eq_tol(heat.power[0] + heat.plane + heat.sky, 0, 1e-12);
         }
-    bed_free(&bed);
 }
 
 /* ---- several spheres -------------------------------------------------------------------------------------------- */
@@ -174,10 +166,10 @@ static double distance_of(const fibrad_row *row, const double f[SOME + 2]) {
 /* Rays, paths and heat know the caps as they are; rows by beams know what they get on the mean. */
 TEST(some_spheres) {
     double f[SOME][SOME + 2], by_rays = 0, by_beams = 0, by_points = 0, reciprocity = 0;
-    struct bed bed = bed_of(SOME, some);
+    OWNED_BED bed = bed_of(SOME, some);
     const fibrad_body floor = plane_at(2, 0, 0);
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor, .bodies = 1});
-    fibrad_work work = work_growing();
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor, .bodies = 1});
+    OWNED_WORK work = work_growing();
     fibrad_row rays[SOME], row = row_of(SOME);
     const fibrad_beam_rule areas = {.directions = 987}, points = {.directions = 987, .points = 128};
     plain_factors(400000, f);
@@ -197,31 +189,25 @@ TEST(some_spheres) {
     ck_assert_msg(by_beams < 8e-3 && by_points < 8e-3, "beams: %g, %g", by_beams, by_points);
     for (uint32_t i = 0; i < SOME; i++) row_free(&rays[i]);
     row_free(&row);
-    work_free(&work);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* Rows are reciprocal and closed as ever. */
 TEST(matrix_of_some) {
-    struct bed bed = bed_of(SOME, some);
+    OWNED_BED bed = bed_of(SOME, some);
     const fibrad_body floor = plane_at(2, 0, 0);
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor, .bodies = 1});
-    struct matrix m = matrix_by_beams(scene, NULL, false);
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor, .bodies = 1});
+    OWNED_MATRIX m = matrix_by_beams(scene, NULL, false);
     for (uint32_t i = 0; i < SOME; i++) {
         ck_assert_double_eq_tol(matrix_total(&m.factors, i), 1, 1e-14);
         for (uint32_t j = 0; j < i; j++)
             ck_assert_double_eq_tol(some[i][3] * some[i][3] * matrix_factor(&m.factors, i, j),
                                     some[j][3] * some[j][3] * matrix_factor(&m.factors, j, i), 1e-15);
     }
-    matrix_free(&m);
-    free(scene);
-    bed_free(&bed);
 }
 
 TEST(heat_of_some) {
     double f[SOME][SOME + 2], worst = 0, black[SOME], grey[SOME], warm[SOME];
-    struct bed bed = bed_of(SOME, some);
+    OWNED_BED bed = bed_of(SOME, some);
     const fibrad_body floor = plane_at(2, 0, 0);
     const double cold[] = {0, 1}, warm_grey[] = {1, .3};
     plain_factors(400000, f);
@@ -244,21 +230,16 @@ TEST(heat_of_some) {
     const struct heat even = heat_of(&bed, &floor, warm, grey, warm_grey, 1);
     for (uint32_t j = 0; j < SOME; j++) ck_assert_double_eq_tol(even.power[j], 0, 1e-9);
     ck_assert_double_eq_tol(even.plane, 0, 1e-9);
-    bed_free(&bed);
 }
 
 /* Beside a cylinder lines that graze it meet it again, of which the mean does not know. */
 TEST(beside_a_cylinder) {
-    struct bed bed = bed_of(1, (const double[][4]){{3.4, 0, 0, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{3.4, 0, 0, 1}});
     const fibrad_body body[] = {cylinder_at(0, 0, 4), plane_at(2, 0, -1.2), plane_at(2, 1, 1.2)};
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = 3});
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(1), rays = row_of(1);
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = 3});
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(1), rays = row_of(1);
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 987}, &row), 0);
     ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 400000}, &rays, NULL), 0);
     for (int b = 0; b < 3; b++) ck_assert_double_eq_tol(row.body[b], rays.body[b], .4 * .04);
-    row_free(&row), row_free(&rays);
-    work_free(&work);
-    free(scene);
-    bed_free(&bed);
 }

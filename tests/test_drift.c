@@ -43,22 +43,18 @@ TEST(estimate_bounds_the_change_of_a_pair) {
     static const double ratios[] = {.1, .3, 1, 3, 10}, gaps[] = {0, .01, .1, 1, 10, 100}, moves[] = {-1e-3, 1e-4, 1e-2};
     for (size_t k = 0; k < 5 * 6 * 3; k++) {
         double r = ratios[k % 5], gap = gaps[k / 5 % 6], move = moves[k / 30], from, to;
-        struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1 + r + gap, 0, 0, r}}), moved = copy_of(&bed);
+        OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1 + r + gap, 0, 0, r}}), moved = copy_of(&bed);
         move *= fmin(1, r);
         moved.x[1] += move;
         ck_assert_int_eq(fibrad_pair_exact(1, r, gap, &from), FIBRAD_OK);
         ck_assert_int_eq(fibrad_pair_exact(1, r, gap + move, &to), FIBRAD_OK);
-        fibrad_scene *before = scene_of(&bed, FIBRAD_ISA_BEST), *now = scene_of(&moved, FIBRAD_ISA_BEST);
+        OWNED fibrad_scene *before = scene_of(&bed, FIBRAD_ISA_BEST), *now = scene_of(&moved, FIBRAD_ISA_BEST);
         fibrad_row row = {.col = &(uint32_t){1}, .length = 1};
         double estimate = error_of(before, now, 0, &row);
         ck_assert_msg(fabs(to - from) <= estimate, "ratio %g, gap %g, move %g: %g above %g", r, gap, move,
                       fabs(to - from), estimate);
         ck_assert_msg(gap > .1 || estimate < 20 * fabs(to - from), "ratio %g, gap %g, move %g: %g far below %g", r, gap,
                       move, fabs(to - from), estimate);
-        free(before);
-        free(now);
-        bed_free(&bed);
-        bed_free(&moved);
     }
 }
 
@@ -69,52 +65,43 @@ TEST(estimates_hold_in_beds) {
     for (size_t b = 0; b < 3; b++)
         for (int kind = 0; kind < 3; kind++)
             for (double amplitude = 1e-4; amplitude < .05; amplitude *= 20) {
-                struct bed moved = copy_of(&beds[b]);
+                OWNED_BED moved = copy_of(&beds[b]);
                 if (kind == 0) jitter(&moved, amplitude, 5);
                 for (uint32_t i = 0; i < moved.n && kind == 1; i++) /* a strain */
                     moved.x[i] += amplitude * cos(6.283185307179586 * moved.y[i] / 12) * 12 / 6.283185307179586;
                 for (uint32_t i = 0; i < moved.n && kind == 2; i += 40) moved.z[i] += amplitude * moved.r[i];
-                fibrad_scene *before = scene_of(&beds[b], FIBRAD_ISA_BEST), *now = scene_of(&moved, FIBRAD_ISA_BEST);
+                OWNED fibrad_scene *before = scene_of(&beds[b], FIBRAD_ISA_BEST),
+                                   *now = scene_of(&moved, FIBRAD_ISA_BEST);
                 double ratio[100];
                 size_t rows = 0;
                 for (uint32_t i = 0; i < moved.n; i += 7) {
-                    fibrad_row old = row_in(before, i, &rule, moved.n), new = row_in(now, i, &rule, moved.n);
+                    OWNED_ROW old = row_in(before, i, &rule, moved.n), new = row_in(now, i, &rule, moved.n);
                     ratio[rows++] = row_distance(&old, &new) / error_of(before, now, i, &old);
-                    row_free(&old);
-                    row_free(&new);
                 }
                 qsort(ratio, rows, sizeof *ratio, ascending);
                 ck_assert_msg(ratio[rows - 1] < 1, "bed %zu, motion %d of %g: %g", b, kind, amplitude, ratio[rows - 1]);
                 ck_assert_msg(kind == 2 || ratio[rows / 2] > .1, "bed %zu, motion %d of %g: %g", b, kind, amplitude,
                               ratio[rows / 2]);
-                free(before);
-                free(now);
-                bed_free(&moved);
             }
     for (size_t b = 0; b < 3; b++) bed_free(&beds[b]);
 }
 
 /* Nothing moves against anything else, also where spheres leave the box on one side and come in on the other. */
 TEST(moving_as_a_whole_is_no_error) {
-    struct bed bed = packing(200, .8, 1.2, .5, 2, true), moved = copy_of(&bed);
+    OWNED_BED bed = packing(200, .8, 1.2, .5, 2, true), moved = copy_of(&bed);
     for (uint32_t i = 0; i < bed.n; i++) moved.x[i] += 3, moved.y[i] -= 2.5;
-    fibrad_scene *before = scene_of(&bed, FIBRAD_ISA_BEST), *now = scene_of(&moved, FIBRAD_ISA_BEST);
+    OWNED fibrad_scene *before = scene_of(&bed, FIBRAD_ISA_BEST), *now = scene_of(&moved, FIBRAD_ISA_BEST);
     for (uint32_t i = 0; i < bed.n; i += 3) {
-        fibrad_row row = row_in(before, i, NULL, bed.n);
+        OWNED_ROW row = row_in(before, i, NULL, bed.n);
         ck_assert_double_lt(error_of(before, now, i, &row), 1e-13);
-        row_free(&row);
     }
-    free(before);
-    free(now);
-    bed_free(&bed);
-    bed_free(&moved);
 }
 
 /* A sphere goes to a free place far away: it comes into the sight of rows that see nothing move. */
 TEST(what_comes_into_sight_is_found) {
-    struct bed bed = packing(400, .8, 1.2, .4, 9, true);
+    OWNED_BED bed = packing(400, .8, 1.2, .4, 9, true);
     bed.r[0] = .5;
-    struct bed now = copy_of(&bed);
+    OWNED_BED now = copy_of(&bed);
     const double edge = bed.period[0];
     for (uint64_t draw = 0, free_place = 0; !free_place; draw++) {
         now.x[0] = edge * bed_make_random(1, 3 * draw);
@@ -128,54 +115,41 @@ TEST(what_comes_into_sight_is_found) {
         }
     }
     const fibrad_beam_rule rule = {.directions = 60};
-    fibrad_scene *from = scene_of(&bed, FIBRAD_ISA_BEST), *to = scene_of(&now, FIBRAD_ISA_BEST);
-    fibrad_row before = row_in(from, 0, &rule, bed.n), row = row_in(to, 0, &rule, bed.n);
+    OWNED fibrad_scene *from = scene_of(&bed, FIBRAD_ISA_BEST), *to = scene_of(&now, FIBRAD_ISA_BEST);
+    OWNED_ROW before = row_in(from, 0, &rule, bed.n), row = row_in(to, 0, &rule, bed.n);
     double *error = calloc(bed.n, sizeof *error), unseen = 0, left = 0;
     ck_assert_int_eq(fibrad_drift_partners(to, 0, &before, &row, error), FIBRAD_OK);
     for (uint32_t i = 1; i < bed.n; i++) {
-        fibrad_row old = row_in(from, i, &rule, bed.n), new = row_in(to, i, &rule, bed.n);
+        OWNED_ROW old = row_in(from, i, &rule, bed.n), new = row_in(to, i, &rule, bed.n);
         const double change = row_distance(&old, &new);
         worst_of(&unseen, change);
         if (row_factor(&old, 0) == 0) worst_of(&left, change - error[i] - 4e-3);
-        row_free(&old);
-        row_free(&new);
     }
     ck_assert_double_gt(unseen, .01);
     ck_assert_double_le(left, 0);
-    row_free(&before);
-    row_free(&row);
     free(error);
-    free(from);
-    free(to);
-    bed_free(&bed);
-    bed_free(&now);
 }
 
 /* The estimate counts spheres alone: walls may have moved, or be others. */
 TEST(walls_that_move_are_not_counted) {
-    struct bed bed = packing(100, .8, 1.2, .4, 1, false);
+    OWNED_BED bed = packing(100, .8, 1.2, .4, 1, false);
     fibrad_body wall = plane_at(2, 1, 30);
     fibrad_scene_config config = {.body = &wall, .bodies = 1};
-    fibrad_scene *before = scene_with(&bed, &config), *open = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED fibrad_scene *before = scene_with(&bed, &config), *open = scene_of(&bed, FIBRAD_ISA_BEST);
     wall.plane.at = 31;
-    fibrad_scene *now = scene_with(&bed, &config);
+    OWNED fibrad_scene *now = scene_with(&bed, &config);
     for (uint32_t i = 0; i < bed.n; i += 9) {
-        fibrad_row row = row_in(before, i, NULL, bed.n);
+        OWNED_ROW row = row_in(before, i, NULL, bed.n);
         ck_assert_double_eq(error_of(before, now, i, &row), 0);
         ck_assert_double_eq(error_of(before, open, i, &row), 0);
-        row_free(&row);
     }
-    free(before);
-    free(now);
-    free(open);
-    bed_free(&bed);
 }
 
 TEST(bad_arguments_are_refused) {
-    struct bed bed = packing(50, .8, 1.2, .4, 1, true), less = packing(49, .8, 1.2, .4, 1, true), open = copy_of(&bed);
+    OWNED_BED bed = packing(50, .8, 1.2, .4, 1, true), less = packing(49, .8, 1.2, .4, 1, true), open = copy_of(&bed);
     open.period[1] = 0;
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST), *other = scene_of(&less, FIBRAD_ISA_BEST);
-    fibrad_scene *unlike = scene_of(&open, FIBRAD_ISA_BEST);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST), *other = scene_of(&less, FIBRAD_ISA_BEST);
+    OWNED fibrad_scene *unlike = scene_of(&open, FIBRAD_ISA_BEST);
     fibrad_row row = {.col = (uint32_t[]){1, 50}, .f = (double[]){.1, .1}, .length = 1}, beyond = row;
     beyond.length = 2;
     double error[50] = {0};
@@ -197,10 +171,4 @@ TEST(bad_arguments_are_refused) {
     ck_assert_int_eq(fibrad_drift_partners(scene, 0, &row, NULL, error), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_drift_partners(scene, 0, NULL, &row, error), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_drift_partners(scene, 0, &row, &row, NULL), FIBRAD_E_ARGUMENT);
-    free(scene);
-    free(other);
-    free(unlike);
-    bed_free(&bed);
-    bed_free(&less);
-    bed_free(&open);
 }

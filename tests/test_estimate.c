@@ -49,7 +49,7 @@ static int ascending(const void *a, const void *b) {
 /* All but two of 48 estimates are above the error of a raw row, or nearly so: rows of a lattice err together. Those of
  * rows from silhouettes are above half the error. On the median no estimate is more than 4 times the error. */
 LOOP_TEST(estimates_are_honest, BEDS) {
-    struct bed bed = beds[_i].make();
+    OWNED_BED bed = beds[_i].make();
     unsigned char wanted[1000];
     fibrad_bed_factors *truth = truth_of(&bed, wanted);
     for (int raw = 0; raw < 2; raw++) {
@@ -72,12 +72,11 @@ LOOP_TEST(estimates_are_honest, BEDS) {
         ck_assert_double_lt(ratio[count / 2], 4);
     }
     fibrad_bed_free(truth);
-    bed_free(&bed);
 }
 
 /* The rows asked for are that accurate, by the truth and by their own account; averaged ones closed and reciprocal. */
 LOOP_TEST(tolerance_is_met, BEDS) {
-    struct bed bed = beds[_i].make();
+    OWNED_BED bed = beds[_i].make();
     unsigned char of_truth[1000];
     fibrad_bed_factors *truth = truth_of(&bed, of_truth);
     const double wanted = _i == 1 ? .1 : 4e-3;
@@ -101,15 +100,14 @@ LOOP_TEST(tolerance_is_met, BEDS) {
         fibrad_bed_free(factors);
     }
     fibrad_bed_free(truth);
-    bed_free(&bed);
 }
 
 /* A row alone takes what it needs, whatever the room it was given, and holds the row of that many directions. */
 TEST(rows_by_themselves) {
-    struct bed bed = random_bed();
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(bed.n), plain = row_of(bed.n);
+    OWNED_BED bed = random_bed();
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(bed.n), plain = row_of(bed.n);
     uint32_t before = 0;
     for (double error = 1e-2; error > 1e-4; error /= 3) {
         ck_assert_int_eq(fibrad_beam_row(scene, &work, 7, &(fibrad_beam_rule){.tolerance = error}, &row), FIBRAD_OK);
@@ -128,11 +126,6 @@ TEST(rows_by_themselves) {
     row.capacity = room;
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 7, &(fibrad_beam_rule){.tolerance = -1}, &row), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 7, &(fibrad_beam_rule){.tolerance = NAN}, &row), FIBRAD_E_ARGUMENT);
-    row_free(&row);
-    row_free(&plain);
-    free(scene);
-    work_free(&work);
-    bed_free(&bed);
 }
 
 /* Scenes among walls: spheres of a packing, in a box or a cylinder of `room` times their extent. */
@@ -192,7 +185,7 @@ static fibrad_bed_factors *rows_among(const struct bed *bed, const fibrad_scene_
  * median not above five times the error. Tolerances are met likewise. */
 LOOP_TEST(estimates_count_walls, SCENES) {
     const struct scene_in_walls *of = &scenes_in_walls[_i];
-    struct bed bed = packing(of->spheres, of->low, of->high, of->fraction, 5 + (uint64_t)_i, false);
+    OWNED_BED bed = packing(of->spheres, of->low, of->high, of->fraction, 5 + (uint64_t)_i, false);
     fibrad_body body[6];
     const fibrad_scene_config config = {.body = body, .bodies = walls_about(&bed, of, body)};
     unsigned char wanted[1000] = {0};
@@ -226,33 +219,28 @@ LOOP_TEST(estimates_count_walls, SCENES) {
         ck_assert_double_le(ratio[count / 2], 5);
     }
     fibrad_bed_free(truth);
-    bed_free(&bed);
 }
 
 /* Where no number of directions does, the most there is. */
 TEST(out_of_reach) {
-    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1, 2, 3, 1}});
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(bed.n);
+    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1, 2, 3, 1}});
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(bed.n);
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.tolerance = 1e-15}, &row), FIBRAD_OK);
     ck_assert_uint_eq(row.directions, FIBRAD_DIRECTIONS_MAX);
     ck_assert_double_gt(row.error, 1e-15);
     ck_assert_uint_eq(fibrad_directions_for(FIBRAD_DIRECTIONS_MAX, 2, 1), FIBRAD_DIRECTIONS_MAX);
     ck_assert_uint_gt(fibrad_directions_for(100, 1.01, 1), 110);
     ck_assert_uint_lt(fibrad_directions_for(100, 8, 1), 500); /* 400 and some */
-    row_free(&row);
-    free(scene);
-    work_free(&work);
-    bed_free(&bed);
 }
 
 /* A row of one sphere: halves of the directions may agree by chance. Truth: the closed form. */
 TEST(one_entry_is_no_luck) {
-    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, .3}, {.33003, 0, 0, .03}});
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(bed.n);
+    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, .3}, {.33003, 0, 0, .03}});
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(bed.n);
     double truth;
     ck_assert_int_eq(fibrad_pair_exact(.03, .3, 3e-5, &truth), FIBRAD_OK);
     int beyond = 0, rows = 0;
@@ -263,10 +251,6 @@ TEST(one_entry_is_no_luck) {
             beyond += fabs(row_factor(&row, 0) - truth) > 2 * row.error;
         }
     ck_assert_int_le(beyond, rows / 20);
-    row_free(&row);
-    free(scene);
-    work_free(&work);
-    bed_free(&bed);
 }
 
 /* ---- exchange factors ------------------------------------------------------------------------------------------- */
@@ -282,7 +266,7 @@ static fibrad_bed_factors *exchange(const struct bed *bed, const fibrad_exchange
 
 /* Large and small, nearly touching. Truth: paths of others, and a million of ours from the small sphere: .1880. */
 TEST(small_beside_large_exchange) {
-    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, .3}, {.33003, 0, 0, .03}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, .3}, {.33003, 0, 0, .03}});
     const double emissivity[] = {.6, .6}, truth = .1880;
     double square = 0;
     for (uint64_t seed = 0; seed < 12; seed++) {
@@ -297,12 +281,11 @@ TEST(small_beside_large_exchange) {
         fibrad_bed_free(f);
     }
     ck_assert_double_le(sqrt(square), .002);
-    bed_free(&bed);
 }
 
 /* View factors by rays and by points, averaged: the small sphere knows better. Truth: the closed form. */
 LOOP_TEST(small_beside_large_sampled, 2) {
-    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, .3}, {.33003, 0, 0, .03}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, .3}, {.33003, 0, 0, .03}});
     const fibrad_spheres spheres = bed_spheres(&bed);
     const fibrad_beam_rule points = {.points = 64};
     const fibrad_cast_rule rays = {.rays = 20000};
@@ -317,7 +300,6 @@ LOOP_TEST(small_beside_large_sampled, 2) {
     ck_assert_double_le(fabs(100 * there / back - 1), 1e-14);
     ck_assert_double_le(f->closure_error, 1e-12);
     fibrad_bed_free(f);
-    bed_free(&bed);
 }
 
 /* Beds whose exchange factors have a tolerance. */
@@ -331,7 +313,7 @@ static const struct {
  * a hundred times as many paths. */
 LOOP_TEST(tolerance_of_exchange_is_met, sizeof greys / sizeof *greys) {
     const double tolerance = greys[_i].tolerance;
-    struct bed bed = packing(greys[_i].n, greys[_i].smallest, 1, greys[_i].fraction, greys[_i].seed, false);
+    OWNED_BED bed = packing(greys[_i].n, greys[_i].smallest, 1, greys[_i].fraction, greys[_i].seed, false);
     double *e = calloc(bed.n, sizeof *e), worst = 0, square = 0;
     for (uint32_t i = 0; i < bed.n; i++) e[i] = greys[_i].emissivity;
     fibrad_bed_factors *f = exchange(&bed, &(fibrad_exchange_rule){.emissivity = e, .tolerance = tolerance}, false);
@@ -359,5 +341,4 @@ LOOP_TEST(tolerance_of_exchange_is_met, sizeof greys / sizeof *greys) {
     fibrad_bed_free(f);
     fibrad_bed_free(truth);
     free(e);
-    bed_free(&bed);
 }

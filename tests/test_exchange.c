@@ -8,12 +8,11 @@
 #define PI 3.14159265358979323846
 
 static fibrad_row exchange_in(const fibrad_scene *scene, uint32_t n, uint32_t i, const fibrad_exchange_rule *rule) {
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     fibrad_row row = row_of(n);
     ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, rule, &row, NULL), FIBRAD_OK);
     ck_assert_uint_eq(row.sphere, i);
     ck_assert_double_eq(row.beyond, 0);
-    work_free(&work);
     return row;
 }
 
@@ -31,13 +30,13 @@ static double whole(const fibrad_row *row) {
 
 /* Black spheres: exchange factors are view factors, to the bit. */
 TEST(black_is_the_beam_row) {
-    struct bed bed = packing(200, .5, 1, .5, 1, true);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    double *e = constant(bed.n, 1);
-    fibrad_work work = work_growing();
+    OWNED_BED bed = packing(200, .5, 1, .5, 1, true);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED double *e = constant(bed.n, 1);
+    OWNED_WORK work = work_growing();
     for (uint32_t i = 0; i < bed.n; i += 40) {
-        fibrad_row row = exchange_in(scene, bed.n, i, &(fibrad_exchange_rule){.emissivity = e, .directions = 233});
-        fibrad_row beam = row_of(bed.n);
+        OWNED_ROW row = exchange_in(scene, bed.n, i, &(fibrad_exchange_rule){.emissivity = e, .directions = 233});
+        OWNED_ROW beam = row_of(bed.n);
         ck_assert_int_eq(fibrad_beam_row(scene, &work, i, NULL, &beam), FIBRAD_OK);
         ck_assert_uint_eq(row.length, beam.length);
         for (uint32_t k = 0; k < row.length; k++) {
@@ -46,21 +45,15 @@ TEST(black_is_the_beam_row) {
         }
         ck_assert_double_eq(row.escaped, beam.escaped);
         ck_assert_uint_eq(row.directions, 233);
-        row_free(&row);
-        row_free(&beam);
     }
-    work_free(&work);
-    free(e);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* A sphere alone sees nothing; two far apart exchange e F e' of what the first emits, and 1 - e' of F goes on its way.
  */
 TEST(one_and_two_spheres) {
     const double e[2] = {.3, .6};
-    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {30, 0, 0, 2}});
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {30, 0, 0, 2}});
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     double exact;
     ck_assert_int_eq(fibrad_pair_exact(1, 2, 27, &exact), FIBRAD_OK);
     fibrad_row row =
@@ -69,39 +62,33 @@ TEST(one_and_two_spheres) {
     ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
     ck_assert_double_eq_tol(row.escaped, 1 - .6 * exact, .002 * exact);
     row_free(&row);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* What black walls absorb at once has all the error of the beams, however little the spheres absorb, and counts for the
  * tolerance. */
 TEST(walls_count_for_the_first_leg) {
     const double e[2] = {.5, .02}, walls_e[6] = {1, 1, 1, 1, 1, 1};
-    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {2.2, .5, .3, 1}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {2.2, .5, .3, 1}});
     fibrad_body walls[6];
     for (int k = 0; k < 6; k++) walls[k] = plane_at(k / 2, k % 2, k % 2 ? 4 : -2);
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 6});
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 6});
     fibrad_exchange_rule rule = {.emissivity = e, .body_emissivity = walls_e, .directions = 50, .paths = 20000};
-    fibrad_row row = exchange_in(scene, 2, 0, &rule), beam = row_of(2);
-    fibrad_work work = work_growing();
+    OWNED_ROW row = exchange_in(scene, 2, 0, &rule), beam = row_of(2);
+    OWNED_WORK work = work_growing();
     const fibrad_beam_rule first = {.directions = 50, .points = 256};
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &first, &beam), FIBRAD_OK);
     ck_assert_double_ge(row.error, beam.error);
     rule.tolerance = beam.error;
-    fibrad_row finer = exchange_in(scene, 2, 0, &rule);
+    OWNED_ROW finer = exchange_in(scene, 2, 0, &rule);
     ck_assert_uint_gt(finer.directions, 50);
     ck_assert_double_le(finer.error, 1.05 * rule.tolerance);
-    work_free(&work);
-    row_free(&row), row_free(&beam), row_free(&finer);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* Two so far apart that hardly a path meets the other: rows end, closed, and say how much is not known. */
 TEST(hardly_seen) {
     const double e[2] = {.3, .6};
-    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1e4, 0, 0, 1}});
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1e4, 0, 0, 1}});
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     for (int tolerance = 0; tolerance <= 1; tolerance++) {
         fibrad_row row =
             exchange_in(scene, 2, 0, &(fibrad_exchange_rule){.emissivity = e, .tolerance = tolerance * 1e-3});
@@ -109,19 +96,17 @@ TEST(hardly_seen) {
         ck_assert_double_le(row.error, 1e-3);
         row_free(&row);
     }
-    free(scene);
-    bed_free(&bed);
 }
 
 /* A sphere in a much larger closed box of grey walls: it is met again by what they reflect. Walls and sphere then
  * nearly form an enclosure of two: of what the sphere emits it gets back, by the balance of two grey surfaces with F_12
  * = 1 and F_21 = A_1/A_2,  D_11 = (1 - e_2) F_21 e_1/(1 - (1 - e_2)(1 - F_21) - (1 - e_2) F_21 (1 - e_1)). */
 TEST(sphere_in_a_grey_box) {
-    struct bed bed = bed_of(1, (const double[][4]){{.1, -.2, .3, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{.1, -.2, .3, 1}});
     const fibrad_body walls[] = {plane_at(0, 0, -4), plane_at(0, 1, 4),  plane_at(1, 0, -4),
                                  plane_at(1, 1, 4),  plane_at(2, 0, -4), plane_at(2, 1, 4)};
     const double e[1] = {.4}, grey[6] = {.1, .1, .1, .1, .1, .1}, white[6] = {0};
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 6});
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 6});
     fibrad_exchange_rule rule = {.emissivity = e, .body_emissivity = grey, .directions = 1000, .paths = 400000};
     fibrad_row row = exchange_in(scene, 1, 0, &rule);
     double back = 4 * PI / (6 * 64), gap = .9 * back;
@@ -135,13 +120,11 @@ TEST(sphere_in_a_grey_box) {
     row = exchange_in(scene, 1, 0, &rule);
     ck_assert_double_eq_tol(row_factor(&row, 0), 1, 1e-13);
     row_free(&row);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* Paths by other means: absorbed as a whole where a random number says so, ray by ray in the bed itself. */
 static void plain(const struct bed *bed, const double *e, uint32_t i, uint32_t paths, double *d) {
-    fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_SCALAR);
+    OWNED fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_SCALAR);
     fibrad_random random = fibrad_random_start(1, i);
     for (uint32_t k = 0; k < paths; k++) {
         double o[3] = {bed->x[i], bed->y[i], bed->z[i]}, n[3], w[3], cosine, sine;
@@ -172,17 +155,16 @@ static void plain(const struct bed *bed, const double *e, uint32_t i, uint32_t p
             memcpy(n, hit.normal, sizeof n);
         }
     }
-    free(scene);
 }
 
 /* Unequal spheres of unequal emissivities, some of them 0, against plain paths: entry by entry within the noise of
  * these. */
 LOOP_TEST(against_plain_paths, 4) {
     enum { PATHS = 200000 };
-    struct bed bed = packing(60, .4, 1, .45, 8, _i % 2 == 0);
-    double *e = calloc(bed.n, sizeof *e), *d = calloc(bed.n, sizeof *d);
+    OWNED_BED bed = packing(60, .4, 1, .45, 8, _i % 2 == 0);
+    OWNED double *e = calloc(bed.n, sizeof *e), *d = calloc(bed.n, sizeof *d);
     for (uint32_t i = 0; i < bed.n; i++) e[i] = _i / 2 && i % 3 == 0 ? 0 : .1 + .85 * bed_make_random(4, i);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_row row =
         exchange_in(scene, bed.n, 5, &(fibrad_exchange_rule){.emissivity = e, .directions = 2000, .paths = PATHS});
     plain(&bed, e, 5, PATHS, d);
@@ -197,10 +179,6 @@ LOOP_TEST(against_plain_paths, 4) {
     ck_assert_double_lt(square, 2 * noise);
     ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
     row_free(&row);
-    free(scene);
-    free(e);
-    free(d);
-    bed_free(&bed);
 }
 
 static void assert_empty(const fibrad_row *row, uint32_t bodies) {
@@ -211,17 +189,17 @@ static void assert_empty(const fibrad_row *row, uint32_t bodies) {
 /* The row and the displacement of a sphere of emissivity 0 are empty, and no other row has a factor to it; the other
  * rows are those of emissivity 1e-6, but for what that absorbs. */
 TEST(reflectors_have_empty_rows) {
-    struct bed bed = packing(80, .5, 1, .5, 6, false);
+    OWNED_BED bed = packing(80, .5, 1, .5, 6, false);
     const fibrad_body walls[] = {plane_at(0, 0, bed.x[0] - 50), plane_at(0, 1, bed.x[0] + 50)};
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 2});
-    double *e = calloc(bed.n, sizeof *e), *nearly = calloc(bed.n, sizeof *e);
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 2});
+    OWNED double *e = calloc(bed.n, sizeof *e), *nearly = calloc(bed.n, sizeof *e);
     for (uint32_t i = 0; i < bed.n; i++) {
         e[i] = i % 4 == 0 ? 0 : .2 + .8 * bed_make_random(1, i);
         nearly[i] = i % 4 == 0 ? 1e-6 : e[i];
     }
     fibrad_exchange_rule rule = {.emissivity = e, .body_emissivity = (double[]){.5, 0}};
-    fibrad_rows rows = {.memory = memory_growing()};
-    fibrad_work work = work_growing();
+    OWNED_ROWS rows = {.memory = memory_growing()};
+    OWNED_WORK work = work_growing();
     for (uint32_t i = 0; i < bed.n; i++) {
         uint64_t rays = 77;
         fibrad_row row = row_of(bed.n), same = row_of(bed.n), kept = {.rows = &rows};
@@ -246,27 +224,24 @@ TEST(reflectors_have_empty_rows) {
             ck_assert_double_lt(row_distance(&row, &same), 1e-4);
             ck_assert_double_eq_tol(d.absorbed, of_nearly.absorbed, 1e-4);
         }
-        row_free(&row), row_free(&same);
+        row_free(&row);
+        row_free(&same);
     }
     ck_assert_uint_eq(rows.count, bed.n);
     rule.emissivity = memset(e, 0, bed.n * sizeof *e); /* all of them */
     for (uint32_t i = 0; i < bed.n; i += 7) {
-        fibrad_row row = row_of(bed.n);
+        OWNED_ROW row = row_of(bed.n);
         ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &row, NULL), FIBRAD_OK);
         assert_empty(&row, 2);
-        row_free(&row);
     }
-    rows_free(&rows), work_free(&work);
-    free(e), free(nearly), free(scene);
-    bed_free(&bed);
 }
 
 /* In a closed bed where all others reflect, a sphere gets back all that it emits, two share it. */
 TEST(all_light_comes_back) {
-    struct bed bed = packing(40, .5, 1, .5, 6, true);
-    double *e = calloc(bed.n, sizeof *e);
+    OWNED_BED bed = packing(40, .5, 1, .5, 6, true);
+    OWNED double *e = calloc(bed.n, sizeof *e);
     e[11] = .7;
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     const fibrad_exchange_rule rule = {.emissivity = e};
     fibrad_row row = exchange_in(scene, bed.n, 11, &rule);
     ck_assert_uint_eq(row.length, 1);
@@ -277,48 +252,40 @@ TEST(all_light_comes_back) {
     ck_assert_uint_eq(row.length, 2);
     ck_assert_double_eq_tol(row_factor(&row, 11) + row_factor(&row, 30), 1, 1e-12);
     row_free(&row);
-    free(e), free(scene);
-    bed_free(&bed);
 }
 
 /* The error falls as stated and is estimated honestly. */
 TEST(error_and_its_estimate) {
-    struct bed bed = packing(300, 1, 1, .55, 3, true);
-    double *e = constant(bed.n, .5);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_BED bed = packing(300, 1, 1, .55, 3, true);
+    OWNED double *e = constant(bed.n, .5);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     double error = 0, estimate = 0, tight = 0;
     for (uint32_t i = 0; i < bed.n; i += 30) {
-        fibrad_row truth = exchange_in(
+        OWNED_ROW truth = exchange_in(
             scene, bed.n, i, &(fibrad_exchange_rule){.emissivity = e, .directions = 2000, .paths = 60000, .seed = 1});
-        fibrad_row row = exchange_in(scene, bed.n, i, &(fibrad_exchange_rule){.emissivity = e});
-        fibrad_row fine = exchange_in(scene, bed.n, i, &(fibrad_exchange_rule){.emissivity = e, .tolerance = .005});
+        OWNED_ROW row = exchange_in(scene, bed.n, i, &(fibrad_exchange_rule){.emissivity = e});
+        OWNED_ROW fine = exchange_in(scene, bed.n, i, &(fibrad_exchange_rule){.emissivity = e, .tolerance = .005});
         error += pow(row_distance(&row, &truth), 2) / 10;
         estimate += row.error * row.error / 10;
         tight += pow(row_distance(&fine, &truth), 2) / 10;
         ck_assert_double_le(fine.error, .005);
-        row_free(&truth);
-        row_free(&row);
-        row_free(&fine);
     }
     ck_assert_double_lt(error, estimate);
     ck_assert_double_gt(error, estimate / 9);
     ck_assert_double_lt(sqrt(tight), .005);
     ck_assert_double_gt(sqrt(tight), .001);
-    free(e);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* Row i in any instruction set, after any other row, with room for a few lists of near spheres: the same bits. */
 TEST(same_bits_always) {
-    struct bed bed = packing(150, .3, 1, .5, 6, false);
+    OWNED_BED bed = packing(150, .3, 1, .5, 6, false);
     const fibrad_body walls[] = {plane_at(0, 0, bed.x[0] - 50), plane_at(0, 1, bed.x[0] + 50)};
     fibrad_scene_config config = {.isa = FIBRAD_ISA_SCALAR, .body = walls, .bodies = 2};
-    double *e = calloc(bed.n, sizeof *e);
+    OWNED double *e = calloc(bed.n, sizeof *e);
     for (uint32_t i = 0; i < bed.n; i++) e[i] = .2 + .8 * bed_make_random(1, i);
     const fibrad_exchange_rule rule = {.emissivity = e, .body_emissivity = (double[]){.5, .5}};
-    fibrad_scene *scene = scene_with(&bed, &config);
-    fibrad_row row = exchange_in(scene, bed.n, 70, &rule);
+    OWNED fibrad_scene *scene = scene_with(&bed, &config);
+    OWNED_ROW row = exchange_in(scene, bed.n, 70, &rule);
     fibrad_displacement displacement = {0};
     fibrad_work work = work_growing();
     ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, 70, &rule, &displacement), FIBRAD_OK);
@@ -328,9 +295,9 @@ TEST(same_bits_always) {
     const int sets = isas_there(isa);
     for (int k = 0; k < 2 * sets; k++) { /* with much memory and with little */
         config.isa = isa[k / 2];
-        fibrad_scene *other = scene_with(&bed, &config);
+        OWNED fibrad_scene *other = scene_with(&bed, &config);
         work = k % 2 ? work_fixed(block_of(room), room) : work_growing();
-        fibrad_row again = row_of(bed.n);
+        OWNED_ROW again = row_of(bed.n);
         for (uint32_t i = 71; i-- > 68;) {
             again.length = 0;
             ck_assert_int_eq(fibrad_exchange_row(other, &work, i, &rule, &again, NULL), FIBRAD_OK);
@@ -341,21 +308,15 @@ TEST(same_bits_always) {
         fibrad_displacement repeated = {0};
         ck_assert_int_eq(fibrad_exchange_displacement(other, &work, 70, &rule, &repeated), FIBRAD_OK);
         ck_assert_mem_eq(&displacement, &repeated, sizeof displacement);
-        row_free(&again);
         free(work.memory.block);
-        free(other);
     }
-    row_free(&row);
-    free(e);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* F_E of a lattice of unit spheres. */
 static double factor(const struct bed *bed, double solid, double emissivity, uint32_t paths) {
     double *e = constant(bed->n, emissivity), square = 0;
-    fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
+    OWNED fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
     const fibrad_exchange_rule rule = {.emissivity = e, .paths = paths};
     for (uint32_t i = 0; i < bed->n; i++) {
         fibrad_displacement d;
@@ -364,15 +325,13 @@ static double factor(const struct bed *bed, double solid, double emissivity, uin
         ck_assert_double_eq_tol(d.absorbed, 1, .05);
     }
     free(e);
-    free(scene);
-    work_free(&work);
     return 3 * solid * emissivity * square / 4;
 }
 
 /* Body- and face-centred lattices, two emissivities, against values from other programs (DESIGN: to 1-2 %). */
 TEST(conductivity_of_lattices) {
     const double b = 4 / sqrt(3), f = 2 * sqrt(2);
-    struct bed centred = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {b / 2, b / 2, b / 2, 1}});
+    OWNED_BED centred = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {b / 2, b / 2, b / 2, 1}});
     struct bed faces =
         bed_of(4, (const double[][4]){{0, 0, 0, 1}, {f / 2, f / 2, 0, 1}, {0, f / 2, f / 2, 1}, {f / 2, 0, f / 2, 1}});
     for (int axis = 0; axis < 3; axis++) centred.period[axis] = b, faces.period[axis] = f;
@@ -380,7 +339,6 @@ TEST(conductivity_of_lattices) {
     ck_assert_double_eq_tol(factor(&centred, PI * sqrt(3) / 8, 1, 60000), .916, .02 * .916);
     ck_assert_double_eq_tol(factor(&faces, PI * sqrt(2) / 6, .4, 30000), .299, .02 * .299);
     ck_assert_double_eq_tol(factor(&faces, PI * sqrt(2) / 6, 1, 30000), .875, .02 * .875);
-    bed_free(&centred);
     bed_free(&faces);
 }
 
@@ -388,11 +346,11 @@ TEST(conductivity_of_lattices) {
  * image as it is met. Contact factors to both sides: mean square 2 F 2^2 along the chain when all is absorbed at once.
  */
 TEST(displacement_in_a_chain) {
-    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {2, 0, 0, 1}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {2, 0, 0, 1}});
     bed.period[0] = 4;
     double *e = constant(2, 1), exact;
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
     fibrad_displacement d;
     const fibrad_exchange_rule rule = {.emissivity = e, .paths = 400000};
     ck_assert_int_eq(fibrad_pair_exact(1, 1, 0, &exact), FIBRAD_OK);
@@ -406,26 +364,22 @@ TEST(displacement_in_a_chain) {
     ck_assert_double_eq(d.square[2], 0);
     ck_assert_uint_eq(d.rays, 400000);
     free(e);
-    free(scene);
-    work_free(&work);
-    bed_free(&bed);
 }
 
 /* Rows of a whole bed, averaged with areas A e and balanced: reciprocal and closed; dropping keeps the sums. */
 TEST(rows_keep_the_books) {
-    struct bed bed = packing(120, .5, 1, .5, 12, true);
+    OWNED_BED bed = packing(120, .5, 1, .5, 12, true);
     const uint32_t n = bed.n;
     double *e = calloc(n, sizeof *e), *target = calloc(n, sizeof *target), *mean = calloc(n, sizeof *mean), largest;
-    fibrad_rows rows = {.memory = memory_growing()};
-    fibrad_work work = work_growing();
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_ROWS rows = {.memory = memory_growing()};
+    OWNED_WORK work = work_growing();
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     for (uint32_t i = 0; i < n; i++) e[i] = .2 + .8 * bed_make_random(2, i);
     for (uint32_t i = 0; i < n; i++) {
         const fibrad_exchange_rule rule = {.emissivity = e, .paths = 200};
         ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL), FIBRAD_OK);
     }
-    work_free(&work);
-    struct matrix raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = e, .raw = 1});
+    OWNED_MATRIX raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = e, .raw = 1});
     for (uint32_t i = 0; i < n; i++) {
         const fibrad_row row = matrix_row(&raw.factors, i);
         target[i] = row_sum(&row);
@@ -442,7 +396,7 @@ TEST(rows_keep_the_books) {
     ck_assert_int_eq(fibrad_matrix_reciprocity(raw.matrix, &largest), FIBRAD_OK);
     ck_assert_double_gt(largest, 1e-4);
     for (int drop = 0; drop <= 1; drop++) {
-        struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = e, .drop = drop * .003});
+        OWNED_MATRIX m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = e, .drop = drop * .003});
         for (uint32_t i = 0; i < n; i++) {
             ck_assert_double_eq_tol(matrix_sum(&m.factors, i), target[i], 1e-12);
             ck_assert_double_eq_tol(matrix_total(&m.factors, i), 1, 1e-12);
@@ -450,7 +404,6 @@ TEST(rows_keep_the_books) {
         ck_assert_int_eq(fibrad_matrix_reciprocity(m.matrix, &largest), FIBRAD_OK);
         ck_assert_double_lt(largest, 1e-14);
         ck_assert_int_eq(m.factors.start[n] < raw.factors.start[n], drop);
-        matrix_free(&m);
     }
     fibrad_matrix *none = NULL;
     unsigned char memory[1];
@@ -464,22 +417,21 @@ TEST(rows_keep_the_books) {
                          FIBRAD_E_ARGUMENT);
         e[3] = good;
     }
-    matrix_free(&raw);
-    rows_free(&rows);
-    free(e), free(target), free(mean), free(scene);
-    bed_free(&bed);
+    free(e);
+    free(target);
+    free(mean);
 }
 
 /* Spheres in another order, each with the number it had: the same paths. Without: others. */
 TEST(paths_go_by_the_numbers_of_spheres) {
-    struct bed bed = packing(100, .5, 1, .5, 4, true), turned = bed_of(0, NULL);
+    OWNED_BED bed = packing(100, .5, 1, .5, 4, true), turned = bed_of(0, NULL);
     uint64_t id[100], same[100];
     for (uint32_t i = 0; i < 100; i++) {
         const uint32_t j = 99 - i;
         add_sphere(&turned, bed.x[j], bed.y[j], bed.z[j], bed.r[j]);
         id[i] = j, same[i] = i;
     }
-    double *e = constant(100, .3);
+    OWNED double *e = constant(100, .3);
     const fibrad_exchange_rule rule = {.emissivity = e, .seed = 5};
     fibrad_scene *scene[4] = {scene_of(&bed, FIBRAD_ISA_BEST)};
     for (int k = 1; k < 3; k++) { /* in the same order, then turned */
@@ -504,17 +456,14 @@ TEST(paths_go_by_the_numbers_of_spheres) {
     fibrad_row *const rows[] = {&row, &plain, &again, &other};
     for (int k = 0; k < 4; k++) row_free(rows[k]);
     for (int k = 0; k < 4; k++) free(scene[k]);
-    free(e);
-    bed_free(&bed);
-    bed_free(&turned);
 }
 
 TEST(bad_arguments) {
-    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}});
     const fibrad_body wall = plane_at(2, 0, -2);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_scene *walled = scene_with(&bed, &(fibrad_scene_config){.body = &wall, .bodies = 1});
-    fibrad_work work = work_growing();
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED fibrad_scene *walled = scene_with(&bed, &(fibrad_scene_config){.body = &wall, .bodies = 1});
+    OWNED_WORK work = work_growing();
     fibrad_row row = row_of(2), none = {0}, bare = {.col = row.col, .f = row.f, .capacity = 2};
     const double good[2] = {.5, .5}, bad[][2] = {{1.1, 1}, {NAN, 1}, {-.1, 1}};
     const double bad_wall[] = {1.5, -.1, NAN, INFINITY};
@@ -574,34 +523,29 @@ TEST(bad_arguments) {
     ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
     ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &fine, &bare, NULL), FIBRAD_OK);
     row_free(&row);
-    work_free(&work);
-    free(scene);
-    free(walled);
-    bed_free(&bed);
 }
 
 /* Two small spheres in a room of mirrors, which light leaves by its thousandth of a thousandth a leg: paths end, what
  * they leave is in the error. Truth: light that has been everywhere is absorbed by areas times emissivities. */
 TEST(mirrors_end_in_the_error) {
-    struct bed bed = bed_of(2, (const double[][4]){{.3, .5, .5, .05}, {.7, .5, .5, .05}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{.3, .5, .5, .05}, {.7, .5, .5, .05}});
     const fibrad_body walls[] = {plane_at(0, 0, 0), plane_at(0, 1, 1), plane_at(1, 0, 0),
                                  plane_at(1, 1, 1), plane_at(2, 0, 0), plane_at(2, 1, 1)};
     const fibrad_scene_config config = {.body = walls, .bodies = 6};
-    fibrad_scene *scene = scene_with(&bed, &config);
-    fibrad_work work = work_growing();
+    OWNED fibrad_scene *scene = scene_with(&bed, &config);
+    OWNED_WORK work = work_growing();
     static const double of_walls[] = {1e-5, 1e-6, 0};
     for (int k = 0; k < 3; k++) {
         const double e[] = {1e-6, 1e-6}, w = of_walls[k], wall[] = {w, w, w, w, w, w};
         const double area = 4 * PI * .05 * .05, truth = area * e[0] / (2 * area * e[0] + 6 * w);
         const fibrad_exchange_rule rule = {.emissivity = e, .body_emissivity = wall};
-        fibrad_row row = row_of(bed.n);
+        OWNED_ROW row = row_of(bed.n);
         uint64_t rays = 0;
         ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, &rays), FIBRAD_OK);
         double square = pow(row_factor(&row, 0) - truth, 2) + pow(row_factor(&row, 1) - truth, 2);
         for (int b = 0; b < 6; b++) square += pow(row.body[b] - w / (2 * area * e[0] + 6 * w), 2);
         ck_assert_double_le(sqrt(square), row.error);
         ck_assert_double_le((double)rays, 1e6);
-        row_free(&row);
         fibrad_body_row part;
         ck_assert_int_eq(fibrad_exchange_body(scene, &work, 0, &rule, 0, &part), FIBRAD_OK);
         ck_assert_double_ge(part.error, w > 0 ? .5 : 0);
@@ -610,7 +554,4 @@ TEST(mirrors_end_in_the_error) {
         ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, 0, &rule, &moved), FIBRAD_OK);
         ck_assert_double_le((double)moved.rays, 1e6);
     }
-    free(scene);
-    work_free(&work);
-    bed_free(&bed);
 }

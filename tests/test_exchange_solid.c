@@ -126,8 +126,8 @@ static double to_side(double r, double e, double relative) {
     fibrad_body body[6];
     for (int k = 0; k < 6; ++k) body[k] = plane_at(k / 2, k % 2, k % 2 ? 1 : -1);
     const fibrad_scene_config config = {.body = body, .bodies = 6};
-    fibrad_scene *scene = scene_with(&bed, &config);
-    fibrad_work work = work_growing();
+    OWNED fibrad_scene *scene = scene_with(&bed, &config);
+    OWNED_WORK work = work_growing();
     const double node = fibrad_node_emissivity(e, relative), black[] = {1, 1, 1, 1, 1, 1};
     const fibrad_exchange_rule rule = {.emissivity = &e,
                                        .body_emissivity = black,
@@ -138,8 +138,6 @@ static double to_side(double r, double e, double relative) {
     for (uint32_t k = 0; k < FIBRAD_BODY_PARTS; ++k)
         ck_assert_int_eq(fibrad_exchange_body(scene, &work, 5, &rule, k, &part[k]), FIBRAD_OK);
     ck_assert_int_eq(fibrad_exchange_body_mean(part, &mean), FIBRAD_OK);
-    work_free(&work);
-    free(scene);
     return mean.body[1];
 }
 
@@ -287,7 +285,7 @@ TEST(good_conductors) {
 TEST(refusals) {
     const struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2, 1}});
     const double black[] = {.5, .5};
-    fibrad_scene *scene = scene_of(&bed, 0);
+    OWNED fibrad_scene *scene = scene_of(&bed, 0);
     fibrad_work work = work_growing();
     fibrad_row row = row_of(2);
     for (int k = 0; k < 8; ++k) {
@@ -306,7 +304,6 @@ TEST(refusals) {
         fibrad_bed_free(factors);
     }
     row_free(&row), work_free(&work);
-    free(scene);
 }
 
 /* ---- the program ------------------------------------------------------------------------------------------------- */

@@ -27,7 +27,7 @@ static const char *frame(const char *units, const char *step, const char *atoms,
 
 /* The power of a body or sphere in a .csv of heat, by the end of its line or its beginning. */
 static double power_of(const char *path, const char *begin, const char *end) {
-    char *text = read_file(path);
+    OWNED char *text = read_file(path);
     double t, q = NAN;
     for (char *line = text; line && *line; line = strchr(line, '\n'), line += line != NULL) {
         const size_t length = strcspn(line, "\n");
@@ -38,7 +38,6 @@ static double power_of(const char *path, const char *begin, const char *end) {
         ck_assert_int_eq(sscanf(number, "%lf,%lf", &t, &q), 2);
     }
     ck_assert_msg(!isnan(q), "no line %s ... %s in %s", begin, end, text);
-    free(text);
     return q;
 }
 
@@ -259,9 +258,8 @@ TEST(values_by_type) {
     SUCCEED("heat", bed, "--radius", "1:.01,2:.015", "--emissivity", "1:.3,2:0", "--temperature", "T", "--ambient",
             "300", "-o", one);
     SUCCEED("heat", same, "--emissivity", "e", "--temperature", "T", "--ambient", "300", "-o", two);
-    char *first = read_file(one), *second = read_file(two);
+    OWNED char *first = read_file(one), *second = read_file(two);
     ck_assert_str_eq(first, second);
-    free(first), free(second);
     ck_assert_double_le(fabs(power_of(one, "1,", "")), 1e-9 * fabs(power_of(one, "0,", ""))); /* reflects all */
     const char *colons = write_file("colons.csv", "x,y,z,r,velo:0\n0,0,0,.01,300\n");
     SUCCEED("heat", colons, "--emissivity", "1", "--temperature", "velo:0", "--ambient", "300"); /* no list of types */
@@ -296,7 +294,7 @@ TEST(all_frames) {
     for (int k = 0; k < 3; ++k) {
         const char *one = in_folder("one.csv");
         SUCCEED(HEAT, bed, "--frame", number[k], "--ambient", "300", "-o", one);
-        char *expected = read_file(one);
+        OWNED char *expected = read_file(one);
         for (char *line = strchr(expected, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
             ck_assert_int_eq(strncmp(at, begin[k], strlen(begin[k])), 0);
             at += strlen(begin[k]);
@@ -304,7 +302,6 @@ TEST(all_frames) {
             ck_assert_int_eq(strncmp(at, line, length), 0);
             at += length;
         }
-        free(expected);
     }
     ck_assert_int_eq(*at, 0);
     free(text);
@@ -323,11 +320,10 @@ TEST(all_frames) {
 TEST(some_frames) {
     const char *bed = write_frames("bed.dump", 3), *out = in_folder("F.csv");
     SUCCEED("bed", bed, "--frame", "0:3:2", "--directions", "8", "-o", out);
-    char *text = read_file(out);
+    OWNED char *text = read_file(out);
     ck_assert_int_eq(strncmp(text, "frame,timestep,i,j,F,body\n0,100,3,", 34), 0);
     ck_assert_ptr_nonnull(strstr(text, "\n2,900,3,"));
     ck_assert_ptr_null(strstr(text, "\n1,"));
-    free(text);
     SUCCEED("bed", bed, "--frame", "-1", "--directions", "8");
     ck_assert_double_eq(value_of("frame"), 2);
     ck_assert_double_eq(value_of("timestep"), 900);
@@ -415,11 +411,10 @@ TEST(radii_of_growing_frames) {
     fclose(file);
     SUCCEED("bed", bed, "--frame", "all", "--radius", ".4", "--directions", "8", "-o", all);
     SUCCEED("bed", bed, "--frame", "1:", "--radius", ".4", "--directions", "8", "-o", last);
-    char *text = read_file(all), *expected = read_file(last);
+    OWNED char *text = read_file(all), *expected = read_file(last);
     const char *frame = strstr(text, "\n1,1,1,2,");
     ck_assert_ptr_nonnull(frame);
     ck_assert_str_eq(frame, strchr(expected, '\n'));
-    free(text), free(expected);
 }
 
 /* ---- what is said ----------------------------------------------------------------------------------------------- */
@@ -449,10 +444,9 @@ TEST(quiet_and_streams) {
     ck_assert_str_eq(printed, "");
     ck_assert_str_eq(said, "");
     SUCCEED("bed", bed, "-o", "-", "--format", "csv");
-    char *text = read_file(in_folder("F.csv"));
+    OWNED char *text = read_file(in_folder("F.csv"));
     ck_assert_str_eq(printed, text);
     ck_assert_ptr_nonnull(strstr(said, "\nspheres 3\n"));
-    free(text);
     SUCCEED("heat", bed, "--emissivity", ".5", "--temperature", "T", "--ambient", "300", "--length-unit", "mm",
             "--progress");
     ck_assert_ptr_nonnull(strstr(said, " sweeps, "));
@@ -504,18 +498,16 @@ TEST(inputs_stay) {
                              outputs[k], other_name),
                          2);
         ck_assert_msg(strstr(said, "is read in this run and would be replaced") != NULL, "output %d: %s", k, said);
-        char *text = read_file(path[k]);
+        OWNED char *text = read_file(path[k]);
         ck_assert_str_eq(text, k ? texts[k] : frame(NULL, "0", "3", SORTED));
-        free(text);
     }
     ck_assert_int_eq(remove_files(0), 6);                         /* nothing else is there */
     path[0] = write_file("q.pvd", frame(NULL, "0", "3", SORTED)); /* the collection of q.*.vtp */
     ck_assert_int_eq(RUN(HEAT, path[0], "--ambient", "300", "--until", "5", "--heat-capacity", "800", "--density",
                          "2500", "-o", in_folder("q.*.vtp")),
                      2);
-    char *text = read_file(path[0]);
+    OWNED char *text = read_file(path[0]);
     ck_assert_str_eq(text, frame(NULL, "0", "3", SORTED));
-    free(text);
     input = path[0] = write_file("bed.csv", "x,y,z,r\n0,0,0,1\n3,0,0,1\n"); /* as standard input */
     ck_assert_int_eq(RUN("bed", "-", "-o", path[0]), 2);
     input = "/dev/null";
@@ -557,12 +549,11 @@ TEST(furnace_outputs) {
     ck_assert_ptr_null(strchr(said, '#'));
     ck_assert_double_eq_tol(json_of(json, "T_axis_2.0") / value_of("T_axis_2.0"), 1, 1e-9);
     ck_assert_double_eq(json_of(json, "bundles"), value_of("bundles"));
-    char *text = read_file(csv);
+    OWNED char *text = read_file(csv);
     SUCCEED(FURNACE, "-o", "-", "--format", "csv", "--progress");
     ck_assert_str_eq(printed, text);
     ck_assert_ptr_nonnull(strstr(said, "\nT_axis_2.0 "));
     ck_assert_ptr_nonnull(strstr(said, "##] 100 %"));
-    free(text);
     SUCCEED(FURNACE, "--json", "-");
     ck_assert_int_eq(strncmp(printed, "{\"fibrad\"", 9), 0);
     ck_assert_int_eq(RUN(FURNACE, "-o", "-"), 2);

@@ -28,24 +28,23 @@ static void powers_point(struct powers *p) {
 static void powers_free(struct powers *p) { free(p->weight), free(p->emission), free(p->power); }
 
 static fibrad_rows exchange_rows(const fibrad_scene *scene, uint32_t n, const fibrad_exchange_rule *rule) {
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     fibrad_rows rows = {.memory = memory_growing()};
     for (uint32_t i = 0; i < n; i++)
         ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, rule, &(fibrad_row){.rows = &rows}, NULL), FIBRAD_OK);
-    work_free(&work);
     return rows;
 }
 
 /* Powers add up to zero; nothing flows between equals; a part of the rows gives a part of the powers. */
 TEST(what_one_gains_others_lose) {
-    struct bed bed = packing(60, .6, 1, .5, 9, false);
+    OWNED_BED bed = packing(60, .6, 1, .5, 9, false);
     const fibrad_body body[] = {plane_at(2, 0, -1), plane_at(0, 0, -1)};
     const fibrad_plane open[] = {{0, 1, 9}, {1, 0, -2}, {1, 1, 9}, {2, 1, 9}};
     fibrad_scene *scene =
         scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = 2, .opening = open, .openings = 4});
     double e[60];
     for (int i = 0; i < 60; i++) e[i] = .4 + .01 * i;
-    fibrad_rows rows = exchange_rows(
+    OWNED_ROWS rows = exchange_rows(
         scene, bed.n,
         &(fibrad_exchange_rule){.emissivity = e, .body_emissivity = wall_emissivity, .seed = 5, .cutoff = 3});
     struct powers p = powers_of(&bed, e);
@@ -85,18 +84,16 @@ TEST(what_one_gains_others_lose) {
     ck_assert(same.body_power[0] == 0 && same.body_power[1] == 0 && same.flow.surroundings_power == 0);
     free(expected), free((void *)(uintptr_t)raw.matrix);
     powers_free(&p), powers_free(&twice), powers_free(&same);
-    rows_free(&rows);
     free(scene);
-    bed_free(&bed);
 }
 
 /* In a closed box of spheres alone the powers are those of the averaged matrix. */
 TEST(powers_are_those_of_the_averaged_matrix) {
-    struct bed bed = packing(80, .7, 1, .5, 3, true);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_BED bed = packing(80, .7, 1, .5, 3, true);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     double e[80];
     for (int i = 0; i < 80; i++) e[i] = .5 + .005 * i;
-    fibrad_rows rows = exchange_rows(scene, bed.n, &(fibrad_exchange_rule){.emissivity = e});
+    OWNED_ROWS rows = exchange_rows(scene, bed.n, &(fibrad_exchange_rule){.emissivity = e});
     struct powers p = powers_of(&bed, e);
     powers_point(&p);
     ck_assert_int_eq(fibrad_rows_flow(&rows, bed.n, 0, &p.flow), FIBRAD_OK);
@@ -113,13 +110,10 @@ TEST(powers_are_those_of_the_averaged_matrix) {
     }
     free((void *)(uintptr_t)m.matrix);
     powers_free(&p);
-    rows_free(&rows);
-    free(scene);
-    bed_free(&bed);
 }
 
 TEST(bad_regions_and_occupancies_are_refused) {
-    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
     struct part p = part_of(&bed, (fibrad_scene_config){0});
     const uint64_t mark[1] = {1};
     const fibrad_occupancy good = {.high = {1, 1, 1}, .cells = {4, 4, 4}, .mark = mark};
@@ -141,29 +135,25 @@ TEST(bad_regions_and_occupancies_are_refused) {
     }
     p.config.known_low[1] = -5, p.config.known_high[1] = 5;
     ck_assert_int_eq(part_scene_try(&p, &scene), FIBRAD_OK);
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(2);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(2);
     ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, NULL, &row), FIBRAD_E_UNSUPPORTED);
     ck_assert_uint_eq(fibrad_heat_size(NULL, scene), 0);
     static unsigned char block[1 << 20];
     fibrad_heat *heat;
     ck_assert_int_eq(fibrad_heat_init(&heat, block, sizeof block, NULL, scene), FIBRAD_E_UNSUPPORTED);
-    fibrad_scene *plain = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED fibrad_scene *plain = scene_of(&bed, FIBRAD_ISA_BEST);
     ck_assert_int_eq(fibrad_heat_init(&heat, block, sizeof block, NULL, plain), FIBRAD_OK);
     ck_assert_int_eq(fibrad_heat_move(heat, scene), FIBRAD_E_UNSUPPORTED);
-    free(plain);
     free(scene);
     p.config.period[1] = 50;
     ck_assert_int_eq(part_scene_try(&p, &scene), FIBRAD_E_ARGUMENT);
-    row_free(&row);
-    work_free(&work);
     part_free(&p);
-    bed_free(&bed);
 }
 
 /* Whatever a scene is made from tells it from others: rows of the one do not go into a matrix of the other. */
 TEST(surroundings_tell_scenes_apart) {
-    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
     struct part p = part_of(&bed, (fibrad_scene_config){0});
     uint64_t mark[2] = {1, 0};
     fibrad_occupancy o = {.high = {1, 1, 1}, .cells = {4, 4, 8}};
@@ -178,25 +168,23 @@ TEST(surroundings_tell_scenes_apart) {
         scene[k] = part_scene(&p);
     }
     for (int k = 0; k < 7; k++) {
-        fibrad_rows rows = rows_by_beams(scene[k], &(fibrad_beam_rule){.directions = 8});
+        OWNED_ROWS rows = rows_by_beams(scene[k], &(fibrad_beam_rule){.directions = 8});
         static unsigned char block[1 << 12];
         for (int other = 0; other < 7; other++) {
             fibrad_matrix *matrix;
             ck_assert_int_eq(fibrad_matrix_init(&matrix, block, sizeof block, scene[other], &rows, 1, NULL, NULL),
                              other == k ? FIBRAD_OK : FIBRAD_E_STATE);
         }
-        rows_free(&rows);
     }
     for (int k = 0; k < 7; k++) free(scene[k]);
     part_free(&p);
-    bed_free(&bed);
 }
 
 TEST(bad_flows_are_refused) {
-    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
     uint32_t col[] = {0, 1};
     double f[] = {.1, .2}, body[] = {.3}, e[] = {1, 1};
-    fibrad_rows rows = {.memory = memory_growing()};
+    OWNED_ROWS rows = {.memory = memory_growing()};
     fibrad_row row = {.col = col, .f = f, .body = body, .length = 2, .sphere = 1, .escaped = .1, .beyond = .3};
     ck_assert_int_eq(fibrad_rows_add(&rows, &row, 1), FIBRAD_OK);
     struct powers p = powers_of(&bed, e);
@@ -238,6 +226,4 @@ TEST(bad_flows_are_refused) {
     /* no rows, no spheres */
     ck_assert_int_eq(fibrad_rows_flow(&(fibrad_rows){0}, 0, 0, &(fibrad_flow){0}), FIBRAD_OK);
     powers_free(&p);
-    rows_free(&rows);
-    bed_free(&bed);
 }

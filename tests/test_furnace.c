@@ -62,7 +62,7 @@ TEST(uniform_temperature) {
     for (int w = 0; w < 6; w++) config.wall_temperature[w] = 900;
     for (int k = 0; k < 3; k++) {
         size_t size = fibrad_furnace_size(&config);
-        void *block = allocate(size);
+        OWNED void *block = allocate(size);
         fibrad_furnace *furnace;
         fibrad_furnace_arrays at;
         fibrad_furnace_report report;
@@ -72,7 +72,6 @@ TEST(uniform_temperature) {
         fibrad_furnace_theta(furnace, k == 0 ? 1 : k == 1 ? 2.0 / 3 : 0.75);
         fibrad_furnace_solve(furnace, FIBRAD_SCATTER_SIX_FLUX, 1e-5, 10000, &report);
         for (size_t c = 0; c < 250; c++) ck_assert_double_le(fabs(fibrad_furnace_temperature(at.e[c]) / 900 - 1), 1e-7);
-        free(block);
     }
 }
 

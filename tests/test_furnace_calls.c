@@ -65,7 +65,7 @@ TEST(bad_configurations) {
 TEST(memory) {
     fibrad_furnace_config config = coarse_case(1, 2);
     size_t size = fibrad_furnace_size(&config);
-    unsigned char *block = allocate(size + 128);
+    OWNED unsigned char *block = allocate(size + 128);
     fibrad_furnace *furnace = NULL;
     memset(block, 0xa5, size + 128);
     ck_assert_int_eq(fibrad_furnace_init(&furnace, block, size - 1, &config), FIBRAD_E_SIZE);
@@ -76,7 +76,7 @@ TEST(memory) {
     ck_assert_int_eq(fibrad_furnace_init(&furnace, block, size, &config), FIBRAD_OK);
 
     size_t tally_size = fibrad_furnace_tally_size(furnace);
-    unsigned char *tally_block = allocate(tally_size + 128);
+    OWNED unsigned char *tally_block = allocate(tally_size + 128);
     memset(tally_block, 0xa5, tally_size + 128);
     fibrad_furnace_tally *tally = NULL;
     ck_assert_uint_eq(fibrad_furnace_tally_size(NULL), 0);
@@ -97,8 +97,6 @@ TEST(memory) {
         ck_assert_uint_eq(block[size + k], 0xa5);
         ck_assert_uint_eq(tally_block[tally_size + k], 0xa5);
     }
-    free(tally_block);
-    free(block);
 }
 
 static void emit(struct box *box, fibrad_furnace_physics physics, int restart) {

@@ -11,7 +11,7 @@ static void assert_still(struct problem *p) {
 }
 
 TEST(nothing_flows_in_a_closed_box_at_one_temperature) {
-    struct problem p = problem_of(packing(60, .6, 1.2, .5, 3, false), 3, .5);
+    OWNED_PROBLEM p = problem_of(packing(60, .6, 1.2, .5, 3, false), 3, .5);
     p.walls = box_about(&p.bed);
     for (uint32_t i = 0; i < p.bed.n; i++) p.emissivity[i] = (double)(i % 11) / 10;
     for (int k = 0; k < FIBRAD_WALLS; k++) p.wall_temperature[k] = 3, p.wall_emissivity[k] = .2 * k;
@@ -26,41 +26,37 @@ TEST(nothing_flows_in_a_closed_box_at_one_temperature) {
     p.temperature[7] = 3, p.wall_temperature[3] = 3;
     solve(&p);
     assert_still(&p);
-    free_problem(&p);
 }
 
 TEST(nothing_flows_in_a_periodic_bed_at_one_temperature) {
-    struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 2, .3);
+    OWNED_PROBLEM p = problem_of(packing(100, 1, 1, .55, 5, true), 2, .3);
     p.config.directions = 40;
     trace_and_solve(&p);
     assert_still(&p);
-    free_problem(&p);
 }
 
 TEST(a_grey_sphere_in_black_surroundings) {
     for (int walls = 0; walls < 2; walls++) {
-        struct problem p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .3);
+        OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .3);
         if (walls) p.walls = box_of(20);
         for (int k = 0; k < FIBRAD_WALLS; k++) p.wall_temperature[k] = 1;
         p.sources.surroundings = walls ? 0 : 1;
         trace_and_solve(&p);
         assert_near(p.result.power[0], .3 * 4 * PI * (1 - 16), 1e-3);
-        free_problem(&p);
     }
 }
 
 /* As between a sphere and a concentric one of the area of the box, whose walls are lit evenly enough. */
 TEST(a_grey_sphere_in_a_large_grey_box) {
-    struct problem p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .3);
+    OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .3);
     p.walls = box_of(20);
     for (int k = 0; k < FIBRAD_WALLS; k++) p.wall_temperature[k] = 1, p.wall_emissivity[k] = .05;
     trace_and_solve(&p);
     assert_near(p.result.power[0], 4 * PI * (1 - 16) / (1 / .3 + 4 * PI / 9600 * (1 / .05 - 1)), 1e-3);
-    free_problem(&p);
 }
 
 TEST(two_parallel_grey_walls) {
-    struct problem p = problem_of(bed_of(1, (const double[][4]){{.2, .3, .5, 1e-4}}), 1, .5);
+    OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{.2, .3, .5, 1e-4}}), 1, .5);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, 0, 1}};
     p.bed.period[0] = p.bed.period[1] = 2;
     p.wall_temperature[4] = 3, p.wall_emissivity[4] = .3;
@@ -68,12 +64,11 @@ TEST(two_parallel_grey_walls) {
     trace_and_solve(&p);
     assert_near(p.wall_power[5], 4 * (81 - 16) / (1 / .3 + 1 / .6 - 1), 1e-3);
     ck_assert_double_eq(p.result.surroundings_power, 0);
-    free_problem(&p);
 }
 
 /* Half of the 10,752 beams meet the plane, but for 6. Estimates are made of one sample each: they hold on the mean. */
 TEST(a_black_sphere_touches_a_black_plane) {
-    struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, 1);
+    OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, 1);
     double estimate[FIBRAD_WALLS], errors = 0, estimates = 0;
     p.result.body_error = estimate;
     for (uint32_t wall = 0; wall < 6; wall++) {
@@ -89,13 +84,12 @@ TEST(a_black_sphere_touches_a_black_plane) {
     ck_assert_double_le(sqrt(errors), 1e-3);
     ck_assert(errors < 4 * estimates && estimates < 4 * errors);
     p.scene = NULL, p.heat = NULL;
-    free_problem(&p);
 }
 
 /* Between endless plates without a period, and in a tube with one, light goes to and fro: a mote sees the
  * radiosities of plates that have only each other, and in a tube that of a black body. */
 TEST(a_mote_between_endless_walls) {
-    struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, .01}}), 2, .5);
+    OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, .01}}), 2, .5);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -.5, .5}};
     p.wall_temperature[4] = 3, p.wall_emissivity[4] = .8;
     p.wall_temperature[5] = 1, p.wall_emissivity[5] = .5;
@@ -111,14 +105,13 @@ TEST(a_mote_between_endless_walls) {
     p.wall_temperature[FIBRAD_CYLINDER] = 3, p.wall_emissivity[FIBRAD_CYLINDER] = .1;
     trace_and_solve(&p);
     assert_near(p.result.power[0], .5 * 4e-4 * PI * (81 - 16), 1e-2);
-    free_problem(&p);
 }
 
 /* Plates with a period, as in closed form, whatever the mote is. */
 /* A pair without end has the powers of an area, which is told: those of infinite parallel plates. */
 TEST(a_pair_of_endless_plates) {
     double area[FIBRAD_WALLS];
-    struct problem p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1e-3}, {.3, .1, 0, 1e-3}}), 2, 1e-3);
+    OWNED_PROBLEM p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1e-3}, {.3, .1, 0, 1e-3}}), 2, 1e-3);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -.5, .5}};
     p.wall_temperature[4] = 3, p.wall_temperature[5] = 1;
     p.result.body_area = area;
@@ -133,11 +126,10 @@ TEST(a_pair_of_endless_plates) {
         free_heat(&p);
     }
     p.scene = NULL, p.heat = NULL;
-    free_problem(&p);
 }
 
 TEST(a_mote_between_periodic_plates) {
-    struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, .01}}), 2, .5);
+    OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, .01}}), 2, .5);
     p.bed.period[0] = p.bed.period[1] = 1;
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -.5, .5}};
     p.wall_temperature[4] = 3, p.wall_emissivity[4] = .8;
@@ -145,14 +137,13 @@ TEST(a_mote_between_periodic_plates) {
     trace_and_solve(&p);
     assert_near(p.wall_power[5], (81 - 1) / (1 / .8 + 1 / .5 - 1), 1e-3);
     assert_near(p.wall_power[4], -p.wall_power[5], 1e-3);
-    free_problem(&p);
 }
 
 /* A plane without end reflects what comes from the surroundings, and from the sphere. With two equal spheres in each
  * other's mirror, and nothing from beyond, a perfect mirror is not what a diffuse wall is; but a sphere between two
  * white walls without end at its own temperature must neither gain nor lose, whatever the walls' temperature. */
 TEST(white_walls_take_nothing) {
-    struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, .4);
+    OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, .4);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -1.5, 1.5}};
     p.wall_emissivity[4] = p.wall_emissivity[5] = 0;
     p.wall_temperature[4] = 7, p.sources.surroundings = 2;
@@ -164,22 +155,20 @@ TEST(white_walls_take_nothing) {
     assert_near(p.result.surroundings_power, -p.result.power[0], 1e-12);
     ck_assert_double_lt(-p.result.power[0], .4 * 16 * 4 * PI);     /* less than alone, */
     ck_assert_double_gt(-p.result.power[0], .4 * 16 * 4 * PI / 2); /* yet half as much at least */
-    free_problem(&p);
 }
 
 TEST(view_factors_between_the_walls_of_a_cube) {
-    struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
+    OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
     p.walls = box_of(.5);
     p.wall_temperature[4] = 1;
     trace_and_solve(&p);
     assert_near(p.wall_power[5], 0.1998249, 5e-3);
     for (int k = 0; k < 4; k++) assert_near(p.wall_power[k], 0.2000438, 5e-3);
-    free_problem(&p);
 }
 
 /* More beams, more rays: what walls exchange, without many spheres, would otherwise stay as it is. */
 TEST(walls_exchange_better_with_more_beams) {
-    struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
+    OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
     p.walls = box_of(.5);
     p.wall_temperature[4] = 1;
     p.config.directions = 4000;
@@ -190,7 +179,6 @@ TEST(walls_exchange_better_with_more_beams) {
         if (k != 4) square += error * error / 5;
     }
     ck_assert_msg(sqrt(square) < 7e-4, "off by %g", sqrt(square));
-    free_problem(&p);
 }
 
 /* Each wall has an estimate of its own error, above which it is seldom by more than a factor of two. */
@@ -198,7 +186,7 @@ TEST(walls_know_their_errors) {
     double error[6], ratio = 0;
     uint32_t low = 0;
     for (uint32_t hot = 0; hot < 6; hot++) {
-        struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
+        OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
         p.walls = box_of(.5);
         p.wall_temperature[hot] = 1;
         p.result.body_error = error;
@@ -208,7 +196,6 @@ TEST(walls_know_their_errors) {
             low += fabs(p.wall_power[k] - truth) > 2 * error[k];
             ratio += error[k] / 36 / 1e-3;
         }
-        free_problem(&p);
     }
     ck_assert_uint_le(low, 6); /* of 36, which are not independent */
     ck_assert_double_lt(ratio, 1);
@@ -216,20 +203,19 @@ TEST(walls_know_their_errors) {
 }
 
 TEST(view_factors_between_the_walls_of_a_cylinder) {
-    struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
+    OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -1, 1}, .cylinder = {0, 0, 1}};
     p.wall_temperature[4] = 1;
     trace_and_solve(&p);
     const double x = 2 + 4, lids = .5 * (x - sqrt(x * x - 4)); /* coaxial discs of radius 1, distance 2 */
     assert_near(p.wall_power[5], PI * lids, 5e-3);
     assert_near(p.wall_power[6], PI * (1 - lids), 5e-3);
-    free_problem(&p);
 }
 
 /* Walls without spheres: a box anywhere, and walls without end, whose patches must lie on the inner side of the others
  * although there is no bed to tell where. */
 TEST(walls_alone) {
-    struct problem p = problem_of(bed_of(0, NULL), 0, 1);
+    OWNED_PROBLEM p = problem_of(bed_of(0, NULL), 0, 1);
     p.walls = (struct walls){.planes = 63, .at = {49, 50, -20, -19, 7, 8}};
     p.wall_temperature[4] = 1;
     trace_and_solve(&p);
@@ -252,15 +238,13 @@ TEST(walls_alone) {
         free_heat(&p);
     }
     p.scene = NULL, p.heat = NULL;
-    free_problem(&p);
 }
 
 TEST(two_black_spheres_in_contact) {
-    struct problem p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1.2, 1.6, 0, 1}}), 1, 1);
+    OWNED_PROBLEM p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1.2, 1.6, 0, 1}}), 1, 1);
     p.temperature[1] = 0;
     trace_and_solve(&p);
     assert_near(p.result.power[1], 4 * PI * 0.0755868184216124, 1e-2);
-    free_problem(&p);
 }
 
 /* Powers from view factors, each sphere of one radiosity, by going round until nothing changes. */
@@ -284,12 +268,12 @@ static void radiosities_by_hand(const struct problem *p, const fibrad_factors *m
 }
 
 TEST(one_radiosity_per_sphere) {
-    struct problem p = problem_of(packing(80, .6, 1, .5, 8, false), 1, 1);
+    OWNED_PROBLEM p = problem_of(packing(80, .6, 1, .5, 8, false), 1, 1);
     for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + bed_make_random(3, i);
     p.sources.surroundings = .5, p.sources.uniform = 1, p.config.directions = 400;
     trace(&p);
-    struct matrix m = matrix_by_beams(p.scene, &(fibrad_beam_rule){.directions = 400}, false);
-    double *power = malloc(p.bed.n * sizeof *power);
+    OWNED_MATRIX m = matrix_by_beams(p.scene, &(fibrad_beam_rule){.directions = 400}, false);
+    OWNED double *power = malloc(p.bed.n * sizeof *power);
     for (int grey = 0; grey < 2; grey++) {
         double sum, size = 0, difference = 0;
         for (uint32_t i = 0; i < p.bed.n; i++) p.emissivity[i] = grey ? .1 + .9 * bed_make_random(5, i) : 1;
@@ -305,9 +289,6 @@ TEST(one_radiosity_per_sphere) {
     }
     p.sources.surroundings = -1;
     ck_assert_int_eq(fibrad_heat_begin(p.heat, &p.sources), FIBRAD_E_ARGUMENT);
-    matrix_free(&m);
-    free(power);
-    free_problem(&p);
 }
 
 /* Every third sphere reflects all. */
@@ -341,17 +322,16 @@ static double difference_of_powers(const double *a, const double *b, uint32_t n)
  * others' powers are those of paths, or of one radiosity each, that of a reflector being what arrives. */
 LOOP_TEST(reflectors_gain_nothing, 2) {
     const bool uniform = _i == 1;
-    struct problem p = reflecting(uniform);
-    double *truth = calloc(p.bed.n, sizeof *truth), *first = calloc(p.bed.n, sizeof *first);
+    OWNED_PROBLEM p = reflecting(uniform);
+    OWNED double *truth = calloc(p.bed.n, sizeof *truth), *first = calloc(p.bed.n, sizeof *first);
     p.config.directions = uniform ? 400 : 168;
     if (!uniform) p.walls = box_about(&p.bed);
     for (int k = 0; k < FIBRAD_WALLS; k++) p.wall_temperature[k] = .8 + .2 * k, p.wall_emissivity[k] = .3 * (k % 3);
     trace_and_solve(&p);
     assert_adiabatic(&p);
     if (uniform) {
-        struct matrix m = matrix_by_beams(p.scene, &(fibrad_beam_rule){.directions = 400}, false);
+        OWNED_MATRIX m = matrix_by_beams(p.scene, &(fibrad_beam_rule){.directions = 400}, false);
         radiosities_by_hand(&p, &m.factors, truth);
-        matrix_free(&m);
     } else {
         for (uint32_t i = 0; i < p.bed.n; i++) truth[i] = power_by_paths(&p, i, 20000);
     }
@@ -371,14 +351,12 @@ LOOP_TEST(reflectors_gain_nothing, 2) {
     solve(&p);
     ck_assert_double_lt(difference_of_powers(p.result.power, first, p.bed.n), 1e-5);
     ck_assert_double_gt(difference_of_powers(p.result.power, first, p.bed.n), 1e-9);
-    free(truth), free(first);
-    free_problem(&p);
 }
 
 /* A bed that reflects all, in the open and between walls that do so, too: nothing flows, and no time is lost; also
  * after a solution in which much flowed. */
 LOOP_TEST(all_reflect, 4) {
-    struct problem p = reflecting(_i % 2 == 1);
+    OWNED_PROBLEM p = reflecting(_i % 2 == 1);
     if (_i / 2 == 1) p.walls = box_about(&p.bed);
     for (int k = 0; k < FIBRAD_WALLS; k++) p.wall_temperature[k] = 3, p.wall_emissivity[k] = 0;
     p.config.directions = 30;
@@ -397,13 +375,12 @@ LOOP_TEST(all_reflect, 4) {
         free_heat(&p);
         trace(&p);
     }
-    free_problem(&p);
 }
 
 /* Two spheres that see each other and the surroundings: two equations, with the view factor that black ones have. */
 TEST(two_radiosities) {
     static const double t[] = {1.8, .6}, eps[] = {.3, .8};
-    struct problem p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 1.2, 1.6, .5}}), 1, 1);
+    OWNED_PROBLEM p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 1.2, 1.6, .5}}), 1, 1);
     double area[2], f[2], exact;
     p.sources.uniform = 1, p.sources.tolerance = 1e-12;
     trace(&p);
@@ -428,5 +405,4 @@ TEST(two_radiosities) {
             assert_near(p.result.power[i], area[i] * (f[i] * j[1 - i] + (1 - f[i]) * e0 - j[i]), 1e-9);
         assert_near(p.result.surroundings_power, -p.result.power[0] - p.result.power[1], 1e-9);
     }
-    free_problem(&p);
 }

@@ -2,13 +2,13 @@
 #include "heat_problem.h"
 
 TEST(arguments_are_checked) {
-    struct problem p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}}), 1, .5);
+    OWNED_PROBLEM p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}}), 1, .5);
     p.config = (fibrad_heat_config){.directions = 8};
     trace(&p);
     static const fibrad_heat_config bad[] = {{.directions = 7}, {.directions = 65537}, {.points = 65},  {.patches = 25},
                                              {.parts = 1025},   {.cutoff = -1},        {.cutoff = NAN}, {.cutoff = 5}};
     const size_t size = fibrad_heat_size(&p.config, p.scene);
-    unsigned char *block = block_of(size + 128);
+    OWNED unsigned char *block = block_of(size + 128);
     fibrad_heat *heat = NULL;
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         ck_assert_uint_eq(fibrad_heat_size(&bad[k], p.scene), 0);
@@ -26,7 +26,7 @@ TEST(arguments_are_checked) {
     ck_assert_int_eq(fibrad_heat_init(NULL, block, size, &p.config, p.scene), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_heat_init(&heat, block, size, &p.config, NULL), FIBRAD_E_ARGUMENT);
     for (size_t k = 0; k < size + 128; k++) ck_assert_int_eq(block[k], 0x5a);
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     solve(&p);
     double power[2];
     memcpy(power, p.result.power, sizeof power);
@@ -65,15 +65,12 @@ TEST(arguments_are_checked) {
     p.sources = fine.sources;
     solve(&p);
     ck_assert_double_eq_tol(p.result.power[0], power[0], 1e-3 * fabs(power[0])); /* warm */
-    work_free(&work);
-    free(block);
     p.heat = first;
-    free_problem(&p);
 }
 
 /* Hardly any room in a bed: the call says so, and what it asks for is enough. */
 TEST(work_memory_may_be_too_small) {
-    struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 1, 1);
+    OWNED_PROBLEM p = problem_of(packing(100, 1, 1, .55, 5, true), 1, 1);
     p.config.directions = 8;
     trace(&p);
     ck_assert_int_eq(fibrad_heat_move(p.heat, p.scene), FIBRAD_OK);
@@ -92,7 +89,6 @@ TEST(work_memory_may_be_too_small) {
     }
     ck_assert_int_eq(status, FIBRAD_OK);
     free(block);
-    free_problem(&p);
 }
 
 /* Bytes of the pool up to the last link. */
@@ -102,11 +98,10 @@ static size_t pool_end(const fibrad_heat *heat) {
 
 /* Traces all spheres again, until there is no room. */
 static int trace_again(struct problem *p) {
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     int status = fibrad_heat_move(p->heat, p->scene);
     for (uint32_t task = 0; task < p->bed.n && status == FIBRAD_OK; task++)
         status = fibrad_heat_trace(p->heat, &work, task);
-    work_free(&work);
     return status;
 }
 
@@ -114,7 +109,7 @@ static int trace_again(struct problem *p) {
  * behind it; room up to the last link, in whole alignments, suffices. */
 TEST(nothing_is_written_behind_the_room_for_beams) {
     for (uint32_t directions = 8; directions < 12; directions++) {
-        struct problem p = problem_of(packing(30, 1, 1, .55, 5, true), 1, .5);
+        OWNED_PROBLEM p = problem_of(packing(30, 1, 1, .55, 5, true), 1, .5);
         p.config.directions = directions;
         trace_and_solve(&p);
         const size_t all = p.heat->pencils.room, end = pool_end(p.heat);
@@ -127,14 +122,13 @@ TEST(nothing_is_written_behind_the_room_for_beams) {
             if (last == 2) solve(&p);
             for (size_t k = p.heat->pencils.room; k < all; k++) ck_assert_uint_eq(p.heat->pencils.pool[k], 0x5a);
         }
-        free_problem(&p);
     }
 }
 
 /* The room for beams is what the block has: too little of it is told by the tasks that find none; more than enough
  * changes no bit. */
 TEST(the_room_for_beams_may_be_too_small) {
-    struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .5);
+    OWNED_PROBLEM p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .5);
     double power[2][100];
     p.temperature[0] = 2, p.config.directions = 24;
     build_scene(&p);
@@ -153,5 +147,4 @@ TEST(the_room_for_beams_may_be_too_small) {
     p.heat->pencils.room = pool_end(p.heat) - 1000;
     ck_assert_int_eq(trace_again(&p), FIBRAD_E_SIZE);
     ck_assert_int_eq(fibrad_heat_begin(p.heat, &p.sources), FIBRAD_E_STATE);
-    free_problem(&p);
 }

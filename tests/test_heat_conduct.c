@@ -67,7 +67,7 @@ static double slope_along(const struct problem *p, int axis) {
  */
 static const double plates_k[] = {.01, .3, 1, 100}, plates_e[] = {1, 1, .5, .9};
 LOOP_TEST(a_sphere_between_black_plates, 4) {
-    struct problem p = one_sphere(.5, NAN, plates_e[_i]);
+    OWNED_PROBLEM p = one_sphere(.5, NAN, plates_e[_i]);
     const double a = plates_e[_i] / (2 * plates_k[_i]), hot = 1.0005, cold = .9995;
     const double half = (emission(hot) - emission(cold)) / 2, truth = a / (a + 1) * half;
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -1, 1}};
@@ -86,7 +86,6 @@ LOOP_TEST(a_sphere_between_black_plates, 4) {
     ck_assert_double_le(fabs(largest[0] - found[0] - truth / 4), 2 * surface_error[0]);
     assert_near(found[0], 1, 1e-6);
     ck_assert_double_eq(centre[0], found[0]);
-    free_problem(&p);
 }
 
 /* What arrives at the place at cosine mu of a unit sphere from a black one of emission 1, of some radius, centred at
@@ -119,7 +118,7 @@ static void expand(double radius, double distance, double coefficient[DEGREES + 
 static const double half_k[] = {.01, .1, 1, 10}, half_e[] = {1, .7, 1, .3};
 LOOP_TEST(one_side_lit, 4) {
     const double k = half_k[_i], e = half_e[_i], radius = 3, distance = 6;
-    struct problem p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, distance, radius}}), 1, 1);
+    OWNED_PROBLEM p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, distance, radius}}), 1, 1);
     double h[DEGREES + 1], squares = 0, errors = 0;
     p.emissivity[0] = e, p.temperature[0] = NAN;
     p.sources.power = (const double[]){0, NAN}, p.sources.tolerance = 1e-7;
@@ -138,7 +137,6 @@ LOOP_TEST(one_side_lit, 4) {
     }
     ck_assert_double_le(sqrt(errors / squares), 1e-2);
     assert_near(emission(found[0]), h[0], 3e-3);
-    free_problem(&p);
 }
 
 /* The light on all patches: parallel light down z, of flux 1. */
@@ -193,7 +191,7 @@ LOOP_TEST(parallel_light_from_one_side, 4) {
 
 TEST(an_even_source_in_black_surroundings) {
     const double q = 2.5, k = .3, e = .6;
-    struct problem p = one_sphere(2, NAN, e);
+    OWNED_PROBLEM p = one_sphere(2, NAN, e);
     conductivity[0] = k, p.sources.conductivity = conductivity, p.sources.surroundings = 1;
     p.result.temperature = found, p.result.centre_temperature = centre;
     p.result.least_temperature = least, p.result.largest_temperature = largest;
@@ -204,7 +202,6 @@ TEST(an_even_source_in_black_surroundings) {
     assert_near(centre[0] - found[0], q * 4 / (6 * k), 1e-12);
     assert_near(least[0], t, 1e-4);
     assert_near(largest[0], t, 1e-4);
-    free_problem(&p);
 }
 
 /* A bed in a box, of which some spheres have temperatures, some powers and some nothing but the rest. */
@@ -228,7 +225,7 @@ static struct problem mixed_bed(double high) {
 static const double unlike[] = {1, 5};
 LOOP_TEST(powers_add_up_to_zero, 2) {
     double largest_power;
-    struct problem p = mixed_bed(unlike[_i]);
+    OWNED_PROBLEM p = mixed_bed(unlike[_i]);
     trace_and_solve(&p);
     const double sum = sum_of_powers(&p, &largest_power);
     ck_assert_double_le(fabs(sum), 1e-12 * largest_power);
@@ -242,11 +239,10 @@ LOOP_TEST(powers_add_up_to_zero, 2) {
         if (isinf(conductivity[i])) ck_assert(least[i] == found[i] && largest[i] == found[i] && centre[i] == found[i]);
         if (isfinite(conductivity[i])) ck_assert(least[i] < found[i] && found[i] < largest[i]);
     }
-    free_problem(&p);
 }
 
 LOOP_TEST(nothing_flows_at_one_temperature, 2) {
-    struct problem p = mixed_bed(unlike[_i]);
+    OWNED_PROBLEM p = mixed_bed(unlike[_i]);
     for (int k = 0; k < FIBRAD_WALLS; k++) p.wall_temperature[k] = 2;
     for (uint32_t i = 0; i < p.bed.n; i++) power[i] = isnan(p.temperature[i]) ? 0 : NAN;
     p.sources.tolerance = 1e-12;
@@ -255,12 +251,11 @@ LOOP_TEST(nothing_flows_at_one_temperature, 2) {
         ck_assert_double_le(fabs(p.result.power[i]), 1e-9 * 16 * sphere_area(&p.bed, i));
         if (p.emissivity[i] > 0) ck_assert_double_le(largest[i] - least[i], 1e-7);
     }
-    free_problem(&p);
 }
 
 /* Temperatures that were found, once given, ask for the powers that they were found from. */
 TEST(temperatures_and_powers_belong_together) {
-    struct problem p = mixed_bed(1);
+    OWNED_PROBLEM p = mixed_bed(1);
     double given[MOST], low[MOST];
     p.sources.tolerance = 1e-7;
     trace_and_solve(&p);
@@ -275,7 +270,6 @@ TEST(temperatures_and_powers_belong_together) {
         ck_assert_double_le(fabs(p.result.power[i] + given[i]), .02 * sqrt(scale));
         ck_assert_double_le(fabs(least[i] - low[i]), .02 * (found[i] - low[i]));
     }
-    free_problem(&p);
 }
 
 static double difference(const double *a, const double *b, uint32_t n) {
@@ -286,14 +280,13 @@ static double difference(const double *a, const double *b, uint32_t n) {
 
 /* Powers of a bed of given temperatures whose spheres have some k* and emissivity. */
 static void powers_of(double k_star, double emissivity, double out[MOST]) {
-    struct problem p = problem_of(packing(40, .8, 1, .5, 4, true), 1, emissivity);
+    OWNED_PROBLEM p = problem_of(packing(40, .8, 1, .5, 4, true), 1, emissivity);
     for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + .2 * bed_make_random(5, i);
     p.config.directions = 60, p.sources.tolerance = 1e-9;
     if (k_star > 0) conduct(&p, k_star, 1.1);
     p.result.temperature = NULL;
     trace_and_solve(&p);
     memcpy(out, p.result.power, p.bed.n * sizeof *out);
-    free_problem(&p);
 }
 
 TEST(what_conducts_well_is_as_before) {
@@ -317,7 +310,7 @@ TEST(nearly_black_is_as_black) {
 }
 
 TEST(the_order_of_the_work_changes_no_bit) {
-    struct problem p = mixed_bed(1), q = mixed_bed(1);
+    OWNED_PROBLEM p = mixed_bed(1), q = mixed_bed(1);
     q.backwards = true, q.isa = FIBRAD_ISA_SCALAR;
     trace_and_solve(&p);
     double low[MOST];
@@ -325,8 +318,6 @@ TEST(the_order_of_the_work_changes_no_bit) {
     trace_and_solve(&q);
     ck_assert_mem_eq(p.result.power, q.result.power, p.bed.n * sizeof *power);
     for (uint32_t i = 0; i < p.bed.n; i++) ck_assert(low[i] == least[i] || (isnan(low[i]) && isnan(least[i])));
-    free_problem(&p);
-    free_problem(&q);
 }
 
 /* The conductivity of a simple cubic lattice of touching spheres, over 4 sigma T^3 d: from rays and harmonics to
@@ -337,7 +328,7 @@ LOOP_TEST(a_simple_cubic_lattice, 6) {
     enum { LAYERS = 24 };
     double spheres[LAYERS][4], x[2] = {0, 0}, xy[2] = {0, 0};
     for (int i = 0; i < LAYERS; i++) spheres[i][0] = spheres[i][1] = 0, spheres[i][2] = i + .5, spheres[i][3] = .5;
-    struct problem p = problem_of(bed_of(LAYERS, (const double(*)[4])spheres), NAN, lattice_e[_i]);
+    OWNED_PROBLEM p = problem_of(bed_of(LAYERS, (const double(*)[4])spheres), NAN, lattice_e[_i]);
     p.bed.period[0] = p.bed.period[1] = 1;
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, 0, LAYERS}};
     p.wall_temperature[4] = 1.0005, p.wall_temperature[5] = .9995, p.sources.surroundings = 1;
@@ -351,7 +342,6 @@ LOOP_TEST(a_simple_cubic_lattice, 6) {
     }
     const double n = LAYERS / 2., slope = (n * xy[1] - x[0] * xy[0]) / (n * x[1] - x[0] * x[0]);
     assert_near(p.wall_power[5] / -slope, lattice_f[_i], lattice_k[_i] < .1 ? .02 : .01);
-    free_problem(&p);
 }
 
 /* Light changes no sum of powers. If it is even on each sphere, or if spheres do not conduct, it changes nothing. */
@@ -380,7 +370,7 @@ TEST(light_adds_up_and_even_light_changes_nothing) {
 
 TEST(conductivities_are_above_zero) {
     static const double wrong[] = {0, -1, -INFINITY, NAN};
-    struct problem p = one_sphere(1, 1, .5);
+    OWNED_PROBLEM p = one_sphere(1, 1, .5);
     fibrad_fault fault;
     conduct(&p, 1, 1);
     trace_and_solve(&p);
@@ -394,5 +384,4 @@ TEST(conductivities_are_above_zero) {
     conductivity[0] = 1, p.sources.uniform = 1;
     ck_assert_int_eq(fibrad_heat_check(p.heat, &p.sources, &fault), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fault.why, FIBRAD_WHY_UNIFORM);
-    free_problem(&p);
 }

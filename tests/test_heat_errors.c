@@ -195,14 +195,13 @@ TEST(a_cup_of_triangles) {
         const double radius = drawn(seed, 0, .5, 1.5), height = drawn(seed, 1, .5, 2.5);
         const uint32_t sides = (uint32_t)drawn(seed, 2, 4, 44);
         struct given g = {.bed = bed_of(1, (const double[][4]){{.1 * radius, .1 * radius, height / 2, radius / 50}})};
-        struct mesh *mesh = cup_of(sides, radius, height);
+        OWNED struct mesh *mesh = cup_of(sides, radius, height);
         const double power = sides * .5 * radius * radius * sin(2 * M_PI / sides);
         g.temperature[0] = g.wall_temperature[0] = 1, g.config.wall_rays = 1 << 20;
         g.body[0].kind = FIBRAD_BODY_MESH, g.scene.bodies = 1, g.scene.triangles = &mesh->triangles;
         solve(&g);
         judge(&honesty, g.result.surroundings_power - power, g.result.surroundings_error, power);
         judge(&of_cup, g.wall_power[0] + g.power[0] + power, g.wall_error[0], power);
-        free(mesh);
     }
     expect_honest(&honesty);
     expect_honest(&of_cup);

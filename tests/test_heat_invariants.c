@@ -2,7 +2,7 @@
 #include "heat_problem.h"
 
 LOOP_TEST(powers_add_up_to_zero, 16) {
-    struct problem p = problem_of(packing(150, .4, 1.6, .5, 9, false), 1, .5);
+    OWNED_PROBLEM p = problem_of(packing(150, .4, 1.6, .5, 9, false), 1, .5);
     for (uint32_t i = 0; i < p.bed.n; i++)
         p.temperature[i] = 300 + 700 * bed_make_random(1, i), p.emissivity[i] = bed_make_random(2, i);
     p.walls = box_about(&p.bed);
@@ -19,7 +19,6 @@ LOOP_TEST(powers_add_up_to_zero, 16) {
         solve(&p);
         ck_assert_double_le(fabs(sum_of_powers(&p, &largest)), 1e-12 * largest);
     }
-    free_problem(&p);
 }
 
 static void assert_same_bits(const struct problem *p, const struct problem *q) {
@@ -42,15 +41,13 @@ static struct problem small_problem(int isa, bool backwards, bool turned) {
 }
 
 TEST(the_order_of_the_work_changes_no_bit) {
-    struct problem p = small_problem(FIBRAD_ISA_BEST, false, false), q = small_problem(FIBRAD_ISA_BEST, true, false);
+    OWNED_PROBLEM p = small_problem(FIBRAD_ISA_BEST, false, false), q = small_problem(FIBRAD_ISA_BEST, true, false);
     assert_same_bits(&p, &q);
-    free_problem(&p);
-    free_problem(&q);
 }
 
 /* Walls listed from the last to the first are the same walls. */
 TEST(the_order_of_bodies_changes_but_roundings) {
-    struct problem p = small_problem(FIBRAD_ISA_BEST, false, false), q = small_problem(FIBRAD_ISA_BEST, false, true);
+    OWNED_PROBLEM p = small_problem(FIBRAD_ISA_BEST, false, false), q = small_problem(FIBRAD_ISA_BEST, false, true);
     double largest;
     (void)sum_of_powers(&p, &largest);
     ck_assert_uint_eq(p.bodies, 5);
@@ -59,23 +56,19 @@ TEST(the_order_of_bodies_changes_but_roundings) {
         ck_assert_double_eq_tol(p.result.power[i], q.result.power[i], 1e-12 * largest);
     for (int k = 0; k < FIBRAD_WALLS; k++) ck_assert_double_eq_tol(p.wall_power[k], q.wall_power[k], 1e-12 * largest);
     ck_assert_double_eq_tol(p.result.surroundings_power, q.result.surroundings_power, 1e-12 * largest);
-    free_problem(&p);
-    free_problem(&q);
 }
 
 TEST(instruction_sets_change_no_bit) {
-    struct problem p = small_problem(FIBRAD_ISA_SCALAR, false, false);
+    OWNED_PROBLEM p = small_problem(FIBRAD_ISA_SCALAR, false, false);
     int isa[ISAS_MOST];
     for (int k = isas_there(isa); k-- > 1;) {
-        struct problem q = small_problem(isa[k], false, false);
+        OWNED_PROBLEM q = small_problem(isa[k], false, false);
         assert_same_bits(&p, &q);
-        free_problem(&q);
     }
-    free_problem(&p);
 }
 
 TEST(an_earlier_solution_saves_sweeps_and_changes_little) {
-    struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .3);
+    OWNED_PROBLEM p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .3);
     p.config.directions = 40, p.sources.tolerance = 1e-6;
     for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + bed_make_random(3, i);
     trace_and_solve(&p);
@@ -90,13 +83,12 @@ TEST(an_earlier_solution_saves_sweeps_and_changes_little) {
     for (uint32_t i = 0; i < p.bed.n; i++) worst_of(&largest, fabs(p.result.power[i]));
     for (uint32_t i = 0; i < p.bed.n; i++) ck_assert_double_eq_tol(power[i], p.result.power[i], 1e-5 * largest);
     free(power);
-    free_problem(&p);
 }
 
 /* A periodic bed as a whole, by a third of the box: the same bed, but its spheres come in another order along the
  * cells. What is carried over goes with the spheres, so that next to nothing is left to do. */
 TEST(an_earlier_solution_goes_with_the_spheres) {
-    struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .3);
+    OWNED_PROBLEM p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .3);
     p.config.directions = 40, p.sources.tolerance = 1e-6;
     for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + bed_make_random(3, i);
     trace_and_solve(&p);
@@ -119,7 +111,6 @@ TEST(an_earlier_solution_goes_with_the_spheres) {
     for (uint32_t i = 0; i < p.bed.n; i++) ck_assert_double_eq_tol(power[i], p.result.power[i], 1e-5 * largest);
     ck_assert_uint_lt(p.result.sweeps, cold / 2);
     free(before);
-    free_problem(&p);
 }
 
 TEST(the_error_is_as_estimated) {
@@ -127,7 +118,7 @@ TEST(the_error_is_as_estimated) {
     for (int k = 0; k < 3; k++) {
         static const fibrad_heat_config configs[] = {
             {.directions = 600, .patches = 384}, {.directions = 72, .patches = 96}, {.directions = 144, .patches = 24}};
-        struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .4);
+        OWNED_PROBLEM p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .4);
         for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + bed_make_random(3, i);
         p.config = configs[k];
         p.result.power_error = each;
@@ -146,6 +137,5 @@ TEST(the_error_is_as_estimated) {
             ck_assert_msg(sqrt(square) < 3 * estimate && sqrt(square) > estimate / 5, "%g, estimated %g", sqrt(square),
                           estimate);
         }
-        free_problem(&p);
     }
 }

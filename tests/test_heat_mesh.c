@@ -84,12 +84,16 @@ static void free_heat(struct problem *p) {
     p->scene = NULL, p->heat = NULL;
 }
 
-static void free_problem(struct problem *p) {
+static void end_problem(struct problem **owned) {
+    struct problem *p = *owned;
     free_heat(p);
     bed_free(&p->bed);
     free(p->mesh);
     free(p);
 }
+
+/* Before a problem that ends with its block. */
+#define ENDED OWNED_BY(end_problem)
 
 static fibrad_scene *build_scene(const struct problem *p) {
     return scene_with(&p->bed, &(fibrad_scene_config){.isa = p->isa,
@@ -101,13 +105,12 @@ static fibrad_scene *build_scene(const struct problem *p) {
 }
 
 static int trace_beams(struct problem *p) {
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     const uint32_t tasks = fibrad_heat_tasks(p->heat);
     int status = FIBRAD_OK;
     for (uint32_t k = 0; k < tasks && status == FIBRAD_OK; k++)
         status = fibrad_heat_trace(p->heat, &work, p->backwards ? tasks - 1 - k : k);
     p->seen = work.triangle;
-    work_free(&work);
     return status;
 }
 
@@ -193,7 +196,7 @@ static struct problem *thirty(void) {
 
 TEST(a_box_of_twelve_triangles_is_a_box_of_planes) {
     for (uint32_t cells = 1; cells <= 12; cells += 11) {
-        struct problem *planes = thirty(), *mesh = thirty();
+        ENDED struct problem *planes = thirty(), *mesh = thirty();
         planes->config = mesh->config = (fibrad_heat_config){.directions = 700, .patches = 384, .wall_rays = 300000};
         make_planes(planes, 0, 1), make_box(mesh, 0, 1, cells);
         trace_and_solve(planes), trace_and_solve(mesh);
@@ -202,7 +205,6 @@ TEST(a_box_of_twelve_triangles_is_a_box_of_planes) {
         ck_assert_double_le(walls, 3e-3);
         ck_assert_double_le(imbalance(mesh), 1e-12);
         ck_assert(mesh->result.surroundings_power == 0);
-        free_problem(planes), free_problem(mesh);
     }
 }
 
@@ -229,33 +231,31 @@ TEST(a_cup_of_triangles_is_one_of_planes_and_an_opening) {
         for (int b = 0; b < 5; b++) assert_near(p[0]->q[b], p[1]->q[b], 2e-3);
         ck_assert_double_le(distance_of(p[0]->power, p[1]->power, 8), 2e-3);
     }
-    free_problem(p[0]), free_problem(p[1]);
+    end_problem(&p[0]), end_problem(&p[1]);
 }
 
 TEST(a_grey_sphere_in_a_black_cube) {
     for (uint32_t cells = 1; cells <= 16; cells *= 4) {
-        struct problem *p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .5);
+        ENDED struct problem *p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .5);
         p->bodies = 1, p->wall_temperature[0] = 1;
         add_box(p->mesh, -2, 2, cells, true);
         trace_and_solve(p);
         assert_near(p->power[0], .5 * 4 * PI * (1 - 16), 2e-3);
         assert_near(p->q[0], -p->power[0], 1e-12);
-        free_problem(p);
     }
 }
 
 /* Between a sphere and the walls of a large box, which are lit evenly enough: as between concentric spheres. */
 TEST(a_grey_sphere_in_a_large_grey_cube) {
-    struct problem *p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .3);
+    ENDED struct problem *p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .3);
     p->bodies = 1, p->wall_temperature[0] = 1, p->wall_emissivity[0] = .05;
     add_box(p->mesh, -20, 20, 1, true);
     trace_and_solve(p);
     assert_near(p->power[0], 4 * PI * (1 - 16) / (1 / .3 + 4 * PI / 9600 * (1 / .05 - 1)), 2e-3);
-    free_problem(p);
 }
 
 TEST(nothing_flows_at_one_temperature) {
-    struct problem *p = thirty();
+    ENDED struct problem *p = thirty();
     make_box(p, 0, 1, 3);
     for (uint32_t i = 0; i < 30; i++) p->temperature[i] = 3;
     for (int b = 0; b < 6; b++) p->wall_temperature[b] = 3, p->wall_emissivity[b] = .2 * b;
@@ -266,7 +266,6 @@ TEST(nothing_flows_at_one_temperature) {
     solve(p);
     ck_assert_double_gt(fabs(p->power[7]), 1);
     ck_assert_double_le(imbalance(p), 1e-12);
-    free_problem(p);
 }
 
 /* Two plates without end, the upper one of triangles or a plane, and a sheet between them that has two sides and gives
@@ -292,33 +291,29 @@ static struct problem *plates(bool planes, uint32_t cells, bool shield) {
 TEST(two_plates_and_a_shield) {
     for (int planes = 0; planes < 2; planes++)
         for (uint32_t cells = 1; cells <= 5; cells += 4) {
-            struct problem *p = plates(planes == 1, cells, false);
-            trace_and_solve(p);
-            assert_near(p->q[1], 4 * (81 - 16) / (1 / .3 + 1 / .6 - 1), 1e-3);
-            ck_assert_double_le(p->result.surroundings_power, 2e-4 * p->q[1]); /* what goes farther than is looked */
-            free_problem(p);
-
-            p = plates(planes == 1, cells, true);
+            ENDED struct problem *plain = plates(planes == 1, cells, false), *p = plates(planes == 1, cells, true);
+            trace_and_solve(plain);
+            assert_near(plain->q[1], 4 * (81 - 16) / (1 / .3 + 1 / .6 - 1), 1e-3);
+            ck_assert_double_le(plain->result.surroundings_power,
+                                2e-4 * plain->q[1]); /* what goes farther than is looked */
             trace_and_solve(p);
             const double below = 1 / .3 + 1 / .2 - 1, above = 1 / .6 + 1 / .2 - 1;
             assert_near(p->q[1], 4 * (81 - 16) / (below + above), 2e-3);
             assert_near(pow(p->found[2], 4), 81 - (81 - 16) * below / (below + above), 1e-3);
             ck_assert_double_le(fabs(p->q[2]), 1e-12);
             ck_assert_double_le(imbalance(p), 1e-12);
-            free_problem(p);
         }
 }
 
 /* Patches of an insulated sheet, of one body, are at their own temperatures: they send back what they get. */
 TEST(an_insulated_sheet_lets_nothing_through) {
-    struct problem *p = plates(false, 2, true);
+    ENDED struct problem *p = plates(false, 2, true);
     p->insulated[2] = 1;
     trace_and_solve(p);
     ck_assert_double_le(fabs(p->q[0]), 1e-4 * 4 * (81 - 16));
     ck_assert_double_le(fabs(p->q[1]), 1e-4 * 4 * (81 - 16));
     ck_assert(p->q[2] == 0);
     assert_near(pow(p->found[2], 4), (81 + 16) / 2., 1e-3);
-    free_problem(p);
 }
 
 /* A black sphere sees a square as its centre does, where no tangent plane cuts it. */
@@ -326,20 +321,19 @@ TEST(a_black_sphere_sees_a_plate) {
     const double distance[] = {1.5, 4, 25};
     for (int k = 0; k < 3; k++) {
         const double d = distance[k], origin[3] = {d, -d, -d}, a[3] = {0, 0, 2 * d}, b[3] = {0, 2 * d, 0};
-        struct problem *p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, 1);
+        ENDED struct problem *p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, 1);
         p->bodies = 1, p->config.directions = 700;
         add_sheet(p->mesh, origin, a, b, 1, 0, 0);
         trace_and_solve(p);
         assert_near(p->q[0], 16 * 4 * PI / 6, 5e-3); /* a side of a cube */
         assert_near(p->result.surroundings_power, 16 * 4 * PI * 5 / 6, 1e-3);
-        free_problem(p);
     }
 }
 
 /* A box of planes in two halves by a sheet of two sides, which sticks out: each half is as alone. The planes are black,
  * as their patches do not end at the sheet. */
 TEST(a_shelf_between_planes) {
-    struct problem *both = thirty(), *half = thirty();
+    ENDED struct problem *both = thirty(), *half = thirty();
     const double origin[3] = {-.4, -.3, .5}, a[3] = {2, 0, 0}, b[3] = {0, 2, 0};
     make_planes(both, 0, 1), make_planes(half, 0, 1);
     both->bodies = 8, half->body[5].plane.at = .5;
@@ -364,22 +358,21 @@ TEST(a_shelf_between_planes) {
     assert_near(both->q[7], half->q[5], 5e-3); /* the back of the sheet, and the ceiling in its place */
     ck_assert(both->result.surroundings_power == 0);
     ck_assert_double_le(imbalance(both), 1e-12);
-    free_problem(both), free_problem(half);
 }
 
 /* ---- spheres cut by triangles ---- */
 
 TEST(spheres_that_triangles_cut) {
     const double deep = .02;
-    struct problem *cut = problem_of(bed_of(8, (const double[][4]){{-1, -1, -1, 1},
-                                                                   {1, -1, -1, 1},
-                                                                   {-1, 1, -1, 1},
-                                                                   {1, 1, -1, 1},
-                                                                   {-1, -1, 1, 1},
-                                                                   {1, -1, 1, 1},
-                                                                   {-1, 1, 1, 1},
-                                                                   {1, 1, 1, 1}}),
-                                     2, .6);
+    ENDED struct problem *cut = problem_of(bed_of(8, (const double[][4]){{-1, -1, -1, 1},
+                                                                         {1, -1, -1, 1},
+                                                                         {-1, 1, -1, 1},
+                                                                         {1, 1, -1, 1},
+                                                                         {-1, -1, 1, 1},
+                                                                         {1, -1, 1, 1},
+                                                                         {-1, 1, 1, 1},
+                                                                         {1, 1, 1, 1}}),
+                                           2, .6);
     for (uint32_t i = 0; i < 8; i++) cut->temperature[i] = 1 + .2 * i;
     for (int b = 0; b < 6; b++) cut->wall_temperature[b] = 1 + .1 * b, cut->wall_emissivity[b] = .7;
     cut->config.directions = 1000, cut->config.patches = 384;
@@ -399,7 +392,6 @@ TEST(spheres_that_triangles_cut) {
     for (int b = 0; b < 6; b++) cut->wall_temperature[b] = 2;
     solve(cut);
     for (uint32_t i = 0; i < 8; i++) ck_assert_double_le(fabs(cut->power[i]), 1e-8);
-    free_problem(cut);
 }
 
 /* ---- what must not matter ---- */
@@ -409,7 +401,7 @@ TEST(threads_and_instruction_sets_change_no_bit) {
     const int sets = isas_there(isa);
     double power[30], q[6];
     for (int k = 0; k < sets; k++) {
-        struct problem *p = thirty();
+        ENDED struct problem *p = thirty();
         p->isa = isa[k], p->backwards = k % 2 == 1;
         p->config.directions = 100;
         make_box(p, .02, .98, 4);
@@ -417,7 +409,6 @@ TEST(threads_and_instruction_sets_change_no_bit) {
         if (k == 0) memcpy(power, p->power, sizeof power), memcpy(q, p->q, sizeof q);
         ck_assert_mem_eq(p->power, power, sizeof power);
         ck_assert_mem_eq(p->q, q, sizeof q);
-        free_problem(p);
     }
 }
 
@@ -433,19 +424,18 @@ static void turn_all(struct problem *p, const double turn[9]) {
 }
 
 TEST(a_tilted_box_is_the_same) {
-    struct problem *p = thirty(), *turned = thirty();
+    ENDED struct problem *p = thirty(), *turned = thirty();
     p->config = turned->config = (fibrad_heat_config){.directions = 700, .patches = 384, .wall_rays = 300000};
     make_box(p, 0, 1, 2), make_box(turned, 0, 1, 2);
     turn_all(turned, tilt);
     trace_and_solve(p), trace_and_solve(turned);
     ck_assert_double_le(distance_of(turned->power, p->power, 30), 3e-3);
     ck_assert_double_le(distance_of(turned->q, p->q, 6), 3e-3);
-    free_problem(p), free_problem(turned);
 }
 
 /* A mesh that moves: the next solution begins where the last one ended, whatever the order of its triangles. */
 TEST(a_mesh_moves) {
-    struct problem *p = thirty();
+    ENDED struct problem *p = thirty();
     make_box(p, 0, 1, 9);
     trace_and_solve(p);
     const uint32_t cold = p->result.sweeps;
@@ -466,19 +456,19 @@ TEST(a_mesh_moves) {
     p->mesh->front[3] ^= 1, p->mesh->triangles.n--; /* a triangle less */
     free(other), other = build_scene(p);
     ck_assert_int_eq(fibrad_heat_move(p->heat, other), FIBRAD_E_ARGUMENT);
-    free(other), free(next);
-    free_problem(p);
+    free(other);
+    free(next);
 }
 
 TEST(estimates_of_errors_are_honest) {
-    struct problem *truth = thirty();
+    ENDED struct problem *truth = thirty();
     uint32_t beyond = 0;
     double errors[2] = {0}, estimates[2] = {0};
     truth->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 300000};
     make_planes(truth, 0, 1);
     trace_and_solve(truth);
     for (uint32_t cells = 1; cells <= 16; cells *= 2) {
-        struct problem *p = thirty();
+        ENDED struct problem *p = thirty();
         make_box(p, 0, 1, cells);
         trace_and_solve(p);
         for (uint32_t k = 0; k < 36; k++) {
@@ -487,14 +477,12 @@ TEST(estimates_of_errors_are_honest) {
             beyond += fabs(error) > 2 * estimate;
             errors[k >= 30] += error * error, estimates[k >= 30] += estimate * estimate;
         }
-        free_problem(p);
     }
     ck_assert_uint_le(beyond, 25);
     for (int kind = 0; kind < 2; kind++) {
         ck_assert_double_ge(sqrt(estimates[kind] / errors[kind]), .6);
         ck_assert_double_le(sqrt(estimates[kind] / errors[kind]), 4);
     }
-    free_problem(truth);
 }
 
 /* Fluxes through triangles add up to the powers of their bodies; a plate that faces a hot sphere is lit most where it
@@ -502,7 +490,7 @@ TEST(estimates_of_errors_are_honest) {
 TEST(fluxes_through_triangles) {
     enum { CELLS = 16, PIECES = 2 * CELLS * CELLS };
     const double origin[3] = {-3, -3, 1.5}, a[3] = {6, 0, 0}, b[3] = {0, 6, 0};
-    struct problem *p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, .8);
+    ENDED struct problem *p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, .8);
     double flux[2 * PIECES], temperature[2 * PIECES], sum = 0;
     p->bodies = 1, p->wall_temperature[0] = 1, p->wall_emissivity[0] = .7, p->config.directions = 700;
     add_sheet(p->mesh, origin, b, a, CELLS, 0, FIBRAD_NO_BODY); /* its front is below */
@@ -526,7 +514,6 @@ TEST(fluxes_through_triangles) {
     ck_assert_int_eq(fibrad_heat_read_sides(p->heat, flux, temperature), FIBRAD_OK);
     ck_assert(flux[2 * middle] == 0);
     ck_assert_double_gt(temperature[2 * middle], 1.3 * temperature[0]);
-    free_problem(p);
 }
 
 /* ---- temperatures of triangles ---- */
@@ -555,7 +542,7 @@ static double gain_of_body(const struct problem *p, const double *flux, uint32_t
 TEST(faces_with_temperatures_of_their_own) {
     static double side[2 * 12 * 144], flux[2 * 12 * 144], found[2 * 12 * 144];
     for (uint32_t cells = 1; cells <= 12; cells += 11) {
-        struct problem *bodies = thirty(), *one = thirty();
+        ENDED struct problem *bodies = thirty(), *one = thirty();
         bodies->config = one->config = (fibrad_heat_config){.directions = 700, .patches = 384, .wall_rays = 300000};
         make_box(bodies, 0, 1, cells);
         one->bodies = 1, one->wall_temperature[0] = 1.7, one->wall_emissivity[0] = .6;
@@ -598,7 +585,6 @@ TEST(faces_with_temperatures_of_their_own) {
         one->sources.side_temperature = side;
         solve(one);
         ck_assert_double_le(distance_of(one->power, power, 30), 1e-3);
-        free_problem(bodies), free_problem(one);
     }
 }
 
@@ -620,7 +606,7 @@ static void check_squares(double temperature(double x, double y), double flux_er
     enum { CELLS = 10, PIECES = 2 * CELLS * CELLS };
     const double low[3] = {0, 0, 0}, high[3] = {0, 0, 1}, a[3] = {1, 0, 0}, b[3] = {0, 1, 0};
     double side[4 * PIECES], flux[4 * PIECES], due[PIECES], got[PIECES], all = 0;
-    struct problem *p = problem_of(bed_of(1, (const double[][4]){{-5, -5, .5, 1e-3}}), 0, 1);
+    ENDED struct problem *p = problem_of(bed_of(1, (const double[][4]){{-5, -5, .5, 1e-3}}), 0, 1);
     p->bodies = 2, p->config.wall_rays = 1u << 21;
     add_sheet(p->mesh, low, a, b, CELLS, 0, FIBRAD_NO_BODY);
     add_sheet(p->mesh, high, b, a, CELLS, 1, FIBRAD_NO_BODY);
@@ -639,7 +625,6 @@ static void check_squares(double temperature(double x, double y), double flux_er
     ck_assert_msg(error <= flux_error, "off by %.3g", error);
     assert_near(p->q[1], all / PIECES, power_error);
     for (uint32_t body = 0; body < 2; body++) assert_near(gain_of_body(p, flux, body), p->q[body], 1e-11);
-    free_problem(p);
 }
 
 static double linear(double x, double y) { return 1 + x + .5 * y; }
@@ -653,7 +638,7 @@ TEST(squares_with_fields_of_temperature) {
 }
 
 TEST(temperatures_of_triangles_that_are_refused) {
-    struct problem *p = problem_of(bed_of(1, (const double[][4]){{.5, .5, .5, .2}}), 2, .8);
+    ENDED struct problem *p = problem_of(bed_of(1, (const double[][4]){{.5, .5, .5, .2}}), 2, .8);
     double side[24];
     p->bodies = 1, p->wall_temperature[0] = 1;
     add_box(p->mesh, 0, 1, 1, true);
@@ -672,20 +657,19 @@ TEST(temperatures_of_triangles_that_are_refused) {
     ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_E_ARGUMENT);
     p->insulated[0] = 0, p->wall_temperature[0] = NAN, p->wall_power[0] = 1;
     ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_E_ARGUMENT);
-    free_problem(p);
 }
 
 /* ---- patches ---- */
 
 TEST(patches_have_the_area_of_the_mesh) {
-    struct problem *p = thirty();
+    ENDED struct problem *p = thirty();
     const double origin[3] = {-3, 0, 5}, a[3] = {7, 0, 0}, b[3] = {.1, .2, 0};
     make_box(p, 0, 1, 20);
     add_sheet(p->mesh, origin, a, b, 1, 0, 0); /* large slivers of two sides, beside the small ones */
     p->scene = build_scene(p);
     const fibrad_mesh *mesh = &p->scene->mesh;
     const uint32_t sides = 2 * mesh->triangles;
-    fibrad_mesh_cut *cut = calloc(sides, sizeof *cut);
+    OWNED fibrad_mesh_cut *cut = calloc(sides, sizeof *cut);
     ck_assert_ptr_nonnull(cut);
     for (double area = 1e-3; area < 10; area *= 3) {
         const uint32_t n = fibrad_mesh_cut_sides(mesh, 0, area, 5, cut);
@@ -719,10 +703,9 @@ TEST(patches_have_the_area_of_the_mesh) {
             const double due = 200000 * own[k] / sum;
             ck_assert_double_le(fabs(points[k] - due), 5 * sqrt(due) + 3);
         }
-        free(own), free(points);
+        free(own);
+        free(points);
     }
-    free(cut);
-    free_problem(p);
 }
 
 /* ---- soups ---- */
@@ -730,7 +713,7 @@ TEST(patches_have_the_area_of_the_mesh) {
 /* Triangles at random, some without area, slivers, twice the same, through spheres and each other. */
 TEST(soups_have_finite_powers_that_add_up) {
     for (uint64_t seed = 0; seed < 8; seed++) {
-        struct problem *p = problem_of(thirty_spheres(), 1, .5);
+        ENDED struct problem *p = problem_of(thirty_spheres(), 1, .5);
         for (int axis = 0; axis < 3; axis++) p->bed.period[axis] = seed == 7 && axis == 1;
         p->bodies = 3;
         const uint32_t pieces = 1 + (uint32_t)(60 * bed_make_random(seed, 0));
@@ -757,14 +740,13 @@ TEST(soups_have_finite_powers_that_add_up) {
         for (uint32_t i = 0; i < 30; i++) ck_assert(isfinite(p->power[i]) && isfinite(p->error[i]));
         for (int b = 0; b < 3; b++) ck_assert(isfinite(p->q[b]) && isfinite(p->q_error[b]));
         ck_assert_double_le(imbalance(p), 1e-11);
-        free_problem(p);
     }
 }
 
 /* ---- what is refused ---- */
 
 TEST(a_back_that_is_seen_is_named) {
-    struct problem *p = thirty();
+    ENDED struct problem *p = thirty();
     const double origin[3] = {-9, -9, .5}, a[3] = {20, 0, 0}, b[3] = {0, 20, 0};
     make_planes(p, 0, 1);
     p->bodies = 7;
@@ -776,5 +758,4 @@ TEST(a_back_that_is_seen_is_named) {
     trace_and_solve(p); /* what of it lies beyond the planes plays no part */
     ck_assert_double_le(imbalance(p), 1e-12);
     ck_assert(p->result.surroundings_power == 0);
-    free_problem(p);
 }

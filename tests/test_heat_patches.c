@@ -77,7 +77,7 @@ static const struct spot_case spot_cases[] = {
 
 LOOP_TEST(a_small_sphere_and_the_spot_under_it, sizeof spot_cases / sizeof *spot_cases) {
     const struct spot_case *c = &spot_cases[_i];
-    struct problem p = problem_of(bed_of(c->n, c->spheres), 0, 0);
+    OWNED_PROBLEM p = problem_of(bed_of(c->n, c->spheres), 0, 0);
     double largest, error[2];
     for (uint32_t i = 0; i < c->n; i++) p.temperature[i] = c->temperature[i], p.emissivity[i] = c->emissivity[i];
     p.sources.sigma = FIBRAD_STEFAN_BOLTZMANN, p.sources.surroundings = 300;
@@ -94,14 +94,13 @@ LOOP_TEST(a_small_sphere_and_the_spot_under_it, sizeof spot_cases / sizeof *spot
         ck_assert_double_le(off, 5e-3 * fabs(c->truth[i]));
         ck_assert_double_le(off, 2 * error[i] + 1e-3 * fabs(c->truth[i]));
     }
-    free_problem(&p);
 }
 
 /* The same after a move from apart, and back: fine patches come and go. */
 TEST(fine_patches_come_and_go_with_a_move) {
     static const double near[2][4] = {{0, 0, 0, .3}, {.315015, 0, 0, .015}},
                         far[2][4] = {{0, 0, 0, .3}, {1, 0, 0, .015}};
-    struct problem p = problem_of(bed_of(2, near), 1, .3), q = problem_of(bed_of(2, far), 1, .3);
+    OWNED_PROBLEM p = problem_of(bed_of(2, near), 1, .3), q = problem_of(bed_of(2, far), 1, .3);
     p.temperature[1] = q.temperature[1] = 2;
     p.sources.tolerance = q.sources.tolerance = 1e-9;
     trace_and_solve(&p), trace_and_solve(&q);
@@ -114,14 +113,13 @@ TEST(fine_patches_come_and_go_with_a_move) {
     trace_beams(&p), solve(&p);
     assert_near(p.result.power[1], power[0], 1e-8);
     ck_assert_int_eq(fibrad_heat_move(q.heat, p.scene), FIBRAD_E_SIZE);
-    free_problem(&p), free_problem(&q);
 }
 
 /* Parts have as many spheres as each other, to one, and near each other: in a bed of a thousand few pencils, of which
  * links are kept, go from part to part. More parts than spheres leave some empty. */
 TEST(parts_are_compact_and_even) {
     for (uint32_t parts = 1; parts <= 64; parts *= 8) {
-        struct problem p = problem_of(packing(1000, .5, 10, .5, 3, false), 1, 1);
+        OWNED_PROBLEM p = problem_of(packing(1000, .5, 10, .5, 3, false), 1, 1);
         p.config.directions = 8, p.config.parts = parts;
         trace(&p);
         const fibrad_heat *heat = p.heat;
@@ -137,7 +135,6 @@ TEST(parts_are_compact_and_even) {
         for (uint32_t k = 0; k < p.bed.n; k++) ck_assert_uint_eq(seen[k], 1);
         for (uint32_t k = 0; k < parts; k++) ck_assert(count[k] == p.bed.n / parts || count[k] == p.bed.n / parts + 1);
         ck_assert_uint_le(heat->pencils.links, parts == 1 ? 0 : parts == 8 ? pencils / 2 : pencils);
-        free_problem(&p);
     }
 }
 
@@ -145,7 +142,7 @@ TEST(parts_are_compact_and_even) {
  * all of a patch, and those that they meet, lie within 20 degrees of their mean. Those kept are some of those followed,
  * and stand for all; bundles have as many as their strands. */
 TEST(a_patch_of_a_sphere_is_one_place) {
-    struct problem p = problem_of(packing(12, .5, 1.5, .5, 7, false), 1, 1);
+    OWNED_PROBLEM p = problem_of(packing(12, .5, 1.5, .5, 7, false), 1, 1);
     trace(&p);
     const fibrad_heat *heat = p.heat;
     const uint32_t points = heat->config.points;
@@ -186,14 +183,13 @@ TEST(a_patch_of_a_sphere_is_one_place) {
     ck_assert_uint_gt(kept, p.bed.n * heat->beams / 4);
     ck_assert_uint_le(missed, 5); /* that graze a sphere: the kernel's points are floats */
     ck_assert_double_gt(leaving, cos(PI / 9));
-    free_problem(&p);
 }
 
 /* The same of a cylinder's wall, and of rays that go there. Patches are even on the square that leans on its corners,
  * which makes them 2/pi to 4/pi of their mean as wide on the cylinder. */
 TEST(a_patch_of_a_cylinder_is_one_place) {
     enum { TURNS = 2048, UPS = 128 };
-    struct problem p = problem_of(bed_of(1, (const double[][4]){{.3, -.2, .4, 1e-4}}), 1, 1);
+    OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{.3, -.2, .4, 1e-4}}), 1, 1);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -.5, 1.5}, .cylinder = {.3, -.2, 1}};
     p.config.directions = 8;
     trace(&p);
@@ -229,5 +225,4 @@ TEST(a_patch_of_a_cylinder_is_one_place) {
     ck_assert_double_lt(rising, .5 / squares[1]);
     ck_assert_uint_eq(missed, 0);
     free(mean);
-    free_problem(&p);
 }

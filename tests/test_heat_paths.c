@@ -6,7 +6,7 @@ LOOP_TEST(powers_are_those_of_paths, 3) {
     static const struct {
         double low, high, spheres, walls, bar;
     } cases[] = {{1, 1, .3, .5, .01}, {.5, 1.5, .3, .4, .015}, {1, 1, .8, .9, .015}};
-    struct problem p = problem_of(packing(24, cases[_i].low, cases[_i].high, .55, 11, false), 1, cases[_i].spheres);
+    OWNED_PROBLEM p = problem_of(packing(24, cases[_i].low, cases[_i].high, .55, 11, false), 1, cases[_i].spheres);
     p.walls = box_about(&p.bed);
     for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + .5 * bed_make_random(4, i);
     for (int k = 0; k < FIBRAD_WALLS; k++) p.wall_temperature[k] = .8 + .2 * k, p.wall_emissivity[k] = cases[_i].walls;
@@ -17,12 +17,11 @@ LOOP_TEST(powers_are_those_of_paths, 3) {
         difference += (p.result.power[i] - truth) * (p.result.power[i] - truth), size += truth * truth;
     }
     ck_assert_msg(sqrt(difference / size) < cases[_i].bar, "off by %g", sqrt(difference / size));
-    free_problem(&p);
 }
 
 /* Box and cylinder of grey walls, open above, or above and on one side, against paths that end in the surroundings. */
 LOOP_TEST(powers_in_open_containers_are_those_of_paths, 3) {
-    struct problem p = problem_of(packing(24, .5, 1.5, .55, 11, false), 1, .4);
+    OWNED_PROBLEM p = problem_of(packing(24, .5, 1.5, .55, 11, false), 1, .4);
     p.walls = box_about(&p.bed);
     p.walls.open = _i == 1 ? 34 : 32, p.walls.planes = 63 & ~p.walls.open;
     if (_i == 2) {
@@ -44,7 +43,6 @@ LOOP_TEST(powers_in_open_containers_are_those_of_paths, 3) {
         difference += (p.result.power[i] - truth) * (p.result.power[i] - truth), size += truth * truth;
     }
     ck_assert_msg(sqrt(difference / size) < .015, "off by %g", sqrt(difference / size));
-    free_problem(&p);
 }
 
 /* What it is about: an opening is a black plane at the temperature of the surroundings, whose power is theirs. To the
@@ -105,7 +103,7 @@ TEST(powers_beside_the_wall_of_a_cylinder) {
         const double turn = (k / 2 + .3) * (PI / 2);
         add_sphere(&bed, .3 + 2.2 * cos(turn), 2.2 * sin(turn) - .2, k % 2 ? .6 : -.4, .4);
     }
-    struct problem p = problem_of(bed, 0, 1);
+    OWNED_PROBLEM p = problem_of(bed, 0, 1);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -1, 1.2}, .cylinder = {.3, -.2, 3}};
     p.wall_emissivity[FIBRAD_CYLINDER] = .1;
     for (uint32_t i = 0; i < 8; i += 2) p.temperature[i] = 1;
@@ -115,7 +113,6 @@ TEST(powers_beside_the_wall_of_a_cylinder) {
         power[i % 2] += p.result.power[i] / 4, truth[i % 2] += power_by_paths(&p, i, 200000) / 4;
     for (int k = 0; k < 2; k++) assert_near(power[k], truth[k], .01);
     for (uint32_t i = 0; i < 8; i++) assert_near(p.result.power[i], power[i % 2], .004);
-    free_problem(&p);
 }
 
 /* k_rad/(4 sigma T^3 d) of a periodic bed along z, from the powers at emissions 2 + cos kz, k such that `waves` waves
@@ -162,10 +159,9 @@ LOOP_TEST(conduction_of_lattices, 3) {
     } lattices[] = {{'p', 24, {.354, .527, .715, .929, 1.187}, .04},
                     {'i', 16, {.196, .336, .498, .688, .916}, .02},
                     {'f', 12, {.162, .299, .458, .646, .875}, .02}};
-    struct problem p = problem_of(column(lattices[_i].kind, lattices[_i].cells), 1, 1);
+    OWNED_PROBLEM p = problem_of(column(lattices[_i].kind, lattices[_i].cells), 1, 1);
     trace(&p);
     for (int k = 0; k < 5; k++) assert_near(even_conduction(&p, .2 * (k + 1)), lattices[_i].known[k], lattices[_i].bar);
-    free_problem(&p);
 }
 
 /* A small random bed conducts a few per cent more or less than a large one, but alike at all emissivities. */
@@ -175,7 +171,7 @@ TEST(conduction_of_a_random_bed) {
     bed_init(&bed);
     ck_assert_int_eq(bed_make_copies(&bed, &one, (uint32_t[]){1, 1, 3}), 0);
     bed_free(&one);
-    struct problem p = problem_of(bed, 1, 1);
+    OWNED_PROBLEM p = problem_of(bed, 1, 1);
     trace(&p);
     const double black = even_conduction(&p, 1);
     assert_near(black, 1.061, .05);
@@ -183,5 +179,4 @@ TEST(conduction_of_a_random_bed) {
     /* one radiosity per sphere conducts as if all were black */
     p.sources.uniform = 1;
     assert_near(even_conduction(&p, .2), black, .03);
-    free_problem(&p);
 }

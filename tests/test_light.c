@@ -50,7 +50,7 @@ static fibrad_light along(double x, double y, double z) { return (fibrad_light){
 
 TEST(a_lone_sphere_takes_its_shadow) {
     const double one[][4] = {{.3, -.2, .7, 1.7}};
-    struct bed bed = bed_of(1, one);
+    OWNED_BED bed = bed_of(1, one);
     for (uint64_t k = 0; k < 40; k++) {
         double d[3];
         for (uint64_t a = 0; a < 3; a++) d[a] = k < 3 ? (double)(a == k) : bed_make_random(5, 3 * k + a) - .5;
@@ -63,7 +63,6 @@ TEST(a_lone_sphere_takes_its_shadow) {
         ck_assert_double_eq_tol(sum_of(&lit.ends), box, 1e-12);
         free(lit.power);
     }
-    bed_free(&bed);
 }
 
 /* Three layers of touching unit spheres. */
@@ -78,7 +77,7 @@ static struct bed layers(double x, double y, bool hexagonal) {
 }
 
 TEST(a_simple_cubic_bed_is_lit_in_its_first_layer) {
-    struct bed bed = layers(8, 8, false);
+    OWNED_BED bed = layers(8, 8, false);
     const fibrad_body floor_body = plane_at(2, 0, -1);
     for (int walled = 0; walled < 2; walled++) {
         const fibrad_scene_config config = {.period = {8, 8, 0}, .body = &floor_body, .bodies = (uint32_t)walled};
@@ -90,17 +89,15 @@ TEST(a_simple_cubic_bed_is_lit_in_its_first_layer) {
         ck_assert_double_eq_tol(sum_of(&lit.ends), 64, 1e-12);
         free(lit.power);
     }
-    bed_free(&bed);
 }
 
 TEST(a_hexagonal_layer_takes_nine_tenths) {
-    struct bed bed = layers(8, 4 * sqrt(3), true);
+    OWNED_BED bed = layers(8, 4 * sqrt(3), true);
     const fibrad_scene_config config = {.period = {8, 4 * sqrt(3), 0}};
     const fibrad_light light = along(0, 0, -1);
     struct lit lit = light_up(&bed, &config, &light);
     ck_assert_double_eq_tol(lit.ends.spheres / sum_of(&lit.empty), M_PI / sqrt(12), 1e-9);
     free(lit.power);
-    bed_free(&bed);
 }
 
 /* A bed, its walls for both, and a light. */

@@ -91,7 +91,7 @@ static double absorb_plain(const struct plain_bed *p, const double d[3], double 
 }
 
 TEST(a_settled_bed_absorbs_as_plain_rays_say) {
-    struct bed bed = read_settled("tests/data/monoper2000.dump");
+    OWNED_BED bed = read_settled("tests/data/monoper2000.dump");
     struct plain_bed plain = plain_bed_of(&bed);
     const fibrad_scene_config config = {.period = {12, 12, 0}};
     double top = -INFINITY;
@@ -113,13 +113,12 @@ TEST(a_settled_bed_absorbs_as_plain_rays_say) {
         free_absorbed(&a);
     }
     plain_free(&plain);
-    bed_free(&bed);
 }
 
 /* A floor that light reaches between few spheres, by what it absorbs itself and what it sends back. */
 TEST(a_floor_alone_absorbs_what_it_absorbs) {
     const double far_away[][4] = {{0, 0, 1, .5}};
-    struct bed bed = bed_of(1, far_away);
+    OWNED_BED bed = bed_of(1, far_away);
     const fibrad_body body = plane_at(2, 0, 0);
     const fibrad_plane top = {2, 1, 2};
     const fibrad_scene_config config = {
@@ -136,13 +135,12 @@ TEST(a_floor_alone_absorbs_what_it_absorbs) {
         ck_assert_double_eq_tol(a.result.transmitted, 0, 1e-12);
         free_absorbed(&a);
     }
-    bed_free(&bed);
 }
 
 /* Light in a closed cup that reflects all ends on the sphere or outside, whatever its walls do. */
 TEST(white_walls_absorb_nothing) {
     const double one[][4] = {{0, 0, .6, .5}};
-    struct bed bed = bed_of(1, one);
+    OWNED_BED bed = bed_of(1, one);
     fibrad_body body[5];
     for (int side = 0; side < 5; side++) body[side] = plane_at(side / 2, side % 2, side == 4 ? 0 : side % 2 ? 1 : -1);
     const fibrad_plane top = {2, 1, 1.5};
@@ -152,13 +150,12 @@ TEST(white_walls_absorb_nothing) {
     for (int b = 0; b < 5; b++) ck_assert_double_eq_tol(a.wall[b], 0, 1e-12);
     ck_assert_double_gt(a.sphere[0], 1.5 * a.first[0]);
     free_absorbed(&a);
-    bed_free(&bed);
 }
 
 /* Kirchhoff: what a bed of one temperature sends out through its open face, over what a black face would, is the mean
  * of what it absorbs of light from all sides, by the cosine law. */
 TEST(emissivity_of_a_face_is_its_mean_absorptance) {
-    struct bed bed = packing(40, .5, .5, .5, 9, true);
+    OWNED_BED bed = packing(40, .5, .5, .5, 9, true);
     const double side = bed.period[0], floor_at = -.5;
     bed.period[2] = 0;
     const fibrad_body body = plane_at(2, 0, floor_at);
@@ -188,5 +185,4 @@ TEST(emissivity_of_a_face_is_its_mean_absorptance) {
     const double emissivity = result.surroundings_power / (FIBRAD_STEFAN_BOLTZMANN * 1e12 * side * side);
     printf("face: emissivity %.4f, mean absorptance %.4f\n", emissivity, mean);
     ck_assert_double_eq_tol(emissivity, mean, .01);
-    bed_free(&bed);
 }

@@ -5,13 +5,10 @@
 /* A matrix of rows by hand. */
 static struct matrix matrix_by_hand(uint32_t n, const double *r, const uint64_t *start, const uint32_t *col,
                                     const double *f, const fibrad_matrix_rule *rule) {
-    fibrad_scene *scene = apart(n, r);
-    fibrad_rows rows = {.memory = memory_growing()};
+    OWNED fibrad_scene *scene = apart(n, r);
+    OWNED_ROWS rows = {.memory = memory_growing()};
     add_rows(&rows, n, start, col, f);
-    const struct matrix m = matrix_of(scene, &rows, 1, rule);
-    rows_free(&rows);
-    free(scene);
-    return m;
+    return matrix_of(scene, &rows, 1, rule);
 }
 
 static double reciprocity(const struct matrix *m) {
@@ -60,9 +57,9 @@ static double *squares(const struct bed *bed, const double *emissivity) {
 TEST(averaging_makes_rows_reciprocal) {
     struct bed beds[] = {packing(400, .8, 1.2, .55, 7, true), packing(400, .3, 1.5, .5, 8, false), lattice('f', 5)};
     for (size_t b = 0; b < 3; b++) {
-        fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
+        OWNED fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
         const fibrad_beam_rule rule = {.directions = 100};
-        struct matrix raw = matrix_by_beams(scene, &rule, true), out = matrix_by_beams(scene, &rule, false);
+        OWNED_MATRIX raw = matrix_by_beams(scene, &rule, true), out = matrix_by_beams(scene, &rule, false);
         ascending(&raw.factors);
         ascending(&out.factors);
         all_closed(&out.factors);
@@ -82,8 +79,8 @@ TEST(averaging_makes_rows_reciprocal) {
             for (uint64_t k = raw.factors.start[i]; k < raw.factors.start[i + 1]; k++)
                 ck_assert_double_ge(matrix_factor(&out.factors, i, raw.factors.col[k]),
                                     raw.factors.f[k] / 2 * (1 - 1e-12));
-        free(area), free(mean), free(scene);
-        matrix_free(&raw), matrix_free(&out);
+        free(area);
+        free(mean);
         bed_free(&beds[b]);
     }
 }
@@ -112,14 +109,13 @@ TEST(what_closing_changes) {
     uint32_t col[N];
     for (uint32_t k = 0; k < N; k++) r[k] = 1, f[k] = .02, col[k] = k + 1, start[k + 1] = N - 1;
     for (int raw = 0; raw < 2; raw++) {
-        struct matrix m = matrix_by_hand(N, r, start, col, f, &(fibrad_matrix_rule){.raw = raw, .tasks = 3});
+        OWNED_MATRIX m = matrix_by_hand(N, r, start, col, f, &(fibrad_matrix_rule){.raw = raw, .tasks = 3});
         double most = 0;
         for (uint32_t i = 0; i < N && !raw; i++) most = fmax(most, m.factors.escaped[i] / m.factors.error[i]);
         ck_assert(raw || most > 5);
         ck_assert(fabs(m.factors.changed - most) <= 1e-9 * most);
         const uint32_t row = m.factors.changed_row;
         ck_assert(raw || m.factors.escaped[row] / m.factors.error[row] == most);
-        matrix_free(&m);
     }
 }
 
@@ -128,27 +124,25 @@ TEST(averaging_nothing) {
     const double r[] = {1, 2};
     const fibrad_matrix_rule rules[] = {{0}, {.raw = 1}};
     for (int k = 0; k < 2; k++) {
-        struct matrix m = matrix_by_hand(2, r, (uint64_t[]){0, 1, 2}, (uint32_t[]){1, 0}, (double[]){0, 0}, &rules[k]);
+        OWNED_MATRIX m = matrix_by_hand(2, r, (uint64_t[]){0, 1, 2}, (uint32_t[]){1, 0}, (double[]){0, 0}, &rules[k]);
         ck_assert_double_eq(reciprocity(&m), 0);
         for (uint32_t i = 0; i < 2; i++) {
             ck_assert_double_eq(matrix_sum(&m.factors, i), 0);
             ck_assert_double_eq(matrix_total(&m.factors, i), k == 0 ? 1 : 0);
         }
-        matrix_free(&m);
     }
     const double emissivity[] = {.5, .25};
-    struct matrix m = matrix_by_hand(2, r, (uint64_t[]){0, 1, 2}, (uint32_t[]){1, 0}, (double[]){0, 0},
-                                     &(fibrad_matrix_rule){.emissivity = emissivity, .drop = .1});
+    OWNED_MATRIX m = matrix_by_hand(2, r, (uint64_t[]){0, 1, 2}, (uint32_t[]){1, 0}, (double[]){0, 0},
+                                    &(fibrad_matrix_rule){.emissivity = emissivity, .drop = .1});
     for (uint32_t i = 0; i < 2; i++) ck_assert_double_eq(matrix_total(&m.factors, i), 1);
-    matrix_free(&m);
 }
 
 /* Entry by entry the formula of the header. */
 TEST(averaging_entry_by_entry) {
-    struct bed bed = packing(120, .3, 1.5, .5, 9, false);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_BED bed = packing(120, .3, 1.5, .5, 9, false);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     const fibrad_beam_rule rule = {.directions = 34};
-    struct matrix raw = matrix_by_beams(scene, &rule, true), out = matrix_by_beams(scene, &rule, false);
+    OWNED_MATRIX raw = matrix_by_beams(scene, &rule, true), out = matrix_by_beams(scene, &rule, false);
     uint64_t wanted = 0;
     for (uint32_t i = 0; i < bed.n; i++)
         for (uint32_t j = 0; j < bed.n; j++) {
@@ -159,20 +153,17 @@ TEST(averaging_entry_by_entry) {
         }
     ck_assert_uint_eq(out.factors.start[bed.n], wanted);
     ck_assert_uint_lt(wanted, 2 * raw.factors.start[bed.n]);
-    free(scene);
-    matrix_free(&raw), matrix_free(&out);
-    bed_free(&bed);
 }
 
 /* The estimate follows from how far the mean is off the raw row, and is half the raw one at least; rows that are
  * symmetric by themselves keep theirs. */
 TEST(errors_of_averaged_rows) {
-    struct bed bed = packing(120, .3, 1.5, .5, 9, false);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34});
-    fibrad_rows symmetric = {.memory = memory_growing()};
-    struct matrix raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
-    struct matrix out = matrix_of(scene, &rows, 1, NULL);
+    OWNED_BED bed = packing(120, .3, 1.5, .5, 9, false);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_ROWS rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34});
+    OWNED_ROWS symmetric = {.memory = memory_growing()};
+    OWNED_MATRIX raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
+    OWNED_MATRIX out = matrix_of(scene, &rows, 1, NULL);
     uint32_t by_distance = 0;
     for (uint32_t i = 0; i < bed.n; i++) {
         fibrad_row before = matrix_row(&raw.factors, i);
@@ -185,19 +176,16 @@ TEST(errors_of_averaged_rows) {
         ck_assert_int_eq(fibrad_rows_add(&symmetric, &before, 0), FIBRAD_OK);
     }
     ck_assert(by_distance > 0 && by_distance < bed.n);
-    struct matrix kept = matrix_of(scene, &symmetric, 1, NULL);
+    OWNED_MATRIX kept = matrix_of(scene, &symmetric, 1, NULL);
     for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq(kept.factors.error[i], raw.factors.error[i]);
-    rows_free(&rows), rows_free(&symmetric), free(scene);
-    matrix_free(&raw), matrix_free(&out), matrix_free(&kept);
-    bed_free(&bed);
 }
 
 /* Points err by their number, and a cutoff opens rows that others close. */
 TEST(limiting_keeps_reciprocity) {
-    struct bed bed = packing(400, .8, 1.2, .58, 7, true);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_BED bed = packing(400, .8, 1.2, .58, 7, true);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     const fibrad_beam_rule rule = {.directions = 55, .points = 64};
-    struct matrix raw = matrix_by_beams(scene, &rule, true), limited = matrix_by_beams(scene, &rule, false);
+    OWNED_MATRIX raw = matrix_by_beams(scene, &rule, true), limited = matrix_by_beams(scene, &rule, false);
     double *area = squares(&bed, NULL), *mean = mean_of(&raw.factors, area, NULL), above = 0, moved = 0;
     for (uint32_t i = 0; i < bed.n; i++) {
         double sum = 0;
@@ -211,24 +199,23 @@ TEST(limiting_keeps_reciprocity) {
         for (uint64_t k = limited.factors.start[i]; k < limited.factors.start[i + 1]; k++)
             worst_of(&moved, 1 - limited.factors.f[k] / mean[(size_t)i * bed.n + limited.factors.col[k]]);
     ck_assert_double_le(moved, above);
-    free(area), free(mean), free(scene);
-    matrix_free(&raw), matrix_free(&limited);
-    bed_free(&bed);
+    free(area);
+    free(mean);
 }
 
 /* A_i emissivity_i D_ij is symmetric, each row counts by its partner's area, and rows that were closed are. */
 TEST(exchange_factors_are_balanced) {
-    struct bed bed = packing(150, .5, 1.5, .5, 3, true);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_BED bed = packing(150, .5, 1.5, .5, 3, true);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     double *emissivity = calloc(bed.n, sizeof *emissivity);
     for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = .2 + .8 * bed_make_random(5, i);
-    fibrad_rows rows = {.memory = memory_growing()};
-    fibrad_work work = work_growing();
+    OWNED_ROWS rows = {.memory = memory_growing()};
+    OWNED_WORK work = work_growing();
     const fibrad_exchange_rule rule = {.emissivity = emissivity};
     for (uint32_t i = 0; i < bed.n; i++)
         ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL), FIBRAD_OK);
-    struct matrix raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = emissivity, .raw = 1});
-    struct matrix out = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = emissivity});
+    OWNED_MATRIX raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = emissivity, .raw = 1});
+    OWNED_MATRIX out = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = emissivity});
     double *area = squares(&bed, emissivity), *mean = mean_of(&raw.factors, area, bed.r), moved = 0;
     ck_assert_double_gt(reciprocity(&raw), 1e-4);
     ck_assert_double_le(reciprocity(&out), 1e-14);
@@ -245,13 +232,12 @@ TEST(exchange_factors_are_balanced) {
         }
         ck_assert_double_eq_tol(sum, matrix_sum(&raw.factors, i), .2);
     }
-    ck_assert(moved > 1e-4 && moved < .5);                 /* the mean is scaled, by little */
-    struct matrix view = matrix_of(scene, &rows, 1, NULL); /* what the same rows would be as view factors */
+    ck_assert(moved > 1e-4 && moved < .5);                /* the mean is scaled, by little */
+    OWNED_MATRIX view = matrix_of(scene, &rows, 1, NULL); /* what the same rows would be as view factors */
     ck_assert(!matrix_same_bits(&view.factors, &out.factors));
-    free(area), free(mean), free(emissivity), free(scene);
-    rows_free(&rows), work_free(&work);
-    matrix_free(&raw), matrix_free(&out), matrix_free(&view);
-    bed_free(&bed);
+    free(area);
+    free(mean);
+    free(emissivity);
 }
 
 /* S_01 = (4 (3 A_0 D_01) + A_1 D_10)/5 with A = 4 pi (1, 4), in units of the largest emissivity, and what rows leave
@@ -291,7 +277,7 @@ TEST(empty_rows_stay_empty) {
     for (int raw = 0; raw <= 1; raw++)
         for (int drop = 0; drop <= 1; drop++) {
             fibrad_matrix_rule rule = {.emissivity = emissivity, .raw = raw, .drop = drop * .22};
-            struct matrix two = matrix_by_hand(2, r, (uint64_t[]){0, 2, 4}, (uint32_t[]){0, 1, 0, 1}, f, &rule);
+            OWNED_MATRIX two = matrix_by_hand(2, r, (uint64_t[]){0, 2, 4}, (uint32_t[]){0, 1, 0, 1}, f, &rule);
             rule.emissivity = emissivity_all;
             struct matrix four =
                 matrix_by_hand(4, r_all, (uint64_t[]){0, 0, 2, 2, 4}, (uint32_t[]){1, 3, 1, 3}, f, &rule);
@@ -305,35 +291,34 @@ TEST(empty_rows_stay_empty) {
                 if (!raw) ck_assert_double_eq_tol(matrix_total(&four.factors, i), emits, 1e-13);
                 if (!emits) ck_assert_double_eq(matrix_total(&four.factors, i), 0);
             }
-            matrix_free(&two), matrix_free(&four);
+            matrix_free(&four);
         }
 }
 
 /* All reflect: a matrix of empty rows. */
 TEST(all_rows_empty) {
     const double r[] = {1, 2}, emissivity[] = {0, 0};
-    struct matrix m = matrix_by_hand(2, r, (uint64_t[]){0, 0, 0}, (uint32_t[]){0}, (double[]){0},
-                                     &(fibrad_matrix_rule){.emissivity = emissivity, .drop = .1});
+    OWNED_MATRIX m = matrix_by_hand(2, r, (uint64_t[]){0, 0, 0}, (uint32_t[]){0}, (double[]){0},
+                                    &(fibrad_matrix_rule){.emissivity = emissivity, .drop = .1});
     for (uint32_t i = 0; i < 2; i++) ck_assert_double_eq(matrix_total(&m.factors, i) + m.factors.error[i], 0);
     ck_assert(m.factors.start[2] == 0 && reciprocity(&m) == 0);
-    matrix_free(&m);
 }
 
 /* Rows of a walled bed with reflectors, made reciprocal and closed. */
 TEST(reflectors_in_a_walled_bed) {
-    struct bed bed = packing(120, .5, 1.5, .45, 3, false);
+    OWNED_BED bed = packing(120, .5, 1.5, .45, 3, false);
     const fibrad_body floor_plane = plane_at(2, 0, -100);
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
     double *emissivity = calloc(bed.n, sizeof *emissivity);
     for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = i % 3 == 1 ? 0 : .2 + .8 * bed_make_random(5, i);
-    fibrad_rows rows = {.memory = memory_growing()};
-    fibrad_work work = work_growing();
+    OWNED_ROWS rows = {.memory = memory_growing()};
+    OWNED_WORK work = work_growing();
     const fibrad_exchange_rule rule = {.emissivity = emissivity, .body_emissivity = (double[]){.4}};
     for (uint32_t i = 0; i < bed.n; i++)
         ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL), FIBRAD_OK);
     for (int drop = 0; drop <= 1; drop++) {
-        struct matrix m = matrix_of(scene, &rows, 1,
-                                    &(fibrad_matrix_rule){.emissivity = emissivity, .drop = drop * 1e-3, .tasks = 3});
+        OWNED_MATRIX m = matrix_of(scene, &rows, 1,
+                                   &(fibrad_matrix_rule){.emissivity = emissivity, .drop = drop * 1e-3, .tasks = 3});
         ck_assert_double_le(reciprocity(&m), 1e-14);
         ascending(&m.factors);
         for (uint32_t i = 0; i < bed.n; i++) {
@@ -341,22 +326,19 @@ TEST(reflectors_in_a_walled_bed) {
             ck_assert_double_le(fabs(matrix_total(&m.factors, i) - expected), 1e-13 * expected);
             ck_assert_double_eq(matrix_factor(&m.factors, i, 1), 0);
         }
-        matrix_free(&m);
     }
-    free(emissivity), free(scene);
-    rows_free(&rows), work_free(&work);
-    bed_free(&bed);
+    free(emissivity);
 }
 
 TEST(dropping_keeps_the_books) {
-    struct bed bed = packing(400, .7, 1.3, .55, 17, true);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 233});
-    struct matrix before = matrix_of(scene, &rows, 1, NULL);
+    OWNED_BED bed = packing(400, .7, 1.3, .55, 17, true);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_ROWS rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 233});
+    OWNED_MATRIX before = matrix_of(scene, &rows, 1, NULL);
     const double thresholds[] = {0, 1e-3, 1e-2, 1};
     uint64_t last = UINT64_MAX;
     for (int t = 0; t < 4; t++) {
-        struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.drop = thresholds[t]});
+        OWNED_MATRIX m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.drop = thresholds[t]});
         ascending(&m.factors);
         all_closed(&m.factors);
         ck_assert_double_le(reciprocity(&m), 1e-14);
@@ -369,12 +351,7 @@ TEST(dropping_keeps_the_books) {
         last = m.factors.start[bed.n];
         if (t == 0) ck_assert(matrix_same_bits(&m.factors, &before.factors));
         if (t == 3) ck_assert_uint_eq(last, bed.n); /* all gone: each row keeps what it had in F_ii */
-        matrix_free(&m);
     }
-    matrix_free(&before);
-    rows_free(&rows);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* A threshold that equals an entry: both of a pair must go, or neither. */
@@ -386,17 +363,16 @@ TEST(dropping_at_the_threshold) {
         const uint64_t start[] = {0, 1, 2};
         const uint32_t col[] = {1, 0};
         const double both[] = {f, back};
-        struct matrix whole = matrix_by_hand(2, r, start, col, both, NULL);
+        OWNED_MATRIX whole = matrix_by_hand(2, r, start, col, both, NULL);
         ck_assert_uint_eq(whole.factors.start[2], 2);
         const fibrad_matrix_rule rule = {.drop = whole.factors.f[k % 2]};
-        struct matrix m = matrix_by_hand(2, r, start, col, both, &rule);
+        OWNED_MATRIX m = matrix_by_hand(2, r, start, col, both, &rule);
         ck_assert_double_le(reciprocity(&m), 1e-14);
         for (uint32_t i = 0; i < 2; i++)
             ck_assert_double_eq_tol(matrix_sum(&m.factors, i), matrix_sum(&whole.factors, i), 1e-14);
         ck_assert_uint_eq(m.factors.start[2], 2);
         ck_assert((m.factors.col[0] == 1) == (m.factors.col[1] == 0));
         *(m.factors.col[0] == 1 ? &stayed : &gone) += 1;
-        matrix_free(&whole), matrix_free(&m);
     }
     ck_assert_uint_gt(stayed, 1000); /* the other one is above the threshold, or the entry itself is not below */
     ck_assert_uint_eq(stayed + gone, 2000);
@@ -408,14 +384,13 @@ TEST(dropping_where_no_scaling_exists) {
     static const uint64_t start[] = {0, 2, 5, 7, 8};
     static const uint32_t col[] = {1, 2, 0, 2, 3, 0, 1, 1};
     static const double f[] = {.3, .001, .3, .2, .1, .001, .2, .1};
-    struct matrix whole = matrix_by_hand(4, r, start, col, f, NULL);
-    struct matrix m = matrix_by_hand(4, r, start, col, f, &(fibrad_matrix_rule){.drop = .01});
+    OWNED_MATRIX whole = matrix_by_hand(4, r, start, col, f, NULL);
+    OWNED_MATRIX m = matrix_by_hand(4, r, start, col, f, &(fibrad_matrix_rule){.drop = .01});
     ascending(&m.factors);
     for (uint32_t i = 0; i < 4; i++)
         ck_assert_double_eq_tol(matrix_sum(&m.factors, i), matrix_sum(&whole.factors, i), 1e-14);
     ck_assert_double_le(reciprocity(&m), 1e-14);
     ck_assert_double_eq(matrix_factor(&m.factors, 0, 2), 0);
-    matrix_free(&whole), matrix_free(&m);
 }
 
 /* Pairs of which one factor is missing, on either side of the diagonal: it counts in full. */
@@ -433,25 +408,27 @@ TEST(lone_factors_are_not_reciprocal) {
     ck_assert_double_eq(reciprocity(&diagonal), 0);
     const double emissivity[] = {1, .5, 1}; /* 4 x .5 x .1 = .2: reciprocal with these alone */
     const double grey[] = {.2, .1};
-    struct matrix exchange = matrix_by_hand(2, r, (uint64_t[]){0, 1, 2}, (uint32_t[]){1, 0}, grey,
-                                            &(fibrad_matrix_rule){.raw = 1, .emissivity = emissivity});
+    OWNED_MATRIX exchange = matrix_by_hand(2, r, (uint64_t[]){0, 1, 2}, (uint32_t[]){1, 0}, grey,
+                                           &(fibrad_matrix_rule){.raw = 1, .emissivity = emissivity});
     ck_assert_double_le(reciprocity(&exchange), 1e-16);
-    matrix_free(&above), matrix_free(&below), matrix_free(&diagonal), matrix_free(&exchange);
+    matrix_free(&above);
+    matrix_free(&below);
+    matrix_free(&diagonal);
 }
 
 /* Raw rows are what they were, in the order of the spheres, and what is missing is empty. */
 TEST(raw_rows_stay_as_they_are) {
-    struct bed bed = packing(100, .5, 1.5, .4, 3, false);
+    OWNED_BED bed = packing(100, .5, 1.5, .4, 3, false);
     const fibrad_body floor_plane = plane_at(2, 0, -100);
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
-    fibrad_work work = work_growing();
-    fibrad_rows rows = {.memory = memory_growing()};
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
+    OWNED_WORK work = work_growing();
+    OWNED_ROWS rows = {.memory = memory_growing()};
     const fibrad_beam_rule rule = {.directions = 34};
-    fibrad_row row = row_of(bed.n);
+    OWNED_ROW row = row_of(bed.n);
     for (uint32_t i = bed.n; i-- > 0;)
         if (i % 3 != 1)
             ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}), FIBRAD_OK);
-    struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
+    OWNED_MATRIX m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
     ck_assert_uint_eq(m.factors.start[bed.n], rows.entries);
     for (uint32_t i = 0; i < bed.n; i++) {
         const fibrad_row there = matrix_row(&m.factors, i);
@@ -466,12 +443,8 @@ TEST(raw_rows_stay_as_they_are) {
     uint32_t sphere = 999;
     fibrad_matrix *none = NULL;
     const size_t size = fibrad_matrix_size(scene, &rows, 1, NULL);
-    void *block = block_of(size);
+    OWNED void *block = block_of(size);
     ck_assert_int_eq(fibrad_matrix_init(&none, block, size, scene, &rows, 1, NULL, &sphere), FIBRAD_E_STATE);
     ck_assert_uint_eq(sphere, 1);
     ck_assert_ptr_null(none);
-    free(block), free(scene);
-    row_free(&row), rows_free(&rows), work_free(&work);
-    matrix_free(&m);
-    bed_free(&bed);
 }

@@ -39,22 +39,21 @@ static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows
 
 /* No bit depends on the number of tasks, on who averages them, nor on how rows are spread over collections. */
 TEST(tasks_change_no_bit) {
-    struct bed bed = packing(150, .3, 1.5, .5, 3, true);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_BED bed = packing(150, .3, 1.5, .5, 3, true);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     double *emissivity = calloc(bed.n, sizeof *emissivity);
     for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = (1 + i % 7) / 7.;
     const fibrad_matrix_rule rules[] = {{0}, {.emissivity = emissivity}, {.drop = 5e-3}};
     fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34}), spread[4];
     for (int c = 0; c < 4; c++) spread[c] = (fibrad_rows){.memory = memory_growing()};
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     for (uint32_t i = bed.n; i-- > 0;) { /* none in the third */
         fibrad_row to = {.rows = &spread[i % 3 == 2 ? 3 : i % 3]};
         ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 34}, &to), FIBRAD_OK);
     }
     for (int k = 0; k < 3; k++) {
-        struct matrix whole = matrix_of(scene, &rows, 1, &rules[k]), other = matrix_of(scene, spread, 4, &rules[k]);
+        OWNED_MATRIX whole = matrix_of(scene, &rows, 1, &rules[k]), other = matrix_of(scene, spread, 4, &rules[k]);
         ck_assert(matrix_same_bits(&whole.factors, &other.factors));
-        matrix_free(&other);
         for (uint32_t tasks = 1; tasks <= 1024; tasks += tasks < 16 ? 1 : 1008) {
             for (uint32_t left = 0; left <= 3; left++) {
                 struct matrix m =
@@ -63,23 +62,21 @@ TEST(tasks_change_no_bit) {
                 matrix_free(&m);
             }
         }
-        matrix_free(&whole);
     }
     for (int c = 0; c < 4; c++) rows_free(&spread[c]);
-    rows_free(&rows), work_free(&work);
-    free(emissivity), free(scene);
-    bed_free(&bed);
+    rows_free(&rows);
+    free(emissivity);
 }
 
 TEST(calls_out_of_order) {
     const double r[] = {1, 2, 1};
-    fibrad_scene *scene = apart(3, r);
-    fibrad_rows rows = {.memory = memory_growing()};
+    OWNED fibrad_scene *scene = apart(3, r);
+    OWNED_ROWS rows = {.memory = memory_growing()};
     add_rows(&rows, 3, (uint64_t[]){0, 1, 1, 3}, (uint32_t[]){1, 0, 2}, (double[]){.5, .25, .125});
     for (int raw = 0; raw < 2; raw++) {
         const fibrad_matrix_rule rule = {.tasks = 2, .raw = raw};
         const size_t size = fibrad_matrix_size(scene, &rows, 1, &rule);
-        void *block = block_of(size);
+        OWNED void *block = block_of(size);
         fibrad_matrix *m = NULL;
         fibrad_factors factors = {.n = 77};
         double largest = -7;
@@ -104,7 +101,6 @@ TEST(calls_out_of_order) {
         ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_OK);
         ck_assert_int_eq(fibrad_matrix_read(m, NULL), FIBRAD_E_ARGUMENT);
         ck_assert_int_eq(fibrad_matrix_reciprocity(m, NULL), FIBRAD_E_ARGUMENT);
-        free(block);
     }
     fibrad_factors factors;
     double largest;
@@ -112,14 +108,12 @@ TEST(calls_out_of_order) {
     ck_assert_int_eq(fibrad_matrix_close(NULL), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_matrix_read(NULL, &factors), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_matrix_reciprocity(NULL, &largest), FIBRAD_E_ARGUMENT);
-    rows_free(&rows);
-    free(scene);
 }
 
 /* A row that is missing or there twice, in one collection or in two, is named, and there is no matrix. */
 TEST(rows_missing_or_double) {
     const double r[] = {1, 2, 1, 1, 3}, f = .5;
-    fibrad_scene *scene = apart(5, r);
+    OWNED fibrad_scene *scene = apart(5, r);
     const uint32_t col = 2;
     unsigned char block[8192];
     for (int raw = 0; raw < 2; raw++)
@@ -156,27 +150,25 @@ TEST(rows_missing_or_double) {
     uint32_t sphere = 99;
     ck_assert_int_eq(fibrad_matrix_init(&m, block, sizeof block, scene, NULL, 0, NULL, &sphere), FIBRAD_E_STATE);
     ck_assert_uint_eq(sphere, 0);
-    struct matrix empty = matrix_of(scene, NULL, 0, &(fibrad_matrix_rule){.raw = 1});
+    OWNED_MATRIX empty = matrix_of(scene, NULL, 0, &(fibrad_matrix_rule){.raw = 1});
     ck_assert_uint_eq(empty.factors.start[5], 0);
-    matrix_free(&empty);
-    free(scene);
 }
 
 /* At every offset the same bits, nothing written beside the block, and a byte less is too little. */
 TEST(matrix_blocks_of_any_alignment) {
-    struct bed bed = packing(60, .5, 1.5, .5, 3, true);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34});
+    OWNED_BED bed = packing(60, .5, 1.5, .5, 3, true);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_ROWS rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34});
     double emissivity[60];
     for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = (1 + i % 5) / 5.;
     const fibrad_matrix_rule rules[] = {
         {.tasks = 3}, {.raw = 1}, {.emissivity = emissivity, .tasks = 7}, {.drop = .02}};
     for (int k = 0; k < 4; k++) {
-        struct matrix expected = matrix_of(scene, &rows, 1, &rules[k]);
+        OWNED_MATRIX expected = matrix_of(scene, &rows, 1, &rules[k]);
         const size_t size = fibrad_matrix_size(scene, &rows, 1, &rules[k]);
         /* what the header says of it */
         ck_assert_uint_le(size, (k == 1 ? 12 : 36) * rows.entries + (k == 1 ? 60 : 120) * bed.n + 2048);
-        unsigned char *block = block_of(size + 128);
+        OWNED unsigned char *block = block_of(size + 128);
         for (size_t offset = 0; offset < 64; offset++) {
             fibrad_matrix *m = NULL;
             fibrad_factors factors;
@@ -193,19 +185,14 @@ TEST(matrix_blocks_of_any_alignment) {
             ck_assert(bytes_are(block, 0, offset, 0xa5));
             ck_assert(bytes_are(block, offset + size, size + 128, 0xa5));
         }
-        free(block);
-        matrix_free(&expected);
     }
-    rows_free(&rows);
-    free(scene);
-    bed_free(&bed);
 }
 
 TEST(bad_matrices_are_refused) {
     const double r[] = {1, 2}, f = .5;
-    fibrad_scene *scene = apart(2, r);
+    OWNED fibrad_scene *scene = apart(2, r);
     uint32_t col = 1;
-    fibrad_rows rows = {.memory = memory_growing()}, stranger = rows, seen = rows, walled = rows;
+    OWNED_ROWS rows = {.memory = memory_growing()}, stranger = rows, seen = rows, walled = rows;
     const double body = .1;
     fibrad_row row = {.col = &col, .f = (double *)(uintptr_t)&f, .length = 1};
     for (row.sphere = 0; row.sphere < 2; row.sphere++) {
@@ -244,8 +231,6 @@ TEST(bad_matrices_are_refused) {
     }
     ck_assert_ptr_null(m);
     ck_assert_int_eq(fibrad_matrix_init(&m, block, sizeof block, scene, &rows, 1, NULL, NULL), FIBRAD_OK);
-    rows_free(&rows), rows_free(&stranger), rows_free(&seen), rows_free(&walled);
-    free(scene);
 }
 
 static bool same_collection(const fibrad_rows *a, const fibrad_rows *b) {
@@ -253,7 +238,7 @@ static bool same_collection(const fibrad_rows *a, const fibrad_rows *b) {
 }
 
 TEST(bad_rows_are_refused) {
-    fibrad_rows rows = {.memory = memory_growing()};
+    OWNED_ROWS rows = {.memory = memory_growing()};
     uint32_t col[] = {1, 3}, descending[] = {3, 1}, equal[] = {1, 1};
     double f[] = {.1, .2}, body[] = {.5};
     const fibrad_row good = {.sphere = 7, .col = col, .f = f, .body = body, .length = 2, .escaped = .7, .error = .01};
@@ -298,21 +283,20 @@ TEST(bad_rows_are_refused) {
     bad = (fibrad_row){.sphere = 4, .col = col, .f = whole, .length = 2}; /* above 1 by rounding, and nothing */
     ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 0), FIBRAD_OK);
     ck_assert(rows.count == 4 && rows.entries == 6);
-    rows_free(&rows);
     fibrad_rows_clear(NULL);
 }
 
 /* Rows by the kernel and rows added come out alike, with one and the other in one collection, which is then emptied and
  * used again without more memory. */
 TEST(rows_added_are_rows_computed) {
-    struct bed bed = packing(50, .5, 1.5, .4, 3, false);
+    OWNED_BED bed = packing(50, .5, 1.5, .4, 3, false);
     const fibrad_body walls[] = {plane_at(2, 0, -100), plane_at(2, 1, 500)};
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 2});
-    fibrad_work work = work_growing();
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 2});
+    OWNED_WORK work = work_growing();
     const fibrad_beam_rule rule = {.directions = 34};
-    fibrad_rows computed = rows_by_beams(scene, &rule), mixed = {.memory = memory_growing()};
-    fibrad_row row = row_of(bed.n);
-    struct matrix expected = matrix_of(scene, &computed, 1, NULL);
+    OWNED_ROWS computed = rows_by_beams(scene, &rule), mixed = {.memory = memory_growing()};
+    OWNED_ROW row = row_of(bed.n);
+    OWNED_MATRIX expected = matrix_of(scene, &computed, 1, NULL);
     size_t size = 0;
     for (int round = 0; round < 3; round++) {
         for (uint32_t i = 0; i < bed.n; i++) {
@@ -329,9 +313,8 @@ TEST(rows_added_are_rows_computed) {
         }
         ck_assert(same_collection(&mixed, &computed));
         ck_assert_uint_eq(mixed.used, computed.used);
-        struct matrix m = matrix_of(scene, &mixed, 1, NULL);
+        OWNED_MATRIX m = matrix_of(scene, &mixed, 1, NULL);
         ck_assert(matrix_same_bits(&m.factors, &expected.factors));
-        matrix_free(&m);
         if (round > 0) ck_assert_uint_eq(mixed.memory.size, size);
         size = mixed.memory.size;
         const void *block = mixed.memory.block;
@@ -339,24 +322,20 @@ TEST(rows_added_are_rows_computed) {
         ck_assert(mixed.count == 0 && mixed.used == 0 && mixed.entries == 0);
         ck_assert(mixed.memory.block == block && mixed.memory.size == size);
     }
-    matrix_free(&expected);
-    row_free(&row), rows_free(&computed), rows_free(&mixed), work_free(&work);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* Fixed memory: what a row lacks is said, nothing is lost or written beside the block, and with as much memory the row
  * goes in. At every offset of the block. */
 TEST(collections_in_fixed_memory) {
-    struct bed bed = packing(40, .5, 1.5, .4, 3, false);
-    fibrad_scene *scene = scene_of(&bed, 0);
-    fibrad_work work = work_growing();
+    OWNED_BED bed = packing(40, .5, 1.5, .4, 3, false);
+    OWNED fibrad_scene *scene = scene_of(&bed, 0);
+    OWNED_WORK work = work_growing();
     const fibrad_beam_rule rule = {.directions = 13};
-    fibrad_rows plenty = rows_by_beams(scene, &rule);
-    struct matrix expected = matrix_of(scene, &plenty, 1, NULL);
+    OWNED_ROWS plenty = rows_by_beams(scene, &rule);
+    OWNED_MATRIX expected = matrix_of(scene, &plenty, 1, NULL);
     const size_t room = plenty.used + 256;
     unsigned char *block = block_of(room + 128);
-    fibrad_row row = row_of(bed.n);
+    OWNED_ROW row = row_of(bed.n);
     for (size_t offset = 0; offset < 64; offset++) {
         memset(block, 0xa5, room + 128);
         fibrad_rows rows = {.memory = {.block = block + offset, .size = offset % 8}};
@@ -385,9 +364,8 @@ TEST(collections_in_fixed_memory) {
         ck_assert(same_collection(&rows, &plenty));
         ck_assert(bytes_are(block, 0, offset, 0xa5));
         ck_assert(bytes_are(block, offset + rows.memory.size, room + 128, 0xa5));
-        struct matrix m = matrix_of(scene, &rows, 1, NULL);
+        OWNED_MATRIX m = matrix_of(scene, &rows, 1, NULL);
         ck_assert(matrix_same_bits(&m.factors, &expected.factors));
-        matrix_free(&m);
     }
     fibrad_rows nothing = {0}; /* no block at all */
     ck_assert_int_eq(fibrad_rows_add(&nothing, &row, 0), FIBRAD_E_CAPACITY);
@@ -395,22 +373,19 @@ TEST(collections_in_fixed_memory) {
     fibrad_row append = {.rows = &nothing};
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rule, &append), FIBRAD_E_CAPACITY);
     ck_assert_uint_gt(nothing.memory.needed, 0);
-    free(block), free(scene);
-    matrix_free(&expected);
-    row_free(&row), rows_free(&plenty), work_free(&work);
-    bed_free(&bed);
+    free(block);
 }
 
 TEST(collections_that_grow) {
-    struct bed bed = packing(60, .5, 1.5, .4, 3, false);
-    fibrad_scene *scene = scene_of(&bed, 0);
+    OWNED_BED bed = packing(60, .5, 1.5, .4, 3, false);
+    OWNED fibrad_scene *scene = scene_of(&bed, 0);
     const fibrad_beam_rule rule = {.directions = 13};
-    fibrad_rows plenty = rows_by_beams(scene, &rule);
-    struct matrix expected = matrix_of(scene, &plenty, 1, NULL);
+    OWNED_ROWS plenty = rows_by_beams(scene, &rule);
+    OWNED_MATRIX expected = matrix_of(scene, &plenty, 1, NULL);
     for (uint32_t refuse = 0; refuse < 5; refuse++) {
         struct source source = {.refuse_at = refuse};
         fibrad_rows rows = {.memory = {.resize = source_resize, .context = &source}};
-        fibrad_work work = work_growing();
+        OWNED_WORK work = work_growing();
         uint32_t refused = 0;
         for (uint32_t i = 0; i < bed.n; i++) {
             int status = fibrad_beam_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows});
@@ -423,16 +398,10 @@ TEST(collections_that_grow) {
         }
         ck_assert_uint_eq(refused, refuse > 0 && source.calls >= refuse);
         ck_assert(same_collection(&rows, &plenty));
-        struct matrix m = matrix_of(scene, &rows, 1, NULL);
+        OWNED_MATRIX m = matrix_of(scene, &rows, 1, NULL);
         ck_assert(matrix_same_bits(&m.factors, &expected.factors));
-        matrix_free(&m);
         free(source.whole);
-        work_free(&work);
     }
-    matrix_free(&expected);
-    rows_free(&plenty);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* Rows come back as they went in, also empty ones, with columns that may be written. */
@@ -447,7 +416,7 @@ TEST(rows_read_one_by_one) {
                            .beyond = .03125,
                            .error = .01,
                            .symmetric = 1};
-    fibrad_rows rows = {.memory = memory_growing()};
+    OWNED_ROWS rows = {.memory = memory_growing()};
     fibrad_row out;
     size_t at = 0;
     ck_assert_int_eq(fibrad_rows_read(&rows, &at, &out), 0);
@@ -472,5 +441,4 @@ TEST(rows_read_one_by_one) {
     ck_assert_int_eq(fibrad_rows_read(NULL, &at, &out), 0);
     ck_assert_int_eq(fibrad_rows_read(&rows, NULL, &out), 0);
     ck_assert_int_eq(fibrad_rows_read(&rows, &at, NULL), 0);
-    rows_free(&rows);
 }

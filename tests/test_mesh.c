@@ -43,7 +43,7 @@ TEST(a_sphere_and_a_triangle) {
     enum { CASES = 60 };
     srand(7);
     for (int c = 0; c < CASES; c++) {
-        struct mesh *mesh = mesh_new();
+        OWNED struct mesh *mesh = mesh_new();
         const double away = exp(uniform(log(1.05), log(30))), size = exp(uniform(log(.3), log(30)));
         double rotation[9], v[3][3];
         fibrad_rotation((uint64_t)c + 1, rotation);
@@ -53,9 +53,9 @@ TEST(a_sphere_and_a_triangle) {
             mesh_vertex(mesh, v[k][0], v[k][1], v[k][2]);
         }
         mesh_triangle(mesh, 0, 1, 2, 0, 0);
-        fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1);
-        fibrad_work work = work_growing();
-        fibrad_row row = row_of(1);
+        OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1);
+        OWNED_WORK work = work_growing();
+        OWNED_ROW row = row_of(1);
         const double exact = solid_angle(v) / (4 * PI);
         const fibrad_beam_rule rules[3] = {
             {.directions = 233}, {.directions = 233, .points = 128}, {.directions = 2000}};
@@ -76,43 +76,33 @@ TEST(a_sphere_and_a_triangle) {
         ck_assert(view[0].spheres * view[1].spheres == 0 && view[0].bodies + view[1].bodies == 0);
         ck_assert_double_eq_tol((view[0].spheres + view[1].spheres) / 2, whole, 1e-3);
         for (int side = 0; side < 2; side++) ck_assert_double_eq(view[side].spheres + view[side].escaped, 1);
-        row_free(&row);
-        work_free(&work);
-        free(scene);
-        free(mesh);
     }
     printf("    triangles: rms %.2g, worst %.2g, points %.2g, 2000 directions %.2g\n", sqrt(square / CASES), worst[0],
            worst[1], worst[2]);
     ck_assert_double_le(sqrt(square / CASES), 1e-3);
     ck_assert_double_le(worst[0], 4e-3);
     ck_assert_double_le(worst[2], 4e-4);
-    struct bed own = bed;
-    bed_free(&own);
+    OWNED_BED own = bed;
 }
 
 /* Spheres behind a large screen are too small for points of the window; what is seen of them goes to the screen. */
 TEST(small_spheres_behind) {
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
-    struct mesh *mesh = mesh_new();
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED struct mesh *mesh = mesh_new();
     uint32_t v[4];
     srand(5);
     for (int k = 0; k < 300; k++) add_sphere(&bed, uniform(-3, 3), uniform(-3, 3), uniform(1.2, 3), uniform(.01, .05));
     for (int k = 0; k < 4; k++) v[k] = mesh_vertex(mesh, k == 1 || k == 2 ? 500 : -500, k > 1 ? 500 : -500, 1.02);
     mesh_quad(mesh, v, 0, 0);
-    fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1);
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(bed.n);
+    OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(bed.n);
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 600}, &row), FIBRAD_OK);
     const double screen = .5 - 4 * sqrt(2) * 1.02 / 500 / (4 * PI); /* it ends a little above the horizon */
     printf("    behind: %.2g is seen, the screen errs by %.2g\n", row_sum(&row), row.body[0] - screen);
     ck_assert_double_eq_tol(row.body[0], screen, 1e-3);
     ck_assert_double_le(row_sum(&row), 1e-5);
     ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
-    row_free(&row);
-    work_free(&work);
-    free(scene);
-    free(mesh);
-    bed_free(&bed);
 }
 
 /* ---- containers -------------------------------------------------------------------------------------------------- */
@@ -134,15 +124,15 @@ static struct bed crowd(uint32_t n, uint64_t seed) {
 /* A box of twelve triangles is a box of planes; spheres are cut by it by 2 %. */
 TEST(a_box_of_triangles) {
     static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
-    struct bed bed = crowd(60, 3);
-    struct mesh *mesh = mesh_new();
+    OWNED_BED bed = crowd(60, 3);
+    OWNED struct mesh *mesh = mesh_new();
     fibrad_body plane[6];
     mesh_box(mesh, low, high, 0);
     for (int k = 0; k < 6; k++) plane[k] = plane_at(k / 2, k % 2, k % 2);
-    fibrad_scene *scene = scene_of_mesh(&bed, mesh, 6),
-                 *other = scene_with(&bed, &(fibrad_scene_config){.body = plane, .bodies = 6});
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(bed.n), of_planes = row_of(bed.n);
+    OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 6),
+                       *other = scene_with(&bed, &(fibrad_scene_config){.body = plane, .bodies = 6});
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(bed.n), of_planes = row_of(bed.n);
     double spheres = 0, walls = 0, estimate = 0;
     for (int k = 0; k < 6; k++) ck_assert_double_eq_tol(fibrad_scene_body_area(scene, (uint32_t)k), 1, 1e-15);
     /* work memory that is laid out for no triangles is laid out anew */
@@ -163,15 +153,11 @@ TEST(a_box_of_triangles) {
            sqrt(estimate));
     ck_assert_double_le(sqrt(spheres), 5e-4);
     ck_assert_double_le(sqrt(walls), 1.2e-3);
-    row_free(&row), row_free(&of_planes);
-    work_free(&work);
-    free(scene), free(other), free(mesh);
-    bed_free(&bed);
 }
 
 /* A tube with two lids of facets is nearly a cylinder with two planes; along x as along z. */
 TEST(a_drum) {
-    struct bed bed = bed_of(0, NULL);
+    OWNED_BED bed = bed_of(0, NULL);
     srand(11);
     while (bed.n < 40) {
         const double r = uniform(.06, .12), angle = uniform(0, 2 * PI), away = sqrt(uniform(0, 1)) * (.5 - r);
@@ -184,12 +170,12 @@ TEST(a_drum) {
     static const double turn[3][9] = {
         {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 1, 1, 0, 0, 0, 1, 0}, {.6, -.8, 0, .8, .6, 0, 0, 0, 1}};
     const fibrad_body round[3] = {cylinder_at(0, 0, .5), plane_at(2, 0, 0), plane_at(2, 1, 1)};
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = round, .bodies = 3});
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(bed.n), exact = row_of(bed.n);
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = round, .bodies = 3});
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(bed.n), exact = row_of(bed.n);
     for (int t = 0; t < 3; t++) {
-        struct mesh *mesh = mesh_new();
-        struct bed turned = bed_of(0, NULL);
+        OWNED struct mesh *mesh = mesh_new();
+        OWNED_BED turned = bed_of(0, NULL);
         enum { FACETS = 200 };
         double square = 0;
         mesh_tube(mesh, 0, 0, .5, 0, 1, FACETS, 4, false, 0, FIBRAD_NO_BODY);
@@ -206,7 +192,7 @@ TEST(a_drum) {
             turn_point(turn[t], c);
             add_sphere(&turned, c[0], c[1], c[2], bed.r[i]);
         }
-        fibrad_scene *drum = scene_of_mesh(&turned, mesh, 3);
+        OWNED fibrad_scene *drum = scene_of_mesh(&turned, mesh, 3);
         for (uint32_t i = 0; i < bed.n; i++) {
             const fibrad_beam_rule rule = {.directions = 600};
             ck_assert_int_eq(fibrad_beam_row(drum, &work, i, &rule, &row), FIBRAD_OK);
@@ -218,13 +204,7 @@ TEST(a_drum) {
         }
         printf("    drum %d: walls differ by %.2g\n", t, sqrt(square));
         ck_assert_double_le(sqrt(square), 1.5e-3);
-        free(drum), free(mesh);
-        bed_free(&turned);
     }
-    row_free(&row), row_free(&exact);
-    work_free(&work);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* A plane within a box that poles of a mesh stand through: what is beyond plays no part. */
@@ -232,9 +212,9 @@ TEST(tubes_through_walls) {
     const struct bed bed = bed_of(2, (const double[][4]){{.2, .5, .5, .1}, {.75, .5, .4, .12}});
     fibrad_scene *scene[2];
     fibrad_row row[2];
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     for (int k = 0; k < 2; k++) {
-        struct mesh *mesh = mesh_new();
+        OWNED struct mesh *mesh = mesh_new();
         fibrad_body body[7];
         mesh_tube(mesh, .47, .45, .1, k ? -5 : 0, k ? 6 : 1, 24, 1, true, 6, FIBRAD_NO_BODY);
         for (int b = 0; b < 6; b++) body[b] = plane_at(b / 2, b % 2, b % 2);
@@ -245,26 +225,22 @@ TEST(tubes_through_walls) {
                          FIBRAD_OK);
         ck_assert_double_eq_tol(total_of(&row[k], 7), 1, 1e-12);
         ck_assert(row[k].escaped == 0);
-        free(mesh);
     }
     for (int b = 0; b < 7; b++) ck_assert_double_eq_tol(row[0].body[b], row[1].body[b], 3e-4);
     ck_assert_double_gt(row[0].body[6], .05);
-    fibrad_row cast = row_of(2);
+    OWNED_ROW cast = row_of(2);
     ck_assert_int_eq(fibrad_cast_row(scene[1], &work, 0, &(fibrad_cast_rule){.rays = 400000}, &cast, NULL), FIBRAD_OK);
     for (int b = 0; b < 7; b++) ck_assert_double_eq_tol(row[1].body[b], cast.body[b], 1.5e-3);
     ck_assert_double_eq_tol(row_factor(&row[1], 1), row_factor(&cast, 1), 1.5e-3);
     for (int k = 0; k < 2; k++) row_free(&row[k]), free(scene[k]);
-    row_free(&cast);
-    work_free(&work);
-    struct bed own = bed;
-    bed_free(&own);
+    OWNED_BED own = bed;
 }
 
 /* An open mesh within planes or a cylinder: windows of which so little is open that no point lies there give it to what
  * lies behind, so that sums are 1, and walls get what they get by points. */
 TEST(open_meshes_within_walls) {
-    struct bed bed = crowd(150, 11);
-    struct mesh *mesh = mesh_new();
+    OWNED_BED bed = crowd(150, 11);
+    OWNED struct mesh *mesh = mesh_new();
     for (uint32_t k = 0; k < 3; k++) mesh_vertex(mesh, k == 1 ? .9 : .1, k == 2 ? .8 : .2, .3 + .2 * k);
     mesh_triangle(mesh, 0, 1, 2, 6, 6);
     for (int round = 0; round < 2; round++) {
@@ -276,8 +252,8 @@ TEST(open_meshes_within_walls) {
         mesh->front[0] = mesh->back[0] = from;
         fibrad_scene *scene =
             scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = bodies, .triangles = &mesh->triangles});
-        fibrad_work work = work_growing();
-        fibrad_row row = row_of(bed.n), exact = row_of(bed.n), grey = row_of(bed.n);
+        OWNED_WORK work = work_growing();
+        OWNED_ROW row = row_of(bed.n), exact = row_of(bed.n), grey = row_of(bed.n);
         double emissivity[150], of_body[7], square = 0;
         for (uint32_t k = 0; k < 150; k++) emissivity[k] = .8;
         for (uint32_t b = 0; b < 7; b++) of_body[b] = .5;
@@ -294,12 +270,8 @@ TEST(open_meshes_within_walls) {
         }
         printf("    within walls: by points and by areas differ by %.2g\n", sqrt(square));
         ck_assert_double_le(sqrt(square), 1.5e-3);
-        row_free(&row), row_free(&exact), row_free(&grey);
-        work_free(&work);
         free(scene);
     }
-    free(mesh);
-    bed_free(&bed);
 }
 
 /* ---- sides ------------------------------------------------------------------------------------------------------- */
@@ -307,9 +279,9 @@ TEST(open_meshes_within_walls) {
 /* A plate that nobody's back faces a sphere ends the row and is named; with a body of its own it takes its part. */
 TEST(sides_of_nobody) {
     const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
-    struct mesh *mesh = mesh_new();
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(1);
+    OWNED struct mesh *mesh = mesh_new();
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(1);
     uint64_t rays;
     const double emissivity = .5, of_body[2] = {.5, .5};
     fibrad_body_row body_row;
@@ -346,16 +318,13 @@ TEST(sides_of_nobody) {
     ck_assert_double_gt(row.body[0], .1);
     ck_assert_double_eq(row.body[1], 0);
     ck_assert_double_eq_tol(fibrad_scene_body_area(scene, 0), 27 + 36, 1e-12);
-    free(scene), free(mesh);
-    row_free(&row);
-    work_free(&work);
-    struct bed own = bed;
-    bed_free(&own);
+    free(scene);
+    OWNED_BED own = bed;
 }
 
 TEST(bad_triangles_are_named) {
     const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
-    struct mesh *mesh = mesh_new();
+    OWNED struct mesh *mesh = mesh_new();
     const double low[3] = {-2, -2, -2}, high[3] = {2, 2, 2};
     mesh_box(mesh, low, high, 0);
     const fibrad_scene_config config = {.body = mesh->body, .bodies = 6, .triangles = &mesh->triangles};
@@ -374,17 +343,15 @@ TEST(bad_triangles_are_named) {
     mesh->front[5] = FIBRAD_NO_BODY, mesh->front[4] = FIBRAD_NO_BODY; /* body 2 has no triangle */
     ck_assert_int_eq(scene_try(&scene, &bed, &config, &fault), FIBRAD_E_ARGUMENT);
     ck_assert_uint_eq(fault.triangle, UINT32_MAX);
-    free(mesh);
-    struct bed own = bed;
-    bed_free(&own);
+    OWNED_BED own = bed;
 }
 
 /* A triangle of some size at (x, 0, z) about a sphere of radius 1 at the origin, repeated with a period along some
  * axes: the status of its scene, and the triangle at fault. */
 static int status_of(double size, double x, double z, const double period[3], fibrad_scene **scene,
                      uint32_t *triangle) {
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
-    struct mesh *mesh = mesh_new();
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED struct mesh *mesh = mesh_new();
     fibrad_fault fault = {.triangle = 77};
     for (int k = 0; k < 3; k++)
         mesh_vertex(mesh, x + size * ((k == 1) - .3), size * ((k == 2) - .3), z + size * .1 * (k == 2));
@@ -395,15 +362,13 @@ static int status_of(double size, double x, double z, const double period[3], fi
     *scene = NULL;
     const int status = scene_try(scene, &bed, &config, &fault);
     *triangle = fault.triangle;
-    free(mesh);
-    bed_free(&bed);
     return status;
 }
 
 /* Rows of the sphere of a scene by all methods, which come to an end and add up to one. */
 static void expect_rows(const fibrad_scene *scene) {
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(1);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(1);
     for (uint32_t points = 0; points <= 128; points += 128) {
         ck_assert_int_eq(
             fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 60, .points = points}, &row), FIBRAD_OK);
@@ -411,8 +376,6 @@ static void expect_rows(const fibrad_scene *scene) {
     }
     ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 300}, &row, NULL), FIBRAD_OK);
     ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
-    row_free(&row);
-    work_free(&work);
 }
 
 /* Triangles have the bounds of spheres: too small, too far, or too many at one place they are refused, at the bounds
@@ -420,7 +383,7 @@ static void expect_rows(const fibrad_scene *scene) {
 TEST(triangles_have_bounds) {
     static const double small[] = {1e-14, 1e-30, 1e-37, 1e-50, 1e-200},
                         short_period[] = {1e-3, 1e-6, 1e-8, 1e-11, 1e-200};
-    fibrad_scene *scene = NULL;
+    OWNED fibrad_scene *scene = NULL;
     fibrad_triangle_hit hit;
     uint32_t triangle;
     for (int k = 0; k < 5; k++) {
@@ -461,7 +424,6 @@ TEST(triangles_have_bounds) {
                          FIBRAD_OK);
         expect_rows(scene);
     }
-    free(scene);
 }
 
 /* Fins as tall as can be, between which lines go up for ever. */
@@ -469,20 +431,18 @@ TEST(tall_fins_are_left) {
     static const double top[] = {1e2, 1e4, 1e6};
     const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     for (int k = 0; k < 3; k++) {
-        struct mesh *mesh = mesh_new();
+        OWNED struct mesh *mesh = mesh_new();
         mesh_vertex(mesh, 0, 1.5, 2), mesh_vertex(mesh, .5, 1.5, 2), mesh_vertex(mesh, 0, 1.5, top[k]);
         mesh_triangle(mesh, 0, 1, 2, 0, 0);
         mesh->triangles.period[0] = 3, mesh->triangles.period[1] = 3;
-        fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1);
+        OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1);
         fibrad_triangle_hit hit;
         ck_assert_int_eq(fibrad_triangle_ray(scene, (double[]){.2, 0, -9}, (double[]){1e-30, 1e-20, 1}, INFINITY, &hit),
                          FIBRAD_OK);
         ck_assert_uint_eq(hit.triangle, UINT32_MAX);
         expect_rows(scene);
-        free(scene), free(mesh);
     }
-    struct bed own = bed;
-    bed_free(&own);
+    OWNED_BED own = bed;
 }
 
 /* ---- rays, periods, bits ------------------------------------------------------------------------------------------
@@ -490,8 +450,8 @@ TEST(tall_fins_are_left) {
 
 /* The nearest triangle of many, by the tree and one by one. */
 TEST(rays_through_the_tree) {
-    struct mesh *mesh = mesh_new();
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, .01}});
+    OWNED struct mesh *mesh = mesh_new();
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, .01}});
     srand(5);
     for (uint32_t t = 0; t < 3000; t++) {
         const double size = t % 100 == 0 ? 2 : .1, c[3] = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
@@ -501,7 +461,7 @@ TEST(rays_through_the_tree) {
                                c[2] + uniform(-size, size));
         mesh_triangle(mesh, v[0], v[1], v[2], 0, 0);
     }
-    fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1);
+    OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1);
     uint32_t met = 0, backs = 0;
     for (int ray = 0; ray < 2000; ray++) {
         double w[3], o[3], nearest = INFINITY;
@@ -533,14 +493,12 @@ TEST(rays_through_the_tree) {
         ck_assert_uint_eq(hit.triangle, UINT32_MAX);
     }
     ck_assert(met > 900 && backs > met / 3 && backs < 2 * met / 3);
-    free(scene), free(mesh);
-    bed_free(&bed);
 }
 
 /* A periodic bed with a tube is one of many copies of both. */
 TEST(periodic_meshes) {
-    struct bed bed = bed_of(2, (const double[][4]){{.2, .2, .3, .19}, {.25, .75, .7, .2}}), many = bed_of(0, NULL);
-    struct mesh *mesh = mesh_new(), *copies = mesh_new();
+    OWNED_BED bed = bed_of(2, (const double[][4]){{.2, .2, .3, .19}, {.25, .75, .7, .2}}), many = bed_of(0, NULL);
+    OWNED struct mesh *mesh = mesh_new(), *copies = mesh_new();
     enum { FAR = 6 };
     mesh_tube(mesh, .65 + 3, .5 - 2, .2, 5, 6, 12, 1, true, 0, FIBRAD_NO_BODY); /* wherever it is */
     for (int x = -FAR; x <= FAR; x++)
@@ -551,9 +509,9 @@ TEST(periodic_meshes) {
         }
     for (int axis = 0; axis < 3; axis++) bed.period[axis] = 1;
     const uint32_t middle = (FAR * (2 * FAR + 1) * (2 * FAR + 1) + FAR * (2 * FAR + 1) + FAR) * 2;
-    fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1), *other = scene_of_mesh(&many, copies, 1);
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(2), far = row_of(many.n), cast = row_of(2);
+    OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1), *other = scene_of_mesh(&many, copies, 1);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(2), far = row_of(many.n), cast = row_of(2);
     const fibrad_beam_rule rule = {.directions = 3000};
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rule, &row), FIBRAD_OK);
     ck_assert_int_eq(fibrad_beam_row(other, &work, middle, &rule, &far), FIBRAD_OK);
@@ -567,29 +525,22 @@ TEST(periodic_meshes) {
 
     ck_assert_double_eq_tol(cast.body[0], row.body[0], 3e-3);
     ck_assert_double_eq_tol(row_factor(&cast, 1), row_factor(&row, 1), 3e-3);
-    row_free(&row), row_free(&far), row_free(&cast);
-    work_free(&work);
-    free(scene), free(other), free(mesh), free(copies);
-    bed_free(&bed), bed_free(&many);
 }
 
 /* What FIBRAD_WORK_TRIANGLES says is enough. */
 TEST(work_among_triangles) {
     static unsigned char block[FIBRAD_WORK_BYTES(64, 64) + FIBRAD_WORK_TRIANGLES + 64];
     static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
-    struct bed bed = crowd(20, 4);
-    struct mesh *mesh = mesh_new();
+    OWNED_BED bed = crowd(20, 4);
+    OWNED struct mesh *mesh = mesh_new();
     mesh_box(mesh, low, high, 0);
-    fibrad_scene *scene = scene_of_mesh(&bed, mesh, 6);
-    fibrad_row row = row_of(bed.n);
+    OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 6);
+    OWNED_ROW row = row_of(bed.n);
     for (size_t offset = 0; offset < 64; offset += 9) {
         fibrad_work work = work_fixed(block + offset, sizeof block - 64);
         for (uint32_t points = 0; points <= 256; points += 256)
             ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.points = points}, &row), FIBRAD_OK);
     }
-    row_free(&row);
-    free(scene), free(mesh);
-    bed_free(&bed);
 }
 
 /* A sphere that sees all others, as many as work memory begins with, and three meshes besides: there are more entries
@@ -597,8 +548,8 @@ TEST(work_among_triangles) {
 TEST(more_entries_than_spheres) {
     enum { N = 1024 };
     static unsigned char block[FIBRAD_WORK_BYTES(512, N) + FIBRAD_WORK_TRIANGLES];
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
-    struct mesh *mesh = mesh_new();
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED struct mesh *mesh = mesh_new();
     double of_body[3] = {.5, .5, .5}, emissivity[N];
     for (uint32_t k = 0; k + 1 < N; k++) {
         double w[3];
@@ -608,9 +559,9 @@ TEST(more_entries_than_spheres) {
     for (uint32_t k = 0; k < N; k++) emissivity[k] = .8;
     mesh_box(mesh, (const double[]){-6, -6, -6}, (const double[]){6, 6, 6}, 0);
     for (uint32_t t = 0; t < mesh->triangles.n; t++) mesh->front[t] %= 3;
-    fibrad_scene *scene = scene_of_mesh(&bed, mesh, 3);
+    OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 3);
     fibrad_work work[2] = {work_growing(), work_fixed(block, sizeof block)};
-    fibrad_row row = row_of(N);
+    OWNED_ROW row = row_of(N);
     for (int k = 0; k < 2; k++) {
         for (uint32_t points = 0; points <= 256; points += 256) {
             const fibrad_beam_rule rule = {.directions = 1000, .points = points};
@@ -624,10 +575,7 @@ TEST(more_entries_than_spheres) {
     const fibrad_exchange_rule rule = {
         .emissivity = emissivity, .body_emissivity = of_body, .directions = 1000, .paths = 100};
     ck_assert_int_eq(fibrad_exchange_row(scene, &work[0], 0, &rule, &row, NULL), FIBRAD_OK);
-    row_free(&row);
     work_free(&work[0]);
-    free(scene), free(mesh);
-    bed_free(&bed);
 }
 
 /* Soups of triangles and spheres, slivers, doubled and coplanar ones, corners on spheres: sums are 1, beams and rays
@@ -637,8 +585,8 @@ TEST(soups) {
     int isa[ISAS_MOST];
     const int isas = isas_there(isa);
     for (int soup = 0; soup < 12; soup++) {
-        struct mesh *mesh = mesh_new();
-        struct bed bed = crowd(20, 100 + (uint64_t)soup);
+        OWNED struct mesh *mesh = mesh_new();
+        OWNED_BED bed = crowd(20, 100 + (uint64_t)soup);
         for (uint32_t t = 0; t < 80; t++) {
             uint32_t v[3];
             for (int k = 0; k < 3; k++) v[k] = mesh_vertex(mesh, uniform(0, 1), uniform(0, 1), uniform(0, 1));
@@ -654,8 +602,8 @@ TEST(soups) {
             mesh_triangle(mesh, v[0], v[1], v[2], t % 8 == 4 ? 0 : t % 3, t % 8 == 4 ? 0 : (t + 1) % 3);
             if (t % 8 == 6) mesh_triangle(mesh, v[0], v[1], v[2], t % 3, (t + 1) % 3); /* twice */
         }
-        fibrad_row row = row_of(bed.n), again = row_of(bed.n), cast = row_of(bed.n);
-        fibrad_work work = work_growing();
+        OWNED_ROW row = row_of(bed.n), again = row_of(bed.n), cast = row_of(bed.n);
+        OWNED_WORK work = work_growing();
         for (int set = 0; set < isas; set++) {
             fibrad_scene *scene =
                 scene_with(&bed, &(fibrad_scene_config){
@@ -681,18 +629,14 @@ TEST(soups) {
             }
             free(scene);
         }
-        row_free(&row), row_free(&again), row_free(&cast);
-        work_free(&work);
-        free(mesh);
-        bed_free(&bed);
     }
 }
 
 /* Exchange in a closed grey box of triangles is that of planes, and rows of meshes are. */
 TEST(grey_meshes) {
     static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1}, wall[6] = {.8, .3, .5, 1, .2, .6};
-    struct bed bed = crowd(30, 8);
-    struct mesh *mesh = mesh_new();
+    OWNED_BED bed = crowd(30, 8);
+    OWNED struct mesh *mesh = mesh_new();
     fibrad_body plane[6];
     double emissivity[30];
     mesh_box(mesh, low, high, 0);
@@ -700,7 +644,7 @@ TEST(grey_meshes) {
     for (int i = 0; i < 30; i++) emissivity[i] = .2 + .02 * i;
     fibrad_scene *scene[2] = {scene_of_mesh(&bed, mesh, 6),
                               scene_with(&bed, &(fibrad_scene_config){.body = plane, .bodies = 6})};
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     fibrad_row row[2] = {row_of(30), row_of(30)};
     fibrad_exchange_rule rule = {.emissivity = emissivity, .body_emissivity = wall, .directions = 400, .paths = 40000};
     for (uint32_t i = 0; i < 3; i++) {
@@ -722,7 +666,4 @@ TEST(grey_meshes) {
     const double error = 5 * (mean[0].error + mean[1].error);
     for (int b = 0; b < 6; b++) ck_assert_double_eq_tol(mean[0].body[b], mean[1].body[b], error);
     for (int k = 0; k < 2; k++) free(scene[k]), row_free(&row[k]);
-    work_free(&work);
-    free(mesh);
-    bed_free(&bed);
 }

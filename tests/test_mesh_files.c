@@ -308,7 +308,7 @@ static void vtp_array(const char *path, const char *name, double *values, size_t
     const char *at = strstr(text, key);
     ck_assert_msg(at != NULL, "%s has no array %s", path, name);
     at = strchr(at, '>') + 1;
-    unsigned char *bytes = calloc(8 + n * sizeof *values + 3, 1);
+    OWNED unsigned char *bytes = calloc(8 + n * sizeof *values + 3, 1);
     uint32_t bits = 0;
     for (size_t k = 0, to = 0; to < 8 + n * sizeof *values; ++at) {
         const char *digit = *at ? strchr(digits, *at) : NULL;
@@ -318,7 +318,6 @@ static void vtp_array(const char *path, const char *name, double *values, size_t
         for (int shift = 16; shift >= 0; shift -= 8) bytes[to++] = bits >> shift & 255;
     }
     memcpy(values, bytes + 8, n * sizeof *values);
-    free(bytes);
     free(text);
 }
 
@@ -371,7 +370,7 @@ TEST(rows_in_a_closed_mesh) {
 TEST(slice_through_a_mesh) {
     const struct soup soup = cube();
     struct wall_options options = {0};
-    struct bed bed;
+    OWNED_BED bed;
     struct plot_slice slice;
     const double value = 1;
     char line[200];
@@ -398,7 +397,6 @@ TEST(slice_through_a_mesh) {
     ck_assert_int_eq(pieces, 8);
     ck_assert_double_eq_tol(length, 32, 1e-5);
     fclose(script);
-    bed_free(&bed);
     walls_free(&options);
 }
 
@@ -413,11 +411,10 @@ TEST(backs_of_meshes) {
     ck_assert_ptr_nonnull(strstr(said, "half.stl:both makes both sides the wall"));
     ck_assert_ptr_nonnull(strstr(said, "bed.csv:3: warning: all of sphere 1 lies beyond wall half"));
     ck_assert_int_eq(RUN("bed", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "1"), 3);
-    char *first = strdup(said);
+    OWNED char *first = strdup(said);
     ck_assert_ptr_nonnull(strstr(said, "the back of wall half_b is seen, at triangle "));
     ck_assert_int_eq(RUN("bed", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "2"), 3);
     ck_assert_str_eq(said, first);
-    free(first);
     SUCCEED("bed", bed, "--wall", wall_of("mesh:", text, ":both"));
     ck_assert_str_eq(said, "");
     soup.n -= 2; /* no longer closed */
@@ -451,9 +448,8 @@ TEST(heat_of_triangles) {
     ck_assert_double_eq_tol(1e-4 * gain_of(out, "flux_W_m2", 0, 12) / value_of("wall_box_W"), 1, 1e-5);
     vtp_array(out, "temperature_K", kelvins, 12);
     for (int t = 0; t < 12; ++t) ck_assert_double_eq(kelvins[t], 400);
-    char *text = read_file(out);
+    OWNED char *text = read_file(out);
     ck_assert_ptr_null(strstr(text, "front_W"));
-    free(text);
 
     SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ":both"), "--wall-temperature", "400",
             "--ambient", "300", STATE, out);

@@ -28,7 +28,7 @@ static struct part part_near(const struct part *p, uint32_t i, double distance, 
 LOOP_TEST(rows_depend_on_what_is_near, KINDS) {
     struct made m;
     make_kind(&m, &kinds[_i]);
-    fibrad_scene *whole = part_scene(&m.part);
+    OWNED fibrad_scene *whole = part_scene(&m.part);
     const double cutoffs[] = {2.5, 4.25};
     for (uint32_t i = 0; i < m.part.n; i += m.part.n / (m.mesh ? 2 : 5))
         for (int c = 0; c < 2; c++) {
@@ -36,7 +36,7 @@ LOOP_TEST(rows_depend_on_what_is_near, KINDS) {
             uint32_t own = UINT32_MAX, again = UINT32_MAX;
             struct part near = part_near(&m.part, i, reach, &own), far = part_near(&m.part, i, 1.4 * reach, &again);
             ck_assert_uint_lt(near.n, m.part.n);
-            fibrad_scene *little = part_scene(&near), *more = part_scene(&far);
+            OWNED fibrad_scene *little = part_scene(&near), *more = part_scene(&far);
             for (int method = 0; method < METHODS; method++) {
                 char what[64];
                 snprintf(what, sizeof what, "%s, method %d, sphere %u", kinds[_i].name, method, i);
@@ -47,10 +47,8 @@ LOOP_TEST(rows_depend_on_what_is_near, KINDS) {
                 expect_same_named(&expected, &larger, m.part.ids, what);
                 named_free(&expected), named_free(&found), named_free(&larger);
             }
-            free(little), free(more);
             part_free(&near), part_free(&far);
         }
-    free(whole);
     free_made(&m);
 }
 
@@ -58,15 +56,15 @@ LOOP_TEST(rows_depend_on_what_is_near, KINDS) {
 TEST(displacements_depend_on_what_is_near) {
     struct made m;
     make_kind(&m, &kinds[3]);
-    fibrad_scene *whole = part_scene(&m.part);
+    OWNED fibrad_scene *whole = part_scene(&m.part);
     double *e = emissivities_of(&m.part), cutoff = 4;
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     for (uint32_t i = 0; i < m.part.n; i++) {
         if (m.part.z[i] > 1.2) continue; /* paths go to and fro between spheres and the wall */
         uint32_t own = UINT32_MAX;
         struct part near = part_near(&m.part, i, cutoff + radius_most(&m.part) + 1e-6, &own);
-        fibrad_scene *little = part_scene(&near);
-        double *of_near = emissivities_of(&near);
+        OWNED fibrad_scene *little = part_scene(&near);
+        OWNED double *of_near = emissivities_of(&near);
         fibrad_exchange_rule rule = {
             .emissivity = e, .body_emissivity = wall_emissivity, .paths = 200, .seed = 3, .cutoff = cutoff};
         fibrad_displacement expected, found;
@@ -75,11 +73,9 @@ TEST(displacements_depend_on_what_is_near) {
         ck_assert_int_eq(fibrad_exchange_displacement(little, &work, own, &rule, &found), FIBRAD_OK);
         ck_assert_int_eq(memcmp(&expected, &found, sizeof found), 0);
         for (int axis = 0; axis < 3; axis++) ck_assert_double_lt(expected.square[axis], pow(cutoff + 1, 2));
-        free(little), free(of_near);
         part_free(&near);
     }
-    work_free(&work);
-    free(whole), free(e);
+    free(e);
     free_made(&m);
 }
 
@@ -97,7 +93,7 @@ TEST(images_are_spheres_of_the_same_id) {
         for (uint32_t i = 0; i < p->n; i++)
             of_axis[axis][i] = fmod(ldexp(round(ldexp(of_axis[axis][i], 20)), -20), p->config.period[axis]);
     }
-    fibrad_scene *periodic = part_scene(p);
+    OWNED fibrad_scene *periodic = part_scene(p);
     const double cutoff = .7 * p->config.period[0], reach = cutoff + radius_most(p) + 1e-6; /* some spheres twice */
     for (uint32_t i = 0; i < p->n; i += 150) {
         struct part images = part_room(p, 27 * p->n);
@@ -112,7 +108,7 @@ TEST(images_are_spheres_of_the_same_id) {
                 if (j == i && k == 13) own = images.n;
                 part_add(&images, x, y, z, p->r[j], p->id[j]);
             }
-        fibrad_scene *open = part_scene(&images);
+        OWNED fibrad_scene *open = part_scene(&images);
         for (int method = 1; method < METHODS; method++) {
             struct named_row expected = row_by(p, periodic, i, method, cutoff);
             struct named_row found = row_by(&images, open, own, method, cutoff);
@@ -126,39 +122,34 @@ TEST(images_are_spheres_of_the_same_id) {
             if (method != 7) ck_assert_uint_eq(expected.rays, found.rays); /* errors of images are their own */
             named_free(&expected), named_free(&found);
         }
-        free(open);
         part_free(&images);
     }
-    free(periodic);
     free_made(&m);
 }
 
 /* Triangles beyond the cutoff are met where no sphere is on the way. */
 TEST(far_triangles_are_met) {
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
-    struct mesh *mesh = mesh_new();
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED struct mesh *mesh = mesh_new();
     mesh_box(mesh, (const double[]){-30, -20, -10}, (const double[]){40, 50, 60}, 0);
     const fibrad_scene_config config = {.body = mesh->body, .bodies = 6, .triangles = &mesh->triangles};
     struct part alone = part_of(&bed, config);
-    fibrad_scene *scene = part_scene(&alone);
+    OWNED fibrad_scene *scene = part_scene(&alone);
     for (int method = 0; method < METHODS; method++) {
         struct named_row all = row_by(&alone, scene, 0, method, 0), cut = row_by(&alone, scene, 0, method, 3);
         expect_same_named(&all, &cut, 1, "box");
         named_free(&all), named_free(&cut);
     }
-    free(scene);
     part_free(&alone);
-    free(mesh);
-    bed_free(&bed);
 }
 
 /* Triangles that repeat where spheres do not are as good as their copies. */
 TEST(triangles_repeat_alone) {
-    struct bed bed = bed_of(1, (const double[][4]){{.3, .4, 0, .45}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{.3, .4, 0, .45}});
     double seen[2][METHODS];
     enum { FAR = 40 };
     for (int copies = 0; copies < 2; copies++) {
-        struct mesh *mesh = mesh_new();
+        OWNED struct mesh *mesh = mesh_new();
         for (int x = copies ? -FAR : 0; x <= (copies ? FAR : 0); x++)
             for (int y = copies ? -FAR : 0; y <= (copies ? FAR : 0); y++) {
                 uint32_t v[4];
@@ -168,59 +159,54 @@ TEST(triangles_repeat_alone) {
         for (int axis = 0; axis < 2 && !copies; axis++) mesh->triangles.period[axis] = 1;
         struct part p =
             part_of(&bed, (fibrad_scene_config){.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles});
-        fibrad_scene *scene = part_scene(&p);
+        OWNED fibrad_scene *scene = part_scene(&p);
         for (int method = 0; method < METHODS; method++) {
             struct named_row row = row_by(&p, scene, 0, method, 0);
             seen[copies][method] = row.row.body[0];
             named_free(&row);
         }
-        free(scene), free(mesh);
         part_free(&p);
     }
     for (int method = 0; method < METHODS; method++) {
         ck_assert_double_gt(seen[0][method], method < 4 ? .1 : .03);
         ck_assert_double_eq_tol(seen[0][method], seen[1][method], .01); /* those farther than FAR */
     }
-    bed_free(&bed);
 }
 
 /* Lattices have spheres at equal depth and paths that meet two at once. Ids decide, not the order. */
 LOOP_TEST(ids_decide_among_equals, 3) {
     static const char lattices[] = {'p', 'i', 'f'};
-    struct bed bed = lattice(lattices[_i], 4.1);
+    OWNED_BED bed = lattice(lattices[_i], 4.1);
     for (uint32_t i = 0; i < bed.n; i++) bed.x[i] *= .9375, bed.y[i] *= .9375, bed.z[i] *= .9375;
     struct part p = part_of(&bed, (fibrad_scene_config){0});
-    fibrad_scene *scene = part_scene(&p);
+    OWNED fibrad_scene *scene = part_scene(&p);
     for (uint32_t i = 0; i < p.n; i += 3) {
         uint32_t own = UINT32_MAX;
         struct part shuffled = part_near(&p, i, 100, &own);
         ck_assert(shuffled.n == p.n && memcmp(shuffled.id, p.id, p.n * sizeof *p.id) != 0);
-        fibrad_scene *other = part_scene(&shuffled);
+        OWNED fibrad_scene *other = part_scene(&shuffled);
         for (int method = 0; method < METHODS; method++) {
             struct named_row expected = row_by(&p, scene, i, method, 0);
             struct named_row found = row_by(&shuffled, other, own, method, 0);
             expect_same_named(&expected, &found, p.ids, "lattice");
             named_free(&expected), named_free(&found);
         }
-        free(other);
         part_free(&shuffled);
     }
-    free(scene);
     part_free(&p);
-    bed_free(&bed);
 }
 
 /* Turned rows err in all ways: their mean over many turns comes to the fine row, each is off by what it says. */
 LOOP_TEST(turned_rows_average_to_the_fine_one, 3) {
     enum { TURNS = 300 };
-    struct bed bed = packing(120, .5, 1, .45, 4, false);
+    OWNED_BED bed = packing(120, .5, 1, .45, 4, false);
     const fibrad_body floor_below = plane_at(2, 0, -1);
     const fibrad_scene_config config = {.body = &floor_below, .bodies = _i < 2 ? 1 : 0};
-    fibrad_scene *scene = scene_with(&bed, &config);
-    fibrad_work work = work_growing();
+    OWNED fibrad_scene *scene = scene_with(&bed, &config);
+    OWNED_WORK work = work_growing();
     const uint32_t points = _i % 2 ? 256 : 0;
     for (uint32_t i = 0; i < bed.n; i += 50) {
-        fibrad_row fine = row_of(bed.n), row = row_of(bed.n), mean = row_of(bed.n);
+        OWNED_ROW fine = row_of(bed.n), row = row_of(bed.n), mean = row_of(bed.n);
         double body = 0, escaped = 0, square = 0, estimate = 0;
         int less = 0;
         ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 20000}, &fine), FIBRAD_OK);
@@ -242,20 +228,16 @@ LOOP_TEST(turned_rows_average_to_the_fine_one, 3) {
         ck_assert_double_eq_tol(escaped, fine.escaped, 5e-3);
         ck_assert_msg(ratio > 1 && ratio < 4, "estimate over error: %g", ratio);
         ck_assert_int_lt(less, TURNS / 10);
-        row_free(&fine), row_free(&row), row_free(&mean);
     }
-    work_free(&work);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* Turned directions need not pair off; the floor still has half of what a free sphere sends out, cut or not. */
 LOOP_TEST(a_floor_below_turned_directions, 2) {
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 3, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 3, 1}});
     const fibrad_body floor_below = plane_at(2, 0, 0);
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_below, .bodies = 1});
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(1);
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_below, .bodies = 1});
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(1);
     double mean = 0;
     for (uint64_t turn = 1; turn <= 100; turn++) {
         const fibrad_beam_rule rule = {.directions = 233, .turn = turn, .cutoff = _i > 0 ? 5 : 0};
@@ -264,8 +246,4 @@ LOOP_TEST(a_floor_below_turned_directions, 2) {
         mean += row.body[0] / 100;
     }
     ck_assert_double_eq_tol(mean, .5, 1e-4);
-    row_free(&row);
-    work_free(&work);
-    free(scene);
-    bed_free(&bed);
 }

@@ -67,7 +67,7 @@ static int draw_bed(const struct output *output, const void *what) { return plot
 
 /* A picture of a bed of this size, in walls or not. */
 static char *picture_of_bed(double size, bool walled) {
-    struct bed bed = packing(60, .4 * size, .6 * size, .4, 3, false);
+    OWNED_BED bed = packing(60, .4 * size, .6 * size, .4, 3, false);
     struct walls walls = {.count = walled ? 1 : 0, .body = {plane_at(2, 0, -2 * size)}};
     const fibrad_scene_config config = {.body = walls.body, .bodies = walls.count};
     const fibrad_spheres spheres = spheres_of(&bed);
@@ -76,7 +76,6 @@ static char *picture_of_bed(double size, bool walled) {
     const struct contents what = {.bed = &bed, .factors = factors, .walls = &walls};
     char *svg = drawn(draw_bed, &what);
     fibrad_bed_free(factors);
-    bed_free(&bed);
     return svg;
 }
 
@@ -86,7 +85,7 @@ LOOP_TEST(small_and_large_beds, 4) {
         double size;
         const char *power;
     } cases[] = {{1, NULL}, {1e-3, "-3"}, {1e-5, "-6"}, {1e5, "3"}};
-    char *svg = picture_of_bed(cases[_i].size, false);
+    OWNED char *svg = picture_of_bed(cases[_i].size, false);
     assert_texts_inside(svg);
     assert_tells(svg, "bed.csv");
     assert_tells(svg, "Escaped fraction");
@@ -94,16 +93,14 @@ LOOP_TEST(small_and_large_beds, 4) {
     char word[40];
     snprintf(word, sizeof word, ">%s</tspan>", cases[_i].power ? cases[_i].power : "none");
     ck_assert_int_eq(strstr(svg, word) != NULL, cases[_i].power != NULL);
-    free(svg);
 }
 
 TEST(a_bed_between_walls) {
-    char *svg = picture_of_bed(1, true);
+    OWNED char *svg = picture_of_bed(1, true);
     assert_texts_inside(svg);
     assert_tells(svg, "Fraction to walls and out of the bed");
     assert_tells(svg, "goes to walls");
     assert_tells(svg, "stroke='rgb(140, 140, 140)'"); /* the wall */
-    free(svg);
 }
 
 /* ---- heat -------------------------------------------------------------------------------------------------------- */
@@ -112,7 +109,7 @@ static int draw_heat(const struct output *output, const void *what) { return plo
 
 /* Three spheres in millimetres: what gains, what loses, and who else. */
 TEST(where_heat_goes) {
-    struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1e-3}, {.003, 0, 0, 1e-3}, {0, 0, .004, 1e-3}});
+    OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1e-3}, {.003, 0, 0, 1e-3}, {0, 0, .004, 1e-3}});
     const double temperature[] = {300, 1200.5, 777}, power[] = {1.5, -4.25, .25};
     const double wall_temperature[] = {412, 900}, wall_power[] = {3.125, -.5};
     const struct walls walls = {.count = 2, .body = {plane_at(2, 0, -.001), cylinder_at(0, 0, .0044)}};
@@ -157,13 +154,12 @@ TEST(where_heat_goes) {
     ck_assert_ptr_null(strstr(svg, "surroundings"));
     ck_assert_uint_eq(count_of(svg, "that gain"), 1);
     free(svg);
-    bed_free(&bed);
 }
 
 /* Names are shown as they are, and those of many walls stand aslant, apart from each other; temperatures that were
  * found are shown by height. */
 TEST(many_walls) {
-    struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1}});
+    OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1}});
     static struct meshes meshes;
     static struct walls walls = {.count = 9, .meshes = &meshes};
     double temperature[9], power[9];
@@ -187,13 +183,12 @@ TEST(many_walls) {
     assert_tells(svg, ">wall_of_tube_1<");
     assert_tells(svg, "Net power by height");
     free(svg);
-    bed_free(&bed);
 }
 
 /* ---- exchange and conductivity ----------------------------------------------------------------------------------- */
 
 TEST(exchange_factors_shown) {
-    struct bed bed = packing(60, .4, .6, .4, 3, false);
+    OWNED_BED bed = packing(60, .4, .6, .4, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     double emissivity[60];
     for (int i = 0; i < 60; ++i) emissivity[i] = .5;
@@ -201,15 +196,13 @@ TEST(exchange_factors_shown) {
     fibrad_bed_factors *factors;
     ck_assert_int_eq(fibrad_exchange_factors(NULL, &spheres, &rule, NULL, NULL, &factors), FIBRAD_OK);
     const struct contents what = {.bed = &bed, .factors = factors, .walls = &(struct walls){0}, .grey = &rule};
-    char *svg = drawn(draw_bed, &what);
+    OWNED char *svg = drawn(draw_bed, &what);
     assert_texts_inside(svg);
     assert_tells(svg, "exchange factors; row sums");
     assert_tells(svg, "Exchange factor against distance");
     ck_assert_ptr_null(strstr(svg, "View factor"));
     ck_assert_ptr_null(strstr(svg, "nothing between"));
-    free(svg);
     fibrad_bed_free(factors);
-    bed_free(&bed);
 }
 
 static int draw_conduction(const struct output *output, const void *what) {

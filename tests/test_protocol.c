@@ -3,7 +3,7 @@
 
 TEST(sources_missing) {
     const struct contents c = contents_of(11);
-    struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
+    ENDED struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
     const fibrad_heat_sources zeroed = {0}, good = p->sources;
     trace_all(p);
     ck_assert_int_eq(fibrad_heat_begin(p->heat, &zeroed), FIBRAD_E_ARGUMENT);
@@ -41,14 +41,12 @@ TEST(sources_missing) {
     memset(p->power, 0, sizeof p->power);
     ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
     assert_same_powers(p, book);
-    end_problem(p);
-    end_problem(book);
 }
 
 /* Zero is a temperature and an emissivity. */
 TEST(zero_is_a_value) {
     const struct contents c = contents_of(12);
-    struct problem *p = begin_problem(&c, 0);
+    ENDED struct problem *p = begin_problem(&c, 0);
     trace_all(p);
     for (uint32_t i = 0; i < N; i++) p->temperature[i] = 0, p->emissivity[i] = i % 2;
     for (uint32_t b = 0; b < BODIES; b++) p->body_temperature[b] = 0, p->body_emissivity[b] = 0;
@@ -72,7 +70,6 @@ TEST(zero_is_a_value) {
     }
     ck_assert_double_lt(p->power[1], 0);
     ck_assert_double_le(fabs(sum), 1e-12 * largest);
-    end_problem(p);
 }
 
 enum { CHANGES = 9 };
@@ -90,9 +87,9 @@ static void assert_other_scene(struct problem *p) {
 /* The scene is rebuilt with other contents at each stage, and then as it was. */
 LOOP_TEST(other_contents_in_place, CHANGES) {
     const struct contents c = contents_of(13);
-    struct problem *book = by_the_book(&c);
+    ENDED struct problem *book = by_the_book(&c);
     const struct contents other = changed(&c, _i);
-    struct problem *p = begin_problem(&c, 0);
+    ENDED struct problem *p = begin_problem(&c, 0);
     for (int stage = MADE; stage < STAGES; stage++) {
         advance_to(p, stage - 1, stage);
         build(p, &other);
@@ -101,17 +98,15 @@ LOOP_TEST(other_contents_in_place, CHANGES) {
     }
     ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
     assert_same_powers(p, book);
-    end_problem(p);
-    end_problem(book);
 }
 
 /* The same, but the second scene is not even made. */
 TEST(no_contents_in_place) {
     const struct contents c = contents_of(14);
-    struct problem *book = by_the_book(&c);
+    ENDED struct problem *book = by_the_book(&c);
     struct contents bad = c;
     bad.x[9] = bad.x[8], bad.y[9] = bad.y[8], bad.z[9] = bad.z[8];
-    struct problem *p = begin_problem(&c, 0);
+    ENDED struct problem *p = begin_problem(&c, 0);
     for (int stage = MADE; stage < STAGES; stage++) {
         fibrad_scene *none = NULL;
         advance_to(p, stage - 1, stage);
@@ -122,8 +117,6 @@ TEST(no_contents_in_place) {
     }
     ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
     assert_same_powers(p, book);
-    end_problem(p);
-    end_problem(book);
 }
 
 /* Nor is there anything else to be had of what has become of such a scene. */
@@ -131,10 +124,10 @@ TEST(nothing_of_no_scene) {
     const struct contents c = contents_of(14);
     struct contents bad = c;
     bad.x[9] = bad.x[8], bad.y[9] = bad.y[8], bad.z[9] = bad.z[8];
-    struct problem *p = begin_problem(&c, 0);
+    ENDED struct problem *p = begin_problem(&c, 0);
     fibrad_scene *const scene = p->scene, *none = NULL;
     const fibrad_exchange_rule rule = {.emissivity = p->emissivity, .body_emissivity = p->body_emissivity};
-    fibrad_rows rows = {.memory = memory_growing()};
+    OWNED_ROWS rows = {.memory = memory_growing()};
     fibrad_row row = row_of(N), added = {.rows = &rows};
     fibrad_displacement displacement;
     fibrad_heat *heat = NULL;
@@ -153,15 +146,13 @@ TEST(nothing_of_no_scene) {
     ck_assert_uint_eq(fibrad_matrix_size(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1}), 0);
     ck_assert_uint_eq(rows.count, 0);
     row_free(&row);
-    rows_free(&rows);
-    end_problem(p);
 }
 
 /* What is kept in work memory between calls: rows in fresh memory and in old, after the scene was rebuilt in place. */
 static void assert_row_as_fresh(struct problem *p, fibrad_work *kept, uint32_t i) {
     const fibrad_exchange_rule rule = {
         .emissivity = p->emissivity, .body_emissivity = p->body_emissivity, .paths = 300, .seed = 2};
-    fibrad_row a = row_of(N), b = row_of(N);
+    OWNED_ROW a = row_of(N), b = row_of(N);
     fibrad_displacement da = {0}, db = {0};
     fibrad_work fresh = work_growing();
     uint64_t rays_a, rays_b;
@@ -182,13 +173,11 @@ static void assert_row_as_fresh(struct problem *p, fibrad_work *kept, uint32_t i
     ck_assert_int_eq(fibrad_beam_row(p->scene, &fresh, i, NULL, &b), FIBRAD_OK);
     ck_assert(same_bits_with(&a, &b, BODIES));
     work_free(&fresh);
-    row_free(&a);
-    row_free(&b);
 }
 
 TEST(work_kept_while_scenes_change) {
     const struct contents c = contents_of(20);
-    struct problem *p = begin_problem(&c, 0);
+    ENDED struct problem *p = begin_problem(&c, 0);
     fibrad_work fixed = work_fixed(block_of(1 << 18), 1 << 18);
     for (int what = 0; what < 16; what++) {
         const struct contents d = what % 8 == 7 ? contents_of((uint64_t)what) : changed(&c, what % 8);
@@ -199,13 +188,12 @@ TEST(work_kept_while_scenes_change) {
         }
     }
     free(fixed.memory.block);
-    end_problem(p);
 }
 
 /* The block of work memory is exchanged for another, moved, overwritten by the caller's realloc, or made smaller. */
 TEST(work_in_another_block) {
     const struct contents c = contents_of(21);
-    struct problem *p = begin_problem(&c, 0);
+    ENDED struct problem *p = begin_problem(&c, 0);
     size_t size = 1 << 18;
     unsigned char *block = block_of(size);
     fibrad_work work = work_fixed(block, size);
@@ -225,26 +213,24 @@ TEST(work_in_another_block) {
         assert_row_as_fresh(p, &work, 3);
     }
     free(block);
-    end_problem(p);
 }
 
 static fibrad_rows rows_from(const fibrad_scene *scene, uint32_t begin, uint32_t end) {
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     fibrad_rows rows = {.memory = memory_growing()};
     for (uint32_t i = begin; i < end; i++)
         ck_assert_int_eq(fibrad_beam_row(scene, &work, i, NULL, &(fibrad_row){.rows = &rows}), FIBRAD_OK);
-    work_free(&work);
     return rows;
 }
 
 TEST(matrix_calls_out_of_order) {
     const struct contents c = contents_of(22);
-    struct problem *p = begin_problem(&c, 0);
-    fibrad_rows rows = rows_from(p->scene, 0, N);
-    struct matrix book = matrix_of(p->scene, &rows, 1, NULL);
+    ENDED struct problem *p = begin_problem(&c, 0);
+    OWNED_ROWS rows = rows_from(p->scene, 0, N);
+    OWNED_MATRIX book = matrix_of(p->scene, &rows, 1, NULL);
     const fibrad_matrix_rule rule = {.tasks = 5};
     const size_t size = fibrad_matrix_size(p->scene, &rows, 1, &rule);
-    void *block = block_of(size);
+    OWNED void *block = block_of(size);
     fibrad_matrix *m = NULL;
     fibrad_factors factors = {.n = 77};
     double largest = 77;
@@ -268,21 +254,17 @@ TEST(matrix_calls_out_of_order) {
     ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_OK);
     ck_assert(matrix_same_bits(&factors, &book.factors));
     ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_OK);
-    free(block);
-    matrix_free(&book);
-    rows_free(&rows);
-    end_problem(p);
 }
 
 /* Rows missing, in two collections at once, twice in one, or of something else. */
 TEST(matrix_of_wrong_rows) {
     const struct contents c = contents_of(23);
-    struct problem *p = begin_problem(&c, 0);
+    ENDED struct problem *p = begin_problem(&c, 0);
     fibrad_rows rows[4] = {rows_from(p->scene, 0, 5), rows_from(p->scene, 5, N), rows_from(p->scene, 4, 6)};
     rows[3] = rows_from(p->scene, 0, N);
-    struct matrix book = matrix_of(p->scene, rows, 2, NULL);
+    OWNED_MATRIX book = matrix_of(p->scene, rows, 2, NULL);
     const size_t size = fibrad_matrix_size(p->scene, rows, 4, NULL);
-    void *block = block_of(size);
+    OWNED void *block = block_of(size);
     fibrad_matrix *m = NULL;
     uint32_t sphere = 77;
     ck_assert_int_eq(fibrad_matrix_init(&m, block, size, p->scene, rows, 1, NULL, &sphere), FIBRAD_E_STATE);
@@ -304,7 +286,7 @@ TEST(matrix_of_wrong_rows) {
 
     /* of other bodies, of more spheres, of spheres that are not there */
     for (int what = 0; what < 3; what++) {
-        fibrad_rows wrong = {.memory = memory_growing()};
+        OWNED_ROWS wrong = {.memory = memory_growing()};
         fibrad_row row = matrix_row(&book.factors, 0);
         if (what == 1) row.sphere = N;
         uint32_t col[] = {1, N};
@@ -315,30 +297,24 @@ TEST(matrix_of_wrong_rows) {
         ck_assert_int_eq(
             fibrad_matrix_init(&m, block, size, p->scene, &wrong, 1, &(fibrad_matrix_rule){.raw = 1}, NULL),
             FIBRAD_E_ARGUMENT);
-        rows_free(&wrong);
     }
     ck_assert_ptr_null(m);
 
     /* emptied and filled again, all is well */
     fibrad_rows_clear(&rows[0]);
     ck_assert_uint_eq(rows[0].count, 0);
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     for (uint32_t i = 5; i-- > 0;)
         ck_assert_int_eq(fibrad_beam_row(p->scene, &work, i, NULL, &(fibrad_row){.rows = rows}), FIBRAD_OK);
-    work_free(&work);
-    struct matrix right = matrix_of(p->scene, rows, 2, NULL);
+    OWNED_MATRIX right = matrix_of(p->scene, rows, 2, NULL);
     ck_assert(matrix_same_bits(&right.factors, &book.factors));
-    matrix_free(&right);
-    matrix_free(&book);
     for (int k = 0; k < 4; k++) rows_free(&rows[k]);
-    free(block);
-    end_problem(p);
 }
 
 /* A row that is refused leaves a collection as it was. */
 TEST(refused_rows_are_not_appended) {
     const struct contents c = contents_of(24);
-    struct problem *p = begin_problem(&c, 0);
+    ENDED struct problem *p = begin_problem(&c, 0);
     static unsigned char memory[1 << 12];
     fibrad_rows rows = {.memory = {.block = memory, .size = sizeof memory}};
     fibrad_work work = work_growing(), none = {0};
@@ -358,18 +334,16 @@ TEST(refused_rows_are_not_appended) {
         ck_assert_uint_eq(rows.count, before);
     }
     ck_assert_uint_gt(before, 1);
-    struct matrix m = matrix_of(p->scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
+    OWNED_MATRIX m = matrix_of(p->scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
     for (uint32_t i = 0; i < before; i++) ck_assert_double_eq_tol(matrix_total(&m.factors, i), 1, 1e-12);
-    matrix_free(&m);
     work_free(&work);
-    end_problem(p);
 }
 
 /* A row that was appended to a collection and is then given its own arrays no more: its capacity says so. */
 TEST(row_reused_after_appending) {
-    struct bed bed = packing(60, .8, 1.2, .5, 3, false);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
+    OWNED_BED bed = packing(60, .8, 1.2, .5, 3, false);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
     fibrad_rows rows = {.memory = work_growing().memory};
     uint32_t col[60];
     double f[60];
@@ -379,16 +353,13 @@ TEST(row_reused_after_appending) {
     row.rows = NULL;
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 1, NULL, &row), FIBRAD_E_CAPACITY);
     ck_assert_double_eq(row.f[0], first);
-    work_free(&work);
     free(rows.memory.block);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* Rows of another scene, rows that change while their matrix is made, and a matrix that failed in place. */
 TEST(matrix_of_changing_rows) {
-    struct bed bed = packing(60, .8, 1.2, .5, 3, false), other = packing(60, .8, 1.2, .5, 4, false);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST), *another = scene_of(&other, FIBRAD_ISA_BEST);
+    OWNED_BED bed = packing(60, .8, 1.2, .5, 3, false), other = packing(60, .8, 1.2, .5, 4, false);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST), *another = scene_of(&other, FIBRAD_ISA_BEST);
     fibrad_rows rows = rows_from(scene, 0, 60), more = rows_from(scene, 0, 1), fewer = rows_from(scene, 1, 60);
     fibrad_matrix *matrix;
     uint32_t sphere = 99;
@@ -410,6 +381,4 @@ TEST(matrix_of_changing_rows) {
     ck_assert_int_eq(fibrad_matrix_close(matrix), FIBRAD_OK);
     free(block);
     free(rows.memory.block), free(more.memory.block), free(fewer.memory.block);
-    free(scene), free(another);
-    bed_free(&bed), bed_free(&other);
 }

@@ -23,7 +23,7 @@ static void assert_no_begin(struct problem *p) {
 /* Every fibrad_heat_trace has returned an error, and the caller did not look. */
 TEST(traces_that_failed) {
     const struct contents c = contents_of(1);
-    struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0xa5);
+    ENDED struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0xa5);
     unsigned char small[64];
     fibrad_work none = {0}, tiny = work_fixed(small, sizeof small);
     for (uint32_t k = 0; k < tasks_of(p); k++) {
@@ -37,8 +37,6 @@ TEST(traces_that_failed) {
     trace_all(p); /* each may be called again */
     solve(p);
     assert_same_powers(p, book);
-    end_problem(p);
-    end_problem(book);
 }
 
 static void *no_more(void *context, void *block, size_t size) {
@@ -48,60 +46,53 @@ static void *no_more(void *context, void *block, size_t size) {
 
 TEST(traces_without_memory) {
     const struct contents c = contents_of(2);
-    struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
-    fibrad_work work = {.memory = {.resize = no_more}};
+    ENDED struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
+    OWNED_WORK work = {.memory = {.resize = no_more}};
     for (uint32_t k = 0; k < tasks_of(p); k++) ck_assert_int_eq(fibrad_heat_trace(p->heat, &work, k), FIBRAD_E_MEMORY);
     assert_no_begin(p);
     work.memory.resize = test_resize; /* now there is some */
     for (uint32_t k = 0; k < tasks_of(p); k++) ck_assert_int_eq(fibrad_heat_trace(p->heat, &work, k), FIBRAD_OK);
     solve(p);
     assert_same_powers(p, book);
-    work_free(&work);
-    end_problem(p);
-    end_problem(book);
 }
 
 /* Nothing is traced, whatever was in the block before. */
 TEST(nothing_traced) {
     static const int fills[] = {0, 1, 0x5a, 0xff};
     const struct contents c = contents_of(3);
-    struct problem *book = by_the_book(&c);
+    ENDED struct problem *book = by_the_book(&c);
     for (size_t k = 0; k < sizeof fills / sizeof *fills; k++) {
-        struct problem *p = begin_problem(&c, fills[k]);
+        ENDED struct problem *p = begin_problem(&c, fills[k]);
         assert_nothing_to_solve(p);
         assert_no_begin(p);
         trace_all(p);
         assert_nothing_to_solve(p);
         solve(p);
         assert_same_powers(p, book);
-        end_problem(p);
     }
-    end_problem(book);
 }
 
 /* One task is left out, the first, the last, one of spheres and one of walls among them. */
 TEST(one_task_not_traced) {
     const struct contents c = contents_of(4);
-    struct problem *book = by_the_book(&c);
+    ENDED struct problem *book = by_the_book(&c);
     ck_assert_uint_gt(tasks_of(book), N + 1);
     const uint32_t last = tasks_of(book) - 1, left_out[] = {0, N / 2, N - 1, N, (N + last) / 2, last};
     for (size_t t = 0; t < sizeof left_out / sizeof *left_out; t++) {
         const uint32_t out = left_out[t];
-        struct problem *p = begin_problem(&c, 0);
+        ENDED struct problem *p = begin_problem(&c, 0);
         for (uint32_t k = 0; k < tasks_of(p); k++)
             if (k != out) ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, k), FIBRAD_OK);
         assert_no_begin(p);
         ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, out), FIBRAD_OK);
         solve(p);
         assert_same_powers(p, book);
-        end_problem(p);
     }
-    end_problem(book);
 }
 
 TEST(tasks_and_parts_out_of_range) {
     const struct contents c = contents_of(5);
-    struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
+    ENDED struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
     const uint32_t tasks = tasks_of(p), beyond[] = {0, 1, 1000, UINT32_MAX - tasks};
     for (size_t k = 0; k < 4; k++)
         ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, tasks + beyond[k]), FIBRAD_E_ARGUMENT);
@@ -123,13 +114,11 @@ TEST(tasks_and_parts_out_of_range) {
     ck_assert_int_eq(fibrad_heat_sweep(p->heat, PARTS), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
     assert_same_powers(p, book);
-    end_problem(p);
-    end_problem(book);
 }
 
 TEST(tasks_traced_twice) {
     const struct contents c = contents_of(6);
-    struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0xff);
+    ENDED struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0xff);
     for (uint32_t k = 0; k < tasks_of(p); k++)
         for (int again = 0; again < 3; again++)
             ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, k), again ? FIBRAD_E_STATE : FIBRAD_OK);
@@ -139,14 +128,12 @@ TEST(tasks_traced_twice) {
     solve(p); /* begins anew */
     ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, 3), FIBRAD_E_STATE);
     assert_same_powers(p, book);
-    end_problem(p);
-    end_problem(book);
 }
 
 /* One of the parts is left out of every sweep at first, and made up for. */
 TEST(one_part_not_swept) {
     const struct contents c = contents_of(7);
-    struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
+    ENDED struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
     trace_all(p);
     ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
     uint32_t out = 0;
@@ -164,13 +151,11 @@ TEST(one_part_not_swept) {
     ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
     assert_same_powers(p, book);
     ck_assert_uint_eq(p->result.sweeps, book->result.sweeps);
-    end_problem(p);
-    end_problem(book);
 }
 
 TEST(parts_swept_twice) {
     const struct contents c = contents_of(8);
-    struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
+    ENDED struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
     trace_all(p);
     ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
     for (int solved = 0; !solved;) {
@@ -183,13 +168,11 @@ TEST(parts_swept_twice) {
     }
     ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
     assert_same_powers(p, book);
-    end_problem(p);
-    end_problem(book);
 }
 
 TEST(steps_and_reads_too_early) {
     const struct contents c = contents_of(9);
-    struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
+    ENDED struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
     trace_all(p);
     assert_nothing_to_solve(p);
     ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
@@ -211,16 +194,14 @@ TEST(steps_and_reads_too_early) {
         ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
         assert_same_powers(p, book);
     }
-    end_problem(p);
-    end_problem(book);
 }
 
 /* A solution given up half-way, in every third of its sweeps, leaves nothing behind. */
 TEST(begun_anew_in_between) {
     const struct contents c = contents_of(10);
-    struct problem *book = by_the_book(&c);
+    ENDED struct problem *book = by_the_book(&c);
     for (uint32_t until = 0; until < book->result.sweeps; until += 3) {
-        struct problem *p = begin_problem(&c, 0);
+        ENDED struct problem *p = begin_problem(&c, 0);
         trace_all(p);
         p->sources.surroundings = 3;
         ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
@@ -234,16 +215,14 @@ TEST(begun_anew_in_between) {
         p->sources.surroundings = .7;
         solve(p);
         assert_like_powers(p, book);
-        end_problem(p);
     }
-    end_problem(book);
 }
 
 TEST(moved_before_the_first_solution) {
     const struct contents c = contents_of(15), d = contents_of(16);
-    struct problem *book = by_the_book(&d);
+    ENDED struct problem *book = by_the_book(&d);
     for (int stage = MADE; stage <= SWEPT; stage++) {
-        struct problem *p = begin_problem(&c, 0);
+        ENDED struct problem *p = begin_problem(&c, 0);
         advance_to(p, MADE, stage);
         build(p, &d); /* in place */
         ck_assert_int_eq(fibrad_heat_move(p->heat, p->scene), FIBRAD_OK);
@@ -252,9 +231,7 @@ TEST(moved_before_the_first_solution) {
         assert_nothing_to_solve(p);
         solve(p);
         assert_same_powers(p, book);
-        end_problem(p);
     }
-    end_problem(book);
 }
 
 /* A warm start takes fewer sweeps to the same powers; in place and to a scene elsewhere; with spheres in other cells
@@ -264,9 +241,9 @@ TEST(moved_after_a_solution) {
     for (int far = 0; far < 2; far++) {
         struct contents d = c;
         for (uint32_t i = 0; i < N; i++) d.x[i] = far ? 6.4 - c.x[i] : c.x[i] + 1e-4 * bed_make_random(3, i);
-        struct problem *book = by_the_book(&d);
+        ENDED struct problem *book = by_the_book(&d);
         for (int elsewhere = 0; elsewhere < 2; elsewhere++) {
-            struct problem *p = begin_problem(&c, 0);
+            ENDED struct problem *p = begin_problem(&c, 0);
             trace_all(p);
             solve(p);
             const uint32_t cold = p->result.sweeps;
@@ -287,16 +264,14 @@ TEST(moved_after_a_solution) {
                 ck_assert_uint_lt(p->result.sweeps, book->result.sweeps);
                 ck_assert_uint_lt(p->result.sweeps, cold);
             }
-            end_problem(p);
         }
-        end_problem(book);
     }
 }
 
 /* What was moved there and back again has the bits of a second solution where nothing was moved. */
 TEST(moved_there_and_back) {
     const struct contents c = contents_of(18), d = changed(&c, 3);
-    struct problem *p = begin_problem(&c, 0), *still = begin_problem(&c, 0);
+    ENDED struct problem *p = begin_problem(&c, 0), *still = begin_problem(&c, 0);
     trace_all(p), trace_all(still);
     solve(p), solve(still);
     build(p, &d);
@@ -308,15 +283,13 @@ TEST(moved_there_and_back) {
     p->temperature[0] = still->temperature[0] = 3;
     solve(p), solve(still);
     assert_like_powers(p, still);
-    end_problem(p);
-    end_problem(still);
 }
 
 /* Refused, a move leaves everything as it was: the solution can be read, and another one begun. */
 TEST(moves_refused) {
     const struct contents c = contents_of(19);
-    struct problem *book = by_the_book(&c), *p = by_the_book(&c);
-    unsigned char *block = block_of(p->scene_size);
+    ENDED struct problem *book = by_the_book(&c), *p = by_the_book(&c);
+    OWNED unsigned char *block = block_of(p->scene_size);
     for (int what = 0; what < 8; what++) {
         struct contents d = c;
         fibrad_scene *scene = NULL;
@@ -350,7 +323,4 @@ TEST(moves_refused) {
         assert_like_powers(p, book);
     }
     ck_assert_int_eq(fibrad_heat_move(NULL, p->scene), FIBRAD_E_ARGUMENT);
-    free(block);
-    end_problem(p);
-    end_problem(book);
 }

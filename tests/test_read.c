@@ -714,11 +714,10 @@ TEST(binary_data) {
     const char zeros[] = "x,y,z,r\n0,0,0,\0001\n";
     expect_refusal(zeros, sizeof zeros - 1, &(struct read_options){0}, 2, "binary data");
     expect_refusal("\x1f\x8b\x08 gzip", 8, &(struct read_options){0}, 0, "the gzip file is damaged");
-    char *endless = malloc(3 << 20);
+    OWNED char *endless = malloc(3 << 20);
     ck_assert_ptr_nonnull(endless);
     memset(endless, '1', 3 << 20);
     expect_refusal(endless, 3 << 20, &(struct read_options){0}, 1, "the line has no end");
-    free(endless);
 }
 
 TEST(unreadable) {

@@ -9,7 +9,7 @@ enum { PARTS_MOST = 7, SPHERES = 400 };
 /* Row i in so many parts of unequal size, computed from the last to the first. */
 static int row_in_parts(const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule, uint32_t parts,
                         fibrad_row *row) {
-    fibrad_work first = work_growing(), second = work_growing();
+    OWNED_WORK first = work_growing(), second = work_growing();
     fibrad_row_part part[PARTS_MOST];
     for (uint32_t p = parts; p-- > 0;) {
         part[p] = (fibrad_row_part){.memory = memory_growing()};
@@ -20,16 +20,14 @@ static int row_in_parts(const fibrad_scene *scene, uint32_t i, const fibrad_beam
     }
     const int status = fibrad_beam_join(scene, &second, i, rule, part, parts, row);
     for (uint32_t p = 0; p < parts; p++) free(part[p].memory.block);
-    work_free(&first);
-    work_free(&second);
     return status;
 }
 
 /* Rows of a large, a small and the last sphere, in one and in parts; adds what spheres get and what bodies get. */
 static void compare_rows(const struct bed *bed, const fibrad_scene_config *config, double cutoff, double seen[2]) {
-    fibrad_scene *scene = scene_with(bed, config);
-    fibrad_work work = work_growing();
-    fibrad_row one = row_of(bed->n), joined = row_of(bed->n);
+    OWNED fibrad_scene *scene = scene_with(bed, config);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW one = row_of(bed->n), joined = row_of(bed->n);
     const uint32_t rows[] = {0, bed->n / 2, bed->n - 1};
     for (int k = 0; k < 18; k++) {
         const uint32_t i = rows[k % 3], parts = 1 + (uint32_t)k % PARTS_MOST;
@@ -44,25 +42,19 @@ static void compare_rows(const struct bed *bed, const fibrad_scene_config *confi
         seen[0] += row_sum(&one);
         for (uint32_t b = 0; b < config->bodies; b++) seen[1] += one.body[b];
     }
-    row_free(&one);
-    row_free(&joined);
-    work_free(&work);
-    free(scene);
 }
 
 TEST(spheres_alone) {
-    struct bed bed = strewn(SPHERES, 3), box = packing(120, .8, 1.2, .55, 4, true);
+    OWNED_BED bed = strewn(SPHERES, 3), box = packing(120, .8, 1.2, .55, 4, true);
     double seen[2] = {0, 0};
     compare_rows(&bed, &(fibrad_scene_config){0}, 0, seen);
     compare_rows(&bed, &(fibrad_scene_config){0}, .5, seen);
     compare_rows(&box, &(fibrad_scene_config){0}, 0, seen);
     ck_assert_double_gt(seen[0], 20);
-    bed_free(&bed);
-    bed_free(&box);
 }
 
 TEST(among_walls) {
-    struct bed bed = strewn(SPHERES, 5);
+    OWNED_BED bed = strewn(SPHERES, 5);
     const fibrad_body planes[] = {plane_at(0, 0, -.3), plane_at(0, 1, 1.3), plane_at(1, 0, -.3),
                                   plane_at(1, 1, 1.3), plane_at(2, 0, -.3), plane_at(2, 1, 1.3)};
     const fibrad_body tube[] = {cylinder_at(.5, .5, 1.2), plane_at(2, 0, -.3), plane_at(2, 1, 1.3)};
@@ -72,27 +64,24 @@ TEST(among_walls) {
     compare_rows(&bed, &(fibrad_scene_config){.body = planes, .bodies = 6}, .5, seen);
     compare_rows(&bed, &(fibrad_scene_config){.body = tube, .bodies = 3}, 0, seen);
     ck_assert_double_gt(seen[1], 20);
-    bed_free(&bed);
 }
 
 TEST(among_triangles) {
-    struct bed bed = strewn(SPHERES, 6);
-    struct mesh *mesh = mesh_new();
+    OWNED_BED bed = strewn(SPHERES, 6);
+    OWNED struct mesh *mesh = mesh_new();
     double seen[2] = {0, 0};
     mesh_box(mesh, (const double[]){-.3, -.3, -.3}, (const double[]){1.3, 1.3, 1.3}, 0);
     mesh_tube(mesh, .5, .5, .05, -.2, 1.2, 12, 3, true, 6, 6);
     compare_rows(&bed, &(fibrad_scene_config){.body = mesh->body, .bodies = 7, .triangles = &mesh->triangles}, 0, seen);
     ck_assert_double_gt(seen[1], 10);
-    free(mesh);
-    bed_free(&bed);
 }
 
 /* Parts of another row, rule or scene, in another order or not all are told from those that make the row. */
 TEST(parts_that_do_not_fit) {
-    struct bed bed = strewn(50, 7), other_bed = strewn(50, 8);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST), *other = scene_of(&other_bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(50);
+    OWNED_BED bed = strewn(50, 7), other_bed = strewn(50, 8);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST), *other = scene_of(&other_bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(50);
     const fibrad_beam_rule rule = {.directions = 20}, more = {.directions = 21};
     const fibrad_beam_rule tolerant = {.directions = 20, .tolerance = 1e-3};
     fibrad_row_part part[2] = {{.memory = memory_growing()}, {.memory = memory_growing()}};
@@ -115,20 +104,14 @@ TEST(parts_that_do_not_fit) {
     ck_assert_int_eq(fibrad_beam_part(NULL, &work, 1, &rule, 5, 9, &part[0]), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &tolerant, 5, 9, &part[0]), FIBRAD_E_UNSUPPORTED);
     for (int p = 0; p < 2; p++) free(part[p].memory.block);
-    work_free(&work);
-    row_free(&row);
-    free(scene);
-    free(other);
-    bed_free(&bed);
-    bed_free(&other_bed);
 }
 
 /* Terms that were changed on the way leave no row that looks right. */
 TEST(parts_that_were_changed) {
-    struct bed bed = strewn(50, 7);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(50);
+    OWNED_BED bed = strewn(50, 7);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(50);
     const fibrad_beam_rule rule = {.directions = 20};
     fibrad_row_part part = {.memory = memory_growing()};
     ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_OK);
@@ -141,17 +124,13 @@ TEST(parts_that_were_changed) {
     ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_OK);
     ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &row), FIBRAD_OK);
     free(part.memory.block);
-    work_free(&work);
-    row_free(&row);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* Fixed memory that is too small says how much would do. */
 TEST(fixed_memory_of_a_part) {
-    struct bed bed = strewn(50, 9);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
+    OWNED_BED bed = strewn(50, 9);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
     const fibrad_beam_rule rule = {.directions = 20};
     fibrad_row_part part = {.memory = {.block = malloc(16), .size = 16}};
     ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_E_CAPACITY);
@@ -161,9 +140,6 @@ TEST(fixed_memory_of_a_part) {
     part.memory = (fibrad_memory){.block = malloc(needed), .size = needed};
     ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_OK);
     free(part.memory.block);
-    work_free(&work);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* A resize function that fails once, when it is asked for the time `fails`. */
@@ -178,10 +154,10 @@ static void *resize_but_once(void *context, void *block, size_t size) {
 
 /* Memory that is refused once is an error, whenever that is; asked again, the part is that of memory in plenty. */
 TEST(memory_that_is_refused_once) {
-    struct bed bed = strewn(50, 9);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
-    fibrad_row one = row_of(50), joined = row_of(50);
+    OWNED_BED bed = strewn(50, 9);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW one = row_of(50), joined = row_of(50);
     const fibrad_beam_rule rule = {.directions = 20};
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 1, &rule, &one), FIBRAD_OK);
     uint32_t asked = 1;
@@ -201,20 +177,15 @@ TEST(memory_that_is_refused_once) {
         free(part.memory.block);
     }
     ck_assert_uint_gt(asked, 3);
-    row_free(&one);
-    row_free(&joined);
-    work_free(&work);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* A block of no bytes is too small, as one of some bytes may be; no block of some bytes is no block. */
 TEST(blocks_of_size_zero) {
-    struct bed bed = strewn(50, 9);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
+    OWNED_BED bed = strewn(50, 9);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
     const fibrad_beam_rule rule = {.directions = 20};
-    fibrad_row row = row_of(50);
+    OWNED_ROW row = row_of(50);
     double byte;
     for (int k = 0; k < 3; k++) { /* none yet, a block, and NULL that is said to have bytes */
         const fibrad_memory memory = {.block = k == 1 ? &byte : NULL, .size = k == 2 ? 1 << 20 : 0};
@@ -231,10 +202,6 @@ TEST(blocks_of_size_zero) {
         ck_assert_int_eq(fibrad_beam_row(scene, &work, 1, &rule, &row), FIBRAD_OK);
         ck_assert_int_eq(fibrad_rows_add(&rows, &row, 0), k == 2 ? FIBRAD_E_ARGUMENT : FIBRAD_E_CAPACITY);
     }
-    row_free(&row);
-    work_free(&work);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* Arrays that are too small: the length that a row of a method says is the one with which the next call succeeds, and
@@ -242,7 +209,7 @@ TEST(blocks_of_size_zero) {
 static void ask_and_repeat(const fibrad_scene *scene, const fibrad_beam_rule *beam,
                            const fibrad_exchange_rule *exchange) {
     enum { MOST = 100 };
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     fibrad_rows rows = {0};
     fibrad_row append = {.rows = &rows};
     uint32_t col[MOST];
@@ -265,13 +232,12 @@ static void ask_and_repeat(const fibrad_scene *scene, const fibrad_beam_rule *be
         if (tries == 0) rows.memory.size = rows.memory.needed, rows.memory.block = malloc(rows.memory.size);
     }
     free(rows.memory.block);
-    work_free(&work);
 }
 
 TEST(the_length_that_is_asked_for_suffices) {
-    struct bed bed = packing(100, .5, 1.5, .3, 4, false);
+    OWNED_BED bed = packing(100, .5, 1.5, .3, 4, false);
     const fibrad_body floor = plane_at(2, 0, -100);
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor, .bodies = 1});
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor, .bodies = 1});
     double emissivity[100];
     for (int i = 0; i < 100; i++) emissivity[i] = .2;
     fibrad_exchange_rule exchange = {.emissivity = emissivity, .body_emissivity = &(double){.5}, .directions = 8};
@@ -279,6 +245,4 @@ TEST(the_length_that_is_asked_for_suffices) {
     ask_and_repeat(scene, NULL, &exchange);
     for (int i = 1; i < 100; i += 2) emissivity[i] = 0; /* seen by the first leg, and no entries */
     ask_and_repeat(scene, NULL, &exchange);
-    free(scene);
-    bed_free(&bed);
 }

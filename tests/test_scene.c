@@ -13,7 +13,7 @@ TEST(sizes_hold) {
         ck_assert_uint_le(size, FIBRAD_SCENE_BYTES(n));
         ck_assert_uint_gt(fibrad_scene_size(n, 1), n == 0 ? 0 : size);
         ck_assert_uint_ge(fibrad_scene_size(n, 1), size);
-        struct bed bed = packing(n > 0 ? n : 1, .5, 1, .4, n, false);
+        OWNED_BED bed = packing(n > 0 ? n : 1, .5, 1, .4, n, false);
         bed.n = n;
         const fibrad_spheres spheres = spheres_of(&bed);
         fibrad_scene *scene = NULL;
@@ -25,7 +25,6 @@ TEST(sizes_hold) {
         ck_assert_int_eq(fibrad_scene_init(&scene, memory + offset, size, NULL, &spheres, NULL), FIBRAD_OK);
         ck_assert(bytes_are(memory, 0, offset, 0xa5));
         ck_assert(bytes_are(memory, offset + size, sizeof memory, 0xa5));
-        bed_free(&bed);
     }
     ck_assert_uint_eq(fibrad_scene_size(FIBRAD_SPHERES_MAX + 1, 0), 0);
     ck_assert_uint_eq(fibrad_scene_size(UINT32_MAX, 1), 0);
@@ -34,15 +33,15 @@ TEST(sizes_hold) {
 
 /* Scene and work memory at each of the 64 offsets from a boundary. */
 TEST(blocks_of_any_alignment) {
-    struct bed bed = packing(80, .5, 1, .4, 3, true);
-    fibrad_scene *aligned = scene_of(&bed, 0);
-    struct matrix expected = matrix_by_beams(aligned, &(fibrad_beam_rule){.directions = 34}, true);
+    OWNED_BED bed = packing(80, .5, 1, .4, 3, true);
+    OWNED fibrad_scene *aligned = scene_of(&bed, 0);
+    OWNED_MATRIX expected = matrix_by_beams(aligned, &(fibrad_beam_rule){.directions = 34}, true);
     const fibrad_spheres spheres = spheres_of(&bed);
     fibrad_scene_config config = {0};
     memcpy(config.period, bed.period, sizeof config.period);
     const size_t size = fibrad_scene_size(bed.n, 0), work_size = FIBRAD_WORK_BYTES(1024, 200);
-    unsigned char *block = block_of(size + 64), *work_block = block_of(work_size + 128);
-    fibrad_row row = row_of(bed.n);
+    OWNED unsigned char *block = block_of(size + 64), *work_block = block_of(work_size + 128);
+    OWNED_ROW row = row_of(bed.n);
     for (size_t offset = 0; offset < 64; offset++) {
         fibrad_scene *scene = NULL;
         memset(block, 0xa5, size + 64);
@@ -58,41 +57,35 @@ TEST(blocks_of_any_alignment) {
         ck_assert(bytes_are(block, offset + size, size + 64, 0xa5));
         ck_assert(bytes_are(work_block, offset + work_size, work_size + 128, 0x5a));
     }
-    row_free(&row);
-    free(block), free(work_block), free(aligned);
-    matrix_free(&expected);
-    bed_free(&bed);
 }
 
 /* Places as x[n][3], radii as every fifth number, against arrays of their own. */
 TEST(strides_change_no_bit) {
-    struct bed bed = packing(150, .5, 1, .4, 3, false);
+    OWNED_BED bed = packing(150, .5, 1, .4, 3, false);
     double(*at)[3] = calloc(bed.n, sizeof *at), *r = calloc((size_t)5 * bed.n, sizeof *r);
     for (uint32_t k = 0; k < 5 * bed.n; k++) r[k] = NAN;
     for (uint32_t i = 0; i < bed.n; i++) at[i][0] = bed.x[i], at[i][1] = bed.y[i], at[i][2] = bed.z[i];
     for (uint32_t i = 0; i < bed.n; i++) r[(size_t)5 * i] = bed.r[i];
-    fibrad_scene *plain = scene_of(&bed, 0);
+    OWNED fibrad_scene *plain = scene_of(&bed, 0);
     const fibrad_spheres strided[] = {
         {&at[0][0], &at[0][1], &at[0][2], r, bed.n, .stride = 3, .stride_r = 5},
         {&at[0][0], &at[0][1], &at[0][2], bed.r, bed.n, .stride = 3},
         {bed.x, bed.y, bed.z, r, bed.n, .stride_r = 5},
         {bed.x, bed.y, bed.z, bed.r, bed.n, .stride = 1, .stride_r = 1},
     };
-    struct matrix expected = matrix_by_beams(plain, &(fibrad_beam_rule){.directions = 34}, true);
+    OWNED_MATRIX expected = matrix_by_beams(plain, &(fibrad_beam_rule){.directions = 34}, true);
     const size_t size = fibrad_scene_size(bed.n, 0);
-    void *block = block_of(size);
+    OWNED void *block = block_of(size);
     for (int k = 0; k < 4; k++) {
         fibrad_scene *scene = NULL;
         ck_assert_int_eq(fibrad_scene_init(&scene, block, size, NULL, &strided[k], NULL), FIBRAD_OK);
-        struct matrix m = matrix_by_beams(scene, &(fibrad_beam_rule){.directions = 34}, true);
+        OWNED_MATRIX m = matrix_by_beams(scene, &(fibrad_beam_rule){.directions = 34}, true);
         ck_assert(matrix_same_bits(&m.factors, &expected.factors));
         for (uint32_t s = 0; s < bed.n; s++)
             ck_assert_uint_eq(fibrad_scene_sphere(scene, s), fibrad_scene_sphere(plain, s));
-        matrix_free(&m);
     }
-    matrix_free(&expected);
-    free(block), free(plain), free(at), free(r);
-    bed_free(&bed);
+    free(at);
+    free(r);
 }
 
 /* A bed may be empty: a scene without rows, and a matrix of none. */
@@ -111,13 +104,13 @@ TEST(no_spheres) {
         ck_assert_uint_eq(facts.cells, 0);
         ck_assert(facts.radius_min == 0 && facts.radius_max == 0 && facts.overlap_max == 0);
         ck_assert_uint_eq(fibrad_scene_sphere(scene, 0), UINT32_MAX);
-        fibrad_work work = work_growing();
-        fibrad_row row = row_of(4);
+        OWNED_WORK work = work_growing();
+        OWNED_ROW row = row_of(4);
         ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &row), FIBRAD_E_ARGUMENT);
         ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, NULL, &row, NULL), FIBRAD_E_ARGUMENT);
         for (int raw = 0; raw < 2; raw++) {
             const fibrad_rows rows = {0};
-            struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = raw}), nothing;
+            OWNED_MATRIX m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = raw}), nothing;
             ck_assert_uint_eq(m.factors.n, 0);
             ck_assert_uint_eq(m.factors.start[0], 0);
             double largest = -1;
@@ -125,19 +118,16 @@ TEST(no_spheres) {
             ck_assert_double_eq(largest, 0);
             nothing = matrix_of(scene, NULL, 0, &(fibrad_matrix_rule){.raw = raw, .drop = raw ? 0 : .1, .tasks = 3});
             ck_assert_uint_eq(nothing.factors.n, 0);
-            matrix_free(&m), matrix_free(&nothing);
         }
-        row_free(&row);
-        work_free(&work);
     }
 }
 
 /* Each sphere comes once along the cells, and most that follow each other are neighbours: on average less than 4 radii
  * apart in a cube of 16, where two taken at random are 11 apart. */
 TEST(spheres_along_the_cells) {
-    struct bed bed = packing(500, 1, 1, .5, 4, false);
-    fibrad_scene *scene = scene_of(&bed, 0);
-    bool *seen = calloc(bed.n, sizeof *seen);
+    OWNED_BED bed = packing(500, 1, 1, .5, 4, false);
+    OWNED fibrad_scene *scene = scene_of(&bed, 0);
+    OWNED bool *seen = calloc(bed.n, sizeof *seen);
     double sum = 0;
     for (uint32_t k = 0, last = 0; k < bed.n; k++) {
         const uint32_t i = fibrad_scene_sphere(scene, k);
@@ -150,9 +140,6 @@ TEST(spheres_along_the_cells) {
     ck_assert_double_lt(sum / bed.n, 4);
     ck_assert_uint_eq(fibrad_scene_sphere(scene, bed.n), UINT32_MAX);
     ck_assert_uint_eq(fibrad_scene_sphere(NULL, 0), UINT32_MAX);
-    free(seen);
-    free(scene);
-    bed_free(&bed);
 }
 
 TEST(bad_configurations_are_refused) {
@@ -188,7 +175,7 @@ TEST(bad_configurations_are_refused) {
 
 /* An instruction set that this build or this machine lacks is said to be missing, with any spheres. */
 TEST(missing_instruction_sets) {
-    struct bed bed = lattice('p', 3);
+    OWNED_BED bed = lattice('p', 3);
     int isa[ISAS_MOST];
     const int sets = isas_there(isa);
     bool best = false;
@@ -197,7 +184,7 @@ TEST(missing_instruction_sets) {
         for (int k = 0; k < sets; k++) there |= isa[k] == set;
         best |= there && set == (int)fibrad_isa_best();
         if (set > (int)fibrad_isa_best()) ck_assert(!there);
-        fibrad_scene *scene = NULL;
+        OWNED fibrad_scene *scene = NULL;
         fibrad_fault fault;
         ck_assert_int_eq(scene_try(&scene, &bed, &(fibrad_scene_config){.isa = set}, &fault),
                          there ? FIBRAD_OK : FIBRAD_E_ISA);
@@ -206,17 +193,13 @@ TEST(missing_instruction_sets) {
         fibrad_scene_facts facts;
         fibrad_scene_describe(scene, &facts);
         ck_assert_int_eq(facts.isa, set);
-        free(scene);
     }
     ck_assert(best);
-    bed_free(&bed);
 }
 
 static int fault_of(const struct bed *bed, fibrad_fault *fault) {
-    fibrad_scene *scene = NULL;
-    int status = scene_try(&scene, bed, NULL, fault);
-    free(scene);
-    return status;
+    OWNED fibrad_scene *scene = NULL;
+    return scene_try(&scene, bed, NULL, fault);
 }
 
 TEST(faults_name_their_spheres) {
@@ -224,12 +207,11 @@ TEST(faults_name_their_spheres) {
     static const double broken[] = {NAN, INFINITY, -INFINITY};
     for (int b = 0; b < 3; b++)
         for (int field = 0; field < 4; field++) {
-            struct bed bed = lattice('p', 4);
+            OWNED_BED bed = lattice('p', 4);
             double *fields[] = {bed.x, bed.y, bed.z, bed.r};
             fields[field][5] = broken[b];
             ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_ARGUMENT);
             ck_assert_uint_eq(fault.first, 5);
-            bed_free(&bed);
         }
     struct bed bed = lattice('p', 4);
     bed.r[7] = 0;
@@ -265,16 +247,14 @@ TEST(faults_name_their_spheres) {
 
 /* Coordinates outside the periodic box, among them some whose quotient by the period rounds up to a whole number. */
 TEST(any_image_of_a_centre_will_do) {
-    struct bed bed = bed_of(2, (const double[][4]){{2.1, 0, 0, .5}, {14.559999999999999, 3, 0, .5}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{2.1, 0, 0, .5}, {14.559999999999999, 3, 0, .5}});
     for (int axis = 0; axis < 3; axis++) {
-        struct bed turned = bed_of(2, (const double[][4]){{0, 0, 0, .5}, {3, 3, 3, .5}});
+        OWNED_BED turned = bed_of(2, (const double[][4]){{0, 0, 0, .5}, {3, 3, 3, .5}});
         double *c[] = {turned.x, turned.y, turned.z};
         for (int i = 0; i < 2; i++) c[axis][i] = bed.x[i], c[(axis + 1) % 3][i] = bed.y[i];
         turned.period[axis] = 6.2299999999999995;
         free(scene_of(&turned, FIBRAD_ISA_SCALAR));
-        bed_free(&turned);
     }
-    bed_free(&bed);
     for (uint64_t k = 0; k < 20000; k++) {
         double period = 1 + floor(900 * bed_make_random(3, 3 * k)) / 100;
         double x[2] = {floor(1000 * bed_make_random(3, 3 * k + 1)) / 100, 0}, y[2] = {0, .5}, r[2] = {.1, .1};
@@ -289,19 +269,17 @@ TEST(any_image_of_a_centre_will_do) {
 
 /* A particle that a simulation has lost must not make one cell of all the others. */
 TEST(strays_do_not_spread_the_cells) {
-    struct bed bed = packing(4000, .5, .6, .5, 30, false);
+    OWNED_BED bed = packing(4000, .5, .6, .5, 30, false);
     bed.x[17] = 1e6, bed.y[99] = -1e9, bed.z[3000] = 1e12;
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_SCALAR);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_SCALAR);
     uint32_t most = 0;
     for (uint32_t c = 0; c < scene->facts.cells; c++)
         if (scene->start[c + 1] - scene->start[c] > most) most = scene->start[c + 1] - scene->start[c];
     ck_assert_uint_le(most, 16);
-    free(scene);
-    bed_free(&bed);
 }
 
 TEST(overlap_is_reported) {
-    struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 5, 2}, {0, .98, 2.2, .5}});
+    OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 5, 2}, {0, .98, 2.2, .5}});
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_scene_facts facts;
     fibrad_scene_describe(scene, &facts);
@@ -317,7 +295,6 @@ TEST(overlap_is_reported) {
     ck_assert_double_eq_tol(facts.overlap_max, .1 / .5, 1e-15);
     ck_assert_uint_eq(facts.overlap_pair[0] + facts.overlap_pair[1], 3);
     free(scene);
-    bed_free(&bed);
 }
 
 /* Random boxes: every sphere whose centre, or image's centre, lies within must come up, and none twice. */
@@ -326,7 +303,7 @@ TEST(walks_find_what_is_there) {
     beds[1].period[1] = 0;
     uint64_t count = 0;
     for (size_t b = 0; b < 3; b++) {
-        fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_SCALAR);
+        OWNED fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_SCALAR);
         const double *c[3] = {scene->x, scene->y, scene->z};
         double side = scene->high[0] - scene->low[0];
         for (int round = 0; round < 200; round++) {
@@ -361,7 +338,6 @@ TEST(walks_find_what_is_there) {
                 ck_assert_int_eq(seen, expected);
             }
         }
-        free(scene);
         bed_free(&beds[b]);
     }
 }
@@ -370,26 +346,23 @@ TEST(walks_find_what_is_there) {
 TEST(cells_follow_the_spheres) {
     static const double spans[][3] = {{1, 1, 1}, {1000, 1, 1}, {1, 1e6, 1e6}, {1e-3, 1, 1e3}};
     for (size_t s = 0; s < sizeof spans / sizeof *spans; s++) {
-        struct bed bed;
+        OWNED_BED bed;
         bed_init(&bed);
         for (uint64_t i = 0; i < 4000; i++)
             add_sphere(&bed, spans[s][0] * bed_make_random(5, 3 * i), spans[s][1] * bed_make_random(5, 3 * i + 1),
                        spans[s][2] * bed_make_random(5, 3 * i + 2), 1e-7);
-        fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_SCALAR);
+        OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_SCALAR);
         ck_assert_uint_le(scene->facts.cells, 4000 + 8);
         uint32_t most = 0;
         for (uint32_t c = 0; c < scene->facts.cells; c++)
             if (scene->start[c + 1] - scene->start[c] > most) most = scene->start[c + 1] - scene->start[c];
         ck_assert_uint_le(most, 16);
-        free(scene);
-        bed_free(&bed);
     }
 }
 
 /* Found by fuzzing: rounding left both coordinates out of the box between them, and the choice of cells had no end. */
 TEST(one_stray_beside_equal_coordinates) {
-    struct bed bed = bed_of(1, (const double[][4]){{20, 0, 0, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{20, 0, 0, 1}});
     for (int i = 0; i < 30; i++) add_sphere(&bed, 1.3, 2.5 * i, 0, 1);
     free(scene_of(&bed, FIBRAD_ISA_BEST));
-    bed_free(&bed);
 }

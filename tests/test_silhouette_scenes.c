@@ -74,7 +74,7 @@ static bool look_along(const fibrad_scene *scene, fibrad_workspace *space, uint3
 /* Factors by windows, averaged with their partners. */
 static void rows_by_windows(const fibrad_scene *scene, const struct bed *bed, uint32_t lines) {
     double frame[LINES_MOST][9];
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     fibrad_workspace *space;
     frames_of(lines, frame);
     ck_assert_int_eq(fibrad_work_open(&work, scene, 0, 0, &space), FIBRAD_OK);
@@ -92,18 +92,17 @@ static void rows_by_windows(const fibrad_scene *scene, const struct bed *bed, ui
             windows[i][j] = mean / a_i, windows[j][i] = mean / a_j;
         }
     }
-    work_free(&work);
 }
 
 static void rows_by_silhouettes(const fibrad_scene *scene, const struct bed *bed, uint32_t lines) {
     const fibrad_silhouette_rule rule = {.lines = lines};
     const size_t size = fibrad_silhouettes_size(scene, &rule);
-    void *block = block_of(size);
+    OWNED void *block = block_of(size);
     fibrad_silhouettes *s;
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     fibrad_pairs pairs = {.memory = memory_growing()};
     fibrad_memory index = memory_growing();
-    fibrad_row row = row_of(bed->n);
+    OWNED_ROW row = row_of(bed->n);
     ck_assert_int_eq(fibrad_silhouettes_init(&s, block, size, scene, &rule), FIBRAD_OK);
     for (uint32_t task = 0; task < fibrad_silhouettes_tasks(s); task++)
         ck_assert_int_eq(fibrad_silhouettes_task(s, &work, task, &pairs), FIBRAD_OK);
@@ -114,11 +113,8 @@ static void rows_by_silhouettes(const fibrad_scene *scene, const struct bed *bed
         for (uint32_t k = 0; k < row.length; k++) silhouettes[i][row.col[k]] = row.f[k];
         silhouettes[i][NOTHING] = row.escaped;
     }
-    row_free(&row);
-    work_free(&work);
     free(pairs.memory.block);
     free(index.block);
-    free(block);
 }
 
 /* How far the methods may differ, over the smaller area, and how far a row may be from 1. */
@@ -228,11 +224,9 @@ static void compare_scenes(const char *what, uint32_t usual, struct bounds most,
     for (uint64_t seed = 1; seed <= scenes; seed++) {
         struct chance chance = {.seed = seed};
         const uint32_t lines = 8 + random_below(&chance, 14);
-        struct bed bed = make(&chance, lines);
-        fibrad_scene *scene = NULL;
+        OWNED_BED bed = make(&chance, lines);
+        OWNED fibrad_scene *scene = NULL;
         if (scene_try(&scene, &bed, NULL, NULL) == FIBRAD_OK) compare(scene, &bed, lines, most, what, seed), compared++;
-        free(scene);
-        bed_free(&bed);
     }
     ck_assert_uint_ge(compared, scenes - scenes / 5);
 }

@@ -148,11 +148,11 @@ static void follow_all_circles(const struct bed *bed, uint32_t directions, int i
 
 /* Rows by windows against silhouettes of the same directions; rows by silhouettes add up to 1. */
 static void compare_methods(struct bed bed, uint32_t directions, int images, const char *what) {
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = directions});
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_ROWS rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = directions});
     static double f[N_MOST][N_MOST];
     ck_assert_uint_le(bed.n, N_MOST);
-    struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = true});
+    OWNED_MATRIX m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = true});
     memset(f, 0, sizeof f);
     for (uint32_t i = 0; i < bed.n; i++)
         for (uint64_t e = m.factors.start[i]; e < m.factors.start[i + 1]; e++) f[i][m.factors.col[e]] = m.factors.f[e];
@@ -170,9 +170,6 @@ static void compare_methods(struct bed bed, uint32_t directions, int images, con
         }
         ck_assert_msg(fabs(sum - 1) <= 1e-13, "%s: row %u adds up to 1 + %.3g", what, i, sum - 1);
     }
-    matrix_free(&m);
-    rows_free(&rows);
-    free(scene);
     bed_free(&bed);
 }
 
@@ -180,7 +177,7 @@ static void compare_methods(struct bed bed, uint32_t directions, int images, con
 static fibrad_rows rows_by_silhouettes(const fibrad_scene *scene, uint32_t lines) {
     const fibrad_silhouette_rule rule = {.lines = lines};
     const size_t size = fibrad_silhouettes_size(scene, &rule);
-    void *block = malloc(size);
+    OWNED void *block = malloc(size);
     fibrad_silhouettes *s;
     fibrad_work work = {.memory = memory_growing()};
     fibrad_pairs pairs = {.memory = memory_growing()};
@@ -199,18 +196,16 @@ static fibrad_rows rows_by_silhouettes(const fibrad_scene *scene, uint32_t lines
     free(work.memory.block);
     free(pairs.memory.block);
     free(index.block);
-    free(block);
     return rows;
 }
 
 static void dense_of(const fibrad_scene *scene, fibrad_rows *rows, double f[N_MOST][N_MOST + 1]) {
-    struct matrix m = matrix_of(scene, rows, 1, &(fibrad_matrix_rule){.raw = true});
+    OWNED_MATRIX m = matrix_of(scene, rows, 1, &(fibrad_matrix_rule){.raw = true});
     memset(f, 0, N_MOST * sizeof *f);
     for (uint32_t i = 0; i < m.factors.n; i++) {
         for (uint64_t e = m.factors.start[i]; e < m.factors.start[i + 1]; e++) f[i][m.factors.col[e]] = m.factors.f[e];
         f[i][NOTHING] = m.factors.escaped[i];
     }
-    matrix_free(&m);
     rows_free(rows);
 }
 
@@ -218,7 +213,7 @@ static void dense_of(const fibrad_scene *scene, fibrad_rows *rows, double f[N_MO
 static void compare_kernel(struct bed bed, const char *what) {
     enum { LINES = 2053 };
     static double windows[N_MOST][N_MOST + 1], silhouettes[N_MOST][N_MOST + 1];
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = LINES});
     dense_of(scene, &rows, windows);
     rows = rows_by_silhouettes(scene, LINES);
@@ -236,7 +231,6 @@ static void compare_kernel(struct bed bed, const char *what) {
     }
     ck_assert_msg(worst <= 1e-12, "%s: windows and silhouettes differ by %.3g", what, worst);
     ck_assert_msg(closure <= 1e-13, "%s: a row adds up to 1 + %.3g", what, closure);
-    free(scene);
     bed_free(&bed);
 }
 

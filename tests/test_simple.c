@@ -30,7 +30,7 @@ static void rows_by_silhouettes(const fibrad_scene *scene, uint32_t n, uint32_t 
                                 fibrad_rows *rows) {
     const fibrad_silhouette_rule rule = {.lines = lines};
     const size_t size = fibrad_silhouettes_size(scene, &rule);
-    void *block = malloc(size);
+    OWNED void *block = malloc(size);
     fibrad_silhouettes *s;
     fibrad_pairs pairs = {.memory.resize = fibrad_heap_resize};
     fibrad_memory index = {.resize = fibrad_heap_resize};
@@ -42,7 +42,6 @@ static void rows_by_silhouettes(const fibrad_scene *scene, uint32_t n, uint32_t 
     for (uint32_t i = 0; i < n; i++) ck_assert_int_eq(fibrad_silhouettes_row(s, work, i, &row), FIBRAD_OK);
     free(pairs.memory.block);
     free(index.block);
-    free(block);
 }
 
 /* Adds all rows by beams to a collection. */
@@ -61,7 +60,7 @@ static void rows_one_by_one(const fibrad_scene *scene, uint32_t n, uint32_t bodi
 /* The same by the kernel, rows in the order of the spheres: raw ones by beams, or all by silhouettes. */
 static void *kernel_matrix(const struct bed *bed, const fibrad_scene_config *config, const fibrad_beam_rule *rule,
                            bool raw, fibrad_factors *factors) {
-    fibrad_scene *scene = scene_with(bed, config);
+    OWNED fibrad_scene *scene = scene_with(bed, config);
     fibrad_work work = {.memory.resize = fibrad_heap_resize};
     fibrad_rows rows = {.memory.resize = fibrad_heap_resize};
     if (raw)
@@ -77,19 +76,18 @@ static void *kernel_matrix(const struct bed *bed, const fibrad_scene_config *con
     ck_assert_int_eq(fibrad_matrix_read(matrix, factors), FIBRAD_OK);
     free(work.memory.block);
     free(rows.memory.block);
-    free(scene);
     return block;
 }
 
 TEST(view_factors_are_the_kernels) {
-    struct bed bed = packing(300, .8, 1.2, .5, 3, false);
+    OWNED_BED bed = packing(300, .8, 1.2, .5, 3, false);
     const fibrad_body body[] = {plane_at(2, 0, -20), cylinder_at(10, 10, 60)};
     const fibrad_plane opening = {2, 1, 90};
     const fibrad_scene_config config = {.body = body, .bodies = 2, .opening = &opening, .openings = 1};
     const fibrad_spheres spheres = spheres_of(&bed);
     const fibrad_beam_rule rule = {.directions = 40};
     fibrad_factors expected;
-    void *block = kernel_matrix(&bed, &config, &rule, false, &expected);
+    OWNED void *block = kernel_matrix(&bed, &config, &rule, false, &expected);
     for (int t = 0; t < 3; t++) {
         fibrad_run run = {.threads = threads[t]};
         fibrad_bed_factors *factors;
@@ -104,8 +102,6 @@ TEST(view_factors_are_the_kernels) {
         ck_assert(factors->body_area[0] > 0 && isfinite(factors->body_area[1]));
         fibrad_bed_free(factors);
     }
-    free(block);
-    bed_free(&bed);
 }
 
 struct calls {
@@ -125,14 +121,14 @@ static int count_calls(void *context, const char *stage, uint64_t done, uint64_t
 
 /* Rows of spheres far larger than most are divided over threads, and all rows where they are fewer than threads. */
 TEST(long_rows_are_divided) {
-    struct bed bed = strewn(300, 3);
+    OWNED_BED bed = strewn(300, 3);
     const fibrad_body floor = plane_at(2, 0, -.3);
     const fibrad_scene_config config = {.body = &floor, .bodies = 1};
     const fibrad_spheres spheres = spheres_of(&bed);
     const fibrad_beam_rule rule = {.directions = 60};
     unsigned char two[300] = {[1] = 1, [200] = 1};
     fibrad_factors expected;
-    void *block = kernel_matrix(&bed, &config, &rule, true, &expected);
+    OWNED void *block = kernel_matrix(&bed, &config, &rule, true, &expected);
     fibrad_bed_factors *factors, *alone[3];
     for (int t = 0; t < 3; t++) {
         struct calls calls = {0};
@@ -150,13 +146,11 @@ TEST(long_rows_are_divided) {
     }
     ck_assert_uint_gt(alone[0]->matrix.start[300], 100);
     for (int t = 0; t < 3; t++) fibrad_bed_free(alone[t]);
-    free(block);
-    bed_free(&bed);
 }
 
 /* Every other method and option: the same for any number of threads. */
 TEST(nothing_depends_on_threads) {
-    struct bed bed = packing(200, .8, 1.2, .5, 3, true);
+    OWNED_BED bed = packing(200, .8, 1.2, .5, 3, true);
     const fibrad_scene_config config = box_of(&bed);
     const fibrad_spheres spheres = spheres_of(&bed);
     unsigned char wanted[200] = {0};
@@ -189,11 +183,10 @@ TEST(nothing_depends_on_threads) {
         ck_assert_int_eq(isnan(first->reciprocity_error) != 0, options[k].wanted != NULL);
         fibrad_bed_free(first);
     }
-    bed_free(&bed);
 }
 
 TEST(exchange_does_not_depend_on_threads) {
-    struct bed bed = packing(150, .8, 1.2, .5, 3, true);
+    OWNED_BED bed = packing(150, .8, 1.2, .5, 3, true);
     const fibrad_scene_config config = box_of(&bed);
     const fibrad_spheres spheres = spheres_of(&bed);
     double emissivity[150];
@@ -216,12 +209,11 @@ TEST(exchange_does_not_depend_on_threads) {
     }
     ck_assert_double_lt(first->reciprocity_error, 1e-12);
     fibrad_bed_free(first);
-    bed_free(&bed);
 }
 
 /* Spheres that reflect all have empty rows, which are no fault of closure; a bed of nothing else is empty. */
 TEST(reflectors_have_empty_rows) {
-    struct bed bed = packing(150, .8, 1.2, .5, 3, true);
+    OWNED_BED bed = packing(150, .8, 1.2, .5, 3, true);
     const fibrad_scene_config config = box_of(&bed);
     const fibrad_spheres spheres = spheres_of(&bed);
     double emissivity[150];
@@ -243,7 +235,6 @@ TEST(reflectors_have_empty_rows) {
             ck_assert_int_eq(fibrad_displacements(&config, &spheres, &rule, NULL, NULL, moved, NULL), FIBRAD_OK);
             for (uint32_t i = 0; i < 150; i++) ck_assert((moved[i].square[0] > 0) == (emissivity[i] > 0));
         }
-    bed_free(&bed);
 }
 
 /* Whether an address is in a file of the folder; so it is where the system does not say. */
@@ -263,7 +254,7 @@ static bool is_filed(const void *address, const char *folder) {
 /* Rows and matrix in files are those in memory, walls and all, for any number of threads; nothing is left behind. */
 TEST(factors_in_files) {
     char folder[] = "/tmp/fibrad_filed_XXXXXX";
-    struct bed bed = packing(300, .8, 1.2, .5, 3, false);
+    OWNED_BED bed = packing(300, .8, 1.2, .5, 3, false);
     const fibrad_body body[] = {plane_at(2, 0, -20), cylinder_at(10, 10, 60)};
     const fibrad_plane opening = {2, 1, 90};
     const fibrad_scene_config config = {.body = body, .bodies = 2, .opening = &opening, .openings = 1};
@@ -293,12 +284,11 @@ TEST(factors_in_files) {
         fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_options){.scratch = folder}, NULL, &none),
         FIBRAD_E_FILE);
     ck_assert_ptr_null(none);
-    bed_free(&bed);
 }
 
 /* A file that may not grow any more is an error. */
 TEST(full_disk) {
-    struct bed bed = packing(300, .8, 1.2, .5, 3, false);
+    OWNED_BED bed = packing(300, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     struct rlimit limit;
     fibrad_bed_factors *none;
@@ -311,13 +301,12 @@ TEST(full_disk) {
     setrlimit(RLIMIT_FSIZE, &limit); /* for what the test itself writes */
     ck_assert_int_eq(status, FIBRAD_E_MEMORY);
     ck_assert_ptr_null(none);
-    bed_free(&bed);
 }
 
 /* ---- errors ------------------------------------------------------------------------------------------------------ */
 
 TEST(faults_name_spheres) {
-    struct bed bed = packing(100, .8, 1.2, .5, 3, false);
+    OWNED_BED bed = packing(100, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     fibrad_bed_factors *factors = (void *)&bed;
     fibrad_run run = {.threads = 2};
@@ -345,14 +334,13 @@ TEST(faults_name_spheres) {
     ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, &run, &factors), FIBRAD_E_ARGUMENT);
     ck_assert(run.fault.first == 5 && run.fault.second == 5);
     ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, NULL, &factors), FIBRAD_E_ARGUMENT);
-    bed_free(&bed);
 }
 
 /* Of several rows that fail the same is named for any number of threads, divided or not; a call that is cancelled names
  * none. */
 TEST(faults_of_divided_rows) {
-    struct bed bed = strewn(300, 3);
-    struct mesh *mesh = mesh_new();
+    OWNED_BED bed = strewn(300, 3);
+    OWNED struct mesh *mesh = mesh_new();
     const fibrad_spheres spheres = spheres_of(&bed);
     fibrad_fault first = {0, 0, 0, 0, 0};
     fibrad_bed_factors *factors;
@@ -371,12 +359,10 @@ TEST(faults_of_divided_rows) {
         ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, &run, &factors), FIBRAD_E_CANCELLED);
         ck_assert(run.fault.first == 300 && run.fault.second == 300);
     }
-    free(mesh);
-    bed_free(&bed);
 }
 
 TEST(arguments) {
-    struct bed bed = packing(10, .8, 1.2, .4, 3, false);
+    OWNED_BED bed = packing(10, .8, 1.2, .4, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     fibrad_bed_factors *factors;
     fibrad_radiation *radiation;
@@ -413,13 +399,12 @@ TEST(arguments) {
     ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, NULL, &factors), FIBRAD_OK);
     ck_assert_int_eq(factors->threads, 1024);
     fibrad_bed_free(factors);
-    bed_free(&bed);
 }
 
 /* ---- progress ---------------------------------------------------------------------------------------------------- */
 
 TEST(progress_and_cancelling) {
-    struct bed bed = packing(200, .8, 1.2, .5, 3, false);
+    OWNED_BED bed = packing(200, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     const fibrad_bed_options options = {.beam = &(fibrad_beam_rule){.directions = 200}};
     for (int t = 0; t < 3; t++) {
@@ -436,12 +421,11 @@ TEST(progress_and_cancelling) {
             ck_assert_ptr_null(factors);
         }
     }
-    bed_free(&bed);
 }
 
 /* Rows that are divided do not report each by itself. */
 TEST(progress_of_short_rows) {
-    struct bed bed = bed_of(0, NULL);
+    OWNED_BED bed = bed_of(0, NULL);
     for (int k = 0; k < 400; k++) add_sphere(&bed, 9 * k, 0, 0, 1);
     for (int k = 0; k < 8000; k++) add_sphere(&bed, .1 * k, 99, 0, .01);
     const fibrad_spheres spheres = spheres_of(&bed);
@@ -455,7 +439,6 @@ TEST(progress_of_short_rows) {
     ck_assert(calls.ends >= 1 && calls.total == 400);
     ck_assert_uint_lt(calls.count, 400); /* in less than 20 seconds */
     fibrad_bed_free(factors);
-    bed_free(&bed);
 }
 
 /* ---- heat -------------------------------------------------------------------------------------------------------- */
@@ -477,7 +460,7 @@ static void powers(fibrad_radiation *radiation, const fibrad_heat_sources *sourc
 }
 
 TEST(radiation_moves) {
-    struct bed bed = packing(N, .8, 1.2, .5, 3, false);
+    OWNED_BED bed = packing(N, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed), fewer = {bed.x, bed.y, bed.z, bed.r, N - 1, 0, 0, NULL};
     const fibrad_heat_config config = {.directions = 20, .patches = 24};
     const fibrad_body wall = plane_at(0, 0, -5);
@@ -529,7 +512,6 @@ TEST(radiation_moves) {
         for (int i = 0; i < N; i++) bed.z[i] /= 1.1;
         fibrad_radiation_free(radiation);
     }
-    bed_free(&bed);
 }
 
 /* How often beams were begun again. */
@@ -548,7 +530,7 @@ static int count_returns(void *context, const char *stage, uint64_t done, uint64
 /* A bed that comes apart sees more others than there is room for: it gets more, and all is as if it had begun so. */
 TEST(radiation_gets_more_room) {
     enum { MANY = 800 };
-    struct bed bed = packing(MANY, 1, 1, .6, 3, false);
+    OWNED_BED bed = packing(MANY, 1, 1, .6, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     const fibrad_heat_config config = {.patches = 96, .directions = 672};
     double temperature[MANY], emissivity[MANY], moved[MANY], begun[MANY];
@@ -569,11 +551,10 @@ TEST(radiation_gets_more_room) {
     powers(radiation, &sources, begun);
     ck_assert_mem_eq(moved, begun, sizeof moved);
     fibrad_radiation_free(radiation);
-    bed_free(&bed);
 }
 
 TEST(radiation_with_walls) {
-    struct bed bed = packing(N, .8, 1.2, .5, 3, false);
+    OWNED_BED bed = packing(N, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     double temperature[N], emissivity[N], power[N], wall_power[6], wall_temperature[6], wall_emissivity[6];
     for (int i = 0; i < N; i++) temperature[i] = 400, emissivity[i] = .6;
@@ -598,7 +579,6 @@ TEST(radiation_with_walls) {
         for (int i = 0; i < N; i++) ck_assert_double_lt(fabs(power[i]), 1e-6); /* all at one temperature */
     }
     fibrad_radiation_free(radiation);
-    bed_free(&bed);
 }
 
 /* A law that is asked how often, and answers something else than an emissivity the time `fails`. */

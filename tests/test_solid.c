@@ -33,7 +33,7 @@ TEST(relative_conductivities) {
     static const double sigma = 5.670374419e-8, temperature[] = {1000, 500};
     char by_type[300];
     snprintf(by_type, sizeof by_type, "1:@%s,2:20", write_file("k.csv", "T,k\n900,3\n1100,5\n"));
-    struct bed bed = two_spheres();
+    OWNED_BED bed = two_spheres();
     for (int k = 0; k < 2; ++k) {
         struct bed_options options = {.name = "bed", .length_unit = "mm"};
         struct quantity solid;
@@ -49,12 +49,11 @@ TEST(relative_conductivities) {
         free(conductivity);
         quantity_free(&solid);
     }
-    bed_free(&bed);
 }
 
 /* What has no k*. */
 TEST(no_relative_conductivity) {
-    struct bed bed = two_spheres();
+    OWNED_BED bed = two_spheres();
     struct bed_options options = {.name = "bed"};
     struct quantity solid;
     double *conductivity, metres, relative[2];
@@ -70,7 +69,6 @@ TEST(no_relative_conductivity) {
     const double hot[] = {1000, 1e5};
     ck_assert_int_eq(solid_relative(&options, &bed, &solid, hot, metres, conductivity, relative), 3);
     free(conductivity);
-    bed_free(&bed);
 }
 
 /* ---- a ball ------------------------------------------------------------------------------------------------------ */
@@ -126,14 +124,13 @@ TEST(extremes_of_a_ball) {
 static struct conduction walk(const struct bed *bed, const double *emissivity, const double *conductivity,
                               double error) {
     struct conduction result;
-    unsigned char *emits = malloc(bed->n);
+    OWNED unsigned char *emits = malloc(bed->n);
     fibrad_run run = {.threads = 1};
     const struct conduction_rule rule = {
         .emissivity = emissivity, .conductivity = conductivity, .axis = -1, .error = error, .max_rays = 100000000};
     ck_assert_ptr_nonnull(emits);
     ck_assert_int_eq(conduction_emitters(bed, -1, CONDUCTION_MARGIN_WALK, "bed", emits, &result), 0);
     ck_assert_int_eq(conduction_follow(bed, emits, &rule, &run, &result), FIBRAD_OK);
-    free(emits);
     return result;
 }
 
@@ -150,7 +147,7 @@ LOOP_TEST(simple_cubic, 14) {
         double k_star, factor[2]; /* at emissivities 1 and .6 */
     } known[] = {{.01, {.2376, .2373}}, {.1, {.3591, .3430}},  {.3, {.5294, .4614}},       {1, {.8006, .5979}},
                  {3, {1.0136, .6745}},  {10, {1.1350, .7099}}, {INFINITY, {1.2001, .7270}}};
-    struct bed bed;
+    OWNED_BED bed;
     bed_init(&bed);
     ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.r = 1}), 0);
     for (int axis = 0; axis < 3; ++axis) bed.period[axis] = 2;
@@ -161,7 +158,6 @@ LOOP_TEST(simple_cubic, 14) {
     ck_assert_double_le(sqrt(square), .03 * truth);
     ck_assert_double_eq_tol(mean, truth, 3 * sqrt(square) + .01 * truth); /* .01: rare flights along channels */
     ck_assert_double_eq(k_star_mean(&found.k_star), known[_i / 2].k_star);
-    bed_free(&bed);
 }
 
 /* A plain solution by harmonics: degrees up to DEGREE of the radiosity J of each sphere, whose overlaps come from rays.
@@ -247,7 +243,7 @@ static void trace_overlaps(const struct bed *bed, struct overlaps *o) {
 
 /* F_E along z. J_l = (1 - e_l) H_l with 1/e_l = 1/e + 1/(2 k* l), and e_0 = 0: no sphere gains anything. */
 static double factor_by_harmonics(const struct bed *bed, const double *emissivity, const double *conductivity) {
-    struct overlaps *o = calloc(1, sizeof *o);
+    OWNED struct overlaps *o = calloc(1, sizeof *o);
     gsl_matrix *matrix = gsl_matrix_calloc(UNKNOWN, UNKNOWN);
     gsl_vector *right = gsl_vector_calloc(UNKNOWN), *j = gsl_vector_calloc(UNKNOWN);
     gsl_permutation *order = gsl_permutation_alloc(UNKNOWN);
@@ -274,7 +270,6 @@ static double factor_by_harmonics(const struct bed *bed, const double *emissivit
         diameter += 2 * bed->r[i] / SPHERES;
     }
     gsl_permutation_free(order), gsl_vector_free(j), gsl_vector_free(right), gsl_matrix_free(matrix);
-    free(o);
     return -flux / (bed->period[0] * bed->period[1] * bed->period[2] * diameter);
 }
 
@@ -282,7 +277,7 @@ static double factor_by_harmonics(const struct bed *bed, const double *emissivit
 LOOP_TEST(random_beds, 2) {
     static const double low[] = {1, .7}, fraction[] = {.5, .45};
     double emissivity[SPHERES], conductivity[SPHERES];
-    struct bed bed;
+    OWNED_BED bed;
     bed_init(&bed);
     ck_assert_int_eq(bed_make_packing(&bed, SPHERES, low[_i], 2 - low[_i], fraction[_i], 3), 0);
     for (uint32_t i = 0; i < bed.n; ++i) {
@@ -292,17 +287,16 @@ LOOP_TEST(random_beds, 2) {
     const double truth = factor_by_harmonics(&bed, emissivity, conductivity);
     const struct conduction found = walk(&bed, emissivity, conductivity, .007);
     ck_assert_double_eq_tol(found.factor[2], truth, .015 * truth);
-    bed_free(&bed);
 }
 
 /* A bed with open ends: its core has F_E of the periodic bed that it is cut from. */
 TEST(open_beds) {
-    struct bed cell, bed;
+    OWNED_BED cell, bed;
     bed_init(&cell), bed_init(&bed);
     ck_assert_int_eq(bed_make_packing(&cell, 1000, 1, 1, .55, 1), 0);
     ck_assert_int_eq(bed_make_copies(&bed, &cell, (const uint32_t[]){2, 2, 2}), 0);
     memset(bed.period, 0, sizeof bed.period);
-    double *emissivity = malloc(bed.n * sizeof *emissivity), *conductivity = malloc(bed.n * sizeof *conductivity);
+    OWNED double *emissivity = malloc(bed.n * sizeof *emissivity), *conductivity = malloc(bed.n * sizeof *conductivity);
     ck_assert(emissivity && conductivity);
     for (uint32_t i = 0; i < bed.n; ++i) emissivity[i] = .9, conductivity[i] = 2;
     const struct conduction open = walk(&bed, emissivity, conductivity, .01),
@@ -311,15 +305,13 @@ TEST(open_beds) {
     const double found = mean_factor(&open, &square), truth = mean_factor(&whole, &square);
     ck_assert_double_gt(open.escaped, 0);
     ck_assert_double_eq_tol(found, truth, 3 * sqrt(square) + .01 * truth); /* .01: other spheres */
-    free(emissivity), free(conductivity);
-    bed_free(&cell), bed_free(&bed);
 }
 
 /* With k* of 1e6 F_E is that of spheres with one temperature. All spheres at temperatures on a line, or at those at
  * which they gain nothing: docs/heat.md has the difference, .1 %. */
 TEST(good_conductors) {
     double emissivity[300], conductivity[300];
-    struct bed bed;
+    OWNED_BED bed;
     bed_init(&bed);
     ck_assert_int_eq(bed_make_packing(&bed, 300, .8, 1.2, .55, 1), 0);
     for (uint32_t i = 0; i < bed.n; ++i) emissivity[i] = .8, conductivity[i] = 1e6;
@@ -329,7 +321,6 @@ TEST(good_conductors) {
     const double found = mean_factor(&solid, &square), truth = mean_factor(&one, &square);
     ck_assert_double_eq_tol(found, truth, 3 * sqrt(square) + .004 * truth);
     ck_assert(isnan(k_star_mean(&one.k_star)) && solid.k_star.least == 1e6);
-    bed_free(&bed);
 }
 
 /* What the kernel refuses. */
@@ -366,14 +357,13 @@ TEST(refusals) {
 /* Eight copies of a random bed, one above the other; `period` becomes that of a copy. */
 static const char *write_tower(double period[3]) {
     char *text = malloc(60 * 8 * 80), *at = text + sprintf(text, "x,y,z,r\n");
-    struct bed bed;
+    OWNED_BED bed;
     bed_init(&bed);
     ck_assert_int_eq(bed_make_packing(&bed, 60, 1, 1, .55, 1), 0);
     for (int copy = 0; copy < 8; ++copy)
         for (uint32_t i = 0; i < bed.n; ++i)
             at += sprintf(at, "%.15g,%.15g,%.15g,%g\n", bed.x[i], bed.y[i], bed.z[i] + copy * bed.period[2], bed.r[i]);
     memcpy(period, bed.period, sizeof bed.period);
-    bed_free(&bed);
     const char *file = write_file("tower.csv", text);
     free(text);
     return file;
@@ -403,9 +393,8 @@ TEST(outputs) {
         SUCCEED("conductivity", OF_CELL, "1000", "--length-unit", "mm", "--solid-conductivity", solid[k], "--threads",
                 k ? "3" : "1", "-o", csv, "-o", json, "--json", summary);
         ck_assert_double_eq_tol(json_of(summary, "k_star"), k_star, 1e-12);
-        char *object = read_file(json);
+        OWNED char *object = read_file(json);
         ck_assert_double_eq_tol(strtod(strstr(object, "\"k_star_max\":") + 13, NULL), k_star, 1e-12);
-        free(object);
         ck_assert_double_eq_tol(json_of(summary, "k_x_W_mK"), json_of(summary, "F_E_x") * 13.6 / k_star, 1e-9);
         ck_assert(!strstr(printed, "isothermal") && !strstr(printed, "k_star_min"));
         text[k] = read_file(csv);

@@ -33,22 +33,18 @@ static double exact(double r1, double r2, double gap) {
 }
 
 static fibrad_row beam(const struct bed *bed, uint32_t i, uint32_t directions) {
-    fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
+    OWNED fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
     fibrad_row row = row_of(bed->n);
     ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = directions}, &row), FIBRAD_OK);
-    free(scene);
-    work_free(&work);
     return row;
 }
 
 static fibrad_row rays(const struct bed *bed, uint32_t i, uint32_t number) {
-    fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
+    OWNED fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
     fibrad_row row = row_of(bed->n);
     ck_assert_int_eq(fibrad_cast_row(scene, &work, i, &(fibrad_cast_rule){.rays = number}, &row, NULL), FIBRAD_OK);
-    free(scene);
-    work_free(&work);
     return row;
 }
 
@@ -81,8 +77,8 @@ TEST(pairs_at_every_scale) {
 
 TEST(rows_at_every_scale) {
     static const double nowhere[3] = {0, 0, 0};
-    struct bed bed = packing(100, .5, 1.5, .5, 3, false), scaled = packing(100, .5, 1.5, .5, 3, false);
-    fibrad_row row = beam(&bed, 42, 55), cast = rays(&bed, 42, 500);
+    OWNED_BED bed = packing(100, .5, 1.5, .5, 3, false), scaled = packing(100, .5, 1.5, .5, 3, false);
+    OWNED_ROW row = beam(&bed, 42, 55), cast = rays(&bed, 42, 500);
     double two = 0, two_cast = 0, ten = 0;
     for (int k = -400; k <= 400; k += all() ? 1 : 25) {
         move(&scaled, &bed, ldexp(1, k), nowhere);
@@ -101,9 +97,6 @@ TEST(rows_at_every_scale) {
     report("rows times 2^k, k = -400 ... 400: results with other bits", two, 0);
     report("rows by rays times 2^k: results with other bits", two_cast, 0);
     report("rows times 10^k, k = -100 ... 100", ten, 1e-13);
-    row_free(&row), row_free(&cast);
-    bed_free(&bed);
-    bed_free(&scaled);
 }
 
 /* Moved coordinates are rounded; the row of the rounded bed, moved back without a further rounding, tells how much of
@@ -113,16 +106,14 @@ TEST(rows_far_from_the_origin) {
         double offset = pow(10, e), own = 0, loss = 0, away[3] = {offset, -.7 * offset, .3 * offset};
         double back[3] = {-away[0], -away[1], -away[2]};
         for (uint64_t seed = 0; seed < rounds(2, 20); seed++) {
-            struct bed bed = packing(100, .5, 1.5, .5, 30 + seed, false), far = packing(100, .5, 1.5, .5, 1, false);
-            struct bed rounded = packing(100, .5, 1.5, .5, 1, false);
+            OWNED_BED bed = packing(100, .5, 1.5, .5, 30 + seed, false), far = packing(100, .5, 1.5, .5, 1, false);
+            OWNED_BED rounded = packing(100, .5, 1.5, .5, 1, false);
             move(&far, &bed, 1, away);
             move(&rounded, &far, 1, back);
             memcpy(rounded.r, bed.r, bed.n * sizeof *bed.r), memcpy(far.r, bed.r, bed.n * sizeof *bed.r);
-            fibrad_row here = beam(&bed, 7, 100), there = beam(&far, 7, 100), same = beam(&rounded, 7, 100);
+            OWNED_ROW here = beam(&bed, 7, 100), there = beam(&far, 7, 100), same = beam(&rounded, 7, 100);
             worst_of(&own, row_distance(&there, &same));
             worst_of(&loss, row_distance(&there, &here));
-            row_free(&here), row_free(&there), row_free(&same);
-            bed_free(&bed), bed_free(&far), bed_free(&rounded);
         }
         char attack[100];
         snprintf(attack, sizeof attack, "rows 1e%d radii from the origin: beyond rounding of coordinates", e);
@@ -169,16 +160,14 @@ TEST(beams_across_contact) {
         double w[3] = {sqrt(1 - t * t) * cos(p), sqrt(1 - t * t) * sin(p), t}, last = 0, last_gap = 0;
         for (int k = -1000; k <= 1000; k++) {
             double gap = (k < 0 ? -1 : 1) * fmin(1, r2) * .5 * pow(abs(k) / 1000.0, 5), d = 1 + r2 + gap;
-            struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {d * w[0], d * w[1], d * w[2], r2}});
-            fibrad_row row = beam(&bed, 0, 144);
+            OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {d * w[0], d * w[1], d * w[2], r2}});
+            OWNED_ROW row = beam(&bed, 0, 144);
             double f = row_factor(&row, 1);
             if (k > -1000) {
                 worst_of(&rise, f - last);
                 worst_of(&jump, last - f - 2 * fmin(1, r2) * (gap - last_gap));
             }
             last = f, last_gap = gap;
-            row_free(&row);
-            bed_free(&bed);
         }
     }
     report("beams across contact, overlap .5 to gap .5: F rises by", rise, 1e-15);
@@ -194,16 +183,14 @@ TEST(radius_ratios) {
             worst_of(&reciprocity, fabs(there / back - 1));
         }
         double gap = .1 * fmin(1, r2), d = 1 + r2 + gap;
-        struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {.48 * d, .6 * d, .64 * d, r2}});
+        OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {.48 * d, .6 * d, .64 * d, r2}});
         double truth = exact(1, r2, gap);
-        fibrad_row row = beam(&bed, 0, 2000);
+        OWNED_ROW row = beam(&bed, 0, 2000);
         if (r2 >= 1)
             worst_of(&from_small, fabs(row_factor(&row, 1) - truth));
         else
             worst_of(&from_large, fabs(row_factor(&row, 1) - truth));
         worst_of(&open, closure(&row));
-        row_free(&row);
-        bed_free(&bed);
     }
     report("radius ratios 1e-6 ... 1e6, pairs: r1^2 F12 / r2^2 F21 - 1", reciprocity, 1e-14);
     report("radius ratios 1 ... 1e6, beams from the smaller sphere: F", from_small, 3e-3);
@@ -223,7 +210,7 @@ TEST(degenerate_windows) {
     fibrad_areas areas;
     fibrad_areas_layout(&areas, &arena, DISCS);
     size_t size = arena.used;
-    void *block = block_of(size);
+    OWNED void *block = block_of(size);
     memset(block, 0, size);
     arena = (fibrad_arena){block, 0, size};
     fibrad_areas_layout(&areas, &arena, DISCS);
@@ -259,7 +246,6 @@ TEST(degenerate_windows) {
         worst_of(&worst, fabs(rest - rest_expected));
         worst_of(&open, fabs(total - acos(-1)));
     }
-    free(block);
     /* three circles tangent in one point within rounding meet at points that are the root of that apart, 1.5e-8 */
     report("degenerate windows and 1 ulp beside them: visible area", worst, 1.5e-8);
     report("degenerate windows: sum of areas + rest - pi", open, 1.5e-8);
@@ -284,7 +270,7 @@ TEST(lattices_along_the_beams) {
                 for (int p = 0; p < 3; p++)
                     for (int q = 0; q < 3; q++)
                         m[p][q] = (p == q) + cross[p][q] + s * (v[p] * v[q] - (p == q) * square);
-                struct bed bed = lattice("pif"[kind], 7), moved = lattice("pif"[kind], 7);
+                OWNED_BED bed = lattice("pif"[kind], 7), moved = lattice("pif"[kind], 7);
                 for (uint32_t i = 0; i < bed.n; i++) {
                     double c[3] = {bed.x[i], bed.y[i], bed.z[i]};
                     double *to[3] = {&bed.x[i], &bed.y[i], &bed.z[i]},
@@ -294,11 +280,9 @@ TEST(lattices_along_the_beams) {
                         *other[p] = *to[p] + 1e-9 * random_in(4, -1, 1);
                     }
                 }
-                fibrad_row row = beam(&bed, 0, 34), other = beam(&moved, 0, 34);
+                OWNED_ROW row = beam(&bed, 0, 34), other = beam(&moved, 0, 34);
                 worst_of(&worst, row_distance(&row, &other));
                 worst_of(&open, closure(&row));
-                row_free(&row), row_free(&other);
-                bed_free(&bed), bed_free(&moved);
             }
     report("SC, BCC, FCC along the beams, against 1e-9 beside them", worst, 1e-7);
     report("SC, BCC, FCC along the beams: sum + escaped - 1", open, 1e-9); /* as for degenerate windows */
@@ -313,11 +297,10 @@ TEST(obstacle_across_a_pair) {
     for (uint64_t seed = 0; seed < rounds(3, 30); seed++) {
         double r2 = random_in(5, .3, 2), gap = random_in(5, 1.2, 3), r = random_in(5, .05, .5),
                y = random_in(5, -.7, .7);
-        struct bed pair = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 1 + r2 + gap, r2}});
+        OWNED_BED pair = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 1 + r2 + gap, r2}});
         fibrad_row row = beam(&pair, 0, 233);
         double without = row_factor(&row, 1), last = without, step = all() ? 1e-3 : 1e-2;
         row_free(&row);
-        bed_free(&pair);
         for (double x = -6; x <= 6; x += step) {
             struct bed bed =
                 bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 1 + r2 + gap, r2}, {x, y, 1 + gap / 2, r}});
@@ -340,18 +323,14 @@ TEST(obstacle_across_a_pair) {
 
 /* A dilute periodic box is opaque at last: of what leaves a sphere only a few beams find a channel without end. */
 TEST(sight_through_many_periods) {
-    struct bed bed = bed_of(1, (const double[][4]){{.1, .2, .3, .2}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{.1, .2, .3, .2}});
     for (int axis = 0; axis < 3; axis++) bed.period[axis] = 1;
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(1);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(1);
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 144}, &row), FIBRAD_OK);
     report("dilute periodic box: escaped", row.escaped, .05);
     report("dilute periodic box: sum + escaped - 1", closure(&row), 1e-12);
-    row_free(&row);
-    free(scene);
-    work_free(&work);
-    bed_free(&bed);
 }
 
 /* ---- random scenes ---------------------------------------------------------------------------------------------- */

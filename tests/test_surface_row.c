@@ -159,7 +159,7 @@ TEST(reciprocal_without_cutoff) {
 /* The rows of a matrix are as they were but for rounding, and as accurate as they said. */
 TEST(rows_of_a_matrix) {
     make(60, false);
-    fibrad_rows rows = {.memory = memory_growing()};
+    OWNED_ROWS rows = {.memory = memory_growing()};
     for (uint32_t i = 0; i < bed.n; i++)
         ck_assert_int_eq(fibrad_surface_row(scene, &work, i, NULL, &(fibrad_row){.rows = &rows}), FIBRAD_OK);
     struct matrix raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
@@ -175,7 +175,6 @@ TEST(rows_of_a_matrix) {
     }
     ck_assert_int_eq(fibrad_matrix_reciprocity(raw.matrix, &largest), FIBRAD_OK);
     ck_assert_double_le(largest, 1e-15);
-    rows_free(&rows);
     matrix_free(&raw), matrix_free(&m);
 }
 
@@ -243,20 +242,17 @@ TEST(refuses_what_is_wrong) {
     ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, &negative, &row), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, &flags, &row), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, &many, &row), FIBRAD_E_TABLE);
-    struct bed one = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED_BED one = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     const fibrad_body floor_plane = plane_at(2, 0, -2);
-    fibrad_scene *walled = scene_with(&one, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
+    OWNED fibrad_scene *walled = scene_with(&one, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
     double body = -5;
     row.body = &body;
     ck_assert_int_eq(fibrad_surface_row(walled, &work, 0, NULL, &row), FIBRAD_E_UNSUPPORTED);
     ck_assert(body == -5 && row.length == 77);
-    free(walled);
     /* a triangle that belongs to no wall */
     const double x[] = {-9, 9, 0}, y[] = {-9, -9, 9}, z[] = {2, 2, 2};
     const uint32_t corner[] = {0, 1, 2}, none = FIBRAD_NO_BODY;
     const fibrad_triangles triangle = {.x = x, .y = y, .z = z, .vertices = 3, .corner = corner, .front = &none, .n = 1};
-    fibrad_scene *cut = scene_with(&one, &(fibrad_scene_config){.triangles = &triangle});
+    OWNED fibrad_scene *cut = scene_with(&one, &(fibrad_scene_config){.triangles = &triangle});
     ck_assert_int_eq(fibrad_surface_row(cut, &work, 0, NULL, &row), FIBRAD_E_UNSUPPORTED);
-    free(cut);
-    bed_free(&one);
 }

@@ -89,8 +89,8 @@ static fibrad_hit try_all(const struct bed *bed, uint32_t from, const double o[3
 /* Paths of `bounces` reflections from some spheres of the bed, each ray against try_all. */
 static void follow(const struct bed *bed, const struct versions *version, int lists, int images, uint32_t paths,
                    int bounces) {
-    fibrad_scene *scene = scene_of(bed, version->isa);
-    fibrad_work work;
+    OWNED fibrad_scene *scene = scene_of(bed, version->isa);
+    OWNED_WORK work;
     fibrad_tracer *tracer = tracer_of(scene, lists, &work);
     uint32_t met = 0;
     for (uint32_t k = 0; k < paths; k++) {
@@ -122,40 +122,35 @@ static void follow(const struct bed *bed, const struct versions *version, int li
         }
     }
     ck_assert_uint_gt(met, paths / 4);
-    free(scene);
-    work_free(&work);
 }
 
 LOOP_TEST(random_beds, sizeof versions / sizeof *versions) {
     const struct versions *version = &versions[_i];
     if (version->isa > (int)fibrad_isa_best()) return;
     for (int kind = 0; kind < 4; kind++) {
-        struct bed bed = packing(150, kind == 3 ? .1 : kind == 0 ? 1 : .5, 1, kind == 2 ? .02 : .5, 3, kind != 1);
+        OWNED_BED bed = packing(150, kind == 3 ? .1 : kind == 0 ? 1 : .5, 1, kind == 2 ? .02 : .5, 3, kind != 1);
         follow(&bed, version, kind == 0 ? FEW : EACH, kind == 2 ? 4 : 2, 300, 4);
-        bed_free(&bed);
     }
 }
 
 /* Large spheres, near enough to be listed, behind small ones that are not. */
 TEST(small_spheres_before_large_ones) {
     for (uint64_t seed = 50; seed < 53; seed++) {
-        struct bed bed = strewn(600, seed);
+        OWNED_BED bed = strewn(600, seed);
         follow(&bed, &versions[0], EACH, 0, 3000, 3);
-        bed_free(&bed);
     }
 }
 
 /* Spheres that overlap by up to a third of a radius. */
 TEST(overlaps) {
-    struct bed bed = packing(100, .7, 1, .45, 5, true);
+    OWNED_BED bed = packing(100, .7, 1, .45, 5, true);
     for (uint32_t i = 0; i < bed.n; i++) bed.r[i] *= 1.15;
     follow(&bed, &versions[0], FEW, 2, 500, 4);
-    bed_free(&bed);
 }
 
 /* One large sphere with thousands of small ones about it: more than a list holds. */
 TEST(large_among_small) {
-    struct bed bed;
+    OWNED_BED bed;
     bed_init(&bed);
     add_sphere(&bed, 0, 0, 0, 1);
     for (uint32_t k = 0; k < 1500; k++) {
@@ -164,12 +159,11 @@ TEST(large_among_small) {
         add_sphere(&bed, d * w[0], d * w[1], d * w[2], .02);
     }
     follow(&bed, &versions[0], EACH, 0, 1500, 3);
-    bed_free(&bed);
 }
 
 /* More small spheres that overlap a large one than there is room for: no list at all. */
 TEST(studded_sphere) {
-    struct bed bed;
+    OWNED_BED bed;
     bed_init(&bed);
     add_sphere(&bed, 0, 0, 0, 1);
     for (uint32_t k = 0; k < 700; k++) {
@@ -178,28 +172,25 @@ TEST(studded_sphere) {
         add_sphere(&bed, 1.01 * w[0], 1.01 * w[1], 1.01 * w[2], .03);
     }
     follow(&bed, &versions[0], EACH, 0, 1400, 3);
-    bed_free(&bed);
 }
 
 /* One sphere a period: most of what it sees are images of itself. Rays along the channels of a lattice meet nothing. */
 TEST(one_sphere_and_its_images) {
-    struct bed bed = bed_of(1, (const double[][4]){{.3, .4, .5, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{.3, .4, .5, 1}});
     bed.period[0] = 2, bed.period[1] = 2.5, bed.period[2] = 3;
     follow(&bed, &versions[0], FEW, 12, 200, 5);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_hit hit;
     fibrad_trace_point_scalar(scene, (const double[3]){1.3, 1.65, 0}, (const double[3]){0, 0, 1}, FIBRAD_NO_SIDE, &hit);
     ck_assert_uint_eq(hit.sphere, FIBRAD_NONE);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* A stray sphere far off is seen, and sees the others. */
 TEST(stray) {
-    struct bed bed = packing(200, .5, 1, .3, 9, false);
+    OWNED_BED bed = packing(200, .5, 1, .3, 9, false);
     add_sphere(&bed, 4e6, 10, 10, 1e5);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work work;
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work;
     fibrad_tracer *tracer = tracer_of(scene, EACH, &work);
     fibrad_hit hit;
     const double right[3] = {1, 0, 0}, left[3] = {-1, 0, 0};
@@ -220,15 +211,12 @@ TEST(stray) {
         seen += hit.sphere != FIBRAD_NONE;
     }
     ck_assert_uint_eq(seen, 20);
-    free(scene);
-    work_free(&work);
-    bed_free(&bed);
 }
 
 TEST(from_points) {
     for (int periodic = 0; periodic <= 1; periodic++) {
-        struct bed bed = packing(150, .3, 1, .4, 11, periodic);
-        fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+        OWNED_BED bed = packing(150, .3, 1, .4, 11, periodic);
+        OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
         for (uint32_t k = 0; k < 500; k++) {
             fibrad_random random = fibrad_random_start(1, k);
             double w[3], o[3];
@@ -241,15 +229,13 @@ TEST(from_points) {
             ck_assert_uint_eq(scene->order[hit.sphere], truth.sphere);
             ck_assert_double_eq_tol(hit.distance, truth.distance, 1e-10);
         }
-        free(scene);
-        bed_free(&bed);
     }
 }
 
 /* All instruction sets, and any number of lists, give the same bits. */
 TEST(same_bits_everywhere) {
-    struct bed bed = packing(400, .2, 1, .55, 2, true);
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_BED bed = packing(400, .2, 1, .55, 2, true);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_work work[2];
     fibrad_tracer *tracers[2] = {tracer_of(scene, FEW, &work[0]), tracer_of(scene, EACH, &work[1])};
     for (uint32_t k = 0; k < 20000; k++) {
@@ -271,8 +257,6 @@ TEST(same_bits_everywhere) {
         }
     }
     for (int t = 0; t < 2; t++) work_free(&work[t]);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* The ray along x from the first of two spheres: its length, and whether the list it takes was there before. */
@@ -287,10 +271,10 @@ static double length_along_x(fibrad_tracer *tracer, bool *kept) {
 /* Lists are kept from call to call, but not for another scene in the same place. */
 TEST(lists_belong_to_contents) {
     static unsigned char memory[FIBRAD_SCENE_BYTES(2)];
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     static const double distances[] = {5, 5, 7, 7, 5};
     for (size_t k = 0; k < sizeof distances / sizeof *distances; k++) {
-        struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {distances[k], 0, 0, 1}});
+        OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {distances[k], 0, 0, 1}});
         const fibrad_spheres spheres = spheres_of(&bed);
         fibrad_scene *scene = NULL;
         fibrad_workspace *space = NULL;
@@ -300,15 +284,13 @@ TEST(lists_belong_to_contents) {
         ck_assert_int_eq(fibrad_work_open(&work, scene, extra, extra, &space), FIBRAD_OK);
         ck_assert_double_eq(length_along_x(fibrad_tracer_of(space, scene), &kept), distances[k] - 2);
         ck_assert_int_eq(kept, k % 2 == 1);
-        bed_free(&bed);
     }
-    work_free(&work);
 }
 
 /* A block too small is left alone and what it lacks is said; a large enough one, of any alignment, is not left. */
 TEST(memory) {
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_workspace *space = NULL;
     const size_t extra = fibrad_tracer_least();
     unsigned char small[64];
@@ -320,7 +302,7 @@ TEST(memory) {
     for (size_t k = 0; k < sizeof small; k++) ck_assert_uint_eq(small[k], 0x5a);
 
     const size_t size = work.memory.needed;
-    unsigned char *block = block_of(size + 128);
+    OWNED unsigned char *block = block_of(size + 128);
     for (size_t shift = 0; shift < 64; shift += 7) {
         memset(block, 0x5a, size + 128);
         work = work_fixed(block + shift, size);
@@ -333,9 +315,6 @@ TEST(memory) {
         for (size_t k = 0; k < shift; k++) ck_assert_uint_eq(block[k], 0x5a);
         for (size_t k = shift + size; k < size + 128; k++) ck_assert_uint_eq(block[k], 0x5a);
     }
-    free(block);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* Two spheres that overlap, met at the same length and depth: the lower id is met first, whatever the order. Of images,
@@ -349,10 +328,10 @@ TEST(ids_decide_what_is_met_first) {
             const uint64_t id[] = {order ? of_lower : of_upper, order ? of_upper : of_lower, 1};
             fibrad_scene *scene;
             const size_t size = fibrad_scene_size(3, 1);
-            void *block = block_of(size);
+            OWNED void *block = block_of(size);
             const fibrad_spheres spheres = {.x = x, .y = by_order, .z = z, .r = r, .n = 3, .id = id};
             ck_assert_int_eq(fibrad_scene_init(&scene, block, size, NULL, &spheres, NULL), FIBRAD_OK);
-            fibrad_work work;
+            OWNED_WORK work;
             fibrad_tracer *tracer = tracer_of(scene, EACH, &work);
             const double first = lower == 0 ? .5 : -.5;
             fibrad_hit hit;
@@ -360,7 +339,5 @@ TEST(ids_decide_what_is_met_first) {
             ck_assert_double_eq(hit.centre[1], first);
             fibrad_trace_point_scalar(scene, (const double[3]){1, 0, 0}, w, FIBRAD_NO_SIDE, &hit);
             ck_assert_double_eq(hit.centre[1], first);
-            work_free(&work);
-            free(block);
         }
 }

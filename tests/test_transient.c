@@ -46,7 +46,7 @@ static double temperature_after(double a, double from, double ts, double time) {
 TEST(one_sphere_cools) {
     static const double begin[] = {1500, 300, 310}, around[] = {300, 1500, 300};
     const double r = .01, eps = .7, capacity = 25;
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
     fibrad_transient *t = transient_of(&bed, NULL, NULL);
     const double a = 4 * M_PI * r * r * eps * SIGMA / capacity;
     for (int k = 0; k < 3; k++) {
@@ -63,13 +63,12 @@ TEST(one_sphere_cools) {
         }
     }
     fibrad_transient_free(t);
-    bed_free(&bed);
 }
 
 /* Errors at steps of h, h/2, h/4 are as 16, 4, 1. */
 TEST(second_order) {
     const double r = .01, eps = .7, capacity = 25, a = 4 * M_PI * r * r * eps * SIGMA / capacity;
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
     fibrad_transient *t = transient_of(&bed, NULL, NULL);
     const fibrad_heat_sources sources = sources_about(&eps, 300);
     const double duration = .5 / (a * pow(1200, 3)), expected = temperature_after(a, 1200, 300, duration);
@@ -85,7 +84,6 @@ TEST(second_order) {
     for (int k = 0; k < 3; k++) ck_assert_double_eq_tol(error[k] / error[k + 1], 4, .3);
     ck_assert_double_lt(error[3], 1e-2);
     fibrad_transient_free(t);
-    bed_free(&bed);
 }
 
 /* T/2000, counting how often it is asked. */
@@ -102,7 +100,7 @@ TEST(emissivity_follows) {
     const double r = .01, capacity = 25, first = .6, rate = 4 * M_PI * r * r * SIGMA / (2000 * capacity);
     const double duration = 2 / (4 * rate * pow(1200, 4)), expected = pow(pow(1200, -4) + 4 * rate * duration, -.25);
     const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_PATCHES};
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
     fibrad_transient *t = transient_of(&bed, NULL, &config), *factors = transient_of(&bed, NULL, NULL);
     const fibrad_heat_sources sources = sources_about(&first, 0);
     double error[3];
@@ -126,7 +124,6 @@ TEST(emissivity_follows) {
     for (int k = 0; k < 2; k++) ck_assert_double_eq_tol(error[k] / error[k + 1], 4, .6);
     fibrad_transient_free(t);
     fibrad_transient_free(factors);
-    bed_free(&bed);
 }
 
 /* A bed on a hot floor, under a roof, periodic sideways. */
@@ -247,7 +244,7 @@ TEST(motes_are_no_limit) {
     const double emissivity[] = {.8, .6, .5, .5};
     uint64_t steps[2] = {0, 0};
     for (uint32_t n = 2; n <= 4; n += 2) {
-        struct bed bed = bed_of(n, place);
+        OWNED_BED bed = bed_of(n, place);
         const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_FACTORS,
                                                 .exchange = {.directions = 4000, .paths = 4000}};
         fibrad_transient *t = transient_of(&bed, NULL, &config);
@@ -263,14 +260,13 @@ TEST(motes_are_no_limit) {
             if (n == 4) ck_assert_double_lt(fabs(power[MOTE]), 2e-3 * emitted);
         }
         fibrad_transient_free(t);
-        bed_free(&bed);
     }
     ck_assert_uint_le(steps[1], steps[0] + 2);
 }
 
 /* Reflecting all, a sphere has its power and nothing else. A power that is drawn makes it as cold as it goes. */
 TEST(powers_alone) {
-    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}});
     const double capacity[] = {2, 4}, power[] = {10, -20}, emissivity[] = {0, 0};
     double temperature[] = {300, 300};
     fibrad_heat_sources sources = sources_about(emissivity, 1000);
@@ -284,7 +280,6 @@ TEST(powers_alone) {
     ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_E_UNSOLVABLE);
     ck_assert_double_eq_tol(temperature[0], 400, 1e-9);
     fibrad_transient_free(t);
-    bed_free(&bed);
 }
 
 /* By patches as by factors, and a move in between. */

@@ -76,14 +76,12 @@ static void by_place(const struct container *walls, const uint32_t order[WALLS],
 static fibrad_row beam_in_order(const struct bed *bed, const struct container *walls, const uint32_t order[WALLS],
                                 uint32_t i, const fibrad_beam_rule *rule, int isa) {
     const struct places places = bodies_of(walls, order);
-    fibrad_scene *scene = scene_at(bed, &places, isa);
-    fibrad_work work = work_growing();
+    OWNED fibrad_scene *scene = scene_at(bed, &places, isa);
+    OWNED_WORK work = work_growing();
     fibrad_row row = row_of(1024);
     ck_assert_int_eq(fibrad_beam_row(scene, &work, i, rule, &row), FIBRAD_OK);
     for (uint32_t b = places.count; b < BODIES_MOST; b++) ck_assert(row.body[b] == 0); /* not touched */
     by_place(walls, order, row.body);
-    work_free(&work);
-    free(scene);
     return row;
 }
 
@@ -101,10 +99,8 @@ static void cast(const fibrad_scene *scene, const struct container *walls, fibra
 }
 
 static fibrad_row lone(double x, double y, double z, double r, const struct container *walls, uint32_t directions) {
-    struct bed bed = bed_of(1, (const double[][4]){{x, y, z, r}});
-    fibrad_row row = beam(&bed, walls, 0, directions, 0, FIBRAD_ISA_BEST);
-    bed_free(&bed);
-    return row;
+    OWNED_BED bed = bed_of(1, (const double[][4]){{x, y, z, r}});
+    return beam(&bed, walls, 0, directions, 0, FIBRAD_ISA_BEST);
 }
 
 static double wall_sum(const fibrad_row *row) {
@@ -145,8 +141,8 @@ static const struct container can10 = {.planes = 48, .at = {0, 0, 0, 0, 0, 10}, 
 
 TEST(bad_walls_are_refused) {
     const double spheres[][4] = {{5, 5, 5, 1}, {2, 5, 5, 1}, {5, 5, 9.5, 1}};
-    struct bed bed = bed_of(3, spheres);
-    fibrad_scene *scene = NULL;
+    OWNED_BED bed = bed_of(3, spheres);
+    OWNED fibrad_scene *scene = NULL;
     fibrad_fault fault;
     free(scene_in(&bed, &box10, 0)); /* a sphere may reach through a wall */
     const fibrad_body z_low = plane_at(2, 0, 0), z_high = plane_at(2, 1, 20), x_low = plane_at(0, 0, 0),
@@ -207,13 +203,11 @@ TEST(bad_walls_are_refused) {
     bed.period[1] = 0, bed.period[2] = 20;
     ck_assert_int_eq(init(&scene, &bed, 1, &z_low, &fault), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(init(&scene, &bed, 1, &can, &fault), FIBRAD_OK);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* What this version does not compute: meshes, more than seven bodies, a known region. */
 TEST(what_is_not_supported) {
-    struct bed bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
     fibrad_scene *scene = NULL;
     fibrad_fault fault;
     fibrad_body bodies[FIBRAD_BODIES_MAX + 1];
@@ -227,14 +221,13 @@ TEST(what_is_not_supported) {
     bodies[5] = mesh;
     ck_assert_int_eq(init(&scene, &bed, 6, bodies, &fault), FIBRAD_E_ARGUMENT);
     ck_assert_ptr_null(scene);
-    bed_free(&bed);
 }
 
 /* A row of a scene with bodies needs room for them; nothing is written behind it. */
 TEST(rows_need_room_for_bodies) {
-    struct bed bed = bed_of(2, (const double[][4]){{5, 5, 5, 1}, {2, 5, 5, 1}});
-    fibrad_scene *scene = scene_in(&bed, &can10, 0);
-    fibrad_work work = work_growing();
+    OWNED_BED bed = bed_of(2, (const double[][4]){{5, 5, 5, 1}, {2, 5, 5, 1}});
+    OWNED fibrad_scene *scene = scene_in(&bed, &can10, 0);
+    OWNED_WORK work = work_growing();
     double body[4] = {-3, -3, -3, -3};
     fibrad_row row = row_of(2), without = row;
     without.body = NULL;
@@ -246,49 +239,43 @@ TEST(rows_need_room_for_bodies) {
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &without), FIBRAD_OK);
     ck_assert(body[0] > 0 && body[1] > 0 && body[2] > 0 && body[3] == -3);
     row_free(&row);
-    work_free(&work);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* Factors follow the index of the body, with the same bits, whatever the order in which bodies are named. */
 TEST(bodies_in_any_order) {
-    struct bed bed = packing(60, .6, 1.4, .3, 3, false);
+    OWNED_BED bed = packing(60, .6, 1.4, .3, 3, false);
     const struct container walls[] = {{.planes = 63, .at = {-3, 40, -4, 41, -5, 42}},
                                       {.planes = 48, .at = {[4] = -3, [5] = 40}, .cylinder = {5, 6, 30}}};
     for (int k = 0; k < 2; k++)
         for (uint32_t points = 0; points <= 64; points += 64) {
             const fibrad_beam_rule rule = {.directions = 101, .points = points};
-            fibrad_row first = beam_in_order(&bed, &walls[k], orders[0], 7, &rule, 0);
+            OWNED_ROW first = beam_in_order(&bed, &walls[k], orders[0], 7, &rule, 0);
             for (int order = 1; order < ORDERS; order++) {
-                fibrad_row row = beam_in_order(&bed, &walls[k], orders[order], 7, &rule, 0);
+                OWNED_ROW row = beam_in_order(&bed, &walls[k], orders[order], 7, &rule, 0);
                 ck_assert(same_bits_with(&row, &first, WALLS));
-                row_free(&row);
             }
-            row_free(&first);
         }
-    bed_free(&bed);
 }
 
 /* What meets an opening is what a plane in its place would get, to the bit, by every method; but for that nothing
  * changes, and spheres do not reach beyond it. */
 TEST(openings_take_what_planes_would) {
-    struct bed bed = packing(80, .6, 1.4, .4, 3, false);
+    OWNED_BED bed = packing(80, .6, 1.4, .4, 3, false);
     double top = -1e9;
     for (uint32_t i = 0; i < bed.n; i++) worst_of(&top, bed.z[i] + bed.r[i]);
     const struct container box = {.planes = 63, .at = {-3, 20, -4, 21, -5, top}},
                            can = {.planes = 48, .at = {[4] = -5, [5] = top}, .cylinder = {5, 6, 15}};
-    fibrad_work work = work_growing();
-    fibrad_row rays = row_of(1024), open_rays = row_of(1024);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW rays = row_of(1024), open_rays = row_of(1024);
     for (int k = 0; k < 4; k++) {
         const struct container closed = k % 2 ? can : box;
         struct container open = closed;
         open.open = k < 2 ? 32 : k == 2 ? 58 : 48, open.planes &= ~open.open; /* one; several */
-        fibrad_scene *scene = scene_in(&bed, &closed, 0), *opened = scene_in(&bed, &open, 0);
+        OWNED fibrad_scene *scene = scene_in(&bed, &closed, 0), *opened = scene_in(&bed, &open, 0);
         for (uint32_t i = 0; i < bed.n; i += 9) {
             double of_planes = 0, of_rays = 0;
-            fibrad_row row = beam(&bed, &closed, i, 101, i % 2 ? 64 : 0, 0);
-            fibrad_row open_row = beam(&bed, &open, i, 101, i % 2 ? 64 : 0, 0);
+            OWNED_ROW row = beam(&bed, &closed, i, 101, i % 2 ? 64 : 0, 0);
+            OWNED_ROW open_row = beam(&bed, &open, i, 101, i % 2 ? 64 : 0, 0);
             cast(scene, &closed, &work, i, 2000, &rays);
             cast(opened, &open, &work, i, 2000, &open_rays);
             for (uint32_t wall = 0; wall < 6; wall++) {
@@ -302,28 +289,21 @@ TEST(openings_take_what_planes_would) {
             row.escaped = open_row.escaped, rays.escaped = open_rays.escaped;
             ck_assert(same_bits_with(&row, &open_row, WALLS) && same_bits_with(&rays, &open_rays, WALLS));
             assert_closed(&open_row);
-            row_free(&row), row_free(&open_row);
         }
-        free(scene), free(opened);
     }
-    row_free(&rays), row_free(&open_rays);
-    work_free(&work);
-    bed_free(&bed);
 }
 
 /* The status for walls and openings about a sphere at (5, 5, 5) of radius 1. */
 static int status_of(const struct container *walls, const double period[3], fibrad_fault *fault) {
-    struct bed bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
     const struct places places = bodies_of(walls, orders[0]);
     memcpy(bed.period, period, sizeof bed.period);
-    fibrad_scene *scene = NULL;
+    OWNED fibrad_scene *scene = NULL;
     const int status = scene_try(
         &scene, &bed,
         &(fibrad_scene_config){
             .body = places.body, .bodies = places.count, .opening = places.opening, .openings = places.openings},
         fault);
-    free(scene);
-    bed_free(&bed);
     return status;
 }
 
@@ -377,7 +357,7 @@ TEST(bad_openings_are_refused) {
         ck_assert_int_eq(status_of(&bad[k], none, &fault), FIBRAD_E_ARGUMENT);
     walls.at[5] = 9;
     ck_assert_int_eq(status_of(&walls, along_z, &fault), FIBRAD_E_ARGUMENT);
-    struct bed bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
     fibrad_scene *scene = NULL;
     const fibrad_plane twice[] = {{2, 1, 9}, {2, 1, 9}}, axis = {3, 1, 9};
     ck_assert_int_eq(scene_try(&scene, &bed, &(fibrad_scene_config){.openings = 1}, NULL), FIBRAD_E_ARGUMENT);
@@ -385,11 +365,10 @@ TEST(bad_openings_are_refused) {
                      FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(scene_try(&scene, &bed, &(fibrad_scene_config){.opening = &axis, .openings = 1}, NULL),
                      FIBRAD_E_ARGUMENT);
-    bed_free(&bed);
 }
 
 TEST(areas_of_walls) {
-    struct bed bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
     const struct container walls[] = {{.planes = 63, .at = {0, 10, 1, 10, 3, 10}},
                                       can10,
                                       {.planes = 16},
@@ -404,7 +383,7 @@ TEST(areas_of_walls) {
         for (int order = 0; order < ORDERS; order++) {
             bed.period[0] = k == 3 ? 3 : 0, bed.period[1] = k == 3 ? 4 : 0, bed.period[2] = k == 4 ? 7 : 0;
             const struct places places = bodies_of(&walls[k], orders[order]);
-            fibrad_scene *scene = NULL;
+            OWNED fibrad_scene *scene = NULL;
             fibrad_scene_facts facts;
             ck_assert_int_eq(init(&scene, &bed, places.count, places.body, NULL), FIBRAD_OK);
             fibrad_scene_describe(scene, &facts);
@@ -415,10 +394,8 @@ TEST(areas_of_walls) {
             }
             ck_assert_double_nan(fibrad_scene_body_area(scene, places.count));
             ck_assert_double_nan(fibrad_scene_body_area(scene, UINT32_MAX));
-            free(scene);
         }
     ck_assert_double_nan(fibrad_scene_body_area(NULL, 0));
-    bed_free(&bed);
 }
 
 /* How far a place lies within a wall. */
@@ -468,11 +445,11 @@ TEST(a_ray_leaves_through_the_first_wall) {
                                       {.planes = 48, .at = {[5] = 10}},
                                       {.planes = 32, .at = {[5] = 10}},
                                       {.cylinder = {5, 5, 5}}};
-    struct bed bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
     srand(1);
     for (size_t k = 0; k < sizeof walls / sizeof *walls; k++) {
         bed.period[2] = k == 5 ? 20 : 0;
-        fibrad_scene *scene = scene_in(&bed, &walls[k], 0);
+        OWNED fibrad_scene *scene = scene_in(&bed, &walls[k], 0);
         for (int ray = 0; ray < 20000; ray++) {
             double o[3], w[3], distance, normal[3], on[3];
             for (int axis = 0; axis < 3; axis++) o[axis] = uniform(1.5, 8.5), w[axis] = uniform(-1, 1);
@@ -497,9 +474,7 @@ TEST(a_ray_leaves_through_the_first_wall) {
             for (int axis = 0; axis < 3; axis++) w[axis] = -w[axis]; /* inwards */
             assert_exit(scene, &walls[k], on, w, wall == 6 ? FIBRAD_NONE - 1 : wall);
         }
-        free(scene);
     }
-    bed_free(&bed);
 }
 
 /* Nothing hides the plane: its solid angle is half of all. */
@@ -508,19 +483,17 @@ TEST(half_of_a_sphere_sees_a_plane) {
     for (size_t k = 0; k < sizeof directions / sizeof *directions; k++)
         for (uint32_t wall = 0; wall < 6; wall++) {
             const struct container plane = {.planes = 1u << wall, .at = {-1, 1, -1, 1, -1, 1}};
-            fibrad_row row = lone(0, 0, 0, 1, &plane, directions[k]);
+            OWNED_ROW row = lone(0, 0, 0, 1, &plane, directions[k]);
             double tolerance = 1e-14;
             ck_assert_double_eq_tol(row.body[wall], .5, tolerance);
             ck_assert_double_eq_tol(row.escaped, .5, tolerance);
             assert_closed(&row);
-            row_free(&row);
         }
     const struct container slit = {.planes = 48, .at = {[4] = -1.5, [5] = 40}};
-    fibrad_row row = lone(0, 0, 0, 2, &slit, 101); /* an eighth of it lies behind one of them: tests/test_cut.c */
+    OWNED_ROW row = lone(0, 0, 0, 2, &slit, 101); /* an eighth of it lies behind one of them: tests/test_cut.c */
     ck_assert_double_eq_tol(row.body[4], .5 + 1. / 128, 1e-14);
     ck_assert_double_eq_tol(row.body[5], .5 - 1. / 128, 1e-14);
     ck_assert(row.escaped == 0);
-    row_free(&row);
 }
 
 /* In boxes of 2.5 to 1000 radii, walls that touch the sphere included: as solid angles say, with no error to speak of.
@@ -538,7 +511,7 @@ TEST(sphere_in_a_box) {
                 box.at[2 * axis + 1] = box.at[2 * axis] + side[axis];
                 c[axis] = t % 4 == axis ? r : uniform(r, side[axis] - r);
             }
-            fibrad_row row = lone(box.at[0] + c[0], box.at[2] + c[1], box.at[4] + c[2], r, &box, directions[k]);
+            OWNED_ROW row = lone(box.at[0] + c[0], box.at[2] + c[1], box.at[4] + c[2], r, &box, directions[k]);
             for (uint32_t wall = 0; wall < 6; wall++) {
                 uint32_t a = wall / 2, b = (a + 1) % 3, d = (a + 2) % 3;
                 double away = wall % 2 ? side[a] - c[a] : c[a];
@@ -548,7 +521,6 @@ TEST(sphere_in_a_box) {
             ck_assert(row.escaped == 0);
             ck_assert_double_le(row.error, 1e-12);
             assert_closed(&row);
-            row_free(&row);
         }
 }
 
@@ -558,14 +530,13 @@ TEST(factors_are_smooth_where_walls_touch) {
     double before[6] = {0};
     for (int k = 0; k <= 400; k++) {
         const double away = 1.2 - .001 * k;
-        fibrad_row row = lone(3, 4, away, 1, &(struct container){.planes = 63, .at = {0, 7, 0, 9, 0, 8}}, 233);
+        OWNED_ROW row = lone(3, 4, away, 1, &(struct container){.planes = 63, .at = {0, 7, 0, 9, 0, 8}}, 233);
         for (int wall = 0; wall < 6; wall++) {
             const double change = fabs(row.body[wall] - before[wall]);
             if (k > 0) ck_assert_msg(change < 3e-4, "%g at %g", change, away);
             before[wall] = row.body[wall];
         }
         assert_closed(&row);
-        row_free(&row);
     }
 }
 
@@ -573,7 +544,7 @@ TEST(factors_are_smooth_where_walls_touch) {
  * many.
  */
 TEST(walls_of_a_heap) {
-    struct bed bed = packing(150, .8, 1.2, .5, 1, false);
+    OWNED_BED bed = packing(150, .8, 1.2, .5, 1, false);
     const struct container walls[] = {{.planes = 63, .at = {-20, 40, -9, 30, -1, 50}},
                                       {.planes = 48, .at = {[4] = -1, [5] = 30}, .cylinder = {6, 6, 25}}};
     const double bound[] = {9e-4, 1e-3};
@@ -584,17 +555,15 @@ TEST(walls_of_a_heap) {
         uint32_t rows = 0;
         for (uint32_t i = 0; i < bed.n; i++) {
             if (bed.z[i] < top - 2.5) continue;
-            fibrad_row row = beam(&bed, &walls[k], i, 233, 0, 0), fine = beam(&bed, &walls[k], i, 20000, 0, 0);
+            OWNED_ROW row = beam(&bed, &walls[k], i, 233, 0, 0), fine = beam(&bed, &walls[k], i, 20000, 0, 0);
             for (int wall = 0; wall < WALLS; wall++) square += pow(row.body[wall] - fine.body[wall], 2);
             far += wall_sum(&fine);
             rows++;
-            row_free(&row), row_free(&fine);
         }
         printf("%u rows, walls get %.2f: RMS error %.2g\n", rows, far / rows, sqrt(square / rows));
         ck_assert(rows > 10 && far / rows > .3);
         ck_assert_double_lt(sqrt(square / rows), bound[k]);
     }
-    bed_free(&bed);
 }
 
 TEST(sphere_in_a_cylinder) {
@@ -606,20 +575,19 @@ TEST(sphere_in_a_cylinder) {
             struct container can = {.planes = kind == 0 ? 48 : kind == 1 ? 16 : 0, .at = {[4] = 2, [5] = 2 + h}};
             can.open = 48 & ~can.planes;
             can.cylinder[0] = 3, can.cylinder[1] = -4, can.cylinder[2] = R;
-            fibrad_row row = lone(3 + s * cos(phi), -4 + s * sin(phi), 2 + z, 1, &can, 987);
+            OWNED_ROW row = lone(3 + s * cos(phi), -4 + s * sin(phi), 2 + z, 1, &can, 987);
             if (kind == 0) ck_assert_double_eq_tol(row.body[5], top, 2e-5);
             if (kind < 2) ck_assert_double_eq_tol(row.body[4], bottom, 2e-5);
             ck_assert_double_eq_tol(row.escaped, kind == 0 ? 0 : kind == 1 ? top : bottom + top, 2e-5);
             ck_assert_double_eq_tol(row.body[6], 1 - bottom - top, 2e-5);
             assert_closed(&row);
-            row_free(&row);
         }
     }
 }
 
 /* Within the walls of a container, slit or cylinder spheres see each other as without, and the walls get the rest. */
 TEST(walls_take_what_escapes) {
-    struct bed bed = packing(150, .8, 1.2, .4, 1, false);
+    OWNED_BED bed = packing(150, .8, 1.2, .4, 1, false);
     double low[3] = {1e9, 1e9, 1e9}, high[3] = {-1e9, -1e9, -1e9};
     for (uint32_t i = 0; i < bed.n; i++)
         for (int axis = 0; axis < 3; axis++) {
@@ -631,15 +599,15 @@ TEST(walls_take_what_escapes) {
         for (int axis = 0; axis < 3; axis++) walls[k].at[2 * axis] = low[axis], walls[k].at[2 * axis + 1] = high[axis];
     walls[2].cylinder[0] = (low[0] + high[0]) / 2, walls[2].cylinder[1] = (low[1] + high[1]) / 2;
     walls[2].cylinder[2] = hypot(high[0] - low[0], high[1] - low[1]) / 2;
-    fibrad_work work = work_growing();
-    fibrad_row rays = row_of(1024);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW rays = row_of(1024);
     double worst = 0;
     for (int k = 0; k < 4; k++) {
-        fibrad_scene *scene = scene_in(&bed, &walls[k], 0);
+        OWNED fibrad_scene *scene = scene_in(&bed, &walls[k], 0);
         for (uint32_t i = 0; i < bed.n; i += 11)
             for (uint32_t points = 0; points <= 256; points += 128) {
-                fibrad_row free_row = beam(&bed, &(struct container){0}, i, 610, points, 0);
-                fibrad_row row = beam(&bed, &walls[k], i, 610, points, 0);
+                OWNED_ROW free_row = beam(&bed, &(struct container){0}, i, 610, points, 0);
+                OWNED_ROW row = beam(&bed, &walls[k], i, 610, points, 0);
                 ck_assert_uint_eq(row.length, free_row.length);
                 ck_assert_mem_eq(row.f, free_row.f, row.length * sizeof *row.f);
                 ck_assert_double_eq_tol(wall_sum(&row) + row.escaped, free_row.escaped, 1e-14);
@@ -649,44 +617,33 @@ TEST(walls_take_what_escapes) {
                 assert_closed(&rays);
                 for (int wall = 0; wall < WALLS; wall++) worst_of(&worst, fabs(rays.body[wall] - row.body[wall]));
                 worst_of(&worst, fabs(rays.escaped - row.escaped));
-                row_free(&row);
-                row_free(&free_row);
             }
-        free(scene);
     }
     ck_assert_msg(worst < 5e-3, "beams and rays differ by %g", worst);
-    row_free(&rays);
-    work_free(&work);
-    bed_free(&bed);
 }
 
 /* Walls on the open axis of a periodic bed. */
 TEST(walls_of_a_periodic_bed) {
-    struct bed bed = packing(120, 1, 1, .3, 2, true);
+    OWNED_BED bed = packing(120, 1, 1, .3, 2, true);
     bed.period[2] = 0;
     double low = 1e9, high = -1e9;
     for (uint32_t i = 0; i < bed.n; i++) least_of(&low, bed.z[i] - 1), worst_of(&high, bed.z[i] + 1);
     const struct container slit = {.planes = 48, .at = {[4] = low, [5] = high}};
-    fibrad_scene *scene = scene_in(&bed, &slit, 0);
-    fibrad_work work = work_growing();
-    fibrad_row rays = row_of(1024);
+    OWNED fibrad_scene *scene = scene_in(&bed, &slit, 0);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW rays = row_of(1024);
     for (uint32_t i = 0; i < bed.n; i += 17) {
-        fibrad_row row = beam(&bed, &slit, i, 987, 0, 0);
+        OWNED_ROW row = beam(&bed, &slit, i, 987, 0, 0);
         cast(scene, &slit, &work, i, 50000, &rays);
         assert_closed(&rays);
         ck_assert(row.escaped == 0 && rays.escaped == 0);
         assert_closed(&row);
         for (int wall = 4; wall < 6; wall++) ck_assert_double_eq_tol(row.body[wall], rays.body[wall], 3e-3);
-        row_free(&row);
     }
-    row_free(&rays);
-    work_free(&work);
-    free(scene);
-    bed_free(&bed);
 }
 
 TEST(same_bits_in_every_instruction_set) {
-    struct bed bed = packing(60, .6, 1.4, .3, 3, false);
+    OWNED_BED bed = packing(60, .6, 1.4, .3, 3, false);
     struct container walls[2] = {{.planes = 63, .at = {-3, 40, -3, 40, -3, 40}},
                                  {.planes = 16, .open = 32, .at = {-3, 40, -3, 40, -3, 40}}};
     walls[1].cylinder[0] = walls[1].cylinder[1] = 5, walls[1].cylinder[2] = 30;
@@ -696,24 +653,21 @@ TEST(same_bits_in_every_instruction_set) {
         for (uint32_t points = 0; points <= 256; points += 64) {
             if (points == 192) continue;
             for (uint32_t i = 0; i < bed.n; i += 13) {
-                fibrad_row scalar = beam(&bed, &walls[k], i, 101, points, FIBRAD_ISA_SCALAR);
+                OWNED_ROW scalar = beam(&bed, &walls[k], i, 101, points, FIBRAD_ISA_SCALAR);
                 for (int set = 1; set < sets; set++) {
-                    fibrad_row row = beam(&bed, &walls[k], i, 101, points, isa[set]);
+                    OWNED_ROW row = beam(&bed, &walls[k], i, 101, points, isa[set]);
                     ck_assert_msg(same_bits_with(&scalar, &row, WALLS), "row %u differs in %s", i,
                                   fibrad_isa_name(isa[set]));
-                    row_free(&row);
                 }
-                row_free(&scalar);
             }
         }
-    bed_free(&bed);
 }
 
 /* Another order of the spheres and another unit of length change nothing but rounding; other axes no more than the
  * rule's error. */
 TEST(order_scale_and_axes) {
     const struct container box = {.planes = 63, .at = {-2, 14, -3, 16, -4, 15}};
-    struct bed bed = packing(50, .8, 1.2, .2, 4, false), other, turned;
+    OWNED_BED bed = packing(50, .8, 1.2, .2, 4, false), other, turned;
     bed_init(&other);
     bed_init(&turned);
     struct container scaled = box, cyclic = box;
@@ -724,27 +678,21 @@ TEST(order_scale_and_axes) {
         add_sphere(&turned, bed.z[i], bed.x[i], bed.y[i], bed.r[i]);
     }
     for (uint32_t i = 0; i < bed.n; i += 7) {
-        fibrad_row row = beam(&bed, &box, i, 987, 0, 0), again = beam(&other, &scaled, bed.n - 1 - i, 987, 0, 0);
-        fibrad_row round = beam(&turned, &cyclic, i, 987, 0, 0);
+        OWNED_ROW row = beam(&bed, &box, i, 987, 0, 0), again = beam(&other, &scaled, bed.n - 1 - i, 987, 0, 0);
+        OWNED_ROW round = beam(&turned, &cyclic, i, 987, 0, 0);
         for (int wall = 0; wall < 6; wall++) {
             ck_assert_double_eq_tol(row.body[wall], again.body[wall], 1e-12);
             ck_assert_double_eq_tol(row.body[wall], round.body[(wall + 2) % 6], 2e-3);
         }
-        row_free(&row);
-        row_free(&again);
-        row_free(&round);
     }
-    bed_free(&bed);
-    bed_free(&other);
-    bed_free(&turned);
 }
 
 /* A matrix of three rows, which are reciprocal, in a scene with three bodies. */
 static struct matrix closed(const double body[3][3], const double escaped[3]) {
-    struct bed bed = bed_of(3, (const double[][4]){{0, 0, 50, 1}, {0, 0, 10, 1}, {0, 0, 90, 2}});
+    OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 50, 1}, {0, 0, 10, 1}, {0, 0, 90, 2}});
     const fibrad_body walls[] = {plane_at(2, 0, 0), cylinder_at(0, 0, 99), plane_at(2, 1, 100)};
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 3});
-    fibrad_rows rows = {.memory = memory_growing()};
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 3});
+    OWNED_ROWS rows = {.memory = memory_growing()};
     uint32_t col[][2] = {{1, 0}, {0, 2}, {1, 0}};
     double f[][2] = {{.5, 0}, {.5, .4}, {.1, 0}}, own[3];
     for (uint32_t i = 0; i < 3; i++) {
@@ -756,9 +704,6 @@ static struct matrix closed(const double body[3][3], const double escaped[3]) {
     struct matrix m = matrix_of(scene, &rows, 1, NULL);
     for (uint32_t i = 0; i < 3; i++) ck_assert_double_eq_tol(matrix_total(&m.factors, i), 1, 1e-15);
     ck_assert_uint_eq(m.factors.bodies, 3);
-    rows_free(&rows);
-    free(scene);
-    bed_free(&bed);
     return m;
 }
 
@@ -848,7 +793,7 @@ static void assert_walls(const struct wall_options *options, const struct bed *b
 }
 
 TEST(option_places_walls) {
-    struct bed bed = bed_of(2, (const double[][4]){{1, 2, 3, 1}, {4, 6, 8, 2}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{1, 2, 3, 1}, {4, 6, 8, 2}});
     struct wall_options options = {0}, box = {0}, automatic = {0}, clash = {0}, beyond = {0}, mixed = {0};
     struct walls walls;
     ck_assert_int_eq(walls_option("zmax,cylinder:2.5,4,30,zmin=-4", &options), 0);
@@ -874,12 +819,11 @@ TEST(option_places_walls) {
     ck_assert_int_eq(walls_option("zmin=4", &beyond), 0);
     ck_assert_int_eq(walls_of(&beyond, &bed, "bed", &walls), 3);
     assert_walls(&(struct wall_options){0}, &bed, 0, NULL, NULL, NULL);
-    bed_free(&bed);
 }
 
 /* Openings are no walls; they stand at the end of the spheres, whatever the box of the file, or where they are put. */
 TEST(option_places_openings) {
-    struct bed bed = bed_of(2, (const double[][4]){{1, 2, 3, 1}, {4, 6, 8, 2}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{1, 2, 3, 1}, {4, 6, 8, 2}});
     struct wall_options options = {0};
     struct walls walls;
     for (int axis = 0; axis < 3; axis++) bed.low[axis] = -9, bed.high[axis] = 99;
@@ -896,5 +840,4 @@ TEST(option_places_openings) {
     for (uint32_t k = 0; k < walls.count; k++) ck_assert(!wall_endless(&walls, &bed, &walls.body[k]));
     bed.period[0] = 200;
     ck_assert_int_eq(walls_of(&options, &bed, "bed", &walls), 2); /* across a periodic axis */
-    bed_free(&bed);
 }

@@ -180,7 +180,6 @@ TEST(mesh_extents_are_said) {
     snprintf(wall, sizeof wall, "m=mesh:%s:scale=2", write_file("m.stl", CORNER(".3")));
     SUCCEED("bed", write_file("bed.dump", PLAIN), "--wall", wall, "--json", json);
     ck_assert_ptr_nonnull(strstr(printed, "\nwall_m_low 0 0 0\nwall_m_high 0.6 0.6 0.6\n"));
-    char *text = read_file(json);
+    OWNED char *text = read_file(json);
     ck_assert_ptr_nonnull(strstr(text, "\"warnings\": []}"));
-    free(text);
 }

@@ -82,20 +82,19 @@ static fibrad_scene *scene_number(int k, const struct bed *bed) {
 static struct output expected(int function, const fibrad_scene *scene, uint32_t i) {
     struct output out = output_of();
     const size_t size = 8u << 20;
-    void *block = malloc(size);
+    OWNED void *block = malloc(size);
     ck_assert_ptr_nonnull(block);
     fibrad_work work = work_fixed(block, size);
     ck_assert_int_eq(call(function, scene, &work, i, &out), FIBRAD_OK);
-    free(block);
     return out;
 }
 
 /* From none on, memory as the kernel asks for it: it asks for more each time, but not often, and for what it has asked
  * last the same call goes through on other memory at once. */
 LOOP_TEST(fixed_memory_step_by_step, SCENES *FUNCTIONS) {
-    struct bed bed = bed_number(_i / FUNCTIONS);
+    OWNED_BED bed = bed_number(_i / FUNCTIONS);
     const int function = _i % FUNCTIONS;
-    fibrad_scene *scene = scene_number(_i / FUNCTIONS, &bed);
+    OWNED fibrad_scene *scene = scene_number(_i / FUNCTIONS, &bed);
     for (uint32_t i = 0; i < bed.n; i += 49) {
         struct output truth = expected(function, scene, i), out = output_of();
         out.row.length = 77;
@@ -111,18 +110,15 @@ LOOP_TEST(fixed_memory_step_by_step, SCENES *FUNCTIONS) {
         ck_assert_msg(same_output(function, &out, &truth), "%s", names[function]);
         const size_t size = work.memory.size;
         work_free_fixed(&work);
-        void *block = malloc(size);
+        OWNED void *block = malloc(size);
         memset(block, 0xff, size);
         work = work_fixed(block, size);
         const int status = call(function, scene, &work, i, &out);
         ck_assert_msg(status == FIBRAD_OK, "%s, %zu bytes: %s, %zu", names[function], size, fibrad_status_text(status),
                       work.memory.needed);
         ck_assert(same_output(function, &out, &truth));
-        free(block);
         output_free(&truth), output_free(&out);
     }
-    free(scene);
-    bed_free(&bed);
 }
 
 /* One growing work memory and one of each other kind for all scenes and functions in turn. */
@@ -162,12 +158,12 @@ TEST(any_scenes_and_functions_in_turn) {
 /* Scenes that are made anew in the place of others, between calls with the same work memory. */
 TEST(scenes_made_anew_in_the_same_place) {
     const size_t size = fibrad_scene_size(150, 0);
-    void *block = block_of(size);
-    fibrad_work work = work_growing();
+    OWNED void *block = block_of(size);
+    OWNED_WORK work = work_growing();
     struct output out = output_of();
     for (uint64_t seed = 0; seed < 6; seed++)
         for (int function = 0; function < FUNCTIONS; function++) {
-            struct bed bed = packing(150, .8, 1.2, .5, seed, false);
+            OWNED_BED bed = packing(150, .8, 1.2, .5, seed, false);
             const fibrad_spheres spheres = spheres_of(&bed);
             fibrad_scene *scene = NULL;
             ck_assert_int_eq(fibrad_scene_init(&scene, block, size, NULL, &spheres, NULL), FIBRAD_OK);
@@ -175,16 +171,13 @@ TEST(scenes_made_anew_in_the_same_place) {
             ck_assert_int_eq(call(function, scene, &work, 70, &out), FIBRAD_OK);
             ck_assert_msg(same_output(function, &out, &truth), "%s", names[function]);
             output_free(&truth);
-            bed_free(&bed);
         }
     output_free(&out);
-    work_free(&work);
-    free(block);
 }
 
 /* The caller may hand over another block at any time, which holds anything. */
 TEST(other_blocks_at_any_time) {
-    struct bed bed = bed_number(0);
+    OWNED_BED bed = bed_number(0);
     fibrad_scene *scene = scene_of(&bed, 0);
     const size_t size = 4u << 20;
     unsigned char *blocks[2] = {malloc(size), malloc(size)};
@@ -201,13 +194,12 @@ TEST(other_blocks_at_any_time) {
         output_free(&truth), output_free(&out);
     }
     free(blocks[0]), free(blocks[1]), free(scene);
-    bed_free(&bed);
 }
 
 /* A fixed block at each of the 64 offsets, nothing written beside it. */
 LOOP_TEST(blocks_of_any_alignment, FUNCTIONS) {
-    struct bed bed = bed_number(1);
-    fibrad_scene *scene = scene_of(&bed, 0);
+    OWNED_BED bed = bed_number(1);
+    OWNED fibrad_scene *scene = scene_of(&bed, 0);
     const int function = _i;
     struct output truth = expected(function, scene, 5), out = output_of();
     fibrad_work least = work_fixed(NULL, 0);
@@ -215,7 +207,7 @@ LOOP_TEST(blocks_of_any_alignment, FUNCTIONS) {
         ck_assert_int_lt(tries, 12);
     const size_t size = least.memory.size;
     work_free_fixed(&least);
-    unsigned char *block = block_of(size + 128);
+    OWNED unsigned char *block = block_of(size + 128);
     for (size_t offset = 0; offset < 64; offset++) {
         memset(block, 0x5a, size + 128);
         fibrad_work work = work_fixed(block + offset, size);
@@ -225,15 +217,13 @@ LOOP_TEST(blocks_of_any_alignment, FUNCTIONS) {
         ck_assert(bytes_are(block, offset + size, size + 128, 0x5a));
     }
     output_free(&truth), output_free(&out);
-    free(block), free(scene);
-    bed_free(&bed);
 }
 
 /* FIBRAD_E_MEMORY at each call of the resize function in turn: nothing is written, and the next call, which gets
  * memory, has the right result. */
 LOOP_TEST(memory_that_is_refused, FUNCTIONS) {
-    struct bed bed = bed_number(2);
-    fibrad_scene *scene = scene_of(&bed, 0);
+    OWNED_BED bed = bed_number(2);
+    OWNED fibrad_scene *scene = scene_of(&bed, 0);
     const int function = _i;
     struct output truth = expected(function, scene, 5), out = output_of();
     uint32_t calls = 1;
@@ -256,8 +246,6 @@ LOOP_TEST(memory_that_is_refused, FUNCTIONS) {
         free(source.whole);
     }
     output_free(&truth), output_free(&out);
-    free(scene);
-    bed_free(&bed);
 }
 
 /* What FIBRAD_WORK_BYTES says is enough is enough, at any offset: for a packed bed, for a sphere that meets hundreds in
@@ -265,8 +253,8 @@ LOOP_TEST(memory_that_is_refused, FUNCTIONS) {
 TEST(bytes_that_are_enough) {
     static unsigned char packed[FIBRAD_WORK_BYTES(64, 200) + 64], hundreds[FIBRAD_WORK_BYTES(1000, 1000) + 64],
         six[FIBRAD_WORK_BYTES(6, 6) + 64], walls[FIBRAD_WORK_BYTES(64, 3) + FIBRAD_WORK_WALLS + 64];
-    struct bed bed = packing(600, .8, 1.2, .6, 7, true), around = bed_of(1, (const double[][4]){{0, 0, 0, 4}});
-    struct bed lone = lattice('p', 2), between = between_walls();
+    OWNED_BED bed = packing(600, .8, 1.2, .6, 7, true), around = bed_of(1, (const double[][4]){{0, 0, 0, 4}});
+    OWNED_BED lone = lattice('p', 2), between = between_walls();
     for (uint32_t k = 0; k < 1000; k++) {
         double w[3];
         fibrad_direction(k, 1000, w);
@@ -292,7 +280,6 @@ TEST(bytes_that_are_enough) {
     }
     output_free(&out);
     for (int k = 0; k < 4; k++) free(scenes[k]);
-    bed_free(&bed), bed_free(&around), bed_free(&lone), bed_free(&between);
 }
 
 /* The powers of a bed before a floor, in a heat problem that begins `offset` bytes into `block`. */
@@ -304,7 +291,7 @@ static void powers_in(unsigned char *block, size_t size, size_t offset, const fi
     ck_assert_int_eq(fibrad_heat_init(&heat, block + offset, 0, &config, scene), FIBRAD_E_SIZE);
     ck_assert_ptr_null(heat);
     ck_assert_int_eq(fibrad_heat_init(&heat, block + offset, size, &config, scene), FIBRAD_OK);
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     for (uint32_t task = 0; task < fibrad_heat_tasks(heat); task++)
         ck_assert_int_eq(fibrad_heat_trace(heat, &work, task), FIBRAD_OK);
     double temperature[64], emissivity[64], floor_temperature = 900, floor_emissivity = .3;
@@ -324,17 +311,16 @@ static void powers_in(unsigned char *block, size_t size, size_t offset, const fi
     ck_assert_int_eq(fibrad_heat_read(heat, &result), FIBRAD_OK);
     power[n + 1] = result.surroundings_power;
     power[n + 2] = result.error_patches, power[n + 3] = result.error_beams, power[n + 4] = result.residual;
-    work_free(&work);
 }
 
 /* A heat problem at offsets of all kinds: the same bits, nothing written beside it, and a byte less is too little. */
 TEST(heat_blocks_of_any_alignment) {
-    struct bed bed = packing(20, .8, 1.2, .5, 7, false);
+    OWNED_BED bed = packing(20, .8, 1.2, .5, 7, false);
     const fibrad_body floor_plane = plane_at(2, 0, -3);
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
     const size_t size = fibrad_heat_size(&(fibrad_heat_config){.directions = 21, .patches = 24, .parts = 3}, scene);
     ck_assert_uint_gt(size, 0);
-    unsigned char *block = block_of(size + 128);
+    OWNED unsigned char *block = block_of(size + 128);
     double first[64], power[64];
     powers_in(block, size, 0, scene, bed.n, first);
     for (size_t offset = 0; offset < 64; offset += offset < 9 ? 1 : 9) {
@@ -345,6 +331,4 @@ TEST(heat_blocks_of_any_alignment) {
         ck_assert(bytes_are(block, offset + size, size + 128, 0xa5));
     }
     ck_assert(first[0] != 0 && isfinite(first[0]));
-    free(block), free(scene);
-    bed_free(&bed);
 }

@@ -677,7 +677,7 @@ TEST(outputs_written) {
         ck_assert_int_eq(count_files(), failed ? 3 : 4);
         write_heat(write_heat_csv, &frames[1]);
         char *alone = strdup(text), *body = strchr(alone, '\n') + 1;
-        char *joined = malloc(2 * sizeof text);
+        OWNED char *joined = malloc(2 * sizeof text);
         write_heat(write_heat_csv, &frames[0]);
         snprintf(joined, 2 * sizeof text, "%s%s", text, body);
         if (!failed) expect_file(joined);
@@ -689,7 +689,6 @@ TEST(outputs_written) {
         unlink(input);
         snprintf(path, sizeof path, "%s/out.csv", folder);
         free(alone);
-        free(joined);
         ck_assert_int_eq(count_files(), 0);
     }
 }
@@ -730,7 +729,7 @@ TEST(dump_read_back) {
     write_heat(write_heat_dump, &(struct contents){.bed = &plain});
     expect_begin("ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS ff ff ff\n");
     for (int k = 0; k < 2; ++k) {
-        struct bed back;
+        OWNED_BED back;
         const struct read_options options = {.frames = {k, k + 1, 1}, .extra = columns, .extras = 2};
         ck_assert_int_eq(read_bed(path, &options, &back), 0);
         ck_assert(back.n == 3 && back.ids);
@@ -745,6 +744,5 @@ TEST(dump_read_back) {
             ck_assert_double_eq_tol(back.period[0], 11, 1e-14);
             ck_assert(back.low[0] == -5.0 / 3 && back.period[1] == 0 && back.period[2] == 7);
         }
-        bed_free(&back);
     }
 }
