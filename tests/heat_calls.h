@@ -2,8 +2,7 @@
 #ifndef TESTS_HEAT_CALLS_H
 #define TESTS_HEAT_CALLS_H
 
-#include "fibrad_heat.h"
-#include "scenes.h"
+#include "heat_runs.h"
 #include "suite.h"
 
 enum { N = 14, PARTS = 8, BODIES = 3 };
@@ -101,23 +100,9 @@ static inline void end_owned(struct problem **p) { end_problem(*p); }
 
 static inline uint32_t tasks_of(const struct problem *p) { return fibrad_heat_tasks(p->heat); }
 
-static inline void trace_all(struct problem *p) {
-    for (uint32_t k = 0; k < tasks_of(p); k++) ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, k), FIBRAD_OK);
-}
+static inline void trace_all(struct problem *p) { ck_assert_int_eq(heat_trace(p->heat, &p->work, false), FIBRAD_OK); }
 
-static inline void sweep_all(struct problem *p) {
-    for (uint32_t k = 0; k < PARTS; k++) ck_assert_int_eq(fibrad_heat_sweep(p->heat, k), FIBRAD_OK);
-}
-
-/* Solves a problem, from fibrad_heat_begin on. */
-static inline void solve(struct problem *p) {
-    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
-    for (int solved = 0; !solved;) {
-        sweep_all(p);
-        ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
-    }
-    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
-}
+static inline void solve(struct problem *p) { heat_solve(p->heat, &p->sources, &p->result, false); }
 
 /* Powers of a problem when all calls come in the right order. */
 static inline struct problem *by_the_book(const struct contents *c) {
@@ -193,14 +178,14 @@ static inline void advance_to(struct problem *p, int from, int to) {
         if (stage == SWEPT) {
             ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
             for (int k = 0, solved; k < 3; k++) {
-                sweep_all(p);
+                heat_sweep(p->heat, false);
                 ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
             }
-            sweep_all(p);
+            heat_sweep(p->heat, false);
         }
         for (int solved = 0; stage == SOLVED && !solved;) {
             ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
-            if (!solved) sweep_all(p);
+            if (!solved) heat_sweep(p->heat, false);
         }
     }
 }

@@ -7,8 +7,8 @@
 #include "base/random.h"
 #include "row/beam.h"
 #include "scene/walls.h"
-#include "fibrad_heat.h"
 #include "heat/wall_patch.h"
+#include "heat_runs.h"
 #include "sample/direction.h"
 #include "sample/tables.h"
 #include "scenes.h"
@@ -71,10 +71,6 @@ static inline void free_problem(struct problem *p) {
     bed_free(&p->bed);
 }
 
-static inline uint32_t mirrored(const struct problem *p, uint32_t k, uint32_t n) {
-    return p->backwards ? n - 1 - k : k;
-}
-
 /* The scene of the bed within its walls. */
 static inline void build_scene(struct problem *p) {
     const struct walls *walls = &p->walls;
@@ -99,9 +95,7 @@ static inline void build_scene(struct problem *p) {
 
 static inline void trace_beams(struct problem *p) {
     OWNED_WORK work = work_growing();
-    const uint32_t tasks = fibrad_heat_tasks(p->heat);
-    for (uint32_t k = 0; k < tasks; k++)
-        ck_assert_int_eq(fibrad_heat_trace(p->heat, &work, mirrored(p, k, tasks)), FIBRAD_OK);
+    ck_assert_int_eq(heat_trace(p->heat, &work, p->backwards), FIBRAD_OK);
 }
 
 static inline void trace(struct problem *p) {
@@ -122,13 +116,7 @@ static inline void solve(struct problem *p) {
     p->sources.body_temperature = temperature, p->sources.body_emissivity = emissivity;
     p->result.body_power = power;
     ck_assert_uint_eq(fibrad_heat_parts(p->heat), parts);
-    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
-    for (int solved = 0; !solved;) {
-        for (uint32_t k = 0; k < parts; k++)
-            ck_assert_int_eq(fibrad_heat_sweep(p->heat, mirrored(p, k, parts)), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
-    }
-    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+    heat_solve(p->heat, &p->sources, &p->result, p->backwards);
     memset(p->wall_power, 0, sizeof p->wall_power);
     for (uint32_t b = 0; b < p->bodies; b++) p->wall_power[p->slot[b]] = power[b];
     p->sources.body_temperature = p->sources.body_emissivity = NULL;

@@ -18,11 +18,13 @@ static inline void free_owned(void *pointer) {
 #define OWNED              OWNED_BY(free_owned)
 #define OWNED_BY(function) __attribute__((cleanup(function)))
 
-/* Types with the functions that free them, of bed.h and scenes.h. */
+/* Types with the functions that free them, of bed.h, scenes.h and part_beds.h. */
 #define OWNED_BED    OWNED_BY(bed_free) struct bed
 #define OWNED_WORK   OWNED_BY(work_free) fibrad_work
 #define OWNED_ROW    OWNED_BY(row_free) fibrad_row
 #define OWNED_ROWS   OWNED_BY(rows_free) fibrad_rows
 #define OWNED_MATRIX OWNED_BY(matrix_free) struct matrix
+#define OWNED_PART   OWNED_BY(part_free) struct part
+#define OWNED_NAMED  OWNED_BY(named_free) struct named_row
 
 #endif

@@ -14,17 +14,15 @@ LOOP_TEST(nothing_is_beyond_what_holds_all, 2) {
         memset(m.part.config.known_high, 0, sizeof m.part.config.known_high);
         for (uint32_t i = 3; i < m.part.n; i += 150)
             for (int method = 0; method < METHODS; method++) {
-                struct named_row expected = row_by(&m.part, plain, i, method, 0);
-                struct named_row cut = row_by(&m.part, plain, i, method, 99);
+                OWNED_NAMED expected = row_by(&m.part, plain, i, method, 0);
+                OWNED_NAMED cut = row_by(&m.part, plain, i, method, 99);
                 ck_assert_double_eq(cut.row.beyond, 0);
                 expect_same_named(&expected, &cut, m.part.ids, kinds[_i].name);
                 if (m.part.config.bodies > 0 || occupied) { /* all lines end before the region does, or are clear */
-                    struct named_row region = row_by(&m.part, known, i, method, 0);
+                    OWNED_NAMED region = row_by(&m.part, known, i, method, 0);
                     ck_assert_double_eq(region.row.beyond, 0);
                     expect_same_named(&expected, &region, m.part.ids, kinds[_i].name);
-                    named_free(&region);
                 }
-                named_free(&expected), named_free(&cut);
             }
     }
     free_made(&m);
@@ -121,7 +119,7 @@ LOOP_TEST(beyond_is_what_rays_say, 1) {
  * not, rays from anywhere. */
 TEST(cells_are_walked_one_by_one) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, .1}});
-    struct part p = part_of(&bed, (fibrad_scene_config){0});
+    OWNED_PART p = part_of(&bed, (fibrad_scene_config){0});
     fibrad_random random = fibrad_random_start(6, 1);
     int missed = 0, clear = 0, rays = 0;
     for (int round = 0; round < 150; round++) {
@@ -169,13 +167,12 @@ TEST(cells_are_walked_one_by_one) {
             ck_assert_uint_eq(met, none.periodic[axis] ? FIBRAD_BEYOND : FIBRAD_ESCAPED);
         }
     }
-    part_free(&p);
 }
 
 /* What is reflected towards a sphere outside the known region is beyond. Beams see it. */
 TEST(reflections_end_at_the_known_region) {
     OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2.5, 1}, {2.2, 0, 1.25, 1}});
-    struct part p = part_of(&bed, (fibrad_scene_config){.known_low = {-2, 0, 0}, .known_high = {1.1, 0, 0}});
+    OWNED_PART p = part_of(&bed, (fibrad_scene_config){.known_low = {-2, 0, 0}, .known_high = {1.1, 0, 0}});
     OWNED fibrad_scene *scene = part_scene(&p);
     const fibrad_occupancy none = {.high = {1, 1, 1}, .cells = {1, 1, 1}, .mark = (const uint64_t[]){0}};
     p.config.occupancy = &none;
@@ -193,7 +190,6 @@ TEST(reflections_end_at_the_known_region) {
     ck_assert_double_eq(row_factor(&clear, 2), row_factor(&row, 2));
     ck_assert_double_gt(row.beyond, .3);
     ck_assert_double_eq(clear.beyond, 0);
-    part_free(&p);
 }
 
 /* One sphere that flies far above a bed must not hide the sky of those at its top. */
@@ -202,7 +198,7 @@ TEST(a_flying_sphere_leaves_the_sky) {
     const double side = bed.period[0];
     bed.period[2] = 0;
     add_sphere(&bed, side / 2, side / 2, 100, 1);
-    struct part p = part_of(&bed, (fibrad_scene_config){0});
+    OWNED_PART p = part_of(&bed, (fibrad_scene_config){0});
     const fibrad_occupancy o = occupancy_of(&p, (double[3]){0, 0, -1}, (double[3]){side, side, 101.5}, 128);
     fibrad_scene *told;
     OWNED fibrad_scene *untold = part_scene(&p);
@@ -212,18 +208,16 @@ TEST(a_flying_sphere_leaves_the_sky) {
     for (uint32_t i = 0; i < p.n - 1; i++)
         if (p.z[i] > p.z[top]) top = i;
     for (int method = 0; method < METHODS; method++) {
-        struct named_row all = row_by(&p, told, top, method, 0), cut = row_by(&p, told, top, method, 5);
-        struct named_row lost = row_by(&p, untold, top, method, 5);
+        OWNED_NAMED all = row_by(&p, told, top, method, 0), cut = row_by(&p, told, top, method, 5);
+        OWNED_NAMED lost = row_by(&p, untold, top, method, 5);
         ck_assert_double_gt(all.row.escaped, .3);
         ck_assert_double_lt(cut.row.escaped, all.row.escaped + .02);
         ck_assert_double_gt(cut.row.escaped, .7 * all.row.escaped); /* not what leaves through cells of the bed */
         ck_assert_double_lt(lost.row.escaped, .05);
         ck_assert_double_gt(lost.row.beyond, .8 * all.row.escaped);
-        named_free(&all), named_free(&cut), named_free(&lost);
     }
     free(told);
     free((void *)(uintptr_t)o.mark);
-    part_free(&p);
 }
 
 /* A flat bed above a floor keeps its sky. Lines of windows that look along the bed have directions of their own, of
@@ -256,12 +250,12 @@ TEST(a_cutoff_leaves_the_sky_of_a_flat_bed) {
 TEST(a_known_region_ends_in_a_can) {
     const fibrad_body body[] = {plane_at(2, 0, -40), plane_at(2, 1, 40), cylinder_at(0, 0, 10)};
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 35, 1}});
-    struct part p = part_of(
+    OWNED_PART p = part_of(
         &bed, (fibrad_scene_config){.body = body, .bodies = 3, .known_low = {0, 0, -1000}, .known_high = {0, 0, 20}});
     OWNED fibrad_scene *scene = part_scene(&p);
     const double share = .5 * (1 - 20 / sqrt(500)), below = .5 * (1 - 40 / sqrt(1700));
     for (int method = 0; method < METHODS; method++) {
-        struct named_row row = row_by(&p, scene, 0, method, 0);
+        OWNED_NAMED row = row_by(&p, scene, 0, method, 0);
         const double tolerance = method < 3 ? 6e-3 : method == 3 ? .02 : 1; /* of exchange: sums alone */
         ck_assert_double_eq_tol(row.row.beyond, share, tolerance);
         ck_assert_double_eq_tol(row.row.body[0], below, tolerance);
@@ -269,7 +263,6 @@ TEST(a_known_region_ends_in_a_can) {
                             0); /* the wall and the sphere above cannot be told from what may be there */
         ck_assert_double_gt(row.row.beyond, share / 2);
         ck_assert_double_eq(row.row.escaped, 0);
-        named_free(&row);
     }
     /* an occupancy that says that nothing is there gives the wall back */
     const fibrad_occupancy none = {
@@ -278,15 +271,12 @@ TEST(a_known_region_ends_in_a_can) {
     p.config.occupancy = &none;
     OWNED fibrad_scene *told = part_scene(&p);
     for (int method = 0; method < METHODS; method++) {
-        struct named_row row = row_by(&p, told, 0, method, 0);
+        OWNED_NAMED row = row_by(&p, told, 0, method, 0);
         ck_assert_double_eq(row.row.beyond, 0);
         ck_assert_double_gt(row.row.body[1], 0);
-        named_free(&row);
     }
     /* of a sphere beyond the region, all is beyond that meets no wall on the way out */
     p.config = config;
-    struct named_row row = row_by(&p, scene, 1, 0, 0);
+    OWNED_NAMED row = row_by(&p, scene, 1, 0, 0);
     ck_assert_double_gt(row.row.beyond, .9);
-    named_free(&row);
-    part_free(&p);
 }

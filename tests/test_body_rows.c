@@ -1,8 +1,8 @@
 /* test_body_rows.c - rows of walls: closed forms, grey plates, paths followed by other means, balances.
  * SPDX-License-Identifier: MIT */
+#include "host_owned.h"
 #include "rectangles.h"
 #include "scenes.h"
-#include "simple/fibrad_host.h"
 #include "suite.h"
 #include "meshes.h"
 
@@ -76,8 +76,8 @@ TEST(empty_box) {
     const double size[3] = {1, 1.5, .6};
     fibrad_body wall[6];
     for (int k = 0; k < 6; k++) wall[k] = plane_at(k / 2, k % 2, k % 2 * size[k / 2]);
-    fibrad_bed_factors *f = factors_of(&none, &(fibrad_scene_config){.body = wall, .bodies = 6}, NULL,
-                                       &(fibrad_bed_options){.beam = &fine});
+    OWNED_FACTORS *f = factors_of(&none, &(fibrad_scene_config){.body = wall, .bodies = 6}, NULL,
+                                  &(fibrad_bed_options){.beam = &fine});
     check_balance(&none, f, NULL, NULL);
     for (uint32_t b = 0; b < 6; b++) {
         const uint32_t axis = b / 2;
@@ -91,22 +91,20 @@ TEST(empty_box) {
         ck_assert_double_le(f->matrix.body_error[b], 1e-14);
         ck_assert_double_eq(f->matrix.body_escaped[b], 0);
     }
-    fibrad_bed_free(f);
 }
 
 TEST(empty_cylinder) {
     struct bed none = bed_of(0, NULL);
     const double r = 1.5, h = 2;
     const fibrad_body wall[3] = {cylinder_at(3, -4, r), plane_at(2, 0, 1), plane_at(2, 1, 1 + h)};
-    fibrad_bed_factors *f = factors_of(&none, &(fibrad_scene_config){.body = wall, .bodies = 3}, NULL,
-                                       &(fibrad_bed_options){.beam = &fine});
+    OWNED_FACTORS *f = factors_of(&none, &(fibrad_scene_config){.body = wall, .bodies = 3}, NULL,
+                                  &(fibrad_bed_options){.beam = &fine});
     const double end_end = discs(r, h), side_end = r / (2 * h) * (1 - end_end);
     check_balance(&none, f, NULL, NULL);
     ck_assert_double_eq_tol(between(f, 1, 2), end_end, 4e-4);
     ck_assert_double_eq_tol(between(f, 1, 0), 1 - end_end, 4e-4);
     ck_assert_double_eq_tol(between(f, 0, 1), side_end, 4e-4);
     ck_assert_double_eq_tol(between(f, 0, 0), 1 - 2 * side_end, 4e-4);
-    fibrad_bed_free(f);
 }
 
 /* Walls missing: what they would get escapes. Periods: as a box without end. Walls without bounds: no row of theirs. */
@@ -174,6 +172,8 @@ struct room {
     double low[3], high[3], radius; /* the cylinder stands about the z axis */
     double e[64], wall_e[6];
 };
+
+static void room_free(struct room *room) { bed_free(&room->bed); }
 
 static double draw(uint64_t *state) { /* xorshift64* */
     *state ^= *state >> 12, *state ^= *state << 25, *state ^= *state >> 27;
@@ -288,7 +288,7 @@ static void follow(const struct room *room, uint32_t b, uint64_t *state, double 
  * error stated; the balances hold; the correction is small. */
 LOOP_TEST(against_plain_walls, 6) {
     enum { PATHS = 150000 };
-    struct room room = make_room(_i % 3, _i < 3 ? 3 : 25, (uint64_t)_i);
+    OWNED_BY(room_free) struct room room = make_room(_i % 3, _i < 3 ? 3 : 25, (uint64_t)_i);
     const bool black = _i % 2 != 0;
     const fibrad_exchange_rule rule = {
         .emissivity = room.e, .body_emissivity = room.wall_e, .directions = 400, .paths = 4000};
@@ -296,7 +296,7 @@ LOOP_TEST(against_plain_walls, 6) {
         for (uint32_t k = 0; k < 64; k++) room.e[k] = room.wall_e[k % 6] = 1;
     const fibrad_scene_config config = {
         .body = room.wall, .bodies = room.walls, .opening = &room.opening, .openings = room.openings};
-    fibrad_bed_factors *f = factors_of(&room.bed, &config, black ? NULL : &rule, &(fibrad_bed_options){0});
+    OWNED_FACTORS *f = factors_of(&room.bed, &config, black ? NULL : &rule, &(fibrad_bed_options){0});
     const fibrad_factors *m = &f->matrix;
     uint64_t state = 4711;
     check_balance(&room.bed, f, black ? NULL : room.e, black ? NULL : room.wall_e);
@@ -313,8 +313,6 @@ LOOP_TEST(against_plain_walls, 6) {
         ck_assert_double_lt(square, 4 * (noise + m->body_error[b] * m->body_error[b]));
         ck_assert_double_lt(m->body_error[b], .01);
     }
-    fibrad_bed_free(f);
-    bed_free(&room.bed);
 }
 
 /* A bed that fills the space between black plates: what the plates see of each other is next to nothing, and what
@@ -325,12 +323,12 @@ TEST(plates_and_a_dense_bed) {
     bed.period[2] = 0;
     const fibrad_body two[] = {plane_at(2, 0, -.5), plane_at(2, 1, top + .5)};
     const fibrad_scene_config config = {.body = two, .bodies = 2};
-    fibrad_bed_factors *f = factors_of(&bed, &config, NULL, &(fibrad_bed_options){0});
+    OWNED_FACTORS *f = factors_of(&bed, &config, NULL, &(fibrad_bed_options){0});
     check_balance(&bed, f, NULL, NULL);
     ck_assert_double_lt(between(f, 0, 1), 1e-3);
     ck_assert_double_eq(between(f, 0, 0), 0);
     ck_assert_double_lt(f->matrix.body_correction, 1e-2); /* plates cut spheres, by half a radius the most */
-    fibrad_bed_factors *alone = NULL;
+    OWNED_FACTORS *alone = NULL;
     fibrad_scene_config whole = config;
     const fibrad_spheres spheres = spheres_of(&bed);
     memcpy(whole.period, bed.period, sizeof whole.period);
@@ -340,7 +338,6 @@ TEST(plates_and_a_dense_bed) {
         fibrad_row with = matrix_row(&f->matrix, i), without = matrix_row(&alone->matrix, i);
         ck_assert_double_lt(row_distance(&with, &without), 2 * alone->matrix.error[i] + 1e-6);
     }
-    fibrad_bed_free(f), fibrad_bed_free(alone);
 }
 
 /* Two ends of a flat cylinder see little but each other, and so do plates: sums that add up all the same. */
@@ -362,17 +359,17 @@ TEST(flat_rooms) {
 /* Reflectors have empty rows, and nothing goes to them; bodies in another order have the same rows but for noise, and a
  * room laid on its side too. */
 TEST(other_orders_and_axes) {
-    struct room room = make_room(0, 12, 5);
+    OWNED_BY(room_free) struct room room = make_room(0, 12, 5);
     room.wall_e[3] = 0, room.e[2] = 0;
     const fibrad_exchange_rule rule = {
         .emissivity = room.e, .body_emissivity = room.wall_e, .directions = 300, .paths = 4000};
-    fibrad_bed_factors *f =
+    OWNED_FACTORS *f =
         factors_of(&room.bed, &(fibrad_scene_config){.body = room.wall, .bodies = 6}, &rule, &(fibrad_bed_options){0});
     check_balance(&room.bed, f, room.e, room.wall_e);
     for (uint32_t b = 0; b < 6; b++)
         ck_assert(between(f, 3, b) == 0 && between(f, b, 3) == 0 && f->matrix.body_escaped[3] == 0);
 
-    struct bed turned = bed_of(0, NULL);
+    OWNED_BED turned = bed_of(0, NULL);
     fibrad_body wall[6];
     double wall_e[6];
     for (uint32_t i = 0; i < room.bed.n; i++)
@@ -384,7 +381,7 @@ TEST(other_orders_and_axes) {
     }
     const fibrad_exchange_rule turned_rule = {
         .emissivity = room.e, .body_emissivity = wall_e, .directions = 300, .paths = 4000};
-    fibrad_bed_factors *g =
+    OWNED_FACTORS *g =
         factors_of(&turned, &(fibrad_scene_config){.body = wall, .bodies = 6}, &turned_rule, &(fibrad_bed_options){0});
     check_balance(&turned, g, room.e, wall_e);
     for (uint32_t b = 0; b < 6; b++) {
@@ -392,19 +389,17 @@ TEST(other_orders_and_axes) {
         for (uint32_t c = 0; c < 6; c++) square += pow(between(f, b, c) - between(g, 5 - b, 5 - c), 2);
         ck_assert_double_le(sqrt(square), 2 * (f->matrix.body_error[b] + g->matrix.body_error[5 - b]));
     }
-    fibrad_bed_free(f), fibrad_bed_free(g);
-    bed_free(&room.bed), bed_free(&turned);
 }
 
 /* Errors asked for are kept; raw rows are what the paths say. */
 TEST(tolerance_and_raw_rows) {
-    struct room room = make_room(0, 6, 9);
+    OWNED_BY(room_free) struct room room = make_room(0, 6, 9);
     const fibrad_scene_config config = {.body = room.wall, .bodies = 6};
     fibrad_exchange_rule rule = {.emissivity = room.e, .body_emissivity = room.wall_e, .tolerance = 2e-3};
-    fibrad_bed_factors *f = factors_of(&room.bed, &config, &rule, &(fibrad_bed_options){0});
+    OWNED_FACTORS *f = factors_of(&room.bed, &config, &rule, &(fibrad_bed_options){0});
     rule.tolerance = 0, rule.paths = 6000, rule.directions = 1000, rule.seed = 5;
-    fibrad_bed_factors *truth = factors_of(&room.bed, &config, &rule, &(fibrad_bed_options){0});
-    fibrad_bed_factors *raw = factors_of(&room.bed, &config, &rule, &(fibrad_bed_options){.raw = 1});
+    OWNED_FACTORS *truth = factors_of(&room.bed, &config, &rule, &(fibrad_bed_options){0});
+    OWNED_FACTORS *raw = factors_of(&room.bed, &config, &rule, &(fibrad_bed_options){.raw = 1});
     ck_assert_double_eq(raw->matrix.body_correction, 0);
     for (uint32_t b = 0; b < 6; b++) {
         double square = 0, of_raw = 0;
@@ -416,13 +411,11 @@ TEST(tolerance_and_raw_rows) {
         ck_assert_double_lt(sqrt(of_raw), 3 * raw->matrix.body_error[b] + 1e-3);
         ck_assert_double_lt(raw->matrix.body_error[b], 5e-3);
     }
-    fibrad_bed_free(f), fibrad_bed_free(truth), fibrad_bed_free(raw);
-    bed_free(&room.bed);
 }
 
 /* The same bits for any number of threads and any instruction set. */
 TEST(same_bits_of_bodies) {
-    struct room room = make_room(1, 12, 3);
+    OWNED_BY(room_free) struct room room = make_room(1, 12, 3);
     const fibrad_exchange_rule rule = {.emissivity = room.e, .body_emissivity = room.wall_e};
     const fibrad_spheres spheres = spheres_of(&room.bed);
     fibrad_bed_factors *first = NULL;
@@ -445,16 +438,15 @@ TEST(same_bits_of_bodies) {
         }
     }
     fibrad_bed_free(first);
-    bed_free(&room.bed);
 }
 
 TEST(bad_arguments_of_bodies) {
-    struct room room = make_room(2, 3, 1);
+    OWNED_BY(room_free) struct room room = make_room(2, 3, 1);
     const fibrad_scene_config config = {
         .body = room.wall, .bodies = room.walls, .opening = &room.opening, .openings = room.openings};
     fibrad_scene *scene = scene_with(&room.bed, &config);
     fibrad_scene *endless = scene_with(&room.bed, &(fibrad_scene_config){.body = room.wall, .bodies = 1});
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     fibrad_body_row row, part[FIBRAD_BODY_PARTS];
     memset(part, 0, sizeof part);
     fibrad_exchange_rule rule = {.emissivity = room.e, .body_emissivity = room.wall_e};
@@ -481,20 +473,19 @@ TEST(bad_arguments_of_bodies) {
     fibrad_body_row bodies[5];
     memset(bodies, 0, sizeof bodies);
     fibrad_matrix_rule how = {.body_row = bodies};
-    fibrad_rows rows = {.memory = memory_growing()};
+    OWNED_ROWS rows = {.memory = memory_growing()};
     ck_assert_uint_gt(fibrad_matrix_size(scene, &rows, 1, &how), 0);
     bodies[4].body[2] = NAN;
     ck_assert_uint_eq(fibrad_matrix_size(scene, &rows, 1, &how), 0);
     bodies[4].body[2] = 0, bodies[4].error = -1;
     ck_assert_uint_eq(fibrad_matrix_size(scene, &rows, 1, &how), 0);
-    rows_free(&rows), work_free(&work);
-    free(scene), free(endless);
-    bed_free(&room.bed);
+    free(scene);
+    free(endless);
 }
 
 /* Paths end in an opening as they do at a black plane: rows of spheres and bodies, and what is carried. */
 TEST(paths_end_in_openings) {
-    struct room room = make_room(2, 12, 5);
+    OWNED_BY(room_free) struct room room = make_room(2, 12, 5);
     room.wall[5] = plane_at(2, 1, room.opening.at), room.wall_e[5] = 1;
     const fibrad_scene_config open = {.body = room.wall, .bodies = 5, .opening = &room.opening, .openings = 1};
     fibrad_scene *scene[2] = {scene_with(&room.bed, &open),
@@ -526,7 +517,6 @@ TEST(paths_end_in_openings) {
         row_free(&row[0]), row_free(&row[1]);
     }
     free(scene[0]), free(scene[1]);
-    bed_free(&room.bed);
 }
 
 /* A sphere in a box, and rows of walls that send all to it: so it can give each wall but its share of its own area, and

@@ -1,7 +1,7 @@
 /* test_cut.c - spheres that walls cut: what lies behind a wall goes to that wall. SPDX-License-Identifier: MIT */
 #include "base/random.h"
+#include "host_owned.h"
 #include "scenes.h"
-#include "simple/fibrad_host.h"
 #include "suite.h"
 
 #define PI 3.14159265358979323846
@@ -78,7 +78,7 @@ struct heat {
 static struct heat heat_of(const struct bed *bed, const fibrad_body *plane, const double *temperature,
                            const double *emissivity, const double of_plane[2], double sky) {
     const fibrad_spheres spheres = spheres_of(bed);
-    fibrad_radiation *radiation;
+    OWNED_RADIATION *radiation = NULL;
     fibrad_heat_sources sources;
     struct heat heat;
     fibrad_heat_result result = {.power = heat.power, .body_power = &heat.plane};
@@ -91,7 +91,6 @@ static struct heat heat_of(const struct bed *bed, const fibrad_body *plane, cons
     sources.surroundings = sky, sources.sigma = 1, sources.tolerance = 1e-8;
     ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &result), FIBRAD_OK);
     heat.sky = result.surroundings_power;
-    fibrad_radiation_free(radiation);
     return heat;
 }
 

@@ -1,7 +1,7 @@
 /* test_estimate.c - rows are as accurate as they claim, and as they are asked to be. SPDX-License-Identifier: MIT */
 #include "bed/bed_scene.h"
+#include "host_owned.h"
 #include "scenes.h"
-#include "simple/fibrad_host.h"
 #include "suite.h"
 
 enum { ROWS = 16 };
@@ -51,18 +51,17 @@ static int ascending(const void *a, const void *b) {
 LOOP_TEST(estimates_are_honest, BEDS) {
     OWNED_BED bed = beds[_i].make();
     unsigned char wanted[1000];
-    fibrad_bed_factors *truth = truth_of(&bed, wanted);
+    OWNED_FACTORS *truth = truth_of(&bed, wanted);
     for (int raw = 0; raw < 2; raw++) {
         double ratio[3 * ROWS];
         uint32_t count = 0;
         for (uint32_t directions = 60; directions <= 540; directions *= 3) {
-            fibrad_bed_factors *factors = rows(&bed, &(fibrad_beam_rule){.directions = directions}, raw, NULL);
+            OWNED_FACTORS *factors = rows(&bed, &(fibrad_beam_rule){.directions = directions}, raw, NULL);
             for (uint32_t i = 0; i < bed.n; i++) {
                 if (!wanted[i]) continue;
                 ratio[count] = factors->matrix.error[i] / distance_of(factors, truth, i);
                 ck_assert_double_finite(ratio[count++]);
             }
-            fibrad_bed_free(factors);
         }
         ck_assert_uint_eq(count, 3 * ROWS);
         qsort(ratio, count, sizeof *ratio, ascending);
@@ -71,17 +70,16 @@ LOOP_TEST(estimates_are_honest, BEDS) {
         ck_assert_double_ge(ratio[2], !raw ? .5 : _i == 3 ? .85 : 1);
         ck_assert_double_lt(ratio[count / 2], 4);
     }
-    fibrad_bed_free(truth);
 }
 
 /* The rows asked for are that accurate, by the truth and by their own account; averaged ones closed and reciprocal. */
 LOOP_TEST(tolerance_is_met, BEDS) {
     OWNED_BED bed = beds[_i].make();
     unsigned char of_truth[1000];
-    fibrad_bed_factors *truth = truth_of(&bed, of_truth);
+    OWNED_FACTORS *truth = truth_of(&bed, of_truth);
     const double wanted = _i == 1 ? .1 : 4e-3;
     for (int raw = 0; raw < 2; raw++) {
-        fibrad_bed_factors *factors = rows(&bed, &(fibrad_beam_rule){.tolerance = wanted}, raw, NULL);
+        OWNED_FACTORS *factors = rows(&bed, &(fibrad_beam_rule){.tolerance = wanted}, raw, NULL);
         uint32_t above = 0;
         double largest = 0;
         for (uint32_t i = 0; i < bed.n; i++) {
@@ -97,9 +95,7 @@ LOOP_TEST(tolerance_is_met, BEDS) {
         ck_assert_double_gt(largest, wanted / 5);
         ck_assert_double_le(factors->closure_error, 1e-12);
         if (!raw) ck_assert_double_lt(factors->reciprocity_error, 1e-14);
-        fibrad_bed_free(factors);
     }
-    fibrad_bed_free(truth);
 }
 
 /* A row alone takes what it needs, whatever the room it was given, and holds the row of that many directions. */
@@ -190,7 +186,7 @@ LOOP_TEST(estimates_count_walls, SCENES) {
     const fibrad_scene_config config = {.body = body, .bodies = walls_about(&bed, of, body)};
     unsigned char wanted[1000] = {0};
     for (uint32_t k = 0; k < ROWS; k++) wanted[bed.n * (2 * k + 1) / (2 * ROWS)] = 1;
-    fibrad_bed_factors *truth = rows_among(&bed, &config, &(fibrad_beam_rule){.directions = 20000}, true, wanted);
+    OWNED_FACTORS *truth = rows_among(&bed, &config, &(fibrad_beam_rule){.directions = 20000}, true, wanted);
     for (int raw = 0; raw < 2; raw++) {
         double ratio[4 * ROWS];
         uint32_t count = 0, above = 0;
@@ -218,7 +214,6 @@ LOOP_TEST(estimates_count_walls, SCENES) {
         ck_assert_uint_le(20 * above, count + 19);
         ck_assert_double_le(ratio[count / 2], 5);
     }
-    fibrad_bed_free(truth);
 }
 
 /* Where no number of directions does, the most there is. */
@@ -271,14 +266,13 @@ TEST(small_beside_large_exchange) {
     double square = 0;
     for (uint64_t seed = 0; seed < 12; seed++) {
         const fibrad_exchange_rule rule = {.emissivity = emissivity, .tolerance = .002, .seed = seed};
-        fibrad_bed_factors *f = exchange(&bed, &rule, false);
+        OWNED_FACTORS *f = exchange(&bed, &rule, false);
         const double there = matrix_factor(&f->matrix, 0, 1), back = matrix_factor(&f->matrix, 1, 0);
         ck_assert_double_le(fabs(back - truth), .004);
         ck_assert_double_le(fabs(100 * there / back - 1), 1e-14);
         ck_assert_double_le(f->closure_error, 1e-12);
         ck_assert_double_le(fmax(f->matrix.error[0], f->matrix.error[1]), .002);
         square += (back - truth) * (back - truth) / 12;
-        fibrad_bed_free(f);
     }
     ck_assert_double_le(sqrt(square), .002);
 }
@@ -292,14 +286,13 @@ LOOP_TEST(small_beside_large_sampled, 2) {
     const fibrad_bed_options options =
         _i == 0 ? (fibrad_bed_options){.beam = &points} : (fibrad_bed_options){.cast = &rays};
     double truth;
-    fibrad_bed_factors *f = NULL;
+    OWNED_FACTORS *f = NULL;
     ck_assert_int_eq(fibrad_pair_exact(.03, .3, 3e-5, &truth), FIBRAD_OK);
     ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &options, NULL, &f), FIBRAD_OK);
     const double there = matrix_factor(&f->matrix, 0, 1), back = matrix_factor(&f->matrix, 1, 0);
     ck_assert_double_le(fabs(back - truth), .002);
     ck_assert_double_le(fabs(100 * there / back - 1), 1e-14);
     ck_assert_double_le(f->closure_error, 1e-12);
-    fibrad_bed_free(f);
 }
 
 /* Beds whose exchange factors have a tolerance. */
@@ -316,7 +309,7 @@ LOOP_TEST(tolerance_of_exchange_is_met, sizeof greys / sizeof *greys) {
     OWNED_BED bed = packing(greys[_i].n, greys[_i].smallest, 1, greys[_i].fraction, greys[_i].seed, false);
     double *e = calloc(bed.n, sizeof *e), worst = 0, square = 0;
     for (uint32_t i = 0; i < bed.n; i++) e[i] = greys[_i].emissivity;
-    fibrad_bed_factors *f = exchange(&bed, &(fibrad_exchange_rule){.emissivity = e, .tolerance = tolerance}, false);
+    OWNED_FACTORS *f = exchange(&bed, &(fibrad_exchange_rule){.emissivity = e, .tolerance = tolerance}, false);
     fibrad_bed_factors *truth =
         exchange(&bed,
                  &(fibrad_exchange_rule){
@@ -338,7 +331,6 @@ LOOP_TEST(tolerance_of_exchange_is_met, sizeof greys / sizeof *greys) {
            1 / greys[_i].smallest, e[0], tolerance, worst, sqrt(square));
     ck_assert_double_le(sqrt(square), .7 * tolerance);
     ck_assert_double_le(worst, 1.3 * tolerance);
-    fibrad_bed_free(f);
     fibrad_bed_free(truth);
     free(e);
 }

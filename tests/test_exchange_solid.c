@@ -6,9 +6,9 @@
 #include <gsl/gsl_sf_legendre.h>
 
 #include "exchange/conducting.h"
+#include "host_owned.h"
 #include "program.h"
 #include "scenes.h"
-#include "simple/fibrad_host.h"
 
 FIXTURE(make_folder, remove_folder)
 
@@ -160,6 +160,8 @@ struct hot_bed {
     double temperature[MOST], emissivity[MOST], relative[MOST], node[MOST], conductivity[MOST];
 };
 
+static void hot_bed_free(struct hot_bed *h) { bed_free(&h->bed); }
+
 /* A random bed whose temperature rises along x, and differs from sphere to sphere. relative 0: emissivities and k*
  * differ, too. */
 static struct hot_bed hot_bed(uint32_t n, double emissivity, double relative) {
@@ -221,14 +223,13 @@ static void powers_by_patches(const struct hot_bed *h, double *power) {
     const fibrad_spheres spheres = spheres_of(&h->bed);
     const fibrad_heat_config config = {.directions = 1500, .points = 128};
     fibrad_heat_sources sources;
-    fibrad_radiation *radiation;
+    OWNED_RADIATION *radiation = NULL;
     fibrad_heat_result result = {.power = power};
     fibrad_heat_sources_init(&sources);
     sources.temperature = h->temperature, sources.emissivity = h->emissivity, sources.conductivity = h->conductivity;
     sources.surroundings = 1, sources.sigma = 1, sources.tolerance = 1e-6;
     ck_assert_int_eq(fibrad_radiation_new(&radiation, &h->config, &spheres, &config, NULL), FIBRAD_OK);
     ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &result), FIBRAD_OK);
-    fibrad_radiation_free(radiation);
 }
 
 /* The root mean square of what two lists differ by, over that of the second one. */
@@ -241,26 +242,24 @@ static double differ(const double *a, const double *b, uint32_t n) {
 /* Powers by rows are those by patches, beyond the noise of paths, which two seeds tell. */
 static const double bed_k[] = {.1, .1, 1, 10, 0}, bed_e[] = {.8, 1, .6, .8, 0};
 LOOP_TEST(powers_are_those_of_patches, 5) {
-    struct hot_bed h = hot_bed(120, bed_e[_i], bed_k[_i]);
+    OWNED_BY(hot_bed_free) struct hot_bed h = hot_bed(120, bed_e[_i], bed_k[_i]);
     double truth[MOST], found[2][MOST], mean[MOST];
     powers_by_patches(&h, truth);
     for (uint64_t seed = 0; seed < 2; ++seed) {
-        fibrad_bed_factors *factors = factors_of(&h, 4000, seed);
+        OWNED_FACTORS *factors = factors_of(&h, 4000, seed);
         ck_assert_double_le(factors->reciprocity_error, 1e-12);
         for (uint64_t k = 0; k < factors->matrix.start[h.bed.n]; ++k) ck_assert_double_ge(factors->matrix.f[k], 0);
         ck_assert_double_le(fabs(powers_by_rows(&h, &factors->matrix, found[seed])), 1e-12);
-        fibrad_bed_free(factors);
     }
     for (uint32_t i = 0; i < h.bed.n; ++i) mean[i] = (found[0][i] + found[1][i]) / 2;
     const double noise = differ(found[0], found[1], h.bed.n) / 2, off = differ(mean, truth, h.bed.n);
     ck_assert_double_le(noise, .015);
     ck_assert_double_le(sqrt(fmax(0, off * off - noise * noise)), .01);
-    bed_free(&h.bed);
 }
 
 /* Spheres of one temperature have today's rows, to the bit. k* = 1e6 has the same powers within the noise. */
 TEST(good_conductors) {
-    struct hot_bed h = hot_bed(100, .7, INFINITY);
+    OWNED_BY(hot_bed_free) struct hot_bed h = hot_bed(100, .7, INFINITY);
     double power[2][MOST];
     const fibrad_spheres spheres = spheres_of(&h.bed);
     const fibrad_exchange_rule plain = {.emissivity = h.emissivity, .paths = 2000, .directions = 400, .seed = 1};
@@ -277,7 +276,6 @@ TEST(good_conductors) {
     powers_by_rows(&h, &all->matrix, power[1]);
     ck_assert_double_le(differ(power[1], power[0], h.bed.n), 1e-4);
     fibrad_bed_free(all);
-    bed_free(&h.bed);
 }
 
 /* Numbers that cannot be: nodes without conductivities, above the emissivity, k* too small or NaN; of the sphere itself
@@ -286,8 +284,8 @@ TEST(refusals) {
     const struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2, 1}});
     const double black[] = {.5, .5};
     OWNED fibrad_scene *scene = scene_of(&bed, 0);
-    fibrad_work work = work_growing();
-    fibrad_row row = row_of(2);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(2);
     for (int k = 0; k < 8; ++k) {
         double relative[] = {1, 1}, node[] = {.3, .3};
         if (k < 4) node[k / 2] = k % 2 ? .6 : NAN;
@@ -297,13 +295,11 @@ TEST(refusals) {
             .emissivity = black, .conductivity = k == 6 ? NULL : relative, .node_emissivity = node};
         ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL),
                          k < 7 ? FIBRAD_E_ARGUMENT : FIBRAD_OK);
-        fibrad_bed_factors *factors;
+        OWNED_FACTORS *factors = NULL;
         const fibrad_spheres spheres = spheres_of(&bed);
         ck_assert_int_eq(fibrad_exchange_factors(NULL, &spheres, &rule, NULL, NULL, &factors),
                          k < 7 ? FIBRAD_E_ARGUMENT : FIBRAD_OK);
-        fibrad_bed_free(factors);
     }
-    row_free(&row), work_free(&work);
 }
 
 /* ---- the program ------------------------------------------------------------------------------------------------- */

@@ -114,7 +114,7 @@ TEST(powers_are_those_of_the_averaged_matrix) {
 
 TEST(bad_regions_and_occupancies_are_refused) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
-    struct part p = part_of(&bed, (fibrad_scene_config){0});
+    OWNED_PART p = part_of(&bed, (fibrad_scene_config){0});
     const uint64_t mark[1] = {1};
     const fibrad_occupancy good = {.high = {1, 1, 1}, .cells = {4, 4, 4}, .mark = mark};
     fibrad_occupancy o[9];
@@ -148,13 +148,12 @@ TEST(bad_regions_and_occupancies_are_refused) {
     free(scene);
     p.config.period[1] = 50;
     ck_assert_int_eq(part_scene_try(&p, &scene), FIBRAD_E_ARGUMENT);
-    part_free(&p);
 }
 
 /* Whatever a scene is made from tells it from others: rows of the one do not go into a matrix of the other. */
 TEST(surroundings_tell_scenes_apart) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
-    struct part p = part_of(&bed, (fibrad_scene_config){0});
+    OWNED_PART p = part_of(&bed, (fibrad_scene_config){0});
     uint64_t mark[2] = {1, 0};
     fibrad_occupancy o = {.high = {1, 1, 1}, .cells = {4, 4, 8}};
     fibrad_scene *scene[7];
@@ -177,7 +176,6 @@ TEST(surroundings_tell_scenes_apart) {
         }
     }
     for (int k = 0; k < 7; k++) free(scene[k]);
-    part_free(&p);
 }
 
 TEST(bad_flows_are_refused) {

@@ -1,8 +1,8 @@
 /* test_heat_errors.c - stated errors of powers against closed forms, over random scenes. SPDX-License-Identifier: MIT
  */
+#include "host_owned.h"
 #include "rectangles.h"
 #include "scenes.h"
-#include "simple/fibrad_host.h"
 #include "suite.h"
 #include "meshes.h"
 
@@ -23,7 +23,7 @@ struct given {
 static void solve(struct given *g) {
     const fibrad_spheres spheres = spheres_of(&g->bed);
     fibrad_heat_sources sources;
-    fibrad_radiation *radiation;
+    OWNED_RADIATION *radiation = NULL;
     fibrad_run run = {.threads = 1};
     fibrad_heat_sources_init(&sources);
     for (int k = 0; k < MOST; k++) g->emissivity[k] = g->wall_emissivity[k] = 1;
@@ -35,7 +35,6 @@ static void solve(struct given *g) {
     g->scene.body = g->body, g->scene.opening = &g->opening;
     ck_assert_int_eq(fibrad_radiation_new(&radiation, &g->scene, &spheres, &g->config, &run), FIBRAD_OK);
     ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &g->result), FIBRAD_OK);
-    fibrad_radiation_free(radiation);
     bed_free(&g->bed);
 }
 

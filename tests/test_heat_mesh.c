@@ -1,9 +1,8 @@
 /* test_heat_mesh.c - net powers among triangles: against planes in their place, closed forms, and themselves under
  * every setting that must not matter. SPDX-License-Identifier: MIT */
-#include "fibrad_heat.h"
+#include "heat_runs.h"
 #include "mesh/mesh_patch.h"
 #include "scene/scene.h"
-#include "scenes.h"
 #include "meshes.h"
 #include "suite.h"
 
@@ -106,10 +105,7 @@ static fibrad_scene *build_scene(const struct problem *p) {
 
 static int trace_beams(struct problem *p) {
     OWNED_WORK work = work_growing();
-    const uint32_t tasks = fibrad_heat_tasks(p->heat);
-    int status = FIBRAD_OK;
-    for (uint32_t k = 0; k < tasks && status == FIBRAD_OK; k++)
-        status = fibrad_heat_trace(p->heat, &work, p->backwards ? tasks - 1 - k : k);
+    const int status = heat_trace(p->heat, &work, p->backwards);
     p->seen = work.triangle;
     return status;
 }
@@ -122,16 +118,7 @@ static int trace(struct problem *p) {
     return trace_beams(p);
 }
 
-static void solve(struct problem *p) {
-    const uint32_t parts = fibrad_heat_parts(p->heat);
-    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
-    for (int solved = 0; !solved;) {
-        for (uint32_t k = 0; k < parts; k++)
-            ck_assert_int_eq(fibrad_heat_sweep(p->heat, p->backwards ? parts - 1 - k : k), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
-    }
-    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
-}
+static void solve(struct problem *p) { heat_solve(p->heat, &p->sources, &p->result, p->backwards); }
 
 static void trace_and_solve(struct problem *p) {
     ck_assert_int_eq(trace(p), FIBRAD_OK);

@@ -1,7 +1,7 @@
 /* test_light_heat.c - light that is reflected and absorbed in a bed. SPDX-License-Identifier: MIT */
+#include "host_owned.h"
 #include "plain_light.h"
 #include "scenes.h"
-#include "simple/fibrad_host.h"
 #include "suite.h"
 
 /* The bed of a dump with the columns id type x y z radius, periodic along x and y. */
@@ -36,7 +36,7 @@ static struct absorbed absorb_light(const struct bed *bed, const fibrad_scene_co
                          {0},
                          {0}};
     double *eps = malloc(bed->n * sizeof *eps), wall_eps[6];
-    fibrad_radiation *radiation;
+    OWNED_RADIATION *radiation = NULL;
     const fibrad_spheres spheres = {.x = bed->x, .y = bed->y, .z = bed->z, .r = bed->r, .n = bed->n};
     const fibrad_light_sources sources = {
         .light = light, .lights = 1, .absorptivity = eps, .body_absorptivity = wall_eps};
@@ -47,7 +47,6 @@ static struct absorbed absorb_light(const struct bed *bed, const fibrad_scene_co
     a.result.body_absorbed_error = a.wall_error;
     ck_assert_int_eq(fibrad_radiation_new(&radiation, config, &spheres, NULL, NULL), 0);
     ck_assert_int_eq(fibrad_radiation_shine(radiation, &sources, &a.result), 0);
-    fibrad_radiation_free(radiation);
     free(eps);
     double sum = a.result.transmitted + a.result.reflected;
     for (uint32_t i = 0; i < bed->n; i++) sum += a.sphere[i];
@@ -171,7 +170,7 @@ TEST(emissivity_of_a_face_is_its_mean_absorptance) {
         mean += (1 - a.result.reflected) / (RINGS * TURNS);
         free_absorbed(&a);
     }
-    fibrad_radiation *radiation;
+    OWNED_RADIATION *radiation = NULL;
     const fibrad_spheres spheres = {.x = bed.x, .y = bed.y, .z = bed.z, .r = bed.r, .n = bed.n};
     fibrad_heat_sources sources;
     fibrad_heat_result result = {.power = power, .body_power = &wall_power};
@@ -181,7 +180,6 @@ TEST(emissivity_of_a_face_is_its_mean_absorptance) {
     sources.body_temperature = &wall_hot, sources.body_emissivity = &wall_eps;
     ck_assert_int_eq(fibrad_radiation_new(&radiation, &config, &spheres, NULL, NULL), 0);
     ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &result), 0);
-    fibrad_radiation_free(radiation);
     const double emissivity = result.surroundings_power / (FIBRAD_STEFAN_BOLTZMANN * 1e12 * side * side);
     printf("face: emissivity %.4f, mean absorptance %.4f\n", emissivity, mean);
     ck_assert_double_eq_tol(emissivity, mean, .01);

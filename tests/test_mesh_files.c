@@ -165,14 +165,13 @@ TEST(sides_of_a_cube) {
         double inside[3][8], outside[3][8];
         for (int k = 0; k < 24; ++k) inside[k / 8][k % 8] = 7 * (rand() / (double)RAND_MAX) - 3.5;
         for (int k = 0; k < 24; ++k) outside[k / 8][k % 8] = k / 8 == k % 3 ? 5 : inside[k / 8][k % 8];
-        struct meshes within = faced(&soup, SIDES_AUTO, 8, inside);
+        OWNED_BY(meshes_free) struct meshes within = faced(&soup, SIDES_AUTO, 8, inside);
         for (uint32_t t = 0; t < 12; ++t) assert_side(&within, t, (const double[]){0, 0, 0});
         ck_assert_uint_eq(within.enclosing, 1);
         ck_assert_ptr_null(meshes_beyond(&within, (const double[]){3.9, 0, 0}, .4, (const double[]){0, 0, 0}));
         ck_assert_ptr_null(meshes_beyond(&within, (const double[]){4.3, 0, 0}, .4, (const double[]){0, 0, 0}));
         ck_assert_str_eq(meshes_beyond(&within, (const double[]){4.5, 0, 0}, .4, (const double[]){0, 0, 0}), "m");
-        meshes_free(&within);
-        struct meshes about = faced(&soup, SIDES_AUTO, 8, outside);
+        OWNED_BY(meshes_free) struct meshes about = faced(&soup, SIDES_AUTO, 8, outside);
         for (uint32_t t = 0; t < 12; ++t) {
             const struct surface *s = &about.mesh[0].surface;
             double normal[3], far[3];
@@ -185,7 +184,6 @@ TEST(sides_of_a_cube) {
         }
         ck_assert_uint_eq(about.enclosing, 0);
         ck_assert_str_eq(meshes_beyond(&about, (const double[]){0, 0, 3.5}, .4, (const double[]){0, 0, 0}), "m");
-        meshes_free(&about);
     }
 }
 
@@ -195,11 +193,11 @@ TEST(sides_of_a_funnel) {
         soup_cone(&soup, 1, 2, (const double[]){0, 5}, (const double[]){1, 4}, 24);
         soup_flip(&soup, 0);
         double centre[3][8] = {{1, 1.5, 3, -1, 1, 1, 1, 2}, {2, 2, 2, 2, 4, 0, 2, 2}, {2, 1, 4, 4, 4, 4, 6, -1}};
+        OWNED_BY(meshes_free)
         struct meshes meshes = faced(&soup, SIDES_AUTO, 8, centre); /* one above it, one below its end, too */
         for (uint32_t t = 0; t < soup.n; ++t) assert_side(&meshes, t, (const double[]){1, 2, 2.5});
         ck_assert_uint_eq(meshes.mesh[0].surface.components, 1);
         ck_assert_uint_eq(meshes.mesh[0].surface.open, 48);
-        meshes_free(&meshes);
     }
 }
 
@@ -210,7 +208,7 @@ TEST(sides_of_a_tube_in_a_box) {
         soup_cone(&soup, 1, 0, (const double[]){-3.9, 3.9}, (const double[]){.5, .5}, 12);
         soup_flip(&soup, 0);
         double centre[3][8] = {{2, 0, 1, -3, 3, 1, 2, -2}, {0, 0, 1, 3, -3, -1, 2, 0}, {0, 1, 2, 3, -3, -2, -1, 3}};
-        struct meshes meshes = faced(&soup, SIDES_AUTO, 8, centre);
+        OWNED_BY(meshes_free) struct meshes meshes = faced(&soup, SIDES_AUTO, 8, centre);
         const struct surface *s = &meshes.mesh[0].surface;
         ck_assert_uint_eq(s->components, 2);
         for (uint32_t t = 0; t < soup.n; ++t) {
@@ -221,25 +219,22 @@ TEST(sides_of_a_tube_in_a_box) {
                                                   9 * (at[1] + surface_corner(s, t, 1)[1]), 0});
         }
         ck_assert_uint_eq(meshes.enclosing, 1);
-        meshes_free(&meshes);
     }
 }
 
 TEST(sides_that_are_asked_for) {
     struct soup soup = cube();
     double centre[3][8] = {{0}, {0}, {0}};
+    OWNED_BY(meshes_free)
     struct meshes both = faced(&soup, SIDES_BOTH, 1, centre), normals = faced(&soup, SIDES_NORMALS, 1, centre);
     for (uint32_t t = 0; t < 12; ++t) {
         ck_assert(both.front[t] == 0 && both.back[t] == 0);
         ck_assert(normals.front[t] == 0 && normals.back[t] == FIBRAD_NO_BODY);
     }
     ck_assert_uint_eq(both.enclosing + normals.enclosing, 0);
-    meshes_free(&both);
-    meshes_free(&normals);
     soup_flip(&soup, 1);
-    normals = faced(&soup, SIDES_NORMALS, 1, centre);
-    ck_assert_uint_eq(normals.enclosing, 1);
-    meshes_free(&normals);
+    OWNED_BY(meshes_free) struct meshes turned = faced(&soup, SIDES_NORMALS, 1, centre);
+    ck_assert_uint_eq(turned.enclosing, 1);
     soup.n = 0; /* a strip that is twisted once has one side */
     for (int k = 0; k < 20; ++k) {
         double p[4][3];
@@ -251,11 +246,10 @@ TEST(sides_that_are_asked_for) {
         soup_add(&soup, p[0], p[1], p[3]);
         soup_add(&soup, p[0], p[3], p[2]);
     }
-    struct meshes strip = faced(&soup, SIDES_AUTO, 1, centre);
+    OWNED_BY(meshes_free) struct meshes strip = faced(&soup, SIDES_AUTO, 1, centre);
     ck_assert_uint_eq(strip.mesh[0].surface.components, 1);
     ck_assert(strip.mesh[0].surface.component[0].twisted);
     for (uint32_t t = 0; t < soup.n; ++t) ck_assert(strip.front[t] == 0 && strip.back[t] == 0);
-    meshes_free(&strip);
 }
 
 /* ---- the option ------------------------------------------------------------------------------------------------- */

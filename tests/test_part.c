@@ -34,20 +34,18 @@ LOOP_TEST(rows_depend_on_what_is_near, KINDS) {
         for (int c = 0; c < 2; c++) {
             const double reach = (cutoffs[c] + radius_most(&m.part)) * (1 + 1e-9);
             uint32_t own = UINT32_MAX, again = UINT32_MAX;
-            struct part near = part_near(&m.part, i, reach, &own), far = part_near(&m.part, i, 1.4 * reach, &again);
+            OWNED_PART near = part_near(&m.part, i, reach, &own), far = part_near(&m.part, i, 1.4 * reach, &again);
             ck_assert_uint_lt(near.n, m.part.n);
             OWNED fibrad_scene *little = part_scene(&near), *more = part_scene(&far);
             for (int method = 0; method < METHODS; method++) {
                 char what[64];
                 snprintf(what, sizeof what, "%s, method %d, sphere %u", kinds[_i].name, method, i);
-                struct named_row expected = row_by(&m.part, whole, i, method, cutoffs[c]);
-                struct named_row found = row_by(&near, little, own, method, cutoffs[c]);
-                struct named_row larger = row_by(&far, more, again, method, cutoffs[c]);
+                OWNED_NAMED expected = row_by(&m.part, whole, i, method, cutoffs[c]);
+                OWNED_NAMED found = row_by(&near, little, own, method, cutoffs[c]);
+                OWNED_NAMED larger = row_by(&far, more, again, method, cutoffs[c]);
                 expect_same_named(&expected, &found, m.part.ids, what);
                 expect_same_named(&expected, &larger, m.part.ids, what);
-                named_free(&expected), named_free(&found), named_free(&larger);
             }
-            part_free(&near), part_free(&far);
         }
     free_made(&m);
 }
@@ -62,7 +60,7 @@ TEST(displacements_depend_on_what_is_near) {
     for (uint32_t i = 0; i < m.part.n; i++) {
         if (m.part.z[i] > 1.2) continue; /* paths go to and fro between spheres and the wall */
         uint32_t own = UINT32_MAX;
-        struct part near = part_near(&m.part, i, cutoff + radius_most(&m.part) + 1e-6, &own);
+        OWNED_PART near = part_near(&m.part, i, cutoff + radius_most(&m.part) + 1e-6, &own);
         OWNED fibrad_scene *little = part_scene(&near);
         OWNED double *of_near = emissivities_of(&near);
         fibrad_exchange_rule rule = {
@@ -73,7 +71,6 @@ TEST(displacements_depend_on_what_is_near) {
         ck_assert_int_eq(fibrad_exchange_displacement(little, &work, own, &rule, &found), FIBRAD_OK);
         ck_assert_int_eq(memcmp(&expected, &found, sizeof found), 0);
         for (int axis = 0; axis < 3; axis++) ck_assert_double_lt(expected.square[axis], pow(cutoff + 1, 2));
-        part_free(&near);
     }
     free(e);
     free_made(&m);
@@ -96,7 +93,7 @@ TEST(images_are_spheres_of_the_same_id) {
     OWNED fibrad_scene *periodic = part_scene(p);
     const double cutoff = .7 * p->config.period[0], reach = cutoff + radius_most(p) + 1e-6; /* some spheres twice */
     for (uint32_t i = 0; i < p->n; i += 150) {
-        struct part images = part_room(p, 27 * p->n);
+        OWNED_PART images = part_room(p, 27 * p->n);
         memset(images.config.period, 0, sizeof images.config.period);
         uint32_t own = UINT32_MAX;
         for (uint32_t j = 0; j < p->n; j++)
@@ -110,8 +107,8 @@ TEST(images_are_spheres_of_the_same_id) {
             }
         OWNED fibrad_scene *open = part_scene(&images);
         for (int method = 1; method < METHODS; method++) {
-            struct named_row expected = row_by(p, periodic, i, method, cutoff);
-            struct named_row found = row_by(&images, open, own, method, cutoff);
+            OWNED_NAMED expected = row_by(p, periodic, i, method, cutoff);
+            OWNED_NAMED found = row_by(&images, open, own, method, cutoff);
             const double count = method == 1 ? 55 * 64 : method == 2 ? 34 * 256 : 600;
             for (uint32_t id = 0; id < p->ids; id++) {
                 ck_assert_double_eq_tol(expected.by_id[id], found.by_id[id], 2e-15);
@@ -120,9 +117,7 @@ TEST(images_are_spheres_of_the_same_id) {
             ck_assert(fabs(expected.row.escaped - found.row.escaped) <= (method < 4 ? 0 : 2e-15));
             ck_assert(fabs(expected.row.beyond - found.row.beyond) <= (method < 4 ? 0 : 2e-15));
             if (method != 7) ck_assert_uint_eq(expected.rays, found.rays); /* errors of images are their own */
-            named_free(&expected), named_free(&found);
         }
-        part_free(&images);
     }
     free_made(&m);
 }
@@ -133,14 +128,12 @@ TEST(far_triangles_are_met) {
     OWNED struct mesh *mesh = mesh_new();
     mesh_box(mesh, (const double[]){-30, -20, -10}, (const double[]){40, 50, 60}, 0);
     const fibrad_scene_config config = {.body = mesh->body, .bodies = 6, .triangles = &mesh->triangles};
-    struct part alone = part_of(&bed, config);
+    OWNED_PART alone = part_of(&bed, config);
     OWNED fibrad_scene *scene = part_scene(&alone);
     for (int method = 0; method < METHODS; method++) {
-        struct named_row all = row_by(&alone, scene, 0, method, 0), cut = row_by(&alone, scene, 0, method, 3);
+        OWNED_NAMED all = row_by(&alone, scene, 0, method, 0), cut = row_by(&alone, scene, 0, method, 3);
         expect_same_named(&all, &cut, 1, "box");
-        named_free(&all), named_free(&cut);
     }
-    part_free(&alone);
 }
 
 /* Triangles that repeat where spheres do not are as good as their copies. */
@@ -161,9 +154,8 @@ TEST(triangles_repeat_alone) {
             part_of(&bed, (fibrad_scene_config){.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles});
         OWNED fibrad_scene *scene = part_scene(&p);
         for (int method = 0; method < METHODS; method++) {
-            struct named_row row = row_by(&p, scene, 0, method, 0);
+            OWNED_NAMED row = row_by(&p, scene, 0, method, 0);
             seen[copies][method] = row.row.body[0];
-            named_free(&row);
         }
         part_free(&p);
     }
@@ -178,22 +170,19 @@ LOOP_TEST(ids_decide_among_equals, 3) {
     static const char lattices[] = {'p', 'i', 'f'};
     OWNED_BED bed = lattice(lattices[_i], 4.1);
     for (uint32_t i = 0; i < bed.n; i++) bed.x[i] *= .9375, bed.y[i] *= .9375, bed.z[i] *= .9375;
-    struct part p = part_of(&bed, (fibrad_scene_config){0});
+    OWNED_PART p = part_of(&bed, (fibrad_scene_config){0});
     OWNED fibrad_scene *scene = part_scene(&p);
     for (uint32_t i = 0; i < p.n; i += 3) {
         uint32_t own = UINT32_MAX;
-        struct part shuffled = part_near(&p, i, 100, &own);
+        OWNED_PART shuffled = part_near(&p, i, 100, &own);
         ck_assert(shuffled.n == p.n && memcmp(shuffled.id, p.id, p.n * sizeof *p.id) != 0);
         OWNED fibrad_scene *other = part_scene(&shuffled);
         for (int method = 0; method < METHODS; method++) {
-            struct named_row expected = row_by(&p, scene, i, method, 0);
-            struct named_row found = row_by(&shuffled, other, own, method, 0);
+            OWNED_NAMED expected = row_by(&p, scene, i, method, 0);
+            OWNED_NAMED found = row_by(&shuffled, other, own, method, 0);
             expect_same_named(&expected, &found, p.ids, "lattice");
-            named_free(&expected), named_free(&found);
         }
-        part_free(&shuffled);
     }
-    part_free(&p);
 }
 
 /* Turned rows err in all ways: their mean over many turns comes to the fine row, each is off by what it says. */

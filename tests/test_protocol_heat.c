@@ -104,7 +104,7 @@ TEST(tasks_and_parts_out_of_range) {
     for (int solved = 0; !solved;) {
         ck_assert_int_eq(fibrad_heat_sweep(p->heat, PARTS), FIBRAD_E_ARGUMENT);
         ck_assert_int_eq(fibrad_heat_sweep(p->heat, UINT32_MAX), FIBRAD_E_ARGUMENT);
-        sweep_all(p);
+        heat_sweep(p->heat, false);
         ck_assert_int_eq(fibrad_heat_sweep(p->heat, PARTS), FIBRAD_E_ARGUMENT);
         ck_assert_int_eq(fibrad_heat_sweep(NULL, 0), FIBRAD_E_ARGUMENT);
         ck_assert_int_eq(fibrad_heat_step(NULL, &solved), FIBRAD_E_ARGUMENT);
@@ -123,7 +123,7 @@ TEST(tasks_traced_twice) {
         for (int again = 0; again < 3; again++)
             ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, k), again ? FIBRAD_E_STATE : FIBRAD_OK);
     ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
-    sweep_all(p);
+    heat_sweep(p->heat, false);
     ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, 3), FIBRAD_E_STATE);
     solve(p); /* begins anew */
     ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, 3), FIBRAD_E_STATE);
@@ -181,7 +181,7 @@ TEST(steps_and_reads_too_early) {
         ck_assert_int_eq(fibrad_heat_step(p->heat, &other), FIBRAD_E_STATE);
         ck_assert_int_eq(other, 77);
         ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_E_STATE);
-        sweep_all(p);
+        heat_sweep(p->heat, false);
         ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_E_STATE);
         ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
     }
@@ -207,7 +207,7 @@ TEST(begun_anew_in_between) {
         ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
         int solved = 0;
         for (uint32_t k = 0; k < until && !solved; k++) {
-            sweep_all(p);
+            heat_sweep(p->heat, false);
             ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
         }
         for (uint32_t k = 0; k < until % PARTS && !solved; k++)

@@ -1,7 +1,7 @@
 /* test_settled.c - temperatures that are found for given powers, against closed forms, and against the powers that
  * follow from the same temperatures. SPDX-License-Identifier: MIT */
+#include "host_owned.h"
 #include "scenes.h"
-#include "simple/fibrad_host.h"
 #include "suite.h"
 
 enum { N = 40, WALLS = 6 };
@@ -23,6 +23,8 @@ struct settled {
         double power[N], temperature[N], error[N], wall_power[WALLS], wall_temperature[WALLS];
     } found;
 };
+
+static void settled_free(struct settled *s) { bed_free(&s->bed); }
 
 static void begin(struct settled *s, struct bed bed) {
     *s = (struct settled){.bed = bed};
@@ -64,11 +66,10 @@ static void begin_box(struct settled *s, uint64_t seed) {
 }
 
 static int settle(struct settled *s) {
-    fibrad_radiation *radiation;
+    OWNED_RADIATION *radiation = NULL;
     const fibrad_spheres spheres = {.x = s->bed.x, .y = s->bed.y, .z = s->bed.z, .r = s->bed.r, .n = s->bed.n};
     ck_assert_int_eq(fibrad_radiation_new(&radiation, &s->scene, &spheres, &s->config, NULL), FIBRAD_OK);
     const int status = fibrad_radiation_solve(radiation, &s->sources, &s->result);
-    fibrad_radiation_free(radiation);
     return status;
 }
 
@@ -81,7 +82,7 @@ static void close_to(double value, double truth, double error) {
 TEST(one_sphere) {
     static const double eps[] = {.1, .5, 1}, hold[] = {0, 3, 1e6};
     for (int k = 0; k < 9; k++) {
-        struct settled s;
+        OWNED_BY(settled_free) struct settled s;
         begin(&s, bed_of(1, (const double[][4]){{0, 0, 0, .5}}));
         s.temperature[0] = unknown, s.emissivity[0] = eps[k % 3], s.power[0] = 5e4, s.hold[0] = hold[k / 3];
         s.reference[0] = 900;
@@ -94,13 +95,12 @@ TEST(one_sphere) {
         close_to(s.found.temperature[0], pow(e, .25), 1e-9);
         close_to(-s.found.power[0], link * sigma * (e - pow(t0, 4)), hold[k / 3] > 1e3 ? 1e-6 : 1e-9);
         ck_assert_double_eq_tol(s.found.power[0] + s.result.surroundings_power, 0, 1e-9 * 5e4);
-        bed_free(&s.bed);
     }
 }
 
 /* Between endless plates, without spheres: q = sigma (T1^4 - T2^4)/(1/e1 + 1/e2 - 1). */
 TEST(plates) {
-    struct settled s;
+    OWNED_BY(settled_free) struct settled s;
     begin(&s, bed_of(0, NULL));
     s.scene.period[0] = s.scene.period[1] = 2;
     add_wall(&s, 2, 0, 0, unknown, .3);
@@ -111,7 +111,6 @@ TEST(plates) {
     close_to(s.found.wall_temperature[0], pow(pow(500, 4) + 8000 / sigma * (1 / .3 + 1 / .6 - 1), .25), 1e-6);
     close_to(s.found.wall_power[1], 4 * 8000, 1e-9);
     ck_assert_double_eq(s.found.wall_temperature[1], 500);
-    bed_free(&s.bed);
 }
 
 /* Powers follow from given temperatures. Then the powers of every other body are given, and the temperatures must come
@@ -119,7 +118,7 @@ TEST(plates) {
  * second order remains. */
 TEST(there_and_back) {
     for (int uniform = 0; uniform < 2; uniform++) {
-        struct settled s;
+        OWNED_BY(settled_free) struct settled s;
         double temperature[N], wall_temperature[WALLS];
         begin_box(&s, 7);
         s.sources.uniform = uniform, s.sources.tolerance = 1e-9;
@@ -139,13 +138,12 @@ TEST(there_and_back) {
         for (int k = 0; k < WALLS; k++)
             close_to(s.found.wall_temperature[k], wall_temperature[k], uniform ? 1e-7 : 1e-3);
         for (uint32_t i = 1; i < N; i += 2) ck_assert_double_eq(s.found.power[i], -s.power[i]);
-        bed_free(&s.bed);
     }
 }
 
 /* In a box at one temperature, bodies that give off nothing have the same temperature. */
 TEST(equilibrium) {
-    struct settled s;
+    OWNED_BY(settled_free) struct settled s;
     begin_box(&s, 3);
     s.sources.power = s.power, s.sources.body_power = s.wall_power, s.sources.insulated = s.insulated;
     for (int k = 0; k < WALLS; k++) s.wall_temperature[k] = k == 1 ? unknown : 700;
@@ -157,12 +155,11 @@ TEST(equilibrium) {
         if (i != 5) close_to(s.found.temperature[i], 700, 1e-12);
     ck_assert(isnan(s.found.temperature[5]));
     for (int k = 0; k < WALLS; k++) close_to(s.found.wall_temperature[k], 700, 1e-12);
-    bed_free(&s.bed);
 }
 
 /* An insulated wall reflects all, but has a temperature between those of the bodies about it. */
 TEST(insulated) {
-    struct settled s;
+    OWNED_BY(settled_free) struct settled s;
     double power[N];
     begin_box(&s, 5);
     for (int k = 0; k < WALLS; k++) s.wall_emissivity[k] = k == 3 ? 0 : .7;
@@ -175,12 +172,11 @@ TEST(insulated) {
     ck_assert_mem_eq(power, s.found.power, sizeof power);
     ck_assert_double_eq(s.found.wall_power[3], 0);
     ck_assert(s.found.wall_temperature[3] > 300 && s.found.wall_temperature[3] < 1200);
-    bed_free(&s.bed);
 }
 
 /* If no temperature is given, powers must add up to zero, or there is no solution. */
 TEST(afloat) {
-    struct settled s;
+    OWNED_BY(settled_free) struct settled s;
     double sum = 0, weights = 0;
     begin_box(&s, 9);
     for (uint32_t i = 0; i < N; i++) s.temperature[i] = unknown, s.power[i] = i % 2 ? 1000 : -1000;
@@ -205,7 +201,6 @@ TEST(afloat) {
     ck_assert_int_eq(settle(&s), FIBRAD_E_UNSOLVABLE);
     s.wall_temperature[0] = 800; /* this wall takes up the rest */
     ck_assert_int_eq(settle(&s), FIBRAD_OK);
-    bed_free(&s.bed);
 }
 
 /* The emissivity of spheres and of the floor: .9 - T/2000. */
@@ -220,8 +215,8 @@ static void falling(void *calls, const double *temperature, const double *body_t
  * eps(T) sigma (T^4 - T0^4) is the power. */
 TEST(emissivity_of_temperature) {
     for (int given = 0; given < 2; ++given) {
-        struct settled s;
-        fibrad_radiation *radiation;
+        OWNED_BY(settled_free) struct settled s;
+        OWNED_RADIATION *radiation = NULL;
         int calls = 0;
         begin(&s, bed_of(1, (const double[][4]){{0, 0, 0, .5}}));
         s.temperature[0] = given ? 800 : unknown, s.power[0] = given ? unknown : 5e4, s.emissivity[0] = .5;
@@ -236,13 +231,11 @@ TEST(emissivity_of_temperature) {
         if (!given) ck_assert_double_eq(s.found.power[0], -5e4);
         ck_assert_int_eq(fibrad_radiation_settle(radiation, &s.sources, NULL, NULL, s.emissivity, NULL, &s.result),
                          FIBRAD_E_ARGUMENT);
-        fibrad_radiation_free(radiation);
-        bed_free(&s.bed);
     }
 }
 
 TEST(refused) {
-    struct settled s;
+    OWNED_BY(settled_free) struct settled s;
     begin_box(&s, 1);
     s.temperature[3] = unknown; /* and no powers */
     ck_assert_int_eq(settle(&s), FIBRAD_E_ARGUMENT);
@@ -265,5 +258,4 @@ TEST(refused) {
     ck_assert_int_eq(settle(&s), FIBRAD_OK);
     s.scene.bodies = 2, s.wall_temperature[1] = unknown; /* walls without end */
     ck_assert_int_eq(settle(&s), FIBRAD_E_UNSUPPORTED);
-    bed_free(&s.bed);
 }

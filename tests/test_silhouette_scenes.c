@@ -94,27 +94,15 @@ static void rows_by_windows(const fibrad_scene *scene, const struct bed *bed, ui
     }
 }
 
-static void rows_by_silhouettes(const fibrad_scene *scene, const struct bed *bed, uint32_t lines) {
-    const fibrad_silhouette_rule rule = {.lines = lines};
-    const size_t size = fibrad_silhouettes_size(scene, &rule);
-    OWNED void *block = block_of(size);
-    fibrad_silhouettes *s;
-    OWNED_WORK work = work_growing();
-    fibrad_pairs pairs = {.memory = memory_growing()};
-    fibrad_memory index = memory_growing();
-    OWNED_ROW row = row_of(bed->n);
-    ck_assert_int_eq(fibrad_silhouettes_init(&s, block, size, scene, &rule), FIBRAD_OK);
-    for (uint32_t task = 0; task < fibrad_silhouettes_tasks(s); task++)
-        ck_assert_int_eq(fibrad_silhouettes_task(s, &work, task, &pairs), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_silhouettes_join(s, &pairs, 1, &index), FIBRAD_OK);
-    for (uint32_t i = 0; i < bed->n; i++) {
-        memset(silhouettes[i], 0, sizeof silhouettes[i]);
-        ck_assert_int_eq(fibrad_silhouettes_row(s, &work, i, &row), FIBRAD_OK);
-        for (uint32_t k = 0; k < row.length; k++) silhouettes[i][row.col[k]] = row.f[k];
-        silhouettes[i][NOTHING] = row.escaped;
+static void dense_of_silhouettes(const fibrad_scene *scene, uint32_t lines) {
+    OWNED_ROWS rows = rows_by_silhouettes(scene, lines);
+    fibrad_row row;
+    for (size_t at = 0; fibrad_rows_read(&rows, &at, &row);) {
+        double *f = silhouettes[row.sphere];
+        memset(f, 0, sizeof silhouettes[0]);
+        for (uint32_t k = 0; k < row.length; k++) f[row.col[k]] = row.f[k];
+        f[NOTHING] = row.escaped;
     }
-    free(pairs.memory.block);
-    free(index.block);
 }
 
 /* How far the methods may differ, over the smaller area, and how far a row may be from 1. */
@@ -129,7 +117,7 @@ static void compare(const fibrad_scene *scene, const struct bed *bed, uint32_t l
     double escaped = 0;
     ck_assert_uint_le(bed->n, N_MOST);
     rows_by_windows(scene, bed, lines);
-    rows_by_silhouettes(scene, bed, lines);
+    dense_of_silhouettes(scene, lines);
     for (uint32_t i = 0; i < bed->n; i++) escaped += fmax(windows[i][NOTHING], silhouettes[i][NOTHING]);
     if (escaped > 0 && bed->period[2] > 0) most.difference = escaped;
     for (uint32_t i = 0; i < bed->n; i++) {

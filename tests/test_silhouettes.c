@@ -173,32 +173,6 @@ static void compare_methods(struct bed bed, uint32_t directions, int images, con
     bed_free(&bed);
 }
 
-/* All rows by the silhouettes of the kernel. */
-static fibrad_rows rows_by_silhouettes(const fibrad_scene *scene, uint32_t lines) {
-    const fibrad_silhouette_rule rule = {.lines = lines};
-    const size_t size = fibrad_silhouettes_size(scene, &rule);
-    OWNED void *block = malloc(size);
-    fibrad_silhouettes *s;
-    fibrad_work work = {.memory = memory_growing()};
-    fibrad_pairs pairs = {.memory = memory_growing()};
-    fibrad_rows rows = {.memory = memory_growing()};
-    fibrad_scene_facts facts;
-    fibrad_scene_describe(scene, &facts);
-    ck_assert_int_eq(fibrad_silhouettes_init(&s, block, size, scene, &rule), FIBRAD_OK);
-    for (uint32_t task = 0; task < fibrad_silhouettes_tasks(s); task++)
-        ck_assert_int_eq(fibrad_silhouettes_task(s, &work, task, &pairs), FIBRAD_OK);
-    fibrad_memory index = memory_growing();
-    ck_assert_int_eq(fibrad_silhouettes_join(s, &pairs, 1, &index), FIBRAD_OK);
-    for (uint32_t i = 0; i < facts.spheres; i++) {
-        fibrad_row row = {.rows = &rows};
-        ck_assert_int_eq(fibrad_silhouettes_row(s, &work, i, &row), FIBRAD_OK);
-    }
-    free(work.memory.block);
-    free(pairs.memory.block);
-    free(index.block);
-    return rows;
-}
-
 static void dense_of(const fibrad_scene *scene, fibrad_rows *rows, double f[N_MOST][N_MOST + 1]) {
     OWNED_MATRIX m = matrix_of(scene, rows, 1, &(fibrad_matrix_rule){.raw = true});
     memset(f, 0, N_MOST * sizeof *f);

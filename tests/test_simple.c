@@ -5,9 +5,9 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "host_owned.h"
 #include "scenes.h"
 #include "meshes.h"
-#include "simple/fibrad_host.h"
 #include "suite.h"
 
 static const int threads[] = {1, 2, 5};
@@ -16,67 +16,29 @@ static fibrad_scene_config box_of(const struct bed *bed) {
     return (fibrad_scene_config){.period = {bed->period[0], bed->period[1], bed->period[2]}};
 }
 
-static bool same_factors(const fibrad_factors *a, const fibrad_factors *b) {
-    const size_t n = a->n, entries = a->start[n];
-    return a->n == b->n && a->bodies == b->bodies && memcmp(a->start, b->start, (n + 1) * sizeof *a->start) == 0 &&
-           memcmp(a->col, b->col, entries * sizeof *a->col) == 0 && memcmp(a->f, b->f, entries * sizeof *a->f) == 0 &&
-           memcmp(a->escaped, b->escaped, n * sizeof *a->escaped) == 0 &&
-           memcmp(a->error, b->error, n * sizeof *a->error) == 0 &&
-           (a->bodies == 0 || memcmp(a->body, b->body, n * a->bodies * sizeof *a->body) == 0);
-}
-
-/* Adds all rows by silhouettes to a collection. */
-static void rows_by_silhouettes(const fibrad_scene *scene, uint32_t n, uint32_t lines, fibrad_work *work,
-                                fibrad_rows *rows) {
-    const fibrad_silhouette_rule rule = {.lines = lines};
-    const size_t size = fibrad_silhouettes_size(scene, &rule);
-    OWNED void *block = malloc(size);
-    fibrad_silhouettes *s;
-    fibrad_pairs pairs = {.memory.resize = fibrad_heap_resize};
-    fibrad_memory index = {.resize = fibrad_heap_resize};
-    fibrad_row row = {.rows = rows};
-    ck_assert_int_eq(fibrad_silhouettes_init(&s, block, size, scene, &rule), FIBRAD_OK);
-    for (uint32_t task = 0; task < fibrad_silhouettes_tasks(s); task++)
-        ck_assert_int_eq(fibrad_silhouettes_task(s, work, task, &pairs), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_silhouettes_join(s, &pairs, 1, &index), FIBRAD_OK);
-    for (uint32_t i = 0; i < n; i++) ck_assert_int_eq(fibrad_silhouettes_row(s, work, i, &row), FIBRAD_OK);
-    free(pairs.memory.block);
-    free(index.block);
-}
-
-/* Adds all rows by beams to a collection. */
-static void rows_one_by_one(const fibrad_scene *scene, uint32_t n, uint32_t bodies, const fibrad_beam_rule *rule,
-                            fibrad_work *work, fibrad_rows *rows) {
-    fibrad_row row = {.rows = rows};
+/* The beam rows of all spheres. */
+static fibrad_rows rows_one_by_one(const fibrad_scene *scene, uint32_t n, uint32_t bodies,
+                                   const fibrad_beam_rule *rule) {
+    OWNED_WORK work = work_growing();
+    fibrad_rows rows = {.memory = memory_growing()};
+    fibrad_row row = {.rows = &rows};
     for (uint32_t i = 0; i < n; i++) {
-        ck_assert_int_eq(fibrad_beam_row(scene, work, i, rule, &row), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, rule, &row), FIBRAD_OK);
         double sum = row.escaped;
         for (uint32_t k = 0; k < row.length; k++) sum += row.f[k];
         for (uint32_t b = 0; b < bodies; b++) sum += row.body[b];
         ck_assert_double_eq_tol(sum, 1, 1e-12); /* the row is shown where it stands */
     }
+    return rows;
 }
 
 /* The same by the kernel, rows in the order of the spheres: raw ones by beams, or all by silhouettes. */
-static void *kernel_matrix(const struct bed *bed, const fibrad_scene_config *config, const fibrad_beam_rule *rule,
-                           bool raw, fibrad_factors *factors) {
+static struct matrix kernel_matrix(const struct bed *bed, const fibrad_scene_config *config,
+                                   const fibrad_beam_rule *rule, bool raw) {
     OWNED fibrad_scene *scene = scene_with(bed, config);
-    fibrad_work work = {.memory.resize = fibrad_heap_resize};
-    fibrad_rows rows = {.memory.resize = fibrad_heap_resize};
-    if (raw)
-        rows_one_by_one(scene, bed->n, config ? config->bodies : 0, rule, &work, &rows);
-    else
-        rows_by_silhouettes(scene, bed->n, rule->directions, &work, &rows);
-    const fibrad_matrix_rule how = {.raw = raw, .reciprocal = !raw};
-    const size_t size = fibrad_matrix_size(scene, &rows, 1, &how);
-    void *block = malloc(size);
-    fibrad_matrix *matrix;
-    ck_assert_int_eq(fibrad_matrix_init(&matrix, block, size, scene, &rows, 1, &how, NULL), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_matrix_close(matrix), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_matrix_read(matrix, factors), FIBRAD_OK);
-    free(work.memory.block);
-    free(rows.memory.block);
-    return block;
+    OWNED_ROWS rows = raw ? rows_one_by_one(scene, bed->n, config ? config->bodies : 0, rule)
+                          : rows_by_silhouettes(scene, rule->directions);
+    return matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = raw, .reciprocal = !raw});
 }
 
 TEST(view_factors_are_the_kernels) {
@@ -86,21 +48,19 @@ TEST(view_factors_are_the_kernels) {
     const fibrad_scene_config config = {.body = body, .bodies = 2, .opening = &opening, .openings = 1};
     const fibrad_spheres spheres = spheres_of(&bed);
     const fibrad_beam_rule rule = {.directions = 40};
-    fibrad_factors expected;
-    OWNED void *block = kernel_matrix(&bed, &config, &rule, false, &expected);
+    OWNED_MATRIX expected = kernel_matrix(&bed, &config, &rule, false);
     for (int t = 0; t < 3; t++) {
         fibrad_run run = {.threads = threads[t]};
-        fibrad_bed_factors *factors;
+        OWNED_FACTORS *factors = NULL;
         ck_assert_int_eq(fibrad_view_factors(&config, &spheres, &(fibrad_bed_options){.beam = &rule}, &run, &factors),
                          FIBRAD_OK);
-        ck_assert(same_factors(&factors->matrix, &expected));
+        ck_assert(matrix_same_bits(&factors->matrix, &expected.factors));
         ck_assert_int_eq(factors->threads, threads[t]);
         ck_assert_uint_eq(factors->directions, 40);
         ck_assert_uint_eq(factors->facts.spheres, 300);
         ck_assert_double_lt(factors->closure_error, 1e-12);
         ck_assert_double_lt(factors->reciprocity_error, 1e-14);
         ck_assert(factors->body_area[0] > 0 && isfinite(factors->body_area[1]));
-        fibrad_bed_free(factors);
     }
 }
 
@@ -127,22 +87,21 @@ TEST(long_rows_are_divided) {
     const fibrad_spheres spheres = spheres_of(&bed);
     const fibrad_beam_rule rule = {.directions = 60};
     unsigned char two[300] = {[1] = 1, [200] = 1};
-    fibrad_factors expected;
-    OWNED void *block = kernel_matrix(&bed, &config, &rule, true, &expected);
+    OWNED_MATRIX expected = kernel_matrix(&bed, &config, &rule, true);
     fibrad_bed_factors *factors, *alone[3];
     for (int t = 0; t < 3; t++) {
         struct calls calls = {0};
         fibrad_run run = {.threads = threads[t], .progress = count_calls, .context = &calls};
         fibrad_bed_options options = {.beam = &rule, .raw = 1};
         ck_assert_int_eq(fibrad_view_factors(&config, &spheres, &options, &run, &factors), FIBRAD_OK);
-        ck_assert(same_factors(&factors->matrix, &expected));
+        ck_assert(matrix_same_bits(&factors->matrix, &expected.factors));
         ck_assert_uint_eq(factors->directions, 60);
         ck_assert(calls.ends == 1 && calls.total == 300);
         fibrad_bed_free(factors);
         run.progress = NULL;
         options.wanted = two;
         ck_assert_int_eq(fibrad_view_factors(&config, &spheres, &options, &run, &alone[t]), FIBRAD_OK);
-        ck_assert(same_factors(&alone[t]->matrix, &alone[0]->matrix));
+        ck_assert(matrix_same_bits(&alone[t]->matrix, &alone[0]->matrix));
     }
     ck_assert_uint_gt(alone[0]->matrix.start[300], 100);
     for (int t = 0; t < 3; t++) fibrad_bed_free(alone[t]);
@@ -169,7 +128,7 @@ TEST(nothing_depends_on_threads) {
             fibrad_run run = {.threads = threads[t]};
             ck_assert_int_eq(fibrad_view_factors(&config, &spheres, &options[k], &run, &next), FIBRAD_OK);
             if (first) {
-                ck_assert(same_factors(&first->matrix, &next->matrix));
+                ck_assert(matrix_same_bits(&first->matrix, &next->matrix));
                 fibrad_bed_free(next);
             } else {
                 first = next;
@@ -200,7 +159,7 @@ TEST(exchange_does_not_depend_on_threads) {
         fibrad_scene_facts facts;
         ck_assert_int_eq(fibrad_exchange_factors(&config, &spheres, &rule, NULL, &run, &next), FIBRAD_OK);
         ck_assert_uint_gt(next->rays, 150 * 50);
-        if (first) ck_assert(same_factors(&first->matrix, &next->matrix) && first->rays == next->rays);
+        if (first) ck_assert(matrix_same_bits(&first->matrix, &next->matrix) && first->rays == next->rays);
         fibrad_bed_free(first);
         first = next;
         ck_assert_int_eq(fibrad_displacements(&config, &spheres, &rule, NULL, &run, moved[t], &facts), FIBRAD_OK);
@@ -221,7 +180,7 @@ TEST(reflectors_have_empty_rows) {
     const fibrad_exchange_rule rule = {.emissivity = emissivity, .directions = 20, .paths = 50};
     for (int all = 0; all <= 1; all++)
         for (int raw = 0; raw <= 1; raw++) {
-            fibrad_bed_factors *factors;
+            OWNED_FACTORS *factors = NULL;
             for (int i = 0; i < 150; i++) emissivity[i] = all || i % 5 == 0 ? 0 : .3;
             ck_assert_int_eq(
                 fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_options){.raw = raw}, NULL, &factors),
@@ -231,7 +190,6 @@ TEST(reflectors_have_empty_rows) {
             ck_assert(factors->reciprocity_error >= 0 && (factors->rays > 0) == !all);
             for (uint32_t i = 0; i < 150; i++)
                 ck_assert_double_le(fabs(matrix_total(&factors->matrix, i) - (emissivity[i] > 0)), 1e-12);
-            fibrad_bed_free(factors);
             ck_assert_int_eq(fibrad_displacements(&config, &spheres, &rule, NULL, NULL, moved, NULL), FIBRAD_OK);
             for (uint32_t i = 0; i < 150; i++) ck_assert((moved[i].square[0] > 0) == (emissivity[i] > 0));
         }
@@ -267,16 +225,14 @@ TEST(factors_in_files) {
     for (int k = 0; k < 3; k++) {
         const fibrad_bed_options kept = {.bodies = 1, .raw = k == 1, .drop = k == 2 ? 1e-3 : 0};
         fibrad_bed_options filed = kept;
-        fibrad_bed_factors *here, *there;
+        OWNED_FACTORS *here = NULL, *there = NULL;
         fibrad_run run = {.threads = threads[k]};
         filed.scratch = folder;
         ck_assert_int_eq(fibrad_exchange_factors(&config, &spheres, &rule, &kept, NULL, &here), FIBRAD_OK);
         ck_assert_int_eq(fibrad_exchange_factors(&config, &spheres, &rule, &filed, &run, &there), FIBRAD_OK);
-        ck_assert(same_factors(&here->matrix, &there->matrix));
+        ck_assert(matrix_same_bits(&here->matrix, &there->matrix));
         ck_assert(here->reciprocity_error == there->reciprocity_error && here->closure_error == there->closure_error);
         ck_assert(is_filed(there->matrix.f, folder));
-        fibrad_bed_free(here);
-        fibrad_bed_free(there);
     }
     ck_assert_int_eq(rmdir(folder), 0); /* empty */
     fibrad_bed_factors *none;
@@ -434,11 +390,10 @@ TEST(progress_of_short_rows) {
     const fibrad_bed_options options = {.beam = &(fibrad_beam_rule){.directions = 8}, .wanted = wanted};
     struct calls calls = {0};
     fibrad_run run = {.threads = 2, .progress = count_calls, .context = &calls};
-    fibrad_bed_factors *factors;
+    OWNED_FACTORS *factors = NULL;
     ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &options, &run, &factors), FIBRAD_OK);
     ck_assert(calls.ends >= 1 && calls.total == 400);
     ck_assert_uint_lt(calls.count, 400); /* in less than 20 seconds */
-    fibrad_bed_free(factors);
 }
 
 /* ---- heat -------------------------------------------------------------------------------------------------------- */
@@ -470,7 +425,7 @@ TEST(radiation_moves) {
     for (int t = 0; t < 3; t++) {
         struct calls calls = {0};
         fibrad_run run = {.threads = threads[t], .progress = count_calls, .context = &calls};
-        fibrad_radiation *radiation;
+        OWNED_RADIATION *radiation = NULL;
         fibrad_scene_facts facts;
         fibrad_fault fault;
         ck_assert_int_eq(fibrad_radiation_new(&radiation, NULL, &spheres, &config, &run), FIBRAD_OK);
@@ -510,7 +465,6 @@ TEST(radiation_moves) {
         powers(radiation, &sources, power);
         for (int i = 0; i < N; i++) ck_assert_double_eq_tol(power[i], again[i], 10);
         for (int i = 0; i < N; i++) bed.z[i] /= 1.1;
-        fibrad_radiation_free(radiation);
     }
 }
 
@@ -561,7 +515,7 @@ TEST(radiation_with_walls) {
     fibrad_heat_sources sources = sources_of(temperature, emissivity);
     sources.body_temperature = wall_temperature, sources.body_emissivity = wall_emissivity;
     fibrad_body walls[6];
-    fibrad_radiation *radiation;
+    OWNED_RADIATION *radiation = NULL;
     for (int far = 0; far < 2; far++) {
         const double edge = far ? 200 : 40;
         for (int w = 0; w < 6; w++) {
@@ -578,7 +532,6 @@ TEST(radiation_with_walls) {
                          FIBRAD_OK);
         for (int i = 0; i < N; i++) ck_assert_double_lt(fabs(power[i]), 1e-6); /* all at one temperature */
     }
-    fibrad_radiation_free(radiation);
 }
 
 /* A law that is asked how often, and answers something else than an emissivity the time `fails`. */
@@ -604,7 +557,7 @@ TEST(laws_are_checked) {
     double emissivity, body_emissivity, power, found, body_power, body_found;
     fibrad_heat_result result = {
         .power = &power, .body_power = &body_power, .temperature = &found, .body_temperature = &body_found};
-    fibrad_radiation *radiation;
+    OWNED_RADIATION *radiation = NULL;
     ck_assert_int_eq(fibrad_radiation_new(&radiation, &(fibrad_scene_config){.body = &floor, .bodies = 1}, &one,
                                           &(fibrad_heat_config){.directions = 8, .patches = 24}, NULL),
                      FIBRAD_OK);
@@ -626,5 +579,4 @@ TEST(laws_are_checked) {
             fibrad_radiation_settle(radiation, &sources, follow_law, &law, &emissivity, &body_emissivity, &result),
             FIBRAD_E_ARGUMENT);
     }
-    fibrad_radiation_free(radiation);
 }

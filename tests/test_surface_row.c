@@ -162,8 +162,8 @@ TEST(rows_of_a_matrix) {
     OWNED_ROWS rows = {.memory = memory_growing()};
     for (uint32_t i = 0; i < bed.n; i++)
         ck_assert_int_eq(fibrad_surface_row(scene, &work, i, NULL, &(fibrad_row){.rows = &rows}), FIBRAD_OK);
-    struct matrix raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
-    struct matrix m = matrix_of(scene, &rows, 1, NULL);
+    OWNED_MATRIX raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
+    OWNED_MATRIX m = matrix_of(scene, &rows, 1, NULL);
     double above = 0, largest;
     for (uint32_t i = 0; i < bed.n; i++) worst_of(&above, matrix_sum(&raw.factors, i) - 1);
     for (uint32_t i = 0; i < bed.n; i++) {
@@ -175,7 +175,6 @@ TEST(rows_of_a_matrix) {
     }
     ck_assert_int_eq(fibrad_matrix_reciprocity(raw.matrix, &largest), FIBRAD_OK);
     ck_assert_double_le(largest, 1e-15);
-    matrix_free(&raw), matrix_free(&m);
 }
 
 TEST(tells_what_it_needs) {

@@ -1,7 +1,7 @@
 /* test_transient.c - temperatures in time, against closed forms, quadrature and each other.
  * SPDX-License-Identifier: MIT */
+#include "host_owned.h"
 #include "scenes.h"
-#include "simple/fibrad_host.h"
 #include "suite.h"
 
 #define SIGMA FIBRAD_STEFAN_BOLTZMANN
@@ -47,7 +47,7 @@ TEST(one_sphere_cools) {
     static const double begin[] = {1500, 300, 310}, around[] = {300, 1500, 300};
     const double r = .01, eps = .7, capacity = 25;
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
-    fibrad_transient *t = transient_of(&bed, NULL, NULL);
+    OWNED_TRANSIENT *t = transient_of(&bed, NULL, NULL);
     const double a = 4 * M_PI * r * r * eps * SIGMA / capacity;
     for (int k = 0; k < 3; k++) {
         const fibrad_heat_sources sources = sources_about(&eps, around[k]);
@@ -62,14 +62,13 @@ TEST(one_sphere_cools) {
             ck_assert_uint_lt(span.steps, 120);
         }
     }
-    fibrad_transient_free(t);
 }
 
 /* Errors at steps of h, h/2, h/4 are as 16, 4, 1. */
 TEST(second_order) {
     const double r = .01, eps = .7, capacity = 25, a = 4 * M_PI * r * r * eps * SIGMA / capacity;
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
-    fibrad_transient *t = transient_of(&bed, NULL, NULL);
+    OWNED_TRANSIENT *t = transient_of(&bed, NULL, NULL);
     const fibrad_heat_sources sources = sources_about(&eps, 300);
     const double duration = .5 / (a * pow(1200, 3)), expected = temperature_after(a, 1200, 300, duration);
     double error[4];
@@ -83,7 +82,6 @@ TEST(second_order) {
     }
     for (int k = 0; k < 3; k++) ck_assert_double_eq_tol(error[k] / error[k + 1], 4, .3);
     ck_assert_double_lt(error[3], 1e-2);
-    fibrad_transient_free(t);
 }
 
 /* T/2000, counting how often it is asked. */
@@ -101,7 +99,7 @@ TEST(emissivity_follows) {
     const double duration = 2 / (4 * rate * pow(1200, 4)), expected = pow(pow(1200, -4) + 4 * rate * duration, -.25);
     const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_PATCHES};
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
-    fibrad_transient *t = transient_of(&bed, NULL, &config), *factors = transient_of(&bed, NULL, NULL);
+    OWNED_TRANSIENT *t = transient_of(&bed, NULL, &config), *factors = transient_of(&bed, NULL, NULL);
     const fibrad_heat_sources sources = sources_about(&first, 0);
     double error[3];
     int calls = 0;
@@ -122,8 +120,6 @@ TEST(emissivity_follows) {
         ck_assert_int_eq(fibrad_transient_advance(factors, &sources, &span), FIBRAD_E_ARGUMENT);
     }
     for (int k = 0; k < 2; k++) ck_assert_double_eq_tol(error[k] / error[k + 1], 4, .6);
-    fibrad_transient_free(t);
-    fibrad_transient_free(factors);
 }
 
 /* A bed on a hot floor, under a roof, periodic sideways. */
@@ -135,6 +131,8 @@ struct furnace {
     double temperature[N], emissivity[N], capacity[N], power[N], wall[2], wall_emissivity[2];
     fibrad_heat_sources sources;
 };
+
+static void furnace_free(struct furnace *f) { bed_free(&f->bed); }
 
 static void furnace_init(struct furnace *f) {
     f->bed = packing(N, .8, 1.2, .5, 3, true);
@@ -157,12 +155,12 @@ static void furnace_init(struct furnace *f) {
 /* What spheres lose, less their powers, is what walls and surroundings get: by factors and by patches, at loose and at
  * tight tolerances, whether steps are long or short. */
 TEST(energy_is_kept) {
-    struct furnace f;
+    OWNED_BY(furnace_free) struct furnace f;
     furnace_init(&f);
     for (int method = 0; method < 3; method++) {
         const fibrad_transient_config config = {
             .method = method, .exchange.tolerance = .03, .heat = {.directions = 16, .patches = 24}};
-        fibrad_transient *t = transient_of(&f.bed, &f.scene, &config);
+        OWNED_TRANSIENT *t = transient_of(&f.bed, &f.scene, &config);
         for (int k = 0; k < 3; k++) {
             double temperature[N], energy[2], balance = 0, exchanged = 0;
             memcpy(temperature, f.temperature, sizeof temperature);
@@ -178,9 +176,7 @@ TEST(energy_is_kept) {
             balance += energy[0] + energy[1] + span.surroundings_energy;
             ck_assert_double_lt(fabs(balance), 1e-12 * exchanged);
         }
-        fibrad_transient_free(t);
     }
-    bed_free(&f.bed);
 }
 
 /* The same by Runge and Kutta's explicit scheme, from the factors themselves. */
@@ -211,20 +207,20 @@ static void runge_kutta(const struct furnace *f, const fibrad_factors *d, double
 
 /* Powers and a wall that cools while the spheres do; the powers at the end go with the temperatures. */
 TEST(bed_against_runge_kutta) {
-    struct furnace f;
+    OWNED_BY(furnace_free) struct furnace f;
     furnace_init(&f);
     const fibrad_exchange_rule rule = {
         .emissivity = f.emissivity, .body_emissivity = f.wall_emissivity, .tolerance = .03};
     const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_FACTORS, .exchange.tolerance = .03};
     const fibrad_spheres spheres = spheres_of(&f.bed);
     const double end[2] = {800, f.wall[1]}, duration = 30;
-    fibrad_bed_factors *factors;
+    OWNED_FACTORS *factors = NULL;
     ck_assert_int_eq(fibrad_exchange_factors(&f.scene, &spheres, &rule, NULL, NULL, &factors), FIBRAD_OK);
     double expected[N], temperature[N], power[N], slope[N];
     memcpy(expected, f.temperature, sizeof expected);
     memcpy(temperature, f.temperature, sizeof temperature);
     runge_kutta(&f, &factors->matrix, duration, 5000, expected);
-    fibrad_transient *t = transient_of(&f.bed, &f.scene, &config);
+    OWNED_TRANSIENT *t = transient_of(&f.bed, &f.scene, &config);
     fibrad_span span = {temperature, f.capacity, duration, .body_temperature = end, .power = power};
     ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_OK);
     slopes(&f, &factors->matrix, duration, duration, temperature, slope);
@@ -232,9 +228,6 @@ TEST(bed_against_runge_kutta) {
         ck_assert_double_le(fabs(temperature[i] - expected[i]), 1e-4 * expected[i]);
         ck_assert_double_eq_tol(power[i], slope[i] * f.capacity[i] - f.power[i], 100);
     }
-    fibrad_transient_free(t);
-    fibrad_bed_free(factors);
-    bed_free(&f.bed);
 }
 
 /* A mote between two large spheres follows them at once; steps are those of the large ones. */
@@ -247,7 +240,7 @@ TEST(motes_are_no_limit) {
         OWNED_BED bed = bed_of(n, place);
         const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_FACTORS,
                                                 .exchange = {.directions = 4000, .paths = 4000}};
-        fibrad_transient *t = transient_of(&bed, NULL, &config);
+        OWNED_TRANSIENT *t = transient_of(&bed, NULL, &config);
         double temperature[] = {1200, 900, 300, 300}, capacity[4], power[4] = {0};
         for (uint32_t i = 0; i < n; i++) capacity[i] = 3e6 * 4 / 3 * M_PI * pow(bed.r[i], 3);
         const fibrad_heat_sources sources = sources_about(emissivity, 400);
@@ -259,7 +252,6 @@ TEST(motes_are_no_limit) {
             const double emitted = 4 * M_PI * 1e-6 * .5 * SIGMA * pow(temperature[MOTE], 4);
             if (n == 4) ck_assert_double_lt(fabs(power[MOTE]), 2e-3 * emitted);
         }
-        fibrad_transient_free(t);
     }
     ck_assert_uint_le(steps[1], steps[0] + 2);
 }
@@ -271,7 +263,7 @@ TEST(powers_alone) {
     double temperature[] = {300, 300};
     fibrad_heat_sources sources = sources_about(emissivity, 1000);
     sources.power = power;
-    fibrad_transient *t = transient_of(&bed, NULL, NULL);
+    OWNED_TRANSIENT *t = transient_of(&bed, NULL, NULL);
     fibrad_span span = {temperature, capacity, .duration = 20};
     ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
     ck_assert_double_eq_tol(temperature[0], 400, 1e-9);
@@ -279,17 +271,16 @@ TEST(powers_alone) {
     span.duration = 50;
     ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_E_UNSOLVABLE);
     ck_assert_double_eq_tol(temperature[0], 400, 1e-9);
-    fibrad_transient_free(t);
 }
 
 /* By patches as by factors, and a move in between. */
 TEST(patches_as_factors) {
-    struct furnace f;
+    OWNED_BY(furnace_free) struct furnace f;
     furnace_init(&f);
     double temperature[3][N];
     for (int method = 0; method < 3; method++) {
         const fibrad_transient_config config = {.method = method, .exchange.tolerance = method == 2 ? .003 : 0};
-        fibrad_transient *t = transient_of(&f.bed, &f.scene, &config);
+        OWNED_TRANSIENT *t = transient_of(&f.bed, &f.scene, &config);
         memcpy(temperature[method], f.temperature, sizeof f.temperature);
         for (int k = 0; k < 2; k++) {
             fibrad_span span = {temperature[method], f.capacity, .duration = 20, .tolerance = 1e-3};
@@ -298,24 +289,22 @@ TEST(patches_as_factors) {
             const fibrad_spheres spheres = spheres_of(&f.bed);
             ck_assert_int_eq(fibrad_transient_move(t, &f.scene, &spheres), FIBRAD_OK);
         }
-        fibrad_transient_free(t);
     }
     for (int i = 0; i < N; i++) {
         ck_assert_double_eq_tol(temperature[0][i], temperature[1][i], 1);
         ck_assert_double_eq_tol(temperature[2][i], temperature[1][i], 6);
     }
-    bed_free(&f.bed);
 }
 
 /* Any number of threads: the same bits. */
 TEST(threads_change_nothing) {
-    struct furnace f;
+    OWNED_BY(furnace_free) struct furnace f;
     furnace_init(&f);
     const fibrad_spheres spheres = spheres_of(&f.bed);
     double first[N];
     for (int threads = 1; threads < 5; threads += 3) {
         fibrad_run run = {.threads = threads};
-        fibrad_transient *t;
+        OWNED_TRANSIENT *t = NULL;
         double temperature[N];
         memcpy(temperature, f.temperature, sizeof temperature);
         fibrad_span span = {temperature, f.capacity, .duration = 20};
@@ -323,13 +312,11 @@ TEST(threads_change_nothing) {
         ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_OK);
         if (threads == 1) memcpy(first, temperature, sizeof first);
         ck_assert_mem_eq(first, temperature, sizeof first);
-        fibrad_transient_free(t);
     }
-    bed_free(&f.bed);
 }
 
 TEST(what_is_refused) {
-    struct furnace f;
+    OWNED_BY(furnace_free) struct furnace f;
     furnace_init(&f);
     const fibrad_spheres spheres = spheres_of(&f.bed), fewer = {f.bed.x, f.bed.y, f.bed.z, f.bed.r, N - 1, 0, 0, NULL};
     fibrad_transient *t;
@@ -365,5 +352,4 @@ TEST(what_is_refused) {
     ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_OK);
     fibrad_transient_free(t);
     fibrad_transient_free(NULL);
-    bed_free(&f.bed);
 }

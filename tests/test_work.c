@@ -1,8 +1,7 @@
 /* test_work.c - work memory: fixed and growing, of any alignment, for any scenes and functions in turn, without a trace
  * in the results; and the blocks of heat problems. SPDX-License-Identifier: MIT */
-#include "fibrad_heat.h"
 #include "fibrad_surface.h"
-#include "scenes.h"
+#include "heat_runs.h"
 #include "suite.h"
 
 /* What needs work memory. */
@@ -96,7 +95,7 @@ LOOP_TEST(fixed_memory_step_by_step, SCENES *FUNCTIONS) {
     const int function = _i % FUNCTIONS;
     OWNED fibrad_scene *scene = scene_number(_i / FUNCTIONS, &bed);
     for (uint32_t i = 0; i < bed.n; i += 49) {
-        struct output truth = expected(function, scene, i), out = output_of();
+        OWNED_BY(output_free) struct output truth = expected(function, scene, i), out = output_of();
         out.row.length = 77;
         out.row.error = -5;
         fibrad_work work = work_fixed(NULL, 0);
@@ -117,7 +116,6 @@ LOOP_TEST(fixed_memory_step_by_step, SCENES *FUNCTIONS) {
         ck_assert_msg(status == FIBRAD_OK, "%s, %zu bytes: %s, %zu", names[function], size, fibrad_status_text(status),
                       work.memory.needed);
         ck_assert(same_output(function, &out, &truth));
-        output_free(&truth), output_free(&out);
     }
 }
 
@@ -130,13 +128,13 @@ TEST(any_scenes_and_functions_in_turn) {
     void *block = malloc(size);
     memset(block, 0xff, size);
     fibrad_work growing = work_growing(), fixed = work_fixed(block, size), little = work_fixed(NULL, 0);
-    struct output out = output_of();
+    OWNED_BY(output_free) struct output out = output_of();
     uint32_t at = 0;
     for (int round = 0; round < 200; round++) {
         at = at * 1664525u + 1013904223u;
         const int k = (int)((at >> 29) % SCENES), function = (int)((at >> 20) % FUNCTIONS);
         const uint32_t i = (at >> 8) % bed[k].n;
-        struct output truth = expected(function, scene[k], i);
+        OWNED_BY(output_free) struct output truth = expected(function, scene[k], i);
         ck_assert_int_eq(call(function, scene[k], &growing, i, &out), FIBRAD_OK);
         ck_assert_msg(same_output(function, &out, &truth), "growing, round %d: %s", round, names[function]);
         ck_assert_int_eq(call(function, scene[k], &fixed, i, &out), FIBRAD_OK);
@@ -148,9 +146,7 @@ TEST(any_scenes_and_functions_in_turn) {
         } while (work_again(&little, status));
         ck_assert_int_eq(status, FIBRAD_OK);
         ck_assert_msg(same_output(function, &out, &truth), "little, round %d: %s", round, names[function]);
-        output_free(&truth);
     }
-    output_free(&out);
     work_free(&growing), work_free_fixed(&little), free(block);
     for (int k = 0; k < SCENES; k++) free(scene[k]), bed_free(&bed[k]);
 }
@@ -160,19 +156,17 @@ TEST(scenes_made_anew_in_the_same_place) {
     const size_t size = fibrad_scene_size(150, 0);
     OWNED void *block = block_of(size);
     OWNED_WORK work = work_growing();
-    struct output out = output_of();
+    OWNED_BY(output_free) struct output out = output_of();
     for (uint64_t seed = 0; seed < 6; seed++)
         for (int function = 0; function < FUNCTIONS; function++) {
             OWNED_BED bed = packing(150, .8, 1.2, .5, seed, false);
             const fibrad_spheres spheres = spheres_of(&bed);
             fibrad_scene *scene = NULL;
             ck_assert_int_eq(fibrad_scene_init(&scene, block, size, NULL, &spheres, NULL), FIBRAD_OK);
-            struct output truth = expected(function, scene, 70);
+            OWNED_BY(output_free) struct output truth = expected(function, scene, 70);
             ck_assert_int_eq(call(function, scene, &work, 70, &out), FIBRAD_OK);
             ck_assert_msg(same_output(function, &out, &truth), "%s", names[function]);
-            output_free(&truth);
         }
-    output_free(&out);
 }
 
 /* The caller may hand over another block at any time, which holds anything. */
@@ -183,7 +177,7 @@ TEST(other_blocks_at_any_time) {
     unsigned char *blocks[2] = {malloc(size), malloc(size)};
     memset(blocks[0], 0xff, size), memset(blocks[1], 1, size);
     for (int function = 0; function < FUNCTIONS; function++) {
-        struct output truth = expected(function, scene, 3), out = output_of();
+        OWNED_BY(output_free) struct output truth = expected(function, scene, 3), out = output_of();
         fibrad_work work = work_fixed(blocks[0], size);
         for (int round = 0; round < 8; round++) {
             work.memory.block = blocks[round / 2 % 2] + (round & 4 ? 24 : 0);
@@ -191,7 +185,6 @@ TEST(other_blocks_at_any_time) {
             ck_assert_int_eq(call(function, scene, &work, 3, &out), FIBRAD_OK);
             ck_assert_msg(same_output(function, &out, &truth), "%s", names[function]);
         }
-        output_free(&truth), output_free(&out);
     }
     free(blocks[0]), free(blocks[1]), free(scene);
 }
@@ -201,7 +194,7 @@ LOOP_TEST(blocks_of_any_alignment, FUNCTIONS) {
     OWNED_BED bed = bed_number(1);
     OWNED fibrad_scene *scene = scene_of(&bed, 0);
     const int function = _i;
-    struct output truth = expected(function, scene, 5), out = output_of();
+    OWNED_BY(output_free) struct output truth = expected(function, scene, 5), out = output_of();
     fibrad_work least = work_fixed(NULL, 0);
     for (int tries = 0; work_again(&least, call(function, scene, &least, 5, &out)); tries++)
         ck_assert_int_lt(tries, 12);
@@ -216,7 +209,6 @@ LOOP_TEST(blocks_of_any_alignment, FUNCTIONS) {
         ck_assert(bytes_are(block, 0, offset, 0x5a));
         ck_assert(bytes_are(block, offset + size, size + 128, 0x5a));
     }
-    output_free(&truth), output_free(&out);
 }
 
 /* FIBRAD_E_MEMORY at each call of the resize function in turn: nothing is written, and the next call, which gets
@@ -225,7 +217,7 @@ LOOP_TEST(memory_that_is_refused, FUNCTIONS) {
     OWNED_BED bed = bed_number(2);
     OWNED fibrad_scene *scene = scene_of(&bed, 0);
     const int function = _i;
-    struct output truth = expected(function, scene, 5), out = output_of();
+    OWNED_BY(output_free) struct output truth = expected(function, scene, 5), out = output_of();
     uint32_t calls = 1;
     for (uint32_t refuse = 0; refuse <= calls; refuse++) {
         struct source source = {.refuse_at = refuse};
@@ -245,7 +237,6 @@ LOOP_TEST(memory_that_is_refused, FUNCTIONS) {
         ck_assert(work.memory.size == source.size && (unsigned char *)work.memory.block >= source.whole);
         free(source.whole);
     }
-    output_free(&truth), output_free(&out);
 }
 
 /* What FIBRAD_WORK_BYTES says is enough is enough, at any offset: for a packed bed, for a sphere that meets hundreds in
@@ -262,7 +253,7 @@ TEST(bytes_that_are_enough) {
     }
     fibrad_scene *scenes[4] = {scene_of(&bed, 0), scene_of(&around, 0), scene_of(&lone, 0),
                                scene_number(SCENES - 1, &between)};
-    struct output out = output_of();
+    OWNED_BY(output_free) struct output out = output_of();
     for (size_t offset = 0; offset < 64; offset += 7) {
         fibrad_work works[4] = {work_fixed(packed + offset, FIBRAD_WORK_BYTES(64, 200)),
                                 work_fixed(hundreds + offset, FIBRAD_WORK_BYTES(1000, 1000)),
@@ -278,7 +269,6 @@ TEST(bytes_that_are_enough) {
             ck_assert_int_eq(call(function, scenes[3], &works[3], 0, &out), FIBRAD_OK);
         }
     }
-    output_free(&out);
     for (int k = 0; k < 4; k++) free(scenes[k]);
 }
 
@@ -292,8 +282,7 @@ static void powers_in(unsigned char *block, size_t size, size_t offset, const fi
     ck_assert_ptr_null(heat);
     ck_assert_int_eq(fibrad_heat_init(&heat, block + offset, size, &config, scene), FIBRAD_OK);
     OWNED_WORK work = work_growing();
-    for (uint32_t task = 0; task < fibrad_heat_tasks(heat); task++)
-        ck_assert_int_eq(fibrad_heat_trace(heat, &work, task), FIBRAD_OK);
+    ck_assert_int_eq(heat_trace(heat, &work, false), FIBRAD_OK);
     double temperature[64], emissivity[64], floor_temperature = 900, floor_emissivity = .3;
     for (uint32_t i = 0; i < n; i++) temperature[i] = 300 + 10 * i, emissivity[i] = .5 + .007 * i;
     fibrad_heat_sources sources;
@@ -301,14 +290,8 @@ static void powers_in(unsigned char *block, size_t size, size_t offset, const fi
     sources.temperature = temperature, sources.emissivity = emissivity;
     sources.body_temperature = &floor_temperature, sources.body_emissivity = &floor_emissivity;
     sources.surroundings = 500;
-    ck_assert_int_eq(fibrad_heat_begin(heat, &sources), FIBRAD_OK);
-    for (int solved = 0; !solved;) {
-        for (uint32_t part = 0; part < fibrad_heat_parts(heat); part++)
-            ck_assert_int_eq(fibrad_heat_sweep(heat, part), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_heat_step(heat, &solved), FIBRAD_OK);
-    }
     fibrad_heat_result result = {.power = power, .body_power = power + n};
-    ck_assert_int_eq(fibrad_heat_read(heat, &result), FIBRAD_OK);
+    heat_solve(heat, &sources, &result, false);
     power[n + 1] = result.surroundings_power;
     power[n + 2] = result.error_patches, power[n + 3] = result.error_beams, power[n + 4] = result.residual;
 }
