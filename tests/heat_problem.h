@@ -165,11 +165,6 @@ static inline double sum_of_powers(const struct problem *p, double *largest) {
     return sum;
 }
 
-static inline void assert_near(double value, double truth, double tolerance) {
-    ck_assert_msg(fabs(value - truth) <= tolerance * fabs(truth), "%.9g instead of %.9g, off by %.3g", value, truth,
-                  value / truth - 1);
-}
-
 static inline void diffuse(const double n[3], double u, double v, double w[3]) {
     double a[3] = {0, 0, 0}, b[3], sine, cosine;
     const int least = fabs(n[0]) < .6 ? 0 : 1;

@@ -33,4 +33,9 @@ static inline void heat_solve(fibrad_heat *heat, const fibrad_heat_sources *sour
     ck_assert_int_eq(fibrad_heat_read(heat, result), FIBRAD_OK);
 }
 
+static inline void assert_near(double value, double truth, double tolerance) {
+    ck_assert_msg(fabs(value - truth) <= tolerance * fabs(truth), "%.9g instead of %.9g, off by %.3g", value, truth,
+                  value / truth - 1);
+}
+
 #endif

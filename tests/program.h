@@ -88,6 +88,14 @@ static char *read_file(const char *path) {
     return text;
 }
 
+/* Reads a file into *text. A text that is there from another run must be the same. */
+static inline void read_same(const char *path, char **text) {
+    char *now = read_file(path);
+    if (*text) ck_assert_str_eq(now, *text);
+    free(*text);
+    *text = now;
+}
+
 static inline void open_as(int number, const char *path, int flags) {
     const int file = open(path, flags, 0666);
     if (file < 0 || dup2(file, number) < 0) _exit(99);

@@ -52,35 +52,25 @@ TEST(summary) {
 
 TEST(same_bytes_for_any_threads) {
     static const char *const threads[] = {"1", "2", "7"};
-    char *first = NULL;
+    OWNED char *first = NULL;
     for (int k = 0; k < 3; ++k) {
         const char *out = in_folder("F.csv");
         SUCCEED("bed", POLY, "--directions", "34", "--threads", threads[k], "-o", out);
         ck_assert_double_eq(value_of("threads"), k == 0 ? 1 : k == 1 ? 2 : 7);
-        char *text = read_file(out);
-        if (!first)
-            first = text;
-        else {
-            ck_assert_str_eq(text, first);
-            free(text);
-        }
+        read_same(out, &first);
     }
-    free(first);
 }
 
 /* In a box rows add up to 1 with the walls, nothing escapes, and the walls' own rows are reciprocal. */
 TEST(walls) {
     enum { SPHERES = 2000, WALLS = 6 };
     static double sum[SPHERES], to[SPHERES][WALLS], wall_sum[WALLS], between[WALLS][WALLS];
-    char *first = NULL;
+    OWNED char *first = NULL;
     for (int k = 0; k < 2; ++k) {
         const char *out = in_folder("F.csv");
         SUCCEED("bed", MONO, "--positions", "--directions", "50", "--wall", "auto", "--threads", k == 0 ? "1" : "3",
                 "-o", out, "--json", in_folder("F.json"));
-        char *text = read_file(out);
-        if (k == 1) ck_assert_str_eq(text, first);
-        free(first);
-        first = text;
+        read_same(out, &first);
     }
     ck_assert(value_of("escaped_mean") == 0);
     ck_assert_double_lt(value_of("closure_max"), 1e-13);
@@ -116,7 +106,6 @@ TEST(walls) {
         mean += to[i][4] / SPHERES;
     }
     ck_assert_double_eq_tol(json_of(in_folder("F.json"), "wall_zmin_F"), mean, 1e-13);
-    free(first);
     SUCCEED("bed", PERIODIC, "--directions", "50", "--wall", "auto"); /* deep beds see all of a wall that has no end */
     ck_assert_double_eq_tol(value_of("wall_zmin_F") * SPHERES * acos(-1), 12 * 12, .02);
     ck_assert_double_eq_tol(value_of("wall_zmax_F") * SPHERES * acos(-1), 12 * 12, .02);

@@ -314,7 +314,8 @@ TEST(same_bits_always) {
 
 /* F_E of a lattice of unit spheres. */
 static double factor(const struct bed *bed, double solid, double emissivity, uint32_t paths) {
-    double *e = constant(bed->n, emissivity), square = 0;
+    OWNED double *e = constant(bed->n, emissivity);
+    double square = 0;
     OWNED fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();
     const fibrad_exchange_rule rule = {.emissivity = e, .paths = paths};
@@ -324,7 +325,6 @@ static double factor(const struct bed *bed, double solid, double emissivity, uin
         for (int axis = 0; axis < 3; axis++) square += d.square[axis] / 3 / bed->n;
         ck_assert_double_eq_tol(d.absorbed, 1, .05);
     }
-    free(e);
     return 3 * solid * emissivity * square / 4;
 }
 
@@ -348,7 +348,8 @@ TEST(conductivity_of_lattices) {
 TEST(displacement_in_a_chain) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {2, 0, 0, 1}});
     bed.period[0] = 4;
-    double *e = constant(2, 1), exact;
+    OWNED double *e = constant(2, 1);
+    double exact;
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();
     fibrad_displacement d;
@@ -363,14 +364,14 @@ TEST(displacement_in_a_chain) {
     ck_assert_double_eq(d.square[1], 0);
     ck_assert_double_eq(d.square[2], 0);
     ck_assert_uint_eq(d.rays, 400000);
-    free(e);
 }
 
 /* Rows of a whole bed, averaged with areas A e and balanced: reciprocal and closed; dropping keeps the sums. */
 TEST(rows_keep_the_books) {
     OWNED_BED bed = packing(120, .5, 1, .5, 12, true);
     const uint32_t n = bed.n;
-    double *e = calloc(n, sizeof *e), *target = calloc(n, sizeof *target), *mean = calloc(n, sizeof *mean), largest;
+    OWNED double *e = calloc(n, sizeof *e), *target = calloc(n, sizeof *target), *mean = calloc(n, sizeof *mean);
+    double largest;
     OWNED_ROWS rows = {.memory = memory_growing()};
     OWNED_WORK work = work_growing();
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -417,9 +418,6 @@ TEST(rows_keep_the_books) {
                          FIBRAD_E_ARGUMENT);
         e[3] = good;
     }
-    free(e);
-    free(target);
-    free(mean);
 }
 
 /* Spheres in another order, each with the number it had: the same paths. Without: others. */

@@ -122,7 +122,7 @@ static double by_ball(double r, double e, double a) {
 
 /* The factor from wall z = 1 to wall x = 1, both black. */
 static double to_side(double r, double e, double relative) {
-    const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
     fibrad_body body[6];
     for (int k = 0; k < 6; ++k) body[k] = plane_at(k / 2, k % 2, k % 2 ? 1 : -1);
     const fibrad_scene_config config = {.body = body, .bodies = 6};
@@ -232,13 +232,6 @@ static void powers_by_patches(const struct hot_bed *h, double *power) {
     ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &result), FIBRAD_OK);
 }
 
-/* The root mean square of what two lists differ by, over that of the second one. */
-static double differ(const double *a, const double *b, uint32_t n) {
-    double sum = 0, all = 0;
-    for (uint32_t i = 0; i < n; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]), all += b[i] * b[i];
-    return sqrt(sum / all);
-}
-
 /* Powers by rows are those by patches, beyond the noise of paths, which two seeds tell. */
 static const double bed_k[] = {.1, .1, 1, 10, 0}, bed_e[] = {.8, 1, .6, .8, 0};
 LOOP_TEST(powers_are_those_of_patches, 5) {
@@ -252,7 +245,7 @@ LOOP_TEST(powers_are_those_of_patches, 5) {
         ck_assert_double_le(fabs(powers_by_rows(&h, &factors->matrix, found[seed])), 1e-12);
     }
     for (uint32_t i = 0; i < h.bed.n; ++i) mean[i] = (found[0][i] + found[1][i]) / 2;
-    const double noise = differ(found[0], found[1], h.bed.n) / 2, off = differ(mean, truth, h.bed.n);
+    const double noise = difference_of(found[0], found[1], h.bed.n) / 2, off = difference_of(mean, truth, h.bed.n);
     ck_assert_double_le(noise, .015);
     ck_assert_double_le(sqrt(fmax(0, off * off - noise * noise)), .01);
 }
@@ -274,14 +267,14 @@ TEST(good_conductors) {
     }
     all = factors_of(&h, 2000, 1);
     powers_by_rows(&h, &all->matrix, power[1]);
-    ck_assert_double_le(differ(power[1], power[0], h.bed.n), 1e-4);
+    ck_assert_double_le(difference_of(power[1], power[0], h.bed.n), 1e-4);
     fibrad_bed_free(all);
 }
 
 /* Numbers that cannot be: nodes without conductivities, above the emissivity, k* too small or NaN; of the sphere itself
  * and of one that paths meet. */
 TEST(refusals) {
-    const struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2, 1}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2, 1}});
     const double black[] = {.5, .5};
     OWNED fibrad_scene *scene = scene_of(&bed, 0);
     OWNED_WORK work = work_growing();

@@ -47,7 +47,7 @@ static double power_of(const char *path, const char *begin, const char *end) {
 TEST(wall_temperatures_by_name) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED)), *out = in_folder("q.csv");
     static const char *const lists[] = {"zmin=1200,zmax=300,700", "700,zmax=300,zmin=1200"};
-    char *first = NULL;
+    OWNED char *first = NULL;
     for (int k = 0; k < 2; ++k) {
         SUCCEED(HEAT, bed, "--wall", "auto,zmin=-0.001", "--wall-temperature", lists[k], "--wall-emissivity", "zmin=.5",
                 "-o", out);
@@ -57,14 +57,10 @@ TEST(wall_temperatures_by_name) {
         ck_assert_double_eq(value_of("wall_zmin_at"), -.001);
         ck_assert_double_eq(value_of("wall_zmin_emissivity"), .5);
         ck_assert_double_eq(value_of("wall_xmin_emissivity"), 1);
-        char *text = read_file(out);
-        ck_assert_ptr_nonnull(strstr(text, "\n-2,1200,"));
+        read_same(out, &first);
+        ck_assert_ptr_nonnull(strstr(first, "\n-2,1200,"));
         ck_assert_double_lt(power_of(out, "-2,", ",zmin"), 0); /* the hottest */
-        if (first) ck_assert_str_eq(text, first);
-        free(first);
-        first = text;
     }
-    free(first);
 }
 
 /* No temperature is made up: that of the surroundings is asked for where something can get there. */
@@ -104,19 +100,15 @@ TEST(temperatures_and_powers_mixed) {
         "SCALARS radius double\nLOOKUP_TABLE default\n1 1 1\nSCALARS type double\nLOOKUP_TABLE default\n1 2 1\n"
         "SCALARS T double\nLOOKUP_TABLE default\nnan 900 nan\nSCALARS P double\nLOOKUP_TABLE default\n40 nan 40\n"};
     const char *out = in_folder("q.csv");
-    char *first = NULL;
+    OWNED char *first = NULL;
     for (int k = 0; k < 16; ++k) {
         const char *const *w = words[k % 4], *bed = write_file("bed", beds[k / 4]);
         SUCCEED(MIXED, bed, w[0], w[1], w[2], w[3], "-o", out);
-        char *text = read_file(out);
-        if (first) ck_assert_str_eq(text, first);
-        free(first);
-        first = text;
+        read_same(out, &first);
         ck_assert_double_eq(power_of(out, "0,", ","), -40);
         ck_assert_double_lt(power_of(out, "1,", ","), 0);
-        ck_assert_ptr_nonnull(strstr(text, "\n1,900,"));
+        ck_assert_ptr_nonnull(strstr(first, "\n1,900,"));
     }
-    free(first);
     const char *bed = write_file("bed", beds[0]);
     ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "T"), 3); /* blanks are for those that have a power */
     expect_message(bed, "T is not a number: ''");
@@ -143,7 +135,7 @@ TEST(units_of_length) {
                 {"lj", "mm", 1e-3},     {"cgs", "cm", .01}};
     const char *out = in_folder("q.csv");
     double metres = NAN;
-    char *factors = NULL;
+    OWNED char *factors = NULL;
     for (size_t k = 0; k < sizeof unit / sizeof *unit; ++k) {
         const char *bed = write_file("bed.dump", frame(unit[k].units, "0", "3", SORTED));
         if (unit[k].option)
@@ -155,12 +147,8 @@ TEST(units_of_length) {
         ck_assert_double_eq_tol(q, metres * square, 1e-13 * fabs(metres) * square);
         ck_assert_ptr_null(strstr(said, "taken as metres"));
         SUCCEED("bed", bed, "--directions", "21", "-o", out);
-        char *text = read_file(out);
-        if (factors) ck_assert_str_eq(text, factors);
-        free(factors);
-        factors = text;
+        read_same(out, &factors);
     }
-    free(factors);
     ck_assert_int_eq(RUN(HEAT, write_file("lj.dump", frame("lj", "0", "3", SORTED)), "--ambient", "300"), 2);
     expect_message(in_folder("lj.dump"), "units lj have no fixed length in metres; --length-unit gives the length");
     const char *cgs = write_file("cgs.dump", frame("cgs", "0", "3", SORTED));

@@ -272,12 +272,6 @@ TEST(temperatures_and_powers_belong_together) {
     }
 }
 
-static double difference(const double *a, const double *b, uint32_t n) {
-    double sum = 0, squares = 0;
-    for (uint32_t i = 0; i < n; i++) sum += (a[i] - b[i]) * (a[i] - b[i]), squares += b[i] * b[i];
-    return sqrt(sum / squares);
-}
-
 /* Powers of a bed of given temperatures whose spheres have some k* and emissivity. */
 static void powers_of(double k_star, double emissivity, double out[MOST]) {
     OWNED_PROBLEM p = problem_of(packing(40, .8, 1, .5, 4, true), 1, emissivity);
@@ -296,9 +290,9 @@ TEST(what_conducts_well_is_as_before) {
         powers_of(INFINITY, black ? 1 : .6, now);
         ck_assert_mem_eq(before, now, 40 * sizeof *now);
         powers_of(1e6, black ? 1 : .6, now);
-        ck_assert_double_le(difference(now, before, 40), 1e-5);
+        ck_assert_double_le(difference_of(now, before, 40), 1e-5);
         powers_of(1, black ? 1 : .6, now);
-        ck_assert_double_gt(difference(now, before, 40), 1e-2);
+        ck_assert_double_gt(difference_of(now, before, 40), 1e-2);
     }
 }
 
@@ -306,7 +300,7 @@ TEST(nearly_black_is_as_black) {
     double black[MOST] = {0}, nearly[MOST] = {0};
     powers_of(.3, 1, black);
     powers_of(.3, 1 - 1e-12, nearly);
-    ck_assert_double_le(difference(nearly, black, 40), 1e-7);
+    ck_assert_double_le(difference_of(nearly, black, 40), 1e-7);
 }
 
 TEST(the_order_of_the_work_changes_no_bit) {

@@ -133,18 +133,6 @@ static double imbalance(const struct problem *p) {
     return fabs(sum) / largest;
 }
 
-static void assert_near(double value, double truth, double tolerance) {
-    ck_assert_msg(fabs(value - truth) <= tolerance * fabs(truth), "%.9g instead of %.9g, off by %.3g", value, truth,
-                  value / truth - 1);
-}
-
-/* Root mean square distance of two lists of powers over the root mean square of the second. */
-static double distance_of(const double *a, const double *b, uint32_t n) {
-    double square = 0, size = 0;
-    for (uint32_t k = 0; k < n; k++) square += (a[k] - b[k]) * (a[k] - b[k]), size += b[k] * b[k];
-    return sqrt(square / size);
-}
-
 static void make_planes(struct problem *p, double low, double high) {
     p->bodies = 6;
     for (int k = 0; k < 6; k++) p->body[k] = plane_at(k / 2, k % 2, k % 2 ? high : low);
@@ -187,7 +175,8 @@ TEST(a_box_of_twelve_triangles_is_a_box_of_planes) {
         planes->config = mesh->config = (fibrad_heat_config){.directions = 700, .patches = 384, .wall_rays = 300000};
         make_planes(planes, 0, 1), make_box(mesh, 0, 1, cells);
         trace_and_solve(planes), trace_and_solve(mesh);
-        const double spheres = distance_of(mesh->power, planes->power, 30), walls = distance_of(mesh->q, planes->q, 6);
+        const double spheres = difference_of(mesh->power, planes->power, 30),
+                     walls = difference_of(mesh->q, planes->q, 6);
         ck_assert_double_le(spheres, 3e-3);
         ck_assert_double_le(walls, 3e-3);
         ck_assert_double_le(imbalance(mesh), 1e-12);
@@ -216,7 +205,7 @@ TEST(a_cup_of_triangles_is_one_of_planes_and_an_opening) {
         ck_assert_double_gt(p[0]->result.surroundings_power, 5);
         assert_near(p[0]->result.surroundings_power, p[1]->result.surroundings_power, 2e-3);
         for (int b = 0; b < 5; b++) assert_near(p[0]->q[b], p[1]->q[b], 2e-3);
-        ck_assert_double_le(distance_of(p[0]->power, p[1]->power, 8), 2e-3);
+        ck_assert_double_le(difference_of(p[0]->power, p[1]->power, 8), 2e-3);
     }
     end_problem(&p[0]), end_problem(&p[1]);
 }
@@ -340,7 +329,7 @@ TEST(a_shelf_between_planes) {
     both->wall_temperature[6] = 1;
     for (int k = 0; k < 5; k++) both->wall_emissivity[k] = half->wall_emissivity[k] = 1;
     trace_and_solve(both), trace_and_solve(half);
-    ck_assert_double_le(distance_of(both->power + 8, half->power, 22), 3e-3);
+    ck_assert_double_le(difference_of(both->power + 8, half->power, 22), 3e-3);
     assert_near(both->q[4], half->q[4], 5e-3); /* the floor */
     assert_near(both->q[7], half->q[5], 5e-3); /* the back of the sheet, and the ceiling in its place */
     ck_assert(both->result.surroundings_power == 0);
@@ -373,8 +362,8 @@ TEST(spheres_that_triangles_cut) {
     free(cut->mesh), cut->mesh = mesh_new();
     make_box(cut, -2, 2, 1); /* not cut: nearly the same */
     trace_and_solve(cut);
-    ck_assert_double_le(distance_of(power, cut->power, 8), .05);
-    ck_assert_double_le(distance_of(q, cut->q, 6), .05);
+    ck_assert_double_le(difference_of(power, cut->power, 8), .05);
+    ck_assert_double_le(difference_of(q, cut->q, 6), .05);
     for (uint32_t i = 0; i < 8; i++) cut->temperature[i] = 2;
     for (int b = 0; b < 6; b++) cut->wall_temperature[b] = 2;
     solve(cut);
@@ -416,8 +405,8 @@ TEST(a_tilted_box_is_the_same) {
     make_box(p, 0, 1, 2), make_box(turned, 0, 1, 2);
     turn_all(turned, tilt);
     trace_and_solve(p), trace_and_solve(turned);
-    ck_assert_double_le(distance_of(turned->power, p->power, 30), 3e-3);
-    ck_assert_double_le(distance_of(turned->q, p->q, 6), 3e-3);
+    ck_assert_double_le(difference_of(turned->power, p->power, 30), 3e-3);
+    ck_assert_double_le(difference_of(turned->q, p->q, 6), 3e-3);
 }
 
 /* A mesh that moves: the next solution begins where the last one ended, whatever the order of its triangles. */
@@ -434,7 +423,7 @@ TEST(a_mesh_moves) {
     ck_assert_int_eq(trace_beams(p), FIBRAD_OK);
     solve(p);
     ck_assert_uint_lt(p->result.sweeps, cold);
-    ck_assert_double_le(distance_of(p->power, power, 30), 2e-2);
+    ck_assert_double_le(difference_of(p->power, power, 30), 2e-2);
     ck_assert_double_le(imbalance(p), 1e-12);
 
     p->mesh->front[3] ^= 1; /* another body */
@@ -540,7 +529,7 @@ TEST(faces_with_temperatures_of_their_own) {
             side[2 * t] = bodies->wall_temperature[bodies->mesh->front[t]], side[2 * t + 1] = NAN;
         one->sources.side_temperature = side;
         trace_and_solve(bodies), trace_and_solve(one);
-        ck_assert_double_le(distance_of(one->power, bodies->power, 30), 1e-3);
+        ck_assert_double_le(difference_of(one->power, bodies->power, 30), 1e-3);
         ck_assert_int_eq(fibrad_heat_read_sides(one->heat, flux, found), FIBRAD_OK);
         assert_near(gain_of_body(one, flux, 0), one->q[0], 1e-11);
         double gain[6] = {0}, mean = 0;
@@ -549,7 +538,7 @@ TEST(faces_with_temperatures_of_their_own) {
             mean += pow(side[2 * t], 4) / n;
             if (cells == 1) assert_near(found[2 * t], side[2 * t], 1e-12);
         }
-        ck_assert_double_le(distance_of(gain, bodies->q, 6), 5e-3);
+        ck_assert_double_le(difference_of(gain, bodies->q, 6), 5e-3);
         assert_near(pow(one->found[0], 4), mean, 1e-9);
         ck_assert_double_le(imbalance(one), 1e-12);
         ck_assert_int_eq(fibrad_heat_read_sides(bodies->heat, flux, NULL), FIBRAD_OK);
@@ -560,18 +549,18 @@ TEST(faces_with_temperatures_of_their_own) {
         memcpy(power, one->power, sizeof power);
         for (uint32_t t = 0; t < n; t++) side[2 * t] *= 1.05;
         solve(one);
-        ck_assert_double_gt(distance_of(one->power, power, 30), 2e-2);
+        ck_assert_double_gt(difference_of(one->power, power, 30), 2e-2);
         for (uint32_t t = 0; t < n; t++) side[2 * t] /= 1.05;
         solve(one);
         ck_assert_uint_lt(one->result.sweeps, cold);
-        ck_assert_double_le(distance_of(one->power, power, 30), 1e-3);
+        ck_assert_double_le(difference_of(one->power, power, 30), 1e-3);
         one->sources.side_temperature = NULL;
         solve(one); /* all at 1.7 again */
         memcpy(power, one->power, sizeof power);
         for (uint32_t t = 0; t < n; t++) side[2 * t] = t % 3 == 0 ? NAN : 1.7;
         one->sources.side_temperature = side;
         solve(one);
-        ck_assert_double_le(distance_of(one->power, power, 30), 1e-3);
+        ck_assert_double_le(difference_of(one->power, power, 30), 1e-3);
     }
 }
 
@@ -608,7 +597,7 @@ static void check_squares(double temperature(double x, double y), double flux_er
     trace_and_solve(p);
     ck_assert_int_eq(fibrad_heat_read_sides(p->heat, flux, NULL), FIBRAD_OK);
     for (uint32_t t = 0; t < PIECES; t++) got[t] = flux[2 * (PIECES + t)];
-    const double error = distance_of(got, due, PIECES);
+    const double error = difference_of(got, due, PIECES);
     ck_assert_msg(error <= flux_error, "off by %.3g", error);
     assert_near(p->q[1], all / PIECES, power_error);
     for (uint32_t body = 0; body < 2; body++) assert_near(gain_of_body(p, flux, body), p->q[body], 1e-11);

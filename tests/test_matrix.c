@@ -65,7 +65,8 @@ TEST(averaging_makes_rows_reciprocal) {
         all_closed(&out.factors);
         ck_assert_double_gt(reciprocity(&raw), 1e-4);
         ck_assert_double_le(reciprocity(&out), 1e-14);
-        double *area = squares(&beds[b], NULL), *mean = mean_of(&raw.factors, area, NULL), off = 0;
+        OWNED double *area = squares(&beds[b], NULL), *mean = mean_of(&raw.factors, area, NULL);
+        double off = 0;
         const uint32_t n = beds[b].n;
         for (uint32_t i = 0; i < n; i++) {
             double sum = 0;
@@ -79,8 +80,6 @@ TEST(averaging_makes_rows_reciprocal) {
             for (uint64_t k = raw.factors.start[i]; k < raw.factors.start[i + 1]; k++)
                 ck_assert_double_ge(matrix_factor(&out.factors, i, raw.factors.col[k]),
                                     raw.factors.f[k] / 2 * (1 - 1e-12));
-        free(area);
-        free(mean);
         bed_free(&beds[b]);
     }
 }
@@ -186,7 +185,8 @@ TEST(limiting_keeps_reciprocity) {
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     const fibrad_beam_rule rule = {.directions = 55, .points = 64};
     OWNED_MATRIX raw = matrix_by_beams(scene, &rule, true), limited = matrix_by_beams(scene, &rule, false);
-    double *area = squares(&bed, NULL), *mean = mean_of(&raw.factors, area, NULL), above = 0, moved = 0;
+    OWNED double *area = squares(&bed, NULL), *mean = mean_of(&raw.factors, area, NULL);
+    double above = 0, moved = 0;
     for (uint32_t i = 0; i < bed.n; i++) {
         double sum = 0;
         for (uint32_t j = 0; j < bed.n; j++) sum += mean[(size_t)i * bed.n + j];
@@ -199,15 +199,13 @@ TEST(limiting_keeps_reciprocity) {
         for (uint64_t k = limited.factors.start[i]; k < limited.factors.start[i + 1]; k++)
             worst_of(&moved, 1 - limited.factors.f[k] / mean[(size_t)i * bed.n + limited.factors.col[k]]);
     ck_assert_double_le(moved, above);
-    free(area);
-    free(mean);
 }
 
 /* A_i emissivity_i D_ij is symmetric, each row counts by its partner's area, and rows that were closed are. */
 TEST(exchange_factors_are_balanced) {
     OWNED_BED bed = packing(150, .5, 1.5, .5, 3, true);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    double *emissivity = calloc(bed.n, sizeof *emissivity);
+    OWNED double *emissivity = calloc(bed.n, sizeof *emissivity);
     for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = .2 + .8 * bed_make_random(5, i);
     OWNED_ROWS rows = {.memory = memory_growing()};
     OWNED_WORK work = work_growing();
@@ -216,7 +214,8 @@ TEST(exchange_factors_are_balanced) {
         ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL), FIBRAD_OK);
     OWNED_MATRIX raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = emissivity, .raw = 1});
     OWNED_MATRIX out = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = emissivity});
-    double *area = squares(&bed, emissivity), *mean = mean_of(&raw.factors, area, bed.r), moved = 0;
+    OWNED double *area = squares(&bed, emissivity), *mean = mean_of(&raw.factors, area, bed.r);
+    double moved = 0;
     ck_assert_double_gt(reciprocity(&raw), 1e-4);
     ck_assert_double_le(reciprocity(&out), 1e-14);
     ascending(&out.factors);
@@ -235,9 +234,6 @@ TEST(exchange_factors_are_balanced) {
     ck_assert(moved > 1e-4 && moved < .5);                /* the mean is scaled, by little */
     OWNED_MATRIX view = matrix_of(scene, &rows, 1, NULL); /* what the same rows would be as view factors */
     ck_assert(!matrix_same_bits(&view.factors, &out.factors));
-    free(area);
-    free(mean);
-    free(emissivity);
 }
 
 /* S_01 = (4 (3 A_0 D_01) + A_1 D_10)/5 with A = 4 pi (1, 4), in units of the largest emissivity, and what rows leave
@@ -309,7 +305,7 @@ TEST(reflectors_in_a_walled_bed) {
     OWNED_BED bed = packing(120, .5, 1.5, .45, 3, false);
     const fibrad_body floor_plane = plane_at(2, 0, -100);
     OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
-    double *emissivity = calloc(bed.n, sizeof *emissivity);
+    OWNED double *emissivity = calloc(bed.n, sizeof *emissivity);
     for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = i % 3 == 1 ? 0 : .2 + .8 * bed_make_random(5, i);
     OWNED_ROWS rows = {.memory = memory_growing()};
     OWNED_WORK work = work_growing();
@@ -327,7 +323,6 @@ TEST(reflectors_in_a_walled_bed) {
             ck_assert_double_eq(matrix_factor(&m.factors, i, 1), 0);
         }
     }
-    free(emissivity);
 }
 
 TEST(dropping_keeps_the_books) {

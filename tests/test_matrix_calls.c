@@ -41,7 +41,7 @@ static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows
 TEST(tasks_change_no_bit) {
     OWNED_BED bed = packing(150, .3, 1.5, .5, 3, true);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    double *emissivity = calloc(bed.n, sizeof *emissivity);
+    OWNED double *emissivity = calloc(bed.n, sizeof *emissivity);
     for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = (1 + i % 7) / 7.;
     const fibrad_matrix_rule rules[] = {{0}, {.emissivity = emissivity}, {.drop = 5e-3}};
     fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34}), spread[4];
@@ -65,7 +65,6 @@ TEST(tasks_change_no_bit) {
     }
     for (int c = 0; c < 4; c++) rows_free(&spread[c]);
     rows_free(&rows);
-    free(emissivity);
 }
 
 TEST(calls_out_of_order) {

@@ -39,7 +39,7 @@ static double solid_angle(double v[3][3]) {
 /* A triangle whose plane does not cut the sphere: F is its solid angle over 4 pi. */
 TEST(a_sphere_and_a_triangle) {
     double square = 0, worst[3] = {0};
-    const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     enum { CASES = 60 };
     srand(7);
     for (int c = 0; c < CASES; c++) {
@@ -209,7 +209,7 @@ TEST(a_drum) {
 
 /* A plane within a box that poles of a mesh stand through: what is beyond plays no part. */
 TEST(tubes_through_walls) {
-    const struct bed bed = bed_of(2, (const double[][4]){{.2, .5, .5, .1}, {.75, .5, .4, .12}});
+    OWNED_BED bed = bed_of(2, (const double[][4]){{.2, .5, .5, .1}, {.75, .5, .4, .12}});
     fibrad_scene *scene[2];
     fibrad_row row[2];
     OWNED_WORK work = work_growing();
@@ -278,7 +278,7 @@ TEST(open_meshes_within_walls) {
 
 /* A plate that nobody's back faces a sphere ends the row and is named; with a body of its own it takes its part. */
 TEST(sides_of_nobody) {
-    const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     OWNED struct mesh *mesh = mesh_new();
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(1);
@@ -323,7 +323,7 @@ TEST(sides_of_nobody) {
 }
 
 TEST(bad_triangles_are_named) {
-    const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     OWNED struct mesh *mesh = mesh_new();
     const double low[3] = {-2, -2, -2}, high[3] = {2, 2, 2};
     mesh_box(mesh, low, high, 0);
@@ -429,7 +429,7 @@ TEST(triangles_have_bounds) {
 /* Fins as tall as can be, between which lines go up for ever. */
 TEST(tall_fins_are_left) {
     static const double top[] = {1e2, 1e4, 1e6};
-    const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     for (int k = 0; k < 3; k++) {
         OWNED struct mesh *mesh = mesh_new();
         mesh_vertex(mesh, 0, 1.5, 2), mesh_vertex(mesh, .5, 1.5, 2), mesh_vertex(mesh, 0, 1.5, top[k]);

@@ -1,60 +1,20 @@
 /* test_read.c - readers: every format, every fault with its line. SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include "cli/message.h"
+#include "one_file.h"
 #include "read/read.h"
-#include "suite.h"
 #include "text/read_number.h"
 
-static char path[200];
-static char said[4096]; /* on standard error by the last `try` */
 static struct bed bed;
 
-static void make_file(void) {
-    const char *build = getenv("BUILD");
-    snprintf(path, sizeof path, "%.100s/tests/read_XXXXXX", build ? build : "build");
-    const int file = mkstemp(path);
-    ck_assert_int_ge(file, 0);
-    close(file);
-}
-
-static void remove_file(void) {
-    unlink(path);
+static void remove_all(void) {
+    remove_file();
     bed_free(&bed);
 }
 
-FIXTURE(make_file, remove_file)
-
-static void write_file(const char *text, size_t size) {
-    FILE *file = fopen(path, "wb");
-    ck_assert_ptr_nonnull(file);
-    ck_assert_uint_eq(fwrite(text, 1, size, file), size);
-    fclose(file);
-}
-
-static FILE *caught;
-static int screen;
-
-/* What goes to standard error is kept in `said`. */
-static void begin_catching(void) {
-    caught = tmpfile();
-    fflush(stderr);
-    screen = dup(STDERR_FILENO);
-    dup2(fileno(caught), STDERR_FILENO);
-}
-
-static void end_catching(void) {
-    dup2(screen, STDERR_FILENO);
-    close(screen);
-    rewind(caught);
-    said[fread(said, 1, sizeof said - 1, caught)] = 0;
-    fclose(caught);
-}
+FIXTURE(make_file, remove_all)
 
 /* Reads a text as a file and keeps what was said. */
 static int try_options(const char *text, size_t size, const struct read_options *options) {

@@ -1,48 +1,21 @@
 /* test_read_furnace.c - box files: every key, every fault with its line, and what is written.
  * SPDX-License-Identifier: MIT */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
 #include "boxes/furnace_cases.h"
 #include "cli/message.h"
 #include "boxes/read_furnace.h"
-#include "suite.h"
+#include "one_file.h"
 #include "write/write_furnace.h"
 
-static char path[200];
-static char said[4096]; /* text on standard error of the last `try` */
 static fibrad_furnace_config config;
-
-static void make_file(void) {
-    const char *build = getenv("BUILD");
-    snprintf(path, sizeof path, "%.100s/tests/box_XXXXXX", build ? build : "build");
-    const int file = mkstemp(path);
-    ck_assert_int_ge(file, 0);
-    close(file);
-}
-
-static void remove_file(void) { unlink(path); }
 
 FIXTURE(make_file, remove_file)
 
 /* Reads a text as a file and keeps the messages. */
 static int try(const char *text) {
-    FILE *file = fopen(path, "w");
-    ck_assert_ptr_nonnull(file);
-    fputs(text, file);
-    fclose(file);
-    FILE *catch = tmpfile();
-    fflush(stderr);
-    const int screen = dup(STDERR_FILENO);
-    dup2(fileno(catch), STDERR_FILENO);
+    write_file(text, strlen(text));
+    begin_catching();
     const int status = read_furnace(path, &config);
-    dup2(screen, STDERR_FILENO);
-    close(screen);
-    rewind(catch);
-    said[fread(said, 1, sizeof said - 1, catch)] = 0;
-    fclose(catch);
+    end_catching();
     return status;
 }
 
