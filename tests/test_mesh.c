@@ -82,7 +82,6 @@ TEST(a_sphere_and_a_triangle) {
     ck_assert_double_le(sqrt(square / CASES), 1e-3);
     ck_assert_double_le(worst[0], 4e-3);
     ck_assert_double_le(worst[2], 4e-4);
-    OWNED_BED own = bed;
 }
 
 /* Spheres behind a large screen are too small for points of the window; what is seen of them goes to the screen. */
@@ -233,7 +232,6 @@ TEST(tubes_through_walls) {
     for (int b = 0; b < 7; b++) ck_assert_double_eq_tol(row[1].body[b], cast.body[b], 1.5e-3);
     ck_assert_double_eq_tol(row_factor(&row[1], 1), row_factor(&cast, 1), 1.5e-3);
     for (int k = 0; k < 2; k++) row_free(&row[k]), free(scene[k]);
-    OWNED_BED own = bed;
 }
 
 /* An open mesh within planes or a cylinder: windows of which so little is open that no point lies there give it to what
@@ -319,7 +317,6 @@ TEST(sides_of_nobody) {
     ck_assert_double_eq(row.body[1], 0);
     ck_assert_double_eq_tol(fibrad_scene_body_area(scene, 0), 27 + 36, 1e-12);
     free(scene);
-    OWNED_BED own = bed;
 }
 
 TEST(bad_triangles_are_named) {
@@ -343,7 +340,6 @@ TEST(bad_triangles_are_named) {
     mesh->front[5] = FIBRAD_NO_BODY, mesh->front[4] = FIBRAD_NO_BODY; /* body 2 has no triangle */
     ck_assert_int_eq(scene_try(&scene, &bed, &config, &fault), FIBRAD_E_ARGUMENT);
     ck_assert_uint_eq(fault.triangle, UINT32_MAX);
-    OWNED_BED own = bed;
 }
 
 /* A triangle of some size at (x, 0, z) about a sphere of radius 1 at the origin, repeated with a period along some
@@ -442,7 +438,6 @@ TEST(tall_fins_are_left) {
         ck_assert_uint_eq(hit.triangle, UINT32_MAX);
         expect_rows(scene);
     }
-    OWNED_BED own = bed;
 }
 
 /* ---- rays, periods, bits ------------------------------------------------------------------------------------------

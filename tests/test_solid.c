@@ -36,7 +36,7 @@ TEST(relative_conductivities) {
     OWNED_BED bed = two_spheres();
     for (int k = 0; k < 2; ++k) {
         struct bed_options options = {.name = "bed", .length_unit = "mm"};
-        struct quantity solid;
+        struct quantity solid = {0};
         double *conductivity, metres, relative[2];
         ck_assert_int_eq(solid_option(k ? by_type : "8", &solid), 0);
         ck_assert_int_eq(solid_values(&options, &bed, &solid, &conductivity, &metres), 0);
@@ -55,7 +55,7 @@ TEST(relative_conductivities) {
 TEST(no_relative_conductivity) {
     OWNED_BED bed = two_spheres();
     struct bed_options options = {.name = "bed"};
-    struct quantity solid;
+    struct quantity solid = {0};
     double *conductivity, metres, relative[2];
     static const char *const wrong[] = {"0", "-1", "1e13", "1:0", "1:2,1:3", ""};
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) ck_assert_int_eq(solid_option(wrong[k], &solid), 2);
