@@ -1,4 +1,5 @@
-/* one_file.h - for tests of readers: a file, and the messages about it on standard error. SPDX-License-Identifier: MIT */
+/* one_file.h - for tests of readers: a file, and the messages about it on standard error.
+ * SPDX-License-Identifier: MIT */
 #ifndef TESTS_ONE_FILE_H
 #define TESTS_ONE_FILE_H
 
