@@ -221,6 +221,32 @@ static int hash_beam(const struct scene *s, int isa, uint32_t points) {
     return 0;
 }
 
+/* Hashes all rows by silhouettes, of an even and an odd number of lines. */
+static int hash_silhouettes(const struct scene *s, int isa) {
+    static unsigned char object[1 << 20], line_work[8 << 20], pair[8 << 20], joined[4 << 20];
+    const fibrad_silhouette_rule rules[] = {{.lines = 34}, {.lines = 21, .turn = 5}};
+    fibrad_scene *scene;
+    if (set_up(s, isa, &scene)) return 1;
+    hash_begin();
+    for (int k = 0; k < 2; k++) {
+        fibrad_silhouettes *all;
+        fibrad_work own = {.memory = {.block = line_work, .size = sizeof line_work}};
+        fibrad_pairs pairs = {.memory = {.block = pair, .size = sizeof pair}};
+        fibrad_memory index = {.block = joined, .size = sizeof joined};
+        if (fibrad_silhouettes_init(&all, object, sizeof object, scene, &rules[k]) != FIBRAD_OK) return 1;
+        for (uint32_t task = fibrad_silhouettes_tasks(all); task-- > 0;)
+            if (fibrad_silhouettes_task(all, &own, task, &pairs) != FIBRAD_OK) return 1;
+        if (fibrad_silhouettes_join(all, &pairs, 1, &index) != FIBRAD_OK) return 1;
+        for (uint32_t i = 0; i < s->n; i++) {
+            fibrad_row row = row_here();
+            if (fibrad_silhouettes_row(all, &own, i, &row) != FIBRAD_OK) return 1;
+            hash_row(&row);
+        }
+    }
+    tell(s->name, "silhouettes");
+    return 0;
+}
+
 /* Hashes raw rows by the surface method, of every seventh sphere. */
 static int hash_surface(const struct scene *s, int isa) {
     fibrad_scene *scene;
@@ -568,6 +594,7 @@ static int hash_small(const struct scene *s, int isa) {
     int failed = 0;
     for (uint32_t points = 0; points <= 256; points = points == 0 ? 64 : 2 * points)
         failed |= hash_closed(s, isa, points);
+    failed |= hash_silhouettes(s, isa);
     failed |= hash_tolerance(s, isa);
     failed |= hash_exchange(s, isa);
     return s->bounds == SLAB ? failed : failed | hash_heat(s, isa); /* rays of walls take long */
@@ -619,6 +646,7 @@ int main(int argc, char **argv) {
         make(&scenes[k]);
         for (uint32_t points = 0; points <= 256; points = points == 0 ? 64 : 2 * points)
             failed |= hash_beam(&scenes[k], isa, points);
+        if (scenes[k].cutoff == 0) failed |= hash_silhouettes(&scenes[k], isa);
         failed |= hash_surface(&scenes[k], isa);
         failed |= hash_cast(&scenes[k], isa, 0);
         failed |= hash_cast(&scenes[k], isa, 1);
