@@ -334,16 +334,24 @@ void LANED(fibrad_mesh_place)(const fibrad_workspace *work, const double frame[9
     }
 }
 
-/* The slot of what a line meets. This may be beyond the cutoff or the known region. */
-static uint32_t slot_met(const fibrad_workspace *work, const double frame[9], uint32_t p) {
+/* The slot at which a line from the point p ends that meets a triangle at its depth. */
+static uint32_t slot_along(const fibrad_workspace *work, uint32_t p, const double origin[3], const double w[3]) {
     const fibrad_met *met = work->met;
-    double origin[3], w[3], from[3], distance;
-    if (!work->cut || met->depth[p] < -1) return fibrad_scene_slot(work->scene, met->side[p]);
-    line_of_point(work, frame, &met->points, p, origin, w);
+    double from[3], distance;
     for (int axis = 0; axis < 3; axis++) from[axis] = (origin[axis] - work->centre[axis]) * work->inverse;
     const double length = (met->depth[p] - fibrad_point_exit(&met->points, p)) * work->unit;
     const double ball = fibrad_ball_exit(from, w, work->reach) * work->unit;
     return fibrad_surroundings_side(work->scene, origin, w, ball, met->side[p], length, &distance);
+}
+
+/* The slot of what a line meets. This may be beyond the cutoff or the known region. */
+static uint32_t slot_met(const fibrad_workspace *work, const double frame[9], uint32_t p) {
+    double origin[3], w[3];
+    if (!work->cut || work->met->depth[p] < -1) return fibrad_scene_slot(work->scene, work->met->side[p]);
+    line_of_point(work, frame, &work->met->points, p, origin, w);
+    const uint32_t met = slot_along(work, p, origin, w);
+    if (work->scene->occupancy.mark == NULL) return met;
+    return fibrad_surroundings_of_window(met, slot_along(work, p, origin, frame + 6));
 }
 
 void LANED(fibrad_mesh_count)(fibrad_workspace *work, const double frame[9], uint32_t k) {

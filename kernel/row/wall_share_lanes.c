@@ -290,14 +290,11 @@ static void add_points(fibrad_wall_room *walls, const fibrad_points *points, con
         }
 }
 
-/* The slot at which a line ends that is cut. If some cells are marked, the direction of the window decides whether the
- * way is clear, as it decides which nearer spheres hide the line. A line with a direction of its own may pass through
- * such a sphere into marked cells. */
+/* The slot at which a line ends that is cut. */
 static uint32_t end_of_cut(const fibrad_workspace *work, const fibrad_wall_line *line, const double direction[3]) {
     const uint32_t met = fibrad_work_met(work, line->origin, line->w);
     if (work->scene->occupancy.mark == NULL) return met;
-    const uint32_t along = fibrad_work_met(work, line->origin, direction);
-    return met == FIBRAD_BEYOND || along == FIBRAD_BEYOND ? along : met;
+    return fibrad_surroundings_of_window(met, fibrad_work_met(work, line->origin, direction));
 }
 
 /* Divides a window between walls by lines. */

@@ -30,6 +30,14 @@ double fibrad_region_exit(const fibrad_scene *scene, const double o[3], const do
 uint32_t fibrad_surroundings_met(const fibrad_scene *scene, const double origin[3], const double w[3], double ball,
                                  double *distance);
 
+/* The slot at which a line of a window ends. The line has its own direction, along which it ends at `met`. A line from
+ * the same point in the direction of the window ends at `along`. The direction of the window decides whether the way is
+ * clear of marked cells, as it decides which nearer spheres hide the line. In its own direction the line may pass
+ * through such a sphere into marked cells. */
+FIBRAD_INLINE uint32_t fibrad_surroundings_of_window(uint32_t met, uint32_t along) {
+    return met == FIBRAD_BEYOND || along == FIBRAD_BEYOND ? along : met;
+}
+
 /* The slot at which a ray ends that meets the side of a triangle at some length, before any sphere. This is the slot of
  * the side, or of a plane or the cylinder if that comes first. FIBRAD_BEYOND: the way there is neither known nor clear.
  * FIBRAD_NONE: the side belongs to no wall. w is a unit vector. */
