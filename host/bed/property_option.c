@@ -254,16 +254,16 @@ static int wall_values(const char *option, const char *text, double otherwise, d
 }
 
 void quantity_report(const struct quantity *quantity, const char *key, struct report *report) {
-    char of_type[60];
+    char column[60];
     if (quantity->given && !quantity->column && quantity->curve[0].n == 0)
         report_value(report, key, quantity->value, 6);
     if (quantity->given && !quantity->column && quantity->curve[0].n > 0) report_text(report, key, "table");
     if (quantity->column && !quantity->types) {
-        snprintf(of_type, sizeof of_type, "column %.40s", quantity->column);
-        report_text(report, key, of_type);
+        snprintf(column, sizeof column, "column %.40s", quantity->column);
+        report_text(report, key, column);
     }
     for (int k = 0; k < quantity->types; ++k) {
-        snprintf(of_type, sizeof of_type, "%.40s_type_%g", key, quantity->type[k]);
+        const char *of_type = report_key(report, "%s_type_%g", key, quantity->type[k]);
         if (quantity->curve[k].n > 0)
             report_text(report, of_type, "table");
         else
@@ -273,11 +273,8 @@ void quantity_report(const struct quantity *quantity, const char *key, struct re
 
 void wall_values_report(const struct walls *walls, const double *values, const char *ending, int digits,
                         struct report *report) {
-    for (uint32_t k = 0; k < walls->count; ++k) {
-        char key[80];
-        snprintf(key, sizeof key, "wall_%s%.30s", wall_name(walls, k), ending);
-        report_value(report, key, values[k], digits);
-    }
+    for (uint32_t k = 0; k < walls->count; ++k)
+        report_value(report, report_key(report, "wall_%s%s", wall_name(walls, k), ending), values[k], digits);
 }
 
 int wall_emissivities(const char *text, const struct walls *walls, double emissivity[WALLS_MAX]) {

@@ -129,28 +129,21 @@ static int axes_with(const struct conduction *result, unsigned kinds, char axes[
 }
 
 /* Reports values of the wanted axes, then their errors under keys that end with _error. */
-static void report_axes(struct report *report, const struct conduction *result, const char *key, const double value[3],
-                        const double error[3]) {
-    char text[40];
-    for (int axis = 0; axis < 3; ++axis) {
-        snprintf(text, sizeof text, key, 'x' + axis, "");
-        if (conduction_wants(result, axis)) report_measured(report, text, value[axis], error[axis]);
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-        snprintf(text, sizeof text, key, 'x' + axis, "_error");
-        if (conduction_wants(result, axis)) report_value(report, text, error[axis], 2);
-    }
+static void report_axes(struct report *report, const struct conduction *result, const char *name, const char *unit,
+                        const double value[3], const double error[3]) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (conduction_wants(result, axis))
+            report_measured(report, report_key(report, "%s_%c%s", name, 'x' + axis, unit), value[axis], error[axis]);
+    for (int axis = 0; axis < 3; ++axis)
+        if (conduction_wants(result, axis))
+            report_value(report, report_key(report, "%s_%c%s_error", name, 'x' + axis, unit), error[axis], 2);
 }
 
 static void report_steady(struct report *report, int axis, const struct steady *steady) {
-    char key[40];
     if (steady->spheres == 0) return;
-    snprintf(key, sizeof key, "F_E_steady_%c", 'x' + axis);
-    report_measured(report, key, steady->factor, steady->error);
-    snprintf(key, sizeof key, "F_E_steady_%c_error", 'x' + axis);
-    report_value(report, key, steady->error, 2);
-    snprintf(key, sizeof key, "seconds_steady_%c", 'x' + axis);
-    report_value(report, key, steady->seconds, 3);
+    report_measured(report, report_key(report, "F_E_steady_%c", 'x' + axis), steady->factor, steady->error);
+    report_value(report, report_key(report, "F_E_steady_%c_error", 'x' + axis), steady->error, 2);
+    report_value(report, report_key(report, "seconds_steady_%c", 'x' + axis), steady->seconds, 3);
 }
 
 static void conductivity_report(struct conductivity_request *request, const struct bed *bed,
@@ -181,10 +174,10 @@ static void conductivity_report(struct conductivity_request *request, const stru
     }
     if (!isnan(result->temperature)) {
         report_value(report, "temperature_K", result->temperature, 6);
-        report_axes(report, result, "k_%c_W_mK%s", result->k, result->k_error);
+        report_axes(report, result, "k", "_W_mK", result->k, result->k_error);
     }
     for (int axis = 0; axis < 3; ++axis) report_steady(report, axis, &request->between[axis]);
-    report_axes(report, result, "F_E_%c%s", result->factor, result->error);
+    report_axes(report, result, "F_E", "", result->factor, result->error);
     report_end(report);
 }
 

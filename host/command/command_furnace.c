@@ -229,11 +229,12 @@ static void furnace_print_comparison(FILE *text, const struct request *request, 
           text);
 }
 
-/* Makes a key such as T_axis_0.4 or T_axis_2.0. */
-static void furnace_height_key(double z, char key[48]) {
+/* Reports the temperature at a height, with a key such as T_axis_0.4 or T_axis_2.0. */
+static void furnace_height_report(struct report *report, const struct furnace_run *run, double z, int figures) {
     char text[32];
     snprintf(text, sizeof text, "%.4g", z);
-    snprintf(key, 48, "T_axis_%s%s", text, strpbrk(text, ".e") ? "" : ".0");
+    report_value(report, report_key(report, "T_axis_%s%s", text, strpbrk(text, ".e") ? "" : ".0"),
+                 furnace_axis_temperature(run, z), figures);
 }
 
 static void furnace_report(struct report *report, const struct request *request, const struct furnace_run *run) {
@@ -248,11 +249,8 @@ static void furnace_report(struct report *report, const struct request *request,
              run->config.cells[2]);
     report_text(report, "cells", text);
     for (int k = 0; k < 4; k++) report_value(report, keys[k], power[k], FIGURES);
-    for (int k = 0; k < 3; k++) {
-        double z = run->config.size[2] * (k == 0 ? 0.1 : k == 1 ? 0.5 : 0.9);
-        furnace_height_key(z, text);
-        report_value(report, text, furnace_axis_temperature(run, z), FIGURES);
-    }
+    for (int k = 0; k < 3; k++)
+        furnace_height_report(report, run, run->config.size[2] * (k == 0 ? 0.1 : k == 1 ? 0.5 : 0.9), FIGURES);
     report_count(report, "bundles", run->bundles);
     report_count(report, "outer_iterations", run->outers);
     report_count(report, "threads", (uint64_t)run->threads);

@@ -235,9 +235,8 @@ static void heat_print(struct heat_request *request, const struct bed *bed, cons
     wall_values_report(&request->problem.walls, result->body_power, "_W", 6, report);
     for (uint32_t k = 0; k < request->problem.walls.count; ++k) {
         if (!wall_endless(&request->problem.walls, bed, &request->problem.walls.body[k])) continue;
-        char key[80];
-        snprintf(key, sizeof key, "wall_%s_part_m2", wall_name(&request->problem.walls, k));
-        report_value(report, key, result->body_area[k], 6);
+        report_value(report, report_key(report, "wall_%s_part_m2", wall_name(&request->problem.walls, k)),
+                     result->body_area[k], 6);
     }
     if (heat->unknown) {
         report_measured(report, "temperature_min_K", heat->coldest, heat->temperature_error);

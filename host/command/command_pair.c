@@ -231,11 +231,9 @@ static int beam_factor(struct few *few, struct pair_request *request, uint32_t i
     if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
     const uint32_t k = find_column(&row, j);
     *f = k < row.length ? row.f[k] : 0;
-    char key[40];
-    snprintf(key, sizeof key, "F%" PRIu32 "%" PRIu32 "_raw", i + 1, j + 1);
-    report_value(&request->report, key, *f, 17);
-    snprintf(key, sizeof key, "error_estimate_%" PRIu32, i + 1);
-    report_value(&request->report, key, row.error, 3);
+    struct report *report = &request->report;
+    report_value(report, report_key(report, "F%" PRIu32 "%" PRIu32 "_raw", i + 1, j + 1), *f, 17);
+    report_value(report, report_key(report, "error_estimate_%" PRIu32, i + 1), row.error, 3);
     return STATUS_OK;
 }
 

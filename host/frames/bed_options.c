@@ -312,23 +312,18 @@ int bed_options_walls(struct bed_options *options, const struct bed *bed, struct
 
 static void report_mesh(struct report *report, const struct walls *walls, uint32_t k) {
     const struct mesh *mesh = mesh_of_body(walls->meshes, k);
-    char key[60];
-    snprintf(key, sizeof key, "wall_%s_file", wall_name(walls, k));
-    report_text(report, key, mesh->file);
-    snprintf(key, sizeof key, "wall_%s_triangles", wall_name(walls, k));
-    report_count(report, key, mesh_triangles(mesh, k));
-    double end[2][3];
-    mesh_extents(walls->meshes, k, end[0], end[1]);
-    for (int upper = 0; upper < 2; ++upper) {
-        snprintf(key, sizeof key, "wall_%s_%s", wall_name(walls, k), upper ? "high" : "low");
-        report_vector(report, key, end[upper]);
-    }
+    const char *name = wall_name(walls, k);
+    double low[3], high[3];
+    mesh_extents(walls->meshes, k, low, high);
+    report_text(report, report_key(report, "wall_%s_file", name), mesh->file);
+    report_count(report, report_key(report, "wall_%s_triangles", name), mesh_triangles(mesh, k));
+    report_vector(report, report_key(report, "wall_%s_low", name), low);
+    report_vector(report, report_key(report, "wall_%s_high", name), high);
 }
 
 static void report_wall(struct report *report, const struct walls *walls, uint32_t k) {
     const fibrad_body *wall = &walls->body[k];
-    char key[60];
-    snprintf(key, sizeof key, "wall_%s_at", wall_name(walls, k));
+    const char *key = report_key(report, "wall_%s_at", wall_name(walls, k));
     if (wall->kind == FIBRAD_BODY_MESH)
         report_mesh(report, walls, k);
     else if (wall->kind == FIBRAD_BODY_CYLINDER)
@@ -358,10 +353,7 @@ void bed_options_report(struct bed_options *options, const struct bed *bed, cons
     }
     report_vector(report, "periods", bed->period);
     for (uint32_t k = 0; k < walls->count; ++k) report_wall(report, walls, k);
-    for (uint32_t k = 0; k < walls->openings; ++k) {
-        char key[20];
-        snprintf(key, sizeof key, "open_%s_at", plane_name(&walls->opening[k]));
-        report_value(report, key, walls->opening[k].at, 9);
-    }
+    for (uint32_t k = 0; k < walls->openings; ++k)
+        report_value(report, report_key(report, "open_%s_at", plane_name(&walls->opening[k])), walls->opening[k].at, 9);
     if (facts) report_text(report, "instruction_set", fibrad_isa_name(facts->isa));
 }

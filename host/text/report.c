@@ -3,6 +3,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdarg.h>
 
 #include "cli/message.h"
 #include "fibrad.h"
@@ -42,6 +43,14 @@ void report_end(struct report *report) {
     }
     message_forget_warnings();
     if (report->text) fflush(report->text);
+}
+
+const char *report_key(struct report *report, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(report->key, sizeof report->key, format, arguments);
+    va_end(arguments);
+    return report->key;
 }
 
 /* Begins an entry of the JSON and a line of the text. */

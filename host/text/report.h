@@ -11,6 +11,7 @@ struct report {
     FILE *text, *json; /* NULL: not written */
     int runs;          /* runs begun so far */
     int entries;       /* entries of the current run so far */
+    char key[80];      /* of report_key */
 };
 
 /* Begin and end the JSON: an object with the version of the program, the command and an array of runs. */
@@ -20,6 +21,9 @@ void report_close(struct report *report);
 /* Begin and end one run, such as a frame. Its JSON ends with the list `warnings` of all warnings since the last run. */
 void report_begin(struct report *report);
 void report_end(struct report *report);
+
+/* Makes a key of a name or a number, as printf does. The key is valid until the next call. */
+const char *report_key(struct report *report, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Write one line each. A key has letters, digits and _. A key ends with the unit, if there is one: `power_rms_W`. */
 void report_text(struct report *report, const char *key, const char *text);

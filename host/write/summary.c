@@ -53,27 +53,24 @@ static void report_wall_share(const struct summary *summary, const struct conten
                               struct report *report) {
     const char *kind = what->walls->body[k].kind ? "wall_" : ""; /* names of unknown walls begin with wall_ */
     const double area = what->factors->body_area[k];
-    char name[BODY_NAME], key[BODY_NAME + 16];
-    snprintf(key, sizeof key, "%s%s_F", kind, contents_body(what, k, name));
-    report_value(report, key, summary->wall_mean[k], 6);
-    snprintf(key, sizeof key, "%s%s_area", kind, contents_body(what, k, name));
-    if (area < INFINITY) report_value(report, key, area, 6);
+    char own[BODY_NAME];
+    const char *name = contents_body(what, k, own);
+    report_value(report, report_key(report, "%s%s_F", kind, name), summary->wall_mean[k], 6);
+    if (area < INFINITY) report_value(report, report_key(report, "%s%s_area", kind, name), area, 6);
 }
 
 /* Reports the factors from a wall to all walls and to the surroundings, and their error, if the wall has a row. */
 static void report_wall_row(const struct contents *what, uint32_t k, struct report *report) {
     const fibrad_factors *matrix = &what->factors->matrix;
-    char name[BODY_NAME], key[BODY_NAME + 16];
+    char own[BODY_NAME];
+    const char *name = contents_body(what, k, own);
     double sum = 0;
     for (uint32_t j = 0; j < matrix->bodies; ++j) sum += matrix->body_body[(size_t)k * matrix->bodies + j];
     if (isnan(sum)) return;
-    const char *of = contents_body(what, k, name);
-    snprintf(key, sizeof key, "wall_%s_to_walls", of);
-    report_measured(report, key, sum, matrix->body_error[k]);
-    snprintf(key, sizeof key, "wall_%s_escaped", of);
-    report_measured(report, key, matrix->body_escaped[k], matrix->body_error[k]);
-    snprintf(key, sizeof key, "wall_%s_error", of);
-    report_value(report, key, matrix->body_error[k], 2);
+    report_measured(report, report_key(report, "wall_%s_to_walls", name), sum, matrix->body_error[k]);
+    report_measured(report, report_key(report, "wall_%s_escaped", name), matrix->body_escaped[k],
+                    matrix->body_error[k]);
+    report_value(report, report_key(report, "wall_%s_error", name), matrix->body_error[k], 2);
 }
 
 void summary_report(const struct summary *summary, const struct contents *what, struct report *report) {
