@@ -5,7 +5,7 @@
 #include "scenes.h"
 #include "suite.h"
 
-/* Euclidean error of row i by the beam method with exact areas. */
+/* Euclidean error of row i of the beam method with exact areas. */
 static double error_of(const struct bed *bed, uint32_t i, uint32_t directions, double tolerance) {
     double *f = calloc(bed->n, sizeof *f), escaped;
     const fibrad_spheres spheres = spheres_of(bed);
@@ -44,8 +44,8 @@ TEST(small_scenes) {
     ck_assert_double_lt(worst, 3e-5);
 }
 
-/* A pair with an obstacle that touches both, one that touches their common tangent cone from outside, one that touches
- * it from inside, and one in the middle. */
+/* An obstacle stands near a pair of spheres: it touches both, it touches their common tangent cone from outside or from
+ * inside, or it stands in the middle. */
 TEST(tangent_obstacles) {
     double h = sqrt(3);
     struct bed beds[] = {bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2, 1}, {h, 0, 1, 1}}),
@@ -61,7 +61,8 @@ TEST(tangent_obstacles) {
     }
 }
 
-/* The error falls as n^-1.5: eight-fold from n to 4 n, on the mean over rows. Truth: the same with many directions. */
+/* The error falls as n^-1.5: eight-fold from n to 4 n, on the mean over rows. The true rows are those with many
+ * directions. */
 TEST(error_falls_as_it_should) {
     OWNED_BED bed = packing(300, .8, 1.2, .55, 5, true);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);

@@ -1,5 +1,5 @@
-/* test_areas.c - visible areas in one window against exact slicing: at random, and in every degenerate arrangement we
- * could think of. SPDX-License-Identifier: MIT */
+/* test_areas.c - visible areas in one window against exact slicing: at random, and in every degenerate arrangement that
+ * we could think of. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 
 #define FIBRAD_ISA_SUFFIX _scalar
@@ -34,7 +34,7 @@ struct method {
     end_function *end;
 };
 
-/* One disc as a list of one. */
+/* Hands over one disc, as a list of one element. */
 static bool disc_scalar(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
     fibrad_areas_discs_scalar(areas, whose, &(uint32_t){0}, 1, &x, &y, &r);
     return areas->open;
@@ -44,7 +44,7 @@ static const struct method both = {fibrad_areas_begin_scalar, disc_scalar, fibra
 static const struct method arrangement = {fibrad_arrangement_begin_scalar, fibrad_arrangement_disc_scalar,
                                           fibrad_arrangement_end_scalar};
 
-/* Clipping in the way of many discs, from the first one on. */
+/* Begins a window in which clipping works from the first disc on as it does in windows with many discs. */
 static void begin_dense_scalar(fibrad_areas *areas) {
     fibrad_areas_begin_scalar(areas);
     ck_assert(fibrad_dense_resolve_scalar(areas, 1));
@@ -54,7 +54,7 @@ static const struct method dense = {begin_dense_scalar, disc_scalar, fibrad_area
 
 static uint32_t windows, fallbacks;
 
-/* Room for windows of MOST discs. */
+/* Makes an object with room for windows of MOST discs. */
 static fibrad_areas areas_make(void) {
     fibrad_arena arena = {0};
     fibrad_areas areas = {0};
@@ -69,7 +69,7 @@ static fibrad_areas areas_make(void) {
 
 static void areas_free(fibrad_areas *areas) { free(areas->x); } /* the first array begins the block */
 
-/* The visible areas by one method, after those the area that is still open; checks closure and signs. */
+/* Finds the visible areas by one method, and after them the area that is still open. Checks closure and signs. */
 static void measure(const struct method *method, fibrad_areas *areas, const struct window *w, double area[MOST + 1]) {
     method->begin(areas);
     bool open = true;
@@ -93,7 +93,7 @@ static double difference(uint32_t n, const double *a, const double *b) {
     return worst;
 }
 
-/* The largest difference of any method from slicing. */
+/* The largest difference between any method and slicing. */
 static double error_of(const struct window *w) {
     fibrad_areas areas = areas_make();
     double mine[MOST + 1], robust[MOST + 1], many[MOST + 1], expected[MOST + 1], rest;
@@ -110,7 +110,7 @@ static double error_of(const struct window *w) {
     return worst;
 }
 
-/* The part of the windows so far that was left to arrangements. */
+/* The part of the windows so far that clipping has left to arrangements. */
 static double fallbacks_part(void) {
     double part = (double)fallbacks / windows;
     windows = fallbacks = 0;
@@ -154,7 +154,7 @@ TEST(hundreds_of_discs) {
     ck_assert_double_eq(fallbacks_part(), 0);
 }
 
-/* Discs 1e-6 to 1e6 times as large as the window, their edges across it. */
+/* The discs are 1e-6 to 1e6 times as large as the window, and their edges cross it. */
 TEST(large_and_small_discs) {
     for (int power = -6; power <= 6; power++) {
         double worst = 0;
@@ -174,7 +174,8 @@ TEST(large_and_small_discs) {
     }
 }
 
-/* What lattices do: circles that are tangent, identical, concentric, or meet in one point, exactly and almost. */
+/* Lattices have such windows: circles that are tangent, identical, concentric, or meet in one point, exactly and
+ * almost. */
 TEST(degenerate_windows) {
     static const double nudges[] = {0, 0x1p-52, -0x1p-52, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9, 1e-6, -1e-6};
     double worst = 0;
@@ -188,7 +189,7 @@ TEST(degenerate_windows) {
                 {.n = 3, .u = {2 + e, -2, 0}, .v = {0, f, .5}, .r = {1, 1, .5}},         /* tangent outside */
                 {.n = 3, .u = {0, e, 0}, .v = {0, f, 0}, .r = {.3, .6, .9}},             /* concentric */
                 {.n = 3, .u = {0, e, f}, .v = {0, 0, 0}, .r = {.9, .6, 1.2}},            /* concentric, hidden */
-                {.n = 3, .u = {1, -.5, -.5}, .v = {0, h + e, -h + f}, .r = {1, 1, 1}},   /* all through the centre */
+                {.n = 3, .u = {1, -.5, -.5}, .v = {0, h + e, -h + f}, .r = {1, 1, 1}},   /* all cross the centre */
                 {.n = 4, .u = {1, 0, -1, 0}, .v = {0, 1, e, -1 + f}, .r = {1, 1, 1, 1}}, /* four through it */
                 {.n = 4, .u = {1, 0, -1, 0}, .v = {0, 1, e, -1 + f}, .r = {h, h, h, h}},
                 {.n = 6, .u = {1, .5, -.5, -1, -.5, .5}, .v = {0, h, h, e, -h, -h + f}, .r = {1, 1, 1, 1, 1, 1}},
@@ -202,7 +203,7 @@ TEST(degenerate_windows) {
                  .r = {.5, 1, .25, .75}}, /* tangent at one point */
                 {.n = 4, .u = {1, .5, .75 + e, .25}, .v = {0, 0, f, 0}, .r = {1, .5, .75, .25}},
                 {.n = 2, .u = {3 + e, -3}, .v = {0, f}, .r = {4, 4}}, /* tangent to the window within */
-                {.n = 2, .u = {3 + e, 3}, .v = {0, f}, .r = {3, 3}},  /* its edge through the centre */
+                {.n = 2, .u = {3 + e, 3}, .v = {0, f}, .r = {3, 3}},  /* the edge passes through the centre */
                 {.n = 3, .u = {.7 + e, .7, -.7}, .v = {.7, -.7 + f, 0}, .r = {.7, .7, .7}},
             };
             for (size_t s = 0; s < sizeof sets / sizeof *sets; s++) {
@@ -249,12 +250,12 @@ TEST(lattices_along_their_axes) {
     ck_assert_double_lt(worst, 1e-11);
 }
 
-/* Both methods on windows whose circles meet in multiples of 1/4 ... 1/8 of a radius, or as much beside them as
- * decides between the two. */
+/* Both methods are compared on windows whose circles meet in multiples of 1/4 ... 1/8 of a radius, or beside such
+ * points by as much as decides between the methods. */
 TEST(clipping_against_accounts) {
     fibrad_areas areas = areas_make();
     double worst = 0, clipped[MOST + 1], robust[MOST + 1], many[MOST + 1];
-    uint32_t left[2] = {0, 0}; /* to arrangements, by clipping as usual and in the way of many discs */
+    uint32_t left[2] = {0, 0}; /* windows left to arrangements, by ordinary clipping and by clipping for many discs */
     const int rounds = 60000;
     for (int round = 0; round < rounds; round++) {
         struct window w = {0};
@@ -310,8 +311,8 @@ WIDER(avx512)
 WIDER(neon)
 #endif
 
-/* In all instruction sets the same windows are degenerate, and the areas have the same bits: [1] in the way of many
- * discs. */
+/* In all instruction sets the same windows are degenerate, and the areas have the same bits. methods[][1] clips for
+ * many discs. */
 TEST(bits_of_windows) {
     const struct method *const methods[][2] = {
         [FIBRAD_ISA_SCALAR] = {&both, &dense},
@@ -355,8 +356,8 @@ TEST(bits_of_windows) {
     areas_free(&areas);
 }
 
-/* Many small discs, then large ones and a degenerate one: the arrangement begins in memory that dense clipping has
- * filled, and its lanes beyond the last arc must not look up what is no circle. */
+/* The window has many small discs, then large ones and a degenerate one. So the arrangement begins in memory that dense
+ * clipping has filled. The lanes beyond its last arc must not look up what is no circle. */
 TEST(arrangement_after_dense_clipping) {
     fibrad_areas areas = areas_make();
     const struct method *const methods[] = {
@@ -391,11 +392,12 @@ TEST(arrangement_after_dense_clipping) {
             ck_assert_mem_eq(first, other, (w.n + 1) * sizeof *first);
         }
     }
-    ck_assert_uint_gt(areas.fallbacks, 100); /* where nothing has hidden the point of contact before */
+    ck_assert_uint_gt(areas.fallbacks, 100); /* as often as no disc hides the point of contact before */
     areas_free(&areas);
 }
 
-/* What clipping must not decide is done by arrangements, and counted; ordinary windows are not. */
+/* Arrangements treat the windows that clipping must not decide, and these are counted. Ordinary windows are left to
+ * clipping. */
 TEST(doubts) {
     const struct window degenerate[] = {
         {.n = 1, .u = {0}, .v = {0}, .r = {1}},                                            /* equal to the window */
@@ -405,7 +407,7 @@ TEST(doubts) {
         {.n = 2, .u = {-.3, .3}, .v = {0, 0}, .r = {.3, .3}},                              /* tangent to each other */
         {.n = 3, .u = {.5, -.5, 0}, .v = {0, 0, .75901699437494742}, .r = {.75, .75, .2}}, /* three through a point */
         {.n = 1, .u = {2000}, .v = {0}, .r = {2000}},                                      /* too large */
-        /* over the others and the tip of the opening between two of them, which is 4e-11 wide there */
+        /* the last disc covers the others and the tip of the opening between two of them, which is 4e-11 wide there */
         {.n = 4, .u = {0, -.499999, .499999, 0}, .v = {-.55, 0, 0, 1e-3 + 1e-8 - .2}, .r = {.55, .5, .5, .2}},
     };
     for (size_t d = 0; d < sizeof degenerate / sizeof *degenerate; d++) {
@@ -420,7 +422,7 @@ TEST(doubts) {
         {.n = 2, .u = {.6, 0}, .v = {.1, 0}, .r = {.9, .05}},              /* an island */
         {.n = 3, .u = {.5, -.5, 0}, .v = {0, 0, .1}, .r = {.3, .3, .95}},  /* around two others */
         {.n = 2, .u = {.3, 0}, .v = {0, .9}, .r = {.01, .99}},
-        {.n = 3, .u = {0, 0, 0}, .v = {1.2, -1.2, 0}, .r = {1.1, 1.15, .7}}, /* two openings, cut in four */
+        {.n = 3, .u = {0, 0, 0}, .v = {1.2, -1.2, 0}, .r = {1.1, 1.15, .7}}, /* it cuts two openings in four */
     };
     for (size_t p = 0; p < sizeof plain / sizeof *plain; p++) {
         ck_assert_double_lt(error_of(&plain[p]), 1e-14);
@@ -428,7 +430,8 @@ TEST(doubts) {
     }
 }
 
-/* What is open of a window of random discs at depths of their own, its direction turned by (du, dv). */
+/* The open area of a window of random discs, each with a depth of its own, after the direction of the window has turned
+ * by (du, dv). */
 static double open_turned(fibrad_areas *areas, const struct method *method, const struct window *w, const double *depth,
                           double du, double dv) {
     method->begin(areas);
@@ -455,7 +458,7 @@ TEST(slope_of_the_open_area) {
         }
         const double h = 1e-6, open = open_turned(&areas, method, &w, depth, 0, 0);
         if (open == 0) continue;
-        if (method == &arrangement) areas.degenerate = true; /* as the caller of both would have it */
+        if (method == &arrangement) areas.degenerate = true; /* the caller of both methods would set this */
         fibrad_areas_slope(&areas, depth, slope);
         for (int axis = 0; axis < 2; axis++) {
             const double u = axis == 0 ? h : 0, v = axis == 1 ? h : 0;

@@ -36,7 +36,7 @@ static size_t size_of(size_t n) {
 
 TEST(arena_counts_what_it_hands_out) {
     for (size_t n = 0; n < 200; n++) {
-        const size_t size = size_of(n), offset = n % FIBRAD_ALIGNMENT; /* every offset from a boundary */
+        const size_t size = size_of(n), offset = n % FIBRAD_ALIGNMENT; /* every offset from a boundary comes up */
         OWNED unsigned char *whole = aligned_alloc(FIBRAD_ALIGNMENT, (size / FIBRAD_ALIGNMENT + 4) * FIBRAD_ALIGNMENT);
         unsigned char *block = whole + FIBRAD_ALIGNMENT + offset;
         memset(whole, 0x5a, (size / FIBRAD_ALIGNMENT + 4) * FIBRAD_ALIGNMENT);
@@ -151,7 +151,7 @@ TEST(port_does_what_it_says) {
     ck_assert_mem_eq(to, "-a\0\0\0\0", 7);
 }
 
-/* What the processor claims to offer, from the kernel of the operating system. */
+/* Whether the operating system says that the processor offers an instruction set. -1: it says nothing. */
 static int offered(const char *flag) {
     FILE *file = fopen("/proc/cpuinfo", "r");
     char word[64];
@@ -173,10 +173,10 @@ TEST(best_instruction_set_is_what_the_machine_offers) {
     ck_assert_int_eq(fibrad_isa_choose(-1), -2); /* there is no such instruction set */
     ck_assert_int_eq(fibrad_isa_choose(FIBRAD_ISA_NEON + 1), -2);
     for (int isa = (int)best + 1; isa <= FIBRAD_ISA_NEON; isa++) ck_assert_int_eq(fibrad_isa_choose(isa), -1);
-    for (int isa = FIBRAD_ISA_SCALAR; isa <= (int)best; isa++) /* a build may lack one in between */
+    for (int isa = FIBRAD_ISA_SCALAR; isa <= (int)best; isa++) /* a build may lack one below the best */
         ck_assert(fibrad_isa_choose(isa) == isa || fibrad_isa_choose(isa) == -1);
 #ifdef __aarch64__
-    ck_assert_int_eq(best, FIBRAD_ISA_NEON); /* in all such machines, and the rest in none */
+    ck_assert_int_eq(best, FIBRAD_ISA_NEON); /* all such machines have it, and no others */
 #endif
     if (best >= FIBRAD_ISA_AVX2) ck_assert_int_ne(offered("avx2"), 0);
     if (best >= FIBRAD_ISA_AVX512) ck_assert_int_ne(offered("avx512vl"), 0);

@@ -1,5 +1,5 @@
-/* test_beam.c - beam rows against exact pairs, symmetries of the problem, and themselves under every setting that must
- * not matter. SPDX-License-Identifier: MIT */
+/* test_beam.c - beam rows against exact pairs, against symmetries of the problem, and against themselves under settings
+ * that must not matter. SPDX-License-Identifier: MIT */
 #include "reference/reference.h"
 #include "scenes.h"
 #include "suite.h"
@@ -13,7 +13,8 @@ static fibrad_row beam(const struct bed *bed, uint32_t i, fibrad_beam_rule rule,
     return row;
 }
 
-/* A row with the least fixed work memory that will do, asked for step by step. Returns how much that is. */
+/* Computes a row with the least fixed work memory that suffices. Each try asks for more. Returns the size of this
+ * memory. */
 static size_t beam_in_little(const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule, fibrad_row *row) {
     fibrad_work work = work_fixed(NULL, 0);
     int status = FIBRAD_E_WORK, tries = 0;
@@ -27,7 +28,7 @@ static size_t beam_in_little(const fibrad_scene *scene, uint32_t i, const fibrad
     return size;
 }
 
-/* The same with a fixed block of so many bytes, which suffices. */
+/* Computes the same row with a fixed block of a size that suffices. */
 static void beam_in(size_t size, const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule, fibrad_row *row) {
     OWNED void *block = malloc(size);
     ck_assert_ptr_nonnull(block);
@@ -51,7 +52,7 @@ TEST(two_spheres_match_the_exact_pair) {
     }
 }
 
-/* A sphere wholly behind another of the same size in line: hidden but for nothing at all, if touching or not. */
+/* A sphere lies in line behind a larger one that hides it. It is not seen. */
 TEST(hidden_sphere_is_not_seen) {
     OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 4, 3}, {0, 0, 9, 1}});
     fibrad_row row = beam(&bed, 0, (fibrad_beam_rule){.directions = 1000}, FIBRAD_ISA_BEST);
@@ -63,7 +64,7 @@ TEST(hidden_sphere_is_not_seen) {
     row_free(&row);
 }
 
-/* Spheres of radius r about one of radius 1, in layers up to 42 r above it. */
+/* Checks rows of a sphere of radius 1 among spheres of radius r, in layers up to 42 r above it. */
 static void check_shell(uint32_t count, double r) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     for (uint32_t k = 0; k < count; k++) {
@@ -83,8 +84,8 @@ TEST(many_arcs_are_no_fallback) {
     check_shell(20000, 5e-4);
 }
 
-/* Discs far larger than the window are left to the robust method; not so hundreds of small ones before a large sphere,
- * nor what beds have. */
+/* Windows with discs far larger than the window are left to the robust method. Windows with hundreds of small discs
+ * before a large one are not, nor are windows of beds. */
 TEST(fallbacks_are_counted) {
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 4}});
     for (uint32_t k = 0; k < 1000; k++) {
@@ -127,7 +128,7 @@ TEST(raw_rows_close) {
                 }
                 if (points == 0) {
                     ck_assert_double_eq_tol(row_sum(&row) + row.escaped, 1, 1e-12);
-                } else { /* every factor is a number of points */
+                } else { /* each factor is a whole number of points */
                     double total = 144.0 * points, count = row.escaped * total;
                     for (uint32_t k = 0; k < row.length; k++) count += row.f[k] * total;
                     ck_assert_double_eq_tol(count, total, 1e-7);
@@ -139,8 +140,8 @@ TEST(raw_rows_close) {
     }
 }
 
-/* What sphere i sees along w down to depth `deepest`, by exact slicing of all discs in the order of their depths: adds
- * areas to seen[j]. */
+/* Finds what sphere i sees along w down to the depth `deepest`, by exact slicing of all discs in the order of their
+ * depths. Adds the areas to seen[j]. */
 static void slice(const struct bed *bed, uint32_t i, const double w[3], double deepest, double *seen) {
     double u[600], v[600], r[600], depth[600], area[600], rest, flat = sqrt(w[0] * w[0] + w[1] * w[1]);
     uint32_t sphere[600], n = 0;
@@ -162,7 +163,7 @@ static void slice(const struct bed *bed, uint32_t i, const double w[3], double d
     for (uint32_t k = 0; k < n; k++) seen[sphere[k]] += area[k];
 }
 
-/* Also where large spheres become known before small ones that lie in front of them. */
+/* The rows match also where large spheres become known before small ones that lie in front of them. */
 TEST(rows_match_sliced_windows) {
     struct bed beds[] = {packing(200, .05, 2, .05, 40, false),
                          packing(200, .5, 2, .3, 41, false),
@@ -185,7 +186,7 @@ TEST(rows_match_sliced_windows) {
     }
 }
 
-/* A layer of spheres leaves the box of the grid no extent, and strays are beside it. No near spheres are kept. */
+/* The box of the grid has no extent across a layer of spheres, and strays lie beside it. No near spheres are kept. */
 TEST(strays_beside_a_layer) {
     OWNED_BED bed;
     bed_init(&bed);
@@ -235,8 +236,8 @@ TEST(same_bits_in_every_instruction_set) {
         }
 }
 
-/* Whether spheres are kept near or looked up along each direction is a matter of speed: with the least memory there is
- * room for few of them. */
+/* With the least memory there is room for few near spheres, so the others are looked up along each direction. This
+ * changes the time alone, not the rows. */
 TEST(work_memory_is_a_matter_of_speed) {
     struct bed beds[] = {packing(300, .5, 1.5, .55, 3, true), packing(400, .4, 1, .05, 4, false), lattice('p', 9),
                          packing(400, .8, 1.2, .01, 5, true)};
@@ -257,7 +258,7 @@ TEST(work_memory_is_a_matter_of_speed) {
     }
 }
 
-/* The same for a sphere so large that the first shell ends within a radius of it. */
+/* The same holds for a sphere so large that the first shell ends within a radius of it. */
 TEST(work_memory_of_a_large_sphere) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 5}});
     for (int k = 0; k < 19 * 19 * 19; k++) {
@@ -278,8 +279,8 @@ TEST(work_memory_of_a_large_sphere) {
     for (int k = 0; k < 3; k++) row_free(&rows[k]);
 }
 
-/* Nor does it matter in which order the spheres come, though a window that begins with many discs of two sizes has a
- * grid chosen by their mean radius. */
+/* The order of the spheres changes nothing, although a window that begins with many discs of two sizes has a grid that
+ * their mean radius chooses. */
 TEST(order_of_spheres_changes_no_bit) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}}), turned = bed_of(0, NULL);
     for (int k = 0; k < 13 * 13 * 13; k++) {
@@ -314,8 +315,8 @@ TEST(scaling_by_powers_of_two_changes_no_bit) {
     }
 }
 
-/* Rounding of the coordinates is all that a translation or a permutation changes. A rotation changes how the directions
- * lie: two estimates of the same row, each within the rule's error. */
+/* A translation or a permutation changes nothing but the rounding of the coordinates. A rotation changes how the
+ * directions lie. This gives two estimates of the same row, each within the rule's error. */
 TEST(moved_beds_have_the_same_rows) {
     OWNED_BED bed = packing(200, .8, 1.2, .5, 5, false), moved = packing(200, .8, 1.2, .5, 5, false);
     fibrad_beam_rule rule = {.directions = 2000};
@@ -347,7 +348,7 @@ TEST(moved_beds_have_the_same_rows) {
     row_free(&row);
 }
 
-/* A periodic box is the box and its copies all around; images of one sphere share its entry. */
+/* A periodic box gives the same as the box with copies all around. Images of one sphere share its entry. */
 TEST(periodic_images_are_copies) {
     OWNED_BED bed = packing(60, .8, 1.2, .5, 9, true), copies = packing(60, .8, 1.2, .5, 9, false);
     double side = bed.period[0];
@@ -386,7 +387,7 @@ TEST(cutoff_takes_out_what_lies_beyond) {
     ck_assert_double_eq_tol(row_sum(&cut), row_sum(&row), 1e-14);
 }
 
-/* The same where spheres are looked up along each beam, for want of room in the near list. */
+/* The cutoff is kept also where spheres are looked up along each beam, because the near list has no room. */
 TEST(cutoff_along_each_beam) {
     OWNED_BED bed = strewn(300, 45), within = bed_of(0, NULL);
     for (uint32_t j = 0; j < bed.n; j++) {
@@ -415,7 +416,7 @@ TEST(cutoff_along_each_beam) {
     }
 }
 
-/* Contacts that overlap a little differ little from contacts that do not. */
+/* If contacts overlap a little, their rows differ little from those of contacts that do not. */
 TEST(overlap_changes_rows_continuously) {
     double last = -1;
     for (int step = -20; step <= 20; step++) {
@@ -428,8 +429,8 @@ TEST(overlap_changes_rows_continuously) {
     }
 }
 
-/* Of two spheres that overlap, side by side across a beam to the bit, one comes before the other's window and not the
- * other way round, as if it were a hair's breadth ahead: it sees the lens that the two discs have in common. */
+/* Two spheres that overlap lie side by side across a beam, to the bit. One of them comes before the other's window and
+ * not the other way round, as if it were a hair's breadth ahead. It sees the lens that the two discs have in common. */
 TEST(spheres_at_equal_depth_are_seen_once) {
     for (uint32_t k = 4; k < 12; k++) {
         double w[3], sum[3], lens = 0;
@@ -491,7 +492,7 @@ TEST(crowded_rows_say_what_they_need) {
     work_free_fixed(&work);
 }
 
-/* A sphere with six neighbours has six entries: room for five is too little, and room for six enough. */
+/* A sphere with six neighbours needs room for six entries. Room for five is too little. */
 TEST(a_row_needs_an_entry_for_every_sphere_seen) {
     OWNED_BED bed = lattice('p', 2);
     ck_assert_uint_eq(bed.n, 7);
@@ -510,7 +511,7 @@ TEST(a_row_needs_an_entry_for_every_sphere_seen) {
         }
 }
 
-/* The numbers of random paths are nothing to beams. */
+/* The ids that seed random paths change no beam. */
 TEST(ids_change_no_beam) {
     OWNED_BED bed = packing(150, .5, 1.5, .5, 3, true);
     fibrad_spheres spheres = spheres_of(&bed);
@@ -529,8 +530,8 @@ TEST(ids_change_no_beam) {
     free(without);
 }
 
-/* A sphere far beyond the others, as large as to be seen: only its direction and its angle matter. A small one there is
- * nothing. */
+/* A sphere far beyond the others is large enough to be seen. Then only its direction and its angle matter, not its
+ * distance. A small sphere there changes nothing. */
 TEST(strays_are_seen_however_far) {
     OWNED_BED bed = packing(60, .8, 1.2, .5, 3, false);
     fibrad_beam_rule rule = {.directions = 50};
@@ -557,7 +558,7 @@ TEST(strays_are_seen_however_far) {
     }
 }
 
-/* Where one marches outside the grid, with and without periods across. */
+/* Beams meet strays where they walk outside the grid, with and without periods across. */
 TEST(strays_are_met_on_the_way) {
     const fibrad_beam_rule rule = {.directions = 2000};
     for (int periods = 0; periods < 3; periods++) {
@@ -581,14 +582,14 @@ TEST(strays_are_met_on_the_way) {
     }
 }
 
-/* Not a sphere deeper, although beams look farther ahead at once. */
+/* Beams meet no sphere that is deeper than 100 periods, although they look farther ahead at once. */
 TEST(beams_end_after_100_periods) {
     const fibrad_beam_rule rule = {.directions = 4000};
     const double period = 3;
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}}), copies = bed_of(0, NULL);
     for (int k = 0; k < 12; k++)
         add_sphere(&bed, .2 * k, (60 + 15 * k) * cos(2.4 * k), (60 + 15 * k) * sin(2.4 * k), 1);
-    for (int image = 0; image <= 400; image++) /* 0, -1, 1, -2, 2 ... periods away */
+    for (int image = 0; image <= 400; image++) /* the image is 0, -1, 1, -2, 2 ... periods away */
         for (uint32_t j = 0; j < bed.n; j++)
             add_sphere(&copies, bed.x[j] + (image % 2 ? -1 : 1) * ((image + 1) / 2) * period, bed.y[j], bed.z[j], 1);
     double *seen = calloc(copies.n, sizeof *seen), w[3];

@@ -1,4 +1,5 @@
-/* test_bed_make.c - beds made to measure are what they claim to be. SPDX-License-Identifier: MIT */
+/* test_bed_make.c - the beds that are made for tests and benches are what they claim to be.
+ * SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <string.h>
 #include "bed/packing.h"
@@ -6,7 +7,7 @@
 
 #define PI 3.14159265358979323846
 
-/* The least distance between surfaces, nearest images if the bed is periodic. */
+/* The least distance between surfaces. If the bed is periodic, nearest images count. */
 static double least_gap(const struct bed *bed) {
     const double *const axis[3] = {bed->x, bed->y, bed->z};
     double least = INFINITY;
@@ -44,8 +45,8 @@ TEST(packing) {
     }
 }
 
-/* Spheres of a layer stay between its faces. Shaken beds do not overlap, keep their solid fraction, and have lost the
- * order of their lattice: neighbours stand at all distances. */
+/* Spheres of a layer stay between its faces. Shaken beds do not overlap and keep their solid fraction. They have lost
+ * the order of their lattice: neighbours stand at all distances. */
 TEST(layers_and_shaken_beds) {
     OWNED_BED layer, shaken;
     bed_init(&layer);
@@ -59,7 +60,7 @@ TEST(layers_and_shaken_beds) {
     ck_assert_uint_eq(shaken.n, 256);
     ck_assert_double_ge(least_gap(&shaken), 0);
     ck_assert_double_eq_tol(256 * 4 * PI / 3 / pow(shaken.period[1], 3), .4, 1e-12);
-    int near = 0; /* pairs closer than neighbours of the lattice, 2.456 */
+    int near = 0; /* pairs closer than neighbours of the lattice, which are 2.456 apart */
     for (uint32_t i = 0; i < shaken.n; i++)
         for (uint32_t j = 0; j < i; j++) {
             const double *const axis[3] = {shaken.x, shaken.y, shaken.z};
@@ -70,7 +71,7 @@ TEST(layers_and_shaken_beds) {
             }
             near += square < 2.25 * 2.25;
         }
-    ck_assert_int_ge(near, 256); /* of a fluid some 1.6 a sphere, of the lattice none */
+    ck_assert_int_ge(near, 256); /* a fluid has some 1.6 pairs a sphere, the lattice has none */
 }
 
 TEST(copies) {
@@ -91,7 +92,7 @@ TEST(fcc) {
     OWNED_BED bed;
     bed_init(&bed);
     ck_assert_int_eq(bed_make_fcc(&bed, 1, 4, 0), 0);
-    ck_assert_uint_eq(bed.n, 1 + 12 + 6 + 24 + 12); /* shells at 2, 2.83, 3.46, 4 */
+    ck_assert_uint_eq(bed.n, 1 + 12 + 6 + 24 + 12); /* the shells are at 2, 2.83, 3.46, 4 */
     ck_assert_double_eq_tol(least_gap(&bed), 0, 1e-14);
     bed_clear(&bed);
     ck_assert_int_eq(bed_make_fcc(&bed, .55, 10, 3), 0);

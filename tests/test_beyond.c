@@ -1,7 +1,7 @@
-/* test_beyond.c - what rows say of radiation whose end they do not know. SPDX-License-Identifier: MIT */
+/* test_beyond.c - what rows say of radiation if they do not know where it ends. SPDX-License-Identifier: MIT */
 #include "part_beds.h"
 
-/* A cutoff, or a known region, that holds the whole bed and its walls changes no bit. */
+/* A cutoff or a known region that holds the whole bed and its walls changes no bit. */
 LOOP_TEST(nothing_is_beyond_what_holds_all, 2) {
     struct made m;
     make_kind(&m, &kinds[_i]);
@@ -18,7 +18,7 @@ LOOP_TEST(nothing_is_beyond_what_holds_all, 2) {
                 OWNED_NAMED cut = row_by(&m.part, plain, i, method, 99);
                 ck_assert_double_eq(cut.row.beyond, 0);
                 expect_same_named(&expected, &cut, m.part.ids, kinds[_i].name);
-                if (m.part.config.bodies > 0 || occupied) { /* all lines end before the region does, or are clear */
+                if (m.part.config.bodies > 0 || occupied) { /* lines end within the region, or are clear */
                     OWNED_NAMED region = row_by(&m.part, known, i, method, 0);
                     ck_assert_double_eq(region.row.beyond, 0);
                     expect_same_named(&expected, &region, m.part.ids, kinds[_i].name);
@@ -28,7 +28,7 @@ LOOP_TEST(nothing_is_beyond_what_holds_all, 2) {
     free_made(&m);
 }
 
-/* Whether the way along w from some length on is clear of marked cells: in steps so small that they miss corners
+/* Whether the way along w from some length on is clear of marked cells. The steps are so small that they miss corners
  * alone. */
 static bool clear_by_steps(const fibrad_occupancy *o, const double from[3], const double w[3], double begin,
                            double step) {
@@ -58,10 +58,10 @@ static void draw_even(fibrad_random *random, double w[3]) {
     for (int axis = 0; axis < 3; axis++) w[axis] /= sqrt(square);
 }
 
-/* Rays of our own: all spheres tried, cells looked up by small steps. */
+/* The test follows rays of its own. It tries all spheres, and looks up cells by small steps. */
 LOOP_TEST(beyond_is_what_rays_say, 1) {
     struct made m;
-    make_kind(&m, &kinds[_i]); /* open or periodic, without walls */
+    make_kind(&m, &kinds[_i]); /* these beds are open or periodic, and have no walls */
     struct part *p = &m.part;
     OWNED fibrad_scene *scene = part_scene(p);
     const double cutoff = 4;
@@ -103,7 +103,7 @@ LOOP_TEST(beyond_is_what_rays_say, 1) {
         const double expected = beyond / (double)RAYS, sky = escaped / (double)RAYS;
         for (int method = 0; method < 4; method++) {
             const struct named_row found = row_by(p, scene, i, method, cutoff);
-            /* windows go one way each, and 600 rays are few */
+            /* each window has one direction, and 600 rays are few */
             const double tolerance = .015 + 3.5 * sqrt(fmax(expected, .01) / (method == 3 ? 600 : 1000));
             ck_assert_double_eq_tol(found.row.beyond, expected, tolerance);
             ck_assert_double_eq_tol(found.row.escaped, sky, tolerance);
@@ -115,8 +115,8 @@ LOOP_TEST(beyond_is_what_rays_say, 1) {
     free_made(&m);
 }
 
-/* The walk through the cells against small steps, which miss nothing but corners: boxes with few marks, periodic or
- * not, rays from anywhere. */
+/* The walk through the cells is compared with small steps, which miss nothing but corners. Boxes have few marks and are
+ * periodic or not. Rays begin anywhere. */
 TEST(cells_are_walked_one_by_one) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, .1}});
     OWNED_PART p = part_of(&bed, (fibrad_scene_config){0});
@@ -140,7 +140,7 @@ TEST(cells_are_walked_one_by_one) {
                 if (o.periodic[axis] && k % 4 == 0) from[axis] += 1024 * (o.high[axis] - o.low[axis]);
             }
             const double begin = 10 * fibrad_random_next(&random);
-            /* it is cut at the ball */
+            /* the ray begins at the ball */
             const uint32_t met = fibrad_surroundings_met(scene, from, w, begin, &distance);
             const bool expected = clear_by_steps(&o, from, w, begin, .003);
             ck_assert(met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND);
@@ -152,7 +152,7 @@ TEST(cells_are_walked_one_by_one) {
     ck_assert_int_lt(missed, rays / 50);
     ck_assert_int_gt(clear, rays / 4);
     ck_assert_int_lt(clear, 9 * rays / 10);
-    /* without any mark: clear where the box ends, not looked at all along where it never does */
+    /* no cell is marked: the way is clear where the box ends, and unknown along axes where it never ends */
     for (int which = 0; which < 8; which++) {
         const fibrad_occupancy none = {.high = {1, 1, 1},
                                        .cells = {2, 2, 2},
@@ -169,7 +169,7 @@ TEST(cells_are_walked_one_by_one) {
     }
 }
 
-/* What is reflected towards a sphere outside the known region is beyond. Beams see it. */
+/* Radiation is `beyond` if it is reflected towards a sphere outside the known region. Beams see this sphere. */
 TEST(reflections_end_at_the_known_region) {
     OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2.5, 1}, {2.2, 0, 1.25, 1}});
     OWNED_PART p = part_of(&bed, (fibrad_scene_config){.known_low = {-2, 0, 0}, .known_high = {1.1, 0, 0}});
@@ -192,7 +192,7 @@ TEST(reflections_end_at_the_known_region) {
     ck_assert_double_eq(clear.beyond, 0);
 }
 
-/* One sphere that flies far above a bed must not hide the sky of those at its top. */
+/* One sphere that flies far above a bed must not hide the sky from the spheres at the top. */
 TEST(a_flying_sphere_leaves_the_sky) {
     OWNED_BED bed = packing(700, .6, 1, .5, 11, true);
     const double side = bed.period[0];
@@ -212,7 +212,7 @@ TEST(a_flying_sphere_leaves_the_sky) {
         OWNED_NAMED lost = row_by(&p, untold, top, method, 5);
         ck_assert_double_gt(all.row.escaped, .3);
         ck_assert_double_lt(cut.row.escaped, all.row.escaped + .02);
-        ck_assert_double_gt(cut.row.escaped, .7 * all.row.escaped); /* not what leaves through cells of the bed */
+        ck_assert_double_gt(cut.row.escaped, .7 * all.row.escaped); /* it lacks what leaves through cells of the bed */
         ck_assert_double_lt(lost.row.escaped, .05);
         ck_assert_double_gt(lost.row.beyond, .8 * all.row.escaped);
     }
@@ -246,7 +246,7 @@ TEST(a_cutoff_leaves_the_sky_of_a_flat_bed) {
     bed_free(&bed);
 }
 
-/* The known region ends half way up a can: a lone sphere sends a fraction there that is a solid angle over 4 pi. */
+/* The known region ends half way up a can. A lone sphere sends a fraction there that is a solid angle over 4 pi. */
 TEST(a_known_region_ends_in_a_can) {
     const fibrad_body body[] = {plane_at(2, 0, -40), plane_at(2, 1, 40), cylinder_at(0, 0, 10)};
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 35, 1}});
@@ -256,15 +256,14 @@ TEST(a_known_region_ends_in_a_can) {
     const double share = .5 * (1 - 20 / sqrt(500)), below = .5 * (1 - 40 / sqrt(1700));
     for (int method = 0; method < METHODS; method++) {
         OWNED_NAMED row = row_by(&p, scene, 0, method, 0);
-        const double tolerance = method < 3 ? 6e-3 : method == 3 ? .02 : 1; /* of exchange: sums alone */
+        const double tolerance = method < 3 ? 6e-3 : method == 3 ? .02 : 1; /* only sums of exchange rows are checked */
         ck_assert_double_eq_tol(row.row.beyond, share, tolerance);
         ck_assert_double_eq_tol(row.row.body[0], below, tolerance);
-        ck_assert_double_eq(row.row.body[1],
-                            0); /* the wall and the sphere above cannot be told from what may be there */
+        ck_assert_double_eq(row.row.body[1], 0); /* what may be there could hide the wall and the sphere above */
         ck_assert_double_gt(row.row.beyond, share / 2);
         ck_assert_double_eq(row.row.escaped, 0);
     }
-    /* an occupancy that says that nothing is there gives the wall back */
+    /* with an occupancy that says that nothing is there, the row has the wall again */
     const fibrad_occupancy none = {
         .low = {-20, -20, -60}, .high = {20, 20, 60}, .cells = {1, 1, 1}, .mark = (const uint64_t[]){0}};
     fibrad_scene_config config = p.config;
@@ -275,7 +274,7 @@ TEST(a_known_region_ends_in_a_can) {
         ck_assert_double_eq(row.row.beyond, 0);
         ck_assert_double_gt(row.row.body[1], 0);
     }
-    /* of a sphere beyond the region, all is beyond that meets no wall on the way out */
+    /* the sphere lies beyond the region: all is `beyond` that meets no wall on the way out */
     p.config = config;
     OWNED_NAMED row = row_by(&p, scene, 1, 0, 0);
     ck_assert_double_gt(row.row.beyond, .9);

@@ -1,5 +1,5 @@
-/* test_body_rows.c - rows of walls: closed forms, grey plates, paths followed by other means, balances.
- * SPDX-License-Identifier: MIT */
+/* test_body_rows.c - rows of walls against closed forms, grey plates and paths that are followed by other means;
+ * balances of rows. SPDX-License-Identifier: MIT */
 #include "host_owned.h"
 #include "rectangles.h"
 #include "scenes.h"
@@ -27,7 +27,7 @@ static double between(const fibrad_bed_factors *f, uint32_t b, uint32_t c) {
     return f->matrix.body_body[b * f->matrix.bodies + c];
 }
 
-/* A e of a sphere, of a body; emissivities NULL: 1. */
+/* Area times emissivity of a sphere, and of a body. If the emissivities are NULL, they are 1. */
 static double emits(const struct bed *bed, const double *e, uint32_t i) {
     return 4 * PI * bed->r[i] * bed->r[i] * (e ? e[i] : 1);
 }
@@ -36,7 +36,8 @@ static double body_emits(const fibrad_bed_factors *f, const double *e, uint32_t 
     return f->body_area[b] * (e ? e[b] : 1);
 }
 
-/* Rows of bodies add up to 1 with what they send to spheres, as those of spheres do, and are reciprocal. */
+/* Checks that rows of bodies add up to 1 with what they send to spheres, as those of spheres do, and that they are
+ * reciprocal. */
 static void check_balance(const struct bed *bed, const fibrad_bed_factors *f, const double *e, const double *body_e) {
     const fibrad_factors *m = &f->matrix;
     for (uint32_t i = 0; i < m->n; i++)
@@ -62,7 +63,7 @@ static void check_balance(const struct bed *bed, const fibrad_bed_factors *f, co
 
 /* ---- closed forms: J. R. Howell, A catalog of radiation heat transfer configuration factors ---------------------- */
 
-/* C-41: discs of radius r at distance h. */
+/* The view factor C-41 between discs of radius r at the distance h. */
 static double discs(double r, double h) {
     const double x = 2 + h * h / (r * r);
     return (x - sqrt(x * x - 4)) / 2;
@@ -70,7 +71,7 @@ static double discs(double r, double h) {
 
 static const fibrad_beam_rule fine = {.tolerance = 3e-4};
 
-/* What sides of a box exchange is known but for what spheres take of it: here nothing. */
+/* The exchange between the sides of a box is known, except for what spheres take. Here spheres take nothing. */
 TEST(empty_box) {
     struct bed none = bed_of(0, NULL);
     const double size[3] = {1, 1.5, .6};
@@ -82,7 +83,7 @@ TEST(empty_box) {
     for (uint32_t b = 0; b < 6; b++) {
         const uint32_t axis = b / 2;
         for (uint32_t c = 0; c < 6; c++) {
-            const uint32_t along = (6 - axis - c / 2) % 3; /* of the edge in common, where there is one */
+            const uint32_t along = (6 - axis - c / 2) % 3; /* the axis of the common edge, if there is one */
             const double exact = c == b          ? 0
                                  : c / 2 == axis ? opposite(size[(axis + 1) % 3], size[(axis + 2) % 3], size[axis])
                                                  : adjacent(size[along], size[c / 2], size[axis]);
@@ -107,7 +108,8 @@ TEST(empty_cylinder) {
     ck_assert_double_eq_tol(between(f, 0, 0), 1 - 2 * side_end, 4e-4);
 }
 
-/* Walls missing: what they would get escapes. Periods: as a box without end. Walls without bounds: no row of theirs. */
+/* If walls are missing, what they would get escapes. With periods the box has no end. Walls without bounds have no
+ * row. */
 TEST(open_and_periodic) {
     struct bed none = bed_of(0, NULL);
     const fibrad_body box[] = {plane_at(0, 0, 0), plane_at(0, 1, 1), plane_at(1, 0, 0), plane_at(1, 1, 1),
@@ -145,7 +147,8 @@ TEST(open_and_periodic) {
     fibrad_bed_free(f);
 }
 
-/* Between grey plates D_12 = e_2/(1 - (1 - e_1)(1 - e_2)), and D_11 is that with e_1 for what plate 2 reflects. */
+/* Between grey plates D_12 = e_2/(1 - (1 - e_1)(1 - e_2)). D_11 is that with e_1 in place of e_2, times what plate 2
+ * reflects. */
 TEST(grey_plates) {
     struct bed plates = bed_of(0, NULL);
     plates.period[0] = plates.period[1] = 1;
@@ -180,7 +183,7 @@ static double draw(uint64_t *state) { /* xorshift64* */
     return (double)((*state * 0x2545F4914F6CDD1Du) >> 11) * 0x1p-53;
 }
 
-/* `kind` 0: box, 1: cylinder with ends, 2: floor and sides, open at the top. */
+/* Makes a room. `kind` 0: box, 1: cylinder with ends, 2: floor and sides, open at the top. */
 static struct room make_room(int kind, uint32_t n, uint64_t seed) {
     uint64_t state = 77 + 1000 * seed;
     struct room room = {.bed = bed_of(0, NULL), .radius = kind == 1 ? 3 : INFINITY};
@@ -219,7 +222,7 @@ static void normal_of(const fibrad_body *wall, const double o[3], double n[3]) {
         n[wall->plane.axis] = wall->plane.upper ? -1 : 1;
 }
 
-/* The wall that a ray meets and how far away it is, -1 and infinity if none. */
+/* The wall that a ray meets, and its distance. If the ray meets none: -1 and infinity. */
 static int wall_ahead(const struct room *room, const double o[3], const double w[3], double *distance) {
     int met = -1;
     *distance = INFINITY;
@@ -240,7 +243,8 @@ static int wall_ahead(const struct room *room, const double o[3], const double w
     return -1;
 }
 
-/* One path from a wall: adds to got[] what walls absorb, [walls] what escapes, [walls + 1] what spheres absorb. */
+/* Follows one path from a wall. Adds to got[] what walls absorb, to got[walls] what escapes, and to got[walls + 1] what
+ * spheres absorb. */
 static void follow(const struct room *room, uint32_t b, uint64_t *state, double *got) {
     const fibrad_body *from = &room->wall[b];
     double o[3], n[3], w[3];
@@ -284,8 +288,8 @@ static void follow(const struct room *room, uint32_t b, uint64_t *state, double 
     }
 }
 
-/* Grey rooms with few spheres and with many: rows of walls are those of plain paths within the noise of these and the
- * error stated; the balances hold; the correction is small. */
+/* Grey rooms have few or many spheres. Rows of walls are those of plain paths within the noise of these and the stated
+ * error. The balances hold, and the correction is small. */
 LOOP_TEST(against_plain_walls, 6) {
     enum { PATHS = 150000 };
     OWNED_BY(room_free) struct room room = make_room(_i % 3, _i < 3 ? 3 : 25, (uint64_t)_i);
@@ -315,8 +319,8 @@ LOOP_TEST(against_plain_walls, 6) {
     }
 }
 
-/* A bed that fills the space between black plates: what the plates see of each other is next to nothing, and what
- * spheres leave over is no measure of it. */
+/* A bed fills the space between black plates. The plates see next to nothing of each other. This cannot be told from
+ * the power that spheres leave over. */
 TEST(plates_and_a_dense_bed) {
     OWNED_BED bed = packing(400, .5, 1, .55, 4, true);
     const double top = bed.period[2];
@@ -327,20 +331,20 @@ TEST(plates_and_a_dense_bed) {
     check_balance(&bed, f, NULL, NULL);
     ck_assert_double_lt(between(f, 0, 1), 1e-3);
     ck_assert_double_eq(between(f, 0, 0), 0);
-    ck_assert_double_lt(f->matrix.body_correction, 1e-2); /* plates cut spheres, by half a radius the most */
+    ck_assert_double_lt(f->matrix.body_correction, 1e-2); /* plates cut spheres by half a radius at most */
     OWNED_FACTORS *alone = NULL;
     fibrad_scene_config whole = config;
     const fibrad_spheres spheres = spheres_of(&bed);
     memcpy(whole.period, bed.period, sizeof whole.period);
     ck_assert_int_eq(fibrad_view_factors(&whole, &spheres, NULL, NULL, &alone), FIBRAD_OK);
     ck_assert_ptr_null(alone->matrix.body_body);
-    for (uint32_t i = 0; i < bed.n; i++) { /* what spheres exchange is the same within its error */
+    for (uint32_t i = 0; i < bed.n; i++) { /* the factors between spheres are the same within their error */
         fibrad_row with = matrix_row(&f->matrix, i), without = matrix_row(&alone->matrix, i);
         ck_assert_double_lt(row_distance(&with, &without), 2 * alone->matrix.error[i] + 1e-6);
     }
 }
 
-/* Two ends of a flat cylinder see little but each other, and so do plates: sums that add up all the same. */
+/* The two ends of a flat cylinder see little but each other, and so do plates. The sums still add up. */
 TEST(flat_rooms) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{1, 2, .02, .015}, {-9, 4, .021, .019}});
     const fibrad_body tube[3] = {cylinder_at(0, 0, 80), plane_at(2, 0, 0), plane_at(2, 1, .04)};
@@ -356,8 +360,8 @@ TEST(flat_rooms) {
     fibrad_bed_free(f);
 }
 
-/* Reflectors have empty rows, and nothing goes to them; bodies in another order have the same rows but for noise, and a
- * room laid on its side too. */
+/* Reflectors have empty rows, and nothing goes to them. Bodies in another order have the same rows but for noise, and
+ * so has a room that is laid on its side. */
 TEST(other_orders_and_axes) {
     OWNED_BY(room_free) struct room room = make_room(0, 12, 5);
     room.wall_e[3] = 0, room.e[2] = 0;
@@ -374,7 +378,7 @@ TEST(other_orders_and_axes) {
     double wall_e[6];
     for (uint32_t i = 0; i < room.bed.n; i++)
         add_sphere(&turned, room.bed.z[i], room.bed.y[i], room.bed.x[i], room.bed.r[i]);
-    for (uint32_t b = 0; b < 6; b++) { /* body b is now 5 - b, x is z */
+    for (uint32_t b = 0; b < 6; b++) { /* body b becomes 5 - b, and x becomes z */
         wall[5 - b] = room.wall[b];
         wall[5 - b].plane.axis = 2 - room.wall[b].plane.axis;
         wall_e[5 - b] = room.wall_e[b];
@@ -391,7 +395,7 @@ TEST(other_orders_and_axes) {
     }
 }
 
-/* Errors asked for are kept; raw rows are what the paths say. */
+/* A tolerance that is asked for is kept, and raw rows are what the paths say. */
 TEST(tolerance_and_raw_rows) {
     OWNED_BY(room_free) struct room room = make_room(0, 6, 9);
     const fibrad_scene_config config = {.body = room.wall, .bodies = 6};
@@ -413,7 +417,7 @@ TEST(tolerance_and_raw_rows) {
     }
 }
 
-/* The same bits for any number of threads and any instruction set. */
+/* The rows have the same bits for any number of threads and any instruction set. */
 TEST(same_bits_of_bodies) {
     OWNED_BY(room_free) struct room room = make_room(1, 12, 3);
     const fibrad_exchange_rule rule = {.emissivity = room.e, .body_emissivity = room.wall_e};
@@ -483,7 +487,8 @@ TEST(bad_arguments_of_bodies) {
     free(endless);
 }
 
-/* Paths end in an opening as they do at a black plane: rows of spheres and bodies, and what is carried. */
+/* Paths end in an opening as they do at a black plane. This holds for rows of spheres and bodies, and for what is
+ * carried. */
 TEST(paths_end_in_openings) {
     OWNED_BY(room_free) struct room room = make_room(2, 12, 5);
     room.wall[5] = plane_at(2, 1, room.opening.at), room.wall_e[5] = 1;
@@ -519,8 +524,8 @@ TEST(paths_end_in_openings) {
     free(scene[0]), free(scene[1]);
 }
 
-/* A sphere in a box, and rows of walls that send all to it: so it can give each wall but its share of its own area, and
- * no matrix is reciprocal and closed. Rows of walls stay as they are, and that is said. */
+/* A sphere stands in a box, and the rows of walls send all to it. But the sphere can give each wall only its share of
+ * its own area. So no matrix is reciprocal and closed. Rows of walls stay as they are, and the result says so. */
 TEST(rows_that_contradict_each_other) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     fibrad_body wall[6];
@@ -532,7 +537,7 @@ TEST(rows_that_contradict_each_other) {
     OWNED_ROWS rows = {.memory = memory_growing()};
     fibrad_row row = {.rows = &rows};
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &row), FIBRAD_OK);
-    for (int closed = 0; closed < 2; closed++) { /* what walls send to each other is what is left over, or nothing */
+    for (int closed = 0; closed < 2; closed++) { /* walls send each other what is left over, or nothing */
         const fibrad_matrix_rule rule = {.body_row = body_row};
         const double left = 1 - 4 * PI / 6 / 16, between = closed ? left / 5 : 0;
         for (int b = 0; b < 36; b++) body_row[b / 6].body[b % 6] = b % 7 == 0 ? 0 : between;
@@ -558,8 +563,8 @@ TEST(rows_that_contradict_each_other) {
     }
 }
 
-/* A square of two triangles and its images above and below it: each side sees what faces it, of its own triangle,
- * too. */
+/* A square of two triangles has images above and below it. Each side sees the sides that face it, also that of its own
+ * triangle. */
 TEST(a_plate_and_its_images) {
     enum { EDGE = 4 };
     OWNED struct mesh *mesh = mesh_new();
@@ -575,8 +580,8 @@ TEST(a_plate_and_its_images) {
     fibrad_bed_free(f);
 }
 
-/* In a periodic box triangles that lie across it face their images; what spheres send to them, by beams, and what they
- * send to spheres, by paths, are the same. */
+/* In a periodic box, triangles that lie across it face their images. What spheres send to them by beams equals what
+ * they send to spheres by paths. */
 TEST(triangles_face_their_images) {
     OWNED struct mesh *mesh = mesh_new();
     OWNED_BED bed = bed_of(3, (const double[][4]){{2, 2, 3, .9}, {7, 3, 6, .7}, {4, 7, 1, .8}});

@@ -1,5 +1,5 @@
-/* test_cast.c - rows by rays against exact pairs, the published table, every ray followed by hand, beams, and
- * themselves under every setting that must not matter. SPDX-License-Identifier: MIT */
+/* test_cast.c - rows by rays against exact pairs, against the published table, against rays followed by hand, against
+ * beams, and against themselves under settings that must not matter. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 
 #include "base/random.h"
@@ -19,7 +19,7 @@ static fibrad_row cast(const struct bed *bed, uint32_t i, fibrad_cast_rule rule,
     return row;
 }
 
-/* Two spheres in direction number k of 24 spread over the sphere. */
+/* Makes two spheres, one in direction k of 24 from the other. */
 static struct bed pair(double r1, double r2, double distance, uint32_t k) {
     double w[3];
     ck_assert_int_eq(fibrad_direction(k, 24, w), FIBRAD_OK);
@@ -48,7 +48,8 @@ TEST(two_spheres_match_the_exact_pair) {
         }
 }
 
-/* Unit spheres H apart: error at 200,000 rays, mean length and angle of the rays, as docs/reproduction.md has them. */
+/* Unit spheres are H apart. The error at 200,000 rays, and the mean length and angle of the rays, are those of
+ * docs/reproduction.md. */
 TEST(pebble_table) {
     static const struct {
         double h, error, length, angle;
@@ -79,7 +80,7 @@ TEST(pebble_table) {
     }
 }
 
-/* Ray number k from the unit sphere: origin and direction. */
+/* The origin and the direction of ray k of the unit sphere. */
 static void ray(uint32_t i, uint32_t k, const fibrad_cast_rule *rule, double o[3], double w[3]) {
     const fibrad_random stream = {fibrad_mix(fibrad_random_ahead((fibrad_random){rule->seed}, i))};
     double at[4], g = 1.2;
@@ -90,7 +91,7 @@ static void ray(uint32_t i, uint32_t k, const fibrad_cast_rule *rule, double o[3
     }
     double z = 1 - 2 * fmod(at[0], 1), ring = sqrt(1 - z * z), azimuth = 2 * PI * at[1], about = 2 * PI * at[3];
     double sine = sqrt(fmod(at[2], 1)), cosine = sqrt(1 - fmod(at[2], 1));
-    /* a turn counts from its middle */
+    /* turns are counted from their middle */
     double c = -cos(azimuth), s = -sin(azimuth), p = -sine * cos(about), q = -sine * sin(about);
     o[0] = ring * c, o[1] = ring * s, o[2] = z;
     w[0] = -p * s - q * z * c + cosine * o[0];
@@ -98,7 +99,8 @@ static void ray(uint32_t i, uint32_t k, const fibrad_cast_rule *rule, double o[3
     w[2] = q * ring + cosine * o[2];
 }
 
-/* The sphere that a ray from sphere i meets first by the distance along it, of all the spheres; n if none. */
+/* The sphere, among all spheres, that a ray from sphere i meets first by the distance along the ray. n: the ray meets
+ * none. */
 static uint32_t first_met(const struct bed *bed, uint32_t i, const double o[3], const double w[3]) {
     uint32_t first = bed->n;
     double nearest = INFINITY, least = INFINITY;
@@ -138,7 +140,7 @@ static void check_every_ray(const struct bed *bed, int random) {
     }
 }
 
-/* Radii from 1 to 10; then the same spheres swollen until they overlap. */
+/* The radii go from 1 to 10. Then the same spheres swell until they overlap. */
 TEST(rays_meet_the_first_sphere) {
     OWNED_BED bed = packing(400, .2, 2, .5, 11, false);
     check_every_ray(&bed, 0);
@@ -147,8 +149,9 @@ TEST(rays_meet_the_first_sphere) {
     check_every_ray(&bed, 0);
 }
 
-/* Of two spheres that overlap by almost a radius, a ray may meet first the one that is deeper, and perhaps not looked
- * up yet. How far shells reach hangs on the scene as a whole, here on a speck behind; what is met must not. */
+/* Of two spheres that overlap by almost a radius, a ray may meet first the one that is deeper, which has perhaps not
+ * been looked up yet. The reach of the shells depends on the whole scene, here on a speck behind. What the ray meets
+ * must not depend on it. */
 TEST(deeper_spheres_are_met_first) {
     for (double depth = 12; depth < 60; depth += .31) {
         double f[2][2];
@@ -227,7 +230,8 @@ TEST(same_bits_in_every_instruction_set) {
         }
 }
 
-/* Whether spheres are kept near, or looked up along each ray for want of room; overlapping ones included. */
+/* Spheres are kept near, or they are looked up along each ray for want of room. The rows are the same, also if spheres
+ * overlap. */
 TEST(room_is_a_matter_of_speed) {
     struct bed beds[] = {packing(300, .5, 1.5, .55, 3, true), packing(400, .4, 1, .05, 4, false),
                          packing(400, .2, 2, .5, 11, false), lattice('p', 9)};
@@ -270,7 +274,7 @@ TEST(scaling_by_powers_of_two_changes_no_bit) {
     }
 }
 
-/* However far the shells reach, which again hangs on a speck. */
+/* Rays end after 100 periods however far the shells reach, which again depends on a speck. */
 TEST(rays_end_after_100_periods) {
     double escaped = NAN;
     for (int speck = 0; speck < 5; speck++) {
@@ -293,7 +297,7 @@ TEST(cutoff) {
     ck_assert_uint_eq(near.length, 1);
     ck_assert_double_eq(near.f[0], all.f[0]);
     ck_assert_uint_eq(none.length, 0);
-    ck_assert_double_eq(none.beyond, 1); /* where the other sphere is */
+    ck_assert_double_eq(none.beyond, 1); /* the other sphere is there */
 }
 
 TEST(refusals_and_capacities) {
@@ -318,7 +322,7 @@ TEST(refusals_and_capacities) {
                      FIBRAD_E_ARGUMENT);
     ck_assert_uint_eq(rows.count, 0);
 
-    /* in a collection: the same row */
+    /* a row in a collection is the same */
     fibrad_row added = {.rows = &rows};
     ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, NULL, &added, NULL), FIBRAD_OK);
     ck_assert_uint_eq(added.length, row.length);
@@ -328,7 +332,7 @@ TEST(refusals_and_capacities) {
     ck_assert(same_bits(&row, &kept));
     work_free(&work);
 
-    /* too little work memory: what it asks for makes it succeed, with the same bits */
+    /* there is too little work memory: with the size that it asks for the call succeeds, with the same bits */
     OWNED_ROW again = row_of(200);
     void *block = block_of(64);
     work = work_fixed(block, 64);

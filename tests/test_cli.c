@@ -61,7 +61,7 @@ TEST(same_bytes_for_any_threads) {
     }
 }
 
-/* In a box rows add up to 1 with the walls, nothing escapes, and the walls' own rows are reciprocal. */
+/* In a box the rows add up to 1 with the walls, nothing escapes, and the walls' own rows are reciprocal. */
 TEST(walls) {
     enum { SPHERES = 2000, WALLS = 6 };
     static double sum[SPHERES], to[SPHERES][WALLS], wall_sum[WALLS], between[WALLS][WALLS];
@@ -106,7 +106,7 @@ TEST(walls) {
         mean += to[i][4] / SPHERES;
     }
     ck_assert_double_eq_tol(json_of(in_folder("F.json"), "wall_zmin_F"), mean, 1e-13);
-    SUCCEED("bed", PERIODIC, "--directions", "50", "--wall", "auto"); /* deep beds see all of a wall that has no end */
+    SUCCEED("bed", PERIODIC, "--directions", "50", "--wall", "auto"); /* a deep bed sees all of an endless wall */
     ck_assert_double_eq_tol(value_of("wall_zmin_F") * SPHERES * acos(-1), 12 * 12, .02);
     ck_assert_double_eq_tol(value_of("wall_zmax_F") * SPHERES * acos(-1), 12 * 12, .02);
     SUCCEED("bed", MONO, "--directions", "13", "--wall", "cylinder:6,6,9,zmin,zmax=open", "--targets", "1-9");
@@ -115,7 +115,7 @@ TEST(walls) {
     expect_message(MONO ":", "lies beyond the wall zmin");
 }
 
-/* Number `column`, from 0, of the line of a .csv that ends so; NAN: there is none. */
+/* Number `column`, counted from 0, of the line of a .csv that has a given end. NAN: there is no such line. */
 static double number_of_line(const char *path, const char *end, int column) {
     char *text = read_file(path), *at = strstr(text, end);
     double number = NAN;
@@ -128,7 +128,7 @@ static double number_of_line(const char *path, const char *end, int column) {
     return number;
 }
 
-/* A box without a lid against one whose lid is black and as hot as the surroundings. */
+/* A box without a lid is compared with one whose lid is black and as hot as the surroundings. */
 TEST(a_box_without_a_lid) {
     const char *open = in_folder("open.csv"), *closed = in_folder("closed.csv"), *json = in_folder("open.json");
     char lid[100];
@@ -152,7 +152,7 @@ TEST(a_box_without_a_lid) {
 }
 
 /* The rows of a target list are those of --raw, and the matrix market file holds the same as the CSV file. */
-/* The same rays whoever follows them; other seeds, other rays. */
+/* Rays are the same for any number of threads. Other seeds give other rays. */
 TEST(rays) {
     static const char *const methods[] = {"cast", "mc"};
     for (int m = 0; m < 2; ++m) {
@@ -173,7 +173,7 @@ TEST(rays) {
     }
 }
 
-/* A file of the test's folder, whatever its bytes. */
+/* Reads a file of the test's folder, which may have any bytes. */
 static char *read_bytes(const char *name, size_t *size) {
     struct stat there;
     ck_assert_int_eq(stat(in_folder(name), &there), 0);
@@ -181,7 +181,7 @@ static char *read_bytes(const char *name, size_t *size) {
     return read_file(in_folder(name));
 }
 
-/* What is kept in files is written as what is kept in memory, and nothing else is left. */
+/* Rows kept in files are written as rows kept in memory are, and no other file remains. */
 TEST(rows_in_files) {
     static const char *const names[2][3] = {{"a.csv", "a.npz", "a.json"}, {"b.csv", "b.npz", "b.json"}};
     const char *scratch = in_folder("scratch");
@@ -207,8 +207,8 @@ TEST(rows_in_files) {
     ck_assert_int_eq(remove_files(0), 0);
 }
 
-/* A line of this set runs nearly along the layers of the bed. There a circle meets so many images that it is followed
- * in stretches. */
+/* A line of this set of directions runs nearly along the layers of the bed. There a circle meets so many images that it
+ * is followed in stretches. */
 TEST(a_line_along_layers) {
     SUCCEED("bed", PERIODIC, "--directions", "362");
     ck_assert_double_eq(value_of("directions"), 362);
@@ -244,7 +244,7 @@ TEST(targets_and_formats) {
     ck_assert_str_eq(entry, "\n");
 }
 
-/* Two spheres seen through periodic faces, in the open, from a CSV file and from standard input. */
+/* Two spheres are seen through periodic faces and in the open, from a CSV file and from standard input. */
 TEST(frames_periods_and_ids) {
     const char *dump = write_file("two.dump", FRAME("0", "ff ff ff", "1 1 4 4 70\n1 7 4 4 5\n")
                                                   FRAME("1", "pp ff ff", "1 1 4 4 70\n1 7 4 4 5\n"));
@@ -253,7 +253,7 @@ TEST(frames_periods_and_ids) {
     ck_assert_double_eq(value_of("nonzeros"), 2);
     SUCCEED("bed", dump);
     const double across = value_of("row_sum_min");
-    ck_assert_double_eq_tol(across, 0.0755868 + 0.0070444, 1e-3); /* across the face, and within the box */
+    ck_assert_double_eq_tol(across, 0.0755868 + 0.0070444, 1e-3); /* seen across the face, and within the box */
     SUCCEED("bed", dump, "--frame", "0", "--periodic", "8,0,0");
     ck_assert_double_eq(value_of("row_sum_min"), across);
     SUCCEED("bed", dump, "--periodic", "none", "--targets", "70", "-o", in_folder("ids.csv"));
@@ -266,7 +266,7 @@ TEST(frames_periods_and_ids) {
     input = "/dev/null";
 }
 
-/* The lines i,T_K,q_W of a file: how many, their sum and the largest q, and one of them. */
+/* Reads the lines i,T_K,q_W of a file: their number, their sum, the largest q, and the line of one body. */
 static int read_powers(const char *path, double *sum, double *largest, long wanted, double *temperature,
                        double *power) {
     char *text = read_file(path), *line = strchr(text, '\n');
@@ -284,7 +284,8 @@ static int read_powers(const char *path, double *sum, double *largest, long want
     return count;
 }
 
-/* Temperatures of spheres and walls whose powers are given; why there are none. */
+/* The powers of spheres and walls are given, and their temperatures are found. If there are none, the program says
+ * why. */
 TEST(temperatures) {
     const char *file = write_file("warm.csv", "x,y,z,r,eps,type\n0,0,0,1,.5,1\n3,0,0,1,.8,2\n0,2.5,0,.7,0,1\n");
     const char *out = in_folder("q.csv");
@@ -297,7 +298,7 @@ TEST(temperatures) {
     read_powers(out, &sum, &largest, 2, &t, &q);
     ck_assert(isnan(t) && q == 0);
 
-    /* millimetres: areas, and powers with them, are 1e6 times smaller */
+    /* in millimetres, areas and the powers in proportion to them are 1e6 times smaller */
     double warm[2];
     for (int k = 0; k < 2; ++k) {
         SUCCEED("heat", file, "--emissivity", ".5", "--power", k ? "4e-3" : "4e3", "--length-unit", k ? "mm" : "m",
@@ -312,7 +313,7 @@ TEST(temperatures) {
     }
     ck_assert_double_eq_tol(warm[0], warm[1], 1e-9 * warm[0]);
 
-    /* emissivities by table: at 600 K .5, whatever the type */
+    /* emissivities come from a table: at 600 K they are .5, whatever the type */
     const char *table = write_file("eps.csv", "# K\nT_K,emissivity\n500,.6\n\n700;.4\n");
     char by_type[300], all[300];
     snprintf(all, sizeof all, "@%s", table);
@@ -354,7 +355,7 @@ TEST(temperatures) {
     expect_message(file, "sphere 2 has emissivity 0 and cannot give off 4 W");
 }
 
-/* Root mean square difference of T^4 of the spheres of two .csv, over that of the first. */
+/* Root mean square difference between T^4 of the spheres of two .csv, over that of the first. */
 static double emission_difference(const char *path, const char *other) {
     char *text[2] = {read_file(path), read_file(other)}, *line[2];
     double difference = 0, all = 0;
@@ -371,7 +372,7 @@ static double emission_difference(const char *path, const char *other) {
     return sqrt(difference / all);
 }
 
-/* --error holds for temperatures that are found, too, of spheres and walls. */
+/* --error also holds for temperatures of spheres and walls that are found. */
 TEST(temperatures_to_an_error) {
     enum { SIDE = 3 };
     char bed[2000] = "x,y,z,r\n";
@@ -379,7 +380,7 @@ TEST(temperatures_to_an_error) {
         snprintf(bed + strlen(bed), 60, "%d,%d,%d,%g\n", 2 * (i % 3), 2 * (i / 3 % 3), 2 * (i / 9), .95 - .2 * (i % 4));
     const char *file = write_file("found.csv", bed), *out = in_folder("found.out.csv"), *fine = in_folder("fine.csv");
     double sum, largest, wall[2], q;
-    for (int k = 0; k < 4; ++k) { /* finely, then to an error; open, then in a box */
+    for (int k = 0; k < 4; ++k) { /* first finely, then to an error; open, then in a box */
         const char *to = k % 2 ? out : fine;
         SUCCEED("heat", file, "--length-unit", "m", "--emissivity", ".4", "--power", "4000", "--ambient=300",
                 k % 2 ? "--error=.004" : "--directions=1500", k % 2 ? "--threads=2" : "--patches=384", "-o", to,
@@ -407,7 +408,7 @@ TEST(powers) {
     ck_assert_double_le(fabs(value_of("balance_of_emission")), 1e-12);
     ck_assert_double_eq(value_of("spheres"), 3);
 
-    /* walls are -2, -3 in the order given; the bytes are the same for any threads */
+    /* walls are -2, -3 in the order given; the bytes are the same for any number of threads */
     char *text[2];
     for (int k = 0; k < 2; ++k) {
         SUCCEED("heat", file, "--emissivity", "eps", "--temperature", "T", "--wall", "zmax=3,zmin=-1,cylinder:0,0,5",
@@ -416,7 +417,7 @@ TEST(powers) {
         text[k] = read_file(out);
     }
     ck_assert_str_eq(text[0], text[1]);
-    ck_assert_ptr_null(strstr(text[0], "surroundings")); /* closed: nothing gets there */
+    ck_assert_ptr_null(strstr(text[0], "surroundings")); /* the room is closed: the surroundings get nothing */
     ck_assert_ptr_nonnull(strstr(text[0], ",cylinder\n"));
     ck_assert_int_eq(read_powers(out, &sum, &largest, -2, &t, &q), 6);
     ck_assert_double_eq(t, 700);
@@ -426,7 +427,7 @@ TEST(powers) {
     ck_assert_double_eq(t, 500);
     free(text[0]), free(text[1]);
 
-    /* all at one temperature: figures are relative to what is emitted */
+    /* all have one temperature: figures are relative to what is emitted */
     SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "500", "--wall", "box", "--wall-temperature", "500",
             "--wall-emissivity", ".2", "-o", out);
     read_powers(out, &sum, &largest, 0, &t, &q);
@@ -435,7 +436,7 @@ TEST(powers) {
     ck_assert_double_le(value_of("error_of_emission"), 1e-9);
     ck_assert_double_eq_tol(value_of("emitted_W"), .3 * 5.670374419e-8 * pow(500, 4) * 4 * acos(-1) * 2.49, 1);
     SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "500", "--wall", "box", "--wall-temperature", "500",
-            "--error", ".01", "--length-unit", "m"); /* which powers of nothing but noise do reach */
+            "--error", ".01", "--length-unit", "m"); /* powers that are nothing but noise reach the error, too */
     ck_assert_str_eq(said, "");
 
     SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "T", "--ambient", "0", "--error", "0.01", "-o",
@@ -444,7 +445,7 @@ TEST(powers) {
     OWNED char *vtp = read_file(in_folder("q.vtp"));
     ck_assert(strstr(vtp, "Name=\"power_W\"") && strstr(vtp, "Name=\"temperature_K\"") && strstr(vtp, "</VTKFile>"));
     SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "T", "--ambient", "0", "--model", "spheres");
-    ck_assert_double_eq(value_of("directions"), 112); /* fewer where patches err more */
+    ck_assert_double_eq(value_of("directions"), 112); /* fewer where errors of patches are larger */
     SUCCEED("heat", file, "--emissivity", ".5", "--temperature", "T", "--ambient", "0");
     ck_assert_double_eq(value_of("directions"), 168);
     ck_assert_int_eq(RUN("heat", file, "--emissivity", "eps", "--temperature", "missing", "--ambient", "0"), 3);
@@ -453,8 +454,8 @@ TEST(powers) {
     expect_message(cold, "the temperature in kelvins is -1; it must be within 0 and 1e+09");
 }
 
-/* Rows of the .csv close with surroundings (-1) and walls (-2, -3, ...) and are reciprocal with areas times
- * emissivity; the bytes do not depend on the number of threads. */
+/* Rows of the .csv close with the surroundings (-1) and walls (-2, -3, ...). They are reciprocal with areas times
+ * emissivity. The bytes do not depend on the number of threads. */
 TEST(exchange_factors) {
     enum { N = 12 };
     static double d[N][N];
@@ -480,7 +481,7 @@ TEST(exchange_factors) {
         int i, j;
         double factor;
         ck_assert_int_eq(sscanf(line, "%d,%d,%lg", &i, &j, &factor), 3);
-        ck_assert(j != -3 && i >= -3 && j >= -2); /* the upper wall takes nothing, but -3 reflects */
+        ck_assert(j != -3 && i >= -3 && j >= -2); /* wall -3 reflects all, so nothing goes to it */
         if (i < 0) continue;
         sum[i] += factor;
         if (j >= 0) d[i][j] = factor;
@@ -499,7 +500,7 @@ TEST(exchange_factors) {
     remove_files(0);
 }
 
-/* One sphere a cell: the simple cubic lattice, black; any number of threads. */
+/* The simple cubic lattice has one sphere in each cell, here a black one. The number of threads changes nothing. */
 TEST(conductivity) {
     const char *cell = write_file("cell.csv", "x,y,z,r,eps\n0,0,0,1,1\n");
     SUCCEED("conductivity", cell, "--periodic", "2,2,2", "--emissivity", "eps", "--rays", "40000", "--threads", "1");
@@ -527,7 +528,7 @@ TEST(points_and_cutoff) {
     SUCCEED("bed", POLY, "--directions", "34", "--areas", "points", "--cutoff", "1.5");
     ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
     ck_assert_double_lt(value_of("nonzeros"), entries / 2);
-    ck_assert_double_gt(value_of("beyond_mean"), .1); /* other spheres, for the most part */
+    ck_assert_double_gt(value_of("beyond_mean"), .1); /* for the most part on other spheres */
     ck_assert_double_lt(value_of("closure_max"), 1e-12);
 }
 

@@ -1,6 +1,6 @@
 /* test_conductivity.c - effective conductivity: gaps, rays, axes, units and files. SPDX-License-Identifier: MIT
  *
- * Truth: laws of flights in slabs, closed forms of lattices, the spread over seeds. */
+ * The results are compared with laws of flights in slabs, closed forms of lattices, and the spread over seeds. */
 #include "bed/conduction.h"
 #include "bed/packing.h"
 #include "program.h"
@@ -11,7 +11,7 @@ FIXTURE(make_folder, remove_folder)
 
 /* ---- by the functions -------------------------------------------------------------------------------------------- */
 
-/* One unit sphere a cell. */
+/* Makes a cell with one unit sphere. */
 static struct bed cell_of(double a, double b, double c) {
     struct bed bed;
     bed_init(&bed);
@@ -27,7 +27,7 @@ static struct bed copy_of(const struct bed *bed) {
     return copy;
 }
 
-/* F_E and what belongs to it, all spheres of this emissivity. Frees the bed. */
+/* Finds F_E and what belongs to it. All spheres have this emissivity. Frees the bed. */
 static struct conduction follow(struct bed *bed, double emissivity, struct conduction_rule rule) {
     struct conduction result;
     OWNED double *all = malloc(bed->n * sizeof *all);
@@ -42,8 +42,8 @@ static struct conduction follow(struct bed *bed, double emissivity, struct condu
     return result;
 }
 
-/* Two layers of touching spheres, in the hollows of each other, and a gap of 8: flights of up to 100 periods along it.
- * With cells twice as wide F_E grows by h^2/(P d) ln 2; across it does not. */
+/* Two layers of touching spheres lie in the hollows of each other, beside a gap of 8. Flights along the gap have up to
+ * 100 periods. With cells twice as wide, F_E along the gap grows by h^2/(P d) ln 2. Across the gap it does not grow. */
 TEST(slab_grows_with_the_logarithm) {
     const double height = 8, period = 2 + sqrt(2) + height, growth = height * height / (period * 2);
     struct conduction narrow, wide;
@@ -65,8 +65,8 @@ TEST(slab_grows_with_the_logarithm) {
     ck_assert_double_eq_tol(wide.factor[2], narrow.factor[2], 4 * hypot(narrow.error[2], wide.error[2]));
 }
 
-/* Gaps are found wherever they are in the period, and none where spheres overlap in projection; slabs across all axes
- * add up. */
+/* Gaps are found wherever they are in the period. There is none where spheres overlap in projection. Slabs across all
+ * axes add up. */
 TEST(gaps_across_axes) {
     unsigned char emits[2];
     struct conduction result;
@@ -85,7 +85,8 @@ TEST(gaps_across_axes) {
     ck_assert_double_eq_tol(result.growth[2], .04 / 4.4 + .25 / 5, 1e-12);
 }
 
-/* Random beds are settled, and over seeds F_E is spread as the standard errors say, or less: paths are quasi-random. */
+/* Random beds are settled. Over seeds F_E is spread as much as the standard errors say, or less, since paths are
+ * quasi-random. */
 TEST(errors_are_those_of_seeds) {
     enum { SEEDS = 30 };
     double factor[SEEDS][3], estimate[3] = {0};
@@ -107,13 +108,13 @@ TEST(errors_are_those_of_seeds) {
         double mean = 0, spread = 0;
         for (int seed = 0; seed < SEEDS; ++seed) mean += factor[seed][axis] / SEEDS;
         for (int seed = 0; seed < SEEDS; ++seed) spread += pow(factor[seed][axis] - mean, 2) / (SEEDS - 1);
-        ck_assert_double_lt(sqrt(spread / estimate[axis]), 1.4); /* 3 standard deviations of such a ratio above 1 */
+        ck_assert_double_lt(sqrt(spread / estimate[axis]), 1.4); /* 1 and 3 standard deviations of the ratio */
         ck_assert_double_gt(sqrt(spread / estimate[axis]), .3);
     }
 }
 
-/* A wide channel along x through a random bed: flights have no mean fourth power. Told with most seeds, and never
- * across it. */
+/* A wide channel runs along x through a random bed, so that flights have no mean fourth power. The program says so with
+ * most seeds along the channel, and never across it. */
 TEST(channel_is_told) {
     OWNED_BED packing, bed;
     bed_init(&packing);
@@ -136,7 +137,8 @@ TEST(channel_is_told) {
     ck_assert_int_ge(told, 4); /* on the mean 6 */
 }
 
-/* Few large spheres among small ones: they have most of the variance, and yet it is no few flights. */
+/* A few large spheres among small ones cause most of the variance. The bed still counts as settled, since this is not
+ * due to few flights. */
 TEST(mixtures_are_settled) {
     struct bed bed;
     bed_init(&bed);
@@ -146,7 +148,7 @@ TEST(mixtures_are_settled) {
     for (int axis = 0; axis < 3; ++axis) ck_assert_int_eq(conduction_flights(&result, axis), FLIGHTS_SETTLED);
 }
 
-/* Exact for lattices; of an open bed that of its core. */
+/* The solid fraction is exact for lattices. For an open bed it is that of the core. */
 TEST(solid_fraction) {
     unsigned char emits[16 * 16 * 16];
     struct conduction result;
@@ -167,7 +169,7 @@ TEST(solid_fraction) {
 
 #define CONDUCTIVITY(...) SUCCEED("conductivity", __VA_ARGS__)
 
-/* What follows `key ` on a line of the summary; NULL: no such line. */
+/* The text after `key ` on a line of the summary. NULL: there is no such line. */
 static const char *text_of(const char *key) {
     char begin[50];
     snprintf(begin, sizeof begin, "\n%s ", key);
@@ -177,8 +179,8 @@ static const char *text_of(const char *key) {
 
 static void expect_said(const char *what) { ck_assert_msg(strstr(said, what) != NULL, "'%s' has no '%s'", said, what); }
 
-/* A settled bed in a box twice as high as it is: F_E along the gap does not exist, and no search for its error begins.
- */
+/* A settled bed stands in a box twice as high as the bed. F_E along the gap does not exist, and no search for its error
+ * begins. */
 TEST(gap_is_told) {
     CONDUCTIVITY(PERIODIC, "--periodic", "12,12,26.6648", "--emissivity", "0.8", "--error", "0.02");
     expect_said("monoper2000.dump: warning: F_E along xy does not exist");
@@ -202,7 +204,7 @@ TEST(rays_have_a_ceiling) {
     ck_assert_int_eq(RUN("conductivity", PERIODIC, "--emissivity", "0.8", "--max-rays", "0"), 2);
 }
 
-/* Along an open axis z of a bed that is periodic across it; the error of z alone counts. */
+/* The bed is periodic across an open axis z. Along z alone F_E is wanted, and its error alone counts. */
 TEST(one_axis) {
     CONDUCTIVITY(PERIODIC, "--emissivity", "0.8", "--rays", "50");
     const double factor = value_of("F_E_z");
@@ -226,7 +228,7 @@ TEST(one_axis) {
 
 #define LAYER 31 /* spheres along an edge, an odd number */
 
-/* A layer of black spheres, thin along an open axis: F_E along x is 2 pi r^2/(V d) times the sum of F x^2, here from
+/* A layer of black spheres is thin along an open axis. F_E along x is 2 pi r^2/(V d) times the sum of F x^2, here from
  * view factors of the sphere in the middle of a large layer. */
 TEST(across_a_thin_bed) {
     const double pitch = 2.2;
@@ -257,7 +259,7 @@ TEST(across_a_thin_bed) {
     expect_said("of what the core emits leaves the bed");
 }
 
-/* k = F_E 4 sigma T^3 d, in the summary, the table and the object alike. */
+/* In the summary, the table and the object alike k = F_E 4 sigma T^3 d. */
 TEST(watts_and_files) {
     char axis;
     double factor, factor_error, k, k_error;
@@ -282,7 +284,7 @@ TEST(watts_and_files) {
     ck_assert_double_eq(k_error, json_of(json, "k_x_W_mK_error"));
     free(text);
     CONDUCTIVITY(cell, "--periodic", "6,6,6", "--emissivity", "1", "--rays", "200", "--axis", "y", "-o", csv);
-    ck_assert_str_eq(said, ""); /* without watts lengths need no unit */
+    ck_assert_str_eq(said, ""); /* if there are no watts, lengths need no unit */
     ck_assert_ptr_null(text_of("k_y_W_mK"));
     text = read_file(csv);
     ck_assert_int_eq(sscanf(text + strlen(head), "y,%lf,%lf,,,", &factor, &factor_error), 2);
@@ -300,7 +302,7 @@ TEST(watts_and_files) {
     expect_said("the emissivities are all 0");
 }
 
-/* The same bytes for any number of threads, batches and rounds notwithstanding. */
+/* The bytes are the same for any number of threads, although there are batches and rounds. */
 TEST(threads_change_nothing) {
     static const char *const threads[] = {"1", "3"};
     char *text[2];
@@ -314,8 +316,8 @@ TEST(threads_change_nothing) {
     free(text[0]), free(text[1]);
 }
 
-/* Between plates spheres settle at temperatures of their own; the flux is that of the linear field all the same. Sides
- * that are open have none. */
+/* Between plates spheres settle at temperatures of their own. The flux is still that of the linear field. Open sides
+ * have no flux. */
 TEST(between_plates) {
     const char *csv = in_folder("k.csv"), *json = in_folder("k.json");
     SUCCEED("conductivity", PERIODIC, "--periodic", "12,12,0", "--emissivity", "1", "--axis", "z", "--steady", "-o",

@@ -33,7 +33,7 @@ TEST(values) {
     ck_assert(curve_at(&curve, 200) == y[0] && curve_at(&curve, 2000) == y[POINTS - 1]);
 }
 
-/* From inside, from points and from outside, forth and back. */
+/* The test goes from places inside, on points and outside, forth and back. */
 TEST(ways_of_given_areas) {
     const double from[] = {-200, 250, 300, 300.5, 440, 450, 600, 1199, 1200, 1500};
     const double areas[] = {1e-3, 3, 900, 4e4, 2e5, 9e5};

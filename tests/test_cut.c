@@ -1,4 +1,5 @@
-/* test_cut.c - spheres that walls cut: what lies behind a wall goes to that wall. SPDX-License-Identifier: MIT */
+/* test_cut.c - walls cut spheres: the part of a sphere behind a wall exchanges with that wall alone.
+ * SPDX-License-Identifier: MIT */
 #include "base/random.h"
 #include "host_owned.h"
 #include "scenes.h"
@@ -6,10 +7,9 @@
 
 #define PI 3.14159265358979323846
 
-/* The fraction f of a unit sphere's surface lies behind a plane at distance h of its centre. Half of all lines point to
- * the plane. A cap's element that is inclined to it by t sends (1 - cos t)/2 away from it, f/2 of the cap's on the
- * mean.
- */
+/* The fraction f of a unit sphere's surface lies behind a plane at the distance h from its centre. Half of all lines
+ * point to the plane. An element of the cap that is inclined to the plane by t sends (1 - cos t)/2 away from it. The
+ * mean of this over the cap is f/2. */
 static double to_plane(double h) {
     const double f = (1 - h) / 2;
     return .5 + f * f / 2;
@@ -57,7 +57,7 @@ TEST(lone_sphere_by_rays) {
         ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL), FIBRAD_OK);
         ck_assert_double_eq_tol(row.body[0], expected, 1e-14);
         ck_assert_uint_eq(row.length, 0);
-        rule.body_emissivity = &grey; /* between cap and plane light goes to and fro until it is absorbed */
+        rule.body_emissivity = &grey; /* light goes back and forth between cap and plane until it is absorbed */
         ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL), FIBRAD_OK);
         ck_assert_double_ge(row.escaped, 1 - expected - 1e-12);
         ck_assert_double_le(row.escaped, 1 - (1 - heights[k]) / 2);
@@ -74,7 +74,7 @@ struct heat {
     double power[8], plane, sky;
 };
 
-/* Powers, sigma being 1. */
+/* Powers of the bodies, in units in which sigma is 1. */
 static struct heat heat_of(const struct bed *bed, const fibrad_body *plane, const double *temperature,
                            const double *emissivity, const double of_plane[2], double sky) {
     const fibrad_spheres spheres = spheres_of(bed);
@@ -110,12 +110,12 @@ TEST(lone_sphere_by_heat) {
 
 /* ---- several spheres -------------------------------------------------------------------------------------------- */
 
-/* Some above a floor, which cuts the first two, .4 and .25 of a radius deep, and hardly a third one. */
+/* Spheres above a floor. It cuts the first two, .4 and .25 of a radius deep, and hardly cuts the third. */
 static const double some[][4] = {
     {0, 0, .6, 1}, {1.9, .2, .55, .8}, {.9, 1.8, .999, 1}, {.8, .6, 2.1, .6}, {-1.2, .3, 2.3, .9}};
 #define SOME (sizeof some / sizeof *some)
 
-/* Where a ray ends: 0 to SOME - 1, SOME: at the floor, SOME + 1: in the sky. */
+/* Where a ray ends: 0 to SOME - 1: on this sphere; SOME: at the floor; SOME + 1: in the sky. */
 static uint32_t end_of(uint32_t from, const double o[3], const double w[3]) {
     double least = w[2] < 0 ? -o[2] / w[2] : INFINITY;
     uint32_t end = w[2] < 0 ? SOME : SOME + 1;
@@ -133,7 +133,7 @@ static uint32_t end_of(uint32_t from, const double o[3], const double w[3]) {
     return end;
 }
 
-/* Factors of all rows by plain random rays. */
+/* Finds the factors of all rows by plain random rays. */
 static void plain_factors(uint32_t rays, double f[SOME][SOME + 2]) {
     const fibrad_random stream = fibrad_random_start(1, 2);
     memset(f, 0, SOME * sizeof *f);
@@ -155,14 +155,14 @@ static void plain_factors(uint32_t rays, double f[SOME][SOME + 2]) {
         }
 }
 
-/* How far a row is from the plain one, Euclidean. */
+/* The Euclidean distance of a row from the plain one. */
 static double distance_of(const fibrad_row *row, const double f[SOME + 2]) {
     double square = pow(row->body[0] - f[SOME], 2) + pow(row->escaped - f[SOME + 1], 2);
     for (uint32_t j = 0; j < SOME; j++) square += pow(row_factor(row, j) - f[j], 2);
     return sqrt(square);
 }
 
-/* Rays, paths and heat know the caps as they are; rows by beams know what they get on the mean. */
+/* Rays, paths and heat treat the caps exactly. Rows by beams take the mean over a cap. */
 TEST(some_spheres) {
     double f[SOME][SOME + 2], by_rays = 0, by_beams = 0, by_points = 0, reciprocity = 0;
     OWNED_BED bed = bed_of(SOME, some);
@@ -190,7 +190,7 @@ TEST(some_spheres) {
     row_free(&row);
 }
 
-/* Rows are reciprocal and closed as ever. */
+/* Rows are reciprocal and closed, as without cuts. */
 TEST(matrix_of_some) {
     OWNED_BED bed = bed_of(SOME, some);
     const fibrad_body floor = plane_at(2, 0, 0);
@@ -231,7 +231,7 @@ TEST(heat_of_some) {
     ck_assert_double_eq_tol(even.plane, 0, 1e-9);
 }
 
-/* Beside a cylinder lines that graze it meet it again, of which the mean does not know. */
+/* Lines that graze a cylinder meet it again. The mean over a cap beside the cylinder leaves this out. */
 TEST(beside_a_cylinder) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{3.4, 0, 0, 1}});
     const fibrad_body body[] = {cylinder_at(0, 0, 4), plane_at(2, 0, -1.2), plane_at(2, 1, 1.2)};

@@ -11,7 +11,7 @@ static struct bed copy_of(const struct bed *bed) {
     return to;
 }
 
-/* Each sphere by at most `amplitude` radii along each axis. */
+/* Moves each sphere by at most `amplitude` radii along each axis. */
 static void jitter(struct bed *bed, double amplitude, uint64_t seed) {
     double *at[3] = {bed->x, bed->y, bed->z};
     for (uint32_t i = 0; i < bed->n; i++)
@@ -19,7 +19,7 @@ static void jitter(struct bed *bed, double amplitude, uint64_t seed) {
             at[axis][i] += amplitude * bed->r[i] * (2 * bed_make_random(seed, 3 * i + axis) - 1);
 }
 
-/* The work memory is kept from one row to the next. */
+/* Computes a row. The work memory is kept from one row to the next. */
 static fibrad_row row_in(const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule, uint32_t n) {
     static fibrad_work work = {.memory = {.resize = test_resize}};
     fibrad_row row = row_of(n);
@@ -38,7 +38,7 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* The factor of two spheres alone, which is known, as their distance changes. */
+/* The factor of two lone spheres is known as their distance changes. */
 TEST(estimate_bounds_the_change_of_a_pair) {
     static const double ratios[] = {.1, .3, 1, 3, 10}, gaps[] = {0, .01, .1, 1, 10, 100}, moves[] = {-1e-3, 1e-4, 1e-2};
     for (size_t k = 0; k < 5 * 6 * 3; k++) {
@@ -97,7 +97,7 @@ TEST(moving_as_a_whole_is_no_error) {
     }
 }
 
-/* A sphere goes to a free place far away: it comes into the sight of rows that see nothing move. */
+/* A sphere moves to a free place far away. There it comes into the sight of rows that see nothing else move. */
 TEST(what_comes_into_sight_is_found) {
     OWNED_BED bed = packing(400, .8, 1.2, .4, 9, true);
     bed.r[0] = .5;
@@ -130,7 +130,7 @@ TEST(what_comes_into_sight_is_found) {
     free(error);
 }
 
-/* The estimate counts spheres alone: walls may have moved, or be others. */
+/* The estimate counts spheres alone. Walls may have moved, or may be other walls. */
 TEST(walls_that_move_are_not_counted) {
     OWNED_BED bed = packing(100, .8, 1.2, .4, 1, false);
     fibrad_body wall = plane_at(2, 1, 30);

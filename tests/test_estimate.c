@@ -1,4 +1,5 @@
-/* test_estimate.c - rows are as accurate as they claim, and as they are asked to be. SPDX-License-Identifier: MIT */
+/* test_estimate.c - rows are as accurate as they claim, and as accurate as the caller asks.
+ * SPDX-License-Identifier: MIT */
 #include "bed/bed_scene.h"
 #include "host_owned.h"
 #include "scenes.h"
@@ -28,7 +29,7 @@ static fibrad_bed_factors *rows(const struct bed *bed, const fibrad_beam_rule *r
     return factors;
 }
 
-/* ROWS rows of a bed with many directions, and which they are. */
+/* Finds ROWS rows of a bed with many directions, and says which they are. */
 static fibrad_bed_factors *truth_of(const struct bed *bed, unsigned char wanted[1000]) {
     ck_assert_uint_lt(bed->n, 1000);
     memset(wanted, 0, 1000);
@@ -46,8 +47,8 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* All but two of 48 estimates are above the error of a raw row, or nearly so: rows of a lattice err together. Those of
- * rows from silhouettes are above half the error. On the median no estimate is more than 4 times the error. */
+/* All but two of 48 estimates are above the error of a raw row, or nearly so: rows of a lattice err together. Estimates
+ * of rows from silhouettes are above half the error. The median estimate is at most 4 times the error. */
 LOOP_TEST(estimates_are_honest, BEDS) {
     OWNED_BED bed = beds[_i].make();
     unsigned char wanted[1000];
@@ -72,7 +73,8 @@ LOOP_TEST(estimates_are_honest, BEDS) {
     }
 }
 
-/* The rows asked for are that accurate, by the truth and by their own account; averaged ones closed and reciprocal. */
+/* The rows asked for are that accurate, by the truth and by their own estimates. Averaged rows are closed and
+ * reciprocal. */
 LOOP_TEST(tolerance_is_met, BEDS) {
     OWNED_BED bed = beds[_i].make();
     unsigned char of_truth[1000];
@@ -98,7 +100,7 @@ LOOP_TEST(tolerance_is_met, BEDS) {
     }
 }
 
-/* A row alone takes what it needs, whatever the room it was given, and holds the row of that many directions. */
+/* A single row takes the directions that it needs, whatever room it has. It holds the row of that many directions. */
 TEST(rows_by_themselves) {
     OWNED_BED bed = random_bed();
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -124,7 +126,7 @@ TEST(rows_by_themselves) {
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 7, &(fibrad_beam_rule){.tolerance = NAN}, &row), FIBRAD_E_ARGUMENT);
 }
 
-/* Scenes among walls: spheres of a packing, in a box or a cylinder of `room` times their extent. */
+/* Scenes among walls: the spheres of a packing stand in a box or a cylinder of `room` times their extent. */
 static const struct scene_in_walls {
     const char *name;
     uint32_t spheres;
@@ -144,7 +146,7 @@ static const struct scene_in_walls {
                        {"one in a box", 1, 1, 1, .1, 2, false}};
 enum { SCENES = sizeof scenes_in_walls / sizeof *scenes_in_walls };
 
-/* The walls about a bed. */
+/* Makes the walls about a bed. */
 static uint32_t walls_about(const struct bed *bed, const struct scene_in_walls *of, fibrad_body body[6]) {
     double low[3] = {1e9, 1e9, 1e9}, high[3] = {-1e9, -1e9, -1e9};
     for (uint32_t i = 0; i < bed->n; i++)
@@ -177,8 +179,8 @@ static fibrad_bed_factors *rows_among(const struct bed *bed, const fibrad_scene_
     return factors;
 }
 
-/* Estimates count walls: the true error lies above twice the estimate in 5 % of rows at most, and the estimate on the
- * median not above five times the error. Tolerances are met likewise. */
+/* Estimates count walls. The true error lies above twice the estimate in 5 % of rows at most. The median estimate is
+ * not above five times the error. Tolerances are met likewise. */
 LOOP_TEST(estimates_count_walls, SCENES) {
     const struct scene_in_walls *of = &scenes_in_walls[_i];
     OWNED_BED bed = packing(of->spheres, of->low, of->high, of->fraction, 5 + (uint64_t)_i, false);
@@ -200,7 +202,7 @@ LOOP_TEST(estimates_count_walls, SCENES) {
                 const fibrad_row here = matrix_row(&factors->matrix, i), there = matrix_row(&truth->matrix, i);
                 const double error = distance_with_walls(&here, &there, config.bodies);
                 if (step == 3) ck_assert_double_le(here.error, tolerant.tolerance);
-                if (error < 1e-12 && here.error < 1e-12) continue; /* what the solid angles know */
+                if (error < 1e-12 && here.error < 1e-12) continue; /* solid angles alone give this row */
                 above += error > 2 * here.error;
                 ratio[count++] = here.error / error;
             }
@@ -216,7 +218,7 @@ LOOP_TEST(estimates_count_walls, SCENES) {
     }
 }
 
-/* Where no number of directions does, the most there is. */
+/* Where no number of directions reaches the tolerance, the row has the largest number. */
 TEST(out_of_reach) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1, 2, 3, 1}});
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -230,7 +232,7 @@ TEST(out_of_reach) {
     ck_assert_uint_lt(fibrad_directions_for(100, 8, 1), 500); /* 400 and some */
 }
 
-/* A row of one sphere: halves of the directions may agree by chance. Truth: the closed form. */
+/* The row has one sphere, so halves of the directions may agree by chance. The true factor is the closed form. */
 TEST(one_entry_is_no_luck) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, .3}, {.33003, 0, 0, .03}});
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -259,7 +261,8 @@ static fibrad_bed_factors *exchange(const struct bed *bed, const fibrad_exchange
     return factors;
 }
 
-/* Large and small, nearly touching. Truth: paths of others, and a million of ours from the small sphere: .1880. */
+/* A large and a small sphere nearly touch. The true factor comes from paths of others and from a million paths of ours
+ * from the small sphere: .1880. */
 TEST(small_beside_large_exchange) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, .3}, {.33003, 0, 0, .03}});
     const double emissivity[] = {.6, .6}, truth = .1880;
@@ -277,7 +280,8 @@ TEST(small_beside_large_exchange) {
     ck_assert_double_le(sqrt(square), .002);
 }
 
-/* View factors by rays and by points, averaged: the small sphere knows better. Truth: the closed form. */
+/* View factors by rays and by points are averaged. The row of the small sphere is the better one. The true factor is
+ * the closed form. */
 LOOP_TEST(small_beside_large_sampled, 2) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, .3}, {.33003, 0, 0, .03}});
     const fibrad_spheres spheres = bed_spheres(&bed);
@@ -302,8 +306,8 @@ static const struct {
     uint64_t seed;
 } greys[] = {{30, .2, .3, .3, .01, 2}, {30, .2, .3, .8, .01, 5}, {8, 1, .2, .3, .001, 1}, {8, 1, .2, .8, .001, 1}};
 
-/* The tolerance is reached by all rows, in truth and as estimated. Truth: raw rows of ten times as many directions, and
- * a hundred times as many paths. */
+/* All rows reach the tolerance, in truth and as estimated. The true rows are raw rows of ten times as many directions
+ * and a hundred times as many paths. */
 LOOP_TEST(tolerance_of_exchange_is_met, sizeof greys / sizeof *greys) {
     const double tolerance = greys[_i].tolerance;
     OWNED_BED bed = packing(greys[_i].n, greys[_i].smallest, 1, greys[_i].fraction, greys[_i].seed, false);

@@ -24,11 +24,11 @@ static double *constant(uint32_t n, double value) {
 
 static double whole(const fibrad_row *row) {
     double sum = row_sum(row) + row->escaped;
-    for (int b = 0; b < BODIES_MOST; b++) sum += row->body[b]; /* 0 of those that are not there */
+    for (int b = 0; b < BODIES_MOST; b++) sum += row->body[b]; /* those that do not exist have 0 */
     return sum;
 }
 
-/* Black spheres: exchange factors are view factors, to the bit. */
+/* The exchange factors of black spheres are their view factors, to the bit. */
 TEST(black_is_the_beam_row) {
     OWNED_BED bed = packing(200, .5, 1, .5, 1, true);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -48,8 +48,8 @@ TEST(black_is_the_beam_row) {
     }
 }
 
-/* A sphere alone sees nothing; two far apart exchange e F e' of what the first emits, and 1 - e' of F goes on its way.
- */
+/* A lone sphere sees nothing. Of two spheres far apart, one absorbs e' F of what the other emits, and 1 - e' of F goes
+ * on its way. */
 TEST(one_and_two_spheres) {
     const double e[2] = {.3, .6};
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {30, 0, 0, 2}});
@@ -58,14 +58,14 @@ TEST(one_and_two_spheres) {
     ck_assert_int_eq(fibrad_pair_exact(1, 2, 27, &exact), FIBRAD_OK);
     fibrad_row row =
         exchange_in(scene, 2, 0, &(fibrad_exchange_rule){.emissivity = e, .directions = 65536, .paths = 4000});
-    ck_assert_double_eq_tol(row_factor(&row, 1), .6 * exact, .01 * exact); /* twice reflected: 1e-3 of it */
+    ck_assert_double_eq_tol(row_factor(&row, 1), .6 * exact, .01 * exact); /* reflected twice: 1e-3 of it */
     ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
     ck_assert_double_eq_tol(row.escaped, 1 - .6 * exact, .002 * exact);
     row_free(&row);
 }
 
-/* What black walls absorb at once has all the error of the beams, however little the spheres absorb, and counts for the
- * tolerance. */
+/* What black walls absorb at once has the whole error of the beams, however little the spheres absorb. It counts for
+ * the tolerance. */
 TEST(walls_count_for_the_first_leg) {
     const double e[2] = {.5, .02}, walls_e[6] = {1, 1, 1, 1, 1, 1};
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {2.2, .5, .3, 1}});
@@ -84,7 +84,8 @@ TEST(walls_count_for_the_first_leg) {
     ck_assert_double_le(finer.error, 1.05 * rule.tolerance);
 }
 
-/* Two so far apart that hardly a path meets the other: rows end, closed, and say how much is not known. */
+/* Two spheres are so far apart that hardly a path from one meets the other. Their rows end, are closed, and say how
+ * much is not known. */
 TEST(hardly_seen) {
     const double e[2] = {.3, .6};
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1e4, 0, 0, 1}});
@@ -98,9 +99,9 @@ TEST(hardly_seen) {
     }
 }
 
-/* A sphere in a much larger closed box of grey walls: it is met again by what they reflect. Walls and sphere then
- * nearly form an enclosure of two: of what the sphere emits it gets back, by the balance of two grey surfaces with F_12
- * = 1 and F_21 = A_1/A_2,  D_11 = (1 - e_2) F_21 e_1/(1 - (1 - e_2)(1 - F_21) - (1 - e_2) F_21 (1 - e_1)). */
+/* A sphere stands in a much larger closed box of grey walls, which reflect back to it. Walls and sphere nearly form an
+ * enclosure of two surfaces. By the balance of two grey surfaces with F_12 = 1 and F_21 = A_1/A_2, the sphere gets
+ * back, of what it emits, D_11 = (1 - e_2) F_21 e_1/(1 - (1 - e_2)(1 - F_21) - (1 - e_2) F_21 (1 - e_1)). */
 TEST(sphere_in_a_grey_box) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{.1, -.2, .3, 1}});
     const fibrad_body walls[] = {plane_at(0, 0, -4), plane_at(0, 1, 4),  plane_at(1, 0, -4),
@@ -114,7 +115,7 @@ TEST(sphere_in_a_grey_box) {
     ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
     ck_assert_double_eq_tol(row.escaped, 0, 1e-13);
     row_free(&row);
-    /* walls that reflect all: the sphere gets back all it emits */
+    /* walls reflect all: the sphere gets back all that it emits */
     rule.body_emissivity = white;
     rule.paths = 200;
     row = exchange_in(scene, 1, 0, &rule);
@@ -122,7 +123,8 @@ TEST(sphere_in_a_grey_box) {
     row_free(&row);
 }
 
-/* Paths by other means: absorbed as a whole where a random number says so, ray by ray in the bed itself. */
+/* Follows paths in another way: ray by ray in the bed itself. A random number decides where a path is absorbed as a
+ * whole. */
 static void plain(const struct bed *bed, const double *e, uint32_t i, uint32_t paths, double *d) {
     OWNED fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_SCALAR);
     fibrad_random random = fibrad_random_start(1, i);
@@ -157,7 +159,7 @@ static void plain(const struct bed *bed, const double *e, uint32_t i, uint32_t p
     }
 }
 
-/* Unequal spheres of unequal emissivities, some of them 0, against plain paths: entry by entry within the noise of
+/* Unequal spheres have unequal emissivities, some of them 0. Each entry is that of plain paths within the noise of
  * these. */
 LOOP_TEST(against_plain_paths, 4) {
     enum { PATHS = 200000 };
@@ -186,8 +188,8 @@ static void assert_empty(const fibrad_row *row, uint32_t bodies) {
     for (uint32_t b = 0; b < bodies; b++) ck_assert_double_eq(row->body[b], 0);
 }
 
-/* The row and the displacement of a sphere of emissivity 0 are empty, and no other row has a factor to it; the other
- * rows are those of emissivity 1e-6, but for what that absorbs. */
+/* The row and the displacement of a sphere of emissivity 0 are empty, and no other row has a factor to it. The other
+ * rows are those of emissivity 1e-6, but for what that sphere absorbs. */
 TEST(reflectors_have_empty_rows) {
     OWNED_BED bed = packing(80, .5, 1, .5, 6, false);
     const fibrad_body walls[] = {plane_at(0, 0, bed.x[0] - 50), plane_at(0, 1, bed.x[0] + 50)};
@@ -236,7 +238,7 @@ TEST(reflectors_have_empty_rows) {
     }
 }
 
-/* In a closed bed where all others reflect, a sphere gets back all that it emits, two share it. */
+/* In a closed bed, where all others reflect, a sphere gets back all that it emits, and two spheres share it. */
 TEST(all_light_comes_back) {
     OWNED_BED bed = packing(40, .5, 1, .5, 6, true);
     OWNED double *e = calloc(bed.n, sizeof *e);
@@ -254,7 +256,7 @@ TEST(all_light_comes_back) {
     row_free(&row);
 }
 
-/* The error falls as stated and is estimated honestly. */
+/* The error falls as stated, and its estimate is honest. */
 TEST(error_and_its_estimate) {
     OWNED_BED bed = packing(300, 1, 1, .55, 3, true);
     OWNED double *e = constant(bed.n, .5);
@@ -276,7 +278,8 @@ TEST(error_and_its_estimate) {
     ck_assert_double_gt(sqrt(tight), .001);
 }
 
-/* Row i in any instruction set, after any other row, with room for a few lists of near spheres: the same bits. */
+/* Row i has the same bits in any instruction set, after any other row, and with room for a few lists of near
+ * spheres. */
 TEST(same_bits_always) {
     OWNED_BED bed = packing(150, .3, 1, .5, 6, false);
     const fibrad_body walls[] = {plane_at(0, 0, bed.x[0] - 50), plane_at(0, 1, bed.x[0] + 50)};
@@ -312,7 +315,7 @@ TEST(same_bits_always) {
     }
 }
 
-/* F_E of a lattice of unit spheres. */
+/* Finds F_E of a lattice of unit spheres. */
 static double factor(const struct bed *bed, double solid, double emissivity, uint32_t paths) {
     OWNED double *e = constant(bed->n, emissivity);
     double square = 0;
@@ -328,7 +331,7 @@ static double factor(const struct bed *bed, double solid, double emissivity, uin
     return 3 * solid * emissivity * square / 4;
 }
 
-/* Body- and face-centred lattices, two emissivities, against values from other programs (DESIGN: to 1-2 %). */
+/* F_E of body- and face-centred lattices at two emissivities is that of other programs (DESIGN: to 1-2 %). */
 TEST(conductivity_of_lattices) {
     const double b = 4 / sqrt(3), f = 2 * sqrt(2);
     OWNED_BED centred = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {b / 2, b / 2, b / 2, 1}});
@@ -342,9 +345,9 @@ TEST(conductivity_of_lattices) {
     bed_free(&faces);
 }
 
-/* In a chain of two spheres a period the one emits to the other: the displacement counts periods and takes the nearest
- * image as it is met. Contact factors to both sides: mean square 2 F 2^2 along the chain when all is absorbed at once.
- */
+/* In a chain with two spheres a period, one emits to the other. The displacement counts periods and takes the nearest
+ * image as it is met. If all is absorbed at once, contact factors to both sides give the mean square 2 F 2^2 along the
+ * chain. */
 TEST(displacement_in_a_chain) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {2, 0, 0, 1}});
     bed.period[0] = 4;
@@ -356,7 +359,7 @@ TEST(displacement_in_a_chain) {
     const fibrad_exchange_rule rule = {.emissivity = e, .paths = 400000};
     ck_assert_int_eq(fibrad_pair_exact(1, 1, 0, &exact), FIBRAD_OK);
     ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, 1, &rule, &d), FIBRAD_OK);
-    /* beyond the neighbours, which hide nearly all: little */
+    /* little gets beyond the neighbours, which hide nearly all */
     ck_assert_double_gt(d.absorbed, 2 * exact - .001);
     ck_assert_double_lt(d.absorbed, 2 * exact + .02);
     ck_assert_double_gt(d.square[0], 8 * exact - .01);
@@ -366,7 +369,8 @@ TEST(displacement_in_a_chain) {
     ck_assert_uint_eq(d.rays, 400000);
 }
 
-/* Rows of a whole bed, averaged with areas A e and balanced: reciprocal and closed; dropping keeps the sums. */
+/* The rows of a whole bed are averaged with areas times emissivities and balanced. They are reciprocal and closed.
+ * Dropping entries keeps the sums. */
 TEST(rows_keep_the_books) {
     OWNED_BED bed = packing(120, .5, 1, .5, 12, true);
     const uint32_t n = bed.n;
@@ -408,7 +412,7 @@ TEST(rows_keep_the_books) {
     }
     fibrad_matrix *none = NULL;
     unsigned char memory[1];
-    static const double bad[] = {0, -1, 1.1, NAN}; /* 0: row and column 3 are not empty */
+    static const double bad[] = {0, -1, 1.1, NAN}; /* 0 is bad because row and column 3 are not empty */
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         const double good = e[3];
         e[3] = bad[k];
@@ -420,7 +424,7 @@ TEST(rows_keep_the_books) {
     }
 }
 
-/* Spheres in another order, each with the number it had: the same paths. Without: others. */
+/* If spheres come in another order but keep their ids, the paths are the same. Without ids they are others. */
 TEST(paths_go_by_the_numbers_of_spheres) {
     OWNED_BED bed = packing(100, .5, 1, .5, 4, true), turned = bed_of(0, NULL);
     uint64_t id[100], same[100];
@@ -432,7 +436,7 @@ TEST(paths_go_by_the_numbers_of_spheres) {
     OWNED double *e = constant(100, .3);
     const fibrad_exchange_rule rule = {.emissivity = e, .seed = 5};
     fibrad_scene *scene[4] = {scene_of(&bed, FIBRAD_ISA_BEST)};
-    for (int k = 1; k < 3; k++) { /* in the same order, then turned */
+    for (int k = 1; k < 3; k++) { /* first in the same order, then turned */
         fibrad_spheres spheres = spheres_of(k == 1 ? &bed : &turned);
         spheres.id = k == 1 ? same : id;
         const fibrad_scene_config config = {.period = {bed.period[0], bed.period[1], bed.period[2]}};
@@ -504,7 +508,7 @@ TEST(bad_arguments) {
         rule.directions = directions;
         ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL), FIBRAD_E_ARGUMENT);
     }
-    rule = fine; /* a wall without emissivities, and with bad ones */
+    rule = fine; /* a wall has no emissivity, or a bad one */
     ck_assert_int_eq(fibrad_exchange_row(walled, &work, 0, &rule, &row, NULL), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_exchange_displacement(walled, &work, 0, &rule, &d), FIBRAD_E_ARGUMENT);
     for (size_t k = 0; k < sizeof bad_wall / sizeof *bad_wall; k++) {
@@ -523,8 +527,9 @@ TEST(bad_arguments) {
     row_free(&row);
 }
 
-/* Two small spheres in a room of mirrors, which light leaves by its thousandth of a thousandth a leg: paths end, what
- * they leave is in the error. Truth: light that has been everywhere is absorbed by areas times emissivities. */
+/* Two small spheres are in a room of mirrors, which absorb a thousandth of a thousandth of the light in each leg. Paths
+ * end, and the error has what they leave. In truth, light that has been everywhere is absorbed in proportion to areas
+ * times emissivities. */
 TEST(mirrors_end_in_the_error) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{.3, .5, .5, .05}, {.7, .5, .5, .05}});
     const fibrad_body walls[] = {plane_at(0, 0, 0), plane_at(0, 1, 1), plane_at(1, 0, 0),

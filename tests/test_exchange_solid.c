@@ -1,6 +1,6 @@
 /* test_exchange_solid.c - exchange factors of spheres that conduct. SPDX-License-Identifier: MIT
  *
- * Truth: quadrature, spherical harmonics, powers by patches. */
+ * They are compared with quadrature, spherical harmonics, and powers by patches. */
 #include <gsl/gsl_integration.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_sf_legendre.h>
@@ -40,7 +40,7 @@ TEST(emissivities_of_nodes) {
         ck_assert(isnan(fibrad_node_emissivity(wrong[k][0], wrong[k][1])));
 }
 
-/* Of degree l a/(a + l) is given off: all of it by what is not given off evenly. */
+/* The part a/(a + l) of degree l is given off. All of it comes from what is not given off evenly. */
 TEST(patterns_that_are_not_even) {
     enum { DRAWS = 200000, DEGREES = 8 };
     static const double a[] = {1e-6, .04, .5, 4, 100};
@@ -68,11 +68,11 @@ TEST(patterns_that_are_not_even) {
 
 enum { RINGS = 20, TURNS = 24, POINTS = RINGS * TURNS, GRID = 160, LAST = 14 };
 struct ball_points {
-    double n[POINTS][3], weight[POINTS]; /* normals, and shares of the area */
-    double arrives[2][POINTS];           /* from the walls x = 1 and z = 1 of the box -1 to 1, whose emission is 1 */
+    double n[POINTS][3], weight[POINTS]; /* normals; shares of the area */
+    double arrives[2][POINTS];           /* from the walls x = 1 and z = 1 of the box -1 to 1; their emission is 1 */
 };
 
-/* What arrives at the point with normal n of a ball of radius r from the wall at 1 on an axis. */
+/* The light from the wall at 1 on an axis that arrives at the point with normal n of a ball of radius r. */
 static double light_from(int axis, double r, const double n[3]) {
     const int across = (axis + 1) % 3, up = (axis + 2) % 3;
     double sum = 0;
@@ -98,8 +98,8 @@ static void light_ball(double r, struct ball_points *ball) {
     gsl_integration_glfixed_table_free(table);
 }
 
-/* What of the emission of wall z = 1 the ball sends to wall x = 1 by reflection and conduction: degree l is given off
- * with a/(a + l), but of degree 0 the node keeps m. */
+/* The part of the emission of wall z = 1 that the ball sends to wall x = 1 by reflection and conduction. The ball gives
+ * off the part a/(a + l) of degree l; of degree 0 the node keeps m. */
 static double by_ball(double r, double e, double a) {
     static struct ball_points ball;
     double sum = 0, given[LAST + 1], p[LAST + 1];
@@ -141,7 +141,7 @@ static double to_side(double r, double e, double relative) {
     return mean.body[1];
 }
 
-/* A ball in a black box: what is conducted from one side of it to another. */
+/* A ball in a black box conducts heat from one side of the box to another. */
 static const double ball_k[] = {.1, .3, 2, .3}, ball_e[] = {1, .8, .5, 1};
 LOOP_TEST(by_a_ball, 4) {
     const double r = .8, a = ball_e[_i] / (2 * ball_k[_i]);
@@ -152,7 +152,7 @@ LOOP_TEST(by_a_ball, 4) {
 
 /* ---- beds -------------------------------------------------------------------------------------------------------- */
 
-/* Spheres of some temperatures, emissivities and k*; sigma is 1. */
+/* Spheres with temperatures, emissivities and k* of their own. sigma is 1. */
 enum { MOST = 300 };
 struct hot_bed {
     struct bed bed;
@@ -162,8 +162,8 @@ struct hot_bed {
 
 static void hot_bed_free(struct hot_bed *h) { bed_free(&h->bed); }
 
-/* A random bed whose temperature rises along x, and differs from sphere to sphere. relative 0: emissivities and k*
- * differ, too. */
+/* Makes a random bed whose temperature rises along x, and differs from sphere to sphere. If `relative` is 0,
+ * emissivities and k* differ, too. */
 static struct hot_bed hot_bed(uint32_t n, double emissivity, double relative) {
     struct hot_bed h = {.bed = packing(n, .8, 1.2, .55, 2, false)};
     for (uint32_t i = 0; i < n; ++i) {
@@ -190,8 +190,8 @@ static fibrad_bed_factors *factors_of(const struct hot_bed *h, uint32_t paths, u
     return factors;
 }
 
-/* Powers from the factors: a dense linear system for the node values. Returns the sum of all powers over the sum of
- * their absolute values, surroundings included, whose temperature is 1. */
+/* Finds powers from the factors, by a dense linear system for the values at nodes. Returns the sum of all powers over
+ * the sum of their absolute values. Both include the surroundings, whose temperature is 1. */
 static double powers_by_rows(const struct hot_bed *h, const fibrad_factors *m, double *power) {
     gsl_matrix *matrix = gsl_matrix_calloc(m->n, m->n);
     gsl_vector *right = gsl_vector_calloc(m->n), *value = gsl_vector_calloc(m->n);
@@ -232,7 +232,7 @@ static void powers_by_patches(const struct hot_bed *h, double *power) {
     ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &result), FIBRAD_OK);
 }
 
-/* Powers by rows are those by patches, beyond the noise of paths, which two seeds tell. */
+/* Powers by rows are those by patches, but for the noise of paths, which two seeds tell. */
 static const double bed_k[] = {.1, .1, 1, 10, 0}, bed_e[] = {.8, 1, .6, .8, 0};
 LOOP_TEST(powers_are_those_of_patches, 5) {
     OWNED_BY(hot_bed_free) struct hot_bed h = hot_bed(120, bed_e[_i], bed_k[_i]);
@@ -250,7 +250,8 @@ LOOP_TEST(powers_are_those_of_patches, 5) {
     ck_assert_double_le(sqrt(fmax(0, off * off - noise * noise)), .01);
 }
 
-/* Spheres of one temperature have today's rows, to the bit. k* = 1e6 has the same powers within the noise. */
+/* Spheres of one temperature have the same rows as without conduction, to the bit. Spheres of k* = 1e6 have the same
+ * powers within the noise. */
 TEST(good_conductors) {
     OWNED_BY(hot_bed_free) struct hot_bed h = hot_bed(100, .7, INFINITY);
     double power[2][MOST];
@@ -271,8 +272,8 @@ TEST(good_conductors) {
     fibrad_bed_free(all);
 }
 
-/* Numbers that cannot be: nodes without conductivities, above the emissivity, k* too small or NaN; of the sphere itself
- * and of one that paths meet. */
+/* Impossible numbers are refused: nodes without conductivities, nodes above the emissivity, k* too small or NaN. Both
+ * the sphere itself and one that paths meet have them. */
 TEST(refusals) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2, 1}});
     const double black[] = {.5, .5};

@@ -1,6 +1,5 @@
-/* test_files.c - what people bring and take away: units, ids, frames, walls by name, summaries.
- * SPDX-License-Identifier: MIT
- */
+/* test_files.c - what users bring and take away: units, ids, frames, walls by name, summaries.
+ * SPDX-License-Identifier: MIT */
 #include "cli/output.h"
 #include "program.h"
 
@@ -8,13 +7,13 @@ FIXTURE(make_folder, remove_folder)
 
 #define ATOMS "ITEM: ATOMS id type x y z radius T\n"
 
-/* Three spheres in the order of their ids, and out of it. */
+/* Three spheres, in the order of their ids and in another order. */
 #define SORTED   "3 1 1 4 4 1 600\n7 2 3.5 4 4 1 300\n20 1 1 6.5 4 0.7 450\n"
 #define UNSORTED "20 1 1 6.5 4 0.7 450\n3 1 1 4 4 1 600\n7 2 3.5 4 4 1 300\n"
 
 static char text_of_frame[2000];
 
-/* A frame of a dump; units NULL: not said. */
+/* Writes a frame of a dump. If `units` is NULL, the frame does not say its units. */
 static const char *frame(const char *units, const char *step, const char *atoms, const char *rows) {
     snprintf(text_of_frame, sizeof text_of_frame,
              "%s%s%sITEM: TIMESTEP\n%s\nITEM: NUMBER OF ATOMS\n%s\nITEM: BOX BOUNDS ff ff ff\n0 8\n0 8\n0 8\n" ATOMS
@@ -25,7 +24,7 @@ static const char *frame(const char *units, const char *step, const char *atoms,
 
 #define HEAT "heat", "--emissivity", "0.6", "--temperature", "T", "--directions", "21", "--patches", "24"
 
-/* The power of a body or sphere in a .csv of heat, by the end of its line or its beginning. */
+/* The power of a body or sphere in a .csv of heat. The beginning or the end of its line tells which. */
 static double power_of(const char *path, const char *begin, const char *end) {
     OWNED char *text = read_file(path);
     double t, q = NAN;
@@ -43,7 +42,7 @@ static double power_of(const char *path, const char *begin, const char *end) {
 
 /* ---- walls and surroundings ------------------------------------------------------------------------------------- */
 
-/* Temperatures go by the walls' names, whatever order they were named in. */
+/* Temperatures belong to the walls by name, whatever the order of the names. */
 TEST(wall_temperatures_by_name) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED)), *out = in_folder("q.csv");
     static const char *const lists[] = {"zmin=1200,zmax=300,700", "700,zmax=300,zmin=1200"};
@@ -63,7 +62,7 @@ TEST(wall_temperatures_by_name) {
     }
 }
 
-/* No temperature is made up: that of the surroundings is asked for where something can get there. */
+/* The program makes up no temperature: if something reaches the surroundings, it asks for theirs. */
 TEST(surroundings_are_asked_for) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED));
     static const char *const open[] = {"zmin", "zmin,zmax", "cylinder:4,4,6,zmin=open,zmax=open",
@@ -82,8 +81,8 @@ TEST(surroundings_are_asked_for) {
     expect_message("", "--ambient is missing");
 }
 
-/* Some spheres with a temperature and the others with a power, by columns with blanks or nan, by a number for the
- * others and by types: the same to the byte; what is given comes out again. */
+/* Some spheres have a temperature and the others have a power. Columns with blanks or nan, a number for the others, and
+ * types all give the same bytes. The output repeats what is given. */
 TEST(temperatures_and_powers_mixed) {
 #define MIXED                                                                                                          \
     "heat", "--emissivity", ".6", "--directions", "21", "--patches", "24", "--length-unit", "m", "--ambient", "300"
@@ -110,7 +109,7 @@ TEST(temperatures_and_powers_mixed) {
         ck_assert_ptr_nonnull(strstr(first, "\n1,900,"));
     }
     const char *bed = write_file("bed", beds[0]);
-    ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "T"), 3); /* blanks are for those that have a power */
+    ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "T"), 3); /* only spheres that have a power may have blanks */
     expect_message(bed, "T is not a number: ''");
     ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "x", "--power", "40"), 2);
     expect_message("", "--power 40 is for no sphere");
@@ -125,7 +124,7 @@ TEST(temperatures_and_powers_mixed) {
 
 /* ---- units ------------------------------------------------------------------------------------------------------ */
 
-/* The same numbers in another unit of length: powers by its square; factors as they are. */
+/* The same numbers are in another unit of length. Powers change by its square, and factors do not change. */
 TEST(units_of_length) {
     static const struct {
         const char *units, *option;
@@ -154,10 +153,10 @@ TEST(units_of_length) {
     const char *cgs = write_file("cgs.dump", frame("cgs", "0", "3", SORTED));
     ck_assert_int_eq(RUN(HEAT, cgs, "--ambient", "300", "--length-unit", "mm"), 2);
     expect_message(cgs, "its units are cgs");
-    const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED)); /* millimetres, by their looks */
+    const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED)); /* millimetres, to judge by its radii */
     SUCCEED(HEAT, bed, "--ambient", "300");
     expect_message(bed, "warning: radii of 0.9 are taken as metres");
-    ck_assert_int_eq(RUN(HEAT, bed, cgs, "--ambient", "300", "--length-unit", "mm"), 2); /* one series, one unit */
+    ck_assert_int_eq(RUN(HEAT, bed, cgs, "--ambient", "300", "--length-unit", "mm"), 2); /* a series has one unit */
     expect_message(cgs, "its units are cgs");
     ck_assert_int_eq(RUN(HEAT, cgs, write_file("si.dump", frame("si", "0", "3", SORTED)), "--ambient", "300"), 2);
     expect_message(in_folder("si.dump"), "the unit of length is 1 m, but that of the files before is 0.01 m");
@@ -177,7 +176,7 @@ TEST(degrees_celsius) {
     }
 }
 
-/* Names of columns may say their unit, which is not to be another one. */
+/* The name of a column may say its unit. Then the user must not give another one. */
 TEST(units_of_temperature_columns) {
     const char *kelvins = write_file("k.csv", "x,y,z,r,T [K]\n0,0,0,.01,300\n"), *out = in_folder("q.csv");
     const char *celsius = write_file("c.csv", "x,y,z,r,T [C]\n0,0,0,.01,26.85\n"), *other = in_folder("p.csv");
@@ -192,7 +191,7 @@ TEST(units_of_temperature_columns) {
 
 /* ---- names ------------------------------------------------------------------------------------------------------ */
 
-/* The order of a file is no matter: spheres go by their ids. */
+/* The order of a file does not matter: ids tell the spheres. */
 TEST(ids_in_any_order) {
     static const char *const rows[] = {SORTED, UNSORTED};
     static const char *const endings[] = {"F.csv", "F.mtx", "F.npz", "F.vtp", "F.json"};
@@ -271,7 +270,7 @@ static const char *write_frames(const char *name, int frames) {
     return path;
 }
 
-/* All frames at once are those one by one, to the bit. */
+/* All frames in one run give the same bits as one run for each frame. */
 TEST(all_frames) {
     const char *bed = write_frames("bed.dump", 3), *all = in_folder("all.csv");
     static const char *const number[] = {"0", "1", "2"}, *const begin[] = {"0,100,", "1,250,", "2,900,"};
@@ -298,7 +297,7 @@ TEST(all_frames) {
         snprintf(name, sizeof name, "q.%d.vtp", k);
         free(read_file(in_folder(name)));
     }
-    text = read_file(in_folder("q.pvd")); /* what ParaView opens: frames by their timesteps */
+    text = read_file(in_folder("q.pvd")); /* ParaView opens this file: frames by their timesteps */
     ck_assert_ptr_nonnull(strstr(text, "<DataSet timestep=\"100\" file=\"q.0.vtp\"/>\n<DataSet timestep=\"250\" file="
                                        "\"q.1.vtp\"/>\n<DataSet timestep=\"900\" file=\"q.2.vtp\"/>\n"));
     free(text);
@@ -325,7 +324,7 @@ TEST(some_frames) {
     expect_message(in_folder("F.npz"), "holds one frame");
 }
 
-/* A series of files, by a pattern that the shell has left alone, is one run. */
+/* A series of files, named by a pattern that the shell has left alone, is one run. */
 TEST(several_files) {
     char names[300], expected[400];
     const char *first = write_frames("bed.1.dump", 1), *out = in_folder("F.csv");
@@ -339,13 +338,13 @@ TEST(several_files) {
     free(text);
     free(read_file(in_folder("F.1.mtx")));
     SUCCEED("bed", first, first, "--directions", "8", "-o", in_folder("F.*.json"), "-o", in_folder("F.*.vtp"));
-    text = read_file(in_folder("F.1.json")); /* frames count through all files */
+    text = read_file(in_folder("F.1.json")); /* frames are counted through all files */
     ck_assert_ptr_nonnull(strstr(text, "\"frame\":1,"));
     free(text);
-    text = read_file(in_folder("F.pvd")); /* two frames of one timestep: by their numbers */
+    text = read_file(in_folder("F.pvd")); /* two frames have the same timestep, so their numbers stand for it */
     ck_assert(strstr(text, "timestep=\"0\" file=\"F.0.vtp\"") && strstr(text, "timestep=\"1\" file=\"F.1.vtp\""));
     free(text);
-    write_frames("bed.10.dump", 3); /* times are not padded with zeros: 10 comes behind 2 */
+    write_frames("bed.10.dump", 3); /* times are not padded with zeros: 10 comes after 2 */
     SUCCEED("bed", names, "--directions", "8", "-o", out);
     text = read_file(out);
     ck_assert_ptr_nonnull(strstr(text, "bed.10.dump,2,900,3,7,"));
@@ -372,7 +371,7 @@ TEST(empty_files_of_a_series) {
     ck_assert_ptr_nonnull(strstr(said, "there are no spheres in any of the files"));
 }
 
-/* What a simulation is still writing: the frames before are computed, with a word. */
+/* A simulation is still writing this file. The program computes the frames before and says so. */
 TEST(truncated_last_frame) {
     const char *bed = write_frames("bed.dump", 3);
     struct stat there;
@@ -386,7 +385,7 @@ TEST(truncated_last_frame) {
     ck_assert_int_eq(RUN("bed", bed, "--frame", "2", "--directions", "8"), 3);
 }
 
-/* Radii that are given reach frames that have more spheres than those before. */
+/* If radii are given for the first frame, they also serve frames with more spheres. */
 TEST(radii_of_growing_frames) {
     static const int counts[] = {2, 300};
     const char *bed = in_folder("bed.dump"), *all = in_folder("all.csv"), *last = in_folder("last.csv");
@@ -422,7 +421,7 @@ TEST(summary_says_what_was_computed) {
     const double exact = json_of(json, "wall_zmin_W"), shown = value_of("wall_zmin_W");
     ck_assert_double_eq_tol(shown, exact, 1e-5 * fabs(exact));
     SUCCEED("bed", MONO, "--directions", "21");
-    for (const char *line = strtok(printed, "\n"); line; line = strtok(NULL, "\n")) /* no digits that mean nothing */
+    for (const char *line = strtok(printed, "\n"); line; line = strtok(NULL, "\n")) /* no digits without meaning */
         ck_assert_msg(strlen(line) < 60, "%s", line);
 }
 
@@ -440,8 +439,8 @@ TEST(quiet_and_streams) {
     ck_assert_ptr_nonnull(strstr(said, " sweeps, "));
 }
 
-/* What does not fit is said before the work begins, with what would help. */
-/* No two results of a run go to one place, the summary among them. */
+/* Before the work begins, the program says what does not fit, and what would help. */
+/* No two results of a run go to one place. The summary is one of them. */
 TEST(one_place_each) {
     const char *bed = write_frames("bed.dump", 2), *name = in_folder("q.1.json");
     static const char *const more[][4] = {{"-o", "q.1.json"}, {"-o", "q.*.json"}, {"-o", "-", "--format", "json"}};
@@ -465,7 +464,7 @@ TEST(one_place_each) {
     "solid s\nfacet normal 0 0 1\nouter loop\n" CORNER("-9", "-9") CORNER("17", "-9")                                  \
         CORNER("-9", "17") "endloop\nendfacet\nendsolid s\n"
 
-/* No output takes the place of a file that the run reads, whichever of them it is. */
+/* No output replaces a file that the run reads, whichever file that is. */
 TEST(inputs_stay) {
     static const char *const names[] = {"bed.dump", "floor.0.vtp", "eps.csv", "room.json", "lid.json", "sides.svg"};
     static const char *const texts[] = {NULL, FLOOR, "300 .5\n900 .6\n", "0 300\n9 310\n", "0 700\n9 710\n", "650\n"};
@@ -489,8 +488,8 @@ TEST(inputs_stay) {
         OWNED char *text = read_file(path[k]);
         ck_assert_str_eq(text, k ? texts[k] : frame(NULL, "0", "3", SORTED));
     }
-    ck_assert_int_eq(remove_files(0), 6);                         /* nothing else is there */
-    path[0] = write_file("q.pvd", frame(NULL, "0", "3", SORTED)); /* the collection of q.*.vtp */
+    ck_assert_int_eq(remove_files(0), 6);                         /* there is nothing else */
+    path[0] = write_file("q.pvd", frame(NULL, "0", "3", SORTED)); /* this is the collection of q.*.vtp */
     ck_assert_int_eq(RUN(HEAT, path[0], "--ambient", "300", "--until", "5", "--heat-capacity", "800", "--density",
                          "2500", "-o", in_folder("q.*.vtp")),
                      2);
@@ -501,7 +500,7 @@ TEST(inputs_stay) {
     input = "/dev/null";
 }
 
-/* Where nothing is emitted, there are no rows, and their figures are 0. */
+/* If nothing is emitted, there are no rows, and their figures are 0. */
 TEST(summary_of_no_rows) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED));
     SUCCEED("exchange", bed, "--emissivity", "0");
@@ -510,7 +509,7 @@ TEST(summary_of_no_rows) {
     ck_assert_double_eq(value_of("escaped_mean"), 0);
 }
 
-/* A million spheres and 1.7e7 beams of each: more than any machine has that runs this. */
+/* A million spheres have 1.7e7 beams each. No machine that runs this test has memory for that. */
 TEST(too_little_memory) {
     enum { SIDE = 100, LINE = 20 };
     char *text = malloc(SIDE * SIDE * SIDE * LINE), *at = text;
@@ -529,7 +528,7 @@ TEST(too_little_memory) {
     ck_assert_int_eq(remove_files(0), 1);
 }
 
-/* A furnace's summary as JSON, its fields on standard output, its progress when asked for. */
+/* The summary of a furnace is JSON, its fields go to standard output, and it reports its progress if asked to. */
 TEST(furnace_outputs) {
     const char *json = in_folder("s.json"), *csv = in_folder("f.csv");
 #define FURNACE "furnace", "--case", "1", "--method", "mc", "--cells", "3,3,6", "--bundles", "20000"
@@ -563,7 +562,7 @@ TEST(versions_and_help) {
     ck_assert_int_eq(RUN("help", "nothing"), 2);
 }
 
-/* What ends without a word leaves nothing behind, where files need no name until they are complete. */
+/* If a run is killed, it leaves nothing behind, on systems where files need no name until they are complete. */
 TEST(nothing_is_left_by_what_is_killed) {
     char place[] = "/tmp/fibrad_killed_XXXXXX", path[64];
     ck_assert_ptr_nonnull(mkdtemp(place));

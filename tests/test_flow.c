@@ -35,7 +35,7 @@ static fibrad_rows exchange_rows(const fibrad_scene *scene, uint32_t n, const fi
     return rows;
 }
 
-/* Powers add up to zero; nothing flows between equals; a part of the rows gives a part of the powers. */
+/* Powers add up to zero. Nothing flows between equals. A part of the rows gives a part of the powers. */
 TEST(what_one_gains_others_lose) {
     OWNED_BED bed = packing(60, .6, 1, .5, 9, false);
     const fibrad_body body[] = {plane_at(2, 0, -1), plane_at(0, 0, -1)};
@@ -54,7 +54,7 @@ TEST(what_one_gains_others_lose) {
     for (uint32_t i = 0; i < bed.n; i++) sum += p.power[i], size += fabs(p.power[i]);
     ck_assert_double_eq_tol(sum / size, 0, 1e-14);
     ck_assert(p.power[0] != 0 && p.body_power[0] != 0 && p.body_power[1] != 0 && p.flow.surroundings_power != 0);
-    /* twice the same: added to */
+    /* the second call adds to the powers of the first */
     struct powers twice = powers_of(&bed, e);
     powers_point(&twice);
     for (int k = 0; k < 2; k++) ck_assert_int_eq(fibrad_rows_flow(&rows, bed.n, 2, &twice.flow), FIBRAD_OK);
@@ -87,7 +87,7 @@ TEST(what_one_gains_others_lose) {
     free(scene);
 }
 
-/* In a closed box of spheres alone the powers are those of the averaged matrix. */
+/* In a closed box with spheres alone, the powers are those of the averaged matrix. */
 TEST(powers_are_those_of_the_averaged_matrix) {
     OWNED_BED bed = packing(80, .7, 1, .5, 3, true);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -105,8 +105,7 @@ TEST(powers_are_those_of_the_averaged_matrix) {
         double power = 0;
         for (uint32_t k = 0; k < row.length; k++)
             power += p.weight[i] * row.f[k] * (p.emission[row.col[k]] - p.emission[i]);
-        ck_assert_double_eq_tol(p.power[i], power,
-                                .02 * largest); /* the matrix brings sums to those of raw rows, too */
+        ck_assert_double_eq_tol(p.power[i], power, .02 * largest); /* in the matrix, too, sums are those of raw rows */
     }
     free((void *)(uintptr_t)m.matrix);
     powers_free(&p);
@@ -150,7 +149,7 @@ TEST(bad_regions_and_occupancies_are_refused) {
     ck_assert_int_eq(part_scene_try(&p, &scene), FIBRAD_E_ARGUMENT);
 }
 
-/* Whatever a scene is made from tells it from others: rows of the one do not go into a matrix of the other. */
+/* Whatever a scene is made from tells it from other scenes. Rows of one do not go into a matrix of another. */
 TEST(surroundings_tell_scenes_apart) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
     OWNED_PART p = part_of(&bed, (fibrad_scene_config){0});
@@ -201,7 +200,7 @@ TEST(bad_flows_are_refused) {
             ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 1, &flow), FIBRAD_E_ARGUMENT);
             *nan_of[k] = before;
         }
-    p.weight[0] = NAN; /* of a row that there is none of */
+    p.weight[0] = NAN; /* no row needs this weight */
     for (int k = 0; k < 5; k++) {
         fibrad_flow bad = flow;
         if (k == 0) bad.weight = NULL;
@@ -214,7 +213,7 @@ TEST(bad_flows_are_refused) {
     ck_assert(p.power[0] == 0 && p.power[1] == 0 && flow.surroundings_power == 0 && p.body_power[0] == 0);
     ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 1, &flow), FIBRAD_OK);
     ck_assert(p.power[0] != 0 && isfinite(p.power[0] + p.power[1]));
-    /* a row that knows nothing takes part in nothing */
+    /* a row that knows nothing adds nothing */
     fibrad_rows_clear(&rows);
     row = (fibrad_row){.sphere = 0, .beyond = 1, .body = (double[]){0}};
     ck_assert_int_eq(fibrad_rows_add(&rows, &row, 1), FIBRAD_OK);

@@ -28,7 +28,7 @@ static void compute(const fibrad_furnace_config *config, const struct furnace_op
     ck_assert_int_eq(furnace_run(config, options, &run), 0);
 }
 
-/* a: what the walls give is what the medium takes, whatever the method. */
+/* a: The walls give off what the medium takes, whatever the method. */
 TEST(energy_balance) {
     static const struct {
         enum furnace_method method;
@@ -55,7 +55,7 @@ TEST(energy_balance) {
     }
 }
 
-/* b: walls of one temperature, no source: T is theirs everywhere. */
+/* b: The walls have one temperature and there is no source. So the medium has their temperature everywhere. */
 TEST(uniform_temperature) {
     fibrad_furnace_config config = coarse_case(2, 5);
     config.source = 0;
@@ -75,8 +75,8 @@ TEST(uniform_temperature) {
     }
 }
 
-/* A layer of thickness tau between black walls of 1000 and 500 K, without source. Sides that reflect all make a column
- * of it for constant Theta; for bundles it is wide instead. */
+/* A layer of thickness tau lies between black walls of 1000 and 500 K, without source. For constant Theta, sides that
+ * reflect all make it a column. For bundles it is wide instead. */
 static fibrad_furnace_config slab(double tau, double width, uint32_t cells) {
     return (fibrad_furnace_config){.size = {width, width, 1},
                                    .cells = {1, 1, cells},
@@ -91,7 +91,7 @@ static double slab_flux(void) {
     return run.at.power[4] / area / (SIGMA * (pow(1000, 4) - pow(500, 4)));
 }
 
-/* c: with constant Theta the flux is 1/(1 + tau/(2 Theta)). */
+/* c: With constant Theta the flux is 1/(1 + tau/(2 Theta)). */
 TEST(slab_constant_theta) {
     static const double taus[] = {0.5, 1, 2}, thetas[] = {1, 0.75, 2.0 / 3};
     for (int k = 0; k < 9; k++) {
@@ -103,8 +103,9 @@ TEST(slab_constant_theta) {
     }
 }
 
-/* c: with Theta measured by its definition the method is exact in a slab, as is the one with the transverse term and
- * Monte Carlo; the paper's estimator is not. Exact values: the integral equation of the grey layer in equilibrium. */
+/* c: With Theta measured by its definition the method is exact in a slab. So are the method with the transverse term
+ * and Monte Carlo. The paper's estimator is not. The exact values come from the integral equation of the grey layer in
+ * equilibrium. */
 TEST(slab_measured_theta) {
     static const double taus[] = {0.5, 1, 2}, exact[] = {0.7042, 0.5534, 0.3901}, paper[] = {0.7378, 0.5895, 0.4223};
     for (int k = 0; k < 3; k++) {
@@ -138,7 +139,7 @@ static double *both_cases(uint32_t across, const struct furnace_options *options
     return first;
 }
 
-/* d: with constant Theta, scattering adds Theta S/6 (1/ka2 - 1/ka1) to E and nothing to the fluxes. */
+/* d: With constant Theta, scattering adds Theta S/6 (1/ka2 - 1/ka1) to E and nothing to the fluxes. */
 TEST(scattering_constant_theta) {
     static const double thetas[] = {1, 2.0 / 3, 0.75};
     for (int k = 0; k < 3; k++) {
@@ -151,8 +152,8 @@ TEST(scattering_constant_theta) {
     }
 }
 
-/* e: by exact transfer it adds S/4 (1/ka2 - 1/ka1). To Monte Carlo in equilibrium, absorption and scattering are the
- * same event: its bundles take the same ways. With the transverse term the two runs are independent. */
+/* e: By exact transfer, scattering adds S/4 (1/ka2 - 1/ka1). For Monte Carlo in equilibrium, absorption and scattering
+ * are the same event, so its bundles take the same ways. With the transverse term the two runs are independent. */
 TEST(scattering_exact) {
     const double added = 5000.0 / 4 * (1 / 0.15 - 1 / 0.5);
     struct furnace_options options = options_for(FURNACE_MC, 0, 50000);
@@ -167,13 +168,13 @@ TEST(scattering_exact) {
         ck_assert_double_eq_tol(run.at.e[c] - first[c], added, 0.015 * run.at.e[c]);
         mean += (run.at.e[c] - first[c]) / (double)cell_count();
     }
-    /* 8 cells across are coarse: emission is constant in each, which counts for more where more is absorbed */
+    /* 8 cells across are coarse. Emission is constant in each, which matters more if more is absorbed. */
     ck_assert_double_eq_tol(mean, added, 50);
     for (int w = 0; w < 3; w++) ck_assert_double_eq_tol(power[0][w], power[1][w], 0.5);
     free(first);
 }
 
-/* f: isotropic radiation has Theta 2/3 or 3/4, and so has what leaves the walls of any box. */
+/* f: Isotropic radiation has Theta 2/3 or 3/4, and so has radiation that leaves the walls of any box. */
 TEST(isotropic_theta) {
     static const double isotropic[2] = {2.0 / 3, 0.75};
     for (int estimator = 0; estimator < 2; estimator++) {
@@ -232,7 +233,7 @@ TEST(transverse_numbers) {
     }
 }
 
-/* The literal method has the errors it was found to have. */
+/* The literal method has the errors that were found in it. */
 TEST(literal_numbers) {
     static const double t[2][3] = {{1030.2, 950.0, 891.0}, {1023.5, 951.3, 896.6}};
     static const double power[2][3] = {{223.2, -122.4, -180.8}, {229.0, -128.6, -180.4}};
@@ -246,9 +247,9 @@ TEST(literal_numbers) {
     }
 }
 
-/* Temperatures and powers of the Monte Carlo method: the discrete ordinates method, 8 x 12 x 12 directions on
- * 40 x 40 x 80 cells, agrees within 0.7 K with these numbers; the standard error of this run is 0.5 K. From the same
- * field 1/Theta on the axis at z = 0, 0.8, ... 3.2 m (z+) and 0, 0.8, 1.6, 2, 2.4, 2.8, 3.2 m (z-). */
+/* Temperatures and powers of the Monte Carlo method. The discrete ordinates method with 8 x 12 x 12 directions on 40 x
+ * 40 x 80 cells agrees with these numbers within 0.7 K. The standard error of this run is 0.5 K. The same field gives
+ * 1/Theta on the axis at z = 0, 0.8, ... 3.2 m (z+) and 0, 0.8, 1.6, 2, 2.4, 2.8, 3.2 m (z-). */
 TEST(monte_carlo_numbers) {
     static const double t[3] = {1057.8, 951.1, 871.4}, power[3] = {215.525, -97.003, -198.522};
     static const double z_up[] = {0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.8, 3.6, 4},
@@ -273,8 +274,8 @@ TEST(monte_carlo_numbers) {
     }
 }
 
-/* Net power of the wall z = 0 [kW] by exact integration along the lines of z: in a cell of constant source J and
- * constant Theta, q approaches J/beta as exp(-beta x/Theta). The walls are satisfied by iteration. */
+/* Net power of the wall z = 0 [kW] by exact integration along the lines of z. In a cell of constant source J and
+ * constant Theta, q approaches J/beta as exp(-beta x/Theta). Iteration finds the fluxes at the walls. */
 static double integrated_power(double theta) {
     const fibrad_furnace_config *c = &run.config;
     const size_t n = c->cells[2], layer = (size_t)c->cells[0] * c->cells[1];
@@ -297,7 +298,7 @@ static double integrated_power(double theta) {
     return power;
 }
 
-/* The trapezoidal rule differs from exact integration by the square of the cell. */
+/* The trapezoidal rule differs from exact integration by the square of the edge of a cell. */
 TEST(lines_are_of_second_order) {
     double before = 0;
     for (uint32_t across = 4; across <= 16; across *= 2) {
@@ -332,7 +333,7 @@ TEST(threads_change_nothing) {
     }
 }
 
-/* A box without any symmetry, and the same box with its axes exchanged: cell (i, j, k) becomes (k, i, j). */
+/* A box has no symmetry. The same box has its axes exchanged: cell (i, j, k) becomes (k, i, j). */
 TEST(axes_are_alike) {
     static const double size[3] = {1, 1.5, 2.5}, t[6] = {700, 900, 1000, 500, 1200, 400},
                         eps[6] = {0.5, 0.9, 0.2, 1, 0.8, 0.6};
@@ -367,10 +368,11 @@ TEST(axes_are_alike) {
         for (int w = 0; w < 6; w++)
             ck_assert_double_eq_tol(power[0][w], power[1][w], method == FURNACE_HFM ? 0.01 : 600);
     }
-    ck_assert_double_gt(difference, 0); /* the bundles are not the same */
+    ck_assert_double_gt(difference, 0); /* because the bundles are not the same */
 }
 
-/* What more bundles for the same field find lies within the noise; tallies of parts add up to the whole. */
+/* The sums of all bundles and of parts of them, in another order, are the same: tallies of parts add up to the
+ * whole. */
 TEST(parts_add_up) {
     fibrad_furnace_config config = coarse_case(2, 4);
     size_t size = fibrad_furnace_size(&config);
@@ -391,7 +393,7 @@ TEST(parts_add_up) {
         fibrad_furnace_tally_init(&tally[k], tally_block[k], size, furnace);
     }
     fibrad_furnace_trace(furnace, tally[0], 0, planned);
-    for (uint64_t first = planned; first > 0;) { /* backwards, alternately into two tallies */
+    for (uint64_t first = planned; first > 0;) { /* backwards, into two tallies in turn */
         uint64_t count = first < 777 ? first : 777;
         first -= count;
         fibrad_furnace_trace(furnace, tally[1 + first % 2], first, count);
@@ -407,13 +409,13 @@ TEST(parts_add_up) {
     ck_assert_mem_eq(theta[0], theta[1], sizeof theta[0]);
     uint64_t again;
     fibrad_furnace_emit(furnace, FIBRAD_FURNACE_ATTENUATED, 20000, 0, &again);
-    ck_assert_uint_eq(again, 0); /* E has not changed: nothing is left to trace */
+    ck_assert_uint_eq(again, 0); /* E has not changed, so nothing is left to trace */
     for (int k = 0; k < 3; k++) free(tally_block[k]);
     free(block);
 }
 
-/* A box of square cross-section with a plan of bundles. E inside is without symmetry. The walls about the axis are
- * alike, or differ in the last digits of their emissivities; since they have the reference temperature, they send no
+/* A box of square cross-section with a plan of bundles. E inside has no symmetry. The walls about the axis are alike,
+ * or they differ in the last digits of their emissivities. Since they have the reference temperature, they send no
  * bundles, and the plans are the same. */
 static struct box square_box(fibrad_furnace_physics physics, bool symmetric) {
     fibrad_furnace_config config = {.size = {1, 1, 1.5},
@@ -431,8 +433,8 @@ static struct box square_box(fibrad_furnace_physics physics, bool symmetric) {
     return box;
 }
 
-/* Of the faces of axis a (3: the cells) of such a box, that to which one of its eight symmetries takes face k: reverses
- * x (1), reverses y (2), exchanges both (4). */
+/* Takes a face k of axis a (3: a cell) of such a box to its image under one of the eight symmetries. The bits of the
+ * symmetry reverse x (1), reverse y (2) and exchange both (4). */
 static size_t image_of(int symmetry, int *a, size_t k) {
     size_t n[2], i[2];
     for (int b = 0; b < 2; b++) n[b] = *a == b ? 5 : 4;
@@ -445,7 +447,7 @@ static size_t image_of(int symmetry, int *a, size_t k) {
     return layer + i[1] + n[1] * i[0];
 }
 
-/* The fields of a furnace with symmetries are the means of those of one without, over all images. */
+/* The fields of a furnace with symmetries are means over all images of the fields of a furnace without symmetries. */
 static void assert_mean_of_images(const fibrad_furnace_arrays *with, const fibrad_furnace_arrays *without, int a,
                                   int g) {
     const double *mean = a == 3 ? with->e : with->flux[a][g];
@@ -462,7 +464,7 @@ static void assert_mean_of_images(const fibrad_furnace_arrays *with, const fibra
         }
         ck_assert_double_eq_tol(mean[k], sum / 8, 1e-9 * fabs(mean[k]));
     }
-    ck_assert_double_gt(difference, 0.02); /* the images are not alike */
+    ck_assert_double_gt(difference, 0.02); /* because the images are not alike */
 }
 
 TEST(symmetries_take_the_mean) {

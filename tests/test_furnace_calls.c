@@ -107,7 +107,7 @@ static int estimate(struct box *box, int tally) {
     return fibrad_furnace_estimate(box->furnace, box->tally[tally], FIBRAD_THETA_DEFINITION, 1, FIBRAD_SCATTER_EXACT);
 }
 
-/* The tally is refused by the evaluation of its physics, and all fields remain as they are. */
+/* Checks that the evaluation of its physics refuses the tally, and that all fields remain as they are. */
 static void assert_refused(struct box *box, int tally, fibrad_furnace_physics physics) {
     double e[BOX_CELLS], flux[BOX_CELLS], theta[BOX_CELLS], power[6];
     memcpy(e, box->at.e, sizeof e);
@@ -162,7 +162,7 @@ TEST(bad_arguments) {
     ck_assert_int_eq(fibrad_furnace_tally_add(NULL, tally), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_furnace_tally_add(tally, NULL), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_furnace_tally_add(tally, tally), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK); /* all of this has changed nothing */
+    ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK); /* none of this has changed anything */
     ck_assert_int_eq(fibrad_furnace_estimate(NULL, tally, FIBRAD_THETA_PAPER, 0, exact), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_furnace_estimate(furnace, NULL, FIBRAD_THETA_PAPER, 0, exact), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_furnace_estimate(furnace, tally, FIBRAD_THETA_PAPER, 1, exact), FIBRAD_E_ARGUMENT);
@@ -196,23 +196,23 @@ TEST(no_plan) {
         box.at.e[3] = before;
         ck_assert_int_eq(trace(&box, 0, 0, 1), FIBRAD_E_STATE);
         assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
-        emit(&box, FIBRAD_FURNACE_ATTENUATED, 0); /* a first plan, whether it is asked for or not */
+        emit(&box, FIBRAD_FURNACE_ATTENUATED, 0); /* this is a first plan, whether it is asked for or not */
         ck_assert_uint_eq(box.planned, plan);
         assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
     }
     free_box(&box);
 }
 
-/* Every bundle once, in any order and any tallies, is accepted; anything else is refused. */
+/* A tally is accepted if it has every bundle once, in any order and from any tallies. Anything else is refused. */
 TEST(every_bundle_once) {
-    /* parts of a hundredth of the plan, traced that often: 1 but for these */
+    /* each hundredth of the plan is traced once, except for these */
     static const struct {
         int missing[3], repeated[3];
     } wrong[] = {
         {{0, -1, -1}, {-1, -1, -1}},  {{99, -1, -1}, {-1, -1, -1}}, {{50, -1, -1}, {-1, -1, -1}},
         {{-1, -1, -1}, {0, -1, -1}},  {{-1, -1, -1}, {99, -1, -1}}, {{-1, -1, -1}, {7, 8, -1}},
         {{20, -1, -1}, {21, -1, -1}}, {{0, -1, -1}, {99, -1, -1}},  {{-1, -1, -1}, {5, 5, -1}},
-        {{10, 14, 15}, {11, 12, 16}}, /* equal in number, sum and sum of squares */
+        {{10, 14, 15}, {11, 12, 16}}, /* these are equal in number, sum and sum of squares */
     };
     const fibrad_furnace_config config = coarse_case(2, 4);
     for (int physics = 0; physics < 2; physics++) {
@@ -240,7 +240,7 @@ TEST(every_bundle_once) {
     }
 }
 
-/* A tally and an equal one, added: all bundles twice. */
+/* A tally is added to an equal one, so that it has all bundles twice. */
 TEST(tallies_added_twice) {
     const fibrad_furnace_config config = coarse_case(2, 4);
     struct box box = make_box(&config);
@@ -252,7 +252,7 @@ TEST(tallies_added_twice) {
     ck_assert_int_eq(estimate(&box, 1), FIBRAD_OK);
     ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[1]), FIBRAD_OK);
     assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
-    for (int k = 0; k < 300; k++) /* sums beyond 64 bits: refused, not undefined */
+    for (int k = 0; k < 300; k++) /* sums exceed 64 bits: they are refused, and not undefined */
         ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[k % 2], box.tally[1 - k % 2]), FIBRAD_OK);
     assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
     free_box(&box);
@@ -273,13 +273,13 @@ TEST(further_plans) {
     ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[1]), FIBRAD_OK);
     ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
 
-    emit(&box, FIBRAD_FURNACE_ATTENUATED, 0); /* E has not changed: nothing to trace */
+    emit(&box, FIBRAD_FURNACE_ATTENUATED, 0); /* E has not changed, so there is nothing to trace */
     ck_assert_uint_eq(box.planned, 0);
     ck_assert_int_eq(trace(&box, 0, 0, 0), FIBRAD_OK);
     ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
 
     for (size_t c = 0; c < BOX_CELLS; c++) box.at.e[c] *= 1.01;
-    emit(&box, FIBRAD_FURNACE_ATTENUATED, 0); /* a plan that is not traced is missing in all that follow */
+    emit(&box, FIBRAD_FURNACE_ATTENUATED, 0); /* all plans that follow lack the bundles of a plan that is not traced */
     emit(&box, FIBRAD_FURNACE_ATTENUATED, 0);
     ck_assert_uint_eq(box.planned, 0);
     assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
@@ -304,7 +304,7 @@ TEST(further_plan_of_equilibrium) {
     free_box(&box);
 }
 
-/* Tallies from before a restart, whether it is asked for or follows from another physics. */
+/* Tallies from before a restart are refused, whether the restart is asked for or follows from another physics. */
 TEST(restarts) {
     const fibrad_furnace_config config = coarse_case(2, 4);
     for (int physics = 0; physics < 2; physics++) {
@@ -326,7 +326,8 @@ TEST(restarts) {
     }
 }
 
-/* Tallies of a furnace of other cells, and of the same cells but another seed, medium, wall or E. */
+/* Tallies of other furnaces are refused: furnaces with other cells, and with the same cells but another seed, medium,
+ * wall or E. */
 TEST(other_furnaces) {
     for (int difference = 0; difference < 6; difference++) {
         fibrad_furnace_config config = coarse_case(2, 4), changed = config;
@@ -346,7 +347,7 @@ TEST(other_furnaces) {
         ck_assert_int_eq(trace(&box, 0, 0, 1), FIBRAD_E_STATE);
         ck_assert_int_eq(trace(&box, 1, 0, box.planned), FIBRAD_OK);
         ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[1], box.tally[0]), FIBRAD_E_STATE);
-        ck_assert_int_eq(estimate(&box, 1), FIBRAD_OK); /* unchanged by what was refused */
+        ck_assert_int_eq(estimate(&box, 1), FIBRAD_OK); /* what was refused has not changed it */
         ck_assert_int_eq(estimate(&other, 0), FIBRAD_OK);
         box.tally[0] = own;
         free_box(&box);
@@ -368,7 +369,7 @@ TEST(furnace_made_anew) {
     free_box(&box);
 }
 
-/* Furnaces that are equal in all have equal plans: two processes may share the work. */
+/* Furnaces that are equal in everything have equal plans, so two processes may share the work. */
 TEST(equal_furnaces) {
     const fibrad_furnace_config config = coarse_case(2, 4);
     struct box one = make_box(&config), two = make_box(&config);
@@ -385,7 +386,8 @@ TEST(equal_furnaces) {
     free_box(&two);
 }
 
-/* Walls of one temperature, no source, E theirs: no bundles, and an empty tally is complete. */
+/* The walls have one temperature, there is no source, and E is that of the walls. So there are no bundles, and an empty
+ * tally is complete. */
 TEST(nothing_to_trace) {
     fibrad_furnace_config config = coarse_case(2, 4);
     config.source = 0;
@@ -400,8 +402,8 @@ TEST(nothing_to_trace) {
     free_box(&box);
 }
 
-/* What the caller may write is refused if it is NaN or infinite, wherever it stands, also in a solved field, where all
- * other cells have converged. */
+/* What the caller may write is refused if it is NaN or infinite, wherever it stands. This holds also in a solved field,
+ * where all other cells have converged. */
 TEST(solve_refuses_nan) {
     const fibrad_furnace_config config = coarse_case(2, 4);
     const double wrong[] = {NAN, INFINITY, -INFINITY};

@@ -19,7 +19,7 @@ TEST(nothing_flows_in_a_closed_box_at_one_temperature) {
     trace_and_solve(&p);
     assert_still(&p);
 
-    /* also from a solution in which much flowed */
+    /* the same holds after a solution in which much flowed */
     p.temperature[7] = 5, p.wall_temperature[3] = 1;
     solve(&p);
     ck_assert_double_gt(fabs(p.result.power[7]), 1);
@@ -46,7 +46,8 @@ TEST(a_grey_sphere_in_black_surroundings) {
     }
 }
 
-/* As between a sphere and a concentric one of the area of the box, whose walls are lit evenly enough. */
+/* The power is that between a sphere and a concentric sphere of the area of the box, whose walls are lit evenly
+ * enough. */
 TEST(a_grey_sphere_in_a_large_grey_box) {
     OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .3);
     p.walls = box_of(20);
@@ -66,7 +67,8 @@ TEST(two_parallel_grey_walls) {
     ck_assert_double_eq(p.result.surroundings_power, 0);
 }
 
-/* Half of the 10,752 beams meet the plane, but for 6. Estimates are made of one sample each: they hold on the mean. */
+/* Half of the 10,752 beams meet the plane, but for 6. Each estimate is made from one sample, so estimates hold on the
+ * mean. */
 TEST(a_black_sphere_touches_a_black_plane) {
     OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, 1);
     double estimate[FIBRAD_WALLS], errors = 0, estimates = 0;
@@ -86,8 +88,8 @@ TEST(a_black_sphere_touches_a_black_plane) {
     p.scene = NULL, p.heat = NULL;
 }
 
-/* Between endless plates without a period, and in a tube with one, light goes to and fro: a mote sees the
- * radiosities of plates that have only each other, and in a tube that of a black body. */
+/* Light goes back and forth between endless plates without a period, and in a tube with one. Between plates a mote sees
+ * the radiosities of two plates that have only each other. In a tube it sees that of a black body. */
 TEST(a_mote_between_endless_walls) {
     OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, .01}}), 2, .5);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -.5, .5}};
@@ -107,8 +109,9 @@ TEST(a_mote_between_endless_walls) {
     assert_near(p.result.power[0], .5 * 4e-4 * PI * (81 - 16), 1e-2);
 }
 
-/* Plates with a period, as in closed form, whatever the mote is. */
-/* A pair without end has the powers of an area, which is told: those of infinite parallel plates. */
+/* Plates with a period have the powers of the closed form, whatever the mote is. */
+/* The powers of a pair of endless plates are those of an area, which the result tells. They are those of infinite
+ * parallel plates. */
 TEST(a_pair_of_endless_plates) {
     double area[FIBRAD_WALLS];
     OWNED_PROBLEM p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1e-3}, {.3, .1, 0, 1e-3}}), 2, 1e-3);
@@ -120,7 +123,7 @@ TEST(a_pair_of_endless_plates) {
         trace_and_solve(&p);
         const double q = (81 - 1) / (1 / p.wall_emissivity[4] + 1 / p.wall_emissivity[5] - 1);
         ck_assert_double_eq_tol(area[0], .904 * .704,
-                                1e-12); /* centres, and the largest size of the bed on either side */
+                                1e-12); /* the extent of the centres, and the largest size of the bed on either side */
         assert_near(p.wall_power[4], -q * area[0], 2e-3);
         assert_near(p.wall_power[5], q * area[1], 2e-3);
         free_heat(&p);
@@ -139,9 +142,9 @@ TEST(a_mote_between_periodic_plates) {
     assert_near(p.wall_power[4], -p.wall_power[5], 1e-3);
 }
 
-/* A plane without end reflects what comes from the surroundings, and from the sphere. With two equal spheres in each
- * other's mirror, and nothing from beyond, a perfect mirror is not what a diffuse wall is; but a sphere between two
- * white walls without end at its own temperature must neither gain nor lose, whatever the walls' temperature. */
+/* An endless plane reflects what comes from the surroundings and from the sphere. A diffuse wall is not a perfect
+ * mirror, so two equal spheres in each other's mirror are no comparison. But a sphere between two endless white walls,
+ * at the temperature of the surroundings, must neither gain nor lose, whatever the walls' temperature. */
 TEST(white_walls_take_nothing) {
     OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, .4);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -1.5, 1.5}};
@@ -154,7 +157,7 @@ TEST(white_walls_take_nothing) {
     ck_assert(p.wall_power[4] == 0 && p.wall_power[5] == 0);
     assert_near(p.result.surroundings_power, -p.result.power[0], 1e-12);
     ck_assert_double_lt(-p.result.power[0], .4 * 16 * 4 * PI);     /* less than alone, */
-    ck_assert_double_gt(-p.result.power[0], .4 * 16 * 4 * PI / 2); /* yet half as much at least */
+    ck_assert_double_gt(-p.result.power[0], .4 * 16 * 4 * PI / 2); /* but at least half as much */
 }
 
 TEST(view_factors_between_the_walls_of_a_cube) {
@@ -166,7 +169,8 @@ TEST(view_factors_between_the_walls_of_a_cube) {
     for (int k = 0; k < 4; k++) assert_near(p.wall_power[k], 0.2000438, 5e-3);
 }
 
-/* More beams, more rays: what walls exchange, without many spheres, would otherwise stay as it is. */
+/* More beams bring more rays of walls. Otherwise the exchange of walls would not become better if there are few
+ * spheres. */
 TEST(walls_exchange_better_with_more_beams) {
     OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
     p.walls = box_of(.5);
@@ -181,7 +185,7 @@ TEST(walls_exchange_better_with_more_beams) {
     ck_assert_msg(sqrt(square) < 7e-4, "off by %g", sqrt(square));
 }
 
-/* Each wall has an estimate of its own error, above which it is seldom by more than a factor of two. */
+/* Each wall has an estimate of its own error. The true error is seldom above twice the estimate. */
 TEST(walls_know_their_errors) {
     double error[6], ratio = 0;
     uint32_t low = 0;
@@ -197,7 +201,7 @@ TEST(walls_know_their_errors) {
             ratio += error[k] / 36 / 1e-3;
         }
     }
-    ck_assert_uint_le(low, 6); /* of 36, which are not independent */
+    ck_assert_uint_le(low, 6); /* of 36 errors, which are not independent */
     ck_assert_double_lt(ratio, 1);
     ck_assert_double_gt(ratio, .05);
 }
@@ -212,8 +216,8 @@ TEST(view_factors_between_the_walls_of_a_cylinder) {
     assert_near(p.wall_power[6], PI * (1 - lids), 5e-3);
 }
 
-/* Walls without spheres: a box anywhere, and walls without end, whose patches must lie on the inner side of the others
- * although there is no bed to tell where. */
+/* There are walls without spheres: a box anywhere, and endless walls. Patches of the latter must lie on the inner side
+ * of the other walls, although no bed tells where that is. */
 TEST(walls_alone) {
     OWNED_PROBLEM p = problem_of(bed_of(0, NULL), 0, 1);
     p.walls = (struct walls){.planes = 63, .at = {49, 50, -20, -19, 7, 8}};
@@ -247,7 +251,7 @@ TEST(two_black_spheres_in_contact) {
     assert_near(p.result.power[1], 4 * PI * 0.0755868184216124, 1e-2);
 }
 
-/* Powers from view factors, each sphere of one radiosity, by going round until nothing changes. */
+/* Finds powers from view factors, with one radiosity for each sphere, by repeating until nothing changes. */
 static void radiosities_by_hand(const struct problem *p, const fibrad_factors *m, double *power) {
     const double e0 = emission(p->sources.surroundings);
     double *radiosity = calloc(m->n, sizeof *radiosity), change = 1;
@@ -285,13 +289,13 @@ TEST(one_radiosity_per_sphere) {
             difference += (power[i] - p.result.power[i]) * (power[i] - p.result.power[i]);
         }
         ck_assert_double_le(fabs(sum), 1e-12 * sqrt(size));
-        ck_assert_double_le(sqrt(difference / size), 5e-3); /* other quadrature, the same equations */
+        ck_assert_double_le(sqrt(difference / size), 5e-3); /* the quadrature differs, the equations are the same */
     }
     p.sources.surroundings = -1;
     ck_assert_int_eq(fibrad_heat_begin(p.heat, &p.sources), FIBRAD_E_ARGUMENT);
 }
 
-/* Every third sphere reflects all. */
+/* Makes a bed of which every third sphere reflects all. */
 static struct problem reflecting(bool uniform) {
     struct problem p = problem_of(packing(60, .6, 1.2, .5, 8, false), 1, .6);
     for (uint32_t i = 0; i < p.bed.n; i++) {
@@ -311,8 +315,9 @@ static void assert_adiabatic(const struct problem *p) {
     ck_assert(p->result.residual <= 1e-3 && p->result.error_patches >= 0 && p->result.error_beams >= 0);
 }
 
-/* Reflectors gain nothing, whatever their temperature, which changes no bit; all the same as at emissivity 1e-6. The
- * others' powers are those of paths, or of one radiosity each, that of a reflector being what arrives. */
+/* Reflectors gain nothing, and their temperature changes no bit. All is the same as at emissivity 1e-6. The powers of
+ * the others are those of paths. With one radiosity for each body they are those by hand, where a reflector sends back
+ * what arrives. */
 LOOP_TEST(reflectors_gain_nothing, 2) {
     const bool uniform = _i == 1;
     OWNED_PROBLEM p = reflecting(uniform);
@@ -346,7 +351,7 @@ LOOP_TEST(reflectors_gain_nothing, 2) {
     ck_assert_double_gt(difference_of(p.result.power, first, p.bed.n), 1e-9);
 }
 
-/* A bed that reflects all, in the open and between walls that do so, too: nothing flows, and no time is lost; also
+/* A bed reflects all, in the open and between walls that do so, too. Nothing flows, and no time is lost. The same holds
  * after a solution in which much flowed. */
 LOOP_TEST(all_reflect, 4) {
     OWNED_PROBLEM p = reflecting(_i % 2 == 1);
@@ -370,14 +375,14 @@ LOOP_TEST(all_reflect, 4) {
     }
 }
 
-/* Two spheres that see each other and the surroundings: two equations, with the view factor that black ones have. */
+/* Two spheres see each other and the surroundings. There are two equations, with the view factor of black spheres. */
 TEST(two_radiosities) {
     static const double t[] = {1.8, .6}, eps[] = {.3, .8};
     OWNED_PROBLEM p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 1.2, 1.6, .5}}), 1, 1);
     double area[2], f[2], exact;
     p.sources.uniform = 1, p.sources.tolerance = 1e-12;
     trace(&p);
-    for (int i = 0; i < 2; i++) { /* areas and factors as beams have them */
+    for (int i = 0; i < 2; i++) { /* areas and factors are those of the beams */
         p.temperature[i] = 1, p.temperature[1 - i] = 0;
         solve(&p);
         area[i] = -p.result.power[i], f[i] = p.result.power[1 - i] / area[i];

@@ -31,7 +31,7 @@ TEST(arguments_are_checked) {
     double power[2];
     memcpy(power, p.result.power, sizeof power);
     fibrad_heat *const first = p.heat;
-    for (size_t shift = 0; shift < 64; shift += 9) { /* any alignment, the same bits */
+    for (size_t shift = 0; shift < 64; shift += 9) { /* any alignment gives the same bits */
         memset(block, 0x5a, size + 128);
         ck_assert_int_eq(fibrad_heat_init(&heat, block + shift, size, &p.config, p.scene), FIBRAD_OK);
         ck_assert_int_eq(fibrad_heat_trace(NULL, &work, 0), FIBRAD_E_ARGUMENT);
@@ -68,7 +68,7 @@ TEST(arguments_are_checked) {
     p.heat = first;
 }
 
-/* Hardly any room in a bed: the call says so, and what it asks for is enough. */
+/* There is hardly any room to work in. The call says so, and the size that it asks for is enough. */
 TEST(work_memory_may_be_too_small) {
     OWNED_PROBLEM p = problem_of(packing(100, 1, 1, .55, 5, true), 1, 1);
     p.config.directions = 8;
@@ -91,7 +91,7 @@ TEST(work_memory_may_be_too_small) {
     free(block);
 }
 
-/* Bytes of the pool up to the last link. */
+/* Bytes of the pool up to the end of the last link. */
 static size_t pool_end(const fibrad_heat *heat) {
     return (size_t)((const unsigned char *)(heat->pencils.link + heat->pencils.links) - heat->pencils.pool);
 }
@@ -105,8 +105,8 @@ static int trace_again(struct problem *p) {
     return status;
 }
 
-/* Links begin on a boundary behind the pencils: room for both without the gap is too small, and nothing is written
- * behind it; room up to the last link, in whole alignments, suffices. */
+/* Links begin on a boundary after the pencils. If there is room for both but not for the gap between them, it is too
+ * small, and nothing is written after it. Room up to the last link, in whole alignments, suffices. */
 TEST(nothing_is_written_behind_the_room_for_beams) {
     for (uint32_t directions = 8; directions < 12; directions++) {
         OWNED_PROBLEM p = problem_of(packing(30, 1, 1, .55, 5, true), 1, .5);
@@ -125,8 +125,8 @@ TEST(nothing_is_written_behind_the_room_for_beams) {
     }
 }
 
-/* The room for beams is what the block has: too little of it is told by the tasks that find none; more than enough
- * changes no bit. */
+/* The block gives the room for beams. If it is too small, the tasks that find no room say so. If it is larger than
+ * needed, no bit changes. */
 TEST(the_room_for_beams_may_be_too_small) {
     OWNED_PROBLEM p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .5);
     double power[2][100];

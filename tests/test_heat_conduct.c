@@ -1,9 +1,10 @@
-/* test_heat_conduct.c - spheres that conduct, against closed forms and themselves. SPDX-License-Identifier: MIT */
+/* test_heat_conduct.c - spheres that conduct, against closed forms and against themselves.
+ * SPDX-License-Identifier: MIT */
 #include "heat/fine.h"
 #include "fibrad_light.h"
 #include "heat_problem.h"
 
-/* Results inside of spheres, for beds of up to so many. */
+/* Results for the inside of spheres, for beds of up to MOST spheres. */
 enum { MOST = 64 };
 static double least[MOST], largest[MOST], centre[MOST], surface_error[MOST], found[MOST];
 static double conductivity[MOST], power[MOST];
@@ -18,7 +19,7 @@ static void conduct(struct problem *p, double k_star, double t) {
     p->result.centre_temperature = centre, p->result.surface_error = surface_error;
 }
 
-/* Temperatures of all spheres are to be found; they give off these powers. */
+/* Asks for the temperatures of all spheres, each of which gives off this power. */
 static void find_temperatures(struct problem *p, double each) {
     for (uint32_t i = 0; i < p->bed.n; i++) p->temperature[i] = NAN, power[i] = each;
     p->sources.power = power;
@@ -51,7 +52,7 @@ static void patch_means(const struct problem *p, uint32_t patch, int axis, doubl
     for (int l = 0; l <= DEGREES; l++) mean[l] /= sum;
 }
 
-/* How the radiosity of sphere 0 follows an axis: its part of degree 1. */
+/* The part of degree 1 of sphere 0's radiosity along an axis. */
 static double slope_along(const struct problem *p, int axis) {
     double sum = 0, squares = 0;
     for (uint32_t a = p->heat->first[0]; a < p->heat->first[0] + p->heat->config.patches; a++) {
@@ -63,8 +64,8 @@ static double slope_along(const struct problem *p, int axis) {
     return sum / squares;
 }
 
-/* Between black plates irradiation is of degrees 0 and 1 alone: half of E1 + E2, and half of E1 - E2 times the cosine.
- */
+/* Between black plates irradiation is of degrees 0 and 1 alone: half of E1 + E2, and half of E1 - E2 times the
+ * cosine. */
 static const double plates_k[] = {.01, .3, 1, 100}, plates_e[] = {1, 1, .5, .9};
 LOOP_TEST(a_sphere_between_black_plates, 4) {
     OWNED_PROBLEM p = one_sphere(.5, NAN, plates_e[_i]);
@@ -77,7 +78,7 @@ LOOP_TEST(a_sphere_between_black_plates, 4) {
     conduct(&p, plates_k[_i], 1);
     find_temperatures(&p, 0);
     trace_and_solve(&p);
-    /* what is sent back is the irradiation less w = E/(a/e) */
+    /* the sphere sends back the irradiation less w = E/(a/e) */
     const double sent = half - truth / (a / plates_e[_i]);
     assert_near(-slope_along(&p, 2) * (truth / sent), truth, 1e-3);
     ck_assert_double_le(fabs(slope_along(&p, 0)), 1e-2 * sent);
@@ -88,8 +89,9 @@ LOOP_TEST(a_sphere_between_black_plates, 4) {
     ck_assert_double_eq(centre[0], found[0]);
 }
 
-/* What arrives at the place at cosine mu of a unit sphere from a black one of emission 1, of some radius, centred at
- * some distance on the axis: rays over its disc as seen from there, as far as they are above the horizon. */
+/* The light at the place at cosine mu of a unit sphere from a black sphere of emission 1. This sphere has a radius, and
+ * its centre lies at a distance on the axis. The light is a sum over rays to its disc as seen from the place, as far as
+ * they are above the horizon. */
 static double lit(double mu, double radius, double distance) {
     const double x = -sqrt(1 - mu * mu), z = distance - mu, s = sqrt(x * x + z * z), sine = radius / s;
     const double along = (x * sqrt(1 - mu * mu) + z * mu) / s, across = sqrt(fmax(0, 1 - along * along));
@@ -102,7 +104,7 @@ static double lit(double mu, double radius, double distance) {
     return sine * sine * sum / 10000;
 }
 
-/* Coefficients of Legendre's polynomials in what arrives. */
+/* Finds the coefficients of Legendre's polynomials in the light that arrives. */
 static void expand(double radius, double distance, double coefficient[DEGREES + 1]) {
     enum { POINTS = 2000 };
     memset(coefficient, 0, (DEGREES + 1) * sizeof *coefficient);
@@ -114,7 +116,7 @@ static void expand(double radius, double distance, double coefficient[DEGREES + 
     }
 }
 
-/* A cold sphere, lit from one side by a hot one: what it sends out from patch to patch is the series. */
+/* A hot sphere lights one side of a cold one. What the cold one sends out from patch to patch is the series. */
 static const double half_k[] = {.01, .1, 1, 10}, half_e[] = {1, .7, 1, .3};
 LOOP_TEST(one_side_lit, 4) {
     const double k = half_k[_i], e = half_e[_i], radius = 3, distance = 6;
@@ -204,7 +206,7 @@ TEST(an_even_source_in_black_surroundings) {
     assert_near(largest[0], t, 1e-4);
 }
 
-/* A bed in a box, of which some spheres have temperatures, some powers and some nothing but the rest. */
+/* Makes a bed in a box. Some spheres have temperatures, the others have powers. */
 static struct problem mixed_bed(double high) {
     struct problem p = problem_of(packing(40, .5, high, .5, 11, false), 2, .7);
     static const double emissivity[] = {1, .8, 1 - 1e-12, .3, 0};
@@ -253,7 +255,7 @@ LOOP_TEST(nothing_flows_at_one_temperature, 2) {
     }
 }
 
-/* Temperatures that were found, once given, ask for the powers that they were found from. */
+/* Temperatures that were found are given to the next solution. It finds the powers from which they were found. */
 TEST(temperatures_and_powers_belong_together) {
     OWNED_PROBLEM p = mixed_bed(1);
     double given[MOST], low[MOST];
@@ -272,7 +274,7 @@ TEST(temperatures_and_powers_belong_together) {
     }
 }
 
-/* Powers of a bed of given temperatures whose spheres have some k* and emissivity. */
+/* Powers of a bed whose spheres have given temperatures and some k* and emissivity. */
 static void powers_of(double k_star, double emissivity, double out[MOST]) {
     OWNED_PROBLEM p = problem_of(packing(40, .8, 1, .5, 4, true), 1, emissivity);
     for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + .2 * bed_make_random(5, i);
@@ -314,8 +316,8 @@ TEST(the_order_of_the_work_changes_no_bit) {
     for (uint32_t i = 0; i < p.bed.n; i++) ck_assert(low[i] == least[i] || (isnan(low[i]) && isnan(least[i])));
 }
 
-/* The conductivity of a simple cubic lattice of touching spheres, over 4 sigma T^3 d: from rays and harmonics to
- * degrees 9 and 13, docs/validation.md. */
+/* The conductivity of a simple cubic lattice of touching spheres, over 4 sigma T^3 d. It comes from rays and harmonics
+ * to degrees 9 and 13: docs/validation.md. */
 static const double lattice_k[] = {.01, .1, .1, 1, 1, 10}, lattice_e[] = {1, 1, .6, 1, .6, 1},
                     lattice_f[] = {.2376, .3591, .3430, .8006, .5979, 1.1350};
 LOOP_TEST(a_simple_cubic_lattice, 6) {

@@ -8,7 +8,7 @@
 
 enum { MOST = 20 };
 
-/* Few spheres and walls, all black, and what came out; sigma is 1. */
+/* A few spheres and walls, all black, and their results. sigma is 1. */
 struct given {
     struct bed bed;
     fibrad_body body[MOST];
@@ -44,7 +44,8 @@ static double drawn(uint64_t seed, uint64_t number, double low, double high) {
 
 static double fourth(double t) { return t * t * t * t; }
 
-/* How estimates of some scenes compare with true errors: squares of both, and how many err by 2.5 times theirs. */
+/* How the estimates of some scenes compare with true errors: the squares of both, and the number of scenes whose error
+ * is above 2.5 times the estimate. */
 struct honesty {
     double errors, estimates;
     int scenes, beyond;
@@ -66,7 +67,7 @@ static double distance(const double a[4], const double b[4]) {
     return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
 
-/* Whether sphere c comes between a and b, or near that. */
+/* Whether sphere c comes between a and b, or near to that. */
 static bool hides(const double a[4], const double b[4], const double c[4]) {
     double along = 0, at[4];
     for (int k = 0; k < 3; k++) along += (b[k] - a[k]) * (c[k] - a[k]);
@@ -75,7 +76,7 @@ static bool hides(const double a[4], const double b[4], const double c[4]) {
     return distance(at, c) <= fmax(a[3], b[3]) + c[3];
 }
 
-/* Spheres in a cube of which none hides anything of another from a third, nor touches it. */
+/* Makes spheres in a cube. None hides a part of another from a third, and none touches another. */
 static struct bed apart(uint64_t seed, uint32_t spheres, double size) {
     double at[MOST][4];
     for (uint32_t n = 0, tried = 0; n < spheres; tried += 4) {
@@ -102,7 +103,7 @@ static double exact_exchange(const struct bed *bed, uint32_t i, uint32_t j) {
     return 4 * M_PI * a[3] * a[3] * view;
 }
 
-/* Black spheres in the open. */
+/* Black spheres stand in the open. */
 TEST(spheres_and_their_surroundings) {
     struct honesty honesty = {0};
     for (uint64_t seed = 1; seed <= 60; seed++) {
@@ -120,7 +121,8 @@ TEST(spheres_and_their_surroundings) {
     expect_honest(&honesty);
 }
 
-/* Beds of black spheres in the open, so far apart that each one meets another by a direction or two, or by none. */
+/* Checks beds of black spheres in the open. They are so far apart that one meets another by a direction or two, or by
+ * none. */
 static void expect_honest_powers(uint64_t beds, uint32_t spheres, double size) {
     struct honesty honesty = {0}, of_surroundings = {0};
     for (uint64_t seed = 1; seed <= beds; seed++) {
@@ -147,7 +149,7 @@ TEST(two_spheres_alone) { expect_honest_powers(300, 2, 9); }
 
 TEST(spheres_far_apart) { expect_honest_powers(20, 20, 30); }
 
-/* Black boxes without a lid, with next to nothing in them: rays of walls tell what the opening gets. */
+/* Black boxes without a lid have next to nothing inside. Rays of walls tell what the opening gets. */
 TEST(a_box_and_its_opening) {
     struct honesty honesty = {0};
     for (uint64_t seed = 1; seed <= 30; seed++) {
@@ -156,7 +158,7 @@ TEST(a_box_and_its_opening) {
         g.surroundings = drawn(seed, 3, 0, .6), g.scene.bodies = 5, g.scene.openings = 1;
         double power = 0, sent = 0;
         for (uint32_t k = 0; k < 5; k++) {
-            const uint32_t a = k / 2, b = 1 - a; /* the axis across the wall, and the other one of the opening */
+            const uint32_t a = k / 2, b = 1 - a; /* the axis across the wall, and the other axis of the opening */
             const double factor = k == 4 ? opposite(size[0], size[1], size[2]) : adjacent(size[b], size[2], size[a]);
             const double area = k == 4 ? size[0] * size[1] : size[b] * size[2];
             g.body[k] = plane_at((int)a, k % 2, k % 2 ? size[a] : 0);
@@ -170,7 +172,7 @@ TEST(a_box_and_its_opening) {
     expect_honest(&honesty);
 }
 
-/* A prism of `sides` about the z axis, of triangles seen from within, open at the top. */
+/* Makes a prism of `sides` about the z axis, of triangles that are seen from within. It is open at the top. */
 static struct mesh *cup_of(uint32_t sides, double radius, double height) {
     struct mesh *mesh = mesh_new();
     const uint32_t middle = mesh_vertex(mesh, 0, 0, 0);
@@ -186,8 +188,8 @@ static struct mesh *cup_of(uint32_t sides, double radius, double height) {
     return mesh;
 }
 
-/* Black cups of triangles at one temperature, with a small sphere as hot: all that leaves goes through the lid. Rays of
- * the cup alone tell how much; they are even on each triangle, so that more of them help. */
+/* Black cups of triangles have one temperature, which is also that of a small sphere inside. All that leaves goes
+ * through the lid. Rays of the cup alone tell how much. They are even on each triangle, so that more triangles help. */
 TEST(a_cup_of_triangles) {
     struct honesty honesty = {0}, of_cup = {0};
     for (uint64_t seed = 1; seed <= 20; seed++) {
@@ -207,7 +209,7 @@ TEST(a_cup_of_triangles) {
     ck_assert_msg(honesty.errors / honesty.scenes < pow(5.5e-4, 2), "off by %g", sqrt(honesty.errors / honesty.scenes));
 }
 
-/* What nothing reaches has no power, and no error. */
+/* If nothing reaches the surroundings, they have no power and no error. */
 TEST(no_surroundings) {
     struct given g = {.bed = bed_of(1, (const double[][4]){{0, 0, 0, .5}}), .temperature = {1}};
     g.scene.bodies = 6;

@@ -6,7 +6,7 @@ LOOP_TEST(powers_add_up_to_zero, 16) {
     for (uint32_t i = 0; i < p.bed.n; i++)
         p.temperature[i] = 300 + 700 * bed_make_random(1, i), p.emissivity[i] = bed_make_random(2, i);
     p.walls = box_about(&p.bed);
-    p.walls.planes = 21 * (uint32_t)_i % 64; /* none, all, one an axis and others */
+    p.walls.planes = 21 * (uint32_t)_i % 64; /* no planes, all, one for each axis, and others */
     p.walls.open = openings_of(p.walls.planes);
     p.config.directions = 30;
     for (int k = 0; k < FIBRAD_WALLS; k++) p.wall_temperature[k] = 400 + 100 * k, p.wall_emissivity[k] = .15 * k;
@@ -85,8 +85,8 @@ TEST(an_earlier_solution_saves_sweeps_and_changes_little) {
     free(power);
 }
 
-/* A periodic bed as a whole, by a third of the box: the same bed, but its spheres come in another order along the
- * cells. What is carried over goes with the spheres, so that next to nothing is left to do. */
+/* A periodic bed moves as a whole, by a third of the box. It is the same bed, but its spheres come in another order
+ * along the cells. What is carried over belongs to the spheres, so that next to nothing is left to do. */
 TEST(an_earlier_solution_goes_with_the_spheres) {
     OWNED_PROBLEM p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .3);
     p.config.directions = 40, p.sources.tolerance = 1e-6;

@@ -1,5 +1,5 @@
-/* test_heat_mesh.c - net powers among triangles: against planes in their place, closed forms, and themselves under
- * every setting that must not matter. SPDX-License-Identifier: MIT */
+/* test_heat_mesh.c - net powers among triangles: against planes in their place, against closed forms, and against
+ * themselves under settings that must not matter. SPDX-License-Identifier: MIT */
 #include "heat_runs.h"
 #include "mesh/mesh_patch.h"
 #include "scene/scene.h"
@@ -9,7 +9,7 @@
 #define PI   3.14159265358979323846
 #define MOST 16 /* bodies */
 
-/* A parallelogram seen from where a to b goes counter-clockwise, cut into cells of two triangles. */
+/* Adds a parallelogram, cut into cells of two triangles. From where it is seen, a to b goes counter-clockwise. */
 static void add_sheet(struct mesh *mesh, const double origin[3], const double a[3], const double b[3], uint32_t cells,
                       uint32_t front, uint32_t back) {
     const uint32_t first = mesh->triangles.vertices, wide = cells + 1;
@@ -24,7 +24,7 @@ static void add_sheet(struct mesh *mesh, const double origin[3], const double a[
     }
 }
 
-/* The six faces of a box seen from within, bodies 0 to 5, or all body 0. */
+/* Adds the six faces of a box seen from within, as bodies 0 to 5 or all as body 0. */
 static void add_box(struct mesh *mesh, double low, double high, uint32_t cells, bool one) {
     const double size = high - low;
     for (uint32_t axis = 0; axis < 3; axis++)
@@ -36,7 +36,7 @@ static void add_box(struct mesh *mesh, double low, double high, uint32_t cells, 
         }
 }
 
-/* A bed, what is about it, and what came out. */
+/* A bed, the walls about it, and the results. */
 struct problem {
     struct bed bed;
     struct mesh *mesh;
@@ -52,7 +52,7 @@ struct problem {
     fibrad_scene *scene;
     fibrad_heat *heat;
     fibrad_heat_result result;
-    uint32_t seen; /* a triangle whose back was */
+    uint32_t seen; /* a triangle whose back was seen */
     bool backwards;
     int isa;
 };
@@ -125,7 +125,7 @@ static void trace_and_solve(struct problem *p) {
     solve(p);
 }
 
-/* What all powers add up to, over the largest. */
+/* The sum of all powers, over the largest one. */
 static double imbalance(const struct problem *p) {
     double sum = p->result.surroundings_power, largest = fabs(sum);
     for (uint32_t b = 0; b < p->bodies; b++) sum += p->q[b], worst_of(&largest, fabs(p->q[b]));
@@ -143,7 +143,7 @@ static void make_box(struct problem *p, double low, double high, uint32_t cells)
     add_box(p->mesh, low, high, cells, false);
 }
 
-/* Thirty unequal spheres that do not touch, within the unit cube and .03 from its sides. */
+/* Makes thirty unequal spheres that do not touch. They lie within the unit cube, .03 from its sides. */
 static struct bed thirty_spheres(void) {
     struct bed bed = bed_of(0, NULL);
     for (uint64_t at = 0; bed.n < 30; at += 4) {
@@ -158,7 +158,7 @@ static struct bed thirty_spheres(void) {
     return bed;
 }
 
-/* They and the walls about them have many temperatures and emissivities. */
+/* Gives them and the walls about them many temperatures and emissivities. */
 static struct problem *thirty(void) {
     struct problem *p = problem_of(thirty_spheres(), 1, .5);
     for (uint32_t i = 0; i < 30; i++)
@@ -184,7 +184,8 @@ TEST(a_box_of_twelve_triangles_is_a_box_of_planes) {
     }
 }
 
-/* A cup: five planes and an opening, and five sheets of triangles without a lid; hot walls, and insulated ones. */
+/* A cup is made from five planes and an opening, or from five sheets of triangles without a lid. Some walls are hot,
+ * others are insulated. */
 TEST(a_cup_of_triangles_is_one_of_planes_and_an_opening) {
     struct problem *p[2] = {thirty(), thirty()};
     for (int k = 0; k < 2; k++) {
@@ -221,7 +222,8 @@ TEST(a_grey_sphere_in_a_black_cube) {
     }
 }
 
-/* Between a sphere and the walls of a large box, which are lit evenly enough: as between concentric spheres. */
+/* The power between a sphere and the walls of a large box, which are lit evenly enough, is that between concentric
+ * spheres. */
 TEST(a_grey_sphere_in_a_large_grey_cube) {
     ENDED struct problem *p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .3);
     p->bodies = 1, p->wall_temperature[0] = 1, p->wall_emissivity[0] = .05;
@@ -244,8 +246,8 @@ TEST(nothing_flows_at_one_temperature) {
     ck_assert_double_le(imbalance(p), 1e-12);
 }
 
-/* Two plates without end, the upper one of triangles or a plane, and a sheet between them that has two sides and gives
- * off nothing: a plate as its own shield. */
+/* Makes two endless plates, of which the upper one consists of triangles or is a plane. Between them may be a shield: a
+ * sheet that has two sides and gives off nothing. */
 static struct problem *plates(bool planes, uint32_t cells, bool shield) {
     struct problem *p = problem_of(bed_of(1, (const double[][4]){{.2, .3, .5, 1e-4}}), 1, .5);
     const double low[3] = {0, 0, 0}, middle[3] = {0, 0, 1. / 3}, high[3] = {0, 0, 1}, a[3] = {2, 0, 0},
@@ -271,7 +273,7 @@ TEST(two_plates_and_a_shield) {
             trace_and_solve(plain);
             assert_near(plain->q[1], 4 * (81 - 16) / (1 / .3 + 1 / .6 - 1), 1e-3);
             ck_assert_double_le(plain->result.surroundings_power,
-                                2e-4 * plain->q[1]); /* what goes farther than is looked */
+                                2e-4 * plain->q[1]); /* this escapes beyond where rays are followed */
             trace_and_solve(p);
             const double below = 1 / .3 + 1 / .2 - 1, above = 1 / .6 + 1 / .2 - 1;
             assert_near(p->q[1], 4 * (81 - 16) / (below + above), 2e-3);
@@ -281,7 +283,8 @@ TEST(two_plates_and_a_shield) {
         }
 }
 
-/* Patches of an insulated sheet, of one body, are at their own temperatures: they send back what they get. */
+/* The patches of an insulated sheet, which is one body, have temperatures of their own: they send back what they
+ * get. */
 TEST(an_insulated_sheet_lets_nothing_through) {
     ENDED struct problem *p = plates(false, 2, true);
     p->insulated[2] = 1;
@@ -292,7 +295,7 @@ TEST(an_insulated_sheet_lets_nothing_through) {
     assert_near(pow(p->found[2], 4), (81 + 16) / 2., 1e-3);
 }
 
-/* A black sphere sees a square as its centre does, where no tangent plane cuts it. */
+/* A black sphere sees a square as its centre does, if no tangent plane cuts the square. */
 TEST(a_black_sphere_sees_a_plate) {
     const double distance[] = {1.5, 4, 25};
     for (int k = 0; k < 3; k++) {
@@ -306,8 +309,8 @@ TEST(a_black_sphere_sees_a_plate) {
     }
 }
 
-/* A box of planes in two halves by a sheet of two sides, which sticks out: each half is as alone. The planes are black,
- * as their patches do not end at the sheet. */
+/* A sheet of two sides, which sticks out of a box of planes, divides the box into two halves. Each half has the powers
+ * that it has alone. The planes are black, as their patches do not end at the sheet. */
 TEST(a_shelf_between_planes) {
     ENDED struct problem *both = thirty(), *half = thirty();
     const double origin[3] = {-.4, -.3, .5}, a[3] = {2, 0, 0}, b[3] = {0, 2, 0};
@@ -316,9 +319,9 @@ TEST(a_shelf_between_planes) {
     both->config = half->config = (fibrad_heat_config){.directions = 700, .patches = 384, .wall_rays = 300000};
     add_sheet(both->mesh, origin, a, b, 2, 6, 7);
     for (uint32_t i = 0; i < 30; i++) {
-        both->bed.z[i] = .5 * both->bed.z[i] + (i < 8 ? .5 : 0), both->bed.r[i] *= .5; /* the first lie above it */
+        both->bed.z[i] = .5 * both->bed.z[i] + (i < 8 ? .5 : 0), both->bed.r[i] *= .5; /* the first 8 lie above it */
         if (i < 8) continue;
-        const uint32_t to = i - 8; /* the others are alone below it */
+        const uint32_t to = i - 8; /* the others lie below it, alone in `half` */
         half->bed.x[to] = both->bed.x[i], half->bed.y[to] = both->bed.y[i], half->bed.z[to] = both->bed.z[i];
         half->bed.r[to] = both->bed.r[i];
         half->temperature[to] = both->temperature[i], half->emissivity[to] = both->emissivity[i];
@@ -331,7 +334,7 @@ TEST(a_shelf_between_planes) {
     trace_and_solve(both), trace_and_solve(half);
     ck_assert_double_le(difference_of(both->power + 8, half->power, 22), 3e-3);
     assert_near(both->q[4], half->q[4], 5e-3); /* the floor */
-    assert_near(both->q[7], half->q[5], 5e-3); /* the back of the sheet, and the ceiling in its place */
+    assert_near(both->q[7], half->q[5], 5e-3); /* the back of the sheet, and the ceiling that replaces it */
     ck_assert(both->result.surroundings_power == 0);
     ck_assert_double_le(imbalance(both), 1e-12);
 }
@@ -360,7 +363,7 @@ TEST(spheres_that_triangles_cut) {
     ck_assert_double_le(imbalance(cut), 1e-12);
     free_heat(cut);
     free(cut->mesh), cut->mesh = mesh_new();
-    make_box(cut, -2, 2, 1); /* not cut: nearly the same */
+    make_box(cut, -2, 2, 1); /* triangles cut nothing here: nearly the same */
     trace_and_solve(cut);
     ck_assert_double_le(difference_of(power, cut->power, 8), .05);
     ck_assert_double_le(difference_of(q, cut->q, 6), .05);
@@ -409,7 +412,7 @@ TEST(a_tilted_box_is_the_same) {
     ck_assert_double_le(difference_of(turned->q, p->q, 6), 3e-3);
 }
 
-/* A mesh that moves: the next solution begins where the last one ended, whatever the order of its triangles. */
+/* A mesh moves. The next solution begins where the last one ended, whatever the order of its triangles. */
 TEST(a_mesh_moves) {
     ENDED struct problem *p = thirty();
     make_box(p, 0, 1, 9);
@@ -461,8 +464,8 @@ TEST(estimates_of_errors_are_honest) {
     }
 }
 
-/* Fluxes through triangles add up to the powers of their bodies; a plate that faces a hot sphere is lit most where it
- * is nearest, and an insulated one hottest there. */
+/* Fluxes through triangles add up to the powers of their bodies. A plate that faces a hot sphere is lit most where the
+ * sphere is nearest. If the plate is insulated, it is hottest there. */
 TEST(fluxes_through_triangles) {
     enum { CELLS = 16, PIECES = 2 * CELLS * CELLS };
     const double origin[3] = {-3, -3, 1.5}, a[3] = {6, 0, 0}, b[3] = {0, 6, 0};
@@ -481,7 +484,7 @@ TEST(fluxes_through_triangles) {
         ck_assert(isnan(flux[2 * t + 1]) && isnan(temperature[2 * t + 1]) && temperature[2 * t] == 1);
     }
     assert_near(sum, p->q[0], 1e-12);
-    /* above the centre a black sphere of radius 1 fills (1/1.5)^2 of the view */
+    /* above the centre, a black sphere of radius 1 fills (1/1.5)^2 of the view */
     assert_near(flux[2 * middle], .7 * (.8 * 16 / 2.25 - 1), .1);
     ck_assert_double_lt(flux[0], .3 * flux[2 * middle]);
 
@@ -501,7 +504,7 @@ static double area_of_triangle(const struct mesh *mesh, uint32_t t) {
     return .5 * hypot(hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2]), u[0] * v[1] - u[1] * v[0]);
 }
 
-/* What the sides of a body gain together, of fluxes [2 triangles]. */
+/* The sum over the sides of a body of what they gain, from fluxes [2 triangles]. */
 static double gain_of_body(const struct problem *p, const double *flux, uint32_t body) {
     const struct mesh *mesh = p->mesh;
     double sum = 0;
@@ -513,8 +516,9 @@ static double gain_of_body(const struct problem *p, const double *flux, uint32_t
     return sum;
 }
 
-/* A box whose faces have temperatures of their own is as one whose faces are bodies; fluxes of faces are their powers,
- * whether triangles are cut into patches or share them, and the next solution begins with this one. */
+/* A box whose faces have temperatures of their own gives what a box gives whose faces are bodies. The fluxes of faces
+ * are the powers of these bodies, whether triangles are cut into patches or share them. The next solution begins with
+ * this one. */
 TEST(faces_with_temperatures_of_their_own) {
     static double side[2 * 12 * 144], flux[2 * 12 * 144], found[2 * 12 * 144];
     for (uint32_t cells = 1; cells <= 12; cells += 11) {
@@ -564,7 +568,7 @@ TEST(faces_with_temperatures_of_their_own) {
     }
 }
 
-/* What a place at height 1 receives of a black square at height 0 in temperatures T(x, y). */
+/* What a place at the height 1 receives from a black square at the height 0 with the temperatures T(x, y). */
 static double received_at(double x, double y, double temperature(double x, double y)) {
     enum { STEPS = 200 };
     double sum = 0;
@@ -576,8 +580,8 @@ static double received_at(double x, double y, double temperature(double x, doubl
     return sum;
 }
 
-/* Two black squares that face each other at a distance of 1, of 200 triangles each, the upper one at 0: fluxes and
- * power against sums over the lower one. */
+/* Two black squares of 200 triangles each face each other at a distance of 1. The upper one is at 0. Fluxes and power
+ * are compared with sums over the lower one. */
 static void check_squares(double temperature(double x, double y), double flux_error, double power_error) {
     enum { CELLS = 10, PIECES = 2 * CELLS * CELLS };
     const double low[3] = {0, 0, 0}, high[3] = {0, 0, 1}, a[3] = {1, 0, 0}, b[3] = {0, 1, 0};
@@ -605,11 +609,11 @@ static void check_squares(double temperature(double x, double y), double flux_er
 
 static double linear(double x, double y) { return 1 + x + .5 * y; }
 
-/* A hot cell of ten by ten. */
+/* One hot cell of ten by ten. */
 static double spot(double x, double y) { return x > .3 && x < .4 && y > .6 && y < .7 ? 3 : 0; }
 
 TEST(squares_with_fields_of_temperature) {
-    check_squares(linear, 3e-2, 4e-3); /* not constant on triangles */
+    check_squares(linear, 3e-2, 4e-3); /* T is not constant on triangles */
     check_squares(spot, .3, 3e-2);
 }
 
@@ -619,7 +623,7 @@ TEST(temperatures_of_triangles_that_are_refused) {
     p->bodies = 1, p->wall_temperature[0] = 1;
     add_box(p->mesh, 0, 1, 1, true);
     for (int k = 0; k < 24; k++) side[k] = NAN;
-    side[6] = 2, side[7] = -1; /* the latter is nobody's */
+    side[6] = 2, side[7] = -1; /* the latter belongs to no body */
     p->sources.side_temperature = side;
     trace_and_solve(p);
     const double wrong[] = {-1, 1e21, INFINITY};
@@ -641,7 +645,7 @@ TEST(patches_have_the_area_of_the_mesh) {
     ENDED struct problem *p = thirty();
     const double origin[3] = {-3, 0, 5}, a[3] = {7, 0, 0}, b[3] = {.1, .2, 0};
     make_box(p, 0, 1, 20);
-    add_sheet(p->mesh, origin, a, b, 1, 0, 0); /* large slivers of two sides, beside the small ones */
+    add_sheet(p->mesh, origin, a, b, 1, 0, 0); /* large slivers of two sides lie beside the small triangles */
     p->scene = build_scene(p);
     const fibrad_mesh *mesh = &p->scene->mesh;
     const uint32_t sides = 2 * mesh->triangles;
@@ -667,7 +671,7 @@ TEST(patches_have_the_area_of_the_mesh) {
         }
         assert_near(sum, fibrad_mesh_area(mesh, 0), 1e-12);
         ck_assert_double_le(n, 4 * sum / area + 8);
-        for (uint32_t k = 0; k < 200000; k++) { /* each has its part of even points */
+        for (uint32_t k = 0; k < 200000; k++) { /* each patch gets its part of evenly spread points */
             const double share[2] = {(k + .5) / 200000, fmod(k * .6180339887498949, 1)};
             double at[3];
             const uint32_t side = fibrad_mesh_point(mesh, 0, share, at);
@@ -686,7 +690,7 @@ TEST(patches_have_the_area_of_the_mesh) {
 
 /* ---- soups ---- */
 
-/* Triangles at random, some without area, slivers, twice the same, through spheres and each other. */
+/* Triangles lie at random. Some have no area, some are slivers, some occur twice, some cut spheres and each other. */
 TEST(soups_have_finite_powers_that_add_up) {
     for (uint64_t seed = 0; seed < 8; seed++) {
         ENDED struct problem *p = problem_of(thirty_spheres(), 1, .5);
@@ -726,12 +730,12 @@ TEST(a_back_that_is_seen_is_named) {
     const double origin[3] = {-9, -9, .5}, a[3] = {20, 0, 0}, b[3] = {0, 20, 0};
     make_planes(p, 0, 1);
     p->bodies = 7;
-    add_sheet(p->mesh, origin, a, b, 1, 6, FIBRAD_NO_BODY); /* a shelf through the bed */
+    add_sheet(p->mesh, origin, a, b, 1, 6, FIBRAD_NO_BODY); /* a shelf goes through the bed */
     ck_assert_int_eq(trace(p), FIBRAD_E_BACK);
     ck_assert_uint_lt(p->seen, 2);
     free_heat(p);
     p->mesh->back[0] = p->mesh->back[1] = 6;
-    trace_and_solve(p); /* what of it lies beyond the planes plays no part */
+    trace_and_solve(p); /* the part of it beyond the planes plays no part */
     ck_assert_double_le(imbalance(p), 1e-12);
     ck_assert(p->result.surroundings_power == 0);
 }

@@ -1,7 +1,7 @@
-/* test_heat_patches.c - patches against the places that they stand for. SPDX-License-Identifier: MIT */
+/* test_heat_patches.c - patches, compared with the places for which they stand. SPDX-License-Identifier: MIT */
 #include "heat_problem.h"
 
-/* Origin and direction of the beam of one point of window k of sphere i, and the normal there. */
+/* Finds the origin and the direction of the beam of one point of window k of sphere i, and the normal there. */
 static void beam(const struct problem *p, uint32_t i, uint32_t k, uint32_t point, double o[3], double w[3],
                  double normal[3]) {
     const fibrad_heat_config *config = &p->heat->config;
@@ -23,7 +23,8 @@ static double cosine_of(const double a[3], const double b[3]) {
     return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / sqrt(squares);
 }
 
-/* Strands of the row of `place` to a body: the patches that each leaves and meets, and its beams. */
+/* The strands from the row of `place` to a body: the patches that each leaves and meets, and the number of its
+ * beams. */
 struct strands {
     uint32_t count, sum, from[10752], to[10752], beams[10752];
     double share;
@@ -52,9 +53,9 @@ static void strands_to(const fibrad_heat *heat, uint32_t place, uint32_t body, s
     }
 }
 
-/* A small sphere all but touches a large one, or a wall. The truth is from paths followed one by one by another
- * program, to .02 % and less; before fours of patches were divided powers of the small one were 6.5, 2.9, 1.6 and 7.7 %
- * off. */
+/* A small sphere nearly touches a large one or a wall. The true powers come from paths that another program followed
+ * one by one, to .02 % and less. Before fours of patches were divided, the powers of the small sphere were 6.5, 2.9,
+ * 1.6 and 7.7 % off. */
 struct spot_case {
     double spheres[2][4], temperature[2], emissivity[2], truth[2], noise[2];
     uint32_t n;
@@ -96,7 +97,8 @@ LOOP_TEST(a_small_sphere_and_the_spot_under_it, sizeof spot_cases / sizeof *spot
     }
 }
 
-/* The same after a move from apart, and back: fine patches come and go. */
+/* After the spheres have moved apart and together again, the powers are those of new problems: fine patches go and
+ * come. */
 TEST(fine_patches_come_and_go_with_a_move) {
     static const double near[2][4] = {{0, 0, 0, .3}, {.315015, 0, 0, .015}},
                         far[2][4] = {{0, 0, 0, .3}, {1, 0, 0, .015}};
@@ -115,8 +117,9 @@ TEST(fine_patches_come_and_go_with_a_move) {
     ck_assert_int_eq(fibrad_heat_move(q.heat, p.scene), FIBRAD_E_SIZE);
 }
 
-/* Parts have as many spheres as each other, to one, and near each other: in a bed of a thousand few pencils, of which
- * links are kept, go from part to part. More parts than spheres leave some empty. */
+/* The parts have equal numbers of spheres, to one, and the spheres of a part are near each other. In a bed of a
+ * thousand, few pencils go from part to part, and links to these are kept. If there are more parts than spheres, some
+ * are empty. */
 TEST(parts_are_compact_and_even) {
     for (uint32_t parts = 1; parts <= 64; parts *= 8) {
         OWNED_PROBLEM p = problem_of(packing(1000, .5, 10, .5, 3, false), 1, 1);
@@ -138,9 +141,9 @@ TEST(parts_are_compact_and_even) {
     }
 }
 
-/* Beams leave and meet a sphere at the patch that is there: the places that they leave are about as many in each patch;
- * all of a patch, and those that they meet, lie within 20 degrees of their mean. Those kept are some of those followed,
- * and stand for all; bundles have as many as their strands. */
+/* Beams leave and meet a sphere at the patch that is there. About equal numbers leave each patch. The places of a patch
+ * that beams leave or meet lie within 20 degrees of their mean. The beams that are kept are some of those followed, and
+ * stand for all. Bundles have as many beams as their strands. */
 TEST(a_patch_of_a_sphere_is_one_place) {
     OWNED_PROBLEM p = problem_of(packing(12, .5, 1.5, .5, 7, false), 1, 1);
     trace(&p);
@@ -181,12 +184,12 @@ TEST(a_patch_of_a_sphere_is_one_place) {
         }
     }
     ck_assert_uint_gt(kept, p.bed.n * heat->beams / 4);
-    ck_assert_uint_le(missed, 5); /* that graze a sphere: the kernel's points are floats */
+    ck_assert_uint_le(missed, 5); /* these graze a sphere: the kernel's points are floats */
     ck_assert_double_gt(leaving, cos(PI / 9));
 }
 
-/* The same of a cylinder's wall, and of rays that go there. Patches are even on the square that leans on its corners,
- * which makes them 2/pi to 4/pi of their mean as wide on the cylinder. */
+/* The same holds for the wall of a cylinder and the rays that go there. Patches are even on the square that stands on a
+ * corner. On the cylinder this makes them 2/pi to 4/pi of their mean width. */
 TEST(a_patch_of_a_cylinder_is_one_place) {
     enum { TURNS = 2048, UPS = 128 };
     OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{.3, -.2, .4, 1e-4}}), 1, 1);

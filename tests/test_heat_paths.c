@@ -1,4 +1,4 @@
-/* test_heat_paths.c - net powers against paths followed one by one, and published conductivities.
+/* test_heat_paths.c - net powers against paths that are followed one by one, and against published conductivities.
  * SPDX-License-Identifier: MIT */
 #include "heat_problem.h"
 
@@ -19,7 +19,8 @@ LOOP_TEST(powers_are_those_of_paths, 3) {
     ck_assert_msg(sqrt(difference / size) < cases[_i].bar, "off by %g", sqrt(difference / size));
 }
 
-/* Box and cylinder of grey walls, open above, or above and on one side, against paths that end in the surroundings. */
+/* A box and a cylinder with grey walls are open above, or above and on one side. Powers are compared with paths that
+ * end in the surroundings. */
 LOOP_TEST(powers_in_open_containers_are_those_of_paths, 3) {
     OWNED_PROBLEM p = problem_of(packing(24, .5, 1.5, .55, 11, false), 1, .4);
     p.walls = box_about(&p.bed);
@@ -45,9 +46,10 @@ LOOP_TEST(powers_in_open_containers_are_those_of_paths, 3) {
     ck_assert_msg(sqrt(difference / size) < .015, "off by %g", sqrt(difference / size));
 }
 
-/* What it is about: an opening is a black plane at the temperature of the surroundings, whose power is theirs. To the
- * bit, but that powers of several openings are added: those of spheres and other walls, their errors, temperatures that
- * are found, one opening or several, with plates that face them without end, insulated walls, one radiosity each. */
+/* An opening is a black plane at the temperature of the surroundings, and its power is theirs. This holds to the bit,
+ * except that powers of several openings are added. It holds for powers of spheres and other walls, their errors, and
+ * temperatures that are found; for one opening or several, endless plates that face them, insulated walls, and one
+ * radiosity for each body. */
 TEST(an_opening_is_a_black_plane_as_hot_as_the_surroundings) {
     static const struct {
         uint32_t planes, open;
@@ -94,8 +96,8 @@ TEST(an_opening_is_a_black_plane_as_hot_as_the_surroundings) {
     }
 }
 
-/* Four pairs of a hot and a cold sphere in a cylinder whose wall reflects most, each pair a quarter of a turn from the
- * next: what the wall throws from one to the other depends on where it is lit. */
+/* Four pairs of a hot and a cold sphere stand in a cylinder whose wall reflects most light. Each pair is a quarter of a
+ * turn from the next. What the wall reflects from one sphere to the other depends on where it is lit. */
 TEST(powers_beside_the_wall_of_a_cylinder) {
     struct bed bed = bed_of(0, NULL);
     double power[2] = {0, 0}, truth[2] = {0, 0};
@@ -107,7 +109,7 @@ TEST(powers_beside_the_wall_of_a_cylinder) {
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -1, 1.2}, .cylinder = {.3, -.2, 3}};
     p.wall_emissivity[FIBRAD_CYLINDER] = .1;
     for (uint32_t i = 0; i < 8; i += 2) p.temperature[i] = 1;
-    p.config.directions = 1000; /* few spheres, far apart */
+    p.config.directions = 1000; /* the spheres are few and far apart */
     trace_and_solve(&p);
     for (uint32_t i = 0; i < 8; i++)
         power[i % 2] += p.result.power[i] / 4, truth[i % 2] += power_by_paths(&p, i, 200000) / 4;
@@ -115,8 +117,8 @@ TEST(powers_beside_the_wall_of_a_cylinder) {
     for (uint32_t i = 0; i < 8; i++) assert_near(p.result.power[i], power[i % 2], .004);
 }
 
-/* k_rad/(4 sigma T^3 d) of a periodic bed along z, from the powers at emissions 2 + cos kz, k such that `waves` waves
- * fit into the box. */
+/* Finds k_rad/(4 sigma T^3 d) of a periodic bed along z, from the powers at emissions 2 + cos kz, with k such that
+ * `waves` waves fit into the box. */
 static double conduction(struct problem *p, int waves) {
     const struct bed *bed = &p->bed;
     const double k = 2 * PI * waves / bed->period[2], volume = bed->period[0] * bed->period[1] * bed->period[2];
@@ -127,13 +129,14 @@ static double conduction(struct problem *p, int waves) {
     return sum * 2 / (volume * 2 * bed->r[0] * k * k);
 }
 
-/* In an even gradient: what waves have less of it than that is a resistance that rises with the square of k. */
+/* Finds the conductivity in an even gradient. In waves it is smaller: this acts as a resistance that rises with the
+ * square of k. */
 static double even_conduction(struct problem *p, double eps) {
     for (uint32_t i = 0; i < p->bed.n; i++) p->emissivity[i] = eps;
     return 3 / (4 / conduction(p, 1) - 1 / conduction(p, 2));
 }
 
-/* The lattice of scenes.h, 2 x 2 cells wide and `cells` long. */
+/* Makes the lattice of scenes.h, 2 x 2 cells wide and `cells` long. */
 static struct bed column(char kind, int cells) {
     static const double basis[4][3] = {{0, 0, 0}, {0, .5, .5}, {.5, 0, .5}, {.5, .5, 0}}, centre[3] = {.5, .5, .5};
     const double side = kind == 'p' ? 2 : kind == 'i' ? 4 / sqrt(3) : 2 * sqrt(2);
@@ -149,8 +152,8 @@ static struct bed column(char kind, int cells) {
     return bed;
 }
 
-/* Along the channels of the simple cubic lattice light goes so far that a value hangs on the length of the bed; at low
- * emissivity programs differ by 5 %. */
+/* Along the channels of the simple cubic lattice light goes so far that the value depends on the length of the bed. At
+ * low emissivity programs differ by 5 %. */
 LOOP_TEST(conduction_of_lattices, 3) {
     static const struct {
         char kind;
@@ -164,7 +167,8 @@ LOOP_TEST(conduction_of_lattices, 3) {
     for (int k = 0; k < 5; k++) assert_near(even_conduction(&p, .2 * (k + 1)), lattices[_i].known[k], lattices[_i].bar);
 }
 
-/* A small random bed conducts a few per cent more or less than a large one, but alike at all emissivities. */
+/* A small random bed conducts a few per cent more or less than a large one, by about the same factor at all
+ * emissivities. */
 TEST(conduction_of_a_random_bed) {
     static const double known[][2] = {{.2, .276}, {.4, .433}, {.6, .610}, {.8, .815}};
     struct bed one = packing(120, 1, 1, .586, 2, true), bed;
@@ -176,7 +180,7 @@ TEST(conduction_of_a_random_bed) {
     const double black = even_conduction(&p, 1);
     assert_near(black, 1.061, .05);
     for (size_t k = 0; k < 4; k++) assert_near(even_conduction(&p, known[k][0]) / black, known[k][1] / 1.061, .02);
-    /* one radiosity per sphere conducts as if all were black */
+    /* with one radiosity for each sphere, the bed conducts as if all spheres were black */
     p.sources.uniform = 1;
     assert_near(even_conduction(&p, .2), black, .03);
 }

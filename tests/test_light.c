@@ -4,7 +4,7 @@
 #include "scenes.h"
 #include "suite.h"
 
-/* What a light does in a bed, all of it on one thread, in ranges of seven spheres. */
+/* What a light does in a bed. The whole is computed on one thread, in ranges of seven spheres. */
 struct lit {
     double *power;
     fibrad_light_ends ends, empty;
@@ -100,7 +100,7 @@ TEST(a_hexagonal_layer_takes_nine_tenths) {
     free(lit.power);
 }
 
-/* A bed, its walls for both, and a light. */
+/* A bed, its walls in both forms, and a light. */
 struct course {
     struct bed bed;
     fibrad_scene_config config;
@@ -129,8 +129,8 @@ static void begin_course(struct course *c, struct bed bed, double x, double y, d
     c->config.body = c->body, c->config.opening = c->opening;
 }
 
-/* Compares with `rays` plain rays that are strewn over a rectangle across the light about the place `middle`: those
- * that begin where light enters. */
+/* Compares with plain rays. `rays` of them are spread over a rectangle across the light about the place `middle`; those
+ * count that begin where light enters. */
 static void compare(struct course *c, const fibrad_light *light, const double middle[3], double reach, int rays) {
     struct lit lit = light_up(&c->bed, &c->config, light);
     double *count = calloc(c->bed.n, sizeof *count), ends[PLAIN_ENDS] = {0}, all = 0;

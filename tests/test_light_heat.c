@@ -20,7 +20,7 @@ static struct bed read_settled(const char *file) {
     return bed;
 }
 
-/* What is absorbed, by all arrays that there are. */
+/* What is absorbed, in all arrays that a result may have. */
 struct absorbed {
     double *sphere, *first, *error, wall[6], wall_first[6], wall_error[6];
     fibrad_light_result result;
@@ -59,7 +59,7 @@ static void free_absorbed(struct absorbed *a) { free(a->sphere), free(a->first),
 
 enum { LAYERS = 24 };
 
-/* The same by plain rays, by layers of one diameter from the top; returns what is absorbed of 1. */
+/* Does the same by plain rays, in layers of one diameter from the top. Returns the fraction that is absorbed. */
 static double absorb_plain(const struct plain_bed *p, const double d[3], double absorptivity, int rays,
                            double layer[LAYERS]) {
     double top = -INFINITY, all = 0;
@@ -114,7 +114,7 @@ TEST(a_settled_bed_absorbs_as_plain_rays_say) {
     plain_free(&plain);
 }
 
-/* A floor that light reaches between few spheres, by what it absorbs itself and what it sends back. */
+/* Light reaches a floor between few spheres. The floor absorbs its share and sends back the rest. */
 TEST(a_floor_alone_absorbs_what_it_absorbs) {
     const double far_away[][4] = {{0, 0, 1, .5}};
     OWNED_BED bed = bed_of(1, far_away);
@@ -126,17 +126,17 @@ TEST(a_floor_alone_absorbs_what_it_absorbs) {
     for (int k = 0; k <= 4; k++) {
         const double share = k / 4.;
         struct absorbed a = absorb_light(&bed, &config, &light, 1, share);
-        const double sphere = M_PI / 4, wall = 16 - sphere; /* what they meet first */
+        const double sphere = M_PI / 4, wall = 16 - sphere; /* the light that meets the sphere first, and the wall */
         ck_assert_double_eq_tol(a.first[0], sphere, 1e-12);
         ck_assert_double_eq_tol(a.wall_first[0], share * wall, 1e-12);
-        ck_assert_double_eq_tol(a.wall[0], share * wall, 1e-9); /* nothing comes back to it */
+        ck_assert_double_eq_tol(a.wall[0], share * wall, 1e-9); /* no light comes back to the wall */
         ck_assert_double_eq_tol(a.sphere[0] + a.result.reflected, sphere + (1 - share) * wall, 1e-9);
         ck_assert_double_eq_tol(a.result.transmitted, 0, 1e-12);
         free_absorbed(&a);
     }
 }
 
-/* Light in a closed cup that reflects all ends on the sphere or outside, whatever its walls do. */
+/* A closed cup reflects all. Light in it ends on the sphere or outside, whatever its walls do. */
 TEST(white_walls_absorb_nothing) {
     const double one[][4] = {{0, 0, .6, .5}};
     OWNED_BED bed = bed_of(1, one);
@@ -151,8 +151,8 @@ TEST(white_walls_absorb_nothing) {
     free_absorbed(&a);
 }
 
-/* Kirchhoff: what a bed of one temperature sends out through its open face, over what a black face would, is the mean
- * of what it absorbs of light from all sides, by the cosine law. */
+/* By Kirchhoff's law: take the power that a bed of one temperature sends out through its open face, over that of a
+ * black face. This is the mean fraction that the bed absorbs of light from all sides, by the cosine law. */
 TEST(emissivity_of_a_face_is_its_mean_absorptance) {
     OWNED_BED bed = packing(40, .5, .5, .5, 9, true);
     const double side = bed.period[0], floor_at = -.5;

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: MIT */
 #include "matrices.h"
 
-/* A matrix of rows by hand. */
+/* Makes a matrix of rows that are given. */
 static struct matrix matrix_by_hand(uint32_t n, const double *r, const uint64_t *start, const uint32_t *col,
                                     const double *f, const fibrad_matrix_rule *rule) {
     OWNED fibrad_scene *scene = apart(n, r);
@@ -33,8 +33,8 @@ static void all_closed(const fibrad_factors *m) {
     }
 }
 
-/* The mean of rows and their transpose, entry by entry, before anything else is done to it: dense, [n][n];
- * halves (r NULL), or each by its area. */
+/* The mean of the rows and their transpose, entry by entry, before anything else changes it: dense, [n][n]. If r is
+ * NULL, the mean has halves; otherwise each counts by its area. */
 static double *mean_of(const fibrad_factors *raw, const double *area, const double *r) {
     double *mean = calloc((size_t)raw->n * raw->n, sizeof *mean);
     for (uint32_t i = 0; i < raw->n; i++)
@@ -53,7 +53,7 @@ static double *squares(const struct bed *bed, const double *emissivity) {
     return area;
 }
 
-/* What is received is never more than a sphere's own disc: sums stay at most 1 with exact areas. */
+/* No more is received than a sphere's own disc: with exact areas, sums are at most 1. */
 TEST(averaging_makes_rows_reciprocal) {
     struct bed beds[] = {packing(400, .8, 1.2, .55, 7, true), packing(400, .3, 1.5, .5, 8, false), lattice('f', 5)};
     for (size_t b = 0; b < 3; b++) {
@@ -76,7 +76,7 @@ TEST(averaging_makes_rows_reciprocal) {
                 worst_of(&off, fabs(matrix_factor(&out.factors, i, j) - mean[(size_t)i * n + j]));
         }
         ck_assert_double_le(off, 1e-12);
-        for (uint32_t i = 0; i < n; i++) /* every raw entry is there, and half its exchange at least */
+        for (uint32_t i = 0; i < n; i++) /* each raw entry is there, with half its exchange at least */
             for (uint64_t k = raw.factors.start[i]; k < raw.factors.start[i + 1]; k++)
                 ck_assert_double_ge(matrix_factor(&out.factors, i, raw.factors.col[k]),
                                     raw.factors.f[k] / 2 * (1 - 1e-12));
@@ -85,7 +85,7 @@ TEST(averaging_makes_rows_reciprocal) {
 }
 
 TEST(averaging_by_hand) {
-    const double r[] = {1, 2, 1}; /* areas 1 : 4 : 1; 0 sees 1, nobody sees 0 but 2, and 2 sees itself */
+    const double r[] = {1, 2, 1}; /* areas are 1 : 4 : 1; 0 sees 1, 2 alone sees 0, and 2 sees itself */
     struct matrix m =
         matrix_by_hand(3, r, (uint64_t[]){0, 1, 1, 3}, (uint32_t[]){1, 0, 2}, (double[]){.5, .25, .125}, NULL);
     static const uint32_t col[] = {1, 2, 0, 0, 2};
@@ -94,13 +94,13 @@ TEST(averaging_by_hand) {
     ck_assert_mem_eq(m.factors.start, ((uint64_t[]){0, 2, 3, 5}), 4 * sizeof(uint64_t));
     ck_assert_mem_eq(m.factors.col, col, sizeof col);
     for (int k = 0; k < 5; k++) ck_assert_double_eq(m.factors.f[k], f[k]);
-    static const double escaped[] = {1 - .375, 1 - .0625, 1 - .25}; /* rows that met nothing: what is left */
+    static const double escaped[] = {1 - .375, 1 - .0625, 1 - .25}; /* their rows met no wall: the rest escapes */
     for (int i = 0; i < 3; i++) ck_assert_double_eq(m.factors.escaped[i], escaped[i]);
     matrix_free(&m);
 }
 
-/* Sphere 0 sees 25 others that do not see it, and nobody says what else is seen: closing gives the rest of each row to
- * the surroundings, whatever its error is. */
+/* Sphere 0 sees 25 others, which do not see it. Nothing tells what else they see. So closing gives the rest of each row
+ * to the surroundings, whatever its error is. */
 TEST(what_closing_changes) {
     enum { N = 26 };
     double r[N], f[N];
@@ -118,7 +118,7 @@ TEST(what_closing_changes) {
     }
 }
 
-/* Factors of 0 stand where they were. */
+/* Factors of 0 stay where they were. */
 TEST(averaging_nothing) {
     const double r[] = {1, 2};
     const fibrad_matrix_rule rules[] = {{0}, {.raw = 1}};
@@ -136,7 +136,7 @@ TEST(averaging_nothing) {
     for (uint32_t i = 0; i < 2; i++) ck_assert_double_eq(matrix_total(&m.factors, i), 1);
 }
 
-/* Entry by entry the formula of the header. */
+/* Each entry is that of the formula in the header. */
 TEST(averaging_entry_by_entry) {
     OWNED_BED bed = packing(120, .3, 1.5, .5, 9, false);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -154,8 +154,8 @@ TEST(averaging_entry_by_entry) {
     ck_assert_uint_lt(wanted, 2 * raw.factors.start[bed.n]);
 }
 
-/* The estimate follows from how far the mean is off the raw row, and is half the raw one at least; rows that are
- * symmetric by themselves keep theirs. */
+/* The estimate follows from the difference between the mean and the raw row, and is at least half the estimate of the
+ * raw row. Rows that are symmetric by themselves keep their estimates. */
 TEST(errors_of_averaged_rows) {
     OWNED_BED bed = packing(120, .3, 1.5, .5, 9, false);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -179,7 +179,7 @@ TEST(errors_of_averaged_rows) {
     for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq(kept.factors.error[i], raw.factors.error[i]);
 }
 
-/* Points err by their number, and a cutoff opens rows that others close. */
+/* Rows by points err by the number of points, and a cutoff opens rows that closing then closes. */
 TEST(limiting_keeps_reciprocity) {
     OWNED_BED bed = packing(400, .8, 1.2, .58, 7, true);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -192,7 +192,7 @@ TEST(limiting_keeps_reciprocity) {
         for (uint32_t j = 0; j < bed.n; j++) sum += mean[(size_t)i * bed.n + j];
         worst_of(&above, sum - 1);
     }
-    ck_assert_double_gt(above, 1e-6); /* there is something to do */
+    ck_assert_double_gt(above, 1e-6); /* otherwise there is nothing to limit */
     all_closed(&limited.factors);
     ck_assert_double_le(reciprocity(&limited), 1e-14);
     for (uint32_t i = 0; i < bed.n; i++)
@@ -201,7 +201,8 @@ TEST(limiting_keeps_reciprocity) {
     ck_assert_double_le(moved, above);
 }
 
-/* A_i emissivity_i D_ij is symmetric, each row counts by its partner's area, and rows that were closed are. */
+/* A_i emissivity_i D_ij is symmetric. Each row counts by the area of its partner. Rows that were closed remain
+ * closed. */
 TEST(exchange_factors_are_balanced) {
     OWNED_BED bed = packing(150, .5, 1.5, .5, 3, true);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -231,19 +232,19 @@ TEST(exchange_factors_are_balanced) {
         }
         ck_assert_double_eq_tol(sum, matrix_sum(&raw.factors, i), .2);
     }
-    ck_assert(moved > 1e-4 && moved < .5);                /* the mean is scaled, by little */
-    OWNED_MATRIX view = matrix_of(scene, &rows, 1, NULL); /* what the same rows would be as view factors */
+    ck_assert(moved > 1e-4 && moved < .5);                /* balancing scales the mean by little */
+    OWNED_MATRIX view = matrix_of(scene, &rows, 1, NULL); /* the same rows, taken as view factors */
     ck_assert(!matrix_same_bits(&view.factors, &out.factors));
 }
 
-/* S_01 = (4 (3 A_0 D_01) + A_1 D_10)/5 with A = 4 pi (1, 4), in units of the largest emissivity, and what rows leave
- * over are closed by factors u: D_01 u_0 u_1, and u_0 times the rest of row 0. Where all emissivities are equal, areas
- * alone count. */
+/* S_01 = (4 (3 A_0 D_01) + A_1 D_10)/5 with A = 4 pi (1, 4), in units of the largest emissivity. Factors u close what
+ * rows leave over: D_01 becomes D_01 u_0 u_1, and the rest of row 0 is multiplied by u_0. If all emissivities are
+ * equal, areas alone count. */
 TEST(exchange_by_hand) {
     const double r[] = {1, 2}, emissivity[] = {.9, .3};
     const uint64_t start[] = {0, 2, 4};
     const uint32_t col[] = {0, 1, 0, 1};
-    const double f[] = {.2, .4, .3, .25}; /* 3 x 1 x .4 = 1.2, and 4 x .3 = 1.2: reciprocal, as they are to stay */
+    const double f[] = {.2, .4, .3, .25}; /* 3 x 1 x .4 = 1.2 and 4 x .3 = 1.2: they are reciprocal, and stay so */
     struct matrix m = matrix_by_hand(2, r, start, col, f, &(fibrad_matrix_rule){.emissivity = emissivity});
     ck_assert_uint_eq(m.factors.start[2], 4);
     for (int k = 0; k < 4; k++) ck_assert_double_eq_tol(m.factors.f[k], f[k], 2e-15);
@@ -265,8 +266,8 @@ TEST(exchange_by_hand) {
     matrix_free(&m);
 }
 
-/* Spheres of emissivity 0 between two others: their rows stay empty, the others are to the bit what they are without
- * them; also where little entries are dropped, and as raw rows. */
+/* Spheres of emissivity 0 stand between two others. Their rows stay empty, and the other rows have the bits that they
+ * have without them. This holds also if little entries are dropped, and for raw rows. */
 TEST(empty_rows_stay_empty) {
     const double r[] = {1, 2}, emissivity[] = {.9, .3}, f[] = {.2, .5, .2, .25};
     const double r_all[] = {5, 1, .3, 2}, emissivity_all[] = {0, .9, 0, .3};
@@ -291,7 +292,7 @@ TEST(empty_rows_stay_empty) {
         }
 }
 
-/* All reflect: a matrix of empty rows. */
+/* All spheres reflect all light, so that all rows of the matrix are empty. */
 TEST(all_rows_empty) {
     const double r[] = {1, 2}, emissivity[] = {0, 0};
     OWNED_MATRIX m = matrix_by_hand(2, r, (uint64_t[]){0, 0, 0}, (uint32_t[]){0}, (double[]){0},
@@ -300,7 +301,7 @@ TEST(all_rows_empty) {
     ck_assert(m.factors.start[2] == 0 && reciprocity(&m) == 0);
 }
 
-/* Rows of a walled bed with reflectors, made reciprocal and closed. */
+/* The rows of a walled bed with reflectors become reciprocal and closed. */
 TEST(reflectors_in_a_walled_bed) {
     OWNED_BED bed = packing(120, .5, 1.5, .45, 3, false);
     const fibrad_body floor_plane = plane_at(2, 0, -100);
@@ -345,11 +346,11 @@ TEST(dropping_keeps_the_books) {
         ck_assert_uint_lt(m.factors.start[bed.n], last);
         last = m.factors.start[bed.n];
         if (t == 0) ck_assert(matrix_same_bits(&m.factors, &before.factors));
-        if (t == 3) ck_assert_uint_eq(last, bed.n); /* all gone: each row keeps what it had in F_ii */
+        if (t == 3) ck_assert_uint_eq(last, bed.n); /* all are dropped: each row keeps its sum in F_ii */
     }
 }
 
-/* A threshold that equals an entry: both of a pair must go, or neither. */
+/* The threshold equals an entry. Either both entries of a pair are dropped, or neither. */
 TEST(dropping_at_the_threshold) {
     uint32_t gone = 0, stayed = 0;
     for (uint64_t k = 0; k < 2000; k++) {
@@ -369,11 +370,11 @@ TEST(dropping_at_the_threshold) {
         ck_assert((m.factors.col[0] == 1) == (m.factors.col[1] == 0));
         *(m.factors.col[0] == 1 ? &stayed : &gone) += 1;
     }
-    ck_assert_uint_gt(stayed, 1000); /* the other one is above the threshold, or the entry itself is not below */
+    ck_assert_uint_gt(stayed, 1000); /* the other entry is above the threshold, or this one is not below it */
     ck_assert_uint_eq(stayed + gone, 2000);
 }
 
-/* A star: what its centre gives away cannot be given back to the leaves by any scaling. */
+/* The spheres form a star. No scaling can give back to the leaves what the centre gives away. */
 TEST(dropping_where_no_scaling_exists) {
     const double r[] = {1, 1, 1, 1};
     static const uint64_t start[] = {0, 2, 5, 7, 8};
@@ -388,7 +389,7 @@ TEST(dropping_where_no_scaling_exists) {
     ck_assert_double_eq(matrix_factor(&m.factors, 0, 2), 0);
 }
 
-/* Pairs of which one factor is missing, on either side of the diagonal: it counts in full. */
+/* One factor of a pair is missing, on either side of the diagonal. The other counts in full. */
 TEST(lone_factors_are_not_reciprocal) {
     const double r[] = {1, 2, 1};
     const fibrad_matrix_rule raw = {.raw = 1};
@@ -397,11 +398,11 @@ TEST(lone_factors_are_not_reciprocal) {
     ck_assert_double_eq_tol(reciprocity(&above), .3, 1e-16); /* F_02 */
     struct matrix below =
         matrix_by_hand(3, r, (uint64_t[]){0, 1, 2, 3}, (uint32_t[]){1, 0, 1}, (double[]){.2, .05, .4}, &raw);
-    ck_assert_double_eq_tol(reciprocity(&below), .1, 1e-16); /* F_21, a quarter of it by area */
+    ck_assert_double_eq_tol(reciprocity(&below), .1, 1e-16); /* F_21, of which a quarter counts by area */
     struct matrix diagonal =
         matrix_by_hand(2, r, (uint64_t[]){0, 2, 4}, (uint32_t[]){0, 1, 0, 1}, (double[]){.5, .2, .05, .125}, &raw);
     ck_assert_double_eq(reciprocity(&diagonal), 0);
-    const double emissivity[] = {1, .5, 1}; /* 4 x .5 x .1 = .2: reciprocal with these alone */
+    const double emissivity[] = {1, .5, 1}; /* 4 x .5 x .1 = .2: reciprocal with these emissivities alone */
     const double grey[] = {.2, .1};
     OWNED_MATRIX exchange = matrix_by_hand(2, r, (uint64_t[]){0, 1, 2}, (uint32_t[]){1, 0}, grey,
                                            &(fibrad_matrix_rule){.raw = 1, .emissivity = emissivity});
@@ -411,7 +412,7 @@ TEST(lone_factors_are_not_reciprocal) {
     matrix_free(&diagonal);
 }
 
-/* Raw rows are what they were, in the order of the spheres, and what is missing is empty. */
+/* Raw rows stay as they were, in the order of the spheres. Missing rows are empty. */
 TEST(raw_rows_stay_as_they_are) {
     OWNED_BED bed = packing(100, .5, 1.5, .4, 3, false);
     const fibrad_body floor_plane = plane_at(2, 0, -100);

@@ -7,8 +7,8 @@ static void at_once(void *calls, uint32_t pieces, fibrad_piece *piece, void *job
     for (uint32_t k = 0; k < pieces; k++) piece(job, pieces - 1 - k);
 }
 
-/* The matrix of `tasks` tasks, every one but each `left`-th averaged here, backwards or by several threads, which then
- * do all the rest, too. */
+/* Makes a matrix of `tasks` tasks. This function averages all but each `left`-th task, backwards or in several threads.
+ * Closing does the tasks that are left. */
 static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                               fibrad_matrix_rule rule, uint32_t tasks, uint32_t left, bool threads) {
     struct matrix m = {NULL, {0}};
@@ -95,7 +95,7 @@ TEST(calls_out_of_order) {
         const double first = factors.f[0];
         ck_assert_int_eq(fibrad_matrix_close(m), FIBRAD_E_STATE);
         if (!raw) ck_assert_int_eq(fibrad_matrix_average(m, 0), FIBRAD_E_STATE);
-        ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_OK); /* as often as one likes */
+        ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_OK); /* this may be repeated */
         ck_assert_double_eq(factors.f[0], first);
         ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_OK);
         ck_assert_int_eq(fibrad_matrix_read(m, NULL), FIBRAD_E_ARGUMENT);
@@ -109,7 +109,7 @@ TEST(calls_out_of_order) {
     ck_assert_int_eq(fibrad_matrix_reciprocity(NULL, &largest), FIBRAD_E_ARGUMENT);
 }
 
-/* A row that is missing or there twice, in one collection or in two, is named, and there is no matrix. */
+/* If a row is missing, or occurs twice in one collection or in two, its sphere is named, and there is no matrix. */
 TEST(rows_missing_or_double) {
     const double r[] = {1, 2, 1, 1, 3}, f = .5;
     OWNED fibrad_scene *scene = apart(5, r);
@@ -153,7 +153,7 @@ TEST(rows_missing_or_double) {
     ck_assert_uint_eq(empty.factors.start[5], 0);
 }
 
-/* At every offset the same bits, nothing written beside the block, and a byte less is too little. */
+/* At each offset the matrix has the same bits, nothing is written beside the block, and a byte less is too little. */
 TEST(matrix_blocks_of_any_alignment) {
     OWNED_BED bed = packing(60, .5, 1.5, .5, 3, true);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -165,7 +165,7 @@ TEST(matrix_blocks_of_any_alignment) {
     for (int k = 0; k < 4; k++) {
         OWNED_MATRIX expected = matrix_of(scene, &rows, 1, &rules[k]);
         const size_t size = fibrad_matrix_size(scene, &rows, 1, &rules[k]);
-        /* what the header says of it */
+        /* the header promises this */
         ck_assert_uint_le(size, (k == 1 ? 12 : 36) * rows.entries + (k == 1 ? 60 : 120) * bed.n + 2048);
         OWNED unsigned char *block = block_of(size + 128);
         for (size_t offset = 0; offset < 64; offset++) {
@@ -279,14 +279,14 @@ TEST(bad_rows_are_refused) {
     bad = (fibrad_row){.sphere = 3, .escaped = 1}; /* nothing seen */
     ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 0), FIBRAD_OK);
     double whole[] = {1 + 1e-15, 0};
-    bad = (fibrad_row){.sphere = 4, .col = col, .f = whole, .length = 2}; /* above 1 by rounding, and nothing */
+    bad = (fibrad_row){.sphere = 4, .col = col, .f = whole, .length = 2}; /* above 1 by rounding; 0 */
     ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 0), FIBRAD_OK);
     ck_assert(rows.count == 4 && rows.entries == 6);
     fibrad_rows_clear(NULL);
 }
 
-/* Rows by the kernel and rows added come out alike, with one and the other in one collection, which is then emptied and
- * used again without more memory. */
+/* Rows that the kernel computes and rows that are added give the same matrix, also both in one collection. The
+ * collection is then emptied and used again without more memory. */
 TEST(rows_added_are_rows_computed) {
     OWNED_BED bed = packing(50, .5, 1.5, .4, 3, false);
     const fibrad_body walls[] = {plane_at(2, 0, -100), plane_at(2, 1, 500)};
@@ -303,7 +303,7 @@ TEST(rows_added_are_rows_computed) {
             ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, i % 2 ? &row : &append), FIBRAD_OK);
             if (i % 2) ck_assert_int_eq(fibrad_rows_add(&mixed, &row, 2), FIBRAD_OK);
             if (i % 2) continue;
-            ck_assert_uint_eq(append.sphere, i); /* said of a row that is appended, too */
+            ck_assert_uint_eq(append.sphere, i); /* a row that is appended tells this, too */
             ck_assert(append.length > 0 && append.length < bed.n);
             ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
             ck_assert(same_bits_with(&append, &row, 2)); /* where it stands now */
@@ -323,8 +323,8 @@ TEST(rows_added_are_rows_computed) {
     }
 }
 
-/* Fixed memory: what a row lacks is said, nothing is lost or written beside the block, and with as much memory the row
- * goes in. At every offset of the block. */
+/* A collection in fixed memory says how much memory a row lacks. Nothing is lost or written beside the block. With that
+ * much memory the row is appended. This holds at each offset of the block. */
 TEST(collections_in_fixed_memory) {
     OWNED_BED bed = packing(40, .5, 1.5, .4, 3, false);
     OWNED fibrad_scene *scene = scene_of(&bed, 0);
@@ -403,7 +403,7 @@ TEST(collections_that_grow) {
     }
 }
 
-/* Rows come back as they went in, also empty ones, with columns that may be written. */
+/* Rows come back as they were appended, also empty ones. Their columns may be written. */
 TEST(rows_read_one_by_one) {
     uint32_t col[] = {3, 5, 9};
     double f[] = {.25, .125, .0625}, body[] = {.5};

@@ -1,4 +1,4 @@
-/* test_mesh.c - triangles in a scene: closed forms, planes and cylinders made of triangles, closure, soups.
+/* test_mesh.c - triangles in a scene: closed forms, planes and cylinders made of triangles, closure, random triangles.
  * SPDX-License-Identifier: MIT */
 #include "scenes.h"
 #include "meshes.h"
@@ -36,7 +36,7 @@ static double solid_angle(double v[3][3]) {
     return 2 * fabs(atan2(volume, r[0] * r[1] * r[2] + dot[0] * r[2] + dot[1] * r[0] + dot[2] * r[1]));
 }
 
-/* A triangle whose plane does not cut the sphere: F is its solid angle over 4 pi. */
+/* The plane of a triangle does not cut the sphere. So F is the solid angle of the triangle over 4 pi. */
 TEST(a_sphere_and_a_triangle) {
     double square = 0, worst[3] = {0};
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
@@ -84,7 +84,8 @@ TEST(a_sphere_and_a_triangle) {
     ck_assert_double_le(worst[2], 4e-4);
 }
 
-/* Spheres behind a large screen are too small for points of the window; what is seen of them goes to the screen. */
+/* Spheres behind a large screen are too small for points of the window. What the sphere sees of them goes to the
+ * screen. */
 TEST(small_spheres_behind) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     OWNED struct mesh *mesh = mesh_new();
@@ -120,7 +121,7 @@ static struct bed crowd(uint32_t n, uint64_t seed) {
     return bed;
 }
 
-/* A box of twelve triangles is a box of planes; spheres are cut by it by 2 %. */
+/* A box of twelve triangles gives what a box of planes gives. It cuts spheres by 2 %. */
 TEST(a_box_of_triangles) {
     static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
     OWNED_BED bed = crowd(60, 3);
@@ -134,7 +135,7 @@ TEST(a_box_of_triangles) {
     OWNED_ROW row = row_of(bed.n), of_planes = row_of(bed.n);
     double spheres = 0, walls = 0, estimate = 0;
     for (int k = 0; k < 6; k++) ck_assert_double_eq_tol(fibrad_scene_body_area(scene, (uint32_t)k), 1, 1e-15);
-    /* work memory that is laid out for no triangles is laid out anew */
+    /* this work memory was laid out without triangles, and is laid out anew */
     ck_assert_int_eq(fibrad_beam_row(other, &work, 0, NULL, &of_planes), FIBRAD_OK);
     for (uint32_t points = 0; points <= 256; points += 256)
         for (uint32_t i = 0; i < bed.n; i++) {
@@ -154,7 +155,7 @@ TEST(a_box_of_triangles) {
     ck_assert_double_le(sqrt(walls), 1.2e-3);
 }
 
-/* A tube with two lids of facets is nearly a cylinder with two planes; along x as along z. */
+/* A tube of facets with two lids is nearly a cylinder with two planes, along x as along z. */
 TEST(a_drum) {
     OWNED_BED bed = bed_of(0, NULL);
     srand(11);
@@ -206,7 +207,7 @@ TEST(a_drum) {
     }
 }
 
-/* A plane within a box that poles of a mesh stand through: what is beyond plays no part. */
+/* A plane lies within a box, and tubes of a mesh stand through it. What is beyond the plane plays no part. */
 TEST(tubes_through_walls) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{.2, .5, .5, .1}, {.75, .5, .4, .12}});
     fibrad_scene *scene[2];
@@ -234,8 +235,8 @@ TEST(tubes_through_walls) {
     for (int k = 0; k < 2; k++) row_free(&row[k]), free(scene[k]);
 }
 
-/* An open mesh within planes or a cylinder: windows of which so little is open that no point lies there give it to what
- * lies behind, so that sums are 1, and walls get what they get by points. */
+/* An open mesh lies within planes or a cylinder. Some windows have so little that is open that no point lies there.
+ * They give it to what lies behind, so that sums are 1, and walls get what they get by points. */
 TEST(open_meshes_within_walls) {
     OWNED_BED bed = crowd(150, 11);
     OWNED struct mesh *mesh = mesh_new();
@@ -274,7 +275,8 @@ TEST(open_meshes_within_walls) {
 
 /* ---- sides ------------------------------------------------------------------------------------------------------- */
 
-/* A plate that nobody's back faces a sphere ends the row and is named; with a body of its own it takes its part. */
+/* A plate faces a sphere with its back, which belongs to no body. The row ends, and the fault names the plate. If the
+ * back has a body of its own, this takes its part. */
 TEST(sides_of_nobody) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     OWNED struct mesh *mesh = mesh_new();
@@ -302,7 +304,7 @@ TEST(sides_of_nobody) {
     ck_assert_uint_eq(work.triangle, 1);
     fibrad_side_view view[2];
     uint32_t triangle = 0;
-    for (uint32_t place = 0; place < 2; place++) { /* the first one sees the back of the other */
+    for (uint32_t place = 0; place < 2; place++) { /* the first sphere sees the back of the other plate */
         const int status = fibrad_triangle_views(scene, place, 1000, &triangle, view);
         ck_assert_uint_eq(triangle, 1);
         ck_assert(status == FIBRAD_E_BACK || (status == FIBRAD_OK && isnan(view[1].spheres) && view[0].spheres == 0));
@@ -342,8 +344,8 @@ TEST(bad_triangles_are_named) {
     ck_assert_uint_eq(fault.triangle, UINT32_MAX);
 }
 
-/* A triangle of some size at (x, 0, z) about a sphere of radius 1 at the origin, repeated with a period along some
- * axes: the status of its scene, and the triangle at fault. */
+/* A triangle of some size is at (x, 0, z) about a sphere of radius 1 at the origin. It is repeated with a period along
+ * some axes. Returns the status of its scene, and the triangle at fault. */
 static int status_of(double size, double x, double z, const double period[3], fibrad_scene **scene,
                      uint32_t *triangle) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
@@ -361,7 +363,7 @@ static int status_of(double size, double x, double z, const double period[3], fi
     return status;
 }
 
-/* Rows of the sphere of a scene by all methods, which come to an end and add up to one. */
+/* Checks that rows of the sphere of a scene by all methods come to an end and add up to one. */
 static void expect_rows(const fibrad_scene *scene) {
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(1);
@@ -374,8 +376,8 @@ static void expect_rows(const fibrad_scene *scene) {
     ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
 }
 
-/* Triangles have the bounds of spheres: too small, too far, or too many at one place they are refused, at the bounds
- * all ends well. */
+/* Triangles have the bounds that spheres have. If they are too small, too far away, or too many at one place, they are
+ * refused. At the bounds they are accepted, and rows come to an end. */
 TEST(triangles_have_bounds) {
     static const double small[] = {1e-14, 1e-30, 1e-37, 1e-50, 1e-200},
                         short_period[] = {1e-3, 1e-6, 1e-8, 1e-11, 1e-200};
@@ -422,7 +424,7 @@ TEST(triangles_have_bounds) {
     }
 }
 
-/* Fins as tall as can be, between which lines go up for ever. */
+/* Fins are as tall as they may be. Between them lines go up for ever. */
 TEST(tall_fins_are_left) {
     static const double top[] = {1e2, 1e4, 1e6};
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
@@ -443,7 +445,7 @@ TEST(tall_fins_are_left) {
 /* ---- rays, periods, bits ------------------------------------------------------------------------------------------
  */
 
-/* The nearest triangle of many, by the tree and one by one. */
+/* The nearest of many triangles is found by the tree and one by one. */
 TEST(rays_through_the_tree) {
     OWNED struct mesh *mesh = mesh_new();
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, .01}});
@@ -463,7 +465,7 @@ TEST(rays_through_the_tree) {
         uint32_t first = UINT32_MAX;
         fibrad_direction((uint32_t)ray, 2000, w);
         for (int a = 0; a < 3; a++) o[a] = uniform(-2, 2);
-        for (uint32_t t = 0; t < mesh->triangles.n; t++) { /* Moeller and Trumbore */
+        for (uint32_t t = 0; t < mesh->triangles.n; t++) { /* the method of Moeller and Trumbore */
             const double *p = mesh->at[mesh->corner[t][0]], *q = mesh->at[mesh->corner[t][1]],
                          *r = mesh->at[mesh->corner[t][2]];
             double e[3], f[3], s[3], h[3], g[3];
@@ -490,7 +492,7 @@ TEST(rays_through_the_tree) {
     ck_assert(met > 900 && backs > met / 3 && backs < 2 * met / 3);
 }
 
-/* A periodic bed with a tube is one of many copies of both. */
+/* A periodic bed with a tube gives what many copies of both give. */
 TEST(periodic_meshes) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{.2, .2, .3, .19}, {.25, .75, .7, .2}}), many = bed_of(0, NULL);
     OWNED struct mesh *mesh = mesh_new(), *copies = mesh_new();
@@ -512,7 +514,7 @@ TEST(periodic_meshes) {
     ck_assert_int_eq(fibrad_beam_row(other, &work, middle, &rule, &far), FIBRAD_OK);
     ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
     ck_assert_double_gt(row.body[0], .2);
-    ck_assert_double_eq_tol(row.body[0] + row.escaped, far.body[0] + far.escaped, .02); /* spheres farther than FAR */
+    ck_assert_double_eq_tol(row.body[0] + row.escaped, far.body[0] + far.escaped, .02); /* but for spheres beyond FAR */
     double of_first = 0;
     for (uint32_t k = 0; k < far.length; k++) of_first += far.col[k] % 2 == 0 ? far.f[k] : 0;
     ck_assert_double_eq_tol(row_factor(&row, 0), of_first, .01);
@@ -522,7 +524,7 @@ TEST(periodic_meshes) {
     ck_assert_double_eq_tol(row_factor(&cast, 1), row_factor(&row, 1), 3e-3);
 }
 
-/* What FIBRAD_WORK_TRIANGLES says is enough. */
+/* The size FIBRAD_WORK_TRIANGLES is enough. */
 TEST(work_among_triangles) {
     static unsigned char block[FIBRAD_WORK_BYTES(64, 64) + FIBRAD_WORK_TRIANGLES + 64];
     static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
@@ -538,8 +540,8 @@ TEST(work_among_triangles) {
     }
 }
 
-/* A sphere that sees all others, as many as work memory begins with, and three meshes besides: there are more entries
- * than spheres, in memory that grows and in as much as FIBRAD_WORK_BYTES says. */
+/* A sphere sees all others, which are as many as work memory begins with, and three meshes besides. So there are more
+ * entries than spheres. This works in memory that grows, and in as much as FIBRAD_WORK_BYTES says. */
 TEST(more_entries_than_spheres) {
     enum { N = 1024 };
     static unsigned char block[FIBRAD_WORK_BYTES(512, N) + FIBRAD_WORK_TRIANGLES];
@@ -573,8 +575,8 @@ TEST(more_entries_than_spheres) {
     work_free(&work[0]);
 }
 
-/* Soups of triangles and spheres, slivers, doubled and coplanar ones, corners on spheres: sums are 1, beams and rays
- * agree, and bits are the same in every instruction set and for triangles in any order. */
+/* Triangles and spheres lie at random, with slivers, doubled and coplanar triangles, and corners on spheres. Sums are
+ * 1, beams and rays agree, and bits are the same in each instruction set and for triangles in any order. */
 TEST(soups) {
     srand(9);
     int isa[ISAS_MOST];
@@ -627,7 +629,7 @@ TEST(soups) {
     }
 }
 
-/* Exchange in a closed grey box of triangles is that of planes, and rows of meshes are. */
+/* Exchange in a closed grey box of triangles is that in a box of planes, and so are the rows of meshes. */
 TEST(grey_meshes) {
     static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1}, wall[6] = {.8, .3, .5, 1, .2, .6};
     OWNED_BED bed = crowd(30, 8);

@@ -1,5 +1,5 @@
-/* test_mesh_files.c - walls of triangles from files: read, welded, which side is which, --wall mesh:FILE.
- * SPDX-License-Identifier: MIT */
+/* test_mesh_files.c - walls of triangles from files: how they are read and welded, which side is the wall, --wall
+ * mesh:FILE. SPDX-License-Identifier: MIT */
 #include "bed/wall_option.h"
 #include "mesh/meshes.h"
 #include "plot/plot_slice.h"
@@ -120,10 +120,10 @@ TEST(corners_are_welded) {
 TEST(what_is_not_sound_is_counted) {
     struct soup soup = cube();
     const double a[3] = {-4, -4, -4}, b[3] = {4, -4, -4}, middle[3] = {0, -4, -4}, far[3] = {0, -9, 0};
-    soup_add(&soup, a, b, b);      /* no corner of its own */
+    soup_add(&soup, a, b, b);      /* two of its corners are one */
     soup_add(&soup, a, middle, b); /* no area */
     soup_add(&soup, soup.corner[3][1], soup.corner[3][0], soup.corner[3][2]);
-    soup_add(&soup, a, b, far); /* a fin at an edge of two */
+    soup_add(&soup, a, b, far); /* a fin at an edge of two triangles */
     struct surface s = surface_of(&soup, 1);
     ck_assert_uint_eq(s.flat, 2);
     ck_assert_uint_eq(s.twice, 1);
@@ -135,7 +135,7 @@ TEST(what_is_not_sound_is_counted) {
 
 /* ---- sides ------------------------------------------------------------------------------------------------------ */
 
-/* Meshes of one soup, with sides for a bed of spheres of radius 0.4. */
+/* Makes the meshes of one soup of triangles, with sides for a bed of spheres of radius 0.4. */
 static struct meshes faced(const struct soup *soup, enum mesh_sides sides, uint32_t n, double centre[3][8]) {
     static double r[8] = {.4, .4, .4, .4, .4, .4, .4, .4};
     const struct mesh_file file = {.path = write_solid("m.stl", soup), .sides = sides, .scale = 1};
@@ -146,7 +146,8 @@ static struct meshes faced(const struct soup *soup, enum mesh_sides sides, uint3
     return meshes;
 }
 
-/* Whether the side of a triangle that a point is on is the body's, and the other is none. */
+/* Checks that the side of a triangle on which a point lies belongs to the body, and that the other side belongs to
+ * none. */
 static void assert_side(const struct meshes *meshes, uint32_t t, const double point[3]) {
     const struct surface *s = &meshes->mesh[0].surface;
     const double *at = surface_corner(s, t, 0);
@@ -157,7 +158,7 @@ static void assert_side(const struct meshes *meshes, uint32_t t, const double po
     ck_assert_uint_eq(meshes->back[t], height > 0 ? FIBRAD_NO_BODY : 0);
 }
 
-/* A cube whose triangles are wound at random; spheres within, or around it. */
+/* The triangles of a cube are wound at random. Spheres lie within it, or around it. */
 TEST(sides_of_a_cube) {
     for (int trial = 0; trial < 40; ++trial) {
         struct soup soup = cube();
@@ -194,14 +195,14 @@ TEST(sides_of_a_funnel) {
         soup_flip(&soup, 0);
         double centre[3][8] = {{1, 1.5, 3, -1, 1, 1, 1, 2}, {2, 2, 2, 2, 4, 0, 2, 2}, {2, 1, 4, 4, 4, 4, 6, -1}};
         OWNED_BY(meshes_free)
-        struct meshes meshes = faced(&soup, SIDES_AUTO, 8, centre); /* one above it, one below its end, too */
+        struct meshes meshes = faced(&soup, SIDES_AUTO, 8, centre); /* one lies above it, one below its end */
         for (uint32_t t = 0; t < soup.n; ++t) assert_side(&meshes, t, (const double[]){1, 2, 2.5});
         ck_assert_uint_eq(meshes.mesh[0].surface.components, 1);
         ck_assert_uint_eq(meshes.mesh[0].surface.open, 48);
     }
 }
 
-/* A tube in a box, of one file: its outside, the box's inside. */
+/* One file has a tube in a box. The outside of the tube and the inside of the box are the wall. */
 TEST(sides_of_a_tube_in_a_box) {
     for (int trial = 0; trial < 20; ++trial) {
         struct soup soup = cube();
@@ -254,7 +255,7 @@ TEST(sides_that_are_asked_for) {
 
 /* ---- the option ------------------------------------------------------------------------------------------------- */
 
-/* "WORD FILE REST" without blanks. */
+/* Returns "WORD FILE REST" without blanks. */
 static const char *wall_of(const char *before, const char *path, const char *after) {
     static char text[4][500];
     static int next;
@@ -294,7 +295,7 @@ TEST(names_of_meshes) {
     ck_assert_int_eq(walls_option("mesh:", &(struct wall_options){0}), 2);
 }
 
-/* An array of doubles of a .vtp, [n] at least. */
+/* Reads an array of doubles of a .vtp, which has at least n elements. */
 static void vtp_array(const char *path, const char *name, double *values, size_t n) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     char key[60], *text = read_file(path);
@@ -315,7 +316,7 @@ static void vtp_array(const char *path, const char *name, double *values, size_t
     free(text);
 }
 
-/* The sum of fluxes, or what else is of an area, over n triangles from `first` on. */
+/* The sum of fluxes, or of another quantity per area, over n triangles from `first` on. */
 static double gain_of(const char *path, const char *name, size_t first, size_t n) {
     double flux[200], area[200], sum = 0;
     vtp_array(path, name, flux, first + n);
@@ -326,7 +327,7 @@ static double gain_of(const char *path, const char *name, size_t first, size_t n
 
 #define BED "x,y,z,r,T\n-1,0,0,1,500\n1.1,0,0,1,600\n0,2,1,.5,700\n"
 
-/* A closed mesh about a bed gets what six planes get; its triangles, as ParaView reads them. */
+/* A closed mesh about a bed gets what six planes get. Its triangles are written as ParaView reads them. */
 TEST(rows_in_a_closed_mesh) {
     struct soup soup = cube();
     soup_flip(&soup, 0);
@@ -344,7 +345,7 @@ TEST(rows_in_a_closed_mesh) {
     ck_assert_double_eq_tol(value_of("wall_tub_area"), 384, 1e-3);
     ck_assert_double_eq(value_of("wall_tub_triangles"), 12);
     ck_assert_str_eq(said, "");
-    /* what it sees of spheres is what they see of it */
+    /* the mesh sees of spheres what spheres see of it */
     ck_assert_double_eq_tol(gain_of(out, "F_spheres", 0, 12) / 384, 1 - value_of("wall_tub_to_walls"), 1e-3);
     ck_assert_double_eq(gain_of(out, "F_surroundings", 0, 12), 0);
 
@@ -360,7 +361,7 @@ TEST(rows_in_a_closed_mesh) {
     expect_message("--wall-vtp", "no --wall mesh:FILE");
 }
 
-/* A cube in the slice of a picture: its outline, in pieces of the triangles. */
+/* A cube in the slice of a picture has its outline there, in pieces that belong to the triangles. */
 TEST(slice_through_a_mesh) {
     const struct soup soup = cube();
     struct wall_options options = {0};
@@ -394,7 +395,7 @@ TEST(slice_through_a_mesh) {
     walls_free(&options);
 }
 
-/* What is seen from behind, and what lies there. */
+/* The program names backs that are seen, and spheres that lie behind them. */
 TEST(backs_of_meshes) {
     struct soup soup = {0};
     soup_box(&soup, (const double[]){-3, -3, -3}, (const double[]){0, 3, 3});
@@ -419,7 +420,7 @@ TEST(backs_of_meshes) {
 
 /* ---- heat of triangles ------------------------------------------------------------------------------------------ */
 
-/* A line of numbers for each of some triangles. */
+/* Writes a file with a line of numbers for each triangle. */
 static const char *write_column(const char *name, const char *head, int n, double first, double step) {
     const char *path = in_folder(name);
     FILE *file = fopen(path, "w");
@@ -432,7 +433,7 @@ static const char *write_column(const char *name, const char *head, int n, doubl
 
 #define STATE "--emissivity", "0.7", "--temperature", "T", "--wall-emissivity", "0.6", "--wall-vtp"
 
-/* What triangles gain adds up to what the summary says of their walls. */
+/* The gains of triangles add up to the powers of their walls in the summary. */
 TEST(heat_of_triangles) {
     const struct soup soup = cube();
     const char *bed = write_file("bed.csv", BED), *box = write_solid("box.stl", &soup), *out = in_folder("q.vtp");
@@ -448,7 +449,7 @@ TEST(heat_of_triangles) {
     SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ":both"), "--wall-temperature", "400",
             "--ambient", "300", STATE, out);
     ck_assert_double_eq_tol(gain_of(out, "flux_W_m2", 0, 12) / value_of("wall_box_W"), 1, 1e-5);
-    const double outside = gain_of(out, "flux_front_W_m2", 0, 12); /* the cube's fronts are outside */
+    const double outside = gain_of(out, "flux_front_W_m2", 0, 12); /* the fronts of the cube face outwards */
     ck_assert_double_eq_tol(outside, .6 * 384 * 5.670374419e-8 * (pow(300, 4) - pow(400, 4)), 1e-3 * fabs(outside));
     vtp_array(out, "temperature_front_K", front, 12), vtp_array(out, "temperature_K", both, 12);
     for (int t = 0; t < 12; ++t) ck_assert(front[t] == 400 && both[t] == 400);
@@ -471,7 +472,7 @@ TEST(heat_of_triangles) {
     ck_assert_double_gt(gain_of(in_folder("t.0.vtp"), "flux_W_m2", 0, 12), 1);
 }
 
-/* Each triangle in four. */
+/* Cuts each triangle into four. */
 static void quarter(struct soup *soup) {
     static struct soup whole;
     whole = *soup;
@@ -484,7 +485,7 @@ static void quarter(struct soup *soup) {
     }
 }
 
-/* Fluxes of the triangles of a cube with one hot side come closer to those of many rays as there are more. */
+/* A cube has one hot side. With more rays the fluxes of its triangles come closer to those of many rays. */
 TEST(more_rays_for_triangles) {
     static struct soup soup;
     static double flux[3][768];
@@ -512,7 +513,7 @@ TEST(more_rays_for_triangles) {
     expect_message("--wall-rays", "0");
 }
 
-/* Triangles with temperatures from a file, in the order of the mesh's, whatever of it is left out. */
+/* A file has the temperatures of triangles, in the order of the mesh, whichever triangles the mesh leaves out. */
 TEST(temperatures_of_triangles) {
     struct soup soup = {0};
     const double flat[3] = {0, 0, 0};

@@ -16,8 +16,9 @@ static double exact(double r1, double r2, double gap) {
 
 static double relative(double value, double truth) { return fabs(value / truth - 1); }
 
-/* Values in 113-bit arithmetic from the integral over the distance of the discs, made by data/generate_pair_exact.c:
- * radius ratios to 1e4, gaps from 1e-300 to 1e12, overlaps to all but the centre. Both ways round, and reciprocity. */
+/* True values, which data/generate_pair_exact.c made in 113-bit arithmetic from the integral over the distance of the
+ * discs. Ratios of radii go to 1e4, gaps from 1e-300 to 1e12, and overlaps to nearly the centre. F is compared in both
+ * directions, and for reciprocity. */
 TEST(true_values) {
     FILE *file = fopen("tests/data/pair_exact.csv", "r");
     ck_assert_msg(file != NULL, "tests/data/pair_exact.csv: run the tests from the top of the tree");
@@ -40,9 +41,9 @@ TEST(closed_values) {
     const double pi = 3.14159265358979323846;
     ck_assert_double_le(relative(exact(1, 1, 0), 0.5 - 4 / (3 * pi)), 1e-15);
     ck_assert_double_le(relative(exact(1, 1, 0), 0.0755868184216124), 1e-14);
-    /* a small sphere that touches a plane sees it with one half of its directions */
+    /* a small sphere that touches a plane sees it in half of its directions */
     ck_assert_double_le(fabs(exact(1e-8, 1, 0) - 0.5), 1e-4);
-    /* overlap to (nearly) equal centres: all directions see the other sphere's half */
+    /* the spheres overlap to (nearly) equal centres: all directions see the other sphere's half */
     ck_assert_double_le(fabs(exact(1, 1, -2 + 1e-15) - 0.5), 1e-14);
     ck_assert_double_le(fabs(exact(1, 2, -2 + 1e-15) - 0.5), 1e-7);
 }
@@ -58,7 +59,7 @@ TEST(far_field) {
     ck_assert_double_le(exact(1e150, 1e-150, DBL_MAX), 0);
 }
 
-/* The polar-angle formula and the lens integral share neither variable nor integrand with the kernel's. */
+/* The polar-angle formula and the lens integral have neither the variable nor the integrand of the kernel's formula. */
 TEST(quadratures_of_gsl) {
     static const double radius[] = {1, 0.7, 0.1, 1e-3, 1e-4};
     static const double gap[] = {0, 1e-12, 1e-6, 1e-3, 0.1, 1, 6, 100, 1e6};
@@ -87,7 +88,7 @@ TEST(quadratures_of_gsl) {
 static const double scene[][3] = {{1, 1, 0},     {1, 0.3, 1e-12},  {0.7, 1.3, 1e-5}, {1e-4, 1, 0.3}, {2, 3, 1e8},
                                   {1, 1, -1e-9}, {1.5, 0.2, -0.1}, {1, 1, -1.9},     {3e3, 0.3, 40}, {1, 0.9999, 2}};
 
-/* Powers of two from 1e-144 to 1e144 change no bit. */
+/* Scaling by powers of two from 1e-144 to 1e144 changes no bit. */
 TEST(scaling_by_two) {
     for (size_t i = 0; i < sizeof scene / sizeof *scene; i++)
         for (int k = -480; k <= 480; k += 6) {
@@ -105,8 +106,8 @@ TEST(scaling_by_ten) {
         }
 }
 
-/* F falls with the gap, on both sides of contact and across it, in steps down to where its slope meets rounding, and
- * moves no more than the step allows: no jump. */
+/* F falls with the gap, on both sides of contact and across it. Steps go down to where the slope meets rounding. F
+ * changes by no more than the step allows, so it does not jump. */
 TEST(sweep_across_contact) {
     static const double radius[] = {1, 0.5, 0.01, 1e-4};
     for (size_t i = 0; i < sizeof radius / sizeof *radius; i++)
@@ -141,7 +142,8 @@ TEST(falls_with_the_gap) {
     }
 }
 
-/* At the ends of the range nothing leaves it. A sphere before a plane, or in it, sees it in half of all directions. */
+/* Results at the ends of the range stay within bounds. A sphere at a plane, or in it, sees it in half of all
+ * directions. */
 TEST(extremes) {
     const double large = 1e150, small = 1e-150, contact = exact(1, 1, 0);
     ck_assert_double_eq_tol(exact(large, large, 0), contact, 1e-15);

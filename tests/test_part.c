@@ -1,4 +1,4 @@
-/* test_part.c - rows of divided beds are those of the whole bed. SPDX-License-Identifier: MIT */
+/* test_part.c - the rows of divided beds are those of the whole bed. SPDX-License-Identifier: MIT */
 #include "part_beds.h"
 
 static double radius_most(const struct part *p) {
@@ -12,7 +12,7 @@ static double distance_of(const struct part *p, uint32_t i, uint32_t j) {
                 pow(way_along(p, 2, p->z[i], p->z[j]), 2));
 }
 
-/* Those within some distance of sphere i, in an order of their own. */
+/* Makes a part with the spheres within some distance of sphere i, in an order of its own. */
 static struct part part_near(const struct part *p, uint32_t i, double distance, uint32_t *own) {
     struct part near = part_room(p, p->n);
     for (uint32_t pass = 2; pass-- > 0;)
@@ -24,7 +24,7 @@ static struct part part_near(const struct part *p, uint32_t i, double distance, 
     return near;
 }
 
-/* Rows depend on what is near, to the bit, whatever else there is and in whatever order. */
+/* Rows depend on what is near alone, to the bit, whatever else there is and in whatever order. */
 LOOP_TEST(rows_depend_on_what_is_near, KINDS) {
     struct made m;
     make_kind(&m, &kinds[_i]);
@@ -50,7 +50,7 @@ LOOP_TEST(rows_depend_on_what_is_near, KINDS) {
     free_made(&m);
 }
 
-/* Displacements likewise. */
+/* The same holds for displacements. */
 TEST(displacements_depend_on_what_is_near) {
     struct made m;
     make_kind(&m, &kinds[3]);
@@ -58,7 +58,7 @@ TEST(displacements_depend_on_what_is_near) {
     double *e = emissivities_of(&m.part), cutoff = 4;
     OWNED_WORK work = work_growing();
     for (uint32_t i = 0; i < m.part.n; i++) {
-        if (m.part.z[i] > 1.2) continue; /* paths go to and fro between spheres and the wall */
+        if (m.part.z[i] > 1.2) continue; /* paths go back and forth between spheres and the wall */
         uint32_t own = UINT32_MAX;
         OWNED_PART near = part_near(&m.part, i, cutoff + radius_most(&m.part) + 1e-6, &own);
         OWNED fibrad_scene *little = part_scene(&near);
@@ -76,9 +76,9 @@ TEST(displacements_depend_on_what_is_near) {
     free_made(&m);
 }
 
-/* A periodic bed, and an open one with images of the same ids. Coordinates have few digits, so that images are where
- * they should be to the bit. Factors to all images of a sphere together are those to it: counts of points to the bit,
- * sums of paths to rounding. */
+/* A periodic bed is compared with an open one that has images of the same ids. Coordinates have few digits, so that
+ * images are where they should be to the bit. The sum of the factors to all images of a sphere is the factor to this
+ * sphere: counts of points to the bit, sums of paths to rounding. */
 TEST(images_are_spheres_of_the_same_id) {
     struct made m;
     make_kind(&m, &kinds[4]);
@@ -122,7 +122,7 @@ TEST(images_are_spheres_of_the_same_id) {
     free_made(&m);
 }
 
-/* Triangles beyond the cutoff are met where no sphere is on the way. */
+/* Rays meet triangles beyond the cutoff if no sphere is on the way. */
 TEST(far_triangles_are_met) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     OWNED struct mesh *mesh = mesh_new();
@@ -136,7 +136,7 @@ TEST(far_triangles_are_met) {
     }
 }
 
-/* Triangles that repeat where spheres do not are as good as their copies. */
+/* Triangles repeat where spheres do not. They give what their copies give. */
 TEST(triangles_repeat_alone) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{.3, .4, 0, .45}});
     double seen[2][METHODS];
@@ -161,11 +161,12 @@ TEST(triangles_repeat_alone) {
     }
     for (int method = 0; method < METHODS; method++) {
         ck_assert_double_gt(seen[0][method], method < 4 ? .1 : .03);
-        ck_assert_double_eq_tol(seen[0][method], seen[1][method], .01); /* those farther than FAR */
+        ck_assert_double_eq_tol(seen[0][method], seen[1][method], .01); /* up to spheres farther away than FAR */
     }
 }
 
-/* Lattices have spheres at equal depth and paths that meet two at once. Ids decide, not the order. */
+/* Lattices have spheres at equal depth, and paths that meet two spheres at once. Ids decide between them, not the
+ * order. */
 LOOP_TEST(ids_decide_among_equals, 3) {
     static const char lattices[] = {'p', 'i', 'f'};
     OWNED_BED bed = lattice(lattices[_i], 4.1);
@@ -185,7 +186,8 @@ LOOP_TEST(ids_decide_among_equals, 3) {
     }
 }
 
-/* Turned rows err in all ways: their mean over many turns comes to the fine row, each is off by what it says. */
+/* Turned rows err in all directions. Their mean over many turns comes to the fine row, and each is off by as much as it
+ * says. */
 LOOP_TEST(turned_rows_average_to_the_fine_one, 3) {
     enum { TURNS = 300 };
     OWNED_BED bed = packing(120, .5, 1, .45, 4, false);
@@ -213,14 +215,15 @@ LOOP_TEST(turned_rows_average_to_the_fine_one, 3) {
         const double typical = sqrt(square), ratio = sqrt(estimate) / typical;
         ck_assert_double_lt(row_distance(&mean, &fine), 4 * typical / sqrt(TURNS) + 1e-3);
         ck_assert_double_lt(row_distance(&mean, &fine), .35 * typical);
-        ck_assert_double_eq_tol(body, fine.body[0], 5e-3); /* sharing in bands errs by about 1/directions */
+        ck_assert_double_eq_tol(body, fine.body[0], 5e-3); /* sharing in bands has an error of about 1/directions */
         ck_assert_double_eq_tol(escaped, fine.escaped, 5e-3);
         ck_assert_msg(ratio > 1 && ratio < 4, "estimate over error: %g", ratio);
         ck_assert_int_lt(less, TURNS / 10);
     }
 }
 
-/* Turned directions need not pair off; the floor still has half of what a free sphere sends out, cut or not. */
+/* Turned directions need not form opposite pairs. The floor still has half of what a free sphere sends out, whether it
+ * cuts the sphere or not. */
 LOOP_TEST(a_floor_below_turned_directions, 2) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 3, 1}});
     const fibrad_body floor_below = plane_at(2, 0, 0);

@@ -1,4 +1,4 @@
-/* test_plot.c - pictures: all that is to be told is there, nothing lies outside. SPDX-License-Identifier: MIT */
+/* test_plot.c - pictures: they show all that they should, and nothing lies outside. SPDX-License-Identifier: MIT */
 #include <unistd.h>
 
 #include "plot/plot_bed.h"
@@ -21,7 +21,7 @@ static void remove_folder(void) {
 
 FIXTURE(make_folder, remove_folder)
 
-/* Draws by a function with its data, and returns the picture, to be freed. */
+/* Has a function draw its data, and returns the picture, which the caller frees. */
 typedef int draw_function(const struct output *output, const void *what);
 
 static char *drawn(draw_function *draw, const void *what) {
@@ -39,7 +39,7 @@ static char *drawn(draw_function *draw, const void *what) {
     return text;
 }
 
-/* All texts begin within the picture, and none at its very edge. */
+/* Checks that all texts begin within the picture, and none at its very edge. */
 static void assert_texts_inside(const char *svg) {
     int texts = 0;
     for (const char *g = svg; (g = strstr(g, "<g transform=\"translate(")) != NULL; ++g) {
@@ -65,7 +65,7 @@ static uint32_t count_of(const char *svg, const char *words) {
 
 static int draw_bed(const struct output *output, const void *what) { return plot_bed(output, "folder/bed.csv", what); }
 
-/* A picture of a bed of this size, in walls or not. */
+/* Makes a picture of a bed of this size, with or without walls. */
 static char *picture_of_bed(double size, bool walled) {
     OWNED_BED bed = packing(60, .4 * size, .6 * size, .4, 3, false);
     struct walls walls = {.count = walled ? 1 : 0, .body = {plane_at(2, 0, -2 * size)}};
@@ -79,7 +79,7 @@ static char *picture_of_bed(double size, bool walled) {
     return svg;
 }
 
-/* Beds in metres with grains of any size have axes with short numbers and names. */
+/* Beds in metres with grains of any size have axes with short numbers and fitting units. */
 LOOP_TEST(small_and_large_beds, 4) {
     static const struct {
         double size;
@@ -107,7 +107,8 @@ TEST(a_bed_between_walls) {
 
 static int draw_heat(const struct output *output, const void *what) { return plot_heat(output, "bed's.dump", what); }
 
-/* Three spheres in millimetres: what gains, what loses, and who else. */
+/* Three spheres have lengths in millimetres. The picture tells what gains power, what loses it, and who else takes
+ * part. */
 TEST(where_heat_goes) {
     OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1e-3}, {.003, 0, 0, 1e-3}, {0, 0, .004, 1e-3}});
     const double temperature[] = {300, 1200.5, 777}, power[] = {1.5, -4.25, .25};
@@ -134,13 +135,13 @@ TEST(where_heat_goes) {
                                        ">-0.125<"};
     for (size_t k = 0; k < sizeof told / sizeof *told; ++k) assert_tells(svg, told[k]);
     free(svg);
-    what.metres = 1e-3; /* the same lengths, of a file in millimetres */
+    what.metres = 1e-3; /* the same lengths, from a file in millimetres */
     svg = drawn(draw_heat, &what);
     assert_tells(svg, "layers of 2 ");
     assert_tells(svg, "x [\302\265m]");
     free(svg);
 
-    /* neither walls nor surroundings; nothing flows */
+    /* there are neither walls nor surroundings, and nothing flows */
     const double none[] = {0, 0, 0};
     what = (struct heat_shown){.bed = &bed,
                                .walls = &(struct walls){0},
@@ -156,8 +157,8 @@ TEST(where_heat_goes) {
     free(svg);
 }
 
-/* Names are shown as they are, and those of many walls stand aslant, apart from each other; temperatures that were
- * found are shown by height. */
+/* Names are shown as they are. Names of many walls stand aslant and apart from each other. Temperatures that were found
+ * are shown by height. */
 TEST(many_walls) {
     OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1}});
     static struct meshes meshes;

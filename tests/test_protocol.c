@@ -1,4 +1,4 @@
-/* test_protocol.c - calls at the wrong time, and scenes rebuilt in place. SPDX-License-Identifier: MIT */
+/* test_protocol.c - calls at the wrong time, and scenes that are rebuilt in place. SPDX-License-Identifier: MIT */
 #include "heat_calls.h"
 
 TEST(sources_missing) {
@@ -36,14 +36,14 @@ TEST(sources_missing) {
     assert_nothing_to_solve(p);
     solve(p);
     assert_same_powers(p, book);
-    /* refused when there is a solution: that one stays */
+    /* a refusal leaves the solution that there is */
     ck_assert_int_eq(fibrad_heat_begin(p->heat, &zeroed), FIBRAD_E_ARGUMENT);
     memset(p->power, 0, sizeof p->power);
     ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
     assert_same_powers(p, book);
 }
 
-/* Zero is a temperature and an emissivity. */
+/* Zero is a valid temperature and a valid emissivity. */
 TEST(zero_is_a_value) {
     const struct contents c = contents_of(12);
     ENDED struct problem *p = begin_problem(&c, 0);
@@ -84,7 +84,7 @@ static void assert_other_scene(struct problem *p) {
     ck_assert_int_eq(solved, 77);
 }
 
-/* The scene is rebuilt with other contents at each stage, and then as it was. */
+/* At each stage the scene is rebuilt with other contents, and then as it was. */
 LOOP_TEST(other_contents_in_place, CHANGES) {
     const struct contents c = contents_of(13);
     ENDED struct problem *book = by_the_book(&c);
@@ -100,7 +100,7 @@ LOOP_TEST(other_contents_in_place, CHANGES) {
     assert_same_powers(p, book);
 }
 
-/* The same, but the second scene is not even made. */
+/* The same holds if the second scene is not even made. */
 TEST(no_contents_in_place) {
     const struct contents c = contents_of(14);
     ENDED struct problem *book = by_the_book(&c);
@@ -119,7 +119,7 @@ TEST(no_contents_in_place) {
     assert_same_powers(p, book);
 }
 
-/* Nor is there anything else to be had of what has become of such a scene. */
+/* What has become of such a scene gives nothing else either. */
 TEST(nothing_of_no_scene) {
     const struct contents c = contents_of(14);
     struct contents bad = c;
@@ -148,7 +148,8 @@ TEST(nothing_of_no_scene) {
     row_free(&row);
 }
 
-/* What is kept in work memory between calls: rows in fresh memory and in old, after the scene was rebuilt in place. */
+/* Checks what work memory keeps between calls: after the scene was rebuilt in place, rows are the same in fresh memory
+ * and in old memory. */
 static void assert_row_as_fresh(struct problem *p, fibrad_work *kept, uint32_t i) {
     const fibrad_exchange_rule rule = {
         .emissivity = p->emissivity, .body_emissivity = p->body_emissivity, .paths = 300, .seed = 2};
@@ -208,7 +209,7 @@ TEST(work_in_another_block) {
         block = other;
         work.memory.block = other + shift;
     }
-    for (; size > 160000; size -= size / 8) { /* the least for reflections is some 150 KB */
+    for (; size > 160000; size -= size / 8) { /* rows with reflections need some 150 KB at least */
         work.memory.size = size;
         assert_row_as_fresh(p, &work, 3);
     }
@@ -240,7 +241,7 @@ TEST(matrix_calls_out_of_order) {
     ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_matrix_average(m, 5), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_matrix_average(m, UINT32_MAX), FIBRAD_E_ARGUMENT);
-    for (uint32_t task = 4; task > 1; task--) { /* not all of them: closing does the others */
+    for (uint32_t task = 4; task > 1; task--) { /* some tasks are left: closing does them */
         ck_assert_int_eq(fibrad_matrix_average(m, task), FIBRAD_OK);
         ck_assert_int_eq(fibrad_matrix_average(m, task), FIBRAD_E_STATE);
         ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_E_STATE);
@@ -256,7 +257,7 @@ TEST(matrix_calls_out_of_order) {
     ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_OK);
 }
 
-/* Rows missing, in two collections at once, twice in one, or of something else. */
+/* Rows are missing, are in two collections at once or twice in one, or belong to something else. */
 TEST(matrix_of_wrong_rows) {
     const struct contents c = contents_of(23);
     ENDED struct problem *p = begin_problem(&c, 0);
@@ -272,7 +273,7 @@ TEST(matrix_of_wrong_rows) {
     ck_assert_int_eq(fibrad_matrix_init(&m, block, size, p->scene, rows + 1, 1, NULL, &sphere), FIBRAD_E_STATE);
     ck_assert_uint_eq(sphere, 0);
     ck_assert_int_eq(fibrad_matrix_init(&m, block, size, p->scene, NULL, 0, NULL, &sphere), FIBRAD_E_STATE);
-    for (int raw = 0; raw < 2; raw++) { /* a raw matrix may lack rows, but not have them twice */
+    for (int raw = 0; raw < 2; raw++) { /* a raw matrix may lack rows, but must not have them twice */
         const fibrad_matrix_rule rule = {.raw = raw};
         ck_assert_int_eq(fibrad_matrix_init(&m, block, size, p->scene, rows, 3, &rule, &sphere), FIBRAD_E_STATE);
         ck_assert(sphere == 4 || sphere == 5);
@@ -284,7 +285,7 @@ TEST(matrix_of_wrong_rows) {
     ck_assert_int_eq(fibrad_matrix_init(&m, block, size, p->scene, rows, 2, NULL, &sphere), FIBRAD_E_STATE);
     ck_assert_uint_eq(sphere, 2);
 
-    /* of other bodies, of more spheres, of spheres that are not there */
+    /* these rows have other bodies, more spheres, or spheres that do not exist */
     for (int what = 0; what < 3; what++) {
         OWNED_ROWS wrong = {.memory = memory_growing()};
         fibrad_row row = matrix_row(&book.factors, 0);
@@ -300,7 +301,7 @@ TEST(matrix_of_wrong_rows) {
     }
     ck_assert_ptr_null(m);
 
-    /* emptied and filled again, all is well */
+    /* after the collection was emptied and filled again, the matrix is right */
     fibrad_rows_clear(&rows[0]);
     ck_assert_uint_eq(rows[0].count, 0);
     OWNED_WORK work = work_growing();
@@ -339,7 +340,8 @@ TEST(refused_rows_are_not_appended) {
     work_free(&work);
 }
 
-/* A row that was appended to a collection and is then given its own arrays no more: its capacity says so. */
+/* A row was appended to a collection, so its factors lie there. If it is then used without the collection, its capacity
+ * says that it has no arrays of its own. */
 TEST(row_reused_after_appending) {
     OWNED_BED bed = packing(60, .8, 1.2, .5, 3, false);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -356,7 +358,7 @@ TEST(row_reused_after_appending) {
     free(rows.memory.block);
 }
 
-/* Rows of another scene, rows that change while their matrix is made, and a matrix that failed in place. */
+/* The rows are those of another scene, they change while their matrix is made, or a matrix failed in place. */
 TEST(matrix_of_changing_rows) {
     OWNED_BED bed = packing(60, .8, 1.2, .5, 3, false), other = packing(60, .8, 1.2, .5, 4, false);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST), *another = scene_of(&other, FIBRAD_ISA_BEST);

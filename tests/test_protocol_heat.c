@@ -2,7 +2,8 @@
  * SPDX-License-Identifier: MIT */
 #include "heat_calls.h"
 
-/* To what the tolerance of the sources leaves, when the one of them began with a solution. */
+/* Checks that powers agree within the tolerance of the sources, if one of the two solutions began with an earlier
+ * one. */
 static void assert_like_powers(const struct problem *p, const struct problem *book) {
     double largest = 0, difference = 0;
     for (uint32_t i = 0; i < N; i++) {
@@ -20,7 +21,7 @@ static void assert_no_begin(struct problem *p) {
     assert_nothing_to_solve(p);
 }
 
-/* Every fibrad_heat_trace has returned an error, and the caller did not look. */
+/* Each fibrad_heat_trace returned an error, and the caller did not look. */
 TEST(traces_that_failed) {
     const struct contents c = contents_of(1);
     ENDED struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0xa5);
@@ -34,7 +35,7 @@ TEST(traces_that_failed) {
         ck_assert_int_eq(fibrad_heat_trace(p->heat, NULL, k), FIBRAD_E_ARGUMENT);
     }
     assert_no_begin(p);
-    trace_all(p); /* each may be called again */
+    trace_all(p); /* each task may be called again */
     solve(p);
     assert_same_powers(p, book);
 }
@@ -56,7 +57,7 @@ TEST(traces_without_memory) {
     assert_same_powers(p, book);
 }
 
-/* Nothing is traced, whatever was in the block before. */
+/* Nothing was traced, whatever the block held before. */
 TEST(nothing_traced) {
     static const int fills[] = {0, 1, 0x5a, 0xff};
     const struct contents c = contents_of(3);
@@ -72,7 +73,7 @@ TEST(nothing_traced) {
     }
 }
 
-/* One task is left out, the first, the last, one of spheres and one of walls among them. */
+/* One task is left out: the first, the last, one of spheres or one of walls. */
 TEST(one_task_not_traced) {
     const struct contents c = contents_of(4);
     ENDED struct problem *book = by_the_book(&c);
@@ -130,7 +131,7 @@ TEST(tasks_traced_twice) {
     assert_same_powers(p, book);
 }
 
-/* One of the parts is left out of every sweep at first, and made up for. */
+/* One part is left out of each sweep at first, and swept afterwards. */
 TEST(one_part_not_swept) {
     const struct contents c = contents_of(7);
     ENDED struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
@@ -185,7 +186,7 @@ TEST(steps_and_reads_too_early) {
         ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_E_STATE);
         ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
     }
-    int solved = 77; /* the solution is there: no further step, and no sweep */
+    int solved = 77; /* there is a solution: no further step and no sweep are allowed */
     ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_E_STATE);
     ck_assert_int_eq(solved, 77);
     for (uint32_t k = 0; k < PARTS; k++) ck_assert_int_eq(fibrad_heat_sweep(p->heat, k), FIBRAD_E_STATE);
@@ -196,7 +197,7 @@ TEST(steps_and_reads_too_early) {
     }
 }
 
-/* A solution given up half-way, in every third of its sweeps, leaves nothing behind. */
+/* A solution that is given up half-way, in every third of its sweeps, leaves nothing behind. */
 TEST(begun_anew_in_between) {
     const struct contents c = contents_of(10);
     ENDED struct problem *book = by_the_book(&c);
@@ -234,8 +235,8 @@ TEST(moved_before_the_first_solution) {
     }
 }
 
-/* A warm start takes fewer sweeps to the same powers; in place and to a scene elsewhere; with spheres in other cells
- * (mirrored), too. */
+/* A warm start needs fewer sweeps for the same powers. It works in place and with a scene elsewhere, also if spheres
+ * are in other cells (mirrored). */
 TEST(moved_after_a_solution) {
     const struct contents c = contents_of(17);
     for (int far = 0; far < 2; far++) {
@@ -268,7 +269,7 @@ TEST(moved_after_a_solution) {
     }
 }
 
-/* What was moved there and back again has the bits of a second solution where nothing was moved. */
+/* After a move there and back, a second solution has the bits that it has without moves. */
 TEST(moved_there_and_back) {
     const struct contents c = contents_of(18), d = changed(&c, 3);
     ENDED struct problem *p = begin_problem(&c, 0), *still = begin_problem(&c, 0);
@@ -285,7 +286,7 @@ TEST(moved_there_and_back) {
     assert_like_powers(p, still);
 }
 
-/* Refused, a move leaves everything as it was: the solution can be read, and another one begun. */
+/* If a move is refused, everything stays as it was: the solution can be read, and another one begun. */
 TEST(moves_refused) {
     const struct contents c = contents_of(19);
     ENDED struct problem *book = by_the_book(&c), *p = by_the_book(&c);
@@ -307,7 +308,7 @@ TEST(moves_refused) {
         else if (what > 0)
             ck_assert_int_eq(build_at(block, p->scene_size, &d, &scene), FIBRAD_OK);
         const int status = fibrad_heat_move(p->heat, scene);
-        if (what == 5 && status == FIBRAD_OK) { /* its patches found room: back */
+        if (what == 5 && status == FIBRAD_OK) { /* its patches found room: move back */
             ck_assert_int_eq(fibrad_heat_move(p->heat, p->scene), FIBRAD_OK);
             trace_all(p);
             solve(p);

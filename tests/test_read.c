@@ -16,7 +16,7 @@ static void remove_all(void) {
 
 FIXTURE(make_file, remove_all)
 
-/* Reads a text as a file and keeps what was said. */
+/* Reads a text as a file and keeps the messages. */
 static int try_options(const char *text, size_t size, const struct read_options *options) {
     write_file(text, size);
     bed_free(&bed);
@@ -37,7 +37,7 @@ static void expect_sphere(uint32_t i, double x, double y, double z, double r, ui
     ck_assert_uint_eq(bed.line[i], line);
 }
 
-/* The text must be refused in one line that names the file, the line (0: none) and the reason. */
+/* Checks that the text is refused in one line that names the file, the line (0: none) and the reason. */
 static void expect_refusal(const char *text, size_t size, const struct read_options *options, unsigned line,
                            const char *reason) {
     char place[300];
@@ -89,7 +89,7 @@ TEST(further_columns_by_name) {
     expect_refusal(lacking, sizeof lacking - 1, &options, 1, "no column T; there are x, y, z, r, emissivity, id");
 }
 
-/* Columns whose names have units, by either name. */
+/* The names of columns have units. Options may give either name. */
 TEST(columns_with_units) {
     static const char *const wanted[] = {"T", "T [C]", "T (\302\260C)", "T_[C]", "T [K]"};
     static const struct {
@@ -111,7 +111,7 @@ TEST(columns_with_units) {
         }
 }
 
-/* Of many names in a header, as many as there is room for. */
+/* A header has many names. As many are listed as there is room for. */
 TEST(many_columns) {
     char text[5000] = "x,y,r";
     for (int k = 0; k < 500; ++k) snprintf(text + strlen(text), 20, ",c%d", k);
@@ -120,7 +120,7 @@ TEST(many_columns) {
     ck_assert_ptr_nonnull(strstr(said, " ... (503 in all)"));
 }
 
-/* Spheres go by their ids; --positions leaves these alone. */
+/* Ids tell the spheres. --positions does without ids. */
 TEST(ids) {
     static const struct {
         const char *id[2], *reason;
@@ -172,7 +172,7 @@ TEST(tables) {
         ck_assert_msg(bed.x[0] == 1.5 && bed.y[0] == 2 && bed.z[0] == -3.25 && bed.r[0] == 0.5, "%s", good[k].text);
         ck_assert_str_eq(bed.units, good[k].units);
     }
-    /* what is written as it is goes before any other case */
+    /* a name that is written exactly so comes before names in another case */
     ck_assert_int_eq(try("R,x,y,z,r\n0.3,1,2,3,0.5\n"), 0);
     ck_assert_double_eq(bed.r[0], 0.5);
 }
@@ -191,7 +191,7 @@ TEST(without_radii) {
     ck_assert(isnan(bed.r[0]) && bed.extra[0] == 7 && bed.timestep == 70);
 }
 
-/* Numbers have the bits of strtod, however they are written. */
+/* Numbers have the bits that strtod gives, however they are written. */
 TEST(numbers) {
     static const char *const odd[] = {"0",
                                       "-0",
@@ -278,7 +278,7 @@ TEST(dump_frames) {
     expect_refusal(csv, sizeof csv - 1, &options, 0, "there is no frame 2");
 }
 
-/* Goes through the frames wanted of the file; returns their numbers as digits. */
+/* Goes through the frames of the file that are wanted. Returns their numbers as digits. */
 static const char *frames_of(const char *text, size_t size, struct frames frames, int *status) {
     static char seen[40];
     size_t beds = 0;
@@ -341,7 +341,7 @@ LOOP_TEST(ranges, 19) {
     ck_assert_msg(strstr(said, cases[_i].said) && (*said != 0) == (*cases[_i].said != 0), "%s", said);
 }
 
-/* The file, packed by gzip. */
+/* Packs a text as gzip does. */
 static size_t pack(const char *text, size_t size, char *to, size_t room) {
     z_stream stream = {.next_in = (unsigned char *)(uintptr_t)text,
                        .avail_in = (unsigned)size,
@@ -377,7 +377,7 @@ TEST(gzip) {
     packed[bytes / 2] = (char)(packed[bytes / 2] ^ 0x55);
     packed[bytes / 2 + 1] = (char)~packed[bytes / 2 + 1];
     expect_refusal(packed, bytes, &(struct read_options){0}, 0, "the gzip file is damaged");
-    /* tables hold one frame */
+    /* tables have one frame */
     const char table[] = "x,y,z,r\n0,0,0,1\n5,0,0,1\n";
     const size_t short_bytes = pack(table, sizeof table - 1, packed, sizeof packed);
     ck_assert_int_eq(try_options(packed, short_bytes, &(struct read_options){0}), 0);
@@ -499,7 +499,7 @@ TEST(settled_beds) {
     }
 }
 
-/* More spheres than the arrays begin with. */
+/* There are more spheres than the arrays begin with. */
 TEST(growth) {
     enum { N = 5000 };
     char *text = malloc(64 * N), *end = text;

@@ -1,12 +1,12 @@
-/* test_row_parts.c - rows computed in parts, each a range of directions, have the bits of rows in one.
- * SPDX-License-Identifier: MIT */
+/* test_row_parts.c - rows computed in parts, each of which is a range of directions, have the bits of rows computed at
+ * once. SPDX-License-Identifier: MIT */
 #include "suite.h"
 #include "scenes.h"
 #include "meshes.h"
 
 enum { PARTS_MOST = 7, SPHERES = 400 };
 
-/* Row i in so many parts of unequal size, computed from the last to the first. */
+/* Computes row i in this many parts of unequal size, from the last part to the first. */
 static int row_in_parts(const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule, uint32_t parts,
                         fibrad_row *row) {
     OWNED_WORK first = work_growing(), second = work_growing();
@@ -23,7 +23,8 @@ static int row_in_parts(const fibrad_scene *scene, uint32_t i, const fibrad_beam
     return status;
 }
 
-/* Rows of a large, a small and the last sphere, in one and in parts; adds what spheres get and what bodies get. */
+/* Compares rows of a large, a small and the last sphere, computed at once and in parts. Adds what spheres get and what
+ * bodies get. */
 static void compare_rows(const struct bed *bed, const fibrad_scene_config *config, double cutoff, double seen[2]) {
     OWNED fibrad_scene *scene = scene_with(bed, config);
     OWNED_WORK work = work_growing();
@@ -76,7 +77,7 @@ TEST(among_triangles) {
     ck_assert_double_gt(seen[1], 10);
 }
 
-/* Parts of another row, rule or scene, in another order or not all are told from those that make the row. */
+/* Parts of another row, rule or scene, in another order, or not complete are told from those that make the row. */
 TEST(parts_that_do_not_fit) {
     OWNED_BED bed = strewn(50, 7), other_bed = strewn(50, 8);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST), *other = scene_of(&other_bed, FIBRAD_ISA_BEST);
@@ -106,7 +107,7 @@ TEST(parts_that_do_not_fit) {
     for (int p = 0; p < 2; p++) free(part[p].memory.block);
 }
 
-/* Terms that were changed on the way leave no row that looks right. */
+/* If terms were changed on the way, there is no row that looks right. */
 TEST(parts_that_were_changed) {
     OWNED_BED bed = strewn(50, 7);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -126,7 +127,7 @@ TEST(parts_that_were_changed) {
     free(part.memory.block);
 }
 
-/* Fixed memory that is too small says how much would do. */
+/* Fixed memory that is too small says how much suffices. */
 TEST(fixed_memory_of_a_part) {
     OWNED_BED bed = strewn(50, 9);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -142,7 +143,7 @@ TEST(fixed_memory_of_a_part) {
     free(part.memory.block);
 }
 
-/* A resize function that fails once, when it is asked for the time `fails`. */
+/* For a resize function that fails once, at call number `fails`. */
 struct supply {
     uint32_t asked, fails;
 };
@@ -152,7 +153,8 @@ static void *resize_but_once(void *context, void *block, size_t size) {
     return supply->asked++ == supply->fails ? NULL : realloc(block, size);
 }
 
-/* Memory that is refused once is an error, whenever that is; asked again, the part is that of memory in plenty. */
+/* If memory is refused once, at whatever call, this is an error. The next call gets memory, and makes the part that it
+ * makes with plenty of memory. */
 TEST(memory_that_is_refused_once) {
     OWNED_BED bed = strewn(50, 9);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -171,7 +173,7 @@ TEST(memory_that_is_refused_once) {
         asked = supply.asked - 1;
         ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &joined), FIBRAD_OK);
         ck_assert(same_bits_with(&one, &joined, 0));
-        part.memory.size /= 2; /* less than it was made in */
+        part.memory.size /= 2; /* less memory than the part was made in */
         ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &joined),
                          part.count * 16 > part.memory.size ? FIBRAD_E_STATE : FIBRAD_OK);
         free(part.memory.block);
@@ -179,7 +181,7 @@ TEST(memory_that_is_refused_once) {
     ck_assert_uint_gt(asked, 3);
 }
 
-/* A block of no bytes is too small, as one of some bytes may be; no block of some bytes is no block. */
+/* A block of size 0 is too small. NULL that is said to have bytes is refused. */
 TEST(blocks_of_size_zero) {
     OWNED_BED bed = strewn(50, 9);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -187,7 +189,7 @@ TEST(blocks_of_size_zero) {
     const fibrad_beam_rule rule = {.directions = 20};
     OWNED_ROW row = row_of(50);
     double byte;
-    for (int k = 0; k < 3; k++) { /* none yet, a block, and NULL that is said to have bytes */
+    for (int k = 0; k < 3; k++) { /* no block yet; a block; NULL that is said to have bytes */
         const fibrad_memory memory = {.block = k == 1 ? &byte : NULL, .size = k == 2 ? 1 << 20 : 0};
         fibrad_work little = {.memory = memory};
         fibrad_row_part part = {.memory = memory};
@@ -204,8 +206,8 @@ TEST(blocks_of_size_zero) {
     }
 }
 
-/* Arrays that are too small: the length that a row of a method says is the one with which the next call succeeds, and
- * until then nothing is written. */
+/* Arrays are too small. With the length that the row of each method says, the next call succeeds. Until then nothing is
+ * written. */
 static void ask_and_repeat(const fibrad_scene *scene, const fibrad_beam_rule *beam,
                            const fibrad_exchange_rule *exchange) {
     enum { MOST = 100 };
@@ -243,6 +245,6 @@ TEST(the_length_that_is_asked_for_suffices) {
     fibrad_exchange_rule exchange = {.emissivity = emissivity, .body_emissivity = &(double){.5}, .directions = 8};
     ask_and_repeat(scene, &(fibrad_beam_rule){.directions = 8, .tolerance = 1e-3}, NULL);
     ask_and_repeat(scene, NULL, &exchange);
-    for (int i = 1; i < 100; i += 2) emissivity[i] = 0; /* seen by the first leg, and no entries */
+    for (int i = 1; i < 100; i += 2) emissivity[i] = 0; /* the first leg sees it, and there are no entries */
     ask_and_repeat(scene, NULL, &exchange);
 }

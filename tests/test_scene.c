@@ -1,10 +1,11 @@
-/* test_scene.c - scenes: sizes, faults, and that the grid finds what brute force finds. SPDX-License-Identifier: MIT */
+/* test_scene.c - scenes: sizes, faults, and searches in the grid against trying all spheres.
+ * SPDX-License-Identifier: MIT */
 #include "scene/grid_walk.h"
 #include "scenes.h"
 #include "suite.h"
 
-/* Sizes at every offset of the block: a byte less is too little, nothing is written beside the block, and rows have the
- * same bits. */
+/* Sizes hold at each offset of the block: a byte less is too little, nothing is written beside the block, and rows have
+ * the same bits. */
 TEST(sizes_hold) {
     static unsigned char memory[64 + FIBRAD_SCENE_BYTES(500) + 64];
     for (uint32_t n = 0; n <= 500; n += n < 40 ? 1 : 53) {
@@ -59,7 +60,7 @@ TEST(blocks_of_any_alignment) {
     }
 }
 
-/* Places as x[n][3], radii as every fifth number, against arrays of their own. */
+/* Places are x[n][3] and radii are every fifth number. They give what arrays of their own give. */
 TEST(strides_change_no_bit) {
     OWNED_BED bed = packing(150, .5, 1, .4, 3, false);
     double(*at)[3] = calloc(bed.n, sizeof *at), *r = calloc((size_t)5 * bed.n, sizeof *r);
@@ -88,7 +89,7 @@ TEST(strides_change_no_bit) {
     free(r);
 }
 
-/* A bed may be empty: a scene without rows, and a matrix of none. */
+/* A bed may be empty: this is a scene without rows, and a matrix without rows. */
 TEST(no_spheres) {
     static unsigned char memory[FIBRAD_SCENE_BYTES(0)];
     const fibrad_spheres none = {.n = 0};
@@ -122,8 +123,8 @@ TEST(no_spheres) {
     }
 }
 
-/* Each sphere comes once along the cells, and most that follow each other are neighbours: on average less than 4 radii
- * apart in a cube of 16, where two taken at random are 11 apart. */
+/* Each sphere comes once along the cells, and most spheres that follow each other are neighbours. On average they are
+ * less than 4 radii apart in a cube of 16, where two random spheres are 11 apart. */
 TEST(spheres_along_the_cells) {
     OWNED_BED bed = packing(500, 1, 1, .5, 4, false);
     OWNED fibrad_scene *scene = scene_of(&bed, 0);
@@ -173,7 +174,7 @@ TEST(bad_configurations_are_refused) {
     ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, NULL, &good, NULL), FIBRAD_OK);
 }
 
-/* An instruction set that this build or this machine lacks is said to be missing, with any spheres. */
+/* If this build or this machine lacks an instruction set, the call says so, with any spheres. */
 TEST(missing_instruction_sets) {
     OWNED_BED bed = lattice('p', 3);
     int isa[ISAS_MOST];
@@ -228,7 +229,7 @@ TEST(faults_name_their_spheres) {
     ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_GEOMETRY);
     bed_free(&bed);
 
-    /* lengths that leave no room for squares, coordinates that leave no digits */
+    /* these lengths leave no room for squares, these coordinates leave no digits */
     static const double far[][4] = {{8e307, 0, 0, 1e307}, {1e151, 0, 0, 1e150}, {0, 0, 0, 1e-151}, {1e14, 0, 0, 1}};
     for (int k = 0; k < 4; k++) {
         bed = bed_of(1, &far[k]);
@@ -236,16 +237,16 @@ TEST(faults_name_their_spheres) {
         ck_assert_uint_eq(fault.first, 0);
         bed_free(&bed);
     }
-    bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {9.5, 0, 0, 1}}); /* inside each other across the box */
+    bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {9.5, 0, 0, 1}}); /* one lies inside the other across the box */
     ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_OK);
     bed.period[0] = 10;
     ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_GEOMETRY);
-    bed.period[0] = .5; /* a sphere wider than its box */
+    bed.period[0] = .5; /* a sphere is wider than its box */
     ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_GEOMETRY);
     bed_free(&bed);
 }
 
-/* Coordinates outside the periodic box, among them some whose quotient by the period rounds up to a whole number. */
+/* Coordinates lie outside the periodic box. For some of them the quotient by the period rounds up to a whole number. */
 TEST(any_image_of_a_centre_will_do) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{2.1, 0, 0, .5}, {14.559999999999999, 3, 0, .5}});
     for (int axis = 0; axis < 3; axis++) {
@@ -267,7 +268,7 @@ TEST(any_image_of_a_centre_will_do) {
     }
 }
 
-/* A particle that a simulation has lost must not make one cell of all the others. */
+/* A particle that a simulation has lost must not put all others into one cell. */
 TEST(strays_do_not_spread_the_cells) {
     OWNED_BED bed = packing(4000, .5, .6, .5, 30, false);
     bed.x[17] = 1e6, bed.y[99] = -1e9, bed.z[3000] = 1e12;
@@ -297,7 +298,7 @@ TEST(overlap_is_reported) {
     free(scene);
 }
 
-/* Random boxes: every sphere whose centre, or image's centre, lies within must come up, and none twice. */
+/* In random boxes each sphere comes up whose centre, or an image of whose centre, lies within. None comes up twice. */
 TEST(walks_find_what_is_there) {
     struct bed beds[] = {packing(500, .1, 1.6, .4, 21, false), packing(500, .5, .6, .5, 22, true), lattice('p', 5)};
     beds[1].period[1] = 0;
@@ -342,7 +343,7 @@ TEST(walks_find_what_is_there) {
     }
 }
 
-/* Building is linear: cells never outnumber spheres by more than a few, and no cell is crowded. */
+/* Building takes linear time: there are never many more cells than spheres, and no cell is crowded. */
 TEST(cells_follow_the_spheres) {
     static const double spans[][3] = {{1, 1, 1}, {1000, 1, 1}, {1, 1e6, 1e6}, {1e-3, 1, 1e3}};
     for (size_t s = 0; s < sizeof spans / sizeof *spans; s++) {
@@ -360,7 +361,8 @@ TEST(cells_follow_the_spheres) {
     }
 }
 
-/* Found by fuzzing: rounding left both coordinates out of the box between them, and the choice of cells had no end. */
+/* Fuzzing found this: rounding left both coordinates outside the box between them, and the choice of cells had no
+ * end. */
 TEST(one_stray_beside_equal_coordinates) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{20, 0, 0, 1}});
     for (int i = 0; i < 30; i++) add_sphere(&bed, 1.3, 2.5 * i, 0, 1);

@@ -1,8 +1,9 @@
-/* test_silhouette_scenes.c - silhouettes against windows of the same lines, in many small scenes at random.
+/* test_silhouette_scenes.c - silhouettes against windows of the same lines, in many small random scenes.
  * SPDX-License-Identifier: MIT
  *
- * Windows find visible areas by clipping, silhouettes by following circles. The two methods share the scene, the lists
- * of near spheres and nothing else. FIBRAD_TEST_SCENES in the environment is another number of scenes of each kind. */
+ * Windows find visible areas by clipping, and silhouettes find them by following circles. The two methods share the
+ * scene, the lists of near spheres and nothing else. FIBRAD_TEST_SCENES in the environment sets another number of
+ * scenes of each kind. */
 #include "row/window_lanes.h"
 #include "sample/line.h"
 #include "scenes.h"
@@ -18,7 +19,7 @@ static double windows[N_MOST][N_MOST + 1], silhouettes[N_MOST][N_MOST + 1];
 
 /* ---- chance ----------------------------------------------------------------------------------------------------- */
 
-/* Numbers of one scene. */
+/* The random numbers of one scene. */
 struct chance {
     uint64_t seed, at;
 };
@@ -31,7 +32,7 @@ static uint32_t random_below(struct chance *chance, uint32_t count) { return (ui
 
 /* ---- both methods ----------------------------------------------------------------------------------------------- */
 
-/* The lines of a set, and two unit vectors across each. */
+/* Finds the lines of a set, and two unit vectors across each. */
 static void frames_of(uint32_t lines, double frame[LINES_MOST][9]) {
     double line[LINES_MOST][3], scratch[3 * LINES_MOST];
     fibrad_lines_make(lines, line, scratch);
@@ -71,7 +72,7 @@ static bool look_along(const fibrad_scene *scene, fibrad_workspace *space, uint3
     return true;
 }
 
-/* Factors by windows, averaged with their partners. */
+/* Finds factors by windows, averaged with their partners. */
 static void rows_by_windows(const fibrad_scene *scene, const struct bed *bed, uint32_t lines) {
     double frame[LINES_MOST][9];
     OWNED_WORK work = work_growing();
@@ -105,13 +106,13 @@ static void dense_of_silhouettes(const fibrad_scene *scene, uint32_t lines) {
     }
 }
 
-/* How far the methods may differ, over the smaller area, and how far a row may be from 1. */
+/* The largest difference of the methods over the smaller area, and the largest difference of a row's sum from 1. */
 struct bounds {
     double difference, closure;
 };
 
-/* Compares the methods in a scene. Where all axes are periodic, lines that leave are those that both methods have given
- * up, each at a length of its own. */
+/* Compares the methods in a scene. If all axes are periodic, both methods give up some lines, each at a length of its
+ * own. These are the lines that leave. */
 static void compare(const fibrad_scene *scene, const struct bed *bed, uint32_t lines, struct bounds most,
                     const char *what, uint64_t seed) {
     double escaped = 0;
@@ -136,7 +137,7 @@ static void compare(const fibrad_scene *scene, const struct bed *bed, uint32_t l
 
 /* ---- scenes ----------------------------------------------------------------------------------------------------- */
 
-/* Whether a sphere at c has its place: no deeper in another than `depth` times the smaller radius. */
+/* Whether there is place for a sphere at c: it is no deeper in another one than `depth` times the smaller radius. */
 static bool fits(const struct bed *bed, const double c[3], double r, double depth) {
     bool fits = true;
     for (uint32_t j = 0; j < bed->n && fits; j++) {
@@ -153,7 +154,7 @@ static bool fits(const struct bed *bed, const double c[3], double r, double dept
     return fits;
 }
 
-/* Some spheres in a box, radii from `low` to 1 with even logarithms. */
+/* Makes some spheres in a box. The logarithms of their radii, which go from `low` to 1, are spread evenly. */
 static struct bed heap(struct chance *chance, double low, double depth, int periods, double side) {
     struct bed bed = bed_of(0, NULL);
     const uint32_t n = 2 + random_below(chance, 11);
@@ -166,7 +167,7 @@ static struct bed heap(struct chance *chance, double low, double depth, int peri
     return bed;
 }
 
-/* Part of a lattice one axis of which lies along a line of the set, or within a small angle of it. */
+/* Makes a part of a lattice. One of its axes lies along a line of the set, or within a small angle of it. */
 static struct bed lattice_along(struct chance *chance, uint32_t lines) {
     static const double off[] = {0, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8};
     double frame[LINES_MOST][9];
@@ -184,11 +185,11 @@ static struct bed lattice_along(struct chance *chance, uint32_t lines) {
     return bed;
 }
 
-/* A sphere of radius 1 and small ones close to its surface. */
+/* Makes a sphere of radius 1 and small ones close to its surface. */
 static struct bed giant(struct chance *chance, double r, uint32_t n) {
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     const double aside = random_in(chance, 5 * r, 60 * r), turn = random_in(chance, 0, 2 * pi);
-    while (bed.n < n) { /* above a patch of the surface */
+    while (bed.n < n) { /* these lie above a patch of the surface */
         const double u = random_in(chance, -aside, aside), v = random_in(chance, -aside, aside);
         const double d = 1 + r * random_in(chance, 1, 12), size = sqrt(1 + u * u + v * v);
         const double c[3] = {d * (cos(turn) - sin(turn) * u) / size, d * (sin(turn) + cos(turn) * u) / size,
@@ -255,8 +256,8 @@ TEST(spheres_that_overlap) { compare_scenes("overlap", 4000, usual, overlaps); }
 
 TEST(periodic_scenes) { compare_scenes("periods", 3000, usual, periods); }
 
-/* Windows find 1e-10 of spheres that rounding alone lets look past others. */
+/* Windows find 1e-10 of spheres that can be seen past others because of rounding alone. */
 TEST(lattices) { compare_scenes("lattice", 2000, (struct bounds){1e-9, 1e-13}, lattice_along); }
 
-/* Coordinates are of the order of the large sphere's radius, areas of the order of the small one's. */
+/* Coordinates are of the order of the large sphere's radius. Areas are of the order of the small one's disc. */
 TEST(giants_among_small_ones) { compare_scenes("giant", 1000, (struct bounds){4e-11, 3e-13}, giants); }

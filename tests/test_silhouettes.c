@@ -25,7 +25,7 @@ struct disc {
     bool all; /* it covers the whole circle */
 };
 
-/* What the lines of all directions, to and fro, exchange. The last row and column are of the surroundings. */
+/* What the lines of all directions exchange, both ways. The last row and column are those of the surroundings. */
 static double exchanged[N_MOST + 1][N_MOST + 1];
 static struct disc discs[DISCS_MOST];
 static double ends[2 * DISCS_MOST + 2];
@@ -35,8 +35,8 @@ static int compare_doubles(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Finds the arc that a disc covers of the circle of radius r. False: none. Of two circles that coincide the one farther
- * along d counts as the larger one. */
+/* Finds the arc of the circle of radius r that a disc covers. False: there is none. Of two circles that coincide, the
+ * one farther along d counts as the larger one. */
 static bool find_arc(struct disc *m, double r, double rounding) {
     double distance = hypot(m->x, m->y), larger = m->r - r;
     if (distance < rounding) distance = 0;
@@ -57,12 +57,12 @@ static bool covers(const struct disc *m, double angle) {
     return m->all || (angle >= m->from && angle <= m->to) || (angle + 2 * pi >= m->from && angle + 2 * pi <= m->to);
 }
 
-/* The integral g of an arc of the circle of radius r about an origin at (x, y) of its centre. */
+/* The integral g of an arc of the circle of radius r. The origin lies at (x, y) as seen from the centre. */
 static double integral(double r, double from, double to, double x, double y) {
     return r * r * (to - from) / 2 - r / 2 * (x * (sin(to) - sin(from)) - y * (cos(to) - cos(from)));
 }
 
-/* Adds an arc to what a sphere or the surroundings exchange with another. NULL: the surroundings. */
+/* Adds an arc to what a sphere or the surroundings exchange with another one. NULL: the surroundings. */
 static void exchange(const struct disc *first, const struct disc *next, double sign, double r, double from, double to) {
     if (first == NULL && next == NULL) return;
     const struct disc *origin = first == NULL ? next : next == NULL || first->r <= next->r ? first : next;
@@ -71,7 +71,7 @@ static void exchange(const struct disc *first, const struct disc *next, double s
     exchanged[i][j] += g, exchanged[j][i] += g;
 }
 
-/* The arc of k between two angles. */
+/* Adds the arc of circle k between two angles. */
 static void add_arc(const struct disc *k, uint32_t count, double from, double to) {
     const struct disc *a = NULL, *b = NULL;
     for (uint32_t m = 0; m < count; m++) {
@@ -125,7 +125,7 @@ static void follow_circle(const struct bed *bed, uint32_t k, const double frame[
         if (ends[e] < ends[e + 1]) add_arc(&own, count, ends[e], ends[e + 1]);
 }
 
-/* Two unit vectors across d, and d. */
+/* Finds two unit vectors across d, and d itself. */
 static void make_frame(const double d[3], double frame[9]) {
     const int least = fabs(d[0]) <= fabs(d[1]) && fabs(d[0]) <= fabs(d[2]) ? 0 : fabs(d[1]) <= fabs(d[2]) ? 1 : 2;
     const double size = sqrt(1 - d[least] * d[least]);
@@ -146,7 +146,7 @@ static void follow_all_circles(const struct bed *bed, uint32_t directions, int i
     }
 }
 
-/* Rows by windows against silhouettes of the same directions; rows by silhouettes add up to 1. */
+/* Compares rows by windows with silhouettes of the same directions. Rows by silhouettes add up to 1. */
 static void compare_methods(struct bed bed, uint32_t directions, int images, const char *what) {
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_ROWS rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = directions});
@@ -183,7 +183,7 @@ static void dense_of(const fibrad_scene *scene, fibrad_rows *rows, double f[N_MO
     rows_free(rows);
 }
 
-/* Sets of more than 2,048 lines are those of directions: the kernel's silhouettes against its averaged windows. */
+/* Sets of more than 2,048 lines are sets of directions. Compares the kernel's silhouettes with its averaged windows. */
 static void compare_kernel(struct bed bed, const char *what) {
     enum { LINES = 2053 };
     static double windows[N_MOST][N_MOST + 1], silhouettes[N_MOST][N_MOST + 1];
@@ -228,7 +228,7 @@ TEST(sizes_far_apart) {
     for (uint64_t seed = 1; seed <= 3; seed++) compare_methods(strewn(60, seed), 30, 0, "small among large ones");
 }
 
-/* A period of about four diameters: three images on either side close all windows. */
+/* The period is about four diameters. Three images on either side close all windows. */
 TEST(periodic_beds) {
     for (uint64_t seed = 1; seed <= 3; seed++)
         compare_methods(packing(40, .6, 1, .55, seed, true), 12, 3, "a periodic bed");
@@ -243,7 +243,7 @@ TEST(spheres_that_overlap) {
     }
 }
 
-/* Of some directions circles coincide, or nearly do. */
+/* In some directions circles coincide, or nearly do. */
 TEST(lattices) {
     static const double off[] = {0, 1e-16, 1e-14, 1e-12, 1e-10, 1e-8};
     for (const char *kind = "pif"; *kind != '\0'; kind++)

@@ -1,5 +1,5 @@
-/* test_simple.c - the simple layer: what it returns is what the kernel returns, for any number of threads; faults,
- * cancelling, and beds that move. SPDX-License-Identifier: MIT */
+/* test_simple.c - the simple layer returns what the kernel returns, for any number of threads. Faults, cancelled calls,
+ * and beds that move. SPDX-License-Identifier: MIT */
 #include <omp.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -16,7 +16,7 @@ static fibrad_scene_config box_of(const struct bed *bed) {
     return (fibrad_scene_config){.period = {bed->period[0], bed->period[1], bed->period[2]}};
 }
 
-/* The beam rows of all spheres. */
+/* Computes the beam rows of all spheres. */
 static fibrad_rows rows_one_by_one(const fibrad_scene *scene, uint32_t n, uint32_t bodies,
                                    const fibrad_beam_rule *rule) {
     OWNED_WORK work = work_growing();
@@ -27,12 +27,13 @@ static fibrad_rows rows_one_by_one(const fibrad_scene *scene, uint32_t n, uint32
         double sum = row.escaped;
         for (uint32_t k = 0; k < row.length; k++) sum += row.f[k];
         for (uint32_t b = 0; b < bodies; b++) sum += row.body[b];
-        ck_assert_double_eq_tol(sum, 1, 1e-12); /* the row is shown where it stands */
+        ck_assert_double_eq_tol(sum, 1, 1e-12); /* the row can be read where it lies in the collection */
     }
     return rows;
 }
 
-/* The same by the kernel, rows in the order of the spheres: raw ones by beams, or all by silhouettes. */
+/* Makes the same matrix with the kernel, with rows in the order of the spheres: raw rows by beams, or all rows by
+ * silhouettes. */
 static struct matrix kernel_matrix(const struct bed *bed, const fibrad_scene_config *config,
                                    const fibrad_beam_rule *rule, bool raw) {
     OWNED fibrad_scene *scene = scene_with(bed, config);
@@ -79,7 +80,8 @@ static int count_calls(void *context, const char *stage, uint64_t done, uint64_t
     return ++calls->count == calls->stop_at;
 }
 
-/* Rows of spheres far larger than most are divided over threads, and all rows where they are fewer than threads. */
+/* Rows of spheres far larger than most others are divided over threads. If there are fewer rows than threads, all
+ * are. */
 TEST(long_rows_are_divided) {
     OWNED_BED bed = strewn(300, 3);
     const fibrad_body floor = plane_at(2, 0, -.3);
@@ -107,7 +109,7 @@ TEST(long_rows_are_divided) {
     for (int t = 0; t < 3; t++) fibrad_bed_free(alone[t]);
 }
 
-/* Every other method and option: the same for any number of threads. */
+/* Each other method and option gives the same for any number of threads. */
 TEST(nothing_depends_on_threads) {
     OWNED_BED bed = packing(200, .8, 1.2, .5, 3, true);
     const fibrad_scene_config config = box_of(&bed);
@@ -170,7 +172,8 @@ TEST(exchange_does_not_depend_on_threads) {
     fibrad_bed_free(first);
 }
 
-/* Spheres that reflect all have empty rows, which are no fault of closure; a bed of nothing else is empty. */
+/* Spheres that reflect all light have empty rows, which are no fault of closure. A bed of nothing but such spheres is
+ * empty. */
 TEST(reflectors_have_empty_rows) {
     OWNED_BED bed = packing(150, .8, 1.2, .5, 3, true);
     const fibrad_scene_config config = box_of(&bed);
@@ -195,7 +198,7 @@ TEST(reflectors_have_empty_rows) {
         }
 }
 
-/* Whether an address is in a file of the folder; so it is where the system does not say. */
+/* Whether an address is in a file of the folder. If the system does not tell, true. */
 static bool is_filed(const void *address, const char *folder) {
     char line[1000];
     FILE *maps = fopen("/proc/self/maps", "r");
@@ -209,7 +212,8 @@ static bool is_filed(const void *address, const char *folder) {
     return found;
 }
 
-/* Rows and matrix in files are those in memory, walls and all, for any number of threads; nothing is left behind. */
+/* Rows and a matrix in files are those in memory, with those of walls, for any number of threads. No file is left
+ * behind. */
 TEST(factors_in_files) {
     char folder[] = "/tmp/fibrad_filed_XXXXXX";
     OWNED_BED bed = packing(300, .8, 1.2, .5, 3, false);
@@ -242,7 +246,7 @@ TEST(factors_in_files) {
     ck_assert_ptr_null(none);
 }
 
-/* A file that may not grow any more is an error. */
+/* It is an error if a file cannot grow any more. */
 TEST(full_disk) {
     OWNED_BED bed = packing(300, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
@@ -254,7 +258,7 @@ TEST(full_disk) {
     ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &limit), 0);
     const int status = fibrad_view_factors(NULL, &spheres, &(fibrad_bed_options){.scratch = "/tmp"}, NULL, &none);
     limit.rlim_cur = limit.rlim_max;
-    setrlimit(RLIMIT_FSIZE, &limit); /* for what the test itself writes */
+    setrlimit(RLIMIT_FSIZE, &limit); /* the test itself writes, too */
     ck_assert_int_eq(status, FIBRAD_E_MEMORY);
     ck_assert_ptr_null(none);
 }
@@ -276,7 +280,7 @@ TEST(faults_name_spheres) {
         const fibrad_bed_options raw = {.raw = 1};
         ck_assert_int_eq(fibrad_exchange_factors(NULL, &spheres, &rule, &raw, &run, &factors), FIBRAD_E_ARGUMENT);
         ck_assert(run.fault.first == first && run.fault.second == first && factors == NULL);
-        /* a displacement of spheres whose paths may not meet those of no emissivity is refused, too */
+        /* paths must not meet spheres without emissivity: displacements of such beds are refused, too */
         static fibrad_displacement moved[100];
         unsigned char wanted[100] = {[50] = 1};
         run.fault = (fibrad_fault){0, 0, 0, 0, 0};
@@ -292,7 +296,7 @@ TEST(faults_name_spheres) {
     ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, NULL, &factors), FIBRAD_E_ARGUMENT);
 }
 
-/* Of several rows that fail the same is named for any number of threads, divided or not; a call that is cancelled names
+/* If several rows fail, the same one is named for any number of threads, divided or not. A call that is cancelled names
  * none. */
 TEST(faults_of_divided_rows) {
     OWNED_BED bed = strewn(300, 3);
@@ -301,7 +305,7 @@ TEST(faults_of_divided_rows) {
     fibrad_fault first = {0, 0, 0, 0, 0};
     fibrad_bed_factors *factors;
     mesh_box(mesh, (const double[]){-9, -9, -9}, (const double[]){9, 9, 9}, 0);
-    for (uint32_t t = 0; t < mesh->triangles.n; ++t) /* all see it, from the side that is no body's */
+    for (uint32_t t = 0; t < mesh->triangles.n; ++t) /* all see its back, which belongs to no body */
         mesh->back[t] = mesh->front[t], mesh->front[t] = FIBRAD_NO_BODY;
     const fibrad_scene_config config = {.body = mesh->body, .bodies = 6, .triangles = &mesh->triangles};
     for (int t = 0; t < 3; t++) {
@@ -351,7 +355,7 @@ TEST(arguments) {
     const fibrad_bed_options tolerance = {.beam = &(fibrad_beam_rule){.tolerance = .1}};
     ck_assert_int_eq(fibrad_view_factors(NULL, &(fibrad_spheres){0}, &tolerance, NULL, &factors), FIBRAD_OK);
     fibrad_bed_free(factors);
-    omp_set_num_threads(1025); /* of OpenMP's threads as many are taken as may be asked for */
+    omp_set_num_threads(1025); /* the number of OpenMP's threads, up to the largest that is allowed */
     ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, NULL, &factors), FIBRAD_OK);
     ck_assert_int_eq(factors->threads, 1024);
     fibrad_bed_free(factors);
@@ -379,7 +383,7 @@ TEST(progress_and_cancelling) {
     }
 }
 
-/* Rows that are divided do not report each by itself. */
+/* Rows that are divided do not report their progress one by one. */
 TEST(progress_of_short_rows) {
     OWNED_BED bed = bed_of(0, NULL);
     for (int k = 0; k < 400; k++) add_sphere(&bed, 9 * k, 0, 0, 1);
@@ -393,7 +397,7 @@ TEST(progress_of_short_rows) {
     OWNED_FACTORS *factors = NULL;
     ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &options, &run, &factors), FIBRAD_OK);
     ck_assert(calls.ends >= 1 && calls.total == 400);
-    ck_assert_uint_lt(calls.count, 400); /* in less than 20 seconds */
+    ck_assert_uint_lt(calls.count, 400); /* all takes less than 20 seconds */
 }
 
 /* ---- heat -------------------------------------------------------------------------------------------------------- */
@@ -433,7 +437,7 @@ TEST(radiation_moves) {
         if (t == 0) memcpy(first, power, sizeof power);
         ck_assert_int_eq(memcmp(first, power, sizeof power), 0);
 
-        /* what is refused leaves the bed as it was */
+        /* a refused call leaves the bed as it was */
         ck_assert_int_eq(fibrad_radiation_move(radiation, NULL, &fewer), FIBRAD_E_ARGUMENT);
         ck_assert_int_eq(fibrad_radiation_move(radiation, &(fibrad_scene_config){.body = &wall, .bodies = 1}, &spheres),
                          FIBRAD_E_ARGUMENT);
@@ -445,13 +449,13 @@ TEST(radiation_moves) {
         powers(radiation, &sources, again);
         for (int i = 0; i < N; i++) ck_assert_double_eq_tol(again[i], power[i], 10);
 
-        /* another place, and back */
+        /* the bed moves to another place, and back */
         for (int i = 0; i < N; i++) bed.z[i] *= 1.1;
         ck_assert_int_eq(fibrad_radiation_move(radiation, NULL, &spheres), FIBRAD_OK);
         powers(radiation, &sources, again);
         ck_assert(memcmp(again, power, sizeof power) != 0);
 
-        /* a move that is cancelled while it traces */
+        /* a move is cancelled while it traces */
         calls = (struct calls){.stop_at = 1};
         ck_assert_int_eq(fibrad_radiation_move(radiation, NULL, &spheres), FIBRAD_E_CANCELLED);
         ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &(fibrad_heat_result){.power = power}),
@@ -468,7 +472,7 @@ TEST(radiation_moves) {
     }
 }
 
-/* How often beams were begun again. */
+/* Counts how often beams were begun again. */
 struct returns {
     uint64_t done, count;
 };
@@ -481,7 +485,8 @@ static int count_returns(void *context, const char *stage, uint64_t done, uint64
     return 0;
 }
 
-/* A bed that comes apart sees more others than there is room for: it gets more, and all is as if it had begun so. */
+/* A bed comes apart, so that spheres see more others than there is room for. They get more room, and all is as if the
+ * bed had begun so. */
 TEST(radiation_gets_more_room) {
     enum { MANY = 800 };
     OWNED_BED bed = packing(MANY, 1, 1, .6, 3, false);
@@ -530,11 +535,11 @@ TEST(radiation_with_walls) {
         ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources,
                                                 &(fibrad_heat_result){.power = power, .body_power = wall_power}),
                          FIBRAD_OK);
-        for (int i = 0; i < N; i++) ck_assert_double_lt(fabs(power[i]), 1e-6); /* all at one temperature */
+        for (int i = 0; i < N; i++) ck_assert_double_lt(fabs(power[i]), 1e-6); /* all have one temperature */
     }
 }
 
-/* A law that is asked how often, and answers something else than an emissivity the time `fails`. */
+/* A law that counts its calls, and answers something else than an emissivity at call number `fails`. */
 struct law {
     int asked, fails;
     double wrong;
@@ -549,7 +554,7 @@ static void follow_law(void *context, const double *temperature, const double *b
     if (law->asked++ == law->fails) *(law->asked % 2 ? emissivity : body_emissivity) = law->wrong;
 }
 
-/* Laws get temperatures, and what they answer is looked at each time. */
+/* Laws get temperatures, and their answers are checked each time. */
 TEST(laws_are_checked) {
     const fibrad_spheres one = {&(double){0}, &(double){0}, &(double){0}, &(double){1}, .n = 1};
     const fibrad_body floor = plane_at(2, 0, -3);

@@ -1,7 +1,7 @@
 /* test_solid.c - spheres that conduct: the option --solid-conductivity, where a ball gives off what it absorbs, and the
  * conductivity of beds. SPDX-License-Identifier: MIT
  *
- * Truth: spherical harmonics. */
+ * They are compared with spherical harmonics. */
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_sf_legendre.h>
 
@@ -17,7 +17,7 @@ FIXTURE(make_folder, remove_folder)
 
 /* ---- the option -------------------------------------------------------------------------------------------------- */
 
-/* Two spheres of radii 3 and 1 mm, of types 1 and 2. */
+/* Makes two spheres of radii 3 and 1 mm, of types 1 and 2. */
 static struct bed two_spheres(void) {
     struct bed bed;
     bed_init(&bed);
@@ -28,7 +28,7 @@ static struct bed two_spheres(void) {
     return bed;
 }
 
-/* Numbers, tables over T and lists of types: k* = k_s/(4 d sigma T^3). */
+/* The option takes numbers, tables over T and lists of types: k* = k_s/(4 d sigma T^3). */
 TEST(relative_conductivities) {
     static const double sigma = 5.670374419e-8, temperature[] = {1000, 500};
     char by_type[300];
@@ -73,14 +73,16 @@ TEST(no_relative_conductivity) {
 
 /* ---- a ball ------------------------------------------------------------------------------------------------------ */
 
-/* Number `count` of the random sequence, and a random point of the unit sphere from the two that follow. */
+/* draw: number `count` of the random sequence. draw_point: a random point of the unit sphere from the next two
+ * numbers. */
 static double draw(uint64_t *count) { return bed_make_random(7, (*count)++); }
 static void draw_point(uint64_t *count, double point[3]) {
     const double height = 2 * draw(count) - 1, turn = 2 * PI * draw(count), ring = sqrt(1 - height * height);
     point[0] = ring * cos(turn), point[1] = ring * sin(turn), point[2] = height;
 }
 
-/* Of a pattern of degree l a/(a + l) is given off: the mean of Legendre's polynomial of the cosine. */
+/* A ball gives off the part a/(a + l) of a pattern of degree l. This part is the mean of Legendre's polynomial of the
+ * cosine. */
 TEST(patterns_of_a_ball) {
     enum { DRAWS = 200000, DEGREES = 8 };
     static const double a[] = {.001, .1, 1, 5, 100};
@@ -141,7 +143,8 @@ static double mean_factor(const struct conduction *of, double *square) {
     return mean;
 }
 
-/* Touching spheres in a simple cubic lattice: harmonics up to degrees 9 and 13, and 1.2e7 rays, right to .0005. */
+/* Spheres touch in a simple cubic lattice. The true values come from harmonics up to degrees 9 and 13 and 1.2e7 rays,
+ * and are right to .0005. */
 LOOP_TEST(simple_cubic, 14) {
     static const struct {
         double k_star, factor[2]; /* at emissivities 1 and .6 */
@@ -156,15 +159,15 @@ LOOP_TEST(simple_cubic, 14) {
     double square = 0;
     const double mean = mean_factor(&found, &square);
     ck_assert_double_le(sqrt(square), .03 * truth);
-    ck_assert_double_eq_tol(mean, truth, 3 * sqrt(square) + .01 * truth); /* .01: rare flights along channels */
+    ck_assert_double_eq_tol(mean, truth, 3 * sqrt(square) + .01 * truth); /* .01 is for rare flights along channels */
     ck_assert_double_eq(k_star_mean(&found.k_star), known[_i / 2].k_star);
 }
 
-/* A plain solution by harmonics: degrees up to DEGREE of the radiosity J of each sphere, whose overlaps come from rays.
- * sigma T^4 rises by `period` along z from one image of the bed to the next. */
+/* Solves the problem plainly by harmonics: degrees up to DEGREE of the radiosity J of each sphere. Overlaps come from
+ * rays. sigma T^4 rises by `period` along z from one image of the bed to the next. */
 enum { SPHERES = 8u, DEGREE = 5, TERMS = (DEGREE + 1) * (DEGREE + 1), UNKNOWN = SPHERES * TERMS, RAYS = 20000 };
 
-/* Real harmonics at a point of the unit sphere; the mean square of each is 1. */
+/* Real harmonics at a point of the unit sphere, each with the mean square 1. */
 static void harmonics(const double n[3], double y[TERMS]) {
     const double turn = atan2(n[1], n[0]), height = fmax(-1, fmin(1, n[2]));
     for (int l = 0; l <= DEGREE; ++l)
@@ -175,7 +178,7 @@ static void harmonics(const double n[3], double y[TERMS]) {
         }
 }
 
-/* Whether a ray meets sphere j, displaced by `image` periods, before the length *least. at: where the ray is from. */
+/* Whether a ray meets sphere j, displaced by `image` periods, before the length *least. The ray begins at `at`. */
 static bool meets(const struct bed *bed, uint32_t j, const double image[3], const double at[3], const double w[3],
                   double *least, double n[3]) {
     const double c[] = {bed->x[j], bed->y[j], bed->z[j]};
@@ -191,8 +194,9 @@ static bool meets(const struct bed *bed, uint32_t j, const double image[3], cons
     return true;
 }
 
-/* The first sphere that a ray from sphere i meets, or an image of it. n: where, on that sphere. Returns the length. All
- * images within two periods of a point are tried. Then the point moves on by a period. */
+/* The first sphere, or image of a sphere, that a ray from sphere i meets. n: out: where the ray meets that sphere.
+ * Returns the length. The function tries all images within two periods of a point. Then the point moves on by a
+ * period. */
 static double first_met(const struct bed *bed, uint32_t i, const double from[3], const double w[3], uint32_t *sphere,
                         double n[3], double *images) {
     double least = INFINITY;
@@ -209,8 +213,8 @@ static double first_met(const struct bed *bed, uint32_t i, const double from[3],
     return least;
 }
 
-/* What rays tell: overlap[a][b] is the mean of harmonic a where a ray leaves times harmonic b where it ends; shift[a]
- * that of a and the rise; and sums over rays of lengths along z. */
+/* What the rays tell. overlap[a][b] is the mean of harmonic a where a ray leaves times harmonic b where it ends.
+ * shift[a] is the mean of harmonic a times the rise. Others are sums over rays of lengths along z. */
 struct overlaps {
     double overlap[UNKNOWN][UNKNOWN], shift[UNKNOWN], leaving[UNKNOWN], arriving[UNKNOWN], rise;
 };
@@ -241,7 +245,7 @@ static void trace_overlaps(const struct bed *bed, struct overlaps *o) {
     }
 }
 
-/* F_E along z. J_l = (1 - e_l) H_l with 1/e_l = 1/e + 1/(2 k* l), and e_0 = 0: no sphere gains anything. */
+/* F_E along z. J_l = (1 - e_l) H_l with 1/e_l = 1/e + 1/(2 k* l). e_0 = 0, since no sphere gains power. */
 static double factor_by_harmonics(const struct bed *bed, const double *emissivity, const double *conductivity) {
     OWNED struct overlaps *o = calloc(1, sizeof *o);
     gsl_matrix *matrix = gsl_matrix_calloc(UNKNOWN, UNKNOWN);
@@ -262,7 +266,7 @@ static double factor_by_harmonics(const struct bed *bed, const double *emissivit
     ck_assert_int_eq(gsl_linalg_LU_solve(matrix, order, right, j), 0);
     for (size_t a = 0; a < UNKNOWN; ++a) flux += (o->leaving[a] - o->arriving[a]) / 2 * gsl_vector_get(j, a);
     flux -= o->rise / 2;
-    for (size_t i = 0; i < SPHERES; ++i) { /* through the spheres: what they absorb and give off elsewhere */
+    for (size_t i = 0; i < SPHERES; ++i) { /* the way through the spheres: they give off elsewhere what they absorb */
         const size_t a = i * TERMS + 2;
         double arrives = o->shift[a];
         for (size_t b = 0; b < UNKNOWN; ++b) arrives += o->overlap[a][b] * gsl_vector_get(j, b);
@@ -273,7 +277,7 @@ static double factor_by_harmonics(const struct bed *bed, const double *emissivit
     return -flux / (bed->period[0] * bed->period[1] * bed->period[2] * diameter);
 }
 
-/* Random spheres of all sizes, emissivities and conductivities. */
+/* Random spheres have many sizes, emissivities and conductivities. */
 LOOP_TEST(random_beds, 2) {
     static const double low[] = {1, .7}, fraction[] = {.5, .45};
     double emissivity[SPHERES], conductivity[SPHERES];
@@ -289,7 +293,7 @@ LOOP_TEST(random_beds, 2) {
     ck_assert_double_eq_tol(found.factor[2], truth, .015 * truth);
 }
 
-/* A bed with open ends: its core has F_E of the periodic bed that it is cut from. */
+/* A bed has open ends. Its core has F_E of the periodic bed from which it was cut. */
 TEST(open_beds) {
     OWNED_BED cell, bed;
     bed_init(&cell), bed_init(&bed);
@@ -307,8 +311,8 @@ TEST(open_beds) {
     ck_assert_double_eq_tol(found, truth, 3 * sqrt(square) + .01 * truth); /* .01: other spheres */
 }
 
-/* With k* of 1e6 F_E is that of spheres with one temperature. All spheres at temperatures on a line, or at those at
- * which they gain nothing: docs/heat.md has the difference, .1 %. */
+/* With k* of 1e6, F_E is that of spheres with one temperature each. Their temperatures lie on a line, or are those at
+ * which no sphere gains power: docs/heat.md gives the difference, .1 %. */
 TEST(good_conductors) {
     double emissivity[300], conductivity[300];
     OWNED_BED bed;
@@ -323,7 +327,7 @@ TEST(good_conductors) {
     ck_assert(isnan(k_star_mean(&one.k_star)) && solid.k_star.least == 1e6);
 }
 
-/* What the kernel refuses. */
+/* The kernel refuses these. */
 TEST(refusals) {
     static _Alignas(64) unsigned char memory[40000], room[2000000];
     const double at[] = {0, 0, 0}, r = 1;
@@ -354,7 +358,7 @@ TEST(refusals) {
 #define OF_CELL                                                                                                        \
     write_file("cell.csv", CELL), "--periodic", "60,60,60", "--emissivity", "1", "--rays", "2000", "--temperature"
 
-/* Eight copies of a random bed, one above the other; `period` becomes that of a copy. */
+/* Writes eight copies of a random bed, one above the other. `period` becomes that of a copy. */
 static const char *write_tower(double period[3]) {
     char *text = malloc(60 * 8 * 80), *at = text + sprintf(text, "x,y,z,r\n");
     OWNED_BED bed;
@@ -369,7 +373,7 @@ static const char *write_tower(double period[3]) {
     return file;
 }
 
-/* Paths in a periodic bed, and patches of the same bed between plates. */
+/* Paths in a periodic bed are compared with patches of the same bed between plates. */
 LOOP_TEST(paths_and_patches_of_a_random_bed, 3) {
     static const double k_star[] = {1, .1, .01}, most[] = {.01, .01, .02};
     double period[3];
@@ -382,7 +386,7 @@ LOOP_TEST(paths_and_patches_of_a_random_bed, 3) {
     ck_assert_double_eq_tol(value_of("F_E_steady_z") / value_of("F_E_z"), 1, most[_i]);
 }
 
-/* k* in the summary, the table and the objects, and the same from a number, a column and a table of T. */
+/* k* appears in the summary, the table and the objects. It is the same from a number, a column and a table over T. */
 TEST(outputs) {
     const char *csv = in_folder("k.csv"), *json = in_folder("k.json"), *summary = in_folder("s.json");
     const double k_star = 13.6 / (4 * .06 * 5.670374419e-8 * 1e9);
@@ -404,7 +408,8 @@ TEST(outputs) {
     for (int k = 0; k < 3; ++k) free(text[k]);
 }
 
-/* One temperature a sphere is right to 5 % above k* = 11 or so in a simple cubic lattice: F_E 1.135 of 1.200 at 10. */
+/* One temperature for each sphere is right to 5 % above about k* = 11 in a simple cubic lattice. At 10, F_E is 1.135
+ * instead of 1.200. */
 TEST(how_isothermal) {
     double above = 0;
     SUCCEED("conductivity", OF_CELL, "1000", "--length-unit", "mm");

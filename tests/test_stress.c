@@ -1,8 +1,8 @@
-/* test_stress.c - attempts to break the numerics: scale, distance from the origin, contact, radius ratio, degenerate
+/* test_stress.c - attempts to break the numerics: scale, distance from the origin, contact, ratio of radii, degenerate
  * windows, lattices along the beams, obstacles, random scenes by the million. SPDX-License-Identifier: MIT
  *
- * `make test` runs a part of each attack, `make stress` (STRESS=1 in the environment) all of it. One line per attack
- * tells the worst that was seen and what is tolerated. */
+ * `make test` runs a part of each attack, and `make stress` (STRESS=1 in the environment) runs all. One line for each
+ * attack tells the worst error that was seen and the tolerance. */
 #include <stdio.h>
 
 #define FIBRAD_ISA_SUFFIX _scalar
@@ -99,8 +99,8 @@ TEST(rows_at_every_scale) {
     report("rows times 10^k, k = -100 ... 100", ten, 1e-13);
 }
 
-/* Moved coordinates are rounded; the row of the rounded bed, moved back without a further rounding, tells how much of
- * the loss is the kernel's own. */
+/* The coordinates of a moved bed are rounded. The rounded bed is moved back without a further rounding. Its row tells
+ * how much of the loss is the kernel's own. */
 TEST(rows_far_from_the_origin) {
     for (int e = 3; e <= 9; e += 2) {
         double offset = pow(10, e), own = 0, loss = 0, away[3] = {offset, -.7 * offset, .3 * offset};
@@ -125,8 +125,8 @@ TEST(rows_far_from_the_origin) {
 
 /* ---- contact ---------------------------------------------------------------------------------------------------- */
 
-/* Gaps from an overlap of half the smaller radius to 1e12 radii, in steps that are fine near contact: F falls, and two
- * neighbours differ by no more than the slope there allows. */
+/* Gaps go from an overlap of half the smaller radius to 1e12 radii, in steps that are fine near contact. F falls, and
+ * two neighbours differ by no more than the slope there allows. */
 TEST(pairs_across_contact) {
     static const double ratios[] = {1, .5, .1, 1e-3, 1e-6, 2, 10, 1e3, 1e6};
     double rise = 0, jump = 0;
@@ -140,7 +140,7 @@ TEST(pairs_across_contact) {
             if (part == 0) gap = 0;
             double f = exact(r1, r2, gap);
             worst_of(&rise, (f - last) / f);
-            /* |dF/dgap| <= r2^2/(r1^2 smaller) is generous by a factor of two at least */
+            /* the bound |dF/dgap| <= r2^2/(r1^2 smaller) is too large by a factor of two at least */
             double allowed = fmin(1, r2 * r2 / (r1 * r1)) * fabs(gap - last_gap) / smaller;
             if (fabs(gap) < 1e-3 * smaller) worst_of(&jump, (last - f - allowed) / contact);
             last = f, last_gap = gap;
@@ -152,7 +152,7 @@ TEST(pairs_across_contact) {
     report("pairs across contact: F jumps by", jump, 2e-15);
 }
 
-/* The same for beams: in every direction the disc moves out as the gap grows. */
+/* The same holds for beams: in each direction the disc moves out as the gap grows. */
 TEST(beams_across_contact) {
     double rise = 0, jump = 0;
     for (uint64_t seed = 0; seed < rounds(2, 20); seed++) {
@@ -202,8 +202,8 @@ TEST(radius_ratios) {
 
 #define DISCS 24
 
-/* Discs drawn from few places and radii, so that they are equal, concentric, tangent within and without, as large as
- * the window, and meet by threes and more in one point; one in two is then moved by an ulp or a little more. */
+/* Discs are drawn from few places and radii. So some are equal, concentric, tangent inside and outside, or as large as
+ * the window, and three and more meet in one point. Every second disc is then moved by an ulp or a little more. */
 TEST(degenerate_windows) {
     double worst = 0, open = 0;
     fibrad_arena arena = {0};
@@ -220,7 +220,7 @@ TEST(degenerate_windows) {
     for (uint64_t round = 0; round < rounds(30000, 300000); round++) {
         double u[DISCS], v[DISCS], r[DISCS], mine[DISCS] = {0}, expected[DISCS], rest_expected;
         uint32_t n = 2 + (uint32_t)random_in(3, 0, round % 10 == 0 ? DISCS - 2 : 7);
-        uint32_t kinds = 2 + (uint32_t)random_in(3, 0, 7); /* few kinds: many coincidences */
+        uint32_t kinds = 2 + (uint32_t)random_in(3, 0, 7); /* a few kinds make many coincidences */
         for (uint32_t k = 0; k < n; k++) {
             u[k] = places[(int)random_in(3, 0, kinds + 2)] * (random_in(3, 0, 1) < .5 ? -1 : 1);
             v[k] = places[(int)random_in(3, 0, kinds + 2)] * (random_in(3, 0, 1) < .5 ? -1 : 1);
@@ -246,13 +246,14 @@ TEST(degenerate_windows) {
         worst_of(&worst, fabs(rest - rest_expected));
         worst_of(&open, fabs(total - acos(-1)));
     }
-    /* three circles tangent in one point within rounding meet at points that are the root of that apart, 1.5e-8 */
+    /* three circles that are tangent in one point within rounding meet at points 1.5e-8 apart, the root of the rounding
+     * error */
     report("degenerate windows and 1 ulp beside them: visible area", worst, 1.5e-8);
     report("degenerate windows: sum of areas + rest - pi", open, 1.5e-8);
 }
 
-/* Lattices turned so that an axis of theirs lies along one of the beams, or a little off it: the row agrees with that
- * of the lattice with every sphere moved by 1e-9, as no single beam may matter that much. */
+/* Lattices are turned so that one of their axes lies along a beam, or a little beside it. The row agrees with that of
+ * the lattice in which each sphere is moved by 1e-9. So no single beam matters that much. */
 TEST(lattices_along_the_beams) {
     static const double axes[][3] = {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}};
     double worst = 0, open = 0;
@@ -285,13 +286,13 @@ TEST(lattices_along_the_beams) {
                 worst_of(&open, closure(&row));
             }
     report("SC, BCC, FCC along the beams, against 1e-9 beside them", worst, 1e-7);
-    report("SC, BCC, FCC along the beams: sum + escaped - 1", open, 1e-9); /* as for degenerate windows */
+    report("SC, BCC, FCC along the beams: sum + escaped - 1", open, 1e-9); /* the bound of degenerate windows */
 }
 
 /* ---- obstacles -------------------------------------------------------------------------------------------------- */
 
-/* An obstacle moves across a pair: F is never negative nor above the free F, and changes by no more than the area its
- * edge sweeps, 2 r/pi per step and unit area. */
+/* An obstacle moves across a pair. F is never negative and never above the free F. It changes by no more than the area
+ * over which the obstacle's edge sweeps, 2 r/pi per step and unit area. */
 TEST(obstacle_across_a_pair) {
     double negative = 0, above = 0, jump = 0, left = 0;
     for (uint64_t seed = 0; seed < rounds(3, 30); seed++) {
@@ -321,7 +322,7 @@ TEST(obstacle_across_a_pair) {
     report("obstacle gone: F differs from the free F by", left, 1e-14);
 }
 
-/* A dilute periodic box is opaque at last: of what leaves a sphere only a few beams find a channel without end. */
+/* A dilute periodic box lets no light through in the end: only a few beams from a sphere find a channel without end. */
 TEST(sight_through_many_periods) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{.1, .2, .3, .2}});
     for (int axis = 0; axis < 3; axis++) bed.period[axis] = 1;
@@ -336,7 +337,7 @@ TEST(sight_through_many_periods) {
 /* ---- random scenes ---------------------------------------------------------------------------------------------- */
 
 struct seen {
-    double nonsense, closure, sum, averaged; /* factors that are no positive number; worst of the rest */
+    double nonsense, closure, sum, averaged; /* factors that are not positive numbers; the worst of the others */
     double closed, total, reciprocity;       /* of the matrix */
     double other_bits;                       /* rows that depend on how many spheres are kept near */
     uint64_t scenes, refused;
@@ -344,22 +345,22 @@ struct seen {
 
 static double uniform(void) { return random_in(6, 0, 1); }
 
-/* A row by beams with the least fixed memory that it has come to, which has room for few near spheres. False: it needs
- * more than there is here. */
+/* Computes a row by beams with the least fixed memory so far, which has room for few near spheres. False: the row needs
+ * more than this test has. */
 static bool in_little(const fibrad_scene *scene, fibrad_work *bare, uint32_t i, const fibrad_beam_rule *rule,
                       fibrad_row *row) {
     for (int tries = 0; tries < 40; tries++) {
         const int status = fibrad_beam_row(scene, bare, i, rule, row);
         if (status == FIBRAD_OK) return true;
         ck_assert_int_eq(status, FIBRAD_E_WORK);
-        if (bare->memory.needed > 4u << 20) return false; /* through a periodic box: thousands of discs in a window */
+        if (bare->memory.needed > 4u << 20) return false; /* in a periodic box a window may have thousands of discs */
         work_again(bare, status);
     }
     ck_abort_msg("work memory asked for again and again");
     return false;
 }
 
-/* A row by beams and one by rays, once with plenty of work memory and once with little. */
+/* Computes a row by beams and one by rays, once with plenty of work memory and once with little. */
 static void try_near(struct seen *seen, const fibrad_scene *scene, uint32_t i, uint32_t n, fibrad_work *work,
                      fibrad_work *bare) {
     fibrad_beam_rule rule = {.directions = 13, .points = uniform() < .5 ? 64 : 0};
@@ -382,7 +383,7 @@ static void try_near(struct seen *seen, const fibrad_scene *scene, uint32_t i, u
     }
 }
 
-/* Two to nine spheres: apart, touching, overlapping, in line, of all sizes, in boxes with some periodic axes. */
+/* Makes two to nine spheres: apart, touching, overlapping, in line, of all sizes, in boxes with some periodic axes. */
 static void random_scene(struct seen *seen, void *scene_memory, size_t scene_size, fibrad_work *work,
                          fibrad_work *bare) {
     static unsigned char matrix_memory[16384], rows_memory[16384];

@@ -22,7 +22,7 @@ static void make_scene(int isa, bool periodic) {
     scene = scene_of(&open, isa);
 }
 
-/* A random bed of n spheres. */
+/* Makes a random bed of n spheres. */
 static void make(uint32_t n, bool periodic) {
     bed_free(&bed);
     bed = packing(n, .8, 1.2, .55, 1, true);
@@ -40,7 +40,7 @@ static fibrad_row surface_row(uint32_t i, const fibrad_surface_rule *rule) {
     return row;
 }
 
-/* F from i to j, both at their own places, ray by ray, in the frame that fibrad.h tells. */
+/* F from i to j, each at its own place, ray by ray, in the frame of which fibrad.h tells. */
 static double plain(uint32_t i, uint32_t j, uint32_t nodes) {
     const uint32_t one = i < j ? i : j, two = i < j ? j : i;
     const double c1[3] = {bed.x[one], bed.y[one], bed.z[one]};
@@ -119,7 +119,7 @@ TEST(skips_and_instruction_sets_change_no_bit) {
     }
 }
 
-/* The rows of both methods are as far apart as the estimate of the surface method says, which is the coarser one. */
+/* The rows of both methods are as far apart as the estimate of the surface method, the coarser of the two, says. */
 TEST(agrees_with_beams) {
     make(300, true);
     static uint32_t beam_col[MOST];
@@ -156,7 +156,7 @@ TEST(reciprocal_without_cutoff) {
         }
 }
 
-/* The rows of a matrix are as they were but for rounding, and as accurate as they said. */
+/* The rows of a matrix are as they were but for rounding, and as accurate as they say. */
 TEST(rows_of_a_matrix) {
     make(60, false);
     OWNED_ROWS rows = {.memory = memory_growing()};
@@ -201,8 +201,8 @@ TEST(tells_what_it_needs) {
     work_free_fixed(&little);
 }
 
-/* Three periods each way: 7^3 images in the cube. A hundred and more are refused, as is what would need more memory
- * than can be had. */
+/* With three periods each way there are 7^3 images in the cube. A hundred periods and more are refused, and so is what
+ * needs more memory than there can be. */
 TEST(bounds_the_search_for_images) {
     make(60, true);
     const double period = bed.period[0];
@@ -218,7 +218,7 @@ TEST(bounds_the_search_for_images) {
             fibrad_surface_row(scene, &little, 0, &(fibrad_surface_rule){.cutoff = cases[k].periods * period}, &row),
             cases[k].status);
 
-    /* one sphere and its images are few enough, at 100 periods still: 132 bytes each, and what all rows take */
+    /* one sphere has few enough images even at 100 periods: they need 132 bytes each, and what all rows need */
     bed.n = 1;
     make_scene(FIBRAD_ISA_BEST, true);
     const fibrad_surface_rule most = {.cutoff = 100 * period}, more = {.cutoff = 100.001 * period};

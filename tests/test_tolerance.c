@@ -1,5 +1,5 @@
-/* test_tolerance.c - errors that are asked for: kept, not overdone, and where they are not reached, a warning.
- * SPDX-License-Identifier: MIT */
+/* test_tolerance.c - errors that the user asks for: the program keeps them and does not overdo them. If it does not
+ * reach them, it warns. SPDX-License-Identifier: MIT */
 #include "program.h"
 
 #include "fibrad.h"
@@ -9,8 +9,8 @@ FIXTURE(make_folder, remove_folder)
 #define SIGMA 5.670374419e-8
 #define BOX   "xmin=0,xmax=1,ymin=0,ymax=1,zmin=0,zmax=1"
 
-/* Two black spheres in a black box, as far above its T^4 as below: each wall takes much, and next to nothing on
- * balance. Powers are those of the closed form of two spheres. */
+/* Two black spheres are in a black box, one as far above its T^4 as the other is below. So each wall absorbs much, but
+ * its net power is next to nothing. Powers are those of the closed form of two spheres. */
 TEST(walls_by_what_they_absorb) {
     const double t[2] = {1000, 700}, wall = 887.3643, r = .15;
     const double place[2][3] = {{.3, .35, .4}, {.65, .6, .55}};
@@ -40,7 +40,7 @@ TEST(walls_by_what_they_absorb) {
     ck_assert_double_lt(sqrt(error / square), .003);
 }
 
-/* An obstacle in the two spheres: visible areas jump, and the default error is one that can be had. */
+/* An obstacle overlaps the two spheres, so that visible areas jump. The default error can still be reached. */
 TEST(pair_behind_an_overlapping_obstacle) {
     SUCCEED("pair", "1", "1", ".2", "--obstacle", ".9,0,1.1,.5");
     ck_assert_str_eq(said, "");
@@ -51,7 +51,7 @@ TEST(pair_behind_an_overlapping_obstacle) {
     ck_assert_double_eq_tol(value_of("F12"), f, 1e-5);
 }
 
-/* What is asked of a command and cannot be had. */
+/* These commands are asked for an error that they cannot reach. */
 static const char *const unreached[][16] = {
     {"bed", "--error", "1e-7", "--points", "64"},
     {"heat", "--length-unit", "m", "--emissivity", ".9", "--temperature", "T", "--ambient", "300", "--error", "1e-5"}};

@@ -1,4 +1,4 @@
-/* test_trace.c - rays from sphere to sphere against all spheres tried one by one, and in every instruction set.
+/* test_trace.c - rays from sphere to sphere against trying all spheres one by one, and in each instruction set.
  * SPDX-License-Identifier: MIT */
 #include <stdio.h>
 
@@ -31,7 +31,7 @@ static const struct versions versions[] = {
 #endif
 };
 
-/* Few lists, which spheres share, or one for each sphere. */
+/* Makes a tracer with a few lists, which spheres share, or with one list for each sphere. */
 enum { FEW, EACH };
 
 static fibrad_tracer *tracer_of(const fibrad_scene *scene, int lists, fibrad_work *work) {
@@ -52,8 +52,8 @@ static void even(fibrad_random *random, double v[3]) {
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* The first sphere by trying all of them, `images` periods each way; from: the sphere left, or FIBRAD_NONE. The ray is
- * told in lengths and coordinates of the scene. */
+/* Finds the first sphere by trying all of them, `images` periods each way. from: the sphere that the ray leaves, or
+ * FIBRAD_NONE. The ray has lengths and coordinates of the scene. */
 static fibrad_hit try_all(const struct bed *bed, uint32_t from, const double o[3], const double w[3], int images) {
     fibrad_hit hit = {.sphere = FIBRAD_NONE, .distance = INFINITY};
     double least = INFINITY;
@@ -86,7 +86,7 @@ static fibrad_hit try_all(const struct bed *bed, uint32_t from, const double o[3
     return hit;
 }
 
-/* Paths of `bounces` reflections from some spheres of the bed, each ray against try_all. */
+/* Follows paths of `bounces` reflections from some spheres of the bed. Compares each ray with try_all. */
 static void follow(const struct bed *bed, const struct versions *version, int lists, int images, uint32_t paths,
                    int bounces) {
     OWNED fibrad_scene *scene = scene_of(bed, version->isa);
@@ -133,7 +133,7 @@ LOOP_TEST(random_beds, sizeof versions / sizeof *versions) {
     }
 }
 
-/* Large spheres, near enough to be listed, behind small ones that are not. */
+/* Large spheres, near enough to be listed, stand behind small ones that are not listed. */
 TEST(small_spheres_before_large_ones) {
     for (uint64_t seed = 50; seed < 53; seed++) {
         OWNED_BED bed = strewn(600, seed);
@@ -141,14 +141,14 @@ TEST(small_spheres_before_large_ones) {
     }
 }
 
-/* Spheres that overlap by up to a third of a radius. */
+/* Spheres overlap by up to a third of a radius. */
 TEST(overlaps) {
     OWNED_BED bed = packing(100, .7, 1, .45, 5, true);
     for (uint32_t i = 0; i < bed.n; i++) bed.r[i] *= 1.15;
     follow(&bed, &versions[0], FEW, 2, 500, 4);
 }
 
-/* One large sphere with thousands of small ones about it: more than a list holds. */
+/* One large sphere has thousands of small ones about it, more than a list holds. */
 TEST(large_among_small) {
     OWNED_BED bed;
     bed_init(&bed);
@@ -161,7 +161,7 @@ TEST(large_among_small) {
     follow(&bed, &versions[0], EACH, 0, 1500, 3);
 }
 
-/* More small spheres that overlap a large one than there is room for: no list at all. */
+/* More small spheres overlap a large one than there is room for. So there is no list at all. */
 TEST(studded_sphere) {
     OWNED_BED bed;
     bed_init(&bed);
@@ -174,7 +174,8 @@ TEST(studded_sphere) {
     follow(&bed, &versions[0], EACH, 0, 1400, 3);
 }
 
-/* One sphere a period: most of what it sees are images of itself. Rays along the channels of a lattice meet nothing. */
+/* There is one sphere in a period, which sees mostly its own images. Rays along the channels of a lattice meet
+ * nothing. */
 TEST(one_sphere_and_its_images) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{.3, .4, .5, 1}});
     bed.period[0] = 2, bed.period[1] = 2.5, bed.period[2] = 3;
@@ -185,7 +186,7 @@ TEST(one_sphere_and_its_images) {
     ck_assert_uint_eq(hit.sphere, FIBRAD_NONE);
 }
 
-/* A stray sphere far off is seen, and sees the others. */
+/* A stray sphere far away is seen, and sees the others. */
 TEST(stray) {
     OWNED_BED bed = packing(200, .5, 1, .3, 9, false);
     add_sphere(&bed, 4e6, 10, 10, 1e5);
@@ -259,7 +260,8 @@ TEST(same_bits_everywhere) {
     for (int t = 0; t < 2; t++) work_free(&work[t]);
 }
 
-/* The ray along x from the first of two spheres: its length, and whether the list it takes was there before. */
+/* Follows the ray along x from the first of two spheres. Returns its length. kept: out: whether the list that it uses
+ * was there before. */
 static double length_along_x(fibrad_tracer *tracer, bool *kept) {
     const uint32_t place = tracer->scene->place[0];
     fibrad_hit hit;
@@ -268,7 +270,7 @@ static double length_along_x(fibrad_tracer *tracer, bool *kept) {
     return hit.distance;
 }
 
-/* Lists are kept from call to call, but not for another scene in the same place. */
+/* Lists are kept from call to call, but not for another scene at the same place. */
 TEST(lists_belong_to_contents) {
     static unsigned char memory[FIBRAD_SCENE_BYTES(2)];
     OWNED_WORK work = work_growing();
@@ -287,7 +289,8 @@ TEST(lists_belong_to_contents) {
     }
 }
 
-/* A block too small is left alone and what it lacks is said; a large enough one, of any alignment, is not left. */
+/* A block that is too small is left alone, and the call says what it lacks. A block that is large enough, of any
+ * alignment, is used throughout. */
 TEST(memory) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -317,12 +320,12 @@ TEST(memory) {
     }
 }
 
-/* Two spheres that overlap, met at the same length and depth: the lower id is met first, whatever the order. Of images,
- * that is of spheres of one id, the one at the lower coordinate. */
+/* A ray meets two overlapping spheres at the same length and depth. The lower id is met first, whatever the order.
+ * Images of a sphere share its id: then the image at the lower coordinate is met first. */
 TEST(ids_decide_what_is_met_first) {
     const double x[] = {3, 3, 0}, y[] = {.5, -.5, 0}, z[] = {0, 0, 0}, r[] = {1, 1, .25}, w[] = {1, 0, 0};
     for (int order = 0; order < 2; order++)
-        for (uint64_t lower = 0; lower < 3; lower++) { /* the upper sphere's id, the lower one's, neither is less */
+        for (uint64_t lower = 0; lower < 3; lower++) { /* which id is less: upper, lower, neither */
             const double by_order[] = {y[order], y[1 - order], 0};
             const uint64_t of_upper = lower == 1 ? 9 : 4, of_lower = lower == 0 ? 9 : 4;
             const uint64_t id[] = {order ? of_lower : of_upper, order ? of_upper : of_lower, 1};

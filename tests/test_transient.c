@@ -22,13 +22,13 @@ static fibrad_transient *transient_of(const struct bed *bed, const fibrad_scene_
     return transient;
 }
 
-/* Time in which a body of loss factor a = A e sigma/C goes from T0 to T in black surroundings at Ts. */
+/* The time in which a body of loss factor a = A e sigma/C goes from T0 to T in black surroundings at Ts. */
 static double time_between(double a, double from, double to, double ts) {
     const double turn = 2 * (atan(to / ts) - atan(from / ts));
     return (log(fabs((to + ts) / (to - ts))) - log(fabs((from + ts) / (from - ts))) + turn) / (4 * a * ts * ts * ts);
 }
 
-/* The temperature after a time, by bisection. */
+/* Finds the temperature after a time, by bisection. */
 static double temperature_after(double a, double from, double ts, double time) {
     double low = fmin(from, ts), high = fmax(from, ts);
     for (int k = 0; k < 200; k++) {
@@ -42,7 +42,7 @@ static double temperature_after(double a, double from, double ts, double time) {
     return (low + high) / 2;
 }
 
-/* One sphere in black surroundings, automatic steps: cooling and heating, in spans of any length. */
+/* One sphere in black surroundings cools or heats with automatic steps, in spans of any length. */
 TEST(one_sphere_cools) {
     static const double begin[] = {1500, 300, 310}, around[] = {300, 1500, 300};
     const double r = .01, eps = .7, capacity = 25;
@@ -64,7 +64,7 @@ TEST(one_sphere_cools) {
     }
 }
 
-/* Errors at steps of h, h/2, h/4 are as 16, 4, 1. */
+/* Errors at steps of h, h/2 and h/4 are in proportion to 16, 4 and 1. */
 TEST(second_order) {
     const double r = .01, eps = .7, capacity = 25, a = 4 * M_PI * r * r * eps * SIGMA / capacity;
     OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
@@ -84,7 +84,7 @@ TEST(second_order) {
     ck_assert_double_lt(error[3], 1e-2);
 }
 
-/* T/2000, counting how often it is asked. */
+/* The emissivity T/2000. Counts its calls. */
 static void proportional(void *calls, const double *temperature, const double *body_temperature, double *emissivity,
                          double *body_emissivity) {
     (void)body_temperature;
@@ -93,7 +93,8 @@ static void proportional(void *calls, const double *temperature, const double *b
     ++*(int *)calls;
 }
 
-/* Emissivity T/2000 at 0 K: 1/T^4 grows by 4 A sigma/(2000 C) a second; by automatic steps, and of second order. */
+/* The emissivity T/2000 belongs to surroundings at 0 K: 1/T^4 grows by 4 A sigma/(2000 C) a second. Steps are
+ * automatic, or show the second order. */
 TEST(emissivity_follows) {
     const double r = .01, capacity = 25, first = .6, rate = 4 * M_PI * r * r * SIGMA / (2000 * capacity);
     const double duration = 2 / (4 * rate * pow(1200, 4)), expected = pow(pow(1200, -4) + 4 * rate * duration, -.25);
@@ -122,7 +123,7 @@ TEST(emissivity_follows) {
     for (int k = 0; k < 2; k++) ck_assert_double_eq_tol(error[k] / error[k + 1], 4, .6);
 }
 
-/* A bed on a hot floor, under a roof, periodic sideways. */
+/* A bed on a hot floor, under a roof, and periodic sideways. */
 enum { N = 60 };
 struct furnace {
     struct bed bed;
@@ -152,8 +153,8 @@ static void furnace_init(struct furnace *f) {
     f->sources.body_temperature = f->wall, f->sources.body_emissivity = f->wall_emissivity;
 }
 
-/* What spheres lose, less their powers, is what walls and surroundings get: by factors and by patches, at loose and at
- * tight tolerances, whether steps are long or short. */
+/* What spheres lose, less their powers, is what walls and surroundings get. This holds by factors and by patches, at
+ * loose and at tight tolerances, with long and with short steps. */
 TEST(energy_is_kept) {
     OWNED_BY(furnace_free) struct furnace f;
     furnace_init(&f);
@@ -179,7 +180,7 @@ TEST(energy_is_kept) {
     }
 }
 
-/* The same by Runge and Kutta's explicit scheme, from the factors themselves. */
+/* The slopes for Runge and Kutta's explicit scheme, from the factors themselves. */
 static void slopes(const struct furnace *f, const fibrad_factors *d, double time, double duration, const double *t,
                    double *slope) {
     const double floor = SIGMA * pow(f->wall[0] + (800 - f->wall[0]) * time / duration, 4);
@@ -205,7 +206,7 @@ static void runge_kutta(const struct furnace *f, const fibrad_factors *d, double
     }
 }
 
-/* Powers and a wall that cools while the spheres do; the powers at the end go with the temperatures. */
+/* Powers are given, and a wall cools while the spheres do. The powers at the end belong to the temperatures. */
 TEST(bed_against_runge_kutta) {
     OWNED_BY(furnace_free) struct furnace f;
     furnace_init(&f);
@@ -230,7 +231,7 @@ TEST(bed_against_runge_kutta) {
     }
 }
 
-/* A mote between two large spheres follows them at once; steps are those of the large ones. */
+/* A mote between two large spheres follows them at once. The steps are those of the large spheres. */
 TEST(motes_are_no_limit) {
     enum { MOTE = 2 };
     static const double place[][4] = {{0, 0, 0, 1}, {3, 0, 0, 1}, {1.5, 0, 0, 1e-3}, {1.5, .1, 0, 1e-2}};
@@ -246,7 +247,7 @@ TEST(motes_are_no_limit) {
         const fibrad_heat_sources sources = sources_about(emissivity, 400);
         fibrad_span span = {temperature, capacity, .duration = 1e5, .power = power};
         ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
-        for (int k = 0; k < 5; k++) { /* the motes are warm; they follow the others' slow change */
+        for (int k = 0; k < 5; k++) { /* the motes are warm, and follow the slow change of the others */
             ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
             steps[n == 4] += span.steps + span.refused;
             const double emitted = 4 * M_PI * 1e-6 * .5 * SIGMA * pow(temperature[MOTE], 4);
@@ -256,7 +257,8 @@ TEST(motes_are_no_limit) {
     ck_assert_uint_le(steps[1], steps[0] + 2);
 }
 
-/* Reflecting all, a sphere has its power and nothing else. A power that is drawn makes it as cold as it goes. */
+/* A sphere that reflects all light has its power and nothing else. If power is drawn from it, it becomes as cold as
+ * possible. */
 TEST(powers_alone) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}});
     const double capacity[] = {2, 4}, power[] = {10, -20}, emissivity[] = {0, 0};
@@ -273,7 +275,7 @@ TEST(powers_alone) {
     ck_assert_double_eq_tol(temperature[0], 400, 1e-9);
 }
 
-/* By patches as by factors, and a move in between. */
+/* Patches give what factors give, with a move in between. */
 TEST(patches_as_factors) {
     OWNED_BY(furnace_free) struct furnace f;
     furnace_init(&f);
@@ -296,7 +298,7 @@ TEST(patches_as_factors) {
     }
 }
 
-/* Any number of threads: the same bits. */
+/* Any number of threads gives the same bits. */
 TEST(threads_change_nothing) {
     OWNED_BY(furnace_free) struct furnace f;
     furnace_init(&f);

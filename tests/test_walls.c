@@ -1,4 +1,4 @@
-/* test_walls.c - walls of a scene: what a ray meets, rows that close in containers, the option --wall.
+/* test_walls.c - walls of a scene: what a ray meets, rows that are closed in containers, the option --wall.
  * SPDX-License-Identifier: MIT */
 #include "bed/wall_option.h"
 #include "scene/walls.h"
@@ -13,7 +13,7 @@ static double uniform(double low, double high) { return low + (high - low) * (ra
 
 /* Walls by place. */
 struct container {
-    uint32_t planes, open; /* sums of 1 << place; of openings likewise */
+    uint32_t planes, open; /* sums of 1 << place; those of openings likewise */
     double at[6], cylinder[3];
 };
 
@@ -25,7 +25,7 @@ struct places {
     fibrad_plane opening[6];
 };
 
-/* Orders in which walls are named; what is computed follows. */
+/* Orders in which walls are named. Results follow the order. */
 static const uint32_t orders[][WALLS] = {
     {0, 1, 2, 3, 4, 5, 6}, {3, 6, 0, 5, 2, 4, 1}, {6, 5, 4, 3, 2, 1, 0}, {4, 2, 6, 1, 5, 3, 0}};
 enum { ORDERS = sizeof orders / sizeof *orders };
@@ -64,7 +64,8 @@ static fibrad_scene *scene_in(const struct bed *bed, const struct container *wal
     return scene_at(bed, &places, isa);
 }
 
-/* Turns the factors to bodies, in the order of their naming, into those to walls by place, 0 for what is not there. */
+/* Turns factors to bodies, in the order in which they are named, into factors to walls by place. A wall that does not
+ * exist has 0. */
 static void by_place(const struct container *walls, const uint32_t order[WALLS], double body[BODIES_MOST]) {
     const struct places places = bodies_of(walls, order);
     double wall[WALLS] = {0};
@@ -72,7 +73,7 @@ static void by_place(const struct container *walls, const uint32_t order[WALLS],
     memcpy(body, wall, sizeof wall);
 }
 
-/* Row i by beams, the walls in row.body by place. */
+/* Row i by beams, with the walls in row.body by place. */
 static fibrad_row beam_in_order(const struct bed *bed, const struct container *walls, const uint32_t order[WALLS],
                                 uint32_t i, const fibrad_beam_rule *rule, int isa) {
     const struct places places = bodies_of(walls, order);
@@ -91,7 +92,7 @@ static fibrad_row beam(const struct bed *bed, const struct container *walls, uin
     return beam_in_order(bed, walls, orders[1], i, &rule, isa);
 }
 
-/* Row i by rays in a scene of scene_in, the walls by place. */
+/* Row i by rays in a scene of scene_in, with the walls by place. */
 static void cast(const fibrad_scene *scene, const struct container *walls, fibrad_work *work, uint32_t i, uint32_t rays,
                  fibrad_row *row) {
     ck_assert_int_eq(fibrad_cast_row(scene, work, i, &(fibrad_cast_rule){.rays = rays}, row, NULL), FIBRAD_OK);
@@ -117,16 +118,16 @@ static void assert_closed(const fibrad_row *row) {
     ck_assert_double_eq_tol(row_sum(row) + wall_sum(row) + row->escaped, 1, 2e-15 * (10 + row->length));
 }
 
-/* What a sphere sends to a surface that lies wholly on one side of it depends on its centre alone: an element of the
- * surface sees the whole sphere, of which it receives dA cos r^2/d^2; so F is the solid angle over 4 pi. */
+/* What a sphere sends to a surface wholly on one side of it depends on its centre alone. An element of the surface sees
+ * the whole sphere and receives dA cos r^2/d^2. So F is the solid angle over 4 pi. */
 static double to_corner(double a, double b, double d) { return atan(a * b / (d * sqrt(a * a + b * b + d * d))); }
 
 static double to_rectangle(double a0, double a1, double b0, double b1, double d) {
     return (to_corner(a1, b1, d) - to_corner(a0, b1, d) - to_corner(a1, b0, d) + to_corner(a0, b0, d)) / (4 * PI);
 }
 
-/* A disc of radius R at distance d, its axis at distance s < R: over the azimuths about the foot of the distance, the
- * rim being rho(phi) away; the trapezium rule of a smooth periodic function. */
+/* F to a disc of radius R at the distance d, whose axis is s < R away. The sum goes over the azimuths about the foot of
+ * the distance, where the rim is rho(phi) away. It is the trapezium rule of a smooth periodic function. */
 static double to_disc(double R, double s, double d) {
     double sum = 0;
     for (int k = 0; k < 2000; k++) {
@@ -159,7 +160,7 @@ TEST(bad_walls_are_refused) {
                {1, {plane_at(0, -1, 0)}},
                {2, {plane_at(0, 0, 6), plane_at(0, 1, 6)}},
                {2, {plane_at(0, 1, 6), plane_at(0, 0, 7)}},
-               {2, {z_low, z_low}}, /* two planes of one side */
+               {2, {z_low, z_low}}, /* two planes have the same side */
                {2, {plane_at(2, 0, -1), z_low}},
                {3, {z_low, z_high, plane_at(2, 1, 30)}},
                {1, {plane_at(0, 0, NAN)}},
@@ -185,7 +186,7 @@ TEST(bad_walls_are_refused) {
         uint32_t whose;
     } beyond[] = {{plane_at(0, 0, 3), 1},
                   {plane_at(2, 1, 9.25), 2},
-                  {plane_at(2, 0, -1e20), 3}, /* too far for the digits of coordinates: none of the spheres */
+                  {plane_at(2, 0, -1e20), 3}, /* too far away for the digits of coordinates: no sphere is named */
                   {cylinder_at(5, 5, 2.5), 1}};
     for (size_t k = 0; k < 4; k++) {
         fault = (fibrad_fault){9, 9, 9, 0, 0};
@@ -205,7 +206,7 @@ TEST(bad_walls_are_refused) {
     ck_assert_int_eq(init(&scene, &bed, 1, &can, &fault), FIBRAD_OK);
 }
 
-/* What this version does not compute: meshes, more than seven bodies, a known region. */
+/* This version does not compute these: meshes, more than seven bodies, a known region. */
 TEST(what_is_not_supported) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
     fibrad_scene *scene = NULL;
@@ -223,7 +224,7 @@ TEST(what_is_not_supported) {
     ck_assert_ptr_null(scene);
 }
 
-/* A row of a scene with bodies needs room for them; nothing is written behind it. */
+/* A row of a scene with bodies needs room for them. Nothing is written after it. */
 TEST(rows_need_room_for_bodies) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{5, 5, 5, 1}, {2, 5, 5, 1}});
     OWNED fibrad_scene *scene = scene_in(&bed, &can10, 0);
@@ -241,7 +242,7 @@ TEST(rows_need_room_for_bodies) {
     row_free(&row);
 }
 
-/* Factors follow the index of the body, with the same bits, whatever the order in which bodies are named. */
+/* Factors follow the index of the body and have the same bits, in whatever order bodies are named. */
 TEST(bodies_in_any_order) {
     OWNED_BED bed = packing(60, .6, 1.4, .3, 3, false);
     const struct container walls[] = {{.planes = 63, .at = {-3, 40, -4, 41, -5, 42}},
@@ -257,8 +258,8 @@ TEST(bodies_in_any_order) {
         }
 }
 
-/* What meets an opening is what a plane in its place would get, to the bit, by every method; but for that nothing
- * changes, and spheres do not reach beyond it. */
+/* An opening gets what a plane in its place would get, to the bit, by each method. Nothing else changes, and spheres do
+ * not reach beyond it. */
 TEST(openings_take_what_planes_would) {
     OWNED_BED bed = packing(80, .6, 1.4, .4, 3, false);
     double top = -1e9;
@@ -293,7 +294,7 @@ TEST(openings_take_what_planes_would) {
     }
 }
 
-/* The status for walls and openings about a sphere at (5, 5, 5) of radius 1. */
+/* Returns the status for walls and openings about a sphere at (5, 5, 5) of radius 1. */
 static int status_of(const struct container *walls, const double period[3], fibrad_fault *fault) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
     const struct places places = bodies_of(walls, orders[0]);
@@ -307,7 +308,7 @@ static int status_of(const struct container *walls, const double period[3], fibr
     return status;
 }
 
-/* Of all containers: those across several axes that are not closed, and cylinders without ends, are endless. */
+/* Of all containers, those are endless that are not closed across several axes, and cylinders without ends. */
 TEST(walls_without_an_end_are_refused) {
     for (uint32_t periods = 0; periods < 8; periods++)
         for (uint32_t sides = 0; sides < 64; sides++)
@@ -343,7 +344,7 @@ TEST(bad_openings_are_refused) {
     walls.at[5] = 6 - 1e-15;
     ck_assert_int_eq(status_of(&walls, none, &fault), FIBRAD_OK); /* but for rounding */
     for (int k = 0; k < 2; k++) {
-        walls.at[5] = k == 0 ? 6 - 1e-9 : 3; /* beyond, and with the centre, too */
+        walls.at[5] = k == 0 ? 6 - 1e-9 : 3; /* the sphere reaches beyond it, and then its centre is beyond */
         ck_assert_int_eq(status_of(&walls, none, &fault), FIBRAD_E_GEOMETRY);
         ck_assert(fault.first == 0 && fault.second == 0);
     }
@@ -436,8 +437,8 @@ static void assert_exit(const fibrad_scene *scene, const struct container *walls
     ck_assert_double_eq_tol(within(walls, wall, inside), .01, 1e-11);
 }
 
-/* On from the wall it met, a ray comes to another one, or to the same cylinder farther on, and back outwards it is at
- * once at the same; also where rounding or more has put the place beyond the wall. */
+/* A ray that goes on inwards from the wall that it met comes to another wall, or to the same cylinder farther on. A ray
+ * outwards is at this wall at once. This holds also if rounding, or more, has put the place beyond the wall. */
 TEST(a_ray_leaves_through_the_first_wall) {
     const struct container walls[] = {box10,
                                       can10,
@@ -465,7 +466,7 @@ TEST(a_ray_leaves_through_the_first_wall) {
             for (int axis = 0; axis < 3; axis++) lean += w[axis] * normal[axis];
             if (fabs(lean) < .2) continue;
             for (int axis = 0; axis < 3 && lean > 0; axis++) w[axis] = -w[axis]; /* outwards */
-            bool corner = false; /* beyond several walls at once: any of them will do */
+            bool corner = false; /* the place is beyond several walls: any of them is right */
             for (uint32_t other = 0; other < WALLS; other++)
                 corner |= other != wall && has(&walls[k], other) && within(&walls[k], other, on) < .05;
             if (corner) continue;
@@ -477,7 +478,7 @@ TEST(a_ray_leaves_through_the_first_wall) {
     }
 }
 
-/* Nothing hides the plane: its solid angle is half of all. */
+/* Nothing hides the plane, whose solid angle is half of all. */
 TEST(half_of_a_sphere_sees_a_plane) {
     const uint32_t directions[] = {8, 9, 100, 101, 233, 987, 1000};
     for (size_t k = 0; k < sizeof directions / sizeof *directions; k++)
@@ -490,14 +491,14 @@ TEST(half_of_a_sphere_sees_a_plane) {
             assert_closed(&row);
         }
     const struct container slit = {.planes = 48, .at = {[4] = -1.5, [5] = 40}};
-    OWNED_ROW row = lone(0, 0, 0, 2, &slit, 101); /* an eighth of it lies behind one of them: tests/test_cut.c */
+    OWNED_ROW row = lone(0, 0, 0, 2, &slit, 101); /* a plane cuts off an eighth of the surface: tests/test_cut.c */
     ck_assert_double_eq_tol(row.body[4], .5 + 1. / 128, 1e-14);
     ck_assert_double_eq_tol(row.body[5], .5 - 1. / 128, 1e-14);
     ck_assert(row.escaped == 0);
 }
 
-/* In boxes of 2.5 to 1000 radii, walls that touch the sphere included: as solid angles say, with no error to speak of.
- */
+/* A sphere stands in boxes of 2.5 to 1000 radii, among them boxes whose walls touch it. Factors are the solid angles,
+ * with hardly any error. */
 TEST(sphere_in_a_box) {
     srand(2);
     const uint32_t directions[3] = {50, 233, 987};
@@ -524,8 +525,8 @@ TEST(sphere_in_a_box) {
         }
 }
 
-/* Distances of .002 to 1.5 radii of a sphere to a wall, others far: from outside the wall's reach to where it cuts the
- * sphere, factors change little by little. */
+/* A sphere is .002 to 1.5 radii away from one wall and far from others. From where the wall does not touch it to where
+ * the wall cuts it, factors change little by little. */
 TEST(factors_are_smooth_where_walls_touch) {
     double before[6] = {0};
     for (int k = 0; k <= 400; k++) {
@@ -540,9 +541,8 @@ TEST(factors_are_smooth_where_walls_touch) {
     }
 }
 
-/* On top of a heap in a wide box and a wide cylinder: the factors of a row to its walls at 233 directions, against
- * many.
- */
+/* A sphere lies on top of a heap in a wide box and in a wide cylinder. Its factors to the walls at 233 directions are
+ * compared with those at many. */
 TEST(walls_of_a_heap) {
     OWNED_BED bed = packing(150, .8, 1.2, .5, 1, false);
     const struct container walls[] = {{.planes = 63, .at = {-20, 40, -9, 30, -1, 50}},
@@ -571,7 +571,7 @@ TEST(sphere_in_a_cylinder) {
     for (int t = 0; t < 40; t++) {
         double R = 1.5 * pow(200, t / 39.), h = R * uniform(.8, 3) + 2, z = uniform(1, h - 1), s = uniform(0, R - 1);
         double phi = uniform(0, 2 * PI), bottom = to_disc(R, s, z), top = to_disc(R, s, h - z);
-        for (uint32_t kind = 0; kind < 3; kind++) { /* closed, open above, open */
+        for (uint32_t kind = 0; kind < 3; kind++) { /* a closed can, one open above, an open one */
             struct container can = {.planes = kind == 0 ? 48 : kind == 1 ? 16 : 0, .at = {[4] = 2, [5] = 2 + h}};
             can.open = 48 & ~can.planes;
             can.cylinder[0] = 3, can.cylinder[1] = -4, can.cylinder[2] = R;
@@ -585,7 +585,8 @@ TEST(sphere_in_a_cylinder) {
     }
 }
 
-/* Within the walls of a container, slit or cylinder spheres see each other as without, and the walls get the rest. */
+/* Within a container, a slit or a cylinder spheres see each other as they do without walls, and the walls get the
+ * rest. */
 TEST(walls_take_what_escapes) {
     OWNED_BED bed = packing(150, .8, 1.2, .4, 1, false);
     double low[3] = {1e9, 1e9, 1e9}, high[3] = {-1e9, -1e9, -1e9};
@@ -622,7 +623,7 @@ TEST(walls_take_what_escapes) {
     ck_assert_msg(worst < 5e-3, "beams and rays differ by %g", worst);
 }
 
-/* Walls on the open axis of a periodic bed. */
+/* The open axis of a periodic bed has walls. */
 TEST(walls_of_a_periodic_bed) {
     OWNED_BED bed = packing(120, 1, 1, .3, 2, true);
     bed.period[2] = 0;
@@ -663,8 +664,8 @@ TEST(same_bits_in_every_instruction_set) {
         }
 }
 
-/* Another order of the spheres and another unit of length change nothing but rounding; other axes no more than the
- * rule's error. */
+/* Another order of the spheres and another unit of length change nothing but rounding. Other axes change no more than
+ * the rule's error. */
 TEST(order_scale_and_axes) {
     const struct container box = {.planes = 63, .at = {-2, 14, -3, 16, -4, 15}};
     OWNED_BED bed = packing(50, .8, 1.2, .2, 4, false), other, turned;
@@ -687,7 +688,7 @@ TEST(order_scale_and_axes) {
     }
 }
 
-/* A matrix of three rows, which are reciprocal, in a scene with three bodies. */
+/* Makes a matrix of three reciprocal rows in a scene with three bodies. */
 static struct matrix closed(const double body[3][3], const double escaped[3]) {
     OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 50, 1}, {0, 0, 10, 1}, {0, 0, 90, 2}});
     const fibrad_body walls[] = {plane_at(2, 0, 0), cylinder_at(0, 0, 99), plane_at(2, 1, 100)};
@@ -707,7 +708,7 @@ static struct matrix closed(const double body[3][3], const double escaped[3]) {
     return m;
 }
 
-/* Averaged rows close too, whatever the method's error. */
+/* Averaged rows are closed, too, whatever the error of the method. */
 TEST(closing_rows) {
     struct matrix m = closed((const double[][3]){{.2, .1, 0}, {0, 0, 0}, {0, 0, .2}}, (const double[]){.1, 0, 0});
     const double(*body)[3] = (const double(*)[3])m.factors.body, *escaped = m.factors.escaped;
@@ -717,7 +718,7 @@ TEST(closing_rows) {
     ck_assert_double_eq_tol(escaped[0], .125, 1e-15);
     ck_assert_double_eq_tol(body[2][2], .9, 1e-15);
     ck_assert(escaped[2] == 0 && body[2][0] == 0 && body[2][1] == 0);
-    /* the sphere that met nothing outside: .2, .1 and .1 from sphere 0, 4 x .2 from sphere 2, of 1.2 in all */
+    /* this sphere met nothing outside: .2, .1 and .1 come from sphere 0, 4 x .2 from sphere 2, of 1.2 in all */
     ck_assert_double_eq_tol(body[1][0], .1 * .2 / 1.2, 1e-15);
     ck_assert_double_eq_tol(body[1][1], .1 * .1 / 1.2, 1e-15);
     ck_assert_double_eq_tol(body[1][2], .1 * .8 / 1.2, 1e-15);
@@ -769,7 +770,7 @@ LOOP_TEST(misspelt_option, sizeof misspelt / sizeof *misspelt) {
     ck_assert_int_eq(walls_option(misspelt[_i], &options), 2);
 }
 
-/* Checks the walls that options place: their places in order, `at` by place, the cylinder's axis and radius. */
+/* Checks the walls that options place: their places in order, `at` by place, and the cylinder's axis and radius. */
 static void assert_walls(const struct wall_options *options, const struct bed *bed, uint32_t count,
                          const uint32_t *place, const double at[WALLS], const double cylinder[3]) {
     struct walls walls;
@@ -821,7 +822,8 @@ TEST(option_places_walls) {
     assert_walls(&(struct wall_options){0}, &bed, 0, NULL, NULL, NULL);
 }
 
-/* Openings are no walls; they stand at the end of the spheres, whatever the box of the file, or where they are put. */
+/* Openings are no walls. They stand at the ends of the spheres, whatever the box of the file says, or where the option
+ * puts them. */
 TEST(option_places_openings) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{1, 2, 3, 1}, {4, 6, 8, 2}});
     struct wall_options options = {0};
@@ -839,5 +841,5 @@ TEST(option_places_openings) {
     ck_assert(!walls_closed(&walls, &bed));
     for (uint32_t k = 0; k < walls.count; k++) ck_assert(!wall_endless(&walls, &bed, &walls.body[k]));
     bed.period[0] = 200;
-    ck_assert_int_eq(walls_of(&options, &bed, "bed", &walls), 2); /* across a periodic axis */
+    ck_assert_int_eq(walls_of(&options, &bed, "bed", &walls), 2); /* this opening lies across a periodic axis */
 }

@@ -1,4 +1,4 @@
-/* test_warnings.c - what contradicts itself: one warning each, status 0, with the likely remedy.
+/* test_warnings.c - input that contradicts itself gives one warning, status 0, and the likely remedy.
  * SPDX-License-Identifier: MIT */
 #include "program.h"
 
@@ -14,11 +14,11 @@ FIXTURE(make_folder, remove_folder)
 #define PLAIN  FRAME("0", OPEN, " T", ROWS(" 600", " 700", " 800"))
 
 #define FACET(a, b, c) "facet normal 0 0 0\nouter loop\nvertex " a "\nvertex " b "\nvertex " c "\nendloop\nendfacet\n"
-/* A closed one with a corner at the origin; all spheres of PLAIN lie within one with edges of .3. */
+/* A closed mesh with a corner at the origin. All spheres of PLAIN lie within a mesh with edges of .3. */
 #define CORNER(edge)                                                                                                   \
     "solid s\n" FACET("0 0 0", edge " 0 0", "0 " edge " 0") FACET("0 0 0", "0 " edge " 0", "0 0 " edge)                \
         FACET("0 0 0", "0 0 " edge, edge " 0 0") FACET(edge " 0 0", "0 0 " edge, "0 " edge " 0") "endsolid s\n"
-/* It lies within the first sphere. */
+/* This mesh lies within the first sphere. */
 #define WITHIN   "solid s\n" FACET(".018 .018 .021", ".022 .018 .021", ".02 .022 .021") "endsolid s\n"
 #define FAR_AWAY "solid s\n" FACET("5 0 0", "5.1 0 0", "5 .1 0") "endsolid s\n"
 
@@ -26,7 +26,7 @@ FIXTURE(make_folder, remove_folder)
 #define TIME "--until", "1", "--model", "patches"
 
 static const struct {
-    const char *words[20], *bed, *more, *reason; /* more: a further frame; reason NULL: there is no warning */
+    const char *words[20], *bed, *more, *reason; /* more: a further frame; reason: NULL if there is no warning */
 } said_of[] = {
     {{HEAT, "--temperature", "T"}, PLAIN, NULL, NULL},
     {{HEAT, "--temperature", "T", "--wall", "auto", "--wall-temperature", "500"}, PLAIN, NULL, NULL},
@@ -98,7 +98,7 @@ static const struct {
      FRAME("200", OPEN, "", ROWS("", "", "")),
      "timestep 200 follows timestep 1000; a pattern in quotes"}};
 
-/* How often a text has another one. */
+/* Counts how often a text contains another one. */
 static int count_of(const char *text, const char *what) {
     int count = 0;
     for (; (text = strstr(text, what)); text += strlen(what)) ++count;
@@ -137,8 +137,8 @@ LOOP_TEST(one_warning_each, sizeof said_of / sizeof *said_of) {
     free(text);
 }
 
-/* Walls about a box of centres stand at the surfaces, those of a real box where it ends, and a sphere that has left a
- * real box is refused as before. */
+/* Walls about a box of centres stand at the surfaces of the spheres. Walls about a real box stand where it ends. If a
+ * sphere has left a real box, it is refused as before. */
 TEST(walls_at_surfaces) {
     const char *bed = write_file("bed.dump", FRAME("0", SHRUNK, "", ROWS("", "", "")));
     static const char *const names[] = {"xmin", "ymin", "zmin", "xmax", "ymax", "zmax"};
@@ -161,7 +161,8 @@ TEST(walls_at_surfaces) {
 }
 
 /* The summary has the ends of a mesh. */
-/* A plate through a bed: what closing takes from spheres that it cuts, rows do not know. Raw rows all add up to one. */
+/* A plate goes through a bed. Closing takes something from the spheres that the plate cuts, of which rows know nothing.
+ * Raw rows all add up to one. */
 TEST(closing_that_changes_much) {
     char wall[300];
     snprintf(wall, sizeof wall, "auto,m=mesh:%s:both",

@@ -1,10 +1,10 @@
 /* test_work.c - work memory: fixed and growing, of any alignment, for any scenes and functions in turn, without a trace
- * in the results; and the blocks of heat problems. SPDX-License-Identifier: MIT */
+ * in the results. Also the blocks of heat problems. SPDX-License-Identifier: MIT */
 #include "fibrad_surface.h"
 #include "heat_runs.h"
 #include "suite.h"
 
-/* What needs work memory. */
+/* The functions that need work memory. */
 enum { BEAM, POINTS, CAST, MC, EXCHANGE, SURFACE, DISPLACEMENT, FUNCTIONS };
 
 static const char *const names[] = {"beam", "points", "cast", "mc", "exchange", "surface", "displacement"};
@@ -30,7 +30,7 @@ static int call(int function, const fibrad_scene *scene, fibrad_work *work, uint
     fibrad_row *row = &out->row;
     fibrad_scene_facts facts;
     fibrad_scene_describe(scene, &facts);
-    if (function == SURFACE && facts.bodies > 0) function = BEAM; /* there are none among walls */
+    if (function == SURFACE && facts.bodies > 0) function = BEAM; /* the surface method has no walls */
     memset(row->body, 0, WALLS * sizeof *row->body);
     switch (function) {
     case BEAM:
@@ -57,7 +57,7 @@ static bool same_output(int function, const struct output *a, const struct outpu
            a->row.fallbacks == b->row.fallbacks && a->row.symmetric == b->row.symmetric;
 }
 
-/* Packed, periodic, of mixed sizes, all but empty, and between two walls. */
+/* Beds: packed, periodic, of mixed sizes, nearly empty, and between two walls. */
 enum { SCENES = 5 };
 
 static struct bed between_walls(void) {
@@ -77,7 +77,7 @@ static fibrad_scene *scene_number(int k, const struct bed *bed) {
     return scene_with(bed, &(fibrad_scene_config){.body = walls, .bodies = k == SCENES - 1 ? WALLS : 0});
 }
 
-/* The output with memory that is new and plentiful. */
+/* The output of a function with new and plentiful memory. */
 static struct output expected(int function, const fibrad_scene *scene, uint32_t i) {
     struct output out = output_of();
     const size_t size = 8u << 20;
@@ -88,8 +88,8 @@ static struct output expected(int function, const fibrad_scene *scene, uint32_t 
     return out;
 }
 
-/* From none on, memory as the kernel asks for it: it asks for more each time, but not often, and for what it has asked
- * last the same call goes through on other memory at once. */
+/* Memory begins at nothing and grows as the kernel asks for it. The kernel asks for more each time, but not often. With
+ * as much memory as it asked for last, the same call succeeds at once in another block. */
 LOOP_TEST(fixed_memory_step_by_step, SCENES *FUNCTIONS) {
     OWNED_BED bed = bed_number(_i / FUNCTIONS);
     const int function = _i % FUNCTIONS;
@@ -119,7 +119,7 @@ LOOP_TEST(fixed_memory_step_by_step, SCENES *FUNCTIONS) {
     }
 }
 
-/* One growing work memory and one of each other kind for all scenes and functions in turn. */
+/* One growing work memory and one of each other kind serve all scenes and functions in turn. */
 TEST(any_scenes_and_functions_in_turn) {
     struct bed bed[SCENES];
     fibrad_scene *scene[SCENES];
@@ -151,7 +151,7 @@ TEST(any_scenes_and_functions_in_turn) {
     for (int k = 0; k < SCENES; k++) free(scene[k]), bed_free(&bed[k]);
 }
 
-/* Scenes that are made anew in the place of others, between calls with the same work memory. */
+/* Scenes are made anew in the place of others, between calls with the same work memory. */
 TEST(scenes_made_anew_in_the_same_place) {
     const size_t size = fibrad_scene_size(150, 0);
     OWNED void *block = block_of(size);
@@ -169,7 +169,7 @@ TEST(scenes_made_anew_in_the_same_place) {
         }
 }
 
-/* The caller may hand over another block at any time, which holds anything. */
+/* The caller may give another block at any time, whatever it holds. */
 TEST(other_blocks_at_any_time) {
     OWNED_BED bed = bed_number(0);
     fibrad_scene *scene = scene_of(&bed, 0);
@@ -189,7 +189,7 @@ TEST(other_blocks_at_any_time) {
     free(blocks[0]), free(blocks[1]), free(scene);
 }
 
-/* A fixed block at each of the 64 offsets, nothing written beside it. */
+/* A fixed block may begin at each of the 64 offsets. Nothing is written beside it. */
 LOOP_TEST(blocks_of_any_alignment, FUNCTIONS) {
     OWNED_BED bed = bed_number(1);
     OWNED fibrad_scene *scene = scene_of(&bed, 0);
@@ -211,7 +211,7 @@ LOOP_TEST(blocks_of_any_alignment, FUNCTIONS) {
     }
 }
 
-/* FIBRAD_E_MEMORY at each call of the resize function in turn: nothing is written, and the next call, which gets
+/* Each call of the resize function in turn returns FIBRAD_E_MEMORY. Nothing is written, and the next call, which gets
  * memory, has the right result. */
 LOOP_TEST(memory_that_is_refused, FUNCTIONS) {
     OWNED_BED bed = bed_number(2);
@@ -239,8 +239,8 @@ LOOP_TEST(memory_that_is_refused, FUNCTIONS) {
     }
 }
 
-/* What FIBRAD_WORK_BYTES says is enough is enough, at any offset: for a packed bed, for a sphere that meets hundreds in
- * a window, and for one that meets six. */
+/* The size FIBRAD_WORK_BYTES is enough at any offset: for a packed bed, for a sphere that meets hundreds in a window,
+ * and for one that meets six. */
 TEST(bytes_that_are_enough) {
     static unsigned char packed[FIBRAD_WORK_BYTES(64, 200) + 64], hundreds[FIBRAD_WORK_BYTES(1000, 1000) + 64],
         six[FIBRAD_WORK_BYTES(6, 6) + 64], walls[FIBRAD_WORK_BYTES(64, 3) + FIBRAD_WORK_WALLS + 64];
@@ -272,7 +272,7 @@ TEST(bytes_that_are_enough) {
     for (int k = 0; k < 4; k++) free(scenes[k]);
 }
 
-/* The powers of a bed before a floor, in a heat problem that begins `offset` bytes into `block`. */
+/* Finds the powers of a bed before a floor. The heat problem begins `offset` bytes into `block`. */
 static void powers_in(unsigned char *block, size_t size, size_t offset, const fibrad_scene *scene, uint32_t n,
                       double power[]) {
     const fibrad_heat_config config = {.directions = 21, .patches = 24, .parts = 3};
@@ -296,7 +296,8 @@ static void powers_in(unsigned char *block, size_t size, size_t offset, const fi
     power[n + 2] = result.error_patches, power[n + 3] = result.error_beams, power[n + 4] = result.residual;
 }
 
-/* A heat problem at offsets of all kinds: the same bits, nothing written beside it, and a byte less is too little. */
+/* A heat problem begins at many offsets. It has the same bits, writes nothing beside its block, and a byte less is too
+ * little. */
 TEST(heat_blocks_of_any_alignment) {
     OWNED_BED bed = packing(20, .8, 1.2, .5, 7, false);
     const fibrad_body floor_plane = plane_at(2, 0, -3);

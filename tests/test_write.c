@@ -1,4 +1,5 @@
-/* test_write.c - writers, read back; files that are complete or not there. SPDX-License-Identifier: MIT */
+/* test_write.c - writers, whose files are read back. Files are complete or do not exist.
+ * SPDX-License-Identifier: MIT */
 #include <dirent.h>
 #include <fcntl.h>
 #include <inttypes.h>
@@ -15,7 +16,7 @@
 #include "suite.h"
 #include "write/outputs.h"
 
-/* Three spheres; row 1 was not computed. */
+/* Three spheres, of which row 1 was not computed. */
 static double x[] = {0, 3, 1.0 / 3}, y[] = {0, 0.1, -7}, z[] = {1e-300, 2, 5}, r[] = {1, 0.5, 2};
 static int64_t id[] = {0, 70, 123456789012};
 static const struct bed bed = {.n = 3, .x = x, .y = y, .z = z, .r = r, .ids = true, .id = id, .timestep = 1200};
@@ -84,7 +85,7 @@ static void write_heat(write_function *write, const struct contents *more) {
     write_text(write, &what, true);
 }
 
-/* The fewest of 15 to 17 digits that read back, as printf has them. */
+/* Prints a number as printf does, with the fewest of 15 to 17 digits that give the same number when read. */
 static void print_shortest(char *to, size_t room, double value) {
     for (int digits = 15; digits <= 17; ++digits) {
         snprintf(to, room, "%.*g", digits, value);
@@ -92,7 +93,7 @@ static void print_shortest(char *to, size_t room, double value) {
     }
 }
 
-/* Such a text of its own, of the last few asked for. */
+/* The same text in memory of its own. The last few texts stay valid. */
 static const char *shortest(double value) {
     static char texts[8][40];
     static int next;
@@ -106,11 +107,11 @@ static void assert_shortest(double value) {
     *text_real(ours, value) = 0;
     if (fabs(value) < 1e15 || fabs(value) >= 0x1p50)
         ck_assert_str_eq(ours, shortest(value));
-    else /* all places before the point */
+    else /* all digits stand before the point */
         ck_assert_double_eq(strtod(ours, NULL), value);
 }
 
-/* Numbers as printf has them, to the last digit: of all sizes, and those that are hard to round. */
+/* Numbers are written as printf writes them, to the last digit. They have all sizes, and some are hard to round. */
 TEST(numbers) {
     uint64_t state = 88172645463325252u;
     char ours[2 * TEXT_NUMBER], theirs[2 * TEXT_NUMBER];
@@ -162,8 +163,8 @@ TEST(csv) {
     }
 }
 
-/* After each sphere's row the surroundings, -1, and the walls from -2 on; then the rows of walls of finite area. The
- * column body says what they are. */
+/* After each sphere's row come the surroundings, -1, and the walls from -2 on. Then come the rows of walls of finite
+ * area. The column `body` says what they are. */
 TEST(csv_of_walls) {
     char all[1000];
     write_matrix(write_csv, true, &walls);
@@ -181,7 +182,7 @@ TEST(csv_of_walls) {
              shortest(f[0]), shortest(f[1]), shortest(f[2]), shortest(f[3]));
     ck_assert_str_eq(text, all);
 
-    /* walls that nothing is known of, and a cutoff */
+    /* nothing is known of these walls, and there is a cutoff */
     const double beyond[] = {0.125, 0, 0}, none[] = {INFINITY, INFINITY}, emissivity[] = {1, 1, 1};
     fibrad_bed_factors cut = factors;
     cut.matrix.beyond = beyond;
@@ -192,12 +193,12 @@ TEST(csv_of_walls) {
     expect_begin("i,j,D,body\n");
     ck_assert_ptr_nonnull(strstr(text, "\n0,-2,0.0625,wall_1\n0,-3,0.25,wall_2\n0,-4,0.125,beyond\n"));
     ck_assert_ptr_null(strstr(text, "\n-2,"));
-    nameless.count = 0; /* of exchange factors it is */
+    nameless.count = 0; /* `grey` makes these exchange factors */
     write_text(write_csv, &(struct contents){.bed = &bed, .factors = &cut, .walls = &nameless, .grey = &grey}, true);
     ck_assert_ptr_nonnull(strstr(text, "\n0,-1,0.5,surroundings\n0,-2,0.125,beyond\n"));
 }
 
-/* Rows of walls: after what a wall sends to the spheres; nothing from walls without bounds, of which they are null. */
+/* Rows of walls come after what the wall sends to the spheres. Walls without bounds have none, and null in JSON. */
 TEST(rows_of_walls) {
     static const double between[] = {0.5, 0.25, NAN, NAN}, leaves[] = {0.125, NAN}, off[] = {0.0625, NAN};
     fibrad_bed_factors whole = factors;
@@ -214,7 +215,7 @@ TEST(rows_of_walls) {
                      "\"error\":0.0625},\"zmin\":{\"walls\":[null,null],\"escaped\":null,\"error\":null}}}\n"));
 }
 
-/* Frames and files are columns; a header comes once. */
+/* Frames and files are columns. The header comes once. */
 TEST(series) {
     struct contents what = {.bed = &bed, .factors = &factors, .series = true};
     write_text(write_csv, &what, true);
@@ -229,7 +230,7 @@ TEST(series) {
     expect_begin("frame,timestep,i,T_K,q_W,q_error_W,T_error_K,body\n0,1200,0,600,");
 }
 
-/* Surroundings at no temperature are not there. */
+/* If surroundings have no temperature, they do not appear. */
 TEST(heat) {
     char all[1000];
     for (int closed = 0; closed < 2; ++closed) {
@@ -249,7 +250,7 @@ TEST(heat) {
     ck_assert_ptr_null(strstr(text, "\n-1,"));
 }
 
-/* As JSON, bare of NaN and of control characters; tests/check_written.sh has Python read it. */
+/* JSON has no NaN and no control characters. tests/check_written.sh has Python read it. */
 TEST(json) {
     struct contents what = {
         .bed = &bed, .factors = &factors, .wanted = wanted, .walls = &walls, .file = "a\n\"b\\.csv"};
@@ -290,7 +291,7 @@ LOOP_TEST(matrix_market, 2) {
     ck_assert_str_eq(line, "\n");
 }
 
-/* Decodes the inline binary array of a name; returns the number of 8-byte values. */
+/* Decodes the inline binary array of a name. Returns the number of 8-byte values. */
 static size_t array(const char *name, void *values, size_t capacity) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     char tag[100];
@@ -362,7 +363,7 @@ TEST(paraview) {
     ck_assert_int_eq(memcmp(values, r, sizeof r), 0);
 }
 
-/* Where the data of the next member begin, behind the 128 bytes of its array's header. */
+/* Where the data of the next member begin, after the 128 bytes of its array's header. */
 static const char *next_member(const char *at, const char *name, uint64_t bytes) {
     uint64_t size;
     ck_assert_mem_eq(at, "PK\3\4", 4);
@@ -427,7 +428,7 @@ TEST(numpy) {
     ck_assert_mem_eq(at, "PK\1\2", 4);
 }
 
-/* Over the rows that were computed. */
+/* The summary goes over the rows that were computed. */
 TEST(summaries) {
     struct summary summary;
     summary_make(&summary, &(struct contents){.bed = &bed, .factors = &factors, .wanted = wanted, .walls = &walls});
@@ -452,7 +453,7 @@ static void make_folder(void) {
 
 static void remove_folder(void) {
     unlink(path);
-    ck_assert_int_eq(rmdir(folder), 0); /* nothing else was left there */
+    ck_assert_int_eq(rmdir(folder), 0); /* no other file was left there */
 }
 
 FIXTURE(make_folder, remove_folder)
@@ -504,8 +505,8 @@ TEST(complete_or_not_at_all) {
     ck_assert_int_eq(output_close(&output, STATUS_OK), STATUS_OK);
 }
 
-/* A link stays and leads to what was written, which keeps its permissions; it may lead nowhere yet, but not in a
- * circle. */
+/* A link stays and leads to the file that was written, which keeps its permissions. The file need not exist before, but
+ * links must not lead in a circle. */
 TEST(links) {
     char link_to[220], other[220];
     struct output output;
@@ -515,7 +516,7 @@ TEST(links) {
     ck_assert_int_eq(symlink("next.csv", link_to), 0);
     ck_assert_int_eq(symlink("out.csv", other), 0);
     umask(022);
-    for (int k = 0; k < 2; ++k) { /* out.csv is there the second time */
+    for (int k = 0; k < 2; ++k) { /* out.csv exists the second time */
         ck_assert_int_eq(output_open(&output, link_to), 0);
         fputs(k ? "second" : "first", output.file);
         ck_assert_int_eq(output_close(&output, STATUS_OK), STATUS_OK);
@@ -529,13 +530,13 @@ TEST(links) {
     ck_assert(output_same(link_to, path) && output_same(other, link_to));
     unlink(other);
     ck_assert_int_eq(symlink("link.csv", other), 0);
-    ck_assert_int_eq(output_open(&output, link_to), STATUS_FILE); /* each leads to the other */
+    ck_assert_int_eq(output_open(&output, link_to), STATUS_FILE); /* each link leads to the other */
     ck_assert_int_eq(output_close(&output, STATUS_FILE), STATUS_FILE);
     unlink(other);
     unlink(link_to);
 }
 
-/* What is read stays, under any of its names, whichever of the two is opened first. */
+/* A file that is read stays, under any of its names, whichever of the two files is opened first. */
 TEST(inputs_stay) {
     char read[240], link_to[240];
     struct output output;
@@ -555,7 +556,7 @@ TEST(inputs_stay) {
     ck_assert_int_eq(count_files(), 0);
 }
 
-/* What cannot be replaced is written to as it is: standard output by any of its names, pipes, devices. */
+/* The program writes at once to what it cannot replace: standard output by any of its names, pipes, devices. */
 TEST(written_at_once) {
     struct output output;
     FILE *file = tmpfile();
@@ -604,7 +605,7 @@ static const char *in_place(int k, const char *name) {
     return place[k];
 }
 
-/* -o and --format, in the order given, and what comes of them. */
+/* -o and --format in the order given, and what they give. */
 static const struct {
     const char *word[4];
     enum content content;
@@ -653,7 +654,7 @@ static struct contents frame_of(const struct bed *of) {
     return (struct contents){.bed = of, .sources = &sources, .result = &result, .series = true};
 }
 
-/* Three frames into files of their own, which stay whatever comes later, and into one, which must be whole. */
+/* Three frames go into files of their own, which stay whatever comes later, and into one file, which must be whole. */
 TEST(outputs_written) {
     struct bed numbered[] = {bed, plain, plain};
     numbered[0].frame = -2, numbered[1].frame = 10, numbered[2].frame = 8;
@@ -667,7 +668,7 @@ TEST(outputs_written) {
         ck_assert_int_eq(outputs_check(&outputs, CONTENT_HEAT, true), 0);
         ck_assert(outputs_report(&outputs, false).text == stdout);
         ck_assert_int_eq(outputs_open(&outputs), 0);
-        ck_assert_int_le(count_files(), 1); /* a temporary one, where files need a name before they are complete */
+        ck_assert_int_le(count_files(), 1); /* one if files need a name before they are complete */
         ck_assert_int_eq(outputs_write(&outputs, &frames[0]), 0);
         ck_assert_int_eq(outputs_write(&outputs, &frames[1]), 0);
         fclose(fopen(input, "w"));
@@ -693,7 +694,7 @@ TEST(outputs_written) {
     }
 }
 
-/* Places where nothing can be written are found before the work, those of frames, too. */
+/* Places where nothing can be written are found before the work begins, those of frames, too. */
 TEST(outputs_unwritable) {
     static const char *const names[] = {"no/such.csv", "no/*.csv"};
     for (int k = 0; k < 2; ++k) {
@@ -707,7 +708,7 @@ TEST(outputs_unwritable) {
     }
 }
 
-/* A dump, read back by our own reader, two frames of it; boxes of files, of periods, and of spheres. */
+/* Our own reader reads back a dump, two frames of it, with boxes of files, of periods, and of spheres. */
 TEST(dump_read_back) {
     static const char *const columns[] = {"T_K", "q_W"};
     struct bed first = bed, second = bed;
