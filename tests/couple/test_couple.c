@@ -914,6 +914,30 @@ static void files_are_refused(fibrad_insitu *s) {
     check_refused(s, fibrad_insitu_write(s, NULL), FIBRAD_E_ARGUMENT, "is empty or too long");
 }
 
+/* Particles that conduct very little: rows of few paths do not tell their powers, and rows of many paths do. */
+static void rows_are_too_inaccurate(void) {
+    static const uint32_t paths[] = {50, 1000};
+    conducting = 1e-3;
+    struct pile all = pile_of(&small), part = part_of(&all, 0);
+    conducting = 0;
+    const fibrad_insitu_state state = state_of(&part);
+    for (int enough = 0; enough < 2; ++enough) {
+        fibrad_insitu *s;
+        const fibrad_insitu_config config = {
+            .cutoff = small.cutoff, .directions = 50, .paths = paths[enough], .seed = 3, .threads = 2};
+        CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &config) == FIBRAD_OK);
+        make_rows(s, &part, 0);
+        const int status = fibrad_insitu_powers(s, &state, part.power, NULL);
+        if (enough)
+            CHECK(status == FIBRAD_OK);
+        else
+            check_refused(s, status, FIBRAD_E_UNSOLVABLE, "take more paths");
+        fibrad_insitu_free(s);
+    }
+    close_pile(&all);
+    close_pile(&part);
+}
+
 /* After all refusals the object is as before. */
 static void refusals(void) {
     fibrad_insitu *s = NULL;
@@ -981,6 +1005,7 @@ int main(int argc, char **argv) {
     conducting = 0;
     a_lone_particle();
     refusals();
+    rows_are_too_inaccurate();
     int sum[2] = {checks, failures};
     MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
     if (rank == 0) printf("%d ranks: %d checks, %d failures\n", ranks, sum[0], sum[1]);
