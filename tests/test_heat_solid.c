@@ -10,6 +10,12 @@ static const char *spheres(void) {
                       "x,y,z,radius,k,T,P\n0,0,0,0.03,2,1000,\n0.07,0,0,0.03,3,,500\n0,0.07,0,0.03,4,1500,\n");
 }
 
+/* The option that names a new table. */
+static const char *table(char option[300], const char *name, const char *text) {
+    snprintf(option, 300, "@%s", write_file(name, text));
+    return option;
+}
+
 /* Column k of the line of sphere i in a .csv. Both are counted from 0. */
 static double entry(const char *file, int i, int k) {
     char *text = read_file(file), *at = text;
@@ -82,10 +88,9 @@ TEST(surfaces_below_zero_are_named) {
 /* A table over temperature is read at the temperature that is found. */
 TEST(conductivity_follows_temperature) {
     const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,30\n0,0,70,30\n"), *q = in_folder("q.csv");
-    char table[300];
-    snprintf(table, sizeof table, "@%s", write_file("k.csv", "T,k\n500,10\n1500,2\n"));
+    char option[300];
     SUCCEED("heat", file, "--length-unit", "mm", "--emissivity", "0.8", "--power", "400", "--ambient", "600",
-            "--solid-conductivity", table, "-o", q);
+            "--solid-conductivity", table(option, "k.csv", "T,k\n500,10\n1500,2\n"), "-o", q);
     const double t = entry(q, 0, 1), k = 10 - 8 * (t - 500) / 1000;
     ck_assert_double_le(fabs((entry(q, 0, 8) - t) / (400 / (8 * M_PI * .03 * k)) - 1), 1e-3);
 }
@@ -110,8 +115,9 @@ TEST(insides_lag_in_time) {
 }
 
 TEST(what_cannot_be) {
-    const char *file = spheres();
-    static const struct {
+    const char *file = spheres(), *hole = write_file("hole.csv", "x,y,z,radius,k\n0,0,0,1,nan\n");
+    char option[3][300];
+    const struct {
         const char *value, *more, *reason;
         int status;
     } wrong[] = {
@@ -123,6 +129,12 @@ TEST(what_cannot_be) {
         {"x", NULL, "conductivity of the solid", 3},
         {"1:5", NULL, "type", 3},
         {"5", "spheres", "--solid-conductivity is", 2},
+        {table(option[0], "wrong_k.csv", "300,5\n400,-1\n"), NULL,
+         "wrong_k.csv:2: the solid-conductivity is -1; it must be within", 3},
+        {table(option[1], "wrong_order.csv", "300,5\n300,1\n"), NULL,
+         "wrong_order.csv:2: 300 is not above the number before", 3},
+        {table(option[2], "wrong_word.csv", "300,x\n"), NULL,
+         "wrong_word.csv:1: solid-conductivity is not a number: 'x'", 3},
     };
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
         const int status =
@@ -131,6 +143,10 @@ TEST(what_cannot_be) {
         ck_assert_msg(status == wrong[k].status && strstr(said, wrong[k].reason), "%s: %d, %s", wrong[k].value, status,
                       said);
     }
+    ck_assert_int_eq(RUN("heat", hole, "--length-unit", "m", "--emissivity", "0.8", "--temperature", "900", "--ambient",
+                         "600", "--solid-conductivity", "k"),
+                     3);
+    ck_assert_ptr_nonnull(strstr(said, "hole.csv:2: k is not finite"));
     ck_assert_int_eq(RUN("heat", file, "--emissivity", "0.8", "--temperature", "900", "--ambient", "600",
                          "--solid-conductivity", "5"),
                      2);
