@@ -43,8 +43,8 @@ static double steady_share(double t, const double plate[2]) {
 
 /* Finds sigma T^4 of the spheres if it is 1 at the lower plate and 0 at the upper one, and the powers of the plates. */
 static int steady_solve(struct bed_options *options, const struct bed *bed, const struct walls *plates,
-                        const double *emissivity, const double *relative, double *emission, double power[2],
-                        double error[2]) {
+                        const double *emissivity, const double *relative, uint32_t directions, double *emission,
+                        double power[2], double error[2]) {
     const fibrad_scene_config scene = bed_scene(bed, plates);
     const fibrad_spheres spheres = bed_spheres(bed);
     fibrad_run run = bed_options_run(options);
@@ -64,7 +64,7 @@ static int steady_solve(struct bed_options *options, const struct bed *bed, cons
     sources.temperature = unknown, sources.emissivity = emissivity, sources.power = given;
     sources.body_temperature = plate, sources.body_emissivity = (const double[]){1, 1};
     fibrad_heat_result result = {.power = gained, .body_power = power, .body_error = error, .temperature = emission};
-    const fibrad_heat_config config = {.directions = DIRECTIONS};
+    const fibrad_heat_config config = {.directions = directions};
     if (!status) status = fibrad_radiation_new(&radiation, &scene, &spheres, &config, &run);
     if (!status) status = fibrad_radiation_solve(radiation, &sources, &result);
     for (uint32_t i = 0; i < bed->n && !status; ++i) emission[i] = steady_share(emission[i], plate);
@@ -98,17 +98,15 @@ static void steady_fit(const struct bed *bed, int axis, const struct walls *plat
     *slope_error = sqrt(cov11);
 }
 
-int steady_conduction(struct bed_options *options, const struct bed *bed, const double *emissivity,
-                      const double *relative, int axis, struct steady *steady) {
-    const double begun = progress_clock();
-    struct bed open = *bed;
-    open.period[axis] = 0;
-    const struct walls plates = steady_plates(&open, axis);
+/* F_E of an open bed from one number of directions. Its error is that of the line and that of the powers. */
+static int steady_factor(struct bed_options *options, const struct bed *bed, const double *emissivity,
+                         const double *relative, int axis, uint32_t directions, struct steady *steady) {
+    const struct walls plates = steady_plates(bed, axis);
     double *emission = malloc(bed->n * sizeof *emission), *place = malloc(bed->n * sizeof *place);
     double power[2], error[2], diameter = 0, slope = NAN, slope_error = NAN;
     int status = emission && place ? STATUS_OK : message_memory();
-    if (!status) status = steady_solve(options, &open, &plates, emissivity, relative, emission, power, error);
-    if (!status) steady_fit(&open, axis, &plates, emission, place, steady, &slope, &slope_error);
+    if (!status) status = steady_solve(options, bed, &plates, emissivity, relative, directions, emission, power, error);
+    if (!status) steady_fit(bed, axis, &plates, emission, place, steady, &slope, &slope_error);
     if (!status && steady->spheres < FITTED_MIN)
         status =
             message_at(STATUS_INPUT, options->name, 0, "%u spheres in the inner half along %c are too few for a line",
@@ -118,9 +116,21 @@ int steady_conduction(struct bed_options *options, const struct bed *bed, const 
         const double area = bed->period[(axis + 1) % 3] * bed->period[(axis + 2) % 3];
         steady->factor = power[1] / (area * diameter * -slope);
         steady->error = steady->factor * hypot(slope_error / slope, error[1] / power[1]);
-        steady->seconds = progress_clock() - begun;
     }
     free(emission);
     free(place);
+    return status;
+}
+
+int steady_conduction(struct bed_options *options, const struct bed *bed, const double *emissivity,
+                      const double *relative, int axis, struct steady *steady) {
+    const double begun = progress_clock();
+    struct bed open = *bed;
+    struct steady rough = {0};
+    open.period[axis] = 0;
+    int status = steady_factor(options, &open, emissivity, relative, axis, DIRECTIONS / 2, &rough);
+    if (!status) status = steady_factor(options, &open, emissivity, relative, axis, DIRECTIONS, steady);
+    steady->error = hypot(steady->error, steady->factor - rough.factor);
+    steady->seconds = progress_clock() - begun;
     return status;
 }

@@ -9,7 +9,7 @@
  * straight line through the spheres of the inner half. */
 struct steady {
     double factor;
-    double error;     /* estimated, of the line and of the flux together */
+    double error;     /* estimated, of the line, of the flux and of the directions together */
     uint32_t spheres; /* in the inner half */
     double seconds;   /* time of computing [s] */
 };
