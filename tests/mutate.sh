@@ -34,6 +34,7 @@ LINE
     kernel/heat/*) tests="protocol_heat heat heat_arguments heat_paths heat_patches heat_invariants $tests" ;;
     */points_*) tests="beam cast $tests" ;;
     kernel/window/*) tests="silhouettes areas beam $tests" ;;
+    kernel/silhouette/*) tests="silhouettes silhouette_scenes $tests" ;;
     */surface_row*) tests="surface_row $tests" ;;
     */walls.* | */wall_*) tests="walls part estimate $tests" ;;
     kernel/surface/*) tests="surface $tests" ;;
