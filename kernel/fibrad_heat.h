@@ -149,8 +149,9 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources);
  *            _UNSUPPORTED: the temperature of an endless wall is unknown, fault.why is FIBRAD_WHY_ENDLESS */
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_fault *fault);
 
-/* Begins a solution. The solution begins with the radiosities of the last one, if there is one. After the call only the
- * arrays `light` and `absorbed` are still needed. They must stay until the solution is read.
+/* Begins a solution. The solution begins with the radiosities of the last one, if there is one, and if both have
+ * `light` or neither has. After the call only the arrays `light` and `absorbed` are still needed. They must stay until
+ * the solution is read.
  *   Errors   as fibrad_heat_check
  *            _STATE: a task is not traced, or the scene has changed
  *   Cost     O(patches) */

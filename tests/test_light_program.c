@@ -86,6 +86,32 @@ TEST(lit_sides_are_hotter) {
     expect_message("--solid-conductivity and --irradiate with --until", "leave one out");
 }
 
+/* Light that nothing absorbs heats nothing. */
+TEST(reflected_light_heats_nothing) {
+    ck_assert_int_eq(RUN("heat", bed, "--length-unit", "m", "--emissivity", "0.8", "--ambient", "300", "--power", "0",
+                         "--irradiate", "0,0,-1:1e5", "--absorptivity", "0", "--solid-conductivity", "10"),
+                     0);
+    ck_assert_double_eq_tol(value_of("temperature_min_K"), 300, 1e-6);
+    ck_assert_double_eq_tol(value_of("surface_max_K"), 300, 1e-6);
+}
+
+/* A small sphere near a large one has the large one divided into fine patches. The light of few points falls on these.
+ * The surface of the large sphere is about as hot as that of one with nothing near it. */
+TEST(fine_patches_are_no_hot_spots) {
+    const char *near = write_file("near.csv", "x,y,z,radius\n0,0,0,1\n0,0,1.03,.02\n9,0,0,1\n"),
+               *q = in_folder("n.csv");
+    double hottest[3];
+    SUCCEED("heat", near, "--length-unit", "m", "--emissivity", "0.8", "--ambient", "300", "--power", "0",
+            "--irradiate", "0.3,0,-1:1e5", "--solid-conductivity", "50", "-o", q);
+    char *text = read_file(q), *line = text;
+    for (int i = 0; i < 3; ++i) {
+        line = strchr(line, '\n') + 1;
+        ck_assert_int_eq(sscanf(line, "%*d,%*f,%*f,%*f,%*f,%*f,%lf", &hottest[i]), 1);
+    }
+    free(text);
+    ck_assert_double_eq_tol(hottest[0], hottest[2], .03 * hottest[2]);
+}
+
 /* An endless floor of equal spheres has an emissivity. A black cavity with an open lid has 1. */
 TEST(faces_have_an_emissivity) {
     ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--face"), 0);

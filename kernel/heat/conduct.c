@@ -135,9 +135,15 @@ static double filter_absorbed(fibrad_heat *heat, uint32_t b, const double by[NUM
     return filter_sphere(heat, b, by, flux, to);
 }
 
+/* As find_emitted. Light is taken to be even within the patches of the cube: it has few points on a fine patch. */
+static void find_heated(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) {
+    find_emitted(heat, b, by);
+    by[FIBRAD_HARMONICS_WITHIN] = 0;
+}
+
 double fibrad_heat_add_absorbed(fibrad_heat *heat, uint32_t b) {
     double by[NUMBERS], damping[NUMBERS], *more = heat->solution.source;
-    find_emitted(heat, b, by);
+    find_heated(heat, b, by);
     filter_absorbed(heat, b, by, more);
     take_mean_off(heat, b, more);
     average_groups(heat, b, more);
@@ -151,8 +157,9 @@ double fibrad_heat_add_absorbed(fibrad_heat *heat, uint32_t b) {
 /* Adds to the emissions of a sphere what light adds to them. */
 static void add_heated(fibrad_heat *heat, uint32_t b, double *emission) {
     double by[NUMBERS], *more = heat->solution.source;
-    find_emitted(heat, b, by);
-    for (uint32_t k = 1; k < NUMBERS; k++) by[k] = (1 - by[k]) * heat->sources.unevenness[b] / degree_of(heat, k);
+    find_heated(heat, b, by);
+    for (uint32_t k = 1; k < FIBRAD_HARMONICS_WITHIN; k++)
+        by[k] = (1 - by[k]) * heat->sources.unevenness[b] / degree_of(heat, k);
     filter_absorbed(heat, b, by, more);
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) emission[a] += more[a];
 }

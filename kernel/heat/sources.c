@@ -308,6 +308,8 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
         if (!heat->traced[task]) return FIBRAD_E_STATE;
     const double middle = middle_emission(heat, sources);
     bool unknown = false;
+    /* Thermal radiation does not begin with the radiosities of light, nor light with those of thermal radiation. */
+    if ((sources->light != NULL) != (heat->sources.light != NULL)) heat->solution.warm = false;
     for (uint32_t b = 0; b < heat->spheres; b++) {
         const radiator source = of_sphere(sources, heat->order[b]);
         set_body(heat, sources, middle, b, &source);
