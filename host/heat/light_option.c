@@ -63,9 +63,10 @@ static int take_part(const char *text, fibrad_light *light) {
 int irradiate_option(const char *text, void *light_options) {
     struct light_options *options = light_options;
     char copy[TEXT_MAX], *rest = copy;
-    if (strlen(text) >= sizeof copy) return message(STATUS_USAGE, "--irradiate: the text is too long");
+    const size_t length = strlen(text);
+    if (length >= sizeof copy) return message(STATUS_USAGE, "--irradiate: the text is too long");
     if (options->lights == LIGHTS_MAX) return message(STATUS_USAGE, "--irradiate: more than %d lights", LIGHTS_MAX);
-    strcpy(copy, text);
+    memcpy(copy, text, length + 1);
     fibrad_light light = {.flux = 0};
     char *part[8];
     size_t parts = 0;
