@@ -242,6 +242,51 @@ TEST(rows_need_room_for_bodies) {
     row_free(&row);
 }
 
+/* The mean factors of all spheres to the walls, by 14 windows of 64 points that are turned at random, many times.
+ * error: their standard errors. */
+static void mean_of_turns(const struct bed *bed, const fibrad_scene *scene, double mean[WALLS + 1],
+                          double error[WALLS + 1]) {
+    const uint32_t turns = 400;
+    double square[WALLS + 1] = {0};
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(1024);
+    for (int k = 0; k <= WALLS; k++) mean[k] = 0;
+    for (uint32_t turn = 1; turn <= turns; turn++) {
+        double sum[WALLS + 1] = {0};
+        for (uint32_t i = 0; i < bed->n; i++) {
+            const fibrad_beam_rule rule = {.directions = 14, .points = 64, .turn = turn * bed->n + i};
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
+            for (int k = 0; k < WALLS; k++) sum[k] += row.body[k] / bed->n;
+            sum[WALLS] += row.escaped / bed->n;
+        }
+        for (int k = 0; k <= WALLS; k++) mean[k] += sum[k] / turns, square[k] += sum[k] * sum[k] / turns;
+    }
+    for (int k = 0; k <= WALLS; k++) error[k] = sqrt(fmax(0, square[k] - mean[k] * mean[k]) / turns);
+}
+
+/* Few windows that are turned at random have no bias: the mean over many turns is the factor. */
+TEST(few_turned_windows_have_no_bias) {
+    OWNED_BED bed = packing(60, .6, 1.4, .3, 3, false);
+    const struct container walls[] = {{.planes = 31, .open = 32, .at = {-2, 12, -2, 12, -2, 12}},
+                                      {.planes = 48, .at = {[4] = -2, [5] = 13}, .cylinder = {5, 5, 11}},
+                                      {.planes = 48, .at = {[4] = -2, [5] = 13}}};
+    for (size_t which = 0; which < sizeof walls / sizeof *walls; which++) {
+        OWNED fibrad_scene *scene = scene_in(&bed, &walls[which], 0);
+        double mean[WALLS + 1], error[WALLS + 1], truth[WALLS + 1] = {0};
+        OWNED_WORK work = work_growing();
+        OWNED_ROW row = row_of(1024);
+        for (uint32_t i = 0; i < bed.n; i++) {
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 2000}, &row),
+                             FIBRAD_OK);
+            for (int k = 0; k < WALLS; k++) truth[k] += row.body[k] / bed.n;
+            truth[WALLS] += row.escaped / bed.n;
+        }
+        mean_of_turns(&bed, scene, mean, error);
+        for (int k = 0; k <= WALLS; k++)
+            ck_assert_double_eq_tol(mean[k], truth[k], 4 * error[k] + 5e-4 * truth[k] + 1e-9);
+    }
+}
+
 /* Factors follow the index of the body and have the same bits, in whatever order bodies are named. */
 TEST(bodies_in_any_order) {
     OWNED_BED bed = packing(60, .6, 1.4, .3, 3, false);

@@ -7,6 +7,8 @@
 /* Both walls at an edge share the lines near it, over a tenth of the disc and of the window. This makes up for the
  * small number of points, 128. */
 #define WALL_SOFT 0.1
+/* How far directions of parallel lines spread. It is not 0, so that lines along an edge of two walls belong to both. */
+#define WALL_PARALLEL 1e-3
 
 /* The part of the slope that counts. With a half, the means over all places of an edge among the directions are
  * right to second order. A little more is better, because the correction is limited. */
@@ -79,7 +81,7 @@ static double sharpness_of(const fibrad_wall_window *window, double first, doubl
 
 void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view *view) {
     const double *w = window->frame + 6;
-    window->wide = window->part * FIBRAD_WINDOW_SPREAD / fibrad_sqrt(window->n);
+    window->wide = window->parallel ? WALL_PARALLEL : window->part * FIBRAD_WINDOW_SPREAD / fibrad_sqrt(window->n);
     window->spread = window->wide * fibrad_sqrt(needed_of(view, w, window->wide));
     for (int axis = 0; axis < 2; axis++) window->slope[axis] *= WALL_SLOPE;
     wall_course course = course_of(view, w);
@@ -126,7 +128,7 @@ static double rising_share(double slope, double width) {
  * directions are not turned: they form pairs, except one that is level. */
 static void add_band(const fibrad_wall_window *window, int axis, bool turned, fibrad_wall_sums *sums) {
     const double *frame = window->frame, level = frame[6 + axis];
-    const double band = axis == 2 && !turned ? 0 : WALL_BAND / fibrad_sqrt(window->n);
+    const double band = window->parallel || (axis == 2 && !turned) ? 0 : WALL_BAND / fibrad_sqrt(window->n);
     const double up = rising_share(level, band);
     double more = 0;
     if (fibrad_abs(level) < band) { /* the mean of the rising part lies above the direction */
