@@ -199,6 +199,7 @@ static void heat_print_solid(struct heat_request *request, const struct bed *bed
         k_star_add(&all, fibrad_relative_conductivity(request->problem.solid[i], bed->r[i] * heat->metres,
                                                       heat->result.temperature[i], FIBRAD_STEFAN_BOLTZMANN));
     if (all.spheres > 0) solid_report(&request->solid, &all, report);
+    if (heat->surface_max < 0) return; /* all spheres reflect everything */
     report_measured(report, "surface_min_K", heat->surface_min, heat->surface_error);
     report_measured(report, "surface_max_K", heat->surface_max, heat->surface_error);
     report_measured(report, "surface_span_K", heat->surface_span, heat->surface_error);
