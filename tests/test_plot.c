@@ -7,9 +7,12 @@
 #include "scenes.h"
 #include "suite.h"
 
-static char folder[] = "/tmp/fibrad_plot_XXXXXX", path[sizeof folder + 8];
+#define FOLDER "/tmp/fibrad_plot_XXXXXX"
+static char folder[] = FOLDER, path[sizeof folder + 8];
 
+/* Each test has a folder of its own, also if all tests run in one process. */
 static void make_folder(void) {
+    memcpy(folder, FOLDER, sizeof folder);
     ck_assert_ptr_nonnull(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/a.svg", folder);
 }
