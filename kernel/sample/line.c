@@ -42,10 +42,7 @@ static void unfold_set(uint32_t n, double (*line)[3]) {
 
 static double scalar_product(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* p - q
- * +
- * p + q
- * = 2 sqrt(1 + s) with s the sine of the angle between p and q. */
+/* |p - q| + |p + q| = 2 sqrt(1 + s), where s is the sine of the angle between p and q. */
 static double distances(const double p[3], const double q[3]) {
     const double t = scalar_product(p, q);
     return 2 * fibrad_sqrt(1 + fibrad_sqrt(fibrad_max(0, 1 - t * t)));

@@ -1,14 +1,11 @@
 /* line.h - lines spread evenly. Each line serves a direction and its opposite. SPDX-License-Identifier: MIT
  *
  * A line is a unit vector p that stands for p and -p. A set is even if its vectors and their opposites together are
- * spread evenly. The measure is the sum over pairs of
- * p - q
- * +
- * p + q
- * . If this sum is large, the mean square error over spherical caps is small (Stolarsky). The even-numbered lines
- * and the odd-numbered lines are two halves, which are each spread evenly too. The difference between the halves
- * gives an error estimate. A half of a tabled set errs 1.4 to 2 times as much as a tabled set of n/2, and a half of
- * another set 1.7 to 3 times. The bits of a set depend only on n and on whether n is tabled. */
+ * spread evenly. The measure is the sum of |p - q| + |p + q| over pairs. If this sum is large, the mean square error
+ * over spherical caps is small (Stolarsky). The even-numbered lines and the odd-numbered lines are two halves, which
+ * are each spread evenly too. The difference between the halves gives an error estimate. A half of a tabled set
+ * errs 1.4 to 2 times as much as a tabled set of n/2, and a half of another set 1.7 to 3 times. The bits of a set
+ * depend only on n and on whether n is tabled. */
 #ifndef FIBRAD_SAMPLE_LINE_H
 #define FIBRAD_SAMPLE_LINE_H
 
@@ -25,11 +22,7 @@ bool fibrad_lines_tabled(uint32_t n);
  * may be NULL if n is tabled or above FIBRAD_LINES_EVEN_MAX. */
 void fibrad_lines_make(uint32_t n, double (*line)[3], double *scratch);
 
-/* Steps that increase the sum over pairs of
- * p - q
- * +
- * p + q
- * . Pairs within a half count 1 + halves times. */
+/* Steps that increase the sum of |p - q| + |p + q| over pairs. Pairs within a half count 1 + halves times. */
 typedef struct fibrad_line_steps {
     uint32_t count;
     double length; /* of a step, in units of the force over n; steps are stable up to 2 (1 + momentum)/(1 + halves/2) */

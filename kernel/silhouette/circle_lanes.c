@@ -257,9 +257,10 @@ static void find_seen(const fibrad_workspace *work, const fibrad_circles *c, uin
     const fibrad_circle_side *side = &c->side[number];
     uint32_t n = 0;
     find_covered(side, covered);
-    for (uint32_t k = 0; k < side->last; k += VF_LANES)
-        n +=
-            vn_compress(seen->slot + n, vn_beyond_bits(vn_load(side->outer + k), vn_load(covered + k)), side->slot + k);
+    for (uint32_t k = 0; k < side->last; k += VF_LANES) {
+        const uint32_t bits = vn_beyond_bits(vn_load(side->outer + k), vn_load(covered + k));
+        n += vn_compress(seen->slot + n, bits, side->slot + k);
+    }
     seen->count = n;
     find_discs(work, c, number, seen);
 }
@@ -523,9 +524,10 @@ static void find_angles(fibrad_circles *c) {
 /* the lowest digit of this double counts whole numbers; numbers from -2^51 to 2^51 are added to it */
 #define UNITS 0x1.8p52
 
-/* Finds the areas that arcs add, in units of the pairs. About a point o, the area of an arc is r^2 (t2 - t1)/2 - r (o_x
- * (sin t2 - sin t1) - o_y (cos t2 - cos t1))/2. The origin of a pair is the centre of the smaller sphere. If both are
- * equal, it is the centre of the one that is met first. */
+/* Finds the areas that arcs add, in units of the pairs. About a point o, the area of an arc is
+ *   r^2 (t2 - t1)/2 - r (o_x (sin t2 - sin t1) - o_y (cos t2 - cos t1))/2.
+ * The origin of a pair is the centre of the smaller sphere. If both are equal, it is the centre of the one that is met
+ * first. */
 static void find_areas(fibrad_circles *c) {
     const fibrad_circle_discs *behind = &c->seen[0], *ahead = &c->seen[1];
     fibrad_circle_pieces *piece = &c->pieces;

@@ -64,11 +64,6 @@ static inline void vd_gather_four(double (*table)[4], const uint32_t *k, vd to[4
     to[0] = _mm256_permute2f128_pd(ab, cd, 0x20), to[1] = _mm256_permute2f128_pd(ab_odd, cd_odd, 0x20);
     to[2] = _mm256_permute2f128_pd(ab, cd, 0x31), to[3] = _mm256_permute2f128_pd(ab_odd, cd_odd, 0x31);
 }
-static inline uint32_t vd_compress_numbers(uint32_t *p, uint32_t bits, const uint32_t *from) {
-    __m128 four = _mm_loadu_ps((const float *)(const void *)from);
-    _mm_storeu_ps((float *)(void *)p, _mm_permutevar_ps(four, (__m128i)fibrad_named_lanes(bits)));
-    return fibrad_count_bits(bits);
-}
 static inline void vd_copy_numbers(uint32_t *p, const uint32_t *from) { fibrad_copy(p, from, VD_LANES * sizeof *p); }
 static inline vd vd_choose(const double *table, uint32_t size, const uint32_t *k) {
     return (void)size, vd_gather(table, k);

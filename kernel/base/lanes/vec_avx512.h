@@ -54,11 +54,6 @@ static inline void vd_gather_four(double (*table)[4], const uint32_t *k, vd to[4
     to[0] = _mm512_permutex2var_pd(ab, low, cd), to[1] = _mm512_permutex2var_pd(ab_odd, low, cd_odd);
     to[2] = _mm512_permutex2var_pd(ab, high, cd), to[3] = _mm512_permutex2var_pd(ab_odd, high, cd_odd);
 }
-static inline uint32_t vd_compress_numbers(uint32_t *p, uint32_t bits, const uint32_t *from) {
-    __m256i eight = _mm256_loadu_si256((const __m256i *)(const void *)from);
-    _mm256_storeu_si256((__m256i *)(void *)p, _mm256_maskz_compress_epi32((__mmask8)bits, eight));
-    return (uint32_t)_mm_popcnt_u32(bits);
-}
 static inline void vd_copy_numbers(uint32_t *p, const uint32_t *from) {
     _mm256_storeu_si256((__m256i *)(void *)p, _mm256_loadu_si256((const __m256i *)(const void *)from));
 }

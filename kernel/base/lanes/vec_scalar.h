@@ -15,7 +15,6 @@
  *                            vd_compress(p, bits, a): the lanes given by bits side by side at p, which has room for all
  *                            vd_replace(a, lane, x): a with x in one lane
  *                            vd_compress_places(p, bits, first): first + l for them; returns how many
- *                            vd_compress_numbers(p, bits, from): those of the numbers at `from`; returns how many
  *                            vd_copy_numbers(p, from): numbers, one for each lane; any address
  *                            vd_choose(table, size, k): as vd_gather; size as in vd_lookup
  *   vm   a mask of vd lanes  & | vm_not vm_bits (bit l = lane l)
@@ -64,10 +63,6 @@ static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t f
     return bits;
 }
 static inline vd vd_gather(const double *table, const uint32_t *k) { return table[*k]; }
-static inline uint32_t vd_compress_numbers(uint32_t *p, uint32_t bits, const uint32_t *from) {
-    *p = *from;
-    return bits;
-}
 static inline void vd_copy_numbers(uint32_t *p, const uint32_t *from) { *p = *from; }
 static inline vd vd_choose(const double *table, uint32_t size, const uint32_t *k) { return (void)size, table[*k]; }
 static inline vd vd_loadu(const double *p) { return *p; }

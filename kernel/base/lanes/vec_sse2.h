@@ -44,11 +44,6 @@ static inline void vd_gather_four(double (*table)[4], const uint32_t *k, vd to[4
         to[m] = _mm_unpacklo_pd(a, b), to[m + 1] = _mm_unpackhi_pd(a, b);
     }
 }
-static inline uint32_t vd_compress_numbers(uint32_t *p, uint32_t bits, const uint32_t *from) {
-    p[0] = from[bits == 2];
-    p[1] = from[1];
-    return (bits & 1) + (bits >> 1);
-}
 static inline void vd_copy_numbers(uint32_t *p, const uint32_t *from) { fibrad_copy(p, from, VD_LANES * sizeof *p); }
 static inline vd vd_choose(const double *table, uint32_t size, const uint32_t *k) {
     return (void)size, vd_gather(table, k);
