@@ -4,10 +4,11 @@
  * temperature is found.
  *
  * Method     Surfaces are cut into patches. Beams of points connect the patches that see each other. A beam carries
- *            radiation both ways. Hence nothing flows at equal temperatures, and all powers add up to zero. The
- *            radiosities J = eps E + (1 - eps) H, with E = sigma T^4 and the irradiation H, follow by conjugate
- *            gradients. The radiosities are found first on coarse patches, four times as large, and then on the
- *            patches themselves. Powers and temperatures are extrapolated from both results to patches of size 0.
+ *            radiation both ways. Hence nothing flows at equal temperatures, and all powers add up to zero. Each patch
+ *            has a radiosity J = eps E + (1 - eps) H. Here E = sigma T^4, and H is the radiation that arrives.
+ *            Conjugate gradients find J, first on coarse patches, four times as large, then on the patches themselves.
+ *            Each step of this search is a sweep: one pass over all beams. A sweep is divided into parts, which threads
+ *            may do at the same time. Powers and temperatures are extrapolated from both results to patches of size 0.
  * Sequence   1. fibrad_heat_init
  *            2. fibrad_heat_trace for every task
  *            3. fibrad_heat_begin
@@ -29,14 +30,14 @@
 extern "C" {
 #endif
 
-/* How finely the problem is resolved. Zeroed: the defaults. The default of wall_rays is the largest of
- * FIBRAD_WALL_RAYS_DEFAULT, 6 directions times points, and 8 for each patch of a wall. */
+/* How finely the problem is resolved. A field of 0 stands for its default. The default of wall_rays is the largest of
+ * three numbers: FIBRAD_WALL_RAYS_DEFAULT, 6 * directions * points, and 8 times the number of patches of all walls. */
 typedef struct fibrad_heat_config {
     uint32_t
         directions;   /* of beams from each sphere, FIBRAD_DIRECTIONS_MIN to _MAX; 0: FIBRAD_HEAT_DIRECTIONS_DEFAULT */
     uint32_t points;  /* of each beam: 64, 128 or 256; 0: FIBRAD_HEAT_POINTS_DEFAULT */
     uint32_t patches; /* of each sphere: 24, 96 or 384; 0: FIBRAD_HEAT_PATCHES_DEFAULT */
-    uint32_t parts;   /* of a sweep, for threads, 1 to FIBRAD_HEAT_PARTS_MAX; changes the last bits; 0: _DEFAULT */
+    uint32_t parts;   /* of a sweep, 1 to FIBRAD_HEAT_PARTS_MAX; results depend on it by rounding; 0: _DEFAULT */
     double cutoff;    /* must be 0, else FIBRAD_E_UNSUPPORTED */
     uint32_t wall_rays; /* least number of rays from all walls together, at most FIBRAD_WALL_RAYS_MAX; 0: see above */
 } fibrad_heat_config;
@@ -44,29 +45,30 @@ typedef struct fibrad_heat_config {
 /* A heat problem: the patches, beams and radiosities of a scene. */
 typedef struct fibrad_heat fibrad_heat;
 
-/* Bytes that fibrad_heat_init needs: about spheres times (directions points + 60 patches + 6000). This has room for the
- * beams of most beds.
+/* Bytes that fibrad_heat_init needs: about spheres * (directions * points + 60 * patches + 6000). The beams of most
+ * beds fit into so many bytes.
  *   Input    config: NULL for all defaults
  *   Errors   0 */
 size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *scene);
 
-/* Makes a heat problem. The scene must stay as it is until fibrad_heat_move.
+/* Makes a heat problem. The scene must stay as it is while the problem is used, or until fibrad_heat_move.
  *   Input    memory[size]: at least fibrad_heat_size bytes. Further bytes are used for beams.
  *            config: NULL for all defaults
  *            scene: radii FIBRAD_HEAT_RADIUS_MIN to 1/FIBRAD_HEAT_RADIUS_MIN L
  *   Output   heat: a pointer into memory
  *   Errors   _ARGUMENT, _SIZE, _STATE
- *            _UNSUPPORTED: a cutoff, a known region, or more than 2^26 fine patches where surfaces nearly touch */
+ *            _UNSUPPORTED: a cutoff, or a scene with a known region; or surfaces are so near each other that more
+ *            than 2^26 small patches would be needed there */
 int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad_heat_config *config,
                      const fibrad_scene *scene);
 
 /* Goes on with another scene, or with the same scene rebuilt in place. All tasks must be traced again. The next
- * solution begins with the last one.
- *   Input    scene: the same number of spheres, the same walls in the same order, the same openings, and the same
- *            triangles, each of the same wall. Positions and sizes may differ.
+ * solution starts from the radiosities of the last one.
+ *   Input    scene: as many spheres and triangles as before, the same walls in the same order, and the same openings.
+ *            Each side of a triangle belongs to the same wall as before. Positions and sizes may differ.
  *   Errors   _ARGUMENT, _STATE
- *            _SIZE: the walls have grown too much for the memory
- *            _UNSUPPORTED: a known region */
+ *            _SIZE: walls, or small spheres beside large ones, need more patches than the memory has room for
+ *            _UNSUPPORTED: the scene has a known region */
 int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene);
 
 /* Number of tasks for fibrad_heat_trace: one for each sphere, and some for the walls and for fine patches.
@@ -83,8 +85,8 @@ uint32_t fibrad_heat_parts(const fibrad_heat *heat);
  *   Errors   _ARGUMENT
  *            _WORK, _MEMORY: call again for the same task with more memory
  *            _STATE: the task is traced already, or the scene has changed
- *            _BACK: work->triangle has a side that is seen and belongs to no wall
- *            _SIZE: spheres see so many others that the beams do not fit; begin again with twice the size
+ *            _BACK: a beam or ray meets a side that belongs to no wall; work->triangle is the number of its triangle
+ *            _SIZE: the beams do not fit into the memory; call fibrad_heat_init again with twice the size
  *   Cost     1 microsecond per direction of 64 points */
 int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
 
@@ -92,7 +94,7 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *
  *   a sphere with             temperature  power     hold, reference
  *   a given temperature       T            0 or NaN  not used
- *   a given power P           NaN          P         0, and R where the search for T begins, or NaN
+ *   a given power P           NaN          P         0, R: a first guess of T, or NaN
  *   a power that varies       NaN          P         h, R: the sphere gives off P - h sigma (T^4 - R^4)
  *   emissivity 0              T            0 or NaN  not used
  *                             NaN          0         0, NaN
@@ -106,23 +108,24 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *
  * A sphere with a finite conductivity has a temperature that differs from point to point. `temperature` is then the
  * mean over its surface. The inside is taken to be steady. Sources and stores of heat are taken to be spread evenly
- * inside. Emission is linear in temperature about the mean (docs/methods_heat.md section 13). If one L is `metres`
- * metres long, a conductivity of k_s [W/(m K)] is given as k_s/metres. Emissivities of 0 and 1 are allowed. `uniform`
- * is not allowed.
+ * inside. Emission is taken to be linear in the difference from the mean (docs/methods_heat.md section 13). With
+ * `conductivity`, `uniform` must be 0. `conductivity` is in units of sigma K^3 L. If sigma is in W/(m2 K4) and L is M
+ * metres, a solid of k_s [W/(m K)] has the conductivity k_s/M.
  *
- * `absorbed` is light that patches have absorbed. On a sphere with a finite conductivity it heats the lit patches more
- * than others. An insulated wall sends it out at the same patch as thermal radiation. For other spheres and walls
- * `absorbed` is not used. `power` of a sphere and body_power of a wall must contain the sum over its patches.
+ * `absorbed` tells where light heats surfaces. It is used in two cases. A sphere with a finite conductivity becomes
+ * hotter at the lit patches. An insulated wall sends the light out at the same patch as thermal radiation. A given
+ * power must contain the light that the sphere or wall absorbs, summed over its patches.
  *
- * The residual is relative to the differences of emission. tolerance = 0 stands for 1e-3, or for 1e-5 if a temperature
- * is unknown and its hold is 0. side_temperature is in the order of the caller's triangles. If sides share a patch,
- * each side emits the mean of their emissions. */
+ * The residual is the error of the equations for J, relative to what drives the radiation: differences of emission,
+ * given powers and light. tolerance = 0 stands for 1e-3, or for 1e-5 if a temperature is unknown and its hold is 0.
+ * side_temperature is in the order of the caller's triangles. If sides share a patch, each side emits the mean of their
+ * emissions. */
 typedef struct fibrad_heat_sources {
     const double *temperature; /* K, [spheres], 0 to FIBRAD_TEMPERATURE_MAX; NaN: unknown */
     const double *emissivity;  /* [spheres], 0 to 1 */
-    const double *power;     /* sigma K^4 L^2, [spheres], up to FIBRAD_POWER_MAX, given off if above 0; NULL: all NaN */
-    const double *hold;      /* L^2, [spheres], 0 to 1e60; NULL: all 0 */
-    const double *reference; /* K, [spheres], as temperature; NULL: all NaN */
+    const double *power;       /* sigma K^4 L^2, [spheres], to FIBRAD_POWER_MAX; above 0: given off; NULL: all NaN */
+    const double *hold;        /* L^2, [spheres], 0 to 1e60; NULL: all 0 */
+    const double *reference;   /* K, [spheres], as temperature; NULL: all NaN */
     const double *body_temperature; /* K, [bodies], as temperature; NULL without walls */
     const double *body_emissivity;  /* [bodies], 0 to 1; NULL without walls */
     const double *body_power;       /* sigma K^4 L^2, [bodies], as power; NULL: all NaN */
@@ -131,7 +134,7 @@ typedef struct fibrad_heat_sources {
     double sigma;                   /* of E = sigma T^4, FIBRAD_SIGMA_MIN to _MAX */
     double tolerance;               /* residual at which to stop, 0 to below 1; 0: see above */
     uint32_t sweeps_max;            /* sweeps after which to stop; 0: 1000 */
-    int uniform;                    /* 1: one radiosity per surface, no extrapolation; for emissivities near 1 only */
+    int uniform;                    /* 1: one radiosity per surface, no extrapolation; exact only at emissivity 1 */
     const double *side_temperature; /* K, [2 triangles], fronts and backs in turn; NaN: the wall's; NULL: all NaN */
     const double *light; /* sigma K^4 L^2, [fibrad_heat_patches], arrives from outside; NULL: none; fibrad_light.h */
     const double *conductivity; /* sigma K^3 L, [spheres], above 0; infinity: one temperature; NULL: all infinity */
@@ -149,9 +152,9 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources);
  *            _UNSUPPORTED: the temperature of an endless wall is unknown, fault.why is FIBRAD_WHY_ENDLESS */
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_fault *fault);
 
-/* Begins a solution. The solution begins with the radiosities of the last one, if there is one, and if both have
- * `light` or neither has. After the call only the arrays `light` and `absorbed` are still needed. They must stay until
- * the solution is read.
+/* Begins a solution. If there was a solution before, the new one starts from its radiosities. This does not hold if
+ * only one of the two has `light`. After the call only the arrays `light` and `absorbed` are still needed. They must
+ * stay until the solution is read.
  *   Errors   as fibrad_heat_check
  *            _STATE: a task is not traced, or the scene has changed
  *   Cost     O(patches) */
@@ -176,13 +179,13 @@ int fibrad_heat_step(fibrad_heat *heat, int *solved);
 
 /* The solution. The arrays belong to the caller. Where a field may be NULL, NULL means that it is not wanted.
  *
- * A net power is above 0 where a surface gains heat. In a steady state a surface gives off the negative of its net
- * power from inside. least_temperature, largest_temperature and centre_temperature differ only on spheres with a finite
- * conductivity. For any other sphere all three are its temperature. The arrays hold temperatures that were found and
- * those that were given. A temperature is NaN if the emissivity is 0, or if only a temperature below zero would give
- * the power. body_temperature of an insulated wall is the fourth root of its mean T^4. The same holds for a mesh whose
- * sides have temperatures of their own. The root mean square error of the powers of all spheres is sqrt(error_patches^2
- * + error_beams^2). */
+ * A net power is above 0 where a surface gains heat by radiation. A given power has the other sign: a sphere of power P
+ * (and hold 0) has the net power -P. Temperatures are written whether they were found or given. A temperature is NaN if
+ * the emissivity is 0, or if only a temperature below zero would give the power. least_temperature, largest_temperature
+ * and centre_temperature differ only on spheres with a finite conductivity. For any other sphere all three are its
+ * temperature. body_temperature of an insulated wall is the fourth root of its mean T^4. The same holds for a mesh
+ * whose sides have temperatures of their own. The root mean square error of the powers of all spheres follows from
+ * error_patches and error_beams: it is the root of the sum of their squares. */
 typedef struct fibrad_heat_result {
     double *power;                  /* sigma K^4 L^2, [spheres], out: net power */
     double *body_power;             /* sigma K^4 L^2, [bodies], out: net power; NULL without walls */
@@ -195,9 +198,9 @@ typedef struct fibrad_heat_result {
     double *body_temperature_error; /* K, [bodies], out: estimated error, 0 if given; may be NULL */
     double error_patches;           /* sigma K^4 L^2, out: root mean square error of power from patches */
     double error_beams;             /* sigma K^4 L^2, out: root mean square error of power from beams */
-    double residual;                /* out: of the radiosities, as `tolerance` */
+    double residual;                /* out: at the end, to compare with `tolerance` */
     uint32_t sweeps;                /* out */
-    double *body_absorbed;          /* sigma K^4 L^2, [bodies], out: absorbed on body_area; may be NULL */
+    double *body_absorbed;          /* sigma K^4 L^2, [bodies], out: what body_area absorbs; may be NULL */
     double surroundings_error;      /* sigma K^4 L^2, out: estimated error of surroundings_power */
     double *body_area;           /* L^2, [bodies], out: area; of an endless wall the part near the bed; may be NULL */
     double *least_temperature;   /* K, [spheres], out: least of the surface; may be NULL */
@@ -215,12 +218,13 @@ typedef struct fibrad_heat_result {
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result);
 
 /* Reads the solution on the sides of triangles: element 2 t is the front and 2 t + 1 the back of the caller's triangle
- * t. A value is the mean over the patches of the side. Sides that share a patch have equal values. If no plane and no
- * cylinder cuts a mesh, its fluxes times areas add up to the power of its wall, to rounding.
- *   Output   flux[2 triangles]: net power per area [sigma K^4]; NaN if the side belongs to no wall or nothing reaches
- *            it; may be NULL
- *            temperature[2 triangles]: [K]; NaN if the side belongs to no wall, or to an insulated wall and nothing
- *            reaches it; may be NULL
+ * t. A value is the mean over the patches of the side. Sides that share a patch have equal values. The fluxes of a mesh
+ * times the areas of its sides add up to body_power, to rounding. This does not hold if a plane or the cylinder cuts
+ * the mesh.
+ *   Output   flux[2 triangles]: net power per area [sigma K^4]; may be NULL. NaN: the side belongs to no wall, or no
+ *            beam and no ray reaches it.
+ *            temperature[2 triangles]: [K]; may be NULL. NaN: the side belongs to no wall, its wall has no temperature,
+ *            or its wall is insulated and no beam and no ray reaches the side.
  *   Errors   _ARGUMENT
  *            _STATE: there is no solution, or the scene has changed */
 int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temperature);

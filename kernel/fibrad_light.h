@@ -1,16 +1,16 @@
 /* fibrad_light.h - light from outside that falls on a bed: sun or lasers.
  *
  * Light of one direction is a bundle of parallel rays. The rays come from outside and enter through the open faces of
- * the container. Each ray ends on the first sphere or wall that it meets. Seen along the light, a sphere is a disc. The
- * sphere takes the light on that part of its disc which no sphere and no wall hides from the light. The areas of these
+ * the container. Each ray ends on the first sphere or wall that it meets. Seen along the light, a sphere is a disc.
+ * Other spheres and walls may hide parts of this disc. The sphere takes the light on the open part. The areas of open
  * parts are exact.
  *
  * Sequence   1. fibrad_light_empty tells how much light would end on each wall if there were no spheres. It also tells
  *               how much light would leave the bed.
  *            2. fibrad_light_spheres tells how much light each sphere of a range takes. It also tells how much of that
- *               light would have ended on each wall, or left the bed, without these spheres.
- *            The light that ends on a wall is the number of step 1 less the numbers of all ranges of step 2. The same
- *            holds for the light that leaves.
+ *               light would have ended on each wall, or left the bed, without these spheres: `kept`.
+ *            The light that ends on wall b is ends.body[b] of step 1 minus the sum of kept.body[b] over all ranges. The
+ *            light that leaves the bed is ends.through minus the sum of kept.through.
  *            fibrad_heat_shine does step 2 for a heat problem, and puts the light on patches.
  * Units      as in fibrad.h. A power is in units of flux times L^2. With a flux of 1 it is an area.
  * Words      Memory, errors and the layout of comments are as in fibrad.h.
@@ -29,9 +29,9 @@ extern "C" {
 /* The cross-section of light. */
 typedef enum fibrad_light_shape {
     FIBRAD_LIGHT_ALL =
-        0, /* all light through open faces; without walls and periods all that meets the box of spheres */
+        0, /* all light through open faces; without walls and periods: all that meets the box of the spheres */
     FIBRAD_LIGHT_DISC = 1, /* light that passes a disc at right angles to `direction`; fibrad_light.centre, radius */
-    FIBRAD_LIGHT_BOX = 2   /* light that passes a rectangle at the end of the bed in z; fibrad_light.low, high */
+    FIBRAD_LIGHT_BOX = 2   /* light that passes a rectangle at the lit end of the bed in z; fibrad_light.low, high */
 } fibrad_light_shape;
 
 /* Light from outside. If all fields but direction and flux are zero, the light is parallel and falls on all that is
@@ -41,11 +41,11 @@ typedef enum fibrad_light_shape {
  * sun's half-angle is FIBRAD_SUN_HALF_ANGLE.
  *
  * The box of the spheres is the box of their centres, wider by the largest radius on all sides. On periodic axes a disc
- * or rectangle is repeated, and must not be wider than a period. All spheres must lie behind the disc as seen from the
- * light. */
+ * or rectangle is repeated, and must not be wider than a period. The light of a disc must not meet a sphere before it
+ * passes the disc. */
 typedef struct fibrad_light {
     double direction[3];    /* the way that the light goes, of any length above 0 */
-    double flux;            /* sigma K^4 (W/m2 if sigma is in W/(m2 K4)), across the light; 0 to FIBRAD_POWER_MAX */
+    double flux;            /* sigma K^4 (W/m2 if sigma is in W/(m2 K4)), at right angles to it; to FIBRAD_POWER_MAX */
     double half_angle;      /* rad, of the cone, 0 to FIBRAD_HALF_ANGLE_MAX; 0: parallel */
     uint32_t directions;    /* of the cone, up to FIBRAD_LIGHT_DIRECTIONS_MAX; 0: FIBRAD_LIGHT_DIRECTIONS_DEFAULT */
     int shape;              /* a fibrad_light_shape */
@@ -77,7 +77,7 @@ int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibra
 /* The light that comes to some spheres straight from outside. Several threads may ask for different spheres at the same
  * time.
  *   Input    from, to: spheres from to to - 1, up to the number of spheres
- *   Output   power[to - from]: the light that each sphere meets, whether it is then absorbed or reflected
+ *   Output   power[to - from]: the light that falls on each sphere, absorbed or not
  *            kept: `spheres` is the sum of `power`. `body` and `through` tell where this light would have ended without
  *            these spheres. They add up to `spheres`.
  *   Errors   as fibrad_light_empty
@@ -86,16 +86,16 @@ int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fib
                          uint32_t to, double *power, fibrad_light_ends *kept);
 
 /* ---- light on patches --------------------------------------------------------------------------------------------
- * Light has short wavelengths. Thermal radiation has long wavelengths. A surface absorbs the two with different
- * absorptivities. Reflected light stays light. So light has its own solution:
+ * A surface absorbs light and thermal radiation with different absorptivities. Reflected light stays light. So light
+ * has a solution of its own:
  *   1. Call fibrad_heat_shine for each task of each light, and fibrad_heat_shine_walls for each light. Both functions
  *      add to `hits`.
  *   2. Call fibrad_heat_begin with all temperatures 0, absorptivities in the place of emissivities, and `light` = hits.
  *      The net powers of this solution are the light that is absorbed. The net power of the surroundings is the light
  *      that is reflected.
- *   3. Call fibrad_heat_keep_light. `hits` then holds the light that patches absorb. Thermal radiation has a second
- *      solution. Hand `hits` to it as `absorbed`, and add the light that a surface absorbs to the power of the surface.
- *      Insulated walls have no power of their own. */
+ *   3. Call fibrad_heat_keep_light. `hits` then holds the light that patches absorb.
+ *   4. Call fibrad_heat_begin for thermal radiation, with `absorbed` = hits. Where a power is given, add the net power
+ *      that step 2 has found to it. Insulated walls have no given power: `absorbed` is enough for them. */
 
 /* Number of patches of a heat problem.
  *   Errors   0 if heat is NULL */
@@ -105,19 +105,18 @@ uint32_t fibrad_heat_patches(const fibrad_heat *heat);
  *   Errors   0 if heat is NULL */
 uint32_t fibrad_heat_shine_tasks(const fibrad_heat *heat);
 
-/* Adds to the patches of the spheres of a task the light that comes to them straight from outside. Several threads may
- * do different tasks at the same time.
+/* The light that comes straight from outside, on the patches of the spheres of one task. Several threads may do
+ * different tasks at the same time.
  *   Input    task: 0 to fibrad_heat_shine_tasks - 1
- *   Output   hits[fibrad_heat_patches]: added to
+ *   Output   hits[fibrad_heat_patches]: the light is added to it
  *            kept: as fibrad_light_spheres
  *   Errors   as fibrad_light_spheres; _STATE: the scene has changed */
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,
                       double *hits, fibrad_light_ends *kept);
 
-/* Adds to the patches of walls the light that comes to them straight from outside. Rays tell which patches of a wall
- * are lit.
+/* The light that comes straight from outside, on the patches of walls. Rays tell which patches of a wall are lit.
  *   Input    ends: of fibrad_light_empty, less `kept` of all tasks
- *   Output   hits[fibrad_heat_patches]: added to
+ *   Output   hits[fibrad_heat_patches]: the light is added to it
  *   Errors   as fibrad_heat_shine */
 int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light,
                             const fibrad_light_ends *ends, double *hits);
