@@ -34,7 +34,9 @@
  * How to begin
  *   one row   fibrad_scene_init, then fibrad_beam_row.
  *   all rows  Each thread has a fibrad_work and a fibrad_rows. Call fibrad_beam_row for every sphere. Then call
- *             fibrad_matrix_init, _close and _read.
+ *             fibrad_matrix_init, _close and _read. The calls fibrad_silhouettes_* may take the place of
+ *             fibrad_beam_row. Their error is about half as large. They do not serve scenes with triangles or a known
+ *             region, and have no cutoff.
  *   example   fibrad_work work = {.memory = {.resize = resize}};
  *             fibrad_row row = {.col = col, .f = f, .capacity = 300};
  *             status = fibrad_scene_init(&scene, block, fibrad_scene_size(n, 0), NULL, &spheres, NULL);
@@ -42,13 +44,20 @@
  *             docs/embedding.md has complete programs.
  *
  * Words
- *   wall             Anything in a scene that is not a sphere: a plane, a cylinder or a mesh of triangles. Names in the
- *                    code say `body` for a wall. Wall b is element b of fibrad_scene_config.body.
+ *   wall             A plane, a cylinder or a mesh of triangles. Names in the code say `body` for a wall. Wall b is
+ *                    element b of fibrad_scene_config.body.
+ *   opening          A plane that is not a wall. The scene ends there, and the surroundings begin.
  *   surroundings     What lies outside the scene. The surroundings are black.
  *   view factor      F_ij is the fraction of the radiation leaving sphere i that reaches sphere j directly.
  *   exchange factor  D_ij is the fraction of the emission of sphere i that sphere j absorbs, directly or after diffuse
  *                    reflections.
- *   window           The shadow disc of sphere i along one direction. Beams measure what each window sees.
+ *   shadow disc      Seen along a direction, a sphere is a disc. This disc is its shadow disc.
+ *   window           The shadow disc of sphere i along one direction.
+ *   beam             All parallel rays from sphere i through one window.
+ *   cutoff           A distance between centres. A row with a cutoff leaves out the spheres that are farther from
+ *                    sphere i.
+ *   known region     A box. The scene has all spheres of the bed that reach into the box. Outside the box the bed may
+ *                    have spheres that the scene does not have.
  *   row              Row i holds all factors from sphere i. An entry is one factor of a row. The column of an entry
  *                    is the index of the sphere that receives.
  *   error of a row   The root of the sum of the squared errors of the row's factors.
@@ -60,13 +69,16 @@
  *             "a to b" includes both ends. "out" marks a field that the function writes.
  *   Memory    The caller owns every block. A block may have any alignment. A block must stay in place while its object
  *             is used. No function frees a block. An `_init` function makes an object inside a block and returns a
- *             pointer into the block. Its twin `_size` returns the number of bytes that the object takes. `_size`
- *             returns 0 if `_init` would return an error other than FIBRAD_E_SIZE.
+ *             pointer into the block. Its twin `_size` returns the number of bytes that the object takes. If an
+ *             argument of `_size` is not valid, `_size` returns 0.
  *   Threads   Threads may share const objects. A fibrad_work or a fibrad_rows belongs to one thread at a time.
  *   Errors    A function that can fail returns FIBRAD_OK or a negative fibrad_status. After an error the outputs are
- *             as before, except where the function's comment says otherwise. A null pointer is FIBRAD_E_ARGUMENT. A
- *             scene that is not complete, or has changed since an object was made from it, is FIBRAD_E_STATE.
- *   Defaults  A structure may be zeroed. Then set the fields that you need. The comment of a field says what 0 means.
+ *             as before, except where the function's comment says otherwise. The error for a null pointer is
+ *             FIBRAD_E_ARGUMENT. A scene is complete once fibrad_scene_init has returned FIBRAD_OK. The error for a
+ *             scene that is not complete is FIBRAD_E_STATE. The same error is returned if a scene has changed since
+ *             another object was made from it.
+ *   Defaults  Set all fields of a structure to 0. Then set the fields that you need. The comment of a field says what 0
+ *             means. "Zeroed" says what a structure of zeros means.
  *   Bits      Results depend on the arguments alone. They are the same to the bit for every number of threads,
  *             instruction set, compiler and optimisation level.
  *
@@ -93,8 +105,8 @@ typedef enum fibrad_status {
     FIBRAD_E_ARGUMENT = -1,     /* A pointer is null, or a value is out of its range, NaN or infinite. */
     FIBRAD_E_SIZE = -2,         /* The block is smaller than the `_size` function says. */
     FIBRAD_E_ALIGNMENT = -3,    /* Reserved. No function asks for an alignment. */
-    FIBRAD_E_CAPACITY = -4,     /* An output is too small. The function has written the size that it needs. */
-    FIBRAD_E_TABLE = -5,        /* That number of samples is not built in. */
+    FIBRAD_E_CAPACITY = -4,     /* An output is too small. `length` or memory.needed is the size that suffices. */
+    FIBRAD_E_TABLE = -5,        /* There is no built-in set of so many points. */
     FIBRAD_E_GEOMETRY = -6,     /* A centre lies inside another sphere, or a sphere reaches beyond an opening. */
     FIBRAD_E_WORK = -7,         /* Fixed work memory is too small. work.memory.needed is the size that suffices. */
     FIBRAD_E_STATE = -8,        /* A call is missing, too early or repeated, or the scene has changed. */
@@ -103,8 +115,8 @@ typedef enum fibrad_status {
     FIBRAD_E_MEMORY = -11,      /* A resize function or the heap has no more memory. */
     FIBRAD_E_CANCELLED = -12,   /* A progress function has asked to stop. */
     FIBRAD_E_UNSOLVABLE = -13,  /* No temperatures give the powers that were asked for. */
-    FIBRAD_E_BACK = -14,        /* A side that belongs to no wall was seen. The number of its triangle is written. */
-    FIBRAD_E_SUM = -15,     /* A row's sum is not 1 within 1e-9. The library has a fault, or a row part has changed. */
+    FIBRAD_E_BACK = -14,        /* A ray met a side that belongs to no wall. The triangle is written to the output. */
+    FIBRAD_E_SUM = -15,     /* A row's sum is not 1 within 1e-9. The library has a fault, or a row part was changed. */
     FIBRAD_E_ENDLESS = -16, /* The walls form a tube or a corner without end. Add a wall or an opening. */
     FIBRAD_E_FILE = -17     /* A file cannot be made, written or renamed. Only functions of the host return this. */
 } fibrad_status;
@@ -176,7 +188,7 @@ int fibrad_direction(uint32_t k, uint32_t n, double direction[3]);
  *            gap: distance of the surfaces [L], above -2 min(r1, r2). A negative gap is an overlap. The formula
  *            continues smoothly into overlaps.
  *   Output   f12: relative error at most 1e-14 if r1/r2 is within 1e-4 to 1e4. F12 is continuous and falls as the gap
- *            grows. r1^2 F12 and r2^2 F21 agree to the last bits.
+ *            grows. r1^2 F12 = r2^2 F21 to rounding.
  *   Errors   _ARGUMENT
  *   Cost     0.06 microseconds, 0.2 for overlaps
  *   Source   directional form of the exchange area, docs/methods.md section 2 */
@@ -184,13 +196,14 @@ int fibrad_pair_exact(double r1, double r2, double gap, double *f12);
 
 /* ---- scene ----------------------------------------------------------------------------------------------------- */
 /* The spheres of a scene. The centre of sphere i is at x[i * stride], y[i * stride], z[i * stride]. The radius of
- * sphere i is r[i * stride_r].
- * Example: double at[n][3] is {&at[0][0], &at[0][1], &at[0][2], r, n, .stride = 3}. */
+ * sphere i is r[i * stride_r]. The size of a coordinate is at most FIBRAD_LENGTH_MAX, and at most 3e13 times the
+ * smallest radius.
+ * Example: if double at[n][3] has the centres, spheres = {&at[0][0], &at[0][1], &at[0][2], r, n, .stride = 3}. */
 typedef struct fibrad_spheres {
-    const double *x, *y, *z;   /* L, [n], at most FIBRAD_LENGTH_MAX and at most 3e13 smallest radii; NULL if n = 0 */
+    const double *x, *y, *z;   /* L, [n], coordinates of the centres; NULL if n = 0 */
     const double *r;           /* L, [n], FIBRAD_LENGTH_MIN to FIBRAD_LENGTH_MAX; NULL if n = 0 */
     uint32_t n;                /* 0 to FIBRAD_SPHERES_MAX */
-    uint32_t stride, stride_r; /* doubles; 0: 1 */
+    uint32_t stride, stride_r; /* number of doubles from one sphere to the next; 0 means 1 */
     const uint64_t *id;        /* [n], ids seed random paths and decide ties; NULL: the index is the id */
 } fibrad_spheres;
 
@@ -221,8 +234,8 @@ typedef struct fibrad_plane {
  *
  * Endless walls. An endless wall has an infinite area. A single plane may be endless. Two planes across the same axis
  * may be endless, too. Planes across several axes are allowed only if each axis has two planes or a period. A cylinder
- * is allowed only if the z axis has two planes or a period. Otherwise fibrad_scene_init returns FIBRAD_E_ENDLESS. An
- * occupancy that is periodic along an axis counts as a period. */
+ * is allowed only if the z axis has two planes or a period. Otherwise fibrad_scene_init returns FIBRAD_E_ENDLESS. In
+ * these rules an axis also has a period if fibrad_occupancy.periodic is 1 for the axis. */
 typedef struct fibrad_body {
     int kind;           /* a fibrad_body_kind */
     fibrad_plane plane; /* used by FIBRAD_BODY_PLANE */
@@ -236,21 +249,23 @@ typedef struct fibrad_body {
  * centre i. If no spheres overlap, the distance cutoff + R suffices. Row i also depends on the walls, the
  * occupancy and the ids. No other sphere changes a bit of row i. The order of the spheres changes no bit either.
  *
- * The fraction `beyond`. Row i knows the space within the cutoff of centre i. If the scene has a known region, row i
- * knows only the part within that region. Radiation may leave the known space before it meets anything. The further way
- * of this radiation, outside the known space, then decides what the radiation counts as.
+ * The fraction `beyond`. Let the known space of row i be the ball whose radius is the cutoff, about centre i. If the
+ * scene has a known region, the known space is the part of the ball within this region. Some radiation meets no sphere
+ * of the row, and no wall within the known space. This radiation leaves the known space. From there its way goes on to
+ * a wall or to the surroundings. This way decides what the radiation counts as.
  *
- *   occupancy  known region  the further way                                counts as
- *   given      any           passes through no marked cell before its end   the wall at its end, or `escaped`
- *   given      any           passes through a marked cell                   `beyond`
- *   none       none          misses the box of all spheres                  the wall at its end, or `escaped`
- *   none       none          passes through the box of all spheres          `beyond`
- *   none       given         any                                            `beyond`
+ *   occupancy  known region  the way outside the known space                counts as
+ *   yes        yes or no     passes through no marked cell before its end   the wall at its end, or `escaped`
+ *   yes        yes or no     passes through a marked cell                   `beyond`
+ *   no         no            misses the box of all spheres                  the wall at its end, or `escaped`
+ *   no         no            passes through the box of all spheres          `beyond`
+ *   no         yes           not looked at                                  `beyond`
  *
- * A way that is longer than 100 periods of the occupancy counts as `beyond`. In this table triangles are walls.
+ * In this table triangles are walls. If the occupancy is periodic and the way is longer than 100 of its periods, the
+ * radiation counts as `beyond`.
  *
- * A scene may have spheres outside its known region. Beams and rays of view factors meet these spheres. Reflected paths
- * do not meet them. */
+ * A scene may have spheres outside its known region. View factors count these spheres, if they are within the cutoff.
+ * Paths after a reflection do not meet these spheres. */
 /* Where a bed has spheres: the marked cells of a box. There is no part of any sphere in other cells or outside the box.
  * The occupancy must stay as it is while the scene is used. All machines use the same occupancy.
  *
@@ -276,9 +291,9 @@ typedef struct fibrad_scene_config {
     uint32_t bodies;                          /* number of walls, 0 to FIBRAD_BODIES_MAX, else FIBRAD_E_UNSUPPORTED */
     const fibrad_plane *opening;              /* [openings], copied; no sphere may reach beyond an opening */
     uint32_t openings;                        /* 0 to 6 */
-    double known_low[3], known_high[3];       /* L, known region; equal: unlimited along the axis */
+    double known_low[3], known_high[3];       /* L, known region; low equals high: unlimited along the axis */
     const fibrad_occupancy *occupancy;        /* where the bed has spheres; NULL: none; not copied */
-    const struct fibrad_triangles *triangles; /* of all meshes (fibrad_mesh.h); NULL: none; copied */
+    const struct fibrad_triangles *triangles; /* triangles of all meshes (fibrad_mesh.h); NULL: none; copied */
 } fibrad_scene_config;
 
 /* A scene holds a copy of the spheres, sorted by the cells of a grid. A scene never changes once it is made. */
@@ -297,9 +312,9 @@ typedef enum fibrad_why {
     FIBRAD_WHY_BOTH = 8,          /* Both a temperature and a power are given. */
     FIBRAD_WHY_NEITHER = 9,       /* Neither a temperature nor a power is given. */
     FIBRAD_WHY_REFLECTS = 10,     /* A surface of emissivity 0 cannot give off a power. */
-    FIBRAD_WHY_HOLD = 11,         /* hold or reference is out of range. */
+    FIBRAD_WHY_HOLD = 11,         /* `hold` or `reference` (fibrad_heat.h) is out of range. */
     FIBRAD_WHY_ENDLESS = 12,      /* An endless wall has no temperature. */
-    FIBRAD_WHY_SIDE = 13,         /* A side's temperature is out of range, or is given although the wall has none. */
+    FIBRAD_WHY_SIDE = 13,         /* The temperature of a side is out of range, or its wall has no temperature. */
     FIBRAD_WHY_SURROUNDINGS = 14, /* The temperature of the surroundings is missing or out of range. */
     FIBRAD_WHY_SIGMA = 15,        /* sigma is out of range. */
     FIBRAD_WHY_TOLERANCE = 16,    /* A tolerance is out of range. */
@@ -307,9 +322,9 @@ typedef enum fibrad_why {
     FIBRAD_WHY_CAPACITY = 18,     /* A heat capacity is not above 0, or is out of range. */
     FIBRAD_WHY_LIGHT = 19,        /* A number of a light is out of range, or its direction is zero. */
     FIBRAD_WHY_DARK = 20,         /* No open face lets a light in. */
-    FIBRAD_WHY_FOOTPRINT = 21,    /* A sphere lies before the disc of a light. */
+    FIBRAD_WHY_FOOTPRINT = 21,    /* A light through a disc (fibrad_light.h) meets a sphere before it meets the disc. */
     FIBRAD_WHY_CONDUCTIVITY = 22, /* A conductivity is not above 0. */
-    FIBRAD_WHY_UNIFORM = 23       /* `uniform` is set although spheres conduct. */
+    FIBRAD_WHY_UNIFORM = 23       /* `uniform` (fibrad_heat.h) is set although spheres conduct. */
 } fibrad_why;
 
 /* The cause of a fault as English words. The words continue a sentence that begins with the name of a sphere or a wall.
@@ -361,7 +376,7 @@ typedef struct fibrad_scene_facts {
     int isa;                       /* the fibrad_isa in use */
     uint32_t cells;                /* cells of the grid, all levels together */
     double radius_min, radius_max; /* L; 0 without spheres */
-    double overlap_max;            /* largest overlap of two spheres over the smaller radius; 0: none overlap */
+    double overlap_max;            /* largest overlap of two spheres, divided by the smaller radius; 0: none overlap */
     uint32_t overlap_pair[2];      /* the two spheres of the largest overlap */
     uint32_t triangles;            /* number of triangles */
 } fibrad_scene_facts;
@@ -376,8 +391,8 @@ void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts)
  *   Errors   none */
 double fibrad_scene_body_area(const fibrad_scene *scene, uint32_t body);
 
-/* Sphere k in the order of the grid's cells. This order is a permutation in which neighbours in space mostly follow
- * each other. Rows of large beds are faster in this order, since their data are in the cache.
+/* Sphere k in the order of the grid's cells. In this order neighbours in space mostly follow each other. Each sphere
+ * occurs once. Compute the rows of a large bed in this order: rows are faster if their data are still in the cache.
  *   Input    k: 0 to n - 1
  *   Errors   UINT32_MAX: k is out of range, or the scene is not complete */
 uint32_t fibrad_scene_sphere(const fibrad_scene *scene, uint32_t k);
@@ -412,11 +427,12 @@ typedef struct fibrad_rows fibrad_rows; /* a collection of rows, see below */
  *   no room       FIBRAD_E_CAPACITY. `length` is     FIBRAD_E_CAPACITY. rows->memory.needed is the size that
  *                 the capacity that suffices.        suffices.
  *
- * The entries, the factors to walls, `escaped` and `beyond` together are 1, to rounding. */
+ * The entries, the factors to walls, `escaped` and `beyond` add up to 1, to rounding. Rows of exchange factors of a
+ * sphere of emissivity 0 are empty and add up to 0. */
 typedef struct fibrad_row {
     uint32_t *col;       /* [capacity], out: the spheres that receive, ascending */
     double *f;           /* [capacity], out: factor from sphere i to sphere col[k], above 0 */
-    double *body;        /* [bodies], out: factor to each wall; may be NULL without walls */
+    double *body;        /* [bodies], out: factor to each wall; may be NULL if there are no walls */
     uint32_t capacity;   /* in: elements of col and f; 0 after a row was appended to `rows` */
     fibrad_rows *rows;   /* in: NULL, or the collection; then capacity is not used */
     uint32_t sphere;     /* out: i */
@@ -425,7 +441,7 @@ typedef struct fibrad_row {
     double beyond;       /* out: fraction whose target the row does not know */
     double error;        /* out: estimated error of the row; in the median it is twice the true error */
     uint32_t directions; /* out: directions taken; 0 by rays */
-    uint32_t fallbacks;  /* out: windows that the slower, robust method for areas resolved; 0 by rays */
+    uint32_t fallbacks;  /* out: windows for which a slower, more robust method was needed; 0 by rays */
     int symmetric;       /* out: 1 if A_i F_ij = A_j F_ji holds without averaging */
 } fibrad_row;
 
@@ -434,20 +450,25 @@ typedef struct fibrad_row {
 typedef struct fibrad_beam_rule {
     uint32_t directions; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: see above */
     uint32_t points;     /* 0: exact visible areas; 64, 128 or 256: that many points per window */
-    double cutoff;       /* L; spheres with centres farther than this (1 + 1e-12) are left out; 0: no cutoff */
+    double cutoff;       /* L; spheres are left out if their centre is farther than (1 + 1e-12) cutoff; 0: no cutoff */
     double tolerance;    /* the error allowed; directions are added until it is met; 0: no tolerance */
     uint64_t turn;       /* seed of a random rotation of all directions together; 0: no rotation */
 } fibrad_beam_rule;
 
 /* Row i of the view factors of a scene, by parallel beams.
  *
- * There is one beam for each direction of the rule. The window of a beam is the shadow disc of sphere i along the
- * direction. The row is the mean of what all windows see. With exact areas, the error of the entries falls as
- * directions^-1.5. The error of factors to walls falls a little more slowly. A wall that nothing hides gets its solid
- * angle. With points, an entry is the number of points that meet the sphere over the number of all points. `escaped` is
- * such a fraction, too. Images of one sphere share one entry. Sphere i may see its own images. A beam ends after 100
- * periods. If the tolerance asks for more than FIBRAD_DIRECTIONS_MAX directions, the row is made with
- * FIBRAD_DIRECTIONS_MAX directions, and row->error is above the tolerance.
+ * There is one beam for each direction of the rule. Sphere j is visible in a fraction of each window. The factor to
+ * sphere j is the mean of this fraction over all windows.
+ *   exact areas  The fraction is a visible area over the area of the window. The error of the entries falls as
+ *                directions^-1.5. The error of factors to walls falls a little more slowly. A factor to a plane or to
+ *                the cylinder is exact if nothing hides the wall from sphere i, sphere i cuts no wall, and there is
+ *                neither a cutoff nor a known region.
+ *   points       Each point of the window is one ray. The fraction is the number of points that meet sphere j, divided
+ *                by the number of all points.
+ *
+ * In a periodic scene, all images of one sphere have one entry together. Sphere i may see its own images. A beam meets
+ * no sphere farther away than 100 periods. If the tolerance asks for more than FIBRAD_DIRECTIONS_MAX directions, the
+ * row is made with FIBRAD_DIRECTIONS_MAX directions, and row->error is above the tolerance.
  *   Input    i: 0 to spheres - 1
  *            rule: NULL for all defaults
  *   Output   row
@@ -467,7 +488,8 @@ int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
  *   Source   docs/methods.md section 3 */
 uint32_t fibrad_directions_for(uint32_t directions, double error, double tolerance);
 
-/* The terms that some directions of a beam row give. Set `memory`, and zero the rest. */
+/* A part of a beam row: what some of its directions add to the sums of the row. What one window adds to one sum is a
+ * term. Set `memory`, and zero the rest. */
 typedef struct fibrad_row_part {
     fibrad_memory memory;         /* takes 16 bytes for each sphere that a window sees */
     uint64_t key;                 /* of the library: the row, rule and scene of this part; 0: none */
@@ -518,8 +540,8 @@ typedef struct fibrad_cast_means {
  *
  * The origins are spread evenly over the sphere. The directions follow the cosine law. Each ray ends at the first
  * surface that it meets. A factor is the number of rays that end on a surface over the number of all rays. The error
- * falls as rays^-0.6 with quasi-random numbers and as rays^-0.5 with pseudo-random numbers. A ray that starts inside
- * another sphere meets that sphere at length 0 if the centre of that sphere lies ahead.
+ * falls as rays^-0.6 with quasi-random numbers and as rays^-0.5 with pseudo-random numbers. A ray may start inside
+ * another sphere that overlaps sphere i. The ray meets this sphere at length 0 if its centre lies ahead.
  *   Input    i: 0 to spheres - 1
  *            rule: NULL for all defaults
  *   Output   row
@@ -531,8 +553,8 @@ int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
                     fibrad_row *row, const fibrad_cast_means *means);
 
 /* ---- rows ------------------------------------------------------------------------------------------------------ */
-/* A collection of rows of one thread or process, in any order. Set `memory`, and zero the rest. A row that finds no
- * room in fixed memory is FIBRAD_E_CAPACITY. Then give a larger block with the same contents, and call again. */
+/* A collection of rows of one thread or process, in any order. Set `memory`, and zero the rest. If fixed memory has no
+ * room for a row, the error is FIBRAD_E_CAPACITY. Then give a larger block with the same contents, and call again. */
 struct fibrad_rows {
     fibrad_memory memory;
     size_t used, lead; /* bytes, of the library: bytes of all rows, and bytes in front of the first row */
@@ -654,13 +676,15 @@ int fibrad_silhouettes_join(fibrad_silhouettes *silhouettes, const fibrad_pairs 
 int fibrad_silhouettes_row(const fibrad_silhouettes *silhouettes, fibrad_work *work, uint32_t i, fibrad_row *row);
 
 /* ---- matrix ---------------------------------------------------------------------------------------------------- */
-/* The row of a wall, as fibrad_exchange_body makes it. The factors of the row add up to 1. If the emissivity of the
- * wall is 0, all factors of the row are 0. */
+/* The row of a wall. fibrad_exchange_body makes one batch of the row. fibrad_exchange_body_mean makes the row, the mean
+ * of all batches. The factors of the row add up to 1. If the emissivity of the wall is 0, all factors of the row are 0.
+ * Paths among surfaces that absorb little are broken off after many rays. The fraction lost is what such paths still
+ * carry. */
 typedef struct fibrad_body_row {
-    double body[FIBRAD_BODIES_MAX]; /* factor to each wall; in one batch a factor near 0 may be below 0 by chance */
+    double body[FIBRAD_BODIES_MAX]; /* factor to each wall; a batch may have a factor a little below 0, by chance */
     double spheres;                 /* factor to all spheres together */
     double escaped;                 /* factor to the surroundings */
-    double error;                   /* of the mean: estimated error; of a batch: the fraction lost among mirrors */
+    double error;                   /* of the mean: estimated error; of a batch: the fraction lost, see above */
     uint64_t rays;                  /* rays traced */
 } fibrad_body_row;
 
@@ -671,20 +695,22 @@ typedef void fibrad_piece(void *job, uint32_t k);
  * in any order or at the same time. It returns when all pieces are done. */
 typedef void fibrad_parallel(void *context, uint32_t pieces, fibrad_piece *piece, void *job);
 
-/* How rows become a matrix. Zeroed: view factors, made reciprocal and closed, for spheres alone.
+/* How rows become a matrix. Zeroed: view factors by beams with exact areas, made reciprocal and closed; walls have no
+ * rows.
  *
- *   the rows hold                          set
- *   view factors by beams, exact areas     nothing
- *   view factors by silhouettes            reciprocal = 1
- *   view factors by rays or by points      sampled = 1
- *   exchange factors                       emissivity, and body_emissivity with body_row
- *   any of these, with rows of walls       body_row
- *   rows to be left as they are            raw = 1 */
+ *   the rows hold                            set
+ *   view factors by beams, exact areas       nothing
+ *   view factors by silhouettes              reciprocal = 1
+ *   view factors by rays or by points        sampled = 1
+ *   exchange factors                         emissivity
+ *   any of these, and walls have rows        body_row as well
+ *   exchange factors, and walls have rows    body_row and body_emissivity as well
+ *   any of these, to be left as they are     raw = 1 as well */
 typedef struct fibrad_matrix_rule {
     const double *emissivity;        /* [spheres], 0 to 1: the rows hold exchange factors; NULL: view factors */
     int raw;                         /* 1: leave the rows as they are; a missing row is empty */
-    double drop;                     /* 0 to 1: entries below are dropped; the row's sum stays; 0: keep all */
-    uint32_t tasks;                  /* 1 to 1024, number of tasks for threads, changes no bit; 0: 1 */
+    double drop;                     /* 0 to 1: pairs of entries are dropped if both are below `drop`; 0: keep all */
+    uint32_t tasks;                  /* number of tasks for threads, 1 to 1024; changes no bit; 0 means 1 */
     const fibrad_body_row *body_row; /* [bodies], copied; rows of endless walls are not read; NULL: no rows of walls */
     const double *body_emissivity;   /* [bodies], 0 to 1, read if body_row is set; NULL: 1 */
     fibrad_parallel *parallel;       /* used by all calls for this matrix; NULL: the calling thread does all */
@@ -694,7 +720,8 @@ typedef struct fibrad_matrix_rule {
 } fibrad_matrix_rule;
 
 /* A matrix of factors in compressed rows. The arrays belong to the matrix that they were read from. If walls have no
- * rows, the three arrays body_body, body_escaped and body_error are NULL. Their elements for an endless wall are NaN.
+ * rows, the three arrays body_body, body_escaped and body_error are NULL. If walls have rows, the elements of these
+ * arrays for an endless wall are NaN.
  *
  * `changed` tells whether the raw rows agree with each other. Raw row i gives fractions of its radiation to walls, to
  * the surroundings and to `beyond`. The matrix changes these fractions. The change of row i is the root of the sum of
@@ -720,8 +747,8 @@ typedef struct fibrad_factors {
 
 typedef struct fibrad_matrix fibrad_matrix; /* a matrix in the making */
 
-/* Bytes that fibrad_matrix_init needs: 24 per entry of the rows, and 80 + 8 bodies per sphere. With `raw` they are 12
- * per entry and 48 + 8 bodies per sphere.
+/* Bytes that fibrad_matrix_init needs. Let b be the number of walls. The call needs 24 bytes for each entry of the rows
+ * and 80 + 8 b bytes for each sphere. With `raw` it needs 12 bytes for each entry and 48 + 8 b bytes for each sphere.
  *   Input    as fibrad_matrix_init
  *   Errors   0 */
 size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
@@ -742,12 +769,13 @@ int fibrad_matrix_init(fibrad_matrix **matrix, void *memory, size_t size, const 
                        const fibrad_rows *rows, uint32_t count, const fibrad_matrix_rule *rule, uint32_t *sphere);
 
 /* Averages the rows of one task. Several threads may do different tasks at the same time. This call is optional:
- * fibrad_matrix_close does the tasks that are left. Rows i and j both estimate A_i F_ij = A_j F_ji, A = 4 pi r^2. The
- * average is w_i A_i F_ij + w_j A_j F_ji with
- *   view factors by exact areas   w_i = w_j = 1/2
+ * fibrad_matrix_close does the tasks that are left. Let A = 4 pi r^2 be the area and e the emissivity of a sphere. Rows
+ * i and j both estimate the same quantity. The matrix gets a mean of both estimates:
+ *   view factors by exact areas   (A_i F_ij + A_j F_ji)/2
  *   view factors by silhouettes   both are equal already, and are copied
- *   sampled view factors          w_i = A_j/(A_i + A_j), w_j = A_i/(A_i + A_j)
- *   exchange factors              the same weights, D instead of F, and A times the emissivity instead of A
+ *   sampled view factors          w_i A_i F_ij + w_j A_j F_ji
+ *   exchange factors              w_i A_i e_i D_ij + w_j A_j e_j D_ji
+ * The weights are w_i = A_j/(A_i + A_j) and w_j = A_i/(A_i + A_j).
  *   Input    task: 0 to rule->tasks - 1
  *   Errors   _ARGUMENT
  *            _STATE: the task is done already, the rule says raw, the matrix is closed, or the rows have changed
@@ -755,22 +783,25 @@ int fibrad_matrix_init(fibrad_matrix **matrix, void *memory, size_t size, const 
  *   Source   docs/methods.md section 5 */
 int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
 
-/* Ends the matrix. Afterwards A_i F_ij = A_j F_ji to the last bits, and every row that is not empty has the sum 1 to
- * rounding. With `raw` nothing is changed. The steps are
+/* Ends the matrix. Afterwards A_i F_ij = A_j F_ji to rounding. The sum of every row that is not empty is 1 to rounding.
+ * With `raw` nothing is changed. The steps are
  *   1. All tasks that are left are averaged.
- *   2. View factors by exact areas: F_ij is multiplied by min(s_i, s_j), s_i = min(1, 1/sum of row i).
- *      Other factors: F_ij is multiplied by u_i u_j such that u_i (sum over j of F_ij u_j + rest_i) = 1. rest_i is what
- *      raw row i gives to walls, surroundings and `beyond` together.
+ *   2. View factors by exact areas or by silhouettes: let s_i be 1/sum of row i, and at most 1. F_ij is multiplied by
+ *      the smaller one of s_i and s_j.
+ *      Sampled view factors and exchange factors: let rest_i be what raw row i gives to walls, surroundings and
+ *      `beyond` together. u_i is found with u_i (sum over j of F_ij u_j + rest_i) = 1. F_ij is multiplied by u_i u_j.
  *   3. Factors to walls, `escaped` and `beyond` are scaled so that the sum of the row is 1. If all of them are 0 in a
  *      row, they get the proportions that they have in all rows together.
- *   4. Rows of walls: A_b F_bi = A_i F_ib. Then all factors are multiplied by u_p u_q, p and q being spheres or walls.
- *      If triangles cut a bed, such u may not exist. Then the rows of spheres are closed. The factors among walls stay
- *      as the paths have given them, and body_closure equals body_correction.
- *   5. Entries below `drop` are removed in pairs. The other entries are scaled so that the sums of the rows stay. The
- *      part of a sum that no scaling can restore is added to F_ii.
+ *   4. If walls have rows, A_b F_bi = A_i F_ib gives the factors from wall b to spheres. Then each factor from p to q
+ *      is multiplied by u_p u_q, so that all rows have the sum 1. p and q are spheres or walls. If triangles cut
+ *      spheres, such u may not exist. Then the rows of spheres stay as in step 3. The factors among walls stay as the
+ *      paths have given them, and body_closure equals body_correction.
+ *   5. The pairs F_ij and F_ji are removed in which both factors are below `drop`. The other entries are scaled so that
+ *      the sums of the rows stay. The part of a sum that no scaling can restore is added to F_ii.
  *   Errors   _ARGUMENT
  *            _STATE: the matrix is closed already, or the rows have changed
- *   Cost     O(entries). Step 4, step 5 and factors that are not by exact areas take some 40 times as long.
+ *   Cost     O(entries). With sampled view factors, exchange factors, step 4 or step 5 the call takes some 40 times as
+ *            long.
  *   Source   docs/methods.md section 5, docs/methods_heat.md sections 3 and 4 */
 int fibrad_matrix_close(fibrad_matrix *matrix);
 
@@ -790,9 +821,9 @@ int fibrad_matrix_reciprocity(const fibrad_matrix *matrix, double *largest);
 /* ---- drift ----------------------------------------------------------------------------------------------------- */
 /* Estimates the error of an old row after the spheres have moved:
  *   error = 2 sqrt(sum over j of (F_ij delta_ij/w_ij)^2),   F_ij = r_j^2/(4 d^2),   w_ij = min(r_j, max(d - r_j, r_i)).
- * delta_ij [L] is the change of the vector from sphere i to sphere j. d [L] is the smaller one of the two distances of
- * their centres. j runs over the spheres that the old row sees. Errors of successive steps may be added up. Walls are
- * not counted. Spheres that come into sight are not counted here: fibrad_drift_partners counts them.
+ * delta_ij [L] is the change of the vector from sphere i to sphere j. d [L] is the smaller one of the old and the new
+ * distance of their centres. j runs over the spheres that the old row sees. Errors of successive steps may be added up.
+ * Walls are not counted. Spheres that come into sight are not counted here: fibrad_drift_partners counts them.
  *   Input    before, now: the scene of the row and the present scene. Both have the same spheres and the same periods.
  *            i: 0 to spheres - 1
  *            col[length]: columns of the old row
@@ -803,8 +834,8 @@ int fibrad_matrix_reciprocity(const fibrad_matrix *matrix, double *largest);
 int fibrad_drift_row(const fibrad_scene *before, const fibrad_scene *now, uint32_t i, const uint32_t *col,
                      uint32_t length, double *error);
 
-/* Adds to the error of old rows what a new row of sphere i reveals. If F_ij has grown, F_ji has grown as well, but the
- * old row j still has the smaller F_ji. Where F_ij has more than doubled,
+/* Raises the errors of old rows j, once row i is new. If F_ij has grown, F_ji has grown as well, but the old row j
+ * still has the smaller F_ji. For each j for which F_ij has more than doubled,
  *   error[j] = sqrt(error[j]^2 + (2 (F_ij new - F_ij old) A_i/A_j)^2).
  * The last bits of `error` depend on the order of the calls.
  *   Input    i: 0 to spheres - 1
@@ -820,9 +851,9 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
 /* ---- exchange -------------------------------------------------------------------------------------------------- */
 /* How exchange factors are computed. All surfaces are grey and diffuse. A surface of emissivity 0 reflects everything.
  *
- * Radiation first travels from sphere i to the surface that it meets. This first leg is a beam row. With up to 144
- * directions the beam row takes 256 points per window. With more directions it takes exact areas. Then paths follow the
- * reflections.
+ * Radiation first travels from sphere i to the surface that it meets. This first leg is a beam row. With up to 49
+ * directions the beam row takes 64 points per window. With 50 to 144 directions it takes 256 points. With more
+ * directions it takes exact areas. Then paths follow the reflections.
  *
  *   field                   _row                 _displacement        _body                         _walk
  *   emissivity              needed               needed               NULL: all spheres are black   needed
@@ -841,10 +872,10 @@ typedef struct fibrad_exchange_rule {
     uint64_t seed;    /* of random numbers, with the sphere's id; also the `turn` of the first leg */
     double cutoff;    /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
     double tolerance; /* the error allowed; directions and paths are added until it is met; 0: none */
-    /* [spheres], fibrad_relative_conductivity of each, from FIBRAD_RELATIVE_CONDUCTIVITY_MIN; INFINITY: the sphere has
-     * one temperature */
+    /* [spheres], fibrad_relative_conductivity of each sphere, at least FIBRAD_RELATIVE_CONDUCTIVITY_MIN. INFINITY: the
+     * sphere has one temperature. */
     const double *conductivity;
-    const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: one temperature a sphere */
+    const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */
     uint32_t flights;              /* of _walk, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
 } fibrad_exchange_rule;
 
@@ -857,15 +888,16 @@ typedef struct fibrad_exchange_rule {
 double fibrad_relative_conductivity(double conductivity, double radius, double temperature, double sigma);
 
 /* The emissivity of a node. The temperature of a sphere that conducts differs from point to point. In rows with
- * rule->node_emissivity such a sphere is represented by a node, which has one value N_i. Let E_i be sigma T_i^4 at the
- * mean temperature of sphere i. Emission is taken to be linear in T about T_i. Let q_i be the net power of the sphere,
- * A_i its area, e_i its emissivity and n_i the emissivity of its node. The rows are exchange factors D_ij between
- * nodes, with A_i n_i D_ij = A_j n_j D_ji:
+ * rule->node_emissivity a node stands for such a sphere. Let sphere i have the mean temperature T_i, the net power q_i,
+ * the area A_i and the emissivity e_i. E_i is sigma T_i^4. The emission at a point of the sphere is taken to be linear
+ * in T about T_i. The node has the emissivity n_i and one value N_i:
  *
  *     q_i = sum over j of A_i n_i D_ij (N_j - N_i),   N_i = E_i - (1/n_i - 1/e_i) q_i/A_i.
  *
- * Walls and surroundings are among j. Their N is E. So the powers follow from a linear system. No factor is below 0.
- * For the matrix of such rows, set fibrad_matrix_rule.emissivity to the emissivities of the nodes.
+ * The entries of the rows are the exchange factors D_ij between nodes. No D_ij is below 0, and
+ * A_i n_i D_ij = A_j n_j D_ji. The sum over j includes walls and surroundings, and for these N is E. So the powers
+ * follow from a linear system. For the matrix of such rows, set fibrad_matrix_rule.emissivity to the emissivities of
+ * the nodes.
  *   Input    emissivity: 0 to 1
  *            conductivity: k*, from FIBRAD_RELATIVE_CONDUCTIVITY_MIN; INFINITY: the result is the emissivity
  *   Output   above 0 to the emissivity; 0 if the emissivity is 0
@@ -882,9 +914,9 @@ double fibrad_node_emissivity(double emissivity, double conductivity);
  *   Output   row
  *            rays: rays traced; may be NULL
  *   Errors   as fibrad_beam_row. The emissivities of sphere i, of walls, and of spheres that are met are checked.
- *   Cost     the beam row, and 0.1 to 0.2 microseconds per ray. A path has about 2 rays at emissivity 0.8 and 14 at
- *            0.2. For spheres that conduct, the emissivity of the nodes counts. If work memory may grow, this
- *            function takes up to 6 MB more, for speed.
+ *   Cost     the beam row, and 0.1 to 0.2 microseconds per ray. A path has about 2 rays if the emissivity is 0.8, and
+ *            14 if it is 0.2. If spheres conduct, these are the emissivities of the nodes. If work memory may grow,
+ *            this function takes up to 6 MB more, for speed.
  *   Source   docs/methods_heat.md section 2 */
 int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
                         fibrad_row *row, uint64_t *rays);
@@ -907,8 +939,9 @@ int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i
 int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t body, const fibrad_exchange_rule *rule,
                          uint32_t part, fibrad_body_row *row);
 
-/* The mean of all batches of a wall's row. The error is the standard error of the mean, from the spread of the batches,
- * plus the fraction lost among mirrors. A mean below 0 becomes 0, and the other factors are scaled.
+/* The mean of all batches of a wall's row. The spread of the batches gives the standard error of the mean. The error is
+ * this standard error plus the fraction lost (fibrad_body_row). A mean below 0 becomes 0, and the other factors are
+ * scaled.
  *   Input    part[FIBRAD_BODY_PARTS]: all batches
  *   Output   mean
  *   Errors   _ARGUMENT */
@@ -918,7 +951,7 @@ int fibrad_exchange_body_mean(const fibrad_body_row part[FIBRAD_BODY_PARTS], fib
 typedef struct fibrad_displacement {
     double square[3]; /* L^2: mean square displacement along each axis */
     double error[3];  /* L^2: estimated standard error of `square` */
-    double absorbed;  /* fraction of the emission that spheres absorb */
+    double absorbed;  /* fraction of the emission that spheres absorb; fibrad_exchange_walk: see there */
     uint64_t rays;    /* rays traced */
 } fibrad_displacement;
 
@@ -934,11 +967,12 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
                                  const fibrad_exchange_rule *rule, fibrad_displacement *displacement);
 
 /* How fast radiation spreads through a bed of spheres that conduct. Temperatures differ from point to point on each
- * sphere, and the net power of every sphere is 0. A path starts at sphere i as if it had arrived there. At each sphere
- * the path is reflected, or it is absorbed and given off at another point of the sphere. The path goes on for 2 n
- * flights, n = rule->flights. `square` is the mean square displacement per flight, in the limit of many flights. The
- * correlation of flights that are more than n flights apart is left out. For example, in a cubic lattice of emissivity
- * 1 the sum of `square` is 0.2 % too large with n = 12 at k* = 0.1. The same holds for n = 24 at k* = 0.01.
+ * sphere, and the net power of every sphere is 0. A path begins with an arrival at sphere i. At each sphere the path is
+ * reflected, or it is absorbed and given off at another point of the sphere. The way from one sphere to the next is a
+ * flight. Let n be rule->flights. A path has 2 n flights. `square` is the mean square displacement per flight, in the
+ * limit of many flights. The correlation of flights that are more than n flights apart is left out. For example, in a
+ * cubic lattice of emissivity 1 the sum of `square` is 0.2 % too large with n = 12 at k* = 0.1. With n = 24 it is 0.2 %
+ * too large at k* = 0.01.
  *   Input    i: 0 to spheres - 1. The starts of the paths are spread evenly over the surface of sphere i.
  *            rule: needed
  *   Output   displacement; absorbed: fraction of the paths that did not leave the bed
@@ -949,16 +983,16 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
 int fibrad_exchange_walk(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
                          fibrad_displacement *displacement);
 
-/* Emissions and powers of spheres, walls and surroundings. Let e be the unit of emission, W/m2 for example. Powers are
- * in e L^2 and above 0 where heat is gained. fibrad_rows_flow adds to the powers: set them to 0 first. */
+/* Emissions and powers of spheres, walls and surroundings. Let U be the unit of emission, W/m2 for example. Powers are
+ * in U L^2. A power above 0 is a gain of heat. fibrad_rows_flow adds to the powers: set them to 0 first. */
 typedef struct fibrad_flow {
     const double *weight;         /* L^2, [spheres], area times emissivity, 4 pi r^2 eps; read for spheres with a row */
-    const double *emission;       /* e, [spheres], sigma T^4 */
-    const double *body_emission;  /* e, [bodies], sigma T^4 of each wall */
-    double surroundings_emission; /* e, sigma T^4 of the surroundings */
-    double *power;                /* e L^2, [spheres], in and out */
-    double *body_power;           /* e L^2, [bodies], in and out */
-    double surroundings_power;    /* e L^2, in and out */
+    const double *emission;       /* U, [spheres], sigma T^4 */
+    const double *body_emission;  /* U, [bodies], sigma T^4 of each wall */
+    double surroundings_emission; /* U, sigma T^4 of the surroundings */
+    double *power;                /* U L^2, [spheres], in and out */
+    double *body_power;           /* U L^2, [bodies], in and out */
+    double surroundings_power;    /* U L^2, in and out */
 } fibrad_flow;
 
 /* Adds the powers that follow from rows of exchange factors. The collection may have rows of some spheres only.
