@@ -14,22 +14,24 @@
  * Rows        A row holds exchange factors, or view factors if all emissivities are 1. Each rank computes the rows of
  *             the particles that it owns. The rows stay on this rank until new rows are made, wherever the particles
  *             go.
- * Powers      Each entry between two particles carries half of what they exchange. The other half comes from the
- *             partner's row. So no heat is lost, whatever the error of the rows. Nothing flows between particles of
- *             equal temperature.
+ * Powers      Two particles exchange the mean of what their two rows say. One gains what the other loses. So no heat is
+ *             lost, whatever the error of the rows. Nothing flows between particles of equal temperature.
  * Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
- * Collective  All functions are collective over the communicator, except fibrad_link_free, fibrad_insitu_message,
- *             fibrad_insitu_remark, fibrad_insitu_facts_get and fibrad_accuracy_named. Every rank calls them, and all
- *             ranks get the same status.
+ * Collective  Every rank must call a collective function, and all ranks get the same status. All functions are
+ *             collective over the communicator, except fibrad_link_free, fibrad_insitu_message, fibrad_insitu_remark,
+ *             fibrad_insitu_facts_get and fibrad_accuracy_named.
  * Errors      After an error, fibrad_insitu_message has a sentence, the same on all ranks, which names particles by
  *             id. The object is as it was before the call.
- * Strays      Simulations go on with particles of which no scene can be made. So do rows, unless config.strict is set.
- *             A particle is left out whose centre lies beyond a plane or the cylinder, or that reaches beyond an
- *             opening. It exchanges nothing and is in nobody's way until rows are made when it is back. If a centre
- *             lies inside another particle, both have smaller radii in the rows: d/max(r_i, r_j) of theirs, which puts
- *             the centre on the surface. If less than a thousandth of a radius would remain, the particle is left out.
- *             A particle that sees a side of a triangle that belongs to no wall has no row. If more than a tenth of
- *             all particles do, that is an error: then the sides are wrong. fibrad_insitu_remark tells what was done.
+ * Strays      A simulation may go on with particles of which no scene can be made. With config.strict such a particle
+ *             is an error. Otherwise rows are made of the others. fibrad_insitu_remark tells what was done:
+ *               left out  The centre of the particle lies beyond a plane or the cylinder, or the particle reaches
+ *                         beyond an opening. It exchanges nothing and hides nothing. Rows that are made when it is
+ *                         back contain it.
+ *               smaller   The centre of one particle lies inside another, at a distance d. Both radii are multiplied
+ *                         by d/max(r_i, r_j). Then the centre lies on the surface. If less than a thousandth of a
+ *                         radius would remain, the particle is left out.
+ *               no row    The particle sees a side of a triangle that belongs to no wall. If more than a tenth of all
+ *                         particles see such sides, the call fails, with or without config.strict.
  * Units       One length unit L, which the caller chooses. Powers are in sigma K^4 L^2.
  * Words       Words and the layout of comments are as in fibrad.h.
  * Source      docs/coupling.md
@@ -47,12 +49,12 @@ extern "C" {
 #endif
 
 /* ---- link ------------------------------------------------------------------------------------------------------ */
-/* Connects two kinds of values of particles: those that a rank owns, and those that a rank uses. */
+/* Connects the values that a rank owns with the same values on the ranks that use them. */
 typedef struct fibrad_link fibrad_link;
 
 /* Makes a link.
- *   Input    id[all]: first the `own` ids that this rank owns, then the ids that it uses. Each id is owned once. It may
- *            be used in any order and any number of times, by its owner, too.
+ *   Input    id[all]: first the `own` ids that this rank owns, then the ids that this rank uses. One rank owns an id.
+ *            Any rank may use the id, the owner too, in any order and any number of times.
  *   Output   link: free with fibrad_link_free
  *            culprit: the least id at fault on all ranks; may be NULL
  *   Errors   _ARGUMENT: an id is owned twice, or used and not owned
@@ -98,9 +100,9 @@ int fibrad_accuracy_named(const char *name);
 
 /* How rows are made. The same on all ranks. Zeroed: all defaults.
  *
- * The default cutoff is as long as the number of particles allows that ranks send each other, but no longer than the
- * bed. It is the largest diameter plus 8 mean radii, times the highest power of 1.25 with which a cube of twice that
- * side has no more than 1e5 particles and images. Rows take about as long with any cutoff. */
+ * The default cutoff bounds the number of particles that ranks send each other. It is the largest diameter plus 8 mean
+ * radii, multiplied by 1.25 again and again. The last cutoff R is used for which a cube of side 2 R has no more than
+ * 1e5 particles and images. The default is no longer than the bed. Rows take about as long with any cutoff. */
 typedef struct fibrad_insitu_config {
     double cutoff;       /* L, as in fibrad_exchange_rule, at least the largest diameter; 0: see above */
     uint32_t directions; /* as in fibrad_exchange_rule; 0: those of `accuracy` */
@@ -149,8 +151,7 @@ typedef struct fibrad_insitu_totals {
     double body[FIBRAD_BODIES_MAX]; /* sigma K^4 L^2, [bodies of the rows] */
 } fibrad_insitu_totals;
 
-/* Where facts.beyond is above this, the cutoff biases powers of surroundings and walls by as much or some times more.
- */
+/* If facts.beyond is above this, powers of surroundings and walls may be wrong by this fraction and more. */
 #define FIBRAD_BEYOND_MUCH 0.005
 
 /* Facts of the last rows, of all ranks together except halo and bytes. */
@@ -158,18 +159,18 @@ typedef struct fibrad_insitu_facts {
     uint64_t particles, entries; /* numbers of particles that take part and of entries of rows */
     uint64_t outside;            /* number of particles that are left out */
     uint64_t overlapping;        /* number of particles that are smaller, since a centre lies inside another particle */
-    uint64_t behind;             /* number of particles without a row, since they see what belongs to no wall */
+    uint64_t behind;             /* number of particles without a row, since they see a side that belongs to no wall */
     double cutoff;               /* L, in use */
-    double beyond;               /* mean fraction of the emission whose target is not known; the known targets get it */
+    double beyond;               /* mean fraction of the emission whose target is not known; known targets share it */
     double error;                /* root mean square of the rows' estimated errors */
-    double seconds_rows;         /* s, of the slowest rank, in all calls of fibrad_insitu_rows so far */
+    double seconds_rows;         /* s, of the slowest rank, in all calls of fibrad_insitu_rows and _follow so far */
     double seconds_powers;       /* s, of the slowest rank, in all calls of fibrad_insitu_powers so far */
     uint64_t step;               /* of the rows */
     size_t halo;                 /* particles of other ranks that this rank was sent */
     size_t bytes;                /* bytes, memory of this rank */
 } fibrad_insitu_facts;
 
-/* Begins. The communicator is duplicated.
+/* Makes an object without rows. The communicator is duplicated.
  *   Input    config: NULL for all defaults
  *   Output   insitu: free with fibrad_insitu_free; NULL after an error
  *   Errors   _ARGUMENT, _MEMORY */
@@ -179,41 +180,44 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
  *   Input    bed: not needed after the call
  *            step: any number, seeds the random numbers
  *   Errors   _ARGUMENT: a value is out of its range, an id occurs twice, or the cutoff is less than the largest
- *            diameter or more than 100 periods; strict: also a centre lies beyond a wall
- *            _GEOMETRY: a centre lies inside an image of its own particle; strict: also inside another particle, or a
- *            particle reaches beyond an opening
+ *            diameter or more than 100 periods
+ *            _GEOMETRY: a centre lies inside an image of its own particle
  *            _ENDLESS: walls, as for fibrad_scene_init
- *            _BACK: a side of a triangle is seen that belongs to no wall, by more than a tenth of all particles;
- *            strict: by one
+ *            _BACK: more than a tenth of all particles see a side of a triangle that belongs to no wall
  *            _MEMORY
+ *            With config.strict also
+ *            _ARGUMENT: a centre lies beyond a wall
+ *            _GEOMETRY: a centre lies inside another particle, or a particle reaches beyond an opening
+ *            _BACK: one particle sees a side of a triangle that belongs to no wall
  *   Cost     that of fibrad_exchange_row for each particle */
 int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
-/* Makes rows of those particles alone that have come since the last rows, and keeps the others where they are. What a
- * new and an old particle exchange follows from the new row alone. What particles that have gone would get goes to the
- * rest of each row. If more than a tenth of all particles have come or gone since fibrad_insitu_rows made all rows, the
- * function makes all rows.
+/* Makes rows of those particles alone that have come since the last rows, and keeps the other rows. The row of a new
+ * particle gives both sides of its exchange with an old one. The factors to particles that have gone are shared by the
+ * other entries of each row. If more than a tenth of all particles have come or gone since fibrad_insitu_rows made all
+ * rows, the function makes all rows.
  *   Input    as fibrad_insitu_rows; the number of walls must be that of the last rows
  *   Errors   as fibrad_insitu_rows
  *   Cost     about 2 microseconds for each particle and 10 ns for each entry, and the new rows */
 int fibrad_insitu_follow(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
-/* Net radiative power of each particle that this rank owns now.
+/* Net radiative power of each particle that this rank owns now. If particles conduct, `temperature` is the mean of each
+ * particle.
  *   Output   power[state->n]: [sigma K^4 L^2], above 0 where heat is gained
  *            totals: may be NULL
  *   Errors   _ARGUMENT: a temperature or sigma is out of its range
- *            _STATE: there are no rows, or the ids are not those of the rows
+ *            _STATE: there are no rows, or the particles of all ranks together are not those of the rows
  *            _MEMORY
  *            _UNSOLVABLE: rows of particles that conduct are too inaccurate for powers
- *   Cost     2 ns per entry, and some messages. If particles conduct, `temperature` is the mean of each particle, and
- *            conjugate gradients find the node values. This took 9 times as long at k* = 5, 27 times at k* = 1 and
- *            140 times at k* = 0.3, for 4,096 particles of emissivity 0.8 */
+ *   Cost     2 ns per entry, and some messages. If particles conduct, a linear system is solved. For 4,096 particles of
+ *            emissivity 0.8 this took 9 times as long at k* = 5, 27 times at k* = 1 and 140 times at k* = 0.3. */
 int fibrad_insitu_powers(fibrad_insitu *insitu, const fibrad_insitu_state *state, double *power,
                          fibrad_insitu_totals *totals);
 
 /* Writes the rows of each rank to the file PATH.RANK.rows, for `fibrad join`.
  *   Input    path: PATH
- *   Errors   _STATE: there are no rows
+ *   Errors   _ARGUMENT: the path is empty or too long
+ *            _STATE: there are no rows, or particles have come or gone since all rows were made
  *            _FILE: a file cannot be written. The message names the file. No rank leaves a file behind. */
 int fibrad_insitu_write(fibrad_insitu *insitu, const char *path);
 
@@ -226,12 +230,12 @@ const char *fibrad_insitu_message(const fibrad_insitu *insitu);
 typedef enum fibrad_remark_kind {
     FIBRAD_REMARK_OUTSIDE = 0, /* particles are left out */
     FIBRAD_REMARK_OVERLAP = 1, /* particles are smaller, since a centre lies inside another particle */
-    FIBRAD_REMARK_BACK = 2,    /* particles have no row, since they see what belongs to no wall */
+    FIBRAD_REMARK_BACK = 2,    /* particles have no row, since they see a side that belongs to no wall */
     FIBRAD_REMARKS = 3
 } fibrad_remark_kind;
 
-/* A sentence on the strays of one kind in the last rows. It has their number, and of one of them the id, the place and
- * the wall. Not collective, the same on all ranks.
+/* A sentence on the strays of one kind in the last rows. The sentence has the number of the strays. It names one of
+ * them by its id, with its place and wall. Not collective, the same on all ranks.
  *   Input    kind: a fibrad_remark_kind
  *   Output   never NULL; "" if there are none
  *   Errors   none */
@@ -241,7 +245,7 @@ const char *fibrad_insitu_remark(const fibrad_insitu *insitu, int kind);
  *   Errors   none */
 void fibrad_insitu_facts_get(const fibrad_insitu *insitu, fibrad_insitu_facts *facts);
 
-/* Frees all, and the communicator. NULL is allowed.
+/* Frees the object, its rows and its communicator. NULL is allowed.
  *   Errors   none */
 void fibrad_insitu_free(fibrad_insitu *insitu);
 

@@ -16,8 +16,8 @@
  * Bits      Every result and every error is the same for any number of threads.
  * Threads   An object belongs to one thread at a time. Different objects are independent.
  * Errors    A call returns the errors of the kernel functions that it uses, and FIBRAD_E_MEMORY and FIBRAD_E_CANCELLED.
- *           With `scratch` it may also return FIBRAD_E_FILE: no file can be made in this folder. After an error the
- *           out-pointer is NULL, and there is nothing to free.
+ *           FIBRAD_E_FILE means that no file can be made in the folder `scratch`. After an error the out-pointer is
+ *           NULL, and there is nothing to free.
  * Fork      OpenMP's threads do not survive fork(). If a process has used more than one thread in this library, its
  *           forked children must call no function of this header. They would hang.
  *
@@ -55,25 +55,29 @@ typedef struct fibrad_run {
 
 /* ---- factors --------------------------------------------------------------------------------------------------- */
 
-/* Which rows of a bed are computed, and how. NULL or zeroed: all rows, reciprocal and closed.
+/* Which rows of a bed are computed, and how. NULL or zeroed: all rows, reciprocal and closed. At most one of beam,
+ * surface and cast is set.
  *
- * All rows are computed by silhouettes along lines if the beam rule has neither points nor a cutoff, `raw` is 0, and
- * the scene has neither triangles nor a known region. The number of lines is then beam->directions, where 0 stands for
- * FIBRAD_LINES_DEFAULT. Each line is followed both ways. Otherwise beams compute the rows one by one.
+ * All rows are computed together by silhouettes along lines if
+ *   - all rows are wanted, and raw is 0;
+ *   - the rule is a beam rule or NULL, with points and cutoff 0;
+ *   - the scene has neither triangles nor a known region.
+ * The number of lines is then beam->directions, where 0 stands for FIBRAD_LINES_DEFAULT. Each line is followed both
+ * ways. Beams compute the rows one by one in all other cases, also with more than FIBRAD_LINES_EVEN_MAX directions, or
+ * if about 200 spheres overlap at one place.
  *
- * At most one of beam, surface and cast is set. If the beam rule has a tolerance, there are two cases. Rows that are
- * averaged all have the same number of directions, which is that of the worst row. If `raw` is 1, each row has the
- * number of directions that it needs.
+ * A tolerance in the beam rule raises the number of lines or directions. If raw is 0, it is the same number for all
+ * rows, so that the worst row meets the tolerance. If raw is 1, each row has the number of directions that it needs.
  *
- * Rows of walls are computed if `bodies` is 1, all rows are wanted, and the rule has no cutoff. All rows are then
- * closed together. This changes the factors between spheres, by less than their errors.
+ * Rows of walls are computed if bodies is 1, all rows are wanted, and the rule has no cutoff. If raw is 0, the rows of
+ * spheres and walls are closed together. This changes the factors between spheres by less than their errors.
  *
  * Files in the scratch folder take 24 to 36 bytes per entry of the raw rows and 24 per entry of the matrix. */
 typedef struct fibrad_bed_options {
     const fibrad_beam_rule *beam;       /* NULL: the defaults, unless surface or cast is set */
     const fibrad_surface_rule *surface; /* NULL: not by the surface method */
     const fibrad_cast_rule *cast;       /* NULL: not by rays */
-    const unsigned char *wanted;        /* [spheres], not 0: this row is wanted, and raw is 1; NULL: all rows */
+    const unsigned char *wanted;        /* [spheres], not 0: this row, as if raw were 1; NULL: all rows */
     int raw;                            /* 1: leave the rows as the method gave them */
     double drop;                        /* 0 to 1, as in fibrad_matrix_rule */
     int bodies;                         /* 1: rows of walls, too */
@@ -87,9 +91,9 @@ typedef struct fibrad_bed_factors {
     const double *body_area;  /* L^2, [bodies], as fibrad_scene_body_area */
     int threads;              /* threads used */
     uint32_t directions;      /* largest number of directions of a row, or lines; 0: the method has none */
-    uint64_t fallbacks;       /* windows that the robust method for areas resolved */
+    uint64_t fallbacks;       /* windows whose areas took the robust method */
     uint64_t rays;            /* exchange: rays traced */
-    double seconds;           /* s, time of computing, without the two checks below */
+    double seconds;           /* s, without the time for closure_error and reciprocity_error */
     double closure_error;     /* largest |sum - 1| of a raw row */
     double reciprocity_error; /* as fibrad_matrix_reciprocity; NaN if rows are missing */
 } fibrad_bed_factors;
@@ -107,8 +111,7 @@ int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres 
 /* Exchange factors of a whole bed. rule->tolerance is the error allowed in the final rows.
  *   Input    config: NULL: open on all sides, no walls
  *            rule: needed
- *            options: beam, surface and cast must be NULL. NULL for all defaults
- *            run: NULL for all defaults
+ *            options, run: NULL for all defaults; options->beam, surface and cast must be NULL
  *   Output   factors: free with fibrad_bed_free
  *   Errors   as fibrad_scene_init, fibrad_exchange_row and fibrad_matrix_init; _CANCELLED
  *   Cost     as fibrad_view_factors
@@ -155,7 +158,7 @@ typedef struct fibrad_radiation fibrad_radiation;
 int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config *config, const fibrad_spheres *spheres,
                          const fibrad_heat_config *heat_config, fibrad_run *run);
 
-/* Goes on with the same spheres and walls at other positions, and traces the beams again. The next solution begins with
+/* Moves spheres and walls of a problem to other positions, and traces the beams again. The next solution begins with
  * the last one.
  *   Input    config, spheres: the same number of spheres, otherwise as for fibrad_heat_move
  *   Errors   as fibrad_radiation_new. A bed that is refused leaves the last bed in use. After an error in a trace,
@@ -176,16 +179,17 @@ int fibrad_radiation_solve(fibrad_radiation *radiation, const fibrad_heat_source
  *            _STATE: there is no solution of this bed */
 int fibrad_radiation_sides(const fibrad_radiation *radiation, double *flux, double *temperature);
 
-/* A function of the caller: emissivities that depend on temperatures. The thread that made the call runs it. Where a
- * temperature is NaN, the function leaves the emissivity as it is. A temperature is NaN if it is not known yet, if the
- * wall is insulated, or if the emissivity is 0.
+/* A function of the caller: emissivities that depend on temperatures. The thread that made the call runs this function.
+ * A temperature is NaN if it is not known yet, if the wall is insulated, or if the emissivity is 0. The function leaves
+ * such an emissivity as it is.
  *   Input    temperature[spheres], body_temperature[bodies]: [K]
  *   Output   emissivity[spheres], body_emissivity[bodies]: 0 to 1 */
 typedef void fibrad_emissivity_law(void *context, const double *temperature, const double *body_temperature,
                                    double *emissivity, double *body_emissivity);
 
 /* Net powers and temperatures with emissivities that follow a law. The call solves again until the emissivities change
- * by at most 1e-5. The law may also change the elements of sources->conductivity. They settle to 1e-4, relative.
+ * by at most 1e-5. The law may also change the elements of sources->conductivity. The call then goes on until each of
+ * these changes by at most 1e-4 of its value.
  *   Input    sources: emissivity and body_emissivity are not used
  *            context: handed to law
  *            emissivity[spheres], body_emissivity[bodies]: first values, used where temperatures are unknown
@@ -198,8 +202,8 @@ int fibrad_radiation_settle(fibrad_radiation *radiation, const fibrad_heat_sourc
 
 /* Light from outside, and what absorbs it. Set the lights and the absorptivities. */
 typedef struct fibrad_light_sources {
-    const fibrad_light *light; /* [lights] */
-    uint32_t lights;
+    const fibrad_light *light;       /* [lights] */
+    uint32_t lights;                 /* number of lights */
     const double *absorptivity;      /* [spheres], 0 to 1, of the light */
     const double *body_absorptivity; /* [bodies], 0 to 1; NULL without walls */
     double tolerance;                /* as in fibrad_heat_sources; 0: 1e-5 */
@@ -219,17 +223,20 @@ typedef struct fibrad_light_result {
     double reflected;            /* sigma K^4 L^2, out: light that leaves after reflections, on any side */
     double error;                /* sigma K^4 L^2, out: estimated error of reflected */
     uint32_t sweeps;             /* out */
-    uint32_t lights;             /* out: lights that were taken; after an error of a light, those before it */
-    const double *patches;       /* [patches], out: absorbed of fibrad_heat_sources for the thermal radiation */
+    uint32_t lights;             /* out: number of lights taken; if light k has an error, k */
+    const double *patches;       /* [patches], out: what fibrad_heat_sources.absorbed takes */
 } fibrad_light_result;
 
 /* What a bed absorbs of light from outside. All elements of `absorbed` and `body_absorbed`, `reflected` and
  * `transmitted` add up to `incident`, to rounding.
  *
- * Absorbed light heats a surface. If the temperature of the surface is to be found, add the absorbed light to its
- * power. If the temperature is given, add the absorbed light to the net power. An insulated wall gives off the absorbed
- * light as thermal radiation, and a sphere that conducts is hotter where it is lit: hand result->patches to
- * fibrad_radiation_solve as sources.absorbed. This array lasts until the next move or shine.
+ * Absorbed light heats a surface.
+ *   temperature to be found   Add the absorbed light to the power of the surface in the sources.
+ *   temperature given         Add the absorbed light to the net power in the result.
+ *   an insulated wall         It gives off the absorbed light as thermal radiation. Set sources.absorbed to
+ *                             result->patches before fibrad_radiation_solve.
+ *   a sphere that conducts    It is hotter where it is lit. Set sources.absorbed in the same way.
+ * The array result->patches lasts until the next move or shine.
  *   Output   result
  *   Errors   as fibrad_light_empty and fibrad_radiation_solve
  *            _UNSOLVABLE: nothing absorbs the light, and it cannot leave
@@ -271,7 +278,7 @@ typedef enum fibrad_transient_method {
 /* How a bed is followed in time. Zeroed: CORRECTED. */
 typedef struct fibrad_transient_config {
     int method;                    /* a fibrad_transient_method */
-    fibrad_exchange_rule exchange; /* for exchange factors; its emissivities are not used: the sources have them */
+    fibrad_exchange_rule exchange; /* for exchange factors; emissivities are those of the sources, not of this rule */
     fibrad_heat_config heat;       /* for patches, as for fibrad_radiation_new; points 0: 128 if CORRECTED */
 } fibrad_transient_config;
 
@@ -281,18 +288,19 @@ typedef struct fibrad_transient_config {
  *            config: NULL for all defaults
  *            run: as for fibrad_radiation_new
  *   Output   transient: free with fibrad_transient_free
- *   Errors   as fibrad_scene_init; also as fibrad_radiation_new, but not by FACTORS
+ *   Errors   as fibrad_scene_init; by CORRECTED and PATCHES also as fibrad_radiation_new
  *   Source   docs/methods_heat.md section 11 */
 int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres,
                          const fibrad_transient_config *config, fibrad_run *run);
 
-/* Goes on with the same spheres and walls at other positions.
+/* Moves the spheres and walls to other positions.
  *   Input    scene, spheres: as for fibrad_radiation_move
  *   Errors   as fibrad_transient_new. A bed that is refused leaves the last bed in use. After an error in a trace,
  *            later calls return FIBRAD_E_STATE until a move succeeds. */
 int fibrad_transient_move(fibrad_transient *transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres);
 
-/* Net radiative powers at given temperatures of spheres, by patches. FACTORS uses exchange factors instead.
+/* Net radiative powers at given temperatures of spheres. CORRECTED and PATCHES find them by patches, FACTORS by
+ * exchange factors.
  *   Input    sources: temperature has no NaN; power is not used
  *   Output   result: as for fibrad_radiation_solve. FACTORS writes power, body_power, surroundings_power, temperature
  *            and sweeps only.
@@ -330,16 +338,16 @@ typedef struct fibrad_span {
     fibrad_observe *observe;        /* NULL: none */
     fibrad_emissivity_law *law;     /* called in each stage, by PATCHES only; NULL: emissivities are constant */
     void *context;                  /* handed to observe and law */
-    double error;                   /* out: largest estimated error of a step, as `tolerance` */
+    double error;                   /* out: largest estimated relative error of a temperature in one step */
     uint64_t steps;                 /* out: steps taken */
     uint64_t refused;               /* out: steps tried and refused */
-    uint64_t sweeps;                /* out: sweeps over all beams by PATCHES, over all factors otherwise */
+    uint64_t sweeps;                /* out: sweeps over all beams (PATCHES) or all factors (CORRECTED, FACTORS) */
     uint64_t corrections;           /* out: solutions by patches that correct factors */
 } fibrad_span;
 
 /* Advances the temperatures of spheres by a span of time. The scheme is implicit (SDIRK), of second order and L-stable:
- * small spheres among large ones do not limit the step. What spheres lose is what walls and surroundings gain, to
- * rounding. A span begins with the automatic step that the last span has proposed.
+ * small spheres among large ones do not limit the step. The energy that spheres lose by radiation is what walls and
+ * surroundings gain, to rounding. The first automatic step of a span is as long as the last span has proposed.
  *
  *   field of sources                 use
  *   temperature, hold, reference     not used
@@ -373,13 +381,13 @@ void fibrad_transient_free(fibrad_transient *transient);
 /* A fibrad_resize on the heap, for fibrad_work work = {.memory.resize = fibrad_heap_resize}. Free the block with
  * free().
  *   Input    context: not used
- *   Errors   NULL */
+ *   Output   the block; NULL if there is no memory */
 void *fibrad_heap_resize(void *context, void *block, size_t size);
 
 /* Bytes of a public structure, for bindings that lay out structures themselves. Libraries of the same soname have the
  * same sizes and fields.
  *   Input    name: "fibrad_row" for example
- *   Errors   0: there is no such structure */
+ *   Output   0 if there is no such structure */
 size_t fibrad_host_sizeof(const char *name);
 
 #ifdef __cplusplus

@@ -246,7 +246,7 @@ void FixFibrad::read_opening(Words &words, int face) {
     openings.push_back(opening);
 }
 
-// C, of a wall whose temperature is t
+// C, the heat capacity of a wall that begins with the temperature t
 double FixFibrad::read_capacity(Words &words, const Temperature &t) {
     if (!t.variable.empty())
         error->all(FLERR, "fix fibrad: a wall with a capacity has a temperature of its own, not v_" + t.variable);
@@ -300,7 +300,7 @@ void FixFibrad::read_mesh(Words &words) {
     if (comm->me == 0) describe_meshes(first, bodies, path);
 }
 
-// Prints warnings about a file, and the indices of its walls in the output. For rank 0, which alone has the names.
+// Prints warnings about a file, and the indices of its walls in the output. Only rank 0 has the names of the walls.
 void FixFibrad::describe_meshes(uint32_t first, uint32_t bodies, const std::string &path) {
     if (meshes.messages[0]) error->warning(FLERR, std::string("fix fibrad: ") + meshes.messages);
     for (uint32_t k = first; k < first + bodies; k++)
@@ -346,7 +346,7 @@ FixFibrad::Property FixFibrad::read_property(Words &words, const char *what, dou
     return property;
 }
 
-// number | table FILE; of a table one of its values
+// number | table FILE; returns the number, or the first value of the table
 double FixFibrad::read_value(Words &words, const char *what, double low, double high, Table *table) {
     if (!words.take("table")) return words.number();
     *table = read_table(words.next(), what, low, high);
@@ -355,7 +355,7 @@ double FixFibrad::read_value(Words &words, const char *what, double low, double 
 
 static void keep_line(void *context, const char *line) { *(std::string *)context = line; }
 
-// Rank 0 reads the file.
+// Rank 0 reads the file and sends the table to the other ranks.
 FixFibrad::Table FixFibrad::read_table(const std::string &path, const char *what, double low, double high) {
     curve read = {};
     std::string message;
@@ -463,7 +463,8 @@ void FixFibrad::say(const std::string &sentence) {
 
 // ---- in a run -----------------------------------------------------------------------------------------------------
 
-// For temperatures of LAMMPS: fix heat/flow clears heatflow before the forces and steps temperatures after them.
+// Adds the powers to heatflow if fix heat/flow steps temperatures. This fix clears heatflow before the forces, and
+// steps temperatures after them.
 void FixFibrad::post_force(int) {
     if (!heat_every || temperature != "temperature") return;
     double *heatflow = vector("heatflow");
@@ -471,7 +472,8 @@ void FixFibrad::post_force(int) {
         if (atom->mask[i] & groupbit) heatflow[i] += q[i];
 }
 
-// In a rerun, each frame is set up and then ends its step at once: powers are there, and no time passes.
+// A step of rows, of heat, or of both. In a rerun each frame calls setup and then this function for the same step. Its
+// powers are there by then, and no time passes.
 void FixFibrad::end_of_step() {
     if (update->ntimestep == set_up) return;
     if (update->ntimestep % rows_every == 0) make_rows();
@@ -502,7 +504,7 @@ void FixFibrad::select() {
         }
 }
 
-// follow: only particles that have come since the last rows get new ones.
+// Makes the rows of all particles. follow: makes only the rows of particles that have come since the last rows.
 void FixFibrad::make_rows(bool follow) {
     select();
     std::vector<double> x, radius;
@@ -564,8 +566,8 @@ void FixFibrad::tell_strays() {
     }
 }
 
-// Two fixes that radiate from one particle would bring it twice the radiation. Particles outside the group are not
-// seen.
+// If two fixes had a particle in common, it would exchange heat twice. Such fixes are an error. Also prints the number
+// of particles that take no part.
 void FixFibrad::refuse_second() {
     bigint outside = 0;
     for (int i = 0; i < atom->nlocal; i++) outside += !takes_part(i);
@@ -638,14 +640,14 @@ std::vector<double> FixFibrad::wall_temperatures() const {
     return t;
 }
 
-// Gives walls the heat that the present powers bring in so many steps.
+// Gives walls the heat that the present powers bring in some steps of the simulation.
 void FixFibrad::heat_walls(bigint steps) {
     std::vector<double> t = wall_temperatures();
     wall_heat.step(totals.body, update->dt * (double)steps, &t);
     for (size_t k = 0; k < t.size(); k++) wall_kelvins[k].value = t[k];
 }
 
-// LAMMPS heats particles by the present powers until there are new ones. So are walls.
+// Heats walls as fix heat/flow heats particles: by the present powers, in all steps since the last call.
 void FixFibrad::follow_heatflow() {
     if (temperature != "temperature") return;
     heat_walls(update->ntimestep - powers_at);
@@ -703,21 +705,21 @@ void FixFibrad::check_step(const std::vector<double> &t) {
     judge_step(name, worst.ratio, warned);
 }
 
-// Ends the run if steps of heat are longer than stable ones. Warns once if they are longer than half of that.
-void FixFibrad::judge_step(const std::string &name, double ratio, bool &told_of) {
-    if (ratio < 0.5 || (ratio < 1 && told_of)) return;
+// Ends the run if steps of heat are longer than the longest stable step. Warns once if they are longer than its half.
+void FixFibrad::judge_step(const std::string &name, double ratio, bool &already_warned) {
+    if (ratio < 0.5 || (ratio < 1 && already_warned)) return;
     const int most = (int)(heat_every / ratio * (1 - 1e-9));
     if (ratio >= 1)
         error->all(FLERR, "fix fibrad: steps of heat are too long for " + name +
                               (most ? ": NEVERY must be at most " + std::to_string(most)
                                     : "; the time step itself is too long"));
-    told_of = true;
+    already_warned = true;
     if (comm->me == 0)
         error->warning(FLERR, "fix fibrad: steps of heat are long for " + name +
                                   text(": %.2g times the longest stable step", ratio));
 }
 
-// The same for walls that store heat, with what they exchange with particles.
+// Checks that steps of heat are stable for walls that store heat and exchange it with particles.
 void FixFibrad::check_walls() {
     size_t wall = 0;
     const double ratio = wall_heat.ratio(wall_temperatures(), update->dt * heat_every, &wall);
@@ -794,7 +796,7 @@ void FixFibrad::grow_arrays(int nmax) {
 
 void FixFibrad::copy_arrays(int i, int j, int) { q[j] = q[i]; }
 
-// Sets the values of a new atom. Its place in the vectors may have been that of another atom.
+// Sets the values of a new atom. The elements of its index may have values of an atom that is gone.
 void FixFibrad::set_arrays(int i) {
     q[i] = 0;
     if (!takes_part(i)) return;

@@ -56,7 +56,7 @@ class FixFibrad : public Fix {
         curve points() const { return {(double *)kelvin.data(), (double *)value.data(), value.size()}; }
     };
 
-    // A value for each atom: a number for all, a number or table for each type, or a vector of fix property/atom.
+    // A value for each atom. A number or a table serves all atoms or one type, or a vector has a number for each atom.
     struct Property {
         std::vector<double> of_type; // [ntypes + 1], by type; empty: not given, or of_atom is set
         std::vector<Table> table;    // [ntypes + 1], by type; empty: there are no tables
@@ -64,7 +64,7 @@ class FixFibrad : public Fix {
         bool given() const { return !of_type.empty() || !of_atom.empty(); }
     };
 
-    // A temperature [K]: a number, or an equal-style variable of the script, read at each new power.
+    // A temperature [K]: a number, or an equal-style variable of the script, evaluated at each step of heat.
     struct Temperature {
         double value;         // at present
         std::string variable; // name without v_; empty: none
@@ -86,11 +86,11 @@ class FixFibrad : public Fix {
     void read_accuracy(Words &);
 
     // Vectors of atoms, of LAMMPS or of fix property/atom.
-    double *vector(const std::string &name);      // NULL: there is none, or this rank has no atoms
+    double *vector(const std::string &name);      // NULL: there is no such vector, or this rank has no atoms
     bool known(const std::string &name);          // whether any rank has the vector
     void need(const std::string &name);           // stops with an error if a rank with atoms lacks the vector
     std::vector<double> values(const Property &); // [member]
-    std::vector<double> temperatures();           // [member], of new atoms the initial one
+    std::vector<double> temperatures();           // [member]; sets those of 0 K to `initial` first
     std::vector<double> conductivities();         // [member], relative; empty: infinite
     double mass(int i) const;
     std::vector<double> wall_temperatures() const; // [walls]
@@ -105,18 +105,18 @@ class FixFibrad : public Fix {
     void follow_heatflow();
     void check_step(const std::vector<double> &temperature); // refuses steps of heat that are not stable
     void check_walls();
-    void judge_step(const std::string &name, double ratio, bool &told_of);
+    void judge_step(const std::string &name, double ratio, bool &already_warned);
     void check(int status);        // stops with the message of an error
     void say(const std::string &); // a line in the log
     void tell_strays();            // says once of each kind what was done with strays
     void refuse_second();          // stops if another fix radiates from a particle of this one
 
     // Arguments of the fix.
-    int heat_every, rows_every;     // steps from powers to powers, and from rows to rows; heat_every 0: no powers
+    int heat_every, rows_every;     // NEVERY and NROWS; heat_every 0: no steps of heat
     Property emissivity, cp, solid; // solid: conductivity of the solid, energy/(time length K); not given: infinite
     std::string temperature;        // name of the vector of temperatures
-    std::string rows_file;          // files to write rows to; empty: none
-    int kept_bit;                   // of group2, whose temperatures this fix does not step; 0: none
+    std::string rows_file;          // first part of the names of the files of rows; empty: none
+    int kept_bit;                   // bit of group2, whose temperatures this fix does not step; 0: none
     Temperature surroundings;
     bool sampling;  // directions, paths or tolerance are given
     bool accuracy;  // accuracy is given
@@ -139,10 +139,10 @@ class FixFibrad : public Fix {
     std::vector<uint64_t> tags;  // [member], their ids
     bool warned, wall_warned;    // whether the warnings about steps of particles and of walls were given
     bool cut_warned;             // whether the warning about the cutoff was given
-    bool told[FIBRAD_REMARKS];   // whether strays of each kind were told of
+    bool told[FIBRAD_REMARKS];   // whether the warning about strays of each kind was given
     bigint set_up;               // step of the last setup
     bigint powers_at;            // step of the last powers
-    bool weighed;                // whether wall_heat knows the present rows
+    bool weighed;                // whether wall_heat has the factors of the present rows
 
     // Since the beginning of the run.
     double begun;               // s, time when the run began
