@@ -262,7 +262,7 @@ typedef struct fibrad_body {
  *   no         yes           not looked at                                  `beyond`
  *
  * In this table triangles are walls. If the occupancy is periodic and the way is longer than 100 of its periods, the
- * radiation counts as `beyond`.
+ * radiation counts as `beyond`. If there is neither a cutoff nor a known region, `beyond` is 0.
  *
  * A scene may have spheres outside its known region. View factors count these spheres, if they are within the cutoff.
  * Paths after a reflection do not meet these spheres. */
@@ -460,9 +460,9 @@ typedef struct fibrad_beam_rule {
  * There is one beam for each direction of the rule. Sphere j is visible in a fraction of each window. The factor to
  * sphere j is the mean of this fraction over all windows.
  *   exact areas  The fraction is a visible area over the area of the window. The error of the entries falls as
- *                directions^-1.5. The error of factors to walls falls a little more slowly. A factor to a plane or to
- *                the cylinder is exact if nothing hides the wall from sphere i, sphere i cuts no wall, and there is
- *                neither a cutoff nor a known region.
+ *                directions^-1.5. The error of factors to walls falls a little more slowly. The factors to planes and
+ *                to the cylinder are exact if sphere i sees no other sphere and cuts no wall, and if there is neither
+ *                a cutoff nor a known region.
  *   points       Each point of the window is one ray. The fraction is the number of points that meet sphere j, divided
  *                by the number of all points.
  *

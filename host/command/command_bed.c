@@ -45,7 +45,7 @@ static const struct option bed_table[] = {
      TO_FUNCTION(take_targets, struct bed_request, targets)},
     {0, "raw", NULL, "leave the rows as they were computed [averaged and closed: A_i F_ij = A_j F_ji]",
      TO_FLAG(struct bed_request, raw)},
-    {0, "drop", "D", "drop entries below D and enlarge the others, so that rows stay closed and reciprocal [0]",
+    {0, "drop", "D", "drop pairs of entries if both are below D, and enlarge the others; rows stay closed [0]",
      TO_NUMBER(struct bed_request, options.drop, 0, 1)},
     OPTIONS_WALL,
     OPTIONS_INPUT,

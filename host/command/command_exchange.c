@@ -42,7 +42,7 @@ static const struct option exchange_table[] = {
     {OPTION_WALL_EMISSIVITY(struct exchange_request, wall_emissivity)},
     {0, "raw", NULL, "leave the rows as they were computed [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]",
      TO_FLAG(struct exchange_request, raw)},
-    {0, "drop", "D", "drop entries below D and enlarge the others, so that rows stay closed and reciprocal [0]",
+    {0, "drop", "D", "drop pairs of entries if both are below D, and enlarge the others; rows stay closed [0]",
      TO_NUMBER(struct exchange_request, options.drop, 0, 1)},
     {0, "seed", "S", "seed of paths and directions [0]", TO_WHOLE(struct exchange_request, rule.seed, 0, INFINITY)},
     OPTIONS_INPUT,

@@ -320,7 +320,8 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
     raw : bool
         True: rows as they were computed. False: averaged, so that ``A_i F_ij = A_j F_ji``, and closed.
     drop : float
-        Entries below this, 0 to 1, are dropped. The other entries of the row are enlarged, so that the sum stays.
+        0 to 1. Pairs of entries are dropped if both are below this. The other entries are enlarged, so that the sums
+        of the rows stay.
     ids : (n,) array of whole numbers, optional
         Names of the spheres, from 0. Messages use them. They seed random paths and decide ties.
     threads : int, optional
