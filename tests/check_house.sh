@@ -2,9 +2,10 @@
 # check_house.sh - the order of the house. SPDX-License-Identifier: MIT
 #
 # Files have no circle of includes. A folder has at most sixteen sources. No two sources, and no two static functions of
-# kernel and host, share a name. The banned words below do not occur. Prose of README.md and docs is within 120 columns,
-# and its links lead to files and headings that exist. Each line of tests/mutants.txt stands once in its file. A
-# source names its licence in one line, where tools look for it. tests/check_map.sh checks which folder includes which.
+# kernel and host, share a name. The banned words below do not occur. Prose of README.md, CHANGELOG.md and docs is within
+# 120 columns, and its links lead to files and headings that exist. Each line of tests/mutants.txt stands once in its
+# file. A source names its licence in one line, where tools look for it. tests/check_map.sh checks which folder includes
+# which.
 set -u
 
 # banned: the field has other words for these, or a plain verb says more; the changelog may have old names
@@ -28,7 +29,8 @@ faults=$(
 
     grep -rnwiE --include='*.[ch]' --include='*.md' "$words" kernel host tests bench docs README.md
     awk '/^```/ { code = !code } FNR == 1 { code = 0 }
-        !code && !/^\|/ && length($0) > 120 { print FILENAME ":" FNR ": " length($0) " columns" }' README.md docs/*.md
+        !code && !/^\|/ && length($0) > 120 { print FILENAME ":" FNR ": " length($0) " columns" }' \
+        README.md CHANGELOG.md docs/*.md
     grep -rn --include='*.[ch]' 'SPDX-License-Identifier:$' kernel host tests bench | sed 's/$/ the licence is a line below/'
     grep -v '^#' tests/mutants.txt | while IFS='|' read -r file old new; do
         old=${old# } old=${old% }
