@@ -118,7 +118,7 @@ typedef struct fibrad_insitu_config {
 typedef struct fibrad_insitu_bed {
     double low[3], high[3];                   /* L, the box, used along periodic axes only */
     int periodic[3];                          /* 1: the bed repeats along the axis with the period high - low */
-    const fibrad_body *body;                  /* [bodies], walls; every centre lies inside planes and cylinder */
+    const fibrad_body *body;                  /* [bodies], walls; a particle beyond one is a stray, see above */
     const double *body_emissivity;            /* [bodies], 0 to 1 */
     uint32_t bodies;                          /* number of walls, 0 to FIBRAD_BODIES_MAX */
     const fibrad_plane *opening;              /* [openings]; `at` NaN: where the particles end */
@@ -166,7 +166,7 @@ typedef struct fibrad_insitu_facts {
     double seconds_rows;         /* s, of the slowest rank, in all calls of fibrad_insitu_rows and _follow so far */
     double seconds_powers;       /* s, of the slowest rank, in all calls of fibrad_insitu_powers so far */
     uint64_t step;               /* of the rows */
-    size_t halo;                 /* particles of other ranks that this rank was sent */
+    size_t halo;                 /* particles of other ranks, and periodic images, that this rank was sent */
     size_t bytes;                /* bytes, memory of this rank */
 } fibrad_insitu_facts;
 
@@ -194,9 +194,9 @@ int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint
 
 /* Makes rows of those particles alone that have come since the last rows, and keeps the other rows. The row of a new
  * particle gives both sides of its exchange with an old one. The factors to particles that have gone are shared by the
- * other entries of each row. If more than a tenth of all particles have come or gone since fibrad_insitu_rows made all
- * rows, the function makes all rows.
- *   Input    as fibrad_insitu_rows; the number of walls must be that of the last rows
+ * other entries of each row. The function makes all rows if there are none, if the number of walls has changed, or if
+ * more than a tenth of all particles have come or gone since all rows were made.
+ *   Input    as fibrad_insitu_rows
  *   Errors   as fibrad_insitu_rows
  *   Cost     about 2 microseconds for each particle and 10 ns for each entry, and the new rows */
 int fibrad_insitu_follow(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);

@@ -63,8 +63,8 @@ typedef struct fibrad_run {
  *   - the rule is a beam rule or NULL, with points and cutoff 0;
  *   - the scene has neither triangles nor a known region.
  * The number of lines is then beam->directions, where 0 stands for FIBRAD_LINES_DEFAULT. Each line is followed both
- * ways. Beams compute the rows one by one in all other cases, also with more than FIBRAD_LINES_EVEN_MAX directions, or
- * if about 200 spheres overlap at one place.
+ * ways. In all other cases rows are computed one by one. This is also done with more than FIBRAD_LINES_EVEN_MAX
+ * directions, or if about 200 spheres overlap at one place.
  *
  * A tolerance in the beam rule raises the number of lines or directions. If raw is 0, it is the same number for all
  * rows, so that the worst row meets the tolerance. If raw is 1, each row has the number of directions that it needs.
@@ -230,18 +230,13 @@ typedef struct fibrad_light_result {
 /* What a bed absorbs of light from outside. All elements of `absorbed` and `body_absorbed`, `reflected` and
  * `transmitted` add up to `incident`, to rounding.
  *
- * Absorbed light heats a surface.
- *   temperature to be found   Add the absorbed light to the power of the surface in the sources.
- *   temperature given         Add the absorbed light to the net power in the result.
- *   an insulated wall         It gives off the absorbed light as thermal radiation. Set sources.absorbed to
- *                             result->patches before fibrad_radiation_solve.
- *   a sphere that conducts    It is hotter where it is lit. Set sources.absorbed in the same way.
- * The array result->patches lasts until the next move or shine.
- *   Output   result
- *   Errors   as fibrad_light_empty and fibrad_radiation_solve
- *            _UNSOLVABLE: nothing absorbs the light, and it cannot leave
- *   Cost     that of a solution
- *   Source   docs/methods_heat.md, Light from outside */
+ * Absorbed light heats a surface. If the temperature of the surface is given, add the absorbed light to the net power
+ * in the result of fibrad_radiation_solve. If the temperature is to be found, add it to the power in the sources.
+ * Insulated walls have no power in the sources. They give off the absorbed light if sources.absorbed is
+ * result->patches. Spheres that conduct need this array as well, to be hotter where they are lit. The array lasts until
+ * the next move or shine. Output   result Errors   as fibrad_light_empty and fibrad_radiation_solve _UNSOLVABLE:
+ * nothing absorbs the light, and it cannot leave Cost     that of a solution Source   docs/methods_heat.md, Light from
+ * outside */
 int fibrad_radiation_shine(fibrad_radiation *radiation, const fibrad_light_sources *sources,
                            fibrad_light_result *result);
 
