@@ -463,7 +463,7 @@ void FixFibrad::say(const std::string &sentence) {
 
 // ---- in a run -----------------------------------------------------------------------------------------------------
 
-// Adds the powers to heatflow if fix heat/flow steps temperatures. This fix clears heatflow before the forces, and
+// Adds the powers to heatflow if fix heat/flow steps temperatures. fix heat/flow clears heatflow before the forces, and
 // steps temperatures after them.
 void FixFibrad::post_force(int) {
     if (!heat_every || temperature != "temperature") return;
