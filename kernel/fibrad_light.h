@@ -5,12 +5,13 @@
  * Other spheres and walls may hide parts of this disc. The sphere takes the light on the open part. The areas of open
  * parts are exact.
  *
- * Sequence   1. fibrad_light_empty tells how much light would end on each wall if there were no spheres. It also tells
- *               how much light would leave the bed.
+ * Sequence   1. fibrad_light_empty tells how much light would end on each wall if there were neither spheres nor
+ *               triangles. It also tells how much light would leave the bed.
  *            2. fibrad_light_spheres tells how much light each sphere of a range takes. It also tells how much of that
- *               light would have ended on each wall, or left the bed, without these spheres: `kept`.
+ *               light would have ended on each wall, or left the bed, without spheres and triangles: `kept`.
  *            The light that ends on wall b is ends.body[b] of step 1 minus the sum of kept.body[b] over all ranges. The
- *            light that leaves the bed is ends.through minus the sum of kept.through.
+ *            light that leaves the bed is ends.through minus the sum of kept.through. Of both numbers
+ *            fibrad_heat_shine_walls tells what triangles take.
  *            fibrad_heat_shine does step 2 for a heat problem, and puts the light on patches.
  * Units      as in fibrad.h. A power is in units of flux times L^2. With a flux of 1 it is an area.
  * Words      Memory, errors and the layout of comments are as in fibrad.h.
@@ -40,7 +41,8 @@ typedef enum fibrad_light_shape {
  * Light with a half-angle has directions that fill a cone evenly. Each direction carries an equal part of the flux. The
  * sun's half-angle is FIBRAD_SUN_HALF_ANGLE.
  *
- * The box of the spheres is the box of their centres, wider by the largest radius on all sides. On periodic axes a disc
+ * The box of the spheres is the box of their centres, wider by the largest radius on all sides. It is wider still where
+ * triangles lie outside. On periodic axes a disc
  * or rectangle is repeated, and must not be wider than a period. The light of a disc must not meet a sphere before it
  * passes the disc. */
 typedef struct fibrad_light {
@@ -61,14 +63,14 @@ typedef struct fibrad_light_ends {
     double body[FIBRAD_BODIES_MAX]; /* on each wall */
 } fibrad_light_ends;
 
-/* Where light ends if there are no spheres.
+/* Where light ends if there are neither spheres nor triangles.
  *   Output   ends: spheres is 0, the others add up to the power of the light
  *            fault: which sphere is at fault, and why; may be NULL
  *   Errors   _ARGUMENT: fault.why tells the cause
  *              FIBRAD_WHY_LIGHT: a number is out of range
  *              FIBRAD_WHY_DARK: no open face lets the light in
  *              FIBRAD_WHY_FOOTPRINT: the light meets a sphere before the disc
- *            _UNSUPPORTED: triangles or a known region
+ *            _UNSUPPORTED: a known region
  *            _WORK, _MEMORY
  *   Cost     as a row of ten directions */
 int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibrad_light *light, fibrad_light_ends *ends,
@@ -79,7 +81,7 @@ int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibra
  *   Input    from, to: spheres from to to - 1, up to the number of spheres
  *   Output   power[to - from]: the light that falls on each sphere, absorbed or not
  *            kept: `spheres` is the sum of `power`. `body` and `through` tell where this light would have ended without
- *            these spheres. They add up to `spheres`.
+ *            spheres and triangles. They add up to `spheres`.
  *   Errors   as fibrad_light_empty
  *   Cost     2 microseconds for each sphere and direction */
 int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fibrad_light *light, uint32_t from,
@@ -114,12 +116,14 @@ uint32_t fibrad_heat_shine_tasks(const fibrad_heat *heat);
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,
                       double *hits, fibrad_light_ends *kept);
 
-/* The light that comes straight from outside, on the patches of walls. Rays tell which patches of a wall are lit.
+/* The light that comes straight from outside, on the patches of walls. Rays tell which patches of a wall are lit,
+ * and which part of the light ends on triangles.
  *   Input    ends: of fibrad_light_empty, less `kept` of all tasks
  *   Output   hits[fibrad_heat_patches]: the light is added to it
- *   Errors   as fibrad_heat_shine */
+ *            ends: triangles have taken their part from other walls and from `through`
+ *   Errors   as fibrad_heat_shine; _BACK: work->triangle is written */
 int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light,
-                            const fibrad_light_ends *ends, double *hits);
+                            fibrad_light_ends *ends, double *hits);
 
 /* Sums the light on the patches of each sphere and wall.
  *   Input    hits[fibrad_heat_patches]

@@ -1,7 +1,8 @@
 /* plain_light.h - light in a bed by plain rays, which share nothing with the kernel. SPDX-License-Identifier: MIT
  *
- * A ray goes from cell to cell of a grid. Each cell lists the spheres that reach into it. The ray ends on the nearest
- * sphere, on a wall, or outside. Diffuse reflections follow the cosine law. */
+ * A ray goes from cell to cell of a grid. Each cell lists the spheres that reach into it. Triangles are tried one by
+ * one. The ray ends on the nearest sphere or triangle, on a wall, or outside. Diffuse reflections follow the cosine
+ * law. */
 #ifndef TESTS_PLAIN_LIGHT_H
 #define TESTS_PLAIN_LIGHT_H
 
@@ -10,6 +11,7 @@
 #include <stdlib.h>
 
 #include "bed/bed.h"
+#include "fibrad_mesh.h"
 
 enum { PLAIN_SIDES = 6, PLAIN_CYLINDER = 6, PLAIN_OUTSIDE = 7, PLAIN_ENDS = 8 };
 
@@ -22,11 +24,12 @@ struct plain_bed {
     int cells[3];
     double from[3], size[3];
     uint32_t *first, *sphere;
+    const struct fibrad_triangles *triangles; /* NULL: there are none */
 };
 
-/* Where a ray ends: on a sphere if sphere >= 0, otherwise at one of PLAIN_ENDS. */
+/* Where a ray ends: on a sphere if sphere >= 0, on a triangle if triangle >= 0, otherwise at one of PLAIN_ENDS. */
 struct plain_end {
-    int64_t sphere;
+    int64_t sphere, triangle;
     int side;
     double at[3], normal[3];
 };
@@ -153,8 +156,50 @@ static inline bool plain_enter(const struct plain_bed *p, double at[3], const do
     return true;
 }
 
+static inline void plain_cross(const double a[3], const double b[3], double c[3]) {
+    for (int k = 0; k < 3; k++) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+static inline double plain_product(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The first corner of a triangle, and its edges to the other two. */
+static inline void plain_edges(const struct fibrad_triangles *t, uint32_t k, double origin[3], double a[3],
+                               double b[3]) {
+    const double *place[3] = {t->x, t->y, t->z};
+    const uint32_t *corner = t->corner + 3 * (size_t)k;
+    for (int axis = 0; axis < 3; axis++) {
+        origin[axis] = place[axis][corner[0] * t->stride];
+        a[axis] = place[axis][corner[1] * t->stride] - origin[axis];
+        b[axis] = place[axis][corner[2] * t->stride] - origin[axis];
+    }
+}
+
+/* The length of a ray to a triangle, or infinity: Cramer's rule for the length and two coordinates on the triangle. */
+static inline double plain_triangle(const struct fibrad_triangles *t, uint32_t k, const double at[3],
+                                    const double w[3]) {
+    double origin[3], a[3], b[3], from[3], wb[3], fa[3];
+    plain_edges(t, k, origin, a, b);
+    for (int axis = 0; axis < 3; axis++) from[axis] = at[axis] - origin[axis];
+    plain_cross(w, b, wb), plain_cross(from, a, fa);
+    const double all = plain_product(a, wb), u = plain_product(from, wb) / all, v = plain_product(w, fa) / all;
+    const double length = plain_product(b, fa) / all;
+    return u >= 0 && v >= 0 && u + v <= 1 && length > 1e-9 ? length : INFINITY;
+}
+
+/* Where a ray meets a triangle, and the normal of the side that it meets. */
+static inline void plain_on_triangle(const struct fibrad_triangles *t, uint32_t k, const double at[3],
+                                     const double w[3], double length, struct plain_end *end) {
+    double origin[3], a[3], b[3];
+    plain_edges(t, k, origin, a, b);
+    plain_cross(a, b, end->normal);
+    const double size = sqrt(plain_product(end->normal, end->normal)) * (plain_product(end->normal, w) > 0 ? -1 : 1);
+    for (int c = 0; c < 3; c++) end->normal[c] /= size, end->at[c] = at[c] + length * w[c];
+}
+
 static inline struct plain_end plain_trace(const struct plain_bed *p, const double at[3], const double w[3]) {
-    struct plain_end end = {.sphere = -1};
+    struct plain_end end = {.sphere = -1, .triangle = -1};
     double step[3], next[3], t = 0, nearest = INFINITY, enter = 0, leave;
     int cell[3];
     const double wall = plain_leave(p, at, w, &end.side);
@@ -189,7 +234,12 @@ static inline struct plain_end plain_trace(const struct plain_bed *p, const doub
         if (next[2] < next[a]) a = 2;
         t = next[a], next[a] += step[a], cell[a] += w[a] > 0 ? 1 : -1;
     }
-    if (end.sphere >= 0) return end;
+    for (uint32_t k = 0; p->triangles && k < p->triangles->n; k++) {
+        const double length = plain_triangle(p->triangles, k, at, w);
+        if (length < nearest && length < wall) nearest = length, end.sphere = -1, end.triangle = k;
+    }
+    if (end.triangle >= 0) plain_on_triangle(p->triangles, (uint32_t)end.triangle, at, w, nearest, &end);
+    if (end.sphere >= 0 || end.triangle >= 0) return end;
     for (int a = 0; a < 3; a++) {
         end.at[a] = at[a] + wall * w[a];
         end.normal[a] = end.side == 2 * a ? 1 : end.side == 2 * a + 1 ? -1 : 0;

@@ -2,6 +2,7 @@
 #include "host_owned.h"
 #include "plain_light.h"
 #include "scenes.h"
+#include "meshes.h"
 #include "suite.h"
 
 /* The bed of a dump with the columns id type x y z radius, periodic along x and y. */
@@ -22,9 +23,31 @@ static struct bed read_settled(const char *file) {
 
 /* What is absorbed, in all arrays that a result may have. */
 struct absorbed {
-    double *sphere, *first, *error, wall[6], wall_first[6], wall_error[6];
+    double *sphere, *first, *error, wall[6], wall_first[6], wall_error[6], wall_eps[6];
     fibrad_light_result result;
 };
+
+/* Checks that the fluxes of triangles that are at 0 K add up to the light that their wall absorbs. */
+static void check_sides(fibrad_radiation *radiation, const fibrad_scene_config *config, const double *eps,
+                        const struct absorbed *a) {
+    const struct fibrad_triangles *t = config->triangles;
+    double flux[2 * 12], cold[100] = {0}, power[100], body_power[6], sum = 0, all = 0;
+    fibrad_heat_sources sources;
+    fibrad_heat_result result = {.power = power, .body_power = body_power};
+    fibrad_heat_sources_init(&sources);
+    sources.temperature = cold, sources.body_temperature = cold, sources.surroundings = 0;
+    sources.emissivity = eps, sources.body_emissivity = a->wall_eps, sources.absorbed = a->result.patches;
+    ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &result), 0);
+    ck_assert_int_eq(fibrad_radiation_sides(radiation, flux, NULL), 0);
+    for (uint32_t k = 0; k < t->n; k++) {
+        double origin[3], u[3], v[3], n[3];
+        plain_edges(t, k, origin, u, v), plain_cross(u, v, n);
+        for (uint32_t s = 0; s < 2; s++)
+            sum += isnan(flux[2 * k + s]) ? 0 : .5 * sqrt(plain_product(n, n)) * flux[2 * k + s];
+    }
+    for (uint32_t b = 0; b < config->bodies; b++) all += a->wall[b];
+    ck_assert_double_eq_tol(sum, all, 1e-12 * a->result.incident);
+}
 
 static struct absorbed absorb_light(const struct bed *bed, const fibrad_scene_config *config, const fibrad_light *light,
                                     double absorptivity, double of_walls) {
@@ -34,19 +57,21 @@ static struct absorbed absorb_light(const struct bed *bed, const fibrad_scene_co
                          {0},
                          {0},
                          {0},
+                         {0},
                          {0}};
-    double *eps = malloc(bed->n * sizeof *eps), wall_eps[6];
+    double *eps = malloc(bed->n * sizeof *eps);
     OWNED_RADIATION *radiation = NULL;
     const fibrad_spheres spheres = {.x = bed->x, .y = bed->y, .z = bed->z, .r = bed->r, .n = bed->n};
     const fibrad_light_sources sources = {
-        .light = light, .lights = 1, .absorptivity = eps, .body_absorptivity = wall_eps};
+        .light = light, .lights = 1, .absorptivity = eps, .body_absorptivity = a.wall_eps};
     for (uint32_t i = 0; i < bed->n; i++) eps[i] = absorptivity;
-    for (int b = 0; b < 6; b++) wall_eps[b] = of_walls;
+    for (int b = 0; b < 6; b++) a.wall_eps[b] = of_walls;
     a.result = (fibrad_light_result){.absorbed = a.sphere, .absorbed_first = a.first, .absorbed_error = a.error};
     a.result.body_absorbed = a.wall, a.result.body_absorbed_first = a.wall_first,
     a.result.body_absorbed_error = a.wall_error;
     ck_assert_int_eq(fibrad_radiation_new(&radiation, config, &spheres, NULL, NULL), 0);
     ck_assert_int_eq(fibrad_radiation_shine(radiation, &sources, &a.result), 0);
+    if (config->triangles) check_sides(radiation, config, eps, &a);
     free(eps);
     double sum = a.result.transmitted + a.result.reflected;
     for (uint32_t i = 0; i < bed->n; i++) sum += a.sphere[i];
@@ -134,6 +159,119 @@ TEST(a_floor_alone_absorbs_what_it_absorbs) {
         ck_assert_double_eq_tol(a.result.transmitted, 0, 1e-12);
         free_absorbed(&a);
     }
+}
+
+/* What spheres and walls of triangles absorb of the light through the square rim of a cup, by plain rays. */
+static void absorb_in_cup(const struct plain_bed *p, const double d[3], double wide, int rays, double sum[2]) {
+    double spheres = 0, walls = 0;
+#pragma omp parallel for schedule(static) reduction(+ : spheres, walls)
+    for (int k = 0; k < rays; k++)
+        for (int m = 0; m < rays; m++) {
+            uint64_t state = (uint64_t)k * 1000003u + (uint64_t)m;
+            double at[3] = {wide * (k + plain_random(&state)) / rays, wide * (m + plain_random(&state)) / rays, wide};
+            double w[3] = {d[0], d[1], d[2]}, weight = wide * wide * -d[2] / rays / rays;
+            for (int hits = 0; hits < 40; hits++) {
+                const struct plain_end end = plain_trace(p, at, w);
+                if (end.sphere < 0 && end.triangle < 0) break;
+                spheres += end.sphere >= 0 ? .5 * weight : 0, walls += end.sphere < 0 ? .3 * weight : 0;
+                weight *= end.sphere >= 0 ? .5 : .7;
+                for (int a = 0; a < 3; a++) at[a] = end.at[a];
+                plain_scatter(end.normal, &state, w);
+            }
+        }
+    sum[0] = spheres, sum[1] = walls;
+}
+
+/* A cup of triangles about a bed absorbs as one of planes does. The outer sides of the triangles are a wall of its own.
+ * They take the light that does not come through the rim. */
+TEST(a_cup_of_triangles_absorbs_as_one_of_planes) {
+    OWNED_BED bed = packing(60, .2, .3, .4, 11, true);
+    const double side = bed.period[0];
+    bed.period[0] = bed.period[1] = bed.period[2] = 0;
+    for (uint32_t i = 0; i < bed.n; i++) { /* all spheres lie within the cup */
+        double *place[3] = {bed.x, bed.y, bed.z};
+        for (int a = 0; a < 3; a++) place[a][i] = .35 + place[a][i];
+    }
+    const double wide = side + .7;
+    fibrad_body body[5];
+    for (int k = 0; k < 5; k++) body[k] = plane_at(k / 2, k % 2, k % 2 ? wide : 0);
+    OWNED struct mesh *mesh = mesh_new();
+    mesh_box(mesh, (const double[]){0, 0, 0}, (const double[]){wide, wide, wide}, 0);
+    mesh->triangles.n -= 2; /* without its lid */
+    for (uint32_t t = 0; t < mesh->triangles.n; t++) mesh->front[t] = 0, mesh->back[t] = 1;
+    const fibrad_plane top = {2, 1, wide};
+    const fibrad_scene_config planes = {.body = body, .bodies = 5, .opening = &top, .openings = 1};
+    const fibrad_scene_config triangles = {
+        .body = mesh->body, .bodies = 2, .triangles = &mesh->triangles, .opening = &top, .openings = 1};
+    struct plain_bed plain = plain_bed_of(&bed);
+    plain.triangles = &mesh->triangles, plain.high[2] = wide, plain.open[5] = true;
+    for (int k = 0; k < 4; k++) {
+        const fibrad_light light = {
+            .direction = {k % 2 ? .3 : 0, k % 2 ? .2 : 0, -1}, .flux = 1, .half_angle = .1 * (k / 2), .directions = 16};
+        struct absorbed a = absorb_light(&bed, &planes, &light, .5, .3),
+                        b = absorb_light(&bed, &triangles, &light, .5, .3);
+        double sum[2] = {0}, first = 0;
+        for (uint32_t i = 0; i < bed.n; i++) {
+            ck_assert_double_eq_tol(a.first[i], b.first[i], 1e-11);
+            sum[0] += a.sphere[i], sum[1] += b.sphere[i];
+        }
+        for (int w = 0; w < 5; w++) first += a.wall_first[w];
+        if (k < 2) {
+            const double *v = light.direction, size = sqrt(plain_product(v, v)),
+                         d[3] = {v[0] / size, v[1] / size, v[2] / size};
+            double rays[2];
+            absorb_in_cup(&plain, d, wide, 500, rays);
+            printf("by rays %.5f %.5f, ours %.5f %.5f\n", rays[0], rays[1], sum[1], b.wall[0]);
+            ck_assert_double_eq_tol(sum[1], rays[0], .004 * rays[0]);
+            ck_assert_double_eq_tol(b.wall[0], rays[1], .004 * rays[0]);
+        }
+        printf("cup %d: spheres %.5f %.5f, walls %.5f %.5f, outside %.5f\n", k, sum[0], sum[1], first, b.wall_first[0],
+               b.wall_first[1]);
+        ck_assert_double_eq_tol(sum[0], sum[1], .003 * sum[0]);
+        ck_assert_double_eq_tol(first, b.wall_first[0], 1e-3 * a.result.incident);
+        free_absorbed(&a), free_absorbed(&b);
+    }
+    plain_free(&plain);
+}
+
+/* A tilted triangle that is alone in the light takes what its shadow says, by rays. */
+TEST(a_tilted_triangle_takes_its_shadow) {
+    const double far_away[][4] = {{0, 0, 0, 1}};
+    OWNED_BED bed = bed_of(1, far_away);
+    OWNED struct mesh *mesh = mesh_new();
+    const uint32_t a = mesh_vertex(mesh, 2, -1, 0), b = mesh_vertex(mesh, 4, 0, 1), c = mesh_vertex(mesh, 3, 2, .5);
+    mesh_triangle(mesh, a, b, c, 0, 0);
+    const fibrad_scene_config config = {.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles};
+    const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
+    struct absorbed lit = absorb_light(&bed, &config, &light, 1, .25);
+    ck_assert_double_eq_tol(lit.first[0], M_PI, 1e-12);
+    ck_assert_double_eq_tol(lit.wall_first[0], .25 * 2.5, .25 * 5e-4 * lit.result.incident);
+    ck_assert_double_eq_tol(lit.result.transmitted, lit.result.incident - M_PI - 4 * lit.wall_first[0], 1e-12);
+    free_absorbed(&lit);
+}
+
+/* Light on a side that belongs to no wall is an error. */
+TEST(light_on_a_side_of_no_wall) {
+    const double one[][4] = {{0, 0, 0, 1}};
+    OWNED_BED bed = bed_of(1, one);
+    OWNED struct mesh *mesh = mesh_new();
+    const uint32_t a = mesh_vertex(mesh, 2, -1, 3), b = mesh_vertex(mesh, 4, 0, 3), c = mesh_vertex(mesh, 3, 2, 3);
+    mesh_triangle(mesh, a, b, c, FIBRAD_NO_BODY, 0);
+    const fibrad_scene_config config = {.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles};
+    const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
+    const double eps = .5;
+    double absorbed[2], first[2];
+    OWNED_RADIATION *radiation = NULL;
+    const fibrad_spheres spheres = {.x = bed.x, .y = bed.y, .z = bed.z, .r = bed.r, .n = 1};
+    const fibrad_light_sources sources = {
+        .light = &light, .lights = 1, .absorptivity = &eps, .body_absorptivity = &eps};
+    fibrad_light_result result = {
+        .absorbed = absorbed, .absorbed_first = first, .body_absorbed = absorbed + 1, .body_absorbed_first = first + 1};
+    fibrad_fault fault;
+    ck_assert_int_eq(fibrad_radiation_new(&radiation, &config, &spheres, NULL, NULL), 0);
+    ck_assert_int_eq(fibrad_radiation_shine(radiation, &sources, &result), FIBRAD_E_BACK);
+    fibrad_radiation_describe(radiation, NULL, &fault);
+    ck_assert_uint_eq(fault.triangle, 0);
 }
 
 /* A closed cup reflects all. Light in it ends on the sphere or outside, whatever its walls do. */

@@ -1,5 +1,6 @@
 /* test_light_program.c - what fibrad heat --irradiate reports, writes and refuses. SPDX-License-Identifier: MIT */
 #include "program.h"
+#include "soups.h"
 
 static const char *bed; /* four spheres of radius 0.5 in a cup of side 2, whose lid is at 2.5 */
 
@@ -84,6 +85,28 @@ TEST(lit_sides_are_hotter) {
                           "1", "--until", "10", "--heat-capacity", "800", "--density", "2500"),
                      2);
     expect_message("--solid-conductivity and --irradiate with --until", "leave one out");
+}
+
+/* A roof of triangles over half of the cup takes half of the light. Its lower side must not be lit, unless it is a
+ * wall. What is absorbed of light adds up to all of it. */
+TEST(triangles_throw_shadows) {
+    static struct soup roof;
+    const double a[] = {0, 0, 2.2}, b[] = {1, 0, 2.2}, c[] = {1, 2, 2.2}, d[] = {0, 2, 2.2};
+    roof.n = 0;
+    soup_add(&roof, a, b, c), soup_add(&roof, a, c, d);
+    char wall[600];
+    snprintf(wall, sizeof wall, CUP ",roof=mesh:%s:both", write_solid("roof.stl", &roof));
+    SUCCEED("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--temperature", "0", "--wall",
+            wall, "--wall-temperature", "0", "--irradiate", "0,0,-1:1000");
+    ck_assert_double_eq_tol(value_of("absorbed_first_W"), 4000, .1);
+    ck_assert_double_eq_tol(value_of("wall_roof_absorbed_W"), 2000, 2);
+    ck_assert_double_eq_tol(fractions(), 1, .01);
+    ck_assert_double_le(fabs(value_of("balance_of_light")), 1e-12);
+    snprintf(wall, sizeof wall, "roof=mesh:%s:normals", in_folder("roof.stl"));
+    ck_assert_int_eq(RUN("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--temperature", "0",
+                         "--wall", wall, "--wall-temperature", "0", "--irradiate", "0,0,1:1000"),
+                     3);
+    ck_assert_ptr_nonnull(strstr(said, "the back of wall roof is seen"));
 }
 
 /* Light that nothing absorbs heats nothing. */

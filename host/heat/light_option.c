@@ -200,8 +200,6 @@ int light_refuse(const struct light_state *state, const struct bed *bed, int sta
     if (!state->failed) return STATUS_OK;
     if (status == FIBRAD_E_UNSOLVABLE)
         return message(STATUS_USAGE, "--irradiate: nothing absorbs the light, and it cannot leave");
-    if (status == FIBRAD_E_UNSUPPORTED)
-        return message(STATUS_USAGE, "--irradiate: light on walls of triangles is not supported yet");
     switch (fault->why) {
     case FIBRAD_WHY_DARK:
         return message(STATUS_USAGE,

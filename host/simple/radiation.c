@@ -229,6 +229,7 @@ static int shine_one(struct shine_tasks *t, uint32_t bodies, fibrad_light_result
     status = fibrad_team_run(&r->team, "light", tasks, 1, shine_task, t, NULL);
     for (uint32_t k = 0; k < tasks && !status; ++k) take_kept(&t->kept[k], bodies, &ends);
     if (!status) status = fibrad_heat_shine_walls(r->heat, &r->team.work[0], t->light, &ends, t->hits);
+    if (status == FIBRAD_E_BACK) r->fault.triangle = r->team.work[0].triangle;
     if (ends.through > ROUNDING * (ends.spheres + ends.through)) result->transmitted += ends.through;
     return status;
 }

@@ -396,10 +396,10 @@ double fibrad_heat_pattern_residual(fibrad_heat *heat, uint32_t sphere, double s
  * sum over the patches of residual times change of a J that is even. */
 double fibrad_heat_add_absorbed(fibrad_heat *heat, uint32_t sphere);
 
-/* The light that a sphere has absorbed. */
-static inline double fibrad_heat_absorbed(const fibrad_heat *heat, uint32_t sphere) {
+/* The light that a body has absorbed. */
+static inline double fibrad_heat_absorbed(const fibrad_heat *heat, uint32_t body) {
     double sum = 0;
-    for (uint32_t a = heat->first[sphere]; a < heat->first[sphere + 1] && heat->sources.absorbed != NULL; a++)
+    for (uint32_t a = heat->first[body]; a < heat->first[body + 1] && heat->sources.absorbed != NULL; a++)
         sum += heat->sources.absorbed[a];
     return sum;
 }

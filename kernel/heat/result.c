@@ -536,24 +536,25 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     return read_temperatures(heat, result) ? FIBRAD_OK : FIBRAD_E_UNSOLVABLE;
 }
 
-/* Sums over the patches of a side: areas, net flows, areas times radiosities. */
+/* Sums over the patches of a side: areas, flows, areas times radiosities. */
 typedef struct side_sum {
-    double area, net, radiosity;
+    double area, flow, radiosity;
 } side_sum;
 
-static side_sum sum_of_side(const fibrad_heat *heat, const fibrad_mesh_cut *cut) {
+/* flow[patches]: net flows, or light that is absorbed. */
+static side_sum sum_of_side(const fibrad_heat *heat, const fibrad_mesh_cut *cut, const double *flow) {
     const uint32_t begin = fibrad_heat_first_meshed(heat) + cut->patch;
     side_sum sum = {0, 0, 0};
     if (cut->patch == UINT32_MAX) return sum;
     for (uint32_t a = begin; a < begin + (UINT32_C(1) << cut->halvings); a++)
-        sum.area += heat->solution.area[a], sum.net += heat->solution.net[a],
+        sum.area += heat->solution.area[a], sum.flow += flow[a],
             sum.radiosity += heat->solution.area[a] * heat->solution.radiosity[a];
     return sum;
 }
 
-/* The area of those sides of a mesh whose patches are met, and their net flow. */
+/* The area of those sides of a mesh whose patches are met, and their flow. */
 typedef struct mesh_gain {
-    double area, net;
+    double area, flow;
     bool whole; /* no plane or cylinder cuts the mesh; areas are then those of triangles, else those from beams */
 } mesh_gain;
 
@@ -566,27 +567,43 @@ static bool is_within_walls(const fibrad_scene *scene, uint32_t triangle) {
     return inside;
 }
 
-static mesh_gain gain_of_mesh(const fibrad_heat *heat, uint32_t m) {
+static mesh_gain gain_of_mesh(const fibrad_heat *heat, uint32_t m, const double *flow) {
     const fibrad_mesh *mesh = &heat->scene->mesh;
     const uint32_t b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
     mesh_gain gain = {0, 0, true};
     for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
-        const side_sum sum = sum_of_side(heat, fibrad_mesh_cut_of(mesh, heat->cut, mesh->side[k]));
+        const side_sum sum = sum_of_side(heat, fibrad_mesh_cut_of(mesh, heat->cut, mesh->side[k]), flow);
         const double area = fibrad_mesh_triangle_area(mesh, fibrad_side_triangle(mesh->side[k]));
         gain.whole = gain.whole && is_within_walls(heat->scene, fibrad_side_triangle(mesh->side[k]));
-        if (sum.area > 0) gain.area += area, gain.net += area * (sum.net / sum.area);
+        if (sum.area > 0) gain.area += area, gain.flow += area * (sum.flow / sum.area);
     }
-    if (!gain.whole) gain.area = gain.net = 0;
+    if (!gain.whole) gain.area = gain.flow = 0;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && !gain.whole; a++)
-        gain.area += heat->solution.area[a], gain.net += heat->solution.net[a];
+        gain.area += heat->solution.area[a], gain.flow += flow[a];
     return gain;
 }
 
-/* The power of a mesh per area minus the net flow of its patches per area: from extrapolation and residuals. */
-static double flux_beyond_patches(const fibrad_heat *heat, uint32_t m) {
-    const mesh_gain gain = gain_of_mesh(heat, m);
-    const double power = heat->solution.power[fibrad_heat_body(heat, FIBRAD_MESHES + m)];
-    return gain.area > 0 ? (power - gain.net) / gain.area : 0;
+/* A power of a mesh per area minus the flow of its patches per area: from extrapolation, residuals, and areas by beams.
+ */
+static double flux_beyond_patches(const fibrad_heat *heat, uint32_t m, const double *flow, double power) {
+    const mesh_gain gain = gain_of_mesh(heat, m, flow);
+    return gain.area > 0 ? (power - gain.flow) / gain.area : 0;
+}
+
+/* The light that the sides of a mesh have absorbed, by patch. NULL: none, or they give it off again. */
+static const double *light_of_mesh(const fibrad_heat *heat, uint32_t m) {
+    return fibrad_heat_is_insulated(heat, fibrad_heat_body(heat, FIBRAD_MESHES + m)) ? NULL : heat->sources.absorbed;
+}
+
+/* The net power of a side per area. beyond: what patches lack of the powers of its mesh: of net powers, and of light.
+ */
+static double flux_of_side(const fibrad_heat *heat, uint32_t m, const fibrad_mesh_cut *cut, const double beyond[2]) {
+    const side_sum net = sum_of_side(heat, cut, heat->solution.net);
+    const double *light = light_of_mesh(heat, m);
+    if (!(net.area > 0)) return __builtin_nan("");
+    const bool emits = heat->sources.emissivity[fibrad_heat_body(heat, FIBRAD_MESHES + m)] > 0;
+    return (emits ? net.flow / net.area + beyond[0] : 0) +
+           (light != NULL ? sum_of_side(heat, cut, light).flow / net.area + beyond[1] : 0);
 }
 
 static double temperature_of_side(const fibrad_heat *heat, uint32_t b, const fibrad_mesh_cut *cut,
@@ -601,19 +618,24 @@ static double temperature_of_side(const fibrad_heat *heat, uint32_t b, const fib
 }
 
 int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temperature) {
-    double beyond[FIBRAD_BODIES_MAX];
+    double beyond[FIBRAD_BODIES_MAX][2];
     if (heat == NULL) return FIBRAD_E_ARGUMENT;
     if (heat->solution.phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     const fibrad_mesh *mesh = &heat->scene->mesh;
-    for (uint32_t m = 0; m < heat->meshes; m++) beyond[m] = flux_beyond_patches(heat, m);
+    for (uint32_t m = 0; m < heat->meshes; m++) {
+        const uint32_t b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
+        const double *light = light_of_mesh(heat, m);
+        beyond[m][0] = flux_beyond_patches(heat, m, heat->solution.net, heat->solution.power[b]);
+        beyond[m][1] = light != NULL ? flux_beyond_patches(heat, m, light, fibrad_heat_absorbed(heat, b)) : 0;
+    }
     for (uint32_t s = 0; s < 2 * heat->triangles; s++) {
         const fibrad_mesh_cut *cut = fibrad_mesh_cut_of(mesh, heat->cut, s);
         const size_t to = (size_t)(cut - heat->cut);
         double q = __builtin_nan(""), t = q;
         if (cut->patch != UINT32_MAX) {
             const uint32_t m = fibrad_side_mesh(mesh, s), b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
-            const side_sum sum = sum_of_side(heat, cut);
-            if (sum.area > 0) q = heat->sources.emissivity[b] > 0 ? sum.net / sum.area + beyond[m] : 0;
+            const side_sum sum = sum_of_side(heat, cut, heat->solution.net);
+            q = flux_of_side(heat, m, cut, beyond[m]);
             t = temperature_of_side(heat, b, cut, &sum);
         }
         if (flux != NULL) flux[to] = q;

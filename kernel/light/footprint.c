@@ -112,7 +112,7 @@ int fibrad_light_why(const fibrad_scene *scene, const fibrad_light *light) {
     return valid && size > 0 && fits_periods(scene, light) ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_LIGHT;
 }
 
-/* The box about the bed: walls, periods, or else the centres and the largest radius. */
+/* The box about the bed: walls, periods, or else the centres with the largest radius, and the triangles. */
 static void find_box(fibrad_footprint *f, const fibrad_scene *scene) {
     const fibrad_container *c = &scene->container;
     const double r = scene->facts.radius_max;
@@ -121,6 +121,10 @@ static void find_box(fibrad_footprint *f, const fibrad_scene *scene) {
         f->high[a] = scene->period[a] > 0        ? scene->low[a] + scene->period[a]
                      : fibrad_finite(c->high[a]) ? c->high[a]
                                                  : scene->high[a] + r;
+        if (scene->mesh.triangles > 0 && !(scene->period[a] > 0)) {
+            if (!fibrad_finite(c->low[a])) f->low[a] = fibrad_min(f->low[a], scene->mesh.low[a]);
+            if (!fibrad_finite(c->high[a])) f->high[a] = fibrad_max(f->high[a], scene->mesh.high[a]);
+        }
         if (fibrad_finite(c->radius) && a < 2) f->low[a] = c->axis[a] - c->radius, f->high[a] = c->axis[a] + c->radius;
         f->origin[a] = f->low[a] + .5 * (f->high[a] - f->low[a]);
     }
@@ -287,12 +291,8 @@ static uint32_t add_first(const fibrad_footprint *f, const ways_out *out, uint32
 /* The sides of a polygon as lines. */
 static uint32_t lines_of(const fibrad_light_polygon *p, fibrad_light_line *line) {
     uint32_t count = 0;
-    for (uint32_t k = 0; k < p->corners; k++) {
-        const double *a = p->at[k], *b = p->at[(k + 1) % p->corners];
-        const double n[2] = {b[1] - a[1], a[0] - b[0]}, size = fibrad_sqrt(n[0] * n[0] + n[1] * n[1]);
-        if (!(size > 0)) continue;
-        line[count++] = (fibrad_light_line){{n[0] / size, n[1] / size}, (n[0] * a[0] + n[1] * a[1]) / size};
-    }
+    for (uint32_t k = 0; k < p->corners; k++)
+        count += fibrad_light_line_through(p->at[k], p->at[(k + 1) % p->corners], &line[count]);
     return count;
 }
 
@@ -301,8 +301,7 @@ static void cut_polygon(fibrad_light_polygon *p, const fibrad_light_line *line, 
     scratch->corners = 0;
     for (uint32_t k = 0; k < p->corners; k++) {
         const double *a = p->at[k], *b = p->at[(k + 1) % p->corners];
-        const double fa = line->n[0] * a[0] + line->n[1] * a[1] - line->c,
-                     fb = line->n[0] * b[0] + line->n[1] * b[1] - line->c;
+        const double fa = fibrad_light_beyond(line, a), fb = fibrad_light_beyond(line, b);
         if (fa <= 0) add_corner(scratch, a[0], a[1]);
         if ((fa <= 0) == (fb <= 0)) continue;
         const double t = fa / (fa - fb);

@@ -161,11 +161,15 @@ static bool list_edge(fibrad_footprint *f, const fibrad_light_line *line, const 
     return c > -1;
 }
 
-/* What a window takes of a piece, in units of its radius squared. */
-static double share_of_piece(fibrad_footprint *f, const fibrad_light_piece *piece, const fibrad_areas *areas,
-                             double open, const double uv[2], double r) {
+/* What a window takes of a piece, in units of its radius squared. p: the polygon of the window that counts; NULL: all
+ * of the window. */
+static double share_of_piece(fibrad_footprint *f, const fibrad_light_piece *piece, const fibrad_clear_polygon *p,
+                             const fibrad_areas *areas, double open, const double uv[2], double r) {
+    static const double middle[2] = {0, 0};
     uint32_t edges = 0;
     bool meets = true;
+    for (uint32_t k = 0; p != NULL && k < p->sides && meets; k++)
+        meets = (p->line[k].n[0] == 0 && p->line[k].n[1] == 0) || list_edge(f, &p->line[k], middle, 1, &edges);
     for (uint32_t k = 0; k < f->common + (piece->far ? f->far : 0) && meets; k++)
         meets = list_edge(f, &f->line[k], uv, r, &edges);
     for (uint32_t k = 0; k < piece->lines && meets; k++) meets = list_edge(f, &piece->line[k], uv, r, &edges);
@@ -177,7 +181,11 @@ static double share_of_piece(fibrad_footprint *f, const fibrad_light_piece *piec
 void fibrad_footprint_share(fibrad_footprint *f, const fibrad_areas *areas, double open, const double uv[2], double r,
                             double area[FIBRAD_SLOTS]) {
     double at[2];
+    const fibrad_clear *clear = &f->clear;
     for (uint32_t image = 0; fibrad_footprint_image(f, uv, image, at); image++)
         for (uint32_t k = 0; k < f->pieces; k++)
-            area[f->piece[k].slot] += f->piece[k].sign * r * r * share_of_piece(f, &f->piece[k], areas, open, at, r);
+            for (uint32_t n = 0; n < (clear->whole ? 1 : clear->count); n++)
+                area[f->piece[k].slot] +=
+                    f->piece[k].sign * r * r *
+                    share_of_piece(f, &f->piece[k], clear->whole ? NULL : &clear->polygon[n], areas, open, at, r);
 }

@@ -13,13 +13,32 @@ int fibrad_light_check(const fibrad_scene *scene, const fibrad_light *light, fib
     }
     if (fault != NULL) *fault = found;
     if (found.why != FIBRAD_WHY_UNSAID) return FIBRAD_E_ARGUMENT;
-    return scene->region || scene->mesh.triangles > 0 ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
+    return scene->region ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
+}
+
+/* Gives the polygons of windows the room that is left after `extra` bytes of scratch. */
+static void place_polygons(fibrad_workspace *space, size_t extra) {
+    fibrad_clear *clear = &fibrad_light_footprint(space)->clear;
+    unsigned char *at = (unsigned char *)fibrad_light_scratch(space) +
+                        (extra + FIBRAD_ALIGNMENT - 1) / FIBRAD_ALIGNMENT * FIBRAD_ALIGNMENT;
+    const size_t used = (size_t)(at - (unsigned char *)space->extra);
+    *clear = (fibrad_clear){.whole = true, .polygon = (void *)at};
+    clear->room = used < space->plan.extra ? (uint32_t)((space->plan.extra - used) / sizeof *clear->polygon) : 0;
 }
 
 int fibrad_light_open(const fibrad_scene *scene, fibrad_work *work, size_t extra, fibrad_workspace **space) {
-    const size_t bytes = sizeof(fibrad_footprint) + FIBRAD_ALIGNMENT + extra;
+    const size_t polygons = scene->mesh.triangles > 0 ? FIBRAD_CLEAR_FIRST * sizeof(fibrad_clear_polygon) : 0;
+    const size_t bytes = sizeof(fibrad_footprint) + 2 * FIBRAD_ALIGNMENT + extra + polygons;
     const int status = fibrad_work_open(work, scene, bytes, bytes, space);
-    if (status == FIBRAD_OK) (*space)->extra_owner = 0; /* who used `extra` before must write it again */
+    if (status != FIBRAD_OK) return status;
+    (*space)->extra_owner = 0; /* who used `extra` before must write it again */
+    place_polygons(*space, extra);
+    return FIBRAD_OK;
+}
+
+int fibrad_light_grow(fibrad_work *work, size_t extra, fibrad_workspace **space) {
+    const int status = fibrad_work_grow(work, space);
+    if (status == FIBRAD_OK) place_polygons(*space, extra);
     return status;
 }
 
@@ -70,7 +89,8 @@ static int take_one(const fibrad_scene *scene, fibrad_workspace *space, uint32_t
     fibrad_footprint *f = fibrad_light_footprint(space);
     const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
     double area[FIBRAD_SLOTS] = {0}, open = 0, uv[2];
-    const int status = FIBRAD_VERSION_OF(fibrad_sunlit, scene->facts.isa)(scene, space, place, f->frame, NULL, &open);
+    const int status =
+        FIBRAD_VERSION_OF(fibrad_sunlit, scene->facts.isa)(scene, space, place, f->frame, NULL, &open, &f->clear);
     if (status != FIBRAD_OK) return status;
     fibrad_footprint_place(f, centre, uv);
     if (open > 0) fibrad_footprint_share(f, &space->areas, open, uv, scene->r[place], area);
@@ -105,7 +125,7 @@ int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fib
     while (status == FIBRAD_OK) {
         status = take_all(scene, space, light, from, to, power, kept);
         if (status != FIBRAD_E_WORK) break;
-        status = fibrad_work_grow(work, &space);
+        status = fibrad_light_grow(work, 0, &space);
     }
     return status;
 }

@@ -10,6 +10,10 @@ int fibrad_light_check(const fibrad_scene *scene, const fibrad_light *light, fib
 
 /* Lays out work memory with room for a footprint and `extra` bytes of scratch. */
 int fibrad_light_open(const fibrad_scene *scene, fibrad_work *work, size_t extra, fibrad_workspace **space);
+
+/* The same after FIBRAD_E_WORK, larger. What it held is lost. */
+int fibrad_light_grow(fibrad_work *work, size_t extra, fibrad_workspace **space);
+
 fibrad_footprint *fibrad_light_footprint(const fibrad_workspace *space);
 double *fibrad_light_scratch(const fibrad_workspace *space);
 

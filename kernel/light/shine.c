@@ -110,7 +110,9 @@ static void find_spread(const fibrad_heat *heat, const fibrad_footprint *f, spre
 
 static bool is_lit(const shining *s, const fibrad_points *points, uint32_t p) {
     const double at[2] = {s->uv[0] + s->r * points->set.x[p], s->uv[1] + s->r * points->set.y[p]};
-    return (points->seen[p / 64] >> p % 64 & 1) != 0 && (s->whole || fibrad_footprint_lights(s->f, at, NULL));
+    const double in_window[2] = {points->set.x[p], points->set.y[p]};
+    return (points->seen[p / 64] >> p % 64 & 1) != 0 && fibrad_clear_holds(&s->f->clear, in_window) &&
+           (s->whole || fibrad_footprint_lights(s->f, at, NULL));
 }
 
 /* The middle of the corners of an open region, for regions so small that they hold no point. */
@@ -158,7 +160,7 @@ static int shine_on_sphere(const fibrad_heat *heat, fibrad_workspace *space, uin
     double area[FIBRAD_SLOTS] = {0}, open = 0, sum = 0;
     shining s = {.heat = heat, .f = f, .how = shares_of(space), .place = place, .r = scene->r[place]};
     const int status =
-        FIBRAD_VERSION_OF(fibrad_sunlit, scene->facts.isa)(scene, space, place, f->frame, &points, &open);
+        FIBRAD_VERSION_OF(fibrad_sunlit, scene->facts.isa)(scene, space, place, f->frame, &points, &open, &f->clear);
     if (status != FIBRAD_OK || !(open > 0)) return status;
     fibrad_footprint_place(f, centre, s.uv);
     fibrad_footprint_share(f, &space->areas, open, s.uv, s.r, area);
@@ -184,7 +186,7 @@ static int shine_and_grow(const fibrad_heat *heat, fibrad_work *work, fibrad_wor
     const double flux = light->flux / fibrad_light_count(light);
     int status = shine_on_sphere(heat, *space, place, flux, hits, kept);
     while (status == FIBRAD_E_WORK) {
-        status = fibrad_work_grow(work, space);
+        status = fibrad_light_grow(work, sizeof(spread), space);
         if (status != FIBRAD_OK) return status;
         make_ready(heat, *space, light, k);
         status = shine_on_sphere(heat, *space, place, flux, hits, kept);
@@ -212,8 +214,39 @@ int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_l
     return status;
 }
 
-/* Counts the rays of one direction that meet no sphere, by the patch on which they end. */
-static int count_rays(const fibrad_heat *heat, const fibrad_footprint *f, uint32_t k, uint32_t rays, double *tally) {
+/* Counts of rays that meet no sphere. Rays that end on triangles are counted by the slot at which they would end
+ * without the triangles, and by patch. */
+typedef struct ray_counts {
+    double *patch;  /* [patches that are not of spheres], rays that end on no triangle; surroundings: that leave */
+    double *meshed; /* [slots up to FIBRAD_ESCAPED][patches of meshes] */
+    uint32_t others, first_meshed, of_meshes;
+} ray_counts;
+
+static ray_counts counts_of(const fibrad_heat *heat, double *room) {
+    const uint32_t first = fibrad_heat_first_meshed(heat), others = fibrad_heat_others(heat);
+    const uint32_t end = heat->first[fibrad_heat_body(heat, FIBRAD_MESHES + heat->meshes)];
+    return (ray_counts){room, room != NULL ? room + (heat->patches - others) : NULL, others, first, end - first};
+}
+
+static size_t size_of_counts(const fibrad_heat *heat) {
+    const ray_counts none = counts_of(heat, NULL);
+    return (heat->patches - none.others + (size_t)none.of_meshes * (FIBRAD_ESCAPED + 1)) * sizeof(double);
+}
+
+static double *meshed_from(const ray_counts *counts, uint32_t slot) {
+    return counts->meshed + (size_t)slot * counts->of_meshes;
+}
+
+static void add_ray(const fibrad_heat *heat, ray_counts *counts, uint32_t slot, uint32_t patch) {
+    if (patch >= counts->first_meshed && patch - counts->first_meshed < counts->of_meshes)
+        meshed_from(counts, slot)[patch - counts->first_meshed]++;
+    else
+        counts->patch[(slot == FIBRAD_ESCAPED ? fibrad_heat_open(heat) : patch) - counts->others]++;
+}
+
+/* Counts the rays of one direction. FIBRAD_E_BACK: *back is the triangle whose side belongs to no wall. */
+static int count_rays(const fibrad_heat *heat, const fibrad_footprint *f, uint32_t k, uint32_t rays, ray_counts *counts,
+                      uint32_t *back) {
     const double d[3] = {0 - f->frame[6], 0 - f->frame[7], 0 - f->frame[8]};
     for (uint32_t n = 0; n < rays; n++) {
         double x[4], uv[2], at[3];
@@ -226,47 +259,77 @@ static int count_rays(const fibrad_heat *heat, const fibrad_footprint *f, uint32
         FIBRAD_VERSION_OF(fibrad_trace_point, heat->scene->facts.isa)(heat->scene, at, d, FIBRAD_NO_SIDE, &hit);
         if (hit.sphere != FIBRAD_NONE) continue;
         const uint32_t patch = fibrad_heat_ends(heat, at, d, hit.side, hit.distance);
-        if (patch == FIBRAD_NONE) return FIBRAD_E_BACK;
-        tally[patch - fibrad_heat_others(heat)]++;
+        if (patch == FIBRAD_NONE) {
+            *back = fibrad_side_number(&heat->scene->mesh, hit.side);
+            return FIBRAD_E_BACK;
+        }
+        add_ray(heat, counts, f->piece[piece].slot, patch);
     }
     return FIBRAD_OK;
 }
 
-/* Spreads a power over the patches of bodies [from, to] as rays have met them; evenly if none has. */
-static void spread_on_wall(const fibrad_heat *heat, uint32_t own, uint32_t beyond, double power, const double *tally,
-                           double *hits) {
-    const uint32_t body[2] = {own, beyond}, others = fibrad_heat_others(heat);
+static double sum_of(const double *count, uint32_t n) {
     double sum = 0;
-    for (int n = 0; n < 2; n++)
-        for (uint32_t a = heat->first[body[n]]; a < heat->first[body[n] + 1]; a++) sum += tally[a - others];
-    for (int n = 0; n < 2 && sum > 0; n++)
-        for (uint32_t a = heat->first[body[n]]; a < heat->first[body[n] + 1]; a++)
-            hits[a] += power * (tally[a - others] / sum);
+    for (uint32_t a = 0; a < n; a++) sum += count[a];
+    return sum;
+}
+
+static void spread_on_body(const fibrad_heat *heat, uint32_t body, const double *count, double all, double power,
+                           double *hits) {
+    for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++)
+        hits[a] += power * (count[a - heat->first[body]] / all);
+}
+
+/* Spreads the light that would end at a slot without triangles, `power`, as its rays have met patches. own and beyond
+ * are the bodies of the slot. Without rays the light is spread evenly on `own`. Returns what triangles leave. */
+static double spread_on_walls(const fibrad_heat *heat, const ray_counts *counts, uint32_t slot, double power,
+                              double *hits, fibrad_light_ends *ends) {
+    const bool wall = slot < FIBRAD_WALLS;
+    const uint32_t own = wall ? fibrad_heat_body(heat, slot) : heat->bodies - 1;
+    const uint32_t body[2] = {own, wall ? fibrad_heat_beyond(heat, slot) : own};
+    const double *meshed = meshed_from(counts, slot);
+    double left = 0;
+    for (int n = 0; n < (wall ? 2 : 1); n++)
+        left += sum_of(counts->patch + (heat->first[body[n]] - counts->others),
+                       heat->first[body[n] + 1] - heat->first[body[n]]);
+    const double all = left + sum_of(meshed, counts->of_meshes);
     const uint32_t begin = heat->first[own], end = heat->first[own + 1];
-    for (uint32_t a = begin; a < end && !(sum > 0); a++) hits[a] += power / (end - begin);
+    for (uint32_t a = begin; a < end && wall && !(all > 0); a++) hits[a] += power / (end - begin);
+    if (!(all > 0)) return power;
+    for (int n = 0; n < 2 && wall; n++)
+        spread_on_body(heat, body[n], counts->patch + (heat->first[body[n]] - counts->others), all, power, hits);
+    for (uint32_t b = 0; b < heat->given_bodies; b++) {
+        const uint32_t mesh = fibrad_heat_body(heat, heat->slot[b]);
+        if (heat->slot[b] < FIBRAD_MESHES) continue;
+        const double *count = meshed + (heat->first[mesh] - counts->first_meshed);
+        spread_on_body(heat, mesh, count, all, power, hits);
+        ends->body[b] += power * (sum_of(count, heat->first[mesh + 1] - heat->first[mesh]) / all);
+    }
+    return power * (left / all);
 }
 
 int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light,
-                            const fibrad_light_ends *ends, double *hits) {
+                            fibrad_light_ends *ends, double *hits) {
     fibrad_workspace *space;
     if (heat == NULL || work == NULL || ends == NULL || hits == NULL) return FIBRAD_E_ARGUMENT;
     if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     int status = fibrad_light_check(heat->scene, light, NULL);
-    const uint32_t of_walls = heat->patches - fibrad_heat_others(heat), count = fibrad_light_count(light);
-    if (status == FIBRAD_OK) status = fibrad_light_open(heat->scene, work, of_walls * sizeof(double), &space);
+    const uint32_t count = fibrad_light_count(light);
+    const size_t room = size_of_counts(heat);
+    if (status == FIBRAD_OK) status = fibrad_light_open(heat->scene, work, room, &space);
     if (status != FIBRAD_OK || heat->given_bodies == 0) return status;
-    double *tally = fibrad_light_scratch(space);
-    fibrad_zero(tally, of_walls * sizeof *tally);
+    ray_counts counts = counts_of(heat, fibrad_light_scratch(space));
+    fibrad_zero(counts.patch, room);
     for (uint32_t k = 0; k < count && status == FIBRAD_OK; k++) {
         fibrad_footprint *f = fibrad_light_footprint(space);
         fibrad_footprint_make(f, heat->scene, light, k);
-        status = count_rays(heat, f, k, SHINE_RAYS / count, tally);
+        status = count_rays(heat, f, k, SHINE_RAYS / count, &counts, &work->triangle);
     }
-    for (uint32_t b = 0; b < heat->given_bodies && status == FIBRAD_OK; b++) {
-        const uint32_t slot = heat->slot[b], own = fibrad_heat_body(heat, slot);
-        spread_on_wall(heat, own, slot < FIBRAD_WALLS ? fibrad_heat_beyond(heat, slot) : own,
-                       fibrad_max(0, ends->body[b]), tally, hits);
-    }
+    for (uint32_t b = 0; b < heat->given_bodies && status == FIBRAD_OK; b++)
+        if (heat->slot[b] < FIBRAD_WALLS)
+            ends->body[b] = spread_on_walls(heat, &counts, heat->slot[b], fibrad_max(0, ends->body[b]), hits, ends);
+    if (heat->meshes > 0 && status == FIBRAD_OK)
+        ends->through = spread_on_walls(heat, &counts, FIBRAD_ESCAPED, fibrad_max(0, ends->through), hits, ends);
     return status;
 }
 

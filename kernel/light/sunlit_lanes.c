@@ -4,8 +4,10 @@
  * For a single window it does not pay to list near spheres. So they are found by a march through the grid. */
 #include FIBRAD_LANES_HEADER
 #include "light/sunlit_lanes.h"
+#include "row/mesh_share_lanes.h"
 #include "row/window_lanes.h"
 #include "window/points_lanes.h"
+#include "work/mesh_faces_lanes.h"
 
 static int find_open_points(const fibrad_workspace *space, fibrad_points *points) {
     const fibrad_discs *disc = &space->disc;
@@ -17,16 +19,34 @@ static int find_open_points(const fibrad_workspace *space, fibrad_points *points
     return status;
 }
 
+/* Finds what triangles leave of the window. */
+static int find_clear(fibrad_workspace *space, const double frame[9], fibrad_clear *clear) {
+    fibrad_face_search search;
+    clear->whole = true, clear->count = 0;
+    if (!fibrad_mesh_near(space, __builtin_inf())) return FIBRAD_OK;
+    LANED(fibrad_faces_begin)(space, frame, __builtin_inf(), 0, __builtin_inf(), &search);
+    for (bool more = true; more && (clear->whole || clear->count > 0);) {
+        more = LANED(fibrad_faces_next)(space, &search);
+        for (uint32_t k = 0; k < space->met->faces.count; k++)
+            if (!fibrad_clear_hide(clear, space, frame, k)) return fibrad_clear_missed(space, clear);
+    }
+    return FIBRAD_OK;
+}
+
 int LANED(fibrad_sunlit)(const fibrad_scene *scene, fibrad_workspace *space, uint32_t place, const double frame[9],
-                         fibrad_points *points, double *open) {
+                         fibrad_points *points, double *open, fibrad_clear *clear) {
     fibrad_points none = {.count = 0};
     space->areas.overflow = false;
     space->areas.fallbacks = 0;
     space->windows = 1;
     fibrad_work_begin(space, scene, place, 0, FIBRAD_BEAM_STRIDE);
     space->near.full = true;
+    space->clear_mesh = __builtin_inf(); /* the window is computed as if there were no triangles */
     *open = fibrad_max(0, LANED(fibrad_beam_window)(space, frame, &none, 0));
     if (space->disc.count > space->disc.capacity || space->areas.overflow) return fibrad_work_discs_missed(space);
     if (space->entries.missed > 0) return fibrad_work_entries_missed(space);
-    return points != NULL && *open > 0 ? find_open_points(space, points) : FIBRAD_OK;
+    if (!(*open > 0)) return FIBRAD_OK;
+    if (points != NULL && find_open_points(space, points) != FIBRAD_OK) return FIBRAD_E_TABLE;
+    space->clear_mesh = scene->clear != NULL ? scene->clear[place] : __builtin_inf();
+    return find_clear(space, frame, clear);
 }

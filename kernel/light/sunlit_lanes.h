@@ -3,6 +3,7 @@
 #define FIBRAD_LIGHT_SUNLIT_LANES_H
 
 #include "base/dispatch.h"
+#include "light/clear.h"
 #include "window/points.h"
 #include "work/work.h"
 
@@ -10,9 +11,9 @@
 
 /* Resolves the window of the sphere at `place` in one direction, and leaves it in space->areas. points: gets the points
  * of the window that no sphere hides; NULL: they are not asked for. *open: the open area, in units of the radius
- * squared. Errors: FIBRAD_E_WORK, _TABLE. */
+ * squared, whatever triangles hide. clear: gets the part that no triangle hides. Errors: FIBRAD_E_WORK, _TABLE. */
 typedef int fibrad_sunlit_function(const fibrad_scene *scene, fibrad_workspace *space, uint32_t place,
-                                   const double frame[9], fibrad_points *points, double *open);
+                                   const double frame[9], fibrad_points *points, double *open, fibrad_clear *clear);
 FIBRAD_DECLARE_VERSIONS(fibrad_sunlit_function, fibrad_sunlit);
 
 #endif

@@ -1,0 +1,55 @@
+/* clear.h - the part of a window that no triangle hides from the light. SPDX-License-Identifier: MIT
+ *
+ * The part is a list of convex polygons, which do not overlap. A triangle that comes before the sphere is taken away
+ * from each polygon. What is left of a polygon is up to one polygon for each side of the triangle. Lengths are in radii
+ * of the window. */
+#ifndef FIBRAD_LIGHT_CLEAR_H
+#define FIBRAD_LIGHT_CLEAR_H
+
+#include "work/work.h"
+
+/* A line across the light. What is inside has n.x <= c. n is a unit vector. */
+typedef struct fibrad_light_line {
+    double n[2], c;
+} fibrad_light_line;
+
+/* How far a place lies beyond a line. */
+static inline double fibrad_light_beyond(const fibrad_light_line *line, const double at[2]) {
+    return line->n[0] * at[0] + line->n[1] * at[1] - line->c;
+}
+
+/* The line through two places. What lies to the left of the way from a to b is inside. False: the places are one. */
+static inline bool fibrad_light_line_through(const double a[2], const double b[2], fibrad_light_line *line) {
+    const double n[2] = {b[1] - a[1], a[0] - b[0]}, size = fibrad_sqrt(n[0] * n[0] + n[1] * n[1]);
+    if (!(size > 0)) return false;
+    *line = (fibrad_light_line){{n[0] / size, n[1] / size}, (n[0] * a[0] + n[1] * a[1]) / size};
+    return true;
+}
+
+/* A convex polygon, counter-clockwise. Side k goes from corner k to the next corner. Sides of the square about the
+ * window have no line: their n is 0. */
+#define FIBRAD_CLEAR_SIDES 32u
+typedef struct fibrad_clear_polygon {
+    uint32_t sides;
+    double corner[FIBRAD_CLEAR_SIDES][2];
+    fibrad_light_line line[FIBRAD_CLEAR_SIDES];
+} fibrad_clear_polygon;
+
+typedef struct fibrad_clear {
+    bool whole; /* no triangle comes before the window, and there are no polygons */
+    uint32_t count, room;
+    fibrad_clear_polygon *polygon; /* [room] */
+} fibrad_clear;
+
+#define FIBRAD_CLEAR_FIRST 16u /* polygons for which there is room at first */
+
+/* FIBRAD_E_WORK. space->needed.extra is set so that there is twice the room. */
+int fibrad_clear_missed(fibrad_workspace *space, const fibrad_clear *clear);
+
+/* Takes away what triangle number `face` of space->met->faces hides. False: there is no room. */
+bool fibrad_clear_hide(fibrad_clear *clear, const fibrad_workspace *space, const double frame[9], uint32_t face);
+
+/* Whether no triangle hides a place. */
+bool fibrad_clear_holds(const fibrad_clear *clear, const double at[2]);
+
+#endif
