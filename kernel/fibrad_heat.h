@@ -45,8 +45,8 @@ typedef struct fibrad_heat_config {
 /* A heat problem: the patches, beams and radiosities of a scene. */
 typedef struct fibrad_heat fibrad_heat;
 
-/* Bytes that fibrad_heat_init needs: about spheres * (directions * points + 60 * patches + 6000). The beams of most
- * beds fit into so many bytes.
+/* Bytes that fibrad_heat_init needs: about spheres * (directions * points + 60 * patches + 6000). This is enough for
+ * the beams of most beds. If it is not, fibrad_heat_trace returns _SIZE.
  *   Input    config: NULL for all defaults
  *   Errors   0 */
 size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *scene);
@@ -57,8 +57,8 @@ size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *sc
  *            scene: radii FIBRAD_HEAT_RADIUS_MIN to 1/FIBRAD_HEAT_RADIUS_MIN L
  *   Output   heat: a pointer into memory
  *   Errors   _ARGUMENT, _SIZE, _STATE
- *            _UNSUPPORTED: a cutoff, or a scene with a known region; or surfaces are so near each other that more
- *            than 2^26 small patches would be needed there */
+ *            _UNSUPPORTED: a cutoff, or a scene with a known region (fibrad.h); or surfaces are so near each other that
+ *            more than 2^26 small patches would be needed there */
 int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad_heat_config *config,
                      const fibrad_scene *scene);
 
@@ -99,7 +99,8 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *   emissivity 0              T            0 or NaN  not used
  *                             NaN          0         0, NaN
  *
- * `hold` stands for a store of heat during a step in time.
+ * `hold` makes the solution an implicit step in time. Let a sphere of heat capacity C have the temperature R at the
+ * beginning of a step of length dt. Its h is C/(4 sigma R^3 dt).
  *
  * Walls have the same choices with body_temperature and body_power, but no hold and no reference. An insulated wall
  * sends back all that arrives, point by point. Its temperature, emissivity and power are not used. The sides of a mesh
@@ -107,8 +108,8 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * temperature, unless it reflects everything.
  *
  * A sphere with a finite conductivity has a temperature that differs from point to point. `temperature` is then the
- * mean over its surface. The inside is taken to be steady. Sources and stores of heat are taken to be spread evenly
- * inside. Emission is taken to be linear in the difference from the mean (docs/methods_heat.md section 13). With
+ * mean over its surface. The inside is taken to be steady. What `power` gives and `hold` stores is taken to be spread
+ * evenly inside. Emission is taken to be linear in the difference from the mean (docs/methods_heat.md section 13). With
  * `conductivity`, `uniform` must be 0. `conductivity` is in units of sigma K^3 L. If sigma is in W/(m2 K4) and L is M
  * metres, a solid of k_s [W/(m K)] has the conductivity k_s/M.
  *
@@ -165,7 +166,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources);
  *   Input    part: 0 to fibrad_heat_parts - 1
  *   Errors   _ARGUMENT
  *            _STATE: the part was swept already, or no solution was begun
- *   Cost     2 ns per beam. Temperatures of deep beds take some sweeps for each layer of spheres. */
+ *   Cost     2 ns per beam. If temperatures are found in a deep bed, it takes some sweeps for each layer of spheres. */
 int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
 
 /* Ends a sweep.
@@ -200,7 +201,7 @@ typedef struct fibrad_heat_result {
     double error_beams;             /* sigma K^4 L^2, out: root mean square error of power from beams */
     double residual;                /* out: at the end, to compare with `tolerance` */
     uint32_t sweeps;                /* out */
-    double *body_absorbed;          /* sigma K^4 L^2, [bodies], out: what body_area absorbs; may be NULL */
+    double *body_absorbed;          /* sigma K^4 L^2, [bodies], out: absorbed on body_area; may be NULL */
     double surroundings_error;      /* sigma K^4 L^2, out: estimated error of surroundings_power */
     double *body_area;           /* L^2, [bodies], out: area; of an endless wall the part near the bed; may be NULL */
     double *least_temperature;   /* K, [spheres], out: least of the surface; may be NULL */

@@ -8,7 +8,7 @@
  * Sequence   1. fibrad_light_empty tells how much light would end on each wall if there were neither spheres nor
  *               triangles. It also tells how much light would leave the bed.
  *            2. fibrad_light_spheres tells how much light each sphere of a range takes. It also tells how much of that
- *               light would have ended on each wall, or left the bed, without spheres and triangles: `kept`.
+ *               light would end on each wall, or leave the bed, if there were neither spheres nor triangles: `kept`.
  *            The light that ends on wall b is ends.body[b] of step 1 minus the sum of kept.body[b] over all ranges. The
  *            light that leaves the bed is ends.through minus the sum of kept.through. Of both numbers
  *            fibrad_heat_shine_walls tells what triangles take.
@@ -35,8 +35,8 @@ typedef enum fibrad_light_shape {
     FIBRAD_LIGHT_BOX = 2   /* light that passes a rectangle at the lit end of the bed in z; fibrad_light.low, high */
 } fibrad_light_shape;
 
-/* Light from outside. If all fields but direction and flux are zero, the light is parallel and falls on all that is
- * open.
+/* Light from outside. If all fields but direction and flux are zero, the light is parallel and enters through all
+ * open faces.
  *
  * Light with a half-angle has directions that fill a cone evenly. Each direction carries an equal part of the flux. The
  * sun's half-angle is FIBRAD_SUN_HALF_ANGLE.
@@ -47,7 +47,7 @@ typedef enum fibrad_light_shape {
  * passes the disc. */
 typedef struct fibrad_light {
     double direction[3];    /* the way that the light goes, of any length above 0 */
-    double flux;            /* sigma K^4 (W/m2 if sigma is in W/(m2 K4)), at right angles to it; to FIBRAD_POWER_MAX */
+    double flux;            /* sigma K^4 (W/m2 if sigma is in W/(m2 K4)), across `direction`; to FIBRAD_POWER_MAX */
     double half_angle;      /* rad, of the cone, 0 to FIBRAD_HALF_ANGLE_MAX; 0: parallel */
     uint32_t directions;    /* of the cone, up to FIBRAD_LIGHT_DIRECTIONS_MAX; 0: FIBRAD_LIGHT_DIRECTIONS_DEFAULT */
     int shape;              /* a fibrad_light_shape */
@@ -72,7 +72,7 @@ typedef struct fibrad_light_ends {
  *              FIBRAD_WHY_FOOTPRINT: the light meets a sphere before the disc
  *            _UNSUPPORTED: a known region
  *            _WORK, _MEMORY
- *   Cost     as a row of ten directions */
+ *   Cost     as fibrad_beam_row with ten directions */
 int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibrad_light *light, fibrad_light_ends *ends,
                        fibrad_fault *fault);
 
@@ -80,8 +80,8 @@ int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibra
  * time.
  *   Input    from, to: spheres from to to - 1, up to the number of spheres
  *   Output   power[to - from]: the light that falls on each sphere, absorbed or not
- *            kept: `spheres` is the sum of `power`. `body` and `through` tell where this light would have ended without
- *            spheres and triangles. They add up to `spheres`.
+ *            kept: `spheres` is the sum of `power`. `body` and `through` tell where this light would end if there were
+ *            neither spheres nor triangles. They add up to `spheres`.
  *   Errors   as fibrad_light_empty
  *   Cost     2 microseconds for each sphere and direction */
 int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fibrad_light *light, uint32_t from,
@@ -96,8 +96,8 @@ int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fib
  *      The net powers of this solution are the light that is absorbed. The net power of the surroundings is the light
  *      that is reflected.
  *   3. Call fibrad_heat_keep_light. `hits` then holds the light that patches absorb.
- *   4. Call fibrad_heat_begin for thermal radiation, with `absorbed` = hits. Where a power is given, add the net power
- *      that step 2 has found to it. Insulated walls have no given power: `absorbed` is enough for them. */
+ *   4. Call fibrad_heat_begin for thermal radiation, with `absorbed` = hits. To each given power, add the net power of
+ *      step 2. Insulated walls have no given power: `absorbed` is enough for them. */
 
 /* Number of patches of a heat problem.
  *   Errors   0 if heat is NULL */
