@@ -220,8 +220,9 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result);
 
 /* Reads the solution on the sides of triangles: element 2 t is the front and 2 t + 1 the back of the caller's triangle
  * t. A value is the mean over the patches of the side. Sides that share a patch have equal values. The fluxes of a mesh
- * times the areas of its sides add up to body_power, to rounding, and to the light that it has absorbed if it is not
- * insulated (fibrad_heat_sources.absorbed). This does not hold if a plane or the cylinder cuts the mesh.
+ * times the areas of its sides add up to body_power, to rounding. If `absorbed` is given and the mesh is not insulated,
+ * the light that the mesh has absorbed is part of the fluxes, too. If a plane or the cylinder cuts the mesh, the sum is
+ * not body_power.
  *   Output   flux[2 triangles]: net power per area [sigma K^4]; may be NULL. NaN: the side belongs to no wall, or no
  *            beam and no ray reaches it.
  *            temperature[2 triangles]: [K]; may be NULL. NaN: the side belongs to no wall, its wall has no temperature,

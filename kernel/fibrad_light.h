@@ -10,8 +10,8 @@
  *            2. fibrad_light_spheres tells how much light each sphere of a range takes. It also tells how much of that
  *               light would end on each wall, or leave the bed, if there were neither spheres nor triangles: `kept`.
  *            The light that ends on wall b is ends.body[b] of step 1 minus the sum of kept.body[b] over all ranges. The
- *            light that leaves the bed is ends.through minus the sum of kept.through. Of both numbers
- *            fibrad_heat_shine_walls tells what triangles take.
+ *            light that leaves the bed is ends.through minus the sum of kept.through. Triangles take a part
+ *            of both: fibrad_heat_shine_walls tells how much.
  *            fibrad_heat_shine does step 2 for a heat problem, and puts the light on patches.
  * Units      as in fibrad.h. A power is in units of flux times L^2. With a flux of 1 it is an area.
  * Words      Memory, errors and the layout of comments are as in fibrad.h.
@@ -41,10 +41,9 @@ typedef enum fibrad_light_shape {
  * Light with a half-angle has directions that fill a cone evenly. Each direction carries an equal part of the flux. The
  * sun's half-angle is FIBRAD_SUN_HALF_ANGLE.
  *
- * The box of the spheres is the box of their centres, wider by the largest radius on all sides. It is wider still where
- * triangles lie outside. On periodic axes a disc
- * or rectangle is repeated, and must not be wider than a period. The light of a disc must not meet a sphere before it
- * passes the disc. */
+ * The box of the spheres is the box of their centres, wider by the largest radius on all sides. Where neither a plane
+ * nor a period bounds it, it also holds the corners of triangles. On periodic axes a disc or rectangle is repeated, and
+ * must not be wider than a period. The light of a disc must not meet a sphere before it passes the disc. */
 typedef struct fibrad_light {
     double direction[3];    /* the way that the light goes, of any length above 0 */
     double flux;            /* sigma K^4 (W/m2 if sigma is in W/(m2 K4)), across `direction`; to FIBRAD_POWER_MAX */
