@@ -52,8 +52,10 @@
  *   exchange factor  D_ij is the fraction of the emission of sphere i that sphere j absorbs, directly or after diffuse
  *                    reflections.
  *   shadow disc      Seen along a direction, a sphere is a disc. This disc is its shadow disc.
+ *   line             A direction and its opposite.
  *   window           The shadow disc of sphere i along one direction.
  *   beam             All parallel rays from sphere i through one window.
+ *   open             Sphere i is open in a direction if some rays of its beam meet no sphere.
  *   cutoff           A distance between centres. A row with a cutoff leaves out the spheres that are farther from
  *                    sphere i.
  *   known region     A box. The scene has all spheres of the bed that reach into the box. Outside the box the bed may
@@ -75,8 +77,8 @@
  *   Errors    A function that can fail returns FIBRAD_OK or a negative fibrad_status. After an error the outputs are
  *             as before, except where the function's comment says otherwise. The error for a null pointer is
  *             FIBRAD_E_ARGUMENT. A scene is complete once fibrad_scene_init has returned FIBRAD_OK. The error for a
- *             scene that is not complete is FIBRAD_E_STATE. The same error is returned if a scene has changed since
- *             another object was made from it.
+ *             scene that is not complete is FIBRAD_E_STATE. Another object may have been made from a scene. If another
+ *             scene is then made in the memory of this scene, calls with the object return FIBRAD_E_STATE, too.
  *   Defaults  Set all fields of a structure to 0. Then set the fields that you need. The comment of a field says what 0
  *             means. "Zeroed" says what a structure of zeros means.
  *   Bits      Results depend on the arguments alone. They are the same to the bit for every number of threads,
@@ -99,7 +101,8 @@ extern "C" {
 #define FIBRAD_STEFAN_BOLTZMANN 5.670374419e-8 /* W/(m2 K4) */
 
 /* ---- status ---------------------------------------------------------------------------------------------------- */
-/* What a call returned. The numbers never change their meaning. */
+/* What a call returned. The numbers never change their meaning. FIBRAD_E_SUM has three causes: a row part was changed,
+ * a task of silhouettes was not done exactly once, or the library has a fault. */
 typedef enum fibrad_status {
     FIBRAD_OK = 0,
     FIBRAD_E_ARGUMENT = -1,     /* A pointer is null, or a value is out of its range, NaN or infinite. */
@@ -109,16 +112,16 @@ typedef enum fibrad_status {
     FIBRAD_E_TABLE = -5,        /* There is no built-in set of so many points. */
     FIBRAD_E_GEOMETRY = -6,     /* A centre lies inside another sphere, or a sphere reaches beyond an opening. */
     FIBRAD_E_WORK = -7,         /* Fixed work memory is too small. work.memory.needed is the size that suffices. */
-    FIBRAD_E_STATE = -8,        /* A call is missing, too early or repeated, or the scene has changed. */
+    FIBRAD_E_STATE = -8,        /* A call is missing, too early or repeated, or the scene was made anew. */
     FIBRAD_E_ISA = -9,          /* This build or this machine lacks the instruction set. */
     FIBRAD_E_UNSUPPORTED = -10, /* The request is valid, but this version cannot compute it. */
     FIBRAD_E_MEMORY = -11,      /* A resize function or the heap has no more memory. */
     FIBRAD_E_CANCELLED = -12,   /* A progress function has asked to stop. */
     FIBRAD_E_UNSOLVABLE = -13,  /* No temperatures give the powers that were asked for. */
     FIBRAD_E_BACK = -14,        /* A ray met a side that belongs to no wall. The triangle is written to the output. */
-    FIBRAD_E_SUM = -15,     /* A row's sum is not 1 within 1e-9. The library has a fault, or a row part was changed. */
-    FIBRAD_E_ENDLESS = -16, /* The walls form a tube or a corner without end. Add a wall or an opening. */
-    FIBRAD_E_FILE = -17     /* A file cannot be made, written or renamed. Only functions of the host return this. */
+    FIBRAD_E_SUM = -15,         /* A row's sum is not 1 within 1e-9. The causes are above. */
+    FIBRAD_E_ENDLESS = -16,     /* The walls form a tube or a corner without end. Add a wall or an opening. */
+    FIBRAD_E_FILE = -17         /* A file cannot be made, written or renamed. Only functions of the host return this. */
 } fibrad_status;
 
 /* The meaning of a status as one English phrase.
@@ -225,7 +228,7 @@ typedef struct fibrad_plane {
  * Planes and the cylinder bound a convex container. Hence no plane and no cylinder hides one sphere from another.
  *   planes    At most two planes lie across one axis: a lower one and, above it, an upper one. A periodic axis has no
  *             planes.
- *   cylinder  There is at most one. The axes x and y are then open and have no planes.
+ *   cylinder  There is at most one. The axes x and y then have no period and no planes.
  *   meshes    Their triangles may hide spheres from each other. fibrad_mesh.h has the rules for triangles.
  *
  * Openings. An opening is a plane where the container ends and the surroundings begin. Radiation that meets an opening
@@ -249,10 +252,11 @@ typedef struct fibrad_body {
  * centre i. If no spheres overlap, the distance cutoff + R suffices. Row i also depends on the walls, the
  * occupancy and the ids. No other sphere changes a bit of row i. The order of the spheres changes no bit either.
  *
- * The fraction `beyond`. Let the known space of row i be the ball whose radius is the cutoff, about centre i. If the
- * scene has a known region, the known space is the part of the ball within this region. Some radiation meets no sphere
- * of the row, and no wall within the known space. This radiation leaves the known space. From there its way goes on to
- * a wall or to the surroundings. This way decides what the radiation counts as.
+ * The fraction `beyond`. The occupancy (fibrad_occupancy) marks the cells of a box in which the bed may have spheres.
+ * Let the known space of row i be the ball whose radius is the cutoff, about centre i. If the scene has a known region,
+ * the known space is the part of the ball within this region. Some radiation meets no sphere of the row, and no wall
+ * within the known space. This radiation leaves the known space. From there its way goes on to a wall or to the
+ * surroundings. This way decides what the radiation counts as.
  *
  *   occupancy  known region  the way outside the known space                counts as
  *   yes        yes or no     passes through no marked cell before its end   the wall at its end, or `escaped`
@@ -286,7 +290,7 @@ typedef struct fibrad_occupancy {
  *       .period = {10, 10, 0}, .body = &floor, .bodies = 1, .opening = &top, .openings = 1}; */
 typedef struct fibrad_scene_config {
     int isa;                                  /* a fibrad_isa */
-    double period[3];                         /* L, length of the periodic box along each axis; 0: the axis is open */
+    double period[3];                         /* L, length of the periodic box along each axis; 0: no period */
     const fibrad_body *body;                  /* [bodies], the walls; copied */
     uint32_t bodies;                          /* number of walls, 0 to FIBRAD_BODIES_MAX, else FIBRAD_E_UNSUPPORTED */
     const fibrad_plane *opening;              /* [openings], copied; no sphere may reach beyond an opening */
@@ -433,15 +437,15 @@ typedef struct fibrad_row {
     uint32_t *col;       /* [capacity], out: the spheres that receive, ascending */
     double *f;           /* [capacity], out: factor from sphere i to sphere col[k], above 0 */
     double *body;        /* [bodies], out: factor to each wall; may be NULL if there are no walls */
-    uint32_t capacity;   /* in: elements of col and f; 0 after a row was appended to `rows` */
+    uint32_t capacity;   /* in: elements of col and f; out: 0 if the row was appended to `rows`, else as before */
     fibrad_rows *rows;   /* in: NULL, or the collection; then capacity is not used */
     uint32_t sphere;     /* out: i */
     uint32_t length;     /* out: number of entries */
     double escaped;      /* out: fraction that reaches the surroundings, through an opening or past everything */
     double beyond;       /* out: fraction whose target the row does not know */
     double error;        /* out: estimated error of the row; in the median it is twice the true error */
-    uint32_t directions; /* out: directions taken; 0 by rays */
-    uint32_t fallbacks;  /* out: windows for which a slower, more robust method was needed; 0 by rays */
+    uint32_t directions; /* out: directions taken; rows by rays: 0 */
+    uint32_t fallbacks;  /* out: windows that needed a slower, more robust method; rows by rays: 0 */
     int symmetric;       /* out: 1 if A_i F_ij = A_j F_ji holds without averaging */
 } fibrad_row;
 
@@ -488,8 +492,8 @@ int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
  *   Source   docs/methods.md section 3 */
 uint32_t fibrad_directions_for(uint32_t directions, double error, double tolerance);
 
-/* A part of a beam row: what some of its directions add to the sums of the row. What one window adds to one sum is a
- * term. Set `memory`, and zero the rest. */
+/* A part of a beam row: what some of its directions contribute. The factors of a row come from sums over its windows.
+ * What one window adds to one sum is a term. Set `memory`, and zero the rest. */
 typedef struct fibrad_row_part {
     fibrad_memory memory;         /* takes 16 bytes for each sphere that a window sees */
     uint64_t key;                 /* of the library: the row, rule and scene of this part; 0: none */
@@ -541,7 +545,8 @@ typedef struct fibrad_cast_means {
  * The origins are spread evenly over the sphere. The directions follow the cosine law. Each ray ends at the first
  * surface that it meets. A factor is the number of rays that end on a surface over the number of all rays. The error
  * falls as rays^-0.6 with quasi-random numbers and as rays^-0.5 with pseudo-random numbers. A ray may start inside
- * another sphere that overlaps sphere i. The ray meets this sphere at length 0 if its centre lies ahead.
+ * another sphere that overlaps sphere i. If the centre of this sphere lies ahead of centre i in the direction of the
+ * ray, the ray meets the sphere at length 0. Otherwise the ray passes through it.
  *   Input    i: 0 to spheres - 1
  *            rule: NULL for all defaults
  *   Output   row
@@ -583,26 +588,27 @@ void fibrad_rows_clear(fibrad_rows *rows);
 int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
 
 /* ---- silhouettes --------------------------------------------------------------------------------------------- */
-/* All rows of a scene at once. Seen along a line, the silhouette of a sphere is a circle. Each piece of the circle has
- * a nearest sphere or wall before it and one behind it. From these two surfaces follows what the sphere exchanges with
- * its neighbours. What the neighbours exchange past the rim of the sphere follows, too. A line serves both of its
- * directions. The rows are reciprocal and closed to rounding, without averaging. The error of rows by n lines is about
- * half the error of averaged beam rows by n directions.
+/* All rows of a scene at once. Seen along a line, the silhouette of a sphere is a circle. The circle is divided into
+ * pieces. Along a piece, the nearest sphere before the circle does not change, and neither does the nearest one behind
+ * it. Such pieces bound the areas through which spheres exchange radiation along the line. So these areas follow from
+ * the pieces of all circles. The rows are reciprocal and closed to rounding, without averaging. The error of rows by n
+ * lines is about half the error of averaged beam rows by n directions.
  *
+ * A pair is two spheres, or a sphere and what lies beyond all spheres, with the area that both exchange.
  *   1. fibrad_silhouettes_init makes the set of lines.
- *   2. fibrad_silhouettes_task does a task. Several threads may do different tasks at the same time. Each thread has
- *      its own fibrad_pairs.
+ *   2. fibrad_silhouettes_task does a task, which gives pairs. Several threads may do different tasks at the same time.
+ *      Each thread has its own fibrad_pairs.
  *   3. fibrad_silhouettes_join puts all pairs together, once all tasks are done.
  *   4. fibrad_silhouettes_row delivers a row. Several threads may ask for rows at the same time.
  *   5. fibrad_matrix_init with rule.reciprocal = 1 makes a matrix of the rows.
  *
- * Planes, openings and a cylinder hide no sphere from another. For the given lines, the sum of a sphere's factors to
- * all planes, openings and the cylinder is exact. Windows, as in beam rows, divide this sum among the walls. Only the
- * directions in which the sphere is open need such windows.
+ * Planes, openings and a cylinder hide no sphere from another. The circles tell how much of a sphere is open along each
+ * line. Added up over all lines, this is the sum of the factors to all planes, openings and the cylinder. Windows, as
+ * in beam rows, divide this sum among them. Only the directions in which the sphere is open need such windows.
  *
  * Scenes with triangles are FIBRAD_E_UNSUPPORTED, since triangles hide spheres. Scenes with a known region are
- * FIBRAD_E_UNSUPPORTED, too. Such a scene is a part of a bed, and its machine knows all obstacles only within the
- * cutoff of its own spheres. For the same reason the rule has no cutoff. Use fibrad_beam_row for such scenes. */
+ * FIBRAD_E_UNSUPPORTED, too, and the rule has no cutoff. The reason is that each area belongs to two spheres. With a
+ * cutoff or a known region the two would not see the same obstacles. Use fibrad_beam_row in these cases. */
 typedef struct fibrad_silhouette_rule {
     uint32_t lines; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: FIBRAD_LINES_DEFAULT */
     uint64_t turn;  /* seed of a random rotation of all lines together; 0: no rotation */
@@ -648,10 +654,11 @@ uint32_t fibrad_silhouettes_tasks(const fibrad_silhouettes *silhouettes);
  *   Input    task: 0 to fibrad_silhouettes_tasks - 1
  *            work, pairs: of the calling thread
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY
- *            _CAPACITY: fixed pairs->memory is too small; pairs->memory.needed is a size that helps
- *            _UNSUPPORTED: about 200 spheres overlap at one point of a circle
+ *            _CAPACITY: fixed pairs->memory is too small; pairs->memory.needed is larger, but may not suffice yet
+ *            _UNSUPPORTED: about 230 discs or more are seen near one point of a circle (docs/methods.md section 12,
+ *            "Many discs at one place")
  *   Cost     about a microsecond per line and sphere in a packed bed
- *   Source   docs/methods.md */
+ *   Source   docs/methods.md section 12 */
 int fibrad_silhouettes_task(const fibrad_silhouettes *silhouettes, fibrad_work *work, uint32_t task,
                             fibrad_pairs *pairs);
 
@@ -672,7 +679,7 @@ int fibrad_silhouettes_join(fibrad_silhouettes *silhouettes, const fibrad_pairs 
  *            _STATE: the pairs are not joined, or have changed since they were joined
  *            _SUM: a task was not done, or done twice
  *   Cost     20 ns per entry; among walls a microsecond for each direction in which the sphere is open
- *   Source   docs/methods.md */
+ *   Source   docs/methods.md section 12 */
 int fibrad_silhouettes_row(const fibrad_silhouettes *silhouettes, fibrad_work *work, uint32_t i, fibrad_row *row);
 
 /* ---- matrix ---------------------------------------------------------------------------------------------------- */
@@ -786,8 +793,8 @@ int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
 /* Ends the matrix. Afterwards A_i F_ij = A_j F_ji to rounding. The sum of every row that is not empty is 1 to rounding.
  * With `raw` nothing is changed. The steps are
  *   1. All tasks that are left are averaged.
- *   2. View factors by exact areas or by silhouettes: let s_i be 1/sum of row i, and at most 1. F_ij is multiplied by
- *      the smaller one of s_i and s_j.
+ *   2. View factors by exact areas or by silhouettes: let s_i be 1/(sum over j of F_ij), and at most 1. F_ij is
+ *      multiplied by the smaller one of s_i and s_j.
  *      Sampled view factors and exchange factors: let rest_i be what raw row i gives to walls, surroundings and
  *      `beyond` together. u_i is found with u_i (sum over j of F_ij u_j + rest_i) = 1. F_ij is multiplied by u_i u_j.
  *   3. Factors to walls, `escaped` and `beyond` are scaled so that the sum of the row is 1. If all of them are 0 in a
@@ -1001,7 +1008,7 @@ typedef struct fibrad_flow {
  * j, on this or on another machine. A factor to a wall or to the surroundings moves the full power, since walls and
  * surroundings have no rows here. All factors of a row are first multiplied by 1/(1 - beyond). Sphere i gains exactly
  * what the others lose, to the bit. Nothing flows between equal emissions.
- *   Input    rows: a collection, added in its order
+ *   Input    rows: a collection; its rows are taken in their order
  *            spheres, bodies: lengths of the arrays in `flow`
  *   Output   flow: the powers
  *   Errors   _ARGUMENT: also a sphere or column not below `spheres`, a number of walls other than `bodies`, or a value
