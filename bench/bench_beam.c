@@ -3,7 +3,7 @@
  *     bench_beam [quick]
  *
  * The bench writes CSV to standard output. centre.h makes the bed and the true rows. Times are processor times, the
- * least of three rounds. */
+ * least of three rounds. `whole` computes all rows of the bed together. */
 #include "centre.h"
 
 static void bench(struct centre *centre, const struct bench_method *method, const char *kind, uint32_t setting) {
@@ -24,8 +24,29 @@ static void bench(struct centre *centre, const struct bench_method *method, cons
     free(full);
 }
 
+/* All rows at once. The time is that of a row of the whole bed, the errors are those of the rows in the middle. */
+static void bench_whole(struct centre *centre, uint32_t lines) {
+    const fibrad_beam_rule rule = {.directions = lines};
+    double *full = bench_array(centre->bed.n, sizeof *full), best = INFINITY;
+    struct centre_error sum = {0};
+    for (int round = 0; round < 3; ++round) {
+        const double begun = bench_thread_seconds();
+        fibrad_bed_factors *factors = bench_factors(&centre->bed, &(fibrad_bed_options){.beam = &rule}, 1);
+        best = fmin(best, bench_thread_seconds() - begun);
+        sum = (struct centre_error){0};
+        for (uint32_t k = 0; k < centre->rows; ++k) {
+            centre_spread(centre, bench_matrix_entries(&factors->matrix, centre->sphere[k]), full);
+            centre_add_error(centre, k, full, &sum);
+        }
+        fibrad_bed_free(factors);
+    }
+    centre_print("whole", "lines", lines, best * centre->rows / centre->bed.n, &sum);
+    free(full);
+}
+
 int main(int argc, char **argv) {
     static const uint32_t directions[] = {34, 55, 100, 200, 400, 800, 1600, 3200, 6400};
+    static const uint32_t lines[] = {36, 50, 100, 200, 400, 800, 1448, 2048};
     static const uint32_t rays[] = {1000, 10000, 100000, 1000000}, nodes[] = {21, 34, 55, 89, 144};
     const bool quick = argc > 1 && strcmp(argv[1], "quick") == 0;
     const size_t most = quick ? 2 : 100; /* settings of each method */
@@ -34,6 +55,7 @@ int main(int argc, char **argv) {
     if (status) return status;
     bench_preamble("bench_beam: rows in the middle of an open random bed of 1,000 (quick: 200)", 1);
     puts(CENTRE_COLUMNS);
+    for (size_t d = 0; d < sizeof lines / sizeof *lines && d < most; ++d) bench_whole(&centre, lines[d]);
     for (uint32_t points = 0; points <= 256; points = points ? 2 * points : 64)
         for (size_t d = 0; d < sizeof directions / sizeof *directions && d < most; ++d) {
             const fibrad_beam_rule rule = {.directions = directions[d], .points = points};

@@ -35,11 +35,16 @@ static inline void centre_find(struct centre *centre, double edge) {
     }
 }
 
+/* Writes the entries of a row to an array of all n columns. */
+static inline void centre_spread(const struct centre *centre, struct bench_entries row, double *full) {
+    memset(full, 0, centre->bed.n * sizeof *full);
+    for (uint32_t k = 0; k < row.length; ++k) full[row.col[k]] = row.f[k];
+}
+
 /* Computes a row by one of the kernel's methods, as an array of all n columns. */
 static inline void centre_row(struct centre *centre, const struct bench_method *method, uint32_t i, double *full) {
     bench_row(centre->scene, &centre->work, method, i, &centre->row);
-    memset(full, 0, centre->bed.n * sizeof *full);
-    for (uint32_t k = 0; k < centre->row.length; ++k) full[centre->row.col[k]] = centre->row.f[k];
+    centre_spread(centre, bench_row_entries(&centre->row), full);
 }
 
 /* Makes bed, scene and true rows. The program ends without freeing them. Status as bed_make_packing. */

@@ -107,7 +107,6 @@ typedef struct fibrad_circles {
     fibrad_circle_near near;
     uint32_t homes, marched; /* ends of the lists of near spheres: those of shells, those that marches have found */
     bool images;             /* whether some near spheres are images of others */
-    bool periodic;
     bool apart;    /* what lies beyond all spheres has a different name for each line and sense */
     uint32_t half; /* whether the line in hand is even, 0, or odd, 1 */
     const fibrad_scene *scene;

@@ -567,6 +567,10 @@ static double piece_area(const fibrad_circles *c, uint32_t k, const fibrad_circl
     return (area - half * (disc->u[origin] * sine - disc->v[origin] * cosine)) * disc->weight[origin];
 }
 
+/* No two discs of both sides lie farther apart than this. A disc is listed if a tangent to both spheres is at most
+ * `known` long. All radii are less than 2. */
+static double deepest_listed(const fibrad_circles *c) { return (c->side[0].known + c->side[1].known + 2) * c->r + 4; }
+
 /* If two spheres lie farther apart than lines are followed, they exchange nothing. A piece then takes its area from
  * what each of them exchanges with what lies beyond all spheres. */
 static void part_distant(fibrad_circles *c, fibrad_pair_table *table) {
@@ -857,7 +861,7 @@ static int follow(fibrad_workspace *work, fibrad_circles *c, double begin, doubl
     }
     find_angles(c);
     find_areas(c);
-    if (c->periodic) part_distant(c, table);
+    if (deepest_listed(c) > c->farthest) part_distant(c, table);
     add_pieces(c, table);
     if (c->marched > first_marched) add_sums(c, work->place, first_marched, c->marched, table);
     c->marched = first_marched;

@@ -240,12 +240,10 @@ static void begin_circles(const fibrad_scene *scene, fibrad_circles *c) {
     c->scale = 1;
     while (c->scale * scene->facts.radius_max >= 2) c->scale /= 2;
     while (c->scale * scene->facts.radius_max < 1) c->scale *= 2;
-    c->periodic = false;
     c->apart = scene->container.walls;
     for (int axis = 0; axis < 3; axis++) {
         c->origin[axis] = scene->box_low[axis];
         c->period[axis] = scene->period[axis] * c->scale;
-        c->periodic = c->periodic || scene->period[axis] > 0;
     }
     c->grid = centre_grid(scene, c->scale);
     for (int k = 0; k < FIBRAD_LANES_MAX; k++) c->near.fill[k] = c->near.nowhere;
