@@ -107,8 +107,8 @@ typedef struct fibrad_circles {
     fibrad_circle_near near;
     uint32_t homes, marched; /* ends of the lists of near spheres: those of shells, those that marches have found */
     bool images;             /* whether some near spheres are images of others */
-    bool apart;    /* what lies beyond all spheres has a different name for each line and sense */
-    uint32_t half; /* whether the line in hand is even, 0, or odd, 1 */
+    bool apart;              /* what lies beyond all spheres has a different name for each line and sense */
+    uint32_t half;           /* whether the line in hand is even, 0, or odd, 1 */
     const fibrad_scene *scene;
     double origin[3]; /* L */
     double scale;     /* 1/L, a power of two */
