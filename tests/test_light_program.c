@@ -81,10 +81,29 @@ TEST(lit_sides_are_hotter) {
     ck_assert_double_lt(span[0], 1e-3);
     ck_assert(span[1] > 50 && span[2] > span[1]);
     ck_assert_double_gt(leaves[1], leaves[0]); /* lit sides are what the sky sees */
-    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:1e4", "--solid-conductivity",
-                          "1", "--until", "10", "--heat-capacity", "800", "--density", "2500"),
-                     2);
-    expect_message("--solid-conductivity and --irradiate with --until", "leave one out");
+}
+
+/* Spheres that conduct, lit and in time, end where the steady temperatures are, with the same surfaces. The energy is
+ * kept. */
+TEST(lit_sides_in_time) {
+    const char *csv = in_folder("time.csv"), *solid = "--solid-conductivity";
+    ck_assert_int_eq(
+        HEAT("--power", "0", "--wall", CUP, "--irradiate", "0,0,-1:1e4", "--directions", "50", solid, "3", "-o", csv),
+        0);
+    const double mean = value_of("temperature_mean_K"), hottest = value_of("surface_max_K");
+    ck_assert_int_eq(HEAT("--temperature", "400", "--wall", CUP, "--irradiate", "0,0,-1:1e4", "--directions", "50",
+                          solid, "3", "--until", "4e4", "--heat-capacity", "800", "--density", "100", "-o", csv),
+                     0);
+    ck_assert_double_eq_tol(value_of("temperature_mean_K"), mean, .002 * mean);
+    ck_assert_double_le(fabs(value_of("balance_of_stored")), 1e-12);
+    char *text = read_file(csv);
+    double most = 0;
+    for (const char *line = strchr(text, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
+        double surface;
+        if (sscanf(line, "%*f,%*d,%*f,%*f,%*f,%*f,%*f,%lf", &surface) == 1) most = fmax(most, surface);
+    }
+    ck_assert_double_eq_tol(most, hottest, .01 * hottest);
+    free(text);
 }
 
 /* A roof of triangles over half of the cup takes half of the light. Its lower side must not be lit, unless it is a

@@ -172,9 +172,6 @@ static int heat_check_request(struct heat_request *request) {
         return message(STATUS_USAGE,
                        "--solid-conductivity is for --model patches: in other models a sphere has no sides");
     bed_options_quantity(&request->bed, &request->emissivity, NULL);
-    if (request->solid.given && request->light.lights > 0 && request->given.timed)
-        return message(STATUS_USAGE, "--solid-conductivity and --irradiate with --until: lit sides of spheres are not "
-                                     "followed in time; leave one out");
     bed_options_quantity(&request->bed, &request->solid, NULL);
     status = time_check(&request->time, &request->bed);
     if (!status) status = light_check(&request->light, &request->bed, &request->emissivity);

@@ -205,7 +205,8 @@ static int heat_once(struct bed_options *options, const struct heat_problem *pro
     int status = heat_memory(bed, &report->config);
     if (status) return status;
     status = fibrad_radiation_new(&radiation, &scene, &spheres, &report->config, &run);
-    if (!status) status = light_absorb(problem->light, bed, &problem->walls, radiation, &sources);
+    if (!status)
+        status = light_absorb(problem->light, &(struct lit_bed){bed, &problem->walls, radiation, NULL, 1}, &sources);
     if (!status)
         status = fibrad_radiation_settle(radiation, &sources, heat_follow, &(struct heat_law){problem, bed},
                                          problem->emissivity, wall_emissivity, &report->result);

@@ -219,35 +219,31 @@ static int library_status(struct time_run *m, int status) {
                       m->now, m->time->step > 0 ? "; --step auto takes shorter steps" : "");
 }
 
-/* Absorbed light heats surfaces all the time. An insulated wall would have to give off as thermal radiation what it
- * absorbs. */
+/* Absorbed light heats surfaces all the time, by patches those that it falls on. An insulated wall would have to give
+ * off as thermal radiation what it absorbs. */
 static int absorb_light(struct time_run *m) {
     struct light_state *light = m->problem->light;
-    const struct walls *walls = &m->problem->walls;
-    if (!light->options) return STATUS_OK;
-    for (uint32_t k = 0; k < walls->count; ++k)
-        if (m->sources.insulated[k] && light->of_walls[k] > 0)
-            return message(STATUS_USAGE, "--irradiate with --until: %s is insulated and needs --wall-absorptivity %s=0",
-                           wall_name(walls, k), wall_name(walls, k));
-    const fibrad_scene_config scene = bed_scene(&m->bed, walls);
+    const fibrad_scene_config scene = bed_scene(&m->bed, &m->problem->walls);
     const fibrad_spheres spheres = bed_spheres(&m->bed);
     fibrad_run run = bed_options_run(m->options);
-    fibrad_heat_sources sources = m->sources;
-    fibrad_radiation *radiation;
-    int status = fibrad_radiation_new(&radiation, &scene, &spheres, &m->problem->config, &run);
-    if (!status) status = light_absorb(light, &m->bed, walls, radiation, &sources);
-    fibrad_radiation_describe(radiation, NULL, &run.fault);
-    fibrad_radiation_free(radiation);
+    struct lit_bed lit = {&m->bed, &m->problem->walls, NULL, m->by_patches ? m->transient : NULL, m->square_metres};
+    int status = FIBRAD_OK;
+    if (!light->options) return STATUS_OK;
+    for (uint32_t k = 0; k < lit.walls->count; ++k)
+        if (m->sources.insulated[k] && light->of_walls[k] > 0)
+            return message(STATUS_USAGE, "--irradiate with --until: %s is insulated and needs --wall-absorptivity %s=0",
+                           wall_name(lit.walls, k), wall_name(lit.walls, k));
+    if (!m->by_patches) status = fibrad_radiation_new(&lit.radiation, &scene, &spheres, &m->problem->config, &run);
+    if (!status) status = light_absorb(light, &lit, &m->sources);
+    if (m->by_patches) fibrad_transient_describe(m->transient, NULL, &run.fault);
+    if (!m->by_patches) {
+        fibrad_radiation_describe(lit.radiation, NULL, &run.fault);
+        fibrad_radiation_free(lit.radiation);
+        m->sources.absorbed = NULL;
+    }
     if (status) progress_stop(&m->options->progress);
     if (light_refuse(light, &m->bed, status, &run.fault)) return STATUS_USAGE;
-    status = bed_options_status(m->options, &m->bed, status, &run.fault);
-    if (status) return status;
-    light_scale(light, m->bed.n, walls->count, m->square_metres);
-    for (uint32_t i = 0; i < m->bed.n; ++i) light->power[i] = m->problem->sources.power[i] + light->absorbed[i];
-    for (uint32_t k = 0; k < walls->count; ++k)
-        light->wall_power[k] = m->problem->sources.body_power[k] + light->wall[k];
-    m->sources.power = light->power, m->sources.body_power = light->wall_power;
-    return STATUS_OK;
+    return bed_options_status(m->options, &m->bed, status, &run.fault);
 }
 
 /* Computes the powers at m->now and writes all outputs. */
@@ -393,9 +389,11 @@ static int run_bed(struct time_run *m, double *before, const struct output *pict
     int status = fibrad_transient_new(&m->transient, &scene, &spheres, &config, &run);
     status = bed_options_status(m->options, &m->bed, status, &run.fault);
     if (status) return status;
+    status = absorb_light(m);
+    if (!status) status = light_profile(m->problem->light, m->source, m->options->name);
     outside_at(m, 0, m->wall, &m->sources.surroundings);
     memcpy(before, m->span.temperature, m->bed.n * sizeof *before);
-    status = run_spans(m);
+    if (!status) status = run_spans(m);
     progress_stop(&m->options->progress);
     if (!status && picture) status = plot_time(picture, m->options->name, m->point, m->points);
     if (!status) warn_lag(m);
@@ -432,8 +430,6 @@ int heat_in_time(struct bed_options *options, const struct time_options *time, c
     if (!status) status = choose_model(&m);
     if (!status) status = find_capacities(&m, metres, &capacity);
     m.span.capacity = capacity;
-    if (!status) status = absorb_light(&m);
-    if (!status) status = light_profile(problem->light, bed, options->name);
     if (!status) status = run_bed(&m, now + bed->n, picture);
     free(now);
     free(capacity);

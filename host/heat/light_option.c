@@ -174,12 +174,13 @@ static void add_absorbed(struct light_state *state, const struct bed *bed, const
     sources->absorbed = state->result.patches;
 }
 
-int light_absorb(struct light_state *state, const struct bed *bed, const struct walls *walls,
-                 fibrad_radiation *radiation, fibrad_heat_sources *sources) {
+int light_absorb(struct light_state *state, const struct lit_bed *lit, fibrad_heat_sources *sources) {
     const struct light_options *options = state->options;
+    fibrad_light scaled[LIGHTS_MAX];
     if (!options) return FIBRAD_OK;
+    for (uint32_t k = 0; k < options->lights; ++k) scaled[k] = options->light[k], scaled[k].flux *= lit->unit;
     fibrad_light_sources light = {.lights = options->lights,
-                                  .light = options->light,
+                                  .light = scaled,
                                   .absorptivity = state->absorptivity,
                                   .body_absorptivity = state->of_walls,
                                   .uniform = sources->uniform};
@@ -189,9 +190,10 @@ int light_absorb(struct light_state *state, const struct bed *bed, const struct 
                                           .body_absorbed = state->wall,
                                           .body_absorbed_first = state->wall_first,
                                           .body_absorbed_error = state->wall_error};
-    const int status = fibrad_radiation_shine(radiation, &light, &state->result);
+    const int status = lit->transient ? fibrad_transient_shine(lit->transient, &light, &state->result)
+                                      : fibrad_radiation_shine(lit->radiation, &light, &state->result);
     state->failed = status != FIBRAD_OK;
-    if (!status) add_absorbed(state, bed, walls, sources);
+    if (!status) add_absorbed(state, lit->bed, lit->walls, sources);
     return status;
 }
 

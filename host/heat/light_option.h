@@ -71,11 +71,19 @@ int light_begin(struct light_state *state, const struct light_options *options, 
                 const struct walls *walls, const double *emissivity, const double *wall_emissivity);
 void light_free(struct light_state *state);
 
-/* Computes the light that is absorbed, in units of the bed's length squared, and adds it to the powers of the sources.
- * These are then the sources of thermal radiation. Without light the function does nothing. Returns a status of the
- * library. */
-int light_absorb(struct light_state *state, const struct bed *bed, const struct walls *walls,
-                 fibrad_radiation *radiation, fibrad_heat_sources *sources);
+/* Where light is absorbed: a bed, by one of two objects of the library, and its walls. */
+struct lit_bed {
+    const struct bed *bed;
+    const struct walls *walls;
+    fibrad_radiation *radiation;
+    fibrad_transient *transient; /* NULL: radiation counts */
+    double unit;                 /* of powers: the square of the bed's length [m2] for watts; 1 */
+};
+
+/* Computes the light that is absorbed and adds it to the powers of the sources. These are then the sources of thermal
+ * radiation. They have pointers into the object of the library. Without light the function does nothing. Returns a
+ * status of the library. */
+int light_absorb(struct light_state *state, const struct lit_bed *lit, fibrad_heat_sources *sources);
 
 /* Says why light_absorb has failed. Returns STATUS_USAGE; 0: nothing is wrong with the light. */
 int light_refuse(const struct light_state *state, const struct bed *bed, int status, const fibrad_fault *fault);

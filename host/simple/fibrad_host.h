@@ -4,7 +4,7 @@
  *   run      fibrad_run: threads, progress, cancelling
  *   factors  fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_side_views, fibrad_displacements
  *   heat     fibrad_radiation_new, _move, _solve, _sides, _settle, _shine, _describe, _free
- *   time     fibrad_transient_new, _move, _powers, _sides, _advance, _describe, _free
+ *   time     fibrad_transient_new, _move, _powers, _sides, _shine, _advance, _describe, _free
  *   kernel   fibrad_heap_resize, fibrad_host_sizeof
  *
  * Example   fibrad_bed_factors *bed;
@@ -308,6 +308,14 @@ int fibrad_transient_powers(fibrad_transient *transient, const fibrad_heat_sourc
  *   Errors   as fibrad_radiation_sides
  *            _STATE: also by FACTORS */
 int fibrad_transient_sides(const fibrad_transient *transient, double *flux, double *temperature);
+
+/* What the bed absorbs of light from outside.
+ *   Input    sources: as for fibrad_radiation_shine
+ *   Output   result: as for fibrad_radiation_shine; by PATCHES hand result->patches on as sources.absorbed
+ *   Errors   as fibrad_radiation_shine
+ *            _STATE: also by FACTORS */
+int fibrad_transient_shine(fibrad_transient *transient, const fibrad_light_sources *sources,
+                           fibrad_light_result *result);
 
 /* A function of the caller that is called after each step.
  *   Input    context: fibrad_span.context

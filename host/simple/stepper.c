@@ -287,6 +287,14 @@ int fibrad_transient_sides(const fibrad_transient *t, double *flux, double *temp
     return t->radiation ? fibrad_radiation_sides(t->radiation, flux, temperature) : FIBRAD_E_STATE;
 }
 
+int fibrad_transient_shine(fibrad_transient *t, const fibrad_light_sources *sources, fibrad_light_result *result) {
+    if (!t) return FIBRAD_E_ARGUMENT;
+    if (!t->radiation) return FIBRAD_E_STATE;
+    const int status = fibrad_radiation_shine(t->radiation, sources, result);
+    fibrad_radiation_describe(t->radiation, NULL, &t->fault);
+    return status;
+}
+
 int fibrad_transient_advance(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_span *span) {
     if (!t || !sources || !span || !surfaces_given(t, sources)) return FIBRAD_E_ARGUMENT;
     int status = check_span(t, sources, span);
