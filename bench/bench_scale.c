@@ -4,10 +4,10 @@
  *
  * The bench writes CSV to standard output. The beds are periodic random beds, radii 0.8-1.2, solid fraction 0.55. Above
  * 10,000 spheres a bed consists of copies of one of 10,000, side by side. One thread and two threads take turns. From
- * half a million spheres on there are two threads only. All rows are computed with exact areas and averaged. `seconds`
- * is elapsed time. `processor_us` is the processor time of all threads per window (sphere and direction), which others
- * on the machine disturb less. `bytes` is the largest memory that the process has ever had, so the numbers of spheres
- * must rise. */
+ * half a million spheres on there are two threads only. All rows are computed by silhouettes along 55 lines.
+ * `seconds` is elapsed time. `processor_us` is the processor time of all threads per circle (sphere and line), which
+ * others on the machine disturb less. `bytes` is the largest memory that the process has ever had, so the numbers of
+ * spheres must rise. */
 #include <errno.h>
 #include <sys/resource.h>
 
@@ -15,7 +15,7 @@
 #include "bench_bed.h"
 #include "cli/message.h"
 
-enum { DIRECTIONS = 55, TILE = 10000, MILLION = 1000000 };
+enum { LINES = 55, TILE = 10000, MILLION = 1000000 };
 
 static double peak_bytes(void) {
     struct rusage usage;
@@ -41,12 +41,12 @@ static int bench(uint32_t n, int threads) {
     struct bed bed;
     int status = make_bed(&bed, n);
     if (status) return status;
-    const fibrad_beam_rule rule = {.directions = DIRECTIONS};
+    const fibrad_beam_rule rule = {.directions = LINES};
     const clock_t begun = clock();
     fibrad_bed_factors *factors = bench_factors(&bed, &(fibrad_bed_options){.beam = &rule}, threads);
     const double processor = (double)(clock() - begun) / CLOCKS_PER_SEC;
     printf("%u,%d,%llu,%.3f,%.2f,%.3f,%.0f,%.1e\n", bed.n, threads, (unsigned long long)factors->matrix.start[bed.n],
-           factors->seconds, 1e6 * factors->seconds / bed.n, 1e6 * processor / bed.n / DIRECTIONS, peak_bytes() / bed.n,
+           factors->seconds, 1e6 * factors->seconds / bed.n, 1e6 * processor / bed.n / LINES, peak_bytes() / bed.n,
            factors->closure_error);
     fflush(stdout);
     if (!(factors->closure_error < 1e-12 && factors->reciprocity_error < 1e-14))
@@ -61,8 +61,8 @@ int main(int argc, char **argv) {
     const bool is_quick = argc == 2 && strcmp(argv[1], "quick") == 0;
     char **list = is_quick ? quick : argc > 1 ? argv + 1 : all;
     const int count = is_quick ? 1 : argc > 1 ? argc - 1 : 3;
-    bench_preamble("bench_scale: periodic random beds, 55 directions, exact areas, averaged", 2);
-    puts("spheres,threads,entries,seconds,us_per_sphere,processor_us_per_window,peak_bytes_per_sphere,closure");
+    bench_preamble("bench_scale: periodic random beds, silhouettes along 55 lines", 2);
+    puts("spheres,threads,entries,seconds,us_per_sphere,processor_us_per_circle,peak_bytes_per_sphere,closure");
     int status = STATUS_OK;
     for (int k = 0; k < count && !status; ++k) {
         char *end;

@@ -1,4 +1,4 @@
-# plot_scale.gp - processor time per window and memory against the number of spheres. SPDX-License-Identifier: MIT
+# plot_scale.gp - processor time per circle and memory against the number of spheres. SPDX-License-Identifier: MIT
 # gnuplot -e "in='build/bench/bench_scale.csv'; out='scale.svg'" bench/plot_scale.gp
 if (!exists("in")) in = 'build/bench/bench_scale.csv'
 if (!exists("out")) out = 'build/bench/scale.svg'
@@ -9,7 +9,7 @@ set datafile commentschars "#"
 set logscale x
 set format x "10^{%T}"
 set xlabel "spheres"
-set ylabel "processor time per window [microseconds]"
+set ylabel "processor time per circle (sphere and line) [microseconds]"
 set y2label "memory per sphere [kB]"
 set ytics nomirror
 set y2tics
