@@ -53,7 +53,8 @@ typedef struct fibrad_furnace fibrad_furnace;
  *   Cost     O(1) */
 size_t fibrad_furnace_size(const fibrad_furnace_config *config);
 
-/* Makes a furnace. E of every cell is that of the median wall, weighted by emissivity and area. Theta is 2/3.
+/* Makes a furnace. Theta is 2/3. E of every cell is the median of E of the walls. In this median a wall has the weight
+ * emissivity times area.
  *   Input    memory[size]
  *            config
  *   Output   furnace: a pointer into memory
@@ -63,7 +64,7 @@ int fibrad_furnace_init(fibrad_furnace **furnace, void *memory, size_t size, con
 
 /* The arrays of a furnace. x runs fastest, then y, then z. The arrays have three shapes:
  *   cell  one element for each cell
- *   face  of axis a: one element for each face across axis a, one layer more than cells along a
+ *   face  of axis a: one element for each face across axis a. Along axis a there is one face more than cells.
  *   wall  one element for each face of the wall
  * The second index of flux, theta and transverse is the hemisphere: 0 is up the axis (+), 1 is down (-). The caller may
  * write e, flux and theta. */
@@ -73,7 +74,7 @@ typedef struct fibrad_furnace_arrays {
     double *six_flux;         /* W/m2, cell: sum over axes and hemispheres of the mean flux of the cell's faces */
     double *flux[3][2];       /* W/m2, face: q+ and q-, as solved or measured last */
     double *theta[3][2];      /* face: Theta+ and Theta-, as set or measured last */
-    double *transverse[3][2]; /* 1/m, cell: C+ and C- over the mean flux of the cell's two faces */
+    double *transverse[3][2]; /* 1/m, cell: C+ and C-, divided by the mean flux of the cell's two faces */
     double *wall[6];          /* W/m2, wall: net flux from the wall */
     double *power;            /* W, [6]: net power that leaves each wall */
 } fibrad_furnace_arrays;
@@ -97,7 +98,7 @@ double fibrad_furnace_temperature(double e);
  *   Source   docs/furnace.md */
 int fibrad_furnace_theta(fibrad_furnace *furnace, double theta);
 
-/* What the medium scatters is a quarter of the incident radiation. This rule says how the quarter is computed. */
+/* Let G be the incident radiation. The flux equations need scattering G/4. This rule says how G/4 is computed. */
 typedef enum fibrad_furnace_scatter {
     FIBRAD_SCATTER_SIX_FLUX = 0, /* a sixth of the sum of the six fluxes, as in the paper */
     FIBRAD_SCATTER_EXACT = 1     /* E - source/(4 absorption), exact in equilibrium */
@@ -134,7 +135,7 @@ typedef enum fibrad_furnace_physics {
 
 /* Plans the bundles to be traced next. Transport is linear and tallies are additive. Hence there are two kinds of
  * plans:
- *   first    about `bundles` bundles, for what walls and medium emit above the median wall
+ *   first    about `bundles` bundles, for what walls and medium emit more or less than at E of the median wall
  *   further  bundles for the change of E since the last plan, with the same energy per bundle; none with
  *            FIBRAD_FURNACE_EQUILIBRIUM
  * Every source emits a whole number of bundles, at least one.
@@ -190,8 +191,8 @@ typedef enum fibrad_furnace_estimator {
  * The results are averages over the symmetries of the box, mirror images and exchanges of axes. Where there are so few
  * bundles that a moment is not above 0, Theta does not change. The same tally may be evaluated again.
  *   Input    tally: the sum
- *            transverse: not 0 sets also the transverse term of equations 5 and 6, which the paper omits, from the
- *            balance of each cell; needs FIBRAD_THETA_DEFINITION. 0 sets the transverse term to 0.
+ *            transverse: 0 sets the transverse term to 0, as in the paper. Otherwise the transverse term of equations
+ *            5 and 6 is set from the balance of each cell. This needs FIBRAD_THETA_DEFINITION.
  *            scatter: used for the transverse term
  *   Errors   _ARGUMENT
  *            _STATE: the plans since the restart had other physics, or the tally does not hold each of their bundles

@@ -17,9 +17,9 @@
  * Edges    Two triangles share an edge if their corners have equal coordinates. Nothing passes between them.
  * Walls    Planes and the cylinder bound the scene. The part of a triangle that lies beyond them has no effect.
  * Periods  Triangles repeat along the periodic axes of the scene. Their corners may lie outside the box.
- * Bounds   Let 2 l be the largest extent of all triangles together along any axis. No coordinate of corners, spheres
- *          and planes may be above 3e13 l. Let m = 2 + (extent of all triangles along an axis + largest diameter of a
- *          sphere)/period. The product of m over all periodic axes may be at most 4096. Otherwise fibrad_scene_init
+ * Bounds   Along each axis all triangles together have an extent. Let l be half of the largest extent. No coordinate of
+ *          corners, spheres and planes may be above 3e13 l. For each periodic axis let m = 2 + (extent along the axis +
+ *          largest diameter of a sphere)/period. The product of all m may be at most 4096. Otherwise fibrad_scene_init
  *          returns FIBRAD_E_ARGUMENT, and fault.triangle is a triangle that is too far away, too small or too long.
  * Cutoffs  A row with a cutoff meets a triangle beyond the cutoff if the occupancy of the scene has no spheres in
  *          between.
@@ -51,7 +51,7 @@ typedef struct fibrad_triangles {
     const uint32_t *front;   /* [n], wall of each front side; FIBRAD_NO_BODY: none */
     const uint32_t *back;    /* [n], wall of each back side; FIBRAD_NO_BODY: none; NULL: none for all */
     uint32_t n;              /* number of triangles, 0 to FIBRAD_TRIANGLES_MAX */
-    double period[3];        /* L, repeats only the triangles, along an open axis of the scene; 0: no repetition */
+    double period[3];        /* L, of triangles alone, along an axis that is open for spheres; 0: none */
 } fibrad_triangles;
 
 /* Bytes that n triangles add to fibrad_scene_size(spheres, ids): 135 per triangle and 4 per sphere.

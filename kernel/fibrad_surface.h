@@ -9,9 +9,10 @@
  * errors and the layout of comments are as in fibrad.h.
  *
  * Method   Each sphere carries a Fibonacci lattice of nodes about the line of centres. The nodes are clustered at the
- *          poles. The factor is the sum of cos cos/(pi e^2) over all pairs of nodes, e being the ray between them. A
- *          ray that meets an obstacle does not count. The sum is taken twice, the second time with the nodes of sphere
- *          2 turned by pi about the line of centres.
+ *          poles. Each node stands for a piece of the surface. Let a and b be the areas of two nodes and e the ray
+ *          between them. Then F12 is the sum of a b cos cos/(pi e^2) over all pairs of nodes, divided by the area of
+ *          sphere 1. A ray that meets an obstacle does not count. F12 is the mean of two such sums. For the second one
+ *          the nodes of sphere 2 are turned by pi about the line of centres.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_SURFACE_H
