@@ -8,6 +8,7 @@
 #include "host_owned.h"
 #include "scenes.h"
 #include "meshes.h"
+#include "sample/line.h"
 #include "suite.h"
 
 static const int threads[] = {1, 2, 5};
@@ -62,6 +63,38 @@ TEST(view_factors_are_the_kernels) {
         ck_assert_double_lt(factors->closure_error, 1e-12);
         ck_assert_double_lt(factors->reciprocity_error, 1e-14);
         ck_assert(factors->body_area[0] > 0 && isfinite(factors->body_area[1]));
+    }
+}
+
+/* A straight row of n spheres along a line of the set of LINES. All but the first are shifted across the line, each by
+ * 1e-9 less than the one before. Near a point of the circle of the first sphere, all others are seen along the line. */
+enum { LINES = 8, ROW_MOST = 300 };
+static struct bed shifted_row(uint32_t n) {
+    static double ball[ROW_MOST][4];
+    double line[LINES][3], scratch[3 * LINES];
+    fibrad_lines_make(LINES, line, scratch);
+    const double *d = line[1], size = hypot(d[0], d[1]);
+    for (uint32_t k = 0; k < n; k++) {
+        const double depth = 2.5 * k, aside = k == 0 ? 0 : (.5 - 1e-9 * k) / size;
+        ball[k][0] = depth * d[0] + aside * d[1], ball[k][1] = depth * d[1] - aside * d[0];
+        ball[k][2] = depth * d[2], ball[k][3] = 1;
+    }
+    return bed_of(n, (const double(*)[4])ball);
+}
+
+/* If a circle sees too many discs at one place, averaged rows by beams stand in for silhouettes. */
+TEST(many_discs_at_one_place) {
+    const fibrad_beam_rule rule = {.directions = LINES};
+    for (uint32_t n = 200; n <= ROW_MOST; n += 100) {
+        OWNED_BED bed = shifted_row(n);
+        const fibrad_spheres spheres = spheres_of(&bed);
+        OWNED fibrad_scene *scene = scene_with(&bed, NULL);
+        OWNED_ROWS rows = n == 200 ? rows_by_silhouettes(scene, LINES) : rows_one_by_one(scene, n, 0, &rule);
+        OWNED_MATRIX expected = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.reciprocal = n == 200});
+        OWNED_FACTORS *factors = NULL;
+        ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &(fibrad_bed_options){.beam = &rule}, NULL, &factors),
+                         FIBRAD_OK);
+        ck_assert(matrix_same_bits(&factors->matrix, &expected.factors));
     }
 }
 
