@@ -120,8 +120,7 @@ static void measure(struct method *method, fibrad_areas *areas, const struct win
 int main(int argc, char **argv) {
     const bool quick = argc > 1 && strcmp(argv[1], "quick") == 0;
     const uint32_t rows = quick ? 10 : 400, directions = 50;
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     int status = bed_make_packing(&bed, quick ? 200 : 2000, 1, 1, 0.6, 1);
     if (status) return status;
 

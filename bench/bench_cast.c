@@ -60,9 +60,8 @@ static int bench_bed(fibrad_work *work, uint32_t n, bool quick) {
     static const uint32_t rays[] = {10000, 100000, 1000000};
     const fibrad_beam_rule fine = {.directions = quick ? 1000 : 10000};
     fibrad_row truth[ROWS];
-    struct bed bed;
+    struct bed bed = bed_empty();
     void *block;
-    bed_init(&bed);
     const int status = bed_make_packing(&bed, n, .8, 1.2, .55, 1);
     if (status) return status;
     const fibrad_scene *scene = bench_scene(&bed, FIBRAD_ISA_BEST, &block);

@@ -44,9 +44,8 @@ int main(int argc, char **argv) {
     const bool quick = argc > 1 && strcmp(argv[1], "quick") == 0;
     const double emissivities[] = {.3, .8, 1};
     fibrad_work work = BENCH_GROWING;
-    struct bed bed;
+    struct bed bed = bed_empty();
     void *block;
-    bed_init(&bed);
     const int status = bed_make_packing(&bed, quick ? 640 : 6400, 1, 1, .588, 1);
     if (status) return status;
     const fibrad_scene *scene = bench_scene(&bed, FIBRAD_ISA_BEST, &block);

@@ -70,7 +70,7 @@ static void take_clear(struct bundle *b, const struct bed *from, uint32_t most) 
         if (tube_gap(b, from, i) > 0) away[clear++] = from_middle(b, from, i);
     qsort(away, clear, sizeof *away, by_size);
     const double limit = clear > most ? away[most - 1] : INFINITY;
-    bed_init(&b->bed);
+    b->bed = bed_empty();
     for (uint32_t i = 0; i < from->n; ++i)
         if (tube_gap(b, from, i) > 0 && from_middle(b, from, i) <= limit &&
             bed_add(&b->bed, &(struct bed_sphere){.x = from->x[i], .y = from->y[i], .z = from->z[i], .r = from->r[i]}))
@@ -204,9 +204,8 @@ int main(int argc, char **argv) {
     static const uint32_t directions[] = {55, 100, 200, 400, 800, 1600}, rays[] = {1 << 13, 1 << 17, 1 << 20};
     const bool quick = argc == 2 && strcmp(argv[1], "quick") == 0;
     const uint32_t settings = quick ? 2 : 6, samples = quick ? 1 : 3;
-    struct bed from;
+    struct bed from = bed_empty();
     struct bundle bundle = {0};
-    bed_init(&from);
     const int status = argc == 2 && !quick ? read_bed(argv[1], &(struct read_options){0}, &from)
                                            : bed_make_packing(&from, quick ? 500 : 7000, 0.4, 0.6, 0.58, 1);
     if (status) return status;

@@ -24,8 +24,7 @@ int main(int argc, char **argv) {
     static const uint32_t directions[] = {50, 100, 200, 400, 800, 1600, 6400};
     const bool quick = argc > 1 && strcmp(argv[1], "quick") == 0;
     const uint32_t fine = quick ? 4000 : 40000;
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     const int status = bed_make_packing(&bed, 1000, 0.8, 1.2, 0.55, 1);
     if (status) return status;
     const double edge = bed.period[0];

@@ -96,16 +96,14 @@ static int of_file(const char *path) {
 }
 
 static int of_packing(const char *name, uint32_t n, double low, double fraction) {
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     const int status = bed_make_packing(&bed, n, low, 1, fraction, 5);
     return finish(status, &bed, name);
 }
 
 static int of_lattice(void) {
-    struct bed bed;
+    struct bed bed = bed_empty();
     int status = 0;
-    bed_init(&bed);
     for (int k = 0; !status && k < 1000; ++k)
         status =
             bed_add(&bed, &(struct bed_sphere){.x = 2 * (k % 10), .y = 2 * (k / 10 % 10), .z = 2 * (k / 100), .r = 1});
@@ -116,8 +114,7 @@ static int of_lattice(void) {
 static int of_scenes(void) {
     int status = 0;
     for (uint32_t scene = 0; !status && scene < SCENES; ++scene) {
-        struct bed bed;
-        bed_init(&bed);
+        struct bed bed = bed_empty();
         status = bed_make_packing(&bed, 3 + scene % 6, 0.5, 1, 0.2, scene);
         for (int axis = 0; axis < 3; ++axis) bed.period[axis] = 0;
         status = finish(status, &bed, scene + 1 < SCENES ? NULL : "3 to 8 spheres");

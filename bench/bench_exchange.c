@@ -188,8 +188,7 @@ static void find_truth(struct bench *bench, uint32_t paths) {
 
 int main(int argc, char **argv) {
     const bool quick = argc > 1 && strcmp(argv[1], "quick") == 0;
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     const int status = bed_make_packing(&bed, quick ? 200 : 2000, 1, 1, .586, 1);
     if (status) return status;
     struct bench bench = open_bench(&bed);

@@ -88,8 +88,7 @@ static void bench_settings(bool quick) {
     static const uint32_t patches[] = {24, 96, 384},
                           rules[][2] = {{36, 64}, {72, 64}, {168, 64}, {288, 64}, {72, 128}, {168, 128}};
     const fibrad_heat_config less = {.directions = 100, .points = 64, .patches = 96, .parts = PARTS};
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     if (bed_make_packing(&bed, quick ? 100 : 500, 1, 1, .58, 1) != 0) exit(1);
     void *block;
     const fibrad_scene *scene = bench_scene(&bed, FIBRAD_ISA_BEST, &block);
@@ -114,7 +113,7 @@ static void bench_settings(bool quick) {
 /* The settled bed. bed->extra has its temperatures. */
 static void read_tile(struct bed *tile) {
     static const char *const column[] = {"v_T"};
-    bed_init(tile);
+    *tile = bed_empty();
     if (read_bed("tests/data/monoper2000.dump", &(struct read_options){.extra = column, .extras = 1}, tile) != 0)
         exit(1);
     tile->period[2] = 0;
@@ -122,11 +121,10 @@ static void read_tile(struct bed *tile) {
 
 /* Runs the defaults on copies of a settled bed. */
 static void bench_copies(uint32_t copies) {
-    struct bed tile, bed;
+    struct bed tile, bed = bed_empty();
     void *tile_block, *block;
     uint32_t wide = 1;
     while ((wide + 1) * (wide + 1) <= copies || copies % wide != 0) wide++;
-    bed_init(&bed);
     read_tile(&tile);
     if (bed_make_copies(&bed, &tile, (const uint32_t[]){copies / wide, wide, 1}) != 0) exit(1);
     const fibrad_scene *tile_scene = bench_scene(&tile, FIBRAD_ISA_BEST, &tile_block);

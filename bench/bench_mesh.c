@@ -151,8 +151,7 @@ static double random_triangle(struct bench_triangles *triangles, uint64_t seed) 
 static void bench_polygons(uint64_t cases, int few) {
     double square[SETTINGS][KINDS] = {{0}}, worst[SETTINGS][KINDS] = {{0}};
     const fibrad_body mesh = {.kind = FIBRAD_BODY_MESH};
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     bench_check("bed", bed_add(&bed, &(struct bed_sphere){.r = 1}) ? FIBRAD_E_MEMORY : FIBRAD_OK);
     fibrad_work work = BENCH_GROWING;
     fibrad_row row = row_in(1);
@@ -234,10 +233,9 @@ static void bench_cylinders(const struct bed *from, int few) {
     double low[3], high[3], middle[2];
     fibrad_body smooth[3];
     void *block[2];
-    struct bed bed;
+    struct bed bed = bed_empty();
     struct bench_triangles triangles = bench_triangles_new(2 * FACETS);
     find_ends(from, low, high);
-    bed_init(&bed);
     for (int axis = 0; axis < 2; ++axis) middle[axis] = 0.5 * (low[axis] + high[axis]);
     const double radius = 0.5 * fmin(high[0] - low[0], high[1] - low[1]), ends[2] = {low[2], high[2]};
     for (uint32_t i = 0; i < from->n; ++i)
@@ -259,8 +257,7 @@ static void bench_cylinders(const struct bed *from, int few) {
 
 int main(int argc, char **argv) {
     const bool quick = argc == 2 && strcmp(argv[1], "quick") == 0;
-    struct bed bed, small;
-    bed_init(&bed), bed_init(&small);
+    struct bed bed = bed_empty(), small = bed_empty();
     int status = argc == 2 && !quick ? read_bed(argv[1], &(struct read_options){0}, &bed)
                                      : bed_make_packing(&bed, quick ? 500 : 20000, 0.8, 1.2, 0.58, 1);
     if (!status) status = bed_make_packing(&small, quick ? 60 : 100, 0.8, 1.2, 0.5, 1);

@@ -203,7 +203,7 @@ static void open_powers(struct powers *p, bool quick) {
     static const char *const column[] = {"v_T"};
     struct bed *bed = &p->bed;
     *p = (struct powers){.fields = quick ? CHECKS : FIELDS_MOST};
-    bed_init(bed);
+    *bed = bed_empty();
     if (quick ? bed_make_packing(bed, 100, .5, .5, .55, 1)
               : read_bed("tests/data/mono2000.dump", &(struct read_options){.extra = column, .extras = 1}, bed))
         exit(1);

@@ -25,10 +25,9 @@ static double peak_bytes(void) {
 
 /* The bed of n spheres, or of the next larger number that is a whole number of copies. */
 static int make_bed(struct bed *bed, uint32_t n) {
-    bed_init(bed);
+    *bed = bed_empty();
     if (n <= TILE) return bed_make_packing(bed, n, 0.8, 1.2, 0.55, 1);
-    struct bed tile;
-    bed_init(&tile);
+    struct bed tile = bed_empty();
     uint32_t copies[3] = {1, 1, 1};
     for (int axis = 0; (uint64_t)copies[0] * copies[1] * copies[2] * TILE < n; axis = (axis + 1) % 3) copies[axis]++;
     int status = bed_make_packing(&tile, TILE, 0.8, 1.2, 0.55, 1);

@@ -56,8 +56,7 @@ static void bench_whole(double ratio, const struct bed *bed, double *whole) {
 /* Large spheres come first in the bed. Every `skip`th small sphere is enough. equal: times of an entry of single rows,
  * and of all rows at once. */
 static int bench(double ratio, uint32_t large, uint32_t skip, double equal[2]) {
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     const int status =
         ratio > 1 ? bed_make_two_sizes(&bed, large, ratio, 0.55, 1) : bed_make_packing(&bed, large, 1, 1, 0.55, 1);
     if (status) return status;
@@ -104,8 +103,7 @@ static int make_shell(struct bed *bed, uint32_t count) {
 }
 
 static int bench_shell(uint32_t count) {
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     const int status = make_shell(&bed, count);
     const fibrad_spheres spheres = bench_spheres(&bed);
     const fibrad_bed_options options = {.beam = &(fibrad_beam_rule){.directions = 50}};

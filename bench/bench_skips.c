@@ -86,7 +86,7 @@ static void print(const char *what, double with, double without, bool same) {
 
 /* The random bed without its periods. */
 static int make_bed(struct rows_of *rows, uint32_t n) {
-    bed_init(&rows->bed);
+    rows->bed = bed_empty();
     const int status = bed_make_packing(&rows->bed, n, 0.8, 1.2, 0.55, 1);
     for (int axis = 0; axis < 3; ++axis) rows->bed.period[axis] = 0;
     return status;
@@ -169,7 +169,7 @@ static int targets(uint32_t n) {
 
 static int sparse(uint32_t n) {
     struct rows_of rows;
-    bed_init(&rows.bed);
+    rows.bed = bed_empty();
     const int status = bed_make_packing(&rows.bed, n, 0.8, 1.2, 0.01, 1);
     if (status) return status;
     uint64_t bits;

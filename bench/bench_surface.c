@@ -69,8 +69,7 @@ int main(int argc, char **argv) {
     printf("# error: estimated, relative (pair) or Euclidean (row, root mean square)\n");
     puts("what,isa,microseconds,rays_or_entries,tests,tests_per_second,error");
     for (int isa = FIBRAD_ISA_SCALAR; isa <= (int)fibrad_isa_best(); ++isa) bench_pairs(isa, quick ? 10 : 500);
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     if (bed_make_packing(&bed, quick ? 200 : 1000, .8, 1.2, .55, 1) != 0) return 1;
     memset(bed.period, 0, sizeof bed.period);
     for (int isa = FIBRAD_ISA_SCALAR; isa <= (int)fibrad_isa_best(); ++isa) bench_bed(&bed, isa, 6, 0);

@@ -37,8 +37,7 @@ int main(int argc, char **argv) {
     const uint32_t n = quick ? 500 : argc == 2 ? (uint32_t)atol(argv[1]) : 20000, rows = quick ? 5 : 500;
     static const uint32_t points[] = {0, 64, 128, 256};
     bench_preamble("bench_window: rows of a periodic random bed, solid fraction 0.58", 1);
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     const int status = bed_make_packing(&bed, n, 1, 1, 0.58, 1);
     if (status) return status;
     fibrad_work work = BENCH_GROWING;

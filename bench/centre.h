@@ -52,7 +52,7 @@ static inline int centre_make(struct centre *centre, uint32_t spheres, uint32_t 
     struct bed *bed = &centre->bed;
     void *block;
     *centre = (struct centre){.work = BENCH_GROWING, .rows = rows};
-    bed_init(bed);
+    *bed = bed_empty();
     const int status = bed_make_packing(bed, spheres, 0.8, 1.2, 0.55, 1);
     if (status) return status;
     centre->row = bench_arrays(spheres);

@@ -44,14 +44,14 @@ static inline void clear_tally(struct box *box, int k) {
     box->tally_block[k] = allocate(size + 64);
     memset(box->tally_block[k], 0xa5, size + 64);
     unsigned char *begin = box->tally_block[k] + 3 * k; /* any alignment */
-    ck_assert_int_eq(fibrad_furnace_tally_init(&box->tally[k], begin, size, box->furnace), FIBRAD_OK);
+    assert_ok(fibrad_furnace_tally_init(&box->tally[k], begin, size, box->furnace));
 }
 
 static inline struct box make_box(const fibrad_furnace_config *config) {
     struct box box = {.config = *config};
     size_t size = fibrad_furnace_size(config);
     box.block = allocate(size + 1);
-    ck_assert_int_eq(fibrad_furnace_init(&box.furnace, box.block + 1, size, config), FIBRAD_OK);
+    assert_ok(fibrad_furnace_init(&box.furnace, box.block + 1, size, config));
     fibrad_furnace_fields(box.furnace, &box.at);
     for (size_t c = 0; c < (size_t)config->cells[0] * config->cells[1] * config->cells[2]; c++)
         box.at.e[c] *= 1 + 0.1 * (double)(c % 7);
@@ -63,6 +63,8 @@ static inline void free_box(struct box *box) {
     for (int k = 0; k < TALLIES; k++) free(box->tally_block[k]);
     free(box->block);
 }
+
+#define OWNED_BOX OWNED_BY(free_box) struct box
 
 static inline int trace(struct box *box, int tally, uint64_t first, uint64_t count) {
     return fibrad_furnace_trace(box->furnace, box->tally[tally], first, count);

@@ -57,7 +57,7 @@ static inline int build_at(void *block, size_t size, const struct contents *c, f
 
 /* Makes the scene in its block, which may have another scene. */
 static inline void build(struct problem *p, const struct contents *c) {
-    ck_assert_int_eq(build_at(p->scene_block, p->scene_size, c, &p->scene), FIBRAD_OK);
+    assert_ok(build_at(p->scene_block, p->scene_size, c, &p->scene));
 }
 
 static inline void set_sources(struct problem *p) {
@@ -82,7 +82,7 @@ static inline struct problem *begin_problem(const struct contents *c, int fill) 
     ck_assert_uint_gt(p->heat_size, 0);
     p->heat_block = block_of(p->heat_size);
     memset(p->heat_block, fill, p->heat_size);
-    ck_assert_int_eq(fibrad_heat_init(&p->heat, p->heat_block, p->heat_size, &heat_config, p->scene), FIBRAD_OK);
+    assert_ok(fibrad_heat_init(&p->heat, p->heat_block, p->heat_size, &heat_config, p->scene));
     set_sources(p);
     return p;
 }
@@ -100,7 +100,7 @@ static inline void end_owned(struct problem **p) { end_problem(*p); }
 
 static inline uint32_t tasks_of(const struct problem *p) { return fibrad_heat_tasks(p->heat); }
 
-static inline void trace_all(struct problem *p) { ck_assert_int_eq(heat_trace(p->heat, &p->work, false), FIBRAD_OK); }
+static inline void trace_all(struct problem *p) { assert_ok(heat_trace(p->heat, &p->work, false)); }
 
 static inline void solve(struct problem *p) { heat_solve(p->heat, &p->sources, &p->result, false); }
 
@@ -176,15 +176,15 @@ static inline void advance_to(struct problem *p, int from, int to) {
     for (int stage = from + 1; stage <= to; stage++) {
         if (stage == TRACED) trace_all(p);
         if (stage == SWEPT) {
-            ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+            assert_ok(fibrad_heat_begin(p->heat, &p->sources));
             for (int k = 0, solved; k < 3; k++) {
                 heat_sweep(p->heat, false);
-                ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+                assert_ok(fibrad_heat_step(p->heat, &solved));
             }
             heat_sweep(p->heat, false);
         }
         for (int solved = 0; stage == SOLVED && !solved;) {
-            ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+            assert_ok(fibrad_heat_step(p->heat, &solved));
             if (!solved) heat_sweep(p->heat, false);
         }
     }

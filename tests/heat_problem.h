@@ -95,7 +95,7 @@ static inline void build_scene(struct problem *p) {
 
 static inline void trace_beams(struct problem *p) {
     OWNED_WORK work = work_growing();
-    ck_assert_int_eq(heat_trace(p->heat, &work, p->backwards), FIBRAD_OK);
+    assert_ok(heat_trace(p->heat, &work, p->backwards));
 }
 
 static inline void trace(struct problem *p) {
@@ -103,7 +103,7 @@ static inline void trace(struct problem *p) {
     const size_t size = fibrad_heat_size(&p->config, p->scene);
     ck_assert_uint_gt(size, 0);
     void *block = block_of(size);
-    ck_assert_int_eq(fibrad_heat_init(&p->heat, block, size, &p->config, p->scene), FIBRAD_OK);
+    assert_ok(fibrad_heat_init(&p->heat, block, size, &p->config, p->scene));
     ck_assert_ptr_eq(p->heat, block);
     trace_beams(p);
 }

@@ -18,24 +18,18 @@ static inline int heat_trace(fibrad_heat *heat, fibrad_work *work, bool backward
 
 static inline void heat_sweep(fibrad_heat *heat, bool backwards) {
     const uint32_t parts = fibrad_heat_parts(heat);
-    for (uint32_t k = 0; k < parts; k++)
-        ck_assert_int_eq(fibrad_heat_sweep(heat, backwards ? parts - 1 - k : k), FIBRAD_OK);
+    for (uint32_t k = 0; k < parts; k++) assert_ok(fibrad_heat_sweep(heat, backwards ? parts - 1 - k : k));
 }
 
 /* From fibrad_heat_begin on. */
 static inline void heat_solve(fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_heat_result *result,
                               bool backwards) {
-    ck_assert_int_eq(fibrad_heat_begin(heat, sources), FIBRAD_OK);
+    assert_ok(fibrad_heat_begin(heat, sources));
     for (int solved = 0; !solved;) {
         heat_sweep(heat, backwards);
-        ck_assert_int_eq(fibrad_heat_step(heat, &solved), FIBRAD_OK);
+        assert_ok(fibrad_heat_step(heat, &solved));
     }
-    ck_assert_int_eq(fibrad_heat_read(heat, result), FIBRAD_OK);
-}
-
-static inline void assert_near(double value, double truth, double tolerance) {
-    ck_assert_msg(fabs(value - truth) <= tolerance * fabs(truth), "%.9g instead of %.9g, off by %.3g", value, truth,
-                  value / truth - 1);
+    assert_ok(fibrad_heat_read(heat, result));
 }
 
 #endif

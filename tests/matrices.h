@@ -7,8 +7,7 @@
 
 /* Spheres of these radii, so far apart that the tests can make their rows by hand. */
 static inline fibrad_scene *apart(uint32_t n, const double *r) {
-    OWNED_BED bed;
-    bed_init(&bed);
+    OWNED_BED bed = bed_empty();
     for (uint32_t i = 0; i < n; i++) add_sphere(&bed, 1000. * (i + 1), 0, 0, r[i]);
     return scene_of(&bed, FIBRAD_ISA_BEST);
 }
@@ -23,7 +22,7 @@ static inline void add_rows(fibrad_rows *rows, uint32_t n, const uint64_t *start
                                 .col = (uint32_t *)(uintptr_t)(all.col + begin),
                                 .f = (double *)(uintptr_t)(all.f + begin),
                                 .length = (uint32_t)(all.start[i + 1] - begin)};
-        ck_assert_int_eq(fibrad_rows_add(rows, &row, 0), FIBRAD_OK);
+        assert_ok(fibrad_rows_add(rows, &row, 0));
     }
 }
 

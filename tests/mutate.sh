@@ -44,7 +44,8 @@ LINE
     kernel/ray/*) tests="trace $tests" ;;
     */drift*) tests="drift $tests" ;;
     kernel/scene/*) tests="scene beam $tests" ;;
-    kernel/matrix/* | kernel/work/*) tests="matrix matrix_calls protocol $tests" ;;
+    kernel/matrix/*) tests="matrix matrix_calls estimate protocol $tests" ;;
+    kernel/work/*) tests="matrix matrix_calls protocol $tests" ;;
     kernel/furnace/*) tests="furnace furnace_calls $tests" ;;
     esac
     if awk -v old="$old" -v new="$new" 'BEGIN {sub(/^ /, "", old); sub(/ $/, "", old); sub(/^ /, "", new)}

@@ -26,10 +26,8 @@ static inline void make_file(void) {
 static inline void remove_file(void) { unlink(path); }
 
 static inline void write_file(const char *text, size_t size) {
-    FILE *file = fopen(path, "wb");
-    ck_assert_ptr_nonnull(file);
+    OWNED_FILE *file = opened(path, "wb");
     ck_assert_uint_eq(fwrite(text, 1, size, file), size);
-    fclose(file);
 }
 
 /* Standard error goes to `said` from here to end_catching. */

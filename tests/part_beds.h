@@ -64,7 +64,7 @@ static inline int part_scene_try(const struct part *p, fibrad_scene **scene) {
 
 static inline fibrad_scene *part_scene(const struct part *p) {
     fibrad_scene *scene;
-    ck_assert_int_eq(part_scene_try(p, &scene), FIBRAD_OK);
+    assert_ok(part_scene_try(p, &scene));
     return scene;
 }
 
@@ -142,7 +142,7 @@ static inline struct named_row row_by(const struct part *p, const fibrad_scene *
     const int status = method < 3    ? fibrad_beam_row(scene, &work, i, &beam, &out.row)
                        : method == 3 ? fibrad_cast_row(scene, &work, i, &cast, &out.row, NULL)
                                      : fibrad_exchange_row(scene, &work, i, &exchange, &out.row, &out.rays);
-    ck_assert_int_eq(status, FIBRAD_OK);
+    assert_ok(status);
     double sum = out.row.escaped + out.row.beyond;
     for (int b = 0; b < BODIES_MOST; b++) sum += out.row.body[b];
     for (uint32_t k = 0; k < out.row.length; k++) {
@@ -251,5 +251,7 @@ static inline void free_made(struct made *m) {
     free((void *)(uintptr_t)m->occupancy.mark);
     free(m->mesh);
 }
+
+#define OWNED_MADE OWNED_BY(free_made) struct made
 
 #endif

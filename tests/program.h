@@ -27,6 +27,11 @@ static const char *build; /* folder of the program */
 static char folder[200];  /* for the files of a test */
 static char stdout_path[220], stderr_path[220];
 static char said[8192], printed[65536];
+static struct text *texts; /* the files that the test has read */
+struct text {
+    struct text *before;
+    char of_file[];
+};
 
 static inline void make_folder(void) {
     build = getenv("BUILD") ? getenv("BUILD") : "build";
@@ -63,36 +68,35 @@ static inline int remove_files(int outputs_too) {
 }
 
 static inline void remove_folder(void) {
+    for (struct text *text; (text = texts) != NULL; free(text)) texts = text->before;
     remove_files(1);
     ck_assert_int_eq(rmdir(folder), 0);
 }
 
 static inline const char *write_file(const char *name, const char *text) {
     const char *path = in_folder(name);
-    FILE *file = fopen(path, "w");
-    ck_assert_ptr_nonnull(file);
+    FILE *file = opened(path, "w");
     ck_assert_int_ge(fputs(text, file), 0);
     ck_assert_int_eq(fclose(file), 0);
     return path;
 }
 
-/* A whole file as a string on the heap. */
+/* A whole file as a string, which lasts until the folder is removed. */
 static char *read_file(const char *path) {
     struct stat there;
-    FILE *file = fopen(path, "r");
-    ck_assert_msg(file && stat(path, &there) == 0, "%s is not there", path);
-    char *text = calloc(1, (size_t)there.st_size + 1);
+    OWNED_FILE *file = opened(path, "r");
+    ck_assert_int_eq(fstat(fileno(file), &there), 0);
+    struct text *text = calloc(1, sizeof *text + (size_t)there.st_size + 1);
     ck_assert_ptr_nonnull(text);
-    ck_assert_uint_eq(fread(text, 1, (size_t)there.st_size, file), (size_t)there.st_size);
-    fclose(file);
-    return text;
+    ck_assert_uint_eq(fread(text->of_file, 1, (size_t)there.st_size, file), (size_t)there.st_size);
+    text->before = texts, texts = text;
+    return text->of_file;
 }
 
 /* Reads a file into *text. A text that is there from another run must be the same. */
 static inline void read_same(const char *path, char **text) {
     char *now = read_file(path);
     if (*text) ck_assert_str_eq(now, *text);
-    free(*text);
     *text = now;
 }
 
@@ -119,11 +123,8 @@ static inline pid_t start(const char *const *arguments) {
 }
 
 static inline void keep(const char *path, char *text, size_t size) {
-    FILE *file = fopen(path, "r");
-    text[0] = 0;
-    if (!file) return;
+    OWNED_FILE *file = opened(path, "r");
     text[fread(text, 1, size - 1, file)] = 0;
-    fclose(file);
 }
 
 /* The exit status, or 256 + the signal that killed the program. */
@@ -135,8 +136,9 @@ static inline int finish(pid_t process) {
     return WIFEXITED(end) ? WEXITSTATUS(end) : 256 + WTERMSIG(end);
 }
 
-#define LIST(...) ((const char *const[]){__VA_ARGS__, NULL})
-#define RUN(...)  finish(start(LIST(__VA_ARGS__)))
+#define LIST(...)              ((const char *const[]){__VA_ARGS__, NULL})
+#define RUN(...)               finish(start(LIST(__VA_ARGS__)))
+#define FAIL_WITH(status, ...) ck_assert_int_eq(RUN(__VA_ARGS__), status)
 #define SUCCEED(...)                                                                                                   \
     do {                                                                                                               \
         const int status_ = RUN(__VA_ARGS__);                                                                          \
@@ -163,17 +165,15 @@ static inline double json_of(const char *path, const char *key) {
     snprintf(wanted, sizeof wanted, "\"%s\": ", key);
     for (const char *next = text; (next = strstr(next, wanted)); at = next += strlen(wanted)) {}
     ck_assert_msg(at != NULL, "no key '%s' in: %s", key, text);
-    const double value = strtod(at, NULL);
-    free(text);
-    return value;
+    return strtod(at, NULL);
 }
 
 /* Asserts that standard error has one line: `fibrad: `, the place, and then the reason. */
 static inline void expect_message(const char *place, const char *reason) {
     char begin[400];
     snprintf(begin, sizeof begin, "fibrad: %s", place);
-    ck_assert_msg(strncmp(said, begin, strlen(begin)) == 0, "'%s' does not begin with '%s'", said, begin);
-    ck_assert_msg(strstr(said, reason) != NULL, "'%s' does not give as reason '%s'", said, reason);
+    assert_begins(said, begin);
+    assert_has(said, reason);
     ck_assert_ptr_eq(strchr(said, '\n'), said + strlen(said) - 1);
 }
 

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "asserts.h"
 #include "bed/packing.h"
 #include "fibrad_mesh.h"
 #include "owned.h"
@@ -33,8 +34,7 @@ static inline void add_sphere(struct bed *bed, double x, double y, double z, dou
 
 /* A bed of the listed spheres. Each has (x, y, z, r). */
 static inline struct bed bed_of(uint32_t n, const double spheres[][4]) {
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     for (uint32_t i = 0; i < n; i++) add_sphere(&bed, spheres[i][0], spheres[i][1], spheres[i][2], spheres[i][3]);
     return bed;
 }
@@ -45,8 +45,7 @@ static inline struct bed lattice(char kind, double reach) {
     static const double basis[4][3] = {{0, 0, 0}, {0, .5, .5}, {.5, 0, .5}, {.5, .5, 0}}, centre[3] = {.5, .5, .5};
     double side = kind == 'p' ? 2 : kind == 'i' ? 4 / sqrt(3) : 2 * sqrt(2);
     int sites = kind == 'p' ? 1 : kind == 'i' ? 2 : 4, span = (int)(reach / side) + 1;
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     add_sphere(&bed, 0, 0, 0, 1);
     for (int i = -span; i <= span; i++)
         for (int j = -span; j <= span; j++)
@@ -62,8 +61,7 @@ static inline struct bed lattice(char kind, double reach) {
 
 /* A random bed of n spheres with radii in [low, high] and a given solid fraction. The bed is periodic or open. */
 static inline struct bed packing(uint32_t n, double low, double high, double fraction, uint64_t seed, bool periodic) {
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     ck_assert_int_eq(bed_make_packing(&bed, n, low, high, fraction, seed), 0);
     for (int axis = 0; axis < 3 && !periodic; axis++) bed.period[axis] = 0;
     return bed;
@@ -87,17 +85,19 @@ static inline struct bed strewn(uint32_t n, uint64_t seed) {
 
 /* ---- instruction sets ------------------------------------------------------------------------------------------- */
 
-#define ISAS_MOST 4
+struct isas {
+    int count, set[4];
+};
 
 /* The instruction sets that this build and this machine have, scalar first. Prints the others of this kind of machine
- * as skips, which tests/run.sh counts. Returns the number of sets. */
-static inline int isas_there(int isa[ISAS_MOST]) {
+ * as skips, which tests/run.sh counts. */
+static inline struct isas isas_there(void) {
 #ifdef __aarch64__
     static const int of_machine[] = {FIBRAD_ISA_SCALAR, FIBRAD_ISA_NEON};
 #else
     static const int of_machine[] = {FIBRAD_ISA_SCALAR, FIBRAD_ISA_SSE2, FIBRAD_ISA_AVX2, FIBRAD_ISA_AVX512};
 #endif
-    int count = 0;
+    struct isas isas = {0};
     for (size_t k = 0; k < sizeof of_machine / sizeof *of_machine; k++) {
         const int set = of_machine[k];
         static unsigned char memory[FIBRAD_SCENE_BYTES(0)];
@@ -106,11 +106,11 @@ static inline int isas_there(int isa[ISAS_MOST]) {
                                              &(fibrad_spheres){0}, NULL);
         ck_assert(status == FIBRAD_OK || (status == FIBRAD_E_ISA && set != FIBRAD_ISA_SCALAR));
         if (status == FIBRAD_OK)
-            isa[count++] = set;
+            isas.set[isas.count++] = set;
         else
             printf("SKIP %s\n", fibrad_isa_name(set));
     }
-    return count;
+    return isas;
 }
 
 /* ---- scenes ----------------------------------------------------------------------------------------------------- */
@@ -150,7 +150,7 @@ static inline int scene_try(fibrad_scene **scene, const struct bed *bed, const f
 
 static inline fibrad_scene *scene_with(const struct bed *bed, const fibrad_scene_config *config) {
     fibrad_scene *scene = NULL;
-    ck_assert_int_eq(scene_try(&scene, bed, config, NULL), FIBRAD_OK);
+    assert_ok(scene_try(&scene, bed, config, NULL));
     return scene;
 }
 
@@ -284,7 +284,7 @@ static inline fibrad_rows rows_by_beams(const fibrad_scene *scene, const fibrad_
     OWNED_WORK work = work_growing();
     fibrad_rows rows = {.memory = memory_growing()};
     for (uint32_t i = 0; i < facts.spheres; i++)
-        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, rule, &(fibrad_row){.rows = &rows}), FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, &work, i, rule, &(fibrad_row){.rows = &rows}));
     ck_assert_uint_eq(rows.count, facts.spheres);
     return rows;
 }
@@ -301,12 +301,12 @@ static inline fibrad_rows rows_by_silhouettes(const fibrad_scene *scene, uint32_
     fibrad_rows rows = {.memory = memory_growing()};
     fibrad_scene_facts facts;
     fibrad_scene_describe(scene, &facts);
-    ck_assert_int_eq(fibrad_silhouettes_init(&s, block, size, scene, &rule), FIBRAD_OK);
+    assert_ok(fibrad_silhouettes_init(&s, block, size, scene, &rule));
     for (uint32_t task = 0; task < fibrad_silhouettes_tasks(s); task++)
-        ck_assert_int_eq(fibrad_silhouettes_task(s, &work, task, &pairs), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_silhouettes_join(s, &pairs, 1, &index), FIBRAD_OK);
+        assert_ok(fibrad_silhouettes_task(s, &work, task, &pairs));
+    assert_ok(fibrad_silhouettes_join(s, &pairs, 1, &index));
     for (uint32_t i = 0; i < facts.spheres; i++)
-        ck_assert_int_eq(fibrad_silhouettes_row(s, &work, i, &(fibrad_row){.rows = &rows}), FIBRAD_OK);
+        assert_ok(fibrad_silhouettes_row(s, &work, i, &(fibrad_row){.rows = &rows}));
     free(pairs.memory.block);
     free(index.block);
     return rows;
@@ -329,8 +329,8 @@ static inline struct matrix matrix_of(const fibrad_scene *scene, const fibrad_ro
     const int status = fibrad_matrix_init(&m.matrix, block, size, scene, rows, count, rule, &sphere);
     ck_assert_msg(status == FIBRAD_OK, "%s, sphere %u", fibrad_status_text(status), sphere);
     ck_assert_ptr_eq(m.matrix, block);
-    ck_assert_int_eq(fibrad_matrix_close(m.matrix), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_matrix_read(m.matrix, &m.factors), FIBRAD_OK);
+    assert_ok(fibrad_matrix_close(m.matrix));
+    assert_ok(fibrad_matrix_read(m.matrix, &m.factors));
     return m;
 }
 

@@ -79,11 +79,9 @@ static inline const char *write_binary(const char *name, const struct soup *soup
             memcpy(&bits, &value, sizeof bits);
             for (int b = 0; b < 4; ++b) data[84 + 50 * t + 12 + 4 * (uint32_t)k + (uint32_t)b] = bits >> 8 * b & 255;
         }
-    FILE *file = fopen(path, "wb");
-    ck_assert_ptr_nonnull(file);
+    OWNED_FILE *file = opened(path, "wb");
     const size_t size = (size_t)(84 + 50 * (long)soup->n + bytes);
     ck_assert_uint_eq(fwrite(data, 1, size, file), size);
-    fclose(file);
     return path;
 }
 
@@ -102,10 +100,8 @@ static inline void print_solid(FILE *file, const char *name, const struct soup *
 
 static inline const char *write_solid(const char *name, const struct soup *soup) {
     const char *path = in_folder(name);
-    FILE *file = fopen(path, "w");
-    ck_assert_ptr_nonnull(file);
+    OWNED_FILE *file = opened(path, "w");
     print_solid(file, "part", soup, "\n", 17);
-    fclose(file);
     return path;
 }
 

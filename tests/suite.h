@@ -8,6 +8,7 @@
 
 #include <check.h>
 #include <stdlib.h>
+#include "asserts.h"
 #include "owned.h"
 
 #define TEST(name) LOOP_TEST(name, 1)

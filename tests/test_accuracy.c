@@ -16,7 +16,7 @@ static double error_of(const struct bed *bed, uint32_t i, uint32_t directions, d
     OWNED fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(bed->n);
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = directions}, &row), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = directions}, &row));
     double square = 0;
     for (uint32_t j = 0; j < bed->n; j++) square += pow(row_factor(&row, j) - f[j], 2);
     ck_assert_double_eq_tol(row.escaped, escaped, 3e-5);
@@ -70,10 +70,10 @@ TEST(error_falls_as_it_should) {
     double mean[3] = {0};
     for (uint32_t i = 0; i < 10; i++) {
         OWNED_ROW truth = row_of(bed.n), row = row_of(bed.n);
-        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 30000}, &truth), FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 30000}, &truth));
         for (int k = 0; k < 3; k++) {
             fibrad_beam_rule rule = {.directions = 100u << 2 * k};
-            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
+            assert_ok(fibrad_beam_row(scene, &work, i, &rule, &row));
             mean[k] += row_distance(&row, &truth) / 10;
         }
     }

@@ -69,6 +69,8 @@ static fibrad_areas areas_make(void) {
 
 static void areas_free(fibrad_areas *areas) { free(areas->x); } /* the first array begins the block */
 
+#define OWNED_AREAS OWNED_BY(areas_free) fibrad_areas
+
 /* Finds the visible areas by one method, and after them the area that is still open. Checks closure and signs. */
 static void measure(const struct method *method, fibrad_areas *areas, const struct window *w, double area[MOST + 1]) {
     method->begin(areas);
@@ -253,7 +255,7 @@ TEST(lattices_along_their_axes) {
 /* Both methods are compared on windows whose circles meet in multiples of 1/4 ... 1/8 of a radius, or beside such
  * points by as much as decides between the methods. */
 TEST(clipping_against_accounts) {
-    fibrad_areas areas = areas_make();
+    OWNED_AREAS areas = areas_make();
     double worst = 0, clipped[MOST + 1], robust[MOST + 1], many[MOST + 1];
     uint32_t left[2] = {0, 0}; /* windows left to arrangements, by ordinary clipping and by clipping for many discs */
     const int rounds = 60000;
@@ -280,7 +282,6 @@ TEST(clipping_against_accounts) {
     printf("clipping against arrangements: %.2g, left to arrangements %.3g, %.3g\n", worst, part[0], part[1]);
     ck_assert_double_lt(worst, 1e-12);
     for (int way = 0; way < 2; way++) ck_assert(part[way] > .05 && part[way] < .5); /* all have been tried */
-    areas_free(&areas);
 }
 
 #define WIDER(isa)                                                                                                     \
@@ -329,9 +330,8 @@ TEST(bits_of_windows) {
         [FIBRAD_ISA_NEON] = {&neon, &dense_neon},
 #endif
     };
-    int isa[ISAS_MOST];
-    const int sets = isas_there(isa);
-    fibrad_areas areas = areas_make();
+    const struct isas isas = isas_there();
+    OWNED_AREAS areas = areas_make();
     double first[MOST + 1], other[MOST + 1];
     for (int round = 0; round < 6000; round++) {
         struct window w = {0};
@@ -346,20 +346,19 @@ TEST(bits_of_windows) {
         areas.fallbacks = 0;
         measure(methods[FIBRAD_ISA_SCALAR][way], &areas, &w, first);
         uint32_t doubts = areas.fallbacks;
-        for (int s = 1; s < sets; s++) {
+        for (int s = 1; s < isas.count; s++) {
             areas.fallbacks = 0;
-            measure(methods[isa[s]][way], &areas, &w, other);
+            measure(methods[isas.set[s]][way], &areas, &w, other);
             ck_assert_uint_eq(areas.fallbacks, doubts);
             ck_assert_mem_eq(first, other, (n + 1) * sizeof *first);
         }
     }
-    areas_free(&areas);
 }
 
 /* The window has many small discs, then large ones and a degenerate one. So the arrangement begins in memory that dense
  * clipping has filled. The lanes beyond its last arc must not look up what is no circle. */
 TEST(arrangement_after_dense_clipping) {
-    fibrad_areas areas = areas_make();
+    OWNED_AREAS areas = areas_make();
     const struct method *const methods[] = {
         &dense,
 #ifdef FIBRAD_WITH_SSE2
@@ -375,8 +374,7 @@ TEST(arrangement_after_dense_clipping) {
         &dense_neon,
 #endif
     };
-    int isa[ISAS_MOST];
-    const int sets = isas_there(isa);
+    const struct isas isas = isas_there();
     double first[MOST + 1], other[MOST + 1];
     for (int round = 0; round < 200; round++) {
         struct window w = {0};
@@ -387,13 +385,12 @@ TEST(arrangement_after_dense_clipping) {
         }
         put(&w, .5, 0, .5); /* tangent to the window */
         measure(methods[0], &areas, &w, first);
-        for (int s = 1; s < sets; s++) {
+        for (int s = 1; s < isas.count; s++) {
             measure(methods[s], &areas, &w, other);
             ck_assert_mem_eq(first, other, (w.n + 1) * sizeof *first);
         }
     }
     ck_assert_uint_gt(areas.fallbacks, 100); /* as often as no disc hides the point of contact before */
-    areas_free(&areas);
 }
 
 /* Arrangements treat the windows that clipping must not decide, and these are counted. Ordinary windows are left to
@@ -443,7 +440,7 @@ static double open_turned(fibrad_areas *areas, const struct method *method, cons
 
 /* The slope of the open area is its derivative. */
 TEST(slope_of_the_open_area) {
-    fibrad_areas areas = areas_make();
+    OWNED_AREAS areas = areas_make();
     uint32_t there = 0;
     for (uint64_t seed = 0; seed < 300; seed++) {
         const struct method *const methods[] = {&both, &arrangement, &dense}, *method = methods[seed % 3];
@@ -469,5 +466,4 @@ TEST(slope_of_the_open_area) {
         }
     }
     ck_assert_uint_gt(there, 300);
-    areas_free(&areas);
 }

@@ -42,7 +42,7 @@ TEST(arena_counts_what_it_hands_out) {
         memset(whole, 0x5a, (size / FIBRAD_ALIGNMENT + 4) * FIBRAD_ALIGNMENT);
         fibrad_arena arena;
         object *head;
-        ck_assert_int_eq(fibrad_arena_open(&arena, block, size, size), FIBRAD_OK);
+        assert_ok(fibrad_arena_open(&arena, block, size, size));
         object o = layout(&arena, n, &head);
         ck_assert_uint_le(arena.used, arena.size);
         ck_assert_uint_eq(arena.used + FIBRAD_ALIGNMENT - 1, size);
@@ -72,8 +72,8 @@ TEST(arena_refuses_what_it_cannot_hold) {
     ck_assert_int_eq(fibrad_arena_open(&arena, block, 256, 0), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_arena_open(&arena, block, 256, 320), FIBRAD_E_SIZE);
     ck_assert_int_eq(fibrad_arena_open(&arena, block, 255, 256), FIBRAD_E_SIZE);
-    ck_assert_int_eq(fibrad_arena_open(&arena, block, 256, 256), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_arena_open(&arena, block + 8, 248, 248), FIBRAD_OK);
+    assert_ok(fibrad_arena_open(&arena, block, 256, 256));
+    assert_ok(fibrad_arena_open(&arena, block + 8, 248, 248));
     ck_assert_ptr_eq(fibrad_arena_take(&arena, 1, 1), block + 64);
     ck_assert_ptr_eq(fibrad_arena_take(&arena, 2, 64), block + 128);
     ck_assert_ptr_null(fibrad_arena_take(&arena, 1, 1));
@@ -153,7 +153,7 @@ TEST(port_does_what_it_says) {
 
 /* Whether the operating system says that the processor offers an instruction set. -1: it says nothing. */
 static int offered(const char *flag) {
-    FILE *file = fopen("/proc/cpuinfo", "r");
+    OWNED_FILE *file = fopen("/proc/cpuinfo", "r");
     char word[64];
     int found = 0, last = 0;
     if (file == NULL) return -1;
@@ -161,7 +161,6 @@ static int offered(const char *flag) {
         found = strcmp(word, flag) == 0;
         last = strcmp(word, "bugs") == 0;
     }
-    fclose(file);
     return found;
 }
 

@@ -27,9 +27,7 @@ static double least_gap(const struct bed *bed) {
 TEST(packing) {
     static const uint32_t sizes[] = {1, 10, 100, 700};
     for (int k = 0; k < 4; k++) {
-        OWNED_BED bed, again;
-        bed_init(&bed);
-        bed_init(&again);
+        OWNED_BED bed = bed_empty(), again = bed_empty();
         ck_assert_int_eq(bed_make_packing(&bed, sizes[k], .8, 1.2, .55, 7), 0);
         ck_assert_uint_eq(bed.n, sizes[k]);
         ck_assert_double_ge(least_gap(&bed), 0);
@@ -48,9 +46,7 @@ TEST(packing) {
 /* Spheres of a layer stay between its faces. Shaken beds do not overlap and keep their solid fraction. They have lost
  * the order of their lattice: neighbours stand at all distances. */
 TEST(layers_and_shaken_beds) {
-    OWNED_BED layer, shaken;
-    bed_init(&layer);
-    bed_init(&shaken);
+    OWNED_BED layer = bed_empty(), shaken = bed_empty();
     ck_assert_int_eq(bed_make_layer(&layer, 300, .45, 2000, 3), 0);
     ck_assert_double_ge(least_gap(&layer), 0);
     ck_assert_double_eq(layer.period[2], 0);
@@ -75,9 +71,7 @@ TEST(layers_and_shaken_beds) {
 }
 
 TEST(copies) {
-    OWNED_BED tile, bed;
-    bed_init(&tile);
-    bed_init(&bed);
+    OWNED_BED tile = bed_empty(), bed = bed_empty();
     ck_assert_int_eq(bed_make_packing(&tile, 60, .8, 1.2, .55, 7), 0);
     ck_assert_int_eq(bed_make_copies(&bed, &tile, (const uint32_t[]){3, 1, 2}), 0);
     ck_assert_uint_eq(bed.n, 360);
@@ -89,8 +83,7 @@ TEST(copies) {
 }
 
 TEST(fcc) {
-    OWNED_BED bed;
-    bed_init(&bed);
+    OWNED_BED bed = bed_empty();
     ck_assert_int_eq(bed_make_fcc(&bed, 1, 4, 0), 0);
     ck_assert_uint_eq(bed.n, 1 + 12 + 6 + 24 + 12); /* the shells are at 2, 2.83, 3.46, 4 */
     ck_assert_double_eq_tol(least_gap(&bed), 0, 1e-14);

@@ -3,7 +3,7 @@
 
 /* A cutoff or a known region that holds the whole bed and its walls changes no bit. */
 LOOP_TEST(nothing_is_beyond_what_holds_all, 2) {
-    struct made m;
+    OWNED_MADE m;
     make_kind(&m, &kinds[_i]);
     for (int occupied = 0; occupied < 2; occupied++) {
         m.part.config.occupancy = occupied ? &m.occupancy : NULL;
@@ -25,7 +25,6 @@ LOOP_TEST(nothing_is_beyond_what_holds_all, 2) {
                 }
             }
     }
-    free_made(&m);
 }
 
 /* Whether the way along w from some length on is clear of marked cells. The steps are so small that they miss corners
@@ -60,7 +59,7 @@ static void draw_even(fibrad_random *random, double w[3]) {
 
 /* The test follows rays of its own. It tries all spheres, and looks up cells by small steps. */
 LOOP_TEST(beyond_is_what_rays_say, 1) {
-    struct made m;
+    OWNED_MADE m;
     make_kind(&m, &kinds[_i]); /* these beds are open or periodic, and have no walls */
     struct part *p = &m.part;
     OWNED fibrad_scene *scene = part_scene(p);
@@ -112,7 +111,6 @@ LOOP_TEST(beyond_is_what_rays_say, 1) {
         largest = fmax(largest, fmin(expected, sky));
     }
     if (_i == 0) ck_assert_double_gt(largest, .02); /* some rows have both */
-    free_made(&m);
 }
 
 /* The walk through the cells is compared with small steps, which miss nothing but corners. Boxes have few marks and are
@@ -181,10 +179,9 @@ TEST(reflections_end_at_the_known_region) {
     OWNED_WORK work = work_growing();
     OWNED_ROW beam = row_of(3), row = row_of(3), clear = row_of(3);
     const fibrad_exchange_rule rule = {.emissivity = e, .paths = 4000};
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 50, .points = 256}, &beam),
-                     FIBRAD_OK);
-    ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_exchange_row(told, &work, 0, &rule, &clear, NULL), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 50, .points = 256}, &beam));
+    assert_ok(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL));
+    assert_ok(fibrad_exchange_row(told, &work, 0, &rule, &clear, NULL));
     ck_assert_double_gt(row_factor(&beam, 2), .04);
     ck_assert_double_eq(row_factor(&row, 2), .9 * row_factor(&beam, 2)); /* the first leg alone */
     ck_assert_double_eq(row_factor(&clear, 2), row_factor(&row, 2));
@@ -223,27 +220,24 @@ TEST(a_flying_sphere_leaves_the_sky) {
 /* A flat bed above a floor keeps its sky. Lines of windows that look along the bed have directions of their own, of
  * which some pass through nearer spheres into the bed. */
 TEST(a_cutoff_leaves_the_sky_of_a_flat_bed) {
-    struct bed bed = packing(700, .6, 1, .5, 11, true);
+    OWNED_BED bed = packing(700, .6, 1, .5, 11, true);
     const double side = bed.period[0];
     bed.period[2] = 0;
     const fibrad_body floor = plane_at(2, 0, -1);
-    struct part p = part_of(&bed, (fibrad_scene_config){.body = &floor, .bodies = 1});
+    OWNED_PART p = part_of(&bed, (fibrad_scene_config){.body = &floor, .bodies = 1});
     const fibrad_occupancy o = occupancy_of(&p, (double[3]){0, 0, -1}, (double[3]){side, side, side + 1}, 128);
     p.config.occupancy = &o;
     fibrad_scene *scene = part_scene(&p);
     double sky[2] = {0}, beyond = 0;
     for (uint32_t i = 0; i < p.n; i++)
         for (int cut = 0; cut < 2; cut++) {
-            struct named_row row = row_by(&p, scene, i, 0, cut ? 20 : 0);
+            OWNED_NAMED row = row_by(&p, scene, i, 0, cut ? 20 : 0);
             sky[cut] += row.row.escaped, beyond += row.row.beyond;
-            named_free(&row);
         }
     ck_assert_double_eq_tol(sky[1] / sky[0], 1, 3e-3);
     ck_assert_double_lt(beyond / sky[0], 3e-3);
     free(scene);
     free((void *)(uintptr_t)o.mark);
-    part_free(&p);
-    bed_free(&bed);
 }
 
 /* The known region ends half way up a can. A lone sphere sends a fraction there that is a solid angle over 4 pi. */

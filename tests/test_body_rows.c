@@ -18,7 +18,7 @@ static fibrad_bed_factors *factors_of(const struct bed *bed, const fibrad_scene_
     with_bodies.bodies = 1;
     const int status = grey ? fibrad_exchange_factors(&whole, &spheres, grey, &with_bodies, NULL, &factors)
                             : fibrad_view_factors(&whole, &spheres, &with_bodies, NULL, &factors);
-    ck_assert_int_eq(status, FIBRAD_OK);
+    assert_ok(status);
     ck_assert_ptr_nonnull(factors->matrix.body_body);
     return factors;
 }
@@ -116,7 +116,7 @@ TEST(open_and_periodic) {
                                plane_at(2, 0, 0)};
     const fibrad_plane lid = {2, 1, .6}, below = {2, 0, -1};
     const fibrad_scene_config open = {.body = box, .bodies = 5, .opening = &lid, .openings = 1};
-    fibrad_bed_factors *f = factors_of(&none, &open, NULL, &(fibrad_bed_options){.beam = &fine});
+    OWNED_FACTORS *f = factors_of(&none, &open, NULL, &(fibrad_bed_options){.beam = &fine});
     check_balance(&none, f, NULL, NULL);
     for (uint32_t c = 0; c < 4; c++) ck_assert_double_eq_tol(between(f, 4, c), adjacent(1, 1, .6), 4e-4);
     ck_assert_double_eq_tol(f->matrix.body_escaped[4], opposite(1, 1, .6), 4e-4);
@@ -144,7 +144,6 @@ TEST(open_and_periodic) {
     f = factors_of(&plates, &(fibrad_scene_config){.body = two, .bodies = 1}, NULL, &(fibrad_bed_options){0});
     ck_assert_double_eq_tol(f->matrix.body_escaped[0], 1, 1e-13);
     ck_assert_double_eq(between(f, 0, 0), 0);
-    fibrad_bed_free(f);
 }
 
 /* Between grey plates D_12 = e_2/(1 - (1 - e_1)(1 - e_2)). D_11 is that with e_1 in place of e_2, times what plate 2
@@ -155,13 +154,12 @@ TEST(grey_plates) {
     const fibrad_body two[] = {plane_at(2, 0, 0), plane_at(2, 1, 2)};
     const double e[2] = {.3, .6}, all = 1 - .7 * .4;
     const fibrad_exchange_rule rule = {.body_emissivity = e, .paths = 40000};
-    fibrad_bed_factors *f =
+    OWNED_FACTORS *f =
         factors_of(&plates, &(fibrad_scene_config){.body = two, .bodies = 2}, &rule, &(fibrad_bed_options){0});
     check_balance(&plates, f, NULL, e);
     ck_assert_double_eq_tol(between(f, 0, 1), .6 / all, 3e-3);
     ck_assert_double_eq_tol(between(f, 0, 0), .4 * .3 / all, 3e-3);
     ck_assert_double_eq_tol(between(f, 1, 1), .7 * .6 / all, 3e-3);
-    fibrad_bed_free(f);
 }
 
 /* ---- paths by other means: nothing of the kernel's --------------------------------------------------------------- */
@@ -336,7 +334,7 @@ TEST(plates_and_a_dense_bed) {
     fibrad_scene_config whole = config;
     const fibrad_spheres spheres = spheres_of(&bed);
     memcpy(whole.period, bed.period, sizeof whole.period);
-    ck_assert_int_eq(fibrad_view_factors(&whole, &spheres, NULL, NULL, &alone), FIBRAD_OK);
+    assert_ok(fibrad_view_factors(&whole, &spheres, NULL, NULL, &alone));
     ck_assert_ptr_null(alone->matrix.body_body);
     for (uint32_t i = 0; i < bed.n; i++) { /* the factors between spheres are the same within their error */
         fibrad_row with = matrix_row(&f->matrix, i), without = matrix_row(&alone->matrix, i);
@@ -348,7 +346,7 @@ TEST(plates_and_a_dense_bed) {
 TEST(flat_rooms) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{1, 2, .02, .015}, {-9, 4, .021, .019}});
     const fibrad_body tube[3] = {cylinder_at(0, 0, 80), plane_at(2, 0, 0), plane_at(2, 1, .04)};
-    fibrad_bed_factors *f =
+    OWNED_FACTORS *f =
         factors_of(&bed, &(fibrad_scene_config){.body = tube, .bodies = 3}, NULL, &(fibrad_bed_options){0});
     check_balance(&bed, f, NULL, NULL);
     ck_assert_double_eq_tol(between(f, 1, 2), discs(80, .04), 1e-4);
@@ -357,7 +355,6 @@ TEST(flat_rooms) {
     f = factors_of(&bed, &(fibrad_scene_config){.body = tube + 1, .bodies = 2}, NULL, &(fibrad_bed_options){0});
     check_balance(&bed, f, NULL, NULL);
     ck_assert_double_eq_tol(between(f, 0, 1), 1, 1e-4);
-    fibrad_bed_free(f);
 }
 
 /* Reflectors have empty rows, and nothing goes to them. Bodies in another order have the same rows but for noise, and
@@ -422,15 +419,13 @@ TEST(same_bits_of_bodies) {
     OWNED_BY(room_free) struct room room = make_room(1, 12, 3);
     const fibrad_exchange_rule rule = {.emissivity = room.e, .body_emissivity = room.wall_e};
     const fibrad_spheres spheres = spheres_of(&room.bed);
-    fibrad_bed_factors *first = NULL;
-    int isa[ISAS_MOST];
-    const int sets = isas_there(isa);
-    for (int k = 0; k < sets; k++) {
-        const fibrad_scene_config config = {.isa = isa[k], .body = room.wall, .bodies = room.walls};
+    OWNED_FACTORS *first = NULL;
+    const struct isas isas = isas_there();
+    for (int k = 0; k < isas.count; k++) {
+        const fibrad_scene_config config = {.isa = isas.set[k], .body = room.wall, .bodies = room.walls};
         fibrad_run run = {.threads = 1 + k};
         fibrad_bed_factors *f;
-        ck_assert_int_eq(
-            fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_options){.bodies = 1}, &run, &f), FIBRAD_OK);
+        assert_ok(fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_options){.bodies = 1}, &run, &f));
         if (first) {
             ck_assert(matrix_same_bits(&f->matrix, &first->matrix));
             ck_assert_mem_eq(f->matrix.body_body, first->matrix.body_body, 9 * sizeof(double));
@@ -441,20 +436,19 @@ TEST(same_bits_of_bodies) {
             first = f;
         }
     }
-    fibrad_bed_free(first);
 }
 
 TEST(bad_arguments_of_bodies) {
     OWNED_BY(room_free) struct room room = make_room(2, 3, 1);
     const fibrad_scene_config config = {
         .body = room.wall, .bodies = room.walls, .opening = &room.opening, .openings = room.openings};
-    fibrad_scene *scene = scene_with(&room.bed, &config);
-    fibrad_scene *endless = scene_with(&room.bed, &(fibrad_scene_config){.body = room.wall, .bodies = 1});
+    OWNED fibrad_scene *scene = scene_with(&room.bed, &config);
+    OWNED fibrad_scene *endless = scene_with(&room.bed, &(fibrad_scene_config){.body = room.wall, .bodies = 1});
     OWNED_WORK work = work_growing();
     fibrad_body_row row, part[FIBRAD_BODY_PARTS];
     memset(part, 0, sizeof part);
     fibrad_exchange_rule rule = {.emissivity = room.e, .body_emissivity = room.wall_e};
-    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 4, &rule, 0, &row), FIBRAD_OK); /* the floor */
+    assert_ok(fibrad_exchange_body(scene, &work, 4, &rule, 0, &row)); /* the floor */
     ck_assert_double_eq_tol(
         row.spheres + row.escaped + row.body[0] + row.body[1] + row.body[2] + row.body[3] + row.body[4], 1, 1e-13);
     row.rays = 7;
@@ -483,8 +477,6 @@ TEST(bad_arguments_of_bodies) {
     ck_assert_uint_eq(fibrad_matrix_size(scene, &rows, 1, &how), 0);
     bodies[4].body[2] = 0, bodies[4].error = -1;
     ck_assert_uint_eq(fibrad_matrix_size(scene, &rows, 1, &how), 0);
-    free(scene);
-    free(endless);
 }
 
 /* Paths end in an opening as they do at a black plane. This holds for rows of spheres and bodies, and for what is
@@ -501,8 +493,7 @@ TEST(paths_end_in_openings) {
         const uint32_t b = k / 2;
         const fibrad_exchange_rule *how = k % 2 ? &rule : &(fibrad_exchange_rule){0};
         fibrad_body_row row[2];
-        for (int with = 0; with < 2; with++)
-            ck_assert_int_eq(fibrad_exchange_body(scene[with], &work, b, how, b, &row[with]), FIBRAD_OK);
+        for (int with = 0; with < 2; with++) assert_ok(fibrad_exchange_body(scene[with], &work, b, how, b, &row[with]));
         ck_assert_mem_eq(row[0].body, row[1].body, 5 * sizeof(double));
         ck_assert(row[0].spheres == row[1].spheres && row[0].rays == row[1].rays);
         ck_assert(row[1].body[5] > 0);
@@ -512,8 +503,8 @@ TEST(paths_end_in_openings) {
         fibrad_row row[2] = {row_of(64), row_of(64)};
         fibrad_displacement carried[2];
         for (int k = 0; k < 2; k++) {
-            ck_assert_int_eq(fibrad_exchange_row(scene[k], &work, i, &rule, &row[k], NULL), FIBRAD_OK);
-            ck_assert_int_eq(fibrad_exchange_displacement(scene[k], &work, i, &rule, &carried[k]), FIBRAD_OK);
+            assert_ok(fibrad_exchange_row(scene[k], &work, i, &rule, &row[k], NULL));
+            assert_ok(fibrad_exchange_displacement(scene[k], &work, i, &rule, &carried[k]));
         }
         ck_assert_mem_eq(&carried[0], &carried[1], sizeof carried[0]);
         ck_assert_double_eq_tol(row[0].escaped, row[1].body[5], 1e-15);
@@ -536,7 +527,7 @@ TEST(rows_that_contradict_each_other) {
     OWNED_WORK work = work_growing();
     OWNED_ROWS rows = {.memory = memory_growing()};
     fibrad_row row = {.rows = &rows};
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &row), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(scene, &work, 0, NULL, &row));
     for (int closed = 0; closed < 2; closed++) { /* walls send each other what is left over, or nothing */
         const fibrad_matrix_rule rule = {.body_row = body_row};
         const double left = 1 - 4 * PI / 6 / 16, between = closed ? left / 5 : 0;
@@ -545,9 +536,9 @@ TEST(rows_that_contradict_each_other) {
         OWNED void *block = malloc(size);
         fibrad_matrix *matrix;
         fibrad_factors f;
-        ck_assert_int_eq(fibrad_matrix_init(&matrix, block, size, scene, &rows, 1, &rule, NULL), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_matrix_close(matrix), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_matrix_read(matrix, &f), FIBRAD_OK);
+        assert_ok(fibrad_matrix_init(&matrix, block, size, scene, &rows, 1, &rule, NULL));
+        assert_ok(fibrad_matrix_close(matrix));
+        assert_ok(fibrad_matrix_read(matrix, &f));
         ck_assert_double_eq_tol(matrix_total(&f, 0), 1, 1e-12);
         double worst = 0;
         for (int b = 0; b < 6; b++) {
@@ -574,10 +565,9 @@ TEST(a_plate_and_its_images) {
     OWNED_BED bed = bed_of(1, (const double[][4]){{100, 0, 1, 1e-3}});
     bed.period[2] = 3;
     const fibrad_scene_config config = {.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles};
-    fibrad_bed_factors *f =
+    OWNED_FACTORS *f =
         factors_of(&bed, &config, NULL, &(fibrad_bed_options){.beam = &(fibrad_beam_rule){.directions = 1000}});
     ck_assert_double_eq_tol(between(f, 0, 0), opposite(EDGE, EDGE, 3), 6e-3);
-    fibrad_bed_free(f);
 }
 
 /* In a periodic box, triangles that lie across it face their images. What spheres send to them by beams equals what
@@ -588,10 +578,9 @@ TEST(triangles_face_their_images) {
     for (int axis = 0; axis < 3; axis++) bed.period[axis] = 9;
     mesh_triangle(mesh, mesh_vertex(mesh, 1, 8, 1), mesh_vertex(mesh, 8, 5, 2), mesh_vertex(mesh, 3, 1, 8), 0, 0);
     const fibrad_scene_config config = {.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles};
-    fibrad_bed_factors *f =
+    OWNED_FACTORS *f =
         factors_of(&bed, &config, NULL, &(fibrad_bed_options){.beam = &(fibrad_beam_rule){.directions = 1000}});
     check_balance(&bed, f, NULL, NULL);
     ck_assert_double_gt(between(f, 0, 0), .3);
     ck_assert_double_lt(f->matrix.body_correction, .02);
-    fibrad_bed_free(f);
 }

@@ -16,12 +16,12 @@ TEST(help_and_version) {
     SUCCEED("--help");
     ck_assert(strstr(printed, "bed") && strstr(printed, "pair"));
     SUCCEED("--version");
-    ck_assert_int_eq(strncmp(printed, "fibrad ", 7), 0);
+    assert_begins(printed, "fibrad ");
     SUCCEED("bed", "--help");
     static const char *const options[] = {"--method",  "--directions", "--areas",    "--points", "--cutoff",
                                           "--targets", "--threads",    "--periodic", "--frame",  "--positions",
                                           "--raw",     "--plot",       "-o",         "[233;",    "Example"};
-    for (size_t k = 0; k < sizeof options / sizeof *options; ++k) ck_assert(strstr(printed, options[k]) != NULL);
+    for (size_t k = 0; k < sizeof options / sizeof *options; ++k) assert_has(printed, options[k]);
     ck_assert(strstr(printed, "--nf") && strstr(printed, "--rays"));
     SUCCEED("pair", "1", "--help");
     ck_assert(strstr(printed, "--obstacle") && strstr(printed, "--check") && strstr(printed, "--rays"));
@@ -196,7 +196,7 @@ TEST(exact_pair_checked) {
     ck_assert_double_eq(value_of("kernel"), f12);
     ck_assert_double_eq_tol(value_of("gsl_polar") / f12, 1, 1e-12);
     ck_assert_double_eq_tol(value_of("gsl_lens") / f12, 1, 1e-12);
-    ck_assert_ptr_nonnull(strstr(printed, "difference"));
+    assert_has(printed, "difference");
     char last[60];
     snprintf(last, sizeof last, "\nF12 %.17g\n", f12);
     ck_assert_str_eq(printed + strlen(printed) - strlen(last), last);
@@ -265,7 +265,7 @@ static const struct {
 LOOP_TEST(bad_input, sizeof bad_beds / sizeof *bad_beds) {
     char place[300];
     const char *bed = write_file("bad.bed", bad_beds[_i].text);
-    ck_assert_int_eq(RUN("bed", bed, "-o", in_folder("out.csv"), "--plot", in_folder("out.svg")), 3);
+    FAIL_WITH(3, "bed", bed, "-o", in_folder("out.csv"), "--plot", in_folder("out.svg"));
     snprintf(place, sizeof place, "%s%s", bed, bad_beds[_i].place);
     expect_message(place, bad_beds[_i].reason);
     ck_assert_str_eq(printed, "");
@@ -353,8 +353,7 @@ static const char *const rank_names[RANKS] = {"a.0.rows", "a.1.rows"};
 
 static const char *write_words(const char *name, const union word *words, size_t bytes) {
     const char *path = in_folder(name);
-    FILE *file = fopen(path, "wb");
-    ck_assert_ptr_nonnull(file);
+    FILE *file = opened(path, "wb");
     ck_assert_uint_eq(fwrite(words, 1, bytes, file), bytes);
     ck_assert_int_eq(fclose(file), 0);
     return path;
@@ -386,43 +385,35 @@ TEST(joined) {
     ck_assert_double_eq_tol(json_of(json, "wall_1_F"), 1.75 / 3, 1e-15);
     ck_assert_double_eq(value_of("closure_max"), 0);
     ck_assert_double_eq_tol(json_of(json, "reciprocity_max"), (.75 * .375 - .5 * .25) / .75, 1e-15);
-    char *text = read_file(csv);
-    ck_assert_str_eq(text, "i,j,D,body\n0,1,0.25,\n0,2,0.125,\n0,-1,0.125,surroundings\n0,-2,0.5,wall_1\n1,0,0.375,\n"
-                           "1,-1,0.125,surroundings\n1,-2,0.5,wall_1\n2,0,0.0625,\n2,-1,0.125,surroundings\n"
-                           "2,-2,0.75,wall_1\n2,-3,0.0625,beyond\n");
-    free(text);
+    ck_assert_str_eq(read_file(csv),
+                     "i,j,D,body\n0,1,0.25,\n0,2,0.125,\n0,-1,0.125,surroundings\n0,-2,0.5,wall_1\n1,0,0.375,\n"
+                     "1,-1,0.125,surroundings\n1,-2,0.5,wall_1\n2,0,0.0625,\n2,-1,0.125,surroundings\n"
+                     "2,-2,0.75,wall_1\n2,-3,0.0625,beyond\n");
     SUCCEED("join", zero, one, "--raw", "-o", csv);
-    text = read_file(csv);
-    ck_assert_ptr_nonnull(strstr(text, "\n10,1099511627781,0.125,\n10,-1,0.125,surroundings\n"));
-    free(text);
+    assert_has(read_file(csv), "\n10,1099511627781,0.125,\n10,-1,0.125,surroundings\n");
     SUCCEED("join", zero, one, "-o", mtx);
     ck_assert_double_lt(value_of("closure_max"), 1e-14);
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
-    text = read_file(mtx);
-    ck_assert_ptr_nonnull(strstr(text, "\n% ids: 10 30 1099511627781\n3 3 4\n1 2 "));
-    free(text);
+    assert_has(read_file(mtx), "\n% ids: 10 30 1099511627781\n3 3 4\n1 2 ");
     SUCCEED("join", zero, one, "--raw", "-o", in_folder("D.vtp"), "-o", "-", "--format", "csv");
-    text = read_file(csv);
-    ck_assert_str_eq(printed, text);
-    ck_assert_ptr_nonnull(strstr(said, "spheres 3\n"));
-    free(text);
-    text = read_file(in_folder("D.vtp"));
+    ck_assert_str_eq(printed, read_file(csv));
+    assert_has(said, "spheres 3\n");
+    char *text = read_file(in_folder("D.vtp"));
     ck_assert(strstr(text, "Name=\"wall_1\"") && strstr(text, "Name=\"id\""));
-    free(text);
     SUCCEED("join", zero, one, "--quiet");
     ck_assert_str_eq(printed, "");
-    ck_assert_int_eq(RUN("join", one, "-o", one), 2);
+    FAIL_WITH(2, "join", one, "-o", one);
     expect_message(one, "unknown ending");
-    ck_assert_int_eq(RUN("join", zero, csv, "-o", csv), 2);
+    FAIL_WITH(2, "join", zero, csv, "-o", csv);
     expect_message(csv, "is read in this run");
     const char *both = in_folder("both.json");
-    ck_assert_int_eq(RUN("join", zero, one, "-o", both, "--json", both), 2); /* one output would replace the other */
+    FAIL_WITH(2, "join", zero, one, "-o", both, "--json", both); /* one output would replace the other */
     expect_message(both, "is given twice");
-    ck_assert_int_eq(RUN("join", zero, one, "--json", one), 2);
+    FAIL_WITH(2, "join", zero, one, "--json", one);
     expect_message(one, "is read in this run");
     SUCCEED("join", zero, one, "--json", "-");
-    ck_assert_int_eq(strncmp(printed, "{\"fibrad\"", 9), 0);
-    ck_assert_ptr_nonnull(strstr(said, "\nspheres 3\n"));
+    assert_begins(printed, "{\"fibrad\"");
+    assert_has(said, "\nspheres 3\n");
     remove_files(0);
 }
 
@@ -466,7 +457,7 @@ LOOP_TEST(bad_rows, sizeof damaged_rows / sizeof *damaged_rows) {
         if (k == damaged_rows[_i].rank) words[damaged_rows[_i].word] = damaged_rows[_i].value;
         files[k] = write_words(rank_names[k], words, 8 * rank_words[k]);
     }
-    ck_assert_int_eq(RUN("join", files[0], files[1], "-o", in_folder("D.csv")), 3);
+    FAIL_WITH(3, "join", files[0], files[1], "-o", in_folder("D.csv"));
     expect_message(files[damaged_rows[_i].rank], damaged_rows[_i].reason);
     ck_assert_str_eq(printed, "");
     ck_assert_int_eq(remove_files(0), RANKS); /* no D.csv */
@@ -475,32 +466,32 @@ LOOP_TEST(bad_rows, sizeof damaged_rows / sizeof *damaged_rows) {
 TEST(missing_rows) {
     const char *zero = write_words(rank_names[0], rank_rows[0], 8 * rank_words[0]);
     const char *one = write_words(rank_names[1], rank_rows[1], 8 * rank_words[1]);
-    ck_assert_int_eq(RUN("join", zero), 3);
+    FAIL_WITH(3, "join", zero);
     expect_message(zero, "is one of 2 files; the file of rank 1 is missing");
-    ck_assert_int_eq(RUN("join", one), 3);
+    FAIL_WITH(3, "join", one);
     expect_message(one, "the file of rank 0 is missing");
-    ck_assert_int_eq(RUN("join", zero, one, zero), 3);
+    FAIL_WITH(3, "join", zero, one, zero);
     expect_message(zero, "has the rows of rank 0, as");
-    ck_assert_int_eq(RUN("join", zero, "no/such.rows"), 4);
+    FAIL_WITH(4, "join", zero, "no/such.rows");
     expect_message("no/such.rows: ", "No such file");
     union word near[WORDS];
     memcpy(near, rank_rows[1], sizeof near);
     near[21].real = .5; /* 30 inside 10 */
-    ck_assert_int_eq(RUN("join", zero, write_words(rank_names[1], near, 8 * rank_words[1])), 3);
+    FAIL_WITH(3, "join", zero, write_words(rank_names[1], near, 8 * rank_words[1]));
     expect_message("", "ids 10 and 30: ");
     remove_files(0);
 }
 
 TEST(file_trouble) {
     const char *bed = write_file("a.csv", "x,y,z,r\n0,0,0,1\n3,0,0,1\n");
-    ck_assert_int_eq(RUN("bed", "no/such.dump"), 4);
+    FAIL_WITH(4, "bed", "no/such.dump");
     expect_message("no/such.dump: ", "No such file");
-    ck_assert_int_eq(RUN("bed", folder), 4);
+    FAIL_WITH(4, "bed", folder);
     expect_message(folder, "directory");
-    ck_assert_int_eq(RUN("bed", bed, "-o", "no/such/F.csv"), 4);
+    FAIL_WITH(4, "bed", bed, "-o", "no/such/F.csv");
     expect_message("no/such/F.csv: ", "No such file");
     output = "/dev/full";
-    ck_assert_int_eq(RUN("bed", bed), 4);
+    FAIL_WITH(4, "bed", bed);
     output = NULL;
     expect_message("standard output", "No space left");
     ck_assert_int_eq(remove_files(0), 1);
@@ -512,14 +503,14 @@ TEST(full_disc) {
     ck_assert_int_eq(getrlimit(RLIMIT_FSIZE, &before), 0);
     const struct rlimit limit = {100000, before.rlim_max};
     ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &limit), 0);
-    ck_assert_int_eq(RUN("bed", MONO, "--directions", "21", "-o", in_folder("F.csv")), 4);
-    ck_assert_ptr_nonnull(strstr(said, "F.csv: cannot be written: File too large"));
+    FAIL_WITH(4, "bed", MONO, "--directions", "21", "-o", in_folder("F.csv"));
+    assert_has(said, "F.csv: cannot be written: File too large");
     ck_assert_int_eq(remove_files(0), 0);
-    ck_assert_int_eq(RUN("bed", MONO, "--directions", "8", "--plot", in_folder("F.svg")), 4);
-    ck_assert_ptr_nonnull(strstr(said, "F.svg: cannot be written: File too large"));
+    FAIL_WITH(4, "bed", MONO, "--directions", "8", "--plot", in_folder("F.svg"));
+    assert_has(said, "F.svg: cannot be written: File too large");
     ck_assert_int_eq(remove_files(0), 0);
-    ck_assert_int_eq(RUN("bed", MONO, "--directions", "8", "--plot", in_folder("F.png")), 4);
-    ck_assert_ptr_nonnull(strstr(said, "F.png: cannot be written: File too large"));
+    FAIL_WITH(4, "bed", MONO, "--directions", "8", "--plot", in_folder("F.png"));
+    assert_has(said, "F.png: cannot be written: File too large");
     ck_assert_int_eq(remove_files(0), 0);
     ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &before), 0);
 }

@@ -36,7 +36,7 @@ TEST(lone_sphere_by_beams) {
             OWNED fibrad_scene *scene = above(heights[k], wall / 2, wall % 2, &plane);
             for (int n = 0; n < 6; n++) {
                 const fibrad_beam_rule rule = {.directions = directions[n / 2], .points = points[n % 2]};
-                ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rule, &row), FIBRAD_OK);
+                assert_ok(fibrad_beam_row(scene, &work, 0, &rule, &row));
                 ck_assert_double_eq_tol(row.body[0], to_plane(heights[k]), 1e-14);
                 ck_assert_double_eq_tol(row.escaped, 1 - to_plane(heights[k]), 1e-14);
             }
@@ -51,19 +51,19 @@ TEST(lone_sphere_by_rays) {
     for (size_t k = 0; k < HEIGHTS; k++) {
         OWNED fibrad_scene *scene = above(heights[k], 2, 0, &plane);
         const double expected = to_plane(heights[k]);
-        ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 200000}, &row, NULL), FIBRAD_OK);
+        assert_ok(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 200000}, &row, NULL));
         ck_assert_double_eq_tol(row.body[0], expected, 2e-4);
         fibrad_exchange_rule rule = {.emissivity = &emissivity, .body_emissivity = &black, .paths = 100000};
-        ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL), FIBRAD_OK);
+        assert_ok(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL));
         ck_assert_double_eq_tol(row.body[0], expected, 1e-14);
         ck_assert_uint_eq(row.length, 0);
         rule.body_emissivity = &grey; /* light goes back and forth between cap and plane until it is absorbed */
-        ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL), FIBRAD_OK);
+        assert_ok(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL));
         ck_assert_double_ge(row.escaped, 1 - expected - 1e-12);
         ck_assert_double_le(row.escaped, 1 - (1 - heights[k]) / 2);
         fibrad_displacement displacement;
         rule.body_emissivity = &black, rule.emissivity = &black;
-        ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, 0, &rule, &displacement), FIBRAD_OK);
+        assert_ok(fibrad_exchange_displacement(scene, &work, 0, &rule, &displacement));
         ck_assert_double_eq_tol(displacement.absorbed, 0, 1e-14);
     }
 }
@@ -82,14 +82,13 @@ static struct heat heat_of(const struct bed *bed, const fibrad_body *plane, cons
     fibrad_heat_sources sources;
     struct heat heat;
     fibrad_heat_result result = {.power = heat.power, .body_power = &heat.plane};
-    ck_assert_int_eq(
-        fibrad_radiation_new(&radiation, &(fibrad_scene_config){.body = plane, .bodies = 1}, &spheres, NULL, NULL),
-        FIBRAD_OK);
+    assert_ok(
+        fibrad_radiation_new(&radiation, &(fibrad_scene_config){.body = plane, .bodies = 1}, &spheres, NULL, NULL));
     fibrad_heat_sources_init(&sources);
     sources.temperature = temperature, sources.emissivity = emissivity;
     sources.body_temperature = of_plane, sources.body_emissivity = of_plane + 1;
     sources.surroundings = sky, sources.sigma = 1, sources.tolerance = 1e-8;
-    ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &result), FIBRAD_OK);
+    assert_ok(fibrad_radiation_solve(radiation, &sources, &result));
     heat.sky = result.surroundings_power;
     return heat;
 }

@@ -16,7 +16,7 @@ LOOP_TEST(directions_agree_with_the_c_library, SIZE_COUNT) {
     uint64_t remainder = 0;
     for (uint32_t k = 0; k < n; k++, remainder = golden_next(remainder)) {
         double d[3];
-        ck_assert_int_eq(fibrad_direction(k, n, d), FIBRAD_OK);
+        assert_ok(fibrad_direction(k, n, d));
         long double z = 1 - (2 * k + 1.0L) / n, ring = sqrtl((2 * k + 1.0L) * (2.0L * n - 2 * k - 1)) / n;
         const long double truth[3] = {ring * cosl(golden_angle(remainder)), ring * sinl(golden_angle(remainder)), z};
         for (int axis = 0; axis < 3; axis++)
@@ -50,7 +50,7 @@ LOOP_TEST(set_is_balanced, SIZE_COUNT) {
     double sum[3] = {0}, square[3][3] = {{0}};
     for (uint32_t k = 0; k < n; k++) {
         double d[3];
-        ck_assert_int_eq(fibrad_direction(k, n, d), FIBRAD_OK);
+        assert_ok(fibrad_direction(k, n, d));
         for (int a = 0; a < 3; a++) {
             sum[a] += d[a];
             for (int b = 0; b < 3; b++) square[a][b] += d[a] * d[b];
@@ -69,7 +69,7 @@ LOOP_TEST(nearest_neighbours_keep_their_distance, SIZE_COUNT) {
     uint32_t n = SIZES[_i];
     if (n > LARGEST) return;
     double closest = 2, farthest = 0;
-    for (uint32_t k = 0; k < n; k++) ck_assert_int_eq(fibrad_direction(k, n, d[k]), FIBRAD_OK);
+    for (uint32_t k = 0; k < n; k++) assert_ok(fibrad_direction(k, n, d[k]));
     for (uint32_t k = 0; k < n; k++) {
         double nearest = 2;
         for (uint32_t j = 0; j < n; j++)
@@ -85,7 +85,7 @@ TEST(polar_form_is_the_direction) {
     for (uint32_t k = 0; k < 233; k++) {
         fibrad_polar p = fibrad_direction_polar(k, 233);
         double d[3];
-        ck_assert_int_eq(fibrad_direction(k, 233, d), FIBRAD_OK);
+        assert_ok(fibrad_direction(k, 233, d));
         ck_assert_double_eq(d[0], p.ring * p.cos);
         ck_assert_double_eq(d[1], p.ring * p.sin);
         ck_assert_double_eq(d[2], p.z);

@@ -4,8 +4,7 @@
 #include "suite.h"
 
 static struct bed copy_of(const struct bed *bed) {
-    struct bed to;
-    bed_init(&to);
+    struct bed to = bed_empty();
     for (uint32_t i = 0; i < bed->n; i++) add_sphere(&to, bed->x[i], bed->y[i], bed->z[i], bed->r[i]);
     memcpy(to.period, bed->period, sizeof to.period);
     return to;
@@ -23,13 +22,13 @@ static void jitter(struct bed *bed, double amplitude, uint64_t seed) {
 static fibrad_row row_in(const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule, uint32_t n) {
     static fibrad_work work = {.memory = {.resize = test_resize}};
     fibrad_row row = row_of(n);
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, i, rule, &row), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(scene, &work, i, rule, &row));
     return row;
 }
 
 static double error_of(const fibrad_scene *before, const fibrad_scene *now, uint32_t i, const fibrad_row *row) {
     double error;
-    ck_assert_int_eq(fibrad_drift_row(before, now, i, row->col, row->length, &error), FIBRAD_OK);
+    assert_ok(fibrad_drift_row(before, now, i, row->col, row->length, &error));
     return error;
 }
 
@@ -46,8 +45,8 @@ TEST(estimate_bounds_the_change_of_a_pair) {
         OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1 + r + gap, 0, 0, r}}), moved = copy_of(&bed);
         move *= fmin(1, r);
         moved.x[1] += move;
-        ck_assert_int_eq(fibrad_pair_exact(1, r, gap, &from), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_pair_exact(1, r, gap + move, &to), FIBRAD_OK);
+        assert_ok(fibrad_pair_exact(1, r, gap, &from));
+        assert_ok(fibrad_pair_exact(1, r, gap + move, &to));
         OWNED fibrad_scene *before = scene_of(&bed, FIBRAD_ISA_BEST), *now = scene_of(&moved, FIBRAD_ISA_BEST);
         fibrad_row row = {.col = &(uint32_t){1}, .length = 1};
         double estimate = error_of(before, now, 0, &row);
@@ -118,7 +117,7 @@ TEST(what_comes_into_sight_is_found) {
     OWNED fibrad_scene *from = scene_of(&bed, FIBRAD_ISA_BEST), *to = scene_of(&now, FIBRAD_ISA_BEST);
     OWNED_ROW before = row_in(from, 0, &rule, bed.n), row = row_in(to, 0, &rule, bed.n);
     double *error = calloc(bed.n, sizeof *error), unseen = 0, left = 0;
-    ck_assert_int_eq(fibrad_drift_partners(to, 0, &before, &row, error), FIBRAD_OK);
+    assert_ok(fibrad_drift_partners(to, 0, &before, &row, error));
     for (uint32_t i = 1; i < bed.n; i++) {
         OWNED_ROW old = row_in(from, i, &rule, bed.n), new = row_in(to, i, &rule, bed.n);
         const double change = row_distance(&old, &new);
@@ -153,7 +152,7 @@ TEST(bad_arguments_are_refused) {
     fibrad_row row = {.col = (uint32_t[]){1, 50}, .f = (double[]){.1, .1}, .length = 1}, beyond = row;
     beyond.length = 2;
     double error[50] = {0};
-    ck_assert_int_eq(fibrad_drift_row(scene, scene, 0, row.col, row.length, error), FIBRAD_OK);
+    assert_ok(fibrad_drift_row(scene, scene, 0, row.col, row.length, error));
     ck_assert_double_eq(error[0], 0);
     ck_assert_int_eq(fibrad_drift_row(NULL, scene, 0, row.col, row.length, error), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_drift_row(scene, NULL, 0, row.col, row.length, error), FIBRAD_E_ARGUMENT);
@@ -163,7 +162,7 @@ TEST(bad_arguments_are_refused) {
     ck_assert_int_eq(fibrad_drift_row(scene, scene, 0, NULL, 1, error), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_drift_row(scene, scene, 0, beyond.col, beyond.length, error), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_drift_row(scene, scene, 0, row.col, row.length, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_drift_partners(scene, 0, &row, &row, error), FIBRAD_OK);
+    assert_ok(fibrad_drift_partners(scene, 0, &row, &row, error));
     ck_assert_int_eq(fibrad_drift_partners(NULL, 0, &row, &row, error), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_drift_partners(scene, 50, &row, &row, error), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_drift_partners(scene, 0, &beyond, &row, error), FIBRAD_E_ARGUMENT);

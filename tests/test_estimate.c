@@ -25,7 +25,7 @@ static fibrad_bed_factors *rows(const struct bed *bed, const fibrad_beam_rule *r
     const fibrad_bed_options options = {.beam = rule, .wanted = wanted, .raw = raw};
     fibrad_run run = {.threads = 1};
     fibrad_bed_factors *factors = NULL;
-    ck_assert_int_eq(fibrad_view_factors(&config, &spheres, &options, &run, &factors), FIBRAD_OK);
+    assert_ok(fibrad_view_factors(&config, &spheres, &options, &run, &factors));
     return factors;
 }
 
@@ -73,6 +73,30 @@ LOOP_TEST(estimates_are_honest, BEDS) {
     }
 }
 
+/* Estimates of means of two rows, each by windows, are above the error, but for two of 48 at most. The median estimate
+ * is at most 4 times the error. The host has such rows only where silhouettes cannot serve: the kernel makes them. */
+LOOP_TEST(estimates_of_means_are_honest, BEDS) {
+    OWNED_BED bed = beds[_i].make();
+    unsigned char wanted[1000];
+    OWNED_FACTORS *truth = truth_of(&bed, wanted);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    double ratio[3 * ROWS];
+    uint32_t count = 0;
+    for (uint32_t directions = 60; directions <= 540; directions *= 3) {
+        OWNED_MATRIX means = matrix_by_beams(scene, &(fibrad_beam_rule){.directions = directions}, false);
+        for (uint32_t i = 0; i < bed.n; i++) {
+            if (!wanted[i]) continue;
+            const fibrad_row mean = matrix_row(&means.factors, i), exact = matrix_row(&truth->matrix, i);
+            ratio[count++] = mean.error / row_distance(&mean, &exact);
+        }
+    }
+    qsort(ratio, count, sizeof *ratio, ascending);
+    printf("%s, means: estimate over error %.2f %.2f %.2f\n", beds[_i].name, ratio[2], ratio[count / 2],
+           ratio[count - 3]);
+    ck_assert_double_ge(ratio[2], 1);
+    ck_assert_double_lt(ratio[count / 2], 4);
+}
+
 /* The rows asked for are that accurate, by the truth and by their own estimates. Averaged rows are closed and
  * reciprocal. */
 LOOP_TEST(tolerance_is_met, BEDS) {
@@ -108,12 +132,11 @@ TEST(rows_by_themselves) {
     OWNED_ROW row = row_of(bed.n), plain = row_of(bed.n);
     uint32_t before = 0;
     for (double error = 1e-2; error > 1e-4; error /= 3) {
-        ck_assert_int_eq(fibrad_beam_row(scene, &work, 7, &(fibrad_beam_rule){.tolerance = error}, &row), FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, &work, 7, &(fibrad_beam_rule){.tolerance = error}, &row));
         ck_assert_double_le(row.error, error);
         ck_assert_uint_ge(row.directions, before);
         before = row.directions;
-        ck_assert_int_eq(fibrad_beam_row(scene, &work, 7, &(fibrad_beam_rule){.directions = before}, &plain),
-                         FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, &work, 7, &(fibrad_beam_rule){.directions = before}, &plain));
         ck_assert_double_eq(row_distance(&row, &plain), 0);
         ck_assert_double_eq(row.error, plain.error);
     }
@@ -175,7 +198,7 @@ static fibrad_bed_factors *rows_among(const struct bed *bed, const fibrad_scene_
     const fibrad_bed_options options = {.beam = rule, .wanted = wanted, .raw = raw};
     fibrad_run run = {.threads = 1};
     fibrad_bed_factors *factors = NULL;
-    ck_assert_int_eq(fibrad_view_factors(config, &spheres, &options, &run, &factors), FIBRAD_OK);
+    assert_ok(fibrad_view_factors(config, &spheres, &options, &run, &factors));
     return factors;
 }
 
@@ -195,8 +218,7 @@ LOOP_TEST(estimates_count_walls, SCENES) {
         for (int step = 0; step < 4; step++) {
             const fibrad_beam_rule rule = {.directions = 61u << 2 * step, .tolerance = step == 3 ? 1e-3 : 0};
             const fibrad_beam_rule tolerant = {.tolerance = of->fraction > .1 ? 3e-3 : 1e-2};
-            fibrad_bed_factors *factors =
-                rows_among(&bed, &config, step < 3 ? &rule : &tolerant, raw, raw ? wanted : NULL);
+            OWNED_FACTORS *factors = rows_among(&bed, &config, step < 3 ? &rule : &tolerant, raw, raw ? wanted : NULL);
             for (uint32_t i = 0; i < bed.n; i++) {
                 if (!wanted[i]) continue;
                 const fibrad_row here = matrix_row(&factors->matrix, i), there = matrix_row(&truth->matrix, i);
@@ -206,7 +228,6 @@ LOOP_TEST(estimates_count_walls, SCENES) {
                 above += error > 2 * here.error;
                 ratio[count++] = here.error / error;
             }
-            fibrad_bed_free(factors);
         }
         if (bed.n == 1) ck_assert_uint_eq(count, 0);
         if (count == 0) continue;
@@ -224,7 +245,7 @@ TEST(out_of_reach) {
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(bed.n);
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.tolerance = 1e-15}, &row), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.tolerance = 1e-15}, &row));
     ck_assert_uint_eq(row.directions, FIBRAD_DIRECTIONS_MAX);
     ck_assert_double_gt(row.error, 1e-15);
     ck_assert_uint_eq(fibrad_directions_for(FIBRAD_DIRECTIONS_MAX, 2, 1), FIBRAD_DIRECTIONS_MAX);
@@ -239,12 +260,12 @@ TEST(one_entry_is_no_luck) {
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(bed.n);
     double truth;
-    ck_assert_int_eq(fibrad_pair_exact(.03, .3, 3e-5, &truth), FIBRAD_OK);
+    assert_ok(fibrad_pair_exact(.03, .3, 3e-5, &truth));
     int beyond = 0, rows = 0;
     for (uint32_t directions = 50; directions < 300; directions += 60)
         for (uint64_t turn = 1; turn <= 50; turn++, rows++) {
             const fibrad_beam_rule rule = {.directions = directions, .turn = turn};
-            ck_assert_int_eq(fibrad_beam_row(scene, &work, 1, &rule, &row), FIBRAD_OK);
+            assert_ok(fibrad_beam_row(scene, &work, 1, &rule, &row));
             beyond += fabs(row_factor(&row, 0) - truth) > 2 * row.error;
         }
     ck_assert_int_le(beyond, rows / 20);
@@ -257,7 +278,7 @@ static fibrad_bed_factors *exchange(const struct bed *bed, const fibrad_exchange
     const fibrad_bed_options options = {.raw = raw};
     fibrad_run run = {.threads = 1};
     fibrad_bed_factors *factors = NULL;
-    ck_assert_int_eq(fibrad_exchange_factors(NULL, &spheres, rule, &options, &run, &factors), FIBRAD_OK);
+    assert_ok(fibrad_exchange_factors(NULL, &spheres, rule, &options, &run, &factors));
     return factors;
 }
 
@@ -272,7 +293,7 @@ TEST(small_beside_large_exchange) {
         OWNED_FACTORS *f = exchange(&bed, &rule, false);
         const double there = matrix_factor(&f->matrix, 0, 1), back = matrix_factor(&f->matrix, 1, 0);
         ck_assert_double_le(fabs(back - truth), .004);
-        ck_assert_double_le(fabs(100 * there / back - 1), 1e-14);
+        assert_near(100 * there, back, 1e-14);
         ck_assert_double_le(f->closure_error, 1e-12);
         ck_assert_double_le(fmax(f->matrix.error[0], f->matrix.error[1]), .002);
         square += (back - truth) * (back - truth) / 12;
@@ -291,11 +312,11 @@ LOOP_TEST(small_beside_large_sampled, 2) {
         _i == 0 ? (fibrad_bed_options){.beam = &points} : (fibrad_bed_options){.cast = &rays};
     double truth;
     OWNED_FACTORS *f = NULL;
-    ck_assert_int_eq(fibrad_pair_exact(.03, .3, 3e-5, &truth), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &options, NULL, &f), FIBRAD_OK);
+    assert_ok(fibrad_pair_exact(.03, .3, 3e-5, &truth));
+    assert_ok(fibrad_view_factors(NULL, &spheres, &options, NULL, &f));
     const double there = matrix_factor(&f->matrix, 0, 1), back = matrix_factor(&f->matrix, 1, 0);
     ck_assert_double_le(fabs(back - truth), .002);
-    ck_assert_double_le(fabs(100 * there / back - 1), 1e-14);
+    assert_near(100 * there, back, 1e-14);
     ck_assert_double_le(f->closure_error, 1e-12);
 }
 
@@ -314,7 +335,7 @@ LOOP_TEST(tolerance_of_exchange_is_met, sizeof greys / sizeof *greys) {
     double *e = calloc(bed.n, sizeof *e), worst = 0, square = 0;
     for (uint32_t i = 0; i < bed.n; i++) e[i] = greys[_i].emissivity;
     OWNED_FACTORS *f = exchange(&bed, &(fibrad_exchange_rule){.emissivity = e, .tolerance = tolerance}, false);
-    fibrad_bed_factors *truth =
+    OWNED_FACTORS *truth =
         exchange(&bed,
                  &(fibrad_exchange_rule){
                      .emissivity = e, .directions = 4000, .paths = (uint32_t)(.3 / tolerance / tolerance), .seed = 9},
@@ -335,6 +356,5 @@ LOOP_TEST(tolerance_of_exchange_is_met, sizeof greys / sizeof *greys) {
            1 / greys[_i].smallest, e[0], tolerance, worst, sqrt(square));
     ck_assert_double_le(sqrt(square), .7 * tolerance);
     ck_assert_double_le(worst, 1.3 * tolerance);
-    fibrad_bed_free(truth);
     free(e);
 }

@@ -10,7 +10,7 @@
 static fibrad_row exchange_in(const fibrad_scene *scene, uint32_t n, uint32_t i, const fibrad_exchange_rule *rule) {
     OWNED_WORK work = work_growing();
     fibrad_row row = row_of(n);
-    ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, rule, &row, NULL), FIBRAD_OK);
+    assert_ok(fibrad_exchange_row(scene, &work, i, rule, &row, NULL));
     ck_assert_uint_eq(row.sphere, i);
     ck_assert_double_eq(row.beyond, 0);
     return row;
@@ -37,7 +37,7 @@ TEST(black_is_the_beam_row) {
     for (uint32_t i = 0; i < bed.n; i += 40) {
         OWNED_ROW row = exchange_in(scene, bed.n, i, &(fibrad_exchange_rule){.emissivity = e, .directions = 233});
         OWNED_ROW beam = row_of(bed.n);
-        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, NULL, &beam), FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, &work, i, NULL, &beam));
         ck_assert_uint_eq(row.length, beam.length);
         for (uint32_t k = 0; k < row.length; k++) {
             ck_assert_uint_eq(row.col[k], beam.col[k]);
@@ -55,13 +55,12 @@ TEST(one_and_two_spheres) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {30, 0, 0, 2}});
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     double exact;
-    ck_assert_int_eq(fibrad_pair_exact(1, 2, 27, &exact), FIBRAD_OK);
-    fibrad_row row =
+    assert_ok(fibrad_pair_exact(1, 2, 27, &exact));
+    OWNED_ROW row =
         exchange_in(scene, 2, 0, &(fibrad_exchange_rule){.emissivity = e, .directions = 65536, .paths = 4000});
     ck_assert_double_eq_tol(row_factor(&row, 1), .6 * exact, .01 * exact); /* reflected twice: 1e-3 of it */
     ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
     ck_assert_double_eq_tol(row.escaped, 1 - .6 * exact, .002 * exact);
-    row_free(&row);
 }
 
 /* What black walls absorb at once has the whole error of the beams, however little the spheres absorb. It counts for
@@ -76,7 +75,7 @@ TEST(walls_count_for_the_first_leg) {
     OWNED_ROW row = exchange_in(scene, 2, 0, &rule), beam = row_of(2);
     OWNED_WORK work = work_growing();
     const fibrad_beam_rule first = {.directions = 50, .points = 256};
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &first, &beam), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(scene, &work, 0, &first, &beam));
     ck_assert_double_ge(row.error, beam.error);
     rule.tolerance = beam.error;
     OWNED_ROW finer = exchange_in(scene, 2, 0, &rule);
@@ -91,11 +90,10 @@ TEST(hardly_seen) {
     OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1e4, 0, 0, 1}});
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     for (int tolerance = 0; tolerance <= 1; tolerance++) {
-        fibrad_row row =
+        OWNED_ROW row =
             exchange_in(scene, 2, 0, &(fibrad_exchange_rule){.emissivity = e, .tolerance = tolerance * 1e-3});
         ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
         ck_assert_double_le(row.error, 1e-3);
-        row_free(&row);
     }
 }
 
@@ -109,7 +107,7 @@ TEST(sphere_in_a_grey_box) {
     const double e[1] = {.4}, grey[6] = {.1, .1, .1, .1, .1, .1}, white[6] = {0};
     OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 6});
     fibrad_exchange_rule rule = {.emissivity = e, .body_emissivity = grey, .directions = 1000, .paths = 400000};
-    fibrad_row row = exchange_in(scene, 1, 0, &rule);
+    OWNED_ROW row = exchange_in(scene, 1, 0, &rule);
     double back = 4 * PI / (6 * 64), gap = .9 * back;
     ck_assert_double_eq_tol(row_factor(&row, 0), gap * .4 / (1 - .9 * (1 - back) - gap * .6), .02 * .105);
     ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
@@ -120,7 +118,6 @@ TEST(sphere_in_a_grey_box) {
     rule.paths = 200;
     row = exchange_in(scene, 1, 0, &rule);
     ck_assert_double_eq_tol(row_factor(&row, 0), 1, 1e-13);
-    row_free(&row);
 }
 
 /* Follows paths in another way: ray by ray in the bed itself. A random number decides where a path is absorbed as a
@@ -167,7 +164,7 @@ LOOP_TEST(against_plain_paths, 4) {
     OWNED double *e = calloc(bed.n, sizeof *e), *d = calloc(bed.n, sizeof *d);
     for (uint32_t i = 0; i < bed.n; i++) e[i] = _i / 2 && i % 3 == 0 ? 0 : .1 + .85 * bed_make_random(4, i);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_row row =
+    OWNED_ROW row =
         exchange_in(scene, bed.n, 5, &(fibrad_exchange_rule){.emissivity = e, .directions = 2000, .paths = PATHS});
     plain(&bed, e, 5, PATHS, d);
     double square = 0, noise = 0;
@@ -180,7 +177,6 @@ LOOP_TEST(against_plain_paths, 4) {
     }
     ck_assert_double_lt(square, 2 * noise);
     ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
-    row_free(&row);
 }
 
 static void assert_empty(const fibrad_row *row, uint32_t bodies) {
@@ -208,13 +204,13 @@ TEST(reflectors_have_empty_rows) {
         fibrad_displacement d, of_nearly;
         row.body[0] = row.body[1] = row.error = row.escaped = 7; /* to be written over */
         rule.emissivity = e;
-        ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &row, &rays), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &kept, NULL), FIBRAD_OK);
+        assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &row, &rays));
+        assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &kept, NULL));
         ck_assert(same_bits_with(&row, &kept, 2));
-        ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, i, &rule, &d), FIBRAD_OK);
+        assert_ok(fibrad_exchange_displacement(scene, &work, i, &rule, &d));
         rule.emissivity = nearly;
-        ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &same, NULL), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, i, &rule, &of_nearly), FIBRAD_OK);
+        assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &same, NULL));
+        assert_ok(fibrad_exchange_displacement(scene, &work, i, &rule, &of_nearly));
         for (uint32_t k = 0; k < row.length; k++) ck_assert(row.f[k] > 0 && row.col[k] % 4 != 0);
         if (i % 4 == 0) {
             assert_empty(&row, 2);
@@ -233,7 +229,7 @@ TEST(reflectors_have_empty_rows) {
     rule.emissivity = memset(e, 0, bed.n * sizeof *e); /* all of them */
     for (uint32_t i = 0; i < bed.n; i += 7) {
         OWNED_ROW row = row_of(bed.n);
-        ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &row, NULL), FIBRAD_OK);
+        assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &row, NULL));
         assert_empty(&row, 2);
     }
 }
@@ -245,7 +241,7 @@ TEST(all_light_comes_back) {
     e[11] = .7;
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     const fibrad_exchange_rule rule = {.emissivity = e};
-    fibrad_row row = exchange_in(scene, bed.n, 11, &rule);
+    OWNED_ROW row = exchange_in(scene, bed.n, 11, &rule);
     ck_assert_uint_eq(row.length, 1);
     ck_assert_double_eq_tol(row_factor(&row, 11), 1, 1e-12);
     row_free(&row);
@@ -253,7 +249,6 @@ TEST(all_light_comes_back) {
     row = exchange_in(scene, bed.n, 11, &rule);
     ck_assert_uint_eq(row.length, 2);
     ck_assert_double_eq_tol(row_factor(&row, 11) + row_factor(&row, 30), 1, 1e-12);
-    row_free(&row);
 }
 
 /* The error falls as stated, and its estimate is honest. */
@@ -291,25 +286,24 @@ TEST(same_bits_always) {
     OWNED_ROW row = exchange_in(scene, bed.n, 70, &rule);
     fibrad_displacement displacement = {0};
     fibrad_work work = work_growing();
-    ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, 70, &rule, &displacement), FIBRAD_OK);
+    assert_ok(fibrad_exchange_displacement(scene, &work, 70, &rule, &displacement));
     work_free(&work);
     const size_t room = FIBRAD_WORK_BYTES(256, 150) + ((size_t)1 << 17);
-    int isa[ISAS_MOST];
-    const int sets = isas_there(isa);
-    for (int k = 0; k < 2 * sets; k++) { /* with much memory and with little */
-        config.isa = isa[k / 2];
+    const struct isas isas = isas_there();
+    for (int k = 0; k < 2 * isas.count; k++) { /* with much memory and with little */
+        config.isa = isas.set[k / 2];
         OWNED fibrad_scene *other = scene_with(&bed, &config);
         work = k % 2 ? work_fixed(block_of(room), room) : work_growing();
         OWNED_ROW again = row_of(bed.n);
         for (uint32_t i = 71; i-- > 68;) {
             again.length = 0;
-            ck_assert_int_eq(fibrad_exchange_row(other, &work, i, &rule, &again, NULL), FIBRAD_OK);
+            assert_ok(fibrad_exchange_row(other, &work, i, &rule, &again, NULL));
             if (i == 70) ck_assert(same_bits_with(&row, &again, 2));
         }
         const fibrad_workspace *space = work.inside;
         ck_assert_int_eq(((const fibrad_tracer *)space->extra)->lists < bed.n / 2, k % 2);
         fibrad_displacement repeated = {0};
-        ck_assert_int_eq(fibrad_exchange_displacement(other, &work, 70, &rule, &repeated), FIBRAD_OK);
+        assert_ok(fibrad_exchange_displacement(other, &work, 70, &rule, &repeated));
         ck_assert_mem_eq(&displacement, &repeated, sizeof displacement);
         free(work.memory.block);
     }
@@ -324,7 +318,7 @@ static double factor(const struct bed *bed, double solid, double emissivity, uin
     const fibrad_exchange_rule rule = {.emissivity = e, .paths = paths};
     for (uint32_t i = 0; i < bed->n; i++) {
         fibrad_displacement d;
-        ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, i, &rule, &d), FIBRAD_OK);
+        assert_ok(fibrad_exchange_displacement(scene, &work, i, &rule, &d));
         for (int axis = 0; axis < 3; axis++) square += d.square[axis] / 3 / bed->n;
         ck_assert_double_eq_tol(d.absorbed, 1, .05);
     }
@@ -335,14 +329,13 @@ static double factor(const struct bed *bed, double solid, double emissivity, uin
 TEST(conductivity_of_lattices) {
     const double b = 4 / sqrt(3), f = 2 * sqrt(2);
     OWNED_BED centred = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {b / 2, b / 2, b / 2, 1}});
-    struct bed faces =
+    OWNED_BED faces =
         bed_of(4, (const double[][4]){{0, 0, 0, 1}, {f / 2, f / 2, 0, 1}, {0, f / 2, f / 2, 1}, {f / 2, 0, f / 2, 1}});
     for (int axis = 0; axis < 3; axis++) centred.period[axis] = b, faces.period[axis] = f;
-    ck_assert_double_eq_tol(factor(&centred, PI * sqrt(3) / 8, .4, 60000), .336, .02 * .336);
-    ck_assert_double_eq_tol(factor(&centred, PI * sqrt(3) / 8, 1, 60000), .916, .02 * .916);
-    ck_assert_double_eq_tol(factor(&faces, PI * sqrt(2) / 6, .4, 30000), .299, .02 * .299);
-    ck_assert_double_eq_tol(factor(&faces, PI * sqrt(2) / 6, 1, 30000), .875, .02 * .875);
-    bed_free(&faces);
+    assert_near(factor(&centred, PI * sqrt(3) / 8, .4, 60000), .336, .02);
+    assert_near(factor(&centred, PI * sqrt(3) / 8, 1, 60000), .916, .02);
+    assert_near(factor(&faces, PI * sqrt(2) / 6, .4, 30000), .299, .02);
+    assert_near(factor(&faces, PI * sqrt(2) / 6, 1, 30000), .875, .02);
 }
 
 /* In a chain with two spheres a period, one emits to the other. The displacement counts periods and takes the nearest
@@ -357,8 +350,8 @@ TEST(displacement_in_a_chain) {
     OWNED_WORK work = work_growing();
     fibrad_displacement d;
     const fibrad_exchange_rule rule = {.emissivity = e, .paths = 400000};
-    ck_assert_int_eq(fibrad_pair_exact(1, 1, 0, &exact), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, 1, &rule, &d), FIBRAD_OK);
+    assert_ok(fibrad_pair_exact(1, 1, 0, &exact));
+    assert_ok(fibrad_exchange_displacement(scene, &work, 1, &rule, &d));
     /* little gets beyond the neighbours, which hide nearly all */
     ck_assert_double_gt(d.absorbed, 2 * exact - .001);
     ck_assert_double_lt(d.absorbed, 2 * exact + .02);
@@ -382,7 +375,7 @@ TEST(rows_keep_the_books) {
     for (uint32_t i = 0; i < n; i++) e[i] = .2 + .8 * bed_make_random(2, i);
     for (uint32_t i = 0; i < n; i++) {
         const fibrad_exchange_rule rule = {.emissivity = e, .paths = 200};
-        ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL), FIBRAD_OK);
+        assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL));
     }
     OWNED_MATRIX raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = e, .raw = 1});
     for (uint32_t i = 0; i < n; i++) {
@@ -398,7 +391,7 @@ TEST(rows_keep_the_books) {
     double off = 0;
     for (uint32_t i = 0; i < n; i++) worst_of(&off, fabs(mean[i] - target[i]));
     ck_assert_double_gt(off, 1e-4); /* there is something to balance */
-    ck_assert_int_eq(fibrad_matrix_reciprocity(raw.matrix, &largest), FIBRAD_OK);
+    assert_ok(fibrad_matrix_reciprocity(raw.matrix, &largest));
     ck_assert_double_gt(largest, 1e-4);
     for (int drop = 0; drop <= 1; drop++) {
         OWNED_MATRIX m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = e, .drop = drop * .003});
@@ -406,7 +399,7 @@ TEST(rows_keep_the_books) {
             ck_assert_double_eq_tol(matrix_sum(&m.factors, i), target[i], 1e-12);
             ck_assert_double_eq_tol(matrix_total(&m.factors, i), 1, 1e-12);
         }
-        ck_assert_int_eq(fibrad_matrix_reciprocity(m.matrix, &largest), FIBRAD_OK);
+        assert_ok(fibrad_matrix_reciprocity(m.matrix, &largest));
         ck_assert_double_lt(largest, 1e-14);
         ck_assert_int_eq(m.factors.start[n] < raw.factors.start[n], drop);
     }
@@ -442,7 +435,7 @@ TEST(paths_go_by_the_numbers_of_spheres) {
         const fibrad_scene_config config = {.period = {bed.period[0], bed.period[1], bed.period[2]}};
         const size_t size = fibrad_scene_size(100, 1);
         void *block = block_of(size);
-        ck_assert_int_eq(fibrad_scene_init(&scene[k], block, size, &config, &spheres, NULL), FIBRAD_OK);
+        assert_ok(fibrad_scene_init(&scene[k], block, size, &config, &spheres, NULL));
     }
     memset(id, 0xff, sizeof id); /* they are copied */
     memcpy(turned.period, bed.period, sizeof bed.period);
@@ -518,12 +511,12 @@ TEST(bad_arguments) {
     }
     rule.body_emissivity = good;
     ck_assert_int_eq(fibrad_exchange_row(walled, &work, 0, &rule, &bare, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_exchange_row(walled, &work, 0, &rule, &row, NULL), FIBRAD_OK);
+    assert_ok(fibrad_exchange_row(walled, &work, 0, &rule, &row, NULL));
     ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
     row.body[0] = 0;
-    ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &fine, &row, NULL), FIBRAD_OK);
+    assert_ok(fibrad_exchange_row(scene, &work, 0, &fine, &row, NULL));
     ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
-    ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &fine, &bare, NULL), FIBRAD_OK);
+    assert_ok(fibrad_exchange_row(scene, &work, 0, &fine, &bare, NULL));
     row_free(&row);
 }
 
@@ -544,17 +537,17 @@ TEST(mirrors_end_in_the_error) {
         const fibrad_exchange_rule rule = {.emissivity = e, .body_emissivity = wall};
         OWNED_ROW row = row_of(bed.n);
         uint64_t rays = 0;
-        ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, &rays), FIBRAD_OK);
+        assert_ok(fibrad_exchange_row(scene, &work, 0, &rule, &row, &rays));
         double square = pow(row_factor(&row, 0) - truth, 2) + pow(row_factor(&row, 1) - truth, 2);
         for (int b = 0; b < 6; b++) square += pow(row.body[b] - w / (2 * area * e[0] + 6 * w), 2);
         ck_assert_double_le(sqrt(square), row.error);
         ck_assert_double_le((double)rays, 1e6);
         fibrad_body_row part;
-        ck_assert_int_eq(fibrad_exchange_body(scene, &work, 0, &rule, 0, &part), FIBRAD_OK);
+        assert_ok(fibrad_exchange_body(scene, &work, 0, &rule, 0, &part));
         ck_assert_double_ge(part.error, w > 0 ? .5 : 0);
         ck_assert_double_le((double)part.rays, 1e6);
         fibrad_displacement moved;
-        ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, 0, &rule, &moved), FIBRAD_OK);
+        assert_ok(fibrad_exchange_displacement(scene, &work, 0, &rule, &moved));
         ck_assert_double_le((double)moved.rays, 1e6);
     }
 }

@@ -26,7 +26,7 @@ static const char *frame(const char *units, const char *step, const char *atoms,
 
 /* The power of a body or sphere in a .csv of heat. The beginning or the end of its line tells which. */
 static double power_of(const char *path, const char *begin, const char *end) {
-    OWNED char *text = read_file(path);
+    char *text = read_file(path);
     double t, q = NAN;
     for (char *line = text; line && *line; line = strchr(line, '\n'), line += line != NULL) {
         const size_t length = strcspn(line, "\n");
@@ -46,7 +46,7 @@ static double power_of(const char *path, const char *begin, const char *end) {
 TEST(wall_temperatures_by_name) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED)), *out = in_folder("q.csv");
     static const char *const lists[] = {"zmin=1200,zmax=300,700", "700,zmax=300,zmin=1200"};
-    OWNED char *first = NULL;
+    char *first = NULL;
     for (int k = 0; k < 2; ++k) {
         SUCCEED(HEAT, bed, "--wall", "auto,zmin=-0.001", "--wall-temperature", lists[k], "--wall-emissivity", "zmin=.5",
                 "-o", out);
@@ -57,7 +57,7 @@ TEST(wall_temperatures_by_name) {
         ck_assert_double_eq(value_of("wall_zmin_emissivity"), .5);
         ck_assert_double_eq(value_of("wall_xmin_emissivity"), 1);
         read_same(out, &first);
-        ck_assert_ptr_nonnull(strstr(first, "\n-2,1200,"));
+        assert_has(first, "\n-2,1200,");
         ck_assert_double_lt(power_of(out, "-2,", ",zmin"), 0); /* the hottest */
     }
 }
@@ -69,7 +69,7 @@ TEST(surroundings_are_asked_for) {
                                        "cylinder:4,4,6,zmin,zmax=open"};
     static const char *const closed[] = {"auto", "cylinder:4,4,6,zmin,zmax"};
     for (int k = 0; k < 4; ++k) {
-        ck_assert_int_eq(RUN(HEAT, bed, "--wall", open[k], "--wall-temperature", "300"), 2);
+        FAIL_WITH(2, HEAT, bed, "--wall", open[k], "--wall-temperature", "300");
         expect_message("", "--ambient is missing: the bed is open");
         SUCCEED(HEAT, bed, "--wall", open[k], "--wall-temperature", "300", "--ambient", "290");
         ck_assert_double_eq(value_of("surroundings_K"), 290);
@@ -77,7 +77,7 @@ TEST(surroundings_are_asked_for) {
     for (int k = 0; k < 2; ++k) SUCCEED(HEAT, bed, "--wall", closed[k], "--wall-temperature", "300");
     SUCCEED(HEAT, bed, "--periodic", "8,8,0", "--wall", "zmin,zmax", "--wall-temperature", "300");
     SUCCEED(HEAT, bed, "--periodic", "8,8,8");
-    ck_assert_int_eq(RUN(HEAT, bed, "--periodic", "8,8,0"), 2);
+    FAIL_WITH(2, HEAT, bed, "--periodic", "8,8,0");
     expect_message("", "--ambient is missing");
 }
 
@@ -99,26 +99,26 @@ TEST(temperatures_and_powers_mixed) {
         "SCALARS radius double\nLOOKUP_TABLE default\n1 1 1\nSCALARS type double\nLOOKUP_TABLE default\n1 2 1\n"
         "SCALARS T double\nLOOKUP_TABLE default\nnan 900 nan\nSCALARS P double\nLOOKUP_TABLE default\n40 nan 40\n"};
     const char *out = in_folder("q.csv");
-    OWNED char *first = NULL;
+    char *first = NULL;
     for (int k = 0; k < 16; ++k) {
         const char *const *w = words[k % 4], *bed = write_file("bed", beds[k / 4]);
         SUCCEED(MIXED, bed, w[0], w[1], w[2], w[3], "-o", out);
         read_same(out, &first);
         ck_assert_double_eq(power_of(out, "0,", ","), -40);
         ck_assert_double_lt(power_of(out, "1,", ","), 0);
-        ck_assert_ptr_nonnull(strstr(first, "\n1,900,"));
+        assert_has(first, "\n1,900,");
     }
     const char *bed = write_file("bed", beds[0]);
-    ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "T"), 3); /* only spheres that have a power may have blanks */
+    FAIL_WITH(3, MIXED, bed, "--temperature", "T"); /* only spheres that have a power may have blanks */
     expect_message(bed, "T is not a number: ''");
-    ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "x", "--power", "40"), 2);
+    FAIL_WITH(2, MIXED, bed, "--temperature", "x", "--power", "40");
     expect_message("", "--power 40 is for no sphere");
-    ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "T", "--power", "type"), 3);
+    FAIL_WITH(3, MIXED, bed, "--temperature", "T", "--power", "type");
     expect_message(bed, "sphere 1 has both a temperature and a power");
-    ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "T", "--power", "2:5"), 3);
+    FAIL_WITH(3, MIXED, bed, "--temperature", "T", "--power", "2:5");
     expect_message(bed, "sphere 0 has neither a temperature nor a power");
-    ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "600", "--power", "40", "--radius", "T"), 2);
-    ck_assert_int_eq(RUN("heat", bed, "--emissivity", "T", "--temperature", "600", "--ambient", "300"), 3);
+    FAIL_WITH(2, MIXED, bed, "--temperature", "600", "--power", "40", "--radius", "T");
+    FAIL_WITH(3, "heat", bed, "--emissivity", "T", "--temperature", "600", "--ambient", "300");
     expect_message(bed, "T is not a number: ''");
 }
 
@@ -134,7 +134,7 @@ TEST(units_of_length) {
                 {"lj", "mm", 1e-3},     {"cgs", "cm", .01}};
     const char *out = in_folder("q.csv");
     double metres = NAN;
-    OWNED char *factors = NULL;
+    char *factors = NULL;
     for (size_t k = 0; k < sizeof unit / sizeof *unit; ++k) {
         const char *bed = write_file("bed.dump", frame(unit[k].units, "0", "3", SORTED));
         if (unit[k].option)
@@ -144,21 +144,21 @@ TEST(units_of_length) {
         const double q = power_of(out, "3,", ","), square = unit[k].metres * unit[k].metres;
         if (k == 0) metres = q;
         ck_assert_double_eq_tol(q, metres * square, 1e-13 * fabs(metres) * square);
-        ck_assert_ptr_null(strstr(said, "taken as metres"));
+        assert_lacks(said, "taken as metres");
         SUCCEED("bed", bed, "--directions", "21", "-o", out);
         read_same(out, &factors);
     }
-    ck_assert_int_eq(RUN(HEAT, write_file("lj.dump", frame("lj", "0", "3", SORTED)), "--ambient", "300"), 2);
+    FAIL_WITH(2, HEAT, write_file("lj.dump", frame("lj", "0", "3", SORTED)), "--ambient", "300");
     expect_message(in_folder("lj.dump"), "units lj have no fixed length in metres; --length-unit gives the length");
     const char *cgs = write_file("cgs.dump", frame("cgs", "0", "3", SORTED));
-    ck_assert_int_eq(RUN(HEAT, cgs, "--ambient", "300", "--length-unit", "mm"), 2);
+    FAIL_WITH(2, HEAT, cgs, "--ambient", "300", "--length-unit", "mm");
     expect_message(cgs, "its units are cgs");
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED)); /* millimetres, to judge by its radii */
     SUCCEED(HEAT, bed, "--ambient", "300");
     expect_message(bed, "warning: radii of 0.9 are taken as metres");
-    ck_assert_int_eq(RUN(HEAT, bed, cgs, "--ambient", "300", "--length-unit", "mm"), 2); /* a series has one unit */
+    FAIL_WITH(2, HEAT, bed, cgs, "--ambient", "300", "--length-unit", "mm"); /* a series has one unit */
     expect_message(cgs, "its units are cgs");
-    ck_assert_int_eq(RUN(HEAT, cgs, write_file("si.dump", frame("si", "0", "3", SORTED)), "--ambient", "300"), 2);
+    FAIL_WITH(2, HEAT, cgs, write_file("si.dump", frame("si", "0", "3", SORTED)), "--ambient", "300");
     expect_message(in_folder("si.dump"), "the unit of length is 1 m, but that of the files before is 0.01 m");
 }
 
@@ -180,9 +180,9 @@ TEST(degrees_celsius) {
 TEST(units_of_temperature_columns) {
     const char *kelvins = write_file("k.csv", "x,y,z,r,T [K]\n0,0,0,.01,300\n"), *out = in_folder("q.csv");
     const char *celsius = write_file("c.csv", "x,y,z,r,T [C]\n0,0,0,.01,26.85\n"), *other = in_folder("p.csv");
-    ck_assert_int_eq(RUN(HEAT, kelvins, "--temperature-unit", "C", "--ambient", "20"), 3);
+    FAIL_WITH(3, HEAT, kelvins, "--temperature-unit", "C", "--ambient", "20");
     expect_message(kelvins, ":1: the column T is in [K], but is taken as [C]; see --temperature-unit");
-    ck_assert_int_eq(RUN(HEAT, celsius, "--ambient", "290"), 3);
+    FAIL_WITH(3, HEAT, celsius, "--ambient", "290");
     expect_message(celsius, ":1: the column T is in [C], but is taken as [K]");
     SUCCEED(HEAT, kelvins, "--ambient", "290", "-o", out);
     SUCCEED(HEAT, celsius, "--ambient", "16.85", "--temperature-unit", "C", "-o", other);
@@ -205,35 +205,29 @@ TEST(ids_in_any_order) {
             ck_assert_int_eq(stat(out, &there), 0);
             char *text = read_file(out);
             if (first) ck_assert_int_eq(memcmp(text, first, (size_t)there.st_size), 0);
-            free(first);
             first = text;
         }
-        free(first);
     }
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", UNSORTED)), *out = in_folder("rows.csv");
     SUCCEED("bed", bed, "--targets", "7-19", "-o", out);
-    char *text = read_file(out);
-    ck_assert_int_eq(strncmp(text, "i,j,F,body\n7,3,", 15), 0);
-    free(text);
+    assert_begins(read_file(out), "i,j,F,body\n7,3,");
     SUCCEED("bed", bed, "--targets", "0", "--positions", "-o", out);
-    text = read_file(out);
-    ck_assert_int_eq(strncmp(text, "i,j,F,body\n0,1,", 15), 0);
-    free(text);
-    ck_assert_int_eq(RUN("bed", bed, "--targets", "8-19"), 2);
+    assert_begins(read_file(out), "i,j,F,body\n0,1,");
+    FAIL_WITH(2, "bed", bed, "--targets", "8-19");
     expect_message("", "there is no sphere 8 in frame 0 of ");
 }
 
 TEST(ambiguous_ids) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "2", "3 1 1 4 4 1 9\n3 1 4 4 4 1 9\n"));
-    ck_assert_int_eq(RUN("bed", bed), 3);
+    FAIL_WITH(3, "bed", bed);
     expect_message(bed, ":11: the id 3 occurs in line 10, too");
     SUCCEED("bed", bed, "--positions");
     bed = write_file("bed.dump", frame(NULL, "0", "2", "3 1 1 4 4 1 9\n-1 1 4 4 4 1 9\n"));
-    ck_assert_int_eq(RUN("bed", bed), 3);
+    FAIL_WITH(3, "bed", bed);
     expect_message(bed, ":11: the id -1 is negative");
     SUCCEED("bed", bed, "--positions");
     bed = write_file("bed.dump", frame(NULL, "0", "2", "30 1 1 4 4 1 9\n7 1 1.5 4 4 1 9\n"));
-    ck_assert_int_eq(RUN("bed", bed), 3);
+    FAIL_WITH(3, "bed", bed);
     expect_message(bed, "sphere 7"); /* messages, too */
 }
 
@@ -245,12 +239,12 @@ TEST(values_by_type) {
     SUCCEED("heat", bed, "--radius", "1:.01,2:.015", "--emissivity", "1:.3,2:0", "--temperature", "T", "--ambient",
             "300", "-o", one);
     SUCCEED("heat", same, "--emissivity", "e", "--temperature", "T", "--ambient", "300", "-o", two);
-    OWNED char *first = read_file(one), *second = read_file(two);
+    char *first = read_file(one), *second = read_file(two);
     ck_assert_str_eq(first, second);
     ck_assert_double_le(fabs(power_of(one, "1,", "")), 1e-9 * fabs(power_of(one, "0,", ""))); /* reflects all */
     const char *colons = write_file("colons.csv", "x,y,z,r,velo:0\n0,0,0,.01,300\n");
     SUCCEED("heat", colons, "--emissivity", "1", "--temperature", "velo:0", "--ambient", "300"); /* no list of types */
-    ck_assert_int_eq(RUN("bed", bed, "--radius", "1:.01"), 3);
+    FAIL_WITH(3, "bed", bed, "--radius", "1:.01");
     expect_message(bed, ":3: the list of the radius has no type 2");
     SUCCEED("bed", bed, "--radius", ".01");
     ck_assert_double_eq(value_of("radius_max"), .01);
@@ -263,10 +257,8 @@ static const char *write_frames(const char *name, int frames) {
                                        "7 2 3.7 4 4 1 500\n20 1 1 6.5 4 0.7 250\n3 1 1 4 4 1 900\n"};
     static const char *const steps[] = {"100", "250", "900"};
     const char *path = in_folder(name);
-    FILE *file = fopen(path, "w");
-    ck_assert_ptr_nonnull(file);
+    OWNED_FILE *file = opened(path, "w");
     for (int k = 0; k < frames; ++k) fputs(frame(NULL, steps[k], "3", rows[k]), file);
-    fclose(file);
     return path;
 }
 
@@ -281,9 +273,9 @@ TEST(all_frames) {
     for (int k = 0; k < 3; ++k) {
         const char *one = in_folder("one.csv");
         SUCCEED(HEAT, bed, "--frame", number[k], "--ambient", "300", "-o", one);
-        OWNED char *expected = read_file(one);
+        char *expected = read_file(one);
         for (char *line = strchr(expected, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
-            ck_assert_int_eq(strncmp(at, begin[k], strlen(begin[k])), 0);
+            assert_begins(at, begin[k]);
             at += strlen(begin[k]);
             const size_t length = strcspn(line, "\n") + 1;
             ck_assert_int_eq(strncmp(at, line, length), 0);
@@ -291,36 +283,34 @@ TEST(all_frames) {
         }
     }
     ck_assert_int_eq(*at, 0);
-    free(text);
     for (int k = 0; k < 3; ++k) {
         char name[20];
         snprintf(name, sizeof name, "q.%d.vtp", k);
-        free(read_file(in_folder(name)));
+        read_file(in_folder(name));
     }
     text = read_file(in_folder("q.pvd")); /* ParaView opens this file: frames by their timesteps */
-    ck_assert_ptr_nonnull(strstr(text, "<DataSet timestep=\"100\" file=\"q.0.vtp\"/>\n<DataSet timestep=\"250\" file="
-                                       "\"q.1.vtp\"/>\n<DataSet timestep=\"900\" file=\"q.2.vtp\"/>\n"));
-    free(text);
+    assert_has(text, "<DataSet timestep=\"100\" file=\"q.0.vtp\"/>\n<DataSet timestep=\"250\" file="
+                     "\"q.1.vtp\"/>\n<DataSet timestep=\"900\" file=\"q.2.vtp\"/>\n");
     ck_assert_int_eq(remove_files(0), 8);
 }
 
 TEST(some_frames) {
     const char *bed = write_frames("bed.dump", 3), *out = in_folder("F.csv");
     SUCCEED("bed", bed, "--frame", "0:3:2", "--directions", "8", "-o", out);
-    OWNED char *text = read_file(out);
-    ck_assert_int_eq(strncmp(text, "frame,timestep,i,j,F,body\n0,100,3,", 34), 0);
-    ck_assert_ptr_nonnull(strstr(text, "\n2,900,3,"));
-    ck_assert_ptr_null(strstr(text, "\n1,"));
+    char *text = read_file(out);
+    assert_begins(text, "frame,timestep,i,j,F,body\n0,100,3,");
+    assert_has(text, "\n2,900,3,");
+    assert_lacks(text, "\n1,");
     SUCCEED("bed", bed, "--frame", "-1", "--directions", "8");
     ck_assert_double_eq(value_of("frame"), 2);
     ck_assert_double_eq(value_of("timestep"), 900);
     SUCCEED("bed", bed, "--frame", ":2", "--directions", "8");
     ck_assert_double_eq(value_of("frame"), 1);
-    ck_assert_int_eq(RUN("bed", bed, "--frame", "3"), 3);
+    FAIL_WITH(3, "bed", bed, "--frame", "3");
     expect_message(bed, "there is no frame 3; the last is 2");
-    ck_assert_int_eq(RUN("bed", bed, "--frame", "99999999999999999999"), 2);
+    FAIL_WITH(2, "bed", bed, "--frame", "99999999999999999999");
     expect_message("--frame", "is none of K");
-    ck_assert_int_eq(RUN("bed", bed, "--frame", "all", "-o", in_folder("F.npz")), 2);
+    FAIL_WITH(2, "bed", bed, "--frame", "all", "-o", in_folder("F.npz"));
     expect_message(in_folder("F.npz"), "holds one frame");
 }
 
@@ -333,30 +323,26 @@ TEST(several_files) {
     SUCCEED("bed", names, "--directions", "8", "-o", out, "-o", in_folder("F.*.mtx"));
     char *text = read_file(out);
     snprintf(expected, sizeof expected, "file,frame,timestep,i,j,F,body\n%s,0,100,3,", first);
-    ck_assert_int_eq(strncmp(text, expected, strlen(expected)), 0);
-    ck_assert_ptr_nonnull(strstr(text, "bed.2.dump,1,250,3,7,"));
-    free(text);
-    free(read_file(in_folder("F.1.mtx")));
+    assert_begins(text, expected);
+    assert_has(text, "bed.2.dump,1,250,3,7,");
+    read_file(in_folder("F.1.mtx"));
     SUCCEED("bed", first, first, "--directions", "8", "-o", in_folder("F.*.json"), "-o", in_folder("F.*.vtp"));
     text = read_file(in_folder("F.1.json")); /* frames are counted through all files */
-    ck_assert_ptr_nonnull(strstr(text, "\"frame\":1,"));
-    free(text);
+    assert_has(text, "\"frame\":1,");
     text = read_file(in_folder("F.pvd")); /* two frames have the same timestep, so their numbers stand for it */
     ck_assert(strstr(text, "timestep=\"0\" file=\"F.0.vtp\"") && strstr(text, "timestep=\"1\" file=\"F.1.vtp\""));
-    free(text);
     write_frames("bed.10.dump", 3); /* times are not padded with zeros: 10 comes after 2 */
     SUCCEED("bed", names, "--directions", "8", "-o", out);
     text = read_file(out);
-    ck_assert_ptr_nonnull(strstr(text, "bed.10.dump,2,900,3,7,"));
+    assert_has(text, "bed.10.dump,2,900,3,7,");
     ck_assert(strstr(text, "bed.10.dump,") > strstr(text, "bed.2.dump,"));
-    free(text);
     snprintf(names, sizeof names, "%s/none.*.dump", folder);
-    ck_assert_int_eq(RUN("bed", names), 4);
+    FAIL_WITH(4, "bed", names);
     expect_message(names, "no file has such a name");
     SUCCEED("bed", first, write_file("bed.csv", "x,y,z,r\n0,0,0,1\n"), "--directions", "8");
     expect_message(in_folder("bed.csv"),
                    "warning: spheres are named by positions, but those of the frames before by ids");
-    ck_assert_int_eq(RUN("bed", "-", first, "-"), 2);
+    FAIL_WITH(2, "bed", "-", first, "-");
     expect_message("standard input", "once only");
 }
 
@@ -366,9 +352,9 @@ TEST(empty_files_of_a_series) {
     SUCCEED("bed", empty, bed, "--directions", "8");
     expect_message(empty, "warning: frame 0 is empty and is left out");
     ck_assert_double_eq(value_of("timestep"), 100);
-    ck_assert_int_eq(RUN("bed", empty), 3);
-    ck_assert_int_eq(RUN("bed", empty, empty), 3);
-    ck_assert_ptr_nonnull(strstr(said, "there are no spheres in any of the files"));
+    FAIL_WITH(3, "bed", empty);
+    FAIL_WITH(3, "bed", empty, empty);
+    assert_has(said, "there are no spheres in any of the files");
 }
 
 /* A simulation is still writing this file. The program computes the frames before and says so. */
@@ -380,17 +366,16 @@ TEST(truncated_last_frame) {
     SUCCEED("bed", bed, "--frame", "all", "--directions", "8");
     expect_message(bed, "warning: ");
     ck_assert_double_eq(value_of("frame"), 1);
-    ck_assert_int_eq(RUN("bed", bed, "--directions", "8"), 3);
+    FAIL_WITH(3, "bed", bed, "--directions", "8");
     expect_message(bed, "the last whole frame is 1");
-    ck_assert_int_eq(RUN("bed", bed, "--frame", "2", "--directions", "8"), 3);
+    FAIL_WITH(3, "bed", bed, "--frame", "2", "--directions", "8");
 }
 
 /* If radii are given for the first frame, they also serve frames with more spheres. */
 TEST(radii_of_growing_frames) {
     static const int counts[] = {2, 300};
     const char *bed = in_folder("bed.dump"), *all = in_folder("all.csv"), *last = in_folder("last.csv");
-    FILE *file = fopen(bed, "w");
-    ck_assert_ptr_nonnull(file);
+    FILE *file = opened(bed, "w");
     for (int k = 0; k < 2; ++k) {
         fprintf(file, "ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n%d\nITEM: ATOMS id x y z\n", k, counts[k]);
         for (int i = 0; i < counts[k]; ++i) fprintf(file, "%d %d %d %d\n", i + 1, i % 7, i / 7 % 7, i / 49);
@@ -398,7 +383,7 @@ TEST(radii_of_growing_frames) {
     fclose(file);
     SUCCEED("bed", bed, "--frame", "all", "--radius", ".4", "--directions", "8", "-o", all);
     SUCCEED("bed", bed, "--frame", "1:", "--radius", ".4", "--directions", "8", "-o", last);
-    OWNED char *text = read_file(all), *expected = read_file(last);
+    char *text = read_file(all), *expected = read_file(last);
     const char *frame = strstr(text, "\n1,1,1,2,");
     ck_assert_ptr_nonnull(frame);
     ck_assert_str_eq(frame, strchr(expected, '\n'));
@@ -414,9 +399,8 @@ TEST(summary_says_what_was_computed) {
         "\nemissivity 0.6\n",   "\ntemperature_K column T\n", "\nsurroundings_K 300\n", "\nwall_zmin_at 0\n",
         "\nwall_zmin_K 1200\n", "\nwall_zmin_emissivity 1\n", "\nnamed_by ids\n"};
     SUCCEED(HEAT, bed, "--ambient", "300", "--wall", "zmin", "--wall-temperature", "1200", "--json", json);
-    for (size_t k = 0; k < sizeof lines / sizeof *lines; ++k)
-        ck_assert_msg(strstr(printed, lines[k]) != NULL, "no line %s in %s", lines[k], printed);
-    ck_assert_int_eq(strncmp(printed, "file ", 5), 0);
+    for (size_t k = 0; k < sizeof lines / sizeof *lines; ++k) assert_has(printed, lines[k]);
+    assert_begins(printed, "file ");
     ck_assert_double_eq(json_of(json, "wall_zmin_K"), 1200);
     const double exact = json_of(json, "wall_zmin_W"), shown = value_of("wall_zmin_W");
     ck_assert_double_eq_tol(shown, exact, 1e-5 * fabs(exact));
@@ -431,12 +415,11 @@ TEST(quiet_and_streams) {
     ck_assert_str_eq(printed, "");
     ck_assert_str_eq(said, "");
     SUCCEED("bed", bed, "-o", "-", "--format", "csv");
-    OWNED char *text = read_file(in_folder("F.csv"));
-    ck_assert_str_eq(printed, text);
-    ck_assert_ptr_nonnull(strstr(said, "\nspheres 3\n"));
+    ck_assert_str_eq(printed, read_file(in_folder("F.csv")));
+    assert_has(said, "\nspheres 3\n");
     SUCCEED("heat", bed, "--emissivity", ".5", "--temperature", "T", "--ambient", "300", "--length-unit", "mm",
             "--progress");
-    ck_assert_ptr_nonnull(strstr(said, " sweeps, "));
+    assert_has(said, " sweeps, ");
 }
 
 /* Before the work begins, the program says what does not fit, and what would help. */
@@ -447,16 +430,15 @@ TEST(one_place_each) {
     for (int k = 0; k < 3; ++k) {
         const int standard = more[k][2] != NULL;
         const char *const to = standard ? "-" : in_folder(more[k][1]);
-        ck_assert_int_eq(RUN(HEAT, bed, "--ambient", "300", "--frame", "0:2", "--length-unit", "m", "--quiet", "--json",
-                             standard ? "-" : name, "-o", to, more[k][2], more[k][3]),
-                         2);
+        FAIL_WITH(2, HEAT, bed, "--ambient", "300", "--frame", "0:2", "--length-unit", "m", "--quiet", "--json",
+                  standard ? "-" : name, "-o", to, more[k][2], more[k][3]);
         expect_message(standard ? "-" : name, "is given twice");
         ck_assert_int_eq(access(name, F_OK), -1);
     }
     SUCCEED(HEAT, bed, "--ambient", "300", "--json", "-");
-    ck_assert_int_eq(strncmp(printed, "{\"fibrad\"", 9), 0);
-    ck_assert_ptr_null(strstr(printed, "\nfile"));
-    ck_assert_ptr_nonnull(strstr(said, "\nframe 1\n"));
+    assert_begins(printed, "{\"fibrad\"");
+    assert_lacks(printed, "\nfile");
+    assert_has(said, "\nframe 1\n");
 }
 
 #define CORNER(x, y) "vertex " x " " y " 0\n"
@@ -467,11 +449,12 @@ TEST(one_place_each) {
 /* No output replaces a file that the run reads, whichever file that is. */
 TEST(inputs_stay) {
     static const char *const names[] = {"bed.dump", "floor.0.vtp", "eps.csv", "room.json", "lid.json", "sides.svg"};
-    static const char *const texts[] = {NULL, FLOOR, "300 .5\n900 .6\n", "0 300\n9 310\n", "0 700\n9 710\n", "650\n"};
+    static const char *const contents[] = {NULL,   FLOOR, "300 .5\n900 .6\n", "0 300\n9 310\n", "0 700\n9 710\n",
+                                           "650\n"};
     static const char *const outputs[] = {"-o", "--wall-vtp", "-o", "--json", "-o", "--plot"};
     const char *path[6];
     char words[4][700];
-    for (int k = 0; k < 6; ++k) path[k] = write_file(names[k], k ? texts[k] : frame(NULL, "0", "3", SORTED));
+    for (int k = 0; k < 6; ++k) path[k] = write_file(names[k], k ? contents[k] : frame(NULL, "0", "3", SORTED));
     snprintf(words[0], sizeof words[0], "floor=mesh:%s:both,zmax=20", path[1]);
     snprintf(words[1], sizeof words[1], "@%s", path[2]);
     snprintf(words[2], sizeof words[2], "@%s", path[3]);
@@ -479,24 +462,20 @@ TEST(inputs_stay) {
     for (int k = 0; k < 6; ++k) {
         char other_name[400]; /* of the same file */
         snprintf(other_name, sizeof other_name, "%s/./%s", folder, k == 1 ? "floor.*.vtp" : names[k]);
-        ck_assert_int_eq(RUN("heat", path[0], "--temperature", "T", "--emissivity", words[1], "--wall", words[0],
-                             "--wall-temperature", words[3], "--ambient", words[2], "--until", "5", "--heat-capacity",
-                             "800", "--density", "2500", "--model", "patches", "--directions", "21", "--patches", "24",
-                             outputs[k], other_name),
-                         2);
-        ck_assert_msg(strstr(said, "is read in this run and would be replaced") != NULL, "output %d: %s", k, said);
-        OWNED char *text = read_file(path[k]);
-        ck_assert_str_eq(text, k ? texts[k] : frame(NULL, "0", "3", SORTED));
+        FAIL_WITH(2, "heat", path[0], "--temperature", "T", "--emissivity", words[1], "--wall", words[0],
+                  "--wall-temperature", words[3], "--ambient", words[2], "--until", "5", "--heat-capacity", "800",
+                  "--density", "2500", "--model", "patches", "--directions", "21", "--patches", "24", outputs[k],
+                  other_name);
+        assert_has(said, "is read in this run and would be replaced");
+        ck_assert_str_eq(read_file(path[k]), k ? contents[k] : frame(NULL, "0", "3", SORTED));
     }
     ck_assert_int_eq(remove_files(0), 6);                         /* there is nothing else */
     path[0] = write_file("q.pvd", frame(NULL, "0", "3", SORTED)); /* this is the collection of q.*.vtp */
-    ck_assert_int_eq(RUN(HEAT, path[0], "--ambient", "300", "--until", "5", "--heat-capacity", "800", "--density",
-                         "2500", "-o", in_folder("q.*.vtp")),
-                     2);
-    OWNED char *text = read_file(path[0]);
-    ck_assert_str_eq(text, frame(NULL, "0", "3", SORTED));
+    FAIL_WITH(2, HEAT, path[0], "--ambient", "300", "--until", "5", "--heat-capacity", "800", "--density", "2500", "-o",
+              in_folder("q.*.vtp"));
+    ck_assert_str_eq(read_file(path[0]), frame(NULL, "0", "3", SORTED));
     input = path[0] = write_file("bed.csv", "x,y,z,r\n0,0,0,1\n3,0,0,1\n"); /* as standard input */
-    ck_assert_int_eq(RUN("bed", "-", "-o", path[0]), 2);
+    FAIL_WITH(2, "bed", "-", "-o", path[0]);
     input = "/dev/null";
 }
 
@@ -519,12 +498,10 @@ TEST(too_little_memory) {
         at += sprintf(at, "%d,%d,%d,.4\n", k % SIDE, k / SIDE % SIDE, k / SIDE / SIDE);
     const char *bed = write_file("many.csv", text);
     free(text);
-    ck_assert_int_eq(RUN("heat", bed, "--length-unit", "m", "--emissivity", ".5", "--temperature", "500", "--ambient",
-                         "300", "--directions", "65536", "--points", "256", "--patches", "384", "-o",
-                         in_folder("q.csv")),
-                     5);
-    ck_assert_ptr_nonnull(strstr(said, "out of memory: 1"));
-    ck_assert_ptr_nonnull(strstr(said, "fewer --directions"));
+    FAIL_WITH(5, "heat", bed, "--length-unit", "m", "--emissivity", ".5", "--temperature", "500", "--ambient", "300",
+              "--directions", "65536", "--points", "256", "--patches", "384", "-o", in_folder("q.csv"));
+    assert_has(said, "out of memory: 1");
+    assert_has(said, "fewer --directions");
     ck_assert_int_eq(remove_files(0), 1);
 }
 
@@ -536,30 +513,30 @@ TEST(furnace_outputs) {
     ck_assert_ptr_null(strchr(said, '#'));
     ck_assert_double_eq_tol(json_of(json, "T_axis_2.0") / value_of("T_axis_2.0"), 1, 1e-9);
     ck_assert_double_eq(json_of(json, "bundles"), value_of("bundles"));
-    OWNED char *text = read_file(csv);
+    char *text = read_file(csv);
     SUCCEED(FURNACE, "-o", "-", "--format", "csv", "--progress");
     ck_assert_str_eq(printed, text);
-    ck_assert_ptr_nonnull(strstr(said, "\nT_axis_2.0 "));
-    ck_assert_ptr_nonnull(strstr(said, "##] 100 %"));
+    assert_has(said, "\nT_axis_2.0 ");
+    assert_has(said, "##] 100 %");
     SUCCEED(FURNACE, "--json", "-");
-    ck_assert_int_eq(strncmp(printed, "{\"fibrad\"", 9), 0);
-    ck_assert_int_eq(RUN(FURNACE, "-o", "-"), 2);
+    assert_begins(printed, "{\"fibrad\"");
+    FAIL_WITH(2, FURNACE, "-o", "-");
     expect_message("", "-o - needs a --format: csv or vti");
-    ck_assert_int_eq(RUN(FURNACE, "-o", "-", "--format", "vtp"), 2);
+    FAIL_WITH(2, FURNACE, "-o", "-", "--format", "vtp");
     expect_message("", "'vtp' is neither csv nor vti");
-    ck_assert_int_eq(RUN(FURNACE, "--format", "csv"), 2);
-    ck_assert_int_eq(RUN(FURNACE, "-o", csv, "--json", csv), 2);
+    FAIL_WITH(2, FURNACE, "--format", "csv");
+    FAIL_WITH(2, FURNACE, "-o", csv, "--json", csv);
     expect_message(csv, "is given twice");
 }
 
 TEST(versions_and_help) {
     SUCCEED("-V");
-    ck_assert_int_eq(strncmp(printed, "fibrad ", 7), 0);
+    assert_begins(printed, "fibrad ");
     SUCCEED("help");
-    ck_assert_ptr_nonnull(strstr(printed, "Commands:"));
+    assert_has(printed, "Commands:");
     SUCCEED("help", "heat");
-    ck_assert_ptr_nonnull(strstr(printed, "--wall-temperature"));
-    ck_assert_int_eq(RUN("help", "nothing"), 2);
+    assert_has(printed, "--wall-temperature");
+    FAIL_WITH(2, "help", "nothing");
 }
 
 /* If a run is killed, it leaves nothing behind, on systems where files need no name until they are complete. */
@@ -585,9 +562,8 @@ TEST(nothing_is_left_by_what_is_killed) {
     closedir(entries);
     ck_assert_uint_eq(files, unnamed ? 1 : 2);
     char text[16] = "";
-    FILE *file = fopen(path, "r");
+    OWNED_FILE *file = opened(path, "r");
     ck_assert_ptr_nonnull(fgets(text, sizeof text, file));
-    fclose(file);
     ck_assert_str_eq(text, "complete");
     char command[80];
     snprintf(command, sizeof command, "rm -r %s", place);

@@ -27,11 +27,13 @@ static void powers_point(struct powers *p) {
 
 static void powers_free(struct powers *p) { free(p->weight), free(p->emission), free(p->power); }
 
+#define OWNED_POWERS OWNED_BY(powers_free) struct powers
+
 static fibrad_rows exchange_rows(const fibrad_scene *scene, uint32_t n, const fibrad_exchange_rule *rule) {
     OWNED_WORK work = work_growing();
     fibrad_rows rows = {.memory = memory_growing()};
     for (uint32_t i = 0; i < n; i++)
-        ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, rule, &(fibrad_row){.rows = &rows}, NULL), FIBRAD_OK);
+        assert_ok(fibrad_exchange_row(scene, &work, i, rule, &(fibrad_row){.rows = &rows}, NULL));
     return rows;
 }
 
@@ -47,17 +49,17 @@ TEST(what_one_gains_others_lose) {
     OWNED_ROWS rows = exchange_rows(
         scene, bed.n,
         &(fibrad_exchange_rule){.emissivity = e, .body_emissivity = wall_emissivity, .seed = 5, .cutoff = 3});
-    struct powers p = powers_of(&bed, e);
+    OWNED_POWERS p = powers_of(&bed, e);
     powers_point(&p);
-    ck_assert_int_eq(fibrad_rows_flow(&rows, bed.n, 2, &p.flow), FIBRAD_OK);
+    assert_ok(fibrad_rows_flow(&rows, bed.n, 2, &p.flow));
     double sum = p.flow.surroundings_power + p.body_power[0] + p.body_power[1], size = fabs(sum);
     for (uint32_t i = 0; i < bed.n; i++) sum += p.power[i], size += fabs(p.power[i]);
     ck_assert_double_eq_tol(sum / size, 0, 1e-14);
     ck_assert(p.power[0] != 0 && p.body_power[0] != 0 && p.body_power[1] != 0 && p.flow.surroundings_power != 0);
     /* the second call adds to the powers of the first */
-    struct powers twice = powers_of(&bed, e);
+    OWNED_POWERS twice = powers_of(&bed, e);
     powers_point(&twice);
-    for (int k = 0; k < 2; k++) ck_assert_int_eq(fibrad_rows_flow(&rows, bed.n, 2, &twice.flow), FIBRAD_OK);
+    for (int k = 0; k < 2; k++) assert_ok(fibrad_rows_flow(&rows, bed.n, 2, &twice.flow));
     for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq_tol(twice.power[i], 2 * p.power[i], 1e-12 * size);
     /* row by row, by hand */
     double *expected = calloc(bed.n, sizeof *expected);
@@ -75,15 +77,14 @@ TEST(what_one_gains_others_lose) {
     }
     for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq_tol(p.power[i], expected[i], 1e-13 * size);
     /* equals */
-    struct powers same = powers_of(&bed, e);
+    OWNED_POWERS same = powers_of(&bed, e);
     powers_point(&same);
     for (uint32_t i = 0; i < bed.n; i++) same.emission[i] = 77;
     for (int b = 0; b < 2; b++) same.body_emission[b] = 77;
-    ck_assert_int_eq(fibrad_rows_flow(&rows, bed.n, 2, &same.flow), FIBRAD_OK);
+    assert_ok(fibrad_rows_flow(&rows, bed.n, 2, &same.flow));
     for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq(same.power[i], 0);
     ck_assert(same.body_power[0] == 0 && same.body_power[1] == 0 && same.flow.surroundings_power == 0);
     free(expected), free((void *)(uintptr_t)raw.matrix);
-    powers_free(&p), powers_free(&twice), powers_free(&same);
     free(scene);
 }
 
@@ -94,9 +95,9 @@ TEST(powers_are_those_of_the_averaged_matrix) {
     double e[80];
     for (int i = 0; i < 80; i++) e[i] = .5 + .005 * i;
     OWNED_ROWS rows = exchange_rows(scene, bed.n, &(fibrad_exchange_rule){.emissivity = e});
-    struct powers p = powers_of(&bed, e);
+    OWNED_POWERS p = powers_of(&bed, e);
     powers_point(&p);
-    ck_assert_int_eq(fibrad_rows_flow(&rows, bed.n, 0, &p.flow), FIBRAD_OK);
+    assert_ok(fibrad_rows_flow(&rows, bed.n, 0, &p.flow));
     const struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = e});
     double largest = 0;
     for (uint32_t i = 0; i < bed.n; i++) largest = fmax(largest, fabs(p.power[i]));
@@ -108,7 +109,6 @@ TEST(powers_are_those_of_the_averaged_matrix) {
         ck_assert_double_eq_tol(p.power[i], power, .02 * largest); /* in the matrix, too, sums are those of raw rows */
     }
     free((void *)(uintptr_t)m.matrix);
-    powers_free(&p);
 }
 
 TEST(bad_regions_and_occupancies_are_refused) {
@@ -133,7 +133,7 @@ TEST(bad_regions_and_occupancies_are_refused) {
         ck_assert_int_eq(part_scene_try(&p, &scene), FIBRAD_E_ARGUMENT);
     }
     p.config.known_low[1] = -5, p.config.known_high[1] = 5;
-    ck_assert_int_eq(part_scene_try(&p, &scene), FIBRAD_OK);
+    assert_ok(part_scene_try(&p, &scene));
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(2);
     ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, NULL, &row), FIBRAD_E_UNSUPPORTED);
@@ -142,7 +142,7 @@ TEST(bad_regions_and_occupancies_are_refused) {
     fibrad_heat *heat;
     ck_assert_int_eq(fibrad_heat_init(&heat, block, sizeof block, NULL, scene), FIBRAD_E_UNSUPPORTED);
     OWNED fibrad_scene *plain = scene_of(&bed, FIBRAD_ISA_BEST);
-    ck_assert_int_eq(fibrad_heat_init(&heat, block, sizeof block, NULL, plain), FIBRAD_OK);
+    assert_ok(fibrad_heat_init(&heat, block, sizeof block, NULL, plain));
     ck_assert_int_eq(fibrad_heat_move(heat, scene), FIBRAD_E_UNSUPPORTED);
     free(scene);
     p.config.period[1] = 50;
@@ -183,8 +183,8 @@ TEST(bad_flows_are_refused) {
     double f[] = {.1, .2}, body[] = {.3}, e[] = {1, 1};
     OWNED_ROWS rows = {.memory = memory_growing()};
     fibrad_row row = {.col = col, .f = f, .body = body, .length = 2, .sphere = 1, .escaped = .1, .beyond = .3};
-    ck_assert_int_eq(fibrad_rows_add(&rows, &row, 1), FIBRAD_OK);
-    struct powers p = powers_of(&bed, e);
+    assert_ok(fibrad_rows_add(&rows, &row, 1));
+    OWNED_POWERS p = powers_of(&bed, e);
     powers_point(&p);
     fibrad_flow flow = p.flow;
     ck_assert_int_eq(fibrad_rows_flow(NULL, 2, 1, &flow), FIBRAD_E_ARGUMENT);
@@ -211,16 +211,15 @@ TEST(bad_flows_are_refused) {
         ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 1, &bad), FIBRAD_E_ARGUMENT);
     }
     ck_assert(p.power[0] == 0 && p.power[1] == 0 && flow.surroundings_power == 0 && p.body_power[0] == 0);
-    ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 1, &flow), FIBRAD_OK);
+    assert_ok(fibrad_rows_flow(&rows, 2, 1, &flow));
     ck_assert(p.power[0] != 0 && isfinite(p.power[0] + p.power[1]));
     /* a row that knows nothing adds nothing */
     fibrad_rows_clear(&rows);
     row = (fibrad_row){.sphere = 0, .beyond = 1, .body = (double[]){0}};
-    ck_assert_int_eq(fibrad_rows_add(&rows, &row, 1), FIBRAD_OK);
+    assert_ok(fibrad_rows_add(&rows, &row, 1));
     p.weight[0] = 1, p.power[0] = p.power[1] = 5;
-    ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 1, &flow), FIBRAD_OK);
+    assert_ok(fibrad_rows_flow(&rows, 2, 1, &flow));
     ck_assert(p.power[0] == 5 && p.power[1] == 5);
     /* no rows, no spheres */
-    ck_assert_int_eq(fibrad_rows_flow(&(fibrad_rows){0}, 0, 0, &(fibrad_flow){0}), FIBRAD_OK);
-    powers_free(&p);
+    assert_ok(fibrad_rows_flow(&(fibrad_rows){0}, 0, 0, &(fibrad_flow){0}));
 }

@@ -73,7 +73,7 @@ TEST(memory) {
     ck_assert_int_eq(fibrad_furnace_init(NULL, block, size, &config), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_furnace_init(&furnace, block, size, NULL), FIBRAD_E_ARGUMENT);
     ck_assert_ptr_null(furnace);
-    ck_assert_int_eq(fibrad_furnace_init(&furnace, block, size, &config), FIBRAD_OK);
+    assert_ok(fibrad_furnace_init(&furnace, block, size, &config));
 
     size_t tally_size = fibrad_furnace_tally_size(furnace);
     OWNED unsigned char *tally_block = allocate(tally_size + 128);
@@ -87,12 +87,12 @@ TEST(memory) {
     fibrad_furnace_report report;
     uint64_t planned;
     for (int physics = 0; physics < 2; physics++) {
-        ck_assert_int_eq(fibrad_furnace_tally_init(&tally, tally_block, tally_size, furnace), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_furnace_emit(furnace, (fibrad_furnace_physics)physics, 3000, 1, &planned), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_furnace_trace(furnace, tally, 0, planned), FIBRAD_OK);
+        assert_ok(fibrad_furnace_tally_init(&tally, tally_block, tally_size, furnace));
+        assert_ok(fibrad_furnace_emit(furnace, (fibrad_furnace_physics)physics, 3000, 1, &planned));
+        assert_ok(fibrad_furnace_trace(furnace, tally, 0, planned));
     }
-    ck_assert_int_eq(fibrad_furnace_equilibrium(furnace, tally), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_furnace_solve(furnace, FIBRAD_SCATTER_EXACT, 1e-6, 1000, &report), FIBRAD_OK);
+    assert_ok(fibrad_furnace_equilibrium(furnace, tally));
+    assert_ok(fibrad_furnace_solve(furnace, FIBRAD_SCATTER_EXACT, 1e-6, 1000, &report));
     for (size_t k = 0; k < 128; k++) {
         ck_assert_uint_eq(block[size + k], 0xa5);
         ck_assert_uint_eq(tally_block[tally_size + k], 0xa5);
@@ -100,7 +100,7 @@ TEST(memory) {
 }
 
 static void emit(struct box *box, fibrad_furnace_physics physics, int restart) {
-    ck_assert_int_eq(fibrad_furnace_emit(box->furnace, physics, 2000, restart, &box->planned), FIBRAD_OK);
+    assert_ok(fibrad_furnace_emit(box->furnace, physics, 2000, restart, &box->planned));
 }
 
 static int estimate(struct box *box, int tally) {
@@ -124,7 +124,7 @@ static void assert_refused(struct box *box, int tally, fibrad_furnace_physics ph
 
 TEST(bad_arguments) {
     const fibrad_furnace_config config = coarse_case(1, 4);
-    struct box box = make_box(&config);
+    OWNED_BOX box = make_box(&config);
     fibrad_furnace *furnace = box.furnace;
     fibrad_furnace_tally *tally = box.tally[0];
     fibrad_furnace_report report = {77, 7};
@@ -162,7 +162,7 @@ TEST(bad_arguments) {
     ck_assert_int_eq(fibrad_furnace_tally_add(NULL, tally), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_furnace_tally_add(tally, NULL), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_furnace_tally_add(tally, tally), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK); /* none of this has changed anything */
+    assert_ok(trace(&box, 0, 0, box.planned)); /* none of this has changed anything */
     ck_assert_int_eq(fibrad_furnace_estimate(NULL, tally, FIBRAD_THETA_PAPER, 0, exact), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_furnace_estimate(furnace, NULL, FIBRAD_THETA_PAPER, 0, exact), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_furnace_estimate(furnace, tally, FIBRAD_THETA_PAPER, 1, exact), FIBRAD_E_ARGUMENT);
@@ -170,15 +170,14 @@ TEST(bad_arguments) {
     ck_assert_int_eq(fibrad_furnace_estimate(furnace, tally, FIBRAD_THETA_PAPER, 0, no_scatter), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_furnace_equilibrium(NULL, tally), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_furnace_equilibrium(furnace, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+    assert_ok(estimate(&box, 0));
     fibrad_furnace_fields(furnace, NULL);
-    free_box(&box);
 }
 
 TEST(no_plan) {
     const fibrad_furnace_config config = coarse_case(1, 4);
     const double wrong[] = {NAN, INFINITY, -INFINITY, 1e300, 1e25};
-    struct box box = make_box(&config);
+    OWNED_BOX box = make_box(&config);
     ck_assert_int_eq(trace(&box, 0, 0, 0), FIBRAD_E_STATE);
     ck_assert_int_eq(trace(&box, 0, 0, 1), FIBRAD_E_STATE);
     assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
@@ -186,7 +185,7 @@ TEST(no_plan) {
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
         emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
         clear_tally(&box, 0);
-        ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
+        assert_ok(trace(&box, 0, 0, box.planned));
         const double before = box.at.e[3];
         const uint64_t plan = box.planned;
         box.at.e[3] = wrong[k];
@@ -200,7 +199,6 @@ TEST(no_plan) {
         ck_assert_uint_eq(box.planned, plan);
         assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
     }
-    free_box(&box);
 }
 
 /* A tally is accepted if it has every bundle once, in any order and from any tallies. Anything else is refused. */
@@ -216,7 +214,7 @@ TEST(every_bundle_once) {
     };
     const fibrad_furnace_config config = coarse_case(2, 4);
     for (int physics = 0; physics < 2; physics++) {
-        struct box box = make_box(&config);
+        OWNED_BOX box = make_box(&config);
         emit(&box, (fibrad_furnace_physics)physics, 1);
         assert_refused(&box, 0, (fibrad_furnace_physics)physics);
         for (size_t w = 0; w < 1 + sizeof wrong / sizeof *wrong; w++) {
@@ -227,102 +225,96 @@ TEST(every_bundle_once) {
                 for (int k = 0; k < 3 && w > 0; k++)
                     times += (wrong[w - 1].repeated[k] == part) - (wrong[w - 1].missing[k] == part);
                 for (int time = 0; time < times; time++)
-                    ck_assert_int_eq(trace(&box, (part + time) % TALLIES, first, end - first), FIBRAD_OK);
+                    assert_ok(trace(&box, (part + time) % TALLIES, first, end - first));
             }
-            for (int k = 1; k < TALLIES; k++)
-                ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[k]), FIBRAD_OK);
+            for (int k = 1; k < TALLIES; k++) assert_ok(fibrad_furnace_tally_add(box.tally[0], box.tally[k]));
             if (w > 0)
                 assert_refused(&box, 0, (fibrad_furnace_physics)physics);
             else
-                ck_assert_int_eq(physics ? equilibrium(&box, 0) : estimate(&box, 0), FIBRAD_OK);
+                assert_ok(physics ? equilibrium(&box, 0) : estimate(&box, 0));
         }
-        free_box(&box);
     }
 }
 
 /* A tally is added to an equal one, so that it has all bundles twice. */
 TEST(tallies_added_twice) {
     const fibrad_furnace_config config = coarse_case(2, 4);
-    struct box box = make_box(&config);
+    OWNED_BOX box = make_box(&config);
     emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
-    ck_assert_int_eq(trace(&box, 1, 0, box.planned), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[1]), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[2]), FIBRAD_OK); /* an empty one */
-    ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
-    ck_assert_int_eq(estimate(&box, 1), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[1]), FIBRAD_OK);
+    assert_ok(trace(&box, 1, 0, box.planned));
+    assert_ok(fibrad_furnace_tally_add(box.tally[0], box.tally[1]));
+    assert_ok(fibrad_furnace_tally_add(box.tally[0], box.tally[2])); /* an empty one */
+    assert_ok(estimate(&box, 0));
+    assert_ok(estimate(&box, 1));
+    assert_ok(fibrad_furnace_tally_add(box.tally[0], box.tally[1]));
     assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
     for (int k = 0; k < 300; k++) /* sums exceed 64 bits: they are refused, and not undefined */
-        ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[k % 2], box.tally[1 - k % 2]), FIBRAD_OK);
+        assert_ok(fibrad_furnace_tally_add(box.tally[k % 2], box.tally[1 - k % 2]));
     assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
-    free_box(&box);
 }
 
 TEST(further_plans) {
     const fibrad_furnace_config config = coarse_case(2, 4);
-    struct box box = make_box(&config);
+    OWNED_BOX box = make_box(&config);
     emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
-    ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
-    ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+    assert_ok(trace(&box, 0, 0, box.planned));
+    assert_ok(estimate(&box, 0));
     for (size_t c = 0; c < BOX_CELLS; c++) box.at.e[c] *= 1 + 0.01 * (double)(c % 3);
     emit(&box, FIBRAD_FURNACE_ATTENUATED, 0);
     ck_assert_uint_gt(box.planned, 1);
     assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED); /* of the first plan only */
-    ck_assert_int_eq(trace(&box, 1, 0, box.planned), FIBRAD_OK);
+    assert_ok(trace(&box, 1, 0, box.planned));
     assert_refused(&box, 1, FIBRAD_FURNACE_ATTENUATED); /* of the second only */
-    ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[1]), FIBRAD_OK);
-    ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+    assert_ok(fibrad_furnace_tally_add(box.tally[0], box.tally[1]));
+    assert_ok(estimate(&box, 0));
 
     emit(&box, FIBRAD_FURNACE_ATTENUATED, 0); /* E has not changed, so there is nothing to trace */
     ck_assert_uint_eq(box.planned, 0);
-    ck_assert_int_eq(trace(&box, 0, 0, 0), FIBRAD_OK);
-    ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+    assert_ok(trace(&box, 0, 0, 0));
+    assert_ok(estimate(&box, 0));
 
     for (size_t c = 0; c < BOX_CELLS; c++) box.at.e[c] *= 1.01;
     emit(&box, FIBRAD_FURNACE_ATTENUATED, 0); /* all plans that follow lack the bundles of a plan that is not traced */
     emit(&box, FIBRAD_FURNACE_ATTENUATED, 0);
     ck_assert_uint_eq(box.planned, 0);
     assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
-    free_box(&box);
 }
 
 /* In equilibrium a further plan has no bundles, and changes no result. */
 TEST(further_plan_of_equilibrium) {
     const fibrad_furnace_config config = coarse_case(2, 4);
-    struct box box = make_box(&config);
+    OWNED_BOX box = make_box(&config);
     double e[BOX_CELLS], power[6];
     emit(&box, FIBRAD_FURNACE_EQUILIBRIUM, 1);
-    ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
-    ck_assert_int_eq(equilibrium(&box, 0), FIBRAD_OK);
+    assert_ok(trace(&box, 0, 0, box.planned));
+    assert_ok(equilibrium(&box, 0));
     memcpy(e, box.at.e, sizeof e);
     memcpy(power, box.at.power, sizeof power);
     emit(&box, FIBRAD_FURNACE_EQUILIBRIUM, 0);
     ck_assert_uint_eq(box.planned, 0);
-    ck_assert_int_eq(equilibrium(&box, 0), FIBRAD_OK);
+    assert_ok(equilibrium(&box, 0));
     ck_assert_mem_eq(e, box.at.e, sizeof e);
     ck_assert_mem_eq(power, box.at.power, sizeof power);
-    free_box(&box);
 }
 
 /* Tallies from before a restart are refused, whether the restart is asked for or follows from another physics. */
 TEST(restarts) {
     const fibrad_furnace_config config = coarse_case(2, 4);
     for (int physics = 0; physics < 2; physics++) {
-        struct box box = make_box(&config);
+        OWNED_BOX box = make_box(&config);
         emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
-        ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
+        assert_ok(trace(&box, 0, 0, box.planned));
         ck_assert_int_eq(equilibrium(&box, 0), FIBRAD_E_STATE);
-        ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+        assert_ok(estimate(&box, 0));
         emit(&box, (fibrad_furnace_physics)physics, physics == FIBRAD_FURNACE_ATTENUATED);
         assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
         assert_refused(&box, 0, FIBRAD_FURNACE_EQUILIBRIUM);
         ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_E_STATE);
-        ck_assert_int_eq(trace(&box, 1, 0, box.planned), FIBRAD_OK);
+        assert_ok(trace(&box, 1, 0, box.planned));
         ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[1]), FIBRAD_E_STATE);
         ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[1], box.tally[0]), FIBRAD_E_STATE);
-        ck_assert_int_eq(physics ? equilibrium(&box, 1) : estimate(&box, 1), FIBRAD_OK);
+        assert_ok(physics ? equilibrium(&box, 1) : estimate(&box, 1));
         assert_refused(&box, 1, (fibrad_furnace_physics)!physics);
-        free_box(&box);
     }
 }
 
@@ -336,54 +328,49 @@ TEST(other_furnaces) {
         if (difference == 2) changed.absorption *= 1 + 1e-15;
         if (difference == 3) changed.wall_emissivity[0] -= 1e-15;
         if (difference == 4) changed.wall_temperature[5] += 1e-12;
-        struct box box = make_box(&config), other = make_box(&changed);
+        OWNED_BOX box = make_box(&config), other = make_box(&changed);
         if (difference == 5) other.at.e[7] *= 1 + 1e-15;
         emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
         emit(&other, FIBRAD_FURNACE_ATTENUATED, 1);
-        ck_assert_int_eq(trace(&other, 0, 0, other.planned), FIBRAD_OK);
+        assert_ok(trace(&other, 0, 0, other.planned));
         fibrad_furnace_tally *own = box.tally[0];
         box.tally[0] = other.tally[0];
         assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
         ck_assert_int_eq(trace(&box, 0, 0, 1), FIBRAD_E_STATE);
-        ck_assert_int_eq(trace(&box, 1, 0, box.planned), FIBRAD_OK);
+        assert_ok(trace(&box, 1, 0, box.planned));
         ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[1], box.tally[0]), FIBRAD_E_STATE);
-        ck_assert_int_eq(estimate(&box, 1), FIBRAD_OK); /* what was refused has not changed it */
-        ck_assert_int_eq(estimate(&other, 0), FIBRAD_OK);
+        assert_ok(estimate(&box, 1)); /* what was refused has not changed it */
+        assert_ok(estimate(&other, 0));
         box.tally[0] = own;
-        free_box(&box);
-        free_box(&other);
     }
 }
 
 /* A furnace made anew in the same memory does not know the tallies of the former one. */
 TEST(furnace_made_anew) {
     fibrad_furnace_config config = coarse_case(2, 4);
-    struct box box = make_box(&config);
+    OWNED_BOX box = make_box(&config);
     emit(&box, FIBRAD_FURNACE_EQUILIBRIUM, 1);
-    ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
+    assert_ok(trace(&box, 0, 0, box.planned));
     config.scattering *= 2;
     ck_assert_int_eq(fibrad_furnace_init(&box.furnace, box.block + 1, fibrad_furnace_size(&config), &config), 0);
     assert_refused(&box, 0, FIBRAD_FURNACE_EQUILIBRIUM);
     emit(&box, FIBRAD_FURNACE_EQUILIBRIUM, 1);
     assert_refused(&box, 0, FIBRAD_FURNACE_EQUILIBRIUM);
-    free_box(&box);
 }
 
 /* Furnaces that are equal in everything have equal plans, so two processes may share the work. */
 TEST(equal_furnaces) {
     const fibrad_furnace_config config = coarse_case(2, 4);
-    struct box one = make_box(&config), two = make_box(&config);
+    OWNED_BOX one = make_box(&config), two = make_box(&config);
     emit(&one, FIBRAD_FURNACE_ATTENUATED, 1);
     emit(&two, FIBRAD_FURNACE_ATTENUATED, 1);
-    ck_assert_int_eq(trace(&one, 0, 0, 500), FIBRAD_OK);
-    ck_assert_int_eq(trace(&two, 0, 500, two.planned - 500), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_furnace_tally_add(one.tally[0], two.tally[0]), FIBRAD_OK);
-    ck_assert_int_eq(estimate(&one, 0), FIBRAD_OK);
-    ck_assert_int_eq(trace(&two, 0, 0, 500), FIBRAD_OK);
-    ck_assert_int_eq(estimate(&two, 0), FIBRAD_OK);
+    assert_ok(trace(&one, 0, 0, 500));
+    assert_ok(trace(&two, 0, 500, two.planned - 500));
+    assert_ok(fibrad_furnace_tally_add(one.tally[0], two.tally[0]));
+    assert_ok(estimate(&one, 0));
+    assert_ok(trace(&two, 0, 0, 500));
+    assert_ok(estimate(&two, 0));
     ck_assert_mem_eq(one.at.theta[0][0], two.at.theta[0][0], BOX_CELLS * sizeof(double));
-    free_box(&one);
-    free_box(&two);
 }
 
 /* The walls have one temperature, there is no source, and E is that of the walls. So there are no bundles, and an empty
@@ -392,14 +379,13 @@ TEST(nothing_to_trace) {
     fibrad_furnace_config config = coarse_case(2, 4);
     config.source = 0;
     for (int w = 0; w < 6; w++) config.wall_temperature[w] = 900;
-    struct box box = make_box(&config);
+    OWNED_BOX box = make_box(&config);
     for (size_t c = 0; c < BOX_CELLS; c++) box.at.e[c] = SIGMA * 900 * 900 * (900.0 * 900);
     for (int physics = 0; physics < 2; physics++) {
         emit(&box, (fibrad_furnace_physics)physics, 1);
-        ck_assert_int_eq(physics ? equilibrium(&box, 0) : estimate(&box, 0), FIBRAD_OK);
+        assert_ok(physics ? equilibrium(&box, 0) : estimate(&box, 0));
         ck_assert_double_eq_tol(fibrad_furnace_temperature(box.at.e[5]), 900, 1e-9);
     }
-    free_box(&box);
 }
 
 /* What the caller may write is refused if it is NaN or infinite, wherever it stands. This holds also in a solved field,
@@ -410,9 +396,8 @@ TEST(solve_refuses_nan) {
     fibrad_furnace_report report;
     for (size_t k = 0; k < BOX_CELLS; k++) {
         for (int field = 0; field < 4; field++) {
-            struct box box = make_box(&config);
-            ck_assert_int_eq(fibrad_furnace_solve(box.furnace, FIBRAD_SCATTER_SIX_FLUX, 1e-5, 1000, &report),
-                             FIBRAD_OK);
+            OWNED_BOX box = make_box(&config);
+            assert_ok(fibrad_furnace_solve(box.furnace, FIBRAD_SCATTER_SIX_FLUX, 1e-5, 1000, &report));
             const fibrad_furnace_report before = report;
             const size_t layers = k + BOX_CELLS / 8; /* the upper face of the cell */
             if (field == 0) box.at.e[k] = wrong[k % 3];
@@ -422,7 +407,6 @@ TEST(solve_refuses_nan) {
             ck_assert_int_eq(fibrad_furnace_solve(box.furnace, FIBRAD_SCATTER_SIX_FLUX, 1, 1000, &report),
                              FIBRAD_E_ARGUMENT);
             ck_assert_mem_eq(&before, &report, sizeof report);
-            free_box(&box);
         }
     }
 }

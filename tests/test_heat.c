@@ -386,7 +386,7 @@ TEST(two_radiosities) {
         p.temperature[i] = 1, p.temperature[1 - i] = 0;
         solve(&p);
         area[i] = -p.result.power[i], f[i] = p.result.power[1 - i] / area[i];
-        ck_assert_int_eq(fibrad_pair_exact(p.bed.r[i], p.bed.r[1 - i], .5, &exact), FIBRAD_OK);
+        assert_ok(fibrad_pair_exact(p.bed.r[i], p.bed.r[1 - i], .5, &exact));
         assert_near(area[i], sphere_area(&p.bed, (uint32_t)i), 2e-3);
         assert_near(f[i], exact, .02);
     }

@@ -33,11 +33,11 @@ TEST(arguments_are_checked) {
     fibrad_heat *const first = p.heat;
     for (size_t shift = 0; shift < 64; shift += 9) { /* any alignment gives the same bits */
         memset(block, 0x5a, size + 128);
-        ck_assert_int_eq(fibrad_heat_init(&heat, block + shift, size, &p.config, p.scene), FIBRAD_OK);
+        assert_ok(fibrad_heat_init(&heat, block + shift, size, &p.config, p.scene));
         ck_assert_int_eq(fibrad_heat_trace(NULL, &work, 0), FIBRAD_E_ARGUMENT);
         ck_assert_int_eq(fibrad_heat_trace(heat, &work, 2), FIBRAD_E_ARGUMENT);
         ck_assert_int_eq(fibrad_heat_trace(heat, NULL, 0), FIBRAD_E_ARGUMENT);
-        for (uint32_t i = 0; i < 2; i++) ck_assert_int_eq(fibrad_heat_trace(heat, &work, i), FIBRAD_OK);
+        for (uint32_t i = 0; i < 2; i++) assert_ok(fibrad_heat_trace(heat, &work, i));
         ck_assert_int_eq(fibrad_heat_read(heat, &p.result), FIBRAD_E_STATE); /* unsolved */
         p.heat = heat;
         solve(&p);
@@ -73,7 +73,7 @@ TEST(work_memory_may_be_too_small) {
     OWNED_PROBLEM p = problem_of(packing(100, 1, 1, .55, 5, true), 1, 1);
     p.config.directions = 8;
     trace(&p);
-    ck_assert_int_eq(fibrad_heat_move(p.heat, p.scene), FIBRAD_OK);
+    assert_ok(fibrad_heat_move(p.heat, p.scene));
     size_t size = 64;
     void *block = block_of(size);
     fibrad_work work = work_fixed(block, size);
@@ -87,7 +87,7 @@ TEST(work_memory_may_be_too_small) {
         work = work_fixed(block, size);
         status = fibrad_heat_trace(p.heat, &work, 0);
     }
-    ck_assert_int_eq(status, FIBRAD_OK);
+    assert_ok(status);
     free(block);
 }
 
@@ -134,8 +134,7 @@ TEST(the_room_for_beams_may_be_too_small) {
     build_scene(&p);
     const size_t size = fibrad_heat_size(&p.config, p.scene);
     for (size_t times = 1; times <= 2; times++) {
-        ck_assert_int_eq(fibrad_heat_init(&p.heat, block_of(times * size), times * size, &p.config, p.scene),
-                         FIBRAD_OK);
+        assert_ok(fibrad_heat_init(&p.heat, block_of(times * size), times * size, &p.config, p.scene));
         trace_beams(&p);
         solve(&p);
         memcpy(power[times - 1], p.result.power, sizeof power[0]);

@@ -144,13 +144,12 @@ LOOP_TEST(one_side_lit, 4) {
 /* The light on all patches: parallel light down z, of flux 1. */
 static double *shine_down(const struct problem *p) {
     const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     double *hits = calloc(fibrad_heat_patches(p->heat), sizeof *hits);
     for (uint32_t task = 0; task < fibrad_heat_shine_tasks(p->heat); task++) {
         fibrad_light_ends kept;
-        ck_assert_int_eq(fibrad_heat_shine(p->heat, &work, &light, task, hits, &kept), FIBRAD_OK);
+        assert_ok(fibrad_heat_shine(p->heat, &work, &light, task, hits, &kept));
     }
-    work_free(&work);
     return hits;
 }
 
@@ -159,7 +158,7 @@ static double *shine_down(const struct problem *p) {
 LOOP_TEST(parallel_light_from_one_side, 4) {
     enum { POINTS = 20000 };
     const double k = half_k[_i], e = half_e[_i], t = pow(1 / (4 * e), .25);
-    struct problem p = one_sphere(.7, NAN, e);
+    OWNED_PROBLEM p = one_sphere(.7, NAN, e);
     double emitted[DEGREES + 1] = {0}, value[DEGREES + 1], squares = 0, errors = 0, top = 0, bottom = 0;
     for (int n = 0; n < POINTS; n++) {
         legendre((n + .5) / POINTS, value);
@@ -171,7 +170,7 @@ LOOP_TEST(parallel_light_from_one_side, 4) {
     conduct(&p, k, t);
     find_temperatures(&p, PI * .49);
     trace(&p);
-    double *hits = shine_down(&p);
+    OWNED double *hits = shine_down(&p);
     p.sources.absorbed = hits, p.sources.tolerance = 1e-8;
     solve(&p);
     for (uint32_t a = 0; a < p.heat->config.patches; a++) {
@@ -187,8 +186,6 @@ LOOP_TEST(parallel_light_from_one_side, 4) {
     ck_assert_double_le(fabs(largest[0] - found[0] - top / (4 * t * t * t)), fmax(.02 * t, 2 * surface_error[0]));
     ck_assert_double_le(fabs(least[0] - found[0] - bottom / (4 * t * t * t)), fmax(.02 * t, 2 * surface_error[0]));
     ck_assert_double_eq_tol(centre[0], found[0], 1e-9 * t); /* the light is absorbed on the surface */
-    free(hits);
-    free_problem(&p);
 }
 
 TEST(an_even_source_in_black_surroundings) {
@@ -342,10 +339,10 @@ LOOP_TEST(a_simple_cubic_lattice, 6) {
 
 /* Light changes no sum of powers. If it is even on each sphere, or if spheres do not conduct, it changes nothing. */
 TEST(light_adds_up_and_even_light_changes_nothing) {
-    struct problem p = mixed_bed(1), q = mixed_bed(1);
+    OWNED_PROBLEM p = mixed_bed(1), q = mixed_bed(1);
     double largest_power;
     trace(&p), solve(&p);
-    double *light = calloc(fibrad_heat_patches(p.heat), sizeof *light);
+    OWNED double *light = calloc(fibrad_heat_patches(p.heat), sizeof *light);
     for (uint32_t a = 0; a < p.heat->first[p.bed.n]; a++) light[a] = 2 * p.heat->solution.area[a];
     trace(&q), q.sources.absorbed = light, solve(&q);
     for (uint32_t i = 0; i < p.bed.n; i++)
@@ -360,8 +357,6 @@ TEST(light_adds_up_and_even_light_changes_nothing) {
         ck_assert_double_le(fabs(p.result.power[i] - q.result.power[i]), 1e-3 * largest_power);
     light[0] = -1, q.sources.absorbed = light;
     ck_assert_int_eq(fibrad_heat_check(q.heat, &q.sources, NULL), FIBRAD_E_ARGUMENT);
-    free(light);
-    free_problem(&p), free_problem(&q);
 }
 
 TEST(conductivities_are_above_zero) {

@@ -33,8 +33,8 @@ static void solve(struct given *g) {
     g->result = (fibrad_heat_result){.power = g->power, .power_error = g->error, .surroundings_error = NAN};
     g->result.body_power = g->wall_power, g->result.body_error = g->wall_error;
     g->scene.body = g->body, g->scene.opening = &g->opening;
-    ck_assert_int_eq(fibrad_radiation_new(&radiation, &g->scene, &spheres, &g->config, &run), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &g->result), FIBRAD_OK);
+    assert_ok(fibrad_radiation_new(&radiation, &g->scene, &spheres, &g->config, &run));
+    assert_ok(fibrad_radiation_solve(radiation, &sources, &g->result));
     bed_free(&g->bed);
 }
 

@@ -60,9 +60,9 @@ TEST(the_order_of_bodies_changes_but_roundings) {
 
 TEST(instruction_sets_change_no_bit) {
     OWNED_PROBLEM p = small_problem(FIBRAD_ISA_SCALAR, false, false);
-    int isa[ISAS_MOST];
-    for (int k = isas_there(isa); k-- > 1;) {
-        OWNED_PROBLEM q = small_problem(isa[k], false, false);
+    const struct isas isas = isas_there();
+    for (int k = isas.count; k-- > 1;) {
+        OWNED_PROBLEM q = small_problem(isas.set[k], false, false);
         assert_same_bits(&p, &q);
     }
 }
@@ -93,7 +93,7 @@ TEST(an_earlier_solution_goes_with_the_spheres) {
     for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + bed_make_random(3, i);
     trace_and_solve(&p);
     const uint32_t cold = p.result.sweeps;
-    fibrad_scene *const before = p.scene;
+    OWNED fibrad_scene *before = p.scene;
     double power[100], largest = 0;
     memcpy(power, p.result.power, sizeof power);
     for (uint32_t i = 0; i < p.bed.n; i++) {
@@ -105,12 +105,11 @@ TEST(an_earlier_solution_goes_with_the_spheres) {
     uint32_t others = 0;
     for (uint32_t k = 0; k < p.bed.n; k++) others += fibrad_scene_sphere(before, k) != fibrad_scene_sphere(p.scene, k);
     ck_assert_uint_gt(others, 50);
-    ck_assert_int_eq(fibrad_heat_move(p.heat, p.scene), FIBRAD_OK);
+    assert_ok(fibrad_heat_move(p.heat, p.scene));
     trace_beams(&p);
     solve(&p);
     for (uint32_t i = 0; i < p.bed.n; i++) ck_assert_double_eq_tol(power[i], p.result.power[i], 1e-5 * largest);
     ck_assert_uint_lt(p.result.sweeps, cold / 2);
-    free(before);
 }
 
 TEST(the_error_is_as_estimated) {

@@ -8,7 +8,7 @@ static void beam(const struct problem *p, uint32_t i, uint32_t k, uint32_t point
     const double centre[3] = {p->bed.x[i], p->bed.y[i], p->bed.z[i]};
     double frame[9];
     fibrad_disc_points set;
-    ck_assert_int_eq(fibrad_disc_points_get(config->points, &set), FIBRAD_OK);
+    assert_ok(fibrad_disc_points_get(config->points, &set));
     fibrad_beam_frame(k, config->directions, config->points, frame);
     const double x = set.x[point], y = set.y[point], up = sqrt(fmax(0, 1 - (x * x + y * y)));
     for (int a = 0; a < 3; a++) {
@@ -108,10 +108,10 @@ TEST(fine_patches_come_and_go_with_a_move) {
     trace_and_solve(&p), trace_and_solve(&q);
     ck_assert_uint_eq(q.heat->division.fours, 0);
     const double power[2] = {p.result.power[1], q.result.power[1]};
-    ck_assert_int_eq(fibrad_heat_move(p.heat, q.scene), FIBRAD_OK);
+    assert_ok(fibrad_heat_move(p.heat, q.scene));
     trace_beams(&p), solve(&p);
     assert_near(p.result.power[1], power[1], 1e-8);
-    ck_assert_int_eq(fibrad_heat_move(p.heat, p.scene), FIBRAD_OK);
+    assert_ok(fibrad_heat_move(p.heat, p.scene));
     trace_beams(&p), solve(&p);
     assert_near(p.result.power[1], power[0], 1e-8);
     ck_assert_int_eq(fibrad_heat_move(q.heat, p.scene), FIBRAD_E_SIZE);

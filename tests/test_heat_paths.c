@@ -141,8 +141,7 @@ static struct bed column(char kind, int cells) {
     static const double basis[4][3] = {{0, 0, 0}, {0, .5, .5}, {.5, 0, .5}, {.5, .5, 0}}, centre[3] = {.5, .5, .5};
     const double side = kind == 'p' ? 2 : kind == 'i' ? 4 / sqrt(3) : 2 * sqrt(2);
     const int sites = kind == 'p' ? 1 : kind == 'i' ? 2 : 4;
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     for (int cell = 0; cell < 4 * cells; cell++)
         for (int s = 0; s < sites; s++) {
             const double *b = kind == 'i' && s == 1 ? centre : basis[s];
@@ -171,8 +170,7 @@ LOOP_TEST(conduction_of_lattices, 3) {
  * emissivities. */
 TEST(conduction_of_a_random_bed) {
     static const double known[][2] = {{.2, .276}, {.4, .433}, {.6, .610}, {.8, .815}};
-    struct bed one = packing(120, 1, 1, .586, 2, true), bed;
-    bed_init(&bed);
+    struct bed one = packing(120, 1, 1, .586, 2, true), bed = bed_empty();
     ck_assert_int_eq(bed_make_copies(&bed, &one, (uint32_t[]){1, 1, 3}), 0);
     bed_free(&one);
     OWNED_PROBLEM p = problem_of(bed, 1, 1);

@@ -9,13 +9,11 @@
 static struct bed read_settled(const char *file) {
     struct bed bed = bed_of(0, NULL);
     char line[200];
-    FILE *from = fopen(file, "r");
-    ck_assert_ptr_nonnull(from);
+    OWNED_FILE *from = opened(file, "r");
     while (fgets(line, sizeof line, from)) {
         double x, y, z, r;
         if (sscanf(line, "%*d %*d %lf %lf %lf %lf", &x, &y, &z, &r) == 4) add_sphere(&bed, x, y, z, r);
     }
-    fclose(from);
     ck_assert_uint_eq(bed.n, 2000);
     bed.period[0] = bed.period[1] = 12, bed.period[2] = 0;
     return bed;
@@ -76,11 +74,13 @@ static struct absorbed absorb_light(const struct bed *bed, const fibrad_scene_co
     double sum = a.result.transmitted + a.result.reflected;
     for (uint32_t i = 0; i < bed->n; i++) sum += a.sphere[i];
     for (int b = 0; b < 6; b++) sum += a.wall[b];
-    ck_assert_double_eq_tol(sum, a.result.incident, 1e-12 * a.result.incident);
+    assert_near(sum, a.result.incident, 1e-12);
     return a;
 }
 
 static void free_absorbed(struct absorbed *a) { free(a->sphere), free(a->first), free(a->error); }
+
+#define OWNED_ABSORBED OWNED_BY(free_absorbed) struct absorbed
 
 enum { LAYERS = 24 };
 
@@ -124,7 +124,7 @@ TEST(a_settled_bed_absorbs_as_plain_rays_say) {
         const double absorptivity = k % 2 ? .8 : .4, slant = k < 2 ? 0 : M_PI / 6;
         const double d[3] = {sin(slant), 0, -cos(slant)};
         const fibrad_light light = {.direction = {d[0], d[1], d[2]}, .flux = 1 / (144 * cos(slant))};
-        struct absorbed a = absorb_light(&bed, &config, &light, absorptivity, 0);
+        OWNED_ABSORBED a = absorb_light(&bed, &config, &light, absorptivity, 0);
         double rays[LAYERS], ours[LAYERS] = {0}, sum = 0;
         const double all = absorb_plain(&plain, d, absorptivity, k % 2 ? 400 : 700, rays);
         ck_assert_double_eq_tol(a.result.incident, 1, 1e-12);
@@ -132,9 +132,8 @@ TEST(a_settled_bed_absorbs_as_plain_rays_say) {
             const int depth = (int)(top - bed.z[i]);
             sum += a.sphere[i], ours[depth < LAYERS ? depth : LAYERS - 1] += a.sphere[i];
         }
-        ck_assert_double_eq_tol(sum, all, .003 * all);
+        assert_near(sum, all, .003);
         for (int l = 0; l < LAYERS; l++) ck_assert_double_eq_tol(ours[l], rays[l], .01 * fmax(rays[l], .05 * all));
-        free_absorbed(&a);
     }
     plain_free(&plain);
 }
@@ -150,14 +149,13 @@ TEST(a_floor_alone_absorbs_what_it_absorbs) {
     const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
     for (int k = 0; k <= 4; k++) {
         const double share = k / 4.;
-        struct absorbed a = absorb_light(&bed, &config, &light, 1, share);
+        OWNED_ABSORBED a = absorb_light(&bed, &config, &light, 1, share);
         const double sphere = M_PI / 4, wall = 16 - sphere; /* the light that meets the sphere first, and the wall */
         ck_assert_double_eq_tol(a.first[0], sphere, 1e-12);
         ck_assert_double_eq_tol(a.wall_first[0], share * wall, 1e-12);
         ck_assert_double_eq_tol(a.wall[0], share * wall, 1e-9); /* no light comes back to the wall */
         ck_assert_double_eq_tol(a.sphere[0] + a.result.reflected, sphere + (1 - share) * wall, 1e-9);
         ck_assert_double_eq_tol(a.result.transmitted, 0, 1e-12);
-        free_absorbed(&a);
     }
 }
 
@@ -283,10 +281,9 @@ TEST(white_walls_absorb_nothing) {
     const fibrad_plane top = {2, 1, 1.5};
     const fibrad_scene_config config = {.body = body, .bodies = 5, .opening = &top, .openings = 1};
     const fibrad_light light = {.direction = {.4, .1, -1}, .flux = 3, .half_angle = .1};
-    struct absorbed a = absorb_light(&bed, &config, &light, .3, 0);
+    OWNED_ABSORBED a = absorb_light(&bed, &config, &light, .3, 0);
     for (int b = 0; b < 5; b++) ck_assert_double_eq_tol(a.wall[b], 0, 1e-12);
     ck_assert_double_gt(a.sphere[0], 1.5 * a.first[0]);
-    free_absorbed(&a);
 }
 
 /* By Kirchhoff's law: take the power that a bed of one temperature sends out through its open face, over that of a
@@ -304,9 +301,8 @@ TEST(emissivity_of_a_face_is_its_mean_absorptance) {
         const double ring = sqrt(square), cosine = sqrt(1 - square);
         const fibrad_light light = {.direction = {ring * cos(turn), ring * sin(turn), -cosine},
                                     .flux = 1 / (side * side * cosine)};
-        struct absorbed a = absorb_light(&bed, &config, &light, .4, .4);
+        OWNED_ABSORBED a = absorb_light(&bed, &config, &light, .4, .4);
         mean += (1 - a.result.reflected) / (RINGS * TURNS);
-        free_absorbed(&a);
     }
     OWNED_RADIATION *radiation = NULL;
     const fibrad_spheres spheres = {.x = bed.x, .y = bed.y, .z = bed.z, .r = bed.r, .n = bed.n};

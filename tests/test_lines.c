@@ -76,7 +76,7 @@ static double shadow_error(uint32_t n, uint32_t first, uint32_t by) {
         vector axis;
         double sum = 0;
         uint32_t count = 0;
-        ck_assert_int_eq(fibrad_direction(k, AXES, axis), FIBRAD_OK);
+        assert_ok(fibrad_direction(k, AXES, axis));
         for (uint32_t i = first; i < n; i += by, count++) sum += shadow(axis, line[i]);
         square += (sum / count / truth - 1) * (sum / count / truth - 1) / AXES;
     }
@@ -84,7 +84,7 @@ static double shadow_error(uint32_t n, uint32_t first, uint32_t by) {
 }
 
 static void take_fibonacci(uint32_t n, uint32_t of) {
-    for (uint32_t k = 0; k < n; k++) ck_assert_int_eq(fibrad_direction(k, of, line[k]), FIBRAD_OK);
+    for (uint32_t k = 0; k < n; k++) assert_ok(fibrad_direction(k, of, line[k]));
 }
 
 static void check_lengths(uint32_t n) {
@@ -154,7 +154,7 @@ TEST(many_lines_are_directions) {
         fibrad_lines_make(sizes[i], line, NULL);
         for (uint32_t k = 0; k < sizes[i]; k++) {
             vector d;
-            ck_assert_int_eq(fibrad_direction(k, sizes[i], d), FIBRAD_OK);
+            assert_ok(fibrad_direction(k, sizes[i], d));
             ck_assert_mem_eq(d, line[k], sizeof d);
         }
     }

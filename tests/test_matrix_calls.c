@@ -18,22 +18,21 @@ static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows
     const size_t size = fibrad_matrix_size(scene, rows, count, &rule);
     void *block = block_of(size);
     memset(block, 0xa5, size);
-    ck_assert_int_eq(fibrad_matrix_init(&m.matrix, block, size, scene, rows, count, &rule, NULL), FIBRAD_OK);
+    assert_ok(fibrad_matrix_init(&m.matrix, block, size, scene, rows, count, &rule, NULL));
     int failed = 0;
 #pragma omp parallel for num_threads(threads ? 4 : 1) schedule(dynamic, 1) reduction(+ : failed)
     for (uint32_t k = 0; k < tasks; k++)
         if (left == 0 || k % left != 0) failed += fibrad_matrix_average(m.matrix, tasks - 1 - k) != FIBRAD_OK;
     ck_assert_int_eq(failed, 0);
-    ck_assert_int_eq(fibrad_matrix_close(m.matrix), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_matrix_read(m.matrix, &m.factors), FIBRAD_OK);
+    assert_ok(fibrad_matrix_close(m.matrix));
+    assert_ok(fibrad_matrix_read(m.matrix, &m.factors));
     double largest, same;
-    ck_assert_int_eq(fibrad_matrix_reciprocity(m.matrix, &largest), FIBRAD_OK);
+    assert_ok(fibrad_matrix_reciprocity(m.matrix, &largest));
     ck_assert(!threads || tasks == 1 || calls > 4);
-    struct matrix alone =
+    OWNED_MATRIX alone =
         matrix_of(scene, rows, count, &(fibrad_matrix_rule){.emissivity = rule.emissivity, .drop = rule.drop});
-    ck_assert_int_eq(fibrad_matrix_reciprocity(alone.matrix, &same), FIBRAD_OK);
+    assert_ok(fibrad_matrix_reciprocity(alone.matrix, &same));
     ck_assert_double_eq(largest, same);
-    matrix_free(&alone);
     return m;
 }
 
@@ -49,17 +48,16 @@ TEST(tasks_change_no_bit) {
     OWNED_WORK work = work_growing();
     for (uint32_t i = bed.n; i-- > 0;) { /* none in the third */
         fibrad_row to = {.rows = &spread[i % 3 == 2 ? 3 : i % 3]};
-        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 34}, &to), FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 34}, &to));
     }
     for (int k = 0; k < 3; k++) {
         OWNED_MATRIX whole = matrix_of(scene, &rows, 1, &rules[k]), other = matrix_of(scene, spread, 4, &rules[k]);
         ck_assert(matrix_same_bits(&whole.factors, &other.factors));
         for (uint32_t tasks = 1; tasks <= 1024; tasks += tasks < 16 ? 1 : 1008) {
             for (uint32_t left = 0; left <= 3; left++) {
-                struct matrix m =
+                OWNED_MATRIX m =
                     by_tasks(scene, left % 2 ? spread : &rows, left % 2 ? 4 : 1, rules[k], tasks, left, left == 0);
                 ck_assert(matrix_same_bits(&whole.factors, &m.factors));
-                matrix_free(&m);
             }
         }
     }
@@ -79,25 +77,25 @@ TEST(calls_out_of_order) {
         fibrad_matrix *m = NULL;
         fibrad_factors factors = {.n = 77};
         double largest = -7;
-        ck_assert_int_eq(fibrad_matrix_init(&m, block, size, scene, &rows, 1, &rule, NULL), FIBRAD_OK);
+        assert_ok(fibrad_matrix_init(&m, block, size, scene, &rows, 1, &rule, NULL));
         ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_E_STATE);
         ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_E_STATE);
         ck_assert(factors.n == 77 && factors.start == NULL && largest == -7);
         ck_assert_int_eq(fibrad_matrix_average(m, 2), FIBRAD_E_ARGUMENT);
         ck_assert_int_eq(fibrad_matrix_average(m, UINT32_MAX), FIBRAD_E_ARGUMENT);
         if (!raw) {
-            ck_assert_int_eq(fibrad_matrix_average(m, 1), FIBRAD_OK);
+            assert_ok(fibrad_matrix_average(m, 1));
             ck_assert_int_eq(fibrad_matrix_average(m, 1), FIBRAD_E_STATE);
-            ck_assert_int_eq(fibrad_matrix_average(m, 0), FIBRAD_OK);
+            assert_ok(fibrad_matrix_average(m, 0));
         }
-        ck_assert_int_eq(fibrad_matrix_close(m), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_OK);
+        assert_ok(fibrad_matrix_close(m));
+        assert_ok(fibrad_matrix_read(m, &factors));
         const double first = factors.f[0];
         ck_assert_int_eq(fibrad_matrix_close(m), FIBRAD_E_STATE);
         if (!raw) ck_assert_int_eq(fibrad_matrix_average(m, 0), FIBRAD_E_STATE);
-        ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_OK); /* this may be repeated */
+        assert_ok(fibrad_matrix_read(m, &factors)); /* this may be repeated */
         ck_assert_double_eq(factors.f[0], first);
-        ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_OK);
+        assert_ok(fibrad_matrix_reciprocity(m, &largest));
         ck_assert_int_eq(fibrad_matrix_read(m, NULL), FIBRAD_E_ARGUMENT);
         ck_assert_int_eq(fibrad_matrix_reciprocity(m, NULL), FIBRAD_E_ARGUMENT);
     }
@@ -122,8 +120,8 @@ TEST(rows_missing_or_double) {
                 for (uint32_t i = 0; i < 5; i++) {
                     fibrad_row row = {.sphere = i, .col = (uint32_t *)(uintptr_t)&col, .f = (double *)(uintptr_t)&f};
                     row.length = i % 2;
-                    if (i != missing) ck_assert_int_eq(fibrad_rows_add(&rows[0], &row, 0), FIBRAD_OK);
-                    if (i == twice) ck_assert_int_eq(fibrad_rows_add(&rows[i % 2], &row, 0), FIBRAD_OK);
+                    if (i != missing) assert_ok(fibrad_rows_add(&rows[0], &row, 0));
+                    if (i == twice) assert_ok(fibrad_rows_add(&rows[i % 2], &row, 0));
                 }
                 const fibrad_matrix_rule rule = {.raw = raw};
                 const bool doubled = twice < 5 && (twice != missing);
@@ -140,7 +138,7 @@ TEST(rows_missing_or_double) {
                     ck_assert_ptr_null(m);
                     ck_assert_int_eq(fibrad_matrix_init(&m, block, size, scene, rows, 2, &rule, NULL), FIBRAD_E_STATE);
                 } else {
-                    ck_assert_int_eq(status, FIBRAD_OK);
+                    assert_ok(status);
                     ck_assert_uint_eq(sphere, 99);
                 }
                 rows_free(&rows[0]), rows_free(&rows[1]);
@@ -177,9 +175,9 @@ TEST(matrix_blocks_of_any_alignment) {
             ck_assert_int_eq(fibrad_matrix_init(&m, block + offset, 0, scene, &rows, 1, &rules[k], NULL),
                              FIBRAD_E_SIZE);
             ck_assert_ptr_null(m);
-            ck_assert_int_eq(fibrad_matrix_init(&m, block + offset, size, scene, &rows, 1, &rules[k], NULL), FIBRAD_OK);
-            ck_assert_int_eq(fibrad_matrix_close(m), FIBRAD_OK);
-            ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_OK);
+            assert_ok(fibrad_matrix_init(&m, block + offset, size, scene, &rows, 1, &rules[k], NULL));
+            assert_ok(fibrad_matrix_close(m));
+            assert_ok(fibrad_matrix_read(m, &factors));
             ck_assert(matrix_same_bits(&factors, &expected.factors));
             ck_assert(bytes_are(block, 0, offset, 0xa5));
             ck_assert(bytes_are(block, offset + size, size + 128, 0xa5));
@@ -196,16 +194,16 @@ TEST(bad_matrices_are_refused) {
     fibrad_row row = {.col = &col, .f = (double *)(uintptr_t)&f, .length = 1};
     for (row.sphere = 0; row.sphere < 2; row.sphere++) {
         col = 1;
-        ck_assert_int_eq(fibrad_rows_add(&rows, &row, 0), FIBRAD_OK);
+        assert_ok(fibrad_rows_add(&rows, &row, 0));
         row.body = (double *)(uintptr_t)&body;
-        ck_assert_int_eq(fibrad_rows_add(&walled, &row, 1), FIBRAD_OK);
+        assert_ok(fibrad_rows_add(&walled, &row, 1));
         row.body = NULL;
         col = 1 + row.sphere; /* 2: no such sphere */
-        ck_assert_int_eq(fibrad_rows_add(&seen, &row, 0), FIBRAD_OK);
+        assert_ok(fibrad_rows_add(&seen, &row, 0));
     }
     col = 1;
     row.sphere = 2; /* no such sphere */
-    ck_assert_int_eq(fibrad_rows_add(&stranger, &row, 0), FIBRAD_OK);
+    assert_ok(fibrad_rows_add(&stranger, &row, 0));
     static unsigned char block[8192];
     fibrad_matrix *m = NULL;
     ck_assert_int_eq(fibrad_matrix_init(NULL, block, sizeof block, scene, &rows, 1, NULL, NULL), FIBRAD_E_ARGUMENT);
@@ -229,7 +227,7 @@ TEST(bad_matrices_are_refused) {
                          FIBRAD_E_ARGUMENT);
     }
     ck_assert_ptr_null(m);
-    ck_assert_int_eq(fibrad_matrix_init(&m, block, sizeof block, scene, &rows, 1, NULL, NULL), FIBRAD_OK);
+    assert_ok(fibrad_matrix_init(&m, block, sizeof block, scene, &rows, 1, NULL, NULL));
 }
 
 static bool same_collection(const fibrad_rows *a, const fibrad_rows *b) {
@@ -241,7 +239,7 @@ TEST(bad_rows_are_refused) {
     uint32_t col[] = {1, 3}, descending[] = {3, 1}, equal[] = {1, 1};
     double f[] = {.1, .2}, body[] = {.5};
     const fibrad_row good = {.sphere = 7, .col = col, .f = f, .body = body, .length = 2, .escaped = .7, .error = .01};
-    ck_assert_int_eq(fibrad_rows_add(&rows, &good, 1), FIBRAD_OK);
+    assert_ok(fibrad_rows_add(&rows, &good, 1));
     ck_assert(rows.count == 1 && rows.entries == 2 && rows.used > 0);
     const fibrad_rows before = rows;
     fibrad_row bad = good;
@@ -275,12 +273,12 @@ TEST(bad_rows_are_refused) {
     ck_assert_int_eq(fibrad_rows_add(&rows, NULL, 1), FIBRAD_E_ARGUMENT);
     ck_assert(same_collection(&rows, &before) && rows.used == before.used);
     bad = good, bad.body = NULL; /* no bodies, no array */
-    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 0), FIBRAD_OK);
+    assert_ok(fibrad_rows_add(&rows, &bad, 0));
     bad = (fibrad_row){.sphere = 3, .escaped = 1}; /* nothing seen */
-    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 0), FIBRAD_OK);
+    assert_ok(fibrad_rows_add(&rows, &bad, 0));
     double whole[] = {1 + 1e-15, 0};
     bad = (fibrad_row){.sphere = 4, .col = col, .f = whole, .length = 2}; /* above 1 by rounding; 0 */
-    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 0), FIBRAD_OK);
+    assert_ok(fibrad_rows_add(&rows, &bad, 0));
     ck_assert(rows.count == 4 && rows.entries == 6);
     fibrad_rows_clear(NULL);
 }
@@ -300,12 +298,12 @@ TEST(rows_added_are_rows_computed) {
     for (int round = 0; round < 3; round++) {
         for (uint32_t i = 0; i < bed.n; i++) {
             fibrad_row append = {.rows = &mixed, .sphere = 1000, .length = 1000};
-            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, i % 2 ? &row : &append), FIBRAD_OK);
-            if (i % 2) ck_assert_int_eq(fibrad_rows_add(&mixed, &row, 2), FIBRAD_OK);
+            assert_ok(fibrad_beam_row(scene, &work, i, &rule, i % 2 ? &row : &append));
+            if (i % 2) assert_ok(fibrad_rows_add(&mixed, &row, 2));
             if (i % 2) continue;
             ck_assert_uint_eq(append.sphere, i); /* a row that is appended tells this, too */
             ck_assert(append.length > 0 && append.length < bed.n);
-            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
+            assert_ok(fibrad_beam_row(scene, &work, i, &rule, &row));
             ck_assert(same_bits_with(&append, &row, 2)); /* where it stands now */
             ck_assert_uint_eq(append.directions, 34);
             ck_assert_double_gt(append.error, 0);
@@ -341,7 +339,7 @@ TEST(collections_in_fixed_memory) {
         uint32_t refused = 0;
         for (uint32_t i = 0; i < bed.n; i++) {
             const bool added = (i + offset) % 2;
-            if (added) ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
+            if (added) assert_ok(fibrad_beam_row(scene, &work, i, &rule, &row));
             fibrad_row append = {.rows = &rows};
             for (;;) {
                 const uint64_t entries = rows.entries;
@@ -393,7 +391,7 @@ TEST(collections_that_grow) {
                 ck_assert_uint_eq(rows.count, i);
                 status = fibrad_beam_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows});
             }
-            ck_assert_int_eq(status, FIBRAD_OK);
+            assert_ok(status);
         }
         ck_assert_uint_eq(refused, refuse > 0 && source.calls >= refuse);
         ck_assert(same_collection(&rows, &plenty));
@@ -422,7 +420,7 @@ TEST(rows_read_one_by_one) {
     for (uint32_t i = 0; i < 40; i++) {
         fibrad_row row = in;
         row.sphere = i, row.length = i % 4;
-        ck_assert_int_eq(fibrad_rows_add(&rows, &row, 1), FIBRAD_OK);
+        assert_ok(fibrad_rows_add(&rows, &row, 1));
     }
     for (uint32_t again = 0; again < 2; again++) {
         at = 0;

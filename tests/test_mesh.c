@@ -60,18 +60,18 @@ TEST(a_sphere_and_a_triangle) {
         const fibrad_beam_rule rules[3] = {
             {.directions = 233}, {.directions = 233, .points = 128}, {.directions = 2000}};
         for (int rule = 0; rule < 3; rule++) {
-            ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rules[rule], &row), FIBRAD_OK);
+            assert_ok(fibrad_beam_row(scene, &work, 0, &rules[rule], &row));
             ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
             const double error = fabs(row.body[0] - exact);
             worst_of(&worst[rule], error);
             if (rule == 0) square += error * error;
         }
-        ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 100000}, &row, NULL), FIBRAD_OK);
+        assert_ok(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 100000}, &row, NULL));
         ck_assert_double_eq_tol(row.body[0], exact, 2e-3);
         const double whole = 4 * PI * exact / fibrad_scene_body_area(scene, 0); /* the mean of both sides */
         fibrad_side_view view[2];
         uint32_t triangle = 7;
-        ck_assert_int_eq(fibrad_triangle_views(scene, 0, 1 << 16, &triangle, view), FIBRAD_OK);
+        assert_ok(fibrad_triangle_views(scene, 0, 1 << 16, &triangle, view));
         ck_assert_uint_eq(triangle, 0);
         ck_assert(view[0].spheres * view[1].spheres == 0 && view[0].bodies + view[1].bodies == 0);
         ck_assert_double_eq_tol((view[0].spheres + view[1].spheres) / 2, whole, 1e-3);
@@ -97,7 +97,7 @@ TEST(small_spheres_behind) {
     OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1);
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(bed.n);
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 600}, &row), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 600}, &row));
     const double screen = .5 - 4 * sqrt(2) * 1.02 / 500 / (4 * PI); /* it ends a little above the horizon */
     printf("    behind: %.2g is seen, the screen errs by %.2g\n", row_sum(&row), row.body[0] - screen);
     ck_assert_double_eq_tol(row.body[0], screen, 1e-3);
@@ -136,12 +136,12 @@ TEST(a_box_of_triangles) {
     double spheres = 0, walls = 0, estimate = 0;
     for (int k = 0; k < 6; k++) ck_assert_double_eq_tol(fibrad_scene_body_area(scene, (uint32_t)k), 1, 1e-15);
     /* this work memory was laid out without triangles, and is laid out anew */
-    ck_assert_int_eq(fibrad_beam_row(other, &work, 0, NULL, &of_planes), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(other, &work, 0, NULL, &of_planes));
     for (uint32_t points = 0; points <= 256; points += 256)
         for (uint32_t i = 0; i < bed.n; i++) {
             const fibrad_beam_rule rule = {.directions = 600, .points = points};
-            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
-            ck_assert_int_eq(fibrad_beam_row(other, &work, i, &rule, &of_planes), FIBRAD_OK);
+            assert_ok(fibrad_beam_row(scene, &work, i, &rule, &row));
+            assert_ok(fibrad_beam_row(other, &work, i, &rule, &of_planes));
             ck_assert_double_eq_tol(total_of(&row, 6), 1, 1e-12);
             ck_assert(row.escaped == 0 && row.beyond == 0);
             const double distance = row_distance(&row, &of_planes);
@@ -195,9 +195,8 @@ TEST(a_drum) {
         OWNED fibrad_scene *drum = scene_of_mesh(&turned, mesh, 3);
         for (uint32_t i = 0; i < bed.n; i++) {
             const fibrad_beam_rule rule = {.directions = 600};
-            ck_assert_int_eq(fibrad_beam_row(drum, &work, i, &rule, &row), FIBRAD_OK);
-            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 4000}, &exact),
-                             FIBRAD_OK);
+            assert_ok(fibrad_beam_row(drum, &work, i, &rule, &row));
+            assert_ok(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 4000}, &exact));
             ck_assert(row.escaped == 0);
             ck_assert_double_eq_tol(total_of(&row, 3), 1, 1e-12);
             for (int k = 0; k < 3; k++) square += pow(row.body[k] - exact.body[k], 2) / bed.n;
@@ -221,15 +220,14 @@ TEST(tubes_through_walls) {
         body[6] = mesh->body[0];
         scene[k] = scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = 7, .triangles = &mesh->triangles});
         row[k] = row_of(2);
-        ck_assert_int_eq(fibrad_beam_row(scene[k], &work, 0, &(fibrad_beam_rule){.directions = 2000}, &row[k]),
-                         FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene[k], &work, 0, &(fibrad_beam_rule){.directions = 2000}, &row[k]));
         ck_assert_double_eq_tol(total_of(&row[k], 7), 1, 1e-12);
         ck_assert(row[k].escaped == 0);
     }
     for (int b = 0; b < 7; b++) ck_assert_double_eq_tol(row[0].body[b], row[1].body[b], 3e-4);
     ck_assert_double_gt(row[0].body[6], .05);
     OWNED_ROW cast = row_of(2);
-    ck_assert_int_eq(fibrad_cast_row(scene[1], &work, 0, &(fibrad_cast_rule){.rays = 400000}, &cast, NULL), FIBRAD_OK);
+    assert_ok(fibrad_cast_row(scene[1], &work, 0, &(fibrad_cast_rule){.rays = 400000}, &cast, NULL));
     for (int b = 0; b < 7; b++) ck_assert_double_eq_tol(row[1].body[b], cast.body[b], 1.5e-3);
     ck_assert_double_eq_tol(row_factor(&row[1], 1), row_factor(&cast, 1), 1.5e-3);
     for (int k = 0; k < 2; k++) row_free(&row[k]), free(scene[k]);
@@ -249,7 +247,7 @@ TEST(open_meshes_within_walls) {
         const uint32_t bodies = round ? 4 : 7, from = bodies - 1;
         body[from] = mesh->body[0];
         mesh->front[0] = mesh->back[0] = from;
-        fibrad_scene *scene =
+        OWNED fibrad_scene *scene =
             scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = bodies, .triangles = &mesh->triangles});
         OWNED_WORK work = work_growing();
         OWNED_ROW row = row_of(bed.n), exact = row_of(bed.n), grey = row_of(bed.n);
@@ -259,17 +257,16 @@ TEST(open_meshes_within_walls) {
         const fibrad_exchange_rule rule = {
             .emissivity = emissivity, .body_emissivity = of_body, .directions = 150, .paths = 100};
         for (uint32_t i = 0; i < bed.n; i++) {
-            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, NULL, &exact), FIBRAD_OK);
+            assert_ok(fibrad_beam_row(scene, &work, i, NULL, &exact));
             ck_assert_double_eq_tol(total_of(&exact, bodies), 1, 1e-12);
-            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.points = 256}, &row), FIBRAD_OK);
+            assert_ok(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.points = 256}, &row));
             ck_assert_double_eq_tol(total_of(&row, bodies), 1, 1e-12);
-            ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &grey, NULL), FIBRAD_OK);
+            assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &grey, NULL));
             ck_assert_double_eq_tol(total_of(&grey, bodies), 1, 1e-12);
             for (uint32_t b = 0; b < bodies; b++) square += pow(row.body[b] - exact.body[b], 2) / bed.n;
         }
         printf("    within walls: by points and by areas differ by %.2g\n", sqrt(square));
         ck_assert_double_le(sqrt(square), 1.5e-3);
-        free(scene);
     }
 }
 
@@ -289,7 +286,7 @@ TEST(sides_of_nobody) {
     mesh_vertex(mesh, -4, -4, 2), mesh_vertex(mesh, 4, -4, 2), mesh_vertex(mesh, 0, 5, 2);
     mesh_triangle(mesh, 0, 1, 2, 0, FIBRAD_NO_BODY);
     mesh_triangle(mesh, 3, 4, 5, 1, FIBRAD_NO_BODY); /* its normal is +z, away from the sphere */
-    fibrad_scene *scene = scene_of_mesh(&bed, mesh, 2);
+    OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 2);
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &row), FIBRAD_E_BACK);
     ck_assert_uint_eq(work.triangle, 1);
     work.triangle = 77;
@@ -314,11 +311,10 @@ TEST(sides_of_nobody) {
     free(scene);
     mesh->back[1] = 0;
     scene = scene_of_mesh(&bed, mesh, 2);
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &row), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(scene, &work, 0, NULL, &row));
     ck_assert_double_gt(row.body[0], .1);
     ck_assert_double_eq(row.body[1], 0);
     ck_assert_double_eq_tol(fibrad_scene_body_area(scene, 0), 27 + 36, 1e-12);
-    free(scene);
 }
 
 TEST(bad_triangles_are_named) {
@@ -368,11 +364,10 @@ static void expect_rows(const fibrad_scene *scene) {
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(1);
     for (uint32_t points = 0; points <= 128; points += 128) {
-        ck_assert_int_eq(
-            fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 60, .points = points}, &row), FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 60, .points = points}, &row));
         ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
     }
-    ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 300}, &row, NULL), FIBRAD_OK);
+    assert_ok(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 300}, &row, NULL));
     ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
 }
 
@@ -399,27 +394,24 @@ TEST(triangles_have_bounds) {
     ck_assert_uint_eq(triangle, 0);
     ck_assert_int_eq(status_of(1, 0, 2, (const double[]){1e14, 0, 0}, &scene, &triangle), FIBRAD_E_ARGUMENT);
 
-    ck_assert_int_eq(status_of(1e-9, 0, 2, NULL, &scene, &triangle), FIBRAD_OK);
+    assert_ok(status_of(1e-9, 0, 2, NULL, &scene, &triangle));
     expect_rows(scene);
-    ck_assert_int_eq(fibrad_triangle_ray(scene, (double[]){0, 0, -1e4}, (double[]){0, 0, 1}, INFINITY, &hit),
-                     FIBRAD_OK);
+    assert_ok(fibrad_triangle_ray(scene, (double[]){0, 0, -1e4}, (double[]){0, 0, 1}, INFINITY, &hit));
     ck_assert_double_eq_tol(hit.distance, 1e4 + 2, 1e-6);
     for (double far = 1e15; far < 1e300; far *= 1e35)
         ck_assert_int_eq(fibrad_triangle_ray(scene, (double[]){far, 0, 0}, (double[]){-1, 0, 0}, INFINITY, &hit),
                          FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(status_of(1e12, 0, 2, NULL, &scene, &triangle), FIBRAD_OK);
+    assert_ok(status_of(1e12, 0, 2, NULL, &scene, &triangle));
     expect_rows(scene);
-    ck_assert_int_eq(status_of(1e12, 1e12, 2, NULL, &scene, &triangle), FIBRAD_OK);
+    assert_ok(status_of(1e12, 1e12, 2, NULL, &scene, &triangle));
     expect_rows(scene);
-    ck_assert_int_eq(status_of(.2, 0, 2, (const double[]){.25, .25, 0}, &scene, &triangle), FIBRAD_OK);
+    assert_ok(status_of(.2, 0, 2, (const double[]){.25, .25, 0}, &scene, &triangle));
     expect_rows(scene);
-    ck_assert_int_eq(status_of(2, 0, 1e6, (const double[]){2, 2, 0}, &scene, &triangle), FIBRAD_OK); /* far above */
+    assert_ok(status_of(2, 0, 1e6, (const double[]){2, 2, 0}, &scene, &triangle)); /* far above */
     expect_rows(scene);
     for (int k = 0; k < 2; k++) { /* far along the open axis */
-        ck_assert_int_eq(status_of(k ? 1e9 : 1e4, 0, 2, (const double[]){0, 0, k ? 1e10 : 9e3}, &scene, &triangle),
-                         FIBRAD_OK);
-        ck_assert_int_eq(fibrad_triangle_ray(scene, (double[]){0, 0, -9}, (double[]){1, 0, 1e-30}, INFINITY, &hit),
-                         FIBRAD_OK);
+        assert_ok(status_of(k ? 1e9 : 1e4, 0, 2, (const double[]){0, 0, k ? 1e10 : 9e3}, &scene, &triangle));
+        assert_ok(fibrad_triangle_ray(scene, (double[]){0, 0, -9}, (double[]){1, 0, 1e-30}, INFINITY, &hit));
         expect_rows(scene);
     }
 }
@@ -435,8 +427,7 @@ TEST(tall_fins_are_left) {
         mesh->triangles.period[0] = 3, mesh->triangles.period[1] = 3;
         OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1);
         fibrad_triangle_hit hit;
-        ck_assert_int_eq(fibrad_triangle_ray(scene, (double[]){.2, 0, -9}, (double[]){1e-30, 1e-20, 1}, INFINITY, &hit),
-                         FIBRAD_OK);
+        assert_ok(fibrad_triangle_ray(scene, (double[]){.2, 0, -9}, (double[]){1e-30, 1e-20, 1}, INFINITY, &hit));
         ck_assert_uint_eq(hit.triangle, UINT32_MAX);
         expect_rows(scene);
     }
@@ -481,12 +472,12 @@ TEST(rays_through_the_tree) {
             if (u >= 0 && v >= 0 && u + v <= 1 && length > 0 && length < nearest) nearest = length, first = t;
         }
         fibrad_triangle_hit hit;
-        ck_assert_int_eq(fibrad_triangle_ray(scene, o, w, INFINITY, &hit), FIBRAD_OK);
+        assert_ok(fibrad_triangle_ray(scene, o, w, INFINITY, &hit));
         ck_assert_uint_eq(hit.triangle, first);
         if (first == UINT32_MAX) continue;
         ck_assert_double_eq_tol(hit.distance, nearest, 1e-9);
         met++, backs += (uint32_t)hit.back;
-        ck_assert_int_eq(fibrad_triangle_ray(scene, o, w, nearest * .999, &hit), FIBRAD_OK);
+        assert_ok(fibrad_triangle_ray(scene, o, w, nearest * .999, &hit));
         ck_assert_uint_eq(hit.triangle, UINT32_MAX);
     }
     ck_assert(met > 900 && backs > met / 3 && backs < 2 * met / 3);
@@ -510,15 +501,15 @@ TEST(periodic_meshes) {
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(2), far = row_of(many.n), cast = row_of(2);
     const fibrad_beam_rule rule = {.directions = 3000};
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rule, &row), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_beam_row(other, &work, middle, &rule, &far), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(scene, &work, 0, &rule, &row));
+    assert_ok(fibrad_beam_row(other, &work, middle, &rule, &far));
     ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
     ck_assert_double_gt(row.body[0], .2);
     ck_assert_double_eq_tol(row.body[0] + row.escaped, far.body[0] + far.escaped, .02); /* but for spheres beyond FAR */
     double of_first = 0;
     for (uint32_t k = 0; k < far.length; k++) of_first += far.col[k] % 2 == 0 ? far.f[k] : 0;
     ck_assert_double_eq_tol(row_factor(&row, 0), of_first, .01);
-    ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 200000}, &cast, NULL), FIBRAD_OK);
+    assert_ok(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 200000}, &cast, NULL));
 
     ck_assert_double_eq_tol(cast.body[0], row.body[0], 3e-3);
     ck_assert_double_eq_tol(row_factor(&cast, 1), row_factor(&row, 1), 3e-3);
@@ -536,7 +527,7 @@ TEST(work_among_triangles) {
     for (size_t offset = 0; offset < 64; offset += 9) {
         fibrad_work work = work_fixed(block + offset, sizeof block - 64);
         for (uint32_t points = 0; points <= 256; points += 256)
-            ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.points = points}, &row), FIBRAD_OK);
+            assert_ok(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.points = points}, &row));
     }
 }
 
@@ -562,16 +553,15 @@ TEST(more_entries_than_spheres) {
     for (int k = 0; k < 2; k++) {
         for (uint32_t points = 0; points <= 256; points += 256) {
             const fibrad_beam_rule rule = {.directions = 1000, .points = points};
-            ck_assert_int_eq(fibrad_beam_row(scene, &work[k], 0, &rule, &row), FIBRAD_OK);
+            assert_ok(fibrad_beam_row(scene, &work[k], 0, &rule, &row));
             ck_assert_uint_eq(row.length, N - 1);
             for (int b = 0; b < 3; b++) ck_assert_double_gt(row.body[b], .1);
         }
-        ck_assert_int_eq(fibrad_cast_row(scene, &work[k], 0, &(fibrad_cast_rule){.rays = 50000}, &row, NULL),
-                         FIBRAD_OK);
+        assert_ok(fibrad_cast_row(scene, &work[k], 0, &(fibrad_cast_rule){.rays = 50000}, &row, NULL));
     }
     const fibrad_exchange_rule rule = {
         .emissivity = emissivity, .body_emissivity = of_body, .directions = 1000, .paths = 100};
-    ck_assert_int_eq(fibrad_exchange_row(scene, &work[0], 0, &rule, &row, NULL), FIBRAD_OK);
+    assert_ok(fibrad_exchange_row(scene, &work[0], 0, &rule, &row, NULL));
     work_free(&work[0]);
 }
 
@@ -579,8 +569,7 @@ TEST(more_entries_than_spheres) {
  * 1, beams and rays agree, and bits are the same in each instruction set and for triangles in any order. */
 TEST(soups) {
     srand(9);
-    int isa[ISAS_MOST];
-    const int isas = isas_there(isa);
+    const struct isas isas = isas_there();
     for (int soup = 0; soup < 12; soup++) {
         OWNED struct mesh *mesh = mesh_new();
         OWNED_BED bed = crowd(20, 100 + (uint64_t)soup);
@@ -601,13 +590,13 @@ TEST(soups) {
         }
         OWNED_ROW row = row_of(bed.n), again = row_of(bed.n), cast = row_of(bed.n);
         OWNED_WORK work = work_growing();
-        for (int set = 0; set < isas; set++) {
-            fibrad_scene *scene =
-                scene_with(&bed, &(fibrad_scene_config){
-                                     .isa = isa[set], .body = mesh->body, .bodies = 3, .triangles = &mesh->triangles});
+        for (int set = 0; set < isas.count; set++) {
+            OWNED fibrad_scene *scene = scene_with(
+                &bed, &(fibrad_scene_config){
+                          .isa = isas.set[set], .body = mesh->body, .bodies = 3, .triangles = &mesh->triangles});
             for (uint32_t i = 0; i < 4; i++) {
                 const fibrad_beam_rule rule = {.directions = 300, .points = soup % 2 ? 128 : 0};
-                ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
+                assert_ok(fibrad_beam_row(scene, &work, i, &rule, &row));
                 ck_assert_double_eq_tol(total_of(&row, 3), 1, 1e-12);
                 for (uint32_t k = 0; k < row.length; k++) ck_assert(row.f[k] > 0 && row.f[k] <= 1);
                 if (i == 3 && set > 0) ck_assert(same_bits_with(&row, &again, 3));
@@ -619,12 +608,10 @@ TEST(soups) {
                     again.beyond = row.beyond;
                 }
                 if (set > 0) continue;
-                ck_assert_int_eq(fibrad_cast_row(scene, &work, i, &(fibrad_cast_rule){.rays = 30000}, &cast, NULL),
-                                 FIBRAD_OK);
+                assert_ok(fibrad_cast_row(scene, &work, i, &(fibrad_cast_rule){.rays = 30000}, &cast, NULL));
                 ck_assert_double_le(row_distance(&row, &cast), .01);
                 for (int b = 0; b < 3; b++) ck_assert_double_eq_tol(row.body[b], cast.body[b], .012);
             }
-            free(scene);
         }
     }
 }
@@ -646,7 +633,7 @@ TEST(grey_meshes) {
     fibrad_exchange_rule rule = {.emissivity = emissivity, .body_emissivity = wall, .directions = 400, .paths = 40000};
     for (uint32_t i = 0; i < 3; i++) {
         for (int k = 0; k < 2; k++) {
-            ck_assert_int_eq(fibrad_exchange_row(scene[k], &work, i, &rule, &row[k], NULL), FIBRAD_OK);
+            assert_ok(fibrad_exchange_row(scene[k], &work, i, &rule, &row[k], NULL));
             ck_assert_double_eq_tol(total_of(&row[k], 6), 1, 1e-12);
         }
         ck_assert_double_le(row_distance(&row[0], &row[1]), 2e-3);
@@ -656,8 +643,8 @@ TEST(grey_meshes) {
     rule.paths = 80000;
     for (int k = 0; k < 2; k++) {
         for (uint32_t p = 0; p < FIBRAD_BODY_PARTS; p++)
-            ck_assert_int_eq(fibrad_exchange_body(scene[k], &work, 1, &rule, p, &part[k][p]), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_exchange_body_mean(part[k], &mean[k]), FIBRAD_OK);
+            assert_ok(fibrad_exchange_body(scene[k], &work, 1, &rule, p, &part[k][p]));
+        assert_ok(fibrad_exchange_body_mean(part[k], &mean[k]));
     }
     ck_assert(mean[0].escaped == 0);
     const double error = 5 * (mean[0].error + mean[1].error);

@@ -18,7 +18,7 @@ static struct soup cube(void) {
 
 static void assert_cube(const char *path, bool text) {
     const struct soup soup = cube();
-    struct stl stl;
+    OWNED_BY(stl_free) struct stl stl;
     ck_assert_int_eq(stl_read(&stl, path), 0);
     ck_assert_uint_eq(stl.n, 12);
     ck_assert(stl.text == text && stl.solids == 1);
@@ -26,7 +26,6 @@ static void assert_cube(const char *path, bool text) {
         ck_assert_uint_eq(stl.place[t], text ? 2 + 7 * t : t);
         for (int k = 0; k < 9; ++k) ck_assert_double_eq(stl.corner[t][k / 3][k % 3], soup.corner[t][k / 3][k % 3]);
     }
-    stl_free(&stl);
 }
 
 TEST(the_same_in_every_form) {
@@ -66,7 +65,7 @@ static void refuse(const char *path, const char *line, const char *reason) {
     char wall[400], place[340];
     snprintf(wall, sizeof wall, "mesh:%s", path);
     snprintf(place, sizeof place, "%.300s%s: ", path, line);
-    ck_assert_int_eq(RUN("bed", MONO, "--wall", wall), 3);
+    FAIL_WITH(3, "bed", MONO, "--wall", wall);
     expect_message(place, reason);
 }
 
@@ -83,19 +82,18 @@ TEST(broken_binaries_are_refused) {
     refuse(write_binary("x.stl", &soup, "", 0), "", "triangle 7: a coordinate is not finite");
     soup.n = 0;
     refuse(write_binary("x.stl", &soup, "", 0), "", "no triangles");
-    ck_assert_int_eq(RUN("bed", MONO, "--wall", "mesh:nothing.stl"), 4);
+    FAIL_WITH(4, "bed", MONO, "--wall", "mesh:nothing.stl");
     expect_message("nothing.stl: ", "No such file");
 }
 
 /* ---- surfaces --------------------------------------------------------------------------------------------------- */
 
 static struct surface surface_of(const struct soup *soup, double scale) {
-    struct stl stl;
+    OWNED_BY(stl_free) struct stl stl;
     struct surface surface;
     ck_assert_int_eq(stl_read(&stl, write_solid("s.stl", soup)), 0);
     ck_assert_int_eq(surface_weld(&surface, &stl, scale), 0);
     ck_assert_int_eq(surface_find_components(&surface), 0);
-    stl_free(&stl);
     return surface;
 }
 
@@ -107,13 +105,12 @@ TEST(corners_are_welded) {
                 double *c = &soup.corner[t][k / 3][k % 3];
                 *c = copysign(4 + 1e-6 * (rand() / (double)RAND_MAX), *c);
             }
-        struct surface s = surface_of(&soup, 1000);
+        OWNED_BY(surface_free) struct surface s = surface_of(&soup, 1000);
         ck_assert_uint_eq(s.vertices, 8);
         ck_assert_uint_eq(s.components, 1);
         ck_assert(s.component[0].closed && !s.component[0].twisted && s.open == 0 && s.crowded == 0);
         ck_assert_uint_eq(s.snapped, trial > 0 ? 28 : 0);
         ck_assert_double_eq_tol(fabs(s.vertex[5][1]), 4000, 2e-3);
-        surface_free(&s);
     }
 }
 
@@ -124,13 +121,12 @@ TEST(what_is_not_sound_is_counted) {
     soup_add(&soup, a, middle, b); /* no area */
     soup_add(&soup, soup.corner[3][1], soup.corner[3][0], soup.corner[3][2]);
     soup_add(&soup, a, b, far); /* a fin at an edge of two triangles */
-    struct surface s = surface_of(&soup, 1);
+    OWNED_BY(surface_free) struct surface s = surface_of(&soup, 1);
     ck_assert_uint_eq(s.flat, 2);
     ck_assert_uint_eq(s.twice, 1);
     ck_assert_uint_eq(s.n, 14);
     ck_assert_uint_eq(s.crowded, 1);
     ck_assert_uint_eq(s.open, 4);
-    surface_free(&s);
 }
 
 /* ---- sides ------------------------------------------------------------------------------------------------------ */
@@ -288,9 +284,8 @@ TEST(names_of_meshes) {
                                            {"beyond=mesh:", ""}, {"mesh:", ":bothh"},    {"mesh:", ":scale=0"},
                                            {"mesh:", ":"},       {"mesh:", ",zmin,zmin"}};
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
-        struct wall_options other = {0};
+        OWNED_BY(walls_free) struct wall_options other = {0};
         ck_assert_msg(walls_option(wall_of(wrong[k][0], path, wrong[k][1]), &other) == 2, "%s", wrong[k][0]);
-        walls_free(&other);
     }
     ck_assert_int_eq(walls_option("mesh:", &(struct wall_options){0}), 2);
 }
@@ -313,7 +308,6 @@ static void vtp_array(const char *path, const char *name, double *values, size_t
         for (int shift = 16; shift >= 0; shift -= 8) bytes[to++] = bits >> shift & 255;
     }
     memcpy(values, bytes + 8, n * sizeof *values);
-    free(text);
 }
 
 /* The sum of fluxes, or of another quantity per area, over n triangles from `first` on. */
@@ -354,29 +348,27 @@ TEST(rows_in_a_closed_mesh) {
     ck_assert_int_eq(vtk_read_xml(&grid), 0);
     ck_assert_uint_eq(grid.n, 8);
     ck_assert_double_eq(fabs(grid.points[23]), 4);
-    ck_assert_ptr_nonnull(strstr(text, "NumberOfPolys=\"12\""));
+    assert_has(text, "NumberOfPolys=\"12\"");
     free(grid.points);
-    free(text);
-    ck_assert_int_eq(RUN("bed", bed, "--wall-vtp", out), 2);
+    FAIL_WITH(2, "bed", bed, "--wall-vtp", out);
     expect_message("--wall-vtp", "no --wall mesh:FILE");
 }
 
 /* A cube in the slice of a picture has its outline there, in pieces that belong to the triangles. */
 TEST(slice_through_a_mesh) {
     const struct soup soup = cube();
-    struct wall_options options = {0};
-    OWNED_BED bed;
+    OWNED_BY(walls_free) struct wall_options options = {0};
+    OWNED_BED bed = bed_empty();
     struct plot_slice slice;
     const double value = 1;
     char line[200];
     double end[2][2], length = 0;
     int pieces = 0, ends = 0;
     ck_assert_int_eq(walls_option(wall_of("mesh:", write_solid("box.stl", &soup), ""), &options), 0);
-    bed_init(&bed);
     ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.x = 1, .y = .3, .r = 3.5}), 0);
     plot_slice_of(&slice, &bed, &options.walls, 0);
     ck_assert(slice.low[0] == -4 && slice.high[2] == 4);
-    FILE *script = tmpfile();
+    OWNED_FILE *script = tmpfile();
     plot_slice_draw(script, &slice, &value, NULL, NULL);
     rewind(script);
     while (fgets(line, sizeof line, script) && strncmp(line, "$walls", 6) != 0) {}
@@ -391,8 +383,6 @@ TEST(slice_through_a_mesh) {
     }
     ck_assert_int_eq(pieces, 8);
     ck_assert_double_eq_tol(length, 32, 1e-5);
-    fclose(script);
-    walls_free(&options);
 }
 
 /* The program names backs that are seen, and spheres that lie behind them. */
@@ -401,14 +391,14 @@ TEST(backs_of_meshes) {
     soup_box(&soup, (const double[]){-3, -3, -3}, (const double[]){0, 3, 3});
     const char *bed = write_file("bed.csv", BED "5,0,0,1,300\n"), *text = write_solid("half.stl", &soup);
     const char *binary = write_binary("half_b.stl", &soup, "", 0);
-    ck_assert_int_eq(RUN("bed", bed, "--wall", wall_of("mesh:", text, "")), 3);
-    ck_assert_ptr_nonnull(strstr(said, "the back of wall half is seen, at line "));
-    ck_assert_ptr_nonnull(strstr(said, "half.stl:both makes both sides the wall"));
-    ck_assert_ptr_nonnull(strstr(said, "bed.csv:3: warning: all of sphere 1 lies beyond wall half"));
-    ck_assert_int_eq(RUN("bed", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "1"), 3);
+    FAIL_WITH(3, "bed", bed, "--wall", wall_of("mesh:", text, ""));
+    assert_has(said, "the back of wall half is seen, at line ");
+    assert_has(said, "half.stl:both makes both sides the wall");
+    assert_has(said, "bed.csv:3: warning: all of sphere 1 lies beyond wall half");
+    FAIL_WITH(3, "bed", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "1");
     OWNED char *first = strdup(said);
-    ck_assert_ptr_nonnull(strstr(said, "the back of wall half_b is seen, at triangle "));
-    ck_assert_int_eq(RUN("bed", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "2"), 3);
+    assert_has(said, "the back of wall half_b is seen, at triangle ");
+    FAIL_WITH(3, "bed", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "2");
     ck_assert_str_eq(said, first);
     SUCCEED("bed", bed, "--wall", wall_of("mesh:", text, ":both"));
     ck_assert_str_eq(said, "");
@@ -423,11 +413,9 @@ TEST(backs_of_meshes) {
 /* Writes a file with a line of numbers for each triangle. */
 static const char *write_column(const char *name, const char *head, int n, double first, double step) {
     const char *path = in_folder(name);
-    FILE *file = fopen(path, "w");
-    ck_assert_ptr_nonnull(file);
+    OWNED_FILE *file = opened(path, "w");
     fputs(head, file);
     for (int k = 0; k < n; ++k) fprintf(file, "%.17g\n", first + step * k);
-    fclose(file);
     return path;
 }
 
@@ -443,8 +431,7 @@ TEST(heat_of_triangles) {
     ck_assert_double_eq_tol(1e-4 * gain_of(out, "flux_W_m2", 0, 12) / value_of("wall_box_W"), 1, 1e-5);
     vtp_array(out, "temperature_K", kelvins, 12);
     for (int t = 0; t < 12; ++t) ck_assert_double_eq(kelvins[t], 400);
-    OWNED char *text = read_file(out);
-    ck_assert_ptr_null(strstr(text, "front_W"));
+    assert_lacks(read_file(out), "front_W");
 
     SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ":both"), "--wall-temperature", "400",
             "--ambient", "300", STATE, out);
@@ -494,8 +481,7 @@ TEST(more_rays_for_triangles) {
     for (int k = 0; k < 3; ++k) quarter(&soup);
     ck_assert_uint_eq(soup.n, 768);
     const char *bed = write_file("mote.csv", "x,y,z,r\n0,0,0,.01\n"), *box = write_solid("box.stl", &soup);
-    FILE *file = fopen(column, "w");
-    ck_assert_ptr_nonnull(file);
+    FILE *file = opened(column, "w");
     for (uint32_t t = 0; t < soup.n; ++t) fputs(t < 128 ? "500\n" : "300\n", file);
     fclose(file);
     for (int run = 0; run < 3; ++run) {
@@ -509,7 +495,7 @@ TEST(more_rays_for_triangles) {
         for (uint32_t t = 128; t < soup.n; ++t) off[run] += pow(flux[run][t] - flux[2][t], 2) / (soup.n - 128);
     printf("    cold triangles are off by %.2g W/m2, with 8 times the rays %.2g\n", sqrt(off[0]), sqrt(off[1]));
     ck_assert_double_lt(sqrt(off[1]), .8 * sqrt(off[0]));
-    ck_assert_int_eq(RUN("heat", bed, "--length-unit", "m", "--wall-rays", "0"), 2);
+    FAIL_WITH(2, "heat", bed, "--length-unit", "m", "--wall-rays", "0");
     expect_message("--wall-rays", "0");
 }
 
@@ -542,20 +528,18 @@ TEST(temperatures_of_triangles) {
                  {"T\n", "T.csv: ", "the table has no numbers"}};
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
         column = write_file("T.csv", wrong[k].text);
-        ck_assert_int_eq(RUN("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ""),
-                             "--wall-temperature", wall_of("box=triangles:", column, ""), STATE, out),
-                         3);
-        ck_assert_msg(strstr(said, wrong[k].place) && strstr(said, wrong[k].reason), "%s", said);
+        FAIL_WITH(3, "heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ""), "--wall-temperature",
+                  wall_of("box=triangles:", column, ""), STATE, out);
+        assert_has(said, wrong[k].place);
+        assert_has(said, wrong[k].reason);
     }
     column = write_column("T.csv", "", 13, 100, 10);
     const char *const lists[] = {"zmin=triangles:", "triangles:", "none=triangles:", "box=3,box=triangles:"};
     for (size_t k = 0; k < sizeof lists / sizeof *lists; ++k)
-        ck_assert_int_eq(RUN("heat", bed, "--length-unit", "m", "--wall", wall_of("zmin=-5,mesh:", box, ""),
-                             "--wall-temperature", wall_of(lists[k], column, ",300"), STATE, out),
-                         2);
-    ck_assert_int_eq(RUN("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ""), "--wall-temperature",
-                         wall_of("box=triangles:", column, ""), STATE, in_folder("t.*.vtp"), "--until", "10",
-                         "--heat-capacity", "800", "--density", "2500", "--model", "factors"),
-                     2);
-    ck_assert_ptr_nonnull(strstr(said, "--model factors: triangles cannot have temperatures of their own"));
+        FAIL_WITH(2, "heat", bed, "--length-unit", "m", "--wall", wall_of("zmin=-5,mesh:", box, ""),
+                  "--wall-temperature", wall_of(lists[k], column, ",300"), STATE, out);
+    FAIL_WITH(2, "heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ""), "--wall-temperature",
+              wall_of("box=triangles:", column, ""), STATE, in_folder("t.*.vtp"), "--until", "10", "--heat-capacity",
+              "800", "--density", "2500", "--model", "factors");
+    assert_has(said, "--model factors: triangles cannot have temperatures of their own");
 }

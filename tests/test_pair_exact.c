@@ -10,7 +10,7 @@
 
 static double exact(double r1, double r2, double gap) {
     double f12 = -1;
-    ck_assert_int_eq(fibrad_pair_exact(r1, r2, gap, &f12), FIBRAD_OK);
+    assert_ok(fibrad_pair_exact(r1, r2, gap, &f12));
     return f12;
 }
 
@@ -20,8 +20,7 @@ static double relative(double value, double truth) { return fabs(value / truth -
  * discs. Ratios of radii go to 1e4, gaps from 1e-300 to 1e12, and overlaps to nearly the centre. F is compared in both
  * directions, and for reciprocity. */
 TEST(true_values) {
-    FILE *file = fopen("tests/data/pair_exact.csv", "r");
-    ck_assert_msg(file != NULL, "tests/data/pair_exact.csv: run the tests from the top of the tree");
+    OWNED_FILE *file = opened("tests/data/pair_exact.csv", "r");
     char line[256];
     int lines = 0;
     ck_assert_ptr_nonnull(fgets(line, sizeof line, file));
@@ -33,7 +32,6 @@ TEST(true_values) {
         ck_assert_msg(relative(back * r2 * r2, there * r1 * r1) < 1e-15, "%s: reciprocity %.17g", line, back);
         lines++;
     }
-    fclose(file);
     ck_assert_int_gt(lines, 700);
 }
 

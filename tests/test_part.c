@@ -26,7 +26,7 @@ static struct part part_near(const struct part *p, uint32_t i, double distance, 
 
 /* Rows depend on what is near alone, to the bit, whatever else there is and in whatever order. */
 LOOP_TEST(rows_depend_on_what_is_near, KINDS) {
-    struct made m;
+    OWNED_MADE m;
     make_kind(&m, &kinds[_i]);
     OWNED fibrad_scene *whole = part_scene(&m.part);
     const double cutoffs[] = {2.5, 4.25};
@@ -47,12 +47,11 @@ LOOP_TEST(rows_depend_on_what_is_near, KINDS) {
                 expect_same_named(&expected, &larger, m.part.ids, what);
             }
         }
-    free_made(&m);
 }
 
 /* The same holds for displacements. */
 TEST(displacements_depend_on_what_is_near) {
-    struct made m;
+    OWNED_MADE m;
     make_kind(&m, &kinds[3]);
     OWNED fibrad_scene *whole = part_scene(&m.part);
     double *e = emissivities_of(&m.part), cutoff = 4;
@@ -66,21 +65,20 @@ TEST(displacements_depend_on_what_is_near) {
         fibrad_exchange_rule rule = {
             .emissivity = e, .body_emissivity = wall_emissivity, .paths = 200, .seed = 3, .cutoff = cutoff};
         fibrad_displacement expected, found;
-        ck_assert_int_eq(fibrad_exchange_displacement(whole, &work, i, &rule, &expected), FIBRAD_OK);
+        assert_ok(fibrad_exchange_displacement(whole, &work, i, &rule, &expected));
         rule.emissivity = of_near;
-        ck_assert_int_eq(fibrad_exchange_displacement(little, &work, own, &rule, &found), FIBRAD_OK);
+        assert_ok(fibrad_exchange_displacement(little, &work, own, &rule, &found));
         ck_assert_int_eq(memcmp(&expected, &found, sizeof found), 0);
         for (int axis = 0; axis < 3; axis++) ck_assert_double_lt(expected.square[axis], pow(cutoff + 1, 2));
     }
     free(e);
-    free_made(&m);
 }
 
 /* A periodic bed is compared with an open one that has images of the same ids. Coordinates have few digits, so that
  * images are where they should be to the bit. The sum of the factors to all images of a sphere is the factor to this
  * sphere: counts of points to the bit, sums of paths to rounding. */
 TEST(images_are_spheres_of_the_same_id) {
-    struct made m;
+    OWNED_MADE m;
     make_kind(&m, &kinds[4]);
     struct part *p = &m.part;
     double *const of_axis[3] = {p->x, p->y, p->z};
@@ -119,7 +117,6 @@ TEST(images_are_spheres_of_the_same_id) {
             if (method != 7) ck_assert_uint_eq(expected.rays, found.rays); /* errors of images are their own */
         }
     }
-    free_made(&m);
 }
 
 /* Rays meet triangles beyond the cutoff if no sphere is on the way. */
@@ -150,14 +147,13 @@ TEST(triangles_repeat_alone) {
                 mesh_quad(mesh, v, 0, FIBRAD_NO_BODY);
             }
         for (int axis = 0; axis < 2 && !copies; axis++) mesh->triangles.period[axis] = 1;
-        struct part p =
+        OWNED_PART p =
             part_of(&bed, (fibrad_scene_config){.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles});
         OWNED fibrad_scene *scene = part_scene(&p);
         for (int method = 0; method < METHODS; method++) {
             OWNED_NAMED row = row_by(&p, scene, 0, method, 0);
             seen[copies][method] = row.row.body[0];
         }
-        part_free(&p);
     }
     for (int method = 0; method < METHODS; method++) {
         ck_assert_double_gt(seen[0][method], method < 4 ? .1 : .03);
@@ -200,12 +196,12 @@ LOOP_TEST(turned_rows_average_to_the_fine_one, 3) {
         OWNED_ROW fine = row_of(bed.n), row = row_of(bed.n), mean = row_of(bed.n);
         double body = 0, escaped = 0, square = 0, estimate = 0;
         int less = 0;
-        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 20000}, &fine), FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 20000}, &fine));
         for (uint32_t j = 0; j < bed.n; j++) mean.col[j] = j;
         mean.length = bed.n;
         for (uint64_t turn = 1; turn <= TURNS; turn++) {
             const fibrad_beam_rule rule = {.directions = 50, .points = points, .turn = turn};
-            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
+            assert_ok(fibrad_beam_row(scene, &work, i, &rule, &row));
             for (uint32_t k = 0; k < row.length; k++) mean.f[row.col[k]] += row.f[k] / TURNS;
             body += row.body[0] / TURNS, escaped += row.escaped / TURNS;
             const double off = row_distance(&row, &fine);
@@ -233,7 +229,7 @@ LOOP_TEST(a_floor_below_turned_directions, 2) {
     double mean = 0;
     for (uint64_t turn = 1; turn <= 100; turn++) {
         const fibrad_beam_rule rule = {.directions = 233, .turn = turn, .cutoff = _i > 0 ? 5 : 0};
-        ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rule, &row), FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, &work, 0, &rule, &row));
         ck_assert_double_eq_tol(row.body[0], .5, 1.5e-3);
         mean += row.body[0] / 100;
     }

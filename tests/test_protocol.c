@@ -39,7 +39,7 @@ TEST(sources_missing) {
     /* a refusal leaves the solution that there is */
     ck_assert_int_eq(fibrad_heat_begin(p->heat, &zeroed), FIBRAD_E_ARGUMENT);
     memset(p->power, 0, sizeof p->power);
-    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+    assert_ok(fibrad_heat_read(p->heat, &p->result));
     assert_same_powers(p, book);
 }
 
@@ -96,7 +96,7 @@ LOOP_TEST(other_contents_in_place, CHANGES) {
         assert_other_scene(p);
         build(p, &c);
     }
-    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+    assert_ok(fibrad_heat_read(p->heat, &p->result));
     assert_same_powers(p, book);
 }
 
@@ -115,7 +115,7 @@ TEST(no_contents_in_place) {
         assert_other_scene(p);
         build(p, &c);
     }
-    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+    assert_ok(fibrad_heat_read(p->heat, &p->result));
     assert_same_powers(p, book);
 }
 
@@ -132,7 +132,7 @@ TEST(nothing_of_no_scene) {
     fibrad_displacement displacement;
     fibrad_heat *heat = NULL;
     double error = 0;
-    ck_assert_int_eq(fibrad_beam_row(scene, &p->work, 0, NULL, &row), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(scene, &p->work, 0, NULL, &row));
     ck_assert_int_eq(build_at(p->scene_block, p->scene_size, &bad, &none), FIBRAD_E_GEOMETRY);
     ck_assert_int_eq(fibrad_beam_row(scene, &p->work, 0, NULL, &row), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_beam_row(scene, &p->work, 0, NULL, &added), FIBRAD_E_STATE);
@@ -155,25 +155,24 @@ static void assert_row_as_fresh(struct problem *p, fibrad_work *kept, uint32_t i
         .emissivity = p->emissivity, .body_emissivity = p->body_emissivity, .paths = 300, .seed = 2};
     OWNED_ROW a = row_of(N), b = row_of(N);
     fibrad_displacement da = {0}, db = {0};
-    fibrad_work fresh = work_growing();
+    OWNED_WORK fresh = work_growing();
     uint64_t rays_a, rays_b;
-    ck_assert_int_eq(fibrad_exchange_row(p->scene, kept, i, &rule, &a, &rays_a), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_exchange_row(p->scene, &fresh, i, &rule, &b, &rays_b), FIBRAD_OK);
+    assert_ok(fibrad_exchange_row(p->scene, kept, i, &rule, &a, &rays_a));
+    assert_ok(fibrad_exchange_row(p->scene, &fresh, i, &rule, &b, &rays_b));
     ck_assert(same_bits_with(&a, &b, BODIES));
     ck_assert_uint_eq(rays_a, rays_b);
     work_free(&fresh), fresh = work_growing();
-    ck_assert_int_eq(fibrad_exchange_displacement(p->scene, kept, i, &rule, &da), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_exchange_displacement(p->scene, &fresh, i, &rule, &db), FIBRAD_OK);
+    assert_ok(fibrad_exchange_displacement(p->scene, kept, i, &rule, &da));
+    assert_ok(fibrad_exchange_displacement(p->scene, &fresh, i, &rule, &db));
     ck_assert_mem_eq(&da, &db, sizeof da);
     work_free(&fresh), fresh = work_growing();
-    ck_assert_int_eq(fibrad_cast_row(p->scene, kept, i, NULL, &a, NULL), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_cast_row(p->scene, &fresh, i, NULL, &b, NULL), FIBRAD_OK);
+    assert_ok(fibrad_cast_row(p->scene, kept, i, NULL, &a, NULL));
+    assert_ok(fibrad_cast_row(p->scene, &fresh, i, NULL, &b, NULL));
     ck_assert(same_bits_with(&a, &b, BODIES));
     work_free(&fresh), fresh = work_growing();
-    ck_assert_int_eq(fibrad_beam_row(p->scene, kept, i, NULL, &a), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_beam_row(p->scene, &fresh, i, NULL, &b), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(p->scene, kept, i, NULL, &a));
+    assert_ok(fibrad_beam_row(p->scene, &fresh, i, NULL, &b));
     ck_assert(same_bits_with(&a, &b, BODIES));
-    work_free(&fresh);
 }
 
 TEST(work_kept_while_scenes_change) {
@@ -220,7 +219,7 @@ static fibrad_rows rows_from(const fibrad_scene *scene, uint32_t begin, uint32_t
     OWNED_WORK work = work_growing();
     fibrad_rows rows = {.memory = memory_growing()};
     for (uint32_t i = begin; i < end; i++)
-        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, NULL, &(fibrad_row){.rows = &rows}), FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, &work, i, NULL, &(fibrad_row){.rows = &rows}));
     return rows;
 }
 
@@ -236,25 +235,25 @@ TEST(matrix_calls_out_of_order) {
     fibrad_factors factors = {.n = 77};
     double largest = 77;
     memset(block, 0xff, size);
-    ck_assert_int_eq(fibrad_matrix_init(&m, block, size, p->scene, &rows, 1, &rule, NULL), FIBRAD_OK);
+    assert_ok(fibrad_matrix_init(&m, block, size, p->scene, &rows, 1, &rule, NULL));
     ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_matrix_average(m, 5), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_matrix_average(m, UINT32_MAX), FIBRAD_E_ARGUMENT);
     for (uint32_t task = 4; task > 1; task--) { /* some tasks are left: closing does them */
-        ck_assert_int_eq(fibrad_matrix_average(m, task), FIBRAD_OK);
+        assert_ok(fibrad_matrix_average(m, task));
         ck_assert_int_eq(fibrad_matrix_average(m, task), FIBRAD_E_STATE);
         ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_E_STATE);
     }
     ck_assert_uint_eq(factors.n, 77);
     ck_assert_double_eq(largest, 77);
-    ck_assert_int_eq(fibrad_matrix_close(m), FIBRAD_OK);
+    assert_ok(fibrad_matrix_close(m));
     ck_assert_int_eq(fibrad_matrix_close(m), FIBRAD_E_STATE);
     for (uint32_t task = 0; task < 5; task++) ck_assert_int_eq(fibrad_matrix_average(m, task), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_matrix_average(m, 5), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_OK);
+    assert_ok(fibrad_matrix_read(m, &factors));
     ck_assert(matrix_same_bits(&factors, &book.factors));
-    ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_OK);
+    assert_ok(fibrad_matrix_reciprocity(m, &largest));
 }
 
 /* Rows are missing, are in two collections at once or twice in one, or belong to something else. */
@@ -281,7 +280,7 @@ TEST(matrix_of_wrong_rows) {
         ck_assert_int_eq(fibrad_matrix_init(&m, block, size, p->scene, rows + 1, 3, &rule, &sphere), FIBRAD_E_STATE);
     }
     fibrad_row again = matrix_row(&book.factors, 2);
-    ck_assert_int_eq(fibrad_rows_add(&rows[0], &again, BODIES), FIBRAD_OK);
+    assert_ok(fibrad_rows_add(&rows[0], &again, BODIES));
     ck_assert_int_eq(fibrad_matrix_init(&m, block, size, p->scene, rows, 2, NULL, &sphere), FIBRAD_E_STATE);
     ck_assert_uint_eq(sphere, 2);
 
@@ -293,7 +292,7 @@ TEST(matrix_of_wrong_rows) {
         uint32_t col[] = {1, N};
         double f[] = {.1, .1};
         if (what == 2) row.col = col, row.f = f, row.length = 2;
-        ck_assert_int_eq(fibrad_rows_add(&wrong, &row, what == 0 ? 2 : BODIES), FIBRAD_OK);
+        assert_ok(fibrad_rows_add(&wrong, &row, what == 0 ? 2 : BODIES));
         ck_assert_uint_eq(fibrad_matrix_size(p->scene, &wrong, 1, &(fibrad_matrix_rule){.raw = 1}), 0);
         ck_assert_int_eq(
             fibrad_matrix_init(&m, block, size, p->scene, &wrong, 1, &(fibrad_matrix_rule){.raw = 1}, NULL),
@@ -305,8 +304,7 @@ TEST(matrix_of_wrong_rows) {
     fibrad_rows_clear(&rows[0]);
     ck_assert_uint_eq(rows[0].count, 0);
     OWNED_WORK work = work_growing();
-    for (uint32_t i = 5; i-- > 0;)
-        ck_assert_int_eq(fibrad_beam_row(p->scene, &work, i, NULL, &(fibrad_row){.rows = rows}), FIBRAD_OK);
+    for (uint32_t i = 5; i-- > 0;) assert_ok(fibrad_beam_row(p->scene, &work, i, NULL, &(fibrad_row){.rows = rows}));
     OWNED_MATRIX right = matrix_of(p->scene, rows, 2, NULL);
     ck_assert(matrix_same_bits(&right.factors, &book.factors));
     for (int k = 0; k < 4; k++) rows_free(&rows[k]);
@@ -350,7 +348,7 @@ TEST(row_reused_after_appending) {
     uint32_t col[60];
     double f[60];
     fibrad_row row = {.col = col, .f = f, .capacity = 60, .rows = &rows};
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &row), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(scene, &work, 0, NULL, &row));
     const double first = row.f[0];
     row.rows = NULL;
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 1, NULL, &row), FIBRAD_E_CAPACITY);
@@ -369,7 +367,7 @@ TEST(matrix_of_changing_rows) {
     void *block = malloc(size);
     ck_assert_int_eq(fibrad_matrix_init(&matrix, block, size, another, &rows, 1, NULL, &sphere), FIBRAD_E_STATE);
     ck_assert_uint_eq(sphere, 0);
-    ck_assert_int_eq(fibrad_matrix_init(&matrix, block, size, scene, &rows, 1, NULL, NULL), FIBRAD_OK);
+    assert_ok(fibrad_matrix_init(&matrix, block, size, scene, &rows, 1, NULL, NULL));
     fibrad_rows_clear(&rows);
     ck_assert_int_eq(fibrad_matrix_average(matrix, 0), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_matrix_close(matrix), FIBRAD_E_STATE);
@@ -379,8 +377,8 @@ TEST(matrix_of_changing_rows) {
     ck_assert_int_eq(fibrad_matrix_close(matrix), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_matrix_average(matrix, 0), FIBRAD_E_STATE);
     const fibrad_rows both[] = {more, fewer};
-    ck_assert_int_eq(fibrad_matrix_init(&matrix, block, size, scene, both, 2, NULL, NULL), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_matrix_close(matrix), FIBRAD_OK);
+    assert_ok(fibrad_matrix_init(&matrix, block, size, scene, both, 2, NULL, NULL));
+    assert_ok(fibrad_matrix_close(matrix));
     free(block);
     free(rows.memory.block), free(more.memory.block), free(fewer.memory.block);
 }

@@ -52,7 +52,7 @@ TEST(traces_without_memory) {
     for (uint32_t k = 0; k < tasks_of(p); k++) ck_assert_int_eq(fibrad_heat_trace(p->heat, &work, k), FIBRAD_E_MEMORY);
     assert_no_begin(p);
     work.memory.resize = test_resize; /* now there is some */
-    for (uint32_t k = 0; k < tasks_of(p); k++) ck_assert_int_eq(fibrad_heat_trace(p->heat, &work, k), FIBRAD_OK);
+    for (uint32_t k = 0; k < tasks_of(p); k++) assert_ok(fibrad_heat_trace(p->heat, &work, k));
     solve(p);
     assert_same_powers(p, book);
 }
@@ -83,9 +83,9 @@ TEST(one_task_not_traced) {
         const uint32_t out = left_out[t];
         ENDED struct problem *p = begin_problem(&c, 0);
         for (uint32_t k = 0; k < tasks_of(p); k++)
-            if (k != out) ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, k), FIBRAD_OK);
+            if (k != out) assert_ok(fibrad_heat_trace(p->heat, &p->work, k));
         assert_no_begin(p);
-        ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, out), FIBRAD_OK);
+        assert_ok(fibrad_heat_trace(p->heat, &p->work, out));
         solve(p);
         assert_same_powers(p, book);
     }
@@ -101,7 +101,7 @@ TEST(tasks_and_parts_out_of_range) {
     trace_all(p);
     for (size_t k = 0; k < 4; k++)
         ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, tasks + beyond[k]), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+    assert_ok(fibrad_heat_begin(p->heat, &p->sources));
     for (int solved = 0; !solved;) {
         ck_assert_int_eq(fibrad_heat_sweep(p->heat, PARTS), FIBRAD_E_ARGUMENT);
         ck_assert_int_eq(fibrad_heat_sweep(p->heat, UINT32_MAX), FIBRAD_E_ARGUMENT);
@@ -110,10 +110,10 @@ TEST(tasks_and_parts_out_of_range) {
         ck_assert_int_eq(fibrad_heat_sweep(NULL, 0), FIBRAD_E_ARGUMENT);
         ck_assert_int_eq(fibrad_heat_step(NULL, &solved), FIBRAD_E_ARGUMENT);
         ck_assert_int_eq(fibrad_heat_step(p->heat, NULL), FIBRAD_E_ARGUMENT);
-        ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+        assert_ok(fibrad_heat_step(p->heat, &solved));
     }
     ck_assert_int_eq(fibrad_heat_sweep(p->heat, PARTS), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+    assert_ok(fibrad_heat_read(p->heat, &p->result));
     assert_same_powers(p, book);
 }
 
@@ -123,7 +123,7 @@ TEST(tasks_traced_twice) {
     for (uint32_t k = 0; k < tasks_of(p); k++)
         for (int again = 0; again < 3; again++)
             ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, k), again ? FIBRAD_E_STATE : FIBRAD_OK);
-    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+    assert_ok(fibrad_heat_begin(p->heat, &p->sources));
     heat_sweep(p->heat, false);
     ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, 3), FIBRAD_E_STATE);
     solve(p); /* begins anew */
@@ -136,20 +136,20 @@ TEST(one_part_not_swept) {
     const struct contents c = contents_of(7);
     ENDED struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
     trace_all(p);
-    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+    assert_ok(fibrad_heat_begin(p->heat, &p->sources));
     uint32_t out = 0;
     for (int solved = 0; !solved; out = (out + 1) % PARTS) {
         solved = 77;
         for (uint32_t k = 0; k < PARTS; k++)
-            if (k != out) ck_assert_int_eq(fibrad_heat_sweep(p->heat, k), FIBRAD_OK);
+            if (k != out) assert_ok(fibrad_heat_sweep(p->heat, k));
         for (int again = 0; again < 2; again++) ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_E_STATE);
         ck_assert_int_eq(solved, 77);
         ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_E_STATE);
-        ck_assert_int_eq(fibrad_heat_sweep(p->heat, out), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+        assert_ok(fibrad_heat_sweep(p->heat, out));
+        assert_ok(fibrad_heat_step(p->heat, &solved));
         ck_assert(solved == 0 || solved == 1);
     }
-    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+    assert_ok(fibrad_heat_read(p->heat, &p->result));
     assert_same_powers(p, book);
     ck_assert_uint_eq(p->result.sweeps, book->result.sweeps);
 }
@@ -158,16 +158,16 @@ TEST(parts_swept_twice) {
     const struct contents c = contents_of(8);
     ENDED struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
     trace_all(p);
-    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+    assert_ok(fibrad_heat_begin(p->heat, &p->sources));
     for (int solved = 0; !solved;) {
         for (uint32_t k = 0; k < PARTS; k++) {
-            ck_assert_int_eq(fibrad_heat_sweep(p->heat, k), FIBRAD_OK);
+            assert_ok(fibrad_heat_sweep(p->heat, k));
             for (uint32_t earlier = 0; earlier <= k; earlier++)
                 ck_assert_int_eq(fibrad_heat_sweep(p->heat, earlier), FIBRAD_E_STATE);
         }
-        ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+        assert_ok(fibrad_heat_step(p->heat, &solved));
     }
-    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+    assert_ok(fibrad_heat_read(p->heat, &p->result));
     assert_same_powers(p, book);
 }
 
@@ -176,7 +176,7 @@ TEST(steps_and_reads_too_early) {
     ENDED struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
     trace_all(p);
     assert_nothing_to_solve(p);
-    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+    assert_ok(fibrad_heat_begin(p->heat, &p->sources));
     for (int solved = 0; !solved;) {
         int other = 77;
         ck_assert_int_eq(fibrad_heat_step(p->heat, &other), FIBRAD_E_STATE);
@@ -184,7 +184,7 @@ TEST(steps_and_reads_too_early) {
         ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_E_STATE);
         heat_sweep(p->heat, false);
         ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_E_STATE);
-        ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+        assert_ok(fibrad_heat_step(p->heat, &solved));
     }
     int solved = 77; /* there is a solution: no further step and no sweep are allowed */
     ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_E_STATE);
@@ -192,7 +192,7 @@ TEST(steps_and_reads_too_early) {
     for (uint32_t k = 0; k < PARTS; k++) ck_assert_int_eq(fibrad_heat_sweep(p->heat, k), FIBRAD_E_STATE);
     for (int again = 0; again < 2; again++) {
         memset(p->power, 0, sizeof p->power);
-        ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+        assert_ok(fibrad_heat_read(p->heat, &p->result));
         assert_same_powers(p, book);
     }
 }
@@ -205,14 +205,13 @@ TEST(begun_anew_in_between) {
         ENDED struct problem *p = begin_problem(&c, 0);
         trace_all(p);
         p->sources.surroundings = 3;
-        ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+        assert_ok(fibrad_heat_begin(p->heat, &p->sources));
         int solved = 0;
         for (uint32_t k = 0; k < until && !solved; k++) {
             heat_sweep(p->heat, false);
-            ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+            assert_ok(fibrad_heat_step(p->heat, &solved));
         }
-        for (uint32_t k = 0; k < until % PARTS && !solved; k++)
-            ck_assert_int_eq(fibrad_heat_sweep(p->heat, k), FIBRAD_OK);
+        for (uint32_t k = 0; k < until % PARTS && !solved; k++) assert_ok(fibrad_heat_sweep(p->heat, k));
         p->sources.surroundings = .7;
         solve(p);
         assert_like_powers(p, book);
@@ -226,7 +225,7 @@ TEST(moved_before_the_first_solution) {
         ENDED struct problem *p = begin_problem(&c, 0);
         advance_to(p, MADE, stage);
         build(p, &d); /* in place */
-        ck_assert_int_eq(fibrad_heat_move(p->heat, p->scene), FIBRAD_OK);
+        assert_ok(fibrad_heat_move(p->heat, p->scene));
         assert_no_begin(p);
         trace_all(p);
         assert_nothing_to_solve(p);
@@ -251,7 +250,7 @@ TEST(moved_after_a_solution) {
             unsigned char *old = p->scene_block;
             if (elsewhere) p->scene_block = block_of(p->scene_size);
             build(p, &d);
-            ck_assert_int_eq(fibrad_heat_move(p->heat, p->scene), FIBRAD_OK);
+            assert_ok(fibrad_heat_move(p->heat, p->scene));
             if (elsewhere) { /* the old one may go */
                 memset(old, 0xee, p->scene_size);
                 free(old);
@@ -276,10 +275,10 @@ TEST(moved_there_and_back) {
     trace_all(p), trace_all(still);
     solve(p), solve(still);
     build(p, &d);
-    ck_assert_int_eq(fibrad_heat_move(p->heat, p->scene), FIBRAD_OK);
+    assert_ok(fibrad_heat_move(p->heat, p->scene));
     build(p, &c);
     ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, 0), FIBRAD_E_STATE);
-    ck_assert_int_eq(fibrad_heat_move(p->heat, p->scene), FIBRAD_OK);
+    assert_ok(fibrad_heat_move(p->heat, p->scene));
     trace_all(p);
     p->temperature[0] = still->temperature[0] = 3;
     solve(p), solve(still);
@@ -303,13 +302,12 @@ TEST(moves_refused) {
         const fibrad_scene_config fewer = {.body = d.body, .bodies = 2}, open = {0};
         const fibrad_spheres spheres = {.x = d.x, .y = d.y, .z = d.z, .r = d.r, .n = N};
         if (what == 6 || what == 7)
-            ck_assert_int_eq(
-                fibrad_scene_init(&scene, block, p->scene_size, what == 6 ? &fewer : &open, &spheres, NULL), FIBRAD_OK);
+            assert_ok(fibrad_scene_init(&scene, block, p->scene_size, what == 6 ? &fewer : &open, &spheres, NULL));
         else if (what > 0)
-            ck_assert_int_eq(build_at(block, p->scene_size, &d, &scene), FIBRAD_OK);
+            assert_ok(build_at(block, p->scene_size, &d, &scene));
         const int status = fibrad_heat_move(p->heat, scene);
         if (what == 5 && status == FIBRAD_OK) { /* its patches found room: move back */
-            ck_assert_int_eq(fibrad_heat_move(p->heat, p->scene), FIBRAD_OK);
+            assert_ok(fibrad_heat_move(p->heat, p->scene));
             trace_all(p);
             solve(p);
             assert_like_powers(p, book);
@@ -317,7 +315,7 @@ TEST(moves_refused) {
         }
         ck_assert_msg(status == expected, "move %d: %d", what, status);
         memset(p->power, 0, sizeof p->power);
-        ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+        assert_ok(fibrad_heat_read(p->heat, &p->result));
         assert_like_powers(p, book);
         ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, 0), FIBRAD_E_STATE); /* all are */
         solve(p);

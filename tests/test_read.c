@@ -47,8 +47,8 @@ static void expect_refusal(const char *text, size_t size, const struct read_opti
         snprintf(place, sizeof place, "fibrad: %s:%u: ", path, line);
     else
         snprintf(place, sizeof place, "fibrad: %s: ", path);
-    ck_assert_msg(strncmp(said, place, strlen(place)) == 0, "'%s' does not begin with '%s'", said, place);
-    ck_assert_msg(strstr(said, reason) != NULL, "'%s' does not give as reason '%s'", said, reason);
+    assert_begins(said, place);
+    assert_has(said, reason);
     ck_assert_ptr_eq(strchr(said, '\n'), said + strlen(said) - 1);
 }
 
@@ -117,7 +117,7 @@ TEST(many_columns) {
     for (int k = 0; k < 500; ++k) snprintf(text + strlen(text), 20, ",c%d", k);
     strcat(text, "\n");
     expect_refusal(text, strlen(text), &(struct read_options){0}, 1, "no column z; there are x, y, r, c0, c1");
-    ck_assert_ptr_nonnull(strstr(said, " ... (503 in all)"));
+    assert_has(said, " ... (503 in all)");
 }
 
 /* Ids tell the spheres. --positions does without ids. */
@@ -366,13 +366,13 @@ TEST(gzip) {
     ck_assert_str_eq(frames_of(packed, bytes, (struct frames){37, 40, 1}, &status), "UVW");
     ck_assert_int_eq(status, 0);
     /* cut off */
-    ck_assert_ptr_nonnull(strstr("0123456789:;<=>?@ABCDEFGHIJKLMNOPQRSTUVW",
-                                 frames_of(packed, bytes / 2, (struct frames){0, 40, 1}, &status)));
+    assert_has("0123456789:;<=>?@ABCDEFGHIJKLMNOPQRSTUVW",
+               frames_of(packed, bytes / 2, (struct frames){0, 40, 1}, &status));
     ck_assert_int_eq(status, 0);
     ck_assert_msg(strstr(said, "warning: frame ") && strstr(said, "the gzip file is cut off"), "%s", said);
     frames_of(packed, bytes / 2, (struct frames){0, 0, 0}, &status);
     ck_assert_int_eq(status, STATUS_INPUT);
-    ck_assert_msg(strstr(said, "the gzip file is cut off; the last whole frame is "), "%s", said);
+    assert_has(said, "the gzip file is cut off; the last whole frame is ");
     /* damaged */
     packed[bytes / 2] = (char)(packed[bytes / 2] ^ 0x55);
     packed[bytes / 2 + 1] = (char)~packed[bytes / 2 + 1];
@@ -383,7 +383,7 @@ TEST(gzip) {
     ck_assert_int_eq(try_options(packed, short_bytes, &(struct read_options){0}), 0);
     ck_assert_uint_eq(bed.n, 2);
     ck_assert_int_eq(try_options(packed, short_bytes - 9, &(struct read_options){0}), STATUS_INPUT);
-    ck_assert_msg(strstr(said, "the gzip file is cut off"), "%s", said);
+    assert_has(said, "the gzip file is cut off");
 }
 
 TEST(dump_without_tilt) {
@@ -419,7 +419,7 @@ TEST(data_files) {
         ck_assert(bed.low[0] == -1 && bed.high[2] == 20 && bed.period[0] == 0);
         ck_assert_int_eq(bed.timestep, 30);
         ck_assert_str_eq(bed.units, k < 2 ? "si" : "");
-        ck_assert_msg(strstr(said, "warning: the file does not say which axes are periodic"), "%s", said);
+        assert_has(said, "warning: the file does not say which axes are periodic");
     }
 }
 

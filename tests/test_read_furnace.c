@@ -83,8 +83,8 @@ TEST(bad_files) {
         char begin[300];
         ck_assert_msg(try(files[k].text) == STATUS_INPUT, "accepted: %s", files[k].text);
         snprintf(begin, sizeof begin, "fibrad: %s%s", path, files[k].line);
-        ck_assert_msg(strncmp(said, begin, strlen(begin)) == 0, "%s", said);
-        ck_assert_msg(strstr(said, files[k].reason) != NULL, "%s, not %s", said, files[k].reason);
+        assert_begins(said, begin);
+        assert_has(said, files[k].reason);
         ck_assert_ptr_eq(strchr(said, '\n'), said + strlen(said) - 1);
     }
     unlink(path);

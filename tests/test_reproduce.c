@@ -25,8 +25,7 @@ static void run_experiment(char *experiment) {
 static double largest_of(const char *source, const char *what, int *lines) {
     char path[240], line[400];
     snprintf(path, sizeof path, "%s/comparison.csv", directory);
-    FILE *file = fopen(path, "r");
-    ck_assert_ptr_nonnull(file);
+    OWNED_FILE *file = opened(path, "r");
     double worst = 0;
     *lines = 0;
     while (fgets(line, sizeof line, file)) {
@@ -35,7 +34,6 @@ static double largest_of(const char *source, const char *what, int *lines) {
         worst = fmax(worst, fabs(strtod(strrchr(line, ',') + 1, NULL)));
         ++*lines;
     }
-    fclose(file);
     return worst;
 }
 

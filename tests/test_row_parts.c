@@ -15,8 +15,7 @@ static int row_in_parts(const fibrad_scene *scene, uint32_t i, const fibrad_beam
         part[p] = (fibrad_row_part){.memory = memory_growing()};
         const uint32_t from = rule->directions * p * p / (parts * parts);
         const uint32_t to = rule->directions * (p + 1) * (p + 1) / (parts * parts);
-        ck_assert_int_eq(fibrad_beam_part(scene, p % 2 == 0 ? &first : &second, i, rule, from, to, &part[p]),
-                         FIBRAD_OK);
+        assert_ok(fibrad_beam_part(scene, p % 2 == 0 ? &first : &second, i, rule, from, to, &part[p]));
     }
     const int status = fibrad_beam_join(scene, &second, i, rule, part, parts, row);
     for (uint32_t p = 0; p < parts; p++) free(part[p].memory.block);
@@ -34,8 +33,8 @@ static void compare_rows(const struct bed *bed, const fibrad_scene_config *confi
         const uint32_t i = rows[k % 3], parts = 1 + (uint32_t)k % PARTS_MOST;
         const fibrad_beam_rule rule = {
             .directions = 50 + (uint32_t)k, .points = k % 2 == 0 ? 0 : 64, .cutoff = cutoff, .turn = k < 9 ? 0 : 5};
-        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &one), FIBRAD_OK);
-        ck_assert_int_eq(row_in_parts(scene, i, &rule, parts, &joined), FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, &work, i, &rule, &one));
+        assert_ok(row_in_parts(scene, i, &rule, parts, &joined));
         ck_assert(same_bits_with(&one, &joined, config->bodies));
         ck_assert_uint_eq(joined.directions, rule.directions);
         ck_assert_uint_eq(joined.fallbacks, one.fallbacks);
@@ -87,8 +86,7 @@ TEST(parts_that_do_not_fit) {
     const fibrad_beam_rule tolerant = {.directions = 20, .tolerance = 1e-3};
     fibrad_row_part part[2] = {{.memory = memory_growing()}, {.memory = memory_growing()}};
     ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, part, 2, &row), FIBRAD_E_STATE);
-    for (uint32_t p = 0; p < 2; p++)
-        ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 10 * p, 10 * p + 10, &part[p]), FIBRAD_OK);
+    for (uint32_t p = 0; p < 2; p++) assert_ok(fibrad_beam_part(scene, &work, 1, &rule, 10 * p, 10 * p + 10, &part[p]));
     ck_assert_int_eq(fibrad_beam_join(scene, &work, 2, &rule, part, 2, &row), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &more, part, 2, &row), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_beam_join(other, &work, 1, &rule, part, 2, &row), FIBRAD_E_STATE);
@@ -97,7 +95,7 @@ TEST(parts_that_do_not_fit) {
     ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, NULL, 2, &row), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_beam_join(NULL, &work, 1, &rule, part, 2, &row), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &tolerant, part, 2, &row), FIBRAD_E_UNSUPPORTED);
-    ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, part, 2, &row), FIBRAD_OK);
+    assert_ok(fibrad_beam_join(scene, &work, 1, &rule, part, 2, &row));
     ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 5, 5, &part[0]), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 5, 21, &part[0]), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_beam_part(scene, &work, 50, &rule, 5, 9, &part[0]), FIBRAD_E_ARGUMENT);
@@ -115,15 +113,15 @@ TEST(parts_that_were_changed) {
     OWNED_ROW row = row_of(50);
     const fibrad_beam_rule rule = {.directions = 20};
     fibrad_row_part part = {.memory = memory_growing()};
-    ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_OK);
+    assert_ok(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part));
     ck_assert_uint_gt(part.count, 1);
     double *value = part.memory.block;
     *value += 1e-6;
     ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &row), FIBRAD_E_SUM);
     *value = NAN;
     ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &row), FIBRAD_E_SUM);
-    ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &row), FIBRAD_OK);
+    assert_ok(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part));
+    assert_ok(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &row));
     free(part.memory.block);
 }
 
@@ -139,7 +137,7 @@ TEST(fixed_memory_of_a_part) {
     ck_assert_uint_gt(needed, 16);
     free(part.memory.block);
     part.memory = (fibrad_memory){.block = malloc(needed), .size = needed};
-    ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_OK);
+    assert_ok(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part));
     free(part.memory.block);
 }
 
@@ -161,7 +159,7 @@ TEST(memory_that_is_refused_once) {
     OWNED_WORK work = work_growing();
     OWNED_ROW one = row_of(50), joined = row_of(50);
     const fibrad_beam_rule rule = {.directions = 20};
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, 1, &rule, &one), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(scene, &work, 1, &rule, &one));
     uint32_t asked = 1;
     for (uint32_t fails = 0; fails < asked; fails++) {
         struct supply supply = {.fails = fails};
@@ -169,9 +167,9 @@ TEST(memory_that_is_refused_once) {
         ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_E_MEMORY);
         ck_assert_uint_eq(supply.asked, fails + 1);
         ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &joined), FIBRAD_E_STATE);
-        ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_OK);
+        assert_ok(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part));
         asked = supply.asked - 1;
-        ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &joined), FIBRAD_OK);
+        assert_ok(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &joined));
         ck_assert(same_bits_with(&one, &joined, 0));
         part.memory.size /= 2; /* less memory than the part was made in */
         ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &joined),
@@ -201,7 +199,7 @@ TEST(blocks_of_size_zero) {
         ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part),
                          k == 2 ? FIBRAD_E_ARGUMENT : FIBRAD_E_CAPACITY);
         if (k < 2) ck_assert(little.memory.needed > 0 && rows.memory.needed > 0 && part.memory.needed > 0);
-        ck_assert_int_eq(fibrad_beam_row(scene, &work, 1, &rule, &row), FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, &work, 1, &rule, &row));
         ck_assert_int_eq(fibrad_rows_add(&rows, &row, 0), k == 2 ? FIBRAD_E_ARGUMENT : FIBRAD_E_CAPACITY);
     }
 }

@@ -23,7 +23,7 @@ TEST(sizes_hold) {
         ck_assert_int_eq(fibrad_scene_init(&scene, memory + offset, 0, NULL, &spheres, NULL), FIBRAD_E_SIZE);
         ck_assert_ptr_null(scene);
         ck_assert(bytes_are(memory, 0, sizeof memory, 0xa5));
-        ck_assert_int_eq(fibrad_scene_init(&scene, memory + offset, size, NULL, &spheres, NULL), FIBRAD_OK);
+        assert_ok(fibrad_scene_init(&scene, memory + offset, size, NULL, &spheres, NULL));
         ck_assert(bytes_are(memory, 0, offset, 0xa5));
         ck_assert(bytes_are(memory, offset + size, sizeof memory, 0xa5));
     }
@@ -47,11 +47,11 @@ TEST(blocks_of_any_alignment) {
         fibrad_scene *scene = NULL;
         memset(block, 0xa5, size + 64);
         memset(work_block, 0x5a, work_size + 128);
-        ck_assert_int_eq(fibrad_scene_init(&scene, block + offset, size, &config, &spheres, NULL), FIBRAD_OK);
+        assert_ok(fibrad_scene_init(&scene, block + offset, size, &config, &spheres, NULL));
         fibrad_work work = work_fixed(work_block + offset, work_size);
         for (uint32_t i = 0; i < bed.n; i += 9) {
             const fibrad_row same = matrix_row(&expected.factors, i);
-            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 34}, &row), FIBRAD_OK);
+            assert_ok(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 34}, &row));
             ck_assert(same_bits(&row, &same));
         }
         ck_assert(bytes_are(work_block, 0, offset, 0x5a) && bytes_are(block, 0, offset, 0xa5));
@@ -79,7 +79,7 @@ TEST(strides_change_no_bit) {
     OWNED void *block = block_of(size);
     for (int k = 0; k < 4; k++) {
         fibrad_scene *scene = NULL;
-        ck_assert_int_eq(fibrad_scene_init(&scene, block, size, NULL, &strided[k], NULL), FIBRAD_OK);
+        assert_ok(fibrad_scene_init(&scene, block, size, NULL, &strided[k], NULL));
         OWNED_MATRIX m = matrix_by_beams(scene, &(fibrad_beam_rule){.directions = 34}, true);
         ck_assert(matrix_same_bits(&m.factors, &expected.factors));
         for (uint32_t s = 0; s < bed.n; s++)
@@ -98,7 +98,7 @@ TEST(no_spheres) {
         const fibrad_scene_config config = {.body = &floor_plane, .bodies = (uint32_t)walls, .period = {3, 0, 0}};
         fibrad_scene *scene = NULL;
         fibrad_scene_facts facts;
-        ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, &config, &none, NULL), FIBRAD_OK);
+        assert_ok(fibrad_scene_init(&scene, memory, sizeof memory, &config, &none, NULL));
         fibrad_scene_describe(scene, &facts);
         ck_assert_uint_eq(facts.spheres, 0);
         ck_assert_uint_eq(facts.bodies, (uint32_t)walls);
@@ -115,7 +115,7 @@ TEST(no_spheres) {
             ck_assert_uint_eq(m.factors.n, 0);
             ck_assert_uint_eq(m.factors.start[0], 0);
             double largest = -1;
-            ck_assert_int_eq(fibrad_matrix_reciprocity(m.matrix, &largest), FIBRAD_OK);
+            assert_ok(fibrad_matrix_reciprocity(m.matrix, &largest));
             ck_assert_double_eq(largest, 0);
             nothing = matrix_of(scene, NULL, 0, &(fibrad_matrix_rule){.raw = raw, .drop = raw ? 0 : .1, .tasks = 3});
             ck_assert_uint_eq(nothing.factors.n, 0);
@@ -171,18 +171,17 @@ TEST(bad_configurations_are_refused) {
         ck_assert_uint_eq(fault.first, 1);
     }
     ck_assert_ptr_null(scene);
-    ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, NULL, &good, NULL), FIBRAD_OK);
+    assert_ok(fibrad_scene_init(&scene, memory, sizeof memory, NULL, &good, NULL));
 }
 
 /* If this build or this machine lacks an instruction set, the call says so, with any spheres. */
 TEST(missing_instruction_sets) {
     OWNED_BED bed = lattice('p', 3);
-    int isa[ISAS_MOST];
-    const int sets = isas_there(isa);
+    const struct isas isas = isas_there();
     bool best = false;
     for (int set = FIBRAD_ISA_SCALAR; set <= FIBRAD_ISA_NEON; set++) {
         bool there = false;
-        for (int k = 0; k < sets; k++) there |= isa[k] == set;
+        for (int k = 0; k < isas.count; k++) there |= isas.set[k] == set;
         best |= there && set == (int)fibrad_isa_best();
         if (set > (int)fibrad_isa_best()) ck_assert(!there);
         OWNED fibrad_scene *scene = NULL;
@@ -214,7 +213,7 @@ TEST(faults_name_their_spheres) {
             ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_ARGUMENT);
             ck_assert_uint_eq(fault.first, 5);
         }
-    struct bed bed = lattice('p', 4);
+    OWNED_BED bed = lattice('p', 4);
     bed.r[7] = 0;
     ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_ARGUMENT);
     ck_assert_uint_eq(fault.first, 7);
@@ -238,12 +237,11 @@ TEST(faults_name_their_spheres) {
         bed_free(&bed);
     }
     bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {9.5, 0, 0, 1}}); /* one lies inside the other across the box */
-    ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_OK);
+    assert_ok(fault_of(&bed, &fault));
     bed.period[0] = 10;
     ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_GEOMETRY);
     bed.period[0] = .5; /* a sphere is wider than its box */
     ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_GEOMETRY);
-    bed_free(&bed);
 }
 
 /* Coordinates lie outside the periodic box. For some of them the quotient by the period rounds up to a whole number. */
@@ -264,7 +262,7 @@ TEST(any_image_of_a_centre_will_do) {
         fibrad_spheres spheres = {.x = x, .y = y, .z = y, .r = r, .n = 2};
         static unsigned char memory[FIBRAD_SCENE_BYTES(2)];
         fibrad_scene *scene;
-        ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, &config, &spheres, NULL), FIBRAD_OK);
+        assert_ok(fibrad_scene_init(&scene, memory, sizeof memory, &config, &spheres, NULL));
     }
 }
 
@@ -281,7 +279,7 @@ TEST(strays_do_not_spread_the_cells) {
 
 TEST(overlap_is_reported) {
     OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 5, 2}, {0, .98, 2.2, .5}});
-    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_scene_facts facts;
     fibrad_scene_describe(scene, &facts);
     ck_assert_double_eq(facts.overlap_max, 0);
@@ -295,7 +293,6 @@ TEST(overlap_is_reported) {
     fibrad_scene_describe(scene, &facts);
     ck_assert_double_eq_tol(facts.overlap_max, .1 / .5, 1e-15);
     ck_assert_uint_eq(facts.overlap_pair[0] + facts.overlap_pair[1], 3);
-    free(scene);
 }
 
 /* In random boxes each sphere comes up whose centre, or an image of whose centre, lies within. None comes up twice. */
@@ -347,8 +344,7 @@ TEST(walks_find_what_is_there) {
 TEST(cells_follow_the_spheres) {
     static const double spans[][3] = {{1, 1, 1}, {1000, 1, 1}, {1, 1e6, 1e6}, {1e-3, 1, 1e3}};
     for (size_t s = 0; s < sizeof spans / sizeof *spans; s++) {
-        OWNED_BED bed;
-        bed_init(&bed);
+        OWNED_BED bed = bed_empty();
         for (uint64_t i = 0; i < 4000; i++)
             add_sphere(&bed, spans[s][0] * bed_make_random(5, 3 * i), spans[s][1] * bed_make_random(5, 3 * i + 1),
                        spans[s][2] * bed_make_random(5, 3 * i + 2), 1e-7);

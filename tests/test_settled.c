@@ -68,7 +68,7 @@ static void begin_box(struct settled *s, uint64_t seed) {
 static int settle(struct settled *s) {
     OWNED_RADIATION *radiation = NULL;
     const fibrad_spheres spheres = {.x = s->bed.x, .y = s->bed.y, .z = s->bed.z, .r = s->bed.r, .n = s->bed.n};
-    ck_assert_int_eq(fibrad_radiation_new(&radiation, &s->scene, &spheres, &s->config, NULL), FIBRAD_OK);
+    assert_ok(fibrad_radiation_new(&radiation, &s->scene, &spheres, &s->config, NULL));
     const int status = fibrad_radiation_solve(radiation, &s->sources, &s->result);
     return status;
 }
@@ -88,7 +88,7 @@ TEST(one_sphere) {
         s.reference[0] = 900;
         s.sources.power = s.power, s.sources.hold = s.hold, s.sources.reference = s.reference;
         s.sources.tolerance = 1e-12;
-        ck_assert_int_eq(settle(&s), FIBRAD_OK);
+        assert_ok(settle(&s));
         const double link = pi * eps[k % 3], t0 = 300, t1 = 900;
         const double e =
             (5e4 + sigma * (hold[k / 3] * pow(t1, 4) + link * pow(t0, 4))) / (sigma * (hold[k / 3] + link));
@@ -107,7 +107,7 @@ TEST(plates) {
     add_wall(&s, 2, 1, 1.5, 500, .6);
     s.sources.body_power = s.wall_power;
     s.wall_power[0] = 4 * 8000;
-    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    assert_ok(settle(&s));
     close_to(s.found.wall_temperature[0], pow(pow(500, 4) + 8000 / sigma * (1 / .3 + 1 / .6 - 1), .25), 1e-6);
     close_to(s.found.wall_power[1], 4 * 8000, 1e-9);
     ck_assert_double_eq(s.found.wall_temperature[1], 500);
@@ -122,18 +122,18 @@ TEST(there_and_back) {
         double temperature[N], wall_temperature[WALLS];
         begin_box(&s, 7);
         s.sources.uniform = uniform, s.sources.tolerance = 1e-9;
-        ck_assert_int_eq(settle(&s), FIBRAD_OK);
+        assert_ok(settle(&s));
         memcpy(temperature, s.temperature, sizeof temperature);
         memcpy(wall_temperature, s.wall_temperature, sizeof wall_temperature);
         for (uint32_t i = 0; i < N; i++) {
-            ck_assert_double_eq_tol(s.found.temperature[i], temperature[i], 1e-9 * temperature[i]);
+            assert_near(s.found.temperature[i], temperature[i], 1e-9);
             s.power[i] = i % 2 ? -s.found.power[i] : unknown;
             if (i % 2) s.temperature[i] = unknown;
         }
         for (int k = 0; k < WALLS; k++) s.wall_power[k] = k % 3 == 2 ? -s.found.wall_power[k] : unknown;
         s.wall_temperature[2] = s.wall_temperature[5] = unknown;
         s.sources.power = s.power, s.sources.body_power = s.wall_power;
-        ck_assert_int_eq(settle(&s), FIBRAD_OK);
+        assert_ok(settle(&s));
         for (uint32_t i = 0; i < N; i++) close_to(s.found.temperature[i], temperature[i], uniform ? 1e-7 : 1e-3);
         for (int k = 0; k < WALLS; k++)
             close_to(s.found.wall_temperature[k], wall_temperature[k], uniform ? 1e-7 : 1e-3);
@@ -150,7 +150,7 @@ TEST(equilibrium) {
     s.insulated[4] = 1;
     for (uint32_t i = 0; i < N; i++) s.temperature[i] = unknown;
     s.emissivity[5] = 0;
-    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    assert_ok(settle(&s));
     for (uint32_t i = 0; i < N; i++)
         if (i != 5) close_to(s.found.temperature[i], 700, 1e-12);
     ck_assert(isnan(s.found.temperature[5]));
@@ -163,12 +163,12 @@ TEST(insulated) {
     double power[N];
     begin_box(&s, 5);
     for (int k = 0; k < WALLS; k++) s.wall_emissivity[k] = k == 3 ? 0 : .7;
-    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    assert_ok(settle(&s));
     ck_assert(isnan(s.found.wall_temperature[3]));
     memcpy(power, s.found.power, sizeof power);
     s.wall_emissivity[3] = .4, s.insulated[3] = 1, s.wall_temperature[3] = unknown;
     s.sources.insulated = s.insulated;
-    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    assert_ok(settle(&s));
     ck_assert_mem_eq(power, s.found.power, sizeof power);
     ck_assert_double_eq(s.found.wall_power[3], 0);
     ck_assert(s.found.wall_temperature[3] > 300 && s.found.wall_temperature[3] < 1200);
@@ -183,7 +183,7 @@ TEST(afloat) {
     for (int k = 0; k < WALLS; k++) s.wall_temperature[k] = unknown;
     s.sources.power = s.power, s.sources.body_power = s.wall_power;
     s.sources.surroundings = 800, s.sources.uniform = 1;
-    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    assert_ok(settle(&s));
     for (uint32_t i = 0; i < N; i++) {
         const double weight = s.emissivity[i] * 4 * pi * s.bed.r[i] * s.bed.r[i];
         sum += weight * pow(s.found.temperature[i], 4), weights += weight;
@@ -200,7 +200,7 @@ TEST(afloat) {
     s.power[0] = -999;
     ck_assert_int_eq(settle(&s), FIBRAD_E_UNSOLVABLE);
     s.wall_temperature[0] = 800; /* this wall takes up the rest */
-    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    assert_ok(settle(&s));
 }
 
 /* The emissivity of spheres and of the floor: .9 - T/2000. */
@@ -222,9 +222,8 @@ TEST(emissivity_of_temperature) {
         s.temperature[0] = given ? 800 : unknown, s.power[0] = given ? unknown : 5e4, s.emissivity[0] = .5;
         s.sources.power = s.power, s.sources.emissivity = NULL;
         const fibrad_spheres spheres = {.x = s.bed.x, .y = s.bed.y, .z = s.bed.z, .r = s.bed.r, .n = 1};
-        ck_assert_int_eq(fibrad_radiation_new(&radiation, NULL, &spheres, NULL, NULL), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_radiation_settle(radiation, &s.sources, falling, &calls, s.emissivity, NULL, &s.result),
-                         FIBRAD_OK);
+        assert_ok(fibrad_radiation_new(&radiation, NULL, &spheres, NULL, NULL));
+        assert_ok(fibrad_radiation_settle(radiation, &s.sources, falling, &calls, s.emissivity, NULL, &s.result));
         const double t = s.found.temperature[0];
         close_to(-s.found.power[0], pi * (.9 - t / 2000) * sigma * (pow(t, 4) - pow(300, 4)), 1e-4);
         if (given) ck_assert(t == 800 && calls == 2 && s.emissivity[0] == .5);
@@ -240,7 +239,7 @@ TEST(refused) {
     s.temperature[3] = unknown; /* and no powers */
     ck_assert_int_eq(settle(&s), FIBRAD_E_ARGUMENT);
     s.sources.power = s.power;
-    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    assert_ok(settle(&s));
     s.power[3] = NAN;
     ck_assert_int_eq(settle(&s), FIBRAD_E_ARGUMENT);
     s.power[3] = 10, s.emissivity[3] = 0;
@@ -251,11 +250,11 @@ TEST(refused) {
     s.power[3] = 10, s.hold[3] = 1, s.sources.hold = s.hold; /* held at what? */
     ck_assert_int_eq(settle(&s), FIBRAD_E_ARGUMENT);
     s.hold[3] = 0;
-    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    assert_ok(settle(&s));
     s.wall_temperature[2] = unknown;
     ck_assert_int_eq(settle(&s), FIBRAD_E_ARGUMENT);
     s.sources.body_power = s.wall_power;
-    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    assert_ok(settle(&s));
     s.scene.bodies = 2, s.wall_temperature[1] = unknown; /* walls without end */
     ck_assert_int_eq(settle(&s), FIBRAD_E_UNSUPPORTED);
 }

@@ -78,11 +78,11 @@ static void rows_by_windows(const fibrad_scene *scene, const struct bed *bed, ui
     OWNED_WORK work = work_growing();
     fibrad_workspace *space;
     frames_of(lines, frame);
-    ck_assert_int_eq(fibrad_work_open(&work, scene, 0, 0, &space), FIBRAD_OK);
+    assert_ok(fibrad_work_open(&work, scene, 0, 0, &space));
     for (uint32_t i = 0; i < bed->n; i++) {
         memset(windows[i], 0, sizeof windows[i]);
         while (!look_along(scene, space, i, lines, (const double(*)[9])frame, windows[i]))
-            ck_assert_int_eq(fibrad_work_grow(&work, &space), FIBRAD_OK);
+            assert_ok(fibrad_work_grow(&work, &space));
     }
     const double scale = 1 / (2 * lines * pi);
     for (uint32_t i = 0; i < bed->n; i++) {

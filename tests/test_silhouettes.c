@@ -140,7 +140,7 @@ static void follow_all_circles(const struct bed *bed, uint32_t directions, int i
     memset(exchanged, 0, sizeof exchanged);
     for (uint32_t k = 0; k < directions; k++) {
         double d[3], frame[9];
-        ck_assert_int_eq(fibrad_direction(k, directions, d), FIBRAD_OK);
+        assert_ok(fibrad_direction(k, directions, d));
         make_frame(d, frame);
         for (uint32_t i = 0; i < bed->n; i++) follow_circle(bed, i, frame, images);
     }

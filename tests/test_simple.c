@@ -24,7 +24,7 @@ static fibrad_rows rows_one_by_one(const fibrad_scene *scene, uint32_t n, uint32
     fibrad_rows rows = {.memory = memory_growing()};
     fibrad_row row = {.rows = &rows};
     for (uint32_t i = 0; i < n; i++) {
-        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, rule, &row), FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, &work, i, rule, &row));
         double sum = row.escaped;
         for (uint32_t k = 0; k < row.length; k++) sum += row.f[k];
         for (uint32_t b = 0; b < bodies; b++) sum += row.body[b];
@@ -54,8 +54,7 @@ TEST(view_factors_are_the_kernels) {
     for (int t = 0; t < 3; t++) {
         fibrad_run run = {.threads = threads[t]};
         OWNED_FACTORS *factors = NULL;
-        ck_assert_int_eq(fibrad_view_factors(&config, &spheres, &(fibrad_bed_options){.beam = &rule}, &run, &factors),
-                         FIBRAD_OK);
+        assert_ok(fibrad_view_factors(&config, &spheres, &(fibrad_bed_options){.beam = &rule}, &run, &factors));
         ck_assert(matrix_same_bits(&factors->matrix, &expected.factors));
         ck_assert_int_eq(factors->threads, threads[t]);
         ck_assert_uint_eq(factors->directions, 40);
@@ -128,14 +127,14 @@ TEST(long_rows_are_divided) {
         struct calls calls = {0};
         fibrad_run run = {.threads = threads[t], .progress = count_calls, .context = &calls};
         fibrad_bed_options options = {.beam = &rule, .raw = 1};
-        ck_assert_int_eq(fibrad_view_factors(&config, &spheres, &options, &run, &factors), FIBRAD_OK);
+        assert_ok(fibrad_view_factors(&config, &spheres, &options, &run, &factors));
         ck_assert(matrix_same_bits(&factors->matrix, &expected.factors));
         ck_assert_uint_eq(factors->directions, 60);
         ck_assert(calls.ends == 1 && calls.total == 300);
         fibrad_bed_free(factors);
         run.progress = NULL;
         options.wanted = two;
-        ck_assert_int_eq(fibrad_view_factors(&config, &spheres, &options, &run, &alone[t]), FIBRAD_OK);
+        assert_ok(fibrad_view_factors(&config, &spheres, &options, &run, &alone[t]));
         ck_assert(matrix_same_bits(&alone[t]->matrix, &alone[0]->matrix));
     }
     ck_assert_uint_gt(alone[0]->matrix.start[300], 100);
@@ -161,7 +160,7 @@ TEST(nothing_depends_on_threads) {
         fibrad_bed_factors *first = NULL, *next;
         for (int t = 0; t < 3; t++) {
             fibrad_run run = {.threads = threads[t]};
-            ck_assert_int_eq(fibrad_view_factors(&config, &spheres, &options[k], &run, &next), FIBRAD_OK);
+            assert_ok(fibrad_view_factors(&config, &spheres, &options[k], &run, &next));
             if (first) {
                 ck_assert(matrix_same_bits(&first->matrix, &next->matrix));
                 fibrad_bed_free(next);
@@ -192,12 +191,12 @@ TEST(exchange_does_not_depend_on_threads) {
     for (int t = 0; t < 3; t++) {
         fibrad_run run = {.threads = threads[t]};
         fibrad_scene_facts facts;
-        ck_assert_int_eq(fibrad_exchange_factors(&config, &spheres, &rule, NULL, &run, &next), FIBRAD_OK);
+        assert_ok(fibrad_exchange_factors(&config, &spheres, &rule, NULL, &run, &next));
         ck_assert_uint_gt(next->rays, 150 * 50);
         if (first) ck_assert(matrix_same_bits(&first->matrix, &next->matrix) && first->rays == next->rays);
         fibrad_bed_free(first);
         first = next;
-        ck_assert_int_eq(fibrad_displacements(&config, &spheres, &rule, NULL, &run, moved[t], &facts), FIBRAD_OK);
+        assert_ok(fibrad_displacements(&config, &spheres, &rule, NULL, &run, moved[t], &facts));
         ck_assert_int_eq(memcmp(moved[t], moved[0], sizeof moved[0]), 0);
         ck_assert_uint_eq(facts.spheres, 150);
     }
@@ -218,15 +217,14 @@ TEST(reflectors_have_empty_rows) {
         for (int raw = 0; raw <= 1; raw++) {
             OWNED_FACTORS *factors = NULL;
             for (int i = 0; i < 150; i++) emissivity[i] = all || i % 5 == 0 ? 0 : .3;
-            ck_assert_int_eq(
-                fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_options){.raw = raw}, NULL, &factors),
-                FIBRAD_OK);
+            assert_ok(
+                fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_options){.raw = raw}, NULL, &factors));
             ck_assert_double_le(factors->closure_error, 1e-12);
             if (!raw) ck_assert_double_le(factors->reciprocity_error, 1e-14);
             ck_assert(factors->reciprocity_error >= 0 && (factors->rays > 0) == !all);
             for (uint32_t i = 0; i < 150; i++)
                 ck_assert_double_le(fabs(matrix_total(&factors->matrix, i) - (emissivity[i] > 0)), 1e-12);
-            ck_assert_int_eq(fibrad_displacements(&config, &spheres, &rule, NULL, NULL, moved, NULL), FIBRAD_OK);
+            assert_ok(fibrad_displacements(&config, &spheres, &rule, NULL, NULL, moved, NULL));
             for (uint32_t i = 0; i < 150; i++) ck_assert((moved[i].square[0] > 0) == (emissivity[i] > 0));
         }
 }
@@ -265,8 +263,8 @@ TEST(factors_in_files) {
         OWNED_FACTORS *here = NULL, *there = NULL;
         fibrad_run run = {.threads = threads[k]};
         filed.scratch = folder;
-        ck_assert_int_eq(fibrad_exchange_factors(&config, &spheres, &rule, &kept, NULL, &here), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_exchange_factors(&config, &spheres, &rule, &filed, &run, &there), FIBRAD_OK);
+        assert_ok(fibrad_exchange_factors(&config, &spheres, &rule, &kept, NULL, &here));
+        assert_ok(fibrad_exchange_factors(&config, &spheres, &rule, &filed, &run, &there));
         ck_assert(matrix_same_bits(&here->matrix, &there->matrix));
         ck_assert(here->reciprocity_error == there->reciprocity_error && here->closure_error == there->closure_error);
         ck_assert(is_filed(there->matrix.f, folder));
@@ -357,7 +355,7 @@ TEST(faults_of_divided_rows) {
 TEST(arguments) {
     OWNED_BED bed = packing(10, .8, 1.2, .4, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
-    fibrad_bed_factors *factors;
+    OWNED_FACTORS *factors;
     fibrad_radiation *radiation;
     const fibrad_bed_options two = {.beam = &(fibrad_beam_rule){0}, .cast = &(fibrad_cast_rule){0}},
                              drop = {.drop = -1}, nan = {.drop = NAN},
@@ -382,16 +380,15 @@ TEST(arguments) {
     fibrad_radiation_describe(NULL, NULL, NULL);
     fibrad_radiation_free(NULL);
     fibrad_bed_free(NULL);
-    ck_assert_int_eq(fibrad_view_factors(NULL, &(fibrad_spheres){0}, NULL, NULL, &factors), FIBRAD_OK);
+    assert_ok(fibrad_view_factors(NULL, &(fibrad_spheres){0}, NULL, NULL, &factors));
     ck_assert(factors->matrix.n == 0 && factors->matrix.start[0] == 0);
     fibrad_bed_free(factors);
     const fibrad_bed_options tolerance = {.beam = &(fibrad_beam_rule){.tolerance = .1}};
-    ck_assert_int_eq(fibrad_view_factors(NULL, &(fibrad_spheres){0}, &tolerance, NULL, &factors), FIBRAD_OK);
+    assert_ok(fibrad_view_factors(NULL, &(fibrad_spheres){0}, &tolerance, NULL, &factors));
     fibrad_bed_free(factors);
     omp_set_num_threads(1025); /* the number of OpenMP's threads, up to the largest that is allowed */
-    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, NULL, &factors), FIBRAD_OK);
+    assert_ok(fibrad_view_factors(NULL, &spheres, NULL, NULL, &factors));
     ck_assert_int_eq(factors->threads, 1024);
-    fibrad_bed_free(factors);
 }
 
 /* ---- progress ---------------------------------------------------------------------------------------------------- */
@@ -404,7 +401,7 @@ TEST(progress_and_cancelling) {
         struct calls calls = {0};
         fibrad_run run = {.threads = threads[t], .progress = count_calls, .context = &calls};
         fibrad_bed_factors *factors;
-        ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &options, &run, &factors), FIBRAD_OK);
+        assert_ok(fibrad_view_factors(NULL, &spheres, &options, &run, &factors));
         ck_assert(calls.ends == 2 && calls.total == 200 && calls.count >= 4); /* circles, rows */
         fibrad_bed_free(factors);
         for (uint64_t at = 1; at <= 2; at++) {
@@ -428,7 +425,7 @@ TEST(progress_of_short_rows) {
     struct calls calls = {0};
     fibrad_run run = {.threads = 2, .progress = count_calls, .context = &calls};
     OWNED_FACTORS *factors = NULL;
-    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &options, &run, &factors), FIBRAD_OK);
+    assert_ok(fibrad_view_factors(NULL, &spheres, &options, &run, &factors));
     ck_assert(calls.ends >= 1 && calls.total == 400);
     ck_assert_uint_lt(calls.count, 400); /* all takes less than 20 seconds */
 }
@@ -448,7 +445,7 @@ static fibrad_heat_sources sources_of(const double *temperature, const double *e
 
 static void powers(fibrad_radiation *radiation, const fibrad_heat_sources *sources, double power[N]) {
     fibrad_heat_result result = {.power = power};
-    ck_assert_int_eq(fibrad_radiation_solve(radiation, sources, &result), FIBRAD_OK);
+    assert_ok(fibrad_radiation_solve(radiation, sources, &result));
 }
 
 TEST(radiation_moves) {
@@ -465,7 +462,7 @@ TEST(radiation_moves) {
         OWNED_RADIATION *radiation = NULL;
         fibrad_scene_facts facts;
         fibrad_fault fault;
-        ck_assert_int_eq(fibrad_radiation_new(&radiation, NULL, &spheres, &config, &run), FIBRAD_OK);
+        assert_ok(fibrad_radiation_new(&radiation, NULL, &spheres, &config, &run));
         powers(radiation, &sources, power);
         if (t == 0) memcpy(first, power, sizeof power);
         ck_assert_int_eq(memcmp(first, power, sizeof power), 0);
@@ -484,7 +481,7 @@ TEST(radiation_moves) {
 
         /* the bed moves to another place, and back */
         for (int i = 0; i < N; i++) bed.z[i] *= 1.1;
-        ck_assert_int_eq(fibrad_radiation_move(radiation, NULL, &spheres), FIBRAD_OK);
+        assert_ok(fibrad_radiation_move(radiation, NULL, &spheres));
         powers(radiation, &sources, again);
         ck_assert(memcmp(again, power, sizeof power) != 0);
 
@@ -494,7 +491,7 @@ TEST(radiation_moves) {
         ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &(fibrad_heat_result){.power = power}),
                          FIBRAD_E_STATE);
         calls.stop_at = 0;
-        ck_assert_int_eq(fibrad_radiation_move(radiation, NULL, &spheres), FIBRAD_OK);
+        assert_ok(fibrad_radiation_move(radiation, NULL, &spheres));
         calls = (struct calls){.stop_at = 2};
         ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &(fibrad_heat_result){.power = power}),
                          FIBRAD_E_CANCELLED);
@@ -530,19 +527,18 @@ TEST(radiation_gets_more_room) {
     const fibrad_heat_sources sources = sources_of(temperature, emissivity);
     struct returns returns = {0};
     fibrad_run run = {.threads = 1, .progress = count_returns, .context = &returns};
-    fibrad_radiation *radiation;
-    ck_assert_int_eq(fibrad_radiation_new(&radiation, NULL, &spheres, &config, &run), FIBRAD_OK);
+    OWNED_RADIATION *radiation;
+    assert_ok(fibrad_radiation_new(&radiation, NULL, &spheres, &config, &run));
     ck_assert_uint_eq(returns.count, 0);
     returns.done = 0;
     for (int i = 0; i < MANY; i++) bed.x[i] *= 2, bed.y[i] *= 2, bed.z[i] *= 2;
-    ck_assert_int_eq(fibrad_radiation_move(radiation, NULL, &spheres), FIBRAD_OK);
+    assert_ok(fibrad_radiation_move(radiation, NULL, &spheres));
     ck_assert_uint_ge(returns.count, 1);
     powers(radiation, &sources, moved);
     fibrad_radiation_free(radiation);
-    ck_assert_int_eq(fibrad_radiation_new(&radiation, NULL, &spheres, &config, &run), FIBRAD_OK);
+    assert_ok(fibrad_radiation_new(&radiation, NULL, &spheres, &config, &run));
     powers(radiation, &sources, begun);
     ck_assert_mem_eq(moved, begun, sizeof moved);
-    fibrad_radiation_free(radiation);
 }
 
 TEST(radiation_with_walls) {
@@ -562,12 +558,10 @@ TEST(radiation_with_walls) {
         }
         const fibrad_scene_config config = {.body = walls, .bodies = 6};
         const fibrad_heat_config heat = {.directions = 8, .patches = 24};
-        ck_assert_int_eq(far ? fibrad_radiation_move(radiation, &config, &spheres)
-                             : fibrad_radiation_new(&radiation, &config, &spheres, &heat, NULL),
-                         FIBRAD_OK);
-        ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources,
-                                                &(fibrad_heat_result){.power = power, .body_power = wall_power}),
-                         FIBRAD_OK);
+        assert_ok(far ? fibrad_radiation_move(radiation, &config, &spheres)
+                      : fibrad_radiation_new(&radiation, &config, &spheres, &heat, NULL));
+        assert_ok(fibrad_radiation_solve(radiation, &sources,
+                                         &(fibrad_heat_result){.power = power, .body_power = wall_power}));
         for (int i = 0; i < N; i++) ck_assert_double_lt(fabs(power[i]), 1e-6); /* all have one temperature */
     }
 }
@@ -596,9 +590,8 @@ TEST(laws_are_checked) {
     fibrad_heat_result result = {
         .power = &power, .body_power = &body_power, .temperature = &found, .body_temperature = &body_found};
     OWNED_RADIATION *radiation = NULL;
-    ck_assert_int_eq(fibrad_radiation_new(&radiation, &(fibrad_scene_config){.body = &floor, .bodies = 1}, &one,
-                                          &(fibrad_heat_config){.directions = 8, .patches = 24}, NULL),
-                     FIBRAD_OK);
+    assert_ok(fibrad_radiation_new(&radiation, &(fibrad_scene_config){.body = &floor, .bodies = 1}, &one,
+                                   &(fibrad_heat_config){.directions = 8, .patches = 24}, NULL));
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);
     sources.surroundings = 300;

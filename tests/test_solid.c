@@ -19,8 +19,7 @@ FIXTURE(make_folder, remove_folder)
 
 /* Makes two spheres of radii 3 and 1 mm, of types 1 and 2. */
 static struct bed two_spheres(void) {
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     bed.extras = 1;
     ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.r = 3, .line = 2}), 0);
     ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.x = 5, .r = 1, .line = 3}), 0);
@@ -36,7 +35,7 @@ TEST(relative_conductivities) {
     OWNED_BED bed = two_spheres();
     for (int k = 0; k < 2; ++k) {
         struct bed_options options = {.name = "bed", .length_unit = "mm"};
-        struct quantity solid = {0};
+        OWNED_BY(quantity_free) struct quantity solid = {0};
         double *conductivity, metres, relative[2];
         ck_assert_int_eq(solid_option(k ? by_type : "8", &solid), 0);
         ck_assert_int_eq(solid_values(&options, &bed, &solid, &conductivity, &metres), 0);
@@ -47,7 +46,6 @@ TEST(relative_conductivities) {
         ck_assert_int_eq(solid_relative(&options, &bed, &solid, extreme, metres, conductivity, relative), 0);
         ck_assert(isinf(relative[0]) && isnan(relative[1]));
         free(conductivity);
-        quantity_free(&solid);
     }
 }
 
@@ -132,7 +130,7 @@ static struct conduction walk(const struct bed *bed, const double *emissivity, c
         .emissivity = emissivity, .conductivity = conductivity, .axis = -1, .error = error, .max_rays = 100000000};
     ck_assert_ptr_nonnull(emits);
     ck_assert_int_eq(conduction_emitters(bed, -1, CONDUCTION_MARGIN_WALK, "bed", emits, &result), 0);
-    ck_assert_int_eq(conduction_follow(bed, emits, &rule, &run, &result), FIBRAD_OK);
+    assert_ok(conduction_follow(bed, emits, &rule, &run, &result));
     return result;
 }
 
@@ -150,8 +148,7 @@ LOOP_TEST(simple_cubic, 14) {
         double k_star, factor[2]; /* at emissivities 1 and .6 */
     } known[] = {{.01, {.2376, .2373}}, {.1, {.3591, .3430}},  {.3, {.5294, .4614}},       {1, {.8006, .5979}},
                  {3, {1.0136, .6745}},  {10, {1.1350, .7099}}, {INFINITY, {1.2001, .7270}}};
-    OWNED_BED bed;
-    bed_init(&bed);
+    OWNED_BED bed = bed_empty();
     ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.r = 1}), 0);
     for (int axis = 0; axis < 3; ++axis) bed.period[axis] = 2;
     const double emissivity = _i % 2 ? .6 : 1, truth = known[_i / 2].factor[_i % 2];
@@ -281,8 +278,7 @@ static double factor_by_harmonics(const struct bed *bed, const double *emissivit
 LOOP_TEST(random_beds, 2) {
     static const double low[] = {1, .7}, fraction[] = {.5, .45};
     double emissivity[SPHERES], conductivity[SPHERES];
-    OWNED_BED bed;
-    bed_init(&bed);
+    OWNED_BED bed = bed_empty();
     ck_assert_int_eq(bed_make_packing(&bed, SPHERES, low[_i], 2 - low[_i], fraction[_i], 3), 0);
     for (uint32_t i = 0; i < bed.n; ++i) {
         emissivity[i] = _i == 0 ? .8 : .3 + .7 * bed_make_random(1, i);
@@ -290,13 +286,12 @@ LOOP_TEST(random_beds, 2) {
     }
     const double truth = factor_by_harmonics(&bed, emissivity, conductivity);
     const struct conduction found = walk(&bed, emissivity, conductivity, .007);
-    ck_assert_double_eq_tol(found.factor[2], truth, .015 * truth);
+    assert_near(found.factor[2], truth, .015);
 }
 
 /* A bed has open ends. Its core has F_E of the periodic bed from which it was cut. */
 TEST(open_beds) {
-    OWNED_BED cell, bed;
-    bed_init(&cell), bed_init(&bed);
+    OWNED_BED cell = bed_empty(), bed = bed_empty();
     ck_assert_int_eq(bed_make_packing(&cell, 1000, 1, 1, .55, 1), 0);
     ck_assert_int_eq(bed_make_copies(&bed, &cell, (const uint32_t[]){2, 2, 2}), 0);
     memset(bed.period, 0, sizeof bed.period);
@@ -315,8 +310,7 @@ TEST(open_beds) {
  * which no sphere gains power: docs/heat.md gives the difference, .1 %. */
 TEST(good_conductors) {
     double emissivity[300], conductivity[300];
-    OWNED_BED bed;
-    bed_init(&bed);
+    OWNED_BED bed = bed_empty();
     ck_assert_int_eq(bed_make_packing(&bed, 300, .8, 1.2, .55, 1), 0);
     for (uint32_t i = 0; i < bed.n; ++i) emissivity[i] = .8, conductivity[i] = 1e6;
     const struct conduction solid = walk(&bed, emissivity, conductivity, .007),
@@ -339,7 +333,7 @@ TEST(refusals) {
         const fibrad_scene_config config = {.period = {3, 3, 0}, .body = &floor, .bodies = k == 4};
         fibrad_scene *scene;
         fibrad_work work = {.memory = {.block = room, .size = sizeof room}};
-        ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, &config, &spheres, NULL), FIBRAD_OK);
+        assert_ok(fibrad_scene_init(&scene, memory, sizeof memory, &config, &spheres, NULL));
         fibrad_exchange_rule rule = {
             .emissivity = &emissivity, .conductivity = &conductivity, .body_emissivity = &grey, .paths = 16};
         conductivity = k == 1 ? NAN : k == 2 ? 0 : 1;
@@ -361,8 +355,7 @@ TEST(refusals) {
 /* Writes eight copies of a random bed, one above the other. `period` becomes that of a copy. */
 static const char *write_tower(double period[3]) {
     char *text = malloc(60 * 8 * 80), *at = text + sprintf(text, "x,y,z,r\n");
-    OWNED_BED bed;
-    bed_init(&bed);
+    OWNED_BED bed = bed_empty();
     ck_assert_int_eq(bed_make_packing(&bed, 60, 1, 1, .55, 1), 0);
     for (int copy = 0; copy < 8; ++copy)
         for (uint32_t i = 0; i < bed.n; ++i)
@@ -414,7 +407,7 @@ TEST(outputs) {
         SUCCEED("conductivity", OF_CELL, "1000", "--length-unit", "mm", "--solid-conductivity", solid[k], "--threads",
                 k ? "3" : "1", "-o", csv, "-o", json, "--json", summary);
         ck_assert_double_eq_tol(json_of(summary, "k_star"), k_star, 1e-12);
-        OWNED char *object = read_file(json);
+        char *object = read_file(json);
         ck_assert_double_eq_tol(strtod(strstr(object, "\"k_star_max\":") + 13, NULL), k_star, 1e-12);
         ck_assert_double_eq_tol(json_of(summary, "k_x_W_mK"), json_of(summary, "F_E_x") * 13.6 / k_star, 1e-9);
         ck_assert(!strstr(printed, "isothermal") && !strstr(printed, "k_star_min"));
@@ -422,7 +415,6 @@ TEST(outputs) {
         ck_assert_double_eq_tol(strtod(strrchr(text[k], ',') + 1, NULL), k_star, 1e-12);
         ck_assert_str_eq(text[k], text[0]);
     }
-    for (int k = 0; k < 3; ++k) free(text[k]);
 }
 
 /* One temperature for each sphere is right to 5 % above about k* = 11 in a simple cubic lattice. At 10, F_E is 1.135
@@ -435,7 +427,7 @@ TEST(how_isothermal) {
     ck_assert_int_eq(sscanf(line, "\nisothermal right to 5 %% for k_s above %lf W/(m K)\n", &above), 1);
     ck_assert_double_eq_tol(above, 11 * 4 * .06 * 5.670374419e-8 * 1e9, 25);
     SUCCEED("conductivity", OF_CELL, "1000");
-    ck_assert_ptr_null(strstr(printed, "isothermal")); /* no unit */
+    assert_lacks(printed, "isothermal"); /* no unit */
 }
 
 TEST(mistakes) {
@@ -453,14 +445,14 @@ TEST(mistakes) {
         {"1000", "mm", "1e-6", NULL, "cell.csv:2: sphere 0: k_s/(4 d sigma T^3) is 7.3", 3},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
-        const int status = RUN("conductivity", OF_CELL, cases[k].temperature, "--length-unit", cases[k].unit,
-                               "--solid-conductivity", cases[k].solid, "-o", in_folder("k.csv"), cases[k].more);
-        ck_assert_msg(status == cases[k].status && strstr(said, cases[k].message), "%zu: %d %s", k, status, said);
+        FAIL_WITH(cases[k].status, "conductivity", OF_CELL, cases[k].temperature, "--length-unit", cases[k].unit,
+                  "--solid-conductivity", cases[k].solid, "-o", in_folder("k.csv"), cases[k].more);
+        assert_has(said, cases[k].message);
         ck_assert_ptr_eq(strchr(said, '\n') + 1, said + strlen(said));
         ck_assert_int_ne(access(in_folder("k.csv"), F_OK), 0);
     }
-    ck_assert_int_eq(RUN("conductivity", OF_CELL, "1000", "--solid-conductivity", "5"), 2);
-    ck_assert_ptr_nonnull(strstr(said, "names no unit of length, which --solid-conductivity needs"));
-    ck_assert_int_eq(RUN("conductivity", MONO, "--emissivity=.5", "--solid-conductivity=5"), 2);
-    ck_assert_ptr_nonnull(strstr(said, "--solid-conductivity needs --temperature"));
+    FAIL_WITH(2, "conductivity", OF_CELL, "1000", "--solid-conductivity", "5");
+    assert_has(said, "names no unit of length, which --solid-conductivity needs");
+    FAIL_WITH(2, "conductivity", MONO, "--emissivity=.5", "--solid-conductivity=5");
+    assert_has(said, "--solid-conductivity needs --temperature");
 }

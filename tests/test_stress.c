@@ -28,7 +28,7 @@ static double random_in(uint64_t seed, double low, double high) {
 
 static double exact(double r1, double r2, double gap) {
     double f = -1;
-    ck_assert_int_eq(fibrad_pair_exact(r1, r2, gap, &f), FIBRAD_OK);
+    assert_ok(fibrad_pair_exact(r1, r2, gap, &f));
     return f;
 }
 
@@ -36,7 +36,7 @@ static fibrad_row beam(const struct bed *bed, uint32_t i, uint32_t directions) {
     OWNED fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();
     fibrad_row row = row_of(bed->n);
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = directions}, &row), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = directions}, &row));
     return row;
 }
 
@@ -44,7 +44,7 @@ static fibrad_row rays(const struct bed *bed, uint32_t i, uint32_t number) {
     OWNED fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();
     fibrad_row row = row_of(bed->n);
-    ck_assert_int_eq(fibrad_cast_row(scene, &work, i, &(fibrad_cast_rule){.rays = number}, &row, NULL), FIBRAD_OK);
+    assert_ok(fibrad_cast_row(scene, &work, i, &(fibrad_cast_rule){.rays = number}, &row, NULL));
     return row;
 }
 
@@ -82,17 +82,13 @@ TEST(rows_at_every_scale) {
     double two = 0, two_cast = 0, ten = 0;
     for (int k = -400; k <= 400; k += all() ? 1 : 25) {
         move(&scaled, &bed, ldexp(1, k), nowhere);
-        fibrad_row other = beam(&scaled, 42, 55);
-        two += !same_bits(&row, &other);
-        row_free(&other);
-        other = rays(&scaled, 42, 500);
-        two_cast += !same_bits(&cast, &other);
-        row_free(&other);
+        OWNED_ROW by_two = beam(&scaled, 42, 55), cast_by_two = rays(&scaled, 42, 500);
+        two += !same_bits(&row, &by_two);
+        two_cast += !same_bits(&cast, &cast_by_two);
         if (abs(k) > 100) continue;
         move(&scaled, &bed, pow(10, k), nowhere);
-        other = beam(&scaled, 42, 55);
-        worst_of(&ten, row_distance(&row, &other));
-        row_free(&other);
+        OWNED_ROW by_ten = beam(&scaled, 42, 55);
+        worst_of(&ten, row_distance(&row, &by_ten));
     }
     report("rows times 2^k, k = -400 ... 400: results with other bits", two, 0);
     report("rows by rays times 2^k: results with other bits", two_cast, 0);
@@ -261,7 +257,7 @@ TEST(lattices_along_the_beams) {
         for (int a = 0; a < 3; a++)
             for (uint64_t k = 0; k < rounds(3, 34); k++) {
                 double w[3], axis[3], length = sqrt(axes[a][0] + axes[a][1] + axes[a][2]), cosine = 0, m[3][3];
-                ck_assert_int_eq(fibrad_direction((uint32_t)k, 34, w), FIBRAD_OK);
+                assert_ok(fibrad_direction((uint32_t)k, 34, w));
                 for (int c = 0; c < 3; c++) axis[c] = axes[a][c] / length, cosine += axis[c] * w[c];
                 /* R = I + [v] + [v]^2/(1 + cosine), v = axis x w, turns the axis into w */
                 double v[3] = {axis[1] * w[2] - axis[2] * w[1], axis[2] * w[0] - axis[0] * w[2],
@@ -303,7 +299,7 @@ TEST(obstacle_across_a_pair) {
         double without = row_factor(&row, 1), last = without, step = all() ? 1e-3 : 1e-2;
         row_free(&row);
         for (double x = -6; x <= 6; x += step) {
-            struct bed bed =
+            OWNED_BED bed =
                 bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 1 + r2 + gap, r2}, {x, y, 1 + gap / 2, r}});
             row = beam(&bed, 0, 233);
             double f = row_factor(&row, 1);
@@ -312,7 +308,6 @@ TEST(obstacle_across_a_pair) {
             worst_of(&jump, fabs(f - last) - 2 * r * step);
             last = f;
             row_free(&row);
-            bed_free(&bed);
         }
         worst_of(&left, fabs(last - without));
     }
@@ -329,7 +324,7 @@ TEST(sight_through_many_periods) {
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(1);
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 144}, &row), FIBRAD_OK);
+    assert_ok(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 144}, &row));
     report("dilute periodic box: escaped", row.escaped, .05);
     report("dilute periodic box: sum + escaped - 1", closure(&row), 1e-12);
 }
@@ -369,11 +364,11 @@ static void try_near(struct seen *seen, const fibrad_scene *scene, uint32_t i, u
     double f[2][9], length[2][9], angle[2][9];
     fibrad_row a = {.col = col[0], .f = f[0], .capacity = n}, b = {.col = col[1], .f = f[1], .capacity = n};
     if (in_little(scene, bare, i, &rule, &b)) {
-        ck_assert_int_eq(fibrad_beam_row(scene, work, i, &rule, &a), FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, work, i, &rule, &a));
         seen->other_bits += !same_bits(&a, &b);
     }
-    ck_assert_int_eq(fibrad_cast_row(scene, work, i, &rays, &a, &(fibrad_cast_means){length[0], angle[0]}), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_cast_row(scene, bare, i, &rays, &b, &(fibrad_cast_means){length[1], angle[1]}), FIBRAD_OK);
+    assert_ok(fibrad_cast_row(scene, work, i, &rays, &a, &(fibrad_cast_means){length[0], angle[0]}));
+    assert_ok(fibrad_cast_row(scene, bare, i, &rays, &b, &(fibrad_cast_means){length[1], angle[1]}));
     seen->other_bits += !same_bits(&a, &b);
     worst_of(&seen->closure, closure(&a));
     for (uint32_t k = 0; k < a.length; k++) {
@@ -413,8 +408,8 @@ static void random_scene(struct seen *seen, void *scene_memory, size_t scene_siz
     fibrad_beam_rule rule = {.directions = 8 + (uint32_t)(13 * uniform())};
     for (uint32_t i = 0; i < n; i++) {
         fibrad_row row = {.col = col, .f = col_f, .capacity = 9};
-        ck_assert_int_eq(fibrad_beam_row(scene, work, i, &rule, &row), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_rows_add(&rows, &row, 0), FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, work, i, &rule, &row));
+        assert_ok(fibrad_rows_add(&rows, &row, 0));
         for (uint32_t k = 0; k < row.length; k++) seen->nonsense += !(row.f[k] > 0 && row.f[k] <= 1 + 1e-12);
         seen->nonsense += !(row.escaped >= -1e-15 && row.error >= 0);
         worst_of(&seen->closure, closure(&row));
@@ -423,22 +418,20 @@ static void random_scene(struct seen *seen, void *scene_memory, size_t scene_siz
     fibrad_matrix *matrix;
     fibrad_factors raw, closed;
     double largest;
-    ck_assert_int_eq(fibrad_matrix_init(&matrix, matrix_memory, sizeof matrix_memory, scene, &rows, 1,
-                                        &(fibrad_matrix_rule){.raw = 1}, NULL),
-                     FIBRAD_OK);
-    ck_assert_int_eq(fibrad_matrix_close(matrix), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_matrix_read(matrix, &raw), FIBRAD_OK);
+    assert_ok(fibrad_matrix_init(&matrix, matrix_memory, sizeof matrix_memory, scene, &rows, 1,
+                                 &(fibrad_matrix_rule){.raw = 1}, NULL));
+    assert_ok(fibrad_matrix_close(matrix));
+    assert_ok(fibrad_matrix_read(matrix, &raw));
     for (uint32_t i = 0; i < n; i++) { /* the sum of the mean */
         double sum = 0;
         for (uint32_t j = 0; j < n; j++)
             sum += (matrix_factor(&raw, i, j) + r[j] / r[i] * (r[j] / r[i]) * matrix_factor(&raw, j, i)) / 2;
         worst_of(&seen->averaged, sum - 1);
     }
-    ck_assert_int_eq(fibrad_matrix_init(&matrix, matrix_memory, sizeof matrix_memory, scene, &rows, 1, NULL, NULL),
-                     FIBRAD_OK);
-    ck_assert_int_eq(fibrad_matrix_close(matrix), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_matrix_read(matrix, &closed), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_matrix_reciprocity(matrix, &largest), FIBRAD_OK);
+    assert_ok(fibrad_matrix_init(&matrix, matrix_memory, sizeof matrix_memory, scene, &rows, 1, NULL, NULL));
+    assert_ok(fibrad_matrix_close(matrix));
+    assert_ok(fibrad_matrix_read(matrix, &closed));
+    assert_ok(fibrad_matrix_reciprocity(matrix, &largest));
     worst_of(&seen->reciprocity, largest);
     for (uint32_t i = 0; i < n; i++) {
         worst_of(&seen->closed, matrix_sum(&closed, i) - 1);
@@ -456,7 +449,9 @@ TEST(random_scenes) {
     fibrad_work work = work_growing(), bare = work_fixed(NULL, 0);
     for (uint64_t wanted = rounds(10000, 1000000); seen.scenes < wanted;)
         random_scene(&seen, memory, size, &work, &bare);
-    free(memory), work_free(&work), work_free_fixed(&bare);
+    free(memory);
+    work_free(&work);
+    work_free_fixed(&bare);
     printf("%llu random scenes (and %llu refused)\n", (unsigned long long)seen.scenes,
            (unsigned long long)seen.refused);
     report("random scenes: factors that are negative, NaN or above 1", seen.nonsense, 0);

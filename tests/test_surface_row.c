@@ -33,7 +33,7 @@ static void make(uint32_t n, bool periodic) {
 
 static fibrad_row surface_row(uint32_t i, const fibrad_surface_rule *rule) {
     fibrad_row row = {.col = col, .f = f, .capacity = MOST};
-    ck_assert_int_eq(fibrad_surface_row(scene, &work, i, rule, &row), FIBRAD_OK);
+    assert_ok(fibrad_surface_row(scene, &work, i, rule, &row));
     ck_assert_uint_eq(row.sphere, i);
     ck_assert_int_eq(row.symmetric, 1);
     ck_assert(row.beyond == 0 && row.error >= 0);
@@ -73,7 +73,7 @@ static double plain(uint32_t i, uint32_t j, uint32_t nodes) {
     const double r1 = bed.r[one], r2 = bed.r[two], ratio = one == i ? 1 : r1 * r1 / (r2 * r2);
     double unblocked, blocked, exact;
     surface_plain(r1, r2, d - r1 - r2, &obstacles, nodes, &unblocked, &blocked);
-    ck_assert_int_eq(fibrad_pair_exact(r1, r2, d - r1 - r2, &exact), FIBRAD_OK);
+    assert_ok(fibrad_pair_exact(r1, r2, d - r1 - r2, &exact));
     return ratio * (blocked / unblocked * exact);
 }
 
@@ -95,8 +95,7 @@ TEST(equals_plain_sums) {
 TEST(skips_and_instruction_sets_change_no_bit) {
     static uint32_t col_first[MOST];
     static double f_first[MOST];
-    int isa[ISAS_MOST];
-    const int sets = isas_there(isa);
+    const struct isas isas = isas_there();
     for (int periodic = 0; periodic < 2; periodic++) {
         make(200, periodic);
         for (uint32_t i = 0; i < bed.n; i += 20) {
@@ -105,8 +104,8 @@ TEST(skips_and_instruction_sets_change_no_bit) {
             const fibrad_row first = surface_row(i, &rule);
             memcpy(col_first, col, first.length * sizeof *col);
             memcpy(f_first, f, first.length * sizeof *f);
-            for (int set = 0; set < sets; set++) {
-                make_scene(isa[set], periodic);
+            for (int set = 0; set < isas.count; set++) {
+                make_scene(isas.set[set], periodic);
                 for (uint32_t skip = 2; skip <= 32; skip *= 2) {
                     rule.flags = skip < 32 ? skip : 30;
                     const fibrad_row row = surface_row(i, &rule);
@@ -129,7 +128,7 @@ TEST(agrees_with_beams) {
         const fibrad_row row = surface_row(i, &(fibrad_surface_rule){.cutoff = CUTOFF});
         fibrad_row beam = {.col = beam_col, .f = beam_f, .capacity = MOST};
         const fibrad_beam_rule rule = {.directions = 2000, .cutoff = CUTOFF};
-        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &beam), FIBRAD_OK);
+        assert_ok(fibrad_beam_row(scene, &work, i, &rule, &beam));
         for (uint32_t j = 0; j < bed.n; j++) {
             const double e = row_factor(&row, j) - row_factor(&beam, j);
             difference += e * e;
@@ -161,7 +160,7 @@ TEST(rows_of_a_matrix) {
     make(60, false);
     OWNED_ROWS rows = {.memory = memory_growing()};
     for (uint32_t i = 0; i < bed.n; i++)
-        ck_assert_int_eq(fibrad_surface_row(scene, &work, i, NULL, &(fibrad_row){.rows = &rows}), FIBRAD_OK);
+        assert_ok(fibrad_surface_row(scene, &work, i, NULL, &(fibrad_row){.rows = &rows}));
     OWNED_MATRIX raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
     OWNED_MATRIX m = matrix_of(scene, &rows, 1, NULL);
     double above = 0, largest;
@@ -173,7 +172,7 @@ TEST(rows_of_a_matrix) {
         ck_assert_double_le(row_distance(&before, &after), 1e-15 + above);
         ck_assert_double_eq_tol(matrix_total(&m.factors, i), 1, 1e-14);
     }
-    ck_assert_int_eq(fibrad_matrix_reciprocity(raw.matrix, &largest), FIBRAD_OK);
+    assert_ok(fibrad_matrix_reciprocity(raw.matrix, &largest));
     ck_assert_double_le(largest, 1e-15);
 }
 
@@ -184,7 +183,7 @@ TEST(tells_what_it_needs) {
     static double f_enough[MOST];
     const fibrad_row enough = surface_row(0, &rule);
     memcpy(col_enough, col, sizeof col), memcpy(f_enough, f, sizeof f);
-    fibrad_work little = work_fixed(NULL, 0);
+    OWNED_FIXED little = work_fixed(NULL, 0);
     fibrad_row row = {.col = col, .f = f, .capacity = MOST, .length = 77};
     int tries = 0;
     while (work_again(&little, fibrad_surface_row(scene, &little, 0, &rule, &row))) {
@@ -198,7 +197,6 @@ TEST(tells_what_it_needs) {
     row.capacity = 3;
     ck_assert_int_eq(fibrad_surface_row(scene, &little, 0, &rule, &row), FIBRAD_E_CAPACITY);
     ck_assert_uint_eq(row.length, enough.length);
-    work_free_fixed(&little);
 }
 
 /* With three periods each way there are 7^3 images in the cube. A hundred periods and more are refused, and so is what

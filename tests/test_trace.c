@@ -38,7 +38,7 @@ static fibrad_tracer *tracer_of(const fibrad_scene *scene, int lists, fibrad_wor
     fibrad_workspace *space = NULL;
     const size_t extra = lists == FEW ? fibrad_tracer_least() : fibrad_tracer_best(scene);
     *work = work_growing();
-    ck_assert_int_eq(fibrad_work_open(work, scene, extra, extra, &space), FIBRAD_OK);
+    assert_ok(fibrad_work_open(work, scene, extra, extra, &space));
     fibrad_tracer *tracer = fibrad_tracer_of(space, scene);
     if (lists == EACH) ck_assert_uint_ge(tracer->lists, scene->facts.spheres);
     return tracer;
@@ -150,12 +150,11 @@ TEST(overlaps) {
 
 /* One large sphere has thousands of small ones about it, more than a list holds. */
 TEST(large_among_small) {
-    OWNED_BED bed;
-    bed_init(&bed);
+    OWNED_BED bed = bed_empty();
     add_sphere(&bed, 0, 0, 0, 1);
     for (uint32_t k = 0; k < 1500; k++) {
         double w[3], d = 1.03 + .07 * (k % 4);
-        ck_assert_int_eq(fibrad_direction(k, 1500, w), FIBRAD_OK);
+        assert_ok(fibrad_direction(k, 1500, w));
         add_sphere(&bed, d * w[0], d * w[1], d * w[2], .02);
     }
     follow(&bed, &versions[0], EACH, 0, 1500, 3);
@@ -163,12 +162,11 @@ TEST(large_among_small) {
 
 /* More small spheres overlap a large one than there is room for. So there is no list at all. */
 TEST(studded_sphere) {
-    OWNED_BED bed;
-    bed_init(&bed);
+    OWNED_BED bed = bed_empty();
     add_sphere(&bed, 0, 0, 0, 1);
     for (uint32_t k = 0; k < 700; k++) {
         double w[3];
-        ck_assert_int_eq(fibrad_direction(k, 700, w), FIBRAD_OK);
+        assert_ok(fibrad_direction(k, 700, w));
         add_sphere(&bed, 1.01 * w[0], 1.01 * w[1], 1.01 * w[2], .03);
     }
     follow(&bed, &versions[0], EACH, 0, 1400, 3);
@@ -281,9 +279,9 @@ TEST(lists_belong_to_contents) {
         fibrad_scene *scene = NULL;
         fibrad_workspace *space = NULL;
         bool kept;
-        ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, NULL, &spheres, NULL), FIBRAD_OK);
+        assert_ok(fibrad_scene_init(&scene, memory, sizeof memory, NULL, &spheres, NULL));
         const size_t extra = fibrad_tracer_least();
-        ck_assert_int_eq(fibrad_work_open(&work, scene, extra, extra, &space), FIBRAD_OK);
+        assert_ok(fibrad_work_open(&work, scene, extra, extra, &space));
         ck_assert_double_eq(length_along_x(fibrad_tracer_of(space, scene), &kept), distances[k] - 2);
         ck_assert_int_eq(kept, k % 2 == 1);
     }
@@ -309,7 +307,7 @@ TEST(memory) {
     for (size_t shift = 0; shift < 64; shift += 7) {
         memset(block, 0x5a, size + 128);
         work = work_fixed(block + shift, size);
-        ck_assert_int_eq(fibrad_work_open(&work, scene, extra, extra, &space), FIBRAD_OK);
+        assert_ok(fibrad_work_open(&work, scene, extra, extra, &space));
         fibrad_tracer *tracer = fibrad_tracer_of(space, scene);
         ck_assert_uint_ge((uintptr_t)tracer, (uintptr_t)work.memory.block);
         fibrad_hit hit;
@@ -333,7 +331,7 @@ TEST(ids_decide_what_is_met_first) {
             const size_t size = fibrad_scene_size(3, 1);
             OWNED void *block = block_of(size);
             const fibrad_spheres spheres = {.x = x, .y = by_order, .z = z, .r = r, .n = 3, .id = id};
-            ck_assert_int_eq(fibrad_scene_init(&scene, block, size, NULL, &spheres, NULL), FIBRAD_OK);
+            assert_ok(fibrad_scene_init(&scene, block, size, NULL, &spheres, NULL));
             OWNED_WORK work;
             fibrad_tracer *tracer = tracer_of(scene, EACH, &work);
             const double first = lower == 0 ? .5 : -.5;

@@ -18,7 +18,7 @@ static fibrad_transient *transient_of(const struct bed *bed, const fibrad_scene_
                                       const fibrad_transient_config *config) {
     const fibrad_spheres spheres = spheres_of(bed);
     fibrad_transient *transient;
-    ck_assert_int_eq(fibrad_transient_new(&transient, scene, &spheres, config, NULL), FIBRAD_OK);
+    assert_ok(fibrad_transient_new(&transient, scene, &spheres, config, NULL));
     return transient;
 }
 
@@ -55,7 +55,7 @@ TEST(one_sphere_cools) {
         double temperature = begin[k], time = 0;
         for (int part = 0; part < 10; part++) {
             fibrad_span span = {&temperature, &capacity, .duration = unit * pow(10, part / 4. - 1)};
-            ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
+            assert_ok(fibrad_transient_advance(t, &sources, &span));
             time += span.duration;
             const double expected = temperature_after(a, begin[k], around[k], time);
             ck_assert_double_le(fabs(temperature - expected), 1e-4 * expected);
@@ -76,7 +76,7 @@ TEST(second_order) {
         double temperature = 1200;
         fibrad_span span = {&temperature, &capacity, .duration = duration, .step = duration / (16 << k),
                             .tolerance = 1e-9};
-        ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
+        assert_ok(fibrad_transient_advance(t, &sources, &span));
         ck_assert_uint_eq(span.steps, 16u << k);
         error[k] = fabs(temperature - expected);
     }
@@ -113,7 +113,7 @@ TEST(emissivity_follows) {
                             .tolerance = k < 3 ? 1e-9 : 0,
                             .law = proportional,
                             .context = &calls};
-        ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
+        assert_ok(fibrad_transient_advance(t, &sources, &span));
         ck_assert_int_gt(calls, 0);
         ck_assert_double_le(fabs(capacity * (1200 - temperature) - span.surroundings_energy), 1e-12 * capacity * 1200);
         if (k < 3) error[k] = fabs(temperature - expected);
@@ -168,7 +168,7 @@ TEST(energy_is_kept) {
             fibrad_span span = {temperature, f.capacity, .duration = k == 2 ? 400 : 20, .body_energy = energy};
             span.tolerance = k == 0 ? 1e-2 : 1e-3, span.step = k == 2 ? 200 : 0;
             f.sources.tolerance = 1e-2;
-            ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_OK);
+            assert_ok(fibrad_transient_advance(t, &f.sources, &span));
             for (int i = 0; i < N; i++) {
                 const double change = f.capacity[i] * (temperature[i] - f.temperature[i]);
                 balance += change - span.duration * f.power[i];
@@ -216,14 +216,14 @@ TEST(bed_against_runge_kutta) {
     const fibrad_spheres spheres = spheres_of(&f.bed);
     const double end[2] = {800, f.wall[1]}, duration = 30;
     OWNED_FACTORS *factors = NULL;
-    ck_assert_int_eq(fibrad_exchange_factors(&f.scene, &spheres, &rule, NULL, NULL, &factors), FIBRAD_OK);
+    assert_ok(fibrad_exchange_factors(&f.scene, &spheres, &rule, NULL, NULL, &factors));
     double expected[N], temperature[N], power[N], slope[N];
     memcpy(expected, f.temperature, sizeof expected);
     memcpy(temperature, f.temperature, sizeof temperature);
     runge_kutta(&f, &factors->matrix, duration, 5000, expected);
     OWNED_TRANSIENT *t = transient_of(&f.bed, &f.scene, &config);
     fibrad_span span = {temperature, f.capacity, duration, .body_temperature = end, .power = power};
-    ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_OK);
+    assert_ok(fibrad_transient_advance(t, &f.sources, &span));
     slopes(&f, &factors->matrix, duration, duration, temperature, slope);
     for (int i = 0; i < N; i++) {
         ck_assert_double_le(fabs(temperature[i] - expected[i]), 1e-4 * expected[i]);
@@ -246,9 +246,9 @@ TEST(motes_are_no_limit) {
         for (uint32_t i = 0; i < n; i++) capacity[i] = 3e6 * 4 / 3 * M_PI * pow(bed.r[i], 3);
         const fibrad_heat_sources sources = sources_about(emissivity, 400);
         fibrad_span span = {temperature, capacity, .duration = 1e5, .power = power};
-        ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
+        assert_ok(fibrad_transient_advance(t, &sources, &span));
         for (int k = 0; k < 5; k++) { /* the motes are warm, and follow the slow change of the others */
-            ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
+            assert_ok(fibrad_transient_advance(t, &sources, &span));
             steps[n == 4] += span.steps + span.refused;
             const double emitted = 4 * M_PI * 1e-6 * .5 * SIGMA * pow(temperature[MOTE], 4);
             if (n == 4) ck_assert_double_lt(fabs(power[MOTE]), 2e-3 * emitted);
@@ -267,7 +267,7 @@ TEST(powers_alone) {
     sources.power = power;
     OWNED_TRANSIENT *t = transient_of(&bed, NULL, NULL);
     fibrad_span span = {temperature, capacity, .duration = 20};
-    ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
+    assert_ok(fibrad_transient_advance(t, &sources, &span));
     ck_assert_double_eq_tol(temperature[0], 400, 1e-9);
     ck_assert_double_eq_tol(temperature[1], 200, 1e-9);
     span.duration = 50;
@@ -286,10 +286,10 @@ TEST(patches_as_factors) {
         memcpy(temperature[method], f.temperature, sizeof f.temperature);
         for (int k = 0; k < 2; k++) {
             fibrad_span span = {temperature[method], f.capacity, .duration = 20, .tolerance = 1e-3};
-            ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_OK);
+            assert_ok(fibrad_transient_advance(t, &f.sources, &span));
             for (int i = 0; i < N; i++) f.bed.z[i] += k == 0 ? .5 : -.5;
             const fibrad_spheres spheres = spheres_of(&f.bed);
-            ck_assert_int_eq(fibrad_transient_move(t, &f.scene, &spheres), FIBRAD_OK);
+            assert_ok(fibrad_transient_move(t, &f.scene, &spheres));
         }
     }
     for (int i = 0; i < N; i++) {
@@ -310,8 +310,8 @@ TEST(threads_change_nothing) {
         double temperature[N];
         memcpy(temperature, f.temperature, sizeof temperature);
         fibrad_span span = {temperature, f.capacity, .duration = 20};
-        ck_assert_int_eq(fibrad_transient_new(&t, &f.scene, &spheres, NULL, &run), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_OK);
+        assert_ok(fibrad_transient_new(&t, &f.scene, &spheres, NULL, &run));
+        assert_ok(fibrad_transient_advance(t, &f.sources, &span));
         if (threads == 1) memcpy(first, temperature, sizeof first);
         ck_assert_mem_eq(first, temperature, sizeof first);
     }
@@ -351,7 +351,7 @@ TEST(what_is_refused) {
     f.sources.surroundings = 300, f.wall[1] = NAN;
     ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_E_ARGUMENT);
     f.wall[1] = 500;
-    ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_OK);
+    assert_ok(fibrad_transient_advance(t, &f.sources, &span));
     fibrad_transient_free(t);
     fibrad_transient_free(NULL);
 }

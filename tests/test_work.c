@@ -84,7 +84,7 @@ static struct output expected(int function, const fibrad_scene *scene, uint32_t 
     OWNED void *block = malloc(size);
     ck_assert_ptr_nonnull(block);
     fibrad_work work = work_fixed(block, size);
-    ck_assert_int_eq(call(function, scene, &work, i, &out), FIBRAD_OK);
+    assert_ok(call(function, scene, &work, i, &out));
     return out;
 }
 
@@ -105,7 +105,7 @@ LOOP_TEST(fixed_memory_step_by_step, SCENES *FUNCTIONS) {
             ck_assert_msg(++tries < 12, "%s asks for ever more memory", names[function]);
         }
         ck_assert_int_ge(tries, 1);
-        ck_assert_int_eq(call(function, scene, &work, i, &out), FIBRAD_OK);
+        assert_ok(call(function, scene, &work, i, &out));
         ck_assert_msg(same_output(function, &out, &truth), "%s", names[function]);
         const size_t size = work.memory.size;
         work_free_fixed(&work);
@@ -135,19 +135,21 @@ TEST(any_scenes_and_functions_in_turn) {
         const int k = (int)((at >> 29) % SCENES), function = (int)((at >> 20) % FUNCTIONS);
         const uint32_t i = (at >> 8) % bed[k].n;
         OWNED_BY(output_free) struct output truth = expected(function, scene[k], i);
-        ck_assert_int_eq(call(function, scene[k], &growing, i, &out), FIBRAD_OK);
+        assert_ok(call(function, scene[k], &growing, i, &out));
         ck_assert_msg(same_output(function, &out, &truth), "growing, round %d: %s", round, names[function]);
-        ck_assert_int_eq(call(function, scene[k], &fixed, i, &out), FIBRAD_OK);
+        assert_ok(call(function, scene[k], &fixed, i, &out));
         ck_assert_msg(same_output(function, &out, &truth), "fixed, round %d: %s", round, names[function]);
         int tries = 0, status;
         do {
             status = call(function, scene[k], &little, i, &out);
             ck_assert_int_lt(tries++, 12);
         } while (work_again(&little, status));
-        ck_assert_int_eq(status, FIBRAD_OK);
+        assert_ok(status);
         ck_assert_msg(same_output(function, &out, &truth), "little, round %d: %s", round, names[function]);
     }
-    work_free(&growing), work_free_fixed(&little), free(block);
+    work_free(&growing);
+    work_free_fixed(&little);
+    free(block);
     for (int k = 0; k < SCENES; k++) free(scene[k]), bed_free(&bed[k]);
 }
 
@@ -162,9 +164,9 @@ TEST(scenes_made_anew_in_the_same_place) {
             OWNED_BED bed = packing(150, .8, 1.2, .5, seed, false);
             const fibrad_spheres spheres = spheres_of(&bed);
             fibrad_scene *scene = NULL;
-            ck_assert_int_eq(fibrad_scene_init(&scene, block, size, NULL, &spheres, NULL), FIBRAD_OK);
+            assert_ok(fibrad_scene_init(&scene, block, size, NULL, &spheres, NULL));
             OWNED_BY(output_free) struct output truth = expected(function, scene, 70);
-            ck_assert_int_eq(call(function, scene, &work, 70, &out), FIBRAD_OK);
+            assert_ok(call(function, scene, &work, 70, &out));
             ck_assert_msg(same_output(function, &out, &truth), "%s", names[function]);
         }
 }
@@ -182,7 +184,7 @@ TEST(other_blocks_at_any_time) {
         for (int round = 0; round < 8; round++) {
             work.memory.block = blocks[round / 2 % 2] + (round & 4 ? 24 : 0);
             work.memory.size = size - 64 - (round & 2 ? 1000 : 0);
-            ck_assert_int_eq(call(function, scene, &work, 3, &out), FIBRAD_OK);
+            assert_ok(call(function, scene, &work, 3, &out));
             ck_assert_msg(same_output(function, &out, &truth), "%s", names[function]);
         }
     }
@@ -204,7 +206,7 @@ LOOP_TEST(blocks_of_any_alignment, FUNCTIONS) {
     for (size_t offset = 0; offset < 64; offset++) {
         memset(block, 0x5a, size + 128);
         fibrad_work work = work_fixed(block + offset, size);
-        ck_assert_int_eq(call(function, scene, &work, 5, &out), FIBRAD_OK);
+        assert_ok(call(function, scene, &work, 5, &out));
         ck_assert_msg(same_output(function, &out, &truth), "%s at %zu", names[function], offset);
         ck_assert(bytes_are(block, 0, offset, 0x5a));
         ck_assert(bytes_are(block, offset + size, size + 128, 0x5a));
@@ -232,7 +234,7 @@ LOOP_TEST(memory_that_is_refused, FUNCTIONS) {
             calls = source.calls;
             ck_assert_uint_ge(calls, 1);
         }
-        ck_assert_int_eq(status, FIBRAD_OK);
+        assert_ok(status);
         ck_assert_msg(same_output(function, &out, &truth), "%s", names[function]);
         ck_assert(work.memory.size == source.size && (unsigned char *)work.memory.block >= source.whole);
         free(source.whole);
@@ -260,13 +262,11 @@ TEST(bytes_that_are_enough) {
                                 work_fixed(six + offset, FIBRAD_WORK_BYTES(6, 6)),
                                 work_fixed(walls + offset, FIBRAD_WORK_BYTES(64, 3) + FIBRAD_WORK_WALLS)};
         for (int function = BEAM; function <= POINTS; function++) {
-            for (uint32_t i = 0; i < bed.n; i += 7)
-                ck_assert_int_eq(call(function, scenes[0], &works[0], i, &out), FIBRAD_OK);
-            ck_assert_int_eq(call(function, scenes[1], &works[1], 0, &out), FIBRAD_OK);
-            for (uint32_t i = 0; i < lone.n; i++)
-                ck_assert_int_eq(call(function, scenes[2], &works[2], i, &out), FIBRAD_OK);
+            for (uint32_t i = 0; i < bed.n; i += 7) assert_ok(call(function, scenes[0], &works[0], i, &out));
+            assert_ok(call(function, scenes[1], &works[1], 0, &out));
+            for (uint32_t i = 0; i < lone.n; i++) assert_ok(call(function, scenes[2], &works[2], i, &out));
             ck_assert_uint_eq(out.row.length, 1 + 4);
-            ck_assert_int_eq(call(function, scenes[3], &works[3], 0, &out), FIBRAD_OK);
+            assert_ok(call(function, scenes[3], &works[3], 0, &out));
         }
     }
     for (int k = 0; k < 4; k++) free(scenes[k]);
@@ -280,9 +280,9 @@ static void powers_in(unsigned char *block, size_t size, size_t offset, const fi
     ck_assert_int_eq(fibrad_heat_init(&heat, block + offset, size - 1, &config, scene), FIBRAD_E_SIZE);
     ck_assert_int_eq(fibrad_heat_init(&heat, block + offset, 0, &config, scene), FIBRAD_E_SIZE);
     ck_assert_ptr_null(heat);
-    ck_assert_int_eq(fibrad_heat_init(&heat, block + offset, size, &config, scene), FIBRAD_OK);
+    assert_ok(fibrad_heat_init(&heat, block + offset, size, &config, scene));
     OWNED_WORK work = work_growing();
-    ck_assert_int_eq(heat_trace(heat, &work, false), FIBRAD_OK);
+    assert_ok(heat_trace(heat, &work, false));
     double temperature[64], emissivity[64], floor_temperature = 900, floor_emissivity = .3;
     for (uint32_t i = 0; i < n; i++) temperature[i] = 300 + 10 * i, emissivity[i] = .5 + .007 * i;
     fibrad_heat_sources sources;

@@ -62,15 +62,12 @@ static fibrad_heat_result result = {.power = watts,
                                     .body_temperature_error = none_missed};
 
 static void write_text(write_function *write, const struct contents *what, bool first) {
-    FILE *file = tmpfile();
+    OWNED_FILE *file = tmpfile();
     ck_assert_ptr_nonnull(file);
     ck_assert_int_eq(write(file, what, first), 0);
     rewind(file);
     text[fread(text, 1, sizeof text - 1, file)] = 0;
-    fclose(file);
 }
-
-static void expect_begin(const char *with) { ck_assert_mem_eq(text, with, strlen(with)); }
 
 static void write_matrix(write_function *write, bool ids, const struct walls *walls_or_none) {
     const struct contents what = {
@@ -136,19 +133,18 @@ TEST(numbers) {
     for (size_t k = 0; k < sizeof special / sizeof *special; ++k) assert_shortest(special[k]);
     *text_whole(ours, INT64_MIN) = 0;
     ck_assert_str_eq(ours, "-9223372036854775808");
-    FILE *file = tmpfile();
+    OWNED_FILE *file = tmpfile();
     ck_assert_ptr_nonnull(file);
     text_json_real(file, NAN);
     text_json_real(file, .5);
     rewind(file);
     ck_assert_str_eq(fgets(ours, sizeof ours, file), "null0.5");
-    fclose(file);
 }
 
 TEST(csv) {
     for (int ids = 0; ids < 2; ++ids) {
         write_matrix(write_csv, ids, NULL);
-        expect_begin("i,j,F\n");
+        assert_begins(text, "i,j,F\n");
         char *line = text + 6;
         for (uint32_t i = 0; i < 3; ++i)
             for (uint64_t k = start[i]; k < start[i + 1]; ++k) {
@@ -190,12 +186,12 @@ TEST(csv_of_walls) {
     const fibrad_exchange_rule grey = {.emissivity = emissivity, .body_emissivity = none};
     struct walls nameless = {.count = 2};
     write_text(write_csv, &(struct contents){.bed = &bed, .factors = &cut, .walls = &nameless, .grey = &grey}, true);
-    expect_begin("i,j,D,body\n");
-    ck_assert_ptr_nonnull(strstr(text, "\n0,-2,0.0625,wall_1\n0,-3,0.25,wall_2\n0,-4,0.125,beyond\n"));
-    ck_assert_ptr_null(strstr(text, "\n-2,"));
+    assert_begins(text, "i,j,D,body\n");
+    assert_has(text, "\n0,-2,0.0625,wall_1\n0,-3,0.25,wall_2\n0,-4,0.125,beyond\n");
+    assert_lacks(text, "\n-2,");
     nameless.count = 0; /* `grey` makes these exchange factors */
     write_text(write_csv, &(struct contents){.bed = &bed, .factors = &cut, .walls = &nameless, .grey = &grey}, true);
-    ck_assert_ptr_nonnull(strstr(text, "\n0,-1,0.5,surroundings\n0,-2,0.125,beyond\n"));
+    assert_has(text, "\n0,-1,0.5,surroundings\n0,-2,0.125,beyond\n");
 }
 
 /* Rows of walls come after what the wall sends to the spheres. Walls without bounds have none, and null in JSON. */
@@ -210,24 +206,23 @@ TEST(rows_of_walls) {
     ck_assert_str_eq(strchr(rows + 1, '\n'), "\n-2,-2,0.5,cylinder:cylinder\n-2,-3,0.25,cylinder:zmin\n"
                                              "-2,-1,0.125,cylinder:surroundings\n");
     write_text(write_json, &what, true);
-    ck_assert_ptr_nonnull(
-        strstr(text, "\"zmin\":[0.25,0.125,0]},\"wall_rows\":{\"cylinder\":{\"walls\":[0.5,0.25],\"escaped\":0.125,"
-                     "\"error\":0.0625},\"zmin\":{\"walls\":[null,null],\"escaped\":null,\"error\":null}}}\n"));
+    assert_has(text, "\"zmin\":[0.25,0.125,0]},\"wall_rows\":{\"cylinder\":{\"walls\":[0.5,0.25],\"escaped\":0.125,"
+                     "\"error\":0.0625},\"zmin\":{\"walls\":[null,null],\"escaped\":null,\"error\":null}}}\n");
 }
 
 /* Frames and files are columns. The header comes once. */
 TEST(series) {
     struct contents what = {.bed = &bed, .factors = &factors, .series = true};
     write_text(write_csv, &what, true);
-    expect_begin("frame,timestep,i,j,F\n0,1200,0,70,");
+    assert_begins(text, "frame,timestep,i,j,F\n0,1200,0,70,");
     what.bed = &plain;
     what.file = "a \"b\", c.dump";
     write_text(write_csv, &what, false);
-    expect_begin("\"a \"\"b\"\", c.dump\",7,,0,1,");
+    assert_begins(text, "\"a \"\"b\"\", c.dump\",7,,0,1,");
     write_text(write_csv, &what, true);
-    expect_begin("file,frame,timestep,i,j,F\n");
+    assert_begins(text, "file,frame,timestep,i,j,F\n");
     write_heat(write_heat_csv, &(struct contents){.bed = &bed, .series = true});
-    expect_begin("frame,timestep,i,T_K,q_W,q_error_W,T_error_K,body\n0,1200,0,600,");
+    assert_begins(text, "frame,timestep,i,T_K,q_W,q_error_W,T_error_K,body\n0,1200,0,600,");
 }
 
 /* If surroundings have no temperature, they do not appear. */
@@ -247,7 +242,7 @@ TEST(heat) {
     }
     sources.surroundings = 300;
     write_heat(write_heat_csv, &(struct contents){.bed = &plain});
-    ck_assert_ptr_null(strstr(text, "\n-1,"));
+    assert_lacks(text, "\n-1,");
 }
 
 /* JSON has no NaN and no control characters. tests/check_written.sh has Python read it. */
@@ -274,8 +269,8 @@ TEST(json) {
 LOOP_TEST(matrix_market, 2) {
     write_matrix(write_mtx, _i == 1, NULL);
     const char banner[] = "%%MatrixMarket matrix coordinate real general\n";
-    ck_assert_int_eq(strncmp(text, banner, strlen(banner)), 0);
-    ck_assert_ptr_nonnull(strstr(text, "\n% View factors F_ij from"));
+    assert_begins(text, banner);
+    assert_has(text, "\n% View factors F_ij from");
     ck_assert((strstr(text, "\n% ids: 0 70 123456789012\n3 3 4\n") != NULL) == _i);
     char *line = text;
     while (*line == '%') line = strchr(line, '\n') + 1;
@@ -323,7 +318,7 @@ TEST(paraview) {
     double values[9];
     int64_t whole[3];
     write_matrix(write_vtp, false, NULL);
-    ck_assert_ptr_nonnull(strstr(text, "NumberOfPoints=\"3\" NumberOfVerts=\"3\""));
+    assert_has(text, "NumberOfPoints=\"3\" NumberOfVerts=\"3\"");
     ck_assert_uint_eq(array("Points", values, 9), 9);
     for (int i = 0; i < 3; ++i)
         ck_assert(values[3 * i] == x[i] && values[3 * i + 1] == y[i] && values[3 * i + 2] == z[i]);
@@ -342,8 +337,8 @@ TEST(paraview) {
     const char *end = strstr(text, "</VTKFile>\n");
     ck_assert_ptr_nonnull(end);
     ck_assert_uint_eq(strlen(end), 11);
-    ck_assert_ptr_null(strstr(text, "Name=\"id\""));
-    ck_assert_ptr_null(strstr(text, "Name=\"wall_"));
+    assert_lacks(text, "Name=\"id\"");
+    assert_lacks(text, "Name=\"wall_");
 
     write_matrix(write_vtp, true, &walls);
     ck_assert_uint_eq(array("id", whole, 3), 3);
@@ -468,10 +463,8 @@ static int count_files(void) {
 }
 
 static void expect_file(const char *content) {
-    FILE *file = fopen(path, "r");
-    ck_assert_ptr_nonnull(file);
+    OWNED_FILE *file = opened(path, "r");
     text[fread(text, 1, sizeof text - 1, file)] = 0;
-    fclose(file);
     ck_assert_str_eq(text, content);
 }
 
@@ -718,17 +711,17 @@ TEST(dump_read_back) {
     second.timestep = 1300;
     second.period[0] = 11;
     second.low[2] = 0, second.high[2] = 5, second.period[2] = 7; /* by --periodic */
-    FILE *file = fopen(path, "w");
-    ck_assert_ptr_nonnull(file);
+    FILE *file = opened(path, "w");
     struct contents what = frame_of(&first);
     ck_assert_int_eq(write_heat_dump(file, &what, true), 0);
     what.bed = &second;
     ck_assert_int_eq(write_heat_dump(file, &what, false), 0);
     fclose(file);
     write_heat(write_heat_dump, &(struct contents){.bed = &first});
-    expect_begin("ITEM: UNITS\ncgs\nITEM: TIMESTEP\n1200\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS ff pp ff\n");
+    assert_begins(text,
+                  "ITEM: UNITS\ncgs\nITEM: TIMESTEP\n1200\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS ff pp ff\n");
     write_heat(write_heat_dump, &(struct contents){.bed = &plain});
-    expect_begin("ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS ff ff ff\n");
+    assert_begins(text, "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS ff ff ff\n");
     for (int k = 0; k < 2; ++k) {
         OWNED_BED back;
         const struct read_options options = {.frames = {k, k + 1, 1}, .extra = columns, .extras = 2};

@@ -10,7 +10,9 @@
 #include "cli/message.h"
 #include "fibrad.h"
 
-void bed_init(struct bed *bed) { *bed = (struct bed){.timestep = -1}; }
+struct bed bed_empty(void) {
+    return (struct bed){.timestep = -1};
+}
 
 static void *resized(void *array, size_t bytes, bool *good) {
     void *moved = realloc(array, bytes);

@@ -32,8 +32,8 @@ struct bed_sphere {
     int64_t id;
 };
 
-/* Makes an empty bed. Set bed->ids and bed->extras before the first sphere. */
-void bed_init(struct bed *bed);
+/* A bed without spheres. Set its ids and extras before the first sphere. */
+struct bed bed_empty(void);
 
 /* Adds a sphere. The caller fills in its extra columns. Status 0, STATUS_INPUT if there are too many spheres, or
  * STATUS_MEMORY. */

@@ -199,8 +199,7 @@ static int run_file(struct bed_options *options, const char *path, struct bed *b
 
 /* Outputs are opened first: a path that cannot be written is an error before any work is done. */
 static int run_frames(struct bed_options *options, bed_options_frame *frame, void *request) {
-    struct bed bed;
-    bed_init(&bed);
+    struct bed bed = bed_empty();
     int status = output_open(&options->picture, options->outputs.picture);
     if (!status) status = outputs_open(&options->outputs);
     options->report = outputs_report(&options->outputs, options->quiet);

@@ -146,7 +146,7 @@ int reader_next(struct reader *r, struct bed *bed, bool *more) {
 int read_bed(const char *path, const struct read_options *options, struct bed *bed) {
     struct reader *reader;
     bool more;
-    bed_init(bed);
+    *bed = bed_empty();
     int status = reader_open(&reader, path, options);
     if (!status) status = reader_next(reader, bed, &more);
     reader_close(reader);

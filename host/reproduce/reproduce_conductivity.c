@@ -26,7 +26,7 @@ static int conductivities(struct bed beds[1 + LATTICES], double factor[1 + LATTI
     static const double site[4][3] = {{0, 0, 0}, {.5, .5, 0}, {0, .5, .5}, {.5, 0, .5}},
                         body[2][3] = {{0}, {.5, .5, .5}};
     static const uint32_t paths[1 + LATTICES] = {300, 400000, 200000, 100000};
-    for (int k = 0; k <= LATTICES; ++k) bed_init(&beds[k]);
+    for (int k = 0; k <= LATTICES; ++k) beds[k] = bed_empty();
     int status = bed_make_packing(&beds[0], 2000, 1, 1, .586, 1);
     if (!status) status = lattice_cell(&beds[1], 2, 1, site);
     if (!status) status = lattice_cell(&beds[2], 4 / sqrt(3), 2, body);
@@ -91,8 +91,7 @@ static const struct {
 static int random_beds(const double porosity[PACKINGS], double factor[PACKINGS][EMISSIVITIES]) {
     int status = STATUS_OK;
     for (int k = 0; k < PACKINGS && !status; ++k) {
-        struct bed bed;
-        bed_init(&bed);
+        struct bed bed = bed_empty();
         status = bed_make_jammed(&bed, 2000, 1 - porosity[k], 1000, 1);
         for (int e = 0; e < EMISSIVITIES && !status; ++e)
             status = grey_conduction(&bed, emissivities[e], INFINITY, 100, &factor[k][e]);
@@ -190,8 +189,8 @@ static const char conducting_script[] =
 
 int reproduce_conducting(struct reproduce *reproduce) {
     struct bed bed[2];
-    bed_init(&bed[0]);
-    bed_init(&bed[1]);
+    bed[0] = bed_empty();
+    bed[1] = bed_empty();
     int status = lattice_cell(&bed[0], 2, 1, (const double[][3]){{0}});
     if (!status) status = bed_make_packing(&bed[1], 2000, 1, 1, 1 - RANDOM_POROSITY, 1);
     fputs("k", reproduce->data);

@@ -16,13 +16,13 @@ enum { CELLS = 7, DENSE = 4, SPHERES = 4 * CELLS * CELLS * CELLS, STRIDE = 5, WA
 static const fibrad_exchange_rule rule = {.directions = 144, .paths = 1600};
 
 static int make_bed(struct bed *bed, int column) {
-    bed_init(bed);
+    *bed = bed_empty();
     return column < DENSE ? bed_make_shaken(bed, CELLS, johnson_fraction[column], 1)
                           : bed_make_jammed(bed, SPHERES, johnson_fraction[DENSE], 1000, 1);
 }
 
 static int make_layer(struct bed *bed, int column) {
-    bed_init(bed);
+    *bed = bed_empty();
     return bed_make_layer(bed, SPHERES, column < DENSE ? johnson_fraction[column] : LAYER, 1000, 1);
 }
 

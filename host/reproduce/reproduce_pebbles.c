@@ -183,10 +183,9 @@ int reproduce_pebble_bed(struct reproduce *reproduce) {
     static const double fractions[] = {.55, .6};
     fputs("fraction,centre_distance_radii,factor,spheres\n", reproduce->data);
     for (size_t k = 0; k < sizeof fractions / sizeof *fractions; ++k) {
-        struct bed bed;
+        struct bed bed = bed_empty();
         struct rows rows = {0};
         struct within within = {0};
-        bed_init(&bed);
         int status = bed_make_packing(&bed, PEBBLES, 1, 1, fractions[k], 1);
         if (!status) status = rows_open(&rows, &bed, true);
         if (!status) status = collect_within(&within, &bed, &rows);

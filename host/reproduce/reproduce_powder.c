@@ -57,8 +57,7 @@ static int face_absorptances(const struct bed *layer, double face[EMISSIVITIES])
 static int all_faces(double emits[PACKINGS][EMISSIVITIES], double absorbs[PACKINGS][EMISSIVITIES]) {
     int status = STATUS_OK;
     for (int k = 0; k < PACKINGS && !status; ++k) {
-        struct bed layer;
-        bed_init(&layer);
+        struct bed layer = bed_empty();
         status = bed_make_layer(&layer, 1500, 1 - face_porosity[k], 1000, 1);
         for (int e = 0; e < EMISSIVITIES && !status; ++e)
             status = face_emissivity(&layer, face_emissivities[e], &emits[k][e]);

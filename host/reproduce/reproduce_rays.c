@@ -36,9 +36,8 @@ static int cast_pair(double h, fibrad_cast_rule rule, struct pair_rays *means) {
     *means = (struct pair_rays){0};
     fibrad_pair_exact(1, 1, h - 2, &exact);
     for (uint32_t k = 0; k < ORIENTATIONS && !status; ++k) {
-        struct bed bed;
+        struct bed bed = bed_empty();
         struct rows rows = {0};
-        bed_init(&bed);
         fibrad_direction(k, ORIENTATIONS, w);
         rule.seed = k;
         status = bed_add(&bed, &(struct bed_sphere){.r = 1});

@@ -40,10 +40,9 @@ static void read_frames(const char *path, uint8_t asked, size_t size) {
                                          .extras = asked & 8 ? 1 + (asked >> 4 & 1) : 0,
                                          .no_radius = (asked & 32) != 0};
     struct reader *reader;
-    struct bed bed;
+    struct bed bed = bed_empty();
     bool more = true;
     size_t beds = 0;
-    bed_init(&bed);
     int status = reader_open(&reader, path, &options);
     while (status == 0 && (status = reader_next(reader, &bed, &more)) == 0 && more) {
         check_bed(&bed, !options.no_radius);
