@@ -322,7 +322,7 @@ mutate:
 
 # One build under the sanitizers serves the fuzzers and the tests: of scalar code and of the widest lanes that run here.
 SANITIZE  = address,undefined
-SANITIZED_ISAS = scalar $(if $(shell grep -m 1 avx512dq /proc/cpuinfo),avx512,$(lastword $(filter-out avx512,$(ISAS))))
+SANITIZED_ISAS = scalar $(if $(shell grep -m 1 avx512dq /proc/cpuinfo),avx512,$(lastword $(filter-out scalar avx512,$(ISAS))))
 ALL_ISAS  = BUILD=$(BUILD)/nightly SANITIZED_ISAS="$(ISAS)"
 SANITIZED = $(MAKE) -s --no-print-directory BUILD=$(BUILD)/sanitized ISAS="$(SANITIZED_ISAS)" CC=clang LDFLAGS=-fsanitize=$(SANITIZE) \
             CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE) -fno-sanitize-recover=undefined"

@@ -1,7 +1,7 @@
 /* reproduce_conductivity.c - the radiative exchange factor F_E of beds, beside fits and correlations.
  * SPDX-License-Identifier: MIT
  *
- * Checks: two independent programs, and rays marched through a cubic lattice cell by cell. */
+ * Checks: two independent programs, and rays followed through a cubic lattice cell by cell. */
 #include <math.h>
 #include <string.h>
 

@@ -100,21 +100,6 @@ static int run_options(fibrad_job *job, const fibrad_bed_options *options, fibra
     return run_rule(job, fibrad_job_beam_row, beam, options, &how, factors);
 }
 
-int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
-                        const fibrad_bed_options *options, fibrad_run *run, fibrad_bed_factors **factors) {
-    static const fibrad_bed_options defaults;
-    fibrad_job job;
-    if (!factors) return FIBRAD_E_ARGUMENT;
-    *factors = NULL;
-    if (!options) options = &defaults;
-    int status = fibrad_job_open(&job, config, spheres, run);
-    if (!status) status = check_options(options, 1);
-    if (!status) status = fibrad_job_scratch(&job, options->scratch);
-    if (!status) status = run_options(&job, options, factors);
-    fibrad_job_close(&job);
-    return status;
-}
-
 /* Checks the properties of all spheres, since paths may meet each of them. The fault names the first invalid sphere. */
 static int check_spheres(fibrad_job *job, const fibrad_exchange_rule *rule) {
     if (!rule || (!rule->emissivity && job->facts.spheres > 0)) return FIBRAD_E_ARGUMENT;
@@ -134,32 +119,45 @@ static int check_spheres(fibrad_job *job, const fibrad_exchange_rule *rule) {
 
 static int run_exchange(fibrad_job *job, const fibrad_exchange_rule *rule, const fibrad_bed_options *options,
                         fibrad_bed_factors **factors) {
-    fibrad_exchange_rule walls = *rule;
     fibrad_body_row body_row[FIBRAD_BODIES_MAX];
     fibrad_matrix_rule how;
+    int status = check_spheres(job, rule);
+    if (status) return status;
+    fibrad_exchange_rule walls = *rule;
     walls.paths = fibrad_job_body_paths(job, PER_PATH * (uint64_t)(rule->paths ? rule->paths : 400));
-    const int status = plan_matrix(job, options, &walls, body_row, &how);
+    status = plan_matrix(job, options, &walls, body_row, &how);
     if (status) return status;
     how.emissivity = rule->node_emissivity ? rule->node_emissivity : rule->emissivity;
     if (rule->tolerance > 0 && !how.raw) return fibrad_job_exchange(job, row_by_paths, rule, &how, factors);
     return run_rule(job, row_by_paths, rule, options, &how, factors);
 }
 
-int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
-                            const fibrad_exchange_rule *rule, const fibrad_bed_options *options, fibrad_run *run,
-                            fibrad_bed_factors **factors) {
+/* grey: exchange factors by a rule. Otherwise: view factors. */
+static int factors_of_bed(const fibrad_scene_config *config, const fibrad_spheres *spheres, bool grey,
+                          const fibrad_exchange_rule *rule, const fibrad_bed_options *options, fibrad_run *run,
+                          fibrad_bed_factors **factors) {
     static const fibrad_bed_options defaults;
     fibrad_job job;
     if (!factors) return FIBRAD_E_ARGUMENT;
     *factors = NULL;
     if (!options) options = &defaults;
     int status = fibrad_job_open(&job, config, spheres, run);
-    if (!status) status = check_options(options, 0);
+    if (!status) status = check_options(options, grey ? 0 : 1);
     if (!status) status = fibrad_job_scratch(&job, options->scratch);
-    if (!status) status = check_spheres(&job, rule);
-    if (!status) status = run_exchange(&job, rule, options, factors);
+    if (!status) status = grey ? run_exchange(&job, rule, options, factors) : run_options(&job, options, factors);
     fibrad_job_close(&job);
     return status;
+}
+
+int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
+                        const fibrad_bed_options *options, fibrad_run *run, fibrad_bed_factors **factors) {
+    return factors_of_bed(config, spheres, false, NULL, options, run, factors);
+}
+
+int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
+                            const fibrad_exchange_rule *rule, const fibrad_bed_options *options, fibrad_run *run,
+                            fibrad_bed_factors **factors) {
+    return factors_of_bed(config, spheres, true, rule, options, run, factors);
 }
 
 struct displacement_rule {

@@ -65,6 +65,14 @@ static inline void fibrad_sincos_turn(double u, double *sine, double *cosine) {
     if ((quarter + 1) & 2) *cosine = -*cosine;
 }
 
+/* A direction, spread evenly over the sphere, from two numbers in [0, 1). */
+static inline void fibrad_even_direction(const double x[2], double w[3]) {
+    const double z = 1 - 2 * x[0], ring = fibrad_sqrt(fibrad_max(0, 1 - z * z));
+    double sine, cosine;
+    fibrad_sincos_turn(x[1], &sine, &cosine);
+    w[0] = ring * cosine, w[1] = ring * sine, w[2] = z;
+}
+
 /* The angle in [0, pi/2] of the point (x, y). x and y are 0 to 1e150, and not both are 0. The angle to the nearer
  * axis is halved twice, to at most pi/16. There the series of atan ends at u^25. */
 static inline double fibrad_quarter_angle(double x, double y) {

@@ -26,19 +26,14 @@ typedef struct furnace_bundle {
     double weight;
 } furnace_bundle;
 
-/* An isotropic direction from two numbers in [0, 1). */
-static void bundle_scatter(furnace_bundle *r, double u, double v) {
-    double z = 1 - 2 * u, rho = fibrad_sqrt(fibrad_max(1 - z * z, 0)), sine, cosine;
-    fibrad_sincos_turn(v, &sine, &cosine);
-    r->direction[0] = rho * cosine;
-    r->direction[1] = rho * sine;
-    r->direction[2] = z;
-}
-
-/* A direction away from wall w, by the cosine law, from two numbers in [0, 1). */
-static void bundle_leave_wall(furnace_bundle *r, uint32_t w, double u, double v) {
-    double rho = fibrad_sqrt(u), z = fibrad_sqrt(1 - u), sine, cosine;
-    fibrad_sincos_turn(v, &sine, &cosine);
+/* A direction from two numbers in [0, 1): by the cosine law if the bundle leaves wall w; any if w is WALL_NONE. */
+static void bundle_turn(furnace_bundle *r, uint32_t w, const double u[2]) {
+    if (w == WALL_NONE) {
+        fibrad_even_direction(u, r->direction);
+        return;
+    }
+    double rho = fibrad_sqrt(u[0]), z = fibrad_sqrt(1 - u[0]), sine, cosine;
+    fibrad_sincos_turn(u[1], &sine, &cosine);
     r->direction[fibrad_face_axis(w)] = fibrad_face_is_upper(w) ? -z : z;
     r->direction[fibrad_face_along(w, 0)] = rho * cosine;
     r->direction[fibrad_face_along(w, 1)] = rho * sine;
@@ -74,7 +69,7 @@ static uint32_t bundle_start(const fibrad_furnace *f, uint64_t k, size_t s, furn
     r->weight = f->power[s] / ((double)(f->first[s + 1] - f->first[s]) * f->bundle_power) * FIBRAD_TALLY_UNIT;
     if (s < f->cells) {
         for (uint32_t a = 0; a < 3; a++) r->at[a] = (double)(s / f->cell_stride[a] % f->config.cells[a]) + u[2 + a];
-        bundle_scatter(r, u[0], u[1]);
+        bundle_turn(r, WALL_NONE, u);
         return WALL_NONE;
     }
     uint32_t w = 0, b, c;
@@ -84,7 +79,7 @@ static uint32_t bundle_start(const fibrad_furnace *f, uint64_t k, size_t s, furn
     r->at[fibrad_face_axis(w)] = bundle_wall_at(f, w);
     r->at[b] = (double)(patch % f->config.cells[b]) + u[2];
     r->at[c] = (double)(patch / f->config.cells[b]) + u[3];
-    bundle_leave_wall(r, w, u[0], u[1]);
+    bundle_turn(r, w, u);
     return w;
 }
 
@@ -202,11 +197,9 @@ static void bundle_trace_attenuated(const fibrad_furnace *f, fibrad_furnace_tall
             if (r->weight == 0 || fibrad_random_next(random) >= 0.2) return;
             r->weight *= 5;
         }
-        double u = fibrad_random_next(random), v = fibrad_random_next(random);
-        if (wall != WALL_NONE)
-            bundle_leave_wall(r, wall, u, v);
-        else
-            bundle_scatter(r, u, v);
+        double u[2];
+        for (int d = 0; d < 2; d++) u[d] = fibrad_random_next(random);
+        bundle_turn(r, wall, u);
     }
 }
 
@@ -255,11 +248,9 @@ static void bundle_trace_equilibrium(const fibrad_furnace *f, fibrad_furnace_tal
             tally->absorbed[patch] += (int64_t)r->weight;
             return;
         }
-        double u = fibrad_random_next(random), v = fibrad_random_next(random);
-        if (wall != WALL_NONE)
-            bundle_leave_wall(r, wall, u, v);
-        else
-            bundle_scatter(r, u, v);
+        double u[2];
+        for (int d = 0; d < 2; d++) u[d] = fibrad_random_next(random);
+        bundle_turn(r, wall, u);
     }
 }
 

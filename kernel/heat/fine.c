@@ -2,6 +2,7 @@
 #include "base/constants.h"
 #include "base/elementary.h"
 #include "base/random.h"
+#include "base/vector.h"
 #include "heat/fine.h"
 #include "sample/sphere_patch.h"
 #include "heat/wall_patch.h"
@@ -63,7 +64,7 @@ static double point_on_sphere(uint32_t face, double a, double b, double normal[3
     double axes[9], n[3];
     n[axis] = face % 2 ? -inverse : inverse, n[axis == 0 ? 1 : 0] = s * inverse, n[axis == 2 ? 1 : 2] = t * inverse;
     fibrad_patch_turn(frame, axes);
-    for (int k = 0; k < 3; k++) normal[k] = n[0] * axes[3 * k] + n[1] * axes[3 * k + 1] + n[2] * axes[3 * k + 2];
+    for (int k = 0; k < 3; k++) normal[k] = fibrad_dot(n, axes + 3 * k);
     return 4 / (5 - 3 * s * s) * (4 / (5 - 3 * t * t)) * (inverse * inverse * inverse);
 }
 
@@ -239,8 +240,7 @@ static void divide_sphere(fibrad_heat *heat, uint32_t body) {
                                             scene->y[j] + walk.shift[1] - centre[1],
                                             scene->z[j] + walk.shift[2] - centre[2]},
                                            0};
-                const double *c = near.centre;
-                near.height = fibrad_sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]) - r;
+                near.height = fibrad_sqrt(fibrad_dot(near.centre, near.centre)) - r;
                 if (scene->r[j] >= r || !asks_for_fine(heat, body, scene->r[j], &near)) continue;
                 begin_body(heat, body, &begun);
                 for (uint32_t own = 0; own < fours_of(heat, body); own++) divide_four(heat, body, own, &near);

@@ -2,6 +2,7 @@
 #include "base/constants.h"
 #include "base/elementary.h"
 #include "base/random.h"
+#include "base/vector.h"
 #include "heat/wall_patch.h"
 #include "scene/walls.h"
 
@@ -225,11 +226,7 @@ static void cosine_direction(const double x[2], const double normal[3], const do
 
 void fibrad_heat_direction(const double x[2], const double n[3], double w[3]) {
     double across[3], along[3];
-    int least = fibrad_abs(n[1]) < fibrad_abs(n[0]) ? 1 : 0;
-    if (fibrad_abs(n[2]) < fibrad_abs(n[least])) least = 2;
-    const double scale = 1 / fibrad_sqrt(1 - n[least] * n[least]);
-    for (int a = 0; a < 3; a++) across[a] = ((a == least) - n[least] * n[a]) * scale;
-    for (int a = 0; a < 3; a++) along[a] = n[(a + 1) % 3] * across[(a + 2) % 3] - n[(a + 2) % 3] * across[(a + 1) % 3];
+    fibrad_frame_about(n, across, along);
     cosine_direction(x, n, across, along, w);
 }
 

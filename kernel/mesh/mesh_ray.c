@@ -1,5 +1,6 @@
 /* mesh_ray.c - the first side that a ray meets, and the distance from a point to the nearest triangle.
  * SPDX-License-Identifier: MIT */
+#include "base/vector.h"
 #include "mesh/mesh.h"
 
 static int64_t whole_below(double x) { return (int64_t)fibrad_max(-0x1p62, fibrad_min(0x1p62, fibrad_floor(x))); }
@@ -170,11 +171,8 @@ void fibrad_mesh_normal(const fibrad_mesh *mesh, uint32_t side, double normal[3]
     double c[3][3], a[3], b[3], square = 0, longest = 0;
     fibrad_mesh_corners(mesh, fibrad_side_triangle(side), c);
     for (int axis = 0; axis < 3; axis++) a[axis] = c[1][axis] - c[0][axis], b[axis] = c[2][axis] - c[0][axis];
-    for (int axis = 0; axis < 3; axis++) {
-        const int next = (axis + 1) % 3, last = (axis + 2) % 3;
-        normal[axis] = a[next] * b[last] - a[last] * b[next];
-        longest = fibrad_max(longest, fibrad_abs(normal[axis]));
-    }
+    fibrad_cross(a, b, normal);
+    for (int axis = 0; axis < 3; axis++) longest = fibrad_max(longest, fibrad_abs(normal[axis]));
     for (int axis = 0; axis < 3; axis++) normal[axis] /= longest, square += normal[axis] * normal[axis];
     const double scale = (fibrad_side_is_back(side) ? -1 : 1) / fibrad_sqrt(square);
     for (int axis = 0; axis < 3; axis++) normal[axis] *= scale;
@@ -214,8 +212,6 @@ uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const doubl
     return mesh->side[low];
 }
 
-static double inner(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 static double clamp_share(double above, double below) {
     return below > 0 ? fibrad_max(0, fibrad_min(1, above / below)) : 0;
 }
@@ -224,27 +220,23 @@ static double clamp_share(double above, double below) {
 static double square_to_segment(const double a[3], const double b[3]) {
     double along[3], at[3];
     for (int axis = 0; axis < 3; axis++) along[axis] = b[axis] - a[axis];
-    const double share = clamp_share(-inner(a, along), inner(along, along));
+    const double share = clamp_share(-fibrad_dot(a, along), fibrad_dot(along, along));
     for (int axis = 0; axis < 3; axis++) at[axis] = a[axis] + share * along[axis];
-    return inner(at, at);
+    return fibrad_dot(at, at);
 }
 
 /* Square of the distance from the origin to a triangle. If the foot of the perpendicular lies inside, this is the
  * distance to the plane. Otherwise it is the distance to the nearest edge. */
 static double square_to_triangle(double c[3][3]) {
-    double e[3][3], n[3];
+    double e[3][3], n[3], out[3];
     for (int k = 0; k < 3; k++)
         for (int axis = 0; axis < 3; axis++) e[k][axis] = c[(k + 1) % 3][axis] - c[k][axis];
-    for (int axis = 0; axis < 3; axis++) {
-        const int next = (axis + 1) % 3, last = (axis + 2) % 3;
-        n[axis] = e[0][next] * e[1][last] - e[0][last] * e[1][next];
-    }
-    const double square = inner(n, n), height = inner(n, c[0]);
+    fibrad_cross(e[0], e[1], n);
+    const double square = fibrad_dot(n, n), height = fibrad_dot(n, c[0]);
     bool inside = square > 0;
     for (int k = 0; k < 3 && inside; k++) {
-        const double out[3] = {e[k][1] * n[2] - e[k][2] * n[1], e[k][2] * n[0] - e[k][0] * n[2],
-                               e[k][0] * n[1] - e[k][1] * n[0]};
-        inside = inner(out, c[k]) >= 0;
+        fibrad_cross(e[k], n, out);
+        inside = fibrad_dot(out, c[k]) >= 0;
     }
     if (inside) return height * height / square;
     return fibrad_min(square_to_segment(c[0], c[1]),

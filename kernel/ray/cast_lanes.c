@@ -141,7 +141,7 @@ static bool follow_cast_ray(fibrad_workspace *work, const struct cast_ray *ray, 
             known = work->near.limit[shell];
         } else {
             const double to = fibrad_near_further(work, known);
-            LANED(fibrad_near_march)(work, ray->frame, &(fibrad_tube){0, -ray->sine, 0}, known, to);
+            LANED(fibrad_near_walk)(work, ray->frame, &(fibrad_tube){0, -ray->sine, 0}, known, to);
             known = to;
         }
         if (work->disc.count > work->disc.capacity) return false;

@@ -4,6 +4,7 @@
  * Near spheres are compared with the ray in floats first, in lanes. For the few that pass, distances are computed in
  * doubles. */
 #include FIBRAD_LANES_HEADER
+#include "base/vector.h"
 #include "ray/tracer.h"
 #include "work/work.h"
 #include "scene/grid_walk.h"
@@ -42,9 +43,9 @@ static bool trace_before(const fibrad_scene *scene, double distance, double dept
 static void intersect_sphere(const struct trace_ray *ray, uint32_t j, const double c[3], struct trace_first *first) {
     const double *w = ray->w;
     double r = ray->scene->r[j] * ray->inverse, e[3] = {c[0] - ray->o[0], c[1] - ray->o[1], c[2] - ray->o[2]};
-    double depth = c[0] * w[0] + c[1] * w[1] + c[2] * w[2], along = e[0] * w[0] + e[1] * w[1] + e[2] * w[2];
+    double depth = fibrad_dot(c, w), along = fibrad_dot(e, w);
     double across[3] = {e[0] - along * w[0], e[1] - along * w[1], e[2] - along * w[2]};
-    double square = r * r - (across[0] * across[0] + across[1] * across[1] + across[2] * across[2]);
+    double square = r * r - fibrad_dot(across, across);
     if (!(square > 0)) return;
     double root = fibrad_sqrt(square), distance = fibrad_max(0, along - root);
     bool ahead = ray->place != FIBRAD_NONE ? depth > 0 : along + root > 0;
@@ -127,7 +128,7 @@ static void intersect_stretch(const struct trace_ray *ray, double from, double t
 
 /* Continues through the grid from length `from` in steps of the mean spacing. Outside the box of the grid there are
  * only stray spheres, and the steps become longer. */
-static void march_ray(const struct trace_ray *ray, double from, struct trace_first *first) {
+static void walk_ray(const struct trace_ray *ray, double from, struct trace_first *first) {
     double step = ray->scene->spacing * ray->inverse, enter = fibrad_min(from, 0), leave, begin = enter, end;
     cross_box(ray, true, &enter, &leave);
     cross_box(ray, false, &begin, &end);
@@ -199,14 +200,14 @@ void LANED(fibrad_trace)(fibrad_tracer *tracer, uint32_t place, const double n[3
                   vf_set1((float)(2 * n[0])),
                   vf_set1((float)(2 * n[1])),
                   vf_set1((float)(2 * n[2])),
-                  vf_set1((float)(n[0] * w[0] + n[1] * w[1] + n[2] * w[2])),
+                  vf_set1((float)fibrad_dot(n, w)),
                   vf_set1(-list->behind)};
     for (uint32_t group = 0; group < list->groups && !(first.distance < list->clear[group]); group++)
         intersect_group(&ray, list, group, cull, &first);
     double known = list->clear[list->groups];
     /* spheres that overlap this one count also behind the origin, if their centres are ahead */
-    double from = known >= 0 ? known : -(n[0] * w[0] + n[1] * w[1] + n[2] * w[2]);
-    if (!(first.distance < known)) march_ray(&ray, from, &first);
+    double from = known >= 0 ? known : -fibrad_dot(n, w);
+    if (!(first.distance < known)) walk_ray(&ray, from, &first);
     write_hit(&ray, &first, hit);
     if (scene->clear != NULL) meet_mesh_from(scene, place, n, w, hit);
 }
@@ -216,7 +217,7 @@ void LANED(fibrad_trace_once)(const fibrad_scene *scene, uint32_t place, const d
     double unit = scene->r[place];
     struct trace_ray ray = {scene, n, w, {scene->x[place], scene->y[place], scene->z[place]}, unit, 1 / unit, place};
     struct trace_first first = {.distance = __builtin_inf()};
-    march_ray(&ray, -(n[0] * w[0] + n[1] * w[1] + n[2] * w[2]), &first);
+    walk_ray(&ray, -fibrad_dot(n, w), &first);
     write_hit(&ray, &first, hit);
     if (scene->clear != NULL) meet_mesh_from(scene, place, n, w, hit);
 }
@@ -237,7 +238,7 @@ static void trace_spheres(const fibrad_scene *scene, const double point[3], cons
     const double unit = power_of_two_below(scene->spacing);
     struct trace_ray ray = {scene, origin, w, {point[0], point[1], point[2]}, unit, 1 / unit, FIBRAD_NONE};
     struct trace_first first = {.distance = __builtin_inf()};
-    march_ray(&ray, 0, &first);
+    walk_ray(&ray, 0, &first);
     write_hit(&ray, &first, hit);
 }
 

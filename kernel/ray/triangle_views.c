@@ -2,6 +2,7 @@
 #include "base/elementary.h"
 #include "base/random.h"
 #include "base/sobol.h"
+#include "base/vector.h"
 #include "ray/tracer.h"
 #include "scene/walls.h"
 
@@ -9,12 +10,9 @@
 
 /* A direction by the cosine law: the sum of the normal and an even point of the unit sphere, normalised. */
 static bool direction_from(const double normal[3], const double x[2], double w[3]) {
-    const double z = 1 - 2 * x[0], across = fibrad_sqrt(fibrad_max(0, 1 - z * z));
-    double sine, cosine, square = 0;
-    fibrad_sincos_turn(x[1], &sine, &cosine);
-    const double u[3] = {across * cosine, across * sine, z};
-    for (int axis = 0; axis < 3; axis++) w[axis] = normal[axis] + u[axis], square += w[axis] * w[axis];
-    const double length = fibrad_sqrt(square);
+    fibrad_even_direction(x, w);
+    for (int axis = 0; axis < 3; axis++) w[axis] += normal[axis];
+    const double length = fibrad_sqrt(fibrad_dot(w, w));
     for (int axis = 0; axis < 3; axis++) w[axis] /= length;
     return length > 1e-9;
 }

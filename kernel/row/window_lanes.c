@@ -170,7 +170,7 @@ double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], 
             known = work->near.limit[shell];
         } else {
             const double to = fibrad_near_further(work, known);
-            LANED(fibrad_near_march)(work, frame, &(fibrad_tube){.radius = 1}, known, to);
+            LANED(fibrad_near_walk)(work, frame, &(fibrad_tube){.radius = 1}, known, to);
             known = to;
         }
         if (work->disc.count > work->disc.capacity) break;

@@ -1,4 +1,5 @@
 /* line.c - lines spread evenly. SPDX-License-Identifier: MIT */
+#include "base/vector.h"
 #include "sample/line.h"
 #include "sample/direction.h"
 
@@ -40,17 +41,15 @@ static void unfold_set(uint32_t n, double (*line)[3]) {
 
 /* ---- steps uphill ---------------------------------------------------------------------------------------------- */
 
-static double scalar_product(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 /* |p - q| + |p + q| = 2 sqrt(1 + s), where s is the sine of the angle between p and q. */
 static double distances(const double p[3], const double q[3]) {
-    const double t = scalar_product(p, q);
+    const double t = fibrad_dot(p, q);
     return 2 * fibrad_sqrt(1 + fibrad_sqrt(fibrad_max(0, 1 - t * t)));
 }
 
 /* The derivative of this sum with respect to the cosine of the angle. */
 static double slope(const double p[3], const double q[3]) {
-    const double t = scalar_product(p, q), square = fibrad_max(0x1p-40, 1 - t * t);
+    const double t = fibrad_dot(p, q), square = fibrad_max(0x1p-40, 1 - t * t);
     return -t / fibrad_sqrt(square * (1 + fibrad_sqrt(square)));
 }
 
@@ -70,12 +69,12 @@ static void add_forces(uint32_t n, const double (*line)[3], uint32_t i, const do
 
 /* Moves p by the tangential component of its velocity, and brings it back onto the sphere. */
 static void move_line(double p[3], double velocity[3]) {
-    const double along = scalar_product(p, velocity);
+    const double along = fibrad_dot(p, velocity);
     for (int axis = 0; axis < 3; axis++) {
         velocity[axis] -= along * p[axis];
         p[axis] += velocity[axis];
     }
-    const double length = fibrad_sqrt(scalar_product(p, p));
+    const double length = fibrad_sqrt(fibrad_dot(p, p));
     for (int axis = 0; axis < 3; axis++) p[axis] /= length;
 }
 

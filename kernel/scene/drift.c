@@ -1,4 +1,5 @@
 /* drift.c - which rows of a bed may be kept when its spheres move. SPDX-License-Identifier: MIT */
+#include "base/vector.h"
 #include "scene/grid_walk.h"
 
 /* If sphere j moves by delta, its edge as seen from sphere i sweeps over DRIFT_FACTOR F delta/width of the row. The
@@ -11,8 +12,6 @@ static bool alike(const fibrad_scene *a, const fibrad_scene *b) {
         if (!(a->period[axis] == b->period[axis])) return false;
     return true;
 }
-
-static double square_of(const double c[3]) { return c[0] * c[0] + c[1] * c[1] + c[2] * c[2]; }
 
 /* 1/period of each axis; 0 if it is open. */
 static void inverse_periods(const fibrad_scene *scene, double inverse[3]) {
@@ -45,12 +44,12 @@ int fibrad_drift_row(const fibrad_scene *before, const fibrad_scene *now, uint32
         double from[3], to[3], r = now->r[now_j];
         way(before, inverse, then_i, then_j, from);
         way(now, inverse, now_i, now_j, to);
-        double nearest = fibrad_min(square_of(from), square_of(to));
+        double nearest = fibrad_min(fibrad_dot(from, from), fibrad_dot(to, to));
         if (nearest == 0) continue; /* images of i move as i does */
         for (int axis = 0; axis < 3; axis++) to[axis] -= from[axis];
         shorten(now, inverse, to);
         double width = fibrad_min(r, fibrad_max(fibrad_sqrt(nearest) - r, r_i)), rate = r * r / (4 * nearest * width);
-        sum += rate * rate * square_of(to);
+        sum += rate * rate * fibrad_dot(to, to);
     }
     *error = DRIFT_FACTOR * fibrad_sqrt(sum);
     return FIBRAD_OK;

@@ -746,7 +746,7 @@ static int find_by_march(fibrad_workspace *work, fibrad_circles *c, uint32_t num
     double w[9];
     for (int k = 0; k < 9; k++) w[k] = k < 3 ? c->frame[k] : side->sense * c->frame[k];
     work->disc.count = 0;
-    LANED(fibrad_near_march)(work, w, &tube, side->known, to);
+    LANED(fibrad_near_walk)(work, w, &tube, side->known, to);
     side->known = to;
     const uint32_t count = work->disc.count;
     if (c->marched + count > c->near.nowhere) return TOO_MANY;

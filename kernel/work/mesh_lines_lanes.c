@@ -2,6 +2,7 @@
  * instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
+#include "base/vector.h"
 #include "work/mesh_lines_lanes.h"
 
 /* ---- lines ------------------------------------------------------------------------------------------------------- */
@@ -260,14 +261,10 @@ static void cut_surface(fibrad_workspace *work, uint32_t k) {
         sum_n[3]; /* corners; normals of the planes through the centre and each edge; normal of the face */
     for (int c = 0; c < 3; c++)
         for (int axis = 0; axis < 3; axis++) x[c][axis] = faces->corner[c][axis][k];
-    for (int c = 0; c < 3; c++)
-        for (int axis = 0; axis < 3; axis++) {
-            const double *a = x[(c + 1) % 3], *b = x[(c + 2) % 3];
-            n[c][axis] = a[(axis + 1) % 3] * b[(axis + 2) % 3] - a[(axis + 2) % 3] * b[(axis + 1) % 3];
-        }
+    for (int c = 0; c < 3; c++) fibrad_cross(x[(c + 1) % 3], x[(c + 2) % 3], n[c]);
     for (int axis = 0; axis < 3; axis++) sum_n[axis] = n[0][axis] + n[1][axis] + n[2][axis];
-    const double volume = x[0][0] * n[0][0] + x[0][1] * n[0][1] + x[0][2] * n[0][2]; /* volume of six tetrahedra */
-    const double square = sum_n[0] * sum_n[0] + sum_n[1] * sum_n[1] + sum_n[2] * sum_n[2];
+    const double volume = fibrad_dot(x[0], n[0]); /* volume of six tetrahedra */
+    const double square = fibrad_dot(sum_n, sum_n);
     if (volume * volume > square * (1 + 1e-9)) return; /* the plane of the face does not meet the sphere */
     for (uint32_t p = 0; p < lines->count; p += VD_LANES) {
         const vd u = vd_load(lines->place[0] + p), v = vd_load(lines->place[1] + p), s = vd_load(lines->exit + p);

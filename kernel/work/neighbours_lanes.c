@@ -1,4 +1,4 @@
-/* neighbours_lanes.c - shells of spheres near the sphere of the row, and marches along one direction. Compiled once
+/* neighbours_lanes.c - shells of spheres near the sphere of the row, and walks along one direction. Compiled once
  * per instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
@@ -172,21 +172,21 @@ void LANED(fibrad_near_discs)(fibrad_workspace *work, const double frame[9], uin
     if (outside != 0) remove_not_ahead(work, from);
 }
 
-/* A march collects rows, runs and spheres in lists before it looks at them. So lanes are full, and waits for memory
+/* A walk collects rows, runs and spheres in lists before it looks at them. So lanes are full, and waits for memory
  * overlap. A row is the cells side by side along x that a beam meets. A run is the part of a row within one image of
  * the box. */
-#define MARCH_ROWS  (6 * VD_LANES)
-#define MARCH_RUNS  (6 * VD_LANES)
-#define MARCH_FOUND (8 * VD_LANES)
+#define WALK_ROWS  (6 * VD_LANES)
+#define WALK_RUNS  (6 * VD_LANES)
+#define WALK_FOUND (8 * VD_LANES)
 
-/* A march along a beam, or along a ray, through the cells of one level. Coordinates are in units of cells. */
-typedef struct march {
-    _Alignas(64) double layer[MARCH_ROWS]; /* cells */
-    double row[MARCH_ROWS], near[MARCH_ROWS],
-        far[MARCH_ROWS]; /* cells, and the depths between which the beam meets them */
-    double begin[MARCH_RUNS], end[MARCH_RUNS], shift[3][MARCH_RUNS]; /* cells of the scene; shift by whole periods */
-    uint32_t first_sphere[MARCH_RUNS], end_sphere[MARCH_RUNS];
-    uint32_t sphere[MARCH_FOUND], run[MARCH_FOUND]; /* the spheres found, and the run of each */
+/* A walk along a beam, or along a ray, through the cells of one level. Coordinates are in units of cells. */
+typedef struct beam_walk {
+    _Alignas(64) double layer[WALK_ROWS]; /* cells */
+    double row[WALK_ROWS], near[WALK_ROWS],
+        far[WALK_ROWS]; /* cells, and the depths between which the beam meets them */
+    double begin[WALK_RUNS], end[WALK_RUNS], shift[3][WALK_RUNS]; /* cells of the scene; shift by whole periods */
+    uint32_t first_sphere[WALK_RUNS], end_sphere[WALK_RUNS];
+    uint32_t sphere[WALK_FOUND], run[WALK_FOUND]; /* the spheres found, and the run of each */
     fibrad_workspace *work;
     const fibrad_level *level;
     const double *frame;
@@ -201,16 +201,16 @@ typedef struct march {
     double cells[3], per_cells[3];  /* number of cells of the box, and 1 over it */
     int layers_across, rows_across; /* axes */
     uint32_t rows, runs, found;
-} march;
+} beam_walk;
 
 /* Coordinates of the spheres found, relative to the centre and in units of the radius. */
-static inline vd found_coordinate(const march *m, uint32_t k, int axis, const double *coordinate) {
+static inline vd found_coordinate(const beam_walk *m, uint32_t k, int axis, const double *coordinate) {
     vd c = vd_gather(coordinate, m->sphere + k) - m->work->centre[axis];
     return (c + vd_gather(m->shift[axis], m->run + k)) * m->work->inverse;
 }
 
 /* Appends the discs of the spheres found. Those at depth 0 may turn out not to lie ahead. */
-static void append_found(march *m) {
+static void append_found(beam_walk *m) {
     fibrad_workspace *work = m->work;
     const fibrad_scene scene =
         *work->scene; /* copies, so that the compiler sees that stores do not change their pointers */
@@ -244,7 +244,7 @@ static void append_found(march *m) {
 }
 
 /* Finds the spheres of the runs that may come before the beam: all spheres that do, and few others. */
-static void look_at_runs(march *m) {
+static void look_at_runs(beam_walk *m) {
     const fibrad_workspace *work = m->work;
     const fibrad_scene *scene = work->scene;
     const double *frame = m->frame;
@@ -262,7 +262,7 @@ static void look_at_runs(march *m) {
     /* the place where coarse coordinates are 0, relative to the middle of the tube */
     const double u_at = frame[0] * origin[0] + frame[1] * origin[1] + frame[2] * origin[2] - m->tube->u;
     const double v_at = frame[3] * origin[0] + frame[4] * origin[1] + frame[5] * origin[2] - m->tube->v;
-    _Alignas(64) double u0[MARCH_RUNS], v0[MARCH_RUNS]; /* the same for images */
+    _Alignas(64) double u0[WALK_RUNS], v0[WALK_RUNS]; /* the same for images */
     for (uint32_t k = 0; k < m->runs; k += VD_LANES) {
         vd sx = vd_loadu(m->shift[0] + k), sy = vd_loadu(m->shift[1] + k), sz = vd_loadu(m->shift[2] + k);
         vd_store(u0 + k, u_at + component(frame, sx, sy, sz) * work->inverse);
@@ -283,7 +283,7 @@ static void look_at_runs(march *m) {
             if (bits == 0) continue;
             bits &= vd_lanes_below(end[k] - j);
             if (j < begin[k]) bits &= ~vd_lanes_below(begin[k] - j);
-            if (m->found + VD_LANES > MARCH_FOUND) append_found(m);
+            if (m->found + VD_LANES > WALK_FOUND) append_found(m);
             const uint32_t to = m->found + vd_compress_places(m->sphere + m->found, bits, j);
             while (m->found < to) m->run[m->found++] = k;
         }
@@ -299,10 +299,12 @@ static inline vd whole(vd x) {
 }
 
 /* The number of periods between the box and the image that contains a cell. */
-static inline vd periods_away(const march *m, int axis, vd cell) { return whole((cell + 0.5) * m->per_cells[axis]); }
+static inline vd periods_away(const beam_walk *m, int axis, vd cell) {
+    return whole((cell + 0.5) * m->per_cells[axis]);
+}
 
 /* Narrows a range of depths to the depths in which the beam meets a cell of an axis. */
-static inline void narrow_to_cell(const march *m, int axis, vd cell, vd *near, vd *far) {
+static inline void narrow_to_cell(const beam_walk *m, int axis, vd cell, vd *near, vd *far) {
     const vd inf = vd_set1(__builtin_inf());
     vd low = vd_select(vd_lt(vd_set1(m->first[axis]), cell), cell, 0 - inf);
     vd high = vd_select(vd_lt(cell, vd_set1(m->last[axis])), cell + 1, inf);
@@ -312,7 +314,7 @@ static inline void narrow_to_cell(const march *m, int axis, vd cell, vd *near, v
 }
 
 /* The first and the last cell of an axis that the beam meets in a range of depths. */
-static inline void cells_met(const march *m, int axis, vd near, vd far, vd *low, vd *high) {
+static inline void cells_met(const beam_walk *m, int axis, vd near, vd far, vd *low, vd *high) {
     const vd first = vd_set1(m->first[axis]), last = vd_set1(m->last[axis]);
     near *= m->slope[axis], far *= m->slope[axis];
     *low = whole(vd_max(first, vd_min(last, m->at[axis] - m->side[axis] + vd_min(near, far))));
@@ -320,7 +322,7 @@ static inline void cells_met(const march *m, int axis, vd near, vd far, vd *low,
 }
 
 /* Divides rows into runs. */
-static void look_at_rows(march *m) {
+static void look_at_rows(beam_walk *m) {
     const int a = m->layers_across, b = m->rows_across;
     const double *period = m->work->scene->period, stride[3] = {1, m->cells[0], m->cells[0] * m->cells[1]};
     const vd zero = vd_set1(0), most = vd_set1(m->cells[0]);
@@ -334,7 +336,7 @@ static void look_at_rows(march *m) {
         cell += m->level->first_cell;
         vd away = periods_away(m, 0, low), last = periods_away(m, 0, high);
         for (uint32_t bits = vm_bits(vd_le(near, far)) & vd_lanes_below(m->rows - k); bits != 0;) {
-            if (m->runs + VD_LANES > MARCH_RUNS) look_at_runs(m);
+            if (m->runs + VD_LANES > WALK_RUNS) look_at_runs(m);
             vd begin = vd_max(zero, low - away * most), end = vd_min(most, high + 1 - away * most);
             vd_compress(m->begin + m->runs, bits, cell + begin);
             vd_compress(m->end + m->runs, bits, cell + end);
@@ -350,10 +352,10 @@ static void look_at_rows(march *m) {
     m->rows = 0;
 }
 
-/* Prepares a march for spheres of one level with minimum depths in (from, to]. Such spheres lie in a stretch of a
+/* Prepares a walk for spheres of one level with minimum depths in (from, to]. Such spheres lie in a stretch of a
  * tube. The radius of the tube is 1 + r about the axis of a beam, and r about a ray. near, far: out: the depths of
  * the stretch. */
-static void begin_march(march *m, double from, double to, double *near, double *far) {
+static void begin_beam_walk(beam_walk *m, double from, double to, double *near, double *far) {
     const fibrad_workspace *work = m->work;
     const fibrad_scene *scene = work->scene;
     const fibrad_level *level = m->level;
@@ -387,10 +389,10 @@ static void begin_march(march *m, double from, double to, double *near, double *
 
 /* Goes through the cells layer by layer along y or z, whichever axis is nearer to the beam's direction. In each
  * layer it goes row by row. The cells of a row lie side by side in memory, along x, and are taken together. */
-static void march_level(march *m, double from, double to) {
+static void walk_level(beam_walk *m, double from, double to) {
     _Alignas(64) double near[VD_LANES], far[VD_LANES], low[VD_LANES], high[VD_LANES], number[VD_LANES];
     double begin, end;
-    begin_march(m, from, to, &begin, &end);
+    begin_beam_walk(m, from, to, &begin, &end);
     if (!(begin <= end)) return;
     for (int l = 0; l < VD_LANES; l++) number[l] = l;
     vd first, last;
@@ -409,7 +411,7 @@ static void march_level(march *m, double from, double to) {
         for (uint32_t l = 0; l < VD_LANES && layer + l <= most; l++) {
             if (!(near[l] <= far[l])) continue;
             for (double row = low[l]; row <= high[l]; row++) {
-                if (m->rows == MARCH_ROWS) look_at_rows(m);
+                if (m->rows == WALK_ROWS) look_at_rows(m);
                 m->layer[m->rows] = layer + l, m->row[m->rows] = row;
                 m->near[m->rows] = near[l], m->far[m->rows++] = far[l];
             }
@@ -418,16 +420,16 @@ static void march_level(march *m, double from, double to) {
     look_at_rows(m);
 }
 
-void LANED(fibrad_near_march)(fibrad_workspace *work, const double frame[9], const fibrad_tube *tube, double from,
-                              double to) {
+void LANED(fibrad_near_walk)(fibrad_workspace *work, const double frame[9], const fibrad_tube *tube, double from,
+                             double to) {
     uint32_t first = work->disc.count, own = work->near.capacity;
-    march m;
+    beam_walk m;
     fibrad_zero(&m, sizeof m); /* lanes beyond the end of a list are read too */
     m.work = work, m.frame = frame, m.tube = tube;
     m.from = from < 0 ? -__builtin_inf() : from * from, m.to = to * to;
     for (uint32_t l = 0; l < work->scene->levels; l++) {
         m.level = &work->scene->level[l];
-        march_level(&m, from, to);
+        walk_level(&m, from, to);
     }
     if (work->disc.count > work->disc.capacity) return;
     bool ahead = true;

@@ -1,5 +1,5 @@
 /* neighbours_lanes.h - the spheres that can come before the windows of a sphere. Near spheres are listed in shells
- * for all directions. A march along one direction finds the spheres beyond. SPDX-License-Identifier: MIT */
+ * for all directions. A walk along one direction finds the spheres beyond. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_WORK_NEIGHBOURS_LANES_H
 #define FIBRAD_WORK_NEIGHBOURS_LANES_H
 
@@ -24,7 +24,7 @@ typedef struct fibrad_tube {
 /* Appends to work->disc the discs before the window of direction w whose minimum depth lies in (from, to]. from < 0:
  * spheres in contact are included. Discs that do not overlap the tube may be missing. frame: two unit vectors across
  * w, then w. */
-void LANED(fibrad_near_march)(fibrad_workspace *work, const double frame[9], const fibrad_tube *tube, double from,
-                              double to);
+void LANED(fibrad_near_walk)(fibrad_workspace *work, const double frame[9], const fibrad_tube *tube, double from,
+                             double to);
 
 #endif
