@@ -15,30 +15,28 @@ struct lit {
 
 enum { RANGE = 7 };
 
-static inline void *grow(void *context, void *block, size_t size) {
-    (void)context;
-    return realloc(block, size);
-}
+static inline void lit_free(struct lit *lit) { free(lit->power); }
+
+#define OWNED_LIT OWNED_BY(lit_free) struct lit
 
 static inline struct lit light_up(const struct bed *bed, const fibrad_scene_config *config, const fibrad_light *light) {
     struct lit lit = {.power = calloc(bed->n + 1, sizeof(double))};
     const size_t size =
         fibrad_scene_size(bed->n, 0) + (config->triangles ? fibrad_triangles_size(config->triangles->n, bed->n) : 0);
-    void *block = block_of(size);
+    OWNED void *block = block_of(size);
     fibrad_scene *scene;
-    fibrad_work work = {.memory = {.resize = grow}};
-    const fibrad_spheres spheres = {.x = bed->x, .y = bed->y, .z = bed->z, .r = bed->r, .n = bed->n};
-    ck_assert_int_eq(fibrad_scene_init(&scene, block, size, config, &spheres, NULL), 0);
+    OWNED_WORK work = work_growing();
+    const fibrad_spheres spheres = spheres_of(bed);
+    assert_ok(fibrad_scene_init(&scene, block, size, config, &spheres, NULL));
     lit.status = fibrad_light_empty(scene, &work, light, &lit.empty, &lit.fault);
     lit.ends = lit.empty;
     for (uint32_t from = 0; from < bed->n && lit.status == 0; from += RANGE) {
         const uint32_t to = from + RANGE < bed->n ? from + RANGE : bed->n;
         fibrad_light_ends kept;
-        ck_assert_int_eq(fibrad_light_spheres(scene, &work, light, from, to, lit.power + from, &kept), 0);
+        assert_ok(fibrad_light_spheres(scene, &work, light, from, to, lit.power + from, &kept));
         lit.ends.spheres += kept.spheres, lit.ends.through -= kept.through;
         for (int b = 0; b < FIBRAD_BODIES_MAX; b++) lit.ends.body[b] -= kept.body[b];
     }
-    free(block), free(work.memory.block);
     return lit;
 }
 

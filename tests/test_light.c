@@ -10,13 +10,12 @@ TEST(a_lone_sphere_takes_its_shadow) {
         double d[3];
         for (uint64_t a = 0; a < 3; a++) d[a] = k < 3 ? (double)(a == k) : bed_make_random(5, 3 * k + a) - .5;
         const fibrad_light light = along(d[0], d[1], d[2]);
-        struct lit lit = light_up(&bed, &(fibrad_scene_config){0}, &light);
+        OWNED_LIT lit = light_up(&bed, &(fibrad_scene_config){0}, &light);
         const double size = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         const double box = 4 * 1.7 * 1.7 * (fabs(d[0]) + fabs(d[1]) + fabs(d[2])) / size;
         ck_assert_int_eq(lit.status, 0);
         ck_assert_double_eq_tol(lit.power[0], M_PI * 1.7 * 1.7, 1e-12);
         ck_assert_double_eq_tol(sum_of(&lit.ends), box, 1e-12);
-        free(lit.power);
     }
 }
 
@@ -37,12 +36,11 @@ TEST(a_simple_cubic_bed_is_lit_in_its_first_layer) {
     for (int walled = 0; walled < 2; walled++) {
         const fibrad_scene_config config = {.period = {8, 8, 0}, .body = &floor_body, .bodies = (uint32_t)walled};
         const fibrad_light light = along(0, 0, -1);
-        struct lit lit = light_up(&bed, &config, &light);
+        OWNED_LIT lit = light_up(&bed, &config, &light);
         for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq_tol(lit.power[i], bed.z[i] > 3 ? M_PI : 0, 1e-9);
         ck_assert_double_eq_tol(lit.ends.spheres / 64, M_PI / 4, 1e-9);
         ck_assert_double_eq_tol((walled ? lit.ends.body[0] : lit.ends.through) / 64, 1 - M_PI / 4, 1e-9);
         ck_assert_double_eq_tol(sum_of(&lit.ends), 64, 1e-12);
-        free(lit.power);
     }
 }
 
@@ -50,9 +48,8 @@ TEST(a_hexagonal_layer_takes_nine_tenths) {
     OWNED_BED bed = layers(8, 4 * sqrt(3), true);
     const fibrad_scene_config config = {.period = {8, 4 * sqrt(3), 0}};
     const fibrad_light light = along(0, 0, -1);
-    struct lit lit = light_up(&bed, &config, &light);
+    OWNED_LIT lit = light_up(&bed, &config, &light);
     ck_assert_double_eq_tol(lit.ends.spheres / sum_of(&lit.empty), M_PI / sqrt(12), 1e-9);
-    free(lit.power);
 }
 
 /* A bed, its walls in both forms, and a light. */

@@ -46,12 +46,11 @@ TEST(a_tilted_triangle_shades_a_segment) {
                       0, 0);
         const fibrad_scene_config config = config_of(mesh);
         const fibrad_light light = along(d[0], d[1], d[2]);
-        struct lit lit = light_up(&bed, &config, &light);
+        OWNED_LIT lit = light_up(&bed, &config, &light);
         const double open = M_PI - (acos(h) - h * sqrt(1 - h * h));
         ck_assert_int_eq(lit.status, 0);
         ck_assert_double_eq_tol(lit.power[0], behind > 0 ? open : M_PI, 1e-12);
         ck_assert_double_eq_tol(sum_of(&lit.ends), sum_of(&lit.empty), 1e-9);
-        free(lit.power);
     }
 }
 
@@ -85,7 +84,7 @@ TEST(a_board_and_its_complement_hide_all) {
             fibrad_scene_config config = config_of(mesh);
             if (part < 0) config = (fibrad_scene_config){0};
             const fibrad_light light = along(d[0], d[1], d[2]);
-            struct lit lit = light_up(&bed, &config, &light);
+            OWNED_LIT lit = light_up(&bed, &config, &light);
             ck_assert_int_eq(lit.status, 0);
             for (int i = 0; i < 3; i++) {
                 if (part < 0) all[i] = lit.power[i];
@@ -93,7 +92,6 @@ TEST(a_board_and_its_complement_hide_all) {
             }
             printf("part %d: %.15g\n", part, lit.power[0]);
             if (part == 2) ck_assert_double_eq_tol(lit.power[0], 0, 1e-10);
-            free(lit.power);
         }
         printf("board %d: %.15g %.15g\n", k, sum[0], all[0]);
         ck_assert_double_eq_tol(sum[0], all[0], 1e-10);
@@ -149,14 +147,12 @@ static double area_by_rays(const struct plain_bed *plain, uint32_t i, const doub
 /* All instruction sets give the same bits. */
 static void check_bits(const struct bed *bed, fibrad_scene_config config, const fibrad_light *light,
                        const double *power) {
-    int isa[ISAS_MOST];
-    const int isas = isas_there(isa);
-    for (int k = 0; k < isas; k++) {
-        config.isa = isa[k];
-        struct lit lit = light_up(bed, &config, light);
+    const struct isas isas = isas_there();
+    for (int k = 0; k < isas.count; k++) {
+        config.isa = isas.set[k];
+        OWNED_LIT lit = light_up(bed, &config, light);
         ck_assert_int_eq(lit.status, 0);
         ck_assert_mem_eq(lit.power, power, bed->n * sizeof *power);
-        free(lit.power);
     }
 }
 
@@ -170,8 +166,8 @@ TEST(triangles_at_random_as_by_plain_rays) {
         add_triangles(mesh, &bed, 60, 10, seed);
         const fibrad_scene_config config = config_of(mesh);
         const fibrad_light light = along(d[0], d[1], d[2]);
-        struct lit lit = light_up(&bed, &config, &light);
-        struct plain_bed plain = plain_bed_of(&bed);
+        OWNED_LIT lit = light_up(&bed, &config, &light);
+        OWNED_BY(plain_free) struct plain_bed plain = plain_bed_of(&bed);
         ck_assert_int_eq(lit.status, 0);
         for (uint32_t i = 0; i < bed.n; i++) {
             plain.triangles = NULL;
@@ -182,8 +178,6 @@ TEST(triangles_at_random_as_by_plain_rays) {
             worst = fmax(worst, fabs(lit.power[i] - area) / (M_PI * r * r));
         }
         check_bits(&bed, config, &light, lit.power);
-        plain_free(&plain);
-        free(lit.power);
     }
     printf("triangles at random: %.4f of a disc, %.1f hidden\n", worst, shaded);
     ck_assert_double_lt(worst, .003);
@@ -198,7 +192,7 @@ TEST(plates_of_half_a_period_hide_all) {
     bed.period[2] = 0;
     fibrad_scene_config config = {.period = {side, side, 0}};
     const fibrad_light light = along(.9, .5, -1);
-    struct lit all = light_up(&bed, &config, &light);
+    OWNED_LIT all = light_up(&bed, &config, &light);
     double sum[60] = {0};
     for (int half = 0; half < 2; half++) {
         OWNED struct mesh *mesh = mesh_new();
@@ -209,14 +203,12 @@ TEST(plates_of_half_a_period_hide_all) {
         mesh_quad(mesh, corner, 0, 0);
         config = config_of(mesh);
         config.period[0] = config.period[1] = side;
-        struct lit lit = light_up(&bed, &config, &light);
+        OWNED_LIT lit = light_up(&bed, &config, &light);
         ck_assert_int_eq(lit.status, 0);
         ck_assert_double_lt(lit.ends.spheres, .8 * all.ends.spheres);
         for (uint32_t i = 0; i < bed.n; i++) sum[i] += lit.power[i];
-        free(lit.power);
     }
     for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq_tol(sum[i], all.power[i], 1e-11);
-    free(all.power);
 }
 
 /* Of a triangle that rises above the rim of a box, only the part below the rim throws a shadow: light enters at the
@@ -239,10 +231,9 @@ TEST(triangles_outside_throw_no_shadow) {
         fibrad_scene_config config = config_of(mesh);
         config.opening = &top, config.openings = 1;
         const fibrad_light light = along(-.5, .1, -1);
-        struct lit lit = light_up(&bed, &config, &light);
+        OWNED_LIT lit = light_up(&bed, &config, &light);
         ck_assert_int_eq(lit.status, 0);
         area[k] = lit.power[0];
-        free(lit.power);
     }
     ck_assert_double_eq_tol(area[0], area[1], 1e-12);
     ck_assert_double_lt(area[0], 3);
@@ -260,9 +251,8 @@ TEST(a_floor_that_cuts_a_sphere) {
     const fibrad_scene_config config = config_of(mesh);
     for (int up = 0; up < 2; up++) {
         const fibrad_light light = along(.1, .2, up ? 1 : -1);
-        struct lit lit = light_up(&bed, &config, &light);
+        OWNED_LIT lit = light_up(&bed, &config, &light);
         ck_assert_int_eq(lit.status, 0);
         ck_assert_double_eq_tol(lit.power[0], up ? 0 : M_PI, 1e-12);
-        free(lit.power);
     }
 }

@@ -122,7 +122,7 @@ TEST(triangles_throw_shadows) {
     ck_assert_int_eq(RUN("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--temperature", "0",
                          "--wall", wall, "--wall-temperature", "0", "--irradiate", "0,0,1:1000"),
                      3);
-    ck_assert_ptr_nonnull(strstr(said, "the back of wall roof is seen"));
+    assert_has(said, "the back of wall roof is seen");
 }
 
 /* Light that nothing absorbs heats nothing. */
