@@ -108,14 +108,15 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * temperature, unless it reflects everything.
  *
  * A sphere with a finite conductivity has a temperature that differs from point to point. `temperature` is then the
- * mean over its surface. The inside is taken to be steady. What `power` gives and `hold` stores is taken to be spread
- * evenly inside. Emission is taken to be linear in the difference from the mean (docs/methods_heat.md section 13). With
- * `conductivity`, `uniform` must be 0. `conductivity` is in units of sigma K^3 L. If sigma is in W/(m2 K4) and L is M
- * metres, a solid of k_s [W/(m K)] has the conductivity k_s/M.
+ * mean over its surface. The inside is taken to be steady, with the power P - h sigma (T^4 - R^4) spread evenly.
+ * Emission is taken to be linear in the difference from the mean (docs/methods_heat.md section 13). With
+ * `conductivity`, `uniform` must be 0. `conductivity` is in units of sigma K^3 L. If lengths are in millimetres and
+ * sigma is in W/(m2 K4), a solid of 30 W/(m K) has the conductivity 30/0.001.
  *
- * `absorbed` tells where light heats surfaces. It is used in two cases. A sphere with a finite conductivity becomes
- * hotter at the lit patches. An insulated wall sends the light out at the same patch as thermal radiation. A given
- * power must contain the light that the sphere or wall absorbs, summed over its patches.
+ * To a given power, add the light that the surface absorbs (fibrad_heat_sum_light). `absorbed` tells where it heats:
+ *   a sphere with a finite conductivity  is hotter at the lit patches
+ *   an insulated wall                    sends the light out as thermal radiation, at the same patch; it has no power
+ *   any other sphere or wall             `absorbed` has no effect
  *
  * The residual is the error of the equations for J, relative to what drives the radiation: differences of emission,
  * given powers and light. tolerance = 0 stands for 1e-3, or for 1e-5 if a temperature is unknown and its hold is 0.
@@ -153,9 +154,9 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources);
  *            _UNSUPPORTED: the temperature of an endless wall is unknown, fault.why is FIBRAD_WHY_ENDLESS */
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_fault *fault);
 
-/* Begins a solution. If there was a solution before, the new one starts from its radiosities. This does not hold if
- * only one of the two has `light`. After the call only the arrays `light` and `absorbed` are still needed. They must
- * stay until the solution is read.
+/* Begins a solution. It starts from the radiosities of the last solution, if there was one, and if both or neither have
+ * `light`. After the call only the arrays `light` and `absorbed` are still needed. They must stay until the solution is
+ * read.
  *   Errors   as fibrad_heat_check
  *            _STATE: a task is not traced, or the scene has changed
  *   Cost     O(patches) */
@@ -201,7 +202,7 @@ typedef struct fibrad_heat_result {
     double error_beams;             /* sigma K^4 L^2, out: root mean square error of power from beams */
     double residual;                /* out: at the end, to compare with `tolerance` */
     uint32_t sweeps;                /* out */
-    double *body_absorbed;          /* sigma K^4 L^2, [bodies], out: absorbed on body_area; may be NULL */
+    double *body_absorbed;          /* sigma K^4 L^2, [bodies], out: eps H, summed over body_area; may be NULL */
     double surroundings_error;      /* sigma K^4 L^2, out: estimated error of surroundings_power */
     double *body_area;           /* L^2, [bodies], out: area; of an endless wall the part near the bed; may be NULL */
     double *least_temperature;   /* K, [spheres], out: least of the surface; may be NULL */
@@ -219,10 +220,11 @@ typedef struct fibrad_heat_result {
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result);
 
 /* Reads the solution on the sides of triangles: element 2 t is the front and 2 t + 1 the back of the caller's triangle
- * t. A value is the mean over the patches of the side. Sides that share a patch have equal values. The fluxes of a mesh
- * times the areas of its sides add up to body_power, to rounding. If `absorbed` is given and the mesh is not insulated,
- * the light that the mesh has absorbed is part of the fluxes, too. If a plane or the cylinder cuts the mesh, the sum is
- * not body_power.
+ * t. A value is the mean over the patches of the side. Sides that share a patch have equal values. The sum of flux
+ * times area over the sides of a mesh is, to rounding,
+ *   an insulated mesh, or `absorbed` is NULL   body_power
+ *   another mesh                               body_power + the light that the mesh absorbs
+ *   a mesh that a plane or the cylinder cuts   neither of these
  *   Output   flux[2 triangles]: net power per area [sigma K^4]; may be NULL. NaN: the side belongs to no wall, or no
  *            beam and no ray reaches it.
  *            temperature[2 triangles]: [K]; may be NULL. NaN: the side belongs to no wall, its wall has no temperature,

@@ -41,9 +41,9 @@ typedef enum fibrad_light_shape {
  * Light with a half-angle has directions that fill a cone evenly. Each direction carries an equal part of the flux. The
  * sun's half-angle is FIBRAD_SUN_HALF_ANGLE.
  *
- * The box of the spheres is the box of their centres, wider by the largest radius on all sides. Where neither a plane
- * nor a period bounds it, it also holds the corners of triangles. On periodic axes a disc or rectangle is repeated, and
- * must not be wider than a period. The light of a disc must not meet a sphere before it passes the disc. */
+ * The box of the spheres is the box of their centres, wider by the largest radius on all sides. It also holds the
+ * corners of triangles, but it ends at planes and periods. On periodic axes a disc or rectangle is repeated, and must
+ * not be wider than a period. The light of a disc must not meet a sphere before it passes the disc. */
 typedef struct fibrad_light {
     double direction[3];    /* the way that the light goes, of any length above 0 */
     double flux;            /* sigma K^4 (W/m2 if sigma is in W/(m2 K4)), across `direction`; to FIBRAD_POWER_MAX */

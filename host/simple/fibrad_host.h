@@ -234,9 +234,12 @@ typedef struct fibrad_light_result {
  * in the result of fibrad_radiation_solve. If the temperature is to be found, add it to the power in the sources.
  * Insulated walls have no power in the sources. They give off the absorbed light if sources.absorbed is
  * result->patches. Spheres that conduct need this array as well, to be hotter where they are lit. The array lasts until
- * the next move or shine. Output   result Errors   as fibrad_light_empty and fibrad_radiation_solve _UNSOLVABLE:
- * nothing absorbs the light, and it cannot leave Cost     that of a solution Source   docs/methods_heat.md, Light from
- * outside */
+ * the next move or shine.
+ *   Output   result
+ *   Errors   as fibrad_light_empty and fibrad_radiation_solve
+ *            _UNSOLVABLE: nothing absorbs the light, and it cannot leave
+ *   Cost     that of a solution
+ *   Source   docs/methods_heat.md, Light from outside */
 int fibrad_radiation_shine(fibrad_radiation *radiation, const fibrad_light_sources *sources,
                            fibrad_light_result *result);
 
