@@ -179,13 +179,17 @@ static fibrad_heat_four child_of(fibrad_heat_four four, uint32_t k) {
     return four;
 }
 
+/* A four that waits for its turn, and its node. At most three of four children wait on each level. */
+typedef struct fine_wait {
+    fibrad_heat_four four;
+    uint32_t node;
+} fine_wait;
+enum { FINE_WAITS = 3 * FINE_LEVELS + 4 };
+
 /* Divides one of a body's own fours for a small sphere, again and again. The node of a four is the index of the node of
  * its first child. 0: the four is not divided. Without an array of nodes the function only counts them. */
 static void divide_four(fibrad_heat *heat, uint32_t body, uint32_t own, const struct near_sphere *near) {
-    struct {
-        fibrad_heat_four four;
-        uint32_t node;
-    } wait[3 * FINE_LEVELS + 4];
+    fine_wait wait[FINE_WAITS];
     uint32_t waiting = 1;
     wait[0].four = (fibrad_heat_four){.body = body, .own = own};
     wait[0].node = heat->division.node != NULL ? heat->division.root[body] + own : 0;
@@ -298,10 +302,7 @@ uint64_t fibrad_heat_count_nodes(const fibrad_heat *heat) {
 
 /* Lists the fine fours of a body, level by level. */
 static void number_fours(fibrad_heat *heat, uint32_t body) {
-    struct {
-        fibrad_heat_four four;
-        uint32_t node;
-    } wait[3 * FINE_LEVELS + 4];
+    fine_wait wait[FINE_WAITS];
     const uint32_t n = heat->division.root[body] != FIBRAD_NONE ? fours_of(heat, body) : 0;
     uint32_t found = 1;
     for (uint32_t level = 1; found > 0 && level <= FINE_LEVELS; level++) {

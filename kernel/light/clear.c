@@ -1,6 +1,7 @@
 /* clear.c - the part of a window that no triangle hides from the light. SPDX-License-Identifier: MIT */
 #include "light/clear.h"
 #include "base/constants.h"
+#include "base/vector.h"
 
 #define NEXT  1e-12 /* a place is next to a line */
 #define TINY  1e-13 /* shorter sides and smaller areas are rounding errors */
@@ -20,7 +21,7 @@ static void clip_face(clipped_face *face, const double n[3], double c) {
     face->corners = 0;
     for (uint32_t k = 0; k < all.corners; k++) {
         const double *a = all.at[k], *b = all.at[(k + 1) % all.corners];
-        const double fa = n[0] * a[0] + n[1] * a[1] + n[2] * a[2] - c, fb = n[0] * b[0] + n[1] * b[1] + n[2] * b[2] - c;
+        const double fa = fibrad_dot(n, a) - c, fb = fibrad_dot(n, b) - c;
         if (fa <= 0 && face->corners < SHARP) fibrad_copy(face->at[face->corners++], a, sizeof all.at[0]);
         if ((fa <= 0) == (fb <= 0) || face->corners == SHARP) continue;
         for (int axis = 0; axis < 3; axis++)

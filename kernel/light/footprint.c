@@ -7,6 +7,7 @@
 #include "light/footprint.h"
 #include "base/constants.h"
 #include "base/elementary.h"
+#include "base/vector.h"
 #include "sample/direction.h"
 
 #define NO_FACE 3u
@@ -17,28 +18,14 @@ typedef struct ways_out {
     double at[3];
 } ways_out;
 
-static double product_of(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-/* Two unit vectors across a third one, with which they make up a right-handed frame. */
-static void complete_frame(double frame[9]) {
-    double *u = frame, *v = frame + 3, *w = frame + 6;
-    int least = fibrad_abs(w[1]) < fibrad_abs(w[0]) ? 1 : 0;
-    if (fibrad_abs(w[2]) < fibrad_abs(w[least])) least = 2;
-    const double scale = 1 / fibrad_sqrt(1 - w[least] * w[least]);
-    for (int a = 0; a < 3; a++) u[a] = ((a == least) - w[least] * w[a]) * scale;
-    for (int a = 0; a < 3; a++) v[a] = w[(a + 1) % 3] * u[(a + 2) % 3] - w[(a + 2) % 3] * u[(a + 1) % 3];
-}
-
-static double squared_length(const double d[3]) { return product_of(d, d); }
-
 /* The axes across a light, and the direction towards it. */
 static void middle_frame(const fibrad_light *light, double frame[9]) {
     double d[3], size = 0;
     for (int a = 0; a < 3; a++) size = fibrad_max(size, fibrad_abs(light->direction[a]));
     for (int a = 0; a < 3; a++) d[a] = light->direction[a] / size;
-    const double length = fibrad_sqrt(squared_length(d));
+    const double length = fibrad_sqrt(fibrad_dot(d, d));
     for (int a = 0; a < 3; a++) frame[6 + a] = 0 - d[a] / length;
-    complete_frame(frame);
+    fibrad_frame_about(frame + 6, frame, frame + 3);
 }
 
 uint32_t fibrad_light_count(const fibrad_light *light) {
@@ -58,7 +45,7 @@ static void light_frame(const fibrad_light *light, uint32_t k, double frame[9]) 
     const double ring = s * fibrad_sqrt((k + .5) / n), up = fibrad_sqrt(1 - ring * ring);
     fibrad_azimuth(k, &cosine, &sine);
     for (int a = 0; a < 3; a++) frame[6 + a] = up * middle[6 + a] + ring * (cosine * middle[a] + sine * middle[3 + a]);
-    complete_frame(frame);
+    fibrad_frame_about(frame + 6, frame, frame + 3);
 }
 
 static bool is_within(double x, double low, double high) { return x >= low && x <= high; }
@@ -70,8 +57,8 @@ uint32_t fibrad_light_obstacle(const fibrad_scene *scene, const fibrad_light *li
     for (uint32_t place = 0; place < scene->facts.spheres; place++) {
         const double to[3] = {scene->x[place] - light->centre[0], scene->y[place] - light->centre[1],
                               scene->z[place] - light->centre[2]};
-        const double depth = product_of(to, frame + 6), reach = light->radius + scene->r[place];
-        const double aside = squared_length(to) - depth * depth;
+        const double depth = fibrad_dot(to, frame + 6), reach = light->radius + scene->r[place];
+        const double aside = fibrad_dot(to, to) - depth * depth;
         if (depth + scene->r[place] * (1 - 1e-9) > 0 && aside < reach * reach && scene->order[place] < first)
             first = scene->order[place];
     }
@@ -132,7 +119,7 @@ static void find_box(fibrad_footprint *f, const fibrad_scene *scene) {
 
 void fibrad_footprint_place(const fibrad_footprint *f, const double at[3], double uv[2]) {
     const double to[3] = {at[0] - f->origin[0], at[1] - f->origin[1], at[2] - f->origin[2]};
-    uv[0] = product_of(to, f->frame), uv[1] = product_of(to, f->frame + 3);
+    uv[0] = fibrad_dot(to, f->frame), uv[1] = fibrad_dot(to, f->frame + 3);
 }
 
 static void add_corner(fibrad_light_polygon *p, double u, double v) {

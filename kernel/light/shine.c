@@ -4,6 +4,7 @@
  * falls. On a free sphere each patch gets exactly what falls on it. A wall takes the light that the spheres leave to
  * it. Rays tell on which of its patches this light falls. */
 #include "base/random.h"
+#include "base/vector.h"
 #include "heat/fine.h"
 #include "heat/problem.h"
 #include "heat/wall_patch.h"
@@ -75,9 +76,8 @@ static double falls_on(const fibrad_heat *heat, const double frame[9], uint32_t 
         const double u = (k / SHINE_RULE + .5) / SHINE_RULE, v = (k % SHINE_RULE + .5) / SHINE_RULE;
         const double area =
             fibrad_heat_fine_point(heat, &four, .5 * ((patch >> 1 & 1) + u), .5 * ((patch & 1) + v), at, n);
-        const double falls = area * fibrad_max(0, n[0] * frame[6] + n[1] * frame[7] + n[2] * frame[8]);
-        for (int axis = 0; axis < 2; axis++)
-            middle[axis] += falls * (n[0] * frame[3 * axis] + n[1] * frame[3 * axis + 1] + n[2] * frame[3 * axis + 2]);
+        const double falls = area * fibrad_max(0, fibrad_dot(n, frame + 6));
+        for (int axis = 0; axis < 2; axis++) middle[axis] += falls * fibrad_dot(n, frame + 3 * axis);
         sum += falls;
     }
     return sum;

@@ -1,7 +1,7 @@
 /* sunlit_lanes.c - the window of a sphere towards a light. Compiled once per instruction set.
  * SPDX-License-Identifier: MIT
  *
- * For a single window it does not pay to list near spheres. So they are found by a march through the grid. */
+ * For a single window it does not pay to list near spheres. So they are found by a walk through the grid. */
 #include FIBRAD_LANES_HEADER
 #include "light/sunlit_lanes.h"
 #include "row/mesh_share_lanes.h"

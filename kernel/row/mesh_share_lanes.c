@@ -88,15 +88,22 @@ static void share_gap(fibrad_workspace *work, const fibrad_points *points, uint3
         fibrad_work_accumulate(work, disc, k, area);
 }
 
+/* The points of a word that are still seen and lie in a disc. They are no longer seen afterwards. */
+static uint64_t take_seen(const fibrad_workspace *work, fibrad_points *points, uint32_t word, uint32_t disc) {
+    const fibrad_discs *of = &work->disc;
+    const uint64_t within = LANED(fibrad_points_within)(points, word, of->u[disc], of->v[disc], of->r[disc]);
+    const uint64_t bits = points->seen[word] & within;
+    points->seen[word] &= ~bits;
+    return bits;
+}
+
 /* What triangles take from one disc. area: its visible area; 0: points count. The points of the disc are no longer
  * seen afterwards. Returns the number of its points. If it has no points, nothing is done. */
 static uint32_t share_disc(fibrad_workspace *work, fibrad_points *points, uint32_t disc, uint32_t k, double area) {
     uint64_t taken[4] = {0};
     uint32_t own = 0, lost = 0;
     for (uint32_t word = 0; word < points->count / 64; word++) {
-        const uint64_t bits = points->seen[word] & LANED(fibrad_points_within)(points, word, work->disc.u[disc],
-                                                                               work->disc.v[disc], work->disc.r[disc]);
-        points->seen[word] &= ~bits;
+        const uint64_t bits = take_seen(work, points, word, disc);
         taken[word] = before_disc(work, points, word, bits, disc);
         own += fibrad_count_bits(bits), lost += fibrad_count_bits(taken[word]);
     }
@@ -194,9 +201,7 @@ static bool clear_to_disc(const fibrad_workspace *work, uint32_t disc) {
 static void limit_points(fibrad_workspace *work, fibrad_points *points, uint32_t disc) {
     const double depth = depth_of_disc(work, disc);
     for (uint32_t word = 0; word < points->count / 64; word++) {
-        const uint64_t bits = points->seen[word] & LANED(fibrad_points_within)(points, word, work->disc.u[disc],
-                                                                               work->disc.v[disc], work->disc.r[disc]);
-        points->seen[word] &= ~bits;
+        const uint64_t bits = take_seen(work, points, word, disc);
         for (uint64_t rest = bits; rest != 0; rest &= rest - 1)
             work->met->depth[64 * word + (uint32_t)__builtin_ctzll(rest)] = depth;
     }
