@@ -18,6 +18,9 @@
 #define FIBRAD_CIRCLE_ROOM  (FIBRAD_CIRCLE_DISCS + 3 * FIBRAD_LANES_MAX)
 #define FIBRAD_CIRCLE_ENDS  (4 * FIBRAD_CIRCLE_ROOM)
 
+/* Parts of equal length of a stretch. What discs cover of them is told in bits. */
+#define FIBRAD_CIRCLE_SECTORS 30
+
 /* A place on a circle is a number from -1 to 3 for a whole turn. For angles t within a quarter turn of 0 it is
  * tan(t/2). On the other half of the circle it is 2 + tan((t - pi)/2). */
 #define FIBRAD_CIRCLE_BEGIN (-1.0)
@@ -91,7 +94,7 @@ typedef struct fibrad_circle_near {
  * followed stretch by stretch. */
 typedef struct fibrad_circle_stretch {
     double begin, end;   /* places */
-    double sectors;      /* 30 over its length */
+    double sectors;      /* FIBRAD_CIRCLE_SECTORS over its length */
     double u, v, radius; /* a disc that contains it, about a point of it; infinity: it is the whole circle */
 } fibrad_circle_stretch;
 
