@@ -3,7 +3,7 @@
 # Lengths in radii. A rank has a cube of the bed; messages cost latency and bytes over bandwidth.
 function ceil(x) { return x == int(x) ? x : int(x) + 1 }
 function short(x) { return x >= 100 ? sprintf("%.0f", x) : sprintf("%.2g", x) }
-function row(all, ranks,    n, side, halo, near, lists, map, deals, bytes, messages, reductions, rebuild, heat, link) {
+function row(all, ranks,    n, side, halo, near, lists, map, deals, bytes, messages, reductions, making, heat, link) {
     n = all / ranks
     side = (n * volume) ^ (1 / 3)
     halo = ranks == 1 ? 0 : (6 * side ^ 2 * reach + 3 * pi * side * reach ^ 2 + 4 / 3 * pi * reach ^ 3) / volume
@@ -13,11 +13,11 @@ function row(all, ranks,    n, side, halo, near, lists, map, deals, bytes, messa
     map = all * volume / (cutoff / 4) ^ 3 / 8
     if (map > 2 ^ 21) map = 2 ^ 21
     logs = log(ranks) / log(2)
-    # a rebuild: 9 deals, each an Alltoall and an Alltoallv of all ranks; some 35 small reductions; boxes; the map
+    # making rows: 9 deals, each an Alltoall and an Alltoallv of all ranks; some 35 small reductions; boxes; the map
     messages = ranks == 1 ? 0 : 18 * (ranks - 1) + (2 * 35 + 3) * logs
     bytes = ranks == 1 ? 0 : 48 * halo + 48 * ranks + 9 * 4 * ranks + 60 * n + 28 * (n + halo) + 2 * map
-    rebuild = messages * latency + bytes / bandwidth
-    # a heat step: values of the halo there and powers back; 3 reductions
+    making = messages * latency + bytes / bandwidth
+    # a step of heat: values of the halo there and powers back; 3 reductions
     heat_messages = 2 * near + 6 * logs
     heat_bytes = 16 * halo
     heat = heat_messages * latency + heat_bytes / bandwidth
@@ -25,7 +25,7 @@ function row(all, ranks,    n, side, halo, near, lists, map, deals, bytes, messa
     link = ranks == 1 ? 0 : 8 * (ranks - 1) * latency + 44 * n / bandwidth
     printf "| 1e%d | %d | %d | %d | %d", int(log(all) / log(10) + .5), ranks, n, halo, near
     printf " | %s | %s", short((fixed + particle * n + other * halo) / 1e9), short(bytes / 1e6)
-    printf " | %s | %s", short(seconds_row * n), short(rebuild)
+    printf " | %s | %s", short(seconds_row * n), short(making)
     printf " | %s | %s", short(heat_bytes / 1e6), short(seconds_heat * n * 1e3)
     printf " | %s | %s |\n", short(heat * 1e3), short(link * 1e3)
 }

@@ -18,9 +18,9 @@ TEST(help_and_version) {
     SUCCEED("--version");
     assert_begins(printed, "fibrad ");
     SUCCEED("bed", "--help");
-    static const char *const options[] = {"--method",  "--directions", "--areas",    "--points", "--cutoff",
-                                          "--targets", "--threads",    "--periodic", "--frame",  "--positions",
-                                          "--raw",     "--plot",       "-o",         "[233;",    "Example"};
+    static const char *const options[] = {"--method",  "--directions", "--areas",    "--points",         "--cutoff",
+                                          "--targets", "--threads",    "--periodic", "--frame",          "--positions",
+                                          "--raw",     "--plot",       "-o",         "[233 directions;", "Example"};
     for (size_t k = 0; k < sizeof options / sizeof *options; ++k) assert_has(printed, options[k]);
     ck_assert(strstr(printed, "--nf") && strstr(printed, "--rays"));
     SUCCEED("pair", "1", "--help");

@@ -174,7 +174,7 @@ TEST(refused_lights_are_named) {
         {"0,0,-1:5:disc=1,1,3", CUP, "--irradiate: '1,1,3'", "disc=X,Y,Z,R"},
         {"0,0,-1:5:disc=1,1,3,0", CUP, "--irradiate: the radius", "not above 0"},
         {"0,0,-1:5:box=1,0,0,1", CUP, "--irradiate: box=1,0,0,1", "X1 must be below X2"},
-        {"1,0,0:5:box=0,1,0,1", CUP, "--irradiate: a box lies across z", ""},
+        {"1,0,0:5:box=0,1,0,1", CUP, "--irradiate: the box lies across z", ""},
         {"0,0,-1:5:disc=1,1,3,1:box=0,1,0,1", CUP, "--irradiate: a light has one disc or one box", ""},
         {"0,0,1:1000", CUP, "--irradiate: no open face lets light 1 in", "zmax=H:open"},
         {"1,0,-1:1000", "xmin=0,xmax=2,ymin=0,ymax=2,zmin=0,zmax=2.5", "--irradiate: no open face lets light 1 in", ""},

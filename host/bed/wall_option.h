@@ -34,7 +34,7 @@ struct wall_options {
     "Walls: LIST has one or more of these, separated by commas.\n"                                                     \
     "  auto                   the sides of the file's box on its open axes\n"                                          \
     "  box                    all six sides\n"                                                                         \
-    "  xmin                   this side, also xmax to zmax, at the end of the file's box, or else of the spheres\n"    \
+    "  xmin                   this side of the file's box, else of the spheres; also xmax ... zmax\n"                  \
     "  xmin=VALUE             this side at a coordinate\n"                                                             \
     "  zmax=open              an opening where the spheres end: the walls end there and the surroundings begin\n"      \
     "  zmax=H:open            an opening at the coordinate H\n"                                                        \
@@ -42,9 +42,10 @@ struct wall_options {
     "  cylinder:X,Y,R         a cylinder parallel to the z axis\n"                                                     \
     "  mesh:FILE              triangles of an STL file, in the bed's unit of length; the wall is named after FILE\n"   \
     "  NAME=mesh:FILE         the same, with a name\n"                                                                 \
-    "A side that is named beside auto or box lies where its name says. Walls must not form a tube or a corner\n"       \
-    "without end. If they do, make the missing side a wall or an opening. Of a mesh, the sides on which\n"             \
-    "spheres lie belong to the wall. Other sides must not be seen. mesh:FILE:WORD says more:\n"                        \
+    "LIST may have auto or box, and also a side with a place of its own, as box,zmin=0.1 has. Walls must not\n"        \
+    "form a tube or a corner without end. If they do, make the missing side a wall or an opening. Of a mesh,\n"        \
+    "the sides on which spheres lie belong to the wall. Other sides must not be seen. mesh:FILE:WORD says\n"           \
+    "more:\n"                                                                                                          \
     "  both                   both sides belong to the wall\n"                                                         \
     "  normals                the outer sides of the file belong to the wall\n"                                        \
     "  solids                 each solid of the file is a wall\n"                                                      \

@@ -72,11 +72,10 @@ static int conductivity_help(void) {
     options_print(conductivity_table);
     printf("\n" FILES_MORE "\n"
            "F_E is that of a linear field of temperature. All spheres absorb. Along open axes only spheres at least\n"
-           "%g mean diameters (%g with --solid-conductivity) inside the outermost centres emit. With --axis a bed may "
-           "be too thin for this along\n"
-           "another axis. Then all spheres along that other axis emit. Where a periodic bed has gaps, flights may be\n"
-           "so long that F_E does not exist, or that its standard error cannot be estimated. Then there is a\n"
-           "warning.\n"
+           "%g mean diameters (%g with --solid-conductivity) inside the outermost centres emit. With --axis, the bed\n"
+           "may be too thin for this along another axis. Spheres at any place along that other axis then emit. Where\n"
+           "a periodic bed has gaps, flights may be so long that F_E does not exist, or that its standard error\n"
+           "cannot be estimated. Then there is a warning.\n"
            "\n",
            CONDUCTION_MARGIN, CONDUCTION_MARGIN_WALK);
     puts("Standard output ends with lines `key value`. F_E_x, F_E_y and F_E_z are the exchange factors.\n"

@@ -68,8 +68,8 @@ static const struct option heat_table[] = {
      TO_FLAG(struct heat_request, face.wanted)},
     {0, "model", "NAME",
      "patches (reflections from point to point), spheres (one radiosity for each sphere, for emissivities near 1) or, "
-     "with --until, factors (exchange factors, powers 2 to 5 % off) [patches; with --until factors that patches "
-     "correct]",
+     "with --until, factors (exchange factors, powers 2 to 5 % off) [patches; with --until factors "
+     "corrected by patches]",
      TO_FUNCTION(take_model, struct heat_request, problem)},
     {0, "patches", "P", "patches of each sphere, 24, 96 or 384 [" TEXT_OF(FIBRAD_HEAT_PATCHES_DEFAULT) "]",
      TO_FUNCTION(take_patches, struct heat_request, problem.config.patches)},
@@ -110,8 +110,8 @@ static int heat_help(void) {
          "reflects everything, gains nothing and has no temperature.\n"
          "\n"
          "--error E holds for the powers of the spheres together, for each wall, and for T^4 where temperatures\n"
-         "are found. Each error is relative to a root mean square. An error below 1e-3 E of what is emitted is\n"
-         "small enough in any case.\n"
+         "are found. Each error is relative to a root mean square. Where powers are below 1e-3 of what the spheres\n"
+         "emit or absorb, errors are relative to 1e-3 of what they emit or absorb.\n"
          "\n" LIGHT_MORE "\n"
          "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
          "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"

@@ -73,8 +73,8 @@ static const struct option pair_table[] = {
      TO_FUNCTION(option_method, struct pair_request, methods.method)},
     {0, "obstacle", "X,Y,Z,R", "a sphere in the way; may be repeated [none]", TO_REQUEST(take_obstacle)},
     {0, "error", "E",
-     "exact, with obstacles: error allowed, estimated, relative to the factor without obstacles, 1e-12 to 1 [1e-9; "
-     "1e-5 if spheres overlap, where each further digit takes ten times as long]",
+     "exact, with obstacles: error allowed, estimated, relative to the factor without obstacles, 1e-12 to 1; if "
+     "spheres overlap, each further digit takes ten times as long [1e-9; 1e-5 if spheres overlap]",
      TO_NUMBER(struct pair_request, error, 1e-12, 1)},
     {0, "check", NULL, "compare the exact factor with two of GSL's quadratures [off]",
      TO_FLAG(struct pair_request, check)},

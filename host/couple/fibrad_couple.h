@@ -22,8 +22,9 @@
  *             fibrad_insitu_facts_get and fibrad_accuracy_named.
  * Errors      After an error, fibrad_insitu_message has a sentence, the same on all ranks, which names particles by
  *             id. The object is as it was before the call.
- * Strays      A simulation may go on with particles of which no scene can be made. With config.strict such a particle
- *             is an error. Otherwise rows are made of the others. fibrad_insitu_remark tells what was done:
+ * Strays      A simulation may go on with particles beyond walls or inside each other, which no scene can have. With
+ *             config.strict such a particle is an error. Otherwise rows are made, and fibrad_insitu_remark tells what
+ *             was done:
  *               left out  The centre of the particle lies beyond a plane or the cylinder, or the particle reaches
  *                         beyond an opening. It exchanges nothing and hides nothing. Rows that are made when it is
  *                         back contain it.
@@ -62,7 +63,7 @@ typedef struct fibrad_link fibrad_link;
  *   Cost     four exchanges between all ranks, of one or two words per id */
 int fibrad_link_new(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_t own, size_t all, uint64_t *culprit);
 
-/* Copies the owners' values to the values that are used. Only ranks that share particles exchange messages.
+/* Copies the values of the owners to the ranks that use these ids. Only ranks that share particles exchange messages.
  *   Input    value[all][width]: in the order of the ids; the first `own` are read
  *            width: at least 1, the same on all ranks
  *   Output   value[all][width]: the others are set
@@ -70,8 +71,8 @@ int fibrad_link_new(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_
  *   Cost     `width` messages to and from each rank in contact, 8 bytes for each particle that both ranks know */
 void fibrad_link_forward(fibrad_link *link, double *value, int width);
 
-/* Adds the values that are used to the owners' values, and sets the values that are used to 0. The order of the sums
- * depends on the link alone.
+/* The way back: adds the values on the ranks that use an id to the value of the owner, and sets the added values to 0.
+ * The order of the sums depends on the link alone.
  *   Input    value[all][width], width: as for fibrad_link_forward
  *   Output   value[all][width]
  *   Errors   none but those of MPI
@@ -100,9 +101,9 @@ int fibrad_accuracy_named(const char *name);
 
 /* How rows are made. The same on all ranks. Zeroed: all defaults.
  *
- * The default cutoff bounds the number of particles that ranks send each other. It is the largest diameter plus 8 mean
- * radii, multiplied by 1.25 again and again. The last cutoff R is used for which a cube of side 2 R has no more than
- * 1e5 particles and images. The default is no longer than the bed. Rows take about as long with any cutoff. */
+ * The default cutoff R bounds the number of particles that ranks send each other. R begins at the largest diameter plus
+ * 8 mean radii. R is multiplied by 1.25 as long as a cube of side 2 R then has no more than 1e5 particles and images.
+ * The default is no longer than the bed. Rows take about as long with any cutoff. */
 typedef struct fibrad_insitu_config {
     double cutoff;       /* L, as in fibrad_exchange_rule, at least the largest diameter; 0: see above */
     uint32_t directions; /* as in fibrad_exchange_rule; 0: those of `accuracy` */
@@ -133,7 +134,8 @@ typedef struct fibrad_insitu_bed {
     const double *conductivity;
 } fibrad_insitu_bed;
 
-/* Temperatures for which powers are computed. All ranks together have the particles of the rows. */
+/* Temperatures for which powers are computed. All ranks together must have the particles for which rows were
+ * made. */
 typedef struct fibrad_insitu_state {
     double sigma;                   /* of E = sigma T^4, at most FIBRAD_SIGMA_MAX; 0: FIBRAD_STEFAN_BOLTZMANN */
     double surroundings;            /* K, 0 to FIBRAD_TEMPERATURE_MAX */
@@ -161,7 +163,7 @@ typedef struct fibrad_insitu_facts {
     uint64_t overlapping;        /* number of particles that are smaller, since a centre lies inside another particle */
     uint64_t behind;             /* number of particles without a row, since they see a side that belongs to no wall */
     double cutoff;               /* L, in use */
-    double beyond;               /* mean fraction of the emission whose target is not known; known targets share it */
+    double beyond;               /* mean fraction of the emission whose target is not known; known targets get it */
     double error;                /* root mean square of the rows' estimated errors */
     double seconds_rows;         /* s, of the slowest rank, in all calls of fibrad_insitu_rows and _follow so far */
     double seconds_powers;       /* s, of the slowest rank, in all calls of fibrad_insitu_powers so far */
@@ -192,9 +194,9 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
  *   Cost     that of fibrad_exchange_row for each particle */
 int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
-/* Makes rows of those particles alone that have come since the last rows, and keeps the other rows. The row of a new
- * particle gives both sides of its exchange with an old one. The factors to particles that have gone are shared by the
- * other entries of each row. The function makes all rows if there are none, if the number of walls has changed, or if
+/* Makes rows of those particles alone that have come since the last rows, and keeps the other rows. The exchange of a
+ * new particle and an old one follows from the row of the new one alone. If a particle has gone, the factor of each old
+ * row to it counts as beyond. The function makes all rows if there are none, if the number of walls has changed, or if
  * more than a tenth of all particles have come or gone since all rows were made.
  *   Input    as fibrad_insitu_rows
  *   Errors   as fibrad_insitu_rows

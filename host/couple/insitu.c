@@ -245,8 +245,8 @@ static int take_particles(struct insitu_build *b) {
             return refuse_particle(message, p.id, "its emissivity is not between 0 and 1");
         if (isnan(p.node))
             return fibrad_refuse(message, FIBRAD_E_ARGUMENT,
-                                 "particle %" PRIu64 ": its relative conductivity %g is not at least %g", p.id,
-                                 p.conductivity, FIBRAD_RELATIVE_CONDUCTIVITY_MIN);
+                                 "particle %" PRIu64 ": its relative conductivity must be at least %g, not %g", p.id,
+                                 FIBRAD_RELATIVE_CONDUCTIVITY_MIN, p.conductivity);
         if (takes_part(b, &p, &status)) particle[own++] = p;
         if (status) return status;
     }

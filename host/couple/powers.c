@@ -58,9 +58,9 @@ static int follow_particles(fibrad_insitu *s, const fibrad_insitu_state *state) 
         memcpy(id + n, home, set->own * sizeof *id);
         status = fibrad_link_new(&link, s->comm, id, n, all, &culprit);
         if (status == FIBRAD_E_ARGUMENT)
-            status =
-                fibrad_refuse(s->message, FIBRAD_E_STATE,
-                              "particle %" PRIu64 " has a row, but no owner or two owners; make new rows", culprit);
+            status = fibrad_refuse(s->message, FIBRAD_E_STATE,
+                                   "particle %" PRIu64 " has a row, but no rank or two ranks own it; make new rows",
+                                   culprit);
     }
     if (status) {
         free(id);

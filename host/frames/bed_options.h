@@ -29,7 +29,8 @@
          TO_FUNCTION(bed_unit_option, struct bed_options, length_unit)},                                               \
         {0, "periodic", "LX,LY,LZ", "lengths of the periodic box, 0 for an open axis, or none [as the file says]",     \
          TO_REQUEST(bed_period_option)},                                                                               \
-        {0, "frame", "K", "frame of the file, from 0, -1 for the last, all, A:B or A:B:STEP without B [-1]",           \
+        {0, "frame", "K",                                                                                              \
+         "frame of the file, from 0; -1: the last; all; A:B or A:B:STEP: from A on, up to B - 1 [-1]",                 \
          TO_REQUEST(bed_frames_option)},                                                                               \
     {                                                                                                                  \
         0, "positions", NULL, "name spheres by their positions in the file, from 0 [by ids]",                          \

@@ -64,8 +64,9 @@ void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_factor
                    matrix->body_correction);
     else if (matrix->changed > CHANGE_LARGE && is_new(warned, CLOSING))
         message_at(STATUS_OK, warned->file, bed->line[matrix->changed_row],
-                   "warning: closing changes what sphere %lld gives to walls and surroundings by %.2g times the error "
-                   "of its row; do triangles cut this sphere? If not, more directions help",
+                   "warning: rows were scaled to add up to 1; this changes what sphere %lld gives to walls and "
+                   "surroundings by %.2g times the error of its row; do triangles cut this sphere? If not, more "
+                   "directions help",
                    (long long)bed_name(bed, matrix->changed_row), matrix->changed);
 }
 

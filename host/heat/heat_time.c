@@ -365,14 +365,14 @@ static void warn_lag(const struct time_run *m) {
     if (m->lag > m->time->until)
         message_at(
             STATUS_OK, m->options->name, 0,
-            "warning: --solid-conductivity: insides of spheres are taken to be steady, for which they need up to "
-            "%.3g s; --until ends before, at %g s",
+            "warning: --solid-conductivity: insides of spheres are taken to be steady, but become steady only after "
+            "up to %.3g s; --until ends before, at %g s",
             m->lag, m->time->until);
     else if (m->lag > step)
         message_at(
             STATUS_OK, m->options->name, 0,
-            "warning: --solid-conductivity: insides of spheres are taken to be steady, for which they need up to "
-            "%.3g s; steps are shorter, %.3g s on the mean",
+            "warning: --solid-conductivity: insides of spheres are taken to be steady, but become steady only after "
+            "up to %.3g s; steps are shorter, %.3g s on the mean",
             m->lag, step);
 }
 

@@ -83,7 +83,7 @@ int irradiate_option(const char *text, void *light_options) {
         return message(STATUS_USAGE, "--irradiate: the direction 0,0,0 leads nowhere");
     for (size_t k = 2; k < parts && !status; ++k) status = take_part(part[k], &light);
     if (!status && light.shape == FIBRAD_LIGHT_BOX && light.direction[2] == 0)
-        return message(STATUS_USAGE, "--irradiate: a box lies across z, and light along x and y does not pass it");
+        return message(STATUS_USAGE, "--irradiate: the box lies across z; give the direction a DZ other than 0");
     if (!status) options->light[options->lights++] = light;
     return status;
 }

@@ -29,7 +29,7 @@ enum { LIGHTS_MAX = 32 };
     "--irradiate: several are allowed. LIGHT is DX,DY,DZ:FLUX and may go on with\n"                                    \
     "  :half-angle=MRAD       directions fill a cone; :half-angle=sun is 4.65\n"                                       \
     "  :disc=X,Y,Z,R          a beam through a disc of radius R at right angles to it, before the bed\n"               \
-    "  :box=X1,X2,Y1,Y2       a beam through a rectangle at the end of the bed in z\n"                                 \
+    "  :box=X1,X2,Y1,Y2       a beam through a rectangle across z, at the lit end of the bed\n"                        \
     "Lengths are in the unit of the file. Without disc or box the light falls on all that is open. Between\n"          \
     "side walls the light needs an opening at the height H of their rim (zmax=H:open). A surface absorbs the\n"        \
     "fraction --absorptivity of the light, is heated by it, and reflects the rest. q_W is the net power of\n"          \

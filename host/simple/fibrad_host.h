@@ -77,7 +77,7 @@ typedef struct fibrad_bed_options {
     const fibrad_beam_rule *beam;       /* NULL: the defaults, unless surface or cast is set */
     const fibrad_surface_rule *surface; /* NULL: not by the surface method */
     const fibrad_cast_rule *cast;       /* NULL: not by rays */
-    const unsigned char *wanted;        /* [spheres], not 0: this row, as if raw were 1; NULL: all rows */
+    const unsigned char *wanted;        /* [spheres], not 0: compute this row; implies raw; NULL: all rows */
     int raw;                            /* 1: leave the rows as the method gave them */
     double drop;                        /* 0 to 1, as in fibrad_matrix_rule */
     int bodies;                         /* 1: rows of walls, too */
@@ -91,7 +91,7 @@ typedef struct fibrad_bed_factors {
     const double *body_area;  /* L^2, [bodies], as fibrad_scene_body_area */
     int threads;              /* threads used */
     uint32_t directions;      /* largest number of directions of a row, or lines; 0: the method has none */
-    uint64_t fallbacks;       /* windows whose areas took the robust method */
+    uint64_t fallbacks;       /* windows that took a slower, more robust method */
     uint64_t rays;            /* exchange: rays traced */
     double seconds;           /* s, without the time for closure_error and reciprocity_error */
     double closure_error;     /* largest |sum - 1| of a raw row */
@@ -223,7 +223,7 @@ typedef struct fibrad_light_result {
     double reflected;            /* sigma K^4 L^2, out: light that leaves after reflections, on any side */
     double error;                /* sigma K^4 L^2, out: estimated error of reflected */
     uint32_t sweeps;             /* out */
-    uint32_t lights;             /* out: number of lights taken; if light k has an error, k */
+    uint32_t lights;             /* out: number of lights taken; after an error, index of the light at fault */
     const double *patches;       /* [patches], out: what fibrad_heat_sources.absorbed takes */
 } fibrad_light_result;
 
@@ -359,7 +359,7 @@ typedef struct fibrad_span {
  *   temperature, hold, reference     not used
  *   power                            constant
  *   emissivity, body_emissivity      constant, or where a law begins
- *   body_temperature, surroundings   at the beginning of the span; NaN only by PATCHES
+ *   body_temperature, surroundings   at the beginning of the span; NaN (to be found) only by PATCHES
  *   body_power, insulated            constant; by PATCHES only
  *   side_temperature                 constant; not by FACTORS
  *   sigma, tolerance, sweeps_max     as for fibrad_radiation_solve

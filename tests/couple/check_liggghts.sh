@@ -250,7 +250,7 @@ refuse 2 3 "2 emissivities for 1 types" -in bed --emissivity .5,.6 --surrounding
 # shellcheck disable=SC2086
 refuse 2 3 "2 conductivities of the solid for 1 types" -in bed $radiation --solid-conductivity 5,6 --steps 1
 # shellcheck disable=SC2086
-refuse 2 3 "step 0: particle [0-9]*: its relative conductivity .* is not at least 1e-06" -in bed $radiation --solid-conductivity 1e-9 --steps 1
+refuse 2 3 "step 0: particle [0-9]*: its relative conductivity must be at least 1e-06, not " -in bed $radiation --solid-conductivity 1e-9 --steps 1
 # shellcheck disable=SC2086
 refuse 2 3 "cools down in" -in bed $radiation --steps 1 --every 1000000 --rows 1000000
 # shellcheck disable=SC2086

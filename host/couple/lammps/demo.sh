@@ -10,7 +10,7 @@ mkdir -p "$out"
 . tests/couple/mpi.sh
 run_mpi 2 "$LMP" -in host/couple/lammps/pour.lmp -log "$out/log" -var load "$LOAD" -var out "$out"
 
-# T against time, and the balance: columns step, time, heat, powers of sky and floor, mean and largest T; a step of heat
+# T against time, and the balance: columns step, time, heat, powers of surroundings and floor, mean and largest T; a step of heat
 # takes 50 time steps
 awk -v csv="$out/temperature.csv" '
     BEGIN { print "time,mean,most" >csv }
@@ -22,7 +22,7 @@ awk -v csv="$out/temperature.csv" '
     }
     END {
         error = (heat - integral)/heat
-        printf "\nHeat of the pebbles above 300 K    %.12g J\nlost by floor and sky, over time   %.12g J\n", heat, integral
+        printf "\nHeat of the pebbles above 300 K    %.12g J\nlost by floor and surroundings     %.12g J\n", heat, integral
         printf "difference, of the heat            %.1e\n", error < 0 ? -error : error
     }' "$out/balance.txt"
 

@@ -449,7 +449,8 @@ void FixFibrad::post_run() {
     fibrad_insitu_facts_get(insitu, &facts);
     const double rows = facts.seconds_rows - before.seconds_rows, powers = facts.seconds_powers - before.seconds_powers;
     say(text(
-        "fix fibrad: rows made %d times, followed %d times, in %.3g s, powers %d times in %.3g s, %.0f %% of the run",
+        "fix fibrad: rows made %d times, and of new particles alone %d times, in %.3g s; powers %d times, in %.3g s; "
+        "%.0f %% of the run",
         rows_made, rows_followed, rows, powers_found, powers,
         100 * (rows + powers) / std::max(MPI_Wtime() - begun, 1e-9)));
     begun = MPI_Wtime();

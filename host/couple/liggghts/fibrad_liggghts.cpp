@@ -233,8 +233,8 @@ void check_time_step(const Driver *driver) {
     if (!(all.ratio > 1)) return;
     char text[200];
     std::snprintf(text, sizeof text,
-                  "particle %d cools down in %.2g of the time between powers: a smaller --every or time step", all.id,
-                  1 / all.ratio);
+                  "particle %d cools down in %.2g of the time between powers: take a smaller --every or time step",
+                  all.id, 1 / all.ratio);
     stop(WRONG_INPUT, text);
 }
 
@@ -246,7 +246,7 @@ void check_walls(const Driver *driver) {
     if (!(ratio > 1)) return;
     char text[200];
     std::snprintf(text, sizeof text,
-                  "wall %.60s cools down in %.2g of the time between powers: a smaller --every or time step",
+                  "wall %.60s cools down in %.2g of the time between powers: take a smaller --every or time step",
                   driver->body_name[wall].c_str(), 1 / ratio);
     stop(WRONG_INPUT, text);
 }
