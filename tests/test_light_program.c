@@ -100,7 +100,6 @@ TEST(lit_sides_in_time) {
         if (sscanf(line, "%*f,%*d,%*f,%*f,%*f,%*f,%*f,%lf", &surface) == 1) most = fmax(most, surface);
     }
     ck_assert_double_eq_tol(most, hottest, .01 * hottest);
-    free(text);
 }
 
 /* A roof of triangles over half of the cup takes half of the light. Its lower side must not be lit, unless it is a
