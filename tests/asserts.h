@@ -6,8 +6,13 @@
 #include <math.h>
 #include <string.h>
 
+#define PI 3.14159265358979323846
+
 /* A call of the library succeeds. */
 #define assert_ok(call) ck_assert_int_eq(call, FIBRAD_OK)
+
+/* A call of the library says that an argument is not valid. */
+#define assert_invalid(call) ck_assert_int_eq(call, FIBRAD_E_ARGUMENT)
 
 /* A value differs from the truth by no more than a fraction of the truth. */
 static inline void assert_near(double value, double truth, double fraction) {

@@ -14,8 +14,6 @@
 #include "scenes.h"
 #include "suite.h"
 
-#define PI 3.14159265358979323846
-
 /* Walls by slot: 0 to 5 are planes across the axes, x low, x high, y low, y high, z low, z high; 6 is a cylinder. */
 struct walls {
     uint32_t planes;    /* sum of 1 << slot */

@@ -10,6 +10,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "asserts.h"
 #include "bed/bed.h"
 #include "fibrad_mesh.h"
 
@@ -259,7 +260,7 @@ static inline double plain_random(uint64_t *state) {
 
 /* A direction by the cosine law about a normal. */
 static inline void plain_scatter(const double normal[3], uint64_t *state, double w[3]) {
-    const double z = 2 * plain_random(state) - 1, turn = 2 * M_PI * plain_random(state), ring = sqrt(1 - z * z);
+    const double z = 2 * plain_random(state) - 1, turn = 2 * PI * plain_random(state), ring = sqrt(1 - z * z);
     const double u[3] = {ring * cos(turn), ring * sin(turn), z};
     double size = 0;
     for (int a = 0; a < 3; a++) w[a] = normal[a] + u[a], size += w[a] * w[a];

@@ -39,6 +39,9 @@ static inline struct bed bed_of(uint32_t n, const double spheres[][4]) {
     return bed;
 }
 
+/* The same, without their number. */
+#define BED(...) bed_of(sizeof(double[][4]){__VA_ARGS__} / sizeof(double[4]), (const double[][4]){__VA_ARGS__})
+
 /* A cubic lattice of touching unit spheres about the origin, where the first sphere lies. 'p': simple, 'i':
  * body-centred, 'f': face-centred. Centres are at most `reach` from the origin. */
 static inline struct bed lattice(char kind, double reach) {
@@ -69,7 +72,7 @@ static inline struct bed packing(uint32_t n, double low, double high, double fra
 
 /* A unit cube with a few large spheres, and with n - 6 small spheres at random about them. */
 static inline struct bed strewn(uint32_t n, uint64_t seed) {
-    struct bed bed = bed_of(0, NULL);
+    struct bed bed = bed_empty();
     for (uint64_t at = 0; bed.n < n; at += 4) {
         double c[3], r = bed.n < 6 ? .2 : .01 + .01 * bed_make_random(seed, at);
         bool fits = true;

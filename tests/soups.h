@@ -10,8 +10,6 @@
 
 #include "program.h"
 
-#define PI 3.14159265358979323846
-
 enum { SOUP_MOST = 4096 };
 struct soup {
     uint32_t n;

@@ -5,9 +5,10 @@
 
 #include <math.h>
 #include <stdint.h>
+
+#include "asserts.h"
 #include "fibrad.h"
 
-#define PI        3.14159265358979323846
 #define NODES_MAX 987
 
 typedef struct point {

@@ -48,11 +48,10 @@ TEST(small_scenes) {
  * inside, or it stands in the middle. */
 TEST(tangent_obstacles) {
     double h = sqrt(3);
-    struct bed beds[] = {bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2, 1}, {h, 0, 1, 1}}),
-                         bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 4, 1}, {1.5, 0, 2, .5}}),
-                         bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 4, 1}, {.5, 0, 2, .5}}),
-                         bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 4, 1}, {0, 0, 2, 1}}),
-                         bed_of(4, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, .5}, {.7, 0, 2, .7}, {-.3, 0, 2, .3}})};
+    struct bed beds[] = {BED({0, 0, 0, 1}, {0, 0, 2, 1}, {h, 0, 1, 1}),
+                         BED({0, 0, 0, 1}, {0, 0, 4, 1}, {1.5, 0, 2, .5}),
+                         BED({0, 0, 0, 1}, {0, 0, 4, 1}, {.5, 0, 2, .5}), BED({0, 0, 0, 1}, {0, 0, 4, 1}, {0, 0, 2, 1}),
+                         BED({0, 0, 0, 1}, {0, 0, 3, .5}, {.7, 0, 2, .7}, {-.3, 0, 2, .3})};
     for (size_t b = 0; b < sizeof beds / sizeof *beds; b++) {
         double error = error_of(&beds[b], 0, 4181, 1e-6);
         printf("tangent obstacles %zu: %.2g\n", b, error);

@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #define FIBRAD_ISA_SUFFIX _scalar
+#include "base/dispatch.h"
 #include "window/arrangement_lanes.h"
 #include "window/clip_lanes.h"
 #include "window/dense_lanes.h"
@@ -27,6 +28,12 @@ typedef bool disc_function(fibrad_areas *areas, uint32_t whose, double x, double
 typedef uint32_t discs_function(fibrad_areas *areas, uint32_t first, const uint32_t *which, uint32_t count,
                                 const double *x, const double *y, const double *r);
 typedef double end_function(fibrad_areas *areas);
+typedef bool resolve_function(fibrad_areas *areas, uint32_t circles);
+
+FIBRAD_DECLARE_VERSIONS(begin_function, fibrad_areas_begin);
+FIBRAD_DECLARE_VERSIONS(discs_function, fibrad_areas_discs);
+FIBRAD_DECLARE_VERSIONS(end_function, fibrad_areas_end);
+FIBRAD_DECLARE_VERSIONS(resolve_function, fibrad_dense_resolve);
 
 struct method {
     begin_function *begin;
@@ -34,23 +41,27 @@ struct method {
     end_function *end;
 };
 
+static int isa = FIBRAD_ISA_SCALAR; /* of clipping */
+
+static void begin(fibrad_areas *areas) { FIBRAD_VERSION_OF(fibrad_areas_begin, isa)(areas); }
+
 /* Hands over one disc, as a list of one element. */
-static bool disc_scalar(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
-    fibrad_areas_discs_scalar(areas, whose, &(uint32_t){0}, 1, &x, &y, &r);
+static bool add_disc(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
+    FIBRAD_VERSION_OF(fibrad_areas_discs, isa)(areas, whose, &(uint32_t){0}, 1, &x, &y, &r);
     return areas->open;
 }
 
-static const struct method both = {fibrad_areas_begin_scalar, disc_scalar, fibrad_areas_end_scalar};
-static const struct method arrangement = {fibrad_arrangement_begin_scalar, fibrad_arrangement_disc_scalar,
-                                          fibrad_arrangement_end_scalar};
+static double end(fibrad_areas *areas) { return FIBRAD_VERSION_OF(fibrad_areas_end, isa)(areas); }
 
 /* Begins a window in which clipping works from the first disc on as it does in windows with many discs. */
-static void begin_dense_scalar(fibrad_areas *areas) {
-    fibrad_areas_begin_scalar(areas);
-    ck_assert(fibrad_dense_resolve_scalar(areas, 1));
+static void begin_dense(fibrad_areas *areas) {
+    begin(areas);
+    ck_assert(FIBRAD_VERSION_OF(fibrad_dense_resolve, isa)(areas, 1));
 }
 
-static const struct method dense = {begin_dense_scalar, disc_scalar, fibrad_areas_end_scalar};
+static const struct method both = {begin, add_disc, end}, dense = {begin_dense, add_disc, end};
+static const struct method arrangement = {fibrad_arrangement_begin_scalar, fibrad_arrangement_disc_scalar,
+                                          fibrad_arrangement_end_scalar};
 
 static uint32_t windows, fallbacks;
 
@@ -284,58 +295,15 @@ TEST(clipping_against_accounts) {
     for (int way = 0; way < 2; way++) ck_assert(part[way] > .05 && part[way] < .5); /* all have been tried */
 }
 
-#define WIDER(isa)                                                                                                     \
-    begin_function fibrad_areas_begin_##isa;                                                                           \
-    discs_function fibrad_areas_discs_##isa;                                                                           \
-    end_function fibrad_areas_end_##isa;                                                                               \
-    static bool disc_##isa(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {                        \
-        fibrad_areas_discs_##isa(areas, whose, &(uint32_t){0}, 1, &x, &y, &r);                                         \
-        return areas->open;                                                                                            \
-    }                                                                                                                  \
-    bool fibrad_dense_resolve_##isa(fibrad_areas *areas, uint32_t circles);                                            \
-    static void begin_dense_##isa(fibrad_areas *areas) {                                                               \
-        fibrad_areas_begin_##isa(areas);                                                                               \
-        ck_assert(fibrad_dense_resolve_##isa(areas, 1));                                                               \
-    }                                                                                                                  \
-    static const struct method isa = {fibrad_areas_begin_##isa, disc_##isa, fibrad_areas_end_##isa};                   \
-    static const struct method dense_##isa = {begin_dense_##isa, disc_##isa, fibrad_areas_end_##isa};
-#ifdef FIBRAD_WITH_SSE2
-WIDER(sse2)
-#endif
-#ifdef FIBRAD_WITH_AVX2
-WIDER(avx2)
-#endif
-#ifdef FIBRAD_WITH_AVX512
-WIDER(avx512)
-#endif
-#ifdef FIBRAD_WITH_NEON
-WIDER(neon)
-#endif
-
-/* In all instruction sets the same windows are degenerate, and the areas have the same bits. methods[][1] clips for
- * many discs. */
+/* In all instruction sets the same windows are degenerate, and the areas have the same bits. Every second window is
+ * clipped for many discs. */
 TEST(bits_of_windows) {
-    const struct method *const methods[][2] = {
-        [FIBRAD_ISA_SCALAR] = {&both, &dense},
-#ifdef FIBRAD_WITH_SSE2
-        [FIBRAD_ISA_SSE2] = {&sse2, &dense_sse2},
-#endif
-#ifdef FIBRAD_WITH_AVX2
-        [FIBRAD_ISA_AVX2] = {&avx2, &dense_avx2},
-#endif
-#ifdef FIBRAD_WITH_AVX512
-        [FIBRAD_ISA_AVX512] = {&avx512, &dense_avx512},
-#endif
-#ifdef FIBRAD_WITH_NEON
-        [FIBRAD_ISA_NEON] = {&neon, &dense_neon},
-#endif
-    };
     const struct isas isas = isas_there();
     OWNED_AREAS areas = areas_make();
     double first[MOST + 1], other[MOST + 1];
     for (int round = 0; round < 6000; round++) {
         struct window w = {0};
-        const int way = round % 2;
+        const struct method *method = round % 2 ? &dense : &both;
         uint32_t n = 1 + (uint32_t)random_in(0, round % 10 < 2 ? 100 : 16);
         double grid = round % 3 == 0 ? 4 : 1e6, scale = pow(10, random_in(-1, 1));
         for (uint32_t k = 0; k < n; k++) {
@@ -344,14 +312,15 @@ TEST(bits_of_windows) {
             put(&w, round % 3 == 0 ? floor(4 * d * cos(t)) / 4 : d * cos(t), d * sin(t), r);
         }
         areas.fallbacks = 0;
-        measure(methods[FIBRAD_ISA_SCALAR][way], &areas, &w, first);
+        measure(method, &areas, &w, first);
         uint32_t doubts = areas.fallbacks;
         for (int s = 1; s < isas.count; s++) {
-            areas.fallbacks = 0;
-            measure(methods[isas.set[s]][way], &areas, &w, other);
+            areas.fallbacks = 0, isa = isas.set[s];
+            measure(method, &areas, &w, other);
             ck_assert_uint_eq(areas.fallbacks, doubts);
             ck_assert_mem_eq(first, other, (n + 1) * sizeof *first);
         }
+        isa = FIBRAD_ISA_SCALAR;
     }
 }
 
@@ -359,21 +328,6 @@ TEST(bits_of_windows) {
  * clipping has filled. The lanes beyond its last arc must not look up what is no circle. */
 TEST(arrangement_after_dense_clipping) {
     OWNED_AREAS areas = areas_make();
-    const struct method *const methods[] = {
-        &dense,
-#ifdef FIBRAD_WITH_SSE2
-        &dense_sse2,
-#endif
-#ifdef FIBRAD_WITH_AVX2
-        &dense_avx2,
-#endif
-#ifdef FIBRAD_WITH_AVX512
-        &dense_avx512,
-#endif
-#ifdef FIBRAD_WITH_NEON
-        &dense_neon,
-#endif
-    };
     const struct isas isas = isas_there();
     double first[MOST + 1], other[MOST + 1];
     for (int round = 0; round < 200; round++) {
@@ -384,11 +338,13 @@ TEST(arrangement_after_dense_clipping) {
             put(&w, d * cos(t), d * sin(t), r);
         }
         put(&w, .5, 0, .5); /* tangent to the window */
-        measure(methods[0], &areas, &w, first);
+        measure(&dense, &areas, &w, first);
         for (int s = 1; s < isas.count; s++) {
-            measure(methods[s], &areas, &w, other);
+            isa = isas.set[s];
+            measure(&dense, &areas, &w, other);
             ck_assert_mem_eq(first, other, (w.n + 1) * sizeof *first);
         }
+        isa = FIBRAD_ISA_SCALAR;
     }
     ck_assert_uint_gt(areas.fallbacks, 100); /* as often as no disc hides the point of contact before */
 }

@@ -68,8 +68,8 @@ TEST(arena_refuses_what_it_cannot_hold) {
     ck_assert_ptr_eq(fibrad_arena_take(&arena, 128, 1), block + 128);
     ck_assert_ptr_null(fibrad_arena_take(&arena, 1, 1));
     ck_assert_uint_eq(fibrad_arena_total(&arena), 320 + 63);
-    ck_assert_int_eq(fibrad_arena_open(&arena, NULL, 256, 64), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_arena_open(&arena, block, 256, 0), FIBRAD_E_ARGUMENT);
+    assert_invalid(fibrad_arena_open(&arena, NULL, 256, 64));
+    assert_invalid(fibrad_arena_open(&arena, block, 256, 0));
     ck_assert_int_eq(fibrad_arena_open(&arena, block, 256, 320), FIBRAD_E_SIZE);
     ck_assert_int_eq(fibrad_arena_open(&arena, block, 255, 256), FIBRAD_E_SIZE);
     assert_ok(fibrad_arena_open(&arena, block, 256, 256));

@@ -40,8 +40,7 @@ TEST(two_spheres_match_the_exact_pair) {
                                       {1, 3, .01}, {1, 10, 0}, {1, 1, 4}};
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         const double *p = cases[c];
-        OWNED_BED bed = bed_of(
-            2, (const double[][4]){{0, 0, 0, p[0]}, {.3 * (p[0] + p[1] + p[2]), 0, .4 * (p[0] + p[1] + p[2]), p[1]}});
+        OWNED_BED bed = BED({0, 0, 0, p[0]}, {.3 * (p[0] + p[1] + p[2]), 0, .4 * (p[0] + p[1] + p[2]), p[1]});
         bed.y[1] = sqrt(.75) * (p[0] + p[1] + p[2]);
         double exact;
         assert_ok(fibrad_pair_exact(p[0], p[1], p[2], &exact));
@@ -53,7 +52,7 @@ TEST(two_spheres_match_the_exact_pair) {
 
 /* A sphere lies in line behind a larger one that hides it. It is not seen. */
 TEST(hidden_sphere_is_not_seen) {
-    OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 4, 3}, {0, 0, 9, 1}});
+    OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 4, 3}, {0, 0, 9, 1});
     OWNED_ROW row = beam(&bed, 0, (fibrad_beam_rule){.directions = 1000}, FIBRAD_ISA_BEST);
     ck_assert_uint_eq(row.length, 1);
     ck_assert_uint_eq(row.col[0], 1);
@@ -63,7 +62,7 @@ TEST(hidden_sphere_is_not_seen) {
 
 /* Checks rows of a sphere of radius 1 among spheres of radius r, in layers up to 42 r above it. */
 static void check_shell(uint32_t count, double r) {
-    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED_BED bed = BED({0, 0, 0, 1});
     for (uint32_t k = 0; k < count; k++) {
         double w[3];
         fibrad_direction(k, count, w);
@@ -84,7 +83,7 @@ TEST(many_arcs_are_no_fallback) {
 /* Windows with discs far larger than the window are left to the robust method. Windows with hundreds of small discs
  * before a large one are not, nor are windows of beds. */
 TEST(fallbacks_are_counted) {
-    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 4}});
+    OWNED_BED bed = BED({0, 0, 0, 4});
     for (uint32_t k = 0; k < 1000; k++) {
         double w[3];
         fibrad_direction(k, 1000, w);
@@ -93,7 +92,7 @@ TEST(fallbacks_are_counted) {
     OWNED_ROW row = beam(&bed, 0, (fibrad_beam_rule){.directions = 55}, FIBRAD_ISA_BEST);
     ck_assert_uint_eq(row.fallbacks, 0);
     ck_assert_double_eq_tol(row_sum(&row) + row.escaped, 1, 1e-12);
-    OWNED_BED two = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, -2002, 2000}});
+    OWNED_BED two = BED({0, 0, 0, 1}, {0, 0, -2002, 2000});
     OWNED_ROW beside_giant = beam(&two, 0, (fibrad_beam_rule){.directions = 55}, FIBRAD_ISA_BEST);
     ck_assert_uint_gt(beside_giant.fallbacks, 20);
     OWNED_ROW by_points = beam(&bed, 0, (fibrad_beam_rule){.directions = 55, .points = 64}, FIBRAD_ISA_BEST);
@@ -249,7 +248,7 @@ TEST(work_memory_is_a_matter_of_speed) {
 
 /* The same holds for a sphere so large that the first shell ends within a radius of it. */
 TEST(work_memory_of_a_large_sphere) {
-    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 5}});
+    OWNED_BED bed = BED({0, 0, 0, 5});
     for (int k = 0; k < 19 * 19 * 19; k++) {
         double x = .8 * (k % 19 - 9), y = .8 * (k / 19 % 19 - 9) + .1, z = .8 * (k / 361 - 9) + .2;
         double d = sqrt(x * x + y * y + z * z);
@@ -271,7 +270,7 @@ TEST(work_memory_of_a_large_sphere) {
 /* The order of the spheres changes nothing, although a window that begins with many discs of two sizes has a grid that
  * their mean radius chooses. */
 TEST(order_of_spheres_changes_no_bit) {
-    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}}), turned = bed_of(0, NULL);
+    OWNED_BED bed = BED({0, 0, 0, 1}), turned = bed_empty();
     for (int k = 0; k < 13 * 13 * 13; k++) {
         double x = .32 * (k % 13 - 6) + .003 * (k % 7), y = .32 * (k / 13 % 13 - 6) + .002 * (k % 11);
         double z = .32 * (k / 169 - 6) + .004 * (k % 5), d = sqrt(x * x + y * y + z * z);
@@ -354,7 +353,7 @@ TEST(periodic_images_are_copies) {
 
 /* A lone sphere in a small periodic box sees only itself. */
 TEST(sphere_sees_its_own_images) {
-    OWNED_BED bed = bed_of(1, (const double[][4]){{.5, .5, .5, 1}});
+    OWNED_BED bed = BED({.5, .5, .5, 1});
     for (int axis = 0; axis < 3; axis++) bed.period[axis] = 2;
     OWNED_ROW row = beam(&bed, 0, (fibrad_beam_rule){.directions = 500}, FIBRAD_ISA_BEST);
     ck_assert_uint_eq(row.length, 1);
@@ -373,7 +372,7 @@ TEST(cutoff_takes_out_what_lies_beyond) {
 
 /* The cutoff is kept also where spheres are looked up along each beam, because the near list has no room. */
 TEST(cutoff_along_each_beam) {
-    OWNED_BED bed = strewn(300, 45), within = bed_of(0, NULL);
+    OWNED_BED bed = strewn(300, 45), within = bed_empty();
     for (uint32_t j = 0; j < bed.n; j++) {
         double x = bed.x[j] - bed.x[50], y = bed.y[j] - bed.y[50], z = bed.z[j] - bed.z[50];
         if (x * x + y * y + z * z <= .3 * .3) add_sphere(&within, bed.x[j], bed.y[j], bed.z[j], bed.r[j]);
@@ -405,7 +404,7 @@ TEST(overlap_changes_rows_continuously) {
     double last = -1;
     for (int step = -20; step <= 20; step++) {
         double gap = step * 1e-4;
-        OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2 + gap, 1}, {0, 1.8, 1 + gap, 1}});
+        OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 2 + gap, 1}, {0, 1.8, 1 + gap, 1});
         OWNED_ROW row = beam(&bed, 0, (fibrad_beam_rule){.directions = 987}, FIBRAD_ISA_BEST);
         double f = row_factor(&row, 1);
         if (last >= 0) ck_assert_double_eq_tol(f, last, 3e-4);
@@ -421,8 +420,7 @@ TEST(spheres_at_equal_depth_are_seen_once) {
         assert_ok(fibrad_direction(k, 34, w));
         for (int side = -1; side <= 1; side++) {
             double ahead = 1e-9 * side, f[2];
-            OWNED_BED bed = bed_of(
-                2, (const double[][4]){{0, 0, 0, .5}, {w[1] + ahead * w[0], ahead * w[1] - w[0], ahead * w[2], .5}});
+            OWNED_BED bed = BED({0, 0, 0, .5}, {w[1] + ahead * w[0], ahead * w[1] - w[0], ahead * w[2], .5});
             for (uint32_t i = 0; i < 2; i++) {
                 OWNED_ROW row = beam(&bed, i, (fibrad_beam_rule){.directions = 34}, FIBRAD_ISA_BEST);
                 f[i] = row_factor(&row, 1 - i);
@@ -566,7 +564,7 @@ TEST(strays_are_met_on_the_way) {
 TEST(beams_end_after_100_periods) {
     const fibrad_beam_rule rule = {.directions = 4000};
     const double period = 3;
-    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}}), copies = bed_of(0, NULL);
+    OWNED_BED bed = BED({0, 0, 0, 1}), copies = bed_empty();
     for (int k = 0; k < 12; k++)
         add_sphere(&bed, .2 * k, (60 + 15 * k) * cos(2.4 * k), (60 + 15 * k) * sin(2.4 * k), 1);
     for (int image = 0; image <= 400; image++) /* the image is 0, -1, 1, -2, 2 ... periods away */
@@ -592,22 +590,22 @@ TEST(bad_arguments_are_refused) {
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(bed.n);
     row.length = 77;
-    ck_assert_int_eq(fibrad_beam_row(NULL, &work, 0, NULL, &row), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_beam_row(scene, NULL, 0, NULL, &row), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, bed.n, NULL, &row), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, UINT32_MAX, NULL, &row), FIBRAD_E_ARGUMENT);
+    assert_invalid(fibrad_beam_row(NULL, &work, 0, NULL, &row));
+    assert_invalid(fibrad_beam_row(scene, NULL, 0, NULL, &row));
+    assert_invalid(fibrad_beam_row(scene, &work, 0, NULL, NULL));
+    assert_invalid(fibrad_beam_row(scene, &work, bed.n, NULL, &row));
+    assert_invalid(fibrad_beam_row(scene, &work, UINT32_MAX, NULL, &row));
     static const fibrad_beam_rule bad[] = {{.directions = 7}, {.directions = 65537}, {.cutoff = -1},
                                            {.cutoff = NAN},   {.tolerance = -1},     {.tolerance = NAN}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
-        ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &bad[k], &row), FIBRAD_E_ARGUMENT);
+        assert_invalid(fibrad_beam_row(scene, &work, 0, &bad[k], &row));
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.points = 100}, &row), FIBRAD_E_TABLE);
     ck_assert_uint_eq(row.length, 77);
     fibrad_row arrays = row;
     arrays.col = NULL;
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &arrays), FIBRAD_E_ARGUMENT);
+    assert_invalid(fibrad_beam_row(scene, &work, 0, NULL, &arrays));
     arrays = row, arrays.f = NULL;
-    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &arrays), FIBRAD_E_ARGUMENT);
+    assert_invalid(fibrad_beam_row(scene, &work, 0, NULL, &arrays));
     arrays = row, arrays.body = NULL; /* there are none */
     assert_ok(fibrad_beam_row(scene, &work, 0, NULL, &arrays));
 }

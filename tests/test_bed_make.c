@@ -5,8 +5,6 @@
 #include "bed/packing.h"
 #include "suite.h"
 
-#define PI 3.14159265358979323846
-
 /* The least distance between surfaces. If the bed is periodic, nearest images count. */
 static double least_gap(const struct bed *bed) {
     const double *const axis[3] = {bed->x, bed->y, bed->z};

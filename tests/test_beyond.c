@@ -116,7 +116,7 @@ LOOP_TEST(beyond_is_what_rays_say, 1) {
 /* The walk through the cells is compared with small steps, which miss nothing but corners. Boxes have few marks and are
  * periodic or not. Rays begin anywhere. */
 TEST(cells_are_walked_one_by_one) {
-    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, .1}});
+    OWNED_BED bed = BED({0, 0, 0, .1});
     OWNED_PART p = part_of(&bed, (fibrad_scene_config){0});
     fibrad_random random = fibrad_random_start(6, 1);
     int missed = 0, clear = 0, rays = 0;
@@ -169,7 +169,7 @@ TEST(cells_are_walked_one_by_one) {
 
 /* Radiation is `beyond` if it is reflected towards a sphere outside the known region. Beams see this sphere. */
 TEST(reflections_end_at_the_known_region) {
-    OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2.5, 1}, {2.2, 0, 1.25, 1}});
+    OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 2.5, 1}, {2.2, 0, 1.25, 1});
     OWNED_PART p = part_of(&bed, (fibrad_scene_config){.known_low = {-2, 0, 0}, .known_high = {1.1, 0, 0}});
     OWNED fibrad_scene *scene = part_scene(&p);
     const fibrad_occupancy none = {.high = {1, 1, 1}, .cells = {1, 1, 1}, .mark = (const uint64_t[]){0}};
@@ -243,7 +243,7 @@ TEST(a_cutoff_leaves_the_sky_of_a_flat_bed) {
 /* The known region ends half way up a can. A lone sphere sends a fraction there that is a solid angle over 4 pi. */
 TEST(a_known_region_ends_in_a_can) {
     const fibrad_body body[] = {plane_at(2, 0, -40), plane_at(2, 1, 40), cylinder_at(0, 0, 10)};
-    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 35, 1}});
+    OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 35, 1});
     OWNED_PART p = part_of(
         &bed, (fibrad_scene_config){.body = body, .bodies = 3, .known_low = {0, 0, -1000}, .known_high = {0, 0, 20}});
     OWNED fibrad_scene *scene = part_scene(&p);

@@ -7,8 +7,6 @@
 
 FIXTURE(make_folder, remove_folder)
 
-#define PI 3.14159265358979323846
-
 /* ---- by the functions -------------------------------------------------------------------------------------------- */
 
 /* Makes a cell with one unit sphere. */

@@ -5,8 +5,6 @@
 #include "scenes.h"
 #include "suite.h"
 
-#define PI 3.14159265358979323846
-
 /* The fraction f of a unit sphere's surface lies behind a plane at the distance h from its centre. Half of all lines
  * point to the plane. An element of the cap that is inclined to the plane by t sends (1 - cos t)/2 away from it. The
  * mean of this over the cap is f/2. */
@@ -20,7 +18,7 @@ static const double heights[] = {0, .5, .9};
 
 /* A unit sphere whose centre lies at a height above a plane across some axis. */
 static fibrad_scene *above(double height, int axis, int upper, fibrad_body *plane) {
-    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED_BED bed = BED({0, 0, 0, 1});
     *plane = plane_at(axis, upper, upper ? height : -height);
     fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = plane, .bodies = 1});
     return scene;
@@ -95,7 +93,7 @@ static struct heat heat_of(const struct bed *bed, const fibrad_body *plane, cons
 
 TEST(lone_sphere_by_heat) {
     const double hot = 1, black = 1, cold_black[] = {0, 1};
-    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED_BED bed = BED({0, 0, 0, 1});
     for (size_t k = 0; k < HEIGHTS; k++)
         for (int wall = 0; wall < 6; wall++) {
             const fibrad_body plane = plane_at(wall / 2, wall % 2, wall % 2 ? heights[k] : -heights[k]);
@@ -232,7 +230,7 @@ TEST(heat_of_some) {
 
 /* Lines that graze a cylinder meet it again. The mean over a cap beside the cylinder leaves this out. */
 TEST(beside_a_cylinder) {
-    OWNED_BED bed = bed_of(1, (const double[][4]){{3.4, 0, 0, 1}});
+    OWNED_BED bed = BED({3.4, 0, 0, 1});
     const fibrad_body body[] = {cylinder_at(0, 0, 4), plane_at(2, 0, -1.2), plane_at(2, 1, 1.2)};
     OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = 3});
     OWNED_WORK work = work_growing();

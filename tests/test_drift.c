@@ -42,7 +42,7 @@ TEST(estimate_bounds_the_change_of_a_pair) {
     static const double ratios[] = {.1, .3, 1, 3, 10}, gaps[] = {0, .01, .1, 1, 10, 100}, moves[] = {-1e-3, 1e-4, 1e-2};
     for (size_t k = 0; k < 5 * 6 * 3; k++) {
         double r = ratios[k % 5], gap = gaps[k / 5 % 6], move = moves[k / 30], from, to;
-        OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1 + r + gap, 0, 0, r}}), moved = copy_of(&bed);
+        OWNED_BED bed = BED({0, 0, 0, 1}, {1 + r + gap, 0, 0, r}), moved = copy_of(&bed);
         move *= fmin(1, r);
         moved.x[1] += move;
         assert_ok(fibrad_pair_exact(1, r, gap, &from));
@@ -154,20 +154,20 @@ TEST(bad_arguments_are_refused) {
     double error[50] = {0};
     assert_ok(fibrad_drift_row(scene, scene, 0, row.col, row.length, error));
     ck_assert_double_eq(error[0], 0);
-    ck_assert_int_eq(fibrad_drift_row(NULL, scene, 0, row.col, row.length, error), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_drift_row(scene, NULL, 0, row.col, row.length, error), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_drift_row(scene, other, 0, row.col, row.length, error), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_drift_row(scene, unlike, 0, row.col, row.length, error), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_drift_row(scene, scene, 50, row.col, row.length, error), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_drift_row(scene, scene, 0, NULL, 1, error), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_drift_row(scene, scene, 0, beyond.col, beyond.length, error), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_drift_row(scene, scene, 0, row.col, row.length, NULL), FIBRAD_E_ARGUMENT);
+    assert_invalid(fibrad_drift_row(NULL, scene, 0, row.col, row.length, error));
+    assert_invalid(fibrad_drift_row(scene, NULL, 0, row.col, row.length, error));
+    assert_invalid(fibrad_drift_row(scene, other, 0, row.col, row.length, error));
+    assert_invalid(fibrad_drift_row(scene, unlike, 0, row.col, row.length, error));
+    assert_invalid(fibrad_drift_row(scene, scene, 50, row.col, row.length, error));
+    assert_invalid(fibrad_drift_row(scene, scene, 0, NULL, 1, error));
+    assert_invalid(fibrad_drift_row(scene, scene, 0, beyond.col, beyond.length, error));
+    assert_invalid(fibrad_drift_row(scene, scene, 0, row.col, row.length, NULL));
     assert_ok(fibrad_drift_partners(scene, 0, &row, &row, error));
-    ck_assert_int_eq(fibrad_drift_partners(NULL, 0, &row, &row, error), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_drift_partners(scene, 50, &row, &row, error), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_drift_partners(scene, 0, &beyond, &row, error), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_drift_partners(scene, 0, &row, &beyond, error), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_drift_partners(scene, 0, &row, NULL, error), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_drift_partners(scene, 0, NULL, &row, error), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_drift_partners(scene, 0, &row, &row, NULL), FIBRAD_E_ARGUMENT);
+    assert_invalid(fibrad_drift_partners(NULL, 0, &row, &row, error));
+    assert_invalid(fibrad_drift_partners(scene, 50, &row, &row, error));
+    assert_invalid(fibrad_drift_partners(scene, 0, &beyond, &row, error));
+    assert_invalid(fibrad_drift_partners(scene, 0, &row, &beyond, error));
+    assert_invalid(fibrad_drift_partners(scene, 0, &row, NULL, error));
+    assert_invalid(fibrad_drift_partners(scene, 0, NULL, &row, error));
+    assert_invalid(fibrad_drift_partners(scene, 0, &row, &row, NULL));
 }

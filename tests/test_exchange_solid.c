@@ -12,8 +12,6 @@
 
 FIXTURE(make_folder, remove_folder)
 
-#define PI 3.14159265358979323846
-
 /* ---- a ball ------------------------------------------------------------------------------------------------------ */
 
 /* The least of 4 pi K, with t^a in place of t. */
@@ -122,7 +120,7 @@ static double by_ball(double r, double e, double a) {
 
 /* The factor from wall z = 1 to wall x = 1, both black. */
 static double to_side(double r, double e, double relative) {
-    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
+    OWNED_BED bed = BED({0, 0, 0, r});
     fibrad_body body[6];
     for (int k = 0; k < 6; ++k) body[k] = plane_at(k / 2, k % 2, k % 2 ? 1 : -1);
     const fibrad_scene_config config = {.body = body, .bodies = 6};
@@ -276,7 +274,7 @@ TEST(good_conductors) {
 /* Impossible numbers are refused: nodes without conductivities, nodes above the emissivity, k* too small or NaN. Both
  * the sphere itself and one that paths meet have them. */
 TEST(refusals) {
-    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2, 1}});
+    OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 2, 1});
     const double black[] = {.5, .5};
     OWNED fibrad_scene *scene = scene_of(&bed, 0);
     OWNED_WORK work = work_growing();

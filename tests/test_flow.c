@@ -112,7 +112,7 @@ TEST(powers_are_those_of_the_averaged_matrix) {
 }
 
 TEST(bad_regions_and_occupancies_are_refused) {
-    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
+    OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 3, 1});
     OWNED_PART p = part_of(&bed, (fibrad_scene_config){0});
     const uint64_t mark[1] = {1};
     const fibrad_occupancy good = {.high = {1, 1, 1}, .cells = {4, 4, 4}, .mark = mark};
@@ -130,7 +130,7 @@ TEST(bad_regions_and_occupancies_are_refused) {
     static const double bad[][2] = {{1, 0}, {NAN, NAN}, {0, NAN}, {NAN, 1}, {-INFINITY, 0}, {0, INFINITY}, {0, 2e150}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         p.config.known_low[1] = bad[k][0], p.config.known_high[1] = bad[k][1];
-        ck_assert_int_eq(part_scene_try(&p, &scene), FIBRAD_E_ARGUMENT);
+        assert_invalid(part_scene_try(&p, &scene));
     }
     p.config.known_low[1] = -5, p.config.known_high[1] = 5;
     assert_ok(part_scene_try(&p, &scene));
@@ -146,12 +146,12 @@ TEST(bad_regions_and_occupancies_are_refused) {
     ck_assert_int_eq(fibrad_heat_move(heat, scene), FIBRAD_E_UNSUPPORTED);
     free(scene);
     p.config.period[1] = 50;
-    ck_assert_int_eq(part_scene_try(&p, &scene), FIBRAD_E_ARGUMENT);
+    assert_invalid(part_scene_try(&p, &scene));
 }
 
 /* Whatever a scene is made from tells it from other scenes. Rows of one do not go into a matrix of another. */
 TEST(surroundings_tell_scenes_apart) {
-    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
+    OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 3, 1});
     OWNED_PART p = part_of(&bed, (fibrad_scene_config){0});
     uint64_t mark[2] = {1, 0};
     fibrad_occupancy o = {.high = {1, 1, 1}, .cells = {4, 4, 8}};
@@ -178,7 +178,7 @@ TEST(surroundings_tell_scenes_apart) {
 }
 
 TEST(bad_flows_are_refused) {
-    OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
+    OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 3, 1});
     uint32_t col[] = {0, 1};
     double f[] = {.1, .2}, body[] = {.3}, e[] = {1, 1};
     OWNED_ROWS rows = {.memory = memory_growing()};
@@ -187,17 +187,17 @@ TEST(bad_flows_are_refused) {
     OWNED_POWERS p = powers_of(&bed, e);
     powers_point(&p);
     fibrad_flow flow = p.flow;
-    ck_assert_int_eq(fibrad_rows_flow(NULL, 2, 1, &flow), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 1, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_rows_flow(&rows, 1, 1, &flow), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 2, &flow), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 0, &flow), FIBRAD_E_ARGUMENT);
+    assert_invalid(fibrad_rows_flow(NULL, 2, 1, &flow));
+    assert_invalid(fibrad_rows_flow(&rows, 2, 1, NULL));
+    assert_invalid(fibrad_rows_flow(&rows, 1, 1, &flow));
+    assert_invalid(fibrad_rows_flow(&rows, 2, 2, &flow));
+    assert_invalid(fibrad_rows_flow(&rows, 2, 0, &flow));
     double *const nan_of[] = {&p.weight[1], &p.emission[0], &p.body_emission[0], &flow.surroundings_emission};
     for (int k = 0; k < 4; k++)
         for (int infinite = 0; infinite < 2; infinite++) {
             const double before = *nan_of[k];
             *nan_of[k] = infinite ? INFINITY : NAN;
-            ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 1, &flow), FIBRAD_E_ARGUMENT);
+            assert_invalid(fibrad_rows_flow(&rows, 2, 1, &flow));
             *nan_of[k] = before;
         }
     p.weight[0] = NAN; /* no row needs this weight */
@@ -208,7 +208,7 @@ TEST(bad_flows_are_refused) {
         if (k == 2) bad.power = NULL;
         if (k == 3) bad.body_emission = NULL;
         if (k == 4) bad.body_power = NULL;
-        ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 1, &bad), FIBRAD_E_ARGUMENT);
+        assert_invalid(fibrad_rows_flow(&rows, 2, 1, &bad));
     }
     ck_assert(p.power[0] == 0 && p.power[1] == 0 && flow.surroundings_power == 0 && p.body_power[0] == 0);
     assert_ok(fibrad_rows_flow(&rows, 2, 1, &flow));

@@ -100,7 +100,7 @@ static double exact_exchange(const struct bed *bed, uint32_t i, uint32_t j) {
     const double b[] = {bed->x[j], bed->y[j], bed->z[j], bed->r[j]};
     double view;
     ck_assert_int_eq(fibrad_pair_exact(a[3], b[3], distance(a, b) - a[3] - b[3], &view), 0);
-    return 4 * M_PI * a[3] * a[3] * view;
+    return 4 * PI * a[3] * a[3] * view;
 }
 
 /* Black spheres stand in the open. */
@@ -110,7 +110,7 @@ TEST(spheres_and_their_surroundings) {
         struct given g = {.bed = apart(seed, 6, 9)};
         double power = 0;
         for (uint32_t i = 0; i < g.bed.n; i++) {
-            double open = 4 * M_PI * g.bed.r[i] * g.bed.r[i];
+            double open = 4 * PI * g.bed.r[i] * g.bed.r[i];
             for (uint32_t j = 0; j < g.bed.n; j++) open -= j == i ? 0 : exact_exchange(&g.bed, i, j);
             g.temperature[i] = drawn(seed, 1000 + i, .3, 1);
             power += open * fourth(g.temperature[i]);
@@ -130,7 +130,7 @@ static void expect_honest_powers(uint64_t beds, uint32_t spheres, double size) {
         double power[MOST], area[MOST], lost = 0, areas = 0;
         for (uint32_t i = 0; i < spheres; i++) g.temperature[i] = drawn(seed, 1000 + i, .3, 1);
         for (uint32_t i = 0; i < spheres; i++) {
-            area[i] = 4 * M_PI * g.bed.r[i] * g.bed.r[i], power[i] = -area[i] * fourth(g.temperature[i]);
+            area[i] = 4 * PI * g.bed.r[i] * g.bed.r[i], power[i] = -area[i] * fourth(g.temperature[i]);
             for (uint32_t j = 0; j < spheres; j++)
                 power[i] += j == i ? 0 : exact_exchange(&g.bed, i, j) * fourth(g.temperature[j]);
         }
@@ -154,7 +154,7 @@ TEST(a_box_and_its_opening) {
     struct honesty honesty = {0};
     for (uint64_t seed = 1; seed <= 30; seed++) {
         const double size[3] = {drawn(seed, 0, .5, 1.5), drawn(seed, 1, .5, 1.5), drawn(seed, 2, .5, 1.5)};
-        struct given g = {.bed = bed_of(1, (const double[][4]){{.2, .25, .3, 1e-4}}), .opening = {2, 1, size[2]}};
+        struct given g = {.bed = BED({.2, .25, .3, 1e-4}), .opening = {2, 1, size[2]}};
         g.surroundings = drawn(seed, 3, 0, .6), g.scene.bodies = 5, g.scene.openings = 1;
         double power = 0, sent = 0;
         for (uint32_t k = 0; k < 5; k++) {
@@ -177,7 +177,7 @@ static struct mesh *cup_of(uint32_t sides, double radius, double height) {
     struct mesh *mesh = mesh_new();
     const uint32_t middle = mesh_vertex(mesh, 0, 0, 0);
     for (uint32_t k = 0; k < sides; k++) {
-        const double turn = 2 * M_PI * k / sides;
+        const double turn = 2 * PI * k / sides;
         for (int up = 0; up < 2; up++) mesh_vertex(mesh, radius * cos(turn), radius * sin(turn), up * height);
     }
     for (uint32_t k = 0; k < sides; k++) {
@@ -195,9 +195,9 @@ TEST(a_cup_of_triangles) {
     for (uint64_t seed = 1; seed <= 20; seed++) {
         const double radius = drawn(seed, 0, .5, 1.5), height = drawn(seed, 1, .5, 2.5);
         const uint32_t sides = (uint32_t)drawn(seed, 2, 4, 44);
-        struct given g = {.bed = bed_of(1, (const double[][4]){{.1 * radius, .1 * radius, height / 2, radius / 50}})};
+        struct given g = {.bed = BED({.1 * radius, .1 * radius, height / 2, radius / 50})};
         OWNED struct mesh *mesh = cup_of(sides, radius, height);
-        const double power = sides * .5 * radius * radius * sin(2 * M_PI / sides);
+        const double power = sides * .5 * radius * radius * sin(2 * PI / sides);
         g.temperature[0] = g.wall_temperature[0] = 1, g.config.wall_rays = 1 << 20;
         g.body[0].kind = FIBRAD_BODY_MESH, g.scene.bodies = 1, g.scene.triangles = &mesh->triangles;
         solve(&g);
@@ -211,7 +211,7 @@ TEST(a_cup_of_triangles) {
 
 /* If nothing reaches the surroundings, they have no power and no error. */
 TEST(no_surroundings) {
-    struct given g = {.bed = bed_of(1, (const double[][4]){{0, 0, 0, .5}}), .temperature = {1}};
+    struct given g = {.bed = BED({0, 0, 0, .5}), .temperature = {1}};
     g.scene.bodies = 6;
     for (uint32_t k = 0; k < 6; k++) g.body[k] = plane_at((int)k / 2, k % 2, k % 2 ? 1 : -1);
     solve(&g);

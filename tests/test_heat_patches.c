@@ -192,7 +192,7 @@ TEST(a_patch_of_a_sphere_is_one_place) {
  * corner. On the cylinder this makes them 2/pi to 4/pi of their mean width. */
 TEST(a_patch_of_a_cylinder_is_one_place) {
     enum { TURNS = 2048, UPS = 128 };
-    OWNED_PROBLEM p = problem_of(bed_of(1, (const double[][4]){{.3, -.2, .4, 1e-4}}), 1, 1);
+    OWNED_PROBLEM p = problem_of(BED({.3, -.2, .4, 1e-4}), 1, 1);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -.5, 1.5}, .cylinder = {.3, -.2, 1}};
     p.config.directions = 8;
     trace(&p);

@@ -99,7 +99,7 @@ TEST(an_opening_is_a_black_plane_as_hot_as_the_surroundings) {
 /* Four pairs of a hot and a cold sphere stand in a cylinder whose wall reflects most light. Each pair is a quarter of a
  * turn from the next. What the wall reflects from one sphere to the other depends on where it is lit. */
 TEST(powers_beside_the_wall_of_a_cylinder) {
-    struct bed bed = bed_of(0, NULL);
+    struct bed bed = bed_empty();
     double power[2] = {0, 0}, truth[2] = {0, 0};
     for (int k = 0; k < 8; k++) {
         const double turn = (k / 2 + .3) * (PI / 2);

@@ -28,11 +28,11 @@ static double entry(const char *file, int i, int k) {
 /* A sphere with a source that is spread evenly, in surroundings of 900 K. Its surface is at one temperature, and its
  * centre is hotter. */
 TEST(a_pebble_with_a_source) {
-    const double power = 500, r = 30, k = 8, area = 4 * M_PI * 1e-6 * r * r;
+    const double power = 500, r = 30, k = 8, area = 4 * PI * 1e-6 * r * r;
     const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,30\n"), *q = in_folder("q.csv");
     SUCCEED("heat", file, "--length-unit", "mm", "--emissivity", "0.8", "--power", "500", "--ambient", "900",
             "--solid-conductivity", "8", "-o", q);
-    const double t = pow(pow(900, 4) + power / (.8 * SIGMA * area), .25), rise = power / (8 * M_PI * r * 1e-3 * k);
+    const double t = pow(pow(900, 4) + power / (.8 * SIGMA * area), .25), rise = power / (8 * PI * r * 1e-3 * k);
     assert_near(entry(q, 0, 1), t, 1e-4);
     assert_near(entry(q, 0, 5), t, 1e-3);
     assert_near(entry(q, 0, 6), t, 1e-3);
@@ -53,7 +53,7 @@ TEST(files_have_insides) {
     for (int i = 0; i < 3; ++i) {
         ck_assert(entry(q, i, 5) < entry(q, i, 1) && entry(q, i, 1) < entry(q, i, 6));
         ck_assert_double_gt(entry(q, i, 7), 0);
-        const double rise = -entry(q, i, 2) / (8 * M_PI * .03 * (2 + i));
+        const double rise = -entry(q, i, 2) / (8 * PI * .03 * (2 + i));
         ck_assert_double_le(fabs(entry(q, i, 8) - entry(q, i, 1) - rise), 1e-9 * fabs(rise));
     }
     text = read_file(json);
@@ -85,7 +85,7 @@ TEST(conductivity_follows_temperature) {
     SUCCEED("heat", file, "--length-unit", "mm", "--emissivity", "0.8", "--power", "400", "--ambient", "600",
             "--solid-conductivity", table(option, "k.csv", "T,k\n500,10\n1500,2\n"), "-o", q);
     const double t = entry(q, 0, 1), k = 10 - 8 * (t - 500) / 1000;
-    assert_near(entry(q, 0, 8) - t, 400 / (8 * M_PI * .03 * k), 1e-3);
+    assert_near(entry(q, 0, 8) - t, 400 / (8 * PI * .03 * k), 1e-3);
 }
 
 /* In time, insides are taken to be steady. A warning says if steps are shorter than the time in which an inside becomes
@@ -96,7 +96,7 @@ TEST(insides_lag_in_time) {
         SUCCEED("heat", file, "--length-unit", "m", "--emissivity", "0.8", "--temperature", "1000", "--ambient", "600",
                 "--solid-conductivity", "2", "--heat-capacity", "800", "--density", "2000", "--until",
                 quick ? "10" : "2000", "--step", quick ? "5" : "100", "-o", q);
-        assert_near(value_of("inner_lag_s"), 9e-4 * 1.6e6 / (M_PI * M_PI * 2), 1e-2);
+        assert_near(value_of("inner_lag_s"), 9e-4 * 1.6e6 / (PI * PI * 2), 1e-2);
         ck_assert_double_le(fabs(value_of("balance_of_stored")), 1e-12);
         if (quick)
             expect_message(file, "insides of spheres are taken to be steady");

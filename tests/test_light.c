@@ -14,14 +14,14 @@ TEST(a_lone_sphere_takes_its_shadow) {
         const double size = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         const double box = 4 * 1.7 * 1.7 * (fabs(d[0]) + fabs(d[1]) + fabs(d[2])) / size;
         ck_assert_int_eq(lit.status, 0);
-        ck_assert_double_eq_tol(lit.power[0], M_PI * 1.7 * 1.7, 1e-12);
+        ck_assert_double_eq_tol(lit.power[0], PI * 1.7 * 1.7, 1e-12);
         ck_assert_double_eq_tol(sum_of(&lit.ends), box, 1e-12);
     }
 }
 
 /* Three layers of touching unit spheres. */
 static struct bed layers(double x, double y, bool hexagonal) {
-    struct bed bed = bed_of(0, NULL);
+    struct bed bed = bed_empty();
     for (int k = 0; k < (hexagonal ? 1 : 3); k++)
         for (int i = 0; i < 4; i++)
             for (int j = 0; j < 4; j++)
@@ -37,9 +37,9 @@ TEST(a_simple_cubic_bed_is_lit_in_its_first_layer) {
         const fibrad_scene_config config = {.period = {8, 8, 0}, .body = &floor_body, .bodies = (uint32_t)walled};
         const fibrad_light light = along(0, 0, -1);
         OWNED_LIT lit = light_up(&bed, &config, &light);
-        for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq_tol(lit.power[i], bed.z[i] > 3 ? M_PI : 0, 1e-9);
-        ck_assert_double_eq_tol(lit.ends.spheres / 64, M_PI / 4, 1e-9);
-        ck_assert_double_eq_tol((walled ? lit.ends.body[0] : lit.ends.through) / 64, 1 - M_PI / 4, 1e-9);
+        for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq_tol(lit.power[i], bed.z[i] > 3 ? PI : 0, 1e-9);
+        ck_assert_double_eq_tol(lit.ends.spheres / 64, PI / 4, 1e-9);
+        ck_assert_double_eq_tol((walled ? lit.ends.body[0] : lit.ends.through) / 64, 1 - PI / 4, 1e-9);
         ck_assert_double_eq_tol(sum_of(&lit.ends), 64, 1e-12);
     }
 }
@@ -49,7 +49,7 @@ TEST(a_hexagonal_layer_takes_nine_tenths) {
     const fibrad_scene_config config = {.period = {8, 4 * sqrt(3), 0}};
     const fibrad_light light = along(0, 0, -1);
     OWNED_LIT lit = light_up(&bed, &config, &light);
-    ck_assert_double_eq_tol(lit.ends.spheres / sum_of(&lit.empty), M_PI / sqrt(12), 1e-9);
+    ck_assert_double_eq_tol(lit.ends.spheres / sum_of(&lit.empty), PI / sqrt(12), 1e-9);
 }
 
 /* A bed, its walls in both forms, and a light. */

@@ -7,7 +7,7 @@
 
 /* The bed of a dump with the columns id type x y z radius, periodic along x and y. */
 static struct bed read_settled(const char *file) {
-    struct bed bed = bed_of(0, NULL);
+    struct bed bed = bed_empty();
     char line[200];
     OWNED_FILE *from = opened(file, "r");
     while (fgets(line, sizeof line, from)) {
@@ -121,7 +121,7 @@ TEST(a_settled_bed_absorbs_as_plain_rays_say) {
     double top = -INFINITY;
     for (uint32_t i = 0; i < bed.n; i++) top = fmax(top, bed.z[i] + bed.r[i]);
     for (int k = 0; k < 4; k++) {
-        const double absorptivity = k % 2 ? .8 : .4, slant = k < 2 ? 0 : M_PI / 6;
+        const double absorptivity = k % 2 ? .8 : .4, slant = k < 2 ? 0 : PI / 6;
         const double d[3] = {sin(slant), 0, -cos(slant)};
         const fibrad_light light = {.direction = {d[0], d[1], d[2]}, .flux = 1 / (144 * cos(slant))};
         OWNED_ABSORBED a = absorb_light(&bed, &config, &light, absorptivity, 0);
@@ -149,7 +149,7 @@ TEST(a_floor_alone_absorbs_what_it_absorbs) {
     for (int k = 0; k <= 4; k++) {
         const double share = k / 4.;
         OWNED_ABSORBED a = absorb_light(&bed, &config, &light, 1, share);
-        const double sphere = M_PI / 4, wall = 16 - sphere; /* the light that meets the sphere first, and the wall */
+        const double sphere = PI / 4, wall = 16 - sphere; /* the light that meets the sphere first, and the wall */
         ck_assert_double_eq_tol(a.first[0], sphere, 1e-12);
         ck_assert_double_eq_tol(a.wall_first[0], share * wall, 1e-12);
         ck_assert_double_eq_tol(a.wall[0], share * wall, 1e-9); /* no light comes back to the wall */
@@ -240,9 +240,9 @@ TEST(a_tilted_triangle_takes_its_shadow) {
     const fibrad_scene_config config = {.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles};
     const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
     struct absorbed lit = absorb_light(&bed, &config, &light, 1, .25);
-    ck_assert_double_eq_tol(lit.first[0], M_PI, 1e-12);
+    ck_assert_double_eq_tol(lit.first[0], PI, 1e-12);
     ck_assert_double_eq_tol(lit.wall_first[0], .25 * 2.5, .25 * 5e-4 * lit.result.incident);
-    ck_assert_double_eq_tol(lit.result.transmitted, lit.result.incident - M_PI - 4 * lit.wall_first[0], 1e-12);
+    ck_assert_double_eq_tol(lit.result.transmitted, lit.result.incident - PI - 4 * lit.wall_first[0], 1e-12);
     free_absorbed(&lit);
 }
 
@@ -295,7 +295,7 @@ TEST(emissivity_of_a_face_is_its_mean_absorptance) {
     enum { RINGS = 4, TURNS = 3 };
     double mean = 0, hot[40], power[40], eps[40], wall_hot = 1000, wall_power, wall_eps = .4;
     for (int k = 0; k < RINGS * TURNS; k++) {
-        const double square = (k / TURNS + .5) / RINGS, turn = 2 * M_PI * (k % TURNS + .3 * (k / TURNS)) / TURNS;
+        const double square = (k / TURNS + .5) / RINGS, turn = 2 * PI * (k % TURNS + .3 * (k / TURNS)) / TURNS;
         const double ring = sqrt(square), cosine = sqrt(1 - square);
         const fibrad_light light = {.direction = {ring * cos(turn), ring * sin(turn), -cosine},
                                     .flux = 1 / (side * side * cosine)};

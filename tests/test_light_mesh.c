@@ -47,9 +47,9 @@ TEST(a_tilted_triangle_shades_a_segment) {
         const fibrad_scene_config config = config_of(mesh);
         const fibrad_light light = along(d[0], d[1], d[2]);
         OWNED_LIT lit = light_up(&bed, &config, &light);
-        const double open = M_PI - (acos(h) - h * sqrt(1 - h * h));
+        const double open = PI - (acos(h) - h * sqrt(1 - h * h));
         ck_assert_int_eq(lit.status, 0);
-        ck_assert_double_eq_tol(lit.power[0], behind > 0 ? open : M_PI, 1e-12);
+        ck_assert_double_eq_tol(lit.power[0], behind > 0 ? open : PI, 1e-12);
         ck_assert_double_eq_tol(sum_of(&lit.ends), sum_of(&lit.empty), 1e-9);
     }
 }
@@ -175,7 +175,7 @@ TEST(triangles_at_random_as_by_plain_rays) {
             plain.triangles = &mesh->triangles;
             const double area = area_by_rays(&plain, i, d, 150), r = bed.r[i];
             shaded -= lit.power[i];
-            worst = fmax(worst, fabs(lit.power[i] - area) / (M_PI * r * r));
+            worst = fmax(worst, fabs(lit.power[i] - area) / (PI * r * r));
         }
         check_bits(&bed, config, &light, lit.power);
     }
@@ -237,7 +237,7 @@ TEST(triangles_outside_throw_no_shadow) {
     }
     ck_assert_double_eq_tol(area[0], area[1], 1e-12);
     ck_assert_double_lt(area[0], 3);
-    ck_assert_double_eq_tol(area[2], M_PI, 1e-12);
+    ck_assert_double_eq_tol(area[2], PI, 1e-12);
 }
 
 /* A floor of triangles that cuts a sphere does not hide it from above, and hides all of it from below. */
@@ -253,6 +253,6 @@ TEST(a_floor_that_cuts_a_sphere) {
         const fibrad_light light = along(.1, .2, up ? 1 : -1);
         OWNED_LIT lit = light_up(&bed, &config, &light);
         ck_assert_int_eq(lit.status, 0);
-        ck_assert_double_eq_tol(lit.power[0], up ? 0 : M_PI, 1e-12);
+        ck_assert_double_eq_tol(lit.power[0], up ? 0 : PI, 1e-12);
     }
 }

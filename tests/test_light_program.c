@@ -29,7 +29,7 @@ TEST(what_is_absorbed_is_said_and_written) {
                           "--wall-absorptivity", "zmin=.25,0", "-o", csv, "--profile", option),
                      0);
     ck_assert_double_eq_tol(value_of("irradiated_W"), 4000, 1e-9);
-    ck_assert_double_eq_tol(value_of("absorbed_first_W"), 1000 * (.5 * M_PI + .25 * (4 - M_PI)), .01);
+    ck_assert_double_eq_tol(value_of("absorbed_first_W"), 1000 * (.5 * PI + .25 * (4 - PI)), .01);
     ck_assert_double_eq_tol(fractions(), 1, .01);
     char *text = read_file(csv);
     assert_begins(text, "i,T_K,q_W,q_error_W,T_error_K,absorbed_first_W,absorbed_W,body\n");
@@ -55,7 +55,7 @@ TEST(light_heats) {
     SUCCEED("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--wall", CUP,
             "--wall-temperature", "0", "--temperature", "300", "--irradiate", "0,0,-1:1000", "--until", "10",
             "--heat-capacity", "800", "--density", "2500");
-    ck_assert_double_eq_tol(value_of("supplied_J"), 10 * 1000 * M_PI, 1);
+    ck_assert_double_eq_tol(value_of("supplied_J"), 10 * 1000 * PI, 1);
 }
 
 /* Spheres that conduct are hotter where they are lit. If they conduct well, nothing changes. Powers add up. */

@@ -121,7 +121,7 @@ TEST(images_are_spheres_of_the_same_id) {
 
 /* Rays meet triangles beyond the cutoff if no sphere is on the way. */
 TEST(far_triangles_are_met) {
-    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED_BED bed = BED({0, 0, 0, 1});
     OWNED struct mesh *mesh = mesh_new();
     mesh_box(mesh, (const double[]){-30, -20, -10}, (const double[]){40, 50, 60}, 0);
     const fibrad_scene_config config = {.body = mesh->body, .bodies = 6, .triangles = &mesh->triangles};
@@ -135,7 +135,7 @@ TEST(far_triangles_are_met) {
 
 /* Triangles repeat where spheres do not. They give what their copies give. */
 TEST(triangles_repeat_alone) {
-    OWNED_BED bed = bed_of(1, (const double[][4]){{.3, .4, 0, .45}});
+    OWNED_BED bed = BED({.3, .4, 0, .45});
     double seen[2][METHODS];
     enum { FAR = 40 };
     for (int copies = 0; copies < 2; copies++) {
@@ -221,7 +221,7 @@ LOOP_TEST(turned_rows_average_to_the_fine_one, 3) {
 /* Turned directions need not form opposite pairs. The floor still has half of what a free sphere sends out, whether it
  * cuts the sphere or not. */
 LOOP_TEST(a_floor_below_turned_directions, 2) {
-    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 3, 1}});
+    OWNED_BED bed = BED({0, 0, 3, 1});
     const fibrad_body floor_below = plane_at(2, 0, 0);
     OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_below, .bodies = 1});
     OWNED_WORK work = work_growing();

@@ -107,7 +107,7 @@ static int draw_heat(const struct output *output, const void *what) { return plo
 /* Three spheres have lengths in millimetres. The picture tells what gains power, what loses it, and who else takes
  * part. */
 TEST(where_heat_goes) {
-    OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1e-3}, {.003, 0, 0, 1e-3}, {0, 0, .004, 1e-3}});
+    OWNED_BED bed = BED({0, 0, 0, 1e-3}, {.003, 0, 0, 1e-3}, {0, 0, .004, 1e-3});
     const double temperature[] = {300, 1200.5, 777}, power[] = {1.5, -4.25, .25};
     const double wall_temperature[] = {412, 900}, wall_power[] = {3.125, -.5};
     const struct walls walls = {.count = 2, .body = {plane_at(2, 0, -.001), cylinder_at(0, 0, .0044)}};
@@ -156,7 +156,7 @@ TEST(where_heat_goes) {
 /* Names are shown as they are. Names of many walls stand aslant and apart from each other. Temperatures that were found
  * are shown by height. */
 TEST(many_walls) {
-    OWNED_BED bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1}});
+    OWNED_BED bed = BED({0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1});
     static struct meshes meshes;
     static struct walls walls = {.count = 9, .meshes = &meshes};
     double temperature[9], power[9];

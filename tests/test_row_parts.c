@@ -92,15 +92,15 @@ TEST(parts_that_do_not_fit) {
     ck_assert_int_eq(fibrad_beam_join(other, &work, 1, &rule, part, 2, &row), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, part, 1, &row), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, part + 1, 1, &row), FIBRAD_E_STATE);
-    ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, NULL, 2, &row), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_beam_join(NULL, &work, 1, &rule, part, 2, &row), FIBRAD_E_ARGUMENT);
+    assert_invalid(fibrad_beam_join(scene, &work, 1, &rule, NULL, 2, &row));
+    assert_invalid(fibrad_beam_join(NULL, &work, 1, &rule, part, 2, &row));
     ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &tolerant, part, 2, &row), FIBRAD_E_UNSUPPORTED);
     assert_ok(fibrad_beam_join(scene, &work, 1, &rule, part, 2, &row));
-    ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 5, 5, &part[0]), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 5, 21, &part[0]), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_beam_part(scene, &work, 50, &rule, 5, 9, &part[0]), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 5, 9, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_beam_part(NULL, &work, 1, &rule, 5, 9, &part[0]), FIBRAD_E_ARGUMENT);
+    assert_invalid(fibrad_beam_part(scene, &work, 1, &rule, 5, 5, &part[0]));
+    assert_invalid(fibrad_beam_part(scene, &work, 1, &rule, 5, 21, &part[0]));
+    assert_invalid(fibrad_beam_part(scene, &work, 50, &rule, 5, 9, &part[0]));
+    assert_invalid(fibrad_beam_part(scene, &work, 1, &rule, 5, 9, NULL));
+    assert_invalid(fibrad_beam_part(NULL, &work, 1, &rule, 5, 9, &part[0]));
     ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &tolerant, 5, 9, &part[0]), FIBRAD_E_UNSUPPORTED);
     for (int p = 0; p < 2; p++) free(part[p].memory.block);
 }

@@ -156,7 +156,7 @@ static bool fits(const struct bed *bed, const double c[3], double r, double dept
 
 /* Makes some spheres in a box. The logarithms of their radii, which go from `low` to 1, are spread evenly. */
 static struct bed heap(struct chance *chance, double low, double depth, int periods, double side) {
-    struct bed bed = bed_of(0, NULL);
+    struct bed bed = bed_empty();
     const uint32_t n = 2 + random_below(chance, 11);
     for (int axis = 0; axis < periods; axis++) bed.period[axis] = side;
     for (uint32_t tries = 0; bed.n < n && tries < 100; tries++) {
@@ -187,7 +187,7 @@ static struct bed lattice_along(struct chance *chance, uint32_t lines) {
 
 /* Makes a sphere of radius 1 and small ones close to its surface. */
 static struct bed giant(struct chance *chance, double r, uint32_t n) {
-    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    struct bed bed = BED({0, 0, 0, 1});
     const double aside = random_in(chance, 5 * r, 60 * r), turn = random_in(chance, 0, 2 * pi);
     while (bed.n < n) { /* these lie above a patch of the surface */
         const double u = random_in(chance, -aside, aside), v = random_in(chance, -aside, aside);

@@ -156,7 +156,7 @@ TEST(beams_across_contact) {
         double w[3] = {sqrt(1 - t * t) * cos(p), sqrt(1 - t * t) * sin(p), t}, last = 0, last_gap = 0;
         for (int k = -1000; k <= 1000; k++) {
             double gap = (k < 0 ? -1 : 1) * fmin(1, r2) * .5 * pow(abs(k) / 1000.0, 5), d = 1 + r2 + gap;
-            OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {d * w[0], d * w[1], d * w[2], r2}});
+            OWNED_BED bed = BED({0, 0, 0, 1}, {d * w[0], d * w[1], d * w[2], r2});
             OWNED_ROW row = beam(&bed, 0, 144);
             double f = row_factor(&row, 1);
             if (k > -1000) {
@@ -179,7 +179,7 @@ TEST(radius_ratios) {
             worst_of(&reciprocity, fabs(there / back - 1));
         }
         double gap = .1 * fmin(1, r2), d = 1 + r2 + gap;
-        OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {.48 * d, .6 * d, .64 * d, r2}});
+        OWNED_BED bed = BED({0, 0, 0, 1}, {.48 * d, .6 * d, .64 * d, r2});
         double truth = exact(1, r2, gap);
         OWNED_ROW row = beam(&bed, 0, 2000);
         if (r2 >= 1)
@@ -294,13 +294,12 @@ TEST(obstacle_across_a_pair) {
     for (uint64_t seed = 0; seed < rounds(3, 30); seed++) {
         double r2 = random_in(5, .3, 2), gap = random_in(5, 1.2, 3), r = random_in(5, .05, .5),
                y = random_in(5, -.7, .7);
-        OWNED_BED pair = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 1 + r2 + gap, r2}});
+        OWNED_BED pair = BED({0, 0, 0, 1}, {0, 0, 1 + r2 + gap, r2});
         fibrad_row row = beam(&pair, 0, 233);
         double without = row_factor(&row, 1), last = without, step = all() ? 1e-3 : 1e-2;
         row_free(&row);
         for (double x = -6; x <= 6; x += step) {
-            OWNED_BED bed =
-                bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 1 + r2 + gap, r2}, {x, y, 1 + gap / 2, r}});
+            OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 1 + r2 + gap, r2}, {x, y, 1 + gap / 2, r});
             row = beam(&bed, 0, 233);
             double f = row_factor(&row, 1);
             worst_of(&negative, -f);
@@ -319,7 +318,7 @@ TEST(obstacle_across_a_pair) {
 
 /* A dilute periodic box lets no light through in the end: only a few beams from a sphere find a channel without end. */
 TEST(sight_through_many_periods) {
-    OWNED_BED bed = bed_of(1, (const double[][4]){{.1, .2, .3, .2}});
+    OWNED_BED bed = BED({.1, .2, .3, .2});
     for (int axis = 0; axis < 3; axis++) bed.period[axis] = 1;
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();

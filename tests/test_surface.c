@@ -231,18 +231,18 @@ TEST(refuses_what_is_wrong) {
     double f12 = 42, x = 0, y = 5, z = 0, r = 1;
     fibrad_spheres o = {.x = &x, .y = &y, .z = &z, .r = &r, .n = 1};
     const fibrad_surface_rule good = {0}, many = {.nodes = 56}, flags = {.flags = 32}, isa = {.isa = 9};
-    ck_assert_int_eq(fibrad_surface_pair(1, 1, 0, NULL, &good, NULL, NULL, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_pair(1, 1, 0, &o, &good, NULL, &f12, NULL), FIBRAD_E_ARGUMENT);
+    assert_invalid(fibrad_surface_pair(1, 1, 0, NULL, &good, NULL, NULL, NULL));
+    assert_invalid(fibrad_surface_pair(1, 1, 0, &o, &good, NULL, &f12, NULL));
     ck_assert_int_eq(fibrad_surface_pair(1, 1, 0, NULL, &many, NULL, &f12, NULL), FIBRAD_E_TABLE);
-    ck_assert_int_eq(fibrad_surface_pair(1, 1, 0, NULL, &flags, NULL, &f12, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_pair(1, 1, 0, NULL, &isa, NULL, &f12, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_pair(0, 1, 0, NULL, &good, NULL, &f12, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_pair(1, 1, 1e71, NULL, &good, NULL, &f12, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_pair(1, 1e71, 0, NULL, &good, NULL, &f12, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_pair(1, NAN, 0, NULL, &good, NULL, &f12, NULL), FIBRAD_E_ARGUMENT);
+    assert_invalid(fibrad_surface_pair(1, 1, 0, NULL, &flags, NULL, &f12, NULL));
+    assert_invalid(fibrad_surface_pair(1, 1, 0, NULL, &isa, NULL, &f12, NULL));
+    assert_invalid(fibrad_surface_pair(0, 1, 0, NULL, &good, NULL, &f12, NULL));
+    assert_invalid(fibrad_surface_pair(1, 1, 1e71, NULL, &good, NULL, &f12, NULL));
+    assert_invalid(fibrad_surface_pair(1, 1e71, 0, NULL, &good, NULL, &f12, NULL));
+    assert_invalid(fibrad_surface_pair(1, NAN, 0, NULL, &good, NULL, &f12, NULL));
     r = 0;
-    ck_assert_int_eq(fibrad_surface_pair(1, 1, 0, &o, &good, scratch, &f12, NULL), FIBRAD_E_ARGUMENT);
+    assert_invalid(fibrad_surface_pair(1, 1, 0, &o, &good, scratch, &f12, NULL));
     r = 1, y = INFINITY;
-    ck_assert_int_eq(fibrad_surface_pair(1, 1, 0, &o, &good, scratch, &f12, NULL), FIBRAD_E_ARGUMENT);
+    assert_invalid(fibrad_surface_pair(1, 1, 0, &o, &good, scratch, &f12, NULL));
     ck_assert(f12 == 42);
 }

@@ -222,7 +222,7 @@ TEST(bounds_the_search_for_images) {
     const fibrad_surface_rule most = {.cutoff = 100 * period}, more = {.cutoff = 100.001 * period};
     ck_assert_int_eq(fibrad_surface_row(scene, &little, 0, &most, &row), FIBRAD_E_WORK);
     ck_assert_double_eq_tol((double)little.memory.needed, 4. / 3 * 3.14159265358979 * 1e6 * 132, 3e4 * 132 + 1e6);
-    ck_assert_int_eq(fibrad_surface_row(scene, &little, 0, &more, &row), FIBRAD_E_ARGUMENT);
+    assert_invalid(fibrad_surface_row(scene, &little, 0, &more, &row));
 }
 
 TEST(refuses_what_is_wrong) {
@@ -231,15 +231,15 @@ TEST(refuses_what_is_wrong) {
     const fibrad_surface_rule good = {.cutoff = CUTOFF}, many = {.nodes = 54, .cutoff = CUTOFF},
                               negative = {.cutoff = -1};
     const fibrad_surface_rule flags = {.flags = 64, .cutoff = CUTOFF};
-    ck_assert_int_eq(fibrad_surface_row(NULL, &work, 0, &good, &row), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_row(scene, NULL, 0, &good, &row), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_row(scene, &work, 20, &good, &row), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, &good, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, NULL, &row), FIBRAD_E_ARGUMENT); /* periodic, no cutoff */
-    ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, &negative, &row), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, &flags, &row), FIBRAD_E_ARGUMENT);
+    assert_invalid(fibrad_surface_row(NULL, &work, 0, &good, &row));
+    assert_invalid(fibrad_surface_row(scene, NULL, 0, &good, &row));
+    assert_invalid(fibrad_surface_row(scene, &work, 20, &good, &row));
+    assert_invalid(fibrad_surface_row(scene, &work, 0, &good, NULL));
+    assert_invalid(fibrad_surface_row(scene, &work, 0, NULL, &row)); /* periodic, no cutoff */
+    assert_invalid(fibrad_surface_row(scene, &work, 0, &negative, &row));
+    assert_invalid(fibrad_surface_row(scene, &work, 0, &flags, &row));
     ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, &many, &row), FIBRAD_E_TABLE);
-    OWNED_BED one = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED_BED one = BED({0, 0, 0, 1});
     const fibrad_body floor_plane = plane_at(2, 0, -2);
     OWNED fibrad_scene *walled = scene_with(&one, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
     double body = -5;

@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-static const long double PI = 3.141592653589793238462643383279502884L;
+static const long double LONG_PI = 3.141592653589793238462643383279502884L;
 
 static void assert_rounded(double value, long double truth) {
     ck_assert_ldouble_le(fabsl((long double)value - truth), half_ulp(value) + GOLDEN_TOLERANCE);
@@ -106,12 +106,12 @@ TEST(surface_nodes_follow_the_mapped_lattice) {
         for (uint32_t k = 1; k <= n; k++) {
             double z = nodes.z[k - 1], ring = nodes.ring[k - 1], cos = nodes.cos[k - 1], sin = nodes.sin[k - 1];
             int64_t steps = 2 * (int64_t)k - n; /* n z_k */
-            long double s = sinl(PI * steps / n), phi = 2 * PI * (k * before % n) / n;
+            long double s = sinl(LONG_PI * steps / n), phi = 2 * LONG_PI * (k * before % n) / n;
             if (k == n) s = 0;
-            assert_rounded(z, (long double)steps / n + s / PI);
+            assert_rounded(z, (long double)steps / n + s / LONG_PI);
             assert_rounded(cos, cosl(phi));
             assert_rounded(sin, sinl(phi));
-            assert_rounded(nodes.weight[k - 1], 1 + cosl(PI * steps / n));
+            assert_rounded(nodes.weight[k - 1], 1 + cosl(LONG_PI * steps / n));
             ck_assert_double_eq_tol(ring * ring + z * z, 1, 1e-15);
             sum += nodes.weight[k - 1];
         }

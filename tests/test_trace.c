@@ -2,34 +2,13 @@
  * SPDX-License-Identifier: MIT */
 #include <stdio.h>
 
+#include "base/dispatch.h"
 #include "base/elementary.h"
 #include "base/random.h"
 #include "ray/tracer.h"
 #include "work/work.h"
 #include "scenes.h"
 #include "suite.h"
-
-struct versions {
-    int isa;
-    fibrad_trace_function *trace;
-    fibrad_trace_point_function *trace_point;
-};
-
-static const struct versions versions[] = {
-    {FIBRAD_ISA_SCALAR, fibrad_trace_scalar, fibrad_trace_point_scalar},
-#ifdef FIBRAD_WITH_SSE2
-    {FIBRAD_ISA_SSE2, fibrad_trace_sse2, fibrad_trace_point_sse2},
-#endif
-#ifdef FIBRAD_WITH_AVX2
-    {FIBRAD_ISA_AVX2, fibrad_trace_avx2, fibrad_trace_point_avx2},
-#endif
-#ifdef FIBRAD_WITH_AVX512
-    {FIBRAD_ISA_AVX512, fibrad_trace_avx512, fibrad_trace_point_avx512},
-#endif
-#ifdef FIBRAD_WITH_NEON
-    {FIBRAD_ISA_NEON, fibrad_trace_neon, fibrad_trace_point_neon},
-#endif
-};
 
 /* Makes a tracer with a few lists, which spheres share, or with one list for each sphere. */
 enum { FEW, EACH };
@@ -87,9 +66,8 @@ static fibrad_hit try_all(const struct bed *bed, uint32_t from, const double o[3
 }
 
 /* Follows paths of `bounces` reflections from some spheres of the bed. Compares each ray with try_all. */
-static void follow(const struct bed *bed, const struct versions *version, int lists, int images, uint32_t paths,
-                   int bounces) {
-    OWNED fibrad_scene *scene = scene_of(bed, version->isa);
+static void follow(const struct bed *bed, int isa, int lists, int images, uint32_t paths, int bounces) {
+    OWNED fibrad_scene *scene = scene_of(bed, isa);
     OWNED_WORK work;
     fibrad_tracer *tracer = tracer_of(scene, lists, &work);
     uint32_t met = 0;
@@ -103,7 +81,7 @@ static void follow(const struct bed *bed, const struct versions *version, int li
             if (dot(w, n) < 0)
                 for (int axis = 0; axis < 3; axis++) w[axis] = -w[axis];
             fibrad_hit hit, truth;
-            version->trace(tracer, scene->place[s], n, w, &hit);
+            FIBRAD_VERSION_OF(fibrad_trace, isa)(tracer, scene->place[s], n, w, &hit);
             double o[3] = {bed->x[s] + n[0] * bed->r[s], bed->y[s] + n[1] * bed->r[s], bed->z[s] + n[2] * bed->r[s]};
             truth = try_all(bed, s, o, w, images);
             if (truth.sphere == FIBRAD_NONE && bed->period[0] > 0 && hit.distance > images * bed->period[0]) break;
@@ -124,12 +102,12 @@ static void follow(const struct bed *bed, const struct versions *version, int li
     ck_assert_uint_gt(met, paths / 4);
 }
 
-LOOP_TEST(random_beds, sizeof versions / sizeof *versions) {
-    const struct versions *version = &versions[_i];
-    if (version->isa > (int)fibrad_isa_best()) return;
+TEST(random_beds) {
+    const struct isas isas = isas_there();
     for (int kind = 0; kind < 4; kind++) {
         OWNED_BED bed = packing(150, kind == 3 ? .1 : kind == 0 ? 1 : .5, 1, kind == 2 ? .02 : .5, 3, kind != 1);
-        follow(&bed, version, kind == 0 ? FEW : EACH, kind == 2 ? 4 : 2, 300, 4);
+        for (int k = 0; k < isas.count; k++)
+            follow(&bed, isas.set[k], kind == 0 ? FEW : EACH, kind == 2 ? 4 : 2, 300, 4);
     }
 }
 
@@ -137,7 +115,7 @@ LOOP_TEST(random_beds, sizeof versions / sizeof *versions) {
 TEST(small_spheres_before_large_ones) {
     for (uint64_t seed = 50; seed < 53; seed++) {
         OWNED_BED bed = strewn(600, seed);
-        follow(&bed, &versions[0], EACH, 0, 3000, 3);
+        follow(&bed, FIBRAD_ISA_SCALAR, EACH, 0, 3000, 3);
     }
 }
 
@@ -145,7 +123,7 @@ TEST(small_spheres_before_large_ones) {
 TEST(overlaps) {
     OWNED_BED bed = packing(100, .7, 1, .45, 5, true);
     for (uint32_t i = 0; i < bed.n; i++) bed.r[i] *= 1.15;
-    follow(&bed, &versions[0], FEW, 2, 500, 4);
+    follow(&bed, FIBRAD_ISA_SCALAR, FEW, 2, 500, 4);
 }
 
 /* One large sphere has thousands of small ones about it, more than a list holds. */
@@ -157,7 +135,7 @@ TEST(large_among_small) {
         assert_ok(fibrad_direction(k, 1500, w));
         add_sphere(&bed, d * w[0], d * w[1], d * w[2], .02);
     }
-    follow(&bed, &versions[0], EACH, 0, 1500, 3);
+    follow(&bed, FIBRAD_ISA_SCALAR, EACH, 0, 1500, 3);
 }
 
 /* More small spheres overlap a large one than there is room for. So there is no list at all. */
@@ -169,15 +147,15 @@ TEST(studded_sphere) {
         assert_ok(fibrad_direction(k, 700, w));
         add_sphere(&bed, 1.01 * w[0], 1.01 * w[1], 1.01 * w[2], .03);
     }
-    follow(&bed, &versions[0], EACH, 0, 1400, 3);
+    follow(&bed, FIBRAD_ISA_SCALAR, EACH, 0, 1400, 3);
 }
 
 /* There is one sphere in a period, which sees mostly its own images. Rays along the channels of a lattice meet
  * nothing. */
 TEST(one_sphere_and_its_images) {
-    OWNED_BED bed = bed_of(1, (const double[][4]){{.3, .4, .5, 1}});
+    OWNED_BED bed = BED({.3, .4, .5, 1});
     bed.period[0] = 2, bed.period[1] = 2.5, bed.period[2] = 3;
-    follow(&bed, &versions[0], FEW, 12, 200, 5);
+    follow(&bed, FIBRAD_ISA_SCALAR, FEW, 12, 200, 5);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_hit hit;
     fibrad_trace_point_scalar(scene, (const double[3]){1.3, 1.65, 0}, (const double[3]){0, 0, 1}, FIBRAD_NO_SIDE, &hit);
@@ -235,6 +213,7 @@ TEST(from_points) {
 TEST(same_bits_everywhere) {
     OWNED_BED bed = packing(400, .2, 1, .55, 2, true);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    const struct isas isas = isas_there();
     fibrad_work work[2];
     fibrad_tracer *tracers[2] = {tracer_of(scene, FEW, &work[0]), tracer_of(scene, EACH, &work[1])};
     for (uint32_t k = 0; k < 20000; k++) {
@@ -246,12 +225,11 @@ TEST(same_bits_everywhere) {
         fibrad_hit hit = {0}, other = {0}, third = {0};
         fibrad_trace_scalar(tracers[0], k % bed.n, n, w, &hit);
         fibrad_trace_point_scalar(scene, n, w, FIBRAD_NO_SIDE, &other);
-        for (size_t v = 0; v < sizeof versions / sizeof *versions; v++) {
-            if (versions[v].isa > (int)fibrad_isa_best()) continue;
+        for (int v = 0; v < isas.count; v++) {
             fibrad_hit again = {0};
-            versions[v].trace(tracers[1], k % bed.n, n, w, &again);
+            FIBRAD_VERSION_OF(fibrad_trace, isas.set[v])(tracers[1], k % bed.n, n, w, &again);
             ck_assert_mem_eq(&hit, &again, sizeof hit);
-            versions[v].trace_point(scene, n, w, FIBRAD_NO_SIDE, &third);
+            FIBRAD_VERSION_OF(fibrad_trace_point, isas.set[v])(scene, n, w, FIBRAD_NO_SIDE, &third);
             ck_assert_mem_eq(&other, &third, sizeof other);
         }
     }
@@ -274,7 +252,7 @@ TEST(lists_belong_to_contents) {
     OWNED_WORK work = work_growing();
     static const double distances[] = {5, 5, 7, 7, 5};
     for (size_t k = 0; k < sizeof distances / sizeof *distances; k++) {
-        OWNED_BED bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {distances[k], 0, 0, 1}});
+        OWNED_BED bed = BED({0, 0, 0, 1}, {distances[k], 0, 0, 1});
         const fibrad_spheres spheres = spheres_of(&bed);
         fibrad_scene *scene = NULL;
         fibrad_workspace *space = NULL;
@@ -290,7 +268,7 @@ TEST(lists_belong_to_contents) {
 /* A block that is too small is left alone, and the call says what it lacks. A block that is large enough, of any
  * alignment, is used throughout. */
 TEST(memory) {
-    OWNED_BED bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    OWNED_BED bed = BED({0, 0, 0, 1});
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_workspace *space = NULL;
     const size_t extra = fibrad_tracer_least();

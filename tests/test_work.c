@@ -60,15 +60,13 @@ static bool same_output(int function, const struct output *a, const struct outpu
 /* Beds: packed, periodic, of mixed sizes, nearly empty, and between two walls. */
 enum { SCENES = 5 };
 
-static struct bed between_walls(void) {
-    return bed_of(3, (const double[][4]){{1, 1, 0, 1}, {2, 3, 2, 1}, {3, 1, 3, 1}});
-}
+static struct bed between_walls(void) { return BED({1, 1, 0, 1}, {2, 3, 2, 1}, {3, 1, 3, 1}); }
 
 static struct bed bed_number(int k) {
     return k == 0   ? packing(150, .8, 1.2, .55, 7, false)
            : k == 1 ? packing(100, .5, 1.5, .5, 8, true)
            : k == 2 ? strewn(200, 42)
-           : k == 3 ? bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1, 2, 3, 1}})
+           : k == 3 ? BED({0, 0, 0, 1}, {1, 2, 3, 1})
                     : between_walls();
 }
 
@@ -246,7 +244,7 @@ LOOP_TEST(memory_that_is_refused, FUNCTIONS) {
 TEST(bytes_that_are_enough) {
     static unsigned char packed[FIBRAD_WORK_BYTES(64, 200) + 64], hundreds[FIBRAD_WORK_BYTES(1000, 1000) + 64],
         six[FIBRAD_WORK_BYTES(6, 6) + 64], walls[FIBRAD_WORK_BYTES(64, 3) + FIBRAD_WORK_WALLS + 64];
-    OWNED_BED bed = packing(600, .8, 1.2, .6, 7, true), around = bed_of(1, (const double[][4]){{0, 0, 0, 4}});
+    OWNED_BED bed = packing(600, .8, 1.2, .6, 7, true), around = BED({0, 0, 0, 4});
     OWNED_BED lone = lattice('p', 2), between = between_walls();
     for (uint32_t k = 0; k < 1000; k++) {
         double w[3];
