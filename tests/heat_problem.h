@@ -96,7 +96,9 @@ static inline void trace_beams(struct problem *p) {
     assert_ok(heat_trace(p->heat, &work, p->backwards));
 }
 
+/* A problem may be traced again after a change. */
 static inline void trace(struct problem *p) {
+    free_heat(p);
     build_scene(p);
     const size_t size = fibrad_heat_size(&p->config, p->scene);
     ck_assert_uint_gt(size, 0);

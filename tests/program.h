@@ -41,14 +41,8 @@ static inline void make_folder(void) {
     snprintf(stderr_path, sizeof stderr_path, "%s/stderr", folder);
 }
 
-/* The path of a file in the test's folder. 32 paths may be in use at once. */
-static inline const char *in_folder(const char *name) {
-    static char paths[32][300];
-    static int next;
-    next = (next + 1) % 32;
-    snprintf(paths[next], sizeof paths[next], "%s/%s", folder, name);
-    return paths[next];
-}
+/* The path of a file in the test's folder. */
+static inline const char *in_folder(const char *name) { return formatted("%s/%s", folder, name); }
 
 /* Removes all files of the folder, also stdout and stderr if asked for. Returns their number. */
 static inline int remove_files(int outputs_too) {
@@ -58,9 +52,7 @@ static inline int remove_files(int outputs_too) {
     for (struct dirent *entry; (entry = readdir(list));) {
         const int output = strncmp(entry->d_name, "std", 3) == 0;
         if (entry->d_name[0] == '.' || (output && !outputs_too)) continue;
-        char path[500];
-        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-        ck_assert_int_eq(unlink(path), 0);
+        ck_assert_int_eq(unlink(in_folder(entry->d_name)), 0);
         ++count;
     }
     closedir(list);
@@ -108,9 +100,7 @@ static inline void open_as(int number, const char *path, int flags) {
 static const char *input = "/dev/null", *output; /* of the program; output NULL: kept in `printed` */
 
 static inline pid_t start(const char *const *arguments) {
-    char program[300];
-    const char *argv[40] = {program};
-    snprintf(program, sizeof program, "%s/fibrad", build);
+    const char *program = formatted("%s/fibrad", build), *argv[40] = {program};
     for (int k = 0; k < 38 && arguments[k]; ++k) argv[k + 1] = arguments[k];
     const char *out = output ? output : stdout_path;
     const pid_t process = fork();
@@ -160,9 +150,7 @@ static inline double value_of(const char *key) {
 
 /* The number of a key in a file of --json, with all digits. The last run in the file counts. */
 static inline double json_of(const char *path, const char *key) {
-    char *text = read_file(path), wanted[80];
-    const char *at = NULL;
-    snprintf(wanted, sizeof wanted, "\"%s\": ", key);
+    const char *text = read_file(path), *wanted = formatted("\"%s\": ", key), *at = NULL;
     for (const char *next = text; (next = strstr(next, wanted)); at = next += strlen(wanted)) {}
     ck_assert_msg(at != NULL, "no key '%s' in: %s", key, text);
     return strtod(at, NULL);
@@ -170,9 +158,7 @@ static inline double json_of(const char *path, const char *key) {
 
 /* Asserts that standard error has one line: `fibrad: `, the place, and then the reason. */
 static inline void expect_message(const char *place, const char *reason) {
-    char begin[400];
-    snprintf(begin, sizeof begin, "fibrad: %s", place);
-    assert_begins(said, begin);
+    assert_begins(said, formatted("fibrad: %s", place));
     assert_has(said, reason);
     ck_assert_ptr_eq(strchr(said, '\n'), said + strlen(said) - 1);
 }

@@ -7,6 +7,8 @@
 #define TESTS_SUITE_H
 
 #include <check.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include "asserts.h"
 #include "owned.h"
@@ -33,6 +35,18 @@ static inline TCase *suite_case(void) {
     setenv("CK_DEFAULT_TIMEOUT", "300", 0);
     if (!all) all = tcase_create("all");
     return all;
+}
+
+/* A text as by printf. The text lasts until 64 others have been made. */
+__attribute__((format(printf, 1, 2))) static inline const char *formatted(const char *format, ...) {
+    static char texts[64][700];
+    static int next;
+    va_list arguments;
+    next = (next + 1) % 64;
+    va_start(arguments, format);
+    vsnprintf(texts[next], sizeof texts[next], format, arguments);
+    va_end(arguments);
+    return texts[next];
 }
 
 int main(int argc, char **argv) {

@@ -130,11 +130,10 @@ static double number_of_line(const char *path, const char *end, int column) {
 /* A box without a lid is compared with one whose lid is black and as hot as the surroundings. */
 TEST(a_box_without_a_lid) {
     const char *open = in_folder("open.csv"), *closed = in_folder("closed.csv"), *json = in_folder("open.json");
-    char lid[100];
 #define STATE "--length-unit=mm", "--emissivity=.6", "--temperature=500", "--ambient=300", "--directions=30"
     SUCCEED("heat", MONO, STATE, "--wall=box:open=zmax", "--wall-temperature=zmin=900,600", "--wall-emissivity=.4",
             "-o", open, "--json", json, "--plot", in_folder("open.svg"));
-    snprintf(lid, sizeof lid, "--wall=box,zmax=%.17g", json_of(json, "open_zmax_at"));
+    const char *lid = formatted("--wall=box,zmax=%.17g", json_of(json, "open_zmax_at"));
     SUCCEED("heat", MONO, STATE, lid, "--wall-temperature=zmin=900,zmax=300,600", "--wall-emissivity=zmax=1,.4", "-o",
             closed);
 #undef STATE
@@ -311,16 +310,11 @@ TEST(temperatures) {
 
     /* emissivities come from a table: at 600 K they are .5, whatever the type */
     const char *table = write_file("eps.csv", "# K\nT_K,emissivity\n500,.6\n\n700;.4\n");
-    char by_type[300], all[300];
-    snprintf(all, sizeof all, "@%s", table);
-    snprintf(by_type, sizeof by_type, "1:@%s,2:.5", table);
+    const char *all = formatted("@%s", table), *const law[] = {".5", all, formatted("1:@%s,2:.5", table)};
     double power[3];
     for (int k = 0; k < 3; ++k) {
-        SUCCEED("heat", file, "--length-unit", "m", "--emissivity",
-                k == 0   ? ".5"
-                : k == 1 ? all
-                         : by_type,
-                "--temperature", "600", "--ambient", "300", "-o", out);
+        SUCCEED("heat", file, "--length-unit", "m", "--emissivity", law[k], "--temperature", "600", "--ambient", "300",
+                "-o", out);
         read_powers(out, &sum, &largest, 0, &t, &power[k]);
     }
     ck_assert(power[0] == power[1] && power[0] == power[2]);

@@ -197,8 +197,7 @@ TEST(exact_pair_checked) {
     ck_assert_double_eq_tol(value_of("gsl_polar") / f12, 1, 1e-12);
     ck_assert_double_eq_tol(value_of("gsl_lens") / f12, 1, 1e-12);
     assert_has(printed, "difference");
-    char last[60];
-    snprintf(last, sizeof last, "\nF12 %.17g\n", f12);
+    const char *last = formatted("\nF12 %.17g\n", f12);
     ck_assert_str_eq(printed + strlen(printed) - strlen(last), last);
     SUCCEED("pair", "1", "0.3", "-0.05", "--check");
     ck_assert_double_eq_tol(value_of("gsl_lens") / value_of("F12"), 1, 1e-12);
@@ -263,11 +262,9 @@ static const struct {
 };
 
 LOOP_TEST(bad_input, sizeof bad_beds / sizeof *bad_beds) {
-    char place[300];
     const char *bed = write_file("bad.bed", bad_beds[_i].text);
     FAIL_WITH(3, "bed", bed, "-o", in_folder("out.csv"), "--plot", in_folder("out.svg"));
-    snprintf(place, sizeof place, "%s%s", bed, bad_beds[_i].place);
-    expect_message(place, bad_beds[_i].reason);
+    expect_message(formatted("%s%s", bed, bad_beds[_i].place), bad_beds[_i].reason);
     ck_assert_str_eq(printed, "");
     ck_assert_int_eq(remove_files(0), 1); /* bad.bed alone */
 }
@@ -518,14 +515,12 @@ TEST(full_disc) {
 /* Whether a process has a file of the test's folder open, besides standard output and error. The file may have no
  * name. */
 static int has_output_open(pid_t process) {
-    char files[64], place[400];
+    char place[400];
     int found = 0;
-    snprintf(files, sizeof files, "/proc/%d/fd", (int)process);
+    const char *files = formatted("/proc/%d/fd", (int)process);
     DIR *list = opendir(files);
     for (struct dirent *entry; list && (entry = readdir(list));) {
-        char path[400];
-        snprintf(path, sizeof path, "%s/%.50s", files, entry->d_name);
-        const ssize_t length = readlink(path, place, sizeof place - 1);
+        const ssize_t length = readlink(formatted("%s/%s", files, entry->d_name), place, sizeof place - 1);
         place[length > 0 ? length : 0] = 0;
         const char *in = strstr(place, strrchr(folder, '/'));
         found |= in != NULL && strstr(in, "/std") == NULL;

@@ -161,9 +161,7 @@ TEST(solid_fraction) {
 
 /* The text after `key ` on a line of the summary. NULL: there is no such line. */
 static const char *text_of(const char *key) {
-    char begin[50];
-    snprintf(begin, sizeof begin, "\n%s ", key);
-    const char *line = strstr(printed, begin);
+    const char *begin = formatted("\n%s ", key), *line = strstr(printed, begin);
     return line ? line + strlen(begin) : NULL;
 }
 
@@ -220,7 +218,7 @@ TEST(one_axis) {
  * view factors of the sphere in the middle of a large layer. */
 TEST(across_a_thin_bed) {
     const double pitch = 2.2;
-    char middle[20], *text = calloc(LAYER * LAYER, 40);
+    char *text = calloc(LAYER * LAYER, 40);
     const char *const periods = "15.4,15.4,0", *out = in_folder("F.csv");
     strcpy(text, "x,y,z,r\n");
     for (int k = 0; k < LAYER * LAYER; ++k)
@@ -230,8 +228,7 @@ TEST(across_a_thin_bed) {
     for (int k = 0; k < 49; ++k) sprintf(text + strlen(text), "%g,%g,0,1\n", pitch * (k % 7), pitch * (k / 7));
     const char *cell = write_file("cell.csv", text);
     free(text);
-    snprintf(middle, sizeof middle, "%d", LAYER * LAYER / 2);
-    SUCCEED("bed", layer, "--targets", middle, "--directions", "2000", "-o", out);
+    SUCCEED("bed", layer, "--targets", formatted("%d", LAYER * LAYER / 2), "--directions", "2000", "-o", out);
     double sum = 0;
     for (char *line = strchr(read_file(out), '\n') + 1; *line; line = strchr(line, '\n') + 1) {
         int i, j;

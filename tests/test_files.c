@@ -283,11 +283,7 @@ TEST(all_frames) {
         }
     }
     ck_assert_int_eq(*at, 0);
-    for (int k = 0; k < 3; ++k) {
-        char name[20];
-        snprintf(name, sizeof name, "q.%d.vtp", k);
-        read_file(in_folder(name));
-    }
+    for (int k = 0; k < 3; ++k) read_file(formatted("%s/q.%d.vtp", folder, k));
     text = read_file(in_folder("q.pvd")); /* ParaView opens this file: frames by their timesteps */
     assert_has(text, "<DataSet timestep=\"100\" file=\"q.0.vtp\"/>\n<DataSet timestep=\"250\" file="
                      "\"q.1.vtp\"/>\n<DataSet timestep=\"900\" file=\"q.2.vtp\"/>\n");
@@ -316,19 +312,15 @@ TEST(some_frames) {
 
 /* A series of files, named by a pattern that the shell has left alone, is one run. */
 TEST(several_files) {
-    char names[300], expected[400];
-    const char *first = write_frames("bed.1.dump", 1), *out = in_folder("F.csv");
+    const char *first = write_frames("bed.1.dump", 1), *out = in_folder("F.csv"), *names = in_folder("bed.*.dump");
     write_frames("bed.2.dump", 2);
-    snprintf(names, sizeof names, "%s/bed.*.dump", folder);
     SUCCEED("bed", names, "--directions", "8", "-o", out, "-o", in_folder("F.*.mtx"));
     char *text = read_file(out);
-    snprintf(expected, sizeof expected, "file,frame,timestep,i,j,F,body\n%s,0,100,3,", first);
-    assert_begins(text, expected);
+    assert_begins(text, formatted("file,frame,timestep,i,j,F,body\n%s,0,100,3,", first));
     assert_has(text, "bed.2.dump,1,250,3,7,");
     read_file(in_folder("F.1.mtx"));
     SUCCEED("bed", first, first, "--directions", "8", "-o", in_folder("F.*.json"), "-o", in_folder("F.*.vtp"));
-    text = read_file(in_folder("F.1.json")); /* frames are counted through all files */
-    assert_has(text, "\"frame\":1,");
+    assert_has(read_file(in_folder("F.1.json")), "\"frame\":1,"); /* frames are counted through all files */
     text = read_file(in_folder("F.pvd")); /* two frames have the same timestep, so their numbers stand for it */
     ck_assert(strstr(text, "timestep=\"0\" file=\"F.0.vtp\"") && strstr(text, "timestep=\"1\" file=\"F.1.vtp\""));
     write_frames("bed.10.dump", 3); /* times are not padded with zeros: 10 comes after 2 */
@@ -336,7 +328,7 @@ TEST(several_files) {
     text = read_file(out);
     assert_has(text, "bed.10.dump,2,900,3,7,");
     ck_assert(strstr(text, "bed.10.dump,") > strstr(text, "bed.2.dump,"));
-    snprintf(names, sizeof names, "%s/none.*.dump", folder);
+    names = in_folder("none.*.dump");
     FAIL_WITH(4, "bed", names);
     expect_message(names, "no file has such a name");
     SUCCEED("bed", first, write_file("bed.csv", "x,y,z,r\n0,0,0,1\n"), "--directions", "8");
@@ -453,19 +445,15 @@ TEST(inputs_stay) {
                                            "650\n"};
     static const char *const outputs[] = {"-o", "--wall-vtp", "-o", "--json", "-o", "--plot"};
     const char *path[6];
-    char words[4][700];
     for (int k = 0; k < 6; ++k) path[k] = write_file(names[k], k ? contents[k] : frame(NULL, "0", "3", SORTED));
-    snprintf(words[0], sizeof words[0], "floor=mesh:%s:both,zmax=20", path[1]);
-    snprintf(words[1], sizeof words[1], "@%s", path[2]);
-    snprintf(words[2], sizeof words[2], "@%s", path[3]);
-    snprintf(words[3], sizeof words[3], "zmax=@%s,floor=triangles:%s", path[4], path[5]);
+    const char *wall = formatted("floor=mesh:%s:both,zmax=20", path[1]), *law = formatted("@%s", path[2]);
+    const char *ambient = formatted("@%s", path[3]),
+               *walls = formatted("zmax=@%s,floor=triangles:%s", path[4], path[5]);
     for (int k = 0; k < 6; ++k) {
-        char other_name[400]; /* of the same file */
-        snprintf(other_name, sizeof other_name, "%s/./%s", folder, k == 1 ? "floor.*.vtp" : names[k]);
-        FAIL_WITH(2, "heat", path[0], "--temperature", "T", "--emissivity", words[1], "--wall", words[0],
-                  "--wall-temperature", words[3], "--ambient", words[2], "--until", "5", "--heat-capacity", "800",
-                  "--density", "2500", "--model", "patches", "--directions", "21", "--patches", "24", outputs[k],
-                  other_name);
+        const char *other_name = formatted("%s/./%s", folder, k == 1 ? "floor.*.vtp" : names[k]); /* of the same file */
+        FAIL_WITH(2, "heat", path[0], "--temperature", "T", "--emissivity", law, "--wall", wall, "--wall-temperature",
+                  walls, "--ambient", ambient, "--until", "5", "--heat-capacity", "800", "--density", "2500", "--model",
+                  "patches", "--directions", "21", "--patches", "24", outputs[k], other_name);
         assert_has(said, "is read in this run and would be replaced");
         ck_assert_str_eq(read_file(path[k]), k ? contents[k] : frame(NULL, "0", "3", SORTED));
     }

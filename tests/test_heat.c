@@ -81,11 +81,9 @@ TEST(a_black_sphere_touches_a_black_plane) {
         ck_assert_double_le(fabs(error), 1.2e-3);
         assert_near(p.result.surroundings_power, 16 * 2 * PI, 1.2e-3);
         errors += error * error / 6, estimates += pow(estimate[0] / (16 * 2 * PI), 2) / 6;
-        free_heat(&p);
     }
     ck_assert_double_le(sqrt(errors), 1e-3);
     ck_assert(errors < 4 * estimates && estimates < 4 * errors);
-    p.scene = NULL, p.heat = NULL;
 }
 
 /* Light goes back and forth between endless plates without a period, and in a tube with one. Between plates a mote sees
@@ -101,7 +99,6 @@ TEST(a_mote_between_endless_walls) {
     assert_near(p.result.power[0], .5 * 4e-4 * PI * ((low + high) / 2 - 16), 1e-3);
     double largest;
     ck_assert_double_le(fabs(sum_of_powers(&p, &largest)), 1e-12 * largest);
-    free_heat(&p);
     p.walls = (struct walls){.cylinder = {0, 0, .5}};
     p.bed.period[2] = 1;
     p.wall_temperature[FIBRAD_CYLINDER] = 3, p.wall_emissivity[FIBRAD_CYLINDER] = .1;
@@ -126,9 +123,7 @@ TEST(a_pair_of_endless_plates) {
                                 1e-12); /* the extent of the centres, and the largest size of the bed on either side */
         assert_near(p.wall_power[4], -q * area[0], 2e-3);
         assert_near(p.wall_power[5], q * area[1], 2e-3);
-        free_heat(&p);
     }
-    p.scene = NULL, p.heat = NULL;
 }
 
 TEST(a_mote_between_periodic_plates) {
@@ -225,7 +220,6 @@ TEST(walls_alone) {
     trace_and_solve(&p);
     assert_near(p.wall_power[5], 0.1998249, 5e-3);
     for (int k = 0; k < 4; k++) assert_near(p.wall_power[k], 0.2000438, 5e-3);
-    free_heat(&p);
     for (uint32_t planes = 1; planes < 63; planes++) {
         double largest;
         p.walls = (struct walls){.planes = planes, .at = {-300, -200, 100, 250, -220, 4}};
@@ -239,9 +233,7 @@ TEST(walls_alone) {
             ck_assert(isfinite(p.wall_power[k]));
             if ((planes >> k & 1) == 0) ck_assert_double_eq(p.wall_power[k], 0);
         }
-        free_heat(&p);
     }
-    p.scene = NULL, p.heat = NULL;
 }
 
 TEST(two_black_spheres_in_contact) {
@@ -336,7 +328,6 @@ LOOP_TEST(reflectors_gain_nothing, 2) {
     ck_assert_double_lt(difference_of(p.result.power, truth, p.bed.n), uniform ? 5e-3 : .015);
 
     memcpy(first, p.result.power, p.bed.n * sizeof *first);
-    free_heat(&p);
     for (uint32_t i = 0; i < p.bed.n; i += 3) p.temperature[i] = i % 2 ? 0 : 1e3;
     trace_and_solve(&p);
     ck_assert_mem_eq(first, p.result.power, p.bed.n * sizeof *first);
@@ -370,7 +361,6 @@ LOOP_TEST(all_reflect, 4) {
         (void)sum_of_powers(&p, &largest);
         ck_assert_double_le(largest, warm ? 1e-9 : 0);
         ck_assert_uint_le(p.result.sweeps, warm ? 300 : 4);
-        free_heat(&p);
         trace(&p);
     }
 }

@@ -77,7 +77,6 @@ TEST(an_earlier_solution_saves_sweeps_and_changes_little) {
     const uint32_t warm = p.result.sweeps;
     double *power = malloc(p.bed.n * sizeof *power), largest = 0;
     memcpy(power, p.result.power, p.bed.n * sizeof *power);
-    free_heat(&p);
     trace_and_solve(&p);
     ck_assert_uint_lt(warm, p.result.sweeps * 3 / 4);
     for (uint32_t i = 0; i < p.bed.n; i++) worst_of(&largest, fabs(p.result.power[i]));

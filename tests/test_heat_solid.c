@@ -11,10 +11,7 @@ static const char *spheres(void) {
 }
 
 /* The option that names a new table. */
-static const char *table(char option[300], const char *name, const char *text) {
-    snprintf(option, 300, "@%s", write_file(name, text));
-    return option;
-}
+static const char *table(const char *name, const char *text) { return formatted("@%s", write_file(name, text)); }
 
 /* Column k of the line of sphere i in a .csv. Both are counted from 0. */
 static double entry(const char *file, int i, int k) {
@@ -81,9 +78,8 @@ TEST(surfaces_below_zero_are_named) {
 /* A table over temperature is read at the temperature that is found. */
 TEST(conductivity_follows_temperature) {
     const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,30\n0,0,70,30\n"), *q = in_folder("q.csv");
-    char option[300];
     SUCCEED("heat", file, "--length-unit", "mm", "--emissivity", "0.8", "--power", "400", "--ambient", "600",
-            "--solid-conductivity", table(option, "k.csv", "T,k\n500,10\n1500,2\n"), "-o", q);
+            "--solid-conductivity", table("k.csv", "T,k\n500,10\n1500,2\n"), "-o", q);
     const double t = entry(q, 0, 1), k = 10 - 8 * (t - 500) / 1000;
     assert_near(entry(q, 0, 8) - t, 400 / (8 * PI * .03 * k), 1e-3);
 }
@@ -109,7 +105,6 @@ TEST(insides_lag_in_time) {
 
 TEST(what_cannot_be) {
     const char *file = spheres(), *hole = write_file("hole.csv", "x,y,z,radius,k\n0,0,0,1,nan\n");
-    char option[3][300];
     const struct {
         const char *value, *more, *reason;
         int status;
@@ -122,12 +117,10 @@ TEST(what_cannot_be) {
         {"x", NULL, "conductivity of the solid", 3},
         {"1:5", NULL, "type", 3},
         {"5", "spheres", "--solid-conductivity is", 2},
-        {table(option[0], "wrong_k.csv", "300,5\n400,-1\n"), NULL,
+        {table("wrong_k.csv", "300,5\n400,-1\n"), NULL,
          "wrong_k.csv:2: the solid-conductivity is -1; it must be within", 3},
-        {table(option[1], "wrong_order.csv", "300,5\n300,1\n"), NULL,
-         "wrong_order.csv:2: 300 is not above the number before", 3},
-        {table(option[2], "wrong_word.csv", "300,x\n"), NULL,
-         "wrong_word.csv:1: solid-conductivity is not a number: 'x'", 3},
+        {table("wrong_order.csv", "300,5\n300,1\n"), NULL, "wrong_order.csv:2: 300 is not above the number before", 3},
+        {table("wrong_word.csv", "300,x\n"), NULL, "wrong_word.csv:1: solid-conductivity is not a number: 'x'", 3},
     };
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
         FAIL_WITH(wrong[k].status, "heat", file, "--length-unit", "m", "--emissivity", "0.8", "--temperature", "900",

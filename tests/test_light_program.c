@@ -4,10 +4,8 @@
 
 static const char *bed; /* four spheres of radius 0.5 in a cup of side 2, whose lid is at 2.5 */
 
-#define CUP "xmin=0,xmax=2,ymin=0,ymax=2,zmin=0,zmax=2.5:open"
-#define HEAT(...)                                                                                                      \
-    RUN("heat", bed, "--length-unit", "m", "--emissivity", "0.8", "--ambient", "300", "--wall-temperature", "300",     \
-        __VA_ARGS__)
+#define CUP  "xmin=0,xmax=2,ymin=0,ymax=2,zmin=0,zmax=2.5:open"
+#define HEAT "heat", bed, "--length-unit", "m", "--emissivity", "0.8", "--ambient", "300", "--wall-temperature", "300"
 
 static void begin(void) {
     make_folder();
@@ -20,14 +18,11 @@ static double fractions(void) { return value_of("absorbed") + value_of("reflecte
 
 TEST(what_is_absorbed_is_said_and_written) {
     const char *csv = in_folder("q.csv"), *profile = in_folder("p.csv");
-    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:1000", "--absorptivity", ".5",
-                          "--wall-absorptivity", "zmin=.25,0", "-o", csv, "--profile", "z:2:.csv", "--quiet"),
-                     2); /* a profile needs a name */
-    char option[400];
-    snprintf(option, sizeof option, "z:2:%s", profile);
-    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:1000", "--absorptivity", ".5",
-                          "--wall-absorptivity", "zmin=.25,0", "-o", csv, "--profile", option),
-                     0);
+    FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:1000", "--absorptivity", ".5",
+              "--wall-absorptivity", "zmin=.25,0", "-o", csv, "--profile", "z:2:.csv",
+              "--quiet"); /* a profile needs a name */
+    SUCCEED(HEAT, "--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:1000", "--absorptivity", ".5",
+            "--wall-absorptivity", "zmin=.25,0", "-o", csv, "--profile", formatted("z:2:%s", profile));
     ck_assert_double_eq_tol(value_of("irradiated_W"), 4000, 1e-9);
     ck_assert_double_eq_tol(value_of("absorbed_first_W"), 1000 * (.5 * PI + .25 * (4 - PI)), .01);
     ck_assert_double_eq_tol(fractions(), 1, .01);
@@ -64,15 +59,14 @@ TEST(lit_sides_are_hotter) {
     double mean[3], span[3], leaves[3];
     for (int k = 0; k < 3; ++k) {
         const char *solid = k == 0 ? "1e9" : k == 1 ? "1" : "0.1";
-        ck_assert_int_eq(
-            HEAT("--power", "0", "--wall", CUP, "--irradiate", "0,0,-1:1e4", "--solid-conductivity", solid, "-o", csv),
-            0);
+        SUCCEED(HEAT, "--power", "0", "--wall", CUP, "--irradiate", "0,0,-1:1e4", "--solid-conductivity", solid, "-o",
+                csv);
         mean[k] = value_of("temperature_mean_K"), span[k] = value_of("surface_span_K");
         leaves[k] = value_of("surroundings_W");
         ck_assert_double_le(fabs(value_of("balance_of_emission")), 1e-12);
         ck_assert_double_le(fabs(value_of("balance_of_light")), 1e-12);
     }
-    ck_assert_int_eq(HEAT("--power", "0", "--wall", CUP, "--irradiate", "0,0,-1:1e4"), 0);
+    SUCCEED(HEAT, "--power", "0", "--wall", CUP, "--irradiate", "0,0,-1:1e4");
     ck_assert_double_eq_tol(mean[0], value_of("temperature_mean_K"), .02);
     ck_assert_double_eq_tol(leaves[0], value_of("surroundings_W"), 1e-4 * fabs(leaves[0]));
     ck_assert_double_lt(span[0], 1e-3);
@@ -84,13 +78,11 @@ TEST(lit_sides_are_hotter) {
  * kept. */
 TEST(lit_sides_in_time) {
     const char *csv = in_folder("time.csv"), *solid = "--solid-conductivity";
-    ck_assert_int_eq(
-        HEAT("--power", "0", "--wall", CUP, "--irradiate", "0,0,-1:1e4", "--directions", "50", solid, "3", "-o", csv),
-        0);
+    SUCCEED(HEAT, "--power", "0", "--wall", CUP, "--irradiate", "0,0,-1:1e4", "--directions", "50", solid, "3", "-o",
+            csv);
     const double mean = value_of("temperature_mean_K"), hottest = value_of("surface_max_K");
-    ck_assert_int_eq(HEAT("--temperature", "400", "--wall", CUP, "--irradiate", "0,0,-1:1e4", "--directions", "50",
-                          solid, "3", "--until", "4e4", "--heat-capacity", "800", "--density", "100", "-o", csv),
-                     0);
+    SUCCEED(HEAT, "--temperature", "400", "--wall", CUP, "--irradiate", "0,0,-1:1e4", "--directions", "50", solid, "3",
+            "--until", "4e4", "--heat-capacity", "800", "--density", "100", "-o", csv);
     ck_assert_double_eq_tol(value_of("temperature_mean_K"), mean, .002 * mean);
     ck_assert_double_le(fabs(value_of("balance_of_stored")), 1e-12);
     char *text = read_file(csv);
@@ -109,18 +101,16 @@ TEST(triangles_throw_shadows) {
     const double a[] = {0, 0, 2.2}, b[] = {1, 0, 2.2}, c[] = {1, 2, 2.2}, d[] = {0, 2, 2.2};
     roof.n = 0;
     soup_add(&roof, a, b, c), soup_add(&roof, a, c, d);
-    char wall[600];
-    snprintf(wall, sizeof wall, CUP ",roof=mesh:%s:both", write_solid("roof.stl", &roof));
+    const char *wall = formatted(CUP ",roof=mesh:%s:both", write_solid("roof.stl", &roof));
     SUCCEED("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--temperature", "0", "--wall",
             wall, "--wall-temperature", "0", "--irradiate", "0,0,-1:1000");
     ck_assert_double_eq_tol(value_of("absorbed_first_W"), 4000, .1);
     ck_assert_double_eq_tol(value_of("wall_roof_absorbed_W"), 2000, 2);
     ck_assert_double_eq_tol(fractions(), 1, .01);
     ck_assert_double_le(fabs(value_of("balance_of_light")), 1e-12);
-    snprintf(wall, sizeof wall, "roof=mesh:%s:normals", in_folder("roof.stl"));
-    ck_assert_int_eq(RUN("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--temperature", "0",
-                         "--wall", wall, "--wall-temperature", "0", "--irradiate", "0,0,1:1000"),
-                     3);
+    FAIL_WITH(3, "heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--temperature", "0",
+              "--wall", formatted("roof=mesh:%s:normals", in_folder("roof.stl")), "--wall-temperature", "0",
+              "--irradiate", "0,0,1:1000");
     assert_has(said, "the back of wall roof is seen");
 }
 
@@ -150,13 +140,13 @@ TEST(fine_patches_are_no_hot_spots) {
 
 /* An endless floor of equal spheres has an emissivity. A black cavity with an open lid has 1. */
 TEST(faces_have_an_emissivity) {
-    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--face"), 0);
+    SUCCEED(HEAT, "--temperature", "300", "--wall", CUP, "--face");
     ck_assert_double_eq_tol(value_of("face_area_m2"), 4, 1e-9);
     ck_assert_double_gt(value_of("face_emissivity"), .9);
     ck_assert_double_lt(value_of("face_emissivity"), 1);
     FAIL_WITH(2, "heat", bed, "--emissivity", ".5", "--temperature", "300", "--ambient", "300", "--face");
     expect_message("--face: an open face has no end", "walls or periods");
-    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", "box", "--face"), 2);
+    FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", "box", "--face");
     expect_message("--face: the bed has no open face", "");
 }
 
@@ -180,23 +170,21 @@ TEST(refused_lights_are_named) {
         {"0,0,-1:5:disc=1,1,0.6,1", CUP, "--irradiate: the disc of light 1 lies inside the bed", "sphere"},
     };
     for (size_t k = 0; k < sizeof refused / sizeof *refused; ++k) {
-        const int status = HEAT("--temperature", "300", "--wall", refused[k].wall, "--irradiate", refused[k].light);
+        const int status =
+            RUN(HEAT, "--temperature", "300", "--wall", refused[k].wall, "--irradiate", refused[k].light);
         ck_assert_msg(status == 2, "%s: exit status %d, '%s'", refused[k].light, status, said);
         expect_message(refused[k].place, refused[k].reason);
     }
-    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--absorptivity", ".5"), 2);
+    FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", CUP, "--absorptivity", ".5");
     expect_message("--absorptivity needs --irradiate", "");
-    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--absorptivity", "1.5"),
-                     2);
+    FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--absorptivity", "1.5");
     expect_message("--absorptivity", "1.5");
-    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--absorptivity", "colour"),
-                     3);
-    ck_assert_int_eq(
-        HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--wall-absorptivity", "lid=.5"), 2);
+    FAIL_WITH(3, HEAT, "--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--absorptivity", "colour");
+    FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--wall-absorptivity",
+              "lid=.5");
     expect_message("--wall-absorptivity", "lid");
-    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--profile", "w:p.csv"), 2);
+    FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--profile", "w:p.csv");
     expect_message("--profile: 'w:p.csv'", "AXIS");
-    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--absorptivity", "0",
-                          "--wall-absorptivity", "0"),
-                     0);
+    SUCCEED(HEAT, "--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--absorptivity", "0",
+            "--wall-absorptivity", "0");
 }

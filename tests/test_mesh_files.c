@@ -62,11 +62,8 @@ static const struct {
               {FACET("vertex 0 0 0\nvertex 1 0 0\nvertex 1 0 0\n"), "", "no triangle has an area"}};
 
 static void refuse(const char *path, const char *line, const char *reason) {
-    char wall[400], place[340];
-    snprintf(wall, sizeof wall, "mesh:%s", path);
-    snprintf(place, sizeof place, "%.300s%s: ", path, line);
-    FAIL_WITH(3, "bed", MONO, "--wall", wall);
-    expect_message(place, reason);
+    FAIL_WITH(3, "bed", MONO, "--wall", formatted("mesh:%s", path));
+    expect_message(formatted("%s%s: ", path, line), reason);
 }
 
 LOOP_TEST(broken_text_is_refused, sizeof broken / sizeof *broken) {
@@ -253,11 +250,7 @@ TEST(sides_that_are_asked_for) {
 
 /* Returns "WORD FILE REST" without blanks. */
 static const char *wall_of(const char *before, const char *path, const char *after) {
-    static char text[4][500];
-    static int next;
-    next = (next + 1) % 4;
-    snprintf(text[next], sizeof text[next], "%s%s%s", before, path, after);
-    return text[next];
+    return formatted("%s%s%s", before, path, after);
 }
 
 TEST(names_of_meshes) {
@@ -293,9 +286,7 @@ TEST(names_of_meshes) {
 /* Reads an array of doubles of a .vtp, which has at least n elements. */
 static void vtp_array(const char *path, const char *name, double *values, size_t n) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    char key[60], *text = read_file(path);
-    snprintf(key, sizeof key, "Name=\"%s\"", name);
-    const char *at = strstr(text, key);
+    const char *at = strstr(read_file(path), formatted("Name=\"%s\"", name));
     ck_assert_msg(at != NULL, "%s has no array %s", path, name);
     at = strchr(at, '>') + 1;
     OWNED unsigned char *bytes = calloc(8 + n * sizeof *values + 3, 1);
@@ -329,11 +320,7 @@ TEST(rows_in_a_closed_mesh) {
     SUCCEED("bed", bed, "--wall", "xmin=-4,xmax=4,ymin=-4,ymax=4,zmin=-4,zmax=4");
     double planes = 0;
     static const char *const names[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
-    for (int k = 0; k < 6; ++k) {
-        char key[40];
-        snprintf(key, sizeof key, "wall_%s_F", names[k]);
-        planes += value_of(key);
-    }
+    for (int k = 0; k < 6; ++k) planes += value_of(formatted("wall_%s_F", names[k]));
     SUCCEED("bed", bed, "--wall", wall_of("tub=mesh:", box, ""), "--wall-vtp", out);
     ck_assert_double_eq_tol(value_of("wall_tub_F"), planes, 1e-3);
     ck_assert_double_eq_tol(value_of("wall_tub_area"), 384, 1e-3);

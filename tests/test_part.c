@@ -38,8 +38,7 @@ LOOP_TEST(rows_depend_on_what_is_near, KINDS) {
             ck_assert_uint_lt(near.n, m.part.n);
             OWNED fibrad_scene *little = part_scene(&near), *more = part_scene(&far);
             for (int method = 0; method < METHODS; method++) {
-                char what[64];
-                snprintf(what, sizeof what, "%s, method %d, sphere %u", kinds[_i].name, method, i);
+                const char *what = formatted("%s, method %d, sphere %u", kinds[_i].name, method, i);
                 OWNED_NAMED expected = row_by(&m.part, whole, i, method, cutoffs[c]);
                 OWNED_NAMED found = row_by(&near, little, own, method, cutoffs[c]);
                 OWNED_NAMED larger = row_by(&far, more, again, method, cutoffs[c]);

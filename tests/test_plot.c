@@ -87,8 +87,7 @@ LOOP_TEST(small_and_large_beds, 4) {
     assert_has(svg, "bed.csv");
     assert_has(svg, "Escaped fraction");
     assert_lacks(svg, "folder");
-    char word[40];
-    snprintf(word, sizeof word, ">%s</tspan>", cases[_i].power ? cases[_i].power : "none");
+    const char *word = formatted(">%s</tspan>", cases[_i].power ? cases[_i].power : "none");
     ck_assert_int_eq(strstr(svg, word) != NULL, cases[_i].power != NULL);
 }
 

@@ -40,14 +40,9 @@ static void expect_sphere(uint32_t i, double x, double y, double z, double r, ui
 /* Checks that the text is refused in one line that names the file, the line (0: none) and the reason. */
 static void expect_refusal(const char *text, size_t size, const struct read_options *options, unsigned line,
                            const char *reason) {
-    char place[300];
     const int status = try_options(text, size, options);
     ck_assert_msg(status == STATUS_INPUT, "status %d: %s", status, text);
-    if (line)
-        snprintf(place, sizeof place, "fibrad: %s:%u: ", path, line);
-    else
-        snprintf(place, sizeof place, "fibrad: %s: ", path);
-    assert_begins(said, place);
+    assert_begins(said, line ? formatted("fibrad: %s:%u: ", path, line) : formatted("fibrad: %s: ", path));
     assert_has(said, reason);
     ck_assert_ptr_eq(strchr(said, '\n'), said + strlen(said) - 1);
 }
@@ -103,8 +98,7 @@ TEST(columns_with_units) {
     for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k)
         for (size_t w = 0; w < sizeof wanted / sizeof *wanted; ++w) {
             const struct read_options options = {.extra = &wanted[w], .unit = &unit, .extras = 1};
-            char text[100];
-            snprintf(text, sizeof text, "x,y,z,r,%s\n0,0,0,1,20.5\n", cases[k].column);
+            const char *text = formatted("x,y,z,r,%s\n0,0,0,1,20.5\n", cases[k].column);
             const int status = try_options(text, strlen(text), &options);
             ck_assert_msg((status == 0) == cases[k].found[w], "%s as %s: %s", cases[k].column, wanted[w], said);
             if (!status) ck_assert_double_eq(bed.extra[0], 20.5);
@@ -134,8 +128,7 @@ TEST(ids) {
                {{"9223372036854775808", "2"}, "the id is too large: '9223372036854775808'", 2}};
     const struct read_options positions = {.positions = true};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
-        char text[200];
-        snprintf(text, sizeof text, "id,x,y,z,r\n%s,1,0,0,1\n%s,5,0,0,1\n", bad[k].id[0], bad[k].id[1]);
+        const char *text = formatted("id,x,y,z,r\n%s,1,0,0,1\n%s,5,0,0,1\n", bad[k].id[0], bad[k].id[1]);
         expect_refusal(text, strlen(text), &(struct read_options){0}, bad[k].line, bad[k].reason);
         ck_assert_int_eq(try_options(text, strlen(text), &positions), 0);
         ck_assert(!bed.ids && bed.x[0] == 1 && bed.x[1] == 5);

@@ -80,10 +80,8 @@ TEST(bad_files) {
         {"size 1 1 1\ncells 1 1 1\nabsorption 1e-12\n" WALLS, ": ", "out of range"},
     };
     for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
-        char begin[300];
         ck_assert_msg(try(files[k].text) == STATUS_INPUT, "accepted: %s", files[k].text);
-        snprintf(begin, sizeof begin, "fibrad: %s%s", path, files[k].line);
-        assert_begins(said, begin);
+        assert_begins(said, formatted("fibrad: %s%s", path, files[k].line));
         assert_has(said, files[k].reason);
         ck_assert_ptr_eq(strchr(said, '\n'), said + strlen(said) - 1);
     }

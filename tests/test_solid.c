@@ -28,8 +28,7 @@ static struct bed two_spheres(void) {
 /* The option takes numbers, tables over T and lists of types: k* = k_s/(4 d sigma T^3). */
 TEST(relative_conductivities) {
     static const double sigma = 5.670374419e-8, temperature[] = {1000, 500};
-    char by_type[300];
-    snprintf(by_type, sizeof by_type, "1:@%s,2:20", write_file("k.csv", "T,k\n900,3\n1100,5\n"));
+    const char *by_type = formatted("1:@%s,2:20", write_file("k.csv", "T,k\n900,3\n1100,5\n"));
     OWNED_BED bed = two_spheres();
     for (int k = 0; k < 2; ++k) {
         struct bed_options options = {.name = "bed", .length_unit = "mm"};
@@ -368,10 +367,8 @@ static const char *write_tower(double period[3]) {
 LOOP_TEST(paths_and_patches_of_a_random_bed, 3) {
     static const double k_star[] = {1, .1, .01}, most[] = {.01, .01, .02};
     double period[3];
-    char solid[30], periods[100];
-    const char *file = write_tower(period);
-    snprintf(periods, sizeof periods, "%.17g,%.17g,%.17g", period[0], period[1], 8 * period[2]);
-    snprintf(solid, sizeof solid, "%.17g", k_star[_i] * 8e-3 * 5.670374419e-8 * 1e9);
+    const char *file = write_tower(period), *solid = formatted("%.17g", k_star[_i] * 8e-3 * 5.670374419e-8 * 1e9);
+    const char *periods = formatted("%.17g,%.17g,%.17g", period[0], period[1], 8 * period[2]);
     SUCCEED("conductivity", file, "--periodic", periods, "--axis", "z", "--emissivity", "0.8", "--temperature", "1000",
             "--length-unit", "mm", "--error", "0.003", "--steady", "--solid-conductivity", solid);
     ck_assert_double_eq_tol(value_of("F_E_steady_z") / value_of("F_E_z"), 1, most[_i]);
@@ -398,9 +395,8 @@ LOOP_TEST(errors_of_directions_are_stated, 2) {
 TEST(outputs) {
     const char *csv = in_folder("k.csv"), *json = in_folder("k.json"), *summary = in_folder("s.json");
     const double k_star = 13.6 / (4 * .06 * 5.670374419e-8 * 1e9);
-    char table[300], *text[3];
-    snprintf(table, sizeof table, "@%s", write_file("table.csv", "500,3.6\n1500,23.6\n"));
-    const char *const solid[] = {"13.6", "ks", table};
+    const char *const solid[] = {"13.6", "ks", formatted("@%s", write_file("table.csv", "500,3.6\n1500,23.6\n"))};
+    char *text[3];
     for (int k = 0; k < 3; ++k) {
         SUCCEED("conductivity", OF_CELL, "1000", "--length-unit", "mm", "--solid-conductivity", solid[k], "--threads",
                 k ? "3" : "1", "-o", csv, "-o", json, "--json", summary);

@@ -111,11 +111,8 @@ TEST(rows_far_from_the_origin) {
             worst_of(&own, row_distance(&there, &same));
             worst_of(&loss, row_distance(&there, &here));
         }
-        char attack[100];
-        snprintf(attack, sizeof attack, "rows 1e%d radii from the origin: beyond rounding of coordinates", e);
-        report(attack, own, 1e-14);
-        snprintf(attack, sizeof attack, "rows 1e%d radii from the origin: in all", e);
-        report(attack, loss, 4 * 0x1p-52 * offset);
+        report(formatted("rows 1e%d radii from the origin: beyond rounding of coordinates", e), own, 1e-14);
+        report(formatted("rows 1e%d radii from the origin: in all", e), loss, 4 * 0x1p-52 * offset);
     }
 }
 

@@ -14,14 +14,12 @@ FIXTURE(make_folder, remove_folder)
 TEST(walls_by_what_they_absorb) {
     const double t[2] = {1000, 700}, wall = 887.3643, r = .15;
     const double place[2][3] = {{.3, .35, .4}, {.65, .6, .55}};
-    char text[300], temperature[40];
     double f, distance = 0, square = 0, error = 0;
     for (int a = 0; a < 3; a++) distance += pow(place[1][a] - place[0][a], 2);
     ck_assert_int_eq(fibrad_pair_exact(r, r, sqrt(distance) - 2 * r, &f), 0);
-    snprintf(text, sizeof text, "x,y,z,r,T\n%g,%g,%g,%g,%g\n%g,%g,%g,%g,%g\n", place[0][0], place[0][1], place[0][2], r,
-             t[0], place[1][0], place[1][1], place[1][2], r, t[1]);
-    snprintf(temperature, sizeof temperature, "%.7g", wall);
-    const char *powers = in_folder("q.csv");
+    const char *text = formatted("x,y,z,r,T\n%g,%g,%g,%g,%g\n%g,%g,%g,%g,%g\n", place[0][0], place[0][1], place[0][2],
+                                 r, t[0], place[1][0], place[1][1], place[1][2], r, t[1]);
+    const char *temperature = formatted("%.7g", wall), *powers = in_folder("q.csv");
     SUCCEED("heat", write_file("bed.csv", text), "--length-unit", "m", "--emissivity", "1", "--temperature", "T",
             "--wall", BOX, "--wall-temperature", temperature, "--error", ".002", "-o", powers);
     ck_assert_str_eq(said, "");
@@ -32,9 +30,7 @@ TEST(walls_by_what_they_absorb) {
     for (int i = 0; i < 2; i++) {
         const double area = 4 * 3.14159265358979 * r * r, own = pow(t[i], 4);
         const double exact = area * SIGMA * (f * (pow(t[1 - i], 4) - own) + (1 - f) * (pow(wall, 4) - own));
-        char row[20];
-        snprintf(row, sizeof row, "\n%d,", i);
-        const char *at = strchr(strstr(read, row) + strlen(row), ',') + 1;
+        const char *row = formatted("\n%d,", i), *at = strchr(strstr(read, row) + strlen(row), ',') + 1;
         square += exact * exact, error += pow(atof(at) - exact, 2);
     }
     ck_assert_double_lt(sqrt(error / square), .003);

@@ -109,7 +109,6 @@ LOOP_TEST(one_warning_each, sizeof said_of / sizeof *said_of) {
     const char *const *words = said_of[_i].words, *more = said_of[_i].more, *reason = said_of[_i].reason;
     const char *arguments[40] = {0}, *json = in_folder("summary.json");
     const int mesh = more && strncmp(more, "solid", 5) == 0;
-    char wall[300], *text = NULL;
     int count = 0;
     write_file("bed.dump", said_of[_i].bed);
     if (mesh) write_file("m.stl", more);
@@ -119,15 +118,12 @@ LOOP_TEST(one_warning_each, sizeof said_of / sizeof *said_of) {
     }
     for (; words[count]; ++count) {
         const char *path = mesh ? strstr(words[count], "m.stl") : NULL;
-        arguments[count] = words[count];
-        if (!path) continue;
-        snprintf(wall, sizeof wall, "m=mesh:%s/%s", folder, path);
-        arguments[count] = wall;
+        arguments[count] = path ? formatted("m=mesh:%s/%s", folder, path) : words[count];
     }
     const char *const rest[] = {in_folder("bed.dump"), "--length-unit", "m", "--json", json};
     for (int k = 0; k < 5; ++k) arguments[count++] = rest[k];
     ck_assert_msg(finish(start(arguments)) == 0, "%s", said);
-    text = read_file(json);
+    const char *text = read_file(json);
     int others = count_of(said, "the mesh is not closed"); /* of the file itself */
     ck_assert_msg(count_of(said, "warning: ") == (reason != NULL) + others, "%s", said);
     ck_assert_int_eq(count_of(text, "warning: "), (reason != NULL) + others);
@@ -140,13 +136,10 @@ LOOP_TEST(one_warning_each, sizeof said_of / sizeof *said_of) {
 TEST(walls_at_surfaces) {
     const char *bed = write_file("bed.dump", FRAME("0", SHRUNK, "", ROWS("", "", "")));
     static const char *const names[] = {"xmin", "ymin", "zmin", "xmax", "ymax", "zmax"};
-    char key[40];
     SUCCEED("bed", bed, "--wall", "auto");
     for (int k = 0; k < 6; ++k) {
-        snprintf(key, sizeof key, "wall_%s_at", names[k]);
-        ck_assert_double_eq_tol(value_of(key), k < 3 ? .01 : .09, 1e-9);
-        snprintf(key, sizeof key, "wall_%s_area", names[k]);
-        ck_assert_double_eq_tol(value_of(key), .08 * .08, 1e-8);
+        ck_assert_double_eq_tol(value_of(formatted("wall_%s_at", names[k])), k < 3 ? .01 : .09, 1e-9);
+        ck_assert_double_eq_tol(value_of(formatted("wall_%s_area", names[k])), .08 * .08, 1e-8);
     }
     SUCCEED("bed", bed, "--wall", "zmin=.015");
     ck_assert_double_eq(value_of("wall_zmin_at"), .015);
@@ -161,9 +154,8 @@ TEST(walls_at_surfaces) {
 /* A plate goes through a bed. Closing takes something from the spheres that the plate cuts, of which rows know nothing.
  * Raw rows all add up to one. */
 TEST(closing_that_changes_much) {
-    char wall[300];
-    snprintf(wall, sizeof wall, "auto,m=mesh:%s:both",
-             write_file("m.stl", "solid s\n" FACET("1 2 3", "11 3 9", "4 11 15") "endsolid s\n"));
+    const char *wall = formatted("auto,m=mesh:%s:both",
+                                 write_file("m.stl", "solid s\n" FACET("1 2 3", "11 3 9", "4 11 15") "endsolid s\n"));
     SUCCEED("bed", "tests/data/mono2000.dump", "--cutoff", "3", "--wall", wall);
     assert_has(said, "this changes what sphere");
     SUCCEED("bed", "tests/data/mono2000.dump", "--raw", "--wall", wall);
@@ -173,9 +165,8 @@ TEST(closing_that_changes_much) {
 }
 
 TEST(mesh_extents_are_said) {
-    char wall[300];
     const char *json = in_folder("summary.json");
-    snprintf(wall, sizeof wall, "m=mesh:%s:scale=2", write_file("m.stl", CORNER(".3")));
+    const char *wall = formatted("m=mesh:%s:scale=2", write_file("m.stl", CORNER(".3")));
     SUCCEED("bed", write_file("bed.dump", PLAIN), "--wall", wall, "--json", json);
     assert_has(printed, "\nwall_m_low 0 0 0\nwall_m_high 0.6 0.6 0.6\n");
     assert_has(read_file(json), "\"warnings\": []}");

@@ -289,12 +289,10 @@ LOOP_TEST(matrix_market, 2) {
 /* Decodes the inline binary array of a name. Returns the number of 8-byte values. */
 static size_t array(const char *name, void *values, size_t capacity) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    char tag[100];
     unsigned char bytes[1000] = {0};
     size_t n = 0;
     unsigned bits = 0, held = 0;
-    snprintf(tag, sizeof tag, "Name=\"%s\"", name);
-    const char *from = strstr(text, tag);
+    const char *from = strstr(text, formatted("Name=\"%s\"", name));
     ck_assert_msg(from != NULL, "no array %s", name);
     for (from = strchr(from, '\n') + 1; *from != '\n' && *from != '='; ++from) {
         const char *digit = strchr(digits, *from);
@@ -501,11 +499,9 @@ TEST(complete_or_not_at_all) {
 /* A link stays and leads to the file that was written, which keeps its permissions. The file need not exist before, but
  * links must not lead in a circle. */
 TEST(links) {
-    char link_to[220], other[220];
     struct output output;
     struct stat there;
-    snprintf(link_to, sizeof link_to, "%s/link.csv", folder);
-    snprintf(other, sizeof other, "%s/next.csv", folder);
+    const char *link_to = formatted("%s/link.csv", folder), *other = formatted("%s/next.csv", folder);
     ck_assert_int_eq(symlink("next.csv", link_to), 0);
     ck_assert_int_eq(symlink("out.csv", other), 0);
     umask(022);
@@ -531,10 +527,8 @@ TEST(links) {
 
 /* A file that is read stays, under any of its names, whichever of the two files is opened first. */
 TEST(inputs_stay) {
-    char read[240], link_to[240];
     struct output output;
-    snprintf(read, sizeof read, "%s/read.csv", folder);
-    snprintf(link_to, sizeof link_to, "%s/link.csv", folder);
+    const char *read = formatted("%s/read.csv", folder), *link_to = formatted("%s/link.csv", folder);
     fclose(fopen(read, "w"));
     ck_assert_int_eq(symlink("read.csv", link_to), 0);
     ck_assert_int_eq(output_open(&output, link_to), 0);
