@@ -77,7 +77,7 @@ typedef struct fibrad_circle_pieces {
     uint32_t count;
 } fibrad_circle_pieces;
 
-/* The near spheres of work->near. From element near.capacity on there are those that a march has found. The last two
+/* The near spheres of work->near. From element near.capacity on there are those that a walk has found. The last two
  * elements, `nothing` and nothing + 1, stand for what lies beyond all spheres, behind and before. The element before
  * them, `nowhere`, is a sphere so far away that no circle touches it. It fills vectors up. */
 typedef struct fibrad_circle_near {
@@ -108,10 +108,10 @@ typedef struct fibrad_circles {
     uint32_t order[FIBRAD_CIRCLE_ENDS];
     uint64_t key[FIBRAD_CIRCLE_ENDS]; /* discs that cover the pieces; pairs of what is met behind and before */
     fibrad_circle_near near;
-    uint32_t homes, marched; /* ends of the lists of near spheres: those of shells, those that marches have found */
-    bool images;             /* whether some near spheres are images of others */
-    bool apart;              /* what lies beyond all spheres has a different name for each line and sense */
-    uint32_t half;           /* whether the line in hand is even, 0, or odd, 1 */
+    uint32_t homes, walked; /* ends of the lists of near spheres: those of shells, those that walks have found */
+    bool images;            /* whether some near spheres are images of others */
+    bool apart;             /* what lies beyond all spheres has a different name for each line and sense */
+    uint32_t half;          /* whether the line in hand is even, 0, or odd, 1 */
     const fibrad_scene *scene;
     double origin[3]; /* L */
     double scale;     /* 1/L, a power of two */

@@ -40,15 +40,15 @@ static void take_shell(const fibrad_workspace *work, fibrad_circles *c) {
     }
 }
 
-/* Enters the spheres that a march has found among the near ones. Returns the first of their places. */
-static uint32_t take_marched(const fibrad_workspace *work, fibrad_circles *c, const double frame[9]) {
+/* Enters the spheres that a walk has found among the near ones. Returns the first of their places. */
+static uint32_t take_walked(const fibrad_workspace *work, fibrad_circles *c, const double frame[9]) {
     const fibrad_discs *disc = &work->disc;
-    const uint32_t first = c->marched;
+    const uint32_t first = c->walked;
     for (uint32_t k = 0; k < disc->count; k++) {
         double place[3];
         for (int axis = 0; axis < 3; axis++)
             place[axis] = disc->u[k] * frame[axis] + disc->v[k] * frame[3 + axis] + disc->depth[k] * frame[6 + axis];
-        take_near(work, c, c->marched++, fibrad_work_sphere(work, k), place, disc->r[k]);
+        take_near(work, c, c->walked++, fibrad_work_sphere(work, k), place, disc->r[k]);
     }
     return first;
 }
@@ -62,7 +62,7 @@ static void add_sums(fibrad_circles *c, uint32_t own, uint32_t from, uint32_t to
     }
 }
 
-/* The part of the beam that a march must look at. Seen from behind, the second axis of the frame is reversed. */
+/* The part of the beam that a walk must look at. Seen from behind, the second axis of the frame is reversed. */
 static fibrad_tube tube_of(const fibrad_circles *c, double sense) {
     const fibrad_circle_stretch *stretch = &c->stretch;
     const double inverse = 1 / c->r;
@@ -132,8 +132,8 @@ static int find_in_shell(fibrad_workspace *work, fibrad_circles *c, uint32_t num
     return add_found(work, c, number, place, count) ? FIBRAD_OK : TOO_MANY;
 }
 
-/* Finds the discs of a march on a side. Error: TOO_MANY. */
-static int find_by_march(fibrad_workspace *work, fibrad_circles *c, uint32_t number) {
+/* Finds the discs of a walk on a side. Error: TOO_MANY. */
+static int find_by_walk(fibrad_workspace *work, fibrad_circles *c, uint32_t number) {
     fibrad_circle_side *side = &c->side[number];
     const fibrad_tube tube = tube_of(c, side->sense);
     const double to = fibrad_near_further(work, side->known);
@@ -144,14 +144,14 @@ static int find_by_march(fibrad_workspace *work, fibrad_circles *c, uint32_t num
     LANED(fibrad_near_walk)(work, w, &tube, side->known, to);
     side->known = to;
     const uint32_t count = work->disc.count;
-    if (c->marched + count > c->near.nowhere) return TOO_MANY;
+    if (c->walked + count > c->near.nowhere) return TOO_MANY;
     if (count > work->disc.capacity) return fibrad_work_discs_missed(work);
-    const uint32_t first = take_marched(work, c, w);
+    const uint32_t first = take_walked(work, c, w);
     for (uint32_t k = 0; k < count; k++) place[k] = first + k;
     return add_found(work, c, number, place, count) ? FIBRAD_OK : TOO_MANY;
 }
 
-/* Finds the discs of the next shell. If there is none, finds those of a march on each side that is not done. Few
+/* Finds the discs of the next shell. If there is none, finds those of a walk on each side that is not done. Few
  * circles need more than one shell. Error: TOO_MANY. */
 static int find_more(fibrad_workspace *work, fibrad_circles *c, uint32_t shell, const bool done[2]) {
     int status = FIBRAD_OK;
@@ -163,7 +163,7 @@ static int find_more(fibrad_workspace *work, fibrad_circles *c, uint32_t shell, 
         if (shell < work->near.shells)
             status = find_in_shell(work, c, side);
         else if (!done[side])
-            status = find_by_march(work, c, side);
+            status = find_by_walk(work, c, side);
     return status;
 }
 
@@ -242,19 +242,19 @@ static void begin_stretch(fibrad_circles *c, double begin, double end) {
 /* Adds the contribution of a stretch of the present sphere's circle along the present line. Error: TOO_MANY. */
 static int follow(fibrad_workspace *work, fibrad_circles *c, double begin, double end, fibrad_pair_table *table) {
     bool done[2] = {false, false};
-    const uint32_t first_marched = c->marched;
+    const uint32_t first_walked = c->walked;
     begin_stretch(c, begin, end);
     for (uint32_t shell = 0; !(done[0] && done[1]); shell++) {
         const int status = find_more(work, c, shell, done);
         if (status != FIBRAD_OK) {
-            c->marched = first_marched;
+            c->walked = first_walked;
             return status;
         }
         meet(work, c, done);
     }
     LANED(fibrad_pieces_add)(c, table);
-    if (c->marched > first_marched) add_sums(c, work->place, first_marched, c->marched, table);
-    c->marched = first_marched;
+    if (c->walked > first_walked) add_sums(c, work->place, first_walked, c->walked, table);
+    c->walked = first_walked;
     return FIBRAD_OK;
 }
 
@@ -283,7 +283,7 @@ int LANED(fibrad_circle_lines)(fibrad_workspace *work, fibrad_circles *c, uint32
     fibrad_work_begin(work, scene, place, 0, FIBRAD_CIRCLE_STRIDE);
     for (int axis = 0; axis < 3; axis++) c->at[axis] = (at[axis] - c->origin[axis]) * c->scale;
     c->r = scene->r[place] * c->scale;
-    c->homes = 0, c->marched = work->near.capacity, c->images = false;
+    c->homes = 0, c->walked = work->near.capacity, c->images = false;
     for (uint32_t k = c->near.nothing; k < c->near.nothing + 2; k++) c->near.sum[0][k] = c->near.sum[1][k] = 0;
     for (; *from < to && fibrad_pair_room(table, FIBRAD_CIRCLE_ENDS); ++*from, c->next = c->begin) {
         begin_line(c, &line[*from], *from);

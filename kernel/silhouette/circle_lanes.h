@@ -6,7 +6,7 @@
 #include "base/lanes/laned.h"
 #include "silhouette/circle.h"
 
-/* The shell is so deep that nine circles of ten in a dense bed need no more. Marches go twice as deep each time. */
+/* The shell is so deep that nine circles of ten in a dense bed need no more. Walks go twice as deep each time. */
 #define FIBRAD_CIRCLE_STRIDE ((fibrad_stride){4.4, 2})
 
 /* Adds to a table what the circles of a sphere give along lines [*from, to). The sphere is given by its position in
