@@ -18,8 +18,9 @@ static double cell_core(double emissivity, double porosity, double conductivity)
 
 /* P. Zehner, E. U. Schluender, Chem. Ing. Tech. 44 (1972) 1303; R. Bauer, E. U. Schluender, Int. Chem. Eng. 18 (1978)
  * 181; VDI Heat Atlas, section D6.3. Here in the limit of no gas and no conduction through contacts. Read in
- * github.com/ClaRaLibrary/TransiEnt, VDIHeatAtlas.mo, a second source; the constant 1.25 of spheres from memory (there
- * the 1.4 of crushed material). */
+ * github.com/ClaRaLibrary/TransiEnt, VDIHeatAtlas.mo, a second source, with the 1.4 of crushed material. The constant
+ * 1.25 of spheres: read in a public program for pebble beds (type ZbsBed), which quotes C. G. van Antwerpen et al.,
+ * Nucl. Eng. Des. 240 (2010) 1803. */
 double correlation_zehner_bauer_schluender(double emissivity, double porosity, double conductivity) {
     return (1 - sqrt(1 - porosity)) * porosity / (2 / emissivity - 1) + cell_core(emissivity, porosity, conductivity);
 }

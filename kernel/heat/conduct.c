@@ -59,16 +59,25 @@ double fibrad_heat_sent_back(const fibrad_heat *heat, uint32_t body) {
     return 1 - eps / (1 + eps * uneven);
 }
 
-double fibrad_heat_find_unevenness(fibrad_heat *heat) {
+/* The unevenness of a sphere at its present emission. */
+static double unevenness_of(const fibrad_heat *heat, uint32_t b) {
+    const double t = fibrad_heat_temperature(heat, heat->sources.emission[b]);
+    const double slope = t > 0 && heat->sources.emissivity[b] > 0 ? 4 * heat->sources.sigma * t * t * t : 0;
+    const double uneven = heat->scene->r[b] * slope / heat->sources.conductivity[b];
+    return uneven > EVEN ? uneven : 0;
+}
+
+double fibrad_heat_find_unevenness(fibrad_heat *heat, double least) {
     double change = 0;
+    for (uint32_t b = 0; b < heat->spheres; b++) {
+        const double last = heat->sources.unevenness[b];
+        change = fibrad_max(change, fibrad_abs(unevenness_of(heat, b) - last) / fibrad_max(last, EVEN));
+    }
+    if (!(change > least)) return change;
     heat->sources.conducts = false;
     for (uint32_t b = 0; b < heat->spheres; b++) {
-        const double t = fibrad_heat_temperature(heat, heat->sources.emission[b]), last = heat->sources.unevenness[b];
-        const double slope = t > 0 && heat->sources.emissivity[b] > 0 ? 4 * heat->sources.sigma * t * t * t : 0;
-        const double uneven = heat->scene->r[b] * slope / heat->sources.conductivity[b];
-        heat->sources.unevenness[b] = uneven > EVEN ? uneven : 0;
+        heat->sources.unevenness[b] = unevenness_of(heat, b);
         heat->sources.conducts = heat->sources.conducts || heat->sources.conductivity[b] < __builtin_inf();
-        change = fibrad_max(change, fibrad_abs(heat->sources.unevenness[b] - last) / fibrad_max(last, EVEN));
     }
     return change;
 }

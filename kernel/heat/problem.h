@@ -384,8 +384,9 @@ static inline bool fibrad_heat_conducts(const fibrad_heat *heat, uint32_t body) 
  * emitted because the patch is hotter than the rest of the body. */
 double fibrad_heat_sent_back(const fibrad_heat *heat, uint32_t body);
 
-/* Finds the unevenness of all spheres from their emissions. Returns the largest relative change. */
-double fibrad_heat_find_unevenness(fibrad_heat *heat);
+/* Finds the unevenness of all spheres from their emissions. Returns the largest relative change. If the change is not
+ * above `least`, the unevenness stays. */
+double fibrad_heat_find_unevenness(fibrad_heat *heat, double least);
 
 /* Sends, from the patches of a sphere, what one preconditioned iteration would change of the pattern of J, plus
  * `shift`. Returns the product of the residual and the change without `shift`. The function overwrites

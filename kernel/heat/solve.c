@@ -350,14 +350,13 @@ static bool level_solved(const fibrad_heat *heat) {
            heat->solution.sweeps >= heat->sources.limit;
 }
 
-/* Finds the unevenness of spheres anew. Returns whether it has changed so much that the level must be solved again. */
-static bool unsettled(fibrad_heat *heat) {
+/* Whether the unevenness of spheres has changed so much that it was replaced. */
+static bool replaces_unevenness(fibrad_heat *heat) {
     if (!heat->sources.conducts || heat->solution.sweeps >= heat->sources.limit) return false;
     find_emissions(heat);
-    const bool rough = heat->sources.rough > heat->sources.tolerance;
-    const double change = fibrad_heat_find_unevenness(heat);
+    const double change = fibrad_heat_find_unevenness(heat, SETTLED);
     heat->sources.rough = change > SETTLED ? fibrad_min(FIBRAD_HEAT_ROUGH, WITHIN * change) : 0;
-    return change > SETTLED || rough;
+    return change > SETTLED;
 }
 
 /* Sets and sends the next search direction: the change that was sent, plus `keep` times the last direction. */
@@ -385,19 +384,35 @@ static void refine_patches(fibrad_heat *heat) {
     send_radiosities(heat, FIBRAD_HEAT_FIRST);
 }
 
-/* Decides what comes after a sweep: the next step of the search, the finer level, or the end. */
+/* Goes to the finer level, or to the end. */
+static void leave_level(fibrad_heat *heat) {
+    if (heat->solution.group == FIBRAD_HEAT_FOUR)
+        refine_patches(heat);
+    else
+        finish_powers(heat);
+}
+
+/* Decides what comes after a sweep: the next step of the search, the finer level, or the end. If the unevenness of
+ * spheres changes, the search begins anew where it is. The net flows do not depend on unevenness, unless spheres have
+ * absorbed light. If it no longer changes, the search goes on to the smaller tolerance. */
 static void search_on(fibrad_heat *heat, bool restart) {
     const double last = heat->solution.slope;
     heat->solution.slope = find_residual(heat);
     if (restart) heat->solution.smallest = fibrad_max(heat->solution.smallest, ROUNDING * heat->solution.slope);
-    if (level_solved(heat)) {
-        if (heat->solution.group == FIBRAD_HEAT_FOUR && unsettled(heat))
+    while (level_solved(heat)) {
+        const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
+        const bool rough = heat->sources.rough > heat->sources.tolerance && heat->solution.sweeps < heat->sources.limit;
+        const bool replaced = coarse && replaces_unevenness(heat);
+        if (!replaced && !(coarse && rough)) {
+            leave_level(heat);
+            return;
+        }
+        if (replaced && heat->sources.absorbed != NULL) {
             send_radiosities(heat, FIBRAD_HEAT_FIRST);
-        else if (heat->solution.group == FIBRAD_HEAT_FOUR)
-            refine_patches(heat);
-        else
-            finish_powers(heat);
-        return;
+            return;
+        }
+        restart = restart || replaced;
+        heat->solution.slope = find_residual(heat);
     }
     turn_direction(heat, restart ? 0 : heat->solution.slope / last);
     heat->solution.phase = FIBRAD_HEAT_STEPS;

@@ -296,7 +296,7 @@ static void set_conduction(fibrad_heat *heat, const fibrad_heat_sources *s) {
         heat->sources.conductivity[b] = or_else(s->conductivity, heat->order[b], __builtin_inf());
         found = found || heat->sources.hold[b] >= 0;
     }
-    fibrad_heat_find_unevenness(heat);
+    fibrad_heat_find_unevenness(heat, -1);
     heat->sources.rough = heat->sources.conducts && found && !heat->solution.warm ? FIBRAD_HEAT_ROUGH : 0;
 }
 
