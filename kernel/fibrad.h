@@ -870,8 +870,7 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
  *   paths, seed             used                 used                 used                          used
  *   conductivity            if spheres conduct   not used             if spheres conduct            needed
  *   node_emissivity         if spheres conduct   not used             if spheres conduct            not used
- *   flights                 not used             not used             not used                      used
- *   tile, tile_seed         used                 not used             not used                      not used */
+ *   flights                 not used             not used             not used                      used */
 typedef struct fibrad_exchange_rule {
     const double *emissivity;      /* [spheres], 0 to 1 */
     const double *body_emissivity; /* [bodies], 0 to 1 */
@@ -885,12 +884,6 @@ typedef struct fibrad_exchange_rule {
     const double *conductivity;
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */
     uint32_t flights;              /* of _walk, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
-    /* L: planes are divided into tiles of this side. Paths that meet a tile from a sphere go on with one of 64 rays of
-     * the tile. All rows of one tile_seed have the same rays. Two or three mean radii are a good side. Rows with a
-     * tolerance or more than 144 directions take no tiles, nor do scenes with periods, a cylinder or triangles. Tiles
-     * need 5.4 MB of work memory. 0: no tiles */
-    double tile;
-    uint64_t tile_seed; /* of the rays of tiles */
 } fibrad_exchange_rule;
 
 /* The relative conductivity k* = k_s/(4 d sigma T^3) of a sphere of diameter d. The smaller k* is, the more the

@@ -14,7 +14,6 @@
 #define CUTOFF_RADII 8    /* least default cutoff: the largest diameter plus this many mean radii */
 #define CUTOFF_COUNT 1e5  /* particles in a cube that may be sent for the default cutoff, see below */
 #define CELL_RADII   0.25 /* width of the cells of the coarse map, in mean radii */
-#define TILE_RADII   3    /* side of the tiles of planes, in mean radii rounded down to a power of two */
 #define REACH_RADII  1.5  /* spheres this many largest radii beyond the cutoff still matter to a row: fibrad.h */
 #define PERIODS_MAX  100  /* the kernel's beams go this far */
 #define OPENINGS_MAX 6    /* one a side */
@@ -33,8 +32,8 @@ static void *resize_on_heap(void *context, void *block, size_t size) {
 static const struct {
     const char *name;
     uint32_t directions, paths;
-} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 40, 100},
-               [FIBRAD_ACCURACY_LOW] = {"low", 20, 24},
+} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 48, 120},
+               [FIBRAD_ACCURACY_LOW] = {"low", 26, 36},
                [FIBRAD_ACCURACY_HIGH] = {"high", 144, 1600}};
 
 int fibrad_accuracy_named(const char *name) {
@@ -509,8 +508,6 @@ static int compute_rows(struct insitu_build *b) {
                                        .paths = s->config.paths,
                                        .seed = s->config.seed + b->step * 0x9e3779b97f4a7c15u,
                                        .cutoff = b->cutoff,
-                                       .tile = TILE_RADII * ldexp(1, ilogb(b->radius_mean)),
-                                       .tile_seed = s->config.seed + b->step * 0x9e3779b97f4a7c15u,
                                        .tolerance = s->config.tolerance};
     const uint32_t *order = s->order.at;
     const int64_t own = (int64_t)b->fresh;

@@ -155,8 +155,6 @@ module fibrad
         real(c_double) :: cutoff = 0, tolerance = 0
         type(c_ptr) :: conductivity = c_null_ptr, node_emissivity = c_null_ptr
         integer(c_int32_t) :: flights = 0
-        real(c_double) :: tile = 0
-        integer(c_int64_t) :: tile_seed = 0
     end type c_exchange_rule
 
     type, bind(C) :: c_displacement

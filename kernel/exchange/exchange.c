@@ -43,9 +43,8 @@ static int exchange_begin(exchange_task *task, const fibrad_scene *scene, uint32
     *task = (exchange_task){.rule = rule, .emissivity = rule->emissivity};
     const int status = fibrad_paths_emissivities(scene, rule->body_emissivity, task->wall_emissivity);
     if (status != FIBRAD_OK) return status;
-    const bool valid = rule->tolerance >= 0 && fibrad_finite(rule->tolerance) && rule->cutoff >= 0 &&
-                       fibrad_finite(rule->cutoff) &&
-                       (rule->tile == 0 || (rule->tile >= FIBRAD_LENGTH_MIN && rule->tile <= FIBRAD_LENGTH_MAX));
+    const bool valid =
+        rule->tolerance >= 0 && fibrad_finite(rule->tolerance) && rule->cutoff >= 0 && fibrad_finite(rule->cutoff);
     return valid ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
 }
 
@@ -64,30 +63,13 @@ static fibrad_paths paths_of(const exchange_task *task, fibrad_workspace *space,
                           .back = UINT32_MAX};
 }
 
-/* Whether the rule has tiles, and the scene may have them. */
-static bool has_tiles(const fibrad_scene *scene, const fibrad_exchange_rule *rule) {
-    const bool periodic = scene->period[0] > 0 || scene->period[1] > 0 || scene->period[2] > 0;
-    return rule->tile > 0 && !(rule->tolerance > 0) && rule->directions <= BY_POINTS && scene->container.walls &&
-           !(scene->container.radius < __builtin_inf()) && !periodic && scene->clear == NULL;
-}
-
-/* A bit for the slot of each plane that reflects. */
-static uint32_t planes_that_reflect(const fibrad_paths *paths) {
-    uint32_t bits = 0;
-    for (uint32_t plane = 0; plane < FIBRAD_CYLINDER; plane++)
-        if (paths->wall_emissivity[plane] < 1) bits |= 1u << plane;
-    return bits;
-}
-
 /* Asks the beam row for the first legs of the first paths. Error: FIBRAD_E_WORK. */
 static int want_legs(fibrad_workspace *space, const fibrad_paths *paths, const fibrad_exchange_rule *rule) {
     const uint64_t count = rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT;
     const uint32_t wanted = count < LEGS_MOST ? (uint32_t)count : LEGS_MOST;
     space->needed = space->plan;
     space->needed.legs = wanted;
-    space->needed.tiles = has_tiles(paths->tracer->scene, rule);
-    if (wanted > space->plan.legs || space->needed.tiles > space->plan.tiles) return FIBRAD_E_WORK;
-    space->arrivals.planes = space->needed.tiles ? planes_that_reflect(paths) : 0;
+    if (wanted > space->plan.legs) return FIBRAD_E_WORK;
     space->legs.wanted = wanted;
     for (uint32_t d = 0; d < 4; d++) space->legs.shift[d] = fibrad_random_ahead(paths->stream, d);
     return FIBRAD_OK;
@@ -165,11 +147,13 @@ static double lost_of(const fibrad_paths *paths, double carried) {
     return paths->left > 0 ? carried * (paths->left / (paths->left + fibrad_paths_sum(paths))) : 0;
 }
 
-/* Follows paths until their error is at most `wanted`. 0: the function follows the `first` paths. If the
+/* Follows paths until their error is at most `wanted`. 0: the function follows as many paths as the rule says. If the
  * reflecting surfaces are so small that no path meets one, it follows up to 64 times as many. If paths that were broken
  * off among mirrors leave a greater error than `wanted`, it stops. */
-static void follow_paths(fibrad_paths *paths, uint64_t first, double carried, double weight, double wanted) {
+static void follow_paths(fibrad_paths *paths, const fibrad_exchange_rule *rule, double carried, double weight,
+                         double wanted) {
     fibrad_paths_function *follow = FIBRAD_VERSION_OF(fibrad_paths_follow, paths->tracer->scene->facts.isa);
+    const uint64_t first = rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT;
     uint64_t done = fibrad_paths_begin(paths, first), next = done;
     do {
         follow(paths, done, next);
@@ -185,22 +169,6 @@ static void follow_paths(fibrad_paths *paths, uint64_t first, double carried, do
         if (ratio > 1)
             next = (uint64_t)fibrad_min(FIBRAD_PATHS_MAX, (double)done * fibrad_min(8, 1.1 * ratio * ratio) + 1);
     } while (done < next);
-}
-
-/* Follows the given number of paths, which begin with legs that meet spheres. Then follows the paths from arrivals.
- * Those at one plane share what the plane gets. wall: factors of the first leg, by slot. */
-static void follow_with_tiles(fibrad_paths *paths, fibrad_arrivals *arrivals, uint64_t count,
-                              const double wall[FIBRAD_SLOTS]) {
-    fibrad_paths_function *follow = FIBRAD_VERSION_OF(fibrad_paths_follow, paths->tracer->scene->facts.isa);
-    double sum[FIBRAD_CYLINDER] = {0};
-    const double followed = (double)fibrad_paths_begin(paths, count);
-    for (uint32_t k = 0; k < arrivals->length; k++) sum[arrivals->arrival[k].plane] += arrivals->arrival[k].weight;
-    for (uint32_t k = 0; k < arrivals->length; k++) {
-        fibrad_arrival *arrival = &arrivals->arrival[k];
-        arrival->weight *= followed * wall[arrival->plane] / sum[arrival->plane];
-    }
-    paths->arrival = arrivals->arrival;
-    follow(paths, 0, arrivals->length);
 }
 
 /* The entries of paths overwrite the row of the first leg. This function moves the row to where entries will be
@@ -244,7 +212,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     fibrad_paths paths = paths_of(task, space, scene, i);
     int status = want_legs(space, &paths, rule);
     if (status == FIBRAD_OK) status = first_leg(scene, space, i, task, &leg, &beam_error);
-    space->legs.wanted = space->arrivals.planes = 0;
+    space->legs.wanted = 0;
     if (status != FIBRAD_OK) return status;
 
     keep_first_leg(&space->entries, &leg);
@@ -253,20 +221,12 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     const double weight = carried > 0 ? carried / fibrad_max(carried, met) : 0;
     paths.legs = &space->legs;
     paths.entries = &space->entries;
-    if (has_tiles(scene, rule)) {
-        fibrad_tiles_begin(&space->tiles, scene->hash, rule->tile, rule->tile_seed);
-        paths.tiles = &space->tiles;
-    }
     if (rule->node_emissivity != NULL) paths.conductivity = rule->conductivity;
     fibrad_work_begin(space, scene, paths.place, rule->cutoff, (fibrad_stride){0});
     if (!fibrad_finite(carried)) return FIBRAD_E_ARGUMENT;
     if (carried > 0) { /* if all paths end nowhere, what they carry counts as escaped or beyond, and as an error */
         double left = rule->tolerance * rule->tolerance - beam_error * beam_error, least = 0.5 * rule->tolerance;
-        const uint64_t count = rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT;
-        if (paths.tiles != NULL)
-            follow_with_tiles(&paths, &space->arrivals, count, wall);
-        else
-            follow_paths(&paths, count, carried, weight, fibrad_max(fibrad_sqrt(fibrad_max(left, 0)), least));
+        follow_paths(&paths, rule, carried, weight, fibrad_max(fibrad_sqrt(fibrad_max(left, 0)), least));
         space->back = paths.back;
         if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
         double sum = fibrad_paths_sum(&paths);

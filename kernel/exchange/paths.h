@@ -17,18 +17,16 @@ typedef struct fibrad_paths {
     fibrad_tracer *tracer;
     uint32_t place; /* position of the sphere that paths leave; FIBRAD_NONE: paths leave a wall, without a cutoff */
     uint32_t from;  /* slot of the wall that paths leave */
-    const fibrad_legs *legs;       /* NULL, or the first legs of the first paths */
-    const fibrad_arrival *arrival; /* NULL, or where paths begin: at these arrivals at planes */
-    fibrad_tiles *tiles;        /* NULL, or the tiles of planes. Paths whose first leg meets a plane then end there */
-    const fibrad_sobol *sobol;  /* evenly spread points, of paths from a wall */
-    double inverse;             /* 1/L, of the radius of the sphere */
-    bool cut;                   /* whether there is a cutoff or a known region */
-    double cutoff;              /* from the centre of the sphere, in its radii; infinity: none */
-    const double *emissivity;   /* [spheres], by the caller's index: fraction absorbed; NULL: all are black */
-    const double *conductivity; /* [spheres], relative, by the caller's index; NULL: one temperature a sphere */
-    const double *surface;      /* [spheres], emissivities of surfaces; with conductivity, `emissivity` has those
-                                   of nodes */
-    uint32_t flights;           /* above 0: paths are walks, see fibrad_paths_function */
+    const fibrad_legs *legs;        /* NULL, or the first legs of the first paths */
+    const fibrad_sobol *sobol;      /* evenly spread points, of paths from a wall */
+    double inverse;                 /* 1/L, of the radius of the sphere */
+    bool cut;                       /* whether there is a cutoff or a known region */
+    double cutoff;                  /* from the centre of the sphere, in its radii; infinity: none */
+    const double *emissivity;       /* [spheres], by the caller's index: fraction absorbed; NULL: all are black */
+    const double *conductivity;     /* [spheres], relative, by the caller's index; NULL: one temperature a sphere */
+    const double *surface;          /* [spheres], emissivities of surfaces; with conductivity, `emissivity` has those
+                                       of nodes */
+    uint32_t flights;               /* above 0: paths are walks, see fibrad_paths_function */
     const double *wall_emissivity;  /* [FIBRAD_SLOTS], by slot */
     bool boxed;                     /* paths leave a side of a closed box, and all surfaces are black */
     double behind[FIBRAD_CYLINDER]; /* out, if boxed: weight on the way to each wall that spheres stop */

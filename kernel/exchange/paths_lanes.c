@@ -5,7 +5,6 @@
 #include "base/lanes/turn.h"
 #include "exchange/conducting.h"
 #include "exchange/paths.h"
-#include "ray/tiles_lanes.h"
 #include "scene/walls.h"
 #include "scene/surroundings.h"
 
@@ -20,8 +19,6 @@
 /* The first coordinates of a path are quasi-random: those of its start and of its first two directions. Six such
  * coordinates take a tenth to a fifth fewer rays than four. */
 #define QUASI_COORDINATES FIBRAD_SOBOL_DIMENSIONS
-/* Random numbers of the first arrival, behind those of all paths. */
-#define ARRIVAL_STREAMS (UINT64_C(1) << 40)
 /* Known first legs are taken in steps of this prime. So the first paths come from windows of all directions. */
 #define LEG_STRIDE UINT64_C(2654435761)
 
@@ -33,10 +30,9 @@ struct grey_path {
     double weight;
     /* [L] from the centre of the sphere left first: centre of the present sphere; at a wall: origin of the scene */
     double centre[3];
-    double n[3];     /* normal where the path is */
-    uint32_t place;  /* position of the sphere; FIBRAD_NONE: the path is at a wall */
-    double point[3]; /* [L] at a wall: where */
-    uint32_t plane;  /* its slot if the path has met it from a sphere; FIBRAD_NONE: another wall, or met from a wall */
+    double n[3];           /* normal where the path is */
+    uint32_t place;        /* position of the sphere; FIBRAD_NONE: the path is at a wall */
+    double point[3];       /* [L] at a wall: where */
     uint32_t triangle;     /* at a mesh: on which; FIBRAD_NO_SIDE: at a plane or a cylinder */
     uint32_t used;         /* points of the unit sphere that are used up */
     const uint32_t *sobol; /* [8] the point of Sobol's sequence of a path from a wall */
@@ -160,7 +156,6 @@ static void look_past(const fibrad_scene *scene, const struct grey_path *path, c
 static void reach_wall(const fibrad_scene *scene, struct grey_path *path, uint32_t wall, uint32_t side,
                        const double at[3]) {
     double centre[3], point[3];
-    path->plane = path->place != FIBRAD_NONE && fibrad_slot_is_plane(wall) ? wall : FIBRAD_NONE;
     find_point(scene, path, centre, point);
     for (int axis = 0; axis < 3; axis++) {
         path->centre[axis] -= centre[axis];
@@ -199,16 +194,18 @@ static void meet_known(const fibrad_paths *paths, const fibrad_leg *leg, fibrad_
 /* Whether the leg tells the sphere that it meets, so that no ray need be traced. */
 static bool is_met_known(const fibrad_paths *paths, const fibrad_leg *leg) {
     const fibrad_scene *scene = paths->tracer->scene;
-    return leg->sphere != FIBRAD_NONE && scene->clear == NULL && !fibrad_walls_cut_place(scene, leg->sphere);
+    return leg != NULL && leg->sphere != FIBRAD_NONE && scene->clear == NULL &&
+           !fibrad_walls_cut_place(scene, leg->sphere);
 }
 
 /* Moves a path along w to what it meets. Returns FIBRAD_NONE for a sphere, and the slot for a wall or a mesh.
  * FIBRAD_ESCAPED and FIBRAD_BEYOND: the path ends. A side that belongs to no wall counts as beyond. A ray is traced
- * unless `known` is what the path meets. */
-static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3], const fibrad_hit *known) {
+ * unless `known` tells what the path meets. */
+static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3], const fibrad_leg *known) {
     const fibrad_scene *scene = paths->tracer->scene;
     fibrad_hit hit;
     double centre[3], point[3], distance;
+    if (!is_met_known(paths, known)) known = NULL;
     paths->rays += known == NULL;
     find_point(scene, path, centre, point);
     if (path->place != FIBRAD_NONE) {
@@ -217,7 +214,7 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
         if (behind != FIBRAD_NONE) return behind;
     }
     if (known != NULL)
-        hit = *known;
+        meet_known(paths, known, &hit);
     else if (path->place != FIBRAD_NONE)
         LANED(fibrad_trace)(paths->tracer, path->place, path->n, w, &hit);
     else
@@ -285,26 +282,16 @@ static void start_at_wall(const fibrad_paths *paths, struct grey_path *path) {
     fibrad_wall_normal(scene, paths->from, path->point, path->n);
 }
 
-/* The direction of a leg. A known first leg also tells the direction after it. Returns whether it is known what the
- * path meets, and sets `hit` to it. */
-static bool next_direction(const fibrad_paths *paths, struct grey_path *path, const fibrad_leg *known, uint32_t leg,
-                           double w[3], fibrad_hit *hit) {
-    if (paths->tiles != NULL && path->place == FIBRAD_NONE && path->plane != FIBRAD_NONE) {
-        LANED(fibrad_tile_ray)(paths->tiles, paths->tracer->scene, path->plane, path->point, w, hit);
-        return true;
-    }
+/* The direction of a leg. A known first leg also tells the direction after it. */
+static void next_direction(const fibrad_paths *paths, struct grey_path *path, const fibrad_leg *known, uint32_t leg,
+                           double w[3]) {
     if (known == NULL || leg > 1) {
         draw_direction(paths, path, w);
-        return false;
+        return;
     }
-    if (leg == 1) {
-        direction_about(path->n, known->even, w);
-        return false;
-    }
-    fibrad_copy(w, known->w, sizeof known->w);
-    if (!is_met_known(paths, known)) return false;
-    meet_known(paths, known, hit);
-    return true;
+    for (int axis = 0; axis < 3 && leg == 0; axis++) w[axis] = known->w[axis];
+    if (leg == 0) return;
+    direction_about(path->n, known->even, w);
 }
 
 /* The point from which a path leaves a sphere that conducts. Either the path was reflected and stays where it is. Or
@@ -323,37 +310,12 @@ static void leave_sphere(fibrad_paths *paths, struct grey_path *path, uint32_t l
     fibrad_conduct_above(surface / (2 * conductivity), path->own, first + 1, even, path->n);
 }
 
-/* Goes on along a path from its next leg. */
-static void follow_on(fibrad_paths *paths, struct grey_path *path, const fibrad_leg *known, uint32_t leg) {
-    for (; leg < PATH_LEGS && path->weight > 0; leg++) {
-        const bool counts = leg > 0 || paths->first;
-        double w[3];
-        fibrad_hit hit;
-        const bool met_known = next_direction(paths, path, known, leg, w, &hit);
-        const uint32_t met = trace_leg(paths, path, w, met_known ? &hit : NULL);
-        if (met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND) {
-            if (counts) *(met == FIBRAD_ESCAPED ? &paths->escaped : &paths->beyond) += path->weight;
-            return;
-        }
-        if (leg == 0 && paths->tiles != NULL && path->plane != FIBRAD_NONE) return; /* arrivals stand for it */
-        absorb_at_surface(paths, path, met, counts);
-        if (path->weight < ROULETTE_WEIGHT) {
-            double draw = fibrad_fraction(fibrad_random_ahead(path->own, UINT64_C(1) << 32 | leg));
-            if (draw * ROULETTE_WEIGHT >= path->weight) return;
-            path->weight = ROULETTE_WEIGHT;
-        }
-        if (met == FIBRAD_NONE && paths->conductivity != NULL) leave_sphere(paths, path, leg);
-    }
-    paths->left += path->weight;
-}
-
 static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]) {
     struct grey_path path = {.k = k,
                              .sobol = sobol,
                              .own = {fibrad_random_ahead(paths->stream, 8 + k)},
                              .weight = 1,
                              .place = paths->place,
-                             .plane = FIBRAD_NONE,
                              .triangle = FIBRAD_NO_SIDE};
     const fibrad_leg *known = NULL;
     if (paths->legs != NULL && k < paths->legs->length) {
@@ -364,19 +326,24 @@ static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]
         next_sphere_point(paths, &path, path.n);
     }
     if (path.place == FIBRAD_NONE) start_at_wall(paths, &path);
-    follow_on(paths, &path, known, 0);
-}
-
-/* Follows the path from an arrival. What its plane absorbs does not count. */
-static void follow_arrival(fibrad_paths *paths, uint32_t k) {
-    const fibrad_scene *scene = paths->tracer->scene;
-    const fibrad_arrival *arrival = &paths->arrival[k];
-    struct grey_path path = {.k = k,
-                             .own = {fibrad_random_ahead(paths->stream, ARRIVAL_STREAMS + k)},
-                             .weight = arrival->weight * (1 - paths->wall_emissivity[arrival->plane]),
-                             .place = paths->place};
-    reach_wall(scene, &path, arrival->plane, FIBRAD_NO_SIDE, arrival->point);
-    follow_on(paths, &path, NULL, 1);
+    for (uint32_t leg = 0; leg < PATH_LEGS && path.weight > 0; leg++) {
+        const bool counts = leg > 0 || paths->first;
+        double w[3];
+        next_direction(paths, &path, known, leg, w);
+        const uint32_t met = trace_leg(paths, &path, w, leg == 0 ? known : NULL);
+        if (met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND) {
+            if (counts) *(met == FIBRAD_ESCAPED ? &paths->escaped : &paths->beyond) += path.weight;
+            return;
+        }
+        absorb_at_surface(paths, &path, met, counts);
+        if (path.weight < ROULETTE_WEIGHT) {
+            double draw = fibrad_fraction(fibrad_random_ahead(path.own, UINT64_C(1) << 32 | leg));
+            if (draw * ROULETTE_WEIGHT >= path.weight) return;
+            path.weight = ROULETTE_WEIGHT;
+        }
+        if (met == FIBRAD_NONE && paths->conductivity != NULL) leave_sphere(paths, &path, leg);
+    }
+    paths->left += path.weight;
 }
 
 /* A walk arrives at a sphere. It is reflected there, or absorbed and given off at another point. */
@@ -465,8 +432,6 @@ void LANED(fibrad_paths_follow)(fibrad_paths *paths, uint64_t begin, uint64_t en
         }
         if (paths->flights > 0)
             follow_walk(paths, k);
-        else if (paths->arrival != NULL)
-            follow_arrival(paths, (uint32_t)k);
         else if (paths->boxed)
             follow_boxed(paths, count, batch);
         else

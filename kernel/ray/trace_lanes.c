@@ -231,29 +231,14 @@ static double power_of_two_below(double x) {
     return x;
 }
 
-/* A ray from a point. */
-static struct trace_ray ray_from(const fibrad_scene *scene, const double point[3], const double w[3]) {
+/* The sphere that a ray from a point meets. */
+static void trace_spheres(const fibrad_scene *scene, const double point[3], const double w[3], fibrad_hit *hit) {
     static const double origin[3] = {0, 0, 0};
     /* a power of two causes no rounding, so that other spheres change no bit */
     const double unit = power_of_two_below(scene->spacing);
-    return (struct trace_ray){scene, origin, w, {point[0], point[1], point[2]}, unit, 1 / unit, FIBRAD_NONE};
-}
-
-/* The sphere that a ray from a point meets. */
-static void trace_spheres(const fibrad_scene *scene, const double point[3], const double w[3], fibrad_hit *hit) {
-    const struct trace_ray ray = ray_from(scene, point, w);
+    struct trace_ray ray = {scene, origin, w, {point[0], point[1], point[2]}, unit, 1 / unit, FIBRAD_NONE};
     struct trace_first first = {.distance = __builtin_inf()};
     walk_ray(&ray, 0, &first);
-    write_hit(&ray, &first, hit);
-}
-
-void LANED(fibrad_trace_sphere)(const fibrad_scene *scene, const double point[3], const double w[3], uint32_t place,
-                                fibrad_hit *hit) {
-    const struct trace_ray ray = ray_from(scene, point, w);
-    struct trace_first first = {.distance = __builtin_inf()};
-    const double c[3] = {(scene->x[place] - point[0]) * ray.inverse, (scene->y[place] - point[1]) * ray.inverse,
-                         (scene->z[place] - point[2]) * ray.inverse};
-    intersect_sphere(&ray, place, c, &first);
     write_hit(&ray, &first, hit);
 }
 

@@ -80,9 +80,4 @@ typedef void fibrad_trace_point_function(const fibrad_scene *scene, const double
                                          uint32_t except, fibrad_hit *hit);
 FIBRAD_DECLARE_VERSIONS(fibrad_trace_point_function, fibrad_trace_point);
 
-/* Follows a ray from a point as if there were one sphere only, which the ray meets. */
-typedef void fibrad_trace_sphere_function(const fibrad_scene *scene, const double point[3], const double w[3],
-                                          uint32_t place, fibrad_hit *hit);
-FIBRAD_DECLARE_VERSIONS(fibrad_trace_sphere_function, fibrad_trace_sphere);
-
 #endif

@@ -48,7 +48,6 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     if (range->part != NULL) fibrad_beam_replay(work, range, directions, open);
     if (frames.turned) fibrad_rotation(rule->turn, frames.turn);
     LANED(begin_legs)(&work->legs);
-    work->arrivals.length = 0;
     for (uint32_t k = range->from; k < range->to; k++) {
         double frame[9];
         LANED(frame_of_beam)(&frames, k, points, frame);
@@ -56,7 +55,6 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
         double rest = LANED(fibrad_beam_window)(work, frame, &window, k);
         if (work->disc.count > work->disc.capacity || work->areas.overflow) return fibrad_work_discs_missed(work);
         LANED(take_legs)(work, frame, k);
-        if (points > 0) take_arrivals(work, frame, &window);
         const bool meets = work->met != NULL && work->met->any;
         if (meets) LANED(fibrad_mesh_count)(work, frame, k);
         if (scene->container.walls)

@@ -10,7 +10,6 @@
 #include "base/lanes/laned.h"
 #include "base/lanes/turn.h"
 #include "base/random.h"
-#include "scene/walls.h"
 #include "work/work.h"
 
 /* Makes the first coordinates of normals along the axes of windows, and the even points. */
@@ -75,38 +74,6 @@ static void LANED(take_legs)(fibrad_workspace *work, const double frame[9], uint
         }
     }
     legs->length = end;
-}
-
-/* Takes an arrival at a plane, if the beam from a point of the present window meets one of those that the row wants. */
-static void take_arrival(fibrad_workspace *work, const double frame[9], double u, double v, double weight) {
-    fibrad_arrivals *arrivals = &work->arrivals;
-    const double *w = frame + 6, up = fibrad_sqrt(fibrad_max(0, 1 - (u * u + v * v)));
-    double start[3], from[3], distance;
-    for (int axis = 0; axis < 3; axis++) {
-        start[axis] = u * frame[axis] + v * frame[3 + axis] + up * w[axis];
-        from[axis] = work->centre[axis] + work->unit * start[axis];
-    }
-    const uint32_t plane = fibrad_walls_exit(work->scene, from, w, &distance);
-    if (plane >= FIBRAD_CYLINDER || !(arrivals->planes >> plane & 1)) return;
-    if (work->cut && distance > work->unit * fibrad_ball_exit(start, w, work->reach)) return;
-    fibrad_arrival *arrival = &arrivals->arrival[arrivals->length++];
-    for (int axis = 0; axis < 3; axis++) arrival->point[axis] = from[axis] + distance * w[axis];
-    arrival->weight = weight, arrival->plane = plane;
-}
-
-/* Takes arrivals of the present window: those of some of its open points, at equal steps in the list of these. */
-static void take_arrivals(fibrad_workspace *work, const double frame[9], const fibrad_points *points) {
-    if (work->arrivals.planes == 0 || points->open == 0) return;
-    const uint32_t step = (points->open - 1) / FIBRAD_ARRIVALS_WINDOW + 1;
-    uint32_t ahead = step / 2;
-    if (work->arrivals.length + FIBRAD_ARRIVALS_WINDOW > FIBRAD_ARRIVALS) return;
-    for (uint32_t word = 0; word < points->count / 64; word++)
-        for (uint64_t bits = points->seen[word]; bits != 0; bits &= bits - 1, ahead--) {
-            const uint32_t p = 64 * word + (uint32_t)__builtin_ctzll(bits);
-            if (ahead > 0) continue;
-            take_arrival(work, frame, points->set.x[p], points->set.y[p], step);
-            ahead = step;
-        }
 }
 
 #endif

@@ -81,11 +81,6 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     for (int list = 0; list < 2; list++)
         entries->key[list] = fibrad_arena_take(arena, entries->capacity, sizeof(uint64_t));
     work->legs.leg = fibrad_arena_take(arena, plan->legs, sizeof *work->legs.leg);
-    if (plan->tiles > 0) {
-        work->arrivals.arrival = fibrad_arena_take(arena, FIBRAD_ARRIVALS, sizeof *work->arrivals.arrival);
-        work->tiles.key = fibrad_arena_take(arena, FIBRAD_TILES, sizeof *work->tiles.key);
-        work->tiles.tile = fibrad_arena_take(arena, FIBRAD_TILES, sizeof *work->tiles.tile);
-    }
     if (plan->walls > 0) work->walls = fibrad_arena_take(arena, 1, sizeof *work->walls);
     if (plan->met > 0) work->met = fibrad_arena_take(arena, 1, sizeof *work->met);
     work->extra = fibrad_arena_take(arena, plan->extra, 1);
@@ -138,9 +133,7 @@ static uint32_t less_of(uint32_t count, uint32_t least) {
 static bool shrink(fibrad_work_plan *plan, const fibrad_work_plan *least, size_t size) {
     while (bytes_of(plan) > size) {
         const bool entries_first = (size_t)plan->entries * 96 > (size_t)plan->discs * 768;
-        if (plan->tiles > least->tiles)
-            plan->tiles = 0;
-        else if (plan->legs > least->legs)
+        if (plan->legs > least->legs)
             plan->legs = least->legs;
         else if (plan->extra > least->extra && (plan->extra > (size_t)plan->near * 64 || plan->near == least->near))
             plan->extra = plan->extra / 2 > least->extra ? plan->extra / 2 : least->extra;
@@ -161,7 +154,7 @@ static bool shrink(fibrad_work_plan *plan, const fibrad_work_plan *least, size_t
 static int fit(fibrad_work *work, fibrad_work_plan plan, const fibrad_work_plan *least, fibrad_workspace **space) {
     fibrad_memory *memory = &work->memory;
     const fibrad_work_plan wanted = {plan.walls,   plan.met,     least->near, plan.discs,
-                                     plan.entries, least->extra, least->legs, least->tiles};
+                                     plan.entries, least->extra, least->legs};
     size_t bytes = bytes_of(&plan);
     if (bytes == 0) return FIBRAD_E_ARGUMENT;
     work->inside = NULL;
@@ -184,8 +177,8 @@ int fibrad_work_open(fibrad_work *work, const fibrad_scene *scene, size_t extra_
     const uint32_t walls = scene->container.walls, met = scene->mesh.triangles > 0;
     if (!fibrad_memory_valid(&work->memory)) return FIBRAD_E_ARGUMENT;
     fibrad_workspace *inside = inside_of(work);
-    fibrad_work_plan plan = {walls, met, FIBRAD_NEAR_MOST, USUAL_DISCS, USUAL_ENTRIES, extra_best, 0, 0};
-    const fibrad_work_plan least = {walls, met, LEAST_NEAR, LEAST_COUNT, LEAST_COUNT, extra_min, 0, 0};
+    fibrad_work_plan plan = {walls, met, FIBRAD_NEAR_MOST, USUAL_DISCS, USUAL_ENTRIES, extra_best, 0};
+    const fibrad_work_plan least = {walls, met, LEAST_NEAR, LEAST_COUNT, LEAST_COUNT, extra_min, 0};
     if (inside != NULL && inside->plan.extra >= extra_min && inside->plan.walls >= walls && inside->plan.met >= met) {
         inside->least = least;
         *space = inside;
@@ -199,7 +192,7 @@ int fibrad_work_open(fibrad_work *work, const fibrad_scene *scene, size_t extra_
     const int status = fit(work, plan, &least, space);
     if (status == FIBRAD_OK) (*space)->least = least;
     if (status == FIBRAD_E_WORK) { /* the size that most rows of a packed bed need, which is not the fastest size */
-        const fibrad_work_plan enough = {walls, met, LEAST_NEAR, ENOUGH_DISCS, ENOUGH_ENTRIES, extra_min, 0, 0};
+        const fibrad_work_plan enough = {walls, met, LEAST_NEAR, ENOUGH_DISCS, ENOUGH_ENTRIES, extra_min, 0};
         work->memory.needed = bytes_of(&enough);
     }
     return status;
@@ -211,7 +204,7 @@ int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space) {
     plan.walls = least.walls, plan.met = least.met;
     const fibrad_work_plan needed = now->needed;
     const bool more = needed.near > plan.near || needed.discs > plan.discs || needed.entries > plan.entries ||
-                      needed.extra > plan.extra || needed.legs > plan.legs || needed.tiles > plan.tiles;
+                      needed.extra > plan.extra || needed.legs > plan.legs;
     if (!more) return FIBRAD_E_UNSUPPORTED; /* without this the call would be repeated for ever */
     /* a size that was once too small in this call must not become smaller again */
     if (needed.near > plan.near) plan.near = least.near = needed.near;
@@ -219,7 +212,6 @@ int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space) {
     if (needed.entries > plan.entries) least.entries = plan.entries + 1, plan.entries = needed.entries;
     if (needed.extra > plan.extra) plan.extra = least.extra = needed.extra;
     if (needed.legs > plan.legs) plan.legs = least.legs = needed.legs;
-    if (needed.tiles > plan.tiles) plan.tiles = least.tiles = 1;
     const int status = fit(work, plan, &least, space);
     if (status == FIBRAD_OK) (*space)->least = least;
     return status;

@@ -8,7 +8,6 @@
 #define FIBRAD_WORK_WORK_H
 
 #include "work/row_sum.h"
-#include "work/tiles.h"
 #include "work/wall_sum.h"
 #include "scene/surroundings.h"
 #include "window/areas.h"
@@ -120,7 +119,6 @@ typedef struct fibrad_work_plan {
     uint32_t entries; /* different spheres and slots seen by one row */
     size_t extra;     /* bytes for other methods */
     uint32_t legs;    /* first legs of paths that a beam row takes */
-    uint32_t tiles;   /* 1: there may be tiles of planes and arrivals at them */
 } fibrad_work_plan;
 
 /* The first leg of a path: a beam of a window. */
@@ -149,8 +147,6 @@ typedef struct fibrad_workspace {
     fibrad_areas areas;
     fibrad_entries entries;
     fibrad_legs legs;
-    fibrad_arrivals arrivals;
-    fibrad_tiles tiles;   /* they last as `extra` does */
     fibrad_met *met;      /* NULL unless plan.met */
     void *extra;          /* [plan.extra] */
     uint64_t extra_owner; /* who wrote the contents of `extra`; 0: nobody; each method has its number */

@@ -33,17 +33,15 @@ int main(int count, char **argument) {
     const long steps = atol(argument[1]), every = atol(argument[2]);
     const double cutoff = atof(argument[3]), dt = atof(argument[4]), pi = 4 * atan(1), sigma = FIBRAD_STEFAN_BOLTZMANN;
     const double floor_emissivity = 0.9, capacity = count == 6 ? atof(argument[5]) : HUGE_VAL;
-    double floor_t = 1000, radii = 0;
+    double floor_t = 1000;
 
     uint32_t n = 0;
     unsigned long long number;
     while (n < MOST && scanf("%llu %lf %lf %lf %lf %lf", &number, &x[n], &y[n], &z[n], &r[n], &t[n]) == 6) {
         emissivity[n] = number % 2 ? 0.5 : 0.8;
         weight[n] = 4 * pi * r[n] * r[n] * emissivity[n];
-        radii += r[n];
         id[n++] = number;
     }
-    const double tile = 3 * ldexp(1, ilogb(radii / n));
 
     const fibrad_body wall = {.kind = FIBRAD_BODY_PLANE, .plane = {.axis = 2}};
     const fibrad_scene_config config = {.body = &wall, .bodies = 1};
@@ -60,10 +58,8 @@ int main(int count, char **argument) {
             fibrad_exchange_rule rule = {/* defaults of fibrad_insitu_config */
                                          .emissivity = emissivity,
                                          .body_emissivity = &floor_emissivity,
-                                         .directions = 40,
-                                         .paths = 100,
-                                         .tile = tile,
-                                         .tile_seed = 1 + (uint64_t)step * 0x9e3779b97f4a7c15u,
+                                         .directions = 48,
+                                         .paths = 120,
                                          .cutoff = cutoff};
             fibrad_rows_clear(&rows);
             for (uint32_t i = 0; i < n; i++) {
