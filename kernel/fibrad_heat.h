@@ -220,8 +220,8 @@ typedef struct fibrad_heat_result {
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result);
 
 /* Reads the solution on the sides of triangles: element 2 t is the front and 2 t + 1 the back of the caller's triangle
- * t. A value is the mean over the patches of the side. Sides that share a patch have equal values. The sum of flux
- * times area over the sides of a mesh is, to rounding,
+ * t. A value is the mean over the patches of the side. Sides that share a patch have equal values. Flux times area,
+ * summed over the sides of a mesh, is to rounding:
  *   an insulated mesh, or `absorbed` is NULL   body_power
  *   another mesh                               body_power + the light that the mesh absorbs
  *   a mesh that a plane or the cylinder cuts   neither of these

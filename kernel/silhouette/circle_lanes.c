@@ -1,7 +1,6 @@
 /* circle_lanes.c - follows the circle in which a sphere appears along a line. Compiled once per instruction set.
  * SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
-#include "base/lanes/below.h"
 #include "silhouette/circle_lanes.h"
 #include "silhouette/discs_lanes.h"
 #include "silhouette/pieces_lanes.h"
