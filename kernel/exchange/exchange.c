@@ -153,6 +153,7 @@ static double lost_of(const fibrad_paths *paths, double carried) {
 static void follow_paths(fibrad_paths *paths, const fibrad_exchange_rule *rule, double carried, double weight,
                          double wanted) {
     fibrad_paths_function *follow = FIBRAD_VERSION_OF(fibrad_paths_follow, paths->tracer->scene->facts.isa);
+    FIBRAD_VERSION_OF(fibrad_paths_arrive, paths->tracer->scene->facts.isa)(paths);
     const uint64_t first = rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT;
     uint64_t done = fibrad_paths_begin(paths, first), next = done;
     do {

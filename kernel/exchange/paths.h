@@ -17,7 +17,7 @@ typedef struct fibrad_paths {
     fibrad_tracer *tracer;
     uint32_t place; /* position of the sphere that paths leave; FIBRAD_NONE: paths leave a wall, without a cutoff */
     uint32_t from;  /* slot of the wall that paths leave */
-    const fibrad_legs *legs;        /* NULL, or the first legs of the first paths */
+    fibrad_legs *legs;              /* NULL, or the first legs of the first paths */
     const fibrad_sobol *sobol;      /* evenly spread points, of paths from a wall */
     double inverse;                 /* 1/L, of the radius of the sphere */
     bool cut;                       /* whether there is a cutoff or a known region */
@@ -63,6 +63,11 @@ static inline int fibrad_paths_emissivities(const fibrad_scene *scene, const dou
 static inline bool fibrad_nodes_given(const fibrad_exchange_rule *rule) {
     return rule->node_emissivity == NULL || (rule->emissivity != NULL && rule->conductivity != NULL);
 }
+
+/* Follows the first legs to where they arrive, and chooses those from which paths go on. A leg is chosen in proportion
+ * to what the surface reflects where it arrives. So all paths go on with equal weights. Nothing counts as absorbed. */
+typedef void fibrad_paths_arrive_function(fibrad_paths *paths);
+FIBRAD_DECLARE_VERSIONS(fibrad_paths_arrive_function, fibrad_paths_arrive);
 
 /* Follows paths begin to end - 1, and adds to the sums.
  *

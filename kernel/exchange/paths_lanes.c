@@ -16,18 +16,23 @@
  * ROULETTE_WEIGHT. Of 0.05, 0.1, 0.2 and 0.4 this value gave the least error for a given number of rays, at
  * emissivities of 0.3 and 0.8. */
 #define ROULETTE_WEIGHT 0.2
+/* The same for paths that go on from known first legs, as a part of the weight with which they go on. All these weights
+ * are equal. Of 0.2, 0.4, 0.5, 0.7 and 1 the values from 0.4 to 0.7 gave the least error. */
+#define ROULETTE_PART 0.5
 /* The first coordinates of a path are quasi-random: those of its start and of its first two directions. Six such
  * coordinates take a tenth to a fifth fewer rays than four. */
 #define QUASI_COORDINATES FIBRAD_SOBOL_DIMENSIONS
-/* Known first legs are taken in steps of this prime. So the first paths come from windows of all directions. */
+/* Paths go on from known first legs in steps of this prime. So the first paths come from windows of all directions. */
 #define LEG_STRIDE UINT64_C(2654435761)
 
 /* A path so far. */
 struct grey_path {
     _Alignas(64) double even[3][PATH_BATCH]; /* points of the unit sphere */
     uint64_t k;
+    uint32_t part;     /* of the four parts of an entry, to which this path belongs */
     fibrad_random own; /* numbers of this path alone */
     double weight;
+    double least; /* Russian roulette: weights below this are raised to this */
     /* [L] from the centre of the sphere left first: centre of the present sphere; at a wall: origin of the scene */
     double centre[3];
     double n[3];           /* normal where the path is */
@@ -265,7 +270,7 @@ static void absorb_at_surface(fibrad_paths *paths, struct grey_path *path, uint3
             absorbed * (path->centre[axis] * path->centre[axis]);
     if (paths->entries == NULL) return;
     uint32_t entry = fibrad_entries_of(paths->entries, path->place);
-    fibrad_entries_add(paths->entries, entry, (uint32_t)(path->k % 4), absorbed);
+    fibrad_entries_add(paths->entries, entry, path->part, absorbed);
 }
 
 /* Starts a path at one of evenly spread points of the wall or mesh that paths leave. */
@@ -280,18 +285,6 @@ static void start_at_wall(const fibrad_paths *paths, struct grey_path *path) {
     }
     fibrad_wall_even_point(scene, paths->from, share, path->point);
     fibrad_wall_normal(scene, paths->from, path->point, path->n);
-}
-
-/* The direction of a leg. A known first leg also tells the direction after it. */
-static void next_direction(const fibrad_paths *paths, struct grey_path *path, const fibrad_leg *known, uint32_t leg,
-                           double w[3]) {
-    if (known == NULL || leg > 1) {
-        draw_direction(paths, path, w);
-        return;
-    }
-    for (int axis = 0; axis < 3 && leg == 0; axis++) w[axis] = known->w[axis];
-    if (leg == 0) return;
-    direction_about(path->n, known->even, w);
 }
 
 /* The point from which a path leaves a sphere that conducts. Either the path was reflected and stays where it is. Or
@@ -310,38 +303,95 @@ static void leave_sphere(fibrad_paths *paths, struct grey_path *path, uint32_t l
     fibrad_conduct_above(surface / (2 * conductivity), path->own, first + 1, even, path->n);
 }
 
+/* Follows a first leg. Writes where it arrives, and what the surface there reflects. */
+static void follow_first_leg(fibrad_paths *paths, fibrad_leg *leg) {
+    struct grey_path path = {.weight = 1, .place = paths->place, .triangle = FIBRAD_NO_SIDE};
+    fibrad_copy(path.n, leg->n, sizeof path.n);
+    const uint32_t met = trace_leg(paths, &path, leg->w, leg);
+    leg->weight = 0;
+    if (met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND) return;
+    absorb_at_surface(paths, &path, met, false);
+    fibrad_copy(leg->n, path.n, sizeof leg->n);
+    fibrad_copy(leg->w, path.point, sizeof leg->w);
+    fibrad_copy(leg->centre, path.centre, sizeof leg->centre);
+    leg->weight = path.weight, leg->sphere = path.place, leg->triangle = path.triangle;
+}
+
+/* Chooses as many legs as there are, those of large weight several times and some of small weight not at all. */
+static void choose_legs(fibrad_legs *legs, double offset) {
+    double all = 0, sum = 0;
+    uint32_t at = 0, last = 0;
+    for (uint32_t k = 0; k < legs->length; k++) {
+        all += legs->leg[k].weight;
+        if (legs->leg[k].weight > 0) last = k;
+    }
+    if (!(all > 0)) legs->length = 0;
+    legs->share = all / fibrad_max(1, legs->length);
+    for (uint32_t k = 0; k < legs->length; k++) {
+        while (at < last && sum + legs->leg[at].weight <= (k + offset) * legs->share) sum += legs->leg[at++].weight;
+        legs->leg[k].chosen = at;
+    }
+}
+
+void LANED(fibrad_paths_arrive)(fibrad_paths *paths) {
+    for (uint32_t k = 0; k < paths->legs->length; k++) follow_first_leg(paths, &paths->legs->leg[k]);
+    choose_legs(paths->legs, fibrad_fraction(fibrad_random_ahead(paths->stream, QUASI_COORDINATES)));
+}
+
+/* Puts a path where the first leg arrived that was chosen for it. w: out: the direction in which it goes on. */
+static void begin_at_leg(fibrad_paths *paths, struct grey_path *path, double w[3]) {
+    const fibrad_legs *legs = paths->legs;
+    path->k = path->k * LEG_STRIDE % legs->length;
+    const uint32_t chosen = legs->leg[path->k].chosen;
+    const fibrad_leg *leg = &legs->leg[chosen];
+    path->part = chosen % 4;
+    path->weight = legs->share, path->least = ROULETTE_PART * legs->share;
+    path->place = leg->sphere, path->triangle = leg->triangle;
+    fibrad_copy(path->n, leg->n, sizeof path->n);
+    fibrad_copy(path->point, leg->w, sizeof path->point);
+    fibrad_copy(path->centre, leg->centre, sizeof path->centre);
+    if (path->place != FIBRAD_NONE && paths->conductivity != NULL) leave_sphere(paths, path, 0);
+    direction_about(path->n, legs->leg[path->k].even, w);
+}
+
+/* The end of a path whose weight has become small: it ends, or goes on with a larger weight. */
+static bool survives(struct grey_path *path, uint32_t leg) {
+    if (path->weight >= path->least) return true;
+    const double draw = fibrad_fraction(fibrad_random_ahead(path->own, UINT64_C(1) << 32 | leg));
+    if (draw * path->least >= path->weight) return false;
+    path->weight = path->least;
+    return true;
+}
+
 static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]) {
     struct grey_path path = {.k = k,
+                             .part = (uint32_t)(k % 4),
                              .sobol = sobol,
                              .own = {fibrad_random_ahead(paths->stream, 8 + k)},
                              .weight = 1,
+                             .least = ROULETTE_WEIGHT,
                              .place = paths->place,
                              .triangle = FIBRAD_NO_SIDE};
-    const fibrad_leg *known = NULL;
-    if (paths->legs != NULL && k < paths->legs->length) {
-        path.k = k * LEG_STRIDE % paths->legs->length;
-        known = &paths->legs->leg[path.k];
-        fibrad_copy(path.n, known->n, sizeof path.n);
+    const uint32_t first = paths->legs != NULL && k < paths->legs->length;
+    double w[3];
+    if (first) {
+        begin_at_leg(paths, &path, w);
     } else {
         next_sphere_point(paths, &path, path.n);
+        if (path.place == FIBRAD_NONE) start_at_wall(paths, &path);
+        draw_direction(paths, &path, w);
     }
-    if (path.place == FIBRAD_NONE) start_at_wall(paths, &path);
-    for (uint32_t leg = 0; leg < PATH_LEGS && path.weight > 0; leg++) {
+    for (uint32_t leg = first; leg < PATH_LEGS; leg++) {
         const bool counts = leg > 0 || paths->first;
-        double w[3];
-        next_direction(paths, &path, known, leg, w);
-        const uint32_t met = trace_leg(paths, &path, w, leg == 0 ? known : NULL);
+        const uint32_t met = trace_leg(paths, &path, w, NULL);
         if (met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND) {
             if (counts) *(met == FIBRAD_ESCAPED ? &paths->escaped : &paths->beyond) += path.weight;
             return;
         }
         absorb_at_surface(paths, &path, met, counts);
-        if (path.weight < ROULETTE_WEIGHT) {
-            double draw = fibrad_fraction(fibrad_random_ahead(path.own, UINT64_C(1) << 32 | leg));
-            if (draw * ROULETTE_WEIGHT >= path.weight) return;
-            path.weight = ROULETTE_WEIGHT;
-        }
+        if (!survives(&path, leg) || path.weight == 0) return;
         if (met == FIBRAD_NONE && paths->conductivity != NULL) leave_sphere(paths, &path, leg);
+        draw_direction(paths, &path, w);
     }
     paths->left += path.weight;
 }

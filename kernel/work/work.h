@@ -121,12 +121,17 @@ typedef struct fibrad_work_plan {
     uint32_t legs;    /* first legs of paths that a beam row takes */
 } fibrad_work_plan;
 
-/* The first leg of a path: a beam of a window. */
+/* The first leg of a path: a beam of a window. The right column holds once the leg has arrived. */
 typedef struct fibrad_leg {
-    double n[3], w[3]; /* outward normal of sphere i where the beam leaves, and direction of the beam */
-    double even[3];    /* an even point of the unit sphere, by which the path goes on */
-    double centre[3];  /* of the sphere that the beam meets, in radii of sphere i, from the centre of sphere i */
-    uint32_t sphere;   /* place of the sphere met; FIBRAD_NONE: not known */
+    double n[3];       /* outward normal of sphere i where the beam leaves; normal of the surface where it arrives */
+    double w[3];       /* direction of the beam; [L] at a wall: where it arrives */
+    double even[3];    /* an even point of the unit sphere, by which a path goes on */
+    double centre[3];  /* of the sphere that the beam meets, in radii of sphere i, from the centre of sphere i; as centre
+                          of a path */
+    double weight;     /* what the surface reflects */
+    uint32_t sphere;   /* place of the sphere met; FIBRAD_NONE: not known; a wall */
+    uint32_t triangle; /* at a mesh: on which; FIBRAD_NO_SIDE: no mesh */
+    uint32_t chosen;   /* leg that path k goes on from, in the place of leg k */
 } fibrad_leg;
 
 /* First legs that a beam row takes from its windows, equally many from each. */
@@ -134,6 +139,7 @@ typedef struct fibrad_legs {
     uint64_t shift[4];       /* of the four coordinates of each leg */
     uint32_t wanted, length; /* wanted: at most plan.legs; 0: the row takes none */
     fibrad_leg *leg;         /* [plan.legs] */
+    double share;            /* out, of arrival: mean weight of the legs */
 } fibrad_legs;
 
 /* The inside of a fibrad_work. Only `extra` lasts from one call to the next. */
