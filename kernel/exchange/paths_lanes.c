@@ -223,7 +223,7 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
     else if (path->place != FIBRAD_NONE)
         LANED(fibrad_trace)(paths->tracer, path->place, path->n, w, &hit);
     else
-        LANED(fibrad_trace_point)(scene, path->point, w, path->triangle, &hit);
+        LANED(fibrad_trace_wall)(paths->tracer, path->point, w, path->triangle, &hit);
     if (hit.sphere != FIBRAD_NONE && is_known(paths, path, w, hit.distance)) {
         for (int axis = 0; axis < 3 && path->place == FIBRAD_NONE; axis++) path->centre[axis] += path->point[axis];
         for (int axis = 0; axis < 3; axis++) {

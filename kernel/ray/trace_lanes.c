@@ -53,17 +53,33 @@ static void intersect_sphere(const struct trace_ray *ray, uint32_t j, const doub
     *first = (struct trace_first){distance, depth, {c[0], c[1], c[2]}, {across[0], across[1], across[2]}, root, j};
 }
 
-/* Compares one group of the list. cull: the ray as floats. */
-static void intersect_group(const struct trace_ray *ray, const fibrad_nearby *list, uint32_t group, const vf cull[8],
-                            struct trace_first *first) {
+/* A ray as floats, for comparing the spheres of a list. Positions are as in the list. */
+struct trace_cull {
+    vf w[3], twice[3]; /* direction, and twice the point where the ray begins */
+    vf along, inside;  /* depth of this point; 1 less the square of its distance from the centre */
+    vf behind;         /* spheres of less depth are not met */
+};
+
+static struct trace_cull cull_of(const double start[3], const double w[3], double inside, float behind) {
+    struct trace_cull cull = {.along = vf_set1((float)fibrad_dot(start, w)),
+                              .inside = vf_set1((float)inside),
+                              .behind = vf_set1(behind)};
+    for (int axis = 0; axis < 3; axis++)
+        cull.w[axis] = vf_set1((float)w[axis]), cull.twice[axis] = vf_set1((float)(2 * start[axis]));
+    return cull;
+}
+
+/* Compares one group of the list. */
+static void intersect_group(const struct trace_ray *ray, const fibrad_nearby *list, uint32_t group,
+                            const struct trace_cull *cull, struct trace_first *first) {
     const fibrad_scene *scene = ray->scene;
     for (uint32_t k = group * FIBRAD_GROUP; k < (group + 1) * FIBRAD_GROUP; k += VF_LANES) {
         vf x = vf_load(list->x + k), y = vf_load(list->y + k), z = vf_load(list->z + k);
-        vf depth = cull[0] * x + cull[1] * y + cull[2] * z;
-        vf twice = cull[3] * x + cull[4] * y + cull[5] * z;
-        vf from = depth - cull[6];
+        vf depth = cull->w[0] * x + cull->w[1] * y + cull->w[2] * z;
+        vf twice = cull->twice[0] * x + cull->twice[1] * y + cull->twice[2] * z + cull->inside;
+        vf from = depth - cull->along;
         uint32_t bits = vf_lt_bits(vf_load(list->q + k) - twice, from * from);
-        bits &= vf_lt_bits(cull[7], depth);
+        bits &= vf_lt_bits(cull->behind, depth);
         for (; bits != 0; bits &= bits - 1) {
             uint32_t at = k + (uint32_t)__builtin_ctz(bits), j = list->sphere[at];
             const int8_t *periods = list->periods[at];
@@ -194,16 +210,9 @@ void LANED(fibrad_trace)(fibrad_tracer *tracer, uint32_t place, const double n[3
     double unit = scene->r[place];
     struct trace_ray ray = {scene, n, w, {scene->x[place], scene->y[place], scene->z[place]}, unit, 1 / unit, place};
     struct trace_first first = {.distance = __builtin_inf()};
-    vf cull[8] = {vf_set1((float)w[0]),
-                  vf_set1((float)w[1]),
-                  vf_set1((float)w[2]),
-                  vf_set1((float)(2 * n[0])),
-                  vf_set1((float)(2 * n[1])),
-                  vf_set1((float)(2 * n[2])),
-                  vf_set1((float)fibrad_dot(n, w)),
-                  vf_set1(-list->behind)};
+    const struct trace_cull cull = cull_of(n, w, 0, -list->behind);
     for (uint32_t group = 0; group < list->groups && !(first.distance < list->clear[group]); group++)
-        intersect_group(&ray, list, group, cull, &first);
+        intersect_group(&ray, list, group, &cull, &first);
     double known = list->clear[list->groups];
     /* spheres that overlap this one count also behind the origin, if their centres are ahead */
     double from = known >= 0 ? known : -fibrad_dot(n, w);
@@ -231,20 +240,48 @@ static double power_of_two_below(double x) {
     return x;
 }
 
-/* The sphere that a ray from a point meets. */
-static void trace_spheres(const fibrad_scene *scene, const double point[3], const double w[3], fibrad_hit *hit) {
+/* A ray from a point. */
+static struct trace_ray ray_from(const fibrad_scene *scene, const double point[3], const double w[3]) {
     static const double origin[3] = {0, 0, 0};
     /* a power of two causes no rounding, so that other spheres change no bit */
     const double unit = power_of_two_below(scene->spacing);
-    struct trace_ray ray = {scene, origin, w, {point[0], point[1], point[2]}, unit, 1 / unit, FIBRAD_NONE};
-    struct trace_first first = {.distance = __builtin_inf()};
-    walk_ray(&ray, 0, &first);
-    write_hit(&ray, &first, hit);
+    return (struct trace_ray){scene, origin, w, {point[0], point[1], point[2]}, unit, 1 / unit, FIBRAD_NONE};
 }
 
 void LANED(fibrad_trace_point)(const fibrad_scene *scene, const double point[3], const double w[3], uint32_t except,
                                fibrad_hit *hit) {
     hit->sphere = FIBRAD_NONE, hit->side = FIBRAD_NO_SIDE;
-    if (scene->facts.spheres > 0) trace_spheres(scene, point, w, hit);
+    if (scene->facts.spheres > 0) {
+        const struct trace_ray ray = ray_from(scene, point, w);
+        struct trace_first first = {.distance = __builtin_inf()};
+        walk_ray(&ray, 0, &first);
+        write_hit(&ray, &first, hit);
+    }
+    if (scene->clear != NULL) meet_mesh_before(scene, point, w, except, hit);
+}
+
+/* Compares the spheres of a list. Returns the length up to which all spheres are compared. */
+static double meet_listed(const struct trace_ray *ray, const fibrad_nearby *list, const double start[3], double radius,
+                          struct trace_first *first) {
+    const double scale = radius * ray->inverse;
+    const struct trace_cull cull = cull_of(start, ray->w, 1 - fibrad_dot(start, start), -__builtin_inff());
+    for (uint32_t group = 0; group < list->groups && !(first->distance < list->clear[group] * scale); group++)
+        intersect_group(ray, list, group, &cull, first);
+    return fibrad_max(0, list->clear[list->groups] * scale);
+}
+
+void LANED(fibrad_trace_wall)(fibrad_tracer *tracer, const double point[3], const double w[3], uint32_t except,
+                              fibrad_hit *hit) {
+    const fibrad_scene *scene = tracer->scene;
+    double start[3], radius;
+    hit->sphere = FIBRAD_NONE, hit->side = FIBRAD_NO_SIDE;
+    if (scene->facts.spheres > 0) {
+        const fibrad_nearby *list = fibrad_tracer_cell_of(tracer, point, start, &radius);
+        const struct trace_ray ray = ray_from(scene, point, w);
+        struct trace_first first = {.distance = __builtin_inf()};
+        const double known = list != NULL ? meet_listed(&ray, list, start, radius, &first) : 0;
+        if (!(first.distance < known)) walk_ray(&ray, known, &first);
+        write_hit(&ray, &first, hit);
+    }
     if (scene->clear != NULL) meet_mesh_before(scene, point, w, except, hit);
 }

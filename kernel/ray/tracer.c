@@ -1,6 +1,7 @@
 /* tracer.c - memory of a tracer and its lists of near spheres. SPDX-License-Identifier: MIT */
 #include "ray/tracer.h"
 #include "base/arena.h"
+#include "base/random.h"
 #include "base/sort.h"
 #include "scene/grid_walk.h"
 
@@ -8,6 +9,10 @@
 #define REACH      1.8
 #define CANDIDATES 512
 #define LISTS_MIN  16u
+
+/* A list of a cell is made when this many rays have begun in the cell. The cells are one to this many lists. */
+#define CELL_RAYS      4u
+#define LISTS_FOR_CELL 2u
 
 typedef struct fibrad_candidate {
     double clearance, c[3], r;
@@ -18,7 +23,9 @@ typedef struct fibrad_candidate {
 static void tracer_layout(fibrad_arena *arena, uint32_t lists, fibrad_tracer *tracer) {
     tracer->lists = lists;
     tracer->owner = fibrad_arena_take(arena, lists, sizeof *tracer->owner);
-    tracer->nearby = fibrad_arena_take(arena, lists, sizeof *tracer->nearby);
+    tracer->nearby = fibrad_arena_take(arena, lists + lists / LISTS_FOR_CELL, sizeof *tracer->nearby);
+    tracer->cells = lists / LISTS_FOR_CELL;
+    tracer->cell = fibrad_arena_take(arena, tracer->cells, sizeof *tracer->cell);
     for (int k = 0; k < 2; k++) tracer->key[k] = fibrad_arena_take(arena, CANDIDATES, sizeof *tracer->key[k]);
     tracer->candidate = fibrad_arena_take(arena, CANDIDATES, sizeof *tracer->candidate);
 }
@@ -49,19 +56,27 @@ fibrad_tracer *fibrad_tracer_of(fibrad_workspace *space, const fibrad_scene *sce
         fibrad_arena_take(&arena, 1, sizeof *tracer);
         tracer_layout(&arena, lists, tracer);
         for (uint32_t k = 0; k < lists; k++) tracer->owner[k] = FIBRAD_NONE;
+        for (uint32_t k = 0; k < tracer->cells; k++)
+            tracer->cell[k] = (fibrad_tracer_cell){.list = tracer->nearby + lists + k};
         space->extra_owner = scene->hash;
     }
     tracer->scene = scene;
     return tracer;
 }
 
-/* Lists the spheres with a clearance of at most `limit` from the sphere at `place`. False: there is no room. */
-static bool gather_candidates(fibrad_tracer *tracer, uint32_t place, double limit, uint32_t *count) {
+/* The ball that a list belongs to. */
+struct ball {
+    double centre[3], radius; /* L */
+    uint32_t place;           /* of the sphere that it is, or FIBRAD_NONE */
+};
+
+/* Lists the spheres with a clearance of at most `limit` radii from the ball. False: there is no room. */
+static bool gather_candidates(fibrad_tracer *tracer, const struct ball *from, double limit, uint32_t *count) {
     const fibrad_scene *scene = tracer->scene;
-    double centre[3] = {scene->x[place], scene->y[place], scene->z[place]}, inverse = 1 / scene->r[place];
+    const double *centre = from->centre, inverse = 1 / from->radius;
     *count = 0;
     for (uint32_t l = 0; l < scene->levels; l++) {
-        double ball = limit * scene->r[place] + scene->level[l].radius_max, low[3], high[3];
+        double ball = limit * from->radius + scene->level[l].radius_max, low[3], high[3];
         for (int axis = 0; axis < 3; axis++) low[axis] = centre[axis] - ball, high[axis] = centre[axis] + ball;
         fibrad_walk walk;
         fibrad_walk_begin(&walk, scene, &scene->level[l], low, high);
@@ -76,7 +91,7 @@ static bool gather_candidates(fibrad_tracer *tracer, uint32_t place, double limi
                 double y = (scene->y[j] - centre[1] + walk.shift[1]) * inverse;
                 double z = (scene->z[j] - centre[2] + walk.shift[2]) * inverse, r = scene->r[j] * inverse;
                 double clearance = fibrad_sqrt(x * x + y * y + z * z) - r;
-                if (clearance > limit || (j == place && !image)) continue;
+                if (clearance > limit || (j == from->place && !image)) continue;
                 if (*count == CANDIDATES) return false;
                 tracer->candidate[(*count)++] = (fibrad_candidate){
                     clearance, {x, y, z}, r, j, {(int8_t)periods[0], (int8_t)periods[1], (int8_t)periods[2]}};
@@ -103,15 +118,15 @@ static void enter_nearby(fibrad_nearby *list, uint32_t k, const fibrad_candidate
 /* Rays start at distance 1 from the centre. The other terms allow for rounding. */
 static double length_for(double clearance) { return clearance * (1 - 1e-9) - 1 - 1e-9; }
 
-static void make_nearby(fibrad_tracer *tracer, fibrad_nearby *list, uint32_t place) {
+static void make_nearby(fibrad_tracer *tracer, fibrad_nearby *list, const struct ball *from) {
     const fibrad_scene *scene = tracer->scene;
-    double reach = REACH * scene->spacing / scene->r[place];
+    double reach = REACH * scene->spacing / from->radius;
     /* the numbers of periods must fit into bytes */
     for (int axis = 0; axis < 3; axis++)
-        if (scene->period[axis] > 0) reach = fibrad_min(reach, 60 * scene->period[axis] / scene->r[place]);
+        if (scene->period[axis] > 0) reach = fibrad_min(reach, 60 * scene->period[axis] / from->radius);
     double limit = 1 + reach;
     uint32_t count = 0;
-    while (!gather_candidates(tracer, place, limit, &count)) {
+    while (!gather_candidates(tracer, from, limit, &count)) {
         if (limit > 1.001) {
             limit = 1 + (limit - 1) / 2;
         } else { /* hundreds of small spheres touch this sphere: the grid serves its rays */
@@ -152,8 +167,32 @@ const fibrad_nearby *fibrad_tracer_nearby(fibrad_tracer *tracer, uint32_t place)
     uint32_t slot = place & (tracer->lists - 1);
     fibrad_nearby *list = &tracer->nearby[slot];
     if (tracer->owner[slot] != place) {
-        make_nearby(tracer, list, place);
+        const fibrad_scene *scene = tracer->scene;
+        const struct ball ball = {{scene->x[place], scene->y[place], scene->z[place]}, scene->r[place], place};
+        make_nearby(tracer, list, &ball);
         tracer->owner[slot] = place;
     }
     return list;
+}
+
+const fibrad_nearby *fibrad_tracer_cell_of(fibrad_tracer *tracer, const double point[3], double start[3],
+                                           double *radius) {
+    const double edge = tracer->scene->spacing, half = 0.5 * edge;
+    struct ball ball = {.radius = half * fibrad_sqrt(3) * (1 + 1e-9), .place = FIBRAD_NONE};
+    double at[3];
+    uint64_t hash = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        at[axis] = fibrad_floor(point[axis] / edge);
+        hash = fibrad_hash_number(hash, at[axis]);
+        ball.centre[axis] = at[axis] * edge + half;
+        start[axis] = (point[axis] - ball.centre[axis]) / ball.radius;
+    }
+    *radius = ball.radius;
+    fibrad_tracer_cell *cell = &tracer->cell[fibrad_mix(hash) & (tracer->cells - 1)];
+    const bool same = at[0] == cell->at[0] && at[1] == cell->at[1] && at[2] == cell->at[2];
+    if (!same) fibrad_copy(cell->at, at, sizeof at), cell->begun = 0;
+    if (cell->begun > CELL_RAYS) return cell->list;
+    if (++cell->begun <= CELL_RAYS) return NULL;
+    make_nearby(tracer, cell->list, &ball);
+    return cell->list;
 }

@@ -5,7 +5,10 @@
  * in the order of their clearance, which is the distance from its centre to their surface. A ray looks at them in
  * this order. It has found its first sphere when all later ones are farther away. Lists are kept in work memory. The
  * list of a sphere is in the slot `place modulo number of lists`. It is made again if another sphere has used the
- * slot. A list depends on its sphere alone. Rays that get beyond their list go through the grid. */
+ * slot. A list depends on its sphere alone. Rays that get beyond their list go through the grid.
+ *
+ * Rays that leave walls have lists, too. Each list belongs to a cube of space, a cell, in which such rays begin. It is
+ * made when a few rays have begun there. */
 #ifndef FIBRAD_RAY_TRACER_H
 #define FIBRAD_RAY_TRACER_H
 
@@ -16,8 +19,8 @@
 #define FIBRAD_NEARBY 96 /* spheres of a list, in whole groups */
 #define FIBRAD_GROUP  16
 
-/* The spheres near one sphere, relative to its centre and in units of its radius. The list is filled up with spheres
- * that no ray meets. */
+/* The spheres near one sphere, relative to its centre and in units of its radius; or near the ball about a cell. The
+ * list is filled up with spheres that no ray meets. */
 typedef struct fibrad_nearby {
     _Alignas(64) float x[FIBRAD_NEARBY], y[FIBRAD_NEARBY], z[FIBRAD_NEARBY];
     float q[FIBRAD_NEARBY]; /* a little less than distance of the centres^2 + 1 - r^2 */
@@ -30,11 +33,20 @@ typedef struct fibrad_nearby {
                      not behind */
 } fibrad_nearby;
 
+/* A cell with the edge of the mean spacing. */
+typedef struct fibrad_tracer_cell {
+    double at[3];    /* its lower corner, in edges */
+    uint32_t begun;  /* rays that began there without a list; 0: the slot is empty */
+    fibrad_nearby *list;
+} fibrad_tracer_cell;
+
 typedef struct fibrad_tracer {
     const fibrad_scene *scene;
     uint32_t lists;        /* a power of two */
     uint32_t *owner;       /* [lists] place of the sphere that a list belongs to; FIBRAD_NONE: none */
     fibrad_nearby *nearby; /* [lists] */
+    uint32_t cells;           /* a power of two */
+    fibrad_tracer_cell *cell; /* [cells] */
     uint64_t *key[2];      /* [] scratch: clearances and numbers of spheres that may be listed */
     struct fibrad_candidate *candidate;
 } fibrad_tracer;
@@ -61,6 +73,11 @@ typedef struct fibrad_hit {
 /* The list of the sphere at `place`. It is made if it does not exist. */
 const fibrad_nearby *fibrad_tracer_nearby(fibrad_tracer *tracer, uint32_t place);
 
+/* The list of the cell in which a ray begins. NULL: hardly any ray has begun there so far. start: out: the point
+ * relative to the middle of the cell, in radii of the ball about the cell. radius: out: [L]. */
+const fibrad_nearby *fibrad_tracer_cell_of(fibrad_tracer *tracer, const double point[3], double start[3],
+                                           double *radius);
+
 /* Follows a ray from the sphere at `place`. It leaves at the point with outward normal n [unit vector] in direction
  * w [unit vector, n.w >= 0]. Spheres count as for beams: a sphere counts if its centre lies ahead of this one's and
  * the ray passes through its disc. A sphere that contains the origin is met at distance 0. Its `normal` is where the
@@ -79,5 +96,10 @@ FIBRAD_DECLARE_VERSIONS(fibrad_trace_once_function, fibrad_trace_once);
 typedef void fibrad_trace_point_function(const fibrad_scene *scene, const double point[3], const double w[3],
                                          uint32_t except, fibrad_hit *hit);
 FIBRAD_DECLARE_VERSIONS(fibrad_trace_point_function, fibrad_trace_point);
+
+/* The same with lists. */
+typedef void fibrad_trace_wall_function(fibrad_tracer *tracer, const double point[3], const double w[3],
+                                        uint32_t except, fibrad_hit *hit);
+FIBRAD_DECLARE_VERSIONS(fibrad_trace_wall_function, fibrad_trace_wall);
 
 #endif
