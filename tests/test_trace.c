@@ -236,6 +236,35 @@ TEST(same_bits_everywhere) {
     for (int t = 0; t < 2; t++) work_free(&work[t]);
 }
 
+/* Rays that begin in cells with lists meet what rays without lists meet, to the bit. */
+LOOP_TEST(from_cells, 3) {
+    OWNED_BED bed = packing(400, _i == 2 ? .05 : .3, 1, .45, 4, _i == 1);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    const struct isas isas = isas_there();
+    OWNED_WORK work;
+    fibrad_tracer *tracer = tracer_of(scene, EACH, &work);
+    uint32_t listed = 0, met = 0;
+    for (uint32_t k = 0; k < 20000; k++) {
+        fibrad_random random = fibrad_random_start(6, k);
+        double w[3], o[3], start[3], radius;
+        even(&random, w);
+        for (int axis = 0; axis < 3; axis++) o[axis] = fibrad_random_next(&random) * (axis == 2 ? .01 : bed.high[axis]);
+        const fibrad_nearby *list = fibrad_tracer_cell_of(tracer, o, start, &radius);
+        ck_assert_double_le(dot(start, start), 1);
+        listed += list != NULL;
+        fibrad_hit truth = {0};
+        fibrad_trace_point_scalar(scene, o, w, FIBRAD_NO_SIDE, &truth);
+        met += truth.sphere != FIBRAD_NONE;
+        for (int v = 0; v < isas.count; v++) {
+            fibrad_hit hit = {0};
+            FIBRAD_VERSION_OF(fibrad_trace_wall, isas.set[v])(tracer, o, w, FIBRAD_NO_SIDE, &hit);
+            ck_assert_mem_eq(&hit, &truth, sizeof hit);
+        }
+    }
+    ck_assert_uint_gt(listed, 15000);
+    ck_assert_uint_gt(met, 5000);
+}
+
 /* Follows the ray along x from the first of two spheres. Returns its length. kept: out: whether the list that it uses
  * was there before. */
 static double length_along_x(fibrad_tracer *tracer, bool *kept) {

@@ -231,6 +231,7 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
             path->n[axis] = hit.normal[axis];
         }
         path->place = hit.sphere;
+        fibrad_tracer_expect(paths->tracer, path->place);
         return FIBRAD_NONE;
     }
     if (hit.sphere != FIBRAD_NONE && scene->clear != NULL) look_past(scene, path, point, w, &hit);

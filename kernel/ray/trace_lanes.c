@@ -70,19 +70,19 @@ static struct trace_cull cull_of(const double start[3], const double w[3], doubl
 }
 
 /* Compares one group of the list. */
-static void intersect_group(const struct trace_ray *ray, const fibrad_nearby *list, uint32_t group,
+static void intersect_group(const struct trace_ray *ray, const fibrad_nearby_group *group,
                             const struct trace_cull *cull, struct trace_first *first) {
     const fibrad_scene *scene = ray->scene;
-    for (uint32_t k = group * FIBRAD_GROUP; k < (group + 1) * FIBRAD_GROUP; k += VF_LANES) {
-        vf x = vf_load(list->x + k), y = vf_load(list->y + k), z = vf_load(list->z + k);
+    for (uint32_t k = 0; k < FIBRAD_GROUP; k += VF_LANES) {
+        vf x = vf_load(group->x + k), y = vf_load(group->y + k), z = vf_load(group->z + k);
         vf depth = cull->w[0] * x + cull->w[1] * y + cull->w[2] * z;
         vf twice = cull->twice[0] * x + cull->twice[1] * y + cull->twice[2] * z + cull->inside;
         vf from = depth - cull->along;
-        uint32_t bits = vf_lt_bits(vf_load(list->q + k) - twice, from * from);
+        uint32_t bits = vf_lt_bits(vf_load(group->q + k) - twice, from * from);
         bits &= vf_lt_bits(cull->behind, depth);
         for (; bits != 0; bits &= bits - 1) {
-            uint32_t at = k + (uint32_t)__builtin_ctz(bits), j = list->sphere[at];
-            const int8_t *periods = list->periods[at];
+            uint32_t at = k + (uint32_t)__builtin_ctz(bits), j = group->sphere[at];
+            const int8_t *periods = group->periods[at];
             double c[3] = {(scene->x[j] - ray->base[0] + periods[0] * scene->period[0]) * ray->inverse,
                            (scene->y[j] - ray->base[1] + periods[1] * scene->period[1]) * ray->inverse,
                            (scene->z[j] - ray->base[2] + periods[2] * scene->period[2]) * ray->inverse};
@@ -212,7 +212,7 @@ void LANED(fibrad_trace)(fibrad_tracer *tracer, uint32_t place, const double n[3
     struct trace_first first = {.distance = __builtin_inf()};
     const struct trace_cull cull = cull_of(n, w, 0, -list->behind);
     for (uint32_t group = 0; group < list->groups && !(first.distance < list->clear[group]); group++)
-        intersect_group(&ray, list, group, &cull, &first);
+        intersect_group(&ray, &list->group[group], &cull, &first);
     double known = list->clear[list->groups];
     /* spheres that overlap this one count also behind the origin, if their centres are ahead */
     double from = known >= 0 ? known : -fibrad_dot(n, w);
@@ -266,7 +266,7 @@ static double meet_listed(const struct trace_ray *ray, const fibrad_nearby *list
     const double scale = radius * ray->inverse;
     const struct trace_cull cull = cull_of(start, ray->w, 1 - fibrad_dot(start, start), -__builtin_inff());
     for (uint32_t group = 0; group < list->groups && !(first->distance < list->clear[group] * scale); group++)
-        intersect_group(ray, list, group, &cull, first);
+        intersect_group(ray, &list->group[group], &cull, first);
     return fibrad_max(0, list->clear[list->groups] * scale);
 }
 

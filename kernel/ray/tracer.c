@@ -10,9 +10,8 @@
 #define CANDIDATES 512
 #define LISTS_MIN  16u
 
-/* A list of a cell is made when this many rays have begun in the cell. The cells are one to this many lists. */
-#define CELL_RAYS      4u
-#define LISTS_FOR_CELL 2u
+/* A list of a cell is made when this many rays have begun in the cell. */
+#define CELL_RAYS 4u
 
 typedef struct fibrad_candidate {
     double clearance, c[3], r;
@@ -22,9 +21,9 @@ typedef struct fibrad_candidate {
 
 static void tracer_layout(fibrad_arena *arena, uint32_t lists, fibrad_tracer *tracer) {
     tracer->lists = lists;
+    tracer->cells = lists > LISTS_MIN ? lists / 2 : 1;
     tracer->owner = fibrad_arena_take(arena, lists, sizeof *tracer->owner);
-    tracer->nearby = fibrad_arena_take(arena, lists + lists / LISTS_FOR_CELL, sizeof *tracer->nearby);
-    tracer->cells = lists / LISTS_FOR_CELL;
+    tracer->nearby = fibrad_arena_take(arena, lists + tracer->cells, sizeof *tracer->nearby);
     tracer->cell = fibrad_arena_take(arena, tracer->cells, sizeof *tracer->cell);
     for (int k = 0; k < 2; k++) tracer->key[k] = fibrad_arena_take(arena, CANDIDATES, sizeof *tracer->key[k]);
     tracer->candidate = fibrad_arena_take(arena, CANDIDATES, sizeof *tracer->candidate);
@@ -101,18 +100,18 @@ static bool gather_candidates(fibrad_tracer *tracer, const struct ball *from, do
     return true;
 }
 
-/* Fills one element of a list. Floats are rounded so that a sphere may be compared in vain, but never missed, as in
+/* Fills one element of a group. Floats are rounded so that a sphere may be compared in vain, but never missed, as in
  * work/neighbours_lanes.c. Beyond the range of floats all spheres are compared. */
-static void enter_nearby(fibrad_nearby *list, uint32_t k, const fibrad_candidate *s) {
+static void enter_nearby(fibrad_nearby_group *group, uint32_t k, const fibrad_candidate *s) {
     double square = s->c[0] * s->c[0] + s->c[1] * s->c[1] + s->c[2] * s->c[2];
     double about = 1 + fibrad_abs(s->c[0]) + fibrad_abs(s->c[1]) + fibrad_abs(s->c[2]);
     bool small = about < 1e18;
-    list->x[k] = small ? (float)s->c[0] : 0;
-    list->y[k] = small ? (float)s->c[1] : 0;
-    list->z[k] = small ? (float)s->c[2] : 0;
-    list->q[k] = small ? (float)(square + 1 - s->r * s->r - 4e-6 * about * about) : -FLT_MAX;
-    list->sphere[k] = s->sphere;
-    for (int axis = 0; axis < 3; axis++) list->periods[k][axis] = s->periods[axis];
+    group->x[k] = small ? (float)s->c[0] : 0;
+    group->y[k] = small ? (float)s->c[1] : 0;
+    group->z[k] = small ? (float)s->c[2] : 0;
+    group->q[k] = small ? (float)(square + 1 - s->r * s->r - 4e-6 * about * about) : -FLT_MAX;
+    group->sphere[k] = s->sphere;
+    for (int axis = 0; axis < 3; axis++) group->periods[k][axis] = s->periods[axis];
 }
 
 /* Rays start at distance 1 from the centre. The other terms allow for rounding. */
@@ -147,15 +146,15 @@ static void make_nearby(fibrad_tracer *tracer, fibrad_nearby *list, const struct
     list->clear[list->groups] = length_for(limit);
     for (uint32_t g = list->groups; g-- > 0;) {
         double least = limit;
-        for (uint32_t k = g * FIBRAD_GROUP; k < (g + 1) * FIBRAD_GROUP; k++) {
-            if (k < listed) {
-                const fibrad_candidate *s = &tracer->candidate[(uint32_t)key[k]];
+        for (uint32_t k = 0; k < FIBRAD_GROUP; k++) {
+            if (g * FIBRAD_GROUP + k < listed) {
+                const fibrad_candidate *s = &tracer->candidate[(uint32_t)key[g * FIBRAD_GROUP + k]];
                 least = fibrad_min(least, s->clearance);
                 farthest = fibrad_max(farthest, s->clearance + s->r);
-                enter_nearby(list, k, s);
+                enter_nearby(&list->group[g], k, s);
             } else {
-                list->x[k] = list->y[k] = list->z[k] = 0;
-                list->q[k] = FLT_MAX;
+                list->group[g].x[k] = list->group[g].y[k] = list->group[g].z[k] = 0;
+                list->group[g].q[k] = FLT_MAX;
             }
         }
         list->clear[g] = fibrad_min(length_for(least), list->clear[g + 1]);

@@ -16,18 +16,24 @@
 #include "base/lanes/laned.h"
 #include "work/work.h"
 
-#define FIBRAD_NEARBY 96 /* spheres of a list, in whole groups */
-#define FIBRAD_GROUP  16
+#define FIBRAD_GROUP  16 /* spheres */
+#define FIBRAD_GROUPS 6  /* of a list */
+#define FIBRAD_NEARBY (FIBRAD_GROUPS * FIBRAD_GROUP)
+
+/* Spheres that a ray is compared with at once. */
+typedef struct fibrad_nearby_group {
+    _Alignas(64) float x[FIBRAD_GROUP], y[FIBRAD_GROUP], z[FIBRAD_GROUP];
+    float q[FIBRAD_GROUP]; /* a little less than distance of the centres^2 + 1 - r^2 */
+    uint32_t sphere[FIBRAD_GROUP];
+    int8_t periods[FIBRAD_GROUP][4]; /* periodic image, by axis */
+} fibrad_nearby_group;
 
 /* The spheres near one sphere, relative to its centre and in units of its radius; or near the ball about a cell. The
- * list is filled up with spheres that no ray meets. */
+ * last group is filled up with spheres that no ray meets. */
 typedef struct fibrad_nearby {
-    _Alignas(64) float x[FIBRAD_NEARBY], y[FIBRAD_NEARBY], z[FIBRAD_NEARBY];
-    float q[FIBRAD_NEARBY]; /* a little less than distance of the centres^2 + 1 - r^2 */
-    uint32_t sphere[FIBRAD_NEARBY];
-    int8_t periods[FIBRAD_NEARBY][4];               /* periodic image, by axis */
-    double clear[FIBRAD_NEARBY / FIBRAD_GROUP + 1]; /* a ray meets no sphere of this group, of later groups, or not
-                                                       listed, before this length; the last element: not listed */
+    fibrad_nearby_group group[FIBRAD_GROUPS];
+    double clear[FIBRAD_GROUPS + 1]; /* a ray meets no sphere of this group, of later groups, or not listed, before this
+                                        length; the last element: not listed */
     uint32_t groups;
     float behind; /* a bound of the rounding errors of depths in floats, negative: the least depth of spheres that are
                      not behind */
@@ -72,6 +78,13 @@ typedef struct fibrad_hit {
 
 /* The list of the sphere at `place`. It is made if it does not exist. */
 const fibrad_nearby *fibrad_tracer_nearby(fibrad_tracer *tracer, uint32_t place);
+
+/* Fetches the first group of the list of a sphere into the cache, for a ray that leaves the sphere soon. */
+FIBRAD_INLINE void fibrad_tracer_expect(const fibrad_tracer *tracer, uint32_t place) {
+    const fibrad_nearby *list = &tracer->nearby[place & (tracer->lists - 1)];
+    __builtin_prefetch(list->group->x), __builtin_prefetch(list->group->y), __builtin_prefetch(list->group->z);
+    __builtin_prefetch(list->group->q), __builtin_prefetch(list->group->sphere), __builtin_prefetch(list->clear);
+}
 
 /* The list of the cell in which a ray begins. NULL: hardly any ray has begun there so far. start: out: the point
  * relative to the middle of the cell, in radii of the ball about the cell. radius: out: [L]. */
