@@ -89,8 +89,8 @@ typedef struct fibrad_insitu fibrad_insitu;
 
 /* Directions and paths of each row. docs/lammps.md has errors and times. */
 typedef enum fibrad_accuracy {
-    FIBRAD_ACCURACY_NORMAL = 0, /* 48 directions, 120 paths */
-    FIBRAD_ACCURACY_LOW = 1,    /* 26, 36 */
+    FIBRAD_ACCURACY_NORMAL = 0, /* 40 directions, 80 paths */
+    FIBRAD_ACCURACY_LOW = 1,    /* 24, 34 */
     FIBRAD_ACCURACY_HIGH = 2    /* 144, 1600 */
 } fibrad_accuracy;
 

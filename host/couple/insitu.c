@@ -32,8 +32,8 @@ static void *resize_on_heap(void *context, void *block, size_t size) {
 static const struct {
     const char *name;
     uint32_t directions, paths;
-} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 48, 120},
-               [FIBRAD_ACCURACY_LOW] = {"low", 26, 36},
+} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 40, 80},
+               [FIBRAD_ACCURACY_LOW] = {"low", 24, 34},
                [FIBRAD_ACCURACY_HIGH] = {"high", 144, 1600}};
 
 int fibrad_accuracy_named(const char *name) {

@@ -58,8 +58,8 @@ int main(int count, char **argument) {
             fibrad_exchange_rule rule = {/* defaults of fibrad_insitu_config */
                                          .emissivity = emissivity,
                                          .body_emissivity = &floor_emissivity,
-                                         .directions = 48,
-                                         .paths = 120,
+                                         .directions = 40,
+                                         .paths = 80,
                                          .cutoff = cutoff};
             fibrad_rows_clear(&rows);
             for (uint32_t i = 0; i < n; i++) {
