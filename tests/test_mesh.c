@@ -648,3 +648,29 @@ TEST(grey_meshes) {
     for (int b = 0; b < 6; b++) ck_assert_double_eq_tol(mean[0].body[b], mean[1].body[b], error);
     for (int k = 0; k < 2; k++) free(scene[k]), row_free(&row[k]);
 }
+
+/* Rows of few windows, turned at random, give a floor of two triangles on the mean what they give to a plane. */
+TEST(few_turned_windows) {
+    OWNED_BED bed = bed_empty();
+    ck_assert_int_eq(bed_make_layer(&bed, 200, .5, 200, 3), 0);
+    OWNED struct mesh *mesh = mesh_new();
+    const double x = bed.period[0], y = bed.period[1];
+    const uint32_t corner[4] = {mesh_vertex(mesh, 0, 0, 0), mesh_vertex(mesh, x, 0, 0), mesh_vertex(mesh, x, y, 0),
+                                mesh_vertex(mesh, 0, y, 0)};
+    mesh_quad(mesh, corner, 0, FIBRAD_NO_BODY);
+    const fibrad_body body[2][2] = {{plane_at(2, 0, 0), plane_at(2, 1, bed.high[2])},
+                                    {{.kind = FIBRAD_BODY_MESH}, plane_at(2, 1, bed.high[2])}};
+    double sum[2] = {0};
+    for (int k = 0; k < 2; k++) {
+        OWNED fibrad_scene *scene = scene_with(
+            &bed, &(fibrad_scene_config){.body = body[k], .bodies = 2, .triangles = k ? &mesh->triangles : NULL});
+        OWNED_WORK work = work_growing();
+        OWNED_ROW row = row_of(bed.n);
+        for (uint32_t n = 0; n < 2000; n++) {
+            const fibrad_beam_rule rule = {.directions = 24, .points = 64, .turn = n + 1};
+            assert_ok(fibrad_beam_row(scene, &work, n % bed.n, &rule, &row));
+            sum[k] += row.body[0];
+        }
+    }
+    ck_assert_double_eq_tol(sum[1] / sum[0], 1, 1e-9);
+}

@@ -15,9 +15,9 @@
 
 typedef struct fibrad_paths {
     fibrad_tracer *tracer;
-    uint32_t place; /* position of the sphere that paths leave; FIBRAD_NONE: paths leave a wall, without a cutoff */
-    uint32_t from;  /* slot of the wall that paths leave */
-    fibrad_legs *legs;              /* NULL, or the first legs of the first paths */
+    uint32_t place;    /* position of the sphere that paths leave; FIBRAD_NONE: paths leave a wall, without a cutoff */
+    uint32_t from;     /* slot of the wall that paths leave */
+    fibrad_legs *legs; /* NULL, or the first legs of the first paths */
     const fibrad_sobol *sobol;      /* evenly spread points, of paths from a wall */
     double inverse;                 /* 1/L, of the radius of the sphere */
     bool cut;                       /* whether there is a cutoff or a known region */

@@ -61,9 +61,8 @@ struct trace_cull {
 };
 
 static struct trace_cull cull_of(const double start[3], const double w[3], double inside, float behind) {
-    struct trace_cull cull = {.along = vf_set1((float)fibrad_dot(start, w)),
-                              .inside = vf_set1((float)inside),
-                              .behind = vf_set1(behind)};
+    struct trace_cull cull = {
+        .along = vf_set1((float)fibrad_dot(start, w)), .inside = vf_set1((float)inside), .behind = vf_set1(behind)};
     for (int axis = 0; axis < 3; axis++)
         cull.w[axis] = vf_set1((float)w[axis]), cull.twice[axis] = vf_set1((float)(2 * start[axis]));
     return cull;

@@ -41,19 +41,19 @@ typedef struct fibrad_nearby {
 
 /* A cell with the edge of the mean spacing. */
 typedef struct fibrad_tracer_cell {
-    double at[3];    /* its lower corner, in edges */
-    uint32_t begun;  /* rays that began there without a list; 0: the slot is empty */
+    double at[3];   /* its lower corner, in edges */
+    uint32_t begun; /* rays that began there without a list; 0: the slot is empty */
     fibrad_nearby *list;
 } fibrad_tracer_cell;
 
 typedef struct fibrad_tracer {
     const fibrad_scene *scene;
-    uint32_t lists;        /* a power of two */
-    uint32_t *owner;       /* [lists] place of the sphere that a list belongs to; FIBRAD_NONE: none */
-    fibrad_nearby *nearby; /* [lists] */
+    uint32_t lists;           /* a power of two */
+    uint32_t *owner;          /* [lists] place of the sphere that a list belongs to; FIBRAD_NONE: none */
+    fibrad_nearby *nearby;    /* [lists] */
     uint32_t cells;           /* a power of two */
     fibrad_tracer_cell *cell; /* [cells] */
-    uint64_t *key[2];      /* [] scratch: clearances and numbers of spheres that may be listed */
+    uint64_t *key[2];         /* [] scratch: clearances and numbers of spheres that may be listed */
     struct fibrad_candidate *candidate;
 } fibrad_tracer;
 

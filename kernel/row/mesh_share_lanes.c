@@ -273,8 +273,9 @@ static bool meet_window(fibrad_workspace *work, mesh_found *found, const fibrad_
 /* Searches for triangles before a window down to a depth. False: there are none. */
 static bool find_faces(fibrad_workspace *work, const double frame[9], double deepest, bool open, mesh_found *found) {
     fibrad_face_search *search = &found->search;
-    const double wide = open ? 1.0001 * FIBRAD_WINDOW_SPREAD / fibrad_sqrt(work->windows) : 0;
-    const double near = open ? FIBRAD_WINDOW_NEAR / wide : __builtin_inf();
+    const bool spreads = open && !work->parallel;
+    const double wide = spreads ? 1.0001 * FIBRAD_WINDOW_SPREAD / fibrad_sqrt(work->windows) : 0;
+    const double near = spreads ? FIBRAD_WINDOW_NEAR / wide : __builtin_inf();
     LANED(fibrad_faces_begin)(work, frame, deepest, wide, near, search);
     found->more = LANED(fibrad_faces_next)(work, search);
     found->listed = true;
@@ -284,7 +285,7 @@ static bool find_faces(fibrad_workspace *work, const double frame[9], double dee
         found->listed = false;
     }
     found->at = fibrad_min(search->nearest, search->rest); /* beyond this depth nothing has been searched */
-    found->spread = open ? spread_at(found->at, work->windows) : 0;
+    found->spread = spreads ? spread_at(found->at, work->windows) : 0;
     if (found->more || !found->listed || search->rest < __builtin_inf()) search->shallow = -__builtin_inf();
     return found->at < __builtin_inf();
 }

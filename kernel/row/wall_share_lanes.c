@@ -16,7 +16,6 @@
 
 #define WALL_POINTS   128u
 #define HIDDEN_POINTS 64u /* of windows without an open part */
-#define FEW_POINTS    64u /* of windows of rows with few windows */
 
 /* Rotates the axes u and v of a frame. Coordinates in the frame rotate the other way. */
 static void rotate_frame(double frame[9], double cos, double sin) {
@@ -327,11 +326,6 @@ static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, 
     }
 }
 
-/* Whether open lines keep the direction of their window. Rows of 64 points have so few windows that directions spread
- * widely. The open part of a window does not follow them that far, and factors of walls are biased by up to 1.5 % at
- * 14 windows. If such rows are turned at random, parallel lines have no bias. */
-static bool has_parallel_lines(const fibrad_window_set *set) { return set->turned && set->points == FEW_POINTS; }
-
 void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t k,
                                const fibrad_window_set *set, double rest) {
     if (rest == 0) {
@@ -341,7 +335,7 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
     }
     const double whole = set->points > 0 ? set->points : FIBRAD_PI;
     fibrad_wall_window window = {.frame = frame, .k = k, .n = set->directions, .open = rest, .part = 1};
-    window.parallel = has_parallel_lines(set);
+    window.parallel = work->parallel;
     window.hidden = fibrad_max(0, whole - rest);
     if (points->count > 0) window.part = 0.4 + 0.6 * rest / whole;
     if (work->walls->view.cut)
@@ -373,7 +367,7 @@ void LANED(fibrad_walls_complete)(fibrad_workspace *work, const fibrad_window_se
         for (int part = 0; part < 4; part++) open += work->walls->sums.open[region][part];
     parts[0] = parts[1] = 0;
     if (!(open > 0)) return;
-    const double apart = has_parallel_lines(set) ? 0 : fibrad_wall_apart(&work->walls->view);
+    const double apart = work->parallel ? 0 : fibrad_wall_apart(&work->walls->view);
     if (apart > 0) add_hidden(work, set);
     fibrad_wall_factors(&work->walls->sums, &work->walls->view, set->directions, apart, work->wall, parts);
 }

@@ -245,6 +245,7 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
     for (uint32_t k = 0; k < work->entries.length; k++) work->entries.at[work->entries.slot[k]] = FIBRAD_NONE;
     work->entries.length = work->entries.missed = 0;
     work->entries.end = false;
+    work->parallel = false;
     work->entries.addends = NULL;
     fibrad_zero(work->wall, sizeof work->wall);
     work->needed = work->plan;

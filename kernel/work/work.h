@@ -121,17 +121,17 @@ typedef struct fibrad_work_plan {
     uint32_t legs;    /* first legs of paths that a beam row takes */
 } fibrad_work_plan;
 
-/* The first leg of a path: a beam of a window. The right column holds once the leg has arrived. */
+/* The first leg of a path: a beam of a window. Once paths have arrived (exchange/paths.h), n, w, centre and sphere tell
+ * where the leg has ended. */
 typedef struct fibrad_leg {
-    double n[3];       /* outward normal of sphere i where the beam leaves; normal of the surface where it arrives */
-    double w[3];       /* direction of the beam; [L] at a wall: where it arrives */
+    double n[3];       /* outward normal of sphere i where the beam leaves; later: normal of the surface met */
+    double w[3];       /* direction of the beam; later, at a wall: where the leg ends [L] */
     double even[3];    /* an even point of the unit sphere, by which a path goes on */
-    double centre[3];  /* of the sphere that the beam meets, in radii of sphere i, from the centre of sphere i; as centre
-                          of a path */
-    double weight;     /* what the surface reflects */
-    uint32_t sphere;   /* place of the sphere met; FIBRAD_NONE: not known; a wall */
-    uint32_t triangle; /* at a mesh: on which; FIBRAD_NO_SIDE: no mesh */
-    uint32_t chosen;   /* leg that path k goes on from, in the place of leg k */
+    double centre[3];  /* of the sphere met, from the centre of sphere i, in its radii; later: centre of the path [L] */
+    uint32_t sphere;   /* place of the sphere met; FIBRAD_NONE: not known; later FIBRAD_NONE: a wall is met */
+    uint32_t triangle; /* later: the triangle met; FIBRAD_NO_SIDE: none */
+    uint32_t chosen;   /* later: the number of the leg from which path k goes on, k being the number of this leg */
+    double weight;     /* later: what the surface met reflects */
 } fibrad_leg;
 
 /* First legs that a beam row takes from its windows, equally many from each. */
@@ -170,6 +170,7 @@ typedef struct fibrad_workspace {
     uint32_t windows;          /* number of windows of a beam row */
     uint32_t back;             /* a triangle seen from a side that belongs to no wall; UINT32_MAX: none */
     bool cut;                  /* whether there is a cutoff or a known region */
+    bool parallel;             /* whether open lines keep the direction of their window */
     fibrad_wall_room *walls;   /* NULL unless plan.walls */
     double wall[FIBRAD_SLOTS]; /* by slot: areas, points or rays; then factors */
 } fibrad_workspace;
