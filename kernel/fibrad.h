@@ -77,8 +77,8 @@
  *   Errors    A function that can fail returns FIBRAD_OK or a negative fibrad_status. After an error the outputs are
  *             as before, except where the function's comment says otherwise. The error for a null pointer is
  *             FIBRAD_E_ARGUMENT. A scene is complete once fibrad_scene_init has returned FIBRAD_OK. The error for a
- *             scene that is not complete is FIBRAD_E_STATE. Another object may have been made from a scene. If another
- *             scene is then made in the memory of this scene, calls with the object return FIBRAD_E_STATE, too.
+ *             scene that is not complete is FIBRAD_E_STATE. The objects fibrad_silhouettes and fibrad_heat read their
+ *             scene. If a different scene has been made in its memory, calls that read it return FIBRAD_E_STATE.
  *   Defaults  Set all fields of a structure to 0. Then set the fields that you need. The comment of a field says what 0
  *             means. "Zeroed" says what a structure of zeros means.
  *   Bits      Results depend on the arguments alone. They are the same to the bit for every number of threads,
@@ -199,8 +199,7 @@ int fibrad_pair_exact(double r1, double r2, double gap, double *f12);
 
 /* ---- scene ----------------------------------------------------------------------------------------------------- */
 /* The spheres of a scene. The centre of sphere i is at x[i * stride], y[i * stride], z[i * stride]. The radius of
- * sphere i is r[i * stride_r]. The size of a coordinate is at most FIBRAD_LENGTH_MAX, and at most 3e13 times the
- * smallest radius.
+ * sphere i is r[i * stride_r]. With the smallest radius r_min, |coordinate| <= min(FIBRAD_LENGTH_MAX, 3e13 r_min).
  * Example: if double at[n][3] has the centres, spheres = {&at[0][0], &at[0][1], &at[0][2], r, n, .stride = 3}. */
 typedef struct fibrad_spheres {
     const double *x, *y, *z;   /* L, [n], coordinates of the centres; NULL if n = 0 */
@@ -236,9 +235,15 @@ typedef struct fibrad_plane {
  * openings.
  *
  * Endless walls. An endless wall has an infinite area. A single plane may be endless. Two planes across the same axis
- * may be endless, too. Planes across several axes are allowed only if each axis has two planes or a period. A cylinder
- * is allowed only if the z axis has two planes or a period. Otherwise fibrad_scene_init returns FIBRAD_E_ENDLESS. In
- * these rules an axis also has a period if fibrad_occupancy.periodic is 1 for the axis. */
+ * may be endless, too. An axis is closed if it has two planes or a period. It is also closed if
+ * fibrad_occupancy.periodic is 1 for the axis.
+ *
+ *   the scene has                     must be closed
+ *   planes across one axis            no axis
+ *   planes across two or three axes   all three axes
+ *   a cylinder                        the z axis
+ *
+ * Otherwise fibrad_scene_init returns FIBRAD_E_ENDLESS. */
 typedef struct fibrad_body {
     int kind;           /* a fibrad_body_kind */
     fibrad_plane plane; /* used by FIBRAD_BODY_PLANE */
@@ -249,8 +254,8 @@ typedef struct fibrad_body {
 
 /* Divided beds. Several machines may divide the spheres of a bed. Each machine computes the rows of its own spheres,
  * with a cutoff. Let R be the largest radius. Row i depends on the spheres whose centres lie within cutoff + 1.5 R of
- * centre i. If no spheres overlap, the distance cutoff + R suffices. Row i also depends on the walls, the
- * occupancy and the ids. No other sphere changes a bit of row i. The order of the spheres changes no bit either.
+ * centre i. If no spheres overlap, the distance cutoff + R suffices. Spheres farther away change no bit of row i. The
+ * order of the spheres changes no bit either. Row i also depends on the walls, the occupancy and the ids.
  *
  * The fraction `beyond`. The occupancy (fibrad_occupancy) marks the cells of a box in which the bed may have spheres.
  * Let the known space of row i be the ball whose radius is the cutoff, about centre i. If the scene has a known region,
@@ -265,7 +270,8 @@ typedef struct fibrad_body {
  *   no         no            passes through the box of all spheres          `beyond`
  *   no         yes           not looked at                                  `beyond`
  *
- * In this table triangles are walls. If the occupancy is periodic and the way is longer than 100 of its periods, the
+ * The box of all spheres is the box of all centres, made larger by the largest radius on every side. Along a periodic
+ * axis the box repeats without end. If the occupancy is periodic and the way is longer than 100 of its periods, the
  * radiation counts as `beyond`. If there is neither a cutoff nor a known region, `beyond` is 0.
  *
  * A scene may have spheres outside its known region. View factors count these spheres, if they are within the cutoff.
@@ -389,8 +395,8 @@ typedef struct fibrad_scene_facts {
  *   Errors   none */
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
 
-/* Area of a wall [L^2]. For a plane or a cylinder this is the area inside all other planes and the cylinder. Along a
- * periodic axis this is the area of one period. For a mesh this is the sum over all sides that belong to the wall.
+/* Area of a wall [L^2]. For a plane or a cylinder only the part that bounds the container counts. Along a periodic axis
+ * this is the area of one period. For a mesh this is the sum over all sides that belong to the wall.
  *   Output   infinity: the wall is endless. NaN: there is no such wall, or the scene is not complete.
  *   Errors   none */
 double fibrad_scene_body_area(const fibrad_scene *scene, uint32_t body);
@@ -464,9 +470,9 @@ typedef struct fibrad_beam_rule {
  * There is one beam for each direction of the rule. Sphere j is visible in a fraction of each window. The factor to
  * sphere j is the mean of this fraction over all windows.
  *   exact areas  The fraction is a visible area over the area of the window. The error of the entries falls as
- *                directions^-1.5. The error of factors to walls falls a little more slowly. The factors to planes and
- *                to the cylinder are exact if sphere i sees no other sphere and cuts no wall, and if there is neither
- *                a cutoff nor a known region.
+ *                directions^-1.5. The error of factors to walls falls a little more slowly. Suppose that sphere i sees
+ *                no other sphere and cuts no wall. Then the factors to planes and to the cylinder are exact. With a
+ *                cutoff or a known region they are not.
  *   points       Each point of the window is one ray. The fraction is the number of points that meet sphere j, divided
  *                by the number of all points.
  *
@@ -495,7 +501,7 @@ uint32_t fibrad_directions_for(uint32_t directions, double error, double toleran
 /* A part of a beam row: what some of its directions contribute. The factors of a row come from sums over its windows.
  * What one window adds to one sum is a term. Set `memory`, and zero the rest. */
 typedef struct fibrad_row_part {
-    fibrad_memory memory;         /* takes 16 bytes for each sphere that a window sees */
+    fibrad_memory memory;         /* 16 bytes for each term; a growing block may be twice as large */
     uint64_t key;                 /* of the library: the row, rule and scene of this part; 0: none */
     size_t count;                 /* of the library: number of terms */
     uint32_t from, to, fallbacks; /* of the library: the directions, and the windows left to the robust method */
@@ -544,9 +550,10 @@ typedef struct fibrad_cast_means {
  *
  * The origins are spread evenly over the sphere. The directions follow the cosine law. Each ray ends at the first
  * surface that it meets. A factor is the number of rays that end on a surface over the number of all rays. The error
- * falls as rays^-0.6 with quasi-random numbers and as rays^-0.5 with pseudo-random numbers. A ray may start inside
- * another sphere that overlaps sphere i. If the centre of this sphere lies ahead of centre i in the direction of the
- * ray, the ray meets the sphere at length 0. Otherwise the ray passes through it.
+ * falls as rays^-0.6 with quasi-random numbers and as rays^-0.5 with pseudo-random numbers.
+ *
+ * A ray may start inside another sphere j that overlaps sphere i. Let c be the vector from centre i to centre j, and w
+ * the direction of the ray. If c.w > 0, the ray meets sphere j at length 0. Otherwise the ray passes through sphere j.
  *   Input    i: 0 to spheres - 1
  *            rule: NULL for all defaults
  *   Output   row
@@ -588,13 +595,16 @@ void fibrad_rows_clear(fibrad_rows *rows);
 int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
 
 /* ---- silhouettes --------------------------------------------------------------------------------------------- */
-/* All rows of a scene at once. Seen along a line, the silhouette of a sphere is a circle. The circle is divided into
- * pieces. Along a piece, the nearest sphere before the circle does not change, and neither does the nearest one behind
- * it. Such pieces bound the areas through which spheres exchange radiation along the line. So these areas follow from
- * the pieces of all circles. The rows are reciprocal and closed to rounding, without averaging. The error of rows by n
- * lines is about half the error of averaged beam rows by n directions.
+/* All rows of a scene at once. Seen along a line, the silhouette of a sphere is a circle. At a point of the circle of
+ * sphere k, let a and b be the nearest spheres on either side of k along the line. The circle is divided into pieces on
+ * which a and b do not change. A piece belongs to the borders of three areas: those through which a and k, k and b, and
+ * a and b exchange radiation along the line. So these areas follow from the pieces of all circles.
  *
- * A pair is two spheres, or a sphere and what lies beyond all spheres, with the area that both exchange.
+ * The rows are reciprocal and closed to rounding, without averaging. The error of rows by n lines is about half the
+ * error of averaged beam rows by n directions.
+ *
+ * A pair is two spheres and the area through which they exchange radiation, summed over lines. In some pairs what lies
+ * beyond all spheres takes the place of one sphere.
  *   1. fibrad_silhouettes_init makes the set of lines.
  *   2. fibrad_silhouettes_task does a task, which gives pairs. Several threads may do different tasks at the same time.
  *      Each thread has its own fibrad_pairs.
@@ -602,9 +612,10 @@ int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
  *   4. fibrad_silhouettes_row delivers a row. Several threads may ask for rows at the same time.
  *   5. fibrad_matrix_init with rule.reciprocal = 1 makes a matrix of the rows.
  *
- * Planes, openings and a cylinder hide no sphere from another. The circles tell how much of a sphere is open along each
- * line. Added up over all lines, this is the sum of the factors to all planes, openings and the cylinder. Windows, as
- * in beam rows, divide this sum among them. Only the directions in which the sphere is open need such windows.
+ * Planes, openings and a cylinder hide no sphere from another. The circles tell which fraction of a sphere's disc is
+ * open in each direction of each line. The mean of this fraction is what the sphere sends to walls and surroundings
+ * together. Windows, as in beam rows, tell how much each wall and the surroundings get. Only the directions in which
+ * the sphere is open need such windows.
  *
  * Scenes with triangles are FIBRAD_E_UNSUPPORTED, since triangles hide spheres. Scenes with a known region are
  * FIBRAD_E_UNSUPPORTED, too, and the rule has no cutoff. The reason is that each area belongs to two spheres. With a
@@ -790,21 +801,24 @@ int fibrad_matrix_init(fibrad_matrix **matrix, void *memory, size_t size, const 
  *   Source   docs/methods.md section 5 */
 int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
 
-/* Ends the matrix. Afterwards A_i F_ij = A_j F_ji to rounding. The sum of every row that is not empty is 1 to rounding.
- * With `raw` nothing is changed. The steps are
+/* Ends the matrix. In the matrix A_i F_ij = A_j F_ji to rounding. The sum of every row that is not empty is 1 to
+ * rounding. If the rows hold exchange factors, read D_ij for F_ij and A_i e_i for A_i, here and below.
+ *
+ * With `raw` nothing is changed. Otherwise the steps are
  *   1. All tasks that are left are averaged.
- *   2. View factors by exact areas or by silhouettes: let s_i be 1/(sum over j of F_ij), and at most 1. F_ij is
- *      multiplied by the smaller one of s_i and s_j.
+ *   2. View factors by exact areas or by silhouettes: F_ij is multiplied by min(s_i, s_j), where
+ *      s_i = min(1, 1/(sum over j of F_ij)).
  *      Sampled view factors and exchange factors: let rest_i be what raw row i gives to walls, surroundings and
  *      `beyond` together. u_i is found with u_i (sum over j of F_ij u_j + rest_i) = 1. F_ij is multiplied by u_i u_j.
  *   3. Factors to walls, `escaped` and `beyond` are scaled so that the sum of the row is 1. If all of them are 0 in a
- *      row, they get the proportions that they have in all rows together.
- *   4. If walls have rows, A_b F_bi = A_i F_ib gives the factors from wall b to spheres. Then each factor from p to q
- *      is multiplied by u_p u_q, so that all rows have the sum 1. p and q are spheres or walls. If triangles cut
- *      spheres, such u may not exist. Then the rows of spheres stay as in step 3. The factors among walls stay as the
- *      paths have given them, and body_closure equals body_correction.
- *   5. The pairs F_ij and F_ji are removed in which both factors are below `drop`. The other entries are scaled so that
- *      the sums of the rows stay. The part of a sum that no scaling can restore is added to F_ii.
+ *      row, their proportions are those of the sums over i of A_i F_ib, where b is a wall, `escaped` or `beyond`.
+ *   4. This step is done if walls have rows. A_b F_bi = A_i F_ib gives the factors from wall b to spheres. The factors
+ *      between walls b and c become a mean with A_b F_bc = A_c F_cb. Let p and q be any spheres or walls. Numbers v are
+ *      found so that all rows have the sum 1 once each F_pq is multiplied by v_p v_q. `escaped` and `beyond` of row p
+ *      are multiplied by v_p. If triangles cut spheres, such v may not exist. Then no factor is multiplied, and
+ *      body_closure equals body_correction.
+ *   5. If F_ij and F_ji are both below `drop`, both are removed. F_ii stays. The other entries are scaled so that the
+ *      sums of the rows stay. The part of a sum that no scaling can restore is added to F_ii.
  *   Errors   _ARGUMENT
  *            _STATE: the matrix is closed already, or the rows have changed
  *   Cost     O(entries). With sampled view factors, exchange factors, step 4 or step 5 the call takes some 40 times as
@@ -932,9 +946,9 @@ int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i
 #define FIBRAD_BODY_PARTS 8
 
 /* One batch of the row of a wall: the fractions of the wall's emission that walls, spheres and surroundings absorb.
- * Only the area inside all other planes and the cylinder emits. Factors to single spheres follow from reciprocity,
- * A_b e_b D_bi = A_i e_i D_ib. A batch follows an eighth of rule->paths. The error falls as paths^-0.6, at low
- * emissivities as paths^-0.5.
+ * The area that emits is the one that fibrad_scene_body_area returns. Factors to single spheres follow from
+ * reciprocity, A_b e_b D_bi = A_i e_i D_ib. A batch follows an eighth of rule->paths. The error falls as paths^-0.6, at
+ * low emissivities as paths^-0.5.
  *   Input    body: 0 to bodies - 1
  *            part: number of the batch, 0 to FIBRAD_BODY_PARTS - 1
  *            rule: needed
@@ -947,8 +961,8 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
                          uint32_t part, fibrad_body_row *row);
 
 /* The mean of all batches of a wall's row. The spread of the batches gives the standard error of the mean. The error is
- * this standard error plus the fraction lost (fibrad_body_row). A mean below 0 becomes 0, and the other factors are
- * scaled.
+ * this standard error plus the fraction lost (fibrad_body_row). A mean below 0 becomes 0. Then the other factors are
+ * scaled so that their sum is 1.
  *   Input    part[FIBRAD_BODY_PARTS]: all batches
  *   Output   mean
  *   Errors   _ARGUMENT */
@@ -975,11 +989,13 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
 
 /* How fast radiation spreads through a bed of spheres that conduct. Temperatures differ from point to point on each
  * sphere, and the net power of every sphere is 0. A path begins with an arrival at sphere i. At each sphere the path is
- * reflected, or it is absorbed and given off at another point of the sphere. The way from one sphere to the next is a
- * flight. Let n be rule->flights. A path has 2 n flights. `square` is the mean square displacement per flight, in the
- * limit of many flights. The correlation of flights that are more than n flights apart is left out. For example, in a
- * cubic lattice of emissivity 1 the sum of `square` is 0.2 % too large with n = 12 at k* = 0.1. With n = 24 it is 0.2 %
- * too large at k* = 0.01.
+ * reflected, or it is absorbed and given off at another point of the sphere. The way from one arrival to the next is a
+ * flight. Let n be rule->flights. A path has 2 n flights. Let d_k be the displacement of flight k along an axis. Then
+ * `square` is the mean over all paths and over k = 1 to n of
+ *   d_k (d_k + 2 (d_k+1 + ... + d_k+n-1) + d_k+n).
+ * This estimates the mean square displacement of a long path, divided by its number of flights. The estimate leaves out
+ * the correlation of flights that are more than n apart. For example, in a cubic lattice of emissivity 1 the sum of
+ * `square` is 0.2 % too large with n = 12 at k* = 0.1. With n = 24 it is 0.2 % too large at k* = 0.01.
  *   Input    i: 0 to spheres - 1. The starts of the paths are spread evenly over the surface of sphere i.
  *            rule: needed
  *   Output   displacement; absorbed: fraction of the paths that did not leave the bed
