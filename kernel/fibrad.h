@@ -77,8 +77,9 @@
  *   Errors    A function that can fail returns FIBRAD_OK or a negative fibrad_status. After an error the outputs are
  *             as before, except where the function's comment says otherwise. The error for a null pointer is
  *             FIBRAD_E_ARGUMENT. A scene is complete once fibrad_scene_init has returned FIBRAD_OK. The error for a
- *             scene that is not complete is FIBRAD_E_STATE. The objects fibrad_silhouettes and fibrad_heat read their
- *             scene. If a different scene has been made in its memory, calls that read it return FIBRAD_E_STATE.
+ *             scene that is not complete is FIBRAD_E_STATE. A fibrad_silhouettes or a fibrad_heat refers to one scene.
+ *             If a different scene has been made in the memory of this scene, calls that read the scene return
+ *             FIBRAD_E_STATE.
  *   Defaults  Set all fields of a structure to 0. Then set the fields that you need. The comment of a field says what 0
  *             means. "Zeroed" says what a structure of zeros means.
  *   Bits      Results depend on the arguments alone. They are the same to the bit for every number of threads,
@@ -259,9 +260,10 @@ typedef struct fibrad_body {
  *
  * The fraction `beyond`. The occupancy (fibrad_occupancy) marks the cells of a box in which the bed may have spheres.
  * Let the known space of row i be the ball whose radius is the cutoff, about centre i. If the scene has a known region,
- * the known space is the part of the ball within this region. Some radiation meets no sphere of the row, and no wall
- * within the known space. This radiation leaves the known space. From there its way goes on to a wall or to the
- * surroundings. This way decides what the radiation counts as.
+ * the known space is the part of the ball within this region. Radiation of sphere i ends at the first sphere within the
+ * cutoff that it meets. If it meets no such sphere, it ends at the first wall that it meets within the known space. All
+ * other radiation leaves the known space. From there its way goes on to a wall or to the surroundings. This way decides
+ * what the radiation counts as.
  *
  *   occupancy  known region  the way outside the known space                counts as
  *   yes        yes or no     passes through no marked cell before its end   the wall at its end, or `escaped`
@@ -323,7 +325,7 @@ typedef enum fibrad_why {
     FIBRAD_WHY_NEITHER = 9,       /* Neither a temperature nor a power is given. */
     FIBRAD_WHY_REFLECTS = 10,     /* A surface of emissivity 0 cannot give off a power. */
     FIBRAD_WHY_HOLD = 11,         /* `hold` or `reference` (fibrad_heat.h) is out of range. */
-    FIBRAD_WHY_ENDLESS = 12,      /* An endless wall has no temperature. */
+    FIBRAD_WHY_ENDLESS = 12,      /* The temperature of an endless wall of emissivity above 0 is missing. */
     FIBRAD_WHY_SIDE = 13,         /* The temperature of a side is out of range, or its wall has no temperature. */
     FIBRAD_WHY_SURROUNDINGS = 14, /* The temperature of the surroundings is missing or out of range. */
     FIBRAD_WHY_SIGMA = 15,        /* sigma is out of range. */
@@ -596,15 +598,16 @@ int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
 
 /* ---- silhouettes --------------------------------------------------------------------------------------------- */
 /* All rows of a scene at once. Seen along a line, the silhouette of a sphere is a circle. At a point of the circle of
- * sphere k, let a and b be the nearest spheres on either side of k along the line. The circle is divided into pieces on
- * which a and b do not change. A piece belongs to the borders of three areas: those through which a and k, k and b, and
- * a and b exchange radiation along the line. So these areas follow from the pieces of all circles.
+ * sphere k, let a and b be the nearest spheres on either side of k along the line. If a side has no sphere, a or b
+ * stands for all walls and the surroundings together. The circle is divided into pieces on which a and b do not change.
+ * Let S(i, j) be the area through which i and j exchange radiation along the line. A piece is part of the borders of
+ * S(a, k), S(k, b) and S(a, b). So these areas follow from the pieces of all circles.
  *
  * The rows are reciprocal and closed to rounding, without averaging. The error of rows by n lines is about half the
  * error of averaged beam rows by n directions.
  *
- * A pair is two spheres and the area through which they exchange radiation, summed over lines. In some pairs what lies
- * beyond all spheres takes the place of one sphere.
+ * A pair is two spheres i and j, and S(i, j) summed over lines. In some pairs, i or j stands for all walls and the
+ * surroundings together.
  *   1. fibrad_silhouettes_init makes the set of lines.
  *   2. fibrad_silhouettes_task does a task, which gives pairs. Several threads may do different tasks at the same time.
  *      Each thread has its own fibrad_pairs.
@@ -810,13 +813,14 @@ int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
  *      s_i = min(1, 1/(sum over j of F_ij)).
  *      Sampled view factors and exchange factors: let rest_i be what raw row i gives to walls, surroundings and
  *      `beyond` together. u_i is found with u_i (sum over j of F_ij u_j + rest_i) = 1. F_ij is multiplied by u_i u_j.
- *   3. Factors to walls, `escaped` and `beyond` are scaled so that the sum of the row is 1. If all of them are 0 in a
- *      row, their proportions are those of the sums over i of A_i F_ib, where b is a wall, `escaped` or `beyond`.
- *   4. This step is done if walls have rows. A_b F_bi = A_i F_ib gives the factors from wall b to spheres. The factors
- *      between walls b and c become a mean with A_b F_bc = A_c F_cb. Let p and q be any spheres or walls. Numbers v are
- *      found so that all rows have the sum 1 once each F_pq is multiplied by v_p v_q. `escaped` and `beyond` of row p
- *      are multiplied by v_p. If triangles cut spheres, such v may not exist. Then no factor is multiplied, and
- *      body_closure equals body_correction.
+ *   3. Let F_ic be the factors of row i to what is no sphere: c is a wall, `escaped` or `beyond`. They are scaled so
+ *      that the sum of the row is 1. If all of them are 0, they become
+ *      F_ic = (1 - sum over j of F_ij) T_c/(sum over c of T_c), where T_c is the sum over all rows k of A_k F_kc.
+ *   4. This step is done if walls have rows. A_b F_bi = A_i F_ib gives the factors from wall b to spheres. For walls b
+ *      and c, let s = (F_bc + F_cb)/(A_b + A_c). Then F_bc becomes A_c s, and F_cb becomes A_b s. Let p and q be any
+ *      spheres or walls. Numbers v are found so that all rows have the sum 1 once each F_pq is multiplied by v_p v_q.
+ *      `escaped` and `beyond` of row p are multiplied by v_p. If triangles cut spheres, such v may not exist. Then no
+ *      factor is multiplied, and body_closure equals body_correction.
  *   5. If F_ij and F_ji are both below `drop`, both are removed. F_ii stays. The other entries are scaled so that the
  *      sums of the rows stay. The part of a sum that no scaling can restore is added to F_ii.
  *   Errors   _ARGUMENT
@@ -921,7 +925,7 @@ double fibrad_relative_conductivity(double conductivity, double radius, double t
  * the nodes.
  *   Input    emissivity: 0 to 1
  *            conductivity: k*, from FIBRAD_RELATIVE_CONDUCTIVITY_MIN; INFINITY: the result is the emissivity
- *   Output   above 0 to the emissivity; 0 if the emissivity is 0
+ *   Output   n, with 0 < n <= emissivity. If the emissivity is 0, n is 0.
  *   Errors   NaN: a number is out of its range
  *   Cost     0.1 microseconds
  *   Source   docs/methods_heat.md section 15 */
@@ -990,9 +994,9 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
 /* How fast radiation spreads through a bed of spheres that conduct. Temperatures differ from point to point on each
  * sphere, and the net power of every sphere is 0. A path begins with an arrival at sphere i. At each sphere the path is
  * reflected, or it is absorbed and given off at another point of the sphere. The way from one arrival to the next is a
- * flight. Let n be rule->flights. A path has 2 n flights. Let d_k be the displacement of flight k along an axis. Then
+ * flight. Let n be rule->flights. A path has 2 n flights. Let d[k] be the displacement of flight k along an axis. Then
  * `square` is the mean over all paths and over k = 1 to n of
- *   d_k (d_k + 2 (d_k+1 + ... + d_k+n-1) + d_k+n).
+ *   d[k] (d[k] + 2 (d[k+1] + ... + d[k+n-1]) + d[k+n]).
  * This estimates the mean square displacement of a long path, divided by its number of flights. The estimate leaves out
  * the correlation of flights that are more than n apart. For example, in a cubic lattice of emissivity 1 the sum of
  * `square` is 0.2 % too large with n = 12 at k* = 0.1. With n = 24 it is 0.2 % too large at k* = 0.01.
