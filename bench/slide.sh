@@ -8,19 +8,12 @@
 set -eu
 : "${BUILD:=build}" "${MPIRUN:=mpirun}" "${LMP:=lmp}"
 . tests/couple/mpi.sh
+. tests/couple/beds.sh
 np=$1 dump=$2 wide=$3
 shift 3
 work=$BUILD/bench/slide
 mkdir -p "$work"
-awk '/BOX BOUNDS/ { side = 1; next }
-    side && side < 4 { box[side++] = $1 " " $2; next }
-    NF >= 7 && !/ITEM/ { sphere[++n] = $1 " 1 " 2*$6 " 2500 " $3 " " $4 " " $5; t[n] = $1 " " $7 }
-    END {
-        print "bed\n\n" n " atoms\n1 atom types\n" box[1] " xlo xhi\n" box[2] " ylo yhi\n" box[3] " zlo zhi\n\nAtoms # sphere\n"
-        for (i = 1; i <= n; i++) print sphere[i]
-        print "\nTemperatures\n"
-        for (i = 1; i <= n; i++) print t[i]
-    }' CONVFMT=%.17g OFMT=%.17g "$dump" >"$work/bed.data"
+as_data "$dump" >"$work/bed.data"
 
 every=260 out=reference
 for words in "$@"; do

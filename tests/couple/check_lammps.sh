@@ -10,6 +10,7 @@ for program in "$MPICC" "$MPIRUN" "$LMP"; do
 done
 test -n "${LOAD:-}" || test -e /usr/include/lammps/fix.h || { echo "SKIP fix fibrad: no liblammps-dev (make deps-couple)" && exit; }
 . tests/couple/mpi.sh
+. tests/couple/beds.sh
 
 make_one_by_one "$BUILD/tests/couple/serial_bed" "$BUILD/tests/couple/sorted_rows" "$BUILD/fibrad" || exit 1
 test -n "${LOAD:-}" || { LOAD=$BUILD/couple/fibrad.lmp && make_one_by_one "$LOAD" || exit 1; }
@@ -38,20 +39,6 @@ run() {
     # shellcheck disable=SC2086  # a variable may be several words
     ranks "$np" "$LMP" -in "tests/couple/$script" -log "$work/$name.log" -screen none \
         -var load "$LOAD" -var out "$work/$name.out" "${words[@]}" >"$work/$name.err" 2>&1
-}
-
-# as_data DUMP [REVERSED]: a bed of tests/data as a data file of LAMMPS; odd ids are of type 1, even ones of type 2
-as_data() {
-    awk -v reversed="${2:-0}" '
-        /BOX BOUNDS/ { side = 1; next }
-        side && side < 4 { box[side++] = $1 " " $2; next }
-        NF == 8 && !/ITEM/ { n++; sphere[n] = $1 " " 2 - $1%2 " " 2*$6 " 2500 " $3 " " $4 " " $5; t[n] = $1 " " $7 }
-        END {
-            print "bed\n\n" n " atoms\n2 atom types\n" box[1] " xlo xhi\n" box[2] " ylo yhi\n" box[3] " zlo zhi\n\nAtoms # sphere\n"
-            for (i = 1; i <= n; i++) print sphere[reversed ? n + 1 - i : i]
-            print "\nTemperatures\n"
-            for (i = 1; i <= n; i++) print t[i]
-        }' CONVFMT=%.17g OFMT=%.17g "$1"
 }
 
 # near A B BOUND WHAT: the largest difference of temperatures, and whether it is below BOUND
@@ -156,19 +143,6 @@ run 1 conductor frozen.lmp "${whole[@]}" strict "no solid 1e9"
 near "$work/frozen1.out" "$work/conductor.out" .01 "particles of a good conductor"
 
 # ---- walls of triangles -------------------------------------------------------------------------------------------------
-# box WIDE HIGH: a box from 0 to WIDE and HIGH as a text file, one solid for each side
-box() {
-    awk -v wide="$1" -v high="$2" '
-        function corner(k) { return (k%2 ? wide : 0) " " (int(k/2)%2 ? wide : 0) " " (k > 3 ? high : 0) }
-        function facet(a, b, c) {
-            print "facet normal 0 0 0\nouter loop\nvertex " corner(a) "\nvertex " corner(b) "\nvertex " corner(c) "\nendloop\nendfacet"
-        }
-        function side(name, a, b, c, d) { print "solid " name; facet(a, b, c); facet(a, c, d); print "endsolid" }
-        BEGIN {
-            side("xlo", 0, 4, 6, 2); side("xhi", 1, 3, 7, 5); side("ylo", 0, 1, 5, 4)
-            side("yhi", 2, 6, 7, 3); side("zlo", 0, 2, 3, 1); side("zhi", 4, 5, 7, 6)
-        }'
-}
 box 6.499 20 >"$work/box.stl"
 planes=
 for side in xlo xhi ylo yhi zlo zhi; do
@@ -208,8 +182,8 @@ for np in 1 2; do
 done
 near "$work/floor1.out" "$work/floor2.out" 1e-10 "a floor of triangles in a periodic box, np 1 and 2"
 run 1 flat frozen.lmp data "$work/quarter.data" boundary "p p f" steps 5
-found=$({ walls floor1 && walls flat; } | awk 'NR == 1 { p = $4; next } { d = $4/p - 1; printf "%.2g", d; exit } END { exit !(d*d > 0 && d*d < 1e-4) }')
-verdict "a floor of triangles in a periodic box has the power of a plane ($found)" $?
+found=$({ walls floor1 && walls flat; } | awk 'NR == 1 { p = $2; next } { d = $2/p - 1; printf "%.2g", d; exit } END { exit !(d*d > 0 && d*d < 1e-4) }')
+verdict "particles above a floor of triangles have the power of those above a plane ($found)" $?
 grep -q 'f_rad\[7\] is of wall box_xhi, 2 triangles' "$work/mesh2.log"
 verdict "walls of triangles are named" $?
 
