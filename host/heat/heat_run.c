@@ -190,6 +190,8 @@ static void heat_follow(void *law, const double *temperature, const double *wall
 /* Tolerance of the radiosities over problem->error: so small that it adds nothing to the error. */
 #define SOLVED 5e-3
 
+/* Solves the problem. Status as of heat_run, or FIBRAD_E_UNSUPPORTED if the report has a solution already and the
+ * configuration is too fine for this bed. The solution then stays. */
 static int heat_once(struct bed_options *options, const struct heat_problem *problem, const struct bed *bed,
                      struct heat_report *report) {
     const double begun = progress_clock();
@@ -205,6 +207,7 @@ static int heat_once(struct bed_options *options, const struct heat_problem *pro
     int status = heat_memory(bed, &report->config);
     if (status) return status;
     status = fibrad_radiation_new(&radiation, &scene, &spheres, &report->config, &run);
+    if (status == FIBRAD_E_UNSUPPORTED && report->seconds > 0) return status;
     if (!status)
         status = light_absorb(problem->light, &(struct lit_bed){bed, &problem->walls, radiation, NULL, 1}, &sources);
     if (!status)
@@ -345,8 +348,11 @@ static int heat_improve(struct bed_options *options, const struct heat_problem *
                        ceil(progress_clock() + seconds - begun), (progress_clock() + seconds - begun) / usual);
             warned = true;
         }
+        const fibrad_heat_config before = report->config;
         report->config = next;
         const int status = heat_once(options, problem, bed, report);
+        if (status == FIBRAD_E_UNSUPPORTED) report->config = before;
+        if (status == FIBRAD_E_UNSUPPORTED) break;
         if (status) return status;
         last = over;
         over = heat_compare(problem, report);
