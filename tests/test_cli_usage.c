@@ -103,8 +103,6 @@ static const struct {
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--temperature-unit=F"}, "'F' is neither K nor C"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=-1"}, "--ambient: -1 is not within"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9"}, "--ambient is missing: the bed is open"},
-    {{"heat", MONO, "--emissivity=.5", "--power=4", "--wall=box", "--wall-power=4"},
-     "--ambient is missing: without it, one sphere or wall must have a temperature"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=3", "--wall=auto", "--wall-temperature=300,400"},
      "two numbers have no name; name the walls, xmin=400 for example"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=3", "--wall=zmin"},

@@ -328,23 +328,6 @@ static int heat_solid(struct heat_request *request, const struct bed *bed) {
     return problem->conductivity ? STATUS_OK : message_memory();
 }
 
-/* Whether a sphere or a wall has a given temperature. */
-static bool any_temperature(const struct given *given, const struct bed *bed, const struct walls *walls) {
-    bool any = false;
-    for (uint32_t i = 0; i < bed->n; ++i) any |= !isnan(given->temperature[i]);
-    for (uint32_t b = 0; b < walls->count; ++b) any |= !isnan(given->wall_temperature[b]);
-    return any;
-}
-
-static int check_ambient(const struct heat_request *request, const struct given *given, const struct bed *bed) {
-    const struct walls *walls = &request->problem.walls;
-    if (request->given.ambient) return STATUS_OK;
-    if (!walls_closed(walls, bed))
-        return message(STATUS_USAGE, "--ambient is missing: the bed is open, and the surroundings need a temperature");
-    if (request->given.timed || any_temperature(given, bed, walls)) return STATUS_OK;
-    return message(STATUS_USAGE, "--ambient is missing: without it, one sphere or wall must have a temperature");
-}
-
 static int heat_frame(void *heat_request, struct bed *bed) {
     struct heat_request *request = heat_request;
     struct heat_report report = {0};
@@ -356,7 +339,9 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     const char *file = request->bed.name;
     int status = bed_options_walls(&request->bed, bed, walls);
     if (!status) status = given_values(&request->given, bed, file, walls, &given);
-    if (!status) status = check_ambient(request, &given, bed);
+    if (!status && !request->given.ambient && !walls_closed(walls, bed))
+        status =
+            message(STATUS_USAGE, "--ambient is missing: the bed is open, and the surroundings need a temperature");
     if (!status) status = wall_emissivities(request->wall_emissivity, walls, of_walls[0]);
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     if (!status) status = face_begin(&request->face, bed, walls);

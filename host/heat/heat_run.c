@@ -88,29 +88,42 @@ static void heat_surfaces(const struct bed *bed, struct heat_report *report) {
     report->surface_error = n > 0 ? sqrt(square / n) : 0;
 }
 
+/* Says why no temperatures have the given powers if none is given at all. sum: of the powers [W]. */
+static int heat_no_level(const char *file, double sum) {
+    if (sum == 0)
+        return message_at(STATUS_INPUT, file, 0, "no temperature is given in this closed bed; give one, or --ambient");
+    return message_at(STATUS_INPUT, file, 0,
+                      "no temperature is given in this closed bed, and its powers add up to %g W, not to 0", sum);
+}
+
 /* Says why no temperatures have the given powers. */
 static int heat_unsolvable(const struct bed_options *options, const struct heat_problem *problem, const struct bed *bed,
                            const struct heat_report *report) {
     const fibrad_heat_sources *sources = &problem->sources;
     const double square_metres = report->metres * report->metres;
+    const uint32_t walls = problem->walls.count;
+    bool given = !isnan(sources->surroundings);
     double sum = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {
-        if (!isnan(sources->temperature[i])) continue;
-        sum += sources->power[i] * square_metres;
-        if (isnan(report->result.temperature[i]) && sources->emissivity[i] > 0)
+        given |= !isnan(sources->temperature[i]);
+        if (isnan(sources->temperature[i])) sum += sources->power[i] * square_metres;
+    }
+    for (uint32_t k = 0; k < walls; ++k) {
+        given |= !isnan(sources->body_temperature[k]);
+        if (isnan(sources->body_temperature[k]) && !sources->insulated[k])
+            sum += sources->body_power[k] * square_metres;
+    }
+    if (!given) return heat_no_level(options->name, sum);
+    for (uint32_t i = 0; i < bed->n; ++i)
+        if (isnan(sources->temperature[i]) && isnan(report->result.temperature[i]) && sources->emissivity[i] > 0)
             return message_at(STATUS_INPUT, options->name, bed->line[i],
                               "sphere %lld: no temperature above 0 K gives off %g W here", (long long)bed_name(bed, i),
                               sources->power[i] * square_metres);
-    }
-    for (uint32_t k = 0; k < problem->walls.count; ++k) {
-        if (!isnan(sources->body_temperature[k]) || sources->insulated[k]) continue;
-        sum += sources->body_power[k] * square_metres;
-        if (isnan(report->result.body_temperature[k]))
+    for (uint32_t k = 0; k < walls; ++k)
+        if (isnan(sources->body_temperature[k]) && !sources->insulated[k] && isnan(report->result.body_temperature[k]))
             return message_at(STATUS_INPUT, options->name, 0, "wall %s: no temperature above 0 K gives off %g W here",
                               wall_name(&problem->walls, k), sources->body_power[k] * square_metres);
-    }
-    return message_at(STATUS_INPUT, options->name, 0,
-                      "no temperature is given in this closed bed, and its powers add up to %g W, not to 0", sum);
+    return heat_no_level(options->name, sum);
 }
 
 /* Powers of the library are per area in the bed's unit of length. In watts they are square_metres times as large. */
