@@ -168,12 +168,13 @@ static inline void look_at_discs(const fibrad_circles *c, fibrad_circle_side *si
     vw misses = (vf_lt(sum + error, x) | vf_lt(x + error, 0 - larger)) & vf_lt(small, x);
     vn inner, outer;
     find_sectors(&c->stretch, from, end, &inner, &outer);
-    vf high = depth + error;
+    vf low = depth - error, high = depth + error;
     inner = vn_select(covers, all, vn_select(vague, none, inner));
-    inner = vn_select(vf_lt(vf_set1((float)side->known), high), none, inner); /* unknown discs may hide it */
+    /* unknown discs may hide it, or it may lie on the other side */
+    inner = vn_select(vf_lt(vf_set1((float)side->known), high) | vf_lt(low, vf_set1(0)), none, inner);
     vn_store(side->inner + to, inner);
     vn_store(side->outer + to, vn_select(misses, none, vn_select(covers | vague, all, outer)));
-    vf_storeu(side->low + to, depth - error);
+    vf_storeu(side->low + to, low);
     vf_storeu(side->high + to, high);
 }
 
