@@ -39,6 +39,7 @@ LINE
     */walls.* | */wall_*) tests="walls part estimate $tests" ;;
     kernel/surface/*) tests="surface $tests" ;;
     */work.*) tests="work beam cast $tests" ;;
+    kernel/row/mesh*) tests="mesh beam $tests" ;;
     kernel/row/*) tests="beam cast protocol $tests" ;;
     */cast*) tests="cast $tests" ;;
     kernel/ray/*) tests="trace $tests" ;;
