@@ -332,6 +332,10 @@ TEST(temperatures) {
     FAIL_WITH(3, "heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "1:4,2:-8", "--wall", "box",
               "--wall-temperature", "insulated");
     expect_message(file, "no temperature is given in this closed bed; give one, or --ambient");
+    FAIL_WITH(3, "heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "1:.15,2:-.1", "--wall", "box",
+              "--wall-power", "xmin=-.2", "--wall-temperature",
+              "xmax=insulated,ymin=insulated,ymax=insulated,zmin=insulated,zmax=insulated");
+    expect_message(file, "no temperature is given in this closed bed; give one, or --ambient");
     ck_assert_int_eq(
         RUN("heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "-1e6", "--ambient", "300"), 3);
     expect_message(file, "sphere 0: no temperature above 0 K gives off -1e+06 W here");

@@ -327,34 +327,37 @@ static const struct {
     uint64_t seed;
 } greys[] = {{30, .2, .3, .3, .01, 2}, {30, .2, .3, .8, .01, 5}, {8, 1, .2, .3, .001, 1}, {8, 1, .2, .8, .001, 1}};
 
-/* All rows reach the tolerance, in truth and as estimated. The true rows are raw rows of ten times as many directions
- * and a hundred times as many paths. */
+/* All rows reach the tolerance, in truth and as estimated, with four seeds. The true rows are raw rows of ten times as
+ * many directions and a hundred times as many paths. */
 LOOP_TEST(tolerance_of_exchange_is_met, sizeof greys / sizeof *greys) {
     const double tolerance = greys[_i].tolerance;
     OWNED_BED bed = packing(greys[_i].n, greys[_i].smallest, 1, greys[_i].fraction, greys[_i].seed, false);
     double *e = calloc(bed.n, sizeof *e), worst = 0, square = 0;
     for (uint32_t i = 0; i < bed.n; i++) e[i] = greys[_i].emissivity;
-    OWNED_FACTORS *f = exchange(&bed, &(fibrad_exchange_rule){.emissivity = e, .tolerance = tolerance}, false);
     OWNED_FACTORS *truth =
         exchange(&bed,
                  &(fibrad_exchange_rule){
                      .emissivity = e, .directions = 4000, .paths = (uint32_t)(.3 / tolerance / tolerance), .seed = 9},
                  true);
-    for (uint32_t i = 0; i < bed.n; i++) {
-        double distance = 0;
-        for (uint32_t j = 0; j < bed.n; j++) {
-            const double a_i = bed.r[i] * bed.r[i], a_j = bed.r[j] * bed.r[j];
-            const double mean =
-                (matrix_factor(&truth->matrix, i, j) + matrix_factor(&truth->matrix, j, i)) * (a_j / (a_i + a_j));
-            distance += pow(matrix_factor(&f->matrix, i, j) - mean, 2);
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        OWNED_FACTORS *f =
+            exchange(&bed, &(fibrad_exchange_rule){.emissivity = e, .tolerance = tolerance, .seed = seed}, false);
+        for (uint32_t i = 0; i < bed.n; i++) {
+            double distance = 0;
+            for (uint32_t j = 0; j < bed.n; j++) {
+                const double a_i = bed.r[i] * bed.r[i], a_j = bed.r[j] * bed.r[j];
+                const double mean =
+                    (matrix_factor(&truth->matrix, i, j) + matrix_factor(&truth->matrix, j, i)) * (a_j / (a_i + a_j));
+                distance += pow(matrix_factor(&f->matrix, i, j) - mean, 2);
+            }
+            worst = fmax(worst, sqrt(distance));
+            square += distance / bed.n / 4;
+            ck_assert_double_le(f->matrix.error[i], tolerance);
         }
-        worst = fmax(worst, sqrt(distance));
-        square += distance / bed.n;
-        ck_assert_double_le(f->matrix.error[i], tolerance);
     }
     printf("%u spheres 1:%g, emissivity %g: asked %g, worst %.2g, root mean square %.2g\n", bed.n,
            1 / greys[_i].smallest, e[0], tolerance, worst, sqrt(square));
-    ck_assert_double_le(sqrt(square), .75 * tolerance);
+    ck_assert_double_le(sqrt(square), .7 * tolerance);
     ck_assert_double_le(worst, 1.3 * tolerance);
     free(e);
 }

@@ -88,9 +88,10 @@ static void heat_surfaces(const struct bed *bed, struct heat_report *report) {
     report->surface_error = n > 0 ? sqrt(square / n) : 0;
 }
 
-/* Says why no temperatures have the given powers if none is given at all. sum: of the powers [W]. */
-static int heat_no_level(const char *file, double sum) {
-    if (sum == 0)
+/* Says why no temperatures have the given powers if none is given at all. sum: of the powers [W]. magnitude: of their
+ * magnitudes. */
+static int heat_no_level(const char *file, double sum, double magnitude) {
+    if (fabs(sum) <= 1e-12 * magnitude)
         return message_at(STATUS_INPUT, file, 0, "no temperature is given in this closed bed; give one, or --ambient");
     return message_at(STATUS_INPUT, file, 0,
                       "no temperature is given in this closed bed, and its powers add up to %g W, not to 0", sum);
@@ -103,17 +104,20 @@ static int heat_unsolvable(const struct bed_options *options, const struct heat_
     const double square_metres = report->metres * report->metres;
     const uint32_t walls = problem->walls.count;
     bool given = !isnan(sources->surroundings);
-    double sum = 0;
+    double sum = 0, magnitude = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {
         given |= !isnan(sources->temperature[i]);
-        if (isnan(sources->temperature[i])) sum += sources->power[i] * square_metres;
+        if (!isnan(sources->temperature[i])) continue;
+        sum += sources->power[i] * square_metres;
+        magnitude += fabs(sources->power[i]) * square_metres;
     }
     for (uint32_t k = 0; k < walls; ++k) {
         given |= !isnan(sources->body_temperature[k]);
-        if (isnan(sources->body_temperature[k]) && !sources->insulated[k])
-            sum += sources->body_power[k] * square_metres;
+        if (!isnan(sources->body_temperature[k]) || sources->insulated[k]) continue;
+        sum += sources->body_power[k] * square_metres;
+        magnitude += fabs(sources->body_power[k]) * square_metres;
     }
-    if (!given) return heat_no_level(options->name, sum);
+    if (!given) return heat_no_level(options->name, sum, magnitude);
     for (uint32_t i = 0; i < bed->n; ++i)
         if (isnan(sources->temperature[i]) && isnan(report->result.temperature[i]) && sources->emissivity[i] > 0)
             return message_at(STATUS_INPUT, options->name, bed->line[i],
@@ -123,7 +127,7 @@ static int heat_unsolvable(const struct bed_options *options, const struct heat_
         if (isnan(sources->body_temperature[k]) && !sources->insulated[k] && isnan(report->result.body_temperature[k]))
             return message_at(STATUS_INPUT, options->name, 0, "wall %s: no temperature above 0 K gives off %g W here",
                               wall_name(&problem->walls, k), sources->body_power[k] * square_metres);
-    return heat_no_level(options->name, sum);
+    return heat_no_level(options->name, sum, magnitude);
 }
 
 /* Powers of the library are per area in the bed's unit of length. In watts they are square_metres times as large. */
@@ -364,8 +368,10 @@ static int heat_improve(struct bed_options *options, const struct heat_problem *
         const fibrad_heat_config before = report->config;
         report->config = next;
         const int status = heat_once(options, problem, bed, report);
-        if (status == FIBRAD_E_UNSUPPORTED) report->config = before;
-        if (status == FIBRAD_E_UNSUPPORTED) break;
+        if (status == FIBRAD_E_UNSUPPORTED) {
+            report->config = before;
+            break;
+        }
         if (status) return status;
         last = over;
         over = heat_compare(problem, report);

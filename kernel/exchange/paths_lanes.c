@@ -390,7 +390,7 @@ static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]
             return;
         }
         absorb_at_surface(paths, &path, met, counts);
-        if (!survives(&path, leg) || path.weight == 0) return;
+        if (!survives(&path, leg)) return;
         if (met == FIBRAD_NONE && paths->conductivity != NULL) leave_sphere(paths, &path, leg);
         draw_direction(paths, &path, w);
     }

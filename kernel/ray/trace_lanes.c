@@ -90,6 +90,15 @@ static void intersect_group(const struct trace_ray *ray, const fibrad_nearby_gro
     }
 }
 
+/* Compares the spheres of a list, whose unit is `scale` times that of the ray. Returns the length up to which all
+ * spheres are compared. */
+static double intersect_list(const struct trace_ray *ray, const fibrad_nearby *list, double scale,
+                             const struct trace_cull *cull, struct trace_first *first) {
+    for (uint32_t group = 0; group < list->groups && !(first->distance < list->clear[group] * scale); group++)
+        intersect_group(ray, &list->group[group], cull, first);
+    return list->clear[list->groups] * scale;
+}
+
 /* The lengths at which the ray enters and leaves a box, from length `from` on. grid: the box of the grid; otherwise
  * the box of all centres. The box is enlarged by the largest radius. Along periodic axes the ray ends after
  * FIBRAD_PERIODS periods. */
@@ -210,9 +219,7 @@ void LANED(fibrad_trace)(fibrad_tracer *tracer, uint32_t place, const double n[3
     struct trace_ray ray = {scene, n, w, {scene->x[place], scene->y[place], scene->z[place]}, unit, 1 / unit, place};
     struct trace_first first = {.distance = __builtin_inf()};
     const struct trace_cull cull = cull_of(n, w, 0, -list->behind);
-    for (uint32_t group = 0; group < list->groups && !(first.distance < list->clear[group]); group++)
-        intersect_group(&ray, &list->group[group], &cull, &first);
-    double known = list->clear[list->groups];
+    const double known = intersect_list(&ray, list, 1, &cull, &first);
     /* spheres that overlap this one count also behind the origin, if their centres are ahead */
     double from = known >= 0 ? known : -fibrad_dot(n, w);
     if (!(first.distance < known)) walk_ray(&ray, from, &first);
@@ -239,48 +246,38 @@ static double power_of_two_below(double x) {
     return x;
 }
 
-/* A ray from a point. */
-static struct trace_ray ray_from(const fibrad_scene *scene, const double point[3], const double w[3]) {
-    static const double origin[3] = {0, 0, 0};
-    /* a power of two causes no rounding, so that other spheres change no bit */
-    const double unit = power_of_two_below(scene->spacing);
-    return (struct trace_ray){scene, origin, w, {point[0], point[1], point[2]}, unit, 1 / unit, FIBRAD_NONE};
-}
-
-void LANED(fibrad_trace_point)(const fibrad_scene *scene, const double point[3], const double w[3], uint32_t except,
-                               fibrad_hit *hit) {
-    hit->sphere = FIBRAD_NONE, hit->side = FIBRAD_NO_SIDE;
-    if (scene->facts.spheres > 0) {
-        const struct trace_ray ray = ray_from(scene, point, w);
-        struct trace_first first = {.distance = __builtin_inf()};
-        walk_ray(&ray, 0, &first);
-        write_hit(&ray, &first, hit);
-    }
-    if (scene->clear != NULL) meet_mesh_before(scene, point, w, except, hit);
-}
-
-/* Compares the spheres of a list. Returns the length up to which all spheres are compared. */
-static double meet_listed(const struct trace_ray *ray, const fibrad_nearby *list, const double start[3], double radius,
-                          struct trace_first *first) {
-    const double scale = radius * ray->inverse;
-    const struct trace_cull cull = cull_of(start, ray->w, 1 - fibrad_dot(start, start), -__builtin_inff());
-    for (uint32_t group = 0; group < list->groups && !(first->distance < list->clear[group] * scale); group++)
-        intersect_group(ray, &list->group[group], &cull, first);
-    return fibrad_max(0, list->clear[list->groups] * scale);
-}
-
-void LANED(fibrad_trace_wall)(fibrad_tracer *tracer, const double point[3], const double w[3], uint32_t except,
-                              fibrad_hit *hit) {
-    const fibrad_scene *scene = tracer->scene;
+/* Compares the spheres near the point where a ray begins. Returns the length up to which all spheres are compared. */
+static double intersect_near(const struct trace_ray *ray, fibrad_tracer *tracer, struct trace_first *first) {
     double start[3], radius;
+    const fibrad_nearby *list = fibrad_tracer_cell_of(tracer, ray->base, start, &radius);
+    if (list == NULL) return 0;
+    const struct trace_cull cull = cull_of(start, ray->w, 1 - fibrad_dot(start, start), -__builtin_inff());
+    return fibrad_max(0, intersect_list(ray, list, radius * ray->inverse, &cull, first));
+}
+
+/* Follows a ray from a point. tracer: NULL: without lists. */
+static void trace_from(const fibrad_scene *scene, fibrad_tracer *tracer, const double point[3], const double w[3],
+                       uint32_t except, fibrad_hit *hit) {
+    static const double origin[3] = {0, 0, 0};
     hit->sphere = FIBRAD_NONE, hit->side = FIBRAD_NO_SIDE;
     if (scene->facts.spheres > 0) {
-        const fibrad_nearby *list = fibrad_tracer_cell_of(tracer, point, start, &radius);
-        const struct trace_ray ray = ray_from(scene, point, w);
+        /* a power of two causes no rounding, so that other spheres change no bit */
+        const double unit = power_of_two_below(scene->spacing);
+        const struct trace_ray ray = {scene, origin, w, {point[0], point[1], point[2]}, unit, 1 / unit, FIBRAD_NONE};
         struct trace_first first = {.distance = __builtin_inf()};
-        const double known = list != NULL ? meet_listed(&ray, list, start, radius, &first) : 0;
+        const double known = tracer != NULL ? intersect_near(&ray, tracer, &first) : 0;
         if (!(first.distance < known)) walk_ray(&ray, known, &first);
         write_hit(&ray, &first, hit);
     }
     if (scene->clear != NULL) meet_mesh_before(scene, point, w, except, hit);
+}
+
+void LANED(fibrad_trace_point)(const fibrad_scene *scene, const double point[3], const double w[3], uint32_t except,
+                               fibrad_hit *hit) {
+    trace_from(scene, NULL, point, w, except, hit);
+}
+
+void LANED(fibrad_trace_wall)(fibrad_tracer *tracer, const double point[3], const double w[3], uint32_t except,
+                              fibrad_hit *hit) {
+    trace_from(tracer->scene, tracer, point, w, except, hit);
 }
