@@ -1,20 +1,26 @@
-/* ranks.c - rows and powers over ranks: seconds, entries, halos and memory, for docs/scale.md.
+/* ranks.c - rows and powers over ranks: seconds, entries, halos, memory and messages, for docs/scale.md.
  * SPDX-License-Identifier: MIT
  *
- * mpirun -np P build/couple/ranks DUMP COPIES EMISSIVITY: the bed is that of a LAMMPS dump (columns id type x y z
- * radius), repeated COPIES times along each periodic axis. The bed is divided into bricks, one for each rank. The
- * program writes a header and one line of CSV. */
+ * mpirun -np P build/couple/ranks DUMP COPIES EMISSIVITY [CUTOFF]: the bed is that of a LAMMPS dump (columns id type x
+ * y z radius), repeated COPIES times along each periodic axis. The bed is divided into bricks, one for each rank; more
+ * than one copy is divided along periodic axes alone. The program writes a header and one line of CSV. Messages are
+ * those of the rank that sends most: in a making of rows, in a step of heat, and in the first step of heat after
+ * particles have moved by half a unit of length along all axes. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "couple/fibrad_couple.h"
+#include "messages.h"
 
 enum { HEATS = 20 };
 
+/* What a rank owns of a bed. */
 struct brick_bed {
     fibrad_insitu_bed bed;
+    int copies;
+    double moved; /* [L] of all particles along each axis, as far as their owners are concerned */
     uint64_t *id;
     double *x, *radius, *emissivity, *temperature, *power;
 };
@@ -25,25 +31,26 @@ static void fail(const char *what) {
 }
 
 /* Whether this rank owns a point of the box. */
-static int own_place(const fibrad_insitu_bed *bed, const double x[3]) {
-    int ranks, rank, dims[3] = {0, 0, 0}, owner = 0;
+static int own_place(const struct brick_bed *b, const double x[3]) {
+    const fibrad_insitu_bed *bed = &b->bed;
+    int ranks, rank, dims[3] = {0}, owner = 0;
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    for (int axis = 0; axis < 3; ++axis) dims[axis] = b->copies > 1 && !bed->periodic[axis];
     MPI_Dims_create(ranks, 3, dims);
     for (int axis = 0; axis < 3; ++axis) {
-        const double part = (x[axis] - bed->low[axis]) / (bed->high[axis] - bed->low[axis]);
+        const double part = (x[axis] + b->moved - bed->low[axis]) / (bed->high[axis] - bed->low[axis]);
         owner = owner * dims[axis] + (int)fmax(0, fmin(dims[axis] - 1, floor(part * dims[axis])));
     }
     return owner == rank;
 }
 
-static void add_copies(struct brick_bed *b, const double at[3], double radius, int copies, uint64_t *next,
-                       double emissivity) {
+static void add_copies(struct brick_bed *b, const double at[3], double radius, uint64_t *next, double emissivity) {
     fibrad_insitu_bed *bed = &b->bed;
     double period[3];
     int count[3];
     for (int axis = 0; axis < 3; ++axis) {
-        count[axis] = bed->periodic[axis] ? copies : 1;
+        count[axis] = bed->periodic[axis] ? b->copies : 1;
         period[axis] = (bed->high[axis] - bed->low[axis]) / count[axis];
     }
     for (int i = 0; i < count[0]; ++i)
@@ -51,7 +58,7 @@ static void add_copies(struct brick_bed *b, const double at[3], double radius, i
             for (int k = 0; k < count[2]; ++k) {
                 const double x[3] = {at[0] + i * period[0], at[1] + j * period[1], at[2] + k * period[2]};
                 const uint64_t id = ++*next;
-                if (!own_place(bed, x)) continue;
+                if (!own_place(b, x)) continue;
                 memcpy(b->x + 3 * bed->n, x, sizeof x);
                 b->id[bed->n] = id, b->radius[bed->n] = radius, b->emissivity[bed->n] = emissivity;
                 b->temperature[bed->n] = 1000 + (double)(id % 100);
@@ -59,8 +66,9 @@ static void add_copies(struct brick_bed *b, const double at[3], double radius, i
             }
 }
 
-static void read_bed_of(struct brick_bed *b, const char *path, int copies, double emissivity) {
+static void read_bed_of(struct brick_bed *b, const char *path, double emissivity) {
     fibrad_insitu_bed *bed = &b->bed;
+    const int copies = b->copies;
     char line[500], ends[3][8];
     size_t n = 0;
     uint64_t next = 0;
@@ -82,41 +90,69 @@ static void read_bed_of(struct brick_bed *b, const char *path, int copies, doubl
     while (fgets(line, sizeof line, file)) {
         double x[3], radius;
         if (sscanf(line, "%*s %*s %lf %lf %lf %lf", &x[0], &x[1], &x[2], &radius) == 4)
-            add_copies(b, x, radius, copies, &next, emissivity);
+            add_copies(b, x, radius, &next, emissivity);
     }
     fclose(file);
     bed->id = b->id, bed->x = b->x, bed->radius = b->radius, bed->emissivity = b->emissivity;
 }
 
+static fibrad_insitu_state state_of(const struct brick_bed *b) {
+    return (fibrad_insitu_state){.surroundings = 300, .n = b->bed.n, .id = b->id, .temperature = b->temperature};
+}
+
+/* Prints what this rank has sent in a part of the run, and begins to count anew. */
+static void end_part(double *part) {
+    memcpy(part, counted, sizeof counted);
+    memset(counted, 0, sizeof counted);
+}
+
 int main(int argc, char **argv) {
-    struct brick_bed b = {0};
     fibrad_insitu *radiation;
     fibrad_insitu_facts facts;
     int rank, ranks;
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-    if (argc != 4) fail("DUMP COPIES EMISSIVITY");
-    read_bed_of(&b, argv[1], atoi(argv[2]), atof(argv[3]));
-    const fibrad_insitu_state state = {.surroundings = 300, .n = b.bed.n, .id = b.id, .temperature = b.temperature};
-    if (fibrad_insitu_new(&radiation, MPI_COMM_WORLD, NULL)) fail("out of memory");
+    if (argc != 4 && argc != 5) fail("DUMP COPIES EMISSIVITY [CUTOFF]");
+    struct brick_bed b = {.copies = atoi(argv[2])}, moved = {.copies = b.copies, .moved = .5};
+    double part[3 * COUNTERS];
+    read_bed_of(&b, argv[1], atof(argv[3]));
+    read_bed_of(&moved, argv[1], atof(argv[3]));
+    const fibrad_insitu_config config = {.cutoff = argc > 4 ? atof(argv[4]) : 0};
+    const fibrad_insitu_state state = state_of(&b), then = state_of(&moved);
+    if (fibrad_insitu_new(&radiation, MPI_COMM_WORLD, &config)) fail("out of memory");
     if (fibrad_insitu_rows(radiation, &b.bed, 1)) fail(fibrad_insitu_message(radiation));
+    end_part(part);
     if (fibrad_insitu_rows(radiation, &b.bed, 2))
         fail(fibrad_insitu_message(radiation)); /* memory of both sets of rows */
+    end_part(part);
     for (int k = 0; k < HEATS; ++k)
         if (fibrad_insitu_powers(radiation, &state, b.power, NULL)) fail(fibrad_insitu_message(radiation));
+    end_part(part + COUNTERS);
     fibrad_insitu_facts_get(radiation, &facts);
+    if (fibrad_insitu_powers(radiation, &then, moved.power, NULL)) fail(fibrad_insitu_message(radiation));
+    end_part(part + 2 * COUNTERS);
+    for (int k = 0; k < COUNTERS; ++k) part[COUNTERS + k] /= HEATS;
     double most[3] = {(double)b.bed.n, (double)facts.halo, (double)facts.bytes};
     MPI_Allreduce(MPI_IN_PLACE, most, 3, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
-    if (rank == 0)
-        printf("ranks,particles,emissivity,own,halo,entries_a_row,beyond,bytes,seconds_rows,seconds_powers\n"
-               "%d,%llu,%s,%.0f,%.0f,%.1f,%.2e,%.0f,%.4f,%.6f\n",
-               ranks, (unsigned long long)facts.particles, argv[3], most[0], most[1],
-               (double)facts.entries / (double)facts.particles, facts.beyond, most[2], facts.seconds_rows / 2,
-               facts.seconds_powers / HEATS);
+    MPI_Allreduce(MPI_IN_PLACE, part, 3 * COUNTERS, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    if (rank == 0) {
+        printf("ranks,particles,emissivity,own,halo,entries_a_row,beyond,bytes,seconds_rows,seconds_powers");
+        for (int k = 0; k < 3; ++k)
+            for (int c = 0; c < COUNTERS; ++c)
+                printf(",%s_%s", (const char *const[]){"rows", "heat", "moved"}[k],
+                       (const char *const[]){"messages", "bytes", "collectives"}[c]);
+        printf("\n%d,%llu,%s,%.0f,%.0f,%.1f,%.2e,%.0f,%.4f,%.6f", ranks, (unsigned long long)facts.particles, argv[3],
+               most[0], most[1], (double)facts.entries / (double)facts.particles, facts.beyond, most[2],
+               facts.seconds_rows / 2, facts.seconds_powers / HEATS);
+        for (int k = 0; k < 3 * COUNTERS; ++k) printf(",%.0f", part[k]);
+        printf("\n");
+    }
     fibrad_insitu_free(radiation);
     free(b.id);
     free(b.x);
+    free(moved.id);
+    free(moved.x);
     MPI_Finalize();
     return 0;
 }

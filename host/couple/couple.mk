@@ -46,7 +46,7 @@ COUPLE_DEPS     = $(filter deps-couple,$(MAKECMDGOALS))
 include $(wildcard host/couple/lammps/*.mk host/couple/liggghts/*.mk)
 
 # what docs/scale.md rests on: mpirun -np 2 build/couple/ranks tests/data/monoper2000.dump 2 0.8
-$(BUILD)/couple/ranks: bench/ranks.c $(COUPLE_LIBS)
+$(BUILD)/couple/ranks: bench/ranks.c bench/messages.h $(COUPLE_LIBS)
 	$(MPICC) $(CFLAGS) $(COUPLE_FLAGS) $(LDFLAGS) $< $(COUPLE_LIBS) -lm -o $@
 
 ## couple: libfibrad_couple.a, fix fibrad of LAMMPS and the driver of LIGGGHTS, into build/couple (on a fresh machine: make deps-couple couple)

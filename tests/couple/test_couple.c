@@ -1,5 +1,5 @@
-/* test_couple.c - links, rows and powers over MPI, against one rank and against the kernel alone, on any number of
- * ranks. SPDX-License-Identifier: MIT
+/* test_couple.c - messages, links, rows and powers over MPI, against one rank and against the kernel alone, on any
+ * number of ranks. SPDX-License-Identifier: MIT
  *
  * test_couple FOLDER: files of rows go into FOLDER. Rank 0 alone makes the rows of whole beds on MPI_COMM_SELF.
  * These rows do not depend on the number of ranks, so all runs have the same reference. */
@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 
 #include "couple/ranks/coarse_map.h"
+#include "couple/ranks/collective.h"
 #include "couple/fibrad_couple.h"
 #include "couple/rows_file.h"
 
@@ -36,6 +37,55 @@ static void *memory_of(size_t count, size_t size) {
     void *block = calloc(count + 1, size);
     if (!block) MPI_Abort(MPI_COMM_WORLD, 1);
     return block;
+}
+
+/* ---- messages -------------------------------------------------------------------------------------------------- */
+
+enum { PATTERNS = 300, BEFORE = 3 };
+
+/* An element of twelve bytes: who sends it, and in which pattern. */
+struct thing {
+    int from, pattern, number;
+};
+
+/* How many things a rank sends to another: none, some or many, by chance; in every fourth pattern most send nothing. */
+static int things_of(int from, int to, int pattern) {
+    const uint64_t chance = hash_of(hash_of((uint64_t)from, (uint64_t)to), (uint64_t)pattern);
+    if (pattern % 4 == 0 && from != pattern / 4 % ranks) return 0;
+    return chance % 3 ? 0 : chance % 7 ? (int)(chance % 11) : 5000;
+}
+
+/* Messages by patterns of which the receivers know nothing, one after the other, against those of MPI_Alltoallv. */
+static void things_arrive(void) {
+    int *count = memory_of((size_t)ranks, 5 * sizeof *count), *got = count + ranks, *start = got + ranks;
+    int *same = start + ranks, *begin = same + ranks;
+    fibrad_block to = {0};
+    for (int pattern = 0; pattern < PATTERNS; ++pattern) {
+        int sum = 0, all = 0;
+        for (int q = 0; q < ranks; ++q) count[q] = things_of(rank, q, pattern), start[q] = 3 * sum, sum += count[q];
+        MPI_Alltoall(count, 1, MPI_INT, same, 1, MPI_INT, MPI_COMM_WORLD);
+        for (int q = 0; q < ranks; ++q) begin[q] = 3 * all, all += same[q];
+        struct thing *thing = memory_of((size_t)sum, sizeof *thing), *known = memory_of((size_t)all, sizeof *known);
+        for (int k = 0; k < sum; ++k) thing[k] = (struct thing){rank, pattern, k};
+        CHECK(fibrad_block_fit(&to, BEFORE, sizeof *thing) == FIBRAD_OK);
+        memset(to.at, pattern, BEFORE * sizeof *thing);
+        const int broken = pattern % 5 == 0 && rank == pattern / 5 % ranks ? FIBRAD_E_GEOMETRY : FIBRAD_OK;
+        const int status = fibrad_deal(MPI_COMM_WORLD, broken, thing, count, sizeof *thing, &to, BEFORE, got);
+        CHECK(status == (pattern % 5 == 0 ? FIBRAD_E_GEOMETRY : FIBRAD_OK));
+        for (int q = 0; q < 2 * ranks; ++q) count[q] *= 3; /* as numbers; got is behind count */
+        for (int q = 0; q < ranks; ++q) same[q] *= 3;
+        MPI_Alltoallv(thing, count, start, MPI_INT, known, same, begin, MPI_INT, MPI_COMM_WORLD);
+        const unsigned char *byte = to.at;
+        bool kept = true;
+        for (size_t k = 0; k < BEFORE * sizeof *thing; ++k) kept = kept && byte[k] == pattern % 256;
+        CHECK(kept);
+        if (!status) CHECK(memcmp(got, same, (size_t)ranks * sizeof *got) == 0);
+        if (!status) CHECK(memcmp(byte + BEFORE * sizeof *thing, known, (size_t)all * sizeof *known) == 0);
+        free(thing);
+        free(known);
+    }
+    fibrad_block_free(&to);
+    free(count);
 }
 
 /* ---- link ------------------------------------------------------------------------------------------------------ */
@@ -985,6 +1035,7 @@ int main(int argc, char **argv) {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     folder = argc > 1 ? argv[1] : ".";
+    things_arrive();
     links();
     for (int k = 0; k < KINDS; ++k) rows_are_those_of_one_rank(&kinds[k]);
     for (int k = 0; k < KINDS; ++k) powers_keep_energy(&kinds[k]);

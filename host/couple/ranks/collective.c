@@ -1,9 +1,13 @@
-/* collective.c - errors that all ranks agree on, and an exchange between all ranks. SPDX-License-Identifier: MIT */
+/* collective.c - errors that all ranks agree on, and messages that ranks do not expect.
+ * SPDX-License-Identifier: MIT */
 #include "couple/ranks/collective.h"
 
 #include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
+
+#define COUNT_TAG 12013
+#define DATA_TAG  12014
 
 int fibrad_refuse(char *message, int status, const char *format, ...) {
     va_list list;
@@ -38,28 +42,54 @@ void fibrad_count_starts(const int *count, int ranks, int *start) {
     for (int q = 0; q < ranks; ++q) start[q] = sum, sum += count[q];
 }
 
+/* Tells each rank how many elements it will get. A rank does not know how many others will tell it. So it receives
+ * until every rank knows that all it told has arrived. The caller must let ranks agree before it calls again. Source:
+ * T. Hoefler, C. Siebert, A. Lumsdaine, PPoPP 2010, 159: nonblocking consensus. count: NULL for nothing. */
+static void tell_counts(MPI_Comm comm, int ranks, const int *count, int *got, MPI_Request *told) {
+    int tellings = 0, arrived, all_arrived = 0, over = 0;
+    MPI_Request others = MPI_REQUEST_NULL;
+    MPI_Status from;
+    for (int q = 0; q < ranks; ++q) {
+        got[q] = 0;
+        if (count && count[q]) MPI_Issend(&count[q], 1, MPI_INT, q, COUNT_TAG, comm, &told[tellings++]);
+    }
+    while (!over) {
+        MPI_Iprobe(MPI_ANY_SOURCE, COUNT_TAG, comm, &arrived, &from);
+        if (arrived) MPI_Recv(&got[from.MPI_SOURCE], 1, MPI_INT, from.MPI_SOURCE, COUNT_TAG, comm, MPI_STATUS_IGNORE);
+        if (all_arrived) {
+            MPI_Test(&others, &over, MPI_STATUS_IGNORE);
+        } else {
+            MPI_Testall(tellings, told, &all_arrived, MPI_STATUSES_IGNORE);
+            if (all_arrived) MPI_Ibarrier(comm, &others);
+        }
+    }
+}
+
+static void send_elements(MPI_Comm comm, int ranks, const char *send, const int *count, char *to, const int *got,
+                          size_t size, MPI_Request *request) {
+    int requests = 0;
+    MPI_Datatype thing;
+    MPI_Type_contiguous((int)size, MPI_BYTE, &thing);
+    MPI_Type_commit(&thing);
+    for (int q = 0; q < ranks; to += (size_t)got[q] * size, ++q)
+        if (got[q]) MPI_Irecv(to, got[q], thing, q, DATA_TAG, comm, &request[requests++]);
+    for (int q = 0; q < ranks; send += (size_t)count[q] * size, ++q)
+        if (count[q]) MPI_Isend(send, count[q], thing, q, DATA_TAG, comm, &request[requests++]);
+    MPI_Waitall(requests, request, MPI_STATUSES_IGNORE);
+    MPI_Type_free(&thing);
+}
+
 int fibrad_deal(MPI_Comm comm, int status, const void *send, const int *count, size_t size, fibrad_block *to, size_t at,
                 int *got) {
     int ranks;
-    MPI_Datatype thing;
     MPI_Comm_size(comm, &ranks);
-    int *start = malloc(2 * (size_t)ranks * sizeof *start);
-    if (!status && (!start || fibrad_count_sum(count, ranks) > INT_MAX)) status = FIBRAD_E_MEMORY;
+    MPI_Request *request = malloc(2 * (size_t)ranks * sizeof(MPI_Request));
+    if (!status && (!request || fibrad_count_sum(count, ranks) > INT_MAX)) status = FIBRAD_E_MEMORY;
+    tell_counts(comm, ranks, status ? NULL : count, got, request);
+    const size_t sum = fibrad_count_sum(got, ranks);
+    if (!status) status = sum > INT_MAX ? FIBRAD_E_MEMORY : fibrad_block_fit(to, at + sum, size);
     status = fibrad_agree(comm, status, NULL);
-    if (!status) {
-        MPI_Alltoall(count, 1, MPI_INT, got, 1, MPI_INT, comm);
-        const size_t sum = fibrad_count_sum(got, ranks);
-        status = sum > INT_MAX ? FIBRAD_E_MEMORY : fibrad_block_fit(to, at + sum, size);
-        status = fibrad_agree(comm, status, NULL);
-    }
-    if (!status) {
-        fibrad_count_starts(count, ranks, start);
-        fibrad_count_starts(got, ranks, start + ranks);
-        MPI_Type_contiguous((int)size, MPI_BYTE, &thing);
-        MPI_Type_commit(&thing);
-        MPI_Alltoallv(send, count, start, thing, (char *)to->at + at * size, got, start + ranks, thing, comm);
-        MPI_Type_free(&thing);
-    }
-    free(start);
+    if (!status) send_elements(comm, ranks, send, count, (char *)to->at + at * size, got, size, request);
+    free(request);
     return status;
 }
