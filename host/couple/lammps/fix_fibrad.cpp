@@ -79,9 +79,9 @@ class FixFibrad::Words {
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     : Fix(lammps, narg, arg), temperature(), kept_bit(0), surroundings{-1, ""}, sampling(false), accuracy(false),
-      sigma(0), initial(0), config(), meshes(), insitu(nullptr), totals(), warned(false), wall_warned(false),
-      cut_warned(false), told(), set_up(-1), powers_at(0), weighed(false), begun(0), before(), rows_made(0),
-      rows_followed(0), powers_found(0) {
+      sigma(0), initial(0), config(), meshes(), moving(false), insitu(nullptr), totals(), warned(false),
+      wall_warned(false), cut_warned(false), told(), set_up(-1), powers_at(0), lost(0), weighed(false), begun(0),
+      before(), rows_made(0), rows_followed(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // the default of docs/lammps.md
@@ -166,7 +166,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     scalar_flag = vector_flag = peratom_flag = 1;
     size_peratom_cols = 0;
     size_vector = 5 + (int)walls.size() + 3 + (int)walls.size();
-    restart_global = wall_heat.any();
+    restart_global = wall_heat.any() || moving;
     global_freq = peratom_freq = 1;
     extscalar = extvector = 0;
     maxexchange = 1;
@@ -253,7 +253,7 @@ double FixFibrad::read_capacity(Words &words, const Temperature &t) {
     return words.number("a wall's capacity", 1e-300, 1e300);
 }
 
-// wall mesh FILE T e [name NAME] [both | normals | auto] [solids] [scale S] [capacity C]
+// wall mesh FILE T e [name NAME] [both | normals | auto] [solids] [scale S] [capacity C] [motion]
 void FixFibrad::read_mesh(Words &words) {
     const std::string path = words.next();
     const Temperature t = read_kelvins(words, "a wall's temperature");
@@ -261,6 +261,7 @@ void FixFibrad::read_mesh(Words &words) {
     const uint32_t first = (uint32_t)walls.size();
     double capacity = 0;
     std::string name;
+    mesh_motion motion = {};
     mesh_file file = {};
     file.path = path.c_str();
     file.scale = 1;
@@ -280,7 +281,7 @@ void FixFibrad::read_mesh(Words &words) {
         else if (words.take("capacity"))
             capacity = read_capacity(words, t);
         else
-            more = false;
+            more = read_motion(words, &motion);
     }
     if (!name.empty()) {
         file.name = name.c_str();
@@ -297,7 +298,31 @@ void FixFibrad::read_mesh(Words &words) {
     wall_emissivity.insert(wall_emissivity.end(), bodies, e);
     wall_heat.capacity.insert(wall_heat.capacity.end(), bodies, capacity);
     wall_face.insert(wall_face.end(), bodies, -1);
+    motions.push_back(motion);
     if (comm->me == 0) describe_meshes(first, bodies, path);
+}
+
+// rotate AX AY AZ PERIOD [about X Y Z] | velocity VX VY VZ; false: it is another word
+bool FixFibrad::read_motion(Words &words, mesh_motion *motion) {
+    const double huge = 1e100;
+    const auto three = [&words](const char *what, double *to) {
+        for (int k = 0; k < 3; k++) to[k] = words.number(what, -huge, huge);
+    };
+    if (words.take("velocity")) {
+        three("a mesh's velocity", motion->velocity);
+    } else if (words.take("rotate")) {
+        double *axis = motion->axis;
+        three("a mesh's axis", axis);
+        const double length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+        if (length == 0) error->all(FLERR, std::string("fix fibrad: the axis of a mesh must not be 0 0 0"));
+        for (int k = 0; k < 3; k++) axis[k] /= length;
+        motion->turn = words.number("a mesh's period", -huge, huge);
+        if (motion->turn == 0) error->all(FLERR, std::string("fix fibrad: the period of a mesh must not be 0"));
+        if (words.take("about")) three("a point of a mesh's axis", motion->about);
+    } else {
+        return false;
+    }
+    return moving = true;
 }
 
 // Prints warnings about a file, and the indices of its walls in the output. Only rank 0 has the names of the walls.
@@ -505,6 +530,19 @@ void FixFibrad::select() {
         }
 }
 
+// The time that meshes go by. In a rerun LAMMPS' clock stands still.
+double FixFibrad::time() const {
+    if (!strcmp(input->command, "rerun")) return (double)update->ntimestep * update->dt;
+    return lost + update->atime + (double)(update->ntimestep - update->atimestep) * update->dt;
+}
+
+// Puts meshes where they are now, and finds which sides of them are walls.
+void FixFibrad::place_meshes(const fibrad_insitu_bed &bed) {
+    if ((moving && mesh_walls_move(&meshes, world, &bed, motions.data(), time())) ||
+        mesh_walls_face(&meshes, world, &bed))
+        error->all(FLERR, std::string("fix fibrad: out of memory"));
+}
+
 // Makes the rows of all particles. follow: makes only the rows of particles that have come since the last rows.
 void FixFibrad::make_rows(bool follow) {
     select();
@@ -534,7 +572,7 @@ void FixFibrad::make_rows(bool follow) {
     bed.emissivity = e.data();
     bed.conductivity = solid.given() ? relative.data() : nullptr;
     const bigint number = update->ntimestep / rows_every * rows_every;
-    if (mesh_walls_face(&meshes, world, &bed)) error->all(FLERR, std::string("fix fibrad: out of memory"));
+    place_meshes(bed);
     const int status = (follow ? fibrad_insitu_follow : fibrad_insitu_rows)(insitu, &bed, (uint64_t)number);
     if (status == FIBRAD_E_BACK)
         error->all(FLERR, std::string("fix fibrad: ") + fibrad_insitu_message(insitu) +
@@ -814,12 +852,14 @@ int FixFibrad::unpack_exchange(int i, double *buffer) {
     return 1;
 }
 
-// ---- restarts: temperatures of walls that store heat ----------------------------------------------------------------
+// ---- restarts: temperatures of walls that store heat, and the time
+// -----------------------------------------------------
 
 void FixFibrad::write_restart(FILE *file) {
     if (comm->me) return;
     std::vector<double> kept = wall_temperatures();
     kept.insert(kept.begin(), (double)walls.size());
+    kept.push_back(time());
     const int bytes = (int)(kept.size() * sizeof(double));
     fwrite(&bytes, sizeof bytes, 1, file);
     fwrite(kept.data(), sizeof(double), kept.size(), file);
@@ -830,10 +870,11 @@ void FixFibrad::restart(char *buffer) {
     memcpy(&there, buffer, sizeof there);
     if (there != (double)walls.size())
         error->all(FLERR, text("fix fibrad: there are %d walls, but %g in the restart file", (int)walls.size(), there));
-    std::vector<double> kept(walls.size());
+    std::vector<double> kept(walls.size() + 1);
     memcpy(kept.data(), buffer + sizeof there, kept.size() * sizeof(double));
     for (size_t k = 0; k < walls.size(); k++)
         if (wall_heat.capacity[k] > 0) wall_kelvins[k].value = kept[k];
+    lost = kept.back() - time();
 }
 
 // ---- loading --------------------------------------------------------------------------------------------------------

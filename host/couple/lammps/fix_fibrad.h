@@ -76,6 +76,7 @@ class FixFibrad : public Fix {
     void read_opening(Words &, int face);
     double read_capacity(Words &, const Temperature &);
     void read_mesh(Words &);
+    bool read_motion(Words &, mesh_motion *);
     void describe_meshes(uint32_t first, uint32_t bodies, const std::string &path);
     void read_temperature(Words &);
     void read_group(Words &);
@@ -99,6 +100,8 @@ class FixFibrad : public Fix {
     void find_temperatures(); // of walls and surroundings, from variables
     bool takes_part(int i) const { return atom->mask[i] & (groupbit | kept_bit); }
     void select(); // finds member and tags
+    double time() const;
+    void place_meshes(const fibrad_insitu_bed &);
     void make_rows(bool follow = false);
     void find_powers();
     void heat_walls(bigint steps);
@@ -129,7 +132,9 @@ class FixFibrad : public Fix {
     std::vector<double> wall_emissivity;
     WallHeat wall_heat;
     mesh_walls meshes;
-    std::vector<int> wall_face; // [walls], 2 axis + upper if the wall moves with a face of the box, else -1
+    std::vector<mesh_motion> motions; // [meshes]
+    bool moving;                      // whether a mesh moves
+    std::vector<int> wall_face;       // [walls], 2 axis + upper if the wall moves with a face of the box, else -1
 
     // State.
     fibrad_insitu *insitu;
@@ -142,6 +147,7 @@ class FixFibrad : public Fix {
     bool told[FIBRAD_REMARKS];   // whether the warning about strays of each kind was given
     bigint set_up;               // step of the last setup
     bigint powers_at;            // step of the last powers
+    double lost;                 // time that LAMMPS' clock does not count, since it began anew after a restart
     bool weighed;                // whether wall_heat has the factors of the present rows
 
     // Since the beginning of the run.

@@ -88,6 +88,38 @@ int mesh_walls_add(struct mesh_walls *walls, MPI_Comm comm, const struct mesh_fi
     return status ? status : share_triangles(walls, comm);
 }
 
+/* The periods of a bed; 0: the axis is open. */
+static void find_periods(const fibrad_insitu_bed *bed, double period[3]) {
+    for (int axis = 0; axis < 3; ++axis) period[axis] = bed->periodic[axis] ? bed->high[axis] - bed->low[axis] : 0;
+}
+
+/* Keeps the vertices at time 0. */
+static int keep_home(struct mesh_walls *walls) {
+    const size_t bytes = walls->meshes.triangles.vertices * sizeof *walls->home;
+    if (!walls->home && (walls->home = malloc(bytes))) memcpy(walls->home, walls->meshes.vertex, bytes);
+    return walls->home ? STATUS_OK : STATUS_MEMORY;
+}
+
+int mesh_walls_move(struct mesh_walls *walls, MPI_Comm comm, const fibrad_insitu_bed *bed,
+                    const struct mesh_motion *motion, double time) {
+    struct meshes *meshes = &walls->meshes;
+    int rank;
+    double period[3], *to = meshes->vertex;
+    MPI_Comm_rank(comm, &rank);
+    find_periods(bed, period);
+    const int status = share_status(comm, rank == 0 ? keep_home(walls) : STATUS_OK);
+    if (status) return status;
+    for (uint32_t m = 0; m < meshes->count; ++m) { /* no mesh on ranks but 0 */
+        struct surface *surface = &meshes->mesh[m].surface;
+        const double(*home)[3] = (const double(*)[3])walls->home + (to - meshes->vertex) / 3;
+        mesh_motion_place(&motion[m], time, period, surface->vertices, home, surface->vertex);
+        memcpy(to, surface->vertex, surface->vertices * sizeof *surface->vertex);
+        to += 3 * (size_t)surface->vertices;
+    }
+    MPI_Bcast(meshes->vertex, 3 * (int)meshes->triangles.vertices, MPI_DOUBLE, 0, comm);
+    return STATUS_OK;
+}
+
 /* A particle that votes on which side of a mesh the bed lies. */
 struct voter {
     uint64_t order; /* a hash of its id */
@@ -129,7 +161,7 @@ static int face_voters(struct mesh_walls *walls, const fibrad_insitu_bed *bed, c
         for (size_t axis = 0; axis < 3; ++axis) c[axis * n + i] = voter[i].x[axis];
         c[3 * n + i] = voter[i].radius;
     }
-    for (int axis = 0; axis < 3; ++axis) period[axis] = bed->periodic[axis] ? bed->high[axis] - bed->low[axis] : 0;
+    find_periods(bed, period);
     const fibrad_spheres spheres = {.x = c, .y = c + n, .z = c + 2 * n, .r = c + 3 * n, .n = (uint32_t)n};
     collect_messages(walls);
     const int status = meshes_face(&walls->meshes, &spheres, period);
@@ -170,5 +202,7 @@ int mesh_walls_face(struct mesh_walls *walls, MPI_Comm comm, const fibrad_insitu
 
 void mesh_walls_free(struct mesh_walls *walls) {
     meshes_free(&walls->meshes);
+    free(walls->home);
+    walls->home = NULL;
     walls->messages[0] = 0;
 }

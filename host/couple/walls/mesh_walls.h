@@ -8,6 +8,7 @@
 extern "C" {
 #endif
 
+#include "couple/walls/mesh_motion.h"
 #include "mesh/meshes.h"
 
 enum { MESH_WALLS_MESSAGES = 2048 };
@@ -16,6 +17,7 @@ enum { MESH_WALLS_MESSAGES = 2048 };
  * free with mesh_walls_free. */
 struct mesh_walls {
     struct meshes meshes;
+    double (*home)[3];                  /* on rank 0: vertices at time 0; NULL before mesh_walls_move */
     char messages[MESH_WALLS_MESSAGES]; /* on rank 0: lines of warnings of the last call, or of its error; "": none */
 };
 
@@ -24,6 +26,12 @@ struct mesh_walls {
  * Status, the same on all ranks, as meshes_add, or STATUS_MEMORY. */
 int mesh_walls_add(struct mesh_walls *walls, MPI_Comm comm, const struct mesh_file *file, const struct stl *stl,
                    uint32_t body, uint32_t *bodies);
+
+/* Collective. Puts the triangles of all meshes where they are at a time. At time 0 they are where mesh_walls_add has
+ * put them. motion: [meshes], read on rank 0 alone. The bed has the periods. Call it when all meshes have been added.
+ * Status, the same on all ranks: 0 or STATUS_MEMORY. */
+int mesh_walls_move(struct mesh_walls *walls, MPI_Comm comm, const fibrad_insitu_bed *bed,
+                    const struct mesh_motion *motion, double time);
 
 /* Collective. Finds which sides of triangles are walls: those on which the particles of a bed lie. Up to 1000 particles
  * vote. Their ids choose them, so the result does not depend on who owns them. Status, the same on all ranks: 0 or
