@@ -187,6 +187,47 @@ verdict "particles above a floor of triangles have the power of those above a pl
 grep -q 'f_rad\[7\] is of wall box_xhi, 2 triangles' "$work/mesh2.log"
 verdict "walls of triangles are named" $?
 
+# ---- meshes that move ---------------------------------------------------------------------------------------------------
+# placed X Y Z: an STL file whose corner x, y, z goes to the place that these expressions give
+placed() {
+    awk "/vertex/ { x = \$2; y = \$3; z = \$4; print \"vertex\", $1, $2, $3; next } { print }" CONVFMT=%.17g OFMT=%.17g
+}
+# last NAME: step and powers at the end of the run
+last() { awk '$1 == "Step" { n = 1; next } /^Loop/ { n = 0 } n && /^ *[0-9]/ { line = $0 } END { print line }' "$work/$1.log"; }
+# moves NAME WHAT HOME MOVED SIDES MOTION [NAME VALUE]...: the rows of step 5, at the time 500, are those of a file of the moved
+# triangles
+moves() {
+    local name=$1 what=$2 sides=$5 motion=$6
+    local still=(data "$work/quarter.data" every 5 cp 1e30 "${@:7}")
+    run 1 "$name" mesh.lmp "${still[@]}" walls "wall mesh $work/$4.stl 1000 0.9 $sides"
+    for np in 1 2; do
+        run $np "$name$np" mesh.lmp "${still[@]}" walls "wall mesh $work/$3.stl 1000 0.9 $sides $motion"
+        found=$({ last "$name" && last "$name$np" && walls "$name$np"; } | awk '
+            { for (k = 2; k <= NF; k++) if (NR == 1) p[k] = $k; else { d = $k/p[k] - 1; off[NR] += d*d } }
+            END {
+                printf "%.2g; before the motion %.2g", sqrt(off[2]), sqrt(off[3])
+                exit !(NR == 3 && off[2] < 1e-18 && off[3] > 1e-4) }')
+        verdict "$what, np $np ($found)" $?
+    done
+}
+placed 6.499-y x z <"$work/box.stl" >"$work/box_turned.stl"
+moves quarter "a box after a quarter of a turn" box box_turned solids "rotate 0 0 3 2000 about 3.2495 3.2495 -7"
+# a third of a turn about 1 1 1 exchanges coordinates
+placed y-6 z-1 x+2 <"$work/box.stl" >"$work/box_away.stl"
+moves third "a box after a third of a turn and a way" box_away box "solids both" \
+    "velocity 0 0.01 0 rotate 1 1 1 1500 about 1 2 3"
+box 3 20 | sed -n '/solid zlo/,/endsolid/p' | placed x y z-1 >"$work/plate.stl"
+placed x+3 y+6 z <"$work/plate.stl" >"$work/plate_away.stl"
+moves travels "a plate that has crossed a periodic box 31 times" plate plate_away both "velocity 0.75 -0.756 0" \
+    boundary "p p f" shown "f_rad f_rad[1] f_rad[6]"
+# LAMMPS of 2021 begins again with the time 0
+turning="mesh $work/box_away.stl 1000 0.9 both rotate 1 1 1 -700"
+run 2 turning frozen.lmp "${whole[@]}" every 5 steps 10 floor "$turning" also "restart 5 $work/turning.*"
+run 1 turned frozen.lmp data "$work/turning.5" cutoff 4000 restarted yes every 5 steps 5 floor "$turning"
+near "$work/turning.out" "$work/turned.out" 1e-10 "a mesh that turns, restarted"
+! run 1 moving_rerun rerun.lmp data "$work/quarter.data" wall "$turning" && grep -q 'meshes cannot move' "$work/moving_rerun.log"
+verdict "a mesh that moves in a rerun is refused" $?
+
 # ---- moving particles -------------------------------------------------------------------------------------------------
 run 2 moving moving.lmp hot 1000
 balance moving 20e-3 0 1e-3 1000 "energy of moving particles"
@@ -267,6 +308,45 @@ for case in chute drum hopper; do
     run 2 $case $case.lmp && ! grep -q '^ERROR' "$work/$case.log" && balance $case 10e-3 0 1e-3 200 "energy in a $case"
     verdict "a $case to its end" $?
 done
+# half a drum that stores heat and turns once, from step 1500 to 3500. Its temperature follows from factors of `fibrad exchange`
+# of frames, too, among triangles that are laid out anew. Both hold factors for 250 steps
+# shell STEP: 12 of 24 facets
+shell() {
+    awk -v from="$1" -v pi=3.14159265358979 'BEGIN {
+        print "solid shell"
+        for (k = 0; k < 12; k++) for (t = 0; t < 2; t++) {
+            print "facet normal 0 0 0\nouter loop"
+            for (c = 0; c < 3; c++) {
+                angle = (from/1000 + (k + (t ? c > 0 : c == 1))/12)*pi
+                print "vertex", 5 + 5*cos(angle), 5 + 5*sin(angle), (t ? c == 1 : c > 0) ? 0 : 8
+            }
+            print "endloop\nendfacet"
+        }
+        print "endsolid" }' CONVFMT=%.17g OFMT=%.17g
+}
+shell 0 >"$work/shell.stl"
+run 2 shell drum.lmp wall "mesh $work/shell.stl 1000 0.7 both rotate 0 0 2 2 about 5 5 0 capacity 20" stored 20 rows 250
+balance shell 10e-3 0 1e-5 200 "energy in a drum of triangles that turns and stores heat"
+# heat FRAME STEP: what particles send to the shell, and what it sends to them at 1 K
+heat() {
+    shell "$2" >"$work/turned.stl"
+    "$BUILD/fibrad" exchange "$1" --emissivity .8 --wall "mesh:$work/turned.stl:both" --wall-emissivity .7 --raw --quiet \
+        --directions 400 -o "$work/factors.csv" 2>/dev/null
+    awk -F'[ ,]' 'NR == FNR && NF >= 6 && $1 ~ /^[0-9]/ { area[$1] = 16*atan2(1, 1)*$5^2; e[$1] = 1e-11*$6^4 }
+        NR > FNR && $1 > 0 && $4 == "turned" { weight = area[$1]*.8*$3; sum += weight*e[$1]; all += weight*1e-11 }
+        END { print sum, all }' CONVFMT=%.17g OFMT=%.17g "$1" "$work/factors.csv"
+}
+for step in $(seq 1500 250 3250); do heat "$work/shell.out.frame.$step" "$step"; done >"$work/heats"
+# temperatures of the shell at steps 1500 and 3500
+shell_kelvins=$(awk '$1 ~ /^(1500|3500)$/ && NF > 10 { t[$1] = $NF } END { print t[1500], t[3500] }' "$work/shell.log")
+found=$(awk -v kelvins="$shell_kelvins" '
+    NR == 1 { split(kelvins, of); begin = t = of[1] }
+    { for (k = 0; k < 25; k++) t += ($1 - $2*t^4)*.01/20 }
+    END {
+        off = (t - of[2])/(begin - of[2])
+        printf "%g to %g K, by frames %g K: %.2g of the change", begin, of[2], t, off
+        exit !(NR == 8 && begin > of[2] + 20 && off*off < 1e-4) }' "$work/heats")
+verdict "its temperature is that of factors of frames ($found)" $?
 run 1 rerun rerun.lmp data "$work/quarter.data"
 near "$work/rerun.out" "$work/rerun.out.after" 1e-300 "rerun steps no temperatures"
 awk '$1 == "Step" { n = 0 } n++ && NF == 2 && ($1 == 0 || $1 == 10) { power[$1] = $2 }
@@ -330,6 +410,12 @@ fails "empty.stl: the file is empty" "an empty mesh" \
     also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1 wall mesh $work/empty.stl 300 1"
 fails "sees the back of wall 1.*both" "the back of a mesh" \
     also "fix bad all fibrad 0 1 emissivity 1 surroundings 300 cp 1 wall mesh $work/box.stl 300 1 normals"
+for words in "rotate 0 0 1 0:the period of a mesh must not be 0" "rotate 0 0 0 1:the axis of a mesh must not be 0 0 0" \
+    "rotate 0 0 1:a word is missing" "rotate 0 0 1 5 about 0 0:a word is missing" "velocity 0 1e999 0:a mesh's velocity must be in" \
+    "velocity 0 nan 0:instead of 'nan'"; do
+    fails "${words#*:}" "a mesh with ${words%:*}" \
+        also "fix bad all fibrad 0 1 emissivity 1 wall mesh $work/box.stl 300 1 ${words%:*}"
+done
 for words in "solid 0" "solid -4" "solid type 4 0"; do
     fails "conductivity of the solid must be above 0" "$words" strict "no $words"
 done

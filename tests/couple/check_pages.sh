@@ -73,6 +73,10 @@ awk 'function corner(k) { return (k%2 ? 6499 : 0) " " (int(k/2)%2 ? 6499 : 0) " 
 { cat "$work/before" && block lammps.md "wall mesh hopper.stl" && echo 'run 100'; } >"$work/meshes"
 lammps 2 meshes && grep -q 'is of wall tube, 2 triangles' "$work/meshes.log"
 verdict "walls of triangles" $?
+cp "$work/tube.stl" "$work/drum.stl"
+{ cat "$work/before" && echo 'comm_modify vel yes' && block lammps.md "rotate 0 0 1 4" && echo 'run 100'; } >"$work/turning"
+lammps 2 turning && grep -q 'is of wall drum, 2 triangles' "$work/turning.log"
+verdict "a mesh that turns" $?
 
 # ---- docs/coupling.md -------------------------------------------------------------------------------------------------
 # the reader's program is the example

@@ -80,8 +80,8 @@ class FixFibrad::Words {
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     : Fix(lammps, narg, arg), temperature(), kept_bit(0), surroundings{-1, ""}, sampling(false), accuracy(false),
       sigma(0), initial(0), config(), meshes(), moving(false), insitu(nullptr), totals(), warned(false),
-      wall_warned(false), cut_warned(false), told(), set_up(-1), powers_at(0), lost(0), weighed(false), begun(0),
-      before(), rows_made(0), rows_followed(0), powers_found(0) {
+      wall_warned(false), cut_warned(false), told(), set_up(-1), powers_at(0), lost(0), restarted(false),
+      weighed(false), begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // the default of docs/lammps.md
@@ -304,9 +304,9 @@ void FixFibrad::read_mesh(Words &words) {
 
 // rotate AX AY AZ PERIOD [about X Y Z] | velocity VX VY VZ; false: it is another word
 bool FixFibrad::read_motion(Words &words, mesh_motion *motion) {
-    const double huge = 1e100;
-    const auto three = [&words](const char *what, double *to) {
-        for (int k = 0; k < 3; k++) to[k] = words.number(what, -huge, huge);
+    const auto number = [&words](const char *what) { return words.number(what, -1e100, 1e100); };
+    const auto three = [&number](const char *what, double *to) {
+        for (int k = 0; k < 3; k++) to[k] = number(what);
     };
     if (words.take("velocity")) {
         three("a mesh's velocity", motion->velocity);
@@ -316,7 +316,7 @@ bool FixFibrad::read_motion(Words &words, mesh_motion *motion) {
         const double length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
         if (length == 0) error->all(FLERR, std::string("fix fibrad: the axis of a mesh must not be 0 0 0"));
         for (int k = 0; k < 3; k++) axis[k] /= length;
-        motion->turn = words.number("a mesh's period", -huge, huge);
+        motion->turn = number("a mesh's period");
         if (motion->turn == 0) error->all(FLERR, std::string("fix fibrad: the period of a mesh must not be 0"));
         if (words.take("about")) three("a point of a mesh's axis", motion->about);
     } else {
@@ -450,9 +450,15 @@ void FixFibrad::init() {
     if (!cp.given()) say("fix fibrad: without `cp` the time step is not checked");
 }
 
+// The simulated time, as LAMMPS counts it.
+static double clock_of(const Update *update) {
+    return update->atime + (double)(update->ntimestep - update->atimestep) * update->dt;
+}
+
 // Rows depend on positions and on the last multiple of NROWS. So a restarted run has the same rows.
 void FixFibrad::setup(int) {
     begun = MPI_Wtime();
+    if (restarted) lost -= clock_of(update), restarted = false; // LAMMPS sets its clock when a run begins
     set_up = update->ntimestep;
     fibrad_insitu_facts_get(insitu, &before);
     refuse_second();
@@ -501,7 +507,10 @@ void FixFibrad::post_force(int) {
 // A step of rows, of heat, or of both. In a rerun each frame calls setup and then this function for the same step. Its
 // powers are there by then, and no time passes.
 void FixFibrad::end_of_step() {
-    if (update->ntimestep == set_up) return;
+    if (update->ntimestep == set_up) {
+        if (moving) error->all(FLERR, std::string("fix fibrad: no time passes in a rerun, so meshes cannot move"));
+        return;
+    }
     if (update->ntimestep % rows_every == 0) make_rows();
     if (!heat_every) return;
     follow_heatflow();
@@ -530,11 +539,8 @@ void FixFibrad::select() {
         }
 }
 
-// The time that meshes go by. In a rerun LAMMPS' clock stands still.
-double FixFibrad::time() const {
-    if (!strcmp(input->command, "rerun")) return (double)update->ntimestep * update->dt;
-    return lost + update->atime + (double)(update->ntimestep - update->atimestep) * update->dt;
-}
+// The time that meshes go by.
+double FixFibrad::time() const { return restarted ? lost : lost + clock_of(update); }
 
 // Puts meshes where they are now, and finds which sides of them are walls.
 void FixFibrad::place_meshes(const fibrad_insitu_bed &bed) {
@@ -874,7 +880,7 @@ void FixFibrad::restart(char *buffer) {
     memcpy(kept.data(), buffer + sizeof there, kept.size() * sizeof(double));
     for (size_t k = 0; k < walls.size(); k++)
         if (wall_heat.capacity[k] > 0) wall_kelvins[k].value = kept[k];
-    lost = kept.back() - time();
+    lost = kept.back(), restarted = true;
 }
 
 // ---- loading --------------------------------------------------------------------------------------------------------
