@@ -225,6 +225,8 @@ turning="mesh $work/box_away.stl 1000 0.9 both rotate 1 1 1 -700"
 run 2 turning frozen.lmp "${whole[@]}" every 5 steps 10 floor "$turning" also "restart 5 $work/turning.*"
 run 1 turned frozen.lmp data "$work/turning.5" cutoff 4000 restarted yes every 5 steps 5 floor "$turning"
 near "$work/turning.out" "$work/turned.out" 1e-10 "a mesh that turns, restarted"
+run 1 turned_on frozen.lmp "${whole[@]}" every 5 steps 5 floor "$turning" also "run 5"
+near "$work/turning.out" "$work/turned_on.out" 1e-10 "a mesh that turns in two runs"
 ! run 1 moving_rerun rerun.lmp data "$work/quarter.data" wall "$turning" && grep -q 'meshes cannot move' "$work/moving_rerun.log"
 verdict "a mesh that moves in a rerun is refused" $?
 
