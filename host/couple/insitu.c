@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "couple/ranks/coarse_map.h"
+#include "couple/ranks/turned.h"
 #include "fibrad_mesh.h"
 
 #define THREADS_MAX  1024
@@ -162,17 +163,38 @@ struct insitu_build {
     fibrad_remark remark[FIBRAD_REMARKS];
 };
 
+/* What bounds a scene, with the axes of the scene. */
+struct scene_walls {
+    fibrad_body body[FIBRAD_BODIES_MAX];
+    fibrad_plane opening[OPENINGS_MAX];
+    fibrad_triangles triangles;
+    double period[3];
+};
+
+static void turn_walls(const struct insitu_build *b, struct scene_walls *to) {
+    const fibrad_insitu_bed *bed = b->bed;
+    for (uint32_t k = 0; k < bed->bodies; ++k) to->body[k] = fibrad_turned_body(bed->cylinder, bed->body[k]);
+    for (uint32_t k = 0; k < bed->openings; ++k) to->opening[k] = fibrad_turned_plane(bed->cylinder, b->opening[k]);
+    fibrad_turn(bed->cylinder, b->period, to->period);
+    fibrad_triangles *t = &to->triangles;
+    *t = bed->triangles ? *bed->triangles : (fibrad_triangles){0};
+    const double *x[3];
+    fibrad_turn_arrays(bed->cylinder, (const double *const[]){t->x, t->y, t->z}, x);
+    t->x = x[0], t->y = x[1], t->z = x[2];
+    memcpy(t->period, to->period, sizeof t->period);
+}
+
 /* Checks the bed without its particles, which is the same on all ranks. */
 static int check_bed(struct insitu_build *b) {
     const fibrad_insitu_bed *bed = b->bed;
     char *message = b->s->message;
     unsigned char block[FIBRAD_SCENE_BYTES(0)];
     fibrad_scene *empty;
-    fibrad_body body[FIBRAD_BODIES_MAX]; /* without meshes, which bound no box */
-    uint32_t bodies = 0;
+    struct scene_walls walls;
+    uint32_t bodies = 0; /* without meshes, which bound no box */
     if (!bed || (bed->n && !(bed->id && bed->x && bed->radius && bed->emissivity)) || bed->n > FIBRAD_SPHERES_MAX ||
         bed->bodies > FIBRAD_BODIES_MAX || (bed->bodies && !(bed->body && bed->body_emissivity)) ||
-        bed->openings > OPENINGS_MAX || (bed->openings && !bed->opening))
+        bed->openings > OPENINGS_MAX || (bed->openings && !bed->opening) || bed->cylinder < 0 || bed->cylinder > 2)
         return FIBRAD_E_ARGUMENT;
     for (int axis = 0; axis < 3; ++axis) {
         if (!bed->periodic[axis]) continue;
@@ -180,18 +202,19 @@ static int check_bed(struct insitu_build *b) {
         if (!(b->period[axis] > 0 && isfinite(b->period[axis])))
             return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "the periodic box has no extent along %c", "xyz"[axis]);
     }
-    for (uint32_t k = 0; k < bed->bodies; ++k)
-        if (bed->body[k].kind != FIBRAD_BODY_MESH) body[bodies++] = bed->body[k];
     for (uint32_t k = 0; k < bed->openings; ++k) {
         fibrad_plane *opening = &b->opening[k];
         *opening = bed->opening[k];
         if (isnan(opening->at))
             opening->at = opening->upper ? FIBRAD_LENGTH_MAX : -FIBRAD_LENGTH_MAX; /* until the bed is known */
     }
-    const fibrad_scene_config config = {.period = {b->period[0], b->period[1], b->period[2]},
-                                        .body = body,
+    turn_walls(b, &walls);
+    for (uint32_t k = 0; k < bed->bodies; ++k)
+        if (walls.body[k].kind != FIBRAD_BODY_MESH) walls.body[bodies++] = walls.body[k];
+    const fibrad_scene_config config = {.period = {walls.period[0], walls.period[1], walls.period[2]},
+                                        .body = walls.body,
                                         .bodies = bodies,
-                                        .opening = b->opening,
+                                        .opening = walls.opening,
                                         .openings = bed->openings};
     const int status = fibrad_scene_init(&empty, block, sizeof block, &config, &(fibrad_spheres){0}, NULL);
     if (status == FIBRAD_E_ENDLESS) return fibrad_refuse(message, status, "%s", fibrad_status_text(status));
@@ -209,7 +232,7 @@ static int refuse_particle(char *message, uint64_t id, const char *fault) {
 
 /* Whether a particle takes part. If not, counts it; with `strict` sets *status instead. */
 static bool takes_part(struct insitu_build *b, const fibrad_particle *p, int *status) {
-    const fibrad_bounds bounds = {b->bed->body, b->opening, b->bed->bodies, b->bed->openings};
+    const fibrad_bounds bounds = {b->bed->body, b->opening, b->bed->bodies, b->bed->openings, b->bed->cylinder};
     char why[FIBRAD_MESSAGE];
     bool opening;
     if (fibrad_bounds_hold(&bounds, p, &opening, why)) return true;
@@ -328,9 +351,10 @@ static int measure_bed(struct insitu_build *b) {
     for (uint32_t k = 0; k < b->bed->bodies; ++k) b->to->emissive |= b->bed->body_emissivity[k] < 1;
     for (int axis = 0; axis < 3; ++axis) {
         const bool periodic = b->period[axis] > 0;
-        b->map.periodic[axis] = periodic;
-        b->map.low[axis] = periodic ? b->bed->low[axis] : -most[5 + axis] - b->radius_max;
-        b->map.high[axis] = periodic ? b->bed->high[axis] : most[2 + axis] + b->radius_max;
+        const int turned = fibrad_turned_axis(b->bed->cylinder, axis);
+        b->map.periodic[turned] = periodic;
+        b->map.low[turned] = periodic ? b->bed->low[axis] : -most[5 + axis] - b->radius_max;
+        b->map.high[turned] = periodic ? b->bed->high[axis] : most[2 + axis] + b->radius_max;
         if (periodic && !status && !(b->reach < PERIODS_MAX * b->period[axis]))
             status = fibrad_refuse(b->s->message, FIBRAD_E_ARGUMENT, "the cutoff is more than %d periods along %c",
                                    PERIODS_MAX, "xyz"[axis]);
@@ -423,10 +447,9 @@ static int make_scene(struct insitu_build *b) {
     const size_t n = b->own + b->halo;
     const fibrad_particle *p = b->to->particle.at;
     if (n > FIBRAD_SPHERES_MAX) return FIBRAD_E_MEMORY;
-    fibrad_triangles triangles = {0};
-    if (b->bed->triangles) triangles = *b->bed->triangles;
-    memcpy(triangles.period, b->period, sizeof triangles.period);
-    const size_t size = fibrad_scene_size((uint32_t)n, 1) + fibrad_triangles_size(triangles.n, (uint32_t)n);
+    struct scene_walls walls;
+    turn_walls(b, &walls);
+    const size_t size = fibrad_scene_size((uint32_t)n, 1) + fibrad_triangles_size(walls.triangles.n, (uint32_t)n);
     if (fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&b->to->id, n, sizeof(uint64_t)) ||
         fibrad_block_fit(&s->emissivity, 3 * n, sizeof(double)))
         return FIBRAD_E_MEMORY;
@@ -438,14 +461,16 @@ static int make_scene(struct insitu_build *b) {
     }
     fibrad_scene_config config = {0}; /* without particles: an empty scene */
     if (n)
-        config = (fibrad_scene_config){.body = b->bed->body,
+        config = (fibrad_scene_config){.body = walls.body,
                                        .bodies = b->bed->bodies,
-                                       .opening = b->opening,
+                                       .opening = walls.opening,
                                        .openings = b->bed->openings,
                                        .occupancy = &b->map,
-                                       .triangles = &triangles};
+                                       .triangles = &walls.triangles};
     const uint32_t stride = sizeof *p / sizeof(double);
-    const fibrad_spheres spheres = {&p->x[0], &p->x[1], &p->x[2], &p->radius, (uint32_t)n, stride, stride, id};
+    const double *x[3];
+    fibrad_turn_arrays(b->bed->cylinder, (const double *const[]){&p->x[0], &p->x[1], &p->x[2]}, x);
+    const fibrad_spheres spheres = {x[0], x[1], x[2], &p->radius, (uint32_t)n, stride, stride, id};
     fibrad_fault fault;
     const int status = fibrad_scene_init(&b->scene, s->scene.at, s->scene.size, &config, &spheres, &fault);
     return status ? name_scene_fault(b, status, id, n, fault) : FIBRAD_OK;
@@ -656,8 +681,8 @@ static int gather_bed(struct insitu_build *b) {
     int status = find_halo(b);
     if (!status) status = part_overlaps(b);
     if (!status)
-        status = fibrad_coarse_map(b->s->comm, CELL_RADII * b->radius_mean, b->radius_max, b->to->particle.at, b->own,
-                                   &b->s->mark, &b->map);
+        status = fibrad_coarse_map(b->s->comm, CELL_RADII * b->radius_mean, b->radius_max, b->bed->cylinder,
+                                   b->to->particle.at, b->own, &b->s->mark, &b->map);
     b->fresh = b->own;
     return !status && b->follows ? choose_fresh(b) : status;
 }

@@ -122,6 +122,13 @@ status=$?
 verdict "the sky above a flat bed gets what fibrad heat says ($(cat "$work/sky.error"))" $status
 
 # ---- particles that conduct, against fibrad heat ------------------------------------------------------------------------
+# powers_near CSV DUMP WHAT: the powers of all particles
+powers_near() {
+    found=$(awk -F'[ ,]' 'NR == FNR && $1 ~ /^[0-9]/ { q[$1] = $3 } NR > FNR && NF == 2 && $1 in q {
+            d = $2 - q[$1]; n++; off += d*d; all += q[$1]^2 }
+        END { printf "%.2g", sqrt(off/all); exit !(n == 499 && off < .05^2*all) }' "$1" "$2")
+    verdict "$3 ($found)" $?
+}
 awk 'BEGIN { print "id,type,x,y,z,radius,T" } { print $1 "," 2 - $1%2 "," $2 "," $3 "," $4 "," $5 "," $6 }' \
     "$work/quarter" >"$work/quarter.csv"
 "$BUILD/fibrad" heat "$work/quarter.csv" --emissivity 1:.5,2:.8 --temperature T --ambient 300 --wall zmin=0 \
@@ -130,12 +137,7 @@ awk 'BEGIN { print "id,type,x,y,z,radius,T" } { print $1 "," 2 - $1%2 "," $2 ","
 for np in 1 2; do
     run $np conduct$np frozen.lmp "${whole[@]}" steps 0 strict "no solid type 4 12 accuracy high" \
         also "dump powers all custom 1 $work/powers$np id f_rad"
-    awk -F'[ ,]' 'NR == FNR && $1 ~ /^[0-9]/ { q[$1] = $3 } NR > FNR && NF == 2 && $1 in q {
-            d = $2 - q[$1]; n++; off += d*d; all += q[$1]^2 }
-        END { printf "%.2g", sqrt(off/all); exit !(n == 499 && off < .05^2*all) }' \
-        "$work/conduct.csv" "$work/powers$np" >"$work/conduct.error"
-    status=$?
-    verdict "powers of particles that conduct are those of fibrad heat, np $np ($(cat "$work/conduct.error"))" $status
+    powers_near "$work/conduct.csv" "$work/powers$np" "powers of particles that conduct are those of fibrad heat, np $np"
     run $np conducts$np frozen.lmp "${whole[@]}" strict "no solid 10"
 done
 near "$work/conducts1.out" "$work/conducts2.out" 1e-8 "a bed that conducts, np 1 and 2"
@@ -229,6 +231,54 @@ run 1 turned_on frozen.lmp "${whole[@]}" every 5 steps 5 floor "$turning" also "
 near "$work/turning.out" "$work/turned_on.out" 1e-10 "a mesh that turns in two runs"
 ! run 1 moving_rerun rerun.lmp data "$work/quarter.data" wall "$turning" && grep -q 'meshes cannot move' "$work/moving_rerun.log"
 verdict "a mesh that moves in a rerun is refused" $?
+
+# ---- cylinders along all axes -------------------------------------------------------------------------------------------
+# laid AXIS: a dump with its axes turned cyclically so that z becomes x, y or z
+laid() {
+    awk -v axis="$1" '
+        BEGIN { split(axis == "x" ? "3 1 2" : axis == "y" ? "2 3 1" : "1 2 3", from, " ") }
+        /BOX BOUNDS/ { box = 1 }
+        box && NF == 2 { side[box++] = $0; if (box == 4) print side[from[1]] "\n" side[from[2]] "\n" side[from[3]]; next }
+        /^[0-9]+ 1 / { for (k = 1; k < 4; k++) at[k] = $(2 + from[k]); for (k = 1; k < 4; k++) $(2 + k) = at[k] }
+        { print }'
+}
+# one bed in a tube between a floor and an opening, in a tube without ends, and in a tube that triangles close
+printf 'solid %s\n facet normal 0 0 0\n outer loop\n vertex -9 -9 %s\n vertex 20 -9 %s\n vertex 5 25 %s\n endloop\n endfacet\nendsolid\n' \
+    low 0 0 0 high 13.6 13.6 13.6 >"$work/caps.stl"
+sed 's/^0[^ ]* 5[^ ]*$/0 13.5/' "$work/quarter.dump" >"$work/period.dump"
+for axis in z x y; do
+    laid $axis <"$work/quarter.dump" | as_data - >"$work/laid.data"
+    laid $axis <"$work/period.dump" | as_data - >"$work/period.data"
+    case $axis in
+        x) ends="p f f" at="3.25 3.4" to="z x y" ;;
+        y) ends="f p f" at="3.4 3.25" to="y z x" ;;
+        z) ends="f f p" at="3.25 3.4" to="x y z" ;;
+    esac
+    # shellcheck disable=SC2086  # three words
+    placed $to <"$work/caps.stl" >"$work/caps.$axis.stl"
+    tube="wall ${axis}cylinder 4.6 600 0.8 at $at"
+    low="wall ${axis}lo 1000 0.9 at 0"
+    caps="wall mesh $work/caps.$axis.stl 1000 0.9 both wall ${axis}lo open at -1 wall ${axis}hi open at 15"
+    for np in 1 2; do
+        run $np tube$axis$np mesh.lmp data "$work/laid.data" walls "$tube $low wall ${axis}hi open at 20" shown "f_rad f_rad[1] f_rad[6] f_rad[7]"
+        run $np endless$axis$np mesh.lmp data "$work/period.data" boundary "$ends" walls "$tube" shown "f_rad f_rad[6]"
+        run $np caps$axis$np mesh.lmp data "$work/laid.data" walls "$tube $caps" shown "f_rad f_rad[6] f_rad[7]"
+        for bed in tube endless caps; do
+            near "$work/${bed}z1.out" "$work/$bed$axis$np.out" 1e-10 "a bed in ${axis}cylinder, $bed, np $np"
+            found=$({ walls ${bed}z1 && walls $bed$axis$np; } | awk 'NR == 1 { for (k = 2; k <= NF; k++) p[k] = $k; next }
+                { for (k = 2; k <= NF; k++) { d = $k/p[k] - 1; if (!(d*d < worst*worst)) worst = d } print worst }
+                END { exit !(NR == 2 && NF > 2 && worst*worst < 1e-20) }')
+            verdict "its powers and those of its walls ($found)" $?
+        done
+    done
+done
+"$BUILD/fibrad" heat "$work/quarter.csv" --emissivity 1:.5,2:.8 --temperature T --ambient 300 --length-unit m \
+    --wall zmin=0,zmax=20:open,cylinder:3.25,3.4,4.6 --wall-temperature zmin=1000,cylinder=600 \
+    --wall-emissivity zmin=.9,cylinder=.8 --directions 600 -o "$work/tube.csv" >/dev/null 2>&1
+laid x <"$work/quarter.dump" | as_data - >"$work/laid.data"
+run 2 tube frozen.lmp data "$work/laid.data" steps 0 strict "no accuracy high" also "dump powers all custom 1 $work/powers id f_rad" \
+    floor "xcylinder 4.6 600 0.8 at 3.25 3.4 wall xlo 1000 0.9 at 0 wall xhi open at 20"
+powers_near "$work/tube.csv" "$work/powers" "powers in xcylinder are those of fibrad heat"
 
 # ---- moving particles -------------------------------------------------------------------------------------------------
 run 2 moving moving.lmp hot 1000
@@ -404,6 +454,14 @@ fails "excludes" "accuracy beside paths" \
     also "fix bad all fibrad 0 1 emissivity 1 surroundings 300 cp 1 paths 50 accuracy low"
 fails "open axes x and y" "a cylinder with periodic axes" boundary "p p f" \
     also "fix bad all fibrad 0 1 emissivity 1 surroundings 300 cp 1 wall zcylinder 50 300 1"
+fails "wall ycylinder needs open axes x and z" "a cylinder along y with periodic axes" boundary "p p f" \
+    also "fix bad all fibrad 0 1 emissivity 1 surroundings 300 cp 1 wall ycylinder 50 300 1"
+fails "particle 10 at (4.75951, 11.5, 2.78234): its centre lies beyond wall 1, the cylinder" "a centre beyond a cylinder" \
+    floor "xcylinder 8 1000 .9 at 3 6.5 wall xlo open wall xhi open" also "set atom 10 y 11.5" strict yes
+for ends in "wall ylo open wall yhi open" "wall zcylinder 30 1000 1 wall xlo open wall xhi open"; do
+    fails "the walls do not bound a box or a cylinder" "xcylinder and $ends" floor "xcylinder 30 1000 .9 $ends"
+done
+fails "an opening.*wall zhi open" "a cylinder without ends" floor "ycylinder 30 1000 .9"
 fails "emissivity" "emissivity out of range" also "fix bad all fibrad 1 1 emissivity 1.5 surroundings 300 cp 1"
 fails "$work/none.stl: No such file" "a mesh that is not there" \
     also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1 wall mesh $work/none.stl 300 1"

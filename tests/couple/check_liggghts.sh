@@ -82,6 +82,23 @@ echo "$(value joined2 wall_1_F) $(value serial wall_zmin_F)" |
     awk '{ printf "the floor takes %.5f, %.5f in one scene\n", $1, $2; off = $1 / $2 - 1; exit !(off * off < 1e-4) }' ||
     complain "the floor takes something else"
 
+# What a cylinder along x or y takes, and its ends: in one scene the bed is turned and the cylinder lies along z
+for axis in x y; do
+    case $axis in x) column=4 middle=.024,.018 ;; *) column=5 middle=.018,.024 ;; esac
+    { echo x,y,z,r && awk -v c=$column '{ print $(4 + (c - 3)%3) "," $(4 + (c - 2)%3) "," $c ",.003" }' atoms; } >turned.csv
+    "$fibrad" exchange turned.csv --emissivity 0.8 --wall cylinder:$middle,.025,zmin=0,zmax=.048 --wall-emissivity .9 --raw \
+        >along_z 2>/dev/null || complain "no factors of a turned bed"
+    radiation="--emissivity 0.8 --surroundings 300 --wall ${axis}cylinder=600,.9,.024,.018,.025 --wall ${axis}lo=600,.9 --wall ${axis}hi=600,.9"
+    run round 2 'setforce 0 0 0' 1 -in bed --write round
+    "$fibrad" join round.0.rows round.1.rows --raw -o round.csv >joined_round || complain "${axis}cylinder: no rows"
+    echo "$(value joined_round wall_1_F) $(value along_z wall_cylinder_F) $(value joined_round wall_3_F) $(value along_z wall_zmax_F)" |
+        awk -v axis=$axis '{
+            printf "%scylinder takes %.5f, %.5f in one scene, its end %.5f, %.5f\n", axis, $1, $2, $3, $4
+            round = $1 / $2 - 1; end = $3 / $4 - 1
+            exit !(NF == 4 && round * round < 1e-4 && end * end < 4e-4) }' || complain "${axis}cylinder takes something else"
+done
+radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
+
 # A source of the script's own stays: 1 W in each of 294 particles for 200 steps of 2e-5 s
 { cat bed && echo 'run 0' && echo 'set group all property/atom heatSource 1'; } >source
 run own 2 'setforce 0 0 0' 200 -in source

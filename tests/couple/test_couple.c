@@ -194,8 +194,9 @@ static void close_pile(struct pile *p) {
 
 enum walls { OPEN, FLOORS, TUBE, PIPE };
 
-/* Both ends of a pipe, where the particles end. */
-static const fibrad_plane ends[] = {{2, 0, NAN}, {2, 1, NAN}};
+/* Both ends of a pipe along each axis, where the particles end. */
+static const fibrad_plane ends[3][2] = {
+    {{0, 0, NAN}, {0, 1, NAN}}, {{1, 0, NAN}, {1, 1, NAN}}, {{2, 0, NAN}, {2, 1, NAN}}};
 
 /* Least k* of the particles of the next piles. The largest is 10 times as large. 0: infinite. */
 static double conducting;
@@ -224,7 +225,7 @@ static struct pile pile_of(const struct kind *kind) {
         for (int axis = 0; axis < 3; ++axis)
             x[axis] =
                 round((PITCH * (place[axis] + .5 + .2 * (random_of(id, (uint64_t)axis) - .5)) - 1) * 0x1p20) / 0x1p20;
-        if (kind->walls >= TUBE && hypot(x[0] - box / 2 + 1, x[1] - box / 2 + 1) > box / 2) continue;
+        if (kind->walls >= TUBE && hypot(x[0] - box / 2 + 1, x[1] - box / 2 + .75) > box / 2) continue;
         const size_t n = p.bed.n++;
         p.id[n] = id;
         memcpy(p.x + 3 * n, x, sizeof x);
@@ -236,12 +237,29 @@ static struct pile pile_of(const struct kind *kind) {
     if (kind->walls == FLOORS)
         for (int k = 0; k < 2; ++k)
             p.body[p.bed.bodies++] = (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {2, k, k ? box - 1 : -1}};
-    if (kind->walls == PIPE) p.bed.opening = ends, p.bed.openings = 2;
+    if (kind->walls == PIPE) p.bed.opening = ends[2], p.bed.openings = 2;
     if (kind->walls >= TUBE)
         p.body[p.bed.bodies++] =
-            (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {box / 2 - 1, box / 2 - 1, box / 2}};
+            (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {box / 2 - 1, box / 2 - .75, box / 2}};
     p.body_emissivity[0] = kind->emissivity[0], p.body_emissivity[1] = .5;
     return p;
+}
+
+/* Turns a point, and axes cyclically, so that z becomes this axis. */
+static void turn_axes(double x[3], int axis) {
+    const double from[3] = {x[0], x[1], x[2]};
+    for (int k = 0; k < 3; ++k) x[(k + axis + 1) % 3] = from[k];
+}
+
+/* Turns a tube or a pipe until it lies along another axis. */
+static void lay_along(struct pile *p, int axis) {
+    const double x = p->body->cylinder.x;
+    const int periodic = p->bed.periodic[2];
+    for (size_t i = 0; i < p->bed.n; ++i) turn_axes(p->x + 3 * i, axis);
+    p->bed.cylinder = (axis + 1) % 3;
+    p->bed.periodic[2] = 0, p->bed.periodic[axis] = periodic;
+    if (p->bed.openings) p->bed.opening = ends[axis];
+    if (axis == 1) p->body->cylinder.x = p->body->cylinder.y, p->body->cylinder.y = x; /* x y z become z x y, y z x */
 }
 
 /* The owner of a particle: by chance, by height, the last rank owns all, all ranks but rank 0. */
@@ -357,10 +375,11 @@ static size_t place_of(const struct rows_file *r, uint64_t id) {
     return k;
 }
 
-/* Compares the rows of all ranks in the files `part` with those of the one file `whole`. */
-static void compare_files(const char *part, const char *whole) {
+/* Compares the rows of all ranks in the files `part` with those of the one file `whole`, whose z became `axis`. */
+static void compare_files(const char *part, const char *whole, int axis) {
     if (rank) return;
     struct rows_file b = read_rows(whole, 0);
+    for (size_t k = 0; k < b.head.rows; ++k) turn_axes(b.x + 3 * k, axis);
     uint64_t rows = 0, same = 0;
     for (int q = 0; q < ranks; ++q) {
         struct rows_file a = read_rows(part, q);
@@ -405,8 +424,9 @@ static void make_rows(fibrad_insitu *s, const struct pile *p, uint64_t step) {
     if (status) fprintf(stderr, "%s\n", fibrad_insitu_message(s));
 }
 
-/* The rows of all ranks, whichever rank owns which particles, are those of one rank that owns all. */
-static void rows_are_those_of_one_rank(const struct kind *kind) {
+/* The rows of all ranks, whichever rank owns which particles, are those of one rank that owns all. Those of a tube or
+ * a pipe along another axis are the same. */
+static void rows_are_those_of_one_rank(const struct kind *kind, int axis) {
     struct pile all = pile_of(kind);
     if (rank == 0) {
         fibrad_insitu *self = insitu_of(MPI_COMM_SELF, kind, 1);
@@ -414,6 +434,7 @@ static void rows_are_those_of_one_rank(const struct kind *kind) {
         CHECK(fibrad_insitu_write(self, path_of("whole")) == FIBRAD_OK);
         fibrad_insitu_free(self);
     }
+    lay_along(&all, axis);
     fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, kind->threads);
     for (int again = 0; again < 2; ++again) { /* first other rows, so that the memory is not empty */
         struct pile part = part_of(&all, again ? kind->spread : (kind->spread + 1) % SPREADS);
@@ -422,7 +443,7 @@ static void rows_are_those_of_one_rank(const struct kind *kind) {
     }
     CHECK(fibrad_insitu_write(s, path_of("part")) == FIBRAD_OK);
     MPI_Barrier(MPI_COMM_WORLD);
-    compare_files("part", "whole");
+    compare_files("part", "whole", axis);
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(s, &facts);
     CHECK(facts.particles == all.bed.n && facts.step == 7 && facts.entries > 0 && facts.bytes > 0);
@@ -532,7 +553,7 @@ static void the_map_has_all(const struct kind *kind) {
         map.low[axis] = all.bed.low[axis] - (kind->periodic[axis] ? 0 : 5);
         map.high[axis] = all.bed.high[axis] + (kind->periodic[axis] ? 0 : 5);
     }
-    CHECK(fibrad_coarse_map(MPI_COMM_WORLD, .4, .5, own, part.bed.n, &mark, &map) == FIBRAD_OK);
+    CHECK(fibrad_coarse_map(MPI_COMM_WORLD, .4, .5, 0, own, part.bed.n, &mark, &map) == FIBRAD_OK);
     size_t marked = 0, cells = (size_t)map.cells[0] * map.cells[1] * map.cells[2];
     for (size_t c = 0; c < cells; ++c) marked += map.mark[c / 64] >> c % 64 & 1;
     bool there = true;
@@ -950,6 +971,34 @@ static void powers_are_refused(fibrad_insitu *s, const struct pile *good) {
     close_pile(&part);
 }
 
+/* What a cylinder along x or y may not have. A message names the axes of the bed. */
+static void cylinders_are_refused(fibrad_insitu *s) {
+    static const char *const place[] = {"at (0.5, 9.5, 0.25): its centre lies beyond wall 1, the cylinder",
+                                        "at (0.25, 0.5, 9.5): its centre lies beyond wall 1, the cylinder"};
+    const fibrad_body tube = {.kind = FIBRAD_BODY_CYLINDER, .cylinder = {3, 4, 6}};
+    for (int axis = 0; axis < 2; ++axis) {
+        const fibrad_plane across[] = {{2, 0, -1}, {2, 1, 9}};
+        const fibrad_body both[] = {tube, tube}, floor[] = {tube, {.kind = FIBRAD_BODY_PLANE, .plane = across[0]}};
+        double x[3] = {9.5, .25, .5};
+        turn_axes(x, axis);
+        fibrad_insitu_bed bed = {.low = {0}, .high = {9, 9, 9}, .cylinder = (axis + 1) % 3};
+        bed.periodic[axis] = 1, bed.body_emissivity = (const double[]){1, 1};
+        bed.n = 1, bed.id = &(const uint64_t){5}, bed.x = x, bed.radius = bed.emissivity = &(const double){.5};
+        bed.body = &tube, bed.bodies = 1;
+        check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, place[axis]);
+        bed.body = both, bed.bodies = 2;
+        check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "do not bound a box or a cylinder");
+        bed.body = floor;
+        check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "do not bound a box or a cylinder");
+        bed.bodies = 1, bed.opening = across, bed.openings = 2;
+        check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "do not bound a box or a cylinder");
+        bed.openings = 0, bed.periodic[axis] = 0;
+        check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ENDLESS, "an opening");
+        bed.cylinder = 3;
+        check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "");
+    }
+}
+
 /* If one rank cannot write its file, no file is left. */
 static void files_are_refused(fibrad_insitu *s) {
     char name[4200];
@@ -1015,6 +1064,7 @@ static void refusals(void) {
     files_are_refused(s);
     CHECK(fibrad_insitu_powers(s, &state, part.power, NULL) == FIBRAD_OK);
     CHECK(memcmp(before, part.power, part.bed.n * sizeof *before) == 0);
+    cylinders_are_refused(s);
     fibrad_insitu_free(s);
 
     s = insitu_of(MPI_COMM_WORLD, &(struct kind){.cutoff = 1000}, 1);
@@ -1037,7 +1087,9 @@ int main(int argc, char **argv) {
     folder = argc > 1 ? argv[1] : ".";
     things_arrive();
     links();
-    for (int k = 0; k < KINDS; ++k) rows_are_those_of_one_rank(&kinds[k]);
+    for (int k = 0; k < KINDS; ++k) rows_are_those_of_one_rank(&kinds[k], 2);
+    for (int k = 0; k < KINDS; ++k)
+        for (int axis = 0; axis < 2 && kinds[k].walls >= TUBE; ++axis) rows_are_those_of_one_rank(&kinds[k], axis);
     for (int k = 0; k < KINDS; ++k) powers_keep_energy(&kinds[k]);
     steps_change_noise();
     the_map_has_all(&kinds[0]);
@@ -1049,7 +1101,7 @@ int main(int argc, char **argv) {
     strays_do_not_end_a_run();
     rows_follow_particles(.12);
     conducting = .1;
-    rows_are_those_of_one_rank(&kinds[0]);
+    rows_are_those_of_one_rank(&kinds[0], 2);
     powers_keep_energy(&kinds[3]);
     powers_keep_energy(&kinds[7]);
     rows_follow_particles(.15);

@@ -79,7 +79,7 @@ class FixFibrad::Words {
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     : Fix(lammps, narg, arg), temperature(), kept_bit(0), surroundings{-1, ""}, sampling(false), accuracy(false),
-      sigma(0), initial(0), config(), meshes(), moving(false), insitu(nullptr), totals(), warned(false),
+      cylinder(2), sigma(0), initial(0), config(), meshes(), moving(false), insitu(nullptr), totals(), warned(false),
       wall_warned(false), cut_warned(false), told(), set_up(-1), powers_at(0), lost(0), restarted(false),
       weighed(false), begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
     const double huge = 1e300;
@@ -199,22 +199,29 @@ void FixFibrad::read_group(Words &words) {
     kept_bit = group->bitmask[number];
 }
 
-// wall FACE T e [at POS] [capacity C] | wall FACE open [at POS] | wall zcylinder R T e [at X Y] [capacity C] |
-// wall mesh ...
+static const char *const across[] = {"yz", "xz", "xy"}; // the other axes of a cylinder along x, y or z
+
+// wall FACE T e [at POS] [capacity C] | wall FACE open [at POS] | wall xcylinder R T e [at Y Z] [capacity C] |
+// wall ycylinder R T e [at X Z] ... | wall zcylinder R T e [at X Y] ... | wall mesh ...
 void FixFibrad::read_wall(Words &words) {
-    static const char *const faces[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi", "zcylinder"};
+    static const char *const faces[] = {"xlo", "xhi",       "ylo",       "yhi",      "zlo",
+                                        "zhi", "xcylinder", "ycylinder", "zcylinder"};
     const std::string name = words.next();
-    const int face = (int)(std::find(faces, faces + 7, name) - faces);
+    const int face = (int)(std::find(faces, faces + 9, name) - faces);
+    const bool round = face >= 6;
     if (face < 6 && words.take("open")) return read_opening(words, face);
     if (walls.size() == FIBRAD_BODIES_MAX)
         error->all(FLERR, text("fix fibrad: there are at most %d walls", FIBRAD_BODIES_MAX));
     if (name == "mesh") return read_mesh(words);
-    if (face == 7)
-        error->all(FLERR, "fix fibrad: a wall is one of xlo xhi ylo yhi zlo zhi zcylinder mesh, not `" + name + "`");
+    if (face == 9)
+        error->all(FLERR,
+                   "fix fibrad: a wall is one of xlo xhi ylo yhi zlo zhi xcylinder ycylinder zcylinder mesh, not `" +
+                       name + "`");
 
     const double huge = 1e300;
     fibrad_body body = {};
-    if (face == 6) {
+    if (round) {
+        cylinder = face - 6;
         body.kind = FIBRAD_BODY_CYLINDER;
         body.cylinder.radius = words.number("the cylinder's radius", 0, huge);
     } else {
@@ -226,16 +233,16 @@ void FixFibrad::read_wall(Words &words) {
     wall_emissivity.push_back(words.number("a wall's emissivity", 0, 1));
     const bool at = words.take("at");
     if (at) {
-        if (face == 6) {
-            body.cylinder.x = words.number("x of the cylinder", -huge, huge);
-            body.cylinder.y = words.number("y of the cylinder", -huge, huge);
+        if (round) {
+            body.cylinder.x = words.number(text("%c of the cylinder", across[cylinder][0]).c_str(), -huge, huge);
+            body.cylinder.y = words.number(text("%c of the cylinder", across[cylinder][1]).c_str(), -huge, huge);
         } else {
             body.plane.at = words.number("the place of a wall", -huge, huge);
         }
     }
     wall_heat.capacity.push_back(words.take("capacity") ? read_capacity(words, wall_kelvins.back()) : 0);
     walls.push_back(body);
-    wall_face.push_back(at || face == 6 ? -1 : face);
+    wall_face.push_back(at || round ? -1 : face);
 }
 
 // [at POS]; without `at` the opening is where the particles end
@@ -416,10 +423,11 @@ void FixFibrad::init() {
     if (strstr(update->integrate_style, "respa"))
         error->all(FLERR, std::string("fix fibrad: run_style must be verlet"));
     for (const fibrad_body &body : walls)
-        if (body.kind == FIBRAD_BODY_CYLINDER && (domain->periodicity[0] || domain->periodicity[1]))
-            error->all(FLERR,
-                       std::string("fix fibrad: wall zcylinder needs open axes x and y (boundary f f p): what is in "
-                                   "it has no images beyond it"));
+        if (body.kind == FIBRAD_BODY_CYLINDER &&
+            (domain->periodicity[(cylinder + 1) % 3] || domain->periodicity[(cylinder + 2) % 3]))
+            error->all(FLERR, text("fix fibrad: wall %ccylinder needs open axes %c and %c: what is in it has no images "
+                                   "beyond it",
+                                   "xyz"[cylinder], across[cylinder][0], across[cylinder][1]));
     for (const fibrad_plane &opening : openings)
         if (domain->periodicity[opening.axis])
             error->all(FLERR, std::string("fix fibrad: wall ") + "xyz"[opening.axis] + (opening.upper ? "hi" : "lo") +
@@ -568,6 +576,7 @@ void FixFibrad::make_rows(bool follow) {
     bed.body = walls.data();
     bed.body_emissivity = wall_emissivity.data();
     bed.bodies = (uint32_t)walls.size();
+    bed.cylinder = (cylinder + 1) % 3;
     bed.opening = openings.data();
     bed.openings = (uint32_t)openings.size();
     bed.triangles = &meshes.meshes.triangles;

@@ -123,6 +123,7 @@ class FixFibrad : public Fix {
     Temperature surroundings;
     bool sampling;  // directions, paths or tolerance are given
     bool accuracy;  // accuracy is given
+    int cylinder;   // axis of the cylinder
     double sigma;   // in units of the simulation
     double initial; // temperature of new atoms
     fibrad_insitu_config config;

@@ -354,6 +354,7 @@ void make_rows(Driver *driver, bool follow) {
     bed.body = driver->body.data();
     bed.body_emissivity = driver->body_emissivity.data();
     bed.bodies = (uint32_t)driver->body.size();
+    bed.cylinder = driver->options.cylinder;
     bed.opening = driver->options.openings.data();
     bed.openings = (uint32_t)driver->options.openings.size();
     bed.triangles = &driver->triangles.meshes.triangles;

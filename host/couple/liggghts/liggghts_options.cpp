@@ -67,6 +67,7 @@ bool whole(const char *text, uint64_t *value) {
 }
 
 const char sides[6][4] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
+const char *const cylinders[] = {"cylinder", "xcylinder", "ycylinder"}; /* in the order of fibrad_insitu_bed.cylinder */
 
 /* Reads SIDE=open or SIDE=open,AT. */
 bool opening(const char *text, fibrad_plane *plane) {
@@ -84,8 +85,8 @@ bool opening(const char *text, fibrad_plane *plane) {
     return false;
 }
 
-/* Reads SIDE=T,E[,AT] or cylinder=T,E,X,Y,R. */
-bool wall(const char *text, radiant_wall *wall) {
+/* Reads SIDE=T,E[,AT], or one of xcylinder=T,E,Y,Z,R, ycylinder=T,E,X,Z,R and cylinder=T,E,X,Y,R. *cylinder: which. */
+bool wall(const char *text, radiant_wall *wall, int *cylinder) {
     const char *equals = std::strchr(text, '=');
     std::vector<double> values;
     if (equals == nullptr || !numbers(equals + 1, -FIBRAD_LENGTH_MAX, FIBRAD_LENGTH_MAX, &values) || values.size() < 2)
@@ -96,12 +97,14 @@ bool wall(const char *text, radiant_wall *wall) {
     wall->placed = values.size() > 2;
     wall->body = fibrad_body{};
     if (!(wall->temperature >= 0 && wall->emissivity >= 0 && wall->emissivity <= 1)) return false;
-    if (wall->name == "cylinder") {
-        if (values.size() != 5 || !(values[4] > 0)) return false;
-        wall->body.kind = FIBRAD_BODY_CYLINDER;
-        wall->body.cylinder = {values[2], values[3], values[4]};
-        return true;
-    }
+    for (int along = 0; along < 3; ++along)
+        if (wall->name == cylinders[along]) {
+            if (values.size() != 5 || !(values[4] > 0)) return false;
+            *cylinder = along;
+            wall->body.kind = FIBRAD_BODY_CYLINDER;
+            wall->body.cylinder = {values[2], values[3], values[4]};
+            return true;
+        }
     for (int side = 0; side < 6; ++side)
         if (wall->name == sides[side]) {
             wall->body.kind = FIBRAD_BODY_PLANE;
@@ -163,8 +166,9 @@ const char *take(int key, const char *text, liggghts_options *options) {
             options->openings.push_back(open);
             return nullptr;
         }
-        if (!wall(text, &one))
-            return "is none of SIDE=T,E[,AT], SIDE=open[,AT] and cylinder=T,E,X,Y,R, with SIDE from xlo to zhi";
+        if (!wall(text, &one, &options->cylinder))
+            return "is none of SIDE=T,E[,AT], SIDE=open[,AT], cylinder=T,E,X,Y,R, xcylinder=T,E,Y,Z,R and "
+                   "ycylinder=T,E,X,Z,R, with SIDE from xlo to zhi";
         options->walls.push_back(one);
         return nullptr;
     case 'm':
@@ -250,7 +254,8 @@ void liggghts_options_help() {
         "                           [fixed end of the box]\n"
         "  --wall SIDE=open[,AT]    an opening: the container ends there and the surroundings begin [where the\n"
         "                           particles end]\n"
-        "  --wall cylinder=T,E,X,Y,R  a cylinder of radius R about the axis along z through X,Y\n"
+        "  --wall cylinder=T,E,X,Y,R  a cylinder of radius R about the axis along z through X,Y; along the other axes\n"
+        "                           xcylinder=T,E,Y,Z,R and ycylinder=T,E,X,Z,R\n"
         "  --mesh ID=[T,]E          the script's fix mesh/surface ID radiates: temperature [K] [the script's],\n"
         "                           emissivity. The sides that particles are on belong to the wall. ID=[T,]E:both\n"
         "                           makes both sides the wall, ID=[T,]E:normals the outer sides of the file\n"

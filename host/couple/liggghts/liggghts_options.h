@@ -10,7 +10,7 @@
 
 /* A wall that radiates. */
 struct radiant_wall {
-    std::string name; /* xlo ... zhi, cylinder */
+    std::string name; /* xlo ... zhi, cylinder, xcylinder, ycylinder */
     fibrad_body body;
     bool placed; /* the option gives the coordinate; else the wall is at the end of the box */
     double temperature, emissivity;
@@ -36,6 +36,7 @@ struct liggghts_options {
     std::vector<double> solid;       /* the same of the conductivity of the solid; empty: infinite */
     double surroundings = -1;        /* below 0: not given */
     std::vector<radiant_wall> walls;
+    int cylinder = 0;                   /* axis of the cylinder, as in fibrad_insitu_bed */
     std::vector<fibrad_plane> openings; /* at NaN: at the end of the particles */
     std::vector<radiant_mesh> meshes;
     std::vector<wall_capacity> capacities;

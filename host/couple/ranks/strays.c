@@ -14,11 +14,12 @@ static bool plane_holds(const fibrad_plane *plane, const double x[3]) {
     return plane->upper ? x[plane->axis] <= plane->at : x[plane->axis] >= plane->at;
 }
 
-static bool body_holds(const fibrad_body *body, const double x[3]) {
+/* cylinder: its axis, as in fibrad_insitu_bed */
+static bool body_holds(const fibrad_body *body, int cylinder, const double x[3]) {
     if (body->kind == FIBRAD_BODY_PLANE) return plane_holds(&body->plane, x);
     if (body->kind != FIBRAD_BODY_CYLINDER) return true;
-    const double a = (x[0] - body->cylinder.x) / body->cylinder.radius;
-    const double b = (x[1] - body->cylinder.y) / body->cylinder.radius;
+    const double a = (x[cylinder == 1 ? 1 : 0] - body->cylinder.x) / body->cylinder.radius;
+    const double b = (x[cylinder == 0 ? 1 : 2] - body->cylinder.y) / body->cylinder.radius;
     return a * a + b * b <= 1;
 }
 
@@ -38,7 +39,7 @@ bool fibrad_bounds_hold(const fibrad_bounds *bounds, const fibrad_particle *p, b
     *opening = false;
     for (uint32_t k = 0; k < bounds->bodies; ++k) {
         const fibrad_body *body = &bounds->body[k];
-        if (body_holds(body, p->x)) continue;
+        if (body_holds(body, bounds->cylinder, p->x)) continue;
         char fault[48];
         snprintf(fault, sizeof fault, "its centre lies beyond wall %" PRIu32 ",", k + 1);
         describe(message, p, fault, body->kind == FIBRAD_BODY_PLANE ? &body->plane : NULL);
