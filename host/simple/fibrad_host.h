@@ -72,7 +72,9 @@ typedef struct fibrad_run {
  * Rows of walls are computed if bodies is 1, all rows are wanted, and the rule has no cutoff. If raw is 0, the rows of
  * spheres and walls are closed together. This changes the factors between spheres by less than their errors.
  *
- * Files in the scratch folder take 24 to 36 bytes per entry of the raw rows and 24 per entry of the matrix. */
+ * Raw rows are those before averaging. Files in the scratch folder take 36 to 48 bytes per entry of the raw rows: 12 to
+ * 24 for the rows, and 24 for the matrix. With silhouettes they take up to 88: 24 for the rows, 64 for what pairs of
+ * spheres exchange. */
 typedef struct fibrad_bed_options {
     const fibrad_beam_rule *beam;       /* NULL: the defaults, unless surface or cast is set */
     const fibrad_surface_rule *surface; /* NULL: not by the surface method */
@@ -103,7 +105,7 @@ typedef struct fibrad_bed_factors {
  *            options, run: NULL for all defaults
  *   Output   factors: free with fibrad_bed_free
  *   Errors   as fibrad_scene_init, fibrad_beam_row (_surface_row, _cast_row) and fibrad_matrix_init; _CANCELLED
- *   Cost     that of all rows over the threads; memory up to 48 bytes per entry
+ *   Cost     that of all rows over the threads; memory up to 48 bytes per entry of the raw rows
  *   Source   docs/methods.md */
 int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
                         const fibrad_bed_options *options, fibrad_run *run, fibrad_bed_factors **factors);
