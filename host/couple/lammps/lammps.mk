@@ -24,9 +24,16 @@ $(BUILD)/couple/fix_fibrad.so: $(FIX) $(COUPLE_MESH_LIB) $(COUPLE_LIBS) | need-l
 $(BUILD)/couple/fibrad.lmp: host/couple/lammps/fibrad.lmp.in $(BUILD)/couple/fix_fibrad.so
 	sed 's|@FIX@|$(abspath $(@D))/fix_fibrad.so|' $< > $@
 
-$(BUILD)/couple/fibrad_plugin.so: $(FIX) host/couple/lammps/fibrad_plugin.cpp $(COUPLE_MESH_LIB) $(COUPLE_LIBS)
+$(BUILD)/couple/fibrad_plugin.so: $(FIX) host/couple/lammps/fibrad_plugin.cpp $(BUILD)/couple/lammps_source $(COUPLE_MESH_LIB) $(COUPLE_LIBS)
 	$(MPICXX) -std=c++17 $(LAMMPS_FLAGS) -isystem $(LAMMPS_SOURCE)/src $(LAMMPS_LINK) \
 	    $(FIX) host/couple/lammps/fibrad_plugin.cpp $(COUPLE_MESH_LIB) $(COUPLE_LIBS) $(ZLIB_LIBS) -o $@
+
+# the tree of the last plugin: another tree, another plugin
+$(BUILD)/couple/lammps_source: always
+	@mkdir -p $(@D)
+	@echo $(LAMMPS_SOURCE) | cmp -s - $@ || echo $(LAMMPS_SOURCE) > $@
+
+always:
 
 $(BUILD)/couple/fix_fibrad.so $(BUILD)/couple/fibrad_plugin.so: Makefile host/couple/lammps/lammps.mk
 
@@ -45,7 +52,7 @@ need-lammps: | $(COUPLE_DEPS)
 	@test -e $(LAMMPS_INCLUDE)/fix.h || { echo "fix fibrad needs LAMMPS: run 'make deps-couple' (Debian: liblammps-dev)," \
 	    "or name the source of yours: make LAMMPS_SOURCE=TREE lammps." >&2; exit 1; }
 
-.PHONY: lammps demo-lammps need-lammps
+.PHONY: always lammps demo-lammps need-lammps
 
 ## demo-lammps: pebbles poured onto a hot floor in LAMMPS on 2 ranks: energy balance, T against time, picture, ParaView
 demo-lammps: deps deps-couple

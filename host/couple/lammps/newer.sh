@@ -13,19 +13,19 @@ place=$BUILD/newer
 mkdir -p "$place"
 
 tree=${1:-$place/source}
-if ! test -e "$tree/src/lammps.h"; then
+if test $# -eq 0 && ! test -e "$tree/src/lammps.h"; then
     curl -fsSL -o "$place/lammps.tar.xz" "$address"
     echo "$sum  $place/lammps.tar.xz" | sha256sum -c
     mkdir -p "$tree"
     tar -xf "$place/lammps.tar.xz" -C "$tree" --strip-components=1
 fi
 
-test -e "$place/lammps/lmp" || {
-    cmake -S "$tree/cmake" -B "$place/lammps" -D CMAKE_BUILD_TYPE= -D CMAKE_CXX_FLAGS=-O1 -D BUILD_SHARED_LIBS=yes -D BUILD_OMP=no \
-        -D PKG_GRANULAR=yes -D PKG_PLUGIN=yes
-    "$MAKE" -C "$place/lammps" -j2
-}
+# one place for each tree
+lammps=$place/build$(realpath "$tree")
+cmake -S "$tree/cmake" -B "$lammps" -D CMAKE_BUILD_TYPE= -D CMAKE_CXX_FLAGS=-O1 -D BUILD_SHARED_LIBS=yes -D BUILD_OMP=no \
+    -D PKG_GRANULAR=yes -D PKG_PLUGIN=yes
+"$MAKE" -C "$lammps" -j2
 
 "$MAKE" -s --no-print-directory "$BUILD/couple/fibrad_plugin.so" LAMMPS_SOURCE="$tree"
 echo "plugin load $BUILD/couple/fibrad_plugin.so" >"$place/load.lmp"
-LMP=$place/lammps/lmp LOAD=$place/load.lmp tests/couple/check_lammps.sh
+LMP=$lammps/lmp LOAD=$place/load.lmp tests/couple/check_lammps.sh
