@@ -16,6 +16,8 @@
  *             go.
  * Powers      Two particles exchange the mean of what their two rows say. One gains what the other loses. So no heat is
  *             lost, whatever the error of the rows. Nothing flows between particles of equal temperature.
+ * Walls       Walls exchange heat with each other and with the surroundings as well. Totals contain this exchange.
+ *             Exceptions: an endless wall, and a wall from which paths reach a side that belongs to no wall.
  * Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
  * Collective  Every rank must call a collective function, and all ranks get the same status. All functions are
  *             collective over the communicator, except fibrad_link_free, fibrad_insitu_message, fibrad_insitu_remark,
@@ -169,11 +171,12 @@ typedef struct fibrad_insitu_facts {
     double cutoff;               /* L, in use */
     double beyond;               /* mean fraction of the emission whose target is not known; known targets get it */
     double error;                /* root mean square of the rows' estimated errors */
-    double seconds_rows;         /* s, of the slowest rank, in all calls of fibrad_insitu_rows and _follow so far */
-    double seconds_powers;       /* s, of the slowest rank, in all calls of fibrad_insitu_powers so far */
-    uint64_t step;               /* of the rows */
-    size_t halo;                 /* particles of other ranks, and periodic images, that this rank was sent */
-    size_t bytes;                /* bytes, memory of this rank */
+    double body[FIBRAD_BODIES_MAX]; /* L^2, [bodies], what all else absorbs of a wall's emission, over sigma T^4 */
+    double seconds_rows;            /* s, of the slowest rank, in all calls of fibrad_insitu_rows and _follow so far */
+    double seconds_powers;          /* s, of the slowest rank, in all calls of fibrad_insitu_powers so far */
+    uint64_t step;                  /* of the rows */
+    size_t halo;                    /* particles of other ranks, and periodic images, that this rank was sent */
+    size_t bytes;                   /* bytes, memory of this rank */
 } fibrad_insitu_facts;
 
 /* Makes an object without rows. The communicator is duplicated.

@@ -17,7 +17,6 @@
 #define CELL_RADII   0.25 /* width of the cells of the coarse map, in mean radii */
 #define REACH_RADII  1.5  /* spheres this many largest radii beyond the cutoff still matter to a row: fibrad.h */
 #define PERIODS_MAX  100  /* the kernel's beams go this far */
-#define OPENINGS_MAX 6    /* one a side */
 #define PART_LEAST   1e-3 /* a particle whose radius would be reduced to less is left out */
 #define CHANGED_MOST 0.1  /* part of all particles that may come or go before all rows are made anew */
 #define BACKS_MOST   0.1  /* part of all particles that may see what belongs to no wall */
@@ -146,32 +145,15 @@ void fibrad_insitu_facts_get(const fibrad_insitu *s, fibrad_insitu_facts *facts)
 
 /* ---- the bed ---- */
 
-/* The making of rows. */
-struct insitu_build {
-    fibrad_insitu *s;
-    fibrad_insitu_set *to;
-    const fibrad_insitu_bed *bed;
-    uint64_t step;
-    double period[3], cutoff, radius_max, radius_mean, reach;
-    size_t own, halo; /* particles of the scene: of this rank, and others behind them */
-    size_t fresh;     /* the first of them get rows */
-    bool follows;     /* old rows are kept */
-    fibrad_follow follow;
-    fibrad_plane opening[OPENINGS_MAX];
-    fibrad_occupancy map;
-    fibrad_scene *scene;
-    fibrad_remark remark[FIBRAD_REMARKS];
-};
-
 /* What bounds a scene, with the axes of the scene. */
 struct scene_walls {
     fibrad_body body[FIBRAD_BODIES_MAX];
-    fibrad_plane opening[OPENINGS_MAX];
+    fibrad_plane opening[FIBRAD_OPENINGS_MAX];
     fibrad_triangles triangles;
     double period[3];
 };
 
-static void turn_walls(const struct insitu_build *b, struct scene_walls *to) {
+static void turn_walls(const fibrad_insitu_build *b, struct scene_walls *to) {
     const fibrad_insitu_bed *bed = b->bed;
     for (uint32_t k = 0; k < bed->bodies; ++k) to->body[k] = fibrad_turned_body(bed->cylinder, bed->body[k]);
     for (uint32_t k = 0; k < bed->openings; ++k) to->opening[k] = fibrad_turned_plane(bed->cylinder, b->opening[k]);
@@ -185,7 +167,7 @@ static void turn_walls(const struct insitu_build *b, struct scene_walls *to) {
 }
 
 /* Checks the bed without its particles, which is the same on all ranks. */
-static int check_bed(struct insitu_build *b) {
+static int check_bed(fibrad_insitu_build *b) {
     const fibrad_insitu_bed *bed = b->bed;
     char *message = b->s->message;
     unsigned char block[FIBRAD_SCENE_BYTES(0)];
@@ -194,7 +176,8 @@ static int check_bed(struct insitu_build *b) {
     uint32_t bodies = 0; /* without meshes, which bound no box */
     if (!bed || (bed->n && !(bed->id && bed->x && bed->radius && bed->emissivity)) || bed->n > FIBRAD_SPHERES_MAX ||
         bed->bodies > FIBRAD_BODIES_MAX || (bed->bodies && !(bed->body && bed->body_emissivity)) ||
-        bed->openings > OPENINGS_MAX || (bed->openings && !bed->opening) || bed->cylinder < 0 || bed->cylinder > 2)
+        bed->openings > FIBRAD_OPENINGS_MAX || (bed->openings && !bed->opening) || bed->cylinder < 0 ||
+        bed->cylinder > 2)
         return FIBRAD_E_ARGUMENT;
     for (int axis = 0; axis < 3; ++axis) {
         if (!bed->periodic[axis]) continue;
@@ -231,7 +214,7 @@ static int refuse_particle(char *message, uint64_t id, const char *fault) {
 }
 
 /* Whether a particle takes part. If not, counts it; with `strict` sets *status instead. */
-static bool takes_part(struct insitu_build *b, const fibrad_particle *p, int *status) {
+static bool takes_part(fibrad_insitu_build *b, const fibrad_particle *p, int *status) {
     const fibrad_bounds bounds = {b->bed->body, b->opening, b->bed->bodies, b->bed->openings, b->bed->cylinder};
     char why[FIBRAD_MESSAGE];
     bool opening;
@@ -244,7 +227,7 @@ static bool takes_part(struct insitu_build *b, const fibrad_particle *p, int *st
 }
 
 /* Checks the particles and copies those that take part, moved into the periodic box. */
-static int take_particles(struct insitu_build *b) {
+static int take_particles(fibrad_insitu_build *b) {
     const fibrad_insitu_bed *bed = b->bed;
     char *message = b->s->message;
     int status = FIBRAD_OK;
@@ -277,7 +260,7 @@ static int take_particles(struct insitu_build *b) {
     return FIBRAD_OK;
 }
 
-static int begin_bed(struct insitu_build *b) {
+static int begin_bed(fibrad_insitu_build *b) {
     int status = check_bed(b);
     if (!status) status = take_particles(b);
     return fibrad_agree(b->s->comm, status, b->s->message);
@@ -285,7 +268,7 @@ static int begin_bed(struct insitu_build *b) {
 
 /* How many particles and images a cube of side 2 R about the middle of the bed has. Infinity: the cube has too many
  * periods. span: of the centres. */
-static double count_within(const struct insitu_build *b, const double span[3], double particles, double radius) {
+static double count_within(const fibrad_insitu_build *b, const double span[3], double particles, double radius) {
     for (int axis = 0; axis < 3; ++axis) {
         const double period = b->period[axis], wide = span[axis] + 2 * b->radius_max;
         if (period > 0 && !(radius + REACH_RADII * b->radius_max < PERIODS_MAX * period)) return INFINITY;
@@ -296,7 +279,7 @@ static double count_within(const struct insitu_build *b, const double span[3], d
 
 /* A cutoff hardly changes the time that rows take, but the number of particles that are sent. So the default is as long
  * as that number allows, and no longer than the bed. ends: high and -low of centres. */
-static double default_cutoff(const struct insitu_build *b, const double ends[6], double particles) {
+static double default_cutoff(const fibrad_insitu_build *b, const double ends[6], double particles) {
     double span[3], longest = 0, cutoff = 2 * b->radius_max + CUTOFF_RADII * b->radius_mean;
     for (int axis = 0; axis < 3; ++axis) {
         span[axis] = ends[axis] + ends[axis + 3];
@@ -310,7 +293,7 @@ static double default_cutoff(const struct insitu_build *b, const double ends[6],
 
 /* Finds extents, radii and the cutoff. They must be the same to the bit whoever owns which particle. So the mean radius
  * comes from a sum of whole numbers. */
-static int measure_bed(struct insitu_build *b) {
+static int measure_bed(fibrad_insitu_build *b) {
     const fibrad_particle *particle = b->to->particle.at;
     const fibrad_insitu_config *config = &b->s->config;
     double most[15] = {0, -1}; /* radius, -emissivity, high and -low of centres and of surfaces, whether it conducts */
@@ -363,7 +346,7 @@ static int measure_bed(struct insitu_build *b) {
 }
 
 /* Links present owners to home ranks, which are the same now. Refuses ids that occur twice. */
-static int link_present(struct insitu_build *b) {
+static int link_present(fibrad_insitu_build *b) {
     fibrad_insitu_set *to = b->to;
     const fibrad_particle *particle = to->particle.at;
     const size_t n = b->bed->n, all = n + to->own;
@@ -383,13 +366,13 @@ static int link_present(struct insitu_build *b) {
     return status;
 }
 
-static int find_halo(struct insitu_build *b) {
+static int find_halo(fibrad_insitu_build *b) {
     fibrad_insitu_set *to = b->to;
     return fibrad_halo(b->s->comm, b->period, b->reach, &to->particle, b->own, &b->s->sent, &b->halo);
 }
 
 /* Reduces the radii of own particles, and leaves out those of which next to nothing would remain. */
-static void reduce_radii(struct insitu_build *b, const double *part) {
+static void reduce_radii(fibrad_insitu_build *b, const double *part) {
     fibrad_particle *p = b->to->particle.at;
     size_t own = 0;
     for (size_t i = 0; i < b->own; ++i) {
@@ -407,7 +390,7 @@ static void reduce_radii(struct insitu_build *b, const double *part) {
 }
 
 /* Makes particles smaller whose centre lies inside another, and tells the other ranks. */
-static int part_overlaps(struct insitu_build *b) {
+static int part_overlaps(fibrad_insitu_build *b) {
     fibrad_insitu *s = b->s;
     fibrad_remark *remark = &b->remark[FIBRAD_REMARK_OVERLAP];
     int status = fibrad_block_fit(&s->emissivity, b->own, sizeof(double));
@@ -424,7 +407,7 @@ static int part_overlaps(struct insitu_build *b) {
 
 /* ---- rows ---- */
 
-static int name_scene_fault(const struct insitu_build *b, int status, const uint64_t *id, size_t n,
+static int name_scene_fault(const fibrad_insitu_build *b, int status, const uint64_t *id, size_t n,
                             fibrad_fault fault) {
     char *message = b->s->message;
     if (b->bed->triangles && fault.triangle < b->bed->triangles->n)
@@ -441,23 +424,19 @@ static int name_scene_fault(const struct insitu_build *b, int status, const uint
                          first < second ? first : second, first < second ? second : first);
 }
 
-/* Makes the scene of the particles of this rank and those around them. Images are spheres of their own. */
-static int make_scene(struct insitu_build *b) {
+int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t n, uint64_t *id) {
     fibrad_insitu *s = b->s;
-    const size_t n = b->own + b->halo;
-    const fibrad_particle *p = b->to->particle.at;
     if (n > FIBRAD_SPHERES_MAX) return FIBRAD_E_MEMORY;
     struct scene_walls walls;
     turn_walls(b, &walls);
-    const size_t size = fibrad_scene_size((uint32_t)n, 1) + fibrad_triangles_size(walls.triangles.n, (uint32_t)n);
-    if (fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&b->to->id, n, sizeof(uint64_t)) ||
-        fibrad_block_fit(&s->emissivity, 3 * n, sizeof(double)))
+    const size_t size =
+        fibrad_scene_size((uint32_t)n, id != NULL) + fibrad_triangles_size(walls.triangles.n, (uint32_t)n);
+    if (fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&s->emissivity, 3 * n, sizeof(double)))
         return FIBRAD_E_MEMORY;
-    uint64_t *id = b->to->id.at;
     double *emissivity = s->emissivity.at;
     for (size_t i = 0; i < n; ++i) {
-        id[i] = p[i].id, emissivity[i] = p[i].emissivity;
-        emissivity[n + i] = p[i].conductivity, emissivity[2 * n + i] = p[i].node;
+        if (id) id[i] = p[i].id;
+        emissivity[i] = p[i].emissivity, emissivity[n + i] = p[i].conductivity, emissivity[2 * n + i] = p[i].node;
     }
     fibrad_scene_config config = {0}; /* without particles: an empty scene */
     if (n)
@@ -465,19 +444,32 @@ static int make_scene(struct insitu_build *b) {
                                        .bodies = b->bed->bodies,
                                        .opening = walls.opening,
                                        .openings = b->bed->openings,
-                                       .occupancy = &b->map,
+                                       .occupancy = id ? &b->map : NULL,
                                        .triangles = &walls.triangles};
+    if (n && !id) memcpy(config.period, walls.period, sizeof config.period);
     const uint32_t stride = sizeof *p / sizeof(double);
     const double *x[3];
     fibrad_turn_arrays(b->bed->cylinder, (const double *const[]){&p->x[0], &p->x[1], &p->x[2]}, x);
     const fibrad_spheres spheres = {x[0], x[1], x[2], &p->radius, (uint32_t)n, stride, stride, id};
     fibrad_fault fault;
     const int status = fibrad_scene_init(&b->scene, s->scene.at, s->scene.size, &config, &spheres, &fault);
-    return status ? name_scene_fault(b, status, id, n, fault) : FIBRAD_OK;
+    return status && id ? name_scene_fault(b, status, id, n, fault) : status;
+}
+
+fibrad_exchange_rule fibrad_insitu_rule(const fibrad_insitu_build *b, size_t n) {
+    const double *emissivity = b->s->emissivity.at;
+    return (fibrad_exchange_rule){.emissivity = emissivity,
+                                  .conductivity = b->to->conducts ? emissivity + n : NULL,
+                                  .node_emissivity = b->to->conducts ? emissivity + 2 * n : NULL,
+                                  .body_emissivity = b->bed->body_emissivity,
+                                  .directions = b->s->config.directions,
+                                  .paths = b->s->config.paths,
+                                  .seed = b->s->config.seed + b->step * 0x9e3779b97f4a7c15u,
+                                  .tolerance = b->s->config.tolerance};
 }
 
 /* Says why the row of a particle could not be computed. */
-static int name_row_fault(const struct insitu_build *b, int status, uint64_t id, const fibrad_work *work,
+static int name_row_fault(const fibrad_insitu_build *b, int status, uint64_t id, const fibrad_work *work,
                           char *message) {
     const fibrad_triangles *t = b->bed->triangles;
     if (status != FIBRAD_E_BACK || !t || work->triangle >= t->n)
@@ -496,7 +488,7 @@ static int name_row_fault(const struct insitu_build *b, int status, uint64_t id,
 
 /* Deals with a row that could not be computed. If its particle sees what belongs to no wall, the row becomes an empty
  * one, all of it beyond. */
-static int skip_row(struct insitu_build *b, int status, uint32_t i, int thread) {
+static int skip_row(fibrad_insitu_build *b, int status, uint32_t i, int thread) {
     static const double none[FIBRAD_BODIES_MAX];
     const uint64_t id = ((uint64_t *)b->to->id.at)[i];
     char message[FIBRAD_MESSAGE];
@@ -508,7 +500,7 @@ static int skip_row(struct insitu_build *b, int status, uint32_t i, int thread) 
 }
 
 /* Lists the particles of this rank in the order of the cells. */
-static int list_own(struct insitu_build *b) {
+static int list_own(fibrad_insitu_build *b) {
     const size_t n = b->own + b->halo;
     if (fibrad_block_fit(&b->s->order, n, sizeof(uint32_t))) return FIBRAD_E_MEMORY;
     uint32_t *order = b->s->order.at, count = 0;
@@ -521,19 +513,10 @@ static int list_own(struct insitu_build *b) {
 
 /* Computes all rows. Each thread takes an equal part of the list, one after the other. So rows are in the order of the
  * list for any number of threads. */
-static int compute_rows(struct insitu_build *b) {
+static int compute_rows(fibrad_insitu_build *b) {
     fibrad_insitu *s = b->s;
-    const double *emissivity = s->emissivity.at;
-    const size_t n = b->own + b->halo;
-    const fibrad_exchange_rule rule = {.emissivity = emissivity,
-                                       .conductivity = b->to->conducts ? emissivity + n : NULL,
-                                       .node_emissivity = b->to->conducts ? emissivity + 2 * n : NULL,
-                                       .body_emissivity = b->bed->body_emissivity,
-                                       .directions = s->config.directions,
-                                       .paths = s->config.paths,
-                                       .seed = s->config.seed + b->step * 0x9e3779b97f4a7c15u,
-                                       .cutoff = b->cutoff,
-                                       .tolerance = s->config.tolerance};
+    fibrad_exchange_rule rule = fibrad_insitu_rule(b, b->own + b->halo);
+    rule.cutoff = b->cutoff;
     const uint32_t *order = s->order.at;
     const int64_t own = (int64_t)b->fresh;
     int status = FIBRAD_OK;
@@ -564,7 +547,7 @@ static int compute_rows(struct insitu_build *b) {
 }
 
 /* Agrees on the particles without rows, and refuses too many of them. */
-static int check_backs(struct insitu_build *b) {
+static int check_backs(fibrad_insitu_build *b) {
     fibrad_remark *remark = &b->remark[FIBRAD_REMARK_BACK];
     fibrad_remark_agree(b->s->comm, remark);
     if ((double)remark->count <= BACKS_MOST * (double)b->to->facts.particles) return FIBRAD_OK;
@@ -572,7 +555,7 @@ static int check_backs(struct insitu_build *b) {
 }
 
 /* Doubles the factors of new rows to particles that have a row already, which does not know of the new ones. */
-static void double_new_to_old(const struct insitu_build *b) {
+static void double_new_to_old(const fibrad_insitu_build *b) {
     fibrad_row row;
     for (int t = 0; t < b->s->config.threads; ++t)
         for (size_t at = 0; fibrad_rows_read(&b->to->rows[t], &at, &row);)
@@ -581,7 +564,7 @@ static void double_new_to_old(const struct insitu_build *b) {
 }
 
 /* Numbers the columns of new rows: those with new rows, what is kept of the old columns, and what else is seen. */
-static int number_columns(struct insitu_build *b) {
+static int number_columns(fibrad_insitu_build *b) {
     fibrad_insitu_set *to = b->to;
     const size_t n = b->own + b->halo, kept = b->follow.kept + b->follow.kept_seen;
     const int threads = b->s->config.threads;
@@ -613,7 +596,7 @@ static int number_columns(struct insitu_build *b) {
 }
 
 /* Lists the particles that are at home here: those with new rows, then those whose old rows are kept. */
-static int list_home(struct insitu_build *b) {
+static int list_home(fibrad_insitu_build *b) {
     fibrad_insitu_set *to = b->to;
     const fibrad_insitu_set *set = &b->s->set;
     to->own = b->fresh + b->follow.kept;
@@ -636,8 +619,10 @@ static int list_home(struct insitu_build *b) {
     return FIBRAD_OK;
 }
 
-static int make_rows(struct insitu_build *b) {
-    int status = make_scene(b);
+static int make_rows(fibrad_insitu_build *b) {
+    const size_t n = b->own + b->halo;
+    int status = fibrad_block_fit(&b->to->id, n, sizeof(uint64_t));
+    if (!status) status = fibrad_insitu_scene(b, b->to->particle.at, n, b->to->id.at);
     if (!status) status = list_own(b);
     if (!status) status = compute_rows(b);
     if (!status && b->follows) double_new_to_old(b);
@@ -648,7 +633,7 @@ static int make_rows(struct insitu_build *b) {
 }
 
 /* Finds how many particles have come and gone. All rows are made if they are too many, none if none have come. */
-static int find_changes(struct insitu_build *b) {
+static int find_changes(fibrad_insitu_build *b) {
     fibrad_insitu *s = b->s;
     const int status = fibrad_follow_find(&b->follow, s, b->to->particle.at, b->own, 0);
     if (status) return status;
@@ -660,7 +645,7 @@ static int find_changes(struct insitu_build *b) {
 }
 
 /* Puts the particles that need rows first. */
-static int choose_fresh(struct insitu_build *b) {
+static int choose_fresh(fibrad_insitu_build *b) {
     fibrad_follow_free(&b->follow);
     b->follow = (fibrad_follow){0};
     const int status = fibrad_follow_find(&b->follow, b->s, b->to->particle.at, b->own, b->halo);
@@ -677,7 +662,7 @@ static int choose_fresh(struct insitu_build *b) {
 }
 
 /* Gathers the particles of the scene, and chooses those that get rows. */
-static int gather_bed(struct insitu_build *b) {
+static int gather_bed(fibrad_insitu_build *b) {
     int status = find_halo(b);
     if (!status) status = part_overlaps(b);
     if (!status)
@@ -700,7 +685,7 @@ static void tell_remark(const fibrad_remark *remark, int kind, char *message) {
 /* Finds what stands between nodes and particles that conduct. A row says what its particle emits, and the other rows
  * say the same a second time. The mean of both takes the place of A n, so that the system for powers is positive in
  * spite of the noise of the rows. */
-static void find_resistances(struct insitu_build *b) {
+static void find_resistances(fibrad_insitu_build *b) {
     fibrad_insitu_set *to = b->to;
     const double *weight = to->weight.at;
     const fibrad_particle *p = to->particle.at;
@@ -724,21 +709,28 @@ static void find_resistances(struct insitu_build *b) {
 }
 
 /* Sums the facts of the rows over all ranks. */
-static void sum_facts(struct insitu_build *b) {
+static void sum_facts(fibrad_insitu_build *b) {
     fibrad_insitu_set *to = b->to;
     const double *weight = to->weight.at;
     fibrad_row row;
-    double sum[5] = {0}; /* emission, beyond, squared errors, entries, rows of emissivity above 0 */
+    /* emission, beyond, squared errors, entries, rows of emissivity above 0; then by walls */
+    double sum[5 + FIBRAD_BODIES_MAX] = {0}, *of_wall = sum + 5;
     for (int t = 0; t < b->s->config.threads; ++t) {
         for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);) {
             sum[0] += weight[row.sphere];
             sum[1] += weight[row.sphere] * row.beyond;
             sum[2] += row.error * row.error;
             sum[4] += weight[row.sphere] > 0;
+            for (uint32_t k = 0; k < b->bed->bodies && row.beyond < 1; ++k)
+                of_wall[k] += weight[row.sphere] / (1 - row.beyond) * row.body[k];
         }
         sum[3] += (double)to->rows[t].entries;
     }
-    MPI_Allreduce(MPI_IN_PLACE, sum, 5, MPI_DOUBLE, MPI_SUM, b->s->comm);
+    MPI_Allreduce(MPI_IN_PLACE, sum, 5 + FIBRAD_BODIES_MAX, MPI_DOUBLE, MPI_SUM, b->s->comm);
+    for (uint32_t k = 0; k < b->bed->bodies; ++k) {
+        to->facts.body[k] = of_wall[k] + to->walls.surroundings[k];
+        for (uint32_t c = 0; c < b->bed->bodies; ++c) to->facts.body[k] += to->walls.wall[k][c];
+    }
     to->facts.beyond = sum[0] > 0 ? sum[1] / sum[0] : 0;
     to->facts.error = sum[4] > 0 ? sqrt(sum[2] / sum[4]) : 0;
     to->facts.entries = (uint64_t)sum[3];
@@ -752,7 +744,7 @@ static void sum_facts(struct insitu_build *b) {
 
 static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_t step, bool follows) {
     if (!s) return FIBRAD_E_ARGUMENT;
-    struct insitu_build b = {.s = s, .to = &s->next, .bed = bed, .step = step};
+    fibrad_insitu_build b = {.s = s, .to = &s->next, .bed = bed, .step = step};
     s->message[0] = 0;
     int status = begin_bed(&b);
     const double begun = MPI_Wtime();
@@ -763,6 +755,8 @@ static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_
     if (!status && b.to->facts.particles && !(b.follows && !b.follow.came)) status = gather_bed(&b);
     if (!status) status = make_rows(&b);
     if (!status) status = check_backs(&b);
+    if (b.follows) b.to->walls = s->set.walls;
+    if (!status && !b.follows) status = fibrad_insitu_wall_rows(&b);
     if (!status) status = link_present(&b);
     if (!status) {
         fibrad_link_free(b.to->seen);

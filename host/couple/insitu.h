@@ -2,10 +2,20 @@
 #ifndef FIBRAD_COUPLE_INSITU_H
 #define FIBRAD_COUPLE_INSITU_H
 
+#include <stdbool.h>
+
 #include "couple/ranks/block.h"
 #include "couple/ranks/collective.h"
 #include "couple/fibrad_couple.h"
 #include "couple/ranks/strays.h"
+
+#define FIBRAD_OPENINGS_MAX 6 /* one a side */
+
+/* What walls exchange with each other and with the surroundings: areas times emissivities times factors [L^2]. */
+typedef struct fibrad_wall_exchange {
+    double wall[FIBRAD_BODIES_MAX][FIBRAD_BODIES_MAX]; /* of two walls; 0 for a wall and itself */
+    double surroundings[FIBRAD_BODIES_MAX];
+} fibrad_wall_exchange;
 
 /* The rows of one step. The home of a particle is the rank that owned it when its row was made. The row stays there.
  * The columns of the rows on a rank are numbered 0 to columns - 1: first the particles of which the rank is the home,
@@ -29,6 +39,7 @@ typedef struct fibrad_insitu_set {
     uint64_t all;          /* number of particles of all ranks, with those left out */
     uint64_t hash;         /* sum of the hashes of their ids */
     uint64_t changed;      /* number of particles that have come or gone since all rows were made */
+    fibrad_wall_exchange walls;
     fibrad_insitu_facts facts;
     fibrad_remark remark[FIBRAD_REMARKS];
 } fibrad_insitu_set;
@@ -55,6 +66,35 @@ typedef struct fibrad_follow {
     uint64_t came, gone;    /* numbers of particles, on all ranks */
     size_t kept, kept_seen; /* numbers of old particles at home here, and of other old columns, that are still there */
 } fibrad_follow;
+
+/* The making of rows. */
+typedef struct fibrad_insitu_build {
+    fibrad_insitu *s;
+    fibrad_insitu_set *to;
+    const fibrad_insitu_bed *bed;
+    uint64_t step;
+    double period[3], cutoff, radius_max, radius_mean, reach;
+    size_t own, halo; /* particles of the scene: of this rank, and others behind them */
+    size_t fresh;     /* the first of them get rows */
+    bool follows;     /* old rows are kept */
+    fibrad_follow follow;
+    fibrad_plane opening[FIBRAD_OPENINGS_MAX];
+    fibrad_occupancy map;
+    fibrad_scene *scene;
+    fibrad_remark remark[FIBRAD_REMARKS];
+} fibrad_insitu_build;
+
+/* Makes the scene of n particles in b->scene. id[n]: out; images are then particles of their own, and the coarse map
+ * tells where there are others. NULL: these are all particles, and the scene has the periods of the box. Errors: as
+ * fibrad_scene_init; _MEMORY. */
+int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t n, uint64_t *id);
+
+/* The rule of rows of the scene of n particles that was made last. It has no cutoff. */
+fibrad_exchange_rule fibrad_insitu_rule(const fibrad_insitu_build *b, size_t n);
+
+/* Collective. Finds what walls exchange with each other and with the surroundings. Replaces the scene. Errors, on all
+ * ranks: as fibrad_scene_init and fibrad_exchange_body; _MEMORY. */
+int fibrad_insitu_wall_rows(fibrad_insitu_build *b);
 
 /* Collective. Tells for ids in use whether a rank owns them: known[all - own]. id as for fibrad_link_new. Errors, on
  * all ranks: _MEMORY. */

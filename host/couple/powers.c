@@ -136,6 +136,18 @@ static int solve_nodes(fibrad_insitu *s, const fibrad_flow *known) {
     return status;
 }
 
+/* Adds what walls exchange with each other and with the surroundings. emission: of walls */
+static void add_walls(const fibrad_insitu_set *set, const double *emission, double surroundings,
+                      fibrad_insitu_totals *totals) {
+    for (uint32_t a = 0; a < set->bodies; ++a) {
+        const double escapes = set->walls.surroundings[a] * (emission[a] - surroundings);
+        totals->surroundings += escapes;
+        totals->body[a] -= escapes;
+        for (uint32_t b = 0; b < set->bodies; ++b)
+            totals->body[a] += set->walls.wall[a][b] * (emission[b] - emission[a]);
+    }
+}
+
 int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, double *power,
                          fibrad_insitu_totals *totals) {
     if (!s) return FIBRAD_E_ARGUMENT;
@@ -183,6 +195,7 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
     if (totals) {
         *totals = (fibrad_insitu_totals){.particles = sum[0], .surroundings = sum[1]};
         memcpy(totals->body, sum + 3, sizeof totals->body);
+        add_walls(set, wall[0], flow.surroundings_emission, totals);
     }
     s->seconds_powers += MPI_Wtime() - begun;
     return FIBRAD_OK;

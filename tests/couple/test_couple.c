@@ -516,6 +516,58 @@ static void a_lone_particle(void) {
     }
 }
 
+#define SPECK_TOLERANCE 2e-3
+
+/* A speck in a box of side 1 hides next to nothing of the walls from each other. */
+static fibrad_insitu_totals powers_beside_a_speck(const fibrad_insitu_bed *walls, const double *temperature,
+                                                  fibrad_insitu_facts *facts) {
+    const uint64_t id = 7;
+    const double x[3] = {.5, .5, .5}, r = 1e-4, e = .5, t = 300;
+    fibrad_insitu_bed bed = *walls;
+    bed.n = rank == 0, bed.id = &id, bed.x = x, bed.radius = &r, bed.emissivity = &e;
+    const fibrad_insitu_state state = {
+        .sigma = 1, .surroundings = 0, .body_temperature = temperature, .n = bed.n, .id = &id, .temperature = &t};
+    const fibrad_insitu_config config = {.tolerance = SPECK_TOLERANCE};
+    fibrad_insitu *s;
+    fibrad_insitu_totals totals;
+    double power;
+    CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &config) == FIBRAD_OK);
+    CHECK(fibrad_insitu_rows(s, &bed, 0) == FIBRAD_OK);
+    CHECK(fibrad_insitu_powers(s, &state, &power, &totals) == FIBRAD_OK);
+    fibrad_insitu_facts_get(s, facts);
+    fibrad_insitu_free(s);
+    return totals;
+}
+
+/* Two plates of emissivities e and d exchange A/(1/e + 1/d - 1). A black face of a cube and the opposite one exchange
+ * 0.19982 A (Siegel, Howell, configuration C-11), the surroundings behind an opening as well. */
+static void walls_exchange_with_each_other(void) {
+    static const fibrad_body face[6] = {
+        {.kind = FIBRAD_BODY_PLANE, .plane = {2, 0, 0}}, {.kind = FIBRAD_BODY_PLANE, .plane = {2, 1, 1}},
+        {.kind = FIBRAD_BODY_PLANE, .plane = {0, 0, 0}}, {.kind = FIBRAD_BODY_PLANE, .plane = {0, 1, 1}},
+        {.kind = FIBRAD_BODY_PLANE, .plane = {1, 0, 0}}, {.kind = FIBRAD_BODY_PLANE, .plane = {1, 1, 1}}};
+    static const double grey[] = {.6, .3}, black[] = {1, 1, 1, 1, 1, 1}, hot[] = {10, 20, 0, 0, 0, 0};
+    const double between = 1 / (1 / grey[0] + 1 / grey[1] - 1), opposite = .19982, beside = (1 - opposite) / 4;
+    fibrad_insitu_facts facts;
+
+    const fibrad_insitu_bed plates = {
+        .high = {1, 1, 1}, .periodic = {1, 1, 0}, .body = face, .body_emissivity = grey, .bodies = 2};
+    fibrad_insitu_totals totals = powers_beside_a_speck(&plates, hot, &facts);
+    CHECK(fabs(totals.body[0] / 150000 - between) < 3 * SPECK_TOLERANCE);
+    CHECK(fabs(totals.body[0] + totals.body[1] + totals.particles) < 1e-9);
+    CHECK(fabs(facts.body[0] - between) < 3 * SPECK_TOLERANCE && fabs(facts.body[1] / facts.body[0] - 1) < 1e-6);
+
+    const fibrad_insitu_bed cube = {.body = face, .body_emissivity = black, .bodies = 6};
+    totals = powers_beside_a_speck(&cube, hot, &facts);
+    CHECK(fabs(totals.body[0] / 150000 - (opposite - 4 * beside / 15)) < 3 * SPECK_TOLERANCE);
+    for (int k = 2; k < 6; ++k) CHECK(fabs(totals.body[k] / 170000 - beside) < 3 * SPECK_TOLERANCE);
+
+    const fibrad_insitu_bed open = {
+        .body = face + 1, .body_emissivity = black, .bodies = 5, .opening = &face[0].plane, .openings = 1};
+    totals = powers_beside_a_speck(&open, hot + 1, &facts);
+    CHECK(fabs(totals.surroundings / 160000 - opposite) < 3 * SPECK_TOLERANCE);
+}
+
 /* Rows of another step have other noise. Rows of the same step are the same. */
 static void steps_change_noise(void) {
     const struct kind *kind = &kinds[1];
@@ -1107,6 +1159,7 @@ int main(int argc, char **argv) {
     rows_follow_particles(.15);
     conducting = 0;
     a_lone_particle();
+    walls_exchange_with_each_other();
     refusals();
     rows_are_too_inaccurate();
     int sum[2] = {checks, failures};

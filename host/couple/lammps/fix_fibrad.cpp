@@ -80,8 +80,8 @@ class FixFibrad::Words {
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     : Fix(lammps, narg, arg), temperature(), kept_bit(0), surroundings{-1, ""}, sampling(false), accuracy(false),
       cylinder(2), sigma(0), initial(0), config(), meshes(), moving(false), insitu(nullptr), totals(), warned(false),
-      wall_warned(false), cut_warned(false), told(), set_up(-1), powers_at(0), lost(0), restarted(false),
-      weighed(false), begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
+      wall_warned(false), cut_warned(false), told(), set_up(-1), powers_at(0), lost(0), restarted(false), begun(0),
+      before(), rows_made(0), rows_followed(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // the default of docs/lammps.md
@@ -596,7 +596,6 @@ void FixFibrad::make_rows(bool follow) {
         error->all(FLERR, std::string("fix fibrad: ") + fibrad_insitu_message(insitu) + ", `wall zhi open`");
     check(status);
     (follow ? rows_followed : rows_made)++;
-    weighed = false;
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(insitu, &facts);
     if (facts.beyond > FIBRAD_BEYOND_MUCH && !cut_warned && comm->me == 0)
@@ -679,8 +678,6 @@ void FixFibrad::find_powers() {
         status = fibrad_insitu_powers(insitu, &state, power.data(), &totals);
     }
     check(status);
-    if (!weighed) check(wall_heat.weigh(insitu, state));
-    weighed = true;
     check_walls();
     powers_found++;
     powers_at = update->ntimestep;
@@ -773,10 +770,12 @@ void FixFibrad::judge_step(const std::string &name, double ratio, bool &already_
                                   text(": %.2g times the longest stable step", ratio));
 }
 
-// Checks that steps of heat are stable for walls that store heat and exchange it with particles.
+// Checks that steps of heat are stable for walls that store heat.
 void FixFibrad::check_walls() {
     size_t wall = 0;
-    const double ratio = wall_heat.ratio(wall_temperatures(), update->dt * heat_every, &wall);
+    fibrad_insitu_facts facts;
+    fibrad_insitu_facts_get(insitu, &facts);
+    const double ratio = wall_heat.ratio(facts.body, sigma, wall_temperatures(), update->dt * heat_every, &wall);
     judge_step(text("wall %d", (int)wall + 1), ratio, wall_warned);
 }
 

@@ -150,7 +150,6 @@ class FixFibrad : public Fix {
     bigint powers_at;            // step of the last powers
     double lost;                 // time that LAMMPS' clock does not count, since it began anew after a restart
     bool restarted;              // until the first setup after a restart: lost is the time of the restart file
-    bool weighed;                // whether wall_heat has the factors of the present rows
 
     // Since the beginning of the run.
     double begun;               // s, time when the run began

@@ -54,7 +54,6 @@ struct Driver {
     mesh_walls triangles;          /* of all meshes, at the last rows */
     std::vector<double> body_temperature, body_emissivity;
     WallHeat wall_heat;
-    bool weighed;                                                 /* wall_heat knows the present rows */
     Fix *temperature, *source, *power, *capacity;                 /* properties of particles, and of types */
     std::vector<uint64_t> id;                                     /* [own] */
     std::vector<double> emissivity, gain;                         /* [own] */
@@ -242,7 +241,9 @@ void check_time_step(const Driver *driver) {
 void check_walls(const Driver *driver) {
     size_t wall = 0;
     const double seconds = driver->lmp->update->dt * (double)driver->options.every;
-    const double ratio = driver->wall_heat.ratio(driver->body_temperature, seconds, &wall);
+    fibrad_insitu_facts facts;
+    fibrad_insitu_facts_get(driver->radiation, &facts);
+    const double ratio = driver->wall_heat.ratio(facts.body, driver->sigma, driver->body_temperature, seconds, &wall);
     if (!(ratio > 1)) return;
     char text[200];
     std::snprintf(text, sizeof text,
@@ -369,7 +370,6 @@ void make_rows(Driver *driver, bool follow) {
     if (mesh_walls_face(&driver->triangles, MPI_COMM_WORLD, &bed) != 0) stop(WRONG_INPUT, "out of memory");
     const auto make = follow ? fibrad_insitu_follow : fibrad_insitu_rows;
     check(driver, make(driver->radiation, &bed, (uint64_t)driver->lmp->update->ntimestep));
-    driver->weighed = false;
     tell_strays(driver);
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(driver->radiation, &facts);
@@ -408,8 +408,6 @@ void make_powers(Driver *driver) {
         status = fibrad_insitu_powers(driver->radiation, &state, driver->gain.data(), &driver->totals);
     }
     check(driver, status);
-    if (!driver->weighed) check(driver, driver->wall_heat.weigh(driver->radiation, state));
-    driver->weighed = true;
     check_walls(driver);
 }
 
