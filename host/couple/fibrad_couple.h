@@ -2,8 +2,8 @@
  *
  * Index
  *   link    values of particles that other ranks own  fibrad_link_new, _forward, _reverse, _free
- *   insitu  rows and powers while particles move      fibrad_insitu_new, _rows, _follow, _powers, _write, _message,
- *                                                     _remark, _facts_get, _free, fibrad_accuracy_named
+ *   insitu  rows and powers while particles move      fibrad_insitu_new, _rows, _follow, _powers, _parts, _write,
+ *                                                     _message, _remark, _facts_get, _free, fibrad_accuracy_named
  *
  * Use         1. fibrad_insitu_new once.
  *             2. fibrad_insitu_rows every so many steps, with the particles that each rank owns at that time.
@@ -222,6 +222,15 @@ int fibrad_insitu_follow(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, ui
  *            emissivity 0.8 this took 9 times as long at k* = 5, 27 times at k* = 1 and 140 times at k* = 0.3. */
 int fibrad_insitu_powers(fibrad_insitu *insitu, const fibrad_insitu_state *state, double *power,
                          fibrad_insitu_totals *totals);
+
+/* What the last powers of the particles come from.
+ *   Output   part[n][2]: [sigma K^4 L^2], net power from walls, and from surroundings. n and the order are those of the
+ *            state of the last call of fibrad_insitu_powers. The rest of each power comes from other particles.
+ *   Errors   _ARGUMENT
+ *            _STATE: no powers were computed since rows were made
+ *            _MEMORY
+ *   Cost     2 ns per entry, and two messages to each rank */
+int fibrad_insitu_parts(fibrad_insitu *insitu, double (*part)[2]);
 
 /* Writes the rows of each rank to the file PATH.RANK.rows, for `fibrad join`.
  *   Input    path: PATH

@@ -694,7 +694,7 @@ static void find_resistances(fibrad_insitu_build *b) {
     memset(sum, 0, to->columns * sizeof *sum);
     for (int t = 0; t < b->s->config.threads; ++t)
         for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);) {
-            const double all = row.beyond < 1 ? weight[row.sphere] / (1 - row.beyond) : 0;
+            const double all = fibrad_row_weight(&row, weight[row.sphere]);
             double rest = row.escaped;
             for (uint32_t k = 0; k < b->bed->bodies; ++k) rest += row.body[k];
             sum[row.sphere] += all * rest;
@@ -721,8 +721,8 @@ static void sum_facts(fibrad_insitu_build *b) {
             sum[1] += weight[row.sphere] * row.beyond;
             sum[2] += row.error * row.error;
             sum[4] += weight[row.sphere] > 0;
-            for (uint32_t k = 0; k < b->bed->bodies && row.beyond < 1; ++k)
-                of_wall[k] += weight[row.sphere] / (1 - row.beyond) * row.body[k];
+            for (uint32_t k = 0; k < b->bed->bodies; ++k)
+                of_wall[k] += fibrad_row_weight(&row, weight[row.sphere]) * row.body[k];
         }
         sum[3] += (double)to->rows[t].entries;
     }
@@ -770,6 +770,7 @@ static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_
     if (b.to->conducts) find_resistances(&b);
     sum_facts(&b);
     b.to->bodies = bed->bodies;
+    b.to->flows = 0;
     const fibrad_insitu_set made = s->next;
     s->next = s->set;
     s->set = made;

@@ -40,6 +40,8 @@ typedef struct fibrad_insitu_set {
     uint64_t hash;         /* sum of the hashes of their ids */
     uint64_t changed;      /* number of particles that have come or gone since all rows were made */
     fibrad_wall_exchange walls;
+    double body_emission[FIBRAD_BODIES_MAX], surroundings_emission; /* sigma T^4 of the last powers */
+    int flows;                                                      /* 1: there were powers since rows were made */
     fibrad_insitu_facts facts;
     fibrad_remark remark[FIBRAD_REMARKS];
 } fibrad_insitu_set;
@@ -58,6 +60,12 @@ struct fibrad_insitu {
     fibrad_block value;                  /* double, of present owners' particles, then of home particles */
     double seconds_rows, seconds_powers; /* s, so far */
 };
+
+/* A row's area times emissivity, scaled so that the known factors add up to 1; 0 if nothing is known. weight: of its
+ * particle. */
+static inline double fibrad_row_weight(const fibrad_row *row, double weight) {
+    return row->beyond < 1 ? weight / (1 - row->beyond) : 0;
+}
 
 /* Rows that are made only for particles that have come. Begin with zeroes; free with fibrad_follow_free. */
 typedef struct fibrad_follow {

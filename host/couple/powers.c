@@ -136,11 +136,11 @@ static int solve_nodes(fibrad_insitu *s, const fibrad_flow *known) {
     return status;
 }
 
-/* Adds what walls exchange with each other and with the surroundings. emission: of walls */
-static void add_walls(const fibrad_insitu_set *set, const double *emission, double surroundings,
-                      fibrad_insitu_totals *totals) {
+/* Adds what walls exchange with each other and with the surroundings. */
+static void add_walls(const fibrad_insitu_set *set, fibrad_insitu_totals *totals) {
+    const double *emission = set->body_emission;
     for (uint32_t a = 0; a < set->bodies; ++a) {
-        const double escapes = set->walls.surroundings[a] * (emission[a] - surroundings);
+        const double escapes = set->walls.surroundings[a] * (emission[a] - set->surroundings_emission);
         totals->surroundings += escapes;
         totals->body[a] -= escapes;
         for (uint32_t b = 0; b < set->bodies; ++b)
@@ -163,18 +163,19 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
     const size_t n = state->n;
     const double sigma = sigma_of(state);
     double *value = s->value.at, *home = value + n, *emission = set->emission.at;
-    double wall[2][FIBRAD_BODIES_MAX] = {{0}}, sum[FIBRAD_BODIES_MAX + 3] = {0};
-    for (uint32_t k = 0; k < set->bodies; ++k) wall[0][k] = sigma * fourth(state->body_temperature[k]);
+    double of_wall[FIBRAD_BODIES_MAX] = {0}, sum[FIBRAD_BODIES_MAX + 3] = {0};
+    for (uint32_t k = 0; k < set->bodies; ++k) set->body_emission[k] = sigma * fourth(state->body_temperature[k]);
+    set->surroundings_emission = sigma * fourth(state->surroundings);
     if (n) memcpy(value, state->temperature, n * sizeof *value);
     fibrad_link_forward(set->present, value, 1);
     for (size_t i = 0; i < set->own; ++i) emission[i] = sigma * fourth(home[i]);
 
     fibrad_flow flow = {.weight = set->weight.at,
                         .emission = emission,
-                        .body_emission = wall[0],
-                        .surroundings_emission = sigma * fourth(state->surroundings),
+                        .body_emission = set->body_emission,
+                        .surroundings_emission = set->surroundings_emission,
                         .power = set->power.at,
-                        .body_power = wall[1]};
+                        .body_power = of_wall};
     if (set->conducts) {
         status = fibrad_agree(s->comm, solve_nodes(s, &flow), NULL);
         if (status == FIBRAD_E_UNSOLVABLE)
@@ -185,7 +186,7 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
     for (size_t i = 0; i < set->own; ++i) sum[0] += flow.power[i];
     sum[1] = flow.surroundings_power;
     sum[2] = status != FIBRAD_OK;
-    memcpy(sum + 3, wall[1], sizeof wall[1]);
+    memcpy(sum + 3, of_wall, sizeof of_wall);
     memcpy(home, flow.power, set->own * sizeof *home);
     memset(value, 0, n * sizeof *value);
     fibrad_link_reverse(set->present, value, 1);
@@ -195,8 +196,44 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
     if (totals) {
         *totals = (fibrad_insitu_totals){.particles = sum[0], .surroundings = sum[1]};
         memcpy(totals->body, sum + 3, sizeof totals->body);
-        add_walls(set, wall[0], flow.surroundings_emission, totals);
+        add_walls(set, totals);
     }
+    set->flows = 1;
     s->seconds_powers += MPI_Wtime() - begun;
+    return FIBRAD_OK;
+}
+
+/* Finds the parts of particles at home: part[own][2]. */
+static void find_parts(const fibrad_insitu *s, double (*part)[2]) {
+    const fibrad_insitu_set *set = &s->set;
+    const double *weight = set->weight.at, *emission = set->emission.at;
+    fibrad_row row;
+    memset(part, 0, set->own * sizeof *part);
+    for (int t = 0; t < s->config.threads; ++t)
+        for (size_t at = 0; fibrad_rows_read(&set->rows[t], &at, &row);) {
+            const double own = emission[row.sphere], all = fibrad_row_weight(&row, weight[row.sphere]);
+            for (uint32_t k = 0; k < set->bodies; ++k)
+                part[row.sphere][0] += all * row.body[k] * (set->body_emission[k] - own);
+            part[row.sphere][1] = all * row.escaped * (set->surroundings_emission - own);
+        }
+}
+
+int fibrad_insitu_parts(fibrad_insitu *s, double (*part)[2]) {
+    if (!s) return FIBRAD_E_ARGUMENT;
+    fibrad_insitu_set *set = &s->set;
+    const size_t n = set->now_n;
+    s->message[0] = 0;
+    int status = FIBRAD_OK;
+    if (!s->ready || !set->flows)
+        status = fibrad_refuse(s->message, FIBRAD_E_STATE, "there are no powers yet, whose parts are asked for");
+    if (!status && n && !part) status = FIBRAD_E_ARGUMENT;
+    if (!status) status = fibrad_block_fit(&s->value, 2 * (n + set->own), sizeof(double));
+    status = fibrad_agree(s->comm, status, s->message);
+    if (status) return status;
+    double(*value)[2] = s->value.at;
+    memset(value, 0, n * sizeof *value);
+    find_parts(s, value + n);
+    fibrad_link_reverse(set->present, value[0], 2);
+    if (n) memcpy(part, value, n * sizeof *value);
     return FIBRAD_OK;
 }

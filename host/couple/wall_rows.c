@@ -37,7 +37,7 @@ static int compute_row(struct wall_rows *w, uint32_t wall) {
 static bool emits(const fibrad_insitu_bed *bed, uint32_t wall) { return bed->body_emissivity[wall] > 0; }
 
 /* Number of paths from each wall that emits. */
-static uint64_t paths_of(const fibrad_insitu_build *b) {
+static uint64_t count_paths(const fibrad_insitu_build *b) {
     const uint64_t paths = b->s->config.paths, most = PATHS_MOST * paths;
     uint64_t walls = 0;
     for (uint32_t wall = 0; wall < b->bed->bodies; ++wall) walls += emits(b->bed, wall);
@@ -50,7 +50,7 @@ static uint64_t paths_of(const fibrad_insitu_build *b) {
 static int make_row(struct wall_rows *w, uint32_t wall) {
     int status = FIBRAD_OK;
     if (!emits(w->b->bed, wall) || !isfinite(fibrad_scene_body_area(w->b->scene, wall))) return status;
-    for (uint64_t count = paths_of(w->b); count <= FIBRAD_PATHS_MAX; count *= PATHS_GROWTH) {
+    for (uint64_t count = count_paths(w->b); count <= FIBRAD_PATHS_MAX; count *= PATHS_GROWTH) {
         w->rule.paths = (uint32_t)count;
         status = compute_row(w, wall);
         w->has[wall] = !status;
@@ -77,7 +77,7 @@ static void find_exchange(const struct wall_rows *w, fibrad_wall_exchange *excha
 }
 
 /* Makes the rows on rank 0, from all particles. */
-static int make_rows(fibrad_insitu_build *b, const fibrad_particle *particle, size_t n) {
+static int make_wall_rows(fibrad_insitu_build *b, const fibrad_particle *particle, size_t n) {
     int status = fibrad_insitu_scene(b, particle, n, NULL);
     struct wall_rows w = {.b = b, .rule = fibrad_insitu_rule(b, n)};
     for (uint32_t wall = 0; wall < b->bed->bodies && !status; ++wall) status = make_row(&w, wall);
@@ -105,7 +105,7 @@ int fibrad_insitu_wall_rows(fibrad_insitu_build *b) {
     for (uint32_t wall = 0; wall < b->bed->bodies; ++wall) any = any || emits(b->bed, wall);
     if (!any || !b->to->facts.particles) return FIBRAD_OK;
     int status = gather(b, &all, &n);
-    if (!status && b->s->rank == 0) status = make_rows(b, all.at, n);
+    if (!status && b->s->rank == 0) status = make_wall_rows(b, all.at, n);
     fibrad_block_free(&all);
     status = fibrad_agree(b->s->comm, status, b->s->message);
     MPI_Bcast(&b->to->walls, sizeof b->to->walls, MPI_BYTE, 0, b->s->comm);

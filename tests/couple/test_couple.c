@@ -497,6 +497,39 @@ static void powers_keep_energy(const struct kind *kind) {
     close_pile(&part);
 }
 
+/* If only walls, or only surroundings, get hotter, a power and its part change alike. Between two particles of one
+ * temperature nothing flows. So powers are the sum of these two parts then. */
+static void parts_change_with_walls(const struct kind *kind) {
+    static const double cold[2] = {1500, 400}, hot[2] = {1700, 900};
+    struct pile all = pile_of(kind), part = part_of(&all, kind->spread);
+    const size_t n = part.bed.n;
+    double *power[3], (*parts[3])[2];
+    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, 1);
+    make_rows(s, &part, 0);
+    CHECK(fibrad_insitu_parts(s, NULL) == FIBRAD_E_STATE);
+    for (size_t i = 0; i < n; ++i) part.temperature[i] = 800;
+    for (int k = 0; k < 3; ++k) {
+        fibrad_insitu_state state = state_of(&part);
+        state.body_temperature = k == 1 ? hot : cold;
+        state.surroundings = k == 2 ? 1100 : 500;
+        power[k] = memory_of(n, sizeof **power), parts[k] = memory_of(n, sizeof **parts);
+        CHECK(fibrad_insitu_powers(s, &state, power[k], NULL) == FIBRAD_OK);
+        CHECK(fibrad_insitu_parts(s, parts[k]) == FIBRAD_OK);
+    }
+    for (size_t i = 0; i < n; ++i) {
+        const double bound =
+            1e-13 * 4 * acos(-1) * part.radius[i] * part.radius[i] * FIBRAD_STEFAN_BOLTZMANN * pow(hot[0], 4);
+        CHECK(parts[0][i][1] == parts[1][i][1] && parts[0][i][0] == parts[2][i][0]);
+        CHECK(fabs(power[1][i] - power[0][i] - (parts[1][i][0] - parts[0][i][0])) < bound);
+        CHECK(fabs(power[2][i] - power[0][i] - (parts[2][i][1] - parts[0][i][1])) < bound);
+        for (int k = 0; k < 3; ++k) CHECK(fabs(power[k][i] - parts[k][i][0] - parts[k][i][1]) < bound);
+    }
+    for (int k = 0; k < 3; ++k) free(power[k]), free(parts[k]);
+    fibrad_insitu_free(s);
+    close_pile(&all);
+    close_pile(&part);
+}
+
 /* A lone particle loses A e (E - E of the surroundings), however little it conducts. */
 static void a_lone_particle(void) {
     static const double relative[] = {.001, .1, 10};
@@ -1143,6 +1176,8 @@ int main(int argc, char **argv) {
     for (int k = 0; k < KINDS; ++k)
         for (int axis = 0; axis < 2 && kinds[k].walls >= TUBE; ++axis) rows_are_those_of_one_rank(&kinds[k], axis);
     for (int k = 0; k < KINDS; ++k) powers_keep_energy(&kinds[k]);
+    parts_change_with_walls(&kinds[3]);
+    parts_change_with_walls(&kinds[0]);
     steps_change_noise();
     the_map_has_all(&kinds[0]);
     the_map_has_all(&kinds[4]);

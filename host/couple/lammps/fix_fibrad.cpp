@@ -78,10 +78,10 @@ class FixFibrad::Words {
 };
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
-    : Fix(lammps, narg, arg), temperature(), kept_bit(0), surroundings{-1, ""}, sampling(false), accuracy(false),
-      cylinder(2), sigma(0), initial(0), config(), meshes(), moving(false), insitu(nullptr), totals(), warned(false),
-      wall_warned(false), cut_warned(false), told(), set_up(-1), powers_at(0), lost(0), restarted(false), begun(0),
-      before(), rows_made(0), rows_followed(0), powers_found(0) {
+    : Fix(lammps, narg, arg), temperature(), kept_bit(0), surroundings{-1, ""}, columns(1), sampling(false),
+      accuracy(false), cylinder(2), sigma(0), initial(0), config(), meshes(), moving(false), insitu(nullptr), totals(),
+      warned(false), wall_warned(false), cut_warned(false), told(), set_up(-1), powers_at(0), lost(0), restarted(false),
+      begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // the default of docs/lammps.md
@@ -126,6 +126,8 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
             sigma = words.number("sigma", 0, huge);
         else if (key == "rows")
             rows_file = words.next();
+        else if (key == "parts")
+            columns = words.yes_or_no() ? 4 : 1;
         else if (key == "strict")
             config.strict = words.yes_or_no();
         else
@@ -164,12 +166,12 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     create_attribute = 1;
     nevery = heat_every ? heat_every : rows_every;
     scalar_flag = vector_flag = peratom_flag = 1;
-    size_peratom_cols = 0;
+    size_peratom_cols = columns > 1 ? columns : 0;
     size_vector = 5 + (int)walls.size() + 3 + (int)walls.size();
     restart_global = wall_heat.any() || moving;
     global_freq = peratom_freq = 1;
     extscalar = extvector = 0;
-    maxexchange = 1;
+    maxexchange = columns;
     FixFibrad::grow_arrays(atom->nmax);
     atom->add_callback(Atom::GROW);
 
@@ -509,7 +511,7 @@ void FixFibrad::post_force(int) {
     if (!heat_every || temperature != "temperature") return;
     double *heatflow = vector("heatflow");
     for (int i = 0; i < atom->nlocal; i++)
-        if (atom->mask[i] & groupbit) heatflow[i] += q[i];
+        if (atom->mask[i] & groupbit) heatflow[i] += q[i * columns];
 }
 
 // A step of rows, of heat, or of both. In a rerun each frame calls setup and then this function for the same step. Its
@@ -530,7 +532,7 @@ void FixFibrad::end_of_step() {
     for (size_t k = 0; k < member.size(); k++) {
         const int i = member[k];
         if (!(atom->mask[i] & groupbit)) continue;
-        const double heat = q[i] * update->dt * heat_every;
+        const double heat = q[i * columns] * update->dt * heat_every;
         const Table *table = cp.table.empty() ? nullptr : &cp.table[atom->type[i]];
         const curve points = table ? table->points() : curve();
         t[i] = points.n ? curve_advance(&points, t[i], heat / mass(i)) : t[i] + heat / (mass(i) * capacity[k]);
@@ -682,7 +684,19 @@ void FixFibrad::find_powers() {
     powers_found++;
     powers_at = update->ntimestep;
     std::fill(q.begin(), q.end(), 0.0);
-    for (size_t k = 0; k < member.size(); k++) q[member[k]] = power[k];
+    for (size_t k = 0; k < member.size(); k++) q[member[k] * columns] = power[k];
+    if (columns > 1) find_parts();
+}
+
+// Divides each power into what comes from particles, from walls and from surroundings.
+void FixFibrad::find_parts() {
+    std::vector<double> part(2 * member.size());
+    check(fibrad_insitu_parts(insitu, (double(*)[2])part.data()));
+    for (size_t k = 0; k < member.size(); k++) {
+        double *of_atom = &q[member[k] * columns];
+        of_atom[2] = part[2 * k], of_atom[3] = part[2 * k + 1];
+        of_atom[1] = of_atom[0] - of_atom[2] - of_atom[3];
+    }
 }
 
 std::vector<double> FixFibrad::wall_temperatures() const {
@@ -843,27 +857,30 @@ double FixFibrad::memory_usage() {
 }
 
 void FixFibrad::grow_arrays(int nmax) {
-    q.resize(nmax);
+    q.resize(nmax * columns);
+    lines.resize(nmax);
+    for (int i = 0; i < nmax; i++) lines[i] = &q[i * columns];
     vector_atom = q.data();
+    array_atom = lines.data();
 }
 
-void FixFibrad::copy_arrays(int i, int j, int) { q[j] = q[i]; }
+void FixFibrad::copy_arrays(int i, int j, int) { std::copy_n(lines[i], columns, lines[j]); }
 
 // Sets the values of a new atom. The elements of its index may have values of an atom that is gone.
 void FixFibrad::set_arrays(int i) {
-    q[i] = 0;
+    std::fill_n(lines[i], columns, 0.0);
     if (!takes_part(i)) return;
     if (double *t = temperature.empty() ? nullptr : vector(temperature)) t[i] = initial;
 }
 
 int FixFibrad::pack_exchange(int i, double *buffer) {
-    buffer[0] = q[i];
-    return 1;
+    std::copy_n(lines[i], columns, buffer);
+    return columns;
 }
 
 int FixFibrad::unpack_exchange(int i, double *buffer) {
-    q[i] = buffer[0];
-    return 1;
+    std::copy_n(buffer, columns, lines[i]);
+    return columns;
 }
 
 // ---- restarts: temperatures of walls that store heat, and the time

@@ -104,6 +104,7 @@ class FixFibrad : public Fix {
     void place_meshes(const fibrad_insitu_bed &);
     void make_rows(bool follow = false);
     void find_powers();
+    void find_parts();
     void heat_walls(bigint steps);
     void follow_heatflow();
     void check_step(const std::vector<double> &temperature); // refuses steps of heat that are not stable
@@ -121,6 +122,7 @@ class FixFibrad : public Fix {
     std::string rows_file;          // first part of the names of the files of rows; empty: none
     int kept_bit;                   // bit of group2, whose temperatures this fix does not step; 0: none
     Temperature surroundings;
+    int columns;    // 4 with `parts`, else 1
     bool sampling;  // directions, paths or tolerance are given
     bool accuracy;  // accuracy is given
     int cylinder;   // axis of the cylinder
@@ -140,7 +142,8 @@ class FixFibrad : public Fix {
     // State.
     fibrad_insitu *insitu;
     fibrad_insitu_totals totals; // of the last powers
-    std::vector<double> q;       // [nmax], power of each atom
+    std::vector<double> q;       // [nmax][columns], power of each atom; with `parts` also what it comes from
+    std::vector<double *> lines; // [nmax], where each atom's values in q begin
     std::vector<int> member;     // atoms of the group that this rank owns
     std::vector<uint64_t> tags;  // [member], their ids
     bool warned, wall_warned;    // whether the warnings about steps of particles and of walls were given

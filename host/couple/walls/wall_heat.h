@@ -16,7 +16,8 @@ class WallHeat {
     bool any() const { return std::any_of(capacity.begin(), capacity.end(), stores); }
 
     /* A step of `seconds` over the longest one in which no wall overshoots what it sees: the largest
-     * 4 sigma T^3 G seconds/capacity. exchange: G of each wall, of fibrad_insitu_facts. *wall: the index of that wall. */
+     * 4 sigma T^3 G seconds/capacity. exchange: G of each wall, of fibrad_insitu_facts. *wall: the index of that wall.
+     */
     double ratio(const double *exchange, double sigma, const std::vector<double> &temperature, double seconds,
                  size_t *wall) const {
         double worst = 0;
