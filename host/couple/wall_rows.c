@@ -13,6 +13,7 @@
 #define PATHS_PART   16   /* all particles have so many times the paths of all walls, unless a wall has */
 #define PATHS_LEAST  1024 /* so few */
 #define PATHS_GROWTH 4    /* from one number of paths to the next, until the tolerance is met */
+#define ERROR_FALLS  0.8  /* the error must fall to this part of itself, else no more paths are added */
 
 /* The rows of all walls. */
 struct wall_rows {
@@ -37,25 +38,35 @@ static int compute_row(struct wall_rows *w, uint32_t wall) {
 static bool emits(const fibrad_insitu_bed *bed, uint32_t wall) { return bed->body_emissivity[wall] > 0; }
 
 /* Number of paths from each wall that emits. */
-static uint64_t count_paths(const fibrad_insitu_build *b) {
-    const uint64_t paths = b->s->config.paths, most = PATHS_MOST * paths;
-    uint64_t walls = 0;
+static uint32_t count_paths(const fibrad_insitu_build *b) {
+    const double paths = b->s->config.paths;
+    double walls = 0;
     for (uint32_t wall = 0; wall < b->bed->bodies; ++wall) walls += emits(b->bed, wall);
-    const uint64_t share = b->to->facts.particles * paths / (PATHS_PART * walls), count = share < most ? share : most;
-    return count > PATHS_LEAST ? count : PATHS_LEAST;
+    const double share = (double)b->to->facts.particles * paths / (PATHS_PART * walls);
+    return (uint32_t)fmin(fmax(PATHS_LEAST, fmin(share, PATHS_MOST * paths)), FIBRAD_PATHS_MAX);
+}
+
+/* Whether more paths would bring the row of a wall nearer to the tolerance. Paths that are broken off among mirrors
+ * leave an error that does not fall. before: error with fewer paths */
+static bool needs_more(const struct wall_rows *w, uint32_t wall, double before) {
+    const double error = w->row[wall].error, tolerance = w->rule.tolerance;
+    return tolerance > 0 && error > tolerance && error < ERROR_FALLS * before &&
+           w->rule.paths <= FIBRAD_PATHS_MAX / PATHS_GROWTH;
 }
 
 /* Computes the row of a wall to the tolerance. A wall without emission, and an endless one, have no row. A wall whose
  * paths meet a side that belongs to no wall has none either. */
 static int make_row(struct wall_rows *w, uint32_t wall) {
-    int status = FIBRAD_OK;
-    if (!emits(w->b->bed, wall) || !isfinite(fibrad_scene_body_area(w->b->scene, wall))) return status;
-    for (uint64_t count = count_paths(w->b); count <= FIBRAD_PATHS_MAX; count *= PATHS_GROWTH) {
-        w->rule.paths = (uint32_t)count;
+    double before = INFINITY;
+    if (!emits(w->b->bed, wall) || !isfinite(fibrad_scene_body_area(w->b->scene, wall))) return FIBRAD_OK;
+    w->rule.paths = count_paths(w->b);
+    int status = compute_row(w, wall);
+    while (!status && needs_more(w, wall, before)) {
+        before = w->row[wall].error;
+        w->rule.paths *= PATHS_GROWTH;
         status = compute_row(w, wall);
-        w->has[wall] = !status;
-        if (status || !(w->rule.tolerance > 0 && w->row[wall].error > w->rule.tolerance)) break;
     }
+    w->has[wall] = !status;
     return status == FIBRAD_E_BACK ? FIBRAD_OK : status;
 }
 

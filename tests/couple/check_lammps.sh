@@ -321,6 +321,20 @@ near "$work/stores1.out" "$work/restored.out" 1e-10 "a floor that stores heat, r
 run 2 warming moving.lmp hot 1000 steps 4000 capacity "capacity 2e4" stored 2e4
 balance warming 20e-3 0 1e-3 150 "energy of moving particles and a floor that stores heat"
 
+# ---- what powers come from ---------------------------------------------------------------------------------------------
+for np in 1 2; do
+    run $np parts$np frozen.lmp "${whole[@]}" steps 0 strict "no parts yes" \
+        also "dump parts all custom 1 $work/parts$np.dump id f_rad[1] f_rad[2] f_rad[3] f_rad[4]"
+done
+found=$(awk -v walls="$(walls parts1)" 'NF == 5 && /^[0-9]/ { n++; all += $2; own += $3; floor += $4; rest += $5 }
+    END { split(walls, p); printf "%.9g %.9g, %.9g %.9g", -floor, p[4], -rest, p[3]
+          exit !(n && own*own < 1e-12*all*all && (all/p[2] - 1)^2 < 1e-12 && (floor/p[4] + 1)^2 < 1e-12 && (rest/p[3] + 1)^2 < 1e-12) }' \
+    "$work/parts1.dump")
+verdict "parts of powers add up to the powers of walls and surroundings" $? "$found"
+sort -n "$work/parts2.dump" | awk 'NF == 5 { for (k = 2; k < 6; k++) printf "%.6e ", $k; print "" }' >"$work/parts2"
+sort -n "$work/parts1.dump" | awk 'NF == 5 { for (k = 2; k < 6; k++) printf "%.6e ", $k; print "" }' | cmp - "$work/parts2"
+verdict "parts of powers, np 1 and 2" $?
+
 # ---- tables over temperature --------------------------------------------------------------------------------------------
 # table NAME T VALUE T VALUE
 table() { printf '# of the test\nT,value\n%s,%s\n%s,%s\n' "$2" "$3" "$4" "$5" >"$work/$1"; }
