@@ -883,8 +883,7 @@ int FixFibrad::unpack_exchange(int i, double *buffer) {
     return columns;
 }
 
-// ---- restarts: temperatures of walls that store heat, and the time
-// -----------------------------------------------------
+// ---- restarts: temperatures of walls that store heat, and the time --------------------------------------------------
 
 void FixFibrad::write_restart(FILE *file) {
     if (comm->me) return;
