@@ -393,13 +393,15 @@ shell() {
 shell 0 >"$work/shell.stl"
 run 2 shell drum.lmp wall "mesh $work/shell.stl 1000 0.7 both rotate 0 0 2 2 about 5 5 0 capacity 20" stored 20 rows 250
 balance shell 10e-3 0 1e-5 200 "energy in a drum of triangles that turns and stores heat"
-# heat FRAME STEP: what particles send to the shell, and what it sends to them at 1 K
+# heat FRAME STEP: what particles and surroundings send to the shell, and what it sends to them at 1 K
 heat() {
     shell "$2" >"$work/turned.stl"
     "$BUILD/fibrad" exchange "$1" --emissivity .8 --wall "mesh:$work/turned.stl:both" --wall-emissivity .7 --raw --quiet \
         --directions 400 -o "$work/factors.csv" 2>/dev/null
-    awk -F'[ ,]' 'NR == FNR && NF >= 6 && $1 ~ /^[0-9]/ { area[$1] = 16*atan2(1, 1)*$5^2; e[$1] = 1e-11*$6^4 }
+    awk -F'[ ,]' -v both=$(awk 'BEGIN { print 2*12*8*2*5*sin(atan2(1, 1)/6) }') '
+        NR == FNR && NF >= 6 && $1 ~ /^[0-9]/ { area[$1] = 16*atan2(1, 1)*$5^2; e[$1] = 1e-11*$6^4 }
         NR > FNR && $1 > 0 && $4 == "turned" { weight = area[$1]*.8*$3; sum += weight*e[$1]; all += weight*1e-11 }
+        $4 == "turned:surroundings" { weight = both*.7*$3; sum += weight*1e-11*300^4; all += weight*1e-11 }
         END { print sum, all }' CONVFMT=%.17g OFMT=%.17g "$1" "$work/factors.csv"
 }
 for step in $(seq 1500 250 3250); do heat "$work/shell.out.frame.$step" "$step"; done >"$work/heats"

@@ -157,9 +157,9 @@ radiation="$sides --wall zhi=open,.06"
 for ranks in 1 2; do run open$ranks $ranks 'setforce 0 0 0' 200 -in bed; done
 echo "$(value black_lid radiation_particles) $(value open1 radiation_particles) $(value open2 radiation_particles) \
     $(value black_lid radiation_zhi) $(value open1 radiation_surroundings)" | awk '{
-    printf "below a black lid %.5f J, an opening %.5f J\n", $1, $2
+    printf "below a black lid %.5f J, an opening %.5f J; the lid gets %.5f J, the surroundings %.5f J\n", $1, $2, $4, $5
     off = $2 / $1 - 1; ranks = $2 / $3 - 1; lid = $5 / $4 - 1
-    exit !(NF == 5 && off * off < 1e-24 && ranks * ranks < 1e-24 && lid * lid < 1e-24) }' || complain "an opening is no black lid"
+    exit !(NF == 5 && off * off < 1e-24 && ranks * ranks < 1e-24 && lid * lid < 4e-4) }' || complain "an opening is no black lid"
 radiation=$only_planes
 run planes 1 'setforce 0 0 0' 200 -in bed
 radiation='--emissivity 0.8 --surroundings 300'
@@ -217,9 +217,11 @@ for step in $(seq 0 1000 20000); do
     mv "$step.shell" shell.stl
     "$fibrad" exchange "$step.frame" --emissivity .8 --wall mesh:shell.stl:both,xmin=0,xmax=.048 --wall-emissivity .9,shell=.7 --raw \
         --quiet -o factors.csv 2>/dev/null || complain "no factors of step $step" >&2
-    # what particles send to the drum, and what it sends to them at 1 K
-    awk -F'[ ,]' 'NR == FNR && NF == 7 && $1 ~ /^[0-9]/ { e[$1] = 5.670374419e-8 * $6^4 }
-        NR > FNR && $1 > 0 && $4 == "shell" { weight = 3.6e-5 * 3.14159265358979 * .8 * $3; sum += weight * e[$1]; all += weight }
+    # what particles, ends and surroundings send to the drum, and what it sends to them at 1 K
+    awk -F'[ ,]' 'BEGIN { pi = 3.14159265358979; s = 5.670374419e-8; both = 2 * 24 * .048 * 2 * .0235 * sin(pi / 24) }
+        NR == FNR && NF == 7 && $1 ~ /^[0-9]/ { e[$1] = s * $6^4 }
+        NR > FNR && $1 > 0 && $4 == "shell" { weight = 3.6e-5 * pi * .8 * $3; sum += weight * e[$1]; all += weight }
+        $4 ~ /^shell:(xm|surr)/ { weight = both * .7 * $3; sum += weight * s * ($4 ~ /surr/ ? 300 : 600)^4; all += weight }
         END { printf "%.9g %.9g\n", sum, all * 5.670374419e-8 }' "$step.frame" factors.csv
 done | awk -v found="$(value turning temperature_drum)" '
     NR == 1 { t = 1200 }
