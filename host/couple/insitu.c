@@ -345,7 +345,7 @@ static int measure_bed(fibrad_insitu_build *b) {
     return status;
 }
 
-/* Links present owners to home ranks, which are the same now. Refuses ids that occur twice. */
+/* Links present owners to home ranks. Refuses ids that occur twice. Those of the rows in use do not. */
 static int link_present(fibrad_insitu_build *b) {
     fibrad_insitu_set *to = b->to;
     const fibrad_particle *particle = to->particle.at;
@@ -361,7 +361,9 @@ static int link_present(fibrad_insitu_build *b) {
     for (size_t i = 0; i < to->own; ++i) id[n + i] = particle[i].id;
     to->now_n = n;
     fibrad_link_free(to->present);
-    status = fibrad_link_new(&to->present, b->s->comm, id, n, all, &culprit);
+    const fibrad_insitu_set *set = &b->s->set;
+    const bool known = b->s->ready && set->all == to->all && set->hash == to->hash;
+    status = fibrad_link_find(&to->present, b->s->comm, id, n, all, known, &culprit);
     if (status == FIBRAD_E_ARGUMENT) refuse_particle(b->s->message, culprit, "this id occurs twice");
     return status;
 }
@@ -606,6 +608,7 @@ static int list_home(fibrad_insitu_build *b) {
         fibrad_block_fit(&b->s->solver, to->conducts ? 4 * to->own : 0, sizeof(double)) ||
         fibrad_block_fit(&to->emission, to->columns, sizeof(double)) ||
         fibrad_block_fit(&to->power, to->columns, sizeof(double)) ||
+        fibrad_block_fit(&b->s->sent, b->halo, sizeof(fibrad_place)) ||
         fibrad_block_fit(&b->s->value, b->bed->n + to->own, sizeof(double)))
         return FIBRAD_E_MEMORY;
     fibrad_particle *p = to->particle.at;
@@ -613,10 +616,22 @@ static int list_home(fibrad_insitu_build *b) {
     size_t own = b->fresh;
     for (size_t c = 0; b->follows && c < set->own; ++c)
         if (b->follow.there[c]) p[own++] = old[c];
+    const uint32_t *number = b->s->order.at; /* of columns; 0: not seen */
+    fibrad_place *place = b->s->sent.at;     /* of particles seen, for link_seen */
+    for (size_t i = b->own; i < b->own + b->halo && !b->follows; ++i)
+        if (number[i]) place[number[i] - to->own] = p[i].owner;
     double *weight = to->weight.at;
     memset(weight, 0, to->columns * sizeof *weight);
     for (size_t i = 0; i < to->own; ++i) weight[i] = 4 * acos(-1) * p[i].radius * p[i].radius * p[i].node;
     return FIBRAD_OK;
+}
+
+/* Links home particles with columns. Particles of the halo know their homes, unless old rows are kept. */
+static int link_seen(fibrad_insitu_build *b) {
+    fibrad_insitu_set *to = b->to;
+    fibrad_link_free(to->seen);
+    return b->follows ? fibrad_link_new(&to->seen, b->s->comm, to->id.at, to->own, to->columns, NULL)
+                      : fibrad_link_to(&to->seen, b->s->comm, to->own, b->s->sent.at, to->columns - to->own);
 }
 
 static int make_rows(fibrad_insitu_build *b) {
@@ -758,10 +773,7 @@ static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_
     if (b.follows) b.to->walls = s->set.walls;
     if (!status && !b.follows) status = fibrad_insitu_wall_rows(&b);
     if (!status) status = link_present(&b);
-    if (!status) {
-        fibrad_link_free(b.to->seen);
-        status = fibrad_link_new(&b.to->seen, s->comm, b.to->id.at, b.to->own, b.to->columns, NULL);
-    }
+    if (!status) status = link_seen(&b);
     fibrad_follow_free(&b.follow);
     if (status) {
         if (!s->message[0]) fibrad_refuse(s->message, status, "%s", fibrad_status_text(status));

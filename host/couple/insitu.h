@@ -104,6 +104,15 @@ fibrad_exchange_rule fibrad_insitu_rule(const fibrad_insitu_build *b, size_t n);
  * ranks: as fibrad_scene_init and fibrad_exchange_body; _MEMORY. */
 int fibrad_insitu_wall_rows(fibrad_insitu_build *b);
 
+/* Collective. As fibrad_link_new. once: it is known that no id is owned twice, or used twice. An id that its owner uses
+ * then takes no message. */
+int fibrad_link_find(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_t own, size_t all, bool once,
+                     uint64_t *culprit);
+
+/* Collective. As fibrad_link_new, for values of which the owners are known: place[used]. Errors, on all ranks: _MEMORY.
+ */
+int fibrad_link_to(fibrad_link **link, MPI_Comm comm, size_t own, const fibrad_place *place, size_t used);
+
 /* Collective. Tells for ids in use whether a rank owns them: known[all - own]. id as for fibrad_link_new. Errors, on
  * all ranks: _MEMORY. */
 int fibrad_link_known(MPI_Comm comm, const uint64_t *id, size_t own, size_t all, unsigned char *known);

@@ -1,14 +1,14 @@
 /* link.c - values of particles that other ranks own. SPDX-License-Identifier: MIT
  *
- * The directory says who owns an id. It is divided over the ranks; the id alone tells which rank has its entry. Owners
- * enter their ids. Users ask the directory for the owner of each id once, and then tell the owners. From then on only
- * ranks that share particles exchange messages, with one value per particle, between buffers that stay in place. */
+ * A link is made from the places of values: who owns them, and where. Callers may know these places. If not, a
+ * directory does. It is divided over the ranks; the id alone tells which rank has its entry. Owners enter their ids.
+ * Users ask the directory for the place of each id, and then tell the owners. From then on only ranks that share
+ * particles exchange messages, with one value per particle, between buffers that stay in place. */
 #include <limits.h>
 #include <stdbool.h>
 #include <string.h>
 
-#include "couple/ranks/collective.h"
-#include "couple/fibrad_couple.h"
+#include "couple/insitu.h"
 
 #define LINK_TAG 12012
 
@@ -57,123 +57,202 @@ static uint32_t *find_id(const struct id_table *table, uint64_t id) {
     return &table->number[k];
 }
 
-/* ---- making a link ---- */
+/* ---- the directory ---- */
 
-/* An entry of the directory: the rank that owns an id, and the index of the id there. */
-struct owner {
+/* An entry of the directory: an id, and where its owner has it. */
+struct entry {
     uint64_t id;
-    uint32_t rank, index;
+    fibrad_place place;
 };
 
-enum { DIRECTORY, QUESTIONS, REPLIES, WANTED, ARRIVALS };
+enum { ENTRIES, QUESTIONS, REPLIES, ARRIVALS };
 
-/* The making of a link. */
-struct making {
+/* A directory, and what a rank sends to it and gets from it. */
+struct directory {
     MPI_Comm comm;
     int rank, ranks;
-    int *count, *got;   /* [ranks] numbers of elements sent and received; got is scratch before an exchange */
-    int *answers;       /* [ranks] numbers of replies from each rank of the directory */
     const uint64_t *id; /* [own + used] */
-    uint64_t *asked;    /* [unique] different ids used, in the order of the ranks of their directory */
-    size_t unique;
-    uint32_t *number;    /* [unique] first the index of each id in `asked`, later the index of its value in `in` */
-    struct owner *owner; /* [own] entries for the directory, in the order of its ranks */
-    struct id_table table;
-    fibrad_block *arrived; /* [ARRIVALS] elements received */
-    uint64_t culprit;      /* least id at fault on this rank */
-    bool fault;            /* an id is at fault */
+    size_t own, used;
+    int *count, *got, *answers; /* [ranks] numbers of elements sent and received, and of replies received */
+    unsigned char *here;        /* [own + used] 1: this rank needs no directory for this id */
+    uint32_t *at;               /* [own + used] place of what is sent for each other id */
+    struct entry *entry;        /* [own] in the order of ranks */
+    uint64_t *question;         /* [used] in the order of ranks */
+    fibrad_place *reply;        /* to the questions of all ranks */
+    struct id_table table;      /* of the entries that arrived */
+    fibrad_block *arrived;      /* [ARRIVALS] elements received */
+    uint64_t culprit;           /* least id at fault on this rank */
+    bool fault;                 /* an id is at fault */
 };
 
-static void blame(struct making *m, uint64_t id) {
-    if (!m->fault || id < m->culprit) m->culprit = id;
-    m->fault = true;
+static void blame(struct directory *d, uint64_t id) {
+    if (!d->fault || id < d->culprit) d->culprit = id;
+    d->fault = true;
 }
 
-static int directory_of(const struct making *m, uint64_t id) { return (int)(fibrad_hash_id(id) % (uint64_t)m->ranks); }
-
-/* Enters the own ids into the directory. */
-static int enter_owned(struct making *m, size_t own) {
-    memset(m->count, 0, (size_t)m->ranks * sizeof *m->count);
-    for (size_t i = 0; i < own; ++i) m->count[directory_of(m, m->id[i])]++;
-    fibrad_count_starts(m->count, m->ranks, m->got);
-    for (size_t i = 0; i < own; ++i)
-        m->owner[m->got[directory_of(m, m->id[i])]++] = (struct owner){m->id[i], (uint32_t)m->rank, (uint32_t)i};
-    return fibrad_deal(m->comm, FIBRAD_OK, m->owner, m->count, sizeof *m->owner, &m->arrived[DIRECTORY], 0, m->got);
-}
-
-/* Asks the directory for the owners of the used ids, each id once. slot [used]: index of the question. */
-static int ask_directory(struct making *m, size_t own, size_t used, uint32_t *slot) {
-    struct id_table seen;
-    int status = open_table(&seen, used);
-    memset(m->count, 0, (size_t)m->ranks * sizeof *m->count);
-    for (size_t k = 0; k < used && !status; ++k) {
-        uint32_t *number = find_id(&seen, m->id[own + k]);
-        if (*number == UINT32_MAX) {
-            *number = (uint32_t)m->unique++;
-            m->count[directory_of(m, m->id[own + k])]++;
-        }
-        slot[k] = *number;
+/* Finds the used ids that this rank owns. If no id is owned or used twice, no other rank need know of them. */
+static int find_here(struct directory *d, fibrad_place *place) {
+    struct id_table mine;
+    const int status = open_table(&mine, d->own);
+    for (size_t i = 0; i < d->own && !status; ++i) *find_id(&mine, d->id[i]) = (uint32_t)i;
+    for (size_t k = 0; k < d->used && !status; ++k) {
+        const uint32_t i = *find_id(&mine, d->id[d->own + k]);
+        if (i == UINT32_MAX) continue;
+        place[k] = (fibrad_place){(uint32_t)d->rank, i};
+        d->here[i] = d->here[d->own + k] = 1;
     }
-    fibrad_count_starts(m->count, m->ranks, m->got);
-    for (size_t k = 0, next = 0; k < used && !status; ++k)
-        if (slot[k] == next) { /* the first use of this id */
-            const int at = m->got[directory_of(m, m->id[own + k])]++;
-            m->asked[at] = m->id[own + k];
-            m->number[next++] = (uint32_t)at;
-        }
-    for (size_t k = 0; k < used && !status; ++k) slot[k] = m->number[slot[k]];
-    close_table(&seen);
-    return fibrad_deal(m->comm, status, m->asked, m->count, sizeof *m->asked, &m->arrived[QUESTIONS], 0, m->got);
-}
-
-/* Answers the questions of all ranks. Each rank gets its replies in the order of its questions. */
-static int answer(struct making *m, size_t entries) {
-    const struct owner *entry = m->arrived[DIRECTORY].at;
-    const uint64_t *question = m->arrived[QUESTIONS].at;
-    const size_t questions = fibrad_count_sum(m->got, m->ranks);
-    struct owner *reply = malloc((questions + 1) * sizeof *reply);
-    int status = open_table(&m->table, entries);
-    if (!reply) status = FIBRAD_E_MEMORY;
-    for (size_t k = 0; k < entries && !status; ++k) {
-        uint32_t *number = find_id(&m->table, entry[k].id);
-        if (*number != UINT32_MAX) blame(m, entry[k].id);
-        *number = (uint32_t)k;
-    }
-    for (size_t k = 0; k < questions && !status; ++k) {
-        const uint32_t number = *find_id(&m->table, question[k]);
-        if (number == UINT32_MAX) blame(m, question[k]);
-        reply[k] = number == UINT32_MAX ? (struct owner){question[k], UINT32_MAX, 0} : entry[number];
-    }
-    status = fibrad_deal(m->comm, status, reply, m->got, sizeof *reply, &m->arrived[REPLIES], 0, m->answers);
-    free(reply);
+    close_table(&mine);
     return status;
 }
 
+/* Orders ids [from, to) by the ranks that have their entries: d->count of them for each rank, id k at the place at[k].
+ */
+static void order_by_rank(struct directory *d, size_t from, size_t to) {
+    memset(d->count, 0, (size_t)d->ranks * sizeof *d->count);
+    for (size_t k = from; k < to; ++k)
+        if (!d->here[k]) d->count[fibrad_hash_id(d->id[k]) % (uint64_t)d->ranks]++;
+    fibrad_count_starts(d->count, d->ranks, d->got);
+    for (size_t k = from; k < to; ++k)
+        if (!d->here[k]) d->at[k] = (uint32_t)d->got[fibrad_hash_id(d->id[k]) % (uint64_t)d->ranks]++;
+}
+
+static int enter_owned(struct directory *d, int status) {
+    order_by_rank(d, 0, d->own);
+    for (size_t i = 0; i < d->own; ++i)
+        if (!d->here[i]) d->entry[d->at[i]] = (struct entry){d->id[i], {(uint32_t)d->rank, (uint32_t)i}};
+    return fibrad_deal(d->comm, status, d->entry, d->count, sizeof *d->entry, &d->arrived[ENTRIES], 0, d->got);
+}
+
+/* Makes a table of the entries that arrived. */
+static int list_entries(struct directory *d) {
+    const struct entry *entry = d->arrived[ENTRIES].at;
+    const size_t entries = fibrad_count_sum(d->got, d->ranks);
+    const int status = open_table(&d->table, entries);
+    for (size_t k = 0; k < entries && !status; ++k) {
+        uint32_t *number = find_id(&d->table, entry[k].id);
+        if (*number != UINT32_MAX) blame(d, entry[k].id);
+        *number = (uint32_t)k;
+    }
+    return status;
+}
+
+static int ask(struct directory *d, int status) {
+    order_by_rank(d, d->own, d->own + d->used);
+    for (size_t k = d->own; k < d->own + d->used; ++k)
+        if (!d->here[k]) d->question[d->at[k]] = d->id[k];
+    return fibrad_deal(d->comm, status, d->question, d->count, sizeof *d->question, &d->arrived[QUESTIONS], 0, d->got);
+}
+
+/* Answers the questions of all ranks. Each rank gets its replies in the order of its questions. */
+static int answer(struct directory *d) {
+    const struct entry *entry = d->arrived[ENTRIES].at;
+    const uint64_t *question = d->arrived[QUESTIONS].at;
+    const size_t questions = fibrad_count_sum(d->got, d->ranks);
+    d->reply = malloc((questions + 1) * sizeof *d->reply);
+    for (size_t k = 0; k < questions && d->reply; ++k) {
+        const uint32_t number = *find_id(&d->table, question[k]);
+        if (number == UINT32_MAX) blame(d, question[k]);
+        d->reply[k] = number == UINT32_MAX ? (fibrad_place){UINT32_MAX, 0} : entry[number].place;
+    }
+    return fibrad_deal(d->comm, d->reply ? FIBRAD_OK : FIBRAD_E_MEMORY, d->reply, d->got, sizeof *d->reply,
+                       &d->arrived[REPLIES], 0, d->answers);
+}
+
+static int begin_directory(struct directory *d) {
+    const size_t all = d->own + d->used;
+    if (all > INT_MAX) return FIBRAD_E_MEMORY; /* MPI counts by int */
+    MPI_Comm_rank(d->comm, &d->rank);
+    MPI_Comm_size(d->comm, &d->ranks);
+    d->count = malloc(3 * (size_t)d->ranks * sizeof *d->count);
+    d->here = calloc(all + 1, sizeof *d->here);
+    d->at = malloc((all + 1) * sizeof *d->at);
+    d->entry = malloc((d->own + 1) * sizeof *d->entry);
+    d->question = malloc((d->used + 1) * sizeof *d->question);
+    if (!d->count || !d->here || !d->at || !d->entry || !d->question) return FIBRAD_E_MEMORY;
+    d->got = d->count + d->ranks, d->answers = d->got + d->ranks;
+    return FIBRAD_OK;
+}
+
+static void end_directory(struct directory *d) {
+    free(d->count);
+    free(d->here);
+    free(d->at);
+    free(d->entry);
+    free(d->question);
+    free(d->reply);
+    close_table(&d->table);
+    for (int k = 0; k < ARRIVALS; ++k) fibrad_block_free(&d->arrived[k]);
+}
+
 /* Finds the least id at fault on all ranks. */
-static int agree_on_fault(struct making *m, uint64_t *culprit) {
-    uint64_t least[2] = {!m->fault, m->fault ? m->culprit : UINT64_MAX};
-    MPI_Allreduce(MPI_IN_PLACE, least, 2, MPI_UINT64_T, MPI_MIN, m->comm);
+static int agree_on_fault(const struct directory *d, uint64_t *culprit) {
+    uint64_t least[2] = {!d->fault, d->fault ? d->culprit : UINT64_MAX};
+    MPI_Allreduce(MPI_IN_PLACE, least, 2, MPI_UINT64_T, MPI_MIN, d->comm);
     if (least[0]) return FIBRAD_OK;
     if (culprit) *culprit = least[1];
     return FIBRAD_E_ARGUMENT;
 }
 
-/* Tells the owners which values this rank uses. Slots become indices in the order of owners. */
-static int ask_owners(struct making *m, fibrad_link *link) {
-    const struct owner *reply = m->arrived[REPLIES].at;
-    uint32_t *wanted = malloc((m->unique + 1) * sizeof *wanted);
+/* Collective. Finds who owns the ids that this rank uses: place[used]; the rank UINT32_MAX: nobody. once: no id is
+ * owned or used twice. Errors, on all ranks: FIBRAD_E_ARGUMENT, after all places are found: nobody owns an id, or two
+ * ranks. */
+static int find_owners(MPI_Comm comm, const uint64_t *id, size_t own, size_t used, bool once, fibrad_place *place,
+                       uint64_t *culprit) {
+    fibrad_block arrived[ARRIVALS] = {{0}};
+    struct directory d = {.comm = comm, .id = id, .own = own, .used = used, .arrived = arrived};
+    int status = fibrad_agree(comm, begin_directory(&d), NULL);
+    if (!status) status = enter_owned(&d, once ? find_here(&d, place) : FIBRAD_OK);
+    if (!status) status = ask(&d, list_entries(&d));
+    if (!status) status = answer(&d);
+    const fibrad_place *reply = arrived[REPLIES].at;
+    for (size_t k = 0; k < used && !status; ++k)
+        if (!d.here[own + k]) place[k] = reply[d.at[own + k]];
+    if (!status) status = agree_on_fault(&d, culprit);
+    end_directory(&d);
+    return status;
+}
+
+int fibrad_link_known(MPI_Comm comm, const uint64_t *id, size_t own, size_t all, unsigned char *known) {
+    fibrad_place *place = malloc((all - own + 1) * sizeof *place);
+    int status = fibrad_agree(comm, place ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
+    if (!status) status = find_owners(comm, id, own, all - own, false, place, NULL);
+    if (status == FIBRAD_E_ARGUMENT) status = FIBRAD_OK;
+    for (size_t k = 0; k < all - own && !status; ++k) known[k] = place[k].rank != UINT32_MAX;
+    free(place);
+    return status;
+}
+
+/* ---- making a link ---- */
+
+/* The making of a link. */
+struct making {
+    MPI_Comm comm;
+    int rank, ranks;
+    int *count, *got; /* [ranks] numbers of values that come from and go to each rank; got is scratch at first */
+    uint32_t *number; /* [used] index in `in` of each different value */
+    uint32_t *wanted; /* [used] index of each different value at its owner, in the order of the owners */
+    size_t unique;    /* number of different values */
+};
+
+/* Gives each different place one value in `in`, in the order of owners. slot: its index, for each use. */
+static int list_wanted(struct making *m, const fibrad_place *place, size_t used, uint32_t *slot) {
+    struct id_table seen;
+    const int status = open_table(&seen, used);
     memset(m->count, 0, (size_t)m->ranks * sizeof *m->count);
-    for (size_t u = 0; u < m->unique; ++u) m->count[reply[u].rank]++;
-    fibrad_count_starts(m->count, m->ranks, m->got);
-    for (size_t u = 0; u < m->unique && wanted; ++u) {
-        const int at = m->got[reply[u].rank]++;
-        wanted[at] = reply[u].index;
-        m->number[u] = (uint32_t)at;
+    for (size_t k = 0; k < used && !status; ++k) {
+        uint32_t *number = find_id(&seen, (uint64_t)place[k].rank << 32 | place[k].index);
+        if (*number == UINT32_MAX) *number = (uint32_t)m->unique++, m->count[place[k].rank]++;
+        slot[k] = *number;
     }
-    for (size_t k = 0; k < link->used; ++k) link->slot[k] = m->number[link->slot[k]];
-    const int status = fibrad_deal(m->comm, wanted ? FIBRAD_OK : FIBRAD_E_MEMORY, wanted, m->count, sizeof *wanted,
-                                   &m->arrived[WANTED], 0, m->got);
-    free(wanted);
+    fibrad_count_starts(m->count, m->ranks, m->got);
+    for (size_t k = 0, next = 0; k < used && !status; ++k)
+        if (slot[k] == next) { /* the first use of this value */
+            const int at = m->got[place[k].rank]++;
+            m->wanted[at] = place[k].index;
+            m->number[next++] = (uint32_t)at;
+        }
+    for (size_t k = 0; k < used && !status; ++k) slot[k] = m->number[slot[k]];
+    close_table(&seen);
     return status;
 }
 
@@ -183,8 +262,6 @@ static int lay_out(struct making *m, fibrad_link *link) {
     for (int q = 0; q < m->ranks; ++q) peers += q != m->rank ? (m->count[q] > 0) + (m->got[q] > 0) : 0;
     link->got = m->unique;
     link->sent = fibrad_count_sum(m->got, m->ranks);
-    link->source = m->arrived[WANTED].at;
-    m->arrived[WANTED].at = NULL;
     link->out = malloc((link->sent + 1) * sizeof *link->out);
     link->in = malloc((link->got + 1) * sizeof *link->in);
     link->request = malloc((2 * (size_t)peers + 1) * sizeof(MPI_Request));
@@ -212,39 +289,6 @@ static int lay_out(struct making *m, fibrad_link *link) {
     return FIBRAD_OK;
 }
 
-static int make_link(struct making *m, fibrad_link *link, uint64_t *culprit) {
-    int status = enter_owned(m, link->own);
-    const size_t entries = status ? 0 : fibrad_count_sum(m->got, m->ranks);
-    if (!status) status = ask_directory(m, link->own, link->used, link->slot);
-    if (!status) status = answer(m, entries);
-    if (!status) status = agree_on_fault(m, culprit);
-    if (!status) status = ask_owners(m, link);
-    return status ? status : lay_out(m, link);
-}
-
-/* Allocates memory for own and used ids. Close it also after an error. Returns FIBRAD_OK or _E_MEMORY. */
-static int open_making(struct making *m, size_t own, size_t used) {
-    const size_t ranks = (size_t)m->ranks;
-    m->count = malloc(ranks * sizeof *m->count);
-    m->got = malloc(ranks * sizeof *m->got);
-    m->answers = malloc(ranks * sizeof *m->answers);
-    m->asked = malloc((used + 1) * sizeof *m->asked);
-    m->number = malloc((used + 1) * sizeof *m->number);
-    m->owner = malloc((own + 1) * sizeof *m->owner);
-    return m->count && m->got && m->answers && m->asked && m->number && m->owner ? FIBRAD_OK : FIBRAD_E_MEMORY;
-}
-
-static void close_making(struct making *m) {
-    free(m->count);
-    free(m->got);
-    free(m->answers);
-    free(m->asked);
-    free(m->number);
-    free(m->owner);
-    close_table(&m->table);
-    for (int k = 0; k < ARRIVALS; ++k) fibrad_block_free(&m->arrived[k]);
-}
-
 /* Makes a link without buffers. NULL: there is not enough memory. */
 static fibrad_link *open_link(size_t own, size_t used) {
     fibrad_link *link = calloc(1, sizeof *link);
@@ -257,43 +301,44 @@ static fibrad_link *open_link(size_t own, size_t used) {
     return NULL;
 }
 
-int fibrad_link_new(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_t own, size_t all, uint64_t *culprit) {
-    fibrad_block arrived[ARRIVALS] = {{0}};
-    struct making m = {.comm = comm, .id = id, .arrived = arrived};
+int fibrad_link_to(fibrad_link **link, MPI_Comm comm, size_t own, const fibrad_place *place, size_t used) {
+    struct making m = {.comm = comm};
     MPI_Comm_rank(comm, &m.rank);
     MPI_Comm_size(comm, &m.ranks);
-    int status = link && all >= own && (id || all == 0) ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
-    if (!status && all > INT_MAX) status = FIBRAD_E_MEMORY; /* MPI counts by int */
-    fibrad_link *made = status ? NULL : open_link(own, all - own);
-    if (!status) status = made ? open_making(&m, own, all - own) : FIBRAD_E_MEMORY;
-    status = fibrad_agree(comm, status, NULL);
-    if (!status) status = make_link(&m, made, culprit);
-    close_making(&m);
-    if (status) {
-        fibrad_link_free(made);
-        made = NULL;
+    m.count = malloc(2 * (size_t)m.ranks * sizeof *m.count);
+    m.number = malloc((2 * used + 1) * sizeof *m.number);
+    fibrad_link *made = open_link(own, used);
+    int status = fibrad_agree(comm, m.count && m.number && made ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
+    if (!status) {
+        fibrad_block wanted = {0};
+        m.got = m.count + m.ranks, m.wanted = m.number + used;
+        status = list_wanted(&m, place, used, made->slot);
+        status = fibrad_deal(comm, status, m.wanted, m.count, sizeof *m.wanted, &wanted, 0, m.got);
+        made->source = wanted.at;
     }
-    if (link) *link = made;
+    if (!status) status = lay_out(&m, made);
+    free(m.count);
+    free(m.number);
+    if (status) fibrad_link_free(made);
+    *link = status ? NULL : made;
     return status;
 }
 
-int fibrad_link_known(MPI_Comm comm, const uint64_t *id, size_t own, size_t all, unsigned char *known) {
-    fibrad_block arrived[ARRIVALS] = {{0}};
-    struct making m = {.comm = comm, .id = id, .arrived = arrived};
-    MPI_Comm_rank(comm, &m.rank);
-    MPI_Comm_size(comm, &m.ranks);
-    uint32_t *slot = malloc((all - own + 1) * sizeof *slot);
-    int status = slot && all <= INT_MAX ? open_making(&m, own, all - own) : FIBRAD_E_MEMORY;
+int fibrad_link_find(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_t own, size_t all, bool once,
+                     uint64_t *culprit) {
+    int status = link && all >= own && (id || all == 0) ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
+    if (link) *link = NULL;
+    fibrad_place *place = status ? NULL : malloc((all - own + 1) * sizeof *place);
+    if (!status && !place) status = FIBRAD_E_MEMORY;
     status = fibrad_agree(comm, status, NULL);
-    if (!status) status = enter_owned(&m, own);
-    const size_t entries = status ? 0 : fibrad_count_sum(m.got, m.ranks);
-    if (!status) status = ask_directory(&m, own, all - own, slot);
-    if (!status) status = answer(&m, entries);
-    const struct owner *reply = arrived[REPLIES].at;
-    for (size_t k = 0; k < all - own && !status; ++k) known[k] = reply[slot[k]].rank != UINT32_MAX;
-    close_making(&m);
-    free(slot);
+    if (!status) status = find_owners(comm, id, own, all - own, once, place, culprit);
+    if (!status) status = fibrad_link_to(link, comm, own, place, all - own);
+    free(place);
     return status;
+}
+
+int fibrad_link_new(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_t own, size_t all, uint64_t *culprit) {
+    return fibrad_link_find(link, comm, id, own, all, false, culprit);
 }
 
 /* ---- using a link ---- */

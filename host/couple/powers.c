@@ -56,7 +56,7 @@ static int follow_particles(fibrad_insitu *s, const fibrad_insitu_state *state) 
         if (n) memcpy(id, state->id, n * sizeof *id);
         const uint64_t *home = set->id.at;
         memcpy(id + n, home, set->own * sizeof *id);
-        status = fibrad_link_new(&link, s->comm, id, n, all, &culprit);
+        status = fibrad_link_find(&link, s->comm, id, n, all, true, &culprit);
         if (status == FIBRAD_E_ARGUMENT)
             status = fibrad_refuse(s->message, FIBRAD_E_STATE,
                                    "particle %" PRIu64 " has a row, but no rank or two ranks own it; make new rows",

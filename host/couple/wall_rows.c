@@ -100,9 +100,12 @@ static int make_wall_rows(fibrad_insitu_build *b, const fibrad_particle *particl
 static int gather(const fibrad_insitu_build *b, fibrad_block *all, size_t *n) {
     const fibrad_insitu *s = b->s;
     int *count = calloc(2 * (size_t)s->ranks, sizeof *count);
-    int status = count && b->own <= INT_MAX ? FIBRAD_OK : FIBRAD_E_MEMORY;
-    if (count) count[0] = (int)b->own;
-    status = fibrad_deal(s->comm, status, b->to->particle.at, count, sizeof(fibrad_particle), all, 0, count + s->ranks);
+    int status = fibrad_agree(s->comm, count && b->own <= INT_MAX ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
+    if (!status) {
+        count[0] = (int)b->own;
+        status =
+            fibrad_deal(s->comm, status, b->to->particle.at, count, sizeof(fibrad_particle), all, 0, count + s->ranks);
+    }
     if (!status) *n = fibrad_count_sum(count + s->ranks, s->ranks);
     free(count);
     return status;

@@ -530,6 +530,29 @@ static void parts_change_with_walls(const struct kind *kind) {
     close_pile(&part);
 }
 
+/* Rows that are made again, when particles have changed ranks, give the powers of a new object, to the bit. */
+static void powers_of_rows_made_again(const struct kind *kind) {
+    struct pile all = pile_of(kind), before = part_of(&all, (kind->spread + 1) % SPREADS);
+    struct pile part = part_of(&all, kind->spread);
+    double *power = memory_of(all.bed.n, sizeof *power);
+    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, 1), *fresh = insitu_of(MPI_COMM_WORLD, kind, 1);
+    fibrad_insitu_totals totals[2];
+    make_rows(s, &before, 0);
+    make_rows(s, &part, 1);
+    make_rows(fresh, &part, 1);
+    const fibrad_insitu_state state = state_of(&part);
+    CHECK(fibrad_insitu_powers(s, &state, part.power, &totals[0]) == FIBRAD_OK);
+    CHECK(fibrad_insitu_powers(fresh, &state, power, &totals[1]) == FIBRAD_OK);
+    CHECK(memcmp(part.power, power, part.bed.n * sizeof *power) == 0 &&
+          memcmp(&totals[0], &totals[1], sizeof *totals) == 0);
+    fibrad_insitu_free(s);
+    fibrad_insitu_free(fresh);
+    free(power);
+    close_pile(&all);
+    close_pile(&before);
+    close_pile(&part);
+}
+
 /* A lone particle loses A e (E - E of the surroundings), however little it conducts. */
 static void a_lone_particle(void) {
     static const double relative[] = {.001, .1, 10};
@@ -1178,6 +1201,7 @@ int main(int argc, char **argv) {
     for (int k = 0; k < KINDS; ++k) powers_keep_energy(&kinds[k]);
     parts_change_with_walls(&kinds[3]);
     parts_change_with_walls(&kinds[0]);
+    for (int k = 0; k < KINDS; ++k) powers_of_rows_made_again(&kinds[k]);
     steps_change_noise();
     the_map_has_all(&kinds[0]);
     the_map_has_all(&kinds[4]);

@@ -77,8 +77,9 @@ static int add_images(const fibrad_particle *particle, const struct range_box *b
 
 /* Lists the particles and images for each rank. count[q]: their number for rank q. */
 static int choose_particles(const struct range_box *box, int rank, int ranks, const double period[3], double reach,
-                            const fibrad_particle *particle, size_t own, fibrad_block *sent, int *count) {
+                            fibrad_particle *particle, size_t own, fibrad_block *sent, int *count) {
     size_t sum = 0;
+    for (size_t i = 0; i < own; ++i) particle[i].owner = (fibrad_place){(uint32_t)rank, (uint32_t)i};
     for (int q = 0; q < ranks; ++q) {
         const size_t before = sum;
         struct shift_range any;

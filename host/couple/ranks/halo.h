@@ -5,11 +5,17 @@
 
 #include "couple/ranks/collective.h"
 
+/* Where a rank has a particle: the rank, and the index there. */
+typedef struct fibrad_place {
+    uint32_t rank, index;
+} fibrad_place;
+
 /* A particle in a message. It consists of words alone, so that coordinates are doubles with a stride. */
 typedef struct fibrad_particle {
     uint64_t id;
     double x[3], radius;                   /* [L] */
     double emissivity, conductivity, node; /* k*, and the emissivity of the node, fibrad_node_emissivity */
+    fibrad_place owner;                    /* set by fibrad_halo: where its owner has it among its own particles */
 } fibrad_particle;
 
 /* Collective. Appends to particle[own] the particles of other ranks, and the periodic images of particles of all ranks,
