@@ -1,6 +1,6 @@
 #!/bin/sh
-# check_couple.sh - links, rows and powers over MPI by 1, 2, 3 and 4 ranks, and the example, built in the
-# tree and against the installed library. SPDX-License-Identifier: MIT
+# check_couple.sh - links, rows and powers over MPI by 1, 2, 3 and 4 ranks, the number of messages, and the example,
+# built in the tree and against the installed library. SPDX-License-Identifier: MIT
 set -u
 : "${BUILD:=build}" "${MPICC:=mpicc}" "${MPIRUN:=mpirun}"
 if ! command -v "$MPICC" >/dev/null || ! command -v "$MPIRUN" >/dev/null; then
@@ -9,7 +9,7 @@ if ! command -v "$MPICC" >/dev/null || ! command -v "$MPIRUN" >/dev/null; then
 fi
 . tests/couple/mpi.sh
 
-make_one_by_one "$BUILD/couple/test_couple" "$BUILD/couple/example" || exit 1
+make_one_by_one "$BUILD/couple/test_couple" "$BUILD/couple/example" "$BUILD/couple/ranks" || exit 1
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 1
 faults=0
 
@@ -17,6 +17,12 @@ for ranks in 1 2 3 4; do
     run_mpi $ranks "$BUILD/couple/test_couple" "$work" || faults=1
     test -z "$(ls "$work")" || { echo "left behind: $(ls "$work")" && faults=1; }
 done
+
+# eight ranks, each with five neighbours: four messages to each neighbour in a making of rows, two in a step of heat
+run_mpi 8 "$BUILD/couple/ranks" tests/data/monoper2000.dump 2 1 2.5 | awk -F, '
+    NR == 1 { for (k = 1; k <= NF; ++k) column[$k] = k }
+    { print }
+    END { exit !(NR == 2 && $column["rows_messages"] == 20 && $column["heat_messages"] == 10) }' || faults=1
 
 # the energy balance of the example: stored = from the walls, and the same for any number of ranks
 for ranks in 1 2; do
