@@ -81,13 +81,12 @@ struct directory {
     fibrad_place *reply;        /* to the questions of all ranks */
     struct id_table table;      /* of the entries that arrived */
     fibrad_block *arrived;      /* [ARRIVALS] elements received */
-    uint64_t culprit;           /* least id at fault on this rank */
-    bool fault;                 /* an id is at fault */
+    uint64_t fault[2];          /* 0, or 1: no id is at fault; the least id at fault */
 };
 
 static void blame(struct directory *d, uint64_t id) {
-    if (!d->fault || id < d->culprit) d->culprit = id;
-    d->fault = true;
+    d->fault[0] = 0;
+    if (id < d->fault[1]) d->fault[1] = id;
 }
 
 /* Finds the used ids that this rank owns. If no id is owned or used twice, no other rank need know of them. */
@@ -185,11 +184,10 @@ static void end_directory(struct directory *d) {
 }
 
 /* Finds the least id at fault on all ranks. */
-static int agree_on_fault(const struct directory *d, uint64_t *culprit) {
-    uint64_t least[2] = {!d->fault, d->fault ? d->culprit : UINT64_MAX};
-    MPI_Allreduce(MPI_IN_PLACE, least, 2, MPI_UINT64_T, MPI_MIN, d->comm);
-    if (least[0]) return FIBRAD_OK;
-    if (culprit) *culprit = least[1];
+static int agree_on_fault(struct directory *d, uint64_t *culprit) {
+    MPI_Allreduce(MPI_IN_PLACE, d->fault, 2, MPI_UINT64_T, MPI_MIN, d->comm);
+    if (d->fault[0]) return FIBRAD_OK;
+    if (culprit) *culprit = d->fault[1];
     return FIBRAD_E_ARGUMENT;
 }
 
@@ -199,7 +197,8 @@ static int agree_on_fault(const struct directory *d, uint64_t *culprit) {
 static int find_owners(MPI_Comm comm, const uint64_t *id, size_t own, size_t used, bool once, fibrad_place *place,
                        uint64_t *culprit) {
     fibrad_block arrived[ARRIVALS] = {{0}};
-    struct directory d = {.comm = comm, .id = id, .own = own, .used = used, .arrived = arrived};
+    struct directory d = {
+        .comm = comm, .id = id, .own = own, .used = used, .arrived = arrived, .fault = {1, UINT64_MAX}};
     int status = fibrad_agree(comm, begin_directory(&d), NULL);
     if (!status) status = enter_owned(&d, once ? find_here(&d, place) : FIBRAD_OK);
     if (!status) status = ask(&d, list_entries(&d));
@@ -289,26 +288,16 @@ static int lay_out(struct making *m, fibrad_link *link) {
     return FIBRAD_OK;
 }
 
-/* Makes a link without buffers. NULL: there is not enough memory. */
-static fibrad_link *open_link(size_t own, size_t used) {
-    fibrad_link *link = calloc(1, sizeof *link);
-    if (!link) return NULL;
-    link->own = own;
-    link->used = used;
-    link->slot = malloc((used + 1) * sizeof *link->slot);
-    if (link->slot) return link;
-    free(link);
-    return NULL;
-}
-
 int fibrad_link_to(fibrad_link **link, MPI_Comm comm, size_t own, const fibrad_place *place, size_t used) {
     struct making m = {.comm = comm};
     MPI_Comm_rank(comm, &m.rank);
     MPI_Comm_size(comm, &m.ranks);
     m.count = malloc(2 * (size_t)m.ranks * sizeof *m.count);
     m.number = malloc((2 * used + 1) * sizeof *m.number);
-    fibrad_link *made = open_link(own, used);
-    int status = fibrad_agree(comm, m.count && m.number && made ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
+    fibrad_link *made = calloc(1, sizeof *made);
+    if (made) made->own = own, made->used = used, made->slot = malloc((used + 1) * sizeof *made->slot);
+    const bool fits = m.count && m.number && made && made->slot;
+    int status = fibrad_agree(comm, fits ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
     if (!status) {
         fibrad_block wanted = {0};
         m.got = m.count + m.ranks, m.wanted = m.number + used;
