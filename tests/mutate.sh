@@ -1,10 +1,10 @@
 #!/bin/sh
-# mutate.sh - checks that the tests notice when the kernel is broken. SPDX-License-Identifier: MIT
+# mutate.sh - checks that the tests notice when kernel or couplings are broken. SPDX-License-Identifier: MIT
 #
 # Breaks a copy of the kernel in one line at a time, as tests/mutants.txt says. Runs the quick tests until one fails,
 # but not the pinned bits, which notice any change. Ends with status 1 if a break is not noticed or does not compile,
 # or if the line no longer exists. Arguments are numbers of breaks, counted from 1; without arguments all breaks are
-# made. JOBS breaks run at a time.
+# made. JOBS breaks run at a time. Breaks of host/couple need MPI and LIGGGHTS (make deps-couple).
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${JOBS:=$(nproc 2>/dev/null || echo 1)}"
 export BUILD MAKE CC
@@ -14,45 +14,64 @@ export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-60}"
 
 # build TREE TEST: objects that the break does not change exist already
 build() {
-    $MAKE -s -C "$1" BUILD=build CC="$CC" CFLAGS=-O1 ISAS=scalar "build/tests/test_$2" >"$1/log" 2>&1
+    case $2 in
+    couple) goals="build/couple/test_couple build/couple/example" ;;
+    liggghts) goals="build/couple/fibrad_liggghts build/fibrad" ;;
+    *) goals=build/tests/test_$2 ;;
+    esac
+    # shellcheck disable=SC2086  # a list of goals
+    $MAKE -s -C "$1" BUILD=build CC="$CC" CFLAGS=-O1 ISAS=scalar $goals >"$1/log" 2>&1
 }
 
 run() {
-    (cd "$1" && timeout 1200 "build/tests/test_$2") >"$1/log" 2>&1
+    case $2 in couple | liggghts) program=tests/couple/check_$2.sh ;; *) program=build/tests/test_$2 ;; esac
+    (cd "$1" && BUILD=build MAKEFLAGS=" -- CFLAGS=-O1 ISAS=scalar" timeout 1200 "$program") >"$1/log" 2>&1
+}
+
+# breaks [NUMBER]...: the lines of these breaks, or of all
+breaks() {
+    awk -v numbers=" $* " '!/^#/ && (++n && numbers == "  " || index(numbers, " " n " "))' tests/mutants.txt
+}
+
+# tests_of FILE: what is most likely to notice comes first
+tests_of() {
+    case $1 in
+    host/couple/walls/*) echo liggghts ;;
+    host/couple/*) echo couple ;;
+    kernel/exchange/flow.c | kernel/scene/surroundings.c) echo "beyond flow part $tests" ;;
+    kernel/exchange/*) echo "exchange body_rows protocol part $tests" ;;
+    kernel/heat/*) echo "protocol_heat heat heat_arguments heat_paths heat_patches heat_invariants $tests" ;;
+    */points_*) echo "beam cast $tests" ;;
+    kernel/window/*) echo "silhouettes areas beam $tests" ;;
+    kernel/silhouette/*) echo "silhouettes silhouette_scenes $tests" ;;
+    */surface_row*) echo "surface_row $tests" ;;
+    */walls.* | */wall_*) echo "walls part estimate $tests" ;;
+    kernel/surface/*) echo "surface $tests" ;;
+    */work.*) echo "work beam cast $tests" ;;
+    kernel/row/mesh*) echo "mesh beam $tests" ;;
+    kernel/row/*) echo "beam cast protocol $tests" ;;
+    */cast*) echo "cast $tests" ;;
+    kernel/ray/*) echo "trace $tests" ;;
+    */drift*) echo "drift $tests" ;;
+    kernel/scene/*) echo "scene beam $tests" ;;
+    kernel/matrix/*) echo "matrix matrix_calls estimate protocol $tests" ;;
+    kernel/work/*) echo "matrix matrix_calls protocol $tests" ;;
+    kernel/furnace/*) echo "furnace furnace_calls $tests" ;;
+    *) echo "$tests" ;;
+    esac
 }
 
 # one NUMBER: makes a break, runs the tests and prints one line
 one() {
     IFS='|' read -r file old new <<LINE
-$(awk -v number="$1" '!/^#/ && ++n == number' tests/mutants.txt)
+$(breaks "$1")
 LINE
     file=${file% } tree=$BUILD/mutate/$1 by=UNNOTICED why="" ran=""
     rm -rf "$tree" && cp -Rp "$whole" "$tree" || exit 1
-    case $file in # what is most likely to notice comes first
-    kernel/exchange/flow.c | kernel/scene/surroundings.c) tests="beyond flow part $tests" ;;
-    kernel/exchange/*) tests="exchange body_rows protocol part $tests" ;;
-    kernel/heat/*) tests="protocol_heat heat heat_arguments heat_paths heat_patches heat_invariants $tests" ;;
-    */points_*) tests="beam cast $tests" ;;
-    kernel/window/*) tests="silhouettes areas beam $tests" ;;
-    kernel/silhouette/*) tests="silhouettes silhouette_scenes $tests" ;;
-    */surface_row*) tests="surface_row $tests" ;;
-    */walls.* | */wall_*) tests="walls part estimate $tests" ;;
-    kernel/surface/*) tests="surface $tests" ;;
-    */work.*) tests="work beam cast $tests" ;;
-    kernel/row/mesh*) tests="mesh beam $tests" ;;
-    kernel/row/*) tests="beam cast protocol $tests" ;;
-    */cast*) tests="cast $tests" ;;
-    kernel/ray/*) tests="trace $tests" ;;
-    */drift*) tests="drift $tests" ;;
-    kernel/scene/*) tests="scene beam $tests" ;;
-    kernel/matrix/*) tests="matrix matrix_calls estimate protocol $tests" ;;
-    kernel/work/*) tests="matrix matrix_calls protocol $tests" ;;
-    kernel/furnace/*) tests="furnace furnace_calls $tests" ;;
-    esac
     if awk -v old="$old" -v new="$new" 'BEGIN {sub(/^ /, "", old); sub(/ $/, "", old); sub(/^ /, "", new)}
         {at = index($0, old); if (at) {found++; $0 = substr($0, 1, at - 1) new substr($0, at + length(old))} print}
         END {exit found != 1}' "$file" >"$tree/$file"; then
-        for test in $tests; do
+        for test in $(tests_of "$file"); do
             case " $ran " in *" $test "*) continue ;; esac
             ran="$ran $test"
             build "$tree" "$test" || { by=UNCOMPILED && break; }
@@ -60,6 +79,7 @@ LINE
             by=test_$test
             # an assertion rather than a test that did not end
             why=$(sed -n '/Test timeout expired/!s/.*:[FE]:[^:]*:\([^:]*\):.*/\1/p' "$tree/log" | head -n 1)
+            case $test in couple | liggghts) why=$(grep -m 1 ', line ' "$tree/log" || tail -n 1 "$tree/log") ;; esac
             : "${why:=no end}"
             break
         done
@@ -73,7 +93,7 @@ LINE
 test "${1-}" != one || { one "$2" && exit; }
 
 rm -rf "$BUILD/mutate" && mkdir -p "$whole" && cp -R Makefile kernel host tests "$whole" || exit 1
-for test in $tests; do
+for test in $(breaks "$@" | while read -r file rest; do tests_of "$file"; done | tr ' ' '\n' | awk '!seen[$0]++'); do
     if ! build "$whole" "$test" || ! run "$whole" "$test"; then
         echo "test_$test fails before anything is broken" && cat "$whole/log" && exit 1
     fi

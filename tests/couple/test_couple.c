@@ -833,11 +833,15 @@ static void temperatures_are_those_of_the_kernel(enum walls walls, double cutoff
 
 enum { FLOWN = 5, SUNK = 11, DEEP = 20, SWALLOWED = 30 };
 
+/* The distance of a particle from the next one, so that the centre of the smaller one lies inside the larger one. The
+ * centre of the larger one lies outside the smaller one. */
+static double deep(const struct pile *p) { return (p->radius[DEEP] + p->radius[DEEP + 1]) / 2; }
+
 /* Puts one particle above the ceiling, one below the floor, one inside another, and two at the same point. */
 static void go_astray(struct pile *p) {
     p->x[3 * FLOWN + 2] = 1e3;
     p->x[3 * SUNK + 2] = -1.25;
-    memcpy(p->x + 3 * DEEP, p->x + 3 * DEEP + 3, 3 * sizeof *p->x), p->x[3 * DEEP + 1] += .5;
+    memcpy(p->x + 3 * DEEP, p->x + 3 * DEEP + 3, 3 * sizeof *p->x), p->x[3 * DEEP + 1] += deep(p);
     memcpy(p->x + 3 * SWALLOWED, p->x + 3 * SWALLOWED + 3, 3 * sizeof *p->x);
 }
 
@@ -848,7 +852,7 @@ static struct pile without_strays(const struct pile *astray) {
     for (size_t i = 0; i < astray->bed.n; ++i) {
         if (i == FLOWN || i == SUNK || i == SWALLOWED || i == SWALLOWED + 1) continue;
         take_particle(&p, astray, i);
-        if (i == DEEP || i == DEEP + 1) p.radius[p.bed.n - 1] *= .5 / largest * (1 - 1e-9);
+        if (i == DEEP || i == DEEP + 1) p.radius[p.bed.n - 1] *= deep(astray) / largest * (1 - 1e-9);
     }
     return p;
 }
