@@ -397,11 +397,15 @@ typedef struct fibrad_scene_facts {
  *   Errors   none */
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
 
-/* Area of a wall [L^2]. For a plane or a cylinder only the part that bounds the container counts. Along a periodic axis
- * this is the area of one period. For a mesh this is the sum over all sides that belong to the wall.
+/* Area of a wall or an opening [L^2]. For a plane or a cylinder only the part that bounds the container counts. Along
+ * a periodic axis this is the area of one period. For a mesh this is the sum over all sides that belong to the wall.
+ *   Input    body: 0 to bodies - 1, or FIBRAD_OPENING(bodies, axis, upper) of an opening
  *   Output   infinity: the wall is endless. NaN: there is no such wall, or the scene is not complete.
  *   Errors   none */
 double fibrad_scene_body_area(const fibrad_scene *scene, uint32_t body);
+
+/* The number of an opening where functions take a wall or an opening. Openings follow the walls. */
+#define FIBRAD_OPENING(bodies, axis, upper) ((uint32_t)(bodies) + 2 * (uint32_t)(axis) + (uint32_t)(upper))
 
 /* Sphere k in the order of the grid's cells. In this order neighbours in space mostly follow each other. Each sphere
  * occurs once. Compute the rows of a large bed in this order: rows are faster if their data are still in the cache.
@@ -886,6 +890,7 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
  *   directions, tolerance   used                 not used             not used                      not used
  *   cutoff                  used                 used                 must be 0                     must be 0
  *   paths, seed             used                 used                 used                          used
+ *   known, known_paths      used                 not used             not used                      not used
  *   conductivity            if spheres conduct   not used             if spheres conduct            needed
  *   node_emissivity         if spheres conduct   not used             if spheres conduct            not used
  *   flights                 not used             not used             not used                      used */
@@ -902,6 +907,12 @@ typedef struct fibrad_exchange_rule {
     const double *conductivity;
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */
     uint32_t flights;              /* of _walk, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
+    /* [bodies + 1], or NULL: what each wall and, last, the surroundings absorb of `known_paths` other paths of sphere i
+     * after at least one reflection. NaN: not known. These paths count in addition to `paths`. They may be paths of
+     * fibrad_exchange_body. n paths from a wall of area A_b and emissivity e_b are worth n A_i e_i/(A_b e_b) paths of
+     * sphere i. */
+    const double *known;
+    double known_paths;
 } fibrad_exchange_rule;
 
 /* The relative conductivity k* = k_s/(4 d sigma T^3) of a sphere of diameter d. The smaller k* is, the more the
@@ -953,16 +964,20 @@ int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i
  * The area that emits is the one that fibrad_scene_body_area returns. Factors to single spheres follow from
  * reciprocity, A_b e_b D_bi = A_i e_i D_ib. A batch follows an eighth of rule->paths. The error falls as paths^-0.6, at
  * low emissivities as paths^-0.5.
- *   Input    body: 0 to bodies - 1
+ *
+ * An opening has a row, too. It emits what the surroundings send through it.
+ *   Input    body: 0 to bodies - 1, or FIBRAD_OPENING(bodies, axis, upper) of an opening
  *            part: number of the batch, 0 to FIBRAD_BODY_PARTS - 1
  *            rule: needed
  *   Output   row
+ *            reflected[spheres]: what each sphere absorbs after at least one reflection is added, in paths of the batch
+ *            times 2^40; may be NULL
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY, _BACK, _SUM
  *            _UNSUPPORTED: an endless wall, a cutoff, or a known region
  *   Cost     0.1 to 0.5 microseconds per ray
  *   Source   docs/methods_heat.md section 4 */
 int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t body, const fibrad_exchange_rule *rule,
-                         uint32_t part, fibrad_body_row *row);
+                         uint32_t part, fibrad_body_row *row, uint64_t *reflected);
 
 /* The mean of all batches of a wall's row. The spread of the batches gives the standard error of the mean. The error is
  * this standard error plus the fraction lost (fibrad_body_row). A mean below 0 becomes 0. Then the other factors are

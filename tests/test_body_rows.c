@@ -446,23 +446,23 @@ TEST(bad_arguments_of_bodies) {
     fibrad_body_row row, part[FIBRAD_BODY_PARTS];
     memset(part, 0, sizeof part);
     fibrad_exchange_rule rule = {.emissivity = room.e, .body_emissivity = room.wall_e};
-    assert_ok(fibrad_exchange_body(scene, &work, 4, &rule, 0, &row)); /* the floor */
+    assert_ok(fibrad_exchange_body(scene, &work, 4, &rule, 0, &row, NULL)); /* the floor */
     ck_assert_double_eq_tol(
         row.spheres + row.escaped + row.body[0] + row.body[1] + row.body[2] + row.body[3] + row.body[4], 1, 1e-13);
     row.rays = 7;
-    assert_invalid(fibrad_exchange_body(NULL, &work, 4, &rule, 0, &row));
-    assert_invalid(fibrad_exchange_body(scene, NULL, 4, &rule, 0, &row));
-    assert_invalid(fibrad_exchange_body(scene, &work, 4, NULL, 0, &row));
-    assert_invalid(fibrad_exchange_body(scene, &work, 4, &rule, 0, NULL));
-    assert_invalid(fibrad_exchange_body(scene, &work, 5, &rule, 0, &row));
-    assert_invalid(fibrad_exchange_body(scene, &work, 4, &rule, FIBRAD_BODY_PARTS, &row));
-    ck_assert_int_eq(fibrad_exchange_body(endless, &work, 0, &rule, 0, &row), FIBRAD_E_UNSUPPORTED);
+    assert_invalid(fibrad_exchange_body(NULL, &work, 4, &rule, 0, &row, NULL));
+    assert_invalid(fibrad_exchange_body(scene, NULL, 4, &rule, 0, &row, NULL));
+    assert_invalid(fibrad_exchange_body(scene, &work, 4, NULL, 0, &row, NULL));
+    assert_invalid(fibrad_exchange_body(scene, &work, 4, &rule, 0, NULL, NULL));
+    assert_invalid(fibrad_exchange_body(scene, &work, 5, &rule, 0, &row, NULL));
+    assert_invalid(fibrad_exchange_body(scene, &work, 4, &rule, FIBRAD_BODY_PARTS, &row, NULL));
+    ck_assert_int_eq(fibrad_exchange_body(endless, &work, 0, &rule, 0, &row, NULL), FIBRAD_E_UNSUPPORTED);
     rule.cutoff = 3;
-    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 4, &rule, 0, &row), FIBRAD_E_UNSUPPORTED);
+    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 4, &rule, 0, &row, NULL), FIBRAD_E_UNSUPPORTED);
     rule.cutoff = 0, room.wall_e[1] = 1.5;
-    assert_invalid(fibrad_exchange_body(scene, &work, 4, &rule, 0, &row));
+    assert_invalid(fibrad_exchange_body(scene, &work, 4, &rule, 0, &row, NULL));
     room.wall_e[1] = NAN;
-    assert_invalid(fibrad_exchange_body(scene, &work, 4, &rule, 0, &row));
+    assert_invalid(fibrad_exchange_body(scene, &work, 4, &rule, 0, &row, NULL));
     ck_assert_uint_eq(row.rays, 7);
     assert_invalid(fibrad_exchange_body_mean(NULL, &row));
     assert_invalid(fibrad_exchange_body_mean(part, NULL));
@@ -491,7 +491,8 @@ TEST(paths_end_in_openings) {
         const uint32_t b = k / 2;
         const fibrad_exchange_rule *how = k % 2 ? &rule : &(fibrad_exchange_rule){0};
         fibrad_body_row row[2];
-        for (int with = 0; with < 2; with++) assert_ok(fibrad_exchange_body(scene[with], &work, b, how, b, &row[with]));
+        for (int with = 0; with < 2; with++)
+            assert_ok(fibrad_exchange_body(scene[with], &work, b, how, b, &row[with], NULL));
         ck_assert_mem_eq(row[0].body, row[1].body, 5 * sizeof(double));
         ck_assert(row[0].spheres == row[1].spheres && row[0].rays == row[1].rays);
         ck_assert(row[1].body[5] > 0);

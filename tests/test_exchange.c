@@ -539,7 +539,7 @@ TEST(mirrors_end_in_the_error) {
         ck_assert_double_le(sqrt(square), row.error);
         ck_assert_double_le((double)rays, 1e6);
         fibrad_body_row part;
-        assert_ok(fibrad_exchange_body(scene, &work, 0, &rule, 0, &part));
+        assert_ok(fibrad_exchange_body(scene, &work, 0, &rule, 0, &part, NULL));
         ck_assert_double_ge(part.error, w > 0 ? .5 : 0);
         ck_assert_double_le((double)part.rays, 1e6);
         fibrad_displacement moved;

@@ -134,7 +134,7 @@ static double to_side(double r, double e, double relative) {
                                        .node_emissivity = &node};
     fibrad_body_row part[FIBRAD_BODY_PARTS], mean;
     for (uint32_t k = 0; k < FIBRAD_BODY_PARTS; ++k)
-        assert_ok(fibrad_exchange_body(scene, &work, 5, &rule, k, &part[k]));
+        assert_ok(fibrad_exchange_body(scene, &work, 5, &rule, k, &part[k], NULL));
     assert_ok(fibrad_exchange_body_mean(part, &mean));
     return mean.body[1];
 }

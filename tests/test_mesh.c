@@ -295,7 +295,7 @@ TEST(sides_of_nobody) {
     ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, &rays), FIBRAD_E_BACK);
     ck_assert_uint_eq(work.triangle, 1);
     work.triangle = 77;
-    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 0, &rule, 0, &body_row), FIBRAD_E_BACK);
+    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 0, &rule, 0, &body_row, NULL), FIBRAD_E_BACK);
     ck_assert_uint_eq(work.triangle, 1);
     fibrad_side_view view[2];
     uint32_t triangle = 0;
@@ -640,7 +640,7 @@ TEST(grey_meshes) {
     rule.paths = 80000;
     for (int k = 0; k < 2; k++) {
         for (uint32_t p = 0; p < FIBRAD_BODY_PARTS; p++)
-            assert_ok(fibrad_exchange_body(scene[k], &work, 1, &rule, p, &part[k][p]));
+            assert_ok(fibrad_exchange_body(scene[k], &work, 1, &rule, p, &part[k][p], NULL));
         assert_ok(fibrad_exchange_body_mean(part[k], &mean[k]));
     }
     ck_assert(mean[0].escaped == 0);

@@ -16,8 +16,10 @@
  *             go.
  * Powers      Two particles exchange the mean of what their two rows say. One gains what the other loses. So no heat is
  *             lost, whatever the error of the rows. Nothing flows between particles of equal temperature.
- * Walls       Walls exchange heat with each other and with the surroundings as well. Totals contain this exchange.
- *             Exceptions: an endless wall, and a wall from which paths reach a side that belongs to no wall.
+ * Sources     Paths begin at particles, and at sources: walls that emit, and openings. Those of sources tell what these
+ *             exchange with each other, which totals contain. They also make rows of particles more accurate. A wall
+ *             is not a source if it is endless, or if paths from it reach a side that belongs to no wall. What two such
+ *             walls exchange with each other is left out.
  * Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
  * Collective  Every rank must call a collective function, and all ranks get the same status. All functions are
  *             collective over the communicator, except fibrad_link_free, fibrad_insitu_message, fibrad_insitu_remark,
@@ -92,9 +94,9 @@ typedef struct fibrad_insitu fibrad_insitu;
 
 /* Directions and paths of each row. docs/lammps.md has errors and times. */
 typedef enum fibrad_accuracy {
-    FIBRAD_ACCURACY_NORMAL = 0, /* 40 directions, 80 paths */
-    FIBRAD_ACCURACY_LOW = 1,    /* 24, 34 */
-    FIBRAD_ACCURACY_HIGH = 2    /* 144, 1600 */
+    FIBRAD_ACCURACY_NORMAL = 0, /* 36 directions, 24 paths */
+    FIBRAD_ACCURACY_LOW = 1,    /* 18, 8 */
+    FIBRAD_ACCURACY_HIGH = 2    /* 144, 400 */
 } fibrad_accuracy;
 
 /* The fibrad_accuracy of the name low, normal or high. Not collective.
@@ -110,12 +112,13 @@ int fibrad_accuracy_named(const char *name);
 typedef struct fibrad_insitu_config {
     double cutoff;       /* L, as in fibrad_exchange_rule, at least the largest diameter; 0: see above */
     uint32_t directions; /* as in fibrad_exchange_rule; 0: those of `accuracy` */
-    uint32_t paths;      /* as in fibrad_exchange_rule; 0: those of `accuracy` */
+    uint32_t paths;      /* of particles, as in fibrad_exchange_rule; 0: those of `accuracy` */
     double tolerance;    /* as in fibrad_exchange_rule; 0: none */
     uint64_t seed;       /* of random numbers, together with the step and the id of the particle */
     int threads;         /* of each rank, 1 to 1024; 0: 1 */
     int strict;          /* 1: strays are errors; 0: they are left out, or smaller, see above */
     int accuracy;        /* a fibrad_accuracy */
+    int one_way;         /* 1: rows rest on paths from particles alone, not on paths from walls and surroundings */
 } fibrad_insitu_config;
 
 /* The bed for which rows are made. Box, walls, openings and triangles are the same on all ranks.
@@ -199,7 +202,7 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
  *            _ARGUMENT: a centre lies beyond a wall
  *            _GEOMETRY: a centre lies inside another particle, or a particle reaches beyond an opening
  *            _BACK: one particle sees a side of a triangle that belongs to no wall
- *   Cost     that of fibrad_exchange_row for each particle */
+ *   Cost     that of fibrad_exchange_row for each particle, and of the paths of sources: docs/coupling.md */
 int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
 /* Makes rows of those particles alone that have come since the last rows, and keeps the other rows. The exchange of a

@@ -28,13 +28,13 @@ static void *resize_on_heap(void *context, void *block, size_t size) {
     return realloc(block, size);
 }
 
-/* What a fibrad_accuracy stands for. */
+/* What a fibrad_accuracy stands for. alone: paths if rows do not know all sources, see source_paths.c */
 static const struct {
     const char *name;
-    uint32_t directions, paths;
-} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 40, 80},
-               [FIBRAD_ACCURACY_LOW] = {"low", 24, 34},
-               [FIBRAD_ACCURACY_HIGH] = {"high", 144, 1600}};
+    uint32_t directions, paths, alone;
+} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 36, 24, 80},
+               [FIBRAD_ACCURACY_LOW] = {"low", 18, 8, 34},
+               [FIBRAD_ACCURACY_HIGH] = {"high", 144, 400, 1600}};
 
 int fibrad_accuracy_named(const char *name) {
     for (int k = FIBRAD_ACCURACY_NORMAL; k <= FIBRAD_ACCURACY_HIGH && name; ++k)
@@ -47,12 +47,14 @@ static bool config_valid(const fibrad_insitu_config *c) {
         !c->directions || (c->directions >= FIBRAD_DIRECTIONS_MIN && c->directions <= FIBRAD_DIRECTIONS_MAX);
     return c->cutoff >= 0 && isfinite(c->cutoff) && directions && c->paths <= FIBRAD_PATHS_MAX && c->tolerance >= 0 &&
            isfinite(c->tolerance) && c->threads >= 0 && c->threads <= THREADS_MAX &&
-           (c->strict == 0 || c->strict == 1) && c->accuracy >= FIBRAD_ACCURACY_NORMAL &&
-           c->accuracy <= FIBRAD_ACCURACY_HIGH;
+           (c->strict == 0 || c->strict == 1) && (c->one_way == 0 || c->one_way == 1) &&
+           c->accuracy >= FIBRAD_ACCURACY_NORMAL && c->accuracy <= FIBRAD_ACCURACY_HIGH;
 }
 
 /* Replaces zeroes by the numbers for which they stand. */
-static void complete_config(fibrad_insitu_config *c) {
+static void complete_config(fibrad_insitu *s) {
+    fibrad_insitu_config *c = &s->config;
+    s->paths_alone = c->paths ? c->paths : samples[c->accuracy].alone;
     if (!c->directions) c->directions = samples[c->accuracy].directions;
     if (!c->paths) c->paths = samples[c->accuracy].paths;
     if (!c->threads) c->threads = 1;
@@ -85,7 +87,7 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
     if (s) {
         if (config) s->config = *config;
         if (!insitu || !config_valid(&s->config)) status = FIBRAD_E_ARGUMENT;
-        if (!status) complete_config(&s->config);
+        if (!status) complete_config(s);
     }
     if (!status) status = open_set(&s->set, s->config.threads);
     if (!status) status = open_set(&s->next, s->config.threads);
@@ -113,7 +115,7 @@ void fibrad_insitu_free(fibrad_insitu *s) {
     close_set(&s->next, s->config.threads);
     for (int t = 0; t < s->config.threads; ++t) free(s->work[t].memory.block);
     free(s->work);
-    fibrad_block *const blocks[] = {&s->scene, &s->order,  &s->emissivity, &s->mark,
+    fibrad_block *const blocks[] = {&s->scene, &s->order,  &s->emissivity, &s->mark, &s->known,
                                     &s->sent,  &s->solver, &s->value,      NULL};
     free_blocks(blocks);
     MPI_Comm_free(&s->comm);
@@ -139,7 +141,8 @@ void fibrad_insitu_facts_get(const fibrad_insitu *s, fibrad_insitu_facts *facts)
     facts->seconds_rows = s->seconds_rows;
     facts->seconds_powers = s->seconds_powers;
     facts->bytes = set_bytes(&s->set, s->config.threads) + set_bytes(&s->next, s->config.threads) + s->scene.size +
-                   s->order.size + s->emissivity.size + s->mark.size + s->sent.size + s->solver.size + s->value.size;
+                   s->order.size + s->emissivity.size + s->mark.size + s->known.size + s->sent.size + s->solver.size +
+                   s->value.size;
     for (int t = 0; t < s->config.threads; ++t) facts->bytes += s->work[t].memory.size;
 }
 
@@ -156,7 +159,7 @@ struct scene_walls {
 static void turn_walls(const fibrad_insitu_build *b, struct scene_walls *to) {
     const fibrad_insitu_bed *bed = b->bed;
     for (uint32_t k = 0; k < bed->bodies; ++k) to->body[k] = fibrad_turned_body(bed->cylinder, bed->body[k]);
-    for (uint32_t k = 0; k < bed->openings; ++k) to->opening[k] = fibrad_turned_plane(bed->cylinder, b->opening[k]);
+    for (uint32_t k = 0; k < b->openings; ++k) to->opening[k] = fibrad_turned_plane(bed->cylinder, b->opening[k]);
     fibrad_turn(bed->cylinder, b->period, to->period);
     fibrad_triangles *t = &to->triangles;
     *t = bed->triangles ? *bed->triangles : (fibrad_triangles){0};
@@ -185,6 +188,7 @@ static int check_bed(fibrad_insitu_build *b) {
         if (!(b->period[axis] > 0 && isfinite(b->period[axis])))
             return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "the periodic box has no extent along %c", "xyz"[axis]);
     }
+    b->openings = bed->openings;
     for (uint32_t k = 0; k < bed->openings; ++k) {
         fibrad_plane *opening = &b->opening[k];
         *opening = bed->opening[k];
@@ -321,6 +325,7 @@ static int measure_bed(fibrad_insitu_build *b) {
         if (!isnan(b->bed->opening[k].at)) continue;
         opening->at = opening->upper ? most[8 + opening->axis] : -most[11 + opening->axis];
     }
+    for (int axis = 0; axis < 3; ++axis) b->ends[0][axis] = -most[11 + axis], b->ends[1][axis] = most[8 + axis];
     if (sum[0]) b->radius_mean = (double)sum[1] / (double)sum[0] / 0x1p32 * b->radius_max;
     b->cutoff = config->cutoff > 0 || !sum[0] ? config->cutoff : default_cutoff(b, most + 2, (double)sum[0]);
     if (b->cutoff < 2 * b->radius_max)
@@ -445,7 +450,7 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
         config = (fibrad_scene_config){.body = walls.body,
                                        .bodies = b->bed->bodies,
                                        .opening = walls.opening,
-                                       .openings = b->bed->openings,
+                                       .openings = b->openings,
                                        .occupancy = id ? &b->map : NULL,
                                        .triangles = &walls.triangles};
     if (n && !id) memcpy(config.period, walls.period, sizeof config.period);
@@ -513,12 +518,20 @@ static int list_own(fibrad_insitu_build *b) {
     return FIBRAD_OK;
 }
 
+/* Tells a row what paths from walls and surroundings have found about its particle. */
+static void know_sources(const fibrad_insitu_build *b, uint32_t i, fibrad_exchange_rule *rule) {
+    const fibrad_particle *p = (const fibrad_particle *)b->to->particle.at + i;
+    rule->known = (const double *)b->s->known.at + (size_t)i * (b->bed->bodies + 1);
+    rule->known_paths = b->density * 4 * acos(-1) * p->radius * p->radius * p->node;
+}
+
 /* Computes all rows. Each thread takes an equal part of the list, one after the other. So rows are in the order of the
  * list for any number of threads. */
 static int compute_rows(fibrad_insitu_build *b) {
     fibrad_insitu *s = b->s;
     fibrad_exchange_rule rule = fibrad_insitu_rule(b, b->own + b->halo);
     rule.cutoff = b->cutoff;
+    if (!b->knows_all) rule.paths = s->paths_alone;
     const uint32_t *order = s->order.at;
     const int64_t own = (int64_t)b->fresh;
     int status = FIBRAD_OK;
@@ -534,6 +547,7 @@ static int compute_rows(fibrad_insitu_build *b) {
         fibrad_exchange_rule turned =
             rule; /* each row has its own directions, so that their errors average out in powers of walls */
         turned.seed += ((uint64_t *)b->to->id.at)[order[k]] * 0xd1342543de82ef95u;
+        if (b->knows) know_sources(b, order[k], &turned);
         int result = fibrad_exchange_row(b->scene, &s->work[thread], order[k], &turned, &row, NULL);
         if (!result) continue;
 #pragma omp critical
@@ -768,10 +782,10 @@ static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_
     if (!status && follows && s->ready && s->set.bodies == bed->bodies) status = find_changes(&b);
     if (b.follows) b.to->conducts |= s->set.conducts;
     if (!status && b.to->facts.particles && !(b.follows && !b.follow.came)) status = gather_bed(&b);
+    if (b.follows) b.to->walls = s->set.walls;
+    if (!status && !b.follows) status = fibrad_insitu_sources(&b);
     if (!status) status = make_rows(&b);
     if (!status) status = check_backs(&b);
-    if (b.follows) b.to->walls = s->set.walls;
-    if (!status && !b.follows) status = fibrad_insitu_wall_rows(&b);
     if (!status) status = link_present(&b);
     if (!status) status = link_seen(&b);
     fibrad_follow_free(&b.follow);

@@ -50,14 +50,16 @@ struct fibrad_insitu {
     MPI_Comm comm;
     int rank, ranks;
     fibrad_insitu_config config;
+    uint32_t paths_alone; /* paths of a row that does not know all sources */
     char message[FIBRAD_MESSAGE];
     fibrad_work *work;                                 /* [threads] */
     fibrad_insitu_set set;                             /* the rows in use */
     fibrad_insitu_set next;                            /* rows that are being made, in the memory of older rows */
     int ready;                                         /* 1: there are rows */
     fibrad_block scene, order, emissivity, mark, sent; /* scratch while rows are made */
-    fibrad_block solver;                               /* double [4 own], where particles conduct: see powers.c */
-    fibrad_block value;                  /* double, of present owners' particles, then of home particles */
+    fibrad_block known;  /* double [own][bodies + 1], the same: as fibrad_exchange_rule.known of own particles */
+    fibrad_block solver; /* double [4 own], where particles conduct: see powers.c */
+    fibrad_block value;  /* double, of present owners' particles, then of home particles */
     double seconds_rows, seconds_powers; /* s, so far */
 };
 
@@ -86,7 +88,12 @@ typedef struct fibrad_insitu_build {
     size_t fresh;     /* the first of them get rows */
     bool follows;     /* old rows are kept */
     fibrad_follow follow;
+    double ends[2][3]; /* L, low and high ends of all particles */
     fibrad_plane opening[FIBRAD_OPENINGS_MAX];
+    uint32_t openings; /* of the next scene */
+    bool knows;        /* rows know what paths from sources have found */
+    bool knows_all;    /* all walls that emit are sources, and surroundings are, if there are any */
+    double density;    /* 1/L^2, paths from sources for each area times emissivity */
     fibrad_occupancy map;
     fibrad_scene *scene;
     fibrad_remark remark[FIBRAD_REMARKS];
@@ -100,9 +107,10 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
 /* The rule of rows of the scene of n particles that was made last. It has no cutoff. */
 fibrad_exchange_rule fibrad_insitu_rule(const fibrad_insitu_build *b, size_t n);
 
-/* Collective. Finds what walls exchange with each other and with the surroundings. Replaces the scene. Errors, on all
- * ranks: as fibrad_scene_init and fibrad_exchange_body; _MEMORY. */
-int fibrad_insitu_wall_rows(fibrad_insitu_build *b);
+/* Collective. Follows paths from walls and surroundings. Finds what these exchange with each other, and what particles
+ * exchange with them after a reflection. Replaces the scene. Errors, on all ranks: as fibrad_scene_init and
+ * fibrad_exchange_body; _MEMORY. */
+int fibrad_insitu_sources(fibrad_insitu_build *b);
 
 /* Collective. As fibrad_link_new. once: it is known that no id is owned twice, or used twice. An id that its owner uses
  * then takes no message. */

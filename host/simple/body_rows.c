@@ -28,7 +28,7 @@ static int run_part(void *tasks, int thread, uint32_t task) {
     rule.paths = bodies->paths[body];
     if (rule.paths == 0) return FIBRAD_OK;
     return fibrad_exchange_body(bodies->job->scene, &bodies->job->team.work[thread], body, &rule, part,
-                                &bodies->part[body][part]);
+                                &bodies->part[body][part], NULL);
 }
 
 /* The next number of paths if the error of `paths` is `ratio` times the tolerance. The error falls about as paths^-0.7:

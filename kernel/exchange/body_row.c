@@ -7,16 +7,17 @@
 #include "exchange/paths.h"
 #include "row/row.h"
 
+/* slot: out, of the wall or opening */
 static int body_begin(const fibrad_scene *scene, uint32_t body, const fibrad_exchange_rule *rule, uint32_t part,
-                      double wall_emissivity[FIBRAD_SLOTS]) {
+                      double wall_emissivity[FIBRAD_SLOTS], uint32_t *slot) {
     if (scene == NULL || rule == NULL) return FIBRAD_E_ARGUMENT;
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
     if (!fibrad_nodes_given(rule)) return FIBRAD_E_ARGUMENT;
-    if (body >= scene->facts.bodies || part >= FIBRAD_BODY_PARTS || rule->paths > FIBRAD_PATHS_MAX)
-        return FIBRAD_E_ARGUMENT;
+    *slot = fibrad_body_slot(scene, body);
+    if (*slot == FIBRAD_NONE || part >= FIBRAD_BODY_PARTS || rule->paths > FIBRAD_PATHS_MAX) return FIBRAD_E_ARGUMENT;
     const int status = fibrad_paths_emissivities(scene, rule->body_emissivity, wall_emissivity);
     if (status != FIBRAD_OK) return status;
-    const bool whole = fibrad_finite(scene->wall_area[scene->slot[body]]) && !scene->region && rule->cutoff == 0;
+    const bool whole = fibrad_finite(scene->wall_area[*slot]) && !scene->region && rule->cutoff == 0;
     return whole ? FIBRAD_OK : FIBRAD_E_UNSUPPORTED;
 }
 
@@ -72,23 +73,24 @@ static void share_out_box(fibrad_paths *paths, double followed) {
 }
 
 int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t body, const fibrad_exchange_rule *rule,
-                         uint32_t part, fibrad_body_row *row) {
+                         uint32_t part, fibrad_body_row *row, uint64_t *reflected) {
     double wall_emissivity[FIBRAD_SLOTS] = {0};
     fibrad_workspace *space;
-    int status = body_begin(scene, body, rule, part, wall_emissivity);
+    uint32_t slot;
+    int status = body_begin(scene, body, rule, part, wall_emissivity, &slot);
     if (status == FIBRAD_OK && (work == NULL || row == NULL)) status = FIBRAD_E_ARGUMENT;
     if (status == FIBRAD_OK)
         status = fibrad_work_open(work, scene, fibrad_tracer_least(), fibrad_tracer_best(scene), &space);
     if (status != FIBRAD_OK) return status;
     *row = (fibrad_body_row){0};
-    if (wall_emissivity[scene->slot[body]] == 0) return FIBRAD_OK;
+    if (wall_emissivity[slot] == 0) return FIBRAD_OK;
 
     const bool nodes = rule->node_emissivity != NULL;
     const bool black = rule->emissivity == NULL && rule->body_emissivity == NULL;
     fibrad_sobol sobol;
     fibrad_sobol_make(&sobol);
     const uint32_t wanted = rule->paths > 0 ? rule->paths : FIBRAD_BODY_PATHS_DEFAULT;
-    const uint32_t slot = scene->slot[body], count = (wanted + FIBRAD_BODY_PARTS - 1) / FIBRAD_BODY_PARTS;
+    const uint32_t count = (wanted + FIBRAD_BODY_PARTS - 1) / FIBRAD_BODY_PARTS;
     const uint64_t own = (uint64_t)slot * FIBRAD_BODY_PARTS + part; /* streams of walls count down, those of ids up */
     fibrad_paths paths = {.tracer = fibrad_tracer_of(space, scene),
                           .place = FIBRAD_NONE,
@@ -101,6 +103,7 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
                           .boxed = black && is_box(scene),
                           .stream = fibrad_random_start(rule->seed, UINT64_MAX - own),
                           .first = true,
+                          .reflected = reflected,
                           .back = UINT32_MAX};
     const uint64_t followed = fibrad_paths_begin(&paths, count);
     work->triangle = paths.back;

@@ -150,8 +150,8 @@ static double lost_of(const fibrad_paths *paths, double carried) {
 /* Follows paths until their error is at most `wanted`. 0: the function follows as many paths as the rule says. If the
  * reflecting surfaces are so small that no path meets one, it follows up to 64 times as many. If paths that were broken
  * off among mirrors leave a greater error than `wanted`, it stops. */
-static void follow_paths(fibrad_paths *paths, const fibrad_exchange_rule *rule, double carried, double weight,
-                         double wanted) {
+static uint64_t follow_paths(fibrad_paths *paths, const fibrad_exchange_rule *rule, double carried, double weight,
+                             double wanted) {
     fibrad_paths_function *follow = FIBRAD_VERSION_OF(fibrad_paths_follow, paths->tracer->scene->facts.isa);
     FIBRAD_VERSION_OF(fibrad_paths_arrive, paths->tracer->scene->facts.isa)(paths);
     const uint64_t first = rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT;
@@ -161,7 +161,7 @@ static void follow_paths(fibrad_paths *paths, const fibrad_exchange_rule *rule, 
         done = next;
         const double sum = fibrad_paths_sum(paths);
         double ratio = 0;
-        if (lost_of(paths, carried) > wanted) return;
+        if (lost_of(paths, carried) > wanted) break;
         if (sum == 0) {
             if (carried > wanted && done < 64 * first) next = 4 * done;
             continue;
@@ -170,6 +170,32 @@ static void follow_paths(fibrad_paths *paths, const fibrad_exchange_rule *rule, 
         if (ratio > 1)
             next = (uint64_t)fibrad_min(FIBRAD_PATHS_MAX, (double)done * fibrad_min(8, 1.1 * ratio * ratio) + 1);
     } while (done < next);
+    return done;
+}
+
+/* Pools what paths gave to walls and surroundings with what other paths gave. The sum of all stays. So what paths gave
+ * to spheres, and what is beyond, is multiplied by the number that this function returns. scale: fraction of the
+ * emission for a path of weight 1; count: number of paths */
+static double pool_known(fibrad_paths *paths, const fibrad_exchange_rule *rule, double scale, uint64_t count) {
+    const fibrad_scene *scene = paths->tracer->scene;
+    const uint32_t bodies = scene->facts.bodies;
+    const double all = fibrad_paths_sum(paths), own = (double)count;
+    double *given[FIBRAD_BODIES_MAX + 1], rest = all, spare = all;
+    for (uint32_t b = 0; b < bodies; b++) given[b] = &paths->wall[scene->slot[b]];
+    given[bodies] = &paths->escaped;
+    for (uint32_t slot = 0; slot < FIBRAD_WALLS; slot++)
+        if (fibrad_is_opening(&scene->container, slot)) paths->escaped += paths->wall[slot], paths->wall[slot] = 0;
+    for (uint32_t b = 0; b <= bodies; b++) {
+        if (!(rule->known[b] >= 0)) continue;
+        rest -= *given[b];
+        *given[b] = (own * *given[b] + rule->known[b] / scale) / (own + rule->known_paths);
+        spare -= *given[b];
+    }
+    const double others = rest > 0 && spare > 0 ? spare / rest : 0;
+    const double fit = others > 0 || spare == all ? 1 : all / (all - spare);
+    for (uint32_t b = 0; b <= bodies; b++) *given[b] *= rule->known[b] >= 0 ? fit : others;
+    paths->beyond *= others;
+    return others;
 }
 
 /* The entries of paths overwrite the row of the first leg. This function moves the row to where entries will be
@@ -207,7 +233,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
                             fibrad_row *row) {
     exchange_task *task = *(exchange_task *const *)of;
     const fibrad_exchange_rule *rule = task->rule;
-    double beam_error = 0, body[FIBRAD_BODIES_MAX], wall[FIBRAD_SLOTS], scale = 0;
+    double beam_error = 0, body[FIBRAD_BODIES_MAX], wall[FIBRAD_SLOTS], scale = 0, to_spheres = 1;
     if (task->emissivity[i] == 0) return empty_row(scene, row);
     fibrad_row leg = fibrad_row_scratch(space, body);
     fibrad_paths paths = paths_of(task, space, scene, i);
@@ -227,16 +253,18 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     if (!fibrad_finite(carried)) return FIBRAD_E_ARGUMENT;
     if (carried > 0) { /* if all paths end nowhere, what they carry counts as escaped or beyond, and as an error */
         double left = rule->tolerance * rule->tolerance - beam_error * beam_error, least = 0.5 * rule->tolerance;
-        follow_paths(&paths, rule, carried, weight, fibrad_max(fibrad_sqrt(fibrad_max(left, 0)), least));
+        const uint64_t count =
+            follow_paths(&paths, rule, carried, weight, fibrad_max(fibrad_sqrt(fibrad_max(left, 0)), least));
         space->back = paths.back;
         if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
         double sum = fibrad_paths_sum(&paths);
         scale = sum != 0 ? carried / sum : 0;
         if (sum == 0) *(paths.cut ? &paths.beyond : &paths.escaped) = carried, scale = 1, beam_error += carried;
+        if (sum != 0 && rule->known != NULL) to_spheres = pool_known(&paths, rule, scale, count);
     }
     /* before add_first_leg, which adds the same to all parts */
     const double paths_error = fibrad_min(carried, scale * spread_of_parts(&space->entries, weight));
-    add_first_leg(space, task->emissivity, &leg, scale);
+    add_first_leg(space, task->emissivity, &leg, scale * to_spheres);
     if (space->entries.missed > 0) return fibrad_work_entries_missed(space);
     const double error = fibrad_sqrt(paths_error * paths_error + beam_error * beam_error) + lost_of(&paths, carried);
     if (!fibrad_finite(error + scale)) return FIBRAD_E_ARGUMENT; /* a number that a path met is not valid */

@@ -36,6 +36,8 @@ typedef struct fibrad_paths {
     double wall[FIBRAD_SLOTS];      /* out: absorbed by each wall */
     double escaped, beyond;         /* out: to the surroundings; beyond the cutoff or the known region */
     double absorbed;                /* out: absorbed by all spheres */
+    uint64_t *reflected;            /* [spheres], by the caller's index, added to: absorbed after a reflection, in
+                                       paths * 2^40; NULL: not counted */
     double left;                    /* out: weight of paths that are broken off after too many legs */
     /* L^2, out: sum over absorption by spheres times the squared displacement along each axis, path k in part k mod
      * FIBRAD_DISPLACEMENT_PARTS. The displacement is between the centres of the two spheres. */

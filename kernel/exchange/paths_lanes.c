@@ -389,7 +389,10 @@ static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]
             if (counts) *(met == FIBRAD_ESCAPED ? &paths->escaped : &paths->beyond) += path.weight;
             return;
         }
+        const double before = path.weight;
         absorb_at_surface(paths, &path, met, counts);
+        if (leg > 0 && met == FIBRAD_NONE && paths->reflected != NULL)
+            paths->reflected[paths->tracer->scene->order[path.place]] += (uint64_t)(0x1p40 * (before - path.weight));
         if (!survives(&path, leg)) return;
         if (met == FIBRAD_NONE && paths->conductivity != NULL) leave_sphere(paths, &path, leg);
         draw_direction(paths, &path, w);

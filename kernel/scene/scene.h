@@ -73,6 +73,13 @@ static inline uint32_t fibrad_scene_slot(const fibrad_scene *scene, uint32_t sid
     return mesh != FIBRAD_NO_MESH ? fibrad_slot_of_mesh(mesh) : FIBRAD_NONE;
 }
 
+/* The slot of a wall, or of an opening with a number by FIBRAD_OPENING. FIBRAD_NONE: there is none. */
+static inline uint32_t fibrad_body_slot(const fibrad_scene *scene, uint32_t body) {
+    if (body < scene->facts.bodies) return scene->slot[body];
+    const uint32_t face = body - scene->facts.bodies;
+    return fibrad_is_opening(&scene->container, face) ? face : FIBRAD_NONE;
+}
+
 /* Whether a scene exists and is complete. */
 static inline bool fibrad_scene_ready(const fibrad_scene *scene) { return scene != NULL && scene->hash != 0; }
 

@@ -482,8 +482,8 @@ int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibra
 }
 
 double fibrad_scene_body_area(const fibrad_scene *scene, uint32_t body) {
-    if (!fibrad_scene_ready(scene) || body >= scene->facts.bodies) return __builtin_nan("");
-    return scene->wall_area[scene->slot[body]];
+    const uint32_t slot = fibrad_scene_ready(scene) ? fibrad_body_slot(scene, body) : FIBRAD_NONE;
+    return slot != FIBRAD_NONE ? scene->wall_area[slot] : __builtin_nan("");
 }
 
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts) {

@@ -58,7 +58,7 @@ int main(int count, char **argument) {
             fibrad_exchange_rule rule = {/* defaults of fibrad_insitu_config */
                                          .emissivity = emissivity,
                                          .body_emissivity = &floor_emissivity,
-                                         .directions = 40,
+                                         .directions = 36,
                                          .paths = 80,
                                          .cutoff = cutoff};
             fibrad_rows_clear(&rows);

@@ -408,11 +408,16 @@ static const struct kind kinds[] = {
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
-static int strict; /* of the next objects */
+static int strict, one_way; /* of the next objects */
 
 static fibrad_insitu *insitu_of(MPI_Comm comm, const struct kind *kind, int threads) {
-    const fibrad_insitu_config config = {
-        .cutoff = kind->cutoff, .directions = 50, .paths = 100, .seed = 3, .threads = threads, .strict = strict};
+    const fibrad_insitu_config config = {.cutoff = kind->cutoff,
+                                         .directions = 50,
+                                         .paths = 100,
+                                         .seed = 3,
+                                         .threads = threads,
+                                         .strict = strict,
+                                         .one_way = one_way};
     fibrad_insitu *s;
     CHECK(fibrad_insitu_new(&s, comm, &config) == FIBRAD_OK);
     return s;
@@ -573,6 +578,7 @@ static void a_lone_particle(void) {
 }
 
 #define SPECK_TOLERANCE 2e-3
+#define SPECK_PATHS     200000 /* of a particle; sources have some times more */
 
 /* A speck in a box of side 1 hides next to nothing of the walls from each other. */
 static fibrad_insitu_totals powers_beside_a_speck(const fibrad_insitu_bed *walls, const double *temperature,
@@ -583,7 +589,7 @@ static fibrad_insitu_totals powers_beside_a_speck(const fibrad_insitu_bed *walls
     bed.n = rank == 0, bed.id = &id, bed.x = x, bed.radius = &r, bed.emissivity = &e;
     const fibrad_insitu_state state = {
         .sigma = 1, .surroundings = 0, .body_temperature = temperature, .n = bed.n, .id = &id, .temperature = &t};
-    const fibrad_insitu_config config = {.tolerance = SPECK_TOLERANCE};
+    const fibrad_insitu_config config = {.paths = SPECK_PATHS};
     fibrad_insitu *s;
     fibrad_insitu_totals totals;
     double power;
@@ -1211,9 +1217,11 @@ int main(int argc, char **argv) {
     the_map_has_all(&kinds[4]);
     the_sky_stays_open();
     large_particles_are_seen();
+    one_way = 1;
     temperatures_are_those_of_the_kernel(OPEN, 0); /* no cutoff: larger than the bed */
     temperatures_are_those_of_the_kernel(FLOORS, 1000);
     strays_do_not_end_a_run();
+    one_way = 0;
     rows_follow_particles(.12);
     conducting = .1;
     rows_are_those_of_one_rank(&kinds[0], 2);

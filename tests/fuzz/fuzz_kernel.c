@@ -645,7 +645,7 @@ static bool any_body_row(struct session *s, const fibrad_exchange_rule *rule, ui
     for (uint32_t k = 0; k < FIBRAD_BODY_PARTS; k++) {
         int status;
         for (int tries = 0;; tries++) {
-            status = CALL(fibrad_exchange_body(s->scene, &s->work, body, rule, k, &part[k]));
+            status = CALL(fibrad_exchange_body(s->scene, &s->work, body, rule, k, &part[k], NULL));
             REQUIRE(tries < 80);
             if (status != FIBRAD_E_WORK || s->work.memory.resize != NULL || !give_more(&s->work.memory, &s->supply))
                 break;

@@ -128,6 +128,8 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
             rows_file = words.next();
         else if (key == "parts")
             columns = words.yes_or_no() ? 4 : 1;
+        else if (key == "oneway")
+            config.one_way = words.yes_or_no();
         else if (key == "strict")
             config.strict = words.yes_or_no();
         else

@@ -1,0 +1,266 @@
+/* source_paths.c - paths that begin at walls and surroundings. SPDX-License-Identifier: MIT
+ *
+ * A wall or an opening is a source. Its paths tell what sources exchange with each other. They also tell what each
+ * particle exchanges with a source by way of other surfaces. This is worth far more paths of the particles themselves:
+ * those of a particle go anywhere, and few of them end at a hot wall. Such paths may cross the whole bed. So every rank
+ * gathers all particles, and the ranks share the paths out. */
+#include <limits.h>
+#include <math.h>
+#include <omp.h>
+#include <string.h>
+
+#include "couple/insitu.h"
+#include "couple/ranks/turned.h"
+#include "fibrad_mesh.h"
+
+#define PATHS_WORTH 25      /* paths of a source are worth so many times those of a particle */
+#define PATHS_SHARE 2       /* all sources have at most so many times the paths of all particles, or PATHS_LEAST each */
+#define PATHS_LEAST 1024    /* of each source */
+#define GATHER_MOST 1e6     /* a bed of more particles has no sources */
+#define UNIT        0x1p-40 /* of fibrad_exchange_body */
+
+/* A wall or an opening. */
+struct source {
+    uint32_t body, known; /* number for fibrad_exchange_body; element of what particles know */
+    double emits;         /* L^2, area times emissivity */
+    double density;       /* 1/L^2, number of paths for each `emits` */
+    uint32_t paths;
+    fibrad_body_row row;
+};
+
+/* All sources of a bed. */
+struct sources {
+    fibrad_insitu_build *b;
+    fibrad_exchange_rule rule;
+    uint32_t count;
+    struct source source[FIBRAD_BODIES_MAX + FIBRAD_OPENINGS_MAX];
+    fibrad_body_row part[FIBRAD_BODIES_MAX + FIBRAD_OPENINGS_MAX][FIBRAD_BODY_PARTS]; /* zero on all ranks but one */
+    /* 1: paths meet a side that belongs to no wall, so there is no row */
+    unsigned char back[FIBRAD_BODIES_MAX + FIBRAD_OPENINGS_MAX];
+    uint64_t *hits; /* [count][n], particles in the order of ranks */
+    size_t n;
+};
+
+/* ---- the scene ---- */
+
+/* Gathers all particles. first: out: index of the first particle of this rank. */
+static int gather(const fibrad_insitu_build *b, fibrad_block *all, size_t *n, size_t *first) {
+    const fibrad_insitu *s = b->s;
+    int *count = malloc((size_t)s->ranks * sizeof *count), *start = malloc((size_t)s->ranks * sizeof *start);
+    int own = (int)b->own, status = fibrad_agree(s->comm, count && start ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
+    MPI_Datatype particle;
+    if (!status) {
+        MPI_Allgather(&own, 1, MPI_INT, count, 1, MPI_INT, s->comm);
+        *n = fibrad_count_sum(count, s->ranks);
+        fibrad_count_starts(count, s->ranks, start);
+        *first = (size_t)start[s->rank];
+        status = fibrad_agree(s->comm, fibrad_block_fit(all, *n, sizeof(fibrad_particle)), NULL);
+    }
+    if (!status) {
+        MPI_Type_contiguous(sizeof(fibrad_particle), MPI_BYTE, &particle);
+        MPI_Type_commit(&particle);
+        MPI_Allgatherv(b->to->particle.at, own, particle, all->at, count, start, particle, s->comm);
+        MPI_Type_free(&particle);
+    }
+    free(count);
+    free(start);
+    return status;
+}
+
+/* A plane beyond all particles and triangles, at some distance, so that it is no side of a mesh. */
+static double outer_end(const fibrad_insitu_build *b, int axis, int upper) {
+    const fibrad_triangles *t = b->bed->triangles;
+    double end = b->ends[upper][axis];
+    for (uint32_t v = 0; t && v < t->vertices; ++v) {
+        const size_t at = (size_t)v * (t->stride ? t->stride : 1);
+        const double x = axis == 0 ? t->x[at] : axis == 1 ? t->y[at] : t->z[at];
+        end = upper ? fmax(end, x) : fmin(end, x);
+    }
+    return upper ? end + b->radius_mean : end - b->radius_mean;
+}
+
+/* Adds openings where neither a wall nor a period bounds the bed, so that surroundings are sources. Adds none if one
+ * would cut a wall that is endless. */
+static void close_bed(fibrad_insitu_build *b) {
+    bool face[3][2] = {{false}}, any[3], open[3];
+    for (uint32_t k = 0; k < b->bed->bodies; ++k) {
+        const fibrad_body *body = &b->bed->body[k];
+        if (body->kind == FIBRAD_BODY_PLANE) face[body->plane.axis][body->plane.upper] = true;
+        if (body->kind == FIBRAD_BODY_CYLINDER) return; /* its ends are closed */
+    }
+    for (uint32_t k = 0; k < b->openings; ++k) face[b->opening[k].axis][b->opening[k].upper] = true;
+    for (int axis = 0; axis < 3; ++axis) {
+        any[axis] = face[axis][0] || face[axis][1];
+        open[axis] = b->period[axis] == 0 && !(face[axis][0] && face[axis][1]);
+    }
+    for (int axis = 0; axis < 3; ++axis)
+        if (any[axis] && (open[(axis + 1) % 3] || open[(axis + 2) % 3])) return;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int upper = 0; upper < 2 && open[axis]; ++upper)
+            if (!face[axis][upper]) b->opening[b->openings++] = (fibrad_plane){axis, upper, outer_end(b, axis, upper)};
+}
+
+/* ---- paths ---- */
+
+static void list_sources(struct sources *t) {
+    const fibrad_insitu_build *b = t->b;
+    const uint32_t bodies = b->bed->bodies;
+    for (uint32_t k = 0; k < bodies + b->openings; ++k) {
+        struct source *source = &t->source[t->count];
+        *source = (struct source){.body = k, .known = k < bodies ? k : bodies};
+        if (k >= bodies) {
+            const fibrad_plane at = fibrad_turned_plane(b->bed->cylinder, b->opening[k - bodies]);
+            source->body = FIBRAD_OPENING(bodies, at.axis, at.upper);
+        }
+        source->emits = fibrad_scene_body_area(b->scene, source->body);
+        if (k < bodies) source->emits *= b->bed->body_emissivity[k];
+        t->count += source->emits > 0 && isfinite(source->emits);
+    }
+}
+
+/* Finds how many paths leave each source. Particles need none if nothing reflects. */
+static void count_paths(struct sources *t) {
+    const double paths = t->b->s->config.paths, radius = t->b->radius_mean, particle = 4 * acos(-1) * radius * radius;
+    double emits = 0;
+    for (uint32_t k = 0; k < t->count; ++k) emits += t->source[k].emits;
+    const double most = PATHS_SHARE * (double)t->b->to->facts.particles * paths / emits;
+    t->b->density = t->b->to->emissive ? fmin(PATHS_WORTH * paths / particle, most) : 0;
+    for (uint32_t k = 0; k < t->count; ++k) {
+        struct source *source = &t->source[k];
+        const double count = fmin(fmax(PATHS_LEAST, t->b->density * source->emits), FIBRAD_PATHS_MAX);
+        source->paths = ((uint32_t)count + FIBRAD_BODY_PARTS - 1) / FIBRAD_BODY_PARTS * FIBRAD_BODY_PARTS;
+        source->density = source->paths / source->emits;
+    }
+}
+
+/* Follows the paths of the batches that this rank does. */
+static int follow_sources(struct sources *t) {
+    const fibrad_insitu *s = t->b->s;
+    const uint32_t rank = (uint32_t)s->rank, ranks = (uint32_t)s->ranks, tasks = t->count * FIBRAD_BODY_PARTS;
+    int status = FIBRAD_OK;
+#pragma omp parallel num_threads(s->config.threads)
+    {
+        uint64_t *hits = malloc((t->n + 1) * sizeof *hits);
+#pragma omp for schedule(dynamic)
+        for (uint32_t task = rank; task < tasks; task += ranks) {
+            const uint32_t k = task / FIBRAD_BODY_PARTS, part = task % FIBRAD_BODY_PARTS;
+            fibrad_exchange_rule rule = t->rule;
+            rule.paths = t->source[k].paths;
+            if (hits) memset(hits, 0, t->n * sizeof *hits);
+            const int done = !hits ? FIBRAD_E_MEMORY
+                                   : fibrad_exchange_body(t->b->scene, &s->work[omp_get_thread_num()],
+                                                          t->source[k].body, &rule, part, &t->part[k][part], hits);
+#pragma omp critical
+            {
+                if (done == FIBRAD_E_BACK) t->back[k] = 1;
+                if (done && done != FIBRAD_E_BACK) status = done;
+                for (size_t i = 0; i < t->n && !done; ++i) t->hits[k * t->n + i] += hits[i];
+            }
+        }
+        free(hits);
+    }
+    return status;
+}
+
+/* Gives all ranks what each of them has found. All but one have zeroes. */
+static void sum_up(struct sources *t) {
+    const MPI_Comm comm = t->b->s->comm;
+    MPI_Allreduce(MPI_IN_PLACE, t->part, (int)sizeof t->part, MPI_BYTE, MPI_BOR, comm);
+    MPI_Allreduce(MPI_IN_PLACE, t->back, (int)sizeof t->back, MPI_BYTE, MPI_BOR, comm);
+    MPI_Allreduce(MPI_IN_PLACE, t->hits, (int)(t->count * t->n), MPI_UINT64_T, MPI_SUM, comm);
+    for (uint32_t k = 0; k < t->count; ++k) fibrad_exchange_body_mean(t->part[k], &t->source[k].row);
+}
+
+/* ---- what they tell ---- */
+
+/* Whether walls and, last, the surroundings have rows. The surroundings have one if all openings do. has: out:
+ * [bodies + 1] */
+static void mark_rows(const struct sources *t, bool has[FIBRAD_BODIES_MAX + 1]) {
+    memset(has, 0, (FIBRAD_BODIES_MAX + 1) * sizeof *has);
+    for (uint32_t k = 0; k < t->count; ++k) has[t->source[k].known] = true;
+    for (uint32_t k = 0; k < t->count; ++k) has[t->source[k].known] &= !t->back[k];
+}
+
+/* Two sources exchange the mean of what their rows say, or what the row of one says if the other has none. */
+static void find_exchange(const struct sources *t, const bool *has, fibrad_wall_exchange *exchange) {
+    const uint32_t bodies = t->b->bed->bodies;
+    for (uint32_t k = 0; k < t->count; ++k) {
+        const struct source *source = &t->source[k];
+        const uint32_t a = source->known;
+        for (uint32_t c = 0; c <= bodies && has[a]; ++c) {
+            const double factor = c < bodies ? source->row.body[c] : source->row.escaped;
+            const double said = source->emits * factor * (has[c] ? 0.5 : 1);
+            if (c == a) continue;
+            if (a == bodies || c == bodies) {
+                exchange->surroundings[a == bodies ? c : a] += said;
+            } else {
+                exchange->wall[a][c] += said;
+                exchange->wall[c][a] += said;
+            }
+        }
+    }
+}
+
+/* Whether all that absorbs, other than particles, has a row. */
+static bool have_all(const struct sources *t, const bool *has) {
+    const uint32_t bodies = t->b->bed->bodies;
+    bool all = true, escapes = false;
+    for (uint32_t k = 0; k < t->count; ++k) escapes = escapes || t->source[k].row.escaped > 0;
+    for (uint32_t k = 0; k < bodies; ++k) all = all && (has[k] || t->b->bed->body_emissivity[k] == 0);
+    return all && (has[bodies] || !escapes);
+}
+
+/* Keeps what own particles know: paths that sources absorb of those that are worth as many. */
+static int keep_known(const struct sources *t, const bool *has, size_t first) {
+    fibrad_insitu_build *b = t->b;
+    const size_t width = b->bed->bodies + 1;
+    if (fibrad_block_fit(&b->s->known, b->own * width, sizeof(double))) return FIBRAD_E_MEMORY;
+    double *known = b->s->known.at;
+    for (size_t i = 0; i < b->own * width; ++i) known[i] = has[i % width] ? 0 : NAN;
+    for (uint32_t k = 0; k < t->count; ++k) {
+        const struct source *source = &t->source[k];
+        const double worth = UNIT * (b->density / source->density);
+        for (size_t i = 0; i < b->own; ++i)
+            known[i * width + source->known] += worth * (double)t->hits[k * t->n + first + i];
+    }
+    return FIBRAD_OK;
+}
+
+static int make_sources(struct sources *t, const fibrad_particle *particle, size_t first) {
+    fibrad_insitu_build *b = t->b;
+    int status = fibrad_insitu_scene(b, particle, t->n, NULL);
+    status = fibrad_agree(b->s->comm, status, b->s->message);
+    if (status) return status;
+    t->rule = fibrad_insitu_rule(b, t->n);
+    list_sources(t);
+    if (!t->count) return FIBRAD_OK;
+    count_paths(t);
+    t->hits = calloc(t->count * t->n, sizeof *t->hits);
+    status = fibrad_agree(b->s->comm, t->hits ? follow_sources(t) : FIBRAD_E_MEMORY, b->s->message);
+    if (status) return status;
+    sum_up(t);
+    bool has[FIBRAD_BODIES_MAX + 1];
+    mark_rows(t, has);
+    find_exchange(t, has, &b->to->walls);
+    b->knows = !b->s->config.one_way;
+    b->knows_all = b->knows && have_all(t, has);
+    return fibrad_agree(b->s->comm, b->knows ? keep_known(t, has, first) : FIBRAD_OK, b->s->message);
+}
+
+int fibrad_insitu_sources(fibrad_insitu_build *b) {
+    fibrad_block all = {0};
+    size_t first = 0;
+    const uint32_t openings = b->openings;
+    b->to->walls = (fibrad_wall_exchange){0};
+    if (!b->to->facts.particles || (double)b->to->facts.particles > GATHER_MOST) return FIBRAD_OK;
+    close_bed(b);
+    struct sources *t = calloc(1, sizeof *t);
+    int status = fibrad_agree(b->s->comm, t ? FIBRAD_OK : FIBRAD_E_MEMORY, b->s->message);
+    if (!status) t->b = b, status = gather(b, &all, &t->n, &first);
+    if (!status) status = make_sources(t, all.at, first);
+    b->openings = openings;
+    fibrad_block_free(&all);
+    if (t) free(t->hits);
+    free(t);
+    return status;
+}
