@@ -92,7 +92,7 @@ LINE
 
 test "${1-}" != one || { one "$2" && exit; }
 
-rm -rf "$BUILD/mutate" && mkdir -p "$whole" && cp -R Makefile kernel host tests "$whole" || exit 1
+rm -rf "$BUILD/mutate" && mkdir -p "$whole" && cp -R Makefile kernel host tests bench "$whole" || exit 1
 for test in $(breaks "$@" | while read -r file rest; do tests_of "$file"; done | tr ' ' '\n' | awk '!seen[$0]++'); do
     if ! build "$whole" "$test" || ! run "$whole" "$test"; then
         echo "test_$test fails before anything is broken" && cat "$whole/log" && exit 1
