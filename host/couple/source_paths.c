@@ -15,7 +15,7 @@
 
 #define PATHS_WORTH 25      /* paths of a source are worth so many times those of a particle */
 #define PATHS_SHARE 2       /* all sources have at most so many times the paths of all particles, or PATHS_LEAST each */
-#define PATHS_LEAST 1024    /* of each source */
+#define PATHS_LEAST 512     /* of each source */
 #define GATHER_MOST 1e6     /* a bed of more particles has no sources */
 #define UNIT        0x1p-40 /* of fibrad_exchange_body */
 
