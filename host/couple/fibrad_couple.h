@@ -14,29 +14,26 @@
  * Rows        A row holds exchange factors, or view factors if all emissivities are 1. Each rank computes the rows of
  *             the particles that it owns. The rows stay on this rank until new rows are made, wherever the particles
  *             go.
- * Powers      Two particles exchange the mean of what their two rows say. One gains what the other loses. So no heat is
- *             lost, whatever the error of the rows. Nothing flows between particles of equal temperature.
- * Sources     Paths begin at particles, and at sources: walls that emit, and openings. Those of sources tell what these
- *             exchange with each other, which totals contain. They also make rows of particles more accurate. A wall
- *             is not a source if it is endless, or if paths from it reach a side that belongs to no wall. What two such
- *             walls exchange with each other is left out.
+ * Powers      Two particles exchange the mean of what their two rows say. A row without the other says 0. One gains
+ * what the other loses. So no heat is lost, whatever the error of the rows. Nothing flows between particles of equal
+ * temperature. Sources     A wall of emissivity above 0 is a source, and so is an opening. Paths begin at particles and
+ * at sources. Paths of sources tell what sources exchange with each other. Totals contain this exchange. Paths of
+ *             sources also make rows of particles more accurate. Two kinds of walls have no paths of their own: an
+ *             endless wall, and a wall from which paths reach a side that belongs to no wall. What such walls exchange
+ *             with each other is left out. docs/coupling.md has the details.
  * Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
  * Collective  Every rank must call a collective function, and all ranks get the same status. All functions are
  *             collective over the communicator, except fibrad_link_free, fibrad_insitu_message, fibrad_insitu_remark,
  *             fibrad_insitu_facts_get and fibrad_accuracy_named.
- * Errors      After an error, fibrad_insitu_message has a sentence, the same on all ranks, which names particles by
- *             id. The object is as it was before the call.
- * Strays      A simulation may go on with particles beyond walls or inside each other, which no scene can have. With
- *             config.strict such a particle is an error. Otherwise rows are made, and fibrad_insitu_remark tells what
- *             was done:
- *               left out  The centre of the particle lies beyond a plane or the cylinder, or the particle reaches
- *                         beyond an opening. It exchanges nothing and hides nothing. Rows that are made when it is
- *                         back contain it.
- *               smaller   The centre of one particle lies inside another, at a distance d. Both radii are multiplied
- *                         by d/max(r_i, r_j). Then the centre lies on the surface. If less than a thousandth of a
- *                         radius would remain, the particle is left out.
- *               no row    The particle sees a side of a triangle that belongs to no wall. If more than a tenth of all
- *                         particles see such sides, the call fails, with or without config.strict.
+ * Errors      After an error of a function other than fibrad_insitu_new, fibrad_insitu_message has a sentence, the same
+ * on all ranks, which names particles by id. The object is as it was before the call. Strays      A simulation may go
+ * on with particles beyond walls or inside each other, which no scene can have. With config.strict such a particle is
+ * an error. Otherwise rows are made, and fibrad_insitu_remark tells what was done: left out  The centre of the particle
+ * lies beyond a plane or the cylinder, or the particle reaches beyond an opening. It exchanges nothing and hides
+ * nothing. Rows that are made when it is back contain it. smaller   The centre of one particle lies inside another, at
+ * a distance d. Both radii are multiplied by d/max(r_i, r_j). Then the centre lies on the surface. If less than a
+ * thousandth of a radius would remain, both are left out. no row    The particle sees a side of a triangle that belongs
+ * to no wall. If more than a tenth of all particles see such sides, the call fails, with or without config.strict.
  * Units       One length unit L, which the caller chooses. Powers are in sigma K^4 L^2.
  * Words       Words and the layout of comments are as in fibrad.h.
  * Source      docs/coupling.md
@@ -94,9 +91,9 @@ typedef struct fibrad_insitu fibrad_insitu;
 
 /* Directions and paths of each row. docs/lammps.md has errors and times. */
 typedef enum fibrad_accuracy {
-    FIBRAD_ACCURACY_NORMAL = 0, /* 36 directions, 24 paths */
-    FIBRAD_ACCURACY_LOW = 1,    /* 18, 8 */
-    FIBRAD_ACCURACY_HIGH = 2    /* 144, 400 */
+    FIBRAD_ACCURACY_NORMAL = 0, /* 36 directions, 24 paths; 80 if some source has no paths */
+    FIBRAD_ACCURACY_LOW = 1,    /* 18, 8; 34 */
+    FIBRAD_ACCURACY_HIGH = 2    /* 144, 400; 1,600 */
 } fibrad_accuracy;
 
 /* The fibrad_accuracy of the name low, normal or high. Not collective.
@@ -118,7 +115,7 @@ typedef struct fibrad_insitu_config {
     int threads;         /* of each rank, 1 to 1024; 0: 1 */
     int strict;          /* 1: strays are errors; 0: they are left out, or smaller, see above */
     int accuracy;        /* a fibrad_accuracy */
-    int one_way;         /* 1: rows rest on paths from particles alone, not on paths from walls and surroundings */
+    int one_way;         /* 1: rows of particles use no paths of sources */
 } fibrad_insitu_config;
 
 /* The bed for which rows are made. Box, walls, openings and triangles are the same on all ranks.
@@ -175,7 +172,7 @@ typedef struct fibrad_insitu_facts {
     double cutoff;               /* L, in use */
     double beyond;               /* mean fraction of the emission whose target is not known; known targets get it */
     double error;                /* root mean square of the rows' estimated errors */
-    double body[FIBRAD_BODIES_MAX]; /* L^2, [bodies], what all else absorbs of a wall's emission, over sigma T^4 */
+    double body[FIBRAD_BODIES_MAX]; /* L^2, [bodies], what a wall emits and others absorb, divided by its sigma T^4 */
     double seconds_rows;            /* s, of the slowest rank, in all calls of fibrad_insitu_rows and _follow so far */
     double seconds_powers;          /* s, of the slowest rank, in all calls of fibrad_insitu_powers so far */
     uint64_t step;                  /* of the rows */
@@ -222,7 +219,7 @@ int fibrad_insitu_follow(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, ui
  *            _STATE: there are no rows, or the particles of all ranks together are not those of the rows
  *            _MEMORY
  *            _UNSOLVABLE: rows of particles that conduct are too inaccurate for powers
- *   Cost     2 ns per entry, and some messages. If particles conduct, a linear system is solved. For 4,096 particles of
+ *   Cost     4 ns per entry, and some messages. If particles conduct, a linear system is solved. For 4,096 particles of
  *            emissivity 0.8 this took 9 times as long at k* = 5, 27 times at k* = 1 and 140 times at k* = 0.3. */
 int fibrad_insitu_powers(fibrad_insitu *insitu, const fibrad_insitu_state *state, double *power,
                          fibrad_insitu_totals *totals);
@@ -233,7 +230,7 @@ int fibrad_insitu_powers(fibrad_insitu *insitu, const fibrad_insitu_state *state
  *   Errors   _ARGUMENT
  *            _STATE: no powers were computed since rows were made
  *            _MEMORY
- *   Cost     2 ns per entry, and two messages to each rank */
+ *   Cost     4 ns per entry, and two messages to each rank in contact */
 int fibrad_insitu_parts(fibrad_insitu *insitu, double (*part)[2]);
 
 /* Writes the rows of each rank to the file PATH.RANK.rows, for `fibrad join`.
