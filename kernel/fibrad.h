@@ -397,14 +397,14 @@ typedef struct fibrad_scene_facts {
  *   Errors   none */
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
 
-/* Area of a wall or an opening [L^2]. For a plane or a cylinder only the part that bounds the container counts. Along
- * a periodic axis this is the area of one period. For a mesh this is the sum over all sides that belong to the wall.
- *   Input    body: 0 to bodies - 1, or FIBRAD_OPENING(bodies, axis, upper) of an opening
- *   Output   infinity: the wall is endless. NaN: there is no such wall, or the scene is not complete.
+/* Area of a wall or an opening [L^2]. Only the part that bounds the container counts. Along a periodic axis this is the
+ * area of one period. For a mesh this is the sum over all sides that belong to the wall.
+ *   Input    body: 0 to bodies - 1, or FIBRAD_OPENING(bodies, axis, upper)
+ *   Output   infinity: the wall or opening is endless. NaN: there is none, or the scene is not complete.
  *   Errors   none */
 double fibrad_scene_body_area(const fibrad_scene *scene, uint32_t body);
 
-/* The number of an opening where functions take a wall or an opening. Openings follow the walls. */
+/* The number of an opening, for functions that take a wall or an opening. upper: 0 or 1, as in fibrad_plane */
 #define FIBRAD_OPENING(bodies, axis, upper) ((uint32_t)(bodies) + 2 * (uint32_t)(axis) + (uint32_t)(upper))
 
 /* Sphere k in the order of the grid's cells. In this order neighbours in space mostly follow each other. Each sphere
@@ -711,6 +711,7 @@ typedef struct fibrad_body_row {
     double escaped;                 /* factor to the surroundings */
     double error;                   /* of the mean: estimated error; of a batch: the fraction lost, see above */
     uint64_t rays;                  /* rays traced */
+    uint64_t paths;                 /* paths followed; of the mean: those of all batches */
 } fibrad_body_row;
 
 /* Does piece k of a job. The library hands this function to fibrad_parallel. */
@@ -907,12 +908,15 @@ typedef struct fibrad_exchange_rule {
     const double *conductivity;
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */
     uint32_t flights;              /* of _walk, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
-    /* [bodies + 1], or NULL: what each wall and, last, the surroundings absorb of `known_paths` other paths of sphere i
-     * after at least one reflection. NaN: not known. These paths count in addition to `paths`. They may be paths of
-     * fibrad_exchange_body. n paths from a wall of area A_b and emissivity e_b are worth n A_i e_i/(A_b e_b) paths of
-     * sphere i. */
+    /* [bodies + 1], or NULL: what other paths of sphere i gave to each wall and, last, to the surroundings. The unit is
+     * a path. What a path gave before its first reflection does not count. NaN: not known. Row i gives to a wall the
+     * mean over its own paths and these. Other entries are scaled so that the sum of the row is 1.
+     *
+     * fibrad_exchange_body tells as much. Let a wall have the area A_b and the emissivity e_b. What sphere i absorbs of
+     * n paths from this wall is what the wall absorbs of n A_i e_i/(A_b e_b) paths of sphere i. If spheres conduct,
+     * e_i is node_emissivity. */
     const double *known;
-    double known_paths;
+    double known_paths; /* number of these other paths, 0 or more; the same for all walls */
 } fibrad_exchange_rule;
 
 /* The relative conductivity k* = k_s/(4 d sigma T^3) of a sphere of diameter d. The smaller k* is, the more the
@@ -957,23 +961,23 @@ double fibrad_node_emissivity(double emissivity, double conductivity);
 int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
                         fibrad_row *row, uint64_t *rays);
 
-/* The row of a wall is computed in this many batches of paths. The spread of the batches is the error. */
+/* The row of a wall or an opening is computed in this many batches of paths. The spread of the batches is the error. */
 #define FIBRAD_BODY_PARTS 8
 
 /* One batch of the row of a wall: the fractions of the wall's emission that walls, spheres and surroundings absorb.
  * The area that emits is the one that fibrad_scene_body_area returns. Factors to single spheres follow from
- * reciprocity, A_b e_b D_bi = A_i e_i D_ib. A batch follows an eighth of rule->paths. The error falls as paths^-0.6, at
- * low emissivities as paths^-0.5.
+ * reciprocity, A_b e_b D_bi = A_i e_i D_ib. A batch follows an eighth of rule->paths, and fewer paths if nearly nothing
+ * absorbs. The error falls as paths^-0.6, at low emissivities as paths^-0.5.
  *
- * An opening has a row, too. It emits what the surroundings send through it.
- *   Input    body: 0 to bodies - 1, or FIBRAD_OPENING(bodies, axis, upper) of an opening
+ * An opening has a row, too. It is black, and emits what the surroundings send through it.
+ *   Input    body: 0 to bodies - 1, or FIBRAD_OPENING(bodies, axis, upper)
  *            part: number of the batch, 0 to FIBRAD_BODY_PARTS - 1
  *            rule: needed
  *   Output   row
- *            reflected[spheres]: what each sphere absorbs after at least one reflection is added, in paths of the batch
- *            times 2^40; may be NULL
+ *            reflected[spheres]: the function adds what each sphere absorbs of the row->paths paths after at least
+ *            one reflection, times 2^40; may be NULL
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY, _BACK, _SUM
- *            _UNSUPPORTED: an endless wall, a cutoff, or a known region
+ *            _UNSUPPORTED: an endless wall or opening, a cutoff, or a known region
  *   Cost     0.1 to 0.5 microseconds per ray
  *   Source   docs/methods_heat.md section 4 */
 int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t body, const fibrad_exchange_rule *rule,

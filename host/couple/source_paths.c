@@ -23,7 +23,7 @@
 struct source {
     uint32_t body, known; /* number for fibrad_exchange_body; element of what particles know */
     double emits;         /* L^2, area times emissivity */
-    double density;       /* 1/L^2, number of paths for each `emits` */
+    double density;       /* 1/L^2, number of paths followed for each `emits` */
     uint32_t paths;
     fibrad_body_row row;
 };
@@ -129,7 +129,6 @@ static void count_paths(struct sources *t) {
         struct source *source = &t->source[k];
         const double count = fmin(fmax(PATHS_LEAST, t->b->density * source->emits), FIBRAD_PATHS_MAX);
         source->paths = ((uint32_t)count + FIBRAD_BODY_PARTS - 1) / FIBRAD_BODY_PARTS * FIBRAD_BODY_PARTS;
-        source->density = source->paths / source->emits;
     }
 }
 
@@ -168,7 +167,10 @@ static void sum_up(struct sources *t) {
     MPI_Allreduce(MPI_IN_PLACE, t->part, (int)sizeof t->part, MPI_BYTE, MPI_BOR, comm);
     MPI_Allreduce(MPI_IN_PLACE, t->back, (int)sizeof t->back, MPI_BYTE, MPI_BOR, comm);
     MPI_Allreduce(MPI_IN_PLACE, t->hits, (int)(t->count * t->n), MPI_UINT64_T, MPI_SUM, comm);
-    for (uint32_t k = 0; k < t->count; ++k) fibrad_exchange_body_mean(t->part[k], &t->source[k].row);
+    for (uint32_t k = 0; k < t->count; ++k) {
+        fibrad_exchange_body_mean(t->part[k], &t->source[k].row);
+        t->source[k].density = (double)t->source[k].row.paths / t->source[k].emits;
+    }
 }
 
 /* ---- what they tell ---- */

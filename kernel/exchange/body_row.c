@@ -111,7 +111,7 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
     if (paths.boxed) share_out_box(&paths, (double)followed);
     const double sum = fibrad_paths_sum(&paths);
     if (!fibrad_finite(sum)) return FIBRAD_E_ARGUMENT; /* a path met an emissivity that is NaN */
-    row->rays = paths.rays;
+    row->rays = paths.rays, row->paths = followed;
     row->error = paths.left > 0 ? paths.left / (paths.left + sum) : 0;
     if (sum == 0) {
         row->escaped = 1;
@@ -146,7 +146,7 @@ int fibrad_exchange_body_mean(const fibrad_body_row part[FIBRAD_BODY_PARTS], fib
         sum.spheres += part[p].spheres / FIBRAD_BODY_PARTS;
         sum.escaped += part[p].escaped / FIBRAD_BODY_PARTS;
         sum.error += part[p].error / FIBRAD_BODY_PARTS;
-        sum.rays += part[p].rays;
+        sum.rays += part[p].rays, sum.paths += part[p].paths;
     }
     double square = 0;
     for (uint32_t p = 0; p < FIBRAD_BODY_PARTS; p++) {

@@ -173,28 +173,29 @@ static uint64_t follow_paths(fibrad_paths *paths, const fibrad_exchange_rule *ru
     return done;
 }
 
-/* Pools what paths gave to walls and surroundings with what other paths gave. The sum of all stays. So what paths gave
- * to spheres, and what is beyond, is multiplied by the number that this function returns. scale: fraction of the
- * emission for a path of weight 1; count: number of paths */
+/* Pools what paths gave to walls and surroundings with what other paths gave. The sum of all stays. So whatever else
+ * paths gave is multiplied by the number that this function returns. The caller multiplies what they gave to spheres.
+ * scale: fraction of the emission for a path of weight 1; count: number of paths */
 static double pool_known(fibrad_paths *paths, const fibrad_exchange_rule *rule, double scale, uint64_t count) {
     const fibrad_scene *scene = paths->tracer->scene;
     const uint32_t bodies = scene->facts.bodies;
     const double all = fibrad_paths_sum(paths), own = (double)count;
-    double *given[FIBRAD_BODIES_MAX + 1], rest = all, spare = all;
+    double *given[FIBRAD_BODIES_MAX + 1], pooled[FIBRAD_BODIES_MAX + 1] = {0}, sum = 0;
     for (uint32_t b = 0; b < bodies; b++) given[b] = &paths->wall[scene->slot[b]];
     given[bodies] = &paths->escaped;
-    for (uint32_t slot = 0; slot < FIBRAD_WALLS; slot++)
+    for (uint32_t slot = 0; slot < FIBRAD_WALLS && rule->known[bodies] >= 0; slot++)
         if (fibrad_is_opening(&scene->container, slot)) paths->escaped += paths->wall[slot], paths->wall[slot] = 0;
     for (uint32_t b = 0; b <= bodies; b++) {
         if (!(rule->known[b] >= 0)) continue;
-        rest -= *given[b];
-        *given[b] = (own * *given[b] + rule->known[b] / scale) / (own + rule->known_paths);
-        spare -= *given[b];
+        pooled[b] = fibrad_min((own * *given[b] + rule->known[b] / scale) / (own + rule->known_paths), all);
+        sum += pooled[b], *given[b] = 0;
     }
-    const double others = rest > 0 && spare > 0 ? spare / rest : 0;
-    const double fit = others > 0 || spare == all ? 1 : all / (all - spare);
-    for (uint32_t b = 0; b <= bodies; b++) *given[b] *= rule->known[b] >= 0 ? fit : others;
-    paths->beyond *= others;
+    const double rest = fibrad_paths_sum(paths), others = rest > 0 ? fibrad_max(0, all - sum) / rest : 0;
+    const double fit = others > 0 || sum == 0 ? 1 : all / sum;
+    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) paths->wall[slot] *= others;
+    paths->escaped *= others, paths->beyond *= others;
+    for (uint32_t b = 0; b <= bodies; b++)
+        if (rule->known[b] >= 0) *given[b] = fit * pooled[b];
     return others;
 }
 
@@ -288,6 +289,7 @@ int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i
     if (status != FIBRAD_OK) return status;
     if (rule->node_emissivity != NULL) task.emissivity = rule->node_emissivity;
     if (!fibrad_nodes_given(rule) || !(task.emissivity[i] <= rule->emissivity[i])) return FIBRAD_E_ARGUMENT;
+    if (rule->known != NULL && !(rule->known_paths >= 0 && fibrad_finite(rule->known_paths))) return FIBRAD_E_ARGUMENT;
     const fibrad_row_method method = {exchange_compute, &handle, fibrad_tracer_least(), fibrad_tracer_best(scene)};
     status = fibrad_row_run(scene, work, i, &method, row);
     if (status == FIBRAD_OK && rays != NULL) *rays = task.rays;

@@ -274,6 +274,13 @@ static void absorb_at_surface(fibrad_paths *paths, struct grey_path *path, uint3
     fibrad_entries_add(paths->entries, entry, path->part, absorbed);
 }
 
+/* Counts what the sphere where the path is has absorbed. The number may be anything if an emissivity is not valid. */
+static void count_reflected(fibrad_paths *paths, const struct grey_path *path, double absorbed) {
+    if (paths->reflected == NULL) return;
+    const double counts = fibrad_min(fibrad_max(absorbed, 0), 1);
+    paths->reflected[paths->tracer->scene->order[path->place]] += (uint64_t)(0x1p40 * counts);
+}
+
 /* Starts a path at one of evenly spread points of the wall or mesh that paths leave. */
 static void start_at_wall(const fibrad_paths *paths, struct grey_path *path) {
     const fibrad_scene *scene = paths->tracer->scene;
@@ -391,8 +398,7 @@ static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]
         }
         const double before = path.weight;
         absorb_at_surface(paths, &path, met, counts);
-        if (leg > 0 && met == FIBRAD_NONE && paths->reflected != NULL)
-            paths->reflected[paths->tracer->scene->order[path.place]] += (uint64_t)(0x1p40 * (before - path.weight));
+        if (leg > 0 && met == FIBRAD_NONE) count_reflected(paths, &path, before - path.weight);
         if (!survives(&path, leg)) return;
         if (met == FIBRAD_NONE && paths->conductivity != NULL) leave_sphere(paths, &path, leg);
         draw_direction(paths, &path, w);

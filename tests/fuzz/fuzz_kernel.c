@@ -50,7 +50,7 @@ struct method {
     fibrad_cast_rule cast;
     fibrad_surface_rule surface;
     fibrad_exchange_rule exchange;
-    double emissivity[SPHERES + 1], body_emissivity[BODIES + 1];
+    double emissivity[SPHERES + 1], body_emissivity[BODIES + 1], known[BODIES + 1];
 };
 
 static void any_method(struct method *m) {
@@ -82,6 +82,10 @@ static void any_method(struct method *m) {
     for (uint32_t b = 0; b < BODIES; b++) m->body_emissivity[b] = b < PLANES ? .2 + .8 * share() : .1 * b;
     if (which == 107) m->body_emissivity[byte() % PLANES] = coordinate() + .2;
     if (which == 108) m->exchange.body_emissivity = NULL;
+    if (which % 4 != 3) return;
+    m->exchange.known = m->known;
+    m->exchange.known_paths = which == 111 ? coordinate() : number() % 4096;
+    for (uint32_t b = 0; b <= BODIES; b++) m->known[b] = byte() % 8 == 0 ? coordinate() : 64 * share();
 }
 
 /* Whether a row would take too long to try. */
@@ -112,6 +116,8 @@ static void try_row(struct session *s) {
     const uint32_t capacity = number() % 32, bodies = s->contents.config.bodies, i = number() % (s->contents.n + 1);
     const bool append = byte() % 4 == 0;
     void *blocks[5];
+    for (uint32_t b = 0; b < bodies; b++)
+        if (fibrad_scene_body_area(s->scene, b) == 0) m.known[b] = NAN; /* a body without triangles absorbs nothing */
     fibrad_row row = {.col = memory_of(capacity * sizeof(uint32_t), 0, &blocks[0]),
                       .f = memory_of(capacity * sizeof(double), 0, &blocks[1]),
                       .body = memory_of(bodies * sizeof(double), 0, &blocks[2]),
@@ -639,28 +645,43 @@ static void try_parts(struct session *s) {
     for (uint32_t k = 0; k < PARTS; k++) supply_end(&supply[k]);
 }
 
-/* The row of a body: all that it emits ends somewhere. */
+/* One batch of the row of a body or an opening. Where all is black, nothing is reflected. */
+static int any_batch(struct session *s, const fibrad_exchange_rule *rule, uint32_t body, uint32_t part,
+                     fibrad_body_row *row) {
+    const uint32_t n = s->contents.n;
+    void *block;
+    uint64_t *reflected = memory_of(n * sizeof *reflected, 0, &block);
+    int status;
+    memset(reflected, 0, n * sizeof *reflected);
+    for (int tries = 0;; tries++) {
+        status = CALL(fibrad_exchange_body(s->scene, &s->work, body, rule, part, row, reflected));
+        REQUIRE(tries < 80);
+        if (status != FIBRAD_E_WORK || s->work.memory.resize != NULL || !give_more(&s->work.memory, &s->supply)) break;
+    }
+    for (uint32_t i = 0; i < n && rule->emissivity == NULL && rule->body_emissivity == NULL; i++)
+        REQUIRE(reflected[i] == 0);
+    free(block);
+    return status;
+}
+
+/* The row of a body or an opening: all that it emits ends somewhere. */
 static bool any_body_row(struct session *s, const fibrad_exchange_rule *rule, uint32_t body, fibrad_body_row *mean) {
     fibrad_body_row part[FIBRAD_BODY_PARTS];
+    const uint32_t bodies = s->contents.config.bodies;
     for (uint32_t k = 0; k < FIBRAD_BODY_PARTS; k++) {
-        int status;
-        for (int tries = 0;; tries++) {
-            status = CALL(fibrad_exchange_body(s->scene, &s->work, body, rule, k, &part[k], NULL));
-            REQUIRE(tries < 80);
-            if (status != FIBRAD_E_WORK || s->work.memory.resize != NULL || !give_more(&s->work.memory, &s->supply))
-                break;
-        }
+        const int status = any_batch(s, rule, body, k, &part[k]);
+        if (isnan(fibrad_scene_body_area(s->scene, body))) REQUIRE(status == FIBRAD_E_ARGUMENT);
         if (status != FIBRAD_OK) return false;
     }
     REQUIRE(CALL(fibrad_exchange_body_mean(part, mean)) == FIBRAD_OK);
     double sum = mean->spheres + mean->escaped;
-    for (uint32_t b = 0; b < s->contents.config.bodies; b++) {
+    for (uint32_t b = 0; b < bodies; b++) {
         REQUIRE(mean->body[b] >= 0);
         sum += mean->body[b];
     }
     REQUIRE(mean->spheres >= 0 && mean->escaped >= -1e-9 && mean->error >= 0);
     const double *emissivity = rule->body_emissivity;
-    if (plain) REQUIRE(fabs(sum - (emissivity == NULL || emissivity[body] > 0)) < 1e-9);
+    if (plain) REQUIRE(fabs(sum - (emissivity == NULL || body >= bodies || emissivity[body] > 0)) < 1e-9);
     return true;
 }
 
@@ -676,9 +697,10 @@ static void try_bodies(struct session *s) {
     if (too_long(&m)) return;
     fibrad_exchange_rule rule = m.exchange;
     if (!grey) rule.emissivity = rule.body_emissivity = NULL;
-    fibrad_body_row rows_of_bodies[BODIES] = {{{0}, 0, 0, 0, 0}};
+    fibrad_body_row rows_of_bodies[BODIES] = {{{0}, 0, 0, 0, 0, 0}}, of_opening;
     for (uint32_t b = 0; b < bodies; b++)
         if (fibrad_scene_body_area(s->scene, b) < INFINITY && !any_body_row(s, &rule, b, &rows_of_bodies[b])) return;
+    (void)any_body_row(s, &rule, FIBRAD_OPENING(bodies, m.exchange.seed % 4, rule.paths % 2), &of_opening);
     struct supply supply = {.left = UINT32_MAX};
     fibrad_rows rows = {.memory = {.resize = supply_more, .context = &supply}};
     bool complete = true;
