@@ -93,7 +93,7 @@ typedef struct fibrad_insitu fibrad_insitu;
 typedef enum fibrad_accuracy {
     FIBRAD_ACCURACY_NORMAL = 0, /* 36 directions, 24 paths; 80 if some source has no paths */
     FIBRAD_ACCURACY_LOW = 1,    /* 18, 8; 34 */
-    FIBRAD_ACCURACY_HIGH = 2    /* 144, 400; 1,600 */
+    FIBRAD_ACCURACY_HIGH = 2    /* 144, 800; 1,600 */
 } fibrad_accuracy;
 
 /* The fibrad_accuracy of the name low, normal or high. Not collective.

@@ -34,7 +34,7 @@ static const struct {
     uint32_t directions, paths, alone;
 } samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 36, 24, 80},
                [FIBRAD_ACCURACY_LOW] = {"low", 18, 8, 34},
-               [FIBRAD_ACCURACY_HIGH] = {"high", 144, 400, 1600}};
+               [FIBRAD_ACCURACY_HIGH] = {"high", 144, 800, 1600}};
 
 int fibrad_accuracy_named(const char *name) {
     for (int k = FIBRAD_ACCURACY_NORMAL; k <= FIBRAD_ACCURACY_HIGH && name; ++k)
