@@ -118,13 +118,14 @@ static void list_sources(struct sources *t) {
     }
 }
 
-/* Finds how many paths leave each source. Particles need none if nothing reflects. */
+/* Finds how many paths leave each source. Particles need none if nothing reflects, or if they are not to learn. */
 static void count_paths(struct sources *t) {
     const double paths = t->b->s->config.paths, radius = t->b->radius_mean, particle = 4 * acos(-1) * radius * radius;
     double emits = 0;
     for (uint32_t k = 0; k < t->count; ++k) emits += t->source[k].emits;
     const double most = PATHS_SHARE * (double)t->b->to->facts.particles * paths / emits;
-    t->b->density = t->b->to->emissive ? fmin(PATHS_WORTH * paths / particle, most) : 0;
+    const bool teach = t->b->to->emissive && !t->b->s->config.one_way;
+    t->b->density = teach ? fmin(PATHS_WORTH * paths / particle, most) : 0;
     for (uint32_t k = 0; k < t->count; ++k) {
         struct source *source = &t->source[k];
         const double count = fmin(fmax(PATHS_LEAST, t->b->density * source->emits), FIBRAD_PATHS_MAX);
