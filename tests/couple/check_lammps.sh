@@ -399,7 +399,7 @@ heat() {
     shell "$2" >"$work/turned.stl"
     "$BUILD/fibrad" exchange "$1" --emissivity .8 --wall "mesh:$work/turned.stl:both" --wall-emissivity .7 --raw --quiet \
         --directions 400 -o "$work/factors.csv" 2>/dev/null
-    awk -F'[ ,]' -v both=$(awk 'BEGIN { print 2*12*8*2*5*sin(atan2(1, 1)/6) }') '
+    awk -F'[ ,]' -v both="$(awk 'BEGIN { print 2*12*8*2*5*sin(atan2(1, 1)/6) }')" '
         NR == FNR && NF >= 6 && $1 ~ /^[0-9]/ { area[$1] = 16*atan2(1, 1)*$5^2; e[$1] = 1e-11*$6^4 }
         NR > FNR && $1 > 0 && $4 == "turned" { weight = area[$1]*.8*$3; sum += weight*e[$1]; all += weight*1e-11 }
         $4 == "turned:surroundings" { weight = both*.7*$3; sum += weight*1e-11*300^4; all += weight*1e-11 }
