@@ -14,10 +14,11 @@
  * Rows        A row holds exchange factors, or view factors if all emissivities are 1. Each rank computes the rows of
  *             the particles that it owns. The rows stay on this rank until new rows are made, wherever the particles
  *             go.
- * Powers      Two particles exchange the mean of what their two rows say. A row without the other says 0. One gains
- * what the other loses. So no heat is lost, whatever the error of the rows. Nothing flows between particles of equal
- * temperature. Sources     A wall of emissivity above 0 is a source, and so is an opening. Paths begin at particles and
- * at sources. Paths of sources tell what sources exchange with each other. Totals contain this exchange. Paths of
+ * Powers      Two particles exchange the mean of what their two rows say. A row without the other particle says 0. One
+ *             particle gains what the other loses. So no heat is lost, whatever the error of the rows. Nothing flows
+ *             between particles of equal temperature.
+ * Sources     A wall of emissivity above 0 is a source, and so is an opening. Paths begin at particles and at sources.
+ *             Paths of sources tell what sources exchange with each other. Totals contain this exchange. Paths of
  *             sources also make rows of particles more accurate. Two kinds of walls have no paths of their own: an
  *             endless wall, and a wall from which paths reach a side that belongs to no wall. What such walls exchange
  *             with each other is left out. docs/coupling.md has the details.
@@ -25,15 +26,19 @@
  * Collective  Every rank must call a collective function, and all ranks get the same status. All functions are
  *             collective over the communicator, except fibrad_link_free, fibrad_insitu_message, fibrad_insitu_remark,
  *             fibrad_insitu_facts_get and fibrad_accuracy_named.
- * Errors      After an error of a function other than fibrad_insitu_new, fibrad_insitu_message has a sentence, the same
- * on all ranks, which names particles by id. The object is as it was before the call. Strays      A simulation may go
- * on with particles beyond walls or inside each other, which no scene can have. With config.strict such a particle is
- * an error. Otherwise rows are made, and fibrad_insitu_remark tells what was done: left out  The centre of the particle
- * lies beyond a plane or the cylinder, or the particle reaches beyond an opening. It exchanges nothing and hides
- * nothing. Rows that are made when it is back contain it. smaller   The centre of one particle lies inside another, at
- * a distance d. Both radii are multiplied by d/max(r_i, r_j). Then the centre lies on the surface. If less than a
- * thousandth of a radius would remain, both are left out. no row    The particle sees a side of a triangle that belongs
- * to no wall. If more than a tenth of all particles see such sides, the call fails, with or without config.strict.
+ * Errors      After an error of a function other than fibrad_insitu_new, fibrad_insitu_message has a sentence. It is
+ *             the same on all ranks, and names particles by id. The object is as it was before the call.
+ * Strays      A simulation may go on with particles beyond walls or inside each other, which no scene can have. With
+ *             config.strict such a particle is an error. Otherwise rows are made, and fibrad_insitu_remark tells what
+ *             was done:
+ *               left out  The centre of the particle lies beyond a plane or the cylinder, or the particle reaches
+ *                         beyond an opening. It exchanges nothing and hides nothing. Rows that are made when it is
+ *                         back contain it.
+ *               smaller   The centre of one particle lies inside another, at a distance d. Both radii are multiplied
+ *                         by d/max(r_i, r_j). Then the centre lies on the surface. If less than a thousandth of a
+ *                         radius would remain, both are left out.
+ *               no row    The particle sees a side of a triangle that belongs to no wall. If more than a tenth of all
+ *                         particles see such sides, the call fails, with or without config.strict.
  * Units       One length unit L, which the caller chooses. Powers are in sigma K^4 L^2.
  * Words       Words and the layout of comments are as in fibrad.h.
  * Source      docs/coupling.md
@@ -172,12 +177,14 @@ typedef struct fibrad_insitu_facts {
     double cutoff;               /* L, in use */
     double beyond;               /* mean fraction of the emission whose target is not known; known targets get it */
     double error;                /* root mean square of the rows' estimated errors */
-    double body[FIBRAD_BODIES_MAX]; /* L^2, [bodies], what a wall emits and others absorb, divided by its sigma T^4 */
-    double seconds_rows;            /* s, of the slowest rank, in all calls of fibrad_insitu_rows and _follow so far */
-    double seconds_powers;          /* s, of the slowest rank, in all calls of fibrad_insitu_powers so far */
-    uint64_t step;                  /* of the rows */
-    size_t halo;                    /* particles of other ranks, and periodic images, that this rank was sent */
-    size_t bytes;                   /* bytes, memory of this rank */
+    double seconds_rows;         /* s, of the slowest rank, in all calls of fibrad_insitu_rows and _follow so far */
+    double seconds_powers;       /* s, of the slowest rank, in all calls of fibrad_insitu_powers so far */
+    uint64_t step;               /* of the rows */
+    size_t halo;                 /* particles of other ranks, and periodic images, that this rank was sent */
+    size_t bytes;                /* bytes, memory of this rank */
+
+    /* L^2, [bodies], what a wall emits and others absorb, divided by its sigma T^4 */
+    double body[FIBRAD_BODIES_MAX];
 } fibrad_insitu_facts;
 
 /* Makes an object without rows. The communicator is duplicated.

@@ -522,7 +522,7 @@ static int list_own(fibrad_insitu_build *b) {
 static void know_sources(const fibrad_insitu_build *b, uint32_t i, fibrad_exchange_rule *rule) {
     const fibrad_particle *p = (const fibrad_particle *)b->to->particle.at + i;
     rule->known = (const double *)b->s->known.at + (size_t)i * (b->bed->bodies + 1);
-    rule->known_paths = b->density * 4 * acos(-1) * p->radius * p->radius * p->node;
+    rule->known_paths = b->density * fibrad_particle_weight(p);
 }
 
 /* Computes all rows. Each thread takes an equal part of the list, one after the other. So rows are in the order of the
@@ -636,7 +636,7 @@ static int list_home(fibrad_insitu_build *b) {
         if (number[i]) place[number[i] - to->own] = p[i].owner;
     double *weight = to->weight.at;
     memset(weight, 0, to->columns * sizeof *weight);
-    for (size_t i = 0; i < to->own; ++i) weight[i] = 4 * acos(-1) * p[i].radius * p[i].radius * p[i].node;
+    for (size_t i = 0; i < to->own; ++i) weight[i] = fibrad_particle_weight(&p[i]);
     return FIBRAD_OK;
 }
 

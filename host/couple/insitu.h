@@ -2,6 +2,7 @@
 #ifndef FIBRAD_COUPLE_INSITU_H
 #define FIBRAD_COUPLE_INSITU_H
 
+#include <math.h>
 #include <stdbool.h>
 
 #include "couple/ranks/block.h"
@@ -67,6 +68,11 @@ struct fibrad_insitu {
  * particle. */
 static inline double fibrad_row_weight(const fibrad_row *row, double weight) {
     return row->beyond < 1 ? weight / (1 - row->beyond) : 0;
+}
+
+/* A particle's area times the emissivity of its node. */
+static inline double fibrad_particle_weight(const fibrad_particle *p) {
+    return 4 * acos(-1) * p->radius * p->radius * p->node;
 }
 
 /* Rows that are made only for particles that have come. Begin with zeroes; free with fibrad_follow_free. */
