@@ -459,7 +459,39 @@ typedef struct fibrad_row {
     uint32_t directions; /* out: directions taken; rows by rays: 0 */
     uint32_t fallbacks;  /* out: windows that needed a slower, more robust method; rows by rays: 0 */
     int symmetric;       /* out: 1 if A_i F_ij = A_j F_ji holds without averaging */
+    uint32_t lines;      /* out: number of lines of a row along lines, else 0 */
+    float *half;         /* [capacity], out, of a row along lines: half the difference of the factors by even and by odd
+                            lines; may be NULL. Rows in a collection keep it. */
 } fibrad_row;
+
+/* ---- lines ----------------------------------------------------------------------------------------------------- */
+/* A set of lines, for the rows of a matrix. Each line has a sense, so that a set is also a set of directions. The lines
+ * are spread evenly, and the directions are spread evenly, too. The factor between two spheres is the mean of both of
+ * their rows. So it counts each line in both senses, and its error is about half of that by as many Fibonacci
+ * directions. What walls and surroundings get counts each line in its own sense only. */
+typedef struct fibrad_line_set fibrad_line_set;
+
+/* The number of lines of the smallest built-in set with at least `lines` lines. If there is none, `lines`.
+ *   Errors   none */
+uint32_t fibrad_line_set_lines(uint32_t lines);
+
+/* Bytes that fibrad_line_set_init needs.
+ *   Input    lines: FIBRAD_DIRECTIONS_MIN to FIBRAD_LINES_EVEN_MAX
+ *   Errors   0 */
+size_t fibrad_line_set_size(uint32_t lines);
+
+/* Makes a set of fibrad_line_set_lines(lines) lines. Threads may share the set.
+ *   Input    memory[size]
+ *            lines: FIBRAD_DIRECTIONS_MIN to FIBRAD_LINES_EVEN_MAX
+ *            turn: seed of a random rotation of all lines together; 0: no rotation
+ *   Output   set: a pointer into memory
+ *   Errors   _ARGUMENT, _SIZE
+ *   Cost     microseconds; up to 1 s if this build has no built-in set of so many lines
+ *   Source   docs/methods.md section 12 */
+int fibrad_line_set_init(fibrad_line_set **set, void *memory, size_t size, uint32_t lines, uint64_t turn);
+
+/* For fibrad_beam_rule.chords: exact areas along lines, too. */
+#define FIBRAD_CHORDS_NONE 1
 
 /* How a beam row is integrated. Zeroed: FIBRAD_DIRECTIONS_DEFAULT directions, exact areas, no cutoff, no tolerance. If
  * directions is 0 and there is a tolerance, rows begin with FIBRAD_DIRECTIONS_FIRST directions. */
@@ -469,6 +501,9 @@ typedef struct fibrad_beam_rule {
     double cutoff;       /* L; spheres are left out if their centre is farther than (1 + 1e-12) cutoff; 0: no cutoff */
     double tolerance;    /* the error allowed; directions are added until it is met; 0: no tolerance */
     uint64_t turn;       /* seed of a random rotation of all directions together; 0: no rotation */
+    const fibrad_line_set *lines; /* takes these lines; directions, turn, tolerance and points are 0; NULL: directions */
+    uint32_t chords; /* 16, 32 or 64: points on so many chords of each window, which are bits of words; FIBRAD_CHORDS_NONE:
+                        exact areas; 0: along lines as many chords as suit their number, along directions exact areas */
 } fibrad_beam_rule;
 
 /* Row i of the view factors of a scene, by parallel beams.

@@ -3,86 +3,159 @@
 #include FIBRAD_LANES_HEADER
 #include "base/constants.h"
 #include "sample/direction.h"
+#include "row/beam.h"
 #include "row/beam_lanes.h"
 #include "work/legs_lanes.h"
 #include "row/mesh_share_lanes.h"
 #include "row/wall_share_lanes.h"
 #include "row/window_lanes.h"
+#include "sample/line_set.h"
 #include "window/clip_lanes.h"
+#include "window/masks_lanes.h"
 
-#define FEW_POINTS 64u /* of windows of rows with few windows */
+#define FEW_POINTS  64u /* of windows of rows with few windows */
+#define WALL_POINTS 64u /* of windows by masks that look at walls */
 
-/* The directions of a rule. */
-typedef struct beam_frames {
-    uint32_t directions;
-    bool turned;
+/* The windows of a row. */
+typedef struct beam_windows {
+    const fibrad_line_set *lines; /* NULL: directions */
+    uint32_t count;
+    bool turned; /* directions have been turned */
     double turn[9];
-} beam_frames;
+    uint32_t chords, words; /* of masks; 0: none */
+    fibrad_points points;   /* count 0: exact areas */
+} beam_windows;
 
 static void LANED(frame_of_beam)(const void *from, uint32_t k, uint32_t points, double frame[9]) {
-    const beam_frames *frames = from;
-    fibrad_beam_frame(k, frames->directions, points, frame);
-    if (frames->turned) fibrad_rotate_axes(frames->turn, frame);
+    const beam_windows *windows = from;
+    if (windows->lines != NULL) {
+        fibrad_copy(frame, windows->lines->frame[k], 9 * sizeof *frame);
+        return;
+    }
+    fibrad_beam_frame(k, windows->count, points, frame);
+    if (windows->turned) fibrad_rotate_axes(windows->turn, frame);
+}
+
+/* Error: _TABLE. */
+static int choose_windows(const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule, beam_windows *windows) {
+    *windows = (beam_windows){.lines = rule->lines, .count = rule->directions, .turned = rule->turn != 0};
+    if (windows->turned) fibrad_rotation(rule->turn, windows->turn);
+    windows->words = fibrad_mask_words(scene, i);
+    if (rule->chords > 0 && windows->words > 0) windows->chords = rule->chords * windows->words;
+    windows->points.count = rule->points;
+    return rule->points > 0 ? fibrad_disc_points_get(rule->points, &windows->points.set) : FIBRAD_OK;
+}
+
+/* Sums over the windows of a row so far. */
+typedef struct beam_sums {
+    double open[2]; /* what meets nothing in even and in odd windows */
+    double whole;   /* sizes of all windows by masks, in points */
+} beam_sums;
+
+/* Computes window k by masks, or by exact areas if a triangle may come before it. whole: out: the size of the window in
+ * points. Returns the open part. *points: out: which points of some set are open; count 0: the discs of `work` tell. */
+static double window_by_masks(fibrad_workspace *work, const beam_windows *windows, const double frame[9], uint32_t k,
+                              fibrad_points *points, double *whole) {
+    points->count = 0;
+    work->entries.weight = 1;
+    const bool done = LANED(fibrad_mask_window)(work, frame, windows->chords, windows->words, k);
+    *whole = work->masks.points;
+    if (!done) {
+        work->entries.weight = *whole / FIBRAD_PI;
+        return LANED(fibrad_beam_window)(work, frame, points, k) * work->entries.weight;
+    }
+    if (work->met != NULL) work->met->any = false;
+    if (work->masks.open > 0 && work->scene->container.walls) {
+        points->count = WALL_POINTS;
+        (void)fibrad_disc_points_get(WALL_POINTS, &points->set);
+        points->open = LANED(fibrad_masks_at)(&work->masks, WALL_POINTS, points->set.x, points->set.y, points->seen);
+        if (points->open == 0) points->open = WALL_POINTS, points->seen[0] = UINT64_MAX;
+    }
+    return work->masks.open;
+}
+
+/* Computes window k and adds it to all sums. False: there was no room for all discs. */
+static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibrad_window_set *set, uint32_t k,
+                       beam_sums *sums) {
+    static const double centre[3] = {0, 0, 0};
+    fibrad_points *points = &windows->points;
+    const bool masked = windows->chords > 0;
+    double frame[9], whole = points->count > 0 ? points->count : FIBRAD_PI;
+    LANED(frame_of_beam)(windows, k, points->count, frame);
+    work->entries.end = set->ends && (k == 0 || k == windows->count - 1);
+    const double rest = masked ? window_by_masks(work, windows, frame, k, points, &whole)
+                               : LANED(fibrad_beam_window)(work, frame, points, k);
+    if (work->disc.count > work->disc.capacity || work->areas.overflow) return false;
+    sums->whole += whole;
+    LANED(take_legs)(work, frame, k);
+    const bool meets = work->met != NULL && work->met->any;
+    if (meets) LANED(fibrad_mesh_count)(work, frame, k);
+    if (work->scene->container.walls)
+        LANED(fibrad_walls_share)(work, frame, meets && points->count == 0 ? &work->met->points : points, k, set, rest,
+                                  whole);
+    else if (work->cut && rest != 0 && fibrad_work_met(work, centre, frame + 6) == FIBRAD_BEYOND)
+        fibrad_work_slot(work, FIBRAD_BEYOND, k, rest);
+    else if (work->entries.addends != NULL)
+        fibrad_addends_put(work->entries.addends, FIBRAD_ADD_OPEN, k, rest);
+    else
+        sums->open[k % 2] += rest;
+    return true;
+}
+
+/* Adds the points that the near list has counted to the entries. */
+static void gather_counts(fibrad_workspace *work) {
+    const fibrad_near *near = &work->near;
+    fibrad_entries *entries = &work->entries;
+    entries->weight = 1, entries->end = false;
+    for (uint32_t k = 0, end = near->shells > 0 ? near->end[near->shells - 1] : 0; k < end; k++) {
+        if ((near->count[k][0] | near->count[k][1]) == 0) continue;
+        const uint32_t entry = fibrad_entries_of(entries, near->sphere[k]);
+        for (uint32_t half = 0; half < 2; half++) fibrad_entries_add(entries, entry, half, near->count[k][half]);
+    }
 }
 
 int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i,
                              const fibrad_beam_rule *rule, const fibrad_beam_range *range, fibrad_row *row) {
-    static const double centre[3] = {0, 0, 0};
-    const uint32_t directions = rule->directions, points = rule->points;
-    fibrad_points window = {.count = points};
-    if (points > 0) {
-        int built_in = fibrad_disc_points_get(points, &window.set);
-        if (built_in != FIBRAD_OK) return built_in;
-    }
+    beam_windows windows;
+    beam_sums sums = {.open = {0, 0}};
+    double parts[2] = {0, 0};
+    int status = choose_windows(scene, scene->place[i], rule, &windows);
+    if (status != FIBRAD_OK) return status;
+    const bool masked = windows.chords > 0;
     work->areas.overflow = false;
     work->areas.fallbacks = 0;
-    work->windows = directions;
+    work->windows = windows.count;
     fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, FIBRAD_BEAM_STRIDE);
-    double open[2] = {0, 0}, parts[2] = {0, 0};
-    beam_frames frames = {.directions = directions, .turned = rule->turn != 0};
     /* Rows of 64 points have so few windows that directions of lines would spread widely. The open part of a window
      * does not follow them that far. Factors of walls would be too large by up to 1.5 % at 14 windows. If such rows are
      * turned at random, parallel lines have no bias. */
-    work->parallel = frames.turned && points == FEW_POINTS;
-    const fibrad_window_set set = {LANED(frame_of_beam), &frames, directions, directions, points, frames.turned};
+    work->parallel = windows.turned && rule->points == FEW_POINTS;
+    const bool mixed = windows.turned || windows.lines != NULL; /* directions do not pair off */
+    const fibrad_window_set set = {LANED(frame_of_beam), &windows, windows.count, windows.count, mixed,
+                                   windows.lines == NULL};
     if (scene->container.walls) {
         work->walls->view = fibrad_wall_view_of(scene, work->place, work->cut, work->reach);
         fibrad_zero(&work->walls->sums, sizeof work->walls->sums);
         work->walls->sums.addends = range->addends;
     }
     work->entries.addends = range->addends;
-    if (range->part != NULL) fibrad_beam_replay(work, range, directions, open);
-    if (frames.turned) fibrad_rotation(rule->turn, frames.turn);
+    if (range->part != NULL) fibrad_beam_replay(work, range, windows.count, sums.open);
     LANED(begin_legs)(&work->legs);
-    for (uint32_t k = range->from; k < range->to; k++) {
-        double frame[9];
-        LANED(frame_of_beam)(&frames, k, points, frame);
-        work->entries.end = k == 0 || k == directions - 1;
-        double rest = LANED(fibrad_beam_window)(work, frame, &window, k);
-        if (work->disc.count > work->disc.capacity || work->areas.overflow) return fibrad_work_discs_missed(work);
-        LANED(take_legs)(work, frame, k);
-        const bool meets = work->met != NULL && work->met->any;
-        if (meets) LANED(fibrad_mesh_count)(work, frame, k);
-        if (scene->container.walls)
-            LANED(fibrad_walls_share)(work, frame, meets && points == 0 ? &work->met->points : &window, k, &set, rest);
-        else if (work->cut && rest != 0 && fibrad_work_met(work, centre, frame + 6) == FIBRAD_BEYOND)
-            fibrad_work_slot(work, FIBRAD_BEYOND, k, rest);
-        else if (range->addends != NULL)
-            fibrad_addends_put(range->addends, FIBRAD_ADD_OPEN, k, rest);
-        else
-            open[k % 2] += rest;
-    }
+    for (uint32_t k = range->from; k < range->to; k++)
+        if (!add_window(work, &windows, &set, k, &sums)) return fibrad_work_discs_missed(work);
+    if (masked) gather_counts(work);
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
     if (work->back != UINT32_MAX) return FIBRAD_E_BACK;
     row->fallbacks = work->areas.fallbacks;
     row->length = 0;
     if (range->addends != NULL) return FIBRAD_OK;
-    double scale = points > 0 ? 1.0 / ((double)directions * points) : 1 / (directions * FIBRAD_PI);
-    int status = fibrad_entries_row(&work->entries, scene, scale, row);
+    const double each = rule->points > 0 ? rule->points : FIBRAD_PI;
+    const double scale = masked ? 1 / sums.whole : 1 / (windows.count * each);
+    status = fibrad_entries_row(&work->entries, scene, scale, row);
     if (status != FIBRAD_OK) return status;
     if (scene->container.walls) LANED(fibrad_walls_complete)(work, &set, parts);
     fibrad_entries_slots(&work->entries, scene, work->wall);
-    row->escaped = (open[0] + open[1] + work->wall[FIBRAD_ESCAPED]) * scale;
+    row->escaped = (sums.open[0] + sums.open[1] + work->wall[FIBRAD_ESCAPED]) * scale;
     row->beyond = work->wall[FIBRAD_BEYOND] * scale;
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
         if (fibrad_slot_of_body(slot)) work->wall[slot] = fibrad_max(0, work->wall[slot]) * scale;
@@ -90,7 +163,9 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     fibrad_row_bodies(scene, work->wall, row);
     if (parts[0] > 0) row->error = fibrad_sqrt(row->error * row->error + parts[0] * scale * scale);
     row->error = fibrad_entries_error(&work->entries, parts, row->error, scale);
-    row->directions = directions;
+    row->directions = windows.count;
     row->symmetric = 0;
+    row->lines = rule->lines != NULL ? windows.count : 0;
+    if (rule->lines == NULL) row->half = NULL;
     return fibrad_row_checked(scene, row);
 }

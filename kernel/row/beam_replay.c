@@ -1,7 +1,7 @@
 /* beam_replay.c - adds the terms that parts have listed to the sums of a row. SPDX-License-Identifier: MIT */
 #include "row/beam_lanes.h"
 
-static void add_again(fibrad_workspace *work, const fibrad_addend *a, uint32_t windows, double open[2]) {
+static void add_again(fibrad_workspace *work, const fibrad_addend *a, double open[2]) {
     fibrad_wall_sums *sums = work->walls != NULL ? &work->walls->sums : NULL;
     if (a->target < FIBRAD_ADD_OPEN)
         fibrad_entries_add(&work->entries, fibrad_entries_of(&work->entries, a->target), a->window, a->value);
@@ -14,9 +14,9 @@ static void add_again(fibrad_workspace *work, const fibrad_addend *a, uint32_t w
     else if (a->target == FIBRAD_ADD_HIDDEN)
         sums->hidden[a->window / 64] |= UINT64_C(1) << a->window % 64;
     else if (a->target < FIBRAD_ADD_SHARE)
-        fibrad_wall_add(sums->open[a->target - FIBRAD_ADD_REGION], a->window, windows, a->value);
+        fibrad_wall_add(sums->open[a->target - FIBRAD_ADD_REGION], a->window, work->entries.end, a->value);
     else if (a->target < FIBRAD_ADD_MIXED)
-        fibrad_wall_add(sums->all[a->target - FIBRAD_ADD_SHARE], a->window, windows, a->value);
+        fibrad_wall_add(sums->all[a->target - FIBRAD_ADD_SHARE], a->window, work->entries.end, a->value);
     else
         sums->mixed[a->target - FIBRAD_ADD_MIXED] += a->value;
 }
@@ -28,7 +28,7 @@ void fibrad_beam_replay(fibrad_workspace *work, const fibrad_beam_range *range, 
             fibrad_addend addend;
             fibrad_copy(&addend, (const unsigned char *)part->memory.block + n * sizeof addend, sizeof addend);
             work->entries.end = addend.window == 0 || addend.window == windows - 1;
-            add_again(work, &addend, windows, open);
+            add_again(work, &addend, open);
         }
         work->areas.fallbacks += part->fallbacks;
     }

@@ -72,7 +72,7 @@ int fibrad_row_give(const fibrad_scene *scene, const fibrad_row *row, fibrad_row
     if (row->length > to->capacity) return FIBRAD_E_CAPACITY;
     for (uint32_t k = 0; k < row->length; k++) to->col[k] = row->col[k], to->f[k] = row->f[k];
     for (uint32_t b = 0; b < scene->facts.bodies; b++) to->body[b] = row->body[b];
-    given.col = to->col, given.f = to->f, given.body = to->body;
+    given.col = to->col, given.f = to->f, given.body = to->body, given.half = to->half;
     given.capacity = to->capacity;
     *to = given;
     return FIBRAD_OK;
@@ -115,7 +115,7 @@ int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, con
     fibrad_row own = *row;
     fibrad_workspace *space;
     uint32_t least = 0;
-    own.beyond = 0, own.length = 0;
+    own.beyond = 0, own.length = 0, own.lines = 0;
     int status = fibrad_work_open(work, scene, method->extra_min, method->extra_best, &space);
     while (status == FIBRAD_OK) {
         status = attempt(scene, space, i, method, rows, &own);
@@ -135,6 +135,7 @@ int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, con
     own.rows = rows;
     if (rows != NULL)
         own.col = (uint32_t *)(void *)(own.f + own.length), own.capacity = 0; /* these arrays are not the caller's */
+    if (rows != NULL) own.half = own.lines > 0 ? (float *)(void *)(own.col + own.length) : NULL;
     *row = own;
     return FIBRAD_OK;
 }

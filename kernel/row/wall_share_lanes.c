@@ -327,20 +327,21 @@ static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, 
 }
 
 void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t k,
-                               const fibrad_window_set *set, double rest) {
+                               const fibrad_window_set *set, double rest, double whole) {
     if (rest == 0) {
         work->walls->sums.hidden[k / 64] |= UINT64_C(1) << k % 64;
         if (work->entries.addends != NULL) fibrad_addends_put(work->entries.addends, FIBRAD_ADD_HIDDEN, k, 0);
         return;
     }
-    const double whole = set->points > 0 ? set->points : FIBRAD_PI;
     fibrad_wall_window window = {.frame = frame, .k = k, .n = set->directions, .open = rest, .part = 1};
+    window.end = work->entries.end;
     window.parallel = work->parallel;
     window.hidden = fibrad_max(0, whole - rest);
     if (points->count > 0) window.part = 0.4 + 0.6 * rest / whole;
     if (work->walls->view.cut)
         window.part *= 1.25; /* there is no solid angle here that corrects the unevenness of the discs */
     if (points->count == 0) fibrad_areas_slope(&work->areas, work->disc.resolved, window.slope);
+    for (int axis = 0; axis < 2; axis++) window.slope[axis] *= whole / FIBRAD_PI;
     fibrad_wall_window_begin(&window, &work->walls->view);
     if (!fibrad_wall_window_simple(&window, &work->walls->view, set->turned, &work->walls->sums))
         share_by_lines(work, points, &window);
@@ -355,6 +356,7 @@ static void add_hidden(fibrad_workspace *work, const fibrad_window_set *set) {
         double frame[9];
         set->frame(set->from, k, HIDDEN_POINTS, frame);
         fibrad_wall_window window = {.frame = frame, .k = k, .n = set->directions, .hidden = 1, .part = 1};
+        window.end = set->ends && (k == 0 || k == set->directions - 1);
         fibrad_wall_window_begin(&window, &work->walls->view);
         if (!fibrad_wall_window_simple(&window, &work->walls->view, set->turned, &work->walls->sums))
             share_by_lines(work, all, &window);

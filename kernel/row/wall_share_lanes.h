@@ -12,15 +12,16 @@ typedef struct fibrad_window_set {
     const void *from;                                                              /* handed to it */
     uint32_t count;                                                                /* windows have numbers below this */
     uint32_t directions;                                                           /* how many windows there are */
-    uint32_t points;                                                               /* of a window; 0: areas are exact */
     bool turned; /* directions do not pair off across z */
+    bool ends;   /* the first and the last window count half in differences of even and odd windows */
 } fibrad_window_set;
 
 /* Adds the open part of window k of a row, which meets no sphere, to work->walls->sums by what it meets. Lines that
- * are cut are added to work->wall. rest: the size of the open part. points: as fibrad_beam_window has left them.
- * With points->count 0 areas are exact, and the discs of `work` tell which points are open. */
+ * are cut are added to work->wall. rest: the size of the open part. whole: the size of the window. points: as
+ * fibrad_beam_window has left them. With points->count 0 areas are exact, and the discs of `work` tell which points are
+ * open. */
 void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t k,
-                               const fibrad_window_set *set, double rest);
+                               const fibrad_window_set *set, double rest, double whole);
 
 /* Adds the view factors of walls to work->wall[] when all windows are done. parts: as in fibrad_wall_factors. */
 void LANED(fibrad_walls_complete)(fibrad_workspace *work, const fibrad_window_set *set, double parts[2]);

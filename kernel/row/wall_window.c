@@ -110,8 +110,8 @@ void fibrad_wall_window_add(const fibrad_wall_window *window, uint32_t region, d
         fibrad_addends_put(sums->addends, FIBRAD_ADD_MIXED + region, window->k, mixed);
         return;
     }
-    fibrad_wall_add(sums->open[region], window->k, window->n, open);
-    fibrad_wall_add(sums->all[region], window->k, window->n, share);
+    fibrad_wall_add(sums->open[region], window->k, window->end, open);
+    fibrad_wall_add(sums->all[region], window->k, window->end, share);
     sums->mixed[region] += mixed;
 }
 

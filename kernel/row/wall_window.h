@@ -18,6 +18,7 @@ typedef struct fibrad_wall_window {
     double open, hidden; /* open and hidden part of the window, areas or points */
     double part;         /* how much of its disc of directions is used; 1, or less if the slope is not known */
     bool parallel;       /* whether all lines have the direction of the window */
+    bool end;            /* whether it counts half in differences of even and odd windows */
     double slope[2];     /* growth of the open part as the direction turns towards each axis, per radian */
     double wide;         /* radius of the disc of directions */
     double spread;       /* radius of the part of this disc that is needed for walls as near as these */

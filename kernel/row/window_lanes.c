@@ -11,6 +11,7 @@
 #include "row/window_lanes.h"
 #include "window/clip_lanes.h"
 #include "window/dense_lanes.h"
+#include "window/masks_lanes.h"
 #include "window/points_lanes.h"
 
 /* Appends the discs of one shell that come before the window. A cull in floats comes first. Its result is a list of
@@ -27,6 +28,52 @@ static void cull_for_window(fibrad_workspace *work, const double frame[9], uint3
         to += vn_compress(to, bits, sight.near + j);
     }
     LANED(fibrad_near_discs)(work, frame, (uint32_t)(to - from));
+}
+
+/* The same for masks. All that they need of a disc are floats. */
+static void cull_for_masks(fibrad_workspace *work, const double frame[9], uint32_t shell) {
+    const fibrad_discs disc = work->disc;
+    fibrad_sight sight = work->near.all;
+    size_t begin = shell > 0 ? work->near.end[shell - 1] : 0, end = work->near.end[shell];
+    uint32_t n = disc.count;
+    if (shell == 0) sight = *LANED(fibrad_near_sight)(&work->near, frame + 6), end = sight.count;
+    const vf ux = vf_set1((float)frame[0]), uy = vf_set1((float)frame[1]), uz = vf_set1((float)frame[2]);
+    const vf vx = vf_set1((float)frame[3]), vy = vf_set1((float)frame[4]), vz = vf_set1((float)frame[5]);
+    const vf wx = vf_set1((float)frame[6]), wy = vf_set1((float)frame[7]), wz = vf_set1((float)frame[8]);
+    for (size_t j = begin; j < end; j += VF_LANES) {
+        const vf x = vf_load(sight.x + j), y = vf_load(sight.y + j), z = vf_load(sight.z + j);
+        const vf depth = wx * x + wy * y + wz * z;
+        const uint32_t bits = vf_lt_bits(vf_load(sight.e + j), depth);
+        if (bits == 0) continue;
+        const uint32_t at = n < disc.capacity ? n : disc.capacity; /* discs beyond the capacity are only counted */
+        vf_compress(disc.fu + at, bits, ux * x + uy * y + uz * z);
+        vf_compress(disc.fv + at, bits, vx * x + vy * y + vz * z);
+        vf_compress(disc.fdepth + at, bits, depth);
+        vf_compress(disc.square + at, bits, vf_load(sight.square + j));
+        n += vn_compress(disc.near + at, bits, sight.near + j);
+    }
+    work->disc.count = n;
+}
+
+/* Fills the floats of discs that a walk has found. */
+static void round_found(fibrad_discs *disc, uint32_t from) {
+    for (uint32_t k = from; k < disc->count && disc->count <= disc->capacity; k++) {
+        disc->fu[k] = (float)disc->u[k], disc->fv[k] = (float)disc->v[k], disc->fdepth[k] = (float)disc->depth[k];
+        disc->square[k] = (float)(disc->r[k] * disc->r[k]);
+    }
+}
+
+/* Removes those discs from number `from` on that do not lie ahead. Only spheres that overlap sphere i may. */
+static void remove_not_ahead(fibrad_workspace *work, uint32_t from) {
+    const fibrad_discs disc = work->disc;
+    uint32_t to = from, all_ahead = 1;
+    for (uint32_t k = from; k < disc.count; k++) all_ahead &= disc.fdepth[k] > 0;
+    for (uint32_t k = from; k < disc.count && !all_ahead; k++) {
+        disc.fu[to] = disc.fu[k], disc.fv[to] = disc.fv[k], disc.fdepth[to] = disc.fdepth[k];
+        disc.square[to] = disc.square[k], disc.near[to] = disc.near[k];
+        to += fibrad_work_ahead(work, disc.fdepth[k], disc.fu[k], disc.fv[k], fibrad_work_sphere(work, k));
+    }
+    if (!all_ahead) work->disc.count = to;
 }
 
 /* Whether a disc lies in front of another. At equal depths discs of spheres that do not interpenetrate do not
@@ -83,14 +130,14 @@ static void sort_discs_by_digits(fibrad_workspace *work) {
  * floats have the same rank. Then the sum of all ranks is too small, which shows it. The list is padded to a
  * multiple of eight with depths beyond all others, so that the number of rounds is easy to predict. */
 #define DISCS_RANKED 256
-static void sort_discs(fibrad_workspace *work, uint32_t resolved) {
-    _Alignas(64) float key[DISCS_RANKED + FIBRAD_LANES_MAX];
+static void sort_discs(fibrad_workspace *work, uint32_t resolved, bool masked) {
     _Alignas(64) uint32_t rank[DISCS_RANKED + FIBRAD_LANES_MAX];
-    const double *depth = work->disc.depth;
-    uint32_t count = work->disc.count, eights = (count + 7) / 8 * 8, *order = work->disc.order;
+    const fibrad_discs disc = work->disc;
+    float *key = disc.fdepth;
+    uint32_t count = disc.count, eights = (count + 7) / 8 * 8, *order = disc.order;
     if (resolved == count) return;
     if (count <= DISCS_RANKED) {
-        for (uint32_t k = 0; k < count; k += VD_LANES) vd_store_float(key + k, vd_load(depth + k));
+        for (uint32_t k = 0; k < count && !masked; k += VD_LANES) vd_store_float(key + k, vd_load(disc.depth + k));
         for (uint32_t k = 0; k < 8; k++) key[count + k] = __builtin_inff();
         for (uint32_t k = 0; k < eights; k += VF_LANES) {
             vf at = vf_load(key + k);
@@ -109,6 +156,8 @@ static void sort_discs(fibrad_workspace *work, uint32_t resolved) {
             }
         if (sum == (count * (count - 1) - resolved * (resolved - 1)) / 2 + (eights - count) * count) return;
     }
+    for (uint32_t k = 0; k < count && masked; k++)
+        disc.depth[k] = disc.fdepth[k], disc.u[k] = disc.fu[k], disc.v[k] = disc.fv[k];
     sort_discs_by_digits(work);
 }
 
@@ -150,6 +199,62 @@ static uint32_t resolve_discs(fibrad_workspace *work, fibrad_points *points, uin
     return to;
 }
 
+/* Finds and sorts the discs of one more shell. *known: out: the depth down to which all are listed. */
+static void find_shell(fibrad_workspace *work, const double frame[9], uint32_t shell, bool masked, uint32_t resolved,
+                       double *known, double *horizon) {
+    const uint32_t from = work->disc.count;
+    if (shell == work->near.shells && fibrad_near_pays(&work->near)) LANED(fibrad_near_extend)(work);
+    if (shell < work->near.shells) {
+        if (masked)
+            cull_for_masks(work, frame, shell);
+        else
+            cull_for_window(work, frame, shell);
+        *known = work->near.limit[shell];
+    } else {
+        const double to = fibrad_near_further(work, *known);
+        LANED(fibrad_near_walk)(work, frame, &(fibrad_tube){.radius = 1}, *known, to);
+        if (masked) round_found(&work->disc, from);
+        *known = to;
+    }
+    if (work->disc.count > work->disc.capacity) return;
+    if (masked) remove_not_ahead(work, from);
+    if (*known >= work->clear) *horizon = fibrad_near_horizon(work, frame + 6);
+    sort_discs(work, resolved, masked);
+}
+
+/* Adds what discs hide to the counts of the near list, or to entries if a walk has found the sphere. */
+static void count_hidden(fibrad_workspace *work, uint32_t window) {
+    const fibrad_discs disc = work->disc;
+    for (uint32_t k = 0; k < disc.count; k++) {
+        if (disc.near[k] < work->near.capacity)
+            work->near.count[disc.near[k]][window % 2] += disc.hidden_points[k];
+        else if (disc.hidden_points[k] > 0)
+            fibrad_work_accumulate(work, k, window, disc.hidden_points[k]);
+    }
+}
+
+bool LANED(fibrad_mask_window)(fibrad_workspace *work, const double frame[9], uint32_t chords, uint32_t words,
+                               uint32_t k) {
+    fibrad_masks *masks = &work->masks;
+    fibrad_discs *disc = &work->disc;
+    uint32_t resolved = 0;
+    double known = -1, horizon = __builtin_inf();
+    disc->count = 0;
+    LANED(fibrad_masks_begin)(masks, chords, words, k);
+    for (uint32_t shell = 0; masks->open > 0 && known < horizon; shell++) {
+        const uint32_t before = disc->count;
+        find_shell(work, frame, shell, true, resolved, &known, &horizon);
+        if (disc->count > disc->capacity) return true;
+        fibrad_zero(disc->hidden_points + before, (disc->count - before) * sizeof *disc->hidden_points);
+        const uint32_t from = resolved;
+        resolved = LANED(fibrad_masks_discs)(masks, disc, from, (float)fibrad_min(known, horizon));
+        for (uint32_t d = from; d < resolved && masks->open > 0; d++) disc->fdepth[disc->order[d]] = -1;
+    }
+    if (fibrad_mesh_near(work, masks->open > 0 ? __builtin_inf() : known)) return false;
+    count_hidden(work, k);
+    return true;
+}
+
 /* Windows with more discs than this in the first shell mostly have many arcs. */
 #define DISCS_DENSE 44
 
@@ -164,18 +269,8 @@ double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], 
     uint32_t resolved = 0;
     double known = -1, horizon = __builtin_inf(); /* all spheres with a minimum depth of at most `known` are listed */
     for (uint32_t shell = 0; open && known < horizon; shell++) {
-        if (shell == work->near.shells && fibrad_near_pays(&work->near)) LANED(fibrad_near_extend)(work);
-        if (shell < work->near.shells) {
-            cull_for_window(work, frame, shell);
-            known = work->near.limit[shell];
-        } else {
-            const double to = fibrad_near_further(work, known);
-            LANED(fibrad_near_walk)(work, frame, &(fibrad_tube){.radius = 1}, known, to);
-            known = to;
-        }
+        find_shell(work, frame, shell, false, resolved, &known, &horizon);
         if (work->disc.count > work->disc.capacity) break;
-        if (known >= work->clear) horizon = fibrad_near_horizon(work, frame + 6);
-        sort_discs(work, resolved);
         if (shell == 0 && work->disc.count > DISCS_DENSE && points->count == 0)
             LANED(fibrad_dense_begin)(&work->areas, work->disc.order, work->disc.count, work->disc.r);
         resolved = resolve_discs(work, points, k, resolved, fibrad_min(known, horizon), &open);

@@ -62,9 +62,37 @@ static void write_line(const double p[3]) {
     printf("{%" PRId32 ",%" PRId32 "},", (int32_t)u, (int32_t)v);
 }
 
+/* Bits of the senses of all lines so far. */
+static uint32_t senses[256], lines_so_far;
+
+/* Finds the best senses of several searches and lists them. line: as the table has them. */
+static void choose_senses(uint32_t n, const vector *line) {
+    static vector turned[LARGEST], best[LARGEST];
+    static double field[LARGEST];
+    const uint64_t searches = n <= 256 ? 2000 : n <= 724 ? 200 : 32;
+    double least = HUGE_VAL;
+    for (uint64_t draw = 0; draw < searches; draw++) {
+        memcpy(turned, line, n * sizeof *turned);
+        const double sum = fibrad_lines_orient(n, turned, field, draw);
+        if (sum < least) least = sum, memcpy(best, turned, n * sizeof *best);
+    }
+    for (uint32_t k = 0; k < n; k++, lines_so_far++)
+        if (best[k][0] * line[k][0] + best[k][1] * line[k][1] + best[k][2] * line[k][2] < 0)
+            senses[lines_so_far / 32] |= UINT32_C(1) << lines_so_far % 32;
+}
+
+static void write_senses(void) {
+    printf("const uint32_t fibrad_table_senses[] = {\n");
+    for (uint32_t w = 0; w <= lines_so_far / 32; w++) printf("0x%08" PRIx32 ",%s", senses[w], w % 8 == 7 ? "\n" : "");
+    printf("\n};\n");
+}
+
 static void write_set(uint32_t n) {
     static vector line[LARGEST];
     make_set(n, line);
+    for (uint32_t k = 0; k < n; k++)
+        for (int axis = 0; axis < 3 && line[k][2] < 0; axis++) line[k][axis] = -line[k][axis];
+    choose_senses(n, (const vector *)line);
     printf("#if FIBRAD_TABLE_LINES >= %" PRIu32 "\n", n);
     for (uint32_t k = 0; k < n; k++) {
         write_line(line[k]);
@@ -78,6 +106,8 @@ int main(void) {
            "SPDX-License-Identifier: MIT */\n#include \"sample/tables.h\"\n\n/* clang-format off */\n"
            "#if FIBRAD_TABLE_LINES >= 8\n_Alignas(64) const int32_t fibrad_table_lines[][2] = {\n");
     for (int i = 0; i < WRITTEN; i++) write_set(SIZES_WRITTEN[i]);
-    printf("};\n#endif\n");
+    printf("};\n");
+    write_senses();
+    printf("#endif\n");
     return fflush(stdout) != 0 || ferror(stdout) != 0;
 }

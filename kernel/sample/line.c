@@ -1,4 +1,5 @@
 /* line.c - lines spread evenly. SPDX-License-Identifier: MIT */
+#include "base/random.h"
 #include "base/vector.h"
 #include "sample/line.h"
 #include "sample/direction.h"
@@ -22,9 +23,16 @@ static uint32_t first_of_set(uint32_t n) {
 
 bool fibrad_lines_tabled(uint32_t n) { return first_of_set(n) != UINT32_MAX; }
 
-/* Makes a unit vector of an entry: the projection from the south pole, x/(1 + z) and y/(1 + z), in units of 2^-31. */
-static void unfold_line(const int32_t entry[2], double line[3]) {
-    const double u = 0x1p-31 * entry[0], v = 0x1p-31 * entry[1], square = u * u + v * v, scale = 1 + square;
+uint32_t fibrad_lines_next(uint32_t n) {
+    for (int i = 0; i < SIZE_COUNT && SIZES[i] <= FIBRAD_TABLE_LINES; i++)
+        if (SIZES[i] >= n) return SIZES[i];
+    return n;
+}
+
+/* Makes a unit vector of an entry: the projection from the south pole, x/(1 + z) and y/(1 + z), in units of 2^-31.
+ * sense: 1 or -1. */
+static void unfold_line(const int32_t entry[2], double sense, double line[3]) {
+    const double u = 0x1p-31 * entry[0], v = 0x1p-31 * entry[1], square = u * u + v * v, scale = sense * (1 + square);
     line[0] = 2 * u / scale;
     line[1] = 2 * v / scale;
     line[2] = (1 - square) / scale;
@@ -33,7 +41,10 @@ static void unfold_line(const int32_t entry[2], double line[3]) {
 static void unfold_set(uint32_t n, double (*line)[3]) {
 #if FIBRAD_TABLE_LINES >= 8
     const uint32_t first = first_of_set(n);
-    for (uint32_t k = 0; k < n; k++) unfold_line(fibrad_table_lines[first + k], line[k]);
+    for (uint32_t k = first; k < first + n; k++) {
+        const bool turned = fibrad_table_senses[k / 32] >> k % 32 & 1;
+        unfold_line(fibrad_table_lines[k], turned ? -1 : 1, line[k - first]);
+    }
 #else
     (void)n, (void)line, (void)unfold_line;
 #endif
@@ -144,6 +155,45 @@ void fibrad_lines_halve(uint32_t n, double (*line)[3], double *field) {
     }
 }
 
+/* ---- senses ----------------------------------------------------------------------------------------------------- */
+
+#define WITHIN_HALF 1.5
+
+/* What the sum of 1/|p - q| loses if one of two vectors that are nearest as they are turns round. */
+static double sense_gain(const double (*line)[3], uint32_t i, uint32_t j) {
+    const double t = fibrad_dot(line[i], line[j]), weight = (i ^ j) & 1 ? 1 : WITHIN_HALF;
+    return weight * (1 / fibrad_sqrt(fibrad_max(0x1p-40, 2 - 2 * t)) - 1 / fibrad_sqrt(fibrad_max(0x1p-40, 2 + 2 * t)));
+}
+
+static void turn_line(uint32_t n, double (*line)[3], double *field, uint32_t i) {
+    for (int axis = 0; axis < 3; axis++) line[i][axis] = 0 - line[i][axis];
+    field[i] = 0 - field[i];
+    for (uint32_t j = 0; j < n; j++)
+        if (j != i) field[j] += 2 * sense_gain((const double(*)[3])line, i, j);
+}
+
+/* Turns lines round if this raises the sum by no more than a threshold, which falls to 0. So the search leaves poor
+ * minima without a random number. field[i]: what the sum gains from turning line i, over -2. */
+double fibrad_lines_orient(uint32_t n, double (*line)[3], double *field, uint64_t draw) {
+    enum { SWEEPS = 40, TAIL = 8 };
+    fibrad_random random = fibrad_random_start(draw, n);
+    double sum = 0;
+    for (uint32_t i = 0; i < n; i++)
+        if (fibrad_random_next(&random) < 0.5)
+            for (int axis = 0; axis < 3; axis++) line[i][axis] = 0 - line[i][axis];
+    fibrad_zero(field, n * sizeof *field);
+    for (uint32_t i = 0; i < n; i++)
+        for (uint32_t j = 0; j < n; j++)
+            if (j != i) field[i] += sense_gain((const double(*)[3])line, i, j);
+    for (int sweep = 0; sweep < SWEEPS + TAIL; sweep++) {
+        const double threshold = sweep < SWEEPS ? 2.0 * (SWEEPS - sweep) / SWEEPS : 0;
+        for (uint32_t i = 0; i < n; i++)
+            if (-field[i] < threshold * fibrad_random_next(&random) - 1e-9) turn_line(n, line, field, i);
+    }
+    for (uint32_t i = 0; i < n; i++) sum += field[i];
+    return sum / 2;
+}
+
 /* ---- sets ------------------------------------------------------------------------------------------------------ */
 
 /* Direction k of the Fibonacci set of `of` directions for k < n. */
@@ -169,5 +219,6 @@ void fibrad_lines_make(uint32_t n, double (*line)[3], double *scratch) {
         fibrad_lines_relax(n, line, (double(*)[3])scratch, &close);
         fibrad_lines_halve(n, line, scratch);
         fibrad_lines_relax(n, line, (double(*)[3])scratch, &spread);
+        (void)fibrad_lines_orient(n, line, scratch, 0);
     }
 }

@@ -69,6 +69,8 @@ extern const double fibrad_table_surface_z[], fibrad_table_surface_ring[], fibra
  * written. */
 #if FIBRAD_TABLE_LINES >= 8
 extern const int32_t fibrad_table_lines[][2];
+/* Bit k % 32 of word k / 32: line k of the table is to be turned round. */
+extern const uint32_t fibrad_table_senses[];
 #endif
 
 /* A Fibonacci lattice of N_F nodes about the z axis, on 64-byte boundaries; entry k - 1 is node k = 1 ... N_F. */

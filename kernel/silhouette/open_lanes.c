@@ -1,6 +1,7 @@
 /* open_lanes.c - what walls get of the directions in which a sphere is open. Compiled once per instruction set.
  * SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
+#include "base/constants.h"
 #include "row/wall_share_lanes.h"
 #include "row/window_lanes.h"
 #include "silhouette/open_lanes.h"
@@ -41,7 +42,7 @@ int LANED(fibrad_open_share)(fibrad_workspace *space, const fibrad_scene *scene,
         if (space->disc.count > space->disc.capacity || space->areas.overflow) return fibrad_work_discs_missed(space);
         if (rest == 0) continue;
         sums->hidden[k / 64] &= ~(UINT64_C(1) << k % 64);
-        LANED(fibrad_walls_share)(space, frame, &areas, k, &set, rest);
+        LANED(fibrad_walls_share)(space, frame, &areas, k, &set, rest, FIBRAD_PI);
     }
     LANED(fibrad_walls_complete)(space, &set, parts);
     return FIBRAD_OK;

@@ -24,6 +24,7 @@ static void prepare_culls(fibrad_near *near, uint32_t from, uint32_t to) {
         vd_store_float(near->fe + k, vd_select(small, e - 1e-6 * size, vd_set1(-1)));
         q -= 4e-6 * (about * about);
         vd_store_float(near->fq + k, vd_select(small, q, vd_set1(-FLT_MAX)));
+        vd_store_float(near->fsquare + k, r * r);
     }
 }
 
@@ -85,7 +86,7 @@ void LANED(fibrad_near_extend)(fibrad_workspace *work) {
         near->sphere[count] = 0;
     }
     prepare_culls(near, begin, count);
-    for (uint32_t k = begin; k < count; k++) near->entry[k] = FIBRAD_NONE;
+    for (uint32_t k = begin; k < count; k++) near->entry[k] = FIBRAD_NONE, near->count[k][0] = near->count[k][1] = 0;
     near->end[shell] = count;
     if (shell == 0) near->all.count = count;
     near->limit[shell] = to;
@@ -112,9 +113,10 @@ static bool list_octant(const fibrad_near *of, uint32_t octant, fibrad_sight *si
         vf_compress(to.y + n, bits, y);
         vf_compress(to.z + n, bits, z);
         vf_compress(to.e + n, bits, e);
+        vf_compress(to.square + n, bits, vf_load(near.fsquare + k));
         n += vf_compress_places(to.near + n, bits, (uint32_t)k);
     }
-    for (; n % FIBRAD_LANES_MAX != 0; n++) to.x[n] = to.y[n] = to.z[n] = to.e[n] = 0;
+    for (; n % FIBRAD_LANES_MAX != 0; n++) to.x[n] = to.y[n] = to.z[n] = to.e[n] = to.square[n] = 0;
     sight->count = (uint32_t)n;
     return true;
 }

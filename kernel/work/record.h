@@ -1,7 +1,7 @@
 /* record.h - the records of a collection of rows. SPDX-License-Identifier: MIT
  *
- * A record is this head, the factors to walls, the factors to spheres, and the columns, padded to 8 bytes. Records
- * follow each other from the first 8-byte boundary of the block on. */
+ * A record is this head, the factors to walls, the factors to spheres, the columns and, if the row is along lines, the
+ * differences of halves, padded to 8 bytes. Records follow each other from the first 8-byte boundary of the block on. */
 #ifndef FIBRAD_WORK_RECORD_H
 #define FIBRAD_WORK_RECORD_H
 
@@ -9,8 +9,8 @@
 #include "base/port.h"
 
 typedef struct fibrad_record {
-    uint32_t sphere, length, bodies;
-    uint32_t symmetric;
+    uint32_t sphere, length, bodies, lines;
+    uint64_t symmetric;
     uint64_t scene; /* hash of the scene of the row; 0: none */
     double escaped, beyond, error;
 } fibrad_record;
@@ -23,9 +23,15 @@ static inline const uint32_t *fibrad_record_col(const fibrad_record *record) {
     return (const uint32_t *)(const void *)(fibrad_record_f(record) + record->length);
 }
 
-/* Bytes of a record. */
-static inline size_t fibrad_record_size(uint32_t length, uint32_t bodies) {
-    return sizeof(fibrad_record) + ((size_t)bodies + length) * sizeof(double) + ((size_t)length + 1) / 2 * 8;
+/* NULL: the row is not along lines. */
+static inline const float *fibrad_record_half(const fibrad_record *record) {
+    return record->lines > 0 ? (const float *)(const void *)(fibrad_record_col(record) + record->length) : NULL;
+}
+
+/* Bytes of a record. lines: of the row. */
+static inline size_t fibrad_record_size(uint32_t length, uint32_t bodies, uint32_t lines) {
+    const size_t words = lines > 0 ? 2 * (size_t)length : length; /* of 4 bytes */
+    return sizeof(fibrad_record) + ((size_t)bodies + length) * sizeof(double) + (words + 1) / 2 * 8;
 }
 
 /* The first record at or after byte `at` of a collection. NULL: there is none. *at: out: where the next record

@@ -53,7 +53,9 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
     for (uint32_t k = 0; k < n; k++) {
         uint32_t entry = (uint32_t)key[k];
         row->col[k] = (uint32_t)(key[k] >> 32);
-        row->f[k] = entry_sum(entries->part[entry]) * scale;
+        const double *part = entries->part[entry];
+        row->f[k] = entry_sum(part) * scale;
+        if (row->half != NULL) row->half[k] = (float)((part[0] + part[2] - part[1] - part[3]) * scale);
     }
     return FIBRAD_OK;
 }

@@ -17,6 +17,7 @@ typedef struct fibrad_entries {
     uint64_t *key[2];  /* [capacity] scratch of the sort by columns */
     uint32_t slots, capacity, length, missed;
     fibrad_addends *addends; /* NULL, or a list of terms that are to be added later */
+    double weight;           /* by which values are multiplied; 1 but for areas among windows by masks */
     bool end; /* the present window is the first or the last: it counts half in differences of even and odd windows */
 } fibrad_entries;
 
@@ -32,6 +33,7 @@ static inline void fibrad_entries_add(fibrad_entries *entries, uint32_t entry, u
         entries->missed++;
         return;
     }
+    area *= entries->weight;
     if (entries->addends != NULL) {
         fibrad_entries_list(entries, entry, k, area);
         return;
@@ -50,7 +52,7 @@ uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere);
 /* Entries with numbers of spheres + slot belong to slots. Adds them to the sums of the slots. */
 void fibrad_entries_slots(const fibrad_entries *entries, const fibrad_scene *scene, double wall[FIBRAD_SLOTS]);
 
-/* Writes the row: entries times `scale`, columns ascending. row->error: the distance of the sums over even and odd
+/* Writes the row: entries times `scale`, columns ascending, and row->half unless it is NULL. row->error: the distance of the sums over even and odd
  * windows. Entries of slots count in the error only. Entries that triangles have hidden again are left out. */
 int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene, double scale, fibrad_row *row);
 

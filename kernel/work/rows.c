@@ -28,20 +28,21 @@ static void settle_rows(fibrad_rows *rows) {
 
 bool fibrad_rows_open(const fibrad_rows *rows, uint32_t bodies, fibrad_row *row) {
     if (!fibrad_rows_settled(rows)) return false;
-    const size_t space = free_bytes(rows), head = fibrad_record_size(0, bodies);
+    const size_t space = free_bytes(rows), head = fibrad_record_size(0, bodies, 0);
     if (space < head) return false;
-    const size_t capacity = (space - head) / (sizeof *row->f + sizeof *row->col);
+    const size_t capacity = (space - head) / (sizeof *row->f + sizeof *row->col + sizeof *row->half);
     row->body = (double *)(void *)(end_of(rows) + sizeof(fibrad_record));
     row->f = row->body + bodies;
     row->capacity = capacity < FIBRAD_SPHERES_MAX ? (uint32_t)capacity : FIBRAD_SPHERES_MAX;
     row->capacity -= row->capacity % 2;
     row->col = (uint32_t *)(void *)(row->f + row->capacity);
+    row->half = (float *)(void *)(row->col + row->capacity);
     return true;
 }
 
 int fibrad_rows_reserve(fibrad_rows *rows, uint32_t length, uint32_t bodies) {
     /* 8 bytes for another alignment of the block, 16 for rounding of the capacity */
-    const size_t needed = rows->used + fibrad_record_size(length, bodies) + 24;
+    const size_t needed = rows->used + fibrad_record_size(length, bodies, 1) + 24;
     const int status = fibrad_memory_reserve(&rows->memory, needed);
     if (status == FIBRAD_OK) settle_rows(rows);
     return status;
@@ -54,13 +55,16 @@ void fibrad_rows_commit(fibrad_rows *rows, uint64_t scene, uint32_t bodies, cons
     *record = (fibrad_record){.sphere = row->sphere,
                               .length = row->length,
                               .bodies = bodies,
+                              .lines = row->half != NULL ? row->lines : 0,
                               .symmetric = row->symmetric != 0,
                               .scene = scene,
                               .escaped = row->escaped,
                               .beyond = row->beyond,
                               .error = row->error};
-    __builtin_memmove((void *)(row->f + row->length), row->col, row->length * sizeof *row->col);
-    rows->used += fibrad_record_size(row->length, bodies);
+    uint32_t *col = (uint32_t *)(void *)(row->f + row->length);
+    __builtin_memmove(col, row->col, row->length * sizeof *row->col);
+    if (record->lines > 0) __builtin_memmove(col + row->length, row->half, row->length * sizeof *row->half);
+    rows->used += fibrad_record_size(row->length, bodies, record->lines);
     rows->count++;
     rows->entries += row->length;
 }
@@ -69,7 +73,7 @@ const fibrad_record *fibrad_rows_next(const fibrad_rows *rows, size_t *at) {
     if (*at >= rows->used || rows->memory.block == NULL) return NULL;
     const unsigned char *first = (const unsigned char *)rows->memory.block + lead_of(rows);
     const fibrad_record *record = (const fibrad_record *)(const void *)(first + *at);
-    *at += fibrad_record_size(record->length, record->bodies);
+    *at += fibrad_record_size(record->length, record->bodies, record->lines);
     return record;
 }
 
@@ -88,6 +92,8 @@ int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row) {
                         .escaped = record->escaped,
                         .beyond = record->beyond,
                         .error = record->error,
+                        .lines = record->lines,
+                        .half = record->lines > 0 ? (float *)(void *)((uint32_t *)(void *)(f + record->length) + record->length) : NULL,
                         .symmetric = record->symmetric != 0};
     return 1;
 }
@@ -109,10 +115,12 @@ int fibrad_rows_add(fibrad_rows *rows, const fibrad_row *row, uint32_t bodies) {
     int status = fibrad_rows_reserve(rows, row->length, bodies);
     if (status != FIBRAD_OK) return status;
     fibrad_rows_open(rows, bodies, &to);
+    if (row->half == NULL || row->lines == 0) to.half = NULL;
     if (bodies > 0) fibrad_copy(to.body, row->body, bodies * sizeof *to.body);
     if (row->length > 0) {
         fibrad_copy(to.f, row->f, row->length * sizeof *to.f);
         fibrad_copy(to.col, row->col, row->length * sizeof *to.col);
+        if (to.half != NULL) fibrad_copy(to.half, row->half, row->length * sizeof *to.half);
     }
     fibrad_rows_commit(rows, 0, bodies, &to);
     return FIBRAD_OK;

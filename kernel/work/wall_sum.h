@@ -36,10 +36,10 @@ typedef struct fibrad_wall_sums {
     fibrad_addends *addends;                             /* NULL, or a list of terms that are to be added later */
 } fibrad_wall_sums;
 
-/* Adds the value of window k of n to part k mod 4 of a sum. In differences between parts the first and the last
- * window count half, as in fibrad_entries_add. */
-static inline void fibrad_wall_add(double part[4], uint32_t k, uint32_t n, double value) {
-    if (k == 0 || k == n - 1) {
+/* Adds the value of window k to part k mod 4 of a sum. end: the window counts half in differences between parts, as in
+ * fibrad_entries_add. */
+static inline void fibrad_wall_add(double part[4], uint32_t k, bool end, double value) {
+    if (end) {
         part[k % 4 ^ 1] += value / 4;
         value -= value / 4;
     }

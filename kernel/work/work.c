@@ -33,13 +33,15 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     near->fz = fibrad_arena_take(arena, near->capacity, sizeof(float));
     near->fe = fibrad_arena_take(arena, near->capacity, sizeof(float));
     near->fq = fibrad_arena_take(arena, near->capacity, sizeof(float));
+    near->fsquare = fibrad_arena_take(arena, near->capacity, sizeof(float));
+    near->count = fibrad_arena_take(arena, near->capacity, sizeof *near->count);
     near->x = fibrad_arena_take(arena, near->capacity, sizeof(double));
     near->y = fibrad_arena_take(arena, near->capacity, sizeof(double));
     near->z = fibrad_arena_take(arena, near->capacity, sizeof(double));
     near->r = fibrad_arena_take(arena, near->capacity, sizeof(double));
     near->sphere = fibrad_arena_take(arena, near->capacity + discs, sizeof(uint32_t));
     near->entry = fibrad_arena_take(arena, near->capacity + discs, sizeof(uint32_t));
-    near->all = (fibrad_sight){.x = near->fx, .y = near->fy, .z = near->fz, .e = near->fe};
+    near->all = (fibrad_sight){.x = near->fx, .y = near->fy, .z = near->fz, .e = near->fe, .square = near->fsquare};
     near->all.near = fibrad_arena_take(arena, near->capacity, sizeof(uint32_t));
     near->sights = ((near->capacity < MOST_SEEN ? near->capacity : MOST_SEEN) / 4 + 15) / 16 * 16;
     for (int octant = 0; octant < 8; octant++) {
@@ -48,6 +50,7 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
         sight->y = fibrad_arena_take(arena, near->sights, sizeof(float));
         sight->z = fibrad_arena_take(arena, near->sights, sizeof(float));
         sight->e = fibrad_arena_take(arena, near->sights, sizeof(float));
+        sight->square = fibrad_arena_take(arena, near->sights, sizeof(float));
         sight->near = fibrad_arena_take(arena, near->sights, sizeof(uint32_t));
     }
 
@@ -61,6 +64,7 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     disc->fu = fibrad_arena_take(arena, discs, sizeof(float));
     disc->fv = fibrad_arena_take(arena, discs, sizeof(float));
     disc->square = fibrad_arena_take(arena, discs, sizeof(float));
+    disc->fdepth = fibrad_arena_take(arena, discs, sizeof(float));
     disc->near = fibrad_arena_take(arena, discs + near->capacity, sizeof(uint32_t));
     disc->order = fibrad_arena_take(arena, discs, sizeof(uint32_t));
     disc->hidden_points = fibrad_arena_take(arena, discs, sizeof(uint32_t));
@@ -247,6 +251,7 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
     work->entries.end = false;
     work->parallel = false;
     work->entries.addends = NULL;
+    work->entries.weight = 1;
     fibrad_zero(work->wall, sizeof work->wall);
     work->needed = work->plan;
     work->scene = scene;

@@ -12,6 +12,7 @@
 #include "scene/surroundings.h"
 #include "window/areas.h"
 #include "window/discs.h"
+#include "window/masks.h"
 #include "window/points.h"
 
 #define FIBRAD_SHELLS 8
@@ -23,6 +24,7 @@
 /* The spheres of the first shell that may come before windows of some directions, for culls, as in fibrad_near. */
 typedef struct fibrad_sight {
     float *x, *y, *z, *e; /* [capacity] */
+    float *square;        /* [capacity], r^2, for masks */
     uint32_t *near;       /* [capacity], positions in the near list */
     uint32_t count;       /* whole vectors */
 } fibrad_sight;
@@ -30,6 +32,8 @@ typedef struct fibrad_sight {
 typedef struct fibrad_near {
     float *fx, *fy, *fz, *fe; /* [capacity], for culls of beams: centre, and a little less than e */
     float *fq;                /* [capacity], for culls of rays: a little less than d^2 + 1 - r^2 */
+    float *fsquare;           /* [capacity], r^2 */
+    uint32_t (*count)[2];     /* [capacity], points of masks seen in even and in odd windows */
     double *x, *y, *z, *r;    /* [capacity], centre and radius */
     /* Element capacity + k is for disc k of a window, if the window has found it in the grid. */
     uint32_t *sphere; /* [capacity + discs + FIBRAD_LANES_MAX], position in scene order */
@@ -151,6 +155,7 @@ typedef struct fibrad_workspace {
     fibrad_near near;
     fibrad_discs disc;
     fibrad_areas areas;
+    fibrad_masks masks;
     fibrad_entries entries;
     fibrad_legs legs;
     fibrad_met *met;      /* NULL unless plan.met */

@@ -2,6 +2,7 @@
 #ifndef FIBRAD_VEC_AVX2_H
 #define FIBRAD_VEC_AVX2_H
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <immintrin.h>
 #include "base/lanes/places.h"
@@ -129,6 +130,23 @@ static inline uint32_t vn_some_bits(const uint32_t *p) {
 }
 static inline vn vn_count_lt(vn n, vf a, vf b) {
     return _mm256_sub_epi32(n, _mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_LT_OQ)));
+}
+/* Shifts by 32 and more, and by what is no number, leave no bits. */
+static inline vn vn_below(vf k) {
+    const __m256i by = _mm256_cvtps_epi32(_mm256_max_ps(k, _mm256_setzero_ps())), all = vn_set1(UINT32_MAX);
+    return _mm256_andnot_si256(_mm256_sllv_epi32(all, by), all);
+}
+static inline bool vn_none(vn n) { return _mm256_testz_si256(n, n); }
+static inline vn vn_count_bytes(vn n) {
+    const __m256i of_four = _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4));
+    const __m256i four = _mm256_set1_epi8(15), high = _mm256_and_si256(_mm256_srli_epi32(n, 4), four);
+    return _mm256_add_epi8(_mm256_shuffle_epi8(of_four, _mm256_and_si256(n, four)), _mm256_shuffle_epi8(of_four, high));
+}
+static inline vn vn_add_bytes(vn n, vn m) { return _mm256_add_epi8(n, m); }
+static inline uint32_t vn_sum_bytes(vn n) {
+    const __m256i sum = _mm256_sad_epu8(n, _mm256_setzero_si256());
+    const __m128i two = _mm_add_epi64(_mm256_castsi256_si128(sum), _mm256_extracti128_si256(sum, 1));
+    return (uint32_t)_mm_cvtsi128_si32(_mm_add_epi64(two, _mm_unpackhi_epi64(two, two)));
 }
 static inline void vf_compress(float *p, uint32_t bits, vf a) {
     __m128 low = _mm256_castps256_ps128(a), high = _mm256_extractf128_ps(a, 1);

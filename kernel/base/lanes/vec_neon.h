@@ -3,6 +3,7 @@
 #define FIBRAD_VEC_NEON_H
 
 #include <arm_neon.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include "base/lanes/places.h"
 
@@ -107,6 +108,17 @@ static inline uint32_t vn_some_bits(const uint32_t *p) {
     return vn_mask_bits(vtstq_u32(n, n));
 }
 static inline vn vn_count_lt(vn n, vf a, vf b) { return vsubq_u32(n, vcltq_f32(a, b)); }
+/* Shifts by 32 and more leave no bits. */
+static inline vn vn_below(vf k) {
+    const int32x4_t by = vcvtnq_s32_f32(vf_min(vf_max(k, vf_set1(0)), vf_set1(32)));
+    return ~vshlq_u32(vdupq_n_u32(UINT32_MAX), by);
+}
+static inline bool vn_none(vn n) { return vmaxvq_u32(n) == 0; }
+static inline vn vn_count_bytes(vn n) { return vreinterpretq_u32_u8(vcntq_u8(vreinterpretq_u8_u32(n))); }
+static inline vn vn_add_bytes(vn n, vn m) {
+    return vreinterpretq_u32_u8(vaddq_u8(vreinterpretq_u8_u32(n), vreinterpretq_u8_u32(m)));
+}
+static inline uint32_t vn_sum_bytes(vn n) { return vaddlvq_u8(vreinterpretq_u8_u32(n)); }
 static inline uint32_t vn_compress(uint32_t *p, uint32_t bits, const uint32_t *from) {
     fibrad_compress_four(p, bits, from);
     return fibrad_count_four(bits);

@@ -30,12 +30,19 @@
  *                            vn_beyond_bits(n, m): the lanes where n has bits that m has not
  *                            vn_compress(p, bits, from): those of the numbers at `from`; returns how many
  *                            vn_some_bits(p): which of those at p, any address, are not 0
+ *                            & | ~
+ *                            vn_below(k): the bits below k, the float k rounded to a whole number; none if k <= 0, all
+ *                            32 if k >= 32
+ *                            vn_none(n): whether all are 0
+ *                            vn_count_bytes(n): the bits set in parts of each number; sums of up to 31 of these by
+ *                            vn_add_bytes(n, m); vn_sum_bytes(n): all of them together
  * Other loads and stores are aligned to the vector. min and max are (a < b ? a : b) and (a > b ? a : b), as x86 has them.
  * 0 - a, not -a, where a sign turns: the zero it makes is positive. */
 /* clang-format on */
 #ifndef FIBRAD_VEC_SCALAR_H
 #define FIBRAD_VEC_SCALAR_H
 
+#include <stdbool.h>
 #include <stdint.h>
 #include "base/port.h"
 
@@ -111,6 +118,16 @@ static inline uint32_t vn_beyond_bits(vn n, vn m) { return (n & ~m) != 0; }
 static inline void vn_store(uint32_t *p, vn n) { *p = n; }
 static inline uint32_t vn_some_bits(const uint32_t *p) { return *p != 0; }
 static inline vn vn_count_lt(vn n, vf a, vf b) { return n + (a < b); }
+static inline vn vn_below(vf k) {
+    uint32_t bits;
+    k = (k > 0 ? k < 32 ? k : 32 : 0) + 0x1.8p23f;
+    fibrad_copy(&bits, &k, sizeof bits);
+    return (uint32_t)((UINT64_C(1) << (bits & 63)) - 1);
+}
+static inline bool vn_none(vn n) { return n == 0; }
+static inline vn vn_count_bytes(vn n) { return fibrad_count_bits(n); }
+static inline vn vn_add_bytes(vn n, vn m) { return n + m; }
+static inline uint32_t vn_sum_bytes(vn n) { return n; }
 static inline void vf_compress(float *p, uint32_t bits, vf a) { (void)bits, *p = a; }
 static inline uint32_t vn_compress(uint32_t *p, uint32_t bits, const uint32_t *from) {
     *p = *from;

@@ -2,6 +2,7 @@
 #ifndef FIBRAD_VEC_SSE2_H
 #define FIBRAD_VEC_SSE2_H
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <immintrin.h>
 #include "base/lanes/places.h"
@@ -109,6 +110,24 @@ static inline uint32_t vn_some_bits(const uint32_t *p) {
     return ~(uint32_t)_mm_movemask_ps(_mm_castsi128_ps(_mm_cmpeq_epi32(n, _mm_setzero_si128()))) & 15;
 }
 static inline vn vn_count_lt(vn n, vf a, vf b) { return _mm_sub_epi32(n, _mm_castps_si128(_mm_cmplt_ps(a, b))); }
+/* Lanes cannot be shifted one by one here, so a power of two loses one. */
+static inline vn vn_below(vf k) {
+    const __m128 whole = _mm_min_ps(_mm_max_ps(k, _mm_setzero_ps()), _mm_set1_ps(32));
+    const __m128i below = _mm_sub_epi32(vn_power_of_two(whole), _mm_set1_epi32(1));
+    return _mm_or_si128(below, _mm_castps_si128(_mm_cmpge_ps(whole, _mm_set1_ps(31.5f))));
+}
+static inline bool vn_none(vn n) { return _mm_movemask_epi8(_mm_cmpeq_epi32(n, _mm_setzero_si128())) == 0xffff; }
+static inline vn vn_count_bytes(vn n) {
+    const __m128i one = _mm_set1_epi8(0x55), two = _mm_set1_epi8(0x33), four = _mm_set1_epi8(0x0f);
+    n = _mm_sub_epi8(n, _mm_and_si128(_mm_srli_epi32(n, 1), one));
+    n = _mm_add_epi8(_mm_and_si128(n, two), _mm_and_si128(_mm_srli_epi32(n, 2), two));
+    return _mm_and_si128(_mm_add_epi8(n, _mm_srli_epi32(n, 4)), four);
+}
+static inline vn vn_add_bytes(vn n, vn m) { return _mm_add_epi8(n, m); }
+static inline uint32_t vn_sum_bytes(vn n) {
+    const __m128i sum = _mm_sad_epu8(n, _mm_setzero_si128());
+    return (uint32_t)_mm_cvtsi128_si32(_mm_add_epi64(sum, _mm_unpackhi_epi64(sum, sum)));
+}
 static inline uint32_t vn_compress(uint32_t *p, uint32_t bits, const uint32_t *from) {
     fibrad_compress_four(p, bits, from);
     return fibrad_count_four(bits);

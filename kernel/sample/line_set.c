@@ -1,0 +1,62 @@
+/* line_set.c - sets of lines for rows of a matrix. SPDX-License-Identifier: MIT */
+#include "sample/line_set.h"
+#include "base/arena.h"
+#include "base/vector.h"
+#include "sample/direction.h"
+#include "sample/line.h"
+
+/* Takes the arrays from the arena. The caller copies the object itself to the address returned. */
+static fibrad_line_set *line_set_layout(fibrad_arena *arena, uint32_t n, fibrad_line_set *set) {
+    fibrad_line_set *place = fibrad_arena_take(arena, 1, sizeof *place);
+    set->line = fibrad_arena_take(arena, n, sizeof *set->line);
+    set->frame = fibrad_arena_take(arena, n, sizeof *set->frame);
+    return place;
+}
+
+static bool line_count_valid(uint32_t lines) {
+    return lines >= FIBRAD_DIRECTIONS_MIN && lines <= FIBRAD_LINES_EVEN_MAX;
+}
+
+uint32_t fibrad_line_set_lines(uint32_t lines) { return fibrad_lines_next(lines); }
+
+size_t fibrad_line_set_size(uint32_t lines) {
+    fibrad_arena arena = {0};
+    fibrad_line_set fields = {0};
+    if (!line_count_valid(lines)) return 0;
+    line_set_layout(&arena, fibrad_lines_next(lines), &fields);
+    return fibrad_arena_total(&arena);
+}
+
+/* The axes of a window along `line`: the first lies across the next line of the set that is not nearly parallel. So the
+ * windows of a set lie differently in their planes. */
+static void frame_of_line(uint32_t n, const double (*line)[3], uint32_t k, double frame[9]) {
+    const double *w = line[k];
+    double u[3], square = 0;
+    for (uint32_t next = k + 1; square < 0.1; next++) {
+        fibrad_cross(w, line[next % n], u);
+        square = fibrad_dot(u, u);
+    }
+    const double scale = 1 / fibrad_sqrt(square);
+    for (int axis = 0; axis < 3; axis++) frame[axis] = u[axis] * scale, frame[6 + axis] = w[axis];
+    fibrad_cross(w, frame, frame + 3);
+}
+
+int fibrad_line_set_init(fibrad_line_set **made, void *memory, size_t size, uint32_t lines, uint64_t turn) {
+    fibrad_arena arena = {0};
+    fibrad_line_set fields = {.turn = turn};
+    if (made == NULL || memory == NULL || !line_count_valid(lines)) return FIBRAD_E_ARGUMENT;
+    const uint32_t n = fields.n = fibrad_lines_next(lines);
+    const int status = fibrad_arena_open(&arena, memory, size, fibrad_line_set_size(n));
+    if (status != FIBRAD_OK) return status;
+    fibrad_line_set *set = line_set_layout(&arena, n, &fields);
+    fibrad_lines_make(n, fields.line, fields.frame[0]); /* the frames are scratch at first */
+    double rotation[9];
+    if (turn != 0) fibrad_rotation(turn, rotation);
+    for (uint32_t k = 0; k < n; k++) {
+        frame_of_line(n, (const double(*)[3])fields.line, k, fields.frame[k]);
+        if (turn != 0) fibrad_rotate_axes(rotation, fields.frame[k]);
+    }
+    *set = fields;
+    *made = set;
+    return FIBRAD_OK;
+}

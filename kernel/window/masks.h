@@ -1,0 +1,26 @@
+/* masks.h - the points of a window as bits of words. SPDX-License-Identifier: MIT
+ *
+ * The window is the unit disc about the origin. Parallel chords cut the square about it. Each chord has points at equal
+ * steps, 32 to a word. A disc hides on each chord the points between two ends, so a few operations on whole words take
+ * the place of a test for each point. Counts are whole numbers, which no order of terms and no instruction set changes.
+ * Source: L. Carpenter, "The A-buffer, an antialiased hidden surface method", SIGGRAPH 1984. docs/methods.md section 4.
+ */
+#ifndef FIBRAD_WINDOW_MASKS_H
+#define FIBRAD_WINDOW_MASKS_H
+
+#include "base/arena.h"
+#include "base/port.h"
+
+#define FIBRAD_MASK_WORDS_MAX  4u   /* words of a chord */
+#define FIBRAD_MASK_CHORDS_MAX 256u /* chords of a window */
+
+typedef struct fibrad_masks {
+    uint32_t chords, words; /* a multiple of 16, and the number of words of each chord */
+    float y_first, y_step;  /* height of the first chord, and the step to the next one */
+    float x_zero, x_scale;  /* the point at x is number x_zero + x_scale x of its chord, rounded */
+    uint32_t points;        /* points in the disc */
+    uint32_t open;          /* those that no disc has hidden */
+    _Alignas(FIBRAD_ALIGNMENT) uint32_t word[FIBRAD_MASK_WORDS_MAX * FIBRAD_MASK_CHORDS_MAX]; /* [words][chords] */
+} fibrad_masks;
+
+#endif
