@@ -31,56 +31,70 @@ static void transpose_part(fibrad_matrix *m, const fibrad_matrix_part *part) {
     for (uint32_t i = 0; i < to->n && part->begin < part->end; i++) {
         const uint32_t *col = fibrad_record_col(m->row[i]), length = m->row[i]->length;
         const double *f = fibrad_record_f(m->row[i]);
+        const float *half = m->lines ? fibrad_record_half(m->row[i]) : NULL;
         for (uint32_t k = (uint32_t)fibrad_first_entry(col, length, part->begin); k < length && col[k] < part->end;
              k++) {
             const uint64_t at = m->place[col[k]]++;
             to->col[at] = i, to->f[at] = f[k];
+            if (half != NULL) to->half[at] = half[k];
         }
     }
 }
 
-/* Rows that are reciprocal already. */
-static void copy_part(fibrad_matrix *m, fibrad_matrix_part *part) {
+/* The error of a row along lines. Half the difference of the averaged halves has two parts. Points of masks give noise,
+ * whose square is known. The rest is the error of areas of the halves. That of the whole set is smaller by a factor,
+ * which was measured: docs/accuracy.md. Both halves have errors of the shares of walls in common. */
+#define HALVES_ERROR 0.4
+
+/* What the halves of a row say. */
+typedef struct row_halves {
+    double square, sum; /* of the differences of entries: sum of squares, and sum */
+    double noise;       /* square of the noise of the entries */
+} row_halves;
+
+static double error_of_halves(const row_halves *halves, const fibrad_record *row) {
+    const double all = halves->square + halves->sum * halves->sum; /* what is open differs by the sum */
+    const double areas = fibrad_max(0, all - halves->noise);
+    return fibrad_sqrt(HALVES_ERROR * HALVES_ERROR * areas + halves->noise + row->shares * row->shares);
+}
+
+/* Merges row i from `length` entries of its own and those of the transpose from *there on. */
+static uint64_t merge_row(fibrad_matrix *m, uint32_t i, uint64_t at, uint64_t *there) {
     const fibrad_sparse *to = &m->result;
-    uint64_t at = part->first;
-    for (uint32_t i = part->begin; i < part->end; i++) {
-        const uint32_t length = m->row[i]->length;
-        to->start[i] = at;
-        fibrad_copy(to->col + at, fibrad_record_col(m->row[i]), length * sizeof *to->col);
-        fibrad_copy(to->f + at, fibrad_record_f(m->row[i]), length * sizeof *to->f);
-        at += length;
+    const fibrad_record *row = m->row[i];
+    const uint32_t *col = fibrad_record_col(row), length = row->length;
+    const double *f = fibrad_record_f(row), *r = m->r;
+    const float *half = m->lines ? fibrad_record_half(row) : NULL;
+    const uint64_t there_end = m->place[i];
+    row_halves halves = {0, 0, 0};
+    uint32_t here = 0;
+    to->start[i] = at;
+    while (here < length || *there < there_end) {
+        const uint32_t mine = here < length ? col[here] : UINT32_MAX;
+        const uint32_t theirs = *there < there_end ? to->col[*there] : UINT32_MAX, j = mine < theirs ? mine : theirs;
+        const double own = mine == j ? f[here] : 0, back = theirs == j ? to->f[*there] : 0;
+        const double own_part = fibrad_matrix_own(m, i, j), back_part = fibrad_matrix_own(m, j, i);
+        /* areas relative to the larger one, so that the sum is the same from both sides */
+        double larger = fibrad_max(r[i], r[j]), a_i = r[i] / larger, a_j = r[j] / larger;
+        a_i *= a_i, a_j *= a_j;
+        if (half != NULL) {
+            const double ratio = a_j / a_i, noise = m->row[j]->noise;
+            const double difference = ((mine == j ? half[here] : 0) + ratio * (theirs == j ? to->half[*there] : 0)) / 2;
+            halves.square += difference * difference, halves.sum += difference;
+            halves.noise += (row->noise * row->noise * own + ratio * ratio * (noise * noise * back)) / 4;
+        }
+        here += mine == j, *there += theirs == j;
+        to->col[at] = j;
+        to->f[at++] = (own_part * (a_i * own) + back_part * (a_j * back)) / a_i;
     }
-    part->filled = at;
-    part->done = 1;
+    if (half != NULL) m->error[i] = error_of_halves(&halves, row), m->noise[i] = fibrad_sqrt(halves.noise);
+    return at;
 }
 
 void fibrad_matrix_average_part(fibrad_matrix *m, fibrad_matrix_part *part) {
-    if (m->reciprocal) {
-        copy_part(m, part);
-        return;
-    }
-    const fibrad_sparse *to = &m->result;
-    const double *r = m->r;
     uint64_t at = part->first, there = part->transposed;
     transpose_part(m, part);
-    for (uint32_t i = part->begin; i < part->end; i++) {
-        const uint32_t *col = fibrad_record_col(m->row[i]), length = m->row[i]->length;
-        const double *f = fibrad_record_f(m->row[i]);
-        const uint64_t there_end = m->place[i];
-        uint32_t here = 0;
-        to->start[i] = at;
-        while (here < length || there < there_end) {
-            const uint32_t mine = here < length ? col[here] : UINT32_MAX;
-            const uint32_t theirs = there < there_end ? to->col[there] : UINT32_MAX, j = mine < theirs ? mine : theirs;
-            const double own = mine == j ? f[here++] : 0, back = theirs == j ? to->f[there++] : 0;
-            const double own_part = fibrad_matrix_own(m, i, j), back_part = fibrad_matrix_own(m, j, i);
-            /* areas relative to the larger one, so that the sum is the same from both sides */
-            double larger = fibrad_max(r[i], r[j]), a_i = r[i] / larger, a_j = r[j] / larger;
-            a_i *= a_i, a_j *= a_j;
-            to->col[at] = j;
-            to->f[at++] = (own_part * (a_i * own) + back_part * (a_j * back)) / a_i;
-        }
-    }
+    for (uint32_t i = part->begin; i < part->end; i++) at = merge_row(m, i, at, &there);
     part->filled = at;
     part->done = 1;
 }

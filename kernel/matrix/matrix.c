@@ -47,11 +47,12 @@ static bool entries_emit(const fibrad_record *row, const double *emissivity) {
 }
 
 /* The number of all entries of the collections. UINT64_MAX: their rows belong to walls other than those of the
- * scene, they have entries that the emissivities exclude, or they should be `reciprocal` and are not. emissivity NULL:
- * none. */
+ * scene, or they have entries that the emissivities exclude. emissivity NULL: none. *lines: out: whether all rows are
+ * along lines. */
 static uint64_t entries_of(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count, const double *emissivity,
-                           bool reciprocal) {
+                           bool *lines) {
     uint64_t entries = 0;
+    *lines = true;
     for (uint32_t c = 0; c < count; c++) {
         size_t at = 0;
         for (const fibrad_record *row; (row = fibrad_rows_next(&rows[c], &at)) != NULL; entries += row->length) {
@@ -59,7 +60,7 @@ static uint64_t entries_of(const fibrad_scene *scene, const fibrad_rows *rows, u
             if (row->sphere >= scene->facts.spheres || row->bodies != scene->facts.bodies) return UINT64_MAX;
             if (row->length > 0 && col[row->length - 1] >= scene->facts.spheres) return UINT64_MAX;
             if (emissivity != NULL && !entries_emit(row, emissivity)) return UINT64_MAX;
-            if (reciprocal && row->symmetric == 0) return UINT64_MAX;
+            *lines = *lines && row->lines > 0;
         }
     }
     return entries;
@@ -84,6 +85,9 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
     m->before = fibrad_arena_take(arena, m->enclosed ? m->bodies * (m->bodies + 1) : 0, sizeof *m->before);
     m->r = fibrad_arena_take(arena, n, sizeof *m->r);
     m->radius = fibrad_arena_take(arena, m->sampled ? n : 0, sizeof *m->radius);
+    m->noise = fibrad_arena_take(arena, m->raw ? 0 : n, sizeof *m->noise);
+    const size_t halves = m->lines ? (size_t)m->result.capacity : 0;
+    m->result.half = fibrad_arena_take(arena, halves, sizeof *m->result.half);
     m->place = fibrad_arena_take(arena, m->raw ? 0 : n, sizeof *m->place);
     m->scratch = fibrad_arena_take(arena, m->raw ? 0 : 3 * n, sizeof *m->scratch);
     m->part = fibrad_arena_take(arena, m->raw ? 0 : m->tasks, sizeof *m->part);
@@ -94,10 +98,11 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
 static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                              const fibrad_matrix_rule *rule) {
     if ((rows == NULL && count > 0) || !matrix_rule_valid(scene, rule)) return false;
-    const bool reciprocal = rule != NULL && rule->reciprocal;
-    const uint64_t entries = entries_of(scene, rows, count, rule != NULL ? rule->emissivity : NULL, reciprocal);
-    *m = (fibrad_matrix){.bodies = scene->facts.bodies, .tasks = tasks_of(rule), .reciprocal = reciprocal};
+    bool lines;
+    const uint64_t entries = entries_of(scene, rows, count, rule != NULL ? rule->emissivity : NULL, &lines);
+    *m = (fibrad_matrix){.bodies = scene->facts.bodies, .tasks = tasks_of(rule)};
     m->raw = rule != NULL && rule->raw;
+    m->lines = lines && !m->raw;
     m->exchange = rule != NULL && rule->emissivity != NULL;
     m->sampled = m->exchange || (rule != NULL && rule->sampled);
     m->enclosed = rule != NULL && rule->body_row != NULL;
@@ -105,7 +110,7 @@ static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const 
     m->parallel = rule != NULL ? rule->parallel : NULL;
     m->context = rule != NULL ? rule->context : NULL;
     m->result.n = scene->facts.spheres;
-    m->result.capacity = m->raw ? entries : (m->reciprocal ? 1 : 2) * entries + (m->drop > 0 ? m->result.n : 0);
+    m->result.capacity = m->raw ? entries : 2 * entries + (m->drop > 0 ? m->result.n : 0);
     return entries < UINT64_MAX / 4 && m->result.capacity <= SIZE_MAX;
 }
 
@@ -185,7 +190,7 @@ static void measure_part(void *matrix, uint32_t p) {
     fibrad_matrix *m = matrix;
     fibrad_matrix_part *part = &m->part[p];
     for (uint32_t i = part->begin; i < part->end; i++) copy_rest(m, i), part->transposed += m->row[i]->length;
-    part->last = part->transposed + (m->reciprocal ? 0 : fibrad_matrix_count_part(m, part));
+    part->last = part->transposed + fibrad_matrix_count_part(m, part);
 }
 
 /* Divides the rows into parts with about as many entries each. A part has a range of the result for its rows of the
@@ -227,12 +232,13 @@ int fibrad_matrix_init(fibrad_matrix **out, void *memory, size_t size, const fib
         m->r[i] = scene->r[scene->place[i]];
         if (m->sampled) m->radius[i] = m->r[i];
         if (m->exchange) m->r[i] *= fibrad_sqrt(rule->emissivity[i]);
+        if (!m->raw) m->noise[i] = __builtin_inf();
     }
     if (m->enclosed) fibrad_matrix_take_bodies(m, scene, rule);
     if (m->raw)
         copy_raw(m);
     else
-        divide(m, (m->result.capacity - (m->drop > 0 ? m->result.n : 0)) / (m->reciprocal ? 1 : 2));
+        divide(m, (m->result.capacity - (m->drop > 0 ? m->result.n : 0)) / 2);
     m->given = rows, m->given_count = count, m->given_serial = serial_of(rows, count);
     m->open = true;
     *out = m;
@@ -328,7 +334,13 @@ static double change_of(const fibrad_matrix *m, uint32_t i) {
     return fibrad_sqrt(square);
 }
 
-/* Estimates the error of each row from the distance between its mean and the raw row. The columns of the raw row are
+/* Compares the change of a row with an error. */
+static void note_change(const fibrad_matrix *m, fibrad_matrix_part *part, uint32_t i, double error) {
+    const double changed = change_of(m, i) / fibrad_max(error, LEAST_ERROR);
+    if (changed > part->worst) part->worst = changed, part->worst_row = i;
+}
+
+/* Estimates the errors of rows that are not along lines. The error of a row follows from the distance between its mean and the raw row. The columns of the raw row are
  * among those of the mean. The error is at least that of the raw row, as far as the mean comes from the row itself:
  * by symmetry the errors of two rows may be equal. If a row says little about another sphere, as that of a large
  * sphere about a small one, its difference counts by the ratio of both weights in the mean. For the shares of walls
@@ -340,7 +352,8 @@ static void estimate_errors(void *matrix, uint32_t part) {
         const fibrad_record *raw = m->row[i];
         const uint32_t *col = fibrad_record_col(raw);
         const double *f = fibrad_record_f(raw);
-        if (raw->symmetric) continue;
+        if (m->lines) note_change(m, &m->part[part], i, fibrad_max(m->error[i], raw->error));
+        if (m->lines || raw->symmetric) continue;
         double square = 0, sum = 0, own = 0, met = 0;
         uint32_t p = 0;
         for (uint64_t k = m->result.start[i]; k < m->result.start[i + 1]; k++) {
@@ -354,8 +367,7 @@ static void estimate_errors(void *matrix, uint32_t part) {
         own = sum > 0 ? own / sum : 0.5;
         m->error[i] = fibrad_max((m->exchange ? EXCHANGE_ERROR : VIEW_ERROR) * fibrad_sqrt(square),
                                  (own + (1 - own) * met) * m->error[i]);
-        const double changed = change_of(m, i) / fibrad_max(m->error[i], LEAST_ERROR);
-        if (changed > m->part[part].worst) m->part[part].worst = changed, m->part[part].worst_row = i;
+        note_change(m, &m->part[part], i, m->error[i]);
     }
 }
 
@@ -372,10 +384,7 @@ int fibrad_matrix_close(fibrad_matrix *m) {
     if (m->raw) return FIBRAD_OK;
     fibrad_matrix_share(m, m->tasks, average_rest, m);
     gather_parts(m);
-    if (m->sampled)
-        fibrad_matrix_balance(m);
-    else
-        fibrad_matrix_limit(m);
+    fibrad_matrix_balance(m);
     close_rows(m);
     if (m->enclosed) fibrad_matrix_enclose(m);
     fibrad_matrix_share(m, m->tasks, estimate_errors, m);

@@ -23,14 +23,15 @@ typedef struct fibrad_sparse {
     uint64_t *start;
     uint32_t *col;
     double *f;
+    float *half; /* [capacity], of the transpose, as in fibrad_row; NULL unless all rows are along lines */
 } fibrad_sparse;
 
 struct fibrad_matrix {
     fibrad_sparse result;
     uint32_t bodies, tasks;
     bool raw, exchange, open, closed;
-    bool reciprocal;          /* the rows are so already */
-    bool sampled;             /* exchange factors, or view factors by rays or points: averaged by variances */
+    bool sampled;             /* exchange factors, or view factors by rays: averaged by variances */
+    bool lines;               /* all rows are along lines */
     const fibrad_rows *given; /* [given_count], the collections; given_serial is the sum of their changes so far */
     uint32_t given_count;
     uint64_t given_serial;
@@ -38,6 +39,7 @@ struct fibrad_matrix {
     const fibrad_record **row;         /* [n], raw row of each sphere */
     double *r;                         /* L, [n], radii, for exchange factors times the root of the emissivity */
     double *radius;                    /* L, [n], radii, if sampled */
+    double *noise;                     /* [n], that of the sum of each averaged row; INFINITY: not along lines */
     uint64_t *place;                   /* [n], position of the next entry of each row of the transpose */
     double *scratch;                   /* [3 n] */
     double all[FIBRAD_BODIES_MAX + 2]; /* sums over all spheres: to each wall, the surroundings, beyond */
@@ -69,8 +71,8 @@ static inline void fibrad_matrix_share(const fibrad_matrix *m, uint32_t pieces, 
 /* Counts the entries of the rows of the transpose in a part, into matrix->place. Returns their sum. */
 uint64_t fibrad_matrix_count_part(fibrad_matrix *matrix, const fibrad_matrix_part *part);
 
-/* The weight of row i in the average of rows i and j. It is 1/2 for view factors by exact areas, where both rows are
- * sums of the same areas. Sampled factors have weights by variances: A_j/(A_i + A_j). There are as many paths from i as
+/* The weight of row i in the average of rows i and j. It is 1/2 for view factors by areas. Along lines each row has the
+ * areas of one sense of each line, so both rows together are one sum. Sampled factors have weights by variances: A_j/(A_i + A_j). There are as many paths from i as
  * from j, and each carries the emission of its sphere over their number. So the variance is as the area. */
 static inline double fibrad_matrix_own(const fibrad_matrix *m, uint32_t i, uint32_t j) {
     if (!m->sampled) return 0.5;
@@ -106,9 +108,6 @@ double fibrad_sparse_sum(const fibrad_sparse *rows, uint32_t i);
 
 /* The position of column j in row i, or UINT64_MAX. */
 uint64_t fibrad_sparse_find(const fibrad_sparse *rows, uint32_t i, uint32_t j);
-
-/* Brings row sums above 1 down to 1: F_ij times min(s_i, s_j), s = min(1, 1/sum). Reciprocity stays. */
-void fibrad_matrix_limit(fibrad_matrix *matrix);
 
 /* One step of the iteration for u. scratch holds three arrays of n elements: given, u, and the next u.
  *   closing false  u_i sum_j F_ij u_j = given_i

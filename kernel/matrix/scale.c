@@ -13,27 +13,6 @@ double fibrad_sparse_sum(const fibrad_sparse *rows, uint32_t i) {
     return sum;
 }
 
-static void find_limits(void *matrix, uint32_t p) {
-    const fibrad_matrix *m = matrix;
-    for (uint32_t i = m->part[p].begin; i < m->part[p].end; i++) {
-        double sum = fibrad_sparse_sum(&m->result, i);
-        m->scratch[i] = sum > 1 ? 1 / sum : 1;
-    }
-}
-
-static void apply_limits(void *matrix, uint32_t p) {
-    const fibrad_matrix *m = matrix;
-    const fibrad_sparse *rows = &m->result;
-    for (uint32_t i = m->part[p].begin; i < m->part[p].end; i++)
-        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++)
-            rows->f[k] *= fibrad_min(m->scratch[i], m->scratch[rows->col[k]]);
-}
-
-void fibrad_matrix_limit(fibrad_matrix *m) {
-    fibrad_matrix_share(m, m->tasks, find_limits, m);
-    fibrad_matrix_share(m, m->tasks, apply_limits, m);
-}
-
 #define GONE -1.0
 
 /* Removes the pairs whose factors are both below the threshold. The lower row decides for both. */
@@ -117,14 +96,22 @@ static void bring_down(fibrad_sparse *rows, const double *target, double *u) {
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) rows->f[k] *= fibrad_min(u[i], u[rows->col[k]]);
 }
 
-/* Finds what raw rows leave for all but spheres. */
+/* Finds what rows leave for all but spheres. Sampled rows say so themselves. Otherwise the averaged sum says it, since it
+ * has both senses of each line. But a row without an open window, whose sum lacks no more than noise, is closed. */
+#define NOISE_MOST 5.0
+#define ROUNDING   1e-12
+
 static void find_rest(void *matrix, uint32_t p) {
     const fibrad_matrix *m = matrix;
     for (uint32_t i = m->part[p].begin; i < m->part[p].end; i++) {
-        const double *f = fibrad_record_f(m->row[i]);
-        double sum = 0;
-        for (uint32_t k = 0; k < m->row[i]->length; k++) sum += f[k];
-        m->scratch[i] = m->r[i] > 0 ? fibrad_max(0, 1 - sum) : 0;
+        const fibrad_record *row = m->row[i];
+        const double *f = fibrad_record_f(row), *body = fibrad_record_body(row);
+        double sum = 0, open = row->escaped + row->beyond;
+        for (uint32_t b = 0; b < m->bodies; b++) open += body[b];
+        for (uint32_t k = 0; k < row->length && m->sampled; k++) sum += f[k];
+        if (!m->sampled) sum = fibrad_sparse_sum(&m->result, i);
+        const bool closed = !m->sampled && !(open > 0) && !(1 - sum > NOISE_MOST * m->noise[i] + ROUNDING);
+        m->scratch[i] = m->r[i] > 0 && !closed ? fibrad_max(0, 1 - sum) : 0;
     }
 }
 

@@ -226,6 +226,7 @@ static void find_shell(fibrad_workspace *work, const double frame[9], uint32_t s
 static void count_hidden(fibrad_workspace *work, uint32_t window) {
     const fibrad_discs disc = work->disc;
     for (uint32_t k = 0; k < disc.count; k++) {
+        work->masks.regions += disc.hidden_points[k] > 0;
         if (disc.near[k] < work->near.capacity)
             work->near.count[disc.near[k]][window % 2] += disc.hidden_points[k];
         else if (disc.hidden_points[k] > 0)

@@ -20,6 +20,7 @@ typedef struct fibrad_masks {
     float x_zero, x_scale;  /* the point at x is number x_zero + x_scale x of its chord, rounded */
     uint32_t points;        /* points in the disc */
     uint32_t open;          /* those that no disc has hidden */
+    uint32_t regions;       /* discs that have hidden points, in all windows of a row */
     _Alignas(FIBRAD_ALIGNMENT) uint32_t word[FIBRAD_MASK_WORDS_MAX * FIBRAD_MASK_CHORDS_MAX]; /* [words][chords] */
 } fibrad_masks;
 

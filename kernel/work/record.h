@@ -12,7 +12,7 @@ typedef struct fibrad_record {
     uint32_t sphere, length, bodies, lines;
     uint64_t symmetric;
     uint64_t scene; /* hash of the scene of the row; 0: none */
-    double escaped, beyond, error;
+    double escaped, beyond, error, noise, shares;
 } fibrad_record;
 
 static inline const double *fibrad_record_body(const fibrad_record *record) { return (const double *)(record + 1); }

@@ -29,6 +29,12 @@ uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere) {
 
 static double entry_sum(const double part[4]) { return part[0] + part[2] + (part[1] + part[3]); }
 
+/* The difference between the halves. */
+static double entry_difference(const fibrad_entries *entries, uint32_t entry) {
+    const double *part = entries->part[entry], *balance = entries->balance;
+    return (part[0] + part[2]) * balance[0] - (part[1] + part[3]) * balance[1];
+}
+
 void fibrad_entries_slots(const fibrad_entries *entries, const fibrad_scene *scene, double wall[FIBRAD_SLOTS]) {
     const uint32_t spheres = scene->facts.spheres;
     for (uint32_t k = 0; k < entries->length && scene->mesh.triangles > 0; k++)
@@ -40,7 +46,7 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
     double square = 0;
     for (uint32_t k = 0; k < entries->length; k++) {
         const double *part = entries->part[k];
-        double difference = (part[0] + part[2] - part[1] - part[3]) * scale;
+        double difference = entry_difference(entries, k) * scale;
         square += difference * difference;
         if (entries->sphere[k] >= scene->facts.spheres || entry_sum(part) == 0) continue;
         entries->key[0][n++] = (uint64_t)scene->order[entries->sphere[k]] << 32 | k;
@@ -55,7 +61,7 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
         row->col[k] = (uint32_t)(key[k] >> 32);
         const double *part = entries->part[entry];
         row->f[k] = entry_sum(part) * scale;
-        if (row->half != NULL) row->half[k] = (float)((part[0] + part[2] - part[1] - part[3]) * scale);
+        if (row->half != NULL) row->half[k] = (float)(entry_difference(entries, entry) * scale);
     }
     return FIBRAD_OK;
 }

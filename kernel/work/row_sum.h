@@ -18,6 +18,8 @@ typedef struct fibrad_entries {
     uint32_t slots, capacity, length, missed;
     fibrad_addends *addends; /* NULL, or a list of terms that are to be added later */
     double weight;           /* by which values are multiplied; 1 but for areas among windows by masks */
+    double balance[2];       /* by which sums over even and over odd windows count in their difference; 1 if both are
+                                equally many */
     bool end; /* the present window is the first or the last: it counts half in differences of even and odd windows */
 } fibrad_entries;
 

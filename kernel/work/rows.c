@@ -60,7 +60,9 @@ void fibrad_rows_commit(fibrad_rows *rows, uint64_t scene, uint32_t bodies, cons
                               .scene = scene,
                               .escaped = row->escaped,
                               .beyond = row->beyond,
-                              .error = row->error};
+                              .error = row->error,
+                              .noise = row->noise,
+                              .shares = row->shares};
     uint32_t *col = (uint32_t *)(void *)(row->f + row->length);
     __builtin_memmove(col, row->col, row->length * sizeof *row->col);
     if (record->lines > 0) __builtin_memmove(col + row->length, row->half, row->length * sizeof *row->half);
@@ -92,6 +94,8 @@ int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row) {
                         .escaped = record->escaped,
                         .beyond = record->beyond,
                         .error = record->error,
+                        .noise = record->noise,
+                        .shares = record->shares,
                         .lines = record->lines,
                         .half = record->lines > 0 ? (float *)(void *)((uint32_t *)(void *)(f + record->length) + record->length) : NULL,
                         .symmetric = record->symmetric != 0};
