@@ -220,6 +220,7 @@ int methods_check(struct method_options *m) {
     if ((m->cast.rays || m->seed) && !cast)
         return message(STATUS_USAGE, "--rays and --seed are for --method cast and mc");
     if (exact && m->beam.points) return message(STATUS_USAGE, "--points contradicts --areas exact");
+    if (exact) m->beam.chords = FIBRAD_CHORDS_NONE;
     if (points && !m->beam.points) m->beam.points = 256;
     if (m->plain) m->surface.flags |= FIBRAD_SURFACE_NO_CORRECTION;
     if (!m->surface.nodes) m->surface.nodes = FIBRAD_NODES_DEFAULT;

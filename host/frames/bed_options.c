@@ -240,26 +240,22 @@ int bed_options_status(struct bed_options *options, const struct bed *bed, int s
     return bed_status(bed, options->name, status, fault);
 }
 
-/* What an entry of the raw rows takes: in files of silhouettes with their pairs, else while rows are averaged. */
-static int entry_bytes(const fibrad_bed_options *options) {
-    const fibrad_beam_rule *beam = options->scratch && !options->raw ? options->beam : NULL;
-    return beam && beam->points == 0 && beam->cutoff == 0 ? 88 : 48;
-}
+/* What an entry of the raw rows takes while rows are averaged. */
+enum { ENTRY_BYTES = 48 };
 
 int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute,
                        void *request) {
     enum { SAMPLE = 16, ENTRIES_MANY = 2000 };
     fibrad_bed_factors *factors = NULL;
     const double left = options->scratch ? disk_left(options->scratch) : memory_left();
-    const int entry = entry_bytes(options);
-    if (options->wanted || (double)bed->n * ENTRIES_MANY * entry < left) return STATUS_OK;
+    if (options->wanted || (double)bed->n * ENTRIES_MANY * ENTRY_BYTES < left) return STATUS_OK;
     unsigned char *marks = calloc(bed->n, 1);
     if (!marks) return message_memory();
     for (uint32_t k = 0; k < SAMPLE; ++k) marks[(uint64_t)bed->n * k / SAMPLE] = 1;
     options->wanted = marks;
     int status = compute(request, bed, &factors);
     options->wanted = NULL;
-    const double bytes = status ? 0 : (double)factors->matrix.start[bed->n] / SAMPLE * bed->n * entry;
+    const double bytes = status ? 0 : (double)factors->matrix.start[bed->n] / SAMPLE * bed->n * ENTRY_BYTES;
     if (!status)
         status = options->scratch
                      ? disk_check(options->scratch, bytes)

@@ -38,7 +38,7 @@ enum { PER_DIRECTION = 64, PER_PATH = 8 };
 static int plan_matrix(fibrad_job *job, const fibrad_bed_options *options, const fibrad_exchange_rule *walls,
                        fibrad_body_row *body_row, fibrad_matrix_rule *rule) {
     *rule = (fibrad_matrix_rule){.raw = options->raw || options->wanted, .drop = options->drop};
-    rule->sampled = options->cast || (options->beam && options->beam->points > 0);
+    rule->sampled = options->cast != NULL;
     if (!options->bodies || options->wanted || walls->cutoff > 0 || job->facts.bodies == 0) return FIBRAD_OK;
     fibrad_exchange_rule before = *walls;
     if (!rule->raw) before.tolerance *= BODY_BEFORE_AVERAGING;
@@ -55,15 +55,13 @@ static int run_rule(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
     return status ? status : fibrad_job_factors(job, how, &report, factors);
 }
 
-/* Computes all rows by silhouettes, and their matrix. _UNSUPPORTED: too many spheres overlap, or there are too many
- * pairs. */
-static int run_all_rows(fibrad_job *job, const fibrad_beam_rule *beam, fibrad_matrix_rule how,
+/* Computes all rows for a matrix, along lines, and the matrix. */
+static int run_all_rows(fibrad_job *job, const fibrad_beam_rule *beam, const fibrad_matrix_rule *how,
                         fibrad_bed_factors **factors) {
     fibrad_job_report report;
-    how.reciprocal = 1;
-    if (beam && beam->tolerance > 0) return fibrad_job_tolerance(job, NULL, beam, &how, factors);
-    const int status = fibrad_job_silhouettes(job, beam, &report);
-    return status ? status : fibrad_job_factors(job, &how, &report, factors);
+    if (beam && beam->tolerance > 0) return fibrad_job_tolerance(job, beam, how, factors);
+    const int status = fibrad_job_line_rows(job, beam, &report);
+    return status ? status : fibrad_job_factors(job, how, &report, factors);
 }
 
 /* A rule for rows of black walls, which makes them about as accurate as the rows of spheres. */
@@ -91,12 +89,7 @@ static int run_options(fibrad_job *job, const fibrad_bed_options *options, fibra
     if (status) return status;
     if (options->surface) return run_rule(job, row_by_surface, options->surface, options, &how, factors);
     if (options->cast) return run_rule(job, row_by_rays, options->cast, options, &how, factors);
-    if (!how.raw && fibrad_job_has_silhouettes(job, beam)) {
-        const int done = run_all_rows(job, beam, how, factors);
-        if (done != FIBRAD_E_UNSUPPORTED) return done;
-    }
-    if (beam && beam->tolerance > 0 && !how.raw)
-        return fibrad_job_tolerance(job, fibrad_job_beam_row, beam, &how, factors);
+    if (!how.raw) return run_all_rows(job, beam, &how, factors);
     return run_rule(job, fibrad_job_beam_row, beam, options, &how, factors);
 }
 

@@ -223,62 +223,31 @@ int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
     return status;
 }
 
-/* ---- silhouettes ------------------------------------------------------------------------------------------------ */
+/* ---- lines ------------------------------------------------------------------------------------------------------ */
 
-static fibrad_silhouette_rule rule_of(const fibrad_beam_rule *beam) {
-    return beam ? (fibrad_silhouette_rule){beam->directions, beam->turn} : (fibrad_silhouette_rule){0};
+/* Masks take the place of the points of a window: 16, 32 and 64 chords for 64, 128 and 256 points. */
+enum { POINTS_PER_CHORD = 4 };
+
+/* Rows along lines serve a matrix. With more lines than sets are made of, rows have directions. */
+static bool takes_lines(const fibrad_beam_rule *beam) {
+    return !beam->lines && beam->directions <= FIBRAD_LINES_EVEN_MAX;
 }
 
-bool fibrad_job_has_silhouettes(const fibrad_job *job, const fibrad_beam_rule *rule) {
-    const fibrad_silhouette_rule lines = rule_of(rule);
-    return (!rule || (rule->points == 0 && rule->cutoff == 0)) && fibrad_silhouettes_size(job->scene, &lines) > 0;
-}
-
-struct circle_tasks {
-    fibrad_job *job;
-    fibrad_silhouettes *silhouettes;
-    fibrad_pairs *pairs; /* [threads] */
-};
-
-static int run_circles(void *tasks, int thread, uint32_t task) {
-    const struct circle_tasks *circles = tasks;
-    return fibrad_silhouettes_task(circles->silhouettes, &circles->job->team.work[thread], task,
-                                   &circles->pairs[thread]);
-}
-
-static int row_of_silhouettes(const void *silhouettes, const fibrad_scene *scene, fibrad_work *work, uint32_t i,
-                              fibrad_row *row, uint64_t *rays) {
-    (void)scene, (void)rays;
-    return fibrad_silhouettes_row(silhouettes, work, i, row);
-}
-
-/* Follows all circles, and reads the rows. */
-static int run_silhouettes(struct circle_tasks *circles, fibrad_memory *index, fibrad_job_report *report) {
-    fibrad_job *job = circles->job;
-    const uint32_t tasks = fibrad_silhouettes_tasks(circles->silhouettes);
-    int status = fibrad_team_run(&job->team, "circles", tasks, 1, run_circles, circles, NULL);
-    if (!status)
-        status = fibrad_silhouettes_join(circles->silhouettes, circles->pairs, (uint32_t)job->team.threads, index);
-    return status ? status : fibrad_job_rows(job, row_of_silhouettes, circles->silhouettes, NULL, NULL, report);
-}
-
-int fibrad_job_silhouettes(fibrad_job *job, const fibrad_beam_rule *beam, fibrad_job_report *report) {
-    const fibrad_silhouette_rule rule = rule_of(beam);
-    if (rule.lines > FIBRAD_LINES_EVEN_MAX) return FIBRAD_E_UNSUPPORTED;
-    const size_t threads = (size_t)job->team.threads, size = fibrad_silhouettes_size(job->scene, &rule);
-    fibrad_scratch *store = calloc(threads + 1, sizeof *store); /* of the pairs, and of their index */
-    fibrad_memory index = {.resize = fibrad_scratch_resize, .context = store ? &store[threads] : NULL};
-    struct circle_tasks circles = {.job = job, .pairs = calloc(threads, sizeof *circles.pairs)};
-    void *block = malloc(size);
-    int status = block && store && circles.pairs ? FIBRAD_OK : FIBRAD_E_MEMORY;
-    for (size_t t = 0; t <= threads && !status; ++t) status = fibrad_scratch_open(&store[t], job->scratch);
-    if (!status) status = fibrad_silhouettes_init(&circles.silhouettes, block, size, job->scene, &rule);
-    for (size_t t = 0; t < threads && !status; ++t)
-        circles.pairs[t].memory = (fibrad_memory){.resize = fibrad_scratch_resize, .context = &store[t]};
-    if (!status) status = run_silhouettes(&circles, &index, report);
-    for (size_t t = 0; t <= threads && store; ++t) fibrad_scratch_close(&store[t]);
-    free(store);
-    free(circles.pairs);
+int fibrad_job_line_rows(fibrad_job *job, const fibrad_beam_rule *beam, fibrad_job_report *report) {
+    fibrad_beam_rule rule = beam ? *beam : (fibrad_beam_rule){0};
+    void *block = NULL;
+    int status = FIBRAD_OK;
+    if (takes_lines(&rule)) {
+        const uint32_t lines = rule.directions ? rule.directions : FIBRAD_LINES_DEFAULT;
+        const size_t size = fibrad_line_set_size(lines);
+        fibrad_line_set *set = NULL;
+        if (!size) return FIBRAD_E_ARGUMENT;
+        block = malloc(size);
+        status = block ? fibrad_line_set_init(&set, block, size, lines, rule.turn) : FIBRAD_E_MEMORY;
+        rule.lines = set, rule.directions = 0, rule.turn = 0;
+        if (rule.points > 0) rule.chords = rule.points / POINTS_PER_CHORD, rule.points = 0;
+    }
+    if (!status) status = fibrad_job_rows(job, fibrad_job_beam_row, &rule, NULL, NULL, report);
     free(block);
     return status;
 }

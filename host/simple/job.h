@@ -46,23 +46,20 @@ typedef struct fibrad_job_report {
 int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, const unsigned char *wanted, double *error,
                     fibrad_job_report *report);
 
-/* Whether fibrad_job_silhouettes can make all rows that a rule by beams (NULL: the defaults) asks for. */
-bool fibrad_job_has_silhouettes(const fibrad_job *job, const fibrad_beam_rule *rule);
-
-/* Empties the collections of the team and computes all rows into them, by silhouettes along as many lines as the rule
- * has directions. Errors: as fibrad_silhouettes_task and _row; run->fault is set.
- * _UNSUPPORTED: more than FIBRAD_LINES_EVEN_MAX lines, or too many overlaps. */
-int fibrad_job_silhouettes(fibrad_job *job, const fibrad_beam_rule *rule, fibrad_job_report *report);
+/* Empties the collections of the team and computes all rows of a matrix into them, along as many lines as the rule has
+ * directions. With more than FIBRAD_LINES_EVEN_MAX of them, rows have directions. beam NULL: the defaults.
+ * Errors: as fibrad_job_rows. */
+int fibrad_job_line_rows(fibrad_job *job, const fibrad_beam_rule *beam, fibrad_job_report *report);
 
 /* Makes the matrix of the rows that the team has collected. Errors: as fibrad_matrix_init, _MEMORY. */
 int fibrad_job_factors(fibrad_job *job, const fibrad_matrix_rule *rule, const fibrad_job_report *report,
                        fibrad_bed_factors **factors);
 
-/* Computes all rows, by beams or, if `row` is NULL, by silhouettes, and their matrix. All rows have the same number of
- * directions. The worst row has, after averaging, an estimated error of at most rule->tolerance, unless
- * FIBRAD_DIRECTIONS_MAX directions do not suffice. Errors: as fibrad_job_rows and fibrad_job_factors. */
-int fibrad_job_tolerance(fibrad_job *job, fibrad_job_row *row, const fibrad_beam_rule *rule,
-                         const fibrad_matrix_rule *average, fibrad_bed_factors **factors);
+/* Computes all rows as fibrad_job_line_rows, and their matrix. The worst row has, after averaging, an estimated error of
+ * at most rule->tolerance, unless FIBRAD_DIRECTIONS_MAX directions do not suffice. Errors: as fibrad_job_rows and
+ * fibrad_job_factors. */
+int fibrad_job_tolerance(fibrad_job *job, const fibrad_beam_rule *rule, const fibrad_matrix_rule *average,
+                         fibrad_bed_factors **factors);
 
 /* Computes exchange factors, rule->tolerance being above 0, and their matrix. The worst row has, after averaging, an
  * estimated error of at most rule->tolerance, unless more paths no longer help. Errors: as fibrad_job_rows and
