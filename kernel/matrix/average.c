@@ -63,7 +63,7 @@ static uint64_t merge_row(fibrad_matrix *m, uint32_t i, uint64_t at, uint64_t *t
     const fibrad_sparse *to = &m->result;
     const fibrad_record *row = m->row[i];
     const uint32_t *col = fibrad_record_col(row), length = row->length;
-    const double *f = fibrad_record_f(row), *r = m->r;
+    const double *f = fibrad_record_f(row), *area = m->area, inverse = 1 / area[i];
     const float *half = m->lines ? fibrad_record_half(row) : NULL;
     const uint64_t there_end = m->place[i];
     row_halves halves = {0, 0, 0};
@@ -73,19 +73,15 @@ static uint64_t merge_row(fibrad_matrix *m, uint32_t i, uint64_t at, uint64_t *t
         const uint32_t mine = here < length ? col[here] : UINT32_MAX;
         const uint32_t theirs = *there < there_end ? to->col[*there] : UINT32_MAX, j = mine < theirs ? mine : theirs;
         const double own = mine == j ? f[here] : 0, back = theirs == j ? to->f[*there] : 0;
-        const double own_part = fibrad_matrix_own(m, i, j), back_part = fibrad_matrix_own(m, j, i);
-        /* areas relative to the larger one, so that the sum is the same from both sides */
-        double larger = fibrad_max(r[i], r[j]), a_i = r[i] / larger, a_j = r[j] / larger;
-        a_i *= a_i, a_j *= a_j;
         if (half != NULL) {
-            const double ratio = a_j / a_i, noise = m->row[j]->noise;
+            const double ratio = area[j] * inverse;
             const double difference = ((mine == j ? half[here] : 0) + ratio * (theirs == j ? to->half[*there] : 0)) / 2;
             halves.square += difference * difference, halves.sum += difference;
-            halves.noise += (row->noise * row->noise * own + ratio * ratio * (noise * noise * back)) / 4;
+            halves.noise += (m->variance[i] * own + ratio * ratio * (m->variance[j] * back)) / 4;
         }
         here += mine == j, *there += theirs == j;
         to->col[at] = j;
-        to->f[at++] = (own_part * (a_i * own) + back_part * (a_j * back)) / a_i;
+        to->f[at++] = (fibrad_matrix_own(m, i, j) * (area[i] * own) + fibrad_matrix_own(m, j, i) * (area[j] * back)) * inverse;
     }
     if (half != NULL) m->error[i] = error_of_halves(&halves, row), m->noise[i] = fibrad_sqrt(halves.noise);
     return at;

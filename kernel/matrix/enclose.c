@@ -139,9 +139,9 @@ static double closing_step(fibrad_matrix *m, const double v[]) {
 /* Brings all sums to 1. Returns the largest error in the end. If it is above CLOSED_ENOUGH, nothing has changed. */
 static double close_all(fibrad_matrix *m) {
     const fibrad_sparse *rows = &m->result;
-    double *u = m->scratch + rows->n, *next = u + rows->n, v[FIBRAD_BODIES_MAX] = {0}, one[FIBRAD_BODIES_MAX] = {0},
+    double *u = m->scratch + rows->n, v[FIBRAD_BODIES_MAX] = {0}, one[FIBRAD_BODIES_MAX] = {0},
            outside[FIBRAD_BODIES_MAX] = {0};
-    for (uint32_t i = 0; i < rows->n; i++) u[i] = 1;
+    for (uint32_t i = 0; i < 2 * rows->n; i++) u[i] = 1;
     for (uint32_t b = 0; b < m->bodies; b++) v[b] = one[b] = 1;
     double worst = 0;
     for (int step = 0; step < JOINT_STEPS; step++) {
@@ -149,7 +149,7 @@ static double close_all(fibrad_matrix *m) {
         worst = balance_bodies(m, outside, one, v);
         worst = fibrad_max(worst, closing_step(m, v));
         if (worst <= CLOSED_TO) break;
-        fibrad_copy(u, next, rows->n * sizeof *u);
+        fibrad_matrix_advance(m);
     }
     if (!(worst <= CLOSED_ENOUGH)) return worst;
     for (uint32_t i = 0; i < rows->n; i++) {

@@ -85,7 +85,9 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
     m->before = fibrad_arena_take(arena, m->enclosed ? m->bodies * (m->bodies + 1) : 0, sizeof *m->before);
     m->r = fibrad_arena_take(arena, n, sizeof *m->r);
     m->radius = fibrad_arena_take(arena, m->sampled ? n : 0, sizeof *m->radius);
+    m->area = fibrad_arena_take(arena, m->raw ? 0 : n, sizeof *m->area);
     m->noise = fibrad_arena_take(arena, m->raw ? 0 : n, sizeof *m->noise);
+    m->variance = fibrad_arena_take(arena, m->lines ? n : 0, sizeof *m->variance);
     const size_t halves = m->lines ? (size_t)m->result.capacity : 0;
     m->result.half = fibrad_arena_take(arena, halves, sizeof *m->result.half);
     m->place = fibrad_arena_take(arena, m->raw ? 0 : n, sizeof *m->place);
@@ -228,11 +230,17 @@ int fibrad_matrix_init(fibrad_matrix **out, void *memory, size_t size, const fib
     *m = fields;
     status = find_rows(m, scene, rows, count, sphere);
     if (status != FIBRAD_OK) return status;
+    double largest = 0;
     for (uint32_t i = 0; i < m->result.n; i++) {
         m->r[i] = scene->r[scene->place[i]];
         if (m->sampled) m->radius[i] = m->r[i];
         if (m->exchange) m->r[i] *= fibrad_sqrt(rule->emissivity[i]);
-        if (!m->raw) m->noise[i] = __builtin_inf();
+        largest = fibrad_max(largest, m->r[i]);
+    }
+    for (uint32_t i = 0; i < m->result.n && !m->raw; i++) {
+        const double ratio = largest > 0 ? m->r[i] / largest : 0;
+        m->area[i] = ratio * ratio, m->noise[i] = __builtin_inf();
+        if (m->lines) m->variance[i] = m->row[i]->noise * m->row[i]->noise;
     }
     if (m->enclosed) fibrad_matrix_take_bodies(m, scene, rule);
     if (m->raw)
@@ -313,11 +321,10 @@ static void close_part(void *matrix, uint32_t p) {
 /* Increases what rows meet besides spheres to 1 minus the row sum. This difference comes from the opposite
  * directions and is as good a measure as the raw row's. Rows of spheres that reflect all stay empty. */
 static void close_rows(fibrad_matrix *m) {
-    double *all = m->all, largest = 0;
+    double *all = m->all;
     const uint32_t n = m->result.n, bodies = m->bodies;
-    for (uint32_t i = 0; i < n; i++) largest = fibrad_max(largest, m->r[i]);
-    for (uint32_t i = 0; i < n && largest > 0; i++) {
-        const double area = m->r[i] / largest * (m->r[i] / largest);
+    for (uint32_t i = 0; i < n; i++) {
+        const double area = m->area[i];
         for (uint32_t b = 0; b < bodies; b++) all[b] += area * m->body[(size_t)i * bodies + b];
         all[bodies] += area * m->escaped[i], all[bodies + 1] += area * m->beyond[i];
     }

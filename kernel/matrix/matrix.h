@@ -39,7 +39,9 @@ struct fibrad_matrix {
     const fibrad_record **row;         /* [n], raw row of each sphere */
     double *r;                         /* L, [n], radii, for exchange factors times the root of the emissivity */
     double *radius;                    /* L, [n], radii, if sampled */
-    double *noise;                     /* [n], that of the sum of each averaged row; INFINITY: not along lines */
+    double *area;                      /* [n], square of r over the largest r */
+    double *noise;                     /* [n], that of the sum of each averaged row; infinity: not along lines */
+    double *variance;                  /* [n], of the noise of raw rows; of all rows along lines */
     uint64_t *place;                   /* [n], position of the next entry of each row of the transpose */
     double *scratch;                   /* [3 n] */
     double all[FIBRAD_BODIES_MAX + 2]; /* sums over all spheres: to each wall, the surroundings, beyond */
@@ -109,11 +111,15 @@ double fibrad_sparse_sum(const fibrad_sparse *rows, uint32_t i);
 /* The position of column j in row i, or UINT64_MAX. */
 uint64_t fibrad_sparse_find(const fibrad_sparse *rows, uint32_t i, uint32_t j);
 
-/* One step of the iteration for u. scratch holds three arrays of n elements: given, u, and the next u.
+/* One step of the iteration for u. scratch holds three arrays of n elements: given, u, and the u before, which becomes
+ * the next u.
  *   closing false  u_i sum_j F_ij u_j = given_i
  *   closing true   u_i (given_i + sum_j F_ij u_j) = 1, given_i being what row i gives to walls, surroundings and beyond
  * Returns the largest error of these equations for the present u. */
 double fibrad_matrix_step(fibrad_matrix *matrix, bool closing);
+
+/* Makes the next u the present one. */
+void fibrad_matrix_advance(fibrad_matrix *matrix);
 
 /* Closes reciprocal rows: F_ij becomes F_ij u_i u_j with u of fibrad_matrix_step. Reciprocity stays. Sums are 1 to
  * 1e-14 where such u exist. They exist if rows meet more than spheres, or if rows have an F_ii or loops of three

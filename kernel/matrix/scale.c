@@ -47,6 +47,15 @@ struct scaling {
     bool closing;
 };
 
+/* The next value of u. wanted: the value for which the sum is right if the others stay. Near the end this is the heavy
+ * ball method (B. T. Polyak, USSR Comput. Math. Math. Phys. 4 (1964) 1): a step and a part of the last one, best for
+ * matrices whose eigenvalues are between 0.6 and 2. It leaves a third of the error, the square root a half or more. */
+static inline double next_scale(double u, double before, double wanted) {
+    const double step = 0.835, inertia = 0.085, near = 0.1 * u;
+    if (!(fibrad_abs(wanted - u) < near && fibrad_abs(before - u) < near)) return fibrad_sqrt(u * wanted);
+    return u + step * (wanted - u) + inertia * (u - before);
+}
+
 /* A step of the rows of a part. */
 static void scaling_step(void *job, uint32_t p) {
     const struct scaling *scaling = job;
@@ -59,7 +68,7 @@ static void scaling_step(void *job, uint32_t p) {
         double sum = scaling->closing ? given[i] : 0;
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) sum += rows->f[k] * u[rows->col[k]];
         worst = fibrad_max(worst, fibrad_abs(target - u[i] * sum));
-        next[i] = sum > 0 ? fibrad_sqrt(u[i] * target / sum) : 1;
+        next[i] = sum > 0 ? next_scale(u[i], next[i], target / sum) : 1;
     }
     m->part[p].worst = worst;
 }
@@ -71,14 +80,20 @@ double fibrad_matrix_step(fibrad_matrix *m, bool closing) {
     return worst;
 }
 
-/* Finds u by u_i <- sqrt(u_i target_i/sum_i). The values stay near 1. Each step more than halves the error if such
- * factors exist. Ends when the errors of all sums are at most `tolerance`. */
+void fibrad_matrix_advance(fibrad_matrix *m) {
+    double *u = m->scratch + m->result.n, *next = u + m->result.n;
+    for (uint32_t i = 0; i < m->result.n; i++) {
+        const double now = u[i];
+        u[i] = next[i], next[i] = now;
+    }
+}
+
+/* Finds u by steps. The values stay near 1. Each step more than halves the error if such factors exist. Ends when the errors of all sums are at most `tolerance`. */
 static void find_scaling(fibrad_matrix *m, bool closing, double tolerance) {
     const uint32_t n = m->result.n;
-    double *u = m->scratch + n, *next = u + n;
-    for (uint32_t i = 0; i < n; i++) u[i] = 1;
-    for (int step = 0; step < 60 && fibrad_matrix_step(m, closing) > tolerance; step++)
-        fibrad_copy(u, next, n * sizeof *u);
+    double *u = m->scratch + n;
+    for (uint32_t i = 0; i < 2 * n; i++) u[i] = 1;
+    for (int step = 0; step < 60 && fibrad_matrix_step(m, closing) > tolerance; step++) fibrad_matrix_advance(m);
 }
 
 static void scale_rows(fibrad_sparse *rows, const double *u) {

@@ -38,14 +38,11 @@ void LANED(fibrad_masks_begin)(fibrad_masks *m, uint32_t chords, uint32_t words,
     m->points = 0;
     const mask_disc whole = {vf_set1(m->x_zero), vf_set1(m->x_scale), vf_set1(0), vf_set1(1)};
     for (uint32_t word = 0; word < words; word++) {
-        vn count = vn_zero();
         for (uint32_t chord = 0; chord < chords; chord += VF_LANES) {
             const vn points = points_within(&whole, heights(m, chord), vf_set1(32 * (float)word));
             vn_store(m->word + word * chords + chord, points);
-            count = vn_add_bytes(count, vn_count_bytes(points));
-            if ((chord / VF_LANES) % 16 == 15) m->points += vn_sum_bytes(count), count = vn_zero();
+            m->points += vn_count_bits(&points, 1);
         }
-        m->points += vn_sum_bytes(count);
     }
     m->open = m->points;
 }
@@ -53,16 +50,16 @@ void LANED(fibrad_masks_begin)(fibrad_masks *m, uint32_t chords, uint32_t words,
 /* Hides the points of one disc in all words. The number of vectors is known to the compiler. Returns how many it hides.
  * *left: out: whether a point is open. */
 FIBRAD_INLINE uint32_t hide_in_few(const mask_disc *disc, const vf *height, uint32_t vectors, vn *open, bool *left) {
-    vn count = vn_zero(), all = vn_zero();
+    vn all = vn_zero(), hidden[4 * VECTOR_CHORDS / VF_LANES];
 #pragma GCC unroll 32
     for (uint32_t n = 0; n < vectors; n++) {
         const vn within = points_within(disc, height[n], vf_set1(0));
-        count = vn_add_bytes(count, vn_count_bytes(open[n] & within));
+        hidden[n] = open[n] & within;
         open[n] = open[n] & ~within;
         all = all | open[n];
     }
     *left = !vn_none(all);
-    return vn_sum_bytes(count);
+    return vn_count_bits(hidden, vectors);
 }
 
 static inline mask_disc disc_of(const fibrad_masks *m, const fibrad_discs *disc, uint32_t k) {
@@ -111,14 +108,14 @@ static uint32_t hide_in_many(fibrad_masks *m, const fibrad_discs *disc, uint32_t
     for (uint32_t word = first; word < last; word++) {
         const vf shift = vf_set1(32 * (float)word);
         for (uint32_t block = low; block < high; block += VECTOR_CHORDS) {
-            vn count = vn_zero();
+            vn hides[VECTOR_CHORDS / VF_LANES] = {vn_zero()};
             for (uint32_t chord = block; chord < block + VECTOR_CHORDS; chord += VF_LANES) {
                 uint32_t *at = m->word + word * m->chords + chord;
                 const vn within = points_within(&one, heights(m, chord), shift), open = vn_load(at);
-                count = vn_add_bytes(count, vn_count_bytes(open & within));
+                hides[(chord - block) / VF_LANES] = open & within;
                 vn_store(at, open & ~within);
             }
-            hidden += vn_sum_bytes(count);
+            hidden += vn_count_bits(hides, VECTOR_CHORDS / VF_LANES);
         }
     }
     return hidden;

@@ -137,16 +137,17 @@ static inline vn vn_below(vf k) {
     return _mm256_andnot_si256(_mm256_sllv_epi32(all, by), all);
 }
 static inline bool vn_none(vn n) { return _mm256_testz_si256(n, n); }
-static inline vn vn_count_bytes(vn n) {
-    const __m256i of_four = _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4));
-    const __m256i four = _mm256_set1_epi8(15), high = _mm256_and_si256(_mm256_srli_epi32(n, 4), four);
-    return _mm256_add_epi8(_mm256_shuffle_epi8(of_four, _mm256_and_si256(n, four)), _mm256_shuffle_epi8(of_four, high));
-}
-static inline vn vn_add_bytes(vn n, vn m) { return _mm256_add_epi8(n, m); }
-static inline uint32_t vn_sum_bytes(vn n) {
-    const __m256i sum = _mm256_sad_epu8(n, _mm256_setzero_si256());
-    const __m128i two = _mm_add_epi64(_mm256_castsi256_si128(sum), _mm256_extracti128_si256(sum, 1));
-    return (uint32_t)_mm_cvtsi128_si32(_mm_add_epi64(two, _mm_unpackhi_epi64(two, two)));
+/* Words are counted by ordinary instructions, which leave vector units to the caller. */
+static inline uint32_t vn_count_bits(const vn *n, uint32_t count) {
+    uint32_t bits = 0;
+#pragma GCC unroll 16
+    for (uint32_t k = 0; k < count; k++) {
+        _Alignas(32) uint64_t word[4];
+        _mm256_store_si256((__m256i *)(void *)word, n[k]);
+#pragma GCC unroll 4
+        for (int l = 0; l < 4; l++) bits += fibrad_count_bits(word[l]);
+    }
+    return bits;
 }
 static inline void vf_compress(float *p, uint32_t bits, vf a) {
     __m128 low = _mm256_castps256_ps128(a), high = _mm256_extractf128_ps(a, 1);

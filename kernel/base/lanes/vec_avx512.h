@@ -133,17 +133,17 @@ static inline vn vn_below(vf k) {
     return _mm512_andnot_si512(_mm512_sllv_epi32(all, by), all);
 }
 static inline bool vn_none(vn n) { return _mm512_test_epi32_mask(n, n) == 0; }
-static inline vn vn_count_bytes(vn n) {
-    const __m512i of_four = _mm512_broadcast_i32x4(_mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4));
-    const __m512i four = _mm512_set1_epi8(15), high = _mm512_and_si512(_mm512_srli_epi32(n, 4), four);
-    return _mm512_add_epi8(_mm512_shuffle_epi8(of_four, _mm512_and_si512(n, four)), _mm512_shuffle_epi8(of_four, high));
-}
-static inline vn vn_add_bytes(vn n, vn m) { return _mm512_add_epi8(n, m); }
-static inline uint32_t vn_sum_bytes(vn n) {
-    const __m512i sum = _mm512_sad_epu8(n, _mm512_setzero_si512());
-    const __m256i four = _mm256_add_epi64(_mm512_castsi512_si256(sum), _mm512_extracti64x4_epi64(sum, 1));
-    const __m128i two = _mm_add_epi64(_mm256_castsi256_si128(four), _mm256_extracti128_si256(four, 1));
-    return (uint32_t)_mm_cvtsi128_si32(_mm_add_epi64(two, _mm_unpackhi_epi64(two, two)));
+/* Words are counted by ordinary instructions, which leave vector units to the caller. */
+static inline uint32_t vn_count_bits(const vn *n, uint32_t count) {
+    uint32_t bits = 0;
+#pragma GCC unroll 16
+    for (uint32_t k = 0; k < count; k++) {
+        _Alignas(64) uint64_t word[8];
+        _mm512_store_si512(word, n[k]);
+#pragma GCC unroll 8
+        for (int l = 0; l < 8; l++) bits += (uint32_t)_mm_popcnt_u64(word[l]);
+    }
+    return bits;
 }
 static inline void vf_compress(float *p, uint32_t bits, vf a) {
     _mm512_storeu_ps(p, _mm512_maskz_compress_ps((__mmask16)bits, a));

@@ -114,11 +114,11 @@ static inline vn vn_below(vf k) {
     return ~vshlq_u32(vdupq_n_u32(UINT32_MAX), by);
 }
 static inline bool vn_none(vn n) { return vmaxvq_u32(n) == 0; }
-static inline vn vn_count_bytes(vn n) { return vreinterpretq_u32_u8(vcntq_u8(vreinterpretq_u8_u32(n))); }
-static inline vn vn_add_bytes(vn n, vn m) {
-    return vreinterpretq_u32_u8(vaddq_u8(vreinterpretq_u8_u32(n), vreinterpretq_u8_u32(m)));
+static inline uint32_t vn_count_bits(const vn *n, uint32_t count) {
+    uint8x16_t bytes = vdupq_n_u8(0);
+    for (uint32_t k = 0; k < count; k++) bytes = vaddq_u8(bytes, vcntq_u8(vreinterpretq_u8_u32(n[k])));
+    return vaddlvq_u8(bytes);
 }
-static inline uint32_t vn_sum_bytes(vn n) { return vaddlvq_u8(vreinterpretq_u8_u32(n)); }
 static inline uint32_t vn_compress(uint32_t *p, uint32_t bits, const uint32_t *from) {
     fibrad_compress_four(p, bits, from);
     return fibrad_count_four(bits);

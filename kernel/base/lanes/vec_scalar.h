@@ -34,8 +34,7 @@
  *                            vn_below(k): the bits below k, the float k rounded to a whole number; none if k <= 0, all
  *                            32 if k >= 32
  *                            vn_none(n): whether all are 0
- *                            vn_count_bytes(n): the bits set in parts of each number; sums of up to 31 of these by
- *                            vn_add_bytes(n, m); vn_sum_bytes(n): all of them together
+ *                            vn_count_bits(n, count): bits that are set in `count` vectors, 1 to 16
  * Other loads and stores are aligned to the vector. min and max are (a < b ? a : b) and (a > b ? a : b), as x86 has them.
  * 0 - a, not -a, where a sign turns: the zero it makes is positive. */
 /* clang-format on */
@@ -125,9 +124,11 @@ static inline vn vn_below(vf k) {
     return (uint32_t)((UINT64_C(1) << (bits & 63)) - 1);
 }
 static inline bool vn_none(vn n) { return n == 0; }
-static inline vn vn_count_bytes(vn n) { return fibrad_count_bits(n); }
-static inline vn vn_add_bytes(vn n, vn m) { return n + m; }
-static inline uint32_t vn_sum_bytes(vn n) { return n; }
+static inline uint32_t vn_count_bits(const vn *n, uint32_t count) {
+    uint32_t bits = 0;
+    for (uint32_t k = 0; k < count; k++) bits += fibrad_count_bits(n[k]);
+    return bits;
+}
 static inline void vf_compress(float *p, uint32_t bits, vf a) { (void)bits, *p = a; }
 static inline uint32_t vn_compress(uint32_t *p, uint32_t bits, const uint32_t *from) {
     *p = *from;

@@ -117,15 +117,15 @@ static inline vn vn_below(vf k) {
     return _mm_or_si128(below, _mm_castps_si128(_mm_cmpge_ps(whole, _mm_set1_ps(31.5f))));
 }
 static inline bool vn_none(vn n) { return _mm_movemask_epi8(_mm_cmpeq_epi32(n, _mm_setzero_si128())) == 0xffff; }
-static inline vn vn_count_bytes(vn n) {
+static inline uint32_t vn_count_bits(const vn *n, uint32_t count) {
     const __m128i one = _mm_set1_epi8(0x55), two = _mm_set1_epi8(0x33), four = _mm_set1_epi8(0x0f);
-    n = _mm_sub_epi8(n, _mm_and_si128(_mm_srli_epi32(n, 1), one));
-    n = _mm_add_epi8(_mm_and_si128(n, two), _mm_and_si128(_mm_srli_epi32(n, 2), two));
-    return _mm_and_si128(_mm_add_epi8(n, _mm_srli_epi32(n, 4)), four);
-}
-static inline vn vn_add_bytes(vn n, vn m) { return _mm_add_epi8(n, m); }
-static inline uint32_t vn_sum_bytes(vn n) {
-    const __m128i sum = _mm_sad_epu8(n, _mm_setzero_si128());
+    __m128i bytes = _mm_setzero_si128();
+    for (uint32_t k = 0; k < count; k++) {
+        __m128i part = _mm_sub_epi8(n[k], _mm_and_si128(_mm_srli_epi32(n[k], 1), one));
+        part = _mm_add_epi8(_mm_and_si128(part, two), _mm_and_si128(_mm_srli_epi32(part, 2), two));
+        bytes = _mm_add_epi8(bytes, _mm_and_si128(_mm_add_epi8(part, _mm_srli_epi32(part, 4)), four));
+    }
+    const __m128i sum = _mm_sad_epu8(bytes, _mm_setzero_si128());
     return (uint32_t)_mm_cvtsi128_si32(_mm_add_epi64(sum, _mm_unpackhi_epi64(sum, sum)));
 }
 static inline uint32_t vn_compress(uint32_t *p, uint32_t bits, const uint32_t *from) {
