@@ -44,7 +44,6 @@ static void cull_for_masks(fibrad_workspace *work, const double frame[9], uint32
         const vf x = vf_load(sight.x + j), y = vf_load(sight.y + j), z = vf_load(sight.z + j);
         const vf depth = wx * x + wy * y + wz * z;
         const uint32_t bits = vf_lt_bits(vf_load(sight.e + j), depth);
-        if (bits == 0) continue;
         const uint32_t at = n < disc.capacity ? n : disc.capacity; /* discs beyond the capacity are only counted */
         vf_compress(disc.fu + at, bits, ux * x + uy * y + uz * z);
         vf_compress(disc.fv + at, bits, vx * x + vy * y + vz * z);
