@@ -19,9 +19,12 @@ static uint32_t chords_for(uint32_t n) { return n <= 80 ? 16 : n <= 250 ? 32 : n
 /* The points of a large sphere are about as dense as those of the smallest one. Beyond this ratio areas are exact. */
 #define MASK_RATIO (FIBRAD_MASK_WORDS_MAX + 0.5)
 
+/* Ends of chords in a disc of this many radii are known to a hundredth of a point: discs of masks are floats. */
+#define MASK_LARGEST 1e4
+
 uint32_t fibrad_mask_words(const fibrad_scene *scene, uint32_t place) {
-    const double ratio = scene->r[place] / scene->facts.radius_min;
-    return ratio < MASK_RATIO ? (uint32_t)(ratio + 0.5) : 0;
+    const double r = scene->r[place], ratio = r / scene->facts.radius_min;
+    return ratio < MASK_RATIO && scene->facts.radius_max < MASK_LARGEST * r ? (uint32_t)(ratio + 0.5) : 0;
 }
 
 int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule) {

@@ -131,9 +131,9 @@ static inline uint32_t vn_some_bits(const uint32_t *p) {
 static inline vn vn_count_lt(vn n, vf a, vf b) {
     return _mm256_sub_epi32(n, _mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_LT_OQ)));
 }
-/* Shifts by 32 and more, and by what is no number, leave no bits. */
+/* Shifts by 32 and more leave no bits. */
 static inline vn vn_below(vf k) {
-    const __m256i by = _mm256_cvtps_epi32(_mm256_max_ps(k, _mm256_setzero_ps())), all = vn_set1(UINT32_MAX);
+    const __m256i by = _mm256_max_epi32(_mm256_cvtps_epi32(k), _mm256_setzero_si256()), all = vn_set1(UINT32_MAX);
     return _mm256_andnot_si256(_mm256_sllv_epi32(all, by), all);
 }
 static inline bool vn_none(vn n) { return _mm256_testz_si256(n, n); }

@@ -127,9 +127,9 @@ static inline uint32_t vn_some_bits(const uint32_t *p) {
 static inline vn vn_count_lt(vn n, vf a, vf b) {
     return _mm512_mask_add_epi32(n, _mm512_cmp_ps_mask(b, a, _CMP_GT_OQ), n, _mm512_set1_epi32(1));
 }
-/* Shifts by 32 and more, and by what is no number, leave no bits. */
+/* Shifts by 32 and more leave no bits. */
 static inline vn vn_below(vf k) {
-    const __m512i by = _mm512_cvtps_epi32(_mm512_max_ps(k, _mm512_setzero_ps())), all = _mm512_set1_epi32(-1);
+    const __m512i by = _mm512_max_epi32(_mm512_cvtps_epi32(k), _mm512_setzero_si512()), all = _mm512_set1_epi32(-1);
     return _mm512_andnot_si512(_mm512_sllv_epi32(all, by), all);
 }
 static inline bool vn_none(vn n) { return _mm512_test_epi32_mask(n, n) == 0; }

@@ -31,8 +31,8 @@
  *                            vn_compress(p, bits, from): those of the numbers at `from`; returns how many
  *                            vn_some_bits(p): which of those at p, any address, are not 0
  *                            & | ~
- *                            vn_below(k): the bits below k, the float k rounded to a whole number; none if k <= 0, all
- *                            32 if k >= 32
+ *                            vn_below(k): the bits below k, the float k rounded to a whole number, |k| < 2^31; none if k <= 0,
+ *                            all 32 if k >= 32
  *                            vn_none(n): whether all are 0
  *                            vn_count_bits(n, count): bits that are set in `count` vectors, 1 to 16
  * Other loads and stores are aligned to the vector. min and max are (a < b ? a : b) and (a > b ? a : b), as x86 has them.
