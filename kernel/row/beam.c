@@ -2,7 +2,7 @@
  */
 #include "row/beam.h"
 #include "row/beam_lanes.h"
-#include "sample/line_set.h"
+#include "row/line_set.h"
 
 /* The number of directions rises in steps of an eighth. Each step takes a sixth off the error. The steps aim a
  * little below the tolerance. The number rises by a fifth at least, for rows whose error falls more slowly. */
@@ -11,10 +11,6 @@ uint32_t fibrad_directions_for(uint32_t directions, double error, double toleran
     for (; n < FIBRAD_DIRECTIONS_MAX && (error > 0.9 * tolerance || n < 1.2 * directions); n *= 1.125) error *= 0.838;
     return n < FIBRAD_DIRECTIONS_MAX ? (uint32_t)n : FIBRAD_DIRECTIONS_MAX;
 }
-
-/* Chords for which the noise of points is about half of the error of n lines. 0: exact areas are better. Measured:
- * docs/accuracy.md. */
-static uint32_t chords_for(uint32_t n) { return n <= 80 ? 16 : n <= 250 ? 32 : n <= 724 ? 64 : 0; }
 
 /* The points of a large sphere are about as dense as those of the smallest one. Beyond this ratio areas are exact. */
 #define MASK_RATIO (FIBRAD_MASK_WORDS_MAX + 0.5)
@@ -36,7 +32,7 @@ int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule) 
         if ((given->directions | given->points) != 0 || given->turn != 0 || given->tolerance > 0) return FIBRAD_E_ARGUMENT;
         rule->directions = rule->lines->n;
     }
-    if (rule->chords == 0 && rule->lines != NULL) rule->chords = chords_for(rule->directions);
+    if (rule->chords == 0 && rule->lines != NULL) rule->chords = fibrad_chords_for(rule->directions);
     if (rule->chords == FIBRAD_CHORDS_NONE) rule->chords = 0;
     if (rule->chords != 0 && rule->chords != 16 && rule->chords != 32 && rule->chords != 64) return FIBRAD_E_ARGUMENT;
     if (rule->chords > 0 && rule->points > 0) return FIBRAD_E_ARGUMENT;

@@ -9,7 +9,7 @@
 #include "row/mesh_share_lanes.h"
 #include "row/wall_share_lanes.h"
 #include "row/window_lanes.h"
-#include "sample/line_set.h"
+#include "row/line_set.h"
 #include "window/clip_lanes.h"
 #include "window/masks_lanes.h"
 
@@ -67,13 +67,27 @@ static double noise_of(const beam_windows *windows, double points, uint32_t regi
     return fibrad_sqrt(factor * border * cell * fibrad_sqrt(cell) / n) / FIBRAD_PI;
 }
 
+static void open_masks(fibrad_masks *masks, const beam_windows *windows, uint32_t k) {
+    const fibrad_line_set *lines = windows->lines;
+    if (lines == NULL || windows->words > 1 || windows->chords != lines->chords) {
+        LANED(fibrad_masks_open)(masks, windows->chords, windows->words, k);
+        return;
+    }
+    const uint32_t *word = lines->word + (size_t)k * lines->chords;
+    fibrad_masks_place(masks, lines->chords, 1, k);
+    for (uint32_t chord = 0; chord < lines->chords; chord += VF_LANES)
+        vn_store(masks->word + chord, vn_load(word + chord));
+    masks->points = masks->open = lines->points[k];
+}
+
 /* Computes window k by masks, or by exact areas if a triangle may come before it. whole: out: the size of the window in
  * points. Returns the open part. *points: out: which points of some set are open; count 0: the discs of `work` tell. */
 static double window_by_masks(fibrad_workspace *work, const beam_windows *windows, const double frame[9], uint32_t k,
                               fibrad_points *points, double *whole) {
     points->count = 0;
     work->entries.weight = 1;
-    const bool done = LANED(fibrad_mask_window)(work, frame, windows->chords, windows->words, k);
+    open_masks(&work->masks, windows, k);
+    const bool done = LANED(fibrad_mask_window)(work, frame, k);
     *whole = work->masks.points;
     if (!done) {
         work->entries.weight = *whole / FIBRAD_PI;

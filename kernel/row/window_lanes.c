@@ -233,14 +233,12 @@ static void count_hidden(fibrad_workspace *work, uint32_t window) {
     }
 }
 
-bool LANED(fibrad_mask_window)(fibrad_workspace *work, const double frame[9], uint32_t chords, uint32_t words,
-                               uint32_t k) {
+bool LANED(fibrad_mask_window)(fibrad_workspace *work, const double frame[9], uint32_t k) {
     fibrad_masks *masks = &work->masks;
     fibrad_discs *disc = &work->disc;
     uint32_t resolved = 0;
     double known = -1, horizon = __builtin_inf();
     disc->count = 0;
-    LANED(fibrad_masks_begin)(masks, chords, words, k);
     for (uint32_t shell = 0; masks->open > 0 && known < horizon; shell++) {
         const uint32_t before = disc->count;
         find_shell(work, frame, shell, true, resolved, &known, &horizon);

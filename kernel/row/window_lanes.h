@@ -17,9 +17,8 @@
  * work->disc.count > work->disc.capacity, there was no room for all discs. */
 double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], fibrad_points *points, uint32_t k);
 
-/* The same by masks of `chords` chords with `words` words each. work->masks: which points are open. What spheres hide is
- * added to near.count, and to entries. False: a triangle may come before the window. Then nothing has been added. */
-bool LANED(fibrad_mask_window)(fibrad_workspace *work, const double frame[9], uint32_t chords, uint32_t words,
-                               uint32_t k);
+/* The same by masks. work->masks: in: the open window; out: which points are still open. What spheres hide is added to
+ * near.count, and to entries. False: a triangle may come before the window. Then nothing has been added. */
+bool LANED(fibrad_mask_window)(fibrad_workspace *work, const double frame[9], uint32_t k);
 
 #endif

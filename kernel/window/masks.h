@@ -10,6 +10,7 @@
 
 #include "base/arena.h"
 #include "base/port.h"
+#include "base/random.h"
 
 #define FIBRAD_MASK_WORDS_MAX  4u   /* words of a chord */
 #define FIBRAD_MASK_CHORDS_MAX 256u /* chords of a window */
@@ -23,5 +24,19 @@ typedef struct fibrad_masks {
     uint32_t regions;       /* discs that have hidden points, in all windows of a row */
     _Alignas(FIBRAD_ALIGNMENT) uint32_t word[FIBRAD_MASK_WORDS_MAX * FIBRAD_MASK_CHORDS_MAX]; /* [words][chords] */
 } fibrad_masks;
+
+/* Where chords and points of window k lie. */
+static inline void fibrad_masks_place(fibrad_masks *masks, uint32_t chords, uint32_t words, uint32_t k) {
+    const double up = fibrad_fraction(k * fibrad_quasirandom_step(4, 0)) - 0.5;
+    const double aside = fibrad_fraction(k * fibrad_quasirandom_step(4, 1)) - 0.5;
+    masks->chords = chords, masks->words = words;
+    masks->y_step = 2 / (float)chords;
+    masks->y_first = masks->y_step * (float)(0.5 + up) - 1;
+    masks->x_scale = 16 * (float)words;
+    masks->x_zero = masks->x_scale + (float)aside;
+}
+
+/* The version of fibrad_masks_open that all builds have. */
+void fibrad_masks_open_scalar(fibrad_masks *masks, uint32_t chords, uint32_t words, uint32_t k);
 
 #endif

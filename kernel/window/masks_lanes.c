@@ -1,7 +1,6 @@
 /* masks_lanes.c - points of a window as bits, which discs hide. Compiled once per instruction set.
  * SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
-#include "base/random.h"
 #include "window/masks_lanes.h"
 
 #define VECTOR_CHORDS 16 /* chords are taken in multiples of the widest vector */
@@ -27,14 +26,8 @@ static inline vn points_within(const mask_disc *disc, vf height, vf word) {
     return vn_below(middle + half) & ~vn_below(middle - half);
 }
 
-void LANED(fibrad_masks_begin)(fibrad_masks *m, uint32_t chords, uint32_t words, uint32_t k) {
-    const double up = fibrad_fraction(k * fibrad_quasirandom_step(4, 0)) - 0.5;
-    const double aside = fibrad_fraction(k * fibrad_quasirandom_step(4, 1)) - 0.5;
-    m->chords = chords, m->words = words;
-    m->y_step = 2 / (float)chords;
-    m->y_first = m->y_step * (float)(0.5 + up) - 1;
-    m->x_scale = 16 * (float)words;
-    m->x_zero = m->x_scale + (float)aside;
+void LANED(fibrad_masks_open)(fibrad_masks *m, uint32_t chords, uint32_t words, uint32_t k) {
+    fibrad_masks_place(m, chords, words, k);
     m->points = 0;
     const mask_disc whole = {vf_set1(m->x_zero), vf_set1(m->x_scale), vf_set1(0), vf_set1(1)};
     for (uint32_t word = 0; word < words; word++) {

@@ -7,7 +7,7 @@
 #include "window/masks.h"
 
 /* Opens window k: `chords` chords of `words` words. Chords and points lie a little differently in each window. */
-void LANED(fibrad_masks_begin)(fibrad_masks *masks, uint32_t chords, uint32_t words, uint32_t k);
+void LANED(fibrad_masks_open)(fibrad_masks *masks, uint32_t chords, uint32_t words, uint32_t k);
 
 /* Hides points inside discs from front to back: order[from] to the last disc not deeper than `depth`. The floats of
  * `disc` count. disc->hidden_points[k]: out: how many points disc k hides, for every disc used. Returns the position in

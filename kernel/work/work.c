@@ -236,10 +236,10 @@ int fibrad_work_discs_missed(fibrad_workspace *space) {
     return FIBRAD_E_WORK;
 }
 
-/* How far along an axis, in one sense, there may be spheres that come before a window. */
-static double extent_along(const fibrad_workspace *work, int axis, double sense) {
+/* How far along an axis, up or down, there may be spheres that come before a window. */
+static double extent_along(const fibrad_workspace *work, int axis, int up) {
     const fibrad_scene *scene = work->scene;
-    double far = sense > 0 ? scene->high[axis] - work->centre[axis] : work->centre[axis] - scene->low[axis];
+    double far = up ? scene->high[axis] - work->centre[axis] : work->centre[axis] - scene->low[axis];
     if (scene->period[axis] > 0) far = FIBRAD_PERIODS * scene->period[axis];
     return (far + (work->unit + scene->facts.radius_max)) * work->inverse;
 }
@@ -275,8 +275,10 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
     work->farthest = fibrad_min(farthest[0] + farthest[1] + farthest[2], work->reach) * (1 + 1e-12);
     work->clear = work->farthest;
     for (int axis = 0; axis < 3; axis++)
-        for (int sense = -1; sense <= 1; sense += 2)
-            work->clear = fibrad_min(work->clear, extent_along(work, axis, sense));
+        for (int up = 0; up < 2; up++) {
+            work->extent[axis][up] = extent_along(work, axis, up);
+            work->clear = fibrad_min(work->clear, work->extent[axis][up]);
+        }
     work->clear_mesh = scene->clear != NULL ? scene->clear[place] : __builtin_inf();
     work->back = UINT32_MAX;
     if (work->met != NULL) work->met->any = false;
@@ -296,7 +298,7 @@ uint32_t fibrad_work_met(const fibrad_workspace *work, const double from[3], con
 double fibrad_near_horizon(const fibrad_workspace *work, const double w[3]) {
     double horizon = work->farthest;
     for (int axis = 0; axis < 3; axis++) {
-        if (w[axis] != 0) horizon = fibrad_min(horizon, extent_along(work, axis, w[axis]) / fibrad_abs(w[axis]));
+        if (w[axis] != 0) horizon = fibrad_min(horizon, work->extent[axis][w[axis] > 0] / fibrad_abs(w[axis]));
     }
     return horizon;
 }

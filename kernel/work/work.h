@@ -170,6 +170,7 @@ typedef struct fibrad_workspace {
     double step, growth;       /* depth of the first shell, and the ratio of each next one to it */
     double free_path;          /* about the mean free path of a line, or less */
     double farthest;           /* distance beyond which there is no sphere; infinity with periodic axes */
+    double extent[3][2];       /* how far along each axis, down and up, there may be spheres before a window */
     double clear;              /* lower bound of the horizon of all windows */
     double clear_mesh;         /* lower bound of the distance from the centre to a triangle */
     uint32_t windows;          /* number of windows of a beam row */

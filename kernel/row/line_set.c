@@ -1,17 +1,23 @@
 /* line_set.c - sets of lines for rows of a matrix. SPDX-License-Identifier: MIT */
-#include "sample/line_set.h"
+#include "row/line_set.h"
 #include "base/arena.h"
 #include "base/vector.h"
 #include "sample/direction.h"
 #include "sample/line.h"
+#include "window/masks.h"
 
 /* Takes the arrays from the arena. The caller copies the object itself to the address returned. */
 static fibrad_line_set *line_set_layout(fibrad_arena *arena, uint32_t n, fibrad_line_set *set) {
     fibrad_line_set *place = fibrad_arena_take(arena, 1, sizeof *place);
     set->line = fibrad_arena_take(arena, n, sizeof *set->line);
     set->frame = fibrad_arena_take(arena, n, sizeof *set->frame);
+    set->chords = fibrad_chords_for(n);
+    set->word = fibrad_arena_take(arena, (size_t)n * set->chords, sizeof *set->word);
+    set->points = fibrad_arena_take(arena, n, sizeof *set->points);
     return place;
 }
+
+uint32_t fibrad_chords_for(uint32_t n) { return n <= 80 ? 16 : n <= 250 ? 32 : n <= 724 ? 64 : 0; }
 
 static bool line_count_valid(uint32_t lines) {
     return lines >= FIBRAD_DIRECTIONS_MIN && lines <= FIBRAD_LINES_EVEN_MAX;
@@ -55,6 +61,11 @@ int fibrad_line_set_init(fibrad_line_set **made, void *memory, size_t size, uint
     for (uint32_t k = 0; k < n; k++) {
         frame_of_line(n, (const double(*)[3])fields.line, k, fields.frame[k]);
         if (turn != 0) fibrad_rotate_axes(rotation, fields.frame[k]);
+        if (fields.chords == 0) continue;
+        fibrad_masks masks;
+        fibrad_masks_open_scalar(&masks, fields.chords, 1, k);
+        fibrad_copy(fields.word + (size_t)k * fields.chords, masks.word, fields.chords * sizeof *masks.word);
+        fields.points[k] = masks.points;
     }
     *set = fields;
     *made = set;
