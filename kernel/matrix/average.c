@@ -21,22 +21,22 @@ uint64_t fibrad_matrix_count_part(fibrad_matrix *m, const fibrad_matrix_part *pa
 
 /* Writes the rows of the transpose. Before: matrix->place[j] is the length of row j. After: its end. */
 static void transpose_part(fibrad_matrix *m, const fibrad_matrix_part *part) {
-    const fibrad_sparse *to = &m->result;
-    uint64_t place = part->transposed;
+    const fibrad_sparse to = m->result; /* copies, so that the compiler sees that stores do not change their pointers */
+    uint64_t *next = m->place, place = part->transposed;
     for (uint32_t j = part->begin; j < part->end; j++) {
-        const uint64_t length = m->place[j];
-        m->place[j] = place;
+        const uint64_t length = next[j];
+        next[j] = place;
         place += length;
     }
-    for (uint32_t i = 0; i < to->n && part->begin < part->end; i++) {
+    for (uint32_t i = 0; i < to.n && part->begin < part->end; i++) {
         const uint32_t *col = fibrad_record_col(m->row[i]), length = m->row[i]->length;
         const double *f = fibrad_record_f(m->row[i]);
         const float *half = m->lines ? fibrad_record_half(m->row[i]) : NULL;
         for (uint32_t k = (uint32_t)fibrad_first_entry(col, length, part->begin); k < length && col[k] < part->end;
              k++) {
-            const uint64_t at = m->place[col[k]]++;
-            to->col[at] = i, to->f[at] = f[k];
-            if (half != NULL) to->half[at] = half[k];
+            const uint64_t at = next[col[k]]++;
+            to.col[at] = i, to.f[at] = f[k];
+            if (half != NULL) to.half[at] = half[k];
         }
     }
 }
@@ -60,28 +60,28 @@ static double error_of_halves(const row_halves *halves, const fibrad_record *row
 
 /* Merges row i from `length` entries of its own and those of the transpose from *there on. */
 static uint64_t merge_row(fibrad_matrix *m, uint32_t i, uint64_t at, uint64_t *there) {
-    const fibrad_sparse *to = &m->result;
+    const fibrad_sparse to = m->result;
     const fibrad_record *row = m->row[i];
     const uint32_t *col = fibrad_record_col(row), length = row->length;
-    const double *f = fibrad_record_f(row), *area = m->area, inverse = 1 / area[i];
+    const double *f = fibrad_record_f(row), *area = m->area, *variance = m->variance, inverse = 1 / area[i];
     const float *half = m->lines ? fibrad_record_half(row) : NULL;
     const uint64_t there_end = m->place[i];
     row_halves halves = {0, 0, 0};
     uint32_t here = 0;
-    to->start[i] = at;
+    to.start[i] = at;
     while (here < length || *there < there_end) {
         const uint32_t mine = here < length ? col[here] : UINT32_MAX;
-        const uint32_t theirs = *there < there_end ? to->col[*there] : UINT32_MAX, j = mine < theirs ? mine : theirs;
-        const double own = mine == j ? f[here] : 0, back = theirs == j ? to->f[*there] : 0;
+        const uint32_t theirs = *there < there_end ? to.col[*there] : UINT32_MAX, j = mine < theirs ? mine : theirs;
+        const double own = mine == j ? f[here] : 0, back = theirs == j ? to.f[*there] : 0;
         if (half != NULL) {
             const double ratio = area[j] * inverse;
-            const double difference = ((mine == j ? half[here] : 0) + ratio * (theirs == j ? to->half[*there] : 0)) / 2;
+            const double difference = ((mine == j ? half[here] : 0) + ratio * (theirs == j ? to.half[*there] : 0)) / 2;
             halves.square += difference * difference, halves.sum += difference;
-            halves.noise += (m->variance[i] * own + ratio * ratio * (m->variance[j] * back)) / 4;
+            halves.noise += (variance[i] * own + ratio * ratio * (variance[j] * back)) / 4;
         }
         here += mine == j, *there += theirs == j;
-        to->col[at] = j;
-        to->f[at++] = (fibrad_matrix_own(m, i, j) * (area[i] * own) + fibrad_matrix_own(m, j, i) * (area[j] * back)) * inverse;
+        to.col[at] = j;
+        to.f[at++] = (fibrad_matrix_own(m, i, j) * (area[i] * own) + fibrad_matrix_own(m, j, i) * (area[j] * back)) * inverse;
     }
     if (half != NULL) m->error[i] = error_of_halves(&halves, row), m->noise[i] = fibrad_sqrt(halves.noise);
     return at;
