@@ -20,6 +20,7 @@
 #define FIBRAD_DIRECTIONS_FIRST   100 /* with a tolerance: the number to begin with */
 
 /* All rows by silhouettes */
+#define FIBRAD_LINES_AMONG_WALLS 233 /* a built-in set; what walls get has one sense of each line */
 #define FIBRAD_LINES_DEFAULT  181  /* a built-in set; as accurate as 290 directions of averaged rows */
 #define FIBRAD_LINES_EVEN_MAX 2048 /* lines of a set that is spread evenly; errors of larger sets are not known */
 

@@ -238,7 +238,8 @@ int fibrad_job_line_rows(fibrad_job *job, const fibrad_beam_rule *beam, fibrad_j
     void *block = NULL;
     int status = FIBRAD_OK;
     if (takes_lines(&rule)) {
-        const uint32_t lines = rule.directions ? rule.directions : FIBRAD_LINES_DEFAULT;
+        const uint32_t usual = job->facts.bodies > 0 ? FIBRAD_LINES_AMONG_WALLS : FIBRAD_LINES_DEFAULT;
+        const uint32_t lines = rule.directions ? rule.directions : usual;
         const size_t size = fibrad_line_set_size(lines);
         fibrad_line_set *set = NULL;
         if (!size) return FIBRAD_E_ARGUMENT;
