@@ -292,29 +292,6 @@ static inline fibrad_rows rows_by_beams(const fibrad_scene *scene, const fibrad_
     return rows;
 }
 
-/* The rows of all spheres of a scene by silhouettes, in order. */
-static inline fibrad_rows rows_by_silhouettes(const fibrad_scene *scene, uint32_t lines) {
-    const fibrad_silhouette_rule rule = {.lines = lines};
-    const size_t size = fibrad_silhouettes_size(scene, &rule);
-    OWNED void *block = block_of(size);
-    fibrad_silhouettes *s;
-    OWNED_WORK work = work_growing();
-    fibrad_pairs pairs = {.memory = memory_growing()};
-    fibrad_memory index = memory_growing();
-    fibrad_rows rows = {.memory = memory_growing()};
-    fibrad_scene_facts facts;
-    fibrad_scene_describe(scene, &facts);
-    assert_ok(fibrad_silhouettes_init(&s, block, size, scene, &rule));
-    for (uint32_t task = 0; task < fibrad_silhouettes_tasks(s); task++)
-        assert_ok(fibrad_silhouettes_task(s, &work, task, &pairs));
-    assert_ok(fibrad_silhouettes_join(s, &pairs, 1, &index));
-    for (uint32_t i = 0; i < facts.spheres; i++)
-        assert_ok(fibrad_silhouettes_row(s, &work, i, &(fibrad_row){.rows = &rows}));
-    free(pairs.memory.block);
-    free(index.block);
-    return rows;
-}
-
 /* A matrix that has been read, with the block it is in. */
 struct matrix {
     fibrad_matrix *matrix;

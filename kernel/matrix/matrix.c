@@ -22,6 +22,9 @@ static uint32_t tasks_of(const fibrad_matrix_rule *rule) {
 
 static bool matrix_rule_valid(const fibrad_scene *scene, const fibrad_matrix_rule *rule) {
     if (rule == NULL) return true;
+    const bool exchange = rule->kind == FIBRAD_ROWS_EXCHANGE;
+    if (rule->kind < FIBRAD_ROWS_AREAS || rule->kind > FIBRAD_ROWS_EXCHANGE) return false;
+    if (rule->emissivity != NULL ? !exchange : exchange && scene->facts.spheres > 0) return false;
     if (rule->tasks > TASKS_MAX || !(rule->drop >= 0 && rule->drop <= 1)) return false;
     for (uint32_t b = 0; b < scene->facts.bodies && rule->body_row != NULL; b++) {
         const fibrad_body_row *row = &rule->body_row[b];
@@ -104,9 +107,9 @@ static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const 
     const uint64_t entries = entries_of(scene, rows, count, rule != NULL ? rule->emissivity : NULL, &lines);
     *m = (fibrad_matrix){.bodies = scene->facts.bodies, .tasks = tasks_of(rule)};
     m->raw = rule != NULL && rule->raw;
-    m->lines = lines && !m->raw;
-    m->exchange = rule != NULL && rule->emissivity != NULL;
-    m->sampled = m->exchange || (rule != NULL && rule->sampled);
+    m->exchange = rule != NULL && rule->kind == FIBRAD_ROWS_EXCHANGE;
+    m->sampled = rule != NULL && rule->kind != FIBRAD_ROWS_AREAS;
+    m->lines = lines && !m->raw && !m->sampled;
     m->enclosed = rule != NULL && rule->body_row != NULL;
     m->drop = rule != NULL ? rule->drop : 0;
     m->parallel = rule != NULL ? rule->parallel : NULL;
