@@ -278,6 +278,16 @@ static inline bool same_bits_with(const fibrad_row *a, const fibrad_row *b, uint
     return same_bits(a, b) && memcmp(a->body, b->body, bodies * sizeof *a->body) == 0;
 }
 
+/* A set of lines. free(*set) frees it. */
+static inline fibrad_line_set *lines_of(uint32_t lines, uint64_t turn) {
+    const size_t size = fibrad_line_set_size(lines);
+    fibrad_line_set *set = NULL;
+    void *block = block_of(size);
+    assert_ok(fibrad_line_set_init(&set, block, size, lines, turn));
+    ck_assert_ptr_eq(set, block);
+    return set;
+}
+
 /* ---- matrices --------------------------------------------------------------------------------------------------- */
 
 /* The beam rows of all spheres of a scene, in order. rule NULL: all defaults. */
@@ -319,6 +329,12 @@ static inline struct matrix matrix_by_beams(const fibrad_scene *scene, const fib
     OWNED_ROWS rows = rows_by_beams(scene, beam);
     const struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = raw});
     return m;
+}
+
+/* The same along lines. chords: as in fibrad_beam_rule. */
+static inline struct matrix matrix_by_lines(const fibrad_scene *scene, uint32_t lines, uint32_t chords, bool raw) {
+    OWNED fibrad_line_set *set = lines_of(lines, 0);
+    return matrix_by_beams(scene, &(fibrad_beam_rule){.lines = set, .chords = chords}, raw);
 }
 
 static inline void matrix_free(struct matrix *m) {

@@ -69,7 +69,7 @@ TEST(calls_out_of_order) {
     const double r[] = {1, 2, 1};
     OWNED fibrad_scene *scene = apart(3, r);
     OWNED_ROWS rows = {.memory = memory_growing()};
-    add_rows(&rows, 3, (uint64_t[]){0, 1, 1, 3}, (uint32_t[]){1, 0, 2}, (double[]){.5, .25, .125});
+    add_rows(&rows, 3, (uint64_t[]){0, 1, 1, 3}, (uint32_t[]){1, 0, 2}, (double[]){.5, .25, .125}, true);
     for (int raw = 0; raw < 2; raw++) {
         const fibrad_matrix_rule rule = {.tasks = 2, .raw = raw};
         const size_t size = fibrad_matrix_size(scene, &rows, 1, &rule);

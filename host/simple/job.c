@@ -244,6 +244,7 @@ int fibrad_job_line_rows(fibrad_job *job, const fibrad_beam_rule *beam, fibrad_j
         const size_t size = fibrad_line_set_size(lines);
         fibrad_line_set *set = NULL;
         if (!size) return FIBRAD_E_ARGUMENT;
+        if (rule.points % 64 || rule.points > 256 || rule.points == 192) return FIBRAD_E_TABLE;
         block = malloc(size);
         status = block ? fibrad_line_set_init(&set, block, size, lines, rule.turn) : FIBRAD_E_MEMORY;
         rule.lines = set, rule.directions = 0, rule.turn = 0;
