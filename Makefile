@@ -406,7 +406,6 @@ cppcheck:
 
 ## nightly: long checks that .ci/run leaves out: all bits, all sanitizers, clang-tidy, benches, longer fuzzing
 nightly: bits threads lint bench-quick programs
-	FIBRAD_TEST_SCENES=20000 CK_DEFAULT_TIMEOUT=3600 $(BUILD)/tests/test_silhouette_scenes
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
 	$(MAKE) sanitized $(ALL_ISAS) OF_MEMORY="$(filter-out accuracy furnace reference reproduce,$(TESTS:tests/test_%.c=%))"
 	$(MAKE) fuzz-fixed $(ALL_ISAS) FUZZ_RUNS="read:40000 kernel:2000 host:300"

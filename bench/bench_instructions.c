@@ -1,14 +1,12 @@
-/* bench_instructions.c - instructions of a window of the beam method and of a circle of silhouettes, in every
- * instruction set.
+/* bench_instructions.c - instructions of a window of the beam method, in every instruction set.
  * SPDX-License-Identifier: MIT
  *
  *     bench_instructions [quick | SPHERES]
  *
  * The bench writes CSV to standard output. The bed is that of bench_window: periodic, of equal spheres (20,000), solid
- * fraction 0.58. For windows, 200 rows of spheres spread over all of the bed are computed with 100 directions each. The
- * instructions of a window contain its share of setting up and writing out the row. A line `circle` has three tasks of
- * silhouettes spread over the bed, with 100 lines. The instructions of a circle contain its share of near lists and
- * pairs.
+ * fraction 0.58. 200 rows of spheres spread over all of the bed are computed with 100 directions each. The instructions
+ * of a window contain its share of setting up and writing out the row. `points` of a line is the number of points, 0 for
+ * exact areas, or the number of chords of masks.
  *
  * The library is built by bench/count_cc.sh and counts its own instructions (`make bench-counted`). The figures depend
  * on sources, compiler and flags alone. So they show the smallest difference between two versions. Two things are not
@@ -23,8 +21,8 @@ enum { DIRECTIONS = 100, CAPACITY = 4096 };
 uint64_t instructions_counted[2];
 
 /* Instructions of `rows` rows spread over the bed; 0: nothing is counted. */
-static uint64_t count(const fibrad_scene *scene, uint32_t n, uint32_t points, uint32_t rows) {
-    const fibrad_beam_rule rule = {.directions = DIRECTIONS, .points = points};
+static uint64_t count(const fibrad_scene *scene, uint32_t n, uint32_t points, uint32_t chords, uint32_t rows) {
+    const fibrad_beam_rule rule = {.directions = DIRECTIONS, .points = points, .chords = chords};
     fibrad_work work = BENCH_GROWING;
     fibrad_row row = bench_arrays(CAPACITY);
     bench_check("row", fibrad_beam_row(scene, &work, 0, &rule, &row)); /* work memory grows */
@@ -38,31 +36,10 @@ static uint64_t count(const fibrad_scene *scene, uint32_t n, uint32_t points, ui
     return ended - begun;
 }
 
-/* Instructions of a circle: three tasks spread over the bed. */
-static double count_circles(const fibrad_scene *scene, uint32_t n) {
-    const fibrad_silhouette_rule rule = {.lines = DIRECTIONS};
-    const size_t size = fibrad_silhouettes_size(scene, &rule);
-    void *block = malloc(size);
-    fibrad_silhouettes *s = NULL;
-    bench_check("silhouettes", fibrad_silhouettes_init(&s, block, size, scene, &rule));
-    const uint32_t tasks = fibrad_silhouettes_tasks(s);
-    fibrad_work work = BENCH_GROWING;
-    fibrad_pairs pairs = BENCH_GROWING;
-    bench_check("silhouettes", fibrad_silhouettes_task(s, &work, 0, &pairs)); /* work memory grows */
-    const uint64_t begun = instructions_counted[0];
-    for (uint32_t k = 1; k < 6; k += 2)
-        bench_check("silhouettes", fibrad_silhouettes_task(s, &work, k * tasks / 6, &pairs));
-    const uint64_t ended = instructions_counted[0];
-    free(work.memory.block);
-    free(pairs.memory.block);
-    free(block);
-    return (double)(ended - begun) * tasks / (3. * DIRECTIONS * n);
-}
-
 int main(int argc, char **argv) {
     const bool quick = argc == 2 && strcmp(argv[1], "quick") == 0;
     const uint32_t n = quick ? 500 : argc == 2 ? (uint32_t)atol(argv[1]) : 20000, rows = quick ? 5 : 200;
-    static const uint32_t points[] = {0, 64, 128, 256};
+    static const uint32_t points[] = {0, 64, 128, 256, 0, 0, 0}, chords[] = {0, 0, 0, 0, 16, 32, 64};
     bench_preamble("bench_instructions: rows of a periodic random bed, solid fraction 0.58", 1);
     struct bed bed = bed_empty();
     const int status = bed_make_packing(&bed, n, 1, 1, 0.58, 1);
@@ -71,12 +48,12 @@ int main(int argc, char **argv) {
     for (int isa = FIBRAD_ISA_SCALAR; isa <= (int)fibrad_isa_best(); ++isa) {
         void *block;
         const fibrad_scene *scene = bench_scene(&bed, isa, &block);
-        for (int k = 0; k < 4 && scene; ++k) {
-            const uint64_t counted = count(scene, n, points[k], rows);
+        for (int k = 0; k < 7 && scene; ++k) {
+            const uint64_t counted = count(scene, n, points[k], chords[k], rows);
             if (counted == 0) return fprintf(stderr, "bench_instructions: the library does not count\n"), 1;
-            printf("%s,%u,%.1f\n", fibrad_isa_name(isa), points[k], (double)counted / (rows * DIRECTIONS));
+            printf("%s,%u%s,%.1f\n", fibrad_isa_name(isa), points[k] + chords[k], chords[k] ? " chords" : "",
+                   (double)counted / (rows * DIRECTIONS));
         }
-        if (scene) printf("%s,circle,%.1f\n", fibrad_isa_name(isa), count_circles(scene, n));
         free(block);
     }
     bed_free(&bed);

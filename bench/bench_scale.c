@@ -4,7 +4,7 @@
  *
  * The bench writes CSV to standard output. The beds are periodic random beds, radii 0.8-1.2, solid fraction 0.55. Above
  * 10,000 spheres a bed consists of copies of one of 10,000, side by side. One thread and two threads take turns. From
- * half a million spheres on there are two threads only. All rows are computed by silhouettes along 55 lines.
+ * half a million spheres on there are two threads only. All rows are computed along 55 lines.
  * `seconds` is elapsed time. `processor_us` is the processor time of all threads per circle (sphere and line), which
  * others on the machine disturb less. `bytes` is the largest memory that the process has ever had, so the numbers of
  * spheres must rise. */
@@ -60,8 +60,8 @@ int main(int argc, char **argv) {
     const bool is_quick = argc == 2 && strcmp(argv[1], "quick") == 0;
     char **list = is_quick ? quick : argc > 1 ? argv + 1 : all;
     const int count = is_quick ? 1 : argc > 1 ? argc - 1 : 3;
-    bench_preamble("bench_scale: periodic random beds, silhouettes along 55 lines", 2);
-    puts("spheres,threads,entries,seconds,us_per_sphere,processor_us_per_circle,peak_bytes_per_sphere,closure");
+    bench_preamble("bench_scale: periodic random beds, rows along 55 lines", 2);
+    puts("spheres,threads,entries,seconds,us_per_sphere,processor_us_per_window,peak_bytes_per_sphere,closure");
     int status = STATUS_OK;
     for (int k = 0; k < count && !status; ++k) {
         char *end;

@@ -6,7 +6,7 @@
  * of radius 1 and of radius `ratio` take up equal volumes. Rows have 100 directions and exact areas, on one thread. For
  * each size there are the number of rows, the entries of a row, the processor time of a row and that of an entry. The
  * last column is the time of an entry over that in the bed of equal spheres. The size "whole" stands for all rows of
- * the bed at once, by silhouettes.
+ * the bed at once, along lines, with their matrix.
  *
  * Then all rows of a shell are computed, averaged, with 50 directions, by one thread and by two. The shell has a sphere
  * of radius 1 and 20,000 spheres of radius 5e-4, at random 0.6e-3 to 21e-3 above its surface. */

@@ -14,7 +14,7 @@ set ylabel "error of an entry of the row, root mean square"
 set grid
 set key bottom left
 of(method, kind) = (strcol(1) eq method && (kind eq "" || strcol(2) eq kind)) ? $5 : NaN
-curves = "in using 4:(of('whole', '')) with linespoints lw 2 pt 5 lc rgb '#00703c' title 'all rows at once (silhouettes)'"
+curves = "in using 4:(of('whole', '')) with linespoints lw 2 pt 5 lc rgb '#00703c' title 'all rows at once (along lines)'"
 curves = curves . ", in using 4:(of('beam', 'areas')) with linespoints lw 2 pt 7 title 'beam, exact areas'"
 curves = curves . ", in using 4:(of('beam', 'points 256')) with linespoints pt 6 title 'beam, 256 points'"
 curves = curves . ", in using 4:(of('beam', 'points 64')) with linespoints pt 4 title 'beam, 64 points'"

@@ -16,7 +16,6 @@
  *   rows       a collection of rows                     fibrad_rows_add, _clear, _read
  *   matrix     all rows: averaged, reciprocal, closed   fibrad_matrix_size, _init, _average, _close, _read,
  *                                                       _reciprocity
- *   silhouettes  all rows at once, without averaging    fibrad_silhouettes_size, _init, _tasks, _task, _join, _row
  *   drift      which rows may stay when spheres move    fibrad_drift_row, _partners
  *   exchange   factors after reflections (grey)         fibrad_exchange_row, _body, _body_mean, _displacement
  *              spheres that conduct                     fibrad_relative_conductivity, fibrad_node_emissivity,
@@ -77,8 +76,8 @@
  *   Errors    A function that can fail returns FIBRAD_OK or a negative fibrad_status. After an error the outputs are
  *             as before, except where the function's comment says otherwise. The error for a null pointer is
  *             FIBRAD_E_ARGUMENT. A scene is complete once fibrad_scene_init has returned FIBRAD_OK. The error for a
- *             scene that is not complete is FIBRAD_E_STATE. A fibrad_silhouettes or a fibrad_heat refers to one scene.
- *             If a different scene has been made in the memory of this scene, calls that read the scene return
+ *             scene that is not complete is FIBRAD_E_STATE. A fibrad_heat refers to one scene. If a
+ *             different scene has been made in the memory of this scene, calls that read the scene return
  *             FIBRAD_E_STATE.
  *   Defaults  Set all fields of a structure to 0. Then set the fields that you need. The comment of a field says what 0
  *             means. "Zeroed" says what a structure of zeros means.
@@ -102,13 +101,12 @@ extern "C" {
 #define FIBRAD_STEFAN_BOLTZMANN 5.670374419e-8 /* W/(m2 K4) */
 
 /* ---- status ---------------------------------------------------------------------------------------------------- */
-/* What a call returned. The numbers never change their meaning. FIBRAD_E_SUM has three causes: a row part was changed,
- * a task of silhouettes was not done exactly once, or the library has a fault. */
+/* What a call returned. The numbers never change their meaning. FIBRAD_E_SUM has two causes: a row part was changed,
+ * or the library has a fault. No status has the number -3. */
 typedef enum fibrad_status {
     FIBRAD_OK = 0,
     FIBRAD_E_ARGUMENT = -1,     /* A pointer is null, or a value is out of its range, NaN or infinite. */
     FIBRAD_E_SIZE = -2,         /* The block is smaller than the `_size` function says. */
-    FIBRAD_E_ALIGNMENT = -3,    /* Reserved. No function asks for an alignment. */
     FIBRAD_E_CAPACITY = -4,     /* An output is too small. `length` or memory.needed is the size that suffices. */
     FIBRAD_E_TABLE = -5,        /* There is no built-in set of so many points. */
     FIBRAD_E_GEOMETRY = -6,     /* A centre lies inside another sphere, or a sphere reaches beyond an opening. */
@@ -492,6 +490,10 @@ size_t fibrad_line_set_size(uint32_t lines);
  *   Source   docs/methods.md section 12 */
 int fibrad_line_set_init(fibrad_line_set **set, void *memory, size_t size, uint32_t lines, uint64_t turn);
 
+/* The number of lines of a set.
+ *   Errors   0 */
+uint32_t fibrad_line_set_count(const fibrad_line_set *set);
+
 /* For fibrad_beam_rule.chords: exact areas along lines, too. */
 #define FIBRAD_CHORDS_NONE 1
 
@@ -637,106 +639,6 @@ void fibrad_rows_clear(fibrad_rows *rows);
  *   Errors   none. Returns 1, or 0 after the last row. */
 int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
 
-/* ---- silhouettes --------------------------------------------------------------------------------------------- */
-/* All rows of a scene at once. Seen along a line, the silhouette of a sphere is a circle. At a point of the circle of
- * sphere k, let a and b be the nearest spheres on either side of k along the line. If a side has no sphere, a or b
- * stands for all walls and the surroundings together. The circle is divided into pieces on which a and b do not change.
- * Let S(i, j) be the area through which i and j exchange radiation along the line. A piece is part of the borders of
- * S(a, k), S(k, b) and S(a, b). So these areas follow from the pieces of all circles.
- *
- * The rows are reciprocal and closed to rounding, without averaging. The error of rows by n lines is about half the
- * error of averaged beam rows by n directions.
- *
- * A pair is two spheres i and j, and S(i, j) summed over lines. In some pairs, i or j stands for all walls and the
- * surroundings together.
- *   1. fibrad_silhouettes_init makes the set of lines.
- *   2. fibrad_silhouettes_task does a task, which gives pairs. Several threads may do different tasks at the same time.
- *      Each thread has its own fibrad_pairs.
- *   3. fibrad_silhouettes_join puts all pairs together, once all tasks are done.
- *   4. fibrad_silhouettes_row delivers a row. Several threads may ask for rows at the same time.
- *   5. fibrad_matrix_init with rule.reciprocal = 1 makes a matrix of the rows.
- *
- * Planes, openings and a cylinder hide no sphere from another. The circles tell which fraction of a sphere's disc is
- * open in each direction of each line. The mean of this fraction is what the sphere sends to walls and surroundings
- * together. Windows, as in beam rows, tell how much each wall and the surroundings get. Only the directions in which
- * the sphere is open need such windows.
- *
- * Scenes with triangles are FIBRAD_E_UNSUPPORTED, since triangles hide spheres. Scenes with a known region are
- * FIBRAD_E_UNSUPPORTED, too, and the rule has no cutoff. The reason is that each area belongs to two spheres. With a
- * cutoff or a known region the two would not see the same obstacles. Use fibrad_beam_row in these cases. */
-typedef struct fibrad_silhouette_rule {
-    uint32_t lines; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: FIBRAD_LINES_DEFAULT */
-    uint64_t turn;  /* seed of a random rotation of all lines together; 0: no rotation */
-} fibrad_silhouette_rule;
-
-/* A collection: what pairs of spheres exchange, from the tasks of one thread. Set `memory`, and zero the rest. */
-typedef struct fibrad_pairs {
-    fibrad_memory memory; /* 24 bytes for each pair */
-    size_t count;         /* of the library: number of pairs so far */
-    uint32_t serial;      /* of the library: number of changes so far */
-} fibrad_pairs;
-
-typedef struct fibrad_silhouettes fibrad_silhouettes; /* the lines of a scene, and where the pairs of each sphere are */
-
-/* The size of the smallest built-in set that has at least `lines` lines. Built-in sets are spread best, and take no
- * time to make. If no built-in set is large enough, the result is `lines`.
- *   Errors   none */
-uint32_t fibrad_silhouettes_lines(uint32_t lines);
-
-/* Bytes that fibrad_silhouettes_init needs: 72 per line and 16 per sphere.
- *   Input    as fibrad_silhouettes_init
- *   Errors   0 */
-size_t fibrad_silhouettes_size(const fibrad_scene *scene, const fibrad_silhouette_rule *rule);
-
-/* Makes the set of lines of a scene.
- *   Input    memory[size]
- *            scene: must stay as it is while the object is used
- *            rule: NULL for all defaults
- *   Output   silhouettes: a pointer into memory
- *   Errors   _ARGUMENT, _SIZE, _STATE
- *            _UNSUPPORTED: there are triangles or a known region
- *   Cost     microseconds; up to 1 s if there is no built-in set of so many lines */
-int fibrad_silhouettes_init(fibrad_silhouettes **silhouettes, void *memory, size_t size, const fibrad_scene *scene,
-                            const fibrad_silhouette_rule *rule);
-
-/* The number of tasks.
- *   Errors   0 */
-uint32_t fibrad_silhouettes_tasks(const fibrad_silhouettes *silhouettes);
-
-/* Does one task, and appends its pairs to a collection. All tasks take about equally long: a sphere far larger than its
- * neighbours is divided over many tasks. Each task must be done once. After an error the collection has the pairs that
- * it had before.
- *   Input    task: 0 to fibrad_silhouettes_tasks - 1
- *            work, pairs: of the calling thread
- *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY
- *            _CAPACITY: fixed pairs->memory is too small; pairs->memory.needed is larger, but may not suffice yet
- *            _UNSUPPORTED: about 230 discs or more are seen near one point of a circle (docs/methods.md section 12,
- *            "Many discs at one place")
- *   Cost     about a microsecond per line and sphere in a packed bed
- *   Source   docs/methods.md section 12 */
-int fibrad_silhouettes_task(const fibrad_silhouettes *silhouettes, fibrad_work *work, uint32_t task,
-                            fibrad_pairs *pairs);
-
-/* Puts the pairs of all tasks together.
- *   Input    pairs[count]: all collections; they must not change while rows are read
- *            memory: takes 8 bytes for each pair; must stay as it is while rows are read
- *   Errors   _ARGUMENT, _STATE, _MEMORY
- *            _CAPACITY: fixed memory is too small; memory->needed is the size that suffices
- *            _UNSUPPORTED: 2^32 pairs or more
- *   Cost     some ns per pair */
-int fibrad_silhouettes_join(fibrad_silhouettes *silhouettes, const fibrad_pairs *pairs, uint32_t count,
-                            fibrad_memory *memory);
-
-/* Row i of the view factors. row->symmetric is 1.
- *   Input    i: 0 to spheres - 1
- *   Output   row; row->directions is the number of lines
- *   Errors   as fibrad_beam_row
- *            _STATE: the pairs are not joined, or have changed since they were joined
- *            _SUM: a task was not done, or done twice
- *   Cost     20 ns per entry; among walls a microsecond for each direction in which the sphere is open
- *   Source   docs/methods.md section 12 */
-int fibrad_silhouettes_row(const fibrad_silhouettes *silhouettes, fibrad_work *work, uint32_t i, fibrad_row *row);
-
 /* ---- matrix ---------------------------------------------------------------------------------------------------- */
 /* The row of a wall. fibrad_exchange_body makes one batch of the row. fibrad_exchange_body_mean makes the row, the mean
  * of all batches. The factors of the row add up to 1. If the emissivity of the wall is 0, all factors of the row are 0.
@@ -758,28 +660,25 @@ typedef void fibrad_piece(void *job, uint32_t k);
  * in any order or at the same time. It returns when all pieces are done. */
 typedef void fibrad_parallel(void *context, uint32_t pieces, fibrad_piece *piece, void *job);
 
-/* How rows become a matrix. Zeroed: view factors by beams with exact areas, made reciprocal and closed; walls have no
- * rows.
- *
- *   the rows hold                            set
- *   view factors by beams, exact areas       nothing
- *   view factors by silhouettes              reciprocal = 1
- *   view factors by rays or by points        sampled = 1
- *   exchange factors                         emissivity
- *   any of these, and walls have rows        body_row as well
- *   exchange factors, and walls have rows    body_row and body_emissivity as well
- *   any of these, to be left as they are     raw = 1 as well */
+/* What the rows of a matrix hold. */
+typedef enum fibrad_rows_kind {
+    FIBRAD_ROWS_AREAS = 0,   /* view factors along lines, or by exact areas */
+    FIBRAD_ROWS_SAMPLED = 1, /* view factors by rays, or by points of directions */
+    FIBRAD_ROWS_EXCHANGE = 2 /* exchange factors */
+} fibrad_rows_kind;
+
+/* How rows become a matrix. Zeroed: view factors along lines or by exact areas, made reciprocal and closed; walls have
+ * no rows. */
 typedef struct fibrad_matrix_rule {
-    const double *emissivity;        /* [spheres], 0 to 1: the rows hold exchange factors; NULL: view factors */
+    int kind;                        /* a fibrad_rows_kind */
     int raw;                         /* 1: leave the rows as they are; a missing row is empty */
+    const double *emissivity;        /* [spheres], 0 to 1, needed with FIBRAD_ROWS_EXCHANGE; else NULL */
     double drop;                     /* 0 to 1: pairs of entries are dropped if both are below `drop`; 0: keep all */
     uint32_t tasks;                  /* number of tasks for threads, 1 to 1024; changes no bit; 0 means 1 */
     const fibrad_body_row *body_row; /* [bodies], copied; rows of endless walls are not read; NULL: no rows of walls */
     const double *body_emissivity;   /* [bodies], 0 to 1, read if body_row is set; NULL: 1 */
     fibrad_parallel *parallel;       /* used by all calls for this matrix; NULL: the calling thread does all */
     void *context;                   /* handed to parallel */
-    int sampled;                     /* 1: view factors by rays or points */
-    int reciprocal;                  /* 1: the rows are by silhouettes, and none is averaged */
 } fibrad_matrix_rule;
 
 /* A matrix of factors in compressed rows. The arrays belong to the matrix that they were read from. If walls have no
@@ -823,8 +722,8 @@ size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, ui
  *            rule: NULL for all defaults
  *   Output   matrix: a pointer into memory
  *            sphere: the sphere whose row is missing or repeated; may be NULL
- *   Errors   _ARGUMENT: also if an entry is from or to a sphere of emissivity 0, or if rule->reciprocal is 1 and a row
- *            has symmetric = 0
+ *   Errors   _ARGUMENT: also if an entry is from or to a sphere of emissivity 0, or if rule->emissivity does not
+ *            suit rule->kind
  *            _SIZE
  *            _STATE: a row is missing, repeated or of another scene, or a collection's block was moved
  *   Cost     O(spheres + entries) */

@@ -12,16 +12,20 @@ static inline fibrad_scene *apart(uint32_t n, const double *r) {
     return scene_of(&bed, FIBRAD_ISA_BEST);
 }
 
-/* Rows by hand, in the arrays of a compressed matrix. */
+/* Rows by hand, in the arrays of a compressed matrix. open: what a row does not give to
+ * spheres goes to the surroundings. */
 static inline void add_rows(fibrad_rows *rows, uint32_t n, const uint64_t *start, const uint32_t *col,
-                            const double *f) {
+                            const double *f, bool open) {
     const fibrad_factors all = {.n = n, .start = start, .col = col, .f = f};
     for (uint32_t i = 0; i < n; i++) {
         const uint64_t begin = all.start[i];
+        double sum = 0;
+        for (uint64_t k = begin; k < all.start[i + 1]; k++) sum += f[k];
         const fibrad_row row = {.sphere = i,
                                 .col = (uint32_t *)(uintptr_t)(all.col + begin),
                                 .f = (double *)(uintptr_t)(all.f + begin),
-                                .length = (uint32_t)(all.start[i + 1] - begin)};
+                                .length = (uint32_t)(all.start[i + 1] - begin),
+                                .escaped = open ? 1 - sum : 0};
         assert_ok(fibrad_rows_add(rows, &row, 0));
     }
 }

@@ -42,8 +42,7 @@ tests_of() {
     kernel/exchange/*) echo "exchange body_rows known protocol part $tests" ;;
     kernel/heat/*) echo "protocol_heat heat heat_arguments heat_paths heat_patches heat_invariants $tests" ;;
     */points_*) echo "beam cast $tests" ;;
-    kernel/window/*) echo "silhouettes areas beam $tests" ;;
-    kernel/silhouette/*) echo "silhouettes silhouette_scenes $tests" ;;
+    kernel/window/*) echo "lines_rows areas beam $tests" ;;
     */surface_row*) echo "surface_row $tests" ;;
     */walls.* | */wall_*) echo "walls part estimate $tests" ;;
     kernel/surface/*) echo "surface $tests" ;;

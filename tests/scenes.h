@@ -278,6 +278,16 @@ static inline bool same_bits_with(const fibrad_row *a, const fibrad_row *b, uint
     return same_bits(a, b) && memcmp(a->body, b->body, bodies * sizeof *a->body) == 0;
 }
 
+/* A set of lines. free(*set) frees it. */
+static inline fibrad_line_set *lines_of(uint32_t lines, uint64_t turn) {
+    const size_t size = fibrad_line_set_size(lines);
+    fibrad_line_set *set = NULL;
+    void *block = block_of(size);
+    assert_ok(fibrad_line_set_init(&set, block, size, lines, turn));
+    ck_assert_ptr_eq(set, block);
+    return set;
+}
+
 /* ---- matrices --------------------------------------------------------------------------------------------------- */
 
 /* The beam rows of all spheres of a scene, in order. rule NULL: all defaults. */
@@ -289,29 +299,6 @@ static inline fibrad_rows rows_by_beams(const fibrad_scene *scene, const fibrad_
     for (uint32_t i = 0; i < facts.spheres; i++)
         assert_ok(fibrad_beam_row(scene, &work, i, rule, &(fibrad_row){.rows = &rows}));
     ck_assert_uint_eq(rows.count, facts.spheres);
-    return rows;
-}
-
-/* The rows of all spheres of a scene by silhouettes, in order. */
-static inline fibrad_rows rows_by_silhouettes(const fibrad_scene *scene, uint32_t lines) {
-    const fibrad_silhouette_rule rule = {.lines = lines};
-    const size_t size = fibrad_silhouettes_size(scene, &rule);
-    OWNED void *block = block_of(size);
-    fibrad_silhouettes *s;
-    OWNED_WORK work = work_growing();
-    fibrad_pairs pairs = {.memory = memory_growing()};
-    fibrad_memory index = memory_growing();
-    fibrad_rows rows = {.memory = memory_growing()};
-    fibrad_scene_facts facts;
-    fibrad_scene_describe(scene, &facts);
-    assert_ok(fibrad_silhouettes_init(&s, block, size, scene, &rule));
-    for (uint32_t task = 0; task < fibrad_silhouettes_tasks(s); task++)
-        assert_ok(fibrad_silhouettes_task(s, &work, task, &pairs));
-    assert_ok(fibrad_silhouettes_join(s, &pairs, 1, &index));
-    for (uint32_t i = 0; i < facts.spheres; i++)
-        assert_ok(fibrad_silhouettes_row(s, &work, i, &(fibrad_row){.rows = &rows}));
-    free(pairs.memory.block);
-    free(index.block);
     return rows;
 }
 
@@ -342,6 +329,12 @@ static inline struct matrix matrix_by_beams(const fibrad_scene *scene, const fib
     OWNED_ROWS rows = rows_by_beams(scene, beam);
     const struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = raw});
     return m;
+}
+
+/* The same along lines. chords: as in fibrad_beam_rule. */
+static inline struct matrix matrix_by_lines(const fibrad_scene *scene, uint32_t lines, uint32_t chords, bool raw) {
+    OWNED fibrad_line_set *set = lines_of(lines, 0);
+    return matrix_by_beams(scene, &(fibrad_beam_rule){.lines = set, .chords = chords}, raw);
 }
 
 static inline void matrix_free(struct matrix *m) {

@@ -30,7 +30,7 @@ static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows
     assert_ok(fibrad_matrix_reciprocity(m.matrix, &largest));
     ck_assert(!threads || tasks == 1 || calls > 4);
     OWNED_MATRIX alone =
-        matrix_of(scene, rows, count, &(fibrad_matrix_rule){.emissivity = rule.emissivity, .drop = rule.drop});
+        matrix_of(scene, rows, count, &(fibrad_matrix_rule){.kind = rule.kind, .emissivity = rule.emissivity, .drop = rule.drop});
     assert_ok(fibrad_matrix_reciprocity(alone.matrix, &same));
     ck_assert_double_eq(largest, same);
     return m;
@@ -42,7 +42,7 @@ TEST(tasks_change_no_bit) {
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED double *emissivity = calloc(bed.n, sizeof *emissivity);
     for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = (1 + i % 7) / 7.;
-    const fibrad_matrix_rule rules[] = {{0}, {.emissivity = emissivity}, {.drop = 5e-3}};
+    const fibrad_matrix_rule rules[] = {{0}, {.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity}, {.drop = 5e-3}};
     fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34}), spread[4];
     for (int c = 0; c < 4; c++) spread[c] = (fibrad_rows){.memory = memory_growing()};
     OWNED_WORK work = work_growing();
@@ -69,7 +69,7 @@ TEST(calls_out_of_order) {
     const double r[] = {1, 2, 1};
     OWNED fibrad_scene *scene = apart(3, r);
     OWNED_ROWS rows = {.memory = memory_growing()};
-    add_rows(&rows, 3, (uint64_t[]){0, 1, 1, 3}, (uint32_t[]){1, 0, 2}, (double[]){.5, .25, .125});
+    add_rows(&rows, 3, (uint64_t[]){0, 1, 1, 3}, (uint32_t[]){1, 0, 2}, (double[]){.5, .25, .125}, true);
     for (int raw = 0; raw < 2; raw++) {
         const fibrad_matrix_rule rule = {.tasks = 2, .raw = raw};
         const size_t size = fibrad_matrix_size(scene, &rows, 1, &rule);
@@ -159,7 +159,7 @@ TEST(matrix_blocks_of_any_alignment) {
     double emissivity[60];
     for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = (1 + i % 5) / 5.;
     const fibrad_matrix_rule rules[] = {
-        {.tasks = 3}, {.raw = 1}, {.emissivity = emissivity, .tasks = 7}, {.drop = .02}};
+        {.tasks = 3}, {.raw = 1}, {.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity, .tasks = 7}, {.drop = .02}};
     for (int k = 0; k < 4; k++) {
         OWNED_MATRIX expected = matrix_of(scene, &rows, 1, &rules[k]);
         const size_t size = fibrad_matrix_size(scene, &rows, 1, &rules[k]);
@@ -218,11 +218,23 @@ TEST(bad_matrices_are_refused) {
         assert_invalid(fibrad_matrix_init(&m, block, sizeof block, scene, bad_rows[k], 1, NULL, NULL));
     }
     static const double emissivity[][2] = {{1, 0}, {1, -1}, {NAN, 1}, {1, INFINITY}, {1.5, 1}};
-    fibrad_matrix_rule bad[10] = {{.tasks = 1025}, {.tasks = UINT32_MAX}, {.drop = -1}, {.drop = NAN}};
-    for (int k = 0; k < 5; k++) bad[4 + k].emissivity = emissivity[k];
-    for (int k = 0; k < 9; k++) {
-        ck_assert_uint_eq(fibrad_matrix_size(scene, &rows, 1, &bad[k]), 0);
-        assert_invalid(fibrad_matrix_init(&m, block, sizeof block, scene, &rows, 1, &bad[k], NULL));
+    static const double grey[] = {1, 1};
+    fibrad_matrix_rule bad[] = {{.tasks = 1025},
+                                {.tasks = UINT32_MAX},
+                                {.drop = -1},
+                                {.drop = NAN},
+                                {.kind = -1},
+                                {.kind = 3},
+                                {.kind = FIBRAD_ROWS_EXCHANGE}, /* the emissivities are missing */
+                                {.emissivity = grey},
+                                {.kind = FIBRAD_ROWS_SAMPLED, .emissivity = grey},
+                                {0}};
+    const size_t last = sizeof bad / sizeof *bad - 1;
+    for (size_t k = 0; k < last + 5; k++) {
+        const size_t at = k < last ? k : last;
+        if (k >= last) bad[at] = (fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity[k - last]};
+        ck_assert_uint_eq(fibrad_matrix_size(scene, &rows, 1, &bad[at]), 0);
+        assert_invalid(fibrad_matrix_init(&m, block, sizeof block, scene, &rows, 1, &bad[at], NULL));
     }
     ck_assert_ptr_null(m);
     assert_ok(fibrad_matrix_init(&m, block, sizeof block, scene, &rows, 1, NULL, NULL));

@@ -208,7 +208,7 @@ TEST(work_in_another_block) {
         block = other;
         work.memory.block = other + shift;
     }
-    for (; size > 160000; size -= size / 8) { /* rows with reflections need some 150 KB at least */
+    for (; size > 180000; size -= size / 8) { /* rows with reflections need some 180 KB at least */
         work.memory.size = size;
         assert_row_as_fresh(p, &work, 3);
     }

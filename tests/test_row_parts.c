@@ -11,10 +11,11 @@ static int row_in_parts(const fibrad_scene *scene, uint32_t i, const fibrad_beam
                         fibrad_row *row) {
     OWNED_WORK first = work_growing(), second = work_growing();
     fibrad_row_part part[PARTS_MOST];
+    const uint32_t windows = rule->lines != NULL ? fibrad_line_set_count(rule->lines) : rule->directions;
     for (uint32_t p = parts; p-- > 0;) {
         part[p] = (fibrad_row_part){.memory = memory_growing()};
-        const uint32_t from = rule->directions * p * p / (parts * parts);
-        const uint32_t to = rule->directions * (p + 1) * (p + 1) / (parts * parts);
+        const uint32_t from = windows * p * p / (parts * parts);
+        const uint32_t to = windows * (p + 1) * (p + 1) / (parts * parts);
         assert_ok(fibrad_beam_part(scene, p % 2 == 0 ? &first : &second, i, rule, from, to, &part[p]));
     }
     const int status = fibrad_beam_join(scene, &second, i, rule, part, parts, row);
@@ -22,25 +23,43 @@ static int row_in_parts(const fibrad_scene *scene, uint32_t i, const fibrad_beam
     return status;
 }
 
+/* Compares row i, computed at once and in parts. */
+static void compare_row(const fibrad_scene *scene, uint32_t n, uint32_t bodies, uint32_t i,
+                        const fibrad_beam_rule *rule, uint32_t parts, double seen[2]) {
+    OWNED_WORK work = work_growing();
+    OWNED_ROW one = row_of(n), joined = row_of(n);
+    OWNED float *half = calloc(n, sizeof *half), *joined_half = calloc(n, sizeof *half);
+    one.half = half, joined.half = joined_half;
+    assert_ok(fibrad_beam_row(scene, &work, i, rule, &one));
+    assert_ok(row_in_parts(scene, i, rule, parts, &joined));
+    ck_assert(same_bits_with(&one, &joined, bodies));
+    ck_assert_uint_eq(joined.directions, rule->lines != NULL ? fibrad_line_set_count(rule->lines) : rule->directions);
+    ck_assert_uint_eq(joined.fallbacks, one.fallbacks);
+    ck_assert_uint_eq(joined.sphere, i);
+    ck_assert(joined.noise == one.noise && joined.shares == one.shares && joined.lines == one.lines);
+    if (rule->lines != NULL) ck_assert_mem_eq(half, joined_half, one.length * sizeof *half);
+    seen[0] += row_sum(&one);
+    for (uint32_t b = 0; b < bodies; b++) seen[1] += one.body[b];
+}
+
 /* Compares rows of a large, a small and the last sphere, computed at once and in parts. Adds what spheres get and what
  * bodies get. */
 static void compare_rows(const struct bed *bed, const fibrad_scene_config *config, double cutoff, double seen[2]) {
     OWNED fibrad_scene *scene = scene_with(bed, config);
-    OWNED_WORK work = work_growing();
-    OWNED_ROW one = row_of(bed->n), joined = row_of(bed->n);
+    static unsigned char block[1 << 16];
+    static const uint32_t chords[] = {FIBRAD_CHORDS_NONE, 16, 64};
+    fibrad_line_set *lines;
     const uint32_t rows[] = {0, bed->n / 2, bed->n - 1};
     for (int k = 0; k < 18; k++) {
         const uint32_t i = rows[k % 3], parts = 1 + (uint32_t)k % PARTS_MOST;
         const fibrad_beam_rule rule = {
             .directions = 50 + (uint32_t)k, .points = k % 2 == 0 ? 0 : 64, .cutoff = cutoff, .turn = k < 9 ? 0 : 5};
-        assert_ok(fibrad_beam_row(scene, &work, i, &rule, &one));
-        assert_ok(row_in_parts(scene, i, &rule, parts, &joined));
-        ck_assert(same_bits_with(&one, &joined, config->bodies));
-        ck_assert_uint_eq(joined.directions, rule.directions);
-        ck_assert_uint_eq(joined.fallbacks, one.fallbacks);
-        ck_assert_uint_eq(joined.sphere, i);
-        seen[0] += row_sum(&one);
-        for (uint32_t b = 0; b < config->bodies; b++) seen[1] += one.body[b];
+        compare_row(scene, bed->n, config->bodies, i, &rule, parts, seen);
+        assert_ok(fibrad_line_set_init(&lines, block, sizeof block, rule.directions, rule.turn));
+        const fibrad_beam_rule along = {.lines = lines, .chords = chords[k % 3], .cutoff = cutoff};
+        compare_row(scene, bed->n, config->bodies, rows[(k + k / 3) % 3], &along, parts, seen);
+        const fibrad_beam_rule masks = {.directions = rule.directions, .chords = 32, .cutoff = cutoff};
+        compare_row(scene, bed->n, config->bodies, i, &masks, parts, seen);
     }
 }
 

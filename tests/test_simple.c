@@ -8,7 +8,6 @@
 #include "host_owned.h"
 #include "scenes.h"
 #include "meshes.h"
-#include "sample/line.h"
 #include "suite.h"
 
 static const int threads[] = {1, 2, 5};
@@ -33,14 +32,15 @@ static fibrad_rows rows_one_by_one(const fibrad_scene *scene, uint32_t n, uint32
     return rows;
 }
 
-/* Makes the same matrix with the kernel, with rows in the order of the spheres: raw rows by beams, or all rows by
- * silhouettes. */
+/* Makes the same matrix with the kernel, with rows in the order of the spheres: raw rows along directions, or all rows
+ * along lines. */
 static struct matrix kernel_matrix(const struct bed *bed, const fibrad_scene_config *config,
                                    const fibrad_beam_rule *rule, bool raw) {
     OWNED fibrad_scene *scene = scene_with(bed, config);
-    OWNED_ROWS rows = raw ? rows_one_by_one(scene, bed->n, config ? config->bodies : 0, rule)
-                          : rows_by_silhouettes(scene, rule->directions);
-    return matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = raw, .reciprocal = !raw});
+    OWNED fibrad_line_set *lines = raw ? NULL : lines_of(rule->directions, rule->turn);
+    const fibrad_beam_rule along = {.lines = lines, .chords = rule->points / 4, .cutoff = rule->cutoff};
+    OWNED_ROWS rows = rows_one_by_one(scene, bed->n, config ? config->bodies : 0, raw ? rule : &along);
+    return matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = raw});
 }
 
 TEST(view_factors_are_the_kernels) {
@@ -57,42 +57,11 @@ TEST(view_factors_are_the_kernels) {
         assert_ok(fibrad_view_factors(&config, &spheres, &(fibrad_bed_options){.beam = &rule}, &run, &factors));
         ck_assert(matrix_same_bits(&factors->matrix, &expected.factors));
         ck_assert_int_eq(factors->threads, threads[t]);
-        ck_assert_uint_eq(factors->directions, 40);
+        ck_assert_uint_eq(factors->directions, fibrad_line_set_lines(40));
         ck_assert_uint_eq(factors->facts.spheres, 300);
         ck_assert_double_lt(factors->closure_error, 1e-12);
         ck_assert_double_lt(factors->reciprocity_error, 1e-14);
         ck_assert(factors->body_area[0] > 0 && isfinite(factors->body_area[1]));
-    }
-}
-
-/* A straight row of n spheres along a line of the set of LINES. All but the first are shifted across the line, each by
- * 1e-9 less than the one before. Near a point of the circle of the first sphere, all others are seen along the line. */
-enum { LINES = 8, ROW_MOST = 300 };
-static struct bed shifted_row(uint32_t n) {
-    static double ball[ROW_MOST][4];
-    double line[LINES][3], scratch[3 * LINES];
-    fibrad_lines_make(LINES, line, scratch);
-    const double *d = line[1], size = hypot(d[0], d[1]);
-    for (uint32_t k = 0; k < n; k++) {
-        const double depth = 2.5 * k, aside = k == 0 ? 0 : (.5 - 1e-9 * k) / size;
-        ball[k][0] = depth * d[0] + aside * d[1], ball[k][1] = depth * d[1] - aside * d[0];
-        ball[k][2] = depth * d[2], ball[k][3] = 1;
-    }
-    return bed_of(n, (const double(*)[4])ball);
-}
-
-/* If a circle sees too many discs at one place, averaged rows by beams stand in for silhouettes. */
-TEST(many_discs_at_one_place) {
-    const fibrad_beam_rule rule = {.directions = LINES};
-    for (uint32_t n = 200; n <= ROW_MOST; n += 100) {
-        OWNED_BED bed = shifted_row(n);
-        const fibrad_spheres spheres = spheres_of(&bed);
-        OWNED fibrad_scene *scene = scene_with(&bed, NULL);
-        OWNED_ROWS rows = n == 200 ? rows_by_silhouettes(scene, LINES) : rows_one_by_one(scene, n, 0, &rule);
-        OWNED_MATRIX expected = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.reciprocal = n == 200});
-        OWNED_FACTORS *factors = NULL;
-        assert_ok(fibrad_view_factors(NULL, &spheres, &(fibrad_bed_options){.beam = &rule}, NULL, &factors));
-        ck_assert(matrix_same_bits(&factors->matrix, &expected.factors));
     }
 }
 
@@ -138,6 +107,26 @@ TEST(long_rows_are_divided) {
     }
     ck_assert_uint_gt(alone[0]->matrix.start[300], 100);
     for (int t = 0; t < 3; t++) fibrad_bed_free(alone[t]);
+}
+
+/* The same holds along lines, with masks and without. A bed of fewer spheres than threads has masks, too. */
+TEST(long_rows_along_lines_are_divided) {
+    struct bed beds[] = {strewn(300, 3), strewn(3, 3)};
+    const fibrad_body floor = plane_at(2, 0, -.3);
+    const fibrad_scene_config config = {.body = &floor, .bodies = 1};
+    for (int b = 0; b < 2; b++)
+        for (uint32_t points = 0; points <= 64; points += 64) {
+            const fibrad_spheres spheres = spheres_of(&beds[b]);
+            const fibrad_beam_rule rule = {.directions = 60, .points = points};
+            OWNED_MATRIX expected = kernel_matrix(&beds[b], &config, &rule, false);
+            for (int t = 0; t < 3; t++) {
+                fibrad_run run = {.threads = threads[t]};
+                OWNED_FACTORS *factors = NULL;
+                assert_ok(fibrad_view_factors(&config, &spheres, &(fibrad_bed_options){.beam = &rule}, &run, &factors));
+                ck_assert(matrix_same_bits(&factors->matrix, &expected.factors));
+            }
+        }
+    for (int b = 0; b < 2; b++) bed_free(&beds[b]);
 }
 
 /* Each other method and option gives the same for any number of threads. */
@@ -358,7 +347,8 @@ TEST(arguments) {
     fibrad_radiation *radiation;
     const fibrad_bed_options two = {.beam = &(fibrad_beam_rule){0}, .cast = &(fibrad_cast_rule){0}},
                              drop = {.drop = -1}, nan = {.drop = NAN},
-                             points = {.beam = &(fibrad_beam_rule){.points = 3}};
+                             points = {.beam = &(fibrad_beam_rule){.points = 3}},
+                             between = {.beam = &(fibrad_beam_rule){.points = 192}};
     fibrad_run run = {.threads = -1}, many = {.threads = 1025};
     assert_invalid(fibrad_view_factors(NULL, NULL, NULL, NULL, &factors));
     assert_invalid(fibrad_view_factors(NULL, &spheres, NULL, NULL, NULL));
@@ -368,6 +358,7 @@ TEST(arguments) {
     assert_invalid(fibrad_view_factors(NULL, &spheres, NULL, &run, &factors));
     assert_invalid(fibrad_view_factors(NULL, &spheres, NULL, &many, &factors));
     ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &points, NULL, &factors), FIBRAD_E_TABLE);
+    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &between, NULL, &factors), FIBRAD_E_TABLE);
     ck_assert_ptr_null(factors);
     assert_invalid(fibrad_exchange_factors(NULL, &spheres, NULL, NULL, NULL, &factors));
     assert_invalid(fibrad_displacements(NULL, &spheres, NULL, NULL, NULL, NULL, NULL));
@@ -401,7 +392,7 @@ TEST(progress_and_cancelling) {
         fibrad_run run = {.threads = threads[t], .progress = count_calls, .context = &calls};
         fibrad_bed_factors *factors;
         assert_ok(fibrad_view_factors(NULL, &spheres, &options, &run, &factors));
-        ck_assert(calls.ends == 2 && calls.total == 200 && calls.count >= 4); /* circles, rows */
+        ck_assert(calls.ends == 1 && calls.total == 200 && calls.count >= 2);
         fibrad_bed_free(factors);
         for (uint64_t at = 1; at <= 2; at++) {
             calls = (struct calls){.stop_at = at};

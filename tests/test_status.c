@@ -7,11 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define GONE (-3) /* was FIBRAD_E_ALIGNMENT */
+
 TEST(numbers_never_change) {
     ck_assert_int_eq(FIBRAD_OK, 0);
     ck_assert_int_eq(FIBRAD_E_ARGUMENT, -1);
     ck_assert_int_eq(FIBRAD_E_SIZE, -2);
-    ck_assert_int_eq(FIBRAD_E_ALIGNMENT, -3);
     ck_assert_int_eq(FIBRAD_E_CAPACITY, -4);
     ck_assert_int_eq(FIBRAD_E_TABLE, -5);
     ck_assert_int_eq(FIBRAD_E_GEOMETRY, -6);
@@ -30,6 +31,7 @@ TEST(numbers_never_change) {
 
 TEST(each_status_has_its_own_text) {
     for (int a = FIBRAD_E_FILE; a <= FIBRAD_OK; a++) {
+        if (a == GONE) continue;
         const char *text = fibrad_status_text(a);
         ck_assert_uint_gt(strlen(text), 0);
         ck_assert_int_ne(text[strlen(text) - 1], '.');

@@ -113,7 +113,9 @@ static int join_scene(const struct joined *joined, fibrad_scene **scene, void **
 /* Makes the matrix of the rows in *block. The caller frees *block also after an error. */
 static int join_matrix(const struct join_request *request, const struct joined *joined, const fibrad_scene *scene,
                        fibrad_bed_factors *factors, void **block) {
-    const fibrad_matrix_rule rule = {.emissivity = joined->emissive ? joined->emissivity : NULL, .raw = request->raw};
+    const fibrad_matrix_rule rule = {.kind = joined->emissive ? FIBRAD_ROWS_EXCHANGE : FIBRAD_ROWS_AREAS,
+                                     .emissivity = joined->emissive ? joined->emissivity : NULL,
+                                     .raw = request->raw};
     fibrad_matrix *matrix;
     uint32_t sphere = 0;
     const size_t size = fibrad_matrix_size(scene, &joined->rows, 1, &rule);

@@ -38,7 +38,7 @@ enum { PER_DIRECTION = 64, PER_PATH = 8 };
 static int plan_matrix(fibrad_job *job, const fibrad_bed_options *options, const fibrad_exchange_rule *walls,
                        fibrad_body_row *body_row, fibrad_matrix_rule *rule) {
     *rule = (fibrad_matrix_rule){.raw = options->raw || options->wanted, .drop = options->drop};
-    rule->sampled = options->cast != NULL;
+    if (options->cast) rule->kind = FIBRAD_ROWS_SAMPLED;
     if (!options->bodies || options->wanted || walls->cutoff > 0 || job->facts.bodies == 0) return FIBRAD_OK;
     fibrad_exchange_rule before = *walls;
     if (!rule->raw) before.tolerance *= BODY_BEFORE_AVERAGING;
@@ -120,6 +120,7 @@ static int run_exchange(fibrad_job *job, const fibrad_exchange_rule *rule, const
     walls.paths = fibrad_job_body_paths(job, PER_PATH * (uint64_t)(rule->paths ? rule->paths : 400));
     status = plan_matrix(job, options, &walls, body_row, &how);
     if (status) return status;
+    how.kind = FIBRAD_ROWS_EXCHANGE;
     how.emissivity = rule->node_emissivity ? rule->node_emissivity : rule->emissivity;
     if (rule->tolerance > 0 && !how.raw) return fibrad_job_exchange(job, row_by_paths, rule, &how, factors);
     return run_rule(job, row_by_paths, rule, options, &how, factors);

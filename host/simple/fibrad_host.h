@@ -39,7 +39,7 @@ extern "C" {
 /* A function of the caller that shows progress. The thread that made the call runs this function at the beginning and
  * the end of each stage, and up to 20 times a second in between.
  *   Input    context: fibrad_run.context
- *            stage: "walls", "circles", "rows", "triangles", "beams", "sweeps" or "steps"
+ *            stage: "walls", "rows", "triangles", "beams", "sweeps" or "steps"
  *            done: number of things done
  *            total: number of all things; 0: not known
  *   Output   0 to go on; else the call stops and returns FIBRAD_E_CANCELLED */

@@ -98,13 +98,13 @@ int fibrad_job_beam_row(const void *rule, const fibrad_scene *scene, fibrad_work
 struct part_tasks {
     fibrad_job *job;
     fibrad_beam_rule rule;
-    uint32_t sphere, parts;
+    uint32_t sphere, parts, windows;
     fibrad_row_part part[PARTS_MAX];
 };
 
 static int run_row_part(void *tasks, int thread, uint32_t task) {
     struct part_tasks *t = tasks;
-    const uint32_t n = t->rule.directions;
+    const uint32_t n = t->windows;
     const uint32_t from = (uint32_t)((uint64_t)n * task / t->parts),
                    to = (uint32_t)((uint64_t)n * (task + 1) / t->parts);
     return fibrad_beam_part(t->job->scene, &t->job->team.work[thread], t->sphere, &t->rule, from, to, &t->part[task]);
@@ -133,8 +133,10 @@ static int run_all_divided(const struct row_tasks *rows, uint32_t count, uint32_
     if (tasks) {
         tasks->job = rows->job;
         if (rule) tasks->rule = *rule;
-        if (!tasks->rule.directions) tasks->rule.directions = FIBRAD_DIRECTIONS_DEFAULT;
-        const uint32_t most = PARTS_EACH * (uint32_t)team->threads, n = tasks->rule.directions;
+        if (!tasks->rule.directions && !tasks->rule.lines) tasks->rule.directions = FIBRAD_DIRECTIONS_DEFAULT;
+        const uint32_t most = PARTS_EACH * (uint32_t)team->threads;
+        const uint32_t n = tasks->rule.lines ? fibrad_line_set_count(tasks->rule.lines) : tasks->rule.directions;
+        tasks->windows = n;
         tasks->parts = most < PARTS_MAX ? most : PARTS_MAX;
         if (tasks->parts > n) tasks->parts = n;
         for (uint32_t p = 0; p < tasks->parts; ++p) tasks->part[p].memory.resize = fibrad_heap_resize;
@@ -243,6 +245,7 @@ int fibrad_job_line_rows(fibrad_job *job, const fibrad_beam_rule *beam, fibrad_j
         const size_t size = fibrad_line_set_size(lines);
         fibrad_line_set *set = NULL;
         if (!size) return FIBRAD_E_ARGUMENT;
+        if (rule.points % 64 || rule.points > 256 || rule.points == 192) return FIBRAD_E_TABLE;
         block = malloc(size);
         status = block ? fibrad_line_set_init(&set, block, size, lines, rule.turn) : FIBRAD_E_MEMORY;
         rule.lines = set, rule.directions = 0, rule.turn = 0;

@@ -11,6 +11,8 @@
 /* The sum that a term is added to: a sphere by its place, a slot as FIBRAD_ADD_SLOT + slot, or one of these. */
 #define FIBRAD_ADD_OPEN   0xffffff00u /* part of a window that meets nothing */
 #define FIBRAD_ADD_HIDDEN 0xffffff01u /* the window is hidden */
+#define FIBRAD_ADD_WHOLE  0xffffff02u /* the size of the window, of rows by masks or along lines */
+#define FIBRAD_ADD_SEEN   0xffffff03u /* how many spheres the windows of the part have seen, by masks */
 #define FIBRAD_ADD_SLOT   0xffffff20u /* + slot */
 #define FIBRAD_ADD_REGION 0xffffff80u /* + region of the sky: the open part */
 #define FIBRAD_ADD_SHARE  0xffffffa0u /* + region: the share that the region has if nothing is hidden, in windows */

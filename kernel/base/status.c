@@ -9,8 +9,6 @@ const char *fibrad_status_text(int status) {
         return "a null pointer, or a value that is out of its range, not a number or infinite";
     case FIBRAD_E_SIZE:
         return "the memory block is too small";
-    case FIBRAD_E_ALIGNMENT:
-        return "reserved";
     case FIBRAD_E_CAPACITY:
         return "an output is too small";
     case FIBRAD_E_TABLE:

@@ -13,6 +13,7 @@
  * but one row of a hundred: docs/accuracy.md. */
 #define VIEW_ERROR     1.6
 #define EXCHANGE_ERROR 1.2
+#define RAW_ERROR      2.6 /* the change of raw rows along lines over their distance: all of 5,000 rows are below it */
 #define LEAST_ERROR    1e-12 /* least change of a row that is compared with its error; smaller changes are rounding */
 
 static uint32_t tasks_of(const fibrad_matrix_rule *rule) {
@@ -22,6 +23,9 @@ static uint32_t tasks_of(const fibrad_matrix_rule *rule) {
 
 static bool matrix_rule_valid(const fibrad_scene *scene, const fibrad_matrix_rule *rule) {
     if (rule == NULL) return true;
+    const bool exchange = rule->kind == FIBRAD_ROWS_EXCHANGE;
+    if (rule->kind < FIBRAD_ROWS_AREAS || rule->kind > FIBRAD_ROWS_EXCHANGE) return false;
+    if (rule->emissivity != NULL ? !exchange : exchange && scene->facts.spheres > 0) return false;
     if (rule->tasks > TASKS_MAX || !(rule->drop >= 0 && rule->drop <= 1)) return false;
     for (uint32_t b = 0; b < scene->facts.bodies && rule->body_row != NULL; b++) {
         const fibrad_body_row *row = &rule->body_row[b];
@@ -104,9 +108,9 @@ static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const 
     const uint64_t entries = entries_of(scene, rows, count, rule != NULL ? rule->emissivity : NULL, &lines);
     *m = (fibrad_matrix){.bodies = scene->facts.bodies, .tasks = tasks_of(rule)};
     m->raw = rule != NULL && rule->raw;
-    m->lines = lines && !m->raw;
-    m->exchange = rule != NULL && rule->emissivity != NULL;
-    m->sampled = m->exchange || (rule != NULL && rule->sampled);
+    m->exchange = rule != NULL && rule->kind == FIBRAD_ROWS_EXCHANGE;
+    m->sampled = rule != NULL && rule->kind != FIBRAD_ROWS_AREAS;
+    m->lines = lines && !m->raw && !m->sampled;
     m->enclosed = rule != NULL && rule->body_row != NULL;
     m->drop = rule != NULL ? rule->drop : 0;
     m->parallel = rule != NULL ? rule->parallel : NULL;
@@ -347,34 +351,50 @@ static void note_change(const fibrad_matrix *m, fibrad_matrix_part *part, uint32
     if (changed > part->worst) part->worst = changed, part->worst_row = i;
 }
 
-/* Estimates the errors of rows that are not along lines. The error of a row follows from the distance between its mean and the raw row. The columns of the raw row are
- * among those of the mean. The error is at least that of the raw row, as far as the mean comes from the row itself:
- * by symmetry the errors of two rows may be equal. If a row says little about another sphere, as that of a large
- * sphere about a small one, its difference counts by the ratio of both weights in the mean. For the shares of walls
- * the error is that of the raw row, in proportion to what the walls get. */
+/* The distance between a row and its raw row. The columns of the raw row are among those of the row. If a raw row says
+ * little about another sphere, as that of a large sphere about a small one, its difference counts by the ratio of both
+ * weights in the mean. *own: out: the part of the row that comes from the raw row. */
+static double distance_to_raw(const fibrad_matrix *m, uint32_t i, double *own) {
+    const fibrad_record *raw = m->row[i];
+    const uint32_t *col = fibrad_record_col(raw);
+    const double *f = fibrad_record_f(raw);
+    double square = 0, sum = 0, part = 0;
+    uint32_t p = 0;
+    for (uint64_t k = m->result.start[i]; k < m->result.start[i + 1]; k++) {
+        const uint32_t j = m->result.col[k];
+        const double mean = m->result.f[k], own_part = j == i ? 1 : fibrad_matrix_own(m, i, j);
+        const double difference = mean - (p < raw->length && col[p] == j ? f[p++] : 0);
+        square += fibrad_min(1, own_part / (1 - own_part)) * (difference * difference);
+        part += own_part * mean, sum += mean;
+    }
+    *own = sum > 0 ? part / sum : 0.5;
+    return fibrad_sqrt(square);
+}
+
+/* Estimates the error of a row that is not along lines, from the distance to the raw row. It is at least that of the
+ * raw row, as far as the mean comes from the row itself: by symmetry the errors of two rows may be equal. For the shares
+ * of walls the error is that of the raw row, in proportion to what the walls get. */
+static double error_of_mean(const fibrad_matrix *m, uint32_t i) {
+    double met = 0, own;
+    const double distance = distance_to_raw(m, i, &own);
+    for (uint32_t b = 0; b < m->bodies; b++) met += m->body[(size_t)i * m->bodies + b];
+    return fibrad_max((m->exchange ? EXCHANGE_ERROR : VIEW_ERROR) * distance, (own + (1 - own) * met) * m->error[i]);
+}
+
+/* The error of a raw row along lines. Halves may agree by chance, so the distance to the raw row counts, too. */
+static double error_along_lines(const fibrad_matrix *m, uint32_t i) {
+    const double error = fibrad_max(m->error[i], m->row[i]->error);
+    double own;
+    return change_of(m, i) > error ? fibrad_max(error, RAW_ERROR * distance_to_raw(m, i, &own)) : error;
+}
+
 static void estimate_errors(void *matrix, uint32_t part) {
     fibrad_matrix *m = matrix;
     m->part[part].worst = 0;
     for (uint32_t i = m->part[part].begin; i < m->part[part].end; i++) {
-        const fibrad_record *raw = m->row[i];
-        const uint32_t *col = fibrad_record_col(raw);
-        const double *f = fibrad_record_f(raw);
-        if (m->lines) note_change(m, &m->part[part], i, fibrad_max(m->error[i], raw->error));
-        if (m->lines || raw->symmetric) continue;
-        double square = 0, sum = 0, own = 0, met = 0;
-        uint32_t p = 0;
-        for (uint64_t k = m->result.start[i]; k < m->result.start[i + 1]; k++) {
-            const uint32_t j = m->result.col[k];
-            const double mean = m->result.f[k], own_part = j == i ? 1 : fibrad_matrix_own(m, i, j);
-            const double difference = mean - (p < raw->length && col[p] == j ? f[p++] : 0);
-            square += fibrad_min(1, own_part / (1 - own_part)) * (difference * difference);
-            own += own_part * mean, sum += mean;
-        }
-        for (uint32_t b = 0; b < m->bodies; b++) met += m->body[(size_t)i * m->bodies + b];
-        own = sum > 0 ? own / sum : 0.5;
-        m->error[i] = fibrad_max((m->exchange ? EXCHANGE_ERROR : VIEW_ERROR) * fibrad_sqrt(square),
-                                 (own + (1 - own) * met) * m->error[i]);
-        note_change(m, &m->part[part], i, m->error[i]);
+        if (!m->lines && m->row[i]->symmetric) continue;
+        if (!m->lines) m->error[i] = error_of_mean(m, i);
+        note_change(m, &m->part[part], i, m->lines ? error_along_lines(m, i) : m->error[i]);
     }
 }
 

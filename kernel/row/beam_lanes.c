@@ -46,15 +46,10 @@ static int choose_windows(const fibrad_scene *scene, uint32_t i, const fibrad_be
     return rule->points > 0 ? fibrad_disc_points_get(rule->points, &windows->points.set) : FIBRAD_OK;
 }
 
-/* Sums over the windows of a row so far. */
-typedef struct beam_sums {
-    double open[2]; /* what meets nothing in even and in odd windows */
-    double whole[2]; /* sizes of even and of odd windows, in points of masks or as areas */
-} beam_sums;
-
 /* The error of a row along lines over half the difference of its halves, and the same for the shares of walls, of which
  * both halves have errors in common. Measured: docs/accuracy.md. */
-#define LINES_ERROR  0.5
+#define LINES_ERROR      0.5
+#define DIRECTIONS_ERROR 1.0 /* along directions, by masks */
 #define SHARES_ERROR 0.8
 
 /* The noise of a row from the points of masks. A window is divided into regions, the visible parts of spheres. The
@@ -85,12 +80,12 @@ static void open_masks(fibrad_masks *masks, const beam_windows *windows, uint32_
 static double window_by_masks(fibrad_workspace *work, const beam_windows *windows, const double frame[9], uint32_t k,
                               fibrad_points *points, double *whole) {
     points->count = 0;
-    work->entries.weight = 1;
+    work->entries.weight = 1, work->entries.halves = false;
     open_masks(&work->masks, windows, k);
     const bool done = LANED(fibrad_mask_window)(work, frame, k);
     *whole = work->masks.points;
     if (!done) {
-        work->entries.weight = *whole / FIBRAD_PI;
+        work->entries.weight = *whole / FIBRAD_PI, work->entries.halves = true;
         return LANED(fibrad_beam_window)(work, frame, points, k) * work->entries.weight;
     }
     if (work->met != NULL) work->met->any = false;
@@ -105,17 +100,19 @@ static double window_by_masks(fibrad_workspace *work, const beam_windows *window
 
 /* Computes window k and adds it to all sums. False: there was no room for all discs. */
 static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibrad_window_set *set, uint32_t k,
-                       beam_sums *sums) {
+                       fibrad_beam_sums *sums) {
     static const double centre[3] = {0, 0, 0};
     fibrad_points *points = &windows->points;
     const bool masked = windows->chords > 0;
     double frame[9], whole = points->count > 0 ? points->count : FIBRAD_PI;
-    LANED(frame_of_beam)(windows, k, points->count, frame);
+    LANED(frame_of_beam)(windows, k, masked ? 0 : points->count, frame);
     work->entries.end = set->ends && (k == 0 || k == windows->count - 1);
     const double rest = masked ? window_by_masks(work, windows, frame, k, points, &whole)
                                : LANED(fibrad_beam_window)(work, frame, points, k);
     if (work->disc.count > work->disc.capacity || work->areas.overflow) return false;
     sums->whole[k % 2] += whole;
+    if (work->entries.addends != NULL && (masked || windows->lines != NULL))
+        fibrad_addends_put(work->entries.addends, FIBRAD_ADD_WHOLE, k, whole);
     LANED(take_legs)(work, frame, k);
     const bool meets = work->met != NULL && work->met->any;
     if (meets) LANED(fibrad_mesh_count)(work, frame, k);
@@ -131,22 +128,22 @@ static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibr
     return true;
 }
 
-/* Adds the points that the near list has counted to the entries. */
+/* Adds the points that the near list has counted to the entries. Those of odd windows go to part 3, all others to part 2. */
 static void gather_counts(fibrad_workspace *work) {
     const fibrad_near *near = &work->near;
     fibrad_entries *entries = &work->entries;
-    entries->weight = 1, entries->end = false;
+    entries->weight = 1, entries->end = entries->halves = false;
     for (uint32_t k = 0, end = near->shells > 0 ? near->end[near->shells - 1] : 0; k < end; k++) {
         if ((near->count[k][0] | near->count[k][1]) == 0) continue;
         const uint32_t entry = fibrad_entries_of(entries, near->sphere[k]);
-        for (uint32_t half = 0; half < 2; half++) fibrad_entries_add(entries, entry, half, near->count[k][half]);
+        for (uint32_t half = 0; half < 2; half++) fibrad_entries_add(entries, entry, 2 + half, near->count[k][half]);
     }
 }
 
 int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i,
                              const fibrad_beam_rule *rule, const fibrad_beam_range *range, fibrad_row *row) {
     beam_windows windows;
-    beam_sums sums = {.open = {0, 0}, .whole = {0, 0}};
+    fibrad_beam_sums sums = {.open = {0, 0}, .whole = {0, 0}};
     double parts[2] = {0, 0};
     int status = choose_windows(scene, scene->place[i], rule, &windows);
     if (status != FIBRAD_OK) return status;
@@ -156,20 +153,21 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     work->windows = windows.count;
     work->masks.regions = 0;
     fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, FIBRAD_BEAM_STRIDE);
+    work->entries.masked = masked;
     /* Rows of 64 points have so few windows that directions of lines would spread widely. The open part of a window
      * does not follow them that far. Factors of walls would be too large by up to 1.5 % at 14 windows. If such rows are
      * turned at random, parallel lines have no bias. */
     work->parallel = windows.turned && rule->points == FEW_POINTS;
     const bool mixed = windows.turned || windows.lines != NULL; /* directions do not pair off */
     const fibrad_window_set set = {LANED(frame_of_beam), &windows, windows.count, windows.count, mixed,
-                                   windows.lines == NULL};
+                                   windows.lines == NULL && !masked};
     if (scene->container.walls) {
         work->walls->view = fibrad_wall_view_of(scene, work->place, work->cut, work->reach);
         fibrad_zero(&work->walls->sums, sizeof work->walls->sums);
         work->walls->sums.addends = range->addends;
     }
     work->entries.addends = range->addends;
-    if (range->part != NULL) fibrad_beam_replay(work, range, windows.count, sums.open);
+    if (range->part != NULL) fibrad_beam_replay(work, range, set.ends ? windows.count - 1 : 0, &sums);
     LANED(begin_legs)(&work->legs);
     for (uint32_t k = range->from; k < range->to; k++)
         if (!add_window(work, &windows, &set, k, &sums)) return fibrad_work_discs_missed(work);
@@ -178,7 +176,10 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     if (work->back != UINT32_MAX) return FIBRAD_E_BACK;
     row->fallbacks = work->areas.fallbacks;
     row->length = 0;
-    if (range->addends != NULL) return FIBRAD_OK;
+    if (range->addends != NULL) {
+        if (masked) fibrad_addends_put(range->addends, FIBRAD_ADD_SEEN, 0, work->masks.regions);
+        return FIBRAD_OK;
+    }
     const double each = rule->points > 0 ? rule->points : FIBRAD_PI;
     const double all = sums.whole[0] + sums.whole[1], scale = masked ? 1 / all : 1 / (windows.count * each);
     for (int half = 0; half < 2 && windows.lines != NULL; half++) work->entries.balance[half] = all / (2 * sums.whole[half]);
@@ -195,14 +196,15 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     row->lines = rule->lines != NULL ? windows.count : 0;
     row->noise = masked ? noise_of(&windows, all, work->masks.regions) : 0;
     row->shares = SHARES_ERROR * fibrad_sqrt(parts[0]) * scale;
-    if (row->lines > 0) {
+    if (row->lines > 0 || masked) {
+        const double gain = row->lines > 0 ? LINES_ERROR : DIRECTIONS_ERROR;
         const double areas = fibrad_max(0, row->error * row->error - row->noise * row->noise);
-        row->error = fibrad_sqrt(LINES_ERROR * LINES_ERROR * areas + row->noise * row->noise + row->shares * row->shares);
+        row->error = fibrad_sqrt(gain * gain * areas + row->noise * row->noise + row->shares * row->shares);
     } else {
         if (parts[0] > 0) row->error = fibrad_sqrt(row->error * row->error + parts[0] * scale * scale);
         row->error = fibrad_entries_error(&work->entries, parts, row->error, scale);
-        row->half = NULL;
     }
+    if (row->lines == 0) row->half = NULL;
     row->directions = windows.count;
     row->symmetric = 0;
     return fibrad_row_checked(scene, row);

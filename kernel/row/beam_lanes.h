@@ -14,8 +14,15 @@ typedef struct fibrad_beam_range {
     uint32_t parts;
 } fibrad_beam_range;
 
-/* Adds the terms that the parts have listed to the sums of the present row. */
-void fibrad_beam_replay(fibrad_workspace *work, const fibrad_beam_range *range, uint32_t windows, double open[2]);
+/* Sums over the windows of a row so far. */
+typedef struct fibrad_beam_sums {
+    double open[2];  /* what meets nothing in even and in odd windows */
+    double whole[2]; /* sizes of even and of odd windows, in points of masks or as areas */
+} fibrad_beam_sums;
+
+/* Adds the terms that the parts have listed to the sums of the present row. last: the number of the last window, if the
+ * first and the last one count half in differences of even and odd windows. Else 0. */
+void fibrad_beam_replay(fibrad_workspace *work, const fibrad_beam_range *range, uint32_t last, fibrad_beam_sums *sums);
 
 /* Row i by a beam rule that has been completed and checked, into a row with walls. The factors to walls are also
  * left in space->wall by slot. Errors: _TABLE, _CAPACITY, _WORK. */

@@ -2,19 +2,22 @@
  * SPDX-License-Identifier: MIT
  *
  * A part lists the terms that its windows add to the sums of the row. The row adds the terms of all parts in the
- * order of the windows. So its bits are those of a row computed at once. */
+ * order of the windows. So its bits are those of a row computed at once. Counts of points may come in any order. */
 #include "base/arena.h"
 #include "base/random.h"
 #include "row/beam.h"
 #include "row/beam_lanes.h"
+#include "sample/line_set.h"
 
 /* A key of the row and the rule that a part belongs to. */
 static uint64_t key_of(const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule) {
     uint64_t cutoff;
     fibrad_copy(&cutoff, &rule->cutoff, sizeof cutoff);
-    const uint64_t number[] = {i, (uint64_t)rule->directions << 32 | rule->points, cutoff, rule->turn};
+    const fibrad_line_set *lines = rule->lines;
+    const uint64_t number[] = {i, (uint64_t)rule->directions << 32 | rule->points, cutoff,
+                               lines != NULL ? lines->turn : rule->turn, 2 * rule->chords + (lines != NULL)};
     uint64_t key = scene->hash;
-    for (int k = 0; k < 4; k++) key = fibrad_mix(key ^ fibrad_mix(number[k] + (uint64_t)k));
+    for (int k = 0; k < 5; k++) key = fibrad_mix(key ^ fibrad_mix(number[k] + (uint64_t)k));
     return key;
 }
 

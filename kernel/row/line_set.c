@@ -25,6 +25,8 @@ static bool line_count_valid(uint32_t lines) {
 
 uint32_t fibrad_line_set_lines(uint32_t lines) { return fibrad_lines_next(lines); }
 
+uint32_t fibrad_line_set_count(const fibrad_line_set *set) { return set != NULL ? set->n : 0; }
+
 size_t fibrad_line_set_size(uint32_t lines) {
     fibrad_arena arena = {0};
     fibrad_line_set fields = {0};

@@ -229,7 +229,7 @@ static void count_hidden(fibrad_workspace *work, uint32_t window) {
         if (disc.near[k] < work->near.capacity)
             work->near.count[disc.near[k]][window % 2] += disc.hidden_points[k];
         else if (disc.hidden_points[k] > 0)
-            fibrad_work_accumulate(work, k, window, disc.hidden_points[k]);
+            fibrad_work_accumulate(work, k, 2 + window % 2, disc.hidden_points[k]);
     }
 }
 

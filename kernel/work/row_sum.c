@@ -41,18 +41,28 @@ void fibrad_entries_slots(const fibrad_entries *entries, const fibrad_scene *sce
         if (entries->sphere[k] >= spheres) wall[entries->sphere[k] - spheres] += entry_sum(entries->part[k]);
 }
 
+/* Adds a square of at most 1 to a sum of two words, which is the same in any order. */
+static void add_square(uint64_t sum[2], double square) {
+    const double units = square * 0x1p60;
+    sum[0] += (uint64_t)units;
+    sum[1] += (uint64_t)((units - (double)(uint64_t)units) * 0x1p32);
+}
+
 int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene, double scale, fibrad_row *row) {
     uint32_t n = 0;
+    uint64_t units[2] = {0, 0};
     double square = 0;
     for (uint32_t k = 0; k < entries->length; k++) {
         const double *part = entries->part[k];
         double difference = entry_difference(entries, k) * scale;
         square += difference * difference;
+        if (entries->masked) add_square(units, difference * difference);
         if (entries->sphere[k] >= scene->facts.spheres || entry_sum(part) == 0) continue;
         entries->key[0][n++] = (uint64_t)scene->order[entries->sphere[k]] << 32 | k;
     }
     row->length = n;
     if (n > row->capacity) return FIBRAD_E_CAPACITY;
+    if (entries->masked) square = (double)units[0] * 0x1p-60 + (double)units[1] * 0x1p-92;
     row->error = fibrad_sqrt(square);
 
     const uint64_t *key = fibrad_sort_keys(entries->key[0], entries->key[1], n, 32, scene->facts.spheres - 1);

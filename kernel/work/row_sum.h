@@ -20,6 +20,8 @@ typedef struct fibrad_entries {
     double weight;           /* by which values are multiplied; 1 but for areas among windows by masks */
     double balance[2];       /* by which sums over even and over odd windows count in their difference; 1 if both are
                                 equally many */
+    bool masked; /* of a row by masks: the order of the entries may depend on the lists of near spheres */
+    bool halves; /* areas of window k go to part k mod 2. The other parts have counts of points, exact in any order */
     bool end; /* the present window is the first or the last: it counts half in differences of even and odd windows */
 } fibrad_entries;
 
@@ -36,6 +38,7 @@ static inline void fibrad_entries_add(fibrad_entries *entries, uint32_t entry, u
         return;
     }
     area *= entries->weight;
+    if (entries->halves) k %= 2;
     if (entries->addends != NULL) {
         fibrad_entries_list(entries, entry, k, area);
         return;

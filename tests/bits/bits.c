@@ -221,29 +221,38 @@ static int hash_beam(const struct scene *s, int isa, uint32_t points) {
     return 0;
 }
 
-/* Hashes all rows by silhouettes, of an even and an odd number of lines. */
-static int hash_silhouettes(const struct scene *s, int isa) {
-    static unsigned char object[1 << 20], line_work[8 << 20], pair[8 << 20], joined[4 << 20];
-    const fibrad_silhouette_rule rules[] = {{.lines = 34}, {.lines = 21, .turn = 5}};
+/* Hashes all rows along lines, by each kind of window, and their matrices. The sets have an even and an odd number of
+ * lines, with a table and without. */
+static int hash_lines(const struct scene *s, int isa) {
+    static unsigned char object[1 << 16];
+    static const struct {
+        uint32_t lines, chords;
+        uint64_t turn;
+    } kinds[] = {{34, FIBRAD_CHORDS_NONE, 0}, {21, 16, 5}, {34, 32, 0}, {23, 64, 0}};
     fibrad_scene *scene;
     if (set_up(s, isa, &scene)) return 1;
     hash_begin();
-    for (int k = 0; k < 2; k++) {
-        fibrad_silhouettes *all;
-        fibrad_work own = {.memory = {.block = line_work, .size = sizeof line_work}};
-        fibrad_pairs pairs = {.memory = {.block = pair, .size = sizeof pair}};
-        fibrad_memory index = {.block = joined, .size = sizeof joined};
-        if (fibrad_silhouettes_init(&all, object, sizeof object, scene, &rules[k]) != FIBRAD_OK) return 1;
-        for (uint32_t task = fibrad_silhouettes_tasks(all); task-- > 0;)
-            if (fibrad_silhouettes_task(all, &own, task, &pairs) != FIBRAD_OK) return 1;
-        if (fibrad_silhouettes_join(all, &pairs, 1, &index) != FIBRAD_OK) return 1;
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        fibrad_line_set *set;
+        fibrad_factors factors;
+        double largest;
+        if (fibrad_line_set_init(&set, object, sizeof object, kinds[k].lines, kinds[k].turn) != FIBRAD_OK) return 1;
+        const fibrad_beam_rule rule = {.lines = set, .chords = kinds[k].chords, .cutoff = s->cutoff};
+        fibrad_rows_clear(&rows);
         for (uint32_t i = 0; i < s->n; i++) {
-            fibrad_row row = row_here();
-            if (fibrad_silhouettes_row(all, &own, i, &row) != FIBRAD_OK) return 1;
-            hash_row(&row);
+            fibrad_row row = {.rows = &rows};
+            if (fibrad_beam_row(scene, &work, i, &rule, &row) != FIBRAD_OK) return 1;
+            hash_number(row.escaped), hash_number(row.error), hash_number(row.noise), hash_number(row.shares);
+            for (uint32_t e = 0; e < row.length; e++) hash_number((double)row.half[e]);
+        }
+        if (matrix_of(scene, &(fibrad_matrix_rule){.tasks = 3}, &factors, &largest)) return 1;
+        hash_factors(&factors);
+        for (uint32_t i = 0; i < s->n; i++) {
+            hash_walls(factors.body + (size_t)i * bodies);
+            hash_number(factors.escaped[i]), hash_number(factors.error[i]);
         }
     }
-    tell(s->name, "silhouettes");
+    tell(s->name, "lines");
     return 0;
 }
 
@@ -423,7 +432,7 @@ static int hash_exchange(const struct scene *s, int isa) {
     fibrad_rows_clear(&rows);
     for (uint32_t i = s->n; i-- > 0;)
         if (fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL) != FIBRAD_OK) return 1;
-    if (hash_matrix(s, scene, &(fibrad_matrix_rule){.emissivity = emissivity}, "exchange.closed")) return 1;
+    if (hash_matrix(s, scene, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity}, "exchange.closed")) return 1;
     hash_begin();
     for (uint32_t i = 0; i < s->n; i += 4) {
         fibrad_displacement displacement;
@@ -594,7 +603,7 @@ static int hash_small(const struct scene *s, int isa) {
     int failed = 0;
     for (uint32_t points = 0; points <= 256; points = points == 0 ? 64 : 2 * points)
         failed |= hash_closed(s, isa, points);
-    failed |= hash_silhouettes(s, isa);
+    failed |= hash_lines(s, isa);
     failed |= hash_tolerance(s, isa);
     failed |= hash_exchange(s, isa);
     return s->bounds == SLAB ? failed : failed | hash_heat(s, isa); /* rays of walls take long */
@@ -646,7 +655,7 @@ int main(int argc, char **argv) {
         make(&scenes[k]);
         for (uint32_t points = 0; points <= 256; points = points == 0 ? 64 : 2 * points)
             failed |= hash_beam(&scenes[k], isa, points);
-        if (scenes[k].cutoff == 0) failed |= hash_silhouettes(&scenes[k], isa);
+        failed |= hash_lines(&scenes[k], isa);
         failed |= hash_surface(&scenes[k], isa);
         failed |= hash_cast(&scenes[k], isa, 0);
         failed |= hash_cast(&scenes[k], isa, 1);

@@ -282,7 +282,7 @@ static void try_matrix(const fibrad_scene *scene, const fibrad_rows *rows, uint3
     fibrad_matrix_rule rule = {.raw = byte() % 4 == 0, .drop = byte() % 2 ? 0 : share(), .tasks = byte() % 9};
     if (byte() == 1) rule.tasks = number();
     for (uint32_t i = 0; i < n; i++) emissivity[i] = of_rows == NULL ? share() : of_rows[i] > 0 ? .04 + share() : 0;
-    if (of_rows != NULL || byte() % 4 == 0) rule.emissivity = emissivity;
+    if (of_rows != NULL || byte() % 4 == 0) rule.kind = FIBRAD_ROWS_EXCHANGE, rule.emissivity = emissivity;
     const size_t size = fibrad_matrix_size(scene, rows, count, &rule);
     if (size == 0) return;
     const uint8_t fault = byte();
@@ -708,7 +708,8 @@ static void try_bodies(struct session *s) {
         fibrad_row row = {.rows = &rows};
         complete = row_by(s, &s->work, &m, i, &row) == FIBRAD_OK;
     }
-    const fibrad_matrix_rule closed = {.emissivity = grey ? m.emissivity : NULL,
+    const fibrad_matrix_rule closed = {.kind = grey ? FIBRAD_ROWS_EXCHANGE : FIBRAD_ROWS_AREAS,
+                                       .emissivity = grey ? m.emissivity : NULL,
                                        .body_row = rows_of_bodies,
                                        .body_emissivity = grey ? m.body_emissivity : NULL};
     const size_t size = complete ? CALL(fibrad_matrix_size(s->scene, &rows, 1, &closed)) : 0;

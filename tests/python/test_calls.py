@@ -29,7 +29,7 @@ def at_first_progress(action):
 def test_progress(small):
     calls = []
     fibrad.view_factors(small.x, small.r, directions=50, progress=lambda *call: calls.append(call))
-    assert calls[0][:2] == ("circles", 0) and calls[-1] == ("rows", small.n, small.n)
+    assert calls[0][:2] == ("rows", 0) and calls[-1] == ("rows", small.n, small.n)
     calls.clear()
     heat = fibrad.Heat(small.x, small.r, progress=lambda *call: calls.append(call))
     assert {stage for stage, _, _ in calls} == {"beams"}
