@@ -193,7 +193,8 @@ static void divide_block(double *block, uint32_t n, uint32_t bodies, struct sett
     double **const of_spheres[] = {&s->emissivity, &s->before, &s->power, &s->temperature, &s->conductivity};
     double **const of_bodies[] = {&s->body_emissivity, &s->body_before, &s->body_power, &s->body_temperature};
     for (size_t k = 0; k < sizeof of_spheres / sizeof *of_spheres; ++k, block += n) *of_spheres[k] = n ? block : NULL;
-    for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; ++k, block += bodies) *of_bodies[k] = bodies ? block : NULL;
+    for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; ++k, block += bodies)
+        *of_bodies[k] = bodies ? block : NULL;
 }
 
 static void copy_values(double *to, const double *from, uint32_t n) {
@@ -338,6 +339,34 @@ static bool shine_valid(const fibrad_radiation *r, const fibrad_light_sources *s
            (bodies == 0 || (s->body_absorptivity && result->body_absorbed && result->body_absorbed_first));
 }
 
+/* fmax would need the library of mathematics. */
+static double above_zero(double a) { return a > 0 ? a : 0; }
+
+/* Adds up what surfaces absorb after reflections, above and below 0. */
+static void add_reflections(const double *absorbed, const double *first, uint32_t n, double *above, double *below) {
+    for (uint32_t i = 0; i < n; ++i) {
+        *above += above_zero(absorbed[i] - first[i]);
+        *below += above_zero(first[i] - absorbed[i]);
+    }
+}
+
+static void scale_reflections(double *absorbed, const double *first, uint32_t n, double factor) {
+    for (uint32_t i = 0; i < n; ++i) absorbed[i] = first[i] + factor * above_zero(absorbed[i] - first[i]);
+}
+
+/* By the errors of patches a surface may absorb less than of the light that it meets first. Then it absorbs just that.
+ * What all absorb after reflections, and what leaves, are scaled, so that the sum of all stays. */
+static void keep_first(uint32_t n, uint32_t bodies, fibrad_light_result *light) {
+    double above = above_zero(light->reflected), below = above_zero(-light->reflected);
+    add_reflections(light->absorbed, light->absorbed_first, n, &above, &below);
+    add_reflections(light->body_absorbed, light->body_absorbed_first, bodies, &above, &below);
+    if (below == 0) return;
+    const double factor = above > below ? 1 - below / above : 0;
+    scale_reflections(light->absorbed, light->absorbed_first, n, factor);
+    scale_reflections(light->body_absorbed, light->body_absorbed_first, bodies, factor);
+    light->reflected = factor * above_zero(light->reflected);
+}
+
 /* After an error result->lights alone is written. */
 static int shine_lights(fibrad_radiation *r, const fibrad_light_sources *s, uint32_t bodies,
                         fibrad_light_result *result) {
@@ -355,6 +384,7 @@ static int shine_lights(fibrad_radiation *r, const fibrad_light_sources *s, uint
     if (status) return status;
     for (uint32_t i = 0; i < r->n; ++i) now.absorbed_first[i] *= s->absorptivity[i];
     for (uint32_t b = 0; b < bodies; ++b) now.body_absorbed_first[b] *= s->body_absorptivity[b];
+    keep_first(r->n, bodies, &now);
     now.patches = light;
     *result = now;
     return fibrad_heat_keep_light(r->heat, light);

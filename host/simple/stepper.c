@@ -266,7 +266,7 @@ static bool outside_known(const fibrad_transient *t, const fibrad_heat_sources *
     return known;
 }
 
-static int find_powers(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
+static int powers_now(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
     const int status = fibrad_transient_prepare(t, sources);
     if (status) return status;
     fibrad_heat_sources given = *sources; /* a sphere has a temperature or a power, not both */
@@ -283,7 +283,7 @@ int fibrad_transient_powers(fibrad_transient *t, const fibrad_heat_sources *sour
         if (!(sources->temperature[i] >= 0 && sources->temperature[i] <= FIBRAD_TEMPERATURE_MAX))
             return FIBRAD_E_ARGUMENT;
     const int status = fibrad_transient_begin(t);
-    return status ? status : fibrad_transient_end(t, find_powers(t, sources, result));
+    return status ? status : fibrad_transient_end(t, powers_now(t, sources, result));
 }
 
 int fibrad_transient_sides(const fibrad_transient *t, double *flux, double *temperature) {
