@@ -29,7 +29,9 @@ ISAS      := scalar $(if $(filter x86_64% i%86%,$(MACHINE)),sse2 avx2 avx512) $(
 
 # ---- what the sources need ------------------------------------------------------------------------------------------
 WARNINGS = -pedantic -Wall -Wextra -Wconversion -Wshadow -Wvla $(WERROR)
-COMMON   = -std=c11 -ffp-contract=off $(WARNINGS) -Ikernel -MMD -MP
+COMMON   = -std=c11 -ffp-contract=off $(UNFUSED) $(WARNINGS) -Ikernel -MMD -MP
+# gcc 12 fuses products and sums of vectors that it makes itself, in spite of -ffp-contract=off
+UNFUSED := $(if $(shell $(CC) $(CFLAGS) -dM -E -xc /dev/null | grep -E '__(FMA4?|AVX512F)__'),-fno-tree-vectorize)
 # tables of addresses would be data in position independent code; atomics out of line, a call of libgcc
 KERNEL_FLAGS = $(COMMON) -ffreestanding -fno-math-errno -fno-trapping-math $(PIC) -fno-jump-tables $(TABLES) $(WITH_ISAS) \
                $(if $(filter aarch64%,$(MACHINE)),-mno-outline-atomics)
@@ -43,11 +45,11 @@ WITH_avx512 = -DFIBRAD_WITH_AVX512
 WITH_neon   = -DFIBRAD_WITH_NEON
 WITH_ISAS   = $(foreach isa,$(filter-out scalar,$(ISAS)),$(WITH_$(isa)))
 
-# no -mfma, no contraction: products and sums round one by one in every instruction set
+# no -mfma, no contraction: products and sums round one by one in every instruction set. AVX-512 has fused operations.
 FLAGS_scalar =
 FLAGS_sse2   = -msse2
 FLAGS_avx2   = -mavx2 -mpopcnt
-FLAGS_avx512 = -mavx512f -mavx512dq -mavx512bw -mavx512vl -mpopcnt
+FLAGS_avx512 = -mavx512f -mavx512dq -mavx512bw -mavx512vl -mpopcnt -fno-tree-vectorize
 FLAGS_neon   =
 
 # asked for when used, since `make deps` may just have installed them

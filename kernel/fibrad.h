@@ -442,7 +442,8 @@ typedef struct fibrad_rows fibrad_rows; /* a collection of rows, see below */
  *                 the capacity that suffices.        suffices.
  *
  * The entries, the factors to walls, `escaped` and `beyond` add up to 1, to rounding. Rows of exchange factors of a
- * sphere of emissivity 0 are empty and add up to 0. */
+ * sphere of emissivity 0 are empty and add up to 0. After an error the elements of the caller's arrays are undefined.
+ */
 typedef struct fibrad_row {
     uint32_t *col;       /* [capacity], out: the spheres that receive, ascending */
     double *f;           /* [capacity], out: factor from sphere i to sphere col[k], above 0 */
@@ -558,7 +559,7 @@ typedef struct fibrad_row_part {
  *            i: 0 to spheres - 1
  *            rule: as for fibrad_beam_row; NULL for all defaults
  *            from, to: 0 <= from < to <= directions of the rule
- *   Output   part
+ *   Output   part: after an error it has no terms
  *   Errors   _ARGUMENT, _STATE, _TABLE, _WORK, _MEMORY, _BACK
  *            _CAPACITY: fixed part->memory is too small; part->memory.needed is the size that suffices
  *            _UNSUPPORTED: the rule has a tolerance
@@ -585,7 +586,7 @@ typedef struct fibrad_cast_rule {
     double cutoff; /* L, as in fibrad_beam_rule */
 } fibrad_cast_rule;
 
-/* Means over the rays that sphere i sends to sphere col[k]. */
+/* Means over the rays that sphere i sends to sphere col[k]. After an error the elements are undefined. */
 typedef struct fibrad_cast_means {
     double *length; /* L, [row->capacity], out: mean length of the rays */
     double *angle;  /* radians, [row->capacity], out: mean angle between the rays and the line of centres */
@@ -620,11 +621,10 @@ struct fibrad_rows {
     uint64_t entries;  /* out: entries of all rows */
 };
 
-/* Appends a row that was computed elsewhere, on another machine for example.
- *   Input    row: sphere, col, f, length, body, escaped, beyond, error, symmetric. row->rows must be NULL. The columns
- *            ascend. Each factor is 0 to 1.01.
- *            bodies: elements of row->body
- *   Errors   _ARGUMENT, _CAPACITY, _MEMORY */
+/* Appends a row that was computed elsewhere, on another machine for example. A row does not tell its scene. So a matrix
+ * takes this row for a row of its own scene, if that has such a sphere. If the row is of another scene, no call
+ * notices. Input    row: sphere, col, f, length, body, escaped, beyond, error, symmetric. row->rows must be NULL. The
+ * columns ascend. Each factor is 0 to 1.01. bodies: elements of row->body Errors   _ARGUMENT, _CAPACITY, _MEMORY */
 int fibrad_rows_add(fibrad_rows *rows, const fibrad_row *row, uint32_t bodies);
 
 /* Removes all rows and keeps the memory. NULL is allowed.
@@ -839,8 +839,8 @@ typedef struct fibrad_exchange_rule {
     uint64_t seed;    /* of random numbers, with the sphere's id; also the `turn` of the first leg */
     double cutoff;    /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
     double tolerance; /* the error allowed; directions and paths are added until it is met; 0: none */
-    /* [spheres], fibrad_relative_conductivity of each sphere, at least FIBRAD_RELATIVE_CONDUCTIVITY_MIN. INFINITY: the
-     * sphere has one temperature. */
+    /* [spheres], k* and not k_s: fibrad_relative_conductivity of each sphere, at least
+     * FIBRAD_RELATIVE_CONDUCTIVITY_MIN. INFINITY: the sphere has one temperature. */
     const double *conductivity;
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */
     uint32_t flights;              /* of _walk, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
@@ -856,7 +856,8 @@ typedef struct fibrad_exchange_rule {
 } fibrad_exchange_rule;
 
 /* The relative conductivity k* = k_s/(4 d sigma T^3) of a sphere of diameter d. The smaller k* is, the more the
- * temperature differs from point to point on the sphere.
+ * temperature differs from point to point on the sphere. Warning: exchange rules take k*, and sources of heat
+ * (fibrad_heat.h) take k_s. Neither call can notice the other number, and k_s may be 1e8 k*.
  *   Input    conductivity: k_s of the solid. In SI units [W/(m K)]
  *            radius, temperature: of the sphere. In SI units [m], [K]
  *            sigma: the Stefan-Boltzmann constant in the same units, in SI units FIBRAD_STEFAN_BOLTZMANN

@@ -110,8 +110,9 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * A sphere with a finite conductivity has a temperature that differs from point to point. `temperature` is then the
  * mean over its surface. The inside is taken to be steady, with the power P - h sigma (T^4 - R^4) spread evenly.
  * Emission is taken to be linear in the difference from the mean (docs/methods_heat.md section 13). With
- * `conductivity`, `uniform` must be 0. `conductivity` is in units of sigma K^3 L. If lengths are in millimetres and
- * sigma is in W/(m2 K4), a solid of 30 W/(m K) has the conductivity 30/0.001.
+ * `conductivity`, `uniform` must be 0. `conductivity` is k_s of the solid, not k* of fibrad_relative_conductivity. It
+ * is in units of sigma K^3 L. If lengths are in millimetres and sigma is in W/(m2 K4), a solid of 30 W/(m K) has the
+ * conductivity 30/0.001.
  *
  * To a given power, add the light that the surface absorbs (fibrad_heat_sum_light). `absorbed` tells where it heats:
  *   a sphere with a finite conductivity  is hotter at the lit patches

@@ -82,7 +82,7 @@ int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibra
  *            kept: `spheres` is the sum of `power`. `body` and `through` tell where this light would end if there were
  *            neither spheres nor triangles. They add up to `spheres`.
  *   Errors   as fibrad_light_empty
- *   Cost     2 microseconds for each sphere and direction */
+ *   Cost     2 microseconds for each sphere and direction; work memory has 8 bytes for each sphere */
 int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fibrad_light *light, uint32_t from,
                          uint32_t to, double *power, fibrad_light_ends *kept);
 
@@ -111,7 +111,8 @@ uint32_t fibrad_heat_shine_tasks(const fibrad_heat *heat);
  *   Input    task: 0 to fibrad_heat_shine_tasks - 1
  *   Output   hits[fibrad_heat_patches]: the light is added to it
  *            kept: as fibrad_light_spheres
- *   Errors   as fibrad_light_spheres; _STATE: the scene has changed */
+ *   Errors   as fibrad_light_spheres; _STATE: the scene has changed
+ *   Cost     as fibrad_light_spheres; work memory has 8 bytes for each patch of the task */
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,
                       double *hits, fibrad_light_ends *kept);
 

@@ -101,6 +101,9 @@ PASSES
 #else
 #pragma GCC push_options
 #pragma GCC target("$target")
+#ifdef __AVX512F__ /* as at the beginning of this file */
+#pragma GCC optimize("no-tree-vectorize")
+#endif
 #endif
 PUSH
         cat <<PASS

@@ -4,7 +4,8 @@
 #
 # tests/bits/bits.c prints the hashes of tests/golden/bits.txt. matrix.sha256 is the hash of the file of a whole bed.
 # After a deliberate change of the results run `make golden`, which calls check_bits.sh pin. A variant is
-# COMPILER:LEVEL. All variants take minutes, so without arguments only the library in BUILD is checked.
+# COMPILER:FLAG[,FLAG]. All variants take minutes, so without arguments only the library in BUILD is checked. No library
+# may fuse a product with a sum.
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${HOSTCC:=cc}"
 faults=0
@@ -20,15 +21,19 @@ variant() {
     folder=$BUILD/bits/$name
     mkdir -p "$folder"
     library=$BUILD/libfibrad.a
-    # shellcheck disable=SC2086  # flags is a list
+    # shellcheck disable=SC2086  # level and flags are lists
     if ! { { test "$name" = built || { library=$folder/libfibrad.a &&
         $MAKE -s -j2 BUILD="$folder" CC="$compiler" HOSTCC="$HOSTCC" CFLAGS="$level" lib; }; } &&
-        "$compiler" -std=c11 "$level" -ffp-contract=off -Ikernel $flags tests/bits/bits.c "$library" -lm \
+        "$compiler" -std=c11 $level -ffp-contract=off -Ikernel $flags tests/bits/bits.c "$library" -lm \
             -o "$folder/bits"; } >"$BUILD/bits/log" 2>&1; then
         echo "$name: does not build:"
         tail -n 5 "$BUILD/bits/log"
         faults=1
         return
+    fi
+    if objdump -d "$library" 2>/dev/null | grep -E 'vfn?m(add|sub)'; then
+        echo "$name: products are fused with sums"
+        faults=1
     fi
     for isa; do
         # shellcheck disable=SC2086  # run may be empty
@@ -63,13 +68,14 @@ if test "${1:-}" = pin; then # with the simplest build
 fi
 
 test $# -gt 0 || variant built "$CC" -O2 "" "" scalar sse2 avx2 avx512
-test "${1:-}" != all || set -- gcc:-O0 gcc:-O2 gcc:-O3 clang:-O0 clang:-O2 clang:-O3 aarch64:-O2 arm:-O2
+test "${1:-}" != all || set -- gcc:-O0 gcc:-O2 gcc:-O3 gcc:-O3,-march=native \
+    clang:-O0 clang:-O2 clang:-O3 clang:-O3,-march=native aarch64:-O2 arm:-O2
 for build; do
-    level=${build#*:}
+    level=$(echo "${build#*:}" | tr , ' ')
     case $build in
     aarch64:*) variant "aarch64$level" aarch64-linux-gnu-gcc "$level" qemu-aarch64 -static scalar neon ;;
     arm:*) variant "arm$level" arm-linux-gnueabihf-gcc "$level" qemu-arm -static scalar ;;
-    *) variant "${build%:*}$level" "${build%:*}" "$level" "" "" scalar sse2 avx2 avx512 ;;
+    *) variant "$(echo "$build" | tr -d :,=)" "${build%:*}" "$level" "" "" scalar sse2 avx2 avx512 ;;
     esac
 done
 for threads in 1 2 7; do

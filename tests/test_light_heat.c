@@ -316,3 +316,43 @@ TEST(emissivity_of_a_face_is_its_mean_absorptance) {
     printf("face: emissivity %.4f, mean absorptance %.4f\n", emissivity, mean);
     ck_assert_double_eq_tol(emissivity, mean, .01);
 }
+
+/* A narrow beam on a cube of spheres above a floor. Most surfaces get next to nothing of it, but none less than that.
+ */
+TEST(nothing_absorbs_less_than_its_first_light) {
+    enum { SIDE = 4, CUBE = SIDE * SIDE * SIDE };
+    const fibrad_heat_config coarse = {.directions = 12, .patches = 24};
+    const fibrad_body floor = plane_at(2, 0, -1.1);
+    const fibrad_scene_config config = {.body = &floor, .bodies = 1};
+    for (int k = 0; k < 6; k++) {
+        OWNED_BED bed = bed_empty();
+        OWNED_RADIATION *radiation = NULL;
+        double eps[CUBE], absorbed[CUBE], first[CUBE], wall, wall_first, sum = 0;
+        const double of_wall = .4;
+        for (uint32_t i = 0; i < CUBE; i++) {
+            add_sphere(&bed, 2.1 * (i % SIDE), 2.1 * (i / SIDE % SIDE), 2.1 * (i / SIDE / SIDE), .8 + .05 * (i % 4));
+            eps[i] = k < 5 ? .1 + .1 * k + .4 * bed_make_random(3, i) : 1;
+        }
+        const fibrad_spheres spheres = spheres_of(&bed);
+        const fibrad_light light = {.direction = {0, 0, -1},
+                                    .flux = 1,
+                                    .shape = FIBRAD_LIGHT_DISC,
+                                    .centre = {.5 * k, .3 * k, 99},
+                                    .radius = .5};
+        const fibrad_light_sources sources = {
+            .light = &light, .lights = 1, .absorptivity = eps, .body_absorptivity = &of_wall};
+        fibrad_light_result result = {
+            .absorbed = absorbed, .absorbed_first = first, .body_absorbed = &wall, .body_absorbed_first = &wall_first};
+        assert_ok(fibrad_radiation_new(&radiation, &config, &spheres, &coarse, NULL));
+        assert_ok(fibrad_radiation_shine(radiation, &sources, &result));
+        for (int i = 0; i < CUBE; i++) {
+            ck_assert_double_ge(first[i], 0);
+            ck_assert_double_ge(absorbed[i], first[i]);
+            sum += absorbed[i];
+        }
+        ck_assert_double_ge(wall, wall_first);
+        ck_assert_double_ge(result.reflected, 0);
+        sum += wall + result.reflected + result.transmitted;
+        ck_assert_double_eq_tol(sum, result.incident, 1e-12 * result.incident);
+    }
+}

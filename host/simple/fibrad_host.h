@@ -15,9 +15,11 @@
  * Words     Units, words, defaults and the layout of comments are as in fibrad.h.
  * Bits      Every result and every error is the same for any number of threads.
  * Threads   An object belongs to one thread at a time. Different objects are independent.
+ * Functions of the caller (progress, laws, observe) may call this library, but not for the object whose call runs them.
+ *           Such a call returns FIBRAD_E_STATE. The object must not be freed there.
  * Errors    A call returns the errors of the kernel functions that it uses, and FIBRAD_E_MEMORY and FIBRAD_E_CANCELLED.
  *           FIBRAD_E_FILE means that no file can be made in the folder `scratch`. After an error the out-pointer is
- *           NULL, and there is nothing to free.
+ *           NULL, and there is nothing to free. Other outputs are as before, except where a comment says otherwise.
  * Fork      OpenMP's threads do not survive fork(). If a process has used more than one thread in this library, its
  *           forked children must call no function of this header. They would hang.
  *
@@ -129,7 +131,8 @@ void fibrad_bed_free(fibrad_bed_factors *factors);
 /* What all triangles of a bed see: fibrad_triangle_views of each.
  *   Input    rays: from each side, 1 to 2^30
  *   Output   view[2 triangles]: element 2 t is the front and 2 t + 1 the back of the caller's triangle t
- *   Errors   as fibrad_scene_init and fibrad_triangle_views; _CANCELLED */
+ *   Errors   as fibrad_scene_init and fibrad_triangle_views; _CANCELLED. After an error some elements may be written.
+ */
 int fibrad_side_views(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t rays, fibrad_run *run,
                       fibrad_side_view *view);
 
@@ -198,7 +201,8 @@ typedef void fibrad_emissivity_law(void *context, const double *temperature, con
  *   Output   emissivity, body_emissivity: those of the solution
  *            result: temperature, and body_temperature with walls, must be set
  *   Errors   as fibrad_radiation_solve
- *            _UNSOLVABLE: also if 100 solutions do not suffice */
+ *            _UNSOLVABLE: also if 100 solutions do not suffice
+ *            After an error `emissivity` and `body_emissivity` are as before. */
 int fibrad_radiation_settle(fibrad_radiation *radiation, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
                             void *context, double *emissivity, double *body_emissivity, fibrad_heat_result *result);
 
@@ -230,7 +234,9 @@ typedef struct fibrad_light_result {
 } fibrad_light_result;
 
 /* What a bed absorbs of light from outside. All elements of `absorbed` and `body_absorbed`, `reflected` and
- * `transmitted` add up to `incident`, to rounding.
+ * `transmitted` add up to `incident`, to rounding. No surface absorbs less than of the light that it meets first. Where
+ * the solution by patches says so, by its error, what surfaces absorb after reflections and what leaves are scaled. The
+ * elements of `patches` are not scaled: for each surface they add up to what the solution says.
  *
  * Absorbed light heats a surface. If the temperature of the surface is given, add the absorbed light to the net power
  * in the result of fibrad_radiation_solve. If the temperature is to be found, add it to the power in the sources.
@@ -371,7 +377,6 @@ typedef struct fibrad_span {
  *   Errors   _ARGUMENT: fibrad_transient_describe tells which sphere is at fault
  *            _UNSOLVABLE: a sphere would fall below 0 K
  *            as fibrad_exchange_factors or fibrad_radiation_solve
- *            After an error the temperatures are as before.
  *   Cost     two or three solutions per step; with factors some milliseconds each for 1e4 spheres
  *   Source   R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006; docs/methods_heat.md section 11 */
 int fibrad_transient_advance(fibrad_transient *transient, const fibrad_heat_sources *sources, fibrad_span *span);

@@ -19,7 +19,21 @@ struct fibrad_radiation {
     uint32_t n;
     fibrad_fault fault;
     double *light; /* [patches] of the last fibrad_radiation_shine; NULL: none */
+    bool busy;     /* within a call */
 };
+
+/* Begins a call that ends with end_call. A function of the caller that runs within a call can begin no other. */
+static int begin_call(fibrad_radiation *r) {
+    if (!r) return FIBRAD_E_ARGUMENT;
+    if (r->busy) return FIBRAD_E_STATE;
+    r->busy = true;
+    return FIBRAD_OK;
+}
+
+static int end_call(fibrad_radiation *r, int status) {
+    r->busy = false;
+    return status;
+}
 
 static int trace_beams(void *radiation, int thread, uint32_t task) {
     fibrad_radiation *r = radiation;
@@ -64,10 +78,9 @@ static int trace_all(fibrad_radiation *r) {
     }
 }
 
-int fibrad_radiation_move(fibrad_radiation *r, const fibrad_scene_config *config, const fibrad_spheres *spheres) {
+static int move_bed(fibrad_radiation *r, const fibrad_scene_config *config, const fibrad_spheres *spheres) {
     fibrad_scene *scene;
     void *block;
-    if (!r || !spheres) return FIBRAD_E_ARGUMENT;
     r->fault = (fibrad_fault){spheres->n, spheres->n, UINT32_MAX, 0, 0};
     if (r->heat && spheres->n != r->n) return FIBRAD_E_ARGUMENT;
     int status = fibrad_heap_scene(&scene, &block, config, spheres, &r->fault);
@@ -81,6 +94,12 @@ int fibrad_radiation_move(fibrad_radiation *r, const fibrad_scene_config *config
     r->scene_block = block;
     r->n = spheres->n;
     return trace_all(r);
+}
+
+int fibrad_radiation_move(fibrad_radiation *r, const fibrad_scene_config *config, const fibrad_spheres *spheres) {
+    if (!spheres) return FIBRAD_E_ARGUMENT;
+    const int status = begin_call(r);
+    return status ? status : end_call(r, move_bed(r, config, spheres));
 }
 
 int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config *config, const fibrad_spheres *spheres,
@@ -107,8 +126,7 @@ static int sweep_beams(void *heat, int thread, uint32_t part) {
     return fibrad_heat_sweep(heat, part);
 }
 
-int fibrad_radiation_solve(fibrad_radiation *r, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
-    if (!r) return FIBRAD_E_ARGUMENT;
+static int solve_sources(fibrad_radiation *r, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
     if (!r->heat) return FIBRAD_E_STATE;
     r->fault = (fibrad_fault){r->n, r->n, UINT32_MAX, 0, 0};
     int solved = 0, status = fibrad_heat_check(r->heat, sources, &r->fault);
@@ -119,6 +137,11 @@ int fibrad_radiation_solve(fibrad_radiation *r, const fibrad_heat_sources *sourc
         if (!status) status = fibrad_heat_step(r->heat, &solved);
     }
     return status ? status : fibrad_heat_read(r->heat, result);
+}
+
+int fibrad_radiation_solve(fibrad_radiation *r, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
+    const int status = begin_call(r);
+    return status ? status : end_call(r, solve_sources(r, sources, result));
 }
 
 int fibrad_radiation_sides(const fibrad_radiation *r, double *flux, double *temperature) {
@@ -160,39 +183,79 @@ static double largest_ratio(const double *before, const double *now, uint32_t n)
     return largest;
 }
 
+/* The arrays of a problem that follows a law, [spheres] and [bodies] each, in one block. */
+struct settling {
+    double *emissivity, *body_emissivity, *before, *body_before, *power, *body_power, *temperature, *body_temperature;
+    double *conductivity; /* [spheres], of the last solution */
+};
+
+static void divide_block(double *block, uint32_t n, uint32_t bodies, struct settling *s) {
+    double **const of_spheres[] = {&s->emissivity, &s->before, &s->power, &s->temperature, &s->conductivity};
+    double **const of_bodies[] = {&s->body_emissivity, &s->body_before, &s->body_power, &s->body_temperature};
+    for (size_t k = 0; k < sizeof of_spheres / sizeof *of_spheres; ++k, block += n) *of_spheres[k] = n ? block : NULL;
+    for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; ++k, block += bodies)
+        *of_bodies[k] = bodies ? block : NULL;
+}
+
+static void copy_values(double *to, const double *from, uint32_t n) {
+    if (n) memcpy(to, from, n * sizeof *to);
+}
+
+/* Solves until the emissivities and conductivities that the law gives have settled. Only then is `result` written. */
+static int follow_law(fibrad_radiation *r, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
+                      void *context, const fibrad_scene_facts *facts, const struct settling *s,
+                      fibrad_heat_result *result) {
+    const uint32_t n = facts->spheres, bodies = facts->bodies, conducting = sources->conductivity ? n : 0;
+    fibrad_heat_result found = {.power = s->power,
+                                .body_power = s->body_power,
+                                .temperature = s->temperature,
+                                .body_temperature = s->body_temperature};
+    fibrad_heat_sources now = *sources;
+    now.emissivity = s->emissivity, now.body_emissivity = s->body_emissivity;
+    law(context, sources->temperature, sources->body_temperature, s->emissivity, s->body_emissivity);
+    for (int k = 0; k < SETTLE_MAX; ++k) {
+        const int status = solve_sources(r, &now, &found);
+        if (status == FIBRAD_E_UNSOLVABLE) (void)fibrad_heat_read(r->heat, result); /* a temperature may be missing */
+        if (status) return status;
+        copy_values(s->before, s->emissivity, n);
+        copy_values(s->body_before, s->body_emissivity, bodies);
+        copy_values(s->conductivity, sources->conductivity, conducting);
+        law(context, s->temperature, s->body_temperature, s->emissivity, s->body_emissivity);
+        if (!are_emissivities(s->emissivity, n) || !are_emissivities(s->body_emissivity, bodies))
+            return FIBRAD_E_ARGUMENT;
+        if (largest_change(s->before, s->emissivity, n) + largest_change(s->body_before, s->body_emissivity, bodies) <=
+                EMISSIVITY_CHANGE &&
+            largest_ratio(s->conductivity, sources->conductivity, conducting) <= CONDUCTIVITY_CHANGE)
+            return fibrad_heat_read(r->heat, result);
+    }
+    return FIBRAD_E_UNSOLVABLE;
+}
+
 int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
                             void *context, double *emissivity, double *body_emissivity, fibrad_heat_result *result) {
     fibrad_scene_facts facts = {0};
     if (!r || !sources || !law || !result) return FIBRAD_E_ARGUMENT;
     fibrad_scene_describe(r->scene, &facts);
-    if ((facts.spheres && !(emissivity && result->temperature)) ||
-        (facts.bodies && !(body_emissivity && result->body_temperature)) || !temperatures_given(sources, &facts))
+    const uint32_t n = facts.spheres, bodies = facts.bodies;
+    if ((n && !(emissivity && result->temperature)) || (bodies && !(body_emissivity && result->body_temperature)) ||
+        !temperatures_given(sources, &facts))
         return FIBRAD_E_ARGUMENT;
-    const uint32_t n = facts.spheres, bodies = facts.bodies, conducting = sources->conductivity ? n : 0;
-    double *before = malloc((n + bodies + conducting + (size_t)1) * sizeof *before);
-    if (!before) return FIBRAD_E_MEMORY;
-    fibrad_heat_sources now = *sources;
-    now.emissivity = emissivity, now.body_emissivity = body_emissivity;
-    double *conductivity = before + n + bodies;
-    bool settled = false;
-    int status = FIBRAD_OK;
-    law(context, sources->temperature, sources->body_temperature, emissivity, body_emissivity);
-    for (int k = 0; k < SETTLE_MAX && !status && !settled; ++k) {
-        status = fibrad_radiation_solve(r, &now, result);
-        if (status) break;
-        if (n) memcpy(before, emissivity, n * sizeof *before);
-        if (bodies) memcpy(before + n, body_emissivity, bodies * sizeof *before);
-        if (conducting) memcpy(conductivity, sources->conductivity, conducting * sizeof *before);
-        law(context, result->temperature, result->body_temperature, emissivity, body_emissivity);
-        if (!are_emissivities(emissivity, n) || !are_emissivities(body_emissivity, bodies)) status = FIBRAD_E_ARGUMENT;
-        settled = largest_change(before, emissivity, n) + largest_change(before + n, body_emissivity, bodies) <=
-                      EMISSIVITY_CHANGE &&
-                  largest_ratio(conductivity, sources->conductivity, conducting) <= CONDUCTIVITY_CHANGE;
+    int status = begin_call(r);
+    if (status) return status;
+    struct settling s;
+    double *block = malloc((5 * (size_t)n + 4 * (size_t)bodies + 1) * sizeof *block);
+    if (!block) return end_call(r, FIBRAD_E_MEMORY);
+    divide_block(block, n, bodies, &s);
+    copy_values(s.emissivity, emissivity, n);
+    copy_values(s.body_emissivity, body_emissivity, bodies);
+    status = follow_law(r, sources, law, context, &facts, &s, result);
+    if (!status) {
+        copy_values(emissivity, s.emissivity, n);
+        copy_values(body_emissivity, s.body_emissivity, bodies);
     }
-    free(before);
-    return status ? status : settled ? FIBRAD_OK : FIBRAD_E_UNSOLVABLE;
+    free(block);
+    return end_call(r, status);
 }
-
 #define LIGHT_TOLERANCE 1e-5
 #define ROUNDING        1e-14 /* relative rounding error of areas that add up to the area of a light */
 
@@ -262,7 +325,7 @@ static int absorb(fibrad_radiation *r, const fibrad_light_sources *s, uint32_t b
                                  .body_power = result->body_absorbed,
                                  .power_error = result->absorbed_error,
                                  .body_error = result->body_absorbed_error};
-    const int status = fibrad_radiation_solve(r, &sources, &solved);
+    const int status = solve_sources(r, &sources, &solved);
     result->reflected = solved.surroundings_power, result->error = solved.surroundings_error;
     result->sweeps = solved.sweeps;
     free(zero);
@@ -276,24 +339,65 @@ static bool shine_valid(const fibrad_radiation *r, const fibrad_light_sources *s
            (bodies == 0 || (s->body_absorptivity && result->body_absorbed && result->body_absorbed_first));
 }
 
+/* fmax would need the library of mathematics. */
+static double above_zero(double a) { return a > 0 ? a : 0; }
+
+/* Adds up what surfaces absorb after reflections, above and below 0. */
+static void add_reflections(const double *absorbed, const double *first, uint32_t n, double *above, double *below) {
+    for (uint32_t i = 0; i < n; ++i) {
+        *above += above_zero(absorbed[i] - first[i]);
+        *below += above_zero(first[i] - absorbed[i]);
+    }
+}
+
+static void scale_reflections(double *absorbed, const double *first, uint32_t n, double factor) {
+    for (uint32_t i = 0; i < n; ++i) absorbed[i] = first[i] + factor * above_zero(absorbed[i] - first[i]);
+}
+
+/* By the errors of patches a surface may absorb less than of the light that it meets first. Then it absorbs just that.
+ * What all absorb after reflections, and what leaves, are scaled, so that the sum of all stays. */
+static void keep_first(uint32_t n, uint32_t bodies, fibrad_light_result *light) {
+    double above = above_zero(light->reflected), below = above_zero(-light->reflected);
+    add_reflections(light->absorbed, light->absorbed_first, n, &above, &below);
+    add_reflections(light->body_absorbed, light->body_absorbed_first, bodies, &above, &below);
+    if (below == 0) return;
+    const double factor = above > below ? 1 - below / above : 0;
+    scale_reflections(light->absorbed, light->absorbed_first, n, factor);
+    scale_reflections(light->body_absorbed, light->body_absorbed_first, bodies, factor);
+    light->reflected = factor * above_zero(light->reflected);
+}
+
+/* After an error result->lights alone is written. */
+static int shine_lights(fibrad_radiation *r, const fibrad_light_sources *s, uint32_t bodies,
+                        fibrad_light_result *result) {
+    fibrad_light_result now = *result;
+    double *const last = r->light, *light = calloc(fibrad_heat_patches(r->heat) + (size_t)1, sizeof *light);
+    if (!light) return FIBRAD_E_MEMORY;
+    r->light = light;
+    now.incident = now.transmitted = 0;
+    int status = shine_all(r, s, bodies, &now);
+    result->lights = now.lights;
+    if (!status) status = absorb(r, s, bodies, &now);
+    if (!status) status = fibrad_heat_sum_light(r->heat, r->light, now.absorbed_first, now.body_absorbed_first);
+    r->light = status ? last : light;
+    free(status ? light : last);
+    if (status) return status;
+    for (uint32_t i = 0; i < r->n; ++i) now.absorbed_first[i] *= s->absorptivity[i];
+    for (uint32_t b = 0; b < bodies; ++b) now.body_absorbed_first[b] *= s->body_absorptivity[b];
+    keep_first(r->n, bodies, &now);
+    now.patches = light;
+    *result = now;
+    return fibrad_heat_keep_light(r->heat, light);
+}
+
 int fibrad_radiation_shine(fibrad_radiation *r, const fibrad_light_sources *s, fibrad_light_result *result) {
     fibrad_scene_facts facts;
     if (!r || !s || !result) return FIBRAD_E_ARGUMENT;
     if (!r->heat) return FIBRAD_E_STATE;
     fibrad_scene_describe(r->scene, &facts);
     if (!shine_valid(r, s, facts.bodies, result)) return FIBRAD_E_ARGUMENT;
-    free(r->light);
-    r->light = calloc(fibrad_heat_patches(r->heat) + (size_t)1, sizeof *r->light);
-    if (!r->light) return FIBRAD_E_MEMORY;
-    result->incident = result->transmitted = 0, result->patches = NULL;
-    int status = shine_all(r, s, facts.bodies, result);
-    if (!status) status = fibrad_heat_sum_light(r->heat, r->light, result->absorbed_first, result->body_absorbed_first);
-    for (uint32_t i = 0; i < r->n && !status; ++i) result->absorbed_first[i] *= s->absorptivity[i];
-    for (uint32_t b = 0; b < facts.bodies && !status; ++b) result->body_absorbed_first[b] *= s->body_absorptivity[b];
-    if (!status) status = absorb(r, s, facts.bodies, result);
-    if (status) return status;
-    result->patches = r->light;
-    return fibrad_heat_keep_light(r->heat, r->light);
+    const int status = begin_call(r);
+    return status ? status : end_call(r, shine_lights(r, s, facts.bodies, result));
 }
 
 void fibrad_radiation_describe(const fibrad_radiation *r, fibrad_scene_facts *facts, fibrad_fault *fault) {

@@ -169,8 +169,7 @@ static void accept_step(struct stepper *m, double step, double error) {
         t->now[i] = t->solution[i];
     }
     for (int stage = 0; stage < 2; ++stage) {
-        for (uint32_t b = 0; b < t->bodies && span->body_energy; ++b)
-            span->body_energy[b] += share[stage] * m->stage_walls[stage][b];
+        for (uint32_t b = 0; b < t->bodies; ++b) span->body_energy[b] += share[stage] * m->stage_walls[stage][b];
         span->surroundings_energy += share[stage] * m->to_surroundings[stage];
     }
     span->error = larger_one(span->error, error);
@@ -267,6 +266,15 @@ static bool outside_known(const fibrad_transient *t, const fibrad_heat_sources *
     return known;
 }
 
+static int powers_now(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
+    const int status = fibrad_transient_prepare(t, sources);
+    if (status) return status;
+    fibrad_heat_sources given = *sources; /* a sphere has a temperature or a power, not both */
+    given.power = NULL;
+    return t->radiation ? fibrad_radiation_solve(t->radiation, &given, result)
+                        : fibrad_network_solve(t->network, &t->team, sources, t->allowed, result);
+}
+
 int fibrad_transient_powers(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
     if (!t || !sources || !result || !surfaces_given(t, sources) || !outside_known(t, sources))
         return FIBRAD_E_ARGUMENT;
@@ -274,12 +282,8 @@ int fibrad_transient_powers(fibrad_transient *t, const fibrad_heat_sources *sour
     for (uint32_t i = 0; i < t->n; ++i)
         if (!(sources->temperature[i] >= 0 && sources->temperature[i] <= FIBRAD_TEMPERATURE_MAX))
             return FIBRAD_E_ARGUMENT;
-    const int status = fibrad_transient_prepare(t, sources);
-    if (status) return status;
-    fibrad_heat_sources given = *sources; /* a sphere has a temperature or a power, not both */
-    given.power = NULL;
-    return t->radiation ? fibrad_radiation_solve(t->radiation, &given, result)
-                        : fibrad_network_solve(t->network, &t->team, sources, t->allowed, result);
+    const int status = fibrad_transient_begin(t);
+    return status ? status : fibrad_transient_end(t, powers_now(t, sources, result));
 }
 
 int fibrad_transient_sides(const fibrad_transient *t, double *flux, double *temperature) {
@@ -290,21 +294,32 @@ int fibrad_transient_sides(const fibrad_transient *t, double *flux, double *temp
 int fibrad_transient_shine(fibrad_transient *t, const fibrad_light_sources *sources, fibrad_light_result *result) {
     if (!t) return FIBRAD_E_ARGUMENT;
     if (!t->radiation) return FIBRAD_E_STATE;
-    const int status = fibrad_radiation_shine(t->radiation, sources, result);
+    int status = fibrad_transient_begin(t);
+    if (status) return status;
+    status = fibrad_radiation_shine(t->radiation, sources, result);
     fibrad_radiation_describe(t->radiation, NULL, &t->fault);
-    return status;
+    return fibrad_transient_end(t, status);
 }
 
-int fibrad_transient_advance(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_span *span) {
-    if (!t || !sources || !span || !surfaces_given(t, sources)) return FIBRAD_E_ARGUMENT;
-    int status = check_span(t, sources, span);
-    if (!status && !outside_known(t, sources)) status = FIBRAD_E_ARGUMENT;
-    if (!status && span->law && t->config.method != FIBRAD_TRANSIENT_PATCHES) status = FIBRAD_E_ARGUMENT;
-    if (!status) status = fibrad_transient_prepare(t, sources);
-    if (status) return status;
+/* Writes what a span has come to. */
+static void end_span(const struct stepper *m, fibrad_span *span) {
+    const fibrad_transient *t = m->t;
+    const fibrad_span given = *span;
+    *span = *m->span;
+    span->body_energy = given.body_energy, span->surroundings_power = m->to_surroundings[1];
+    memcpy(span->temperature, t->now, t->n * sizeof *t->now);
+    if (span->power) memcpy(span->power, t->power, t->n * sizeof *t->power);
+    for (uint32_t b = 0; b < t->bodies; ++b) {
+        if (span->body_power) span->body_power[b] = m->stage_walls[1][b];
+        if (span->body_energy) span->body_energy[b] = m->span->body_energy[b];
+    }
+}
+
+static int advance_span(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_span *span) {
+    fibrad_span now = *span;
     struct stepper m = {.t = t,
                         .given = sources,
-                        .span = span,
+                        .span = &now,
                         .tolerance = span->tolerance > 0 ? span->tolerance : TOLERANCE,
                         .sources = *sources,
                         .result = {.power = t->power, .temperature = t->found},
@@ -317,15 +332,24 @@ int fibrad_transient_advance(fibrad_transient *t, const fibrad_heat_sources *sou
         for (uint32_t b = 0; b < t->bodies; ++b) t->body_emissivity[b] = sources->body_emissivity[b];
         m.sources.emissivity = t->emissivity, m.sources.body_emissivity = t->body_emissivity;
     }
-    span->surroundings_energy = span->error = 0;
-    span->steps = span->refused = span->sweeps = span->corrections = 0;
-    for (uint32_t b = 0; b < t->bodies && span->body_energy; ++b) span->body_energy[b] = 0;
+    now.surroundings_energy = now.error = 0;
+    now.steps = now.refused = now.sweeps = now.corrections = 0;
+    now.body_energy = t->wall + 3 * (size_t)t->bodies;
+    for (uint32_t b = 0; b < t->bodies; ++b) now.body_energy[b] = 0;
     memcpy(t->now, span->temperature, t->n * sizeof *t->now);
-    status = take_steps(&m);
+    const int status = take_steps(&m);
+    if (!status) end_span(&m, span);
+    return status;
+}
+
+int fibrad_transient_advance(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_span *span) {
+    if (!t || !sources || !span || !surfaces_given(t, sources)) return FIBRAD_E_ARGUMENT;
+    int status = fibrad_transient_begin(t);
     if (status) return status;
-    memcpy(span->temperature, t->now, t->n * sizeof *t->now);
-    if (span->power) memcpy(span->power, t->power, t->n * sizeof *t->power);
-    for (uint32_t b = 0; b < t->bodies && span->body_power; ++b) span->body_power[b] = m.stage_walls[1][b];
-    span->surroundings_power = m.to_surroundings[1];
-    return FIBRAD_OK;
+    status = check_span(t, sources, span);
+    if (!status && !outside_known(t, sources)) status = FIBRAD_E_ARGUMENT;
+    if (!status && span->law && t->config.method != FIBRAD_TRANSIENT_PATCHES) status = FIBRAD_E_ARGUMENT;
+    if (!status) status = fibrad_transient_prepare(t, sources);
+    if (!status) status = advance_span(t, sources, span);
+    return fibrad_transient_end(t, status);
 }

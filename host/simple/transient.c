@@ -15,6 +15,18 @@
 #define SMALL             1e-3 /* part of the emission below which powers need no correction */
 #define PI                3.14159265358979323846
 
+int fibrad_transient_begin(fibrad_transient *t) {
+    if (!t) return FIBRAD_E_ARGUMENT;
+    if (t->busy) return FIBRAD_E_STATE;
+    t->busy = true;
+    return FIBRAD_OK;
+}
+
+int fibrad_transient_end(fibrad_transient *t, int status) {
+    t->busy = false;
+    return status;
+}
+
 /* The progress of a span is counted in steps. Sweeps within a step are not shown. */
 static int forward_progress(void *transient, const char *stage, uint64_t done, uint64_t total) {
     const fibrad_transient *t = transient;
@@ -33,9 +45,9 @@ static int take_arrays(fibrad_transient *t) {
                                    &t->source,     &t->found,    &t->power,     &t->given, &t->allowed, &t->solution,
                                    &t->correction, &t->compared, &t->by_patches};
     double **const of_bodies[] = {&t->body_emissivity, &t->wall_correction, &t->wall_compared, &t->wall_power,
-                                  &t->wall}; /* the last one has three per body */
+                                  &t->wall}; /* the last one has four per body */
     const size_t spheres = sizeof of_spheres / sizeof *of_spheres, bodies = sizeof of_bodies / sizeof *of_bodies;
-    double *next = calloc(spheres * t->n + (bodies + 2) * t->bodies + 1, sizeof *next);
+    double *next = calloc(spheres * t->n + (bodies + 3) * t->bodies + 1, sizeof *next);
     t->doubles = next;
     t->body = calloc((size_t)t->bodies + 1, sizeof *t->body);
     t->id = calloc((size_t)t->n + 1, sizeof *t->id);
@@ -132,7 +144,8 @@ int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config
 int fibrad_transient_move(fibrad_transient *t, const fibrad_scene_config *scene, const fibrad_spheres *spheres) {
     if (!t || !spheres || spheres->n != t->n || (scene ? scene->bodies : 0) != t->bodies) return FIBRAD_E_ARGUMENT;
     if (t->bodies > 0 && !scene->body) return FIBRAD_E_ARGUMENT;
-    return place(t, scene, spheres);
+    const int status = fibrad_transient_begin(t);
+    return status ? status : fibrad_transient_end(t, place(t, scene, spheres));
 }
 
 /* Whether there are factors for the emissivities of the sources. */

@@ -45,8 +45,16 @@ struct fibrad_transient {
     double *allowed;               /* [n] power that a sphere may miss in the solution of the linear problem */
     double *found, *power;         /* [n] temperatures and powers of the linear problem */
     double *solution;              /* [n] temperatures of the stage, which keep the energy */
-    double *wall;                  /* [3 bodies] temperatures, then powers of each stage */
+    double *wall;                  /* [4 bodies] temperatures, powers of each stage, energies of the span */
+    bool busy;                     /* within a call, see fibrad_transient_begin */
 };
+
+/* Begins a call that ends with fibrad_transient_end. A function of the caller that runs within a call can begin no
+ * other: FIBRAD_E_STATE. */
+int fibrad_transient_begin(fibrad_transient *transient);
+
+/* Returns the status. */
+int fibrad_transient_end(fibrad_transient *transient, int status);
 
 /* Computes factors for these sources unless the method needs none or they are there. Errors: as
  * fibrad_exchange_factors. */

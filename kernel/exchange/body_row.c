@@ -72,18 +72,42 @@ static void share_out_box(fibrad_paths *paths, double followed) {
     }
 }
 
+/* The row that paths give. */
+static int row_of_paths(const fibrad_scene *scene, fibrad_paths *paths, uint64_t followed, fibrad_body_row *row) {
+    if (paths->back != UINT32_MAX) return FIBRAD_E_BACK;
+    if (paths->boxed) share_out_box(paths, (double)followed);
+    const double sum = fibrad_paths_sum(paths);
+    if (!fibrad_finite(sum)) return FIBRAD_E_ARGUMENT; /* a path met an emissivity that is NaN */
+    *row = (fibrad_body_row){.rays = paths->rays, .paths = followed};
+    row->error = paths->left > 0 ? paths->left / (paths->left + sum) : 0;
+    if (sum == 0) {
+        row->escaped = 1;
+        return FIBRAD_OK;
+    }
+    row->spheres = paths->absorbed / sum;
+    row->escaped = (paths->escaped + paths->beyond) / sum;
+    for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
+        if (fibrad_is_opening(&scene->container, k)) row->escaped += paths->wall[k] / sum;
+    double all = row->spheres + row->escaped;
+    for (uint32_t b = 0; b < scene->facts.bodies; b++) all += row->body[b] = paths->wall[scene->slot[b]] / sum;
+    return fibrad_sum_checked(all);
+}
+
 int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t body, const fibrad_exchange_rule *rule,
                          uint32_t part, fibrad_body_row *row, uint64_t *reflected) {
     double wall_emissivity[FIBRAD_SLOTS] = {0};
     fibrad_workspace *space;
+    fibrad_body_row own = {0};
     uint32_t slot;
     int status = body_begin(scene, body, rule, part, wall_emissivity, &slot);
     if (status == FIBRAD_OK && (work == NULL || row == NULL)) status = FIBRAD_E_ARGUMENT;
     if (status == FIBRAD_OK)
         status = fibrad_work_open(work, scene, fibrad_tracer_least(), fibrad_tracer_best(scene), &space);
     if (status != FIBRAD_OK) return status;
-    *row = (fibrad_body_row){0};
-    if (wall_emissivity[slot] == 0) return FIBRAD_OK;
+    if (wall_emissivity[slot] == 0) {
+        *row = own;
+        return FIBRAD_OK;
+    }
 
     const bool nodes = rule->node_emissivity != NULL;
     const bool black = rule->emissivity == NULL && rule->body_emissivity == NULL;
@@ -91,39 +115,31 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
     fibrad_sobol_make(&sobol);
     const uint32_t wanted = rule->paths > 0 ? rule->paths : FIBRAD_BODY_PATHS_DEFAULT;
     const uint32_t count = (wanted + FIBRAD_BODY_PARTS - 1) / FIBRAD_BODY_PARTS;
-    const uint64_t own = (uint64_t)slot * FIBRAD_BODY_PARTS + part; /* streams of walls count down, those of ids up */
-    fibrad_paths paths = {.tracer = fibrad_tracer_of(space, scene),
-                          .place = FIBRAD_NONE,
-                          .from = slot,
-                          .sobol = &sobol,
-                          .emissivity = nodes ? rule->node_emissivity : rule->emissivity,
-                          .surface = rule->emissivity,
-                          .conductivity = nodes ? rule->conductivity : NULL,
-                          .wall_emissivity = wall_emissivity,
-                          .boxed = black && is_box(scene),
-                          .stream = fibrad_random_start(rule->seed, UINT64_MAX - own),
-                          .first = true,
-                          .reflected = reflected,
-                          .back = UINT32_MAX};
+    const uint64_t turn = (uint64_t)slot * FIBRAD_BODY_PARTS + part; /* streams of walls count down, those of ids up */
+    const fibrad_paths none = {.tracer = fibrad_tracer_of(space, scene),
+                               .place = FIBRAD_NONE,
+                               .from = slot,
+                               .sobol = &sobol,
+                               .emissivity = nodes ? rule->node_emissivity : rule->emissivity,
+                               .surface = rule->emissivity,
+                               .conductivity = nodes ? rule->conductivity : NULL,
+                               .wall_emissivity = wall_emissivity,
+                               .boxed = black && is_box(scene),
+                               .stream = fibrad_random_start(rule->seed, UINT64_MAX - turn),
+                               .first = true,
+                               .reflected = reflected,
+                               .back = UINT32_MAX};
+    fibrad_paths paths = none;
     const uint64_t followed = fibrad_paths_begin(&paths, count);
     work->triangle = paths.back;
-    if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
-    if (paths.boxed) share_out_box(&paths, (double)followed);
-    const double sum = fibrad_paths_sum(&paths);
-    if (!fibrad_finite(sum)) return FIBRAD_E_ARGUMENT; /* a path met an emissivity that is NaN */
-    row->rays = paths.rays, row->paths = followed;
-    row->error = paths.left > 0 ? paths.left / (paths.left + sum) : 0;
-    if (sum == 0) {
-        row->escaped = 1;
-        return FIBRAD_OK;
+    status = row_of_paths(scene, &paths, followed, &own);
+    if (status == FIBRAD_OK)
+        *row = own;
+    else if (reflected != NULL) { /* the same paths take back what they have added */
+        paths = none, paths.undo = true;
+        fibrad_paths_begin(&paths, count);
     }
-    row->spheres = paths.absorbed / sum;
-    row->escaped = (paths.escaped + paths.beyond) / sum;
-    for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
-        if (fibrad_is_opening(&scene->container, k)) row->escaped += paths.wall[k] / sum;
-    double all = row->spheres + row->escaped;
-    for (uint32_t b = 0; b < scene->facts.bodies; b++) all += row->body[b] = paths.wall[scene->slot[b]] / sum;
-    return fibrad_sum_checked(all);
+    return status;
 }
 
 /* By chance a factor may be below 0. Such a factor becomes 0, and the others are scaled so that the sum is 1. */

@@ -38,6 +38,7 @@ typedef struct fibrad_paths {
     double absorbed;                /* out: absorbed by all spheres */
     uint64_t *reflected;            /* [spheres], by the caller's index, added to: absorbed after a reflection, in
                                        paths * 2^40; NULL: not counted */
+    bool undo;                      /* subtract from `reflected` what these paths have added */
     double left;                    /* out: weight of paths that are broken off after too many legs */
     /* L^2, out: sum over absorption by spheres times the squared displacement along each axis, path k in part k mod
      * FIBRAD_DISPLACEMENT_PARTS. The displacement is between the centres of the two spheres. */

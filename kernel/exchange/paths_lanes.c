@@ -277,8 +277,8 @@ static void absorb_at_surface(fibrad_paths *paths, struct grey_path *path, uint3
 /* Counts what the sphere where the path is has absorbed. The number may be anything if an emissivity is not valid. */
 static void count_reflected(fibrad_paths *paths, const struct grey_path *path, double absorbed) {
     if (paths->reflected == NULL) return;
-    const double counts = fibrad_min(fibrad_max(absorbed, 0), 1);
-    paths->reflected[paths->tracer->scene->order[path->place]] += (uint64_t)(0x1p40 * counts);
+    const uint64_t units = (uint64_t)(0x1p40 * fibrad_min(fibrad_max(absorbed, 0), 1));
+    paths->reflected[paths->tracer->scene->order[path->place]] += paths->undo ? 0 - units : units;
 }
 
 /* Starts a path at one of evenly spread points of the wall or mesh that paths leave. */

@@ -117,6 +117,12 @@ static void find_box(fibrad_footprint *f, const fibrad_scene *scene) {
     }
 }
 
+double fibrad_footprint_area(const fibrad_footprint *f) {
+    double sum = 0;
+    for (uint32_t p = 0; p < f->pieces; p++) sum += f->piece[p].sign * f->piece[p].area;
+    return sum;
+}
+
 void fibrad_footprint_place(const fibrad_footprint *f, const double at[3], double uv[2]) {
     const double to[3] = {at[0] - f->origin[0], at[1] - f->origin[1], at[2] - f->origin[2]};
     uv[0] = fibrad_dot(to, f->frame), uv[1] = fibrad_dot(to, f->frame + 3);

@@ -76,6 +76,9 @@ uint32_t fibrad_light_count(const fibrad_light *light);
 /* The cross-section of a valid light in its direction k. */
 void fibrad_footprint_make(fibrad_footprint *f, const fibrad_scene *scene, const fibrad_light *light, uint32_t k);
 
+/* L^2, what all pieces let in. 0 or below: no open face lets the light in. */
+double fibrad_footprint_area(const fibrad_footprint *f);
+
 /* u and v of a place. */
 void fibrad_footprint_place(const fibrad_footprint *f, const double at[3], double uv[2]);
 

@@ -42,6 +42,9 @@ typedef struct shining {
 
 static spread *shares_of(const fibrad_workspace *space) { return (void *)fibrad_light_scratch(space); }
 
+/* Light on the patches of a task before the task, behind its spread. */
+static double *hits_before(const fibrad_workspace *space) { return (void *)(shares_of(space) + 1); }
+
 /* The patch of the cube at a place in the window, and the place on the face of the cube. */
 static uint32_t patch_in_window(const shining *s, double x, double y, double at[2]) {
     const double up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
@@ -173,44 +176,46 @@ static int shine_on_sphere(const fibrad_heat *heat, fibrad_workspace *space, uin
     return FIBRAD_OK;
 }
 
-/* Makes footprint and spread of direction k of a light. */
-static void make_ready(const fibrad_heat *heat, fibrad_workspace *space, const fibrad_light *light, uint32_t k) {
-    fibrad_footprint_make(fibrad_light_footprint(space), heat->scene, light, k);
-    find_spread(heat, fibrad_light_footprint(space), shares_of(space));
-}
-
-/* The same with work memory that grows. When it grows, footprint and spread are lost. */
-static int shine_and_grow(const fibrad_heat *heat, fibrad_work *work, fibrad_workspace **space,
-                          const fibrad_light *light, uint32_t k, uint32_t place, double *hits,
-                          fibrad_light_ends *kept) {
-    const double flux = light->flux / fibrad_light_count(light);
-    int status = shine_on_sphere(heat, *space, place, flux, hits, kept);
-    while (status == FIBRAD_E_WORK) {
-        status = fibrad_light_grow(work, sizeof(spread), space);
-        if (status != FIBRAD_OK) return status;
-        make_ready(heat, *space, light, k);
-        status = shine_on_sphere(heat, *space, place, flux, hits, kept);
+/* All directions of a light on the spheres at places begin to end - 1. Errors: as of one sphere; FIBRAD_E_ARGUMENT: no
+ * open face lets the light in. */
+static int shine_on_spheres(const fibrad_heat *heat, fibrad_workspace *space, const fibrad_light *light, uint32_t begin,
+                            uint32_t end, double *hits, fibrad_light_ends *kept) {
+    const uint32_t count = fibrad_light_count(light);
+    fibrad_footprint *f = fibrad_light_footprint(space);
+    double all = 0;
+    int status = FIBRAD_OK;
+    *kept = (fibrad_light_ends){0};
+    for (uint32_t k = 0; k < count && status == FIBRAD_OK; k++) {
+        fibrad_footprint_make(f, heat->scene, light, k);
+        find_spread(heat, f, shares_of(space));
+        all += fibrad_footprint_area(f);
+        for (uint32_t place = begin; place < end && status == FIBRAD_OK; place++)
+            status = shine_on_sphere(heat, space, place, light->flux / count, hits, kept);
     }
-    return status;
+    return status != FIBRAD_OK || all > 0 ? status : FIBRAD_E_ARGUMENT;
 }
 
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,
                       double *hits, fibrad_light_ends *kept) {
     fibrad_workspace *space;
+    fibrad_light_ends sum;
     if (heat == NULL || work == NULL || hits == NULL || kept == NULL || task >= fibrad_heat_shine_tasks(heat))
         return FIBRAD_E_ARGUMENT;
     if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
-    int status = fibrad_light_check(heat->scene, light, NULL);
-    if (status == FIBRAD_OK) status = fibrad_light_open(heat->scene, work, sizeof(spread), &space);
-    if (status != FIBRAD_OK) return status;
     const uint32_t begin = task * SHINE_SPHERES;
     const uint32_t end = heat->spheres - begin < SHINE_SPHERES ? heat->spheres : begin + SHINE_SPHERES;
-    *kept = (fibrad_light_ends){0};
-    for (uint32_t k = 0; k < fibrad_light_count(light) && status == FIBRAD_OK; k++) {
-        make_ready(heat, space, light, k);
-        for (uint32_t place = begin; place < end && status == FIBRAD_OK; place++)
-            status = shine_and_grow(heat, work, &space, light, k, place, hits, kept);
+    double *const first = hits + heat->first[begin];
+    const size_t bytes = (heat->first[end] - heat->first[begin]) * sizeof *hits, extra = sizeof(spread) + bytes;
+    int status = fibrad_light_check(heat->scene, light, NULL);
+    if (status == FIBRAD_OK) status = fibrad_light_open(heat->scene, work, extra, &space);
+    while (status == FIBRAD_OK) {
+        fibrad_copy(hits_before(space), first, bytes);
+        status = shine_on_spheres(heat, space, light, begin, end, hits, &sum);
+        if (status == FIBRAD_OK) break;
+        fibrad_copy(first, hits_before(space), bytes);
+        if (status == FIBRAD_E_WORK) status = fibrad_light_grow(work, extra, &space);
     }
+    if (status == FIBRAD_OK) *kept = sum;
     return status;
 }
 
@@ -317,14 +322,17 @@ int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fi
     const uint32_t count = fibrad_light_count(light);
     const size_t room = size_of_counts(heat);
     if (status == FIBRAD_OK) status = fibrad_light_open(heat->scene, work, room, &space);
-    if (status != FIBRAD_OK || heat->given_bodies == 0) return status;
+    if (status != FIBRAD_OK) return status;
     ray_counts counts = counts_of(heat, fibrad_light_scratch(space));
     fibrad_zero(counts.patch, room);
+    double all = 0;
     for (uint32_t k = 0; k < count && status == FIBRAD_OK; k++) {
         fibrad_footprint *f = fibrad_light_footprint(space);
         fibrad_footprint_make(f, heat->scene, light, k);
-        status = count_rays(heat, f, k, SHINE_RAYS / count, &counts, &work->triangle);
+        all += fibrad_footprint_area(f);
+        if (heat->given_bodies > 0) status = count_rays(heat, f, k, SHINE_RAYS / count, &counts, &work->triangle);
     }
+    if (status == FIBRAD_OK && !(all > 0)) status = FIBRAD_E_ARGUMENT;
     for (uint32_t b = 0; b < heat->given_bodies && status == FIBRAD_OK; b++)
         if (heat->slot[b] < FIBRAD_WALLS)
             ends->body[b] = spread_on_walls(heat, &counts, heat->slot[b], fibrad_max(0, ends->body[b]), hits, ends);

@@ -74,11 +74,13 @@ int fibrad_triangle_views(const fibrad_scene *scene, uint32_t place, uint32_t ra
     if (scene == NULL || triangle == NULL || view == NULL || rays < 1 || rays > RAYS_MOST) return FIBRAD_E_ARGUMENT;
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
     if (place >= scene->mesh.triangles) return FIBRAD_E_ARGUMENT;
+    fibrad_side_view own[2];
     uint32_t seen = place;
     int status = FIBRAD_OK;
     fibrad_sobol_make(&sobol);
     for (uint32_t back = 0; back < 2 && status == FIBRAD_OK; back++)
-        status = view_of_side(scene, &sobol, fibrad_side(place, back), rays, &view[back], &seen);
+        status = view_of_side(scene, &sobol, fibrad_side(place, back), rays, &own[back], &seen);
     *triangle = scene->mesh.number[status == FIBRAD_E_BACK ? seen : place];
+    if (status == FIBRAD_OK) view[0] = own[0], view[1] = own[1];
     return status;
 }

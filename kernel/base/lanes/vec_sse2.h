@@ -53,7 +53,7 @@ static inline vd vd_loadu(const double *p) { return _mm_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm_storeu_pd(p, a); }
 static inline vd vd_load_float(const float *p) {
-    return _mm_cvtps_pd(_mm_castpd_ps(_mm_load_sd((const double *)(const void *)p)));
+    return _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(const void *)p)));
 }
 static inline vd vd_load_short(const uint16_t *p) { return _mm_set_pd(p[1], p[0]); }
 static inline void vd_store_float(float *p, vd a) { _mm_storel_pi((__m64 *)(void *)p, _mm_cvtpd_ps(a)); }
