@@ -11,9 +11,6 @@
  * such unit. Source: LAMMPS, command `units`. */
 bool unit_of_length(const char *name, double *metres);
 
-/* Whether a name in a file means this unit: K, C or another. Units of temperature have several names. */
-bool unit_is(const char *name, const char *unit);
-
 #define KELVIN_OF_0_CELSIUS 273.15
 
 /* A row of a table of options, without braces. The field gets 0 of the unit [K]. */
