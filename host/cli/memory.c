@@ -1,12 +1,23 @@
-/* memory.c - checks, before the work begins, whether memory or disk suffice. SPDX-License-Identifier: MIT */
+/* memory.c - checks, before the work begins, whether memory or disk suffice; arrays that grow.
+ * SPDX-License-Identifier: MIT */
 #include "cli/memory.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <sys/resource.h>
 #include <sys/statvfs.h>
 
 #include "cli/message.h"
+
+bool memory_room(void *array, size_t n, size_t size) {
+    void *old;
+    memcpy(&old, array, sizeof old); /* a pointer to any type */
+    void *moved = realloc(old, (n + 1) * size);
+    if (moved) memcpy(array, &moved, sizeof moved);
+    return moved != NULL;
+}
 
 /* Reads the number of a line `KEY: N kB` in a file of Linux's /proc [bytes]. Without such a line: `otherwise`. */
 static double proc_bytes(const char *path, const char *format, double otherwise) {

@@ -1,6 +1,14 @@
-/* memory.h - checks, before the work begins, whether memory or disk suffice. SPDX-License-Identifier: MIT */
+/* memory.h - checks, before the work begins, whether memory or disk suffice; arrays that grow.
+ * SPDX-License-Identifier: MIT */
 #ifndef MEMORY_H
 #define MEMORY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Makes room in an array, *(T **)array, for n + 1 elements of `size` bytes. False: there is no memory, and the array is
+ * as it was. */
+bool memory_room(void *array, size_t n, size_t size);
 
 /* Bytes that this process may still allocate: those that the system has left, within the limit on address space.
  * INFINITY: neither is known. */

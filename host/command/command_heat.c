@@ -172,7 +172,7 @@ static int heat_check_request(struct heat_request *request) {
         return message(STATUS_USAGE,
                        "--solid-conductivity is for --model patches: in other models a sphere has no sides");
     bed_options_quantity(&request->bed, &request->emissivity, NULL);
-    bed_options_quantity(&request->bed, &request->solid, NULL);
+    bed_options_quantity(&request->bed, &request->solid, SOLID_UNIT);
     status = time_check(&request->time, &request->bed);
     if (!status) status = light_check(&request->light, &request->bed, &request->emissivity);
     if (!status) status = given_check(&request->given, &request->bed);

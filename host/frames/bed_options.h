@@ -13,6 +13,7 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "frames/column_option.h"
 #include "frames/warnings.h"
 #include "text/report.h"
 #include "read/read.h"
@@ -32,6 +33,7 @@
         {0, "frame", "K",                                                                                              \
          "frame of the file, from 0; -1: the last; all; A:B or A:B:STEP: from A on, up to B - 1 [-1]",                 \
          TO_REQUEST(bed_frames_option)},                                                                               \
+        OPTIONS_COLUMNS(struct bed_options, columns_of_file),                                                          \
     {                                                                                                                  \
         0, "positions", NULL, "name spheres by their positions in the file, from 0 [by ids]",                          \
             TO_FLAG(struct bed_options, positions)                                                                     \
@@ -86,6 +88,7 @@ struct bed_options {
     bool periodic; /* --periodic was given */
     double period[3];
     bool positions;
+    struct column_options columns_of_file;
     struct quantity radius;
     const char *length_unit;             /* NULL: not given */
     const char *column[BED_COLUMNS_MAX]; /* [columns] columns of the file that options name */

@@ -8,7 +8,9 @@
 #include "bed/conduction.h"
 #include "frames/bed_options.h"
 
-/* Bounds of k_s [W/(m K)]. */
+#define SOLID_UNIT "W/(m K)"
+
+/* Bounds of k_s, in that unit. */
 #define SOLID_CONDUCTIVITY_MIN 1e-6
 #define SOLID_CONDUCTIVITY_MAX 1e12
 

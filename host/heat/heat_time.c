@@ -40,8 +40,8 @@ int time_check(struct time_options *time, struct bed_options *bed) {
     if (time->times && time->every > 0) return message(STATUS_USAGE, "--times and --every cannot be combined");
     if (time->every > 0 && time->until / time->every > TIMES_MAX)
         return message(STATUS_USAGE, "--every: more than %d times", TIMES_MAX);
-    bed_options_quantity(bed, &time->capacity, NULL);
-    bed_options_quantity(bed, &time->density, NULL);
+    bed_options_quantity(bed, &time->capacity, "J/(kg K)");
+    bed_options_quantity(bed, &time->density, "kg/m3");
     return STATUS_OK;
 }
 

@@ -9,6 +9,7 @@
 #include <strings.h>
 
 #include "bed/units.h"
+#include "cli/memory.h"
 #include "cli/message.h"
 #include "text/read_number.h"
 #include "text/text.h"
@@ -22,21 +23,14 @@ struct twin {
     const char *name;
 };
 
-const char *read_options_name(const struct read_options *options, const char *known) {
+const struct column_name *read_options_name(const struct read_options *options, const char *known, bool any_case) {
     for (size_t k = 0; k < options->names; ++k)
-        if (strcasecmp(options->name[k].known, known) == 0) return options->name[k].name;
+        if ((any_case ? strcasecmp : strcmp)(options->name[k].known, known) == 0) return &options->name[k];
     return NULL;
 }
 
 const char *read_options_none(const struct read_options *options) {
     return options->rules > 0 ? "--only and --skip leave no spheres of the file" : "there are no spheres in the file";
-}
-
-/* Makes room for n elements of `size` bytes. */
-static bool make_room(void *array, size_t n, size_t size) {
-    void **pointer = array, *moved = realloc(*pointer, (n + 1) * size);
-    if (moved) *pointer = moved;
-    return moved != NULL;
 }
 
 /* Finds a column by name. If there are several, it is the first one, and columns_add checks that all are equal.
@@ -50,7 +44,7 @@ static int find(struct columns *columns, size_t *column, const struct fields *na
             *column = k;
             continue;
         }
-        if (!make_room(&columns->twin, columns->twins, sizeof *columns->twin)) return message_memory();
+        if (!memory_room(&columns->twin, columns->twins, sizeof *columns->twin)) return message_memory();
         columns->twin[columns->twins++] = (struct twin){*column, k, wanted};
     }
     return STATUS_OK;
@@ -62,12 +56,12 @@ static int find(struct columns *columns, size_t *column, const struct fields *na
 static int find_any(struct columns *columns, size_t *column, int *which, const struct fields *names,
                     const struct read_options *options, const char *const wanted[]) {
     compare_names *const compare[] = {strcmp, strcasecmp};
-    for (*which = 0; wanted[*which]; ++*which)
-        for (size_t k = 0; k < options->names; ++k)
-            if (strcasecmp(options->name[k].known, wanted[*which]) == 0) {
-                *column = columns->named[k];
-                return STATUS_OK;
-            }
+    for (*which = 0; wanted[*which]; ++*which) {
+        const struct column_name *name = read_options_name(options, wanted[*which], true);
+        if (!name) continue;
+        *column = columns->named[name - options->name];
+        return STATUS_OK;
+    }
     for (int k = 0; k < 2; ++k)
         for (*which = 0; wanted[*which]; ++*which) {
             const int status = find(columns, column, names, wanted[*which], compare[k]);
@@ -82,29 +76,22 @@ static int column_missing(const struct lines *lines, const struct fields *names,
                       wanted, names_list(list, (const char *const *)names->at, names->n));
 }
 
-/* If `wanted` is `name` with a unit behind it, as `T [C]`, `T (C)` or `T_[C]`: the unit and its length. Else NULL. */
-static const char *unit_behind(const char *wanted, const char *name, size_t *size) {
-    const size_t length = strlen(name), end = strlen(wanted);
-    if (strncmp(wanted, name, length) != 0) return NULL;
-    const char *open = wanted + length + strspn(wanted + length, " \t_");
-    if ((*open != '[' && *open != '(') || !strchr("])", wanted[end - 1])) return NULL;
-    *size = (size_t)(wanted + end - 1 - (open + 1));
-    return open + 1;
-}
-
 /* Finds a column by a name that may have its unit behind it. says: the name says the unit of a column whose header has
  * none. */
 static int find_with_unit(struct columns *columns, const struct lines *lines, const struct fields *names,
                           const char *wanted, bool says, size_t *column) {
     const int status = find(columns, column, names, wanted, strcmp);
-    size_t size;
-    for (size_t c = 0; c < names->n && !status && *column == names->n; ++c) {
-        const char *unit = unit_behind(wanted, names->at[c], &size);
-        if (!unit || size == 0 || size >= UNIT_LENGTH || isdigit((unsigned char)*unit)) continue; /* c_T[1] is no unit */
-        if (says && !*columns->unit[c]) memcpy(columns->unit[c], unit, size);
-        if (strlen(columns->unit[c]) == size && memcmp(columns->unit[c], unit, size) == 0) *column = c;
+    const char *unit;
+    size_t bare, length;
+    if (status || *column < names->n) return status;
+    const bool has = unit_behind(wanted, &bare, &unit, &length) && length > 0 && length < UNIT_LENGTH;
+    const bool may_say = says && has && !isdigit((unsigned char)*unit); /* c_T[1] has no unit */
+    for (size_t c = 0; has && c < names->n && *column == names->n; ++c) {
+        if (strlen(names->at[c]) != bare || memcmp(names->at[c], wanted, bare) != 0) continue;
+        if (may_say && !*columns->unit[c]) memcpy(columns->unit[c], unit, length);
+        if (strlen(columns->unit[c]) == length && memcmp(columns->unit[c], unit, length) == 0) *column = c;
     }
-    return !status && *column == names->n ? column_missing(lines, names, wanted) : status;
+    return *column == names->n ? column_missing(lines, names, wanted) : STATUS_OK;
 }
 
 static int find_radius(struct columns *columns, const struct lines *lines, const struct fields *names,
@@ -141,11 +128,11 @@ static int begin(struct columns *columns, const struct fields *names, char *cons
                  const struct read_options *options) {
     columns->width = names->n;
     columns->twins = 0;
-    if (!make_room(&columns->extra, options->extras, sizeof *columns->extra) ||
-        !make_room(&columns->factor, options->extras, sizeof *columns->factor) ||
-        !make_room(&columns->named, options->names, sizeof *columns->named) ||
-        !make_room(&columns->ruled, options->rules, sizeof *columns->ruled) ||
-        !make_room(&columns->unit, names->n, sizeof *columns->unit))
+    if (!memory_room(&columns->extra, options->extras, sizeof *columns->extra) ||
+        !memory_room(&columns->factor, options->extras, sizeof *columns->factor) ||
+        !memory_room(&columns->named, options->names, sizeof *columns->named) ||
+        !memory_room(&columns->ruled, options->rules, sizeof *columns->ruled) ||
+        !memory_room(&columns->unit, names->n, sizeof *columns->unit))
         return message_memory();
     memset(columns->unit, 0, names->n * sizeof *columns->unit);
     for (size_t c = 0; units && c < names->n; ++c) snprintf(columns->unit[c], UNIT_LENGTH, "%s", units[c]);
@@ -161,10 +148,10 @@ static int find_given(struct columns *columns, const struct lines *lines, const 
     for (size_t k = 0; k < options->extras + options->rules && !status; ++k) {
         const bool extra = k < options->extras;
         const char *wanted = extra ? options->extra[k] : options->rule[k - options->extras].column;
-        size_t *column = extra ? &columns->extra[k] : &columns->ruled[k - options->extras], n = 0;
-        while (n < options->names && strcmp(options->name[n].known, wanted) != 0) ++n;
-        if (n < options->names)
-            *column = columns->named[n];
+        size_t *column = extra ? &columns->extra[k] : &columns->ruled[k - options->extras];
+        const struct column_name *name = read_options_name(options, wanted, false);
+        if (name)
+            *column = columns->named[name - options->name];
         else
             status = find_with_unit(columns, lines, names, wanted, false, column);
     }
@@ -237,21 +224,25 @@ static int find_unit(const struct columns *columns, const struct lines *lines, c
     return STATUS_OK;
 }
 
-/* Finds the factors to the expected units of further columns. Refuses a column whose unit is of another kind. */
+int columns_factor(const struct lines *lines, const struct read_options *options, size_t k, const char *unit,
+                   const char *lengths, double *factor) {
+    const char *expected = options->unit ? options->unit[k] : NULL;
+    if (expected && strcmp(expected, UNIT_OF_LENGTH) == 0) expected = *lengths ? lengths : NULL;
+    *factor = 1;
+    if (options->any_unit || unit_none(unit) || (expected && strcmp(unit, expected) == 0)) return STATUS_OK;
+    if (expected && unit_factor(unit, expected, factor)) return STATUS_OK;
+    const bool temperature = expected && (unit_is(expected, "K") || unit_is(expected, "C"));
+    return message_at(STATUS_INPUT, lines->name, lines->number,
+                      "the column %.40s is in [%.20s], but is taken as [%.20s]%s", options->extra[k], unit,
+                      expected ? expected : "-", temperature ? "; see --temperature-unit" : "");
+}
+
 static int find_factors(struct columns *columns, const struct lines *lines, const struct read_options *options) {
-    for (size_t k = 0; k < options->extras; ++k) {
-        const char *unit = columns->unit[columns->extra[k]], *lengths = columns->unit[columns->coordinate[0]];
-        const char *expected = options->unit ? options->unit[k] : NULL;
-        if (expected && strcmp(expected, UNIT_OF_LENGTH) == 0) expected = *lengths ? lengths : NULL;
-        columns->factor[k] = 1;
-        if (options->any_unit || unit_none(unit) || (expected && strcmp(unit, expected) == 0)) continue;
-        if (expected && unit_factor(unit, expected, &columns->factor[k])) continue;
-        const bool temperature = expected && (unit_is(expected, "K") || unit_is(expected, "C"));
-        return message_at(STATUS_INPUT, lines->name, lines->number,
-                          "the column %.40s is in [%.20s], but is taken as [%.20s]%s", options->extra[k], unit,
-                          expected ? expected : "-", temperature ? "; see --temperature-unit" : "");
-    }
-    return STATUS_OK;
+    int status = STATUS_OK;
+    for (size_t k = 0; k < options->extras && !status; ++k)
+        status = columns_factor(lines, options, k, columns->unit[columns->extra[k]],
+                                columns->unit[columns->coordinate[0]], &columns->factor[k]);
+    return status;
 }
 
 int columns_find(struct columns *columns, const struct lines *lines, const struct fields *names, char *const *units,

@@ -44,6 +44,11 @@ void columns_free(struct columns *columns);
 /* Whether x, y and z are among the names. */
 bool columns_named(const struct fields *names);
 
+/* Finds the factor from the unit of further column k to the expected one. lengths: the unit of lengths, or "". Status 0,
+ * or STATUS_INPUT if the unit is of another kind. */
+int columns_factor(const struct lines *lines, const struct read_options *options, size_t k, const char *unit,
+                   const char *lengths, double *factor);
+
 /* Adds the sphere of one row to the bed, if options->rule allows. Status 0, STATUS_MEMORY, or STATUS_INPUT naming the
  * column. */
 int columns_add(struct columns *columns, const struct lines *lines, const struct fields *row,

@@ -46,8 +46,8 @@ struct read_options {
 /* Expected unit of a further column of lengths: that of the coordinates. */
 #define UNIT_OF_LENGTH "L"
 
-/* The file's name for a column of the program. NULL: read_options.name has none. */
-const char *read_options_name(const struct read_options *options, const char *known);
+/* The element of read_options.name for a column of the program. NULL: there is none. any_case: x may be called X. */
+const struct column_name *read_options_name(const struct read_options *options, const char *known, bool any_case);
 
 /* Says why nothing was left of the file's spheres. */
 const char *read_options_none(const struct read_options *options);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "text/unit.h"
 
 #define WITHIN '\037' /* stands for a blank within brackets while names are split at blanks */
 
@@ -47,28 +48,15 @@ static int split_names(struct fields *names, char *text) {
     return status;
 }
 
-/* The bracket that opens what the last character of a name closes. NULL: there is none. */
-static char *opening(char *name) {
-    int depth = 0;
-    for (char *c = name + strlen(name); c > name;) {
-        --c;
-        depth += *c == ']' || *c == ')';
-        depth -= *c == '[' || *c == '(';
-        if (depth <= 0) return depth == 0 && c[1] ? c : NULL;
-    }
-    return NULL;
-}
-
 /* Cuts the unit off a name and returns the unit. "": the name has none. */
 static char *take_unit(char *name) {
-    char *open = opening(name);
-    char *end = name + strlen(name);
-    if (!open) return end;
-    end[-1] = 0;
-    char *tail = open;
-    while (tail > name && strchr(" \t_", tail[-1])) --tail;
-    *tail = 0;
-    return open + 1;
+    const char *unit;
+    size_t bare, length;
+    if (!unit_behind(name, &bare, &unit, &length)) return name + strlen(name);
+    char *found = name + (unit - name);
+    found[length] = 0;
+    name[bare] = 0;
+    return found;
 }
 
 /* Cuts the units off all names. If blanks stand between columns, `x [mm]` has been split into two names, which are

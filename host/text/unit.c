@@ -7,7 +7,6 @@
 
 #include <ctype.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -149,6 +148,22 @@ static bool take_product(const char **text, struct reading how, int sign, int de
 static bool read_measure(const char *name, struct reading how, struct measure *m) {
     *m = (struct measure){.factor = 1};
     return take_product(&name, how, 1, 0, m) && *name == 0;
+}
+
+bool unit_behind(const char *name, size_t *bare, const char **unit, size_t *length) {
+    const size_t end = strlen(name);
+    size_t open = end;
+    for (int depth = 1; depth > 0;) {
+        if (open-- == 0) return false;
+        if (strchr("])", name[open])) depth += open < end - 1;
+        else if (strchr("[(", name[open])) --depth;
+        if (open == end - 1 && !strchr("])", name[open])) return false;
+    }
+    *unit = name + open + 1;
+    *length = end - open - 2;
+    while (open > 0 && strchr(" \t_", name[open - 1])) --open;
+    *bare = open;
+    return true;
 }
 
 bool unit_is(const char *name, const char *unit) {
