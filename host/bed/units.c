@@ -33,6 +33,8 @@ bool unit_of_length(const char *name, double *metres) {
     return false;
 }
 
+const char *temperature_unit(double zero) { return zero > 0 ? "C" : "K"; }
+
 int temperature_unit_option(const char *text, void *zero) {
     if (strcmp(text, "K") != 0 && strcmp(text, "C") != 0)
         return message(STATUS_USAGE, "--temperature-unit: '%.40s' is neither K nor C", text);

@@ -13,6 +13,9 @@ bool unit_of_length(const char *name, double *metres);
 
 #define KELVIN_OF_0_CELSIUS 273.15
 
+/* The unit of temperature, K or C, by its 0 [K]. */
+const char *temperature_unit(double zero);
+
 /* A row of a table of options, without braces. The field gets 0 of the unit [K]. */
 #define OPTION_TEMPERATURE_UNIT(request, field)                                                                        \
     0, "temperature-unit", "UNIT", "unit of the temperatures that are given, K or C; results are in K [K]",            \

@@ -267,18 +267,10 @@ int columns_find(struct columns *columns, const struct lines *lines, const struc
     return status ? status : find_unit(columns, lines, names, options, bed);
 }
 
-/* Reads a number of a row. In files that may have decimal commas, points and commas must not mix. */
+/* Reads a number of a row. */
 static int columns_number(struct columns *columns, const struct lines *lines, const char *what, char *text,
                           double *value) {
-    char *mark = columns->commas ? strpbrk(text, ".,") : NULL;
-    if (mark && columns->mark && *mark != columns->mark)
-        return message_at(STATUS_INPUT, lines->name, lines->number,
-                          "%s is '%.40s': decimal commas and decimal points in one file", what, text);
-    if (mark) {
-        columns->mark = *mark;
-        *mark = '.';
-    }
-    return lines_number(lines, what, text, value);
+    return lines_decimal(lines, what, text, columns->commas ? &columns->mark : NULL, value);
 }
 
 /* Whether a value is missing in a column that allows this. */
