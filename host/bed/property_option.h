@@ -39,7 +39,7 @@ struct quantity {
     size_t index;       /* of the column in bed->extra */
     int types;          /* 0: values are not by type */
     double type[QUANTITY_TYPES_MAX], of_type[QUANTITY_TYPES_MAX]; /* [types] types and their values */
-    const struct curve_axes *curves;                              /* @TABLE is allowed in place of a number; NULL: not */
+    const struct curve_axes *curves;        /* @TABLE is allowed in place of a number; NULL: not */
     struct curve curve[QUANTITY_TYPES_MAX]; /* [types] tables, or [0] for all spheres; n = 0: a number */
 };
 

@@ -33,8 +33,7 @@
         {0, "frame", "K",                                                                                              \
          "frame of the file, from 0; -1: the last; all; A:B or A:B:STEP: from A on, up to B - 1 [-1]",                 \
          TO_REQUEST(bed_frames_option)},                                                                               \
-        OPTIONS_COLUMNS(struct bed_options, columns_of_file),                                                          \
-    {                                                                                                                  \
+        OPTIONS_COLUMNS(struct bed_options, columns_of_file), {                                                        \
         0, "positions", NULL, "name spheres by their positions in the file, from 0 [by ids]",                          \
             TO_FLAG(struct bed_options, positions)                                                                     \
     }

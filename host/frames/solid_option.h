@@ -31,8 +31,9 @@ int solid_values(struct bed_options *options, const struct bed *bed, const struc
                  double **conductivity, double *metres);
 
 /* Finds k* of all spheres, relative [n], at their temperatures [n] [K]: infinite at 0 K, NaN where the temperature is
- * NaN. Tables, with a warning where temperatures are beyond their ends, first give conductivity [n] at these temperatures. Status 0, or STATUS_INPUT naming the line of a sphere
- * whose k* is below FIBRAD_RELATIVE_CONDUCTIVITY_MIN. */
+ * NaN. Tables, with a warning where temperatures are beyond their ends, first give conductivity [n] at these
+ * temperatures. Status 0, or STATUS_INPUT naming the line of a sphere whose k* is below
+ * FIBRAD_RELATIVE_CONDUCTIVITY_MIN. */
 int solid_relative(struct bed_options *options, const struct bed *bed, const struct quantity *solid,
                    const double *temperature, double metres, double *conductivity, double *relative);
 

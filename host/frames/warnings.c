@@ -256,8 +256,8 @@ void warn_times(struct warned *warned, const char *what, const struct curve *cur
                    "warning: the table of %s begins at %g s; before, its first temperature is taken", what, first);
     if (last < until)
         message_at(STATUS_OK, warned->file, 0,
-                   "warning: the table of %s ends at %g s; from there to %g s its last temperature is taken", what, last,
-                   until);
+                   "warning: the table of %s ends at %g s; from there to %g s its last temperature is taken", what,
+                   last, until);
 }
 
 void warn_surfaces(struct warned *warned, const struct bed *bed, const double *least) {

@@ -41,7 +41,8 @@ int given_ambient(struct given_options *options, double *ambient) {
     *ambient = NAN;
     if (!options->ambient) return STATUS_OK;
     if (options->timed && *options->ambient == '@') {
-        status = curve_read(options->ambient + 1, "temperature", given_axes(options), low, TEMPERATURE_MAX, &options->ambient_curve);
+        status = curve_read(options->ambient + 1, "temperature", given_axes(options), low, TEMPERATURE_MAX,
+                            &options->ambient_curve);
         if (!status) *ambient = curve_at(&options->ambient_curve, 0);
     } else {
         status = options_number("--ambient", options->ambient, low, TEMPERATURE_MAX, ambient);

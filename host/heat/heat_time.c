@@ -68,9 +68,9 @@ struct time_run {
     double error;                                 /* largest fibrad_span.error */
     struct time_point *point;                     /* [points] of the picture */
     size_t points, room;
-    bool failed; /* memory for points ran out */
+    bool failed;                   /* memory for points ran out */
     struct table_excess excess[2]; /* of emissivities and conductivities */
-    double lag;  /* largest r^2/(pi^2 alpha) of spheres that conduct [s]; 0: none conducts */
+    double lag;                    /* largest r^2/(pi^2 alpha) of spheres that conduct [s]; 0: none conducts */
 };
 
 static struct time_point point_of(const struct time_run *m, double time, const double *temperature) {

@@ -15,8 +15,7 @@ static int take_columns(const struct file_wanted *wanted, struct read_options *o
     struct row_rule *rule = malloc((options->rules + 1) * sizeof *rule);
     options->name = name, options->rule = rule;
     if (!name || !rule) return STATUS_MEMORY;
-    for (size_t k = 0; k < options->names; ++k)
-        name[k] = (struct column_name){wanted->name[k][0], wanted->name[k][1]};
+    for (size_t k = 0; k < options->names; ++k) name[k] = (struct column_name){wanted->name[k][0], wanted->name[k][1]};
     for (size_t k = 0; k < options->rules; ++k) {
         const bool skip = k >= wanted->onlys;
         const char *const *pair = skip ? wanted->skip[k - wanted->onlys] : wanted->only[k];

@@ -22,9 +22,9 @@ struct columns {
     size_t *ruled;      /* [rules] columns of read_options.rule */
     struct twin *twin;  /* [twins] wanted columns that the file has twice, which must be equal */
     size_t twins;
-    size_t *kept;       /* [keeps] columns that are kept as text */
-    const char **text;  /* [keeps] their texts in the current row */
-    char *kept_names;   /* their names, with blanks in between */
+    size_t *kept;      /* [keeps] columns that are kept as text */
+    const char **text; /* [keeps] their texts in the current row */
+    char *kept_names;  /* their names, with blanks in between */
     size_t keeps;
     bool commas;               /* numbers may have decimal commas */
     char mark;                 /* decimal point or comma, the first one in the file; 0: none so far */
@@ -44,8 +44,8 @@ void columns_free(struct columns *columns);
 /* Whether x, y and z are among the names. */
 bool columns_named(const struct fields *names);
 
-/* Finds the factor from the unit of further column k to the expected one. lengths: the unit of lengths, or "". Status 0,
- * or STATUS_INPUT if the unit is of another kind. */
+/* Finds the factor from the unit of further column k to the expected one. lengths: the unit of lengths, or "". Status
+ * 0, or STATUS_INPUT if the unit is of another kind. */
 int columns_factor(const struct lines *lines, const struct read_options *options, size_t k, const char *unit,
                    const char *lengths, double *factor);
 

@@ -143,7 +143,8 @@ static int read_edges(struct source *source, const bool periodic[3], struct bed 
                                         "the origin of the box"};
     double line[4], edge[9], origin[3];
     for (int k = 0; k < 3; ++k) {
-        const int status = read_numbers(source, 4, names, line, "an edge of the box and one coordinate of its origin are expected");
+        const int status =
+            read_numbers(source, 4, names, line, "an edge of the box and one coordinate of its origin are expected");
         if (status) return status;
         memcpy(&edge[3 * k], line, 3 * sizeof *line);
         origin[k] = line[3];
@@ -162,7 +163,8 @@ static int read_box(struct source *source, char *marks, struct bed *bed) {
     const bool edges = n >= 2 && strcmp(mark[0], "abc") == 0, tilted = n >= 3 && strcmp(mark[0], "xy") == 0;
     mark += edges ? 2 : tilted ? 3 : 0;
     n -= edges ? 2 : tilted ? 3 : 0;
-    const bool unmarked = n == 3 && strcmp(mark[0], "xx") == 0 && strcmp(mark[1], "yy") == 0 && strcmp(mark[2], "zz") == 0;
+    const bool unmarked =
+        n == 3 && strcmp(mark[0], "xx") == 0 && strcmp(mark[1], "yy") == 0 && strcmp(mark[2], "zz") == 0;
     if (unmarked) n = 0;
     if (n != 0 && n != 3) return source_fail(source, "BOX BOUNDS needs three boundary marks, such as pp ff ff");
     bool periodic[3] = {false, false, false};

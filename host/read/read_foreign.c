@@ -53,7 +53,8 @@ static const struct {
     {"#!/", "a script"},
     {"import ", "a Python program"},
     {"from ", "a Python program"},
-    {"---\n", "a dump in YAML, as dump yaml of LAMMPS writes it; write a text dump: dump ... custom ... id x y z radius"},
+    {"---\n",
+     "a dump in YAML, as dump yaml of LAMMPS writes it; write a text dump: dump ... custom ... id x y z radius"},
     {"Begin ModelPartData", mdpa},
     {"Begin Properties", mdpa},
     {"Begin Nodes", mdpa},
@@ -111,7 +112,8 @@ static const char *find_kind(const char *text, size_t size) {
     if (written) return written;
     for (;;) {
         while (text < end && isspace((unsigned char)*text)) ++text;
-        const char *next = end - text > 2 && memcmp(text, "//", 2) == 0 ? memchr(text, '\n', (size_t)(end - text)) : NULL;
+        const char *next =
+            end - text > 2 && memcmp(text, "//", 2) == 0 ? memchr(text, '\n', (size_t)(end - text)) : NULL;
         if (!next) break;
         text = next;
     }

@@ -57,7 +57,7 @@ int source_columns(struct source *source, const char *names, struct bed *bed) {
 }
 
 int source_edges(const struct source *source, const char *what, const double edge[9], const double origin[3],
-               const bool periodic[3], struct bed *bed) {
+                 const bool periodic[3], struct bed *bed) {
     double longest = 0;
     for (int k = 0; k < 9; ++k) longest = fmax(longest, fabs(edge[k]));
     for (int k = 0; k < 9; ++k) {

@@ -30,10 +30,10 @@ struct read_options {
     bool no_radius;           /* radii are not read; bed->r is NaN */
     bool series;              /* one of a series of files: a file without spheres is no error */
     const char *const *extra; /* [extras] names of further columns, all of numbers */
-    const char *const *unit;  /* [extras] expected units, such as "K" or "W", UNIT_OF_LENGTH, or NULL for none. Values of
-                               * a column in kW become W. A column whose header names a unit of another kind is refused.
-                               * NULL: no column has one */
-    const bool *some;         /* [extras] blank or nan means a missing value, NaN; NULL: no value may be missing */
+    const char *const *unit; /* [extras] expected units, such as "K" or "W", UNIT_OF_LENGTH, or NULL for none. Values of
+                              * a column in kW become W. A column whose header names a unit of another kind is refused.
+                              * NULL: no column has one */
+    const bool *some;        /* [extras] blank or nan means a missing value, NaN; NULL: no value may be missing */
     size_t extras;
     const struct column_name *name; /* [names] the file must have all of these */
     size_t names;

@@ -76,8 +76,8 @@ static int take_numbers(const struct source *source, const char *comment, const 
     for (; (word = strtok_r(rest, " \t", &rest)); ++count) {
         double number;
         if (!number_read(word, &number) || !isfinite(number))
-            return message_at(STATUS_INPUT, source->lines.name, source->lines.number, "%s: '%.40s' is not a number", key,
-                              word);
+            return message_at(STATUS_INPUT, source->lines.name, source->lines.number, "%s: '%.40s' is not a number",
+                              key, word);
         if (count < n) value[count] = number;
     }
     if (count == n) return STATUS_OK;

@@ -14,9 +14,9 @@
 
 const struct curve_axes curve_kelvins = {{TIMES, "s"}, CURVE_AXIS_KELVINS},
                         curve_celsius = {{TIMES, "s"}, {CURVE_TEMPERATURES, "C"}},
-                        curve_values = {CURVE_AXIS_KELVINS,
-                                        {"e eps epsilon emissivity k lambda conductivity c cp c_p capacity value",
-                                         CURVE_ANY_UNIT}};
+                        curve_values = {
+                            CURVE_AXIS_KELVINS,
+                            {"e eps epsilon emissivity k lambda conductivity c cp c_p capacity value", CURVE_ANY_UNIT}};
 
 /* A table that is being read. */
 struct table {
@@ -81,8 +81,8 @@ static size_t find_axis(const struct header *header, const struct curve_axis *ax
     for (int by_unit = 0; by_unit < 2; ++by_unit) {
         size_t found = n, count = 0;
         for (size_t k = 0; k < n; ++k) {
-            const bool is = by_unit ? is_of_kind(unit_of_column(header, k), axis)
-                                    : is_usual(header->names.at[k], axis->names);
+            const bool is =
+                by_unit ? is_of_kind(unit_of_column(header, k), axis) : is_usual(header->names.at[k], axis->names);
             if (is) found = k, ++count;
         }
         if (count == 1) return found;

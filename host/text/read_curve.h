@@ -19,7 +19,8 @@ struct curve_axis {
 
 /* An axis of temperatures [K]. */
 #define CURVE_TEMPERATURES "T temp temperature temperatures"
-#define CURVE_AXIS_KELVINS {CURVE_TEMPERATURES, "K"}
+#define CURVE_AXIS_KELVINS                                                                                             \
+    { CURVE_TEMPERATURES, "K" }
 
 struct curve_axes {
     struct curve_axis x, y;

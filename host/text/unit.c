@@ -28,14 +28,14 @@ static const struct symbol {
     const char *name;
     struct measure measure;
 } symbols[] = {
-    {"m", {1, 0, {1, 0, 0, 0}}},         {"g", {1, -3, {0, 1, 0, 0}}},       {"s", {1, 0, {0, 0, 1, 0}}},
-    {"sec", {1, 0, {0, 0, 1, 0}}},       {"second", {1, 0, {0, 0, 1, 0}}},   {"seconds", {1, 0, {0, 0, 1, 0}}},
-    {"min", {60, 0, {0, 0, 1, 0}}},      {"minute", {60, 0, {0, 0, 1, 0}}},  {"minutes", {60, 0, {0, 0, 1, 0}}},
-    {"h", {3600, 0, {0, 0, 1, 0}}},      {"hour", {3600, 0, {0, 0, 1, 0}}},  {"hours", {3600, 0, {0, 0, 1, 0}}},
-    {"d", {86400, 0, {0, 0, 1, 0}}},     {"day", {86400, 0, {0, 0, 1, 0}}},  {"days", {86400, 0, {0, 0, 1, 0}}},
-    {"K", {1, 0, {0, 0, 0, 1}}},         {"C", {1, 0, {0, 0, 0, 1}}},        {"degC", {1, 0, {0, 0, 0, 1}}},
-    {"W", {1, 0, {2, 1, -3, 0}}},        {"J", {1, 0, {2, 1, -2, 0}}},       {"N", {1, 0, {1, 1, -2, 0}}},
-    {"L", {1, -3, {3, 0, 0, 0}}},        {"l", {1, -3, {3, 0, 0, 0}}},       {"1", {1, 0, {0, 0, 0, 0}}},
+    {"m", {1, 0, {1, 0, 0, 0}}},     {"g", {1, -3, {0, 1, 0, 0}}},      {"s", {1, 0, {0, 0, 1, 0}}},
+    {"sec", {1, 0, {0, 0, 1, 0}}},   {"second", {1, 0, {0, 0, 1, 0}}},  {"seconds", {1, 0, {0, 0, 1, 0}}},
+    {"min", {60, 0, {0, 0, 1, 0}}},  {"minute", {60, 0, {0, 0, 1, 0}}}, {"minutes", {60, 0, {0, 0, 1, 0}}},
+    {"h", {3600, 0, {0, 0, 1, 0}}},  {"hour", {3600, 0, {0, 0, 1, 0}}}, {"hours", {3600, 0, {0, 0, 1, 0}}},
+    {"d", {86400, 0, {0, 0, 1, 0}}}, {"day", {86400, 0, {0, 0, 1, 0}}}, {"days", {86400, 0, {0, 0, 1, 0}}},
+    {"K", {1, 0, {0, 0, 0, 1}}},     {"C", {1, 0, {0, 0, 0, 1}}},       {"degC", {1, 0, {0, 0, 0, 1}}},
+    {"W", {1, 0, {2, 1, -3, 0}}},    {"J", {1, 0, {2, 1, -2, 0}}},      {"N", {1, 0, {1, 1, -2, 0}}},
+    {"L", {1, -3, {3, 0, 0, 0}}},    {"l", {1, -3, {3, 0, 0, 0}}},      {"1", {1, 0, {0, 0, 0, 0}}},
 };
 
 static const struct {
@@ -46,10 +46,10 @@ static const struct {
 /* Signs of UTF-8, and of Latin-1 behind them, with their plain forms. */
 static const struct {
     const char *sign, *plain;
-} signs[] = {{"\302\267", "*"},    {"\342\213\205", "*"}, {"\302\262", "2"}, {"\302\263", "3"}, {"\302\271", "1"},
+} signs[] = {{"\302\267", "*"},     {"\342\213\205", "*"}, {"\302\262", "2"}, {"\302\263", "3"}, {"\302\271", "1"},
              {"\342\201\273", "-"}, {"\342\210\222", "-"}, {"\302\265", "u"}, {"\316\274", "u"}, {"\302\260", ""},
-             {"\302\272", ""},     {"\342\204\203", "C"}, {"\267", "*"},     {"\262", "2"},     {"\263", "3"},
-             {"\271", "1"},        {"\265", "u"},         {"\260", ""},      {"\272", ""}};
+             {"\302\272", ""},      {"\342\204\203", "C"}, {"\267", "*"},     {"\262", "2"},     {"\263", "3"},
+             {"\271", "1"},         {"\265", "u"},         {"\260", ""},      {"\272", ""}};
 
 /* Copies a name with plain signs. False: it is too long. */
 static bool make_plain(const char *name, char plain[NAME_MAX_LENGTH]) {
@@ -155,8 +155,10 @@ bool unit_behind(const char *name, size_t *bare, const char **unit, size_t *leng
     size_t open = end;
     for (int depth = 1; depth > 0;) {
         if (open-- == 0) return false;
-        if (strchr("])", name[open])) depth += open < end - 1;
-        else if (strchr("[(", name[open])) --depth;
+        if (strchr("])", name[open]))
+            depth += open < end - 1;
+        else if (strchr("[(", name[open]))
+            --depth;
         if (open == end - 1 && !strchr("])", name[open])) return false;
     }
     *unit = name + open + 1;
@@ -169,7 +171,7 @@ bool unit_behind(const char *name, size_t *bare, const char **unit, size_t *leng
 bool unit_is(const char *name, const char *unit) {
     static const struct {
         const char *name, *unit;
-    } names[] = {{"C", "C"},      {"degC", "C"},    {"deg C", "C"}, {"Celsius", "C"}, {"celsius", "C"},
+    } names[] = {{"C", "C"},      {"degC", "C"},   {"deg C", "C"}, {"Celsius", "C"}, {"celsius", "C"},
                  {"Kelvin", "K"}, {"kelvin", "K"}, {"K", "K"},     {"kelvins", "K"}};
     char plain[NAME_MAX_LENGTH];
     if (!make_plain(name, plain)) return false;

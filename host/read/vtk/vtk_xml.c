@@ -241,7 +241,8 @@ static int take_piece(struct xml *xml, const struct tag *tag) {
     }
     if (n > UINT32_MAX) return xml_fail(xml, "too many points");
     xml->all += n;
-    if (xml->all / (xml->packed ? PACKED_MOST : 1) > most) return xml_fail(xml, "pieces have more points than the file");
+    if (xml->all / (xml->packed ? PACKED_MOST : 1) > most)
+        return xml_fail(xml, "pieces have more points than the file");
     xml->grid->n = n;
     return STATUS_OK;
 }
