@@ -124,8 +124,8 @@ void columns_free(struct columns *columns) {
 }
 
 /* Begins to look for columns: none has been found. */
-static int begin(struct columns *columns, const struct fields *names, char *const *units,
-                 const struct read_options *options) {
+static int columns_begin(struct columns *columns, const struct fields *names, char *const *units,
+                         const struct read_options *options) {
     columns->width = names->n;
     columns->twins = 0;
     if (!memory_room(&columns->extra, options->extras, sizeof *columns->extra) ||
@@ -248,7 +248,7 @@ static int find_factors(struct columns *columns, const struct lines *lines, cons
 int columns_find(struct columns *columns, const struct lines *lines, const struct fields *names, char *const *units,
                  const struct read_options *options, struct bed *bed) {
     static const char *const id[] = {"id", NULL};
-    int which, status = begin(columns, names, units, options);
+    int which, status = columns_begin(columns, names, units, options);
     if (!status) status = find_given(columns, lines, names, options);
     for (int axis = 0; axis < 3 && !status; ++axis) {
         size_t *column = &columns->coordinate[axis];
@@ -323,6 +323,9 @@ static int add_extras(struct columns *columns, const struct lines *lines, const 
         const int status = columns_number(columns, lines, options->extra[k], text, value);
         if (status) return status;
         *value *= columns->factor[k];
+        if (isfinite(*value)) continue;
+        return message_at(STATUS_INPUT, lines->name, lines->number, "%s is not finite in the expected unit",
+                          options->extra[k]);
     }
     return STATUS_OK;
 }

@@ -32,7 +32,7 @@ static int take_comment(struct header *header, bool *of_yade, const struct lines
 }
 
 /* Finds the columns' names of a table without a header: numbers from 1, if --columns says which is which. */
-static int number_columns(struct source *source, struct header *header, char separator) {
+static int number_table(struct source *source, struct header *header, char separator) {
     struct lines *lines = &source->lines;
     if (source->options.names == 0)
         return source_fail(source, "numbers without a header that names their columns, such as x,y,z,r; "
@@ -56,7 +56,7 @@ static int find_header(struct source *source, struct header *header, bool *of_ya
         if (*lines->text == '#' || lines_blank(lines)) continue;
         *separator = *of_yade ? ' ' : header_separator(lines->text);
         if (!header_is_row(lines)) return header_take(header, lines, lines->text, NULL);
-        if (header->names.n == 0) status = number_columns(source, header, *separator);
+        if (header->names.n == 0) status = number_table(source, header, *separator);
         if (!status) lines_hold(lines);
         return status;
     }

@@ -96,8 +96,8 @@ static int add_point(const struct vtk_file *file, const struct vtk_grid *grid, u
     }
     if (!status) status = columns_add_sphere(&file->source->lines, options, &sphere, bed);
     for (size_t k = 0; k < bed->extras && !status; ++k) {
-        const double value = wanted[EXTRAS + k].values[i];
-        bed->extra[(bed->n - 1) * bed->extras + k] = value * file->factor[k];
+        const double value = wanted[EXTRAS + k].values[i] * file->factor[k];
+        bed->extra[(bed->n - 1) * bed->extras + k] = value;
         if (isnan(value) && options->some && options->some[k]) continue; /* missing */
         status = vtk_finite(grid, wanted[EXTRAS + k].name, i, value);
     }

@@ -23,7 +23,8 @@ struct table {
     struct lines lines;
     struct header header;
     struct fields fields;
-    char header_separator, separator; /* 0: there is no header, no row so far */
+    char header_separator, separator; /* of the present row; 0: there is no header, no row so far */
+    bool comment;                     /* the header is a comment */
     char mark;                        /* decimal point or comma, the first one in the file; 0: none so far */
     size_t width;
     size_t at[2];                /* columns of x and y; without x only at[1] has a meaning */
@@ -114,12 +115,14 @@ static int wrong_width(const struct table *table, size_t n, size_t wanted) {
  * between blanks may be a title. They are names only if all are known. x NULL: only y is wanted. */
 static int find_axes(struct table *table, const struct curve_axis *x, const struct curve_axis *y) {
     const size_t n = table->width, wanted = x ? 2 : 1;
+    const bool sure = table->header_separator == table->separator && table->separator != ' ';
     bool named = table->header_separator && table->header.names.n == n;
+    if (sure && !named && !table->comment) return wrong_width(table, n, table->header.names.n);
     size_t of_y = named ? find_axis(&table->header, y) : n, of_x = named && x ? find_axis(&table->header, x) : n;
     if (of_x == of_y) of_x = of_y = n;
     const bool found = of_y < n && (!x || of_x < n);
     if (n != wanted && !found) return wrong_width(table, n, wanted);
-    named = named && (found || n == 1 || (table->header_separator == table->separator && table->separator != ' '));
+    named = named && (found || n == 1 || sure);
     table->at[X] = 0, table->at[Y] = wanted - 1;
     if (!named) return STATUS_OK;
     if (of_x < n) table->at[X] = of_x, table->at[Y] = of_y < n ? of_y : 1 - of_x;
@@ -133,12 +136,14 @@ static int take_names(struct table *table, const char *text, const struct curve_
     const bool comment = text != table->lines.text;
     struct header header = {0};
     const int status = header_take(&header, &table->lines, text, NULL);
+    while (header.names.n > 1 && !*header.names.at[header.names.n - 1]) --header.names.n;
     const size_t n = header.names.n;
     if (status || (comment && (!x || find_axis(&header, x) == n) && find_axis(&header, y) == n)) {
         header_free(&header);
         return status;
     }
     table->header_separator = header_separator(text);
+    table->comment = comment;
     header_free(&table->header);
     table->header = header;
     return STATUS_OK;
@@ -159,6 +164,9 @@ static int curve_point(struct table *table, bool with_x, struct curve *curve) {
     if (!(value[Y] >= table->low && value[Y] <= table->high))
         return message_at(STATUS_INPUT, table->lines.name, table->lines.number,
                           "the %s is %g; it must be within %g and %g", table->what, value[Y], table->low, table->high);
+    if (!isfinite(value[X]))
+        return message_at(STATUS_INPUT, table->lines.name, table->lines.number, "%s is too large",
+                          table->fields.at[table->at[X]]);
     if (with_x && curve->n > 0 && !(value[X] > curve->x[curve->n - 1]))
         return message_at(STATUS_INPUT, table->lines.name, table->lines.number, "%s is not above the number before",
                           table->fields.at[table->at[X]]);
@@ -181,10 +189,10 @@ static int take_table_line(struct table *table, bool *header_may_follow, const s
         return take_names(table, lines->text, x, y);
     }
     *header_may_follow = false;
-    const bool first = table->width == 0;
-    if (first) table->separator = header_separator(lines->text);
+    table->separator = header_separator(lines->text);
     int status = header_split(&table->fields, lines, lines->text, table->separator);
-    if (!status && first) {
+    while (table->fields.n > 1 && !*table->fields.at[table->fields.n - 1]) --table->fields.n; /* a separator ends it */
+    if (!status && table->width == 0) {
         table->width = table->fields.n;
         status = find_axes(table, x, y);
     }
@@ -196,7 +204,6 @@ static int table_read(const char *path, struct table *table, const struct curve_
     *curve = (struct curve){0};
     table->factor[X] = table->factor[Y] = 1;
     int status = lines_open(&table->lines, path);
-    if (status) return status;
     for (bool more = true, header_may_follow = true; !status;) {
         status = lines_next(&table->lines, &more);
         if (status || !more) break;

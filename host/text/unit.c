@@ -68,7 +68,7 @@ static bool make_plain(const char *name, char plain[NAME_MAX_LENGTH]) {
 }
 
 /* Multiplies a measure by a power of another one. */
-static void multiply(struct measure *m, const struct measure *by, int power) {
+static void times_power(struct measure *m, const struct measure *by, int power) {
     m->factor *= pow(by->factor, power);
     m->ten += by->ten * power;
     for (int k = 0; k < BASES; ++k) m->power[k] += by->power[k] * power;
@@ -113,12 +113,12 @@ static bool take_unit_power(const char **text, struct reading how, int sign, str
     *text += length;
     for (size_t cut = 1; how.apart && cut < length; ++cut) {
         if (!find_symbol(name, cut, &first) || !find_symbol(name + cut, length - cut, &unit)) continue;
-        multiply(m, &first, sign);
-        multiply(m, &unit, sign * take_power(text));
+        times_power(m, &first, sign);
+        times_power(m, &unit, sign * take_power(text));
         return true;
     }
     if (length == 0 || !find_symbol(name, length, &unit)) return false;
-    multiply(m, &unit, sign * take_power(text));
+    times_power(m, &unit, sign * take_power(text));
     return true;
 }
 

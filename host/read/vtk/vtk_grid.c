@@ -74,6 +74,7 @@ int vtk_give(struct vtk_grid *grid, const char *name, double *values) {
 }
 
 int vtk_end_piece(struct vtk_grid *grid) {
+    if (!grid->take) return STATUS_OK;
     const int status = grid->take(grid, grid->context);
     for (size_t k = 0; k < grid->count; ++k) free(grid->wanted[k].values), grid->wanted[k].values = NULL;
     free(grid->points);

@@ -30,7 +30,8 @@ struct vtk_grid {
     double *points; /* [3 n], which the caller frees */
     struct vtk_wanted *wanted;
     size_t count;
-    /* Takes the points of a piece, which are forgotten behind it. Status 0, or another one that ends the reading. */
+    /* Takes the points of a piece, which are forgotten behind it. Status 0, or another one that ends the reading. NULL:
+     * the points of the last piece stay. */
     int (*take)(struct vtk_grid *grid, void *context);
     /* Reads a piece that is in another file. NULL: there must be none. */
     int (*open)(const char *source, void *context);
