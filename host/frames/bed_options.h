@@ -69,11 +69,12 @@
 
 /* A paragraph of --help about the files. */
 #define FILES_MORE                                                                                                     \
-    "FILE may be a dump or data file of LAMMPS or LIGGGHTS, CSV with a header, extended XYZ, VTK (.vtp,\n"             \
-    ".vtk), or text of YADE or MercuryDPM. It may be compressed by gzip. - is standard input. Several files\n"         \
-    "are one series. Files of a pattern 'bed.*.dump' are read in the order of their numbers. A * in OUT\n"             \
-    "stands for the number of the frame, counted through all files from 0. Spheres are named by the ids of\n"          \
-    "the file, or by positions from 0 if the file has no ids. docs/files.md has the details.\n"
+    "FILE may be a dump or data file of LAMMPS or LIGGGHTS, CSV with a header, extended XYZ, VTK (.vtk,\n"             \
+    ".vtp, .vtu, .pvtp, .pvtu), or text of YADE or MercuryDPM. It may be compressed by gzip. - is standard\n"          \
+    "input. Several files are one series. Files of a pattern 'bed.*.dump' are read in the order of their\n"            \
+    "numbers. A * in OUT stands for the number of the frame, counted through all files from 0. Spheres are\n"          \
+    "named by the ids of the file, or by positions from 0 if the file has no ids. A column whose header has a\n"       \
+    "unit, P [kW] or k [W/(m K)], is converted. docs/files.md has the details.\n"
 
 enum { BED_COLUMNS_MAX = 8 };
 
