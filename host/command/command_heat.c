@@ -116,11 +116,11 @@ static int heat_help(void) {
          "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
          "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
          "the temperature of a wall (zmin=@TABLE) or of the surroundings. The .csv then has the time in its first\n"
-         "column. A series of .vtp has a .pvd for ParaView.\n"
+         "column. A series of .vtp has a .pvd for ParaView.\n");
+    puts("@TABLE: A header has names and units, `t [min],T [C]` or `k [W/(m K)],T [K]`, and tells which column is\n"
+         "which. Beyond the ends of a table its first or last value is taken, with a warning.\n"
          "\n"
-         "@TABLE: A header has names and units, `t [min],T [C]` or `k [W/(m K)],T [K]`, and tells which column is\n"
-         "which. Beyond the ends of a table its first or last value is taken, with a warning.\n");
-    puts("--solid-conductivity: Spheres conduct, and T_K is the mean over the surface. A power comes from a source\n"
+         "--solid-conductivity: Spheres conduct, and T_K is the mean over the surface. A power comes from a source\n"
          "that is spread evenly inside. Outputs have the least and the largest temperature of the surface, the\n"
          "temperature of the centre, and their estimated errors: T_min_K, T_max_K, T_surface_error_K,\n"
          "T_centre_K, T_centre_error_K. The unit of length must be known.\n"

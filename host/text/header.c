@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "text/read_number.h"
 #include "text/unit.h"
 
 #define WITHIN '\037' /* stands for a blank within brackets while names are split at blanks */
@@ -111,8 +112,9 @@ int header_number(struct header *header, size_t n) {
 }
 
 bool header_is_row(const struct lines *lines) {
+    char word[64];
+    double value;
     const char *text = lines->text + strspn(lines->text, " \t\"");
-    char *end;
-    strtod(text, &end);
-    return end != text;
+    snprintf(word, sizeof word, "%.*s", (int)strcspn(text, " \t\r,;\""), text);
+    return number_read(word, &value);
 }

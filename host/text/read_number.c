@@ -28,7 +28,8 @@ static bool take_digits(const char **text, uint64_t *mantissa, int *digits) {
 
 /* Reads an exponent such as `e-5`, or `D-05` as Fortran writes it. False: it is not valid, or above 99. */
 static bool take_exponent(const char **text, int *exponent) {
-    if (!strchr("eEdD", **text) || !**text) return true;
+    const char mark = **text;
+    if (mark != 'e' && mark != 'E' && mark != 'd' && mark != 'D') return true;
     const char sign = *++*text;
     uint64_t size = 0;
     int digits = 0;
