@@ -5,18 +5,15 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/statvfs.h>
 
 #include "cli/message.h"
 
-bool memory_room(void *array, size_t n, size_t size) {
-    void *old;
-    memcpy(&old, array, sizeof old); /* a pointer to any type */
-    void *moved = realloc(old, (n + 1) * size);
-    if (moved) memcpy(array, &moved, sizeof moved);
-    return moved != NULL;
+void *memory_resized(void *array, size_t bytes, bool *good) {
+    void *moved = realloc(array, bytes);
+    if (!moved) *good = false;
+    return moved ? moved : array;
 }
 
 /* Reads the number of a line `KEY: N kB` in a file of Linux's /proc [bytes]. Without such a line: `otherwise`. */

@@ -6,9 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Makes room in an array, *(T **)array, for n + 1 elements of `size` bytes. False: there is no memory, and the array is
- * as it was. */
-bool memory_room(void *array, size_t n, size_t size);
+/* Gives an array another size. Returns the array, which is as it was if there is no memory; *good is false then. */
+void *memory_resized(void *array, size_t bytes, bool *good);
 
 /* Bytes that this process may still allocate: those that the system has left, within the limit on address space.
  * INFINITY: neither is known. */

@@ -10,7 +10,9 @@
 
 /* Keeps a copy of a text. */
 static int keep_text(struct column_options *options, const char *text, char **copy) {
-    *copy = memory_room(&options->text, options->texts, sizeof *options->text) ? strdup(text) : NULL;
+    bool good = true;
+    options->text = memory_resized(options->text, (options->texts + 1) * sizeof *options->text, &good);
+    *copy = good ? strdup(text) : NULL;
     if (!*copy) return message_memory();
     options->text[options->texts++] = *copy;
     return STATUS_OK;
@@ -33,7 +35,9 @@ static int take_name(struct column_options *options, char *item) {
         if (strcasecmp(options->name[k].known, item) == 0 || (is_radius(options->name[k].known) && is_radius(item)))
             return message(STATUS_USAGE, "--columns: %.40s and %.40s are one thing, and have two columns",
                            options->name[k].known, item);
-    if (!memory_room(&options->name, options->names, sizeof *options->name)) return message_memory();
+    bool good = true;
+    options->name = memory_resized(options->name, (options->names + 1) * sizeof *options->name, &good);
+    if (!good) return message_memory();
     options->name[options->names++] = (struct column_name){item, name};
     return STATUS_OK;
 }
@@ -65,7 +69,9 @@ static int take_rule(struct column_options *options, const char *option, const c
     char *value = strchr(column, '=');
     if (!value || value == column) return message(STATUS_USAGE, "%s: '%.60s' is not COLUMN=VALUE", option, text);
     *value++ = 0;
-    if (!memory_room(&options->rule, options->rules, sizeof *options->rule)) return message_memory();
+    bool good = true;
+    options->rule = memory_resized(options->rule, (options->rules + 1) * sizeof *options->rule, &good);
+    if (!good) return message_memory();
     options->rule[options->rules++] = (struct row_rule){column, value, skip};
     return STATUS_OK;
 }

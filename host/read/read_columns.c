@@ -44,7 +44,9 @@ static int find(struct columns *columns, size_t *column, const struct fields *na
             *column = k;
             continue;
         }
-        if (!memory_room(&columns->twin, columns->twins, sizeof *columns->twin)) return message_memory();
+        bool good = true;
+        columns->twin = memory_resized(columns->twin, (columns->twins + 1) * sizeof *columns->twin, &good);
+        if (!good) return message_memory();
         columns->twin[columns->twins++] = (struct twin){*column, k, wanted};
     }
     return STATUS_OK;
@@ -128,12 +130,13 @@ static int columns_begin(struct columns *columns, const struct fields *names, ch
                          const struct read_options *options) {
     columns->width = names->n;
     columns->twins = 0;
-    if (!memory_room(&columns->extra, options->extras, sizeof *columns->extra) ||
-        !memory_room(&columns->factor, options->extras, sizeof *columns->factor) ||
-        !memory_room(&columns->named, options->names, sizeof *columns->named) ||
-        !memory_room(&columns->ruled, options->rules, sizeof *columns->ruled) ||
-        !memory_room(&columns->unit, names->n, sizeof *columns->unit))
-        return message_memory();
+    bool good = true;
+    columns->extra = memory_resized(columns->extra, (options->extras + 1) * sizeof *columns->extra, &good);
+    columns->factor = memory_resized(columns->factor, (options->extras + 1) * sizeof *columns->factor, &good);
+    columns->named = memory_resized(columns->named, (options->names + 1) * sizeof *columns->named, &good);
+    columns->ruled = memory_resized(columns->ruled, (options->rules + 1) * sizeof *columns->ruled, &good);
+    columns->unit = memory_resized(columns->unit, (names->n + 1) * sizeof *columns->unit, &good);
+    if (!good) return message_memory();
     memset(columns->unit, 0, names->n * sizeof *columns->unit);
     for (size_t c = 0; units && c < names->n; ++c) snprintf(columns->unit[c], UNIT_LENGTH, "%s", units[c]);
     return STATUS_OK;

@@ -163,7 +163,7 @@ static bool misspells_properties(const char *comment) {
 static int read_xyz(struct source *source, struct bed *bed) {
     static const char lammps[] = "Atoms. Timestep: ";
     bool more;
-    int64_t atoms;
+    int64_t atoms = 0;
     char word[32], properties[4000];
     int status;
     while ((status = lines_next(&source->lines, &more)) == STATUS_OK && lines_blank(&source->lines)) continue;
