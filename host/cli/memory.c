@@ -12,8 +12,9 @@
 
 void *memory_resized(void *array, size_t bytes, bool *good) {
     void *moved = realloc(array, bytes);
-    if (!moved) *good = false;
-    return moved ? moved : array;
+    if (moved) return moved;
+    *good = false;
+    return array;
 }
 
 /* Reads the number of a line `KEY: N kB` in a file of Linux's /proc [bytes]. Without such a line: `otherwise`. */

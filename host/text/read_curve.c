@@ -63,7 +63,8 @@ static bool is_usual(const char *name, const char *usual) {
 static const char *unit_of_column(const struct header *header, size_t k) {
     const char *name = header->names.at[k], *behind = strrchr(name, '_');
     double factor;
-    if (*header->unit[k] || !behind++) return header->unit[k];
+    if (*header->unit[k] || !behind) return header->unit[k];
+    ++behind;
     const bool time = is_usual(name, TIMES) && unit_factor(behind, "s", &factor);
     return time || (is_usual(name, CURVE_TEMPERATURES) && (unit_is(behind, "K") || unit_is(behind, "C"))) ? behind : "";
 }
