@@ -161,8 +161,8 @@ static int read_box(struct source *source, char *marks, struct bed *bed) {
     char **mark = source->fields.at;
     size_t n = source->fields.n;
     const bool edges = n >= 2 && strcmp(mark[0], "abc") == 0, tilted = n >= 3 && strcmp(mark[0], "xy") == 0;
-    mark += edges ? 2 : tilted ? 3 : 0;
-    n -= edges ? 2 : tilted ? 3 : 0;
+    const size_t before = edges ? 2 : tilted ? 3 : 0;
+    if (before > 0) mark += before, n -= before;
     const bool unmarked =
         n == 3 && strcmp(mark[0], "xx") == 0 && strcmp(mark[1], "yy") == 0 && strcmp(mark[2], "zz") == 0;
     if (unmarked) n = 0;
