@@ -125,6 +125,8 @@ void quantity_follow(const struct quantity *quantity, const struct bed *bed, con
     }
 }
 
+#define EXCESS_LEAST 1e-3 /* [K] temperatures are found with rounding */
+
 void quantity_excess(const struct quantity *quantity, const struct bed *bed, const double *temperature,
                      struct table_excess *excess) {
     struct table_excess now = {0};
@@ -132,7 +134,7 @@ void quantity_excess(const struct quantity *quantity, const struct bed *bed, con
         const struct curve *curve = curve_of_sphere(quantity, bed, i);
         if (!curve || isnan(temperature[i])) continue;
         const double far = fmax(curve->x[0] - temperature[i], temperature[i] - curve->x[curve->n - 1]);
-        now.spheres += far > 0;
+        now.spheres += far > EXCESS_LEAST;
         now.kelvins = fmax(now.kelvins, far);
     }
     if (now.spheres > excess->spheres) excess->spheres = now.spheres;

@@ -37,6 +37,7 @@ enum kind {
 #define COLD          150.0 /* [K] a bed is hardly colder everywhere */
 #define CLOSED        1e-9  /* closed rows of walls add up to 1 within this */
 #define APART         0.1   /* sums of rows of walls may differ from 1 so much before closing; few directions: 0.01s */
+#define TIME_LEAST    1e-9  /* relative: times in hours are rounded */
 #define CHANGE_LARGE  1.5   /* change by closing over the error of a row; among thousands of rows chance makes 1 */
 /* Bounds with a margin of 2 beyond all solids, from aerogel to uranium. */
 #define CAPACITY_LOW  30.0 /* [J/(kg K)] */
@@ -251,10 +252,10 @@ void warn_table(struct warned *warned, const char *option, const struct table_ex
 void warn_times(struct warned *warned, const char *what, const struct curve *curve, double until) {
     if (curve->n == 0) return;
     const double first = curve->x[0], last = curve->x[curve->n - 1];
-    if (first > 0)
+    if (first > TIME_LEAST * until)
         message_at(STATUS_OK, warned->file, 0,
                    "warning: the table of %s begins at %g s; before, its first temperature is taken", what, first);
-    if (last < until)
+    if (last < (1 - TIME_LEAST) * until)
         message_at(STATUS_OK, warned->file, 0,
                    "warning: the table of %s ends at %g s; from there to %g s its last temperature is taken", what,
                    last, until);
