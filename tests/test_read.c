@@ -720,6 +720,11 @@ TEST(pieces_of_vtk_files) {
     const char *itself = formatted("<VTKFile type='PPolyData'><Piece Source='%s'/></VTKFile>", strrchr(path, '/') + 1);
     expect_refusal(itself, strlen(itself), &(struct read_options){0}, 1,
                    "a piece of a VTK file has no points, but pieces");
+    const char ghosts[] = VTP(ARRAY("radius", "1 .5") "<DataArray type='UInt8' Name='vtkGhostType' format='ascii'>1 "
+                                                      "0</DataArray>");
+    ck_assert_int_eq(try(ghosts), 0);
+    ck_assert_uint_eq(bed.n, 1);
+    expect_sphere(0, 4, 5, 6, .5, 0);
     const char missing[] = "<VTKFile type='PPolyData'><Piece Source='none.vtp'/></VTKFile>";
     ck_assert_int_eq(try(missing), STATUS_FILE);
     assert_has(said, "none.vtp: No such file");

@@ -15,13 +15,13 @@
 #include "text/read_number.h"
 #include "text/unit.h"
 
-enum { RADIUS, DIAMETER, ID, EXTRAS };
+enum { RADIUS, DIAMETER, ID, GHOST, EXTRAS };
 
 /* A VTK file that is read into a bed. */
 struct vtk_file {
     struct source *source;
     struct bed *bed;
-    struct vtk_wanted *wanted; /* radii, diameters, ids, further columns, columns of rules */
+    struct vtk_wanted *wanted; /* radii, diameters, ids, ghosts, further columns, columns of rules */
     size_t count;
     double *factor; /* [extras] from the units of further columns to the expected ones */
     bool begun;     /* a piece with points has been read */
@@ -65,9 +65,10 @@ static int vtk_finite(const struct vtk_grid *grid, const char *what, uint64_t i,
     return vtk_fail(grid, NULL, "%s of point %llu is not finite", what, (unsigned long long)i);
 }
 
-/* Whether the rules allow point i. */
+/* Whether the rules allow point i. A ghost is a point of another piece, or hidden. */
 static bool point_allowed(const struct vtk_file *file, uint64_t i) {
     const struct read_options *options = &file->source->options;
+    if (file->wanted[GHOST].values && file->wanted[GHOST].values[i] != 0) return false;
     for (size_t k = 0; k < options->rules; ++k) {
         double value;
         const bool number = number_read(options->rule[k].value, &value);
@@ -175,8 +176,9 @@ static void unit_of(const struct vtk_wanted *wanted, char unit[UNIT_LENGTH]) {
 /* Says which arrays are radii, diameters and ids: those that --columns names, or else those of usual names. */
 static int want_usual(struct vtk_file *file) {
     static const char *const radius[] = {"radius", "radii", "r", NULL}, *const diameter[] = {"diameter", "d", NULL},
-                             *const id[] = {"id", NULL}, *const position[] = {"x", "y", "z", NULL};
-    const char *const *const names[] = {radius, diameter, id};
+                             *const id[] = {"id", NULL}, *const ghost[] = {"vtkGhostType", NULL},
+                             *const position[] = {"x", "y", "z", NULL};
+    const char *const *const names[] = {radius, diameter, id, ghost};
     const struct read_options *options = &file->source->options;
     const struct column_name *given;
     struct vtk_wanted *wanted = file->wanted;
@@ -189,7 +191,7 @@ static int want_usual(struct vtk_file *file) {
         for (const char *const *name = names[k]; *name; ++name)
             if ((given = read_options_name(options, *name, true))) wanted[k].name = given->name;
         if (!wanted[k].name) wanted[k].names = names[k];
-        if (k == ID) continue;
+        if (k > DIAMETER) continue;
         unit_of(&wanted[k], unit);
         if (*unit) snprintf(file->bed->units, sizeof file->bed->units, "%.15s", unit);
     }
