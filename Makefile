@@ -79,7 +79,7 @@ COUNTED := bench/bench_instructions.c # linked with a library that counts its in
 BENCHES := $(filter-out $(PEERS) $(COUNTED),$(call sources,bench/bench_*.c))
 
 # libfibrad_files.so, by which Python reads files as the program does: its own objects, since these have names of the program
-FILES = host/python/file_arrays.c host/bed/bed.c host/bed/units.c $(filter host/cli/interrupt.c host/cli/message.c host/cli/output.c \
+FILES = host/python/file_arrays.c host/bed/bed.c host/bed/units.c $(filter host/cli/interrupt.c host/cli/memory.c host/cli/message.c host/cli/output.c \
     host/mesh/%.c host/text/%.c host/read/%.c,$(filter-out host/read/read_rows.c host/text/read_curve.c host/text/report.c,$(HOST)))
 
 # ---- objects --------------------------------------------------------------------------------------------------------
@@ -330,7 +330,7 @@ SANITIZED = $(MAKE) -s --no-print-directory BUILD=$(BUILD)/sanitized ISAS="$(SAN
             CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE) -fno-sanitize-recover=undefined"
 
 ## sanitized: tests of memory, protocols and readers under the address and undefined behaviour sanitizers
-OF_MEMORY = bed_make beyond body_rows flow heat_arguments matrix matrix_calls part plot protocol protocol_heat read \
+OF_MEMORY = bed_make beyond body_rows curve flow heat_arguments matrix matrix_calls part plot protocol protocol_heat read \
             read_furnace row_parts scene status work write
 sanitized:
 	+@LSAN_OPTIONS=suppressions=tests/leaks.txt:print_suppressions=0 CK_FORK=no \

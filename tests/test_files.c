@@ -189,6 +189,120 @@ TEST(units_of_temperature_columns) {
     ck_assert_double_eq_tol(power_of(other, "0,", ""), power_of(out, "0,", ""), 1e-9);
 }
 
+/* Columns of other units of the right kind, and the same values in the expected ones, give the same bytes. */
+TEST(units_of_columns_of_properties) {
+    static const char *const bed[] = {"x [mm],y [mm],z [mm],R [mm],k [W/(m K)],c [J/(kg K)],rho [kg/m3],P "
+                                      "[W]\n0,0,0,10,30,800,2500,50\n40,0,0,12,20,900,2600,90\n",
+                                      "x [mm],y [mm],z [mm],R [mm],k [W/cm/K],c [kJ/kgK],rho [g/cm3],P "
+                                      "[kW]\n0,0,0,10,.3,.8,2.5,.05\n40,0,0,12,.2,.9,2.6,.09\n"};
+    char *steady = NULL, *timed = NULL;
+    for (int k = 0; k < 2; ++k) {
+        const char *file = write_file("bed.csv", bed[k]), *out = in_folder("q.csv");
+        SUCCEED("heat", file, "--radius", "R", "--emissivity", ".8", "--solid-conductivity", "k", "--power", "P",
+                "--ambient", "300", "--directions", "21", "--patches", "24", "-o", out);
+        read_same(out, &steady);
+        SUCCEED("heat", file, "--radius", "R", "--emissivity", ".8", "--temperature", "900", "--power", "P",
+                "--heat-capacity", "c", "--density", "rho", "--until", "60", "--ambient", "300", "--directions", "21",
+                "--patches", "24", "--model", "patches", "-o", out);
+        read_same(out, &timed);
+    }
+    const char *wrong = write_file("bed.csv", "x,y,z,r,k [W]\n0,0,0,1,3\n");
+    FAIL_WITH(3, "heat", wrong, "--length-unit", "m", "--emissivity", ".8", "--temperature", "900", "--ambient", "300",
+              "--solid-conductivity", "k");
+    expect_message(wrong, ":1: the column k is in [W], but is taken as [W/(m K)]");
+}
+
+#define SOLID "--length-unit", "m", "--temperature", "T", "--ambient", "300", "--directions", "21", "--patches", "24"
+
+/* The header of a table says which column is which. Beyond the ends there is a warning. */
+TEST(names_and_ends_of_tables) {
+    const char *bed = write_file("bed.csv", "x,y,z,r,T\n0,0,0,.01,1200\n.03,0,0,.01,600\n.06,0,0,.01,250\n");
+    const char *plain = write_file("Tk.csv", "T,k\n300,2\n1100,4\n"),
+               *turned = write_file("kT.csv", "k [mW/(mm K)],T [K]\n2,300\n4,1100\n");
+    const char *const tables[] = {formatted("@%s", plain), formatted("@%s", turned)}, *out = in_folder("q.csv");
+    char *first = NULL;
+    for (int k = 0; k < 2; ++k) {
+        SUCCEED("heat", bed, "--emissivity", ".8", "--solid-conductivity", tables[k], SOLID, "-o", out);
+        read_same(out, &first);
+        expect_message(bed,
+                       "warning: --solid-conductivity: 2 spheres have temperatures beyond the table, by up to 100 K");
+        SUCCEED("exchange", bed, "--emissivity", ".8", "--solid-conductivity", tables[k], "--temperature", "T",
+                "--length-unit", "m", "--directions", "21");
+        expect_message(bed,
+                       "warning: --solid-conductivity: 2 spheres have temperatures beyond the table, by up to 100 K");
+    }
+    const char *law = formatted("@%s", write_file("e.csv", "T [C],e\n0,.5\n900,.7\n"));
+    SUCCEED("heat", bed, "--emissivity", law, SOLID, "--until", "1", "--heat-capacity", "800", "--density", "2500");
+    expect_message(bed, "warning: --emissivity: 2 spheres have temperatures beyond the table, by up to ");
+    const char *within = formatted("@%s", write_file("e.csv", "T [K],e\n200,.5\n1200,.7\n"));
+    SUCCEED("heat", bed, "--emissivity", within, SOLID);
+    ck_assert_str_eq(said, "");
+}
+
+/* Tables of time may be in minutes, and in the unit of --temperature-unit alone. */
+TEST(units_and_ends_of_tables_of_time) {
+    const char *bed = write_file("bed.csv", "x,y,z,r\n0,0,0,.01\n.03,0,0,.01\n"), *out = in_folder("q.csv");
+    static const char *const rooms[] = {"0,20\n60,500\n", "t [min],T [C]\n0,20\n1,500\n",
+                                        "T_C;t [h]\n20;0\n500;0,0166666666666666666\n"};
+#define ROOM                                                                                                           \
+    "heat", bed, "--length-unit", "m", "--emissivity", ".8", "--temperature", "600", "--heat-capacity", "800",         \
+        "--density", "2500", "--directions", "21", "--wall", "zmin=-1", "--wall-temperature"
+    char *first = NULL;
+    for (int k = 0; k < 3; ++k) {
+        const char *room = formatted("@%s", write_file("room.csv", rooms[k]));
+        SUCCEED(ROOM, "zmin=25", "--temperature-unit", "C", "--until", "60", "--ambient", room, "-o", out);
+        read_same(out, &first);
+        ck_assert_str_eq(said, "");
+        FAIL_WITH(k > 0 ? 3 : 0, ROOM, "zmin=25", "--until", "30", "--ambient", room);
+        if (k > 0) expect_message(in_folder("room.csv"), "in [C], but is taken as [K]; see --temperature-unit");
+    }
+    const char *lid = formatted("zmin=@%s", write_file("lid.csv", "5 300\n10 400\n"));
+    SUCCEED(ROOM, lid, "--until", "30", "--ambient", "300");
+    assert_has(said, "warning: the table of zmin begins at 5 s; before, its first temperature is taken");
+    assert_has(said, "warning: the table of zmin ends at 10 s; from there to 30 s its last temperature is taken");
+}
+
+/* ---- columns and rows ------------------------------------------------------------------------------------------- */
+
+/* A table of another code is the same bed. */
+TEST(columns_and_rows_of_another_code) {
+    const char *same = write_file("same.csv", "id,x,y,z,r,T\n3,0,0,0,.01,600\n9,.03,0,0,.01,300\n"),
+               *out = in_folder("q.csv");
+    const char *other = write_file(
+        "other.csv", "ID,p_x [m],p_y [m],p_z [m],diameters [m],Temp [K],mat,note\n9,.03,0,0,.02,300,steel,7\n"
+                     "3,.5,0,0,.02,300,glass,7\n3,0,0,0,.02,600,steel,7\n3,1,0,0,.02,600,steel,8\n");
+#define NAMED "x=p_x,y=p_y [m],z=p_z,d=diameters,T=Temp"
+    char *first = NULL;
+    SUCCEED(HEAT, same, "--ambient", "300", "--length-unit", "m", "-o", out);
+    read_same(out, &first);
+    SUCCEED(HEAT, other, "--ambient", "300", "--columns", NAMED, "--only", "mat=steel", "--skip", "note=8.0", "-o",
+            out);
+    read_same(out, &first);
+    const char *bare = write_file("bare.txt", "3 0 0 0 .02 600\n9 .03 0 0 .02 300\n");
+    SUCCEED(HEAT, bare, "--ambient", "300", "--columns", "id=1,x=2 [m],y=3 [m],z=4 [m],d=5 [m],T=6", "-o", out);
+    read_same(out, &first);
+    FAIL_WITH(3, "bed", other, "--columns", NAMED);
+    expect_message(other, ":4: the id 3 occurs in line 3, too");
+    FAIL_WITH(3, "bed", bare);
+    expect_message(bare, ":1: numbers without a header that names their columns, such as x,y,z,r; --columns x=1,y=2");
+    static const char *const bad[][3] = {{"--columns", "x", "--columns: 'x' is not x=NAME"},
+                                         {"--columns", "x=a,,y=b", "'' is not x=NAME"},
+                                         {"--columns", "x=", "'x=' is not"},
+                                         {"--columns", "=a", "'=a' is not"},
+                                         {"--columns", "x=a,X=b", "x and X are one thing"},
+                                         {"--columns", "r=a,d=b", "r and d are one thing"},
+                                         {"--only", "mat", "--only: 'mat' is not COLUMN=VALUE"},
+                                         {"--skip", "=3", "--skip: '=3' is not"}};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
+        FAIL_WITH(2, "bed", other, bad[k][0], bad[k][1]);
+        assert_has(said, bad[k][2]);
+    }
+    FAIL_WITH(2, "bed", other, "--columns", NAMED, "--radius", ".01");
+    expect_message("", "--radius and --columns d=diameters both give radii");
+    SUCCEED("exchange", other, "--emissivity", ".5", "--columns", NAMED, "--only", "mat=steel", "--skip", "note=8");
+    SUCCEED("conductivity", PERIODIC, "--emissivity", ".5", "--columns", "x=x", "--skip", "id=1", "--error", ".2");
+}
+
 /* ---- names ------------------------------------------------------------------------------------------------------ */
 
 /* The order of a file does not matter: ids tell the spheres. */

@@ -151,6 +151,9 @@ TEST(tables) {
         {" x [mm], y [mm] ,z[mm],Radius (mm)\n1.5,2,-3.25,.5\n", "mm"},
         {"x [cm] y [cm] z [cm] d [cm]\n1.5 2 -3.25 1\n", "cm"},
         {"# x,y,z,r\n1.5,2,-3.25,0.5\n", ""},
+        {"# x,y,z,r\n0.15D+01,2,-3.25,0.5\n", ""},
+        {"information,x,y,z,r\n7,1.5,2,-3.25,0.5\n", ""},
+        {"2nd,x,y,z,r\n7,1.5,2,-3.25,0.5\n", ""},
         {"# by hand\n#x y z r\n# more\n1.5 2 -3.25 0.5\n", ""},
         {"# x y z r\n1.5,2,-3.25,0.5\n", ""},
         {"\"r\",\"Points:0\",\"Points:1\",\"Points:2\"\n0.5,1.5,2,-3.25\n", ""},
@@ -168,6 +171,182 @@ TEST(tables) {
     /* a name that is written exactly so comes before names in another case */
     ck_assert_int_eq(try("R,x,y,z,r\n0.3,1,2,3,0.5\n"), 0);
     ck_assert_double_eq(bed.r[0], 0.5);
+}
+
+/* LIGGGHTS writes the type twice. */
+TEST(equal_columns_of_one_name) {
+    const char *const names[] = {"type"};
+    const struct read_options options = {.extra = names, .extras = 1};
+    const char text[] = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: ATOMS id type type x y z radius\n"
+                        "7 2 2 3 0 0 1\n4 1 1.0 0 0 0 1\n";
+    ck_assert_msg(try_options(text, sizeof text - 1, &options) == 0, "%s", said);
+    ck_assert(bed.n == 2 && bed.extra[0] == 1 && bed.extra[1] == 2);
+    const char other[] = "type,x,y,z,r,type\n2,0,0,0,1,3\n"; /* nothing asks for the type */
+    ck_assert_int_eq(try(other), 0);
+    expect_refusal(other, sizeof other - 1, &options, 2,
+                   "columns 1 and 6 are both named type, and differ: '2' and '3'");
+}
+
+#define VTK_HEAD "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n1 2 3 4 5 6\n"
+#define VTP(array)                                                                                                     \
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\">\n<PolyData><Piece "              \
+    "NumberOfPoints=\"2\">\n<PointData>" array "</PointData><Points><DataArray type=\"Float32\" Name=\"p\" "           \
+    "NumberOfComponents=\"3\" format=\"ascii\">1 2 3 4 5 6</DataArray></Points></Piece></PolyData></VTKFile>\n"
+#define ARRAY(name, text) "<DataArray type=\"Float64\" Name=\"" name "\" format=\"ascii\">" text "</DataArray>"
+
+#define VTP_HEAD VTP(ARRAY("radius", "1 1"))
+
+/* Codes have names of their own. */
+TEST(columns_of_other_names) {
+    const char *const wanted[] = {"T"}, *const unit[] = {"K"};
+    static const struct {
+        const char *text, *units;
+        size_t names;
+        struct column_name name[5];
+    } good[] = {
+        {"p_x,p_y,p_z,diameters,Temp\n1,2,3,1,400\n",
+         "",
+         5,
+         {{"x", "p_x"}, {"y", "p_y"}, {"z", "p_z"}, {"d", "diameters"}, {"T", "Temp"}}},
+        {"p_x [mm];p_y [mm];p_z [mm];radii [mm];Temp [K]\n1;2;3;0,5;400\n",
+         "mm",
+         5,
+         {{"X", "p_x"}, {"Y", "p_y [mm]"}, {"Z", "p_z"}, {"Radius", "radii"}, {"T", "Temp [K]"}}},
+        {"1 2 3 .5 400\n", "cm", 5, {{"x", "1 [cm]"}, {"y", "2 (cm)"}, {"z", "3_[cm]"}, {"r", "4 [cm]"}, {"T", "5"}}},
+        {"x,x_p,y,z,r,T\n9,1,2,3,.5,400\n", "", 1, {{"x", "x_p"}}},
+        {"ITEM: UNITS\nsi\nITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS f_x[1] f_x[2] f_x[3] f_D T\n1 2 3 "
+         "1 400\n",
+         "si",
+         4,
+         {{"x", "f_x[1]"}, {"y", "f_x[2]"}, {"z", "f_x[3]"}, {"diameter", "f_D"}}},
+        {"1\nProperties=place:R:3:size:R:1:T:R:1\n1 2 3 0.5 400\n",
+         "",
+         4,
+         {{"x", "place:0"}, {"y", "place:1"}, {"z", "place:2"}, {"r", "size"}}},
+    };
+    for (size_t k = 0; k < sizeof good / sizeof *good; ++k) {
+        const struct read_options options = {
+            .name = good[k].name, .names = good[k].names, .extra = wanted, .unit = unit, .extras = 1};
+        ck_assert_msg(try_options(good[k].text, strlen(good[k].text), &options) == 0, "%zu: %s", k, said);
+        ck_assert_msg(bed.n == 1 && bed.x[0] == 1 && bed.y[0] == 2 && bed.z[0] == 3 && bed.r[0] == .5, "%zu", k);
+        ck_assert_double_eq(bed.extra[0], 400);
+        ck_assert_str_eq(bed.units, good[k].units);
+    }
+    static const struct {
+        const char *text, *reason;
+        unsigned line;
+        struct column_name name;
+    } bad[] = {
+        {"x,y,z,r\n0,0,0,1\n", "the header names no column p_x; there are x, y, z, r", 1, {"x", "p_x"}},
+        {"x,y,z,r\n0,0,0,1\n", "the header names no column 7", 1, {"T", "7"}},
+        {"1 2 3 4\n", "the header names no column y; there are 1, 2, 3, 4", 1, {"x", "1"}},
+        {"x [mm],y [mm],z [mm],r [mm]\n0,0,0,1\n", "the header names no column r [m]", 1, {"r", "r [m]"}},
+        {"x,y,z,r\n0,0,0,1\n", "lengths of more than one unit: x in [], r in [mm]", 1, {"r", "r [mm]"}},
+        {"x,y,z,r,c_r\n0,0,0,1,1\n", "the header names no column c_r[1]", 1, {"r", "c_r[1]"}},
+        {VTP_HEAD, "--columns x=p: positions in a VTK file are its points", 0, {"x", "p"}},
+        {VTP_HEAD, "there is no array size on the points", 0, {"r", "size"}},
+    };
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k)
+        expect_refusal(bad[k].text, strlen(bad[k].text), &(struct read_options){.name = &bad[k].name, .names = 1},
+                       bad[k].line, bad[k].reason);
+    const char cgs[] = "ITEM: UNITS\ncgs\nITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS x y z r\n0 0 0 1\n";
+    const struct column_name in_mm[] = {{"x", "x [mm]"}, {"y", "y [mm]"}, {"z", "z [mm]"}, {"r", "r [mm]"}};
+    expect_refusal(cgs, sizeof cgs - 1, &(struct read_options){.name = in_mm, .names = 4}, 7,
+                   "--columns says that lengths are in [mm], but the units of the file are cgs");
+}
+
+/* Rows by the values of columns, before anything else of a row is read. */
+TEST(rows_of_some_values) {
+    const struct row_rule rule[] = {{"mat", "steel", false}, {"phase", "2", false}, {"id", "4", true}};
+    const char text[] =
+        "id,mat,phase,x,y,z,r\n1,steel,2.0,1,0,0,1\n1,glass,2,2,0,0,1\nnone,steel,1,?,0,0,-1\n4,steel,2,3,0,0,1\n"
+        "5,\"steel\",02,5,0,0,1\n";
+    struct read_options options = {.rule = rule, .rules = 3};
+    ck_assert_msg(try_options(text, sizeof text - 1, &options) == 0, "%s", said);
+    ck_assert(bed.n == 2 && bed.id[0] == 1 && bed.id[1] == 5 && bed.x[0] == 1 && bed.x[1] == 5);
+    const struct row_rule none = {"mat", "stone", false}, unknown = {"matter", "steel", true};
+    options = (struct read_options){.rule = &none, .rules = 1};
+    expect_refusal(text, sizeof text - 1, &options, 0, "--only and --skip leave no spheres of the file");
+    options.rule = &unknown;
+    expect_refusal(text, sizeof text - 1, &options, 1, "the header names no column matter");
+    const struct row_rule of_points[] = {{"phase", "1", true}, {"T", "3e2", false}};
+    const char vtk[] =
+        VTK_HEAD "POINT_DATA 2\nFIELD f 3\nr 1 2 double\n.5 1\nphase 1 2 int\n1 2\nT 1 2 double\n300 300\n";
+    options = (struct read_options){.rule = of_points, .rules = 2};
+    ck_assert_msg(try_options(vtk, sizeof vtk - 1, &options) == 0, "%s", said);
+    ck_assert(bed.n == 1 && bed.r[0] == 1 && bed.x[0] == 4);
+}
+
+/* The header's unit of a column may be any of the right kind. Values become those of the expected unit. */
+TEST(units_of_columns) {
+    static const struct {
+        const char *column, *expected;
+        double value; /* of 7; NaN: refused */
+    } cases[] = {
+        {"k [W/(m K)]", "W/(m K)", 7},
+        {"k (W/(m K))", "W/(m K)", 7},
+        {"k [W/mK]", "W/(m K)", 7},
+        {"k [W/m/K]", "W/(m K)", 7},
+        {"k [W m^-1 K^-1]", "W/(m K)", 7},
+        {"k [W\302\267m\342\201\273\302\271\302\267K\342\201\273\302\271]", "W/(m K)", 7},
+        {"k [mW/(mm K)]", "W/(m K)", 7},
+        {"k [W/(cm K)]", "W/(m K)", 700},
+        {"k [W/m\302\260C]", "W/(m K)", 7},
+        {"c [J/(kg K)]", "J/(kg K)", 7},
+        {"c [kJ/kgK]", "J/(kg K)", 7000},
+        {"c [J/g/K]", "J/(kg K)", 7000},
+        {"rho [kg/m3]", "kg/m3", 7},
+        {"rho [kg/m\302\263]", "kg/m3", 7},
+        {"rho [kg m-3]", "kg/m3", 7},
+        {"rho [g/cm^3]", "kg/m3", 7000},
+        {"rho [kg/L]", "kg/m3", 7000},
+        {"P [W]", "W", 7},
+        {"P [kW]", "W", 7000},
+        {"P [MW]", "W", 7e6},
+        {"P [mW]", "W", 7e-3},
+        {"P [J/s]", "W", 7},
+        {"t [min]", "s", 420},
+        {"T [K]", "K", 7},
+        {"e [-]", NULL, 7},
+        {"e [1]", NULL, 7},
+        {"R [mm]", UNIT_OF_LENGTH, 7},
+        {"k [W/(m2 K)]", "W/(m K)", NAN},
+        {"k [W]", "W/(m K)", NAN},
+        {"c [J/kg]", "J/(kg K)", NAN},
+        {"P [hp]", "W", NAN},
+        {"P [K]", "W", NAN},
+        {"T [mK]", "K", NAN},
+        {"T [C]", "K", NAN},
+        {"T [K]", "C", NAN},
+        {"e [W]", NULL, NAN},
+        {"R [m]", UNIT_OF_LENGTH, 7000},
+        {"P [((((((W))))))]", "W", NAN},
+        {"P [W)]", "W", NAN},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+        char name[4] = "";
+        sscanf(cases[k].column, "%3[^ ]", name);
+        const char *const wanted = name;
+        const struct read_options options = {.extra = &wanted, .unit = &cases[k].expected, .extras = 1};
+        const char *text = formatted("x [mm],y [mm],z [mm],r [mm],%s\n0,0,0,1,7\n", cases[k].column);
+        if (isnan(cases[k].value)) {
+            expect_refusal(text, strlen(text), &options, 1,
+                           strcmp(cases[k].column, "P [W)]") == 0 ? "no column P" : "but is taken as");
+            continue;
+        }
+        ck_assert_msg(try_options(text, strlen(text), &options) == 0, "%s: %s", cases[k].column, said);
+        ck_assert_msg(fabs(bed.extra[0] - cases[k].value) <= 1e-15 * cases[k].value, "%s: %.17g", cases[k].column,
+                      bed.extra[0]);
+        const struct read_options any = {.extra = &wanted, .extras = 1, .any_unit = true};
+        ck_assert_int_eq(try_options(text, strlen(text), &any), 0);
+        ck_assert_double_eq(bed.extra[0], 7);
+    }
+    const char *const k = "k", *const conductivity = "W/(m K)"; /* blanks between columns and within a unit */
+    const char blanks[] = "x y z r k [W/(m K)]\n0 0 0 1 7\n";
+    ck_assert_int_eq(
+        try_options(blanks, sizeof blanks - 1, &(struct read_options){.extra = &k, .unit = &conductivity, .extras = 1}),
+        0);
+    ck_assert_double_eq(bed.extra[0], 7);
 }
 
 TEST(without_radii) {
@@ -195,6 +374,7 @@ TEST(numbers) {
                                       "1e-22",
                                       "1e-23",
                                       "0x1p3",
+                                      "0x1D",
                                       "1E+5",
                                       "1e05",
                                       "9007199254740993",
@@ -202,7 +382,14 @@ TEST(numbers) {
                                       "4.9e-324",
                                       "1.7976931348623157e308",
                                       "0.1000000000000000055511151231257827"};
-    static const char *const none[] = {"", "-", ".", "e5", "1e", "1e+", "1.2.3", "1,5", "1 ", "--1", "1e5x", "+-1"};
+    static const char *const of_fortran[][2] = {
+        {"0.5250D-01", "0.5250e-01"},
+        {"-1.d+5", "-1e5"},
+        {"7D0", "7"},
+        {"0.1000000000000000055511151231257827D+200", "0.1000000000000000055511151231257827e200"},
+        {"4.9D-324", "4.9e-324"}};
+    static const char *const none[] = {"D5", "1D",  "1D+",   "1D5D5", "infD5", "",    "-",    ".",  "e5",
+                                       "1e", "1e+", "1.2.3", "1,5",   "1 ",    "--1", "1e5x", "+-1"};
     char text[80];
     double value;
     uint64_t state = 12345;
@@ -217,6 +404,11 @@ TEST(numbers) {
         const double wanted = strtod(odd[k], NULL);
         ck_assert_msg(number_read(odd[k], &value) && memcmp(&value, &wanted, sizeof value) == 0, "%s", odd[k]);
     }
+    for (size_t k = 0; k < sizeof of_fortran / sizeof *of_fortran; ++k)
+        ck_assert_msg(number_read(of_fortran[k][0], &value) && value == strtod(of_fortran[k][1], NULL), "%s",
+                      of_fortran[k][0]);
+    int64_t whole;
+    ck_assert(number_read_whole("0.7000D+01", &whole) && whole == 7 && !number_read_whole("0.75D+01", &whole));
     for (size_t k = 0; k < sizeof none / sizeof *none; ++k) ck_assert_msg(!number_read(none[k], &value), "%s", none[k]);
 }
 
@@ -296,7 +488,7 @@ static const char *frames_of(const char *text, size_t size, struct frames frames
 #define DATA_ROW    " 0 0 0 1 0 0 0 0 0 0 0\n"
 #define DATA_FRAME  "2 0.5 0 0 0 1 1 1\n0 0 0" DATA_ROW "3 0 0" DATA_ROW
 
-LOOP_TEST(ranges, 19) {
+LOOP_TEST(ranges, 22) {
     static const struct {
         const char *text;
         struct frames frames;
@@ -324,6 +516,13 @@ LOOP_TEST(ranges, 19) {
         {XYZ_FRAME XYZ_FRAME "2\n\nA 0 0 0 1\n", {2, 3, 1}, "", "after 1 spheres; 2 were declared", STATUS_INPUT},
         {DATA_FRAME DATA_FRAME, {0, 9, 1}, "01", "does not say which axes are periodic", 0},
         {DATA_FRAME "2 0 0 0 0 1 1 1\n0 0 0 1", {0, 9, 1}, "0", "after 1 spheres", 0},
+        {"0 0 0 0 0 1 1 1\n0 0.1 0 0 0 0 0 0\n" DATA_FRAME,
+         {0, 9, 1},
+         "2",
+         "warning: frame 1 is empty and is left out",
+         0},
+        {"0 0 0 0 0 1 1 1\n" DATA_FRAME, {0, 0, 0}, "1", "does not say which axes are periodic", 0},
+        {"0\n\n" XYZ_FRAME, {0, 9, 1}, "1", "warning: frame 0 is empty and is left out", 0},
         {"x,y,z,r\n0,0,0,1\n", {0, 9, 1}, "0", "", 0},
         {"x,y,z,r\n0,0,0,1\n", {1, 9, 1}, "", "there is no frame 1; the last is 0", STATUS_INPUT},
     };
@@ -390,9 +589,35 @@ TEST(dump_without_tilt) {
     ck_assert_int_eq(bed.timestep, 7);
 }
 
+#define HEAD_OF_ONE "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n1\n"
 #define DATA_HEAD                                                                                                      \
     "LAMMPS data file via write_data, version 2 Aug 2023, timestep = 30, units = si\n\n2 atoms\n2 atom types\n\n"      \
     "-1 3 xlo xhi\n0 10 ylo yhi\n0 2e1 zlo zhi\n"
+
+/* Boxes that may have any direction, but have right angles. */
+TEST(boxes_with_right_angles) {
+    static const struct {
+        const char *text;
+        double period;
+    } cases[] = {
+        {HEAD_OF_ONE
+         "ITEM: BOX BOUNDS abc origin pp ff pp\n4 0 1e-16 -1\n0 10 0 0\n0 0 20 0\nITEM: ATOMS x y z r\n1 2 3 1\n",
+         4},
+        {HEAD_OF_ONE "ITEM: BOX BOUNDS abc origin\n4 0 0 -1\n0 10 0 0\n0 0 20 0\nITEM: ATOMS x y z r\n1 2 3 1\n", 0},
+        {HEAD_OF_ONE "ITEM: BOX BOUNDS xy xz yz xx yy zz\n-1 3 0\n0 10 0\n0 20 0\nITEM: ATOMS x y z r\n1 2 3 1\n", 0},
+        {HEAD_OF_ONE "ITEM: BOX BOUNDS xx yy zz\n-1 3\n0 10\n0 20\nITEM: ATOMS x y z r\n1 2 3 1\n", 0},
+        {HEAD_OF_ONE "ITEM: BOX BOUNDS xy xz yz pp ff pp\n-1 3 -0\n0 10 1e-17\n0 20 0\nITEM: ATOMS x y z r\n1 2 3 1\n",
+         4},
+        {"c\n1 atoms\n4 0 0 avec\n0 10 0 bvec\n0 0 20 cvec\n-1 0 0 abc origin\n\nAtoms # sphere\n\n1 1 2 1 1 2 3\n", 0},
+        {"1\nProperties=pos:R:3:r:R:1 Lattice=\"4 0 0 1e-16 10 0 0 0 20\" Origin=\"-1 0 0\"\n1 2 3 1\n", 4},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+        ck_assert_msg(try(cases[k].text) == 0, "%zu: %s", k, said);
+        ck_assert(bed.low[0] == -1 && bed.high[0] == 3 && bed.low[1] == 0 && bed.high[1] == 10 && bed.high[2] == 20);
+        ck_assert_msg(bed.period[0] == cases[k].period && bed.x[0] == 1, "%zu", k);
+        if (strstr(cases[k].text, "xx yy zz")) assert_has(said, "does not say which axes are periodic");
+    }
+}
 
 TEST(data_files) {
     static const char *const good[] = {
@@ -437,13 +662,6 @@ TEST(mercury) {
     ck_assert(!bed.ids && bed.low[2] == -1 && bed.high[0] == 4 && bed.period[0] == 0);
 }
 
-#define VTK_HEAD "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n1 2 3 4 5 6\n"
-#define VTP(array)                                                                                                     \
-    "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\">\n<PolyData><Piece "              \
-    "NumberOfPoints=\"2\">\n<PointData>" array "</PointData><Points><DataArray type=\"Float32\" Name=\"p\" "           \
-    "NumberOfComponents=\"3\" format=\"ascii\">1 2 3 4 5 6</DataArray></Points></Piece></PolyData></VTKFile>\n"
-#define ARRAY(name, text) "<DataArray type=\"Float64\" Name=\"" name "\" format=\"ascii\">" text "</DataArray>"
-
 TEST(vtk) {
     static const char *const good[] = {
         VTK_HEAD "VERTICES 2 4\n1 0 1 1\nPOINT_DATA 2\nVECTORS v float\n0 0 0 0 0 0\nSCALARS radius double 1\n"
@@ -462,6 +680,80 @@ TEST(vtk) {
         expect_sphere(0, 1, 2, 3, 0.5, 0);
         expect_sphere(1, 4, 5, 6, 1, 0);
     }
+}
+
+/* The arrays are on several pieces, in one file or in several. Pieces may be empty. */
+TEST(pieces_of_vtk_files) {
+#define PIECE(points, radii, ids)                                                                                      \
+    "<Piece NumberOfPoints='" points "'><PointData>" ARRAY("radius", radii)                                            \
+        ARRAY("ID", ids) "</PointData><Points>"                                                                        \
+                         "<DataArray type='Float64' NumberOfComponents='3' format='ascii'>"
+#define END_OF_PIECE "</DataArray></Points></Piece>"
+#define THREE                                                                                                          \
+    PIECE("0", "", "")                                                                                                 \
+    END_OF_PIECE PIECE("2", "1 .5", "9 2") "1 2 3 4 5 6" END_OF_PIECE PIECE("1", ".25", "4") "7 8 9" END_OF_PIECE
+    const char *const whole =
+        "<VTKFile type='UnstructuredGrid'><UnstructuredGrid>" THREE "</UnstructuredGrid></VTKFile>";
+    for (int k = 0; k < 2; ++k) {
+        static const char *const parts[] = {PIECE("0", "", "") END_OF_PIECE,
+                                            PIECE("2", "1 .5", "9 2") "1 2 3 4 5 6" END_OF_PIECE,
+                                            PIECE("1", ".25", "4") "7 8 9" END_OF_PIECE};
+        const char *text = whole, *name = strrchr(path, '/') + 1;
+        char piece[3][220];
+        for (int p = 0; k == 1 && p < 3; ++p) {
+            snprintf(piece[p], sizeof piece[p], "%s_%d.vtp", path, p);
+            OWNED_FILE *file = opened(piece[p], "w");
+            fprintf(file, "<VTKFile type='PolyData'><PolyData>%s</PolyData></VTKFile>", parts[p]);
+        }
+        if (k == 1)
+            text = formatted("<?xml version='1.0'?><VTKFile type='PPolyData'><PPolyData><PPointData>"
+                             "<PDataArray type='Float64' Name='radius'/></PPointData><Piece Source=\"%s_0.vtp\"/>"
+                             "<Piece Source=\"./%s_1.vtp\"/><Piece Source=\"%s_2.vtp\"/></PPolyData></VTKFile>",
+                             name, name, name);
+        ck_assert_msg(try(text) == 0, "%d: %s", k, said);
+        for (int p = 0; k == 1 && p < 3; ++p) unlink(piece[p]);
+        ck_assert(bed.n == 3 && bed.id[0] == 2 && bed.id[1] == 4 && bed.id[2] == 9);
+        expect_sphere(0, 4, 5, 6, .5, 0);
+        expect_sphere(1, 7, 8, 9, .25, 0);
+        expect_sphere(2, 1, 2, 3, 1, 0);
+    }
+    const char *itself = formatted("<VTKFile type='PPolyData'><Piece Source='%s'/></VTKFile>", strrchr(path, '/') + 1);
+    expect_refusal(itself, strlen(itself), &(struct read_options){0}, 1,
+                   "a piece of a VTK file has no points, but pieces");
+    const char ghosts[] = VTP(ARRAY("radius", "1 .5") "<DataArray type='UInt8' Name='vtkGhostType' format='ascii'>1 "
+                                                      "0</DataArray>");
+    ck_assert_int_eq(try(ghosts), 0);
+    ck_assert_uint_eq(bed.n, 1);
+    expect_sphere(0, 4, 5, 6, .5, 0);
+    const char missing[] = "<VTKFile type='PPolyData'><Piece Source='none.vtp'/></VTKFile>";
+    ck_assert_int_eq(try(missing), STATUS_FILE);
+    assert_has(said, "none.vtp: No such file");
+    const char mixed[] = "<VTKFile type='PolyData'>" PIECE(
+        "1", "1", "4") "1 2 3" END_OF_PIECE
+                       "<Piece NumberOfPoints='1'><PointData>" ARRAY(
+                           "radius",
+                           "1") "</PointData><Points>"
+                                "<DataArray type='Float64' NumberOfComponents='3' format='ascii'>7 8 9" END_OF_PIECE
+                                "</VTKFile>";
+    expect_refusal(mixed, sizeof mixed - 1, &(struct read_options){0}, 0, "some pieces have an array of ids");
+}
+
+/* One array may be wanted twice, and a name in the same case goes before another one. */
+TEST(arrays_of_vtk_files) {
+    const char *const names[] = {"radius", "id"};
+    const char text[] = VTP(ARRAY("RADIUS", "7 7") ARRAY("radius", "0.5 1") ARRAY("Radius", "8 8") ARRAY("id", "4 9"));
+    const struct read_options options = {.extra = names, .extras = 2};
+    ck_assert_msg(try_options(text, sizeof text - 1, &options) == 0, "%s", said);
+    ck_assert(bed.r[0] == .5 && bed.r[1] == 1 && bed.extra[0] == .5 && bed.extra[1] == 4 && bed.extra[3] == 9);
+    const struct column_name other[] = {{"d", "size"}, {"ID", "tag"}, {"T", "heat [C]"}};
+    const char *const wanted = "T", *const unit = "K", *const celsius = "C";
+    const char lethe[] =
+        VTP(ARRAY("radius", "7 7") ARRAY("size", "1 2") ARRAY("id", "1 2") ARRAY("tag", "9 4") ARRAY("heat", "20 30"));
+    struct read_options named = {.name = other, .names = 3, .extra = &wanted, .unit = &celsius, .extras = 1};
+    ck_assert_msg(try_options(lethe, sizeof lethe - 1, &named) == 0, "%s", said);
+    ck_assert(bed.id[0] == 4 && bed.r[0] == 1 && bed.extra[0] == 30 && bed.id[1] == 9 && bed.r[1] == .5);
+    named.unit = &unit;
+    expect_refusal(lethe, sizeof lethe - 1, &named, 0, "the column T is in [C], but is taken as [K]");
 }
 
 TEST(yade) {
@@ -535,19 +827,32 @@ static const struct {
     {3, "x;y;z;r\n0,5;0;0;1\n0.5;0;0;1\n", "x is '0.5': decimal commas and decimal points in one file"},
     {2, "x;y;z;r\n1.234,5;0;0;1\n", "x is not a number: '1.234,5'"},
     {1, "xs,ys,zs,r\n0,0,0,1\n", "the scaled coordinate xs needs a box"},
-    {1, "x y z r X x\n0 0 0 1 0 0\n", "two columns are named x"},
+    {2, "x y z r X x\n0 0 0 1 0 3\n", "columns 1 and 6 are both named x, and differ: '0' and '3'"},
     {2, "#format x_y_z_r\n0 0 0 1 1\n", "5 fields"},
     {2, "1\nno properties\nA 0 0 0 1\n", "an XYZ file without Properties=... has no radii; --radius gives them"},
     {2, "1\nProperties=pos:R:3\n0 0 0\n", "no column r"},
-    {2, "1\nProperties=pos:R:3:radius:R\n0 0 0 1\n", "Properties needs name:type:count"},
+    {2, "1\nProperties=pos:R:3:radius:R\n0 0 0 1\n",
+     "Properties needs name:type:count for each, such as pos:R:3:radius:R:1"},
     {2, "1\nProperties=pos:R:3:radius:R:0\n0 0 0 1\n", "Properties needs name:type:count"},
     {2, "1\nProperties=pos:R:3:r:R:1 Lattice=\"1 0 0 0 1 0 0.1 0 1\"\n0 0 0 1\n", "the lattice is tilted"},
-    {2, "1\nProperties=pos:R:3:r:R:1 Lattice=\"1 0 0 0 1 0 0\"\n0 0 0 1\n", "Lattice needs nine numbers"},
+    {2, "1\nProperties=pos:R:3:r:R:1 Lattice=\"1 0 0 0 1 0 0\"\n0 0 0 1\n",
+     "Lattice has 7 numbers; it needs 9 in quotes: Lattice=\"LX 0 0 0 LY 0 0 0 LZ\""},
+    {2, "1\nProperties=pos:R:3:r:R:1 Lattice=\"1 2 3 4\"\n0 0 0 1\n", "Lattice has 4 numbers; it needs 9"},
+    {2, "1\nProperties=pos:R:3:r:R:1 Lattice=1 0 0 0 1 0 0 0 1\n0 0 0 1\n",
+     "Lattice has 1 number; it needs 9 in quotes"},
+    {2, "1\nProperties=pos:R:3:r:R:1 Lattice=\"1 0 0 0 1 0 0 0 1 5\"\n0 0 0 1\n", "Lattice has 10 numbers"},
+    {2, "1\nProperties=pos:R:3:r:R:1 Lattice=\"1 0 0 0 1 0 0 0 b\"\n0 0 0 1\n", "Lattice: 'b' is not a number"},
+    {2, "1\nProperties=pos:R:3:r:R:1 Lattice=\"1 0 0 0 1 0 0 0 1\" Origin=\"0 0\"\n0 0 0 1\n", "Origin has 2 numbers"},
+    {2, "1\nProperties: pos:R:3:r:R:1\n0 0 0 1\n",
+     "Properties needs = right behind it: Properties=species:S:1:pos:R:3:radius:R:1"},
+    {2, "1\nproperties =pos:R:3:r:R:1\n0 0 0 1\n", "Properties needs = right behind it"},
     {2, "1\nProperties=pos:R:3:r:R:1 Lattice=\"1 0 0 0 0 0 0 0 1\"\n0 0 0 1\n", "the box is empty"},
     {2, "1\nProperties=pos:R:3:r:R:1 Lattice=\"1 0 0 0 1 0 0 0 1\" pbc=\"T F\"\n0 0 0 1\n", "pbc needs three"},
     {3, "1\nProperties=pos:R:3:r:R:1\n0 0 0 1 1\n", "5 fields"},
     {4, "2\nProperties=pos:R:3:r:R:1\n0 0 0 1\nx 0 0 1\n", "x is not a number"},
     {1, "1 0 0 0 1 1\n0 0 0 0 1 0 0 0\n", "MercuryDPM file in two dimensions"},
+    {2, "0 0 0 0 1 1\n1 0 0 0 1 1\n0 0 0 0 1 0 0 0\n", "MercuryDPM file in two dimensions"},
+    {0, "0 0 0 0 0 1 1 1\n0 1 0 0 0 1 1 1\n", "no spheres"},
     {1, "1 0 0 0 0 1 1 0\n0 0 0 0 0 0 1 0 0 0 0 0 0 0\n", "the box is empty"},
     {2, "1 0 0 0 0 1 1 1\n0 0 0 0 0 0 0 0 0 0 0 0 0 0\n", "the radius is 0"},
     {6, "c\n1 atoms\n0 1 xlo xhi\n0 1 ylo yhi\n0 1 zlo zhi\nAtoms # atomic\n\n1 1 0 0 0\n",
@@ -557,6 +862,8 @@ static const struct {
     {3, "c\n1 atoms\nAtoms # body\n1 1 0 0 0 1 1\n", "style body, whose columns are not known"},
     {4, "c\n1 atoms\nAtoms\n1 1 1 1 0 0 0\n", "the style of the atoms is not said"},
     {3, "c\n1 atoms\n0.1 0 0 xy xz yz\nAtoms # sphere\n1 1 1 1 0 0 0\n", "the box is tilted"},
+    {6, "c\n1 atoms\n1 0 0 avec\n0 1 .1 bvec\n0 0 1 cvec\n0 0 0 abc origin\nAtoms # sphere\n1 1 1 1 0 0 0\n",
+     "triclinic"},
     {3, "c\n1 atoms\n1 1 xlo xhi\nAtoms # sphere\n1 1 1 1 0 0 0\n", "the box is empty"},
     {3, "c\n1 atoms\n0 1 xlo xhi\n", "there is no section Atoms"},
     {2, "c\nmany atoms\n1 atoms\nAtoms # sphere\n1 1 1 1 0 0 0\n", "the number of atoms is not a whole number"},
@@ -592,6 +899,9 @@ static const struct {
     {4, VTP("<DataArray type='String' Name='radius' format='ascii'>a b</DataArray>"), "arrays of type String"},
     {1, "<VTKFile type='Collection'>\n", "this is a ParaView collection"},
     {0, "<VTKFile type='ImageData'>\n", "a VTK file of type ImageData: it has no spheres"},
+    {0, "<VTKFile type='PImageData'>\n", "a VTK file of type PImageData: it has no spheres"},
+    {2, "<VTKFile type='PPolyData'>\n<Piece/>", "a piece has no Source"},
+    {0, "<VTKFile type='PPolyData'>\n<Piece Source='.'/>", "is no file"},
     {1, "<VTKFile type='PolyData' compressor='vtkLZ4DataCompressor'>\n", "its arrays are packed by vtkLZ4"},
     {4,
      "<?xml version='1.0'?>\n<!-- <VTKFile --><Piece NumberOfPoints='1'>\n<PointData>\n<DataArray type='Float32' "
@@ -600,6 +910,10 @@ static const struct {
      "an array is damaged"},
     {1, "ITEM: ENTRIES c_1[1]\n1\n", "a LAMMPS dump of local values"},
     {0, "# how to settle\nunits si\n", "this is an input script of LAMMPS"},
+    {0, "---\ncreator: LAMMPS\ntimestep: 0\nnatoms: 1\n",
+     "this is a dump in YAML, as dump yaml of LAMMPS writes it; write a text"},
+    {0, "// of a mesher\n\nBegin ModelPartData\nEnd ModelPartData\n", "this is an .mdpa file of Kratos"},
+    {0, "Begin Properties 0\nEnd Properties\n", "write a table with a header: id,x,y,z,r"},
     {0, "{\"x\": 1}\n", "this is JSON"},
     {0, "<html>\n", "this is XML"},
     {0, "\x89PNG\r\n", "this is a PNG picture"},
@@ -609,7 +923,10 @@ static const struct {
     {0, "\xff\xfex", "this is text in UTF-16"},
     {0, "LammpS RestartT", "this is a LAMMPS restart file"},
     {0, "BZh91AY", "this is packed by bzip2"},
-    {2, "#\nx,y,z,r,x\n0,0,0,1,2\n", "two columns are named x"},
+    {3, "#\nx,y,z,r,x\n0,0,0,1,2\n", "columns 1 and 5 are both named x, and differ: '0' and '2'"},
+    {11, HEAD "2\n" BOX "ITEM: ATOMS id radius radius x y z\n1 1 1 0 0 0\n2 1 2 3 0 0\n",
+     "columns 2 and 3 are both named radius, and differ: '1' and '2'"},
+    {0, VTP(ARRAY("radius", "1 1") ARRAY("radius", "1 2")), "two arrays on the points are named radius, and differ"},
     {3, "x,y,z,r\n0,0,0,1\n3,nan,0,1\n", "y is not finite"},
     {3, "x,y,z,r\n0,0,0,1\n3,0,-inf,1\n", "z is not finite"},
     {2, "x,y,z,r\n1e999,0,0,1\n", "x is not finite"},
@@ -649,7 +966,10 @@ static const struct {
     {1, "ITEM: ATOMS x y z r\n0 0 0 1\n", "ITEM: ATOMS comes before ITEM: NUMBER OF ATOMS"},
     {3, "ITEM: TIMESTEP\n0\n" ATOMS SPHERE, "before ITEM: NUMBER OF ATOMS"},
     {7, HEAD "1\nITEM: BOX BOUNDS xy xz yz pp pp pp\n0 1 0\n0 1 0.1\n0 1 0\n" ATOMS SPHERE, "the box is tilted"},
-    {5, HEAD "1\nITEM: BOX BOUNDS abc origin pp pp pp\n0 1 0 0\n0 1 0 0\n0 1 0 0\n" ATOMS SPHERE, "triclinic"},
+    {8, HEAD "1\nITEM: BOX BOUNDS abc origin pp pp pp\n0 1 0 0\n0 1 0 0\n0 1 0 0\n" ATOMS SPHERE, "triclinic"},
+    {8, HEAD "1\nITEM: BOX BOUNDS abc origin pp pp pp\n-1 0 0 0\n0 1 0 0\n0 0 1 0\n" ATOMS SPHERE, "the box is empty"},
+    {6, HEAD "1\nITEM: BOX BOUNDS abc origin pp pp pp\n1 0 0\n0 1 0 0\n0 0 1 0\n" ATOMS SPHERE,
+     "one coordinate of its origin"},
     {5, HEAD "1\nITEM: BOX BOUNDS pp pq pp\n0 1\n0 1\n0 1\n" ATOMS SPHERE, "unknown boundary mark 'pq'"},
     {7, HEAD "1\nITEM: BOX BOUNDS pp pp pp\n0 1\n1 1\n0 1\n" ATOMS SPHERE, "the box is empty"},
     {7, HEAD "1\nITEM: BOX BOUNDS pp pp pp\n0 1\n0 inf\n0 1\n" ATOMS SPHERE, "the upper bound is not finite"},

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/memory.h"
 #include "cli/message.h"
 #include "fibrad.h"
 
@@ -14,24 +15,18 @@ struct bed bed_empty(void) {
     return (struct bed){.timestep = -1};
 }
 
-static void *resized(void *array, size_t bytes, bool *good) {
-    void *moved = realloc(array, bytes);
-    if (!moved) *good = false;
-    return moved ? moved : array;
-}
-
 /* Doubles the arrays. So memory stays within a small multiple of the spheres in the file, whatever number the file
  * declares. */
 static int grow(struct bed *bed) {
     const size_t capacity = bed->capacity ? 2 * (size_t)bed->capacity : 1024;
     bool good = true;
-    bed->x = resized(bed->x, capacity * sizeof *bed->x, &good);
-    bed->y = resized(bed->y, capacity * sizeof *bed->y, &good);
-    bed->z = resized(bed->z, capacity * sizeof *bed->z, &good);
-    bed->r = resized(bed->r, capacity * sizeof *bed->r, &good);
-    bed->line = resized(bed->line, capacity * sizeof *bed->line, &good);
-    bed->id = resized(bed->id, capacity * sizeof *bed->id, &good);
-    if (bed->extras) bed->extra = resized(bed->extra, capacity * bed->extras * sizeof *bed->extra, &good);
+    bed->x = memory_resized(bed->x, capacity * sizeof *bed->x, &good);
+    bed->y = memory_resized(bed->y, capacity * sizeof *bed->y, &good);
+    bed->z = memory_resized(bed->z, capacity * sizeof *bed->z, &good);
+    bed->r = memory_resized(bed->r, capacity * sizeof *bed->r, &good);
+    bed->line = memory_resized(bed->line, capacity * sizeof *bed->line, &good);
+    bed->id = memory_resized(bed->id, capacity * sizeof *bed->id, &good);
+    if (bed->extras) bed->extra = memory_resized(bed->extra, capacity * bed->extras * sizeof *bed->extra, &good);
     if (!good) return message_memory();
     bed->capacity = (uint32_t)capacity;
     return STATUS_OK;
@@ -70,11 +65,11 @@ int bed_keep(struct bed *bed, const char *const *text, size_t n) {
     bool good = true;
     if (bed->kept_used + room > bed->kept_room) {
         const size_t wanted = 2 * (bed->kept_used + room);
-        bed->kept = resized(bed->kept, wanted, &good);
+        bed->kept = memory_resized(bed->kept, wanted, &good);
         if (good) bed->kept_room = wanted;
     }
     if (bed->n > bed->kept_capacity) {
-        bed->kept_at = resized(bed->kept_at, bed->capacity * sizeof *bed->kept_at, &good);
+        bed->kept_at = memory_resized(bed->kept_at, bed->capacity * sizeof *bed->kept_at, &good);
         if (good) bed->kept_capacity = bed->capacity;
     }
     if (!good) return message_memory();

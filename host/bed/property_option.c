@@ -12,16 +12,15 @@
 #include "cli/message.h"
 #include "cli/options.h"
 
-/* curve_read or column_read. */
-typedef int read_function(const char *path, const char *what, double low, double high, struct curve *curve);
-
-/* Reads the table whose path is the next item of a list. Moves *text behind the item. */
-static int take_table(const char *what, const char **text, double low, double high, struct curve *curve,
-                      read_function *read) {
+/* Reads the table whose path is the next item of a list. one: only its column y. Moves *text behind the item. */
+static int take_table(const char *what, const char **text, bool one, const struct curve_axes *axes, double low,
+                      double high, struct curve *curve) {
     const size_t length = strcspn(*text, ",");
     char *path = strndup(*text, length);
     *text += length;
-    const int status = path ? read(path, what, low, high, curve) : message_memory();
+    const int status = !path ? message_memory()
+                       : one ? column_read(path, what, &axes->y, low, high, curve)
+                             : curve_read(path, what, axes, low, high, curve);
     free(path);
     return status;
 }
@@ -39,7 +38,7 @@ static int take_value(const char *what, const char **text, double low, double hi
         return message(STATUS_USAGE, "%s: %g is not within %g and %g", what, *value, low, high);
     }
     ++*text;
-    const int status = take_table(what + strlen("--"), text, low, high, curve, curve_read);
+    const int status = take_table(what + strlen("--"), text, false, quantity->curves, low, high, curve);
     if (!status) *value = curve->y[curve->n / 2];
     return status;
 }
@@ -64,7 +63,7 @@ static int take_types(const char *what, const char *text, double low, double hig
     }
 }
 
-static int take_quantity(const char *what, const char *text, double low, double high, bool curves,
+static int take_quantity(const char *what, const char *text, double low, double high, const struct curve_axes *curves,
                          struct quantity *quantity) {
     quantity_free(quantity);
     *quantity = (struct quantity){.given = true, .curves = curves};
@@ -77,11 +76,12 @@ static int take_quantity(const char *what, const char *text, double low, double 
 }
 
 int quantity_option(const char *what, const char *text, double low, double high, struct quantity *quantity) {
-    return take_quantity(what, text, low, high, false, quantity);
+    return take_quantity(what, text, low, high, NULL, quantity);
 }
 
-int table_option(const char *what, const char *text, double low, double high, struct quantity *quantity) {
-    return take_quantity(what, text, low, high, true, quantity);
+int table_option(const char *what, const char *text, const struct curve_axes *axes, double low, double high,
+                 struct quantity *quantity) {
+    return take_quantity(what, text, low, high, axes, quantity);
 }
 
 int emissivity_option(const char *text, void *quantity) {
@@ -89,7 +89,8 @@ int emissivity_option(const char *text, void *quantity) {
 }
 
 int emissivity_curves_option(const char *text, void *quantity) {
-    return table_option("--emissivity", text, 0, 1, quantity);
+    static const struct curve_axes axes = {CURVE_AXIS_KELVINS, {"e eps epsilon emissivity", ""}};
+    return table_option("--emissivity", text, &axes, 0, 1, quantity);
 }
 
 int temperature_option(const char *text, void *quantity) { /* --temperature-unit may follow */
@@ -122,6 +123,22 @@ void quantity_follow(const struct quantity *quantity, const struct bed *bed, con
         const struct curve *curve = curve_of_sphere(quantity, bed, i);
         if (curve && !isnan(temperature[i])) values[i] = curve_at(curve, temperature[i]);
     }
+}
+
+#define EXCESS_LEAST 1e-3 /* [K] temperatures are found with rounding */
+
+void quantity_excess(const struct quantity *quantity, const struct bed *bed, const double *temperature,
+                     struct table_excess *excess) {
+    struct table_excess now = {0};
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const struct curve *curve = curve_of_sphere(quantity, bed, i);
+        if (!curve || isnan(temperature[i])) continue;
+        const double far = fmax(curve->x[0] - temperature[i], temperature[i] - curve->x[curve->n - 1]);
+        now.spheres += far > EXCESS_LEAST;
+        now.kelvins = fmax(now.kelvins, far);
+    }
+    if (now.spheres > excess->spheres) excess->spheres = now.spheres;
+    excess->kelvins = fmax(excess->kelvins, now.kelvins);
 }
 
 /* The value of sphere i. NaN: the option was not given, or the list does not have the type of the sphere. */
@@ -199,8 +216,7 @@ static int take_wall_table(const char *option, const char **text, double low, do
         return message(STATUS_USAGE, "%s: %s has two values", option, wall_name(walls, (uint32_t)*wall));
     const bool timed = (*text)[length + 1] == '@';
     *text += length + 1 + strlen(timed ? "@" : TRIANGLES);
-    const int status = timed ? take_table("temperature", text, low, high, curve, curve_read)
-                             : take_table("temperature", text, low, high, column, column_read);
+    const int status = take_table("temperature", text, !timed, tables->axes, low, high, timed ? curve : column);
     if (!status) *value = timed ? curve_at(curve, 0) : column->y[0];
     if (**text == ',') ++*text;
     return status;

@@ -39,19 +39,30 @@ struct quantity {
     size_t index;       /* of the column in bed->extra */
     int types;          /* 0: values are not by type */
     double type[QUANTITY_TYPES_MAX], of_type[QUANTITY_TYPES_MAX]; /* [types] types and their values */
-    bool curves;                                                  /* @TABLE is allowed in place of a number */
+    const struct curve_axes *curves;        /* @TABLE is allowed in place of a number; NULL: not */
     struct curve curve[QUANTITY_TYPES_MAX]; /* [types] tables, or [0] for all spheres; n = 0: a number */
 };
 
 /* Reads the argument of an option `what`, whose values are from low to high. table_option allows @TABLE of temperatures
  * [K] and values. Status 0, STATUS_USAGE, or as curve_read. */
 int quantity_option(const char *what, const char *text, double low, double high, struct quantity *quantity);
-int table_option(const char *what, const char *text, double low, double high, struct quantity *quantity);
+int table_option(const char *what, const char *text, const struct curve_axes *axes, double low, double high,
+                 struct quantity *quantity);
 
 /* Take the arguments of --emissivity and --temperature into a quantity. */
 int emissivity_option(const char *text, void *quantity);
 int emissivity_curves_option(const char *text, void *quantity);
 int temperature_option(const char *text, void *quantity);
+
+/* How far spheres lie beyond the ends of tables. */
+struct table_excess {
+    uint32_t spheres;
+    double kelvins; /* largest distance from an end */
+};
+
+/* Finds this for the temperatures [bed->n]. Each number of *excess grows to the present one, or stays. */
+void quantity_excess(const struct quantity *quantity, const struct bed *bed, const double *temperature,
+                     struct table_excess *excess);
 
 /* Frees the tables of a quantity. */
 void quantity_free(struct quantity *quantity);
@@ -78,9 +89,10 @@ struct wall_list {
 };
 
 /* Tables in such a list: NAME=@TABLE over time, and NAME=triangles:FILE, a column of numbers, one per triangle. n = 0:
- * the wall has no table. Set `timed` and zero the others; free with wall_tables_free. */
+ * the wall has no table. Set `axes` and `timed` and zero the others; free with wall_tables_free. */
 struct wall_tables {
-    bool timed; /* tables over time are allowed */
+    const struct curve_axes *axes; /* of temperatures over time */
+    bool timed;                    /* tables over time are allowed */
     struct curve curve[WALLS_MAX], column[WALLS_MAX];
 };
 void wall_tables_free(struct wall_tables *tables);

@@ -33,16 +33,7 @@ bool unit_of_length(const char *name, double *metres) {
     return false;
 }
 
-bool unit_is(const char *name, const char *unit) {
-    static const struct {
-        const char *name, *unit;
-    } names[] = {{"\302\260C", "C"}, {"\260C", "C"},     {"\342\204\203", "C"}, {"degC", "C"},
-                 {"deg C", "C"},     {"\302\272C", "C"}, {"Celsius", "C"},      {"celsius", "C"},
-                 {"Kelvin", "K"},    {"kelvin", "K"},    {"\302\260K", "K"},    {"kelvins", "K"}};
-    for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
-        if (strcmp(name, names[k].name) == 0) return strcmp(unit, names[k].unit) == 0;
-    return strcmp(name, unit) == 0;
-}
+const char *temperature_unit(double zero) { return zero > 0 ? "C" : "K"; }
 
 int temperature_unit_option(const char *text, void *zero) {
     if (strcmp(text, "K") != 0 && strcmp(text, "C") != 0)

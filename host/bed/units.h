@@ -11,10 +11,10 @@
  * such unit. Source: LAMMPS, command `units`. */
 bool unit_of_length(const char *name, double *metres);
 
-/* Whether a name in a file means this unit: K, C or another. Units of temperature have several names. */
-bool unit_is(const char *name, const char *unit);
-
 #define KELVIN_OF_0_CELSIUS 273.15
+
+/* The unit of temperature, K or C, by its 0 [K]. */
+const char *temperature_unit(double zero);
 
 /* A row of a table of options, without braces. The field gets 0 of the unit [K]. */
 #define OPTION_TEMPERATURE_UNIT(request, field)                                                                        \

@@ -1,12 +1,21 @@
-/* memory.c - checks, before the work begins, whether memory or disk suffice. SPDX-License-Identifier: MIT */
+/* memory.c - checks, before the work begins, whether memory or disk suffice; arrays that grow.
+ * SPDX-License-Identifier: MIT */
 #include "cli/memory.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <sys/resource.h>
 #include <sys/statvfs.h>
 
 #include "cli/message.h"
+
+void *memory_resized(void *array, size_t bytes, bool *good) {
+    void *moved = realloc(array, bytes);
+    if (moved) return moved;
+    *good = false;
+    return array;
+}
 
 /* Reads the number of a line `KEY: N kB` in a file of Linux's /proc [bytes]. Without such a line: `otherwise`. */
 static double proc_bytes(const char *path, const char *format, double otherwise) {

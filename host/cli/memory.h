@@ -1,6 +1,13 @@
-/* memory.h - checks, before the work begins, whether memory or disk suffice. SPDX-License-Identifier: MIT */
+/* memory.h - checks, before the work begins, whether memory or disk suffice; arrays that grow.
+ * SPDX-License-Identifier: MIT */
 #ifndef MEMORY_H
 #define MEMORY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Gives an array another size. Returns the array, which is as it was if there is no memory; *good is false then. */
+void *memory_resized(void *array, size_t bytes, bool *good);
 
 /* Bytes that this process may still allocate: those that the system has left, within the limit on address space.
  * INFINITY: neither is known. */

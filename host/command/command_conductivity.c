@@ -113,7 +113,7 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
     if (rule->error == 0) rule->error = 0.003;
     if (rule->max_rays == 0) rule->max_rays = 50000000;
     bed_options_quantity(&request->bed, &request->emissivity, NULL);
-    bed_options_quantity(&request->bed, &request->solid, NULL);
+    bed_options_quantity(&request->bed, &request->solid, SOLID_UNIT);
     return bed_options_check(&request->bed, "conductivity", CONTENT_CONDUCTION);
 }
 

@@ -98,8 +98,8 @@ static int exchange_check(struct exchange_request *request) {
                        request->solid.given ? "--temperature" : "--solid-conductivity");
     request->options.scratch = request->bed.scratch;
     bed_options_quantity(&request->bed, &request->emissivity, NULL);
-    bed_options_quantity(&request->bed, &request->solid, NULL);
-    bed_options_quantity(&request->bed, &request->temperature, request->zero > 0 ? "C" : "K");
+    bed_options_quantity(&request->bed, &request->solid, SOLID_UNIT);
+    bed_options_quantity(&request->bed, &request->temperature, temperature_unit(request->zero));
     return bed_options_check(&request->bed, "exchange", CONTENT_MATRIX);
 }
 

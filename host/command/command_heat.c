@@ -57,7 +57,7 @@ static const struct option heat_table[] = {
     OPTIONS_WALL,
     {0, "wall-temperature", "LIST",
      "temperatures of walls, zmin=1200,zmax=insulated,300 for example; a number without a name is for all others; "
-     "NAME=triangles:FILE is a column of numbers, one for each triangle of the mesh",
+     "NAME=triangles:FILE is a column of temperatures, one for each triangle of the mesh",
      TO_TEXT(struct heat_request, given.wall_temperature)},
     {0, "wall-power", "LIST", "powers that walls of unknown temperature give off, zmin=500 for example [W]",
      TO_TEXT(struct heat_request, given.wall_power)},
@@ -117,7 +117,10 @@ static int heat_help(void) {
          "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
          "the temperature of a wall (zmin=@TABLE) or of the surroundings. The .csv then has the time in its first\n"
          "column. A series of .vtp has a .pvd for ParaView.\n");
-    puts("--solid-conductivity: Spheres conduct, and T_K is the mean over the surface. A power comes from a source\n"
+    puts("@TABLE: A header has names and units, `t [min],T [C]` or `k [W/(m K)],T [K]`, and tells which column is\n"
+         "which. Beyond the ends of a table its first or last value is taken, with a warning.\n"
+         "\n"
+         "--solid-conductivity: Spheres conduct, and T_K is the mean over the surface. A power comes from a source\n"
          "that is spread evenly inside. Outputs have the least and the largest temperature of the surface, the\n"
          "temperature of the centre, and their estimated errors: T_min_K, T_max_K, T_surface_error_K,\n"
          "T_centre_K, T_centre_error_K. The unit of length must be known.\n"
@@ -172,7 +175,7 @@ static int heat_check_request(struct heat_request *request) {
         return message(STATUS_USAGE,
                        "--solid-conductivity is for --model patches: in other models a sphere has no sides");
     bed_options_quantity(&request->bed, &request->emissivity, NULL);
-    bed_options_quantity(&request->bed, &request->solid, NULL);
+    bed_options_quantity(&request->bed, &request->solid, SOLID_UNIT);
     status = time_check(&request->time, &request->bed);
     if (!status) status = light_check(&request->light, &request->bed, &request->emissivity);
     if (!status) status = given_check(&request->given, &request->bed);

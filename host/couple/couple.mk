@@ -21,9 +21,11 @@ COUPLE_MESH = $(COUPLE_WALLS) \
     host/mesh/sides.c \
     host/mesh/stl.c \
     host/mesh/weld.c \
+    host/text/header.c \
     host/text/read_curve.c \
     host/text/read_lines.c \
-    host/text/read_number.c
+    host/text/read_number.c \
+    host/text/unit.c
 
 # programs of one file each, with their own main
 COUPLE_PROGRAMS = host/couple/example.c

@@ -142,7 +142,7 @@ int bed_options_check(struct bed_options *options, const char *command, enum con
     options->command = command;
     options->progress.quiet = options->quiet;
     if (options->files == 0) return message(STATUS_USAGE, "FILE is missing; see fibrad %s --help", command);
-    bed_options_quantity(options, &options->radius, NULL);
+    bed_options_quantity(options, &options->radius, UNIT_OF_LENGTH);
     if (picture && !plot_ending(picture))
         return message_at(STATUS_USAGE, picture, 0, "unknown ending; there are .svg and .png");
     if (picture && is_series(options)) return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
@@ -150,6 +150,8 @@ int bed_options_check(struct bed_options *options, const char *command, enum con
         return message(STATUS_USAGE, "--until begins with one frame; choose it by --frame");
     if (options->wall_vtp && !options->walls.walls.meshes)
         return message(STATUS_USAGE, "--wall-vtp: there is no --wall mesh:FILE");
+    const int status = options->radius.given ? columns_check(&options->columns_of_file) : STATUS_OK;
+    if (status) return status;
     return outputs_check(&options->outputs, content, is_series(options) || options->timed);
 }
 
@@ -179,6 +181,10 @@ static int run_file(struct bed_options *options, const char *path, struct bed *b
                                       .extra = options->column,
                                       .unit = options->unit,
                                       .some = options->some,
+                                      .name = options->columns_of_file.name,
+                                      .names = options->columns_of_file.names,
+                                      .rule = options->columns_of_file.rule,
+                                      .rules = options->columns_of_file.rules,
                                       .extras = options->columns};
     struct reader *reader;
     bool more = true;
@@ -222,6 +228,7 @@ int bed_options_end(struct bed_options *options, int status, int (*help)(void), 
         status = help();
     for (size_t k = 0; k < options->files; ++k) free(options->file[k]);
     free(options->file);
+    column_options_free(&options->columns_of_file);
     walls_free(&options->walls);
     return status;
 }

@@ -13,6 +13,7 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "frames/column_option.h"
 #include "frames/warnings.h"
 #include "text/report.h"
 #include "read/read.h"
@@ -32,7 +33,7 @@
         {0, "frame", "K",                                                                                              \
          "frame of the file, from 0; -1: the last; all; A:B or A:B:STEP: from A on, up to B - 1 [-1]",                 \
          TO_REQUEST(bed_frames_option)},                                                                               \
-    {                                                                                                                  \
+        OPTIONS_COLUMNS(struct bed_options, columns_of_file), {                                                        \
         0, "positions", NULL, "name spheres by their positions in the file, from 0 [by ids]",                          \
             TO_FLAG(struct bed_options, positions)                                                                     \
     }
@@ -68,11 +69,12 @@
 
 /* A paragraph of --help about the files. */
 #define FILES_MORE                                                                                                     \
-    "FILE may be a dump or data file of LAMMPS or LIGGGHTS, CSV with a header, extended XYZ, VTK (.vtp,\n"             \
-    ".vtk), or text of YADE or MercuryDPM. It may be compressed by gzip. - is standard input. Several files\n"         \
-    "are one series. Files of a pattern 'bed.*.dump' are read in the order of their numbers. A * in OUT\n"             \
-    "stands for the number of the frame, counted through all files from 0. Spheres are named by the ids of\n"          \
-    "the file, or by positions from 0 if the file has no ids. docs/files.md has the details.\n"
+    "FILE may be a dump or data file of LAMMPS or LIGGGHTS, CSV with a header, extended XYZ, VTK (.vtk,\n"             \
+    ".vtp, .vtu, .pvtp, .pvtu), or text of YADE or MercuryDPM. It may be compressed by gzip. - is standard\n"          \
+    "input. Several files are one series. Files of a pattern 'bed.*.dump' are read in the order of their\n"            \
+    "numbers. A * in OUT stands for the number of the frame, counted through all files from 0. Spheres are\n"          \
+    "named by the ids of the file, or by positions from 0 if the file has no ids. A column whose header has a\n"       \
+    "unit, P [kW] or k [W/(m K)], is converted. docs/files.md has the details.\n"
 
 enum { BED_COLUMNS_MAX = 8 };
 
@@ -86,6 +88,7 @@ struct bed_options {
     bool periodic; /* --periodic was given */
     double period[3];
     bool positions;
+    struct column_options columns_of_file;
     struct quantity radius;
     const char *length_unit;             /* NULL: not given */
     const char *column[BED_COLUMNS_MAX]; /* [columns] columns of the file that options name */

@@ -4,7 +4,8 @@
 #include "cli/message.h"
 
 int solid_option(const char *text, void *solid) {
-    return table_option("--solid-conductivity", text, SOLID_CONDUCTIVITY_MIN, SOLID_CONDUCTIVITY_MAX, solid);
+    static const struct curve_axes axes = {CURVE_AXIS_KELVINS, {"k lambda conductivity", SOLID_UNIT}};
+    return table_option("--solid-conductivity", text, &axes, SOLID_CONDUCTIVITY_MIN, SOLID_CONDUCTIVITY_MAX, solid);
 }
 
 int solid_values(struct bed_options *options, const struct bed *bed, const struct quantity *solid,
@@ -18,9 +19,12 @@ int solid_values(struct bed_options *options, const struct bed *bed, const struc
                            SOLID_CONDUCTIVITY_MAX, conductivity);
 }
 
-int solid_relative(const struct bed_options *options, const struct bed *bed, const struct quantity *solid,
+int solid_relative(struct bed_options *options, const struct bed *bed, const struct quantity *solid,
                    const double *temperature, double metres, double *conductivity, double *relative) {
+    struct table_excess excess = {0};
     quantity_follow(solid, bed, temperature, conductivity);
+    quantity_excess(solid, bed, temperature, &excess);
+    warn_table(&options->warned, "--solid-conductivity", &excess);
     for (uint32_t i = 0; i < bed->n; ++i) {
         relative[i] =
             fibrad_relative_conductivity(conductivity[i], bed->r[i] * metres, temperature[i], FIBRAD_STEFAN_BOLTZMANN);

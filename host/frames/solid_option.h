@@ -8,7 +8,9 @@
 #include "bed/conduction.h"
 #include "frames/bed_options.h"
 
-/* Bounds of k_s [W/(m K)]. */
+#define SOLID_UNIT "W/(m K)"
+
+/* Bounds of k_s, in that unit. */
 #define SOLID_CONDUCTIVITY_MIN 1e-6
 #define SOLID_CONDUCTIVITY_MAX 1e12
 
@@ -29,9 +31,10 @@ int solid_values(struct bed_options *options, const struct bed *bed, const struc
                  double **conductivity, double *metres);
 
 /* Finds k* of all spheres, relative [n], at their temperatures [n] [K]: infinite at 0 K, NaN where the temperature is
- * NaN. Tables first give conductivity [n] at these temperatures. Status 0, or STATUS_INPUT naming the line of a sphere
- * whose k* is below FIBRAD_RELATIVE_CONDUCTIVITY_MIN. */
-int solid_relative(const struct bed_options *options, const struct bed *bed, const struct quantity *solid,
+ * NaN. Tables, with a warning where temperatures are beyond their ends, first give conductivity [n] at these
+ * temperatures. Status 0, or STATUS_INPUT naming the line of a sphere whose k* is below
+ * FIBRAD_RELATIVE_CONDUCTIVITY_MIN. */
+int solid_relative(struct bed_options *options, const struct bed *bed, const struct quantity *solid,
                    const double *temperature, double metres, double *conductivity, double *relative);
 
 /* Reports --solid-conductivity and the mean k* of the spheres, and the least and the largest one if they differ. */

@@ -22,6 +22,8 @@ enum kind {
     HEAT_CAPACITY,
     DENSITY,
     COLD_SURFACE,
+    EMISSIVITY_TABLE,
+    SOLID_TABLE,
     WALLS_OPEN,
     WALLS_APART,
     CLOSING
@@ -35,6 +37,7 @@ enum kind {
 #define COLD          150.0 /* [K] a bed is hardly colder everywhere */
 #define CLOSED        1e-9  /* closed rows of walls add up to 1 within this */
 #define APART         0.1   /* sums of rows of walls may differ from 1 so much before closing; few directions: 0.01s */
+#define TIME_LEAST    1e-9  /* relative: times in hours are rounded */
 #define CHANGE_LARGE  1.5   /* change by closing over the error of a row; among thousands of rows chance makes 1 */
 /* Bounds with a margin of 2 beyond all solids, from aerogel to uranium. */
 #define CAPACITY_LOW  30.0 /* [J/(kg K)] */
@@ -235,6 +238,27 @@ void warn_matter(struct warned *warned, const struct bed *bed, const double *cap
     if (rho < bed->n && is_new(warned, DENSITY))
         message_at(STATUS_OK, warned->file, bed->line[rho],
                    "warning: the density is %g kg/m3; solids have some 100 to 20,000", density[rho]);
+}
+
+void warn_table(struct warned *warned, const char *option, const struct table_excess *excess) {
+    const enum kind kind = strcmp(option, "--emissivity") == 0 ? EMISSIVITY_TABLE : SOLID_TABLE;
+    if (excess->spheres > 0 && is_new(warned, kind))
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: %s: %u sphere%s beyond the table, by up to %.3g K; the value at its end is taken", option,
+                   excess->spheres, excess->spheres == 1 ? " has a temperature" : "s have temperatures",
+                   excess->kelvins);
+}
+
+void warn_times(struct warned *warned, const char *what, const struct curve *curve, double until) {
+    if (curve->n == 0) return;
+    const double first = curve->x[0], last = curve->x[curve->n - 1];
+    if (first > TIME_LEAST * until)
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: the table of %s begins at %g s; before, its first temperature is taken", what, first);
+    if (last < (1 - TIME_LEAST) * until)
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: the table of %s ends at %g s; from there to %g s its last temperature is taken", what,
+                   last, until);
 }
 
 void warn_surfaces(struct warned *warned, const struct bed *bed, const double *least) {

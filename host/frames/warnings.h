@@ -46,6 +46,12 @@ void warn_temperatures(struct warned *warned, const struct bed *bed, const struc
 /* Warns if heat capacities [J/(kg K)] or densities [kg/m3], both [bed->n], are not those of solids. */
 void warn_matter(struct warned *warned, const struct bed *bed, const double *capacity, const double *density);
 
+/* Warns if spheres lie beyond the ends of the tables of an option, where values do not change. */
+void warn_table(struct warned *warned, const char *option, const struct table_excess *excess);
+
+/* Warns if a table over times does not reach from 0 to `until` [s]. what: whose table. */
+void warn_times(struct warned *warned, const char *what, const struct curve *curve, double until);
+
 /* Warns if part of a surface comes out colder than 0 K. least: [bed->n], K, or NaN. */
 void warn_surfaces(struct warned *warned, const struct bed *bed, const double *least);
 

@@ -25,9 +25,14 @@ int given_check(struct given_options *options, struct bed_options *bed) {
     if (t->value < -options->zero) return message(STATUS_USAGE, "--temperature: %g is below absolute zero", t->value);
     t->some = p->given && !options->timed;
     p->some = true;
-    bed_options_quantity(bed, t, options->zero > 0 ? "C" : "K");
+    bed_options_quantity(bed, t, temperature_unit(options->zero));
     bed_options_quantity(bed, p, "W");
     return STATUS_OK;
+}
+
+/* Tables of temperatures over time are in the unit of the options. */
+static const struct curve_axes *given_axes(const struct given_options *options) {
+    return options->zero > 0 ? &curve_celsius : &curve_kelvins;
 }
 
 int given_ambient(struct given_options *options, double *ambient) {
@@ -36,7 +41,8 @@ int given_ambient(struct given_options *options, double *ambient) {
     *ambient = NAN;
     if (!options->ambient) return STATUS_OK;
     if (options->timed && *options->ambient == '@') {
-        status = curve_read(options->ambient + 1, "temperature", low, TEMPERATURE_MAX, &options->ambient_curve);
+        status = curve_read(options->ambient + 1, "temperature", given_axes(options), low, TEMPERATURE_MAX,
+                            &options->ambient_curve);
         if (!status) *ambient = curve_at(&options->ambient_curve, 0);
     } else {
         status = options_number("--ambient", options->ambient, low, TEMPERATURE_MAX, ambient);
@@ -154,7 +160,7 @@ int given_reflectors(const struct given *given, const double *emissivity, const 
 
 int given_values(const struct given_options *options, const struct bed *bed, const char *file,
                  const struct walls *walls, struct given *given) {
-    *given = (struct given){.tables.timed = options->timed};
+    *given = (struct given){.tables = {.axes = given_axes(options), .timed = options->timed}};
     int status = given_walls(options, bed, walls, given);
     if (!status) status = given_sides(walls, options->zero, given);
     if (!status)

@@ -190,6 +190,17 @@ void heat_properties(const struct heat_problem *problem, const struct bed *bed, 
     for (uint32_t i = 0; i < bed->n; ++i) problem->conductivity[i] = problem->solid[i] * problem->per_watt;
 }
 
+void heat_excess_of(const struct heat_problem *problem, const struct bed *bed, const double *temperature,
+                    struct table_excess excess[2]) {
+    quantity_excess(problem->of_emissivity, bed, temperature, &excess[0]);
+    quantity_excess(problem->of_solid, bed, temperature, &excess[1]);
+}
+
+void heat_warn_excess(struct warned *warned, const struct table_excess excess[2]) {
+    warn_table(warned, "--emissivity", &excess[0]);
+    warn_table(warned, "--solid-conductivity", &excess[1]);
+}
+
 /* Context of heat_follow. */
 struct heat_law {
     const struct heat_problem *problem;
@@ -387,5 +398,8 @@ int heat_run(struct bed_options *options, const struct heat_problem *problem, co
     int status = heat_once(options, problem, bed, report);
     if (!status && problem->error > 0) status = heat_improve(options, problem, bed, report);
     report->seconds = progress_clock() - begun;
+    struct table_excess excess[2] = {{0}};
+    if (!status) heat_excess_of(problem, bed, report->result.temperature, excess);
+    heat_warn_excess(&options->warned, excess);
     return status;
 }

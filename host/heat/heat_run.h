@@ -64,6 +64,12 @@ struct heat_report {
 void heat_properties(const struct heat_problem *problem, const struct bed *bed, const double *temperature,
                      double *emissivity);
 
+/* Finds how far spheres are beyond the ends of tables of emissivities and conductivities, as quantity_excess, and warns
+ * of it. */
+void heat_excess_of(const struct heat_problem *problem, const struct bed *bed, const double *temperature,
+                    struct table_excess excess[2]);
+void heat_warn_excess(struct warned *warned, const struct table_excess excess[2]);
+
 /* Solves the problem of a bed. With problem->error, solves again with more beams and patches until the estimated error
  * is small enough. The caller sets report->metres and all arrays of report->result. Status 0, STATUS_INPUT if no
  * temperatures above 0 K have the given powers, STATUS_MEMORY, or as bed_options_status. */

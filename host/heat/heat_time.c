@@ -40,8 +40,8 @@ int time_check(struct time_options *time, struct bed_options *bed) {
     if (time->times && time->every > 0) return message(STATUS_USAGE, "--times and --every cannot be combined");
     if (time->every > 0 && time->until / time->every > TIMES_MAX)
         return message(STATUS_USAGE, "--every: more than %d times", TIMES_MAX);
-    bed_options_quantity(bed, &time->capacity, NULL);
-    bed_options_quantity(bed, &time->density, NULL);
+    bed_options_quantity(bed, &time->capacity, "J/(kg K)");
+    bed_options_quantity(bed, &time->density, "kg/m3");
     return STATUS_OK;
 }
 
@@ -68,8 +68,9 @@ struct time_run {
     double error;                                 /* largest fibrad_span.error */
     struct time_point *point;                     /* [points] of the picture */
     size_t points, room;
-    bool failed; /* memory for points ran out */
-    double lag;  /* largest r^2/(pi^2 alpha) of spheres that conduct [s]; 0: none conducts */
+    bool failed;                   /* memory for points ran out */
+    struct table_excess excess[2]; /* of emissivities and conductivities */
+    double lag;                    /* largest r^2/(pi^2 alpha) of spheres that conduct [s]; 0: none conducts */
 };
 
 static struct time_point point_of(const struct time_run *m, double time, const double *temperature) {
@@ -252,6 +253,7 @@ static int write_state(struct time_run *m) {
     fibrad_heat_sources shown = m->sources;
     shown.temperature = m->span.temperature;
     heat_properties(m->problem, &m->bed, shown.temperature, m->problem->emissivity);
+    heat_excess_of(m->problem, &m->bed, shown.temperature, m->excess);
     int status = fibrad_transient_powers(m->transient, &shown, m->result);
     if (!status && m->triangles->count && !m->problem->by_factors) {
         status = fibrad_transient_sides(m->transient, m->triangles->quantity[TRIANGLE_FLUX].side,
@@ -376,6 +378,16 @@ static void warn_lag(const struct time_run *m) {
             m->lag, step);
 }
 
+/* Warns of tables whose ends the run has left. */
+static void warn_tables(const struct time_run *m) {
+    struct warned *warned = &m->options->warned;
+    const struct walls *walls = &m->problem->walls;
+    heat_warn_excess(warned, m->excess);
+    for (uint32_t k = 0; k < walls->count; ++k)
+        warn_times(warned, wall_name(walls, k), &m->problem->wall_curve[k], m->time->until);
+    warn_times(warned, "--ambient", m->problem->ambient_curve, m->time->until);
+}
+
 /* Runs a bed from 0 to --until. before [spheres]: room for the initial temperatures. */
 static int run_bed(struct time_run *m, double *before, const struct output *picture) {
     const fibrad_scene_config scene = bed_scene(&m->bed, &m->problem->walls);
@@ -397,6 +409,7 @@ static int run_bed(struct time_run *m, double *before, const struct output *pict
     progress_stop(&m->options->progress);
     if (!status && picture) status = plot_time(picture, m->options->name, m->point, m->points);
     if (!status) warn_lag(m);
+    if (!status) warn_tables(m);
     if (!status) print_summary(m, before, progress_clock() - begun);
     fibrad_transient_free(m->transient);
     return status;

@@ -8,6 +8,22 @@
 #include "mesh/meshes.h"
 #include "read/read.h"
 
+/* Puts columns of other names, and rules of rows, into the options. Free options->name and options->rule. */
+static int take_columns(const struct file_wanted *wanted, struct read_options *options) {
+    options->names = wanted->names, options->rules = wanted->onlys + wanted->skips;
+    struct column_name *name = malloc((options->names + 1) * sizeof *name);
+    struct row_rule *rule = malloc((options->rules + 1) * sizeof *rule);
+    options->name = name, options->rule = rule;
+    if (!name || !rule) return STATUS_MEMORY;
+    for (size_t k = 0; k < options->names; ++k) name[k] = (struct column_name){wanted->name[k][0], wanted->name[k][1]};
+    for (size_t k = 0; k < options->rules; ++k) {
+        const bool skip = k >= wanted->onlys;
+        const char *const *pair = skip ? wanted->skip[k - wanted->onlys] : wanted->only[k];
+        rule[k] = (struct row_rule){pair[0], pair[1], skip};
+    }
+    return STATUS_OK;
+}
+
 int fibrad_file_read(const struct file_wanted *wanted, struct file_bed *found, file_report *report, void *context) {
     struct read_options options = {
         .no_radius = wanted->no_radius != 0, .extra = wanted->column, .extras = wanted->columns, .any_unit = true};
@@ -15,9 +31,13 @@ int fibrad_file_read(const struct file_wanted *wanted, struct file_bed *found, f
     struct bed *bed = malloc(sizeof *bed);
     *found = (struct file_bed){.bed = bed};
     if (!bed) return STATUS_MEMORY;
+    *bed = bed_empty();
+    int status = take_columns(wanted, &options);
     message_redirect(report, context);
-    const int status = read_bed(wanted->path, &options, bed);
+    if (!status) status = read_bed(wanted->path, &options, bed);
     message_redirect(NULL, NULL);
+    free((void *)(uintptr_t)options.name);
+    free((void *)(uintptr_t)options.rule);
     if (status) return status;
     found->n = bed->n;
     found->x = bed->x, found->y = bed->y, found->z = bed->z, found->r = bed->r;

@@ -25,12 +25,15 @@ struct file_bed {
     uint32_t n;
 };
 
-/* The frame and the columns to read. */
+/* The frame, the columns and the rows to read. */
 struct file_wanted {
     const char *path;
-    int64_t frame;             /* from 0; -1: the last one */
-    const char *const *column; /* [columns] names of further columns, all of numbers */
-    size_t columns;
+    int64_t frame;                /* from 0; -1: the last one */
+    const char *const *column;    /* [columns] names of further columns, all of numbers */
+    const char *const (*name)[2]; /* [names] columns that the file calls otherwise: x, and its name in the file */
+    const char *const (*only)[2]; /* [onlys] columns and values: rows with other values are left out */
+    const char *const (*skip)[2]; /* [skips] columns and values: rows with these values are left out */
+    size_t columns, names, onlys, skips;
     int no_radius; /* not 0: radii are not read, r is NaN */
 };
 

@@ -137,7 +137,7 @@ int reader_next(struct reader *r, struct bed *bed, bool *more) {
             return STATUS_OK;
         }
         if (r->done && !r->filled && !r->source.options.series)
-            return message_at(STATUS_INPUT, name, 0, "there are no spheres in the file");
+            return message_at(STATUS_INPUT, name, 0, "%s", read_options_none(&r->source.options));
         if (*more) message_at(STATUS_OK, name, 0, "warning: frame %" PRId64 " is empty and is left out", bed->frame);
     }
     return STATUS_OK;

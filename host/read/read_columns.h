@@ -6,6 +6,8 @@
 #include "read/read_options.h"
 #include "text/read_lines.h"
 
+enum { UNIT_LENGTH = 32 };
+
 /* The wanted columns. Each field is an index in a row. */
 struct columns {
     size_t width;         /* fields of a row */
@@ -15,27 +17,40 @@ struct columns {
     double radius_unit; /* 0.5 for diameters */
     size_t id;          /* width: there is none */
     size_t *extra;      /* [extras] */
-    size_t *kept;       /* [keeps] columns that are kept as text */
-    const char **text;  /* [keeps] their texts in the current row */
-    char *kept_names;   /* their names, with blanks in between */
+    double *factor;     /* [extras] from the unit of the column to the expected one */
+    size_t *named;      /* [names] columns of read_options.name */
+    size_t *ruled;      /* [rules] columns of read_options.rule */
+    struct twin *twin;  /* [twins] wanted columns that the file has twice, which must be equal */
+    size_t twins;
+    size_t *kept;      /* [keeps] columns that are kept as text */
+    const char **text; /* [keeps] their texts in the current row */
+    char *kept_names;  /* their names, with blanks in between */
     size_t keeps;
-    bool commas;        /* numbers may have decimal commas */
-    char mark;          /* decimal point or comma, the first one in the file; 0: none so far */
-    char *const *units; /* [width] units in the header, "": none; NULL: headers of this format have no units */
+    bool commas;               /* numbers may have decimal commas */
+    char mark;                 /* decimal point or comma, the first one in the file; 0: none so far */
+    char (*unit)[UNIT_LENGTH]; /* [width] units of columns; "": none */
 };
 
 /* Finds the columns by the names of a header, in any case: x, xu, xs or xsu, and so on; r, radius, diameter or d; id.
- * Extra columns have exactly the wanted names, with or without units. Free with columns_free. Status 0, STATUS_MEMORY,
- * or STATUS_INPUT if a column is missing or occurs twice, or if coordinates are scaled and the bed has no box. */
-int columns_find(struct columns *columns, const struct lines *lines, const struct fields *names,
-                 const struct read_options *options, const struct bed *bed);
+ * Columns of options->name go before them. Extra columns have exactly the wanted names, with or without units. units:
+ * [names->n] those of the header, NULL: headers of this format have none. The unit of the coordinates becomes that of
+ * the bed. Free with columns_free. Status 0, STATUS_MEMORY, or STATUS_INPUT if a column is missing, if units contradict
+ * each other, or if coordinates are scaled and the bed has no box. */
+int columns_find(struct columns *columns, const struct lines *lines, const struct fields *names, char *const *units,
+                 const struct read_options *options, struct bed *bed);
 
 void columns_free(struct columns *columns);
 
 /* Whether x, y and z are among the names. */
 bool columns_named(const struct fields *names);
 
-/* Adds the sphere of one row to the bed. Status 0, STATUS_MEMORY, or STATUS_INPUT naming the column. */
+/* Finds the factor from the unit of further column k to the expected one. lengths: the unit of lengths, or "". Status
+ * 0, or STATUS_INPUT if the unit is of another kind. */
+int columns_factor(const struct lines *lines, const struct read_options *options, size_t k, const char *unit,
+                   const char *lengths, double *factor);
+
+/* Adds the sphere of one row to the bed, if options->rule allows. Status 0, STATUS_MEMORY, or STATUS_INPUT naming the
+ * column. */
 int columns_add(struct columns *columns, const struct lines *lines, const struct fields *row,
                 const struct read_options *options, struct bed *bed);
 

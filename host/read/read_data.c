@@ -4,6 +4,7 @@
  * `Atoms # sphere` has the spheres. Positions are those within the box; image flags are not used. */
 #include <ctype.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,14 +64,35 @@ static void read_comment(const struct lines *lines, char *style, struct bed *bed
     if (step && sscanf(step, ", timestep = %39[0-9]", word) == 1) (void)number_read_whole(word, &bed->timestep);
 }
 
+/* A box of any direction: the lines `ax ay az avec`, bvec, cvec and `ox oy oz abc origin`. */
+struct edges {
+    double edge[9], origin[3];
+    int lines;
+};
+
+/* Reads a line of such a box. The last one puts the box into the bed. *taken: it is such a line. */
+static int read_edge(struct source *source, struct edges *edges, bool *taken, struct bed *bed) {
+    static const char *const name[] = {"avec", "bvec", "cvec", "origin"};
+    const struct fields *fields = &source->fields;
+    int k = 0, status = STATUS_OK;
+    while (k < 4 && (fields->n != (k < 3 ? 4u : 5u) || strcmp(fields->at[fields->n - 1], name[k]) != 0)) ++k;
+    *taken = k < 4;
+    for (int axis = 0; axis < 3 && *taken && !status; ++axis)
+        status = lines_number(&source->lines, name[k], fields->at[axis],
+                              k < 3 ? &edges->edge[3 * k + axis] : &edges->origin[axis]);
+    if (!*taken || status || ++edges->lines < 4) return status;
+    return source_edges(source, "the box is triclinic", edges->edge, edges->origin, (const bool[3]){false}, bed);
+}
+
 /* Reads a line of the header, which has been split. */
-static int read_header_line(struct source *source, int64_t *atoms, struct bed *bed) {
+static int read_header_line(struct source *source, int64_t *atoms, struct edges *edges, struct bed *bed) {
     static const char *const low[] = {"xlo", "ylo", "zlo"}, *const high[] = {"xhi", "yhi", "zhi"};
     const struct fields *fields = &source->fields;
     char **at = fields->at;
-    int status = STATUS_OK;
+    bool taken;
     if (fields->n == 2 && strcmp(at[1], "atoms") == 0) return source_count(source, at[0], atoms);
-    for (int axis = 0; axis < 3; ++axis) {
+    int status = read_edge(source, edges, &taken, bed);
+    for (int axis = 0; axis < 3 && !status; ++axis) {
         if (fields->n != 4 || strcmp(at[2], low[axis]) != 0 || strcmp(at[3], high[axis]) != 0) continue;
         status = lines_number(&source->lines, low[axis], at[0], &bed->low[axis]);
         if (!status) status = lines_number(&source->lines, high[axis], at[1], &bed->high[axis]);
@@ -80,17 +102,16 @@ static int read_header_line(struct source *source, int64_t *atoms, struct bed *b
     for (int k = 0; k < 3 && tilt && !status; ++k) {
         double value;
         status = lines_number(&source->lines, at[3 + k], at[k], &value);
-        if (!status && value != 0)
+        if (!status && fabs(value) > EDGE_TRACE * (bed->high[0] - bed->low[0]))
             return source_fail(source, "the box is tilted; only boxes with right angles can be read");
     }
-    if (fields->n > 0 && strcmp(at[fields->n - 1], "avec") == 0)
-        return source_fail(source, "the box is triclinic; only boxes with right angles can be read");
     return status;
 }
 
 /* Reads up to the section Atoms. style: out: the comment behind Atoms. */
 static int read_header(struct source *source, int64_t *atoms, char *style, struct bed *bed) {
     struct lines *lines = &source->lines;
+    struct edges edges = {.lines = 0};
     bool more, header = true;
     int status = lines_next(lines, &more);
     if (!status && more) read_comment(lines, style, bed);
@@ -108,7 +129,7 @@ static int read_header(struct source *source, int64_t *atoms, char *style, struc
         header = header && !isupper((unsigned char)*word);
         if (!header) continue; /* a line of another section */
         status = fields_split_blanks(&source->fields, lines->text);
-        if (!status) status = read_header_line(source, atoms, bed);
+        if (!status) status = read_header_line(source, atoms, &edges, bed);
     }
     return status ? status : source_ends(source, "there is no section Atoms in this LAMMPS data file");
 }
@@ -134,7 +155,7 @@ static int guess_style(struct source *source, char *style) {
 }
 
 /* Finds the columns of a style. *more: how many unknown columns may follow. */
-static int find_style(struct source *source, const char *style, size_t *more, const struct bed *bed) {
+static int find_style(struct source *source, const char *style, size_t *more, struct bed *bed) {
     const struct lines *lines = &source->lines;
     const bool hybrid = strncmp(style, "hybrid", 6) == 0;
     size_t k = 0;

@@ -4,6 +4,7 @@
  * ...`. TIMESTEP stands near the beginning of a frame. ATOMS, with the names of the columns, is the last section of a
  * frame. UNITS stands before the first frame only. */
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -119,35 +120,52 @@ static int read_numbers(struct source *source, size_t n, const char *const names
     return status;
 }
 
+/* Reads the line `low high` of an axis, with a tilt behind it if the box has tilts. */
 static int read_bounds(struct source *source, int axis, bool tilted, bool periodic, struct bed *bed) {
     static const char *const names[] = {"the lower bound", "the upper bound", "the tilt"};
     double bound[3] = {0, 0, 0};
     const int status = read_numbers(source, tilted ? 3 : 2, names, bound, "the two bounds of the box are expected");
     if (status) return status;
+    const double length = bound[1] - bound[0];
     if (!(bound[0] < bound[1]))
         return source_fail(source, "the box is empty: its upper bound must be above the lower one");
-    if (bound[2] != 0) return source_fail(source, "the box is tilted; only boxes with right angles can be read");
+    if (fabs(bound[2]) > EDGE_TRACE * length)
+        return source_fail(source, "the box is tilted; only boxes with right angles can be read");
     bed->low[axis] = bound[0];
     bed->high[axis] = bound[1];
-    bed->period[axis] = periodic ? bound[1] - bound[0] : 0;
+    bed->period[axis] = periodic ? length : 0;
     return STATUS_OK;
 }
 
+/* Reads the three lines of a box of any direction: in each an edge and a coordinate of the origin. */
+static int read_edges(struct source *source, const bool periodic[3], struct bed *bed) {
+    static const char *const names[] = {"an edge of the box", "an edge of the box", "an edge of the box",
+                                        "the origin of the box"};
+    double line[4], edge[9], origin[3];
+    for (int k = 0; k < 3; ++k) {
+        const int status =
+            read_numbers(source, 4, names, line, "an edge of the box and one coordinate of its origin are expected");
+        if (status) return status;
+        memcpy(&edge[3 * k], line, 3 * sizeof *line);
+        origin[k] = line[3];
+    }
+    return source_edges(source, "the box is triclinic", edge, origin, periodic, bed);
+}
+
 /* Reads `ITEM: BOX BOUNDS pp ff ff` and a line `low high` for each axis. pp marks a periodic axis, other pairs of f, s,
- * m an open one. Old files lack the marks. Triclinic boxes have `xy xz yz` before the marks and a tilt behind each
- * pair. Boxes of any direction have `abc origin`. */
+ * m an open one. Old files lack the marks, and some programs write `xx yy zz` in their place. Boxes that may be
+ * triclinic have `xy xz yz` before the marks and a tilt behind each pair. Boxes of any direction have `abc origin`. */
 static int read_box(struct source *source, char *marks, struct bed *bed) {
     int status = fields_split_blanks(&source->fields, marks);
     if (status) return status;
     char **mark = source->fields.at;
     size_t n = source->fields.n;
-    if (n > 0 && strcmp(mark[0], "abc") == 0)
-        return source_fail(source, "the box is triclinic; only boxes with right angles can be read");
-    const bool tilted = n >= 3 && strcmp(mark[0], "xy") == 0;
-    if (tilted) {
-        mark += 3;
-        n -= 3;
-    }
+    const bool edges = n >= 2 && strcmp(mark[0], "abc") == 0, tilted = n >= 3 && strcmp(mark[0], "xy") == 0;
+    const size_t before = edges ? 2 : tilted ? 3 : 0;
+    if (before > 0) mark += before, n -= before;
+    const bool unmarked =
+        n == 3 && strcmp(mark[0], "xx") == 0 && strcmp(mark[1], "yy") == 0 && strcmp(mark[2], "zz") == 0;
+    if (unmarked) n = 0;
     if (n != 0 && n != 3) return source_fail(source, "BOX BOUNDS needs three boundary marks, such as pp ff ff");
     bool periodic[3] = {false, false, false};
     for (size_t axis = 0; axis < n; ++axis) {
@@ -156,6 +174,8 @@ static int read_box(struct source *source, char *marks, struct bed *bed) {
             return message_at(STATUS_INPUT, source->lines.name, source->lines.number, "unknown boundary mark '%.40s'",
                               mark[axis]);
     }
+    if (unmarked) source_warn_open(source);
+    if (edges) return read_edges(source, periodic, bed);
     for (int axis = 0; axis < 3 && !status; ++axis) status = read_bounds(source, axis, tilted, periodic[axis], bed);
     return status;
 }

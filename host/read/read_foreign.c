@@ -34,13 +34,17 @@ static const struct {
     {0, 2, "\xfe\xff", "text in UTF-16; save it as UTF-8"},
     {0, 15, "LammpS RestartT", "a LAMMPS restart file; write a text dump or a data file"},
     {8, 4, "DUMP", "a binary LAMMPS dump; write a text dump"},
+    {4, 4, "CORD", "a DCD file; write a text dump: dump ... custom ... id x y z radius"},
     {0, 4, "ply\n", "a PLY file of surfaces"},
     {0, 6, "solid ", "an STL file of surfaces"},
     {0, 14, "%%MatrixMarket", "a matrix, as fibrad writes it; give the file of the spheres"},
     {0, 8, "FIBROWS1", "a file of rows; put them together: fibrad join FILE..."},
 };
 
-/* Files known by their first text behind blanks. */
+static const char mdpa[] =
+    "an .mdpa file of Kratos, which has nodes and radii in different tables; write a table with a header: id,x,y,z,r";
+
+/* Files known by their first text behind blanks and comments //. */
 static const struct {
     const char *text, *what;
 } texts[] = {
@@ -49,6 +53,11 @@ static const struct {
     {"#!/", "a script"},
     {"import ", "a Python program"},
     {"from ", "a Python program"},
+    {"---\n",
+     "a dump in YAML, as dump yaml of LAMMPS writes it; write a text dump: dump ... custom ... id x y z radius"},
+    {"Begin ModelPartData", mdpa},
+    {"Begin Properties", mdpa},
+    {"Begin Nodes", mdpa},
     {"Number of particles", "an AtomEye .cfg file; write a text dump: dump ... custom ... id x y z radius"},
 };
 
@@ -101,7 +110,13 @@ static const char *find_kind(const char *text, size_t size) {
     if (is_script(text, end)) return "an input script of LAMMPS; give a dump or data file";
     const char *written = find_own(text, size);
     if (written) return written;
-    while (text < end && isspace((unsigned char)*text)) ++text;
+    for (;;) {
+        while (text < end && isspace((unsigned char)*text)) ++text;
+        const char *next =
+            end - text > 2 && memcmp(text, "//", 2) == 0 ? memchr(text, '\n', (size_t)(end - text)) : NULL;
+        if (!next) break;
+        text = next;
+    }
     for (size_t k = 0; k < sizeof texts / sizeof *texts; ++k)
         if ((size_t)(end - text) >= strlen(texts[k].text) && memcmp(text, texts[k].text, strlen(texts[k].text)) == 0)
             return texts[k].what;

@@ -2,6 +2,7 @@
 #include "read/read_format.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,14 +46,33 @@ void source_warn_open(struct source *source) {
                "warning: the file does not say which axes are periodic; all are open unless --periodic says otherwise");
 }
 
-int source_columns(struct source *source, const char *names, const struct bed *bed) {
+int source_columns(struct source *source, const char *names, struct bed *bed) {
     struct fields fields = {0};
     char *text = strdup(names);
     int status = text ? fields_split_blanks(&fields, text) : message_memory();
-    if (!status) status = columns_find(&source->columns, &source->lines, &fields, &source->options, bed);
+    if (!status) status = columns_find(&source->columns, &source->lines, &fields, NULL, &source->options, bed);
     free(fields.at);
     free(text);
     return status;
+}
+
+int source_edges(const struct source *source, const char *what, const double edge[9], const double origin[3],
+                 const bool periodic[3], struct bed *bed) {
+    double longest = 0;
+    for (int k = 0; k < 9; ++k) longest = fmax(longest, fabs(edge[k]));
+    for (int k = 0; k < 9; ++k) {
+        if (k % 4 == 0 || fabs(edge[k]) <= EDGE_TRACE * longest) continue;
+        return message_at(STATUS_INPUT, source->lines.name, source->lines.number,
+                          "%s; only boxes with right angles, whose edges lie along x, y and z, can be read", what);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const double length = edge[4 * axis];
+        if (!(length > 0)) return source_fail(source, "the box is empty: its edges must be above 0");
+        bed->low[axis] = origin[axis];
+        bed->high[axis] = origin[axis] + length;
+        bed->period[axis] = periodic[axis] ? length : 0;
+    }
+    return STATUS_OK;
 }
 
 int source_rows(struct source *source, int64_t rows, size_t more, struct bed *bed) {

@@ -55,7 +55,7 @@ int source_foreign(const struct source *source);
 int source_fail(const struct source *source, const char *what);
 
 /* Finds the columns by a text of names with blanks in between. Status as columns_find. */
-int source_columns(struct source *source, const char *names, const struct bed *bed);
+int source_columns(struct source *source, const char *names, struct bed *bed);
 
 /* Reads the next lines as spheres, one per line. A row may have up to `more` columns behind the known ones. Status as
  * columns_add, or STATUS_INPUT if the file ends too early. */
@@ -70,6 +70,14 @@ void source_skip_end(const struct source *source, enum found *found, char *lack)
 
 /* Reads a text as a number of atoms. Status 0 or STATUS_INPUT. */
 int source_count(const struct source *source, const char *text, int64_t *atoms);
+
+/* Relative to the length of an edge: boxes that were turned and written in digits have traces of this size. */
+#define EDGE_TRACE 1e-9
+
+/* Puts a box into the bed, whose edges a, b, c [3] begin at the origin. periodic [3]. `what` names the box in messages.
+ * Status 0, or STATUS_INPUT if the edges do not lie along x, y and z, or are not above 0. */
+int source_edges(const struct source *source, const char *what, const double edge[9], const double origin[3],
+                 const bool periodic[3], struct bed *bed);
 
 /* Warns once per file that the file does not say which axes are periodic. */
 void source_warn_open(struct source *source);

@@ -10,8 +10,8 @@
 #include "read/read_format.h"
 #include "text/read_number.h"
 
-/* How many numbers a line has. -1: it has something else, or 100 numbers or more. */
-static int numbers_of(const char *text, const char *end) {
+/* How many numbers a line has, and the first of them. -1: it has something else, or 100 numbers or more. */
+static int numbers_of(const char *text, const char *end, double *first) {
     char line[2000], *word, *rest = line;
     double value;
     int n = 0;
@@ -19,21 +19,26 @@ static int numbers_of(const char *text, const char *end) {
     if (size >= sizeof line) return -1;
     memcpy(line, text, size);
     line[size] = 0;
-    while ((word = strtok_r(rest, " \t\r", &rest)))
+    while ((word = strtok_r(rest, " \t\r", &rest))) {
         if (++n == 100 || !number_read(word, &value)) return -1;
+        if (n == 1) *first = value;
+    }
     return n;
 }
 
-/* Whether the first two lines have as many numbers as in such files. */
+/* Whether the first lines have as many numbers as in such files. Frames without spheres may come first. They are lines
+ * alone. */
 static bool is_mercury(const struct source *source) {
     size_t size;
-    const char *text = source_begin(source, &size), *end = memchr(text, '\n', size);
-    if (!end) return false;
-    const int head = numbers_of(text, end);
-    const char *row = end + 1, *last = memchr(row, '\n', size - (size_t)(row - text));
-    if (!last) return false;
-    const int width = numbers_of(row, last);
-    return (head == 8 && width == 14) || (head == 6 && width == 8);
+    const char *text = source_begin(source, &size), *last = text + size, *end;
+    int head = 0;
+    for (double spheres = 0, first; (end = memchr(text, '\n', (size_t)(last - text))); text = end + 1) {
+        const int numbers = numbers_of(text, end, &first);
+        if (head > 0 && spheres > 0) return numbers == (head == 8 ? 14 : 8);
+        if (numbers != 8 && numbers != 6 && !(head > 0 && numbers == 0)) return false;
+        if (numbers > 0) head = numbers, spheres = first;
+    }
+    return head > 0;
 }
 
 /* Reads the line that begins a frame: number of spheres, time and box. */
@@ -73,10 +78,11 @@ static int skip_mercury(struct source *source, enum found *found, char *lack) {
 
 static int read_mercury(struct source *source, struct bed *bed) {
     bool more;
-    int64_t spheres;
+    int64_t spheres = 0;
     double head[8] = {0};
     int status = mercury_count(source, &spheres, &more);
     if (!status) status = mercury_head(source, head);
+    if (spheres == 0) return status;
     for (int axis = 0; axis < 3 && !status; ++axis) {
         bed->low[axis] = head[2 + axis];
         bed->high[axis] = head[5 + axis];

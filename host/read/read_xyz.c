@@ -5,6 +5,7 @@
  * of the box, `Origin="x y z"`, and `pbc="T T F"`, the periodic axes. Without pbc all axes are periodic. */
 #include <ctype.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,40 +66,46 @@ static bool find_value(const char *comment, const char *key, char *to, size_t ro
     return false;
 }
 
-/* Reads up to n numbers of a value. Returns how many there are. */
-static int take_numbers(const char *text, int n, double *value) {
-    char word[64];
-    int length, k = 0;
-    while (k < n && sscanf(text, " %63s%n", word, &length) == 1 && number_read(word, &value[k])) {
-        text += length;
-        ++k;
+/* Reads the n numbers of a key's value. *there: the comment has the key. Refuses another number of them. */
+static int take_numbers(const struct source *source, const char *comment, const char *key, int n, const char *like,
+                        double *value, bool *there) {
+    char text[1000], *word, *rest = text;
+    int count = 0;
+    *there = find_value(comment, key, text, sizeof text);
+    if (!*there) return STATUS_OK;
+    for (; (word = strtok_r(rest, " \t", &rest)); ++count) {
+        double number;
+        if (!number_read(word, &number) || !isfinite(number))
+            return message_at(STATUS_INPUT, source->lines.name, source->lines.number, "%s: '%.40s' is not a number",
+                              key, word);
+        if (count < n) value[count] = number;
     }
-    return k;
+    if (count == n) return STATUS_OK;
+    return message_at(STATUS_INPUT, source->lines.name, source->lines.number,
+                      "%s has %d number%s; it needs %d in quotes: %s=\"%s\"", key, count, count == 1 ? "" : "s", n, key,
+                      like);
+}
+
+/* Reads pbc: three of T and F. Without pbc all axes are periodic. */
+static int take_periodic(const struct source *source, const char *comment, bool periodic[3]) {
+    char text[100], *word, *rest = text;
+    int count = 0;
+    if (!find_value(comment, "pbc", text, sizeof text)) return STATUS_OK;
+    for (; (word = strtok_r(rest, " \t", &rest)); ++count) {
+        if (count == 3 || !strchr("TtFf01", *word)) return source_fail(source, "pbc needs three of T and F");
+        periodic[count] = strchr("Tt1", *word) != NULL;
+    }
+    return count == 3 ? STATUS_OK : source_fail(source, "pbc needs three of T and F");
 }
 
 static int read_lattice(const struct source *source, const char *comment, struct bed *bed) {
-    char text[1000];
     double edge[9], origin[3] = {0, 0, 0};
-    char periodic[3][8] = {"T", "T", "T"};
-    if (!find_value(comment, "Lattice", text, sizeof text)) return STATUS_OK;
-    if (take_numbers(text, 9, edge) != 9) return source_fail(source, "Lattice needs nine numbers");
-    if (edge[1] != 0 || edge[2] != 0 || edge[3] != 0 || edge[5] != 0 || edge[6] != 0 || edge[7] != 0)
-        return source_fail(source, "the lattice is tilted; only boxes with right angles can be read");
-    if (find_value(comment, "Origin", text, sizeof text) && take_numbers(text, 3, origin) != 3)
-        return source_fail(source, "Origin needs three numbers");
-    if (find_value(comment, "pbc", text, sizeof text) &&
-        sscanf(text, "%7s %7s %7s", periodic[0], periodic[1], periodic[2]) != 3)
-        return source_fail(source, "pbc needs three of T and F");
-    for (int axis = 0; axis < 3; ++axis) {
-        const double length = edge[4 * axis];
-        const char *mark = periodic[axis];
-        if (!(length > 0)) return source_fail(source, "the box is empty: the edges of Lattice must be above 0");
-        if (!strchr("TtFf01", *mark)) return source_fail(source, "pbc needs three of T and F");
-        bed->low[axis] = origin[axis];
-        bed->high[axis] = origin[axis] + length;
-        bed->period[axis] = strchr("Tt1", *mark) ? length : 0;
-    }
-    return STATUS_OK;
+    bool periodic[3] = {true, true, true}, there, moved;
+    int status = take_numbers(source, comment, "Lattice", 9, "LX 0 0 0 LY 0 0 0 LZ", edge, &there);
+    if (status || !there) return status;
+    status = take_numbers(source, comment, "Origin", 3, "X Y Z", origin, &moved);
+    if (!status) status = take_periodic(source, comment, periodic);
+    return status ? status : source_edges(source, "the lattice is tilted", edge, origin, periodic, bed);
 }
 
 /* Prints the names of the columns of one property. The columns of pos are x, y and z. */
@@ -115,13 +122,14 @@ static void print_names(FILE *names, const char *property, long count) {
 
 /* Prints the names of the columns of all properties: species:S:1:pos:R:3 becomes `species x y z`. */
 static int read_properties(const struct source *source, char *text, FILE *names) {
+    static const char malformed[] = "Properties needs name:type:count for each, such as pos:R:3:radius:R:1";
     struct fields piece = {0};
     int64_t count, columns = 0;
     int status = fields_split(&piece, text, ":");
-    if (!status && piece.n % 3 != 0) status = source_fail(source, "Properties needs name:type:count for each");
+    if (!status && piece.n % 3 != 0) status = source_fail(source, malformed);
     for (size_t k = 0; k + 2 < piece.n && !status; k += 3) {
         if (!number_read_whole(piece.at[k + 2], &count) || count < 1 || (columns += count) > COLUMNS_MAX)
-            status = source_fail(source, "Properties needs name:type:count for each");
+            status = source_fail(source, malformed);
         else
             print_names(names, piece.at[k], (long)count);
     }
@@ -129,7 +137,7 @@ static int read_properties(const struct source *source, char *text, FILE *names)
     return status;
 }
 
-static int extended_columns(struct source *source, char *properties, const struct bed *bed) {
+static int extended_columns(struct source *source, char *properties, struct bed *bed) {
     char *names = NULL;
     size_t size;
     FILE *file = open_memstream(&names, &size);
@@ -141,16 +149,27 @@ static int extended_columns(struct source *source, char *properties, const struc
     return status;
 }
 
+/* Whether a comment has Properties with a colon, or with blanks before its =. */
+static bool misspells_properties(const char *comment) {
+    static const char key[] = "Properties";
+    for (const char *c = comment; *c; ++c) {
+        if ((c > comment && !isspace((unsigned char)c[-1])) || strncasecmp(c, key, sizeof key - 1) != 0) continue;
+        const char *behind = c + sizeof key - 1, *sign = behind + strspn(behind, " \t");
+        if (*sign == ':' || (*sign == '=' && sign > behind)) return true;
+    }
+    return false;
+}
+
 static int read_xyz(struct source *source, struct bed *bed) {
     static const char lammps[] = "Atoms. Timestep: ";
     bool more;
-    int64_t atoms;
+    int64_t atoms = 0;
     char word[32], properties[4000];
     int status;
     while ((status = lines_next(&source->lines, &more)) == STATUS_OK && lines_blank(&source->lines)) continue;
     if (!status) status = source_count(source, source_word(source, word, sizeof word), &atoms);
     if (!status) status = lines_next(&source->lines, &more);
-    if (status) return status;
+    if (status || atoms == 0) return status;
     const char *comment = source->lines.text;
     if (lines_begin(&source->lines, lammps)) (void)number_read_whole(comment + strlen(lammps), &bed->timestep);
     if (find_value(comment, "Properties", properties, sizeof properties)) {
@@ -158,6 +177,8 @@ static int read_xyz(struct source *source, struct bed *bed) {
         if (!status) status = extended_columns(source, properties, bed);
         return status ? status : source_rows(source, atoms, 0, bed);
     }
+    if (misspells_properties(comment))
+        return source_fail(source, "Properties needs = right behind it: Properties=species:S:1:pos:R:3:radius:R:1");
     if (!source->options.no_radius)
         return source_fail(source, "an XYZ file without Properties=... has no radii; --radius gives them");
     status = source_columns(source, "type x y z", bed);

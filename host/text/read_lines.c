@@ -264,3 +264,12 @@ int lines_whole(const struct lines *lines, const char *what, const char *text, i
     return message_at(STATUS_INPUT, lines->name, lines->number,
                       errno ? "%s is too large: '%.40s'" : "%s is not a whole number: '%.40s'", what, text);
 }
+
+int lines_decimal(const struct lines *lines, const char *what, char *text, char *mark, double *value) {
+    char *here = mark ? strpbrk(text, ".,") : NULL;
+    if (here && *mark && *here != *mark)
+        return message_at(STATUS_INPUT, lines->name, lines->number,
+                          "%s is '%.40s': decimal commas and decimal points in one file", what, text);
+    if (here) *mark = *here, *here = '.';
+    return lines_number(lines, what, text, value);
+}

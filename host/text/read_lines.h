@@ -78,4 +78,9 @@ int fields_split_at(struct fields *fields, const struct lines *lines, char *text
 int lines_number(const struct lines *lines, const char *what, const char *text, double *value);
 int lines_whole(const struct lines *lines, const char *what, const char *text, int64_t *value);
 
+/* Reads a number of a file that may have decimal commas. *mark: point or comma, the first one in the file, which all
+ * others must be; 0: none so far. mark NULL: the file has no decimal commas. Changes a comma in the text to a point.
+ * Otherwise as lines_number. */
+int lines_decimal(const struct lines *lines, const char *what, char *text, char *mark, double *value);
+
 #endif

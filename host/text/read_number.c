@@ -2,7 +2,7 @@
  *
  * A mantissa of at most 53 bits and a power of ten up to 10^22 are both exact as doubles. So their product or quotient
  * is rounded once, and correctly (Clinger, How to read floating point numbers accurately, 1990). strtod reads all other
- * numbers. */
+ * numbers. Fortran's exponents begin with D; strtod gets an e in its place. */
 #include "text/read_number.h"
 
 #include <errno.h>
@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { POWERS = 23 };
+enum { POWERS = 23, DIGITS = 128 };
 
 #define WHOLE_REAL 0x1p53 /* doubles have all whole numbers up to here */
 
@@ -26,9 +26,10 @@ static bool take_digits(const char **text, uint64_t *mantissa, int *digits) {
     return true;
 }
 
-/* Reads an exponent such as `e-5`. False: it is not valid, or above 99. */
+/* Reads an exponent such as `e-5`, or `D-05` as Fortran writes it. False: it is not valid, or above 99. */
 static bool take_exponent(const char **text, int *exponent) {
-    if (**text != 'e' && **text != 'E') return true;
+    const char mark = **text;
+    if (mark != 'e' && mark != 'E' && mark != 'd' && mark != 'D') return true;
     const char sign = *++*text;
     uint64_t size = 0;
     int digits = 0;
@@ -58,9 +59,14 @@ static bool read_exact(const char *text, double *value) {
 
 bool number_read(const char *text, double *value) {
     if ((FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1) && read_exact(text, value)) return true;
-    char *end;
+    char *end, plain[DIGITS];
     *value = strtod(text, &end);
-    return end != text && !*end;
+    if ((*end != 'd' && *end != 'D') || strlen(text) >= sizeof plain) return end != text && !*end;
+    const size_t mantissa = (size_t)(end - text);
+    strcpy(plain, text);
+    plain[mantissa] = 'e';
+    *value = strtod(plain, &end);
+    return mantissa > 0 && !*end;
 }
 
 bool number_read_whole(const char *text, int64_t *value) {
@@ -70,7 +76,7 @@ bool number_read_whole(const char *text, int64_t *value) {
     *value = strtoll(text, &end, 10);
     if (end == text || errno) return false;
     if (!*end) return true;
-    if (!strchr(".eE", *end) || !number_read(text, &real)) return false;
+    if (!strchr(".eEdD", *end) || !number_read(text, &real)) return false;
     if (!(fabs(real) <= WHOLE_REAL && real == floor(real))) return false;
     *value = (int64_t)real;
     return true;

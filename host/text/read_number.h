@@ -5,7 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Reads the whole text as a number, with the bits of strtod. False: the text is no number. */
+/* Reads the whole text as a number, with the bits of strtod. 0.5250D-01 of Fortran is 0.5250e-01. False: the text is no
+ * number. */
 bool number_read(const char *text, double *value);
 
 /* Reads the whole text as a whole number. Forms such as 7.0 and 7.000e+00, which some programs write, are allowed up to

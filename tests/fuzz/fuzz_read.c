@@ -13,6 +13,8 @@
 #include "boxes/read_furnace.h"
 #include "cli/targets.h"
 #include "mesh/meshes.h"
+#include "text/read_curve.h"
+#include "text/unit.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -33,11 +35,23 @@ static void check_bed(const struct bed *bed, bool radii) {
 /* Reads all frames that an input asks for: the last one, or a range. */
 static void read_frames(const char *path, uint8_t asked, size_t size) {
     static const char *const extra[] = {"T", "mass"};
+    static const char *const unit[] = {"K", "W/(m K)"};
     static const struct frames frames[] = {{0, 0, 0}, {0, 9, 1}, {1, 8, 2}, {2, 3, 1}};
+    static const struct column_name of_tables[] = {{"x", "1"}, {"y", "2 [mm]"}, {"z", "3"}, {"d", "4"}},
+                                    of_codes[] = {{"r", "size"}, {"T", "heat [C]"}, {"id", "tag"}};
+    static const struct row_rule rule[] = {{"type", "1", false}, {"mass", "2.0", true}};
     const struct read_options options = {.frames = frames[asked % 4],
                                          .positions = (asked & 4) != 0,
                                          .extra = extra,
                                          .extras = asked & 8 ? 1 + (asked >> 4 & 1) : 0,
+                                         .unit = asked & 128 ? unit : NULL,
+                                         .name = asked & 16 ? of_tables : of_codes,
+                                         .names = !(asked & 64) ? 0
+                                                  : asked & 16  ? 4
+                                                                : 3,
+                                         .rule = rule,
+                                         .rules = (asked & 192) == 128 ? 2 : 0,
+                                         .any_unit = (asked & 128) == 0,
                                          .no_radius = (asked & 32) != 0};
     struct reader *reader;
     struct bed bed = bed_empty();
@@ -51,6 +65,23 @@ static void read_frames(const char *path, uint8_t asked, size_t size) {
     if (status == 0 && beds == 0) abort();
     reader_close(reader);
     bed_free(&bed);
+}
+
+/* As a table of two columns, and of one: x ascends, y is within its bounds. */
+static void read_tables(const char *path, uint8_t asked) {
+    static const struct curve_axes law = {CURVE_AXIS_KELVINS, {"e k lambda", "W/(m K)"}};
+    const struct curve_axes *axes[] = {&curve_kelvins, &curve_celsius, &curve_values, &law};
+    struct curve curve;
+    for (int one = 0; one < 2; one++) {
+        const int status = one ? column_read(path, "T", &axes[asked % 4]->y, -273, 1e9, &curve)
+                               : curve_read(path, "T", axes[asked % 4], -273, 1e9, &curve);
+        if (status == 0 && curve.n == 0) abort();
+        for (size_t k = 0; status == 0 && k < curve.n; k++) {
+            if (!(curve.y[k] >= -273 && curve.y[k] <= 1e9) || !isfinite(curve.x[k])) abort();
+            if (!one && k > 0 && !(curve.x[k] > curve.x[k - 1])) abort();
+        }
+        curve_free(&curve);
+    }
 }
 
 /* As a mesh: corners are there, triangles have three of them, each is in one part. */
@@ -88,6 +119,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
 
     read_frames(path, data[0], size);
     read_mesh(path, data[0]);
+    read_tables(path, data[0]);
 
     fibrad_furnace_config furnace;
     if (read_furnace(path, &furnace) == 0) {
@@ -102,6 +134,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     unsigned char marks[64] = {0};
     if (text == NULL) abort();
     (void)targets_mark(text, NULL, data[0] & 1 ? 64 : 0, "", marks);
+    double factor; /* and as a unit */
+    if (unit_factor(text, "W/(m K)", &factor) && !isfinite(factor)) abort();
     free(text);
     return 0;
 }

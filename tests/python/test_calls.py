@@ -185,3 +185,26 @@ def test_memory_is_given_back(what, mono):
     for _ in range(40):
         once()
     assert resident() - before < 10e6
+
+
+def test_refusals_say_which_argument(small):
+    """A value of another type is refused in words of fibrad, with the name of the argument."""
+    light = fibrad.Light((0, 0, -1), 1000.0)
+    factors = fibrad.view_factors(small.x, small.r, directions=8, walls={"zmin": -1.0})
+    with fibrad.Heat(small.x, small.r, directions=8, patches=24) as heat:
+        calls = [
+            ("zmax.*there are zmin", lambda: factors.wall("zmax")),
+            ("light must be what shine returns", lambda: heat.solve(300, 1, surroundings=300, light=light)),
+            ("lights must be Light", lambda: heat.shine(5, 0.5)),
+            ("direction must be 3 finite numbers", lambda: heat.shine(fibrad.Light((0, 0, "a"), 1.0), 0.5)),
+            ("disc must be 4 finite numbers", lambda: heat.shine(fibrad.Light((0, 0, -1), 1.0, disc=3), 0.5)),
+            ("surroundings must be a number, not 'a'", lambda: heat.solve(300, 1, surroundings="a")),
+            ("insulated must be a name or several", lambda: heat.solve(300, 1, surroundings=300, insulated=5)),
+            ("insulated: there is no wall 'zmin'", lambda: heat.solve(300, 1, surroundings=300, insulated="zmin")),
+            ("wall_power must be a mapping", lambda: heat.solve(300, 1, surroundings=300, wall_power=5)),
+            ("walls must be a mapping", lambda: fibrad.view_factors(small.x, small.r, walls=["zmin"])),
+            ("wall zmin is None", lambda: fibrad.view_factors(small.x, small.r, walls={"zmin": None})),
+            ("scale must be a number", lambda: fibrad.Mesh.from_stl("none.stl", small.x, small.r, scale="a"))]
+        for text, call in calls:
+            with pytest.raises(fibrad.InputError, match=text):
+                call()

@@ -1,4 +1,5 @@
 # test_files.py - beds and meshes from files, matrices to files. SPDX-License-Identifier: MIT
+import errno
 import gzip
 import subprocess
 
@@ -50,6 +51,47 @@ def test_refusals(tmp_path):
         fibrad.read(table, columns="T")
     with pytest.raises(fibrad.InputError, match="sides = 'inner'"):
         fibrad.Mesh.from_stl(write_cube(tmp_path / "cube.stl"), [[0, 0, 0]], 1.0, sides="inner")
+
+
+def test_columns_of_other_names(tmp_path):
+    table = tmp_path / "a.csv"
+    table.write_text("p_x [mm],p_y [mm],p_z [mm],diameters [mm],power [W],material,phase\n"
+                     "1,2,3,1,20,steel,1\n4,5,6,2,30,glass,1\n7,8,9,4,40,steel,2\n")
+    names = {"x": "p_x", "y": "p_y", "z": "p_z", "d": "diameters", "q": "power"}
+    bed = fibrad.read(table, names=names, columns=["q", "power", "power [W]", "phase"])
+    assert bed.unit == "mm" and bed.r.tolist() == [0.5, 1, 2] and bed.x[2].tolist() == [7, 8, 9]
+    assert all(bed.columns[name].tolist() == [20, 30, 40] for name in ("q", "power", "power [W]"))
+    assert fibrad.read(table, names=names, only={"material": "steel"}).r.tolist() == [0.5, 2]
+    assert fibrad.read(table, names=names, only={"material": "steel"}, skip={"phase": 1.0}).r.tolist() == [2]
+    bare = tmp_path / "b.txt"
+    bare.write_text("1 2 3 1\n4 5 6 2\n")
+    assert fibrad.read(bare, names={"x": "1 [cm]", "y": "2 [cm]", "z": "3 [cm]"}, radius=1).unit == "cm"
+    assert fibrad.read(bare, names={"x": 1, "y": 2, "z": 3, "d": 4}).r.tolist() == [0.5, 1]
+    with pytest.raises(fibrad.InputError, match="--only and --skip leave no spheres"):
+        fibrad.read(table, names=names, only={"material": "stone"})
+    with pytest.raises(fibrad.InputError, match="no column size; there are p_x"):
+        fibrad.read(table, names={**names, "d": "size"})
+    for wrong in ({"names": {"r": 1, "d": 2}}, {"names": {"r": 1}, "radius": 1.0}, {"names": ["x"]}, {"only": "type"},
+                  {"columns": 5}, {"frame": 1 << 63}, {"columns": ["a\0b"]}):
+        with pytest.raises(fibrad.InputError, match=next(iter(wrong))):
+            fibrad.read(bare, **wrong)
+
+
+def test_files_that_are_not_there(tmp_path):
+    with pytest.raises(FileNotFoundError, match="no.dump: No such file") as caught:
+        fibrad.read(tmp_path / "no.dump")
+    assert isinstance(caught.value, fibrad.FileError) and caught.value.errno == errno.ENOENT
+    with pytest.raises(FileNotFoundError, match="no.stl: No such file"):
+        fibrad.Mesh.from_stl(tmp_path / "no.stl", [[0, 0, 0]], 1.0)
+    with pytest.raises(fibrad.FileError, match="Is a directory") as caught:
+        fibrad.read(tmp_path)
+    assert not isinstance(caught.value, FileNotFoundError) and caught.value.errno == errno.EISDIR
+    whole = tmp_path / "bed.pvtu"
+    whole.write_text("<VTKFile type='PUnstructuredGrid'><Piece Source='no.vtu'/></VTKFile>")
+    with pytest.raises(FileNotFoundError, match="no.vtu"):
+        fibrad.read(whole)
+    with pytest.raises(fibrad.InputError, match="zero byte"):
+        fibrad.read("a\0b")
 
 
 @pytest.mark.parametrize("turned", [(), (0, 1, 2, 3, 4, 5), (1, 4)])

@@ -15,7 +15,7 @@ from ._errors import StateError
 from ._library import Fault, HeatConfig, library
 from ._limits import DIRECTIONS, PATCHES, POINTS, POWER_MAX, TEMPERATURE_MAX
 from ._scene import Container, Packing, Walls
-from ._values import refuse, whole
+from ._values import mapping, refuse, whole
 
 
 def _choice(name: str, value: Optional[int], choices: tuple[int, ...]) -> int:
@@ -64,7 +64,7 @@ class Bed:
                insulated: Collection[str]) -> dict[str, NDArray[Any]]:
         """The arrays of fibrad_heat_sources for walls. A wall with a power, or an insulated wall, has the temperature
         NaN."""
-        container, powers = self._container, dict(power or {})
+        container, powers = self._container, dict(mapping("wall_power", power, "{'zmax': 500.0}"))
         found = frozenset([*powers, *insulated])
         container.known("wall_power" if powers else "insulated", found)
         if isinstance(temperature, Mapping) and found & set(temperature):

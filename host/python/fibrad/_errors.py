@@ -1,6 +1,9 @@
 # _errors.py - what can go wrong, as exceptions. SPDX-License-Identifier: MIT
 from __future__ import annotations
 
+import errno
+import os
+
 from ._library import library
 
 ARGUMENT, TABLE, GEOMETRY, UNSUPPORTED, MEMORY, CANCELLED, UNSOLVABLE, BACK = -1, -5, -6, -10, -11, -12, -13, -14
@@ -32,7 +35,11 @@ class InputError(Error, ValueError):
 
 
 class FileError(Error, OSError):
-    """A file cannot be made or written."""
+    """A file cannot be made, read or written."""
+
+
+class MissingFileError(FileError, FileNotFoundError):
+    """There is no such file."""
 
 
 class StateError(Error, RuntimeError):
@@ -58,6 +65,15 @@ def status_text(status: int) -> str:
 
 def why_text(why: int) -> str:
     return str(library.fibrad_why_text(why).decode())
+
+
+def file_error(text: str, status: int) -> FileError:
+    """The exception for a message that ends as the system says why a file cannot be opened."""
+    number = next((number for number in errno.errorcode if text.endswith(os.strerror(number))), None)
+    error = (MissingFileError if number == errno.ENOENT else FileError)(text, status)
+    if number is not None:
+        error.errno = number
+    return error
 
 
 def error_of(status: int, text: str, spheres: tuple[int, ...] = ()) -> Error:

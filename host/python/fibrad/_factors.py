@@ -139,6 +139,8 @@ class Factors:
 
     def wall(self, name: str) -> NDArray[np.float64]:
         """(n,) factors to the wall of this name."""
+        if name not in self.wall_names:
+            raise refuse(f"there is no wall {name!r}; there are {', '.join(self.wall_names) or 'none'}")
         return self.walls[:, self.wall_names.index(name)]
 
     def save(self, path: Folder) -> None:

@@ -7,29 +7,30 @@ import os
 import pathlib
 import threading
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int64, c_size_t, c_uint32, c_void_p
 from typing import Any, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._errors import Error, InputError, OutOfMemory
+from ._errors import Error, InputError, OutOfMemory, file_error
 from ._library import DOUBLES, Spheres, structure_of_files
-from ._values import refuse
+from ._values import mapping, real, refuse, several, whole
 
 Path = Union[str, "os.PathLike[str]"]
 _HEARD: Any = ctypes.CFUNCTYPE(None, c_void_p, c_char_p)
 _SIDES = ("auto", "normals", "both")
-_KINDS = {3: InputError, 5: OutOfMemory}
+_KINDS: dict[int, Any] = {3: InputError, 4: file_error, 5: OutOfMemory}
 _busy = threading.Lock()
 _loaded: list[Any] = []
 
 FileBed = structure_of_files(
     "file_bed", ("x y z r", DOUBLES), ("id", POINTER(c_int64)), ("extra", DOUBLES), ("low high period", c_double * 3),
     ("frame timestep", c_int64), ("units", ctypes.c_char * 16), ("bed", c_void_p), ("n", c_uint32))
-FileWanted = structure_of_files("file_wanted", ("path", c_char_p), ("frame", c_int64), ("column", POINTER(c_char_p)),
-                                ("columns", c_size_t), ("no_radius", c_int))
+FileWanted = structure_of_files("file_wanted", ("path", c_char_p), ("frame", c_int64),
+                                ("column name only skip", POINTER(c_char_p)), ("columns names onlys skips", c_size_t),
+                                ("no_radius", c_int))
 FileMesh = structure_of_files("file_mesh", ("vertex", DOUBLES), ("corner", POINTER(c_uint32)), ("meshes", c_void_p),
                               ("vertices n", c_uint32), ("both", c_int))
 
@@ -101,7 +102,29 @@ class FileFrame:
         return f"<fibrad.FileFrame: {len(self.x)} spheres, frame {self.frame}>"
 
 
-def read(path: Path, frame: int = -1, *, columns: Sequence[str] = (), radius: Optional[float] = None) -> FileFrame:
+def _texts(name: str, values: Iterable[Any]) -> Any:
+    """An array of C strings. Numbers are written as they are shown."""
+    texts = [str(value) for value in values]
+    if any("\0" in text for text in texts):
+        raise refuse(f"{name} has a text with a zero byte")
+    return (c_char_p * len(texts))(*(text.encode() for text in texts))
+
+
+def _pairs(name: str, values: Optional[Mapping[str, Any]]) -> Any:
+    """The keys and values of a mapping in turn, as C strings."""
+    return _texts(name, (text for pair in mapping(name, values, "{'x': 'p_x'}").items() for text in pair))
+
+
+def _path(path: Path) -> bytes:
+    name = os.fsencode(path)
+    if b"\0" in name:
+        raise refuse(f"{path!r} has a zero byte and names no file")
+    return name
+
+
+def read(path: Path, frame: int = -1, *, columns: Sequence[str] = (), radius: Optional[float] = None,
+         names: Optional[Mapping[str, Union[str, int]]] = None, only: Optional[Mapping[str, Any]] = None,
+         skip: Optional[Mapping[str, Any]] = None) -> FileFrame:
     """Reads the spheres of a file, as the program does. ``docs/files.md`` lists the formats.
 
     Parameters
@@ -111,9 +134,15 @@ def read(path: Path, frame: int = -1, *, columns: Sequence[str] = (), radius: Op
     frame : int
         Number of the frame, from 0. -1: the last frame.
     columns : names, optional
-        Further columns that are wanted, ``["v_T"]`` for example.
+        Further columns that are wanted, ``["v_T"]`` for example. Values have the unit of the file.
     radius : float, optional
         [L] Radius of all spheres, for files without radii.
+    names : mapping, optional
+        What the file calls columns, as ``--columns`` of the program: ``{"x": "p_x", "d": "diameters [mm]"}``. If a
+        table has no header, the number of the column, from 1.
+    only, skip : mapping, optional
+        Rows that are read: those with ``only={"type": 1}``, a text or number of each column, and without
+        ``skip={"material": "glass"}``.
 
     Returns
     -------
@@ -122,15 +151,20 @@ def read(path: Path, frame: int = -1, *, columns: Sequence[str] = (), radius: Op
     Raises
     ------
     InputError
-        The file cannot be read. The text names the line.
+        The file is no bed. The text names the line.
+    FileNotFoundError, FileError
+        There is no such file, or it cannot be opened. FileNotFoundError is a FileError here.
     """
-    if isinstance(columns, str):
-        columns = [columns]
-    if frame < -1:
-        raise refuse(f"frame = {frame} is neither -1 nor from 0")
+    columns = several("columns", columns)
+    radii = [known for known in names or () if str(known).lower() in ("r", "radius", "d", "diameter")]
+    if radius is not None and radii or len(radii) > 1:
+        raise refuse(f"names has {', '.join(map(repr, radii))}{' beside radius' if radius is not None else ''}: "
+                     "one of them gives the radii")
+    frame = -1 if frame == -1 else whole("frame", frame, 0, 2**63 - 2)
     library, found = _library(), FileBed()
-    names = (c_char_p * len(columns))(*(name.encode() for name in columns))
-    wanted = FileWanted(os.fsencode(path), frame, names, len(columns), radius is not None)
+    texts = [_texts("columns", columns), _pairs("names", names), _pairs("only", only), _pairs("skip", skip)]
+    wanted = FileWanted(_path(path), frame, *texts, len(texts[0]), *(len(pairs) // 2 for pairs in texts[1:]),
+                        radius is not None)
     with _busy:
         try:
             _call(library.fibrad_file_read, wanted, found)
@@ -152,12 +186,11 @@ def stl(path: Path, spheres: Any, period: ArrayLike, scale: float, sides: str) -
     wall."""
     if sides not in _SIDES:
         raise refuse(f"sides = {sides!r} is none of {', '.join(_SIDES)}")
-    if not 1e-12 <= scale <= 1e12:
-        raise refuse(f"scale = {scale} is not within 1e-12 and 1e12")
+    scale = real("scale", scale, 1e-12, 1e12)
     library, found = _library(), FileMesh()
     with _busy:
         try:
-            _call(library.fibrad_file_mesh, os.fsencode(path), scale, _SIDES.index(sides), spheres,
+            _call(library.fibrad_file_mesh, _path(path), scale, _SIDES.index(sides), spheres,
                   (c_double * 3)(*np.asarray(period, float)), found)
             return (_array(found.vertex, (found.vertices, 3)), _array(found.corner, (found.n, 3)), bool(found.both))
         finally:

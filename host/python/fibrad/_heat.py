@@ -16,7 +16,7 @@ from ._library import HeatResult, HeatSources, LightResult, LightSources, librar
 from ._light import Absorbed, Light, add, lights_of, patches_pointer
 from ._scene import Walls, pointer, pointers
 from ._limits import POWER_MAX, SIGMA, TEMPERATURE_MAX
-from ._values import per_sphere, real, refuse
+from ._values import per_sphere, real, refuse, several
 
 STEFAN_BOLTZMANN = 5.670374419e-8
 """[W/(m2 K4)]"""
@@ -250,8 +250,11 @@ class Heat(Bed):
         conducts = None if conductivity is None else per_sphere("conductivity", conductivity, n, 5e-324, math.inf, names)
         if conducts is not None and uniform:
             raise refuse("conductivity is given, and uniform is True: with one radiosity a sphere has no sides")
+        insulated = several("insulated", insulated)
         of_bodies = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
         if light is not None:
+            if not isinstance(light, Absorbed):
+                raise refuse(f"light must be what shine returns, not {light!r}")
             if light._of is not self:
                 raise refuse("light is of another bed")
             powers = add(powers, light.spheres)

@@ -4,6 +4,7 @@ from __future__ import annotations
 import ctypes
 import dataclasses
 import math
+from collections.abc import Iterable
 from typing import Any, Optional, Sequence
 
 import numpy as np
@@ -71,7 +72,10 @@ class Absorbed:
 
 
 def _numbers(name: str, values: Sequence[float], count: int) -> list[float]:
-    numbers = [float(value) for value in values]
+    try:
+        numbers = [float(value) for value in values]
+    except (TypeError, ValueError):
+        numbers = []
     if len(numbers) != count or not all(abs(number) <= LENGTH_MAX for number in numbers):
         raise refuse(f"{name} must be {count} finite numbers, not {values!r}")
     return numbers
@@ -79,7 +83,9 @@ def _numbers(name: str, values: Sequence[float], count: int) -> list[float]:
 
 def lights_of(lights: Any) -> Any:
     """The array of fibrad_light."""
-    given = [lights] if isinstance(lights, Light) else list(lights)
+    given = [lights] if isinstance(lights, Light) else list(lights) if isinstance(lights, Iterable) else [lights]
+    if not all(isinstance(light, Light) for light in given):
+        raise refuse(f"lights must be Light or several of them, not {lights!r}")
     array = (LightStructure * len(given))()
     for light, to in zip(given, array):
         direction = _numbers("direction", light.direction, 3)

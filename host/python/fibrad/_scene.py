@@ -164,7 +164,7 @@ class Mesh:
 
 
 def _plane(name: str, at: Any) -> tuple[int, int, float]:
-    if isinstance(at, str):
+    if at is None or isinstance(at, str):
         raise refuse(f"wall {name} is {at!r}; a place, 'open' or ('open', place) is wanted")
     return (*_PLANES[name], real(f"wall {name}", at, -LENGTH_MAX, LENGTH_MAX))
 
@@ -201,6 +201,14 @@ def _body(name: str, value: Any) -> Any:
     raise refuse(f"there is no wall {name!r}; there are {', '.join(_PLANES)}, cylinder, and any name for a Mesh")
 
 
+def _pairs_of(walls: Optional[Walls]) -> list[tuple[str, Any]]:
+    """Names and walls."""
+    try:
+        return [(name, value) for name, value in (walls.items() if isinstance(walls, Mapping) else walls or ())]
+    except (TypeError, ValueError):
+        raise refuse(f"walls must be a mapping such as {{'zmin': 0.0}}, not {walls!r}") from None
+
+
 class Container:
     """The periodic box, the walls and the openings of a bed."""
 
@@ -208,7 +216,7 @@ class Container:
         self.period = np.zeros(3) if box is None else doubles("box", box)
         if self.period.shape != (3,) or not (np.isfinite(self.period) & (self.period >= 0)).all():
             raise refuse("box must be three lengths; 0 stands for an open axis")
-        self.walls = all_pairs = list(walls.items() if isinstance(walls, Mapping) else walls or ())
+        self.walls = all_pairs = _pairs_of(walls)
         if len({name for name, _ in all_pairs}) < len(all_pairs):
             raise refuse("a wall is named twice")
         pairs = [(name, value) for name, value in all_pairs if not _is_open(value)]

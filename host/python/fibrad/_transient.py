@@ -15,7 +15,7 @@ from ._heat import STEFAN_BOLTZMANN
 from ._library import ExchangeRule, HeatSources, Span, TransientConfig, library
 from ._scene import Walls, pointer, pointers
 from ._limits import CAPACITY_MAX, DURATION_MAX, POWER_MAX, SIGMA, TEMPERATURE_MAX
-from ._values import per_sphere, real, refuse
+from ._values import per_sphere, real, refuse, several
 
 _METHODS = {"corrected": 0, "patches": 1, "factors": 2}
 
@@ -135,6 +135,7 @@ class Transient(Bed):
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
         now = per_sphere("temperature", temperature, n, 0, TEMPERATURE_MAX, names).copy()
         heat = per_sphere("capacity", capacity, n, 0, CAPACITY_MAX, names)
+        insulated = several("insulated", insulated)
         walls = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
         found = frozenset([*(wall_power or {}), *insulated])
         if found and self._method != "patches":

@@ -2,7 +2,8 @@
 from __future__ import annotations
 
 import operator
-from typing import Optional
+from collections.abc import Iterable, Mapping
+from typing import Any, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,10 +32,29 @@ def real(name: str, value: Optional[float], low: float, high: float) -> float:
     """A number, low to high. None: 0, which stands for the default of the library."""
     if value is None:
         return 0.0
-    number = float(value)
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise refuse(f"{name} must be a number, not {value!r}") from None
     if not low <= number <= high:
         raise refuse(f"{name} = {number} is not in [{low:g}, {high:g}]")
     return number
+
+
+def mapping(name: str, value: Optional[Mapping[str, Any]], like: str) -> Mapping[str, Any]:
+    """A mapping. None: an empty one."""
+    if value is not None and not isinstance(value, Mapping):
+        raise refuse(f"{name} must be a mapping such as {like}, not {value!r}")
+    return value or {}
+
+
+def several(name: str, value: Union[str, Iterable[Any]]) -> list[Any]:
+    """Names, or one of them."""
+    if isinstance(value, str):
+        return [value]
+    if not isinstance(value, Iterable):
+        raise refuse(f"{name} must be a name or several of them, not {value!r}")
+    return list(value)
 
 
 def doubles(name: str, value: ArrayLike) -> NDArray[np.float64]:

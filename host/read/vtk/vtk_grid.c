@@ -10,6 +10,7 @@
 
 #include "cli/message.h"
 #include "text/read_number.h"
+#include "text/unit.h"
 
 struct vtk_type vtk_find_type(const char *name) {
     static const struct vtk_type types[] = {
@@ -31,14 +32,55 @@ struct vtk_type vtk_find_type(const char *name) {
     return (struct vtk_type){0};
 }
 
-double **vtk_find_wanted(const struct vtk_grid *grid, const char *name) {
-    for (size_t k = 0; k < grid->count; ++k) {
+enum { NO_RANK = -1, OTHER_CASE = 1000 };
+
+/* The rank of a name among those of a wanted array. */
+static int rank_of(const struct vtk_wanted *wanted, const char *name) {
+    size_t bare, length;
+    const char *unit;
+    if (wanted->name && strcmp(wanted->name, name) == 0) return 0;
+    if (wanted->name && unit_behind(wanted->name, &bare, &unit, &length) && strlen(name) == bare &&
+        memcmp(wanted->name, name, bare) == 0)
+        return 1;
+    for (int k = 0; wanted->names && wanted->names[k]; ++k)
+        if (strcasecmp(wanted->names[k], name) == 0) return strcmp(wanted->names[k], name) == 0 ? k : OTHER_CASE + k;
+    return NO_RANK;
+}
+
+bool vtk_wants(const struct vtk_grid *grid, const char *name) {
+    for (size_t k = 0; k < grid->count; ++k)
+        if (rank_of(&grid->wanted[k], name) != NO_RANK) return true;
+    return false;
+}
+
+int vtk_give(struct vtk_grid *grid, const char *name, double *values) {
+    const size_t bytes = (size_t)grid->n * sizeof *values;
+    int status = STATUS_OK;
+    for (size_t k = 0; k < grid->count && !status; ++k) {
         struct vtk_wanted *wanted = &grid->wanted[k];
-        if (wanted->name && strcmp(wanted->name, name) == 0) return &wanted->values;
-        for (const char *const *other = wanted->names; other && *other; ++other)
-            if (strcasecmp(*other, name) == 0) return &wanted->values;
+        const int rank = rank_of(wanted, name);
+        if (rank == NO_RANK || (wanted->values && rank > wanted->rank)) continue;
+        if (wanted->values && rank == wanted->rank) {
+            if (memcmp(wanted->values, values, bytes) != 0)
+                status = vtk_fail(grid, NULL, "two arrays on the points are named %.40s, and differ", name);
+            continue;
+        }
+        status = vtk_room(&wanted->values, grid->n);
+        if (!status) memcpy(wanted->values, values, bytes);
+        wanted->rank = rank;
     }
-    return NULL;
+    free(values);
+    return status;
+}
+
+int vtk_end_piece(struct vtk_grid *grid) {
+    if (!grid->take) return STATUS_OK;
+    const int status = grid->take(grid, grid->context);
+    for (size_t k = 0; k < grid->count; ++k) free(grid->wanted[k].values), grid->wanted[k].values = NULL;
+    free(grid->points);
+    grid->points = NULL;
+    grid->n = 0;
+    return status;
 }
 
 static double value_of(struct vtk_type type, const unsigned char *bytes, bool big) {

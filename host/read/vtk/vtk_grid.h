@@ -13,34 +13,48 @@ struct vtk_type {
     const char *names; /* names in legacy and XML files, each with a blank before and behind */
 };
 
-/* A wanted array. */
+/* A wanted array. Of several arrays that it may be, the one whose name stands first counts, and a name in the same case
+ * before all names in another case. */
 struct vtk_wanted {
     const char *const *names; /* possible names in any case, ended by NULL; or NULL */
-    const char *name;         /* the exact name; or NULL */
-    bool required;
-    double *values; /* [n], which the caller frees; NULL: the file does not have the array */
+    const char *name;         /* the exact name, behind which a unit may stand that the file leaves out; or NULL */
+    int rank;                 /* of the name of the array that was found, from 0 */
+    double *values;           /* [n], which the caller frees; NULL: the file does not have the array */
 };
 
 struct vtk_grid {
     const char *file; /* for messages */
     const char *text; /* the whole file */
     const char *end;
-    uint64_t n;
+    uint64_t n;     /* points of a piece */
     double *points; /* [3 n], which the caller frees */
     struct vtk_wanted *wanted;
     size_t count;
+    /* Takes the points of a piece, which are forgotten behind it. Status 0, or another one that ends the reading. NULL:
+     * the points of the last piece stay. */
+    int (*take)(struct vtk_grid *grid, void *context);
+    /* Reads a piece that is in another file. NULL: there must be none. */
+    int (*open)(const char *source, void *context);
+    void *context;
 };
 
-/* Read the points and the wanted arrays. Numbers may be infinite or NaN. Free points and values also after an error.
- * Status 0, STATUS_INPUT or STATUS_MEMORY. */
+/* Read the points and the wanted arrays of each piece and hand them to grid->take. Numbers may be infinite or NaN. Free
+ * points and values also after an error. Status 0, STATUS_INPUT, STATUS_MEMORY, or that of a function of the grid. */
 int vtk_read_legacy(struct vtk_grid *grid);
 int vtk_read_xml(struct vtk_grid *grid);
 
 /* The type by its name in a legacy or XML file. size 0: there is none. */
 struct vtk_type vtk_find_type(const char *name);
 
-/* Where to put the values of an array on points. NULL: the array is not wanted. */
-double **vtk_find_wanted(const struct vtk_grid *grid, const char *name);
+/* Whether an array on points is wanted. */
+bool vtk_wants(const struct vtk_grid *grid, const char *name);
+
+/* Hands an array on points, which this function frees, to all that want it. Status 0, STATUS_MEMORY, or STATUS_INPUT if
+ * there is another array of this name. */
+int vtk_give(struct vtk_grid *grid, const char *name, double *values);
+
+/* Hands the points and arrays of a piece to grid->take and forgets them. */
+int vtk_end_piece(struct vtk_grid *grid);
 
 /* Converts bytes to values. big: the bytes are big-endian. */
 void vtk_convert(struct vtk_type type, bool big, const void *bytes, uint64_t count, double *values);

@@ -76,12 +76,16 @@ static int legacy_array(struct legacy *legacy, const char *type_name, uint64_t c
 /* Reads an array on points if it is wanted. Skips any other array. */
 static int take_data(struct legacy *legacy, const char *name, const char *type, uint64_t components, uint64_t tuples) {
     const bool known = legacy->grid->points && tuples == legacy->grid->n;
-    double **values = legacy->on_points && known ? vtk_find_wanted(legacy->grid, name) : NULL;
-    if (values && components != 1)
+    const bool wanted = legacy->on_points && known && vtk_wants(legacy->grid, name);
+    double *values = NULL;
+    if (wanted && components != 1)
         return vtk_fail(legacy->grid, NULL, "the array %.40s has %" PRIu64 " components; one is expected", name,
                         components);
     if (components > 1 && tuples > UINT64_MAX / components) return legacy_fail(legacy, "an array is too large");
-    return legacy_array(legacy, type, components * tuples, values);
+    const int status = legacy_array(legacy, type, components * tuples, wanted ? &values : NULL);
+    if (!status && wanted) return vtk_give(legacy->grid, name, values);
+    free(values);
+    return status;
 }
 
 static void skip_metadata(struct legacy *legacy) {
@@ -189,5 +193,5 @@ int vtk_read_legacy(struct vtk_grid *grid) {
         const int status = take_keyword(&legacy, line);
         if (status) return status;
     }
-    return STATUS_OK;
+    return vtk_end_piece(grid);
 }

@@ -1,4 +1,5 @@
-/* vtk_xml.c - points and arrays of VTK's XML files, .vtp and .vtu. SPDX-License-Identifier: MIT
+/* vtk_xml.c - points and arrays of VTK's XML files, .vtp and .vtu, and of .pvtp and .pvtu, whose pieces are such files.
+ * SPDX-License-Identifier: MIT
  *
  * An array is text or base64 in the tag that declares the array. Or the array is appended: it stands at an offset in
  * the last tag of the file, as base64 or bytes. Binary data begin with the number of bytes, or with a list of blocks
@@ -15,7 +16,7 @@
 #include "text/read_number.h"
 #include "read/vtk/vtk_grid.h"
 
-enum { WORD = 80, WIDEST = 8, PACKED_MOST = 1100 }; /* zlib packs to no less than 1/1032 */
+enum { WORD = 80, PATH = 1000, WIDEST = 8, PACKED_MOST = 1100 }; /* zlib packs to no less than 1/1032 */
 
 struct xml {
     struct vtk_grid *grid;
@@ -26,7 +27,9 @@ struct xml {
     bool packed;             /* blocks are packed by zlib */
     bool points, point_data; /* within the tag Points, PointData */
     struct vtk_type header;  /* type of the numbers of bytes */
-    int pieces;              /* pieces with points so far */
+    bool within;             /* within a piece */
+    bool parallel;           /* the pieces are other files */
+    uint64_t all;            /* points of all pieces so far */
 };
 
 /* A tag, without its < and >. */
@@ -67,20 +70,24 @@ static bool next_tag(struct xml *xml, struct tag *tag) {
     return false;
 }
 
-/* The value of an attribute. "": the tag does not have the attribute. */
-static const char *attribute(const struct tag *tag, const char *name, char value[WORD]) {
+/* The value of an attribute, of at most room - 1 characters. "": the tag does not have the attribute. */
+static const char *long_attribute(const struct tag *tag, const char *name, char *value, size_t room) {
     const size_t length = strlen(name);
     value[0] = 0;
     for (const char *c = tag->text; c + length + 2 < tag->end; ++c) {
         if (!isspace((unsigned char)*c) || memcmp(c + 1, name, length) != 0 || c[length + 1] != '=') continue;
         const char *from = c + length + 3;
         size_t size = 0;
-        while (from + size < tag->end && from[size] != from[-1] && size < WORD - 1) ++size;
+        while (from + size < tag->end && from[size] != from[-1] && size < room - 1) ++size;
         memcpy(value, from, size);
         value[size] = 0;
         break;
     }
     return value;
+}
+
+static const char *attribute(const struct tag *tag, const char *name, char value[WORD]) {
+    return long_attribute(tag, name, value, WORD);
 }
 
 static uint64_t number_of(const struct tag *tag, const char *name, uint64_t otherwise) {
@@ -206,7 +213,9 @@ static int xml_file(struct xml *xml, const struct tag *tag) {
     attribute(tag, "type", value);
     if (strcmp(value, "Collection") == 0)
         return xml_fail(xml, "this is a ParaView collection: it names the files that have spheres");
-    if (strcmp(value, "PolyData") != 0 && strcmp(value, "UnstructuredGrid") != 0)
+    xml->parallel = *value == 'P' && (strcmp(value + 1, "PolyData") == 0 || strcmp(value + 1, "UnstructuredGrid") == 0);
+    if (xml->parallel && !xml->grid->open) return xml_fail(xml, "a piece of a VTK file has no points, but pieces");
+    if (!xml->parallel && strcmp(value, "PolyData") != 0 && strcmp(value, "UnstructuredGrid") != 0)
         return vtk_fail(xml->grid, NULL, "this is a VTK file of type %.40s: it has no spheres", value);
     xml->big = strcmp(attribute(tag, "byte_order", value), "BigEndian") == 0;
     if (*attribute(tag, "header_type", value)) xml->header = vtk_find_type(value);
@@ -219,12 +228,21 @@ static int xml_file(struct xml *xml, const struct tag *tag) {
     return STATUS_OK;
 }
 
+/* Ends the piece before, and begins another one. */
 static int take_piece(struct xml *xml, const struct tag *tag) {
-    const uint64_t n = number_of(tag, "NumberOfPoints", 0);
-    if (n == 0) return STATUS_OK;
-    if (xml->pieces++ > 0)
-        return xml_fail(xml, "the file has more than one piece; only files of one piece can be read");
+    const uint64_t n = number_of(tag, "NumberOfPoints", 0), most = (uint64_t)(xml->grid->end - xml->grid->text);
+    char source[PATH];
+    const int status = xml->within ? vtk_end_piece(xml->grid) : STATUS_OK;
+    xml->within = !xml->parallel;
+    if (status) return status;
+    if (xml->parallel) {
+        if (!*long_attribute(tag, "Source", source, sizeof source)) return xml_fail(xml, "a piece has no Source");
+        return xml->grid->open(source, xml->grid->context);
+    }
     if (n > UINT32_MAX) return xml_fail(xml, "too many points");
+    xml->all += n;
+    if (xml->all / (xml->packed ? PACKED_MOST : 1) > most)
+        return xml_fail(xml, "pieces have more points than the file");
     xml->grid->n = n;
     return STATUS_OK;
 }
@@ -234,8 +252,8 @@ static int xml_array(struct xml *xml, const struct tag *tag) {
     const uint64_t components = number_of(tag, "NumberOfComponents", 1);
     attribute(tag, "Name", name);
     attribute(tag, "format", format);
-    double **values = xml->points ? &xml->grid->points : vtk_find_wanted(xml->grid, name);
-    if (!values || xml->pieces == 0) return STATUS_OK;
+    double *values = NULL;
+    if (xml->grid->n == 0 || !(xml->points || vtk_wants(xml->grid, name))) return STATUS_OK;
     if (components != (xml->points ? 3 : 1))
         return vtk_fail(xml->grid, xml->at, "the array %.40s has %" PRIu64 " components", name, components);
     struct place place = {.type = vtk_find_type(attribute(tag, "type", type)),
@@ -250,12 +268,17 @@ static int xml_array(struct xml *xml, const struct tag *tag) {
         place.at = xml->appended + offset;
         place.raw = xml->raw;
     }
-    return take_values(xml, &place, values);
+    if (xml->points) return take_values(xml, &place, &xml->grid->points);
+    const int status = take_values(xml, &place, &values);
+    if (!status) return vtk_give(xml->grid, name, values);
+    free(values);
+    return status;
 }
 
 static int xml_tag(struct xml *xml, const struct tag *tag) {
     if (is_tag(tag, "VTKFile")) return xml_file(xml, tag);
     if (is_tag(tag, "Piece")) return take_piece(xml, tag);
+    if (!xml->within) return STATUS_OK;
     if (is_tag(tag, "DataArray") && (xml->points || xml->point_data)) return xml_array(xml, tag);
     const bool begins = *tag->text != '/' && tag->end[-1] != '/';
     const struct tag rest = {tag->text + (*tag->text == '/'), tag->end};
@@ -292,5 +315,5 @@ int vtk_read_xml(struct vtk_grid *grid) {
         const int status = xml_tag(&xml, &tag);
         if (status) return status;
     }
-    return STATUS_OK;
+    return xml.within ? vtk_end_piece(grid) : STATUS_OK;
 }
