@@ -46,7 +46,8 @@ static const struct option exchange_table[] = {
      TO_NUMBER(struct exchange_request, options.drop, 0, 1)},
     {0, "seed", "S", "seed of paths and directions [0]", TO_WHOLE(struct exchange_request, rule.seed, 0, INFINITY)},
     OPTIONS_INPUT,
-    {OPTION_BED_OUTPUT("write the factors: .csv .mtx .npz .json, - for standard output [summary only]")},
+    {OPTION_BED_OUTPUT("write the factors (.csv .mtx .npz .json, - for standard output) or the spheres (.vtp) [summary "
+                       "only]")},
     {OPTION_BED_FORMAT},
     {OPTION_PLOT("draw the bed and its factors by gnuplot, .svg or .png [none]")},
     {OPTION_SCRATCH},

@@ -7,6 +7,7 @@
 #include <strings.h>
 
 #include "cli/message.h"
+#include "cli/spelling.h"
 #include "text/text.h"
 
 typedef int compare_names(const char *, const char *);
@@ -38,9 +39,11 @@ static int find_any(size_t *column, int *which, const struct lines *lines, const
 }
 
 static int column_missing(const struct lines *lines, const struct fields *names, const char *wanted) {
-    char list[NAMES_LISTED];
-    return message_at(STATUS_INPUT, lines->name, lines->number, "the header names no column %.60s; there are %s",
-                      wanted, names_list(list, (const char *const *)names->at, names->n));
+    char list[NAMES_LISTED], hint[HINT_ROOM], table[HINT_ROOM];
+    const char *const *known = (const char *const *)names->at;
+    return message_at(STATUS_INPUT, lines->name, lines->number, "the header names no column %.60s%s there are %s%s",
+                      wanted, name_hint(hint, "", wanted, strlen(wanted), known, names->n),
+                      names_list(list, known, names->n), table_hint(table, "", wanted));
 }
 
 /* Whether a wanted name is a name of the header with its unit: `T [C]`, `T (C)` or `T_[C]`. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "cli/spelling.h"
 #include "read/read_format.h"
 #include "read/vtk/vtk_grid.h"
 
@@ -33,8 +34,11 @@ static int vtk_check(const struct source *source, const struct vtk_grid *grid) {
     if (!source->options.no_radius && !wanted[RADIUS].values && !wanted[DIAMETER].values)
         return vtk_fail(grid, NULL,
                         "this VTK file has no array radius or diameter on its points; --radius gives radii");
+    char table[HINT_ROOM];
     for (size_t k = EXTRAS; k < grid->count; ++k)
-        if (!wanted[k].values) return vtk_fail(grid, NULL, "there is no array %.40s on the points", wanted[k].name);
+        if (!wanted[k].values)
+            return vtk_fail(grid, NULL, "there is no array %.40s on the points%s", wanted[k].name,
+                            table_hint(table, "", wanted[k].name));
     return STATUS_OK;
 }
 
