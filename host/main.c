@@ -27,8 +27,7 @@ enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static int main_help(void) {
     printf("fibrad %s - view factors for thermal radiation between spheres\n\nCommands:\n", fibrad_version());
-    for (size_t k = 0; k < COMMANDS; ++k)
-        printf("  %-12s %s\n", commands[k].name, commands[k].purpose);
+    for (size_t k = 0; k < COMMANDS; ++k) printf("  %-12s %s\n", commands[k].name, commands[k].purpose);
     puts("\nfibrad COMMAND --help   options of a command, with defaults and examples\n"
          "fibrad help COMMAND     the same\n"
          "fibrad -V, --version    version and instruction set in use\n\n"

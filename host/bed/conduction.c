@@ -106,7 +106,7 @@ static int compare_extents(const void *a, const void *b) {
 
 /* Sum of squared widths of all gaps across a periodic axis. A gap is a slab without spheres. */
 static double square_gaps(const struct bed *bed, int axis, struct extent *extents) {
-    const double *at = (const double *[]){bed->x, bed->y, bed->z}[axis], period = bed->period[axis];
+    const double *at = bed_centres(bed, axis), period = bed->period[axis];
     double reach = -INFINITY, sum = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {
         const double low = at[i] - bed->r[i], inside = low - period * floor(low / period);

@@ -50,6 +50,7 @@ static const struct option exchange_table[] = {
                        "only]")},
     {OPTION_BED_FORMAT},
     {OPTION_PLOT("draw the bed and its factors by gnuplot, .svg or .png [none]")},
+    {OPTION_SLICE},
     {OPTION_SCRATCH},
     OPTIONS_RUN,
     {.name = NULL}};
@@ -160,7 +161,8 @@ static int exchange_matrix(struct exchange_request *request, struct bed *bed) {
     if (!status) warn_rows(&request->bed.warned, bed, &factors->matrix);
     struct contents what = {.factors = factors, .walls = &request->walls, .grey = &request->rule};
     if (!status) status = bed_options_write(&request->bed, bed, &what);
-    if (!status && request->bed.outputs.picture) status = plot_bed(&request->bed.picture, request->bed.name, &what);
+    if (!status && request->bed.outputs.picture)
+        status = plot_bed(&request->bed.picture, request->bed.name, &what, &request->bed.slice);
     if (!status) exchange_report(request, &what);
     fibrad_bed_free(factors);
     return status;

@@ -94,6 +94,7 @@ static const struct option heat_table[] = {
         "write the powers: .csv .dump (OVITO) .vtp (ParaView) .json, - for standard output [summary only]")},
     {OPTION_BED_FORMAT},
     {OPTION_PLOT("draw a picture by gnuplot, .svg or .png [none]")},
+    {OPTION_SLICE},
     OPTIONS_RUN,
     {.name = NULL}};
 
@@ -267,7 +268,9 @@ static int heat_picture(const struct heat_request *request, const struct bed *be
                                      .surroundings_temperature = problem->sources.surroundings,
                                      .surroundings_power =
                                          request->given.ambient ? report->result.surroundings_power : NAN,
-                                     .found = report->unknown > 0};
+                                     .found = report->unknown > 0,
+                                     .absorbed = problem->light->options ? problem->light->absorbed : NULL,
+                                     .plane = request->bed.slice};
     return plot_heat(&request->bed.picture, request->bed.name, &shown);
 }
 
