@@ -111,7 +111,7 @@ static int conductivity_help(void) {
 }
 
 /* Reads --temperature: a number, a list, or FROM:TO:STEP. */
-static int read_temperatures(struct conductivity_request *request) {
+static int take_temperatures(struct conductivity_request *request) {
     double *t = request->temperature, range[3];
     char from[80] = "";
     int status = STATUS_OK, count = 0;
@@ -157,7 +157,7 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
     struct conduction_rule *rule = &request->rule;
     int status = options_read("conductivity", conductivity_table, argc, argv, request);
     if (status) return status;
-    status = read_temperatures(request);
+    status = take_temperatures(request);
     if (status) return status;
     if (!request->emissivity.given && request->bed.files > 0)
         return message(STATUS_USAGE, "--emissivity is missing; see fibrad conductivity --help");

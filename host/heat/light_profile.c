@@ -2,10 +2,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "bed/units.h"
 #include "cli/message.h"
 #include "heat/light_option.h"
 #include "plot/gnuplot.h"
-#include "plot/plot_unit.h"
 
 /* One bin: from `low` on, the spheres whose centres lie in it, and what these absorb [W]. */
 struct light_bin {
@@ -65,7 +65,7 @@ static int draw_bins(const struct output *output, const struct light_state *stat
     FILE *script = gnuplot.script;
     double most = 0;
     for (uint32_t k = 0; k < bins->count; ++k) most = fmax(most, bins->bin[k].absorbed);
-    const struct plot_unit unit = plot_unit_of(most, "W");
+    const struct prefixed unit = unit_prefixed(most, "W");
     gnuplot_style(script, output->path, 800, 560);
     fputs("$bins << END\n", script);
     print_bins(script, bins, ' ', unit.scale);

@@ -5,9 +5,9 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "bed/units.h"
 #include "cli/message.h"
 #include "plot/gnuplot.h"
-#include "plot/plot_unit.h"
 
 enum { LAYERS_MAX = 60 };
 
@@ -16,19 +16,19 @@ enum { LAYERS_MAX = 60 };
 #define LOST   "3a6ea5"
 
 /* The least and largest number of an array. NaN are left out. */
-struct spread {
+struct extremes {
     double low, high;
 };
 
-static struct spread spread_of(const double *value, uint32_t n) {
-    struct spread all = {INFINITY, -INFINITY};
+static struct extremes extremes_of(const double *value, uint32_t n) {
+    struct extremes all = {INFINITY, -INFINITY};
     for (uint32_t i = 0; i < n; ++i) all.low = fmin(all.low, value[i]), all.high = fmax(all.high, value[i]);
     return all;
 }
 
 /* Whether numbers differ by more than rounding. */
 static bool varies(const double *value, uint32_t n) {
-    const struct spread all = spread_of(value, n);
+    const struct extremes all = extremes_of(value, n);
     return all.high - all.low > 1e-6 * fmax(fabs(all.low), fabs(all.high));
 }
 
@@ -47,13 +47,13 @@ static struct turnover turnover_of(const struct heat_shown *what) {
 }
 
 static void print_head(FILE *script, const struct output *output, const char *name, const struct heat_shown *what) {
-    const struct spread kelvins = spread_of(what->temperature, what->bed->n);
+    const struct extremes kelvins = extremes_of(what->temperature, what->bed->n);
     const struct turnover all = turnover_of(what);
     const double net = all.gained - all.lost;
-    const struct plot_unit unit = plot_unit_of(fabs(net), "W");
+    const struct prefixed unit = unit_prefixed(fabs(net), "W");
     double light = 0;
     for (uint32_t i = 0; i < what->bed->n && what->absorbed; ++i) light += what->absorbed[i];
-    const struct plot_unit unit_of_light = plot_unit_of(light, "W");
+    const struct prefixed unit_of_light = unit_prefixed(light, "W");
     gnuplot_style(script, output->path, 1500, 1240);
     fputs("set multiplot layout 2,2 margins 0.075,0.89,0.065,0.90 spacing 0.16,0.115\n"
           "set label 1 '",
@@ -90,7 +90,7 @@ static double power_shown(const double *value, uint32_t n) {
 enum shown { TEMPERATURE, LIGHT, POWER, QUANTITIES };
 
 /* Draws a slice. Spheres are coloured by a quantity, and walls by their temperatures if that is it. */
-static int print_slice(FILE *script, enum shown shown, const struct plot_slice *slice, const struct heat_shown *what) {
+static int print_panel(FILE *script, enum shown shown, const struct plot_slice *slice, const struct heat_shown *what) {
     static const char *const title[] = {"Temperature", "Absorbed light", "Net power"};
     static const char *const palette[] = {
         "(0 '#000004', 1 '#3b0f70', 2 '#8c2981', 3 '#de4968', 4 '#fe9f6d', 5 '#fcfdbf')",
@@ -98,7 +98,7 @@ static int print_slice(FILE *script, enum shown shown, const struct plot_slice *
         "(0 '#" LOST "', 0.5 '#e9e9e9', 1 '#" GAINED "')"};
     const double *const value[] = {what->temperature, what->absorbed, what->power};
     const double most = shown == TEMPERATURE ? 1 : power_shown(value[shown], what->bed->n);
-    const struct plot_unit unit = plot_unit_of(shown == TEMPERATURE ? 0 : most, shown == TEMPERATURE ? "K" : "W");
+    const struct prefixed unit = unit_prefixed(shown == TEMPERATURE ? 0 : most, shown == TEMPERATURE ? "K" : "W");
     const struct plot_colours colours = {
         .value = value[shown], .unit = unit.scale, .wall_value = shown == TEMPERATURE ? what->wall_temperature : NULL};
     if (!(most > 0)) return message_memory();
@@ -162,7 +162,7 @@ static void print_layers(FILE *script, const struct plot_slice *slice, const str
         layer[k].lost += fmax(-what->power[i], 0);
     }
     for (int k = 0; k < layers.n; ++k) most = fmax(most, fmax(layer[k].gained, layer[k].lost));
-    const struct plot_unit unit = plot_unit_of(most, "W");
+    const struct prefixed unit = unit_prefixed(most, "W");
     fputs("$layers << END\n", script);
     for (int k = 0; k < layers.n; ++k)
         fprintf(script, "%.6g %.6g %.6g %.6g\n", (layers.low + (k + 0.5) * layers.thick) / slice->scale,
@@ -233,7 +233,7 @@ static void print_bars(FILE *script, const struct heat_shown *what) {
     double most = fmax(fmax(all.gained, all.lost), open ? fabs(what->surroundings_power) : 0);
     int bars = 0;
     for (uint32_t k = 0; k < what->walls->count; ++k) most = fmax(most, fabs(what->wall_power[k]));
-    const struct plot_unit unit = plot_unit_of(most, "W");
+    const struct prefixed unit = unit_prefixed(most, "W");
     fputs("$bars << END\n", script);
     print_bar(script, bars++, many ? "spheres that gain" : "spheres\\nthat gain", between, NAN,
               all.gained / unit.scale);
@@ -265,7 +265,7 @@ static void print_bars(FILE *script, const struct heat_shown *what) {
 }
 
 /* The cylinder about the bed. NULL: there is none. */
-static const fibrad_body *tube_of(const struct walls *walls) {
+static const fibrad_body *cylinder_of(const struct walls *walls) {
     for (uint32_t k = 0; k < walls->count; ++k)
         if (walls->body[k].kind == FIBRAD_BODY_CYLINDER) return &walls->body[k];
     return NULL;
@@ -276,20 +276,20 @@ static int print_slices(FILE *script, const struct plot_slice *slice, const stru
     const uint32_t n = what->bed->n;
     const bool shows[QUANTITIES] = {varies(what->temperature, n), what->absorbed && varies(what->absorbed, n),
                                     varies(what->power, n)};
-    const fibrad_body *tube = what->found && !what->absorbed ? tube_of(what->walls) : NULL;
+    const fibrad_body *tube = what->found && !what->absorbed ? cylinder_of(what->walls) : NULL;
     enum shown shown[QUANTITIES];
     int count = 0;
     for (enum shown k = TEMPERATURE; k < QUANTITIES; ++k)
         if (shows[k]) shown[count++] = k;
     if (count == 0) shown[count++] = TEMPERATURE, shown[count++] = POWER;
-    int status = print_slice(script, shown[0], slice, what);
+    int status = print_panel(script, shown[0], slice, what);
     if (!status && tube) {
         print_profile(script, slice, what, tube);
     } else if (!status) {
         const struct plot_plane other = {.axis = slice->across == 1 ? 'x' : 'y'};
         struct plot_slice second = *slice;
         if (count == 1) plot_slice_of(&second, &other, what->bed, what->walls, what->metres);
-        status = print_slice(script, shown[count > 1], &second, what);
+        status = print_panel(script, shown[count > 1], &second, what);
     }
     return status;
 }

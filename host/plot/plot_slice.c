@@ -4,9 +4,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "bed/units.h"
 #include "cli/message.h"
 #include "cli/options.h"
-#include "plot/plot_unit.h"
 
 /* A wall is shown if its distance from the bed is at most this part of the bed's length. With farther walls the bed
  * would become too small in the picture. */
@@ -134,7 +134,7 @@ static void choose_scale(struct plot_slice *slice, double metres) {
         const int axis = slice->axis[up];
         largest = fmax(largest, fmax(fabs(slice->low[axis]), fabs(slice->high[axis])) * (known ? metres : 1));
     }
-    const struct plot_unit unit = plot_unit_of(largest, known ? "m" : "");
+    const struct prefixed unit = unit_prefixed(largest, known ? "m" : "");
     slice->scale = unit.scale / (known ? metres : 1);
     snprintf(slice->unit, sizeof slice->unit, "%s", unit.name);
     const double place = slice->at / slice->scale;
@@ -172,7 +172,7 @@ struct wall_lines {
 };
 
 /* Prints the ends of a line with a value, and an empty line. */
-static void print_line(void *wall_lines, double end[2][2], uint32_t k) {
+static void print_wall(void *wall_lines, double end[2][2], uint32_t k) {
     const struct wall_lines *lines = wall_lines;
     for (int e = 0; e < 2; ++e)
         fprintf(lines->script, "%.9g %.9g %.6g\n", end[e][0] / lines->scale, end[e][1] / lines->scale,
@@ -183,7 +183,7 @@ static void print_line(void *wall_lines, double end[2][2], uint32_t k) {
 static void print_walls(FILE *script, const struct plot_slice *slice, const double *wall_value) {
     struct wall_lines lines = {script, slice->scale, wall_value};
     fputs("$walls << END\n", script);
-    see_walls(slice, print_line, &lines);
+    see_walls(slice, print_wall, &lines);
     fputs("NaN NaN NaN\nEND\n", script); /* gnuplot takes a block without a line as an error */
 }
 
