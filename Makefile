@@ -79,7 +79,7 @@ COUNTED := bench/bench_instructions.c # linked with a library that counts its in
 BENCHES := $(filter-out $(PEERS) $(COUNTED),$(call sources,bench/bench_*.c))
 
 # libfibrad_files.so, by which Python reads files as the program does: its own objects, since these have names of the program
-FILES = host/python/file_arrays.c host/bed/bed.c host/bed/units.c $(filter host/cli/interrupt.c host/cli/memory.c host/cli/message.c host/cli/output.c \
+FILES = host/python/file_arrays.c host/bed/bed.c host/bed/units.c $(filter host/cli/interrupt.c host/cli/memory.c host/cli/message.c host/cli/output.c host/cli/spelling.c \
     host/mesh/%.c host/text/%.c host/read/%.c,$(filter-out host/read/read_rows.c host/text/read_curve.c host/text/report.c,$(HOST)))
 
 # ---- objects --------------------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
+#include "cli/spelling.h"
 #include "command/commands.h"
 #include "fibrad.h"
 
@@ -22,10 +23,11 @@ static const struct {
     {"reproduce", "our numbers beside those of the papers", command_reproduce},
 };
 
+enum { COMMANDS = sizeof commands / sizeof *commands };
+
 static int main_help(void) {
     printf("fibrad %s - view factors for thermal radiation between spheres\n\nCommands:\n", fibrad_version());
-    for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k)
-        printf("  %-12s %s\n", commands[k].name, commands[k].purpose);
+    for (size_t k = 0; k < COMMANDS; ++k) printf("  %-12s %s\n", commands[k].name, commands[k].purpose);
     puts("\nfibrad COMMAND --help   options of a command, with defaults and examples\n"
          "fibrad help COMMAND     the same\n"
          "fibrad -V, --version    version and instruction set in use\n\n"
@@ -38,6 +40,15 @@ static int main_version(void) {
     return STATUS_OK;
 }
 
+static int main_unknown(const char *name) {
+    const char *names[COMMANDS];
+    char hint[HINT_ROOM];
+    for (size_t k = 0; k < COMMANDS; ++k) names[k] = commands[k].name;
+    name_hint(hint, "", name, strlen(name), names, COMMANDS);
+    return message(STATUS_USAGE, "unknown %s %.40s%s see fibrad --help", *name == '-' ? "option" : "command", name,
+                   hint);
+}
+
 static int main_choose(int argc, char **argv) {
     const char *name = argc > 1 ? argv[1] : "";
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) return main_help();
@@ -47,13 +58,13 @@ static int main_choose(int argc, char **argv) {
         char help[] = "--help";
         return main_choose(3, (char *[]){argv[0], argv[2], help, NULL});
     }
-    for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k)
+    for (size_t k = 0; k < COMMANDS; ++k)
         if (strcmp(name, commands[k].name) == 0) {
             interrupt_catch();
             return commands[k].run(argc - 2, argv + 2);
         }
     if (*name == 0) return message(STATUS_USAGE, "the command is missing; see fibrad --help");
-    return message(STATUS_USAGE, "unknown %s %.40s; see fibrad --help", *name == '-' ? "option" : "command", name);
+    return main_unknown(name);
 }
 
 int main(int argc, char **argv) {

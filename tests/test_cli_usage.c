@@ -32,7 +32,31 @@ static const struct {
     const char *arguments[9], *reason;
 } misuse[] = {
     {{NULL}, "the command is missing"},
-    {{"bad"}, "unknown command bad; see fibrad --help"},
+    {{"furnish"}, "unknown command furnish; see fibrad --help"},
+    {{"haet"}, "unknown command haet; did you mean heat? see fibrad --help"},
+    {{"cond"}, "unknown command cond; did you mean conductivity?"},
+    {{"heat", MONO, "--tempearture=9"}, "unknown option --tempearture; did you mean --temperature? see fibrad heat"},
+    {{"heat", MONO, "--wall_temperature", "9"}, "did you mean --wall-temperature?"},
+    {{"heat", MONO, "--wall-t", "9"}, "did you mean --wall-temperature?"},
+    {{"heat", MONO, "-emissivity", ".5"}, "did you mean --emissivity?"},
+    {{"bed", MONO, "--emissivity", ".5"}, "unknown option --emissivity; see fibrad bed --help"},
+    {{"heat", MONO, "--emissivity=1:Makefile", "--temperature=9"},
+     "'Makefile' is not a list like 1:0.5,2:0.8; if Makefile is a table, write @Makefile"},
+    {{"heat", MONO, "--emissivity=./Makefile", "--temperature=9"}, "if ./Makefile is a table, write @./Makefile"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=@Makefile"}, "--temperature takes no table, as '@Makefile'"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=Makefile", "--until=1", "--heat-capacity=1",
+      "--density=1"},
+     "'Makefile' is not a number; if Makefile is a table, write @Makefile"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=@Makefile"},
+     "--ambient takes tables with --until"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=9", "--wall=zmin",
+      "--wall-temperature=zmin=Makefile,9"},
+     "if Makefile is a table, write NAME=@Makefile"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=9", "--wall=zmin",
+      "--wall-temperature=zmin=@Makefile"},
+     "only --wall-temperature with --until takes tables"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=9", "--wall=zmin", "--wall-temperature=zmni=9"},
+     "there is no wall zmni; did you mean zmin? there are zmin"},
     {{"--bad"}, "unknown option --bad; see fibrad --help"},
     {{"bed"}, "FILE is missing"},
     {{"bed", MONO, "--bad=3"}, "unknown option --bad; see fibrad bed --help"},
@@ -58,6 +82,9 @@ static const struct {
     {{"bed", MONO, "--raw=yes"}, "--raw takes no argument"},
     {{"bed", MONO, "-o", "out.txt"}, "unknown ending; there are .csv, .mtx, .npz, .vtp and .json"},
     {{"bed", MONO, "--plot", "out.pdf"}, "unknown ending; there are .svg and .png"},
+    {{"bed", MONO, "--slice=x=3"}, "--slice is for pictures of a bed at one time, by --plot"},
+    {{"bed", MONO, "--plot=bed.svg", "--slice=r=3"}, "--slice: 'r=3' is none of x=VALUE, y=VALUE and z=VALUE"},
+    {{"bed", MONO, "--plot=bed.svg", "--slice=z=99"}, "--slice: no sphere is at z = 99; spheres are from -0.000"},
     {{"bed", MONO, "--frame", "2:1"}, "--frame: '2:1' is none of K, all, A:B, A:B:STEP, -1"},
     {{"bed", MONO, "--frame", "-2"}, "--frame: '-2' is none of"},
     {{"bed", MONO, "--frame", "0:9:0"}, "--frame: '0:9:0' is none of"},
@@ -179,6 +206,33 @@ LOOP_TEST(bad_usage, sizeof misuse / sizeof *misuse) {
 static double pair(const char *r1, const char *r2, const char *gap) {
     SUCCEED("pair", r1, r2, gap, "--method=exact");
     return value_of("F12");
+}
+
+/* A column that is misspelt, and a table without @. */
+TEST(columns_meant) {
+    FAIL_WITH(3, "heat", MONO, "--emissivity=.5", "--temperature=v_t", "--ambient=9");
+    expect_message(MONO ":9: ", "no column v_t; did you mean v_T? there are id, ");
+    FAIL_WITH(3, "heat", MONO, "--emissivity=Makefile", "--temperature=9", "--ambient=9");
+    assert_has(said, "no column Makefile; there are id, ");
+    assert_has(said, "; if Makefile is a table, write @Makefile\n");
+}
+
+/* The order of columns in the help is that in the file; .vtp of `exchange`. */
+TEST(help_is_true) {
+    const char *columns = "i,T_K,q_W,q_error_W,T_error_K,body";
+    SUCCEED("heat", "--help");
+    assert_has(printed, columns);
+    SUCCEED("exchange", "--help");
+    assert_has(printed, ".vtp)");
+    const char *bed = write_file("two.csv", "x,y,z,r\n0,0,1,1\n3,0,1,1\n"), *csv = in_folder("q.csv");
+    SUCCEED("heat", bed, "--emissivity=.5", "--temperature=900", "--ambient=300", "--length-unit=m", "--wall=zmin=0",
+            "--wall-temperature=400", "-o", csv, "--json", in_folder("q.json"));
+    assert_begins(read_file(csv), columns);
+    double error;
+    ck_assert_int_eq(sscanf(strstr(read_file(csv), "\n-2,"), "\n-2,%*[^,],%*[^,],%lf,,zmin", &error), 1);
+    ck_assert_double_eq(json_of(in_folder("q.json"), "wall_zmin_error_W"), error);
+    ck_assert_double_eq_tol(value_of("wall_zmin_error_W"), error, .05 * error);
+    SUCCEED("exchange", bed, "--emissivity=.5", "-o", in_folder("D.vtp"));
 }
 
 TEST(exact_pair) {

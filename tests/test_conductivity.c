@@ -32,7 +32,7 @@ static struct conduction follow(struct bed *bed, double emissivity, struct condu
     for (uint32_t i = 0; i < bed->n; ++i) all[i] = emissivity;
     rule.emissivity = all;
     fibrad_run run = {.threads = 1};
-    ck_assert_int_eq(conduction_emitters(bed, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
+    ck_assert_int_eq(conduction_emitters(bed, NULL, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
     assert_ok(conduction_follow(bed, emits, &rule, &run, &result));
     bed_free(bed);
     return result;
@@ -69,12 +69,12 @@ TEST(gaps_across_axes) {
         OWNED_BED bed = cell_of(2, 2, 7);
         ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.x = 1, .z = 1.9, .r = 1}), 0);
         for (int i = 0; i < 2; ++i) bed.z[i] += shift * .7;
-        ck_assert_int_eq(conduction_emitters(&bed, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
+        ck_assert_int_eq(conduction_emitters(&bed, NULL, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
         ck_assert_double_eq_tol(result.growth[0], 3.1 * 3.1 / 14, 1e-12);
         ck_assert_double_eq(result.growth[2], 0);
     }
     OWNED_BED loose = cell_of(2.5, 2.2, 2);
-    ck_assert_int_eq(conduction_emitters(&loose, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
+    ck_assert_int_eq(conduction_emitters(&loose, NULL, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
     ck_assert_double_eq_tol(result.growth[0], .04 / 4.4, 1e-12);
     ck_assert_double_eq_tol(result.growth[1], .25 / 5, 1e-12);
     ck_assert_double_eq_tol(result.growth[2], .04 / 4.4 + .25 / 5, 1e-12);
@@ -145,13 +145,13 @@ TEST(solid_fraction) {
     struct conduction result;
     OWNED_BED cubic = cell_of(2, 2, 2), centred = cell_of(4 / sqrt(3), 4 / sqrt(3), 4 / sqrt(3)), open = bed_empty();
     ck_assert_int_eq(bed_add(&centred, &(struct bed_sphere){2 / sqrt(3), 2 / sqrt(3), 2 / sqrt(3), 1, 0, 0}), 0);
-    ck_assert_int_eq(conduction_emitters(&cubic, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
+    ck_assert_int_eq(conduction_emitters(&cubic, NULL, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
     ck_assert_double_eq_tol(result.solid_fraction, PI / 6, 1e-14);
-    ck_assert_int_eq(conduction_emitters(&centred, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
+    ck_assert_int_eq(conduction_emitters(&centred, NULL, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
     ck_assert_double_eq_tol(result.solid_fraction, PI * sqrt(3) / 8, 1e-14);
     ck_assert_int_eq(bed_make_copies(&open, &cubic, (const uint32_t[]){16, 16, 16}), 0);
     memset(open.period, 0, sizeof open.period);
-    ck_assert_int_eq(conduction_emitters(&open, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
+    ck_assert_int_eq(conduction_emitters(&open, NULL, -1, CONDUCTION_MARGIN, "bed", emits, &result), 0);
     ck_assert_double_eq_tol(result.solid_fraction, PI / 6, .02);
 }
 
@@ -256,7 +256,8 @@ TEST(watts_and_files) {
     ck_assert_double_eq_tol(json_of(json, "F_E_x"), 1.2005, .05);
     ck_assert_double_eq_tol(json_of(json, "solid_fraction"), PI / 6, 1e-12);
     char *text = read_file(csv);
-    const char *head = "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable,F_E_steady,F_E_steady_error,k_star\n";
+    const char *head =
+        "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable,F_E_steady,F_E_steady_error,k_star,T_K,warning\n";
     assert_begins(text, head);
     ck_assert_int_eq(sscanf(text + strlen(head), "%c,%lf,%lf,%lf,%lf,", &axis, &factor, &factor_error, &k, &k_error),
                      5);
@@ -270,7 +271,7 @@ TEST(watts_and_files) {
     ck_assert_ptr_null(text_of("k_y_W_mK"));
     text = read_file(csv);
     ck_assert_int_eq(sscanf(text + strlen(head), "y,%lf,%lf,,,", &factor, &factor_error), 2);
-    ck_assert_str_eq(strchr(text + strlen(head), '\n') - 2, ",,\n");
+    ck_assert_str_eq(strchr(text + strlen(head), '\n') - 4, ",,,,\n");
     CONDUCTIVITY(cell, "--periodic", "6,6,6", "--emissivity", "1", "--rays", "200", "--temperature", "0", "-o",
                  in_folder("k.json"), "--json", json);
     text = read_file(in_folder("k.json"));
@@ -313,4 +314,91 @@ TEST(between_plates) {
     FAIL_WITH(2, "conductivity", PERIODIC, "--periodic", "12,12,0", "--emissivity", "1", "--axis", "x", "--error", ".1",
               "--steady");
     expect_message(PERIODIC, "--steady: the two axes across it must be periodic");
+}
+
+/* A tube of radius 3.2 with layers of seven unit spheres, each turned. */
+static const char *tube_of(int layers) {
+    char text[16384] = "x,y,z,r\n";
+    for (int k = 0; k < layers; ++k)
+        for (int i = 0; i < 7; ++i) {
+            const double far = i < 6 ? 2.15 : 0, angle = PI / 3 * i + 2.4 * k;
+            sprintf(text + strlen(text), "%.9g,%.9g,%g,1\n", far * cos(angle), far * sin(angle), 1 + 2.02 * k);
+        }
+    return write_file(formatted("tube%d.csv", layers), text);
+}
+
+/* F_E of a bed without the sides of its tube is too low. All outputs say so: summary, table, object and picture. */
+TEST(open_sides_are_told) {
+    static const char *const doubt = "F_E too low: radiation leaves the bed";
+    const char *tube = tube_of(24), *csv = in_folder("k.csv"), *json = in_folder("k.json"), *plot = in_folder("k.svg");
+    CONDUCTIVITY(tube, "--emissivity", "0.8", "--axis", "z", "--rays", "64", "-o", csv, "-o", json, "--plot", plot,
+                 "--json", in_folder("s.json"));
+    assert_has(said, "of what the core emits leaves the bed; F_E is too low. --wall closes the sides of a container");
+    assert_begins(text_of("unreliable"), "z\n");
+    assert_has(read_file(in_folder("s.json")), "leaves the bed; F_E is too low");
+    assert_has(read_file(csv), formatted(",,,0,,,,,%s\n", doubt));
+    assert_has(read_file(json), formatted("\"reliable\":false,\"warning\":\"%s\"", doubt));
+    assert_has(read_file(plot), ">radiation leaves the bed<");
+}
+
+/* Between insulated sides F_E is that of the flux between two plates. A periodic tube has the F_E of a long one. */
+TEST(a_bed_in_a_tube) {
+    const char *tube = tube_of(24), *wall = "cylinder:0,0,3.2", *csv = in_folder("k.csv");
+    CONDUCTIVITY(tube, "--emissivity", "0.4", "--wall", wall, "--steady", "--error", ".01", "-o", csv);
+    const double linear = value_of("F_E_z"), error = value_of("F_E_z_error"), steady = value_of("F_E_steady_z");
+    ck_assert_double_eq_tol(linear, steady, .02 * steady + 3 * error);
+    assert_lacks(said, "--wall closes"); /* some of the radiation leaves through the ends */
+    CONDUCTIVITY(tube, "--emissivity", "0.4", "--axis", "z", "--error", ".01");
+    ck_assert_double_lt(value_of("F_E_z"), .8 * linear); /* sides that let radiation out */
+    CONDUCTIVITY(tube_of(12), "--periodic", "0,0,24.24", "--emissivity", "0.4", "--wall", wall, "--error", ".01");
+    ck_assert_double_eq_tol(value_of("F_E_z"), linear, .02 * linear + 3 * hypot(error, value_of("F_E_z_error")));
+    ck_assert_double_eq_tol(value_of("solid_fraction"), 7 * 4 / 3. / (3.2 * 3.2 * 2.02), 1e-4);
+    FAIL_WITH(2, "conductivity", tube, "--emissivity", ".8", "--wall", "zmin");
+    expect_message("--wall: F_E is along one axis without a wall across it", "give --axis");
+    FAIL_WITH(2, "conductivity", tube, "--emissivity", ".8", "--wall", "zmin", "--axis", "z");
+    expect_message("--wall: F_E along z has no wall across z", "only the sides can be walls");
+    FAIL_WITH(2, "conductivity", tube, "--emissivity", ".8", "--wall", wall, "--length-unit", "m", "--temperature", "9",
+              "--solid-conductivity", "3");
+    expect_message("--solid-conductivity: paths of spheres that conduct know no walls", "");
+}
+
+/* Several temperatures go into one file. */
+TEST(many_temperatures) {
+    const char *cell = write_file("cell.csv", "x,y,z,r\n0,0,0,3\n"), *csv = in_folder("k.csv"),
+               *json = in_folder("s.json");
+    const char *const lists[] = {"600,900,1200", "600:1200:300", "326.85:926.85:300"};
+    char *text = NULL;
+    for (int k = 0; k < 2; ++k) {
+        CONDUCTIVITY(cell, "--length-unit", "mm", "--periodic", "6,6,6", "--emissivity", "1", "--rays", "64", "--axis",
+                     "x", "--temperature", lists[k], "-o", csv, "--json", json);
+        read_same(csv, &text);
+    }
+    double watts[3], kelvins[3];
+    for (int k = 0; k < 3; ++k) {
+        text = strchr(text, '\n') + 1;
+        ck_assert_int_eq(sscanf(text, "x,%*f,%*f,%lf,%*f,%*d,,,,%lf,", &watts[k], &kelvins[k]), 2);
+        ck_assert_double_eq(kelvins[k], 600 + 300 * k);
+        ck_assert_double_eq_tol(watts[k], watts[0] * pow(kelvins[k] / kelvins[0], 3), 1e-12 * watts[k]);
+    }
+    ck_assert_double_eq(json_of(json, "temperature_K"), 1200);
+    CONDUCTIVITY(cell, "--length-unit", "mm", "--periodic", "6,6,6", "--emissivity", "1", "--rays", "64",
+                 "--temperature", lists[2], "--temperature-unit", "C", "--solid-conductivity", "1", "-o", csv);
+    double star[2], factor[2];
+    text = strchr(read_file(csv), '\n') + 1;
+    for (int k = 0; k < 2; ++k) {
+        ck_assert_int_eq(sscanf(text, "x,%lf,%*f,%*f,%*f,%*d,,,%lf,", &factor[k], &star[k]), 2);
+        for (int line = 0; line < 3; ++line) text = strchr(text, '\n') + 1;
+    }
+    ck_assert_double_eq_tol(star[1] / star[0], pow(900. / 600, -3), 1e-9);
+    ck_assert_double_lt(factor[1], factor[0]);
+    static const char *const wrong[] = {"9:3:1", "1:2:0", "1:2", "1:1e9:1", "-3", "300,", "1:2:3:4", "300,-1"};
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+        FAIL_WITH(2, "conductivity", cell, "--periodic", "6,6,6", "--emissivity", "1", "--temperature", wrong[k]);
+        expect_message("--temperature: ", "");
+    }
+    FAIL_WITH(2, "conductivity", cell, "--emissivity", "1", "--temperature", "3,4", "--plot", in_folder("k.svg"));
+    expect_message("--plot shows one temperature", "");
+    FAIL_WITH(2, "conductivity", cell, "--emissivity", "1", "--temperature", "3,4", "--frame", "all", "-o",
+              in_folder("k.*.csv"));
+    assert_has(said, "a file for each frame has one temperature");
 }

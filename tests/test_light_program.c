@@ -150,6 +150,20 @@ TEST(faces_have_an_emissivity) {
     expect_message("--face: the bed has no open face", "");
 }
 
+/* Angles are in radians, as in C and in Python, or in a unit that is named. */
+TEST(half_angles_have_units) {
+    static const char *const same[] = {"0.09", "0.09rad", "90mrad", "5.15662015618deg"};
+    double absorbed[5];
+    for (int k = 0; k < 5; ++k) {
+        const char *json = in_folder("h.json"), *angle = k < 4 ? same[k] : "0.01";
+        SUCCEED(HEAT, "--temperature", "300", "--wall", CUP, "--json", json, "--irradiate",
+                formatted("0,0,-1:1000:disc=1,1,3,.5:half-angle=%s", angle));
+        absorbed[k] = json_of(json, "absorbed_first_W");
+    }
+    for (int k = 1; k < 4; ++k) ck_assert_double_eq_tol(absorbed[k], absorbed[0], 1e-9 * absorbed[0]);
+    ck_assert_double_gt(fabs(absorbed[4] - absorbed[0]), 1e-3 * absorbed[0]);
+}
+
 TEST(refused_lights_are_named) {
     static const struct {
         const char *light, *wall, *place, *reason;
@@ -159,7 +173,11 @@ TEST(refused_lights_are_named) {
         {"0,-1:5", CUP, "--irradiate: '0,-1'", "DX,DY,DZ"},
         {"0,0,-1:-5", CUP, "--irradiate: flux", ""},
         {"0,0,-1:5:width=3", CUP, "--irradiate: 'width=3'", "none of half-angle=, disc= and box="},
-        {"0,0,-1:5:half-angle=moon", CUP, "--irradiate: half-angle", ""},
+        {"0,0,-1:5:half-angle=moon", CUP, "--irradiate: half-angle=moon", "is not an angle from 0 to 0.5 radians"},
+        {"0,0,-1:5:half-angle=", CUP, "--irradiate: half-angle= is not", ""},
+        {"0,0,-1:5:half-angle=5", CUP, "--irradiate: half-angle=5 is not", "half-angle=5mrad is in milliradians"},
+        {"0,0,-1:5:half-angle=-1deg", CUP, "--irradiate: half-angle=-1deg is not", ""},
+        {"0,0,-1:5:half-angle=5 mrads", CUP, "--irradiate: half-angle=5 mrads is not", ""},
         {"0,0,-1:5:disc=1,1,3", CUP, "--irradiate: '1,1,3'", "disc=X,Y,Z,R"},
         {"0,0,-1:5:disc=1,1,3,0", CUP, "--irradiate: the radius", "not above 0"},
         {"0,0,-1:5:box=1,0,0,1", CUP, "--irradiate: box=1,0,0,1", "X1 must be below X2"},

@@ -1,6 +1,7 @@
 /* test_plot.c - pictures: they show all that they should, and nothing lies outside. SPDX-License-Identifier: MIT */
 #include <unistd.h>
 
+#include "cli/message.h"
 #include "plot/plot_bed.h"
 #include "plot/plot_conduction.h"
 #include "plot/plot_heat.h"
@@ -10,6 +11,7 @@
 
 #define FOLDER "/tmp/fibrad_plot_XXXXXX"
 static char folder[] = FOLDER, path[sizeof folder + 8];
+static struct plot_plane plane; /* of pictures of factors */
 
 /* Each test has a folder of its own, also if all tests run in one process. */
 static void make_folder(void) {
@@ -19,6 +21,7 @@ static void make_folder(void) {
 }
 
 static void remove_folder(void) {
+    plane = (struct plot_plane){0};
     remove(path);
     rmdir(folder);
 }
@@ -41,14 +44,36 @@ static char *drawn(draw_function *draw, const void *what) {
     return text;
 }
 
-/* Checks that all texts begin within the picture, and none at its very edge. */
+/* A text of a picture. Letters count as half as wide as high, which is a little less than they are. */
+struct text {
+    double left, right, y;
+    const char *at;
+};
+
+/* Reads the text of a <g>. An aslant text has no width. */
+static struct text text_of(const char *g) {
+    double x, y, size;
+    ck_assert_int_eq(sscanf(g, "<g transform=\"translate(%lf,%lf)", &x, &y), 2);
+    const char *first = strstr(g, "<tspan"), *end = strstr(first, "</tspan>");
+    first = strchr(first, '>') + 1 + strspn(strchr(first, '>') + 1, " ");
+    ck_assert_int_eq(sscanf(strstr(g, "font-size="), "font-size=\"%lf", &size), 1);
+    const char *anchor = strstr(g, "text-anchor=\"");
+    const double width = strncmp(strchr(g, ')'), ") rotate", 8) == 0 ? 0 : .5 * size * (double)(end - first);
+    const double before = anchor[13] == 'e' ? 1 : anchor[13] == 'm' ? .5 : 0;
+    return (struct text){x - before * width, x + (1 - before) * width, y, first};
+}
+
+/* Checks that all texts lie within the picture, none at its very edge, and that no two of one line overlap. */
 static void assert_texts_inside(const char *svg) {
+    struct text text[400];
     int texts = 0;
     for (const char *g = svg; (g = strstr(g, "<g transform=\"translate(")) != NULL; ++g) {
-        double x, y;
-        ck_assert_int_eq(sscanf(g, "<g transform=\"translate(%lf,%lf)", &x, &y), 2);
-        ck_assert_msg(x > 12 && x < 1488 && y > 12 && y < 1228, "%.90s", g);
-        ++texts;
+        const struct text t = text[texts++] = text_of(g);
+        ck_assert_msg(t.left > 12 && t.right < 1488 && t.y > 12 && t.y < 1228, "%.90s", g);
+        ck_assert_int_lt(texts, 400);
+        for (int k = 0; k + 1 < texts; ++k)
+            ck_assert_msg(fabs(text[k].y - t.y) > 1 || text[k].right <= t.left || t.right <= text[k].left,
+                          "%.20s over %.20s", text[k].at, t.at);
     }
     ck_assert_int_gt(texts, 40);
 }
@@ -61,7 +86,9 @@ static uint32_t count_of(const char *svg, const char *words) {
 
 /* ---- beds -------------------------------------------------------------------------------------------------------- */
 
-static int draw_bed(const struct output *output, const void *what) { return plot_bed(output, "folder/bed.csv", what); }
+static int draw_bed(const struct output *output, const void *what) {
+    return plot_bed(output, "folder/bed.csv", what, &plane);
+}
 
 /* Makes a picture of a bed of this size, with or without walls. */
 static char *picture_of_bed(double size, bool walled) {
@@ -110,7 +137,8 @@ TEST(where_heat_goes) {
     const double temperature[] = {300, 1200.5, 777}, power[] = {1.5, -4.25, .25};
     const double wall_temperature[] = {412, 900}, wall_power[] = {3.125, -.5};
     const struct walls walls = {.count = 2, .body = {plane_at(2, 0, -.001), cylinder_at(0, 0, .0044)}};
-    struct heat_shown what = {&bed, &walls, 1, temperature, power, wall_temperature, wall_power, 293, -.125, false};
+    struct heat_shown what = {&bed,       &walls, 1,     temperature,   power, wall_temperature,
+                              wall_power, 293,    -.125, .found = false};
     OWNED char *svg = drawn(draw_heat, &what);
     assert_texts_inside(svg);
     static const char *const told[] = {"bed's.dump",
@@ -123,7 +151,7 @@ TEST(where_heat_goes) {
                                        ">zmin<",
                                        ">surroundings<",
                                        ">412 K<",
-                                       ">3.12<",
+                                       ">3.125<",
                                        ">cylinder<",
                                        ">900 K<",
                                        ">-0.5<",
@@ -150,6 +178,108 @@ TEST(where_heat_goes) {
     assert_has(svg, "gain 0 W");
     assert_lacks(svg, "surroundings");
     ck_assert_uint_eq(count_of(svg, "that gain"), 1);
+}
+
+/* Tics and titles of a tall bed, of a flat one and across z do not overlap, and lie within the picture. */
+LOOP_TEST(tall_and_flat_beds, 3) {
+    enum { N = 30 };
+    OWNED_BED bed = bed_empty();
+    double temperature[N], power[N];
+    for (int i = 0; i < N; ++i) {
+        const double place = .06 * i;
+        ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){_i == 1 ? place : 0, 0, _i == 1 ? 0 : place, .03, 0, 0}),
+                         0);
+        temperature[i] = 500 + i, power[i] = i - 1e-3;
+    }
+    const struct heat_shown what = {.bed = &bed,
+                                    .walls = &(struct walls){0},
+                                    .metres = 1,
+                                    .temperature = temperature,
+                                    .power = power,
+                                    .surroundings_temperature = 293,
+                                    .surroundings_power = -.125,
+                                    .plane = {.axis = _i == 2 ? 'z' : 0}};
+    OWNED char *svg = drawn(draw_heat, &what);
+    assert_texts_inside(svg);
+    assert_has(svg, _i == 2 ? ">y [mm]<" : ">z [m]<");
+    assert_has(svg, _i == 2 ? ", slice at z = " : ", slice at y = 0 m");
+}
+
+/* Powers have prefixes, and nothing is -0. */
+TEST(prefixes_of_powers) {
+    OWNED_BED bed = BED({0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1});
+    const double temperature[] = {300, 1200, 777}, power[] = {125e3, 50e3, -0.};
+    const struct walls walls = {.count = 1, .body = {plane_at(2, 0, -1)}};
+    const double wall_temperature = 412, wall_power = -0.;
+    struct heat_shown what = {&bed,        &walls, 1,      temperature,   power, &wall_temperature,
+                              &wall_power, 293,    -175e3, .found = false};
+    OWNED char *svg = drawn(draw_heat, &what);
+    static const char *const told[] = {"gain 175 kW by radiation",
+                                       "Net power [kW], slice",
+                                       "power of a layer [kW]",
+                                       "lost below [kW]",
+                                       ">175<",
+                                       ">-175<"};
+    for (size_t k = 0; k < sizeof told / sizeof *told; ++k) assert_has(svg, told[k]);
+    assert_lacks(svg, ">-0<");
+    assert_lacks(svg, "> -0<");
+    assert_lacks(svg, "e+0");
+    const double small[] = {3e-6, -2e-6, 1e-6};
+    free(svg);
+    what.power = small, what.surroundings_power = -2e-6;
+    svg = drawn(draw_heat, &what);
+    assert_has(svg, "Net power [\302\265W], slice");
+    assert_has(svg, "gain 2 \302\265W by radiation");
+}
+
+/* What is the same for all spheres does not fill a panel: a second slice, absorbed light or, within a cylinder,
+ * temperatures against radius take its place. */
+TEST(no_panel_of_one_colour) {
+    OWNED_BED bed = BED({0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1});
+    const double temperature[] = {300, 1200, 777}, same[] = {-40, -40, -40}, light[] = {1, 2, 5};
+    struct walls walls = {0};
+    struct heat_shown what = {&bed, &walls, 1, temperature, same, temperature, temperature, 293, 120, .found = true};
+    OWNED char *svg = drawn(draw_heat, &what);
+    assert_lacks(svg, "Net power [W], slice");
+    assert_has(svg, "Temperature [K], slice at y = 0 m");
+    assert_has(svg, "Temperature [K], slice at x = ");
+    free(svg);
+    what.absorbed = light;
+    svg = drawn(draw_heat, &what);
+    assert_has(svg, "they absorb 8 W of light");
+    assert_has(svg, "Absorbed light [W], slice at y = 0 m");
+    free(svg);
+    walls.count = 1, walls.body[0] = cylinder_at(1, 0, 4);
+    what.absorbed = NULL;
+    svg = drawn(draw_heat, &what);
+    assert_has(svg, "Temperature by radius, rings of 1 m");
+    assert_has(svg, "Temperature by height");
+    assert_texts_inside(svg);
+    free(svg);
+    what.found = false, what.temperature = same, what.power = temperature, walls.count = 0;
+    svg = drawn(draw_heat, &what);
+    assert_has(svg, "Net power [W], slice at y");
+    assert_has(svg, "Net power [W], slice at x");
+    assert_lacks(svg, "Temperature [K], slice");
+}
+
+/* The plane of a slice is where it was put. A plane without spheres, and what is no plane, are refused. */
+TEST(planes_of_slices) {
+    OWNED_BED bed = BED({0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1});
+    ck_assert_int_eq(plot_plane_option("z=4.5", &plane), 0);
+    ck_assert(plane.axis == 'z' && plane.placed && plane.at == 4.5);
+    ck_assert_int_eq(plot_plane_check(&plane, &bed), 0);
+    struct plot_slice slice;
+    plot_slice_of(&slice, &plane, &bed, NULL, 1e-3);
+    ck_assert_str_eq(slice.place, "z = 4.5 mm");
+    plane.at = 2;
+    ck_assert_int_eq(plot_plane_check(&plane, &bed), STATUS_USAGE);
+    static const char *const wrong[] = {"u=3", "z=", "zz", "x=a", "", "x=1e300"};
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k)
+        ck_assert_int_eq(plot_plane_option(wrong[k], &plane), STATUS_USAGE);
+    ck_assert_int_eq(plot_plane_option("x", &plane), 0);
+    plot_slice_of(&slice, &plane, &bed, NULL, 0);
+    ck_assert_str_eq(slice.place, "x = 0");
 }
 
 /* Names are shown as they are. Names of many walls stand aslant and apart from each other. Temperatures that were found

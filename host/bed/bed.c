@@ -48,12 +48,10 @@ int bed_add(struct bed *bed, const struct bed_sphere *sphere) {
     return STATUS_OK;
 }
 
-static const double *centres(const struct bed *bed, int axis) {
-    return axis == 0 ? bed->x : axis == 1 ? bed->y : bed->z;
-}
+const double *bed_centres(const struct bed *bed, int axis) { return axis == 0 ? bed->x : axis == 1 ? bed->y : bed->z; }
 
 double bed_reach(const struct bed *bed, int axis, bool upper) {
-    const double *c = centres(bed, axis);
+    const double *c = bed_centres(bed, axis);
     double end = upper ? -INFINITY : INFINITY;
     for (uint32_t i = 0; i < bed->n; ++i) end = upper ? fmax(end, c[i] + bed->r[i]) : fmin(end, c[i] - bed->r[i]);
     return end;
@@ -95,7 +93,7 @@ double bed_end(const struct bed *bed, int axis, bool upper) {
 #define SHRUNK_BEYOND 1.001
 
 double bed_wall_end(const struct bed *bed, int axis, bool upper, bool *moved) {
-    const double end = bed_end(bed, axis, upper), *c = centres(bed, axis);
+    const double end = bed_end(bed, axis, upper), *c = bed_centres(bed, axis);
     double deepest = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {
         const double depth = bed->r[i] + (upper ? c[i] - end : end - c[i]);

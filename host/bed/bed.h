@@ -25,6 +25,9 @@ struct bed {
     int64_t timestep;       /* timestep that the file names; -1: none */
 };
 
+/* Centres along an axis, 0 to 2. */
+const double *bed_centres(const struct bed *bed, int axis);
+
 /* A sphere for bed_add. */
 struct bed_sphere {
     double x, y, z, r;

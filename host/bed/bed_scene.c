@@ -6,7 +6,12 @@
 #include "cli/message.h"
 
 fibrad_spheres bed_spheres(const struct bed *bed) {
-    return (fibrad_spheres){.x = bed->x, .y = bed->y, .z = bed->z, .r = bed->r, .n = bed->n};
+    return (fibrad_spheres){.x = bed->x,
+                            .y = bed->y,
+                            .z = bed->z,
+                            .r = bed->r,
+                            .n = bed->n,
+                            .id = bed->ids ? (const uint64_t *)bed->id : NULL};
 }
 
 fibrad_scene_config bed_scene(const struct bed *bed, const struct walls *walls) {

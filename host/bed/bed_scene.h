@@ -7,7 +7,8 @@
 #include "bed/wall_option.h"
 #include "fibrad.h"
 
-/* The spheres of a bed, and its periods and walls. Both refer to arrays of `bed` and `walls`. walls NULL: none. */
+/* The spheres of a bed with their ids, and its periods and walls. Both refer to arrays of `bed` and `walls`. walls
+ * NULL: none. */
 fibrad_spheres bed_spheres(const struct bed *bed);
 fibrad_scene_config bed_scene(const struct bed *bed, const struct walls *walls);
 

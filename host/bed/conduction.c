@@ -40,31 +40,51 @@ enum { FLIGHTS_SLOW = 24, FLIGHTS_SLOWEST = 48 };
  */
 #define ENDLESS 0.0003
 
+/* Largest parts that may leave the bed: of what the core emits, and of the paths of spheres that conduct. */
+#define LEAVING       1e-3
+#define LEAVING_WALKS 0.05
+
 /* The core of the bed, which emits: a box, infinite along periodic axes. */
 struct core {
     double low[3], high[3], volume;
 };
 
-static int find_core(const struct bed *bed, int wanted, double margin, const char *file, double diameter,
-                     struct core *core) {
-    const double *at[3] = {bed->x, bed->y, bed->z};
+/* Where a wall across an axis ends the bed, low or high. NaN: there is no such wall. */
+static double wall_end(const struct walls *walls, int axis, bool upper) {
+    for (uint32_t k = 0; walls && k < walls->count; ++k) {
+        const fibrad_body *wall = &walls->body[k];
+        if (wall->kind == FIBRAD_BODY_PLANE && wall->plane.axis == axis && wall->plane.upper == upper)
+            return wall->plane.at;
+    }
+    return NAN;
+}
+
+double conduction_width(const struct bed *bed, const struct walls *walls, int axis) {
+    if (bed->period[axis] > 0) return bed->period[axis];
+    for (uint32_t k = 0; walls && axis < 2 && k < walls->count; ++k)
+        if (walls->body[k].kind == FIBRAD_BODY_CYLINDER) return sqrt(PI) * walls->body[k].cylinder.radius;
+    return wall_end(walls, axis, true) - wall_end(walls, axis, false);
+}
+
+static int find_core(const struct bed *bed, const struct walls *walls, int wanted, double margin, const char *file,
+                     double diameter, struct core *core) {
     core->volume = 1;
     for (int axis = 0; axis < 3; ++axis) {
+        const double width = conduction_width(bed, walls, axis), *at = bed_centres(bed, axis);
         core->low[axis] = -INFINITY;
         core->high[axis] = INFINITY;
-        if (bed->period[axis] > 0) {
-            core->volume *= bed->period[axis];
+        if (!isnan(width)) {
+            core->volume *= width;
             continue;
         }
-        double low = INFINITY, high = -INFINITY, lowest = INFINITY, highest = -INFINITY;
-        for (uint32_t i = 0; i < bed->n; ++i) {
-            low = fmin(low, at[axis][i]), lowest = fmin(lowest, at[axis][i] - bed->r[i]);
-            high = fmax(high, at[axis][i]), highest = fmax(highest, at[axis][i] + bed->r[i]);
-        }
-        core->low[axis] = low + margin * diameter;
-        core->high[axis] = high - margin * diameter;
+        double low = INFINITY, high = -INFINITY;
+        for (uint32_t i = 0; i < bed->n; ++i) low = fmin(low, at[i]), high = fmax(high, at[i]);
+        const double lower = wall_end(walls, axis, false), upper = wall_end(walls, axis, true);
+        core->low[axis] = isnan(lower) ? low + margin * diameter : lower;
+        core->high[axis] = isnan(upper) ? high - margin * diameter : upper;
         const bool thin = !(core->high[axis] > core->low[axis]);
-        if (thin && wanted >= 0 && wanted != axis) core->low[axis] = lowest, core->high[axis] = highest;
+        if (thin && wanted >= 0 && wanted != axis)
+            core->low[axis] = bed_reach(bed, axis, false), core->high[axis] = bed_reach(bed, axis, true);
         if (thin && (wanted < 0 || wanted == axis))
             return message_at(
                 STATUS_INPUT, file, 0,
@@ -106,7 +126,7 @@ static int compare_extents(const void *a, const void *b) {
 
 /* Sum of squared widths of all gaps across a periodic axis. A gap is a slab without spheres. */
 static double square_gaps(const struct bed *bed, int axis, struct extent *extents) {
-    const double *at = (const double *[]){bed->x, bed->y, bed->z}[axis], period = bed->period[axis];
+    const double *at = bed_centres(bed, axis), period = bed->period[axis];
     double reach = -INFINITY, sum = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {
         const double low = at[i] - bed->r[i], inside = low - period * floor(low / period);
@@ -137,14 +157,14 @@ static int find_growth(const struct bed *bed, struct conduction *result) {
 }
 
 /* The volume of the emitters is that of their spheres over the solid fraction of the core. */
-int conduction_emitters(const struct bed *bed, int axis, double margin, const char *file, unsigned char *emits,
-                        struct conduction *result) {
+int conduction_emitters(const struct bed *bed, const struct walls *walls, int axis, double margin, const char *file,
+                        unsigned char *emits, struct conduction *result) {
     struct core core;
     double solid = 0, emitting = 0;
     *result = (struct conduction){.temperature = NAN};
     for (int a = 0; a < 3; ++a) result->steady[a] = result->steady_error[a] = NAN;
     for (uint32_t i = 0; i < bed->n; ++i) result->diameter += 2 * bed->r[i] / bed->n;
-    const int status = find_core(bed, axis, margin, file, result->diameter, &core);
+    const int status = find_core(bed, walls, axis, margin, file, result->diameter, &core);
     if (status) return status;
     for (uint32_t i = 0; i < bed->n; ++i) {
         const double volume = 4 * PI / 3 * pow(bed->r[i], 3);
@@ -227,12 +247,14 @@ static int round_stage(void *context, const char *stage, uint64_t done, uint64_t
 static int follow_round(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
                         fibrad_run *run, uint32_t batches, uint64_t paths, struct tally *tally,
                         struct conduction *result) {
-    const fibrad_scene_config scene = bed_scene(bed, NULL);
+    static const double mirrors[WALLS_MAX] = {0};
+    const fibrad_scene_config scene = bed_scene(bed, rule->walls);
     const fibrad_spheres spheres = bed_spheres(bed);
     struct round_progress round = {.run = run, .batches = batches};
     for (; round.batch < batches; ++round.batch) {
         const uint32_t share = (uint32_t)(paths / batches + (round.batch < paths % batches));
         const fibrad_exchange_rule how = {.emissivity = rule->emissivity,
+                                          .body_emissivity = mirrors,
                                           .conductivity = rule->conductivity,
                                           .flights = result->flights,
                                           .paths = share,
@@ -365,7 +387,21 @@ bool conduction_wants(const struct conduction *result, int axis) { return result
 
 enum conduction_flights conduction_flights(const struct conduction *result, int axis) {
     if (result->growth[axis] > fmin(result->error[axis], ENDLESS * result->factor[axis])) return FLIGHTS_ENDLESS;
+    if (result->escaped > (result->flights > 0 ? LEAVING_WALKS : LEAVING)) return FLIGHTS_LEAVING;
     return result->concentration[axis] > SETTLED ? FLIGHTS_RARE : FLIGHTS_SETTLED;
+}
+
+const char *conduction_doubt(const struct conduction *result, int axis) {
+    switch (conduction_flights(result, axis)) {
+    case FLIGHTS_ENDLESS:
+        return "F_E does not exist: endless flights";
+    case FLIGHTS_RARE:
+        return "error unreliable: few long flights";
+    case FLIGHTS_LEAVING:
+        return "F_E too low: radiation leaves the bed";
+    default:
+        return NULL;
+    }
 }
 
 void conduction_at(struct conduction *result, double temperature, double metre) {

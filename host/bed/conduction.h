@@ -12,6 +12,7 @@
 #include <stdbool.h>
 
 #include "bed/bed.h"
+#include "bed/wall_option.h"
 #include "simple/fibrad_host.h"
 
 /* Along open axes only inner spheres emit. Their centres lie at least so many mean diameters inside the outermost
@@ -35,6 +36,7 @@ double k_star_mean(const struct k_star *all);
 struct conduction_rule {
     const double *emissivity;   /* [n] of the spheres */
     const double *conductivity; /* [n] k* of the spheres; NULL: each sphere has one temperature */
+    const struct walls *walls;  /* sides of the bed, which reflect everything diffusely; NULL: none */
     int axis;                   /* the axis whose error counts; -1: all three */
     uint64_t seed;
     uint64_t paths; /* from each emitter; 0: as many as `error` needs */
@@ -69,10 +71,15 @@ struct conduction {
 
 /* Marks the spheres that emit, emits [n], for F_E along `axis`. axis -1: along all three axes. If one axis is wanted,
  * the bed may be too thin for the margin along another one; then all spheres along that other axis emit. Sets volume,
- * solid_fraction, diameter, emitters and growth. margin: CONDUCTION_MARGIN or CONDUCTION_MARGIN_WALK. file: name of the
- * bed in messages. Status 0, STATUS_INPUT if the bed is too thin or has too few emitters, or STATUS_MEMORY. */
-int conduction_emitters(const struct bed *bed, int axis, double margin, const char *file, unsigned char *emits,
-                        struct conduction *result);
+ * solid_fraction, diameter, emitters and growth. walls: sides, up to which all spheres emit; NULL: none. margin:
+ * CONDUCTION_MARGIN or CONDUCTION_MARGIN_WALK. file: name of the bed in messages. Status 0, STATUS_INPUT if the bed is
+ * too thin or has too few emitters, or STATUS_MEMORY. */
+int conduction_emitters(const struct bed *bed, const struct walls *walls, int axis, double margin, const char *file,
+                        unsigned char *emits, struct conduction *result);
+
+/* The width of the bed along an axis: its period, the distance of two walls, or the width of a square as large as a
+ * cylinder. NaN: the bed is open along the axis. */
+double conduction_width(const struct bed *bed, const struct walls *walls, int axis);
 
 /* Follows the paths of the emitters and sets the other results. Returns a status of the library. */
 int conduction_follow(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
@@ -87,13 +94,17 @@ int conduction_isothermal(const struct bed *bed, const unsigned char *emits, con
  * conductivity k* does: 1/(1/e + 1/(2 k*)). */
 double conduction_effective(double emissivity, double relative);
 
-/* How far long flights along an axis impair F_E and its standard error. */
+/* How far long flights along an axis, and those that leave the bed, impair F_E and its standard error. */
 enum conduction_flights {
     FLIGHTS_SETTLED = 1, /* not at all */
     FLIGHTS_ENDLESS = 2, /* there are slabs without spheres, so F_E does not exist; `factor` is for 100 periods */
-    FLIGHTS_RARE = 4     /* the variance rests on a few flights, as along channels: the error is unreliable */
+    FLIGHTS_RARE = 4,    /* the variance rests on a few flights, as along channels: the error is unreliable */
+    FLIGHTS_LEAVING = 8  /* too many leave the bed: F_E is too low, by more than the error says */
 };
 enum conduction_flights conduction_flights(const struct conduction *result, int axis);
+
+/* Says why F_E along an axis is not reliable, as "what: why". NULL: it is. */
+const char *conduction_doubt(const struct conduction *result, int axis);
 
 /* Whether an axis is wanted. */
 bool conduction_wants(const struct conduction *result, int axis);

@@ -11,6 +11,7 @@
 #include "bed/units.h"
 #include "cli/message.h"
 #include "cli/options.h"
+#include "cli/spelling.h"
 
 /* Reads the table whose path is the next item of a list. one: only its column y. Moves *text behind the item. */
 static int take_table(const char *what, const char **text, bool one, const struct curve_axes *axes, double low,
@@ -28,11 +29,12 @@ static int take_table(const char *what, const char **text, bool one, const struc
 /* Reads a number, or @TABLE if quantity->curves. Moves *text behind the item. */
 static int take_value(const char *what, const char **text, double low, double high, struct quantity *quantity,
                       struct curve *curve, double *value) {
-    char *end;
+    char *end, table[HINT_ROOM];
     if (!quantity->curves || **text != '@') {
         *value = strtod(*text, &end);
         if (end == *text || (*end && *end != ','))
-            return message(STATUS_USAGE, "%s: '%.60s' is not a list like 1:0.5,2:0.8", what, *text);
+            return message(STATUS_USAGE, "%s: '%.60s' is not a list like 1:0.5,2:0.8%s", what, *text,
+                           table_hint(table, "", quantity->curves ? *text : ""));
         *text = end;
         if (*value >= low && *value <= high) return STATUS_OK;
         return message(STATUS_USAGE, "%s: %g is not within %g and %g", what, *value, low, high);
@@ -69,8 +71,9 @@ static int take_quantity(const char *what, const char *text, double low, double 
     *quantity = (struct quantity){.given = true, .curves = curves};
     const bool column = isalpha((unsigned char)*text) || *text == '_';
     if (curves && *text == '@') return take_value(what, &text, low, high, quantity, quantity->curve, &quantity->value);
+    if (*text == '@') return message(STATUS_USAGE, "%s takes no table, as '%.60s' would be", what, text);
     if (!column && strchr(text, ':')) return take_types(what, text, low, high, quantity);
-    if (!column) return options_number(what, text, low, high, &quantity->value);
+    if (!column) return (curves ? options_number_or_table : options_number)(what, text, low, high, &quantity->value);
     quantity->column = text;
     return STATUS_OK;
 }
@@ -187,10 +190,14 @@ static int take_wall_value(const char *option, const char **text, const char *wo
     if (named && *wall < 0) return wall_unknown(option, walls, *text, length);
     const char *number = named ? *text + length + 1 : *text;
     const bool is_word = word && strcspn(number, ",") == strlen(word) && strncmp(number, word, strlen(word)) == 0;
-    char *end = (char *)number + (is_word ? strlen(word) : 0);
+    char *end = (char *)number + (is_word ? strlen(word) : 0), table[HINT_ROOM];
+    if (*number == '@')
+        return message(STATUS_USAGE, "%s: '%.40s' is a table; only --wall-temperature with --until takes tables",
+                       option, *text);
     *value = is_word ? INFINITY : strtod(number, &end);
     if (end == number || (*end && *end != ','))
-        return message(STATUS_USAGE, "%s: '%.40s' is neither NAME=NUMBER nor a number", option, *text);
+        return message(STATUS_USAGE, "%s: '%.40s' is neither NAME=NUMBER nor a number%s", option, *text,
+                       table_hint(table, "NAME=", number));
     *text = *end ? end + 1 : end;
     return STATUS_OK;
 }

@@ -1,7 +1,10 @@
-/* units.c - units of length and temperature by name. SPDX-License-Identifier: MIT */
+/* units.c - units of length and temperature by name; prefixes of units in pictures. SPDX-License-Identifier: MIT */
 #include "bed/units.h"
 
+#include <math.h>
 #include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/message.h"
@@ -40,4 +43,17 @@ int temperature_unit_option(const char *text, void *zero) {
         return message(STATUS_USAGE, "--temperature-unit: '%.40s' is neither K nor C", text);
     *(double *)zero = *text == 'C' ? KELVIN_OF_0_CELSIUS : 0;
     return STATUS_OK;
+}
+
+struct prefixed unit_prefixed(double largest, const char *unit) {
+    enum { PREFIXES = 4 }; /* to each side of none */
+    static const char *const prefix[] = {"p", "n", "\302\265", "m", "", "k", "M", "G", "T"};
+    const bool few_digits = !(largest > 0) || (largest >= 0.1 && largest < 999.5);
+    const int thousands = few_digits ? 0 : (int)floor(log10(largest) / 3);
+    struct prefixed made = {.scale = pow(1000, thousands)};
+    if (*unit && abs(thousands) <= PREFIXES)
+        snprintf(made.name, sizeof made.name, "%s%.12s", prefix[PREFIXES + thousands], unit);
+    else if (thousands)
+        snprintf(made.name, sizeof made.name, "10^{%d}%s%.12s", 3 * thousands, *unit ? " " : "", unit);
+    return made;
 }

@@ -1,4 +1,4 @@
-/* units.h - units of length and temperature by name. SPDX-License-Identifier: MIT */
+/* units.h - units of length and temperature by name; prefixes of units in pictures. SPDX-License-Identifier: MIT */
 #ifndef UNITS_H
 #define UNITS_H
 
@@ -23,5 +23,15 @@ const char *temperature_unit(double zero);
 
 /* Takes the argument of --temperature-unit into a double. Status 0 or STATUS_USAGE. */
 int temperature_unit_option(const char *text, void *zero);
+
+/* A unit: `scale` of the plain one. */
+struct prefixed {
+    double scale;  /* a power of 1000 */
+    char name[24]; /* mW, kW, 10^{15} W; "": the plain unit has no name and the scale is 1 */
+};
+
+/* The unit in which the largest size of a quantity is from 0.1 to 1000, or the plain unit if the size is 0. unit:
+ * name of the plain unit; "": it has none, and the name is a power of ten. */
+struct prefixed unit_prefixed(double largest, const char *unit);
 
 #endif

@@ -7,6 +7,7 @@
 
 #include "cli/message.h"
 #include "cli/options.h"
+#include "cli/spelling.h"
 #include "text/text.h"
 
 static const char *const plane_names[PLANES] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
@@ -307,10 +308,11 @@ int wall_unknown(const char *option, const struct walls *walls, const char *name
             return message(STATUS_USAGE, "%s: %.*s is an opening; it is as black and as hot as the surroundings",
                            option, (int)length, name);
     const char *names[WALLS_MAX];
-    char list[NAMES_LISTED];
+    char list[NAMES_LISTED], hint[HINT_ROOM];
     for (uint32_t k = 0; k < walls->count; ++k) names[k] = wall_name(walls, k);
-    return message(STATUS_USAGE, "%s: there is no wall %.*s; there are %s", option, length > 40 ? 40 : (int)length,
-                   name, names_list(list, names, walls->count));
+    name_hint(hint, "", name, length, names, walls->count);
+    return message(STATUS_USAGE, "%s: there is no wall %.*s%s there are %s", option, length > 40 ? 40 : (int)length,
+                   name, hint, names_list(list, names, walls->count));
 }
 
 static bool is_beyond(const fibrad_body *wall, const double centre[3]) {

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "cli/spelling.h"
 
 /* A walk along the arguments behind the name of a command. */
 struct walk {
@@ -77,6 +78,17 @@ static const struct option *find_option(const struct option *table, const char *
     return NULL;
 }
 
+static int unknown_option(const struct walk *walk, const char *text, size_t length) {
+    enum { OPTIONS_MOST = 80 };
+    const char *names[OPTIONS_MOST], *name = text + strspn(text, "-");
+    char hint[HINT_ROOM];
+    size_t n = 0;
+    for (const struct option *option = walk->table; option->name && n < OPTIONS_MOST; ++option)
+        names[n++] = option->name;
+    name_hint(hint, "--", name, strcspn(name, "="), names, n);
+    return message(STATUS_USAGE, "unknown option %.*s%s see fibrad %s --help", (int)length, text, hint, walk->command);
+}
+
 static int take_next(struct walk *walk) {
     const char *text = walk->argv[walk->at++];
     const struct option *option = NULL;
@@ -98,7 +110,7 @@ static int take_next(struct walk *walk) {
         option = length > 2 ? find_option(walk->table, text + 2, length - 2) : NULL;
         if (option) return take_option(walk, option, text[length] ? text + length + 1 : NULL);
     }
-    return message(STATUS_USAGE, "unknown option %.*s; see fibrad %s --help", (int)length, text, walk->command);
+    return unknown_option(walk, text, length);
 }
 
 int options_read(const char *command, const struct option *table, int argc, char **argv, void *request) {
@@ -135,14 +147,23 @@ void options_print(const struct option *table) {
     }
 }
 
-int options_number(const char *what, const char *text, double low, double high, double *value) {
+static int read_number(const char *what, const char *text, const char *hint, double low, double high, double *value) {
     char *end;
     *value = strtod(text, &end);
     if (end == text || *end || !isfinite(*value))
-        return message(STATUS_USAGE, "%s: '%.40s' is not a number", what, text);
+        return message(STATUS_USAGE, "%s: '%.40s' is not a number%s", what, text, hint);
     if (*value < low || *value > high)
         return message(STATUS_USAGE, "%s: %.40s is not within %g and %g", what, text, low, high);
     return STATUS_OK;
+}
+
+int options_number(const char *what, const char *text, double low, double high, double *value) {
+    return read_number(what, text, "", low, high, value);
+}
+
+int options_number_or_table(const char *what, const char *text, double low, double high, double *value) {
+    char hint[HINT_ROOM];
+    return read_number(what, text, table_hint(hint, "", text), low, high, value);
 }
 
 int options_whole(const char *what, const char *text, uint64_t low, uint64_t high, uint64_t *value) {

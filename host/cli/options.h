@@ -70,8 +70,10 @@ int options_read(const char *command, const struct option *table, int argc, char
 void options_print(const struct option *table);
 
 /* Reads a number, or a whole number, from low to high. The whole text must be the number. `what` names the number in
- * messages. Status 0 or STATUS_USAGE. */
+ * messages. _or_table: the message says how a table would be written if the text is the name of a file. Status 0 or
+ * STATUS_USAGE. */
 int options_number(const char *what, const char *text, double low, double high, double *value);
+int options_number_or_table(const char *what, const char *text, double low, double high, double *value);
 int options_whole(const char *what, const char *text, uint64_t low, uint64_t high, uint64_t *value);
 int options_count(const char *what, const char *text, uint32_t low, uint32_t high, uint32_t *value);
 

@@ -53,6 +53,7 @@ static const struct option bed_table[] = {
         "write the matrix (.csv .mtx .npz .json, - for standard output) or the spheres (.vtp) [summary only]")},
     {OPTION_BED_FORMAT},
     {OPTION_PLOT("draw a picture by gnuplot, .svg or .png [none]")},
+    {OPTION_SLICE},
     {OPTION_SCRATCH},
     OPTIONS_RUN,
     {.name = NULL}};
@@ -205,7 +206,8 @@ static int bed_matrix(struct bed_request *request, struct bed *bed, fibrad_bed_f
     what.of_sides = &views;
     if (request->bed.wall_vtp) status = bed_views(request, bed, &views);
     if (!status) status = bed_options_write(&request->bed, bed, &what);
-    if (!status && request->bed.outputs.picture) status = plot_bed(&request->bed.picture, request->bed.name, &what);
+    if (!status && request->bed.outputs.picture)
+        status = plot_bed(&request->bed.picture, request->bed.name, &what, &request->bed.slice);
     if (!status) bed_report(request, &what, &summary);
     side_arrays_free(&views);
     return status;

@@ -12,12 +12,16 @@
 #include "heat/steady.h"
 #include "plot/plot_conduction.h"
 
+enum { TEMPERATURES_MAX = 1000 };
+
 struct conductivity_request {
     struct bed_options bed;
     struct quantity emissivity, solid;
-    const char *at;     /* --temperature; NULL: not given */
-    double zero;        /* 0 of the unit of temperature [K] */
-    double temperature; /* [K] */
+    const char *at;                       /* --temperature; NULL: not given */
+    double zero;                          /* 0 of the unit of temperature [K] */
+    double temperature[TEMPERATURES_MAX]; /* [temperatures] [K]; NaN: F_E only */
+    int temperatures;
+    struct walls walls;
     struct conduction_rule rule;
     bool steady;
     double isothermal;        /* [W/(m K)] of conduction_isothermal; NaN: not known */
@@ -42,7 +46,9 @@ static int take_rays(const char *text, void *rays) {
 static const struct option conductivity_table[] = {
     {OPTION_EMISSIVITY(struct conductivity_request, emissivity)},
     {OPTION_SOLID_CONDUCTIVITY(struct conductivity_request, solid)},
-    {0, "temperature", "T", "mean temperature, for k [none: F_E only]", TO_TEXT(struct conductivity_request, at)},
+    {0, "temperature", "T",
+     "mean temperature, for k, or several: a list T,T,... or FROM:TO:STEP. Outputs have all of them [none: F_E only]",
+     TO_TEXT(struct conductivity_request, at)},
     {OPTION_TEMPERATURE_UNIT(struct conductivity_request, zero)},
     {0, "axis", "x|y|z", "axis of F_E and of --error [all three]",
      TO_FUNCTION(take_axis, struct conductivity_request, rule.axis)},
@@ -54,8 +60,12 @@ static const struct option conductivity_table[] = {
      TO_FUNCTION(take_rays, struct conductivity_request, rule.max_rays)},
     {0, "steady", NULL,
      "compute also F_E of the bed between two black plates, for spheres whose net power is 0. This is done along each "
-     "axis whose other two axes are periodic",
+     "axis whose other two axes are periodic or end at walls",
      TO_FLAG(struct conductivity_request, steady)},
+    {0, "wall", "LIST",
+     "sides of the bed, which reflect everything: cylinder:X,Y,R, box, xmin, xmax ... as in fibrad heat; none of them "
+     "lies across the axis of F_E [none]",
+     TO_FUNCTION(walls_option, struct bed_options, walls)},
     {0, "seed", "S", "seed of paths and directions [0]", TO_WHOLE(struct conductivity_request, rule.seed, 0, INFINITY)},
     OPTIONS_INPUT,
     {OPTION_BED_OUTPUT("write F_E and k of each axis: .csv .json, - for standard output [summary only]")},
@@ -76,11 +86,15 @@ static int conductivity_help(void) {
            "may be too thin for this along another axis. Spheres at any place along that other axis then emit. Where\n"
            "a periodic bed has gaps, flights may be so long that F_E does not exist, or that its standard error\n"
            "cannot be estimated. Then there is a warning.\n"
+           "\n"
+           "A bed in a container loses radiation through its sides, unless --wall has them: F_E is then that of a\n"
+           "tube or a box that goes on along the axis, over the area within the walls. Walls reflect diffusely.\n"
            "\n",
            CONDUCTION_MARGIN, CONDUCTION_MARGIN_WALK);
     puts("Standard output ends with lines `key value`. F_E_x, F_E_y and F_E_z are the exchange factors.\n"
          "F_E_x_error, F_E_y_error and F_E_z_error are their estimated standard errors. `unreliable` names the\n"
-         "axes whose errors are not reliable. With --temperature there are also k_x_W_mK to k_z_W_mK and\n"
+         "axes whose F_E or error is not reliable. There, .csv has `reliable` 0 and the reason in `warning`.\n"
+         "With --temperature there are also k_x_W_mK to k_z_W_mK and\n"
          "k_x_W_mK_error to k_z_W_mK_error. With --solid-conductivity k_star is k_s/(4 d sigma T^3), and F_E is\n"
          "that of spheres whose temperatures differ from point to point. Without --solid-conductivity, if the unit\n"
          "of length is known, the line `isothermal` has a k_s. Above this k_s, F_E with one temperature for each\n"
@@ -89,8 +103,52 @@ static int conductivity_help(void) {
          "Examples:\n"
          "  fibrad conductivity packing.dump --emissivity 0.8\n"
          "  fibrad conductivity packing.dump --emissivity 0.8 --axis z --temperature 1200 -o k.csv\n"
-         "  fibrad conductivity pebbles.dump --emissivity 0.8 --temperature 1300 --solid-conductivity 30\n"
+         "  fibrad conductivity pebbles.dump --emissivity 0.8 --temperature 300:2000:100 --solid-conductivity 30 \\\n"
+         "      -o k.csv\n"
+         "  fibrad conductivity tube.dump --emissivity 0.8 --wall cylinder:0,0,0.03 --steady\n"
          "  fibrad conductivity cell.csv --periodic 2,2,2 --emissivity 0.4 --error 0.001");
+    return STATUS_OK;
+}
+
+/* Reads --temperature: a number, a list, or FROM:TO:STEP. */
+static int take_temperatures(struct conductivity_request *request) {
+    double *t = request->temperature, range[3];
+    char from[80] = "";
+    int status = STATUS_OK, count = 0;
+    request->temperatures = 1;
+    t[0] = NAN;
+    if (!request->at) return STATUS_OK;
+    if (strchr(request->at, ':')) {
+        strncat(from, request->at, sizeof from - 1);
+        for (char *colon; (colon = strchr(from, ':'));) *colon = ',';
+        status = options_numbers("--temperature", from, 3, range, &count);
+        const double steps = floor((range[1] - range[0]) / range[2] * (1 + 1e-12));
+        if (!status && (count != 3 || !(range[2] > 0 && steps >= 0 && steps < TEMPERATURES_MAX)))
+            return message(STATUS_USAGE, "--temperature: '%.40s' is not FROM:TO:STEP with at most %d temperatures",
+                           request->at, TEMPERATURES_MAX);
+        if (!status) request->temperatures = 1 + (int)steps;
+        for (int k = 0; k < request->temperatures && !status; ++k) t[k] = range[0] + k * range[2];
+    } else {
+        status = options_numbers("--temperature", request->at, TEMPERATURES_MAX, t, &request->temperatures);
+    }
+    for (int k = 0; k < request->temperatures && !status; ++k) {
+        t[k] += request->zero;
+        if (!(t[k] >= 0 && t[k] <= TEMPERATURE_MAX))
+            return message(STATUS_USAGE, "--temperature: %g is not within %g and %g", t[k] - request->zero,
+                           0 - request->zero, TEMPERATURE_MAX);
+    }
+    return status;
+}
+
+/* Outputs that show one temperature only. */
+static int check_outputs(const struct conductivity_request *request) {
+    const struct outputs *outputs = &request->bed.outputs;
+    if (request->temperatures == 1) return STATUS_OK;
+    if (outputs->picture) return message(STATUS_USAGE, "--plot shows one temperature; --temperature has several");
+    for (size_t k = 0; k < outputs->count; ++k)
+        if (outputs->to[k].star)
+            return message_at(STATUS_USAGE, outputs->to[k].path, 0,
+                              "a file for each frame has one temperature; --temperature has several");
     return STATUS_OK;
 }
 
@@ -99,11 +157,8 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
     struct conduction_rule *rule = &request->rule;
     int status = options_read("conductivity", conductivity_table, argc, argv, request);
     if (status) return status;
-    if (request->at)
-        status =
-            options_number("--temperature", request->at, 0 - request->zero, TEMPERATURE_MAX, &request->temperature);
+    status = take_temperatures(request);
     if (status) return status;
-    if (request->at) request->temperature += request->zero;
     if (!request->emissivity.given && request->bed.files > 0)
         return message(STATUS_USAGE, "--emissivity is missing; see fibrad conductivity --help");
     if (request->solid.given && !request->at) return message(STATUS_USAGE, "--solid-conductivity needs --temperature");
@@ -114,7 +169,8 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
     if (rule->max_rays == 0) rule->max_rays = 50000000;
     bed_options_quantity(&request->bed, &request->emissivity, NULL);
     bed_options_quantity(&request->bed, &request->solid, SOLID_UNIT);
-    return bed_options_check(&request->bed, "conductivity", CONTENT_CONDUCTION);
+    status = bed_options_check(&request->bed, "conductivity", CONTENT_CONDUCTION);
+    return status ? status : check_outputs(request);
 }
 
 /* Lists the axes with flights of one of these kinds, such as "xz". Returns their number. */
@@ -147,10 +203,9 @@ static void report_steady(struct report *report, int axis, const struct steady *
 
 static void conductivity_report(struct conductivity_request *request, const struct bed *bed,
                                 const struct conduction *result) {
-    static const struct walls none;
     struct report *report = &request->bed.report;
     char unreliable[4];
-    bed_options_report(&request->bed, bed, &none, NULL);
+    bed_options_report(&request->bed, bed, &request->walls, NULL);
     quantity_report(&request->emissivity, "emissivity", report);
     if (request->solid.given) solid_report(&request->solid, &result->k_star, report);
     report_count(report, "emitters", result->emitters);
@@ -164,7 +219,7 @@ static void conductivity_report(struct conductivity_request *request, const stru
     if (request->rule.paths == 0)
         report_wanted(report, request->bed.name, request->rule.error, result->stopped ? request->rule.error : INFINITY,
                       conduction_worst(&request->rule, result), "F_E; more --max-rays would help");
-    axes_with(result, FLIGHTS_ENDLESS | FLIGHTS_RARE, unreliable);
+    axes_with(result, FLIGHTS_ENDLESS | FLIGHTS_RARE | FLIGHTS_LEAVING, unreliable);
     report_text(report, "unreliable", *unreliable ? unreliable : "none");
     if (!isnan(request->isothermal)) {
         char text[80];
@@ -183,12 +238,14 @@ static void conductivity_report(struct conductivity_request *request, const stru
 static void conductivity_warn(const struct conductivity_request *request, const struct conduction *result) {
     const char *file = request->bed.name;
     char axes[4];
-    if (result->flights > 0 && result->escaped > 0.05)
+    if (axes_with(result, FLIGHTS_LEAVING, axes) && result->flights > 0)
         message_at(STATUS_OK, file, 0, "warning: %.2g of the paths leave the bed; a larger bed has a surer F_E",
                    result->escaped);
-    if (result->flights == 0 && result->escaped > 1e-3)
-        message_at(STATUS_OK, file, 0, "warning: %.2g of what the core emits leaves the bed; F_E is too low",
-                   result->escaped);
+    else if (*axes)
+        message_at(STATUS_OK, file, 0, "warning: %.2g of what the core emits leaves the bed; F_E is too low%s",
+                   result->escaped,
+                   request->walls.count > 0 ? ""
+                                            : ". --wall closes the sides of a container, cylinder:X,Y,R for example");
     if (axes_with(result, FLIGHTS_ENDLESS, axes))
         message_at(STATUS_OK, file, 0,
                    "warning: F_E along %s does not exist: flights through a gap across the whole bed have no mean "
@@ -206,7 +263,7 @@ static int conductivity_isothermal(struct conductivity_request *request, const s
                                    const unsigned char *emits, double metres, const struct conduction *result) {
     fibrad_run run = bed_options_run(&request->bed);
     request->isothermal = NAN;
-    if (request->solid.given || !(request->temperature > 0) || !bed_options_unit(&request->bed, bed)) return STATUS_OK;
+    if (request->solid.given || !(result->temperature > 0) || !bed_options_unit(&request->bed, bed)) return STATUS_OK;
     const int status = conduction_isothermal(bed, emits, &request->rule, &run, result, metres, &request->isothermal);
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
@@ -228,25 +285,30 @@ static int conductivity_steady(struct conductivity_request *request, const struc
     bool any = false;
     for (int axis = 0; axis < 3 && !status; ++axis) {
         request->between[axis] = (struct steady){0};
-        if (!request->steady || !conduction_wants(result, axis) || !steady_possible(bed, axis)) continue;
+        if (!request->steady || !conduction_wants(result, axis) || !steady_possible(bed, &request->walls, axis))
+            continue;
         any = true;
-        status = steady_conduction(&request->bed, bed, request->rule.emissivity, request->rule.conductivity, axis,
-                                   &request->between[axis]);
+        status = steady_conduction(&request->bed, bed, &request->walls, request->rule.emissivity,
+                                   request->rule.conductivity, axis, &request->between[axis]);
         result->steady[axis] = request->between[axis].factor, result->steady_error[axis] = request->between[axis].error;
     }
     if (request->steady && !any)
-        return message_at(STATUS_USAGE, request->bed.name, 0, "--steady: the two axes across it must be periodic");
+        return message_at(STATUS_USAGE, request->bed.name, 0,
+                          "--steady: the two axes across it must be periodic or end at walls");
     return status;
 }
 
 /* With --solid-conductivity finds k* of all spheres, *relative [n]. Free it also after an error. */
-static int conductivity_solid(struct conductivity_request *request, const struct bed *bed, double *metres,
-                              double **relative) {
+static int conductivity_solid(struct conductivity_request *request, const struct bed *bed, double kelvins,
+                              double *metres, double **relative) {
     if (!request->solid.given) return STATUS_OK;
+    if (request->walls.count > 0)
+        return message(STATUS_USAGE, "--solid-conductivity: paths of spheres that conduct know no walls; leave out "
+                                     "--wall, or --solid-conductivity");
     double *solid = NULL, *temperature = malloc(bed->n * sizeof *temperature);
     *relative = malloc(bed->n * sizeof **relative);
     int status = temperature && *relative ? STATUS_OK : message_memory();
-    for (uint32_t i = 0; i < bed->n && !status; ++i) temperature[i] = request->temperature;
+    for (uint32_t i = 0; i < bed->n && !status; ++i) temperature[i] = kelvins;
     if (!status) status = solid_values(&request->bed, bed, &request->solid, &solid, metres);
     if (!status) status = solid_relative(&request->bed, bed, &request->solid, temperature, *metres, solid, *relative);
     free(solid);
@@ -254,24 +316,62 @@ static int conductivity_solid(struct conductivity_request *request, const struct
     return status;
 }
 
-static int conductivity_compute(struct conductivity_request *request, struct bed *bed, struct conduction *result) {
+/* Whether a wall lies across an axis. */
+static bool has_wall_across(const struct walls *walls, int axis) {
+    for (uint32_t k = 0; k < walls->count; ++k)
+        if (walls->body[k].kind == FIBRAD_BODY_CYLINDER ? axis < 2 : walls->body[k].plane.axis == axis) return true;
+    return false;
+}
+
+/* Places the sides of the bed. They end where the spheres end along the axis of F_E, which is the only one without a
+ * wall across it, or that of --axis. */
+static int conductivity_walls(struct conductivity_request *request, const struct bed *bed) {
+    struct walls *walls = &request->walls;
+    int *axis = &request->rule.axis, open = 0, last = 0;
+    const int status = bed_options_walls(&request->bed, bed, walls);
+    if (status || walls->count == 0) return status;
+    if (walls->meshes) return message(STATUS_USAGE, "--wall: F_E is known for planes and a cylinder, not for meshes");
+    for (int k = 0; k < 3; ++k)
+        if (!has_wall_across(walls, k)) ++open, last = k;
+    if (*axis < 0 && open == 1) *axis = last;
+    if (*axis < 0) return message(STATUS_USAGE, "--wall: F_E is along one axis without a wall across it; give --axis");
+    if (has_wall_across(walls, *axis))
+        return message(STATUS_USAGE, "--wall: F_E along %c has no wall across %c; only the sides can be walls",
+                       'x' + *axis, 'x' + *axis);
+    for (int upper = 0; upper < 2 && walls->openings == 0 && !(bed->period[*axis] > 0); ++upper)
+        walls->opening[upper] = (fibrad_plane){*axis, upper, bed_reach(bed, *axis, upper == 1)};
+    if (!(bed->period[*axis] > 0) && walls->openings == 0) walls->openings = 2;
+    return STATUS_OK;
+}
+
+/* F_E and k at one temperature. NaN: F_E alone. `emits` has room for all spheres. */
+static int conductivity_at(struct conductivity_request *request, struct bed *bed, double kelvins, unsigned char *emits,
+                           struct conduction *result) {
     const char *file = request->bed.name;
     const double margin = request->solid.given ? CONDUCTION_MARGIN_WALK : CONDUCTION_MARGIN;
-    double *emissivity = NULL, *relative = NULL, metres;
-    unsigned char *emits = calloc(bed->n, 1);
-    int status = emits ? STATUS_OK : message_memory();
-    if (!status && request->at) status = bed_options_metres(&request->bed, bed, &metres);
+    double *emissivity = NULL, *relative = NULL, metres = 0;
+    int status = STATUS_OK;
+    if (request->at) status = bed_options_metres(&request->bed, bed, &metres);
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
-    if (!status) status = conductivity_solid(request, bed, &metres, &relative);
-    request->rule.emissivity = emissivity, request->rule.conductivity = relative;
-    if (!status) status = conduction_emitters(bed, request->rule.axis, margin, file, emits, result);
+    if (!status) status = conductivity_solid(request, bed, kelvins, &metres, &relative);
+    request->rule.emissivity = emissivity, request->rule.conductivity = relative, request->rule.walls = &request->walls;
+    if (!status) status = conduction_emitters(bed, &request->walls, request->rule.axis, margin, file, emits, result);
     if (!status) status = conductivity_follow(request, bed, emits, result);
-    if (!status && request->at) conduction_at(result, request->temperature, metres);
+    if (!status && request->at) conduction_at(result, kelvins, metres);
     if (!status) status = conductivity_isothermal(request, bed, emits, metres, result);
     if (!status) status = conductivity_steady(request, bed, result);
-    free(emits);
     free(emissivity);
     free(relative);
+    return status;
+}
+
+/* If each sphere has one temperature, F_E is that of the first temperature. */
+static int conductivity_again(struct conductivity_request *request, const struct bed *bed, double kelvins,
+                              struct conduction *result) {
+    double metres = 0;
+    const int status = bed_options_metres(&request->bed, bed, &metres);
+    request->isothermal *= pow(kelvins / result->temperature, 3);
+    if (!status) conduction_at(result, kelvins, metres);
     return status;
 }
 
@@ -279,14 +379,22 @@ static int conductivity_frame(void *conductivity_request, struct bed *bed) {
     struct conductivity_request *request = conductivity_request;
     struct conduction result;
     struct contents what = {.conduction = &result};
-    int status = conductivity_compute(request, bed, &result);
-    if (!status) status = bed_options_write(&request->bed, bed, &what);
-    if (!status && request->bed.outputs.picture)
-        status = plot_conduction(&request->bed.picture, request->bed.name, &result);
-    if (status) return status;
-    conductivity_warn(request, &result);
-    conductivity_report(request, bed, &result);
-    return STATUS_OK;
+    unsigned char *emits = calloc(bed->n, 1);
+    int status = emits ? conductivity_walls(request, bed) : message_memory();
+    for (int k = 0; k < request->temperatures && !status; ++k) {
+        const double kelvins = request->temperature[k];
+        const bool again = k > 0 && !request->solid.given && result.temperature > 0;
+        status = again ? conductivity_again(request, bed, kelvins, &result)
+                       : conductivity_at(request, bed, kelvins, emits, &result);
+        if (!status) status = bed_options_write(&request->bed, bed, &what);
+        if (!status && request->bed.outputs.picture)
+            status = plot_conduction(&request->bed.picture, request->bed.name, &result);
+        if (status) break;
+        if (!again) conductivity_warn(request, &result);
+        conductivity_report(request, bed, &result);
+    }
+    free(emits);
+    return status;
 }
 
 int command_conductivity(int argc, char **argv) {

@@ -46,9 +46,11 @@ static const struct option exchange_table[] = {
      TO_NUMBER(struct exchange_request, options.drop, 0, 1)},
     {0, "seed", "S", "seed of paths and directions [0]", TO_WHOLE(struct exchange_request, rule.seed, 0, INFINITY)},
     OPTIONS_INPUT,
-    {OPTION_BED_OUTPUT("write the factors: .csv .mtx .npz .json, - for standard output [summary only]")},
+    {OPTION_BED_OUTPUT("write the factors (.csv .mtx .npz .json, - for standard output) or the spheres (.vtp) [summary "
+                       "only]")},
     {OPTION_BED_FORMAT},
     {OPTION_PLOT("draw the bed and its factors by gnuplot, .svg or .png [none]")},
+    {OPTION_SLICE},
     {OPTION_SCRATCH},
     OPTIONS_RUN,
     {.name = NULL}};
@@ -159,7 +161,8 @@ static int exchange_matrix(struct exchange_request *request, struct bed *bed) {
     if (!status) warn_rows(&request->bed.warned, bed, &factors->matrix);
     struct contents what = {.factors = factors, .walls = &request->walls, .grey = &request->rule};
     if (!status) status = bed_options_write(&request->bed, bed, &what);
-    if (!status && request->bed.outputs.picture) status = plot_bed(&request->bed.picture, request->bed.name, &what);
+    if (!status && request->bed.outputs.picture)
+        status = plot_bed(&request->bed.picture, request->bed.name, &what, &request->bed.slice);
     if (!status) exchange_report(request, &what);
     fibrad_bed_free(factors);
     return status;

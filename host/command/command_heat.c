@@ -94,6 +94,7 @@ static const struct option heat_table[] = {
         "write the powers: .csv .dump (OVITO) .vtp (ParaView) .json, - for standard output [summary only]")},
     {OPTION_BED_FORMAT},
     {OPTION_PLOT("draw a picture by gnuplot, .svg or .png [none]")},
+    {OPTION_SLICE},
     OPTIONS_RUN,
     {.name = NULL}};
 
@@ -125,7 +126,7 @@ static int heat_help(void) {
          "temperature of the centre, and their estimated errors: T_min_K, T_max_K, T_surface_error_K,\n"
          "T_centre_K, T_centre_error_K. The unit of length must be known.\n"
          "\n"
-         "The .csv has the columns i,T_K,q_W,body,q_error_W,T_error_K, with estimated errors. The surroundings are\n"
+         "The .csv has the columns i,T_K,q_W,q_error_W,T_error_K,body, with estimated errors. The surroundings are\n"
          "i = -1. Walls are i = -2, -3, ... with their names in the column `body`. All q_W add up to zero.\n"
          "\n"
          "Several frames go into one .csv, .dump or .json with their numbers. If OUT has a *, each frame has a\n"
@@ -234,6 +235,7 @@ static void heat_print(struct heat_request *request, const struct bed *bed, cons
         report_value(report, "surroundings_error_W", result->surroundings_error, 2);
     }
     wall_values_report(&request->problem.walls, result->body_power, "_W", 6, report);
+    wall_values_report(&request->problem.walls, result->body_error, "_error_W", 2, report);
     for (uint32_t k = 0; k < request->problem.walls.count; ++k) {
         if (!wall_endless(&request->problem.walls, bed, &request->problem.walls.body[k])) continue;
         report_value(report, report_key(report, "wall_%s_part_m2", wall_name(&request->problem.walls, k)),
@@ -269,7 +271,9 @@ static int heat_picture(const struct heat_request *request, const struct bed *be
                                      .surroundings_temperature = problem->sources.surroundings,
                                      .surroundings_power =
                                          request->given.ambient ? report->result.surroundings_power : NAN,
-                                     .found = report->unknown > 0};
+                                     .found = report->unknown > 0,
+                                     .absorbed = problem->light->options ? problem->light->absorbed : NULL,
+                                     .plane = request->bed.slice};
     return plot_heat(&request->bed.picture, request->bed.name, &shown);
 }
 

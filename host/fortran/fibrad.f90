@@ -549,19 +549,19 @@ contains
     !   tolerance        the error allowed in each row; directions and paths are added until it is met; absent: none
     !   cutoff           [L] spheres farther away are left out; absent: none
     !   raw              .true.: rows as they were computed, not averaged
-    !   conductivity     (n) relative conductivities k_s/(4 d sigma T^3), from 1e-6, of spheres whose temperatures differ
+    !   k_star           (n) relative conductivities k_s/(4 d sigma T^3), from 1e-6, of spheres whose temperatures differ
     !                    from point to point. Factors are then between nodes of emissivities factors%node_emissivity,
     !                    and powers follow from a linear system (fibrad_node_emissivity in fibrad.h). Absent: each
     !                    sphere has one temperature.
     subroutine fibrad_exchange_factors(x, y, z, r, emissivity, factors, status, box, walls, wall_emissivity, directions, &
-                                       paths, tolerance, cutoff, raw, threads, fault, triangles, conductivity)
+                                       paths, tolerance, cutoff, raw, threads, fault, triangles, k_star)
         real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:), emissivity(:)
         type(fibrad_factors), intent(out) :: factors
         integer, intent(out) :: status
         real(c_double), intent(in), optional :: box(3), tolerance, cutoff
         type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
         type(fibrad_triangles), intent(in), optional :: triangles
-        real(c_double), intent(in), optional, contiguous, target :: wall_emissivity(:), conductivity(:)
+        real(c_double), intent(in), optional, contiguous, target :: wall_emissivity(:), k_star(:)
         integer, intent(in), optional :: directions, paths, threads
         logical, intent(in), optional :: raw
         integer, intent(out), optional :: fault(2)
@@ -575,14 +575,14 @@ contains
         call set_run(run, threads, fault)
         status = check_sizes(size(x), size(y), size(z), size(r), size(emissivity))
         if (status == fibrad_ok) status = check_sizes(count_walls(walls), count_values(wall_emissivity))
-        if (status == fibrad_ok .and. present(conductivity)) status = check_sizes(size(x), size(conductivity))
+        if (status == fibrad_ok .and. present(k_star)) status = check_sizes(size(x), size(k_star))
         if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
         rule%emissivity = c_loc(emissivity)
         if (present(wall_emissivity)) rule%body_emissivity = c_loc(wall_emissivity)
-        if (present(conductivity)) then
-            rule%conductivity = c_loc(conductivity)
-            node = [(c_node_emissivity(emissivity(i), conductivity(i)), i = 1, size(x))]
+        if (present(k_star)) then
+            rule%conductivity = c_loc(k_star)
+            node = [(c_node_emissivity(emissivity(i), k_star(i)), i = 1, size(x))]
             rule%node_emissivity = c_loc(node)
         end if
         if (present(directions)) rule%directions = int(directions, c_int32_t)
@@ -603,17 +603,17 @@ contains
     !   square        (3, n) [L^2] mean square displacement along each axis, from centre to centre
     !   error         (3, n) [L^2] its estimated standard error
     !   absorbed      (n) fraction of the emission that spheres absorb; if they conduct, of paths that stay in the bed
-    !   conductivity  (n) as for fibrad_exchange_factors, without walls
+    !   k_star        (n) as for fibrad_exchange_factors, without walls
     !   paths         from each sphere; absent: 400
-    !   flights       with conductivity: flights whose displacements are correlated, 1 to 256; absent: 12
-    subroutine fibrad_displacements(x, y, z, r, emissivity, square, status, box, walls, wall_emissivity, conductivity, &
+    !   flights       with k_star: flights whose displacements are correlated, 1 to 256; absent: 12
+    subroutine fibrad_displacements(x, y, z, r, emissivity, square, status, box, walls, wall_emissivity, k_star, &
                                     paths, flights, error, absorbed, threads, fault, triangles)
         real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:), emissivity(:)
         real(c_double), intent(out) :: square(:, :)
         integer, intent(out) :: status
         real(c_double), intent(in), optional :: box(3)
         type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
-        real(c_double), intent(in), optional, contiguous, target :: wall_emissivity(:), conductivity(:)
+        real(c_double), intent(in), optional, contiguous, target :: wall_emissivity(:), k_star(:)
         integer, intent(in), optional :: paths, flights, threads
         real(c_double), intent(out), optional :: error(:, :), absorbed(:)
         integer, intent(out), optional :: fault(2)
@@ -628,13 +628,13 @@ contains
         if (status == fibrad_ok) status = check_sizes(3 * size(x), size(square))
         if (status == fibrad_ok .and. present(error)) status = check_sizes(3 * size(x), size(error))
         if (status == fibrad_ok .and. present(absorbed)) status = check_sizes(size(x), size(absorbed))
-        if (status == fibrad_ok .and. present(conductivity)) status = check_sizes(size(x), size(conductivity))
+        if (status == fibrad_ok .and. present(k_star)) status = check_sizes(size(x), size(k_star))
         if (status == fibrad_ok) status = check_sizes(count_walls(walls), count_values(wall_emissivity))
         if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
         rule%emissivity = c_loc(emissivity)
         if (present(wall_emissivity)) rule%body_emissivity = c_loc(wall_emissivity)
-        if (present(conductivity)) rule%conductivity = c_loc(conductivity)
+        if (present(k_star)) rule%conductivity = c_loc(k_star)
         if (present(paths)) rule%paths = int(paths, c_int32_t)
         if (present(flights)) rule%flights = int(flights, c_int32_t)
         allocate (found(size(x)))

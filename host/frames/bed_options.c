@@ -146,6 +146,8 @@ int bed_options_check(struct bed_options *options, const char *command, enum con
     if (picture && !plot_ending(picture))
         return message_at(STATUS_USAGE, picture, 0, "unknown ending; there are .svg and .png");
     if (picture && is_series(options)) return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
+    if (options->slice.axis && (!picture || options->timed))
+        return message(STATUS_USAGE, "--slice is for pictures of a bed at one time, by --plot");
     if (options->timed && is_series(options))
         return message(STATUS_USAGE, "--until begins with one frame; choose it by --frame");
     if (options->wall_vtp && !options->walls.walls.meshes)
@@ -196,6 +198,7 @@ static int run_file(struct bed_options *options, const char *path, struct bed *b
         if (options->files > 1) bed->frame = options->frames_done; /* counted through all files */
         warn_frame(&options->warned, bed);
         status = complete_bed(options, bed);
+        if (!status) status = plot_plane_check(&options->slice, bed);
         if (!status) status = frame(request, bed);
         ++options->frames_done;
     }

@@ -15,6 +15,7 @@
 #include "cli/progress.h"
 #include "frames/column_option.h"
 #include "frames/warnings.h"
+#include "plot/plot_slice.h"
 #include "text/report.h"
 #include "read/read.h"
 #include "simple/fibrad_host.h"
@@ -56,11 +57,16 @@
             TO_REQUEST(bed_meshes_option)                                                                              \
     }
 
-/* Rows without braces: -o with its help, --format, --plot with its help, and --scratch for commands that make matrices.
- */
+/* Rows without braces: -o with its help, --format, --plot with its help, --slice for pictures that have one, and
+ * --scratch for commands that make matrices. */
 #define OPTION_BED_OUTPUT(help) OPTION_OUTPUT(help, struct bed_options, outputs)
 #define OPTION_BED_FORMAT       OPTION_FORMAT(struct bed_options, outputs)
 #define OPTION_PLOT(help)       0, "plot", "OUT", help, TO_TEXT(struct bed_options, outputs.picture)
+#define OPTION_SLICE                                                                                                   \
+    0, "slice", "AXIS=VALUE",                                                                                          \
+        "plane of the slice in the picture, x=VALUE, y=VALUE or z=VALUE, or an axis alone for the middle of the "      \
+        "spheres; in the file's unit of length [y]",                                                                   \
+        TO_FUNCTION(plot_plane_option, struct bed_options, slice)
 #define OPTION_SCRATCH                                                                                                 \
     0, "scratch", "FOLDER",                                                                                            \
         "keep rows and matrix in temporary files of this folder, with the same results; for each entry of the raw "    \
@@ -101,6 +107,7 @@ struct bed_options {
     const char *scratch; /* a folder for rows and matrix; NULL: in memory */
     struct outputs outputs;
     struct output picture; /* of outputs.picture */
+    struct plot_plane slice;
     bool quiet;
     struct progress progress;
     /* state of the run */

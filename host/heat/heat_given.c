@@ -40,12 +40,15 @@ int given_ambient(struct given_options *options, double *ambient) {
     int status;
     *ambient = NAN;
     if (!options->ambient) return STATUS_OK;
-    if (options->timed && *options->ambient == '@') {
+    if (!options->timed && *options->ambient == '@')
+        return message(STATUS_USAGE, "--ambient: '%.60s' is a table; --ambient takes tables with --until",
+                       options->ambient);
+    if (*options->ambient == '@') {
         status = curve_read(options->ambient + 1, "temperature", given_axes(options), low, TEMPERATURE_MAX,
                             &options->ambient_curve);
         if (!status) *ambient = curve_at(&options->ambient_curve, 0);
     } else {
-        status = options_number("--ambient", options->ambient, low, TEMPERATURE_MAX, ambient);
+        status = options_number_or_table("--ambient", options->ambient, low, TEMPERATURE_MAX, ambient);
     }
     *ambient += options->zero;
     return status;

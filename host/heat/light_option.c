@@ -18,13 +18,22 @@ static int light_numbers(const char *text, const char *form, int count, double *
     return status;
 }
 
+/* Takes an angle in radians, or with one of the units mrad and deg, or the word sun. */
 static int take_half_angle(const char *text, fibrad_light *light) {
-    double mrad = 1000 * FIBRAD_SUN_HALF_ANGLE;
-    const int status = strcmp(text, "sun") == 0
-                           ? STATUS_OK
-                           : options_number("--irradiate: half-angle", text, 0, 1000 * FIBRAD_HALF_ANGLE_MAX, &mrad);
-    light->half_angle = mrad / 1000;
-    return status;
+    static const struct {
+        const char *name;
+        double radians;
+    } units[] = {{"", 1}, {"rad", 1}, {"mrad", 1e-3}, {"deg", 3.14159265358979323846 / 180}};
+    char *unit;
+    const double angle = strtod(text, &unit);
+    light->half_angle = strcmp(text, "sun") == 0 ? FIBRAD_SUN_HALF_ANGLE : -1;
+    for (size_t k = 0; k < sizeof units / sizeof *units; ++k)
+        if (unit > text && strcmp(unit, units[k].name) == 0) light->half_angle = angle * units[k].radians;
+    if (light->half_angle >= 0 && light->half_angle <= FIBRAD_HALF_ANGLE_MAX) return STATUS_OK;
+    return message(STATUS_USAGE,
+                   "--irradiate: half-angle=%.40s is not an angle from 0 to %g radians; half-angle=5mrad is in "
+                   "milliradians, half-angle=0.3deg in degrees",
+                   text, FIBRAD_HALF_ANGLE_MAX);
 }
 
 static int take_disc(const char *text, fibrad_light *light) {

@@ -27,7 +27,7 @@ enum { LIGHTS_MAX = 32 };
 /* A paragraph of --help. */
 #define LIGHT_MORE                                                                                                     \
     "--irradiate: several are allowed. LIGHT is DX,DY,DZ:FLUX and may go on with\n"                                    \
-    "  :half-angle=MRAD       directions fill a cone; :half-angle=sun is 4.65\n"                                       \
+    "  :half-angle=RAD        directions fill a cone; 5mrad and 0.3deg are angles, too; sun is 4.65mrad\n"             \
     "  :disc=X,Y,Z,R          a beam through a disc of radius R at right angles to it, before the bed\n"               \
     "  :box=X1,X2,Y1,Y2       a beam through a rectangle across z, at the lit end of the bed\n"                        \
     "Lengths are in the unit of the file. Without disc or box the light falls on all that is open. Between\n"          \

@@ -8,28 +8,22 @@
 #include <stdlib.h>
 
 #include "bed/bed_scene.h"
+#include "bed/conduction.h"
 #include "cli/message.h"
 
 enum { FITTED_MIN = 40, DIRECTIONS = 400 };
 
-bool steady_possible(const struct bed *bed, int axis) {
-    return bed->period[(axis + 1) % 3] > 0 && bed->period[(axis + 2) % 3] > 0;
+bool steady_possible(const struct bed *bed, const struct walls *walls, int axis) {
+    return !isnan(conduction_width(bed, walls, (axis + 1) % 3)) && !isnan(conduction_width(bed, walls, (axis + 2) % 3));
 }
 
-static double steady_place(const struct bed *bed, int axis, uint32_t i) {
-    return (axis == 0 ? bed->x : axis == 1 ? bed->y : bed->z)[i];
-}
-
-/* The lower and the upper plate. */
-static struct walls steady_plates(const struct bed *bed, int axis) {
-    double end[2] = {INFINITY, -INFINITY};
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        end[0] = fmin(end[0], steady_place(bed, axis, i) - bed->r[i]);
-        end[1] = fmax(end[1], steady_place(bed, axis, i) + bed->r[i]);
-    }
-    struct walls plates = {.count = 2};
-    for (int k = 0; k < 2; ++k) plates.body[k] = (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {axis, k, end[k]}};
-    return plates;
+/* The lower and the upper plate, and then the sides. */
+static struct walls steady_walls(const struct bed *bed, const struct walls *sides, int axis) {
+    struct walls walls = {.count = 2};
+    for (int k = 0; k < 2; ++k)
+        walls.body[k] = (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {axis, k, bed_reach(bed, axis, k == 1)}};
+    for (uint32_t k = 0; sides && k < sides->count; ++k) walls.body[walls.count++] = sides->body[k];
+    return walls;
 }
 
 /* Temperatures of the plates over their mean. They differ so little that k* of spheres is the same everywhere. */
@@ -42,16 +36,18 @@ static double steady_share(double t, const double plate[2]) {
 }
 
 /* Finds sigma T^4 of the spheres if it is 1 at the lower plate and 0 at the upper one, and the powers of the plates. */
-static int steady_solve(struct bed_options *options, const struct bed *bed, const struct walls *plates,
+static int steady_solve(struct bed_options *options, const struct bed *bed, const struct walls *walls,
                         const double *emissivity, const double *relative, uint32_t directions, double *emission,
-                        double power[2], double error[2]) {
-    const fibrad_scene_config scene = bed_scene(bed, plates);
+                        double power[WALLS_MAX], double error[WALLS_MAX]) {
+    const fibrad_scene_config scene = bed_scene(bed, walls);
     const fibrad_spheres spheres = bed_spheres(bed);
     fibrad_run run = bed_options_run(options);
     fibrad_radiation *radiation = NULL;
     double *unknown = malloc(bed->n * sizeof *unknown), *given = calloc(bed->n, sizeof *given);
     double *gained = malloc(bed->n * sizeof *gained), *conductivity = malloc(bed->n * sizeof *conductivity);
-    const double plate[2] = {relative ? HOTTER : 1, relative ? COLDER : 0};
+    double plate[WALLS_MAX] = {relative ? HOTTER : 1, relative ? COLDER : 0}, black[WALLS_MAX] = {1, 1};
+    unsigned char insulated[WALLS_MAX] = {0};
+    for (uint32_t k = 2; k < walls->count; ++k) plate[k] = NAN, insulated[k] = 1;
     int status = unknown && given && gained && conductivity ? FIBRAD_OK : FIBRAD_E_MEMORY;
     for (uint32_t i = 0; i < bed->n && !status; ++i) {
         unknown[i] = NAN;
@@ -62,7 +58,7 @@ static int steady_solve(struct bed_options *options, const struct bed *bed, cons
     sources.sigma = 1, sources.surroundings = relative ? 1 : 0;
     sources.conductivity = relative ? conductivity : NULL;
     sources.temperature = unknown, sources.emissivity = emissivity, sources.power = given;
-    sources.body_temperature = plate, sources.body_emissivity = (const double[]){1, 1};
+    sources.body_temperature = plate, sources.body_emissivity = black, sources.insulated = insulated;
     fibrad_heat_result result = {.power = gained, .body_power = power, .body_error = error, .temperature = emission};
     const fibrad_heat_config config = {.directions = directions};
     if (!status) status = fibrad_radiation_new(&radiation, &scene, &spheres, &config, &run);
@@ -81,13 +77,13 @@ static int steady_solve(struct bed_options *options, const struct bed *bed, cons
 }
 
 /* Fits a straight line to sigma T^4 of the spheres of the inner half. */
-static void steady_fit(const struct bed *bed, int axis, const struct walls *plates, double *emission, double *place,
+static void steady_fit(const struct bed *bed, int axis, const struct walls *walls, double *emission, double *place,
                        struct steady *steady, double *slope, double *slope_error) {
-    const double low = plates->body[0].plane.at, high = plates->body[1].plane.at;
+    const double low = walls->body[0].plane.at, high = walls->body[1].plane.at, *centre = bed_centres(bed, axis);
     double c0, cov00, cov01, cov11, squares;
     size_t n = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {
-        const double at = steady_place(bed, axis, i);
+        const double at = centre[i];
         if (isnan(emission[i]) || fabs(at - (low + high) / 2) > (high - low) / 4) continue;
         place[n] = at;
         emission[n++] = emission[i];
@@ -99,21 +95,22 @@ static void steady_fit(const struct bed *bed, int axis, const struct walls *plat
 }
 
 /* F_E of an open bed from one number of directions. Its error is that of the line and that of the powers. */
-static int steady_factor(struct bed_options *options, const struct bed *bed, const double *emissivity,
-                         const double *relative, int axis, uint32_t directions, struct steady *steady) {
-    const struct walls plates = steady_plates(bed, axis);
+static int steady_factor(struct bed_options *options, const struct bed *bed, const struct walls *sides,
+                         const double *emissivity, const double *relative, int axis, uint32_t directions,
+                         struct steady *steady) {
+    const struct walls walls = steady_walls(bed, sides, axis);
     double *emission = malloc(bed->n * sizeof *emission), *place = malloc(bed->n * sizeof *place);
-    double power[2], error[2], diameter = 0, slope = NAN, slope_error = NAN;
+    double power[WALLS_MAX], error[WALLS_MAX], diameter = 0, slope = NAN, slope_error = NAN;
     int status = emission && place ? STATUS_OK : message_memory();
-    if (!status) status = steady_solve(options, bed, &plates, emissivity, relative, directions, emission, power, error);
-    if (!status) steady_fit(bed, axis, &plates, emission, place, steady, &slope, &slope_error);
+    if (!status) status = steady_solve(options, bed, &walls, emissivity, relative, directions, emission, power, error);
+    if (!status) steady_fit(bed, axis, &walls, emission, place, steady, &slope, &slope_error);
     if (!status && steady->spheres < FITTED_MIN)
         status =
             message_at(STATUS_INPUT, options->name, 0, "%u spheres in the inner half along %c are too few for a line",
                        steady->spheres, 'x' + axis);
     if (!status) {
         for (uint32_t i = 0; i < bed->n; ++i) diameter += 2 * bed->r[i] / bed->n;
-        const double area = bed->period[(axis + 1) % 3] * bed->period[(axis + 2) % 3];
+        const double area = conduction_width(bed, sides, (axis + 1) % 3) * conduction_width(bed, sides, (axis + 2) % 3);
         steady->factor = power[1] / (area * diameter * -slope);
         steady->error = steady->factor * hypot(slope_error / slope, error[1] / power[1]);
     }
@@ -122,14 +119,14 @@ static int steady_factor(struct bed_options *options, const struct bed *bed, con
     return status;
 }
 
-int steady_conduction(struct bed_options *options, const struct bed *bed, const double *emissivity,
-                      const double *relative, int axis, struct steady *steady) {
+int steady_conduction(struct bed_options *options, const struct bed *bed, const struct walls *walls,
+                      const double *emissivity, const double *relative, int axis, struct steady *steady) {
     const double begun = progress_clock();
     struct bed open = *bed;
     struct steady rough = {0};
     open.period[axis] = 0;
-    int status = steady_factor(options, &open, emissivity, relative, axis, DIRECTIONS / 2, &rough);
-    if (!status) status = steady_factor(options, &open, emissivity, relative, axis, DIRECTIONS, steady);
+    int status = steady_factor(options, &open, walls, emissivity, relative, axis, DIRECTIONS / 2, &rough);
+    if (!status) status = steady_factor(options, &open, walls, emissivity, relative, axis, DIRECTIONS, steady);
     steady->error = hypot(steady->error, steady->factor - rough.factor);
     steady->seconds = progress_clock() - begun;
     return status;

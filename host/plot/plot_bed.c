@@ -44,7 +44,7 @@ static void print_style(FILE *script, const struct output *output, const char *n
 }
 
 /* Draws the slice, coloured by the fraction of radiation that escapes or goes to walls. */
-static int print_slice(FILE *script, const struct contents *what) {
+static int print_slice(FILE *script, const struct contents *what, const struct plot_plane *plane) {
     const fibrad_factors *matrix = &what->factors->matrix;
     struct plot_slice slice;
     double metres = 0, *away = malloc(matrix->n * sizeof *away);
@@ -54,10 +54,10 @@ static int print_slice(FILE *script, const struct contents *what) {
         for (uint32_t k = 0; k < matrix->bodies; ++k) away[i] += matrix->body[(size_t)i * matrix->bodies + k];
     }
     unit_of_length(what->bed->units, &metres);
-    plot_slice_of(&slice, what->bed, what->walls, metres);
-    fprintf(script, "set title '%s, slice at y = %s'; set cbrange [0:*]\n",
+    plot_slice_of(&slice, plane, what->bed, what->walls, metres);
+    fprintf(script, "set title '%s, slice at %s'; set cbrange [0:*]\n",
             matrix->bodies > 0 ? "Fraction to walls and out of the bed" : "Escaped fraction", slice.place);
-    plot_slice_draw(script, &slice, away, what->wanted, NULL);
+    plot_slice_draw(script, &slice, &(struct plot_colours){.value = away, .unit = 1, .wanted = what->wanted});
     fputs("unset label 1; unset label 2\n", script);
     free(away);
     return STATUS_OK;
@@ -127,14 +127,15 @@ static void print_factors(FILE *script, const struct contents *what, const struc
             kind_of(what), symbol_of(what), PLOT_FACTOR_MIN);
 }
 
-int plot_bed(const struct output *output, const char *name, const struct contents *what) {
+int plot_bed(const struct output *output, const char *name, const struct contents *what,
+             const struct plot_plane *plane) {
     struct gnuplot gnuplot;
     struct plot_data *data = malloc(sizeof *data);
     int status = data ? plot_data_collect(data, what) : message_memory();
     if (!status) status = gnuplot_start(&gnuplot, output);
     if (!status) {
         print_style(gnuplot.script, output, name, what);
-        status = print_slice(gnuplot.script, what);
+        status = print_slice(gnuplot.script, what, plane);
         print_pairs(gnuplot.script, what, data);
         print_within(gnuplot.script, what, data);
         print_factors(gnuplot.script, what, data);

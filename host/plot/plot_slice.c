@@ -1,59 +1,105 @@
-/* plot_slice.c - a slice through a bed across y with coloured spheres and walls. SPDX-License-Identifier: MIT */
+/* plot_slice.c - a slice through a bed with coloured spheres and walls. SPDX-License-Identifier: MIT */
 #include "plot/plot_slice.h"
 
 #include <math.h>
 #include <string.h>
 
+#include "bed/units.h"
+#include "cli/message.h"
+#include "cli/options.h"
+
 /* A wall is shown if its distance from the bed is at most this part of the bed's length. With farther walls the bed
  * would become too small in the picture. */
 #define FAR_WALL 0.3
 
-/* The least and largest coordinate of spheres along an axis. */
-static void bounds(const double *centre, const double *r, uint32_t n, double *low, double *high) {
-    *low = INFINITY;
-    *high = -INFINITY;
-    for (uint32_t i = 0; i < n; ++i) {
-        *low = fmin(*low, centre[i] - r[i]);
-        *high = fmax(*high, centre[i] + r[i]);
-    }
+/* Width over height of a panel with a slice. The range of the shorter side is widened, so that tall and flat beds leave
+ * room for tics and titles. */
+#define PANEL 1.1
+
+int plot_plane_option(const char *text, void *plane) {
+    struct plot_plane *slice = plane;
+    const bool axis = *text >= 'x' && *text <= 'z' && (text[1] == 0 || text[1] == '=');
+    if (!axis) return message(STATUS_USAGE, "--slice: '%.40s' is none of x=VALUE, y=VALUE and z=VALUE", text);
+    slice->axis = *text, slice->placed = text[1] == '=';
+    return slice->placed ? options_number("--slice", text + 2, -FIBRAD_LENGTH_MAX, FIBRAD_LENGTH_MAX, &slice->at) : 0;
 }
 
-/* Finds where the slice meets a plane or a cylinder: coordinates along *axis, 0 or 2. Returns their number, at most 2.
- * A mesh has none. */
-static int wall_places(const struct plot_slice *slice, const fibrad_body *wall, int *axis, double place[2]) {
-    if (wall->kind == FIBRAD_BODY_MESH) return 0;
-    *axis = wall->kind == FIBRAD_BODY_PLANE ? wall->plane.axis : 0;
-    if (wall->kind == FIBRAD_BODY_PLANE) {
-        place[0] = wall->plane.at;
-        return *axis != 1;
-    }
-    const double off = slice->y - wall->cylinder.y, square = wall->cylinder.radius * wall->cylinder.radius - off * off;
-    place[0] = wall->cylinder.x - sqrt(fmax(square, 0));
-    place[1] = wall->cylinder.x + sqrt(fmax(square, 0));
-    return square > 0 ? 2 : 0;
+int plot_plane_check(const struct plot_plane *plane, const struct bed *bed) {
+    if (!plane->placed) return STATUS_OK;
+    const int axis = plane->axis - 'x';
+    const double *centre = bed_centres(bed, axis);
+    for (uint32_t i = 0; i < bed->n; ++i)
+        if (fabs(centre[i] - plane->at) < bed->r[i]) return STATUS_OK;
+    return message(STATUS_USAGE, "--slice: no sphere is at %c = %g; spheres are from %g to %g", plane->axis, plane->at,
+                   bed_reach(bed, axis, false), bed_reach(bed, axis, true));
 }
+
+/* A line of wall k in the slice: the coordinates of both ends to the right and up. */
+typedef void line_seen(void *context, double end[2][2], uint32_t k);
 
 static uint32_t walls_shown(const struct plot_slice *slice) { return slice->walls ? slice->walls->count : 0; }
 
-/* Finds where the slice cuts a triangle: x and z of both ends of the cut. False: nowhere. */
+/* A plane is a line through the whole range. */
+static void plane_line(const struct plot_slice *slice, const fibrad_plane *plane, uint32_t k, line_seen *seen,
+                       void *context) {
+    if (plane->axis == slice->across) return;
+    const int up = plane->axis == slice->axis[1], other = slice->axis[1 - up];
+    double end[2][2];
+    end[0][up] = end[1][up] = plane->at;
+    end[0][1 - up] = slice->low[other], end[1][1 - up] = slice->high[other];
+    seen(context, end, k);
+}
+
+/* A cylinder is a circle across z, and two lines across x or y. */
+static void cylinder_lines(const struct plot_slice *slice, const fibrad_body *wall, uint32_t k, line_seen *seen,
+                           void *context) {
+    enum { CHORDS = 90 };
+    const double middle[2] = {wall->cylinder.x, wall->cylinder.y}, radius = wall->cylinder.radius;
+    const double pi = 3.14159265358979323846;
+    if (slice->across == 2) {
+        for (int c = 0; c < CHORDS; ++c) {
+            double end[2][2];
+            for (int e = 0; e < 2; ++e) {
+                end[e][0] = middle[0] + radius * cos(2 * pi * (c + e) / CHORDS);
+                end[e][1] = middle[1] + radius * sin(2 * pi * (c + e) / CHORDS);
+            }
+            seen(context, end, k);
+        }
+        return;
+    }
+    const double off = slice->at - middle[slice->across], half = sqrt(fmax(radius * radius - off * off, 0));
+    for (int side = -1; side < 2 && half > 0; side += 2) {
+        const double at = middle[1 - slice->across] + side * half;
+        seen(context, (double[2][2]){{at, slice->low[2]}, {at, slice->high[2]}}, k);
+    }
+}
+
+/* Finds where the slice cuts a triangle. False: nowhere. */
 static bool cut_of(const struct plot_slice *slice, const struct surface *surface, uint32_t triangle, double end[2][2]) {
+    const int across = slice->across;
     int ends = 0;
     for (int k = 0; k < 3 && ends < 2; ++k) {
         const double *a = surface_corner(surface, triangle, k), *b = surface_corner(surface, triangle, (k + 1) % 3);
-        if ((a[1] < slice->y) == (b[1] < slice->y)) continue;
-        const double part = (slice->y - a[1]) / (b[1] - a[1]);
-        for (int axis = 0; axis < 2; ++axis) end[ends][axis] = a[2 * axis] + part * (b[2 * axis] - a[2 * axis]);
+        if ((a[across] < slice->at) == (b[across] < slice->at)) continue;
+        const double part = (slice->at - a[across]) / (b[across] - a[across]);
+        for (int up = 0; up < 2; ++up) {
+            const int axis = slice->axis[up];
+            end[ends][up] = a[axis] + part * (b[axis] - a[axis]);
+        }
         ++ends;
     }
     return ends == 2;
 }
 
-/* A function that takes the cut of a triangle of wall k. */
-typedef void cut_seen(void *context, double end[2][2], uint32_t k);
-
-static void cut_meshes(const struct plot_slice *slice, cut_seen *seen, void *context) {
+/* Hands all lines of walls to a function. */
+static void see_walls(const struct plot_slice *slice, line_seen *seen, void *context) {
     const struct meshes *meshes = slice->walls ? slice->walls->meshes : NULL;
     double end[2][2];
+    for (uint32_t k = 0; k < walls_shown(slice); ++k) {
+        const fibrad_body *wall = &slice->walls->body[k];
+        if (wall->kind == FIBRAD_BODY_PLANE) plane_line(slice, &wall->plane, k, seen, context);
+        if (wall->kind == FIBRAD_BODY_CYLINDER) cylinder_lines(slice, wall, k, seen, context);
+    }
     for (uint32_t m = 0; meshes && m < meshes->count; ++m)
         for (uint32_t t = 0; t < meshes->mesh[m].surface.n; ++t)
             if (cut_of(slice, &meshes->mesh[m].surface, t, end)) seen(context, end, mesh_body(&meshes->mesh[m], t));
@@ -65,63 +111,56 @@ struct widening {
     double low[3], high[3];
 };
 
-static void include_place(struct widening *widening, int axis, double place) {
+/* Widens the range of the slice by a line, if that is near. */
+static void include_line(void *context, double end[2][2], uint32_t k) {
+    struct widening *widening = context;
     struct plot_slice *slice = widening->slice;
-    const double low = widening->low[axis], high = widening->high[axis], away = FAR_WALL * (high - low);
-    if (place < low - away || place > high + away) return;
-    slice->low[axis] = fmin(slice->low[axis], place);
-    slice->high[axis] = fmax(slice->high[axis], place);
-}
-
-static void include_cut(void *widening, double end[2][2], uint32_t k) {
     (void)k;
     for (int e = 0; e < 2; ++e)
-        for (int axis = 0; axis < 2; ++axis) include_place(widening, 2 * axis, end[e][axis]);
+        for (int up = 0; up < 2; ++up) {
+            const int axis = slice->axis[up];
+            const double low = widening->low[axis], high = widening->high[axis], away = FAR_WALL * (high - low);
+            if (end[e][up] < low - away || end[e][up] > high + away) continue;
+            slice->low[axis] = fmin(slice->low[axis], end[e][up]);
+            slice->high[axis] = fmax(slice->high[axis], end[e][up]);
+        }
 }
 
-/* Widens the range of the slice, so that near walls are shown. */
-static void include_walls(struct plot_slice *slice) {
-    struct widening widening = {.slice = slice};
-    memcpy(widening.low, slice->low, sizeof widening.low);
-    memcpy(widening.high, slice->high, sizeof widening.high);
-    for (uint32_t k = 0; k < walls_shown(slice); ++k) {
-        int axis;
-        double place[2];
-        const int places = wall_places(slice, &slice->walls->body[k], &axis, place);
-        for (int p = 0; p < places; ++p) include_place(&widening, axis, place[p]);
-    }
-    cut_meshes(slice, include_cut, &widening);
-}
-
-/* Chooses the unit of the axes: a power of 1000, so that the largest coordinate has few digits. */
+/* Chooses the unit of the axes. */
 static void choose_scale(struct plot_slice *slice, double metres) {
-    static const char *const prefix[] = {"n", "\302\265", "m", "", "k"};
     const bool known = metres > 0;
     double largest = 0;
-    for (int axis = 0; axis < 3; axis += 2)
+    for (int up = 0; up < 2; ++up) {
+        const int axis = slice->axis[up];
         largest = fmax(largest, fmax(fabs(slice->low[axis]), fabs(slice->high[axis])) * (known ? metres : 1));
-    const bool short_already = !(largest > 0 && (largest < 0.1 || largest >= 1e4));
-    const int thousands = short_already ? 0 : (int)floor(log10(largest) / 3);
-    slice->scale = pow(1000, thousands) / (known ? metres : 1);
-    if (known && thousands >= -3 && thousands <= 1)
-        snprintf(slice->unit, sizeof slice->unit, "%sm", prefix[3 + thousands]);
-    else if (thousands)
-        snprintf(slice->unit, sizeof slice->unit, "10^{%d}%s", 3 * thousands, known ? " m" : "");
-    snprintf(slice->place, sizeof slice->place, "%.4g%s%s", slice->y / slice->scale,
-             known       ? " "
-             : thousands ? " x "
-                         : "",
+    }
+    const struct prefixed unit = unit_prefixed(largest, known ? "m" : "");
+    slice->scale = unit.scale / (known ? metres : 1);
+    snprintf(slice->unit, sizeof slice->unit, "%s", unit.name);
+    const double place = slice->at / slice->scale;
+    snprintf(slice->place, sizeof slice->place, "%c = %.4g%s%s", 'x' + slice->across, place + 0.0, /* no -0 */
+             known        ? " "
+             : *unit.name ? " x "
+                          : "",
              slice->unit);
 }
 
-void plot_slice_of(struct plot_slice *slice, const struct bed *bed, const struct walls *walls, double metres) {
-    const double *const centre[] = {bed->x, bed->y, bed->z};
-    *slice = (struct plot_slice){.bed = bed, .walls = walls, .y = NAN};
-    for (int axis = 0; axis < 3; ++axis) bounds(centre[axis], bed->r, bed->n, &slice->low[axis], &slice->high[axis]);
-    const double middle = slice->low[1] + (slice->high[1] - slice->low[1]) / 2;
-    for (uint32_t i = 0; i < bed->n; ++i)
-        if (!(fabs(bed->y[i] - middle) >= fabs(slice->y - middle))) slice->y = bed->y[i];
-    include_walls(slice);
+void plot_slice_of(struct plot_slice *slice, const struct plot_plane *plane, const struct bed *bed,
+                   const struct walls *walls, double metres) {
+    const int across = plane->axis ? plane->axis - 'x' : 1;
+    *slice = (struct plot_slice){.bed = bed, .walls = walls, .across = across, .at = plane->placed ? plane->at : NAN};
+    slice->axis[0] = across == 0, slice->axis[1] = across == 2 ? 1 : 2;
+    for (int axis = 0; axis < 3; ++axis)
+        slice->low[axis] = bed_reach(bed, axis, false), slice->high[axis] = bed_reach(bed, axis, true);
+    const double middle = slice->low[across] + (slice->high[across] - slice->low[across]) / 2;
+    const double *centre = bed_centres(bed, across);
+    for (uint32_t i = 0; i < bed->n && !plane->placed; ++i)
+        if (!(fabs(centre[i] - middle) >= fabs(slice->at - middle))) slice->at = centre[i];
+    if (fabs(slice->at) < 1e-9 * (slice->high[across] - slice->low[across])) slice->at = 0; /* what rounding leaves */
+    struct widening widening = {.slice = slice};
+    memcpy(widening.low, slice->low, sizeof widening.low);
+    memcpy(widening.high, slice->high, sizeof widening.high);
+    see_walls(slice, include_line, &widening);
     choose_scale(slice, metres);
 }
 
@@ -132,63 +171,55 @@ struct wall_lines {
     const double *value; /* [walls] for the colour; NULL: none */
 };
 
-static void print_end(const struct wall_lines *lines, double x, double z, uint32_t k) {
-    fprintf(lines->script, "%.9g %.9g %.6g\n", x / lines->scale, z / lines->scale, lines->value ? lines->value[k] : 0);
-}
-
-static void print_cut(void *wall_lines, double end[2][2], uint32_t k) {
+/* Prints the ends of a line with a value, and an empty line. */
+static void print_wall(void *wall_lines, double end[2][2], uint32_t k) {
     const struct wall_lines *lines = wall_lines;
-    for (int e = 0; e < 2; ++e) print_end(lines, end[e][0], end[e][1], k);
+    for (int e = 0; e < 2; ++e)
+        fprintf(lines->script, "%.9g %.9g %.6g\n", end[e][0] / lines->scale, end[e][1] / lines->scale,
+                lines->value ? lines->value[k] : 0);
     fputs("\n", lines->script);
 }
 
-/* Prints the lines of walls: their ends with a value, and an empty line behind each. */
 static void print_walls(FILE *script, const struct plot_slice *slice, const double *wall_value) {
     struct wall_lines lines = {script, slice->scale, wall_value};
     fputs("$walls << END\n", script);
-    for (uint32_t k = 0; k < walls_shown(slice); ++k) {
-        int axis;
-        double place[2];
-        const int places = wall_places(slice, &slice->walls->body[k], &axis, place);
-        for (int p = 0; p < places; ++p) {
-            for (int end = 0; end < 2; ++end) {
-                double at[3];
-                at[axis] = place[p];
-                at[2 - axis] = end ? slice->high[2 - axis] : slice->low[2 - axis];
-                print_end(&lines, at[0], at[2], k);
-            }
-            fputs("\n", script);
-        }
-    }
-    cut_meshes(slice, print_cut, &lines);
+    see_walls(slice, print_wall, &lines);
     fputs("NaN NaN NaN\nEND\n", script); /* gnuplot takes a block without a line as an error */
 }
 
-static void print_circles(FILE *script, const struct plot_slice *slice, const double *value,
-                          const unsigned char *wanted) {
+static void print_circles(FILE *script, const struct plot_slice *slice, const struct plot_colours *colours) {
     const struct bed *bed = slice->bed;
+    const double *right = bed_centres(bed, slice->axis[0]), *up = bed_centres(bed, slice->axis[1]);
+    const double *across = bed_centres(bed, slice->across);
     fputs("$slice << END\n", script);
     for (uint32_t i = 0; i < bed->n; ++i) {
-        const double off = fabs(bed->y[i] - slice->y);
-        if (off >= bed->r[i] || (wanted && !wanted[i])) continue;
-        fprintf(script, "%.6g %.6g %.6g %.6g\n", bed->x[i] / slice->scale, bed->z[i] / slice->scale,
-                sqrt(bed->r[i] * bed->r[i] - off * off) / slice->scale, value[i]);
+        const double off = fabs(across[i] - slice->at);
+        if (off >= bed->r[i] || (colours->wanted && !colours->wanted[i])) continue;
+        fprintf(script, "%.6g %.6g %.6g %.6g\n", right[i] / slice->scale, up[i] / slice->scale,
+                sqrt(bed->r[i] * bed->r[i] - off * off) / slice->scale, colours->value[i] / colours->unit);
     }
     fputs("NaN NaN NaN NaN\nEND\n", script);
 }
 
-void plot_slice_draw(FILE *script, const struct plot_slice *slice, const double *value, const unsigned char *wanted,
-                     const double *wall_value) {
-    const double *low = slice->low, *high = slice->high, scale = slice->scale;
-    const char *begin = slice->unit[0] ? " [" : "", *end = slice->unit[0] ? "]" : "";
-    print_circles(script, slice, value, wanted);
-    print_walls(script, slice, wall_value);
+/* Prints the range of an axis of the picture: that of the slice, or `least` about its middle if that is more. */
+static void print_range(FILE *script, const struct plot_slice *slice, int up, double least) {
+    const double low = slice->low[slice->axis[up]] / slice->scale, high = slice->high[slice->axis[up]] / slice->scale;
+    const double half = fmax(high - low, least) / 2, middle = low + (high - low) / 2;
+    fprintf(script, "set %crange [%.9g:%.9g]\nset %clabel '%c%s%s%s'\n", 'x' + up, middle - half, middle + half,
+            'x' + up, 'x' + slice->axis[up], slice->unit[0] ? " [" : "", slice->unit, slice->unit[0] ? "]" : "");
+}
+
+void plot_slice_draw(FILE *script, const struct plot_slice *slice, const struct plot_colours *colours) {
+    double length[2];
+    for (int up = 0; up < 2; ++up)
+        length[up] = (slice->high[slice->axis[up]] - slice->low[slice->axis[up]]) / slice->scale;
+    print_circles(script, slice, colours);
+    print_walls(script, slice, colours->wall_value);
+    print_range(script, slice, 0, PANEL * length[1]);
+    print_range(script, slice, 1, length[0] / PANEL);
     fprintf(script,
-            "set xlabel 'x%s%s%s'; set ylabel 'z%s%s%s'; set xtics auto; set ytics auto\n"
-            "set size ratio -1; set xrange [%.9g:%.9g]; set yrange [%.9g:%.9g]\n"
-            "set colorbox; unset key; unset grid\n"
+            "set xtics auto; set ytics auto; set size ratio -1; set colorbox; unset key; unset grid\n"
             "plot $slice using 1:2:3:4 with circles fillcolor palette fillstyle solid noborder, $walls using 1:2%s\n"
             "set size noratio; set size nosquare; unset cblabel\n",
-            begin, slice->unit, end, begin, slice->unit, end, low[0] / scale, high[0] / scale, low[2] / scale,
-            high[2] / scale, wall_value ? ":3 with lines lw 7 lc palette" : " with lines lw 7 lc '#8c8c8c'");
+            colours->wall_value ? ":3 with lines lw 7 lc palette" : " with lines lw 7 lc '#8c8c8c'");
 }

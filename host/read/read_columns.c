@@ -11,6 +11,7 @@
 #include "bed/units.h"
 #include "cli/memory.h"
 #include "cli/message.h"
+#include "cli/spelling.h"
 #include "text/read_number.h"
 #include "text/text.h"
 #include "text/unit.h"
@@ -73,9 +74,11 @@ static int find_any(struct columns *columns, size_t *column, int *which, const s
 }
 
 static int column_missing(const struct lines *lines, const struct fields *names, const char *wanted) {
-    char list[NAMES_LISTED];
-    return message_at(STATUS_INPUT, lines->name, lines->number, "the header names no column %.60s; there are %s",
-                      wanted, names_list(list, (const char *const *)names->at, names->n));
+    char list[NAMES_LISTED], hint[HINT_ROOM], table[HINT_ROOM];
+    const char *const *known = (const char *const *)names->at;
+    return message_at(STATUS_INPUT, lines->name, lines->number, "the header names no column %.60s%s there are %s%s",
+                      wanted, name_hint(hint, "", wanted, strlen(wanted), known, names->n),
+                      names_list(list, known, names->n), table_hint(table, "", wanted));
 }
 
 /* Finds a column by a name that may have its unit behind it. says: the name says the unit of a column whose header has

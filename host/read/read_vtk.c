@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include "cli/message.h"
+#include "cli/spelling.h"
 #include "read/read_format.h"
 #include "read/vtk/vtk_grid.h"
 #include "text/read_number.h"
@@ -47,9 +48,11 @@ static int vtk_check(const struct vtk_file *file, const struct vtk_grid *grid) {
     const struct vtk_wanted *wanted = file->wanted;
     const bool ids = wanted[ID].values && !file->source->options.positions;
     if (!grid->points) return vtk_fail(grid, NULL, "this VTK file has no points");
+    char table[HINT_ROOM];
     for (size_t k = 0; k < file->count; ++k)
         if (wanted[k].name && !wanted[k].values)
-            return vtk_fail(grid, NULL, "there is no array %.40s on the points", wanted[k].name);
+            return vtk_fail(grid, NULL, "there is no array %.40s on the points%s", wanted[k].name,
+                            table_hint(table, "", wanted[k].name));
     if (!file->source->options.no_radius && !wanted[RADIUS].values && !wanted[DIAMETER].values)
         return vtk_fail(grid, NULL,
                         "this VTK file has no array radius or diameter on its points; --radius gives radii, or "

@@ -195,8 +195,8 @@ int write_heat_csv(FILE *file, const struct contents *what, bool first) {
 int write_conduction_csv(FILE *file, const struct contents *what, bool first) {
     const struct conduction *conduction = what->conduction;
     struct csv csv = {0};
-    begin_csv(&csv, file, what, "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable,F_E_steady,F_E_steady_error,k_star",
-              first);
+    begin_csv(&csv, file, what,
+              "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable,F_E_steady,F_E_steady_error,k_star,T_K,warning", first);
     for (int axis = 0; axis < 3; ++axis) {
         if (!conduction_wants(conduction, axis)) continue;
         char *at = csv.line + csv.columns;
@@ -212,6 +212,9 @@ int write_conduction_csv(FILE *file, const struct contents *what, bool first) {
         at = put_error(put_comma(at), conduction->steady[axis]);
         at = put_error(put_comma(at), conduction->steady_error[axis]);
         at = put_error(put_comma(at), k_star_mean(&conduction->k_star));
+        at = put_error(put_comma(at), conduction->temperature);
+        const char *doubt = conduction_doubt(conduction, axis);
+        at = put_text(put_comma(at), doubt ? doubt : "");
         end_line(&csv, at, "");
     }
     return STATUS_OK;

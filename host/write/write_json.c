@@ -146,6 +146,7 @@ int write_conduction_json(FILE *file, const struct contents *what, bool first) {
     const char *comma = "";
     (void)first;
     json_frame(file, what, "conduction");
+    if (!isnan(conduction->temperature)) json_entry(file, "T_K", conduction->temperature);
     if (conduction->k_star.spheres > 0) {
         json_entry(file, "k_star", k_star_mean(&conduction->k_star));
         json_entry(file, "k_star_min", conduction->k_star.least);
@@ -154,8 +155,9 @@ int write_conduction_json(FILE *file, const struct contents *what, bool first) {
     fputs(",\"axes\":[", file);
     for (int axis = 0; axis < 3; ++axis) {
         if (!conduction_wants(conduction, axis)) continue;
-        const bool reliable = conduction_flights(conduction, axis) == FLIGHTS_SETTLED;
-        fprintf(file, "%s{\"axis\":\"%c\",\"reliable\":%s", comma, 'x' + axis, reliable ? "true" : "false");
+        const char *doubt = conduction_doubt(conduction, axis);
+        fprintf(file, "%s{\"axis\":\"%c\",\"reliable\":%s", comma, 'x' + axis, doubt ? "false" : "true");
+        if (doubt) fprintf(file, ",\"warning\":\"%s\"", doubt);
         json_entry(file, "F_E", conduction->factor[axis]);
         json_entry(file, "F_E_error", conduction->error[axis]);
         comma = ",";

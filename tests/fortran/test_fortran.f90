@@ -187,22 +187,22 @@ contains
         real(dp), parameter :: none(1) = 0, half(1) = 0.5_dp, one(1) = 1, box(3) = 1
         integer :: status, fault(2)
         call fibrad_exchange_factors([0.0_dp, 2.0_dp], [none, none], [none, none], [one, one], [half, one], found, status, &
-                                     directions=2000, paths=2000, conductivity=[2.0_dp, 0.3_dp])
+                                     directions=2000, paths=2000, k_star=[2.0_dp, 0.3_dp])
         call expect(status == fibrad_ok, 'exchange between nodes')
         call expect(all(found%node_emissivity > 0) .and. all(found%node_emissivity < [half, one]), 'emissivities of nodes')
         call expect(near(found%node_emissivity(1) * found%f(2), found%node_emissivity(2) * found%f(3), 1e-14_dp), &
                     'reciprocity between nodes')
         call expect(abs(sum(found%f) + sum(found%escaped) - 2) < 1e-12_dp, 'closure between nodes')
-        call fibrad_exchange_factors(none, none, none, one, half, found, status, conductivity=none, fault=fault)
+        call fibrad_exchange_factors(none, none, none, one, half, found, status, k_star=none, fault=fault)
         call expect(status == fibrad_e_argument .and. fault(1) == 1, 'a conductivity of 0')
         call expect(.not. allocated(found%node_emissivity), 'no nodes after an error')
-        call fibrad_exchange_factors(none, none, none, one, half, found, status, conductivity=[one, one])
+        call fibrad_exchange_factors(none, none, none, one, half, found, status, k_star=[one, one])
         call expect(status == fibrad_e_argument, 'too many conductivities')
         call fibrad_displacements(none, none, none, half, one, square, status, box=box, paths=200000, error=error, &
                                   absorbed=absorbed)
         call expect(status == fibrad_ok .and. near(pi / 2 * sum(square) / 3, 1.2001_dp, 0.02_dp), 'F_E of a lattice')
         call expect(all(error > 0) .and. near(absorbed(1), 1.0_dp, 1e-3_dp), 'errors of F_E')
-        call fibrad_displacements(none, none, none, half, one, square, status, box=box, paths=200000, conductivity=one)
+        call fibrad_displacements(none, none, none, half, one, square, status, box=box, paths=200000, k_star=one)
         call expect(status == fibrad_ok .and. near(pi / 2 * sum(square) / 3, 0.8006_dp, 0.03_dp), 'F_E of conducting spheres')
         call fibrad_displacements(none, none, none, half, one, square(:, :0), status)
         call expect(status == fibrad_e_argument, 'no room for displacements')

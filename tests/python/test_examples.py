@@ -1,6 +1,8 @@
 # test_examples.py - the examples, and all that docs/python.md shows, run. SPDX-License-Identifier: MIT
+import dataclasses
 import doctest
 import os
+import pydoc
 import re
 import runpy
 import shutil
@@ -26,8 +28,18 @@ def test_docstrings():
 
 
 def test_what_is_public_is_documented():
+    """Also every field of every class of results and of lights, where `help` finds it."""
     for name in fibrad.__all__:
-        assert name == "STEFAN_BOLTZMANN" or getattr(fibrad, name).__doc__
+        what = getattr(fibrad, name)
+        assert name == "STEFAN_BOLTZMANN" or what.__doc__
+        if not dataclasses.is_dataclass(what):
+            continue
+        section = what.__doc__.split("    Attributes\n    ----------\n")[1].split("    Examples\n")[0]
+        told = dict(re.findall(r"^    (\w+)\n((?:        .+\n?)+)", section, re.MULTILINE))
+        fields = [field.name for field in dataclasses.fields(what) if not field.name.startswith("_")]
+        assert fields and set(told) - {"SUN"} == set(fields), name
+        assert all(len(text.split()) > 1 for text in told.values()), name
+        assert re.sub(r"\s+", " ", told[fields[0]]).strip() in re.sub(r"[\s|]+", " ", pydoc.plain(pydoc.render_doc(fibrad)))
 
 
 def test_page(tree, tmp_path, monkeypatch):

@@ -1,5 +1,6 @@
 # test_factors.py - factors of beds from Python against independent truths. SPDX-License-Identifier: MIT
 import csv
+import re
 import subprocess
 
 import numpy as np
@@ -69,6 +70,56 @@ def test_bits_of_exchange_are_those_of_the_program(small, program, tmp_path):
                     tmp_path / "D.npz"], check=True, capture_output=True)
     factors = fibrad.exchange_factors(small.x, small.r, 0.6, paths=100)
     assert same(factors, scipy.sparse.load_npz(tmp_path / "D.npz"))
+
+
+def test_bits_with_ids_are_those_of_the_program(small, program, tmp_path):
+    """Ids that are no positions, in a file without order."""
+    ids = 7 * np.arange(small.n) + 5
+    table = np.column_stack([ids, small.x, small.r])[np.random.default_rng(1).permutation(small.n)]
+    path = tmp_path / "bed.csv"
+    np.savetxt(path, table, fmt="%.17g", delimiter=",", header="id,x,y,z,r", comments="")
+    bed = fibrad.read(path)
+    run = {"check": True, "capture_output": True}
+    for method in (["--method", "cast", "--rays", "100"], ["--method", "mc", "--rays", "100"]):
+        subprocess.run([program, "bed", path, *method, "-o", tmp_path / "F.npz"], **run)
+        factors = fibrad.view_factors(bed.x, bed.r, method=method[1], rays=100, ids=bed.ids)
+        assert same(factors, scipy.sparse.load_npz(tmp_path / "F.npz"))
+    subprocess.run([program, "exchange", path, "--emissivity", "0.6", "--rays", "100", "-o", tmp_path / "D.npz"], **run)
+    factors = fibrad.exchange_factors(bed.x, bed.r, 0.6, paths=100, ids=bed.ids)
+    assert same(factors, scipy.sparse.load_npz(tmp_path / "D.npz"))
+    kelvins = 600 + 40 * bed.x[:, 0]
+    np.savetxt(path, np.column_stack([ids, bed.x, bed.r, kelvins]), fmt="%.17g", delimiter=",", header="id,x,y,z,r,T",
+               comments="")
+    subprocess.run([program, "heat", path, "--length-unit", "m", "--emissivity", "0.6", "--temperature", "T", "--ambient", "300",
+                    "--directions", "30", "-o", tmp_path / "q.csv"], **run)
+    with fibrad.Heat(bed.x, bed.r, directions=30, ids=bed.ids) as heat:
+        powers = heat.solve(kelvins, 0.6, surroundings=300.0)
+    found = np.loadtxt(tmp_path / "q.csv", delimiter=",", skiprows=1, usecols=2)
+    assert found[:small.n].tobytes() == powers.spheres.tobytes()
+
+
+def test_rows_count_from_both_ends(small):
+    factors = fibrad.view_factors(small.x, small.r, directions=20)
+    for back in (-1, -2, -small.n):
+        (columns, row), (same_columns, same_row) = factors.row(back), factors.row(small.n + back)
+        assert columns.size and (columns == same_columns).all() and (row == same_row).all()
+    for wrong in (small.n, -small.n - 1):
+        with pytest.raises(IndexError, match=f"there is no row {wrong}; there are {small.n}"):
+            factors.row(wrong)
+    with pytest.raises(TypeError):
+        factors.row(1.0)
+
+
+def test_what_is_printed_is_one_line(small):
+    moved = fibrad.displacements(small.x, small.r, 0.5, paths=10, wanted=[3, 5])
+    assert re.fullmatch(rf"<fibrad.Displacements: {small.n} spheres, mean square [\d.]+, [\d.]+, [\d.]+, {moved.rays.sum()} rays>",
+                        repr(moved))
+    assert "mean square none, 0 rays" in repr(fibrad.displacements(small.x, small.r, 0.5, wanted=[]))
+    with fibrad.Transient([[0, 0, 0.01], [0, 0, 0.05]], 0.01, walls={"zmin": 0.0}) as bed:
+        end = bed.advance([900.0, 600.0], 1.0, capacity=10.0, emissivity=0.8, surroundings=300.0, wall_temperature=300.0,
+                          wall_emissivity=1.0)
+    assert re.fullmatch(r"<fibrad.Advance: 2 spheres of [\d.]+ to [\d.]+ K; zmin [\d.]+ J, surroundings [\d.]+ J; \d+ steps, "
+                        r"error of a step [\de.-]+>", repr(end))
 
 
 def test_scaling_by_a_power_of_two_changes_no_bit(small):
@@ -270,19 +321,19 @@ def test_conductivity_of_a_face_centred_lattice():
 
 def test_conductivity_of_spheres_that_conduct():
     """F_E = .8006 in a simple cubic lattice of touching black spheres at k* = 1, by harmonics (test_solid.c)."""
-    moved = fibrad.displacements([[0, 0, 0]], 0.5, 1.0, box=[1, 1, 1], conductivity=1.0, paths=40000)
+    moved = fibrad.displacements([[0, 0, 0]], 0.5, 1.0, box=[1, 1, 1], k_star=1.0, paths=40000)
     assert np.pi / 2 * moved.square.mean() == pytest.approx(0.8006, rel=0.05)
     assert moved.absorbed == pytest.approx(1, abs=1e-3) and moved.rays == pytest.approx(40000 * 24, rel=1e-3)
     for wrong in (0.0, -1.0, np.nan):
-        with pytest.raises(fibrad.InputError, match="conductivity of sphere 0"):
-            fibrad.displacements([[0, 0, 0]], 0.5, 1.0, conductivity=wrong)
+        with pytest.raises(fibrad.InputError, match="k_star of sphere 0"):
+            fibrad.displacements([[0, 0, 0]], 0.5, 1.0, k_star=wrong)
 
 
 def test_exchange_between_nodes(small):
     """Spheres that conduct have the powers of patches; D is reciprocal with the emissivities of nodes."""
     n, relative = small.n, np.geomspace(0.2, 5, small.n)
     e, kelvins = np.linspace(0.5, 0.9, n), 900 + 40 * small.x[:, 2]
-    found = fibrad.exchange_factors(small.x, small.r, e, conductivity=relative, directions=400, paths=10000)
+    found = fibrad.exchange_factors(small.x, small.r, e, k_star=relative, directions=400, paths=10000)
     area, node = 4 * np.pi * small.r**2, found.node_emissivity
     assert ((0 < node) & (node < e)).all() and sums(found) == pytest.approx(1, abs=1e-12)
     weighted = scipy.sparse.diags(area * node) @ found.matrix
@@ -299,8 +350,8 @@ def test_exchange_between_nodes(small):
     assert off < 0.02 * np.linalg.norm(truth) and off < 0.15 * apart, (off, apart, np.linalg.norm(truth))
     assert fibrad.exchange_factors(small.x, small.r, e).node_emissivity is None
     for wrong in (0.0, -1.0, np.nan):
-        with pytest.raises(fibrad.InputError, match="conductivity of sphere 0"):
-            fibrad.exchange_factors([[0, 0, 0]], 0.5, 1.0, conductivity=wrong)
+        with pytest.raises(fibrad.InputError, match="k_star of sphere 0"):
+            fibrad.exchange_factors([[0, 0, 0]], 0.5, 1.0, k_star=wrong)
 
 
 @pytest.mark.parametrize("x, r, text, spheres", [

@@ -12,10 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._call import Call
 from ._errors import StateError
-from ._library import Fault, HeatConfig, library
+from ._library import Fault, HeatConfig, SceneFacts, library
 from ._limits import DIRECTIONS, PATCHES, POINTS, POWER_MAX, TEMPERATURE_MAX
 from ._scene import Container, Packing, Walls
 from ._values import mapping, refuse, whole
+from ._warnings import warn_metres, warn_overlap, warn_walls
 
 
 def _choice(name: str, value: Optional[int], choices: tuple[int, ...]) -> int:
@@ -51,6 +52,15 @@ class Bed:
                             config, self._call.run)
         if status:
             raise self._packing.error(status, self._call.run.fault, self._container)
+        warn_metres(self._packing)
+        self._warn()
+
+    def _warn(self) -> None:
+        """Warns of spheres that overlap, and of walls that do not fit the bed."""
+        facts = SceneFacts()
+        self._function("describe")(self._handle, ctypes.byref(facts), None)
+        warn_overlap(self._packing, facts)
+        warn_walls(self._packing, self._container)
 
     def _function(self, verb: str) -> Any:
         return getattr(library, f"fibrad_{self._kind}_{verb}")
@@ -125,6 +135,7 @@ class Bed:
             raise refuse(f"the walls are {now}; they were {before}")
         self._use(self._function("move"), packing, container.config, packing.spheres)
         self._packing, self._container = packing, container
+        self._warn()
 
     def close(self) -> None:
         """Frees the memory. The object cannot be used afterwards."""

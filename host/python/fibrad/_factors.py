@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import ctypes
 import dataclasses
+import operator
 import os
-import warnings
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -15,16 +15,12 @@ from ._library import BeamRule, BedFactors, BedOptions, CastRule, Displacement, 
 from ._limits import DIRECTIONS, FLIGHTS_MAX, LENGTH_MAX, NODES, RELATIVE_CONDUCTIVITY_MIN
 from ._scene import Container, Packing, Walls, pointer
 from ._values import marks, per_sphere, real, refuse, whole
+from ._warnings import warn, warn_overlap, warn_rows, warn_walls
 
 Folder = Union[str, "os.PathLike[str]"]
 
 _SEED = (0, 2**64 - 1)
 _FAR = (0.0, LENGTH_MAX)
-_OVERLAP = 0.05
-"""A larger overlap of two spheres, over the smaller radius, gives a warning."""
-_CLOSED = 1e-9
-_APART = 0.1
-"""A larger |sum - 1| of a row of a wall gives a warning: after closing (_CLOSED) and before (_APART)."""
 _METHODS = {"beam": {"directions", "points", "tolerance"}, "surface": {"nodes"}, "cast": {"rays", "seed"},
             "mc": {"rays", "seed"}}
 
@@ -61,60 +57,88 @@ class Factors:
 
     ``wall_wall``, ``wall_escaped``, ``wall_error``, ``wall_correction`` and ``wall_closure`` are None without walls,
     with a cutoff, or if only some rows were wanted.
+
+    Attributes
+    ----------
+    indptr
+        (n + 1,) where each row begins.
+    indices
+        (entries,) positions of the spheres that receive, from 0.
+    data
+        (entries,) factors from the sphere of the row to the sphere of the column.
+    escaped
+        (n,) factors to the surroundings.
+    beyond
+        (n,) fractions whose target is not known, beyond the cutoff.
+    error
+        (n,) estimated error of each row.
+    walls
+        (n, walls) factors to each wall.
+    wall_names
+        (walls,) names of the walls, in the order given.
+    wall_area
+        [L^2] (walls,) area of a wall inside all other planes and the cylinder, of one period. Infinite: an
+        endless wall.
+    wall_wall
+        (walls, walls) factors from wall to wall. NaN from an endless wall. The factor from wall w to sphere i
+        follows from ``A_w F_wi = A_i F_iw``, where A is area times emissivity for exchange factors.
+    wall_escaped
+        (walls,) factors from walls to the surroundings.
+    wall_error
+        (walls,) estimated error of ``wall_wall`` and ``wall_escaped``.
+    wall_correction
+        Largest ``|sum - 1|`` of a row of a wall before closing. It shows how far rows of spheres and of walls
+        disagree.
+    wall_closure
+        Largest ``|sum - 1|`` of a row of a wall after closing. In some beds that triangles cut, reciprocity and
+        sums contradict each other. Then rows of walls are not closed, this is ``wall_correction``, and there is
+        a warning.
+    ids
+        (n,) ids of the spheres as given. None: none were given.
+    closure_error
+        Largest ``|sum - 1|`` of a raw row.
+    reciprocity_error
+        Largest ``|A_i F_ij - A_j F_ji| / max(A_i, A_j)``. NaN if rows are missing.
+    node_emissivity
+        (n,) emissivities of the nodes of spheres that conduct. None: spheres do not conduct.
+    directions
+        Most directions of a row. 0: a method without directions.
+    fallbacks
+        Windows that the robust method for areas resolved.
+    rays
+        Rays traced, for exchange factors.
+    overlap
+        Largest overlap of two spheres over the smaller radius.
+    threads
+        Threads that were used.
+    seconds
+        [s] of computing.
     """
 
     indptr: NDArray[np.int64]
-    """(n + 1,) where each row begins."""
     indices: NDArray[np.int32]
-    """(entries,) positions of the spheres that receive, from 0."""
     data: NDArray[np.float64]
-    """(entries,) factors from the sphere of the row to the sphere of the column."""
     escaped: NDArray[np.float64]
-    """(n,) factors to the surroundings."""
     beyond: NDArray[np.float64]
-    """(n,) fractions whose target is not known, beyond the cutoff."""
     error: NDArray[np.float64]
-    """(n,) estimated error of each row."""
     walls: NDArray[np.float64]
-    """(n, walls) factors to each wall."""
     wall_names: tuple[str, ...]
-    """(walls,) in the order given."""
     wall_area: NDArray[np.float64]
-    """[L^2] (walls,) area of a wall inside all other planes and the cylinder, of one period. Infinite: an endless
-    wall."""
     wall_wall: Optional[NDArray[np.float64]]
-    """(walls, walls) factors from wall to wall. NaN from an endless wall. The factor from wall w to sphere i follows
-    from ``A_w F_wi = A_i F_iw``, where A is area times emissivity for exchange factors."""
     wall_escaped: Optional[NDArray[np.float64]]
-    """(walls,) factors from walls to the surroundings."""
     wall_error: Optional[NDArray[np.float64]]
-    """(walls,) estimated error of ``wall_wall`` and ``wall_escaped``."""
     wall_correction: Optional[float]
-    """Largest ``|sum - 1|`` of a row of a wall before closing. It shows how far rows of spheres and of walls
-    disagree."""
     wall_closure: Optional[float]
-    """Largest ``|sum - 1|`` of a row of a wall after closing. In some beds that triangles cut, reciprocity and sums
-    contradict each other. Then rows of walls are not closed, this is ``wall_correction``, and there is a warning."""
     ids: Optional[NDArray[np.uint64]]
-    """(n,) as given."""
     closure_error: float
-    """Largest ``|sum - 1|`` of a raw row."""
     reciprocity_error: float
-    """Largest ``|A_i F_ij - A_j F_ji| / max(A_i, A_j)``. NaN if rows are missing."""
     node_emissivity: Optional[NDArray[np.float64]]
-    """(n,) emissivities of the nodes of spheres that conduct. None: spheres do not conduct."""
     directions: int
-    """Most directions of a row. 0: a method without directions."""
     fallbacks: int
-    """Windows that the robust method for areas resolved."""
     rays: int
-    """Rays traced, for exchange factors."""
     overlap: float
-    """Largest overlap of two spheres over the smaller radius."""
     threads: int
-    """Threads used."""
     seconds: float
-    """[s] of computing."""
 
     @property
     def n(self) -> int:
@@ -133,8 +157,11 @@ class Factors:
         return csr_matrix((self.data, self.indices, self.indptr), shape=self.shape)
 
     def row(self, i: int) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-        """Columns and factors of row ``i``."""
-        part = slice(self.indptr[i], self.indptr[i + 1])
+        """Columns and factors of row ``i``. Rows -1, -2 ... count from the end."""
+        k = operator.index(i)
+        if not -self.n <= k < self.n:
+            raise IndexError(f"there is no row {k}; there are {self.n}")
+        part = slice(self.indptr[k % self.n], self.indptr[k % self.n + 1])
         return self.indices[part], self.data[part]
 
     def wall(self, name: str) -> NDArray[np.float64]:
@@ -197,6 +224,7 @@ class _Job:
                  progress: Optional[Progress]):
         self.packing = Packing(x, r, ids)
         self.container = Container(box, walls, self.packing)
+        warn_walls(self.packing, self.container)
         self.marks = marks(wanted, self.packing.n)
         self.wanted = pointer(self.marks, ctypes.POINTER(ctypes.c_ubyte))
         self._call = Call(threads, progress)
@@ -215,32 +243,26 @@ class _Job:
         owner = _Owner()
         self.call(function, *arguments, self.run, ctypes.byref(owner.factors))
         factors = _factors(owner, self.container.names, self.packing.ids, self._nodes)
-        if factors.overlap > _OVERLAP:
-            warnings.warn(f"two spheres overlap by {factors.overlap:.3g} of a radius", stacklevel=3)
-        if (factors.wall_closure or 0) > _CLOSED:
-            warnings.warn(f"rows of walls are not closed: their sums are off by {factors.wall_closure:.2g}, since they "
-                          "and those of spheres contradict each other", stacklevel=3)
-        elif (factors.wall_correction or 0) > _APART:
-            warnings.warn(f"rows of walls and of spheres disagreed by {factors.wall_correction:.2g} before they were "
-                          "closed, as where triangles cut spheres", stacklevel=3)
+        warn_overlap(self.packing, owner.factors.contents.facts)
+        warn_rows(self.packing, owner.factors.contents.matrix)
         if tolerance is not None and factors.error.max(initial=0) > tolerance:
-            warnings.warn(f"the estimated error is {factors.error.max():.3g}, above the tolerance of {tolerance:g}: "
-                          "no more directions or paths are possible", stacklevel=3)
+            warn(f"the estimated error is {factors.error.max():.3g}, above the tolerance of {tolerance:g}: no more "
+                 "directions or paths are possible")
         return factors
 
-    def exchange_rule(self, emissivity: ArrayLike, wall_emissivity: Any, conductivity: Optional[ArrayLike] = None,
+    def exchange_rule(self, emissivity: ArrayLike, wall_emissivity: Any, k_star: Optional[ArrayLike] = None,
                       **values: Any) -> Any:
         self._emissivity = per_sphere("emissivity", emissivity, self.packing.n, 0, 1, self.packing.names)
         self._wall_emissivity = self.container.per_wall("wall_emissivity", wall_emissivity, 0, 1)
-        self._conductivity = None if conductivity is None else per_sphere(
-            "conductivity", conductivity, self.packing.n, RELATIVE_CONDUCTIVITY_MIN, np.inf, self.packing.names)
+        self._k_star = None if k_star is None else per_sphere(
+            "k_star", k_star, self.packing.n, RELATIVE_CONDUCTIVITY_MIN, np.inf, self.packing.names)
         return ExchangeRule(emissivity=pointer(self._emissivity), body_emissivity=pointer(self._wall_emissivity),
-                            conductivity=pointer(self._conductivity), **values)
+                            conductivity=pointer(self._k_star), **values)
 
     def between_nodes(self, rule: Any) -> Any:
         """The rule for exchange factors: between nodes, if spheres conduct."""
-        if self._conductivity is not None:
-            node = map(library.fibrad_node_emissivity, self._emissivity, self._conductivity)
+        if self._k_star is not None:
+            node = map(library.fibrad_node_emissivity, self._emissivity, self._k_star)
             self._nodes = np.fromiter(node, np.float64, self.packing.n)
             rule.node_emissivity = pointer(self._nodes)
         return rule
@@ -359,7 +381,7 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
 
 def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: Optional[ArrayLike] = None,
                      walls: Optional[Walls] = None, wall_emissivity: Any = None,
-                     conductivity: Optional[ArrayLike] = None, tolerance: Optional[float] = None,
+                     k_star: Optional[ArrayLike] = None, tolerance: Optional[float] = None,
                      directions: Optional[int] = None, paths: Optional[int] = None, seed: Optional[int] = None,
                      cutoff: Optional[float] = None, wanted: Optional[ArrayLike] = None, raw: bool = False,
                      drop: float = 0.0, ids: Optional[ArrayLike] = None, threads: Optional[int] = None,
@@ -369,7 +391,7 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
     D_ij is the fraction of the emission of sphere i that sphere j absorbs, directly or after diffuse reflections. The
     net power of sphere i is ``sum_j A_i e_i D_ij sigma (T_j**4 - T_i**4)``, where j counts walls and surroundings, too.
 
-    With ``conductivity`` the spheres conduct, and temperatures differ from point to point on each sphere. D_ij is then
+    With ``k_star`` the spheres conduct, and temperatures differ from point to point on each sphere. D_ij is then
     between nodes of emissivities n_i, `Factors.node_emissivity`. The net power is ``q_i = sum_j A_i n_i D_ij (N_j -
     N_i)`` with ``N_i = sigma T_i**4 - (1 / n_i - 1 / e_i) q_i / A_i`` and the mean temperature T_i of the surface. This
     is a linear system. Walls and surroundings have ``N = sigma T**4``.
@@ -382,7 +404,7 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
         Emissivities of the spheres, 0 to 1.
     wall_emissivity : mapping or float
         Emissivities of the walls by name, or one for all, 0 to 1. Needed with walls.
-    conductivity : (n,) array or float, optional
+    k_star : (n,) array or float, optional
         Relative conductivities of the spheres, ``k_s / (4 d sigma T**3)``, at least 1e-6, inf for one temperature.
         Default: each sphere has one temperature.
     tolerance : float, optional
@@ -404,7 +426,7 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
         As for `view_factors`.
     """
     job = _Job(x, r, box, walls, ids, wanted, threads, progress)
-    rule = job.exchange_rule(emissivity, wall_emissivity, conductivity, directions=whole("directions", directions, *DIRECTIONS),
+    rule = job.exchange_rule(emissivity, wall_emissivity, k_star, directions=whole("directions", directions, *DIRECTIONS),
                              paths=whole("paths", paths, 1, 2**28), seed=whole("seed", seed, *_SEED),
                              cutoff=real("cutoff", cutoff, *_FAR), tolerance=real("tolerance", tolerance, 0, 1))
     options = BedOptions(wanted=job.wanted, raw=bool(raw), bodies=1, drop=real("drop", drop, 0, 1),
@@ -412,44 +434,58 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
     return job.factors(library.fibrad_exchange_factors, tolerance, job.between_nodes(rule), options)
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Displacements:
     """How far the emission of each sphere is carried: from its centre to the centre of the sphere that absorbs.
 
-    Of spheres that conduct: how far a path gets in a flight."""
+    Of spheres that conduct: how far a path gets in a flight.
+
+    Attributes
+    ----------
+    square
+        [L^2] (n, 3) mean square displacement along each axis.
+    error
+        [L^2] (n, 3) estimated standard error of `square`.
+    absorbed
+        (n,) fraction of the emission that spheres absorb. Of spheres that conduct: of the paths that stay in
+        the bed.
+    rays
+        (n,) rays traced.
+    """
 
     square: NDArray[np.float64]
-    """[L^2] (n, 3) mean square displacement along each axis."""
     error: NDArray[np.float64]
-    """[L^2] (n, 3) estimated standard error of `square`."""
     absorbed: NDArray[np.float64]
-    """(n,) fraction of the emission that spheres absorb. Of spheres that conduct: of the paths that stay in the bed."""
     rays: NDArray[np.uint64]
-    """(n,) rays traced."""
+
+    def __repr__(self) -> str:
+        wanted = self.square[self.rays > 0]
+        mean = ", ".join(f"{value:.4g}" for value in wanted.mean(axis=0)) if len(wanted) else "none"
+        return f"<fibrad.Displacements: {len(self.square)} spheres, mean square {mean}, {int(self.rays.sum())} rays>"
 
 
 def displacements(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: Optional[ArrayLike] = None,
-                  walls: Optional[Walls] = None, wall_emissivity: Any = None, conductivity: Optional[ArrayLike] = None,
+                  walls: Optional[Walls] = None, wall_emissivity: Any = None, k_star: Optional[ArrayLike] = None,
                   paths: Optional[int] = None, flights: Optional[int] = None, seed: Optional[int] = None, cutoff: Optional[float] = None, wanted: Optional[ArrayLike] = None,
                   ids: Optional[ArrayLike] = None, threads: Optional[int] = None,
                   progress: Optional[Progress] = None) -> Displacements:
     """Mean square displacements of radiation.
 
     The conductivity of a bed follows from them. For equal spheres of diameter d, solid fraction phi and emissivity e in
-    a periodic box it is ``k = 4 sigma T**3 * 3 phi e square.mean(axis=0) / d``. With ``conductivity`` the spheres
+    a periodic box it is ``k = 4 sigma T**3 * 3 phi e square.mean(axis=0) / d``. With ``k_star`` the spheres
     conduct, temperatures differ from point to point of each sphere, and the factor e is left out.
 
     Parameters
     ----------
     x, r, emissivity, box, walls, wall_emissivity, seed, cutoff, wanted, ids, threads, progress
         As for `exchange_factors`. Spheres that are not wanted have zeros.
-    conductivity : (n,) array or float, optional
+    k_star : (n,) array or float, optional
         Relative conductivities of the spheres, ``k_s / (4 d sigma T**3)``, at least 1e-6, inf for one temperature.
         Without walls and cutoff. Default: each sphere has one temperature.
     paths : int, optional
         Paths from each sphere. Default: 400.
     flights : int, optional
-        With ``conductivity``: flights whose displacements are correlated, 1 to 256. Default: 12.
+        With ``k_star``: flights whose displacements are correlated, 1 to 256. Default: 12.
 
     Returns
     -------
@@ -461,7 +497,7 @@ def displacements(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: Opt
         As for `view_factors`.
     """
     job = _Job(x, r, box, walls, ids, wanted, threads, progress)
-    rule = job.exchange_rule(emissivity, wall_emissivity, conductivity, paths=whole("paths", paths, 1, 2**28),
+    rule = job.exchange_rule(emissivity, wall_emissivity, k_star, paths=whole("paths", paths, 1, 2**28),
                              seed=whole("seed", seed, *_SEED), cutoff=real("cutoff", cutoff, *_FAR),
                              flights=whole("flights", flights, 1, FLIGHTS_MAX))
     found: NDArray[Any] = np.zeros(job.packing.n, Displacement)

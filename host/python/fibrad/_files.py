@@ -6,7 +6,6 @@ import dataclasses
 import os
 import pathlib
 import threading
-import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int64, c_size_t, c_uint32, c_void_p
 from typing import Any, Optional, Union
@@ -17,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._errors import Error, InputError, OutOfMemory, file_error
 from ._library import DOUBLES, Spheres, structure_of_files
 from ._values import mapping, real, refuse, several, whole
+from ._warnings import warn
 
 Path = Union[str, "os.PathLike[str]"]
 _HEARD: Any = ctypes.CFUNCTYPE(None, c_void_p, c_char_p)
@@ -66,7 +66,7 @@ def _call(function: Any, *arguments: Any) -> None:
     if status:
         raise _KINDS.get(status, Error)(lines[-1] if lines else "out of memory", status)
     for line in lines:
-        warnings.warn(line, stacklevel=4)
+        warn(line)
 
 
 def _array(address: Any, shape: tuple[int, ...]) -> NDArray[Any]:
@@ -75,28 +75,42 @@ def _array(address: Any, shape: tuple[int, ...]) -> NDArray[Any]:
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class FileFrame:
-    """The spheres of one frame of a file, in the order of their ids. L is the unit of length of the file."""
+    """The spheres of one frame of a file, in the order of their ids. L is the unit of length of the file.
+
+    Attributes
+    ----------
+    x
+        [L] (n, 3) centres.
+    r
+        [L] (n,) radii.
+    ids
+        (n,) ids. None: the file has none.
+    box
+        [L] (3,) lengths of the periodic box, for the argument `box`. 0: the axis is open.
+    low
+        [L] (3,) lower corner of the box in the file. 0 if the file has no box.
+    high
+        [L] (3,) upper corner of the box in the file. 0 if the file has no box.
+    columns
+        (n,) values of each further column that was wanted.
+    unit
+        Name of the unit of length in the file. None: the file names none.
+    frame
+        Number of the frame in the file, from 0.
+    timestep
+        Timestep in the file. None: the file has none.
+    """
 
     x: NDArray[np.float64]
-    """[L] (n, 3) centres."""
     r: NDArray[np.float64]
-    """[L] (n,) radii."""
     ids: Optional[NDArray[np.int64]]
-    """(n,) ids. None: the file has none."""
     box: NDArray[np.float64]
-    """[L] (3,) lengths of the periodic box, for the argument `box`. 0: the axis is open."""
     low: NDArray[np.float64]
-    """[L] (3,) lower corner of the box in the file. 0 if the file has no box."""
     high: NDArray[np.float64]
-    """[L] (3,) upper corner of the box in the file. 0 if the file has no box."""
     columns: dict[str, NDArray[np.float64]]
-    """(n,) values of each further column that was wanted."""
     unit: Optional[str]
-    """Name of the unit of length in the file. None: the file names none."""
     frame: int
-    """Number of the frame in the file, from 0."""
     timestep: Optional[int]
-    """Timestep in the file. None: the file has none."""
 
     def __repr__(self) -> str:
         return f"<fibrad.FileFrame: {len(self.x)} spheres, frame {self.frame}>"

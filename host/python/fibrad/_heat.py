@@ -17,6 +17,7 @@ from ._light import Absorbed, Light, add, lights_of, patches_pointer
 from ._scene import Walls, pointer, pointers
 from ._limits import POWER_MAX, SIGMA, TEMPERATURE_MAX
 from ._values import per_sphere, real, refuse, several
+from ._warnings import warn_surfaces, warn_temperatures
 
 STEFAN_BOLTZMANN = 5.670374419e-8
 """[W/(m2 K4)]"""
@@ -37,54 +38,80 @@ def _law(emissivity: Union[ArrayLike, Callable[[Any], ArrayLike]]) -> Callable[[
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Powers:
-    """Net powers and temperatures. A net power is above 0 where heat is gained. All net powers add up to 0."""
+    """Net powers and temperatures. A net power is above 0 where heat is gained. All net powers add up to 0.
+
+    Attributes
+    ----------
+    spheres
+        [W] (n,) net power of each sphere.
+    walls
+        [W] net power of each wall by name.
+    surroundings
+        [W] net power of the surroundings.
+    temperatures
+        [K] (n,) temperature of each sphere, given or found. NaN if the emissivity is 0.
+    wall_temperatures
+        [K] temperature of each wall by name. For an insulated wall: the fourth root of its mean T**4.
+    triangle_fluxes
+        [W/m2] (t, 2) net power per area of front and back of each triangle, by the name of the `Mesh`. NaN: the
+        side belongs to no wall, or nothing reaches it. Fluxes times areas add up to `walls`, unless a plane or
+        the cylinder cuts the mesh.
+    triangle_temperatures
+        [K] (t, 2) temperature of front and back of each triangle, by the name of the `Mesh`.
+    emissivities
+        (n,) emissivity of each sphere, at its temperature.
+    errors
+        [W] (n,) estimated error of `spheres`.
+    wall_errors
+        [W] estimated error of `walls`, by name.
+    surroundings_error
+        [W] estimated error of `surroundings`.
+    temperature_errors
+        [K] (n,) estimated error of `temperatures`, 0 if the temperature was given.
+    least_temperatures
+        [K] (n,) least temperature of the surface of each sphere. `temperatures` if the sphere does not conduct.
+    largest_temperatures
+        [K] (n,) largest temperature of the surface of each sphere, likewise.
+    centre_temperatures
+        [K] (n,) temperature in the centre of each sphere, likewise.
+    surface_errors
+        [K] (n,) estimated error of `least_temperatures` and `largest_temperatures`.
+    centre_errors
+        [K] (n,) estimated error of `centre_temperatures`.
+    error
+        [W] estimated error of `spheres`, root mean square.
+    error_patches
+        [W] part of `error` that comes from patches.
+    error_beams
+        [W] part of `error` that comes from beams.
+    residual
+        Residual of the radiosities, relative to the differences of emission.
+    sweeps
+        Sweeps over the beams that the solution took.
+    """
 
     spheres: NDArray[np.float64]
-    """[W] (n,) net power of each sphere."""
     walls: dict[str, float]
-    """[W] net power of each wall by name."""
     surroundings: float
-    """[W] net power of the surroundings."""
     temperatures: NDArray[np.float64]
-    """[K] (n,) temperature of each sphere, given or found. NaN if the emissivity is 0."""
     wall_temperatures: dict[str, float]
-    """[K] temperature of each wall by name. For an insulated wall: the fourth root of its mean T**4."""
     triangle_fluxes: dict[str, NDArray[np.float64]]
-    """[W/m2] (t, 2) net power per area of front and back of each triangle, by the name of the `Mesh`. NaN: the side
-    belongs to no wall, or nothing reaches it. Fluxes times areas add up to `walls`, unless a plane or the cylinder cuts
-    the mesh."""
     triangle_temperatures: dict[str, NDArray[np.float64]]
-    """[K] (t, 2) temperature of front and back of each triangle, by the name of the `Mesh`."""
     emissivities: NDArray[np.float64]
-    """(n,) emissivity of each sphere, at its temperature."""
     errors: NDArray[np.float64]
-    """[W] (n,) estimated error of `spheres`."""
     wall_errors: dict[str, float]
-    """[W] estimated error of `walls`, by name."""
     surroundings_error: float
-    """[W] estimated error of `surroundings`."""
     temperature_errors: NDArray[np.float64]
-    """[K] (n,) estimated error of `temperatures`, 0 if the temperature was given."""
     least_temperatures: NDArray[np.float64]
-    """[K] (n,) least temperature of the surface of each sphere. `temperatures` if the sphere does not conduct."""
     largest_temperatures: NDArray[np.float64]
-    """[K] (n,) largest temperature of the surface of each sphere, likewise."""
     centre_temperatures: NDArray[np.float64]
-    """[K] (n,) temperature in the centre of each sphere, likewise."""
     surface_errors: NDArray[np.float64]
-    """[K] (n,) estimated error of `least_temperatures` and `largest_temperatures`."""
     centre_errors: NDArray[np.float64]
-    """[K] (n,) estimated error of `centre_temperatures`."""
     error: float
-    """[W] estimated error of `spheres`, root mean square."""
     error_patches: float
-    """[W] part of `error` that comes from patches."""
     error_beams: float
-    """[W] part of `error` that comes from beams."""
     residual: float
-    """Residual of the radiosities, relative to the differences of emission."""
     sweeps: int
-    """Sweeps over the beams that the solution took."""
 
     @property
     def balance(self) -> float:
@@ -131,7 +158,7 @@ class Heat(Bed):
     Examples
     --------
     >>> import fibrad
-    >>> with fibrad.Heat([[0, 0, 0], [0, 0, 3]], 1.0) as heat:
+    >>> with fibrad.Heat([[0, 0, 0], [0, 0, 0.03]], 0.01) as heat:
     ...     powers = heat.solve([1000.0, 300.0], 0.8, surroundings=300.0)
     >>> bool(powers.spheres[0] < 0 < powers.spheres[1])
     True
@@ -242,10 +269,11 @@ class Heat(Bed):
         container, names, n = self._container, self._packing.names, self.n
         kelvins = per_sphere("temperature", math.nan if temperature is None else temperature, n, 0, TEMPERATURE_MAX, names,
                              power is not None)
+        warn_temperatures(self._packing, kelvins)
         powers = None if power is None else per_sphere("power", power, n, -POWER_MAX, POWER_MAX, names, True)
         if powers is not None and np.any(powers) and n and not np.isnan(kelvins).any():
             raise refuse("power is given, and all spheres have temperatures; NaN is an unknown one")
-        if powers is not None and np.ndim(power) == 0:
+        if power is not None and powers is not None and np.ndim(power) == 0:
             powers = np.where(np.isnan(kelvins), powers, math.nan)
         conducts = None if conductivity is None else per_sphere("conductivity", conductivity, n, 5e-324, math.inf, names)
         if conducts is not None and uniform:
@@ -289,6 +317,8 @@ class Heat(Bed):
             result.surroundings_power += light.reflected + light.transmitted - light.incident
         if surroundings is None and result.surroundings_power != 0:
             raise refuse(f"{result.surroundings_power} W leave the bed after 100 periods: surroundings is needed")
+        if conducts is not None:
+            warn_surfaces(self._packing, of_spheres["least_temperature"])
         sides = np.full((2, container.sides_count), math.nan)
         if sides.size:
             self._use(library.fibrad_radiation_sides, self._packing, pointer(sides[0]), pointer(sides[1]))

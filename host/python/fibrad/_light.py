@@ -19,50 +19,76 @@ from ._values import real, refuse, whole
 class Light:
     """Light from outside. Without `disc` and `box` it falls on all that is open.
 
+    Attributes
+    ----------
+    direction
+        (3,) the way that the light goes, of any length above 0.
+    flux
+        [W/m2] across the direction.
+    half_angle
+        [rad] of the cone of directions. 0: parallel.
+    directions
+        Directions of the cone. Default: 16.
+    disc
+        (4,) [m] x, y, z and radius of a disc across the direction, through which all of the light passes.
+    box
+        (4,) [m] x1, x2, y1 and y2 of a rectangle at the end of the bed in z, through which all of the light
+        passes.
+    SUN
+        [rad] the half-angle of the sun.
+
+    Examples
+    --------
     >>> import fibrad
     >>> fibrad.Light((0, 0, -1), 1000.0, half_angle=fibrad.Light.SUN).flux
     1000.0
     """
 
     direction: Sequence[float]
-    """(3,) the way that the light goes, of any length above 0."""
     flux: float
-    """[W/m2] across the direction."""
     half_angle: float = 0.0
-    """[rad] of the cone of directions. 0: parallel."""
     directions: Optional[int] = None
-    """Directions of the cone. Default: 16."""
     disc: Optional[Sequence[float]] = None
-    """(4,) [m] x, y, z and radius of a disc across the direction, through which all of the light passes."""
     box: Optional[Sequence[float]] = None
-    """(4,) [m] x1, x2, y1 and y2 of a rectangle at the end of the bed in z, through which all of the light passes."""
 
     SUN = SUN_HALF_ANGLE
-    """[rad] the half-angle of the sun."""
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Absorbed:
-    """What is absorbed of light. `spheres`, `walls`, `reflected` and `transmitted` add up to `incident`."""
+    """What is absorbed of light. `spheres`, `walls`, `reflected` and `transmitted` add up to `incident`.
+
+    Attributes
+    ----------
+    spheres
+        [W] (n,) absorbed by each sphere, with all reflections.
+    first
+        [W] (n,) absorbed of the light that each sphere meets first.
+    errors
+        [W] (n,) estimated error of `spheres`.
+    walls
+        [W] absorbed by each wall by name.
+    walls_first
+        [W] absorbed of the light that each wall meets first, by name.
+    incident
+        [W] what all lights bring.
+    transmitted
+        [W] leaves without having met anything.
+    reflected
+        [W] leaves after reflections, on whichever side.
+    error
+        [W] estimated error of `reflected`.
+    """
 
     spheres: NDArray[np.float64]
-    """[W] (n,) absorbed by each sphere, with all reflections."""
     first: NDArray[np.float64]
-    """[W] (n,) absorbed of the light that each sphere meets first."""
     errors: NDArray[np.float64]
-    """[W] (n,) estimated error of `spheres`."""
     walls: dict[str, float]
-    """[W] absorbed by each wall by name."""
     walls_first: dict[str, float]
-    """[W] absorbed of the light that each wall meets first, by name."""
     incident: float
-    """[W] what all lights bring."""
     transmitted: float
-    """[W] leaves without having met anything."""
     reflected: float
-    """[W] leaves after reflections, on whichever side."""
     error: float
-    """[W] estimated error of `reflected`."""
     _patches: Any
     _of: Any
 

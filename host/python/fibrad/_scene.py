@@ -75,7 +75,7 @@ class Packing:
         values, counts = np.unique(array, return_counts=True)
         if values.size < self.n:
             raise refuse(f"two spheres have the id {values[counts > 1][0]}")
-        return np.require(array, np.uint64, "CA")
+        return np.require(array, np.uint64, ["C", "A"])
 
     def error(self, status: int, fault: Any, container: Container) -> Error:
         """The exception for a status, with the spheres or the triangle at fault."""
@@ -125,7 +125,7 @@ class Mesh:
         if corners.min() < 0 or corners.max() >= len(self.vertices):
             raise refuse(f"triangles name vertices from {corners.min()} to {corners.max()}; "
                          f"there are {len(self.vertices)}")
-        self.triangles = np.require(corners, np.uint32, "CA")
+        self.triangles = np.require(corners, np.uint32, ["C", "A"])
         self.back = back
 
     @classmethod
@@ -253,6 +253,20 @@ class Container:
         self._arrays = [at, *numbers]
         return Triangles(*(pointer(at[:, k]) for k in range(3)), 3, len(at),
                          *(pointer(array, ctypes.POINTER(ctypes.c_uint32)) for array in numbers), len(numbers[1]))
+
+    def planes(self) -> list[tuple[str, int, int, float]]:
+        """Name, axis, whether it is the upper end, and place of each plane that is a wall."""
+        return [(name, b.plane.axis, b.plane.upper, b.plane.at) for name, b in zip(self.names, self._bodies)
+                if b.kind == _PLANE]
+
+    def cylinders(self) -> list[tuple[str, float, float, float]]:
+        """Name, place of the axis and radius of the cylinder, if there is one."""
+        return [(name, b.cylinder.x, b.cylinder.y, b.cylinder.radius) for name, b in zip(self.names, self._bodies)
+                if b.kind == _CYLINDER]
+
+    def meshes(self) -> list[tuple[str, Mesh]]:
+        """Name and mesh of each wall of triangles."""
+        return [(self.names[b], mesh) for b, mesh in self._meshes]
 
     def triangle(self, number: int) -> str:
         """The name of a triangle for a message. "": there is no such triangle."""

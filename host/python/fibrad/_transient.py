@@ -16,31 +16,50 @@ from ._library import ExchangeRule, HeatSources, Span, TransientConfig, library
 from ._scene import Walls, pointer, pointers
 from ._limits import CAPACITY_MAX, DURATION_MAX, POWER_MAX, SIGMA, TEMPERATURE_MAX
 from ._values import per_sphere, real, refuse, several
+from ._warnings import warn_capacity, warn_temperatures
 
 _METHODS = {"corrected": 0, "patches": 1, "factors": 2}
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Advance:
     """The result of a span of time. An energy is above 0 where heat was gained. The heat stored in the spheres, and the
-    energies of walls and surroundings, add up to the energy that the powers have supplied."""
+    energies of walls and surroundings, add up to the energy that the powers have supplied.
+
+    Attributes
+    ----------
+    temperatures
+        [K] (n,) temperatures of the spheres at the end.
+    spheres
+        [W] (n,) net radiative power of each sphere at the end.
+    walls
+        [J] energy that each wall has gained by radiation, by name.
+    surroundings
+        [J] energy that the surroundings have gained by radiation.
+    steps
+        Steps that were taken.
+    refused
+        Steps tried and refused.
+    corrections
+        Solutions by patches that corrected the exchange factors.
+    error
+        Largest estimated error of a step, relative to a temperature.
+    """
 
     temperatures: NDArray[np.float64]
-    """[K] (n,) temperatures of the spheres at the end."""
     spheres: NDArray[np.float64]
-    """[W] (n,) net radiative power of each sphere at the end."""
     walls: dict[str, float]
-    """[J] energy that each wall has gained by radiation, by name."""
     surroundings: float
-    """[J] energy that the surroundings have gained by radiation."""
     steps: int
-    """Steps taken."""
     refused: int
-    """Steps tried and refused."""
     corrections: int
-    """Solutions by patches that corrected the exchange factors."""
     error: float
-    """Largest estimated error of a step, relative to a temperature."""
+
+    def __repr__(self) -> str:
+        range_of = f" of {self.temperatures.min():.6g} to {self.temperatures.max():.6g} K" if self.temperatures.size else ""
+        gained = ", ".join(f"{name} {energy:.6g} J" for name, energy in [*self.walls.items(), ("surroundings", self.surroundings)])
+        return (f"<fibrad.Advance: {len(self.temperatures)} spheres{range_of}; {gained}; {self.steps} steps, error of a "
+                f"step {self.error:.2g}>")
 
 
 class Transient(Bed):
@@ -65,8 +84,8 @@ class Transient(Bed):
     Examples
     --------
     >>> import fibrad
-    >>> with fibrad.Transient([[0, 0, 0], [0, 0, 3]], 1.0) as bed:
-    ...     end = bed.advance([1000.0, 300.0], 3600.0, capacity=1e7, emissivity=0.8, surroundings=300.0)
+    >>> with fibrad.Transient([[0, 0, 0], [0, 0, 0.03]], 0.01) as bed:
+    ...     end = bed.advance([1000.0, 300.0], 60.0, capacity=10.0, emissivity=0.8, surroundings=300.0)
     >>> bool(end.temperatures[0] < 1000 and end.temperatures[1] > 300)
     True
     """
@@ -136,6 +155,8 @@ class Transient(Bed):
         now = per_sphere("temperature", temperature, n, 0, TEMPERATURE_MAX, names).copy()
         heat = per_sphere("capacity", capacity, n, 0, CAPACITY_MAX, names)
         insulated = several("insulated", insulated)
+        warn_temperatures(self._packing, now)
+        warn_capacity(self._packing, heat)
         walls = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
         found = frozenset([*(wall_power or {}), *insulated])
         if found and self._method != "patches":
