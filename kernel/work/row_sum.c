@@ -1,6 +1,7 @@
 /* row_sum.c - collects the entries of a row. SPDX-License-Identifier: MIT */
 #include "work/row_sum.h"
 #include "base/sort.h"
+#include "work/record.h"
 
 static uint32_t hash_slot_of(const fibrad_entries *entries, uint32_t sphere) {
     uint32_t mask = entries->slots - 1, slot = (sphere * 2654435769u >> 7) & mask; /* Fibonacci hashing */
@@ -35,6 +36,11 @@ static double entry_difference(const fibrad_entries *entries, uint32_t entry) {
     return (part[0] + part[2]) * balance[0] - (part[1] + part[3]) * balance[1];
 }
 
+/* 0: the factor is that of the sums. */
+static double exact_factor(const fibrad_entries *entries, uint32_t entry) {
+    return entries->exact ? entries->lengths[entry] : 0;
+}
+
 void fibrad_entries_slots(const fibrad_entries *entries, const fibrad_scene *scene, double wall[FIBRAD_SLOTS]) {
     const uint32_t spheres = scene->facts.spheres;
     for (uint32_t k = 0; k < entries->length && scene->mesh.triangles > 0; k++)
@@ -45,10 +51,10 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
     uint32_t n = 0;
     double square = 0;
     for (uint32_t k = 0; k < entries->length; k++) {
-        const double *part = entries->part[k];
-        double difference = entry_difference(entries, k) * scale;
+        const double exact = exact_factor(entries, k);
+        const double difference = exact > 0 ? 0 : entry_difference(entries, k) * scale;
         square += difference * difference;
-        if (entries->sphere[k] >= scene->facts.spheres || entry_sum(part) == 0) continue;
+        if (entries->sphere[k] >= scene->facts.spheres || (entry_sum(entries->part[k]) == 0 && exact == 0)) continue;
         entries->key[0][n++] = (uint64_t)scene->order[entries->sphere[k]] << 32 | k;
     }
     row->length = n;
@@ -59,9 +65,10 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
     for (uint32_t k = 0; k < n; k++) {
         uint32_t entry = (uint32_t)key[k];
         row->col[k] = (uint32_t)(key[k] >> 32);
-        const double *part = entries->part[entry];
-        row->f[k] = entry_sum(part) * scale;
-        if (row->half != NULL) row->half[k] = (float)(entry_difference(entries, entry) * scale);
+        const double exact = exact_factor(entries, entry);
+        row->f[k] = exact > 0 ? exact : entry_sum(entries->part[entry]) * scale;
+        if (row->half != NULL)
+            row->half[k] = exact > 0 ? FIBRAD_HALF_EXACT : (float)(entry_difference(entries, entry) * scale);
     }
     return FIBRAD_OK;
 }

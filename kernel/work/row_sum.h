@@ -12,7 +12,7 @@ typedef struct fibrad_entries {
     uint32_t *slot;    /* [capacity] the slot in `at` of each entry */
     uint32_t *sphere;  /* [capacity] */
     double (*part)[4]; /* [capacity] visible area, or number of rays, over all windows k = 0, 1, 2, 3 mod 4 */
-    double *lengths;   /* [capacity] sum of the lengths of the rays [L] */
+    double *lengths;   /* [capacity] sum of the lengths of the rays [L]; with `exact`, the exact factor; 0: none */
     double *angles;    /* [capacity] sum of the angles between the rays and the line of centres */
     uint64_t *key[2];  /* [capacity] scratch of the sort by columns */
     uint32_t slots, capacity, length, missed;
@@ -20,7 +20,8 @@ typedef struct fibrad_entries {
     double weight;           /* by which values are multiplied; 1 but for areas among windows by masks */
     double balance[2];       /* by which sums over even and over odd windows count in their difference; 1 if both are
                                 equally many */
-    bool end; /* the present window is the first or the last: it counts half in differences of even and odd windows */
+    bool exact; /* some entries have exact factors, which take the place of their sums */
+    bool end;   /* the present window is the first or the last: it counts half in differences of even and odd windows */
 } fibrad_entries;
 
 /* The entry of a sphere. A sphere without an entry gets a new one. FIBRAD_NONE: there is no room. */
@@ -54,7 +55,7 @@ uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere);
 /* Entries with numbers of spheres + slot belong to slots. Adds them to the sums of the slots. */
 void fibrad_entries_slots(const fibrad_entries *entries, const fibrad_scene *scene, double wall[FIBRAD_SLOTS]);
 
-/* Writes the row: entries times `scale`, columns ascending, and row->half unless it is NULL. row->error: the distance of the sums over even and odd
+/* Writes the row: entries times `scale`, columns ascending, and row->half unless it is NULL. For exact factors it is FIBRAD_HALF_EXACT, and they have no part in row->error. row->error: the distance of the sums over even and odd
  * windows. Entries of slots count in the error only. Entries that triangles have hidden again are left out. */
 int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene, double scale, fibrad_row *row);
 

@@ -248,7 +248,7 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
                        fibrad_stride stride) {
     for (uint32_t k = 0; k < work->entries.length; k++) work->entries.at[work->entries.slot[k]] = FIBRAD_NONE;
     work->entries.length = work->entries.missed = 0;
-    work->entries.end = false;
+    work->entries.end = work->entries.exact = false;
     work->parallel = false;
     work->entries.addends = NULL;
     work->entries.weight = work->entries.balance[0] = work->entries.balance[1] = 1;
