@@ -170,8 +170,10 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     const double all = sums.whole[0] + sums.whole[1], scale = masked ? 1 / all : 1 / (windows.count * each);
     for (int half = 0; half < 2 && windows.lines != NULL; half++) work->entries.balance[half] = all / (2 * sums.whole[half]);
     fibrad_free_pairs pairs = {0, 1, 0};
-    if (windows.lines != NULL) pairs = fibrad_free_pairs_find(work, scale);
+    if (range->exact) pairs = fibrad_free_pairs_find(work, scale);
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
+    status = fibrad_free_pairs_legs(work);
+    if (status != FIBRAD_OK) return status;
     status = fibrad_entries_row(&work->entries, scene, scale, row);
     if (status != FIBRAD_OK) return status;
     if (scene->container.walls) LANED(fibrad_walls_complete)(work, &set, parts);
@@ -193,7 +195,8 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
         row->error = fibrad_sqrt(LINES_ERROR * LINES_ERROR * areas + row->noise * row->noise + row->shares * row->shares);
     } else {
         if (parts[0] > 0) row->error = fibrad_sqrt(row->error * row->error + parts[0] * scale * scale);
-        row->error = fibrad_entries_error(&work->entries, parts, row->error, scale);
+        const double error = fibrad_entries_error(&work->entries, parts, row->error, scale);
+        row->error = fibrad_sqrt(error * error + pairs.unseen * pairs.unseen);
         row->half = NULL;
     }
     row->directions = windows.count;

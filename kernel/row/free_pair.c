@@ -161,7 +161,7 @@ static bool take_pair(pair_search *search, uint32_t other, double seen) {
     if (entry == FIBRAD_NONE)
         entries->missed++;
     else
-        entries->lengths[entry] = f;
+        entries->exact[entry] = f;
     search->moved += (int64_t)((seen - f) / UNIT);
     return true;
 }
@@ -219,7 +219,6 @@ fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale) {
     if (periodic || !(pairs.open > (n <= FEW_SPHERES ? LEAST_OPEN : WORTH_WHILE))) return pairs;
     pair_search search = {.work = work, .scale = scale, .all = n <= FEW_SPHERES};
     search.sparse = search.all || met < FEW_ENTRIES, search.pairs = lies_free(scene, work->place);
-    for (uint32_t k = 0; k < met; k++) entries->lengths[k] = 0;
     for (uint32_t k = 0; k < met && !search.all; k++)
         if (entries->sphere[k] < n) try_sphere(&search, entries->sphere[k], true);
     if (!search.all) try_near(&search, NEAR_SPACINGS * scene->spacing);
@@ -227,9 +226,48 @@ fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale) {
     for (uint32_t j = 0; j < n && search.sparse; j++) try_sphere(&search, j, false);
     pairs.unseen = fibrad_sqrt((double)search.unseen * SQUARE_UNIT);
     pairs.moved = (double)search.moved * UNIT;
-    entries->exact = pairs.open + pairs.moved > 0;
-    if (!entries->exact) pairs.moved = 0;
+    if (pairs.open + pairs.moved > 0) return pairs;
+    for (uint32_t k = 0; k < entries->length; k++) entries->exact[k] = 0;
+    pairs.moved = 0;
     return pairs;
+}
+
+/* A leg along the line of centres. */
+static fibrad_leg leg_to(const fibrad_workspace *work, uint32_t other, double weight) {
+    const fibrad_scene *scene = work->scene;
+    const pair_hull hull = hull_of(scene, work->place, other);
+    fibrad_leg leg = {.sphere = other, .weight = weight};
+    for (int axis = 0; axis < 3; axis++) {
+        leg.n[axis] = leg.w[axis] = hull.axis[axis];
+        leg.centre[axis] = hull.axis[axis] * (hull.length * work->inverse);
+    }
+    return leg;
+}
+
+int fibrad_free_pairs_legs(fibrad_workspace *work) {
+    fibrad_legs *legs = &work->legs;
+    const fibrad_entries *entries = &work->entries;
+    double *count = entries->lengths; /* legs to each sphere */
+    uint32_t more = 0;
+    legs->sources = legs->length;
+    for (uint32_t k = 0; k < legs->length; k++) {
+        const uint32_t sphere = legs->leg[k].sphere;
+        const uint32_t entry = sphere != FIBRAD_NONE ? fibrad_entries_find(entries, sphere) : FIBRAD_NONE;
+        if (entry != FIBRAD_NONE) count[entry]++;
+    }
+    for (uint32_t k = 0; k < legs->length; k++) {
+        const uint32_t sphere = legs->leg[k].sphere;
+        const uint32_t entry = sphere != FIBRAD_NONE ? fibrad_entries_find(entries, sphere) : FIBRAD_NONE;
+        if (entry != FIBRAD_NONE && entries->exact[entry] > 0)
+            legs->leg[k].weight = entries->exact[entry] * legs->length / count[entry];
+    }
+    for (uint32_t k = 0; k < entries->length && legs->length > 0; k++) {
+        if (!(entries->exact[k] > 0) || count[k] > 0) continue;
+        if (legs->length + ++more <= work->plan.legs)
+            legs->leg[legs->sources++] = leg_to(work, entries->sphere[k], entries->exact[k] * legs->length);
+    }
+    work->needed.legs = legs->length + more;
+    return legs->sources == work->needed.legs ? FIBRAD_OK : FIBRAD_E_WORK;
 }
 
 void fibrad_weigh_halves(const fibrad_workspace *work, fibrad_row *row) {

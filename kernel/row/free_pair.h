@@ -18,11 +18,15 @@ typedef struct fibrad_free_pairs {
     double unseen; /* root of the sum of squared factors to spheres that no window has met */
 } fibrad_free_pairs;
 
-/* Finds the free pairs of the present row, all of whose windows are done. Their exact factors go to entries.lengths,
- * and entries.exact is set. In scenes of few spheres all pairs are tried, in others only near ones. Rows of which no
+/* Finds the free pairs of the present row, all of whose windows are done. Their exact factors go to entries.exact.
+ * In scenes of few spheres all pairs are tried, in others only near ones. Rows of which no
  * window is open have none, since only walls and surroundings can take the difference. scale: factor over the sums of
  * entries. Entries that find no room are counted in entries.missed. */
 fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale);
+
+/* Gives the legs that meet a sphere of a free pair their share of its factor. If no leg meets it, one more leg does,
+ * along the line of centres. Error: FIBRAD_E_WORK: there is no room for them. */
+int fibrad_free_pairs_legs(fibrad_workspace *work);
 
 /* Raises the differences of halves of spheres that few windows should meet. Lines are spread evenly, so that the error
  * of a sphere that many windows meet is less than the difference. Whether a window meets a far sphere is chance. */

@@ -16,7 +16,7 @@ uint32_t fibrad_entries_of(fibrad_entries *entries, uint32_t sphere) {
     entries->slot[entry] = slot;
     entries->sphere[entry] = sphere;
     for (int part = 0; part < 4; part++) entries->part[entry][part] = 0;
-    entries->lengths[entry] = entries->angles[entry] = 0;
+    entries->lengths[entry] = entries->angles[entry] = entries->exact[entry] = 0;
     return entry;
 }
 
@@ -36,11 +36,6 @@ static double entry_difference(const fibrad_entries *entries, uint32_t entry) {
     return (part[0] + part[2]) * balance[0] - (part[1] + part[3]) * balance[1];
 }
 
-/* 0: the factor is that of the sums. */
-static double exact_factor(const fibrad_entries *entries, uint32_t entry) {
-    return entries->exact ? entries->lengths[entry] : 0;
-}
-
 void fibrad_entries_slots(const fibrad_entries *entries, const fibrad_scene *scene, double wall[FIBRAD_SLOTS]) {
     const uint32_t spheres = scene->facts.spheres;
     for (uint32_t k = 0; k < entries->length && scene->mesh.triangles > 0; k++)
@@ -51,7 +46,7 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
     uint32_t n = 0;
     double square = 0;
     for (uint32_t k = 0; k < entries->length; k++) {
-        const double exact = exact_factor(entries, k);
+        const double exact = entries->exact[k];
         const double difference = exact > 0 ? 0 : entry_difference(entries, k) * scale;
         square += difference * difference;
         if (entries->sphere[k] >= scene->facts.spheres || (entry_sum(entries->part[k]) == 0 && exact == 0)) continue;
@@ -65,7 +60,7 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
     for (uint32_t k = 0; k < n; k++) {
         uint32_t entry = (uint32_t)key[k];
         row->col[k] = (uint32_t)(key[k] >> 32);
-        const double exact = exact_factor(entries, entry);
+        const double exact = entries->exact[entry];
         row->f[k] = exact > 0 ? exact : entry_sum(entries->part[entry]) * scale;
         if (row->half != NULL)
             row->half[k] = exact > 0 ? FIBRAD_HALF_EXACT : (float)(entry_difference(entries, entry) * scale);
@@ -82,6 +77,7 @@ double fibrad_entries_error(const fibrad_entries *entries, const double parts[2]
     double halves = parts[0], fourths = parts[1], gain = most;
     for (uint32_t k = 0; k < entries->length; k++) {
         const double *part = entries->part[k];
+        if (entries->exact[k] > 0) continue;
         double half = part[0] + part[2] - part[1] - part[3], even = part[0] - part[2], odd = part[1] - part[3];
         halves += half * half;
         fourths += even * even + odd * odd;

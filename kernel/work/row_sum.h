@@ -12,16 +12,16 @@ typedef struct fibrad_entries {
     uint32_t *slot;    /* [capacity] the slot in `at` of each entry */
     uint32_t *sphere;  /* [capacity] */
     double (*part)[4]; /* [capacity] visible area, or number of rays, over all windows k = 0, 1, 2, 3 mod 4 */
-    double *lengths;   /* [capacity] sum of the lengths of the rays [L]; with `exact`, the exact factor; 0: none */
+    double *lengths;   /* [capacity] sum of the lengths of the rays [L] */
     double *angles;    /* [capacity] sum of the angles between the rays and the line of centres */
+    double *exact;     /* [capacity] an exact factor, which takes the place of the sums; 0: none */
     uint64_t *key[2];  /* [capacity] scratch of the sort by columns */
     uint32_t slots, capacity, length, missed;
     fibrad_addends *addends; /* NULL, or a list of terms that are to be added later */
     double weight;           /* by which values are multiplied; 1 but for areas among windows by masks */
     double balance[2];       /* by which sums over even and over odd windows count in their difference; 1 if both are
                                 equally many */
-    bool exact; /* some entries have exact factors, which take the place of their sums */
-    bool end;   /* the present window is the first or the last: it counts half in differences of even and odd windows */
+    bool end; /* the present window is the first or the last: it counts half in differences of even and odd windows */
 } fibrad_entries;
 
 /* The entry of a sphere. A sphere without an entry gets a new one. FIBRAD_NONE: there is no room. */

@@ -82,6 +82,7 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     entries->part = fibrad_arena_take(arena, entries->capacity, sizeof *entries->part);
     entries->lengths = fibrad_arena_take(arena, entries->capacity, sizeof(double));
     entries->angles = fibrad_arena_take(arena, entries->capacity, sizeof(double));
+    entries->exact = fibrad_arena_take(arena, entries->capacity, sizeof(double));
     for (int list = 0; list < 2; list++)
         entries->key[list] = fibrad_arena_take(arena, entries->capacity, sizeof(uint64_t));
     work->legs.leg = fibrad_arena_take(arena, plan->legs, sizeof *work->legs.leg);
@@ -248,7 +249,7 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
                        fibrad_stride stride) {
     for (uint32_t k = 0; k < work->entries.length; k++) work->entries.at[work->entries.slot[k]] = FIBRAD_NONE;
     work->entries.length = work->entries.missed = 0;
-    work->entries.end = work->entries.exact = false;
+    work->entries.end = false;
     work->parallel = false;
     work->entries.addends = NULL;
     work->entries.weight = work->entries.balance[0] = work->entries.balance[1] = 1;
