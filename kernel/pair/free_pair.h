@@ -2,8 +2,8 @@
  *
  * Nothing comes between two spheres if their convex hull meets no other sphere and no triangle. Walls are convex, so
  * they come between no spheres that they do not cut. */
-#ifndef FIBRAD_ROW_FREE_PAIR_H
-#define FIBRAD_ROW_FREE_PAIR_H
+#ifndef FIBRAD_PAIR_FREE_PAIR_H
+#define FIBRAD_PAIR_FREE_PAIR_H
 
 #include "work/work.h"
 
