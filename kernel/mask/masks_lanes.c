@@ -128,14 +128,26 @@ uint32_t LANED(fibrad_masks_discs)(fibrad_masks *m, const fibrad_discs *disc, ui
     return d;
 }
 
-uint32_t LANED(fibrad_masks_at)(const fibrad_masks *m, uint32_t count, const float *x, const float *y, uint64_t *bits) {
+/* The word and the bit of the point of masks that is next to (x, y). Near the border it may lie outside the disc. Then
+ * one farther in is taken. */
+static void find_point(const fibrad_masks *m, float x, float y, uint32_t *word, uint32_t *bit) {
     const float per = 0.5f * (float)m->chords, last = (float)(m->chords - 1), end = (float)(32 * m->words - 1);
-    uint32_t open = 0;
-    for (uint32_t p = 0; p < count; p++) {
-        const float row = (y[p] - m->y_first) * per + 0.5f, column = m->x_zero + m->x_scale * x[p];
+    for (float inward = 1;; inward *= 0.95f) {
+        const float row = (inward * y - m->y_first) * per + 0.5f, column = m->x_zero + m->x_scale * (inward * x);
         const uint32_t chord = (uint32_t)(row > 0 ? row < last ? row : last : 0);
         const uint32_t point = (uint32_t)(column > 0 ? column < end ? column : end : 0);
-        const uint64_t bit = m->word[point / 32 * m->chords + chord] >> point % 32 & 1;
+        const float v = m->y_first + m->y_step * (float)chord, u = ((float)point + 0.5f - m->x_zero) / m->x_scale;
+        *word = point / 32 * m->chords + chord, *bit = point % 32;
+        if (u * u + v * v < 0.999f) return;
+    }
+}
+
+uint32_t LANED(fibrad_masks_at)(const fibrad_masks *m, uint32_t count, const float *x, const float *y, uint64_t *bits) {
+    uint32_t open = 0;
+    for (uint32_t p = 0; p < count; p++) {
+        uint32_t word, at;
+        find_point(m, x[p], y[p], &word, &at);
+        const uint64_t bit = m->word[word] >> at & 1;
         if (p % 64 == 0) bits[p / 64] = 0;
         bits[p / 64] |= bit << p % 64;
         open += (uint32_t)bit;

@@ -157,8 +157,11 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
      * turned at random, parallel lines have no bias. */
     work->parallel = windows.turned && rule->points == FEW_POINTS;
     const bool mixed = windows.turned || windows.lines != NULL; /* directions do not pair off */
-    const fibrad_window_set set = {LANED(frame_of_beam), &windows, windows.count,
-                                   windows.count,        mixed,    windows.lines == NULL && !masked};
+    const double each = rule->points > 0 ? rule->points : FIBRAD_PI;
+    const double square = 32.0 * windows.words * windows.chords; /* points of masks in the square about a window */
+    const fibrad_window_set set = {LANED(frame_of_beam), &windows, windows.count, windows.count,
+                                   masked ? FIBRAD_PI / 4 * square : each, mixed,
+                                   windows.lines == NULL && !masked};
     if (scene->container.walls) {
         work->walls->view = fibrad_wall_view_of(scene, work->place, work->cut, work->reach);
         fibrad_zero(&work->walls->sums, sizeof work->walls->sums);
@@ -178,7 +181,6 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
         if (masked) fibrad_addends_put(range->addends, FIBRAD_ADD_SEEN, 0, work->masks.regions);
         return FIBRAD_OK;
     }
-    const double each = rule->points > 0 ? rule->points : FIBRAD_PI;
     const double all = sums.whole[0] + sums.whole[1], scale = masked ? 1 / all : 1 / (windows.count * each);
     for (int half = 0; half < 2 && windows.lines != NULL; half++)
         work->entries.balance[half] = all / (2 * sums.whole[half]);
