@@ -3,7 +3,7 @@
 #include "heat/problem.h"
 
 #define HEAT_TOLERANCE  1e-3
-#define FREE_TOLERANCE  1e-5 /* if temperatures are unknown: errors over long distances exceed their residuals */
+#define FREE_TOLERANCE  1e-5  /* if temperatures are unknown: errors over long distances exceed their residuals */
 #define FEW_TOLERANCE   1e-12 /* of few spheres, which may exchange little of what they emit: this takes no time */
 #define FEW_SPHERES     16u
 #define HEAT_SWEEPS_MAX 1000u

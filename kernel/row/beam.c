@@ -30,7 +30,8 @@ int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule) 
     if (rule->directions == 0)
         rule->directions = rule->tolerance > 0 ? FIBRAD_DIRECTIONS_FIRST : FIBRAD_DIRECTIONS_DEFAULT;
     if (rule->lines != NULL) {
-        if ((given->directions | given->points) != 0 || given->turn != 0 || given->tolerance > 0) return FIBRAD_E_ARGUMENT;
+        if ((given->directions | given->points) != 0 || given->turn != 0 || given->tolerance > 0)
+            return FIBRAD_E_ARGUMENT;
         rule->directions = rule->lines->n;
     }
     if (rule->chords == 0 && rule->lines != NULL) rule->chords = chords_for(rule->directions);

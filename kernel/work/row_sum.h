@@ -55,7 +55,8 @@ uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere);
 /* Entries with numbers of spheres + slot belong to slots. Adds them to the sums of the slots. */
 void fibrad_entries_slots(const fibrad_entries *entries, const fibrad_scene *scene, double wall[FIBRAD_SLOTS]);
 
-/* Writes the row: entries times `scale`, columns ascending, and row->half unless it is NULL. For exact factors it is FIBRAD_HALF_EXACT, and they have no part in row->error. row->error: the distance of the sums over even and odd
+/* Writes the row: entries times `scale`, columns ascending, and row->half unless it is NULL. For exact factors it is
+ * FIBRAD_HALF_EXACT, and they have no part in row->error. row->error: the distance of the sums over even and odd
  * windows. Entries of slots count in the error only. Entries that triangles have hidden again are left out. */
 int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene, double scale, fibrad_row *row);
 
