@@ -11,7 +11,7 @@
  *
  * Windows find the same areas by clipping. The two methods share nothing but the lines. The mean of F_ij and F_ji by
  * windows of n lines, one window for each line, is the sum of S(i, j) + S(j, i) over the lines, over 2 n pi r_i^2. */
-#include "sample/line_set.h"
+#include "mask/line_set.h"
 #include "scenes.h"
 #include "suite.h"
 

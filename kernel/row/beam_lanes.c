@@ -187,7 +187,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     fibrad_free_pairs pairs = {0, 1, 0};
     if (range->exact) pairs = fibrad_free_pairs_find(work, scale);
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
-    status = fibrad_free_pairs_legs(work);
+    status = fibrad_free_pairs_legs(work, &pairs);
     if (status != FIBRAD_OK) return status;
     status = fibrad_entries_row(&work->entries, scene, scale, row);
     if (status != FIBRAD_OK) return status;
