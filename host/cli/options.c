@@ -11,6 +11,8 @@
 
 #include "cli/message.h"
 
+enum { OPTIONS_MOST = 128 }; /* rows of a table */
+
 /* A walk along the arguments behind the name of a command. */
 struct walk {
     const char *command;
@@ -18,7 +20,8 @@ struct walk {
     char *request;
     int argc, at;
     char **argv;
-    bool plain; /* `--` has come: no options follow */
+    bool plain;               /* `--` has come: no options follow */
+    bool given[OPTIONS_MOST]; /* rows of the table that have been given */
 };
 
 int option_help(const char *text, void *request) {
@@ -54,6 +57,10 @@ static int put_argument(const struct walk *walk, const struct option *option, co
 /* Takes an option. inline_value: the text behind = or behind the letter; NULL: the argument is the next one. */
 static int take_option(struct walk *walk, const struct option *option, const char *inline_value) {
     const char *next = walk->at < walk->argc ? walk->argv[walk->at] : NULL;
+    bool *given = &walk->given[option - walk->table];
+    if (*given && option->kind != OPTION_SEVERAL && option->kind != OPTION_FLAG)
+        return message(STATUS_USAGE, "--%s is given twice", option->name);
+    *given = true;
     if (!option->argument && inline_value) return message(STATUS_USAGE, "--%s takes no argument", option->name);
     if (option->kind == OPTION_OPTIONAL && next) {
         const int status = put_argument(walk, option, next);

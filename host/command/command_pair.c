@@ -71,7 +71,7 @@ static const struct option pair_table[] = {
     {0, "method", "NAME",
      "exact, beam (parallel beams), surface (nodes on surfaces), cast (quasi-random rays) or mc (random rays) [exact]",
      TO_FUNCTION(option_method, struct pair_request, methods.method)},
-    {0, "obstacle", "X,Y,Z,R", "a sphere in the way; may be repeated [none]", TO_REQUEST(take_obstacle)},
+    {0, "obstacle", "X,Y,Z,R", "a sphere in the way; may be repeated [none]", TO_REQUEST_SEVERAL(take_obstacle)},
     {0, "error", "E",
      "exact, with obstacles: error allowed, estimated, relative to the factor without obstacles, 1e-12 to 1; if "
      "spheres overlap, each further digit takes ten times as long [1e-9; 1e-5 if spheres overlap]",

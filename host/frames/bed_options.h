@@ -49,10 +49,10 @@
 #define OPTIONS_WALL                                                                                                   \
     {0, "wall", "LIST",                                                                                                \
      "walls: auto, box, xmin, xmax, ymin, ymax, zmin, zmax, cylinder:X,Y,R, mesh:FILE; see below [none]",              \
-     TO_FUNCTION(walls_option, struct bed_options, walls)},                                                            \
+     TO_SEVERAL(walls_option, struct bed_options, walls)},                                                             \
     {                                                                                                                  \
         0, "wall-vtp", "OUT", "write the triangles of the walls of mesh:FILE, a .vtp for ParaView [none]",             \
-            TO_REQUEST(bed_meshes_option)                                                                              \
+            TO_REQUEST_SEVERAL(bed_meshes_option)                                                                      \
     }
 
 /* Rows without braces: -o with its help, --format, --plot with its help, and --scratch for commands that make matrices.
