@@ -377,9 +377,9 @@ TEST(temperatures_to_an_error) {
         const char *to = k % 2 ? out : fine;
         SUCCEED("heat", file, "--length-unit", "m", "--emissivity", ".4", "--power", "4000", "--ambient=300",
                 k % 2 ? "--error=.004" : "--directions=1500", k % 2 ? "--threads=2" : "--patches=384", "-o", to,
-                k < 2 ? "--positions" : "--wall=box",
-                k < 2 ? "--positions" : "--wall-temperature=ymax=insulated,zmin=900,400",
-                k < 2 ? "--positions" : "--wall-power=xmin=20000", k < 2 ? "--positions" : "--wall-emissivity=.4");
+                k < 2 ? "--threads=2" : "--wall=box",
+                k < 2 ? "--threads=2" : "--wall-temperature=ymax=insulated,zmin=900,400",
+                k < 2 ? "--threads=2" : "--wall-power=xmin=20000", k < 2 ? "--threads=2" : "--wall-emissivity=.4");
         assert_lacks(said, "is not reached");
         if (k >= 2) read_powers(to, &sum, &largest, -2, &wall[k % 2], &q);
         if (k % 2 == 0) continue;

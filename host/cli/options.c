@@ -11,8 +11,6 @@
 
 #include "cli/message.h"
 
-enum { OPTIONS_MOST = 128 }; /* rows of a table */
-
 /* A walk along the arguments behind the name of a command. */
 struct walk {
     const char *command;
@@ -20,8 +18,7 @@ struct walk {
     char *request;
     int argc, at;
     char **argv;
-    bool plain;               /* `--` has come: no options follow */
-    bool given[OPTIONS_MOST]; /* rows of the table that have been given */
+    bool plain; /* `--` has come: no options follow */
 };
 
 int option_help(const char *text, void *request) {
@@ -38,6 +35,10 @@ static int put_argument(const struct walk *walk, const struct option *option, co
     switch (option->kind) {
     case OPTION_FLAG:
         *(bool *)field = true;
+        return STATUS_OK;
+    case OPTION_PATH:
+        if (*(const char **)field) return message(STATUS_USAGE, "%s is given twice", what);
+        *(const char **)field = text;
         return STATUS_OK;
     case OPTION_TEXT:
         *(const char **)field = text;
@@ -57,10 +58,6 @@ static int put_argument(const struct walk *walk, const struct option *option, co
 /* Takes an option. inline_value: the text behind = or behind the letter; NULL: the argument is the next one. */
 static int take_option(struct walk *walk, const struct option *option, const char *inline_value) {
     const char *next = walk->at < walk->argc ? walk->argv[walk->at] : NULL;
-    bool *given = &walk->given[option - walk->table];
-    if (*given && option->kind != OPTION_SEVERAL && option->kind != OPTION_FLAG)
-        return message(STATUS_USAGE, "--%s is given twice", option->name);
-    *given = true;
     if (!option->argument && inline_value) return message(STATUS_USAGE, "--%s takes no argument", option->name);
     if (option->kind == OPTION_OPTIONAL && next) {
         const int status = put_argument(walk, option, next);

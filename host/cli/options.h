@@ -12,10 +12,10 @@
 /* What becomes of the argument of an option. */
 enum option_kind {
     OPTION_FUNCTION, /* a function takes it */
-    OPTION_SEVERAL,  /* likewise; the option may be given several times, and all others but flags only once */
     OPTION_OPTIONAL, /* likewise; the argument may be left out */
     OPTION_FLAG,     /* there is none: a bool becomes true */
     OPTION_TEXT,     /* a const char * */
+    OPTION_PATH,     /* likewise, of a file to write: a second one is refused */
     OPTION_NUMBER,   /* a double from low to high */
     OPTION_COUNT,    /* a uint32_t or int from low to high */
     OPTION_WHOLE     /* a uint64_t from low to high, which may be INFINITY */
@@ -42,10 +42,9 @@ struct option {
 /* The fields of a row from `kind` on. */
 #define TO_FUNCTION(take, request, field)    OPTION_FUNCTION, offsetof(request, field), 0, 0, take
 #define TO_REQUEST(take)                     OPTION_FUNCTION, 0, 0, 0, take /* the field is the whole request */
-#define TO_SEVERAL(take, request, field)     OPTION_SEVERAL, offsetof(request, field), 0, 0, take
-#define TO_REQUEST_SEVERAL(take)             OPTION_SEVERAL, 0, 0, 0, take
 #define TO_FLAG(request, field)              OPTION_FLAG, offsetof(request, field), 0, 0, NULL
 #define TO_TEXT(request, field)              OPTION_TEXT, offsetof(request, field), 0, 0, NULL
+#define TO_PATH(request, field)              OPTION_PATH, offsetof(request, field), 0, 0, NULL
 #define TO_NUMBER(request, field, low, high) OPTION_NUMBER, offsetof(request, field), low, high, NULL
 #define TO_COUNT(request, field, low, high)  OPTION_COUNT, offsetof(request, field), low, high, NULL
 #define TO_WHOLE(request, field, low, high)  OPTION_WHOLE, offsetof(request, field), low, high, NULL

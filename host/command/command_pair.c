@@ -71,7 +71,7 @@ static const struct option pair_table[] = {
     {0, "method", "NAME",
      "exact, beam (parallel beams), surface (nodes on surfaces), cast (quasi-random rays) or mc (random rays) [exact]",
      TO_FUNCTION(option_method, struct pair_request, methods.method)},
-    {0, "obstacle", "X,Y,Z,R", "a sphere in the way; may be repeated [none]", TO_REQUEST_SEVERAL(take_obstacle)},
+    {0, "obstacle", "X,Y,Z,R", "a sphere in the way; may be repeated [none]", TO_REQUEST(take_obstacle)},
     {0, "error", "E",
      "exact, with obstacles: error allowed, estimated, relative to the factor without obstacles, 1e-12 to 1; if "
      "spheres overlap, each further digit takes ten times as long [1e-9; 1e-5 if spheres overlap]",
@@ -79,7 +79,7 @@ static const struct option pair_table[] = {
     {0, "check", NULL, "compare the exact factor with two of GSL's quadratures [off]",
      TO_FLAG(struct pair_request, check)},
     OPTIONS_METHODS(struct pair_request),
-    {0, "json", "OUT", "write the output as JSON, with all digits [none]", TO_TEXT(struct pair_request, json)},
+    {0, "json", "OUT", "write the output as JSON, with all digits [none]", TO_PATH(struct pair_request, json)},
     {OPTION_HELP},
     {.name = NULL}};
 

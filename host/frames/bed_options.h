@@ -39,7 +39,7 @@
 #define OPTIONS_RUN                                                                                                    \
     {OPTION_THREADS(struct bed_options, threads)},                                                                     \
         {0, "json", "OUT", "write the summary as JSON, with all digits [none]",                                        \
-         TO_TEXT(struct bed_options, outputs.summary)},                                                                \
+         TO_PATH(struct bed_options, outputs.summary)},                                                                \
         {0, "quiet", NULL, "print no summary and no progress", TO_FLAG(struct bed_options, quiet)},                    \
         {0, "progress", NULL, "show progress even if standard error is not a terminal [off]",                          \
          TO_FLAG(struct bed_options, progress.forced)},                                                                \
@@ -49,17 +49,17 @@
 #define OPTIONS_WALL                                                                                                   \
     {0, "wall", "LIST",                                                                                                \
      "walls: auto, box, xmin, xmax, ymin, ymax, zmin, zmax, cylinder:X,Y,R, mesh:FILE; see below [none]",              \
-     TO_SEVERAL(walls_option, struct bed_options, walls)},                                                             \
+     TO_FUNCTION(walls_option, struct bed_options, walls)},                                                            \
     {                                                                                                                  \
         0, "wall-vtp", "OUT", "write the triangles of the walls of mesh:FILE, a .vtp for ParaView [none]",             \
-            TO_REQUEST_SEVERAL(bed_meshes_option)                                                                      \
+            TO_REQUEST(bed_meshes_option)                                                                              \
     }
 
 /* Rows without braces: -o with its help, --format, --plot with its help, and --scratch for commands that make matrices.
  */
 #define OPTION_BED_OUTPUT(help) OPTION_OUTPUT(help, struct bed_options, outputs)
 #define OPTION_BED_FORMAT       OPTION_FORMAT(struct bed_options, outputs)
-#define OPTION_PLOT(help)       0, "plot", "OUT", help, TO_TEXT(struct bed_options, outputs.picture)
+#define OPTION_PLOT(help)       0, "plot", "OUT", help, TO_PATH(struct bed_options, outputs.picture)
 #define OPTION_SCRATCH                                                                                                 \
     0, "scratch", "FOLDER",                                                                                            \
         "keep rows and matrix in temporary files of this folder, with the same results; for each entry of the raw "    \

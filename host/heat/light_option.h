@@ -11,7 +11,7 @@ enum { LIGHTS_MAX = 32 };
 #define OPTIONS_LIGHT(request)                                                                                         \
     {0, "irradiate", "LIGHT",                                                                                          \
      "light from outside, DX,DY,DZ:FLUX: its direction, and its W/m2 across that direction; see below [none]",         \
-     TO_SEVERAL(irradiate_option, request, light)},                                                                    \
+     TO_FUNCTION(irradiate_option, request, light)},                                                                   \
         {0, "absorptivity", "A",                                                                                       \
          "absorptivity of all spheres for that light, 0 to 1, or TYPE:A,..., or a column of the file [emissivity]",    \
          TO_FUNCTION(absorptivity_option, request, light.absorptivity)},                                               \

@@ -47,7 +47,7 @@ struct outputs {
 };
 
 /* Rows of a table of options, without braces. help: of -o. */
-#define OPTION_OUTPUT(help, request, field) 'o', "output", "OUT", help, TO_SEVERAL(outputs_add, request, field)
+#define OPTION_OUTPUT(help, request, field) 'o', "output", "OUT", help, TO_FUNCTION(outputs_add, request, field)
 #define OPTION_FORMAT(request, field)                                                                                  \
     0, "format", "NAME", "format of each -o without an ending that names one, such as -o - [by the ending]",           \
         TO_FUNCTION(outputs_format, request, field)
