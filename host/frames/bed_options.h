@@ -41,7 +41,7 @@
 #define OPTIONS_RUN                                                                                                    \
     {OPTION_THREADS(struct bed_options, threads)},                                                                     \
         {0, "json", "OUT", "write the summary as JSON, with all digits [none]",                                        \
-         TO_TEXT(struct bed_options, outputs.summary)},                                                                \
+         TO_PATH(struct bed_options, outputs.summary)},                                                                \
         {0, "quiet", NULL, "print no summary and no progress", TO_FLAG(struct bed_options, quiet)},                    \
         {0, "progress", NULL, "show progress even if standard error is not a terminal [off]",                          \
          TO_FLAG(struct bed_options, progress.forced)},                                                                \
@@ -61,7 +61,7 @@
  * --scratch for commands that make matrices. */
 #define OPTION_BED_OUTPUT(help) OPTION_OUTPUT(help, struct bed_options, outputs)
 #define OPTION_BED_FORMAT       OPTION_FORMAT(struct bed_options, outputs)
-#define OPTION_PLOT(help)       0, "plot", "OUT", help, TO_TEXT(struct bed_options, outputs.picture)
+#define OPTION_PLOT(help)       0, "plot", "OUT", help, TO_PATH(struct bed_options, outputs.picture)
 #define OPTION_SLICE                                                                                                   \
     0, "slice", "AXIS=VALUE",                                                                                          \
         "plane of the slice in the picture, x=VALUE, y=VALUE or z=VALUE, or an axis alone for the middle of the "      \
