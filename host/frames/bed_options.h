@@ -127,6 +127,9 @@ option_take bed_files_option, bed_radius_option, bed_unit_option, bed_period_opt
  * none. Quantities without a unit may share a column, such as that of types. */
 void bed_options_quantity(struct bed_options *options, struct quantity *quantity, const char *unit);
 
+/* The file's name for the column of a quantity. NULL: it has none. */
+const char *bed_options_column(const struct bed_options *options, const struct quantity *quantity);
+
 /* Checks files and outputs when all options have been read. The command writes `content`. Status 0 or STATUS_USAGE. */
 int bed_options_check(struct bed_options *options, const char *command, enum content content);
 
