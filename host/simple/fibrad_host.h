@@ -64,9 +64,10 @@ typedef struct fibrad_run {
  *   - all rows are wanted, and raw is 0;
  *   - the rule is a beam rule or NULL, with points and cutoff 0;
  *   - the scene has neither triangles nor a known region.
- * The number of lines is then beam->directions, where 0 stands for FIBRAD_LINES_DEFAULT, or for more with fewer than 221
- * spheres. Each line is followed both ways. In all other cases rows are computed one by one. This is also done with more than FIBRAD_LINES_EVEN_MAX
- * directions, or if about 230 discs or more are seen near one point of a circle (docs/methods.md section 12).
+ * The number of lines is then beam->directions, where 0 stands for FIBRAD_LINES_DEFAULT, or for more with fewer than
+ * 221 spheres. Each line is followed both ways. In all other cases rows are computed one by one. This is also done with
+ * more than FIBRAD_LINES_EVEN_MAX directions, or if about 230 discs or more are seen near one point of a circle
+ * (docs/methods.md section 12).
  *
  * A tolerance in the beam rule raises the number of lines or directions. If raw is 0, it is the same number for all
  * rows, so that the worst row meets the tolerance. If raw is 1, each row has the number of directions that it needs.

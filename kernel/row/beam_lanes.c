@@ -159,8 +159,12 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     const bool mixed = windows.turned || windows.lines != NULL; /* directions do not pair off */
     const double each = rule->points > 0 ? rule->points : FIBRAD_PI;
     const double square = 32.0 * windows.words * windows.chords; /* points of masks in the square about a window */
-    const fibrad_window_set set = {LANED(frame_of_beam), &windows, windows.count, windows.count,
-                                   masked ? FIBRAD_PI / 4 * square : each, mixed,
+    const fibrad_window_set set = {LANED(frame_of_beam),
+                                   &windows,
+                                   windows.count,
+                                   windows.count,
+                                   masked ? FIBRAD_PI / 4 * square : each,
+                                   mixed,
                                    windows.lines == NULL && !masked};
     if (scene->container.walls) {
         work->walls->view = fibrad_wall_view_of(scene, work->place, work->cut, work->reach);
