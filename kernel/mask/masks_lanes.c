@@ -130,7 +130,7 @@ uint32_t LANED(fibrad_masks_discs)(fibrad_masks *m, const fibrad_discs *disc, ui
 
 /* The word and the bit of the point of masks that is next to (x, y). Near the border it may lie outside the disc. Then
  * one farther in is taken. */
-static void find_point(const fibrad_masks *m, float x, float y, uint32_t *word, uint32_t *bit) {
+static void point_of_mask(const fibrad_masks *m, float x, float y, uint32_t *word, uint32_t *bit) {
     const float per = 0.5f * (float)m->chords, last = (float)(m->chords - 1), end = (float)(32 * m->words - 1);
     for (float inward = 1;; inward *= 0.95f) {
         const float row = (inward * y - m->y_first) * per + 0.5f, column = m->x_zero + m->x_scale * (inward * x);
@@ -146,7 +146,7 @@ uint32_t LANED(fibrad_masks_at)(const fibrad_masks *m, uint32_t count, const flo
     uint32_t open = 0;
     for (uint32_t p = 0; p < count; p++) {
         uint32_t word, at;
-        find_point(m, x[p], y[p], &word, &at);
+        point_of_mask(m, x[p], y[p], &word, &at);
         const uint64_t bit = m->word[word] >> at & 1;
         if (p % 64 == 0) bits[p / 64] = 0;
         bits[p / 64] |= bit << p % 64;
