@@ -1,4 +1,5 @@
 /* test_cli.c - the program on beds. SPDX-License-Identifier: MIT */
+#include "fibrad.h"
 #include "program.h"
 
 FIXTURE(make_folder, remove_folder)
