@@ -5,8 +5,8 @@
  *
  * The bench writes CSV to standard output. The bed is that of bench_window: periodic, of equal spheres (20,000), solid
  * fraction 0.58. 200 rows of spheres spread over all of the bed are computed with 100 directions each. The instructions
- * of a window contain its share of setting up and writing out the row. `points` of a line is the number of points, 0 for
- * exact areas, or the number of chords of masks.
+ * of a window contain its share of setting up and writing out the row. `points` of a line is the number of points, 0
+ * for exact areas, or the number of chords of masks.
  *
  * The library is built by bench/count_cc.sh and counts its own instructions (`make bench-counted`). The figures depend
  * on sources, compiler and flags alone. So they show the smallest difference between two versions. Two things are not

@@ -47,7 +47,7 @@ tests_of() {
     */walls.* | */wall_*) echo "walls part estimate $tests" ;;
     kernel/surface/*) echo "surface $tests" ;;
     */work.*) echo "work beam cast $tests" ;;
-    kernel/row/mesh*) echo "mesh beam $tests" ;;
+    kernel/share/mesh*) echo "mesh beam $tests" ;;
     kernel/row/*) echo "beam cast protocol $tests" ;;
     */cast*) echo "cast $tests" ;;
     kernel/ray/*) echo "trace $tests" ;;

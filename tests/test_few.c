@@ -51,7 +51,7 @@ static const double GAPS[] = {-.1, 0, 1e-9, .01, 1, 8, 18, 200, 1e4};
 static const double RADII[] = {1, .1, .01, 100};
 enum { GAP_COUNT = sizeof GAPS / sizeof *GAPS, RADIUS_COUNT = sizeof RADII / sizeof *RADII };
 
-LOOP_TEST(two_spheres_are_exact, GAP_COUNT * RADIUS_COUNT) {
+LOOP_TEST(two_spheres_are_exact, GAP_COUNT *RADIUS_COUNT) {
     const double r = RADII[_i / GAP_COUNT], gap = GAPS[_i % GAP_COUNT] * fmin(1, r), d = 1 + r + gap;
     OWNED_BED bed = BED({1, 2, 3, 1}, {1 + .6 * d, 2 - .48 * d, 3 + .64 * d, r});
     OWNED_FACTORS *few = factors_of(&bed, NULL, &(fibrad_beam_rule){.directions = 8});

@@ -119,6 +119,8 @@ module fibrad
         integer(c_int32_t) :: directions = 0, points = 0
         real(c_double) :: cutoff = 0, tolerance = 0
         integer(c_int64_t) :: turn = 0
+        type(c_ptr) :: lines = c_null_ptr
+        integer(c_int32_t) :: chords = 0
     end type c_beam_rule
 
     type, bind(C) :: c_bed_options

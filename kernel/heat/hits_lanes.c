@@ -8,7 +8,7 @@
 #include "sample/sphere_patch.h"
 #include "heat/wall_patch.h"
 #include "ray/tracer.h"
-#include "row/mesh_share_lanes.h"
+#include "share/mesh_share_lanes.h"
 #include "sample/direction.h"
 #include "scene/walls.h"
 #include "row/window_lanes.h"

@@ -4,9 +4,9 @@
  * For a single window it does not pay to list near spheres. So they are found by a walk through the grid. */
 #include FIBRAD_LANES_HEADER
 #include "light/sunlit_lanes.h"
-#include "row/mesh_share_lanes.h"
+#include "share/mesh_share_lanes.h"
 #include "row/window_lanes.h"
-#include "window/points_lanes.h"
+#include "points/points_lanes.h"
 #include "work/mesh_faces_lanes.h"
 
 static int find_open_points(const fibrad_workspace *space, fibrad_points *points) {

@@ -4,7 +4,7 @@
 
 #include "base/dispatch.h"
 #include "light/clear.h"
-#include "window/points.h"
+#include "points/points.h"
 #include "work/work.h"
 
 #define FIBRAD_SUNLIT_POINTS 256u

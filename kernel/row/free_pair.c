@@ -59,8 +59,7 @@ static bool hull_meets(const pair_hull *hull, const double at[3], double r) {
     const double across = fibrad_sqrt(across_square), foot = along * hull->cosine + across * hull->slope;
     double distance = across * hull->cosine - along * hull->slope - hull->r[0];
     if (foot <= 0) distance = fibrad_sqrt(square) - hull->r[0];
-    if (foot >= hull->length * hull->cosine)
-        distance = fibrad_sqrt(across_square + beyond * beyond) - hull->r[1];
+    if (foot >= hull->length * hull->cosine) distance = fibrad_sqrt(across_square + beyond * beyond) - hull->r[1];
     return distance < r * (1 - TOUCH);
 }
 

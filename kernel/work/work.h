@@ -12,8 +12,8 @@
 #include "scene/surroundings.h"
 #include "window/areas.h"
 #include "window/discs.h"
-#include "window/masks.h"
-#include "window/points.h"
+#include "points/masks.h"
+#include "points/points.h"
 
 #define FIBRAD_SHELLS 8
 /* Near spheres are listed in shells by their minimum depth e = sqrt(d^2 - (1 + r)^2), d being the distance of the

@@ -47,7 +47,8 @@ SceneFacts = _structure("scene_facts", ("spheres bodies", c_uint32), ("isa", c_i
                         ("radius_min radius_max overlap_max", c_double), ("overlap_pair", c_uint32 * 2),
                         ("triangles", c_uint32))
 Run = _structure("run", ("threads", c_int), ("progress", PROGRESS), ("context", c_void_p), ("fault", Fault))
-BeamRule = _structure("beam_rule", ("directions points", c_uint32), ("cutoff tolerance", c_double), ("turn", c_uint64))
+BeamRule = _structure("beam_rule", ("directions points", c_uint32), ("cutoff tolerance", c_double), ("turn", c_uint64),
+                      ("lines", c_void_p), ("chords", c_uint32))
 SurfaceRule = _structure("surface_rule", ("nodes flags", c_uint32), ("cutoff", c_double), ("isa", c_int))
 CastRule = _structure("cast_rule", ("rays", c_uint32), ("random", c_int), ("seed", c_uint64), ("cutoff", c_double))
 BedOptions = _structure("bed_options", ("beam", POINTER(BeamRule)), ("surface", POINTER(SurfaceRule)),

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
-#include "window/points_lanes.h"
+#include "points/points_lanes.h"
 
 /* Which of the 64 points from (x, y) on lie within a disc. square: the square of its radius. The sum keeps the bits
  * in an ordinary register, where `or` would move them to mask registers and back. */

@@ -4,7 +4,7 @@
 
 #include "base/lanes/laned.h"
 #include "window/discs.h"
-#include "window/masks.h"
+#include "points/masks.h"
 
 /* Opens window k: `chords` chords of `words` words. Chords and points lie a little differently in each window. */
 void LANED(fibrad_masks_open)(fibrad_masks *masks, uint32_t chords, uint32_t words, uint32_t k);

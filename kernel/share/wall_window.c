@@ -1,5 +1,5 @@
 /* wall_window.c - the disc of directions that a window stands for, which walls need. SPDX-License-Identifier: MIT */
-#include "row/wall_window.h"
+#include "share/wall_window.h"
 
 /* Half width of the band of directions for walls across one axis, times sqrt n. */
 #define WALL_BAND 4.0

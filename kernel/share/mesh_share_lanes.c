@@ -8,10 +8,10 @@
 #include FIBRAD_LANES_HEADER
 #include "work/mesh_faces_lanes.h"
 #include "work/mesh_lines_lanes.h"
-#include "row/mesh_share_lanes.h"
-#include "row/wall_window.h"
+#include "share/mesh_share_lanes.h"
+#include "share/wall_window.h"
 #include "scene/walls.h"
-#include "window/points_lanes.h"
+#include "points/points_lanes.h"
 
 /* The line of a point [L]. */
 static void line_of_point(const fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t p,

@@ -9,10 +9,10 @@
  * difference between the mean direction of its lines and that of all lines. docs/methods.md section 9. */
 #include FIBRAD_LANES_HEADER
 #include "base/constants.h"
-#include "row/wall_share_lanes.h"
-#include "row/wall_window.h"
+#include "share/wall_share_lanes.h"
+#include "share/wall_window.h"
 #include "sample/direction.h"
-#include "window/points_lanes.h"
+#include "points/points_lanes.h"
 
 #define WALL_POINTS   128u
 #define HIDDEN_POINTS 64u /* of windows without an open part */

@@ -4,7 +4,7 @@
 
 #include "base/lanes/laned.h"
 #include "window/discs.h"
-#include "window/points.h"
+#include "points/points.h"
 
 /* Which points of a word of 64 lie in a disc. */
 uint64_t LANED(fibrad_points_within)(const fibrad_points *points, uint32_t word, double x, double y, double r);

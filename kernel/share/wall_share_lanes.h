@@ -4,7 +4,7 @@
 
 #include "base/lanes/laned.h"
 #include "work/work.h"
-#include "window/points.h"
+#include "points/points.h"
 
 /* The windows of a row. */
 typedef struct fibrad_window_set {
@@ -14,7 +14,7 @@ typedef struct fibrad_window_set {
     uint32_t directions;                                                           /* how many windows there are */
     double whole; /* the size of a window, or about that of masks */
     bool turned;  /* directions do not pair off across z */
-    bool ends;   /* the first and the last window count half in differences of even and odd windows */
+    bool ends;    /* the first and the last window count half in differences of even and odd windows */
 } fibrad_window_set;
 
 /* Adds the open part of window k of a row, which meets no sphere, to work->walls->sums by what it meets. Lines that
