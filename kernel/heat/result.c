@@ -514,16 +514,32 @@ static void read_beyond(const fibrad_heat *heat, uint32_t k, fibrad_heat_result 
     *power_of_slot(heat, fibrad_heat_facing(heat, k), result) += heat->solution.power[beyond] - taken - pair.net / 2;
 }
 
+/* Hands out what contacts conduct. The powers of bodies are added later, those of spheres here. */
+static void read_contacts(const fibrad_heat *heat, fibrad_heat_result *result) {
+    const fibrad_contacts *c = &heat->contacts;
+    for (uint32_t b = 0; b < heat->spheres; b++) {
+        if (c->count > 0) result->power[heat->order[b]] += c->gain[b];
+        if (result->conducted != NULL) result->conducted[heat->order[b]] = fibrad_heat_conducted(heat, b);
+    }
+    for (uint32_t k = 0; k < heat->given_bodies && result->body_conducted != NULL; k++)
+        result->body_conducted[k] = fibrad_heat_conducted(heat, fibrad_heat_body(heat, heat->slot[k]));
+    for (uint32_t k = 0; k < c->count && result->contact_flow != NULL; k++)
+        result->contact_flow[k] =
+            c->conductance[k] * (c->temperature[c->node[c->first[k]]] - c->temperature[c->node[c->second[k]]]);
+}
+
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     if (heat == NULL || result == NULL || (heat->spheres > 0 && result->power == NULL)) return FIBRAD_E_ARGUMENT;
     if (heat->given_bodies > 0 && result->body_power == NULL) return FIBRAD_E_ARGUMENT;
     if (heat->solution.phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     const uint32_t spheres = heat->spheres, open = heat->bodies - 1;
     for (uint32_t b = 0; b < spheres; b++) result->power[heat->order[b]] = heat->solution.power[b];
+    read_contacts(heat, result);
     result->surroundings_power = heat->solution.power[open];
     for (uint32_t b = 0; b < heat->given_bodies; b++) {
         const uint32_t own = fibrad_heat_body(heat, heat->slot[b]);
         result->body_power[b] = heat->solution.power[own];
+        if (heat->contacts.count > 0) result->body_power[b] += heat->contacts.gain[own];
         if (result->body_absorbed != NULL) result->body_absorbed[b] = absorbed_by(heat, own);
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {

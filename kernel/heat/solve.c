@@ -29,7 +29,17 @@
  * eps or rho. One is their mean r = eps (S - h <J>)/D + q/A. It changes J by r/(1 + eps h/D). The other part is what
  * differs from the mean. It is treated as on other bodies. A black body has J = E everywhere.
  *
- * On a sphere that conducts the mean of J is treated as above. conduct.c treats the rest. */
+ * On a sphere that conducts the mean of J is treated as above. conduct.c treats the rest.
+ *
+ * Contacts. A body of unknown temperature in contact with others is *joined*: its E is an unknown beside its J, since E
+ * follows from the neighbours as well. With the exchange areas g of contacts (contact/contact.h) and their Laplacian G,
+ *
+ *     (A/rho - K) J - A eps/rho E = 0,    (A eps/rho + h + G) E - A eps/rho <J> = S.
+ *
+ * Let b = S - h E - G E + eps (A <J> + N J - A E) be what is missing in the balance of a body with the radiation that now
+ * arrives. The preconditioner changes E by x, with (A eps + h + G) x = b, and then J as on a body of the given emission
+ * E + x. No part divides by eps or rho. g depends on temperatures. It is renewed when the residual has become small
+ * beside the error of the last g. */
 #include "heat/problem.h"
 #include "heat/pencils.h"
 #include "heat/sweep.h"
@@ -41,6 +51,11 @@ typedef struct free_body {
 
 /* Whether the temperature of a body is unknown. */
 static bool is_free(const fibrad_heat *heat, uint32_t body) { return heat->sources.hold[body] >= 0; }
+
+/* Whether the unknown emission of a body follows from its own radiosities. */
+static bool follows_radiosity(const fibrad_heat *heat, uint32_t b) {
+    return is_free(heat, b) && !fibrad_heat_is_joined(heat, b);
+}
 
 /* The sum of values over the patches of a body. */
 static double sum_over(const fibrad_heat *heat, uint32_t body, const double *value) {
@@ -125,7 +140,7 @@ static double free_residual(fibrad_heat *heat, uint32_t b) {
  * for this mean rounding errors of J would count 1/rho times. */
 #define NEXT_TO_NOTHING 1e-9
 static bool has_black_mean(const fibrad_heat *heat, uint32_t b) {
-    return !is_free(heat, b) && 1 - heat->sources.emissivity[b] < NEXT_TO_NOTHING;
+    return !follows_radiosity(heat, b) && 1 - heat->sources.emissivity[b] < NEXT_TO_NOTHING;
 }
 
 /* What given_residual does, for a sphere that conducts. */
@@ -134,7 +149,7 @@ static double conducting_residual(fibrad_heat *heat, uint32_t b) {
     const free_body body = free_body_of(heat, b);
     double shift = 0, slope = 0;
     if (!(body.area > 0)) return 0;
-    if (is_free(heat, b)) {
+    if (follows_radiosity(heat, b)) {
         const double mean = drive_at(heat, b, &body, body.radiosity) + body.net;
         shift = mean / stiffness(heat, b, &body);
         slope = body.area * mean * shift;
@@ -145,12 +160,48 @@ static double conducting_residual(fibrad_heat *heat, uint32_t b) {
     return slope + fibrad_heat_pattern_residual(heat, b, shift);
 }
 
+/* The same for a joined body, whose change of emission has been found. */
+static double joined_residual(fibrad_heat *heat, uint32_t b) {
+    const double warming = heat->contacts.warming[b], more = heat->sources.emissivity[b] * warming;
+    const double slope = fibrad_heat_conducts(heat, b) ? conducting_residual(heat, b) : given_residual(heat, b);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+        fibrad_heat_send(heat, a, fibrad_heat_sent(heat, a) + more);
+    return slope + heat->contacts.supply[b] * warming;
+}
+
+/* The power that a body would absorb of what arrives. */
+static double absorbable(const fibrad_heat *heat, uint32_t b) {
+    const free_body body = free_body_of(heat, b);
+    return heat->sources.emissivity[b] * body.area * (body.radiosity + body.net);
+}
+
+/* What a joined body gives off per unit of its emission. */
+static double stiffness_of_joined(const fibrad_heat *heat, uint32_t b) {
+    return heat->sources.hold[b] + heat->sources.emissivity[b] * sum_over(heat, b, heat->solution.area);
+}
+
+/* Finds the changes of the emissions of joined bodies. contacts.supply keeps what is missing in their balances. */
+static void warm_joined(fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts;
+    if (c->count == 0) return;
+    fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
+    fibrad_contact_linear_gains(c, heat->sources.emission, c->supply);
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        if (fibrad_heat_is_joined(heat, b))
+            c->supply[b] +=
+                heat->sources.drive[b] + absorbable(heat, b) - stiffness_of_joined(heat, b) * heat->sources.emission[b];
+    fibrad_copy(c->load, c->supply, heat->bodies * sizeof *c->load);
+    fibrad_contact_warm(c);
+}
+
 /* Sends the changes of all patches. Returns the product of residuals and changes. */
 static double find_residual(fibrad_heat *heat) {
     double slope = 0;
+    warm_joined(heat);
     for (uint32_t b = 0; b < heat->bodies; b++)
-        slope += fibrad_heat_conducts(heat, b) ? conducting_residual(heat, b)
-                 : is_free(heat, b)            ? free_residual(heat, b)
+        slope += fibrad_heat_is_joined(heat, b)  ? joined_residual(heat, b)
+                 : fibrad_heat_conducts(heat, b) ? conducting_residual(heat, b)
+                 : is_free(heat, b)              ? free_residual(heat, b)
                                                : given_residual(heat, b);
     return slope;
 }
@@ -158,7 +209,7 @@ static double find_residual(fibrad_heat *heat) {
 /* Finds the emissions of the bodies of unknown temperature. */
 static void find_emissions(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        if (!is_free(heat, b)) continue;
+        if (!follows_radiosity(heat, b)) continue;
         const free_body body = free_body_of(heat, b);
         const double eps = heat->sources.emissivity[b];
         if (body.area > 0)
@@ -180,6 +231,13 @@ static void find_powers(const fibrad_heat *heat, double *power) {
     double left = 0, weights = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         power[b] = sum_over(heat, b, heat->solution.net);
+        if (fibrad_heat_is_joined(heat, b)) {
+            const double gained = absorbable(heat, b) - heat->sources.emissivity[b] *
+                                                            sum_over(heat, b, heat->solution.area) *
+                                                            heat->sources.emission[b];
+            left += power[b] - gained, power[b] = gained;
+            continue;
+        }
         if (heat->sources.emissivity[b] == 0) left += power[b], power[b] = 0;
         if (heat->sources.hold[b] == 0) left += power[b] + heat->sources.drive[b], power[b] = -heat->sources.drive[b];
     }
@@ -195,6 +253,14 @@ static void find_powers(const fibrad_heat *heat, double *power) {
  * the last change of unevenness. A relative change of unevenness below SETTLED no longer matters. */
 #define WITHIN  .03
 #define SETTLED 1e-3
+
+/* Contacts are made linear about temperatures that are right to BENT. The search then goes on until the residual, as a
+ * square, has fallen by a factor between BENT_MOST and BENT_LEAST. */
+#define BENT       1e-3
+#define BENT_MOST  1e-2
+#define BENT_NEXT  1e-1 /* times the factor by which the last one has brought it down */
+#define BENT_LEAST 1e-6
+#define FOUND      1e-15 /* the tolerance of temperatures at the end, relative */
 
 /* The sum over the patches of a mesh of emissivity times area times the square of the difference between the emissions
  * of patch and mesh. */
@@ -223,6 +289,25 @@ static double light_squares(const fibrad_heat *heat, uint32_t b) {
     return sum;
 }
 
+/* What drives joined bodies if all that radiates and all of them have one emission: powers, and given temperatures. */
+static double drive_through_contacts(fibrad_heat *heat, double emission) {
+    fibrad_contacts *c = &heat->contacts;
+    double sum = 0, *even = heat->contacts.product;
+    if (c->count == 0) return 0;
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        even[b] = fibrad_heat_is_joined(heat, b) ? emission : heat->sources.emission[b];
+    fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
+    fibrad_contact_linear_gains(c, even, c->supply);
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        if (fibrad_heat_is_joined(heat, b))
+            c->supply[b] += heat->sources.drive[b] - heat->sources.hold[b] * emission;
+    fibrad_copy(c->load, c->supply, heat->bodies * sizeof *c->load);
+    fibrad_contact_warm(c);
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        if (fibrad_heat_is_joined(heat, b)) sum += c->supply[b] * c->warming[b];
+    return sum;
+}
+
 /* Finds the scale with which residuals are compared. It has three parts: how much emissions differ from their mean,
  * powers that are given off, and light from outside. The limit of rounding follows from the emissions themselves. */
 static void find_scale(fibrad_heat *heat) {
@@ -236,14 +321,15 @@ static void find_scale(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++) {
         const double difference = heat->sources.emission[b] - mean;
         heat->solution.scale += light_squares(heat, b);
-        const free_body body = is_free(heat, b) ? free_body_of(heat, b) : (free_body){0};
+        const free_body body = follows_radiosity(heat, b) ? free_body_of(heat, b) : (free_body){0};
         if (body.area > 0) {
             const double drive = drive_at(heat, b, &body, mean);
             heat->solution.scale += body.area * drive * drive / stiffness(heat, b, &body);
-        } else {
+        } else if (!fibrad_heat_is_joined(heat, b)) {
             heat->solution.scale += emitting(heat, b) * difference * difference + lifted_squares(heat, b);
         }
     }
+    heat->solution.scale += drive_through_contacts(heat, mean);
     heat->solution.smallest = ROUNDING * fibrad_max(largest, heat->solution.scale);
 }
 
@@ -254,19 +340,22 @@ static void heat_by_light(fibrad_heat *heat) {
 }
 
 /* Whether there are temperatures that lead to the given powers. This is so if a temperature or a `hold` is given.
- * Otherwise the powers and the light must add up to zero. */
+ * Otherwise the powers and the light must add up to zero. Contacts need the level of temperatures: then one must be
+ * given, unless nothing of unknown temperature radiates. */
 #define BALANCED 1e-9
 static bool solvable(fibrad_heat *heat) {
     double sum = 0, sizes = 0;
-    bool held = false;
+    bool held = heat->contacts.count > 0 && heat->contacts.anchored, radiates = false;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         held = held || emitting(heat, b) > 0;
+        radiates = radiates || (is_free(heat, b) && heat->sources.emissivity[b] > 0);
         if (heat->sources.hold[b] == 0) sum += heat->sources.drive[b], sizes += fibrad_abs(heat->sources.drive[b]);
         double light = 0;
         for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) light += light_on(heat, b, a);
         sum += light, sizes += light;
     }
     heat->sources.afloat = !held;
+    if (heat->contacts.count > 0) return held || !radiates;
     return held || fibrad_abs(sum) <= BALANCED * sizes;
 }
 
@@ -319,6 +408,45 @@ static void sink(fibrad_heat *heat) {
     for (uint32_t a = 0; a < heat->patches; a++) heat->solution.radiosity[a] -= mean;
 }
 
+/* An emission, extrapolated to patches without size. */
+static double extrapolated_emission(const fibrad_heat *heat, uint32_t b) {
+    return heat->sources.emission[b] +
+           FIBRAD_HEAT_EXTRAPOLATION * (heat->sources.emission[b] - heat->solution.coarse_emission[b]);
+}
+
+/* Sets up the balances of joined bodies with the radiation that arrives, extrapolated. */
+static void set_balances(fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const double emission = extrapolated_emission(heat, b), hold = heat->sources.hold[b];
+        c->temperature[b] = fibrad_contact_temperature(c, is_free(heat, b) ? emission : heat->sources.emission[b]);
+        if (!fibrad_heat_is_joined(heat, b)) continue;
+        c->stiff[b] = stiffness_of_joined(heat, b);
+        c->supply[b] = heat->sources.drive[b] + heat->solution.power[b] + (c->stiff[b] - hold) * emission;
+    }
+}
+
+/* Finds the temperatures that balance powers, radiation and contacts to rounding, and what contacts conduct. What joined
+ * bodies then gain less by radiation goes to the others that emit, by emissivity times area. */
+static void finish_contacts(fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts;
+    double left = 0, weights = 0;
+    set_balances(heat);
+    fibrad_contact_find(c, FOUND);
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        if (!fibrad_heat_is_joined(heat, b)) weights += emitting(heat, b);
+        if (!fibrad_heat_is_joined(heat, b)) continue;
+        const double t = c->temperature[b], emits = c->stiff[b] - heat->sources.hold[b];
+        const double power = c->supply[b] - heat->sources.drive[b] - emits * fibrad_contact_emission(c, t);
+        left += heat->solution.power[b] - power, heat->solution.power[b] = power;
+        heat->sources.temperature[b] = t >= 0 ? t : __builtin_nan("");
+    }
+    for (uint32_t b = 0; b < heat->bodies && weights > 0; b++)
+        if (!fibrad_heat_is_joined(heat, b)) heat->solution.power[b] += left * (emitting(heat, b) / weights);
+    fibrad_zero(c->gain, heat->bodies * sizeof *c->gain);
+    fibrad_contact_gains(c, c->temperature, c->gain);
+}
+
 /* Finds the powers of the finer level and extrapolates them to patches without size. If radiosities were smooth, the
  * error would fall with the area of patches, and a third of the difference between both levels would be right. Near
  * contacts they are not quite smooth. FIBRAD_HEAT_EXTRAPOLATION is right for settled beds: docs/methods_heat.md section
@@ -334,10 +462,9 @@ static void finish_powers(fibrad_heat *heat) {
             heat->solution.coarse_emission[b] = heat->sources.emission[b];
         heat->solution.power[b] += FIBRAD_HEAT_EXTRAPOLATION * (heat->solution.power[b] - heat->solution.coarse[b]);
         if (is_free(heat, b))
-            heat->sources.temperature[b] = fibrad_heat_temperature(
-                heat, heat->sources.emission[b] +
-                          FIBRAD_HEAT_EXTRAPOLATION * (heat->sources.emission[b] - heat->solution.coarse_emission[b]));
+            heat->sources.temperature[b] = fibrad_heat_temperature(heat, extrapolated_emission(heat, b));
     }
+    if (heat->contacts.count > 0) finish_contacts(heat);
     if (heat->solution.group == 1)
         for (uint32_t a = 0; a < heat->patches; a++) heat->solution.detail[a] += heat->solution.radiosity[a];
     send_means(heat);
@@ -346,7 +473,9 @@ static void finish_powers(fibrad_heat *heat) {
 /* Whether the radiosities of the present level are good enough. */
 static bool level_solved(const fibrad_heat *heat) {
     const double tolerance = fibrad_max(heat->sources.rough, heat->sources.tolerance);
-    return heat->solution.slope <= fibrad_max(tolerance * tolerance * heat->solution.scale, heat->solution.smallest) ||
+    const double wanted = heat->contacts.count > 0 ? heat->solution.wanted : 0;
+    return heat->solution.slope <= fibrad_max(fibrad_max(tolerance * tolerance * heat->solution.scale, wanted),
+                                              heat->solution.smallest) ||
            heat->solution.sweeps >= heat->sources.limit;
 }
 
@@ -359,12 +488,41 @@ static bool replaces_unevenness(fibrad_heat *heat) {
     return change > SETTLED;
 }
 
+/* Makes contacts linear anew, about the temperatures that follow from the radiation that now arrives. */
+static void renew_contacts(fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        c->temperature[b] = fibrad_contact_temperature(c, heat->sources.emission[b]);
+        if (!fibrad_heat_is_joined(heat, b)) continue;
+        c->stiff[b] = stiffness_of_joined(heat, b);
+        c->supply[b] = heat->sources.drive[b] + absorbable(heat, b);
+    }
+    fibrad_contact_find(c, BENT);
+}
+
+/* Whether contacts, made linear anew, leave a residual that is too large. The search then goes on until the residual is
+ * small beside the error that the next linear contacts will have. */
+static bool bends_contacts(fibrad_heat *heat) {
+    if (heat->contacts.count == 0 || heat->solution.sweeps >= heat->sources.limit) return false;
+    const double tolerance = heat->sources.tolerance, last = heat->solution.bend;
+    renew_contacts(heat);
+    const double slope = find_residual(heat);
+    const double enough = fibrad_max(tolerance * tolerance * heat->solution.scale, heat->solution.smallest);
+    heat->solution.bend = slope;
+    const double further = last < __builtin_inf() ? BENT_NEXT * slope / last : BENT_MOST;
+    heat->solution.wanted = slope * fibrad_max(BENT_LEAST, fibrad_min(BENT_MOST, further));
+    return slope > enough;
+}
+
 /* Sets and sends the next search direction: the change that was sent, plus `keep` times the last direction. */
 static void turn_direction(fibrad_heat *heat, double keep) {
     for (uint32_t a = 0; a < heat->patches; a++) {
         heat->solution.direction[a] = fibrad_heat_sent(heat, a) + (keep != 0 ? keep * heat->solution.direction[a] : 0);
         fibrad_heat_send(heat, a, heat->solution.direction[a]);
     }
+    for (uint32_t b = 0; b < heat->bodies && heat->contacts.count > 0; b++)
+        heat->contacts.direction[b] =
+            heat->contacts.warming[b] + (keep != 0 ? keep * heat->contacts.direction[b] : 0);
 }
 
 /* Goes from the coarser level to the finer one. The detail of an earlier solution is added to the radiosities. Until
@@ -402,8 +560,8 @@ static void search_on(fibrad_heat *heat, bool restart) {
     while (level_solved(heat)) {
         const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
         const bool rough = heat->sources.rough > heat->sources.tolerance && heat->solution.sweeps < heat->sources.limit;
-        const bool replaced = coarse && replaces_unevenness(heat);
-        if (!replaced && !(coarse && rough)) {
+        const bool replaced = coarse && replaces_unevenness(heat), bent = bends_contacts(heat);
+        if (!replaced && !(coarse && rough) && !bent) {
             leave_level(heat);
             return;
         }
@@ -411,7 +569,7 @@ static void search_on(fibrad_heat *heat, bool restart) {
             send_radiosities(heat, FIBRAD_HEAT_FIRST);
             return;
         }
-        restart = restart || replaced;
+        restart = restart || replaced || bent;
         heat->solution.slope = find_residual(heat);
     }
     turn_direction(heat, restart ? 0 : heat->solution.slope / last);
@@ -458,19 +616,39 @@ static double conducting_curvature(const fibrad_heat *heat, uint32_t b, const do
     return sum;
 }
 
+/* The same for a joined body. The part of contacts is not in it. */
+static double joined_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
+    const double eps = heat->sources.emissivity[b], share = eps < 1 ? eps / (1 - eps) : 0;
+    const double warmed = heat->contacts.direction[b];
+    const bool uneven = fibrad_heat_conducts(heat, b);
+    double sum = heat->sources.hold[b] * warmed * warmed;
+    const double mean = uneven ? fibrad_heat_mean(heat, b, heat->solution.direction) : 0;
+    if (uneven) sum += fibrad_heat_pattern_curvature(heat, b);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
+        const double p = heat->solution.direction[a], rest = (uneven ? mean : p) - warmed;
+        if (!uneven || !has_black_mean(heat, b)) sum += share * heat->solution.area[a] * rest * rest;
+        sum -= p * product[a];
+    }
+    return sum;
+}
+
 /* Moves the radiosities along the search direction to where the error is least. product: N times the direction. */
 static void advance_radiosities(fibrad_heat *heat, const double *product) {
     double curvature = 0;
     for (uint32_t b = 0; b < heat->bodies; b++)
-        curvature += fibrad_heat_conducts(heat, b) ? conducting_curvature(heat, b, product)
-                     : is_free(heat, b)            ? free_curvature(heat, b, product)
-                                                   : given_curvature(heat, b, product);
+        curvature += fibrad_heat_is_joined(heat, b)  ? joined_curvature(heat, b, product)
+                     : fibrad_heat_conducts(heat, b) ? conducting_curvature(heat, b, product)
+                     : is_free(heat, b)              ? free_curvature(heat, b, product)
+                                                     : given_curvature(heat, b, product);
+    if (heat->contacts.count > 0) curvature += fibrad_contact_curvature(&heat->contacts, heat->contacts.direction);
     if (!(curvature > 0)) return;
     const double length = heat->solution.slope / curvature;
     for (uint32_t a = 0; a < heat->patches; a++) {
         heat->solution.radiosity[a] += length * heat->solution.direction[a];
         heat->solution.net[a] += length * product[a];
     }
+    for (uint32_t b = 0; b < heat->bodies && heat->contacts.count > 0; b++)
+        if (fibrad_heat_is_joined(heat, b)) heat->sources.emission[b] += length * heat->contacts.direction[b];
 }
 
 /* Does what the sweep was made for. Error: FIBRAD_E_UNSOLVABLE. */
@@ -494,8 +672,10 @@ static int end_sweep(fibrad_heat *heat) {
             for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
                 heat->solution.net[a] = sum[a] + light_on(heat, b, a);
         if (!solvable(heat)) return FIBRAD_E_UNSOLVABLE;
+        if (heat->contacts.count > 0) renew_contacts(heat);
         find_scale(heat);
         heat_by_light(heat);
+        heat->solution.bend = heat->solution.wanted = __builtin_inf();
         search_on(heat, true);
         return FIBRAD_OK;
     default:
