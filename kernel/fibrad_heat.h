@@ -122,8 +122,8 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * contact_second[k]: an index of a sphere, or `spheres` plus the index of a wall. It carries the heat conductance[k]
  * times the difference of their temperatures. Several contacts may have the same ends; a contact of a sphere with
  * itself, across a period, carries nothing. A sphere of emissivity 0 that is in contact has a temperature, and may give
- * off a power. `conductance` is in units of sigma K^3 L^2: if lengths are in millimetres and sigma is in W/(m2 K4), 1 W/K
- * is 1e6. The contacts of a sphere with a finite conductivity act on the mean of its surface.
+ * off a power. `conductance` is in units of sigma K^3 L^2: if lengths are in millimetres and sigma is in W/(m2 K4), 1
+ * W/K is 1e6. The contacts of a sphere with a finite conductivity act on the mean of its surface.
  *
  * The residual is the error of the equations for J, relative to what drives the radiation: differences of emission,
  * given powers and light. tolerance = 0 stands for 1e-3, or for 1e-5 if a temperature is unknown and its hold is 0.
@@ -168,11 +168,9 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources);
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_fault *fault);
 
 /* Begins a solution. It starts from the radiosities of the last solution, if there was one, and if both or neither have
- * `light`. After the call only the arrays `light`, `absorbed` and those of contacts are still needed. They must stay until the
- * solution is read.
- *   Errors   as fibrad_heat_check
- *            _STATE: a task is not traced, or the scene has changed
- *   Cost     O(patches) */
+ * `light`. After the call only the arrays `light`, `absorbed` and those of contacts are still needed. They must stay
+ * until the solution is read. Errors   as fibrad_heat_check _STATE: a task is not traced, or the scene has changed Cost
+ * O(patches) */
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources);
 
 /* Does one part of a sweep. Between two steps each part is swept once. Several threads may sweep different parts at the
@@ -196,12 +194,12 @@ int fibrad_heat_step(fibrad_heat *heat, int *solved);
 /* The solution. The arrays belong to the caller. Where a field may be NULL, NULL means that it is not wanted.
  *
  * A net power is above 0 where a surface gains heat, by radiation and through contacts. A given power has the other
- * sign: a sphere of power P (and hold 0) has the net power -P. Temperatures are written whether they were found or given. A temperature is NaN if
- * the emissivity is 0, or if only a temperature below zero would give the power. least_temperature, largest_temperature
- * and centre_temperature differ only on spheres with a finite conductivity. For any other sphere all three are its
- * temperature. body_temperature of an insulated wall is the fourth root of its mean T^4. The same holds for a mesh
- * whose sides have temperatures of their own. The root mean square error of the powers of all spheres follows from
- * error_patches and error_beams: it is the root of the sum of their squares. */
+ * sign: a sphere of power P (and hold 0) has the net power -P. Temperatures are written whether they were found or
+ * given. A temperature is NaN if the emissivity is 0, or if only a temperature below zero would give the power.
+ * least_temperature, largest_temperature and centre_temperature differ only on spheres with a finite conductivity. For
+ * any other sphere all three are its temperature. body_temperature of an insulated wall is the fourth root of its mean
+ * T^4. The same holds for a mesh whose sides have temperatures of their own. The root mean square error of the powers
+ * of all spheres follows from error_patches and error_beams: it is the root of the sum of their squares. */
 typedef struct fibrad_heat_result {
     double *power;                  /* sigma K^4 L^2, [spheres], out: net power */
     double *body_power;             /* sigma K^4 L^2, [bodies], out: net power; NULL without walls */

@@ -86,8 +86,8 @@ static void solve(struct joint *j) {
     fibrad_radiation_describe(radiation, NULL, &j->fault);
 }
 
-/* All powers add up to zero, and so do all flows through contacts. What a sphere of unknown temperature gains is what it
- * gives off from inside. */
+/* All powers add up to zero, and so do all flows through contacts. What a sphere of unknown temperature gains is what
+ * it gives off from inside. */
 static void assert_balanced(const struct joint *j) {
     double sum = j->result.surroundings_power, conducted = 0, largest = fabs(sum), flows = 0, emitted = 0;
     assert_ok(j->status);
@@ -105,7 +105,8 @@ static void assert_balanced(const struct joint *j) {
     ck_assert_double_le(fabs(sum), 1e-11 * largest + 1e-14 * emitted);
     ck_assert_double_le(fabs(conducted), 1e-12 * flows);
     for (uint32_t i = 0; i < j->bed.n; i++)
-        if (isnan(j->temperature[i])) ck_assert_double_le(fabs(j->q[i] + j->power[i]), 1e-9 * (largest + flows) + 1e-14 * emitted);
+        if (isnan(j->temperature[i]))
+            ck_assert_double_le(fabs(j->q[i] + j->power[i]), 1e-9 * (largest + flows) + 1e-14 * emitted);
 }
 
 /* A row of spheres of emissivity 0 between two plates conducts like a wire. */
@@ -295,15 +296,17 @@ LOOP_TEST(sixty_spheres_in_a_room, 4) {
     assert_ok(fibrad_exchange_factors(&j->scene, &spheres, &rule, NULL, NULL, &d));
     for (uint32_t i = 0; i < n; i++) t[i] = isnan(j->temperature[i]) ? 1000 : j->temperature[i];
     by_newton(j, d, t, q);
-    double squares = 0, errors = 0, worst = 0, beyond = 0;
+    double squares = 0, errors = 0, worst = 0, beyond = 0, estimated = 0, true_squares = 0;
     for (uint32_t i = 0; i < n; i++) {
         const double radiated = j->q[i] - j->conducted[i];
         squares += q[i] * q[i], errors += (radiated - q[i]) * (radiated - q[i]);
         if (isnan(j->temperature[i])) {
             worst_of(&worst, fabs(j->t[i] - t[i]));
+            estimated += j->t_error[i] * j->t_error[i], true_squares += pow(j->t[i] - t[i], 2);
             if (fabs(j->t[i] - t[i]) > 2 * j->t_error[i] + 1e-3 * t[i] / 4) beyond++;
         }
     }
+    printf("T rms %.3f estimate %.3f ", sqrt(true_squares / n), sqrt(estimated / n));
     printf("room %d: sweeps %u residual %.1e, power error %.2e, T worst %.3f K, beyond %g\n", _i, j->result.sweeps,
            j->result.residual, sqrt(errors / squares), worst, beyond);
     ck_assert_double_le(sqrt(errors / squares), 5e-3);

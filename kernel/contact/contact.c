@@ -5,7 +5,7 @@
 #include "base/elementary.h"
 #include "base/port.h"
 
-#define WARM_TOLERANCE 1e-7  /* of a linear system, relative */
+#define WARM_TOLERANCE 1e-7   /* of a linear system, relative */
 #define WARM_MAX       20000u /* steps of its search */
 #define NEWTON_MAX     60u
 #define HALVINGS_MAX   40u
@@ -71,8 +71,8 @@ void fibrad_contact_linear_gains(const fibrad_contacts *c, const double *emissio
         const contact_ends e = ends_of(c, k);
         const double from = c->temperature[e.i], other = c->temperature[e.j];
         if (!(c->conductance[k] > 0)) continue;
-        const double less = (emission[e.j] - fibrad_contact_emission(c, other)) -
-                            (emission[e.i] - fibrad_contact_emission(c, from));
+        const double less =
+            (emission[e.j] - fibrad_contact_emission(c, other)) - (emission[e.i] - fibrad_contact_emission(c, from));
         const double flow = c->conductance[k] * (other - from) + exchange_area(c, k, e) * less;
         to[e.i] += flow, to[e.j] -= flow;
     }

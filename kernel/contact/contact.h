@@ -19,7 +19,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define FIBRAD_CONTACT_ARRAYS 10u /* of doubles, [nodes] */
+#define FIBRAD_CONTACT_ARRAYS 11u /* of doubles, [nodes] */
 
 typedef enum fibrad_contact_kind {
     FIBRAD_CONTACT_NONE,  /* the node has no contacts */
@@ -28,26 +28,27 @@ typedef enum fibrad_contact_kind {
 } fibrad_contact_kind;
 
 typedef struct fibrad_contacts {
-    uint32_t nodes, count;         /* numbers of nodes and contacts */
-    const uint32_t *first, *second; /* [count], the caller's numbers of the two ends */
-    const double *conductance;     /* sigma K^3 L^2, [count], the caller's */
-    uint32_t *node;                /* node by the caller's number */
-    unsigned char *kind;           /* [nodes], a fibrad_contact_kind */
-    double sigma, zero;            /* zero: the temperature at which E is 0 */
-    double *temperature;           /* K, [nodes], about which flows are linear in E */
-    double *stiff, *supply;        /* [nodes] */
-    double *load, *warming;        /* [nodes], a system that is linear in E, and its solution */
-    double *direction;             /* [nodes], search direction of E */
-    double *gain;                  /* sigma K^4 L^2, [nodes], what a node gains through contacts at the end */
+    uint32_t nodes, count;               /* numbers of nodes and contacts */
+    const uint32_t *first, *second;      /* [count], the caller's numbers of the two ends */
+    const double *conductance;           /* sigma K^3 L^2, [count], the caller's */
+    uint32_t *node;                      /* node by the caller's number */
+    unsigned char *kind;                 /* [nodes], a fibrad_contact_kind */
+    double sigma, zero;                  /* zero: the temperature at which E is 0 */
+    double *temperature;                 /* K, [nodes], about which flows are linear in E */
+    double *stiff, *supply;              /* [nodes] */
+    double *load, *warming;              /* [nodes], a system that is linear in E, and its solution */
+    double *direction;                   /* [nodes], search direction of E */
+    double *gain;                        /* sigma K^4 L^2, [nodes], what a node gains through contacts at the end */
+    double *error;                       /* K, [nodes], of temperatures at the end; 0 if given */
     double *diagonal, *search, *product; /* [nodes], used within one call */
-    double least;                  /* K, slopes are those at temperatures of at least this */
-    bool anchored;                 /* a given temperature holds, by contacts, what radiates */
+    double least;                        /* K, slopes are those at temperatures of at least this */
+    bool anchored;                       /* a given temperature holds, by contacts, what radiates */
 } fibrad_contacts;
 
-/* What belongs together, while sources are checked. A component is a set of nodes that exchange heat. Node `nodes` stands
- * for all that radiate. */
+/* What belongs together, while sources are checked. A component is a set of nodes that exchange heat. Node `nodes`
+ * stands for all that radiate. */
 typedef struct fibrad_contact_parts {
-    uint32_t *root;          /* [nodes + 1], a node of the same component; its own number: it stands for the component */
+    uint32_t *root; /* [nodes + 1], a node of the same component; its own number: it stands for the component */
     unsigned char *anchored; /* [nodes + 1], of nodes that stand for components: some temperature is given */
 } fibrad_contact_parts;
 

@@ -227,9 +227,9 @@ struct fibrad_heat {
     fibrad_heat_given sources;
     fibrad_heat_solution solution;
     fibrad_heat_samples samples;
-    fibrad_contacts contacts;     /* of the solution; nodes are bodies; count 0: none */
-    fibrad_contacts *checked;     /* of the sources that were checked last: count, node, kind and anchored */
-    uint32_t *checked_node;       /* arrays of `checked` */
+    fibrad_contacts contacts; /* of the solution; nodes are bodies; count 0: none */
+    fibrad_contacts *checked; /* of the sources that were checked last: count, node, kind and anchored */
+    uint32_t *checked_node;   /* arrays of `checked` */
     unsigned char *checked_kind;
     fibrad_contact_parts joined; /* of the same */
 };

@@ -36,10 +36,10 @@
  *
  *     (A/rho - K) J - A eps/rho E = 0,    (A eps/rho + h + G) E - A eps/rho <J> = S.
  *
- * Let b = S - h E - G E + eps (A <J> + N J - A E) be what is missing in the balance of a body with the radiation that now
- * arrives. The preconditioner changes E by x, with (A eps + h + G) x = b, and then J as on a body of the given emission
- * E + x. No part divides by eps or rho. g depends on temperatures. It is renewed when the residual has become small
- * beside the error of the last g. */
+ * Let b = S - h E - G E + eps (A <J> + N J - A E) be what is missing in the balance of a body with the radiation that
+ * now arrives. The preconditioner changes E by x, with (A eps + h + G) x = b, and then J as on a body of the given
+ * emission E + x. No part divides by eps or rho. g depends on temperatures. It is renewed when the residual has become
+ * small beside the error of the last g. */
 #include "heat/problem.h"
 #include "heat/pencils.h"
 #include "heat/sweep.h"
@@ -202,7 +202,7 @@ static double find_residual(fibrad_heat *heat) {
         slope += fibrad_heat_is_joined(heat, b)  ? joined_residual(heat, b)
                  : fibrad_heat_conducts(heat, b) ? conducting_residual(heat, b)
                  : is_free(heat, b)              ? free_residual(heat, b)
-                                               : given_residual(heat, b);
+                                                 : given_residual(heat, b);
     return slope;
 }
 
@@ -299,8 +299,7 @@ static double drive_through_contacts(fibrad_heat *heat, double emission) {
     fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
     fibrad_contact_linear_gains(c, even, c->supply);
     for (uint32_t b = 0; b < heat->bodies; b++)
-        if (fibrad_heat_is_joined(heat, b))
-            c->supply[b] += heat->sources.drive[b] - heat->sources.hold[b] * emission;
+        if (fibrad_heat_is_joined(heat, b)) c->supply[b] += heat->sources.drive[b] - heat->sources.hold[b] * emission;
     fibrad_copy(c->load, c->supply, heat->bodies * sizeof *c->load);
     fibrad_contact_warm(c);
     for (uint32_t b = 0; b < heat->bodies; b++)
@@ -426,8 +425,8 @@ static void set_balances(fibrad_heat *heat) {
     }
 }
 
-/* Finds the temperatures that balance powers, radiation and contacts to rounding, and what contacts conduct. What joined
- * bodies then gain less by radiation goes to the others that emit, by emissivity times area. */
+/* Finds the temperatures that balance powers, radiation and contacts to rounding, and what contacts conduct. What
+ * joined bodies then gain less by radiation goes to the others that emit, by emissivity times area. */
 static void finish_contacts(fibrad_heat *heat) {
     fibrad_contacts *c = &heat->contacts;
     double left = 0, weights = 0;
@@ -474,8 +473,8 @@ static void finish_powers(fibrad_heat *heat) {
 static bool level_solved(const fibrad_heat *heat) {
     const double tolerance = fibrad_max(heat->sources.rough, heat->sources.tolerance);
     const double wanted = heat->contacts.count > 0 ? heat->solution.wanted : 0;
-    return heat->solution.slope <= fibrad_max(fibrad_max(tolerance * tolerance * heat->solution.scale, wanted),
-                                              heat->solution.smallest) ||
+    return heat->solution.slope <=
+               fibrad_max(fibrad_max(tolerance * tolerance * heat->solution.scale, wanted), heat->solution.smallest) ||
            heat->solution.sweeps >= heat->sources.limit;
 }
 
@@ -521,8 +520,7 @@ static void turn_direction(fibrad_heat *heat, double keep) {
         fibrad_heat_send(heat, a, heat->solution.direction[a]);
     }
     for (uint32_t b = 0; b < heat->bodies && heat->contacts.count > 0; b++)
-        heat->contacts.direction[b] =
-            heat->contacts.warming[b] + (keep != 0 ? keep * heat->contacts.direction[b] : 0);
+        heat->contacts.direction[b] = heat->contacts.warming[b] + (keep != 0 ? keep * heat->contacts.direction[b] : 0);
 }
 
 /* Goes from the coarser level to the finer one. The detail of an earlier solution is added to the radiosities. Until
