@@ -66,28 +66,16 @@ static double exchange_area(const fibrad_contacts *c, uint32_t k, contact_ends e
     return c->conductance[k] / (c->sigma * (a * a + b * b) * (a + b));
 }
 
-void fibrad_contact_linear_gains(const fibrad_contacts *c, const double *emission, double *to) {
-    for (uint32_t k = 0; k < c->count; k++) {
-        const contact_ends e = ends_of(c, k);
-        const double from = c->temperature[e.i], other = c->temperature[e.j];
-        if (!(c->conductance[k] > 0)) continue;
-        const double less =
-            (emission[e.j] - fibrad_contact_emission(c, other)) - (emission[e.i] - fibrad_contact_emission(c, from));
-        const double flow = c->conductance[k] * (other - from) + exchange_area(c, k, e) * less;
-        to[e.i] += flow, to[e.j] -= flow;
-    }
-}
-
 static double if_free(const fibrad_contacts *c, const double *value, uint32_t node) {
     return c->kind[node] == FIBRAD_CONTACT_FREE ? value[node] : 0;
 }
 
-double fibrad_contact_curvature(const fibrad_contacts *c, const double *value) {
+double fibrad_contact_product(const fibrad_contacts *c, const double *a, const double *b) {
     double sum = 0;
     for (uint32_t k = 0; k < c->count; k++) {
         const contact_ends e = ends_of(c, k);
-        const double difference = if_free(c, value, e.j) - if_free(c, value, e.i);
-        if (difference != 0) sum += exchange_area(c, k, e) * difference * difference;
+        const double of_a = if_free(c, a, e.j) - if_free(c, a, e.i), of_b = if_free(c, b, e.j) - if_free(c, b, e.i);
+        if (of_a != 0 && of_b != 0) sum += exchange_area(c, k, e) * of_a * of_b;
     }
     return sum;
 }
@@ -157,8 +145,6 @@ static void solve_network(fibrad_contacts *c, bool kelvins) {
     for (uint32_t k = 0; k < WARM_MAX && slope > enough; k++) slope = step_network(c, kelvins, slope);
 }
 
-void fibrad_contact_warm(fibrad_contacts *c) { solve_network(c, false); }
-
 /* contacts->load = what is missing in the balance of each free node at contacts->temperature. */
 static void find_missing(fibrad_contacts *c) {
     fibrad_zero(c->load, c->nodes * sizeof *c->load);
@@ -180,6 +166,11 @@ static double largest_on(const fibrad_contacts *c, fibrad_contact_kind least, co
 static void find_least(fibrad_contacts *c) {
     const double highest = largest_on(c, FIBRAD_CONTACT_GIVEN, c->temperature);
     c->least = highest > 0 ? LEAST * highest : 1;
+}
+
+void fibrad_contact_warm(fibrad_contacts *c) {
+    find_least(c);
+    solve_network(c, false);
 }
 
 /* Shortens steps towards higher temperatures, where emission grows faster than its slope tells: by as much as is right

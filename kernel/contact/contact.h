@@ -7,8 +7,7 @@
  *     supply - stiff E(T) + sum over its contacts of H (T_other - T) = 0.
  *
  * Conduction is linear in T, radiation in E. With given supplies all temperatures follow from a Newton solution in T,
- * whose matrix is symmetric and positive. Radiosities need equations that are linear in E. About temperatures T a
- * contact then conducts H (T_j - T_i) + g ((E_j - E_i) - (E(T_j) - E(T_i))) with the exchange area
+ * whose matrix is symmetric and positive. For radiosities a contact is an exchange area between emissions,
  *
  *     g = H/(sigma (T_i^2 + T_j^2) (T_i + T_j)).
  *
@@ -19,7 +18,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define FIBRAD_CONTACT_ARRAYS 11u /* of doubles, [nodes] */
+#define FIBRAD_CONTACT_ARRAYS 12u /* of doubles, [nodes] */
 
 typedef enum fibrad_contact_kind {
     FIBRAD_CONTACT_NONE,  /* the node has no contacts */
@@ -34,8 +33,9 @@ typedef struct fibrad_contacts {
     uint32_t *node;                      /* node by the caller's number */
     unsigned char *kind;                 /* [nodes], a fibrad_contact_kind */
     double sigma, zero;                  /* zero: the temperature at which E is 0 */
-    double *temperature;                 /* K, [nodes], about which flows are linear in E */
+    double *temperature;                 /* K, [nodes] */
     double *stiff, *supply;              /* [nodes] */
+    double *missing;                     /* [nodes], what is missing in balances */
     double *load, *warming;              /* [nodes], a system that is linear in E, and its solution */
     double *direction;                   /* [nodes], search direction of E */
     double *gain;                        /* sigma K^4 L^2, [nodes], what a node gains through contacts at the end */
@@ -68,12 +68,9 @@ uint32_t fibrad_contact_root(fibrad_contact_parts *parts, uint32_t node);
 /* Adds to `to` what nodes gain through contacts at temperatures T. */
 void fibrad_contact_gains(const fibrad_contacts *contacts, const double *temperature, double *to);
 
-/* The same at emissions E, linear in E about contacts->temperature. */
-void fibrad_contact_linear_gains(const fibrad_contacts *contacts, const double *emission, double *to);
-
-/* The sum over contacts of g times the square of the difference of `value`, which counts 0 on nodes that are not free.
+/* The sum over contacts of g times the product of the differences of a and b, which count 0 on nodes that are not free.
  */
-double fibrad_contact_curvature(const fibrad_contacts *contacts, const double *value);
+double fibrad_contact_product(const fibrad_contacts *contacts, const double *a, const double *b);
 
 /* Finds contacts->warming, the change of E of free nodes that takes away contacts->load: (stiff + G) warming = load. */
 void fibrad_contact_warm(fibrad_contacts *contacts);

@@ -90,9 +90,9 @@ static uint32_t tasks_for(uint32_t rows, uint32_t rays) {
 /* Takes the arrays of contacts, whose nodes are bodies. The contacts themselves are the caller's. */
 static void take_contacts(fibrad_arena *arena, fibrad_heat *heat) {
     fibrad_contacts *c = &heat->contacts;
-    double **const of_nodes[FIBRAD_CONTACT_ARRAYS] = {&c->temperature, &c->stiff,     &c->supply, &c->load,
-                                                      &c->warming,     &c->direction, &c->gain,   &c->error,
-                                                      &c->diagonal,    &c->search,    &c->product};
+    double **const of_nodes[FIBRAD_CONTACT_ARRAYS] = {&c->temperature, &c->stiff,     &c->supply,  &c->load,
+                                                      &c->warming,     &c->direction, &c->gain,    &c->error,
+                                                      &c->diagonal,    &c->search,    &c->product, &c->missing};
     for (size_t k = 0; k < FIBRAD_CONTACT_ARRAYS; k++)
         *of_nodes[k] = fibrad_arena_take(arena, heat->bodies, sizeof(double));
     c->node = fibrad_arena_take(arena, heat->spheres + FIBRAD_BODIES_MAX, sizeof *c->node);

@@ -32,14 +32,15 @@
  * On a sphere that conducts the mean of J is treated as above. conduct.c treats the rest.
  *
  * Contacts. A body of unknown temperature in contact with others is *joined*: its E is an unknown beside its J, since E
- * follows from the neighbours as well. With the exchange areas g of contacts (contact/contact.h) and their Laplacian G,
+ * follows from the neighbours as well. With the flows H of contacts
  *
- *     (A/rho - K) J - A eps/rho E = 0,    (A eps/rho + h + G) E - A eps/rho <J> = S.
+ *     (A/rho - K) J - A eps/rho E = 0,    S - h E + A eps/rho (<J> - E) + sum of H (T_other - T) = 0.
  *
- * Let b = S - h E - G E + eps (A <J> + N J - A E) be what is missing in the balance of a body with the radiation that
- * now arrives. The preconditioner changes E by x, with (A eps + h + G) x = b, and then J as on a body of the given
- * emission E + x. No part divides by eps or rho. g depends on temperatures. It is renewed when the residual has become
- * small beside the error of the last g. */
+ * Let b be what is missing in the balance of a body with the radiation that now arrives, S - h E + eps (A <J> + N J - A
+ * E) + sum of H (T_other - T). The preconditioner changes E by x: to the emissions that balance this radiation
+ * (contact/contact.h). Then it changes J as on a body of the given emission E + x. No part divides by eps or rho. T is
+ * not linear in E. So the search is one of conjugate gradients with exchange areas g of contacts that change from step
+ * to step, and each direction is made conjugate to the last one with the present g. */
 #include "heat/problem.h"
 #include "heat/pencils.h"
 #include "heat/sweep.h"
@@ -166,7 +167,7 @@ static double joined_residual(fibrad_heat *heat, uint32_t b) {
     const double slope = fibrad_heat_conducts(heat, b) ? conducting_residual(heat, b) : given_residual(heat, b);
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
         fibrad_heat_send(heat, a, fibrad_heat_sent(heat, a) + more);
-    return slope + heat->contacts.supply[b] * warming;
+    return slope + heat->contacts.missing[b] * warming;
 }
 
 /* The power that a body would absorb of what arrives. */
@@ -180,18 +181,29 @@ static double stiffness_of_joined(const fibrad_heat *heat, uint32_t b) {
     return heat->sources.hold[b] + heat->sources.emissivity[b] * sum_over(heat, b, heat->solution.area);
 }
 
-/* Finds the changes of the emissions of joined bodies. contacts.supply keeps what is missing in their balances. */
+/* The tolerance of temperatures that balance the radiation of one step: a Newton step that changes none by more is the
+ * last one. */
+#define BALANCED_ROUGHLY 1e-3
+
+/* Finds the changes of the emissions of joined bodies: to those that balance the radiation which now arrives.
+ * contacts.missing keeps what is missing in their balances. */
 static void warm_joined(fibrad_heat *heat) {
     fibrad_contacts *c = &heat->contacts;
     if (c->count == 0) return;
-    fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
-    fibrad_contact_linear_gains(c, heat->sources.emission, c->supply);
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        c->temperature[b] = fibrad_contact_temperature(c, heat->sources.emission[b]);
+        c->missing[b] = 0;
+        if (!fibrad_heat_is_joined(heat, b)) continue;
+        c->stiff[b] = stiffness_of_joined(heat, b);
+        c->supply[b] = heat->sources.drive[b] + absorbable(heat, b);
+        c->missing[b] = c->supply[b] - c->stiff[b] * heat->sources.emission[b];
+    }
+    fibrad_contact_gains(c, c->temperature, c->missing);
+    fibrad_contact_find(c, BALANCED_ROUGHLY);
     for (uint32_t b = 0; b < heat->bodies; b++)
-        if (fibrad_heat_is_joined(heat, b))
-            c->supply[b] +=
-                heat->sources.drive[b] + absorbable(heat, b) - stiffness_of_joined(heat, b) * heat->sources.emission[b];
-    fibrad_copy(c->load, c->supply, heat->bodies * sizeof *c->load);
-    fibrad_contact_warm(c);
+        c->warming[b] = fibrad_heat_is_joined(heat, b)
+                            ? fibrad_contact_emission(c, c->temperature[b]) - heat->sources.emission[b]
+                            : 0;
 }
 
 /* Sends the changes of all patches. Returns the product of residuals and changes. */
@@ -254,14 +266,6 @@ static void find_powers(const fibrad_heat *heat, double *power) {
 #define WITHIN  .03
 #define SETTLED 1e-3
 
-/* Contacts are made linear about temperatures that are right to BENT. The search then goes on until the residual, as a
- * square, has fallen by a factor between BENT_MOST and BENT_LEAST. */
-#define BENT       1e-3
-#define BENT_MOST  1e-2
-#define BENT_NEXT  1e-1 /* times the factor by which the last one has brought it down */
-#define BENT_LEAST 1e-6
-#define FOUND      1e-15 /* the tolerance of temperatures at the end, relative */
-
 /* The sum over the patches of a mesh of emissivity times area times the square of the difference between the emissions
  * of patch and mesh. */
 static double lifted_squares(const fibrad_heat *heat, uint32_t b) {
@@ -292,18 +296,19 @@ static double light_squares(const fibrad_heat *heat, uint32_t b) {
 /* What drives joined bodies if all that radiates and all of them have one emission: powers, and given temperatures. */
 static double drive_through_contacts(fibrad_heat *heat, double emission) {
     fibrad_contacts *c = &heat->contacts;
-    double sum = 0, *even = heat->contacts.product;
+    double sum = 0;
     if (c->count == 0) return 0;
-    for (uint32_t b = 0; b < heat->bodies; b++)
-        even[b] = fibrad_heat_is_joined(heat, b) ? emission : heat->sources.emission[b];
-    fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
-    fibrad_contact_linear_gains(c, even, c->supply);
-    for (uint32_t b = 0; b < heat->bodies; b++)
-        if (fibrad_heat_is_joined(heat, b)) c->supply[b] += heat->sources.drive[b] - heat->sources.hold[b] * emission;
-    fibrad_copy(c->load, c->supply, heat->bodies * sizeof *c->load);
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const bool joined = fibrad_heat_is_joined(heat, b);
+        c->temperature[b] = fibrad_contact_temperature(c, joined ? emission : heat->sources.emission[b]);
+        c->stiff[b] = joined ? stiffness_of_joined(heat, b) : 0;
+        c->missing[b] = joined ? heat->sources.drive[b] - heat->sources.hold[b] * emission : 0;
+    }
+    fibrad_contact_gains(c, c->temperature, c->missing);
+    fibrad_copy(c->load, c->missing, heat->bodies * sizeof *c->load);
     fibrad_contact_warm(c);
     for (uint32_t b = 0; b < heat->bodies; b++)
-        if (fibrad_heat_is_joined(heat, b)) sum += c->supply[b] * c->warming[b];
+        if (fibrad_heat_is_joined(heat, b)) sum += c->missing[b] * c->warming[b];
     return sum;
 }
 
@@ -407,6 +412,8 @@ static void sink(fibrad_heat *heat) {
     for (uint32_t a = 0; a < heat->patches; a++) heat->solution.radiosity[a] -= mean;
 }
 
+#define FOUND 1e-15 /* the tolerance of temperatures at the end, relative */
+
 /* An emission, extrapolated to patches without size. */
 static double extrapolated_emission(const fibrad_heat *heat, uint32_t b) {
     return heat->sources.emission[b] +
@@ -472,9 +479,7 @@ static void finish_powers(fibrad_heat *heat) {
 /* Whether the radiosities of the present level are good enough. */
 static bool level_solved(const fibrad_heat *heat) {
     const double tolerance = fibrad_max(heat->sources.rough, heat->sources.tolerance);
-    const double wanted = heat->contacts.count > 0 ? heat->solution.wanted : 0;
-    return heat->solution.slope <=
-               fibrad_max(fibrad_max(tolerance * tolerance * heat->solution.scale, wanted), heat->solution.smallest) ||
+    return heat->solution.slope <= fibrad_max(tolerance * tolerance * heat->solution.scale, heat->solution.smallest) ||
            heat->solution.sweeps >= heat->sources.limit;
 }
 
@@ -485,32 +490,6 @@ static bool replaces_unevenness(fibrad_heat *heat) {
     const double change = fibrad_heat_find_unevenness(heat, SETTLED);
     heat->sources.rough = change > SETTLED ? fibrad_min(FIBRAD_HEAT_ROUGH, WITHIN * change) : 0;
     return change > SETTLED;
-}
-
-/* Makes contacts linear anew, about the temperatures that follow from the radiation that now arrives. */
-static void renew_contacts(fibrad_heat *heat) {
-    fibrad_contacts *c = &heat->contacts;
-    for (uint32_t b = 0; b < heat->bodies; b++) {
-        c->temperature[b] = fibrad_contact_temperature(c, heat->sources.emission[b]);
-        if (!fibrad_heat_is_joined(heat, b)) continue;
-        c->stiff[b] = stiffness_of_joined(heat, b);
-        c->supply[b] = heat->sources.drive[b] + absorbable(heat, b);
-    }
-    fibrad_contact_find(c, BENT);
-}
-
-/* Whether contacts, made linear anew, leave a residual that is too large. The search then goes on until the residual is
- * small beside the error that the next linear contacts will have. */
-static bool bends_contacts(fibrad_heat *heat) {
-    if (heat->contacts.count == 0 || heat->solution.sweeps >= heat->sources.limit) return false;
-    const double tolerance = heat->sources.tolerance, last = heat->solution.bend;
-    renew_contacts(heat);
-    const double slope = find_residual(heat);
-    const double enough = fibrad_max(tolerance * tolerance * heat->solution.scale, heat->solution.smallest);
-    heat->solution.bend = slope;
-    const double further = last < __builtin_inf() ? BENT_NEXT * slope / last : BENT_MOST;
-    heat->solution.wanted = slope * fibrad_max(BENT_LEAST, fibrad_min(BENT_MOST, further));
-    return slope > enough;
 }
 
 /* Sets and sends the next search direction: the change that was sent, plus `keep` times the last direction. */
@@ -548,97 +527,78 @@ static void leave_level(fibrad_heat *heat) {
         finish_powers(heat);
 }
 
-/* Decides what comes after a sweep: the next step of the search, the finer level, or the end. If the unevenness of
- * spheres changes, the search begins anew where it is. The net flows do not depend on unevenness, unless spheres have
- * absorbed light. If it no longer changes, the search goes on to the smaller tolerance. */
-static void search_on(fibrad_heat *heat, bool restart) {
-    const double last = heat->solution.slope;
-    heat->solution.slope = find_residual(heat);
-    if (restart) heat->solution.smallest = fibrad_max(heat->solution.smallest, ROUNDING * heat->solution.slope);
-    while (level_solved(heat)) {
-        const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
-        const bool rough = heat->sources.rough > heat->sources.tolerance && heat->solution.sweeps < heat->sources.limit;
-        const bool replaced = coarse && replaces_unevenness(heat), bent = bends_contacts(heat);
-        if (!replaced && !(coarse && rough) && !bent) {
-            leave_level(heat);
-            return;
-        }
-        if (replaced && heat->sources.absorbed != NULL) {
-            send_radiosities(heat, FIBRAD_HEAT_FIRST);
-            return;
-        }
-        restart = restart || replaced || bent;
-        heat->solution.slope = find_residual(heat);
-    }
-    turn_direction(heat, restart ? 0 : heat->solution.slope / last);
-    heat->solution.phase = FIBRAD_HEAT_STEPS;
-}
-
-/* The part of a body of given temperature in the product of the search direction p with the matrix times p. product: N
- * p. */
-static double given_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
+/* The part of a body of given temperature in the product of values z on all patches with the matrix times the search
+ * direction p. product: N p. */
+static double given_product(const fibrad_heat *heat, uint32_t b, const double *z, const double *product) {
     double sum = 0;
     if (heat->sources.emissivity[b] == 1) return 0;
     const double share = heat->sources.emissivity[b] / (1 - heat->sources.emissivity[b]);
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
         const double p = heat->solution.direction[a];
-        sum += p * (heat->solution.area[a] * p * share - product[a]);
+        sum += z[a] * (heat->solution.area[a] * p * share - product[a]);
     }
     return sum;
 }
 
 /* The same for a body of unknown temperature. The mean of p counts by eps h/D, the rest as above. */
-static double free_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
+static double free_product(const fibrad_heat *heat, uint32_t b, const double *z, const double *product) {
     const double eps = heat->sources.emissivity[b], mean = fibrad_heat_mean(heat, b, heat->solution.direction);
-    const double share = eps < 1 ? eps / (1 - eps) : 0;
+    const double share = eps < 1 ? eps / (1 - eps) : 0, z_mean = fibrad_heat_mean(heat, b, z);
     const free_body body = free_body_of(heat, b);
     if (!(body.area > 0)) return 0;
-    double sum = body.area * mean * mean * (stiffness(heat, b, &body) - 1);
+    double sum = body.area * z_mean * mean * (stiffness(heat, b, &body) - 1);
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
         const double p = heat->solution.direction[a], rest = p - mean;
-        sum += share * heat->solution.area[a] * rest * rest - p * product[a];
+        sum += share * heat->solution.area[a] * (z[a] - z_mean) * rest - z[a] * product[a];
     }
     return sum;
 }
 
-/* The same for a sphere that conducts. */
+/* The same for a joined body. warmed: z of its emission. The part of contacts is not in it. */
+static double joined_product(const fibrad_heat *heat, uint32_t b, const double *z, double warmed,
+                             const double *product) {
+    const double eps = heat->sources.emissivity[b], share = eps < 1 ? eps / (1 - eps) : 0;
+    const double warming = heat->contacts.direction[b];
+    double sum = heat->sources.hold[b] * warmed * warming;
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+        sum += share * heat->solution.area[a] * (z[a] - warmed) * (heat->solution.direction[a] - warming) -
+               z[a] * product[a];
+    return sum;
+}
+
+/* The part of a sphere that conducts in the product of the search direction with the matrix times itself. */
 static double conducting_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
     const double eps = heat->sources.emissivity[b], mean = fibrad_heat_mean(heat, b, heat->solution.direction);
     const free_body body = free_body_of(heat, b);
     if (!(body.area > 0)) return 0;
-    const double share = is_free(heat, b)          ? stiffness(heat, b, &body) - 1
-                         : has_black_mean(heat, b) ? 0
-                                                   : eps / (1 - eps);
-    double sum = share * body.area * mean * mean + fibrad_heat_pattern_curvature(heat, b);
+    const double warming = fibrad_heat_is_joined(heat, b) ? heat->contacts.direction[b] : 0;
+    const double share = follows_radiosity(heat, b) ? stiffness(heat, b, &body) - 1
+                         : has_black_mean(heat, b)  ? 0
+                                                    : eps / (1 - eps);
+    double sum = share * body.area * (mean - warming) * (mean - warming) + fibrad_heat_pattern_curvature(heat, b);
+    if (fibrad_heat_is_joined(heat, b)) sum += heat->sources.hold[b] * warming * warming;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) sum -= heat->solution.direction[a] * product[a];
     return sum;
 }
 
-/* The same for a joined body. The part of contacts is not in it. */
-static double joined_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
-    const double eps = heat->sources.emissivity[b], share = eps < 1 ? eps / (1 - eps) : 0;
-    const double warmed = heat->contacts.direction[b];
-    const bool uneven = fibrad_heat_conducts(heat, b);
-    double sum = heat->sources.hold[b] * warmed * warmed;
-    const double mean = uneven ? fibrad_heat_mean(heat, b, heat->solution.direction) : 0;
-    if (uneven) sum += fibrad_heat_pattern_curvature(heat, b);
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
-        const double p = heat->solution.direction[a], rest = (uneven ? mean : p) - warmed;
-        if (!uneven || !has_black_mean(heat, b)) sum += share * heat->solution.area[a] * rest * rest;
-        sum -= p * product[a];
-    }
+/* The product of z, and of `warmed` for the emissions of joined bodies, with the matrix times the search direction.
+ * With spheres that conduct, z must be the search direction. */
+static double product_with_direction(const fibrad_heat *heat, const double *z, const double *warmed,
+                                     const double *product) {
+    double sum = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        sum += fibrad_heat_conducts(heat, b)    ? conducting_curvature(heat, b, product)
+               : fibrad_heat_is_joined(heat, b) ? joined_product(heat, b, z, warmed[b], product)
+               : is_free(heat, b)               ? free_product(heat, b, z, product)
+                                                : given_product(heat, b, z, product);
+    if (heat->contacts.count > 0) sum += fibrad_contact_product(&heat->contacts, warmed, heat->contacts.direction);
     return sum;
 }
 
 /* Moves the radiosities along the search direction to where the error is least. product: N times the direction. */
 static void advance_radiosities(fibrad_heat *heat, const double *product) {
-    double curvature = 0;
-    for (uint32_t b = 0; b < heat->bodies; b++)
-        curvature += fibrad_heat_is_joined(heat, b)  ? joined_curvature(heat, b, product)
-                     : fibrad_heat_conducts(heat, b) ? conducting_curvature(heat, b, product)
-                     : is_free(heat, b)              ? free_curvature(heat, b, product)
-                                                     : given_curvature(heat, b, product);
-    if (heat->contacts.count > 0) curvature += fibrad_contact_curvature(&heat->contacts, heat->contacts.direction);
+    const double curvature = product_with_direction(heat, heat->solution.direction, heat->contacts.direction, product);
+    heat->solution.curvature = curvature;
     if (!(curvature > 0)) return;
     const double length = heat->solution.slope / curvature;
     for (uint32_t a = 0; a < heat->patches; a++) {
@@ -647,6 +607,41 @@ static void advance_radiosities(fibrad_heat *heat, const double *product) {
     }
     for (uint32_t b = 0; b < heat->bodies && heat->contacts.count > 0; b++)
         if (fibrad_heat_is_joined(heat, b)) heat->sources.emission[b] += length * heat->contacts.direction[b];
+}
+
+/* The product of the change that is sent with the matrix times the last direction, over the curvature along it. */
+static double overlap_with_direction(const fibrad_heat *heat, const double *product) {
+    const double curvature = heat->solution.curvature;
+    return curvature > 0
+               ? product_with_direction(heat, heat->solution.source, heat->contacts.warming, product) / curvature
+               : 0;
+}
+
+/* Decides what comes after a sweep: the next step of the search, the finer level, or the end. If the unevenness of
+ * spheres changes, the search begins anew where it is. The net flows do not depend on unevenness, unless spheres have
+ * absorbed light. If it no longer changes, the search goes on to the smaller tolerance. */
+static void search_on(fibrad_heat *heat, bool restart, const double *product) {
+    const double last = heat->solution.slope;
+    heat->solution.slope = find_residual(heat);
+    if (restart) heat->solution.smallest = fibrad_max(heat->solution.smallest, ROUNDING * heat->solution.slope);
+    while (level_solved(heat)) {
+        const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
+        const bool rough = heat->sources.rough > heat->sources.tolerance && heat->solution.sweeps < heat->sources.limit;
+        const bool replaced = coarse && replaces_unevenness(heat);
+        if (!replaced && !(coarse && rough)) {
+            leave_level(heat);
+            return;
+        }
+        if (replaced && heat->sources.absorbed != NULL) {
+            send_radiosities(heat, FIBRAD_HEAT_FIRST);
+            return;
+        }
+        restart = restart || replaced;
+        heat->solution.slope = find_residual(heat);
+    }
+    const bool bends = heat->contacts.count > 0 && !heat->sources.conducts;
+    turn_direction(heat, restart ? 0 : bends ? -overlap_with_direction(heat, product) : heat->solution.slope / last);
+    heat->solution.phase = FIBRAD_HEAT_STEPS;
 }
 
 /* Does what the sweep was made for. Error: FIBRAD_E_UNSOLVABLE. */
@@ -670,15 +665,13 @@ static int end_sweep(fibrad_heat *heat) {
             for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
                 heat->solution.net[a] = sum[a] + light_on(heat, b, a);
         if (!solvable(heat)) return FIBRAD_E_UNSOLVABLE;
-        if (heat->contacts.count > 0) renew_contacts(heat);
         find_scale(heat);
         heat_by_light(heat);
-        heat->solution.bend = heat->solution.wanted = __builtin_inf();
-        search_on(heat, true);
+        search_on(heat, true, NULL);
         return FIBRAD_OK;
     default:
         advance_radiosities(heat, sum);
-        search_on(heat, false);
+        search_on(heat, false, sum);
         return FIBRAD_OK;
     }
 }
