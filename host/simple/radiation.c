@@ -169,11 +169,12 @@ int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sour
         (facts.bodies && !(body_emissivity && result->body_temperature)) || !temperatures_given(sources, &facts))
         return FIBRAD_E_ARGUMENT;
     const uint32_t n = facts.spheres, bodies = facts.bodies, conducting = sources->conductivity ? n : 0;
-    double *before = malloc((n + bodies + conducting + (size_t)1) * sizeof *before);
+    const uint32_t contacts = sources->conductance ? sources->contacts : 0;
+    double *before = malloc((n + bodies + conducting + contacts + (size_t)1) * sizeof *before);
     if (!before) return FIBRAD_E_MEMORY;
     fibrad_heat_sources now = *sources;
     now.emissivity = emissivity, now.body_emissivity = body_emissivity;
-    double *conductivity = before + n + bodies;
+    double *conductivity = before + n + bodies, *conductance = conductivity + conducting;
     bool settled = false;
     int status = FIBRAD_OK;
     law(context, sources->temperature, sources->body_temperature, emissivity, body_emissivity);
@@ -183,11 +184,13 @@ int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sour
         if (n) memcpy(before, emissivity, n * sizeof *before);
         if (bodies) memcpy(before + n, body_emissivity, bodies * sizeof *before);
         if (conducting) memcpy(conductivity, sources->conductivity, conducting * sizeof *before);
+        if (contacts) memcpy(conductance, sources->conductance, contacts * sizeof *before);
         law(context, result->temperature, result->body_temperature, emissivity, body_emissivity);
         if (!are_emissivities(emissivity, n) || !are_emissivities(body_emissivity, bodies)) status = FIBRAD_E_ARGUMENT;
         settled = largest_change(before, emissivity, n) + largest_change(before + n, body_emissivity, bodies) <=
                       EMISSIVITY_CHANGE &&
-                  largest_ratio(conductivity, sources->conductivity, conducting) <= CONDUCTIVITY_CHANGE;
+                  largest_ratio(conductivity, sources->conductivity, conducting) <= CONDUCTIVITY_CHANGE &&
+                  largest_ratio(conductance, sources->conductance, contacts) <= CONDUCTIVITY_CHANGE;
     }
     free(before);
     return status ? status : settled ? FIBRAD_OK : FIBRAD_E_UNSOLVABLE;
