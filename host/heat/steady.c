@@ -20,8 +20,7 @@ static double steady_place(const struct bed *bed, int axis, uint32_t i) {
     return (axis == 0 ? bed->x : axis == 1 ? bed->y : bed->z)[i];
 }
 
-/* The lower and the upper plate. */
-static struct walls steady_plates(const struct bed *bed, int axis) {
+struct walls steady_plates(const struct bed *bed, int axis) {
     double end[2] = {INFINITY, -INFINITY};
     for (uint32_t i = 0; i < bed->n; ++i) {
         end[0] = fmin(end[0], steady_place(bed, axis, i) - bed->r[i]);
