@@ -1,5 +1,8 @@
 /* test_contacts.c - contacts and radiation in one balance, against closed forms and against a Newton solution with
  * exchange factors. SPDX-License-Identifier: MIT */
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_integration.h>
+
 #include "host_owned.h"
 #include "scenes.h"
 #include "suite.h"
@@ -262,24 +265,44 @@ static void by_newton(const struct joint *j, const fibrad_bed_factors *d, double
     ck_abort_msg("Newton's method does not end");
 }
 
-/* 60 unequal spheres of all emissivities in rooms: a random network, powers, sinks and given temperatures. */
-LOOP_TEST(sixty_spheres_in_a_room, 4) {
+/* Root mean squares over spheres. */
+struct compared {
+    double powers, difference;     /* of radiative powers [W] */
+    double temperature, estimated; /* of errors of temperatures that were found [K] */
+    uint32_t beyond;               /* temperatures off by more than both errors */
+};
+
+static struct compared compare(const struct joint *j, const double *t, const double *q) {
+    struct compared c = {0, 0, 0, 0, 0};
+    const double n = j->bed.n;
+    for (uint32_t i = 0; i < j->bed.n; i++) {
+        const double radiated = j->q[i] - j->conducted[i], off = j->t[i] - t[i];
+        c.powers += q[i] * q[i] / n, c.difference += (radiated - q[i]) * (radiated - q[i]) / n;
+        if (!isnan(j->temperature[i])) continue;
+        c.temperature += off * off / n, c.estimated += j->t_error[i] * j->t_error[i] / n;
+        c.beyond += fabs(off) > 2 * j->t_error[i] + 1e-3 * t[i] / 4;
+    }
+    return (struct compared){sqrt(c.powers), sqrt(c.difference), sqrt(c.temperature), sqrt(c.estimated), c.beyond};
+}
+
+/* Unequal spheres of all emissivities in rooms: a random network, powers, sinks and given temperatures. With 60 spheres
+ * and rows right to .001 the difference was 0.2 to 0.4 %; here it is at most that and the noise of the rows. */
+LOOP_TEST(spheres_in_a_room, 2) {
     struct joint *j = &joint;
-    const uint32_t n = 60;
+    const uint32_t n = 40;
     const uint64_t seed = 100 + (uint64_t)_i;
     begin(j, packing(n, .5, 1, .3, seed, false), 0);
     double half = 0;
     for (uint32_t i = 0; i < n; i++) {
-        const double at[3] = {j->bed.x[i], j->bed.y[i], j->bed.z[i]};
+        const double at[3] = {j->bed.x[i], j->bed.y[i], j->bed.z[i]}, u = bed_make_random(seed, 1000 + i);
         for (int k = 0; k < 3; k++) half = fmax(half, fabs(at[k]) + j->bed.r[i]);
-        const double u = bed_make_random(seed, 1000 + i);
         j->emissivity[i] = i % 10 == 0 ? 0 : i % 10 == 1 ? 1 : .1 + .85 * u;
         j->power[i] = i % 3 == 0 ? 2e5 * u : i % 7 == 0 ? -1e4 * u : 0;
         if (i % 11 == 5) j->temperature[i] = 400 + 1200 * u, j->power[i] = 0;
     }
     for (int side = 0; side < 6; side++)
         add_wall(j, side / 2, side % 2, side % 2 ? half : -half, 500 + 150 * side, .3 + .1 * side);
-    const double usual = 30 * pow(10, _i - 1);
+    const double usual = _i ? 300 : 30;
     for (uint32_t i = 0; i < n; i++)
         for (uint32_t k = 0; k < 3; k++) {
             const uint32_t other = (uint32_t)((n + 6) * bed_make_random(seed, 5000 + 3 * i + k));
@@ -292,22 +315,224 @@ LOOP_TEST(sixty_spheres_in_a_room, 4) {
     OWNED_FACTORS *d;
     const fibrad_spheres spheres = spheres_of(&j->bed);
     const fibrad_exchange_rule rule = {
-        .emissivity = j->emissivity, .body_emissivity = j->wall_emissivity, .tolerance = 1e-3};
+        .emissivity = j->emissivity, .body_emissivity = j->wall_emissivity, .tolerance = 2e-3};
     assert_ok(fibrad_exchange_factors(&j->scene, &spheres, &rule, NULL, NULL, &d));
     for (uint32_t i = 0; i < n; i++) t[i] = isnan(j->temperature[i]) ? 1000 : j->temperature[i];
     by_newton(j, d, t, q);
-    double squares = 0, errors = 0, worst = 0, beyond = 0, estimated = 0, true_squares = 0;
-    for (uint32_t i = 0; i < n; i++) {
-        const double radiated = j->q[i] - j->conducted[i];
-        squares += q[i] * q[i], errors += (radiated - q[i]) * (radiated - q[i]);
-        if (isnan(j->temperature[i])) {
-            worst_of(&worst, fabs(j->t[i] - t[i]));
-            estimated += j->t_error[i] * j->t_error[i], true_squares += pow(j->t[i] - t[i], 2);
-            if (fabs(j->t[i] - t[i]) > 2 * j->t_error[i] + 1e-3 * t[i] / 4) beyond++;
-        }
+    const struct compared c = compare(j, t, q);
+    ck_assert_double_le(c.difference, 6e-3 * c.powers);
+    ck_assert_double_le(c.temperature, 1.5 * c.estimated);
+    ck_assert_uint_le(c.beyond, 1);
+}
+
+/* Contacts of no conductance change nothing beyond the tolerance of the search. */
+TEST(contacts_that_conduct_nothing) {
+    static struct joint j[2];
+    for (int k = 0; k < 2; k++) {
+        begin(&j[k], packing(30, .6, 1, .45, 5, false), .4);
+        for (uint32_t i = 0; i < 30; i++) j[k].power[i] = 1e3 * i;
+        for (uint32_t i = 0; k == 1 && i + 1 < 30; i++) join(&j[k], i, i + 1, 0);
+        solve(&j[k]);
+        assert_ok(j[k].status);
     }
-    printf("T rms %.3f estimate %.3f ", sqrt(true_squares / n), sqrt(estimated / n));
-    printf("room %d: sweeps %u residual %.1e, power error %.2e, T worst %.3f K, beyond %g\n", _i, j->result.sweeps,
-           j->result.residual, sqrt(errors / squares), worst, beyond);
-    ck_assert_double_le(sqrt(errors / squares), 5e-3);
+    for (uint32_t i = 0; i < 30; i++) {
+        ck_assert_double_le(fabs(j[0].t[i] - j[1].t[i]), 1e-5 * j[0].t[i]);
+        ck_assert_double_eq(j[0].q[i], j[1].q[i]);
+    }
+    for (int k = 0; k < 2; k++) bed_free(&j[k].bed);
+}
+
+/* The order of contacts, that of their ends and their number do not matter. */
+TEST(contacts_in_any_order) {
+    static struct joint j[2];
+    for (int k = 0; k < 2; k++) {
+        begin(&j[k], packing(30, .6, 1, .45, 5, false), .4);
+        for (uint32_t i = 0; i < 30; i++) j[k].power[i] = 1e3 * i;
+        for (uint32_t i = 0; i + 1 < 30; i++) {
+            const uint32_t at = k == 0 ? i : 28 - i;
+            join(&j[k], k == 0 ? at : at + 1, k == 0 ? at + 1 : at, k == 0 ? 30 : 10);
+            if (k == 1) join(&j[k], at, at + 1, 20);
+        }
+        j[k].sources.tolerance = 1e-10;
+        solve(&j[k]);
+        assert_balanced(&j[k]);
+    }
+    for (uint32_t i = 0; i < 30; i++) ck_assert_double_le(fabs(j[0].t[i] - j[1].t[i]), 1e-8 * j[0].t[i]);
+    for (int k = 0; k < 2; k++) bed_free(&j[k].bed);
+}
+
+/* What is refused, and where. */
+LOOP_TEST(contacts_at_fault, 6) {
+    struct joint *j = &joint;
+    static unsigned char insulated[WALLS];
+    begin(j, BED({0, 0, 0, 1}, {0, 0, 2, 1}, {0, 0, 4, 1}), .5);
+    const uint32_t wall = add_wall(j, 2, 0, -1, 400, .5);
+    join(j, 0, 1, 1), join(j, 1, 2, 1), join(j, wall, 0, 1);
+    int status = FIBRAD_E_ARGUMENT, why = FIBRAD_WHY_CONTACT;
+    uint32_t sphere = 1;
+    if (_i == 0) j->second[1] = 4;
+    if (_i == 1) j->conductance[1] = -1, why = FIBRAD_WHY_CONDUCTANCE;
+    if (_i == 2) j->conductance[1] = NAN, why = FIBRAD_WHY_CONDUCTANCE;
+    if (_i == 3) insulated[0] = 1, j->sources.insulated = insulated, why = FIBRAD_WHY_TOUCHED, sphere = 3;
+    if (_i == 4) j->sources.conductance = NULL, why = FIBRAD_WHY_MISSING, sphere = 3;
+    if (_i == 5) {
+        j->emissivity[1] = j->emissivity[2] = 0, j->conductance[0] = 0;
+        status = FIBRAD_E_UNSOLVABLE, why = FIBRAD_WHY_ALONE;
+    }
+    solve(j);
+    insulated[0] = 0;
+    ck_assert_int_eq(j->status, status);
+    ck_assert_int_eq(j->fault.why, why);
+    ck_assert_uint_eq(j->fault.first, sphere);
+    if (_i == 3) ck_assert_uint_eq(j->fault.wall, 1);
+}
+
+/* A closed bed without any given temperature has no level, which contacts need. */
+TEST(contacts_need_a_temperature) {
+    struct joint *j = &joint;
+    begin(j, BED({0, 0, 0, 1}, {0, 0, 2.2, 1}), .5);
+    add_box(j, 3.3, NAN, .5);
+    for (int side = 0; side < 6; side++) j->wall_power[side] = 0;
+    j->power[0] = 10, j->power[1] = -10;
+    solve(j);
+    assert_ok(j->status);
+    join(j, 0, 1, 1);
+    solve(j);
+    ck_assert_int_eq(j->status, FIBRAD_E_UNSOLVABLE);
+}
+
+/* Two spheres that reflect all and exchange heat through their contact. */
+TEST(a_pair_in_time) {
+    OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 2, 1});
+    const fibrad_spheres spheres = spheres_of(&bed);
+    const double emissivity[2] = {0, 0}, capacity[2] = {300, 100}, h = 2.5;
+    const uint32_t first = 0, second = 1;
+    OWNED_TRANSIENT *t;
+    assert_ok(
+        fibrad_transient_new(&t, NULL, &spheres, &(fibrad_transient_config){.method = FIBRAD_TRANSIENT_PATCHES}, NULL));
+    fibrad_heat_sources sources;
+    fibrad_heat_sources_init(&sources);
+    sources.emissivity = emissivity, sources.surroundings = 300;
+    sources.contact_first = &first, sources.contact_second = &second, sources.conductance = &h, sources.contacts = 1;
+    double at[2] = {1000, 400};
+    const double mean = (300 * 1000 + 100 * 400) / 400., rate = h * (1 / 300. + 1 / 100.);
+    for (int k = 1; k <= 5; k++) {
+        fibrad_span span = {at, capacity, .duration = 12};
+        assert_ok(fibrad_transient_advance(t, &sources, &span));
+        const double apart = 600 * exp(-rate * 12 * k);
+        ck_assert_double_le(fabs(at[0] - (mean + apart / 4)), 1e-4 * at[0]);
+        ck_assert_double_le(fabs(at[1] - (mean - 3 * apart / 4)), 1e-4 * at[1]);
+        ck_assert_double_le(fabs(300 * at[0] + 100 * at[1] - 400 * mean), 1e-9 * 400 * mean);
+    }
+    OWNED_TRANSIENT *corrected;
+    fibrad_span span = {at, capacity, .duration = 1};
+    assert_ok(fibrad_transient_new(&corrected, NULL, &spheres, NULL, NULL));
+    ck_assert_int_eq(fibrad_transient_advance(corrected, &sources, &span), FIBRAD_E_ARGUMENT);
+}
+
+/* ---- spots and gas ---------------------------------------------------------------------------------------------- */
+
+static fibrad_contact_list *found_in(const struct bed *bed, const fibrad_scene_config *scene,
+                                     const fibrad_contact_rule *rule) {
+    const fibrad_spheres spheres = spheres_of(bed);
+    fibrad_contact_list *list;
+    assert_ok(fibrad_contacts_find(scene, &spheres, rule, &list));
+    return list;
+}
+
+TEST(spots_of_a_pair_and_a_wall) {
+    OWNED_BED bed = BED({0, 0, 0.98, 1}, {0, 0, 2.46, .5});
+    const fibrad_body floor = plane_at(2, 0, 0);
+    const fibrad_scene_config scene = {.body = &floor, .bodies = 1};
+    const double solid[2] = {30, 10};
+    for (int spots = FIBRAD_SPOTS_LENS; spots <= FIBRAD_SPOTS_HERTZ; spots++) {
+        const fibrad_contact_rule rule = {.spots = spots, .scale = .5};
+        fibrad_contact_list *list = found_in(&bed, &scene, &rule);
+        double h[2];
+        ck_assert_uint_eq(list->n, 2);
+        assert_ok(fibrad_contacts_conduct(list, &rule, solid, NULL, h));
+        const double x = (1.48 * 1.48 + 1 - .25) / 2.96, lens = sqrt(1 - x * x), hertz = sqrt(.5 / 1.5 * .02);
+        const double wall = spots == FIBRAD_SPOTS_LENS ? sqrt(1 - .98 * .98) : sqrt(.02);
+        ck_assert_double_le(fabs(h[0] - 2 * 15 * .5 * (spots == FIBRAD_SPOTS_LENS ? lens : hertz)), 1e-9 * h[0]);
+        ck_assert_double_le(fabs(h[1] - 4 * 30 * .5 * wall), 1e-9 * h[1]);
+        fibrad_contacts_free(list);
+    }
+}
+
+/* Contacts of a periodic bed of all sizes, against all pairs and images. Of a box of triangles, those of a box of
+ * planes. */
+TEST(contacts_of_many_sizes) {
+    OWNED_BED bed = strewn(400, 3);
+    const fibrad_contact_rule rule = {.spots = FIBRAD_SPOTS_LENS, .gas_reach = .5};
+    const fibrad_scene_config scene = {.period = {1, 1, 0}};
+    fibrad_contact_list *list = found_in(&bed, &scene, &rule);
+    uint32_t pairs = 0;
+    double sum = 0, distances = 0;
+    for (uint32_t i = 0; i < bed.n; i++)
+        for (uint32_t j = 0; j < i; j++)
+            for (int image = 0; image < 9; image++) {
+                const double x = bed.x[i] - bed.x[j] + image % 3 - 1, y = bed.y[i] - bed.y[j] + image / 3 - 1,
+                             z = bed.z[i] - bed.z[j], d = sqrt(x * x + y * y + z * z);
+                if (d < bed.r[i] + bed.r[j] + .5 * fmin(bed.r[i], bed.r[j])) pairs++, sum += d;
+            }
+    for (uint32_t k = 0; k < list->n; k++) distances += list->distance[k];
+    ck_assert_uint_gt(pairs, 30);
+    ck_assert_uint_eq(list->n, pairs);
+    assert_near(distances, sum, 1e-12);
+    fibrad_contacts_free(list);
+}
+
+/* A line through a sphere, a gap and another sphere or a wall. */
+struct gas_lines {
+    double d, r_i, r_j, k_i, k_j, k_gas, jump, least;
+};
+
+static double gas_line(double r, void *lines) {
+    const struct gas_lines *g = lines;
+    const double l_i = sqrt(g->r_i * g->r_i - r * r), l_j = isinf(g->r_j) ? 0 : sqrt(g->r_j * g->r_j - r * r);
+    const double gap = g->d - l_i - l_j;
+    return 2 * PI * r / (l_i / g->k_i + l_j / g->k_j + fmax(gap + g->jump, g->least) / g->k_gas);
+}
+
+/* What gas conducts, against adaptive quadrature over the radius of lines. */
+LOOP_TEST(gas_between_surfaces, 10) {
+    static const struct {
+        double d, r_i, r_j, jump;
+        int alone;
+    } cases[] = {{2.001, 1, 1, 0, 0},        {2.3, 1, 1, 0, 0},         {1.55, 1, .5, 0, 0},
+                 {3.02, .5, 2.5, 1e-3, 0},   {1.01, 1, INFINITY, 0, 0}, {2.0001, 1, 1, 0, 1},
+                 {1.4, 1, INFINITY, .01, 1}, {1.99, 1, 1, 0, 0},        {1.98, 1, 1, 1e-4, 0},
+                 {.99, 1, INFINITY, 0, 1}};
+    const double k_i = 30, k_j = 4, k_gas = .2, least = 1e-6, reach = .5;
+    const bool wall = isinf(cases[_i].r_j), alone = cases[_i].alone;
+    const double d = cases[_i].d, small = fmin(cases[_i].r_i, cases[_i].r_j),
+                 large = fmax(cases[_i].r_i, cases[_i].r_j);
+    struct bed bed = bed_empty();
+    add_sphere(&bed, 0, 0, d, cases[_i].r_i);
+    if (!wall) add_sphere(&bed, 0, 0, 0, cases[_i].r_j);
+    const fibrad_body floor = plane_at(2, 0, 0);
+    const fibrad_scene_config scene = {.body = &floor, .bodies = wall};
+    const fibrad_contact_rule rule = {
+        .gas_reach = reach, .gas_jump = cases[_i].jump, .gas_least = least, .gas_alone = alone};
+    fibrad_contact_list *list = found_in(&bed, &scene, &rule);
+    const double solid[2] = {k_i, k_j};
+    double h;
+    ck_assert_uint_eq(list->n, 1);
+    assert_ok(fibrad_contacts_conduct(list, &rule, solid, &k_gas, &h));
+
+    struct gas_lines lines = {d,     cases[_i].r_i,  cases[_i].r_j, alone ? INFINITY : k_i, alone ? INFINITY : k_j,
+                              k_gas, cases[_i].jump, least};
+    const double lens = (1 + reach) * small, plane = wall ? d : (d * d + lens * lens - large * large) / (2 * d);
+    const double end = sqrt(fmin(lens * lens - plane * plane, small * small));
+    const double cut = wall ? d : (d * d + small * small - large * large) / (2 * d);
+    const double begin_at = small > cut ? sqrt(fmax(0, small * small - cut * cut)) : 0;
+    const double touching = d < cases[_i].r_i + (wall ? 0 : cases[_i].r_j) ? begin_at : 0;
+    gsl_integration_workspace *space = gsl_integration_workspace_alloc(4000);
+    gsl_function f = {gas_line, &lines};
+    double truth, error;
+    ck_assert_int_eq(gsl_integration_qags(&f, touching, end * (1 - 1e-13), 0, 1e-11, 4000, space, &truth, &error), 0);
+    gsl_integration_workspace_free(space);
+    ck_assert_double_le(fabs(h / truth - 1), 1e-9);
+    fibrad_contacts_free(list);
+    bed_free(&bed);
 }

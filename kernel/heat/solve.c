@@ -609,12 +609,16 @@ static void advance_radiosities(fibrad_heat *heat, const double *product) {
         if (fibrad_heat_is_joined(heat, b)) heat->sources.emission[b] += length * heat->contacts.direction[b];
 }
 
-/* The product of the change that is sent with the matrix times the last direction, over the curvature along it. */
-static double overlap_with_direction(const fibrad_heat *heat, const double *product) {
-    const double curvature = heat->solution.curvature;
-    return curvature > 0
-               ? product_with_direction(heat, heat->solution.source, heat->contacts.warming, product) / curvature
-               : 0;
+/* How much of the last direction the next one keeps: as much as makes both conjugate. In a linear problem this is the
+ * ratio of slopes. Contacts bend, so it differs from that. If it differs much, the last step was of no use for the next
+ * one, and nothing is kept. */
+#define KEPT_MOST 4.0
+static double kept_of_direction(const fibrad_heat *heat, double ratio, const double *product) {
+    if (heat->contacts.count == 0 || heat->sources.conducts) return ratio;
+    if (!(heat->solution.curvature > 0)) return 0;
+    const double overlap = product_with_direction(heat, heat->solution.source, heat->contacts.warming, product);
+    const double keep = -overlap / heat->solution.curvature;
+    return keep > 0 && keep < KEPT_MOST * ratio ? keep : 0;
 }
 
 /* Decides what comes after a sweep: the next step of the search, the finer level, or the end. If the unevenness of
@@ -639,8 +643,7 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
         restart = restart || replaced;
         heat->solution.slope = find_residual(heat);
     }
-    const bool bends = heat->contacts.count > 0 && !heat->sources.conducts;
-    turn_direction(heat, restart ? 0 : bends ? -overlap_with_direction(heat, product) : heat->solution.slope / last);
+    turn_direction(heat, restart ? 0 : kept_of_direction(heat, heat->solution.slope / last, product));
     heat->solution.phase = FIBRAD_HEAT_STEPS;
 }
 
