@@ -20,9 +20,9 @@
 #define FIBRAD_DIRECTIONS_FIRST   100 /* with a tolerance: the number to begin with */
 
 /* All rows by silhouettes */
-#define FIBRAD_LINES_AMONG_WALLS 233 /* a built-in set; what walls get has one sense of each line */
-#define FIBRAD_LINES_DEFAULT  181  /* a built-in set; as accurate as 290 directions of averaged rows */
-#define FIBRAD_LINES_EVEN_MAX 2048 /* lines of a set that is spread evenly; errors of larger sets are not known */
+#define FIBRAD_LINES_AMONG_WALLS 233  /* a built-in set; what walls get has one sense of each line */
+#define FIBRAD_LINES_DEFAULT     181  /* a built-in set; as accurate as 290 directions of averaged rows */
+#define FIBRAD_LINES_EVEN_MAX    2048 /* lines of a set that is spread evenly; errors of larger sets are not known */
 
 /* Rows by rays: rays of each sphere */
 #define FIBRAD_RAYS_DEFAULT 20000
@@ -46,6 +46,7 @@
 /* Heat */
 #define FIBRAD_TEMPERATURE_MAX         1e20 /* K; its fourth power is far from overflow */
 #define FIBRAD_POWER_MAX               1e100
+#define FIBRAD_CONDUCTANCE_MAX         1e60  /* of a contact */
 #define FIBRAD_SIGMA_MIN               1e-30 /* of E = sigma T^4 */
 #define FIBRAD_SIGMA_MAX               1e30
 #define FIBRAD_CAPACITY_MAX            1e300 /* heat capacity of a sphere */
