@@ -35,7 +35,7 @@ static double place_along(const struct bed *bed, int axis, uint32_t i) {
 }
 
 /* The end to which a sphere belongs: 0 the lower one, 1 the upper one, 2 none. */
-static int end_of(const struct between *b, uint32_t i) {
+static int plate_of(const struct between *b, uint32_t i) {
     const double at = place_along(b->bed, b->axis, i), d = b->problem->diameter;
     return at - b->plates.body[0].plane.at < 1.5 * d ? 0 : b->plates.body[1].plane.at - at < 1.5 * d ? 1 : 2;
 }
@@ -87,7 +87,7 @@ static int set_up(struct between *b, double period) {
     cut_contacts(b, period);
     b->plate[0] = HOT_END * p->temperature, b->plate[1] = COLD_END * p->temperature;
     for (uint32_t i = 0; i < bed->n; ++i) {
-        const int end = end_of(b, i);
+        const int end = plate_of(b, i);
         b->given[i] = end < 2 ? b->plate[end] : NAN;
         b->power[i] = end < 2 ? NAN : 0;
     }
@@ -111,8 +111,8 @@ static int read_total(const struct between *b, struct measured_total *total) {
     size_t n = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {
         const double at = place_along(bed, b->axis, i);
-        if (end_of(b, i) == 1) gained += b->gained[i], square += gsl_pow_2(b->error[i]);
-        if (end_of(b, i) < 2 || isnan(b->temperature[i]) || fabs(at - (low + high) / 2) > (high - low) / 4) continue;
+        if (plate_of(b, i) == 1) gained += b->gained[i], square += gsl_pow_2(b->error[i]);
+        if (plate_of(b, i) < 2 || isnan(b->temperature[i]) || fabs(at - (low + high) / 2) > (high - low) / 4) continue;
         b->at[n] = at * metres, b->fitted[n++] = b->temperature[i];
     }
     if (n < FITTED_LEAST)
