@@ -170,8 +170,10 @@ int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *source
 
 /* Begins a solution. It starts from the radiosities of the last solution, if there was one, and if both or neither have
  * `light`. After the call only the arrays `light`, `absorbed` and those of contacts are still needed. They must stay
- * until the solution is read. Errors   as fibrad_heat_check _STATE: a task is not traced, or the scene has changed Cost
- * O(patches) */
+ * until the solution is read.
+ *   Errors   as fibrad_heat_check
+ *            _STATE: a task is not traced, or the scene has changed
+ *   Cost     O(patches) */
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources);
 
 /* Does one part of a sweep. Between two steps each part is swept once. Several threads may sweep different parts at the

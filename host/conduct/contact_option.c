@@ -179,7 +179,7 @@ void contacts_scale(struct contact_state *state, uint32_t spheres, uint32_t wall
 }
 
 /* Writes the name of an end. */
-static void print_end(FILE *file, const struct bed *bed, const struct walls *walls, uint32_t end) {
+static void write_end(FILE *file, const struct bed *bed, const struct walls *walls, uint32_t end) {
     if (end < bed->n)
         fprintf(file, "%lld,", (long long)bed_name(bed, end));
     else
@@ -195,8 +195,8 @@ int contacts_write(const struct contact_state *state, const struct bed *bed, con
     if (status) return status;
     fputs("i,j,W/K,W\n", output.file);
     for (uint32_t k = 0; k < state->n; ++k) {
-        print_end(output.file, bed, walls, state->first[k]);
-        print_end(output.file, bed, walls, state->second[k]);
+        write_end(output.file, bed, walls, state->first[k]);
+        write_end(output.file, bed, walls, state->second[k]);
         fprintf(output.file, "%.9g,%.9g\n", state->conductance[k] / state->per_watt, state->flow[k]);
     }
     return output_close(&output, output_flush(&output));

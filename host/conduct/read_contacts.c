@@ -30,8 +30,8 @@ static uint32_t find_sphere(const struct bed *bed, int64_t name) {
 }
 
 /* Finds an end: a wall by its name, or a sphere. */
-static int find_end(const struct lines *lines, const char *text, const struct bed *bed, const struct walls *walls,
-                    uint32_t *end) {
+static int name_of_end(const struct lines *lines, const char *text, const struct bed *bed, const struct walls *walls,
+                       uint32_t *end) {
     int64_t name;
     for (uint32_t k = 0; k < walls->count; ++k) {
         if (strcmp(text, wall_name(walls, k)) != 0) continue;
@@ -68,8 +68,8 @@ static int take_contact(const struct lines *lines, const struct fields *fields, 
         return message_at(STATUS_INPUT, lines->name, lines->number, "%zu columns instead of i,j,W/K", fields->n);
     int status = grow_lines(to);
     const uint32_t k = to->n;
-    if (!status) status = find_end(lines, fields->at[0], bed, walls, &to->first[k]);
-    if (!status) status = find_end(lines, fields->at[1], bed, walls, &to->second[k]);
+    if (!status) status = name_of_end(lines, fields->at[0], bed, walls, &to->first[k]);
+    if (!status) status = name_of_end(lines, fields->at[1], bed, walls, &to->second[k]);
     if (!status) status = lines_number(lines, "conductance", fields->at[2], &to->conductance[k]);
     if (status) return status;
     const bool periodic = bed->period[0] > 0 || bed->period[1] > 0 || bed->period[2] > 0;

@@ -52,7 +52,7 @@ static uint32_t class_of(double radius, double largest) {
 }
 
 /* The cell of a coordinate, limited to the grid. */
-static uint32_t cell_along(const struct search *s, const struct size_class *class, int axis, double at) {
+static uint32_t class_cell(const struct search *s, const struct size_class *class, int axis, double at) {
     const double cell = floor((at - s->low[axis]) / class->edge);
     return cell <= 0 ? 0 : cell >= class->cells[axis] - 1 ? class->cells[axis] - 1 : (uint32_t)cell;
 }
@@ -69,8 +69,8 @@ static void sort_class(struct search *s, struct size_class *class) {
     }
     for (uint32_t k = class->begin; k < class->end; ++k) {
         const double *at = s->at[s->celled[k].sphere];
-        const uint32_t cell[3] = {cell_along(s, class, 0, at[0]), cell_along(s, class, 1, at[1]),
-                                  cell_along(s, class, 2, at[2])};
+        const uint32_t cell[3] = {class_cell(s, class, 0, at[0]), class_cell(s, class, 1, at[1]),
+                                  class_cell(s, class, 2, at[2])};
         s->celled[k].cell = cell_number(class, cell);
     }
     qsort(s->celled + class->begin, class->end - class->begin, sizeof *s->celled, by_cell);
@@ -123,7 +123,7 @@ static int spheres_in_box(const struct search *s, const struct size_class *class
     int status = FIBRAD_OK;
     for (int axis = 0; axis < 3; ++axis) {
         if (high[axis] < s->low[axis] || low[axis] > s->high[axis]) return FIBRAD_OK;
-        from[axis] = cell_along(s, class, axis, low[axis]), to[axis] = cell_along(s, class, axis, high[axis]);
+        from[axis] = class_cell(s, class, axis, low[axis]), to[axis] = class_cell(s, class, axis, high[axis]);
     }
     for (uint32_t x = from[0]; x <= to[0]; ++x)
         for (uint32_t y = from[1]; y <= to[1] && !status; ++y) {

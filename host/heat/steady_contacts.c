@@ -31,11 +31,9 @@ struct between {
     double plate_power[WALLS_MAX], plate_error[WALLS_MAX];
 };
 
-static double place_along(const struct bed *bed, int axis, uint32_t i) { return bed_centres(bed, axis)[i]; }
-
 /* The end to which a sphere belongs: 0 the lower one, 1 the upper one, 2 none. */
-static int end_of(const struct between *b, uint32_t i) {
-    const double at = place_along(b->bed, b->axis, i), d = b->problem->diameter;
+static int plate_of(const struct between *b, uint32_t i) {
+    const double at = bed_centres(b->bed, b->axis)[i], d = b->problem->diameter;
     return at - b->plates.body[0].plane.at < 1.5 * d ? 0 : b->plates.body[1].plane.at - at < 1.5 * d ? 1 : 2;
 }
 
@@ -62,7 +60,7 @@ static void cut_contacts(struct between *b, double period) {
     const struct bed *bed = b->bed;
     for (uint32_t k = 0; k < b->contacts.listed; ++k) {
         const uint32_t i = b->contacts.first[k], j = b->contacts.second[k];
-        if (i < bed->n && j < bed->n && 2 * fabs(place_along(bed, b->axis, i) - place_along(bed, b->axis, j)) > period)
+        if (i < bed->n && j < bed->n && 2 * fabs(bed_centres(bed, b->axis)[i] - bed_centres(bed, b->axis)[j]) > period)
             b->contacts.conductance[k] = 0;
     }
 }
@@ -88,7 +86,7 @@ static int set_up(struct between *b, double period) {
     b->sources.insulated = b->insulated;
     b->plate[0] = HOT_END * p->temperature, b->plate[1] = COLD_END * p->temperature;
     for (uint32_t i = 0; i < bed->n; ++i) {
-        const int end = end_of(b, i);
+        const int end = plate_of(b, i);
         b->given[i] = end < 2 ? b->plate[end] : NAN;
         b->power[i] = end < 2 ? NAN : 0;
     }
@@ -111,9 +109,9 @@ static int read_total(const struct between *b, struct measured_total *total) {
     double c0, slope, cov00, cov01, cov11, squares, gained = b->plate_power[1], square = gsl_pow_2(b->plate_error[1]);
     size_t n = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {
-        const double at = place_along(bed, b->axis, i);
-        if (end_of(b, i) == 1) gained += b->gained[i], square += gsl_pow_2(b->error[i]);
-        if (end_of(b, i) < 2 || isnan(b->temperature[i]) || fabs(at - (low + high) / 2) > (high - low) / 4) continue;
+        const double at = bed_centres(bed, b->axis)[i];
+        if (plate_of(b, i) == 1) gained += b->gained[i], square += gsl_pow_2(b->error[i]);
+        if (plate_of(b, i) < 2 || isnan(b->temperature[i]) || fabs(at - (low + high) / 2) > (high - low) / 4) continue;
         b->at[n] = at * metres, b->fitted[n++] = b->temperature[i];
     }
     if (n < FITTED_LEAST)

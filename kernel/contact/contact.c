@@ -46,13 +46,13 @@ typedef struct contact_ends {
     uint32_t i, j;
 } contact_ends;
 
-static contact_ends ends_of(const fibrad_contacts *c, uint32_t k) {
+static contact_ends nodes_of(const fibrad_contacts *c, uint32_t k) {
     return (contact_ends){c->node[c->first[k]], c->node[c->second[k]]};
 }
 
 void fibrad_contact_gains(const fibrad_contacts *c, const double *temperature, double *to) {
     for (uint32_t k = 0; k < c->count; k++) {
-        const contact_ends e = ends_of(c, k);
+        const contact_ends e = nodes_of(c, k);
         if (!(c->conductance[k] > 0)) continue;
         const double flow = c->conductance[k] * (temperature[e.j] - temperature[e.i]);
         to[e.i] += flow, to[e.j] -= flow;
@@ -73,7 +73,7 @@ static double if_free(const fibrad_contacts *c, const double *value, uint32_t no
 double fibrad_contact_product(const fibrad_contacts *c, const double *a, const double *b) {
     double sum = 0;
     for (uint32_t k = 0; k < c->count; k++) {
-        const contact_ends e = ends_of(c, k);
+        const contact_ends e = nodes_of(c, k);
         const double of_a = if_free(c, a, e.j) - if_free(c, a, e.i), of_b = if_free(c, b, e.j) - if_free(c, b, e.i);
         if (of_a != 0 && of_b != 0) sum += exchange_area(c, k, e) * of_a * of_b;
     }
@@ -96,7 +96,7 @@ static void multiply_contacts(fibrad_contacts *c, bool kelvins, const double *x)
     for (uint32_t b = 0; b < c->nodes; b++)
         c->product[b] = c->kind[b] == FIBRAD_CONTACT_FREE ? own_weight(c, kelvins, b) * x[b] : 0;
     for (uint32_t k = 0; k < c->count; k++) {
-        const contact_ends e = ends_of(c, k);
+        const contact_ends e = nodes_of(c, k);
         if (!(c->conductance[k] > 0)) continue;
         const double flow = weight_of(c, kelvins, k, e) * (x[e.i] - x[e.j]);
         c->product[e.i] += flow, c->product[e.j] -= flow;
@@ -106,7 +106,7 @@ static void multiply_contacts(fibrad_contacts *c, bool kelvins, const double *x)
 static void find_diagonal(fibrad_contacts *c, bool kelvins) {
     for (uint32_t b = 0; b < c->nodes; b++) c->diagonal[b] = own_weight(c, kelvins, b);
     for (uint32_t k = 0; k < c->count; k++) {
-        const contact_ends e = ends_of(c, k);
+        const contact_ends e = nodes_of(c, k);
         const double weight = e.i != e.j ? weight_of(c, kelvins, k, e) : 0;
         c->diagonal[e.i] += weight, c->diagonal[e.j] += weight;
     }
