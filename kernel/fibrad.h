@@ -464,7 +464,8 @@ typedef struct fibrad_row {
     int symmetric;       /* out: 1 if A_i F_ij = A_j F_ji holds without averaging */
     uint32_t lines;      /* out: number of lines of a row along lines, else 0 */
     float *half;         /* [capacity], out, of a row along lines: half the difference of the factors by even and by odd
-                            lines; may be NULL. Rows in a collection keep it. */
+                            lines; infinity: the factor is exact, since nothing can come between both spheres. May be
+                            NULL. Rows in a collection keep it. */
     double noise, shares; /* out, of a row along lines: the parts of `error` that come from the points of masks, and
                              from the shares of walls and surroundings */
 } fibrad_row;

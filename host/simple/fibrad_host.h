@@ -405,8 +405,8 @@ typedef enum fibrad_spots { FIBRAD_SPOTS_NONE = 0, FIBRAD_SPOTS_LENS = 1, FIBRAD
 
 /* Which contacts are found, and what they conduct. Zeroed: none. */
 typedef struct fibrad_contact_rule {
-    int spots;    /* a fibrad_spots */
-    double scale; /* of the radii of spots, above 0; 0: 1 */
+    int spots;        /* a fibrad_spots */
+    double scale;     /* of the radii of spots, above 0; 0: 1 */
     double gas_reach; /* thickness of the gas that conducts about the smaller sphere, in its radii, 0 to 1; 0: no gas */
     double gas_jump;  /* L, is added to gaps, since narrow gaps conduct less; 0 or more */
     double gas_least; /* L, least gap that counts, above 0; 0: 1e-7 of the smaller radius */

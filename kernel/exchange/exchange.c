@@ -85,7 +85,7 @@ static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_
     int status = fibrad_beam_complete(&beam, &beam);
     for (;;) {
         beam.points = beam.directions <= BY_FEW_POINTS ? 64 : beam.directions <= BY_POINTS ? 256 : 0;
-        if (status == FIBRAD_OK) status = fibrad_beam_compute(scene, space, i, &beam, row);
+        if (status == FIBRAD_OK) status = fibrad_beam_compute(scene, space, i, &beam, true, row);
         if (status != FIBRAD_OK) return status;
         double most = 0;
         for (uint32_t k = 0; k < row->length; k++) most = fibrad_max(most, task->emissivity[row->col[k]]);

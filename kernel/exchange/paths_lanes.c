@@ -313,7 +313,7 @@ static void leave_sphere(fibrad_paths *paths, struct grey_path *path, uint32_t l
 
 /* Follows a first leg. Writes where it arrives, and what the surface there reflects. */
 static void follow_first_leg(fibrad_paths *paths, fibrad_leg *leg) {
-    struct grey_path path = {.weight = 1, .place = paths->place, .triangle = FIBRAD_NO_SIDE};
+    struct grey_path path = {.weight = leg->weight, .place = paths->place, .triangle = FIBRAD_NO_SIDE};
     fibrad_copy(path.n, leg->n, sizeof path.n);
     const uint32_t met = trace_leg(paths, &path, leg->w, leg);
     leg->weight = 0;
@@ -325,11 +325,11 @@ static void follow_first_leg(fibrad_paths *paths, fibrad_leg *leg) {
     leg->weight = path.weight, leg->sphere = path.place, leg->triangle = path.triangle;
 }
 
-/* Chooses as many legs as there are, those of large weight several times and some of small weight not at all. */
+/* Chooses a leg for each path that begins with one, those of large weight several times and some of small weight not at all. */
 static void choose_legs(fibrad_legs *legs, double offset) {
     double all = 0, sum = 0;
     uint32_t at = 0, last = 0;
-    for (uint32_t k = 0; k < legs->length; k++) {
+    for (uint32_t k = 0; k < legs->sources; k++) {
         all += legs->leg[k].weight;
         if (legs->leg[k].weight > 0) last = k;
     }
@@ -342,7 +342,7 @@ static void choose_legs(fibrad_legs *legs, double offset) {
 }
 
 void LANED(fibrad_paths_arrive)(fibrad_paths *paths) {
-    for (uint32_t k = 0; k < paths->legs->length; k++) follow_first_leg(paths, &paths->legs->leg[k]);
+    for (uint32_t k = 0; k < paths->legs->sources; k++) follow_first_leg(paths, &paths->legs->leg[k]);
     choose_legs(paths->legs, fibrad_fraction(fibrad_random_ahead(paths->stream, QUASI_COORDINATES)));
 }
 

@@ -295,8 +295,9 @@ static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t p
         }
     }
     if (work->back != UINT32_MAX) return FIBRAD_E_BACK;
+    const uint32_t count = fibrad_heat_free_beams(heat, work, (uint32_t)(beam - first));
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
-    return fibrad_heat_keep(heat, work, place, (uint32_t)(beam - first));
+    return fibrad_heat_keep(heat, work, place, count);
 }
 
 /* Follows ray k of the wall of a slot. ray: out: the patches that it connects. */

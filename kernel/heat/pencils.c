@@ -8,6 +8,8 @@
 #include "heat/wall_patch.h"
 #include "base/arena.h"
 #include "base/constants.h"
+#include "row/free_pair.h"
+#include "sample/sphere_patch.h"
 
 /* Number of bodies that a row sees, times the solid fraction, over the square root of its beams. Measured in random
  * beds of equal spheres: 0.75 at the solid fraction 0.6, and 1.1 at 0.2. */
@@ -27,6 +29,9 @@
 static double room_joined(double beams, double most, double fraction) {
     return fibrad_min(beams, most + (beams - most) * fibrad_max(0, 1 - 2 * fraction));
 }
+
+/* Room for beams to spheres that no window has met. */
+#define FREE_BEAMS 256u
 
 struct heat_pool {
     size_t links_at, bytes; /* SIZE_MAX: more than a size_t can say */
@@ -214,7 +219,7 @@ static uint32_t write_row(const fibrad_heat *heat, uint32_t place, const fibrad_
 
 /* Bytes of the arrays of row_scratch, which follow each other: both arrays of beams, pencils, fours, seen. */
 static void scratch_bytes(const fibrad_heat *heat, size_t bytes[4]) {
-    const size_t beams = heat->beams, pairs = fours_pairs(heat);
+    const size_t beams = (size_t)heat->beams + FREE_BEAMS, pairs = fours_pairs(heat);
     bytes[0] = 2 * beams * sizeof(fibrad_heat_beam);
     bytes[1] = beams * BEAM_BYTES;
     bytes[2] = (pairs < beams ? pairs : beams) * sizeof(struct four_patches);
@@ -236,6 +241,63 @@ static struct row_scratch divide_scratch(const fibrad_heat *heat, unsigned char 
                                 .pencils = pencils,
                                 .fours = (void *)fours,
                                 .seen = (void *)(fours + bytes[2])};
+}
+
+/* A beam along the line of centres to the sphere of an entry. */
+static fibrad_heat_beam beam_along_centres(const fibrad_heat *heat, const fibrad_workspace *work, uint32_t entry) {
+    const uint32_t other = work->entries.sphere[entry];
+    double out[3] = {heat->scene->x[other], heat->scene->y[other], heat->scene->z[other]}, back[3], square = 0;
+    for (int axis = 0; axis < 3; axis++) out[axis] -= work->centre[axis], square += out[axis] * out[axis];
+    for (int axis = 0; axis < 3; axis++) out[axis] /= fibrad_sqrt(square), back[axis] = -out[axis];
+    return (fibrad_heat_beam){entry, (uint16_t)fibrad_patch_of(out, heat->side), (uint16_t)fibrad_patch_of(back, heat->side)};
+}
+
+/* What a row has of free pairs and of all that is no sphere, in beams. */
+struct free_share {
+    double others, seen;
+    uint64_t exact; /* sum of exact factors, in units of 2^-60, so that it does not depend on an order */
+};
+
+static double entry_beams(const fibrad_entries *entries, uint32_t entry) {
+    const double *part = entries->part[entry];
+    return part[0] + part[2] + (part[1] + part[3]);
+}
+
+/* Sums up a row. Spheres with fine patches have no exact factor, and neither have spheres for whose beams there is no
+ * room. */
+static struct free_share share_of_free(const fibrad_heat *heat, fibrad_entries *entries) {
+    struct free_share share = {0, 0, 0};
+    uint32_t more = 0;
+    for (uint32_t k = 0; k < entries->length; k++) {
+        const double beams = entry_beams(entries, k);
+        if (entries->sphere[k] >= heat->rows) share.others += beams;
+        if (!(entries->exact[k] > 0)) continue;
+        if (heat->division.root[entries->sphere[k]] != FIBRAD_NONE || (beams == 0 && ++more > FREE_BEAMS))
+            entries->exact[k] = 0;
+        else
+            share.seen += beams, share.exact += (uint64_t)(entries->exact[k] * 0x1p60);
+    }
+    return share;
+}
+
+uint32_t fibrad_heat_free_beams(const fibrad_heat *heat, fibrad_workspace *work, uint32_t count) {
+    fibrad_heat_beam *beam = work->extra;
+    fibrad_entries *entries = &work->entries;
+    const double all = heat->beams;
+    if (heat->division.root[work->place] != FIBRAD_NONE) return count;
+    (void)fibrad_free_pairs_find(work, 1 / all);
+    const struct free_share share = share_of_free(heat, entries);
+    const double left = share.others + (share.seen - (double)share.exact * 0x1p-60 * all);
+    if (share.exact == 0 || !(left > 0)) return count;
+    for (uint32_t k = 0; k < entries->length; k++) {
+        const bool exact = entries->exact[k] > 0;
+        if (exact && entry_beams(entries, k) == 0) beam[count++] = beam_along_centres(heat, work, k);
+        for (int p = 0; p < 4 && (exact || entries->sphere[k] >= heat->rows); p++) {
+            double *part = &entries->part[k][p];
+            *part = exact ? entries->exact[k] * all / 4 : *part * (left / share.others);
+        }
+    }
+    return count;
 }
 
 int fibrad_heat_keep(fibrad_heat *heat, const fibrad_workspace *work, uint32_t place, uint32_t count) {

@@ -58,7 +58,8 @@ static double error_of_halves(const row_halves *halves, const fibrad_record *row
     return fibrad_sqrt(HALVES_ERROR * HALVES_ERROR * areas + halves->noise + row->shares * row->shares);
 }
 
-/* Merges row i from `length` entries of its own and those of the transpose from *there on. */
+/* Merges row i from `length` entries of its own and those of the transpose from *there on. If one of two factors is
+ * exact, it is taken as it is. Exact factors have a minus sign until the rows are closed. */
 static uint64_t merge_row(fibrad_matrix *m, uint32_t i, uint64_t at, uint64_t *there) {
     const fibrad_sparse to = m->result;
     const fibrad_record *row = m->row[i];
@@ -73,7 +74,13 @@ static uint64_t merge_row(fibrad_matrix *m, uint32_t i, uint64_t at, uint64_t *t
         const uint32_t mine = here < length ? col[here] : UINT32_MAX;
         const uint32_t theirs = *there < there_end ? to.col[*there] : UINT32_MAX, j = mine < theirs ? mine : theirs;
         const double own = mine == j ? f[here] : 0, back = theirs == j ? to.f[*there] : 0;
-        if (half != NULL) {
+        const bool own_exact = half != NULL && mine == j && half[here] == FIBRAD_HALF_EXACT;
+        const bool back_exact = half != NULL && theirs == j && to.half[*there] == FIBRAD_HALF_EXACT;
+        const bool exact = own_exact || back_exact, one = own_exact != back_exact;
+        const double own_part = one ? own_exact : fibrad_matrix_own(m, i, j);
+        const double back_part = one ? back_exact : fibrad_matrix_own(m, j, i);
+        const double mean = (own_part * (area[i] * own) + back_part * (area[j] * back)) * inverse;
+        if (half != NULL && !exact) {
             const double ratio = area[j] * inverse;
             const double difference = ((mine == j ? half[here] : 0) + ratio * (theirs == j ? to.half[*there] : 0)) / 2;
             halves.square += difference * difference, halves.sum += difference;
@@ -81,7 +88,7 @@ static uint64_t merge_row(fibrad_matrix *m, uint32_t i, uint64_t at, uint64_t *t
         }
         here += mine == j, *there += theirs == j;
         to.col[at] = j;
-        to.f[at++] = (fibrad_matrix_own(m, i, j) * (area[i] * own) + fibrad_matrix_own(m, j, i) * (area[j] * back)) * inverse;
+        to.f[at++] = exact ? -mean : mean;
     }
     if (half != NULL) m->error[i] = error_of_halves(&halves, row), m->noise[i] = fibrad_sqrt(halves.noise);
     return at;

@@ -9,7 +9,14 @@ uint64_t fibrad_sparse_find(const fibrad_sparse *rows, uint32_t i, uint32_t j) {
 
 double fibrad_sparse_sum(const fibrad_sparse *rows, uint32_t i) {
     double sum = 0;
-    for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) sum += rows->f[k];
+    for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) sum += fibrad_abs(rows->f[k]);
+    return sum;
+}
+
+/* The sum of the exact factors of row i. */
+static double exact_sum(const fibrad_sparse *rows, uint32_t i) {
+    double sum = 0;
+    for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) sum -= fibrad_min(0, rows->f[k]);
     return sum;
 }
 
@@ -64,9 +71,13 @@ static void scaling_step(void *job, uint32_t p) {
     const double *given = m->scratch, *u = given + rows->n;
     double *next = m->scratch + 2 * (size_t)rows->n, worst = 0;
     for (uint32_t i = m->part[p].begin; i < m->part[p].end; i++) {
-        const double emits = m->r[i] > 0 ? 1 : 0, target = scaling->closing ? emits : given[i];
-        double sum = scaling->closing ? given[i] : 0;
-        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) sum += rows->f[k] * u[rows->col[k]];
+        const double emits = m->r[i] > 0 ? 1 : 0;
+        double target = scaling->closing ? emits : given[i], sum = scaling->closing ? given[i] : 0;
+        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++)
+            if (rows->f[k] < 0)
+                target += rows->f[k];
+            else
+                sum += rows->f[k] * u[rows->col[k]];
         worst = fibrad_max(worst, fibrad_abs(target - u[i] * sum));
         next[i] = sum > 0 ? next_scale(u[i], next[i], target / sum) : 1;
     }
@@ -98,17 +109,19 @@ static void find_scaling(fibrad_matrix *m, bool closing, double tolerance) {
 
 static void scale_rows(fibrad_sparse *rows, const double *u) {
     for (uint32_t i = 0; i < rows->n; i++)
-        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) rows->f[k] *= u[i] * u[rows->col[k]];
+        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++)
+            if (rows->f[k] > 0) rows->f[k] *= u[i] * u[rows->col[k]];
 }
 
 /* Reduces rows with sums above their targets to these targets. Reciprocity stays. target NULL: 1. */
 static void bring_down(fibrad_sparse *rows, const double *target, double *u) {
     for (uint32_t i = 0; i < rows->n; i++) {
-        const double sum = fibrad_sparse_sum(rows, i), most = target != NULL ? target[i] : 1;
-        u[i] = sum > most ? most / sum : 1;
+        const double sum = fibrad_sparse_sum(rows, i), most = target != NULL ? target[i] : 1, exact = exact_sum(rows, i);
+        u[i] = sum > most && sum > exact ? (most - exact) / (sum - exact) : 1;
     }
     for (uint32_t i = 0; i < rows->n; i++)
-        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) rows->f[k] *= fibrad_min(u[i], u[rows->col[k]]);
+        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++)
+            if (rows->f[k] > 0) rows->f[k] *= fibrad_min(u[i], u[rows->col[k]]);
 }
 
 /* Finds what rows leave for all but spheres. Sampled rows say so themselves. Otherwise the averaged sum says it, since it
@@ -136,6 +149,7 @@ void fibrad_matrix_balance(fibrad_matrix *m) {
     find_scaling(m, true, 1e-14);
     scale_rows(&m->result, u);
     bring_down(&m->result, NULL, u);
+    for (uint64_t k = 0; k < m->result.start[m->result.n]; k++) m->result.f[k] = fibrad_abs(m->result.f[k]);
 }
 
 /* Adds to F_ii what a row lacks of its target, if it is more than a rounding error. Rows move up to make room. */

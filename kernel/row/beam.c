@@ -41,8 +41,8 @@ int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule) 
 }
 
 int fibrad_beam_compute(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_beam_rule *rule,
-                        fibrad_row *row) {
-    const fibrad_beam_range all = {.from = 0, .to = rule->directions};
+                        bool exact, fibrad_row *row) {
+    const fibrad_beam_range all = {.from = 0, .to = rule->directions, .exact = exact};
     return FIBRAD_VERSION_OF(fibrad_beam_lanes, scene->facts.isa)(scene, space, i, rule, &all, row);
 }
 
@@ -50,11 +50,11 @@ int fibrad_beam_compute(const fibrad_scene *scene, fibrad_workspace *space, uint
 static int beam_to_tolerance(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *given,
                              fibrad_row *row) {
     fibrad_beam_rule rule = *(const fibrad_beam_rule *)given;
-    if (rule.tolerance == 0) return fibrad_beam_compute(scene, space, i, &rule, row);
+    if (rule.tolerance == 0) return fibrad_beam_compute(scene, space, i, &rule, rule.lines != NULL, row);
     double body[FIBRAD_BODIES_MAX];
     fibrad_row trial = fibrad_row_scratch(space, body);
     for (;;) {
-        const int status = fibrad_beam_compute(scene, space, i, &rule, &trial);
+        const int status = fibrad_beam_compute(scene, space, i, &rule, false, &trial);
         if (status != FIBRAD_OK) return status;
         if (trial.error <= rule.tolerance || rule.directions == FIBRAD_DIRECTIONS_MAX)
             return fibrad_row_give(scene, &trial, row);

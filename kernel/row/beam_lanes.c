@@ -5,6 +5,7 @@
 #include "sample/direction.h"
 #include "row/beam.h"
 #include "row/beam_lanes.h"
+#include "row/free_pair.h"
 #include "work/legs_lanes.h"
 #include "row/mesh_share_lanes.h"
 #include "row/wall_share_lanes.h"
@@ -183,6 +184,11 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     const double each = rule->points > 0 ? rule->points : FIBRAD_PI;
     const double all = sums.whole[0] + sums.whole[1], scale = masked ? 1 / all : 1 / (windows.count * each);
     for (int half = 0; half < 2 && windows.lines != NULL; half++) work->entries.balance[half] = all / (2 * sums.whole[half]);
+    fibrad_free_pairs pairs = {0, 1, 0};
+    if (range->exact) pairs = fibrad_free_pairs_find(work, scale);
+    if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
+    status = fibrad_free_pairs_legs(work);
+    if (status != FIBRAD_OK) return status;
     status = fibrad_entries_row(&work->entries, scene, scale, row);
     if (status != FIBRAD_OK) return status;
     if (scene->container.walls) LANED(fibrad_walls_complete)(work, &set, parts);
@@ -191,18 +197,22 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     row->beyond = work->wall[FIBRAD_BEYOND] * scale;
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
         if (fibrad_slot_of_body(slot)) work->wall[slot] = fibrad_max(0, work->wall[slot]) * scale;
+    fibrad_free_pairs_share(&pairs, work->wall, row);
     fibrad_row_cut(scene, work->place, work->wall, row);
     fibrad_row_bodies(scene, work->wall, row);
     row->lines = rule->lines != NULL ? windows.count : 0;
     row->noise = masked ? noise_of(&windows, all, work->masks.regions) : 0;
-    row->shares = SHARES_ERROR * fibrad_sqrt(parts[0]) * scale;
+    const double shares = SHARES_ERROR * fibrad_sqrt(parts[0]) * scale;
+    row->shares = fibrad_sqrt(shares * shares + pairs.unseen * pairs.unseen);
     if (row->lines > 0 || masked) {
         const double gain = row->lines > 0 ? LINES_ERROR : DIRECTIONS_ERROR;
+        if (row->lines > 0 && row->half != NULL) fibrad_weigh_halves(work, row);
         const double areas = fibrad_max(0, row->error * row->error - row->noise * row->noise);
         row->error = fibrad_sqrt(gain * gain * areas + row->noise * row->noise + row->shares * row->shares);
     } else {
         if (parts[0] > 0) row->error = fibrad_sqrt(row->error * row->error + parts[0] * scale * scale);
-        row->error = fibrad_entries_error(&work->entries, parts, row->error, scale);
+        const double error = fibrad_entries_error(&work->entries, parts, row->error, scale);
+        row->error = fibrad_sqrt(error * error + pairs.unseen * pairs.unseen);
     }
     if (row->lines == 0) row->half = NULL;
     row->directions = windows.count;

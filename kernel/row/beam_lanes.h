@@ -12,6 +12,7 @@ typedef struct fibrad_beam_range {
     fibrad_addends *addends;     /* NULL: results go into the row */
     const fibrad_row_part *part; /* [parts]; NULL: windows are computed */
     uint32_t parts;
+    bool exact; /* pairs that nothing can come between have exact factors */
 } fibrad_beam_range;
 
 /* Sums over the windows of a row so far. */

@@ -74,6 +74,6 @@ int fibrad_beam_join(const fibrad_scene *scene, fibrad_work *work, uint32_t i, c
         if (part[p].key != key || part[p].from != to || part[p].count > part[p].memory.size / sizeof(fibrad_addend))
             return FIBRAD_E_STATE;
     if (to != how.rule.directions) return FIBRAD_E_STATE;
-    how.range = (fibrad_beam_range){.part = part, .parts = parts};
+    how.range = (fibrad_beam_range){.part = part, .parts = parts, .exact = how.rule.lines != NULL};
     return fibrad_row_run(scene, work, i, &(fibrad_row_method){compute_range, &how, 0, 0}, row);
 }

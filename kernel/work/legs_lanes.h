@@ -32,7 +32,8 @@ static void LANED(begin_legs)(fibrad_legs *legs) {
         vd_store(to[2], ring * cosine);
         vd_store(to[3], ring * sine);
         for (uint32_t lane = 0; lane < VD_LANES && k + lane < legs->wanted; lane++)
-            legs->leg[k + lane] = (fibrad_leg){.n = {to[0][lane], to[1][lane]},
+            legs->leg[k + lane] = (fibrad_leg){.weight = 1,
+                                               .n = {to[0][lane], to[1][lane]},
                                                .even = {to[2][lane], to[3][lane], 1 - (at[2][lane] + at[2][lane])}};
     }
 }

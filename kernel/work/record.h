@@ -23,6 +23,9 @@ static inline const uint32_t *fibrad_record_col(const fibrad_record *record) {
     return (const uint32_t *)(const void *)(fibrad_record_f(record) + record->length);
 }
 
+/* In place of half the difference of an exact factor. */
+#define FIBRAD_HALF_EXACT __builtin_inff()
+
 /* NULL: the row is not along lines. */
 static inline const float *fibrad_record_half(const fibrad_record *record) {
     return record->lines > 0 ? (const float *)(const void *)(fibrad_record_col(record) + record->length) : NULL;

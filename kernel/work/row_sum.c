@@ -1,6 +1,7 @@
 /* row_sum.c - collects the entries of a row. SPDX-License-Identifier: MIT */
 #include "work/row_sum.h"
 #include "base/sort.h"
+#include "work/record.h"
 
 static uint32_t hash_slot_of(const fibrad_entries *entries, uint32_t sphere) {
     uint32_t mask = entries->slots - 1, slot = (sphere * 2654435769u >> 7) & mask; /* Fibonacci hashing */
@@ -15,7 +16,7 @@ uint32_t fibrad_entries_of(fibrad_entries *entries, uint32_t sphere) {
     entries->slot[entry] = slot;
     entries->sphere[entry] = sphere;
     for (int part = 0; part < 4; part++) entries->part[entry][part] = 0;
-    entries->lengths[entry] = entries->angles[entry] = 0;
+    entries->lengths[entry] = entries->angles[entry] = entries->exact[entry] = 0;
     return entry;
 }
 
@@ -53,11 +54,11 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
     uint64_t units[2] = {0, 0};
     double square = 0;
     for (uint32_t k = 0; k < entries->length; k++) {
-        const double *part = entries->part[k];
-        double difference = entry_difference(entries, k) * scale;
+        const double exact = entries->exact[k];
+        const double difference = exact > 0 ? 0 : entry_difference(entries, k) * scale;
         square += difference * difference;
         if (entries->masked) add_square(units, difference * difference);
-        if (entries->sphere[k] >= scene->facts.spheres || entry_sum(part) == 0) continue;
+        if (entries->sphere[k] >= scene->facts.spheres || (entry_sum(entries->part[k]) == 0 && exact == 0)) continue;
         entries->key[0][n++] = (uint64_t)scene->order[entries->sphere[k]] << 32 | k;
     }
     row->length = n;
@@ -69,9 +70,10 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
     for (uint32_t k = 0; k < n; k++) {
         uint32_t entry = (uint32_t)key[k];
         row->col[k] = (uint32_t)(key[k] >> 32);
-        const double *part = entries->part[entry];
-        row->f[k] = entry_sum(part) * scale;
-        if (row->half != NULL) row->half[k] = (float)(entry_difference(entries, entry) * scale);
+        const double exact = entries->exact[entry];
+        row->f[k] = exact > 0 ? exact : entry_sum(entries->part[entry]) * scale;
+        if (row->half != NULL)
+            row->half[k] = exact > 0 ? FIBRAD_HALF_EXACT : (float)(entry_difference(entries, entry) * scale);
     }
     return FIBRAD_OK;
 }
@@ -85,6 +87,7 @@ double fibrad_entries_error(const fibrad_entries *entries, const double parts[2]
     double halves = parts[0], fourths = parts[1], gain = most;
     for (uint32_t k = 0; k < entries->length; k++) {
         const double *part = entries->part[k];
+        if (entries->exact[k] > 0) continue;
         double half = part[0] + part[2] - part[1] - part[3], even = part[0] - part[2], odd = part[1] - part[3];
         halves += half * half;
         fourths += even * even + odd * odd;

@@ -14,6 +14,7 @@ typedef struct fibrad_entries {
     double (*part)[4]; /* [capacity] visible area, or number of rays, over all windows k = 0, 1, 2, 3 mod 4 */
     double *lengths;   /* [capacity] sum of the lengths of the rays [L] */
     double *angles;    /* [capacity] sum of the angles between the rays and the line of centres */
+    double *exact;     /* [capacity] an exact factor, which takes the place of the sums; 0: none */
     uint64_t *key[2];  /* [capacity] scratch of the sort by columns */
     uint32_t slots, capacity, length, missed;
     fibrad_addends *addends; /* NULL, or a list of terms that are to be added later */
@@ -57,7 +58,7 @@ uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere);
 /* Entries with numbers of spheres + slot belong to slots. Adds them to the sums of the slots. */
 void fibrad_entries_slots(const fibrad_entries *entries, const fibrad_scene *scene, double wall[FIBRAD_SLOTS]);
 
-/* Writes the row: entries times `scale`, columns ascending, and row->half unless it is NULL. row->error: the distance of the sums over even and odd
+/* Writes the row: entries times `scale`, columns ascending, and row->half unless it is NULL. For exact factors it is FIBRAD_HALF_EXACT, and they have no part in row->error. row->error: the distance of the sums over even and odd
  * windows. Entries of slots count in the error only. Entries that triangles have hidden again are left out. */
 int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene, double scale, fibrad_row *row);
 

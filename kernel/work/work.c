@@ -82,6 +82,7 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     entries->part = fibrad_arena_take(arena, entries->capacity, sizeof *entries->part);
     entries->lengths = fibrad_arena_take(arena, entries->capacity, sizeof(double));
     entries->angles = fibrad_arena_take(arena, entries->capacity, sizeof(double));
+    entries->exact = fibrad_arena_take(arena, entries->capacity, sizeof(double));
     for (int list = 0; list < 2; list++)
         entries->key[list] = fibrad_arena_take(arena, entries->capacity, sizeof(uint64_t));
     work->legs.leg = fibrad_arena_take(arena, plan->legs, sizeof *work->legs.leg);

@@ -135,13 +135,14 @@ typedef struct fibrad_leg {
     uint32_t sphere;   /* place of the sphere met; FIBRAD_NONE: not known; later FIBRAD_NONE: a wall is met */
     uint32_t triangle; /* later: the triangle met; FIBRAD_NO_SIDE: none */
     uint32_t chosen;   /* later: the number of the leg from which path k goes on, k being the number of this leg */
-    double weight;     /* later: what the surface met reflects */
+    double weight;     /* in legs from each window on the mean; later: what the surface met reflects */
 } fibrad_leg;
 
 /* First legs that a beam row takes from its windows, equally many from each. */
 typedef struct fibrad_legs {
     uint64_t shift[4];       /* of the four coordinates of each leg */
     uint32_t wanted, length; /* wanted: at most plan.legs; 0: the row takes none */
+    uint32_t sources;        /* legs with those beyond `length`, to spheres that no leg of a window meets */
     fibrad_leg *leg;         /* [plan.legs] */
     double share;            /* out, of arrival: mean weight of the legs */
 } fibrad_legs;

@@ -1,0 +1,290 @@
+/* free_pair.c - finds pairs of spheres that nothing can come between. SPDX-License-Identifier: MIT */
+#include "row/free_pair.h"
+#include "scene/grid_walk.h"
+#include "scene/walls.h"
+
+/* In scenes with up to this many spheres all pairs are tried. */
+#define FEW_SPHERES 256u
+/* Otherwise a row tries the spheres within this distance, in cube roots of the volume per sphere: about 50. */
+#define NEAR_SPACINGS 2.3
+/* If a sphere should meet more windows than this, they tell whether something hides it: they see less of it. */
+#define SOME_WINDOWS 2.0
+/* Rows with fewer entries than this ask all spheres which of them no window has met. */
+#define FEW_ENTRIES 16u
+/* Spheres that reach into a hull by less than this part of their radius only touch it. */
+#define TOUCH 1e-10
+/* The part of a row that must be open, so that it can take the difference. Less is rounding in scenes of few spheres.
+ * In others it costs more time than it gains. */
+#define LEAST_OPEN  1e-9
+#define WORTH_WHILE 0.05
+/* The triangles near a hull are asked for at most so many times. */
+#define HULL_STEPS 64
+
+/* The square of the error of a sphere that hardly any window should meet, over that of one that many meet, both over
+ * the squared difference of halves, minus 1. Measured: docs/accuracy.md. */
+#define RARE_ERROR 8.0
+
+#define UNIT        0x1p-60 /* sums of factors are whole numbers of it, so that they do not depend on an order */
+#define SQUARE_UNIT 0x1p-62
+
+/* The convex hull of two spheres: the balls of all points between their centres, whose radii change evenly. */
+typedef struct pair_hull {
+    double from[3], to[3], axis[3], length; /* L, centres; unit vector and distance between them */
+    double r[2], most;                      /* L, radii, and the larger one */
+    double slope, cosine;                   /* of the radius along the axis, and sqrt(1 - slope^2) */
+} pair_hull;
+
+static double dot_of(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static pair_hull hull_of(const fibrad_scene *scene, uint32_t place, uint32_t other) {
+    pair_hull hull = {.from = {scene->x[place], scene->y[place], scene->z[place]},
+                      .to = {scene->x[other], scene->y[other], scene->z[other]},
+                      .r = {scene->r[place], scene->r[other]},
+                      .most = fibrad_max(scene->r[place], scene->r[other])};
+    for (int axis = 0; axis < 3; axis++) hull.axis[axis] = hull.to[axis] - hull.from[axis];
+    hull.length = fibrad_sqrt(dot_of(hull.axis, hull.axis));
+    for (int axis = 0; axis < 3; axis++) hull.axis[axis] /= hull.length;
+    hull.slope = (hull.r[1] - hull.r[0]) / hull.length;
+    hull.cosine = fibrad_sqrt(fibrad_max(0, 1 - hull.slope * hull.slope));
+    return hull;
+}
+
+/* Whether a sphere reaches into a hull. The nearest ball of the hull is at an end, or where the line to it is
+ * perpendicular to the surface of the hull. */
+static bool hull_meets(const pair_hull *hull, const double at[3], double r) {
+    const double c[3] = {at[0] - hull->from[0], at[1] - hull->from[1], at[2] - hull->from[2]};
+    const double along = dot_of(c, hull->axis), square = dot_of(c, c), wide = hull->most + r;
+    const double across_square = fibrad_max(0, square - along * along), beyond = along - hull->length;
+    if (across_square >= wide * wide || along <= -wide || beyond >= wide) return false;
+    const double across = fibrad_sqrt(across_square), foot = along * hull->cosine + across * hull->slope;
+    double distance = across * hull->cosine - along * hull->slope - hull->r[0];
+    if (foot <= 0) distance = fibrad_sqrt(square) - hull->r[0];
+    if (foot >= hull->length * hull->cosine)
+        distance = fibrad_sqrt(across_square + beyond * beyond) - hull->r[1];
+    return distance < r * (1 - TOUCH);
+}
+
+/* Whether a sphere other than the two at `place` and `other` reaches into their hull. */
+static bool spheres_between(const fibrad_scene *scene, const pair_hull *hull, uint32_t place, uint32_t other) {
+    for (uint32_t l = 0; l < scene->levels; l++) {
+        const double wide = hull->most + scene->level[l].radius_max;
+        double low[3], high[3];
+        fibrad_walk walk;
+        for (int axis = 0; axis < 3; axis++) {
+            low[axis] = fibrad_min(hull->from[axis], hull->to[axis]) - wide;
+            high[axis] = fibrad_max(hull->from[axis], hull->to[axis]) + wide;
+        }
+        fibrad_walk_begin(&walk, scene, &scene->level[l], low, high);
+        while (fibrad_walk_next(&walk))
+            for (uint32_t j = walk.begin; j < walk.end; j++) {
+                const double at[3] = {scene->x[j], scene->y[j], scene->z[j]};
+                if (j != place && j != other && hull_meets(hull, at, scene->r[j])) return true;
+            }
+    }
+    return false;
+}
+
+/* Whether a triangle may reach into a hull. Steps along the axis are as long as the nearest triangle allows. */
+static bool triangles_between(const fibrad_scene *scene, const pair_hull *hull) {
+    double x = 0;
+    for (int step = 0; step < HULL_STEPS && x < hull->length; step++) {
+        const double at[3] = {hull->from[0] + x * hull->axis[0], hull->from[1] + x * hull->axis[1],
+                              hull->from[2] + x * hull->axis[2]};
+        const double r = hull->r[0] + hull->slope * x, most = r + 2 * hull->length + scene->mesh.grain;
+        const double free = fibrad_mesh_distance(&scene->mesh, at, most) - scene->mesh.grain - r;
+        if (!(free > 0)) return true;
+        x += free / (1 + hull->slope);
+    }
+    return x < hull->length || fibrad_mesh_distance(&scene->mesh, hull->to, 2 * hull->r[1]) < hull->r[1];
+}
+
+/* Whether a sphere lies in the known region, and no wall cuts it. */
+static bool lies_free(const fibrad_scene *scene, uint32_t place) {
+    const double at[3] = {scene->x[place], scene->y[place], scene->z[place]}, r = scene->r[place];
+    for (int axis = 0; axis < 3 && scene->region; axis++)
+        if (!(at[axis] - r >= scene->known_low[axis] && at[axis] + r <= scene->known_high[axis])) return false;
+    return !fibrad_walls_cut_place(scene, place);
+}
+
+bool fibrad_free_pair(const fibrad_scene *scene, uint32_t place, uint32_t other, double *f) {
+    const pair_hull hull = hull_of(scene, place, other);
+    if (!lies_free(scene, other) || spheres_between(scene, &hull, place, other)) return false;
+    if (scene->mesh.triangles > 0 && triangles_between(scene, &hull)) return false;
+    return fibrad_pair_exact(hull.r[0], hull.r[1], hull.length - (hull.r[0] + hull.r[1]), f) == FIBRAD_OK;
+}
+
+static double sum_of_entry(const fibrad_entries *entries, uint32_t entry) {
+    const double *part = entries->part[entry];
+    return part[0] + part[2] + (part[1] + part[3]);
+}
+
+/* The squared distance of the centres of sphere i and of the nearest image of another sphere. */
+static double square_between(const fibrad_workspace *work, uint32_t other) {
+    const fibrad_scene *scene = work->scene;
+    const double *const of_axis[3] = {scene->x, scene->y, scene->z};
+    double square = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double c = fibrad_abs(of_axis[axis][other] - work->centre[axis]);
+        if (scene->period[axis] > 0) c = fibrad_min(c, fibrad_abs(scene->period[axis] - c));
+        square += c * work->inverse * (c * work->inverse);
+    }
+    return square;
+}
+
+/* The number of windows of the row that a sphere should meet. */
+static double windows_meeting(const fibrad_workspace *work, uint32_t other, double square) {
+    const double wide = 1 + work->scene->r[other] * work->inverse;
+    return work->windows * (wide * wide / (4 * square));
+}
+
+/* A row while its free pairs are searched. */
+typedef struct pair_search {
+    fibrad_workspace *work;
+    double scale;
+    int64_t moved;   /* [UNIT] */
+    uint64_t unseen; /* [SQUARE_UNIT] */
+    bool all, pairs; /* all spheres are tried; pairs may be free */
+    bool sparse;     /* what no window has met may count; in dense scenes other spheres hide it */
+} pair_search;
+
+/* About the factor to a free sphere of radius r, at a squared distance. It is a few percent off. */
+static double free_factor(double r, double square) {
+    return r * r / (2 * square * (1 + fibrad_sqrt(fibrad_max(0, 1 - (1 + r * r) / square))));
+}
+
+/* Takes the exact factor to the sphere at a place if its pair is free. seen: what the windows have seen of it. */
+static bool take_pair(pair_search *search, uint32_t other, double seen) {
+    fibrad_entries *entries = &search->work->entries;
+    double f;
+    if (!fibrad_free_pair(search->work->scene, search->work->place, other, &f)) return false;
+    const uint32_t entry = fibrad_entries_of(entries, other);
+    if (entry == FIBRAD_NONE)
+        entries->missed++;
+    else
+        entries->exact[entry] = f;
+    search->moved += (int64_t)((seen - f) / UNIT);
+    return true;
+}
+
+/* Tries the sphere at a place that some windows should meet (many), or that hardly any should meet. */
+static void try_sphere(pair_search *search, uint32_t other, bool many) {
+    const fibrad_workspace *work = search->work;
+    const double square = square_between(work, other), r = work->scene->r[other] * work->inverse;
+    const double windows = windows_meeting(work, other, square), least = r * r / (4 * square);
+    if (other == work->place || !(square <= work->reach * work->reach)) return;
+    if (!search->all && many != (windows > SOME_WINDOWS)) return;
+    const uint32_t entry = fibrad_entries_find(&work->entries, other);
+    const double seen = entry != FIBRAD_NONE ? sum_of_entry(&work->entries, entry) * search->scale : 0;
+    const double part = search->all || !many ? 0 : 1 - SOME_WINDOWS / windows; /* of a free factor */
+    if (seen < part * least || seen < part * free_factor(r, square)) return;
+    if (search->pairs && take_pair(search, other, seen)) return;
+    if (entry != FIBRAD_NONE || !search->sparse || 2 * windows >= 1) return;
+    const double missed = least * (1 - 2 * windows);
+    search->unseen += (uint64_t)(missed * missed / SQUARE_UNIT);
+}
+
+/* Tries the spheres within a distance [L] of the centre that hardly any window should meet. */
+static void try_near(pair_search *search, double distance) {
+    const fibrad_workspace *work = search->work;
+    const fibrad_scene *scene = work->scene;
+    const double least = work->unit + scene->facts.radius_min;
+    if (work->windows * (least * least) > SOME_WINDOWS * 4 * distance * distance) return;
+    for (uint32_t l = 0; l < scene->levels; l++) {
+        double low[3], high[3];
+        fibrad_walk walk;
+        for (int axis = 0; axis < 3; axis++)
+            low[axis] = work->centre[axis] - distance, high[axis] = work->centre[axis] + distance;
+        fibrad_walk_begin(&walk, scene, &scene->level[l], low, high);
+        while (fibrad_walk_next(&walk))
+            for (uint32_t j = walk.begin; j < walk.end; j++) try_sphere(search, j, false);
+    }
+}
+
+/* What the windows have seen besides spheres. */
+static double open_of(const fibrad_workspace *work, double scale) {
+    const fibrad_entries *entries = &work->entries;
+    int64_t units = 0;
+    for (uint32_t k = 0; k < entries->length; k++)
+        if (entries->sphere[k] < work->scene->facts.spheres)
+            units += (int64_t)(sum_of_entry(entries, k) * scale / UNIT);
+    return 1 - (double)units * UNIT;
+}
+
+fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale) {
+    const fibrad_scene *scene = work->scene;
+    fibrad_entries *entries = &work->entries;
+    const uint32_t n = scene->facts.spheres, met = entries->length;
+    const bool periodic = scene->period[0] > 0 || scene->period[1] > 0 || scene->period[2] > 0;
+    fibrad_free_pairs pairs = {0, open_of(work, scale), 0};
+    if (periodic || !(pairs.open > (n <= FEW_SPHERES ? LEAST_OPEN : WORTH_WHILE))) return pairs;
+    pair_search search = {.work = work, .scale = scale, .all = n <= FEW_SPHERES};
+    search.sparse = search.all || met < FEW_ENTRIES, search.pairs = lies_free(scene, work->place);
+    for (uint32_t k = 0; k < met && !search.all; k++)
+        if (entries->sphere[k] < n) try_sphere(&search, entries->sphere[k], true);
+    if (!search.all) try_near(&search, NEAR_SPACINGS * scene->spacing);
+    search.pairs = search.pairs && search.all;
+    for (uint32_t j = 0; j < n && search.sparse; j++) try_sphere(&search, j, false);
+    pairs.unseen = fibrad_sqrt((double)search.unseen * SQUARE_UNIT);
+    pairs.moved = (double)search.moved * UNIT;
+    if (pairs.open + pairs.moved > 0) return pairs;
+    for (uint32_t k = 0; k < entries->length; k++) entries->exact[k] = 0;
+    pairs.moved = 0;
+    return pairs;
+}
+
+/* A leg along the line of centres. */
+static fibrad_leg leg_to(const fibrad_workspace *work, uint32_t other, double weight) {
+    const fibrad_scene *scene = work->scene;
+    const pair_hull hull = hull_of(scene, work->place, other);
+    fibrad_leg leg = {.sphere = other, .weight = weight};
+    for (int axis = 0; axis < 3; axis++) {
+        leg.n[axis] = leg.w[axis] = hull.axis[axis];
+        leg.centre[axis] = hull.axis[axis] * (hull.length * work->inverse);
+    }
+    return leg;
+}
+
+int fibrad_free_pairs_legs(fibrad_workspace *work) {
+    fibrad_legs *legs = &work->legs;
+    const fibrad_entries *entries = &work->entries;
+    double *count = entries->lengths; /* legs to each sphere */
+    uint32_t more = 0;
+    legs->sources = legs->length;
+    for (uint32_t k = 0; k < legs->length; k++) {
+        const uint32_t sphere = legs->leg[k].sphere;
+        const uint32_t entry = sphere != FIBRAD_NONE ? fibrad_entries_find(entries, sphere) : FIBRAD_NONE;
+        if (entry != FIBRAD_NONE) count[entry]++;
+    }
+    for (uint32_t k = 0; k < legs->length; k++) {
+        const uint32_t sphere = legs->leg[k].sphere;
+        const uint32_t entry = sphere != FIBRAD_NONE ? fibrad_entries_find(entries, sphere) : FIBRAD_NONE;
+        if (entry != FIBRAD_NONE && entries->exact[entry] > 0)
+            legs->leg[k].weight = entries->exact[entry] * legs->length / count[entry];
+    }
+    for (uint32_t k = 0; k < entries->length && legs->length > 0; k++) {
+        if (!(entries->exact[k] > 0) || count[k] > 0) continue;
+        if (legs->length + ++more <= work->plan.legs)
+            legs->leg[legs->sources++] = leg_to(work, entries->sphere[k], entries->exact[k] * legs->length);
+    }
+    work->needed.legs = legs->length + more;
+    return legs->sources == work->needed.legs ? FIBRAD_OK : FIBRAD_E_WORK;
+}
+
+void fibrad_weigh_halves(const fibrad_workspace *work, fibrad_row *row) {
+    const fibrad_scene *scene = work->scene;
+    const double far = 2 * work->free_path;
+    if (work->windows > SOME_WINDOWS * (far * far)) return; /* lines end before they come to such spheres */
+    for (uint32_t k = 0; k < row->length; k++) {
+        const uint32_t other = scene->place[row->col[k]];
+        const double square = square_between(work, other);
+        const double windows = 2 * windows_meeting(work, other, square);
+        row->half[k] *= (float)fibrad_sqrt(1 + RARE_ERROR / (1 + windows * windows));
+    }
+}
+
+void fibrad_free_pairs_share(const fibrad_free_pairs *pairs, double wall[FIBRAD_SLOTS], fibrad_row *row) {
+    const double ratio = 1 + pairs->moved / pairs->open;
+    if (pairs->moved == 0) return;
+    row->escaped *= ratio, row->beyond *= ratio;
+    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) wall[slot] *= ratio;
+}

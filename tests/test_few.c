@@ -1,0 +1,211 @@
+/* test_few.c - few spheres, and spheres far apart: pairs that nothing comes between are exact, and estimates know what
+ * no line has met. SPDX-License-Identifier: MIT */
+#include <math.h>
+
+#include "bed/packing.h"
+#include "host_owned.h"
+#include "meshes.h"
+#include "reference/exact_gsl.h"
+#include "reference/reference.h"
+#include "scenes.h"
+#include "suite.h"
+
+static fibrad_bed_factors *factors_of(const struct bed *bed, const fibrad_scene_config *config,
+                                      const fibrad_beam_rule *rule) {
+    const fibrad_spheres spheres = spheres_of(bed);
+    fibrad_bed_factors *factors = NULL;
+    assert_ok(fibrad_view_factors(config, &spheres, &(fibrad_bed_options){.beam = rule}, NULL, &factors));
+    return factors;
+}
+
+static double factor_of(const fibrad_factors *m, uint32_t i, uint32_t j) {
+    for (uint64_t k = m->start[i]; k < m->start[i + 1]; k++)
+        if (m->col[k] == j) return m->f[k];
+    return 0;
+}
+
+static double distance_of(const struct bed *bed, uint32_t i, uint32_t j) {
+    return hypot(hypot(bed->x[i] - bed->x[j], bed->y[i] - bed->y[j]), bed->z[i] - bed->z[j]);
+}
+
+/* The factor of two spheres with nothing in between. */
+static double free_of(const struct bed *bed, uint32_t i, uint32_t j) {
+    double f;
+    assert_ok(fibrad_pair_exact(bed->r[i], bed->r[j], distance_of(bed, i, j) - bed->r[i] - bed->r[j], &f));
+    return f;
+}
+
+static double sum_of(const fibrad_factors *m, uint32_t i) {
+    double sum = m->escaped[i] + m->beyond[i];
+    for (uint64_t k = m->start[i]; k < m->start[i + 1]; k++) sum += m->f[k];
+    for (uint32_t b = 0; b < m->bodies; b++) sum += m->body[i * m->bodies + b];
+    return sum;
+}
+
+static void check_closed(const fibrad_bed_factors *factors) {
+    for (uint32_t i = 0; i < factors->matrix.n; i++) ck_assert_double_eq_tol(sum_of(&factors->matrix, i), 1, 1e-13);
+    ck_assert_double_le(factors->reciprocity_error, 1e-16);
+}
+
+static const double GAPS[] = {-.1, 0, 1e-9, .01, 1, 8, 18, 200, 1e4};
+static const double RADII[] = {1, .1, .01, 100};
+enum { GAP_COUNT = sizeof GAPS / sizeof *GAPS, RADIUS_COUNT = sizeof RADII / sizeof *RADII };
+
+LOOP_TEST(two_spheres_are_exact, GAP_COUNT * RADIUS_COUNT) {
+    const double r = RADII[_i / GAP_COUNT], gap = GAPS[_i % GAP_COUNT] * fmin(1, r), d = 1 + r + gap;
+    OWNED_BED bed = BED({1, 2, 3, 1}, {1 + .6 * d, 2 - .48 * d, 3 + .64 * d, r});
+    OWNED_FACTORS *few = factors_of(&bed, NULL, &(fibrad_beam_rule){.directions = 8});
+    OWNED_FACTORS *factors = factors_of(&bed, NULL, NULL);
+    double f, error;
+    ck_assert_int_eq(exact_gsl_lens(1, r, gap, &f, &error), 0);
+    ck_assert_double_eq_tol(factor_of(&factors->matrix, 0, 1), f, 1e-12 * f + 2 * error);
+    ck_assert_double_eq_tol(factor_of(&factors->matrix, 0, 1), free_of(&bed, 0, 1), 1e-12 * f);
+    ck_assert_double_eq_tol(factor_of(&few->matrix, 1, 0), free_of(&bed, 1, 0), 1e-12 * f / (r * r));
+    ck_assert_double_le(factors->matrix.error[0], 1e-12);
+    check_closed(factors);
+}
+
+TEST(small_scenes_have_more_lines) {
+    OWNED_BED two = BED({0, 0, 0, 1}, {5, 0, 0, 1}), many = packing(300, .8, 1.2, .01, 3, false);
+    OWNED_FACTORS *of_two = factors_of(&two, NULL, NULL), *of_many = factors_of(&many, NULL, NULL);
+    ck_assert_uint_eq(of_two->directions, FIBRAD_LINES_EVEN_MAX);
+    ck_assert_uint_eq(of_many->directions, FIBRAD_LINES_DEFAULT);
+}
+
+/* Spheres at corners of a cube, whose hulls meet no other, and whose radii differ as 1:100. */
+TEST(five_spheres_are_exact) {
+    OWNED_BED bed = BED({0, 0, 0, 30}, {100, 0, 0, .3}, {0, 100, 0, 3}, {0, 0, 100, 1}, {100, 100, 100, 10});
+    OWNED_FACTORS *factors = factors_of(&bed, NULL, NULL);
+    for (uint32_t i = 0; i < 5; i++)
+        for (uint32_t j = 0; j < 5; j++)
+            if (i != j) ck_assert_double_eq_tol(factor_of(&factors->matrix, i, j) / free_of(&bed, i, j), 1, 1e-12);
+    check_closed(factors);
+}
+
+/* A third sphere that touches the hull leaves a pair exact. One that reaches into it does not. */
+TEST(what_comes_between_is_seen) {
+    for (int into = 0; into < 2; into++) {
+        const double aside = 1.5 - .2 * into;
+        OWNED_BED bed = BED({0, 0, 0, 1}, {10, 0, 0, 1}, {5, aside, 0, .5});
+        const fibrad_spheres spheres = spheres_of(&bed);
+        OWNED_FACTORS *factors = factors_of(&bed, NULL, NULL);
+        double f;
+        assert_ok(reference_pair(&spheres, 0, 1, &(struct reference_rule){1e-6, 100000000}, &f,
+                                 &(struct reference_report){0, 0}));
+        const double found = factor_of(&factors->matrix, 0, 1), open = free_of(&bed, 0, 1);
+        ck_assert_double_eq_tol(found, f, 2 * factors->matrix.error[0] + 1e-6 * open);
+        ck_assert((fabs(found / open - 1) < 1e-12) == !into);
+        ck_assert_double_eq_tol(factor_of(&factors->matrix, 0, 2) / free_of(&bed, 0, 2), 1, 1e-12);
+        check_closed(factors);
+    }
+}
+
+/* Walls take the difference between what lines have seen and what is exact. A wall that cuts a sphere ends this. */
+TEST(walls_take_the_difference) {
+    const fibrad_body body[] = {plane_at(2, 0, -1), plane_at(2, 1, 9), cylinder_at(0, 0, 30)};
+    const fibrad_scene_config config = {.body = body, .bodies = 3};
+    OWNED_BED bed = BED({0, 0, 0, 1}, {6, 0, 3, 2}), cut = BED({0, 0, 0, 1.1}, {6, 0, 3, 2});
+    OWNED_FACTORS *factors = factors_of(&bed, &config, NULL), *of_cut = factors_of(&cut, &config, NULL);
+    ck_assert_double_eq_tol(factor_of(&factors->matrix, 0, 1) / free_of(&bed, 0, 1), 1, 1e-12);
+    ck_assert_double_gt(fabs(factor_of(&of_cut->matrix, 0, 1) / free_of(&cut, 0, 1) - 1), 1e-6);
+    ck_assert_double_le(factors->matrix.escaped[0], 1e-13);
+    check_closed(factors);
+    check_closed(of_cut);
+}
+
+TEST(cutoff_and_region_bound_what_is_exact) {
+    OWNED_BED bed = BED({0, 0, 0, 1}, {6, 0, 0, 1}, {0, 9, 0, 1});
+    OWNED_FACTORS *near = factors_of(&bed, NULL, &(fibrad_beam_rule){.cutoff = 7});
+    ck_assert_double_eq_tol(factor_of(&near->matrix, 0, 1) / free_of(&bed, 0, 1), 1, 1e-12);
+    ck_assert_double_eq(factor_of(&near->matrix, 0, 2), 0);
+    const fibrad_scene_config config = {.known_low = {-5, -5, -5}, .known_high = {10, 8, 5}};
+    OWNED_FACTORS *region = factors_of(&bed, &config, NULL);
+    ck_assert_double_eq_tol(factor_of(&region->matrix, 0, 1) / free_of(&bed, 0, 1), 1, 1e-12);
+    ck_assert_double_gt(fabs(factor_of(&region->matrix, 0, 2) / free_of(&bed, 0, 2) - 1), 1e-9);
+    check_closed(near);
+}
+
+/* A square of two triangles across the line of centres, or aside. */
+TEST(triangles_come_between) {
+    OWNED_BED bed = BED({0, 0, 0, 1}, {8, 0, 0, 1});
+    for (int aside = 0; aside < 2; aside++) {
+        const double y = aside ? 1.5 : -.5;
+        OWNED struct mesh *mesh = mesh_new();
+        const double at[4][2] = {{y, -3}, {y + 1, -3}, {y + 1, 3}, {y, 3}};
+        uint32_t corner[4];
+        for (int k = 0; k < 4; k++) corner[k] = mesh_vertex(mesh, 4, at[k][0], at[k][1]);
+        mesh_quad(mesh, corner, 0, 0);
+        const fibrad_scene_config config = {.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles};
+        OWNED_FACTORS *factors = factors_of(&bed, &config, NULL);
+        ck_assert((fabs(factor_of(&factors->matrix, 0, 1) / free_of(&bed, 0, 1) - 1) < 1e-12) == (aside == 1));
+        check_closed(factors);
+    }
+}
+
+/* The rows of two instruction sets, and of spheres in another order, have the same bits. */
+TEST(exact_pairs_have_the_same_bits) {
+    OWNED_BED bed = packing(60, .5, 1.5, .01, 5, false), turned = bed_empty();
+    uint64_t id[60];
+    for (uint32_t i = 0; i < 60; i++) add_sphere(&turned, bed.x[59 - i], bed.y[59 - i], bed.z[59 - i], bed.r[59 - i]);
+    for (uint32_t i = 0; i < 60; i++) id[i] = 59 - i;
+    fibrad_spheres back = spheres_of(&turned);
+    back.id = id;
+    const struct isas isas = isas_there();
+    OWNED_FACTORS *first = factors_of(&bed, &(fibrad_scene_config){.isa = isas.set[0]}, NULL), *reversed = NULL;
+    assert_ok(fibrad_view_factors(NULL, &back, NULL, NULL, &reversed));
+    for (uint32_t i = 0; i < 60; i++)
+        for (uint32_t j = 0; j < 60; j++)
+            ck_assert_double_eq(factor_of(&first->matrix, i, j), factor_of(&reversed->matrix, 59 - i, 59 - j));
+    for (int k = 1; k < isas.count; k++) {
+        OWNED_FACTORS *other = factors_of(&bed, &(fibrad_scene_config){.isa = isas.set[k]}, NULL);
+        ck_assert(matrix_same_bits(&first->matrix, &other->matrix));
+    }
+    check_closed(first);
+}
+
+static int ascending(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* So few spheres in so much space hide nothing from each other that counts. */
+TEST(dilute_rows_know_what_no_line_meets) {
+    enum { N = 400 };
+    OWNED_BED bed = packing(N, 1, 1, 1e-6, 7, false);
+    OWNED_FACTORS *factors = factors_of(&bed, NULL, NULL);
+    double ratio[N];
+    int bad = 0;
+    for (uint32_t i = 0; i < N; i++) {
+        double square = 0;
+        for (uint32_t j = 0; j < N; j++)
+            if (j != i) square += pow(factor_of(&factors->matrix, i, j) - free_of(&bed, i, j), 2);
+        ratio[i] = factors->matrix.error[i] / sqrt(square);
+        bad += ratio[i] < .5;
+    }
+    qsort(ratio, N, sizeof *ratio, ascending);
+    ck_assert_double_gt(ratio[0], 0);
+    ck_assert_int_le(bad, N / 20);
+    ck_assert_double_lt(ratio[N / 2], 3);
+}
+
+/* The truth are rows of 5,000 directions. */
+TEST(estimates_of_dilute_beds_hold) {
+    static const struct {
+        uint32_t n;
+        double fraction;
+    } beds[] = {{200, .002}, {60, .01}};
+    for (int b = 0; b < 2; b++) {
+        const uint32_t n = beds[b].n;
+        OWNED_BED bed = packing(n, 1, 1, beds[b].fraction, 11, false);
+        OWNED_FACTORS *truth = factors_of(&bed, NULL, &(fibrad_beam_rule){.directions = 5000});
+        OWNED_FACTORS *factors = factors_of(&bed, NULL, NULL);
+        int bad = 0;
+        for (uint32_t i = 0; i < n; i++) {
+            double square = pow(factors->matrix.escaped[i] - truth->matrix.escaped[i], 2);
+            for (uint32_t j = 0; j < n; j++)
+                square += pow(factor_of(&factors->matrix, i, j) - factor_of(&truth->matrix, i, j), 2);
+            bad += sqrt(square) > 2 * factors->matrix.error[i];
+        }
+        ck_assert_int_le(bad, (int)n / 20);
+    }
+}
