@@ -69,8 +69,8 @@ sources = $(sort $(wildcard $(1)))
 
 LANED   := $(call sources,kernel/*/*_lanes.c) # compiled once per instruction set
 KERNEL  := $(filter-out %_lanes.c kernel/sample/generate_%.c,$(call sources,kernel/*/*.c))
-SIMPLE  := $(call sources,host/simple/*.c) # libfibrad_host.a
-HOST    := $(filter-out $(addprefix host/,simple/% couple/% python/%),$(call sources,host/*/*.c host/read/*/*.c)) # the program, besides main.c
+SIMPLE  := $(call sources,host/simple/*.c host/contact/*.c) # libfibrad_host.a
+HOST    := $(filter-out $(addprefix host/,simple/% contact/% couple/% python/%),$(call sources,host/*/*.c host/read/*/*.c)) # the program, besides main.c
 TESTS   := $(call sources,tests/test_*.c)
 SCRIPTS := $(filter-out tests/couple/%,$(call sources,tests/check_*.sh tests/*/check_*.sh))
 
@@ -157,7 +157,7 @@ $(BUILD)/fibrad.map: $(HEADERS) Makefile
 
 $(SHARED): $(KERNEL_OBJECTS) $(SIMPLE_OBJECTS) $(BUILD)/fibrad.map
 	$(CC) $(CFLAGS) $(LDFLAGS) -shared -fopenmp -Wl,-soname,$(@F) -Wl,--version-script=$(BUILD)/fibrad.map \
-	    -Wl,-Bsymbolic -Wl,-z,defs $(KERNEL_OBJECTS) $(SIMPLE_OBJECTS) -o $@
+	    -Wl,-Bsymbolic -Wl,-z,defs $(KERNEL_OBJECTS) $(SIMPLE_OBJECTS) -lm -o $@
 
 $(BUILD)/libfibrad.so: $(SHARED)
 	ln -sf $(<F) $@

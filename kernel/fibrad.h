@@ -334,7 +334,11 @@ typedef enum fibrad_why {
     FIBRAD_WHY_DARK = 20,         /* No open face lets a light in. */
     FIBRAD_WHY_FOOTPRINT = 21,    /* A light through a disc (fibrad_light.h) meets a sphere before it meets the disc. */
     FIBRAD_WHY_CONDUCTIVITY = 22, /* A conductivity is not above 0. */
-    FIBRAD_WHY_UNIFORM = 23       /* `uniform` (fibrad_heat.h) is set although spheres conduct. */
+    FIBRAD_WHY_UNIFORM = 23,      /* `uniform` (fibrad_heat.h) is set although spheres conduct. */
+    FIBRAD_WHY_CONTACT = 24,      /* A contact has an end that is neither a sphere nor a wall. */
+    FIBRAD_WHY_CONDUCTANCE = 25,  /* A conductance is negative or out of range. */
+    FIBRAD_WHY_TOUCHED = 26,      /* A wall in contact is insulated, or its sides have temperatures. */
+    FIBRAD_WHY_ALONE = 27         /* A sphere in contact has emissivity 0, and nothing sets its temperature. */
 } fibrad_why;
 
 /* The cause of a fault as English words. The words continue a sentence that begins with the name of a sphere or a wall.
@@ -507,11 +511,10 @@ typedef struct fibrad_beam_rule {
     double cutoff;       /* L; spheres are left out if their centre is farther than (1 + 1e-12) cutoff; 0: no cutoff */
     double tolerance;    /* the error allowed; directions are added until it is met; 0: no tolerance */
     uint64_t turn;       /* seed of a random rotation of all directions together; 0: no rotation */
-    const fibrad_line_set
-        *lines; /* takes these lines; directions, turn, tolerance and points are 0; NULL: directions */
-    uint32_t
-        chords; /* 16, 32 or 64: points on so many chords of each window, which are bits of words; FIBRAD_CHORDS_NONE:
-                   exact areas; 0: along lines as many chords as suit their number, along directions exact areas */
+    const fibrad_line_set *lines; /* lines to take; directions, turn, tolerance, points are 0; NULL: directions */
+    uint32_t chords;              /* 16, 32 or 64: points on so many chords of each window, which are bits of words;
+                                     FIBRAD_CHORDS_NONE: exact areas; 0: along lines as many chords as suit their number, along
+                                     directions exact areas */
 } fibrad_beam_rule;
 
 /* Row i of the view factors of a scene, by parallel beams.

@@ -119,6 +119,13 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *   an insulated wall                    sends the light out as thermal radiation, at the same patch; it has no power
  *   any other sphere or wall             `absorbed` has no effect
  *
+ * Contacts conduct heat between spheres, and between spheres and walls. Contact k has the ends contact_first[k] and
+ * contact_second[k]: an index of a sphere, or `spheres` plus the index of a wall. It carries the heat conductance[k]
+ * times the difference of their temperatures. Several contacts may have the same ends; a contact of a sphere with
+ * itself, across a period, carries nothing. A sphere of emissivity 0 that is in contact has a temperature, and may give
+ * off a power. `conductance` is in units of sigma K^3 L^2: if lengths are in millimetres and sigma is in W/(m2 K4), 1
+ * W/K is 1e6. The contacts of a sphere with a finite conductivity act on the mean of its surface.
+ *
  * The residual is the error of the equations for J, relative to what drives the radiation: differences of emission,
  * given powers and light. tolerance = 0 stands for 1e-3, for 1e-5 if a temperature is unknown and its hold is 0, and
  * for 1e-12 with up to 16 spheres.
@@ -143,6 +150,10 @@ typedef struct fibrad_heat_sources {
     const double *light; /* sigma K^4 L^2, [fibrad_heat_patches], arrives from outside; NULL: none; fibrad_light.h */
     const double *conductivity; /* sigma K^3 L, [spheres], above 0; infinity: one temperature; NULL: all infinity */
     const double *absorbed;     /* sigma K^4 L^2, [fibrad_heat_patches], light that heats; NULL: none; fibrad_light.h */
+    const uint32_t *contact_first;  /* [contacts], a sphere, or spheres + a wall; NULL: no contacts */
+    const uint32_t *contact_second; /* [contacts], the other end */
+    const double *conductance;      /* sigma K^3 L^2, [contacts], 0 to FIBRAD_CONDUCTANCE_MAX */
+    uint32_t contacts;              /* number of contacts */
 } fibrad_heat_sources;
 
 /* Zeroes the sources, sets sigma = FIBRAD_STEFAN_BOLTZMANN, and sets surroundings = NaN. NaN is refused, so that no
@@ -153,12 +164,14 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources);
 /* Checks sources as fibrad_heat_begin does.
  *   Output   fault: which sphere or wall is at fault, and why; may be NULL
  *   Errors   _ARGUMENT
- *            _UNSUPPORTED: the temperature of an endless wall is unknown, fault.why is FIBRAD_WHY_ENDLESS */
+ *            _UNSUPPORTED: the temperature of an endless wall is unknown, fault.why is FIBRAD_WHY_ENDLESS
+ *            _UNSOLVABLE: a sphere has emissivity 0, and no contact leads from it, directly or by way of others, to a
+ *            surface that radiates or has a given temperature; fault.why is FIBRAD_WHY_ALONE */
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_fault *fault);
 
 /* Begins a solution. It starts from the radiosities of the last solution, if there was one, and if both or neither have
- * `light`. After the call only the arrays `light` and `absorbed` are still needed. They must stay until the solution is
- * read.
+ * `light`. After the call only the arrays `light`, `absorbed` and those of contacts are still needed. They must stay
+ * until the solution is read.
  *   Errors   as fibrad_heat_check
  *            _STATE: a task is not traced, or the scene has changed
  *   Cost     O(patches) */
@@ -176,20 +189,21 @@ int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
  *   Output   solved: 1 if the residual is below the tolerance, or after about sweeps_max sweeps; else 0
  *   Errors   _ARGUMENT
  *            _STATE: a part was not swept, no solution was begun, or the scene has changed
- *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, and the powers do not add up to zero
+ *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, and the powers do not add up to zero; or they
+ *            do, but there are contacts, which need the level of the temperatures
  *   If all temperatures are unknown, nothing escapes, and the powers do add up to zero, the level of the temperatures
  *   is free. The mean emission, weighted by emissivity and area, is then set to that of the surroundings. */
 int fibrad_heat_step(fibrad_heat *heat, int *solved);
 
 /* The solution. The arrays belong to the caller. Where a field may be NULL, NULL means that it is not wanted.
  *
- * A net power is above 0 where a surface gains heat by radiation. A given power has the other sign: a sphere of power P
- * (and hold 0) has the net power -P. Temperatures are written whether they were found or given. A temperature is NaN if
- * the emissivity is 0, or if only a temperature below zero would give the power. least_temperature, largest_temperature
- * and centre_temperature differ only on spheres with a finite conductivity. For any other sphere all three are its
- * temperature. body_temperature of an insulated wall is the fourth root of its mean T^4. The same holds for a mesh
- * whose sides have temperatures of their own. The root mean square error of the powers of all spheres follows from
- * error_patches and error_beams: it is the root of the sum of their squares. */
+ * A net power is above 0 where a surface gains heat, by radiation and through contacts. A given power has the other
+ * sign: a sphere of power P (and hold 0) has the net power -P. Temperatures are written whether they were found or
+ * given. A temperature is NaN if the emissivity is 0, or if only a temperature below zero would give the power.
+ * least_temperature, largest_temperature and centre_temperature differ only on spheres with a finite conductivity. For
+ * any other sphere all three are its temperature. body_temperature of an insulated wall is the fourth root of its mean
+ * T^4. The same holds for a mesh whose sides have temperatures of their own. The root mean square error of the powers
+ * of all spheres follows from error_patches and error_beams: it is the root of the sum of their squares. */
 typedef struct fibrad_heat_result {
     double *power;                  /* sigma K^4 L^2, [spheres], out: net power */
     double *body_power;             /* sigma K^4 L^2, [bodies], out: net power; NULL without walls */
@@ -212,6 +226,9 @@ typedef struct fibrad_heat_result {
     double *centre_temperature;  /* K, [spheres], out; may be NULL */
     double *surface_error;       /* K, [spheres], out: estimated error of least and largest; may be NULL */
     double *centre_error;        /* K, [spheres], out: estimated error of centre_temperature; may be NULL */
+    double *conducted;           /* sigma K^4 L^2, [spheres], out: part of power, through contacts; may be NULL */
+    double *body_conducted;      /* sigma K^4 L^2, [bodies], out: part of body_power, through contacts; may be NULL */
+    double *contact_flow;        /* sigma K^4 L^2, [contacts], out: from the first end to the second; may be NULL */
 } fibrad_heat_result;
 
 /* Reads the solution.

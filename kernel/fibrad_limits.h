@@ -46,6 +46,7 @@
 /* Heat */
 #define FIBRAD_TEMPERATURE_MAX         1e20 /* K; its fourth power is far from overflow */
 #define FIBRAD_POWER_MAX               1e100
+#define FIBRAD_CONDUCTANCE_MAX         1e60  /* of a contact */
 #define FIBRAD_SIGMA_MIN               1e-30 /* of E = sigma T^4 */
 #define FIBRAD_SIGMA_MAX               1e30
 #define FIBRAD_CAPACITY_MAX            1e300 /* heat capacity of a sphere */

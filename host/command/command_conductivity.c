@@ -24,7 +24,9 @@ struct conductivity_request {
     struct walls walls;
     struct conduction_rule rule;
     bool steady;
-    double isothermal;        /* [W/(m K)] of conduction_isothermal; NaN: not known */
+    struct contact_options contacts;
+    double isothermal; /* [W/(m K)] of conduction_isothermal; NaN: not known */
+    struct steady_total total[3];
     struct steady between[3]; /* results between plates along each axis; 0 spheres: not computed */
 };
 
@@ -66,6 +68,7 @@ static const struct option conductivity_table[] = {
      "sides of the bed, which reflect everything: cylinder:X,Y,R, box, xmin, xmax ... as in fibrad heat; none of them "
      "lies across the axis of F_E [none]",
      TO_FUNCTION(walls_option, struct bed_options, walls)},
+    OPTIONS_CONTACTS(struct conductivity_request),
     {0, "seed", "S", "seed of paths and directions [0]", TO_WHOLE(struct conductivity_request, rule.seed, 0, INFINITY)},
     OPTIONS_INPUT,
     {OPTION_BED_OUTPUT("write F_E and k of each axis: .csv .json, - for standard output [summary only]")},
@@ -99,8 +102,14 @@ static int conductivity_help(void) {
          "that of spheres whose temperatures differ from point to point. Without --solid-conductivity, if the unit\n"
          "of length is known, the line `isothermal` has a k_s. Above this k_s, F_E with one temperature for each\n"
          "sphere is right to 5 %.\n"
+         "\n" CONTACTS_MORE
+         "With --contacts or --gas-conductivity, --steady finds k_total of the bed with radiation and contacts,\n"
+         "k_radiation without contacts and k_conduction without radiation. Spheres within a diameter of a plate\n"
+         "have its temperature.\n"
          "\n"
          "Examples:\n"
+         "  fibrad conductivity pebbles.dump --emissivity 0.8 --steady --temperature 1000 --contacts hertz \\\n"
+         "      --contact-conductivity 30 --contact-scale 0.05\n"
          "  fibrad conductivity packing.dump --emissivity 0.8\n"
          "  fibrad conductivity packing.dump --emissivity 0.8 --axis z --temperature 1200 -o k.csv\n"
          "  fibrad conductivity pebbles.dump --emissivity 0.8 --temperature 300:2000:100 --solid-conductivity 30 \\\n"
@@ -161,6 +170,9 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
     if (status) return status;
     if (!request->emissivity.given && request->bed.files > 0)
         return message(STATUS_USAGE, "--emissivity is missing; see fibrad conductivity --help");
+    if (contacts_given(&request->contacts) && !(request->steady && request->at))
+        return message(STATUS_USAGE, "--contacts and --gas-conductivity need --steady and --temperature");
+    if (request->contacts.flows) return message(STATUS_USAGE, "--contact-flows is an option of fibrad heat");
     if (request->solid.given && !request->at) return message(STATUS_USAGE, "--solid-conductivity needs --temperature");
     if (rule->error > 0 && rule->paths > 0) return message(STATUS_USAGE, "--error chooses the rays; leave out --rays");
     if (rule->max_rays > 0 && rule->paths > 0)
@@ -169,7 +181,8 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
     if (rule->max_rays == 0) rule->max_rays = 50000000;
     bed_options_quantity(&request->bed, &request->emissivity, NULL);
     bed_options_quantity(&request->bed, &request->solid, SOLID_UNIT);
-    status = bed_options_check(&request->bed, "conductivity", CONTENT_CONDUCTION);
+    status = contacts_check(&request->contacts, &request->bed, request->solid.given);
+    if (!status) status = bed_options_check(&request->bed, "conductivity", CONTENT_CONDUCTION);
     return status ? status : check_outputs(request);
 }
 
@@ -199,6 +212,18 @@ static void report_steady(struct report *report, int axis, const struct steady *
     report_measured(report, report_key(report, "F_E_steady_%c", 'x' + axis), steady->factor, steady->error);
     report_value(report, report_key(report, "F_E_steady_%c_error", 'x' + axis), steady->error, 2);
     report_value(report, report_key(report, "seconds_steady_%c", 'x' + axis), steady->seconds, 3);
+}
+
+/* Reports conductivities of a bed with contacts along an axis. */
+static void report_total(struct report *report, int axis, const struct steady_total *total) {
+    static const char *const names[] = {"k_total", "k_radiation", "k_conduction"};
+    const struct measured_total *const of[] = {&total->both, &total->radiation, &total->conduction};
+    if (!total->computed) return;
+    report_count(report, report_key(report, "contacts_%c", 'x' + axis), total->contacts);
+    for (int k = 0; k < 3; ++k) {
+        report_measured(report, report_key(report, "%s_%c_W_mK", names[k], 'x' + axis), of[k]->k, of[k]->error);
+        report_value(report, report_key(report, "%s_%c_W_mK_error", names[k], 'x' + axis), of[k]->error, 2);
+    }
 }
 
 static void conductivity_report(struct conductivity_request *request, const struct bed *bed,
@@ -231,6 +256,7 @@ static void conductivity_report(struct conductivity_request *request, const stru
         report_axes(report, result, "k", "_W_mK", result->k, result->k_error);
     }
     for (int axis = 0; axis < 3; ++axis) report_steady(report, axis, &request->between[axis]);
+    for (int axis = 0; axis < 3; ++axis) report_total(report, axis, &request->total[axis]);
     report_axes(report, result, "F_E", "", result->factor, result->error);
     report_end(report);
 }
@@ -279,17 +305,29 @@ static int conductivity_follow(struct conductivity_request *request, const struc
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
+/* Conductivities of the bed with contacts along an axis. */
+static int conductivity_total(struct conductivity_request *request, const struct bed *bed,
+                              const struct conduction *result, int axis) {
+    double metres;
+    const int status = bed_options_metres(&request->bed, bed, &metres);
+    const struct total_problem problem = {
+        &request->contacts,  &request->solid, request->rule.emissivity, request->rule.conductivity, &request->walls,
+        result->temperature, metres,          result->diameter};
+    return status ? status : steady_contacts(&request->bed, bed, &problem, axis, &request->total[axis]);
+}
+
 /* With --steady computes F_E between plates along each wanted axis whose other two axes are periodic. */
 static int conductivity_steady(struct conductivity_request *request, const struct bed *bed, struct conduction *result) {
     int status = STATUS_OK;
     bool any = false;
     for (int axis = 0; axis < 3 && !status; ++axis) {
-        request->between[axis] = (struct steady){0};
+        request->between[axis] = (struct steady){0}, request->total[axis] = (struct steady_total){.computed = false};
         if (!request->steady || !conduction_wants(result, axis) || !steady_possible(bed, &request->walls, axis))
             continue;
         any = true;
         status = steady_conduction(&request->bed, bed, &request->walls, request->rule.emissivity,
                                    request->rule.conductivity, axis, &request->between[axis]);
+        if (!status && contacts_given(&request->contacts)) status = conductivity_total(request, bed, result, axis);
         result->steady[axis] = request->between[axis].factor, result->steady_error[axis] = request->between[axis].error;
     }
     if (request->steady && !any)
@@ -383,7 +421,8 @@ static int conductivity_frame(void *conductivity_request, struct bed *bed) {
     int status = emits ? conductivity_walls(request, bed) : message_memory();
     for (int k = 0; k < request->temperatures && !status; ++k) {
         const double kelvins = request->temperature[k];
-        const bool again = k > 0 && !request->solid.given && result.temperature > 0;
+        const bool again =
+            k > 0 && !request->solid.given && !contacts_given(&request->contacts) && result.temperature > 0;
         status = again ? conductivity_again(request, bed, kelvins, &result)
                        : conductivity_at(request, bed, kelvins, emits, &result);
         if (!status) status = bed_options_write(&request->bed, bed, &what);
@@ -402,5 +441,7 @@ int command_conductivity(int argc, char **argv) {
     const int status = conductivity_parse(&request, argc, argv);
     const int ended = bed_options_end(&request.bed, status, conductivity_help, conductivity_frame, &request);
     quantity_free(&request.solid);
+    quantity_free(&request.contacts.conductivity);
+    curve_free(&request.contacts.gas_curve);
     return ended;
 }

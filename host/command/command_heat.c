@@ -19,6 +19,7 @@ struct heat_request {
     struct given_options given;
     struct time_options time;
     struct light_options light;
+    struct contact_options contacts;
     struct face face;
     const char *wall_emissivity;
     struct quantity emissivity, solid;
@@ -64,6 +65,7 @@ static const struct option heat_table[] = {
     {OPTION_WALL_EMISSIVITY(struct heat_request, wall_emissivity)},
     {OPTION_TEMPERATURE_UNIT(struct heat_request, given.zero)},
     OPTIONS_LIGHT(struct heat_request),
+    OPTIONS_CONTACTS(struct heat_request),
     {0, "face", NULL, "find the emissivity of the open face of the bed, which has one temperature",
      TO_FLAG(struct heat_request, face.wanted)},
     {0, "model", "NAME",
@@ -113,7 +115,9 @@ static int heat_help(void) {
          "--error E holds for the powers of the spheres together, for each wall, and for T^4 where temperatures\n"
          "are found. Each error is relative to a root mean square. Where powers are below 1e-3 of what the spheres\n"
          "emit or absorb, errors are relative to 1e-3 of what they emit or absorb.\n"
-         "\n" LIGHT_MORE "\n"
+         "\n" LIGHT_MORE);
+    puts(CONTACTS_MORE
+         "\n"
          "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
          "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
          "the temperature of a wall (zmin=@TABLE) or of the surroundings. The .csv then has the time in its first\n"
@@ -175,9 +179,12 @@ static int heat_check_request(struct heat_request *request) {
     if (request->solid.given && (request->problem.sources.uniform || request->problem.by_factors))
         return message(STATUS_USAGE,
                        "--solid-conductivity is for --model patches: in other models a sphere has no sides");
+    if (contacts_given(&request->contacts) && request->problem.by_factors)
+        return message(STATUS_USAGE, "--model factors has no contacts; use --model patches");
     bed_options_quantity(&request->bed, &request->emissivity, NULL);
     bed_options_quantity(&request->bed, &request->solid, SOLID_UNIT);
-    status = time_check(&request->time, &request->bed);
+    status = contacts_check(&request->contacts, &request->bed, request->solid.given);
+    if (!status) status = time_check(&request->time, &request->bed);
     if (!status) status = light_check(&request->light, &request->bed, &request->emissivity);
     if (!status) status = given_check(&request->given, &request->bed);
     return status ? status : given_ambient(&request->given, &request->problem.sources.surroundings);
@@ -249,6 +256,7 @@ static void heat_print(struct heat_request *request, const struct bed *bed, cons
     }
     face_report(&request->face, heat->metres, report);
     light_report(request->problem.light, &request->problem.walls, bed->n, report);
+    contacts_report(request->problem.contacts, bed, &request->problem.walls, report);
     if (request->problem.solid) heat_print_solid(request, bed, heat);
     report_value(report, "balance_of_emission", heat->balance_of_emission, 2);
     report_value(report, "error_of_emission", heat->throughput > 0 ? heat->error / heat->throughput : 0, 2);
@@ -287,6 +295,7 @@ static int heat_solve(struct heat_request *request, struct bed *bed, struct heat
     if (!status) status = bed_options_write(&request->bed, bed, &what);
     if (!status && request->bed.outputs.picture) status = heat_picture(request, bed, report);
     if (!status) status = light_profile(request->problem.light, bed, request->bed.name);
+    if (!status) status = contacts_write(request->problem.contacts, bed, &request->problem.walls);
     if (!status) heat_print(request, bed, report);
     return status;
 }
@@ -342,6 +351,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     fibrad_heat_sources *sources = &request->problem.sources;
     struct given given = {0};
     struct light_state light = {0};
+    struct contact_state contacts = {0};
     double *emissivity = NULL, of_walls[7][WALLS_MAX] = {{0}};
     const char *file = request->bed.name;
     int status = bed_options_walls(&request->bed, bed, walls);
@@ -353,7 +363,8 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     if (!status) status = face_begin(&request->face, bed, walls);
     if (!status) status = light_begin(&light, &request->light, bed, file, walls, emissivity, of_walls[0]);
-    if (!status && !request->given.timed) status = given_reflectors(&given, emissivity, walls, of_walls[0], bed, file);
+    const bool checked = !request->given.timed && !contacts_given(&request->contacts); /* contacts: by the library */
+    if (!status && checked) status = given_reflectors(&given, emissivity, walls, of_walls[0], bed, file);
     if (!status) status = bed_options_metres(&request->bed, bed, &report.metres);
     if (!status)
         warn_temperatures(&request->bed.warned, bed, bed_options_column(&request->bed, &request->given.temperature),
@@ -364,6 +375,11 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     if (!status) {
         given_heat_sources(&given, bed->n, request->given.timed ? 1 : report.metres, sources);
         sources->emissivity = emissivity, sources->body_emissivity = of_walls[0];
+        const double per_watt = request->given.timed ? 1 : 1 / (report.metres * report.metres);
+        status = contacts_begin(&contacts, &request->contacts, &request->bed, bed, walls, &request->solid, per_watt,
+                                sources);
+        contacts_result(&contacts, &report.result);
+        request->problem.contacts = &contacts;
         request->problem.wall_curve = given.tables.curve,
         request->problem.ambient_curve = &request->given.ambient_curve;
         request->problem.light = &light, request->problem.face = &request->face;
@@ -371,12 +387,15 @@ static int heat_frame(void *heat_request, struct bed *bed) {
         report.result.body_power = of_walls[1], report.result.body_temperature = of_walls[2];
         report.result.body_absorbed = of_walls[5], report.result.body_area = of_walls[6];
         report.result.body_error = of_walls[3], report.result.body_temperature_error = of_walls[4];
+    }
+    if (!status) {
         status = request->given.timed ? heat_in_time(&request->bed, &request->time, &request->problem, bed, &report,
                                                      request->bed.outputs.picture ? &request->bed.picture : NULL)
                                       : heat_solve(request, bed, &report);
     }
     free(emissivity);
     light_free(&light);
+    contacts_free(&contacts);
     given_free(&given);
     free(request->problem.solid);
     free(request->problem.conductivity);
@@ -392,6 +411,8 @@ int command_heat(int argc, char **argv) {
     const int ended = bed_options_end(&request.bed, status, heat_help, heat_frame, &request);
     quantity_free(&request.emissivity);
     quantity_free(&request.solid);
+    quantity_free(&request.contacts.conductivity);
+    curve_free(&request.contacts.gas_curve);
     curve_free(&request.given.ambient_curve);
     return ended;
 }

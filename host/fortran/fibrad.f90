@@ -182,6 +182,8 @@ module fibrad
         integer(c_int) :: uniform = 0
         type(c_ptr) :: side_temperature = c_null_ptr, light = c_null_ptr, conductivity = c_null_ptr
         type(c_ptr) :: absorbed = c_null_ptr
+        type(c_ptr) :: contact_first = c_null_ptr, contact_second = c_null_ptr, conductance = c_null_ptr
+        integer(c_int32_t) :: contacts = 0
     end type c_heat_sources
 
     ! Light from outside: fibrad_light in fibrad_light.h. Set direction and flux.
@@ -221,6 +223,7 @@ module fibrad
         type(c_ptr) :: body_area = c_null_ptr
         type(c_ptr) :: least_temperature = c_null_ptr, largest_temperature = c_null_ptr
         type(c_ptr) :: centre_temperature = c_null_ptr, surface_error = c_null_ptr, centre_error = c_null_ptr
+        type(c_ptr) :: conducted = c_null_ptr, body_conducted = c_null_ptr, contact_flow = c_null_ptr
     end type c_heat_result
 
     type, bind(C) :: c_transient_config
@@ -761,9 +764,12 @@ contains
     !   conductivity        (n) [W/(m K)] of the solid, above 0; temperatures are then means of surfaces
     !   least, largest      (n) [K] out: of the surface of each sphere
     !   centre              (n) [K] out: in the centre of each sphere
+    !   contacts            (2, m) ends of contacts: spheres from 1, or n plus a wall from 1
+    !   conductance         (m) [W/K] of contacts
+    !   conducted           (n) [W] out: part of power that comes through contacts
     subroutine heat_settle(heat, temperature, source, law, emissivity, surroundings, power, status, wall_temperature, &
                            wall_emissivity, wall_source, insulated, wall_power, surroundings_power, temperature_error, &
-                           conductivity, least, largest, centre)
+                           conductivity, least, largest, centre, contacts, conductance, conducted)
         class(fibrad_heat), intent(inout) :: heat
         real(c_double), intent(inout), contiguous, target :: temperature(:), emissivity(:), power(:)
         real(c_double), intent(in), contiguous, target :: source(:)
@@ -777,6 +783,10 @@ contains
         real(c_double), intent(inout), optional, contiguous, target :: temperature_error(:)
         real(c_double), intent(in), optional, contiguous, target :: conductivity(:)
         real(c_double), intent(inout), optional, contiguous, target :: least(:), largest(:), centre(:)
+        integer, intent(in), optional :: contacts(:, :)
+        real(c_double), intent(in), optional, contiguous, target :: conductance(:)
+        real(c_double), intent(inout), optional, contiguous, target :: conducted(:)
+        integer(c_int32_t), allocatable, target :: ends(:, :)
         type(c_heat_sources) :: sources
         type(c_heat_result) :: result
         type(law_of_spheres), target :: follows
@@ -794,6 +804,7 @@ contains
         if (status == fibrad_ok .and. present(least)) status = check_sizes(heat%spheres, size(least))
         if (status == fibrad_ok .and. present(largest)) status = check_sizes(heat%spheres, size(largest))
         if (status == fibrad_ok .and. present(centre)) status = check_sizes(heat%spheres, size(centre))
+        if (status == fibrad_ok .and. present(conducted)) status = check_sizes(heat%spheres, size(conducted))
         if (status /= fibrad_ok) return
         given = temperature
         sources%temperature = c_loc(given)
@@ -818,6 +829,19 @@ contains
         if (present(least)) result%least_temperature = c_loc(least)
         if (present(largest)) result%largest_temperature = c_loc(largest)
         if (present(centre)) result%centre_temperature = c_loc(centre)
+        if (present(conducted)) result%conducted = c_loc(conducted)
+        if (present(contacts)) then
+            status = check_sizes(2, size(contacts, 1))
+            if (status == fibrad_ok .and. .not. present(conductance)) status = fibrad_e_argument
+            if (status == fibrad_ok) status = check_sizes(size(contacts, 2), size(conductance))
+            if (status == fibrad_ok .and. any(contacts < 1)) status = fibrad_e_argument
+            if (status /= fibrad_ok) return
+            ends = transpose(int(contacts, c_int32_t) - 1_c_int32_t)
+            sources%contact_first = c_loc(ends(1, 1))
+            sources%contact_second = c_loc(ends(1, 2))
+            sources%conductance = c_loc(conductance)
+            sources%contacts = int(size(conductance), c_int32_t)
+        end if
         status = c_radiation_settle(heat%radiation, sources, c_funloc(follow_law), c_loc(follows), c_loc(emissivity), &
                                     c_loc(walls_emit), result)
         if (status /= fibrad_ok) return

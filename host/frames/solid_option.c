@@ -3,9 +3,11 @@
 
 #include "cli/message.h"
 
+const struct curve_axes solid_axes = {CURVE_AXIS_KELVINS, {"k lambda conductivity", SOLID_UNIT}};
+
 int solid_option(const char *text, void *solid) {
-    static const struct curve_axes axes = {CURVE_AXIS_KELVINS, {"k lambda conductivity", SOLID_UNIT}};
-    return table_option("--solid-conductivity", text, &axes, SOLID_CONDUCTIVITY_MIN, SOLID_CONDUCTIVITY_MAX, solid);
+    return table_option("--solid-conductivity", text, &solid_axes, SOLID_CONDUCTIVITY_MIN, SOLID_CONDUCTIVITY_MAX,
+                        solid);
 }
 
 int solid_values(struct bed_options *options, const struct bed *bed, const struct quantity *solid,

@@ -14,6 +14,9 @@
 #define SOLID_CONDUCTIVITY_MIN 1e-6
 #define SOLID_CONDUCTIVITY_MAX 1e12
 
+/* Tables of conductivities over temperatures. */
+extern const struct curve_axes solid_axes;
+
 /* A row of a table of options, without braces. */
 #define OPTION_SOLID_CONDUCTIVITY(request, field)                                                                      \
     0, "solid-conductivity", "K",                                                                                      \

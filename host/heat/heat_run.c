@@ -32,11 +32,11 @@ static void heat_summarise(const struct bed *bed, const fibrad_heat_sources *sou
     }
     report->emitted = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {
-        const double power = result->power[i];
+        const double power = result->power[i], radiation = power - (result->conducted ? result->conducted[i] : 0);
         const double emissivity = sources->emissivity[i];
         const double emitted =
             emissivity > 0 ? sphere * bed->r[i] * bed->r[i] * emissivity * pow(result->temperature[i], 4) : 0;
-        const double through = fmax(emitted, emitted + power);
+        const double through = fmax(emitted, emitted + radiation);
         report->emitted += emitted;
         report->balance += power;
         square += power * power;
@@ -58,7 +58,7 @@ static void heat_temperatures(const struct bed *bed, const fibrad_heat_sources *
     report->unknown = 0;
     report->coldest = INFINITY, report->hottest = -INFINITY;
     for (uint32_t i = 0; i < bed->n; ++i) {
-        if (!isnan(sources->temperature[i]) || !(sources->emissivity[i] > 0)) continue;
+        if (!isnan(sources->temperature[i]) || isnan(result->temperature[i])) continue;
         report->unknown++;
         const double t = result->temperature[i], error = result->temperature_error[i];
         sum += t, square += error * error;
@@ -119,7 +119,8 @@ static int heat_unsolvable(const struct bed_options *options, const struct heat_
     }
     if (!given) return heat_no_level(options->name, sum, magnitude);
     for (uint32_t i = 0; i < bed->n; ++i)
-        if (isnan(sources->temperature[i]) && isnan(report->result.temperature[i]) && sources->emissivity[i] > 0)
+        if (isnan(sources->temperature[i]) && isnan(report->result.temperature[i]) &&
+            (sources->emissivity[i] > 0 || sources->power[i] != 0))
             return message_at(STATUS_INPUT, options->name, bed->line[i],
                               "sphere %lld: no temperature above 0 K gives off %g W here", (long long)bed_name(bed, i),
                               sources->power[i] * square_metres);
@@ -210,9 +211,9 @@ struct heat_law {
 static void heat_follow(void *law, const double *temperature, const double *wall_temperature, double *emissivity,
                         double *wall_emissivity) {
     const struct heat_law *how = law;
-    (void)wall_temperature;
     (void)wall_emissivity;
     heat_properties(how->problem, how->bed, temperature, emissivity);
+    contacts_follow(how->problem->contacts, how->bed, temperature, wall_temperature);
 }
 
 /* Tolerance of the radiosities over problem->error: so small that it adds nothing to the error. */
@@ -252,6 +253,8 @@ static int heat_once(struct bed_options *options, const struct heat_problem *pro
     fibrad_radiation_free(radiation);
     if (status) progress_stop(&options->progress);
     if (light_refuse(problem->light, bed, status, &run.fault)) return STATUS_USAGE;
+    const int refused = contacts_refuse(problem->contacts, options, bed, &problem->walls, status, &run.fault);
+    if (refused) return refused;
     if (status == FIBRAD_E_UNSOLVABLE) {
         progress_stop(&options->progress);
         return heat_unsolvable(options, problem, bed, report);
@@ -265,6 +268,7 @@ static int heat_once(struct bed_options *options, const struct heat_problem *pro
         warn_surfaces(&options->warned, bed, report->result.least_temperature);
     }
     heat_scale(bed, problem->walls.count, report->metres * report->metres, &report->result);
+    contacts_scale(problem->contacts, bed->n, problem->walls.count);
     light_scale(problem->light, bed->n, problem->walls.count, report->metres * report->metres);
     heat_summarise(bed, &sources, problem->walls.count, report);
     report->seconds = progress_clock() - begun;

@@ -2,7 +2,7 @@
 #ifndef HEAT_RUN_H
 #define HEAT_RUN_H
 
-#include "frames/bed_options.h"
+#include "conduct/contact_option.h"
 #include "heat/face.h"
 #include "heat/light_option.h"
 #include "heat/triangle_heat.h"
@@ -24,6 +24,7 @@ struct heat_problem {
     double *solid, *conductivity;
     double per_watt;                 /* sources.conductivity over solid */
     const struct quantity *of_solid; /* the option, which has the tables */
+    struct contact_state *contacts;  /* what conducts between spheres; options NULL: nothing does */
     bool by_patches, by_factors;     /* --model; in time only: neither means corrected factors */
     /* --error: error allowed in powers, and in sigma T^4 of temperatures that are found, over their root mean squares;
      * 0: not given */

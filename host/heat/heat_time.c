@@ -183,17 +183,20 @@ static int find_capacities(struct time_run *m, double metres, double **capacity)
 static void follow_temperatures(void *time_run, const double *temperature, const double *wall_temperature,
                                 double *emissivity, double *wall_emissivity) {
     const struct time_run *m = time_run;
-    (void)wall_temperature;
     (void)wall_emissivity;
     heat_properties(m->problem, &m->bed, temperature, emissivity);
+    contacts_follow(m->problem->contacts, &m->bed, temperature, wall_temperature);
 }
 
 /* Chooses the method of the library. Patches are needed if the temperature of a wall is to be found, if emissivities
- * follow temperatures, or if spheres conduct. Else --model decides, whose default is corrected factors. */
+ * follow temperatures, if spheres conduct, or if they are in contact. Else --model decides, whose default is corrected
+ * factors. */
 static int choose_model(struct time_run *m) {
     const struct heat_problem *problem = m->problem;
-    const bool follow = quantity_curves(problem->of_emissivity) || quantity_curves(problem->of_solid);
-    m->by_patches = problem->by_patches || follow || problem->solid;
+    const struct contact_options *contacts = problem->contacts->options;
+    const bool bends = contacts && (contacts->gas_curve.n > 0 || quantity_curves(&contacts->conductivity));
+    const bool follow = quantity_curves(problem->of_emissivity) || quantity_curves(problem->of_solid) || bends;
+    m->by_patches = problem->by_patches || follow || problem->solid || contacts;
     m->span.law = follow ? follow_temperatures : NULL;
     if (follow && problem->by_factors)
         return message(STATUS_USAGE, "--model factors: emissivities cannot follow temperatures; use --model patches");
@@ -214,6 +217,8 @@ static int choose_model(struct time_run *m) {
 static int library_status(struct time_run *m, int status) {
     fibrad_fault fault;
     fibrad_transient_describe(m->transient, NULL, &fault);
+    const int refused = contacts_refuse(m->problem->contacts, m->options, &m->bed, &m->problem->walls, status, &fault);
+    if (refused) return refused;
     if (status != FIBRAD_E_UNSOLVABLE) return bed_options_status(m->options, &m->bed, status, &fault);
     progress_stop(&m->options->progress);
     return message_at(STATUS_INPUT, m->options->name, 0, "after %g s no step keeps all temperatures above 0 K%s",
@@ -254,6 +259,7 @@ static int write_state(struct time_run *m) {
     shown.temperature = m->span.temperature;
     heat_properties(m->problem, &m->bed, shown.temperature, m->problem->emissivity);
     heat_excess_of(m->problem, &m->bed, shown.temperature, m->excess);
+    contacts_follow(m->problem->contacts, &m->bed, shown.temperature, m->wall);
     int status = fibrad_transient_powers(m->transient, &shown, m->result);
     if (!status && m->triangles->count && !m->problem->by_factors) {
         status = fibrad_transient_sides(m->transient, m->triangles->quantity[TRIANGLE_FLUX].side,
@@ -275,6 +281,7 @@ static int write_state(struct time_run *m) {
                                   .light = m->problem->light->options ? &m->problem->light->result : NULL,
                                   .of_sides = m->problem->by_factors ? NULL : m->triangles};
     status = outputs_write(&m->options->outputs, &what);
+    if (!status) status = contacts_write(m->problem->contacts, &m->bed, &m->problem->walls);
     ++m->bed.frame;
     return status;
 }
@@ -355,6 +362,7 @@ static void print_summary(struct time_run *m, const double *before, double secon
     if (!isnan(m->problem->sources.surroundings)) report_value(report, "surroundings_J", m->surroundings_energy, 6);
     wall_values_report(walls, m->energy, "_J", 6, report);
     light_report(m->problem->light, walls, m->bed.n, report);
+    contacts_report(m->problem->contacts, &m->bed, walls, report);
     report_value(report, "balance_of_stored", exchanged > 0 ? balance / exchanged : 0, 2);
     report_end(report);
 }

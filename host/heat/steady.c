@@ -17,13 +17,16 @@ bool steady_possible(const struct bed *bed, const struct walls *walls, int axis)
     return !isnan(conduction_width(bed, walls, (axis + 1) % 3)) && !isnan(conduction_width(bed, walls, (axis + 2) % 3));
 }
 
-/* The lower and the upper plate, and then the sides. */
-static struct walls steady_walls(const struct bed *bed, const struct walls *sides, int axis) {
+struct walls steady_walls(const struct bed *bed, const struct walls *sides, int axis) {
     struct walls walls = {.count = 2};
     for (int k = 0; k < 2; ++k)
         walls.body[k] = (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {axis, k, bed_reach(bed, axis, k == 1)}};
     for (uint32_t k = 0; sides && k < sides->count; ++k) walls.body[walls.count++] = sides->body[k];
     return walls;
+}
+
+double steady_area(const struct bed *bed, const struct walls *sides, int axis) {
+    return conduction_width(bed, sides, (axis + 1) % 3) * conduction_width(bed, sides, (axis + 2) % 3);
 }
 
 /* Temperatures of the plates over their mean. They differ so little that k* of spheres is the same everywhere. */
@@ -110,8 +113,7 @@ static int steady_factor(struct bed_options *options, const struct bed *bed, con
                        steady->spheres, 'x' + axis);
     if (!status) {
         for (uint32_t i = 0; i < bed->n; ++i) diameter += 2 * bed->r[i] / bed->n;
-        const double area = conduction_width(bed, sides, (axis + 1) % 3) * conduction_width(bed, sides, (axis + 2) % 3);
-        steady->factor = power[1] / (area * diameter * -slope);
+        steady->factor = power[1] / (steady_area(bed, sides, axis) * diameter * -slope);
         steady->error = steady->factor * hypot(slope_error / slope, error[1] / power[1]);
     }
     free(emission);

@@ -3,7 +3,7 @@
 #ifndef STEADY_H
 #define STEADY_H
 
-#include "frames/bed_options.h"
+#include "conduct/contact_option.h"
 
 /* Exchange factor F_E along one axis: flux / (mean diameter x gradient of sigma T^4). The gradient is that of a
  * straight line through the spheres of the inner half. */
@@ -23,5 +23,38 @@ bool steady_possible(const struct bed *bed, const struct walls *walls, int axis)
  * 40 spheres lie in the inner half, or as bed_options_status. */
 int steady_conduction(struct bed_options *options, const struct bed *bed, const struct walls *walls,
                       const double *emissivity, const double *relative, int axis, struct steady *steady);
+
+/* The lower and the upper plate at the ends of a bed, and then the sides. sides NULL: none. */
+struct walls steady_walls(const struct bed *bed, const struct walls *sides, int axis);
+
+/* The area of the bed across an axis. */
+double steady_area(const struct bed *bed, const struct walls *sides, int axis);
+
+/* What conducts in a bed between plates. */
+struct total_problem {
+    const struct contact_options *contacts;
+    const struct quantity *solid; /* --solid-conductivity */
+    const double *emissivity;     /* [spheres] */
+    const double *relative;       /* [spheres] k* of spheres that conduct; NULL: each sphere has one temperature */
+    const struct walls *sides;    /* insulated, in contact with nothing */
+    double temperature;           /* [K] */
+    double metres;                /* the bed's unit of length */
+    double diameter;              /* mean diameter, in that unit */
+};
+
+/* A conductivity and its estimated error [W/(m K)]. */
+struct measured_total {
+    double k, error;
+};
+struct steady_total {
+    struct measured_total both, radiation, conduction; /* conduction: of the same contacts without radiation */
+    uint32_t contacts;
+    bool computed;
+};
+
+/* As steady_conduction, with contacts. Spheres within a diameter of a plate have its temperature. The temperatures of
+ * the plates differ by a thousandth. Status as steady_conduction and contacts_begin. */
+int steady_contacts(struct bed_options *options, const struct bed *bed, const struct total_problem *problem, int axis,
+                    struct steady_total *total);
 
 #endif

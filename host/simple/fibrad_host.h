@@ -5,6 +5,7 @@
  *   factors  fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_side_views, fibrad_displacements
  *   heat     fibrad_radiation_new, _move, _solve, _sides, _settle, _shine, _describe, _free
  *   time     fibrad_transient_new, _move, _powers, _sides, _shine, _advance, _describe, _free
+ *   contacts fibrad_contacts_find, _conduct, _free
  *   kernel   fibrad_heap_resize, fibrad_host_sizeof
  *
  * Example   fibrad_bed_factors *bed;
@@ -195,8 +196,8 @@ typedef void fibrad_emissivity_law(void *context, const double *temperature, con
                                    double *emissivity, double *body_emissivity);
 
 /* Net powers and temperatures with emissivities that follow a law. The call solves again until the emissivities change
- * by at most 1e-5. The law may also change the elements of sources->conductivity. The call then goes on until each of
- * these changes by at most 1e-4 of its value.
+ * by at most 1e-5. The law may also change the elements of sources->conductivity and of sources->conductance. The call
+ * then goes on until each of these changes by at most 1e-4 of its value.
  *   Input    sources: emissivity and body_emissivity are not used
  *            context: handed to law
  *            emissivity[spheres], body_emissivity[bodies]: first values, used where temperatures are unknown
@@ -204,7 +205,8 @@ typedef void fibrad_emissivity_law(void *context, const double *temperature, con
  *            result: temperature, and body_temperature with walls, must be set
  *   Errors   as fibrad_radiation_solve
  *            _UNSOLVABLE: also if 100 solutions do not suffice
- *            After an error `emissivity` and `body_emissivity` are as before. */
+ *            After an error `emissivity` and `body_emissivity` are as before. Conductivities and conductances are as
+ *            the law has left them. */
 int fibrad_radiation_settle(fibrad_radiation *radiation, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
                             void *context, double *emissivity, double *body_emissivity, fibrad_heat_result *result);
 
@@ -374,6 +376,7 @@ typedef struct fibrad_span {
  *   body_power, insulated            constant; by PATCHES only
  *   side_temperature                 constant; not by FACTORS
  *   conductivity                     by FACTORS it must be NULL
+ *   conductance                      constant, or changed by a law; contacts by PATCHES only
  *   sigma, tolerance, sweeps_max     as for fibrad_radiation_solve
  *
  *   Input    sources: begin with fibrad_heat_sources_init
@@ -392,6 +395,63 @@ void fibrad_transient_describe(const fibrad_transient *transient, fibrad_scene_f
 /* Frees the bed. NULL is allowed.
  *   Errors   none */
 void fibrad_transient_free(fibrad_transient *transient);
+
+/* ---- contacts --------------------------------------------------------------------------------------------------- */
+
+/* How large the spot is at which two spheres that overlap, or a sphere and a wall, touch. a is its radius, R the radius
+ * of a sphere, D the overlap and x the distance of the centre from the plane of the spot.
+ *
+ *   LENS    the circle in which the surfaces cut each other: a^2 = R^2 - x^2
+ *   HERTZ   that of elastic spheres: a^2 = R_ij D with 1/R_ij = 1/R_i + 1/R_j; for a wall R_ij = R_i
+ *
+ * The lens of equal spheres is 1.41 times as large as Hertz's spot. */
+typedef enum fibrad_spots { FIBRAD_SPOTS_NONE = 0, FIBRAD_SPOTS_LENS = 1, FIBRAD_SPOTS_HERTZ = 2 } fibrad_spots;
+
+/* Which contacts are found, and what they conduct. Zeroed: none. */
+typedef struct fibrad_contact_rule {
+    int spots;        /* a fibrad_spots */
+    double scale;     /* of the radii of spots, above 0; 0: 1 */
+    double gas_reach; /* thickness of the gas that conducts about the smaller sphere, in its radii, 0 to 1; 0: no gas */
+    double gas_jump;  /* L, is added to gaps, since narrow gaps conduct less; 0 or more */
+    double gas_least; /* L, least gap that counts, above 0; 0: 1e-7 of the smaller radius */
+    int gas_alone;    /* 1: the solid has no share in lines through gas; spheres that conduct have it themselves */
+} fibrad_contact_rule;
+
+/* Contacts of a bed. A pair that touches across a period, too, has several. Ends are as in fibrad_heat_sources. */
+typedef struct fibrad_contact_list {
+    uint32_t n;                     /* number of contacts */
+    const uint32_t *first, *second; /* [n], a sphere; a sphere, or `spheres` plus a wall */
+    const double *distance;         /* L, [n], of the centres, or of centre and wall */
+    const double *radius, *other;   /* L, [n], of both ends; infinity: a wall */
+    const double *spot;             /* L, [n], radius of the spot, times rule->scale; 0: apart */
+} fibrad_contact_list;
+
+/* Finds spheres that touch each other or walls, or that are near enough for gas to conduct. Walls are planes, the
+ * cylinder and the fronts and backs of triangles. A sphere touches a wall of triangles once for each place that is
+ * nearest to it.
+ *   Input    config: NULL: open on all sides, no walls
+ *   Output   list: free with fibrad_contacts_free
+ *   Errors   _ARGUMENT
+ *   Cost     0.5 microseconds for each sphere within reach */
+int fibrad_contacts_find(const fibrad_scene_config *config, const fibrad_spheres *spheres,
+                         const fibrad_contact_rule *rule, fibrad_contact_list **list);
+
+/* What contacts conduct. A spot of radius a conducts 2 k a between spheres with 2/k = 1/k_i + 1/k_j, and 4 k_i a to a
+ * wall. Gas conducts along lines parallel to the line of centres, out to where the surface of one sphere leaves the gas
+ * about the other one.
+ *   Input    solid[spheres]: conductivities of spheres, above 0; infinity is allowed if rule->spots is 0
+ *            gas[n]: conductivities of the gas at each contact; NULL: no gas conducts
+ *            Both are in the unit of fibrad_heat_sources.conductivity.
+ *   Output   conductance[n]: in the unit of fibrad_heat_sources.conductance
+ *   Errors   _ARGUMENT
+ *   Cost     1 microsecond for each contact with gas
+ *   Source   docs/methods_heat.md, section 16 */
+int fibrad_contacts_conduct(const fibrad_contact_list *list, const fibrad_contact_rule *rule, const double *solid,
+                            const double *gas, double *conductance);
+
+/* Frees a list. NULL is allowed.
+ *   Errors   none */
+void fibrad_contacts_free(fibrad_contact_list *list);
 
 /* ---- kernel ---------------------------------------------------------------------------------------------------- */
 

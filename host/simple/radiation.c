@@ -126,7 +126,8 @@ static int sweep_beams(void *heat, int thread, uint32_t part) {
     return fibrad_heat_sweep(heat, part);
 }
 
-static int solve_sources(fibrad_radiation *r, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
+/* Finds a solution, which is then read. */
+static int find_solution(fibrad_radiation *r, const fibrad_heat_sources *sources) {
     if (!r->heat) return FIBRAD_E_STATE;
     r->fault = (fibrad_fault){r->n, r->n, UINT32_MAX, 0, 0};
     int solved = 0, status = fibrad_heat_check(r->heat, sources, &r->fault);
@@ -136,6 +137,11 @@ static int solve_sources(fibrad_radiation *r, const fibrad_heat_sources *sources
         if (!status) status = fibrad_team_run(&r->team, NULL, PARTS, 1, sweep_beams, r->heat, NULL);
         if (!status) status = fibrad_heat_step(r->heat, &solved);
     }
+    return status;
+}
+
+static int solve_sources(fibrad_radiation *r, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
+    const int status = find_solution(r, sources);
     return status ? status : fibrad_heat_read(r->heat, result);
 }
 
@@ -183,10 +189,10 @@ static double largest_ratio(const double *before, const double *now, uint32_t n)
     return largest;
 }
 
-/* The arrays of a problem that follows a law, [spheres] and [bodies] each, in one block. */
+/* The arrays of a problem that follows a law, [spheres] and [bodies] each unless said, in one block. */
 struct settling {
     double *emissivity, *body_emissivity, *before, *body_before, *power, *body_power, *temperature, *body_temperature;
-    double *conductivity; /* [spheres], of the last solution */
+    double *conductivity, *conductance; /* [spheres] and [contacts], of the last solution */
 };
 
 static void divide_block(double *block, uint32_t n, uint32_t bodies, struct settling *s) {
@@ -195,6 +201,7 @@ static void divide_block(double *block, uint32_t n, uint32_t bodies, struct sett
     for (size_t k = 0; k < sizeof of_spheres / sizeof *of_spheres; ++k, block += n) *of_spheres[k] = n ? block : NULL;
     for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; ++k, block += bodies)
         *of_bodies[k] = bodies ? block : NULL;
+    s->conductance = block;
 }
 
 static void copy_values(double *to, const double *from, uint32_t n) {
@@ -206,15 +213,20 @@ static int follow_law(fibrad_radiation *r, const fibrad_heat_sources *sources, f
                       void *context, const fibrad_scene_facts *facts, const struct settling *s,
                       fibrad_heat_result *result) {
     const uint32_t n = facts->spheres, bodies = facts->bodies, conducting = sources->conductivity ? n : 0;
+    const uint32_t contacts = sources->conductance ? sources->contacts : 0;
     fibrad_heat_result found = {.power = s->power,
                                 .body_power = s->body_power,
                                 .temperature = s->temperature,
                                 .body_temperature = s->body_temperature};
     fibrad_heat_sources now = *sources;
     now.emissivity = s->emissivity, now.body_emissivity = s->body_emissivity;
+    if (contacts) now.conductance = s->conductance; /* the law may change those of the caller before they are read */
     law(context, sources->temperature, sources->body_temperature, s->emissivity, s->body_emissivity);
     for (int k = 0; k < SETTLE_MAX; ++k) {
-        const int status = solve_sources(r, &now, &found);
+        copy_values(s->conductance, sources->conductance, contacts);
+        int status = find_solution(r, &now);
+        if (status) return status;
+        status = fibrad_heat_read(r->heat, &found);
         if (status == FIBRAD_E_UNSOLVABLE) (void)fibrad_heat_read(r->heat, result); /* a temperature may be missing */
         if (status) return status;
         copy_values(s->before, s->emissivity, n);
@@ -225,7 +237,8 @@ static int follow_law(fibrad_radiation *r, const fibrad_heat_sources *sources, f
             return FIBRAD_E_ARGUMENT;
         if (largest_change(s->before, s->emissivity, n) + largest_change(s->body_before, s->body_emissivity, bodies) <=
                 EMISSIVITY_CHANGE &&
-            largest_ratio(s->conductivity, sources->conductivity, conducting) <= CONDUCTIVITY_CHANGE)
+            largest_ratio(s->conductivity, sources->conductivity, conducting) <= CONDUCTIVITY_CHANGE &&
+            largest_ratio(s->conductance, sources->conductance, contacts) <= CONDUCTIVITY_CHANGE)
             return fibrad_heat_read(r->heat, result);
     }
     return FIBRAD_E_UNSOLVABLE;
@@ -243,7 +256,8 @@ int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sour
     int status = begin_call(r);
     if (status) return status;
     struct settling s;
-    double *block = malloc((5 * (size_t)n + 4 * (size_t)bodies + 1) * sizeof *block);
+    const uint32_t contacts = sources->conductance ? sources->contacts : 0;
+    double *block = malloc((5 * (size_t)n + 4 * (size_t)bodies + contacts + 1) * sizeof *block);
     if (!block) return end_call(r, FIBRAD_E_MEMORY);
     divide_block(block, n, bodies, &s);
     copy_values(s.emissivity, emissivity, n);

@@ -60,12 +60,29 @@ static void set_surfaces(struct stepper *m) {
     if (m->span->law) m->span->law(m->span->context, t->guess, t->wall, t->emissivity, t->body_emissivity);
 }
 
-/* Makes the linear problem about t->guess. A sphere of emissivity 0 has no part in it. */
+/* Whether a sphere exchanges no heat with any other. */
+static bool stands_alone(const struct stepper *m, uint32_t i) {
+    return m->sources.emissivity[i] == 0 && m->t->conducts[i] == 0;
+}
+
+/* Finds what contacts conduct from each sphere for each kelvin. */
+static void find_conducts(struct stepper *m) {
+    fibrad_transient *t = m->t;
+    for (uint32_t i = 0; i < t->n; ++i) t->conducts[i] = 0;
+    for (uint32_t k = 0; k < m->given->contacts; ++k) {
+        const uint32_t i = m->given->contact_first[k], j = m->given->contact_second[k];
+        if (i == j) continue;
+        if (i < t->n) t->conducts[i] += m->given->conductance[k];
+        if (j < t->n) t->conducts[j] += m->given->conductance[k];
+    }
+}
+
+/* Makes the linear problem about t->guess. A sphere that exchanges no heat has no part in it. */
 static void linearise(struct stepper *m, double length) {
     fibrad_transient *t = m->t;
     for (uint32_t i = 0; i < t->n; ++i) {
         const double at = t->guess[i], rate = m->span->capacity[i] / length;
-        const bool reflects = m->sources.emissivity[i] == 0;
+        const bool reflects = stands_alone(m, i);
         t->given[i] = reflects ? at : NAN;
         t->hold[i] = reflects ? 0 : rate / (4 * m->given->sigma * at * at * at);
         t->source[i] = reflects ? 0 : power_of(m, i) + rate * (t->base[i] - at);
@@ -80,7 +97,7 @@ static bool accept_solution(struct stepper *m, double length) {
     bool agree = true;
     for (uint32_t i = 0; i < t->n; ++i) {
         const double at = t->guess[i], warmed = t->base[i] + length * power_of(m, i) / m->span->capacity[i];
-        const bool reflects = m->sources.emissivity[i] == 0;
+        const bool reflects = stands_alone(m, i);
         const double found = reflects ? warmed : t->found[i], ratio = found / at;
         t->solution[i] = reflects ? warmed : at + 0.25 * at * (ratio * ratio * ratio * ratio - 1);
         t->guess[i] = found > at / 2 ? found : at / 2;
@@ -97,7 +114,8 @@ static void balance_energy(struct stepper *m, double length) {
     for (uint32_t b = 0; b < t->bodies; ++b) left -= m->result.body_power[b];
     for (uint32_t i = 0; i < t->n; ++i) {
         const double rate = m->span->capacity[i] / length, at = t->solution[i];
-        const double stiff = 4 * m->given->sigma * at * at * at * t->area[i] * m->sources.emissivity[i];
+        const double stiff =
+            4 * m->given->sigma * at * at * at * t->area[i] * m->sources.emissivity[i] + t->conducts[i];
         const double missing = power_of(m, i) + t->power[i] - rate * (at - t->base[i]);
         t->solution[i] += missing / (rate + stiff);
         left += power_of(m, i) - rate * (t->solution[i] - t->base[i]);
@@ -120,6 +138,7 @@ static int solve_stage(struct stepper *m, int stage, double time, double length)
     m->result.body_power = m->stage_walls[stage];
     for (int k = 0; k < NEWTON_MAX; ++k) {
         set_surfaces(m);
+        find_conducts(m);
         linearise(m, length);
         const int status = fibrad_transient_solve(t, &m->sources, &m->result);
         if (status && status != FIBRAD_E_UNSOLVABLE) return status;
@@ -268,6 +287,15 @@ static bool outside_known(const fibrad_transient *t, const fibrad_heat_sources *
     return known;
 }
 
+/* Whether contacts are possible and have ends. The rest is checked by the kernel. */
+static bool contacts_valid(const fibrad_transient *t, const fibrad_heat_sources *s) {
+    bool valid = s->contacts == 0 || (t->config.method == FIBRAD_TRANSIENT_PATCHES && s->contact_first &&
+                                      s->contact_second && s->conductance);
+    for (uint32_t k = 0; k < s->contacts && valid; ++k)
+        valid = s->contact_first[k] < t->n + t->bodies && s->contact_second[k] < t->n + t->bodies;
+    return valid;
+}
+
 static int powers_now(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
     const int status = fibrad_transient_prepare(t, sources);
     if (status) return status;
@@ -281,6 +309,7 @@ int fibrad_transient_powers(fibrad_transient *t, const fibrad_heat_sources *sour
     if (!t || !sources || !result || !surfaces_given(t, sources) || !outside_known(t, sources))
         return FIBRAD_E_ARGUMENT;
     if (t->n > 0 && (!sources->temperature || !result->power)) return FIBRAD_E_ARGUMENT;
+    if (!contacts_valid(t, sources)) return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < t->n; ++i)
         if (!(sources->temperature[i] >= 0 && sources->temperature[i] <= FIBRAD_TEMPERATURE_MAX))
             return FIBRAD_E_ARGUMENT;
@@ -349,7 +378,7 @@ int fibrad_transient_advance(fibrad_transient *t, const fibrad_heat_sources *sou
     int status = fibrad_transient_begin(t);
     if (status) return status;
     status = check_span(t, sources, span);
-    if (!status && !outside_known(t, sources)) status = FIBRAD_E_ARGUMENT;
+    if (!status && !(outside_known(t, sources) && contacts_valid(t, sources))) status = FIBRAD_E_ARGUMENT;
     if (!status && span->law && t->config.method != FIBRAD_TRANSIENT_PATCHES) status = FIBRAD_E_ARGUMENT;
     if (!status) status = fibrad_transient_prepare(t, sources);
     if (!status) status = advance_span(t, sources, span);

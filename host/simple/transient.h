@@ -45,6 +45,7 @@ struct fibrad_transient {
     double *allowed;               /* [n] power that a sphere may miss in the solution of the linear problem */
     double *found, *power;         /* [n] temperatures and powers of the linear problem */
     double *solution;              /* [n] temperatures of the stage, which keep the energy */
+    double *conducts;              /* [n] what contacts conduct from a sphere for each kelvin [W/K] */
     double *wall;                  /* [4 bodies] temperatures, powers of each stage, energies of the span */
     bool busy;                     /* within a call, see fibrad_transient_begin */
 };

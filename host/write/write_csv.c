@@ -149,15 +149,18 @@ static char *put_inside(char *at, const struct contents *what, uint32_t i) {
     return at;
 }
 
-/* i: index of a sphere, or UINT32_MAX. light[2]: light from outside that is absorbed, first and in all. */
+/* i: index of a sphere, or UINT32_MAX. light[2]: light from outside that is absorbed, first and in all. conducted: part
+ * of the power. */
 static void write_power(struct csv *csv, int64_t name, uint32_t i, const char *body, double temperature, double power,
-                        double power_error, double temperature_error, const double light[2]) {
+                        double power_error, double temperature_error, const double light[2], double conducted) {
     char *at = put_comma(text_whole(csv->line + csv->columns, name));
     at = put_comma(text_real(at, temperature));
     at = put_comma(text_real(at, power));
     at = put_comma(put_error(at, power_error));
     at = put_inside(put_error(at, temperature_error), csv->what, i);
     for (int k = 0; k < 2 && csv->what->light; ++k) at = text_real(put_comma(at), light[k]);
+    if (csv->what->result->conducted) at = text_real(put_comma(at), power - conducted);
+    if (csv->what->result->conducted) at = text_real(put_comma(at), conducted);
     end_line(csv, at, body);
 }
 
@@ -169,25 +172,27 @@ int write_heat_csv(FILE *file, const struct contents *what, bool first) {
     const fibrad_light_result *light = what->light;
     double of_light[2] = {0, 0};
     char columns[200];
-    snprintf(columns, sizeof columns, "i,T_K,q_W,q_error_W,T_error_K%s%s",
-             result->least_temperature ? INSIDE_HEADER : "", light ? ",absorbed_first_W,absorbed_W" : "");
+    snprintf(columns, sizeof columns, "i,T_K,q_W,q_error_W,T_error_K%s%s%s",
+             result->least_temperature ? INSIDE_HEADER : "", light ? ",absorbed_first_W,absorbed_W" : "",
+             result->conducted ? ",q_radiation_W,q_conduction_W" : "");
     begin_csv(&csv, file, what, columns, first);
     for (uint32_t i = 0; i < what->bed->n; ++i) {
         if (interrupt_status()) return interrupt_status();
         if (light) of_light[0] = light->absorbed_first[i], of_light[1] = light->absorbed[i];
         write_power(&csv, bed_name(what->bed, i), i, "", result->temperature[i], result->power[i],
-                    result->power_error[i], result->temperature_error[i], of_light);
+                    result->power_error[i], result->temperature_error[i], of_light,
+                    result->conducted ? result->conducted[i] : 0);
     }
     if (!what->walls) return STATUS_OK;
     if (light) of_light[0] = light->transmitted, of_light[1] = light->transmitted + light->reflected;
     if (!isnan(surroundings))
         write_power(&csv, SURROUNDINGS, UINT32_MAX, "surroundings", surroundings, result->surroundings_power,
-                    result->surroundings_error, 0, of_light);
+                    result->surroundings_error, 0, of_light, 0);
     for (uint32_t k = 0; k < what->walls->count; ++k) {
         if (light) of_light[0] = light->body_absorbed_first[k], of_light[1] = light->body_absorbed[k];
         write_power(&csv, FIRST_WALL - (int64_t)k, UINT32_MAX, contents_body(what, k, name),
                     result->body_temperature[k], result->body_power[k], result->body_error[k],
-                    result->body_temperature_error[k], of_light);
+                    result->body_temperature_error[k], of_light, result->conducted ? result->body_conducted[k] : 0);
     }
     return STATUS_OK;
 }

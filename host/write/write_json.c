@@ -130,6 +130,7 @@ int write_heat_json(FILE *file, const struct contents *what, bool first) {
     json_reals(file, ",", "T_error_K", result->temperature_error, n, 1, NULL);
     if (what->light) json_reals(file, ",", "absorbed_first_W", what->light->absorbed_first, n, 1, NULL);
     if (what->light) json_reals(file, ",", "absorbed_W", what->light->absorbed, n, 1, NULL);
+    if (result->conducted) json_reals(file, ",", "q_conduction_W", result->conducted, n, 1, NULL);
     for (size_t k = 0; k < INSIDE_COLUMNS && result->least_temperature; ++k)
         json_reals(file, ",", (const char *[]){INSIDE_NAMES}[k], contents_inside(what, k), n, 1, NULL);
     if (what->walls && !isnan(surroundings))

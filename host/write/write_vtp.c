@@ -93,6 +93,7 @@ int write_heat_vtp(FILE *file, const struct contents *what, bool first) {
     vtp_doubles(file, "emissivity", what->sources->emissivity, bed->n, NULL);
     vtp_doubles(file, "power_W", what->result->power, bed->n, NULL);
     if (what->light) vtp_doubles(file, "absorbed_W", what->light->absorbed, bed->n, NULL);
+    if (what->result->conducted) vtp_doubles(file, "conducted_W", what->result->conducted, bed->n, NULL);
     for (size_t k = 0; k < INSIDE_COLUMNS && what->result->least_temperature; ++k)
         vtp_doubles(file, (const char *[]){INSIDE_NAMES}[k], contents_inside(what, k), bed->n, NULL);
     vtp_end(file, bed);

@@ -83,6 +83,14 @@ const char *fibrad_why_text(int why) {
         return "a conductivity is not above 0";
     case FIBRAD_WHY_UNIFORM:
         return "spheres that conduct have no uniform radiosity";
+    case FIBRAD_WHY_CONTACT:
+        return "a contact has an end that is neither a sphere nor a wall";
+    case FIBRAD_WHY_CONDUCTANCE:
+        return "a conductance is negative or out of range";
+    case FIBRAD_WHY_TOUCHED:
+        return "is in contact, but has no single temperature";
+    case FIBRAD_WHY_ALONE:
+        return "nothing that it touches radiates or has a temperature";
     case FIBRAD_WHY_CAPACITY:
         return "the heat capacity is not above 0 or is out of range";
     case FIBRAD_WHY_LIGHT:

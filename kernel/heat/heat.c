@@ -87,6 +87,24 @@ static uint32_t tasks_for(uint32_t rows, uint32_t rays) {
     return rows + (rays + FIBRAD_HEAT_TASK - 1) / FIBRAD_HEAT_TASK;
 }
 
+/* Takes the arrays of contacts, whose nodes are bodies. The contacts themselves are the caller's. */
+static void take_contacts(fibrad_arena *arena, fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts;
+    double **const of_nodes[FIBRAD_CONTACT_ARRAYS] = {&c->temperature, &c->stiff,     &c->supply,  &c->load,
+                                                      &c->warming,     &c->direction, &c->gain,    &c->error,
+                                                      &c->diagonal,    &c->search,    &c->product, &c->missing};
+    for (size_t k = 0; k < FIBRAD_CONTACT_ARRAYS; k++)
+        *of_nodes[k] = fibrad_arena_take(arena, heat->bodies, sizeof(double));
+    c->node = fibrad_arena_take(arena, heat->spheres + FIBRAD_BODIES_MAX, sizeof *c->node);
+    c->kind = fibrad_arena_take(arena, heat->bodies, 1);
+    c->nodes = heat->bodies;
+    heat->checked_node = fibrad_arena_take(arena, heat->spheres + FIBRAD_BODIES_MAX, sizeof *heat->checked_node);
+    heat->checked_kind = fibrad_arena_take(arena, heat->bodies, 1);
+    heat->joined.root = fibrad_arena_take(arena, heat->bodies + 1, sizeof *heat->joined.root);
+    heat->joined.anchored = fibrad_arena_take(arena, heat->bodies + 1, 1);
+    heat->checked = fibrad_arena_take(arena, 1, sizeof *heat->checked);
+}
+
 /* Takes the arrays from the arena. The caller copies the object itself to the address that is returned. */
 static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     fibrad_heat *place = fibrad_arena_take(arena, 1, sizeof *place);
@@ -113,6 +131,7 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
         h->root = fibrad_arena_take(arena, h->orbits, sizeof *h->root);
         h->value = fibrad_arena_take(arena, FIBRAD_HARMONICS_KINDS * h->orbits * h->many, sizeof *h->value);
     }
+    take_contacts(arena, heat);
     heat->sources.conductivity = fibrad_arena_take(arena, spheres, sizeof(double));
     heat->sources.unevenness = fibrad_arena_take(arena, spheres, sizeof(double));
     heat->solution.span = fibrad_arena_take(arena, spheres, sizeof *heat->solution.span);
@@ -226,6 +245,8 @@ int fibrad_heat_init(fibrad_heat **out, void *memory, size_t size, const fibrad_
     fields.pencils.room += (size - least) / FIBRAD_ALIGNMENT * FIBRAD_ALIGNMENT;
     fibrad_heat *heat = heat_layout(&arena, &fields);
     *heat = fields;
+    *heat->checked = heat->contacts;
+    heat->checked->node = heat->checked_node, heat->checked->kind = heat->checked_kind;
     fibrad_heat_cut_meshes(heat);
     find_origins(heat);
     for (int level = 0; level < 2; level++) fibrad_harmonics_make(&heat->harmonics[level]);

@@ -13,6 +13,7 @@
 
 #include "fibrad_heat.h"
 #include "base/sobol.h"
+#include "contact/contact.h"
 #include "sample/harmonics.h"
 #include "mesh/mesh_patch.h"
 #include "scene/scene.h"
@@ -163,6 +164,7 @@ typedef struct fibrad_heat_solution {
     uint32_t group;          /* patches that have one J: 1, 4, or all of a body */
     uint32_t sweeps;         /* so far */
     double slope;            /* residual times preconditioned residual */
+    double curvature;        /* of the last search direction */
     double scale;            /* the slope is compared with this */
     double smallest;         /* a slope below this is rounding error */
     double *area;            /* L^2, [patches], by the beams */
@@ -225,6 +227,11 @@ struct fibrad_heat {
     fibrad_heat_given sources;
     fibrad_heat_solution solution;
     fibrad_heat_samples samples;
+    fibrad_contacts contacts; /* of the solution; nodes are bodies; count 0: none */
+    fibrad_contacts *checked; /* of the sources that were checked last: count, node, kind and anchored */
+    uint32_t *checked_node;   /* arrays of `checked` */
+    unsigned char *checked_kind;
+    fibrad_contact_parts joined; /* of the same */
 };
 
 /* The body of a slot, and the body beyond the patches of an endless wall. */
@@ -413,6 +420,16 @@ void fibrad_heat_find_spans(fibrad_heat *heat);
 
 /* solve.c: prepares the first sweep of a solution. */
 void fibrad_heat_start(fibrad_heat *heat);
+
+/* Whether a body in contact has an emission that is an unknown beside its radiosities. */
+static inline bool fibrad_heat_is_joined(const fibrad_heat *heat, uint32_t body) {
+    return heat->contacts.count > 0 && heat->contacts.kind[body] == FIBRAD_CONTACT_FREE;
+}
+
+/* What a body gains through contacts. */
+static inline double fibrad_heat_conducted(const fibrad_heat *heat, uint32_t body) {
+    return heat->contacts.count > 0 ? heat->contacts.gain[body] : 0;
+}
 
 /* The temperature of an emission, which is relative to that of the surroundings. NaN: the temperature would be below
  * zero. */

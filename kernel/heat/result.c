@@ -300,18 +300,25 @@ static double surroundings_error_of(const fibrad_heat *heat, const heat_errors *
            (squared(BEAM_ERROR * halves) + missed_by_spheres(heat, errors) + rays) / 2;
 }
 
+/* The estimated error of the power of a body, contacts included. */
+static double whole_power_error(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
+    const double square = power_error_of(heat, errors, b);
+    if (heat->contacts.count == 0 || heat->sources.hold[b] >= 0) return fibrad_sqrt(square);
+    return fibrad_sqrt(square + heat->contacts.supply[b]);
+}
+
 static void read_errors(const fibrad_heat *heat, fibrad_heat_result *result) {
     const heat_errors errors = errors_of(heat);
     const double spheres = fibrad_max(1, heat->spheres);
     double patches = 0, all = 0;
     for (uint32_t b = 0; b < heat->spheres; b++) {
         const double square = power_error_of(heat, &errors, b);
-        if (result->power_error != NULL) result->power_error[heat->order[b]] = fibrad_sqrt(square);
+        if (result->power_error != NULL) result->power_error[heat->order[b]] = whole_power_error(heat, &errors, b);
         if (square > 0) patches += squared(patch_error(heat, b)) + squared(spot_error(heat, b));
         all += square;
     }
     for (uint32_t k = 0; k < heat->given_bodies && result->body_error != NULL; k++)
-        result->body_error[k] = fibrad_sqrt(power_error_of(heat, &errors, fibrad_heat_body(heat, heat->slot[k])));
+        result->body_error[k] = whole_power_error(heat, &errors, fibrad_heat_body(heat, heat->slot[k]));
     result->surroundings_error = fibrad_sqrt(surroundings_error_of(heat, &errors));
     for (uint32_t k = 0; k < heat->given_bodies && result->body_area != NULL; k++)
         result->body_area[k] = heat->slot[k] < FIBRAD_MESHES ? fibrad_heat_wall_area(heat, heat->slot[k])
@@ -373,25 +380,100 @@ static heat_level level_found(const fibrad_heat *heat, const heat_errors *errors
     return level;
 }
 
+/* The squares of the errors of what a body absorbs per area: of beams, as the mean of the squares from its own sample
+ * and from all samples, and of what walls send out; and the error that it has in common with all others. */
+typedef struct heat_missed {
+    double own, together;
+} heat_missed;
+
+static heat_missed missed_at(const fibrad_heat *heat, const heat_errors *errors, const heat_level *level, uint32_t b,
+                             const heat_spread *own) {
+    const double emission = fibrad_heat_is_insulated(heat, b) ? own->mean : heat->sources.emission[b];
+    const double missed =
+        (missed_emission(heat, errors, b, own->area) + level->missed[b >= heat->spheres] * distance_of(errors, own)) /
+        2;
+    const double together = (squared(level->error) + fibrad_heat_sent_back(heat, b) * squared(errors->few)) *
+                            squared(emission - level->given);
+    return (heat_missed){missed, together};
+}
+
 /* The estimated error of a temperature that was found. The error of its emission has four parts: that of extrapolation;
- * that of beams, as the mean of the squares from its own sample and from all samples; that of what walls send out; and
- * that which all have in common. */
+ * that of beams; that of what walls send out; and that which all have in common. */
 static double temperature_error_of(const fibrad_heat *heat, const heat_errors *errors, const heat_level *level,
                                    uint32_t b, double temperature) {
     const double slope = 4 * heat->sources.sigma * temperature * temperature * temperature;
     const heat_spread own = spread_of(heat, b);
+    if (fibrad_heat_is_joined(heat, b)) return heat->contacts.error[b];
     if (!is_found(heat, b) || !(slope > 0) || !(own.area > 0)) return 0;
     const double eps = heat->sources.emissivity[b], held = fibrad_max(0, heat->sources.hold[b]);
     const double share = held > 0 ? eps * own.area / (eps * own.area + held) : 1;
-    const double emission = fibrad_heat_is_insulated(heat, b) ? own.mean : heat->sources.emission[b];
     const double changed = fibrad_heat_is_insulated(heat, b) ? level->changed : squared(changed_emission(heat, b));
-    const double missed =
-        (missed_emission(heat, errors, b, own.area) + level->missed[b >= heat->spheres] * distance_of(errors, &own)) /
-        2;
-    const double together = (squared(level->error) + fibrad_heat_sent_back(heat, b) * squared(errors->few)) *
-                            squared(emission - level->given);
+    const heat_missed missed = missed_at(heat, errors, level, b, &own);
     const double walls = squared(errors->walls / errors->all.area);
-    return fibrad_sqrt(changed + squared(share) * (missed + together + walls)) / slope;
+    return fibrad_sqrt(changed + squared(share) * (missed.own + missed.together + walls)) / slope;
+}
+
+/* Numbers of random signs from which the errors that contacts pass on are found. */
+#define PROBES 8u
+
+static double sign_of(uint32_t b, uint32_t probe) {
+    uint64_t mixed = ((uint64_t)b * PROBES + probe + 1) * UINT64_C(0x9e3779b97f4a7c15);
+    mixed = (mixed ^ mixed >> 31) * UINT64_C(0xbf58476d1ce4e5b9);
+    return mixed >> 63 ? 1 : -1;
+}
+
+/* Sets contacts.error to the errors of what joined bodies absorb, and contacts.direction to the part of a common error
+ * of radiation that the emissions of joined bodies follow. */
+static void find_absorbed_errors(const fibrad_heat *heat, const heat_errors *errors, const heat_level *level) {
+    fibrad_contacts c = heat->contacts;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const heat_spread own = spread_of(heat, b);
+        c.error[b] = c.load[b] = 0;
+        if (!fibrad_heat_is_joined(heat, b) || !(own.area > 0)) continue;
+        const double absorbs = heat->sources.emissivity[b] * own.area;
+        c.error[b] = absorbs * fibrad_sqrt(missed_at(heat, errors, level, b, &own).own);
+        c.load[b] = absorbs;
+    }
+    fibrad_contact_warm(&c);
+    fibrad_copy(c.direction, c.warming, heat->bodies * sizeof *c.direction);
+}
+
+/* Sets contacts.supply to the squares of the errors of emissions that come from errors of what single bodies absorb:
+ * means over random signs of these errors. */
+static void probe_joined(const fibrad_heat *heat) {
+    fibrad_contacts c = heat->contacts;
+    fibrad_zero(c.supply, heat->bodies * sizeof *c.supply);
+    for (uint32_t probe = 0; probe < PROBES; probe++) {
+        for (uint32_t b = 0; b < heat->bodies; b++) c.load[b] = sign_of(b, probe) * c.error[b];
+        fibrad_contact_warm(&c);
+        for (uint32_t b = 0; b < heat->bodies; b++) c.supply[b] += squared(c.warming[b]) / PROBES;
+    }
+}
+
+/* Finds the errors of temperatures of joined bodies, which contacts pass on to each other. Then contacts.supply has the
+ * squares of the errors of what other bodies gain through contacts. */
+static void find_joined_errors(const fibrad_heat *heat) {
+    const heat_errors errors = errors_of(heat);
+    const heat_level level = level_found(heat, &errors);
+    const fibrad_contacts *c = &heat->contacts;
+    const double walls = squared(errors.walls / errors.all.area);
+    find_absorbed_errors(heat, &errors, &level);
+    probe_joined(heat);
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const double t = fibrad_abs(c->temperature[b]), slope = 4 * heat->sources.sigma * t * t * t;
+        const heat_spread own = spread_of(heat, b);
+        c->error[b] = 0;
+        if (!fibrad_heat_is_joined(heat, b) || !(slope > 0) || !(own.area > 0)) continue;
+        const double common = missed_at(heat, &errors, &level, b, &own).together + walls;
+        c->error[b] =
+            fibrad_sqrt(squared(changed_emission(heat, b)) + c->supply[b] + squared(c->direction[b]) * common) / slope;
+    }
+    fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
+    for (uint32_t k = 0; k < c->count; k++) {
+        const uint32_t i = c->node[c->first[k]], j = c->node[c->second[k]];
+        c->supply[i] += squared(c->conductance[k] * c->error[j]),
+            c->supply[j] += squared(c->conductance[k] * c->error[i]);
+    }
 }
 
 /* A temperature and its error. */
@@ -514,22 +596,39 @@ static void read_beyond(const fibrad_heat *heat, uint32_t k, fibrad_heat_result 
     *power_of_slot(heat, fibrad_heat_facing(heat, k), result) += heat->solution.power[beyond] - taken - pair.net / 2;
 }
 
+/* Hands out what contacts conduct. The powers of bodies are added later, those of spheres here. */
+static void read_contacts(const fibrad_heat *heat, fibrad_heat_result *result) {
+    const fibrad_contacts *c = &heat->contacts;
+    for (uint32_t b = 0; b < heat->spheres; b++) {
+        if (c->count > 0) result->power[heat->order[b]] += c->gain[b];
+        if (result->conducted != NULL) result->conducted[heat->order[b]] = fibrad_heat_conducted(heat, b);
+    }
+    for (uint32_t k = 0; k < heat->given_bodies && result->body_conducted != NULL; k++)
+        result->body_conducted[k] = fibrad_heat_conducted(heat, fibrad_heat_body(heat, heat->slot[k]));
+    for (uint32_t k = 0; k < c->count && result->contact_flow != NULL; k++)
+        result->contact_flow[k] =
+            c->conductance[k] * (c->temperature[c->node[c->first[k]]] - c->temperature[c->node[c->second[k]]]);
+}
+
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     if (heat == NULL || result == NULL || (heat->spheres > 0 && result->power == NULL)) return FIBRAD_E_ARGUMENT;
     if (heat->given_bodies > 0 && result->body_power == NULL) return FIBRAD_E_ARGUMENT;
     if (heat->solution.phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     const uint32_t spheres = heat->spheres, open = heat->bodies - 1;
     for (uint32_t b = 0; b < spheres; b++) result->power[heat->order[b]] = heat->solution.power[b];
+    read_contacts(heat, result);
     result->surroundings_power = heat->solution.power[open];
     for (uint32_t b = 0; b < heat->given_bodies; b++) {
         const uint32_t own = fibrad_heat_body(heat, heat->slot[b]);
         result->body_power[b] = heat->solution.power[own];
+        if (heat->contacts.count > 0) result->body_power[b] += heat->contacts.gain[own];
         if (result->body_absorbed != NULL) result->body_absorbed[b] = absorbed_by(heat, own);
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         if (heat->openings >> k & 1) result->surroundings_power += heat->solution.power[fibrad_heat_body(heat, k)];
         read_beyond(heat, k, result);
     }
+    if (heat->contacts.count > 0) find_joined_errors(heat);
     read_errors(heat, result);
     result->sweeps = heat->solution.sweeps;
     result->residual = heat->solution.scale > 0 ? fibrad_sqrt(heat->solution.slope / heat->solution.scale) : 0;

@@ -29,7 +29,18 @@
  * eps or rho. One is their mean r = eps (S - h <J>)/D + q/A. It changes J by r/(1 + eps h/D). The other part is what
  * differs from the mean. It is treated as on other bodies. A black body has J = E everywhere.
  *
- * On a sphere that conducts the mean of J is treated as above. conduct.c treats the rest. */
+ * On a sphere that conducts the mean of J is treated as above. conduct.c treats the rest.
+ *
+ * Contacts. A body of unknown temperature in contact with others is *joined*: its E is an unknown beside its J, since E
+ * follows from the neighbours as well. With the flows H of contacts
+ *
+ *     (A/rho - K) J - A eps/rho E = 0,    S - h E + A eps/rho (<J> - E) + sum of H (T_other - T) = 0.
+ *
+ * Let b be what is missing in the balance of a body with the radiation that now arrives, S - h E + eps (A <J> + N J - A
+ * E) + sum of H (T_other - T). The preconditioner changes E by x: to the emissions that balance this radiation
+ * (contact/contact.h). Then it changes J as on a body of the given emission E + x. No part divides by eps or rho. T is
+ * not linear in E. So the search is one of conjugate gradients with exchange areas g of contacts that change from step
+ * to step, and each direction is made conjugate to the last one with the present g. */
 #include "heat/problem.h"
 #include "heat/pencils.h"
 #include "heat/sweep.h"
@@ -41,6 +52,11 @@ typedef struct free_body {
 
 /* Whether the temperature of a body is unknown. */
 static bool is_free(const fibrad_heat *heat, uint32_t body) { return heat->sources.hold[body] >= 0; }
+
+/* Whether the unknown emission of a body follows from its own radiosities. */
+static bool follows_radiosity(const fibrad_heat *heat, uint32_t b) {
+    return is_free(heat, b) && !fibrad_heat_is_joined(heat, b);
+}
 
 /* The sum of values over the patches of a body. */
 static double sum_over(const fibrad_heat *heat, uint32_t body, const double *value) {
@@ -125,7 +141,7 @@ static double free_residual(fibrad_heat *heat, uint32_t b) {
  * for this mean rounding errors of J would count 1/rho times. */
 #define NEXT_TO_NOTHING 1e-9
 static bool has_black_mean(const fibrad_heat *heat, uint32_t b) {
-    return !is_free(heat, b) && 1 - heat->sources.emissivity[b] < NEXT_TO_NOTHING;
+    return !follows_radiosity(heat, b) && 1 - heat->sources.emissivity[b] < NEXT_TO_NOTHING;
 }
 
 /* What given_residual does, for a sphere that conducts. */
@@ -134,7 +150,7 @@ static double conducting_residual(fibrad_heat *heat, uint32_t b) {
     const free_body body = free_body_of(heat, b);
     double shift = 0, slope = 0;
     if (!(body.area > 0)) return 0;
-    if (is_free(heat, b)) {
+    if (follows_radiosity(heat, b)) {
         const double mean = drive_at(heat, b, &body, body.radiosity) + body.net;
         shift = mean / stiffness(heat, b, &body);
         slope = body.area * mean * shift;
@@ -145,20 +161,67 @@ static double conducting_residual(fibrad_heat *heat, uint32_t b) {
     return slope + fibrad_heat_pattern_residual(heat, b, shift);
 }
 
+/* The same for a joined body, whose change of emission has been found. */
+static double joined_residual(fibrad_heat *heat, uint32_t b) {
+    const double warming = heat->contacts.warming[b], more = heat->sources.emissivity[b] * warming;
+    const double slope = fibrad_heat_conducts(heat, b) ? conducting_residual(heat, b) : given_residual(heat, b);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+        fibrad_heat_send(heat, a, fibrad_heat_sent(heat, a) + more);
+    return slope + heat->contacts.missing[b] * warming;
+}
+
+/* The power that a body would absorb of what arrives. */
+static double absorbable(const fibrad_heat *heat, uint32_t b) {
+    const free_body body = free_body_of(heat, b);
+    return heat->sources.emissivity[b] * body.area * (body.radiosity + body.net);
+}
+
+/* What a joined body gives off per unit of its emission. */
+static double stiffness_of_joined(const fibrad_heat *heat, uint32_t b) {
+    return heat->sources.hold[b] + heat->sources.emissivity[b] * sum_over(heat, b, heat->solution.area);
+}
+
+/* The tolerance of temperatures that balance the radiation of one step: a Newton step that changes none by more is the
+ * last one. */
+#define BALANCED_ROUGHLY 1e-3
+
+/* Finds the changes of the emissions of joined bodies: to those that balance the radiation which now arrives.
+ * contacts.missing keeps what is missing in their balances. */
+static void warm_joined(fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts;
+    if (c->count == 0) return;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        c->temperature[b] = fibrad_contact_temperature(c, heat->sources.emission[b]);
+        c->missing[b] = 0;
+        if (!fibrad_heat_is_joined(heat, b)) continue;
+        c->stiff[b] = stiffness_of_joined(heat, b);
+        c->supply[b] = heat->sources.drive[b] + absorbable(heat, b);
+        c->missing[b] = c->supply[b] - c->stiff[b] * heat->sources.emission[b];
+    }
+    fibrad_contact_gains(c, c->temperature, c->missing);
+    fibrad_contact_find(c, BALANCED_ROUGHLY);
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        c->warming[b] = fibrad_heat_is_joined(heat, b)
+                            ? fibrad_contact_emission(c, c->temperature[b]) - heat->sources.emission[b]
+                            : 0;
+}
+
 /* Sends the changes of all patches. Returns the product of residuals and changes. */
 static double find_residual(fibrad_heat *heat) {
     double slope = 0;
+    warm_joined(heat);
     for (uint32_t b = 0; b < heat->bodies; b++)
-        slope += fibrad_heat_conducts(heat, b) ? conducting_residual(heat, b)
-                 : is_free(heat, b)            ? free_residual(heat, b)
-                                               : given_residual(heat, b);
+        slope += fibrad_heat_is_joined(heat, b)  ? joined_residual(heat, b)
+                 : fibrad_heat_conducts(heat, b) ? conducting_residual(heat, b)
+                 : is_free(heat, b)              ? free_residual(heat, b)
+                                                 : given_residual(heat, b);
     return slope;
 }
 
 /* Finds the emissions of the bodies of unknown temperature. */
 static void find_emissions(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        if (!is_free(heat, b)) continue;
+        if (!follows_radiosity(heat, b)) continue;
         const free_body body = free_body_of(heat, b);
         const double eps = heat->sources.emissivity[b];
         if (body.area > 0)
@@ -180,6 +243,13 @@ static void find_powers(const fibrad_heat *heat, double *power) {
     double left = 0, weights = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         power[b] = sum_over(heat, b, heat->solution.net);
+        if (fibrad_heat_is_joined(heat, b)) {
+            const double gained = absorbable(heat, b) - heat->sources.emissivity[b] *
+                                                            sum_over(heat, b, heat->solution.area) *
+                                                            heat->sources.emission[b];
+            left += power[b] - gained, power[b] = gained;
+            continue;
+        }
         if (heat->sources.emissivity[b] == 0) left += power[b], power[b] = 0;
         if (heat->sources.hold[b] == 0) left += power[b] + heat->sources.drive[b], power[b] = -heat->sources.drive[b];
     }
@@ -223,6 +293,25 @@ static double light_squares(const fibrad_heat *heat, uint32_t b) {
     return sum;
 }
 
+/* What drives joined bodies if all that radiates and all of them have one emission: powers, and given temperatures. */
+static double drive_through_contacts(fibrad_heat *heat, double emission) {
+    fibrad_contacts *c = &heat->contacts;
+    double sum = 0;
+    if (c->count == 0) return 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const bool joined = fibrad_heat_is_joined(heat, b);
+        c->temperature[b] = fibrad_contact_temperature(c, joined ? emission : heat->sources.emission[b]);
+        c->stiff[b] = joined ? stiffness_of_joined(heat, b) : 0;
+        c->missing[b] = joined ? heat->sources.drive[b] - heat->sources.hold[b] * emission : 0;
+    }
+    fibrad_contact_gains(c, c->temperature, c->missing);
+    fibrad_copy(c->load, c->missing, heat->bodies * sizeof *c->load);
+    fibrad_contact_warm(c);
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        if (fibrad_heat_is_joined(heat, b)) sum += c->missing[b] * c->warming[b];
+    return sum;
+}
+
 /* Finds the scale with which residuals are compared. It has three parts: how much emissions differ from their mean,
  * powers that are given off, and light from outside. The limit of rounding follows from the emissions themselves. */
 static void find_scale(fibrad_heat *heat) {
@@ -236,14 +325,15 @@ static void find_scale(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++) {
         const double difference = heat->sources.emission[b] - mean;
         heat->solution.scale += light_squares(heat, b);
-        const free_body body = is_free(heat, b) ? free_body_of(heat, b) : (free_body){0};
+        const free_body body = follows_radiosity(heat, b) ? free_body_of(heat, b) : (free_body){0};
         if (body.area > 0) {
             const double drive = drive_at(heat, b, &body, mean);
             heat->solution.scale += body.area * drive * drive / stiffness(heat, b, &body);
-        } else {
+        } else if (!fibrad_heat_is_joined(heat, b)) {
             heat->solution.scale += emitting(heat, b) * difference * difference + lifted_squares(heat, b);
         }
     }
+    heat->solution.scale += drive_through_contacts(heat, mean);
     heat->solution.smallest = ROUNDING * fibrad_max(largest, heat->solution.scale);
 }
 
@@ -254,19 +344,22 @@ static void heat_by_light(fibrad_heat *heat) {
 }
 
 /* Whether there are temperatures that lead to the given powers. This is so if a temperature or a `hold` is given.
- * Otherwise the powers and the light must add up to zero. */
+ * Otherwise the powers and the light must add up to zero. Contacts need the level of temperatures: then one must be
+ * given, unless nothing of unknown temperature radiates. */
 #define BALANCED 1e-9
 static bool solvable(fibrad_heat *heat) {
     double sum = 0, sizes = 0;
-    bool held = false;
+    bool held = heat->contacts.count > 0 && heat->contacts.anchored, radiates = false;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         held = held || emitting(heat, b) > 0;
+        radiates = radiates || (is_free(heat, b) && heat->sources.emissivity[b] > 0);
         if (heat->sources.hold[b] == 0) sum += heat->sources.drive[b], sizes += fibrad_abs(heat->sources.drive[b]);
         double light = 0;
         for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) light += light_on(heat, b, a);
         sum += light, sizes += light;
     }
     heat->sources.afloat = !held;
+    if (heat->contacts.count > 0) return held || !radiates;
     return held || fibrad_abs(sum) <= BALANCED * sizes;
 }
 
@@ -319,6 +412,47 @@ static void sink(fibrad_heat *heat) {
     for (uint32_t a = 0; a < heat->patches; a++) heat->solution.radiosity[a] -= mean;
 }
 
+#define FOUND 1e-15 /* the tolerance of temperatures at the end, relative */
+
+/* An emission, extrapolated to patches without size. */
+static double extrapolated_emission(const fibrad_heat *heat, uint32_t b) {
+    return heat->sources.emission[b] +
+           FIBRAD_HEAT_EXTRAPOLATION * (heat->sources.emission[b] - heat->solution.coarse_emission[b]);
+}
+
+/* Sets up the balances of joined bodies with the radiation that arrives, extrapolated. */
+static void set_balances(fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const double emission = extrapolated_emission(heat, b), hold = heat->sources.hold[b];
+        c->temperature[b] = fibrad_contact_temperature(c, is_free(heat, b) ? emission : heat->sources.emission[b]);
+        if (!fibrad_heat_is_joined(heat, b)) continue;
+        c->stiff[b] = stiffness_of_joined(heat, b);
+        c->supply[b] = heat->sources.drive[b] + heat->solution.power[b] + (c->stiff[b] - hold) * emission;
+    }
+}
+
+/* Finds the temperatures that balance powers, radiation and contacts to rounding, and what contacts conduct. What
+ * joined bodies then gain less by radiation goes to the others that emit, by emissivity times area. */
+static void finish_contacts(fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts;
+    double left = 0, weights = 0;
+    set_balances(heat);
+    fibrad_contact_find(c, FOUND);
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        if (!fibrad_heat_is_joined(heat, b)) weights += emitting(heat, b);
+        if (!fibrad_heat_is_joined(heat, b)) continue;
+        const double t = c->temperature[b], emits = c->stiff[b] - heat->sources.hold[b];
+        const double power = c->supply[b] - heat->sources.drive[b] - emits * fibrad_contact_emission(c, t);
+        left += heat->solution.power[b] - power, heat->solution.power[b] = power;
+        heat->sources.temperature[b] = t >= 0 ? t : __builtin_nan("");
+    }
+    for (uint32_t b = 0; b < heat->bodies && weights > 0; b++)
+        if (!fibrad_heat_is_joined(heat, b)) heat->solution.power[b] += left * (emitting(heat, b) / weights);
+    fibrad_zero(c->gain, heat->bodies * sizeof *c->gain);
+    fibrad_contact_gains(c, c->temperature, c->gain);
+}
+
 /* Finds the powers of the finer level and extrapolates them to patches without size. If radiosities were smooth, the
  * error would fall with the area of patches, and a third of the difference between both levels would be right. Near
  * contacts they are not quite smooth. FIBRAD_HEAT_EXTRAPOLATION is right for settled beds: docs/methods_heat.md section
@@ -334,10 +468,9 @@ static void finish_powers(fibrad_heat *heat) {
             heat->solution.coarse_emission[b] = heat->sources.emission[b];
         heat->solution.power[b] += FIBRAD_HEAT_EXTRAPOLATION * (heat->solution.power[b] - heat->solution.coarse[b]);
         if (is_free(heat, b))
-            heat->sources.temperature[b] = fibrad_heat_temperature(
-                heat, heat->sources.emission[b] +
-                          FIBRAD_HEAT_EXTRAPOLATION * (heat->sources.emission[b] - heat->solution.coarse_emission[b]));
+            heat->sources.temperature[b] = fibrad_heat_temperature(heat, extrapolated_emission(heat, b));
     }
+    if (heat->contacts.count > 0) finish_contacts(heat);
     if (heat->solution.group == 1)
         for (uint32_t a = 0; a < heat->patches; a++) heat->solution.detail[a] += heat->solution.radiosity[a];
     send_means(heat);
@@ -365,6 +498,8 @@ static void turn_direction(fibrad_heat *heat, double keep) {
         heat->solution.direction[a] = fibrad_heat_sent(heat, a) + (keep != 0 ? keep * heat->solution.direction[a] : 0);
         fibrad_heat_send(heat, a, heat->solution.direction[a]);
     }
+    for (uint32_t b = 0; b < heat->bodies && heat->contacts.count > 0; b++)
+        heat->contacts.direction[b] = heat->contacts.warming[b] + (keep != 0 ? keep * heat->contacts.direction[b] : 0);
 }
 
 /* Goes from the coarser level to the finer one. The detail of an earlier solution is added to the radiosities. Until
@@ -392,10 +527,104 @@ static void leave_level(fibrad_heat *heat) {
         finish_powers(heat);
 }
 
+/* The part of a body of given temperature in the product of values z on all patches with the matrix times the search
+ * direction p. product: N p. */
+static double given_product(const fibrad_heat *heat, uint32_t b, const double *z, const double *product) {
+    double sum = 0;
+    if (heat->sources.emissivity[b] == 1) return 0;
+    const double share = heat->sources.emissivity[b] / (1 - heat->sources.emissivity[b]);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
+        const double p = heat->solution.direction[a];
+        sum += z[a] * (heat->solution.area[a] * p * share - product[a]);
+    }
+    return sum;
+}
+
+/* The same for a body of unknown temperature. The mean of p counts by eps h/D, the rest as above. */
+static double free_product(const fibrad_heat *heat, uint32_t b, const double *z, const double *product) {
+    const double eps = heat->sources.emissivity[b], mean = fibrad_heat_mean(heat, b, heat->solution.direction);
+    const double share = eps < 1 ? eps / (1 - eps) : 0, z_mean = fibrad_heat_mean(heat, b, z);
+    const free_body body = free_body_of(heat, b);
+    if (!(body.area > 0)) return 0;
+    double sum = body.area * z_mean * mean * (stiffness(heat, b, &body) - 1);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
+        const double p = heat->solution.direction[a], rest = p - mean;
+        sum += share * heat->solution.area[a] * (z[a] - z_mean) * rest - z[a] * product[a];
+    }
+    return sum;
+}
+
+/* The same for a joined body. warmed: z of its emission. The part of contacts is not in it. */
+static double joined_product(const fibrad_heat *heat, uint32_t b, const double *z, double warmed,
+                             const double *product) {
+    const double eps = heat->sources.emissivity[b], share = eps < 1 ? eps / (1 - eps) : 0;
+    const double warming = heat->contacts.direction[b];
+    double sum = heat->sources.hold[b] * warmed * warming;
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+        sum += share * heat->solution.area[a] * (z[a] - warmed) * (heat->solution.direction[a] - warming) -
+               z[a] * product[a];
+    return sum;
+}
+
+/* The part of a sphere that conducts in the product of the search direction with the matrix times itself. */
+static double conducting_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
+    const double eps = heat->sources.emissivity[b], mean = fibrad_heat_mean(heat, b, heat->solution.direction);
+    const free_body body = free_body_of(heat, b);
+    if (!(body.area > 0)) return 0;
+    const double warming = fibrad_heat_is_joined(heat, b) ? heat->contacts.direction[b] : 0;
+    const double share = follows_radiosity(heat, b) ? stiffness(heat, b, &body) - 1
+                         : has_black_mean(heat, b)  ? 0
+                                                    : eps / (1 - eps);
+    double sum = share * body.area * (mean - warming) * (mean - warming) + fibrad_heat_pattern_curvature(heat, b);
+    if (fibrad_heat_is_joined(heat, b)) sum += heat->sources.hold[b] * warming * warming;
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) sum -= heat->solution.direction[a] * product[a];
+    return sum;
+}
+
+/* The product of z, and of `warmed` for the emissions of joined bodies, with the matrix times the search direction.
+ * With spheres that conduct, z must be the search direction. */
+static double product_with_direction(const fibrad_heat *heat, const double *z, const double *warmed,
+                                     const double *product) {
+    double sum = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        sum += fibrad_heat_conducts(heat, b)    ? conducting_curvature(heat, b, product)
+               : fibrad_heat_is_joined(heat, b) ? joined_product(heat, b, z, warmed[b], product)
+               : is_free(heat, b)               ? free_product(heat, b, z, product)
+                                                : given_product(heat, b, z, product);
+    if (heat->contacts.count > 0) sum += fibrad_contact_product(&heat->contacts, warmed, heat->contacts.direction);
+    return sum;
+}
+
+/* Moves the radiosities along the search direction to where the error is least. product: N times the direction. */
+static void advance_radiosities(fibrad_heat *heat, const double *product) {
+    const double curvature = product_with_direction(heat, heat->solution.direction, heat->contacts.direction, product);
+    heat->solution.curvature = curvature;
+    if (!(curvature > 0)) return;
+    const double length = heat->solution.slope / curvature;
+    for (uint32_t a = 0; a < heat->patches; a++) {
+        heat->solution.radiosity[a] += length * heat->solution.direction[a];
+        heat->solution.net[a] += length * product[a];
+    }
+    for (uint32_t b = 0; b < heat->bodies && heat->contacts.count > 0; b++)
+        if (fibrad_heat_is_joined(heat, b)) heat->sources.emission[b] += length * heat->contacts.direction[b];
+}
+
+/* How much of the last direction the next one keeps: as much as makes both conjugate. In a linear problem this is the
+ * ratio of slopes. Contacts bend, so it differs from that. If it differs much, the last step was of no use for the next
+ * one, and nothing is kept. */
+#define KEPT_MOST 4.0
+static double kept_of_direction(const fibrad_heat *heat, double ratio, const double *product) {
+    if (heat->contacts.count == 0 || heat->sources.conducts) return ratio;
+    if (!(heat->solution.curvature > 0)) return 0;
+    const double overlap = product_with_direction(heat, heat->solution.source, heat->contacts.warming, product);
+    const double keep = -overlap / heat->solution.curvature;
+    return keep > 0 && keep < KEPT_MOST * ratio ? keep : 0;
+}
+
 /* Decides what comes after a sweep: the next step of the search, the finer level, or the end. If the unevenness of
  * spheres changes, the search begins anew where it is. The net flows do not depend on unevenness, unless spheres have
  * absorbed light. If it no longer changes, the search goes on to the smaller tolerance. */
-static void search_on(fibrad_heat *heat, bool restart) {
+static void search_on(fibrad_heat *heat, bool restart, const double *product) {
     const double last = heat->solution.slope;
     heat->solution.slope = find_residual(heat);
     if (restart) heat->solution.smallest = fibrad_max(heat->solution.smallest, ROUNDING * heat->solution.slope);
@@ -414,63 +643,8 @@ static void search_on(fibrad_heat *heat, bool restart) {
         restart = restart || replaced;
         heat->solution.slope = find_residual(heat);
     }
-    turn_direction(heat, restart ? 0 : heat->solution.slope / last);
+    turn_direction(heat, restart ? 0 : kept_of_direction(heat, heat->solution.slope / last, product));
     heat->solution.phase = FIBRAD_HEAT_STEPS;
-}
-
-/* The part of a body of given temperature in the product of the search direction p with the matrix times p. product: N
- * p. */
-static double given_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
-    double sum = 0;
-    if (heat->sources.emissivity[b] == 1) return 0;
-    const double share = heat->sources.emissivity[b] / (1 - heat->sources.emissivity[b]);
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
-        const double p = heat->solution.direction[a];
-        sum += p * (heat->solution.area[a] * p * share - product[a]);
-    }
-    return sum;
-}
-
-/* The same for a body of unknown temperature. The mean of p counts by eps h/D, the rest as above. */
-static double free_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
-    const double eps = heat->sources.emissivity[b], mean = fibrad_heat_mean(heat, b, heat->solution.direction);
-    const double share = eps < 1 ? eps / (1 - eps) : 0;
-    const free_body body = free_body_of(heat, b);
-    if (!(body.area > 0)) return 0;
-    double sum = body.area * mean * mean * (stiffness(heat, b, &body) - 1);
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
-        const double p = heat->solution.direction[a], rest = p - mean;
-        sum += share * heat->solution.area[a] * rest * rest - p * product[a];
-    }
-    return sum;
-}
-
-/* The same for a sphere that conducts. */
-static double conducting_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
-    const double eps = heat->sources.emissivity[b], mean = fibrad_heat_mean(heat, b, heat->solution.direction);
-    const free_body body = free_body_of(heat, b);
-    if (!(body.area > 0)) return 0;
-    const double share = is_free(heat, b)          ? stiffness(heat, b, &body) - 1
-                         : has_black_mean(heat, b) ? 0
-                                                   : eps / (1 - eps);
-    double sum = share * body.area * mean * mean + fibrad_heat_pattern_curvature(heat, b);
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) sum -= heat->solution.direction[a] * product[a];
-    return sum;
-}
-
-/* Moves the radiosities along the search direction to where the error is least. product: N times the direction. */
-static void advance_radiosities(fibrad_heat *heat, const double *product) {
-    double curvature = 0;
-    for (uint32_t b = 0; b < heat->bodies; b++)
-        curvature += fibrad_heat_conducts(heat, b) ? conducting_curvature(heat, b, product)
-                     : is_free(heat, b)            ? free_curvature(heat, b, product)
-                                                   : given_curvature(heat, b, product);
-    if (!(curvature > 0)) return;
-    const double length = heat->solution.slope / curvature;
-    for (uint32_t a = 0; a < heat->patches; a++) {
-        heat->solution.radiosity[a] += length * heat->solution.direction[a];
-        heat->solution.net[a] += length * product[a];
-    }
 }
 
 /* Does what the sweep was made for. Error: FIBRAD_E_UNSOLVABLE. */
@@ -496,11 +670,11 @@ static int end_sweep(fibrad_heat *heat) {
         if (!solvable(heat)) return FIBRAD_E_UNSOLVABLE;
         find_scale(heat);
         heat_by_light(heat);
-        search_on(heat, true);
+        search_on(heat, true, NULL);
         return FIBRAD_OK;
     default:
         advance_radiosities(heat, sum);
-        search_on(heat, false);
+        search_on(heat, false, sum);
         return FIBRAD_OK;
     }
 }

@@ -46,6 +46,11 @@ static radiator of_body(const fibrad_heat_sources *s, uint32_t b) {
                       insulated ? 0 : or_else(s->body_power, b, __builtin_nan("")), 0, __builtin_nan("")};
 }
 
+/* A sphere or a wall by the caller's number. */
+static radiator of_end(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t end) {
+    return end < heat->spheres ? of_sphere(s, end) : of_body(s, end - heat->spheres);
+}
+
 /* An opening is as black and as hot as the surroundings. */
 static radiator of_opening(const fibrad_heat_sources *s) {
     return (radiator){s->surroundings, 1, __builtin_nan(""), 0, __builtin_nan("")};
@@ -53,8 +58,8 @@ static radiator of_opening(const fibrad_heat_sources *s) {
 
 static bool is_given(double temperature) { return temperature == temperature; }
 
-/* The reason why a body is not valid. FIBRAD_WHY_UNSAID: it is valid. */
-static int source_why(const radiator *s) {
+/* The reason why a body is not valid. FIBRAD_WHY_UNSAID: it is valid. touches: it has contacts. */
+static int source_why(const radiator *s, bool touches) {
     if (!is_share(s->emissivity)) return FIBRAD_WHY_EMISSIVITY;
     if (is_given(s->temperature)) {
         if (!is_temperature(s->temperature)) return FIBRAD_WHY_TEMPERATURE;
@@ -64,7 +69,7 @@ static int source_why(const radiator *s) {
     if (!is_given(s->power)) return FIBRAD_WHY_NEITHER;
     if (!(fibrad_abs(s->power) <= FIBRAD_POWER_MAX)) return FIBRAD_WHY_POWER;
     if (!(s->hold >= 0 && s->hold <= HOLD_MAX)) return FIBRAD_WHY_HOLD;
-    return s->emissivity > 0 || s->power == 0 ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_REFLECTS;
+    return s->emissivity > 0 || s->power == 0 || touches ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_REFLECTS;
 }
 
 /* The temperature of a side of a mesh. A side without a temperature of its own has that of the mesh. */
@@ -94,12 +99,69 @@ static bool is_endless_unknown(const fibrad_heat *heat, const fibrad_heat_source
     return slot < FIBRAD_WALLS && heat->wall[slot].unbounded && source.emissivity > 0 && !is_given(source.temperature);
 }
 
+/* The reason why a contact is not valid. */
+static int contact_why(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t k) {
+    const uint32_t ends = heat->spheres + heat->given_bodies;
+    if (s->contact_first[k] >= ends || s->contact_second[k] >= ends) return FIBRAD_WHY_CONTACT;
+    return s->conductance[k] >= 0 && s->conductance[k] <= FIBRAD_CONDUCTANCE_MAX ? FIBRAD_WHY_UNSAID
+                                                                                 : FIBRAD_WHY_CONDUCTANCE;
+}
+
+/* Names the end of a contact in a fault: a sphere or a wall. */
+static void name_end(const fibrad_heat *heat, uint32_t end, fibrad_fault *fault) {
+    if (end < heat->spheres)
+        fault->first = fault->second = end;
+    else if (end < heat->spheres + heat->given_bodies)
+        fault->wall = end - heat->spheres + 1;
+}
+
+/* Checks the contacts of the sources, and keeps them in heat->checked. */
+static void check_contacts(const fibrad_heat *heat, const fibrad_heat_sources *s, fibrad_fault *fault) {
+    fibrad_contacts *c = heat->checked;
+    c->count = 0;
+    if (s->contacts == 0 || fault->why != FIBRAD_WHY_UNSAID) return;
+    if (s->contact_first == NULL || s->contact_second == NULL || s->conductance == NULL) {
+        fault->why = FIBRAD_WHY_MISSING;
+        return;
+    }
+    for (uint32_t k = 0; k < s->contacts; k++) {
+        fault->why = contact_why(heat, s, k);
+        if (fault->why == FIBRAD_WHY_UNSAID) continue;
+        name_end(heat, s->contact_first[k], fault);
+        return;
+    }
+    c->first = s->contact_first, c->second = s->contact_second, c->conductance = s->conductance, c->count = s->contacts;
+    c->sigma = s->sigma, c->zero = s->surroundings;
+    for (uint32_t b = 0; b < heat->spheres; b++) c->node[heat->order[b]] = b;
+    for (uint32_t k = 0; k < heat->given_bodies; k++)
+        c->node[heat->spheres + k] = fibrad_heat_body(heat, heat->slot[k]);
+    fibrad_contact_mark(c);
+}
+
+/* Whether a sphere or a wall, by the caller's number, has contacts. */
+static bool touches(const fibrad_heat *heat, uint32_t end) {
+    return heat->checked->count > 0 && heat->checked->kind[heat->checked->node[end]] != FIBRAD_CONTACT_NONE;
+}
+
+/* Whether a wall has one temperature, given or to be found. */
+static bool has_one_temperature(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
+    const fibrad_mesh *mesh = &heat->scene->mesh;
+    bool one = s->insulated == NULL || s->insulated[b] == 0;
+    if (heat->slot[b] < FIBRAD_MESHES || s->side_temperature == NULL) return one;
+    const uint32_t m = heat->slot[b] - FIBRAD_MESHES;
+    for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++)
+        one = one && !is_given(side_temperature(heat, s, mesh->side[k], __builtin_nan("")));
+    return one;
+}
+
 /* The reason why a wall is not valid. */
 static int wall_why(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
     const radiator source = of_body(s, b);
-    const int why = source_why(&source);
+    const bool touched = touches(heat, heat->spheres + b);
+    const int why = source_why(&source, touched);
     if (why != FIBRAD_WHY_UNSAID) return why;
     if (!sides_valid(heat, s, b)) return FIBRAD_WHY_SIDE;
+    if (touched && !has_one_temperature(heat, s, b)) return FIBRAD_WHY_TOUCHED;
     return is_endless_unknown(heat, s, b) ? FIBRAD_WHY_ENDLESS : FIBRAD_WHY_UNSAID;
 }
 
@@ -122,12 +184,39 @@ static int sources_why(const fibrad_heat *heat, const fibrad_heat_sources *s) {
     return s->tolerance >= 0 && s->tolerance < 1 ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_TOLERANCE;
 }
 
+/* Finds what exchanges heat. A given temperature, or `hold`, anchors its component. All that radiate belong to one
+ * component. A component that neither radiates nor is anchored has no temperature: then the fault names a sphere. */
+static void check_components(const fibrad_heat *heat, const fibrad_heat_sources *s, fibrad_fault *fault) {
+    const uint32_t all = heat->bodies, ends = heat->spheres + heat->given_bodies;
+    fibrad_contacts *c = heat->checked;
+    fibrad_contact_parts parts = heat->joined;
+    for (uint32_t b = 0; b <= all; b++) parts.root[b] = b, parts.anchored[b] = 0;
+    for (uint32_t k = 0; k < c->count; k++)
+        if (c->conductance[k] > 0) fibrad_contact_join(&parts, c->node[c->first[k]], c->node[c->second[k]]);
+    for (uint32_t k = 0; k < ends; k++)
+        if (of_end(heat, s, k).emissivity > 0) fibrad_contact_join(&parts, c->node[k], all);
+    for (uint32_t k = 0; k < ends; k++) {
+        const radiator source = of_end(heat, s, k);
+        if (touches(heat, k) && (is_given(source.temperature) || source.hold > 0))
+            parts.anchored[fibrad_contact_root(&parts, c->node[k])] = 1;
+    }
+    const uint32_t radiating = fibrad_contact_root(&parts, all);
+    c->anchored = parts.anchored[radiating];
+    for (uint32_t k = 0; k < heat->spheres; k++) {
+        const uint32_t root = fibrad_contact_root(&parts, c->node[k]);
+        if (!touches(heat, k) || root == radiating || parts.anchored[root]) continue;
+        fault->why = FIBRAD_WHY_ALONE, fault->first = fault->second = k;
+        return;
+    }
+}
+
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *s, fibrad_fault *fault) {
     if (heat == NULL || s == NULL) return FIBRAD_E_ARGUMENT;
     fibrad_fault found = {heat->spheres, heat->spheres, UINT32_MAX, 0, sources_why(heat, s)};
+    check_contacts(heat, s, &found);
     for (uint32_t i = 0; i < heat->spheres && found.why == FIBRAD_WHY_UNSAID; i++) {
         const radiator source = of_sphere(s, i);
-        found.why = source_why(&source);
+        found.why = source_why(&source, touches(heat, i));
         if (found.why == FIBRAD_WHY_UNSAID && s->conductivity != NULL && !(s->conductivity[i] > 0))
             found.why = FIBRAD_WHY_CONDUCTIVITY;
         if (found.why != FIBRAD_WHY_UNSAID) found.first = found.second = i;
@@ -136,9 +225,12 @@ int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *s, fib
         found.why = wall_why(heat, s, b);
         if (found.why != FIBRAD_WHY_UNSAID) found.wall = b + 1;
     }
+    if (found.why == FIBRAD_WHY_UNSAID && s->contacts > 0) check_components(heat, s, &found);
     if (fault != NULL) *fault = found;
     if (found.why == FIBRAD_WHY_UNSAID) return FIBRAD_OK;
-    return found.why == FIBRAD_WHY_ENDLESS ? FIBRAD_E_UNSUPPORTED : FIBRAD_E_ARGUMENT;
+    return found.why == FIBRAD_WHY_ENDLESS ? FIBRAD_E_UNSUPPORTED
+           : found.why == FIBRAD_WHY_ALONE ? FIBRAD_E_UNSOLVABLE
+                                           : FIBRAD_E_ARGUMENT;
 }
 
 /* sigma (T^4 - T0^4), T0 being the temperature of the surroundings. All emissions and radiosities are such differences.
@@ -211,11 +303,16 @@ static double middle_emission(const fibrad_heat *heat, const fibrad_heat_sources
     return range[0] <= range[1] ? range[0] + 0.5 * (range[1] - range[0]) : 0;
 }
 
+/* Whether a body has contacts in the solution that begins. */
+static bool in_contact(const fibrad_heat *heat, uint32_t b) {
+    return heat->contacts.count > 0 && heat->contacts.kind[b] != FIBRAD_CONTACT_NONE;
+}
+
 /* The emission of a body if it is given. Otherwise the emission with which the search begins: that of its reference, of
  * the last solution, or `middle`. */
 static double first_emission(const fibrad_heat *heat, const fibrad_heat_sources *s, double middle, uint32_t b,
                              const radiator *source) {
-    if (source->emissivity == 0) return middle;
+    if (source->emissivity == 0 && !in_contact(heat, b)) return middle;
     if (is_given(source->temperature)) return emission_of(s, source->temperature);
     if (is_given(source->reference)) return emission_of(s, source->reference);
     return heat->solution.warm ? heat->sources.emission[b] + emission_of(s, heat->sources.surroundings) : middle;
@@ -236,11 +333,16 @@ static void set_emission(fibrad_heat *heat, const fibrad_heat_sources *s, uint32
 
 static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double middle, uint32_t b,
                      const radiator *source) {
-    set_emission(heat, s, b, source->emissivity, first_emission(heat, s, middle, b, source));
-    heat->sources.temperature[b] = source->emissivity > 0 ? source->temperature : __builtin_nan("");
-    if (source->emissivity == 0 || is_given(source->temperature)) return;
+    const bool dark = source->emissivity == 0, touching = in_contact(heat, b);
+    const double emission = first_emission(heat, s, middle, b, source);
+    if (dark && touching) heat->sources.emission[b] = middle; /* its radiosities do not follow its own emission */
+    set_emission(heat, s, b, source->emissivity, dark ? middle : emission);
+    heat->sources.emission[b] = emission;
+    heat->sources.temperature[b] = dark && !touching ? __builtin_nan("") : source->temperature;
+    if ((dark && !touching) || is_given(source->temperature)) return;
     heat->sources.hold[b] = source->hold;
     heat->sources.drive[b] = source->power + (source->hold > 0 ? source->hold * emission_of(s, source->reference) : 0);
+    if (touching) heat->contacts.kind[b] = FIBRAD_CONTACT_FREE;
 }
 
 /* Adds `times` emissivity times lift to the radiosities of a mesh. */
@@ -307,6 +409,17 @@ static void set_conduction(fibrad_heat *heat, const fibrad_heat_sources *s) {
     heat->sources.rough = heat->sources.conducts && found && !heat->solution.warm ? FIBRAD_HEAT_ROUGH : 0;
 }
 
+/* Takes over the contacts that were checked. */
+static void begin_contacts(fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts, *checked = heat->checked;
+    c->count = checked->count;
+    if (c->count == 0) return;
+    c->first = checked->first, c->second = checked->second, c->conductance = checked->conductance;
+    c->sigma = checked->sigma, c->zero = checked->zero, c->anchored = checked->anchored;
+    fibrad_copy(c->node, checked->node, (heat->spheres + heat->given_bodies) * sizeof *c->node);
+    fibrad_copy(c->kind, checked->kind, heat->bodies);
+}
+
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     const int status = fibrad_heat_check(heat, sources, NULL);
     if (status != FIBRAD_OK) return status;
@@ -315,6 +428,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
         if (!heat->traced[task]) return FIBRAD_E_STATE;
     const double middle = middle_emission(heat, sources);
     bool unknown = false;
+    begin_contacts(heat);
     /* Thermal radiation does not begin with the radiosities of light, nor light with those of thermal radiation. */
     if ((sources->light != NULL) != (heat->sources.light != NULL)) heat->solution.warm = false;
     for (uint32_t b = 0; b < heat->spheres; b++) {

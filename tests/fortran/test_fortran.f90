@@ -1,6 +1,7 @@
 ! test_fortran.f90 - the Fortran module against closed forms. SPDX-License-Identifier: MIT
 program test_fortran
     use, intrinsic :: iso_c_binding, only: dp => c_double
+    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
     use fibrad
     implicit none
     real(dp), parameter :: pi = acos(-1.0_dp), sigma = fibrad_stefan_boltzmann
@@ -15,6 +16,7 @@ program test_fortran
     call powers()
     call light_from_outside()
     call found_temperatures()
+    call spheres_in_contact()
     call temperatures_in_time()
     call errors()
     if (failures > 0) error stop 'failures'
@@ -328,6 +330,36 @@ contains
         call bed%free()
         call bed%free()
     end subroutine temperatures_in_time
+
+    ! A row of spheres without emission on a floor: all of the power goes through the contacts.
+    subroutine spheres_in_contact()
+        type(fibrad_heat) :: heat
+        real(dp) :: temperature(3), emissivity(3), power(3), conducted(3), floor(1)
+        integer :: status
+        call heat%new([0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [1.0_dp, 3.0_dp, 5.0_dp], [1.0_dp, 1.0_dp, 1.0_dp], &
+                      status, walls=[fibrad_plane('zmin', 0.0_dp)])
+        call expect(status == fibrad_ok, 'a row of spheres')
+        temperature = ieee_value(1.0_dp, ieee_quiet_nan)
+        emissivity = 0
+        floor = 400
+        call heat%settle(temperature, [0.0_dp, 0.0_dp, 40.0_dp], constant, emissivity, 300.0_dp, power, status, &
+                         wall_temperature=floor, wall_emissivity=[1.0_dp], contacts=reshape([1, 2, 2, 3, 4, 1], [2, 3]), &
+                         conductance=[0.5_dp, 0.25_dp, 2.0_dp], conducted=conducted)
+        call expect(status == fibrad_ok .and. all(abs(temperature - [420, 500, 660]) < 1e-6_dp), 'temperatures in contact')
+        call expect(near(conducted(3), -40.0_dp, 1e-9_dp) .and. near(power(3), -40.0_dp, 1e-9_dp), 'powers in contact')
+        temperature = ieee_value(1.0_dp, ieee_quiet_nan)
+        call heat%settle(temperature, [0.0_dp, 0.0_dp, 40.0_dp], constant, emissivity, 300.0_dp, power, status, &
+                         wall_temperature=floor, wall_emissivity=[1.0_dp], contacts=reshape([1, 2], [2, 1]))
+        call expect(status == fibrad_e_argument, 'contacts without conductances')
+        call heat%free()
+    end subroutine spheres_in_contact
+
+    ! Emissivities that do not change.
+    subroutine constant(temperature, emissivity)
+        real(dp), intent(in) :: temperature(:)
+        real(dp), intent(inout) :: emissivity(:)
+        if (size(temperature) == 0) emissivity = 0
+    end subroutine constant
 
     subroutine errors()
         type(fibrad_factors) :: found

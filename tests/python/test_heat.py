@@ -377,3 +377,47 @@ def test_lights_that_are_refused(light, why):
     with fibrad.Heat([[0, 0, 0]], 0.5, box=[2, 2, 0], walls={"zmin": -1}) as heat:
         with pytest.raises(fibrad.InputError, match=why):
             heat.shine(fibrad.Light(**light), 0.5, wall_absorptivity=1.0)
+
+
+def test_a_row_in_contact():
+    """Without emission all of the power goes through the contacts to the floor."""
+    row = [[0, 0, 1], [0, 0, 3], [0, 0, 5]]
+    with fibrad.Heat(row, 1.0, walls={"zmin": 0}) as heat:
+        with pytest.raises(fibrad.InputError, match="nothing that it touches"):
+            heat.solve(None, 0, power=0, surroundings=300, wall_temperature=400, wall_emissivity=1,
+                       contacts=([0], [1], [1.0]))
+        powers = heat.solve(None, 0, power=[0, 0, 40.0], surroundings=300, wall_temperature=400, wall_emissivity=1,
+                            contacts=([0, 1, "zmin"], [1, 2, 0], [0.5, 0.25, 2.0]))
+    assert powers.temperatures == pytest.approx([420, 500, 660], rel=1e-9)
+    assert powers.contact_flows == pytest.approx([-40, -40, -40], rel=1e-9)
+    assert powers.wall_conducted["zmin"] == pytest.approx(40, rel=1e-9)
+    assert powers.conducted.sum() == pytest.approx(-40, rel=1e-9)
+
+
+def test_a_matrix_of_contacts():
+    """A symmetric matrix is a contact for each element above the diagonal."""
+    sparse = pytest.importorskip("scipy.sparse")
+    matrix = sparse.csr_matrix([[0, 2.0], [2.0, 0]])
+    with fibrad.Heat(PAIR, 1.0) as heat:
+        by_matrix, by_list = (heat.solve([1000, np.nan], 0.8, power=0, surroundings=300, contacts=contacts)
+                              for contacts in (matrix, ([1], [0], [2.0])))
+        with pytest.raises(fibrad.InputError, match="not symmetric"):
+            heat.solve([1000, np.nan], 0.8, power=0, surroundings=300, contacts=sparse.triu(matrix))
+    assert by_matrix.temperatures == pytest.approx(by_list.temperatures, rel=1e-6)
+    assert by_matrix.conducted[1] == pytest.approx(2 * (1000 - by_matrix.temperatures[1]), rel=1e-9)
+
+
+@pytest.mark.parametrize("contacts", [([0], [9], [1.0]), ([0], [1], [-1.0]), ([0], [1], [np.nan]), ([0], ["zmin"], [1.0]),
+                                      ([0, 1], [1], [1.0])])
+def test_contacts_that_are_refused(contacts):
+    with fibrad.Heat(PAIR, 1.0) as heat, pytest.raises(fibrad.InputError, match="contacts"):
+        heat.solve(1000, 0.8, surroundings=300, contacts=contacts)
+
+
+def test_contacts_by_overlaps():
+    """A spot conducts 2 k a between spheres, and 4 k a to a wall."""
+    first, second, conductance = fibrad.contacts([[0, 0, 0.99], [0, 0, 2.97]], 1.0, conductivity=3, walls={"zmin": 0})
+    assert sorted(zip(first, second)) == [(0, 2), (1, 0)]
+    assert sorted(conductance) == pytest.approx([2 * 3 * np.sqrt(1 - 0.99**2), 4 * 3 * np.sqrt(1 - 0.99**2)])
+    apart = fibrad.contacts([[0, 0, 0], [0, 0, 2.1]], 1.0, conductivity=3)
+    assert apart.first.size == 0 and fibrad.contacts(PAIR, 1.0, conductivity=3, gas_conductivity=0.1).first.size == 0

@@ -7,6 +7,7 @@
 0.03
 
 `view_factors`, `exchange_factors` and `displacements` compute whole beds. `Heat` gives net powers and temperatures.
+`contacts` finds what spheres that touch conduct, which `Heat.solve` takes.
 `Heat.shine` finds how much `Light` from outside each surface absorbs. `Transient` follows temperatures in time. `read`
 and `Mesh.from_stl` read files.
 
@@ -18,6 +19,7 @@ after reflections. The error of a row of factors is the root of the sum of the s
 The GIL is released while the library computes. Ctrl-C stops the library. Errors are subclasses of `Error`.
 """
 from . import _library
+from ._contacts import Contacts, contacts
 from ._errors import Cancelled, Error, FileError, InputError, OutOfMemory, StateError
 from ._factors import Displacements, Factors, displacements, exchange_factors, view_factors
 from ._files import FileFrame, read
@@ -27,6 +29,6 @@ from ._scene import Mesh
 from ._transient import Advance, Transient
 
 __version__: str = _library.library.fibrad_version().decode()
-__all__ = ["Absorbed", "Advance", "Cancelled", "Displacements", "Error", "Factors", "FileError", "FileFrame", "Heat", "InputError", "Light",
-           "Mesh", "OutOfMemory", "Powers", "STEFAN_BOLTZMANN", "StateError", "Transient", "displacements", "exchange_factors", "read",
+__all__ = ["Absorbed", "Advance", "Cancelled", "Contacts", "Displacements", "Error", "Factors", "FileError", "FileFrame", "Heat", "InputError", "Light",
+           "Mesh", "OutOfMemory", "Powers", "STEFAN_BOLTZMANN", "StateError", "Transient", "contacts", "displacements", "exchange_factors", "read",
            "view_factors"]

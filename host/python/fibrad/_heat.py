@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._bed import Bed, heat_config
 from ._call import Call, Progress
+from ._contacts import contacts_of
 from ._library import HeatResult, HeatSources, LightResult, LightSources, library
 from ._light import Absorbed, Light, add, lights_of, patches_pointer
 from ._scene import Walls, pointer, pointers
@@ -25,7 +26,7 @@ STEFAN_BOLTZMANN = 5.670374419e-8
 _SETTLE_MAX, _EMISSIVITY_CHANGE = 100, 1e-5
 
 _OF_SPHERES = ("power", "temperature", "power_error", "temperature_error", "least_temperature", "largest_temperature",
-               "centre_temperature", "surface_error", "centre_error")
+               "centre_temperature", "surface_error", "centre_error", "conducted")
 
 
 def _law(emissivity: Union[ArrayLike, Callable[[Any], ArrayLike]]) -> Callable[[Any], ArrayLike]:
@@ -78,6 +79,12 @@ class Powers:
         [K] (n,) estimated error of `least_temperatures` and `largest_temperatures`.
     centre_errors
         [K] (n,) estimated error of `centre_temperatures`.
+    conducted
+        [W] (n,) part of `spheres` that comes through contacts. The rest is radiation.
+    wall_conducted
+        [W] part of `walls` that comes through contacts, by name.
+    contact_flows
+        [W] (m,) what each contact conducts from i to j.
     error
         [W] estimated error of `spheres`, root mean square.
     error_patches
@@ -107,6 +114,9 @@ class Powers:
     centre_temperatures: NDArray[np.float64]
     surface_errors: NDArray[np.float64]
     centre_errors: NDArray[np.float64]
+    conducted: NDArray[np.float64]
+    wall_conducted: dict[str, float]
+    contact_flows: NDArray[np.float64]
     error: float
     error_patches: float
     error_beams: float
@@ -214,7 +224,7 @@ class Heat(Bed):
               wall_emissivity: Any = None, wall_power: Optional[Mapping[str, float]] = None,
               insulated: Collection[str] = (), tolerance: Optional[float] = None, uniform: bool = False,
               sigma: float = STEFAN_BOLTZMANN, light: Optional[Absorbed] = None,
-              conductivity: Optional[ArrayLike] = None) -> Powers:
+              conductivity: Optional[ArrayLike] = None, contacts: Any = None) -> Powers:
         """Net powers and temperatures.
 
         Parameters
@@ -252,6 +262,10 @@ class Heat(Bed):
         conductivity : (n,) array or float, optional
             [W/(m K)] Conductivities of the solid, above 0. Temperatures of spheres are then means of their surfaces.
             Infinite: the sphere has one temperature. Default: all do.
+        contacts : (i, j, conductance) or SciPy matrix, optional
+            [W/K] What conducts heat between spheres i and j. j may also be the name of a wall, in a list. Several
+            contacts may join the same spheres. Of a matrix (n, n), which is symmetric, each element above the diagonal
+            is a contact. `contacts` finds them by overlaps.
 
         Returns
         -------
@@ -299,9 +313,16 @@ class Heat(Bed):
                               **pointers(of_bodies))
         if light is not None:
             sources.absorbed = patches_pointer(light)
+        joined = contacts_of(((), (), ()) if contacts is None else contacts, n, container)
+        flows = np.zeros(joined.conductance.size)
+        sources.contacts, sources.conductance = joined.conductance.size, pointer(joined.conductance)
+        ends = ctypes.POINTER(ctypes.c_uint32)
+        sources.contact_first, sources.contact_second = pointer(joined.first, ends), pointer(joined.second, ends)
         of_spheres = {name: np.zeros(n) for name in _OF_SPHERES}
-        of_walls = {name: np.zeros(len(container.names)) for name in ("body_power", "body_temperature", "body_error")}
+        of_walls = {name: np.zeros(len(container.names)) for name in ("body_power", "body_temperature", "body_error",
+                                                                            "body_conducted")}
         result = HeatResult(**{name: pointer(array) for name, array in (of_spheres | of_walls).items()})
+        result.contact_flow = pointer(flows)
         for _ in range(_SETTLE_MAX):
             sources.emissivity = pointer(shares)
             self._use(library.fibrad_radiation_solve, self._packing, sources, result)
@@ -332,6 +353,7 @@ class Heat(Bed):
                       least_temperatures=of_spheres["least_temperature"],
                       largest_temperatures=of_spheres["largest_temperature"],
                       centre_temperatures=of_spheres["centre_temperature"], surface_errors=of_spheres["surface_error"],
-                      centre_errors=of_spheres["centre_error"],
+                      centre_errors=of_spheres["centre_error"], conducted=of_spheres["conducted"],
+                      wall_conducted=walls["body_conducted"], contact_flows=flows,
                       error=math.hypot(result.error_patches, result.error_beams), error_patches=result.error_patches,
                       error_beams=result.error_beams, residual=result.residual, sweeps=result.sweeps)

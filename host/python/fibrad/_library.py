@@ -69,14 +69,20 @@ HeatConfig = _structure("heat_config", ("directions points patches parts", c_uin
 HeatSources = _structure("heat_sources", ("temperature emissivity power hold reference", DOUBLES),
                          ("body_temperature body_emissivity body_power", DOUBLES), ("insulated", POINTER(c_ubyte)),
                          ("surroundings sigma tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int),
-                         ("side_temperature light conductivity absorbed", DOUBLES))
+                         ("side_temperature light conductivity absorbed", DOUBLES),
+                         ("contact_first contact_second", POINTER(c_uint32)), ("conductance", DOUBLES),
+                         ("contacts", c_uint32))
 HeatResult = _structure("heat_result", ("power body_power", DOUBLES), ("surroundings_power", c_double),
                         ("temperature body_temperature power_error body_error", DOUBLES),
                         ("temperature_error body_temperature_error", DOUBLES),
                         ("error_patches error_beams residual", c_double), ("sweeps", c_uint32),
                         ("body_absorbed", DOUBLES), ("surroundings_error", c_double), ("body_area", DOUBLES),
                         ("least_temperature largest_temperature centre_temperature", DOUBLES),
-                        ("surface_error centre_error", DOUBLES))
+                        ("surface_error centre_error", DOUBLES), ("conducted body_conducted contact_flow", DOUBLES))
+ContactRule = _structure("contact_rule", ("spots", c_int), ("scale gas_reach gas_jump gas_least", c_double),
+                         ("gas_alone", c_int))
+ContactList = _structure("contact_list", ("n", c_uint32), ("first second", POINTER(c_uint32)),
+                         ("distance radius other spot", DOUBLES))
 
 LightStructure = _structure("light", ("direction", c_double * 3), ("flux half_angle", c_double), ("directions", c_uint32),
                             ("shape", c_int), ("centre", c_double * 3), ("radius", c_double),
@@ -119,6 +125,9 @@ def _declare(library: ctypes.CDLL) -> None:
     library.fibrad_transient_describe.argtypes = [c_void_p, c_void_p, POINTER(Fault)]
     library.fibrad_transient_free.argtypes = [c_void_p]
     library.fibrad_bed_free.argtypes = [POINTER(BedFactors)]
+    library.fibrad_contacts_find.argtypes = [*bed, POINTER(ContactRule), POINTER(POINTER(ContactList))]
+    library.fibrad_contacts_conduct.argtypes = [POINTER(ContactList), POINTER(ContactRule), DOUBLES, DOUBLES, DOUBLES]
+    library.fibrad_contacts_free.argtypes, library.fibrad_contacts_free.restype = [POINTER(ContactList)], None
     for name in ("radiation_describe", "radiation_free", "transient_describe", "transient_free", "bed_free"):
         getattr(library, f"fibrad_{name}").restype = None
 

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._bed import Bed, heat_config
 from ._call import Call, Progress
+from ._contacts import contacts_of
 from ._heat import STEFAN_BOLTZMANN
 from ._library import ExchangeRule, HeatSources, Span, TransientConfig, library
 from ._scene import Walls, pointer, pointers
@@ -109,7 +110,7 @@ class Transient(Bed):
                 surroundings_end: Optional[float] = None, wall_temperature: Any = None, wall_emissivity: Any = None,
                 wall_temperature_end: Any = None, wall_power: Optional[Mapping[str, float]] = None,
                 insulated: Collection[str] = (), step: Optional[float] = None, tolerance: Optional[float] = None,
-                sigma: float = STEFAN_BOLTZMANN) -> Advance:
+                sigma: float = STEFAN_BOLTZMANN, contacts: Any = None) -> Advance:
         """Temperatures after a span of time.
 
         Parameters
@@ -137,6 +138,8 @@ class Transient(Bed):
             Of automatic steps: relative error of a temperature. Default: 1e-4.
         sigma : float
             [W/(m2 K4)] Emission is ``sigma T**4``.
+        contacts : optional
+            As for `Heat.solve`. Only with ``method="patches"``.
 
         Returns
         -------
@@ -171,11 +174,17 @@ class Transient(Bed):
             given_end = container.per_wall("wall_temperature_end", wall_temperature_end, 0, TEMPERATURE_MAX, found | constant)
             end = np.where(np.isnan(given_end), end, given_end)
         shares = per_sphere("emissivity", emissivity, n, 0, 1, names)
+        joined = contacts_of(((), (), ()) if contacts is None else contacts, n, container)
+        if joined.conductance.size and self._method != "patches":
+            raise refuse("contacts need method='patches'")
         given = None if power is None else per_sphere("power", power, n, -POWER_MAX, POWER_MAX, names)
         around = ctypes.c_double(real("surroundings_end", surroundings if surroundings_end is None else surroundings_end,
                                       0, TEMPERATURE_MAX))
         sources = HeatSources(emissivity=pointer(shares), power=pointer(given), sigma=real("sigma", sigma, *SIGMA),
                               surroundings=real("surroundings", surroundings, 0, TEMPERATURE_MAX), **pointers(walls))
+        ends = ctypes.POINTER(ctypes.c_uint32)
+        sources.contacts, sources.conductance = joined.conductance.size, pointer(joined.conductance)
+        sources.contact_first, sources.contact_second = pointer(joined.first, ends), pointer(joined.second, ends)
         flow, energy = np.zeros(n), np.zeros(len(container.names))
         span = Span(temperature=pointer(now), capacity=pointer(heat), duration=real("duration", duration, 0, DURATION_MAX),
                     body_temperature=pointer(end), surroundings=ctypes.pointer(around),

@@ -1,0 +1,111 @@
+/* read_contacts.c - conductances of contacts from a file. SPDX-License-Identifier: MIT */
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/message.h"
+#include "conduct/contact_option.h"
+#include "text/read_lines.h"
+
+int contact_path(const char *pattern, int64_t frame, char path[CONTACT_PATH]) {
+    const char *star = strchr(pattern, '*');
+    const int used =
+        star ? snprintf(path, CONTACT_PATH, "%.*s%" PRId64 "%s", (int)(star - pattern), pattern, frame, star + 1)
+             : snprintf(path, CONTACT_PATH, "%s", pattern);
+    return used >= CONTACT_PATH ? message_at(STATUS_USAGE, pattern, 0, "the name is too long") : STATUS_OK;
+}
+
+/* The index of a sphere by its name. n: there is none. */
+static uint32_t find_sphere(const struct bed *bed, int64_t name) {
+    uint32_t low = 0, high = bed->n;
+    if (!bed->ids) return name >= 0 && name < (int64_t)bed->n ? (uint32_t)name : bed->n;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (bed->id[middle] < name)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < bed->n && bed->id[low] == name ? low : bed->n;
+}
+
+/* Finds an end: a wall by its name, or a sphere. */
+static int name_of_end(const struct lines *lines, const char *text, const struct bed *bed, const struct walls *walls,
+                       uint32_t *end) {
+    int64_t name;
+    for (uint32_t k = 0; k < walls->count; ++k) {
+        if (strcmp(text, wall_name(walls, k)) != 0) continue;
+        *end = bed->n + k;
+        return STATUS_OK;
+    }
+    char *rest;
+    name = strtoll(text, &rest, 10);
+    if (rest == text || *rest)
+        return message_at(STATUS_INPUT, lines->name, lines->number, "'%.40s' is neither a sphere nor a wall", text);
+    *end = find_sphere(bed, name);
+    if (*end < bed->n) return STATUS_OK;
+    return message_at(STATUS_INPUT, lines->name, lines->number, "there is no sphere %" PRId64, name);
+}
+
+static int grow_lines(struct contact_lines *to) {
+    if (to->n < to->room) return STATUS_OK;
+    if (to->room > UINT32_MAX / 2) return message(STATUS_INPUT, "--contacts: too many contacts");
+    const uint32_t room = 2 * to->room + 1024;
+    uint32_t *first = realloc(to->first, room * sizeof *first);
+    if (first) to->first = first;
+    uint32_t *second = realloc(to->second, room * sizeof *second);
+    if (second) to->second = second;
+    double *conductance = realloc(to->conductance, room * sizeof *conductance);
+    if (conductance) to->conductance = conductance;
+    if (!first || !second || !conductance) return message_memory();
+    to->room = room;
+    return STATUS_OK;
+}
+
+static int take_contact(const struct lines *lines, const struct fields *fields, const struct bed *bed,
+                        const struct walls *walls, struct contact_lines *to) {
+    if (fields->n != 3)
+        return message_at(STATUS_INPUT, lines->name, lines->number, "%zu columns instead of i,j,W/K", fields->n);
+    int status = grow_lines(to);
+    const uint32_t k = to->n;
+    if (!status) status = name_of_end(lines, fields->at[0], bed, walls, &to->first[k]);
+    if (!status) status = name_of_end(lines, fields->at[1], bed, walls, &to->second[k]);
+    if (!status) status = lines_number(lines, "conductance", fields->at[2], &to->conductance[k]);
+    if (status) return status;
+    const bool periodic = bed->period[0] > 0 || bed->period[1] > 0 || bed->period[2] > 0;
+    if (!(to->conductance[k] >= 0 && to->conductance[k] <= CONDUCTANCE_MOST))
+        return message_at(STATUS_INPUT, lines->name, lines->number, "the conductance is %g; it must be within 0 and %g",
+                          to->conductance[k], CONDUCTANCE_MOST);
+    if (to->first[k] == to->second[k] && !(periodic && to->first[k] < bed->n))
+        return message_at(STATUS_INPUT, lines->name, lines->number, "%s is in contact with itself", fields->at[0]);
+    ++to->n;
+    return STATUS_OK;
+}
+
+static bool is_header(const struct fields *fields) {
+    return fields->n == 3 && strcmp(fields->at[0], "i") == 0 && strcmp(fields->at[1], "j") == 0;
+}
+
+int contacts_read(const char *pattern, const struct bed *bed, const struct walls *walls, struct contact_lines *to) {
+    struct lines lines;
+    struct fields fields = {0};
+    char path[CONTACT_PATH];
+    int status = contact_path(pattern, bed->frame, path);
+    if (status) return status;
+    status = lines_open(&lines, path);
+    if (status) return status;
+    for (bool more = true, begun = false; !status;) {
+        status = lines_next(&lines, &more);
+        if (status || !more) break;
+        if (lines_blank(&lines) || *lines.text == '#') continue;
+        status = fields_split(&fields, lines.text, ",; \t\r");
+        if (!status && !begun && !is_header(&fields))
+            status = message_at(STATUS_INPUT, lines.name, lines.number, "the header is not i,j,W/K");
+        else if (!status && begun)
+            status = take_contact(&lines, &fields, bed, walls, to);
+        begun = true;
+    }
+    lines_close(&lines);
+    free(fields.at);
+    return status;
+}

@@ -1,0 +1,82 @@
+/* contact.h - heat conducted between nodes, each with one temperature. SPDX-License-Identifier: MIT
+ *
+ * A node is a sphere or a wall. Emissions E are relative: E = sigma (T^4 - zero^4). A node that is free emits, and
+ * stores in a step in time, `stiff` times E. It has a supply, the power that it gains at E = 0. Its temperature follows
+ * from
+ *
+ *     supply - stiff E(T) + sum over its contacts of H (T_other - T) = 0.
+ *
+ * Conduction is linear in T, radiation in E. With given supplies all temperatures follow from a Newton solution in T,
+ * whose matrix is symmetric and positive. For radiosities a contact is an exchange area between emissions,
+ *
+ *     g = H/(sigma (T_i^2 + T_j^2) (T_i + T_j)).
+ *
+ * Temperatures below zero are allowed on the way: there E = -sigma (T^4 + zero^4). Source: docs/methods_heat.md. */
+#ifndef FIBRAD_CONTACT_H
+#define FIBRAD_CONTACT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define FIBRAD_CONTACT_ARRAYS 12u /* of doubles, [nodes] */
+
+typedef enum fibrad_contact_kind {
+    FIBRAD_CONTACT_NONE,  /* the node has no contacts */
+    FIBRAD_CONTACT_GIVEN, /* its temperature is given, or nothing is known of it yet */
+    FIBRAD_CONTACT_FREE   /* its temperature is to be found */
+} fibrad_contact_kind;
+
+typedef struct fibrad_contacts {
+    uint32_t nodes, count;               /* numbers of nodes and contacts */
+    const uint32_t *first, *second;      /* [count], the caller's numbers of the two ends */
+    const double *conductance;           /* sigma K^3 L^2, [count], the caller's */
+    uint32_t *node;                      /* node by the caller's number */
+    unsigned char *kind;                 /* [nodes], a fibrad_contact_kind */
+    double sigma, zero;                  /* zero: the temperature at which E is 0 */
+    double *temperature;                 /* K, [nodes] */
+    double *stiff, *supply;              /* [nodes] */
+    double *missing;                     /* [nodes], what is missing in balances */
+    double *load, *warming;              /* [nodes], a system that is linear in E, and its solution */
+    double *direction;                   /* [nodes], search direction of E */
+    double *gain;                        /* sigma K^4 L^2, [nodes], what a node gains through contacts at the end */
+    double *error;                       /* K, [nodes], of temperatures at the end; 0 if given */
+    double *diagonal, *search, *product; /* [nodes], used within one call */
+    double least;                        /* K, slopes are those at temperatures of at least this */
+    bool anchored;                       /* a given temperature holds, by contacts, what radiates */
+} fibrad_contacts;
+
+/* What belongs together, while sources are checked. A component is a set of nodes that exchange heat. Node `nodes`
+ * stands for all that radiate. */
+typedef struct fibrad_contact_parts {
+    uint32_t *root; /* [nodes + 1], a node of the same component; its own number: it stands for the component */
+    unsigned char *anchored; /* [nodes + 1], of nodes that stand for components: some temperature is given */
+} fibrad_contact_parts;
+
+/* The emission at a temperature, and the temperature of an emission. */
+double fibrad_contact_emission(const fibrad_contacts *contacts, double temperature);
+double fibrad_contact_temperature(const fibrad_contacts *contacts, double emission);
+
+/* Marks the nodes that have contacts as GIVEN, all others as NONE. */
+void fibrad_contact_mark(fibrad_contacts *contacts);
+
+/* Joins the components of two nodes. Begin with root[k] = k. */
+void fibrad_contact_join(fibrad_contact_parts *parts, uint32_t a, uint32_t b);
+
+/* The node that stands for the component of a node. */
+uint32_t fibrad_contact_root(fibrad_contact_parts *parts, uint32_t node);
+
+/* Adds to `to` what nodes gain through contacts at temperatures T. */
+void fibrad_contact_gains(const fibrad_contacts *contacts, const double *temperature, double *to);
+
+/* The sum over contacts of g times the product of the differences of a and b, which count 0 on nodes that are not free.
+ */
+double fibrad_contact_product(const fibrad_contacts *contacts, const double *a, const double *b);
+
+/* Finds contacts->warming, the change of E of free nodes that takes away contacts->load: (stiff + G) warming = load. */
+void fibrad_contact_warm(fibrad_contacts *contacts);
+
+/* Finds contacts->temperature of free nodes from contacts->supply. It goes on until no temperature changes by more than
+ * `tolerance` times the highest one. On entry `temperature` has given temperatures and a first guess of the others. */
+void fibrad_contact_find(fibrad_contacts *contacts, double tolerance);
+
+#endif

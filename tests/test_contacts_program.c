@@ -1,0 +1,112 @@
+/* test_contacts_program.c - contacts and gas of the program: options, files, messages. SPDX-License-Identifier: MIT */
+#include "program.h"
+
+FIXTURE(make_folder, remove_folder)
+
+/* A row of three spheres on a floor, of which the first gives off 40 W. */
+static const char *row(void) {
+    return write_file("row.csv", "x,y,z,radius,P\n0,0,0.01,0.01,40\n0,0,0.0299,0.01,0\n0,0,0.0502,0.01,0\n");
+}
+static const char *contacts(const char *text) { return write_file("contacts.csv", text); }
+
+/* Column k of the line of body i of a .csv, both from 0. */
+static double column(const char *file, int i, int k) {
+    char *at = read_file(file);
+    for (int line = 0; line <= i; ++line) ck_assert_ptr_nonnull(at = strchr(at, '\n') + 1);
+    for (int c = 0; c < k; ++c) ck_assert_ptr_nonnull(at = strchr(at, ',') + 1);
+    return strtod(at, NULL);
+}
+
+#define ROW                                                                                                            \
+    row(), "--length-unit", "m", "--ambient", "300", "--wall", "zmin", "--wall-temperature", "zmin=400", "--power", "P"
+
+/* Without emission the flows are known: all of the power goes to the floor. */
+TEST(a_row_conducts) {
+    const char *q = in_folder("q.csv"), *flows = in_folder("flows.csv");
+    SUCCEED("heat", ROW, "--emissivity", "0", "--contacts",
+            contacts("i,j,W/K\n# a remark\n1,0,0.5\n0,zmin,1\n1;2;.2\n"), "-o", q, "--contact-flows", flows);
+    for (int i = 0; i < 3; ++i) assert_near(column(q, i, 1), 440, 1e-9);
+    assert_near(column(q, 0, 2), -40, 1e-9);
+    assert_near(column(q, 0, 6), -40, 1e-9);
+    assert_near(column(q, 4, 6), 40, 1e-9);
+    assert_near(value_of("wall_zmin_conduction_W"), 40, 1e-9);
+    ck_assert_double_eq(value_of("contacts"), 3);
+    char *text = read_file(flows);
+    assert_begins(text, "i,j,W/K,W\n1,0,0.5,");
+    assert_has(text, "\n0,zmin,1,40\n");
+    assert_has(read_file(q), "T_error_K,q_radiation_W,q_conduction_W,body\n");
+}
+
+/* Radiation and conduction are the two parts of the power of each body. Files and spots may be combined, and each frame
+ * may have a file of its own. */
+TEST(parts_add_up) {
+    const char *q = in_folder("q.csv"), *json = in_folder("q.json");
+    write_file("c.0.csv", "i,j,W/K\n0,2,0.001\n0,2,0.002\n");
+    SUCCEED("heat", ROW, "--emissivity", "0.8", "--contacts", in_folder("c.*.csv"), "--contacts", "hertz",
+            "--contact-conductivity", "30", "--gas-conductivity", "0.1", "-o", q, "-o", json);
+    for (int i = 0; i < 5; ++i)
+        ck_assert_double_le(fabs(column(q, i, 2) - column(q, i, 5) - column(q, i, 6)),
+                            1e-9 * (1 + fabs(column(q, i, 2))));
+    ck_assert_double_eq(value_of("contacts"), 5);
+    assert_has(read_file(json), "\"q_conduction_W\":[");
+    SUCCEED("heat", ROW, "--emissivity", "0.8", "--contacts", "hertz", "--contact-conductivity", "30", "--until", "60",
+            "--heat-capacity", "800", "--density", "2500", "--temperature", "500", "-o", q);
+    ck_assert_double_lt(fabs(value_of("balance_of_stored")), 1e-10);
+}
+
+/* A simple cubic lattice of one temperature a sphere conducts 2 k a/d. */
+TEST(a_lattice_conducts) {
+    char text[12000] = "x,y,z,radius\n", *at = text + strlen(text);
+    for (int i = 0; i < 2 * 2 * 24; ++i)
+        at += sprintf(at, "%d,%d,%d,1.0005\n", 2 * (i % 2) + 1, 2 * (i / 2 % 2) + 1, 2 * (i / 4) + 1);
+    SUCCEED("conductivity", write_file("lattice.csv", text), "--periodic", "4,4,48", "--length-unit", "cm",
+            "--emissivity", "0.8", "--temperature", "1000", "--steady", "--axis", "z", "--contacts", "lens",
+            "--contact-conductivity", "30", "--rays", "1000");
+    const double conduction = value_of("k_conduction_z_W_mK"), radiation = value_of("k_radiation_z_W_mK");
+    assert_near(conduction, 2 * 30 * sqrt(1.0005 * 1.0005 - 1) / 2, 1e-6);
+    ck_assert_double_le(fabs(value_of("k_total_z_W_mK") - conduction - radiation), 2e-3 * radiation);
+    assert_near(radiation, value_of("F_E_steady_z") * 4 * 5.670374419e-8 * 1e9 * 2.001e-2, 2e-2);
+}
+
+/* What is wrong with a file of contacts is said with its line. */
+LOOP_TEST(files_at_fault, 8) {
+    static const struct {
+        const char *text, *reason;
+        int line;
+    } cases[] = {{"i,j,W/K\n0,1,1\n0,7,1\n", "there is no sphere 7", 3},
+                 {"i,j,W/K\n0,1,-1\n", "the conductance is -1; it must be within 0 and 1e+12", 2},
+                 {"i,j,W/K\n0,1,nan\n", "conductance is not finite: 'nan'", 2},
+                 {"i,j,W/K\n1,1,1\n", "1 is in contact with itself", 2},
+                 {"i,j,W/K\n1,zmax,1\n", "'zmax' is neither a sphere nor a wall", 2},
+                 {"i,j,W/K\n1,2\n", "2 columns instead of i,j,W/K", 2},
+                 {"0,1,1\n", "the header is not i,j,W/K", 1},
+                 {"i,j,W/K\n0,1.5,1\n", "'1.5' is neither a sphere nor a wall", 2}};
+    const char *file = contacts(cases[_i].text);
+    FAIL_WITH(3, "heat", ROW, "--emissivity", "0.8", "--contacts", file);
+    assert_has(said, formatted("%s:%d: %s", file, cases[_i].line, cases[_i].reason));
+}
+
+/* Options that need others, or cannot be combined. */
+TEST(options_at_fault) {
+    const char *file = contacts("i,j,W/K\nzmin,1,1\n");
+    FAIL_WITH(2, "heat", ROW, "--emissivity", "0.8", "--contacts", "lens");
+    assert_has(said, "--contacts lens or hertz needs --contact-conductivity or --solid-conductivity");
+    FAIL_WITH(2, "heat", ROW, "--emissivity", "0.8", "--contacts", "lens", "--contacts", "hertz");
+    FAIL_WITH(2, "heat", ROW, "--emissivity", "0.8", "--gas-conductivity", "0.1");
+    FAIL_WITH(2, "heat", ROW, "--emissivity", "0.8", "--contact-flows", in_folder("flows.csv"));
+    FAIL_WITH(2, "heat", ROW, "--emissivity", "0.8", "--gas-gap", "0.2");
+    FAIL_WITH(2, "heat", row(), "--ambient", "300", "--power", "P", "--emissivity", "0.8", "--contacts", "lens",
+              "--contact-conductivity", "3");
+    assert_has(said, "the file names no unit of length, which contacts need");
+    FAIL_WITH(2, "heat", row(), "--length-unit", "m", "--ambient", "300", "--power", "P", "--emissivity", "0.8",
+              "--wall", "zmin", "--wall-temperature", "zmin=insulated", "--contacts", file);
+    assert_has(said, "wall zmin is in contact and needs one temperature or a power");
+    FAIL_WITH(2, "heat", row(), "--length-unit", "m", "--ambient", "300", "--temperature", "500", "--emissivity", "0.8",
+              "--contacts", contacts("i,j,W/K\n0,1,1\n"), "--until", "60", "--heat-capacity", "800", "--density",
+              "2500", "--model", "factors");
+    assert_has(said, "--model factors has no contacts");
+    FAIL_WITH(3, "heat", row(), "--length-unit", "m", "--ambient", "300", "--power", "P", "--emissivity", "0",
+              "--contacts", contacts("i,j,W/K\n0,1,1\n"));
+    assert_has(said, "row.csv:2: sphere 0 has emissivity 0, and nothing that it touches radiates or has a temperature");
+    FAIL_WITH(2, "conductivity", row(), "--emissivity", "0.8", "--contacts", "lens", "--contact-conductivity", "3");
+}
