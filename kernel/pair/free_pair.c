@@ -152,7 +152,7 @@ static double free_factor(double r, double square) {
 }
 
 /* Takes the exact factor to the sphere at a place if its pair is free. seen: what the windows have seen of it. */
-static bool take_pair(pair_search *search, uint32_t other, double seen) {
+static bool take_free_pair(pair_search *search, uint32_t other, double seen) {
     fibrad_entries *entries = &search->work->entries;
     double f;
     if (!fibrad_free_pair(search->work->scene, search->work->place, other, &f)) return false;
@@ -176,7 +176,7 @@ static void try_sphere(pair_search *search, uint32_t other, bool many) {
     const double seen = entry != FIBRAD_NONE ? sum_of_entry(&work->entries, entry) * search->scale : 0;
     const double part = search->all || !many ? 0 : 1 - SOME_WINDOWS / windows; /* of a free factor */
     if (seen < part * least || seen < part * free_factor(r, square)) return;
-    if (search->pairs && take_pair(search, other, seen)) return;
+    if (search->pairs && take_free_pair(search, other, seen)) return;
     if (entry != FIBRAD_NONE || !search->sparse || 2 * windows >= 1) return;
     const double missed = least * (1 - 2 * windows);
     search->unseen += (uint64_t)(missed * missed / SQUARE_UNIT);
