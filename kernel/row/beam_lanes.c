@@ -215,8 +215,8 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
         row->error = fibrad_sqrt(gain * gain * areas + row->noise * row->noise + row->shares * row->shares);
     } else {
         if (parts[0] > 0) row->error = fibrad_sqrt(row->error * row->error + parts[0] * scale * scale);
-        const double error = fibrad_entries_error(&work->entries, parts, row->error, scale);
-        row->error = fibrad_sqrt(error * error + pairs.unseen * pairs.unseen);
+        row->error = fibrad_entries_error(&work->entries, parts, row->error, scale);
+        if (pairs.unseen > 0) row->error = fibrad_sqrt(row->error * row->error + pairs.unseen * pairs.unseen);
     }
     if (row->lines == 0) row->half = NULL;
     row->directions = windows.count;

@@ -33,7 +33,7 @@ static double entry_sum(const double part[4]) { return part[0] + part[2] + (part
 /* The difference between the halves. */
 static double entry_difference(const fibrad_entries *entries, uint32_t entry) {
     const double *part = entries->part[entry], *balance = entries->balance;
-    return (part[0] + part[2]) * balance[0] - (part[1] + part[3]) * balance[1];
+    return part[0] * balance[0] + part[2] * balance[0] - part[1] * balance[1] - part[3] * balance[1];
 }
 
 void fibrad_entries_slots(const fibrad_entries *entries, const fibrad_scene *scene, double wall[FIBRAD_SLOTS]) {
