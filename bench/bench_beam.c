@@ -3,7 +3,7 @@
  *     bench_beam [quick]
  *
  * The bench writes CSV to standard output. centre.h makes the bed and the true rows. Times are processor times, the
- * least of three rounds. `whole` computes all rows of the bed together. */
+ * least of three rounds. `whole` computes the matrix of the bed along lines. */
 #include "centre.h"
 
 static void bench(struct centre *centre, const struct bench_method *method, const char *kind, uint32_t setting) {
@@ -24,7 +24,7 @@ static void bench(struct centre *centre, const struct bench_method *method, cons
     free(full);
 }
 
-/* All rows at once. The time is that of a row of the whole bed, the errors are those of the rows in the middle. */
+/* The matrix. The time is that of the whole bed over its spheres, the errors are those of the rows in the middle. */
 static void bench_whole(struct centre *centre, uint32_t lines) {
     const fibrad_beam_rule rule = {.directions = lines};
     double *full = bench_array(centre->bed.n, sizeof *full), best = INFINITY;
@@ -46,7 +46,7 @@ static void bench_whole(struct centre *centre, uint32_t lines) {
 
 int main(int argc, char **argv) {
     static const uint32_t directions[] = {34, 55, 100, 200, 400, 800, 1600, 3200, 6400};
-    static const uint32_t lines[] = {36, 50, 100, 200, 400, 800, 1448, 2048};
+    static const uint32_t lines[] = {16, 23, 32, 45, 55, 100, 181, 233, 362, 724, 1024, 2048}; /* built-in sets */
     static const uint32_t rays[] = {1000, 10000, 100000, 1000000}, nodes[] = {21, 34, 55, 89, 144};
     const bool quick = argc > 1 && strcmp(argv[1], "quick") == 0;
     const size_t most = quick ? 2 : 100; /* settings of each method */

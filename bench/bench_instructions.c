@@ -4,9 +4,9 @@
  *     bench_instructions [quick | SPHERES]
  *
  * The bench writes CSV to standard output. The bed is that of bench_window: periodic, of equal spheres (20,000), solid
- * fraction 0.58. 200 rows of spheres spread over all of the bed are computed with 100 directions each. The instructions
- * of a window contain its share of setting up and writing out the row. `points` of a line is the number of points, 0 for
- * exact areas, or the number of chords of masks.
+ * fraction 0.58. 200 rows of spheres spread over all of the bed are computed with 100 directions each, or along 100
+ * lines if points are masks. The instructions of a window contain its share of setting up and writing out the row.
+ * `points` of a line is the number of points, 0 for exact areas, or the number of chords of masks.
  *
  * The library is built by bench/count_cc.sh and counts its own instructions (`make bench-counted`). The figures depend
  * on sources, compiler and flags alone. So they show the smallest difference between two versions. Two things are not
@@ -22,7 +22,12 @@ uint64_t instructions_counted[2];
 
 /* Instructions of `rows` rows spread over the bed; 0: nothing is counted. */
 static uint64_t count(const fibrad_scene *scene, uint32_t n, uint32_t points, uint32_t chords, uint32_t rows) {
-    const fibrad_beam_rule rule = {.directions = DIRECTIONS, .points = points, .chords = chords};
+    const size_t size = fibrad_line_set_size(DIRECTIONS);
+    void *block = bench_array(1, size);
+    fibrad_line_set *lines;
+    bench_check("lines", fibrad_line_set_init(&lines, block, size, DIRECTIONS, 0));
+    const fibrad_beam_rule rule = chords ? (fibrad_beam_rule){.lines = lines, .chords = chords}
+                                         : (fibrad_beam_rule){.directions = DIRECTIONS, .points = points};
     fibrad_work work = BENCH_GROWING;
     fibrad_row row = bench_arrays(CAPACITY);
     bench_check("row", fibrad_beam_row(scene, &work, 0, &rule, &row)); /* work memory grows */
@@ -33,6 +38,7 @@ static uint64_t count(const fibrad_scene *scene, uint32_t n, uint32_t points, ui
     free(work.memory.block);
     free(row.col);
     free(row.f);
+    free(block);
     return ended - begun;
 }
 

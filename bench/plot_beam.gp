@@ -12,7 +12,7 @@ set format xy "10^{%T}"
 set xlabel "time of a row, one thread [microseconds]"
 set ylabel "error of an entry of the row, root mean square"
 set grid
-set key bottom left
+set key bottom right spacing 0.9
 of(method, kind) = (strcol(1) eq method && (kind eq "" || strcol(2) eq kind)) ? $5 : NaN
 curves = "in using 4:(of('whole', '')) with linespoints lw 2 pt 5 lc rgb '#00703c' title 'all rows at once (along lines)'"
 curves = curves . ", in using 4:(of('beam', 'areas')) with linespoints lw 2 pt 7 title 'beam, exact areas'"

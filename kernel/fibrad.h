@@ -511,10 +511,11 @@ typedef struct fibrad_beam_rule {
     double cutoff;       /* L; spheres are left out if their centre is farther than (1 + 1e-12) cutoff; 0: no cutoff */
     double tolerance;    /* the error allowed; directions are added until it is met; 0: no tolerance */
     uint64_t turn;       /* seed of a random rotation of all directions together; 0: no rotation */
-    const fibrad_line_set *lines; /* lines to take; directions, turn, tolerance, points are 0; NULL: directions */
-    uint32_t chords; /* 16, 32 or 64: points on so many chords of each window, which are bits of words;
-                        FIBRAD_CHORDS_NONE: exact areas; 0: along lines as many chords as suit their number, along
-                        directions exact areas */
+    const fibrad_line_set
+        *lines; /* takes these lines; directions, turn, tolerance and points are 0; NULL: directions */
+    uint32_t
+        chords; /* 16, 32 or 64: points on so many chords of each window, which are bits of words; FIBRAD_CHORDS_NONE:
+                   exact areas; 0: along lines as many chords as suit their number, along directions exact areas */
 } fibrad_beam_rule;
 
 /* Row i of the view factors of a scene, by parallel beams.

@@ -14,8 +14,8 @@ static inline fibrad_scene *apart(uint32_t n, const double *r) {
 
 /* Rows by hand, in the arrays of a compressed matrix. open: what a row does not give to
  * spheres goes to the surroundings. */
-static inline void add_rows(fibrad_rows *rows, uint32_t n, const uint64_t *start, const uint32_t *col,
-                            const double *f, bool open) {
+static inline void add_rows(fibrad_rows *rows, uint32_t n, const uint64_t *start, const uint32_t *col, const double *f,
+                            bool open) {
     const fibrad_factors all = {.n = n, .start = start, .col = col, .f = f};
     for (uint32_t i = 0; i < n; i++) {
         const uint64_t begin = all.start[i];

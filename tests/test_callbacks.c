@@ -183,6 +183,27 @@ TEST(cancelled_light_writes_nothing) {
     ck_assert_int_gt(cancelled, 2);
 }
 
+/* Steps in time take exchange factors of spheres of one temperature, from paths of their own. */
+TEST(rules_that_time_does_not_take) {
+    OWNED_CUBE c;
+    make_cube(&c);
+    double share[CUBE];
+    for (int i = 0; i < CUBE; i++) share[i] = .5;
+    for (int k = 0; k < 9; k++) {
+        fibrad_transient_config config = {.method = k / 3, .heat = coarse, .exchange = {.paths = 50}};
+        if (k % 3 == 0) config.exchange.conductivity = share;
+        if (k % 3 == 1) config.exchange.node_emissivity = share;
+        if (k % 3 == 2) config.exchange.known = share;
+        assert_invalid(fibrad_transient_new(&c.transient, NULL, &c.spheres, &config, NULL));
+    }
+    const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_FACTORS, .exchange = {.paths = 50}};
+    fibrad_heat_result result = {.power = c.power};
+    assert_ok(fibrad_transient_new(&c.transient, NULL, &c.spheres, &config, NULL));
+    assert_ok(fibrad_transient_powers(c.transient, &c.sources, &result));
+    c.sources.conductivity = share;
+    assert_invalid(fibrad_transient_powers(c.transient, &c.sources, &result));
+}
+
 TEST(cancelled_span_writes_nothing) {
     OWNED_CUBE c;
     const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_PATCHES, .heat = coarse};

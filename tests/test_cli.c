@@ -42,7 +42,7 @@ TEST(summary) {
         value_of(keys[k]);
     }
     ck_assert_double_eq(value_of("spheres"), 2000);
-    ck_assert_double_eq(value_of("directions"), 34);
+    ck_assert_double_eq(value_of("directions"), fibrad_line_set_lines(34));
     ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
     ck_assert_double_lt(value_of("closure_max"), 1e-12);
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);

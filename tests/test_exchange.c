@@ -374,7 +374,8 @@ TEST(rows_keep_the_books) {
         const fibrad_exchange_rule rule = {.emissivity = e, .paths = 200};
         assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL));
     }
-    OWNED_MATRIX raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = e, .raw = 1});
+    OWNED_MATRIX raw =
+        matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = e, .raw = 1});
     for (uint32_t i = 0; i < n; i++) {
         const fibrad_row row = matrix_row(&raw.factors, i);
         target[i] = row_sum(&row);
@@ -391,7 +392,8 @@ TEST(rows_keep_the_books) {
     assert_ok(fibrad_matrix_reciprocity(raw.matrix, &largest));
     ck_assert_double_gt(largest, 1e-4);
     for (int drop = 0; drop <= 1; drop++) {
-        OWNED_MATRIX m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = e, .drop = drop * .003});
+        OWNED_MATRIX m = matrix_of(
+            scene, &rows, 1, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = e, .drop = drop * .003});
         for (uint32_t i = 0; i < n; i++) {
             ck_assert_double_eq_tol(matrix_sum(&m.factors, i), target[i], 1e-12);
             ck_assert_double_eq_tol(matrix_total(&m.factors, i), 1, 1e-12);

@@ -51,7 +51,7 @@ static const double GAPS[] = {-.1, 0, 1e-9, .01, 1, 8, 18, 200, 1e4};
 static const double RADII[] = {1, .1, .01, 100};
 enum { GAP_COUNT = sizeof GAPS / sizeof *GAPS, RADIUS_COUNT = sizeof RADII / sizeof *RADII };
 
-LOOP_TEST(two_spheres_are_exact, GAP_COUNT * RADIUS_COUNT) {
+LOOP_TEST(two_spheres_are_exact, GAP_COUNT *RADIUS_COUNT) {
     const double r = RADII[_i / GAP_COUNT], gap = GAPS[_i % GAP_COUNT] * fmin(1, r), d = 1 + r + gap;
     OWNED_BED bed = BED({1, 2, 3, 1}, {1 + .6 * d, 2 - .48 * d, 3 + .64 * d, r});
     OWNED_FACTORS *few = factors_of(&bed, NULL, &(fibrad_beam_rule){.directions = 8});
@@ -162,6 +162,65 @@ TEST(exact_pairs_have_the_same_bits) {
     }
     check_closed(first);
 }
+
+/* ---- exchange and heat ------------------------------------------------------------------------------------------ */
+
+/* The exchange factor of two far spheres of emissivity e, whose reflected light hardly meets the other again. */
+static double far_exchange(double e, double f, double back) { return e * f / (1 - (1 - e) * (1 - e) * f * back); }
+
+static const double FAR[] = {8, 10, 20, 500};
+enum { FAR_COUNT = sizeof FAR / sizeof *FAR };
+
+LOOP_TEST(exchange_of_two_far_spheres, FAR_COUNT * 2) {
+    const double r = _i % 2 ? .1 : 1, d = FAR[_i / 2], e[] = {.8, .8};
+    OWNED_BED bed = BED({0, 0, 0, 1}, {.6 * d, -.48 * d, .64 * d, r});
+    const fibrad_spheres spheres = spheres_of(&bed);
+    OWNED_FACTORS *given = NULL, *wanted = NULL;
+    assert_ok(fibrad_exchange_factors(NULL, &spheres, &(fibrad_exchange_rule){.emissivity = e}, NULL, NULL, &given));
+    assert_ok(fibrad_exchange_factors(NULL, &spheres, &(fibrad_exchange_rule){.emissivity = e, .tolerance = 1e-4}, NULL,
+                                      NULL, &wanted));
+    const double exact = far_exchange(.8, free_of(&bed, 0, 1), free_of(&bed, 1, 0));
+    ck_assert_double_eq_tol(factor_of(&given->matrix, 0, 1) / exact, 1, 1e-5);
+    ck_assert_double_eq_tol(factor_of(&wanted->matrix, 0, 1) / exact, 1, 1e-5);
+    ck_assert_double_le(fabs(factor_of(&given->matrix, 0, 1) - exact), given->matrix.error[0]);
+    ck_assert_uint_eq(wanted->directions, FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT);
+    check_closed(given);
+}
+
+/* What the first leg gives a sphere that no window meets, is reflected to a third one. */
+TEST(light_goes_on_from_a_sphere_that_no_window_meets) {
+    const double e[] = {1, 0, 1};
+    OWNED_BED bed = BED({0, 0, 0, 1}, {60, 0, 0, 1}, {58, 3, 0, 1});
+    const fibrad_spheres spheres = spheres_of(&bed);
+    OWNED_FACTORS *factors = NULL;
+    assert_ok(fibrad_exchange_factors(NULL, &spheres, &(fibrad_exchange_rule){.emissivity = e, .paths = 40000}, NULL,
+                                      NULL, &factors));
+    const double direct = free_of(&bed, 0, 2), whole = factor_of(&factors->matrix, 0, 2);
+    ck_assert_double_gt(whole - direct, .02 * free_of(&bed, 0, 1));
+    ck_assert_double_le(whole - direct, .2 * free_of(&bed, 0, 1));
+}
+
+/* The power of a cold sphere that only the other one heats, over what it would be without reflections back, is exact
+ * among black spheres, and nearly so among grey ones. */
+LOOP_TEST(heat_of_two_far_spheres, FAR_COUNT * 4) {
+    const double r = _i % 2 ? .1 : 1, d = FAR[_i / 4], grey = _i / 2 % 2 ? .8 : 1, e[] = {grey, grey};
+    const double temperature[] = {0, 1000};
+    OWNED_BED bed = BED({0, 0, 0, 1}, {.6 * d, -.48 * d, .64 * d, r});
+    const fibrad_spheres spheres = spheres_of(&bed);
+    OWNED_RADIATION *radiation = NULL;
+    fibrad_heat_sources sources;
+    double power[2], error[2];
+    fibrad_heat_result result = {.power = power, .power_error = error};
+    fibrad_heat_sources_init(&sources);
+    sources.temperature = temperature, sources.emissivity = e, sources.surroundings = 0, sources.sigma = 1e-12;
+    assert_ok(fibrad_radiation_new(&radiation, NULL, &spheres, NULL, NULL));
+    assert_ok(fibrad_radiation_solve(radiation, &sources, &result));
+    const double exact = 4 * 3.14159265358979 * grey * far_exchange(grey, free_of(&bed, 0, 1), free_of(&bed, 1, 0));
+    ck_assert_double_eq_tol(power[0] / exact, 1, grey < 1 ? 1e-3 : 1e-6);
+    ck_assert_double_le(fabs(power[0] - exact), error[0]);
+}
+
+/* ---- estimates -------------------------------------------------------------------------------------------------- */
 
 static int ascending(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;

@@ -281,6 +281,8 @@ TEST(columns_and_rows_of_another_code) {
     const char *bare = write_file("bare.txt", "3 0 0 0 .02 600\n9 .03 0 0 .02 300\n");
     SUCCEED(HEAT, bare, "--ambient", "300", "--columns", "id=1,x=2 [m],y=3 [m],z=4 [m],d=5 [m],T=6", "-o", out);
     read_same(out, &first);
+    SUCCEED(HEAT, write_file("c.csv", "x,y,z,r,heat_C\n0,0,0,.01,600\n"), "--ambient", "300", "--columns", "T=heat_C");
+    expect_message(in_folder("c.csv"), "warning: the column heat_C is taken as kelvins");
     FAIL_WITH(3, "bed", other, "--columns", NAMED);
     expect_message(other, ":4: the id 3 occurs in line 3, too");
     FAIL_WITH(3, "bed", bare);

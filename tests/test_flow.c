@@ -98,7 +98,8 @@ TEST(powers_are_those_of_the_averaged_matrix) {
     OWNED_POWERS p = powers_of(&bed, e);
     powers_point(&p);
     assert_ok(fibrad_rows_flow(&rows, bed.n, 0, &p.flow));
-    const struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = e});
+    const struct matrix m =
+        matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = e});
     double largest = 0;
     for (uint32_t i = 0; i < bed.n; i++) largest = fmax(largest, fabs(p.power[i]));
     for (uint32_t i = 0; i < bed.n; i++) {

@@ -132,11 +132,15 @@ LOOP_TEST(nothing_known, KINDS) {
 /* What a row gives after the first leg, or what the first leg gives: to each wall, the surroundings, each sphere. */
 enum { TARGETS = 8 + SPHERES };
 
+/* Among black surfaces there is no more than the first leg. */
 static void first_leg(struct hall *h, uint32_t i, double *direct) {
     OWNED_ROW beam = row_of(SPHERES);
-    const fibrad_beam_rule rule = {.directions = DIRECTIONS, .turn = h->rule.seed};
+    double black[SPHERES];
+    for (uint32_t j = 0; j < SPHERES; j++) black[j] = 1;
+    const fibrad_exchange_rule rule = {
+        .emissivity = black, .body_emissivity = black, .directions = DIRECTIONS, .seed = h->rule.seed};
     const double *e = h->rule.node_emissivity ? h->node : h->e;
-    assert_ok(fibrad_beam_row(h->scene, &h->work, i, &rule, &beam));
+    assert_ok(fibrad_exchange_row(h->scene, &h->work, i, &rule, &beam, NULL));
     for (uint32_t b = 0; b <= h->bodies; b++) direct[b] = given(h, &beam, b) * (b < h->bodies ? h->wall_e[b] : 1);
     for (uint32_t j = 0; j < SPHERES; j++) direct[8 + j] = row_factor(&beam, j) * e[j];
 }
@@ -241,13 +245,13 @@ TEST(impossible_numbers_of_paths) {
 /* What the source has given to a sphere after reflections, as a part of the sphere's emission: mean and its error. */
 static void give_back(struct hall *h, uint32_t body, double emits, double mean[SPHERES], double square[SPHERES]) {
     double part[FIBRAD_BODY_PARTS][SPHERES];
-    h->rule.known = NULL, h->rule.paths = 32768;
+    h->rule.known = NULL, h->rule.paths = 131072;
     for (uint32_t p = 0; p < FIBRAD_BODY_PARTS; p++) {
         uint64_t reflected[SPHERES] = {0};
         fibrad_body_row row;
         assert_ok(fibrad_exchange_body(h->scene, &h->work, body, &h->rule, p, &row, reflected));
         for (uint32_t i = 0; i < SPHERES; i++)
-            part[p][i] = (double)reflected[i] * 0x1p-40 / (32768.0 / FIBRAD_BODY_PARTS) * emits / sphere_emits(h, i);
+            part[p][i] = (double)reflected[i] * 0x1p-40 / (131072.0 / FIBRAD_BODY_PARTS) * emits / sphere_emits(h, i);
     }
     for (uint32_t i = 0; i < SPHERES; i++) {
         double sum = 0, squares = 0;

@@ -1,17 +1,17 @@
 /* test_lines_rows.c - rows along lines: exact areas against another method, masks of points against exact areas, bits,
  * closing and estimates. SPDX-License-Identifier: MIT
  *
- * The other method follows the silhouettes of spheres, which are circles. All lines parallel to a direction d meet the spheres in the order of the depths of their centres. S(i, j) is the area
- * across d of the lines that leave sphere i and meet sphere j next. The border of that area consists of arcs of the
- * circles in which the spheres appear. On the circle of sphere k, let a be the last sphere before the depth of k that
- * covers a point, and b the first one after the depth of k. Inside the circle a line meets a, k, b. Outside it meets a,
- * b. So by Green's theorem an arc on which a and b do not change adds the integral g of (x dy - y dx)/2 to S(a, k) and
- * to S(k, b), and takes g from S(a, b). The origin of the integral is fixed for each pair: the centre of the smaller
- * sphere.
+ * The other method follows the silhouettes of spheres, which are circles. All lines parallel to a direction d meet the
+ * spheres in the order of the depths of their centres. S(i, j) is the area across d of the lines that leave sphere i
+ * and meet sphere j next. The border of that area consists of arcs of the circles in which the spheres appear. On the
+ * circle of sphere k, let a be the last sphere before the depth of k that covers a point, and b the first one after the
+ * depth of k. Inside the circle a line meets a, k, b. Outside it meets a, b. So by Green's theorem an arc on which a
+ * and b do not change adds the integral g of (x dy - y dx)/2 to S(a, k) and to S(k, b), and takes g from S(a, b). The
+ * origin of the integral is fixed for each pair: the centre of the smaller sphere.
  *
  * Windows find the same areas by clipping. The two methods share nothing but the lines. The mean of F_ij and F_ji by
  * windows of n lines, one window for each line, is the sum of S(i, j) + S(j, i) over the lines, over 2 n pi r_i^2. */
-#include "sample/line_set.h"
+#include "mask/line_set.h"
 #include "scenes.h"
 #include "suite.h"
 
@@ -236,8 +236,8 @@ LOOP_TEST(masks_have_the_noise_they_tell, BEDS) {
         double square = 0, most = 0;
         for (uint32_t i = 0; i < bed.n; i++) {
             OWNED_ROW exact = row_of(bed.n), masks = row_of(bed.n);
-            assert_ok(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.lines = lines, .chords = FIBRAD_CHORDS_NONE},
-                                      &exact));
+            assert_ok(fibrad_beam_row(scene, &work, i,
+                                      &(fibrad_beam_rule){.lines = lines, .chords = FIBRAD_CHORDS_NONE}, &exact));
             assert_ok(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.lines = lines, .chords = chords}, &masks));
             ck_assert(exact.noise == 0 && masks.noise > 0);
             ck_assert_double_eq_tol(row_sum(&masks) + masks.escaped, 1, 1e-13);
@@ -316,7 +316,8 @@ TEST(collections_change_no_bit) {
     for (size_t at = 0; fibrad_rows_read(&all, &at, &row);) {
         assert_ok(fibrad_beam_row(scene, &work, row.sphere, &rule, &arrays));
         ck_assert(same_bits(&row, &arrays));
-        ck_assert(row.lines == fibrad_line_set_count(lines) && row.noise == arrays.noise && row.shares == arrays.shares);
+        ck_assert(row.lines == fibrad_line_set_count(lines) && row.noise == arrays.noise &&
+                  row.shares == arrays.shares);
         ck_assert_mem_eq(row.half, half, row.length * sizeof *half);
     }
     OWNED_MATRIX one = matrix_of(scene, &all, 1, NULL);

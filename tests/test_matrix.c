@@ -98,8 +98,8 @@ TEST(averaging_by_hand) {
     for (int i = 0; i < 3; i++) ck_assert_double_eq(m.factors.escaped[i], escaped[i]);
 }
 
-/* Sphere 0 sees 25 others, which do not see it. So closing changes what each row gives to the surroundings, whatever its
- * error is. */
+/* Sphere 0 sees 25 others, which do not see it. So closing changes what each row gives to the surroundings, whatever
+ * its error is. */
 TEST(what_closing_changes) {
     enum { N = 26 };
     double r[N], f[N];
@@ -133,8 +133,9 @@ TEST(averaging_nothing) {
         }
     }
     const double emissivity[] = {.5, .25};
-    OWNED_MATRIX m = matrix_by_hand(2, r, (uint64_t[]){0, 1, 2}, (uint32_t[]){1, 0}, (double[]){0, 0},
-                                    &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity, .drop = .1});
+    OWNED_MATRIX m =
+        matrix_by_hand(2, r, (uint64_t[]){0, 1, 2}, (uint32_t[]){1, 0}, (double[]){0, 0},
+                       &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity, .drop = .1});
     for (uint32_t i = 0; i < 2; i++) ck_assert_double_eq(matrix_total(&m.factors, i), 1);
 }
 
@@ -216,8 +217,10 @@ TEST(exchange_factors_are_balanced) {
     const fibrad_exchange_rule rule = {.emissivity = emissivity};
     for (uint32_t i = 0; i < bed.n; i++)
         assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL));
-    OWNED_MATRIX raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity, .raw = 1});
-    OWNED_MATRIX out = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity});
+    OWNED_MATRIX raw = matrix_of(
+        scene, &rows, 1, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity, .raw = 1});
+    OWNED_MATRIX out =
+        matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity});
     OWNED double *area = squares(&bed, emissivity), *mean = mean_of(&raw.factors, area, bed.r);
     double moved = 0;
     ck_assert_double_gt(reciprocity(&raw), 1e-4);
@@ -248,12 +251,14 @@ TEST(exchange_by_hand) {
     const uint64_t start[] = {0, 2, 4};
     const uint32_t col[] = {0, 1, 0, 1};
     const double f[] = {.2, .4, .3, .25}; /* 3 x 1 x .4 = 1.2 and 4 x .3 = 1.2: they are reciprocal, and stay so */
-    OWNED_MATRIX m = matrix_by_hand(2, r, start, col, f, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity});
+    OWNED_MATRIX m = matrix_by_hand(2, r, start, col, f,
+                                    &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity});
     ck_assert_uint_eq(m.factors.start[2], 4);
     for (int k = 0; k < 4; k++) ck_assert_double_eq_tol(m.factors.f[k], f[k], 2e-15);
     matrix_free(&m);
     const double skew[] = {.2, .5, .2, .25};
-    m = matrix_by_hand(2, r, start, col, skew, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity});
+    m = matrix_by_hand(2, r, start, col, skew,
+                       &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity});
     ck_assert_double_le(reciprocity(&m), 1e-15);
     ck_assert_double_eq_tol(3 * m.factors.f[1], 4 * m.factors.f[2], 1e-15);
     /* D_ij u_i u_j of the mean (.2, 2.72/6; 2.04/6, .25) */
@@ -264,7 +269,8 @@ TEST(exchange_by_hand) {
     ck_assert_double_eq_tol(m.factors.escaped[1], .55 * u1, 2e-14);
     matrix_free(&m);
     const double same[] = {.7, .7}, reciprocal[] = {.2, .4, .1, .25};
-    m = matrix_by_hand(2, r, start, col, reciprocal, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = same});
+    m = matrix_by_hand(2, r, start, col, reciprocal,
+                       &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = same});
     for (int k = 0; k < 4; k++) ck_assert_double_eq_tol(m.factors.f[k], reciprocal[k], 2e-15);
 }
 
@@ -275,7 +281,8 @@ TEST(empty_rows_stay_empty) {
     const double r_all[] = {5, 1, .3, 2}, emissivity_all[] = {0, .9, 0, .3};
     for (int raw = 0; raw <= 1; raw++)
         for (int drop = 0; drop <= 1; drop++) {
-            fibrad_matrix_rule rule = {.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity, .raw = raw, .drop = drop * .22};
+            fibrad_matrix_rule rule = {
+                .kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity, .raw = raw, .drop = drop * .22};
             OWNED_MATRIX two = matrix_by_hand(2, r, (uint64_t[]){0, 2, 4}, (uint32_t[]){0, 1, 0, 1}, f, &rule);
             rule.emissivity = emissivity_all;
             OWNED_MATRIX four =
@@ -296,8 +303,9 @@ TEST(empty_rows_stay_empty) {
 /* All spheres reflect all light, so that all rows of the matrix are empty. */
 TEST(all_rows_empty) {
     const double r[] = {1, 2}, emissivity[] = {0, 0};
-    OWNED_MATRIX m = matrix_by_hand(2, r, (uint64_t[]){0, 0, 0}, (uint32_t[]){0}, (double[]){0},
-                                    &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity, .drop = .1});
+    OWNED_MATRIX m =
+        matrix_by_hand(2, r, (uint64_t[]){0, 0, 0}, (uint32_t[]){0}, (double[]){0},
+                       &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity, .drop = .1});
     for (uint32_t i = 0; i < 2; i++) ck_assert_double_eq(matrix_total(&m.factors, i) + m.factors.error[i], 0);
     ck_assert(m.factors.start[2] == 0 && reciprocity(&m) == 0);
 }
@@ -315,8 +323,10 @@ TEST(reflectors_in_a_walled_bed) {
     for (uint32_t i = 0; i < bed.n; i++)
         assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL));
     for (int drop = 0; drop <= 1; drop++) {
-        OWNED_MATRIX m = matrix_of(scene, &rows, 1,
-                                   &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity, .drop = drop * 1e-3, .tasks = 3});
+        OWNED_MATRIX m =
+            matrix_of(scene, &rows, 1,
+                      &(fibrad_matrix_rule){
+                          .kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity, .drop = drop * 1e-3, .tasks = 3});
         ck_assert_double_le(reciprocity(&m), 1e-14);
         ascending(&m.factors);
         for (uint32_t i = 0; i < bed.n; i++) {
@@ -405,8 +415,9 @@ TEST(lone_factors_are_not_reciprocal) {
     ck_assert_double_eq(reciprocity(&diagonal), 0);
     const double emissivity[] = {1, .5, 1}; /* 4 x .5 x .1 = .2: reciprocal with these emissivities alone */
     const double grey[] = {.2, .1};
-    OWNED_MATRIX exchange = matrix_by_hand(2, r, (uint64_t[]){0, 1, 2}, (uint32_t[]){1, 0}, grey,
-                                           &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .raw = 1, .emissivity = emissivity});
+    OWNED_MATRIX exchange =
+        matrix_by_hand(2, r, (uint64_t[]){0, 1, 2}, (uint32_t[]){1, 0}, grey,
+                       &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .raw = 1, .emissivity = emissivity});
     ck_assert_double_le(reciprocity(&exchange), 1e-16);
 }
 

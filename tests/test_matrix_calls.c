@@ -29,8 +29,8 @@ static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows
     double largest, same;
     assert_ok(fibrad_matrix_reciprocity(m.matrix, &largest));
     ck_assert(!threads || tasks == 1 || calls > 4);
-    OWNED_MATRIX alone =
-        matrix_of(scene, rows, count, &(fibrad_matrix_rule){.kind = rule.kind, .emissivity = rule.emissivity, .drop = rule.drop});
+    OWNED_MATRIX alone = matrix_of(
+        scene, rows, count, &(fibrad_matrix_rule){.kind = rule.kind, .emissivity = rule.emissivity, .drop = rule.drop});
     assert_ok(fibrad_matrix_reciprocity(alone.matrix, &same));
     ck_assert_double_eq(largest, same);
     return m;

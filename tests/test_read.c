@@ -341,6 +341,14 @@ TEST(units_of_columns) {
         ck_assert_int_eq(try_options(text, strlen(text), &any), 0);
         ck_assert_double_eq(bed.extra[0], 7);
     }
+    const char *const indexed = "f_T[0]", *const kelvins = "K"; /* an index is no unit */
+    const struct read_options of_index = {.extra = &indexed, .unit = &kelvins, .extras = 1};
+    static const char *const texts[] = {"x,y,z,r,f_T[0],f_T[1]\n0,0,0,1,7,8\n",
+                                        VTP(ARRAY("radius", "1 1") ARRAY("f_T[0]", "7 7") ARRAY("f_T[1]", "8 8"))};
+    for (int t = 0; t < 2; ++t) {
+        ck_assert_msg(try_options(texts[t], strlen(texts[t]), &of_index) == 0, "%s", said);
+        ck_assert_double_eq(bed.extra[0], 7);
+    }
     const char *const k = "k", *const conductivity = "W/(m K)"; /* blanks between columns and within a unit */
     const char blanks[] = "x y z r k [W/(m K)]\n0 0 0 1 7\n";
     ck_assert_int_eq(

@@ -37,6 +37,10 @@ static int put_argument(const struct walk *walk, const struct option *option, co
     case OPTION_FLAG:
         *(bool *)field = true;
         return STATUS_OK;
+    case OPTION_PATH:
+        if (*(const char **)field) return message(STATUS_USAGE, "%s is given twice", what);
+        *(const char **)field = text;
+        return STATUS_OK;
     case OPTION_TEXT:
         *(const char **)field = text;
         return STATUS_OK;

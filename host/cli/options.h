@@ -15,6 +15,7 @@ enum option_kind {
     OPTION_OPTIONAL, /* likewise; the argument may be left out */
     OPTION_FLAG,     /* there is none: a bool becomes true */
     OPTION_TEXT,     /* a const char * */
+    OPTION_PATH,     /* likewise, of a file to write: a second one is refused */
     OPTION_NUMBER,   /* a double from low to high */
     OPTION_COUNT,    /* a uint32_t or int from low to high */
     OPTION_WHOLE     /* a uint64_t from low to high, which may be INFINITY */
@@ -43,6 +44,7 @@ struct option {
 #define TO_REQUEST(take)                     OPTION_FUNCTION, 0, 0, 0, take /* the field is the whole request */
 #define TO_FLAG(request, field)              OPTION_FLAG, offsetof(request, field), 0, 0, NULL
 #define TO_TEXT(request, field)              OPTION_TEXT, offsetof(request, field), 0, 0, NULL
+#define TO_PATH(request, field)              OPTION_PATH, offsetof(request, field), 0, 0, NULL
 #define TO_NUMBER(request, field, low, high) OPTION_NUMBER, offsetof(request, field), low, high, NULL
 #define TO_COUNT(request, field, low, high)  OPTION_COUNT, offsetof(request, field), low, high, NULL
 #define TO_WHOLE(request, field, low, high)  OPTION_WHOLE, offsetof(request, field), low, high, NULL
@@ -106,7 +108,8 @@ int option_nodes(const char *text, void *nodes);
     {0, "directions", "N",                                                                                             \
      "beam: number of directions, " TEXT_DIRECTIONS                                                                    \
      "; if all rows of a bed are computed, number of lines, which are directions and their opposites; the error "      \
-     "falls as N^-1.5 [" TEXT_OF(FIBRAD_DIRECTIONS_DEFAULT) " directions; " TEXT_OF(FIBRAD_LINES_DEFAULT) " lines]",   \
+     "falls as N^-1.5 [" TEXT_OF(FIBRAD_DIRECTIONS_DEFAULT) " directions; " TEXT_OF(                                   \
+         FIBRAD_LINES_DEFAULT) " lines, more for few spheres]",                                                        \
      TO_COUNT(request, methods.beam.directions, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX)},                        \
         {0, "areas", "KIND", "beam: visible areas, exact or points; points are faster and less accurate [exact]",      \
          TO_TEXT(request, methods.areas)},                                                                             \

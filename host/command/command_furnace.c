@@ -66,6 +66,7 @@ static int take_furnace_file(const char *text, void *file) {
 
 /* The argument of --plot may be left out. The next word is the argument only if it has the ending of a picture. */
 static int take_plot(const char *next, void *plot) {
+    if (*(const char **)plot) return message(STATUS_USAGE, "--plot is given twice");
     if (next && !plot_ending(next)) return OPTION_LEFT;
     *(const char **)plot = next ? next : "furnace.png";
     return STATUS_OK;
@@ -94,11 +95,11 @@ static const struct option table[] = {
     {OPTION_THREADS(struct request, run.threads)},
     {'o', "output", "OUT",
      "write the fields of all cells: .csv or .vti (ParaView), - for standard output [summary only]",
-     TO_TEXT(struct request, out)},
+     TO_PATH(struct request, out)},
     {0, "format", "NAME", "format of -o -, csv or vti", TO_TEXT(struct request, format)},
     {0, "plot", NULL, "[OUT] draw the centre plane by gnuplot, .png or .svg [furnace.png]", OPTION_OPTIONAL,
      offsetof(struct request, plot), 0, 0, take_plot},
-    {0, "json", "OUT", "write the summary as JSON, with all digits [none]", TO_TEXT(struct request, json)},
+    {0, "json", "OUT", "write the summary as JSON, with all digits [none]", TO_PATH(struct request, json)},
     {0, "quiet", NULL, "print no progress and no report of the outer iterations on standard error",
      TO_FLAG(struct request, run.quiet)},
     {0, "progress", NULL, "show progress even if standard error is not a terminal [off]",

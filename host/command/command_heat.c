@@ -367,8 +367,8 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     if (!status && checked) status = given_reflectors(&given, emissivity, walls, of_walls[0], bed, file);
     if (!status) status = bed_options_metres(&request->bed, bed, &report.metres);
     if (!status)
-        warn_temperatures(&request->bed.warned, bed, &request->given.temperature, request->given.zero,
-                          given.temperature);
+        warn_temperatures(&request->bed.warned, bed, bed_options_column(&request->bed, &request->given.temperature),
+                          request->given.zero, given.temperature);
     if (!status) status = heat_arrays(&report.result, bed->n, request->solid.given);
     if (!status) status = heat_solid(request, bed);
     if (!status && request->bed.wall_vtp) status = triangle_heat_begin(&report.triangles, walls);

@@ -38,7 +38,7 @@ static const struct option join_table[] = {
     {0, "positions", NULL, "name spheres by positions from 0, in the order of ids [by ids]",
      TO_FLAG(struct join_request, positions)},
     {0, "json", "OUT", "write the summary as JSON, with all digits [none]",
-     TO_TEXT(struct join_request, outputs.summary)},
+     TO_PATH(struct join_request, outputs.summary)},
     {0, "quiet", NULL, "print no summary", TO_FLAG(struct join_request, quiet)},
     {OPTION_HELP},
     {.name = NULL}};

@@ -79,7 +79,7 @@ static const struct option pair_table[] = {
     {0, "check", NULL, "compare the exact factor with two of GSL's quadratures [off]",
      TO_FLAG(struct pair_request, check)},
     OPTIONS_METHODS(struct pair_request),
-    {0, "json", "OUT", "write the output as JSON, with all digits [none]", TO_TEXT(struct pair_request, json)},
+    {0, "json", "OUT", "write the output as JSON, with all digits [none]", TO_PATH(struct pair_request, json)},
     {OPTION_HELP},
     {.name = NULL}};
 

@@ -48,7 +48,7 @@ static int take_experiment(const char *name, void *only) {
 
 static const struct option reproduce_table[] = {
     {'o', "output", "DIR", "write CSV files and plots into this folder [none]",
-     TO_TEXT(struct reproduce_request, directory)},
+     TO_PATH(struct reproduce_request, directory)},
     {0, "only", "NAME", "run this experiment only [all]", TO_FUNCTION(take_experiment, struct reproduce_request, only)},
     {0, "no-plots", NULL, "write CSV files only [off]", TO_FLAG(struct reproduce_request, no_plots)},
     {OPTION_HELP},

@@ -134,6 +134,13 @@ void bed_options_quantity(struct bed_options *options, struct quantity *quantity
     quantity->index = k;
 }
 
+const char *bed_options_column(const struct bed_options *options, const struct quantity *quantity) {
+    const struct column_options *columns = &options->columns_of_file;
+    for (size_t k = 0; quantity->column && k < columns->names; ++k)
+        if (strcmp(columns->name[k].known, quantity->column) == 0) return columns->name[k].name;
+    return quantity->column;
+}
+
 /* Whether the run may have several frames. */
 static bool is_series(const struct bed_options *options) { return options->range || options->files > 1; }
 

@@ -41,7 +41,7 @@
 #define OPTIONS_RUN                                                                                                    \
     {OPTION_THREADS(struct bed_options, threads)},                                                                     \
         {0, "json", "OUT", "write the summary as JSON, with all digits [none]",                                        \
-         TO_TEXT(struct bed_options, outputs.summary)},                                                                \
+         TO_PATH(struct bed_options, outputs.summary)},                                                                \
         {0, "quiet", NULL, "print no summary and no progress", TO_FLAG(struct bed_options, quiet)},                    \
         {0, "progress", NULL, "show progress even if standard error is not a terminal [off]",                          \
          TO_FLAG(struct bed_options, progress.forced)},                                                                \
@@ -61,7 +61,7 @@
  * --scratch for commands that make matrices. */
 #define OPTION_BED_OUTPUT(help) OPTION_OUTPUT(help, struct bed_options, outputs)
 #define OPTION_BED_FORMAT       OPTION_FORMAT(struct bed_options, outputs)
-#define OPTION_PLOT(help)       0, "plot", "OUT", help, TO_TEXT(struct bed_options, outputs.picture)
+#define OPTION_PLOT(help)       0, "plot", "OUT", help, TO_PATH(struct bed_options, outputs.picture)
 #define OPTION_SLICE                                                                                                   \
     0, "slice", "AXIS=VALUE",                                                                                          \
         "plane of the slice in the picture, x=VALUE, y=VALUE or z=VALUE, or an axis alone for the middle of the "      \
@@ -126,6 +126,9 @@ option_take bed_files_option, bed_radius_option, bed_unit_option, bed_period_opt
 /* Asks for the column of a quantity, if it has one, and sets quantity->index. unit: expected unit of the values; NULL:
  * none. Quantities without a unit may share a column, such as that of types. */
 void bed_options_quantity(struct bed_options *options, struct quantity *quantity, const char *unit);
+
+/* The file's name for the column of a quantity. NULL: it has none. */
+const char *bed_options_column(const struct bed_options *options, const struct quantity *quantity);
 
 /* Checks files and outputs when all options have been read. The command writes `content`. Status 0 or STATUS_USAGE. */
 int bed_options_check(struct bed_options *options, const char *command, enum content content);

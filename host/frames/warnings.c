@@ -199,7 +199,7 @@ static bool names_celsius(const char *column) {
     return (length > 2 && strcmp(column + length - 2, "_C") == 0) || strstr(column, "elsius");
 }
 
-void warn_temperatures(struct warned *warned, const struct bed *bed, const struct quantity *given, double zero,
+void warn_temperatures(struct warned *warned, const struct bed *bed, const char *column, double zero,
                        const double *kelvins) {
     uint32_t zeros = 0, first = 0;
     double most = -1;
@@ -207,11 +207,11 @@ void warn_temperatures(struct warned *warned, const struct bed *bed, const struc
         if (kelvins[i] > most) most = kelvins[i];
         if (kelvins[i] == 0 && zeros++ == 0) first = i;
     }
-    const bool named = zero == 0 && given->column && names_celsius(given->column);
+    const bool named = zero == 0 && column && names_celsius(column);
     if (named && is_new(warned, CELSIUS))
         message_at(STATUS_OK, warned->file, 0,
                    "warning: the column %.40s is taken as kelvins; --temperature-unit C is for degrees Celsius",
-                   given->column);
+                   column);
     if (zero == 0 && most > 0 && most < COLD && is_new(warned, CELSIUS))
         message_at(STATUS_OK, warned->file, 0,
                    "warning: no sphere is warmer than %g K; --temperature-unit C is for degrees Celsius", most);

@@ -38,9 +38,10 @@ void warn_overlap(struct warned *warned, const struct bed *bed, const fibrad_sce
  * file's box ends within spheres, so that the box cannot be made of walls. */
 void warn_walls(struct warned *warned, const struct bed *bed, const struct walls *walls);
 
-/* Warns if temperatures look like degrees Celsius taken as kelvins, or if some are 0 K. zero: 0 of the unit of the
- * option [K]. kelvins [bed->n]: NaN: not given. */
-void warn_temperatures(struct warned *warned, const struct bed *bed, const struct quantity *given, double zero,
+/* Warns if temperatures look like degrees Celsius taken as kelvins, or if some are 0 K. column: where they come from,
+ * as the file calls it; NULL: from no column. zero: 0 of the unit of the option [K]. kelvins [bed->n]: NaN: not given.
+ */
+void warn_temperatures(struct warned *warned, const struct bed *bed, const char *column, double zero,
                        const double *kelvins);
 
 /* Warns if heat capacities [J/(kg K)] or densities [kg/m3], both [bed->n], are not those of solids. */

@@ -111,6 +111,7 @@ int profile_option(const char *text, void *light_options) {
         if (status) return status;
         rest += digits + 1;
     }
+    if (options->profile) return message(STATUS_USAGE, "--profile is given twice");
     options->profile = rest;
     if (output_ends(rest, ".csv") || output_ends(rest, ".svg") || output_ends(rest, ".png")) return STATUS_OK;
     return message(STATUS_USAGE, "--profile: '%.60s' ends in none of .csv, .svg and .png", rest);

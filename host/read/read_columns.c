@@ -1,7 +1,6 @@
 /* read_columns.c - rows of named columns become spheres; shared by all readers of text. SPDX-License-Identifier: MIT */
 #include "read/read_columns.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -90,10 +89,9 @@ static int find_with_unit(struct columns *columns, const struct lines *lines, co
     size_t bare, length;
     if (status || *column < names->n) return status;
     const bool has = unit_behind(wanted, &bare, &unit, &length) && length > 0 && length < UNIT_LENGTH;
-    const bool may_say = says && has && !isdigit((unsigned char)*unit); /* c_T[1] has no unit */
     for (size_t c = 0; has && c < names->n && *column == names->n; ++c) {
         if (strlen(names->at[c]) != bare || memcmp(names->at[c], wanted, bare) != 0) continue;
-        if (may_say && !*columns->unit[c]) memcpy(columns->unit[c], unit, length);
+        if (says && !*columns->unit[c]) memcpy(columns->unit[c], unit, length);
         if (strlen(columns->unit[c]) == length && memcmp(columns->unit[c], unit, length) == 0) *column = c;
     }
     return *column == names->n ? column_missing(lines, names, wanted) : STATUS_OK;

@@ -65,8 +65,8 @@ typedef struct fibrad_run {
  *   - all rows are wanted, and raw is 0;
  *   - the rule is a beam rule or NULL, with points and cutoff 0;
  *   - the scene has neither triangles nor a known region.
- * The number of lines is then beam->directions, where 0 stands for FIBRAD_LINES_DEFAULT. Each line is followed both
- * ways. In all other cases rows are computed one by one. This is also done with more than FIBRAD_LINES_EVEN_MAX
+ * The number of lines is then beam->directions, where 0 stands for FIBRAD_LINES_DEFAULT, or for more with fewer than 221
+ * spheres. Each line is followed both ways. In all other cases rows are computed one by one. This is also done with more than FIBRAD_LINES_EVEN_MAX
  * directions, or if about 230 discs or more are seen near one point of a circle (docs/methods.md section 12).
  *
  * A tolerance in the beam rule raises the number of lines or directions. If raw is 0, it is the same number for all
@@ -137,13 +137,14 @@ void fibrad_bed_free(fibrad_bed_factors *factors);
 int fibrad_side_views(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t rays, fibrad_run *run,
                       fibrad_side_view *view);
 
-/* How far the emission of spheres is carried: fibrad_exchange_displacement of each.
+/* How far the emission of spheres is carried: fibrad_exchange_displacement of each. With rule->conductivity spheres
+ * conduct: fibrad_exchange_walk of each.
  *   Input    rule: needed
  *            wanted[spheres]: not 0: this sphere is wanted; NULL: all spheres
  *   Output   displacement[spheres]: elements that are not wanted stay as they are
  *            facts: of the scene; may be NULL
- *   Errors   as fibrad_scene_init and fibrad_exchange_displacement; _CANCELLED. After an error some elements may be
- *            written. */
+ *   Errors   as fibrad_scene_init and fibrad_exchange_displacement or _walk; _CANCELLED. After an error some elements
+ * may be written. */
 int fibrad_displacements(const fibrad_scene_config *config, const fibrad_spheres *spheres,
                          const fibrad_exchange_rule *rule, const unsigned char *wanted, fibrad_run *run,
                          fibrad_displacement *displacement, fibrad_scene_facts *facts);
@@ -286,7 +287,8 @@ typedef enum fibrad_transient_method {
 /* How a bed is followed in time. Zeroed: CORRECTED. */
 typedef struct fibrad_transient_config {
     int method;                    /* a fibrad_transient_method */
-    fibrad_exchange_rule exchange; /* for exchange factors; emissivities are those of the sources, not of this rule */
+    fibrad_exchange_rule exchange; /* for exchange factors; emissivities are those of the sources, not of this rule;
+                                      conductivity, node_emissivity and known must be NULL */
     fibrad_heat_config heat;       /* for patches, as for fibrad_radiation_new; points 0: 128 if CORRECTED */
 } fibrad_transient_config;
 
@@ -373,6 +375,7 @@ typedef struct fibrad_span {
  *   body_power, insulated            constant; by PATCHES only
  *   side_temperature                 constant; not by FACTORS
  *   conductance                      constant, or changed by a law; contacts by PATCHES only
+ *   conductivity                     by FACTORS it must be NULL
  *   sigma, tolerance, sweeps_max     as for fibrad_radiation_solve
  *
  *   Input    sources: begin with fibrad_heat_sources_init

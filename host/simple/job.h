@@ -55,8 +55,8 @@ int fibrad_job_line_rows(fibrad_job *job, const fibrad_beam_rule *beam, fibrad_j
 int fibrad_job_factors(fibrad_job *job, const fibrad_matrix_rule *rule, const fibrad_job_report *report,
                        fibrad_bed_factors **factors);
 
-/* Computes all rows as fibrad_job_line_rows, and their matrix. The worst row has, after averaging, an estimated error of
- * at most rule->tolerance, unless FIBRAD_DIRECTIONS_MAX directions do not suffice. Errors: as fibrad_job_rows and
+/* Computes all rows as fibrad_job_line_rows, and their matrix. The worst row has, after averaging, an estimated error
+ * of at most rule->tolerance, unless FIBRAD_DIRECTIONS_MAX directions do not suffice. Errors: as fibrad_job_rows and
  * fibrad_job_factors. */
 int fibrad_job_tolerance(fibrad_job *job, const fibrad_beam_rule *rule, const fibrad_matrix_rule *average,
                          fibrad_bed_factors **factors);

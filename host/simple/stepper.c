@@ -268,8 +268,10 @@ static int check_span(fibrad_transient *t, const fibrad_heat_sources *s, const f
     return FIBRAD_OK;
 }
 
-/* Whether the sources have the arrays they need and the emissivities lie in 0 to 1. */
+/* Whether the sources have the arrays they need, the emissivities lie in 0 to 1, and factors are not asked for spheres
+ * that conduct. */
 static bool surfaces_given(const fibrad_transient *t, const fibrad_heat_sources *s) {
+    if (s->conductivity && t->config.method == FIBRAD_TRANSIENT_FACTORS) return false;
     bool given = (t->n == 0 || s->emissivity) && (t->bodies == 0 || (s->body_temperature && s->body_emissivity));
     for (uint32_t i = 0; i < t->n && given; ++i) given = s->emissivity[i] >= 0 && s->emissivity[i] <= 1;
     return given;

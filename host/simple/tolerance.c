@@ -1,8 +1,8 @@
 /* tolerance.c - numbers of directions and paths for a tolerance. SPDX-License-Identifier: MIT
  *
  * Rows of view factors that are averaged have one number of lines. If the estimated errors are too large after
- * averaging, the number is raised, from set to set. Each row of exchange factors has its own tolerance. This tolerance is lowered until the worst row has, after averaging, the error
- * that the caller allows. */
+ * averaging, the number is raised, from set to set. Each row of exchange factors has its own tolerance. This tolerance
+ * is lowered until the worst row has, after averaging, the error that the caller allows. */
 #include <math.h>
 
 #include "simple/job.h"

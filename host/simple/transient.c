@@ -112,6 +112,13 @@ static int place(fibrad_transient *t, const fibrad_scene_config *scene, const fi
     return FIBRAD_OK;
 }
 
+/* Whether the method exists, and factors are those of spheres of one temperature, from their own paths. */
+static bool time_config_valid(const fibrad_transient_config *config) {
+    const fibrad_exchange_rule *rule = &config->exchange;
+    return config->method >= FIBRAD_TRANSIENT_CORRECTED && config->method <= FIBRAD_TRANSIENT_FACTORS &&
+           !rule->conductivity && !rule->node_emissivity && !rule->known;
+}
+
 int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres,
                          const fibrad_transient_config *config, fibrad_run *run) {
     if (!transient) return FIBRAD_E_ARGUMENT;
@@ -128,9 +135,7 @@ int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config
     t->n = spheres->n;
     t->bodies = scene ? scene->bodies : 0;
     const fibrad_run own = run_of(t);
-    int status = t->config.method >= FIBRAD_TRANSIENT_CORRECTED && t->config.method <= FIBRAD_TRANSIENT_FACTORS
-                     ? fibrad_team_open(&t->team, &own)
-                     : FIBRAD_E_ARGUMENT;
+    int status = time_config_valid(&t->config) ? fibrad_team_open(&t->team, &own) : FIBRAD_E_ARGUMENT;
     if (!status) status = take_arrays(t);
     if (!status) status = place(t, scene, spheres);
     if (run) run->fault = t->fault;

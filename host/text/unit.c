@@ -163,9 +163,10 @@ bool unit_behind(const char *name, size_t *bare, const char **unit, size_t *leng
     }
     *unit = name + open + 1;
     *length = end - open - 2;
-    while (open > 0 && strchr(" \t_", name[open - 1])) --open;
     *bare = open;
-    return true;
+    while (*bare > 0 && strchr(" \t_", name[*bare - 1])) --*bare;
+    const bool index = *bare == open && open > 0 && strspn(*unit, "0123456789") == *length; /* f_T[1] has no unit */
+    return !index;
 }
 
 bool unit_is(const char *name, const char *unit) {

@@ -12,7 +12,8 @@
 bool unit_factor(const char *name, const char *wanted, double *factor);
 
 /* Finds the unit in brackets at the end of a name of a column, `x [mm]` or `k (W/(m K))`. bare: length of the name
- * before it. unit, length: the text of the unit. False: there is none. */
+ * before it. unit, length: the text of the unit. False: there is none, as in f_T[1], whose bracket
+ * is an index. */
 bool unit_behind(const char *name, size_t *bare, const char **unit, size_t *length);
 
 /* Whether a name means K, or C, which have several names. */

@@ -325,7 +325,8 @@ static void follow_first_leg(fibrad_paths *paths, fibrad_leg *leg) {
     leg->weight = path.weight, leg->sphere = path.place, leg->triangle = path.triangle;
 }
 
-/* Chooses a leg for each path that begins with one, those of large weight several times and some of small weight not at all. */
+/* Chooses a leg for each path that begins with one, those of large weight several times and some of small weight not at
+ * all. */
 static void choose_legs(fibrad_legs *legs, double offset) {
     double all = 0, sum = 0;
     uint32_t at = 0, last = 0;

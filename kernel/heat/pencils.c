@@ -8,7 +8,7 @@
 #include "heat/wall_patch.h"
 #include "base/arena.h"
 #include "base/constants.h"
-#include "row/free_pair.h"
+#include "pair/free_pair.h"
 #include "sample/sphere_patch.h"
 
 /* Number of bodies that a row sees, times the solid fraction, over the square root of its beams. Measured in random
@@ -249,7 +249,8 @@ static fibrad_heat_beam beam_along_centres(const fibrad_heat *heat, const fibrad
     double out[3] = {heat->scene->x[other], heat->scene->y[other], heat->scene->z[other]}, back[3], square = 0;
     for (int axis = 0; axis < 3; axis++) out[axis] -= work->centre[axis], square += out[axis] * out[axis];
     for (int axis = 0; axis < 3; axis++) out[axis] /= fibrad_sqrt(square), back[axis] = -out[axis];
-    return (fibrad_heat_beam){entry, (uint16_t)fibrad_patch_of(out, heat->side), (uint16_t)fibrad_patch_of(back, heat->side)};
+    return (fibrad_heat_beam){entry, (uint16_t)fibrad_patch_of(out, heat->side),
+                              (uint16_t)fibrad_patch_of(back, heat->side)};
 }
 
 /* What a row has of free pairs and of all that is no sphere, in beams. */

@@ -3,13 +3,20 @@
 #include "heat/problem.h"
 
 #define HEAT_TOLERANCE  1e-3
-#define FREE_TOLERANCE  1e-5 /* if temperatures are unknown: errors over long distances exceed their residuals */
+#define FREE_TOLERANCE  1e-5  /* if temperatures are unknown: errors over long distances exceed their residuals */
+#define FEW_TOLERANCE   1e-12 /* of few spheres, which may exchange little of what they emit: this takes no time */
+#define FEW_SPHERES     16u
 #define HEAT_SWEEPS_MAX 1000u
 #define HOLD_MAX        1e60
 
 void fibrad_heat_sources_init(fibrad_heat_sources *sources) {
     if (sources == NULL) return;
     *sources = (fibrad_heat_sources){.surroundings = __builtin_nan(""), .sigma = FIBRAD_STEFAN_BOLTZMANN};
+}
+
+static double default_tolerance(const fibrad_heat *heat, bool unknown) {
+    if (heat->spheres <= FEW_SPHERES) return FEW_TOLERANCE;
+    return unknown ? FREE_TOLERANCE : HEAT_TOLERANCE;
 }
 
 static bool is_share(double x) { return x >= 0 && x <= 1; }
@@ -433,7 +440,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     heat->sources.light = sources->light, heat->sources.absorbed = sources->absorbed;
     heat->sources.sigma = sources->sigma, heat->sources.surroundings = sources->surroundings;
     heat->solution.group = sources->uniform ? UINT32_MAX : FIBRAD_HEAT_FOUR;
-    heat->sources.tolerance = sources->tolerance > 0 ? sources->tolerance : unknown ? FREE_TOLERANCE : HEAT_TOLERANCE;
+    heat->sources.tolerance = sources->tolerance > 0 ? sources->tolerance : default_tolerance(heat, unknown);
     heat->sources.limit = sources->sweeps_max > 0 ? sources->sweeps_max : HEAT_SWEEPS_MAX;
     set_conduction(heat, sources);
     heat->solution.sweeps = 0;

@@ -372,8 +372,8 @@ static double distance_to_raw(const fibrad_matrix *m, uint32_t i, double *own) {
 }
 
 /* Estimates the error of a row that is not along lines, from the distance to the raw row. It is at least that of the
- * raw row, as far as the mean comes from the row itself: by symmetry the errors of two rows may be equal. For the shares
- * of walls the error is that of the raw row, in proportion to what the walls get. */
+ * raw row, as far as the mean comes from the row itself: by symmetry the errors of two rows may be equal. For the
+ * shares of walls the error is that of the raw row, in proportion to what the walls get. */
 static double error_of_mean(const fibrad_matrix *m, uint32_t i) {
     double met = 0, own;
     const double distance = distance_to_raw(m, i, &own);

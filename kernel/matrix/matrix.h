@@ -74,8 +74,9 @@ static inline void fibrad_matrix_share(const fibrad_matrix *m, uint32_t pieces, 
 uint64_t fibrad_matrix_count_part(fibrad_matrix *matrix, const fibrad_matrix_part *part);
 
 /* The weight of row i in the average of rows i and j. It is 1/2 for view factors by areas. Along lines each row has the
- * areas of one sense of each line, so both rows together are one sum. Sampled factors have weights by variances: A_j/(A_i + A_j). There are as many paths from i as
- * from j, and each carries the emission of its sphere over their number. So the variance is as the area. */
+ * areas of one sense of each line, so both rows together are one sum. Sampled factors have weights by variances:
+ * A_j/(A_i + A_j). There are as many paths from i as from j, and each carries the emission of its sphere over their
+ * number. So the variance is as the area. */
 static inline double fibrad_matrix_own(const fibrad_matrix *m, uint32_t i, uint32_t j) {
     if (!m->sampled) return 0.5;
     const double ratio = m->radius[i] / m->radius[j];

@@ -99,7 +99,8 @@ void fibrad_matrix_advance(fibrad_matrix *m) {
     }
 }
 
-/* Finds u by steps. The values stay near 1. Each step more than halves the error if such factors exist. Ends when the errors of all sums are at most `tolerance`. */
+/* Finds u by steps. The values stay near 1. Each step more than halves the error if such factors exist. Ends when the
+ * errors of all sums are at most `tolerance`. */
 static void find_scaling(fibrad_matrix *m, bool closing, double tolerance) {
     const uint32_t n = m->result.n;
     double *u = m->scratch + n;
@@ -116,7 +117,8 @@ static void scale_rows(fibrad_sparse *rows, const double *u) {
 /* Reduces rows with sums above their targets to these targets. Reciprocity stays. target NULL: 1. */
 static void bring_down(fibrad_sparse *rows, const double *target, double *u) {
     for (uint32_t i = 0; i < rows->n; i++) {
-        const double sum = fibrad_sparse_sum(rows, i), most = target != NULL ? target[i] : 1, exact = exact_sum(rows, i);
+        const double sum = fibrad_sparse_sum(rows, i), most = target != NULL ? target[i] : 1,
+                     exact = exact_sum(rows, i);
         u[i] = sum > most && sum > exact ? (most - exact) / (sum - exact) : 1;
     }
     for (uint32_t i = 0; i < rows->n; i++)
@@ -124,8 +126,8 @@ static void bring_down(fibrad_sparse *rows, const double *target, double *u) {
             if (rows->f[k] > 0) rows->f[k] *= fibrad_min(u[i], u[rows->col[k]]);
 }
 
-/* Finds what rows leave for all but spheres. Sampled rows say so themselves. Otherwise the averaged sum says it, since it
- * has both senses of each line. But a row without an open window, whose sum lacks no more than noise, is closed. */
+/* Finds what rows leave for all but spheres. Sampled rows say so themselves. Otherwise the averaged sum says it, since
+ * it has both senses of each line. But a row without an open window, whose sum lacks no more than noise, is closed. */
 #define NOISE_MOST 5.0
 #define ROUNDING   1e-12
 

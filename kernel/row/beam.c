@@ -2,7 +2,7 @@
  */
 #include "row/beam.h"
 #include "row/beam_lanes.h"
-#include "row/line_set.h"
+#include "mask/line_set.h"
 
 /* The number of directions rises in steps of an eighth. Each step takes a sixth off the error. The steps aim a
  * little below the tolerance. The number rises by a fifth at least, for rows whose error falls more slowly. */
@@ -12,24 +12,14 @@ uint32_t fibrad_directions_for(uint32_t directions, double error, double toleran
     return n < FIBRAD_DIRECTIONS_MAX ? (uint32_t)n : FIBRAD_DIRECTIONS_MAX;
 }
 
-/* The points of a large sphere are about as dense as those of the smallest one. Beyond this ratio areas are exact. */
-#define MASK_RATIO (FIBRAD_MASK_WORDS_MAX + 0.5)
-
-/* Ends of chords in a disc of this many radii are known to a hundredth of a point: discs of masks are floats. */
-#define MASK_LARGEST 1e4
-
-uint32_t fibrad_mask_words(const fibrad_scene *scene, uint32_t place) {
-    const double r = scene->r[place], ratio = r / scene->facts.radius_min;
-    return ratio < MASK_RATIO && scene->facts.radius_max < MASK_LARGEST * r ? (uint32_t)(ratio + 0.5) : 0;
-}
-
 int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule) {
     *rule = given != NULL ? *given : (fibrad_beam_rule){0};
     if (!(rule->tolerance >= 0 && fibrad_finite(rule->tolerance))) return FIBRAD_E_ARGUMENT;
     if (rule->directions == 0)
         rule->directions = rule->tolerance > 0 ? FIBRAD_DIRECTIONS_FIRST : FIBRAD_DIRECTIONS_DEFAULT;
     if (rule->lines != NULL) {
-        if ((given->directions | given->points) != 0 || given->turn != 0 || given->tolerance > 0) return FIBRAD_E_ARGUMENT;
+        if ((given->directions | given->points) != 0 || given->turn != 0 || given->tolerance > 0)
+            return FIBRAD_E_ARGUMENT;
         rule->directions = rule->lines->n;
     }
     if (rule->chords == 0 && rule->lines != NULL) rule->chords = fibrad_chords_for(rule->directions);

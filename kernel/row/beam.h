@@ -7,9 +7,6 @@
 /* Completes and checks a rule. given NULL: all defaults. Errors: _ARGUMENT. */
 int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule);
 
-/* The words of each chord of masks for the sphere at a position. 0: its areas must be exact. */
-uint32_t fibrad_mask_words(const fibrad_scene *scene, uint32_t place);
-
 /* Row i by a completed rule, without regard to the tolerance. This is the method of fibrad_beam_row. exact: pairs that
  * nothing can come between have exact factors. */
 int fibrad_beam_compute(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_beam_rule *rule,

@@ -3,16 +3,15 @@
 #include FIBRAD_LANES_HEADER
 #include "base/constants.h"
 #include "sample/direction.h"
-#include "row/beam.h"
 #include "row/beam_lanes.h"
-#include "row/free_pair.h"
+#include "pair/free_pair.h"
 #include "work/legs_lanes.h"
 #include "row/mesh_share_lanes.h"
 #include "row/wall_share_lanes.h"
 #include "row/window_lanes.h"
-#include "row/line_set.h"
+#include "mask/line_set.h"
 #include "window/clip_lanes.h"
-#include "window/masks_lanes.h"
+#include "mask/masks_lanes.h"
 
 #define FEW_POINTS  64u /* of windows of rows with few windows */
 #define WALL_POINTS 64u /* of windows by masks that look at walls */
@@ -51,7 +50,7 @@ static int choose_windows(const fibrad_scene *scene, uint32_t i, const fibrad_be
  * both halves have errors in common. Measured: docs/accuracy.md. */
 #define LINES_ERROR      0.5
 #define DIRECTIONS_ERROR 1.0 /* along directions, by masks */
-#define SHARES_ERROR 0.8
+#define SHARES_ERROR     0.8
 
 /* The noise of a row from the points of masks. A window is divided into regions, the visible parts of spheres. The
  * variance of a region's area is about as its border times the cube of the distance of points (D. G. Kendall, Q. J.
@@ -117,19 +116,17 @@ static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibr
     LANED(take_legs)(work, frame, k);
     const bool meets = work->met != NULL && work->met->any;
     if (meets) LANED(fibrad_mesh_count)(work, frame, k);
-    if (work->scene->container.walls)
-        LANED(fibrad_walls_share)(work, frame, meets && points->count == 0 ? &work->met->points : points, k, set, rest,
-                                  whole);
+    if (work->scene->container.walls) LANED(fibrad_walls_share)
+    (work, frame, meets && points->count == 0 ? &work->met->points : points, k, set, rest, whole);
     else if (work->cut && rest != 0 && fibrad_work_met(work, centre, frame + 6) == FIBRAD_BEYOND)
         fibrad_work_slot(work, FIBRAD_BEYOND, k, rest);
-    else if (work->entries.addends != NULL)
-        fibrad_addends_put(work->entries.addends, FIBRAD_ADD_OPEN, k, rest);
-    else
-        sums->open[k % 2] += rest;
+    else if (work->entries.addends != NULL) fibrad_addends_put(work->entries.addends, FIBRAD_ADD_OPEN, k, rest);
+    else sums->open[k % 2] += rest;
     return true;
 }
 
-/* Adds the points that the near list has counted to the entries. Those of odd windows go to part 3, all others to part 2. */
+/* Adds the points that the near list has counted to the entries. Those of odd windows go to part 3, all others to
+ * part 2. */
 static void gather_counts(fibrad_workspace *work) {
     const fibrad_near *near = &work->near;
     fibrad_entries *entries = &work->entries;
@@ -160,7 +157,10 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
      * turned at random, parallel lines have no bias. */
     work->parallel = windows.turned && rule->points == FEW_POINTS;
     const bool mixed = windows.turned || windows.lines != NULL; /* directions do not pair off */
-    const fibrad_window_set set = {LANED(frame_of_beam), &windows, windows.count, windows.count, mixed,
+    const double each = rule->points > 0 ? rule->points : FIBRAD_PI;
+    const double square = 32.0 * windows.words * windows.chords; /* points of masks in the square about a window */
+    const fibrad_window_set set = {LANED(frame_of_beam), &windows, windows.count, windows.count,
+                                   masked ? FIBRAD_PI / 4 * square : each, mixed,
                                    windows.lines == NULL && !masked};
     if (scene->container.walls) {
         work->walls->view = fibrad_wall_view_of(scene, work->place, work->cut, work->reach);
@@ -181,13 +181,13 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
         if (masked) fibrad_addends_put(range->addends, FIBRAD_ADD_SEEN, 0, work->masks.regions);
         return FIBRAD_OK;
     }
-    const double each = rule->points > 0 ? rule->points : FIBRAD_PI;
     const double all = sums.whole[0] + sums.whole[1], scale = masked ? 1 / all : 1 / (windows.count * each);
-    for (int half = 0; half < 2 && windows.lines != NULL; half++) work->entries.balance[half] = all / (2 * sums.whole[half]);
+    for (int half = 0; half < 2 && windows.lines != NULL; half++)
+        work->entries.balance[half] = all / (2 * sums.whole[half]);
     fibrad_free_pairs pairs = {0, 1, 0};
     if (range->exact) pairs = fibrad_free_pairs_find(work, scale);
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
-    status = fibrad_free_pairs_legs(work);
+    status = fibrad_free_pairs_legs(work, &pairs);
     if (status != FIBRAD_OK) return status;
     status = fibrad_entries_row(&work->entries, scene, scale, row);
     if (status != FIBRAD_OK) return status;

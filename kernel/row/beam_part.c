@@ -7,7 +7,7 @@
 #include "base/random.h"
 #include "row/beam.h"
 #include "row/beam_lanes.h"
-#include "row/line_set.h"
+#include "mask/line_set.h"
 
 /* A key of the row and the rule that a part belongs to. */
 static uint64_t key_of(const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule) {

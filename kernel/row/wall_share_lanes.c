@@ -334,6 +334,7 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
         return;
     }
     fibrad_wall_window window = {.frame = frame, .k = k, .n = set->directions, .open = rest, .part = 1};
+    window.weight = whole / set->whole;
     window.end = work->entries.end;
     window.parallel = work->parallel;
     window.hidden = fibrad_max(0, whole - rest);
@@ -355,7 +356,7 @@ static void add_hidden(fibrad_workspace *work, const fibrad_window_set *set) {
         if ((work->walls->sums.hidden[k / 64] >> k % 64 & 1) == 0) continue;
         double frame[9];
         set->frame(set->from, k, HIDDEN_POINTS, frame);
-        fibrad_wall_window window = {.frame = frame, .k = k, .n = set->directions, .hidden = 1, .part = 1};
+        fibrad_wall_window window = {.frame = frame, .k = k, .n = set->directions, .hidden = 1, .weight = 1, .part = 1};
         window.end = set->ends && (k == 0 || k == set->directions - 1);
         fibrad_wall_window_begin(&window, &work->walls->view);
         if (!fibrad_wall_window_simple(&window, &work->walls->view, set->turned, &work->walls->sums))

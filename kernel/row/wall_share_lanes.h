@@ -12,7 +12,8 @@ typedef struct fibrad_window_set {
     const void *from;                                                              /* handed to it */
     uint32_t count;                                                                /* windows have numbers below this */
     uint32_t directions;                                                           /* how many windows there are */
-    bool turned; /* directions do not pair off across z */
+    double whole; /* the size of a window, or about that of masks */
+    bool turned;  /* directions do not pair off across z */
     bool ends;   /* the first and the last window count half in differences of even and odd windows */
 } fibrad_window_set;
 

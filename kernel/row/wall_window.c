@@ -104,6 +104,7 @@ bool fibrad_wall_window_has(const fibrad_wall_window *window, const fibrad_wall_
 void fibrad_wall_window_add(const fibrad_wall_window *window, uint32_t region, double open, double share,
                             fibrad_wall_sums *sums) {
     const double mixed = window->open * window->hidden * share;
+    share *= window->weight;
     if (sums->addends != NULL) {
         fibrad_addends_put(sums->addends, FIBRAD_ADD_REGION + region, window->k, open);
         fibrad_addends_put(sums->addends, FIBRAD_ADD_SHARE + region, window->k, share);

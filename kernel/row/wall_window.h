@@ -16,6 +16,7 @@ typedef struct fibrad_wall_window {
     const double *frame; /* axes of the window */
     uint32_t k, n;       /* window k of n */
     double open, hidden; /* open and hidden part of the window, areas or points */
+    double weight;       /* size of the window over that of the others: masks differ by some points */
     double part;         /* how much of its disc of directions is used; 1, or less if the slope is not known */
     bool parallel;       /* whether all lines have the direction of the window */
     bool end;            /* whether it counts half in differences of even and odd windows */

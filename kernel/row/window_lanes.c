@@ -11,7 +11,7 @@
 #include "row/window_lanes.h"
 #include "window/clip_lanes.h"
 #include "window/dense_lanes.h"
-#include "window/masks_lanes.h"
+#include "mask/masks_lanes.h"
 #include "window/points_lanes.h"
 
 /* Appends the discs of one shell that come before the window. A cull in floats comes first. Its result is a list of
@@ -63,7 +63,7 @@ static void round_found(fibrad_discs *disc, uint32_t from) {
 }
 
 /* Removes those discs from number `from` on that do not lie ahead. Only spheres that overlap sphere i may. */
-static void remove_not_ahead(fibrad_workspace *work, uint32_t from) {
+static void drop_not_ahead(fibrad_workspace *work, uint32_t from) {
     const fibrad_discs disc = work->disc;
     uint32_t to = from, all_ahead = 1;
     for (uint32_t k = from; k < disc.count; k++) all_ahead &= disc.fdepth[k] > 0;
@@ -216,7 +216,7 @@ static void find_shell(fibrad_workspace *work, const double frame[9], uint32_t s
         *known = to;
     }
     if (work->disc.count > work->disc.capacity) return;
-    if (masked) remove_not_ahead(work, from);
+    if (masked) drop_not_ahead(work, from);
     if (*known >= work->clear) *horizon = fibrad_near_horizon(work, frame + 6);
     sort_discs(work, resolved, masked);
 }

@@ -1,7 +1,8 @@
 /* record.h - the records of a collection of rows. SPDX-License-Identifier: MIT
  *
  * A record is this head, the factors to walls, the factors to spheres, the columns and, if the row is along lines, the
- * differences of halves, padded to 8 bytes. Records follow each other from the first 8-byte boundary of the block on. */
+ * differences of halves, padded to 8 bytes. Records follow each other from the first 8-byte boundary of the block on.
+ */
 #ifndef FIBRAD_WORK_RECORD_H
 #define FIBRAD_WORK_RECORD_H
 

@@ -21,7 +21,7 @@ typedef struct fibrad_entries {
     double weight;           /* by which values are multiplied; 1 but for areas among windows by masks */
     double balance[2];       /* by which sums over even and over odd windows count in their difference; 1 if both are
                                 equally many */
-    bool masked; /* of a row by masks: the order of the entries may depend on the lists of near spheres */
+    bool masked;             /* of a row by masks: the order of the entries may depend on the lists of near spheres */
     bool halves; /* areas of window k go to part k mod 2. The other parts have counts of points, exact in any order */
     bool end; /* the present window is the first or the last: it counts half in differences of even and odd windows */
 } fibrad_entries;
@@ -58,7 +58,8 @@ uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere);
 /* Entries with numbers of spheres + slot belong to slots. Adds them to the sums of the slots. */
 void fibrad_entries_slots(const fibrad_entries *entries, const fibrad_scene *scene, double wall[FIBRAD_SLOTS]);
 
-/* Writes the row: entries times `scale`, columns ascending, and row->half unless it is NULL. For exact factors it is FIBRAD_HALF_EXACT, and they have no part in row->error. row->error: the distance of the sums over even and odd
+/* Writes the row: entries times `scale`, columns ascending, and row->half unless it is NULL. For exact factors it is
+ * FIBRAD_HALF_EXACT, and they have no part in row->error. row->error: the distance of the sums over even and odd
  * windows. Entries of slots count in the error only. Entries that triangles have hidden again are left out. */
 int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene, double scale, fibrad_row *row);
 

@@ -86,19 +86,20 @@ int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row) {
     if (record == NULL) return 0;
     unsigned char *own = (unsigned char *)rows->memory.block + lead_of(rows) + begin; /* the record to be written */
     double *body = (double *)(void *)(own + sizeof *record), *f = body + record->bodies;
-    *row = (fibrad_row){.body = body,
-                        .f = f,
-                        .col = (uint32_t *)(void *)(f + record->length),
-                        .sphere = record->sphere,
-                        .length = record->length,
-                        .escaped = record->escaped,
-                        .beyond = record->beyond,
-                        .error = record->error,
-                        .noise = record->noise,
-                        .shares = record->shares,
-                        .lines = record->lines,
-                        .half = record->lines > 0 ? (float *)(void *)((uint32_t *)(void *)(f + record->length) + record->length) : NULL,
-                        .symmetric = record->symmetric != 0};
+    *row = (fibrad_row){
+        .body = body,
+        .f = f,
+        .col = (uint32_t *)(void *)(f + record->length),
+        .sphere = record->sphere,
+        .length = record->length,
+        .escaped = record->escaped,
+        .beyond = record->beyond,
+        .error = record->error,
+        .noise = record->noise,
+        .shares = record->shares,
+        .lines = record->lines,
+        .half = record->lines > 0 ? (float *)(void *)((uint32_t *)(void *)(f + record->length) + record->length) : NULL,
+        .symmetric = record->symmetric != 0};
     return 1;
 }
 

@@ -12,7 +12,7 @@
 #include "scene/surroundings.h"
 #include "window/areas.h"
 #include "window/discs.h"
-#include "window/masks.h"
+#include "mask/masks.h"
 #include "window/points.h"
 
 #define FIBRAD_SHELLS 8

@@ -432,7 +432,9 @@ static int hash_exchange(const struct scene *s, int isa) {
     fibrad_rows_clear(&rows);
     for (uint32_t i = s->n; i-- > 0;)
         if (fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL) != FIBRAD_OK) return 1;
-    if (hash_matrix(s, scene, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity}, "exchange.closed")) return 1;
+    if (hash_matrix(s, scene, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity},
+                    "exchange.closed"))
+        return 1;
     hash_begin();
     for (uint32_t i = 0; i < s->n; i += 4) {
         fibrad_displacement displacement;

@@ -1,4 +1,4 @@
-/* generate_pair_exact.c - makes the quadrature table of kernel/surface/exact.c and the table of true values of its
+/* generate_pair_exact.c - makes the quadrature table of kernel/pair/exact.c and the table of true values of its
  * test. SPDX-License-Identifier: MIT
  *
  *     gcc generate_pair_exact.c -lquadmath -o generate && ./generate rule && ./generate values > pair_exact.csv

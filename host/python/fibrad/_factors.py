@@ -327,7 +327,8 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
         The error allowed in every row. Directions are added until it is met. Default: none.
     directions : int, optional
         Directions of beams, 8 to 65536. The error falls as ``directions**-1.5``. Default: 233. All rows of a bed
-        without triangles, cutoff and points are computed along that many lines, each followed both ways. Default: 181.
+        without triangles, cutoff and points are computed along that many lines, each followed both ways. Default: 181, and
+        more for fewer than 221 spheres.
     points : {64, 128, 256}, optional
         Points of each window of a beam. Default: exact visible areas.
     method : {"beam", "surface", "cast", "mc"}

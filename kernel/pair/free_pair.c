@@ -1,5 +1,7 @@
 /* free_pair.c - finds pairs of spheres that nothing can come between. SPDX-License-Identifier: MIT */
-#include "row/free_pair.h"
+#include "pair/free_pair.h"
+#include "base/random.h"
+#include "base/vector.h"
 #include "scene/grid_walk.h"
 #include "scene/walls.h"
 
@@ -34,15 +36,13 @@ typedef struct pair_hull {
     double slope, cosine;                   /* of the radius along the axis, and sqrt(1 - slope^2) */
 } pair_hull;
 
-static double dot_of(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 static pair_hull hull_of(const fibrad_scene *scene, uint32_t place, uint32_t other) {
     pair_hull hull = {.from = {scene->x[place], scene->y[place], scene->z[place]},
                       .to = {scene->x[other], scene->y[other], scene->z[other]},
                       .r = {scene->r[place], scene->r[other]},
                       .most = fibrad_max(scene->r[place], scene->r[other])};
     for (int axis = 0; axis < 3; axis++) hull.axis[axis] = hull.to[axis] - hull.from[axis];
-    hull.length = fibrad_sqrt(dot_of(hull.axis, hull.axis));
+    hull.length = fibrad_sqrt(fibrad_dot(hull.axis, hull.axis));
     for (int axis = 0; axis < 3; axis++) hull.axis[axis] /= hull.length;
     hull.slope = (hull.r[1] - hull.r[0]) / hull.length;
     hull.cosine = fibrad_sqrt(fibrad_max(0, 1 - hull.slope * hull.slope));
@@ -53,14 +53,13 @@ static pair_hull hull_of(const fibrad_scene *scene, uint32_t place, uint32_t oth
  * perpendicular to the surface of the hull. */
 static bool hull_meets(const pair_hull *hull, const double at[3], double r) {
     const double c[3] = {at[0] - hull->from[0], at[1] - hull->from[1], at[2] - hull->from[2]};
-    const double along = dot_of(c, hull->axis), square = dot_of(c, c), wide = hull->most + r;
+    const double along = fibrad_dot(c, hull->axis), square = fibrad_dot(c, c), wide = hull->most + r;
     const double across_square = fibrad_max(0, square - along * along), beyond = along - hull->length;
     if (across_square >= wide * wide || along <= -wide || beyond >= wide) return false;
     const double across = fibrad_sqrt(across_square), foot = along * hull->cosine + across * hull->slope;
     double distance = across * hull->cosine - along * hull->slope - hull->r[0];
     if (foot <= 0) distance = fibrad_sqrt(square) - hull->r[0];
-    if (foot >= hull->length * hull->cosine)
-        distance = fibrad_sqrt(across_square + beyond * beyond) - hull->r[1];
+    if (foot >= hull->length * hull->cosine) distance = fibrad_sqrt(across_square + beyond * beyond) - hull->r[1];
     return distance < r * (1 - TOUCH);
 }
 
@@ -232,36 +231,61 @@ fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale) {
     return pairs;
 }
 
-/* A leg along the line of centres. */
+/* A random point of the unit disc. */
+static void point_of_disc(uint64_t *random, double at[2]) {
+    do
+        for (int k = 0; k < 2; k++) at[k] = 2 * fibrad_fraction(*random = fibrad_mix(*random)) - 1;
+    while (at[0] * at[0] + at[1] * at[1] > 1);
+}
+
+/* A leg from a random point of the disc across the line of centres to one of the other sphere's disc. */
 static fibrad_leg leg_to(const fibrad_workspace *work, uint32_t other, double weight) {
     const fibrad_scene *scene = work->scene;
     const pair_hull hull = hull_of(scene, work->place, other);
+    const double *c = hull.axis, r = hull.r[1] * work->inverse, length = hull.length * work->inverse;
+    uint64_t random = fibrad_mix(work->legs.shift[0] ^ fibrad_mix(fibrad_scene_rank(scene, other)));
+    double p[2], q[2], u[3], v[3], from[3];
     fibrad_leg leg = {.sphere = other, .weight = weight};
+    fibrad_frame_about(c, u, v);
+    point_of_disc(&random, p);
+    point_of_disc(&random, q);
     for (int axis = 0; axis < 3; axis++) {
-        leg.n[axis] = leg.w[axis] = hull.axis[axis];
-        leg.centre[axis] = hull.axis[axis] * (hull.length * work->inverse);
+        from[axis] = p[0] * u[axis] + p[1] * v[axis];
+        leg.centre[axis] = length * c[axis];
+        leg.w[axis] = leg.centre[axis] + r * (q[0] * u[axis] + q[1] * v[axis]) - from[axis];
     }
+    const double inverse = 1 / fibrad_sqrt(fibrad_dot(leg.w, leg.w));
+    for (int axis = 0; axis < 3; axis++) leg.w[axis] *= inverse;
+    const double along = fibrad_dot(from, leg.w);
+    const double out = fibrad_sqrt(fibrad_max(0, along * along + 1 - fibrad_dot(from, from))) - along;
+    for (int axis = 0; axis < 3; axis++) leg.n[axis] = from[axis] + out * leg.w[axis];
     return leg;
 }
 
-int fibrad_free_pairs_legs(fibrad_workspace *work) {
+/* The entry of the sphere that a leg meets. FIBRAD_NONE: there is none. */
+static uint32_t entry_of_leg(const fibrad_entries *entries, const fibrad_leg *leg) {
+    return leg->sphere != FIBRAD_NONE ? fibrad_entries_find(entries, leg->sphere) : FIBRAD_NONE;
+}
+
+int fibrad_free_pairs_legs(fibrad_workspace *work, const fibrad_free_pairs *pairs) {
     fibrad_legs *legs = &work->legs;
     const fibrad_entries *entries = &work->entries;
     double *count = entries->lengths; /* legs to each sphere */
     uint32_t more = 0;
     legs->sources = legs->length;
+    if (legs->length == 0 || pairs->moved == 0) return FIBRAD_OK;
     for (uint32_t k = 0; k < legs->length; k++) {
-        const uint32_t sphere = legs->leg[k].sphere;
-        const uint32_t entry = sphere != FIBRAD_NONE ? fibrad_entries_find(entries, sphere) : FIBRAD_NONE;
+        const uint32_t entry = entry_of_leg(entries, &legs->leg[k]);
         if (entry != FIBRAD_NONE) count[entry]++;
     }
     for (uint32_t k = 0; k < legs->length; k++) {
-        const uint32_t sphere = legs->leg[k].sphere;
-        const uint32_t entry = sphere != FIBRAD_NONE ? fibrad_entries_find(entries, sphere) : FIBRAD_NONE;
+        fibrad_leg *leg = &legs->leg[k];
+        const uint32_t entry = entry_of_leg(entries, leg);
+        if (leg->sphere == FIBRAD_NONE) leg->weight = 1 + pairs->moved / pairs->open;
         if (entry != FIBRAD_NONE && entries->exact[entry] > 0)
-            legs->leg[k].weight = entries->exact[entry] * legs->length / count[entry];
+            leg->weight = entries->exact[entry] * legs->length / count[entry];
     }
-    for (uint32_t k = 0; k < entries->length && legs->length > 0; k++) {
+    for (uint32_t k = 0; k < entries->length; k++) {
         if (!(entries->exact[k] > 0) || count[k] > 0) continue;
         if (legs->length + ++more <= work->plan.legs)
             legs->leg[legs->sources++] = leg_to(work, entries->sphere[k], entries->exact[k] * legs->length);

@@ -1,10 +1,10 @@
 /* masks_lanes.h - points of a window as bits, in lanes. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_WINDOW_MASKS_LANES_H
-#define FIBRAD_WINDOW_MASKS_LANES_H
+#ifndef FIBRAD_MASK_MASKS_LANES_H
+#define FIBRAD_MASK_MASKS_LANES_H
 
 #include "base/lanes/laned.h"
 #include "window/discs.h"
-#include "window/masks.h"
+#include "mask/masks.h"
 
 /* Opens window k: `chords` chords of `words` words. Chords and points lie a little differently in each window. */
 void LANED(fibrad_masks_open)(fibrad_masks *masks, uint32_t chords, uint32_t words, uint32_t k);

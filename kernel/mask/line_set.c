@@ -1,10 +1,10 @@
 /* line_set.c - sets of lines for rows of a matrix. SPDX-License-Identifier: MIT */
-#include "row/line_set.h"
+#include "mask/line_set.h"
 #include "base/arena.h"
 #include "base/vector.h"
 #include "sample/direction.h"
 #include "sample/line.h"
-#include "window/masks.h"
+#include "mask/masks.h"
 
 /* Takes the arrays from the arena. The caller copies the object itself to the address returned. */
 static fibrad_line_set *line_set_layout(fibrad_arena *arena, uint32_t n, fibrad_line_set *set) {
@@ -72,4 +72,15 @@ int fibrad_line_set_init(fibrad_line_set **made, void *memory, size_t size, uint
     *set = fields;
     *made = set;
     return FIBRAD_OK;
+}
+
+/* The points of a large sphere are about as dense as those of the smallest one. Beyond this ratio areas are exact. */
+#define MASK_RATIO (FIBRAD_MASK_WORDS_MAX + 0.5)
+
+/* Ends of chords in a disc of this many radii are known to a hundredth of a point: discs of masks are floats. */
+#define MASK_LARGEST 1e4
+
+uint32_t fibrad_mask_words(const fibrad_scene *scene, uint32_t place) {
+    const double r = scene->r[place], ratio = r / scene->facts.radius_min;
+    return ratio < MASK_RATIO && scene->facts.radius_max < MASK_LARGEST * r ? (uint32_t)(ratio + 0.5) : 0;
 }

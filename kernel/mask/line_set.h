@@ -1,8 +1,8 @@
 /* line_set.h - the inside of a set of lines. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_ROW_LINE_SET_H
-#define FIBRAD_ROW_LINE_SET_H
+#ifndef FIBRAD_MASK_LINE_SET_H
+#define FIBRAD_MASK_LINE_SET_H
 
-#include "fibrad.h"
+#include "scene/scene.h"
 
 struct fibrad_line_set {
     uint32_t n;
@@ -17,5 +17,8 @@ struct fibrad_line_set {
 /* Chords for which the noise of points is about half of the error of n lines. 0: exact areas are better. Measured:
  * docs/accuracy.md. */
 uint32_t fibrad_chords_for(uint32_t n);
+
+/* The words of each chord of masks for the sphere at a position. 0: its areas must be exact. */
+uint32_t fibrad_mask_words(const fibrad_scene *scene, uint32_t place);
 
 #endif

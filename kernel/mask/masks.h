@@ -5,8 +5,8 @@
  * the place of a test for each point. Counts are whole numbers, which no order of terms and no instruction set changes.
  * Source: L. Carpenter, "The A-buffer, an antialiased hidden surface method", SIGGRAPH 1984. docs/methods.md section 4.
  */
-#ifndef FIBRAD_WINDOW_MASKS_H
-#define FIBRAD_WINDOW_MASKS_H
+#ifndef FIBRAD_MASK_MASKS_H
+#define FIBRAD_MASK_MASKS_H
 
 #include "base/arena.h"
 #include "base/port.h"

@@ -1,12 +1,12 @@
 /* masks_lanes.c - points of a window as bits, which discs hide. Compiled once per instruction set.
  * SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
-#include "window/masks_lanes.h"
+#include "mask/masks_lanes.h"
 
 #define VECTOR_CHORDS 16 /* chords are taken in multiples of the widest vector */
 
-static const float LANE[VECTOR_CHORDS] __attribute__((aligned(64))) = {0, 1, 2,  3,  4,  5,  6,  7,
-                                                                       8, 9, 10, 11, 12, 13, 14, 15};
+static const float LANE[VECTOR_CHORDS]
+    __attribute__((aligned(64))) = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /* Heights of the chords from number `chord` on. */
 static inline vf heights(const fibrad_masks *m, uint32_t chord) {
@@ -20,7 +20,7 @@ typedef struct mask_disc {
 } mask_disc;
 
 /* The points of one word column within a disc. */
-static inline vn points_within(const mask_disc *disc, vf height, vf word) {
+static inline vn mask_within(const mask_disc *disc, vf height, vf word) {
     const vf dy = height - disc->v, square = disc->square - dy * dy;
     const vf half = vf_sqrt(vf_max(square, vf_set1(0))) * disc->scale, middle = disc->middle - word;
     return vn_below(middle + half) & ~vn_below(middle - half);
@@ -32,7 +32,7 @@ void LANED(fibrad_masks_open)(fibrad_masks *m, uint32_t chords, uint32_t words, 
     const mask_disc whole = {vf_set1(m->x_zero), vf_set1(m->x_scale), vf_set1(0), vf_set1(1)};
     for (uint32_t word = 0; word < words; word++) {
         for (uint32_t chord = 0; chord < chords; chord += VF_LANES) {
-            const vn points = points_within(&whole, heights(m, chord), vf_set1(32 * (float)word));
+            const vn points = mask_within(&whole, heights(m, chord), vf_set1(32 * (float)word));
             vn_store(m->word + word * chords + chord, points);
             m->points += vn_count_bits(&points, 1);
         }
@@ -46,7 +46,7 @@ FIBRAD_INLINE uint32_t hide_in_few(const mask_disc *disc, const vf *height, uint
     vn all = vn_zero(), hidden[4 * VECTOR_CHORDS / VF_LANES];
 #pragma GCC unroll 32
     for (uint32_t n = 0; n < vectors; n++) {
-        const vn within = points_within(disc, height[n], vf_set1(0));
+        const vn within = mask_within(disc, height[n], vf_set1(0));
         hidden[n] = open[n] & within;
         open[n] = open[n] & ~within;
         all = all | open[n];
@@ -104,7 +104,7 @@ static uint32_t hide_in_many(fibrad_masks *m, const fibrad_discs *disc, uint32_t
             vn hides[VECTOR_CHORDS / VF_LANES] = {vn_zero()};
             for (uint32_t chord = block; chord < block + VECTOR_CHORDS; chord += VF_LANES) {
                 uint32_t *at = m->word + word * m->chords + chord;
-                const vn within = points_within(&one, heights(m, chord), shift), open = vn_load(at);
+                const vn within = mask_within(&one, heights(m, chord), shift), open = vn_load(at);
                 hides[(chord - block) / VF_LANES] = open & within;
                 vn_store(at, open & ~within);
             }
@@ -128,14 +128,26 @@ uint32_t LANED(fibrad_masks_discs)(fibrad_masks *m, const fibrad_discs *disc, ui
     return d;
 }
 
-uint32_t LANED(fibrad_masks_at)(const fibrad_masks *m, uint32_t count, const float *x, const float *y, uint64_t *bits) {
+/* The word and the bit of the point of masks that is next to (x, y). Near the border it may lie outside the disc. Then
+ * one farther in is taken. */
+static void find_point(const fibrad_masks *m, float x, float y, uint32_t *word, uint32_t *bit) {
     const float per = 0.5f * (float)m->chords, last = (float)(m->chords - 1), end = (float)(32 * m->words - 1);
-    uint32_t open = 0;
-    for (uint32_t p = 0; p < count; p++) {
-        const float row = (y[p] - m->y_first) * per + 0.5f, column = m->x_zero + m->x_scale * x[p];
+    for (float inward = 1;; inward *= 0.95f) {
+        const float row = (inward * y - m->y_first) * per + 0.5f, column = m->x_zero + m->x_scale * (inward * x);
         const uint32_t chord = (uint32_t)(row > 0 ? row < last ? row : last : 0);
         const uint32_t point = (uint32_t)(column > 0 ? column < end ? column : end : 0);
-        const uint64_t bit = m->word[point / 32 * m->chords + chord] >> point % 32 & 1;
+        const float v = m->y_first + m->y_step * (float)chord, u = ((float)point + 0.5f - m->x_zero) / m->x_scale;
+        *word = point / 32 * m->chords + chord, *bit = point % 32;
+        if (u * u + v * v < 0.999f) return;
+    }
+}
+
+uint32_t LANED(fibrad_masks_at)(const fibrad_masks *m, uint32_t count, const float *x, const float *y, uint64_t *bits) {
+    uint32_t open = 0;
+    for (uint32_t p = 0; p < count; p++) {
+        uint32_t word, at;
+        find_point(m, x[p], y[p], &word, &at);
+        const uint64_t bit = m->word[word] >> at & 1;
         if (p % 64 == 0) bits[p / 64] = 0;
         bits[p / 64] |= bit << p % 64;
         open += (uint32_t)bit;
