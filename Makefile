@@ -157,7 +157,7 @@ $(BUILD)/fibrad.map: $(HEADERS) Makefile
 
 $(SHARED): $(KERNEL_OBJECTS) $(SIMPLE_OBJECTS) $(BUILD)/fibrad.map
 	$(CC) $(CFLAGS) $(LDFLAGS) -shared -fopenmp -Wl,-soname,$(@F) -Wl,--version-script=$(BUILD)/fibrad.map \
-	    -Wl,-Bsymbolic -Wl,-z,defs $(KERNEL_OBJECTS) $(SIMPLE_OBJECTS) -lm -o $@
+	    -Wl,-Bsymbolic -Wl,-z,defs $(KERNEL_OBJECTS) $(SIMPLE_OBJECTS) -o $@
 
 $(BUILD)/libfibrad.so: $(SHARED)
 	ln -sf $(<F) $@

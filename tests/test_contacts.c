@@ -5,6 +5,7 @@
 
 #include "host_owned.h"
 #include "scenes.h"
+#include "meshes.h"
 #include "suite.h"
 
 #define SIGMA FIBRAD_STEFAN_BOLTZMANN
@@ -459,8 +460,36 @@ TEST(spots_of_a_pair_and_a_wall) {
     }
 }
 
-/* Contacts of a periodic bed of all sizes, against all pairs and images. Of a box of triangles, those of a box of
- * planes. */
+/* A box of triangles has the contacts of a box of planes: of six meshes, and of one mesh whose corners touch a sphere
+ * two or three times. */
+LOOP_TEST(contacts_with_triangles, 2) {
+    OWNED_BED bed = strewn(400, 3);
+    const fibrad_contact_rule rule = {.spots = FIBRAD_SPOTS_LENS, .gas_reach = .5};
+    const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
+    struct mesh *mesh = mesh_new();
+    mesh_box(mesh, low, high, 0);
+    fibrad_body planes[6];
+    for (int side = 0; side < 6; side++) planes[side] = plane_at(side / 2, side % 2, side % 2);
+    for (uint32_t t = 0; t < mesh->triangles.n && _i == 1; t++) mesh->front[t] = 0;
+    const fibrad_scene_config box = {.body = planes, .bodies = 6},
+                              meshes = {.body = mesh->body, .bodies = _i ? 1 : 6, .triangles = &mesh->triangles};
+    fibrad_contact_list *list[2] = {found_in(&bed, &box, &rule), found_in(&bed, &meshes, &rule)};
+    double sum[2] = {0, 0}, square[2] = {0, 0};
+    uint32_t at_walls = 0;
+    for (int k = 0; k < 2; k++)
+        for (uint32_t c = 0; c < list[k]->n; c++) {
+            sum[k] += list[k]->distance[c], square[k] += list[k]->distance[c] * list[k]->distance[c];
+            at_walls += k == 1 && list[k]->second[c] >= bed.n;
+        }
+    ck_assert_uint_eq(list[0]->n, list[1]->n);
+    ck_assert_uint_gt(at_walls, 50);
+    assert_near(sum[1], sum[0], 1e-12);
+    assert_near(square[1], square[0], 1e-12);
+    for (int k = 0; k < 2; k++) fibrad_contacts_free(list[k]);
+    free(mesh);
+}
+
+/* Contacts of a periodic bed of all sizes, against all pairs and images. */
 TEST(contacts_of_many_sizes) {
     OWNED_BED bed = strewn(400, 3);
     const fibrad_contact_rule rule = {.spots = FIBRAD_SPOTS_LENS, .gas_reach = .5};

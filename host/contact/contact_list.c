@@ -8,7 +8,7 @@
 
 #define PI 3.14159265358979323846
 
-int contact_add(struct contact_block *block, const struct contact_found *contact) {
+int fibrad_contact_add(struct contact_block *block, const struct contact_found *contact) {
     if (block->n == block->capacity) {
         if (block->capacity > UINT32_MAX / 2) return FIBRAD_E_UNSUPPORTED;
         const uint32_t capacity = block->capacity ? 2 * block->capacity : 1024;
@@ -36,8 +36,8 @@ static double spot_of(const struct contact_found *c, const fibrad_contact_rule *
     return square > 0 ? scale * sqrt(square) : 0;
 }
 
-int contact_list_of(struct contact_block *block, const fibrad_contact_rule *rule, int status,
-                    fibrad_contact_list **list) {
+int fibrad_contact_list_of(struct contact_block *block, const fibrad_contact_rule *rule, int status,
+                           fibrad_contact_list **list) {
     const uint32_t n = block->n;
     fibrad_contact_list *made = NULL;
     if (!status) made = malloc(sizeof *made + n * (4 * sizeof(double) + 2 * sizeof(uint32_t)));
@@ -72,7 +72,7 @@ struct gas_pair {
  * and l_j be the lengths of a line within the spheres, and c = l_i + l_j = distance - u. Then l_i - l_j = (R_i^2 -
  * R_j^2)/c, and 2 pi r dr = 2 pi l_i l_j/c du. */
 static double ring_of(const struct gas_pair *p, double u) {
-    const double c = p->distance - u, gap = fmax(u + p->jump, p->least);
+    const double c = p->distance - u, gap = larger_of(u + p->jump, p->least);
     if (isinf(p->large)) return 2 * PI * c / (c / p->k_small + gap / p->k_gas);
     const double less = p->small * p->small - p->large * p->large;
     const double l_small = (c + less / c) / 2, l_large = (c - less / c) / 2;
@@ -96,7 +96,7 @@ static double stretch_of(const struct gas_pair *p, double from, double to) {
 static double widest_gap(const struct gas_pair *p, double lens) {
     const double d = p->distance, r = p->small;
     const double plane = isinf(p->large) ? d : (d * d + lens * lens - p->large * p->large) / (2 * d);
-    const double square = fmin(lens * lens - plane * plane, r * r);
+    const double square = smaller_of(lens * lens - plane * plane, r * r);
     if (!(square > 0)) return 0;
     const double beyond = isinf(p->large) ? 0 : sqrt(p->large * p->large - square);
     return d - sqrt(r * r - square) - beyond;
@@ -104,11 +104,11 @@ static double widest_gap(const struct gas_pair *p, double lens) {
 
 /* What the gas conducts. The denominator is least at narrow gaps, so stretches are as long as gaps are wide. */
 static double gas_conductance(const struct gas_pair *p, double reach) {
-    const double narrow = fmax(0, p->distance - p->small - (isinf(p->large) ? 0 : p->large));
-    const double wide = widest_gap(p, p->small * (1 + reach)), level = fmax(0, p->least - p->jump);
+    const double narrow = larger_of(0, p->distance - p->small - (isinf(p->large) ? 0 : p->large));
+    const double wide = widest_gap(p, p->small * (1 + reach)), level = larger_of(0, p->least - p->jump);
     double sum = 0, from = narrow;
     while (from < wide) {
-        double to = 2 * from + fmax(p->jump, p->least);
+        double to = 2 * from + larger_of(p->jump, p->least);
         if (from < level && to > level) to = level;
         if (to > wide) to = wide;
         sum += stretch_of(p, from, to);

@@ -2,7 +2,14 @@
 #ifndef FIBRAD_CONTACT_LIST_H
 #define FIBRAD_CONTACT_LIST_H
 
+#include <math.h>
+
 #include "simple/fibrad_host.h"
+
+/* These need no library. */
+static inline double larger_of(double a, double b) { return a > b ? a : b; }
+static inline double smaller_of(double a, double b) { return a < b ? a : b; }
+static inline double length_of(double x, double y, double z) { return sqrt(x * x + y * y + z * z); }
 
 /* Two ends that are near enough, as in fibrad_contact_list. */
 struct contact_found {
@@ -17,12 +24,12 @@ struct contact_block {
 };
 
 /* Adds a contact. Status 0, FIBRAD_E_MEMORY, or _UNSUPPORTED: there are more than 2^32. */
-int contact_add(struct contact_block *block, const struct contact_found *contact);
+int fibrad_contact_add(struct contact_block *block, const struct contact_found *contact);
 
 /* Makes a list of what was found, with spots, and frees the block. status: of the search. Returns it, or
  * FIBRAD_E_MEMORY. */
-int contact_list_of(struct contact_block *block, const fibrad_contact_rule *rule, int status,
-                    fibrad_contact_list **list);
+int fibrad_contact_list_of(struct contact_block *block, const fibrad_contact_rule *rule, int status,
+                           fibrad_contact_list **list);
 
 /* Spheres that are looked for at triangles. */
 struct triangle_search {
@@ -33,7 +40,7 @@ struct triangle_search {
 };
 
 /* Adds contacts of spheres with walls of triangles. Status 0 or FIBRAD_E_MEMORY. */
-int contact_find_triangles(const struct fibrad_triangles *triangles, const struct triangle_search *search,
-                           struct contact_block *block);
+int fibrad_contact_triangles(const struct fibrad_triangles *triangles, const struct triangle_search *search,
+                             struct contact_block *block);
 
 #endif

@@ -43,12 +43,11 @@ static int by_cell(const void *a, const void *b) {
     return x->cell != y->cell ? (x->cell < y->cell ? -1 : 1) : x->sphere < y->sphere ? -1 : x->sphere > y->sphere;
 }
 
-/* The class of a radius: that of its power of two below the largest one. */
+/* The class of a radius: how often the largest one may be halved before it is smaller. */
 static uint32_t class_of(double radius, double largest) {
-    int below, above;
-    frexp(radius, &below);
-    frexp(largest, &above);
-    return above - below < CLASSES_MAX ? (uint32_t)(above - below) : CLASSES_MAX - 1;
+    uint32_t class = 0;
+    while (class + 1 < CLASSES_MAX && radius < largest / 2) largest /= 2, ++class;
+    return class;
 }
 
 /* The cell of a coordinate, limited to the grid. */
@@ -80,10 +79,10 @@ static void sort_class(struct search *s, struct size_class *class) {
 static void sort_spheres(struct search *s) {
     double largest = 0;
     for (uint32_t i = 0; i < s->n; ++i) {
-        largest = fmax(largest, s->at[i][3]);
+        largest = larger_of(largest, s->at[i][3]);
         for (int axis = 0; axis < 3; ++axis) {
-            s->low[axis] = i > 0 ? fmin(s->low[axis], s->at[i][axis]) : s->at[i][axis];
-            s->high[axis] = i > 0 ? fmax(s->high[axis], s->at[i][axis]) : s->at[i][axis];
+            s->low[axis] = i > 0 ? smaller_of(s->low[axis], s->at[i][axis]) : s->at[i][axis];
+            s->high[axis] = i > 0 ? larger_of(s->high[axis], s->at[i][axis]) : s->at[i][axis];
         }
     }
     uint32_t to = 0;
@@ -92,7 +91,7 @@ static void sort_spheres(struct search *s) {
         for (uint32_t i = 0; i < s->n; ++i) {
             if (class_of(s->at[i][3], largest) != c) continue;
             s->celled[to++].sphere = i;
-            class.largest = fmax(class.largest, s->at[i][3]);
+            class.largest = larger_of(class.largest, s->at[i][3]);
         }
         class.end = to;
         if (class.end == class.begin) continue;
@@ -150,9 +149,9 @@ static int take_pair(void *context, const struct search *s, uint32_t other) {
     const struct looking *from = context;
     const double r = s->at[from->sphere][3], *o = s->at[other];
     if (o[3] > r || (o[3] == r && other >= from->sphere)) return FIBRAD_OK;
-    const double distance = hypot(hypot(o[0] - from->at[0], o[1] - from->at[1]), o[2] - from->at[2]);
+    const double distance = length_of(o[0] - from->at[0], o[1] - from->at[1], o[2] - from->at[2]);
     if (distance >= r + o[3] + reach_of(s, o[3])) return FIBRAD_OK;
-    return contact_add(s->found, &(struct contact_found){from->sphere, other, distance, r, o[3]});
+    return fibrad_contact_add(s->found, &(struct contact_found){from->sphere, other, distance, r, o[3]});
 }
 
 /* Looks for smaller spheres about one image of a sphere. */
@@ -194,11 +193,12 @@ static int find_at_body(struct search *s, const fibrad_body *body, uint32_t wall
     int status = FIBRAD_OK;
     for (uint32_t i = 0; i < s->n && !status; ++i) {
         const double *at = s->at[i];
-        const double distance = body->kind == FIBRAD_BODY_PLANE
-                                    ? fabs(at[body->plane.axis] - body->plane.at)
-                                    : body->cylinder.radius - hypot(at[0] - body->cylinder.x, at[1] - body->cylinder.y);
+        const double distance =
+            body->kind == FIBRAD_BODY_PLANE
+                ? fabs(at[body->plane.axis] - body->plane.at)
+                : body->cylinder.radius - length_of(at[0] - body->cylinder.x, at[1] - body->cylinder.y, 0);
         if (distance < at[3] + reach_of(s, at[3]))
-            status = contact_add(s->found, &(struct contact_found){i, s->n + wall, distance, at[3], INFINITY});
+            status = fibrad_contact_add(s->found, &(struct contact_found){i, s->n + wall, distance, at[3], INFINITY});
     }
     return status;
 }
@@ -207,7 +207,7 @@ static int find_at_triangles(struct search *s, const struct fibrad_triangles *tr
     struct triangle_search at = {(const double(*)[4])s->at, s->n, s->rule->gas_reach, {0, 0, 0}};
     for (int axis = 0; axis < 3; ++axis)
         at.period[axis] = s->period[axis] > 0 ? s->period[axis] : triangles->period[axis];
-    return contact_find_triangles(triangles, &at, s->found);
+    return fibrad_contact_triangles(triangles, &at, s->found);
 }
 
 static void copy_spheres(struct search *s, const fibrad_spheres *given) {
@@ -246,5 +246,5 @@ int fibrad_contacts_find(const fibrad_scene_config *config, const fibrad_spheres
     if (!status && config && config->triangles) status = find_at_triangles(&s, config->triangles);
     free(s.at);
     free(s.celled);
-    return contact_list_of(&found, rule, status, list);
+    return fibrad_contact_list_of(&found, rule, status, list);
 }

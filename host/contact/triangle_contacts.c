@@ -26,7 +26,8 @@ static double inner(const double a[3], const double b[3]) { return a[0] * b[0] +
 
 /* The point of the side from `a` along `side` that is nearest to the origin. */
 static double nearest_on_side(const double a[3], const double side[3], double to[3]) {
-    const double square = inner(side, side), along = square > 0 ? fmin(1, fmax(0, -inner(a, side) / square)) : 0;
+    const double square = inner(side, side),
+                 along = square > 0 ? smaller_of(1, larger_of(0, -inner(a, side) / square)) : 0;
     for (int k = 0; k < 3; ++k) to[k] = a[k] + along * side[k];
     return inner(to, to);
 }
@@ -72,7 +73,7 @@ static int touch_triangle(const struct triangle_search *s, double corner[3][3], 
     double middle[3], wide = 0;
     for (int k = 0; k < 3; ++k) middle[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
     for (int c = 0; c < 3; ++c)
-        wide = fmax(wide, hypot(hypot(corner[c][0] - middle[0], corner[c][1] - middle[1]), corner[c][2] - middle[2]));
+        wide = larger_of(wide, length_of(corner[c][0] - middle[0], corner[c][1] - middle[1], corner[c][2] - middle[2]));
     for (uint32_t i = 0; i < s->n; ++i) {
         const double reach = s->at[i][3] * (1 + s->gas_reach);
         double from[3][3];
@@ -118,15 +119,15 @@ static int keep_touches(const struct triangle_search *s, struct touches *all, st
         const struct touch *t = &all->touch[k];
         counts[k] = !is_beside(all, counts, k);
         if (counts[k])
-            status = contact_add(
+            status = fibrad_contact_add(
                 block, &(struct contact_found){t->sphere, s->n + t->wall, t->distance, s->at[t->sphere][3], INFINITY});
     }
     free(counts);
     return status;
 }
 
-int contact_find_triangles(const struct fibrad_triangles *triangles, const struct triangle_search *search,
-                           struct contact_block *block) {
+int fibrad_contact_triangles(const struct fibrad_triangles *triangles, const struct triangle_search *search,
+                             struct contact_block *block) {
     const size_t stride = triangles->stride ? triangles->stride : 1;
     struct touches all = {NULL, 0, 0};
     int status = FIBRAD_OK;

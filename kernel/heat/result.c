@@ -485,7 +485,8 @@ typedef struct measured {
  * volume that is uniform inside. Such a source gives off the net power and the light that is absorbed. */
 static measured centre_of(const fibrad_heat *heat, uint32_t b, measured surface, double power_error) {
     const double slope = 1 / (8 * FIBRAD_PI * heat->scene->r[b] * heat->sources.conductivity[b]);
-    return (measured){surface.value - slope * (heat->solution.power[b] + fibrad_heat_absorbed(heat, b)),
+    const double gained = heat->solution.power[b] + fibrad_heat_conducted(heat, b) + fibrad_heat_absorbed(heat, b);
+    return (measured){surface.value - slope * gained,
                       fibrad_sqrt(squared(surface.error) + squared(slope * power_error))};
 }
 
