@@ -5,11 +5,9 @@
 
 #define VECTOR_CHORDS 16 /* chords are taken in multiples of the widest vector */
 
-static const float LANE[VECTOR_CHORDS]
-    __attribute__((aligned(64))) = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-
 /* Heights of the chords from number `chord` on. */
 static inline vf heights(const fibrad_masks *m, uint32_t chord) {
+    _Alignas(64) static const float LANE[VECTOR_CHORDS] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     const float first = m->y_first + m->y_step * (float)(chord / VECTOR_CHORDS * VECTOR_CHORDS);
     return vf_set1(first) + vf_set1(m->y_step) * vf_load(LANE + chord % VECTOR_CHORDS);
 }
