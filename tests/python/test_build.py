@@ -22,7 +22,8 @@ size_t fibrad_host_sizeof(const char *name) { return %d; }
 """
 FUNCTIONS = ("view_factors exchange_factors displacements radiation_new radiation_move radiation_solve "
              "radiation_describe radiation_free bed_free transient_new transient_move transient_powers "
-             "transient_advance transient_describe transient_free radiation_sides radiation_shine node_emissivity").split()
+             "transient_advance transient_describe transient_free radiation_sides radiation_shine node_emissivity "
+             "contacts_find contacts_conduct contacts_free").split()
 
 
 @pytest.fixture(name="backend")

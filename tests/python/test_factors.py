@@ -422,4 +422,4 @@ def test_more_than_the_library_can_do_is_said():
     with pytest.warns(UserWarning, match="overlap by 0.1 of a radius"):
         fibrad.view_factors([[0, 0, 0], [0, 0, 1.9]], 1)
     with pytest.warns(UserWarning, match="above the tolerance of 1e-09"):
-        fibrad.view_factors([[0, 0, 0], [0, 0, 3]], 1, tolerance=1e-9)
+        fibrad.view_factors([[0, 0, 0], [0, 0, 3], [1.2, 0, 6]], 1, tolerance=1e-9)  # a pair with something in between
