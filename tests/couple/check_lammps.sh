@@ -45,7 +45,7 @@ run() {
 near() {
     found=$(awk 'NF == 2 && /^[0-9]+ / && NR == FNR { t[$1] = $2; n++; next }
         NF == 2 && /^[0-9]+ / { d = $2 - t[$1]; if (d < 0) d = -d; if (!($1 in t) || !(d <= worst)) worst = d; m++ }
-        END { printf "%.2g", n && n == m ? worst + 0 : 1/0 }' "$1" "$2" 2>/dev/null || echo inf)
+        END { if (n && n == m) printf "%.2g", worst; else printf "inf" }' "$1" "$2" 2>/dev/null || echo inf)
     awk -v d="${found:-inf}" -v bound="$3" 'BEGIN { exit !(d + 0 == d && d < bound) }'
     verdict "$4 ($found K)" $?
 }
