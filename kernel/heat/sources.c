@@ -14,8 +14,9 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources) {
     *sources = (fibrad_heat_sources){.surroundings = __builtin_nan(""), .sigma = FIBRAD_STEFAN_BOLTZMANN};
 }
 
-static double default_tolerance(const fibrad_heat *heat, bool unknown) {
-    if (heat->spheres <= FEW_SPHERES) return FEW_TOLERANCE;
+/* Contacts pass on what is small beside the flows that they carry, so their balances do not close that far. */
+static double default_tolerance(const fibrad_heat *heat, const fibrad_heat_sources *sources, bool unknown) {
+    if (heat->spheres <= FEW_SPHERES && sources->contacts == 0) return FEW_TOLERANCE;
     return unknown ? FREE_TOLERANCE : HEAT_TOLERANCE;
 }
 
@@ -440,7 +441,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     heat->sources.light = sources->light, heat->sources.absorbed = sources->absorbed;
     heat->sources.sigma = sources->sigma, heat->sources.surroundings = sources->surroundings;
     heat->solution.group = sources->uniform ? UINT32_MAX : FIBRAD_HEAT_FOUR;
-    heat->sources.tolerance = sources->tolerance > 0 ? sources->tolerance : default_tolerance(heat, unknown);
+    heat->sources.tolerance = sources->tolerance > 0 ? sources->tolerance : default_tolerance(heat, sources, unknown);
     heat->sources.limit = sources->sweeps_max > 0 ? sources->sweeps_max : HEAT_SWEEPS_MAX;
     set_conduction(heat, sources);
     heat->solution.sweeps = 0;
