@@ -16,6 +16,7 @@
  *   rows       a collection of rows                     fibrad_rows_add, _clear, _read
  *   matrix     all rows: averaged, reciprocal, closed   fibrad_matrix_size, _init, _average, _close, _read,
  *                                                       _reciprocity
+ *              lines for the rows of a matrix           fibrad_line_set_lines, _size, _init, _count
  *   drift      which rows may stay when spheres move    fibrad_drift_row, _partners
  *   exchange   factors after reflections (grey)         fibrad_exchange_row, _body, _body_mean, _displacement
  *              spheres that conduct                     fibrad_relative_conductivity, fibrad_node_emissivity,
@@ -33,9 +34,8 @@
  * How to begin
  *   one row   fibrad_scene_init, then fibrad_beam_row.
  *   all rows  Each thread has a fibrad_work and a fibrad_rows. Call fibrad_beam_row for every sphere. Then call
- *             fibrad_matrix_init, _close and _read. The calls fibrad_silhouettes_* may take the place of
- *             fibrad_beam_row. Their error is about half as large. They do not serve scenes with triangles or a known
- *             region, and have no cutoff.
+ *             fibrad_matrix_init, _close and _read. Rows along lines have about half the error in the matrix. For
+ *             these, call fibrad_line_set_init once, and set fibrad_beam_rule.lines. Threads share the set.
  *   example   fibrad_work work = {.memory = {.resize = resize}};
  *             fibrad_row row = {.col = col, .f = f, .capacity = 300};
  *             status = fibrad_scene_init(&scene, block, fibrad_scene_size(n, 0), NULL, &spheres, NULL);
@@ -96,7 +96,7 @@
 extern "C" {
 #endif
 
-#define FIBRAD_VERSION "0.2.0"
+#define FIBRAD_VERSION "0.3.0"
 
 #define FIBRAD_STEFAN_BOLTZMANN 5.670374419e-8 /* W/(m2 K4) */
 
@@ -629,8 +629,11 @@ struct fibrad_rows {
 
 /* Appends a row that was computed elsewhere, on another machine for example. A row does not tell its scene. So a matrix
  * takes this row for a row of its own scene, if that has such a sphere. If the row is of another scene, no call
- * notices. Input    row: sphere, col, f, length, body, escaped, beyond, error, symmetric. row->rows must be NULL. The
- * columns ascend. Each factor is 0 to 1.01. bodies: elements of row->body Errors   _ARGUMENT, _CAPACITY, _MEMORY */
+ * notices.
+ *   Input    row: sphere, col, f, length, body, escaped, beyond, error, symmetric. row->rows must be NULL. The columns
+ *            ascend. Each factor is 0 to 1.01. Of a row along lines also lines, half, noise and shares.
+ *            bodies: elements of row->body
+ *   Errors   _ARGUMENT, _CAPACITY, _MEMORY */
 int fibrad_rows_add(fibrad_rows *rows, const fibrad_row *row, uint32_t bodies);
 
 /* Removes all rows and keeps the memory. NULL is allowed.
@@ -715,8 +718,9 @@ typedef struct fibrad_factors {
 
 typedef struct fibrad_matrix fibrad_matrix; /* a matrix in the making */
 
-/* Bytes that fibrad_matrix_init needs. Let b be the number of walls. The call needs 24 bytes for each entry of the rows
- * and 80 + 8 b bytes for each sphere. With `raw` it needs 12 bytes for each entry and 48 + 8 b bytes for each sphere.
+/* Bytes that fibrad_matrix_init needs. Let b be the number of walls. The call needs 24 bytes for each entry of the rows,
+ * or 32 if all rows are along lines, and 104 + 8 b bytes for each sphere. With `raw` it needs 12 bytes for each entry
+ * and 48 + 8 b bytes for each sphere.
  *   Input    as fibrad_matrix_init
  *   Errors   0 */
 size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
@@ -739,11 +743,11 @@ int fibrad_matrix_init(fibrad_matrix **matrix, void *memory, size_t size, const 
 /* Averages the rows of one task. Several threads may do different tasks at the same time. This call is optional:
  * fibrad_matrix_close does the tasks that are left. Let A = 4 pi r^2 be the area and e the emissivity of a sphere. Rows
  * i and j both estimate the same quantity. The matrix gets a mean of both estimates:
- *   view factors by exact areas   (A_i F_ij + A_j F_ji)/2
- *   view factors by silhouettes   both are equal already, and are copied
- *   sampled view factors          w_i A_i F_ij + w_j A_j F_ji
- *   exchange factors              w_i A_i e_i D_ij + w_j A_j e_j D_ji
- * The weights are w_i = A_j/(A_i + A_j) and w_j = A_i/(A_i + A_j).
+ *   FIBRAD_ROWS_AREAS      (A_i F_ij + A_j F_ji)/2
+ *   FIBRAD_ROWS_SAMPLED    w_i A_i F_ij + w_j A_j F_ji
+ *   FIBRAD_ROWS_EXCHANGE   w_i A_i e_i D_ij + w_j A_j e_j D_ji
+ * The weights are w_i = A_j/(A_i + A_j) and w_j = A_i/(A_i + A_j). If only one of two factors along lines is exact
+ * (fibrad_row.half), the matrix gets this one.
  *   Input    task: 0 to rule->tasks - 1
  *   Errors   _ARGUMENT
  *            _STATE: the task is done already, the rule says raw, the matrix is closed, or the rows have changed
@@ -756,10 +760,13 @@ int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
  *
  * With `raw` nothing is changed. Otherwise the steps are
  *   1. All tasks that are left are averaged.
- *   2. View factors by exact areas or by silhouettes: F_ij is multiplied by min(s_i, s_j), where
- *      s_i = min(1, 1/(sum over j of F_ij)).
- *      Sampled view factors and exchange factors: let rest_i be what raw row i gives to walls, surroundings and
- *      `beyond` together. u_i is found with u_i (sum over j of F_ij u_j + rest_i) = 1. F_ij is multiplied by u_i u_j.
+ *   2. Let rest_i be what row i leaves for walls, surroundings and `beyond` together. u_i is found with
+ *      u_i (sum over j of F_ij u_j + rest_i) = 1. F_ij is multiplied by u_i u_j. Exact factors are not multiplied.
+ *      FIBRAD_ROWS_AREAS: rest_i = max(0, 1 - averaged sum) in two cases. Some window of raw row i is open, or the
+ *      averaged sum lacks more of 1 than 5 times its noise. Otherwise rest_i = 0. Rows not along lines, without an open
+ *      window, have rest_i = 0.
+ *      FIBRAD_ROWS_SAMPLED and _EXCHANGE: rest_i = max(0, 1 - raw sum).
+ *      If a sum is still above 1, F_ij is then multiplied by min(s_i, s_j), where s_i brings the sum of row i to 1.
  *   3. Let F_ic be the factors of row i to what is no sphere: c is a wall, `escaped` or `beyond`. They are scaled so
  *      that the sum of the row is 1. If all of them are 0, they become
  *      F_ic = (1 - sum over j of F_ij) T_c/(sum over c of T_c), where T_c is the sum over all rows k of A_k F_kc.
@@ -772,8 +779,7 @@ int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
  *      sums of the rows stay. The part of a sum that no scaling can restore is added to F_ii.
  *   Errors   _ARGUMENT
  *            _STATE: the matrix is closed already, or the rows have changed
- *   Cost     O(entries). With sampled view factors, exchange factors, step 4 or step 5 the call takes some 40 times as
- *            long.
+ *   Cost     O(entries), for each of up to 60 passes of step 2, and more of steps 4 and 5
  *   Source   docs/methods.md section 5, docs/methods_heat.md sections 3 and 4 */
 int fibrad_matrix_close(fibrad_matrix *matrix);
 

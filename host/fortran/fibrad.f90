@@ -510,7 +510,7 @@ contains
 
     ! View factors of all spheres, by beams.
     !   factors     the matrix
-    !   directions  8 to 65536; absent: 233, for all rows of a bed 181 lines, each followed both ways
+    !   directions  8 to 65536; absent: 233, for all rows of a bed 181 lines, 233 among walls, more for few spheres
     !   tolerance   the error allowed in each row; directions are added until it is met; absent: none
     !   cutoff      [L] spheres farther away are left out; absent: none
     !   raw         .true.: rows as they were computed, not averaged

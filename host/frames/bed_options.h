@@ -70,7 +70,7 @@
 #define OPTION_SCRATCH                                                                                                 \
     0, "scratch", "FOLDER",                                                                                            \
         "keep rows and matrix in temporary files of this folder, with the same results; for each entry of the raw "    \
-        "rows they take 36 to 75 bytes [in memory]",                                                                   \
+        "rows they take 36 to 64 bytes [in memory]",                                                                   \
         TO_FUNCTION(bed_scratch_option, struct bed_options, scratch)
 
 /* A paragraph of --help about the files. */

@@ -61,14 +61,11 @@ typedef struct fibrad_run {
 /* Which rows of a bed are computed, and how. NULL or zeroed: all rows, reciprocal and closed. At most one of beam,
  * surface and cast is set.
  *
- * All rows are computed together by silhouettes along lines if
- *   - all rows are wanted, and raw is 0;
- *   - the rule is a beam rule or NULL, with points and cutoff 0;
- *   - the scene has neither triangles nor a known region.
- * The number of lines is then beam->directions, where 0 stands for FIBRAD_LINES_DEFAULT, or for more with fewer than
- * 221 spheres. Each line is followed both ways. In all other cases rows are computed one by one. This is also done with
- * more than FIBRAD_LINES_EVEN_MAX directions, or if about 230 discs or more are seen near one point of a circle
- * (docs/methods.md section 12).
+ * Rows go along lines if all rows are wanted, raw is 0, and the rule is a beam rule or NULL. The number of lines is then
+ * beam->directions, up to FIBRAD_LINES_EVEN_MAX. It is raised to the next built-in set. 0 stands for
+ * FIBRAD_LINES_DEFAULT, or among walls for FIBRAD_LINES_AMONG_WALLS. Scenes of few spheres have more: 40,000 over the
+ * number of spheres. The field `points` then stands for masks: 64, 128 and 256 for 16, 32 and 64 chords. With more than
+ * FIBRAD_LINES_EVEN_MAX, and in all other cases, rows go along directions. docs/methods.md, section 12.
  *
  * A tolerance in the beam rule raises the number of lines or directions. If raw is 0, it is the same number for all
  * rows, so that the worst row meets the tolerance. If raw is 1, each row has the number of directions that it needs.
@@ -76,9 +73,9 @@ typedef struct fibrad_run {
  * Rows of walls are computed if bodies is 1, all rows are wanted, and the rule has no cutoff. If raw is 0, the rows of
  * spheres and walls are closed together. This changes the factors between spheres by less than their errors.
  *
- * Raw rows are those before averaging. Files in the scratch folder take 36 to 48 bytes per entry of the raw rows: 12 to
- * 24 for the rows, and 24 for the matrix. With silhouettes they take up to 88: 24 for the rows, 64 for what pairs of
- * spheres exchange. */
+ * Raw rows are those before averaging. Files in the scratch folder take bytes for each entry of the raw rows. Rows along
+ * lines have 16 for the row and 32 for the matrix. Other rows have 12 and 24. The files of the rows may be up to twice
+ * as large. */
 typedef struct fibrad_bed_options {
     const fibrad_beam_rule *beam;       /* NULL: the defaults, unless surface or cast is set */
     const fibrad_surface_rule *surface; /* NULL: not by the surface method */
@@ -109,7 +106,7 @@ typedef struct fibrad_bed_factors {
  *            options, run: NULL for all defaults
  *   Output   factors: free with fibrad_bed_free
  *   Errors   as fibrad_scene_init, fibrad_beam_row (_surface_row, _cast_row) and fibrad_matrix_init; _CANCELLED
- *   Cost     that of all rows over the threads; memory up to 48 bytes per entry of the raw rows
+ *   Cost     that of all rows over the threads; memory up to 64 bytes per entry of the raw rows
  *   Source   docs/methods.md */
 int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
                         const fibrad_bed_options *options, fibrad_run *run, fibrad_bed_factors **factors);

@@ -1,6 +1,6 @@
 # man.awk - a manual page from the text of --help. SPDX-License-Identifier: MIT
 #
-# awk -v page=fibrad-bed -v purpose='view factors ...' -v version=0.2.0 -f host/cli/man/man.awk: usage lines, paragraphs,
+# awk -v page=fibrad-bed -v purpose='view factors ...' -v version=0.3.0 -f host/cli/man/man.awk: usage lines, paragraphs,
 # rows of options `  -o, --output OUT   text`, paragraphs with indented lines, `Examples:`. The page fibrad begins with
 # `fibrad VERSION - purpose` instead and lists the commands.
 

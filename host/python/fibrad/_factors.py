@@ -326,11 +326,12 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
     tolerance : float, optional
         The error allowed in every row. Directions are added until it is met. Default: none.
     directions : int, optional
-        Directions of beams, 8 to 65536. The error falls as ``directions**-1.5``. Default: 233. All rows of a bed
-        without triangles, cutoff and points are computed along that many lines, each followed both ways. Default: 181, and
-        more for fewer than 221 spheres.
+        Directions of beams, 8 to 65536. The error falls as ``directions**-1.5``. Default: 233. If all rows
+        of a bed are averaged, it is the number of lines, up to 2048. Default: 181, among walls 233, and more for few
+        spheres.
     points : {64, 128, 256}, optional
-        Points of each window of a beam. Default: exact visible areas.
+        Points of each window of a beam. Along lines they stand for masks of 16, 32 and 64 chords. Default: along lines
+        as many chords as suit their number, else exact visible areas.
     method : {"beam", "surface", "cast", "mc"}
         "beam": parallel beams. "surface": nodes on surfaces, after Bao, Gao and Tan. "cast": quasi-random rays. "mc":
         random rays.
