@@ -429,7 +429,7 @@ typedef struct fibrad_work {
  *   Input    discs: largest number of spheres in the way of one window, hidden ones included; 64 in a packed bed
  *            entries: largest number of spheres that one row sees; 200 in a packed bed
  *   Scenes with walls take FIBRAD_WORK_WALLS more. Scenes with triangles take FIBRAD_WORK_TRIANGLES more. */
-#define FIBRAD_WORK_BYTES(discs, entries) (28672 + (size_t)(discs)*768 + (size_t)(entries)*96)
+#define FIBRAD_WORK_BYTES(discs, entries) (34816 + (size_t)(discs)*776 + (size_t)(entries)*104)
 #define FIBRAD_WORK_WALLS                 29760
 #define FIBRAD_WORK_TRIANGLES             26784
 

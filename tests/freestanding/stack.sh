@@ -21,7 +21,7 @@ find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $
         echo "call fibrad_walls_complete_scalar ${frame}_scalar"
         echo "call add_hidden ${frame}_scalar"
     done
-    for method in beam_to_tolerance cast_compute exchange_compute surface_compute row_of_pairs; do
+    for method in beam_to_tolerance cast_compute exchange_compute surface_compute; do
         grep -q "^frame $method " "$2/frames" || echo "gone $method"
         echo "call fibrad_row_run $method"
     done
