@@ -109,7 +109,7 @@ int option_nodes(const char *text, void *nodes);
      "beam: number of directions, " TEXT_DIRECTIONS                                                                    \
      "; if all rows of a bed are computed, number of lines, which are directions and their opposites; the error "      \
      "falls as N^-1.5 [" TEXT_OF(FIBRAD_DIRECTIONS_DEFAULT) " directions; " TEXT_OF(                                   \
-         FIBRAD_LINES_DEFAULT) " lines, " TEXT_OF(FIBRAD_LINES_AMONG_WALLS) " among walls, more for few spheres]",                                                        \
+         FIBRAD_LINES_DEFAULT) " lines, " TEXT_OF(FIBRAD_LINES_AMONG_WALLS) " among walls, more for few spheres]",     \
      TO_COUNT(request, methods.beam.directions, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX)},                        \
         {0, "areas", "KIND", "beam: visible areas, exact or points; points are faster and less accurate [exact]",      \
          TO_TEXT(request, methods.areas)},                                                                             \
