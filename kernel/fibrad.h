@@ -718,9 +718,9 @@ typedef struct fibrad_factors {
 
 typedef struct fibrad_matrix fibrad_matrix; /* a matrix in the making */
 
-/* Bytes that fibrad_matrix_init needs. Let b be the number of walls. The call needs 24 bytes for each entry of the rows,
- * or 32 if all rows are along lines, and 104 + 8 b bytes for each sphere. With `raw` it needs 12 bytes for each entry
- * and 48 + 8 b bytes for each sphere.
+/* Bytes that fibrad_matrix_init needs. Let b be the number of walls. The call needs 24 bytes for each entry of the
+ * rows, or 32 if all rows are along lines, and 104 + 8 b bytes for each sphere. With `raw` it needs 12 bytes for each
+ * entry and 48 + 8 b bytes for each sphere.
  *   Input    as fibrad_matrix_init
  *   Errors   0 */
 size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,

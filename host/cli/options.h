@@ -109,11 +109,13 @@ int option_nodes(const char *text, void *nodes);
      "beam: number of directions, " TEXT_DIRECTIONS                                                                    \
      "; if all rows of a bed are computed, number of lines, which are directions and their opposites; the error "      \
      "falls as N^-1.5 [" TEXT_OF(FIBRAD_DIRECTIONS_DEFAULT) " directions; " TEXT_OF(                                   \
-         FIBRAD_LINES_DEFAULT) " lines, " TEXT_OF(FIBRAD_LINES_AMONG_WALLS) " among walls, more for few spheres]",                                                        \
+         FIBRAD_LINES_DEFAULT) " lines, " TEXT_OF(FIBRAD_LINES_AMONG_WALLS) " among walls, more for few spheres]",     \
      TO_COUNT(request, methods.beam.directions, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX)},                        \
-        {0, "areas", "KIND", "beam: visible areas, exact or points; points are faster and less accurate [exact]",      \
+        {0, "areas", "KIND", "beam: visible areas, exact or points [exact; along lines points, up to 724 lines]",      \
          TO_TEXT(request, methods.areas)},                                                                             \
-        {0, "points", "M", "beam: rays along each direction, 64, 128 or 256; implies --areas points [256]",            \
+        {0, "points", "M",                                                                                             \
+         "beam: rays along each direction, 64, 128 or 256; along lines masks of 16, 32 or 64 chords; implies --areas " \
+         "points [256]",                                                                                               \
          TO_FUNCTION(option_points, request, methods.beam.points)},                                                    \
         {0, "nf", "N",                                                                                                 \
          "surface: nodes on each sphere, a Fibonacci number from " TEXT_OF(FIBRAD_NODES_MIN) " to " TEXT_OF(           \

@@ -61,8 +61,8 @@ typedef struct fibrad_run {
 /* Which rows of a bed are computed, and how. NULL or zeroed: all rows, reciprocal and closed. At most one of beam,
  * surface and cast is set.
  *
- * Rows go along lines if all rows are wanted, raw is 0, and the rule is a beam rule or NULL. The number of lines is then
- * beam->directions, up to FIBRAD_LINES_EVEN_MAX. It is raised to the next built-in set. 0 stands for
+ * Rows go along lines if all rows are wanted, raw is 0, and the rule is a beam rule or NULL. The number of lines is
+ * then beam->directions, up to FIBRAD_LINES_EVEN_MAX. It is raised to the next built-in set. 0 stands for
  * FIBRAD_LINES_DEFAULT, or among walls for FIBRAD_LINES_AMONG_WALLS. Scenes of few spheres have more: 40,000 over the
  * number of spheres. The field `points` then stands for masks: 64, 128 and 256 for 16, 32 and 64 chords. With more than
  * FIBRAD_LINES_EVEN_MAX, and in all other cases, rows go along directions. docs/methods.md, section 12.
@@ -73,9 +73,9 @@ typedef struct fibrad_run {
  * Rows of walls are computed if bodies is 1, all rows are wanted, and the rule has no cutoff. If raw is 0, the rows of
  * spheres and walls are closed together. This changes the factors between spheres by less than their errors.
  *
- * Raw rows are those before averaging. Files in the scratch folder take bytes for each entry of the raw rows. Rows along
- * lines have 16 for the row and 32 for the matrix. Other rows have 12 and 24. The files of the rows may be up to twice
- * as large. */
+ * Raw rows are those before averaging. Files in the scratch folder take bytes for each entry of the raw rows. Rows
+ * along lines have 16 for the row and 32 for the matrix. Other rows have 12 and 24. The files of the rows may be up to
+ * twice as large. */
 typedef struct fibrad_bed_options {
     const fibrad_beam_rule *beam;       /* NULL: the defaults, unless surface or cast is set */
     const fibrad_surface_rule *surface; /* NULL: not by the surface method */
