@@ -203,11 +203,12 @@ static uint32_t write_row(const fibrad_heat *heat, uint32_t place, const fibrad_
     for (uint32_t e = 0; e < entries->length; begin = entries->key[0][e++]) {
         if (entries->key[0][e] == begin) continue; /* triangles hide this sphere */
         const double *part = entries->part[e], even = part[0] + part[2], odd = part[1] + part[3];
+        const double tilt = fibrad_max(-1, fibrad_min(1, (even - odd) / (even + odd)));
         const uint64_t beams = entries->key[0][e] - begin;
         const uint32_t body = entries->sphere[e], joined = join_beams(heat, scratch->sorted + begin, beams, scratch);
         draft.pencil = (fibrad_heat_pencil){.body = body,
                                             .share = (float)(weight * (even + odd) / (double)beams),
-                                            .tilt = (int16_t)(32767 * (even - odd) / (even + odd))};
+                                            .tilt = (int16_t)(32767 * tilt)};
         draft.written = 0;
         for (uint32_t k = 0; k < joined; k++) write_bundle(&draft, &scratch->fours[k]);
         write_pencil(&draft);
@@ -255,47 +256,68 @@ static fibrad_heat_beam beam_along_centres(const fibrad_heat *heat, const fibrad
 
 /* What a row has of free pairs and of all that is no sphere, in beams. */
 struct free_share {
-    double others, seen;
-    uint64_t exact; /* sum of exact factors, in units of 2^-60, so that it does not depend on an order */
+    double others[4], seen[4]; /* by part of an entry */
+    bool left_out;             /* a sphere that no beam meets has lost its exact factor */
+    uint64_t exact;            /* sum of exact factors, in units of 2^-60, so that it does not depend on an order */
 };
 
-static double entry_beams(const fibrad_entries *entries, uint32_t entry) {
-    const double *part = entries->part[entry];
-    return part[0] + part[2] + (part[1] + part[3]);
-}
+static double sum_of(const double part[4]) { return part[0] + part[2] + (part[1] + part[3]); }
 
 /* Sums up a row. Spheres with fine patches have no exact factor, and neither have spheres for whose beams there is no
  * room. */
 static struct free_share share_of_free(const fibrad_heat *heat, fibrad_entries *entries) {
-    struct free_share share = {0, 0, 0};
+    struct free_share share = {.exact = 0};
     uint32_t more = 0;
     for (uint32_t k = 0; k < entries->length; k++) {
-        const double beams = entry_beams(entries, k);
-        if (entries->sphere[k] >= heat->rows) share.others += beams;
+        const double *part = entries->part[k];
+        const bool unmet = sum_of(part) == 0;
+        for (int p = 0; p < 4 && entries->sphere[k] >= heat->rows; p++) share.others[p] += part[p];
         if (!(entries->exact[k] > 0)) continue;
-        if (heat->division.root[entries->sphere[k]] != FIBRAD_NONE || (beams == 0 && ++more > FREE_BEAMS))
-            entries->exact[k] = 0;
-        else
-            share.seen += beams, share.exact += (uint64_t)(entries->exact[k] * 0x1p60);
+        if (heat->division.root[entries->sphere[k]] != FIBRAD_NONE || (unmet && ++more > FREE_BEAMS)) {
+            entries->exact[k] = 0, share.left_out = share.left_out || unmet;
+            continue;
+        }
+        for (int p = 0; p < 4; p++) share.seen[p] += part[p];
+        share.exact += (uint64_t)(entries->exact[k] * 0x1p60);
     }
     return share;
 }
 
-uint32_t fibrad_heat_free_beams(const fibrad_heat *heat, fibrad_workspace *work, uint32_t count) {
+/* Gives the entry of a free pair its exact factor, `exact` in beams; all parts are equal. */
+static void take_exact(double part[4], double exact) {
+    for (int p = 0; p < 4; p++) part[p] = exact / 4;
+}
+
+/* Scales an entry that is no sphere. Its sum changes by a ratio that is the same for all such entries. Each part of all
+ * of them together takes what free pairs have moved in this part, so that the parts differ as the errors that remain. */
+static void take_rest(double part[4], const struct free_share *share, double exact, double others, double left) {
+    const double ratio = left / others, sum = sum_of(part);
+    for (int p = 0; p < 4; p++) {
+        const double of_part = share->others[p] + share->seen[p] - exact / 4;
+        part[p] = ratio * part[p] + sum / others * (of_part - ratio * share->others[p]);
+    }
+}
+
+
+uint32_t fibrad_heat_free_beams(fibrad_heat *heat, fibrad_workspace *work, uint32_t count) {
     fibrad_heat_beam *beam = work->extra;
     fibrad_entries *entries = &work->entries;
     const double all = heat->beams;
+    heat->pencils.row[work->place].told = false;
     if (heat->division.root[work->place] != FIBRAD_NONE) return count;
-    (void)fibrad_free_pairs_find(work, 1 / all);
+    const fibrad_free_pairs pairs = fibrad_free_pairs_find(work, 1 / all);
     const struct free_share share = share_of_free(heat, entries);
-    const double left = share.others + (share.seen - (double)share.exact * 0x1p-60 * all);
+    const double exact = (double)share.exact * 0x1p-60 * all, others = sum_of(share.others);
+    const double left = others + (sum_of(share.seen) - exact);
     if (share.exact == 0 || !(left > 0)) return count;
+    heat->pencils.row[work->place].told = pairs.told && !share.left_out;
     for (uint32_t k = 0; k < entries->length; k++) {
-        const bool exact = entries->exact[k] > 0;
-        if (exact && entry_beams(entries, k) == 0) beam[count++] = beam_along_centres(heat, work, k);
-        for (int p = 0; p < 4 && (exact || entries->sphere[k] >= heat->rows); p++) {
-            double *part = &entries->part[k][p];
-            *part = exact ? entries->exact[k] * all / 4 : *part * (left / share.others);
+        double *part = entries->part[k];
+        if (entries->exact[k] > 0) {
+            if (sum_of(part) == 0) beam[count++] = beam_along_centres(heat, work, k);
+            take_exact(part, entries->exact[k] * all);
+        } else if (entries->sphere[k] >= heat->rows) {
+            take_rest(part, &share, exact, others, left);
         }
     }
     return count;

@@ -20,7 +20,7 @@ size_t fibrad_heat_scratch(const fibrad_heat *heat);
 /* Scales the beams to spheres that nothing can come between, so that their sum is exact, and those to all that is no
  * sphere by the opposite. A sphere that no beam meets gets one along the line of centres. Returns the number of beams
  * in work->extra, of which there were `count`. Entries that find no room are counted in entries.missed. */
-uint32_t fibrad_heat_free_beams(const fibrad_heat *heat, fibrad_workspace *work, uint32_t count);
+uint32_t fibrad_heat_free_beams(fibrad_heat *heat, fibrad_workspace *work, uint32_t count);
 
 /* Writes the pencils of the row in `work` from the `count` beams in work->extra. Each entry must have a beam at least.
  * FIBRAD_E_SIZE: there is no room. */

@@ -55,6 +55,7 @@ typedef struct fibrad_heat_bundle {
  * part. Its position `at` is in units of four bytes after `begin` of the row. */
 typedef struct fibrad_heat_row {
     size_t begin, bytes;
+    bool told; /* every sphere that no beam meets has an exact factor */
 } fibrad_heat_row;
 typedef struct fibrad_heat_link {
     uint32_t sphere, at;

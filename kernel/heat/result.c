@@ -17,6 +17,7 @@
 #define BEAM_ERROR   .7
 #define LONE_ERROR   1.2 /* times the share of spheres that only even or only odd directions meet */
 #define UNSEEN_ERROR .25 /* over what one direction brings */
+#define SHARE_ERROR  0x1p-25 /* of what a sphere exchanges: shares of pencils are floats */
 #define RAY_ERROR    1.75
 #define RAY_SAMPLES  16  /* largest number of samples of a mesh */
 #define FEW_ERROR    .25 /* times patches over beams: if few beams leave a patch, it sends light back along the same */
@@ -143,10 +144,12 @@ static double missed_of(const fibrad_heat *heat, const heat_errors *errors, uint
     return beam_error(heat, b) * squared(heat->samples.halves[b]) + missed_by_rays(errors, heat, b);
 }
 
-/* The square of an error that no beam tells: between the directions that meet no sphere there may be spheres. */
+/* The square of an error that no beam tells: between the directions that meet no sphere there may be spheres. If all
+ * spheres were asked for, only rounding is left. */
 static double unseen_error(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
-    const double free = fibrad_max(0, 1 - heat->samples.seen[b].met / heat->beams);
-    return free * squared(UNSEEN_ERROR / heat->config.directions * exchange_of(heat, errors, b));
+    const double open = fibrad_max(0, 1 - heat->samples.seen[b].met / heat->beams);
+    const double unseen = heat->pencils.row[b].told ? 0 : open * squared(UNSEEN_ERROR / heat->config.directions);
+    return (unseen + squared(SHARE_ERROR)) * squared(exchange_of(heat, errors, b));
 }
 
 /* The error that remains after extrapolation has changed a value by `change`. It is larger if there are few patches. */

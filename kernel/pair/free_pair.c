@@ -144,6 +144,7 @@ typedef struct pair_search {
     uint64_t unseen; /* [SQUARE_UNIT] */
     bool all, pairs; /* all spheres are tried; pairs may be free */
     bool sparse;     /* what no window has met may count; in dense scenes other spheres hide it */
+    bool untold;     /* some sphere has been met by no window, and its pair is not free */
 } pair_search;
 
 /* About the factor to a free sphere of radius r, at a squared distance. It is a few percent off. */
@@ -177,6 +178,7 @@ static void try_sphere(pair_search *search, uint32_t other, bool many) {
     const double part = search->all || !many ? 0 : 1 - SOME_WINDOWS / windows; /* of a free factor */
     if (seen < part * least || seen < part * free_factor(r, square)) return;
     if (search->pairs && take_free_pair(search, other, seen)) return;
+    if (entry == FIBRAD_NONE) search->untold = true;
     if (entry != FIBRAD_NONE || !search->sparse || 2 * windows >= 1) return;
     const double missed = least * (1 - 2 * windows);
     search->unseen += (uint64_t)(missed * missed / SQUARE_UNIT);
@@ -214,7 +216,7 @@ fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale) {
     fibrad_entries *entries = &work->entries;
     const uint32_t n = scene->facts.spheres, met = entries->length;
     const bool periodic = scene->period[0] > 0 || scene->period[1] > 0 || scene->period[2] > 0;
-    fibrad_free_pairs pairs = {0, open_of(work, scale), 0};
+    fibrad_free_pairs pairs = {.open = open_of(work, scale)};
     if (periodic || !(pairs.open > (n <= FEW_SPHERES ? LEAST_OPEN : WORTH_WHILE))) return pairs;
     pair_search search = {.work = work, .scale = scale, .all = n <= FEW_SPHERES};
     search.sparse = search.all || met < FEW_ENTRIES, search.pairs = lies_free(scene, work->place);
@@ -225,9 +227,10 @@ fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale) {
     for (uint32_t j = 0; j < n && search.sparse; j++) try_sphere(&search, j, false);
     pairs.unseen = fibrad_sqrt((double)search.unseen * SQUARE_UNIT);
     pairs.moved = (double)search.moved * UNIT;
+    pairs.told = search.all && !search.untold;
     if (pairs.open + pairs.moved > 0) return pairs;
     for (uint32_t k = 0; k < entries->length; k++) entries->exact[k] = 0;
-    pairs.moved = 0;
+    pairs.moved = 0, pairs.told = false;
     return pairs;
 }
 

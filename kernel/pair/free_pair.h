@@ -16,6 +16,7 @@ typedef struct fibrad_free_pairs {
     double moved;  /* what windows have seen of the spheres of free pairs, minus the exact factors */
     double open;   /* what windows have seen besides spheres */
     double unseen; /* root of the sum of squared factors to spheres that no window has met */
+    bool told;     /* all pairs were tried, and each sphere that no window has met is one of a free pair */
 } fibrad_free_pairs;
 
 /* Finds the free pairs of the present row, all of whose windows are done. Their exact factors go to entries.exact.

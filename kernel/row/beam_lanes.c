@@ -188,7 +188,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     const double all = sums.whole[0] + sums.whole[1], scale = masked ? 1 / all : 1 / (windows.count * each);
     for (int half = 0; half < 2 && windows.lines != NULL; half++)
         work->entries.balance[half] = all / (2 * sums.whole[half]);
-    fibrad_free_pairs pairs = {0, 1, 0};
+    fibrad_free_pairs pairs = {.open = 1};
     if (range->exact) pairs = fibrad_free_pairs_find(work, scale);
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
     status = fibrad_free_pairs_legs(work, &pairs);
