@@ -47,10 +47,12 @@ static int choose_windows(const fibrad_scene *scene, uint32_t i, const fibrad_be
 }
 
 /* The error of a row along lines over half the difference of its halves, and the same for the shares of walls, of which
- * both halves have errors in common. Measured: docs/accuracy.md. */
+ * both halves have errors in common. Measured: docs/accuracy.md. The halves of few walls may agree by chance. Then the
+ * fourths tell: tests/test_estimate.c has the scenes. */
 #define LINES_ERROR      0.5
 #define DIRECTIONS_ERROR 1.0 /* along directions, by masks */
 #define SHARES_ERROR     0.8
+#define SHARES_FOURTHS   0.5
 
 /* The noise of a row from the points of masks. A window is divided into regions, the visible parts of spheres. The
  * variance of a region's area is about as its border times the cube of the distance of points (D. G. Kendall, Q. J.
@@ -206,7 +208,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     fibrad_row_bodies(scene, work->wall, row);
     row->lines = rule->lines != NULL ? windows.count : 0;
     row->noise = masked ? noise_of(&windows, all, work->masks.regions) : 0;
-    const double shares = SHARES_ERROR * fibrad_sqrt(parts[0]) * scale;
+    const double shares = SHARES_ERROR * fibrad_sqrt(fibrad_max(parts[0], SHARES_FOURTHS * parts[1])) * scale;
     row->shares = fibrad_sqrt(shares * shares + pairs.unseen * pairs.unseen);
     if (row->lines > 0 || masked) {
         const double gain = row->lines > 0 ? LINES_ERROR : DIRECTIONS_ERROR;
