@@ -206,9 +206,8 @@ static uint32_t write_row(const fibrad_heat *heat, uint32_t place, const fibrad_
         const double tilt = fibrad_max(-1, fibrad_min(1, (even - odd) / (even + odd)));
         const uint64_t beams = entries->key[0][e] - begin;
         const uint32_t body = entries->sphere[e], joined = join_beams(heat, scratch->sorted + begin, beams, scratch);
-        draft.pencil = (fibrad_heat_pencil){.body = body,
-                                            .share = (float)(weight * (even + odd) / (double)beams),
-                                            .tilt = (int16_t)(32767 * tilt)};
+        draft.pencil = (fibrad_heat_pencil){
+            .body = body, .share = (float)(weight * (even + odd) / (double)beams), .tilt = (int16_t)(32767 * tilt)};
         draft.written = 0;
         for (uint32_t k = 0; k < joined; k++) write_bundle(&draft, &scratch->fours[k]);
         write_pencil(&draft);
@@ -289,7 +288,8 @@ static void take_exact(double part[4], double exact) {
 }
 
 /* Scales an entry that is no sphere. Its sum changes by a ratio that is the same for all such entries. Each part of all
- * of them together takes what free pairs have moved in this part, so that the parts differ as the errors that remain. */
+ * of them together takes what free pairs have moved in this part, so that the parts differ as the errors that remain.
+ */
 static void take_rest(double part[4], const struct free_share *share, double exact, double others, double left) {
     const double ratio = left / others, sum = sum_of(part);
     for (int p = 0; p < 4; p++) {
@@ -297,7 +297,6 @@ static void take_rest(double part[4], const struct free_share *share, double exa
         part[p] = ratio * part[p] + sum / others * (of_part - ratio * share->others[p]);
     }
 }
-
 
 uint32_t fibrad_heat_free_beams(fibrad_heat *heat, fibrad_workspace *work, uint32_t count) {
     fibrad_heat_beam *beam = work->extra;
