@@ -206,9 +206,8 @@ static uint32_t write_row(const fibrad_heat *heat, uint32_t place, const fibrad_
         const double tilt = fibrad_max(-1, fibrad_min(1, (even - odd) / (even + odd)));
         const uint64_t beams = entries->key[0][e] - begin;
         const uint32_t body = entries->sphere[e], joined = join_beams(heat, scratch->sorted + begin, beams, scratch);
-        draft.pencil = (fibrad_heat_pencil){.body = body,
-                                            .share = (float)(weight * (even + odd) / (double)beams),
-                                            .tilt = (int16_t)(32767 * tilt)};
+        draft.pencil = (fibrad_heat_pencil){
+            .body = body, .share = (float)(weight * (even + odd) / (double)beams), .tilt = (int16_t)(32767 * tilt)};
         draft.written = 0;
         for (uint32_t k = 0; k < joined; k++) write_bundle(&draft, &scratch->fours[k]);
         write_pencil(&draft);
@@ -261,7 +260,7 @@ struct free_share {
     uint64_t exact;            /* sum of exact factors, in units of 2^-60, so that it does not depend on an order */
 };
 
-static double sum_of(const double part[4]) { return part[0] + part[2] + (part[1] + part[3]); }
+static double beams_in_parts(const double part[4]) { return part[0] + part[2] + (part[1] + part[3]); }
 
 /* Sums up a row. Spheres with fine patches have no exact factor, and neither have spheres for whose beams there is no
  * room. */
@@ -270,7 +269,7 @@ static struct free_share share_of_free(const fibrad_heat *heat, fibrad_entries *
     uint32_t more = 0;
     for (uint32_t k = 0; k < entries->length; k++) {
         const double *part = entries->part[k];
-        const bool unmet = sum_of(part) == 0;
+        const bool unmet = beams_in_parts(part) == 0;
         for (int p = 0; p < 4 && entries->sphere[k] >= heat->rows; p++) share.others[p] += part[p];
         if (!(entries->exact[k] > 0)) continue;
         if (heat->division.root[entries->sphere[k]] != FIBRAD_NONE || (unmet && ++more > FREE_BEAMS)) {
@@ -289,15 +288,15 @@ static void take_exact(double part[4], double exact) {
 }
 
 /* Scales an entry that is no sphere. Its sum changes by a ratio that is the same for all such entries. Each part of all
- * of them together takes what free pairs have moved in this part, so that the parts differ as the errors that remain. */
+ * of them together takes what free pairs have moved in this part, so that the parts differ as the errors that remain.
+ */
 static void take_rest(double part[4], const struct free_share *share, double exact, double others, double left) {
-    const double ratio = left / others, sum = sum_of(part);
+    const double ratio = left / others, sum = beams_in_parts(part);
     for (int p = 0; p < 4; p++) {
         const double of_part = share->others[p] + share->seen[p] - exact / 4;
         part[p] = ratio * part[p] + sum / others * (of_part - ratio * share->others[p]);
     }
 }
-
 
 uint32_t fibrad_heat_free_beams(fibrad_heat *heat, fibrad_workspace *work, uint32_t count) {
     fibrad_heat_beam *beam = work->extra;
@@ -307,14 +306,14 @@ uint32_t fibrad_heat_free_beams(fibrad_heat *heat, fibrad_workspace *work, uint3
     if (heat->division.root[work->place] != FIBRAD_NONE) return count;
     const fibrad_free_pairs pairs = fibrad_free_pairs_find(work, 1 / all);
     const struct free_share share = share_of_free(heat, entries);
-    const double exact = (double)share.exact * 0x1p-60 * all, others = sum_of(share.others);
-    const double left = others + (sum_of(share.seen) - exact);
+    const double exact = (double)share.exact * 0x1p-60 * all, others = beams_in_parts(share.others);
+    const double left = others + (beams_in_parts(share.seen) - exact);
     if (share.exact == 0 || !(left > 0)) return count;
     heat->pencils.row[work->place].told = pairs.told && !share.left_out;
     for (uint32_t k = 0; k < entries->length; k++) {
         double *part = entries->part[k];
         if (entries->exact[k] > 0) {
-            if (sum_of(part) == 0) beam[count++] = beam_along_centres(heat, work, k);
+            if (beams_in_parts(part) == 0) beam[count++] = beam_along_centres(heat, work, k);
             take_exact(part, entries->exact[k] * all);
         } else if (entries->sphere[k] >= heat->rows) {
             take_rest(part, &share, exact, others, left);

@@ -15,8 +15,8 @@
 #define PATCHES      96.0
 #define WALL_PATCHES .5 /* factor for walls */
 #define BEAM_ERROR   .7
-#define LONE_ERROR   1.2 /* times the share of spheres that only even or only odd directions meet */
-#define UNSEEN_ERROR .25 /* over what one direction brings */
+#define LONE_ERROR   1.2     /* times the share of spheres that only even or only odd directions meet */
+#define UNSEEN_ERROR .25     /* over what one direction brings */
 #define SHARE_ERROR  0x1p-25 /* of what a sphere exchanges: shares of pencils are floats */
 #define RAY_ERROR    1.75
 #define RAY_SAMPLES  16  /* largest number of samples of a mesh */
