@@ -39,7 +39,7 @@ size_t fibrad_line_set_size(uint32_t lines) {
  * windows of a set lie differently in their planes. */
 static void frame_of_line(uint32_t n, const double (*line)[3], uint32_t k, double frame[9]) {
     const double *w = line[k];
-    double u[3], square = 0;
+    double u[3] = {0, 0, 0}, square = 0;
     for (uint32_t next = k + 1; square < 0.1; next++) {
         fibrad_cross(w, line[next % n], u);
         square = fibrad_dot(u, u);
