@@ -696,8 +696,9 @@ typedef struct fibrad_matrix_rule {
  *
  * `changed` tells whether the raw rows agree with each other. Raw row i gives fractions of its radiation to walls, to
  * the surroundings and to `beyond`. The matrix changes these fractions. The change of row i is the root of the sum of
- * the squared differences. `changed` is the largest ratio of a row's change to the row's error. A value well above 1
- * means that the raw rows contradict each other by more than their errors. */
+ * the squared differences. `changed` is the largest ratio of a row's change to the row's error. For rows along lines
+ * that error is at least 5 times the error of the raw row. A value well above 1 means that the raw rows contradict each
+ * other by more than their errors. */
 typedef struct fibrad_factors {
     uint32_t n, bodies;         /* numbers of spheres and of walls */
     const uint64_t *start;      /* [n + 1], row i is elements start[i] to start[i + 1] - 1 of col and f */

@@ -56,7 +56,8 @@ LOOP_TEST(a_warning_where_it_is_not_reached, sizeof unreached / sizeof *unreache
     const char *arguments[40] = {0}, *json = in_folder("run.json");
     int count = 0;
     for (; unreached[_i][count]; ++count) arguments[count] = unreached[_i][count];
-    arguments[count++] = write_file("two.csv", "x,y,z,r,T\n.3,.35,.4,.2,1000\n.65,.6,.55,.2,700\n");
+    arguments[count++] =
+        write_file("three.csv", "x,y,z,r,T\n.3,.35,.4,.2,1000\n.65,.6,.55,.2,700\n1.02,.83,.7,.2,400\n");
     arguments[count++] = "--json", arguments[count] = json;
     ck_assert_msg(finish(start(arguments)) == 0, "%s", said);
     char *text = read_file(json);

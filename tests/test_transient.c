@@ -110,7 +110,7 @@ TEST(emissivity_follows) {
                             &capacity,
                             .duration = duration,
                             .step = k < 3 ? duration / (32 << k) : 0,
-                            .tolerance = k < 3 ? 1e-9 : 0,
+                            .tolerance = k < 3 ? 1e-11 : 0,
                             .law = proportional,
                             .context = &calls};
         assert_ok(fibrad_transient_advance(t, &sources, &span));

@@ -724,7 +724,8 @@ TEST(order_scale_and_axes) {
     }
 }
 
-/* Makes a matrix of three reciprocal rows in a scene with three bodies. */
+/* Makes a matrix of three reciprocal rows in a scene with three bodies. The halves of the rows agree: no row has
+ * noise. */
 static struct matrix closed(const double body[3][3], const double escaped[3]) {
     OWNED_BED bed = BED({0, 0, 50, 1}, {0, 0, 10, 1}, {0, 0, 90, 2});
     const fibrad_body walls[] = {plane_at(2, 0, 0), cylinder_at(0, 0, 99), plane_at(2, 1, 100)};
@@ -732,10 +733,17 @@ static struct matrix closed(const double body[3][3], const double escaped[3]) {
     OWNED_ROWS rows = {.memory = memory_growing()};
     uint32_t col[][2] = {{1, 0}, {0, 2}, {1, 0}};
     double f[][2] = {{.5, 0}, {.5, .4}, {.1, 0}}, own[3];
+    float half[2] = {0, 0};
     for (uint32_t i = 0; i < 3; i++) {
         memcpy(own, body[i], sizeof own);
-        const fibrad_row row = {
-            .sphere = i, .col = col[i], .f = f[i], .body = own, .length = i == 1 ? 2 : 1, .escaped = escaped[i]};
+        const fibrad_row row = {.sphere = i,
+                                .lines = true,
+                                .col = col[i],
+                                .f = f[i],
+                                .half = half,
+                                .body = own,
+                                .length = i == 1 ? 2 : 1,
+                                .escaped = escaped[i]};
         assert_ok(fibrad_rows_add(&rows, &row, 3));
     }
     struct matrix m = matrix_of(scene, &rows, 1, NULL);

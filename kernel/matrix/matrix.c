@@ -13,7 +13,7 @@
  * but one row of a hundred: docs/accuracy.md. */
 #define VIEW_ERROR     1.6
 #define EXCHANGE_ERROR 1.2
-#define RAW_ERROR      2.6 /* the change of raw rows along lines over their distance: all of 5,000 rows are below it */
+#define RAW_ERROR      5.0   /* the change of raw rows along lines over their error: all of 27,000 rows are below it */
 #define LEAST_ERROR    1e-12 /* least change of a row that is compared with its error; smaller changes are rounding */
 
 static uint32_t tasks_of(const fibrad_matrix_rule *rule) {
@@ -381,11 +381,9 @@ static double error_of_mean(const fibrad_matrix *m, uint32_t i) {
     return fibrad_max((m->exchange ? EXCHANGE_ERROR : VIEW_ERROR) * distance, (own + (1 - own) * met) * m->error[i]);
 }
 
-/* The error of a raw row along lines. Halves may agree by chance, so the distance to the raw row counts, too. */
-static double error_along_lines(const fibrad_matrix *m, uint32_t i) {
-    const double error = fibrad_max(m->error[i], m->row[i]->error);
-    double own;
-    return change_of(m, i) > error ? fibrad_max(error, RAW_ERROR * distance_to_raw(m, i, &own)) : error;
+/* The error with which the change of a row is compared. A raw row along lines looks along one sense of each line. */
+static double error_of_change(const fibrad_matrix *m, uint32_t i) {
+    return m->lines ? fibrad_max(m->error[i], RAW_ERROR * m->row[i]->error) : m->error[i];
 }
 
 static void estimate_errors(void *matrix, uint32_t part) {
@@ -394,7 +392,7 @@ static void estimate_errors(void *matrix, uint32_t part) {
     for (uint32_t i = m->part[part].begin; i < m->part[part].end; i++) {
         if (!m->lines && m->row[i]->symmetric) continue;
         if (!m->lines) m->error[i] = error_of_mean(m, i);
-        note_change(m, &m->part[part], i, m->lines ? error_along_lines(m, i) : m->error[i]);
+        note_change(m, &m->part[part], i, error_of_change(m, i));
     }
 }
 
