@@ -10,7 +10,7 @@
 #include "base/random.h"
 #include "ray/cast_lanes.h"
 #include "scene/walls.h"
-#include "work/neighbours_lanes.h"
+#include "near/near_lanes.h"
 
 #define CAST_BATCH  (8 * VD_LANES)              /* rays: 64 in AVX-512; fewer in narrower sets, to save stack */
 #define CAST_STRIDE ((fibrad_stride){3.0, 1.4}) /* less than for windows, since a ray ends sooner */

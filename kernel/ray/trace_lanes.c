@@ -6,7 +6,7 @@
 #include FIBRAD_LANES_HEADER
 #include "base/vector.h"
 #include "ray/tracer.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 #include "scene/grid_walk.h"
 #include "scene/walls.h"
 

@@ -7,7 +7,7 @@
 #include "base/lanes/below.h"
 #include "base/sort.h"
 #include "row/mesh_share_lanes.h"
-#include "work/neighbours_lanes.h"
+#include "near/near_lanes.h"
 #include "row/window_lanes.h"
 #include "window/clip_lanes.h"
 #include "window/dense_lanes.h"
