@@ -113,13 +113,11 @@ uint32_t fibrad_work_met(const fibrad_workspace *work, const double from[3], con
  * end after FIBRAD_PERIODS periods. */
 double fibrad_near_horizon(const fibrad_workspace *work, const double w[3]);
 
-/* Whether a sphere comes before the window. At depth 0 the lower id is in front, as among discs. Hence of two spheres
+/* Whether a sphere comes before the window. At depth 0 the rule for ties decides, as among discs. Hence of two spheres
  * with centres at one depth only one is ahead of the other, and no sphere receives more than its own disc. */
 static inline bool fibrad_work_ahead(const fibrad_workspace *work, double depth, double u, double v, uint32_t sphere) {
-    if (depth != 0) return depth > 0;
-    const uint64_t rank = fibrad_scene_rank(work->scene, sphere), own = fibrad_scene_rank(work->scene, work->place);
-    if (rank != own) return rank > own;
-    return u != 0 ? u > 0 : v > 0; /* images of one sphere */
+    static const double middle[2] = {0, 0};
+    return depth != 0 ? depth > 0 : fibrad_scene_tie(work->scene, work->place, middle, sphere, (double[]){u, v}, 2);
 }
 
 static inline uint32_t fibrad_work_sphere(const fibrad_workspace *work, uint32_t disc) {
