@@ -15,7 +15,7 @@ faults=0
 
 test "${1:-}" = all && numbers="1 2 3 4" || numbers="2 3"
 for ranks in $numbers; do
-    run_mpi $ranks "$BUILD/couple/test_couple" "$work" || faults=1
+    run_mpi "$ranks" "$BUILD/couple/test_couple" "$work" || faults=1
     test -z "$(ls "$work")" || { echo "left behind: $(ls "$work")" && faults=1; }
 done
 
