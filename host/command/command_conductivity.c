@@ -85,8 +85,8 @@ static int conductivity_help(void) {
     options_print(conductivity_table);
     printf("\n" FILES_MORE "\n"
            "F_E is found with temperatures that rise linearly along the axis. All spheres absorb. Along open axes\n"
-           "only spheres that lie deep enough emit, inside the outermost centres by\n"
-           "%g mean diameters or more (%g with --solid-conductivity). With --axis, the bed\n"
+           "only spheres deep inside the bed emit, %g mean diameters or more from the outermost centres (%g with\n"
+           "--solid-conductivity). With --axis, the bed\n"
            "may be too thin for this along another axis. Spheres at any place along that other axis then emit. Where\n"
            "a periodic bed has gaps, flights may be so long that F_E does not exist, or that its standard error\n"
            "cannot be estimated. Then there is a warning.\n"
