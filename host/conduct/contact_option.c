@@ -8,7 +8,7 @@
 #include "bed/bed_scene.h"
 #include "cli/message.h"
 
-#define GAP       0.5   /* default of --gas-gap */
+#define GAP       0.65  /* default of --gas-gap */
 #define GAP_LEAST 4e-10 /* [m] least gap that counts: the distance of molecules */
 
 int contacts_option(const char *text, void *contact_options) {
