@@ -27,7 +27,7 @@ enum { CONTACT_FILES_MAX = 8 };
          "thermal conductivity of the gas in narrow gaps [W/(m K)], or @TABLE of temperatures [K] and "                \
          "conductivities [no gas]",                                                                                    \
          TO_TEXT(request, contacts.gas)},                                                                              \
-        {0, "gas-gap", "X", "gas conducts out to this distance from the smaller sphere, in its radii, up to 1 [0.65]",  \
+        {0, "gas-gap", "X", "gas conducts out to this distance from the smaller sphere, in its radii, up to 1 [0.65]", \
          TO_NUMBER(request, contacts.gap, 1e-6, 1)},                                                                   \
         {0, "gas-jump", "L", "length added to gaps, since narrow gaps conduct less [m] [0]",                           \
          TO_NUMBER(request, contacts.jump, 0, 1)},                                                                     \

@@ -7,7 +7,7 @@
 
 #include "bed/bed_scene.h"
 #include "bed/conduction.h"
-#include "bed/network.h"
+#include "bed/jump.h"
 #include "cli/message.h"
 #include "heat/steady.h"
 
@@ -185,13 +185,13 @@ static bool long_period(const struct bed *bed, const struct total_problem *probl
 }
 
 /* The same from two numbers of directions, whose difference is part of the error. */
-static int joint_twice(const struct bed *bed, const struct network *network, struct network_radiation *radiation,
+static int joint_twice(const struct bed *bed, const struct jump_contacts *network, struct jump_radiation *radiation,
                        int axis, double volume, fibrad_run *run, double *k, double *error) {
     double rough;
     radiation->directions = DIRECTIONS_ALL / 4;
-    int status = network_joint(bed, network, radiation, axis, volume, run, &rough);
+    int status = jump_joint(bed, network, radiation, axis, volume, run, &rough);
     radiation->directions = DIRECTIONS_ALL / 2;
-    if (!status) status = network_joint(bed, network, radiation, axis, volume, run, k);
+    if (!status) status = jump_joint(bed, network, radiation, axis, volume, run, k);
     *error = *k - rough;
     return status;
 }
@@ -210,12 +210,13 @@ static int total_of_periods(struct bed_options *options, const struct bed *bed, 
     fibrad_heat_sources_init(&sources);
     sources.temperature = at;
     int status = contacts_begin(&contacts, p->contacts, options, bed, &none, p->solid, 1 / (metres * metres), &sources);
-    const struct network network = {contacts.n, contacts.first, contacts.second, contacts.conductance}, empty = {0};
-    struct network_radiation radiation = {
+    const struct jump_contacts network = {contacts.n, contacts.first, contacts.second, contacts.conductance},
+                               empty = {0};
+    struct jump_radiation radiation = {
         .emissivity = p->emissivity, .sides = p->sides, .temperature = p->temperature, .linear = p->linear.k / metres};
     double k[3] = {0}, error[3] = {0};
     if (!status) {
-        status = network_conductivity(bed, &network, axis, volume, &k[0]);
+        status = jump_conductivity(bed, &network, axis, volume, &k[0]);
         if (!status) status = joint_twice(bed, &empty, &radiation, axis, volume, &run, &k[1], &error[1]);
         if (!status) status = joint_twice(bed, &network, &radiation, axis, volume, &run, &k[2], &error[2]);
         status = bed_options_status(options, bed, status, &run.fault);
