@@ -92,7 +92,7 @@ TEST(a_lattice_conducts) {
 /* Rows of spheres, each of which conducts to the next one by .5 and .1 W/K in turn, across the period, too: the two are
  * in series. */
 TEST(contacts_in_series_across_a_period) {
-    enum { ROWS = 4, LONG = 24 };
+    enum { ROWS = 4, LONG = 32 };
     const char *k = in_folder("k.csv"), *json = in_folder("k.json");
     char text[8000] = "x,y,z,radius\n", *at = text + strlen(text), pairs[4000] = "i,j,W/K\n",
          *to = pairs + strlen(pairs);
@@ -100,7 +100,7 @@ TEST(contacts_in_series_across_a_period) {
         at += sprintf(at, "%d,%d,%d,1\n", 2 * (i % 2) + 1, 2 * (i / 2 % 2) + 1, 2 * (i / ROWS) + 1);
         to += sprintf(to, "%d,%d,%s\n", i, (i + ROWS) % (ROWS * LONG), i / ROWS % 2 ? ".5" : ".1");
     }
-    SUCCEED("conductivity", write_file("rows.csv", text), "--periodic", "4,4,48", "--length-unit", "m", "--emissivity",
+    SUCCEED("conductivity", write_file("rows.csv", text), "--periodic", "4,4,64", "--length-unit", "m", "--emissivity",
             "0.8", "--temperature", "1000", "--steady", "--axis", "z", "--contacts", contacts(pairs), "--rays", "100",
             "-o", k, "-o", json);
     const double truth = 2 / (1 / .1 + 1 / .5) * 2 / 4;
@@ -109,6 +109,15 @@ TEST(contacts_in_series_across_a_period) {
     assert_near(strtod(after(read_file(json), "\"k_conduction_W_mK\":"), NULL), truth, 1e-9);
     assert_has(read_file(k), "warning,k_total_W_mK,k_total_W_mK_error,k_radiation_W_mK,");
     assert_has(printed, "\nends_z periodic\n");
+
+    /* three rows between plates, and two spheres of the fourth one that touch only each other */
+    to = pairs + sprintf(pairs, "i,j,W/K\n63,67,.2\n");
+    for (int i = 0; i < ROWS * (LONG - 1); ++i)
+        if (i % ROWS < 3) to += sprintf(to, "%d,%d,.3\n", i, i + ROWS);
+    SUCCEED("conductivity", in_folder("rows.csv"), "--periodic", "4,4,0", "--length-unit", "m", "--emissivity", "0.8",
+            "--temperature", "1000", "--steady", "--axis", "z", "--contacts", contacts(pairs), "--rays", "100");
+    assert_near(value_of("k_conduction_z_W_mK"), .3 * 2 / 4 * 3 / 4, 1e-5);
+    assert_has(printed, "\nends_z plates\n");
 }
 
 /* Writes copies of a periodic bed, one above the other. */
@@ -158,6 +167,19 @@ TEST(periods_and_plates_agree) {
     bed_free(&bed);
 }
 
+/* Beyond the ends of tables the value at the end is taken, with a warning. */
+TEST(tables_end) {
+    const char *solid = formatted("@%s", write_file("solid.csv", "T,k\n300,30\n450,20\n")),
+               *gas = formatted("@%s", write_file("gas.csv", "T,k\n300,.1\n900,.2\n"));
+    SUCCEED("heat", ROW, "--emissivity", "0.8", "--contacts", "hertz", "--contact-conductivity", solid,
+            "--gas-conductivity", gas, "-o", in_folder("q.csv"));
+    assert_has(said, "--contact-conductivity: 3 spheres have temperatures beyond the table, by up to 3");
+    ck_assert_ptr_null(strstr(said, "--gas-conductivity"));
+    SUCCEED("heat", row(), "--length-unit", "m", "--ambient", "300", "--temperature", "1100", "--emissivity", "0.8",
+            "--contact-conductivity", "30", "--gas-conductivity", gas, "-o", in_folder("q.csv"));
+    assert_has(said, "--gas-conductivity: 2 contacts have temperatures beyond the table, by up to 200 K");
+}
+
 /* What is wrong with a file of contacts is said with its line. */
 LOOP_TEST(files_at_fault, 8) {
     static const struct {
@@ -199,4 +221,7 @@ TEST(options_at_fault) {
               "--contacts", contacts("i,j,W/K\n0,1,1\n"));
     assert_has(said, "row.csv:2: sphere 0 has emissivity 0, and nothing that it touches radiates or has a temperature");
     FAIL_WITH(2, "conductivity", row(), "--emissivity", "0.8", "--contacts", "lens", "--contact-conductivity", "3");
+    FAIL_WITH(2, "conductivity", row(), "--emissivity", "0.8", "--contacts", "lens", "--contact-conductivity", "3",
+              "--steady", "--temperature", "0");
+    assert_has(said, "--contacts and --gas-conductivity need a --temperature above 0 K");
 }

@@ -172,6 +172,9 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
         return message(STATUS_USAGE, "--emissivity is missing; see fibrad conductivity --help");
     if (contacts_given(&request->contacts) && !(request->steady && request->at))
         return message(STATUS_USAGE, "--contacts and --gas-conductivity need --steady and --temperature");
+    for (int k = 0; k < request->temperatures; ++k)
+        if (contacts_given(&request->contacts) && !(request->temperature[k] > 0))
+            return message(STATUS_USAGE, "--contacts and --gas-conductivity need a --temperature above 0 K");
     if (request->contacts.flows) return message(STATUS_USAGE, "--contact-flows is an option of fibrad heat");
     if (request->solid.given && !request->at) return message(STATUS_USAGE, "--solid-conductivity needs --temperature");
     if (rule->error > 0 && rule->paths > 0) return message(STATUS_USAGE, "--error chooses the rays; leave out --rays");

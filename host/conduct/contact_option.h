@@ -97,6 +97,12 @@ void contacts_free(struct contact_state *state);
 void contacts_follow(struct contact_state *state, const struct bed *bed, const double *temperature,
                      const double *wall_temperature);
 
+/* Finds how far temperatures are beyond the ends of tables, as quantity_excess: of the solid at spots, and of the gas.
+ * Then warns of it. */
+void contacts_excess(struct contact_state *state, const struct bed *bed, const double *temperature,
+                     const double *wall_temperature, struct table_excess excess[2]);
+void contacts_warn(struct warned *warned, const struct table_excess excess[2]);
+
 /* Points a result to the arrays of contacts, and scales them to watts. */
 void contacts_result(struct contact_state *state, fibrad_heat_result *result);
 void contacts_scale(struct contact_state *state, uint32_t spheres, uint32_t walls);

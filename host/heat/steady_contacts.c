@@ -12,9 +12,13 @@
 #include "heat/steady.h"
 
 enum { FITTED_LEAST = 40, DIRECTIONS_ALL = 400 };
-#define HOT_END                                                                                                        \
-    1.0005 /* temperatures of the ends over their mean: so near that k_s and k_gas are the same everywhere */
+/* Temperatures of the ends over their mean: so near that k_s and k_gas are the same everywhere. */
+#define HOT_END  1.0005
 #define COLD_END 0.9995
+/* Emissivity of spheres without radiation: those that touch only each other need a temperature. */
+#define HARDLY 1e-12
+/* A flow that is so small over the largest one is none. */
+#define IDLE 1e-6
 
 /* A bed between plates, whose spheres next to a plate have its temperature. */
 struct between {
@@ -67,6 +71,14 @@ static void cut_contacts(struct between *b, double period) {
     }
 }
 
+/* Warns if the temperature of the bed is beyond the end of a table. */
+static void warn_ends(struct bed_options *options, struct contact_state *contacts, const struct bed *bed,
+                      const double *temperature) {
+    struct table_excess excess[2] = {{0}};
+    contacts_excess(contacts, bed, temperature, NULL, excess);
+    contacts_warn(&options->warned, excess);
+}
+
 static int set_up(struct between *b, double period) {
     const struct total_problem *p = b->problem;
     const struct bed *bed = b->bed;
@@ -83,6 +95,7 @@ static int set_up(struct between *b, double period) {
     status = contacts_begin(&b->contacts, p->contacts, b->options, bed, &b->plates, p->solid,
                             1 / (p->metres * p->metres), &b->sources);
     if (status) return status;
+    warn_ends(b->options, &b->contacts, bed, b->given);
     cut_contacts(b, period);
     for (uint32_t k = 2; k < b->walls.count; ++k) b->plate[k] = NAN, b->insulated[k] = 1;
     b->sources.insulated = b->insulated;
@@ -99,7 +112,8 @@ static int set_up(struct between *b, double period) {
                                      .power_error = b->error,
                                      .temperature = b->temperature,
                                      .body_power = b->plate_power,
-                                     .body_error = b->plate_error};
+                                     .body_error = b->plate_error,
+                                     .contact_flow = b->contacts.flow};
     return STATUS_OK;
 }
 
@@ -126,6 +140,21 @@ static int read_total(const struct between *b, struct conduction_value *total) {
     return STATUS_OK;
 }
 
+/* Takes the temperatures away from spheres through which nothing is conducted. They are not on a way between the ends,
+ * so they say nothing of the gradient. */
+static void drop_idle(struct between *b) {
+    double most = 0, *through = b->fitted;
+    for (uint32_t i = 0; i < b->bed->n; ++i) through[i] = 0;
+    for (uint32_t k = 0; k < b->contacts.n; ++k) {
+        const uint32_t ends[2] = {b->contacts.first[k], b->contacts.second[k]};
+        most = fmax(most, fabs(b->contacts.flow[k]));
+        for (int e = 0; e < 2; ++e)
+            if (ends[e] < b->bed->n) through[ends[e]] += fabs(b->contacts.flow[k]);
+    }
+    for (uint32_t i = 0; i < b->bed->n; ++i)
+        if (through[i] <= IDLE * most) b->temperature[i] = NAN;
+}
+
 /* One conductivity: by radiation, contacts, or both. */
 static int solve_total(struct between *b, bool radiates, bool touches, uint32_t directions,
                        struct conduction_value *total) {
@@ -136,10 +165,10 @@ static int solve_total(struct between *b, bool radiates, bool touches, uint32_t 
     fibrad_radiation *radiation = NULL;
     fibrad_heat_sources sources = b->sources;
     const fibrad_heat_config config = {.directions = directions};
-    for (uint32_t i = 0; i < b->bed->n; ++i) b->emissivity[i] = radiates ? b->problem->emissivity[i] : 0;
+    for (uint32_t i = 0; i < b->bed->n; ++i) b->emissivity[i] = radiates ? b->problem->emissivity[i] : HARDLY;
     sources.body_emissivity = black;
     if (!touches) sources.contacts = 0;
-    if (!radiates) sources.conductivity = NULL;
+    if (!radiates) sources.conductivity = NULL, sources.tolerance = 1e-10;
     int status = fibrad_radiation_new(&radiation, &scene, &spheres, &config, &run);
     if (!status) status = fibrad_radiation_solve(radiation, &sources, &b->result);
     fibrad_radiation_describe(radiation, NULL, &run.fault);
@@ -147,7 +176,9 @@ static int solve_total(struct between *b, bool radiates, bool touches, uint32_t 
     const int refused = contacts_refuse(&b->contacts, b->options, b->bed, &b->plates, status, &run.fault);
     if (refused) return refused;
     status = bed_options_status(b->options, b->bed, status, &run.fault);
-    return status ? status : read_total(b, total);
+    if (status) return status;
+    if (!radiates) drop_idle(b);
+    return read_total(b, total);
 }
 
 /* The same from two numbers of directions, whose difference is part of the error. */
@@ -210,6 +241,7 @@ static int total_of_periods(struct bed_options *options, const struct bed *bed, 
     fibrad_heat_sources_init(&sources);
     sources.temperature = at;
     int status = contacts_begin(&contacts, p->contacts, options, bed, &none, p->solid, 1 / (metres * metres), &sources);
+    if (!status) warn_ends(options, &contacts, bed, at);
     const struct jump_contacts network = {contacts.n, contacts.first, contacts.second, contacts.conductance},
                                empty = {0};
     struct jump_radiation radiation = {

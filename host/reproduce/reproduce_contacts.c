@@ -77,7 +77,7 @@ static int touching_conduct(struct touching_bed *t, double k_solid, double k_gas
 static int touching_radiate(struct touching_bed *t, double kelvins, double k_solid, double k_gas, double spot,
                             double radius, double *k) {
     const double unit = 4 * FIBRAD_STEFAN_BOLTZMANN * pow(kelvins, 3) * 2 * radius;
-    double factor;
+    double factor = 0;
     int status = touching_conduct(t, k_solid, k_gas, spot, GAS_LEAST / radius, k);
     if (!status) status = grey_conduction(&t->bed, EMITTING, k_solid / unit, WALKS, &factor);
     *k += factor * unit;
