@@ -794,7 +794,7 @@ int fibrad_matrix_read(const fibrad_matrix *matrix, fibrad_factors *factors);
  *   Output   largest
  *   Errors   _ARGUMENT
  *            _STATE: the matrix is not closed
- *   Cost     O(entries log(row length)) */
+ *   Cost     O(entries). Uses memory of the matrix: one call at a time */
 int fibrad_matrix_reciprocity(const fibrad_matrix *matrix, double *largest);
 
 /* ---- drift ----------------------------------------------------------------------------------------------------- */

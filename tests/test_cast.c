@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "base/random.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 #include "scenes.h"
 #include "suite.h"
 

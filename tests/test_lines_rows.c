@@ -14,7 +14,7 @@
 #include "mask/line_set.h"
 #include "scenes.h"
 #include "suite.h"
-#include "work/record.h"
+#include "rows/record.h"
 
 enum { N_MOST = 80, DISCS_MOST = 20000, NOTHING = N_MOST };
 

@@ -6,7 +6,7 @@
 #include "base/elementary.h"
 #include "base/random.h"
 #include "ray/tracer.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 #include "scenes.h"
 #include "suite.h"
 

@@ -17,7 +17,7 @@
 #include "sample/harmonics.h"
 #include "mesh/mesh_patch.h"
 #include "scene/scene.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 
 #define FIBRAD_HEAT_TASK 1024u /* rays of walls in one task */
 

@@ -5,7 +5,7 @@
 #include "sample/direction.h"
 #include "row/beam_lanes.h"
 #include "pair/free_pair.h"
-#include "work/legs_lanes.h"
+#include "row/legs_lanes.h"
 #include "row/mesh_share_lanes.h"
 #include "row/wall_share_lanes.h"
 #include "row/window_lanes.h"

@@ -2,7 +2,7 @@
 #ifndef FIBRAD_ROW_WALL_WINDOW_H
 #define FIBRAD_ROW_WALL_WINDOW_H
 
-#include "work/wall_sum.h"
+#include "sums/wall_sum.h"
 
 /* Windows stand for a disc of directions where they look at walls or triangles. Its radius times sqrt n. For discs as
  * large as the share of one direction it would be 2. */

@@ -7,7 +7,7 @@
 #include "base/lanes/below.h"
 #include "base/sort.h"
 #include "row/mesh_share_lanes.h"
-#include "work/neighbours_lanes.h"
+#include "near/near_lanes.h"
 #include "row/window_lanes.h"
 #include "window/clip_lanes.h"
 #include "window/dense_lanes.h"
@@ -80,10 +80,8 @@ static void drop_not_ahead(fibrad_workspace *work, uint32_t from) {
 static bool disc_before(const fibrad_workspace *work, uint32_t k, uint32_t other) {
     const fibrad_discs *disc = &work->disc;
     if (disc->depth[k] != disc->depth[other]) return disc->depth[k] < disc->depth[other];
-    const uint64_t rank = fibrad_scene_rank(work->scene, fibrad_work_sphere(work, k));
-    const uint64_t second = fibrad_scene_rank(work->scene, fibrad_work_sphere(work, other));
-    if (rank != second) return rank < second;
-    return disc->u[k] != disc->u[other] ? disc->u[k] < disc->u[other] : disc->v[k] < disc->v[other];
+    const double at[2] = {disc->u[k], disc->v[k]}, at_other[2] = {disc->u[other], disc->v[other]};
+    return fibrad_scene_tie(work->scene, fibrad_work_sphere(work, k), at, fibrad_work_sphere(work, other), at_other, 2);
 }
 
 /* Sorts positions [from, to) of the order. */

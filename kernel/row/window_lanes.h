@@ -3,7 +3,7 @@
 #define FIBRAD_ROW_WINDOW_LANES_H
 
 #include "base/lanes/laned.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 #include "window/points.h"
 
 /* With these numbers the first shell of a packed bed has 275 spheres, and two shells fit into the default memory.

@@ -1,7 +1,7 @@
 /* wall_sum.h - sums over the windows of a row of what walls get, by regions of the sky, and the view factors to
  * walls. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_WORK_WALL_SUM_H
-#define FIBRAD_WORK_WALL_SUM_H
+#ifndef FIBRAD_SUMS_WALL_SUM_H
+#define FIBRAD_SUMS_WALL_SUM_H
 
 #include "base/addends.h"
 #include "scene/surroundings.h"

@@ -1,5 +1,5 @@
 /* wall_sum.c - solid angles of walls, seen from within, and view factors to walls. SPDX-License-Identifier: MIT */
-#include "work/wall_sum.h"
+#include "sums/wall_sum.h"
 #include "base/constants.h"
 #include "base/elementary.h"
 
