@@ -48,7 +48,8 @@ typedef struct fibrad_light {
     double direction[3];    /* the way that the light goes, of any length above 0 */
     double flux;            /* sigma K^4 (W/m2 if sigma is in W/(m2 K4)), across `direction`; to FIBRAD_POWER_MAX */
     double half_angle;      /* rad, of the cone, 0 to FIBRAD_HALF_ANGLE_MAX; 0: parallel */
-    uint32_t directions;    /* of the cone, up to FIBRAD_LIGHT_DIRECTIONS_MAX; 0: FIBRAD_LIGHT_DIRECTIONS_DEFAULT */
+    uint32_t directions;    /* of the cone, up to FIBRAD_LIGHT_DIRECTIONS_MAX; 0: FIBRAD_LIGHT_DIRECTIONS_DEFAULT, more
+                               for cones wider than 0.02 rad */
     int shape;              /* a fibrad_light_shape */
     double centre[3];       /* L, of the disc */
     double radius;          /* L, of the disc, above 0 */
@@ -115,10 +116,12 @@ uint32_t fibrad_heat_shine_tasks(const fibrad_heat *heat);
  *   Input    task: 0 to fibrad_heat_shine_tasks - 1
  *   Output   hits[fibrad_heat_patches]: the light is added to it
  *            kept: as fibrad_light_spheres
+ *            apart[spheres]: written for the spheres of the task: light of even directions of a cone minus that of odd
+ *            ones; may be NULL
  *   Errors   as fibrad_light_spheres; _STATE: the scene has changed
  *   Cost     as fibrad_light_spheres; work memory has 8 bytes for each patch of the task */
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,
-                      double *hits, fibrad_light_ends *kept);
+                      double *hits, fibrad_light_ends *kept, double *apart);
 
 /* A ray of light: the patch that it meets first, and the patch that it meets after it was reflected there. UINT32_MAX:
  * the ray brings no light. */

@@ -283,14 +283,17 @@ struct shine_tasks {
     fibrad_light_ray *ray;     /* [rays], of this light */
     uint32_t rays;
     double *now, *all;      /* [patches], first hits of this light, and of all lights so far */
+    double *power, *apart;  /* [spheres + bodies], first hits of this light, and those of even less odd directions */
     fibrad_light_hits hits; /* of all lights so far */
+    double *cones;          /* [spheres + bodies], squared errors of first hits of all lights so far, from cones */
 };
 
 /* Allocates the arrays, in one block but for kept and ray. hits.spots is the radiation's. */
 static int begin_shine(struct shine_tasks *t) {
     fibrad_radiation *r = t->radiation;
     const size_t patches = fibrad_heat_patches(r->heat);
-    double *block = calloc(3 * patches + r->n + t->bodies + 2, sizeof *block);
+    const size_t surfaces = r->n + t->bodies;
+    double *block = calloc(3 * patches + 4 * surfaces + 2, sizeof *block);
     t->kept = calloc(fibrad_heat_shine_tasks(r->heat) + (size_t)1, sizeof *t->kept);
     if (!block || !t->kept) {
         free(block);
@@ -298,6 +301,7 @@ static int begin_shine(struct shine_tasks *t) {
     }
     t->now = block, t->all = block + patches;
     t->hits = (fibrad_light_hits){t->now, block + 2 * patches, r->light, block + 3 * patches};
+    t->power = block + 3 * patches + surfaces + 2, t->apart = t->power + surfaces, t->cones = t->apart + surfaces;
     return FIBRAD_OK;
 }
 
@@ -310,7 +314,7 @@ static void end_shine(struct shine_tasks *t) {
 static int shine_task(void *tasks, int thread, uint32_t task) {
     const struct shine_tasks *t = tasks;
     return fibrad_heat_shine(t->radiation->heat, &t->radiation->team.work[thread], t->light, task, t->now,
-                             &t->kept[task]);
+                             &t->kept[task], t->apart);
 }
 
 static int scatter_task(void *tasks, int thread, uint32_t task) {
@@ -338,6 +342,22 @@ static int scatter_rays(struct shine_tasks *t) {
     return status;
 }
 
+/* The error of what a surface takes of a cone, over the difference between even and odd directions. */
+#define CONE_ERROR .7
+
+/* Adds the squared errors of first hits of one light: of each sphere the mean of two, from its own difference between
+ * even and odd directions, and from those of all spheres. Walls take what spheres do not. */
+static void add_cone_errors(struct shine_tasks *t) {
+    const uint32_t n = t->radiation->n;
+    double differences = 0, powers = 0;
+    for (uint32_t i = 0; i < n; ++i) differences += t->apart[i] * t->apart[i], powers += t->power[i] * t->power[i];
+    for (uint32_t i = 0; i < n && differences > 0; ++i)
+        t->cones[i] += CONE_ERROR * CONE_ERROR / 2 *
+                       (t->apart[i] * t->apart[i] + t->power[i] * t->power[i] * (differences / powers));
+    for (uint32_t b = n; b < n + t->bodies; ++b)
+        if (t->power[b] > 0) t->cones[b] += CONE_ERROR * CONE_ERROR * differences;
+}
+
 /* Adds the first hits of one light, and has them reflected. Adds to the result what the light brings, and what of it
  * leaves at once. */
 static int shine_one(struct shine_tasks *t, fibrad_light_result *result) {
@@ -356,6 +376,8 @@ static int shine_one(struct shine_tasks *t, fibrad_light_result *result) {
     if (!status)
         status = fibrad_heat_reflect(r->heat, &r->team.work[0], t->light, t->ray, t->rays, t->sources->absorptivity,
                                      t->sources->body_absorptivity, &t->hits);
+    if (!status) status = fibrad_heat_sum_light(r->heat, t->now, t->power, t->power + r->n);
+    if (!status) add_cone_errors(t);
     for (uint32_t a = 0; a < patches; ++a) t->all[a] += t->now[a];
     if (ends.through > ROUNDING * (ends.spheres + ends.through)) result->transmitted += ends.through;
     return status;
@@ -384,18 +406,37 @@ struct arrived {
     double all;            /* what rays and patches have reflected once */
     const double *squares; /* [spheres + bodies + 1] */
     double beams;
+    const double *cones; /* [spheres + bodies] */
 };
 
 static double lesser(double a, double b) { return a < b ? a : b; }
 
-/* The error of what a surface absorbs. error: that of the solution. solved: what it absorbs in the solution. A fraction
- * of the beams that leave patches arrives at the surface; it is taken to be the same for all patches. */
-static double error_with_rays(const struct arrived *a, uint32_t surface, double absorptivity, double error,
-                              double solved) {
+/* The square of the error that rays and beams bring to what a surface absorbs. solved: what it absorbs in the solution.
+ * A fraction of the beams that leave patches arrives at the surface; it is taken to be the same for all patches. */
+static double error_of_rays(const struct arrived *a, uint32_t surface, double absorptivity, double solved) {
     const double share = absorptivity > 0 && a->all > 0 ? lesser(1, fabs(solved) / (absorptivity * a->all)) : 0;
     const double rays = RAYS_ERROR * RAYS_ERROR * a->squares[surface];
     const double beams = BEAMS_ERROR * BEAMS_ERROR * share * (1 - share) * a->beams;
-    return sqrt(error * error + absorptivity * absorptivity * (rays + beams));
+    return absorptivity * absorptivity * (rays + beams);
+}
+
+/* Adds to what n surfaces from number `first` on absorb in the solution what they absorb of `spots`, and to the errors
+ * of the solution those of rays and cones. */
+static void add_spots(const struct arrived *a, uint32_t first, uint32_t n, const double *absorptivity,
+                      const double *spots, double *absorbed, double *error) {
+    for (uint32_t i = 0; i < n; ++i) {
+        const double cone = absorptivity[i] * absorptivity[i] * a->cones[first + i];
+        const double more = error_of_rays(a, first + i, absorptivity[i], absorbed[i]) + cone;
+        if (error) error[i] = sqrt(error[i] * error[i] + more);
+        absorbed[i] += absorptivity[i] * spots[first + i];
+    }
+}
+
+static struct arrived arrived_of(const struct shine_tasks *t) {
+    const uint32_t surfaces = t->radiation->n + t->bodies;
+    struct arrived arrived = {0, t->hits.squares, t->hits.squares[surfaces + 1], t->cones};
+    for (uint32_t a = 0; a < fibrad_heat_patches(t->radiation->heat); ++a) arrived.all += t->hits.light[a];
+    return arrived;
 }
 
 /* Solves for the light that is absorbed. Temperatures are 0, and absorptivities take the place of emissivities. */
@@ -416,22 +457,14 @@ static int absorb(const struct shine_tasks *t, fibrad_light_result *result) {
                                  .body_error = result->body_absorbed_error};
     int status = solve_sources(r, &sources, &solved);
     if (!status) status = fibrad_heat_sum_light(r->heat, t->hits.spots, spots, spots + r->n);
-    struct arrived arrived = {0, t->hits.squares, t->hits.squares[r->n + t->bodies + 1]};
-    for (uint32_t a = 0; a < fibrad_heat_patches(r->heat); ++a) arrived.all += t->hits.light[a];
-    for (uint32_t i = 0; i < r->n && !status; ++i) {
-        if (result->absorbed_error)
-            result->absorbed_error[i] =
-                error_with_rays(&arrived, i, s->absorptivity[i], result->absorbed_error[i], result->absorbed[i]);
-        result->absorbed[i] += s->absorptivity[i] * spots[i];
+    const struct arrived arrived = arrived_of(t);
+    if (!status) {
+        add_spots(&arrived, 0, r->n, s->absorptivity, spots, result->absorbed, result->absorbed_error);
+        add_spots(&arrived, r->n, t->bodies, s->body_absorptivity, spots, result->body_absorbed,
+                  result->body_absorbed_error);
+        const double rays = error_of_rays(&arrived, r->n + t->bodies, 1, solved.surroundings_power);
+        result->error = sqrt(solved.surroundings_error * solved.surroundings_error + rays);
     }
-    for (uint32_t b = 0; b < t->bodies && !status; ++b) {
-        if (result->body_absorbed_error)
-            result->body_absorbed_error[b] = error_with_rays(&arrived, r->n + b, s->body_absorptivity[b],
-                                                             result->body_absorbed_error[b], result->body_absorbed[b]);
-        result->body_absorbed[b] += s->body_absorptivity[b] * spots[r->n + b];
-    }
-    result->error =
-        error_with_rays(&arrived, r->n + t->bodies, 1, solved.surroundings_error, solved.surroundings_power);
     result->reflected = solved.surroundings_power, result->error_patches = solved.error_patches,
     result->sweeps = solved.sweeps;
     free(zero);

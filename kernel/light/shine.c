@@ -142,9 +142,9 @@ static void spread_on_sphere(const shining *s, const fibrad_points *points, cons
     hits[s->heat->first[s->place] + patch_in_window(s, middle[0], middle[1], at)] += power;
 }
 
-/* Adds what the sphere at a place takes in one direction. */
+/* Adds what the sphere at a place takes in one direction. *takes: out: that. */
 static int shine_on_sphere(const fibrad_heat *heat, fibrad_workspace *space, uint32_t place, double flux, double *hits,
-                           fibrad_light_ends *kept) {
+                           fibrad_light_ends *kept, double *takes) {
     const fibrad_scene *scene = heat->scene;
     fibrad_footprint *f = fibrad_light_footprint(space);
     fibrad_points points = {.count = 0};
@@ -162,13 +162,14 @@ static int shine_on_sphere(const fibrad_heat *heat, fibrad_workspace *space, uin
     spread_on_sphere(&s, &points, &space->areas, flux * sum, hits);
     fibrad_light_add_ends(scene, area, flux, kept);
     kept->spheres += flux * sum;
+    *takes = flux * sum;
     return FIBRAD_OK;
 }
 
 /* All directions of a light on the spheres at places begin to end - 1. Errors: as of one sphere; FIBRAD_E_ARGUMENT: no
  * open face lets the light in. */
 static int shine_on_spheres(const fibrad_heat *heat, fibrad_workspace *space, const fibrad_light *light, uint32_t begin,
-                            uint32_t end, double *hits, fibrad_light_ends *kept) {
+                            uint32_t end, double *hits, fibrad_light_ends *kept, double *apart) {
     const uint32_t count = fibrad_light_count(light);
     fibrad_footprint *f = fibrad_light_footprint(space);
     double all = 0;
@@ -178,16 +179,20 @@ static int shine_on_spheres(const fibrad_heat *heat, fibrad_workspace *space, co
         fibrad_footprint_make(f, heat->scene, light, k);
         find_spread(heat, f, shares_of(space));
         all += fibrad_footprint_area(f);
-        for (uint32_t place = begin; place < end && status == FIBRAD_OK; place++)
-            status = shine_on_sphere(heat, space, place, light->flux / count, hits, kept);
+        for (uint32_t place = begin; place < end && status == FIBRAD_OK; place++) {
+            double takes = 0;
+            status = shine_on_sphere(heat, space, place, light->flux / count, hits, kept, &takes);
+            if (count > 1) apart[place - begin] += k % 2 ? -takes : takes;
+        }
     }
     return status != FIBRAD_OK || all > 0 ? status : FIBRAD_E_ARGUMENT;
 }
 
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,
-                      double *hits, fibrad_light_ends *kept) {
+                      double *hits, fibrad_light_ends *kept, double *apart) {
     fibrad_workspace *space;
     fibrad_light_ends sum;
+    double halves[SHINE_SPHERES];
     if (heat == NULL || work == NULL || hits == NULL || kept == NULL || task >= fibrad_heat_shine_tasks(heat))
         return FIBRAD_E_ARGUMENT;
     if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
@@ -199,12 +204,15 @@ int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_l
     if (status == FIBRAD_OK) status = fibrad_light_open(heat->scene, work, extra, &space);
     while (status == FIBRAD_OK) {
         fibrad_copy(hits_before(space), first, bytes);
-        status = shine_on_spheres(heat, space, light, begin, end, hits, &sum);
+        fibrad_zero(halves, sizeof halves);
+        status = shine_on_spheres(heat, space, light, begin, end, hits, &sum, halves);
         if (status == FIBRAD_OK) break;
         fibrad_copy(first, hits_before(space), bytes);
         if (status == FIBRAD_E_WORK) status = fibrad_light_grow(work, extra, &space);
     }
     if (status == FIBRAD_OK) *kept = sum;
+    for (uint32_t place = begin; place < end && status == FIBRAD_OK && apart != NULL; place++)
+        apart[heat->order[place]] = halves[place - begin];
     return status;
 }
 
