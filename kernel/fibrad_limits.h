@@ -64,7 +64,7 @@
 /* Light from outside */
 #define FIBRAD_SUN_HALF_ANGLE           4.65e-3 /* rad */
 #define FIBRAD_HALF_ANGLE_MAX           0.5     /* rad */
-#define FIBRAD_LIGHT_DIRECTIONS_DEFAULT 16
+#define FIBRAD_LIGHT_DIRECTIONS_DEFAULT 16      /* of cones to 0.02 rad; wider ones have as many for each solid angle */
 #define FIBRAD_LIGHT_DIRECTIONS_MAX     4096
 
 #endif

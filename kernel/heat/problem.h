@@ -365,6 +365,16 @@ static inline uint32_t fibrad_heat_fine_on_face(const fibrad_heat *heat, uint32_
     return fibrad_heat_fine_patch(heat, sphere, patch / FIBRAD_HEAT_FOUR, u, v);
 }
 
+/* The patch of a sphere at a place on a face of its cube [squares], fine or not. patch: as above. */
+static inline uint32_t fibrad_heat_patch_on_face(const fibrad_heat *heat, uint32_t sphere, uint32_t patch,
+                                                 const double at[2]) {
+    const uint32_t fine = heat->division.root[sphere] != FIBRAD_NONE
+                              ? fibrad_heat_fine_on_face(heat, sphere, patch, at[0], at[1])
+                              : FIBRAD_NONE;
+    if (fine == FIBRAD_NONE) return heat->first[sphere] + patch;
+    return fibrad_heat_first_fine(heat, sphere) + (fine - FIBRAD_HEAT_FOUR * heat->division.first_four[sphere]);
+}
+
 /* Whether an own four of a sphere is divided. */
 static inline bool fibrad_heat_is_divided(const fibrad_heat *heat, uint32_t sphere, uint32_t own) {
     return heat->division.root[sphere] != FIBRAD_NONE && heat->division.node[heat->division.root[sphere] + own] != 0;
