@@ -208,13 +208,13 @@ void fibrad_heat_find_spans(fibrad_heat *heat) {
 /* The hottest and the coldest place of a sphere. Near a neighbour temperatures differ over lengths much shorter than a
  * patch. So places that face a neighbour are looked at in rings, together with the neighbour (rings/rings.h). Elsewhere
  * the rings are about the hottest or coldest patch, and all light is that of patches. */
-#define NEAR        1.0 /* largest gap to a neighbour, in radii of the smaller sphere */
-#define NEAR_COSINE .985 /* if the cosine between a patch and a neighbour is above this, the patch is the neighbour's */
-#define AROUND      1.3 /* light from elsewhere is found within this many times the angle at which the neighbour sets */
-#define POINTS      4u  /* of an own patch, whose rings are looked up */
-#define MIDDLE_COSINE .8 /* cosine of the angle around an open place within which its middle is looked for */
-#define TRIED       3u   /* hottest places that are looked at in rings, and coldest ones: patches tell them roughly */
-#define APART       1e-6 /* least gap that is used, over the sum of radii: spheres may overlap */
+#define NEAR          1.0  /* largest gap to a neighbour, in radii of the smaller sphere */
+#define NEAR_COSINE   .985 /* patches with a larger cosine to a neighbour belong to the neighbour */
+#define AROUND        1.3  /* light from elsewhere is found within this many times the angle where the neighbour sets */
+#define POINTS        4u   /* of an own patch, whose rings are looked up */
+#define MIDDLE_COSINE .8   /* the middle of an open place is looked for among patches of a larger cosine to it */
+#define TRIED         3u   /* hottest places that are looked at in rings, and coldest: patches tell them roughly */
+#define APART         1e-6 /* least gap that is used, over the sum of radii: spheres may overlap */
 
 /* A place on a sphere. */
 struct place {
@@ -239,7 +239,7 @@ static void rank_place(struct ranking *best, const struct place *place) {
 }
 
 /* The patch of a sphere at a normal. */
-static uint32_t patch_at(const fibrad_heat *heat, uint32_t b, const double normal[3]) {
+static uint32_t patch_facing(const fibrad_heat *heat, uint32_t b, const double normal[3]) {
     double at[2];
     const uint32_t face = fibrad_patch_place(normal, heat->side, at);
     const uint32_t own = fibrad_patch_number(face, (uint32_t)at[0], (uint32_t)at[1], heat->side);
@@ -281,7 +281,7 @@ static uint32_t search_neighbours(const fibrad_heat *heat, uint32_t b, struct ra
                 if (!(place.distance > 0) || place.distance > both + NEAR * fibrad_min(r, scene->r[j])) continue;
                 for (int axis = 0; axis < 3; axis++) place.axis[axis] /= place.distance;
                 place.distance = fibrad_max(place.distance, both * (1 + APART));
-                place.emission = heat->solution.direction[patch_at(heat, b, place.axis)];
+                place.emission = heat->solution.direction[patch_facing(heat, b, place.axis)];
                 rank_place(&best[0], &place), rank_place(&best[1], &place);
                 found++;
                 for (uint32_t k = 0; k < POINTS * heat->config.patches; k++)
@@ -323,7 +323,7 @@ static void average_rings(struct ring_sums *sums) {
     }
 }
 
-static void describe(const fibrad_heat *heat, uint32_t b, const struct ring_sums *mean, fibrad_ringed *sphere) {
+static void put_in_rings(const fibrad_heat *heat, uint32_t b, const struct ring_sums *mean, fibrad_ringed *sphere) {
     sphere->radius = heat->scene->r[b], sphere->emissivity = heat->sources.emissivity[b];
     sphere->unevenness = heat->sources.unevenness[b], sphere->emission = heat->sources.emission[b];
     fibrad_copy(sphere->arriving, mean->arriving, sizeof sphere->arriving);
@@ -348,7 +348,8 @@ static void take_other_off(const fibrad_heat *heat, const fibrad_rings_work *wor
 }
 
 /* The emission at a place minus the mean of the sphere. */
-static double emission_at(const fibrad_heat *heat, uint32_t b, const struct place *place, fibrad_rings_work *work) {
+static double emission_in_rings(const fibrad_heat *heat, uint32_t b, const struct place *place,
+                                fibrad_rings_work *work) {
     struct ring_sums mean[2];
     fibrad_ringed sphere[2];
     const uint32_t count = place->other == FIBRAD_NONE ? 1 : 2;
@@ -356,7 +357,7 @@ static double emission_at(const fibrad_heat *heat, uint32_t b, const struct plac
         const uint32_t body = i == 0 ? b : place->other;
         sum_rings(heat, body, place->axis, i == 0 ? 1 : -1, &mean[i]);
         average_rings(&mean[i]);
-        describe(heat, body, &mean[i], &sphere[i]);
+        put_in_rings(heat, body, &mean[i], &sphere[i]);
     }
     if (count > 1) {
         const double radius[2] = {sphere[0].radius, sphere[1].radius};
@@ -388,14 +389,14 @@ static void move_to_middle(const fibrad_heat *heat, uint32_t b, double sign, str
 static double largest_at(const fibrad_heat *heat, uint32_t b, const struct ranking *best, fibrad_rings_work *work) {
     double most = 0;
     for (uint32_t k = 0; k < best->count; k++)
-        most = fibrad_max(most, best->sign * emission_at(heat, b, &best->place[k], work));
+        most = fibrad_max(most, best->sign * emission_in_rings(heat, b, &best->place[k], work));
     if (best->count == 0 || best->place[0].other != FIBRAD_NONE) return most;
     struct place middle = best->place[0];
     move_to_middle(heat, b, best->sign, &middle);
-    return fibrad_max(most, best->sign * emission_at(heat, b, &middle, work));
+    return fibrad_max(most, best->sign * emission_in_rings(heat, b, &middle, work));
 }
 
-void fibrad_heat_find_extremes(const fibrad_heat *heat, uint32_t b, fibrad_rings_work *work) {
+static void find_extremes(const fibrad_heat *heat, uint32_t b, fibrad_rings_work *work) {
     bool near[FIBRAD_HEAT_PATCHES_MAX] = {0};
     struct ranking facing[2] = {{.sign = -1}, {.sign = 1}}, open[2] = {{.sign = -1}, {.sign = 1}};
     fibrad_heat_span *span = &heat->solution.span[b];
@@ -413,6 +414,10 @@ void fibrad_heat_find_extremes(const fibrad_heat *heat, uint32_t b, fibrad_rings
                  high[2] = {largest_at(heat, b, &facing[1], work), largest_at(heat, b, &open[1], work)};
     span->open_low = low[1] > low[0], span->open_high = high[1] > high[0];
     span->least = -fibrad_max(low[0], low[1]), span->largest = fibrad_max(high[0], high[1]);
+}
+
+void fibrad_heat_find_extremes(const fibrad_heat *heat, uint32_t begin, uint32_t end, fibrad_rings_work *work) {
+    for (uint32_t k = begin; k < end; k++) find_extremes(heat, heat->sequence[k], work);
 }
 
 void fibrad_heat_make_rings(fibrad_heat *heat) {

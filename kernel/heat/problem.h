@@ -182,6 +182,7 @@ typedef struct fibrad_heat_solution {
     double *coarse, *power;  /* [bodies], net power at the coarser level, and extrapolated */
     double *coarse_emission; /* [bodies], E at the coarser level */
     fibrad_heat_span *span;  /* [spheres] */
+    bool steps;              /* this is a step in time: extremes are found when they are asked for */
 } fibrad_heat_solution;
 
 /* From which errors are estimated. */
@@ -432,8 +433,9 @@ void fibrad_heat_find_spans(fibrad_heat *heat);
 /* Makes heat->rings and heat->normal. */
 void fibrad_heat_make_rings(fibrad_heat *heat);
 
-/* Finds span->least and span->largest of a sphere. The solution has ended, and no direction was set since. */
-void fibrad_heat_find_extremes(const fibrad_heat *heat, uint32_t sphere, fibrad_rings_work *work);
+/* Finds the hottest and the coldest places of the spheres from `begin` to `end` - 1 in heat->sequence. The solution has
+ * ended, and no direction was set since. */
+void fibrad_heat_find_extremes(const fibrad_heat *heat, uint32_t begin, uint32_t end, fibrad_rings_work *work);
 
 /* solve.c: prepares the first sweep of a solution. */
 void fibrad_heat_start(fibrad_heat *heat);

@@ -13,6 +13,7 @@
 /* Errors over the quantities from which they are estimated. Measured: docs/methods_heat.md section 9. */
 #define PATCH_ERROR  .2 /* with PATCHES */
 #define PATCHES      96.0
+#define UNEVEN       50 /* 1/(2 k*) of a sphere for whose power this error is half as large again */
 #define WALL_PATCHES .5 /* factor for walls */
 #define BEAM_ERROR   .7
 #define LONE_ERROR   1.2     /* times the share of spheres that only even or only odd directions meet */
@@ -27,9 +28,10 @@
 #define SPAN_ERROR   .015 /* of the extremes of a surface, over their difference from its mean */
 #define SPAN_OPEN    .07  /* the same, with PATCHES, where no neighbour is near */
 #define SPAN_WALL    .08  /* the same if a wall may be near */
-#define SPAN_CROWD   .014 /* times the root of the number of further neighbours, with PATCHES: they are lights of patches */
-#define SPAN_CHANGE  .05  /* error over the difference from the patch */
-#define SAMPLES      3   /* if a kind has fewer samples, those of the other kind are taken as well */
+#define SPAN_CROWD                                                                                                     \
+    .014 /* times the root of the number of further neighbours, with PATCHES: they are lights of patches */
+#define SPAN_CHANGE .05 /* error over the difference from the patch */
+#define SAMPLES     3   /* if a kind has fewer samples, those of the other kind are taken as well */
 
 static double squared(double x) { return x * x; }
 
@@ -161,9 +163,12 @@ static double extrapolation_error(const fibrad_heat *heat, double change) {
     return PATCH_ERROR * fibrad_sqrt(fibrad_sqrt(PATCHES / heat->config.patches)) * change;
 }
 
+/* A sphere that conducts badly has spots smaller than patches where it nearly touches others. */
 static double patch_error(const fibrad_heat *heat, uint32_t b) {
-    const double change = heat->solution.power[b] - heat->solution.coarse[b];
-    return (b < heat->spheres ? 1 : WALL_PATCHES) * extrapolation_error(heat, change);
+    const double change = extrapolation_error(heat, heat->solution.power[b] - heat->solution.coarse[b]);
+    if (b >= heat->spheres) return WALL_PATCHES * change;
+    const double uneven = heat->sources.unevenness[b];
+    return (1 + uneven / (uneven + UNEVEN)) * change;
 }
 
 /* The square of the error over the power of a sphere that comes from few beams on each patch of spheres and walls. */
@@ -650,7 +655,11 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
         if (heat->openings >> k & 1) result->surroundings_power += heat->solution.power[fibrad_heat_body(heat, k)];
         read_beyond(heat, k, result);
     }
+    const bool inside =
+        result->least_temperature != NULL || result->largest_temperature != NULL || result->surface_error != NULL;
     if (heat->contacts.count > 0) find_joined_errors(heat);
+    if (heat->sources.conducts && heat->solution.steps && inside)
+        fibrad_heat_find_extremes(heat, 0, spheres, heat->near);
     read_errors(heat, result);
     result->sweeps = heat->solution.sweeps;
     result->residual = heat->solution.scale > 0 ? fibrad_sqrt(heat->solution.slope / heat->solution.scale) : 0;

@@ -461,6 +461,9 @@ static void finish_powers(fibrad_heat *heat) {
     find_powers(heat, heat->solution.power);
     find_emissions(heat);
     if (heat->sources.afloat) sink(heat);
+    heat->solution.steps = false;
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        heat->solution.steps = heat->solution.steps || heat->sources.hold[b] > 0;
     if (heat->sources.conducts) {
         fibrad_heat_find_spans(heat);
         fibrad_heat_make_rings(heat);

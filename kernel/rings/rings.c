@@ -1,20 +1,20 @@
 /* rings.c - two spheres near each other, in rings about the line of their centres. SPDX-License-Identifier: MIT
  *
- * With the irradiation H and the emission E of a ring let v = H - E. It absorbs eps v and sends J = E + (1 - eps) v. The
- * flux eps v and light that was absorbed besides are conducted: E = E0 + S (eps v + a), S being `spread` times the
+ * With the irradiation H and the emission E of a ring let v = H - E. It absorbs eps v and sends J = E + (1 - eps) v.
+ * The flux eps v and light that was absorbed besides are conducted: E = E0 + S (eps v + a), S being `spread` times the
  * unevenness. H is what arrives from elsewhere plus the factors to the rings of the other sphere times their J. This is
  * a linear system in v of both spheres. */
 #include "base/constants.h"
 #include "base/elementary.h"
 #include "rings/rings.h"
 
-#define RINGS  FIBRAD_RINGS
-#define NARROW 2e-3  /* angle at which the first ring ends */
-#define RATIO  1.4   /* of the angles of successive edges */
-#define WIDEST .255  /* largest width of a ring: with it the rings end at half a turn */
-#define TERMS  3000u /* degrees of the sum for `spread`: a wave of the last one is as wide as the first ring */
-#define TURNS   14  /* places in half a turn around the axis */
-#define STRETCH .45 /* they lie in stretches, each of which is this part of the one before */
+#define RINGS   FIBRAD_RINGS
+#define NARROW  2e-3  /* angle at which the first ring ends */
+#define RATIO   1.4   /* of the angles of successive edges */
+#define WIDEST  .255  /* largest width of a ring: with it the rings end at half a turn */
+#define TERMS   3000u /* degrees of the sum for `spread`: a wave of the last one is as wide as the first ring */
+#define TURNS   14    /* places in half a turn around the axis */
+#define STRETCH .45   /* they lie in stretches, each of which is this part of the one before */
 
 /* The edges of rings are in geometric progression of the angle, as long as rings are not wider than WIDEST. */
 static void find_edges(fibrad_rings *rings) {
@@ -70,7 +70,7 @@ uint32_t fibrad_rings_at(const fibrad_rings *rings, double cosine) {
 }
 
 /* The angle whose cosine is given. */
-static double angle_of(double cosine) {
+static double angle_at(double cosine) {
     const double c = fibrad_max(-1, fibrad_min(1, cosine)), s = fibrad_sqrt(1 - c * c);
     return c < 0 ? FIBRAD_PI - fibrad_quarter_angle(-c, s) : fibrad_quarter_angle(c, s);
 }
@@ -82,8 +82,8 @@ static double factor_of_point(double far, double tilt) {
     if (far * tilt <= -1) return 0;
     const double root = fibrad_sqrt(fibrad_max(0, far * far - 1)), across = fibrad_sqrt(1 - tilt * tilt);
     const double cut = fibrad_sqrt(fibrad_max(0, 1 - far * far * tilt * tilt));
-    return (angle_of(root / (far * across)) +
-            (tilt * angle_of(-root * tilt / across) - root * cut) / (far * far)) / FIBRAD_PI;
+    return (angle_at(root / (far * across)) + (tilt * angle_at(-root * tilt / across) - root * cut) / (far * far)) /
+           FIBRAD_PI;
 }
 
 /* The middle of a ring, and its normal: across the axis and along it. The axis of the other sphere is the reverse. */
@@ -145,12 +145,11 @@ void fibrad_rings_face(const fibrad_rings *rings, const double radius[2], double
     find_turns(&turns);
     for (int i = 0; i < 2; i++)
         for (uint32_t k = 0; k < RINGS; k++)
-            work->facing[i][k] =
-                face_ring(rings, &turns, k, radius[i], radius[1 - i], distance, work->factor[i][k]);
+            work->facing[i][k] = face_ring(rings, &turns, k, radius[i], radius[1 - i], distance, work->factor[i][k]);
 }
 
 /* What the emission of ring k has of each v of its sphere. Returns the emission that is known. */
-static double spread_of(const fibrad_rings *rings, const fibrad_ringed *sphere, uint32_t k, double more[RINGS]) {
+static double conducted_at(const fibrad_rings *rings, const fibrad_ringed *sphere, uint32_t k, double more[RINGS]) {
     double known = sphere->emission;
     for (uint32_t m = 0; m < RINGS; m++) {
         const double spread = sphere->unevenness * rings->spread[k][m];
@@ -168,11 +167,11 @@ static void set_rows(const fibrad_rings *rings, const fibrad_ringed *sphere, uin
     for (uint32_t k = 0; k < RINGS; k++) {
         double *row = work->row[i * RINGS + k];
         fibrad_zero(row, (end + 1) * sizeof *row);
-        row[end] = sphere[i].arriving[k] - spread_of(rings, &sphere[i], k, row + i * RINGS);
+        row[end] = sphere[i].arriving[k] - conducted_at(rings, &sphere[i], k, row + i * RINGS);
         row[i * RINGS + k] += 1;
     }
     for (uint32_t m = 0; m < RINGS && count > 1; m++) {
-        const double known = spread_of(rings, &sphere[j], m, spread);
+        const double known = conducted_at(rings, &sphere[j], m, spread);
         spread[m] += 1 - sphere[j].emissivity;
         for (uint32_t k = 0; k < RINGS; k++) {
             const double factor = work->factor[i][k][m];
@@ -201,7 +200,7 @@ double fibrad_rings_top(const fibrad_rings *rings, const fibrad_ringed *sphere, 
     double spread[RINGS];
     for (uint32_t i = 0; i < count; i++) set_rows(rings, sphere, count, i, work);
     eliminate(work->row, count * RINGS);
-    double top = spread_of(rings, &sphere[0], 0, spread) - sphere[0].emission;
+    double top = conducted_at(rings, &sphere[0], 0, spread) - sphere[0].emission;
     for (uint32_t m = 0; m < RINGS; m++) top += spread[m] * work->row[m][count * RINGS];
     return top;
 }
