@@ -374,7 +374,8 @@ typedef struct fibrad_span {
  *   side_temperature                 constant; not by FACTORS
  *   conductivity                     by FACTORS it must be NULL
  *   conductance                      constant, or changed by a law; contacts by PATCHES only
- *   sigma, tolerance, sweeps_max     as for fibrad_radiation_solve
+ *   sigma, sweeps_max                as for fibrad_radiation_solve
+ *   tolerance                        residual of a stage by patches; 0: a tenth of the span's tolerance
  *
  *   Input    sources: begin with fibrad_heat_sources_init
  *   Output   span: temperature, and the fields marked "out"
