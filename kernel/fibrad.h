@@ -518,8 +518,10 @@ int fibrad_line_set_init(fibrad_line_set **set, void *memory, size_t size, uint3
  *   Errors   0 */
 uint32_t fibrad_line_set_count(const fibrad_line_set *set);
 
-/* For fibrad_beam_rule.chords: exact areas along lines, too. */
-#define FIBRAD_CHORDS_NONE 1
+/* For fibrad_beam_rule.chords: exact areas along lines, too; as many chords as suit the number along directions, too.
+ */
+#define FIBRAD_CHORDS_NONE   1
+#define FIBRAD_CHORDS_SUITED 2
 
 /* How a beam row is integrated. Zeroed: FIBRAD_DIRECTIONS_DEFAULT directions, exact areas, no cutoff, no tolerance. If
  * directions is 0 and there is a tolerance, rows begin with FIBRAD_DIRECTIONS_FIRST directions. */
@@ -531,8 +533,8 @@ typedef struct fibrad_beam_rule {
     uint64_t turn;       /* seed of a random rotation of all directions together; 0: no rotation */
     const fibrad_line_set *lines; /* lines to take; directions, turn, tolerance, points are 0; NULL: directions */
     uint32_t chords;              /* 16, 32 or 64: points on so many chords of each window, which are bits of words;
-                                     FIBRAD_CHORDS_NONE: exact areas; 0: along lines as many chords as suit their number, along
-                                     directions exact areas */
+                                     FIBRAD_CHORDS_NONE: exact areas; FIBRAD_CHORDS_SUITED: as many as suit the
+                                     number; 0: that along lines, exact areas along directions */
 } fibrad_beam_rule;
 
 /* Row i of the view factors of a scene, by parallel beams.

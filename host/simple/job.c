@@ -245,19 +245,30 @@ static uint32_t default_lines(const fibrad_scene_facts *facts) {
     return lines < FIBRAD_LINES_EVEN_MAX ? lines : FIBRAD_LINES_EVEN_MAX;
 }
 
+/* Makes a rule with so many lines. *block: out: to be freed. */
+static int take_lines(fibrad_beam_rule *rule, uint32_t lines, void **block) {
+    const size_t size = fibrad_line_set_size(lines);
+    fibrad_line_set *set = NULL;
+    if (!size) return FIBRAD_E_ARGUMENT;
+    *block = malloc(size);
+    const int status = *block ? fibrad_line_set_init(&set, *block, size, lines, rule->turn) : FIBRAD_E_MEMORY;
+    rule->lines = set, rule->directions = 0, rule->turn = 0;
+    return status;
+}
+
+/* Triangles are seen in one sense of each line, and the senses are spread less evenly than as many directions. So rows
+ * among triangles go along directions. Few spheres have so many lines that these suffice. */
 int fibrad_job_line_rows(fibrad_job *job, const fibrad_beam_rule *beam, fibrad_job_report *report) {
     fibrad_beam_rule rule = beam ? *beam : (fibrad_beam_rule){0};
     void *block = NULL;
     int status = FIBRAD_OK;
     if (takes_lines(&rule)) {
         const uint32_t lines = rule.directions ? rule.directions : default_lines(&job->facts);
-        const size_t size = fibrad_line_set_size(lines);
-        fibrad_line_set *set = NULL;
-        if (!size) return FIBRAD_E_ARGUMENT;
         if (rule.points % 64 || rule.points > 256 || rule.points == 192) return FIBRAD_E_TABLE;
-        block = malloc(size);
-        status = block ? fibrad_line_set_init(&set, block, size, lines, rule.turn) : FIBRAD_E_MEMORY;
-        rule.lines = set, rule.directions = 0, rule.turn = 0;
+        if (job->facts.triangles == 0 || default_lines(&job->facts) > FIBRAD_LINES_AMONG_WALLS)
+            status = take_lines(&rule, lines, &block);
+        else
+            rule.directions = lines, rule.chords = rule.chords ? rule.chords : FIBRAD_CHORDS_SUITED;
         if (rule.points > 0) rule.chords = rule.points / POINTS_PER_CHORD, rule.points = 0;
     }
     if (!status) status = fibrad_job_rows(job, fibrad_job_beam_row, &rule, NULL, NULL, report);

@@ -22,7 +22,8 @@ int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule) 
             return FIBRAD_E_ARGUMENT;
         rule->directions = rule->lines->n;
     }
-    if (rule->chords == 0 && rule->lines != NULL) rule->chords = fibrad_chords_for(rule->directions);
+    if (rule->chords == FIBRAD_CHORDS_SUITED || (rule->chords == 0 && rule->lines != NULL))
+        rule->chords = fibrad_chords_for(rule->directions);
     if (rule->chords == FIBRAD_CHORDS_NONE) rule->chords = 0;
     if (rule->chords != 0 && rule->chords != 16 && rule->chords != 32 && rule->chords != 64) return FIBRAD_E_ARGUMENT;
     if (rule->chords > 0 && rule->points > 0) return FIBRAD_E_ARGUMENT;

@@ -5,7 +5,7 @@
 #include "sample/direction.h"
 #include "row/beam_lanes.h"
 #include "pair/free_pair.h"
-#include "row/legs_lanes.h"
+#include "workspace/legs_lanes.h"
 #include "row/mesh_share_lanes.h"
 #include "row/wall_share_lanes.h"
 #include "row/window_lanes.h"
@@ -16,8 +16,8 @@
 #define FEW_POINTS  64u /* of windows of rows with few windows */
 #define WALL_POINTS 64u /* of windows by masks that look at walls */
 
-/* Spheres look at walls along both senses of their lines if their distance to a wall is below this, in free paths. The
- * others see little of walls. */
+/* Spheres look at walls along both senses of their lines if a wall, or the border of the bed, is nearer than this, in
+ * free paths. The others see little of walls. */
 #define WALL_NEAR 1.2
 
 /* The windows of a row. */
@@ -174,6 +174,17 @@ static void gather_counts(fibrad_workspace *work) {
     }
 }
 
+static bool near_walls(const fibrad_workspace *work) {
+    const fibrad_scene *scene = work->scene;
+    double near = fibrad_wall_nearest(&work->walls->view);
+    for (int axis = 0; axis < 3; axis++) {
+        if (scene->period[axis] > 0) continue;
+        const double border = fibrad_min(work->centre[axis] - scene->low[axis], scene->high[axis] - work->centre[axis]);
+        near = fibrad_min(near, 1 + border * work->inverse);
+    }
+    return near < 1 + WALL_NEAR * work->free_path;
+}
+
 /* Walls share what is open in the windows that spheres share, too. The windows of the other senses only change the
  * proportions. parts: as in fibrad_wall_factors. */
 static void keep_open(fibrad_workspace *work, fibrad_beam_sums *sums, double parts[2]) {
@@ -208,8 +219,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     const double square = 32.0 * windows.words * windows.chords; /* points of masks in the square about a window */
     if (scene->container.walls) {
         work->walls->view = fibrad_wall_view_of(scene, work->place, work->cut, work->reach);
-        windows.both = windows.lines != NULL && scene->mesh.triangles == 0 &&
-                       fibrad_wall_nearest(&work->walls->view) < 1 + WALL_NEAR * work->free_path;
+        windows.both = windows.lines != NULL && scene->mesh.triangles == 0 && near_walls(work);
         fibrad_zero(&work->walls->sums, sizeof work->walls->sums);
         work->walls->sums.addends = range->addends;
     }
