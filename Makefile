@@ -409,6 +409,8 @@ cppcheck:
 ## nightly: long checks that .ci/run leaves out: all bits, all sanitizers, clang-tidy, benches, longer fuzzing
 nightly: bits threads lint bench-quick programs
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
+	BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/couple/check_couple.sh all
+	BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/couple/check_lammps.sh all
 	$(MAKE) sanitized $(ALL_ISAS) OF_MEMORY="$(filter-out accuracy furnace reference reproduce,$(TESTS:tests/test_%.c=%))"
 	$(MAKE) fuzz-fixed $(ALL_ISAS) FUZZ_RUNS="read:40000 kernel:2000 host:300"
 	$(MAKE) fuzz $(ALL_ISAS) FUZZ_SECONDS=900

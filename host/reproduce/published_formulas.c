@@ -65,3 +65,23 @@ double absorptance_two_stream(double emissivity) {
     const double g = depth_factor(emissivity);
     return 3 * g / (1 + 2 * g);
 }
+
+/* The graphite of SANA at 25 to 1000 C, constant beyond. Read. */
+double conductivity_graphite(double kelvins) {
+    static const double celsius[] = {25, 100, 200, 300, 400, 500, 1000}, k[] = {110, 100, 92, 85, 79, 75, 50};
+    const double at = kelvins - 273.15;
+    int i = 1;
+    while (i < 6 && at > celsius[i]) ++i;
+    const double share = fmax(0, fmin(1, (at - celsius[i - 1]) / (celsius[i] - celsius[i - 1])));
+    return k[i - 1] + share * (k[i] - k[i - 1]);
+}
+
+/* Helium: as SANA's authors have it. Read. */
+double conductivity_helium(double kelvins) { return .0025 * pow(kelvins, .72); }
+
+/* Nitrogen: .0258 at 300 K and .065 at 1000 K. From memory. */
+double conductivity_nitrogen(double kelvins) { return .0258 * pow(kelvins / 300, .768); }
+
+/* Beds of pebbles of 1 mm, solid fraction .63, 45 to 800 C. Fits of measurements. Read. */
+double bed_of_titanate(double celsius) { return .9922 + 1.7859e-4 * celsius + 1.9879e-7 * celsius * celsius; }
+double bed_of_silicate(double celsius) { return .97198 + 5.04496e-4 * celsius + 3.30432e-7 * celsius * celsius; }

@@ -228,6 +228,7 @@ typedef struct fibrad_light_result {
     double transmitted;          /* sigma K^4 L^2, out: light that leaves without having met anything */
     double reflected;            /* sigma K^4 L^2, out: light that leaves after reflections, on any side */
     double error;                /* sigma K^4 L^2, out: estimated error of reflected */
+    double error_patches;        /* sigma K^4 L^2, out: part of absorbed_error that more patches make smaller, r.m.s. */
     uint32_t sweeps;             /* out */
     uint32_t lights;             /* out: number of lights taken; after an error, index of the light at fault */
     const double *patches;       /* [patches], out: what fibrad_heat_sources.absorbed takes */
@@ -373,7 +374,8 @@ typedef struct fibrad_span {
  *   side_temperature                 constant; not by FACTORS
  *   conductivity                     by FACTORS it must be NULL
  *   conductance                      constant, or changed by a law; contacts by PATCHES only
- *   sigma, tolerance, sweeps_max     as for fibrad_radiation_solve
+ *   sigma, sweeps_max                as for fibrad_radiation_solve
+ *   tolerance                        residual of a stage by patches; 0: a tenth of the span's tolerance
  *
  *   Input    sources: begin with fibrad_heat_sources_init
  *   Output   span: temperature, and the fields marked "out"
