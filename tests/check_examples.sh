@@ -1,8 +1,8 @@
 #!/bin/sh
 # check_examples.sh - the complete programs in README.md and docs/ build without warnings and run. SPDX-License-Identifier: MIT
 #
-# Programs are blocks of C or C++ with a main. They are linked with libfibrad.a, those that include fibrad_host.h also
-# with libfibrad_host.a. A comment in the page before a block,
+# Programs are blocks of C or C++ with a main, and files of docs/examples that include fibrad. They are linked with
+# libfibrad.a, those that include fibrad_host.h also with libfibrad_host.a. A comment in the page before a block,
 #     <!-- at most NUMBER lines from FIRST to LAST -->
 # bounds the lines of code from the first line that begins with FIRST to the next one that begins with LAST, indented or
 # not (a LAST of } is not indented), as .clang-format has them.
@@ -28,6 +28,9 @@ awk -v to="$work" '
     }
     inside { text = text $0 "\n"; next }
     NF { bound = "" }' README.md docs/*.md
+for program in docs/examples/*; do
+    if grep -q '^#include "fibrad' "$program"; then cp "$program" "$work/docs_examples_${program##*/}" || exit 1; fi
+done
 
 # lines of code from FIRST to LAST in FILE, without blank lines and lines of comment; 0: not found
 lines_of() { # FILE FIRST LAST
