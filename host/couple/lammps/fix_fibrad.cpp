@@ -80,8 +80,8 @@ class FixFibrad::Words {
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     : Fix(lammps, narg, arg), temperature(), kept_bit(0), surroundings{-1, ""}, columns(1), sampling(false),
       accuracy(false), cylinder(2), sigma(0), initial(0), config(), meshes(), moving(false), insitu(nullptr), totals(),
-      warned(false), wall_warned(false), cut_warned(false), told(), set_up(-1), powers_at(0), lost(0), restarted(false),
-      begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
+      warned(false), wall_warned(false), told(), set_up(-1), powers_at(0), lost(0), restarted(false), begun(0),
+      before(), rows_made(0), rows_followed(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // the default of docs/lammps.md
@@ -169,7 +169,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     nevery = heat_every ? heat_every : rows_every;
     scalar_flag = vector_flag = peratom_flag = 1;
     size_peratom_cols = columns > 1 ? columns : 0;
-    size_vector = 5 + (int)walls.size() + 3 + (int)walls.size();
+    size_vector = 5 + (int)walls.size() + 3 + (int)walls.size() + 1;
     restart_global = wall_heat.any() || moving;
     global_freq = peratom_freq = 1;
     extscalar = extvector = 0;
@@ -481,9 +481,9 @@ void FixFibrad::setup(int) {
     fibrad_insitu_facts_get(insitu, &facts);
     double bytes = (double)facts.bytes;
     MPI_Allreduce(MPI_IN_PLACE, &bytes, 1, MPI_DOUBLE, MPI_MAX, world);
-    say(text("fix fibrad: %.0f particles, cutoff %g, %.0f entries, at most %.1f MB a rank, rows in %.2g s",
-             (double)facts.particles, facts.cutoff, (double)facts.entries, bytes / 1e6,
-             facts.seconds_rows - before.seconds_rows));
+    say(text("fix fibrad: %.0f particles, %s, %.0f entries, at most %.1f MB a rank, rows in %.2g s",
+             (double)facts.particles, facts.cutoff > 0 ? text("cutoff %g", facts.cutoff).c_str() : "no cutoff",
+             (double)facts.entries, bytes / 1e6, facts.seconds_rows - before.seconds_rows));
 }
 
 void FixFibrad::post_run() {
@@ -600,14 +600,6 @@ void FixFibrad::make_rows(bool follow) {
         error->all(FLERR, std::string("fix fibrad: ") + fibrad_insitu_message(insitu) + ", `wall zhi open`");
     check(status);
     (follow ? rows_followed : rows_made)++;
-    fibrad_insitu_facts facts;
-    fibrad_insitu_facts_get(insitu, &facts);
-    if (facts.beyond > FIBRAD_BEYOND_MUCH && !cut_warned && comm->me == 0)
-        error->warning(
-            FLERR,
-            text("fix fibrad: %.2g %% of what particles emit goes beyond the cutoff %g: `cutoff` should be larger",
-                 100 * facts.beyond, facts.cutoff));
-    cut_warned = cut_warned || facts.beyond > FIBRAD_BEYOND_MUCH;
     tell_strays();
     if (!rows_file.empty() && !follow)
         check(fibrad_insitu_write(insitu, (rows_file + "." + std::to_string(update->ntimestep)).c_str()));
@@ -617,8 +609,10 @@ void FixFibrad::tell_strays() {
     for (int kind = 0; kind < FIBRAD_REMARKS; kind++) {
         const char *remark = fibrad_insitu_remark(insitu, kind);
         if (*remark && !told[kind] && comm->me == 0)
-            error->warning(FLERR, text("fix fibrad: %s, at step %s; `strict yes` would end the run", remark,
-                                       std::to_string(update->ntimestep).c_str()));
+            error->warning(
+                FLERR,
+                text("fix fibrad: %s, at step %s; %s", remark, std::to_string(update->ntimestep).c_str(),
+                     kind == FIBRAD_REMARK_BEYOND ? "`cutoff` should be larger" : "`strict yes` would end the run"));
         told[kind] = told[kind] || *remark;
     }
 }
@@ -846,10 +840,11 @@ double FixFibrad::compute_vector(int n) {
     const double first[] = {totals.surroundings, facts.beyond, facts.error, facts.seconds_rows, facts.seconds_powers};
     const double strays[] = {(double)facts.outside, (double)facts.overlapping, (double)facts.behind};
     const int last = 5 + (int)walls.size();
-    return n < 5          ? first[n]
-           : n < last     ? totals.body[n - 5]
-           : n < last + 3 ? strays[n - last]
-                          : wall_kelvins[n - last - 3].value;
+    return n < 5                 ? first[n]
+           : n < last            ? totals.body[n - 5]
+           : n < last + 3        ? strays[n - last]
+           : n < size_vector - 1 ? wall_kelvins[n - last - 3].value
+                                 : (double)facts.gone;
 }
 
 double FixFibrad::memory_usage() {

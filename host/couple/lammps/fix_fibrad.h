@@ -147,7 +147,6 @@ class FixFibrad : public Fix {
     std::vector<int> member;     // atoms of the group that this rank owns
     std::vector<uint64_t> tags;  // [member], their ids
     bool warned, wall_warned;    // whether the warnings about steps of particles and of walls were given
-    bool cut_warned;             // whether the warning about the cutoff was given
     bool told[FIBRAD_REMARKS];   // whether the warning about strays of each kind was given
     bigint set_up;               // step of the last setup
     bigint powers_at;            // step of the last powers
