@@ -173,6 +173,8 @@ run 1 lid mesh.lmp data "$work/quarter.data" walls "$sides wall zhi 300 1 at 20"
 run 2 rim mesh.lmp data "$work/quarter.data" walls "$sides wall zhi open" shown "$gained f_rad[1]"
 test -n "$(grep -A1 '^ *Step' "$work/rim.log")" && near "$work/lid.out" "$work/open1.out" 1e-10 "a bed without a lid" &&
     near "$work/open1.out" "$work/open2.out" 1e-10 "a bed without a lid, np 1 and 2"
+grep -q 'f_rad\[1\] surroundings.*, \[10\] wall zlo, \[11\] outside' "$work/rim.log"
+verdict "elements of the output are named" $?
 run 1 endless mesh.lmp data "$work/quarter.data" walls "$sides" shown "$gained"
 grep -q 'wall zhi open' "$work/endless.log"
 verdict "a bed without a lid and without an opening is refused" $?
@@ -467,6 +469,9 @@ fails "rad and bad both radiate from atom" "two fixes on one particle" \
 fails "no equal-style variable" "a variable that is not there" floor "zlo v_none 0.9"
 fails "has a temperature of its own, not v_hot" "a capacity beside a variable" floor "zlo v_hot 0.9 capacity 3e5"
 fails "too long for wall 1" "steps of heat too long for a wall" floor "zlo 1000 0.9 at 0 capacity 1e4" heat 1
+fails "variable .moves. is not of equal style" "a variable of atoms" floor "zlo v_moves 0.9" also "variable moves atom x"
+fails "an open side has no temperature" "an opening with a temperature" floor "zlo 1000 0.9 wall zhi open 300"
+fails ".0.7. is a number too many" "an emissivity for one type too many" radiates "type 0.5 0.8 0.7"
 fails "capacity must be in" "a capacity of 0" floor "zlo 1000 0.9 capacity 0"
 fails "low, normal or high, not .fine" "an accuracy that is not there" strict "no accuracy fine"
 table wrong 300 .5 900 1.5

@@ -32,6 +32,12 @@ __attribute__((format(printf, 1, 2))) static std::string text(const char *format
     return buffer;
 }
 
+static bool is_number(const std::string &word) {
+    char *end;
+    strtod(word.c_str(), &end);
+    return !word.empty() && !*end;
+}
+
 // ---- the command ------------------------------------------------------------------------------------------------
 
 // A walk along the words of the command behind the style.
@@ -58,6 +64,7 @@ class FixFibrad::Words {
         return value;
     }
     double number() { return utils::numeric(FLERR, next().c_str(), false, lmp); }
+    bool next_is_number() const { return more() && is_number(words[at]); }
     bool next_is_vector() const { return more() && words[at].compare(0, 2, "d_") == 0; } // of fix property/atom
     int count(const char *what, int low) {
         const int value = utils::inumeric(FLERR, next().c_str(), false, lmp);
@@ -132,6 +139,8 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
             config.one_way = words.yes_or_no();
         else if (key == "strict")
             config.strict = words.yes_or_no();
+        else if (is_number(key))
+            error->all(FLERR, "fix fibrad: `" + key + "` is a number too many, or its keyword is missing");
         else
             error->all(FLERR, "fix fibrad: there is no keyword `" + key + "`");
     }
@@ -253,7 +262,10 @@ void FixFibrad::read_wall(Words &words) {
 void FixFibrad::read_opening(Words &words, int face) {
     const double huge = 1e300;
     fibrad_plane opening = {face / 2, face % 2, NAN};
-    if (words.take("at")) opening.at = words.number("the place of an open side", -huge, huge);
+    const bool at = words.take("at");
+    if (at) opening.at = words.number("the place of an open side", -huge, huge);
+    if (!at && words.next_is_number())
+        error->all(FLERR, std::string("fix fibrad: an open side has no temperature: it has that of the surroundings"));
     openings.push_back(opening);
 }
 
@@ -471,6 +483,7 @@ static double clock_of(const Update *update) {
 void FixFibrad::setup(int) {
     begun = MPI_Wtime();
     if (restarted) lost -= clock_of(update), restarted = false; // LAMMPS sets its clock when a run begins
+    if (set_up < 0) list_output();
     set_up = update->ntimestep;
     fibrad_insitu_facts_get(insitu, &before);
     refuse_second();
@@ -484,6 +497,23 @@ void FixFibrad::setup(int) {
     say(text("fix fibrad: %.0f particles, %s, %.0f entries, at most %.1f MB a rank, rows in %.2g s",
              (double)facts.particles, facts.cutoff > 0 ? text("cutoff %g", facts.cutoff).c_str() : "no cutoff",
              (double)facts.entries, bytes / 1e6, facts.seconds_rows - before.seconds_rows));
+}
+
+// Says what the elements of the global vector are.
+void FixFibrad::list_output() {
+    static const char *const faces[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
+    const int count = (int)walls.size();
+    std::string list = "[1] surroundings, [2] beyond, [3] error, [4] [5] seconds";
+    for (int w = 0; w < count; w++) {
+        const fibrad_body &body = walls[w];
+        const std::string name = body.kind == FIBRAD_BODY_PLANE      ? faces[2 * body.plane.axis + body.plane.upper]
+                                 : body.kind == FIBRAD_BODY_CYLINDER ? "cylinder"
+                                                                     : "mesh";
+        list += text(", [%d] wall ", 6 + w) + name;
+    }
+    list += text(", [%d] outside, [%d] overlapping, [%d] behind", 6 + count, 7 + count, 8 + count);
+    if (count) list += text(", [%d] to [%d] temperatures of walls", 9 + count, 8 + 2 * count);
+    say(text("fix fibrad: f_%s", id) + list + text(", [%d] gone", 9 + 2 * count));
 }
 
 void FixFibrad::post_run() {
@@ -644,7 +674,8 @@ void FixFibrad::find_temperatures() {
         if (t.variable.empty()) return t.value;
         const int k = input->variable->find(t.variable.c_str());
         if (k < 0 || !input->variable->equalstyle(k))
-            error->all(FLERR, "fix fibrad: there is no equal-style variable `" + t.variable + "`");
+            error->all(FLERR, "fix fibrad: " + (k < 0 ? "there is no equal-style variable `" + t.variable + "`"
+                                                      : "the variable `" + t.variable + "` is not of equal style"));
         const double value = input->variable->compute_equal(k);
         if (!(value >= 0 && value < HUGE_VAL))
             error->all(FLERR, text("fix fibrad: the temperature v_%s is %g", t.variable.c_str(), value));

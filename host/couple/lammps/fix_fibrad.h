@@ -109,6 +109,7 @@ class FixFibrad : public Fix {
     void follow_heatflow();
     void check_step(const std::vector<double> &temperature); // refuses steps of heat that are not stable
     void check_walls();
+    void list_output();
     void judge_step(const std::string &name, double ratio, bool &already_warned);
     void check(int status);        // stops with the message of an error
     void say(const std::string &); // a line in the log
