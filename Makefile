@@ -448,7 +448,7 @@ install: install-lib $(BUILD)/fibrad man
 	install $(BUILD)/fibrad $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(BUILD)/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	install -m 644 host/cli/man/fibrad.bash $(COMPLETIONS)/fibrad
-	install -m 644 README.md CHANGELOG.md LICENSE $(DESTDIR)$(PREFIX)/share/doc/fibrad
+	install -m 644 README.md CHANGELOG.md LICENSE CITATION.cff SECURITY.md $(DESTDIR)$(PREFIX)/share/doc/fibrad
 	install -m 644 docs/*.md $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs
 	install -m 644 docs/figures/* $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs/figures
 
