@@ -288,6 +288,9 @@ typedef struct fibrad_body {
  * axis the box repeats without end. If the occupancy is periodic and the way is longer than 100 of its periods, the
  * radiation counts as `beyond`. If there is neither a cutoff nor a known region, `beyond` is 0.
  *
+ * A periodic scene may have an occupancy of all its spheres without a cutoff. It then tells where lines between walls
+ * end whose directions spread about that of a window (docs/methods.md section 11).
+ *
  * A scene may have spheres outside its known region. View factors count these spheres, if they are within the cutoff.
  * Paths after a reflection do not meet these spheres. */
 /* Where a bed has spheres: the marked cells of a box. There is no part of any sphere in other cells or outside the box.

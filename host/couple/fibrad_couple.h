@@ -109,9 +109,10 @@ int fibrad_accuracy_named(const char *name);
 
 /* How rows are made. The same on all ranks. Zeroed: all defaults.
  *
- * The default cutoff R bounds the number of particles that ranks send each other. R begins at the largest diameter plus
- * 8 mean radii. R is multiplied by 1.25 as long as a cube of side 2 R then has no more than 1e5 particles and images.
- * The default is no longer than the bed. Rows take about as long with any cutoff. */
+ * Up to 1e6 particles there is no cutoff by default, and each rank has all particles while rows are made. With more
+ * particles the default cutoff R bounds the number of particles that ranks send each other. R begins at the largest
+ * diameter plus 8 mean radii. R is multiplied by 1.25 as long as a cube of side 2 R then has no more than 1e5 particles
+ * and images. The default is no longer than the bed. Rows take about as long with any cutoff. */
 typedef struct fibrad_insitu_config {
     double cutoff;       /* L, as in fibrad_exchange_rule, at least the largest diameter; 0: see above */
     uint32_t directions; /* as in fibrad_exchange_rule; 0: those of `accuracy` */
@@ -166,7 +167,8 @@ typedef struct fibrad_insitu_totals {
     double body[FIBRAD_BODIES_MAX]; /* sigma K^4 L^2, [bodies of the rows] */
 } fibrad_insitu_totals;
 
-/* If facts.beyond is above this, powers of surroundings and walls may be wrong by this fraction and more. */
+/* A particle is remarked if a larger fraction of its emission has no known end. Its power may be wrong by this
+ * fraction. */
 #define FIBRAD_BEYOND_MUCH 0.005
 
 /* Facts of the last rows, of all ranks together except halo and bytes. */
@@ -174,8 +176,9 @@ typedef struct fibrad_insitu_facts {
     uint64_t particles, entries; /* numbers of particles that take part and of entries of rows */
     uint64_t outside;            /* number of particles that are left out */
     uint64_t overlapping;        /* number of particles that are smaller, since a centre lies inside another particle */
+    uint64_t gone;               /* number of particles that have gone since all rows were made */
     uint64_t behind;             /* number of particles without a row, since they see a side that belongs to no wall */
-    double cutoff;               /* L, in use */
+    double cutoff;               /* L, in use; 0: none, each rank has all particles */
     double beyond;               /* mean fraction of the emission that leaves the cutoff among particles. Its end is not
                                     followed; all other targets get it, in proportion. */
     double error;                /* root mean square of the rows' estimated errors */
@@ -200,7 +203,9 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
  *            step: any number, seeds the random numbers
  *   Errors   _ARGUMENT: a value is out of its range, an id occurs twice, or the cutoff is less than the largest
  *            diameter or more than 100 periods
- *            _GEOMETRY: a centre lies inside an image of its own particle
+ *            _GEOMETRY: a centre lies inside an image of its own particle; the largest radius is more than a period;
+ *            particles have more than 64 centres of others inside, on the mean; in the first rows more than a tenth of
+ *            all particles would be left out
  *            _ENDLESS: walls, as for fibrad_scene_init
  *            _BACK: more than a tenth of all particles see a side of a triangle that belongs to no wall
  *            _MEMORY
@@ -253,15 +258,16 @@ int fibrad_insitu_write(fibrad_insitu *insitu, const char *path);
  *   Errors   none */
 const char *fibrad_insitu_message(const fibrad_insitu *insitu);
 
-/* What fibrad_insitu_rows has done with strays. */
+/* What fibrad_insitu_rows has done with strays, and whom a cutoff concerns. */
 typedef enum fibrad_remark_kind {
     FIBRAD_REMARK_OUTSIDE = 0, /* particles are left out */
     FIBRAD_REMARK_OVERLAP = 1, /* particles are smaller, since a centre lies inside another particle */
     FIBRAD_REMARK_BACK = 2,    /* particles have no row, since they see a side that belongs to no wall */
-    FIBRAD_REMARKS = 3
+    FIBRAD_REMARK_BEYOND = 3,  /* more than FIBRAD_BEYOND_MUCH of what particles emit goes beyond the cutoff */
+    FIBRAD_REMARKS = 4
 } fibrad_remark_kind;
 
-/* A sentence on the strays of one kind in the last rows. The sentence has the number of the strays. It names one of
+/* A sentence on the particles of one kind in the last rows. The sentence has their number. It names one of
  * them by its id, with its place and wall. Not collective, the same on all ranks.
  *   Input    kind: a fibrad_remark_kind
  *   Output   never NULL; "" if there are none

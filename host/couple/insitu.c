@@ -20,6 +20,7 @@
 #define PART_LEAST   1e-3 /* a particle whose radius would be reduced to less is left out */
 #define CHANGED_MOST 0.1  /* part of all particles that may come or go before all rows are made anew */
 #define BACKS_MOST   0.1  /* part of all particles that may see what belongs to no wall */
+#define OUTSIDE_MOST 0.1  /* part of all particles that may be left out of the first rows */
 
 /* ---- begin and end ---- */
 
@@ -76,7 +77,7 @@ static void close_set(fibrad_insitu_set *set, int threads) {
     free(set->rows);
     fibrad_link_free(set->seen);
     fibrad_link_free(set->present);
-    fibrad_block *const blocks[] = {&set->particle, &set->id,    &set->weight, &set->root,
+    fibrad_block *const blocks[] = {&set->particle, &set->id,    &set->weight, &set->root, &set->unknown,
                                     &set->emission, &set->power, &set->now,    NULL};
     free_blocks(blocks);
 }
@@ -132,7 +133,7 @@ static size_t set_bytes(const fibrad_insitu_set *set, int threads) {
     size_t sum =
         set->particle.size + set->id.size + set->weight.size + set->emission.size + set->power.size + set->root.size;
     for (int t = 0; t < threads; ++t) sum += set->rows[t].memory.size;
-    return sum + set->now.size;
+    return sum + set->now.size + set->unknown.size;
 }
 
 void fibrad_insitu_facts_get(const fibrad_insitu *s, fibrad_insitu_facts *facts) {
@@ -295,6 +296,22 @@ static double default_cutoff(const fibrad_insitu_build *b, const double ends[6],
     return cutoff;
 }
 
+/* Without particles a bed ends with its box, or a little beyond the outermost plane. */
+static void take_box_ends(fibrad_insitu_build *b) {
+    double longest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        b->ends[0][axis] = b->bed->low[axis], b->ends[1][axis] = b->bed->high[axis];
+        for (uint32_t k = 0; k < b->bed->bodies; ++k) {
+            const fibrad_body *body = &b->bed->body[k];
+            if (body->kind != FIBRAD_BODY_PLANE || body->plane.axis != axis) continue;
+            b->ends[0][axis] = fmin(b->ends[0][axis], body->plane.at);
+            b->ends[1][axis] = fmax(b->ends[1][axis], body->plane.at);
+        }
+        longest = fmax(longest, b->ends[1][axis] - b->ends[0][axis]);
+    }
+    b->radius_mean = 1e-3 * longest;
+}
+
 /* Finds extents, radii and the cutoff. They must be the same to the bit whoever owns which particle. So the mean radius
  * comes from a sum of whole numbers. */
 static int measure_bed(fibrad_insitu_build *b) {
@@ -320,29 +337,35 @@ static int measure_bed(fibrad_insitu_build *b) {
     MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_UINT64_T, MPI_SUM, b->s->comm);
     b->to->facts = (fibrad_insitu_facts){.particles = sum[0], .step = b->step};
     b->radius_max = most[0];
-    for (uint32_t k = 0; k < b->bed->openings && sum[0]; ++k) {
-        fibrad_plane *opening = &b->opening[k];
-        if (!isnan(b->bed->opening[k].at)) continue;
-        opening->at = opening->upper ? most[8 + opening->axis] : -most[11 + opening->axis];
-    }
     for (int axis = 0; axis < 3; ++axis) b->ends[0][axis] = -most[11 + axis], b->ends[1][axis] = most[8 + axis];
+    if (!sum[0]) take_box_ends(b);
+    for (uint32_t k = 0; k < b->bed->openings; ++k) {
+        fibrad_plane *opening = &b->opening[k];
+        if (isnan(b->bed->opening[k].at)) opening->at = b->ends[opening->upper][opening->axis];
+    }
     if (sum[0]) b->radius_mean = (double)sum[1] / (double)sum[0] / 0x1p32 * b->radius_max;
-    b->cutoff = config->cutoff > 0 || !sum[0] ? config->cutoff : default_cutoff(b, most + 2, (double)sum[0]);
-    if (b->cutoff < 2 * b->radius_max)
+    b->whole = !(config->cutoff > 0) && (double)sum[0] <= FIBRAD_GATHER_MOST;
+    b->cutoff = config->cutoff > 0 || b->whole ? config->cutoff : default_cutoff(b, most + 2, (double)sum[0]);
+    if (!b->whole && b->cutoff < 2 * b->radius_max)
         status = fibrad_refuse(b->s->message, FIBRAD_E_ARGUMENT,
                                "the cutoff %g is less than the diameter of the largest particle, %g", b->cutoff,
                                2 * b->radius_max);
     b->to->facts.cutoff = b->cutoff;
-    b->reach = b->cutoff + REACH_RADII * b->radius_max;
+    b->reach = b->whole ? 2 * b->radius_max : b->cutoff + REACH_RADII * b->radius_max;
     b->to->emissive = -most[1] < 1;
     b->to->conducts = most[14] > 0;
     for (uint32_t k = 0; k < b->bed->bodies; ++k) b->to->emissive |= b->bed->body_emissivity[k] < 1;
     for (int axis = 0; axis < 3; ++axis) {
         const bool periodic = b->period[axis] > 0;
+        b->repeats |= periodic;
         const int turned = fibrad_turned_axis(b->bed->cylinder, axis);
         b->map.periodic[turned] = periodic;
         b->map.low[turned] = periodic ? b->bed->low[axis] : -most[5 + axis] - b->radius_max;
         b->map.high[turned] = periodic ? b->bed->high[axis] : most[2 + axis] + b->radius_max;
+        if (periodic && !status && !(b->radius_max < b->period[axis]))
+            status = fibrad_refuse(b->s->message, FIBRAD_E_GEOMETRY,
+                                   "the largest radius, %g, is more than the period along %c, %g", b->radius_max,
+                                   "xyz"[axis], b -> period[axis]);
         if (periodic && !status && !(b->reach < PERIODS_MAX * b->period[axis]))
             status = fibrad_refuse(b->s->message, FIBRAD_E_ARGUMENT, "the cutoff is more than %d periods along %c",
                                    PERIODS_MAX, "xyz"[axis]);
@@ -403,6 +426,7 @@ static int part_overlaps(fibrad_insitu_build *b) {
     int status = fibrad_block_fit(&s->emissivity, b->own, sizeof(double));
     double *part = s->emissivity.at;
     if (!status) status = fibrad_overlaps(b->to->particle.at, b->own, b->own + b->halo, part, remark);
+    if (status) fibrad_refuse(s->message, status, "%s", remark->message);
     status = fibrad_agree(s->comm, status, s->message);
     if (status) return status;
     fibrad_remark_agree(s->comm, remark);
@@ -433,27 +457,28 @@ static int name_scene_fault(const fibrad_insitu_build *b, int status, const uint
 
 int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t n, uint64_t *id) {
     fibrad_insitu *s = b->s;
+    const bool images = id && !b->whole, marked = id && b->to->facts.particles && (images || b->repeats);
     if (n > FIBRAD_SPHERES_MAX) return FIBRAD_E_MEMORY;
     struct scene_walls walls;
     turn_walls(b, &walls);
     const size_t size =
         fibrad_scene_size((uint32_t)n, id != NULL) + fibrad_triangles_size(walls.triangles.n, (uint32_t)n);
-    if (fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&s->emissivity, 3 * n, sizeof(double)))
+    if (fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&s->emissivity, 3 * n + 1, sizeof(double)))
         return FIBRAD_E_MEMORY;
     double *emissivity = s->emissivity.at;
     for (size_t i = 0; i < n; ++i) {
         if (id) id[i] = p[i].id;
         emissivity[i] = p[i].emissivity, emissivity[n + i] = p[i].conductivity, emissivity[2 * n + i] = p[i].node;
     }
-    fibrad_scene_config config = {0}; /* without particles: an empty scene */
-    if (n)
+    fibrad_scene_config config = {0}; /* no rows: an empty scene */
+    if (n || !id)
         config = (fibrad_scene_config){.body = walls.body,
                                        .bodies = b->bed->bodies,
                                        .opening = walls.opening,
                                        .openings = b->openings,
-                                       .occupancy = id ? &b->map : NULL,
+                                       .occupancy = marked ? &b->map : NULL,
                                        .triangles = &walls.triangles};
-    if (n && !id) memcpy(config.period, walls.period, sizeof config.period);
+    if ((n || !id) && !images) memcpy(config.period, walls.period, sizeof config.period);
     const uint32_t stride = sizeof *p / sizeof(double);
     const double *x[3];
     fibrad_turn_arrays(b->bed->cylinder, (const double *const[]){&p->x[0], &p->x[1], &p->x[2]}, x);
@@ -562,6 +587,16 @@ static int compute_rows(fibrad_insitu_build *b) {
     return status;
 }
 
+/* Agrees on the particles that are left out. Too many of them in the first rows tell that walls or radii are wrong. */
+static int check_outside(fibrad_insitu_build *b) {
+    fibrad_remark *remark = &b->remark[FIBRAD_REMARK_OUTSIDE];
+    const uint64_t particles = b->to->facts.particles;
+    fibrad_remark_agree(b->s->comm, remark);
+    if (b->s->ready || (double)remark->count <= OUTSIDE_MOST * (double)(particles + remark->count)) return FIBRAD_OK;
+    return fibrad_refuse(b->s->message, FIBRAD_E_GEOMETRY, "%" PRIu64 " of %" PRIu64 " particles cannot take part; %s",
+                         remark->count, particles + remark->count, remark->message);
+}
+
 /* Agrees on the particles without rows, and refuses too many of them. */
 static int check_backs(fibrad_insitu_build *b) {
     fibrad_remark *remark = &b->remark[FIBRAD_REMARK_BACK];
@@ -619,6 +654,7 @@ static int list_home(fibrad_insitu_build *b) {
     if (fibrad_block_fit(&to->particle, to->own, sizeof(fibrad_particle)) ||
         fibrad_block_fit(&to->weight, to->columns, sizeof(double)) ||
         fibrad_block_fit(&to->root, to->own, sizeof(double)) ||
+        fibrad_block_fit(&to->unknown, to->own, sizeof(double)) ||
         fibrad_block_fit(&b->s->solver, to->conducts ? 4 * to->own : 0, sizeof(double)) ||
         fibrad_block_fit(&to->emission, to->columns, sizeof(double)) ||
         fibrad_block_fit(&to->power, to->columns, sizeof(double)) ||
@@ -627,9 +663,11 @@ static int list_home(fibrad_insitu_build *b) {
         return FIBRAD_E_MEMORY;
     fibrad_particle *p = to->particle.at;
     const fibrad_particle *old = set->particle.at;
+    double *unknown = to->unknown.at;
+    const double *before = set->unknown.at;
     size_t own = b->fresh;
     for (size_t c = 0; b->follows && c < set->own; ++c)
-        if (b->follow.there[c]) p[own++] = old[c];
+        if (b->follow.there[c]) unknown[own] = before[c], p[own++] = old[c];
     const uint32_t *number = b->s->order.at; /* of columns; 0: not seen */
     fibrad_place *place = b->s->sent.at;     /* of particles seen, for link_seen */
     for (size_t i = b->own; i < b->own + b->halo && !b->follows; ++i)
@@ -667,8 +705,9 @@ static int find_changes(fibrad_insitu_build *b) {
     const int status = fibrad_follow_find(&b->follow, s, b->to->particle.at, b->own, 0);
     if (status) return status;
     b->to->changed = s->set.changed + b->follow.came + b->follow.gone;
+    b->to->facts.gone = s->set.facts.gone + b->follow.gone;
     b->follows = (double)b->to->changed <= CHANGED_MOST * (double)b->to->facts.particles;
-    if (!b->follows) b->to->changed = b->follow.kept = b->follow.kept_seen = 0;
+    if (!b->follows) b->to->facts.gone = b->to->changed = b->follow.kept = b->follow.kept_seen = 0;
     if (b->follows && !b->follow.came) b->own = 0;
     return FIBRAD_OK;
 }
@@ -690,21 +729,24 @@ static int choose_fresh(fibrad_insitu_build *b) {
     return FIBRAD_OK;
 }
 
-/* Gathers the particles of the scene, and chooses those that get rows. */
+/* Gathers the particles of the scene, and chooses those that get rows. The halo of a whole bed only tells overlaps. */
 static int gather_bed(fibrad_insitu_build *b) {
     int status = find_halo(b);
     if (!status) status = part_overlaps(b);
-    if (!status)
+    if (!status && b->whole)
+        status = fibrad_gather(b->s->comm, &b->to->particle, b->own, &b->s->sent, &b->halo, &b->lower);
+    if (!status && (!b->whole || b->repeats))
         status = fibrad_coarse_map(b->s->comm, CELL_RADII * b->radius_mean, b->radius_max, b->bed->cylinder,
                                    b->to->particle.at, b->own, &b->s->mark, &b->map);
     b->fresh = b->own;
     return !status && b->follows ? choose_fresh(b) : status;
 }
 
-/* Writes the sentence on strays of one kind; "" if there are none. */
+/* Writes the sentence on particles of one kind; "" if there are none. */
 static void tell_remark(const fibrad_remark *remark, int kind, char *message) {
     static const char *const done[FIBRAD_REMARKS] = {"left out until back",
-                                                     "smaller, so that no centre is inside another", "without a row"};
+                                                     "smaller, so that no centre is inside another", "without a row",
+                                                     "in sight of particles beyond the cutoff"};
     message[0] = 0;
     if (remark->count)
         fibrad_refuse(message, 0, "%" PRIu64 " particle%s %s %s; %s", remark->count, remark->count > 1 ? "s" : "",
@@ -737,17 +779,31 @@ static void find_resistances(fibrad_insitu_build *b) {
         root[i] = p[i].node > 0 && sum[i] > 0 ? sqrt((1 - p[i].node / p[i].emissivity) / sum[i]) : 0;
 }
 
+/* Remarks a particle if much of what it emits has no known end. Particles that see backs are remarked as such. */
+static void tell_unknown(fibrad_insitu_build *b, const fibrad_particle *p, double unknown) {
+    char message[FIBRAD_MESSAGE];
+    if (!(unknown > FIBRAD_BEYOND_MUCH && unknown < 1)) return;
+    fibrad_refuse(message, 0,
+                  "%.2g %% of what particle %" PRIu64 " at (%.6g, %.6g, %.6g) emits goes beyond the cutoff %g",
+                  100 * unknown, p->id, p->x[0], p->x[1], p->x[2], b->cutoff);
+    fibrad_remark_add(&b->remark[FIBRAD_REMARK_BEYOND], p->id, message);
+}
+
 /* Sums the facts of the rows over all ranks. */
 static void sum_facts(fibrad_insitu_build *b) {
     fibrad_insitu_set *to = b->to;
     const double *weight = to->weight.at;
+    const fibrad_particle *particle = to->particle.at;
+    double *unknown = to->unknown.at;
     fibrad_row row;
     /* emission, beyond, squared errors, entries, rows of emissivity above 0; then by walls */
     double sum[5 + FIBRAD_BODIES_MAX] = {0}, *of_wall = sum + 5;
     for (int t = 0; t < b->s->config.threads; ++t) {
         for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);) {
             sum[0] += weight[row.sphere];
-            sum[1] += weight[row.sphere] * row.beyond;
+            if (row.sphere < b->fresh) unknown[row.sphere] = row.beyond;
+            sum[1] += weight[row.sphere] * unknown[row.sphere];
+            tell_unknown(b, &particle[row.sphere], unknown[row.sphere]);
             sum[2] += row.error * row.error;
             sum[4] += weight[row.sphere] > 0;
             for (uint32_t k = 0; k < b->bed->bodies; ++k)
@@ -764,7 +820,7 @@ static void sum_facts(fibrad_insitu_build *b) {
     to->facts.error = sum[4] > 0 ? sqrt(sum[2] / sum[4]) : 0;
     to->facts.entries = (uint64_t)sum[3];
     to->facts.halo = b->halo;
-    fibrad_remark_agree(b->s->comm, &b->remark[FIBRAD_REMARK_OUTSIDE]);
+    fibrad_remark_agree(b->s->comm, &b->remark[FIBRAD_REMARK_BEYOND]);
     to->facts.outside = b->remark[FIBRAD_REMARK_OUTSIDE].count;
     to->facts.overlapping = b->remark[FIBRAD_REMARK_OVERLAP].count;
     to->facts.behind = b->remark[FIBRAD_REMARK_BACK].count;
@@ -782,6 +838,7 @@ static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_
     if (!status && follows && s->ready && s->set.bodies == bed->bodies) status = find_changes(&b);
     if (b.follows) b.to->conducts |= s->set.conducts;
     if (!status && b.to->facts.particles && !(b.follows && !b.follow.came)) status = gather_bed(&b);
+    if (!status) status = check_outside(&b);
     if (b.follows) b.to->walls = s->set.walls;
     if (!status && !b.follows) status = fibrad_insitu_sources(&b);
     if (!status) status = make_rows(&b);

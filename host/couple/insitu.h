@@ -10,7 +10,8 @@
 #include "couple/fibrad_couple.h"
 #include "couple/ranks/strays.h"
 
-#define FIBRAD_OPENINGS_MAX 6 /* one a side */
+#define FIBRAD_OPENINGS_MAX 6   /* one a side */
+#define FIBRAD_GATHER_MOST  1e6 /* up to so many particles each rank has all, unless there is a cutoff */
 
 /* What walls exchange with each other and with the surroundings: areas times emissivities times factors [L^2]. */
 typedef struct fibrad_wall_exchange {
@@ -27,6 +28,7 @@ typedef struct fibrad_insitu_set {
     fibrad_block particle; /* fibrad_particle [own + halo], when the rows were made, moved into the box */
     fibrad_block id;       /* uint64_t [columns] */
     fibrad_block weight;   /* L^2, double [columns], area times emissivity of the node */
+    fibrad_block unknown;  /* double [own], what of each row was beyond when it was made */
     fibrad_block root;     /* 1/L, double [own], square root of (1/n - 1/e)/A, see powers.c; unused unless conducts */
     fibrad_block emission; /* double [columns], sigma T^4 */
     fibrad_block power;    /* double [columns], net power by the rows on this rank */
@@ -91,6 +93,9 @@ typedef struct fibrad_insitu_build {
     uint64_t step;
     double period[3], cutoff, radius_max, radius_mean, reach;
     size_t own, halo; /* particles of the scene: of this rank, and others behind them */
+    bool repeats;     /* some axis is periodic */
+    bool whole;       /* the others are all particles of other ranks, and there is no cutoff */
+    size_t lower;     /* if so: number of particles of lower ranks */
     size_t fresh;     /* the first of them get rows */
     bool follows;     /* old rows are kept */
     fibrad_follow follow;
@@ -105,8 +110,8 @@ typedef struct fibrad_insitu_build {
     fibrad_remark remark[FIBRAD_REMARKS];
 } fibrad_insitu_build;
 
-/* Makes the scene of n particles in b->scene. id[n]: out; images are then particles of their own, and the coarse map
- * tells where there are others. NULL: these are all particles, and the scene has the periods of the box. Errors: as
+/* Makes the scene of n particles in b->scene, with the periods of the box. With ids of a bed that is not whole, images
+ * are particles of their own, and the coarse map tells where there are others. id[n]: out, may be NULL. Errors: as
  * fibrad_scene_init; _MEMORY. */
 int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t n, uint64_t *id);
 

@@ -3,8 +3,7 @@
  * A wall or an opening is a source. Its paths tell what sources exchange with each other. They also tell what each
  * particle exchanges with a source by way of other surfaces. This is worth far more paths of the particles themselves:
  * those of a particle go anywhere, and few of them end at a hot wall. Such paths may cross the whole bed. So every rank
- * gathers all particles, and the ranks share the paths out. */
-#include <limits.h>
+ * has all particles, and the ranks share the paths out. */
 #include <math.h>
 #include <omp.h>
 #include <string.h>
@@ -16,7 +15,7 @@
 #define PATHS_WORTH 25      /* paths of a source are worth so many times those of a particle */
 #define PATHS_SHARE 2       /* all sources have at most so many times the paths of all particles, or PATHS_LEAST each */
 #define PATHS_LEAST 512     /* of each source */
-#define GATHER_MOST 1e6     /* a bed of more particles has no sources */
+#define PATHS_EMPTY 8192    /* of each source of a bed without particles */
 #define UNIT        0x1p-40 /* of fibrad_exchange_body */
 
 /* A wall or an opening. */
@@ -37,34 +36,16 @@ struct sources {
     fibrad_body_row part[FIBRAD_BODIES_MAX + FIBRAD_OPENINGS_MAX][FIBRAD_BODY_PARTS]; /* zero on all ranks but one */
     /* 1: paths meet a side that belongs to no wall, so there is no row */
     unsigned char back[FIBRAD_BODIES_MAX + FIBRAD_OPENINGS_MAX];
-    uint64_t *hits; /* [count][n], particles in the order of ranks */
-    size_t n;
+    uint64_t *hits;  /* [count][n], particles in the order of ranks */
+    size_t n, first; /* numbers of particles: all, and those of lower ranks */
 };
 
 /* ---- the scene ---- */
 
-/* Gathers all particles. first: out: index of the first particle of this rank. */
-static int gather(const fibrad_insitu_build *b, fibrad_block *all, size_t *n, size_t *first) {
-    const fibrad_insitu *s = b->s;
-    int *count = malloc((size_t)s->ranks * sizeof *count), *start = malloc((size_t)s->ranks * sizeof *start);
-    int own = (int)b->own, status = fibrad_agree(s->comm, count && start ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
-    MPI_Datatype particle;
-    if (!status) {
-        MPI_Allgather(&own, 1, MPI_INT, count, 1, MPI_INT, s->comm);
-        *n = fibrad_count_sum(count, s->ranks);
-        fibrad_count_starts(count, s->ranks, start);
-        *first = (size_t)start[s->rank];
-        status = fibrad_agree(s->comm, fibrad_block_fit(all, *n, sizeof(fibrad_particle)), NULL);
-    }
-    if (!status) {
-        MPI_Type_contiguous(sizeof(fibrad_particle), MPI_BYTE, &particle);
-        MPI_Type_commit(&particle);
-        MPI_Allgatherv(b->to->particle.at, own, particle, all->at, count, start, particle, s->comm);
-        MPI_Type_free(&particle);
-    }
-    free(count);
-    free(start);
-    return status;
+/* Where a particle of the scene stands in the order of ranks, which all ranks share. */
+static size_t ranked(const struct sources *t, size_t i) {
+    if (i < t->b->own) return t->first + i;
+    return i < t->b->own + t->first ? i - t->b->own : i;
 }
 
 /* A plane beyond all particles and triangles, at some distance, so that it is no side of a mesh. */
@@ -123,12 +104,14 @@ static void count_paths(struct sources *t) {
     const double paths = t->b->s->config.paths, radius = t->b->radius_mean, particle = 4 * acos(-1) * radius * radius;
     double emits = 0;
     for (uint32_t k = 0; k < t->count; ++k) emits += t->source[k].emits;
+    const bool empty = !t->b->to->facts.particles;
     const double most = PATHS_SHARE * (double)t->b->to->facts.particles * paths / emits;
-    const bool teach = t->b->to->emissive && !t->b->s->config.one_way;
+    const bool teach = t->b->to->emissive && !t->b->s->config.one_way && !empty;
     t->b->density = teach ? fmin(PATHS_WORTH * paths / particle, most) : 0;
     for (uint32_t k = 0; k < t->count; ++k) {
         struct source *source = &t->source[k];
-        const double count = fmin(fmax(PATHS_LEAST, t->b->density * source->emits), FIBRAD_PATHS_MAX);
+        const double count =
+            fmin(fmax(empty ? PATHS_EMPTY : PATHS_LEAST, t->b->density * source->emits), FIBRAD_PATHS_MAX);
         source->paths = ((uint32_t)count + FIBRAD_BODY_PARTS - 1) / FIBRAD_BODY_PARTS * FIBRAD_BODY_PARTS;
     }
 }
@@ -154,7 +137,7 @@ static int follow_sources(struct sources *t) {
             {
                 if (done == FIBRAD_E_BACK) t->back[k] = 1;
                 if (done && done != FIBRAD_E_BACK) status = done;
-                for (size_t i = 0; i < t->n && !done; ++i) t->hits[k * t->n + i] += hits[i];
+                for (size_t i = 0; i < t->n && !done; ++i) t->hits[k * t->n + ranked(t, i)] += hits[i];
             }
         }
         free(hits);
@@ -214,7 +197,7 @@ static bool have_all(const struct sources *t, const bool *has) {
 }
 
 /* Keeps what own particles know: paths that sources absorb of those that are worth as many. */
-static int keep_known(const struct sources *t, const bool *has, size_t first) {
+static int keep_known(const struct sources *t, const bool *has) {
     fibrad_insitu_build *b = t->b;
     const size_t width = b->bed->bodies + 1;
     if (fibrad_block_fit(&b->s->known, b->own * width, sizeof(double))) return FIBRAD_E_MEMORY;
@@ -224,12 +207,12 @@ static int keep_known(const struct sources *t, const bool *has, size_t first) {
         const struct source *source = &t->source[k];
         const double worth = UNIT * (b->density / source->density);
         for (size_t i = 0; i < b->own; ++i)
-            known[i * width + source->known] += worth * (double)t->hits[k * t->n + first + i];
+            known[i * width + source->known] += worth * (double)t->hits[k * t->n + t->first + i];
     }
     return FIBRAD_OK;
 }
 
-static int make_sources(struct sources *t, const fibrad_particle *particle, size_t first) {
+static int make_sources(struct sources *t, const fibrad_particle *particle) {
     fibrad_insitu_build *b = t->b;
     int status = fibrad_insitu_scene(b, particle, t->n, NULL);
     status = fibrad_agree(b->s->comm, status, b->s->message);
@@ -247,20 +230,35 @@ static int make_sources(struct sources *t, const fibrad_particle *particle, size
     find_exchange(t, has, &b->to->walls);
     b->knows = !b->s->config.one_way;
     b->knows_all = b->knows && have_all(t, has);
-    return fibrad_agree(b->s->comm, b->knows ? keep_known(t, has, first) : FIBRAD_OK, b->s->message);
+    return fibrad_agree(b->s->comm, b->knows ? keep_known(t, has) : FIBRAD_OK, b->s->message);
+}
+
+/* All particles, those of this rank first: those of the next scene, or gathered if that has a cutoff. */
+static int find_all(struct sources *t, fibrad_block *all) {
+    fibrad_insitu_build *b = t->b;
+    size_t others = b->halo;
+    int status = FIBRAD_OK;
+    t->first = b->lower;
+    if (!b->whole) {
+        status = fibrad_agree(b->s->comm, fibrad_block_fit(all, b->own, sizeof(fibrad_particle)), b->s->message);
+        if (!status && b->own) memcpy(all->at, b->to->particle.at, b->own * sizeof(fibrad_particle));
+        if (!status) status = fibrad_gather(b->s->comm, all, b->own, &b->s->sent, &others, &t->first);
+    }
+    t->n = b->own + others;
+    return status;
 }
 
 int fibrad_insitu_sources(fibrad_insitu_build *b) {
     fibrad_block all = {0};
-    size_t first = 0;
     const uint32_t openings = b->openings;
     b->to->walls = (fibrad_wall_exchange){0};
-    if (!b->to->facts.particles || (double)b->to->facts.particles > GATHER_MOST) return FIBRAD_OK;
+    if ((!b->to->facts.particles && !b->bed->bodies) || (double)b->to->facts.particles > FIBRAD_GATHER_MOST)
+        return FIBRAD_OK;
     close_bed(b);
     struct sources *t = calloc(1, sizeof *t);
     int status = fibrad_agree(b->s->comm, t ? FIBRAD_OK : FIBRAD_E_MEMORY, b->s->message);
-    if (!status) t->b = b, status = gather(b, &all, &t->n, &first);
-    if (!status) status = make_sources(t, all.at, first);
+    if (!status) t->b = b, status = find_all(t, &all);
+    if (!status) status = make_sources(t, b->whole ? b->to->particle.at : all.at);
     b->openings = openings;
     fibrad_block_free(&all);
     if (t) free(t->hits);

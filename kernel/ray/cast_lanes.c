@@ -177,7 +177,7 @@ static bool is_behind(const fibrad_scene *scene, const struct cast_ray *ray, con
 
 /* Counts a ray that meets no sphere, by the place where it leaves. from: origin in radii from the centre. */
 static void count_exit(fibrad_workspace *work, const struct cast_ray *ray, const double from[3]) {
-    work->wall[fibrad_work_met(work, from, ray->frame + 6)]++;
+    work->wall[fibrad_work_met(work, from, ray->frame + 6, work->reach)]++;
 }
 
 /* Counts a ray that meets a triangle before a sphere at some distance [radii]. False: the ray meets no triangle

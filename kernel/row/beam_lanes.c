@@ -153,12 +153,24 @@ static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibr
     if (meets) LANED(fibrad_mesh_count)(work, frame, k);
     if (work->scene->container.walls) LANED(fibrad_walls_share)
     (work, frame, meets && points->count == 0 ? &work->met->points : points, k, set, rest, whole);
-    else if (work->cut && rest != 0 && fibrad_work_met(work, centre, frame + 6) == FIBRAD_BEYOND)
+    else if (work->cut && rest != 0 && fibrad_work_met(work, centre, frame + 6, work->reach) == FIBRAD_BEYOND)
         fibrad_work_slot(work, FIBRAD_BEYOND, k, rest);
     else if (work->entries.addends != NULL) fibrad_addends_put(work->entries.addends, FIBRAD_ADD_OPEN, k, rest);
     else sums->open[k % 2] += rest;
     if (windows->both) look_back(work, windows, set, k, rest, sums);
     return work->disc.count <= work->disc.capacity && !work->areas.overflow;
+}
+
+/* The view of walls along the lines of windows. In a periodic bed whose spheres are all there a window sees the way in
+ * its own direction to the end. Its lines have directions about that one. They stay near it for a length of about the
+ * root of the number of windows, in radii. From there on the occupancy tells whether they meet spheres, as beyond a
+ * cutoff. */
+static fibrad_wall_view view_of_lines(const fibrad_workspace *work, uint32_t windows) {
+    const double *period = work->scene->period;
+    const bool repeats = period[0] > 0 || period[1] > 0 || period[2] > 0;
+    const bool marked = !work->cut && repeats && work->scene->occupancy.mark != NULL;
+    return fibrad_wall_view_of(work->scene, work->place, work->cut || marked,
+                               marked ? fibrad_sqrt(windows) : work->reach);
 }
 
 /* Adds the points that the near list has counted to the entries. Those of odd windows go to part 3, all others to
@@ -218,7 +230,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     const double each = rule->points > 0 ? rule->points : FIBRAD_PI;
     const double square = 32.0 * windows.words * windows.chords; /* points of masks in the square about a window */
     if (scene->container.walls) {
-        work->walls->view = fibrad_wall_view_of(scene, work->place, work->cut, work->reach);
+        work->walls->view = view_of_lines(work, windows.count);
         windows.both = windows.lines != NULL && scene->mesh.triangles == 0 && near_walls(work);
         fibrad_zero(&work->walls->sums, sizeof work->walls->sums);
         work->walls->sums.addends = range->addends;

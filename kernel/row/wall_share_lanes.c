@@ -293,9 +293,9 @@ static void add_points(fibrad_wall_room *walls, const fibrad_points *points, con
 
 /* The slot at which a line ends that is cut. */
 static uint32_t end_of_cut(const fibrad_workspace *work, const fibrad_wall_line *line, const double direction[3]) {
-    const uint32_t met = fibrad_work_met(work, line->origin, line->w);
+    const uint32_t met = fibrad_work_met(work, line->origin, line->w, work->walls->view.ball);
     if (work->scene->occupancy.mark == NULL) return met;
-    return fibrad_surroundings_of_window(met, fibrad_work_met(work, line->origin, direction));
+    return fibrad_surroundings_of_window(met, fibrad_work_met(work, line->origin, direction, work->reach));
 }
 
 /* Divides a window between walls by lines. */

@@ -290,11 +290,10 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
     work->near.asked = 0;
 }
 
-uint32_t fibrad_work_met(const fibrad_workspace *work, const double from[3], const double w[3]) {
+uint32_t fibrad_work_met(const fibrad_workspace *work, const double from[3], const double w[3], double ball) {
     double origin[3], distance;
     for (int axis = 0; axis < 3; axis++) origin[axis] = work->centre[axis] + work->unit * from[axis];
-    return fibrad_surroundings_met(work->scene, origin, w, fibrad_ball_exit(from, w, work->reach) * work->unit,
-                                   &distance);
+    return fibrad_surroundings_met(work->scene, origin, w, fibrad_ball_exit(from, w, ball) * work->unit, &distance);
 }
 
 double fibrad_near_horizon(const fibrad_workspace *work, const double w[3]) {

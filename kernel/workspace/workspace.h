@@ -106,8 +106,8 @@ static inline double fibrad_near_further(const fibrad_workspace *work, double kn
     return fibrad_max(work->growth * known, known + 1.5 * work->free_path);
 }
 
-/* The slot that the line from a point along w meets, if it meets no sphere. */
-uint32_t fibrad_work_met(const fibrad_workspace *work, const double from[3], const double w[3]);
+/* The slot that the line from a point along w meets, if it meets no sphere within the ball of this radius. */
+uint32_t fibrad_work_met(const fibrad_workspace *work, const double from[3], const double w[3], double ball);
 
 /* The greatest depth at which a sphere can come before the window of direction w. Along periodic axes beams and rays
  * end after FIBRAD_PERIODS periods. */

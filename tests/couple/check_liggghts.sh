@@ -106,6 +106,21 @@ run none 2 'setforce 0 0 0' 200 -in bed
 echo "$(value own conduction_and_sources) $(value none conduction_and_sources)" |
     awk '{ printf "a source of 1.176 J brings %.4f J\n", $1 - $2; exit !($1 - $2 > 1.1 && $1 - $2 < 1.18) }' || complain "the own source is lost"
 
+# Particles that come with 300 K bring heat, which is no conduction
+{
+    sed 's/^fix floor .*/fix floor all wall\/gran model hertz tangential history primitive type 1 zplane 0.0/' bed
+    echo 'fix kind all particletemplate/sphere 15485863 atom_type 1 density constant 2500 radius constant 0.003'
+    echo 'fix kinds all particledistribution/discrete 15485867 1 kind 1.0'
+    echo 'region up block 0.006 0.042 0.006 0.042 0.045 0.058 units box'
+    echo 'fix come all insert/pack seed 86028157 distributiontemplate kinds insert_every 50 overlapcheck yes vel constant 0 0 0 particles_in_region 5 region up'
+} >filling
+run coming 2 'setforce 0 0 0' 200 -in filling --rows 100
+awk -v came="$(value coming heat_came)" -v gone="$(value coming heat_gone)" -v other="$(value coming conduction_and_sources)" 'BEGIN {
+    number = came / (2500 * 4 / 3 * atan2(0, -1) * .003^3 * 5 * 300)
+    printf "%.12g particles bring %.4f J, %.2g J go, conduction %.2g J\n", number, came, gone, other
+    whole = int(number + .5)
+    exit !(whole >= 5 && (number / whole - 1)^2 < 1e-24 && gone^2 < 1e-20 * came^2 && other^2 < 1e-20 * came^2) }' || complain "heat of particles that come counts as conduction"
+
 # Particles that conduct, at 1000 K on a floor of 1200 K: the powers of fibrad heat, where one temperature a particle
 # would bring 15 % more; energy, at temperatures that rise
 sed 's/initial_temperature 300/initial_temperature 1000/' bed >warm
@@ -248,6 +263,7 @@ refuse() { # RANKS STATUS WORDS OPTIONS...
 }
 refuse 2 2 "--emissivity is missing" -in bed --surroundings 300 --steps 1
 refuse 1 2 "--surroundings is missing" -in bed --emissivity 0.8 --steps 1
+refuse 2 3 "nofile: No such file" -in nofile --emissivity 0.8 --surroundings 300 --steps 1
 refuse 1 2 "the script is missing" --emissivity 0.8 --surroundings 300 --steps 1
 refuse 1 2 "unknown option: --bad" -in bed --bad 3
 refuse 1 2 "'1.2' is not a number from 0 to 1" -in bed --emissivity 1.2

@@ -30,7 +30,7 @@ block() {
 
 # lammps NP NAME: runs the script NAME in $work
 lammps() {
-    (cd "$work" && timeout 120 "$MPIRUN" -np "$1" "$LMP" -in "$2" -log "$2.log" -screen none) >"$work/$2.err" 2>&1 &&
+    (cd "$work" && limited_mpi "$1" "$LMP" -in "$2" -log "$2.log" -screen none) >"$work/$2.err" 2>&1 &&
         ! grep -q '^ERROR' "$work/$2.log"
 }
 

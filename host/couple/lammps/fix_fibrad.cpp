@@ -32,6 +32,12 @@ __attribute__((format(printf, 1, 2))) static std::string text(const char *format
     return buffer;
 }
 
+static bool is_number(const std::string &word) {
+    char *end;
+    strtod(word.c_str(), &end);
+    return !word.empty() && !*end;
+}
+
 // ---- the command ------------------------------------------------------------------------------------------------
 
 // A walk along the words of the command behind the style.
@@ -58,6 +64,7 @@ class FixFibrad::Words {
         return value;
     }
     double number() { return utils::numeric(FLERR, next().c_str(), false, lmp); }
+    bool next_is_number() const { return more() && is_number(words[at]); }
     bool next_is_vector() const { return more() && words[at].compare(0, 2, "d_") == 0; } // of fix property/atom
     int count(const char *what, int low) {
         const int value = utils::inumeric(FLERR, next().c_str(), false, lmp);
@@ -80,8 +87,8 @@ class FixFibrad::Words {
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     : Fix(lammps, narg, arg), temperature(), kept_bit(0), surroundings{-1, ""}, columns(1), sampling(false),
       accuracy(false), cylinder(2), sigma(0), initial(0), config(), meshes(), moving(false), insitu(nullptr), totals(),
-      warned(false), wall_warned(false), cut_warned(false), told(), set_up(-1), powers_at(0), lost(0), restarted(false),
-      begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
+      warned(false), wall_warned(false), told(), set_up(-1), powers_at(0), lost(0), restarted(false), begun(0),
+      before(), rows_made(0), rows_followed(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // the default of docs/lammps.md
@@ -132,6 +139,8 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
             config.one_way = words.yes_or_no();
         else if (key == "strict")
             config.strict = words.yes_or_no();
+        else if (is_number(key))
+            error->all(FLERR, "fix fibrad: `" + key + "` is a number too many, or its keyword is missing");
         else
             error->all(FLERR, "fix fibrad: there is no keyword `" + key + "`");
     }
@@ -169,7 +178,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     nevery = heat_every ? heat_every : rows_every;
     scalar_flag = vector_flag = peratom_flag = 1;
     size_peratom_cols = columns > 1 ? columns : 0;
-    size_vector = 5 + (int)walls.size() + 3 + (int)walls.size();
+    size_vector = 5 + (int)walls.size() + 3 + (int)walls.size() + 1;
     restart_global = wall_heat.any() || moving;
     global_freq = peratom_freq = 1;
     extscalar = extvector = 0;
@@ -253,7 +262,10 @@ void FixFibrad::read_wall(Words &words) {
 void FixFibrad::read_opening(Words &words, int face) {
     const double huge = 1e300;
     fibrad_plane opening = {face / 2, face % 2, NAN};
-    if (words.take("at")) opening.at = words.number("the place of an open side", -huge, huge);
+    const bool at = words.take("at");
+    if (at) opening.at = words.number("the place of an open side", -huge, huge);
+    if (!at && words.next_is_number())
+        error->all(FLERR, std::string("fix fibrad: an open side has no temperature: it has that of the surroundings"));
     openings.push_back(opening);
 }
 
@@ -471,6 +483,7 @@ static double clock_of(const Update *update) {
 void FixFibrad::setup(int) {
     begun = MPI_Wtime();
     if (restarted) lost -= clock_of(update), restarted = false; // LAMMPS sets its clock when a run begins
+    if (set_up < 0) list_output();
     set_up = update->ntimestep;
     fibrad_insitu_facts_get(insitu, &before);
     refuse_second();
@@ -481,9 +494,26 @@ void FixFibrad::setup(int) {
     fibrad_insitu_facts_get(insitu, &facts);
     double bytes = (double)facts.bytes;
     MPI_Allreduce(MPI_IN_PLACE, &bytes, 1, MPI_DOUBLE, MPI_MAX, world);
-    say(text("fix fibrad: %.0f particles, cutoff %g, %.0f entries, at most %.1f MB a rank, rows in %.2g s",
-             (double)facts.particles, facts.cutoff, (double)facts.entries, bytes / 1e6,
-             facts.seconds_rows - before.seconds_rows));
+    say(text("fix fibrad: %.0f particles, %s, %.0f entries, at most %.1f MB a rank, rows in %.2g s",
+             (double)facts.particles, facts.cutoff > 0 ? text("cutoff %g", facts.cutoff).c_str() : "no cutoff",
+             (double)facts.entries, bytes / 1e6, facts.seconds_rows - before.seconds_rows));
+}
+
+// Says what the elements of the global vector are.
+void FixFibrad::list_output() {
+    static const char *const faces[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
+    const int count = (int)walls.size();
+    std::string list = "[1] surroundings, [2] beyond, [3] error, [4] [5] seconds";
+    for (int w = 0; w < count; w++) {
+        const fibrad_body &body = walls[w];
+        const std::string name = body.kind == FIBRAD_BODY_PLANE      ? faces[2 * body.plane.axis + body.plane.upper]
+                                 : body.kind == FIBRAD_BODY_CYLINDER ? "cylinder"
+                                                                     : "mesh";
+        list += text(", [%d] wall ", 6 + w) + name;
+    }
+    list += text(", [%d] outside, [%d] overlapping, [%d] behind", 6 + count, 7 + count, 8 + count);
+    if (count) list += text(", [%d] to [%d] temperatures of walls", 9 + count, 8 + 2 * count);
+    say(text("fix fibrad: f_%s", id) + list + text(", [%d] gone", 9 + 2 * count));
 }
 
 void FixFibrad::post_run() {
@@ -600,14 +630,6 @@ void FixFibrad::make_rows(bool follow) {
         error->all(FLERR, std::string("fix fibrad: ") + fibrad_insitu_message(insitu) + ", `wall zhi open`");
     check(status);
     (follow ? rows_followed : rows_made)++;
-    fibrad_insitu_facts facts;
-    fibrad_insitu_facts_get(insitu, &facts);
-    if (facts.beyond > FIBRAD_BEYOND_MUCH && !cut_warned && comm->me == 0)
-        error->warning(
-            FLERR,
-            text("fix fibrad: %.2g %% of what particles emit goes beyond the cutoff %g: `cutoff` should be larger",
-                 100 * facts.beyond, facts.cutoff));
-    cut_warned = cut_warned || facts.beyond > FIBRAD_BEYOND_MUCH;
     tell_strays();
     if (!rows_file.empty() && !follow)
         check(fibrad_insitu_write(insitu, (rows_file + "." + std::to_string(update->ntimestep)).c_str()));
@@ -617,8 +639,10 @@ void FixFibrad::tell_strays() {
     for (int kind = 0; kind < FIBRAD_REMARKS; kind++) {
         const char *remark = fibrad_insitu_remark(insitu, kind);
         if (*remark && !told[kind] && comm->me == 0)
-            error->warning(FLERR, text("fix fibrad: %s, at step %s; `strict yes` would end the run", remark,
-                                       std::to_string(update->ntimestep).c_str()));
+            error->warning(
+                FLERR,
+                text("fix fibrad: %s, at step %s; %s", remark, std::to_string(update->ntimestep).c_str(),
+                     kind == FIBRAD_REMARK_BEYOND ? "`cutoff` should be larger" : "`strict yes` would end the run"));
         told[kind] = told[kind] || *remark;
     }
 }
@@ -650,7 +674,8 @@ void FixFibrad::find_temperatures() {
         if (t.variable.empty()) return t.value;
         const int k = input->variable->find(t.variable.c_str());
         if (k < 0 || !input->variable->equalstyle(k))
-            error->all(FLERR, "fix fibrad: there is no equal-style variable `" + t.variable + "`");
+            error->all(FLERR, "fix fibrad: " + (k < 0 ? "there is no equal-style variable `" + t.variable + "`"
+                                                      : "the variable `" + t.variable + "` is not of equal style"));
         const double value = input->variable->compute_equal(k);
         if (!(value >= 0 && value < HUGE_VAL))
             error->all(FLERR, text("fix fibrad: the temperature v_%s is %g", t.variable.c_str(), value));
@@ -846,10 +871,11 @@ double FixFibrad::compute_vector(int n) {
     const double first[] = {totals.surroundings, facts.beyond, facts.error, facts.seconds_rows, facts.seconds_powers};
     const double strays[] = {(double)facts.outside, (double)facts.overlapping, (double)facts.behind};
     const int last = 5 + (int)walls.size();
-    return n < 5          ? first[n]
-           : n < last     ? totals.body[n - 5]
-           : n < last + 3 ? strays[n - last]
-                          : wall_kelvins[n - last - 3].value;
+    return n < 5                 ? first[n]
+           : n < last            ? totals.body[n - 5]
+           : n < last + 3        ? strays[n - last]
+           : n < size_vector - 1 ? wall_kelvins[n - last - 3].value
+                                 : (double)facts.gone;
 }
 
 double FixFibrad::memory_usage() {

@@ -109,6 +109,7 @@ class FixFibrad : public Fix {
     void follow_heatflow();
     void check_step(const std::vector<double> &temperature); // refuses steps of heat that are not stable
     void check_walls();
+    void list_output();
     void judge_step(const std::string &name, double ratio, bool &already_warned);
     void check(int status);        // stops with the message of an error
     void say(const std::string &); // a line in the log
@@ -147,7 +148,6 @@ class FixFibrad : public Fix {
     std::vector<int> member;     // atoms of the group that this rank owns
     std::vector<uint64_t> tags;  // [member], their ids
     bool warned, wall_warned;    // whether the warnings about steps of particles and of walls were given
-    bool cut_warned;             // whether the warning about the cutoff was given
     bool told[FIBRAD_REMARKS];   // whether the warning about strays of each kind was given
     bigint set_up;               // step of the last setup
     bigint powers_at;            // step of the last powers

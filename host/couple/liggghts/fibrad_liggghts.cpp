@@ -2,9 +2,11 @@
  *
  * LIGGGHTS is under the GNU GPL, version 2 or later, and a binary of this program, linked with it, is, too.
  *
- * A fix external calls radiate() every --every steps, before temperatures are integrated. radiate() adds to each
- * particle's heatSource the change of its radiative power. So heat sources of the script stay. The property fibradPower
- * of a particle is the radiative power that its heatSource has now. It goes with the particle from rank to rank. */
+ * A fix external calls step() in every step, before temperatures are integrated. step() counts the heat of particles
+ * that have come or gone, and calls radiate() every --every steps. radiate() adds to each particle's heatSource the
+ * change of its radiative power. So heat sources of the script stay. The property fibradPower
+ * of a particle is the radiative power that its heatSource has now. It goes with the particle from rank to rank. The
+ * property fibradHeat has its heat at the last step. */
 #include <atom.h>
 #include <domain.h>
 #include <fix.h>
@@ -17,6 +19,7 @@
 #include <update.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
@@ -54,13 +57,14 @@ struct Driver {
     mesh_walls triangles;          /* of all meshes, at the last rows */
     std::vector<double> body_temperature, body_emissivity;
     WallHeat wall_heat;
-    Fix *temperature, *source, *power, *capacity;                 /* properties of particles, and of types */
+    Fix *temperature, *source, *power, *known, *capacity;         /* properties of particles, and of types */
+    double came, gone;                                            /* heat of particles that have come or gone, here */
     std::vector<uint64_t> id;                                     /* [own] */
     std::vector<double> emissivity, gain;                         /* [own] */
     std::vector<double> conductivity;                             /* [own], k* when rows are made; empty: infinite */
     fibrad_insitu_totals totals;                                  /* of the current powers */
+    bool counts;                                                  /* the heat of particles that come is counted */
     bool radiates;                                                /* there are powers */
-    bool told_cut;                                                /* the warning about the cutoff was given */
     bool told[FIBRAD_REMARKS];                                    /* a message on strays of each kind was given */
     LAMMPS_NS::bigint since;                                      /* first step in which the current powers heat */
     double heat, heat_surroundings, heat_body[FIBRAD_BODIES_MAX]; /* heat by radiation before that step */
@@ -107,6 +111,8 @@ void find_properties(Driver *driver) {
     driver->source = property(driver, "heatSource", "property/atom", "scalar", conduction);
     driver->capacity = property(driver, "thermalCapacity", "property/global", "peratomtype",
                                 "fix property/global thermalCapacity peratomtype");
+    command(driver, "fix fibradHeat all property/atom fibradHeat scalar yes no no -1");
+    driver->known = property(driver, "fibradHeat", "property/atom", "scalar", "fix fibradHeat");
     if (property(driver, "fibradPower", "property/atom", "scalar", nullptr) == nullptr)
         command(driver, "fix fibradPower all property/atom fibradPower scalar yes no no 0");
     driver->power = property(driver, "fibradPower", "property/atom", "scalar", "fix fibradPower");
@@ -336,8 +342,9 @@ void tell_strays(Driver *driver) {
     for (int kind = 0; kind < FIBRAD_REMARKS; ++kind) {
         const char *remark = fibrad_insitu_remark(driver->radiation, kind);
         if (*remark != 0 && !driver->told[kind] && rank() == 0)
-            std::fprintf(stderr, "fibrad_liggghts: warning: step %s: %s; --strict would end the run\n",
-                         std::to_string(driver->lmp->update->ntimestep).c_str(), remark);
+            std::fprintf(stderr, "fibrad_liggghts: warning: step %s: %s; %s\n",
+                         std::to_string(driver->lmp->update->ntimestep).c_str(), remark,
+                         kind == FIBRAD_REMARK_BEYOND ? "--cutoff should be larger" : "--strict would end the run");
         driver->told[kind] = driver->told[kind] || *remark != 0;
     }
 }
@@ -371,15 +378,6 @@ void make_rows(Driver *driver, bool follow) {
     const auto make = follow ? fibrad_insitu_follow : fibrad_insitu_rows;
     check(driver, make(driver->radiation, &bed, (uint64_t)driver->lmp->update->ntimestep));
     tell_strays(driver);
-    fibrad_insitu_facts facts;
-    fibrad_insitu_facts_get(driver->radiation, &facts);
-    if (!(facts.beyond > FIBRAD_BEYOND_MUCH) || driver->told_cut) return;
-    if (rank() == 0)
-        std::fprintf(stderr,
-                     "fibrad_liggghts: warning: %.2g %% of what particles emit goes beyond the cutoff %g: a larger "
-                     "--cutoff\n",
-                     100 * facts.beyond, facts.cutoff);
-    driver->told_cut = true;
 }
 
 /* The temperatures of meshes that the script gives. They are taken from the script or, if `give`, given to it. */
@@ -423,12 +421,25 @@ void count_heat(Driver *driver, LAMMPS_NS::bigint now) {
     share_temperatures(driver, true);
 }
 
-/* The callback of the fix external. In the setup of a run no temperatures are integrated, so powers heat from the next
- * step on. */
-void radiate(void *context, LAMMPS_NS::bigint step, int n, int *, double **, double **force) {
-    Driver *driver = static_cast<Driver *>(context);
+/* Counts the heat of particles that have come since the last call, and of those that have gone. `gone` begins with what
+ * all particles had at the last step. What those that are still there had is subtracted. */
+void count_particles(Driver *driver) {
+    double *known = driver->known->vector_atom, left = driver->gone, all = 0;
+    for (int i = 0; i < driver->lmp->atom->nlocal; ++i) {
+        const double heat = heat_capacity(driver, i) * driver->temperature->vector_atom[i];
+        if (known[i] >= 0)
+            left -= known[i];
+        else if (driver->counts)
+            driver->came += heat;
+        known[i] = heat, all += heat;
+    }
+    driver->gone = left + all, driver->counts = true;
+}
+
+/* Computes powers and gives them to the particles. In the setup of a run no temperatures are integrated, so powers heat
+ * from the next step on. */
+void radiate(Driver *driver, LAMMPS_NS::bigint step, int n) {
     const LAMMPS_NS::bigint first = step + (driver->lmp->update->setupflag ? 1 : 0);
-    for (int i = 0; i < n; ++i) std::fill(force[i], force[i] + 3, 0.0);
     count_heat(driver, first);
     take_particles(driver);
     check_time_step(driver);
@@ -443,18 +454,32 @@ void radiate(void *context, LAMMPS_NS::bigint step, int n, int *, double **, dou
     driver->since = first;
 }
 
+/* The callback of the fix external. */
+void step(void *context, LAMMPS_NS::bigint number, int n, int *, double **, double **force) {
+    Driver *driver = static_cast<Driver *>(context);
+    for (int i = 0; i < n; ++i) std::fill(force[i], force[i] + 3, 0.0);
+    count_particles(driver);
+    if (number % driver->options.every == 0) radiate(driver, number, n);
+}
+
 /* ---- summary ------------------------------------------------------------------------------------------- */
 
-/* The heat in all particles, the same on all ranks. */
-double stored_heat(const Driver *driver) {
-    double heat = 0, all;
-    for (int i = 0; i < driver->lmp->atom->nlocal; ++i)
-        heat += heat_capacity(driver, i) * driver->temperature->vector_atom[i];
-    MPI_Allreduce(&heat, &all, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+double sum_of_ranks(double own) {
+    double all;
+    MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
     return all;
 }
 
+/* The heat in the particles of this rank. */
+double stored_heat(const Driver *driver) {
+    double heat = 0;
+    for (int i = 0; i < driver->lmp->atom->nlocal; ++i)
+        heat += heat_capacity(driver, i) * driver->temperature->vector_atom[i];
+    return heat;
+}
+
 void print_summary(const Driver *driver, double before, double after, double seconds) {
+    const double came = sum_of_ranks(driver->came), gone = sum_of_ranks(driver->gone);
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(driver->radiation, &facts);
     if (rank() != 0) return;
@@ -467,12 +492,27 @@ void print_summary(const Driver *driver, double before, double after, double sec
         std::printf("radiation_%s %.17g\n", driver->body_name[k].c_str(), driver->heat_body[k]);
     for (size_t k = 0; k < driver->body.size(); ++k)
         std::printf("temperature_%s %.17g\n", driver->body_name[k].c_str(), driver->body_temperature[k]);
-    std::printf("conduction_and_sources %.17g\n", after - before - driver->heat);
-    std::printf("outside %" PRIu64 "\noverlapping %" PRIu64 "\nbehind %" PRIu64 "\n", facts.outside, facts.overlapping,
-                facts.behind);
+    std::printf("heat_came %.17g\nheat_gone %.17g\n", came, gone);
+    std::printf("conduction_and_sources %.17g\n", after - before - driver->heat - came + gone);
+    std::printf("outside %" PRIu64 "\noverlapping %" PRIu64 "\nbehind %" PRIu64 "\ngone %" PRIu64 "\n", facts.outside,
+                facts.overlapping, facts.behind, facts.gone);
     std::printf("beyond_mean %.17g\nerror_rms %.17g\n", facts.beyond, facts.error);
     std::printf("seconds_rows %.17g\nseconds_powers %.17g\nseconds %.17g\n", facts.seconds_rows, facts.seconds_powers,
                 seconds);
+}
+
+/* LIGGGHTS would end with lines of MPI alone. */
+void check_script(const char *path) {
+    int fault = 0;
+    if (rank() == 0) {
+        FILE *file = std::fopen(path, "r");
+        if (file == nullptr)
+            fault = errno;
+        else
+            std::fclose(file);
+    }
+    MPI_Bcast(&fault, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    if (fault != 0) stop(WRONG_INPUT, std::string(path) + ": " + std::strerror(fault));
 }
 
 void run_script(Driver *driver) {
@@ -487,18 +527,19 @@ void run_script(Driver *driver) {
         stop(WRONG_INPUT, "the script's particles have no radius: atom_style granular");
     if (fibrad_insitu_new(&driver->radiation, MPI_COMM_WORLD, &driver->options.config) != FIBRAD_OK)
         stop(WRONG_INPUT, "out of memory");
-    const std::string every = std::to_string(driver->options.every);
-    command(driver, "fix fibrad all external pf/callback " + every + " " + every);
+    command(driver, "fix fibrad all external pf/callback 1 1");
     LAMMPS_NS::Modify *modify = driver->lmp->modify;
     Fix *fix = modify->fix[modify->find_fix("fibrad")];
-    static_cast<LAMMPS_NS::FixExternal *>(fix)->set_callback(radiate, driver);
+    static_cast<LAMMPS_NS::FixExternal *>(fix)->set_callback(step, driver);
 }
 
 void run_steps(Driver *driver) {
-    const double before = stored_heat(driver), start = MPI_Wtime();
+    const double before = sum_of_ranks(stored_heat(driver)), start = MPI_Wtime();
     command(driver, "run " + std::to_string(driver->options.steps));
     count_heat(driver, driver->lmp->update->ntimestep + 1);
-    const double after = stored_heat(driver);
+    count_particles(driver);
+    driver->gone -= stored_heat(driver);
+    const double after = sum_of_ranks(stored_heat(driver));
     if (driver->options.rows_file != nullptr)
         check(driver, fibrad_insitu_write(driver->radiation, driver->options.rows_file));
     print_summary(driver, before, after, MPI_Wtime() - start);
@@ -518,6 +559,7 @@ int main(int argc, char **argv) {
         MPI_Finalize();
         return 0;
     }
+    check_script(driver.options.script);
     argv[rest - 1] = argv[0];
     void *lmp;
     lammps_open(argc - rest + 1, argv + rest - 1, MPI_COMM_WORLD, &lmp);

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 struct range_box {
     double low[3], high[3]; /* without particles low is above high */
@@ -75,11 +76,15 @@ static int add_images(const fibrad_particle *particle, const struct range_box *b
     return FIBRAD_OK;
 }
 
+static void set_owner(fibrad_particle *particle, size_t own, int rank) {
+    for (size_t i = 0; i < own; ++i) particle[i].owner = (fibrad_place){(uint32_t)rank, (uint32_t)i};
+}
+
 /* Lists the particles and images for each rank. count[q]: their number for rank q. */
 static int choose_particles(const struct range_box *box, int rank, int ranks, const double period[3], double reach,
                             fibrad_particle *particle, size_t own, fibrad_block *sent, int *count) {
     size_t sum = 0;
-    for (size_t i = 0; i < own; ++i) particle[i].owner = (fibrad_place){(uint32_t)rank, (uint32_t)i};
+    set_owner(particle, own, rank);
     for (int q = 0; q < ranks; ++q) {
         const size_t before = sum;
         struct shift_range any;
@@ -108,6 +113,45 @@ int fibrad_halo(MPI_Comm comm, const double period[3], double reach, fibrad_bloc
     }
     if (!status) *halo = fibrad_count_sum(count + ranks, ranks);
     free(box);
+    free(count);
+    return status;
+}
+
+/* Gathers all particles in the order of ranks. count, start: [ranks], out. */
+static int gather_all(MPI_Comm comm, const fibrad_particle *particle, size_t own, fibrad_block *all, int *count,
+                      int *start, int ranks) {
+    const int mine = (int)own;
+    MPI_Datatype one;
+    MPI_Allgather(&mine, 1, MPI_INT, count, 1, MPI_INT, comm);
+    fibrad_count_starts(count, ranks, start);
+    const int status =
+        fibrad_agree(comm, fibrad_block_fit(all, fibrad_count_sum(count, ranks), sizeof *particle), NULL);
+    if (status) return status;
+    MPI_Type_contiguous(sizeof *particle, MPI_BYTE, &one);
+    MPI_Type_commit(&one);
+    MPI_Allgatherv(particle, mine, one, all->at, count, start, one, comm);
+    MPI_Type_free(&one);
+    return FIBRAD_OK;
+}
+
+int fibrad_gather(MPI_Comm comm, fibrad_block *particle, size_t own, fibrad_block *all, size_t *others, size_t *first) {
+    int rank, ranks;
+    MPI_Comm_rank(comm, &rank);
+    MPI_Comm_size(comm, &ranks);
+    int *count = malloc(2 * (size_t)ranks * sizeof *count);
+    int status = fibrad_agree(comm, count ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
+    set_owner(particle->at, own, rank);
+    if (!status) status = gather_all(comm, particle->at, own, all, count, count + ranks, ranks);
+    if (!status) {
+        *first = (size_t)count[ranks + rank], *others = fibrad_count_sum(count, ranks) - own;
+        status = fibrad_agree(comm, fibrad_block_fit(particle, own + *others, sizeof(fibrad_particle)), NULL);
+    }
+    if (!status) {
+        const fibrad_particle *from = all->at;
+        fibrad_particle *to = (fibrad_particle *)particle->at + own;
+        memcpy(to, from, *first * sizeof *to);
+        memcpy(to + *first, from + *first + own, (*others - *first) * sizeof *to);
+    }
     free(count);
     return status;
 }

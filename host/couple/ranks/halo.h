@@ -15,7 +15,7 @@ typedef struct fibrad_particle {
     uint64_t id;
     double x[3], radius;                   /* [L] */
     double emissivity, conductivity, node; /* k*, and the emissivity of the node, fibrad_node_emissivity */
-    fibrad_place owner;                    /* set by fibrad_halo: where its owner has it among its own particles */
+    fibrad_place owner;                    /* set by fibrad_halo and fibrad_gather: where its owner has it */
 } fibrad_particle;
 
 /* Collective. Appends to particle[own] the particles of other ranks, and the periodic images of particles of all ranks,
@@ -24,5 +24,9 @@ typedef struct fibrad_particle {
  * scratch. *halo: number appended. Errors, on all ranks: _MEMORY. Cost: own particles times neighbouring ranks. */
 int fibrad_halo(MPI_Comm comm, const double period[3], double reach, fibrad_block *particle, size_t own,
                 fibrad_block *sent, size_t *halo);
+
+/* Collective. Appends to particle[own] all particles of other ranks, in the order of ranks. No image is appended. all:
+ * scratch. *others: number appended; *first: number of those of lower ranks. Errors, on all ranks: _MEMORY. */
+int fibrad_gather(MPI_Comm comm, fibrad_block *particle, size_t own, fibrad_block *all, size_t *others, size_t *first);
 
 #endif

@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #define OPENING_SLACK 1e-12 /* a particle may reach this much beyond an opening, as in fibrad_scene_init */
+#define INSIDE_MOST   64    /* centres inside a particle, in the mean over all particles: more are an error */
 #define INSIDE_SLACK  1e-9  /* catches a centre at the surface of another particle whatever the rounding */
 
 /* ---- bounds ---- */
@@ -139,10 +140,12 @@ static void describe_overlap(fibrad_remark *remark, const fibrad_particle *p, co
     fibrad_remark_add(remark, p->id, message);
 }
 
-/* Reduces the parts of a particle and of all others whose centres lie inside of it. inside[i]: one of the other. */
-static void look_inside(const struct cells *c, const fibrad_particle *p, size_t i, size_t own, double *part,
-                        uint32_t *inside) {
+/* Reduces the parts of a particle and of all others whose centres lie inside of it. inside[i]: one of the other.
+ * Returns the number of centres inside. */
+static size_t look_inside(const struct cells *c, const fibrad_particle *p, size_t i, size_t own, double *part,
+                          uint32_t *inside) {
     int64_t first[3], last[3];
+    size_t count = 0;
     for (int axis = 0; axis < 3; ++axis) {
         first[axis] = coarse_place(c, axis, p[i].x[axis] - p[i].radius);
         last[axis] = coarse_place(c, axis, p[i].x[axis] + p[i].radius);
@@ -158,6 +161,7 @@ static void look_inside(const struct cells *c, const fibrad_particle *p, size_t 
                 if (fabs(d[0]) > reach || fabs(d[1]) > reach || fabs(d[2]) > reach) continue;
                 const double distance = hypot(hypot(d[0], d[1]), d[2]);
                 if (!(distance < reach)) continue;
+                ++count;
                 const double outside = distance / fmax(p[i].radius, p[j].radius) * (1 - INSIDE_SLACK);
                 const size_t pair[2] = {i, j};
                 for (int side = 0; side < 2; ++side)
@@ -165,6 +169,7 @@ static void look_inside(const struct cells *c, const fibrad_particle *p, size_t 
                         part[pair[side]] = outside, inside[pair[side]] = (uint32_t)pair[1 - side];
             }
         }
+    return count;
 }
 
 int fibrad_overlaps(const fibrad_particle *particle, size_t own, size_t all, double *part, fibrad_remark *remark) {
@@ -173,7 +178,16 @@ int fibrad_overlaps(const fibrad_particle *particle, size_t own, size_t all, dou
     int status = inside ? FIBRAD_OK : FIBRAD_E_MEMORY;
     for (size_t i = 0; i < own; ++i) part[i] = 1;
     if (!status && own) status = sort_particles(&cells, particle, all);
-    for (size_t i = 0; i < all && own && !status; ++i) look_inside(&cells, particle, i, own, part, inside);
+    size_t sum = 0;
+    for (size_t i = 0; i < all && own && !status; ++i) {
+        const size_t count = look_inside(&cells, particle, i, own, part, inside);
+        sum += count;
+        if (sum > INSIDE_MOST * all)
+            status = fibrad_refuse(remark->message, FIBRAD_E_GEOMETRY,
+                                   "particle %" PRIu64 " of radius %g has the centres of %zu others inside it: is its "
+                                   "diameter right?",
+                                   particle[i].id, particle[i].radius, count);
+    }
     for (size_t i = 0; i < own && !status; ++i)
         if (part[i] < 1) describe_overlap(remark, &particle[i], &particle[inside[i]]);
     free(inside);

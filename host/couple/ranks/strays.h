@@ -36,7 +36,7 @@ void fibrad_remark_agree(MPI_Comm comm, fibrad_remark *remark);
  * another particle: part[i] is 1, or else the least d/max(r_i, r_j) of all particles j at a distance d < max(r_i, r_j).
  * With radii reduced so, each centre lies on the other surface or outside. All particles within the largest radius of
  * own ones must be among particle[all]. Images of a particle do not count as others. remark: own particles with a part
- * below 1. Errors: FIBRAD_E_MEMORY. */
+ * below 1; after an error a sentence. Errors: _GEOMETRY: particles have tens of centres inside; _MEMORY. */
 int fibrad_overlaps(const fibrad_particle *particle, size_t own, size_t all, double *part, fibrad_remark *remark);
 
 #endif
