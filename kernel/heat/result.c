@@ -13,6 +13,7 @@
 /* Errors over the quantities from which they are estimated. Measured: docs/methods_heat.md section 9. */
 #define PATCH_ERROR    .2 /* with PATCHES */
 #define PATCHES        96.0
+#define UNEVEN         50 /* 1/(2 k*) of a sphere for whose power this error is half as large again */
 #define WALL_PATCHES   .5 /* factor for walls */
 #define BEAM_ERROR     .7
 #define LONE_ERROR     1.2     /* times the share of spheres that only even or only odd directions meet */
@@ -25,9 +26,14 @@
 #define FEW_WALLS      .65 /* the same for walls themselves */
 #define BACK_LEFT      .2  /* part of the error of walls that send back all, which larger exchange areas leave */
 #define SPOT_ERROR     .7
-#define RESIDUAL_ERROR 2   /* times what the steps to come would change */
-#define SPAN_ERROR     .03 /* of the extremes of a surface, over their difference from its mean */
-#define SAMPLES        3   /* if a kind has fewer samples, those of the other kind are taken as well */
+#define RESIDUAL_ERROR 2    /* times what the steps to come would change */
+#define SPAN_ERROR     .015 /* of the extremes of a surface, over their difference from its mean */
+#define SPAN_OPEN      .07  /* the same, with PATCHES, where no neighbour is near */
+#define SPAN_WALL      .08  /* the same if a wall may be near */
+#define SPAN_CROWD                                                                                                     \
+    .014 /* times the root of the number of further neighbours, with PATCHES: they are lights of patches */
+#define SPAN_CHANGE .05 /* error over the difference from the patch */
+#define SAMPLES     3   /* if a kind has fewer samples, those of the other kind are taken as well */
 
 static double squared(double x) { return x * x; }
 
@@ -159,9 +165,12 @@ static double extrapolation_error(const fibrad_heat *heat, double change) {
     return PATCH_ERROR * fibrad_sqrt(fibrad_sqrt(PATCHES / heat->config.patches)) * change;
 }
 
+/* A sphere that conducts badly has spots smaller than patches where it nearly touches others. */
 static double patch_error(const fibrad_heat *heat, uint32_t b) {
-    const double change = heat->solution.power[b] - heat->solution.coarse[b];
-    return (b < heat->spheres ? 1 : WALL_PATCHES) * extrapolation_error(heat, change);
+    const double change = extrapolation_error(heat, heat->solution.power[b] - heat->solution.coarse[b]);
+    if (b >= heat->spheres) return WALL_PATCHES * change;
+    const double uneven = heat->sources.unevenness[b];
+    return (1 + uneven / (uneven + UNEVEN)) * change;
 }
 
 /* The square of the error over the power of a sphere that comes from few beams on each patch of spheres and walls. */
@@ -518,14 +527,28 @@ static measured centre_of(const fibrad_heat *heat, uint32_t b, measured surface,
                       fibrad_sqrt(squared(surface.error) + squared(slope * power_error))};
 }
 
-/* The temperature of the hottest or coldest patch of a sphere minus the mean of its surface. fine, coarse: the same for
- * emissions, at both levels. The error is what extrapolation changes, plus a fraction of the value itself, since light
- * comes from few directions. */
-static measured surface_extreme(const fibrad_heat *heat, uint32_t b, double fine, double coarse) {
+/* Whether a plane or the cylinder is as near to a sphere as a neighbour that is looked at in rings. */
+static bool is_near_wall(const fibrad_heat *heat, uint32_t b) {
+    const fibrad_scene *scene = heat->scene;
+    const double centre[3] = {scene->x[b], scene->y[b], scene->z[b]};
+    bool near = heat->triangles > 0 && scene->clear[b] < 2;
+    for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
+        near = near || (scene->wall_area[k] > 0 && fibrad_walls_away(&scene->container, k, centre) < 2 * scene->r[b]);
+    return near;
+}
+
+/* The temperature of the hottest or coldest place of a sphere minus the mean of its surface. value, patch: emissions of
+ * this place and of the patch that is hottest or coldest. open: the place does not face a neighbour, so patches tell
+ * its light. */
+static measured surface_extreme(const fibrad_heat *heat, uint32_t b, double value, double patch, bool open) {
     const double t = heat->sources.temperature[b], slope = 4 * heat->sources.sigma * t * t * t;
-    const double change = FIBRAD_HEAT_EXTRAPOLATION * (fine - coarse);
+    const double coarse = PATCHES / heat->config.patches;
+    const double crowd = fibrad_max(0, heat->solution.span[b].neighbours - 1.0);
+    const double square = open ? coarse * squared(is_near_wall(heat, b) ? SPAN_WALL : SPAN_OPEN)
+                               : squared(SPAN_ERROR) + coarse * crowd * squared(SPAN_CROWD);
     if (!fibrad_heat_conducts(heat, b)) return (measured){0, 0};
-    return (measured){(fine + change) / slope, fibrad_sqrt(squared(change) + squared(SPAN_ERROR * fine)) / slope};
+    return (measured){value / slope,
+                      fibrad_sqrt(squared(SPAN_CHANGE * (value - patch)) + square * squared(value)) / slope};
 }
 
 /* Hands out the temperatures on the surface and in the centre of a sphere. */
@@ -533,8 +556,8 @@ static void read_inside(const fibrad_heat *heat, uint32_t b, measured mean, doub
                         const fibrad_heat_result *result) {
     const fibrad_heat_span *span = &heat->solution.span[b];
     const uint32_t i = heat->order[b];
-    const measured low = surface_extreme(heat, b, span->low, span->coarse_low),
-                   high = surface_extreme(heat, b, span->high, span->coarse_high),
+    const measured low = surface_extreme(heat, b, span->least, span->low, span->open_low),
+                   high = surface_extreme(heat, b, span->largest, span->high, span->open_high),
                    centre = centre_of(heat, b, mean, power_error);
     const double worst = fibrad_max(low.error, high.error);
     if (result->least_temperature != NULL) result->least_temperature[i] = mean.value + low.value;
@@ -649,7 +672,11 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
         if (heat->openings >> k & 1) result->surroundings_power += heat->solution.power[fibrad_heat_body(heat, k)];
         read_beyond(heat, k, result);
     }
+    const bool inside =
+        result->least_temperature != NULL || result->largest_temperature != NULL || result->surface_error != NULL;
     if (heat->contacts.count > 0) find_joined_errors(heat);
+    if (heat->sources.conducts && heat->solution.steps && inside)
+        fibrad_heat_find_extremes(heat, 0, spheres, heat->near);
     read_errors(heat, result);
     result->sweeps = heat->solution.sweeps;
     result->residual = heat->solution.scale > 0 ? fibrad_sqrt(heat->solution.slope / heat->solution.scale) : 0;

@@ -478,7 +478,15 @@ static void finish_powers(fibrad_heat *heat) {
     find_powers(heat, heat->solution.power);
     find_emissions(heat);
     if (heat->sources.afloat) sink(heat);
-    if (heat->sources.conducts) fibrad_heat_find_spans(heat);
+    heat->solution.steps = false;
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        heat->solution.steps = heat->solution.steps || heat->sources.hold[b] > 0;
+    if (heat->sources.conducts) {
+        fibrad_heat_find_spans(heat);
+        fibrad_heat_make_rings(heat);
+        for (uint32_t b = 0; b < heat->spheres && heat->sources.absorbed != NULL; b++)
+            if (fibrad_heat_conducts(heat, b)) fibrad_heat_take_absorbed_off(heat, b);
+    }
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (heat->solution.group > 1)
             heat->solution.coarse[b] = heat->solution.power[b],
