@@ -301,6 +301,33 @@ static const char *pebbles(void) {
     return write_file("bed.csv", "x,y,z,radius,k,T\n0,0,0,30,2,1000\n70,0,0,30,3,1200\n0,70,0,30,4,1500\n");
 }
 
+/* Powers by factors of spheres that conduct badly err more than rows: two seeds tell how much. The summary knows, and
+ * warns. */
+static const double bad_k[] = {.02, .1, 2};
+LOOP_TEST(errors_of_powers, 3) {
+    OWNED_BY(hot_bed_free) struct hot_bed h = {.bed = packing(40, 1, 1, .4, 3, true)};
+    double found[2][MOST];
+    char text[40 * 80] = "x,y,z,r\n";
+    for (uint32_t i = 0; i < h.bed.n; ++i) {
+        h.temperature[i] = .7 + .6 * bed_make_random(4, i), h.emissivity[i] = .8, h.relative[i] = bad_k[_i];
+        h.node[i] = fibrad_node_emissivity(.8, bad_k[_i]);
+        snprintf(text + strlen(text), 80, "%.17g,%.17g,%.17g,1\n", h.bed.x[i], h.bed.y[i], h.bed.z[i]);
+    }
+    memcpy(h.config.period, h.bed.period, sizeof h.config.period);
+    for (uint64_t seed = 0; seed < 2; ++seed) {
+        OWNED_FACTORS *factors = factors_of(&h, 2000, seed);
+        powers_by_rows(&h, &factors->matrix, found[seed]);
+    }
+    const double noise = difference_of(found[0], found[1], h.bed.n) / sqrt(2);
+    const char *solid = formatted("%.9g", bad_k[_i] * 8 * 5.670374419e-8 * 1e9);
+    const char *period = formatted("%.17g,%.17g,%.17g", h.bed.period[0], h.bed.period[1], h.bed.period[2]);
+    SUCCEED("exchange", write_file("bad.csv", text), "--length-unit", "m", "--emissivity", "0.8", "--periodic", period,
+            "--temperature", "1000", "--solid-conductivity", solid, "--rays", "2000", "--directions", "400");
+    const double error = value_of("error_of_powers");
+    ck_assert_msg(error > .4 * noise && error < 3 * noise, "%g for %g", error, noise);
+    ck_assert_int_eq(strstr(said, "powers by these factors") != NULL, error > .03);
+}
+
 TEST(outputs) {
     const char *json = in_folder("D.json"), *npz = in_folder("D.npz");
     SUCCEED("exchange", pebbles(), "--length-unit", "mm", "--emissivity", "0.8", "--solid-conductivity", "k",

@@ -202,7 +202,7 @@ static int bed_matrix(struct bed_request *request, struct bed *bed, fibrad_bed_f
     if (status) return status;
     what.factors = *factors;
     summary_make(&summary, &what);
-    warn_rows(&request->bed.warned, bed, &what.factors->matrix);
+    warn_rows(&request->bed.warned, bed, what.factors);
     what.of_sides = &views;
     if (request->bed.wall_vtp) status = bed_views(request, bed, &views);
     if (!status) status = bed_options_write(&request->bed, bed, &what);

@@ -110,8 +110,29 @@ static int exchange_parse(struct exchange_request *request, int argc, char **arg
     return status ? status : exchange_check(request);
 }
 
-/* Reports conductivities of the solid, and emissivities of nodes. */
-static void exchange_report_solid(struct exchange_request *request, uint32_t n) {
+/* Powers by factors of nodes may err far more than rows: a node of emissivity n exchanges little of what the sphere
+ * does, and what it exchanges follows from small differences. Let x be the part of a row that goes to walls and
+ * surroundings, and m = n/e. Errors of powers, over their root mean square, turned out to be those of rows times
+ * sqrt(1/(m (m + (1 - m) x))), if temperatures differ from sphere to sphere. docs/methods_heat.md section 15. */
+static double exchange_power_error(const struct exchange_request *request, const fibrad_factors *matrix) {
+    const double *surface = request->rule.emissivity, *node = request->rule.node_emissivity;
+    double square = 0;
+    uint32_t rows = 0;
+    for (uint32_t i = 0; i < matrix->n; ++i) {
+        double spheres = 0;
+        for (uint64_t k = matrix->start[i]; k < matrix->start[i + 1]; ++k) spheres += matrix->f[k];
+        const double m = surface[i] > 0 ? node[i] / surface[i] : 0, x = fmax(0, 1 - spheres);
+        if (m > 0) square += matrix->error[i] * matrix->error[i] / (m * (m + (1 - m) * x)), ++rows;
+    }
+    return rows > 0 ? sqrt(square / rows) : 0;
+}
+
+#define POWERS_WRONG .03 /* error of powers above which there is a warning */
+
+/* Reports conductivities of the solid, emissivities of nodes, and the error of powers that follow from them. */
+static void exchange_report_solid(struct exchange_request *request, const fibrad_factors *matrix) {
+    const uint32_t n = matrix->n;
+    const double error = exchange_power_error(request, matrix);
     const double *relative = request->rule.conductivity, *node = request->rule.node_emissivity;
     struct report *report = &request->bed.report;
     struct k_star all = {0};
@@ -120,6 +141,13 @@ static void exchange_report_solid(struct exchange_request *request, uint32_t n) 
     quantity_report(&request->temperature, request->zero > 0 ? "temperature_C" : "temperature_K", report);
     solid_report(&request->solid, &all, report);
     report_value(report, "node_emissivity", mean_node, 6);
+    report_value(report, "error_of_powers", error, 2);
+    if (error > POWERS_WRONG)
+        message_at(
+            STATUS_OK, request->bed.name, 0,
+            "warning: powers by these factors are off by about %.2g of their root mean square, since the spheres "
+            "conduct badly; a smaller --error helps, or heat --solid-conductivity",
+            error);
 }
 
 static void exchange_report(struct exchange_request *request, const struct contents *what) {
@@ -130,7 +158,7 @@ static void exchange_report(struct exchange_request *request, const struct conte
     bed_options_report(&request->bed, what->bed, what->walls, &factors->facts);
     quantity_report(&request->emissivity, "emissivity", report);
     wall_values_report(what->walls, request->rule.body_emissivity, "_emissivity", 6, report);
-    if (request->solid.given) exchange_report_solid(request, what->bed->n);
+    if (request->solid.given) exchange_report_solid(request, &factors->matrix);
     report_count(report, "directions", factors->directions);
     report_count(report, "rays", factors->rays);
     if (request->rule.tolerance > 0)
@@ -158,7 +186,7 @@ static int exchange_matrix(struct exchange_request *request, struct bed *bed) {
     fibrad_bed_factors *factors = NULL;
     int status = bed_options_memory(bed, &request->options, exchange_solve, request);
     if (!status) status = exchange_solve(request, bed, &factors);
-    if (!status) warn_rows(&request->bed.warned, bed, &factors->matrix);
+    if (!status) warn_rows(&request->bed.warned, bed, factors);
     struct contents what = {.factors = factors, .walls = &request->walls, .grey = &request->rule};
     if (!status) status = bed_options_write(&request->bed, bed, &what);
     if (!status && request->bed.outputs.picture)

@@ -84,7 +84,7 @@ static const struct option heat_table[] = {
     {0, "wall-rays", "N",
      "least number of rays from all walls, up to 2^30; errors of triangles fall as N^-0.5 [" TEXT_OF(
          FIBRAD_WALL_RAYS_DEFAULT) ", more with many "
-                                   "beams or patches]",
+                                   "beams or patches, or insulated walls]",
      TO_COUNT(struct heat_request, problem.config.wall_rays, 1, FIBRAD_WALL_RAYS_MAX)},
     {0, "error", "E",
      "error allowed in powers, estimated, relative to their root mean square, 1e-5 to 1; directions and patches are "
@@ -113,9 +113,10 @@ static int heat_help(void) {
          "is its negative. An insulated wall sends back all that arrives, point by point. A sphere of emissivity 0\n"
          "reflects everything, gains nothing and has no temperature.\n"
          "\n"
-         "--error E holds for the powers of the spheres together, for each wall, and for T^4 where temperatures\n"
-         "are found. Each error is relative to a root mean square. Where powers are below 1e-3 of what the spheres\n"
-         "emit or absorb, errors are relative to 1e-3 of what they emit or absorb.\n"
+         "--error E holds for the powers of the spheres together, for each wall, for the surroundings if a wall is\n"
+         "insulated, and for T^4 where temperatures are found. Each error is relative to a root mean square. Where\n"
+         "powers are below 1e-3 of what spheres emit or absorb, errors are relative to 1e-3 of what they emit or\n"
+         "absorb.\n"
          "\n" LIGHT_MORE);
     puts(CONTACTS_MORE
          "\n"

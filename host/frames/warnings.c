@@ -55,24 +55,25 @@ static bool is_new(struct warned *warned, enum kind kind) {
     return new;
 }
 
-void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_factors *matrix) {
-    const bool walls = matrix->body_body != NULL;
+void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_bed_factors *factors) {
+    const fibrad_factors *matrix = &factors->matrix;
+    const bool walls = matrix->body_body != NULL, meshed = factors->facts.triangles > 0;
     if (walls && matrix->body_closure > CLOSED && is_new(warned, WALLS_OPEN))
         message_at(STATUS_OK, warned->file, 0,
                    "warning: rows of walls are not closed: their sums are off by %.2g, because they contradict the "
-                   "rows of spheres; do triangles cut spheres?",
-                   matrix->body_closure);
+                   "rows of spheres%s",
+                   matrix->body_closure, meshed ? "; do triangles cut spheres?" : "");
     else if (walls && matrix->body_correction > APART && is_new(warned, WALLS_APART))
         message_at(STATUS_OK, warned->file, 0,
-                   "warning: rows of walls and of spheres disagreed by %.2g before they were closed; do triangles cut "
-                   "spheres? If not, more directions help",
-                   matrix->body_correction);
+                   "warning: rows of walls and of spheres disagreed by %.2g before they were closed; %s",
+                   matrix->body_correction,
+                   meshed ? "do triangles cut spheres? If not, more directions help" : "more directions help");
     else if (matrix->changed > CHANGE_LARGE && is_new(warned, CLOSING))
         message_at(STATUS_OK, warned->file, bed->line[matrix->changed_row],
                    "warning: rows were scaled to add up to 1; this changes what sphere %lld gives to walls and "
-                   "surroundings by %.2g times the error of its row; do triangles cut this sphere? If not, more "
-                   "directions help",
-                   (long long)bed_name(bed, matrix->changed_row), matrix->changed);
+                   "surroundings by %.2g times the error of its row; %s",
+                   (long long)bed_name(bed, matrix->changed_row), matrix->changed,
+                   meshed ? "do triangles cut this sphere? If not, more directions help" : "more directions help");
 }
 
 /* ---- frames ----------------------------------------------------------------------------------------------------- */

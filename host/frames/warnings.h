@@ -11,7 +11,7 @@
 #include "bed/bed.h"
 #include "bed/property_option.h"
 #include "bed/wall_option.h"
-#include "fibrad.h"
+#include "simple/fibrad_host.h"
 
 /* Warnings of a run so far. Begin with zeroes. */
 struct warned {
@@ -58,6 +58,6 @@ void warn_surfaces(struct warned *warned, const struct bed *bed, const double *l
 
 /* Warns if rows of walls and rows of spheres contradict each other, or if closing changes a row of a sphere by more
  * than its error. */
-void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_factors *matrix);
+void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_bed_factors *factors);
 
 #endif

@@ -7,9 +7,28 @@
 #include "cli/memory.h"
 #include "cli/message.h"
 
-/* heat_report.wall_error. d(T^4)/T^4 = 4 dT/T. */
-static double heat_wall_error(const fibrad_heat_result *result, uint32_t walls) {
-    double worst = 0;
+static bool heat_insulates(const fibrad_heat_sources *sources, uint32_t walls) {
+    bool any = false;
+    for (uint32_t k = 0; k < walls; ++k) any |= sources->insulated && sources->insulated[k];
+    return any;
+}
+
+/* The error of the power of the surroundings over the larger of two powers: that of the surroundings, and SMALL_SHARE
+ * of all that is exchanged. */
+#define SMALL_SHARE .05
+static double heat_outside_error(const fibrad_heat_result *result, uint32_t spheres, uint32_t walls) {
+    double sum = fabs(result->surroundings_power);
+    for (uint32_t i = 0; i < spheres; ++i) sum += fabs(result->power[i]);
+    for (uint32_t k = 0; k < walls; ++k) sum += fabs(result->body_power[k]);
+    const double error = result->surroundings_error;
+    return error > 0 ? error / fmax(fabs(result->surroundings_power), SMALL_SHARE * sum / 2) : 0;
+}
+
+/* heat_report.wall_error. d(T^4)/T^4 = 4 dT/T. What insulated walls send back goes to the surroundings in the end, so
+ * that the error of such walls is that of the surroundings, too. */
+static double heat_wall_error(const fibrad_heat_result *result, const fibrad_heat_sources *sources, uint32_t spheres,
+                              uint32_t walls) {
+    double worst = heat_insulates(sources, walls) ? heat_outside_error(result, spheres, walls) : 0;
     for (uint32_t k = 0; k < walls; ++k) {
         if (result->body_error[k] > 0)
             worst = fmax(worst, result->body_error[k] / fmax(fabs(result->body_power[k]), result->body_absorbed[k]));
@@ -48,7 +67,7 @@ static void heat_summarise(const struct bed *bed, const fibrad_heat_sources *sou
     report->throughput = sqrt(squares / bed->n);
     report->balance_of_emission = throughput > 0 ? report->balance / throughput : 0;
     report->error = hypot(result->error_patches, result->error_beams);
-    report->wall_error = heat_wall_error(result, walls);
+    report->wall_error = heat_wall_error(result, sources, bed->n, walls);
 }
 
 /* Figures of the spheres whose temperatures were found. */
@@ -158,6 +177,10 @@ enum {
 #define BRIGHT 0.35
 #define POINTS 64
 
+/* Least number of rays between walls if a wall is insulated, for each patch of a sphere. Patches of insulated walls
+ * need more rays than other ones: docs/methods_heat.md section 7. */
+#define RAYS_INSULATED (2 * FIBRAD_WALL_RAYS_DEFAULT / FIBRAD_HEAT_PATCHES_DEFAULT)
+
 /* problem->config with defaults filled in. The number of directions follows from the emissivities of the bed. With
  * problem->error it is the number to begin with. */
 static fibrad_heat_config heat_config(const struct heat_problem *problem, const struct bed *bed) {
@@ -171,6 +194,8 @@ static fibrad_heat_config heat_config(const struct heat_problem *problem, const 
     if (!config.directions)
         config.directions = problem->error > 0 ? DIRECTIONS_BEGIN : bright ? DIRECTIONS_BRIGHT : DIRECTIONS_DARK;
     if (!config.points) config.points = POINTS;
+    if (!config.wall_rays && heat_insulates(&problem->sources, problem->walls.count))
+        config.wall_rays = RAYS_INSULATED * (config.patches ? config.patches : FIBRAD_HEAT_PATCHES_DEFAULT);
     return config;
 }
 
@@ -306,82 +331,103 @@ static double heat_worst(const struct heat_excess *over) {
 #define PATCHES_MOST 0.92 /* most of the allowed error that patches may have; else beams would have to be exact */
 enum { GROWTH = 8 };
 
-/* Multiplies the number of directions, by 1.5 to GROWTH, up to the largest number there may be. */
-static void heat_more_beams(fibrad_heat_config *config, double times) {
-    config->directions = (uint32_t)fmin(config->directions * fmin(fmax(times, 1.5), GROWTH), FIBRAD_DIRECTIONS_MAX);
+/* Multiplies the number of directions, by 1.5 to `most`, up to the largest number there may be. */
+static void heat_more_beams(fibrad_heat_config *config, double times, double most) {
+    config->directions = (uint32_t)fmin(config->directions * fmin(fmax(times, 1.5), most), FIBRAD_DIRECTIONS_MAX);
 }
 
 /* Four times the patches need four times the beams, so that each patch keeps its number of beams. */
 static void heat_more_patches(fibrad_heat_config *config) {
     config->patches *= 4;
-    heat_more_beams(config, 4);
+    heat_more_beams(config, 4, GROWTH);
 }
 
 /* Rays between walls: the error falls as the square root of their number. */
-static void heat_more_rays(fibrad_heat_config *config, double over) {
+static void heat_more_rays(fibrad_heat_config *config, double over, double most) {
     const uint32_t rays = config->wall_rays > 0 ? config->wall_rays : FIBRAD_WALL_RAYS_DEFAULT;
-    config->wall_rays = (uint32_t)fmin(rays * fmin(fmax(over * over, 2), GROWTH), WALL_RAYS_MOST);
+    config->wall_rays = (uint32_t)fmin(rays * fmin(fmax(over * over, 2), most), WALL_RAYS_MOST);
 }
 
 /* The next configuration. If the powers of spheres err too much, it has more of what errs more, patches or beams. It
  * stays as it is if more patches are impossible and beams err little. If temperatures err too much, it has more beams,
  * or more patches where beams have not helped. If walls err too much, it has more rays between walls as long as those
- * help, then more beams. Errors are about inverse to the number of beams. */
+ * help, then more beams. Errors are about inverse to the number of beams. most: by which beams and rays may grow. */
 static fibrad_heat_config heat_refine(fibrad_heat_config config, const struct heat_excess *over,
-                                      const struct heat_excess *last) {
+                                      const struct heat_excess *last, double most) {
     const bool finer = config.patches < FIBRAD_HEAT_PATCHES_MAX;
     const double beams_allowed = sqrt(1 - pow(fmin(over->patches, PATCHES_MOST), 2));
-    if (over->walls > 1 && over->walls <= HELPED * last->walls) heat_more_rays(&config, over->walls);
+    if (over->walls > 1 && over->walls <= HELPED * last->walls) heat_more_rays(&config, over->walls, most);
     if (hypot(over->beams, over->patches) > 1) {
         if (over->patches > PATCHES_MOST && finer)
             heat_more_patches(&config);
         else if (over->beams > beams_allowed)
-            heat_more_beams(&config, over->beams / beams_allowed);
+            heat_more_beams(&config, over->beams / beams_allowed, most);
     } else if (over->emission > 1) {
         if (over->emission > HELPED * last->emission && finer)
             heat_more_patches(&config);
         else
-            heat_more_beams(&config, over->emission);
+            heat_more_beams(&config, over->emission, most);
     } else if (over->walls > HELPED * last->walls) {
-        heat_more_beams(&config, over->walls);
+        heat_more_beams(&config, over->walls, most);
     }
     return config;
 }
 
-/* Estimated time of a solution, in units of one beam of a sphere. One ray of a wall takes as long as BEAMS_A_RAY beams.
- */
+/* Estimated time of beams and rays, in units of one beam of a sphere. One ray of a wall takes as long as BEAMS_A_RAY
+ * beams. */
 #define BEAMS_A_RAY 12.0
-static double heat_work(const struct bed *bed, uint32_t walls, const fibrad_heat_config *config) {
+static double heat_rays_work(uint32_t walls, const fibrad_heat_config *config) {
     const double beams = (double)config->directions * config->points;
     const double rays = fmax(fmax(config->wall_rays, FIBRAD_WALL_RAYS_DEFAULT), 6 * beams);
-    return bed->n * beams + (walls > 0 ? BEAMS_A_RAY * rays : 0);
+    return walls > 0 ? BEAMS_A_RAY * rays : 0;
+}
+static double heat_work(const struct bed *bed, uint32_t walls, const fibrad_heat_config *config) {
+    return bed->n * ((double)config->directions * config->points) + heat_rays_work(walls, config);
 }
 
-/* A warning is printed beforehand if --error takes more than COSTLY times as long as the defaults. */
-#define COSTLY 20
+/* A warning is printed beforehand if --error takes more than COSTLY times as long as the defaults, or once more if it
+ * takes TOO_SHORT times as long as a warning has said. */
+#define COSTLY    20
+#define TOO_SHORT 1.3
+
+/* When a run has begun, and how long it takes by the last warning [s]. */
+struct heat_times {
+    double begun, said;
+};
+
+/* Warns if a run will take long. over, last: errors of this round and of the one before. */
+static void heat_foresee(const struct bed_options *options, const struct heat_problem *problem, const struct bed *bed,
+                         const struct heat_report *report, const struct heat_excess *over,
+                         const struct heat_excess *last, struct heat_times *times) {
+    const struct heat_problem plain = {.config = problem->config, .emissivity = problem->emissivity};
+    const uint32_t walls = problem->walls.count;
+    const fibrad_heat_config defaults = heat_config(&plain, bed);
+    const fibrad_heat_config next = heat_refine(report->config, over, last, GROWTH);
+    const fibrad_heat_config end = heat_refine(report->config, over, last, INFINITY);
+    const double unit = report->seconds / heat_work(bed, walls, &report->config);
+    const double usual = unit * heat_work(bed, walls, &defaults), work = heat_work(bed, walls, &end);
+    const bool rounds = end.directions > next.directions || end.wall_rays > next.wall_rays;
+    const double seconds =
+        progress_clock() - times->begun + unit * (work + (rounds ? heat_work(bed, walls, &next) : 0));
+    if (!(seconds > fmax(COSTLY * usual, TOO_SHORT * times->said))) return;
+    message_at(STATUS_OK, options->name, 0,
+               "warning: --error %g takes about %.0f s, %.0f times as long as without --error%s", problem->error,
+               ceil(seconds), seconds / usual,
+               2 * heat_rays_work(walls, &end) > work ? "; most of it is for rays between walls" : "");
+    times->said = seconds;
+}
 
 /* Solves again with finer configurations until the errors are small enough or the configuration cannot be finer. */
 static int heat_improve(struct bed_options *options, const struct heat_problem *problem, const struct bed *bed,
                         struct heat_report *report) {
-    const struct heat_problem plain = {.config = problem->config, .emissivity = problem->emissivity};
-    const fibrad_heat_config defaults = heat_config(&plain, bed);
-    const double begun = progress_clock() - report->seconds;
+    struct heat_times times = {progress_clock() - report->seconds, 0};
     struct heat_excess last = {INFINITY, INFINITY, INFINITY, INFINITY}, over = heat_compare(problem, report);
-    bool warned = false;
     while (heat_worst(&over) > 1) {
-        const fibrad_heat_config next = heat_refine(report->config, &over, &last);
-        const double work = heat_work(bed, problem->walls.count, &report->config);
-        const double seconds = report->seconds * heat_work(bed, problem->walls.count, &next) / work;
-        const double usual = report->seconds * heat_work(bed, problem->walls.count, &defaults) / work;
+        const fibrad_heat_config next = heat_refine(report->config, &over, &last, GROWTH);
         if (next.directions == report->config.directions && next.patches == report->config.patches &&
             next.wall_rays == report->config.wall_rays)
             break;
-        if (!warned && progress_clock() + seconds - begun > COSTLY * usual) {
-            message_at(STATUS_OK, options->name, 0,
-                       "warning: --error %g takes about %.0f s, %.0f times as long as without --error", problem->error,
-                       ceil(progress_clock() + seconds - begun), (progress_clock() + seconds - begun) / usual);
-            warned = true;
-        }
+        heat_foresee(options, problem, bed, report, &over, &last, &times);
         const fibrad_heat_config before = report->config;
         report->config = next;
         const int status = heat_once(options, problem, bed, report);

@@ -130,15 +130,34 @@ uint64_t fibrad_paths_begin(fibrad_paths *paths, uint64_t count) {
     return count;
 }
 
-/* The Euclidean error of the sums over all paths, from the spread of four parts of the paths. Two parts might agree by
- * chance in rows of few entries. `weight`, that of one more path, is added, since a path may end where none has ended
- * so far. */
-static double spread_of_parts(const fibrad_entries *entries, double weight) {
+/* The sum of squares by which the parts of a sum differ from what is expected of them. share: the shares of the parts
+ * in all paths. */
+static double spread_of_sum(const double part[4], const double share[4]) {
+    const double sum = part[0] + part[1] + part[2] + part[3];
     double square = 0;
-    for (uint32_t k = 0; k < entries->length; k++) {
-        const double *part = entries->part[k], mean = 0.25 * (part[0] + part[1] + part[2] + part[3]);
-        for (int p = 0; p < 4; p++) square += (part[p] - mean) * (part[p] - mean);
+    for (int p = 0; p < 4; p++) square += (part[p] - share[p] * sum) * (part[p] - share[p] * sum);
+    return square;
+}
+
+/* The Euclidean error of the sums over all paths, of spheres, walls and surroundings, from the spread of four parts of
+ * the paths. Two parts might agree by chance in rows of few entries. Sums are divided by that of all paths, so parts
+ * are compared with their shares in all. `weight`, that of one more path, is added, since a path may end where none has
+ * ended so far. */
+static double spread_of_parts(const fibrad_paths *paths, double weight) {
+    const fibrad_entries *entries = paths->entries;
+    double square = 0, squares = 0, share[4] = {0, 0, 0, 0};
+    for (int p = 0; p < 4; p++) {
+        for (uint32_t k = 0; k < entries->length; k++) share[p] += entries->part[k][p];
+        for (uint32_t k = 0; k < FIBRAD_SLOTS + 2; k++) share[p] += paths->end[k][p];
     }
+    const double all = share[0] + share[1] + share[2] + share[3];
+    for (int p = 0; p < 4; p++) share[p] = all > 0 ? share[p] / all : 0.25;
+    for (uint32_t k = 0; k < entries->length + FIBRAD_SLOTS + 2; k++) {
+        const bool sphere = k < entries->length;
+        const double own = spread_of_sum(sphere ? entries->part[k] : paths->end[k - entries->length], share);
+        square += own, squares += own * own;
+    }
+    square += fibrad_sqrt(2.0 / 3 * squares);
     return fibrad_sqrt(4.0 / 3 * square + weight * weight);
 }
 
@@ -166,7 +185,7 @@ static uint64_t follow_paths(fibrad_paths *paths, const fibrad_exchange_rule *ru
             if (carried > wanted && done < 64 * first) next = 4 * done;
             continue;
         }
-        if (wanted > 0 && carried > wanted) ratio = spread_of_parts(paths->entries, weight) / sum * carried / wanted;
+        if (wanted > 0 && carried > wanted) ratio = spread_of_parts(paths, weight) / sum * carried / wanted;
         if (ratio > 1)
             next = (uint64_t)fibrad_min(FIBRAD_PATHS_MAX, (double)done * fibrad_min(8, 1.1 * ratio * ratio) + 1);
     } while (done < next);
@@ -264,7 +283,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
         if (sum != 0 && rule->known != NULL) to_spheres = pool_known(&paths, rule, scale, count);
     }
     /* before add_first_leg, which adds the same to all parts */
-    const double paths_error = fibrad_min(carried, scale * spread_of_parts(&space->entries, weight));
+    const double paths_error = fibrad_min(carried, scale * spread_of_parts(&paths, weight));
     add_first_leg(space, task->emissivity, &leg, scale * to_spheres);
     if (space->entries.missed > 0) return fibrad_work_entries_missed(space);
     const double error = fibrad_sqrt(paths_error * paths_error + beam_error * beam_error) + lost_of(&paths, carried);

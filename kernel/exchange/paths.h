@@ -18,28 +18,29 @@ typedef struct fibrad_paths {
     uint32_t place;    /* position of the sphere that paths leave; FIBRAD_NONE: paths leave a wall, without a cutoff */
     uint32_t from;     /* slot of the wall that paths leave */
     fibrad_legs *legs; /* NULL, or the first legs of the first paths */
-    const fibrad_sobol *sobol;      /* evenly spread points, of paths from a wall */
-    double inverse;                 /* 1/L, of the radius of the sphere */
-    bool cut;                       /* whether there is a cutoff or a known region */
-    double cutoff;                  /* from the centre of the sphere, in its radii; infinity: none */
-    const double *emissivity;       /* [spheres], by the caller's index: fraction absorbed; NULL: all are black */
-    const double *conductivity;     /* [spheres], relative, by the caller's index; NULL: one temperature a sphere */
-    const double *surface;          /* [spheres], emissivities of surfaces; with conductivity, `emissivity` has those
-                                       of nodes */
-    uint32_t flights;               /* above 0: paths are walks, see fibrad_paths_function */
-    const double *wall_emissivity;  /* [FIBRAD_SLOTS], by slot */
-    bool boxed;                     /* paths leave a side of a closed box, and all surfaces are black */
-    double behind[FIBRAD_CYLINDER]; /* out, if boxed: weight on the way to each wall that spheres stop */
-    fibrad_random stream;           /* all random numbers of path k follow from stream and k */
-    bool first;                     /* whether absorption by the first surface counts */
-    fibrad_entries *entries;        /* out: absorbed by each sphere, path k in part k mod 4; NULL: not counted */
-    double wall[FIBRAD_SLOTS];      /* out: absorbed by each wall */
-    double escaped, beyond;         /* out: to the surroundings; beyond the cutoff or the known region */
-    double absorbed;                /* out: absorbed by all spheres */
-    uint64_t *reflected;            /* [spheres], by the caller's index, added to: absorbed after a reflection, in
-                                       paths * 2^40; NULL: not counted */
-    bool undo;                      /* subtract from `reflected` what these paths have added */
-    double left;                    /* out: weight of paths that are broken off after too many legs */
+    const fibrad_sobol *sobol;       /* evenly spread points, of paths from a wall */
+    double inverse;                  /* 1/L, of the radius of the sphere */
+    bool cut;                        /* whether there is a cutoff or a known region */
+    double cutoff;                   /* from the centre of the sphere, in its radii; infinity: none */
+    const double *emissivity;        /* [spheres], by the caller's index: fraction absorbed; NULL: all are black */
+    const double *conductivity;      /* [spheres], relative, by the caller's index; NULL: one temperature a sphere */
+    const double *surface;           /* [spheres], emissivities of surfaces; with conductivity, `emissivity` has those
+                                        of nodes */
+    uint32_t flights;                /* above 0: paths are walks, see fibrad_paths_function */
+    const double *wall_emissivity;   /* [FIBRAD_SLOTS], by slot */
+    bool boxed;                      /* paths leave a side of a closed box, and all surfaces are black */
+    double behind[FIBRAD_CYLINDER];  /* out, if boxed: weight on the way to each wall that spheres stop */
+    fibrad_random stream;            /* all random numbers of path k follow from stream and k */
+    bool first;                      /* whether absorption by the first surface counts */
+    fibrad_entries *entries;         /* out: absorbed by each sphere, path k in part k mod 4; NULL: not counted */
+    double wall[FIBRAD_SLOTS];       /* out: absorbed by each wall */
+    double escaped, beyond;          /* out: to the surroundings; beyond the cutoff or the known region */
+    double end[FIBRAD_SLOTS + 2][4]; /* out: wall, escaped and beyond, path k in part k mod 4 */
+    double absorbed;                 /* out: absorbed by all spheres */
+    uint64_t *reflected;             /* [spheres], by the caller's index, added to: absorbed after a reflection, in
+                                        paths * 2^40; NULL: not counted */
+    bool undo;                       /* subtract from `reflected` what these paths have added */
+    double left;                     /* out: weight of paths that are broken off after too many legs */
     /* L^2, out: sum over absorption by spheres times the squared displacement along each axis, path k in part k mod
      * FIBRAD_DISPLACEMENT_PARTS. The displacement is between the centres of the two spheres. */
     double square[FIBRAD_DISPLACEMENT_PARTS][3];

@@ -262,7 +262,7 @@ static void absorb_at_surface(fibrad_paths *paths, struct grey_path *path, uint3
     path->weight -= absorbed;
     if (!counts || emissivity == 0) return; /* spheres that absorb nothing have no entry */
     if (wall != FIBRAD_NONE) {
-        paths->wall[wall] += absorbed;
+        paths->wall[wall] += absorbed, paths->end[wall][path->part] += absorbed;
         return;
     }
     paths->absorbed += absorbed;
@@ -372,6 +372,13 @@ static bool survives(struct grey_path *path, uint32_t leg) {
     return true;
 }
 
+/* Counts a path that ends in the surroundings or beyond. */
+static void leave_scene(fibrad_paths *paths, const struct grey_path *path, uint32_t met) {
+    const bool escaped = met == FIBRAD_ESCAPED;
+    *(escaped ? &paths->escaped : &paths->beyond) += path->weight;
+    paths->end[FIBRAD_SLOTS + !escaped][path->part] += path->weight;
+}
+
 static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]) {
     struct grey_path path = {.k = k,
                              .part = (uint32_t)(k % 4),
@@ -394,7 +401,7 @@ static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]
         const bool counts = leg > 0 || paths->first;
         const uint32_t met = trace_leg(paths, &path, w, NULL);
         if (met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND) {
-            if (counts) *(met == FIBRAD_ESCAPED ? &paths->escaped : &paths->beyond) += path.weight;
+            if (counts) leave_scene(paths, &path, met);
             return;
         }
         const double before = path.weight;

@@ -115,6 +115,7 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     heat->ray = fibrad_arena_take(arena, heat->rays_capacity, sizeof *heat->ray);
     heat->solution.brought =
         fibrad_arena_take(arena, (size_t)others * heat->config.parts, sizeof *heat->solution.brought);
+    heat->solution.back = fibrad_arena_take(arena, others, sizeof *heat->solution.back);
     double **const of_patches[] = {&heat->solution.source,   &heat->solution.gathered,  &heat->solution.area,
                                    &heat->solution.net,      &heat->solution.radiosity, &heat->solution.detail,
                                    &heat->solution.direction};

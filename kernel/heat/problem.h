@@ -166,6 +166,7 @@ typedef struct fibrad_heat_solution {
     fibrad_heat_phase phase;
     bool warm;               /* radiosities are those of a solution */
     bool areas;              /* areas are those of the present beams */
+    bool sends_back;         /* some patch has a `back` above 0 */
     uint32_t group;          /* patches that have one J: 1, 4, or all of a body */
     uint32_t sweeps;         /* so far */
     double slope;            /* residual times preconditioned residual */
@@ -180,6 +181,7 @@ typedef struct fibrad_heat_solution {
     double *source;          /* [patches], sent in this sweep */
     double *gathered;        /* [patches], received in this sweep */
     double *brought;         /* [parts][patches that are not of spheres], received from each part */
+    double *back;            /* 1/L^2, [patches that are not of spheres], 1/area of those that send back all; or 0 */
     double *coarse, *power;  /* [bodies], net power at the coarser level, and extrapolated */
     double *coarse_emission; /* [bodies], E at the coarser level */
     double *drift, *left;    /* [bodies], change of the power in the last step, and what later steps would change */
@@ -405,6 +407,11 @@ static inline bool fibrad_heat_is_insulated(const fibrad_heat *heat, uint32_t bo
     return body >= heat->spheres && heat->sources.insulated[body - heat->spheres];
 }
 
+/* Whether a body is a wall that sends back all that arrives: it is insulated, or its emissivity is 0. */
+static inline bool fibrad_heat_reflects(const fibrad_heat *heat, uint32_t body) {
+    return body >= heat->spheres && heat->sources.emissivity[body] == 0;
+}
+
 /* Whether the surface of a body has more than one temperature. */
 static inline bool fibrad_heat_conducts(const fibrad_heat *heat, uint32_t body) {
     return body < heat->spheres && heat->sources.unevenness[body] > 0;
@@ -436,6 +443,23 @@ static inline double fibrad_heat_absorbed(const fibrad_heat *heat, uint32_t body
     for (uint32_t a = heat->first[body]; a < heat->first[body + 1] && heat->sources.absorbed != NULL; a++)
         sum += heat->sources.absorbed[a];
     return sum;
+}
+
+/* A patch that sends back all that arrives has few links to others. Too much of what arrives by a link goes back by it:
+ * 1/k of it if k links are spread at random. So exchange areas of such links are taken to be larger, by the share of
+ * the link in the area of the patch. Rays are spread more evenly than random ones. Beams of one direction are parallel,
+ * so that several of them connect the same two surfaces. docs/methods_heat.md section 7. */
+#define FIBRAD_HEAT_RAYS_RETURN  .7
+#define FIBRAD_HEAT_BEAMS_RETURN 1.5
+static inline double fibrad_heat_enlarged(double area, double factor, double back_from, double back_to) {
+    return area * (1 + factor * area * (back_from + back_to));
+}
+
+/* The same for a ray of walls. */
+static inline double fibrad_heat_ray_area(const fibrad_heat *heat, const fibrad_heat_ray *ray) {
+    const double *back = heat->solution.back;
+    const uint32_t others = fibrad_heat_others(heat);
+    return fibrad_heat_enlarged(ray->area, FIBRAD_HEAT_RAYS_RETURN, back[ray->from - others], back[ray->to - others]);
 }
 
 /* The power that a body absorbs at its patches. Radiosities are differences from that of the surroundings. */

@@ -24,6 +24,7 @@
 #define FEW_ERROR      .25 /* times patches over beams: if few beams leave a patch, it sends light back along the same */
 #define FEW_SEEN       1.3 /* the same for walls that a sphere sees, whose beams are less even */
 #define FEW_WALLS      .65 /* the same for walls themselves */
+#define BACK_LEFT      .2  /* part of the error of walls that send back all, which larger exchange areas leave */
 #define SPOT_ERROR     .7
 #define RESIDUAL_ERROR 2    /* times what the steps to come would change */
 #define SPAN_ERROR     .015 /* of the extremes of a surface, over their difference from its mean */
@@ -181,22 +182,33 @@ static double few_of_sphere(const fibrad_heat *heat, const heat_errors *errors, 
 }
 
 /* The same for a wall, which beams of spheres and rays meet. Half of the rays are its own. */
-static double few_of_wall(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
+typedef struct few_links {
+    double rays, beams; /* parts of the error over the power */
+} few_links;
+
+static few_links few_of_wall(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     const uint32_t k = b - heat->spheres, slot = k < FIBRAD_WALLS ? k : FIBRAD_MESHES + (k - FIBRAD_WALLS);
     const fibrad_heat_rays *sent = &heat->sent[slot];
     const double area = spread_of(heat, b).area;
     double rays = 0;
     for (uint32_t r = sent->first; r < sent->first + sent->count; r++) rays += 2 * heat->ray[r].area;
     const double share = area > 0 ? fibrad_min(1, rays / area) : 0;
-    const double by_rays = share > 0 ? share * errors->dim[1] / (2 * sent->density * heat->patch_area) : 0;
-    const double by_beams = (1 - share) * errors->dim[0] * heat->config.patches / heat->beams;
-    return squared(FEW_WALLS * (by_rays + by_beams));
+    return (few_links){.rays =
+                           share > 0 ? FEW_WALLS * share * errors->dim[1] / (2 * sent->density * heat->patch_area) : 0,
+                       .beams = FEW_WALLS * (1 - share) * errors->dim[0] * heat->config.patches / heat->beams};
+}
+
+/* The square of the error over the power of any body, from few beams or rays on each patch. */
+static double few_of(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
+    if (b < heat->spheres) return few_of_sphere(heat, errors, b);
+    const few_links few = few_of_wall(heat, errors, b);
+    return squared(few.rays + few.beams);
 }
 
 /* The square of the error that a body's own sample tells, with that of the walls that it sees. */
 static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     const double eps = heat->sources.emissivity[b];
-    const double few = b < heat->spheres ? few_of_sphere(heat, errors, b) : few_of_wall(heat, errors, b);
+    const double few = few_of(heat, errors, b);
     const double seen = errors->all.area > 0 ? eps * spread_of(heat, b).area / errors->all.area : 0;
     const double sphere = b < heat->spheres ? squared(patch_error(heat, b)) + unseen_error(heat, errors, b) : 0;
     return squared(eps) * missed_of(heat, errors, b) + sphere + few * squared(heat->solution.power[b]) +
@@ -221,7 +233,8 @@ static heat_errors errors_of(const fibrad_heat *heat) {
     for (uint32_t b = 0; b < end; b++) {
         const int kind = b >= heat->spheres;
         const double area = spread_of(heat, b).area;
-        areas[kind] += area, errors.dim[kind] += area * fibrad_heat_sent_back(heat, b);
+        areas[kind] += area;
+        errors.dim[kind] += area * (fibrad_heat_reflects(heat, b) ? BACK_LEFT : fibrad_heat_sent_back(heat, b));
     }
     for (int kind = 0; kind < 2; kind++)
         if (areas[kind] > 0) errors.dim[kind] /= areas[kind];
@@ -299,19 +312,21 @@ static double missed_by_walls(const fibrad_heat *heat, const heat_errors *errors
  * walls send out, and that of beams and rays. Of the last the square is a mean of two: from the sample of the
  * surroundings alone, and from the samples of spheres and walls. */
 static double surroundings_error_of(const fibrad_heat *heat, const heat_errors *errors) {
-    double halves = 0, changed = 0, area = 0, unseen = 0, residual = 0;
+    double halves = 0, changed = 0, area = 0, unseen = 0, residual = 0, few = 0;
     for (uint32_t b = heat->spheres; b < heat->bodies; b++) {
         const double outside = fibrad_heat_outside(heat, b);
         halves += outside * heat->samples.halves[b],
             changed += outside * (heat->solution.power[b] - heat->solution.coarse[b]);
         area += outside * spread_of(heat, b).area;
         residual += outside * heat->solution.unsettled[b];
+        if (b < fibrad_heat_beyond(heat, 0))
+            few += squared(outside * few_of_wall(heat, errors, b).rays * heat->solution.power[b]);
     }
     const double seen = errors->all.area > 0 ? fibrad_min(1, area / errors->all.area) : 0;
     for (uint32_t b = 0; b < heat->spheres && area > 0; b++) unseen += unseen_error(heat, errors, b);
     const double rays = squared(RAY_ERROR) * errors->rays.outside + missed_by_walls(heat, errors);
     return squared(extrapolation_error(heat, changed)) + squared(RESIDUAL_ERROR * residual) +
-           squared(seen * errors->walls) + unseen +
+           squared(seen * errors->walls) + unseen + few +
            (squared(BEAM_ERROR * halves) + missed_by_spheres(heat, errors) + rays) / 2;
 }
 
@@ -604,7 +619,8 @@ static patch_flow flow_of_facing(const fibrad_heat *heat, uint32_t k) {
     for (uint32_t n = 0; n < heat->rays; n++) {
         const fibrad_heat_ray ray = heat->ray[n];
         if (ray.to != a || ray.from < heat->first[body] || ray.from >= heat->first[body + 1]) continue;
-        flow.net += ray.area * (heat->solution.radiosity[ray.from] - heat->solution.radiosity[a]);
+        flow.net +=
+            fibrad_heat_ray_area(heat, &ray) * (heat->solution.radiosity[ray.from] - heat->solution.radiosity[a]);
         flow.area += ray.area;
     }
     return flow;

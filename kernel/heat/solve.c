@@ -372,9 +372,26 @@ static void lift_black(fibrad_heat *heat) {
     }
 }
 
+/* Sets `back` of all patches, whose groups have one J. */
+static void find_back(fibrad_heat *heat) {
+    heat->solution.sends_back = false;
+    for (uint32_t b = heat->spheres; b < heat->bodies; b++) {
+        const bool all = fibrad_heat_reflects(heat, b) && heat->solution.group <= FIBRAD_HEAT_FOUR;
+        double *back = heat->solution.back - fibrad_heat_others(heat);
+        heat->solution.sends_back = heat->solution.sends_back || (all && heat->first[b] < heat->first[b + 1]);
+        for (uint32_t a = heat->first[b], next; a < heat->first[b + 1]; a = next) {
+            double area = 0;
+            next = group_end(heat, a, heat->first[b + 1]);
+            for (uint32_t k = a; k < next; k++) area += heat->solution.area[k];
+            for (uint32_t k = a; k < next; k++) back[k] = all && area > 0 ? 1 / area : 0;
+        }
+    }
+}
+
 /* Has the next sweep form the net flows of the radiosities. */
 static void send_radiosities(fibrad_heat *heat, fibrad_heat_phase phase) {
     lift_black(heat);
+    if (phase == FIBRAD_HEAT_FIRST) find_back(heat);
     for (uint32_t a = 0; a < heat->patches; a++) fibrad_heat_send(heat, a, heat->solution.radiosity[a]);
     heat->solution.phase = phase;
 }

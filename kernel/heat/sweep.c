@@ -30,7 +30,8 @@ static double beam_area(const fibrad_heat *heat, uint32_t owner, const fibrad_he
 struct pencil_ends {
     const double *owner, *other;
     double *to_owner, *to_other;
-    double area; /* of a beam */
+    const double *back_owner, *back_other; /* of fibrad_heat_enlarged; NULL: 0 */
+    double area;                           /* of a beam */
 };
 
 /* Adds the flow of each strand to one end and takes it from the other end. areas: the sums are areas, so the flow is
@@ -47,6 +48,23 @@ FIBRAD_INLINE void bring_strands(const fibrad_heat_pencil *pencil, const struct 
         const double flow = all[bits & 7] * (other[b] - mine[a]);
         own[a] += flow;
         theirs[b] += areas ? flow : -flow;
+        bundle += bits >> 7;
+    }
+}
+
+/* The same for flows where an end may be a patch that sends back all. */
+static void bring_enlarged(const fibrad_heat_pencil *pencil, const struct pencil_ends *ends) {
+    const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
+    const uint8_t *strand = fibrad_heat_strands(pencil), *end = strand + pencil->strands;
+    for (; strand < end; strand++) {
+        const uint32_t bits = *strand, a = FIBRAD_HEAT_FOUR * bundle->from + (bits >> 5 & 3),
+                       b = FIBRAD_HEAT_FOUR * bundle->to + (bits >> 3 & 3);
+        const double area = fibrad_heat_enlarged(((bits & 7) + 1) * ends->area, FIBRAD_HEAT_BEAMS_RETURN,
+                                                 ends->back_owner != NULL ? ends->back_owner[a] : 0,
+                                                 ends->back_other != NULL ? ends->back_other[b] : 0);
+        const double flow = area * (ends->other[b] - ends->owner[a]);
+        ends->to_owner[a] += flow;
+        ends->to_other[b] -= flow;
         bundle += bits >> 7;
     }
 }
@@ -79,12 +97,19 @@ static void set_aside(const fibrad_heat *heat, double *to, double sum[BEYOND]) {
 struct gathering {
     bool areas;          /* the sums are areas */
     bool coarse;         /* patches of a four send the same */
+    bool back;           /* some patches send back all that arrives */
     double *walls;       /* what patches receive that are not of spheres */
     double away[BEYOND]; /* long sums of set_aside */
     double none[FIBRAD_HEAT_PATCHES_MAX],
         one[FIBRAD_HEAT_PATCHES_MAX];      /* what both ends send if sums are areas: 0, 1 */
     double waste[FIBRAD_HEAT_PATCHES_MAX]; /* sums of ends that other parts gather for */
 };
+
+/* `back` of the patches from `first` on. NULL: none sends back all. */
+static const double *back_from(const fibrad_heat *heat, size_t first, const struct gathering *g) {
+    return g->back && first >= fibrad_heat_others(heat) ? heat->solution.back + (first - fibrad_heat_others(heat))
+                                                        : NULL;
+}
 
 /* Adds the flows of a pencil to the sums of both ends. */
 static void bring_ends(const fibrad_heat *heat, uint32_t owner, const fibrad_heat_pencil *pencil, double *to_owner,
@@ -94,12 +119,16 @@ static void bring_ends(const fibrad_heat *heat, uint32_t owner, const fibrad_hea
         .other = g->areas ? g->one : heat->solution.source + other_end(heat, pencil),
         .to_owner = to_owner,
         .to_other = to_other,
+        .back_owner = back_from(heat, fibrad_heat_first_of_row(heat, owner), g),
+        .back_other = back_from(heat, other_end(heat, pencil), g),
         .area = beam_area(heat, owner, pencil),
     };
     if (g->coarse && pencil->body < heat->rows)
         bring_bundles(pencil, &ends);
     else if (g->areas)
         bring_strands(pencil, &ends, true);
+    else if (ends.back_owner != NULL || ends.back_other != NULL)
+        bring_enlarged(pencil, &ends);
     else
         bring_strands(pencil, &ends, false);
 }
@@ -220,7 +249,8 @@ static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, st
     for (uint32_t k = begin; k < end; k++) {
         const fibrad_heat_ray ray = heat->ray[k];
         if (ray.area == 0) continue;
-        const double flow = g->areas ? ray.area : ray.area * (source[ray.to] - source[ray.from]);
+        const double area = g->back ? fibrad_heat_ray_area(heat, &ray) : ray.area;
+        const double flow = g->areas ? area : area * (source[ray.to] - source[ray.from]);
         g->walls[ray.from - others] += flow;
         g->walls[ray.to - others] += g->areas ? flow : -flow;
         if (k % 64 == 63) set_aside(heat, g->walls, g->away);
@@ -232,7 +262,8 @@ static void sweep_part(fibrad_heat *heat, uint32_t part) {
     const uint32_t others = fibrad_heat_others(heat), of_walls = heat->patches - others;
     const bool areas = heat->solution.phase == FIBRAD_HEAT_AREA;
     const bool coarse = heat->solution.phase == FIBRAD_HEAT_CHECK || (heat->solution.group > 1 && !areas);
-    struct gathering g = {areas, coarse, heat->solution.brought + (size_t)part * of_walls, {0}, {0}, {0}, {0}};
+    const bool back = !areas && heat->solution.phase != FIBRAD_HEAT_CHECK && heat->solution.sends_back;
+    struct gathering g = {areas, coarse, back, heat->solution.brought + (size_t)part * of_walls, {0}, {0}, {0}, {0}};
     for (uint32_t a = 0; a < FIBRAD_HEAT_PATCHES_MAX; a++) g.one[a] = 1;
     fibrad_zero(g.walls, of_walls * sizeof *g.walls);
     sweep_rows(heat, part, &g);

@@ -377,7 +377,11 @@ static double error_of_mean(const fibrad_matrix *m, uint32_t i) {
     double met = 0, own;
     const double distance = distance_to_raw(m, i, &own);
     for (uint32_t b = 0; b < m->bodies; b++) met += m->body[(size_t)i * m->bodies + b];
-    return fibrad_max((m->exchange ? EXCHANGE_ERROR : VIEW_ERROR) * distance, (own + (1 - own) * met) * m->error[i]);
+    if (!m->exchange) return fibrad_max(VIEW_ERROR * distance, (own + (1 - own) * met) * m->error[i]);
+    /* of paths: the square of the error is in proportion to what they find, and no mean changes walls and the open */
+    const double ends = fibrad_min(1, met + m->escaped[i] + m->beyond[i]), raw = m->error[i] * m->error[i];
+    const double spheres = fibrad_max(EXCHANGE_ERROR * distance, own * fibrad_sqrt((1 - ends) * raw));
+    return fibrad_sqrt(spheres * spheres + ends * raw);
 }
 
 /* The error with which the change of a row is compared. A raw row along lines looks along one sense of each line. */

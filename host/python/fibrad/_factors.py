@@ -244,7 +244,7 @@ class _Job:
         self.call(function, *arguments, self.run, ctypes.byref(owner.factors))
         factors = _factors(owner, self.container.names, self.packing.ids, self._nodes)
         warn_overlap(self.packing, owner.factors.contents.facts)
-        warn_rows(self.packing, owner.factors.contents.matrix)
+        warn_rows(self.packing, owner.factors.contents)
         if tolerance is not None and factors.error.max(initial=0) > tolerance:
             warn(f"the estimated error is {factors.error.max():.3g}, above the tolerance of {tolerance:g}: no more "
                  "directions or paths are possible")

@@ -105,16 +105,19 @@ def warn_capacity(packing: Packing, capacity: NDArray[np.float64]) -> None:
         warn(f"the capacity of {packing.names(i)} is {store[i]:.3g} J/K for each m3; solids have some 1e5 to 5e6")
 
 
-def warn_rows(packing: Packing, matrix: Any) -> None:
+def warn_rows(packing: Packing, factors: Any) -> None:
     """Rows of walls that contradict those of spheres, and rows that closing has changed much."""
+    matrix, meshed = factors.matrix, factors.facts.triangles > 0
     walls = bool(matrix.body_body)
     if walls and matrix.body_closure > _CLOSED:
+        asked = "; do triangles cut spheres?" if meshed else ""
         warn(f"rows of walls are not closed: their sums are off by {matrix.body_closure:.2g}, because they contradict "
-             "the rows of spheres; do triangles cut spheres?")
+             f"the rows of spheres{asked}")
     elif walls and matrix.body_correction > _APART:
-        warn(f"rows of walls and of spheres disagreed by {matrix.body_correction:.2g} before they were closed; do "
-             "triangles cut spheres? If not, more directions help")
+        asked = "do triangles cut spheres? If not, " if meshed else ""
+        warn(f"rows of walls and of spheres disagreed by {matrix.body_correction:.2g} before they were closed; {asked}"
+             "more directions help")
     elif matrix.changed > _CHANGE_LARGE:
+        asked = "do triangles cut this sphere? If not, " if meshed else ""
         warn(f"rows were scaled to add up to 1; this changes what {packing.names(matrix.changed_row)} gives to walls "
-             f"and surroundings by {matrix.changed:.2g} times the error of its row; do triangles cut this sphere? If "
-             "not, more directions help")
+             f"and surroundings by {matrix.changed:.2g} times the error of its row; {asked}more directions help")
