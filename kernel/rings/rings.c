@@ -204,3 +204,33 @@ double fibrad_rings_top(const fibrad_rings *rings, const fibrad_ringed *sphere, 
     for (uint32_t m = 0; m < RINGS; m++) top += spread[m] * work->row[m][count * RINGS];
     return top;
 }
+
+/* The share of the flux that enters a spot of one temperature within ring k. The flux is in proportion to
+ * 1/sqrt(1 - x), x being the share of the spot's area within. */
+static double share_of_spot(const fibrad_rings *rings, double size, uint32_t k) {
+    const double low = fibrad_min(1, 4 * rings->edge[k] / (size * size)),
+                 high = fibrad_min(1, 4 * rings->edge[k + 1] / (size * size));
+    return fibrad_sqrt(1 - low) - fibrad_sqrt(1 - high);
+}
+
+/* With the flux p of the spot, (1 + eps u S) z = p. The response is u S z, since S is symmetric with shares as weights.
+ */
+double fibrad_rings_spot(const fibrad_rings *rings, double size, double emissivity, double unevenness,
+                         fibrad_rings_work *work, double response[RINGS]) {
+    double flux[RINGS], less = 0;
+    for (uint32_t k = 0; k < RINGS; k++) {
+        double *row = work->row[k];
+        for (uint32_t m = 0; m < RINGS; m++) row[m] = emissivity * unevenness * rings->spread[k][m] + (k == m);
+        row[RINGS] = flux[k] = share_of_spot(rings, size, k) / rings->share[k];
+    }
+    eliminate(work->row, RINGS);
+    for (uint32_t k = 0; k < RINGS; k++) {
+        response[k] = 0;
+        for (uint32_t m = 0; m < RINGS; m++) {
+            const double spread = unevenness * rings->spread[k][m], reached = work->row[m][RINGS];
+            response[k] += spread * reached;
+            less += rings->share[k] * flux[k] * spread * (flux[m] - reached);
+        }
+    }
+    return less;
+}
