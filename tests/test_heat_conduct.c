@@ -180,7 +180,7 @@ static double *shine_down(const struct problem *p) {
     double *hits = calloc(fibrad_heat_patches(p->heat), sizeof *hits);
     for (uint32_t task = 0; task < fibrad_heat_shine_tasks(p->heat); task++) {
         fibrad_light_ends kept;
-        assert_ok(fibrad_heat_shine(p->heat, &work, &light, task, hits, &kept));
+        assert_ok(fibrad_heat_shine(p->heat, &work, &light, task, hits, &kept, NULL));
     }
     return hits;
 }

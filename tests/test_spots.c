@@ -38,7 +38,7 @@ static carried carried_by(double k_star, double e, double size) {
     trace(&p);
     double *spots = calloc(4 * CONTACTS + fibrad_heat_patches(p.heat), sizeof *spots);
     if (size > 0) touch(&p, k_star, size);
-    p.sources.spots = spots;
+    p.sources.contact_places = spots;
     solve(&p);
     free(spots);
     for (uint32_t i = LAYERS / 4; i < 3 * LAYERS / 4; i++) {
@@ -102,7 +102,7 @@ TEST(directions_do_not_matter) {
         p.result.contact_flow = &carries[k], p.result.least_temperature = least, p.result.largest_temperature = largest;
         trace(&p);
         double *spots = calloc(4 + fibrad_heat_patches(p.heat), sizeof *spots);
-        p.sources.spots = spots;
+        p.sources.contact_places = spots;
         solve(&p);
         free(spots);
         hottest[k] = largest[0], sum += carries[k];
@@ -136,7 +136,7 @@ static void solve_bed(bool backwards, double *carries) {
     p.backwards = backwards, p.isa = backwards ? FIBRAD_ISA_SCALAR : 0;
     trace(&p);
     double *spots = calloc(4 * contacts + fibrad_heat_patches(p.heat), sizeof *spots);
-    p.sources.spots = spots;
+    p.sources.contact_places = spots;
     solve(&p);
     free(spots);
     double all = p.result.surroundings_power;

@@ -18,7 +18,7 @@
 #include "mesh/mesh_patch.h"
 #include "rings/rings.h"
 #include "scene/scene.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 
 #define FIBRAD_HEAT_TASK 1024u /* rays of walls in one task */
 
@@ -173,6 +173,7 @@ typedef struct fibrad_heat_solution {
     double curvature;        /* of the last search direction */
     double scale;            /* the slope is compared with this */
     double smallest;         /* a slope below this is rounding error */
+    double ratio;            /* how much smaller residuals became in the last step, at most 1 */
     double *area;            /* L^2, [patches], by the beams */
     double *radiosity, *net; /* [patches], J and the net flow N J */
     double *detail;          /* [patches], J minus J of the coarser level */
@@ -182,8 +183,11 @@ typedef struct fibrad_heat_solution {
     double *brought;         /* [parts][patches that are not of spheres], received from each part */
     double *coarse, *power;  /* [bodies], net power at the coarser level, and extrapolated */
     double *coarse_emission; /* [bodies], E at the coarser level */
-    fibrad_heat_span *span;  /* [spheres] */
-    bool steps;              /* this is a step in time: extremes are found when they are asked for */
+    double *drift, *left;    /* [bodies], change of the power in the last step, and what later steps would change */
+    double *unsettled;       /* [bodies], what `left` of both levels makes of the extrapolated power */
+    double sent_drift, sent_left, sent_unsettled; /* the same for what all surfaces send out */
+    fibrad_heat_span *span;                       /* [spheres] */
+    bool steps; /* this is a step in time: extremes are found when they are asked for */
 } fibrad_heat_solution;
 
 /* Contacts that act at their places on spheres that conduct. The arrays are the caller's. */
@@ -383,6 +387,16 @@ static inline uint32_t fibrad_heat_fine_on_face(const fibrad_heat *heat, uint32_
     return fibrad_heat_fine_patch(heat, sphere, patch / FIBRAD_HEAT_FOUR, u, v);
 }
 
+/* The patch of a sphere at a place on a face of its cube [squares], fine or not. patch: as above. */
+static inline uint32_t fibrad_heat_patch_on_face(const fibrad_heat *heat, uint32_t sphere, uint32_t patch,
+                                                 const double at[2]) {
+    const uint32_t fine = heat->division.root[sphere] != FIBRAD_NONE
+                              ? fibrad_heat_fine_on_face(heat, sphere, patch, at[0], at[1])
+                              : FIBRAD_NONE;
+    if (fine == FIBRAD_NONE) return heat->first[sphere] + patch;
+    return fibrad_heat_first_fine(heat, sphere) + (fine - FIBRAD_HEAT_FOUR * heat->division.first_four[sphere]);
+}
+
 /* Whether an own four of a sphere is divided. */
 static inline bool fibrad_heat_is_divided(const fibrad_heat *heat, uint32_t sphere, uint32_t own) {
     return heat->division.root[sphere] != FIBRAD_NONE && heat->division.node[heat->division.root[sphere] + own] != 0;
@@ -447,6 +461,15 @@ static inline double fibrad_heat_absorbed(const fibrad_heat *heat, uint32_t body
     for (uint32_t a = heat->first[body]; a < heat->first[body + 1] && heat->sources.absorbed != NULL; a++)
         sum += heat->sources.absorbed[a];
     return sum;
+}
+
+/* The power that a body absorbs at its patches. Radiosities are differences from that of the surroundings. */
+static inline double fibrad_heat_absorbs(const fibrad_heat *heat, uint32_t body) {
+    const double t = heat->sources.surroundings, black = heat->sources.sigma * (t * t) * (t * t);
+    double arrives = 0;
+    for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++)
+        arrives += heat->solution.area[a] * (heat->solution.radiosity[a] + black) + heat->solution.net[a];
+    return heat->sources.emissivity[body] * arrives;
 }
 
 /* The sum over the patches of a sphere of A p g p, p being the search direction without its mean. */

@@ -11,23 +11,24 @@
 #include "scene/walls.h"
 
 /* Errors over the quantities from which they are estimated. Measured: docs/methods_heat.md section 9. */
-#define PATCH_ERROR  .2 /* with PATCHES */
-#define PATCHES      96.0
-#define UNEVEN       50 /* 1/(2 k*) of a sphere for whose power this error is half as large again */
-#define WALL_PATCHES .5 /* factor for walls */
-#define BEAM_ERROR   .7
-#define LONE_ERROR   1.2     /* times the share of spheres that only even or only odd directions meet */
-#define UNSEEN_ERROR .25     /* over what one direction brings */
-#define SHARE_ERROR  0x1p-25 /* of what a sphere exchanges: shares of pencils are floats */
-#define RAY_ERROR    1.75
-#define RAY_SAMPLES  16  /* largest number of samples of a mesh */
-#define FEW_ERROR    .25 /* times patches over beams: if few beams leave a patch, it sends light back along the same */
-#define FEW_SEEN     1.3 /* the same for walls that a sphere sees, whose beams are less even */
-#define FEW_WALLS    .65 /* the same for walls themselves */
-#define SPOT_ERROR   .7
-#define SPAN_ERROR   .015 /* of the extremes of a surface, over their difference from its mean */
-#define SPAN_OPEN    .07  /* the same, with PATCHES, where no neighbour is near */
-#define SPAN_WALL    .08  /* the same if a wall may be near */
+#define PATCH_ERROR    .2 /* with PATCHES */
+#define PATCHES        96.0
+#define UNEVEN         50 /* 1/(2 k*) of a sphere for whose power this error is half as large again */
+#define WALL_PATCHES   .5 /* factor for walls */
+#define BEAM_ERROR     .7
+#define LONE_ERROR     1.2     /* times the share of spheres that only even or only odd directions meet */
+#define UNSEEN_ERROR   .25     /* over what one direction brings */
+#define SHARE_ERROR    0x1p-25 /* of what a sphere exchanges: shares of pencils are floats */
+#define RAY_ERROR      1.75
+#define RAY_SAMPLES    16  /* largest number of samples of a mesh */
+#define FEW_ERROR      .25 /* times patches over beams: if few beams leave a patch, it sends light back along the same */
+#define FEW_SEEN       1.3 /* the same for walls that a sphere sees, whose beams are less even */
+#define FEW_WALLS      .65 /* the same for walls themselves */
+#define SPOT_ERROR     .7
+#define RESIDUAL_ERROR 2    /* times what the steps to come would change */
+#define SPAN_ERROR     .015 /* of the extremes of a surface, over their difference from its mean */
+#define SPAN_OPEN      .07  /* the same, with PATCHES, where no neighbour is near */
+#define SPAN_WALL      .08  /* the same if a wall may be near */
 #define SPAN_CROWD                                                                                                     \
     .014 /* times the root of the number of further neighbours, with PATCHES: they are lights of patches */
 #define SPOT_EXTREME .05 /* of spots of contacts, over their difference from the mean of the surface */
@@ -200,7 +201,7 @@ static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint
     const double seen = errors->all.area > 0 ? eps * spread_of(heat, b).area / errors->all.area : 0;
     const double sphere = b < heat->spheres ? squared(patch_error(heat, b)) + unseen_error(heat, errors, b) : 0;
     return squared(eps) * missed_of(heat, errors, b) + sphere + few * squared(heat->solution.power[b]) +
-           squared(seen * errors->walls);
+           squared(seen * errors->walls) + squared(RESIDUAL_ERROR * heat->solution.unsettled[b]);
 }
 
 /* The error from light that goes back and forth between a sphere and a mesh whose patches are too large. */
@@ -228,7 +229,7 @@ static heat_errors errors_of(const fibrad_heat *heat) {
     for (uint32_t b = heat->spheres; b < end; b++)
         errors.walls +=
             squared(heat->sources.hold[b] >= 0 ? 1 : 1 - heat->sources.emissivity[b]) * missed_of(heat, &errors, b);
-    errors.walls = fibrad_sqrt(errors.walls);
+    errors.walls = fibrad_sqrt(errors.walls + squared(RESIDUAL_ERROR * heat->solution.sent_unsettled));
     for (uint32_t b = 0; b < end; b++) {
         error_pool *pool = &errors.pool[b >= heat->spheres];
         const double exchange = exchange_of(heat, &errors, b);
@@ -299,17 +300,19 @@ static double missed_by_walls(const fibrad_heat *heat, const heat_errors *errors
  * walls send out, and that of beams and rays. Of the last the square is a mean of two: from the sample of the
  * surroundings alone, and from the samples of spheres and walls. */
 static double surroundings_error_of(const fibrad_heat *heat, const heat_errors *errors) {
-    double halves = 0, changed = 0, area = 0, unseen = 0;
+    double halves = 0, changed = 0, area = 0, unseen = 0, residual = 0;
     for (uint32_t b = heat->spheres; b < heat->bodies; b++) {
         const double outside = fibrad_heat_outside(heat, b);
         halves += outside * heat->samples.halves[b],
             changed += outside * (heat->solution.power[b] - heat->solution.coarse[b]);
         area += outside * spread_of(heat, b).area;
+        residual += outside * heat->solution.unsettled[b];
     }
     const double seen = errors->all.area > 0 ? fibrad_min(1, area / errors->all.area) : 0;
     for (uint32_t b = 0; b < heat->spheres && area > 0; b++) unseen += unseen_error(heat, errors, b);
     const double rays = squared(RAY_ERROR) * errors->rays.outside + missed_by_walls(heat, errors);
-    return squared(extrapolation_error(heat, changed)) + squared(seen * errors->walls) + unseen +
+    return squared(extrapolation_error(heat, changed)) + squared(RESIDUAL_ERROR * residual) +
+           squared(seen * errors->walls) + unseen +
            (squared(BEAM_ERROR * halves) + missed_by_spheres(heat, errors) + rays) / 2;
 }
 
@@ -353,6 +356,12 @@ static double missed_emission(const fibrad_heat *heat, const heat_errors *errors
 /* The error of a body's emission that remains after extrapolation. */
 static double changed_emission(const fibrad_heat *heat, uint32_t b) {
     return extrapolation_error(heat, heat->sources.emission[b] - heat->solution.coarse_emission[b]);
+}
+
+/* The error of a body's emission that later steps of the search would take away. */
+static double unsettled_emission(const fibrad_heat *heat, uint32_t b, double area) {
+    const double eps = heat->sources.emissivity[b];
+    return RESIDUAL_ERROR * heat->solution.unsettled[b] / (eps > 0 ? eps * area : area);
 }
 
 /* The mean square difference of all radiosities from the body's own. */
@@ -410,8 +419,8 @@ static heat_missed missed_at(const fibrad_heat *heat, const heat_errors *errors,
     return (heat_missed){missed, together};
 }
 
-/* The estimated error of a temperature that was found. The error of its emission has four parts: that of extrapolation;
- * that of beams; that of what walls send out; and that which all have in common. */
+/* The estimated error of a temperature that was found. The error of its emission has five parts: that of extrapolation;
+ * the residual; that of beams; that of what walls send out; and that which all have in common. */
 static double temperature_error_of(const fibrad_heat *heat, const heat_errors *errors, const heat_level *level,
                                    uint32_t b, double temperature) {
     const double slope = 4 * heat->sources.sigma * temperature * temperature * temperature;
@@ -420,7 +429,8 @@ static double temperature_error_of(const fibrad_heat *heat, const heat_errors *e
     if (!is_found(heat, b) || !(slope > 0) || !(own.area > 0)) return 0;
     const double eps = heat->sources.emissivity[b], held = fibrad_max(0, heat->sources.hold[b]);
     const double share = held > 0 ? eps * own.area / (eps * own.area + held) : 1;
-    const double changed = fibrad_heat_is_insulated(heat, b) ? level->changed : squared(changed_emission(heat, b));
+    const double changed = (fibrad_heat_is_insulated(heat, b) ? level->changed : squared(changed_emission(heat, b))) +
+                           squared(unsettled_emission(heat, b, own.area));
     const heat_missed missed = missed_at(heat, errors, level, b, &own);
     const double walls = squared(errors->walls / errors->all.area);
     return fibrad_sqrt(changed + squared(share) * (missed.own + missed.together + walls)) / slope;
@@ -478,8 +488,8 @@ static void find_joined_errors(const fibrad_heat *heat) {
         c->error[b] = 0;
         if (!fibrad_heat_is_joined(heat, b) || !(slope > 0) || !(own.area > 0)) continue;
         const double common = missed_at(heat, &errors, &level, b, &own).together + walls;
-        c->error[b] =
-            fibrad_sqrt(squared(changed_emission(heat, b)) + c->supply[b] + squared(c->direction[b]) * common) / slope;
+        const double changed = squared(changed_emission(heat, b)) + squared(unsettled_emission(heat, b, own.area));
+        c->error[b] = fibrad_sqrt(changed + c->supply[b] + squared(c->direction[b]) * common) / slope;
     }
     fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
     for (uint32_t k = 0; k < c->count; k++) {
@@ -578,15 +588,6 @@ static bool read_temperatures(const fibrad_heat *heat, const fibrad_heat_result 
     return found;
 }
 
-/* The power that a wall absorbs at its patches. Radiosities are differences from that of the surroundings. */
-static double absorbed_by(const fibrad_heat *heat, uint32_t b) {
-    const double black = heat->sources.sigma * squared(squared(heat->sources.surroundings));
-    double arrives = 0;
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
-        arrives += heat->solution.area[a] * (heat->solution.radiosity[a] + black) + heat->solution.net[a];
-    return heat->sources.emissivity[b] * arrives;
-}
-
 /* The result for the power of a slot. If the slot is an opening or empty: that of the surroundings. */
 static double *power_of_slot(const fibrad_heat *heat, uint32_t slot, fibrad_heat_result *result) {
     for (uint32_t b = 0; b < heat->given_bodies; b++)
@@ -655,7 +656,7 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
         const uint32_t own = fibrad_heat_body(heat, heat->slot[b]);
         result->body_power[b] = heat->solution.power[own];
         if (heat->contacts.count > 0) result->body_power[b] += heat->contacts.gain[own];
-        if (result->body_absorbed != NULL) result->body_absorbed[b] = absorbed_by(heat, own);
+        if (result->body_absorbed != NULL) result->body_absorbed[b] = fibrad_heat_absorbs(heat, own);
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         if (heat->openings >> k & 1) result->surroundings_power += heat->solution.power[fibrad_heat_body(heat, k)];

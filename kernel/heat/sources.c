@@ -424,7 +424,7 @@ static void begin_contacts(fibrad_heat *heat) {
 /* Divides the memory for contacts at their places. It is used if a sphere conducts and has contacts. */
 static void begin_spots(fibrad_heat *heat, const fibrad_heat_sources *s) {
     const uint32_t n = heat->contacts.count;
-    double *at = s->spots;
+    double *at = s->contact_places;
     heat->spots = (fibrad_heat_spots){0};
     if (n == 0 || at == NULL || !heat->sources.conducts) return;
     heat->spots =

@@ -71,7 +71,7 @@ HeatSources = _structure("heat_sources", ("temperature emissivity power hold ref
                          ("surroundings sigma tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int),
                          ("side_temperature light conductivity absorbed", DOUBLES),
                          ("contact_first contact_second", POINTER(c_uint32)), ("conductance", DOUBLES),
-                         ("contacts", c_uint32), ("spots", DOUBLES))
+                         ("contacts", c_uint32), ("contact_places", DOUBLES))
 HeatResult = _structure("heat_result", ("power body_power", DOUBLES), ("surroundings_power", c_double),
                         ("temperature body_temperature power_error body_error", DOUBLES),
                         ("temperature_error body_temperature_error", DOUBLES),
@@ -91,7 +91,7 @@ LightSources = _structure("light_sources", ("light", POINTER(LightStructure)), (
                           ("absorptivity body_absorptivity", DOUBLES), ("tolerance", c_double), ("uniform", c_int))
 LightResult = _structure("light_result", ("absorbed absorbed_first absorbed_error", DOUBLES),
                          ("body_absorbed body_absorbed_first body_absorbed_error", DOUBLES),
-                         ("incident transmitted reflected error", c_double), ("sweeps lights", c_uint32),
+                         ("incident transmitted reflected error error_patches", c_double), ("sweeps lights", c_uint32),
                          ("patches", c_void_p))
 TransientConfig = _structure("transient_config", ("method", c_int), ("exchange", ExchangeRule), ("heat", HeatConfig))
 Span = _structure("span", ("temperature capacity", DOUBLES), ("duration", c_double),
