@@ -218,6 +218,9 @@ void fibrad_heat_find_spans(fibrad_heat *heat) {
  * the rings are about the hottest or coldest patch, and all light is that of patches. */
 #define NEAR          1.0  /* largest gap to a neighbour, in radii of the smaller sphere */
 #define NEAR_COSINE   .985 /* patches with a larger cosine to a neighbour belong to the neighbour */
+#define WIDE_COSINE   .94  /* the same on spheres more uneven than STEEP, and beside neighbours LARGER times as large */
+#define STEEP         8.0
+#define LARGER        3.0
 #define AROUND        1.3  /* light from elsewhere is found within this many times the angle where the neighbour sets */
 #define POINTS        4u   /* of an own patch, whose rings are looked up */
 #define MIDDLE_COSINE .8   /* the middle of an open place is looked for among patches of a larger cosine to it */
@@ -293,8 +296,10 @@ static uint32_t search_neighbours(const fibrad_heat *heat, uint32_t b, struct ra
                 place.emission = heat->solution.direction[patch_facing(heat, b, place.axis)];
                 rank_place(&best[0], &place), rank_place(&best[1], &place);
                 found++;
+                const bool wide = heat->sources.unevenness[b] > STEEP || scene->r[j] > LARGER * r;
                 for (uint32_t k = 0; k < POINTS * heat->config.patches; k++)
-                    near[k / POINTS] |= fibrad_dot(heat->normal + 3 * k, place.axis) > NEAR_COSINE;
+                    near[k / POINTS] |=
+                        fibrad_dot(heat->normal + 3 * k, place.axis) > (wide ? WIDE_COSINE : NEAR_COSINE);
             }
     }
     return found;
@@ -395,13 +400,15 @@ static void move_to_middle(const fibrad_heat *heat, uint32_t b, double sign, str
 }
 
 /* The largest of 0 and sign times the emissions at places. */
-static double largest_at(const fibrad_heat *heat, uint32_t b, const struct ranking *best, fibrad_rings_work *work) {
+static double largest_at(const fibrad_heat *heat, uint32_t b, const struct ranking *best, const bool *near,
+                         fibrad_rings_work *work) {
     double most = 0;
     for (uint32_t k = 0; k < best->count; k++)
         most = fibrad_max(most, best->sign * emission_in_rings(heat, b, &best->place[k], work));
     if (best->count == 0 || best->place[0].other != FIBRAD_NONE) return most;
     struct place middle = best->place[0];
     move_to_middle(heat, b, best->sign, &middle);
+    if (near[fibrad_patch_of(middle.axis, heat->side)]) return most;
     return fibrad_max(most, best->sign * emission_in_rings(heat, b, &middle, work));
 }
 
@@ -419,8 +426,8 @@ static void find_extremes(const fibrad_heat *heat, uint32_t b, fibrad_rings_work
         if (near[own] || !(heat->solution.area[a] > 0)) continue;
         rank_place(&open[0], &place), rank_place(&open[1], &place);
     }
-    const double low[2] = {largest_at(heat, b, &facing[0], work), largest_at(heat, b, &open[0], work)},
-                 high[2] = {largest_at(heat, b, &facing[1], work), largest_at(heat, b, &open[1], work)};
+    const double low[2] = {largest_at(heat, b, &facing[0], near, work), largest_at(heat, b, &open[0], near, work)},
+                 high[2] = {largest_at(heat, b, &facing[1], near, work), largest_at(heat, b, &open[1], near, work)};
     span->open_low = low[1] > low[0], span->open_high = high[1] > high[0];
     span->least = -fibrad_max(low[0], low[1]), span->largest = fibrad_max(high[0], high[1]);
 }
