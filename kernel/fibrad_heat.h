@@ -125,7 +125,9 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * times the difference of their temperatures. Several contacts may have the same ends; a contact of a sphere with
  * itself, across a period, carries nothing. A sphere of emissivity 0 that is in contact has a temperature, and may give
  * off a power. `conductance` is in units of sigma K^3 L^2: if lengths are in millimetres and sigma is in W/(m2 K4), 1
- * W/K is 1e6. The contacts of a sphere with a finite conductivity act on the mean of its surface.
+ * W/K is 1e6. With `contact_places` the contacts of a sphere with a finite conductivity act at their places: where
+ * the line to the other centre, or the normal to a plane or cylinder, leaves the sphere. Those with meshes act on
+ * the mean of its surface.
  *
  * The residual is the error of the equations for J, relative to what drives the radiation: differences of emission,
  * given powers and light. tolerance = 0 stands for 1e-3, for 1e-5 if a temperature is unknown and its hold is 0, and
@@ -156,6 +158,7 @@ typedef struct fibrad_heat_sources {
     const uint32_t *contact_second; /* [contacts], the other end */
     const double *conductance;      /* sigma K^3 L^2, [contacts], 0 to FIBRAD_CONDUCTANCE_MAX */
     uint32_t contacts;              /* number of contacts */
+    double *contact_places; /* [4 contacts + fibrad_heat_patches], memory: contacts act at their places; or NULL */
 } fibrad_heat_sources;
 
 /* Zeroes the sources, sets sigma = FIBRAD_STEFAN_BOLTZMANN, and sets surroundings = NaN. NaN is refused, so that no

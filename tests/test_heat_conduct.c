@@ -154,6 +154,17 @@ static const struct nearly_touching {
     {.5, 1.505, {1, .5}, {.03, .3}, {.7, 1.5}, 3.01366, .3},
     {.2, 1.202, {.8, 1}, {.132266, 1.3e7}, {1, 1.2}, 1.14268, 0},
 };
+/* The hottest place of the hotter sphere, which is a twentieth of the other, faces it as well. */
+TEST(the_small_sphere_beside_a_large_one) {
+    OWNED_PROBLEM p = problem_of(BED({0, 0, 0, 1}, {.2 * 1.0505, .3 * 1.0505, -.9327379053 * 1.0505, .05}), .7, .3);
+    p.temperature[1] = 1.5, p.sources.surroundings = .3;
+    conduct(&p, 1, 1);
+    for (int i = 0; i < 2; i++)
+        conductivity[i] = .013 * 8 * p.bed.r[i] * p.temperature[i] * p.temperature[i] * p.temperature[i];
+    trace_and_solve(&p);
+    assert_near(largest[1] - 1.5, 1.68910 - 1.5, .03);
+}
+
 LOOP_TEST(the_hottest_place_faces_a_neighbour, 7) {
     const struct nearly_touching *t = &nearly_touching[_i];
     static const double axis[3] = {.36, .48, -.8};

@@ -38,6 +38,17 @@ TEST(a_pebble_with_a_source) {
     assert_near(value_of("k_star"), k / (8 * r * 1e-3 * SIGMA * t * t * t), 1e-3);
 }
 
+/* Two pebbles touch at a spot of a twentieth of their radius. Both its sides have one temperature: the largest of the
+ * cold pebble, and the least of the hot one. */
+TEST(pebbles_touch_at_a_spot) {
+    const char *file = write_file("two.csv", "x,y,z,radius,T\n0,0,0,0.03,1000\n0.06,0,0,0.03,1100\n");
+    const char *contacts = write_file("contacts.csv", "i,j,W/K\n0,1,0.03\n"), *q = in_folder("q.csv");
+    SUCCEED("heat", file, "--length-unit", "m", "--emissivity", "0.8", "--temperature", "T", "--ambient", "1000",
+            "--solid-conductivity", "10", "--contacts", contacts, "-o", q);
+    ck_assert_double_le(fabs(entry(q, 0, 6) - entry(q, 1, 5)), .1);
+    ck_assert_double_gt(entry(q, 0, 6), 1030);
+}
+
 /* All files have all columns. Walls and surroundings have no values in them. */
 TEST(files_have_insides) {
     const char *file = spheres(), *q = in_folder("q.csv"), *json = in_folder("q.json"), *vtp = in_folder("q.vtp");

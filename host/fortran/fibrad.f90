@@ -184,6 +184,7 @@ module fibrad
         type(c_ptr) :: absorbed = c_null_ptr
         type(c_ptr) :: contact_first = c_null_ptr, contact_second = c_null_ptr, conductance = c_null_ptr
         integer(c_int32_t) :: contacts = 0
+        type(c_ptr) :: contact_places = c_null_ptr
     end type c_heat_sources
 
     ! Light from outside: fibrad_light in fibrad_light.h. Set direction and flux.

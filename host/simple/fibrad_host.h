@@ -374,7 +374,7 @@ typedef struct fibrad_span {
  *   body_power, insulated            constant; by PATCHES only
  *   side_temperature                 constant; not by FACTORS
  *   conductivity                     by FACTORS it must be NULL
- *   conductance                      constant, or changed by a law; contacts by PATCHES only
+ *   conductance                      constant, or changed by a law; contacts by PATCHES only, on means of surfaces
  *   sigma, sweeps_max                as for fibrad_radiation_solve
  *   tolerance                        residual of a stage by patches; 0: a tenth of the span's tolerance
  *

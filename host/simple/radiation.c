@@ -18,8 +18,9 @@ struct fibrad_radiation {
     void *scene_block;
     uint32_t n;
     fibrad_fault fault;
-    double *light; /* [patches] of the last fibrad_radiation_shine; NULL: none */
-    bool busy;     /* within a call */
+    double *light;  /* [patches] of the last fibrad_radiation_shine; NULL: none */
+    double *places; /* memory of fibrad_heat_sources.contact_places in the last solution; NULL: none */
+    bool busy;      /* within a call */
 };
 
 /* Begins a call that ends with end_call. A function of the caller that runs within a call can begin no other. */
@@ -126,12 +127,24 @@ static int sweep_beams(void *heat, int thread, uint32_t part) {
     return fibrad_heat_sweep(heat, part);
 }
 
+/* Makes room for contacts at their places, if spheres conduct. In steps in time contacts act on means of surfaces. */
+static int make_places(fibrad_radiation *r, fibrad_heat_sources *sources) {
+    free(r->places);
+    r->places = NULL;
+    if (sources->contacts == 0 || !sources->conductivity || sources->hold || sources->contact_places) return FIBRAD_OK;
+    r->places = malloc((4 * (size_t)sources->contacts + fibrad_heat_patches(r->heat)) * sizeof *r->places);
+    sources->contact_places = r->places;
+    return r->places ? FIBRAD_OK : FIBRAD_E_MEMORY;
+}
+
 /* Finds a solution, which is then read. */
-static int find_solution(fibrad_radiation *r, const fibrad_heat_sources *sources) {
+static int find_solution(fibrad_radiation *r, const fibrad_heat_sources *given) {
+    fibrad_heat_sources sources = *given;
     if (!r->heat) return FIBRAD_E_STATE;
     r->fault = (fibrad_fault){r->n, r->n, UINT32_MAX, 0, 0};
-    int solved = 0, status = fibrad_heat_check(r->heat, sources, &r->fault);
-    if (!status) status = fibrad_heat_begin(r->heat, sources);
+    int solved = 0, status = fibrad_heat_check(r->heat, &sources, &r->fault);
+    if (!status) status = make_places(r, &sources);
+    if (!status) status = fibrad_heat_begin(r->heat, &sources);
     for (uint64_t sweeps = 0; !status && !solved; ++sweeps) {
         status = fibrad_team_report(&r->team, "sweeps", sweeps, 0);
         if (!status) status = fibrad_team_run(&r->team, NULL, PARTS, 1, sweep_beams, r->heat, NULL);
@@ -553,5 +566,6 @@ void fibrad_radiation_free(fibrad_radiation *r) {
     free(r->heat_block);
     free(r->scene_block);
     free(r->light);
+    free(r->places);
     free(r);
 }

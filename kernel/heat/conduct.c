@@ -11,15 +11,20 @@
  *
  * The mean over a surface has the emissivity eps itself. 1/(2 K) is called unevenness here. It is 0 for a sphere at one
  * temperature. */
+#include "base/constants.h"
+#include "base/elementary.h"
 #include "base/vector.h"
 #include "heat/fine.h"
 #include "sample/sphere_patch.h"
 #include "scene/grid_walk.h"
+#include "scene/walls.h"
 
 #define NUMBERS (FIBRAD_HARMONICS_WITHIN + 1)
 
-/* Below this, the unevenness of a sphere changes no result. */
-#define EVEN 1e-6
+/* Below EVEN, the unevenness of a sphere changes no result. Below LEAST, it changes no flux that is absorbed: then
+ * LEAST takes its place, since black spheres have gains in proportion to its inverse. */
+#define EVEN  1e-9
+#define LEAST 1e-6
 
 /* Harmonics of the present level. */
 static const fibrad_harmonics *harmonics_of(const fibrad_heat *heat) {
@@ -45,7 +50,7 @@ static void find_gains(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) 
     const double eps = heat->sources.emissivity[b];
     by[0] = 0;
     for (uint32_t k = 1; k < NUMBERS; k++) {
-        const double uneven = heat->sources.unevenness[b] / degree_of(heat, k);
+        const double uneven = fibrad_max(heat->sources.unevenness[b], LEAST) / degree_of(heat, k);
         by[k] = eps / (1 - eps + eps * uneven);
     }
 }
@@ -138,11 +143,17 @@ static void find_emitted(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]
     for (uint32_t k = 1; k < NUMBERS; k++) by[k] *= heat->sources.unevenness[b] / degree_of(heat, k);
 }
 
-/* Filters the light per area that patches of a sphere have absorbed. Overwrites heat->solution.gathered. */
+/* The power that enters a sphere at a patch: absorbed light, and heat of contacts. */
+static double entering(const fibrad_heat *heat, uint32_t a) {
+    return (heat->sources.absorbed != NULL ? heat->sources.absorbed[a] : 0) +
+           (heat->spots.entering != NULL ? heat->spots.entering[a] : 0);
+}
+
+/* Filters the power per area that enters patches of a sphere. Overwrites heat->solution.gathered. */
 static double filter_absorbed(fibrad_heat *heat, uint32_t b, const double by[NUMBERS], double *to) {
     double *flux = heat->solution.gathered;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
-        flux[a] = heat->solution.area[a] > 0 ? heat->sources.absorbed[a] / heat->solution.area[a] : 0;
+        flux[a] = heat->solution.area[a] > 0 ? entering(heat, a) / heat->solution.area[a] : 0;
     take_mean_off(heat, b, flux);
     return filter_sphere(heat, b, by, flux, to);
 }
@@ -193,15 +204,12 @@ void fibrad_heat_find_spans(fibrad_heat *heat) {
         if (fibrad_heat_conducts(heat, b)) {
             find_emitted(heat, b, by);
             filter_sphere(heat, b, by, heat->solution.radiosity, emission);
-            if (heat->sources.absorbed != NULL) add_heated(heat, b, emission);
+            if (fibrad_heat_is_entered(heat)) add_heated(heat, b, emission);
             average_groups(heat, b, emission);
             for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
                 low = fibrad_min(low, emission[a]), high = fibrad_max(high, emission[a]);
         }
-        if (heat->solution.group > 1)
-            *span = (fibrad_heat_span){.low = low, .high = high, .coarse_low = low, .coarse_high = high};
-        else
-            span->low = low, span->high = high;
+        span->low = low, span->high = high;
     }
 }
 
@@ -210,10 +218,14 @@ void fibrad_heat_find_spans(fibrad_heat *heat) {
  * the rings are about the hottest or coldest patch, and all light is that of patches. */
 #define NEAR          1.0  /* largest gap to a neighbour, in radii of the smaller sphere */
 #define NEAR_COSINE   .985 /* patches with a larger cosine to a neighbour belong to the neighbour */
+#define WIDE_COSINE   .94  /* the same on spheres more uneven than STEEP, and beside neighbours LARGER times as large */
+#define STEEP         8.0
+#define LARGER        3.0
 #define AROUND        1.3  /* light from elsewhere is found within this many times the angle where the neighbour sets */
 #define POINTS        4u   /* of an own patch, whose rings are looked up */
 #define MIDDLE_COSINE .8   /* the middle of an open place is looked for among patches of a larger cosine to it */
 #define TRIED         3u   /* hottest places that are looked at in rings, and coldest: patches tell them roughly */
+#define SPOT_LARGEST  .4   /* largest radius of a spot for which a sphere adds to its resistance */
 #define APART         1e-6 /* least gap that is used, over the sum of radii: spheres may overlap */
 
 /* A place on a sphere. */
@@ -284,8 +296,10 @@ static uint32_t search_neighbours(const fibrad_heat *heat, uint32_t b, struct ra
                 place.emission = heat->solution.direction[patch_facing(heat, b, place.axis)];
                 rank_place(&best[0], &place), rank_place(&best[1], &place);
                 found++;
+                const bool wide = heat->sources.unevenness[b] > STEEP || scene->r[j] > LARGER * r;
                 for (uint32_t k = 0; k < POINTS * heat->config.patches; k++)
-                    near[k / POINTS] |= fibrad_dot(heat->normal + 3 * k, place.axis) > NEAR_COSINE;
+                    near[k / POINTS] |=
+                        fibrad_dot(heat->normal + 3 * k, place.axis) > (wide ? WIDE_COSINE : NEAR_COSINE);
             }
     }
     return found;
@@ -309,7 +323,7 @@ static void sum_rings(const fibrad_heat *heat, uint32_t b, const double axis[3],
             const uint32_t ring = fibrad_rings_at(&heat->rings, sign * fibrad_dot(normal, axis));
             sums->area[ring] += area, sums->sent[ring] += area * sent;
             sums->arriving[ring] += area * sent + heat->solution.net[a] / points;
-            if (heat->sources.absorbed != NULL) sums->absorbed[ring] += heat->sources.absorbed[a] / points;
+            sums->absorbed[ring] += entering(heat, a) / points;
         }
     }
 }
@@ -386,13 +400,15 @@ static void move_to_middle(const fibrad_heat *heat, uint32_t b, double sign, str
 }
 
 /* The largest of 0 and sign times the emissions at places. */
-static double largest_at(const fibrad_heat *heat, uint32_t b, const struct ranking *best, fibrad_rings_work *work) {
+static double largest_at(const fibrad_heat *heat, uint32_t b, const struct ranking *best, const bool *near,
+                         fibrad_rings_work *work) {
     double most = 0;
     for (uint32_t k = 0; k < best->count; k++)
         most = fibrad_max(most, best->sign * emission_in_rings(heat, b, &best->place[k], work));
     if (best->count == 0 || best->place[0].other != FIBRAD_NONE) return most;
     struct place middle = best->place[0];
     move_to_middle(heat, b, best->sign, &middle);
+    if (near[fibrad_patch_of(middle.axis, heat->side)]) return most;
     return fibrad_max(most, best->sign * emission_in_rings(heat, b, &middle, work));
 }
 
@@ -410,8 +426,8 @@ static void find_extremes(const fibrad_heat *heat, uint32_t b, fibrad_rings_work
         if (near[own] || !(heat->solution.area[a] > 0)) continue;
         rank_place(&open[0], &place), rank_place(&open[1], &place);
     }
-    const double low[2] = {largest_at(heat, b, &facing[0], work), largest_at(heat, b, &open[0], work)},
-                 high[2] = {largest_at(heat, b, &facing[1], work), largest_at(heat, b, &open[1], work)};
+    const double low[2] = {largest_at(heat, b, &facing[0], near, work), largest_at(heat, b, &open[0], near, work)},
+                 high[2] = {largest_at(heat, b, &facing[1], near, work), largest_at(heat, b, &open[1], near, work)};
     span->open_low = low[1] > low[0], span->open_high = high[1] > high[0];
     span->least = -fibrad_max(low[0], low[1]), span->largest = fibrad_max(high[0], high[1]);
 }
@@ -424,4 +440,147 @@ void fibrad_heat_make_rings(fibrad_heat *heat) {
     fibrad_rings_make(&heat->rings);
     for (uint32_t k = 0; k < POINTS * heat->config.patches; k++)
         normal_on_patch(heat, 0, k / POINTS, .25 + .5 * (k / 2 % 2), .25 + .5 * (k % 2), heat->normal + 3 * k);
+}
+
+/* Contacts at their places. An end of a contact on a sphere that conducts is a spot of one temperature. Its radius
+ * follows from the conductance, which is that between half-spaces. The spot is warmer than the mean of its sphere by
+ *
+ *     apart + resistance times the power that enters,
+ *
+ * apart being due to light and to other contacts. */
+struct spot {
+    double apart, resistance; /* K, and K over power */
+};
+
+/* The direction from a sphere to the other end of contact k. False: it is not known, or the sphere has one temperature.
+ */
+static bool direction_of_spot(const fibrad_heat *heat, uint32_t body, uint32_t other, double axis[3]) {
+    const fibrad_scene *scene = heat->scene;
+    if (!fibrad_heat_conducts(heat, body) || other >= fibrad_heat_body(heat, FIBRAD_MESHES)) return false;
+    const double at[3] = {scene->x[body], scene->y[body], scene->z[body]};
+    if (other >= heat->spheres) {
+        fibrad_wall_normal(scene, other - heat->spheres, at, axis);
+        for (int k = 0; k < 3; k++) axis[k] = -axis[k];
+        return true;
+    }
+    axis[0] = scene->x[other] - at[0], axis[1] = scene->y[other] - at[1], axis[2] = scene->z[other] - at[2];
+    for (int k = 0; k < 3; k++)
+        if (scene->period[k] > 0) axis[k] -= scene->period[k] * fibrad_floor(axis[k] / scene->period[k] + .5);
+    const double distance = fibrad_sqrt(fibrad_dot(axis, axis));
+    for (int k = 0; k < 3; k++) axis[k] /= distance;
+    return distance > 0;
+}
+
+/* Lets a power enter a sphere at a direction: evenly into the own patch there. */
+static void enter_at(const fibrad_heat *heat, uint32_t b, const double axis[3], double power) {
+    double at[2], area = 0;
+    const uint32_t face = fibrad_patch_place(axis, heat->side, at), cube = heat->config.patches, first = heat->first[b];
+    const uint32_t own = fibrad_patch_number(face, (uint32_t)at[0], (uint32_t)at[1], heat->side);
+    const uint16_t *on_patch = heat->division.on_patch + heat->division.first_four[b];
+    for (int pass = 0; pass < 2; pass++)
+        for (uint32_t a = first; a < heat->first[b + 1]; a++) {
+            const uint32_t k = a - first;
+            if ((k < cube ? k : on_patch[(k - cube) / FIBRAD_HEAT_FOUR]) != own) continue;
+            if (pass == 0)
+                area += heat->solution.area[a];
+            else if (area > 0)
+                heat->spots.entering[a] += power * (heat->solution.area[a] / area);
+        }
+}
+
+/* Resistances of spots are those of half-spaces, 1/(4 k a), times what a sphere adds, whose other side takes the heat
+ * out evenly. docs/methods_heat.md section 16. */
+static double resistance_of_spot(double conductivity, double size, double radius) {
+    const double x = fibrad_min(size, SPOT_LARGEST);
+    return (1 - x / FIBRAD_PI * (.5 + fibrad_log(2 * x) + .85 * x)) / (4 * conductivity * size * radius);
+}
+
+/* The end of contact k on `body`. entering: what enters there so far. */
+static struct spot find_spot(const fibrad_heat *heat, uint32_t body, uint32_t other, double radius,
+                             double entering_so_far, fibrad_rings_work *work) {
+    double axis[3], response[FIBRAD_RINGS], apart = 0;
+    struct spot spot = {0, 0};
+    struct ring_sums mean;
+    if (!direction_of_spot(heat, body, other, axis)) return spot;
+    const double r = heat->scene->r[body], eps = heat->sources.emissivity[body], k = heat->sources.conductivity[body],
+                 uneven = heat->sources.unevenness[body], slope = uneven * k / r;
+    enter_at(heat, body, axis, -entering_so_far);
+    sum_rings(heat, body, axis, 1, &mean);
+    enter_at(heat, body, axis, entering_so_far);
+    average_rings(&mean);
+    const double less =
+        fibrad_rings_spot(&heat->rings, fibrad_min(radius / r, SPOT_LARGEST), eps, uneven, work, response);
+    for (uint32_t m = 0; m < FIBRAD_RINGS; m++)
+        apart += heat->rings.share[m] * response[m] * (eps * mean.arriving[m] + mean.absorbed[m]);
+    spot.apart = apart / slope;
+    spot.resistance = resistance_of_spot(k, radius / r, r) - less / (4 * FIBRAD_PI * r * r * slope);
+    return spot;
+}
+
+static void note_spot(const fibrad_heat *heat, uint32_t b, double warmer) {
+    fibrad_heat_span *span = &heat->solution.span[b];
+    span->coldest_spot = fibrad_min(span->coldest_spot, warmer);
+    span->hottest_spot = fibrad_max(span->hottest_spot, warmer);
+}
+
+/* Finds what contact k conducts. Returns by how much its flow changes. */
+static double find_flow(fibrad_heat *heat, uint32_t k, fibrad_rings_work *work) {
+    const fibrad_contacts *c = &heat->contacts;
+    const fibrad_heat_spots *s = &heat->spots;
+    const uint32_t i = c->node[c->first[k]], j = c->node[c->second[k]];
+    const double given = s->given[k], last = s->flow[k], inf = __builtin_inf();
+    s->conductance[k] = given, s->offset[k] = 0;
+    if (!(given > 0) || i == j) return 0;
+    const double softness[2] = {i < heat->spheres ? 1 / heat->sources.conductivity[i] : 0,
+                                j < heat->spheres ? 1 / heat->sources.conductivity[j] : 0};
+    const double radius = given * (softness[0] + softness[1]) / 4;
+    const struct spot first = find_spot(heat, i, j, radius, -last, work),
+                      second = find_spot(heat, j, i, radius, last, work);
+    const double resistance = first.resistance + second.resistance;
+    if (resistance > 0 && resistance < inf)
+        s->conductance[k] = 1 / resistance, s->offset[k] = (first.apart - second.apart) / resistance;
+    s->next[k] = s->conductance[k] * (fibrad_contact_temperature(c, heat->sources.emission[i]) -
+                                      fibrad_contact_temperature(c, heat->sources.emission[j])) +
+                 s->offset[k];
+    if (i < heat->spheres) note_spot(heat, i, first.apart - first.resistance * s->next[k]);
+    if (j < heat->spheres) note_spot(heat, j, second.apart + second.resistance * s->next[k]);
+    return fibrad_abs(s->next[k] - last);
+}
+
+double fibrad_heat_find_spots(fibrad_heat *heat) {
+    const fibrad_contacts *c = &heat->contacts;
+    const fibrad_heat_spots *s = &heat->spots;
+    double change = 0, largest = 0;
+    for (uint32_t b = 0; b < heat->spheres; b++) {
+        heat->solution.span[b].coldest_spot = heat->solution.span[b].hottest_spot = 0;
+        if (fibrad_heat_conducts(heat, b)) stand_for_absorbed(heat, b, -1);
+    }
+    for (uint32_t k = 0; k < c->count; k++) {
+        s->next[k] = 0;
+        change = fibrad_max(change, find_flow(heat, k, &heat->near[0]));
+        largest = fibrad_max(largest, fibrad_abs(s->next[k]));
+    }
+    for (uint32_t b = 0; b < heat->spheres; b++)
+        if (fibrad_heat_conducts(heat, b)) stand_for_absorbed(heat, b, 1);
+    return largest > 0 ? change / largest : 0;
+}
+
+void fibrad_heat_place_flows(fibrad_heat *heat) {
+    const fibrad_contacts *c = &heat->contacts;
+    const fibrad_heat_spots *s = &heat->spots;
+    double axis[3];
+    fibrad_zero(s->entering, heat->patches * sizeof *s->entering);
+    for (uint32_t k = 0; k < c->count; k++) {
+        const uint32_t i = c->node[c->first[k]], j = c->node[c->second[k]];
+        s->flow[k] = s->next[k];
+        if (i == j) continue;
+        if (i < heat->spheres && direction_of_spot(heat, i, j, axis)) enter_at(heat, i, axis, -s->flow[k]);
+        if (j < heat->spheres && direction_of_spot(heat, j, i, axis)) enter_at(heat, j, axis, s->flow[k]);
+    }
+}
+
+void fibrad_heat_add_offsets(const fibrad_heat *heat, double *to) {
+    const fibrad_contacts *c = &heat->contacts;
+    for (uint32_t k = 0; k < c->count && heat->spots.entering != NULL; k++)
+        to[c->node[c->first[k]]] -= heat->spots.offset[k], to[c->node[c->second[k]]] += heat->spots.offset[k];
 }

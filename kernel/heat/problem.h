@@ -134,10 +134,11 @@ typedef struct fibrad_heat_pencils {
 
 /* The least and the largest emission on a sphere's surface minus the mean emission, at both levels. */
 typedef struct fibrad_heat_span {
-    double low, high, coarse_low, coarse_high; /* of patches */
-    double least, largest;                     /* in rings (conduct.c) */
-    bool open_low, open_high;                  /* these places do not face a neighbour */
-    uint32_t neighbours;                       /* number of those that are near */
+    double low, high;                  /* of patches */
+    double least, largest;             /* in rings (conduct.c) */
+    bool open_low, open_high;          /* these places do not face a neighbour */
+    uint32_t neighbours;               /* number of those that are near */
+    double coldest_spot, hottest_spot; /* K, of contacts at their places, minus the mean; 0: none */
 } fibrad_heat_span;
 
 /* What is given for a solution. Emissions E are differences from the emission of the surroundings. */
@@ -191,6 +192,14 @@ typedef struct fibrad_heat_solution {
     bool steps; /* this is a step in time: extremes are found when they are asked for */
 } fibrad_heat_solution;
 
+/* Contacts that act at their places on spheres that conduct. The arrays are the caller's. */
+typedef struct fibrad_heat_spots {
+    const double *given;          /* [contacts], conductances between half-spaces */
+    double *conductance;          /* [contacts], between the means of both surfaces */
+    double *offset, *flow, *next; /* [contacts], flows from first to second: at equal means; so far; found last */
+    double *entering;             /* [patches], power that enters at flow; NULL: contacts act on means of surfaces */
+} fibrad_heat_spots;
+
 /* From which errors are estimated. */
 typedef struct fibrad_heat_samples {
     double *halves;         /* [bodies], power by even directions minus power by odd directions */
@@ -243,6 +252,7 @@ struct fibrad_heat {
     fibrad_heat_solution solution;
     fibrad_heat_samples samples;
     fibrad_contacts contacts; /* of the solution; nodes are bodies; count 0: none */
+    fibrad_heat_spots spots;
     fibrad_contacts *checked; /* of the sources that were checked last: count, node, kind and anchored */
     uint32_t *checked_node;   /* arrays of `checked` */
     unsigned char *checked_kind;
@@ -436,6 +446,21 @@ double fibrad_heat_add_absorbed(fibrad_heat *heat, uint32_t sphere);
 
 /* Takes it off again. */
 void fibrad_heat_take_absorbed_off(fibrad_heat *heat, uint32_t sphere);
+
+/* Whether heat enters surfaces at places, as light or through contacts. */
+static inline bool fibrad_heat_is_entered(const fibrad_heat *heat) {
+    return heat->sources.absorbed != NULL || heat->spots.entering != NULL;
+}
+
+/* Finds what contacts conduct at their places, with the present radiosities and emissions. Returns the largest change
+ * of a flow over the largest flow. */
+double fibrad_heat_find_spots(fibrad_heat *heat);
+
+/* Lets the flows that were found enter the spheres. */
+void fibrad_heat_place_flows(fibrad_heat *heat);
+
+/* Adds to `to` what bodies gain through contacts if the means of all surfaces are equal. */
+void fibrad_heat_add_offsets(const fibrad_heat *heat, double *to);
 
 /* The light that a body has absorbed. */
 static inline double fibrad_heat_absorbed(const fibrad_heat *heat, uint32_t body) {

@@ -32,8 +32,9 @@
 #define SPAN_WALL      .08  /* the same if a wall may be near */
 #define SPAN_CROWD                                                                                                     \
     .014 /* times the root of the number of further neighbours, with PATCHES: they are lights of patches */
-#define SPAN_CHANGE .05 /* error over the difference from the patch */
-#define SAMPLES     3   /* if a kind has fewer samples, those of the other kind are taken as well */
+#define SPOT_EXTREME .05 /* of spots of contacts, over their difference from the mean of the surface */
+#define SPAN_CHANGE  .05 /* error over the difference from the patch */
+#define SAMPLES      3   /* if a kind has fewer samples, those of the other kind are taken as well */
 
 static double squared(double x) { return x * x; }
 
@@ -556,9 +557,13 @@ static void read_inside(const fibrad_heat *heat, uint32_t b, measured mean, doub
                         const fibrad_heat_result *result) {
     const fibrad_heat_span *span = &heat->solution.span[b];
     const uint32_t i = heat->order[b];
-    const measured low = surface_extreme(heat, b, span->least, span->low, span->open_low),
-                   high = surface_extreme(heat, b, span->largest, span->high, span->open_high),
-                   centre = centre_of(heat, b, mean, power_error);
+    measured low = surface_extreme(heat, b, span->least, span->low, span->open_low),
+             high = surface_extreme(heat, b, span->largest, span->high, span->open_high);
+    const measured centre = centre_of(heat, b, mean, power_error);
+    if (span->coldest_spot < low.value)
+        low = (measured){span->coldest_spot, fibrad_max(low.error, -SPOT_EXTREME * span->coldest_spot)};
+    if (span->hottest_spot > high.value)
+        high = (measured){span->hottest_spot, fibrad_max(high.error, SPOT_EXTREME * span->hottest_spot)};
     const double worst = fibrad_max(low.error, high.error);
     if (result->least_temperature != NULL) result->least_temperature[i] = mean.value + low.value;
     if (result->largest_temperature != NULL) result->largest_temperature[i] = mean.value + high.value;
@@ -651,7 +656,8 @@ static void read_contacts(const fibrad_heat *heat, fibrad_heat_result *result) {
         result->body_conducted[k] = fibrad_heat_conducted(heat, fibrad_heat_body(heat, heat->slot[k]));
     for (uint32_t k = 0; k < c->count && result->contact_flow != NULL; k++)
         result->contact_flow[k] =
-            c->conductance[k] * (c->temperature[c->node[c->first[k]]] - c->temperature[c->node[c->second[k]]]);
+            c->conductance[k] * (c->temperature[c->node[c->first[k]]] - c->temperature[c->node[c->second[k]]]) +
+            (heat->spots.entering != NULL ? heat->spots.offset[k] : 0);
 }
 
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {

@@ -190,12 +190,14 @@ static double stiffness_of_joined(const fibrad_heat *heat, uint32_t b) {
 static void warm_joined(fibrad_heat *heat) {
     fibrad_contacts *c = &heat->contacts;
     if (c->count == 0) return;
+    fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
+    fibrad_heat_add_offsets(heat, c->supply);
     for (uint32_t b = 0; b < heat->bodies; b++) {
         c->temperature[b] = fibrad_contact_temperature(c, heat->sources.emission[b]);
         c->missing[b] = 0;
         if (!fibrad_heat_is_joined(heat, b)) continue;
         c->stiff[b] = stiffness_of_joined(heat, b);
-        c->supply[b] = heat->sources.drive[b] + absorbable(heat, b);
+        c->supply[b] += heat->sources.drive[b] + absorbable(heat, b);
         c->missing[b] = c->supply[b] - c->stiff[b] * heat->sources.emission[b];
     }
     fibrad_contact_gains(c, c->temperature, c->missing);
@@ -339,7 +341,7 @@ static void find_scale(fibrad_heat *heat) {
 
 /* Adds the light that spheres which conduct have absorbed to their net flows and to the scale. */
 static void heat_by_light(fibrad_heat *heat) {
-    for (uint32_t b = 0; b < heat->spheres && heat->sources.absorbed != NULL; b++)
+    for (uint32_t b = 0; b < heat->spheres && fibrad_heat_is_entered(heat); b++)
         if (fibrad_heat_conducts(heat, b)) heat->solution.scale += fibrad_heat_add_absorbed(heat, b);
 }
 
@@ -440,12 +442,14 @@ static double extrapolated_emission(const fibrad_heat *heat, uint32_t b) {
 /* Sets up the balances of joined bodies with the radiation that arrives, extrapolated. */
 static void set_balances(fibrad_heat *heat) {
     fibrad_contacts *c = &heat->contacts;
+    fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
+    fibrad_heat_add_offsets(heat, c->supply);
     for (uint32_t b = 0; b < heat->bodies; b++) {
         const double emission = extrapolated_emission(heat, b), hold = heat->sources.hold[b];
         c->temperature[b] = fibrad_contact_temperature(c, is_free(heat, b) ? emission : heat->sources.emission[b]);
         if (!fibrad_heat_is_joined(heat, b)) continue;
         c->stiff[b] = stiffness_of_joined(heat, b);
-        c->supply[b] = heat->sources.drive[b] + heat->solution.power[b] + (c->stiff[b] - hold) * emission;
+        c->supply[b] += heat->sources.drive[b] + heat->solution.power[b] + (c->stiff[b] - hold) * emission;
     }
 }
 
@@ -456,17 +460,18 @@ static void finish_contacts(fibrad_heat *heat) {
     double left = 0, weights = 0;
     set_balances(heat);
     fibrad_contact_find(c, FOUND);
+    fibrad_zero(c->gain, heat->bodies * sizeof *c->gain);
+    fibrad_heat_add_offsets(heat, c->gain);
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (!fibrad_heat_is_joined(heat, b)) weights += emitting(heat, b);
         if (!fibrad_heat_is_joined(heat, b)) continue;
         const double t = c->temperature[b], emits = c->stiff[b] - heat->sources.hold[b];
-        const double power = c->supply[b] - heat->sources.drive[b] - emits * fibrad_contact_emission(c, t);
+        const double power = c->supply[b] - c->gain[b] - heat->sources.drive[b] - emits * fibrad_contact_emission(c, t);
         left += heat->solution.power[b] - power, heat->solution.power[b] = power;
         heat->sources.temperature[b] = t >= 0 ? t : __builtin_nan("");
     }
     for (uint32_t b = 0; b < heat->bodies && weights > 0; b++)
         if (!fibrad_heat_is_joined(heat, b)) heat->solution.power[b] += left * (emitting(heat, b) / weights);
-    fibrad_zero(c->gain, heat->bodies * sizeof *c->gain);
     fibrad_contact_gains(c, c->temperature, c->gain);
 }
 
@@ -484,7 +489,7 @@ static void finish_powers(fibrad_heat *heat) {
     if (heat->sources.conducts) {
         fibrad_heat_find_spans(heat);
         fibrad_heat_make_rings(heat);
-        for (uint32_t b = 0; b < heat->spheres && heat->sources.absorbed != NULL; b++)
+        for (uint32_t b = 0; b < heat->spheres && fibrad_heat_is_entered(heat); b++)
             if (fibrad_heat_conducts(heat, b)) fibrad_heat_take_absorbed_off(heat, b);
     }
     for (uint32_t b = 0; b < heat->bodies; b++) {
@@ -595,6 +600,24 @@ static bool replaces_unevenness(fibrad_heat *heat) {
     return change > SETTLED;
 }
 
+/* Whether the flows of contacts at their places have changed so much that they were replaced. */
+static bool replaces_flows(fibrad_heat *heat) {
+    if (heat->spots.entering == NULL || heat->solution.sweeps >= heat->sources.limit) return false;
+    find_emissions(heat);
+    const double change = fibrad_heat_find_spots(heat);
+    const double rough = change > SETTLED ? fibrad_min(FIBRAD_HEAT_ROUGH, WITHIN * change) : 0;
+    heat->sources.rough = fibrad_max(heat->sources.rough, rough);
+    if (change > SETTLED) fibrad_heat_place_flows(heat);
+    return change > SETTLED;
+}
+
+/* Whether what a search takes as given was replaced. */
+static bool replaces_given(fibrad_heat *heat, bool coarse) {
+    const bool uneven = coarse && replaces_unevenness(heat);
+    if (!coarse) heat->sources.rough = 0;
+    return replaces_flows(heat) || uneven;
+}
+
 /* Sets and sends the next search direction: the change that was sent, plus `keep` times the last direction. */
 static void turn_direction(fibrad_heat *heat, double keep) {
     for (uint32_t a = 0; a < heat->patches; a++) {
@@ -611,7 +634,6 @@ static void refine_patches(fibrad_heat *heat) {
     find_powers(heat, heat->solution.coarse);
     find_emissions(heat);
     if (heat->sources.afloat) sink(heat);
-    if (heat->sources.conducts) fibrad_heat_find_spans(heat);
     fibrad_copy(heat->solution.coarse_emission, heat->sources.emission, heat->bodies * sizeof *heat->sources.emission);
     heat->solution.group = 1;
     for (uint32_t a = 0; a < heat->patches; a++) {
@@ -739,12 +761,12 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
     while (level_solved(heat)) {
         const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
         const bool rough = heat->sources.rough > heat->sources.tolerance && heat->solution.sweeps < heat->sources.limit;
-        const bool replaced = coarse && replaces_unevenness(heat);
+        const bool replaced = replaces_given(heat, coarse);
         if (!replaced && !(coarse && rough)) {
             leave_level(heat);
             return;
         }
-        if (replaced && heat->sources.absorbed != NULL) {
+        if (replaced && fibrad_heat_is_entered(heat)) {
             send_radiosities(heat, FIBRAD_HEAT_FIRST);
             return;
         }

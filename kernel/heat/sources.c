@@ -421,6 +421,21 @@ static void begin_contacts(fibrad_heat *heat) {
     fibrad_copy(c->kind, checked->kind, heat->bodies);
 }
 
+/* Divides the memory for contacts at their places. It is used if a sphere conducts and has contacts. */
+static void begin_spots(fibrad_heat *heat, const fibrad_heat_sources *s) {
+    const uint32_t n = heat->contacts.count;
+    double *at = s->contact_places;
+    heat->spots = (fibrad_heat_spots){0};
+    if (n == 0 || at == NULL || !heat->sources.conducts) return;
+    heat->spots =
+        (fibrad_heat_spots){s->conductance, at, at + n, at + 2 * (size_t)n, at + 3 * (size_t)n, at + 4 * (size_t)n};
+    fibrad_copy(at, s->conductance, n * sizeof *at);
+    fibrad_zero(at + n, (3 * (size_t)n + heat->patches) * sizeof *at);
+    heat->contacts.conductance = at;
+    heat->sources.rough = FIBRAD_HEAT_ROUGH;
+    fibrad_heat_make_rings(heat);
+}
+
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     const int status = fibrad_heat_check(heat, sources, NULL);
     if (status != FIBRAD_OK) return status;
@@ -443,7 +458,9 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     heat->solution.group = sources->uniform ? UINT32_MAX : FIBRAD_HEAT_FOUR;
     heat->sources.tolerance = sources->tolerance > 0 ? sources->tolerance : default_tolerance(heat, sources, unknown);
     heat->sources.limit = sources->sweeps_max > 0 ? sources->sweeps_max : HEAT_SWEEPS_MAX;
+    fibrad_zero(heat->solution.span, heat->spheres * sizeof *heat->solution.span);
     set_conduction(heat, sources);
+    begin_spots(heat, sources);
     heat->solution.sweeps = 0;
     heat->solution.warm = false;
     fibrad_zero(heat->swept, heat->config.parts);

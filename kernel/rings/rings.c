@@ -109,43 +109,54 @@ static void find_turns(struct turns *turns) {
     }
 }
 
-/* What a place sees of a ring, up to a factor: a mean over half a turn around the axis. */
+/* What a place sees of a ring, and the ring of a place, up to a factor: a mean over half a turn around the axis. */
 static double seen_of_ring(const struct turns *turns, const struct ring_place *from, const struct ring_place *to) {
     const double z = to->along - from->along;
     double sum = 0;
     for (int k = 0; k < TURNS; k++) {
         const double x = to->across * turns->cosine[k] - from->across, y = to->across * turns->sine[k];
-        const double leaves = x * from->sine + z * from->cosine,
-                     meets = z * to->cosine - (x * turns->cosine[k] + y * turns->sine[k]) * to->sine,
+        const double leaves = fibrad_max(0, x * from->sine + z * from->cosine),
+                     meets = fibrad_max(0, z * to->cosine - (x * turns->cosine[k] + y * turns->sine[k]) * to->sine),
                      square = x * x + y * y + z * z;
-        if (leaves > 0 && meets > 0) sum += turns->weight[k] * leaves * meets / (square * square);
+        sum += turns->weight[k] * leaves * meets / (square * square);
     }
     return sum;
 }
 
-/* The factors from ring k of a sphere to the rings of the other one. Returns their sum. */
-static double face_ring(const fibrad_rings *rings, const struct turns *turns, uint32_t k, double radius, double other,
-                        double distance, double factor[RINGS]) {
-    const double sine = rings->sine[k], cosine = rings->cosine[k];
-    const struct ring_place from = {radius * sine, radius * cosine, sine, cosine};
-    const double z = distance - from.along, far = fibrad_sqrt(from.across * from.across + z * z);
-    const double exact = factor_of_point(far / other, (z * cosine - from.across * sine) / far);
-    double sum = 0;
-    for (uint32_t m = 0; m < RINGS; m++) {
-        const struct ring_place to = {other * rings->sine[m], distance - other * rings->cosine[m], rings->sine[m],
-                                      rings->cosine[m]};
-        sum += factor[m] = exact > 0 ? rings->share[m] * seen_of_ring(turns, &from, &to) : 0;
+/* The sum of the factors from a ring of a sphere to another sphere. */
+static double sum_of_factors(const struct ring_place *from, double other, double distance) {
+    const double z = distance - from->along, far = fibrad_sqrt(from->across * from->across + z * z);
+    return factor_of_point(far / other, (z * from->cosine - from->across * from->sine) / far);
+}
+
+/* Scales what the rings of sphere i see, so that the sums of factors are exact. */
+static void scale_factors(const fibrad_rings *rings, const double radius[2], double distance, int i,
+                          fibrad_rings_work *work) {
+    for (uint32_t k = 0; k < RINGS; k++) {
+        const struct ring_place from = {radius[i] * rings->sine[k], radius[i] * rings->cosine[k], rings->sine[k],
+                                        rings->cosine[k]};
+        const double exact = sum_of_factors(&from, radius[1 - i], distance);
+        double *factor = work->factor[i][k], sum = 0;
+        for (uint32_t m = 0; m < RINGS; m++) sum += factor[m];
+        for (uint32_t m = 0; m < RINGS; m++) factor[m] = sum > 0 ? factor[m] * (exact / sum) : 0;
+        work->facing[i][k] = sum > 0 ? exact : 0;
     }
-    for (uint32_t m = 0; m < RINGS && sum > 0; m++) factor[m] *= exact / sum;
-    return sum > 0 ? exact : 0;
 }
 
 void fibrad_rings_face(const fibrad_rings *rings, const double radius[2], double distance, fibrad_rings_work *work) {
     struct turns turns;
     find_turns(&turns);
-    for (int i = 0; i < 2; i++)
-        for (uint32_t k = 0; k < RINGS; k++)
-            work->facing[i][k] = face_ring(rings, &turns, k, radius[i], radius[1 - i], distance, work->factor[i][k]);
+    for (uint32_t k = 0; k < RINGS; k++) {
+        const struct ring_place from = {radius[0] * rings->sine[k], radius[0] * rings->cosine[k], rings->sine[k],
+                                        rings->cosine[k]};
+        for (uint32_t m = 0; m < RINGS; m++) {
+            const struct ring_place to = {radius[1] * rings->sine[m], distance - radius[1] * rings->cosine[m],
+                                          rings->sine[m], rings->cosine[m]};
+            const double seen = seen_of_ring(&turns, &from, &to);
+            work->factor[0][k][m] = rings->share[m] * seen, work->factor[1][m][k] = rings->share[k] * seen;
+        }
+    }
+    for (int i = 0; i < 2; i++) scale_factors(rings, radius, distance, i, work);
 }
 
 /* What the emission of ring k has of each v of its sphere. Returns the emission that is known. */
@@ -203,4 +214,34 @@ double fibrad_rings_top(const fibrad_rings *rings, const fibrad_ringed *sphere, 
     double top = conducted_at(rings, &sphere[0], 0, spread) - sphere[0].emission;
     for (uint32_t m = 0; m < RINGS; m++) top += spread[m] * work->row[m][count * RINGS];
     return top;
+}
+
+/* The share of the flux that enters a spot of one temperature within ring k. The flux is in proportion to
+ * 1/sqrt(1 - x), x being the share of the spot's area within. */
+static double share_of_spot(const fibrad_rings *rings, double size, uint32_t k) {
+    const double low = fibrad_min(1, 4 * rings->edge[k] / (size * size)),
+                 high = fibrad_min(1, 4 * rings->edge[k + 1] / (size * size));
+    return fibrad_sqrt(1 - low) - fibrad_sqrt(1 - high);
+}
+
+/* With the flux p of the spot, (1 + eps u S) z = p. The response is u S z, since S is symmetric with shares as weights.
+ */
+double fibrad_rings_spot(const fibrad_rings *rings, double size, double emissivity, double unevenness,
+                         fibrad_rings_work *work, double response[RINGS]) {
+    double flux[RINGS], less = 0;
+    for (uint32_t k = 0; k < RINGS; k++) {
+        double *row = work->row[k];
+        for (uint32_t m = 0; m < RINGS; m++) row[m] = emissivity * unevenness * rings->spread[k][m] + (k == m);
+        row[RINGS] = flux[k] = share_of_spot(rings, size, k) / rings->share[k];
+    }
+    eliminate(work->row, RINGS);
+    for (uint32_t k = 0; k < RINGS; k++) {
+        response[k] = 0;
+        for (uint32_t m = 0; m < RINGS; m++) {
+            const double spread = unevenness * rings->spread[k][m], reached = work->row[m][RINGS];
+            response[k] += spread * reached;
+            less += rings->share[k] * flux[k] * spread * (flux[m] - reached);
+        }
+    }
+    return less;
 }

@@ -265,7 +265,8 @@ class Heat(Bed):
         contacts : (i, j, conductance) or SciPy matrix, optional
             [W/K] What conducts heat between spheres i and j. j may also be the name of a wall, in a list. Several
             contacts may join the same spheres. Of a matrix (n, n), which is symmetric, each element above the diagonal
-            is a contact. `contacts` finds them by overlaps.
+            is a contact. `contacts` finds them by overlaps. On spheres of finite `conductivity` they act at their
+            places.
 
         Returns
         -------

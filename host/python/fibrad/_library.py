@@ -71,7 +71,7 @@ HeatSources = _structure("heat_sources", ("temperature emissivity power hold ref
                          ("surroundings sigma tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int),
                          ("side_temperature light conductivity absorbed", DOUBLES),
                          ("contact_first contact_second", POINTER(c_uint32)), ("conductance", DOUBLES),
-                         ("contacts", c_uint32))
+                         ("contacts", c_uint32), ("contact_places", DOUBLES))
 HeatResult = _structure("heat_result", ("power body_power", DOUBLES), ("surroundings_power", c_double),
                         ("temperature body_temperature power_error body_error", DOUBLES),
                         ("temperature_error body_temperature_error", DOUBLES),
