@@ -5,17 +5,16 @@
  * Other spheres and walls may hide parts of this disc. The sphere takes the light on the open part. The areas of open
  * parts are exact.
  *
- * Sequence   1. fibrad_light_empty tells how much light would end on each wall if there were neither spheres nor
- *               triangles. It also tells how much light would leave the bed.
- *            2. fibrad_light_spheres tells how much light each sphere of a range takes. It also tells how much of that
- *               light would end on each wall, or leave the bed, if there were neither spheres nor triangles: `kept`.
- *            The light that ends on wall b is ends.body[b] of step 1 minus the sum of kept.body[b] over all ranges. The
- *            light that leaves the bed is ends.through minus the sum of kept.through. Triangles take a part
- *            of both: fibrad_heat_shine_walls tells how much.
- *            fibrad_heat_shine does step 2 for a heat problem, and puts the light on patches.
- * Units      as in fibrad.h. A power is in units of flux times L^2. With a flux of 1 it is an area.
- * Words      Memory, errors and the layout of comments are as in fibrad.h.
- * Source     docs/methods_heat.md, Light from outside. docs/heat.md says what is assumed.
+ * Sequence   1. fibrad_light_empty finds how much light would end on each wall, and how much would leave the bed, if
+ *               there were neither spheres nor triangles.
+ *            2. fibrad_light_spheres finds how much light each sphere of a range takes. `kept` is where this light
+ * would end if there were neither spheres nor triangles: how much on each wall, how much outside the bed. The light
+ * that ends on wall b is ends.body[b] of step 1 minus the sum of kept.body[b] over all ranges. The light that leaves
+ * the bed is ends.through minus the sum of kept.through. Triangles take a part of the light on walls and of the light
+ * that leaves. fibrad_heat_shine_walls finds these parts. fibrad_heat_shine does step 2 for a heat problem, and puts
+ * the light on patches. Units      as in fibrad.h. A power is in units of flux times L^2. With a flux of 1 it is an
+ * area. Words      Memory, errors and the layout of comments are as in fibrad.h. Source     docs/methods_heat.md, Light
+ * from outside. docs/heat.md says what is assumed.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_LIGHT_H
@@ -48,7 +47,8 @@ typedef struct fibrad_light {
     double direction[3];    /* the way that the light goes, of any length above 0 */
     double flux;            /* sigma K^4 (W/m2 if sigma is in W/(m2 K4)), across `direction`; to FIBRAD_POWER_MAX */
     double half_angle;      /* rad, of the cone, 0 to FIBRAD_HALF_ANGLE_MAX; 0: parallel */
-    uint32_t directions;    /* of the cone, up to FIBRAD_LIGHT_DIRECTIONS_MAX; 0: FIBRAD_LIGHT_DIRECTIONS_DEFAULT */
+    uint32_t directions;    /* of the cone, up to FIBRAD_LIGHT_DIRECTIONS_MAX; 0: FIBRAD_LIGHT_DIRECTIONS_DEFAULT, more
+                               for cones wider than 0.02 rad */
     int shape;              /* a fibrad_light_shape */
     double centre[3];       /* L, of the disc */
     double radius;          /* L, of the disc, above 0 */
@@ -65,7 +65,7 @@ typedef struct fibrad_light_ends {
 /* Where light ends if there are neither spheres nor triangles.
  *   Output   ends: spheres is 0, the others add up to the power of the light
  *            fault: which sphere is at fault, and why; may be NULL
- *   Errors   _ARGUMENT: fault.why tells the cause
+ *   Errors   _ARGUMENT: fault.why is the cause
  *              FIBRAD_WHY_LIGHT: a number is out of range
  *              FIBRAD_WHY_DARK: no open face lets the light in
  *              FIBRAD_WHY_FOOTPRINT: the light meets a sphere before the disc
@@ -79,7 +79,7 @@ int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibra
  * time.
  *   Input    from, to: spheres from to to - 1, up to the number of spheres
  *   Output   power[to - from]: the light that falls on each sphere, absorbed or not
- *            kept: `spheres` is the sum of `power`. `body` and `through` tell where this light would end if there were
+ *            kept: `spheres` is the sum of `power`. `body` and `through` are where this light would end if there were
  *            neither spheres nor triangles. They add up to `spheres`.
  *   Errors   as fibrad_light_empty
  *   Cost     2 microseconds for each sphere and direction; work memory has 8 bytes for each sphere */
@@ -89,14 +89,18 @@ int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fib
 /* ---- light on patches --------------------------------------------------------------------------------------------
  * A surface absorbs light and thermal radiation with different absorptivities. Reflected light stays light. So light
  * has a solution of its own:
- *   1. Call fibrad_heat_shine for each task of each light, and fibrad_heat_shine_walls for each light. Both functions
- *      add to `hits`.
- *   2. Call fibrad_heat_begin with all temperatures 0, absorptivities in the place of emissivities, and `light` = hits.
- *      The net powers of this solution are the light that is absorbed. The net power of the surroundings is the light
- *      that is reflected.
- *   3. Call fibrad_heat_keep_light. `hits` then holds the light that patches absorb.
- *   4. Call fibrad_heat_begin for thermal radiation, with `absorbed` = hits. To each given power, add the net power of
- *      step 2. Insulated walls have no given power: `absorbed` is enough for them. */
+ *   1. For each light, with a zeroed array `hits`: call fibrad_heat_shine for each task. Call fibrad_heat_scatter for
+ *      each of its tasks, then fibrad_heat_shine_walls. `hits` then holds the light that comes straight from outside.
+ *      Call fibrad_heat_reflect. It adds to `light` and `spots`.
+ *   2. Call fibrad_heat_begin with all temperatures 0, absorptivities in the place of emissivities, and `light`. The
+ *      net powers of this solution, and absorptivities times `spots`, are the light that is absorbed. The net power of
+ *      the surroundings is the light that is reflected.
+ *   3. Call fibrad_heat_keep_light. `spots` then holds the light that patches absorb.
+ *   4. Call fibrad_heat_begin for thermal radiation, with `absorbed` = spots. To each given power, add the light that
+ *      the surface absorbs. Insulated walls have no given power: `absorbed` is enough for them.
+ *
+ * Light that falls on a part of a patch is reflected from where it falls: rays carry it to where it arrives next. From
+ * there on, patches reflect it. Patches that are lit wholly reflect without rays. */
 
 /* Number of patches of a heat problem.
  *   Errors   0 if heat is NULL */
@@ -111,19 +115,62 @@ uint32_t fibrad_heat_shine_tasks(const fibrad_heat *heat);
  *   Input    task: 0 to fibrad_heat_shine_tasks - 1
  *   Output   hits[fibrad_heat_patches]: the light is added to it
  *            kept: as fibrad_light_spheres
+ *            apart[spheres]: written for the spheres of the task: light of even directions of a cone minus that of odd
+ *            ones; may be NULL
  *   Errors   as fibrad_light_spheres; _STATE: the scene has changed
  *   Cost     as fibrad_light_spheres; work memory has 8 bytes for each patch of the task */
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,
-                      double *hits, fibrad_light_ends *kept);
+                      double *hits, fibrad_light_ends *kept, double *apart);
 
-/* The light that comes straight from outside, on the patches of walls. Rays tell which patches of a wall are lit,
+/* A ray of light: the patch that it meets first, and the patch that it meets after it was reflected there. UINT32_MAX:
+ * the ray brings no light. */
+typedef struct fibrad_light_ray {
+    uint32_t first, second;
+    uint32_t slot; /* where it would end if there were neither spheres nor triangles; a number inside the kernel */
+} fibrad_light_ray;
+
+/* Number of rays for a light: 12 for each beam of a sphere, and 1/16 for each beam of each sphere in the light.
+ *   Input    hits[fibrad_heat_patches]: of fibrad_heat_shine
+ *   Errors   0 if an argument is NULL */
+uint32_t fibrad_heat_light_rays(const fibrad_heat *heat, const double *hits);
+
+/* Number of tasks for fibrad_heat_scatter. */
+uint32_t fibrad_heat_scatter_tasks(uint32_t rays);
+
+/* Follows the rays of one task. Several threads may do different tasks at the same time.
+ *   Input    rays: of fibrad_heat_light_rays
+ *            task: 0 to fibrad_heat_scatter_tasks - 1
+ *   Output   ray[rays]: those of the task are written
+ *   Errors   as fibrad_heat_shine; _BACK: work->triangle is written
+ *   Cost     2 microseconds for each ray */
+int fibrad_heat_scatter(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t rays,
+                        uint32_t task, fibrad_light_ray *ray);
+
+/* The light that comes straight from outside, on the patches of walls. Rays find which patches of a wall are lit,
  * and which part of the light ends on triangles.
- *   Input    ends: of fibrad_light_empty, less `kept` of all tasks
+ *   Input    ray[rays]: of fibrad_heat_scatter
+ *            ends: the `ends` of fibrad_light_empty minus the sum of `kept` over all tasks, field by field
  *   Output   hits[fibrad_heat_patches]: the light is added to it
  *            ends: triangles have taken their part from other walls and from `through`
- *   Errors   as fibrad_heat_shine; _BACK: work->triangle is written */
-int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light,
+ *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY */
+int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fibrad_light_ray *ray, uint32_t rays,
                             fibrad_light_ends *ends, double *hits);
+
+/* Light on its way through a bed. All arrays but `first` are added to. */
+typedef struct fibrad_light_hits {
+    const double *first; /* [patches], of fibrad_heat_shine and fibrad_heat_shine_walls */
+    double *light;       /* [patches], out: what patches reflect; takes the place of fibrad_heat_sources.light */
+    double *spots;       /* [patches], out: what of `first` rays have reflected */
+    double *squares; /* [spheres + bodies + 2], out: sums of squared powers of rays that arrive on spheres, walls and
+                        outside; last: of squared powers of beams that leave the patches where rays have arrived */
+} fibrad_light_hits;
+
+/* Carries light that falls on parts of patches to where it arrives next.
+ *   Input    absorptivity[spheres], body_absorptivity[bodies]: of the light
+ *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY */
+int fibrad_heat_reflect(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light,
+                        const fibrad_light_ray *ray, uint32_t rays, const double *absorptivity,
+                        const double *body_absorptivity, const fibrad_light_hits *hits);
 
 /* Sums the light on the patches of each sphere and wall.
  *   Input    hits[fibrad_heat_patches]
@@ -131,11 +178,11 @@ int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fi
  *   Errors   _ARGUMENT */
 int fibrad_heat_sum_light(const fibrad_heat *heat, const double *hits, double *power, double *body_power);
 
-/* Replaces hits by the light that patches of spheres and walls absorb in the present solution.
- *   Input    hits[fibrad_heat_patches]: the `light` of the solution
+/* Replaces spots by the light that patches of spheres and walls absorb: of the spots, and in the present solution.
+ *   Input    spots[fibrad_heat_patches]: of fibrad_heat_reflect; zeros, if the solution has all first hits as its light
  *   Errors   _ARGUMENT
  *            _STATE: there is no solution, or the scene has changed */
-int fibrad_heat_keep_light(const fibrad_heat *heat, double *hits);
+int fibrad_heat_keep_light(const fibrad_heat *heat, double *spots);
 
 #ifdef __cplusplus
 }

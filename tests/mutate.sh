@@ -46,7 +46,7 @@ tests_of() {
     */surface_row*) echo "surface_row $tests" ;;
     */walls.* | */wall_*) echo "walls part estimate $tests" ;;
     kernel/surface/*) echo "surface $tests" ;;
-    */work.*) echo "work beam cast $tests" ;;
+    kernel/workspace/*) echo "work beam cast $tests" ;;
     kernel/row/mesh*) echo "mesh beam $tests" ;;
     kernel/row/*) echo "beam cast protocol $tests" ;;
     */cast*) echo "cast $tests" ;;
@@ -54,7 +54,7 @@ tests_of() {
     */drift*) echo "drift $tests" ;;
     kernel/scene/*) echo "scene beam $tests" ;;
     kernel/matrix/*) echo "matrix matrix_calls estimate protocol $tests" ;;
-    kernel/work/*) echo "matrix matrix_calls protocol $tests" ;;
+    kernel/near/* | kernel/facing/* | kernel/sums/* | kernel/rows/*) echo "matrix matrix_calls protocol $tests" ;;
     kernel/furnace/*) echo "furnace furnace_calls $tests" ;;
     *) echo "$tests" ;;
     esac

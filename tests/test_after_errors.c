@@ -129,7 +129,7 @@ TEST(light_on_patches_in_little_memory) {
         fibrad_work work = work_fixed(small, room);
         fibrad_light_ends kept;
         memset(&kept, 0xEE, sizeof kept);
-        status = fibrad_heat_shine(heat, &work, &light, 0, hits, &kept);
+        status = fibrad_heat_shine(heat, &work, &light, 0, hits, &kept, NULL);
         if (status == FIBRAD_OK) break;
         ck_assert_int_eq(status, FIBRAD_E_WORK);
         ck_assert_mem_eq(hits, before, patches * sizeof *hits);
@@ -167,9 +167,9 @@ TEST(light_of_a_closed_box) {
     assert_ok(fibrad_heat_init(&heat, heat_block, bytes, &heat_config, scene));
     const size_t patches = fibrad_heat_patches(heat);
     OWNED double *hits = calloc(patches, sizeof *hits), *none = calloc(patches, sizeof *hits);
-    assert_invalid(fibrad_heat_shine(heat, &work, &light, 0, hits, &ends));
+    assert_invalid(fibrad_heat_shine(heat, &work, &light, 0, hits, &ends, NULL));
     ck_assert(is_all(&ends, sizeof ends, 0xEE));
     ends = (fibrad_light_ends){0};
-    assert_invalid(fibrad_heat_shine_walls(heat, &work, &light, &ends, hits));
+    assert_ok(fibrad_heat_shine_walls(heat, &work, NULL, 0, &ends, hits));
     ck_assert_mem_eq(hits, none, patches * sizeof *hits);
 }

@@ -83,8 +83,9 @@ static int conductivity_help(void) {
          "one temperature, unless --solid-conductivity says how well it conducts.\n");
     options_print(conductivity_table);
     printf("\n" FILES_MORE "\n"
-           "F_E is that of a linear field of temperature. All spheres absorb. Along open axes only spheres at least\n"
-           "%g mean diameters (%g with --solid-conductivity) inside the outermost centres emit. With --axis, the bed\n"
+           "F_E is found with temperatures that rise linearly along the axis. All spheres absorb. Along open axes\n"
+           "only spheres deep inside the bed emit, %g mean diameters or more from the outermost centres (%g with\n"
+           "--solid-conductivity). With --axis, the bed\n"
            "may be too thin for this along another axis. Spheres at any place along that other axis then emit. Where\n"
            "a periodic bed has gaps, flights may be so long that F_E does not exist, or that its standard error\n"
            "cannot be estimated. Then there is a warning.\n"

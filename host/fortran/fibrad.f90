@@ -205,7 +205,7 @@ module fibrad
     type, bind(C) :: c_light_result
         type(c_ptr) :: absorbed = c_null_ptr, absorbed_first = c_null_ptr, absorbed_error = c_null_ptr
         type(c_ptr) :: body_absorbed = c_null_ptr, body_absorbed_first = c_null_ptr, body_absorbed_error = c_null_ptr
-        real(c_double) :: incident = 0, transmitted = 0, reflected = 0, error = 0
+        real(c_double) :: incident = 0, transmitted = 0, reflected = 0, error = 0, error_patches = 0
         integer(c_int32_t) :: sweeps = 0, lights = 0
         type(c_ptr) :: patches = c_null_ptr
     end type c_light_result

@@ -239,6 +239,7 @@ void light_scale(struct light_state *state, uint32_t spheres, uint32_t walls, do
     for (uint32_t k = 0; k < walls; ++k)
         state->wall[k] *= factor, state->wall_first[k] *= factor, state->wall_error[k] *= factor;
     r->incident *= factor, r->transmitted *= factor, r->reflected *= factor, r->error *= factor;
+    r->error_patches *= factor;
 }
 
 void light_add(const struct light_state *state, const fibrad_heat_sources *sources, uint32_t spheres, uint32_t walls,
@@ -252,7 +253,10 @@ void light_add(const struct light_state *state, const fibrad_heat_sources *sourc
         result->power_error[i] = hypot(result->power_error[i], state->error[i]);
         square += state->error[i] * state->error[i];
     }
-    result->error_beams = hypot(result->error_beams, sqrt(square / (spheres > 0 ? spheres : 1)));
+    square /= spheres > 0 ? spheres : 1;
+    const double patches = fmin(light->error_patches, sqrt(square));
+    result->error_patches = hypot(result->error_patches, patches);
+    result->error_beams = hypot(result->error_beams, sqrt(square - patches * patches));
     for (uint32_t k = 0; k < walls; ++k) {
         if (sources->insulated[k]) continue; /* it gives off what it absorbs */
         result->body_power[k] += state->wall[k];

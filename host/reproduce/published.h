@@ -37,11 +37,7 @@ double bed_of_silicate(double celsius);
  *   porosity      the volume between spheres over that of the bed
  *   conductivity  k* = k_s/(4 sigma T^3 d), k_s of the solid; INFINITY: each sphere has one temperature */
 typedef double exchange_correlation(double emissivity, double porosity, double conductivity);
-exchange_correlation correlation_zehner_bauer_schluender, correlation_breitbach_barthels, correlation_vortmeyer,
-    correlation_singh_kaviany, correlation_kunii_smith;
-
-/* The emissivity of the face of a bed, by Sih and Barlow. */
-double emissivity_sih_barlow(double emissivity, double porosity);
+exchange_correlation correlation_zehner_bauer_schluender, correlation_kunii_smith;
 
 /* The emissivity of the face of a bed into the half space, and the absorptance for light straight from above, by the
  * two-stream theory of a bed of spheres that are far apart. */

@@ -273,18 +273,53 @@ int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sour
 #define LIGHT_TOLERANCE 1e-5
 #define ROUNDING        1e-14 /* relative rounding error of areas that add up to the area of a light */
 
-/* One light that falls on a bed. */
+/* Light that falls on a bed. */
 struct shine_tasks {
     fibrad_radiation *radiation;
-    const fibrad_light *light;
-    double *hits;
-    fibrad_light_ends *kept; /* [tasks] */
+    const fibrad_light_sources *sources;
+    uint32_t bodies;
+    const fibrad_light *light; /* the light in hand */
+    fibrad_light_ends *kept;   /* [tasks], of this light */
+    fibrad_light_ray *ray;     /* [rays], of this light */
+    uint32_t rays;
+    double *now, *all;      /* [patches], first hits of this light, and of all lights so far */
+    double *power, *apart;  /* [spheres + bodies], first hits of this light, and those of even less odd directions */
+    fibrad_light_hits hits; /* of all lights so far */
+    double *cones;          /* [spheres + bodies], squared errors of first hits of all lights so far, from cones */
 };
+
+/* Allocates the arrays, in one block but for kept and ray. hits.spots is the radiation's. */
+static int begin_shine(struct shine_tasks *t) {
+    fibrad_radiation *r = t->radiation;
+    const size_t patches = fibrad_heat_patches(r->heat);
+    const size_t surfaces = r->n + t->bodies;
+    double *block = calloc(3 * patches + 4 * surfaces + 2, sizeof *block);
+    t->kept = calloc(fibrad_heat_shine_tasks(r->heat) + (size_t)1, sizeof *t->kept);
+    if (!block || !t->kept) {
+        free(block);
+        return FIBRAD_E_MEMORY;
+    }
+    t->now = block, t->all = block + patches;
+    t->hits = (fibrad_light_hits){t->now, block + 2 * patches, r->light, block + 3 * patches};
+    t->power = block + 3 * patches + surfaces + 2, t->apart = t->power + surfaces, t->cones = t->apart + surfaces;
+    return FIBRAD_OK;
+}
+
+static void end_shine(struct shine_tasks *t) {
+    free(t->now);
+    free(t->kept);
+    free(t->ray);
+}
 
 static int shine_task(void *tasks, int thread, uint32_t task) {
     const struct shine_tasks *t = tasks;
-    return fibrad_heat_shine(t->radiation->heat, &t->radiation->team.work[thread], t->light, task, t->hits,
-                             &t->kept[task]);
+    return fibrad_heat_shine(t->radiation->heat, &t->radiation->team.work[thread], t->light, task, t->now,
+                             &t->kept[task], t->apart);
+}
+
+static int scatter_task(void *tasks, int thread, uint32_t task) {
+    const struct shine_tasks *t = tasks;
+    return fibrad_heat_scatter(t->radiation->heat, &t->radiation->team.work[thread], t->light, t->rays, task, t->ray);
 }
 
 /* Subtracts from `ends` the light that the spheres of a task keep. */
@@ -294,53 +329,143 @@ static void take_kept(const fibrad_light_ends *kept, uint32_t bodies, fibrad_lig
     for (uint32_t b = 0; b < bodies; ++b) ends->body[b] -= kept->body[b];
 }
 
-/* Adds the first hits of one light. Adds to the result what the light brings, and what of it leaves at once. */
-static int shine_one(struct shine_tasks *t, uint32_t bodies, fibrad_light_result *result) {
+/* Follows the rays of a light. */
+static int scatter_rays(struct shine_tasks *t) {
+    fibrad_radiation *r = t->radiation;
+    free(t->ray);
+    t->rays = fibrad_heat_light_rays(r->heat, t->now);
+    t->ray = malloc(t->rays * sizeof *t->ray);
+    if (!t->ray) return FIBRAD_E_MEMORY;
+    const uint32_t tasks = fibrad_heat_scatter_tasks(t->rays);
+    const int status = fibrad_team_run(&r->team, "rays of light", tasks, 1, scatter_task, t, NULL);
+    r->fault.triangle = r->team.triangle;
+    return status;
+}
+
+/* The error of what a surface takes of a cone, over the difference between even and odd directions. */
+#define CONE_ERROR .7
+
+/* Adds the squared errors of first hits of one light: of each sphere the mean of two, from its own difference between
+ * even and odd directions, and from those of all spheres. Walls take what spheres do not. */
+static void add_cone_errors(struct shine_tasks *t) {
+    const uint32_t n = t->radiation->n;
+    double differences = 0, powers = 0;
+    for (uint32_t i = 0; i < n; ++i) differences += t->apart[i] * t->apart[i], powers += t->power[i] * t->power[i];
+    for (uint32_t i = 0; i < n && differences > 0; ++i)
+        t->cones[i] += CONE_ERROR * CONE_ERROR / 2 *
+                       (t->apart[i] * t->apart[i] + t->power[i] * t->power[i] * (differences / powers));
+    for (uint32_t b = n; b < n + t->bodies; ++b)
+        if (t->power[b] > 0) t->cones[b] += CONE_ERROR * CONE_ERROR * differences;
+}
+
+/* Adds the first hits of one light, and has them reflected. Adds to the result what the light brings, and what of it
+ * leaves at once. */
+static int shine_one(struct shine_tasks *t, fibrad_light_result *result) {
     fibrad_radiation *r = t->radiation;
     fibrad_light_ends ends;
-    const uint32_t tasks = fibrad_heat_shine_tasks(r->heat);
+    const uint32_t tasks = fibrad_heat_shine_tasks(r->heat), patches = fibrad_heat_patches(r->heat);
     int status = fibrad_light_empty(r->scene, &r->team.work[0], t->light, &ends, &r->fault);
     if (status) return status;
+    memset(t->now, 0, patches * sizeof *t->now);
     result->incident += ends.through;
-    for (uint32_t b = 0; b < bodies; ++b) result->incident += ends.body[b];
+    for (uint32_t b = 0; b < t->bodies; ++b) result->incident += ends.body[b];
     status = fibrad_team_run(&r->team, "light", tasks, 1, shine_task, t, NULL);
-    for (uint32_t k = 0; k < tasks && !status; ++k) take_kept(&t->kept[k], bodies, &ends);
-    if (!status) status = fibrad_heat_shine_walls(r->heat, &r->team.work[0], t->light, &ends, t->hits);
-    if (status == FIBRAD_E_BACK) r->fault.triangle = r->team.work[0].triangle;
+    for (uint32_t k = 0; k < tasks && !status; ++k) take_kept(&t->kept[k], t->bodies, &ends);
+    if (!status) status = scatter_rays(t);
+    if (!status) status = fibrad_heat_shine_walls(r->heat, &r->team.work[0], t->ray, t->rays, &ends, t->now);
+    if (!status)
+        status = fibrad_heat_reflect(r->heat, &r->team.work[0], t->light, t->ray, t->rays, t->sources->absorptivity,
+                                     t->sources->body_absorptivity, &t->hits);
+    if (!status) status = fibrad_heat_sum_light(r->heat, t->now, t->power, t->power + r->n);
+    if (!status) add_cone_errors(t);
+    for (uint32_t a = 0; a < patches; ++a) t->all[a] += t->now[a];
     if (ends.through > ROUNDING * (ends.spheres + ends.through)) result->transmitted += ends.through;
     return status;
 }
 
-/* First hits of all lights on all patches. */
-static int shine_all(fibrad_radiation *r, const fibrad_light_sources *s, uint32_t bodies, fibrad_light_result *result) {
-    struct shine_tasks tasks = {r, NULL, r->light,
-                                calloc(fibrad_heat_shine_tasks(r->heat) + (size_t)1, sizeof(fibrad_light_ends))};
-    int status = tasks.kept ? FIBRAD_OK : FIBRAD_E_MEMORY;
+/* First hits of all lights on all patches, and where they are reflected to. */
+static int shine_all(struct shine_tasks *t, fibrad_light_result *result) {
+    const fibrad_light_sources *s = t->sources;
+    int status = begin_shine(t);
+    result->incident = result->transmitted = 0;
     for (uint32_t k = 0; k < s->lights && !status; ++k) {
-        tasks.light = &s->light[k], result->lights = k;
-        status = shine_one(&tasks, bodies, result);
+        t->light = &s->light[k], result->lights = k;
+        status = shine_one(t, result);
     }
     if (!status) result->lights = s->lights;
-    free(tasks.kept);
     return status;
 }
 
+/* Let n rays or beams carry the power p each. The error of their sum, over sqrt(n) p: they are more evenly spread than
+ * random ones. */
+#define RAYS_ERROR  .6
+#define BEAMS_ERROR .6
+
+/* What has arrived by rays, and what tells its error: sums of squared powers as of fibrad_light_hits. */
+struct arrived {
+    double all;            /* what rays and patches have reflected once */
+    const double *squares; /* [spheres + bodies + 1] */
+    double beams;
+    const double *cones; /* [spheres + bodies] */
+};
+
+static double lesser(double a, double b) { return a < b ? a : b; }
+
+/* The square of the error that rays and beams bring to what a surface absorbs. solved: what it absorbs in the solution.
+ * A fraction of the beams that leave patches arrives at the surface; it is taken to be the same for all patches. */
+static double error_of_rays(const struct arrived *a, uint32_t surface, double absorptivity, double solved) {
+    const double share = absorptivity > 0 && a->all > 0 ? lesser(1, fabs(solved) / (absorptivity * a->all)) : 0;
+    const double rays = RAYS_ERROR * RAYS_ERROR * a->squares[surface];
+    const double beams = BEAMS_ERROR * BEAMS_ERROR * share * (1 - share) * a->beams;
+    return absorptivity * absorptivity * (rays + beams);
+}
+
+/* Adds to what n surfaces from number `first` on absorb in the solution what they absorb of `spots`, and to the errors
+ * of the solution those of rays and cones. */
+static void add_spots(const struct arrived *a, uint32_t first, uint32_t n, const double *absorptivity,
+                      const double *spots, double *absorbed, double *error) {
+    for (uint32_t i = 0; i < n; ++i) {
+        const double cone = absorptivity[i] * absorptivity[i] * a->cones[first + i];
+        const double more = error_of_rays(a, first + i, absorptivity[i], absorbed[i]) + cone;
+        if (error) error[i] = sqrt(error[i] * error[i] + more);
+        absorbed[i] += absorptivity[i] * spots[first + i];
+    }
+}
+
+static struct arrived arrived_of(const struct shine_tasks *t) {
+    const uint32_t surfaces = t->radiation->n + t->bodies;
+    struct arrived arrived = {0, t->hits.squares, t->hits.squares[surfaces + 1], t->cones};
+    for (uint32_t a = 0; a < fibrad_heat_patches(t->radiation->heat); ++a) arrived.all += t->hits.light[a];
+    return arrived;
+}
+
 /* Solves for the light that is absorbed. Temperatures are 0, and absorptivities take the place of emissivities. */
-static int absorb(fibrad_radiation *r, const fibrad_light_sources *s, uint32_t bodies, fibrad_light_result *result) {
-    double *zero = calloc(r->n + bodies + (size_t)1, sizeof *zero);
+static int absorb(const struct shine_tasks *t, fibrad_light_result *result) {
+    fibrad_radiation *r = t->radiation;
+    const fibrad_light_sources *s = t->sources;
+    double *zero = calloc(2 * (r->n + t->bodies) + (size_t)1, sizeof *zero), *spots = zero + r->n + t->bodies;
     if (!zero) return FIBRAD_E_MEMORY;
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);
     sources.temperature = zero, sources.body_temperature = zero + r->n, sources.surroundings = 0;
     sources.emissivity = s->absorptivity, sources.body_emissivity = s->body_absorptivity;
     sources.tolerance = s->tolerance > 0 ? s->tolerance : LIGHT_TOLERANCE, sources.uniform = s->uniform;
-    sources.light = r->light;
+    sources.light = t->hits.light;
     fibrad_heat_result solved = {.power = result->absorbed,
                                  .body_power = result->body_absorbed,
                                  .power_error = result->absorbed_error,
                                  .body_error = result->body_absorbed_error};
-    const int status = solve_sources(r, &sources, &solved);
-    result->reflected = solved.surroundings_power, result->error = solved.surroundings_error;
+    int status = solve_sources(r, &sources, &solved);
+    if (!status) status = fibrad_heat_sum_light(r->heat, t->hits.spots, spots, spots + r->n);
+    const struct arrived arrived = arrived_of(t);
+    if (!status) {
+        add_spots(&arrived, 0, r->n, s->absorptivity, spots, result->absorbed, result->absorbed_error);
+        add_spots(&arrived, r->n, t->bodies, s->body_absorptivity, spots, result->body_absorbed,
+                  result->body_absorbed_error);
+        const double rays = error_of_rays(&arrived, r->n + t->bodies, 1, solved.surroundings_power);
+        result->error = sqrt(solved.surroundings_error * solved.surroundings_error + rays);
+    }
+    result->reflected = solved.surroundings_power, result->error_patches = solved.error_patches,
     result->sweeps = solved.sweeps;
     free(zero);
     return status;
@@ -388,11 +513,13 @@ static int shine_lights(fibrad_radiation *r, const fibrad_light_sources *s, uint
     double *const last = r->light, *light = calloc(fibrad_heat_patches(r->heat) + (size_t)1, sizeof *light);
     if (!light) return FIBRAD_E_MEMORY;
     r->light = light;
-    now.incident = now.transmitted = 0;
-    int status = shine_all(r, s, bodies, &now);
+    struct shine_tasks tasks = {.radiation = r, .sources = s, .bodies = bodies};
+    int status = shine_all(&tasks, &now);
     result->lights = now.lights;
-    if (!status) status = absorb(r, s, bodies, &now);
-    if (!status) status = fibrad_heat_sum_light(r->heat, r->light, now.absorbed_first, now.body_absorbed_first);
+    if (!status) status = absorb(&tasks, &now);
+    if (!status) status = fibrad_heat_sum_light(r->heat, tasks.all, now.absorbed_first, now.body_absorbed_first);
+    if (!status) status = fibrad_heat_keep_light(r->heat, light);
+    end_shine(&tasks);
     r->light = status ? last : light;
     free(status ? light : last);
     if (status) return status;
@@ -401,7 +528,7 @@ static int shine_lights(fibrad_radiation *r, const fibrad_light_sources *s, uint
     keep_first(r->n, bodies, &now);
     now.patches = light;
     *result = now;
-    return fibrad_heat_keep_light(r->heat, light);
+    return FIBRAD_OK;
 }
 
 int fibrad_radiation_shine(fibrad_radiation *r, const fibrad_light_sources *s, fibrad_light_result *result) {

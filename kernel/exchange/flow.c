@@ -1,5 +1,5 @@
 /* flow.c - powers from rows of exchange factors, one collection of rows at a time. SPDX-License-Identifier: MIT */
-#include "work/record.h"
+#include "rows/record.h"
 
 /* A row with more than this beyond the cutoff says nothing about powers. */
 #define BEYOND_MOST (1 - 1e-12)

@@ -9,7 +9,7 @@
 #include "base/random.h"
 #include "base/sobol.h"
 #include "ray/tracer.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 
 #define FIBRAD_DISPLACEMENT_PARTS 16
 

@@ -4,7 +4,7 @@
 
 #include "base/dispatch.h"
 #include "heat/problem.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 
 /* Follows the beams of one task. The tasks are, in this order: spheres by their position, rows of fine fours, and
  * stretches of heat->ray. Errors: FIBRAD_E_WORK: the work memory is too small; FIBRAD_E_SIZE: the memory of the problem

@@ -230,9 +230,11 @@ void fibrad_heat_direction(const double x[2], const double n[3], double w[3]) {
     cosine_direction(x, n, across, along, w);
 }
 
-/* Coordinate d of a point of Sobol's sequence, moved at random. */
-static double even_coordinate(const uint32_t point[8], uint64_t seed, int d) {
-    return fibrad_fraction(fibrad_mix(seed ^ fibrad_quasirandom_step(4, d)) ^ (uint64_t)point[d] << 32);
+void fibrad_heat_even_point(const fibrad_heat *heat, uint64_t seed, uint32_t k, double x[4]) {
+    uint32_t point[8] = {0};
+    fibrad_sobol_move(&heat->sobol, 0, k, point);
+    for (int d = 0; d < 4; d++)
+        x[d] = fibrad_fraction(fibrad_mix(seed ^ fibrad_quasirandom_step(4, d)) ^ (uint64_t)point[d] << 32);
 }
 
 /* The side that ray k of a mesh leaves, and the four coordinates of the ray. Sides send out their rays one after
@@ -241,13 +243,10 @@ static double even_coordinate(const uint32_t point[8], uint64_t seed, int d) {
 static uint32_t side_of_ray(const fibrad_heat *heat, uint32_t mesh, uint32_t k, double x[4]) {
     const fibrad_mesh *own = &heat->scene->mesh;
     const double rays = heat->sent[FIBRAD_MESHES + mesh].count, area = fibrad_mesh_area(own, mesh);
-    uint32_t point[8] = {0};
     double before;
     const uint32_t side = own->side[fibrad_mesh_side_at(own, mesh, (k + .5) / rays * area, &before)];
     const uint32_t first = (uint32_t)(before / area * rays + .5), number = k > first ? k - first : 0;
-    const uint64_t seed = fibrad_mix(2 * fibrad_side_given(own, side) + number % 2);
-    fibrad_sobol_move(&heat->sobol, 0, number / 2, point);
-    for (int d = 0; d < 4; d++) x[d] = even_coordinate(point, seed, d);
+    fibrad_heat_even_point(heat, fibrad_mix(2 * fibrad_side_given(own, side) + number % 2), number / 2, x);
     return side;
 }
 

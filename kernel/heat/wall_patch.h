@@ -54,6 +54,9 @@ uint32_t fibrad_heat_ends(const fibrad_heat *heat, const double origin[3], const
 /* Four numbers in [0, 1) for ray k. Those of all even rays are evenly spread, and those of all odd rays are. */
 void fibrad_heat_ray_coordinates(uint64_t seed, uint32_t k, double x[4]);
 
+/* Four numbers in [0, 1): point k of Sobol's sequence, moved at random. */
+void fibrad_heat_even_point(const fibrad_heat *heat, uint64_t seed, uint32_t k, double x[4]);
+
 /* A direction by the cosine law about a normal, from two numbers in [0, 1). */
 void fibrad_heat_direction(const double x[2], const double normal[3], double w[3]);
 

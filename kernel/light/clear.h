@@ -6,7 +6,7 @@
 #ifndef FIBRAD_LIGHT_CLEAR_H
 #define FIBRAD_LIGHT_CLEAR_H
 
-#include "work/work.h"
+#include "workspace/workspace.h"
 
 /* A line across the light. What is inside has n.x <= c. n is a unit vector. */
 typedef struct fibrad_light_line {

@@ -12,6 +12,10 @@
 
 #define NO_FACE 3u
 
+/* The widest cone [rad] for which FIBRAD_LIGHT_DIRECTIONS_DEFAULT directions do. A wider cone has as many for each
+ * solid angle. */
+#define NARROW .02
+
 /* The planes that lines meet in one direction: the axes across which they lie, and their places [L]. */
 typedef struct ways_out {
     uint32_t count, axis[3];
@@ -30,7 +34,9 @@ static void middle_frame(const fibrad_light *light, double frame[9]) {
 
 uint32_t fibrad_light_count(const fibrad_light *light) {
     if (!(light->half_angle > 0)) return 1;
-    return light->directions > 0 ? light->directions : FIBRAD_LIGHT_DIRECTIONS_DEFAULT;
+    if (light->directions > 0) return light->directions;
+    const double wide = fibrad_max(1, light->half_angle / NARROW);
+    return (uint32_t)fibrad_min(FIBRAD_LIGHT_DIRECTIONS_DEFAULT * wide * wide, FIBRAD_LIGHT_DIRECTIONS_MAX);
 }
 
 /* Direction k of a cone: the disc of its sines is filled evenly, as a sunflower is. */

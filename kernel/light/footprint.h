@@ -9,7 +9,7 @@
 #include "fibrad_light.h"
 #include "light/clear.h"
 #include "window/areas.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 
 #define FIBRAD_LIGHT_SIDES  256u /* of the polygon that stands for a circle */
 #define FIBRAD_LIGHT_LINES  (3 * FIBRAD_LIGHT_SIDES + 32u + FIBRAD_CLEAR_SIDES) /* around a piece, and around all */

@@ -2,6 +2,7 @@
 #ifndef FIBRAD_LIGHT_LIGHT_H
 #define FIBRAD_LIGHT_LIGHT_H
 
+#include "heat/problem.h"
 #include "light/footprint.h"
 #include "light/sunlit_lanes.h"
 
@@ -20,5 +21,10 @@ double *fibrad_light_scratch(const fibrad_workspace *space);
 /* Adds areas by slot [L^2], times a flux. */
 void fibrad_light_add_ends(const fibrad_scene *scene, const double area[FIBRAD_SLOTS], double flux,
                            fibrad_light_ends *ends);
+
+/* What light of flux 1 along a frame brings to one of the patches of a four, if nothing is before it, times the number
+ * of these patches. middle: out: the mean of u and v of its normals, times that. */
+double fibrad_light_falls_on(const fibrad_heat *heat, const double frame[9], const fibrad_heat_four *four,
+                             uint32_t patch, double middle[2]);
 
 #endif

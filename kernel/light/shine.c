@@ -1,20 +1,15 @@
 /* shine.c - light from outside on the patches of a heat problem. SPDX-License-Identifier: MIT
  *
  * The light that a sphere takes is known exactly. The lit points of its window tell on which of its patches the light
- * falls. On a free sphere each patch gets exactly what falls on it. A wall takes the light that the spheres leave to
- * it. Rays tell on which of its patches this light falls. */
-#include "base/random.h"
+ * falls. On a free sphere each patch gets exactly what falls on it. */
 #include "base/vector.h"
 #include "heat/fine.h"
 #include "heat/problem.h"
-#include "heat/wall_patch.h"
 #include "light/light.h"
-#include "ray/tracer.h"
 #include "sample/sphere_patch.h"
 
-#define SHINE_SPHERES 64u     /* of a task */
-#define SHINE_RAYS    131072u /* of a light */
-#define SHINE_RULE    4u      /* points along an edge of a patch, for what falls on it */
+#define SHINE_SPHERES 64u /* of a task */
+#define SHINE_RULE    4u  /* points along an edge of a patch, for what falls on it */
 
 uint32_t fibrad_heat_patches(const fibrad_heat *heat) { return heat != NULL ? heat->patches : 0; }
 
@@ -59,31 +54,24 @@ static double shine_on_point(const shining *s, double x, double y, double power,
     double at[2];
     const uint32_t patch = patch_in_window(s, x, y, at);
     if (hits == NULL) return s->how->weight[patch];
-    const uint32_t fine = s->heat->division.root[s->place] != FIBRAD_NONE
-                              ? fibrad_heat_fine_on_face(s->heat, s->place, patch, at[0], at[1])
-                              : FIBRAD_NONE;
-    const uint32_t on = fine == FIBRAD_NONE ? s->heat->first[s->place] + patch
-                                            : fibrad_heat_first_fine(s->heat, s->place) +
-                                                  (fine - FIBRAD_HEAT_FOUR * s->heat->division.first_four[s->place]);
-    hits[on] += power * s->how->weight[patch];
+    hits[fibrad_heat_patch_on_face(s->heat, s->place, patch, at)] += power * s->how->weight[patch];
     return s->how->weight[patch];
 }
 
-/* What light of flux 1 brings to a patch of the cube of sphere 0, if nothing is before it. middle: out: where it falls
- * in the window, times that. */
-static double falls_on(const fibrad_heat *heat, const double frame[9], uint32_t patch, double middle[2]) {
-    const fibrad_heat_four four = {.own = patch / FIBRAD_HEAT_FOUR};
+double fibrad_light_falls_on(const fibrad_heat *heat, const double frame[9], const fibrad_heat_four *four,
+                             uint32_t patch, double middle[2]) {
     double sum = 0, at[3], n[3];
     middle[0] = middle[1] = 0;
     for (uint32_t k = 0; k < SHINE_RULE * SHINE_RULE; k++) {
         const double u = (k / SHINE_RULE + .5) / SHINE_RULE, v = (k % SHINE_RULE + .5) / SHINE_RULE;
         const double area =
-            fibrad_heat_fine_point(heat, &four, .5 * ((patch >> 1 & 1) + u), .5 * ((patch & 1) + v), at, n);
+            fibrad_heat_fine_point(heat, four, .5 * ((patch >> 1 & 1) + u), .5 * ((patch & 1) + v), at, n);
         const double falls = area * fibrad_max(0, fibrad_dot(n, frame + 6));
         for (int axis = 0; axis < 2; axis++) middle[axis] += falls * fibrad_dot(n, frame + 3 * axis);
         sum += falls;
     }
-    return sum;
+    for (int axis = 0; axis < 2; axis++) middle[axis] /= SHINE_RULE * SHINE_RULE;
+    return sum / (SHINE_RULE * SHINE_RULE);
 }
 
 /* The point of a window that is next to a place. */
@@ -105,7 +93,8 @@ static void find_spread(const fibrad_heat *heat, const fibrad_footprint *f, spre
     if (fibrad_disc_points_get(FIBRAD_SUNLIT_POINTS, &set) != FIBRAD_OK) return;
     for (uint32_t p = 0; p < FIBRAD_SUNLIT_POINTS; p++) how->weight[patch_in_window(&s, set.x[p], set.y[p], at)]++;
     for (uint32_t a = 0; a < heat->config.patches; a++) {
-        const double count = how->weight[a], falls = falls_on(heat, f->frame, a, at);
+        const fibrad_heat_four four = {.own = a / FIBRAD_HEAT_FOUR};
+        const double count = how->weight[a], falls = fibrad_light_falls_on(heat, f->frame, &four, a, at);
         how->weight[a] = count > 0 ? falls / count : falls;
         how->next[a] = count > 0 || !(falls > 0) ? FIBRAD_NONE : next_point(&set, at[0] / falls, at[1] / falls);
     }
@@ -153,9 +142,9 @@ static void spread_on_sphere(const shining *s, const fibrad_points *points, cons
     hits[s->heat->first[s->place] + patch_in_window(s, middle[0], middle[1], at)] += power;
 }
 
-/* Adds what the sphere at a place takes in one direction. */
+/* Adds what the sphere at a place takes in one direction. *takes: out: that. */
 static int shine_on_sphere(const fibrad_heat *heat, fibrad_workspace *space, uint32_t place, double flux, double *hits,
-                           fibrad_light_ends *kept) {
+                           fibrad_light_ends *kept, double *takes) {
     const fibrad_scene *scene = heat->scene;
     fibrad_footprint *f = fibrad_light_footprint(space);
     fibrad_points points = {.count = 0};
@@ -173,13 +162,14 @@ static int shine_on_sphere(const fibrad_heat *heat, fibrad_workspace *space, uin
     spread_on_sphere(&s, &points, &space->areas, flux * sum, hits);
     fibrad_light_add_ends(scene, area, flux, kept);
     kept->spheres += flux * sum;
+    *takes = flux * sum;
     return FIBRAD_OK;
 }
 
 /* All directions of a light on the spheres at places begin to end - 1. Errors: as of one sphere; FIBRAD_E_ARGUMENT: no
  * open face lets the light in. */
 static int shine_on_spheres(const fibrad_heat *heat, fibrad_workspace *space, const fibrad_light *light, uint32_t begin,
-                            uint32_t end, double *hits, fibrad_light_ends *kept) {
+                            uint32_t end, double *hits, fibrad_light_ends *kept, double *apart) {
     const uint32_t count = fibrad_light_count(light);
     fibrad_footprint *f = fibrad_light_footprint(space);
     double all = 0;
@@ -189,16 +179,20 @@ static int shine_on_spheres(const fibrad_heat *heat, fibrad_workspace *space, co
         fibrad_footprint_make(f, heat->scene, light, k);
         find_spread(heat, f, shares_of(space));
         all += fibrad_footprint_area(f);
-        for (uint32_t place = begin; place < end && status == FIBRAD_OK; place++)
-            status = shine_on_sphere(heat, space, place, light->flux / count, hits, kept);
+        for (uint32_t place = begin; place < end && status == FIBRAD_OK; place++) {
+            double takes = 0;
+            status = shine_on_sphere(heat, space, place, light->flux / count, hits, kept, &takes);
+            if (count > 1) apart[place - begin] += k % 2 ? -takes : takes;
+        }
     }
     return status != FIBRAD_OK || all > 0 ? status : FIBRAD_E_ARGUMENT;
 }
 
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,
-                      double *hits, fibrad_light_ends *kept) {
+                      double *hits, fibrad_light_ends *kept, double *apart) {
     fibrad_workspace *space;
     fibrad_light_ends sum;
+    double halves[SHINE_SPHERES];
     if (heat == NULL || work == NULL || hits == NULL || kept == NULL || task >= fibrad_heat_shine_tasks(heat))
         return FIBRAD_E_ARGUMENT;
     if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
@@ -210,134 +204,15 @@ int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_l
     if (status == FIBRAD_OK) status = fibrad_light_open(heat->scene, work, extra, &space);
     while (status == FIBRAD_OK) {
         fibrad_copy(hits_before(space), first, bytes);
-        status = shine_on_spheres(heat, space, light, begin, end, hits, &sum);
+        fibrad_zero(halves, sizeof halves);
+        status = shine_on_spheres(heat, space, light, begin, end, hits, &sum, halves);
         if (status == FIBRAD_OK) break;
         fibrad_copy(first, hits_before(space), bytes);
         if (status == FIBRAD_E_WORK) status = fibrad_light_grow(work, extra, &space);
     }
     if (status == FIBRAD_OK) *kept = sum;
-    return status;
-}
-
-/* Counts of rays that meet no sphere. Rays that end on triangles are counted by the slot at which they would end
- * without the triangles, and by patch. */
-typedef struct ray_counts {
-    double *patch;  /* [patches that are not of spheres], rays that end on no triangle; surroundings: that leave */
-    double *meshed; /* [slots up to FIBRAD_ESCAPED][patches of meshes] */
-    uint32_t others, first_meshed, of_meshes;
-} ray_counts;
-
-static ray_counts counts_of(const fibrad_heat *heat, double *room) {
-    const uint32_t first = fibrad_heat_first_meshed(heat), others = fibrad_heat_others(heat);
-    const uint32_t end = heat->first[fibrad_heat_body(heat, FIBRAD_MESHES + heat->meshes)];
-    return (ray_counts){room, room != NULL ? room + (heat->patches - others) : NULL, others, first, end - first};
-}
-
-static size_t size_of_counts(const fibrad_heat *heat) {
-    const ray_counts none = counts_of(heat, NULL);
-    return (heat->patches - none.others + (size_t)none.of_meshes * (FIBRAD_ESCAPED + 1)) * sizeof(double);
-}
-
-static double *meshed_from(const ray_counts *counts, uint32_t slot) {
-    return counts->meshed + (size_t)slot * counts->of_meshes;
-}
-
-static void add_ray(const fibrad_heat *heat, ray_counts *counts, uint32_t slot, uint32_t patch) {
-    if (patch >= counts->first_meshed && patch - counts->first_meshed < counts->of_meshes)
-        meshed_from(counts, slot)[patch - counts->first_meshed]++;
-    else
-        counts->patch[(slot == FIBRAD_ESCAPED ? fibrad_heat_open(heat) : patch) - counts->others]++;
-}
-
-/* Counts the rays of one direction. FIBRAD_E_BACK: *back is the triangle whose side belongs to no wall. */
-static int count_rays(const fibrad_heat *heat, const fibrad_footprint *f, uint32_t k, uint32_t rays, ray_counts *counts,
-                      uint32_t *back) {
-    const double d[3] = {0 - f->frame[6], 0 - f->frame[7], 0 - f->frame[8]};
-    for (uint32_t n = 0; n < rays; n++) {
-        double x[4], uv[2], at[3];
-        uint32_t piece;
-        fibrad_hit hit = {0};
-        fibrad_heat_ray_coordinates(k, n, x);
-        for (int a = 0; a < 2; a++) uv[a] = f->bound_low[a] + x[a] * (f->bound_high[a] - f->bound_low[a]);
-        if (!fibrad_footprint_lights(f, uv, &piece)) continue;
-        fibrad_footprint_enters(f, piece, uv, at);
-        FIBRAD_VERSION_OF(fibrad_trace_point, heat->scene->facts.isa)(heat->scene, at, d, FIBRAD_NO_SIDE, &hit);
-        if (hit.sphere != FIBRAD_NONE) continue;
-        const uint32_t patch = fibrad_heat_ends(heat, at, d, hit.side, hit.distance);
-        if (patch == FIBRAD_NONE) {
-            *back = fibrad_side_number(&heat->scene->mesh, hit.side);
-            return FIBRAD_E_BACK;
-        }
-        add_ray(heat, counts, f->piece[piece].slot, patch);
-    }
-    return FIBRAD_OK;
-}
-
-static double sum_of(const double *count, uint32_t n) {
-    double sum = 0;
-    for (uint32_t a = 0; a < n; a++) sum += count[a];
-    return sum;
-}
-
-static void spread_on_body(const fibrad_heat *heat, uint32_t body, const double *count, double all, double power,
-                           double *hits) {
-    for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++)
-        hits[a] += power * (count[a - heat->first[body]] / all);
-}
-
-/* Spreads the light that would end at a slot without triangles, `power`, as its rays have met patches. own and beyond
- * are the bodies of the slot. Without rays the light is spread evenly on `own`. Returns what triangles leave. */
-static double spread_on_walls(const fibrad_heat *heat, const ray_counts *counts, uint32_t slot, double power,
-                              double *hits, fibrad_light_ends *ends) {
-    const bool wall = slot < FIBRAD_WALLS;
-    const uint32_t own = wall ? fibrad_heat_body(heat, slot) : heat->bodies - 1;
-    const uint32_t body[2] = {own, wall ? fibrad_heat_beyond(heat, slot) : own};
-    const double *meshed = meshed_from(counts, slot);
-    double left = 0;
-    for (int n = 0; n < (wall ? 2 : 1); n++)
-        left += sum_of(counts->patch + (heat->first[body[n]] - counts->others),
-                       heat->first[body[n] + 1] - heat->first[body[n]]);
-    const double all = left + sum_of(meshed, counts->of_meshes);
-    const uint32_t begin = heat->first[own], end = heat->first[own + 1];
-    for (uint32_t a = begin; a < end && wall && !(all > 0); a++) hits[a] += power / (end - begin);
-    if (!(all > 0)) return power;
-    for (int n = 0; n < 2 && wall; n++)
-        spread_on_body(heat, body[n], counts->patch + (heat->first[body[n]] - counts->others), all, power, hits);
-    for (uint32_t b = 0; b < heat->given_bodies; b++) {
-        const uint32_t mesh = fibrad_heat_body(heat, heat->slot[b]);
-        if (heat->slot[b] < FIBRAD_MESHES) continue;
-        const double *count = meshed + (heat->first[mesh] - counts->first_meshed);
-        spread_on_body(heat, mesh, count, all, power, hits);
-        ends->body[b] += power * (sum_of(count, heat->first[mesh + 1] - heat->first[mesh]) / all);
-    }
-    return power * (left / all);
-}
-
-int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light,
-                            fibrad_light_ends *ends, double *hits) {
-    fibrad_workspace *space;
-    if (heat == NULL || work == NULL || ends == NULL || hits == NULL) return FIBRAD_E_ARGUMENT;
-    if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
-    int status = fibrad_light_check(heat->scene, light, NULL);
-    const uint32_t count = fibrad_light_count(light);
-    const size_t room = size_of_counts(heat);
-    if (status == FIBRAD_OK) status = fibrad_light_open(heat->scene, work, room, &space);
-    if (status != FIBRAD_OK) return status;
-    ray_counts counts = counts_of(heat, fibrad_light_scratch(space));
-    fibrad_zero(counts.patch, room);
-    double all = 0;
-    for (uint32_t k = 0; k < count && status == FIBRAD_OK; k++) {
-        fibrad_footprint *f = fibrad_light_footprint(space);
-        fibrad_footprint_make(f, heat->scene, light, k);
-        all += fibrad_footprint_area(f);
-        if (heat->given_bodies > 0) status = count_rays(heat, f, k, SHINE_RAYS / count, &counts, &work->triangle);
-    }
-    if (status == FIBRAD_OK && !(all > 0)) status = FIBRAD_E_ARGUMENT;
-    for (uint32_t b = 0; b < heat->given_bodies && status == FIBRAD_OK; b++)
-        if (heat->slot[b] < FIBRAD_WALLS)
-            ends->body[b] = spread_on_walls(heat, &counts, heat->slot[b], fibrad_max(0, ends->body[b]), hits, ends);
-    if (heat->meshes > 0 && status == FIBRAD_OK)
-        ends->through = spread_on_walls(heat, &counts, FIBRAD_ESCAPED, fibrad_max(0, ends->through), hits, ends);
+    for (uint32_t place = begin; place < end && status == FIBRAD_OK && apart != NULL; place++)
+        apart[heat->order[place]] = halves[place - begin];
     return status;
 }
 
@@ -359,19 +234,23 @@ int fibrad_heat_sum_light(const fibrad_heat *heat, const double *hits, double *p
     return FIBRAD_OK;
 }
 
-/* Leaves in hits what the patches of a body absorb. All of them together absorb its power. */
-static void keep_on_body(const fibrad_heat *heat, uint32_t b, double *hits) {
+/* Adds to `spots`, times the absorptivity of a body, what its patches absorb of other light. All of the latter together
+ * is the power of the body. */
+static void keep_on_body(const fibrad_heat *heat, uint32_t b, double *spots) {
     double sum = 0;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) sum += fibrad_max(0, heat->solution.net[a]);
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && sum > 0; a++)
-        hits[a] = fibrad_max(0, heat->solution.net[a]) / sum * fibrad_max(0, heat->solution.power[b]);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
+        spots[a] *= heat->sources.emissivity[b];
+        if (sum > 0) spots[a] += fibrad_max(0, heat->solution.net[a]) / sum * fibrad_max(0, heat->solution.power[b]);
+    }
 }
 
-int fibrad_heat_keep_light(const fibrad_heat *heat, double *hits) {
-    if (heat == NULL || hits == NULL) return FIBRAD_E_ARGUMENT;
+int fibrad_heat_keep_light(const fibrad_heat *heat, double *spots) {
+    if (heat == NULL || spots == NULL) return FIBRAD_E_ARGUMENT;
     if (heat->solution.phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
-    fibrad_zero(hits, heat->patches * sizeof *hits);
-    for (uint32_t b = 0; b < heat->spheres; b++) keep_on_body(heat, b, hits);
-    for (uint32_t k = 0; k < heat->given_bodies; k++) keep_on_body(heat, fibrad_heat_body(heat, heat->slot[k]), hits);
+    for (uint32_t b = 0; b < heat->spheres; b++) keep_on_body(heat, b, spots);
+    for (uint32_t k = 0; k < heat->given_bodies; k++) keep_on_body(heat, fibrad_heat_body(heat, heat->slot[k]), spots);
+    for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
+        for (uint32_t b = fibrad_heat_beyond(heat, k), a = heat->first[b]; a < heat->first[b + 1]; a++) spots[a] = 0;
     return FIBRAD_OK;
 }

@@ -7,7 +7,7 @@
 #include "row/mesh_share_lanes.h"
 #include "row/window_lanes.h"
 #include "window/points_lanes.h"
-#include "work/mesh_faces_lanes.h"
+#include "facing/faces_lanes.h"
 
 static int find_open_points(const fibrad_workspace *space, fibrad_points *points) {
     const fibrad_discs *disc = &space->disc;

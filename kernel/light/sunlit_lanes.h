@@ -5,7 +5,7 @@
 #include "base/dispatch.h"
 #include "light/clear.h"
 #include "window/points.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 
 #define FIBRAD_SUNLIT_POINTS 256u
 

@@ -6,8 +6,7 @@
 #include "matrix/matrix.h"
 #include "scene/scene.h"
 
-#define TASKS_MAX          1024u
-#define RECIPROCITY_PIECES 256u
+#define TASKS_MAX 1024u
 
 /* The two estimates of S_ij, from rows i and j, differ by about twice the error of their mean. The factors cover all
  * but one row of a hundred: docs/accuracy.md. */
@@ -94,7 +93,7 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
     m->variance = fibrad_arena_take(arena, m->lines ? n : 0, sizeof *m->variance);
     const size_t halves = m->lines ? (size_t)m->result.capacity : 0;
     m->result.half = fibrad_arena_take(arena, halves, sizeof *m->result.half);
-    m->place = fibrad_arena_take(arena, m->raw ? 0 : n, sizeof *m->place);
+    m->place = fibrad_arena_take(arena, n, sizeof *m->place);
     m->scratch = fibrad_arena_take(arena, m->raw ? 0 : 3 * n, sizeof *m->scratch);
     m->part = fibrad_arena_take(arena, m->raw ? 0 : m->tasks, sizeof *m->part);
     return place;
@@ -447,36 +446,30 @@ static double difference_of(const double *r, uint32_t i, uint32_t j, double f, d
     return fibrad_abs(a_i * a_i * f - a_j * a_j * back);
 }
 
-/* Largest difference over all rows, in pieces. */
-struct reciprocity {
-    const fibrad_matrix *matrix;
-    double worst[RECIPROCITY_PIECES];
-};
-
-static void compare_rows(void *job, uint32_t piece) {
-    struct reciprocity *reciprocity = job;
-    const fibrad_matrix *m = reciprocity->matrix;
+/* The partner of entry (i, j), j >= i, is the next one of row j. Entries of row j that are passed over have none. */
+static double compare_with_partner(const fibrad_matrix *m, uint32_t i, uint64_t k) {
     const fibrad_sparse *rows = &m->result;
-    const uint64_t n = rows->n, end = n * (piece + 1) / RECIPROCITY_PIECES;
+    const uint32_t j = rows->col[k];
+    uint64_t *next = &m->place[j];
     double worst = 0;
-    for (uint32_t i = (uint32_t)(n * piece / RECIPROCITY_PIECES); i < end; i++)
-        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) {
-            const uint32_t j = rows->col[k];
-            if (j < i && !m->raw) continue; /* the partner of the entry exists and makes the comparison */
-            const uint64_t partner = fibrad_sparse_find(rows, j, i);
-            if (j < i && partner != UINT64_MAX) continue;
-            worst =
-                fibrad_max(worst, difference_of(m->r, i, j, rows->f[k], partner == UINT64_MAX ? 0 : rows->f[partner]));
-        }
-    reciprocity->worst[piece] = worst;
+    for (; *next < rows->start[j + 1] && rows->col[*next] < i; ++*next)
+        worst = fibrad_max(worst, difference_of(m->r, j, rows->col[*next], rows->f[*next], 0));
+    const bool found = *next < rows->start[j + 1] && rows->col[*next] == i;
+    const double back = found ? rows->f[(*next)++] : 0;
+    return fibrad_max(worst, difference_of(m->r, i, j, rows->f[k], back));
 }
 
 int fibrad_matrix_reciprocity(const fibrad_matrix *m, double *largest) {
     if (m == NULL || largest == NULL) return FIBRAD_E_ARGUMENT;
     if (!m->closed) return FIBRAD_E_STATE;
-    struct reciprocity reciprocity = {.matrix = m};
-    fibrad_matrix_share(m, RECIPROCITY_PIECES, compare_rows, &reciprocity);
+    const fibrad_sparse *rows = &m->result;
     *largest = 0;
-    for (uint32_t k = 0; k < RECIPROCITY_PIECES; k++) *largest = fibrad_max(*largest, reciprocity.worst[k]);
+    for (uint32_t i = 0; i < rows->n; i++) m->place[i] = rows->start[i];
+    for (uint32_t i = 0; i < rows->n; i++)
+        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++)
+            if (rows->col[k] >= i) *largest = fibrad_max(*largest, compare_with_partner(m, i, k));
+    for (uint32_t j = 0; j < rows->n; j++)
+        for (uint64_t k = m->place[j]; k < rows->start[j + 1] && rows->col[k] < j; k++)
+            *largest = fibrad_max(*largest, difference_of(m->r, j, rows->col[k], rows->f[k], 0));
     return FIBRAD_OK;
 }

@@ -3,7 +3,7 @@
 #define FIBRAD_MATRIX_MATRIX_H
 
 #include "scene/scene.h"
-#include "work/record.h"
+#include "rows/record.h"
 
 /* Rows begin to end - 1 of the result. One task averages them into a range of col and f of its own. */
 typedef struct fibrad_matrix_part {

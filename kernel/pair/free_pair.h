@@ -5,7 +5,7 @@
 #ifndef FIBRAD_PAIR_FREE_PAIR_H
 #define FIBRAD_PAIR_FREE_PAIR_H
 
-#include "work/work.h"
+#include "workspace/workspace.h"
 
 /* Whether nothing can come between the spheres at two places, both within the known region. f: out: the factor from
  * `place` to `other`. */

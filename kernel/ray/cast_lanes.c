@@ -10,7 +10,7 @@
 #include "base/random.h"
 #include "ray/cast_lanes.h"
 #include "scene/walls.h"
-#include "work/neighbours_lanes.h"
+#include "near/near_lanes.h"
 
 #define CAST_BATCH  (8 * VD_LANES)              /* rays: 64 in AVX-512; fewer in narrower sets, to save stack */
 #define CAST_STRIDE ((fibrad_stride){3.0, 1.4}) /* less than for windows, since a ray ends sooner */
@@ -102,13 +102,11 @@ static void cull_for_ray(fibrad_workspace *work, const struct cast_ray *ray, uin
 }
 
 /* Whether hit a comes before hit b. Two distances are equal if the ray begins inside both spheres, for example. Then
- * the smaller depth counts, then the lower id. For images of one sphere their places decide. */
+ * the smaller depth counts. Two depths may be equal, too. */
 static bool cast_hit_before(const fibrad_scene *scene, const struct cast_hit *a, const struct cast_hit *b) {
     if (a->distance != b->distance) return a->distance < b->distance;
     if (a->depth != b->depth) return a->depth < b->depth;
-    const uint64_t rank = fibrad_scene_rank(scene, a->sphere), second = fibrad_scene_rank(scene, b->sphere);
-    if (rank != second) return rank < second;
-    return a->u != b->u ? a->u < b->u : a->v < b->v;
+    return fibrad_scene_tie(scene, a->sphere, (double[]){a->u, a->v}, b->sphere, (double[]){b->u, b->v}, 2);
 }
 
 /* Compares the discs of `work` down to the horizon with the first sphere so far. */

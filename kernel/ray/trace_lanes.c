@@ -6,7 +6,7 @@
 #include FIBRAD_LANES_HEADER
 #include "base/vector.h"
 #include "ray/tracer.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 #include "scene/grid_walk.h"
 #include "scene/walls.h"
 
@@ -27,16 +27,13 @@ struct trace_first {
 };
 
 /* Whether the ray meets the sphere at place j with centre c before the first sphere so far. Two distances are equal
- * if the ray begins inside both spheres, for example. Then the smaller depth counts, then the lower id. For images
- * of one sphere their places decide. */
+ * if the ray begins inside both spheres, for example. Then the smaller depth counts. Two depths may be
+ * equal, too. */
 static bool trace_before(const fibrad_scene *scene, double distance, double depth, uint32_t j, const double c[3],
                          const struct trace_first *first) {
     if (distance != first->distance) return distance < first->distance;
     if (depth != first->depth) return depth < first->depth;
-    const uint64_t rank = fibrad_scene_rank(scene, j), second = fibrad_scene_rank(scene, first->sphere);
-    if (rank != second) return rank < second;
-    if (c[0] != first->c[0]) return c[0] < first->c[0];
-    return c[1] != first->c[1] ? c[1] < first->c[1] : c[2] < first->c[2];
+    return fibrad_scene_tie(scene, j, c, first->sphere, first->c, 3);
 }
 
 /* Compares sphere j with centre c with the first sphere so far. */

@@ -101,7 +101,7 @@ static bool gather_candidates(fibrad_tracer *tracer, const struct ball *from, do
 }
 
 /* Fills one element of a group. Floats are rounded so that a sphere may be compared in vain, but never missed, as in
- * work/neighbours_lanes.c. Beyond the range of floats all spheres are compared. */
+ * near/near_lanes.c. Beyond the range of floats all spheres are compared. */
 static void enter_nearby(fibrad_nearby_group *group, uint32_t k, const fibrad_candidate *s) {
     double square = s->c[0] * s->c[0] + s->c[1] * s->c[1] + s->c[2] * s->c[2];
     double about = 1 + fibrad_abs(s->c[0]) + fibrad_abs(s->c[1]) + fibrad_abs(s->c[2]);

@@ -14,7 +14,7 @@
 
 #include "base/dispatch.h"
 #include "base/lanes/laned.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 
 #define FIBRAD_GROUP  16 /* spheres */
 #define FIBRAD_GROUPS 6  /* of a list */

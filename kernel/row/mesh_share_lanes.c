@@ -6,8 +6,8 @@
  * hide. So areas stay exact where no triangle hides them. Lines that meet no sphere get directions of their own if
  * what they meet is far, as lines among walls do: docs/methods.md section 9. */
 #include FIBRAD_LANES_HEADER
-#include "work/mesh_faces_lanes.h"
-#include "work/mesh_lines_lanes.h"
+#include "facing/faces_lanes.h"
+#include "facing/lines_lanes.h"
 #include "row/mesh_share_lanes.h"
 #include "row/wall_window.h"
 #include "scene/walls.h"

@@ -4,7 +4,7 @@
 #define FIBRAD_ROW_MESH_SHARE_LANES_H
 
 #include "base/lanes/laned.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 
 /* Finds the points of window k whose lines meet a triangle first. The spheres before the window are known. points:
  * of the window; count 0: the window has areas, and `open` of it is open. What triangles hide is taken from the

@@ -2,7 +2,7 @@
 #include "row/row.h"
 #include "base/arena.h"
 #include "scene/walls.h"
-#include "work/record.h"
+#include "rows/record.h"
 
 /* Number of entries for which an empty collection first asks for room. */
 #define FIRST_ENTRIES 256u

@@ -3,7 +3,7 @@
 #ifndef FIBRAD_ROW_ROW_H
 #define FIBRAD_ROW_ROW_H
 
-#include "work/work.h"
+#include "workspace/workspace.h"
 
 /* A method: computes row i into the arrays and fields of `row`. row->beyond is 0 before the call. After _CAPACITY
  * row->length is the capacity that suffices. After _WORK space->needed is the plan that suffices. */

@@ -3,7 +3,7 @@
 #define FIBRAD_ROW_WALL_SHARE_LANES_H
 
 #include "base/lanes/laned.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 #include "window/points.h"
 
 /* The windows of a row. */

@@ -7,7 +7,7 @@
 #include "base/lanes/below.h"
 #include "base/sort.h"
 #include "row/mesh_share_lanes.h"
-#include "work/neighbours_lanes.h"
+#include "near/near_lanes.h"
 #include "row/window_lanes.h"
 #include "window/clip_lanes.h"
 #include "window/dense_lanes.h"
@@ -80,10 +80,8 @@ static void drop_not_ahead(fibrad_workspace *work, uint32_t from) {
 static bool disc_before(const fibrad_workspace *work, uint32_t k, uint32_t other) {
     const fibrad_discs *disc = &work->disc;
     if (disc->depth[k] != disc->depth[other]) return disc->depth[k] < disc->depth[other];
-    const uint64_t rank = fibrad_scene_rank(work->scene, fibrad_work_sphere(work, k));
-    const uint64_t second = fibrad_scene_rank(work->scene, fibrad_work_sphere(work, other));
-    if (rank != second) return rank < second;
-    return disc->u[k] != disc->u[other] ? disc->u[k] < disc->u[other] : disc->v[k] < disc->v[other];
+    const double at[2] = {disc->u[k], disc->v[k]}, at_other[2] = {disc->u[other], disc->v[other]};
+    return fibrad_scene_tie(work->scene, fibrad_work_sphere(work, k), at, fibrad_work_sphere(work, other), at_other, 2);
 }
 
 /* Sorts positions [from, to) of the order. */
@@ -249,7 +247,7 @@ bool LANED(fibrad_mask_window)(fibrad_workspace *work, const double frame[9], ui
         for (uint32_t d = from; d < resolved && masks->open > 0; d++) disc->fdepth[disc->order[d]] = -1;
     }
     if (fibrad_mesh_near(work, masks->open > 0 ? __builtin_inf() : known)) return false;
-    count_hidden(work, k);
+    if (k != FIBRAD_NONE) count_hidden(work, k);
     return true;
 }
 
@@ -279,7 +277,7 @@ double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], 
     double rest = LANED(fibrad_areas_end)(&work->areas);
     if (near) rest = LANED(fibrad_mesh_share)(work, frame, points, k, rest);
     if (near && work->met->any) return rest;
-    for (uint32_t c = 1; c < work->areas.circles; c++)
+    for (uint32_t c = 1; c < work->areas.circles && k != FIBRAD_NONE; c++)
         if (work->areas.area[c] > 0) fibrad_work_accumulate(work, work->areas.whose[c], k, work->areas.area[c]);
     return rest;
 }

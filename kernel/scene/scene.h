@@ -94,4 +94,15 @@ static inline uint64_t fibrad_scene_rank(const fibrad_scene *scene, uint32_t pla
     return fibrad_scene_id(scene, scene->order[place]);
 }
 
+/* Whether sphere a at `at` comes before sphere b at `other` if both are equally far: the lower id comes first. Of two
+ * images of one sphere that with the smaller coordinate comes first, the first of `axes` coordinates that differ. */
+static inline bool fibrad_scene_tie(const fibrad_scene *scene, uint32_t a, const double *at, uint32_t b,
+                                    const double *other, int axes) {
+    const uint64_t rank = fibrad_scene_rank(scene, a), second = fibrad_scene_rank(scene, b);
+    if (rank != second) return rank < second;
+    for (int axis = 0; axis < axes; axis++)
+        if (at[axis] != other[axis]) return at[axis] < other[axis];
+    return false;
+}
+
 #endif

@@ -91,7 +91,7 @@ LightSources = _structure("light_sources", ("light", POINTER(LightStructure)), (
                           ("absorptivity body_absorptivity", DOUBLES), ("tolerance", c_double), ("uniform", c_int))
 LightResult = _structure("light_result", ("absorbed absorbed_first absorbed_error", DOUBLES),
                          ("body_absorbed body_absorbed_first body_absorbed_error", DOUBLES),
-                         ("incident transmitted reflected error", c_double), ("sweeps lights", c_uint32),
+                         ("incident transmitted reflected error error_patches", c_double), ("sweeps lights", c_uint32),
                          ("patches", c_void_p))
 TransientConfig = _structure("transient_config", ("method", c_int), ("exchange", ExchangeRule), ("heat", HeatConfig))
 Span = _structure("span", ("temperature capacity", DOUBLES), ("duration", c_double),

@@ -28,7 +28,7 @@ class Light:
     half_angle
         [rad] of the cone of directions. 0: parallel.
     directions
-        Directions of the cone. Default: 16.
+        Directions of the cone. Default: 16, for cones wider than 0.02 rad as many for each solid angle.
     disc
         (4,) [m] x, y, z and radius of a disc across the direction, through which all of the light passes.
     box

@@ -1,7 +1,7 @@
 /* wall_sum.h - sums over the windows of a row of what walls get, by regions of the sky, and the view factors to
  * walls. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_WORK_WALL_SUM_H
-#define FIBRAD_WORK_WALL_SUM_H
+#ifndef FIBRAD_SUMS_WALL_SUM_H
+#define FIBRAD_SUMS_WALL_SUM_H
 
 #include "base/addends.h"
 #include "scene/surroundings.h"
@@ -66,6 +66,9 @@ typedef struct fibrad_point_sums {
     uint32_t octants, cuts[FIBRAD_WALLS + 1];
     fibrad_wall_line first_cut[FIBRAD_WALLS + 1];
 } fibrad_point_sums;
+
+/* The distance of the nearest wall from the centre. Infinity: there is none. */
+double fibrad_wall_nearest(const fibrad_wall_view *view);
 
 /* How much the solid angles count, 0 to 1. 1: no wall cuts the sphere, or all walls are across one axis. 0: a wall
  * cuts the sphere deeply, or lines are cut. */

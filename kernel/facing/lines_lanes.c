@@ -1,9 +1,9 @@
-/* mesh_lines_lanes.c - lines of a window and the triangles that they meet first, lines in lanes. Compiled once per
+/* lines_lanes.c - lines of a window and the triangles that they meet first, lines in lanes. Compiled once per
  * instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
 #include "base/vector.h"
-#include "work/mesh_lines_lanes.h"
+#include "facing/lines_lanes.h"
 
 /* ---- lines ------------------------------------------------------------------------------------------------------- */
 /* The line of a point. */

@@ -1,8 +1,8 @@
-/* neighbours_lanes.c - shells of spheres near the sphere of the row, and walks along one direction. Compiled once
+/* near_lanes.c - shells of spheres near the sphere of the row, and walks along one direction. Compiled once
  * per instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
-#include "work/neighbours_lanes.h"
+#include "near/near_lanes.h"
 #include "scene/grid_walk.h"
 
 /* Computes the floats for comparisons (culls) of spheres [from, to) of the list. A cull may pass a sphere that the

@@ -3,14 +3,14 @@
  * Each leg has four coordinates. Two tell in which direction the path goes on. They are those of an additive
  * recurrence. Two tell where in its window the beam passes. These are random. With a recurrence for them, too, the
  * noise of rows doubled where its steps matched those of the directions, as with 50 windows and 100 legs. */
-#ifndef FIBRAD_WORK_LEGS_LANES_H
-#define FIBRAD_WORK_LEGS_LANES_H
+#ifndef FIBRAD_ROW_LEGS_LANES_H
+#define FIBRAD_ROW_LEGS_LANES_H
 
 #include "base/lanes/below.h"
 #include "base/lanes/laned.h"
 #include "base/lanes/turn.h"
 #include "base/random.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 
 /* Makes the first coordinates of normals along the axes of windows, and the even points. */
 static void LANED(begin_legs)(fibrad_legs *legs) {

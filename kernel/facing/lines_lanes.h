@@ -1,9 +1,9 @@
-/* mesh_lines_lanes.h - lines of a window and the triangles that they meet first. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_WORK_MESH_LINES_LANES_H
-#define FIBRAD_WORK_MESH_LINES_LANES_H
+/* lines_lanes.h - lines of a window and the triangles that they meet first. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_FACING_LINES_LANES_H
+#define FIBRAD_FACING_LINES_LANES_H
 
 #include "base/lanes/laned.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 
 /* The depth at which the line of a point leaves sphere i. */
 static inline double fibrad_point_exit(const fibrad_points *points, uint32_t p) {

@@ -3,8 +3,8 @@
  * A record is this head, the factors to walls, the factors to spheres, the columns and, if the row is along lines, the
  * differences of halves, padded to 8 bytes. Records follow each other from the first 8-byte boundary of the block on.
  */
-#ifndef FIBRAD_WORK_RECORD_H
-#define FIBRAD_WORK_RECORD_H
+#ifndef FIBRAD_ROWS_RECORD_H
+#define FIBRAD_ROWS_RECORD_H
 
 #include "fibrad.h"
 #include "base/port.h"

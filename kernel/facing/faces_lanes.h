@@ -1,9 +1,9 @@
-/* mesh_faces_lanes.h - the triangles that may come before a window. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_WORK_MESH_FACES_LANES_H
-#define FIBRAD_WORK_MESH_FACES_LANES_H
+/* faces_lanes.h - the triangles that may come before a window. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_FACING_FACES_LANES_H
+#define FIBRAD_FACING_FACES_LANES_H
 
 #include "base/lanes/laned.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 
 /* A search for triangles, stretch by stretch and image by image. Lengths are in radii of sphere i, except `centre`. */
 typedef struct fibrad_face_search {

@@ -1,7 +1,7 @@
 /* rows.c - a collection of rows in one block, fixed or growing. SPDX-License-Identifier: MIT */
 #include "base/arena.h"
 #include "base/reserve.h"
-#include "work/record.h"
+#include "rows/record.h"
 
 /* Bytes before the first record. */
 static size_t lead_of(const fibrad_rows *rows) { return (size_t) - (uintptr_t)rows->memory.block & 7; }

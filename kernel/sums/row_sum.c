@@ -1,7 +1,7 @@
 /* row_sum.c - collects the entries of a row. SPDX-License-Identifier: MIT */
-#include "work/row_sum.h"
+#include "sums/row_sum.h"
 #include "base/sort.h"
-#include "work/record.h"
+#include "rows/record.h"
 
 static uint32_t hash_slot_of(const fibrad_entries *entries, uint32_t sphere) {
     uint32_t mask = entries->slots - 1, slot = (sphere * 2654435769u >> 7) & mask; /* Fibonacci hashing */

@@ -1,8 +1,8 @@
-/* mesh_faces_lanes.c - finds the triangles that may come before a window, with boxes and triangles in lanes.
+/* faces_lanes.c - finds the triangles that may come before a window, with boxes and triangles in lanes.
  * Compiled once per instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
-#include "work/mesh_faces_lanes.h"
+#include "facing/faces_lanes.h"
 
 #define IMAGES_MOST 4096 /* images of a stretch, unless the caller wants fewer */
 

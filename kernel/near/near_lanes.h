@@ -1,10 +1,10 @@
-/* neighbours_lanes.h - the spheres that can come before the windows of a sphere. Near spheres are listed in shells
+/* near_lanes.h - the spheres that can come before the windows of a sphere. Near spheres are listed in shells
  * for all directions. A walk along one direction finds the spheres beyond. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_WORK_NEIGHBOURS_LANES_H
-#define FIBRAD_WORK_NEIGHBOURS_LANES_H
+#ifndef FIBRAD_NEAR_NEAR_LANES_H
+#define FIBRAD_NEAR_NEAR_LANES_H
 
 #include "base/lanes/laned.h"
-#include "work/work.h"
+#include "workspace/workspace.h"
 
 /* Adds the next shell of near spheres, or sets near.full. */
 void LANED(fibrad_near_extend)(fibrad_workspace *work);

@@ -1,10 +1,10 @@
-/* work.c - lays out the work memory of one thread, and makes it larger. SPDX-License-Identifier: MIT
+/* workspace.c - lays out the work memory of one thread, and makes it larger. SPDX-License-Identifier: MIT
  *
  * Callers do not see the inside of work memory. At first it is laid out for a packed bed, or for as much of that as
  * the block has room for. When a row asks for more, it is laid out again. The new layout is in a larger block, or in
  * the same block: then lists that only save time become shorter. No result is lost, since each row begins with empty
  * memory. */
-#include "work/work.h"
+#include "workspace/workspace.h"
 #include "base/arena.h"
 #include "base/constants.h"
 #include "base/random.h"

@@ -1,6 +1,6 @@
 /* row_sum.h - the sums of a row by sphere, while the row is computed. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_WORK_ROW_SUM_H
-#define FIBRAD_WORK_ROW_SUM_H
+#ifndef FIBRAD_SUMS_ROW_SUM_H
+#define FIBRAD_SUMS_ROW_SUM_H
 
 #include "base/addends.h"
 #include "scene/scene.h"

@@ -1,0 +1,170 @@
+/* test_light_spots.c - light on spots smaller and larger than patches, by plain rays. SPDX-License-Identifier: MIT */
+#include "host_owned.h"
+#include "plain_light.h"
+#include "scenes.h"
+#include "meshes.h"
+#include "suite.h"
+
+enum { SPHERES = 60, SCENES = 20, MOST = SPHERES + 1 };
+
+/* A bed, a floor of one of three kinds, and a spot. */
+struct spot_scene {
+    struct bed bed;
+    struct mesh *mesh;
+    fibrad_body floor;
+    fibrad_scene_config config;
+    struct plain_bed plain;
+    fibrad_light light;
+    double absorptivity, of_floor;
+};
+
+enum floor { NO_FLOOR, PLANE, TRIANGLES, FLOORS };
+
+static void free_scene(struct spot_scene *s) { plain_free(&s->plain), bed_free(&s->bed), free(s->mesh); }
+
+static struct spot_scene lit_scene(int k) {
+    struct spot_scene s = {.bed = packing(SPHERES, .8, 1.2, .3, 11 + (uint64_t)k, true),
+                           .absorptivity = .3 + .1 * (k % 5)};
+    const double side = s.bed.period[0], spot = .1 * pow(30, (double)k / (SCENES - 1));
+    for (int a = 0; a < 3; a++) s.bed.period[a] = 0;
+    double low = INFINITY, high = -INFINITY;
+    for (uint32_t i = 0; i < s.bed.n; i++)
+        low = fmin(low, s.bed.z[i] - s.bed.r[i]), high = fmax(high, s.bed.z[i] + s.bed.r[i]);
+    const double under = low - .05, wide = 3 * side;
+    s.of_floor = .4;
+    s.plain = plain_bed_of(&s.bed);
+    const int floor = k % FLOORS;
+    if (floor == PLANE) {
+        s.floor = plane_at(2, 0, under), s.config.bodies = 1;
+        s.plain.low[2] = under;
+    }
+    if (floor == TRIANGLES) {
+        s.mesh = mesh_new();
+        uint32_t v[4];
+        for (int c = 0; c < 4; c++)
+            v[c] = mesh_vertex(s.mesh, c == 1 || c == 2 ? wide : side - wide, c > 1 ? wide : side - wide, under);
+        mesh_quad(s.mesh, v, 0, 0);
+        s.config.body = s.mesh->body, s.config.bodies = 1, s.config.triangles = &s.mesh->triangles;
+        s.plain.triangles = &s.mesh->triangles;
+    }
+    const double slant = .2 * (k % 3);
+    s.light = (fibrad_light){.direction = {sin(slant), 0, -cos(slant)},
+                             .flux = 1 / (PI * spot * spot),
+                             .shape = FIBRAD_LIGHT_DISC,
+                             .radius = spot};
+    uint64_t state = 77 + (uint64_t)k;
+    const double at[3] = {side * (.3 + .4 * plain_random(&state)), side * (.3 + .4 * plain_random(&state)), under};
+    for (int a = 0; a < 3; a++) s.light.centre[a] = at[a] - 3 * side * s.light.direction[a];
+    return s;
+}
+
+/* Sets pointers into a scene, which has been moved. */
+static void settle_scene(struct spot_scene *s) {
+    s->plain.bed = &s->bed;
+    if (s->config.bodies > 0 && s->mesh == NULL) s->config.body = &s->floor;
+}
+
+/* Fractions of the light that spheres, the floor and the surroundings take. */
+static void take_plain(const struct spot_scene *s, int rays, double share[MOST + 1]) {
+    const double *d = s->light.direction, u[3] = {-d[2], 0, d[0]};
+    double all[MOST + 1] = {0};
+#pragma omp parallel for schedule(static) reduction(+ : all[:MOST + 1])
+    for (int k = 0; k < rays; k++) {
+        uint64_t state = (uint64_t)k * 1000003u;
+        double at[3], w[3] = {d[0], d[1], d[2]}, weight = 1. / rays;
+        const double r = s->light.radius * sqrt((k + plain_random(&state)) / rays),
+                     turn = 2 * PI * fmod(k * .6180339887498949, 1);
+        for (int a = 0; a < 3; a++) at[a] = s->light.centre[a] + r * cos(turn) * u[a] + (a == 1) * r * sin(turn);
+        for (;;) {
+            const struct plain_end end = plain_trace(&s->plain, at, w);
+            const bool sphere = end.sphere >= 0, floor = end.triangle >= 0 || (!sphere && end.side == 4);
+            if (!sphere && !floor) {
+                all[MOST] += weight;
+                break;
+            }
+            const double taken = sphere ? s->absorptivity : s->of_floor;
+            all[sphere ? end.sphere : SPHERES] += taken * weight, weight *= 1 - taken;
+            if (weight * rays < .05) {
+                if (plain_random(&state) > .2) break;
+                weight /= .2;
+            }
+            for (int a = 0; a < 3; a++) at[a] = end.at[a];
+            plain_scatter(end.normal, &state, w);
+        }
+    }
+    memcpy(share, all, sizeof all);
+}
+
+static void take_ours(const struct spot_scene *s, double share[MOST + 1], double error[MOST + 1]) {
+    double eps[SPHERES], first[MOST];
+    OWNED_RADIATION *radiation = NULL;
+    const fibrad_spheres spheres = spheres_of(&s->bed);
+    const fibrad_light_sources sources = {
+        .light = &s->light, .lights = 1, .absorptivity = eps, .body_absorptivity = &s->of_floor};
+    fibrad_light_result result = {.absorbed = share,
+                                  .absorbed_first = first,
+                                  .absorbed_error = error,
+                                  .body_absorbed = share + SPHERES,
+                                  .body_absorbed_first = first + SPHERES,
+                                  .body_absorbed_error = error + SPHERES};
+    for (int i = 0; i < SPHERES; i++) eps[i] = s->absorptivity;
+    share[SPHERES] = error[SPHERES] = 0;
+    assert_ok(fibrad_radiation_new(&radiation, &s->config, &spheres, NULL, NULL));
+    assert_ok(fibrad_radiation_shine(radiation, &sources, &result));
+    share[MOST] = result.reflected + result.transmitted, error[MOST] = result.error;
+    assert_near(result.incident, 1, 1e-9);
+}
+
+/* Checks what a scene takes against rays. Returns how many values differ by more than twice their estimate. */
+static int check_scene(const struct spot_scene *s, int rays, int *values) {
+    double ours[MOST + 1], error[MOST + 1], plain[MOST + 1], absorbed = 0, largest = 0, said = 0;
+    int beyond = 0;
+    take_ours(s, ours, error);
+    take_plain(s, rays, plain);
+    for (int i = 0; i < MOST; i++) absorbed += plain[i];
+    for (int i = 0; i <= MOST; i++) {
+        const double off = fabs(ours[i] - plain[i]), noise = sqrt(plain[i] * (1 - plain[i]) / rays);
+        if (off > largest) largest = off, said = error[i];
+        beyond += off > 2 * sqrt(error[i] * error[i] + noise * noise);
+    }
+    *values += MOST + 1;
+    printf("spot of %.2f: absorbed %.4f, largest error %.5f of it, said %.5f\n", s->light.radius, absorbed,
+           largest / absorbed, said / absorbed);
+    ck_assert_double_le(largest, .01 * absorbed);
+    return beyond;
+}
+
+/* Spots of .1 to 3 sphere radii, on beds in the open and on floors. All surfaces and the surroundings are right to 1 %
+ * of what is absorbed. */
+TEST(spots_of_all_sizes) {
+    int values = 0, beyond = 0;
+    for (int k = 0; k < SCENES; k += 4) {
+        OWNED_BY(free_scene) struct spot_scene s = lit_scene(k);
+        settle_scene(&s);
+        beyond += check_scene(&s, 300000, &values);
+    }
+    printf("%d of %d values beyond twice their estimate\n", beyond, values);
+    ck_assert_int_le(20 * beyond, values);
+}
+
+/* A spot of .06 radii near the contact of two spheres. The numbers are those of 2e7 plain rays. */
+TEST(a_small_spot_near_a_contact) {
+    const double eps[2] = {.3, .3}, x[2] = {0, 1.001}, y[2] = {0, 0}, r[2] = {.5, .5}, light_of[2] = {.88482, .17059};
+    const fibrad_spheres spheres = {.x = x, .y = y, .z = y, .r = r, .n = 2};
+    const fibrad_light light = {
+        .direction = {0, 0, -1}, .flux = 1000, .shape = FIBRAD_LIGHT_DISC, .centre = {.4, 0, 1}, .radius = .03};
+    const fibrad_light_sources sources = {.light = &light, .lights = 1, .absorptivity = eps};
+    double absorbed[2], first[2], error[2];
+    fibrad_light_result result = {.absorbed = absorbed, .absorbed_first = first, .absorbed_error = error};
+    for (int k = 0; k < 2; k++) {
+        OWNED_RADIATION *radiation = NULL;
+        const fibrad_heat_config config = {.patches = k ? 384 : 96};
+        assert_ok(fibrad_radiation_new(&radiation, NULL, &spheres, &config, NULL));
+        assert_ok(fibrad_radiation_shine(radiation, &sources, &result));
+        for (int i = 0; i < 2; i++) {
+            printf("sphere %d: %.5f, said %.5f, right %.5f\n", i, absorbed[i], error[i], light_of[i]);
+            ck_assert_double_eq_tol(absorbed[i], light_of[i], (k ? .001 : .003) * 1.0554);
+            ck_assert_double_eq_tol(absorbed[i], light_of[i], 2.5 * error[i]);
+        }
+    }
+}
