@@ -145,20 +145,24 @@ static int gain_by_radiation(const struct bed *bed, const struct jump_radiation 
 }
 
 /* The temperatures at which spheres lose `gain`. One sphere has the mean temperature. The gains must add up to 0, so
- * what is left of their sum is taken from all alike. */
+ * what is left of their sum, noise of radiation, is taken from those that radiate. */
 static int settle_all(const struct bed *bed, const struct jump_contacts *contacts,
                       const struct jump_radiation *radiation, fibrad_run *run, double *gain, double *at) {
-    double *given = malloc(2 * ((size_t)bed->n + 1) * sizeof *given), *found = given + bed->n, plate[WALLS_MAX],
-           sum = 0;
+    const uint32_t n = bed->n;
+    double *given = malloc(3 * ((size_t)n + 1) * sizeof *given), *found = given + n, *emissivity = found + n;
+    double plate[WALLS_MAX], sum = 0, radiating = 0;
     struct walls walls = {.count = 0};
     fibrad_heat_sources sources;
     if (!given) return FIBRAD_E_MEMORY;
-    for (uint32_t i = 0; i < bed->n; ++i) given[i] = NAN, sum += gain[i] / bed->n;
-    for (uint32_t i = 0; i < bed->n; ++i) gain[i] -= sum;
+    for (uint32_t i = 0; i < n; ++i) {
+        given[i] = NAN, emissivity[i] = fmax(radiation->emissivity[i], HARDLY_RADIATES);
+        sum += gain[i], radiating += emissivity[i] * bed->r[i] * bed->r[i];
+    }
+    for (uint32_t i = 0; i < n; ++i) gain[i] -= sum / radiating * emissivity[i] * bed->r[i] * bed->r[i];
     const double first = gain[0];
     given[0] = radiation->temperature, gain[0] = 0;
     fibrad_heat_sources_init(&sources);
-    sources.temperature = given, sources.power = gain, sources.emissivity = radiation->emissivity;
+    sources.temperature = given, sources.power = gain, sources.emissivity = emissivity;
     sources.contact_first = contacts->first, sources.contact_second = contacts->second;
     sources.conductance = contacts->conductance, sources.contacts = contacts->n;
     const int status = solve_once(bed, radiation, &walls, plate, &sources, run, found, at);
