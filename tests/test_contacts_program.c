@@ -32,6 +32,7 @@ TEST(a_row_conducts) {
     assert_near(column(q, 0, 6), -40, 1e-9);
     assert_near(column(q, 4, 6), 40, 1e-9);
     assert_near(value_of("wall_zmin_conduction_W"), 40, 1e-9);
+    assert_near(value_of("spheres_conduction_W"), -40, 1e-9);
     ck_assert_double_eq(value_of("contacts"), 3);
     char *text = read_file(flows);
     assert_begins(text, "i,j,W/K,W\n1,0,0.5,");

@@ -119,10 +119,11 @@ static int gain_by_radiation(const struct bed *bed, const struct jump_radiation 
     struct bed stack = bed_empty();
     const uint32_t copies[3] = {axis == 0 ? COPIES : 1, axis == 1 ? COPIES : 1, axis == 2 ? COPIES : 1};
     const size_t n = (size_t)COPIES * bed->n;
-    double *room = calloc(3 * n + 1, sizeof *room), *emissivity = room, *at = room + n, *power = at + n;
-    double plate[WALLS_MAX], mean = 0;
+    double *emissivity = calloc(3 * n + 1, sizeof *emissivity), plate[WALLS_MAX], mean = 0;
     struct walls walls = {.count = 2};
-    int status = room && !bed_make_copies(&stack, bed, copies) ? FIBRAD_OK : FIBRAD_E_MEMORY;
+    if (!emissivity) return FIBRAD_E_MEMORY;
+    double *at = emissivity + n, *power = at + n;
+    int status = bed_make_copies(&stack, bed, copies) ? FIBRAD_E_MEMORY : FIBRAD_OK;
     stack.period[axis] = 0;
     for (uint32_t k = 0; k < 2 && !status; ++k) {
         const double end = bed_reach(&stack, axis, k == 1);
@@ -139,26 +140,30 @@ static int gain_by_radiation(const struct bed *bed, const struct jump_radiation 
     sources.temperature = at, sources.emissivity = emissivity;
     if (!status) status = solve_once(&stack, radiation, &walls, plate, &sources, run, power, NULL);
     for (uint32_t i = 0; i < bed->n && !status; ++i) gain[i] = power[COPIES * i + 1];
-    free(room);
+    free(emissivity);
     bed_free(&stack);
     return status;
 }
 
 /* The temperatures at which spheres lose `gain`. One sphere has the mean temperature. The gains must add up to 0, so
- * what is left of their sum is taken from all alike. */
+ * what is left of their sum, noise of radiation, is taken from those that radiate. */
 static int settle_all(const struct bed *bed, const struct jump_contacts *contacts,
                       const struct jump_radiation *radiation, fibrad_run *run, double *gain, double *at) {
-    double *given = malloc(2 * ((size_t)bed->n + 1) * sizeof *given), *found = given + bed->n, plate[WALLS_MAX],
-           sum = 0;
+    const uint32_t n = bed->n;
+    double *given = malloc(3 * ((size_t)n + 1) * sizeof *given), plate[WALLS_MAX], sum = 0, radiating = 0;
     struct walls walls = {.count = 0};
     fibrad_heat_sources sources;
     if (!given) return FIBRAD_E_MEMORY;
-    for (uint32_t i = 0; i < bed->n; ++i) given[i] = NAN, sum += gain[i] / bed->n;
-    for (uint32_t i = 0; i < bed->n; ++i) gain[i] -= sum;
+    double *found = given + n, *emissivity = found + n;
+    for (uint32_t i = 0; i < n; ++i) {
+        given[i] = NAN, emissivity[i] = fmax(radiation->emissivity[i], HARDLY_RADIATES);
+        sum += gain[i], radiating += emissivity[i] * bed->r[i] * bed->r[i];
+    }
+    for (uint32_t i = 0; i < n; ++i) gain[i] -= sum / radiating * emissivity[i] * bed->r[i] * bed->r[i];
     const double first = gain[0];
     given[0] = radiation->temperature, gain[0] = 0;
     fibrad_heat_sources_init(&sources);
-    sources.temperature = given, sources.power = gain, sources.emissivity = radiation->emissivity;
+    sources.temperature = given, sources.power = gain, sources.emissivity = emissivity;
     sources.contact_first = contacts->first, sources.contact_second = contacts->second;
     sources.conductance = contacts->conductance, sources.contacts = contacts->n;
     const int status = solve_once(bed, radiation, &walls, plate, &sources, run, found, at);
@@ -169,8 +174,9 @@ static int settle_all(const struct bed *bed, const struct jump_contacts *contact
 
 int jump_joint(const struct bed *bed, const struct jump_contacts *contacts, const struct jump_radiation *radiation,
                int axis, double volume, fibrad_run *run, double *k) {
-    double *gain = calloc(2 * ((size_t)bed->n + 1), sizeof *gain), *at = gain + bed->n;
+    double *gain = calloc(2 * ((size_t)bed->n + 1), sizeof *gain);
     if (!gain) return FIBRAD_E_MEMORY;
+    double *at = gain + bed->n;
     const double slope = SLOPE / (COPIES * bed->period[axis]), kelvins = slope * radiation->temperature;
     int status = gain_by_radiation(bed, radiation, axis, slope, run, gain);
     for (uint32_t i = 0; i < bed->n; ++i) gain[i] /= kelvins;

@@ -16,6 +16,9 @@ struct jump_contacts {
     const double *conductance;      /* [n], as fibrad_heat_sources.conductance, with sigma in W/(m2 K4) */
 };
 
+/* The least emissivity that spheres get: those that reflect all and touch only each other need a temperature. */
+#define HARDLY_RADIATES 1e-12
+
 /* Radiation beside contacts. */
 struct jump_radiation {
     const double *emissivity;  /* [spheres] */

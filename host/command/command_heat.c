@@ -346,6 +346,21 @@ static int heat_solid(struct heat_request *request, const struct bed *bed) {
     return problem->conductivity ? STATUS_OK : message_memory();
 }
 
+/* Warns of temperatures about the bed. If none is given within a closed bed, that of the surroundings is the level. */
+static void warn_outside(struct heat_request *request, const struct bed *bed, const struct given *given) {
+    struct warned *warned = &request->bed.warned;
+    const struct walls *walls = &request->problem.walls;
+    bool known = false;
+    for (uint32_t i = 0; i < bed->n && !known; ++i) known = !isnan(given->temperature[i]);
+    for (uint32_t k = 0; k < walls->count; ++k) {
+        known = known || !isnan(given->wall_temperature[k]);
+        if (request->given.zero == 0) warn_around(warned, wall_name(walls, k), given->wall_temperature[k]);
+    }
+    if (request->given.ambient && request->given.zero == 0)
+        warn_around(warned, "--ambient", request->problem.sources.surroundings);
+    if (request->given.ambient && known && walls_closed(walls, bed)) warn_closed(warned);
+}
+
 static int heat_frame(void *heat_request, struct bed *bed) {
     struct heat_request *request = heat_request;
     struct heat_report report = {0};
@@ -371,6 +386,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     if (!status)
         warn_temperatures(&request->bed.warned, bed, bed_options_column(&request->bed, &request->given.temperature),
                           request->given.zero, given.temperature);
+    if (!status) warn_outside(request, bed, &given);
     if (!status) status = heat_arrays(&report.result, bed->n, request->solid.given);
     if (!status) status = heat_solid(request, bed);
     if (!status && request->bed.wall_vtp) status = triangle_heat_begin(&report.triangles, walls);

@@ -9,6 +9,7 @@
 #include "cli/message.h"
 
 #define GAP       0.65  /* default of --gas-gap */
+#define ROUNDING  1e-12 /* of flows, over the sum of their magnitudes */
 #define GAP_LEAST 4e-10 /* [m] least gap that counts: the distance of molecules */
 
 int contacts_option(const char *text, void *contact_options) {
@@ -237,9 +238,11 @@ void contacts_report(const struct contact_state *state, const struct bed *bed, c
         report_value(report, "gas_conductivity", state->options->gas_value, 6);
     if (state->n > 0) report_value(report, "conductance_mean_W_K", conductance / state->per_watt / state->n, 6);
     if (state->n > 0) report_value(report, "contact_flow_mean_W", conducted / state->n, 6);
-    double square = 0;
-    for (uint32_t i = 0; i < bed->n; ++i) square += state->conducted[i] * state->conducted[i];
+    double square = 0, sum = 0;
+    for (uint32_t i = 0; i < bed->n; ++i)
+        square += state->conducted[i] * state->conducted[i], sum += state->conducted[i];
     report_value(report, "conduction_rms_W", sqrt(square / bed->n), 6);
+    report_value(report, "spheres_conduction_W", fabs(sum) > ROUNDING * conducted ? sum : 0, 6);
     wall_values_report(walls, state->wall, "_conduction_W", 6, report);
 }
 

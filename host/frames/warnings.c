@@ -26,6 +26,7 @@ enum kind {
     SOLID_TABLE,
     CONTACT_TABLE,
     GAS_TABLE,
+    CLOSED_BED,
     WALLS_OPEN,
     WALLS_APART,
     CLOSING
@@ -37,6 +38,8 @@ enum kind {
 #define PERIOD_OFF    1e-3  /* relative: users type boxes with few digits */
 #define SIZES_APART   200.0 /* ratio of the sizes of mesh and bed; metres for millimetres make 1000 */
 #define COLD          150.0 /* [K] a bed is hardly colder everywhere */
+#define SPACE         5.0   /* [K] surroundings as cold as space are meant */
+#define WARM_CELSIUS  75.0  /* surroundings of 5 to 75 K are more likely of 5 to 75 C */
 #define CLOSED        1e-9  /* closed rows of walls add up to 1 within this */
 #define APART         0.1   /* sums of rows of walls may differ from 1 so much before closing; few directions: 0.01s */
 #define TIME_LEAST    1e-9  /* relative: times in hours are rounded */
@@ -223,6 +226,18 @@ void warn_temperatures(struct warned *warned, const struct bed *bed, const char 
                    "warning: sphere %lld has 0 K (%u spheres in all), others have up to %g K; is a value missing? With "
                    "--power, nan stands for an unknown temperature",
                    (long long)bed_name(bed, first), zeros, most);
+}
+
+void warn_around(struct warned *warned, const char *what, double kelvins) {
+    if (kelvins > SPACE && kelvins < WARM_CELSIUS && is_new(warned, CELSIUS))
+        message_at(STATUS_OK, warned->file, 0, "warning: %s is %g K; --temperature-unit C is for degrees Celsius", what,
+                   kelvins);
+}
+
+void warn_closed(struct warned *warned) {
+    if (is_new(warned, CLOSED_BED))
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: --ambient has no effect: nothing leaves a bed that walls and periods close");
 }
 
 /* The index of the first value outside low to high. n: there is none. */

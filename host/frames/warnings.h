@@ -44,6 +44,12 @@ void warn_walls(struct warned *warned, const struct bed *bed, const struct walls
 void warn_temperatures(struct warned *warned, const struct bed *bed, const char *column, double zero,
                        const double *kelvins);
 
+/* Warns if the temperature of the surroundings or of a wall looks like degrees Celsius. what: how messages name it. */
+void warn_around(struct warned *warned, const char *what, double kelvins);
+
+/* Warns of a temperature of the surroundings in a closed bed. */
+void warn_closed(struct warned *warned);
+
 /* Warns if heat capacities [J/(kg K)] or densities [kg/m3], both [bed->n], are not those of solids. */
 void warn_matter(struct warned *warned, const struct bed *bed, const double *capacity, const double *density);
 

@@ -15,8 +15,6 @@ enum { FITTED_LEAST = 40, DIRECTIONS_ALL = 400 };
 /* Temperatures of the ends over their mean: so near that k_s and k_gas are the same everywhere. */
 #define HOT_END  1.0005
 #define COLD_END 0.9995
-/* Emissivity of spheres without radiation: those that touch only each other need a temperature. */
-#define HARDLY 1e-12
 /* A flow that is so small over the largest one is none. */
 #define IDLE 1e-6
 
@@ -165,7 +163,8 @@ static int solve_total(struct between *b, bool radiates, bool touches, uint32_t 
     fibrad_radiation *radiation = NULL;
     fibrad_heat_sources sources = b->sources;
     const fibrad_heat_config config = {.directions = directions};
-    for (uint32_t i = 0; i < b->bed->n; ++i) b->emissivity[i] = radiates ? b->problem->emissivity[i] : HARDLY;
+    for (uint32_t i = 0; i < b->bed->n; ++i)
+        b->emissivity[i] = fmax(radiates ? b->problem->emissivity[i] : 0, HARDLY_RADIATES);
     sources.body_emissivity = black;
     if (!touches) sources.contacts = 0;
     if (!radiates) sources.conductivity = NULL, sources.tolerance = 1e-10;

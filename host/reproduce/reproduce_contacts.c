@@ -109,7 +109,7 @@ static int compare_gas(struct reproduce *reproduce) {
 /* Lithium ceramics. Spots are so large that the bed conducts VACUUM_BED without gas at 500 C. */
 static int compare_grains(struct reproduce *reproduce) {
     struct touching_bed t;
-    double vacuum, spots, k;
+    double vacuum = 0, spots = 1, k;
     int status = touching_make(&t, SPHERES, .37);
     if (!status) status = touching_radiate(&t, 500 + ABSOLUTE, CERAMIC, 0, 0, GRAIN, &vacuum);
     if (!status) status = touching_conduct(&t, CERAMIC, 0, 1, 0, &spots);
@@ -180,7 +180,7 @@ static int exceed(struct touching_bed *t, double *emissivity, double share, doub
     struct jump_radiation radiation = {
         .emissivity = emissivity, .temperature = 1000, .directions = TOGETHER_DIRECTIONS};
     fibrad_run run = {.threads = 1};
-    double factor, conduction, alone, both;
+    double factor, conduction = 1, alone = 1, both = 1;
     const double unit = 4 * FIBRAD_STEFAN_BOLTZMANN * 1e9 * 2;
     int status = grey_conduction(&t->bed, *emissivity, INFINITY, TOGETHER_PATHS, &factor);
     if (status) return status;

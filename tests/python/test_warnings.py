@@ -98,6 +98,21 @@ def test_temperatures():
             heat.solve([900.0, 0.0], 0.8, **HEAT)
 
 
+def test_temperatures_around():
+    box = dict(zip(("xmin", "xmax", "ymin", "ymax", "zmin", "zmax"), (-1, 1) * 3))
+    with bed() as heat, bed(kind=fibrad.Transient) as hot, bed({"zmin": 0.0}) as floor, bed(box) as closed:
+        with pytest.warns(UserWarning, match="surroundings: 25 K; temperatures are in kelvins"):
+            heat.solve(900.0, 0.8, surroundings=25.0)
+        with pytest.warns(UserWarning, match="surroundings: 25 K; temperatures are in kelvins"):
+            hot.advance(900.0, 1.0, capacity=100.0, emissivity=0.8, surroundings=25.0)
+        with pytest.warns(UserWarning, match="zmin: 25 K; temperatures are in kelvins"):
+            floor.solve(900.0, 0.8, wall_temperature=25.0, wall_emissivity=0.8, **HEAT)
+        with pytest.warns(UserWarning, match="surroundings has no effect: nothing leaves a bed"):
+            closed.solve(900.0, 0.8, wall_temperature=500.0, wall_emissivity=0.8, **HEAT)
+        closed.solve(900.0, 0.8, wall_temperature=500.0, wall_emissivity=0.8)
+        heat.solve(900.0, 0.8, surroundings=4.0)
+
+
 def test_surfaces_below_nothing():
     with bed() as heat, pytest.warns(UserWarning, match="its surface comes out at -.* K in one place"):
         heat.solve([2000.0, 100.0], 1.0, surroundings=0.0, conductivity=1e-3)

@@ -18,7 +18,7 @@ from ._light import Absorbed, Light, add, lights_of, patches_pointer
 from ._scene import Walls, pointer, pointers
 from ._limits import POWER_MAX, SIGMA, TEMPERATURE_MAX
 from ._values import per_sphere, real, refuse, several
-from ._warnings import warn_surfaces, warn_temperatures
+from ._warnings import warn_around, warn_surfaces, warn_temperatures
 
 STEFAN_BOLTZMANN = 5.670374419e-8
 """[W/(m2 K4)]"""
@@ -312,6 +312,7 @@ class Heat(Bed):
                               uniform=bool(uniform), temperature=pointer(kelvins), power=pointer(powers),
                               conductivity=pointer(conducts),
                               **pointers(of_bodies))
+        warn_around(container, surroundings, of_bodies["body_temperature"], kelvins)
         if light is not None:
             sources.absorbed = patches_pointer(light)
         joined = contacts_of(((), (), ()) if contacts is None else contacts, n, container)

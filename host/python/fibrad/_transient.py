@@ -17,7 +17,7 @@ from ._library import ExchangeRule, HeatSources, Span, TransientConfig, library
 from ._scene import Walls, pointer, pointers
 from ._limits import CAPACITY_MAX, DURATION_MAX, POWER_MAX, SIGMA, TEMPERATURE_MAX
 from ._values import per_sphere, real, refuse, several
-from ._warnings import warn_capacity, warn_temperatures
+from ._warnings import warn_around, warn_capacity, warn_temperatures
 
 _METHODS = {"corrected": 0, "patches": 1, "factors": 2}
 
@@ -182,6 +182,7 @@ class Transient(Bed):
                                       0, TEMPERATURE_MAX))
         sources = HeatSources(emissivity=pointer(shares), power=pointer(given), sigma=real("sigma", sigma, *SIGMA),
                               surroundings=real("surroundings", surroundings, 0, TEMPERATURE_MAX), **pointers(walls))
+        warn_around(container, surroundings, walls["body_temperature"], now)
         ends = ctypes.POINTER(ctypes.c_uint32)
         sources.contacts, sources.conductance = joined.conductance.size, pointer(joined.conductance)
         sources.contact_first, sources.contact_second = pointer(joined.first, ends), pointer(joined.second, ends)

@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 import sys
 import warnings
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ._scene import Container, Packing
 
 # The bounds are those of host/frames/warnings.c.
+_SPACE, _WARM_CELSIUS = 5.0, 75.0  # [K] colder surroundings are those of space, warmer ones no degrees Celsius
 _RADIUS_LARGE, _OVERLAP_LARGE, _CUT_LARGE, _SIZES_APART, _COLD = 0.1, 0.05, 0.1, 200.0, 150.0
 _CLOSED, _APART, _CHANGE_LARGE = 1e-9, 0.1, 1.5
 _STORE_LOW, _STORE_HIGH = 30.0 * 10.0, 3e4 * 1e5  # J/(m3 K): heat capacity times density
@@ -85,6 +86,19 @@ def warn_temperatures(packing: Packing, kelvins: NDArray[np.float64]) -> None:
     if most > 0 and zeros.size:
         warn(f"{packing.names(int(zeros[0]))} has 0 K ({zeros.size} spheres in all), others have up to {most:g} K; is "
              "a value missing? NaN stands for an unknown temperature")
+
+
+def warn_around(container: Container, surroundings: Optional[float], walls: NDArray[np.float64],
+                kelvins: NDArray[np.float64]) -> None:
+    """Given temperatures of the surroundings (None: not given), of walls and of spheres, NaN where there is none."""
+    known = ~np.isnan(kelvins)
+    cold = known.any() and np.max(kelvins[known]) < _COLD
+    for what, around in [("surroundings", surroundings), *zip(container.names, walls.tolist())]:
+        if around is not None and _SPACE < around < _WARM_CELSIUS and not cold:
+            warn(f"{what}: {around:g} K; temperatures are in kelvins, 273.15 more than degrees Celsius")
+            break
+    if surroundings is not None and container.closed() and (known.any() or not np.isnan(walls).all()):
+        warn("surroundings has no effect: nothing leaves a bed that walls and periods close")
 
 
 def warn_surfaces(packing: Packing, least: NDArray[np.float64]) -> None:
