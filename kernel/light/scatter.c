@@ -17,7 +17,7 @@
 #define SCATTER_LEAST   131072u /* rays of a light */
 #define SCATTER_MOST    (1u << 24)
 #define SCATTER_BEAMS   12u /* rays of a light, over the beams of a sphere */
-#define SCATTER_LIT     16u     /* beams of a sphere over the rays for each sphere in the light */
+#define SCATTER_LIT     16u /* beams of a sphere over the rays for each sphere in the light */
 #define SCATTER_WHOLE   .9  /* a patch that gets more than this part of what may fall on it is lit wholly */
 #define SCATTER_PATCHES 4.0 /* patches of a four, for which fibrad_heat_fine_point gives areas */
 
