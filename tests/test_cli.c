@@ -67,6 +67,14 @@ TEST(overlaps_warn_with_their_error) {
     }
 }
 
+/* The exact factor has no other limit, but beds have. */
+TEST(a_centre_within_a_sphere_warns) {
+    SUCCEED("pair", "1", "1", "-.9");
+    ck_assert_str_eq(said, "");
+    SUCCEED("pair", "1", "1", "-1.5");
+    assert_has(said, "warning: the centre of one sphere lies inside the other");
+}
+
 TEST(same_bytes_for_any_threads) {
     static const char *const threads[] = {"1", "2", "7"};
     char *first = NULL;

@@ -22,14 +22,15 @@ FIXTURE(make_folder, remove_folder)
 #define WITHIN   "solid s\n" FACET(".018 .018 .021", ".022 .018 .021", ".02 .022 .021") "endsolid s\n"
 #define FAR_AWAY "solid s\n" FACET("5 0 0", "5.1 0 0", "5 .1 0") "endsolid s\n"
 
-#define HEAT "heat", "--emissivity", ".6", "--directions", "21", "--patches", "24", "--ambient", "300"
-#define TIME "--until", "1", "--model", "patches"
+#define HEAT_AT(ambient) "heat", "--emissivity", ".6", "--directions", "21", "--patches", "24", "--ambient", ambient
+#define HEAT             HEAT_AT("300")
+#define TIME             "--until", "1", "--model", "patches"
 
 static const struct {
     const char *words[20], *bed, *more, *reason; /* more: a further frame; reason: NULL if there is no warning */
 } said_of[] = {
     {{HEAT, "--temperature", "T"}, PLAIN, NULL, NULL},
-    {{HEAT, "--temperature", "T", "--wall", "auto", "--wall-temperature", "500"}, PLAIN, NULL, NULL},
+    {{HEAT, "--temperature", "T", "--wall", "auto,zmax=open", "--wall-temperature", "500"}, PLAIN, NULL, NULL},
     {{HEAT, "--temperature", "T", "--periodic", ".1,.1,0"}, PLAIN, NULL, NULL},
     {{HEAT, "--temperature", "T", "--periodic", ".1,.2,0"},
      PLAIN,
@@ -40,7 +41,7 @@ static const struct {
      NULL,
      "sphere 1 reaches through the wall zmin by 0.2 of its radius (1 such cases in all)"},
     {{HEAT, "--temperature", "T", "--wall", "zmin=.0105", "--wall-temperature", "500"}, PLAIN, NULL, NULL},
-    {{HEAT, "--temperature", "T", "--wall", "cylinder:.05,.05,.05,zmin=0,zmax=.1", "--wall-temperature", "500"},
+    {{HEAT, "--temperature", "T", "--wall", "cylinder:.05,.05,.05,zmin=0,zmax=open", "--wall-temperature", "500"},
      PLAIN,
      NULL,
      "through the wall cylinder by 0.24 of its radius (2 such cases in all)"},
@@ -70,6 +71,13 @@ static const struct {
      FRAME("0", OPEN, " T_C", ROWS(" 600", " 700", " 20")),
      NULL,
      NULL},
+    {{HEAT_AT("25"), "--temperature", "T"}, PLAIN, NULL, "--ambient 25 is taken as kelvins; --temperature-unit C"},
+    {{HEAT_AT("25"), "--temperature", "T", "--temperature-unit", "C"}, PLAIN, NULL, NULL},
+    {{HEAT_AT("4"), "--temperature", "T"}, PLAIN, NULL, NULL},
+    {{HEAT, "--temperature", "T", "--wall", "box", "--wall-temperature", "500"},
+     PLAIN,
+     NULL,
+     "--ambient has no effect, since no radiation leaves this bed"},
     {{HEAT, "--temperature", "T"},
      FRAME("0", OPEN, " T", ROWS(" 20", " 90", " 140")),
      NULL,

@@ -369,6 +369,10 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     if (!status)
         warn_temperatures(&request->bed.warned, bed, bed_options_column(&request->bed, &request->given.temperature),
                           request->given.zero, given.temperature);
+    if (!status && request->given.ambient && !request->given.ambient_curve.n)
+        warn_ambient(&request->bed.warned,
+                     &(struct ambient){sources->surroundings, request->given.zero, walls_closed(walls, bed)}, bed,
+                     given.temperature);
     if (!status) status = heat_arrays(&report.result, bed->n, request->solid.given);
     if (!status) status = heat_solid(request, bed);
     if (!status && request->bed.wall_vtp) status = triangle_heat_begin(&report.triangles, walls);

@@ -18,6 +18,7 @@ enum kind {
     MESH_SIZE,
     MESH_PLACE,
     CELSIUS,
+    AMBIENT,
     ABSOLUTE_ZERO,
     HEAT_CAPACITY,
     DENSITY,
@@ -34,6 +35,8 @@ enum kind {
 #define CUT_LARGE     0.1   /* depth of a wall in a sphere over the radius */
 #define PERIOD_OFF    1e-3  /* relative: users type boxes with few digits */
 #define SIZES_APART   200.0 /* ratio of the sizes of mesh and bed; metres for millimetres make 1000 */
+#define AMBIENT_LOW   10.0  /* [K] surroundings between these are rather degrees Celsius */
+#define AMBIENT_HIGH  60.0
 #define COLD          150.0 /* [K] a bed is hardly colder everywhere */
 #define CLOSED        1e-9  /* closed rows of walls add up to 1 within this */
 #define APART         0.1   /* sums of rows of walls may differ from 1 so much before closing; few directions: 0.01s */
@@ -233,6 +236,20 @@ void warn_temperatures(struct warned *warned, const struct bed *bed, const char 
                    "warning: sphere %lld has 0 K (%u spheres in all), others have up to %g K; is a value missing? With "
                    "--power, nan stands for an unknown temperature",
                    (long long)bed_name(bed, first), zeros, most);
+}
+
+void warn_ambient(struct warned *warned, const struct ambient *ambient, const struct bed *bed, const double *kelvins) {
+    double most = -1;
+    for (uint32_t i = 0; i < bed->n; ++i)
+        if (kelvins[i] > most) most = kelvins[i];
+    const bool celsius = ambient->zero == 0 && ambient->kelvins >= AMBIENT_LOW && ambient->kelvins <= AMBIENT_HIGH;
+    if (ambient->closed && most >= 0 && is_new(warned, AMBIENT))
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: --ambient has no effect, since no radiation leaves this bed; zmax=open opens a side");
+    if (!ambient->closed && celsius && (most < 0 || most >= COLD) && is_new(warned, AMBIENT))
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: --ambient %g is taken as kelvins; --temperature-unit C is for degrees Celsius",
+                   ambient->kelvins);
 }
 
 /* The index of the first value outside low to high. n: there is none. */

@@ -38,6 +38,16 @@ void warn_overlap(struct warned *warned, const struct bed *bed, const fibrad_sce
  * file's box ends within spheres, so that the box cannot be made of walls. */
 void warn_walls(struct warned *warned, const struct bed *bed, const struct walls *walls);
 
+/* What --ambient gives. */
+struct ambient {
+    double kelvins, zero; /* zero: 0 of the unit of the option [K] */
+    bool closed;          /* no radiation reaches the surroundings */
+};
+
+/* Warns if --ambient looks like degrees Celsius taken as kelvins, or if the bed is closed and a temperature is given.
+ * kelvins [bed->n]: NaN: not given. */
+void warn_ambient(struct warned *warned, const struct ambient *ambient, const struct bed *bed, const double *kelvins);
+
 /* Warns if temperatures look like degrees Celsius taken as kelvins, or if some are 0 K. column: where they come from,
  * as the file calls it; NULL: from no column. zero: 0 of the unit of the option [K]. kelvins [bed->n]: NaN: not given.
  */
