@@ -409,6 +409,8 @@ cppcheck:
 ## nightly: long checks that .ci/run leaves out: all bits, all sanitizers, clang-tidy, benches, longer fuzzing
 nightly: bits threads lint bench-quick programs
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
+	BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/couple/check_couple.sh all
+	BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/couple/check_lammps.sh all
 	$(MAKE) sanitized $(ALL_ISAS) OF_MEMORY="$(filter-out accuracy furnace reference reproduce,$(TESTS:tests/test_%.c=%))"
 	$(MAKE) fuzz-fixed $(ALL_ISAS) FUZZ_RUNS="read:40000 kernel:2000 host:300"
 	$(MAKE) fuzz $(ALL_ISAS) FUZZ_SECONDS=900
@@ -446,7 +448,7 @@ install: install-lib $(BUILD)/fibrad man
 	install $(BUILD)/fibrad $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(BUILD)/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	install -m 644 host/cli/man/fibrad.bash $(COMPLETIONS)/fibrad
-	install -m 644 README.md CHANGELOG.md LICENSE $(DESTDIR)$(PREFIX)/share/doc/fibrad
+	install -m 644 README.md CHANGELOG.md LICENSE CITATION.cff SECURITY.md $(DESTDIR)$(PREFIX)/share/doc/fibrad
 	install -m 644 docs/*.md $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs
 	install -m 644 docs/figures/* $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs/figures
 

@@ -1,6 +1,70 @@
 /* fibrad.h - view factors and exchange factors for thermal radiation between spheres, with walls around them.
  *
- * The library has no heap, no input or output, no threads of its own and no mutable global variables.
+ * This first page is enough for view factors: rows, and their matrix. The sections below have all the rest.
+ *
+ * A view factor F_ij is the fraction of the radiation leaving sphere i that reaches sphere j directly. Row i holds all
+ * factors from sphere i: to spheres, to walls and to the surroundings. The sum of a row is 1. In a matrix of all rows
+ * A_i F_ij = A_j F_ji, with the areas A of the spheres.
+ *
+ * The calls, in order
+ *   rows     1. fibrad_scene_init     a scene from centres and radii, and from walls and periods if there are any
+ *            2. fibrad_beam_row       a row of the scene: any sphere, in any order
+ *   matrix   3. fibrad_matrix_init    all rows of the scene
+ *            4. fibrad_matrix_close   makes them agree
+ *            5. fibrad_matrix_read    the matrix in compressed rows
+ *   threads  Several threads may call fibrad_beam_row. Each has a fibrad_work and a fibrad_rows of its own. Hand all
+ *            collections to fibrad_matrix_init.
+ *   accuracy Rows along lines have about half the error in the matrix: make one set by fibrad_line_set_init, and set
+ *            fibrad_beam_rule.lines. All threads share the set.
+ *
+ * Example: the matrix of n spheres by one thread. docs/embedding.md has complete programs.
+ *   static void *resize(void *context, void *block, size_t size) { return (void)context, realloc(block, size); }
+ *   ...
+ *   const fibrad_spheres spheres = {.x = x, .y = y, .z = z, .r = r, .n = n};
+ *   size_t size = fibrad_scene_size(n, 0);
+ *   fibrad_scene *scene;
+ *   int status = fibrad_scene_init(&scene, malloc(size), size, NULL, &spheres, NULL);
+ *
+ *   fibrad_work work = {.memory.resize = resize};
+ *   fibrad_rows rows = {.memory.resize = resize};
+ *   fibrad_row row = {.rows = &rows};
+ *   for (uint32_t i = 0; i < n && status == FIBRAD_OK; i++) status = fibrad_beam_row(scene, &work, i, NULL, &row);
+ *   if (status != FIBRAD_OK) return puts(fibrad_status_text(status)), 1;
+ *
+ *   fibrad_matrix *matrix;
+ *   fibrad_factors f;
+ *   size = fibrad_matrix_size(scene, &rows, 1, NULL);
+ *   status = fibrad_matrix_init(&matrix, malloc(size), size, scene, &rows, 1, NULL, NULL);
+ *   if (status == FIBRAD_OK) status = fibrad_matrix_close(matrix);
+ *   if (status == FIBRAD_OK) status = fibrad_matrix_read(matrix, &f);
+ *   The factors from sphere i are f.f[k] to the spheres f.col[k], for k from f.start[i] to f.start[i + 1] - 1.
+ *   f.escaped[i] is its factor to the surroundings, f.error[i] its estimated error.
+ *
+ * Words
+ *   wall           A plane, a cylinder or a mesh of triangles. Names in the code say `body` for a wall. Wall b is
+ *                  element b of fibrad_scene_config.body.
+ *   surroundings   What lies outside the scene, black. Radiation reaches them past everything, or through an opening.
+ *   direction      A unit vector. Directions of a row are spread evenly.
+ *   line           A direction and its opposite.
+ *   entry, column  An entry is one factor of a row. Its column is the index of the sphere that receives.
+ *   error of a row The root of the sum of the squared errors of the row's factors.
+ *
+ * Conventions
+ *   Units     All lengths have one unit L, which the caller chooses. Angles are in radians. Factors have no unit.
+ *             Temperatures are absolute.
+ *   Comments  The comment of a field begins with its unit and its shape. x[n] is an array of n elements. A range
+ *             "a to b" includes both ends. "out" marks a field that the function writes.
+ *   Memory    The library has no heap. The caller owns every block, and no function frees one. A block may have any
+ *             alignment and must stay in place. `X_init` makes an object inside a block and returns a pointer into it.
+ *             `X_size` returns the bytes that X_init needs, or 0 if an argument is not valid.
+ *   Threads   The library has no threads, no input or output and no mutable global variables. Threads may share const
+ *             objects. A fibrad_work or a fibrad_rows belongs to one thread at a time.
+ *   Errors    A function that can fail returns FIBRAD_OK or a negative fibrad_status. After an error the outputs are
+ *             as before, except where the function's comment says otherwise.
+ *   Defaults  Set all fields of a structure to 0. Then set the fields that you need. The comment of a field says what 0
+ *             means. "Zeroed" says what a structure of zeros means.
+ *   Bits      Results depend on the arguments alone. They are the same to the bit for every number of threads,
+ *             instruction set, compiler and optimisation level.
  *
  * Index        what for                                 functions and types
  *   status     what a call returned                     fibrad_status_text, fibrad_version
@@ -8,81 +72,23 @@
  *   isa        instruction sets, chosen at run time     fibrad_isa_best, _name
  *   direction  directions spread evenly over a sphere   fibrad_direction
  *   pair       two spheres with nothing in between      fibrad_pair_exact
- *   scene      spheres and walls                        fibrad_scene_size, _init, _describe, _body_area, _sphere
- *              where a bed has spheres                  fibrad_occupancy
+ *   scene      spheres, walls, divided beds             fibrad_scene_size, _init, _describe, _body_area, _sphere
  *   work       scratch memory of one thread             fibrad_work, FIBRAD_WORK_BYTES
- *   row        view factors from one sphere to all      fibrad_beam_row, fibrad_cast_row, fibrad_directions_for
+ *   row        one row, by beams or by rays             fibrad_beam_row, fibrad_cast_row, fibrad_directions_for
  *              one row, computed by several threads     fibrad_beam_part, _join
+ *              lines for the rows of a matrix           fibrad_line_set_lines, _size, _init, _count
  *   rows       a collection of rows                     fibrad_rows_add, _clear, _read
  *   matrix     all rows: averaged, reciprocal, closed   fibrad_matrix_size, _init, _average, _close, _read,
  *                                                       _reciprocity
- *              lines for the rows of a matrix           fibrad_line_set_lines, _size, _init, _count
  *   drift      which rows may stay when spheres move    fibrad_drift_row, _partners
  *   exchange   factors after reflections (grey)         fibrad_exchange_row, _body, _body_mean, _displacement
  *              spheres that conduct                     fibrad_relative_conductivity, fibrad_node_emissivity,
  *                                                       fibrad_exchange_walk
  *              powers from rows                         fibrad_rows_flow, fibrad_flow
  *
- * Other headers
- *   fibrad_limits.h   bounds and defaults of arguments
- *   fibrad_heat.h     net powers and temperatures
- *   fibrad_light.h    light from outside, sun or lasers
- *   fibrad_mesh.h     walls made of triangles
- *   fibrad_surface.h  the method of Bao, Gao and Tan
- *   fibrad_furnace.h  a box filled with a participating medium
- *
- * How to begin
- *   one row   fibrad_scene_init, then fibrad_beam_row.
- *   all rows  Each thread has a fibrad_work and a fibrad_rows. Call fibrad_beam_row for every sphere. Then call
- *             fibrad_matrix_init, _close and _read. Rows along lines have about half the error in the matrix. For
- *             these, call fibrad_line_set_init once, and set fibrad_beam_rule.lines. Threads share the set.
- *   example   fibrad_work work = {.memory = {.resize = resize}};
- *             fibrad_row row = {.col = col, .f = f, .capacity = 300};
- *             status = fibrad_scene_init(&scene, block, fibrad_scene_size(n, 0), NULL, &spheres, NULL);
- *             if (status == FIBRAD_OK) status = fibrad_beam_row(scene, &work, i, NULL, &row);
- *             docs/embedding.md has complete programs.
- *
- * Words
- *   wall             A plane, a cylinder or a mesh of triangles. Names in the code say `body` for a wall. Wall b is
- *                    element b of fibrad_scene_config.body.
- *   opening          A plane that is not a wall. The scene ends there, and the surroundings begin.
- *   surroundings     What lies outside the scene. The surroundings are black.
- *   view factor      F_ij is the fraction of the radiation leaving sphere i that reaches sphere j directly.
- *   exchange factor  D_ij is the fraction of the emission of sphere i that sphere j absorbs, directly or after diffuse
- *                    reflections.
- *   shadow disc      Seen along a direction, a sphere is a disc. This disc is its shadow disc.
- *   line             A direction and its opposite.
- *   window           The shadow disc of sphere i along one direction.
- *   beam             All parallel rays from sphere i through one window.
- *   open             Sphere i is open in a direction if some rays of its beam meet no sphere.
- *   cutoff           A distance between centres. A row with a cutoff leaves out the spheres that are farther from
- *                    sphere i.
- *   known region     A box. The scene has all spheres of the bed that reach into the box. Outside the box the bed may
- *                    have spheres that the scene does not have.
- *   row              Row i holds all factors from sphere i. An entry is one factor of a row. The column of an entry
- *                    is the index of the sphere that receives.
- *   error of a row   The root of the sum of the squared errors of the row's factors.
- *
- * Conventions
- *   Units     All lengths have one unit L, which the caller chooses. Angles are in radians. Factors have no unit.
- *             Temperatures are absolute.
- *   Comments  The comment of a field begins with its unit and its shape. x[n] is an array of n elements. A range
- *             "a to b" includes both ends. "out" marks a field that the function writes.
- *   Memory    The caller owns every block. A block may have any alignment. A block must stay in place while its object
- *             is used. No function frees a block. An `_init` function makes an object inside a block and returns a
- *             pointer into the block. Its twin `_size` returns the number of bytes that the object takes. If an
- *             argument of `_size` is not valid, `_size` returns 0.
- *   Threads   Threads may share const objects. A fibrad_work or a fibrad_rows belongs to one thread at a time.
- *   Errors    A function that can fail returns FIBRAD_OK or a negative fibrad_status. After an error the outputs are
- *             as before, except where the function's comment says otherwise. The error for a null pointer is
- *             FIBRAD_E_ARGUMENT. A scene is complete once fibrad_scene_init has returned FIBRAD_OK. The error for a
- *             scene that is not complete is FIBRAD_E_STATE. A fibrad_heat refers to one scene. If a
- *             different scene has been made in the memory of this scene, calls that read the scene return
- *             FIBRAD_E_STATE.
- *   Defaults  Set all fields of a structure to 0. Then set the fields that you need. The comment of a field says what 0
- *             means. "Zeroed" says what a structure of zeros means.
- *   Bits      Results depend on the arguments alone. They are the same to the bit for every number of threads,
- *             instruction set, compiler and optimisation level.
+ * Other headers: fibrad_limits.h (bounds and defaults), fibrad_heat.h (net powers and temperatures), fibrad_light.h
+ * (light from outside), fibrad_mesh.h (walls of triangles), fibrad_surface.h (the method of Bao, Gao and Tan),
+ * fibrad_furnace.h (a box with a participating medium).
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_H
@@ -101,7 +107,11 @@ extern "C" {
 #define FIBRAD_STEFAN_BOLTZMANN 5.670374419e-8 /* W/(m2 K4) */
 
 /* ---- status ---------------------------------------------------------------------------------------------------- */
-/* What a call returned. The numbers never change their meaning. FIBRAD_E_SUM has two causes: a row part was changed,
+/* What a call returned. The numbers never change their meaning. The error for a null pointer is FIBRAD_E_ARGUMENT. The
+ * error for a scene that is not complete is FIBRAD_E_STATE. A scene is complete once fibrad_scene_init has returned
+ * FIBRAD_OK. A fibrad_heat refers to one scene. If a different scene has been made in the memory of this scene, calls
+ * that read the scene return FIBRAD_E_STATE.
+ * FIBRAD_E_SUM has two causes: a row part was changed,
  * or the library has a fault. No status has the number -3. */
 typedef enum fibrad_status {
     FIBRAD_OK = 0,
@@ -221,7 +231,7 @@ typedef struct fibrad_plane {
     double at; /* L, coordinate of the plane on its axis */
 } fibrad_plane;
 
-/* A wall. A wall is known by its index in fibrad_scene_config.body.
+/* A wall. The number of a wall is its index in fibrad_scene_config.body.
  *
  * Planes and the cylinder bound a convex container. Hence no plane and no cylinder hides one sphere from another.
  *   planes    At most two planes lie across one axis: a lower one and, above it, an upper one. A periodic axis has no
@@ -252,9 +262,13 @@ typedef struct fibrad_body {
 } fibrad_body;
 
 /* Divided beds. Several machines may divide the spheres of a bed. Each machine computes the rows of its own spheres,
- * with a cutoff. Let R be the largest radius. Row i depends on the spheres whose centres lie within cutoff + 1.5 R of
- * centre i. If no spheres overlap, the distance cutoff + R suffices. Spheres farther away change no bit of row i. The
- * order of the spheres changes no bit either. Row i also depends on the walls, the occupancy and the ids.
+ * with a cutoff. The cutoff is a distance between centres: a row leaves out the spheres that are farther from sphere i.
+ * A scene may have a known region, a box. The scene then has all spheres of the bed that reach into the box. Outside
+ * the box the bed may have spheres that the scene does not have.
+ *
+ * What a row depends on. Let R be the largest radius. Row i depends on the spheres whose centres lie within cutoff
+ * + 1.5 R of centre i. If no spheres overlap, the distance cutoff + R suffices. Spheres farther away change no bit of
+ * row i. The order of the spheres changes no bit either. Row i also depends on the walls, the occupancy and the ids.
  *
  * The fraction `beyond`. The occupancy (fibrad_occupancy) marks the cells of a box in which the bed may have spheres.
  * Let the known space of row i be the ball whose radius is the cutoff, about centre i. If the scene has a known region,
@@ -434,6 +448,10 @@ typedef struct fibrad_work {
 #define FIBRAD_WORK_TRIANGLES             26784
 
 /* ---- row ------------------------------------------------------------------------------------------------------- */
+/* Words of this section. Seen along a direction, a sphere is a disc. This disc is its shadow disc. The shadow disc of
+ * sphere i is the window of the direction. A beam is all parallel rays from sphere i through one window. Sphere i is
+ * open in a direction if some rays of its beam meet no sphere. */
+
 typedef struct fibrad_rows fibrad_rows; /* a collection of rows, see below */
 
 /* One row of factors. The caller chooses where the entries go.
@@ -457,7 +475,7 @@ typedef struct fibrad_row {
     uint32_t sphere;     /* out: i */
     uint32_t length;     /* out: number of entries */
     double escaped;      /* out: fraction that reaches the surroundings, through an opening or past everything */
-    double beyond;       /* out: fraction whose target the row does not know */
+    double beyond;       /* out: fraction that leaves the cutoff or the known region; where it ends is not computed */
     double error;        /* out: estimated error of the row; in the median it is twice the true error */
     uint32_t directions; /* out: directions taken; rows by rays: 0 */
     uint32_t fallbacks;  /* out: windows that needed a slower, more robust method; rows by rays: 0 */
@@ -467,7 +485,7 @@ typedef struct fibrad_row {
                             lines; infinity: the factor is exact, since nothing can come between both spheres. May be
                             NULL. Rows in a collection keep it. */
     double noise, shares; /* out, of a row along lines: the parts of `error` that come from the points of masks, and
-                             from the shares of walls and surroundings */
+                             from the factors of walls and surroundings */
 } fibrad_row;
 
 /* ---- lines ----------------------------------------------------------------------------------------------------- */
@@ -627,9 +645,9 @@ struct fibrad_rows {
     uint64_t entries;  /* out: entries of all rows */
 };
 
-/* Appends a row that was computed elsewhere, on another machine for example. A row does not tell its scene. So a matrix
- * takes this row for a row of its own scene, if that has such a sphere. If the row is of another scene, no call
- * notices.
+/* Appends a row that was computed elsewhere, on another machine for example. A row does not say which scene it is from.
+ * So a matrix takes this row for a row of its own scene, if that has such a sphere. If the row is of another scene, no
+ * call notices.
  *   Input    row: sphere, col, f, length, body, escaped, beyond, error, symmetric. row->rows must be NULL. The columns
  *            ascend. Each factor is 0 to 1.01. Of a row along lines also lines, half, noise and shares.
  *            bodies: elements of row->body
@@ -651,13 +669,13 @@ int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
 /* ---- matrix ---------------------------------------------------------------------------------------------------- */
 /* The row of a wall. fibrad_exchange_body makes one batch of the row. fibrad_exchange_body_mean makes the row, the mean
  * of all batches. The factors of the row add up to 1. If the emissivity of the wall is 0, all factors of the row are 0.
- * Paths among surfaces that absorb little are broken off after many rays. The fraction lost is what such paths still
- * carry. */
+ * Paths among surfaces that absorb little end after many rays. The fraction lost is what such paths still carry then.
+ */
 typedef struct fibrad_body_row {
     double body[FIBRAD_BODIES_MAX]; /* factor to each wall; a batch may have a factor a little below 0, by chance */
     double spheres;                 /* factor to all spheres together */
     double escaped;                 /* factor to the surroundings */
-    double error;                   /* of the mean: estimated error; of a batch: the fraction lost, see above */
+    double error;                   /* in the mean: the estimated error; in a batch: the fraction lost, see above */
     uint64_t rays;                  /* rays traced */
     uint64_t paths;                 /* paths followed; of the mean: those of all batches */
 } fibrad_body_row;
@@ -694,7 +712,7 @@ typedef struct fibrad_matrix_rule {
  * rows, the three arrays body_body, body_escaped and body_error are NULL. If walls have rows, the elements of these
  * arrays for an endless wall are NaN.
  *
- * `changed` tells whether the raw rows agree with each other. Raw row i gives fractions of its radiation to walls, to
+ * `changed` shows whether the raw rows agree with each other. Raw row i gives fractions of its radiation to walls, to
  * the surroundings and to `beyond`. The matrix changes these fractions. The change of row i is the root of the sum of
  * the squared differences. `changed` is the largest ratio of a row's change to the row's error. For rows along lines
  * that error is at least 5 times the error of the raw row. A value well above 1 means that the raw rows contradict each
@@ -705,7 +723,7 @@ typedef struct fibrad_factors {
     const uint32_t *col;        /* [start[n]], columns, ascending within each row */
     const double *f;            /* [start[n]], factor from i to col */
     const double *escaped;      /* [n], factor to the surroundings */
-    const double *beyond;       /* [n], fraction whose target is not known */
+    const double *beyond;       /* [n], fraction that leaves the cutoff or the known region, as in fibrad_row */
     const double *error;        /* [n], estimated error of each row */
     const double *body;         /* [n][bodies], factors to walls */
     const double *body_body;    /* [bodies][bodies], factors from wall to wall */
@@ -763,10 +781,13 @@ int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
  *   1. All tasks that are left are averaged.
  *   2. Let rest_i be what row i leaves for walls, surroundings and `beyond` together. u_i is found with
  *      u_i (sum over j of F_ij u_j + rest_i) = 1. F_ij is multiplied by u_i u_j. Exact factors are not multiplied.
- *      FIBRAD_ROWS_AREAS: rest_i = max(0, 1 - averaged sum) in two cases. Some window of raw row i is open, or the
- *      averaged sum lacks more of 1 than 5 times its noise. Otherwise rest_i = 0. Rows not along lines, without an open
- *      window, have rest_i = 0.
- *      FIBRAD_ROWS_SAMPLED and _EXCHANGE: rest_i = max(0, 1 - raw sum).
+ *        FIBRAD_ROWS_     row i                                          rest_i
+ *        AREAS            has an open window                             max(0, 1 - averaged sum)
+ *                         has none, is along lines, and its averaged
+ *                         sum is below 1 by more than 5 times its noise  1 - averaged sum
+ *                         any other                                      0
+ *        SAMPLED          any                                            max(0, 1 - raw sum)
+ *        EXCHANGE         any                                            max(0, 1 - raw sum)
  *      If a sum is still above 1, F_ij is then multiplied by min(s_i, s_j), where s_i brings the sum of row i to 1.
  *   3. Let F_ic be the factors of row i to what is no sphere: c is a wall, `escaped` or `beyond`. They are scaled so
  *      that the sum of the row is 1. If all of them are 0, they become
@@ -828,7 +849,9 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
                           double *error);
 
 /* ---- exchange -------------------------------------------------------------------------------------------------- */
-/* How exchange factors are computed. All surfaces are grey and diffuse. A surface of emissivity 0 reflects everything.
+/* How exchange factors are computed. The exchange factor D_ij is the fraction of the emission of sphere i that sphere j
+ * absorbs, directly or after diffuse reflections. All surfaces are grey and diffuse. A surface of emissivity 0 reflects
+ * everything.
  *
  * Radiation first travels from sphere i to the surface that it meets. This first leg is a beam row. With up to 49
  * directions the beam row takes 64 points per window. With 50 to 144 directions it takes 256 points. With more
@@ -857,15 +880,16 @@ typedef struct fibrad_exchange_rule {
     const double *conductivity;
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */
     uint32_t flights;              /* of _walk, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
-    /* [bodies + 1], or NULL: what other paths of sphere i gave to each wall and, last, to the surroundings. The unit is
-     * a path. What a path gave before its first reflection does not count. NaN: not known. Row i gives to a wall the
-     * mean over its own paths and these. Other entries are scaled so that the sum of the row is 1.
+    /* [bodies + 1], or NULL: what each wall and, last, the surroundings absorb of further paths of sphere i that
+     * somebody else has followed. The unit is a path. What a path gives before its first reflection does not count.
+     * NaN: nobody has counted it. The factor to a wall is then the mean over the paths of this call and the further
+     * ones. Other entries are scaled so that the sum of the row is 1.
      *
-     * fibrad_exchange_body tells as much. Let a wall have the area A_b and the emissivity e_b. What sphere i absorbs of
-     * n paths from this wall is what the wall absorbs of n A_i e_i/(A_b e_b) paths of sphere i. If spheres conduct,
-     * e_i is node_emissivity. */
+     * Paths that begin at walls (fibrad_exchange_body) can take the place of further paths, by reciprocity. Let a wall
+     * have the area A_b and the emissivity e_b. If sphere i absorbs x of n paths from this wall, then the wall absorbs
+     * x of n A_i e_i/(A_b e_b) paths of sphere i. If spheres conduct, e_i is node_emissivity. */
     const double *known;
-    double known_paths; /* number of these other paths, 0 or more; the same for all walls */
+    double known_paths; /* number of the further paths, 0 or more; the same for all walls */
 } fibrad_exchange_rule;
 
 /* The relative conductivity k* = k_s/(4 d sigma T^3) of a sphere of diameter d. The smaller k* is, the more the

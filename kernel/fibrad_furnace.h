@@ -15,7 +15,7 @@
  *            2. fibrad_furnace_trace traces every bundle of the plan once, into one tally for each thread.
  *            3. fibrad_furnace_tally_add adds the tallies up.
  *            4. fibrad_furnace_estimate or fibrad_furnace_equilibrium evaluates the sum.
- *            Repeat from step 1 with the same tallies. After a restart the tallies must be empty. A tally knows which
+ *            Repeat from step 1 with the same tallies. After a restart the tallies must be empty. A tally records which
  *            bundles it holds. A call returns FIBRAD_E_STATE if a bundle is missing or was traced twice, or if a tally
  *            belongs to another furnace or restart.
  * Units      metres, watts and kelvins. Words, memory, errors and the layout of comments are as in fibrad.h.

@@ -114,7 +114,8 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * is in units of sigma K^3 L. If lengths are in millimetres and sigma is in W/(m2 K4), a solid of 30 W/(m K) has the
  * conductivity 30/0.001.
  *
- * To a given power, add the light that the surface absorbs (fibrad_heat_sum_light). `absorbed` tells where it heats:
+ * To a given power, add the light that the surface absorbs (fibrad_heat_sum_light). `absorbed` is where this light
+ * heats:
  *   a sphere with a finite conductivity  is hotter at the lit patches
  *   an insulated wall                    sends the light out as thermal radiation, at the same patch; it has no power
  *   any other sphere or wall             `absorbed` has no effect
@@ -128,7 +129,8 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *
  * The residual is the error of the equations for J, relative to what drives the radiation: differences of emission,
  * given powers and light. tolerance = 0 stands for 1e-3, for 1e-5 if a temperature is unknown and its hold is 0, and
- * for 1e-12 with up to 16 spheres.
+ * for 1e-12 with up to 16 spheres. The search also goes on until the power of each wall is settled to the tolerance,
+ * relative to the larger of this power and 5 % of what the wall absorbs.
  * side_temperature is in the order of the caller's triangles. If sides share a patch, each side emits the mean of their
  * emissions. */
 typedef struct fibrad_heat_sources {
@@ -169,12 +171,10 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources);
  *            surface that radiates or has a given temperature; fault.why is FIBRAD_WHY_ALONE */
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_fault *fault);
 
-/* Begins a solution. It starts from the radiosities of the last solution, if there was one, and if both or neither have
- * `light`. After the call only the arrays `light`, `absorbed` and those of contacts are still needed. They must stay
- * until the solution is read.
- *   Errors   as fibrad_heat_check
- *            _STATE: a task is not traced, or the scene has changed
- *   Cost     O(patches) */
+/* Begins a solution. It starts from the radiosities of the last solution. It starts anew if there was none, or if only
+ * one of the two solutions has `light`. After the call only the arrays `light`, `absorbed` and those of contacts are
+ * still needed. They must stay until the solution is read. Errors   as fibrad_heat_check _STATE: a task is not traced,
+ * or the scene has changed Cost     O(patches) */
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources);
 
 /* Does one part of a sweep. Between two steps each part is swept once. Several threads may sweep different parts at the
@@ -241,9 +241,10 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result);
 /* Reads the solution on the sides of triangles: element 2 t is the front and 2 t + 1 the back of the caller's triangle
  * t. A value is the mean over the patches of the side. Sides that share a patch have equal values. Flux times area,
  * summed over the sides of a mesh, is to rounding:
- *   an insulated mesh, or `absorbed` is NULL   body_power
- *   another mesh                               body_power + the light that the mesh absorbs
- *   a mesh that a plane or the cylinder cuts   neither of these
+ *   a mesh that a plane or the cylinder cuts        none of the following
+ *   a mesh that is insulated                        body_power
+ *   any other mesh, if sources.absorbed is NULL     body_power
+ *   any other mesh, if sources.absorbed is an array body_power + the light that the mesh absorbs
  *   Output   flux[2 triangles]: net power per area [sigma K^4]; may be NULL. NaN: the side belongs to no wall, or no
  *            beam and no ray reaches it.
  *            temperature[2 triangles]: [K]; may be NULL. NaN: the side belongs to no wall, its wall has no temperature,

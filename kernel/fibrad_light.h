@@ -5,17 +5,16 @@
  * Other spheres and walls may hide parts of this disc. The sphere takes the light on the open part. The areas of open
  * parts are exact.
  *
- * Sequence   1. fibrad_light_empty tells how much light would end on each wall if there were neither spheres nor
- *               triangles. It also tells how much light would leave the bed.
- *            2. fibrad_light_spheres tells how much light each sphere of a range takes. It also tells how much of that
- *               light would end on each wall, or leave the bed, if there were neither spheres nor triangles: `kept`.
- *            The light that ends on wall b is ends.body[b] of step 1 minus the sum of kept.body[b] over all ranges. The
- *            light that leaves the bed is ends.through minus the sum of kept.through. Triangles take a part
- *            of both: fibrad_heat_shine_walls tells how much.
- *            fibrad_heat_shine does step 2 for a heat problem, and puts the light on patches.
- * Units      as in fibrad.h. A power is in units of flux times L^2. With a flux of 1 it is an area.
- * Words      Memory, errors and the layout of comments are as in fibrad.h.
- * Source     docs/methods_heat.md, Light from outside. docs/heat.md says what is assumed.
+ * Sequence   1. fibrad_light_empty finds how much light would end on each wall, and how much would leave the bed, if
+ *               there were neither spheres nor triangles.
+ *            2. fibrad_light_spheres finds how much light each sphere of a range takes. `kept` is where this light
+ * would end if there were neither spheres nor triangles: how much on each wall, how much outside the bed. The light
+ * that ends on wall b is ends.body[b] of step 1 minus the sum of kept.body[b] over all ranges. The light that leaves
+ * the bed is ends.through minus the sum of kept.through. Triangles take a part of the light on walls and of the light
+ * that leaves. fibrad_heat_shine_walls finds these parts. fibrad_heat_shine does step 2 for a heat problem, and puts
+ * the light on patches. Units      as in fibrad.h. A power is in units of flux times L^2. With a flux of 1 it is an
+ * area. Words      Memory, errors and the layout of comments are as in fibrad.h. Source     docs/methods_heat.md, Light
+ * from outside. docs/heat.md says what is assumed.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_LIGHT_H
@@ -66,7 +65,7 @@ typedef struct fibrad_light_ends {
 /* Where light ends if there are neither spheres nor triangles.
  *   Output   ends: spheres is 0, the others add up to the power of the light
  *            fault: which sphere is at fault, and why; may be NULL
- *   Errors   _ARGUMENT: fault.why tells the cause
+ *   Errors   _ARGUMENT: fault.why is the cause
  *              FIBRAD_WHY_LIGHT: a number is out of range
  *              FIBRAD_WHY_DARK: no open face lets the light in
  *              FIBRAD_WHY_FOOTPRINT: the light meets a sphere before the disc
@@ -80,7 +79,7 @@ int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibra
  * time.
  *   Input    from, to: spheres from to to - 1, up to the number of spheres
  *   Output   power[to - from]: the light that falls on each sphere, absorbed or not
- *            kept: `spheres` is the sum of `power`. `body` and `through` tell where this light would end if there were
+ *            kept: `spheres` is the sum of `power`. `body` and `through` are where this light would end if there were
  *            neither spheres nor triangles. They add up to `spheres`.
  *   Errors   as fibrad_light_empty
  *   Cost     2 microseconds for each sphere and direction; work memory has 8 bytes for each sphere */
@@ -147,10 +146,10 @@ uint32_t fibrad_heat_scatter_tasks(uint32_t rays);
 int fibrad_heat_scatter(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t rays,
                         uint32_t task, fibrad_light_ray *ray);
 
-/* The light that comes straight from outside, on the patches of walls. Rays tell which patches of a wall are lit,
+/* The light that comes straight from outside, on the patches of walls. Rays find which patches of a wall are lit,
  * and which part of the light ends on triangles.
  *   Input    ray[rays]: of fibrad_heat_scatter
- *            ends: of fibrad_light_empty, less `kept` of all tasks
+ *            ends: the `ends` of fibrad_light_empty minus the sum of `kept` over all tasks, field by field
  *   Output   hits[fibrad_heat_patches]: the light is added to it
  *            ends: triangles have taken their part from other walls and from `through`
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY */

@@ -17,12 +17,13 @@
  * Edges    Two triangles share an edge if their corners have equal coordinates. Nothing passes between them.
  * Walls    Planes and the cylinder bound the scene. The part of a triangle that lies beyond them has no effect.
  * Periods  Triangles repeat along the periodic axes of the scene. Their corners may lie outside the box.
- * Bounds   Along each axis all triangles together have an extent. Let l be half of the largest extent. No coordinate of
+ * Bounds   Triangles must not be too far from the origin for their size, and must not reach over too many periods.
+ *          Otherwise fibrad_scene_init returns FIBRAD_E_ARGUMENT, and fault.triangle is such a triangle. In numbers:
+ *          along each axis all triangles together have an extent. Let l be half of the largest extent. No coordinate of
  *          corners, spheres and planes may be above 3e13 l. For each periodic axis let m = 2 + (extent along the axis +
- *          largest diameter of a sphere)/period. The product of all m may be at most 4096. Otherwise fibrad_scene_init
- *          returns FIBRAD_E_ARGUMENT, and fault.triangle is a triangle that is too far away, too small or too long.
- * Cutoffs  A row with a cutoff meets a triangle beyond the cutoff if the occupancy of the scene has no spheres in
- *          between.
+ *          largest diameter of a sphere)/period. The product of all m may be at most 4096.
+ * Cutoffs  Radiation of a row with a cutoff may end on a triangle beyond the cutoff. It does if the occupancy of the
+ *          scene marks no cell on its way there.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_MESH_H

@@ -24,7 +24,7 @@ static double error_of(const struct bed *bed, uint32_t i, uint32_t directions, d
     return sqrt(square);
 }
 
-TEST(lattices) {
+TEST(rows_of_lattices_are_right) {
     for (int kind = 0; kind < 3; kind++) {
         OWNED_BED bed = lattice("pif"[kind], 8);
         double error = error_of(&bed, 0, 4181, 1e-5);
@@ -33,7 +33,7 @@ TEST(lattices) {
     }
 }
 
-TEST(small_scenes) {
+TEST(rows_of_small_scenes_are_right) {
     double worst = 0;
     for (uint64_t seed = 0; seed < 12; seed++) {
         OWNED_BED bed = packing(3 + (uint32_t)(seed % 6), .3, 1.2, .3, seed, false);
@@ -46,7 +46,7 @@ TEST(small_scenes) {
 
 /* An obstacle stands near a pair of spheres: it touches both, it touches their common tangent cone from outside or from
  * inside, or it stands in the middle. */
-TEST(tangent_obstacles) {
+TEST(tangent_obstacles_leave_rows_right) {
     double h = sqrt(3);
     struct bed beds[] = {BED({0, 0, 0, 1}, {0, 0, 2, 1}, {h, 0, 1, 1}),
                          BED({0, 0, 0, 1}, {0, 0, 4, 1}, {1.5, 0, 2, .5}),

@@ -135,7 +135,7 @@ static double random_in(double low, double high) {
     return low + (high - low) * bed_make_random(77, count++);
 }
 
-TEST(random_windows) {
+TEST(random_windows_have_the_areas_of_slices) {
     double worst = 0;
     for (int round = 0; round < 3000; round++) {
         struct window w = {0};
@@ -152,7 +152,7 @@ TEST(random_windows) {
     ck_assert_double_eq(fallbacks_part(), 0);
 }
 
-TEST(hundreds_of_discs) {
+TEST(hundreds_of_discs_have_the_areas_of_slices) {
     double worst = 0;
     for (int round = 0; round < 10; round++) {
         struct window w = {0};
@@ -168,7 +168,7 @@ TEST(hundreds_of_discs) {
 }
 
 /* The discs are 1e-6 to 1e6 times as large as the window, and their edges cross it. */
-TEST(large_and_small_discs) {
+TEST(discs_of_all_sizes_have_the_areas_of_slices) {
     for (int power = -6; power <= 6; power++) {
         double worst = 0;
         for (int round = 0; round < 200; round++) {
@@ -189,7 +189,7 @@ TEST(large_and_small_discs) {
 
 /* Lattices have such windows: circles that are tangent, identical, concentric, or meet in one point, exactly and
  * almost. */
-TEST(degenerate_windows) {
+TEST(degenerate_windows_have_the_areas_of_slices) {
     static const double nudges[] = {0, 0x1p-52, -0x1p-52, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9, 1e-6, -1e-6};
     double worst = 0;
     for (size_t a = 0; a < sizeof nudges / sizeof *nudges; a++)
@@ -229,7 +229,7 @@ TEST(degenerate_windows) {
 }
 
 /* Perfect lattices seen along symmetry axes and next to them. */
-TEST(lattices_along_their_axes) {
+TEST(lattices_are_right_along_their_axes) {
     static const double axes[][3] = {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 1, 2}, {0, 1, 2}, {1, 2, 3}};
     double worst = 0;
     for (int kind = 0; kind < 3; kind++)
@@ -265,7 +265,7 @@ TEST(lattices_along_their_axes) {
 
 /* Both methods are compared on windows whose circles meet in multiples of 1/4 ... 1/8 of a radius, or beside such
  * points by as much as decides between the methods. */
-TEST(clipping_against_accounts) {
+TEST(clipping_agrees_with_the_arrangement) {
     OWNED_AREAS areas = areas_make();
     double worst = 0, clipped[MOST + 1], robust[MOST + 1], many[MOST + 1];
     uint32_t left[2] = {0, 0}; /* windows left to arrangements, by ordinary clipping and by clipping for many discs */
@@ -297,7 +297,7 @@ TEST(clipping_against_accounts) {
 
 /* In all instruction sets the same windows are degenerate, and the areas have the same bits. Every second window is
  * clipped for many discs. */
-TEST(bits_of_windows) {
+TEST(windows_have_the_same_bits_everywhere) {
     const struct isas isas = isas_there();
     OWNED_AREAS areas = areas_make();
     double first[MOST + 1], other[MOST + 1];
@@ -326,7 +326,7 @@ TEST(bits_of_windows) {
 
 /* The window has many small discs, then large ones and a degenerate one. So the arrangement begins in memory that dense
  * clipping has filled. The lanes beyond its last arc must not look up what is no circle. */
-TEST(arrangement_after_dense_clipping) {
+TEST(the_arrangement_begins_where_dense_clipping_ends) {
     OWNED_AREAS areas = areas_make();
     const struct isas isas = isas_there();
     double first[MOST + 1], other[MOST + 1];
@@ -351,7 +351,7 @@ TEST(arrangement_after_dense_clipping) {
 
 /* Arrangements treat the windows that clipping must not decide, and these are counted. Ordinary windows are left to
  * clipping. */
-TEST(doubts) {
+TEST(clipping_leaves_close_decisions_to_the_arrangement) {
     const struct window degenerate[] = {
         {.n = 1, .u = {0}, .v = {0}, .r = {1}},                                            /* equal to the window */
         {.n = 2, .u = {.5, .5}, .v = {.1, .1}, .r = {.4, .4}},                             /* identical */
@@ -395,7 +395,7 @@ static double open_turned(fibrad_areas *areas, const struct method *method, cons
 }
 
 /* The slope of the open area is its derivative. */
-TEST(slope_of_the_open_area) {
+TEST(the_slope_is_the_derivative_of_the_open_area) {
     OWNED_AREAS areas = areas_make();
     uint32_t there = 0;
     for (uint64_t seed = 0; seed < 300; seed++) {

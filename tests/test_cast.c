@@ -48,7 +48,7 @@ TEST(two_spheres_match_the_exact_pair) {
 
 /* Unit spheres are H apart. The error at 200,000 rays, and the mean length and angle of the rays, are those of
  * docs/reproduction.md. */
-TEST(pebble_table) {
+TEST(rays_have_the_errors_of_the_pebble_table) {
     static const struct {
         double h, error, length, angle;
     } table[] = {{2, .003, .3590, 30.84},
@@ -193,7 +193,7 @@ TEST(rays_agree_with_beams) {
     }
 }
 
-TEST(seeds) {
+TEST(seeds_give_other_rays) {
     OWNED_BED bed = packing(200, .8, 1.2, .5, 5, true);
     for (int random = 0; random <= 1; random++) {
         OWNED_ROW a = cast(&bed, 3, (fibrad_cast_rule){1000, random, 7, 0}, FIBRAD_ISA_BEST);
@@ -283,7 +283,7 @@ TEST(rays_end_after_100_periods) {
 }
 
 /* Spheres beyond the cutoff neither receive nor block. */
-TEST(cutoff) {
+TEST(spheres_beyond_the_cutoff_do_nothing) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 3, 1}, {0, 0, 40, 30});
     OWNED_ROW all = cast(&bed, 0, (fibrad_cast_rule){.rays = 5000}, FIBRAD_ISA_BEST);
     OWNED_ROW near = cast(&bed, 0, (fibrad_cast_rule){.rays = 5000, .cutoff = 3}, FIBRAD_ISA_BEST);
@@ -295,7 +295,7 @@ TEST(cutoff) {
     ck_assert_double_eq(none.beyond, 1); /* the other sphere is there */
 }
 
-TEST(refusals_and_capacities) {
+TEST(bad_arguments_and_short_arrays_are_refused) {
     OWNED_BED bed = packing(200, .8, 1.2, .5, 5, true);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_work work = work_growing();

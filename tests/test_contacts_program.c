@@ -1,5 +1,7 @@
 /* test_contacts_program.c - contacts and gas of the program: options, files, messages. SPDX-License-Identifier: MIT */
+#include "bed/bed.h"
 #include "program.h"
+#include "scenes.h"
 
 FIXTURE(make_folder, remove_folder)
 
@@ -37,18 +39,37 @@ TEST(a_row_conducts) {
     assert_has(read_file(q), "T_error_K,q_radiation_W,q_conduction_W,body\n");
 }
 
+/* The text after the first `what`. */
+static char *after(char *text, const char *what) {
+    char *at = strstr(text, what);
+    ck_assert_ptr_nonnull(at);
+    return at + strlen(what);
+}
+
 /* Radiation and conduction are the two parts of the power of each body. Files and spots may be combined, and each frame
  * may have a file of its own. */
 TEST(parts_add_up) {
-    const char *q = in_folder("q.csv"), *json = in_folder("q.json");
+    const char *q = in_folder("q.csv"), *json = in_folder("q.json"), *dump = in_folder("q.dump"),
+               *vtp = in_folder("q.vtp");
     write_file("c.0.csv", "i,j,W/K\n0,2,0.001\n0,2,0.002\n");
     SUCCEED("heat", ROW, "--emissivity", "0.8", "--contacts", in_folder("c.*.csv"), "--contacts", "hertz",
-            "--contact-conductivity", "30", "--gas-conductivity", "0.1", "-o", q, "-o", json);
+            "--contact-conductivity", "30", "--gas-conductivity", "0.1", "-o", q, "-o", json, "-o", dump, "-o", vtp);
     for (int i = 0; i < 5; ++i)
         ck_assert_double_le(fabs(column(q, i, 2) - column(q, i, 5) - column(q, i, 6)),
                             1e-9 * (1 + fabs(column(q, i, 2))));
     ck_assert_double_eq(value_of("contacts"), 5);
-    assert_has(read_file(json), "\"q_conduction_W\":[");
+    char *text = read_file(json);
+    const double conducted = strtod(after(text, "\"q_conduction_W\":["), NULL),
+                 radiated = strtod(after(text, "\"q_radiation_W\":["), NULL);
+    assert_near(conducted, column(q, 0, 6), 1e-12);
+    assert_near(radiated + conducted, -40, 1e-9);
+    assert_near(strtod(after(after(text, "\"zmin\""), "\"q_conduction_W\":"), NULL), column(q, 4, 6), 1e-12);
+    text = after(read_file(dump), "T_K q_W q_radiation_W q_conduction_W P\n0 0 0 0.01 0.01 ");
+    text = after(text, " -40 ");
+    assert_near(strtod(text, &text), radiated, 1e-12);
+    assert_near(strtod(text, NULL), conducted, 1e-12);
+    assert_has(read_file(vtp), "Name=\"q_radiation_W\"");
+    assert_has(read_file(vtp), "Name=\"q_conduction_W\"");
     SUCCEED("heat", ROW, "--emissivity", "0.8", "--contacts", "hertz", "--contact-conductivity", "30", "--until", "60",
             "--heat-capacity", "800", "--density", "2500", "--temperature", "500", "-o", q);
     ck_assert_double_lt(fabs(value_of("balance_of_stored")), 1e-10);
@@ -66,6 +87,97 @@ TEST(a_lattice_conducts) {
     assert_near(conduction, 2 * 30 * sqrt(1.0005 * 1.0005 - 1) / 2, 1e-6);
     ck_assert_double_le(fabs(value_of("k_total_z_W_mK") - conduction - radiation), 2e-3 * radiation);
     assert_near(radiation, value_of("F_E_steady_z") * 4 * 5.670374419e-8 * 1e9 * 2.001e-2, 2e-2);
+}
+
+/* Rows of spheres, each of which conducts to the next one by .5 and .1 W/K in turn, across the period, too: the two are
+ * in series. */
+TEST(contacts_in_series_across_a_period) {
+    enum { ROWS = 4, LONG = 32 };
+    const char *k = in_folder("k.csv"), *json = in_folder("k.json");
+    char text[8000] = "x,y,z,radius\n", *at = text + strlen(text), pairs[4000] = "i,j,W/K\n",
+         *to = pairs + strlen(pairs);
+    for (int i = 0; i < ROWS * LONG; ++i) {
+        at += sprintf(at, "%d,%d,%d,1\n", 2 * (i % 2) + 1, 2 * (i / 2 % 2) + 1, 2 * (i / ROWS) + 1);
+        to += sprintf(to, "%d,%d,%s\n", i, (i + ROWS) % (ROWS * LONG), i / ROWS % 2 ? ".5" : ".1");
+    }
+    SUCCEED("conductivity", write_file("rows.csv", text), "--periodic", "4,4,64", "--length-unit", "m", "--emissivity",
+            "0.8", "--temperature", "1000", "--steady", "--axis", "z", "--contacts", contacts(pairs), "--rays", "100",
+            "-o", k, "-o", json);
+    const double truth = 2 / (1 / .1 + 1 / .5) * 2 / 4;
+    assert_near(value_of("k_conduction_z_W_mK"), truth, 1e-9);
+    assert_near(column(k, 0, 15), truth, 1e-9);
+    assert_near(strtod(after(read_file(json), "\"k_conduction_W_mK\":"), NULL), truth, 1e-9);
+    assert_has(read_file(k), "warning,k_total_W_mK,k_total_W_mK_error,k_radiation_W_mK,");
+    assert_has(printed, "\nends_z periodic\n");
+
+    /* three rows between plates, and two spheres of the fourth one that touch only each other */
+    to = pairs + sprintf(pairs, "i,j,W/K\n63,67,.2\n");
+    for (int i = 0; i < ROWS * (LONG - 1); ++i)
+        if (i % ROWS < 3) to += sprintf(to, "%d,%d,.3\n", i, i + ROWS);
+    SUCCEED("conductivity", in_folder("rows.csv"), "--periodic", "4,4,0", "--length-unit", "m", "--emissivity", "0.8",
+            "--temperature", "1000", "--steady", "--axis", "z", "--contacts", contacts(pairs), "--rays", "100");
+    assert_near(value_of("k_conduction_z_W_mK"), .3 * 2 / 4 * 3 / 4, 1e-5);
+    assert_has(printed, "\nends_z plates\n");
+}
+
+/* Writes copies of a periodic bed, one above the other. */
+static const char *stack_of(const struct bed *bed, uint32_t copies) {
+    char text[60000] = "x,y,z,radius\n", *at = text + strlen(text);
+    for (uint32_t c = 0; c < copies; ++c)
+        for (uint32_t i = 0; i < bed->n; ++i)
+            at += sprintf(at, "%.12g,%.12g,%.12g,%.12g\n", bed->x[i], bed->y[i], bed->z[i] + c * bed->period[2],
+                          bed->r[i]);
+    return write_file(formatted("bed%u.csv", copies), text);
+}
+
+/* Writes their contacts: pairs of centres nearer than 2.3, with different conductances. One copy is periodic along z.
+ */
+static const char *network_of(const struct bed *bed, uint32_t copies) {
+    char pairs[80000], *to = pairs + sprintf(pairs, "i,j,W/K\n");
+    for (uint32_t i = 0; i < copies * bed->n; ++i)
+        for (uint32_t j = 0; j < i; ++j) {
+            double square = 0;
+            for (int axis = 0; axis < 3; ++axis) {
+                const double *at = bed_centres(bed, axis), period = bed->period[axis], up = i / bed->n - j / bed->n;
+                const double apart = at[i % bed->n] - at[j % bed->n] + (axis == 2 ? up * period : 0);
+                square += pow(apart - (axis == 2 && copies > 1 ? 0 : period * round(apart / period)), 2);
+            }
+            if (square < 2.3 * 2.3) to += sprintf(to, "%u,%u,%g\n", i, j, .02 * (1 + i % bed->n * (j % bed->n) % 4));
+        }
+    return write_file(formatted("network%u.csv", copies), pairs);
+}
+
+/* Temperatures that rise from one period to the next, and plates at both ends of two periods, agree. */
+TEST(periods_and_plates_agree) {
+    struct bed bed = packing(250, .8, 1.2, .55, 3, true);
+    double k[2][3], error[2][3];
+    static const char *const names[3] = {"k_total_z_W_mK", "k_radiation_z_W_mK", "k_conduction_z_W_mK"};
+    for (uint32_t copies = 1; copies <= 2; ++copies) {
+        SUCCEED("conductivity", stack_of(&bed, copies), "--periodic",
+                formatted("%.17g,%.17g,%.17g", bed.period[0], bed.period[1], copies > 1 ? 0 : bed.period[2]),
+                "--length-unit", "cm", "--emissivity", "0.8", "--temperature", "1000", "--steady", "--axis", "z",
+                "--contacts", network_of(&bed, copies), "--error", "0.005");
+        assert_has(printed, copies > 1 ? "\nends_z plates\n" : "\nends_z periodic\n");
+        for (int q = 0; q < 3; ++q)
+            k[copies - 1][q] = value_of(names[q]), error[copies - 1][q] = value_of(formatted("%s_error", names[q]));
+    }
+    for (int q = 0; q < 3; ++q) ck_assert_double_le(fabs(k[0][q] - k[1][q]), 2.5 * hypot(error[0][q], error[1][q]));
+    ck_assert_double_le(error[0][0], .01 * k[0][0]);
+    ck_assert_double_ge(k[0][0], k[0][1] + k[0][2]);
+    bed_free(&bed);
+}
+
+/* Beyond the ends of tables the value at the end is taken, with a warning. */
+TEST(tables_end) {
+    const char *solid = formatted("@%s", write_file("solid.csv", "T,k\n300,30\n450,20\n")),
+               *gas = formatted("@%s", write_file("gas.csv", "T,k\n300,.1\n900,.2\n"));
+    SUCCEED("heat", ROW, "--emissivity", "0.8", "--contacts", "hertz", "--contact-conductivity", solid,
+            "--gas-conductivity", gas, "-o", in_folder("q.csv"));
+    assert_has(said, "--contact-conductivity: 3 spheres have temperatures beyond the table, by up to 3");
+    ck_assert_ptr_null(strstr(said, "--gas-conductivity"));
+    SUCCEED("heat", row(), "--length-unit", "m", "--ambient", "300", "--temperature", "1100", "--emissivity", "0.8",
+            "--contact-conductivity", "30", "--gas-conductivity", gas, "-o", in_folder("q.csv"));
+    assert_has(said, "--gas-conductivity: 2 contacts have temperatures beyond the table, by up to 200 K");
 }
 
 /* What is wrong with a file of contacts is said with its line. */
@@ -109,4 +221,7 @@ TEST(options_at_fault) {
               "--contacts", contacts("i,j,W/K\n0,1,1\n"));
     assert_has(said, "row.csv:2: sphere 0 has emissivity 0, and nothing that it touches radiates or has a temperature");
     FAIL_WITH(2, "conductivity", row(), "--emissivity", "0.8", "--contacts", "lens", "--contact-conductivity", "3");
+    FAIL_WITH(2, "conductivity", row(), "--emissivity", "0.8", "--contacts", "lens", "--contact-conductivity", "3",
+              "--steady", "--temperature", "0");
+    assert_has(said, "--contacts and --gas-conductivity need a --temperature above 0 K");
 }

@@ -125,7 +125,7 @@ LOOP_TEST(tolerance_is_met, BEDS) {
 }
 
 /* A single row takes the directions that it needs, whatever room it has. It holds the row of that many directions. */
-TEST(rows_by_themselves) {
+TEST(a_row_takes_the_directions_it_needs) {
     OWNED_BED bed = random_bed();
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();
@@ -240,7 +240,7 @@ LOOP_TEST(estimates_count_walls, SCENES) {
 }
 
 /* Where no number of directions reaches the tolerance, the row has the largest number. */
-TEST(out_of_reach) {
+TEST(a_tolerance_out_of_reach_ends_at_the_most_directions) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {1, 2, 3, 1});
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();

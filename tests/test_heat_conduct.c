@@ -141,6 +141,38 @@ LOOP_TEST(one_side_lit, 4) {
     assert_near(emission(found[0]), h[0], 3e-3);
 }
 
+/* Two spheres that nearly touch: the hottest place of the colder one, sphere 0, faces sphere 1. The numbers are from
+ * rings of both spheres with Legendre series to degree 6000, to .1 %. */
+static const struct nearly_touching {
+    double radius, distance, emissivity[2], k_star[2], temperature[2], largest, around;
+} nearly_touching[] = {
+    {1, 2.001, {.8, .8}, {.01, .01}, {.7, 1.5}, 10.4173, .3},
+    {1. / 3, 1 + 1.01 / 3, {.8, .8}, {1, 1}, {.7, 1.5}, .95252, .3},
+    {.05, 1.0505, {.3, .3}, {.013, .013}, {.7, 1.5}, 1.37645, .3},
+    {.05, 1.055, {.8, .8}, {.1, 1}, {.7, 1.5}, 1.08245, .3},
+    {.2, 1.22, {.5, 1}, {.1, .03}, {.7, 1.5}, 1.74539, .3},
+    {.5, 1.505, {1, .5}, {.03, .3}, {.7, 1.5}, 3.01366, .3},
+    {.2, 1.202, {.8, 1}, {.132266, 1.3e7}, {1, 1.2}, 1.14268, 0},
+};
+LOOP_TEST(the_hottest_place_faces_a_neighbour, 7) {
+    const struct nearly_touching *t = &nearly_touching[_i];
+    static const double axis[3] = {.36, .48, -.8};
+    const double d = t->distance;
+    OWNED_PROBLEM p = problem_of(BED({0, 0, 0, 1}, {d * axis[0], d * axis[1], d * axis[2], t->radius}), 1, 1);
+    conduct(&p, 1, 1);
+    for (int i = 0; i < 2; i++) {
+        const double at = p.temperature[i] = t->temperature[i];
+        p.emissivity[i] = t->emissivity[i];
+        conductivity[i] = t->k_star[i] * 8 * p.bed.r[i] * at * at * at;
+    }
+    p.sources.surroundings = t->around;
+    trace_and_solve(&p);
+    const double error = largest[0] - t->largest;
+    ck_assert_double_le(fabs(error), .03 * (t->largest - t->temperature[0]));
+    ck_assert_double_le(fabs(error), 2 * surface_error[0]);
+    ck_assert_double_le(surface_error[0], .08 * (t->largest - t->temperature[0]));
+}
+
 /* The light on all patches: parallel light down z, of flux 1. */
 static double *shine_down(const struct problem *p) {
     const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};

@@ -201,17 +201,17 @@ static void compare_methods(struct bed bed, uint32_t lines, int images, double l
     bed_free(&bed);
 }
 
-TEST(open_beds) {
+TEST(open_beds_agree_with_circles) {
     for (uint64_t seed = 1; seed <= 6; seed++)
         compare_methods(packing(40, .3, 1, .1 * (double)seed, seed, false), 30, 0, .5, "an open bed");
 }
 
-TEST(sizes_far_apart) {
+TEST(sizes_far_apart_agree_with_circles) {
     for (uint64_t seed = 1; seed <= 3; seed++) compare_methods(strewn(60, seed), 30, 0, .1, "small among large ones");
 }
 
 /* The period is about four diameters. Three images on either side close all windows. */
-TEST(periodic_beds) {
+TEST(periodic_beds_agree_with_circles) {
     for (uint64_t seed = 1; seed <= 3; seed++)
         compare_methods(packing(40, .6, 1, .55, seed, true), 12, 3, 1, "a periodic bed");
 }
@@ -223,12 +223,12 @@ static struct bed overlapping(uint64_t seed) {
 }
 
 /* A line that begins within another sphere meets it at once if the other's centre lies ahead. */
-TEST(spheres_that_overlap) {
+TEST(overlaps_agree_with_circles) {
     for (uint64_t seed = 1; seed <= 4; seed++) compare_methods(overlapping(seed), 30, 0, .5, "an overlap");
 }
 
 /* In some directions circles coincide, or nearly do. */
-TEST(lattices) {
+TEST(lattices_agree_with_circles) {
     static const double off[] = {0, 1e-16, 1e-14, 1e-12, 1e-10, 1e-8};
     for (const char *kind = "pif"; *kind != '\0'; kind++)
         for (size_t k = 0; k < sizeof off / sizeof *off; k++) {
@@ -352,7 +352,7 @@ TEST(collections_change_no_bit) {
 /* ---- matrices --------------------------------------------------------------------------------------------------- */
 
 /* Nothing escapes from a bed that is periodic along all axes. Its matrix is closed and reciprocal, to rounding. */
-TEST(periodic_on_all_axes) {
+TEST(nothing_escapes_from_a_bed_periodic_on_all_axes) {
     static const uint32_t chords[] = {FIBRAD_CHORDS_NONE, 16, 32, 64};
     OWNED_BED bed = periodic_bed();
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -394,7 +394,7 @@ LOOP_TEST(estimates_are_honest, BEDS) {
 /* ---- rules ------------------------------------------------------------------------------------------------------ */
 
 /* A rule has lines or directions. Masks take the place of points. */
-TEST(rules_of_lines) {
+TEST(rules_have_lines_or_directions) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {2.5, 0, 0, 1});
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED fibrad_line_set *lines = lines_of(30, 0);

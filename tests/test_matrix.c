@@ -84,7 +84,7 @@ TEST(averaging_makes_rows_reciprocal) {
     }
 }
 
-TEST(averaging_by_hand) {
+TEST(averaging_agrees_with_sums_by_hand) {
     const double r[] = {1, 2, 1}; /* areas are 1 : 4 : 1; 0 sees 1, 2 alone sees 0, and 2 sees itself */
     OWNED_MATRIX m =
         matrix_by_hand(3, r, (uint64_t[]){0, 1, 1, 3}, (uint32_t[]){1, 0, 2}, (double[]){.5, .25, .125}, NULL);
@@ -100,7 +100,7 @@ TEST(averaging_by_hand) {
 
 /* Sphere 0 sees 25 others, which do not see it. So closing changes what each row gives to the surroundings, whatever
  * its error is. */
-TEST(what_closing_changes) {
+TEST(changed_shows_what_closing_changes) {
     enum { N = 26 };
     double r[N], f[N];
     uint64_t start[N + 1] = {0};
@@ -121,7 +121,7 @@ TEST(what_closing_changes) {
 }
 
 /* Factors of 0 stay where they were. */
-TEST(averaging_nothing) {
+TEST(factors_of_zero_stay_in_place) {
     const double r[] = {1, 2};
     const fibrad_matrix_rule rules[] = {{0}, {.raw = 1}};
     for (int k = 0; k < 2; k++) {
@@ -140,7 +140,7 @@ TEST(averaging_nothing) {
 }
 
 /* Each entry is that of the formula in the header. */
-TEST(averaging_entry_by_entry) {
+TEST(each_entry_is_that_of_the_header) {
     OWNED_BED bed = packing(120, .3, 1.5, .5, 9, false);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     const fibrad_beam_rule rule = {.directions = 34};
@@ -159,7 +159,7 @@ TEST(averaging_entry_by_entry) {
 
 /* The estimate follows from the difference between the mean and the raw row, and is at least half the estimate of the
  * raw row. Rows that are symmetric by themselves keep their estimates. */
-TEST(errors_of_averaged_rows) {
+TEST(errors_of_averaged_rows_follow_from_differences) {
     OWNED_BED bed = packing(120, .3, 1.5, .5, 9, false);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_ROWS rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34});
@@ -246,7 +246,7 @@ TEST(exchange_factors_are_balanced) {
 /* S_01 = (4 (3 A_0 D_01) + A_1 D_10)/5 with A = 4 pi (1, 4), in units of the largest emissivity. Factors u close what
  * rows leave over: D_01 becomes D_01 u_0 u_1, and the rest of row 0 is multiplied by u_0. If all emissivities are
  * equal, areas alone count. */
-TEST(exchange_by_hand) {
+TEST(exchange_agrees_with_sums_by_hand) {
     const double r[] = {1, 2}, emissivity[] = {.9, .3};
     const uint64_t start[] = {0, 2, 4};
     const uint32_t col[] = {0, 1, 0, 1};
@@ -301,7 +301,7 @@ TEST(empty_rows_stay_empty) {
 }
 
 /* All spheres reflect all light, so that all rows of the matrix are empty. */
-TEST(all_rows_empty) {
+TEST(all_rows_may_be_empty) {
     const double r[] = {1, 2}, emissivity[] = {0, 0};
     OWNED_MATRIX m =
         matrix_by_hand(2, r, (uint64_t[]){0, 0, 0}, (uint32_t[]){0}, (double[]){0},
@@ -311,7 +311,7 @@ TEST(all_rows_empty) {
 }
 
 /* The rows of a walled bed with reflectors become reciprocal and closed. */
-TEST(reflectors_in_a_walled_bed) {
+TEST(rows_among_walls_and_reflectors_are_closed) {
     OWNED_BED bed = packing(120, .5, 1.5, .45, 3, false);
     const fibrad_body floor_plane = plane_at(2, 0, -100);
     OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
@@ -337,7 +337,7 @@ TEST(reflectors_in_a_walled_bed) {
     }
 }
 
-TEST(dropping_keeps_the_books) {
+TEST(dropping_keeps_sums_and_reciprocity) {
     OWNED_BED bed = packing(400, .7, 1.3, .55, 17, true);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_ROWS rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 233});
@@ -362,7 +362,7 @@ TEST(dropping_keeps_the_books) {
 }
 
 /* The threshold equals an entry. Either both entries of a pair are dropped, or neither. */
-TEST(dropping_at_the_threshold) {
+TEST(dropping_at_the_threshold_takes_both_or_none) {
     uint32_t gone = 0, stayed = 0;
     for (uint64_t k = 0; k < 2000; k++) {
         const double r[2] = {.1 + bed_make_random(9, 3 * k), .1 + bed_make_random(9, 3 * k + 1)};
@@ -386,7 +386,7 @@ TEST(dropping_at_the_threshold) {
 }
 
 /* The spheres form a star. No scaling can give back to the leaves what the centre gives away. */
-TEST(dropping_where_no_scaling_exists) {
+TEST(dropping_works_where_no_scaling_exists) {
     const double r[] = {1, 1, 1, 1};
     static const uint64_t start[] = {0, 2, 5, 7, 8};
     static const uint32_t col[] = {1, 2, 0, 2, 3, 0, 1, 1};
@@ -401,7 +401,7 @@ TEST(dropping_where_no_scaling_exists) {
 }
 
 /* One factor of a pair is missing, on either side of the diagonal. The other counts in full. */
-TEST(lone_factors_are_not_reciprocal) {
+TEST(a_lone_factor_counts_in_full) {
     const double r[] = {1, 2, 1};
     const fibrad_matrix_rule raw = {.raw = 1};
     OWNED_MATRIX above =

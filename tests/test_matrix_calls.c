@@ -65,7 +65,7 @@ TEST(tasks_change_no_bit) {
     rows_free(&rows);
 }
 
-TEST(calls_out_of_order) {
+TEST(calls_out_of_order_are_refused) {
     const double r[] = {1, 2, 1};
     OWNED fibrad_scene *scene = apart(3, r);
     OWNED_ROWS rows = {.memory = memory_growing()};
@@ -108,7 +108,7 @@ TEST(calls_out_of_order) {
 }
 
 /* If a row is missing, or occurs twice in one collection or in two, its sphere is named, and there is no matrix. */
-TEST(rows_missing_or_double) {
+TEST(rows_missing_or_double_are_named) {
     const double r[] = {1, 2, 1, 1, 3}, f = .5;
     OWNED fibrad_scene *scene = apart(5, r);
     const uint32_t col = 2;
@@ -152,7 +152,7 @@ TEST(rows_missing_or_double) {
 }
 
 /* At each offset the matrix has the same bits, nothing is written beside the block, and a byte less is too little. */
-TEST(matrix_blocks_of_any_alignment) {
+TEST(matrix_blocks_may_have_any_alignment) {
     OWNED_BED bed = packing(60, .5, 1.5, .5, 3, true);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_ROWS rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34});
@@ -333,7 +333,7 @@ TEST(rows_added_are_rows_computed) {
 
 /* A collection in fixed memory says how much memory a row lacks. Nothing is lost or written beside the block. With that
  * much memory the row is appended. This holds at each offset of the block. */
-TEST(collections_in_fixed_memory) {
+TEST(collections_in_fixed_memory_say_what_they_lack) {
     OWNED_BED bed = packing(40, .5, 1.5, .4, 3, false);
     OWNED fibrad_scene *scene = scene_of(&bed, 0);
     OWNED_WORK work = work_growing();
@@ -383,7 +383,7 @@ TEST(collections_in_fixed_memory) {
     free(block);
 }
 
-TEST(collections_that_grow) {
+TEST(collections_grow_when_asked) {
     OWNED_BED bed = packing(60, .5, 1.5, .4, 3, false);
     OWNED fibrad_scene *scene = scene_of(&bed, 0);
     const fibrad_beam_rule rule = {.directions = 13};
@@ -412,7 +412,7 @@ TEST(collections_that_grow) {
 }
 
 /* Rows come back as they were appended, also empty ones. Their columns may be written. */
-TEST(rows_read_one_by_one) {
+TEST(rows_are_read_as_they_were_appended) {
     uint32_t col[] = {3, 5, 9};
     double f[] = {.25, .125, .0625}, body[] = {.5};
     const fibrad_row in = {.col = col,

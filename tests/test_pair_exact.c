@@ -19,7 +19,7 @@ static double relative(double value, double truth) { return fabs(value / truth -
 /* True values, which data/generate_pair_exact.c made in 113-bit arithmetic from the integral over the distance of the
  * discs. Ratios of radii go to 1e4, gaps from 1e-300 to 1e12, and overlaps to nearly the centre. F is compared in both
  * directions, and for reciprocity. */
-TEST(true_values) {
+TEST(factors_are_the_true_values) {
     OWNED_FILE *file = opened("tests/data/pair_exact.csv", "r");
     char line[256];
     int lines = 0;
@@ -35,7 +35,7 @@ TEST(true_values) {
     ck_assert_int_gt(lines, 700);
 }
 
-TEST(closed_values) {
+TEST(factors_are_the_closed_forms) {
     const double pi = 3.14159265358979323846;
     ck_assert_double_le(relative(exact(1, 1, 0), 0.5 - 4 / (3 * pi)), 1e-15);
     ck_assert_double_le(relative(exact(1, 1, 0), 0.0755868184216124), 1e-14);
@@ -46,7 +46,7 @@ TEST(closed_values) {
     ck_assert_double_le(fabs(exact(1, 2, -2 + 1e-15) - 0.5), 1e-7);
 }
 
-TEST(far_field) {
+TEST(far_spheres_have_the_far_field) {
     for (double gap = 1e8; gap < 1e13; gap *= 10) {
         const double d = 3 + gap;
         ck_assert_double_le(relative(exact(2, 1, gap), 0.25 / d / d), 2e-15);
@@ -58,7 +58,7 @@ TEST(far_field) {
 }
 
 /* The polar-angle formula and the lens integral have neither the variable nor the integrand of the kernel's formula. */
-TEST(quadratures_of_gsl) {
+TEST(quadratures_of_gsl_agree) {
     static const double radius[] = {1, 0.7, 0.1, 1e-3, 1e-4};
     static const double gap[] = {0, 1e-12, 1e-6, 1e-3, 0.1, 1, 6, 100, 1e6};
     static const double overlap[] = {-1e-9, -1e-6, -1e-4, -0.01, -0.5, -1.5};
@@ -87,7 +87,7 @@ static const double scene[][3] = {{1, 1, 0},     {1, 0.3, 1e-12},  {0.7, 1.3, 1e
                                   {1, 1, -1e-9}, {1.5, 0.2, -0.1}, {1, 1, -1.9},     {3e3, 0.3, 40}, {1, 0.9999, 2}};
 
 /* Scaling by powers of two from 1e-144 to 1e144 changes no bit. */
-TEST(scaling_by_two) {
+TEST(scaling_by_two_changes_no_bit) {
     for (size_t i = 0; i < sizeof scene / sizeof *scene; i++)
         for (int k = -480; k <= 480; k += 6) {
             const double *s = scene[i];
@@ -96,7 +96,7 @@ TEST(scaling_by_two) {
         }
 }
 
-TEST(scaling_by_ten) {
+TEST(scaling_by_ten_changes_roundings) {
     for (size_t i = 0; i < sizeof scene / sizeof *scene; i++)
         for (int k = -145; k <= 145; k += 10) {
             const double *s = scene[i], unit = pow(10, k);
@@ -106,7 +106,7 @@ TEST(scaling_by_ten) {
 
 /* F falls with the gap, on both sides of contact and across it. Steps go down to where the slope meets rounding. F
  * changes by no more than the step allows, so it does not jump. */
-TEST(sweep_across_contact) {
+TEST(factors_go_smoothly_across_contact) {
     static const double radius[] = {1, 0.5, 0.01, 1e-4};
     for (size_t i = 0; i < sizeof radius / sizeof *radius; i++)
         for (int exponent = -13; exponent <= -3; exponent++) {
@@ -122,7 +122,7 @@ TEST(sweep_across_contact) {
         }
 }
 
-TEST(falls_with_the_gap) {
+TEST(the_factor_falls_with_the_gap) {
     static const double radius[] = {1, 0.5, 0.01, 1e-4};
     for (size_t i = 0; i < sizeof radius / sizeof *radius; i++) {
         const double r = radius[i];
@@ -142,7 +142,7 @@ TEST(falls_with_the_gap) {
 
 /* Results at the ends of the range stay within bounds. A sphere at a plane, or in it, sees it in half of all
  * directions. */
-TEST(extremes) {
+TEST(extreme_sizes_are_right) {
     const double large = 1e150, small = 1e-150, contact = exact(1, 1, 0);
     ck_assert_double_eq_tol(exact(large, large, 0), contact, 1e-15);
     ck_assert_double_eq_tol(exact(small, small, 0), contact, 1e-15);
@@ -154,7 +154,7 @@ TEST(extremes) {
     }
 }
 
-TEST(arguments) {
+TEST(bad_arguments_are_refused) {
     static const double bad[][3] = {
         {0, 1, 1},         {1, 0, 1},     {-1, 1, 1},       {1, -1, 1},       {NAN, 1, 1},
         {1, NAN, 1},       {1, 1, NAN},   {INFINITY, 1, 1}, {1, INFINITY, 1}, {1, 1, INFINITY},

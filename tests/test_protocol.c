@@ -175,7 +175,7 @@ static void assert_row_as_fresh(struct problem *p, fibrad_work *kept, uint32_t i
     ck_assert(same_bits_with(&a, &b, BODIES));
 }
 
-TEST(work_kept_while_scenes_change) {
+TEST(work_serves_while_scenes_change) {
     const struct contents c = contents_of(20);
     ENDED struct problem *p = begin_problem(&c, 0);
     fibrad_work fixed = work_fixed(block_of(1 << 18), 1 << 18);
@@ -191,7 +191,7 @@ TEST(work_kept_while_scenes_change) {
 }
 
 /* The block of work memory is exchanged for another, moved, overwritten by the caller's realloc, or made smaller. */
-TEST(work_in_another_block) {
+TEST(work_serves_in_another_block) {
     const struct contents c = contents_of(21);
     ENDED struct problem *p = begin_problem(&c, 0);
     size_t size = 1 << 18;
@@ -223,7 +223,7 @@ static fibrad_rows rows_from(const fibrad_scene *scene, uint32_t begin, uint32_t
     return rows;
 }
 
-TEST(matrix_calls_out_of_order) {
+TEST(matrix_calls_out_of_order_are_refused) {
     const struct contents c = contents_of(22);
     ENDED struct problem *p = begin_problem(&c, 0);
     OWNED_ROWS rows = rows_from(p->scene, 0, N);
@@ -257,7 +257,7 @@ TEST(matrix_calls_out_of_order) {
 }
 
 /* Rows are missing, are in two collections at once or twice in one, or belong to something else. */
-TEST(matrix_of_wrong_rows) {
+TEST(wrong_rows_make_no_matrix) {
     const struct contents c = contents_of(23);
     ENDED struct problem *p = begin_problem(&c, 0);
     fibrad_rows rows[4] = {rows_from(p->scene, 0, 5), rows_from(p->scene, 5, N), rows_from(p->scene, 4, 6)};
@@ -338,7 +338,7 @@ TEST(refused_rows_are_not_appended) {
 
 /* A row was appended to a collection, so its factors lie there. If it is then used without the collection, its capacity
  * says that it has no arrays of its own. */
-TEST(row_reused_after_appending) {
+TEST(a_row_may_be_used_again_after_appending) {
     OWNED_BED bed = packing(60, .8, 1.2, .5, 3, false);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();
@@ -355,7 +355,7 @@ TEST(row_reused_after_appending) {
 }
 
 /* The rows are those of another scene, they change while their matrix is made, or a matrix failed in place. */
-TEST(matrix_of_changing_rows) {
+TEST(rows_that_change_make_no_matrix) {
     OWNED_BED bed = packing(60, .8, 1.2, .5, 3, false), other = packing(60, .8, 1.2, .5, 4, false);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST), *another = scene_of(&other, FIBRAD_ISA_BEST);
     fibrad_rows rows = rows_from(scene, 0, 60), more = rows_from(scene, 0, 1), fewer = rows_from(scene, 1, 60);

@@ -47,7 +47,7 @@ static void expect_refusal(const char *text, size_t size, const struct read_opti
     ck_assert_ptr_eq(strchr(said, '\n'), said + strlen(said) - 1);
 }
 
-TEST(csv_in_any_order) {
+TEST(csv_columns_may_have_any_order) {
     ck_assert_int_eq(try("name,r,z,y,x\r\n\"a,\"\"b\",0.5, 3 ,\"2\",1\r\n\n# comment\nb , 1e-1,-3,-2,-1"), 0);
     ck_assert_uint_eq(bed.n, 2);
     expect_sphere(0, 1, 2, 3, 0.5, 2);
@@ -55,14 +55,14 @@ TEST(csv_in_any_order) {
     ck_assert(bed.period[0] == 0 && bed.period[1] == 0 && bed.period[2] == 0);
 }
 
-TEST(csv_after_byte_order_mark_and_comments) {
+TEST(csv_may_follow_a_mark_and_comments) {
     ck_assert_int_eq(try("\xEF\xBB\xBF# made by hand\n\nx,y,z,diameter\n1,2,3,1\n"), 0);
     expect_sphere(0, 1, 2, 3, 0.5, 4);
     ck_assert_int_eq(try("\xEF\xBB\xBFx,y,z,radius\n1,2,3,1\n"), 0);
     expect_sphere(0, 1, 2, 3, 1, 2);
 }
 
-TEST(further_columns_by_name) {
+TEST(further_columns_are_read_by_name) {
     const char *const names[] = {"emissivity", "T"};
     const char text[] = "T,x,y,z,r,emissivity,id\n300,0,0,0,1,0.8,17\n400,3,0,0,1,0.9,4\n";
     const char *const units[] = {NULL, "K"};
@@ -85,7 +85,7 @@ TEST(further_columns_by_name) {
 }
 
 /* The names of columns have units. Options may give either name. */
-TEST(columns_with_units) {
+TEST(names_with_units_may_be_given_either_way) {
     static const char *const wanted[] = {"T", "T [C]", "T (\302\260C)", "T_[C]", "T [K]"};
     static const struct {
         const char *column;
@@ -106,7 +106,7 @@ TEST(columns_with_units) {
 }
 
 /* A header has many names. As many are listed as there is room for. */
-TEST(many_columns) {
+TEST(as_many_columns_are_listed_as_there_is_room_for) {
     char text[5000] = "x,y,r";
     for (int k = 0; k < 500; ++k) snprintf(text + strlen(text), 20, ",c%d", k);
     strcat(text, "\n");
@@ -115,7 +115,7 @@ TEST(many_columns) {
 }
 
 /* Ids tell the spheres. --positions does without ids. */
-TEST(ids) {
+TEST(ids_name_the_spheres) {
     static const struct {
         const char *id[2], *reason;
         unsigned line;
@@ -141,7 +141,7 @@ TEST(ids) {
 }
 
 /* Separators, decimal commas, names in any case, units, headers in comments. */
-TEST(tables) {
+TEST(tables_have_any_separators_and_units) {
     static const struct {
         const char *text, *units;
     } good[] = {
@@ -174,7 +174,7 @@ TEST(tables) {
 }
 
 /* LIGGGHTS writes the type twice. */
-TEST(equal_columns_of_one_name) {
+TEST(equal_columns_of_one_name_are_one) {
     const char *const names[] = {"type"};
     const struct read_options options = {.extra = names, .extras = 1};
     const char text[] = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: ATOMS id type type x y z radius\n"
@@ -197,7 +197,7 @@ TEST(equal_columns_of_one_name) {
 #define VTP_HEAD VTP(ARRAY("radius", "1 1"))
 
 /* Codes have names of their own. */
-TEST(columns_of_other_names) {
+TEST(columns_may_have_other_names) {
     const char *const wanted[] = {"T"}, *const unit[] = {"K"};
     static const struct {
         const char *text, *units;
@@ -256,7 +256,7 @@ TEST(columns_of_other_names) {
 }
 
 /* Rows by the values of columns, before anything else of a row is read. */
-TEST(rows_of_some_values) {
+TEST(rows_are_chosen_by_values) {
     const struct row_rule rule[] = {{"mat", "steel", false}, {"phase", "2", false}, {"id", "4", true}};
     const char text[] =
         "id,mat,phase,x,y,z,r\n1,steel,2.0,1,0,0,1\n1,glass,2,2,0,0,1\nnone,steel,1,?,0,0,-1\n4,steel,2,3,0,0,1\n"
@@ -278,7 +278,7 @@ TEST(rows_of_some_values) {
 }
 
 /* The header's unit of a column may be any of the right kind. Values become those of the expected unit. */
-TEST(units_of_columns) {
+TEST(units_of_columns_are_converted) {
     static const struct {
         const char *column, *expected;
         double value; /* of 7; NaN: refused */
@@ -357,7 +357,7 @@ TEST(units_of_columns) {
     ck_assert_double_eq(bed.extra[0], 7);
 }
 
-TEST(without_radii) {
+TEST(beds_may_be_read_without_radii) {
     const char *const names[] = {"type"};
     const struct read_options options = {.no_radius = true, .extra = names, .extras = 1};
     const char text[] = "x,y,z,type\n1,2,3,7\n";
@@ -372,7 +372,7 @@ TEST(without_radii) {
 }
 
 /* Numbers have the bits that strtod gives, however they are written. */
-TEST(numbers) {
+TEST(numbers_have_the_bits_of_strtod) {
     static const char *const odd[] = {"0",
                                       "-0",
                                       "+7.",
@@ -424,7 +424,7 @@ TEST(numbers) {
     "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS" bounds "\n-1 3\n0 10\n0 2e1\nITEM: ATOMS " columns \
     "\n"
 
-TEST(dump_columns_by_name) {
+TEST(dump_columns_go_by_name) {
     ck_assert_int_eq(try(FRAME(" pp ff mm ", "id type z y x radius ") "9 1 3 2 1 .5 \n4 1 6 5 4 1 \n"), 0);
     ck_assert_uint_eq(bed.n, 2);
     expect_sphere(0, 4, 5, 6, 1, 11); /* by id */
@@ -433,7 +433,7 @@ TEST(dump_columns_by_name) {
     ck_assert(bed.low[0] == -1 && bed.high[2] == 20);
 }
 
-TEST(dump_scaled_unwrapped_diameter) {
+TEST(dumps_may_be_scaled_unwrapped_or_have_diameters) {
     ck_assert_int_eq(try(FRAME("", "xs ys zs diameter") "0.25 0.5 1 3\n0 0 0 1\n"), 0);
     expect_sphere(0, 0, 5, 20, 1.5, 10);
     expect_sphere(1, -1, 0, 0, 0.5, 11);
@@ -449,7 +449,7 @@ TEST(dump_scaled_unwrapped_diameter) {
     "0 0 0 1\n3 0 0 1\n"                                                                                               \
     "ITEM: UNITS\nlj\nITEM: TIME\n0.5\nITEM: TIMESTEP\n8\nITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS r z y x\n4 3 2 1\n"
 
-TEST(dump_frames) {
+TEST(frames_of_dumps_are_found) {
     struct read_options options = {0};
     for (int k = 0; k < 2; ++k) {
         ck_assert_int_eq(try_options(TWO_FRAMES, strlen(TWO_FRAMES), &options), 0);
@@ -496,7 +496,7 @@ static const char *frames_of(const char *text, size_t size, struct frames frames
 #define DATA_ROW    " 0 0 0 1 0 0 0 0 0 0 0\n"
 #define DATA_FRAME  "2 0.5 0 0 0 1 1 1\n0 0 0" DATA_ROW "3 0 0" DATA_ROW
 
-LOOP_TEST(ranges, 22) {
+LOOP_TEST(ranges_of_frames_are_read, 22) {
     static const struct {
         const char *text;
         struct frames frames;
@@ -554,7 +554,7 @@ static size_t pack(const char *text, size_t size, char *to, size_t room) {
     return packed;
 }
 
-TEST(gzip) {
+TEST(packed_files_are_read) {
     char text[20000], packed[20000];
     size_t size = 0;
     int status;
@@ -586,7 +586,7 @@ TEST(gzip) {
     assert_has(said, "the gzip file is cut off");
 }
 
-TEST(dump_without_tilt) {
+TEST(dumps_need_no_tilt) {
     const char text[] =
         "ITEM: UNITS\ncgs \nITEM: TIME\n0.5\nITEM: TIMESTEP\n 7 \nITEM: NUMBER OF ATOMS\n1 \nITEM: BOX BOUNDS xy xz "
         "yz pp ff pp\n-1 3 0\n0 10 0\n0 20 0.0\nITEM: ATOMS xs y z radius\n0.25 0 0 1\n";
@@ -603,7 +603,7 @@ TEST(dump_without_tilt) {
     "-1 3 xlo xhi\n0 10 ylo yhi\n0 2e1 zlo zhi\n"
 
 /* Boxes that may have any direction, but have right angles. */
-TEST(boxes_with_right_angles) {
+TEST(boxes_with_right_angles_are_read) {
     static const struct {
         const char *text;
         double period;
@@ -627,7 +627,7 @@ TEST(boxes_with_right_angles) {
     }
 }
 
-TEST(data_files) {
+TEST(data_files_of_lammps_are_read) {
     static const char *const good[] = {
         DATA_HEAD
         "0 0 0 xy xz yz\n\nMasses\n\n1 1\n2 1\n\nAtoms # sphere\n\n9 1 1 2500 1 2 3 0 0 0\n4 2 2 2500 4 5 6 1 0 -1\n\n"
@@ -649,7 +649,7 @@ TEST(data_files) {
     }
 }
 
-TEST(xyz) {
+TEST(xyz_files_are_read) {
     ck_assert_int_eq(
         try("2\nLattice=\"4 0 0 0 5 0 0 0 6\" Origin=\"-1 0 1\" Properties=species:S:1:id:I:1:pos:R:3:velo:R:3:"
             "Radius:R:1 pbc=\"T F 1\"\nA 9 1 2 3 0 0 0 0.5\nB 4 4 5 6 0 0 0 1\n"),
@@ -663,14 +663,14 @@ TEST(xyz) {
     ck_assert(bed.period[0] == 4 && bed.period[1] == 5 && bed.period[2] == 6);
 }
 
-TEST(mercury) {
+TEST(mercury_files_are_read) {
     ck_assert_int_eq(try("2 0.5 0 0 -1 4 5 6 \n1 2 3 0 0 0 0.5 0 0 0 0 0 0 0\n4 5 6 0 0 0 1 0 0 0 0 0 0 1\n"), 0);
     ck_assert_uint_eq(bed.n, 2);
     expect_sphere(1, 4, 5, 6, 1, 3);
     ck_assert(!bed.ids && bed.low[2] == -1 && bed.high[0] == 4 && bed.period[0] == 0);
 }
 
-TEST(vtk) {
+TEST(vtk_files_are_read) {
     static const char *const good[] = {
         VTK_HEAD "VERTICES 2 4\n1 0 1 1\nPOINT_DATA 2\nVECTORS v float\n0 0 0 0 0 0\nSCALARS radius double 1\n"
                  "LOOKUP_TABLE default\n0.5 1\nSCALARS id int\nLOOKUP_TABLE default\n4 9\n",
@@ -691,7 +691,7 @@ TEST(vtk) {
 }
 
 /* The arrays are on several pieces, in one file or in several. Pieces may be empty. */
-TEST(pieces_of_vtk_files) {
+TEST(vtk_pieces_are_joined) {
 #define PIECE(points, radii, ids)                                                                                      \
     "<Piece NumberOfPoints='" points "'><PointData>" ARRAY("radius", radii)                                            \
         ARRAY("ID", ids) "</PointData><Points>"                                                                        \
@@ -747,7 +747,7 @@ TEST(pieces_of_vtk_files) {
 }
 
 /* One array may be wanted twice, and a name in the same case goes before another one. */
-TEST(arrays_of_vtk_files) {
+TEST(vtk_arrays_go_by_name) {
     const char *const names[] = {"radius", "id"};
     const char text[] = VTP(ARRAY("RADIUS", "7 7") ARRAY("radius", "0.5 1") ARRAY("Radius", "8 8") ARRAY("id", "4 9"));
     const struct read_options options = {.extra = names, .extras = 2};
@@ -764,14 +764,14 @@ TEST(arrays_of_vtk_files) {
     expect_refusal(lethe, sizeof lethe - 1, &named, 0, "the column T is in [C], but is taken as [K]");
 }
 
-TEST(yade) {
+TEST(yade_files_are_read) {
     ck_assert_int_eq(try("#format x_y_z_r_matId\n# comment\n1\t2\t3\t0.5\t0\n4 5 6 1 0\n"), 0);
     ck_assert_uint_eq(bed.n, 2);
     expect_sphere(0, 1, 2, 3, 0.5, 3);
     expect_sphere(1, 4, 5, 6, 1, 4);
 }
 
-TEST(settled_beds) {
+TEST(settled_beds_are_read_whole) {
     static const struct {
         const char *file;
         double period, radius_min, radius_max;
@@ -793,7 +793,7 @@ TEST(settled_beds) {
 }
 
 /* There are more spheres than the arrays begin with. */
-TEST(growth) {
+TEST(beds_larger_than_the_first_arrays_are_read) {
     enum { N = 5000 };
     char *text = malloc(64 * N), *end = text;
     ck_assert_ptr_nonnull(text);
@@ -986,12 +986,12 @@ static const struct {
     {5, HEAD "1\n" HEAD "1\n" BOX ATOMS SPHERE, "a frame begins where atoms of the one before are missing"},
 };
 
-LOOP_TEST(faults, sizeof refused / sizeof *refused) {
+LOOP_TEST(faults_are_refused_with_line_and_reason, sizeof refused / sizeof *refused) {
     expect_refusal(refused[_i].text, strlen(refused[_i].text), &(struct read_options){0}, refused[_i].line,
                    refused[_i].reason);
 }
 
-TEST(binary_data) {
+TEST(binary_data_are_refused) {
     const char zeros[] = "x,y,z,r\n0,0,0,\0001\n";
     expect_refusal(zeros, sizeof zeros - 1, &(struct read_options){0}, 2, "binary data");
     expect_refusal("\x1f\x8b\x08 gzip", 8, &(struct read_options){0}, 0, "the gzip file is damaged");
@@ -1001,7 +1001,7 @@ TEST(binary_data) {
     expect_refusal(endless, 3 << 20, &(struct read_options){0}, 1, "the line has no end");
 }
 
-TEST(unreadable) {
+TEST(unreadable_files_are_refused) {
     static const char *const paths[] = {"no/such/file.csv", "tests"};
     for (size_t k = 0; k < 2; ++k) {
         bed_free(&bed);

@@ -49,7 +49,7 @@ static double pair(uint32_t i, uint32_t j, double tolerance) {
     return value;
 }
 
-TEST(unobstructed) {
+TEST(unobstructed_pairs_are_exact) {
     static const double scene[][3] = {{1, 1, 0},      {1, 0.7, 0.3}, {0.7, 1, 0.3},    {1, 1, -0.05},
                                       {0.3, 2, -0.2}, {2, 0.05, 1},  {0.05, 2, 0.001}, {1e-150, 1e-150, 1e-150}};
     for (size_t k = 0; k < sizeof scene / sizeof *scene; k++) {
@@ -100,7 +100,7 @@ TEST(tighter_tolerance_stays_within_the_estimate) {
     }
 }
 
-TEST(hidden) {
+TEST(hidden_spheres_are_not_seen) {
     /* equal spheres in a line: at every angle the lens of the outer discs lies inside the middle disc */
     add(0, 0, 0, 1);
     add(0, 0, 5, 1);
@@ -119,7 +119,7 @@ TEST(hidden) {
 
 /* Rays start at random points of sphere 0 and follow the cosine law. They share nothing with beams, slices or
  * cubature. */
-TEST(random_rays) {
+TEST(random_rays_agree) {
     enum { RAYS = 400000 };
     crowd();
     uint64_t state = 1;
@@ -154,7 +154,7 @@ TEST(random_rays) {
 }
 
 /* Row sums of the face-centred cubic lattice of touching unit spheres within a distance of centres. */
-TEST(face_centred_cubic) {
+TEST(face_centred_cubic_rows_add_up) {
     static const double reach[] = {2, 3, 4}, sum[] = {0.8626, 0.9651, 0.9973};
     const double half = sqrt(2.0);
     for (int k = 0; k < 3; k++) {
@@ -174,7 +174,7 @@ TEST(face_centred_cubic) {
     }
 }
 
-TEST(arguments) {
+TEST(bad_arguments_are_refused) {
     const struct reference_rule rule = {1e-3, 1000}, scarce = {1e-9, 1000};
     crowd();
     ck_assert_int_eq(reference_row(&spheres, 8, &rule, f, &escaped, &report), REFERENCE_ARGUMENT);

@@ -63,7 +63,7 @@ static void compare_rows(const struct bed *bed, const fibrad_scene_config *confi
     }
 }
 
-TEST(spheres_alone) {
+TEST(parts_make_the_row_of_spheres_alone) {
     OWNED_BED bed = strewn(SPHERES, 3), box = packing(120, .8, 1.2, .55, 4, true);
     double seen[2] = {0, 0};
     compare_rows(&bed, &(fibrad_scene_config){0}, 0, seen);
@@ -72,7 +72,7 @@ TEST(spheres_alone) {
     ck_assert_double_gt(seen[0], 20);
 }
 
-TEST(among_walls) {
+TEST(parts_make_the_row_among_walls) {
     OWNED_BED bed = strewn(SPHERES, 5);
     const fibrad_body planes[] = {plane_at(0, 0, -.3), plane_at(0, 1, 1.3), plane_at(1, 0, -.3),
                                   plane_at(1, 1, 1.3), plane_at(2, 0, -.3), plane_at(2, 1, 1.3)};
@@ -85,7 +85,7 @@ TEST(among_walls) {
     ck_assert_double_gt(seen[1], 20);
 }
 
-TEST(among_triangles) {
+TEST(parts_make_the_row_among_triangles) {
     OWNED_BED bed = strewn(SPHERES, 6);
     OWNED struct mesh *mesh = mesh_new();
     double seen[2] = {0, 0};
@@ -96,7 +96,7 @@ TEST(among_triangles) {
 }
 
 /* Parts of another row, rule or scene, in another order, or not complete are told from those that make the row. */
-TEST(parts_that_do_not_fit) {
+TEST(parts_that_do_not_fit_are_refused) {
     OWNED_BED bed = strewn(50, 7), other_bed = strewn(50, 8);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST), *other = scene_of(&other_bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();
@@ -125,7 +125,7 @@ TEST(parts_that_do_not_fit) {
 }
 
 /* If terms were changed on the way, there is no row that looks right. */
-TEST(parts_that_were_changed) {
+TEST(parts_that_were_changed_make_no_row) {
     OWNED_BED bed = strewn(50, 7);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();
@@ -145,7 +145,7 @@ TEST(parts_that_were_changed) {
 }
 
 /* Fixed memory that is too small says how much suffices. */
-TEST(fixed_memory_of_a_part) {
+TEST(fixed_memory_of_a_part_says_what_it_lacks) {
     OWNED_BED bed = strewn(50, 9);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();
@@ -172,7 +172,7 @@ static void *resize_but_once(void *context, void *block, size_t size) {
 
 /* If memory is refused once, at whatever call, this is an error. The next call gets memory, and makes the part that it
  * makes with plenty of memory. */
-TEST(memory_that_is_refused_once) {
+TEST(memory_refused_once_is_no_lasting_error) {
     OWNED_BED bed = strewn(50, 9);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();
@@ -199,7 +199,7 @@ TEST(memory_that_is_refused_once) {
 }
 
 /* A block of size 0 is too small. NULL that is said to have bytes is refused. */
-TEST(blocks_of_size_zero) {
+TEST(blocks_of_size_zero_are_too_small) {
     OWNED_BED bed = strewn(50, 9);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();

@@ -33,7 +33,7 @@ TEST(sizes_hold) {
 }
 
 /* Scene and work memory at each of the 64 offsets from a boundary. */
-TEST(blocks_of_any_alignment) {
+TEST(blocks_may_have_any_alignment) {
     OWNED_BED bed = packing(80, .5, 1, .4, 3, true);
     OWNED fibrad_scene *aligned = scene_of(&bed, 0);
     OWNED_MATRIX expected = matrix_by_beams(aligned, &(fibrad_beam_rule){.directions = 34}, true);
@@ -90,7 +90,7 @@ TEST(strides_change_no_bit) {
 }
 
 /* A bed may be empty: this is a scene without rows, and a matrix without rows. */
-TEST(no_spheres) {
+TEST(a_scene_may_be_empty) {
     static unsigned char memory[FIBRAD_SCENE_BYTES(0)];
     const fibrad_spheres none = {.n = 0};
     const fibrad_body floor_plane = plane_at(2, 0, 0);
@@ -125,7 +125,7 @@ TEST(no_spheres) {
 
 /* Each sphere comes once along the cells, and most spheres that follow each other are neighbours. On average they are
  * less than 4 radii apart in a cube of 16, where two random spheres are 11 apart. */
-TEST(spheres_along_the_cells) {
+TEST(spheres_that_follow_each_other_are_neighbours) {
     OWNED_BED bed = packing(500, 1, 1, .5, 4, false);
     OWNED fibrad_scene *scene = scene_of(&bed, 0);
     OWNED bool *seen = calloc(bed.n, sizeof *seen);
@@ -175,7 +175,7 @@ TEST(bad_configurations_are_refused) {
 }
 
 /* If this build or this machine lacks an instruction set, the call says so, with any spheres. */
-TEST(missing_instruction_sets) {
+TEST(missing_instruction_sets_are_reported) {
     OWNED_BED bed = lattice('p', 3);
     const struct isas isas = isas_there();
     bool best = false;
@@ -359,7 +359,7 @@ TEST(cells_follow_the_spheres) {
 
 /* Fuzzing found this: rounding left both coordinates outside the box between them, and the choice of cells had no
  * end. */
-TEST(one_stray_beside_equal_coordinates) {
+TEST(one_stray_beside_equal_coordinates_ends_no_search) {
     OWNED_BED bed = BED({20, 0, 0, 1});
     for (int i = 0; i < 30; i++) add_sphere(&bed, 1.3, 2.5 * i, 0, 1);
     free(scene_of(&bed, FIBRAD_ISA_BEST));

@@ -58,7 +58,7 @@ static double factor(const scene *s, uint32_t nodes, uint32_t flags, int isa, fi
 /* ---- tests ---- */
 
 /* docs/reproduction.md: largest relative error over the gaps, in per cent. */
-TEST(published_errors) {
+TEST(errors_are_those_published) {
     static const double radius[] = {.1, .3, .7, 1};
     static const struct {
         uint32_t nodes;
@@ -141,7 +141,7 @@ TEST(same_bits_in_every_instruction_set) {
 
 /* The third sphere touches both spheres. After the correction the error at 55 nodes against 987 is a third of the raw
  * error. */
-TEST(third_sphere_touching_both) {
+TEST(correction_divides_the_error_behind_a_third_sphere) {
     static const struct {
         double radius, raw, corrected;
     } table[] = {{.1, 1.8, 1.81}, {.3, 1.6, .7}, {.7, 4.84, 1.3}, {1, 5.15, 1.5}};
@@ -204,7 +204,7 @@ TEST(scratch_and_strides_change_no_bit) {
 }
 
 /* An instruction set that is not built in is reported as missing. */
-TEST(instruction_sets_not_built_in) {
+TEST(instruction_sets_not_built_in_are_missing) {
     static const int lacking[] = {
 #ifndef FIBRAD_WITH_SSE2
         FIBRAD_ISA_SSE2,

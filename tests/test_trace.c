@@ -102,7 +102,7 @@ static void follow(const struct bed *bed, int isa, int lists, int images, uint32
     ck_assert_uint_gt(met, paths / 4);
 }
 
-TEST(random_beds) {
+TEST(rays_in_random_beds_meet_the_nearest) {
     const struct isas isas = isas_there();
     for (int kind = 0; kind < 4; kind++) {
         OWNED_BED bed = packing(150, kind == 3 ? .1 : kind == 0 ? 1 : .5, 1, kind == 2 ? .02 : .5, 3, kind != 1);
@@ -120,14 +120,14 @@ TEST(small_spheres_before_large_ones) {
 }
 
 /* Spheres overlap by up to a third of a radius. */
-TEST(overlaps) {
+TEST(rays_among_overlaps_meet_the_first) {
     OWNED_BED bed = packing(100, .7, 1, .45, 5, true);
     for (uint32_t i = 0; i < bed.n; i++) bed.r[i] *= 1.15;
     follow(&bed, FIBRAD_ISA_SCALAR, FEW, 2, 500, 4);
 }
 
 /* One large sphere has thousands of small ones about it, more than a list holds. */
-TEST(large_among_small) {
+TEST(a_large_sphere_among_small_ones_is_met) {
     OWNED_BED bed = bed_empty();
     add_sphere(&bed, 0, 0, 0, 1);
     for (uint32_t k = 0; k < 1500; k++) {
@@ -139,7 +139,7 @@ TEST(large_among_small) {
 }
 
 /* More small spheres overlap a large one than there is room for. So there is no list at all. */
-TEST(studded_sphere) {
+TEST(a_studded_sphere_needs_no_list) {
     OWNED_BED bed = bed_empty();
     add_sphere(&bed, 0, 0, 0, 1);
     for (uint32_t k = 0; k < 700; k++) {
@@ -152,7 +152,7 @@ TEST(studded_sphere) {
 
 /* There is one sphere in a period, which sees mostly its own images. Rays along the channels of a lattice meet
  * nothing. */
-TEST(one_sphere_and_its_images) {
+TEST(one_sphere_meets_its_images) {
     OWNED_BED bed = BED({.3, .4, .5, 1});
     bed.period[0] = 2, bed.period[1] = 2.5, bed.period[2] = 3;
     follow(&bed, FIBRAD_ISA_SCALAR, FEW, 12, 200, 5);
@@ -163,7 +163,7 @@ TEST(one_sphere_and_its_images) {
 }
 
 /* A stray sphere far away is seen, and sees the others. */
-TEST(stray) {
+TEST(a_stray_sees_and_is_seen) {
     OWNED_BED bed = packing(200, .5, 1, .3, 9, false);
     add_sphere(&bed, 4e6, 10, 10, 1e5);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -190,7 +190,7 @@ TEST(stray) {
     ck_assert_uint_eq(seen, 20);
 }
 
-TEST(from_points) {
+TEST(rays_from_any_point_meet_the_nearest) {
     for (int periodic = 0; periodic <= 1; periodic++) {
         OWNED_BED bed = packing(150, .3, 1, .4, 11, periodic);
         OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -237,7 +237,7 @@ TEST(same_bits_everywhere) {
 }
 
 /* Rays that begin in cells with lists meet what rays without lists meet, to the bit. */
-LOOP_TEST(from_cells, 3) {
+LOOP_TEST(rays_from_cells_meet_what_others_meet, 3) {
     OWNED_BED bed = packing(400, _i == 2 ? .05 : .3, 1, .45, 4, _i == 1);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     const struct isas isas = isas_there();
@@ -296,7 +296,7 @@ TEST(lists_belong_to_contents) {
 
 /* A block that is too small is left alone, and the call says what it lacks. A block that is large enough, of any
  * alignment, is used throughout. */
-TEST(memory) {
+TEST(memory_that_is_too_small_is_left_alone) {
     OWNED_BED bed = BED({0, 0, 0, 1});
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_workspace *space = NULL;

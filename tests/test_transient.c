@@ -298,6 +298,42 @@ TEST(patches_as_factors) {
     }
 }
 
+enum { STACK = 18 };
+
+/* Temperatures of spheres in a grey room after some time. residual: of the solutions. */
+static void warm_stack(double residual, double temperature[STACK], fibrad_span *span) {
+    const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_PATCHES,
+                                            .heat = {.directions = 12, .patches = 24, .wall_rays = 2000}};
+    double emissivity[STACK], capacity[STACK], wall_temperature[6], wall_emissivity[6];
+    OWNED_BED bed = bed_empty();
+    for (int i = 0; i < STACK; i++) {
+        add_sphere(&bed, 2.3 * (i % 3), 2.3 * (i / 3 % 3), 2.3 * (i / 9), .9);
+        emissivity[i] = .3 + .03 * i, capacity[i] = 2 + i, temperature[i] = 400 + 50 * i;
+    }
+    fibrad_body wall[6];
+    for (int k = 0; k < 6; k++) {
+        wall[k] = plane_at(k / 2, k % 2, k % 2 ? k < 4 ? 5.9 : 3.6 : -1.3);
+        wall_temperature[k] = 300 + 200 * k, wall_emissivity[k] = .2 + .1 * k;
+    }
+    const fibrad_scene_config scene = {.body = wall, .bodies = 6};
+    OWNED_TRANSIENT *t = transient_of(&bed, &scene, &config);
+    fibrad_heat_sources sources = sources_about(emissivity, 300);
+    sources.body_temperature = wall_temperature, sources.body_emissivity = wall_emissivity;
+    sources.tolerance = residual;
+    *span = (fibrad_span){.temperature = temperature, .capacity = capacity, .duration = .05};
+    assert_ok(fibrad_transient_advance(t, &sources, span));
+}
+
+/* Residuals of the solutions are so small that they refuse no step. */
+TEST(residuals_refuse_no_step) {
+    double found[STACK], right[STACK];
+    fibrad_span rough, exact;
+    warm_stack(0, found, &rough), warm_stack(1e-8, right, &exact);
+    ck_assert_msg(rough.refused <= exact.refused + 1, "%d of %d steps", (int)rough.refused, (int)rough.steps);
+    ck_assert_uint_lt(rough.sweeps, exact.sweeps);
+    for (int i = 0; i < STACK; i++) ck_assert_double_eq_tol(found[i] / right[i], 1, 1e-4);
+}
+
 /* Any number of threads gives the same bits. */
 TEST(threads_change_nothing) {
     OWNED_BY(furnace_free) struct furnace f;

@@ -88,7 +88,7 @@ static struct output expected(int function, const fibrad_scene *scene, uint32_t 
 
 /* Memory begins at nothing and grows as the kernel asks for it. The kernel asks for more each time, but not often. With
  * as much memory as it asked for last, the same call succeeds at once in another block. */
-LOOP_TEST(fixed_memory_step_by_step, SCENES *FUNCTIONS) {
+LOOP_TEST(fixed_memory_grows_in_few_steps, SCENES *FUNCTIONS) {
     OWNED_BED bed = bed_number(_i / FUNCTIONS);
     const int function = _i % FUNCTIONS;
     OWNED fibrad_scene *scene = scene_number(_i / FUNCTIONS, &bed);
@@ -118,7 +118,7 @@ LOOP_TEST(fixed_memory_step_by_step, SCENES *FUNCTIONS) {
 }
 
 /* One growing work memory and one of each other kind serve all scenes and functions in turn. */
-TEST(any_scenes_and_functions_in_turn) {
+TEST(one_work_serves_all_scenes_and_functions) {
     struct bed bed[SCENES];
     fibrad_scene *scene[SCENES];
     for (int k = 0; k < SCENES; k++) bed[k] = bed_number(k), scene[k] = scene_number(k, &bed[k]);
@@ -152,7 +152,7 @@ TEST(any_scenes_and_functions_in_turn) {
 }
 
 /* Scenes are made anew in the place of others, between calls with the same work memory. */
-TEST(scenes_made_anew_in_the_same_place) {
+TEST(scenes_made_anew_in_one_place_are_told_apart) {
     const size_t size = fibrad_scene_size(150, 0);
     OWNED void *block = block_of(size);
     OWNED_WORK work = work_growing();
@@ -170,7 +170,7 @@ TEST(scenes_made_anew_in_the_same_place) {
 }
 
 /* The caller may give another block at any time, whatever it holds. */
-TEST(other_blocks_at_any_time) {
+TEST(the_block_may_change_at_any_time) {
     OWNED_BED bed = bed_number(0);
     fibrad_scene *scene = scene_of(&bed, 0);
     const size_t size = 4u << 20;
@@ -190,7 +190,7 @@ TEST(other_blocks_at_any_time) {
 }
 
 /* A fixed block may begin at each of the 64 offsets. Nothing is written beside it. */
-LOOP_TEST(blocks_of_any_alignment, FUNCTIONS) {
+LOOP_TEST(blocks_may_have_any_alignment, FUNCTIONS) {
     OWNED_BED bed = bed_number(1);
     OWNED fibrad_scene *scene = scene_of(&bed, 0);
     const int function = _i;
@@ -213,7 +213,7 @@ LOOP_TEST(blocks_of_any_alignment, FUNCTIONS) {
 
 /* Each call of the resize function in turn returns FIBRAD_E_MEMORY. Nothing is written, and the next call, which gets
  * memory, has the right result. */
-LOOP_TEST(memory_that_is_refused, FUNCTIONS) {
+LOOP_TEST(refused_memory_is_an_error_once, FUNCTIONS) {
     OWNED_BED bed = bed_number(2);
     OWNED fibrad_scene *scene = scene_of(&bed, 0);
     const int function = _i;
@@ -241,7 +241,7 @@ LOOP_TEST(memory_that_is_refused, FUNCTIONS) {
 
 /* The size FIBRAD_WORK_BYTES is enough at any offset: for a packed bed, for a sphere that meets hundreds in a window,
  * and for one that meets six. */
-TEST(bytes_that_are_enough) {
+TEST(the_bytes_of_the_header_are_enough) {
     static unsigned char packed[FIBRAD_WORK_BYTES(64, 200) + 64], hundreds[FIBRAD_WORK_BYTES(1000, 1000) + 64],
         six[FIBRAD_WORK_BYTES(6, 6) + 64], walls[FIBRAD_WORK_BYTES(64, 3) + FIBRAD_WORK_WALLS + 64];
     OWNED_BED bed = packing(600, .8, 1.2, .6, 7, true), around = BED({0, 0, 0, 4});

@@ -109,7 +109,7 @@ static void assert_shortest(double value) {
 }
 
 /* Numbers are written as printf writes them, to the last digit. They have all sizes, and some are hard to round. */
-TEST(numbers) {
+TEST(numbers_are_those_of_printf) {
     uint64_t state = 88172645463325252u;
     char ours[2 * TEXT_NUMBER], theirs[2 * TEXT_NUMBER];
     for (int k = 0; k < 500000; ++k) {
@@ -141,7 +141,7 @@ TEST(numbers) {
     ck_assert_str_eq(fgets(ours, sizeof ours, file), "null0.5");
 }
 
-TEST(csv) {
+TEST(csv_has_a_line_for_each_entry) {
     for (int ids = 0; ids < 2; ++ids) {
         write_matrix(write_csv, ids, NULL);
         assert_begins(text, "i,j,F\n");
@@ -161,7 +161,7 @@ TEST(csv) {
 
 /* After each sphere's row come the surroundings, -1, and the walls from -2 on. Then come the rows of walls of finite
  * area. The column `body` says what they are. */
-TEST(csv_of_walls) {
+TEST(csv_has_walls_below_minus_one) {
     char all[1000];
     write_matrix(write_csv, true, &walls);
     snprintf(all, sizeof all,
@@ -195,7 +195,7 @@ TEST(csv_of_walls) {
 }
 
 /* Rows of walls come after what the wall sends to the spheres. Walls without bounds have none, and null in JSON. */
-TEST(rows_of_walls) {
+TEST(rows_of_walls_come_after_spheres) {
     static const double between[] = {0.5, 0.25, NAN, NAN}, leaves[] = {0.125, NAN}, off[] = {0.0625, NAN};
     fibrad_bed_factors whole = factors;
     whole.matrix.body_body = between, whole.matrix.body_escaped = leaves, whole.matrix.body_error = off;
@@ -211,7 +211,7 @@ TEST(rows_of_walls) {
 }
 
 /* Frames and files are columns. The header comes once. */
-TEST(series) {
+TEST(series_have_one_header) {
     struct contents what = {.bed = &bed, .factors = &factors, .series = true};
     write_text(write_csv, &what, true);
     assert_begins(text, "frame,timestep,i,j,F\n0,1200,0,70,");
@@ -226,7 +226,7 @@ TEST(series) {
 }
 
 /* If surroundings have no temperature, they do not appear. */
-TEST(heat) {
+TEST(heat_leaves_out_surroundings_without_temperature) {
     char all[1000];
     for (int closed = 0; closed < 2; ++closed) {
         sources.surroundings = closed ? NAN : 300;
@@ -246,7 +246,7 @@ TEST(heat) {
 }
 
 /* JSON has no NaN and no control characters. tests/check_written.sh has Python read it. */
-TEST(json) {
+TEST(json_has_no_nan) {
     struct contents what = {
         .bed = &bed, .factors = &factors, .wanted = wanted, .walls = &walls, .file = "a\n\"b\\.csv"};
     char all[1000];
@@ -266,7 +266,7 @@ TEST(json) {
     ck_assert_str_eq(text, all);
 }
 
-LOOP_TEST(matrix_market, 2) {
+LOOP_TEST(matrix_market_has_ids_and_entries, 2) {
     write_matrix(write_mtx, _i == 1, NULL);
     const char banner[] = "%%MatrixMarket matrix coordinate real general\n";
     assert_begins(text, banner);
@@ -312,7 +312,7 @@ static size_t array(const char *name, void *values, size_t capacity) {
     return length / 8;
 }
 
-TEST(paraview) {
+TEST(paraview_files_have_all_arrays) {
     double values[9];
     int64_t whole[3];
     write_matrix(write_vtp, false, NULL);
@@ -369,7 +369,7 @@ static const char *next_member(const char *at, const char *name, uint64_t bytes)
 }
 
 /* tests/check_npz.sh has Python and SciPy open such files. */
-TEST(numpy) {
+TEST(numpy_files_have_all_arrays) {
     const int64_t shape[] = {3, 3};
     const uint64_t large[] = {1, 2, UINT64_MAX}; /* in place of the ids */
     const struct array ids = {"ids.npy", "u8", large, 3, 0};
@@ -422,7 +422,7 @@ TEST(numpy) {
 }
 
 /* The summary goes over the rows that were computed. */
-TEST(summaries) {
+TEST(summaries_go_over_rows_that_were_computed) {
     struct summary summary;
     summary_make(&summary, &(struct contents){.bed = &bed, .factors = &factors, .wanted = wanted, .walls = &walls});
     ck_assert_double_eq(summary.row_sum_min, row_sum[2]);
@@ -466,7 +466,7 @@ static void expect_file(const char *content) {
     ck_assert_str_eq(text, content);
 }
 
-TEST(complete_or_not_at_all) {
+TEST(files_are_complete_or_not_there) {
     struct output output;
     umask(027);
     ck_assert_int_eq(output_open(&output, path), 0);
@@ -498,7 +498,7 @@ TEST(complete_or_not_at_all) {
 
 /* A link stays and leads to the file that was written, which keeps its permissions. The file need not exist before, but
  * links must not lead in a circle. */
-TEST(links) {
+TEST(links_stay_and_lead_to_the_file) {
     struct output output;
     struct stat there;
     const char *link_to = formatted("%s/link.csv", folder), *other = formatted("%s/next.csv", folder);
@@ -526,7 +526,7 @@ TEST(links) {
 }
 
 /* A file that is read stays, under any of its names, whichever of the two files is opened first. */
-TEST(inputs_stay) {
+TEST(inputs_are_never_replaced) {
     struct output output;
     const char *read = formatted("%s/read.csv", folder), *link_to = formatted("%s/link.csv", folder);
     fclose(fopen(read, "w"));
@@ -544,7 +544,7 @@ TEST(inputs_stay) {
 }
 
 /* The program writes at once to what it cannot replace: standard output by any of its names, pipes, devices. */
-TEST(written_at_once) {
+TEST(pipes_and_devices_are_written_at_once) {
     struct output output;
     FILE *file = tmpfile();
     const int before = dup(STDOUT_FILENO);
@@ -575,7 +575,7 @@ TEST(written_at_once) {
     ck_assert_int_eq(output_close(&output, STATUS_FILE), STATUS_FILE);
 }
 
-TEST(unwritable) {
+TEST(unwritable_places_are_refused) {
     struct output output;
     ck_assert_int_eq(output_open(&output, folder), STATUS_FILE);
     ck_assert_int_eq(output_open(&output, "no/such/folder/out.csv"), STATUS_FILE);
@@ -622,7 +622,7 @@ static const struct {
              {{"a.npz"}, CONTENT_MATRIX, true, 2},
              {{"--format=vtp", "-"}, CONTENT_HEAT, true, 2}};
 
-LOOP_TEST(outputs_asked, sizeof asked / sizeof *asked) {
+LOOP_TEST(outputs_go_by_their_names, sizeof asked / sizeof *asked) {
     struct outputs outputs = {0};
     int status = 0;
     for (int k = 0; k < 4 && asked[_i].word[k] && !status; ++k) {
@@ -642,7 +642,7 @@ static struct contents frame_of(const struct bed *of) {
 }
 
 /* Three frames go into files of their own, which stay whatever comes later, and into one file, which must be whole. */
-TEST(outputs_written) {
+TEST(outputs_of_frames_are_written_whole) {
     struct bed numbered[] = {bed, plain, plain};
     numbered[0].frame = -2, numbered[1].frame = 10, numbered[2].frame = 8;
     const struct contents frames[] = {frame_of(&numbered[0]), frame_of(&numbered[1]), frame_of(&numbered[2])};
@@ -682,7 +682,7 @@ TEST(outputs_written) {
 }
 
 /* Places where nothing can be written are found before the work begins, those of frames, too. */
-TEST(outputs_unwritable) {
+TEST(unwritable_outputs_are_found_before_the_work) {
     static const char *const names[] = {"no/such.csv", "no/*.csv"};
     for (int k = 0; k < 2; ++k) {
         struct outputs outputs = {0};
@@ -696,7 +696,7 @@ TEST(outputs_unwritable) {
 }
 
 /* Our own reader reads back a dump, two frames of it, with boxes of files, of periods, and of spheres. */
-TEST(dump_read_back) {
+TEST(dumps_are_read_back) {
     static const char *const columns[] = {"T_K", "q_W"};
     struct bed first = bed, second = bed;
     memcpy(first.units, "cgs", 4);

@@ -162,7 +162,10 @@ int conduction_emitters(const struct bed *bed, const struct walls *walls, int ax
     struct core core;
     double solid = 0, emitting = 0;
     *result = (struct conduction){.temperature = NAN};
-    for (int a = 0; a < 3; ++a) result->steady[a] = result->steady_error[a] = NAN;
+    for (int a = 0; a < 3; ++a) {
+        result->steady[a] = result->steady_error[a] = NAN;
+        result->total[a].computed = false;
+    }
     for (uint32_t i = 0; i < bed->n; ++i) result->diameter += 2 * bed->r[i] / bed->n;
     const int status = find_core(bed, walls, axis, margin, file, result->diameter, &core);
     if (status) return status;

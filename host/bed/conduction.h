@@ -45,6 +45,19 @@ struct conduction_rule {
         max_rays; /* largest number of rays of a search for `error`; its first few paths are followed in any case */
 };
 
+/* A conductivity and its estimated error [W/(m K)]. */
+struct conduction_value {
+    double k, error;
+};
+
+/* Conductivities of a bed with contacts. */
+struct conduction_total {
+    struct conduction_value both, radiation, conduction; /* conduction: of the same contacts without radiation */
+    uint32_t contacts;
+    bool periodic; /* temperatures rise from one period to the next; false: the bed lies between plates */
+    bool computed;
+};
+
 /* The emitters, and the results. */
 struct conduction {
     double volume;         /* volume of the bed that belongs to the emitters [L^3] */
@@ -56,6 +69,7 @@ struct conduction {
     uint32_t flights;                  /* of a path whose displacements are correlated; 0: spheres do not conduct */
     double factor[3], error[3];        /* F_E per axis and its standard error */
     double steady[3], steady_error[3]; /* F_E between plates, set by the caller; NaN: not known */
+    struct conduction_total total[3];  /* with contacts, set by the caller */
     int axis;                          /* the wanted axis; -1: all three */
     double temperature;                /* [K]; NaN: k is not known */
     double k[3], k_error[3];           /* [W/(m K)] */
@@ -76,6 +90,11 @@ struct conduction {
  * too thin or has too few emitters, or STATUS_MEMORY. */
 int conduction_emitters(const struct bed *bed, const struct walls *walls, int axis, double margin, const char *file,
                         unsigned char *emits, struct conduction *result);
+
+/* Whether conductivities with contacts are known along some axis. */
+static inline bool conduction_contacts(const struct conduction *result) {
+    return result->total[0].computed || result->total[1].computed || result->total[2].computed;
+}
 
 /* The width of the bed along an axis: its period, the distance of two walls, or the width of a square as large as a
  * cylinder. NaN: the bed is open along the axis. */

@@ -130,18 +130,29 @@ void quantity_follow(const struct quantity *quantity, const struct bed *bed, con
 
 #define EXCESS_LEAST 1e-3 /* [K] temperatures are found with rounding */
 
+static void add_excess(const struct curve *curve, double temperature, struct table_excess *now) {
+    if (!curve || isnan(temperature)) return;
+    const double far = fmax(curve->x[0] - temperature, temperature - curve->x[curve->n - 1]);
+    now->number += far > EXCESS_LEAST;
+    now->kelvins = fmax(now->kelvins, far);
+}
+
+static void grow_excess(struct table_excess *excess, const struct table_excess *now) {
+    if (now->number > excess->number) excess->number = now->number;
+    excess->kelvins = fmax(excess->kelvins, now->kelvins);
+}
+
 void quantity_excess(const struct quantity *quantity, const struct bed *bed, const double *temperature,
                      struct table_excess *excess) {
     struct table_excess now = {0};
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        const struct curve *curve = curve_of_sphere(quantity, bed, i);
-        if (!curve || isnan(temperature[i])) continue;
-        const double far = fmax(curve->x[0] - temperature[i], temperature[i] - curve->x[curve->n - 1]);
-        now.spheres += far > EXCESS_LEAST;
-        now.kelvins = fmax(now.kelvins, far);
-    }
-    if (now.spheres > excess->spheres) excess->spheres = now.spheres;
-    excess->kelvins = fmax(excess->kelvins, now.kelvins);
+    for (uint32_t i = 0; i < bed->n; ++i) add_excess(curve_of_sphere(quantity, bed, i), temperature[i], &now);
+    grow_excess(excess, &now);
+}
+
+void curve_excess(const struct curve *curve, uint32_t n, const double *temperature, struct table_excess *excess) {
+    struct table_excess now = {0};
+    for (uint32_t i = 0; i < n; ++i) add_excess(curve, temperature[i], &now);
+    grow_excess(excess, &now);
 }
 
 /* The value of sphere i. NaN: the option was not given, or the list does not have the type of the sphere. */

@@ -54,15 +54,18 @@ int emissivity_option(const char *text, void *quantity);
 int emissivity_curves_option(const char *text, void *quantity);
 int temperature_option(const char *text, void *quantity);
 
-/* How far spheres lie beyond the ends of tables. */
+/* How far spheres, or contacts, lie beyond the ends of tables. */
 struct table_excess {
-    uint32_t spheres;
+    uint32_t number;
     double kelvins; /* largest distance from an end */
 };
 
 /* Finds this for the temperatures [bed->n]. Each number of *excess grows to the present one, or stays. */
 void quantity_excess(const struct quantity *quantity, const struct bed *bed, const double *temperature,
                      struct table_excess *excess);
+
+/* The same of one table, for temperatures [n]. NaN: not known. */
+void curve_excess(const struct curve *curve, uint32_t n, const double *temperature, struct table_excess *excess);
 
 /* Frees the tables of a quantity. */
 void quantity_free(struct quantity *quantity);

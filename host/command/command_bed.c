@@ -67,7 +67,7 @@ static int bed_help(void) {
          "walls are j = -2, -3, ... with their names in the column `body`, so that rows add up to 1. Rows i = -2,\n"
          "-3, ... are those of walls that are not endless. With --targets or --cutoff there are no such rows. .vtp\n"
          "has an array for each wall. .mtx has spheres only. `beyond` is the fraction that leaves the cutoff and\n"
-         "whose end is not known.\n"
+         "whose end is not followed.\n"
          "\n"
          "Several frames go into one .csv or .json with their numbers. If OUT has a *, each frame has a file.\n"
          "Standard output ends with a summary of each frame, one `key value` on a line. `wall_NAME_F` is the mean\n"

@@ -25,8 +25,7 @@ struct conductivity_request {
     struct conduction_rule rule;
     bool steady;
     struct contact_options contacts;
-    double isothermal; /* [W/(m K)] of conduction_isothermal; NaN: not known */
-    struct steady_total total[3];
+    double isothermal;        /* [W/(m K)] of conduction_isothermal; NaN: not known */
     struct steady between[3]; /* results between plates along each axis; 0 spheres: not computed */
 };
 
@@ -84,8 +83,9 @@ static int conductivity_help(void) {
          "one temperature, unless --solid-conductivity says how well it conducts.\n");
     options_print(conductivity_table);
     printf("\n" FILES_MORE "\n"
-           "F_E is that of a linear field of temperature. All spheres absorb. Along open axes only spheres at least\n"
-           "%g mean diameters (%g with --solid-conductivity) inside the outermost centres emit. With --axis, the bed\n"
+           "F_E is found with temperatures that rise linearly along the axis. All spheres absorb. Along open axes\n"
+           "only spheres deep inside the bed emit, %g mean diameters or more from the outermost centres (%g with\n"
+           "--solid-conductivity). With --axis, the bed\n"
            "may be too thin for this along another axis. Spheres at any place along that other axis then emit. Where\n"
            "a periodic bed has gaps, flights may be so long that F_E does not exist, or that its standard error\n"
            "cannot be estimated. Then there is a warning.\n"
@@ -104,8 +104,9 @@ static int conductivity_help(void) {
          "sphere is right to 5 %.\n"
          "\n" CONTACTS_MORE
          "With --contacts or --gas-conductivity, --steady finds k_total of the bed with radiation and contacts,\n"
-         "k_radiation without contacts and k_conduction without radiation. Spheres within a diameter of a plate\n"
-         "have its temperature.\n"
+         "k_radiation without contacts and k_conduction without radiation. If the bed is periodic along the axis,\n"
+         "temperatures rise from one period to the next (`ends_z periodic`). Else, or with --solid-conductivity,\n"
+         "the bed lies between plates, and spheres within a diameter of a plate have its temperature.\n"
          "\n"
          "Examples:\n"
          "  fibrad conductivity pebbles.dump --emissivity 0.8 --steady --temperature 1000 --contacts hertz \\\n"
@@ -172,6 +173,9 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
         return message(STATUS_USAGE, "--emissivity is missing; see fibrad conductivity --help");
     if (contacts_given(&request->contacts) && !(request->steady && request->at))
         return message(STATUS_USAGE, "--contacts and --gas-conductivity need --steady and --temperature");
+    for (int k = 0; k < request->temperatures; ++k)
+        if (contacts_given(&request->contacts) && !(request->temperature[k] > 0))
+            return message(STATUS_USAGE, "--contacts and --gas-conductivity need a --temperature above 0 K");
     if (request->contacts.flows) return message(STATUS_USAGE, "--contact-flows is an option of fibrad heat");
     if (request->solid.given && !request->at) return message(STATUS_USAGE, "--solid-conductivity needs --temperature");
     if (rule->error > 0 && rule->paths > 0) return message(STATUS_USAGE, "--error chooses the rays; leave out --rays");
@@ -215,11 +219,12 @@ static void report_steady(struct report *report, int axis, const struct steady *
 }
 
 /* Reports conductivities of a bed with contacts along an axis. */
-static void report_total(struct report *report, int axis, const struct steady_total *total) {
+static void report_total(struct report *report, int axis, const struct conduction_total *total) {
     static const char *const names[] = {"k_total", "k_radiation", "k_conduction"};
-    const struct measured_total *const of[] = {&total->both, &total->radiation, &total->conduction};
+    const struct conduction_value *const of[] = {&total->both, &total->radiation, &total->conduction};
     if (!total->computed) return;
     report_count(report, report_key(report, "contacts_%c", 'x' + axis), total->contacts);
+    report_text(report, report_key(report, "ends_%c", 'x' + axis), total->periodic ? "periodic" : "plates");
     for (int k = 0; k < 3; ++k) {
         report_measured(report, report_key(report, "%s_%c_W_mK", names[k], 'x' + axis), of[k]->k, of[k]->error);
         report_value(report, report_key(report, "%s_%c_W_mK_error", names[k], 'x' + axis), of[k]->error, 2);
@@ -256,7 +261,7 @@ static void conductivity_report(struct conductivity_request *request, const stru
         report_axes(report, result, "k", "_W_mK", result->k, result->k_error);
     }
     for (int axis = 0; axis < 3; ++axis) report_steady(report, axis, &request->between[axis]);
-    for (int axis = 0; axis < 3; ++axis) report_total(report, axis, &request->total[axis]);
+    for (int axis = 0; axis < 3; ++axis) report_total(report, axis, &result->total[axis]);
     report_axes(report, result, "F_E", "", result->factor, result->error);
     report_end(report);
 }
@@ -306,14 +311,20 @@ static int conductivity_follow(struct conductivity_request *request, const struc
 }
 
 /* Conductivities of the bed with contacts along an axis. */
-static int conductivity_total(struct conductivity_request *request, const struct bed *bed,
-                              const struct conduction *result, int axis) {
+static int conductivity_total(struct conductivity_request *request, const struct bed *bed, struct conduction *result,
+                              int axis) {
     double metres;
     const int status = bed_options_metres(&request->bed, bed, &metres);
-    const struct total_problem problem = {
-        &request->contacts,  &request->solid, request->rule.emissivity, request->rule.conductivity, &request->walls,
-        result->temperature, metres,          result->diameter};
-    return status ? status : steady_contacts(&request->bed, bed, &problem, axis, &request->total[axis]);
+    const struct total_problem problem = {&request->contacts,
+                                          &request->solid,
+                                          request->rule.emissivity,
+                                          request->rule.conductivity,
+                                          &request->walls,
+                                          result->temperature,
+                                          metres,
+                                          result->diameter,
+                                          {result->k[axis], result->k_error[axis]}};
+    return status ? status : steady_contacts(&request->bed, bed, &problem, axis, &result->total[axis]);
 }
 
 /* With --steady computes F_E between plates along each wanted axis whose other two axes are periodic. */
@@ -321,7 +332,7 @@ static int conductivity_steady(struct conductivity_request *request, const struc
     int status = STATUS_OK;
     bool any = false;
     for (int axis = 0; axis < 3 && !status; ++axis) {
-        request->between[axis] = (struct steady){0}, request->total[axis] = (struct steady_total){.computed = false};
+        request->between[axis] = (struct steady){0}, result->total[axis].computed = false;
         if (!request->steady || !conduction_wants(result, axis) || !steady_possible(bed, &request->walls, axis))
             continue;
         any = true;

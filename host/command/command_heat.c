@@ -106,10 +106,11 @@ static int heat_help(void) {
          "A net power is above 0 where heat is gained. Where a power is given, the temperature is found [K].\n");
     options_print(heat_table);
     puts("\n" FILES_MORE "\n" WALLS_MORE "\n"
-         "Each sphere has a temperature or a power. If the list of one option leaves out a type, or its column has\n"
-         "a blank or nan, the other option gives the value. A single number beside a list or column is for the\n"
-         "spheres that the list or column leaves out. A power is given off from inside, so that the net power is\n"
-         "its negative. An insulated wall sends back all that arrives, point by point. A sphere of emissivity 0\n"
+         "Each sphere has a temperature or a power. With both options, each sphere has a value from one of them.\n"
+         "Example: --temperature 1:600 --power 2:5 gives 600 K to spheres of type 1, and 5 W to those of type 2.\n"
+         "Columns have a blank or nan where the other option counts. A single number beside a list or a column is\n"
+         "for the spheres that the list or column leaves out. A power is given off from inside, so the net power\n"
+         "is its negative. An insulated wall sends back all that arrives, point by point. A sphere of emissivity 0\n"
          "reflects everything, gains nothing and has no temperature.\n"
          "\n"
          "--error E holds for the powers of the spheres together, for each wall, and for T^4 where temperatures\n"
@@ -122,7 +123,7 @@ static int heat_help(void) {
          "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
          "the temperature of a wall (zmin=@TABLE) or of the surroundings. The .csv then has the time in its first\n"
          "column. A series of .vtp has a .pvd for ParaView.\n");
-    puts("@TABLE: A header has names and units, `t [min],T [C]` or `k [W/(m K)],T [K]`, and tells which column is\n"
+    puts("@TABLE: A header has names and units, `t [min],T [C]` or `k [W/(m K)],T [K]`, and says which column is\n"
          "which. Beyond the ends of a table its first or last value is taken, with a warning.\n"
          "\n"
          "--solid-conductivity: Spheres conduct, and T_K is the mean over the surface. A power comes from a source\n"

@@ -8,7 +8,7 @@
 #include "bed/bed_scene.h"
 #include "cli/message.h"
 
-#define GAP       0.5   /* default of --gas-gap */
+#define GAP       0.65  /* default of --gas-gap */
 #define GAP_LEAST 4e-10 /* [m] least gap that counts: the distance of molecules */
 
 int contacts_option(const char *text, void *contact_options) {
@@ -150,15 +150,39 @@ static double temperature_of_end(const struct bed *bed, const double *temperatur
     return wall_temperature ? wall_temperature[end - bed->n] : NAN;
 }
 
+/* The mean of the temperatures of both ends of a contact that was found; that of one end if the other's is not known.
+ */
+static double temperature_of_contact(const struct contact_state *state, const struct bed *bed,
+                                     const double *temperature, const double *wall_temperature, uint32_t k) {
+    const double i = temperature_of_end(bed, temperature, wall_temperature, state->list->first[k]),
+                 j = temperature_of_end(bed, temperature, wall_temperature, state->list->second[k]);
+    return isnan(i) ? j : isnan(j) ? i : (i + j) / 2;
+}
+
+void contacts_excess(struct contact_state *state, const struct bed *bed, const double *temperature,
+                     const double *wall_temperature, struct table_excess excess[2]) {
+    const struct contact_options *o = state->options;
+    if (!o || !state->list) return;
+    if (state->of_solid == &o->conductivity) quantity_excess(state->of_solid, bed, temperature, &excess[0]);
+    if (!o->gas || o->gas_curve.n == 0) return;
+    for (uint32_t k = 0; k < state->list->n; ++k)
+        state->gas[k] = temperature_of_contact(state, bed, temperature, wall_temperature, k);
+    curve_excess(&o->gas_curve, state->list->n, state->gas, &excess[1]);
+    contacts_follow(state, bed, temperature, wall_temperature);
+}
+
+void contacts_warn(struct warned *warned, const struct table_excess excess[2]) {
+    warn_table(warned, "--contact-conductivity", &excess[0]);
+    warn_table(warned, "--gas-conductivity", &excess[1]);
+}
+
 void contacts_follow(struct contact_state *state, const struct bed *bed, const double *temperature,
                      const double *wall_temperature) {
     const struct contact_options *o = state->options;
     if (!o || !state->list) return;
     if (temperature) quantity_follow(state->of_solid, bed, temperature, state->solid);
     for (uint32_t k = 0; k < state->list->n && o->gas; ++k) {
-        const double i = temperature_of_end(bed, temperature, wall_temperature, state->list->first[k]),
-                     j = temperature_of_end(bed, temperature, wall_temperature, state->list->second[k]);
-        const double mean = isnan(i) ? j : isnan(j) ? i : (i + j) / 2;
+        const double mean = temperature_of_contact(state, bed, temperature, wall_temperature, k);
         state->gas[k] = o->gas_curve.n > 0 && !isnan(mean) ? curve_at(&o->gas_curve, mean) : o->gas_value;
     }
     double *conductance = state->conductance + state->listed;

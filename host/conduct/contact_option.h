@@ -27,7 +27,7 @@ enum { CONTACT_FILES_MAX = 8 };
          "thermal conductivity of the gas in narrow gaps [W/(m K)], or @TABLE of temperatures [K] and "                \
          "conductivities [no gas]",                                                                                    \
          TO_TEXT(request, contacts.gas)},                                                                              \
-        {0, "gas-gap", "X", "gas conducts out to this distance from the smaller sphere, in its radii, up to 1 [0.5]",  \
+        {0, "gas-gap", "X", "gas conducts out to this distance from the smaller sphere, in its radii, up to 1 [0.65]", \
          TO_NUMBER(request, contacts.gap, 1e-6, 1)},                                                                   \
         {0, "gas-jump", "L", "length added to gaps, since narrow gaps conduct less [m] [0]",                           \
          TO_NUMBER(request, contacts.jump, 0, 1)},                                                                     \
@@ -96,6 +96,12 @@ void contacts_free(struct contact_state *state);
 /* Sets conductances that depend on temperatures [K], NaN: not known. */
 void contacts_follow(struct contact_state *state, const struct bed *bed, const double *temperature,
                      const double *wall_temperature);
+
+/* Finds how far temperatures are beyond the ends of tables, as quantity_excess: of the solid at spots, and of the gas.
+ * Then warns of it. */
+void contacts_excess(struct contact_state *state, const struct bed *bed, const double *temperature,
+                     const double *wall_temperature, struct table_excess excess[2]);
+void contacts_warn(struct warned *warned, const struct table_excess excess[2]);
 
 /* Points a result to the arrays of contacts, and scales them to watts. */
 void contacts_result(struct contact_state *state, fibrad_heat_result *result);

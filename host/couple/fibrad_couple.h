@@ -18,8 +18,8 @@
  *             particle gains what the other loses. So no heat is lost, whatever the error of the rows. Nothing flows
  *             between particles of equal temperature.
  * Sources     A wall of emissivity above 0 is a source, and so is an opening. Paths begin at particles and at sources.
- *             Paths of sources tell what sources exchange with each other. Totals contain this exchange. Paths of
- *             sources also make rows of particles more accurate. Two kinds of walls have no paths of their own: an
+ *             What sources exchange with each other comes from paths of sources. Totals contain this exchange. Paths
+ *             of sources also make rows of particles more accurate. Two kinds of walls have no paths of their own: an
  *             endless wall, and a wall from which paths reach a side that belongs to no wall. What such walls exchange
  *             with each other is left out. docs/coupling.md has the details.
  * Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
@@ -29,7 +29,7 @@
  * Errors      After an error of a function other than fibrad_insitu_new, fibrad_insitu_message has a sentence. It is
  *             the same on all ranks, and names particles by id. The object is as it was before the call.
  * Strays      A simulation may go on with particles beyond walls or inside each other, which no scene can have. With
- *             config.strict such a particle is an error. Otherwise rows are made, and fibrad_insitu_remark tells what
+ *             config.strict such a particle is an error. Otherwise rows are made, and fibrad_insitu_remark says what
  *             was done:
  *               left out  The centre of the particle lies beyond a plane or the cylinder, or the particle reaches
  *                         beyond an opening. It exchanges nothing and hides nothing. Rows that are made when it is
@@ -66,8 +66,8 @@ typedef struct fibrad_link fibrad_link;
  *            culprit: the least id at fault on all ranks; may be NULL
  *   Errors   _ARGUMENT: an id is owned twice, or used and not owned
  *            _MEMORY
- *   Cost     a message of 16 bytes per own id, 8 bytes back and forth per used id, to and from the rank that the id
- *            tells; 4 bytes per different used id to its owner */
+ *   Cost     each id has a rank that keeps its owner, which follows from the id. A message of 16 bytes per own id goes
+ *            to that rank, 8 bytes per used id go there and back, 4 bytes per different used id go to its owner. */
 int fibrad_link_new(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_t own, size_t all, uint64_t *culprit);
 
 /* Copies the values of the owners to the ranks that use these ids. Only ranks that share particles exchange messages.
@@ -75,7 +75,7 @@ int fibrad_link_new(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_
  *            width: at least 1, the same on all ranks
  *   Output   value[all][width]: the others are set
  *   Errors   none but those of MPI
- *   Cost     `width` messages to and from each rank in contact, 8 bytes for each particle that both ranks know */
+ *   Cost     `width` messages to and from each rank in contact, 8 bytes for each particle that both ranks have */
 void fibrad_link_forward(fibrad_link *link, double *value, int width);
 
 /* The way back: adds the values on the ranks that use an id to the value of the owner, and sets the added values to 0.
@@ -94,11 +94,12 @@ void fibrad_link_free(fibrad_link *link);
 /* The rows of a bed, and what is needed to make them. */
 typedef struct fibrad_insitu fibrad_insitu;
 
-/* Directions and paths of each row. docs/lammps.md has errors and times. */
+/* Directions and paths of each row. More paths take the place of paths of sources: if config.one_way is 1, or if some
+ * source has no paths of its own. docs/lammps.md has errors and times. */
 typedef enum fibrad_accuracy {
-    FIBRAD_ACCURACY_NORMAL = 0, /* 36 directions, 24 paths; 80 if some source has no paths */
-    FIBRAD_ACCURACY_LOW = 1,    /* 18, 8; 34 */
-    FIBRAD_ACCURACY_HIGH = 2    /* 144, 800; 1,600 */
+    FIBRAD_ACCURACY_NORMAL = 0, /* 36 directions, 24 paths, or 80 without paths of sources */
+    FIBRAD_ACCURACY_LOW = 1,    /* 18 directions, 8 paths, or 34 */
+    FIBRAD_ACCURACY_HIGH = 2    /* 144 directions, 800 paths, or 1,600 */
 } fibrad_accuracy;
 
 /* The fibrad_accuracy of the name low, normal or high. Not collective.
@@ -175,7 +176,8 @@ typedef struct fibrad_insitu_facts {
     uint64_t overlapping;        /* number of particles that are smaller, since a centre lies inside another particle */
     uint64_t behind;             /* number of particles without a row, since they see a side that belongs to no wall */
     double cutoff;               /* L, in use */
-    double beyond;               /* mean fraction of the emission whose target is not known; known targets get it */
+    double beyond;               /* mean fraction of the emission that leaves the cutoff among particles. Its end is not
+                                    followed; all other targets get it, in proportion. */
     double error;                /* root mean square of the rows' estimated errors */
     double seconds_rows;         /* s, of the slowest rank, in all calls of fibrad_insitu_rows and _follow so far */
     double seconds_powers;       /* s, of the slowest rank, in all calls of fibrad_insitu_powers so far */
@@ -209,13 +211,12 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
  *   Cost     that of fibrad_exchange_row for each particle, and of the paths of sources: docs/coupling.md */
 int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
-/* Makes rows of those particles alone that have come since the last rows, and keeps the other rows. The exchange of a
- * new particle and an old one follows from the row of the new one alone. If a particle has gone, the factor of each old
- * row to it counts as beyond. The function makes all rows if there are none, if the number of walls has changed, or if
- * more than a tenth of all particles have come or gone since all rows were made.
- *   Input    as fibrad_insitu_rows
- *   Errors   as fibrad_insitu_rows
- *   Cost     about 2 microseconds for each particle and 10 ns for each entry, and the new rows */
+/* Makes rows of those particles alone that have come since the last rows, and keeps the other rows. The row of an
+ * old particle has no factor to a new one: what the two exchange follows from the row of the new particle alone. If a
+ * particle has gone, the factor of each old row to it counts as beyond. The function makes all rows if there are none,
+ * if the number of walls has changed, or if more than a tenth of all particles have come or gone since all rows were
+ * made. Input    as fibrad_insitu_rows Errors   as fibrad_insitu_rows Cost     about 2 microseconds for each particle
+ * and 10 ns for each entry, and the new rows */
 int fibrad_insitu_follow(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
 /* Net radiative power of each particle that this rank owns now. If particles conduct, `temperature` is the mean of each

@@ -25,6 +25,8 @@ enum kind {
     COLD_SURFACE,
     EMISSIVITY_TABLE,
     SOLID_TABLE,
+    CONTACT_TABLE,
+    GAS_TABLE,
     WALLS_OPEN,
     WALLS_APART,
     CLOSING
@@ -271,11 +273,19 @@ void warn_matter(struct warned *warned, const struct bed *bed, const double *cap
 }
 
 void warn_table(struct warned *warned, const char *option, const struct table_excess *excess) {
-    const enum kind kind = strcmp(option, "--emissivity") == 0 ? EMISSIVITY_TABLE : SOLID_TABLE;
-    if (excess->spheres > 0 && is_new(warned, kind))
+    static const struct {
+        const char *option, *what;
+        enum kind kind;
+    } tables[] = {{"--emissivity", "sphere", EMISSIVITY_TABLE},
+                  {"--solid-conductivity", "sphere", SOLID_TABLE},
+                  {"--contact-conductivity", "sphere", CONTACT_TABLE},
+                  {"--gas-conductivity", "contact", GAS_TABLE}};
+    size_t k = 0;
+    while (strcmp(option, tables[k].option) != 0) ++k;
+    if (excess->number > 0 && is_new(warned, tables[k].kind))
         message_at(STATUS_OK, warned->file, 0,
-                   "warning: %s: %u sphere%s beyond the table, by up to %.3g K; the value at its end is taken", option,
-                   excess->spheres, excess->spheres == 1 ? " has a temperature" : "s have temperatures",
+                   "warning: %s: %u %s%s beyond the table, by up to %.3g K; the value at its end is taken", option,
+                   excess->number, tables[k].what, excess->number == 1 ? " has a temperature" : "s have temperatures",
                    excess->kelvins);
 }
 

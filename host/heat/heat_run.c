@@ -192,14 +192,16 @@ void heat_properties(const struct heat_problem *problem, const struct bed *bed, 
 }
 
 void heat_excess_of(const struct heat_problem *problem, const struct bed *bed, const double *temperature,
-                    struct table_excess excess[2]) {
+                    const double *wall_temperature, struct table_excess excess[TABLES]) {
     quantity_excess(problem->of_emissivity, bed, temperature, &excess[0]);
     quantity_excess(problem->of_solid, bed, temperature, &excess[1]);
+    contacts_excess(problem->contacts, bed, temperature, wall_temperature, &excess[2]);
 }
 
-void heat_warn_excess(struct warned *warned, const struct table_excess excess[2]) {
+void heat_warn_excess(struct warned *warned, const struct table_excess excess[TABLES]) {
     warn_table(warned, "--emissivity", &excess[0]);
     warn_table(warned, "--solid-conductivity", &excess[1]);
+    contacts_warn(warned, &excess[2]);
 }
 
 /* Context of heat_follow. */
@@ -402,8 +404,8 @@ int heat_run(struct bed_options *options, const struct heat_problem *problem, co
     int status = heat_once(options, problem, bed, report);
     if (!status && problem->error > 0) status = heat_improve(options, problem, bed, report);
     report->seconds = progress_clock() - begun;
-    struct table_excess excess[2] = {{0}};
-    if (!status) heat_excess_of(problem, bed, report->result.temperature, excess);
+    struct table_excess excess[TABLES] = {{0}};
+    if (!status) heat_excess_of(problem, bed, report->result.temperature, report->result.body_temperature, excess);
     heat_warn_excess(&options->warned, excess);
     return status;
 }

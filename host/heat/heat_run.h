@@ -65,11 +65,12 @@ struct heat_report {
 void heat_properties(const struct heat_problem *problem, const struct bed *bed, const double *temperature,
                      double *emissivity);
 
-/* Finds how far spheres are beyond the ends of tables of emissivities and conductivities, as quantity_excess, and warns
- * of it. */
+/* Finds how far spheres and contacts are beyond the ends of tables of emissivities and conductivities, as
+ * quantity_excess, and warns of it. */
+enum { TABLES = 4 };
 void heat_excess_of(const struct heat_problem *problem, const struct bed *bed, const double *temperature,
-                    struct table_excess excess[2]);
-void heat_warn_excess(struct warned *warned, const struct table_excess excess[2]);
+                    const double *wall_temperature, struct table_excess excess[TABLES]);
+void heat_warn_excess(struct warned *warned, const struct table_excess excess[TABLES]);
 
 /* Solves the problem of a bed. With problem->error, solves again with more beams and patches until the estimated error
  * is small enough. The caller sets report->metres and all arrays of report->result. Status 0, STATUS_INPUT if no

@@ -68,9 +68,9 @@ struct time_run {
     double error;                                 /* largest fibrad_span.error */
     struct time_point *point;                     /* [points] of the picture */
     size_t points, room;
-    bool failed;                   /* memory for points ran out */
-    struct table_excess excess[2]; /* of emissivities and conductivities */
-    double lag;                    /* largest r^2/(pi^2 alpha) of spheres that conduct [s]; 0: none conducts */
+    bool failed; /* memory for points ran out */
+    struct table_excess excess[TABLES];
+    double lag; /* largest r^2/(pi^2 alpha) of spheres that conduct [s]; 0: none conducts */
 };
 
 static struct time_point point_of(const struct time_run *m, double time, const double *temperature) {
@@ -258,7 +258,7 @@ static int write_state(struct time_run *m) {
     fibrad_heat_sources shown = m->sources;
     shown.temperature = m->span.temperature;
     heat_properties(m->problem, &m->bed, shown.temperature, m->problem->emissivity);
-    heat_excess_of(m->problem, &m->bed, shown.temperature, m->excess);
+    heat_excess_of(m->problem, &m->bed, shown.temperature, m->wall, m->excess);
     contacts_follow(m->problem->contacts, &m->bed, shown.temperature, m->wall);
     int status = fibrad_transient_powers(m->transient, &shown, m->result);
     if (!status && m->triangles->count && !m->problem->by_factors) {

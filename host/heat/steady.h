@@ -3,6 +3,7 @@
 #ifndef STEADY_H
 #define STEADY_H
 
+#include "bed/conduction.h"
 #include "conduct/contact_option.h"
 
 /* Exchange factor F_E along one axis: flux / (mean diameter x gradient of sigma T^4). The gradient is that of a
@@ -30,31 +31,24 @@ struct walls steady_walls(const struct bed *bed, const struct walls *sides, int 
 /* The area of the bed across an axis. */
 double steady_area(const struct bed *bed, const struct walls *sides, int axis);
 
-/* What conducts in a bed between plates. */
+/* What conducts in a bed. */
 struct total_problem {
     const struct contact_options *contacts;
-    const struct quantity *solid; /* --solid-conductivity */
-    const double *emissivity;     /* [spheres] */
-    const double *relative;       /* [spheres] k* of spheres that conduct; NULL: each sphere has one temperature */
-    const struct walls *sides;    /* insulated, in contact with nothing */
-    double temperature;           /* [K] */
-    double metres;                /* the bed's unit of length */
-    double diameter;              /* mean diameter, in that unit */
+    const struct quantity *solid;   /* --solid-conductivity */
+    const double *emissivity;       /* [spheres] */
+    const double *relative;         /* [spheres] k* of spheres that conduct; NULL: each sphere has one temperature */
+    const struct walls *sides;      /* insulated, in contact with nothing */
+    double temperature;             /* [K] */
+    double metres;                  /* the bed's unit of length */
+    double diameter;                /* mean diameter, in that unit */
+    struct conduction_value linear; /* by radiation if temperatures of spheres are linear */
 };
 
-/* A conductivity and its estimated error [W/(m K)]. */
-struct measured_total {
-    double k, error;
-};
-struct steady_total {
-    struct measured_total both, radiation, conduction; /* conduction: of the same contacts without radiation */
-    uint32_t contacts;
-    bool computed;
-};
-
-/* As steady_conduction, with contacts. Spheres within a diameter of a plate have its temperature. The temperatures of
- * the plates differ by a thousandth. Status as steady_conduction and contacts_begin. */
+/* As steady_conduction, with contacts. If the bed is periodic along the axis by at least 4 mean diameters and 3 largest
+ * ones, and each sphere has one temperature, all temperatures rise by the same amount from one period to the next. Else
+ * spheres within a diameter of a plate have its temperature, and those of the plates differ by a thousandth. Status as
+ * steady_conduction and contacts_begin. */
 int steady_contacts(struct bed_options *options, const struct bed *bed, const struct total_problem *problem, int axis,
-                    struct steady_total *total);
+                    struct conduction_total *total);
 
 #endif

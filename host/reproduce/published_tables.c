@@ -102,3 +102,18 @@ const struct johnson_table johnson_walls[JOHNSON_TABLES] = {
       {5.8, 5.2677e-02, 2.0941e-02, 5.3825e-03, 1.2727e-03, 0},
       {6.6, 4.0835e-02, 1.3487e-02, 2.8511e-03, 0, 0},
       {7, 3.4181e-02, 1.0547e-02, 2.1404e-03, 0, 0}}}};
+
+/* C. G. van Antwerpen, C. G. du Toit, P. G. Rousseau, Nucl. Eng. Des. 240 (2010) 1803: measurements by many. Read. */
+const double beds_with_gas[BEDS_WITH_GAS][3] = {
+    {.25, .77, .77},   {1.07, 1.01, 1.01}, {4.2, 2.2, 2.4},    {21, 6.8, 9.2},   {70, 6.3, 6.3},
+    {142, 10.0, 10.0}, {395, 10.5, 10.5},  {1397, 14.7, 14.7}, {2360, 12.6, 43}, {7988, 147, 147}};
+
+/* SANA: graphite pebbles of 6 cm, porosity .41, emissivity .8. Digitised from a figure, 2 to 5 %. Read. */
+const double sana_helium[SANA_HELIUM][2] = {{150, 8.8},  {230, 7.0},  {311, 13.2}, {445, 12.7},
+                                            {534, 16.1}, {640, 17.2}, {775, 25.1}, {837, 18.7}};
+const double sana_nitrogen[SANA_NITROGEN][2] = {{425, 9.7},  {527, 9.9},  {638, 14.5},
+                                                {733, 20.4}, {794, 22.4}, {936, 22.9}};
+
+/* Generic pebble-bed reactor of the Virtual Test Bed: Zehner, Bauer, Schluender, pebbles of 6 cm, porosity .39,
+ * emissivity .8, helium. The conductivity of the solid is not said. Read. */
+const double reactor_bed[REACTOR][2] = {{300, 11.94}, {600, 16.46}, {1000, 27.26}, {1500, 38.70}, {2000, 44.95}};

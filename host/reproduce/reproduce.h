@@ -45,7 +45,8 @@ typedef int experiment(struct reproduce *reproduce);
 
 experiment reproduce_fig3, reproduce_fig4, reproduce_third_sphere, reproduce_fig10, reproduce_table1,
     reproduce_pebble_pair, reproduce_pebble_rays, reproduce_pebble_bed, reproduce_conductivity, reproduce_correlations,
-    reproduce_conducting, reproduce_exchange, reproduce_exchange_wall, reproduce_faces;
+    reproduce_conducting, reproduce_contacts, reproduce_together, reproduce_exchange, reproduce_exchange_wall,
+    reproduce_faces;
 
 /* ---- rows of a bed, one thread ---- */
 

@@ -1,4 +1,4 @@
-/* reproduce_conductivity.c - the radiative exchange factor F_E of beds, beside fits and correlations.
+/* reproduce_conductivity.c - the radiative exchange factor F_E of beds, beside correlations.
  * SPDX-License-Identifier: MIT
  *
  * Checks: two independent programs, and rays followed through a cubic lattice cell by cell. */
@@ -42,8 +42,7 @@ static const char conductivity_script[] =
     "set key top left\n"
     "plot $data using 1:2 title 'random bed, solid fraction 0.586: paths' lw 2 lc 1, \\\n"
     "     $data using 1:6 title 'the same: one radiosity per sphere' dt 2 pt 0 lc 1, \\\n"
-    "     $data using 1:3 title 'simple cubic' lc 2, 0.9042 * x + 0.1843 with lines dt 2 lc 2 title \\\n"
-    "     'Singh, Kaviany (1994), porosity 0.476', \\\n"
+    "     $data using 1:3 title 'simple cubic' lc 2, \\\n"
     "     $data using 1:4 title 'body-centred cubic' lc 3, $data using 1:5 title 'face-centred cubic' lc 4\n";
 
 int reproduce_conductivity(struct reproduce *reproduce) {
@@ -63,28 +62,20 @@ int reproduce_conductivity(struct reproduce *reproduce) {
         /* one radiosity per sphere gives the F_E of black spheres, docs/heat.md */
         fprintf(reproduce->data, "%g,%.5f,%.5f,%.5f,%.5f,%.5f\n", emissivities[e], factor[0][e], factor[1][e],
                 factor[2][e], factor[3][e], factor[0][EMISSIVITIES - 1]);
-        for (int k = 0; k <= LATTICES; ++k) {
+        for (int k = 0; k <= LATTICES; ++k)
             if (!isnan(check[k][e]))
                 reproduce_compare(reproduce, SOURCE_CHECK, "", check[k][e], factor[k][e], "F_E, %s, emissivity %g",
                                   name[k], emissivities[e]);
-            if (k == 1)
-                reproduce_compare(reproduce, SOURCE_PAPER, "",
-                                  correlation_singh_kaviany(emissivities[e], .476, INFINITY), factor[k][e],
-                                  "F_E, %s, emissivity %g", name[k], emissivities[e]);
-        }
     }
     return reproduce_figure(reproduce, "conductivity", conductivity_script);
 }
 
 /* Correlations for beds without gas, and random beds of several porosities. */
-enum { CORRELATIONS = 5, PACKINGS = 4 };
+enum { CORRELATIONS = 2, PACKINGS = 4 };
 static const struct {
     const char *name;
     exchange_correlation *factor;
 } correlations[CORRELATIONS] = {{"Zehner-Bauer-Schluender", correlation_zehner_bauer_schluender},
-                                {"Breitbach-Barthels", correlation_breitbach_barthels},
-                                {"Vortmeyer", correlation_vortmeyer},
-                                {"Singh-Kaviany", correlation_singh_kaviany},
                                 {"Kunii-Smith", correlation_kunii_smith}};
 
 /* F_E of random beds of equal spheres, ours in the last column. */
@@ -102,12 +93,12 @@ static int random_beds(const double porosity[PACKINGS], double factor[PACKINGS][
 
 static const char correlations_script[] =
     "set xlabel 'emissivity'\nset ylabel 'F_E of a correlation over that of the bed'\nset xrange [0.15:1.05]\n"
-    "set yrange [0:2.2]\nset key top right\n"
-    "name = 'Zehner-Bauer-Schluender Breitbach-Barthels Vortmeyer Singh-Kaviany Kunii-Smith'\n"
+    "set yrange [0:1.6]\nset key top right\n"
+    "name = 'Zehner-Bauer-Schluender Kunii-Smith'\n"
     "plot 1 with lines lc 'black' title 'random bed', \\\n"
-    "     for [k=1:5] $data using (abs($1-0.4)<1e-9 ? $2 : 1/0):(column(3+k)/$3) title word(name, k).', porosity 0.40' "
+    "     for [k=1:2] $data using (abs($1-0.4)<1e-9 ? $2 : 1/0):(column(3+k)/$3) title word(name, k).', porosity 0.40' "
     "lw 2 lc k, \\\n"
-    "     for [k=1:5] $data using (abs($1-0.5)<1e-9 ? $2 : 1/0):(column(3+k)/$3) notitle dt 2 pt 0 lc k, \\\n"
+    "     for [k=1:2] $data using (abs($1-0.5)<1e-9 ? $2 : 1/0):(column(3+k)/$3) notitle dt 2 pt 0 lc k, \\\n"
     "     1/0 with lines dt 2 lc 'black' title 'the same, porosity 0.50'\n";
 
 int reproduce_correlations(struct reproduce *reproduce) {
@@ -154,16 +145,15 @@ static int conducting_beds(const struct bed bed[2], double conductivity, double 
     return status;
 }
 
-/* Compares the lattice with the exact values and the fit, the random bed with correlations. Writes a line of data. */
+/* Compares the lattice with the exact values, the random bed with correlations. Writes a line of data. */
 static void compare_conducting(struct reproduce *reproduce, const double *exact, double factor[2][CONDUCTING]) {
     const double k = exact[0];
     fprintf(reproduce->data, "%g", k);
     for (int e = 0; e < CONDUCTING; ++e) {
-        const double emissivity = conducting_emissivity[e], fit = correlation_singh_kaviany(emissivity, .476, k);
-        static const char cubic[] = "F_E, simple cubic, emissivity %g, k* %g";
-        reproduce_compare(reproduce, SOURCE_CHECK, "", exact[1 + e], factor[0][e], cubic, emissivity, k);
-        reproduce_compare(reproduce, SOURCE_PAPER, "", fit, factor[0][e], cubic, emissivity, k);
-        fprintf(reproduce->data, ",%.5f,%.5f,%.5f,%.5f", exact[1 + e], factor[0][e], fit, factor[1][e]);
+        const double emissivity = conducting_emissivity[e];
+        reproduce_compare(reproduce, SOURCE_CHECK, "", exact[1 + e], factor[0][e],
+                          "F_E, simple cubic, emissivity %g, k* %g", emissivity, k);
+        fprintf(reproduce->data, ",%.5f,%.5f,%.5f", exact[1 + e], factor[0][e], factor[1][e]);
         for (int c = 0; c < CORRELATIONS; ++c) {
             const double theirs = correlations[c].factor(emissivity, RANDOM_POROSITY, k);
             reproduce_compare(reproduce, SOURCE_PAPER, "", theirs, factor[1][e],
@@ -179,13 +169,11 @@ static const char conducting_script[] =
     "set yrange [0:1.3]\nset key top left\n"
     "plot $data using 1:2 with points pt 6 ps 1.5 lc 1 title 'cubic lattice, emissivity 1: exact', \\\n"
     "     $data using 1:3 with lines lw 2 lc 1 title 'ours', \\\n"
-    "     $data using 1:4 with lines dt 2 lc 1 title 'Singh, Kaviany (1994)', \\\n"
-    "     $data using 1:11 with points pt 4 ps 1.5 lc 2 title 'emissivity 0.6: exact', \\\n"
-    "     $data using 1:12 with lines lw 2 lc 2 title 'ours', \\\n"
-    "     $data using 1:13 with lines dt 2 lc 2 title 'Singh, Kaviany (1994)', \\\n"
-    "     $data using 1:5 pt 0 lw 2 lc 3 title 'random bed, porosity 0.414, emissivity 1: ours', \\\n"
-    "     $data using 1:7 pt 0 dt 3 lc 3 title 'Breitbach-Barthels', \\\n"
-    "     $data using 1:10 pt 0 dt 4 lc 3 title 'Kunii-Smith'\n";
+    "     $data using 1:7 with points pt 4 ps 1.5 lc 2 title 'emissivity 0.6: exact', \\\n"
+    "     $data using 1:8 with lines lw 2 lc 2 title 'ours', \\\n"
+    "     $data using 1:4 pt 0 lw 2 lc 3 title 'random bed, porosity 0.414, emissivity 1: ours', \\\n"
+    "     $data using 1:5 pt 0 dt 3 lc 3 title 'Zehner-Bauer-Schluender', \\\n"
+    "     $data using 1:6 pt 0 dt 4 lc 3 title 'Kunii-Smith'\n";
 
 int reproduce_conducting(struct reproduce *reproduce) {
     struct bed bed[2];
@@ -195,8 +183,8 @@ int reproduce_conducting(struct reproduce *reproduce) {
     if (!status) status = bed_make_packing(&bed[1], 2000, 1, 1, 1 - RANDOM_POROSITY, 1);
     fputs("k", reproduce->data);
     for (int e = 0; e < CONDUCTING; ++e) {
-        fprintf(reproduce->data, ",e%g_exact,e%g_ours,e%g_fit,e%g_random", conducting_emissivity[e],
-                conducting_emissivity[e], conducting_emissivity[e], conducting_emissivity[e]);
+        fprintf(reproduce->data, ",e%g_exact,e%g_ours,e%g_random", conducting_emissivity[e], conducting_emissivity[e],
+                conducting_emissivity[e]);
         for (int c = 0; c < CORRELATIONS; ++c)
             fprintf(reproduce->data, ",e%g_%s", conducting_emissivity[e], correlations[c].name);
     }

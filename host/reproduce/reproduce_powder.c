@@ -1,5 +1,5 @@
-/* reproduce_powder.c - the face of a bed, beside published formulas: its emissivity, and its absorptance for light from
- * straight above. SPDX-License-Identifier: MIT */
+/* reproduce_powder.c - the face of a bed, beside the theory of two streams: its emissivity, and its absorptance for
+ * light from straight above. SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <stdlib.h>
 
@@ -73,9 +73,7 @@ static const char faces_script[] =
     "p(k) = real(word('0.4 0.5 0.8', k))\n"
     "plot for [k=1:3] $data using (abs($1-p(k))<1e-9 ? $2 : 1/0):3 lw 2 lc k title sprintf('ours, porosity %.1f', "
     "p(k)), \\\n"
-    "     for [k=1:2] $data using (abs($1-p(k))<1e-9 ? $2 : 1/0):4 dt 2 pt 0 lc k title sprintf('Sih, Barlow (2004), "
-    "porosity %.1f', p(k)), \\\n"
-    "     $data using ($1 == 0.4 ? $2 : 1/0):6 pt 6 lc 4 title 'ours, light from above, porosity 0.4', \\\n"
+    "     $data using ($1 == 0.4 ? $2 : 1/0):5 pt 6 lc 4 title 'ours, light from above, porosity 0.4', \\\n"
     "     2*g(x)/(1+g(x)) with lines dt 3 lc 'black' title 'two streams: spheres far apart', \\\n"
     "     x with lines lc 'grey' title 'the spheres themselves'\n";
 
@@ -83,21 +81,17 @@ int reproduce_faces(struct reproduce *reproduce) {
     double emits[PACKINGS][EMISSIVITIES], absorbs[PACKINGS][EMISSIVITIES];
     const int status = all_faces(emits, absorbs);
     if (status) return status;
-    fputs("porosity,emissivity,ours,sih_barlow,two_streams,ours_of_light,two_streams_of_light\n", reproduce->data);
+    fputs("porosity,emissivity,ours,two_streams,ours_of_light,two_streams_of_light\n", reproduce->data);
     for (int k = 0; k < PACKINGS; ++k)
         for (int e = 0; e < EMISSIVITIES; ++e) {
             const double solid = face_emissivities[e], porosity = face_porosity[k];
-            const double theirs[3] = {emissivity_sih_barlow(solid, porosity), emissivity_two_stream(solid),
-                                      absorptance_two_stream(solid)};
-            const double ours[3] = {emits[k][e], emits[k][e], absorbs[k][e]};
-            static const char *const name[3] = {"emissivity, Sih-Barlow", "emissivity, two streams",
-                                                "absorptance from above, two streams"};
-            for (int c = 0; c < 3; ++c) {
-                reproduce_compare(reproduce, SOURCE_PAPER, "", theirs[c], ours[c], "%s, porosity %g, spheres %g",
-                                  name[c], porosity, solid);
-            }
-            fprintf(reproduce->data, "%g,%g,%.5f,%.5f,%.5f,%.5f,%.5f\n", porosity, solid, ours[0], theirs[0], theirs[1],
-                    ours[2], theirs[2]);
+            const double emitted = emissivity_two_stream(solid), absorbed = absorptance_two_stream(solid);
+            reproduce_compare(reproduce, SOURCE_CHECK, "", emitted, emits[k][e],
+                              "emissivity, two streams, porosity %g, spheres %g", porosity, solid);
+            reproduce_compare(reproduce, SOURCE_CHECK, "", absorbed, absorbs[k][e],
+                              "absorptance from above, two streams, porosity %g, spheres %g", porosity, solid);
+            fprintf(reproduce->data, "%g,%g,%.5f,%.5f,%.5f,%.5f\n", porosity, solid, emits[k][e], emitted,
+                    absorbs[k][e], absorbed);
         }
     return reproduce_figure(reproduce, "faces", faces_script);
 }

@@ -45,7 +45,7 @@ extern "C" {
  *   Input    context: fibrad_run.context
  *            stage: "walls", "rows", "triangles", "beams", "sweeps" or "steps"
  *            done: number of things done
- *            total: number of all things; 0: not known
+ *            total: number of all things; 0: it cannot be said
  *   Output   0 to go on; else the call stops and returns FIBRAD_E_CANCELLED */
 typedef int fibrad_progress(void *context, const char *stage, uint64_t done, uint64_t total);
 
@@ -153,7 +153,7 @@ int fibrad_side_views(const fibrad_scene_config *config, const fibrad_spheres *s
  *   Output   displacement[spheres]: elements that are not wanted stay as they are
  *            facts: of the scene; may be NULL
  *   Errors   as fibrad_scene_init and fibrad_exchange_displacement or _walk; _CANCELLED. After an error some elements
- * may be written. */
+ *            may be written. */
 int fibrad_displacements(const fibrad_scene_config *config, const fibrad_spheres *spheres,
                          const fibrad_exchange_rule *rule, const unsigned char *wanted, fibrad_run *run,
                          fibrad_displacement *displacement, fibrad_scene_facts *facts);
@@ -196,10 +196,9 @@ int fibrad_radiation_solve(fibrad_radiation *radiation, const fibrad_heat_source
 int fibrad_radiation_sides(const fibrad_radiation *radiation, double *flux, double *temperature);
 
 /* A function of the caller: emissivities that depend on temperatures. The thread that made the call runs this function.
- * A temperature is NaN if it is not known yet, if the wall is insulated, or if the emissivity is 0. The function leaves
- * such an emissivity as it is.
- *   Input    temperature[spheres], body_temperature[bodies]: [K]
- *   Output   emissivity[spheres], body_emissivity[bodies]: 0 to 1 */
+ * A temperature is NaN if it has not been found yet, if the wall is insulated, or if the emissivity is 0. The function
+ * leaves such an emissivity as it is. Input    temperature[spheres], body_temperature[bodies]: [K] Output
+ * emissivity[spheres], body_emissivity[bodies]: 0 to 1 */
 typedef void fibrad_emissivity_law(void *context, const double *temperature, const double *body_temperature,
                                    double *emissivity, double *body_emissivity);
 
@@ -386,11 +385,12 @@ typedef struct fibrad_span {
  *   side_temperature                 constant; not by FACTORS
  *   conductivity                     by FACTORS it must be NULL
  *   conductance                      constant, or changed by a law; contacts by PATCHES only
- *   sigma, tolerance, sweeps_max     as for fibrad_radiation_solve
+ *   sigma, sweeps_max                as for fibrad_radiation_solve
+ *   tolerance                        residual of a stage by patches; 0: a tenth of the span's tolerance
  *
  *   Input    sources: begin with fibrad_heat_sources_init
  *   Output   span: temperature, and the fields marked "out"
- *   Errors   _ARGUMENT: fibrad_transient_describe tells which sphere is at fault
+ *   Errors   _ARGUMENT: fibrad_transient_describe has the sphere at fault
  *            _UNSOLVABLE: a sphere would fall below 0 K
  *            as fibrad_exchange_factors or fibrad_radiation_solve
  *   Cost     two or three solutions per step; with factors some milliseconds each for 1e4 spheres
@@ -423,7 +423,7 @@ typedef struct fibrad_contact_rule {
     double gas_reach; /* thickness of the gas that conducts about the smaller sphere, in its radii, 0 to 1; 0: no gas */
     double gas_jump;  /* L, is added to gaps, since narrow gaps conduct less; 0 or more */
     double gas_least; /* L, least gap that counts, above 0; 0: 1e-7 of the smaller radius */
-    int gas_alone;    /* 1: the solid has no share in lines through gas; spheres that conduct have it themselves */
+    int gas_alone;    /* 1: lines lead through gas alone, not through solid; for spheres that conduct themselves */
 } fibrad_contact_rule;
 
 /* Contacts of a bed. A pair that touches across a period, too, has several. Ends are as in fibrad_heat_sources. */

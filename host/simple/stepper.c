@@ -19,6 +19,7 @@
 #define GAMMA     0.29289321881345247560 /* 1 - sqrt(1/2) */
 #define TOLERANCE 1e-4
 #define SOLVED    1e-2 /* error of the solution of a stage over the tolerance */
+#define RESIDUAL  .1   /* residual of a stage by patches over the tolerance: more would look like errors of the step */
 #define GROWTH    5.0  /* largest ratio of a step to the last one */
 #define SAFETY    0.9
 #define SMALLEST  1e-12 /* shortest step over the span */
@@ -358,6 +359,7 @@ static int advance_span(fibrad_transient *t, const fibrad_heat_sources *sources,
     m.sources.temperature = t->given, m.sources.power = t->source;
     m.sources.hold = t->hold, m.sources.reference = t->guess;
     m.sources.body_temperature = t->wall;
+    if (!(m.sources.tolerance > 0)) m.sources.tolerance = RESIDUAL * m.tolerance;
     if (span->law) {
         memcpy(t->emissivity, sources->emissivity, t->n * sizeof *t->emissivity);
         for (uint32_t b = 0; b < t->bodies; ++b) t->body_emissivity[b] = sources->body_emissivity[b];

@@ -197,11 +197,27 @@ int write_heat_csv(FILE *file, const struct contents *what, bool first) {
     return STATUS_OK;
 }
 
+/* The conductivities of a bed with contacts along an axis; empty if they were not computed. */
+static char *put_total(char *at, const struct conduction_total *total) {
+    const struct conduction_value *const of[] = {&total->both, &total->radiation, &total->conduction};
+    for (int k = 0; k < 3; ++k) {
+        at = put_error(put_comma(at), total->computed ? of[k]->k : NAN);
+        at = put_error(put_comma(at), total->computed ? of[k]->error : NAN);
+    }
+    return at;
+}
+
+#define TOTAL_COLUMNS                                                                                                  \
+    ",k_total_W_mK,k_total_W_mK_error,k_radiation_W_mK,k_radiation_W_mK_error,k_conduction_W_mK,"                      \
+    "k_conduction_W_mK_error"
+#define CONDUCTION_COLUMNS                                                                                             \
+    "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable,F_E_steady,F_E_steady_error,k_star,T_K,warning"
+
 int write_conduction_csv(FILE *file, const struct contents *what, bool first) {
     const struct conduction *conduction = what->conduction;
+    const bool contacts = conduction_contacts(conduction);
     struct csv csv = {0};
-    begin_csv(&csv, file, what,
-              "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable,F_E_steady,F_E_steady_error,k_star,T_K,warning", first);
+    begin_csv(&csv, file, what, contacts ? CONDUCTION_COLUMNS TOTAL_COLUMNS : CONDUCTION_COLUMNS, first);
     for (int axis = 0; axis < 3; ++axis) {
         if (!conduction_wants(conduction, axis)) continue;
         char *at = csv.line + csv.columns;
@@ -220,6 +236,7 @@ int write_conduction_csv(FILE *file, const struct contents *what, bool first) {
         at = put_error(put_comma(at), conduction->temperature);
         const char *doubt = conduction_doubt(conduction, axis);
         at = put_text(put_comma(at), doubt ? doubt : "");
+        if (contacts) at = put_total(at, &conduction->total[axis]);
         end_line(&csv, at, "");
     }
     return STATUS_OK;

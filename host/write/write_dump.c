@@ -6,7 +6,7 @@
 #include "text/text.h"
 #include "write/write.h"
 
-static void write_header(FILE *file, const struct bed *bed, bool first) {
+static void write_header(FILE *file, const struct bed *bed, bool conducts, bool first) {
     if (first && bed->units[0]) fprintf(file, "ITEM: UNITS\n%s\n", bed->units);
     fprintf(file, "ITEM: TIMESTEP\n%" PRId64 "\nITEM: NUMBER OF ATOMS\n%" PRIu32 "\nITEM: BOX BOUNDS",
             bed->timestep < 0 ? bed->frame : bed->timestep, bed->n);
@@ -20,20 +20,27 @@ static void write_header(FILE *file, const struct bed *bed, bool first) {
         *at++ = '\n';
         fwrite(line, 1, (size_t)(at - line), file);
     }
-    fprintf(file, "ITEM: ATOMS id x y z radius T_K q_W%s%s\n", bed->kept_names ? " " : "",
-            bed->kept_names ? bed->kept_names : "");
+    fprintf(file, "ITEM: ATOMS id x y z radius T_K q_W%s%s%s\n", conducts ? " q_radiation_W q_conduction_W" : "",
+            bed->kept_names ? " " : "", bed->kept_names ? bed->kept_names : "");
 }
 
 int write_heat_dump(FILE *file, const struct contents *what, bool first) {
     const struct bed *bed = what->bed;
-    char line[8 * TEXT_NUMBER];
-    write_header(file, bed, first);
+    const double *power = what->result->power, *conducted = what->result->conducted;
+    char line[10 * TEXT_NUMBER];
+    write_header(file, bed, conducted, first);
     for (uint32_t i = 0; i < bed->n; ++i) {
         if (interrupt_status()) return interrupt_status();
-        const double values[] = {
-            bed->x[i], bed->y[i], bed->z[i], bed->r[i], what->result->temperature[i], what->result->power[i]};
+        const double of_contacts = conducted ? conducted[i] : 0, values[] = {bed->x[i],
+                                                                             bed->y[i],
+                                                                             bed->z[i],
+                                                                             bed->r[i],
+                                                                             what->result->temperature[i],
+                                                                             power[i],
+                                                                             power[i] - of_contacts,
+                                                                             of_contacts};
         char *at = text_whole(line, bed_name(bed, i));
-        for (size_t k = 0; k < sizeof values / sizeof *values; ++k) {
+        for (size_t k = 0; k < (conducted ? 8 : 6); ++k) {
             *at++ = ' ';
             at = text_real(at, values[k]);
         }

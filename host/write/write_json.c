@@ -107,13 +107,26 @@ int write_json(FILE *file, const struct contents *what, bool first) {
     return interrupt_status();
 }
 
+/* An array of a - b. */
+static void json_difference(FILE *file, const char *name, const double *a, const double *b, uint32_t n) {
+    fprintf(file, ",\"%s\":[", name);
+    for (uint32_t i = 0; i < n; ++i) {
+        if (i > 0) putc(',', file);
+        text_json_real(file, a[i] - b[i]);
+    }
+    putc(']', file);
+}
+
+/* conducted: part of the power; NULL: there are no contacts. */
 static void json_power(FILE *file, const char *comma, const char *name, double temperature, double power,
-                       double power_error, double temperature_error) {
+                       double power_error, double temperature_error, const double *conducted) {
     fprintf(file, "%s\"%s\":{\"T_K\":", comma, name);
     text_json_real(file, temperature);
     json_entry(file, "q_W", power);
     json_entry(file, "q_error_W", power_error);
     json_entry(file, "T_error_K", temperature_error);
+    if (conducted) json_entry(file, "q_radiation_W", power - *conducted);
+    if (conducted) json_entry(file, "q_conduction_W", *conducted);
     putc('}', file);
 }
 
@@ -130,16 +143,29 @@ int write_heat_json(FILE *file, const struct contents *what, bool first) {
     json_reals(file, ",", "T_error_K", result->temperature_error, n, 1, NULL);
     if (what->light) json_reals(file, ",", "absorbed_first_W", what->light->absorbed_first, n, 1, NULL);
     if (what->light) json_reals(file, ",", "absorbed_W", what->light->absorbed, n, 1, NULL);
+    if (result->conducted) json_difference(file, "q_radiation_W", result->power, result->conducted, n);
     if (result->conducted) json_reals(file, ",", "q_conduction_W", result->conducted, n, 1, NULL);
     for (size_t k = 0; k < INSIDE_COLUMNS && result->least_temperature; ++k)
         json_reals(file, ",", (const char *[]){INSIDE_NAMES}[k], contents_inside(what, k), n, 1, NULL);
     if (what->walls && !isnan(surroundings))
-        json_power(file, ",", "surroundings", surroundings, result->surroundings_power, result->surroundings_error, 0);
+        json_power(file, ",", "surroundings", surroundings, result->surroundings_power, result->surroundings_error, 0,
+                   NULL);
     for (uint32_t k = 0; k < walls; ++k)
         json_power(file, k > 0 ? "," : ",\"walls\":{", contents_body(what, k, name), result->body_temperature[k],
-                   result->body_power[k], result->body_error[k], result->body_temperature_error[k]);
+                   result->body_power[k], result->body_error[k], result->body_temperature_error[k],
+                   result->conducted ? &result->body_conducted[k] : NULL);
     fputs(walls > 0 ? "}}\n" : "}\n", file);
     return interrupt_status();
+}
+
+static void json_total(FILE *file, const struct conduction_total *total) {
+    if (!total->computed) return;
+    json_entry(file, "k_total_W_mK", total->both.k);
+    json_entry(file, "k_total_W_mK_error", total->both.error);
+    json_entry(file, "k_radiation_W_mK", total->radiation.k);
+    json_entry(file, "k_radiation_W_mK_error", total->radiation.error);
+    json_entry(file, "k_conduction_W_mK", total->conduction.k);
+    json_entry(file, "k_conduction_W_mK_error", total->conduction.error);
 }
 
 int write_conduction_json(FILE *file, const struct contents *what, bool first) {
@@ -170,6 +196,7 @@ int write_conduction_json(FILE *file, const struct contents *what, bool first) {
             json_entry(file, "F_E_steady", conduction->steady[axis]);
             json_entry(file, "F_E_steady_error", conduction->steady_error[axis]);
         }
+        json_total(file, &conduction->total[axis]);
         putc('}', file);
     }
     fputs("]}\n", file);

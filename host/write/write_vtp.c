@@ -17,6 +17,13 @@ static void vtp_doubles(FILE *file, const char *name, const double *values, uint
     base64_end(&to);
 }
 
+/* Writes an array of a - b. */
+static void vtp_difference(FILE *file, const char *name, const double *a, const double *b, uint32_t n) {
+    struct base64 to = base64_begin(file, "Float64", name, 1, n);
+    for (uint32_t i = 0; i < n; ++i) base64_double(&to, a[i] - b[i]);
+    base64_end(&to);
+}
+
 static void write_points(FILE *file, const struct bed *bed) {
     struct base64 to = base64_begin(file, "Float64", "Points", 3, 3 * (uint64_t)bed->n);
     for (uint32_t i = 0; i < bed->n; ++i) {
@@ -93,7 +100,10 @@ int write_heat_vtp(FILE *file, const struct contents *what, bool first) {
     vtp_doubles(file, "emissivity", what->sources->emissivity, bed->n, NULL);
     vtp_doubles(file, "power_W", what->result->power, bed->n, NULL);
     if (what->light) vtp_doubles(file, "absorbed_W", what->light->absorbed, bed->n, NULL);
-    if (what->result->conducted) vtp_doubles(file, "conducted_W", what->result->conducted, bed->n, NULL);
+    if (what->result->conducted) {
+        vtp_difference(file, "q_radiation_W", what->result->power, what->result->conducted, bed->n);
+        vtp_doubles(file, "q_conduction_W", what->result->conducted, bed->n, NULL);
+    }
     for (size_t k = 0; k < INSIDE_COLUMNS && what->result->least_temperature; ++k)
         vtp_doubles(file, (const char *[]){INSIDE_NAMES}[k], contents_inside(what, k), bed->n, NULL);
     vtp_end(file, bed);

@@ -122,7 +122,8 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
         *of_patches[k] = fibrad_arena_take(arena, patches, sizeof(double));
     double **const of_bodies[] = {&heat->sources.emissivity,  &heat->sources.emission, &heat->sources.drive,
                                   &heat->sources.hold,        &heat->solution.coarse,  &heat->solution.coarse_emission,
-                                  &heat->sources.temperature, &heat->solution.power,   &heat->samples.halves};
+                                  &heat->sources.temperature, &heat->solution.power,   &heat->samples.halves,
+                                  &heat->solution.drift,      &heat->solution.left,    &heat->solution.unsettled};
     for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; k++)
         *of_bodies[k] = fibrad_arena_take(arena, heat->bodies, sizeof(double));
     for (uint32_t level = 0; level < 2; level++) {
@@ -135,6 +136,8 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     heat->sources.conductivity = fibrad_arena_take(arena, spheres, sizeof(double));
     heat->sources.unevenness = fibrad_arena_take(arena, spheres, sizeof(double));
     heat->solution.span = fibrad_arena_take(arena, spheres, sizeof *heat->solution.span);
+    heat->normal = fibrad_arena_take(arena, 12 * (size_t)heat->config.patches, sizeof(double));
+    heat->near = fibrad_arena_take(arena, heat->config.parts, sizeof *heat->near);
     heat->density = fibrad_arena_take(arena, rows, sizeof(double));
     heat->samples.seen = fibrad_arena_take(arena, spheres, sizeof *heat->samples.seen);
     heat->pencils.row = fibrad_arena_take(arena, rows, sizeof *heat->pencils.row);

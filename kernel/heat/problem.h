@@ -16,6 +16,7 @@
 #include "contact/contact.h"
 #include "sample/harmonics.h"
 #include "mesh/mesh_patch.h"
+#include "rings/rings.h"
 #include "scene/scene.h"
 #include "workspace/workspace.h"
 
@@ -133,7 +134,10 @@ typedef struct fibrad_heat_pencils {
 
 /* The least and the largest emission on a sphere's surface minus the mean emission, at both levels. */
 typedef struct fibrad_heat_span {
-    double low, high, coarse_low, coarse_high;
+    double low, high, coarse_low, coarse_high; /* of patches */
+    double least, largest;                     /* in rings (conduct.c) */
+    bool open_low, open_high;                  /* these places do not face a neighbour */
+    uint32_t neighbours;                       /* number of those that are near */
 } fibrad_heat_span;
 
 /* What is given for a solution. Emissions E are differences from the emission of the surroundings. */
@@ -168,6 +172,7 @@ typedef struct fibrad_heat_solution {
     double curvature;        /* of the last search direction */
     double scale;            /* the slope is compared with this */
     double smallest;         /* a slope below this is rounding error */
+    double ratio;            /* how much smaller residuals became in the last step, at most 1 */
     double *area;            /* L^2, [patches], by the beams */
     double *radiosity, *net; /* [patches], J and the net flow N J */
     double *detail;          /* [patches], J minus J of the coarser level */
@@ -177,7 +182,11 @@ typedef struct fibrad_heat_solution {
     double *brought;         /* [parts][patches that are not of spheres], received from each part */
     double *coarse, *power;  /* [bodies], net power at the coarser level, and extrapolated */
     double *coarse_emission; /* [bodies], E at the coarser level */
-    fibrad_heat_span *span;  /* [spheres] */
+    double *drift, *left;    /* [bodies], change of the power in the last step, and what later steps would change */
+    double *unsettled;       /* [bodies], what `left` of both levels makes of the extrapolated power */
+    double sent_drift, sent_left, sent_unsettled; /* the same for what all surfaces send out */
+    fibrad_heat_span *span;                       /* [spheres] */
+    bool steps; /* this is a step in time: extremes are found when they are asked for */
 } fibrad_heat_solution;
 
 /* From which errors are estimated. */
@@ -206,6 +215,9 @@ struct fibrad_heat {
     fibrad_mesh_cut *cut; /* [2 triangles], by the caller's numbers; patches from first_meshed on */
     fibrad_heat_division division;
     fibrad_harmonics harmonics[2]; /* on patches, and on fours for the coarser level */
+    fibrad_rings rings;            /* made if spheres conduct */
+    fibrad_rings_work *near;       /* [parts] */
+    double *normal;                /* [patches of a sphere][4][3], normals at four points of each, made as well */
 
     /* beams of spheres and rays of walls */
     uint32_t rows;                       /* number of rows: spheres, then rows of fine fours */
@@ -415,6 +427,9 @@ double fibrad_heat_pattern_residual(fibrad_heat *heat, uint32_t sphere, double s
  * sum over the patches of residual times change of a J that is even. */
 double fibrad_heat_add_absorbed(fibrad_heat *heat, uint32_t sphere);
 
+/* Takes it off again. */
+void fibrad_heat_take_absorbed_off(fibrad_heat *heat, uint32_t sphere);
+
 /* The light that a body has absorbed. */
 static inline double fibrad_heat_absorbed(const fibrad_heat *heat, uint32_t body) {
     double sum = 0;
@@ -423,11 +438,27 @@ static inline double fibrad_heat_absorbed(const fibrad_heat *heat, uint32_t body
     return sum;
 }
 
+/* The power that a body absorbs at its patches. Radiosities are differences from that of the surroundings. */
+static inline double fibrad_heat_absorbs(const fibrad_heat *heat, uint32_t body) {
+    const double t = heat->sources.surroundings, black = heat->sources.sigma * (t * t) * (t * t);
+    double arrives = 0;
+    for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++)
+        arrives += heat->solution.area[a] * (heat->solution.radiosity[a] + black) + heat->solution.net[a];
+    return heat->sources.emissivity[body] * arrives;
+}
+
 /* The sum over the patches of a sphere of A p g p, p being the search direction without its mean. */
 double fibrad_heat_pattern_curvature(const fibrad_heat *heat, uint32_t sphere);
 
 /* Finds heat->solution.span of all spheres. The function overwrites heat->solution.gathered, source and direction. */
 void fibrad_heat_find_spans(fibrad_heat *heat);
+
+/* Makes heat->rings and heat->normal. */
+void fibrad_heat_make_rings(fibrad_heat *heat);
+
+/* Finds the hottest and the coldest places of the spheres from `begin` to `end` - 1 in heat->sequence. The solution has
+ * ended, and no direction was set since. */
+void fibrad_heat_find_extremes(const fibrad_heat *heat, uint32_t begin, uint32_t end, fibrad_rings_work *work);
 
 /* solve.c: prepares the first sweep of a solution. */
 void fibrad_heat_start(fibrad_heat *heat);

@@ -11,21 +11,28 @@
 #include "scene/walls.h"
 
 /* Errors over the quantities from which they are estimated. Measured: docs/methods_heat.md section 9. */
-#define PATCH_ERROR  .2 /* with PATCHES */
-#define PATCHES      96.0
-#define WALL_PATCHES .5 /* factor for walls */
-#define BEAM_ERROR   .7
-#define LONE_ERROR   1.2     /* times the share of spheres that only even or only odd directions meet */
-#define UNSEEN_ERROR .25     /* over what one direction brings */
-#define SHARE_ERROR  0x1p-25 /* of what a sphere exchanges: shares of pencils are floats */
-#define RAY_ERROR    1.75
-#define RAY_SAMPLES  16  /* largest number of samples of a mesh */
-#define FEW_ERROR    .25 /* times patches over beams: if few beams leave a patch, it sends light back along the same */
-#define FEW_SEEN     1.3 /* the same for walls that a sphere sees, whose beams are less even */
-#define FEW_WALLS    .65 /* the same for walls themselves */
-#define SPOT_ERROR   .7
-#define SPAN_ERROR   .03 /* of the extremes of a surface, over their difference from its mean */
-#define SAMPLES      3   /* if a kind has fewer samples, those of the other kind are taken as well */
+#define PATCH_ERROR    .2 /* with PATCHES */
+#define PATCHES        96.0
+#define UNEVEN         50 /* 1/(2 k*) of a sphere for whose power this error is half as large again */
+#define WALL_PATCHES   .5 /* factor for walls */
+#define BEAM_ERROR     .7
+#define LONE_ERROR     1.2     /* times the share of spheres that only even or only odd directions meet */
+#define UNSEEN_ERROR   .25     /* over what one direction brings */
+#define SHARE_ERROR    0x1p-25 /* of what a sphere exchanges: shares of pencils are floats */
+#define RAY_ERROR      1.75
+#define RAY_SAMPLES    16  /* largest number of samples of a mesh */
+#define FEW_ERROR      .25 /* times patches over beams: if few beams leave a patch, it sends light back along the same */
+#define FEW_SEEN       1.3 /* the same for walls that a sphere sees, whose beams are less even */
+#define FEW_WALLS      .65 /* the same for walls themselves */
+#define SPOT_ERROR     .7
+#define RESIDUAL_ERROR 2    /* times what the steps to come would change */
+#define SPAN_ERROR     .015 /* of the extremes of a surface, over their difference from its mean */
+#define SPAN_OPEN      .07  /* the same, with PATCHES, where no neighbour is near */
+#define SPAN_WALL      .08  /* the same if a wall may be near */
+#define SPAN_CROWD                                                                                                     \
+    .014 /* times the root of the number of further neighbours, with PATCHES: they are lights of patches */
+#define SPAN_CHANGE .05 /* error over the difference from the patch */
+#define SAMPLES     3   /* if a kind has fewer samples, those of the other kind are taken as well */
 
 static double squared(double x) { return x * x; }
 
@@ -157,9 +164,12 @@ static double extrapolation_error(const fibrad_heat *heat, double change) {
     return PATCH_ERROR * fibrad_sqrt(fibrad_sqrt(PATCHES / heat->config.patches)) * change;
 }
 
+/* A sphere that conducts badly has spots smaller than patches where it nearly touches others. */
 static double patch_error(const fibrad_heat *heat, uint32_t b) {
-    const double change = heat->solution.power[b] - heat->solution.coarse[b];
-    return (b < heat->spheres ? 1 : WALL_PATCHES) * extrapolation_error(heat, change);
+    const double change = extrapolation_error(heat, heat->solution.power[b] - heat->solution.coarse[b]);
+    if (b >= heat->spheres) return WALL_PATCHES * change;
+    const double uneven = heat->sources.unevenness[b];
+    return (1 + uneven / (uneven + UNEVEN)) * change;
 }
 
 /* The square of the error over the power of a sphere that comes from few beams on each patch of spheres and walls. */
@@ -190,7 +200,7 @@ static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint
     const double seen = errors->all.area > 0 ? eps * spread_of(heat, b).area / errors->all.area : 0;
     const double sphere = b < heat->spheres ? squared(patch_error(heat, b)) + unseen_error(heat, errors, b) : 0;
     return squared(eps) * missed_of(heat, errors, b) + sphere + few * squared(heat->solution.power[b]) +
-           squared(seen * errors->walls);
+           squared(seen * errors->walls) + squared(RESIDUAL_ERROR * heat->solution.unsettled[b]);
 }
 
 /* The error from light that goes back and forth between a sphere and a mesh whose patches are too large. */
@@ -218,7 +228,7 @@ static heat_errors errors_of(const fibrad_heat *heat) {
     for (uint32_t b = heat->spheres; b < end; b++)
         errors.walls +=
             squared(heat->sources.hold[b] >= 0 ? 1 : 1 - heat->sources.emissivity[b]) * missed_of(heat, &errors, b);
-    errors.walls = fibrad_sqrt(errors.walls);
+    errors.walls = fibrad_sqrt(errors.walls + squared(RESIDUAL_ERROR * heat->solution.sent_unsettled));
     for (uint32_t b = 0; b < end; b++) {
         error_pool *pool = &errors.pool[b >= heat->spheres];
         const double exchange = exchange_of(heat, &errors, b);
@@ -289,17 +299,19 @@ static double missed_by_walls(const fibrad_heat *heat, const heat_errors *errors
  * walls send out, and that of beams and rays. Of the last the square is a mean of two: from the sample of the
  * surroundings alone, and from the samples of spheres and walls. */
 static double surroundings_error_of(const fibrad_heat *heat, const heat_errors *errors) {
-    double halves = 0, changed = 0, area = 0, unseen = 0;
+    double halves = 0, changed = 0, area = 0, unseen = 0, residual = 0;
     for (uint32_t b = heat->spheres; b < heat->bodies; b++) {
         const double outside = fibrad_heat_outside(heat, b);
         halves += outside * heat->samples.halves[b],
             changed += outside * (heat->solution.power[b] - heat->solution.coarse[b]);
         area += outside * spread_of(heat, b).area;
+        residual += outside * heat->solution.unsettled[b];
     }
     const double seen = errors->all.area > 0 ? fibrad_min(1, area / errors->all.area) : 0;
     for (uint32_t b = 0; b < heat->spheres && area > 0; b++) unseen += unseen_error(heat, errors, b);
     const double rays = squared(RAY_ERROR) * errors->rays.outside + missed_by_walls(heat, errors);
-    return squared(extrapolation_error(heat, changed)) + squared(seen * errors->walls) + unseen +
+    return squared(extrapolation_error(heat, changed)) + squared(RESIDUAL_ERROR * residual) +
+           squared(seen * errors->walls) + unseen +
            (squared(BEAM_ERROR * halves) + missed_by_spheres(heat, errors) + rays) / 2;
 }
 
@@ -343,6 +355,12 @@ static double missed_emission(const fibrad_heat *heat, const heat_errors *errors
 /* The error of a body's emission that remains after extrapolation. */
 static double changed_emission(const fibrad_heat *heat, uint32_t b) {
     return extrapolation_error(heat, heat->sources.emission[b] - heat->solution.coarse_emission[b]);
+}
+
+/* The error of a body's emission that later steps of the search would take away. */
+static double unsettled_emission(const fibrad_heat *heat, uint32_t b, double area) {
+    const double eps = heat->sources.emissivity[b];
+    return RESIDUAL_ERROR * heat->solution.unsettled[b] / (eps > 0 ? eps * area : area);
 }
 
 /* The mean square difference of all radiosities from the body's own. */
@@ -400,8 +418,8 @@ static heat_missed missed_at(const fibrad_heat *heat, const heat_errors *errors,
     return (heat_missed){missed, together};
 }
 
-/* The estimated error of a temperature that was found. The error of its emission has four parts: that of extrapolation;
- * that of beams; that of what walls send out; and that which all have in common. */
+/* The estimated error of a temperature that was found. The error of its emission has five parts: that of extrapolation;
+ * the residual; that of beams; that of what walls send out; and that which all have in common. */
 static double temperature_error_of(const fibrad_heat *heat, const heat_errors *errors, const heat_level *level,
                                    uint32_t b, double temperature) {
     const double slope = 4 * heat->sources.sigma * temperature * temperature * temperature;
@@ -410,7 +428,8 @@ static double temperature_error_of(const fibrad_heat *heat, const heat_errors *e
     if (!is_found(heat, b) || !(slope > 0) || !(own.area > 0)) return 0;
     const double eps = heat->sources.emissivity[b], held = fibrad_max(0, heat->sources.hold[b]);
     const double share = held > 0 ? eps * own.area / (eps * own.area + held) : 1;
-    const double changed = fibrad_heat_is_insulated(heat, b) ? level->changed : squared(changed_emission(heat, b));
+    const double changed = (fibrad_heat_is_insulated(heat, b) ? level->changed : squared(changed_emission(heat, b))) +
+                           squared(unsettled_emission(heat, b, own.area));
     const heat_missed missed = missed_at(heat, errors, level, b, &own);
     const double walls = squared(errors->walls / errors->all.area);
     return fibrad_sqrt(changed + squared(share) * (missed.own + missed.together + walls)) / slope;
@@ -468,8 +487,8 @@ static void find_joined_errors(const fibrad_heat *heat) {
         c->error[b] = 0;
         if (!fibrad_heat_is_joined(heat, b) || !(slope > 0) || !(own.area > 0)) continue;
         const double common = missed_at(heat, &errors, &level, b, &own).together + walls;
-        c->error[b] =
-            fibrad_sqrt(squared(changed_emission(heat, b)) + c->supply[b] + squared(c->direction[b]) * common) / slope;
+        const double changed = squared(changed_emission(heat, b)) + squared(unsettled_emission(heat, b, own.area));
+        c->error[b] = fibrad_sqrt(changed + c->supply[b] + squared(c->direction[b]) * common) / slope;
     }
     fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
     for (uint32_t k = 0; k < c->count; k++) {
@@ -493,14 +512,28 @@ static measured centre_of(const fibrad_heat *heat, uint32_t b, measured surface,
                       fibrad_sqrt(squared(surface.error) + squared(slope * power_error))};
 }
 
-/* The temperature of the hottest or coldest patch of a sphere minus the mean of its surface. fine, coarse: the same for
- * emissions, at both levels. The error is what extrapolation changes, plus a fraction of the value itself, since light
- * comes from few directions. */
-static measured surface_extreme(const fibrad_heat *heat, uint32_t b, double fine, double coarse) {
+/* Whether a plane or the cylinder is as near to a sphere as a neighbour that is looked at in rings. */
+static bool is_near_wall(const fibrad_heat *heat, uint32_t b) {
+    const fibrad_scene *scene = heat->scene;
+    const double centre[3] = {scene->x[b], scene->y[b], scene->z[b]};
+    bool near = heat->triangles > 0 && scene->clear[b] < 2;
+    for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
+        near = near || (scene->wall_area[k] > 0 && fibrad_walls_away(&scene->container, k, centre) < 2 * scene->r[b]);
+    return near;
+}
+
+/* The temperature of the hottest or coldest place of a sphere minus the mean of its surface. value, patch: emissions of
+ * this place and of the patch that is hottest or coldest. open: the place does not face a neighbour, so patches tell
+ * its light. */
+static measured surface_extreme(const fibrad_heat *heat, uint32_t b, double value, double patch, bool open) {
     const double t = heat->sources.temperature[b], slope = 4 * heat->sources.sigma * t * t * t;
-    const double change = FIBRAD_HEAT_EXTRAPOLATION * (fine - coarse);
+    const double coarse = PATCHES / heat->config.patches;
+    const double crowd = fibrad_max(0, heat->solution.span[b].neighbours - 1.0);
+    const double square = open ? coarse * squared(is_near_wall(heat, b) ? SPAN_WALL : SPAN_OPEN)
+                               : squared(SPAN_ERROR) + coarse * crowd * squared(SPAN_CROWD);
     if (!fibrad_heat_conducts(heat, b)) return (measured){0, 0};
-    return (measured){(fine + change) / slope, fibrad_sqrt(squared(change) + squared(SPAN_ERROR * fine)) / slope};
+    return (measured){value / slope,
+                      fibrad_sqrt(squared(SPAN_CHANGE * (value - patch)) + square * squared(value)) / slope};
 }
 
 /* Hands out the temperatures on the surface and in the centre of a sphere. */
@@ -508,8 +541,8 @@ static void read_inside(const fibrad_heat *heat, uint32_t b, measured mean, doub
                         const fibrad_heat_result *result) {
     const fibrad_heat_span *span = &heat->solution.span[b];
     const uint32_t i = heat->order[b];
-    const measured low = surface_extreme(heat, b, span->low, span->coarse_low),
-                   high = surface_extreme(heat, b, span->high, span->coarse_high),
+    const measured low = surface_extreme(heat, b, span->least, span->low, span->open_low),
+                   high = surface_extreme(heat, b, span->largest, span->high, span->open_high),
                    centre = centre_of(heat, b, mean, power_error);
     const double worst = fibrad_max(low.error, high.error);
     if (result->least_temperature != NULL) result->least_temperature[i] = mean.value + low.value;
@@ -548,15 +581,6 @@ static bool read_temperatures(const fibrad_heat *heat, const fibrad_heat_result 
             result->body_temperature_error[k] = temperature_error_of(heat, &errors, &level, b, t);
     }
     return found;
-}
-
-/* The power that a wall absorbs at its patches. Radiosities are differences from that of the surroundings. */
-static double absorbed_by(const fibrad_heat *heat, uint32_t b) {
-    const double black = heat->sources.sigma * squared(squared(heat->sources.surroundings));
-    double arrives = 0;
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
-        arrives += heat->solution.area[a] * (heat->solution.radiosity[a] + black) + heat->solution.net[a];
-    return heat->sources.emissivity[b] * arrives;
 }
 
 /* The result for the power of a slot. If the slot is an opening or empty: that of the surroundings. */
@@ -626,13 +650,17 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
         const uint32_t own = fibrad_heat_body(heat, heat->slot[b]);
         result->body_power[b] = heat->solution.power[own];
         if (heat->contacts.count > 0) result->body_power[b] += heat->contacts.gain[own];
-        if (result->body_absorbed != NULL) result->body_absorbed[b] = absorbed_by(heat, own);
+        if (result->body_absorbed != NULL) result->body_absorbed[b] = fibrad_heat_absorbs(heat, own);
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         if (heat->openings >> k & 1) result->surroundings_power += heat->solution.power[fibrad_heat_body(heat, k)];
         read_beyond(heat, k, result);
     }
+    const bool inside =
+        result->least_temperature != NULL || result->largest_temperature != NULL || result->surface_error != NULL;
     if (heat->contacts.count > 0) find_joined_errors(heat);
+    if (heat->sources.conducts && heat->solution.steps && inside)
+        fibrad_heat_find_extremes(heat, 0, spheres, heat->near);
     read_errors(heat, result);
     result->sweeps = heat->solution.sweeps;
     result->residual = heat->solution.scale > 0 ? fibrad_sqrt(heat->solution.slope / heat->solution.scale) : 0;

@@ -461,7 +461,15 @@ static void finish_powers(fibrad_heat *heat) {
     find_powers(heat, heat->solution.power);
     find_emissions(heat);
     if (heat->sources.afloat) sink(heat);
-    if (heat->sources.conducts) fibrad_heat_find_spans(heat);
+    heat->solution.steps = false;
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        heat->solution.steps = heat->solution.steps || heat->sources.hold[b] > 0;
+    if (heat->sources.conducts) {
+        fibrad_heat_find_spans(heat);
+        fibrad_heat_make_rings(heat);
+        for (uint32_t b = 0; b < heat->spheres && heat->sources.absorbed != NULL; b++)
+            if (fibrad_heat_conducts(heat, b)) fibrad_heat_take_absorbed_off(heat, b);
+    }
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (heat->solution.group > 1)
             heat->solution.coarse[b] = heat->solution.power[b],
@@ -476,11 +484,89 @@ static void finish_powers(fibrad_heat *heat) {
     send_means(heat);
 }
 
+/* The residual of all patches is mostly that of the spheres. What single walls gain may be much less right, above all
+ * dim walls, which gain little of what arrives. So a search also ends only when each wall's gain, and those of all
+ * spheres together, are settled: within the tolerance, relative to the gain or to GAIN_LEAST of what is absorbed. Below
+ * GAINS_ROUGHLY the residual alone suffices. */
+#define GAIN_LEAST    .05
+#define GAINS_ROUGHLY 1e-6
+#define RATIO_MOST    .9 /* of residuals in one step, when it tells how much the steps to come will change */
+
+/* A change of radiosity times this is a change of power: of the net power, or of what is absorbed if the net power is
+ * given. */
+static double power_of_radiosity(const fibrad_heat *heat, uint32_t b) {
+    return is_free(heat, b) ? heat->sources.emissivity[b] : 1;
+}
+
+/* Finds how much the last step has changed the power of each body, and all that surfaces send out. product: N times the
+ * search direction. */
+static void find_drifts(fibrad_heat *heat, double length, const double *product) {
+    heat->solution.sent_drift = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const bool known = !is_free(heat, b) && heat->sources.emissivity[b] > 0;
+        double sent = 0;
+        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+            sent += heat->solution.area[a] * heat->solution.direction[a];
+        heat->solution.sent_drift += length * sent;
+        heat->solution.drift[b] = length * (known ? sum_over(heat, b, product) : power_of_radiosity(heat, b) * sent);
+    }
+}
+
+/* Finds about how much the steps to come would change the power of each body, and all that surfaces send out. One
+ * measure is what the next iteration of Jacobi would change, which find_residual has sent. The other one is the change
+ * of the last step, with the ratio of residuals for each further step. */
+static void find_left(fibrad_heat *heat) {
+    const double ratio = fibrad_min(heat->solution.ratio, RATIO_MOST), rest = ratio / (1 - ratio);
+    double all = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        double next = 0;
+        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+            next += heat->solution.area[a] * fibrad_heat_sent(heat, a);
+        all += next;
+        heat->solution.left[b] =
+            fibrad_max(fibrad_abs(next) * power_of_radiosity(heat, b), fibrad_abs(heat->solution.drift[b]) * rest);
+    }
+    heat->solution.sent_left = fibrad_max(fibrad_abs(all), fibrad_abs(heat->solution.sent_drift) * rest);
+}
+
+/* Whether the powers that bodies of given temperature gain are settled. */
+static bool gains_settled(fibrad_heat *heat) {
+    double left = 0, gains = 0;
+    bool settled = true;
+    find_left(heat);
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        if (is_free(heat, b) || heat->sources.emissivity[b] == 0) continue;
+        const double gain =
+            fibrad_max(fibrad_abs(sum_over(heat, b, heat->solution.net)), GAIN_LEAST * fibrad_heat_absorbs(heat, b));
+        if (b < heat->spheres)
+            left += heat->solution.left[b] * heat->solution.left[b], gains += gain * gain;
+        else
+            settled = settled && heat->solution.left[b] <= heat->sources.tolerance * gain;
+    }
+    return settled && left <= heat->sources.tolerance * heat->sources.tolerance * gains;
+}
+
 /* Whether the radiosities of the present level are good enough. */
-static bool level_solved(const fibrad_heat *heat) {
+static bool level_solved(fibrad_heat *heat) {
     const double tolerance = fibrad_max(heat->sources.rough, heat->sources.tolerance);
-    return heat->solution.slope <= fibrad_max(tolerance * tolerance * heat->solution.scale, heat->solution.smallest) ||
-           heat->solution.sweeps >= heat->sources.limit;
+    if (heat->solution.slope <= heat->solution.smallest || heat->solution.sweeps >= heat->sources.limit) return true;
+    if (heat->solution.slope > tolerance * tolerance * heat->solution.scale) return false;
+    return tolerance > heat->sources.tolerance || tolerance < GAINS_ROUGHLY || gains_settled(heat);
+}
+
+/* Adds what the residual of this level leaves of each extrapolated power. */
+static void note_unsettled(fibrad_heat *heat) {
+    const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
+    const double part = coarse                      ? FIBRAD_HEAT_EXTRAPOLATION
+                        : heat->solution.group == 1 ? 1 + FIBRAD_HEAT_EXTRAPOLATION
+                                                    : 1;
+    find_left(heat);
+    if (heat->solution.group > 1) {
+        fibrad_zero(heat->solution.unsettled, heat->bodies * sizeof *heat->solution.unsettled);
+        heat->solution.sent_unsettled = 0;
+    }
+    for (uint32_t b = 0; b < heat->bodies; b++) heat->solution.unsettled[b] += part * heat->solution.left[b];
+    heat->solution.sent_unsettled += part * heat->solution.sent_left;
 }
 
 /* Whether the unevenness of spheres has changed so much that it was replaced. */
@@ -521,6 +607,7 @@ static void refine_patches(fibrad_heat *heat) {
 
 /* Goes to the finer level, or to the end. */
 static void leave_level(fibrad_heat *heat) {
+    note_unsettled(heat);
     if (heat->solution.group == FIBRAD_HEAT_FOUR)
         refine_patches(heat);
     else
@@ -601,6 +688,7 @@ static void advance_radiosities(fibrad_heat *heat, const double *product) {
     heat->solution.curvature = curvature;
     if (!(curvature > 0)) return;
     const double length = heat->solution.slope / curvature;
+    find_drifts(heat, length, product);
     for (uint32_t a = 0; a < heat->patches; a++) {
         heat->solution.radiosity[a] += length * heat->solution.direction[a];
         heat->solution.net[a] += length * product[a];
@@ -628,6 +716,9 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
     const double last = heat->solution.slope;
     heat->solution.slope = find_residual(heat);
     if (restart) heat->solution.smallest = fibrad_max(heat->solution.smallest, ROUNDING * heat->solution.slope);
+    if (restart) fibrad_zero(heat->solution.drift, heat->bodies * sizeof *heat->solution.drift);
+    heat->solution.ratio =
+        restart || heat->solution.slope == 0 ? 0 : fibrad_sqrt(fibrad_min(1, heat->solution.slope / last));
     while (level_solved(heat)) {
         const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
         const bool rough = heat->sources.rough > heat->sources.tolerance && heat->solution.sweeps < heat->sources.limit;

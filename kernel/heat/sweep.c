@@ -236,6 +236,9 @@ static void sweep_part(fibrad_heat *heat, uint32_t part) {
     for (uint32_t a = 0; a < FIBRAD_HEAT_PATCHES_MAX; a++) g.one[a] = 1;
     fibrad_zero(g.walls, of_walls * sizeof *g.walls);
     sweep_rows(heat, part, &g);
+    if (heat->solution.phase == FIBRAD_HEAT_CHECK && heat->sources.conducts && !heat->solution.steps)
+        fibrad_heat_find_extremes(heat, fibrad_heat_part_begin(heat, heat->spheres, part),
+                                  fibrad_heat_part_begin(heat, heat->spheres, part + 1), &heat->near[part]);
     if (heat->solution.phase != FIBRAD_HEAT_CHECK) /* result.c finds the errors of rays wall by wall */
         sweep_rays(heat, fibrad_heat_part_begin(heat, heat->rays, part),
                    fibrad_heat_part_begin(heat, heat->rays, part + 1), &g);

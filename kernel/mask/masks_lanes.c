@@ -126,29 +126,36 @@ uint32_t LANED(fibrad_masks_discs)(fibrad_masks *m, const fibrad_discs *disc, ui
     return d;
 }
 
-/* The word and the bit of the point of masks that is next to (x, y). Near the border it may lie outside the disc. Then
- * one farther in is taken. */
-static void point_of_mask(const fibrad_masks *m, float x, float y, uint32_t *word, uint32_t *bit) {
-    const float per = 0.5f * (float)m->chords, last = (float)(m->chords - 1), end = (float)(32 * m->words - 1);
-    for (float inward = 1;; inward *= 0.95f) {
-        const float row = (inward * y - m->y_first) * per + 0.5f, column = m->x_zero + m->x_scale * (inward * x);
-        const uint32_t chord = (uint32_t)(row > 0 ? row < last ? row : last : 0);
-        const uint32_t point = (uint32_t)(column > 0 ? column < end ? column : end : 0);
-        const float v = m->y_first + m->y_step * (float)chord, u = ((float)point + 0.5f - m->x_zero) / m->x_scale;
-        *word = point / 32 * m->chords + chord, *bit = point % 32;
-        if (u * u + v * v < 0.999f) return;
-    }
+/* Rounds numbers from 0 to 2^22 to whole numbers. */
+static inline vf nearest_whole(vf x) { return x + vf_set1(8388608) - vf_set1(8388608); }
+
+/* The chords and the numbers on them of the points of masks next to (x, y). Near the border these may lie outside the
+ * disc. Then (x, y) is moved inwards. Returns whether all lie within. */
+static inline bool points_next_to(const fibrad_masks *m, vf *x, vf *y, float *chord, float *number) {
+    const vf zero = vf_set1(0), last = vf_set1((float)(m->chords - 1)), end = vf_set1((float)(32 * m->words - 1));
+    const vf origin = vf_set1(m->x_zero - 0.5f), scale = vf_set1(m->x_scale), first = vf_set1(m->y_first);
+    const vf row = nearest_whole(vf_max(zero, vf_min(last, (*y - first) * vf_set1(0.5f * (float)m->chords))));
+    const vf point = nearest_whole(vf_max(zero, vf_min(end, origin + scale * *x)));
+    const vf u = (point - origin) / scale, v = first + vf_set1(m->y_step) * row, square = u * u + v * v;
+    const vf most = vf_set1(0.999f), inwards = vf_set1(0.95f);
+    vf_storeu(chord, row), vf_storeu(number, point);
+    *x = vf_select(vf_lt(square, most), *x, *x * inwards), *y = vf_select(vf_lt(square, most), *y, *y * inwards);
+    return vf_lt_bits(square, most) == (1u << VF_LANES) - 1;
 }
 
 uint32_t LANED(fibrad_masks_at)(const fibrad_masks *m, uint32_t count, const float *x, const float *y, uint64_t *bits) {
     uint32_t open = 0;
-    for (uint32_t p = 0; p < count; p++) {
-        uint32_t word, at;
-        point_of_mask(m, x[p], y[p], &word, &at);
-        const uint64_t bit = m->word[word] >> at & 1;
-        if (p % 64 == 0) bits[p / 64] = 0;
-        bits[p / 64] |= bit << p % 64;
-        open += (uint32_t)bit;
+    for (uint32_t word = 0; word < count / 64; word++) bits[word] = 0;
+    for (uint32_t p = 0; p < count; p += VF_LANES) {
+        float chord[VF_LANES], number[VF_LANES];
+        vf at_x = vf_load(x + p), at_y = vf_load(y + p);
+        while (!points_next_to(m, &at_x, &at_y, chord, number)) continue;
+        for (uint32_t lane = 0; lane < VF_LANES; lane++) {
+            const uint32_t at = (uint32_t)(int32_t)number[lane], word = at / 32 * m->chords;
+            const uint64_t bit = m->word[word + (uint32_t)(int32_t)chord[lane]] >> at % 32 & 1;
+            bits[p / 64] |= bit << (p + lane) % 64;
+            open += (uint32_t)bit;
+        }
     }
     return open;
 }

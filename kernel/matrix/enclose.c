@@ -58,7 +58,7 @@ static double rest_wanted(fibrad_matrix *m, uint32_t b) {
     const double rest = rest_of(m, b), error = m->body_error[b];
     double spheres = 0, variance = 0;
     for (uint32_t i = 0; i < m->result.n; i++) {
-        const double share = m->body[(size_t)i * m->bodies + b] * over_body(m, i, b), own = m->row[i]->error;
+        const double share = m->body[(size_t)i * m->bodies + b] * over_body(m, i, b), own = m->error[i];
         spheres += share;
         variance += share * over_body(m, i, b) * own * own;
     }

@@ -16,11 +16,16 @@
 #define FEW_POINTS  64u /* of windows of rows with few windows */
 #define WALL_POINTS 64u /* of windows by masks that look at walls */
 
+/* Spheres look at walls along both senses of their lines if their distance to a wall is below this, in free paths. The
+ * others see little of walls. */
+#define WALL_NEAR 1.2
+
 /* The windows of a row. */
 typedef struct beam_windows {
     const fibrad_line_set *lines; /* NULL: directions */
     uint32_t count;
     bool turned; /* directions have been turned */
+    bool both;   /* walls are also seen in the other sense of each line */
     double turn[9];
     uint32_t chords, words; /* of masks; 0: none */
     fibrad_points points;   /* count 0: exact areas */
@@ -29,7 +34,8 @@ typedef struct beam_windows {
 static void LANED(frame_of_beam)(const void *from, uint32_t k, uint32_t points, double frame[9]) {
     const beam_windows *windows = from;
     if (windows->lines != NULL) {
-        fibrad_copy(frame, windows->lines->frame[k], 9 * sizeof *frame);
+        fibrad_copy(frame, windows->lines->frame[k % windows->count], 9 * sizeof *frame);
+        for (int n = 3; n < 9 && k >= windows->count; n++) frame[n] = -frame[n];
         return;
     }
     fibrad_beam_frame(k, windows->count, points, frame);
@@ -52,6 +58,7 @@ static int choose_windows(const fibrad_scene *scene, uint32_t i, const fibrad_be
 #define LINES_ERROR      0.5
 #define DIRECTIONS_ERROR 1.0 /* along directions, by masks */
 #define SHARES_ERROR     0.8
+#define SHARES_BOTH      0.2 /* if walls are seen in both senses */
 #define SHARES_FOURTHS   0.5
 
 /* The noise of a row from the points of masks. A window is divided into regions, the visible parts of spheres. The
@@ -77,27 +84,53 @@ static void open_masks(fibrad_masks *masks, const beam_windows *windows, uint32_
     masks->points = masks->open = lines->points[k];
 }
 
+/* Which points of some set are open after a window by masks, if there are walls to be seen. count 0: none was asked. */
+static void open_of_masks(const fibrad_workspace *work, fibrad_points *points) {
+    points->count = 0;
+    if (work->masks.open == 0 || !work->scene->container.walls) return;
+    points->count = WALL_POINTS;
+    (void)fibrad_disc_points_get(WALL_POINTS, &points->set);
+    points->open = LANED(fibrad_masks_at)(&work->masks, WALL_POINTS, points->set.x, points->set.y, points->seen);
+    if (points->open == 0) points->open = WALL_POINTS, points->seen[0] = UINT64_MAX;
+}
+
 /* Computes window k by masks, or by exact areas if a triangle may come before it. whole: out: the size of the window in
  * points. Returns the open part. *points: out: which points of some set are open; count 0: the discs of `work` tell. */
 static double window_by_masks(fibrad_workspace *work, const beam_windows *windows, const double frame[9], uint32_t k,
                               fibrad_points *points, double *whole) {
-    points->count = 0;
     work->entries.weight = 1, work->entries.halves = false;
     open_masks(&work->masks, windows, k);
     const bool done = LANED(fibrad_mask_window)(work, frame, k);
     *whole = work->masks.points;
     if (!done) {
+        points->count = 0;
         work->entries.weight = *whole / FIBRAD_PI, work->entries.halves = true;
         return LANED(fibrad_beam_window)(work, frame, points, k) * work->entries.weight;
     }
     if (work->met != NULL) work->met->any = false;
-    if (work->masks.open > 0 && work->scene->container.walls) {
-        points->count = WALL_POINTS;
-        (void)fibrad_disc_points_get(WALL_POINTS, &points->set);
-        points->open = LANED(fibrad_masks_at)(&work->masks, WALL_POINTS, points->set.x, points->set.y, points->seen);
-        if (points->open == 0) points->open = WALL_POINTS, points->seen[0] = UINT64_MAX;
-    }
+    open_of_masks(work, points);
     return work->masks.open;
+}
+
+/* Computes the window in the other sense of line k, which only walls see. open: what window k has left to walls. */
+static void look_back(fibrad_workspace *work, beam_windows *windows, const fibrad_window_set *set, uint32_t k,
+                      double open, fibrad_beam_sums *sums) {
+    const uint32_t back = windows->count + k;
+    double frame[9], rest, whole = FIBRAD_PI;
+    LANED(frame_of_beam)(windows, back, 0, frame);
+    if (windows->chords > 0) {
+        open_masks(&work->masks, windows, k);
+        (void)LANED(fibrad_mask_window)(work, frame, FIBRAD_NONE);
+        open_of_masks(work, &windows->points);
+        rest = work->masks.open, whole = work->masks.points;
+    } else {
+        rest = LANED(fibrad_beam_window)(work, frame, &windows->points, FIBRAD_NONE);
+    }
+    LANED(fibrad_walls_share)(work, frame, &windows->points, back, set, rest, whole);
+    if (work->entries.addends != NULL)
+        fibrad_addends_put(work->entries.addends, FIBRAD_ADD_OPEN, k, open);
+    else
+        sums->open[k % 2] += open;
 }
 
 /* Computes window k and adds it to all sums. False: there was no room for all discs. */
@@ -124,7 +157,8 @@ static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibr
         fibrad_work_slot(work, FIBRAD_BEYOND, k, rest);
     else if (work->entries.addends != NULL) fibrad_addends_put(work->entries.addends, FIBRAD_ADD_OPEN, k, rest);
     else sums->open[k % 2] += rest;
-    return true;
+    if (windows->both) look_back(work, windows, set, k, rest, sums);
+    return work->disc.count <= work->disc.capacity && !work->areas.overflow;
 }
 
 /* Adds the points that the near list has counted to the entries. Those of odd windows go to part 3, all others to
@@ -138,6 +172,17 @@ static void gather_counts(fibrad_workspace *work) {
         const uint32_t entry = fibrad_entries_of(entries, near->sphere[k]);
         for (uint32_t half = 0; half < 2; half++) fibrad_entries_add(entries, entry, 2 + half, near->count[k][half]);
     }
+}
+
+/* Walls share what is open in the windows that spheres share, too. The windows of the other senses only change the
+ * proportions. parts: as in fibrad_wall_factors. */
+static void keep_open(fibrad_workspace *work, fibrad_beam_sums *sums, double parts[2]) {
+    double all = 0;
+    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) all += work->wall[slot];
+    const double scale = all > 0 ? (sums->open[0] + sums->open[1]) / all : 0;
+    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) work->wall[slot] *= scale;
+    parts[0] *= scale * scale, parts[1] *= scale * scale;
+    sums->open[0] = sums->open[1] = 0;
 }
 
 int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i,
@@ -161,18 +206,21 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     const bool mixed = windows.turned || windows.lines != NULL; /* directions do not pair off */
     const double each = rule->points > 0 ? rule->points : FIBRAD_PI;
     const double square = 32.0 * windows.words * windows.chords; /* points of masks in the square about a window */
-    const fibrad_window_set set = {LANED(frame_of_beam),
-                                   &windows,
-                                   windows.count,
-                                   windows.count,
-                                   masked ? FIBRAD_PI / 4 * square : each,
-                                   mixed,
-                                   windows.lines == NULL && !masked};
     if (scene->container.walls) {
         work->walls->view = fibrad_wall_view_of(scene, work->place, work->cut, work->reach);
+        windows.both = windows.lines != NULL && scene->mesh.triangles == 0 &&
+                       fibrad_wall_nearest(&work->walls->view) < 1 + WALL_NEAR * work->free_path;
         fibrad_zero(&work->walls->sums, sizeof work->walls->sums);
         work->walls->sums.addends = range->addends;
     }
+    const uint32_t directions = windows.count << windows.both;
+    const fibrad_window_set set = {LANED(frame_of_beam),
+                                   &windows,
+                                   directions,
+                                   directions,
+                                   masked ? FIBRAD_PI / 4 * square : each,
+                                   mixed,
+                                   windows.lines == NULL && !masked};
     work->entries.addends = range->addends;
     if (range->part != NULL) fibrad_beam_replay(work, range, set.ends ? windows.count - 1 : 0, &sums);
     LANED(begin_legs)(&work->legs);
@@ -198,6 +246,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     status = fibrad_entries_row(&work->entries, scene, scale, row);
     if (status != FIBRAD_OK) return status;
     if (scene->container.walls) LANED(fibrad_walls_complete)(work, &set, parts);
+    if (windows.both) keep_open(work, &sums, parts);
     fibrad_entries_slots(&work->entries, scene, work->wall);
     row->escaped = (sums.open[0] + sums.open[1] + work->wall[FIBRAD_ESCAPED]) * scale;
     row->beyond = work->wall[FIBRAD_BEYOND] * scale;
@@ -208,7 +257,8 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     fibrad_row_bodies(scene, work->wall, row);
     row->lines = rule->lines != NULL ? windows.count : 0;
     row->noise = masked ? noise_of(&windows, all, work->masks.regions) : 0;
-    const double shares = SHARES_ERROR * fibrad_sqrt(fibrad_max(parts[0], SHARES_FOURTHS * parts[1])) * scale;
+    const double shares = (windows.both ? SHARES_BOTH : SHARES_ERROR) *
+                          fibrad_sqrt(fibrad_max(parts[0], SHARES_FOURTHS * parts[1])) * scale;
     row->shares = fibrad_sqrt(shares * shares + pairs.unseen * pairs.unseen);
     if (row->lines > 0 || masked) {
         const double gain = row->lines > 0 ? LINES_ERROR : DIRECTIONS_ERROR;

@@ -14,13 +14,8 @@
  * right to second order. A little more is better, because the correction is limited. */
 #define WALL_SLOPE 0.6
 
-/* Distances of the walls ahead of a direction and behind it, and how fast the direction approaches them. */
-typedef struct wall_course {
-    double ahead[3], behind[3], rate[3];
-} wall_course;
-
-static wall_course course_of(const fibrad_wall_view *view, const double w[3]) {
-    wall_course course;
+static fibrad_wall_course course_of(const fibrad_wall_view *view, const double w[3]) {
+    fibrad_wall_course course;
     for (int axis = 0; axis < 3; axis++) {
         const double low = fibrad_min(FIBRAD_FAR_AWAY, -view->low[axis]),
                      high = fibrad_min(FIBRAD_FAR_AWAY, view->high[axis]);
@@ -41,7 +36,7 @@ static wall_edge edge_of_planes(double first, double first_rate, double second, 
 }
 
 /* The same for the edge between the end of a cylinder and the cylinder. */
-static wall_edge edge_of_end(const fibrad_wall_view *view, const wall_course *course, const double w[3]) {
+static wall_edge edge_of_end(const fibrad_wall_view *view, const fibrad_wall_course *course, const double w[3]) {
     const double x = -view->axis[0], y = -view->axis[1], away = course->ahead[2], rate = course->rate[2];
     const double along = x * rate + w[0] * away, across = y * rate + w[1] * away;
     const double size = fibrad_max(fibrad_sqrt(along * along + across * across), 1e-300);
@@ -56,16 +51,16 @@ static double needed_at(const wall_edge *edge, double wide) {
 }
 
 /* The same for a window. Mostly the nearest edge decides. */
-static double needed_of(const fibrad_wall_view *view, const double w[3], double wide) {
-    const wall_course course = course_of(view, w);
+static double needed_of(const fibrad_wall_view *view, const fibrad_wall_course *course, const double w[3],
+                        double wide) {
     double sum = 0, weights = 0;
     if (view->round) {
-        const wall_edge edge = edge_of_end(view, &course, w);
+        const wall_edge edge = edge_of_end(view, course, w);
         return needed_at(&edge, wide);
     }
     for (int a = 0; a < 3; a++) {
         const int b = (a + 1) % 3;
-        const wall_edge edge = edge_of_planes(course.ahead[a], course.rate[a], course.ahead[b], course.rate[b]);
+        const wall_edge edge = edge_of_planes(course->ahead[a], course->rate[a], course->ahead[b], course->rate[b]);
         const double angle = edge.passing * edge.passing / edge.square + wide * wide, weight = 1 / (angle * angle);
         sum += weight * needed_at(&edge, wide), weights += weight;
     }
@@ -82,9 +77,14 @@ static double sharpness_of(const fibrad_wall_window *window, double first, doubl
 void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view *view) {
     const double *w = window->frame + 6;
     window->wide = window->parallel ? WALL_PARALLEL : window->part * FIBRAD_WINDOW_SPREAD / fibrad_sqrt(window->n);
-    window->spread = window->wide * fibrad_sqrt(needed_of(view, w, window->wide));
     for (int axis = 0; axis < 2; axis++) window->slope[axis] *= WALL_SLOPE;
-    wall_course course = course_of(view, w);
+    if (view->only < 3) return;
+    window->course = course_of(view, w);
+    window->spread = window->wide * fibrad_sqrt(needed_of(view, &window->course, w, window->wide));
+}
+
+void fibrad_wall_window_sharpen(fibrad_wall_window *window, const fibrad_wall_view *view) {
+    fibrad_wall_course course = window->course;
     for (int axis = 0; axis < 3; axis++) /* lines on both sides: not too soft for the nearer one */
         if (course.rate[axis] < window->wide) course.ahead[axis] = fibrad_min(course.ahead[axis], course.behind[axis]);
     for (int axis = 0; axis < 3; axis++)
@@ -152,13 +152,13 @@ static int sole_at(const fibrad_wall_window *window, const wall_edge *edge) {
 
 /* The axis of the plane that all lines of the window meet, or 3 for the cylinder. 4: lines meet several walls. */
 static uint32_t sole_wall(const fibrad_wall_window *window, const fibrad_wall_view *view) {
-    const wall_course course = course_of(view, window->frame + 6);
-    const double *ahead = course.ahead, *rate = course.rate;
+    const fibrad_wall_course *course = &window->course;
+    const double *ahead = course->ahead, *rate = course->rate;
     if (view->round) {
-        const bool open = ahead[2] >= FIBRAD_FAR_AWAY, open_too = course.behind[2] >= FIBRAD_FAR_AWAY;
+        const bool open = ahead[2] >= FIBRAD_FAR_AWAY, open_too = course->behind[2] >= FIBRAD_FAR_AWAY;
         if (rate[2] < window->wide) return open && open_too ? 3 : 4;
         if (open) return 3;
-        wall_edge edge = edge_of_end(view, &course, window->frame + 6);
+        wall_edge edge = edge_of_end(view, course, window->frame + 6);
         edge.square = fibrad_max(edge.square, 4 * view->radius * view->radius + ahead[2] * ahead[2]);
         const int sole = sole_at(window, &edge);
         return sole > 0 ? 2 : sole < 0 ? 3 : 4;
@@ -168,10 +168,10 @@ static uint32_t sole_wall(const fibrad_wall_window *window, const fibrad_wall_vi
     if (rate[a] < window->wide || ahead[a] >= FIBRAD_FAR_AWAY) return 4;
     for (uint32_t b = 0; b < 3; b++) {
         const wall_edge to = edge_of_planes(ahead[a], rate[a], ahead[b], rate[b]);
-        const wall_edge back = edge_of_planes(ahead[a], rate[a], course.behind[b], 0);
+        const wall_edge back = edge_of_planes(ahead[a], rate[a], course->behind[b], 0);
         if (b == a) continue;
         if (ahead[b] < FIBRAD_FAR_AWAY && sole_at(window, &to) < 1) return 4;
-        if (rate[b] < window->wide && course.behind[b] < FIBRAD_FAR_AWAY && sole_at(window, &back) < 1) return 4;
+        if (rate[b] < window->wide && course->behind[b] < FIBRAD_FAR_AWAY && sole_at(window, &back) < 1) return 4;
     }
     return a;
 }

@@ -12,29 +12,38 @@
  * need no disc. */
 #define FIBRAD_WINDOW_NEAR 1.3
 
+/* Distances of the walls ahead of a direction and behind it, and how fast the direction approaches them. */
+typedef struct fibrad_wall_course {
+    double ahead[3], behind[3], rate[3];
+} fibrad_wall_course;
+
 typedef struct fibrad_wall_window {
-    const double *frame; /* axes of the window */
-    uint32_t k, n;       /* window k of n */
-    double open, hidden; /* open and hidden part of the window, areas or points */
-    double weight;       /* size of the window over that of the others: masks differ by some points */
-    double part;         /* how much of its disc of directions is used; 1, or less if the slope is not known */
-    bool parallel;       /* whether all lines have the direction of the window */
-    bool end;            /* whether it counts half in differences of even and odd windows */
-    double slope[2];     /* growth of the open part as the direction turns towards each axis, per radian */
-    double wide;         /* radius of the disc of directions */
-    double spread;       /* radius of the part of this disc that is needed for walls as near as these */
+    const double *frame;       /* axes of the window */
+    uint32_t k, n;             /* window k of n */
+    double open, hidden;       /* open and hidden part of the window, areas or points */
+    double weight;             /* size of the window over that of the others: masks differ by some points */
+    double part;               /* how much of its disc of directions is used; 1, or less if the slope is not known */
+    bool parallel;             /* whether all lines have the direction of the window */
+    bool end;                  /* whether it counts half in differences of even and odd windows */
+    double slope[2];           /* growth of the open part as the direction turns towards each axis, per radian */
+    double wide;               /* radius of the disc of directions */
+    fibrad_wall_course course; /* of the direction, unless all walls are across one axis */
+    double spread;             /* radius of the part of this disc that is needed for walls as near as these */
     double sharpness[3]; /* of the edge between the planes across axes a and a + 1; with a cylinder [2] is that of its
                             end. 1 over the change of `passing` over half the width in which lines change from one wall
                             to the other */
 } fibrad_wall_window;
 
-/* Completes a window of which the fields down to slope are set. */
+/* Completes a window of which the fields down to slope are set, but for `sharpness`. */
 void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view *view);
 
 /* Adds to the regions a window that one wall gets as a whole, or whose shares follow from one number. False: lines
  * must tell the shares. turned: whether the directions have been turned. */
 bool fibrad_wall_window_simple(const fibrad_wall_window *window, const fibrad_wall_view *view, bool turned,
                                fibrad_wall_sums *sums);
+
+/* Sets `sharpness`, which lines need. */
+void fibrad_wall_window_sharpen(fibrad_wall_window *window, const fibrad_wall_view *view);
 
 /* Whether lines of the window lie in an octant. */
 bool fibrad_wall_window_has(const fibrad_wall_window *window, const fibrad_wall_view *view, uint32_t octant);

@@ -247,7 +247,7 @@ bool LANED(fibrad_mask_window)(fibrad_workspace *work, const double frame[9], ui
         for (uint32_t d = from; d < resolved && masks->open > 0; d++) disc->fdepth[disc->order[d]] = -1;
     }
     if (fibrad_mesh_near(work, masks->open > 0 ? __builtin_inf() : known)) return false;
-    count_hidden(work, k);
+    if (k != FIBRAD_NONE) count_hidden(work, k);
     return true;
 }
 
@@ -277,7 +277,7 @@ double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], 
     double rest = LANED(fibrad_areas_end)(&work->areas);
     if (near) rest = LANED(fibrad_mesh_share)(work, frame, points, k, rest);
     if (near && work->met->any) return rest;
-    for (uint32_t c = 1; c < work->areas.circles; c++)
+    for (uint32_t c = 1; c < work->areas.circles && k != FIBRAD_NONE; c++)
         if (work->areas.area[c] > 0) fibrad_work_accumulate(work, work->areas.whose[c], k, work->areas.area[c]);
     return rest;
 }

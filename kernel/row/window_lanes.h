@@ -11,14 +11,16 @@
  * take 8 % less time than (3, 1.4) with points. */
 #define FIBRAD_BEAM_STRIDE ((fibrad_stride){3.9, 1.5})
 
-/* Computes window k of the row begun in `work`: adds what is visible of each sphere to the entries. With points,
+/* Computes window k of the row begun in `work`: adds what is visible of each sphere to the entries. k FIBRAD_NONE, for
+ * exact areas without triangles: nothing is added. With points,
  * points->seen has the points that no sphere hides afterwards, and points->occluder has the discs that hide the
  * others. Returns the part that stays open: a number of points, or an area if points->count is 0. If
  * work->disc.count > work->disc.capacity, there was no room for all discs. */
 double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], fibrad_points *points, uint32_t k);
 
 /* The same by masks. work->masks: in: the open window; out: which points are still open. What spheres hide is added to
- * near.count, and to entries. False: a triangle may come before the window. Then nothing has been added. */
+ * near.count, and to entries. k FIBRAD_NONE: nothing is added. False: a triangle may come before the window. Then
+ * nothing has been added. */
 bool LANED(fibrad_mask_window)(fibrad_workspace *work, const double frame[9], uint32_t k);
 
 #endif

@@ -102,12 +102,16 @@ static void sky_of_regions(const fibrad_wall_view *view, double sky[FIBRAD_REGIO
     }
 }
 
+double fibrad_wall_nearest(const fibrad_wall_view *view) {
+    double nearest = view->radius - off_axis(view);
+    for (int axis = 0; axis < 3; axis++) nearest = fibrad_min(nearest, fibrad_min(view->high[axis], -view->low[axis]));
+    return nearest;
+}
+
 double fibrad_wall_apart(const fibrad_wall_view *view) {
     if (view->cut) return 0;
     if (view->only < 3) return 1;
-    double nearest = fibrad_min(1, view->radius - off_axis(view));
-    for (int axis = 0; axis < 3; axis++)
-        for (int up = 0; up < 2; up++) nearest = fibrad_min(nearest, distance_to(view, axis, up));
+    const double nearest = fibrad_max(1 / FIBRAD_FAR_AWAY, fibrad_min(1, fibrad_wall_nearest(view)));
     return fibrad_max(0, 1 - 5 * (1 - nearest));
 }
 

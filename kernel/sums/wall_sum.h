@@ -67,6 +67,9 @@ typedef struct fibrad_point_sums {
     fibrad_wall_line first_cut[FIBRAD_WALLS + 1];
 } fibrad_point_sums;
 
+/* The distance of the nearest wall from the centre. Infinity: there is none. */
+double fibrad_wall_nearest(const fibrad_wall_view *view);
+
 /* How much the solid angles count, 0 to 1. 1: no wall cuts the sphere, or all walls are across one axis. 0: a wall
  * cuts the sphere deeply, or lines are cut. */
 double fibrad_wall_apart(const fibrad_wall_view *view);

@@ -1,6 +1,6 @@
 #!/bin/bash
-# check_lammps.sh - fix fibrad in LAMMPS on 1, 2 and 4 ranks: the same temperatures as on one scene without ranks, the same
-# bytes of rows, energy in moving beds, and failures that end all ranks. SPDX-License-Identifier: MIT
+# check_lammps.sh [all] - fix fibrad in LAMMPS on 1, 2 and 4 ranks: the same temperatures as on one scene without ranks, the same
+# bytes of rows, energy in moving beds, and failures that end all ranks; all: more of such beds. SPDX-License-Identifier: MIT
 #
 # LMP and LOAD may name another LAMMPS and a script that loads the fix into it: host/couple/lammps/newer.sh does.
 set -u
@@ -114,7 +114,7 @@ awk 'NF == 8 && /^[0-9]/ { $2 = 2 - $1%2 } { print }' tests/data/monoper2000.dum
 as_data tests/data/monoper2000.dump >"$work/flat.data"
 run 1 sky frozen.lmp data "$work/flat.data" boundary "p p f" steps 0 also "set group all d_T 1000"
 found=$("$BUILD/fibrad" heat "$work/types.dump" --emissivity 1:.5,2:.8 --temperature 1000 --ambient 300 --wall zmin=0 \
-    --wall-temperature 1000 --wall-emissivity .9 --directions 600 2>/dev/null |
+    --wall-temperature 1000 --wall-emissivity .9 --directions 200 2>/dev/null |
     awk '$1 == "surroundings_W" { print $2; exit }')
 awk '$1 == "Step" { getline; print $3; exit }' "$work/sky.log" |
     awk -v heat="${found:-0}" '{ d = $1/heat - 1; printf "%.2g", d; exit !(heat > 0 && d*d < 8e-3^2) }' >"$work/sky.error"
@@ -134,10 +134,9 @@ awk 'BEGIN { print "id,type,x,y,z,radius,T" } { print $1 "," 2 - $1%2 "," $2 ","
 "$BUILD/fibrad" heat "$work/quarter.csv" --emissivity 1:.5,2:.8 --temperature T --ambient 300 --wall zmin=0 \
     --wall-temperature 1000 --wall-emissivity .9 --solid-conductivity 1:4,2:12 --directions 600 --length-unit m \
     -o "$work/conduct.csv" >/dev/null 2>&1
+run 2 conduct frozen.lmp "${whole[@]}" steps 0 strict "no solid type 4 12 accuracy high" also "dump powers all custom 1 $work/powers id f_rad"
+powers_near "$work/conduct.csv" "$work/powers" "powers of particles that conduct are those of fibrad heat"
 for np in 1 2; do
-    run $np conduct$np frozen.lmp "${whole[@]}" steps 0 strict "no solid type 4 12 accuracy high" \
-        also "dump powers all custom 1 $work/powers$np id f_rad"
-    powers_near "$work/conduct.csv" "$work/powers$np" "powers of particles that conduct are those of fibrad heat, np $np"
     run $np conducts$np frozen.lmp "${whole[@]}" strict "no solid 10"
 done
 near "$work/conducts1.out" "$work/conducts2.out" 1e-8 "a bed that conducts, np 1 and 2"
@@ -153,9 +152,10 @@ for side in xlo xhi ylo yhi zlo zhi; do
 done
 many="directions 400 paths 1600" # so that the noise of wall powers is 8e-4 at most
 for np in 1 2 4; do
-    run $np mesh$np mesh.lmp data "$work/quarter.data" walls "wall mesh $work/box.stl 1000 0.9 solids name box $many"
+    run $np mesh$np mesh.lmp data "$work/quarter.data" walls "wall mesh $work/box.stl 1000 0.9 solids name box"
 done
-run 1 planes mesh.lmp data "$work/quarter.data" walls "$planes $many"
+run 2 triangles mesh.lmp data "$work/quarter.data" walls "wall mesh $work/box.stl 1000 0.9 solids name box $many"
+run 2 planes mesh.lmp data "$work/quarter.data" walls "$planes $many"
 # without a lid: as with a black one at the temperature of the surroundings, where the bed ends or higher up
 sides=${planes% wall zhi*}
 gained="f_rad f_rad[6] f_rad[7] f_rad[8] f_rad[9] f_rad[10]"
@@ -174,7 +174,7 @@ walls() { awk '$1 == "Step" { getline; print; exit }' "$work/$1.log"; }
 test -n "$(walls mesh1)" && test "$(walls mesh1)" = "$(walls mesh2)" && test "$(walls mesh1)" = "$(walls mesh4)" &&
     near "$work/mesh1.out" "$work/mesh4.out" 1e-10 "a box of triangles, np 1 and 4"
 verdict "walls of triangles, np 1, 2, 4: the same powers" $?
-found=$({ walls mesh1 && walls planes; } | awk 'NR == 1 { for (k = 2; k < 9; k++) p[k] = $k; next }
+found=$({ walls triangles && walls planes; } | awk 'NR == 1 { for (k = 2; k < 9; k++) p[k] = $k; next }
     { all = $2/p[2] - 1; for (k = 3; k < 8; k++) { d = ($k - p[k])/$k; if (d < 0) d = -d; if (d > worst) worst = d } }
     END { printf "particles %.2g, walls %.2g", all, worst; exit !(NR == 2 && all*all < 25e-8 && worst < .002) }')
 verdict "a box of triangles has the powers of planes ($found)" $?
@@ -260,13 +260,14 @@ for axis in z x y; do
     tube="wall ${axis}cylinder 4.6 600 0.8 at $at"
     low="wall ${axis}lo 1000 0.9 at 0"
     caps="wall mesh $work/caps.$axis.stl 1000 0.9 both wall ${axis}lo open at -1 wall ${axis}hi open at 15"
-    for np in 1 2; do
-        run $np tube$axis$np mesh.lmp data "$work/laid.data" walls "$tube $low wall ${axis}hi open at 20" shown "f_rad f_rad[1] f_rad[6] f_rad[7]"
-        run $np endless$axis$np mesh.lmp data "$work/period.data" boundary "$ends" walls "$tube" shown "f_rad f_rad[6]"
-        run $np caps$axis$np mesh.lmp data "$work/laid.data" walls "$tube $caps" shown "f_rad f_rad[6] f_rad[7]"
+    case $axis in z) numbers="1 2" ;; *) numbers=2 ;; esac
+    for np in $numbers; do
+        run $np "tube$axis$np" mesh.lmp data "$work/laid.data" walls "$tube $low wall ${axis}hi open at 20" shown "f_rad f_rad[1] f_rad[6] f_rad[7]"
+        run $np "endless$axis$np" mesh.lmp data "$work/period.data" boundary "$ends" walls "$tube" shown "f_rad f_rad[6]"
+        run $np "caps$axis$np" mesh.lmp data "$work/laid.data" walls "$tube $caps" shown "f_rad f_rad[6] f_rad[7]"
         for bed in tube endless caps; do
             near "$work/${bed}z1.out" "$work/$bed$axis$np.out" 1e-10 "a bed in ${axis}cylinder, $bed, np $np"
-            found=$({ walls ${bed}z1 && walls $bed$axis$np; } | awk 'NR == 1 { for (k = 2; k <= NF; k++) p[k] = $k; next }
+            found=$({ walls ${bed}z1 && walls "$bed$axis$np"; } | awk 'NR == 1 { for (k = 2; k <= NF; k++) p[k] = $k; next }
                 { for (k = 2; k <= NF; k++) { d = $k/p[k] - 1; if (!(d*d < worst*worst)) worst = d } print worst }
                 END { exit !(NR == 2 && NF > 2 && worst*worst < 1e-20) }')
             verdict "its powers and those of its walls ($found)" $?
@@ -283,9 +284,9 @@ powers_near "$work/tube.csv" "$work/powers" "powers in xcylinder are those of fi
 
 # ---- moving particles -------------------------------------------------------------------------------------------------
 run 2 moving moving.lmp hot 1000
-balance moving 20e-3 0 1e-3 1000 "energy of moving particles"
+balance moving 20e-3 0 1e-3 500 "energy of moving particles"
 awk '/^[0-9]/ { n++; d = ($2 - $3)^2; if (d > worst) worst = d; if ($3^2 > most) most = $3^2 }
-    END { exit !(n > 500 && most > 0 && worst < 1e-24*most) }' "$work/moving.out.power"
+    END { exit !(n > 300 && most > 0 && worst < 1e-24*most) }' "$work/moving.out.power"
 verdict "powers move with their particles" $?
 awk '/TIMESTEP/ { frame++ } NF == 2 && /^[0-9]+ / { if (frame == 1) rank[$1] = $2; else if (frame == 3 && rank[$1] != $2) moved++ }
     END { exit !(moved > 20) }' "$work/moving.out.rank"
@@ -371,8 +372,9 @@ awk '/^[0-9]/ { if ($4 > 0) left++; if ($5 > 0) smaller++ } END { exit !(left &&
     test "$(grep -c 'the centre of one lies inside the other' "$work/soft.log")" -eq 1
 verdict "strays are counted and told of once" $?
 # cases as LAMMPS' own examples, with the three lines of the fix
-for case in chute drum hopper; do
-    run 2 $case $case.lmp && ! grep -q '^ERROR' "$work/$case.log" && balance $case 10e-3 0 1e-3 200 "energy in a $case"
+test "${1:-}" = all && cases="chute drum hopper" || cases=chute
+for case in $cases; do
+    run 2 "$case" "$case.lmp" && ! grep -q "^ERROR" "$work/$case.log" && balance "$case" 10e-3 0 1e-3 200 "energy in a $case"
     verdict "a $case to its end" $?
 done
 # half a drum that stores heat and turns once, from step 1500 to 3500. Its temperature follows from factors of `fibrad exchange`
@@ -398,7 +400,7 @@ balance shell 10e-3 0 1e-5 200 "energy in a drum of triangles that turns and sto
 heat() {
     shell "$2" >"$work/turned.stl"
     "$BUILD/fibrad" exchange "$1" --emissivity .8 --wall "mesh:$work/turned.stl:both" --wall-emissivity .7 --raw --quiet \
-        --directions 400 -o "$work/factors.csv" 2>/dev/null
+        --directions 150 -o "$work/factors.csv" 2>/dev/null
     awk -F'[ ,]' -v both="$(awk 'BEGIN { print 2*12*8*2*5*sin(atan2(1, 1)/6) }')" '
         NR == FNR && NF >= 6 && $1 ~ /^[0-9]/ { area[$1] = 16*atan2(1, 1)*$5^2; e[$1] = 1e-11*$6^4 }
         NR > FNR && $1 > 0 && $4 == "turned" { weight = area[$1]*.8*$3; sum += weight*e[$1]; all += weight*1e-11 }
@@ -439,17 +441,17 @@ run 2 empty empty.lmp && awk '/^[12] / && $2 < 399 && $2 > 390 { n++ } END { exi
 verdict "a box that is empty at first" $?
 
 # ---- failures ---------------------------------------------------------------------------------------------------------
-# fails MESSAGE WHAT [NAME VALUE]...: all ranks end, with one message
+# fails MESSAGE WHAT [NAME VALUE]...: all ranks, 2 or $failing, end with one message
 fails() {
     message=$1 what=$2
     shift 2
-    run 4 failure frozen.lmp data "$work/quarter.data" "$@"
+    run "${failing:-2}" failure frozen.lmp data "$work/quarter.data" "$@"
     status=$?
     count=$(cat "$work/failure.err" "$work/failure.log" | grep -c "^ERROR.*$message")
     test $status -ne 0 && test $status -ne 124 && test "$count" -eq 1
     verdict "$what" $? "status $status, $count messages: $(grep -h ERROR "$work/failure.err" "$work/failure.log" | head -n 1)"
 }
-fails "atom 10 .*not set" "unset temperature" also "set atom 10 d_T 0"
+failing=4 fails "atom 10 .*not set" "unset temperature" also "set atom 10 d_T 0"
 fails "NEVERY must be at most" "steps of heat too long" also "timestep 400" heat 20
 fails "particle.* 10 .*inside" "a centre inside another particle" also "set atom 10 diameter 2.5" strict yes
 fails "beyond wall 1, zlo" "a centre beyond a wall" floor "zlo 1000 0.9 at 1" strict yes

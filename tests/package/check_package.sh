@@ -66,7 +66,7 @@ prefix=$tree/all/opt/fibrad
         lib/libfibrad_host.a lib/libfibrad.so "lib/$name" lib/pkgconfig/fibrad.pc lib/pkgconfig/fibrad_host.pc; do
         echo "$file"
     done
-    for file in README.md CHANGELOG.md LICENSE docs/*.md docs/figures/*; do echo "share/doc/fibrad/$file"; done
+    for file in README.md CHANGELOG.md LICENSE CITATION.cff SECURITY.md docs/*.md docs/figures/*; do echo "share/doc/fibrad/$file"; done
     for file in "$tree"/usr/include/*.h; do echo "include/${file##*/}"; done
 } | sort >"$tree/expected"
 (cd "$prefix" && find . -type f -o -type l) | sed 's|^\./||' | sort | diff "$tree/expected" -

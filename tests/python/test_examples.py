@@ -5,7 +5,6 @@ import os
 import pydoc
 import re
 import runpy
-import shutil
 import subprocess
 import sys
 from types import SimpleNamespace
@@ -43,11 +42,14 @@ def test_what_is_public_is_documented():
 
 
 def test_page(tree, tmp_path, monkeypatch):
-    """Python blocks of the page, one after the other, as one reader types them."""
+    """Python blocks of the page, one after the other, as one reader types them, with a quarter of a bed."""
     page = (tree / "docs" / "python.md").read_text(encoding="utf-8")
     blocks = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
     assert len(blocks) > 4
-    shutil.copy(tree / "tests" / "data" / "mono2000.dump", tmp_path / "bed.dump")
+    lines = (tree / "tests" / "data" / "mono2000.dump").read_text(encoding="ascii").splitlines()
+    lines[9:] = [line for line in lines[9:] if max(map(float, line.split()[2:4])) < 6]
+    lines[3] = str(len(lines) - 9)
+    (tmp_path / "bed.dump").write_text("\n".join(lines) + "\n", encoding="ascii")
     monkeypatch.chdir(tmp_path)
     names = {}
     for block in blocks:

@@ -108,7 +108,7 @@ def test_powers_follow_from_exchange_factors(small):
     """The same by paths: sum over j of A_i e_i D_ij sigma (T_j^4 - T_i^4)."""
     e = np.linspace(0.4, 0.9, small.n)
     emission = SIGMA * np.linspace(300, 1200, small.n) ** 4
-    exchange = fibrad.exchange_factors(small.x, small.r, e, directions=500, paths=20000)
+    exchange = fibrad.exchange_factors(small.x, small.r, e, directions=500, paths=8000)
     outside = SIGMA * 300**4
     sent = 4 * np.pi * small.r**2 * e
     expected = sent * (exchange.matrix @ emission + exchange.escaped * outside - emission)

@@ -61,7 +61,7 @@ def contacts_of(contacts: Any, n: int, container: Container) -> Contacts:
 
 
 def contacts(x: ArrayLike, r: ArrayLike, *, spots: Optional[str] = "lens", conductivity: Optional[ArrayLike] = None,
-             scale: Optional[float] = None, gas_conductivity: Optional[float] = None, gas_gap: float = 0.5,
+             scale: Optional[float] = None, gas_conductivity: Optional[float] = None, gas_gap: float = 0.65,
              gas_jump: float = 0.0, gas_alone: bool = False, box: Optional[ArrayLike] = None, walls: Optional[Walls] = None,
              ids: Optional[ArrayLike] = None) -> Contacts:
     """Contacts of spheres with each other and with walls, and what they conduct.

@@ -1,0 +1,206 @@
+/* rings.c - two spheres near each other, in rings about the line of their centres. SPDX-License-Identifier: MIT
+ *
+ * With the irradiation H and the emission E of a ring let v = H - E. It absorbs eps v and sends J = E + (1 - eps) v.
+ * The flux eps v and light that was absorbed besides are conducted: E = E0 + S (eps v + a), S being `spread` times the
+ * unevenness. H is what arrives from elsewhere plus the factors to the rings of the other sphere times their J. This is
+ * a linear system in v of both spheres. */
+#include "base/constants.h"
+#include "base/elementary.h"
+#include "rings/rings.h"
+
+#define RINGS   FIBRAD_RINGS
+#define NARROW  2e-3  /* angle at which the first ring ends */
+#define RATIO   1.4   /* of the angles of successive edges */
+#define WIDEST  .255  /* largest width of a ring: with it the rings end at half a turn */
+#define TERMS   3000u /* degrees of the sum for `spread`: a wave of the last one is as wide as the first ring */
+#define TURNS   14    /* places in half a turn around the axis */
+#define STRETCH .45   /* they lie in stretches, each of which is this part of the one before */
+
+/* The edges of rings are in geometric progression of the angle, as long as rings are not wider than WIDEST. */
+static void find_edges(fibrad_rings *rings) {
+    double angle = NARROW;
+    rings->edge[0] = 0, rings->edge[RINGS] = 1;
+    for (uint32_t k = 1; k < RINGS; k++) {
+        double sine, cosine;
+        fibrad_sincos_turn(angle / (4 * FIBRAD_PI), &sine, &cosine);
+        rings->edge[k] = sine * sine;
+        angle += fibrad_min((RATIO - 1) * angle, WIDEST);
+    }
+    for (uint32_t k = 0; k < RINGS; k++) {
+        const double middle = (rings->edge[k] + rings->edge[k + 1]) / 2;
+        rings->share[k] = rings->edge[k + 1] - rings->edge[k];
+        rings->cosine[k] = 1 - 2 * middle, rings->sine[k] = 2 * fibrad_sqrt(middle * (1 - middle));
+    }
+}
+
+/* The next Legendre polynomial at the edges, and its means over rings. last, value: of degrees l - 1 and l. */
+static void next_degree(const fibrad_rings *rings, uint32_t l, double *last, double *value, double *mean) {
+    double before = 0;
+    for (uint32_t k = 0; k <= RINGS; k++) {
+        const double next = ((2 * l + 1) * (1 - 2 * rings->edge[k]) * value[k] - l * last[k]) / (l + 1);
+        const double slope = (next - last[k]) / (2 * l + 1);
+        if (k > 0) mean[k - 1] = (before - slope) / (2 * rings->share[k - 1]);
+        before = slope, last[k] = value[k], value[k] = next;
+    }
+}
+
+void fibrad_rings_make(fibrad_rings *rings) {
+    double last[RINGS + 1], value[RINGS + 1], mean[RINGS];
+    find_edges(rings);
+    for (uint32_t k = 0; k <= RINGS; k++) last[k] = 1, value[k] = 1 - 2 * rings->edge[k];
+    fibrad_zero(rings->spread, sizeof rings->spread);
+    for (uint32_t l = 1; l < TERMS; l++) {
+        next_degree(rings, l, last, value, mean);
+        for (uint32_t k = 0; k < RINGS; k++)
+            for (uint32_t m = 0; m < RINGS; m++)
+                rings->spread[k][m] += (2 * l + 1.0) / l * mean[k] * mean[m] * rings->share[m];
+    }
+}
+
+uint32_t fibrad_rings_at(const fibrad_rings *rings, double cosine) {
+    uint32_t low = 0, high = RINGS;
+    while (high - low > 1) {
+        const uint32_t middle = (low + high) / 2;
+        if (2 * rings->edge[middle] <= 1 - cosine)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The angle whose cosine is given. */
+static double angle_at(double cosine) {
+    const double c = fibrad_max(-1, fibrad_min(1, cosine)), s = fibrad_sqrt(1 - c * c);
+    return c < 0 ? FIBRAD_PI - fibrad_quarter_angle(-c, s) : fibrad_quarter_angle(c, s);
+}
+
+/* The view factor from a point to a sphere. far: the distance of the sphere's centre in radii. tilt: the cosine
+ * between the normal and the direction to the centre. The horizon may hide a part of the sphere. */
+static double factor_of_point(double far, double tilt) {
+    if (far * tilt >= 1) return tilt / (far * far);
+    if (far * tilt <= -1) return 0;
+    const double root = fibrad_sqrt(fibrad_max(0, far * far - 1)), across = fibrad_sqrt(1 - tilt * tilt);
+    const double cut = fibrad_sqrt(fibrad_max(0, 1 - far * far * tilt * tilt));
+    return (angle_at(root / (far * across)) + (tilt * angle_at(-root * tilt / across) - root * cut) / (far * far)) /
+           FIBRAD_PI;
+}
+
+/* The middle of a ring, and its normal: across the axis and along it. The axis of the other sphere is the reverse. */
+struct ring_place {
+    double across, along, sine, cosine;
+};
+
+/* Places around the axis: sine and cosine of the turn, and weights that add up to 1. */
+struct turns {
+    double sine[TURNS], cosine[TURNS], weight[TURNS];
+};
+
+/* Gauss's rule of two points in the sine of half the turn, in stretches that become shorter towards 0. */
+static void find_turns(struct turns *turns) {
+    static const double place[2] = {.2113248654051871, .7886751345948129};
+    double high = 1;
+    for (int k = 0; k < TURNS; k++) {
+        const double low = k + 2 < TURNS ? STRETCH * high : 0, half = low + (high - low) * place[k % 2];
+        const double rest = fibrad_sqrt(1 - half * half);
+        turns->cosine[k] = 1 - 2 * half * half, turns->sine[k] = 2 * half * rest;
+        turns->weight[k] = (high - low) / rest;
+        if (k % 2) high = low;
+    }
+}
+
+/* What a place sees of a ring, up to a factor: a mean over half a turn around the axis. */
+static double seen_of_ring(const struct turns *turns, const struct ring_place *from, const struct ring_place *to) {
+    const double z = to->along - from->along;
+    double sum = 0;
+    for (int k = 0; k < TURNS; k++) {
+        const double x = to->across * turns->cosine[k] - from->across, y = to->across * turns->sine[k];
+        const double leaves = x * from->sine + z * from->cosine,
+                     meets = z * to->cosine - (x * turns->cosine[k] + y * turns->sine[k]) * to->sine,
+                     square = x * x + y * y + z * z;
+        if (leaves > 0 && meets > 0) sum += turns->weight[k] * leaves * meets / (square * square);
+    }
+    return sum;
+}
+
+/* The factors from ring k of a sphere to the rings of the other one. Returns their sum. */
+static double face_ring(const fibrad_rings *rings, const struct turns *turns, uint32_t k, double radius, double other,
+                        double distance, double factor[RINGS]) {
+    const double sine = rings->sine[k], cosine = rings->cosine[k];
+    const struct ring_place from = {radius * sine, radius * cosine, sine, cosine};
+    const double z = distance - from.along, far = fibrad_sqrt(from.across * from.across + z * z);
+    const double exact = factor_of_point(far / other, (z * cosine - from.across * sine) / far);
+    double sum = 0;
+    for (uint32_t m = 0; m < RINGS; m++) {
+        const struct ring_place to = {other * rings->sine[m], distance - other * rings->cosine[m], rings->sine[m],
+                                      rings->cosine[m]};
+        sum += factor[m] = exact > 0 ? rings->share[m] * seen_of_ring(turns, &from, &to) : 0;
+    }
+    for (uint32_t m = 0; m < RINGS && sum > 0; m++) factor[m] *= exact / sum;
+    return sum > 0 ? exact : 0;
+}
+
+void fibrad_rings_face(const fibrad_rings *rings, const double radius[2], double distance, fibrad_rings_work *work) {
+    struct turns turns;
+    find_turns(&turns);
+    for (int i = 0; i < 2; i++)
+        for (uint32_t k = 0; k < RINGS; k++)
+            work->facing[i][k] = face_ring(rings, &turns, k, radius[i], radius[1 - i], distance, work->factor[i][k]);
+}
+
+/* What the emission of ring k has of each v of its sphere. Returns the emission that is known. */
+static double conducted_at(const fibrad_rings *rings, const fibrad_ringed *sphere, uint32_t k, double more[RINGS]) {
+    double known = sphere->emission;
+    for (uint32_t m = 0; m < RINGS; m++) {
+        const double spread = sphere->unevenness * rings->spread[k][m];
+        more[m] = sphere->emissivity * spread;
+        known += spread * sphere->absorbed[m];
+    }
+    return known;
+}
+
+/* The balances of the rings of sphere i: E + v - factors times J of the other sphere = what arrives from elsewhere. */
+static void set_rows(const fibrad_rings *rings, const fibrad_ringed *sphere, uint32_t count, uint32_t i,
+                     fibrad_rings_work *work) {
+    const uint32_t end = count * RINGS, j = count - 1 - i;
+    double spread[RINGS];
+    for (uint32_t k = 0; k < RINGS; k++) {
+        double *row = work->row[i * RINGS + k];
+        fibrad_zero(row, (end + 1) * sizeof *row);
+        row[end] = sphere[i].arriving[k] - conducted_at(rings, &sphere[i], k, row + i * RINGS);
+        row[i * RINGS + k] += 1;
+    }
+    for (uint32_t m = 0; m < RINGS && count > 1; m++) {
+        const double known = conducted_at(rings, &sphere[j], m, spread);
+        spread[m] += 1 - sphere[j].emissivity;
+        for (uint32_t k = 0; k < RINGS; k++) {
+            const double factor = work->factor[i][k][m];
+            double *row = work->row[i * RINGS + k];
+            row[end] += factor * known;
+            for (uint32_t n = 0; n < RINGS && factor > 0; n++) row[j * RINGS + n] -= factor * spread[n];
+        }
+    }
+}
+
+/* Solves the first n rows by elimination. The diagonal outweighs the rest. Leaves the solution at the ends of rows. */
+static void eliminate(double row[][2 * RINGS + 1], uint32_t n) {
+    for (uint32_t k = 0; k < n; k++)
+        for (uint32_t m = k + 1; m < n; m++) {
+            const double part = row[m][k] / row[k][k];
+            for (uint32_t c = k + 1; c <= n && part != 0; c++) row[m][c] -= part * row[k][c];
+        }
+    for (uint32_t k = n; k-- > 0;) {
+        for (uint32_t m = k + 1; m < n; m++) row[k][n] -= row[k][m] * row[m][n];
+        row[k][n] /= row[k][k];
+    }
+}
+
+double fibrad_rings_top(const fibrad_rings *rings, const fibrad_ringed *sphere, uint32_t count,
+                        fibrad_rings_work *work) {
+    double spread[RINGS];
+    for (uint32_t i = 0; i < count; i++) set_rows(rings, sphere, count, i, work);
+    eliminate(work->row, count * RINGS);
+    double top = conducted_at(rings, &sphere[0], 0, spread) - sphere[0].emission;
+    for (uint32_t m = 0; m < RINGS; m++) top += spread[m] * work->row[m][count * RINGS];
+    return top;
+}

@@ -1,0 +1,115 @@
+/* test_heat_walls.c - walls that are dim: when a search for radiosities ends. SPDX-License-Identifier: MIT */
+#include "host_owned.h"
+#include "scenes.h"
+#include "suite.h"
+
+enum { WALLS = 5, MOST = 40 };
+
+/* A room without a lid, its spheres, and the results of one solution. */
+struct room {
+    struct bed bed;
+    double size[3], temperature[MOST], emissivity[MOST], wall_temperature[WALLS], wall_emissivity[WALLS];
+    double power[MOST], error[MOST], wall_power[WALLS], wall_error[WALLS], absorbed[WALLS], surroundings;
+    fibrad_heat_result result;
+};
+
+static double drawn(uint64_t seed, uint64_t number, double low, double high) {
+    return low + (high - low) * bed_make_random(seed, number);
+}
+
+/* A room with spheres in a grid of cells. Walls have emissivities from .05 to .2. */
+static struct room room_of(uint64_t seed, uint32_t spheres) {
+    double at[MOST][4];
+    struct room room = {.surroundings = 300};
+    for (int k = 0; k < 3; k++) room.size[k] = drawn(seed, (uint64_t)k, k < 2 ? .8 : .3, k < 2 ? 1.2 : 1);
+    for (uint32_t i = 0; i < spheres; i++) {
+        at[i][0] = room.size[0] * (i % 4 + .5) / 4, at[i][1] = room.size[1] * (i / 4 % 4 + .5) / 4;
+        at[i][2] = room.size[2] * (i / 16 + .5) / 3, at[i][3] = drawn(seed, 100 + i, .01, .04);
+        room.temperature[i] = drawn(seed, 200 + i, 300, 1300), room.emissivity[i] = drawn(seed, 300 + i, .1, 1);
+    }
+    for (uint64_t k = 0; k < WALLS; k++)
+        room.wall_temperature[k] = drawn(seed, 10 + k, 300, 1300),
+        room.wall_emissivity[k] = drawn(seed, 20 + k, .05, .2);
+    room.bed = bed_of(spheres, (const double(*)[4])at);
+    return room;
+}
+
+static fibrad_radiation *radiation_of(const struct room *room) {
+    static const fibrad_heat_config config = {.directions = 32, .patches = 24, .wall_rays = 20000};
+    fibrad_body body[WALLS];
+    const fibrad_plane lid = {2, 1, room->size[2]};
+    const fibrad_spheres spheres = spheres_of(&room->bed);
+    for (int k = 0; k < WALLS; k++) body[k] = plane_at(k / 2, k % 2, k % 2 ? room->size[k / 2] : 0);
+    const fibrad_scene_config scene = {.body = body, .bodies = WALLS, .opening = &lid, .openings = 1};
+    fibrad_run run = {.threads = 1};
+    fibrad_radiation *radiation;
+    assert_ok(fibrad_radiation_new(&radiation, &scene, &spheres, &config, &run));
+    return radiation;
+}
+
+static void solve(fibrad_radiation *radiation, struct room *room, double tolerance) {
+    fibrad_heat_sources sources;
+    fibrad_heat_sources_init(&sources);
+    sources.temperature = room->temperature, sources.emissivity = room->emissivity;
+    sources.body_temperature = room->wall_temperature, sources.body_emissivity = room->wall_emissivity;
+    sources.surroundings = room->surroundings, sources.tolerance = tolerance;
+    room->result = (fibrad_heat_result){.power = room->power,
+                                        .power_error = room->error,
+                                        .body_power = room->wall_power,
+                                        .body_error = room->wall_error,
+                                        .body_absorbed = room->absorbed};
+    assert_ok(fibrad_radiation_solve(radiation, &sources, &room->result));
+}
+
+/* The largest difference between the powers of walls of two solutions, over the larger of the power and 5 % of what the
+ * wall absorbs. */
+static double largest_difference(const struct room *found, const struct room *right) {
+    double largest = 0;
+    for (int k = 0; k < WALLS; k++)
+        largest = fmax(largest, fabs(found->wall_power[k] - right->wall_power[k]) /
+                                    fmax(fabs(right->wall_power[k]), .05 * right->absorbed[k]));
+    return largest;
+}
+
+/* Dim walls gain little of what arrives. A search that ends by the residual of all patches leaves this little wrong by
+ * several percent. */
+TEST(gains_of_dim_walls) {
+    for (uint64_t seed = 1; seed <= 12; seed++) {
+        const uint32_t spheres = seed % 2 ? (uint32_t)seed : 16 + 2 * (uint32_t)seed;
+        struct room found = room_of(seed, spheres), right = found;
+        OWNED_RADIATION *first = radiation_of(&found), *second = radiation_of(&right);
+        solve(first, &found, 0), solve(second, &right, 1e-12);
+        const double difference = largest_difference(&found, &right);
+        ck_assert_msg(difference < .002, "seed %d: %g", (int)seed, difference);
+        bed_free(&found.bed);
+    }
+}
+
+/* How many of the errors that a search leaves are above twice the estimates. */
+struct covered {
+    int values, beyond;
+};
+
+static void compare(struct covered *covered, double found, double right, double estimate) {
+    covered->values++, covered->beyond += fabs(found - right) > 2 * estimate;
+}
+
+static void expect_covered(const struct covered *covered) {
+    ck_assert_msg(20 * covered->beyond <= covered->values, "%d of %d", covered->beyond, covered->values);
+}
+
+/* The estimates know how far a search has come. */
+TEST(residuals_are_estimated) {
+    struct covered walls = {0}, spheres = {0}, open = {0};
+    for (uint64_t seed = 21; seed <= 36; seed++) {
+        struct room found = room_of(seed, 20), right = found;
+        OWNED_RADIATION *first = radiation_of(&found), *second = radiation_of(&right);
+        solve(first, &found, 2e-2), solve(second, &right, 1e-12);
+        for (int k = 0; k < WALLS; k++) compare(&walls, found.wall_power[k], right.wall_power[k], found.wall_error[k]);
+        for (int i = 0; i < 20; i++) compare(&spheres, found.power[i], right.power[i], found.error[i]);
+        compare(&open, found.result.surroundings_power, right.result.surroundings_power,
+                found.result.surroundings_error);
+        bed_free(&found.bed);
+    }
+    expect_covered(&walls), expect_covered(&spheres), expect_covered(&open);
+}
