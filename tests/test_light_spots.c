@@ -95,7 +95,8 @@ static void take_plain(const struct spot_scene *s, int rays, double share[MOST +
     memcpy(share, all, sizeof all);
 }
 
-static void take_ours(const struct spot_scene *s, double share[MOST + 1], double error[MOST + 1]) {
+static void take_ours(const struct spot_scene *s, double share[MOST + 1], double error[MOST + 1], int threads) {
+    fibrad_run run = {.threads = threads};
     double eps[SPHERES], first[MOST];
     OWNED_RADIATION *radiation = NULL;
     const fibrad_spheres spheres = spheres_of(&s->bed);
@@ -109,7 +110,7 @@ static void take_ours(const struct spot_scene *s, double share[MOST + 1], double
                                   .body_absorbed_error = error + SPHERES};
     for (int i = 0; i < SPHERES; i++) eps[i] = s->absorptivity;
     share[SPHERES] = error[SPHERES] = 0;
-    assert_ok(fibrad_radiation_new(&radiation, &s->config, &spheres, NULL, NULL));
+    assert_ok(fibrad_radiation_new(&radiation, &s->config, &spheres, NULL, &run));
     assert_ok(fibrad_radiation_shine(radiation, &sources, &result));
     share[MOST] = result.reflected + result.transmitted, error[MOST] = result.error;
     assert_near(result.incident, 1, 1e-9);
@@ -119,7 +120,7 @@ static void take_ours(const struct spot_scene *s, double share[MOST + 1], double
 static int check_scene(const struct spot_scene *s, int rays, int *values) {
     double ours[MOST + 1], error[MOST + 1], plain[MOST + 1], absorbed = 0, largest = 0, said = 0;
     int beyond = 0;
-    take_ours(s, ours, error);
+    take_ours(s, ours, error, 0);
     take_plain(s, rays, plain);
     for (int i = 0; i < MOST; i++) absorbed += plain[i];
     for (int i = 0; i <= MOST; i++) {
@@ -145,6 +146,19 @@ TEST(spots_of_all_sizes) {
     }
     printf("%d of %d values beyond twice their estimate\n", beyond, values);
     ck_assert_int_le(20 * beyond, values);
+}
+
+/* The light that is absorbed has the same bits on every instruction set and for any number of threads. */
+TEST(same_bits_everywhere) {
+    const struct isas isas = isas_there();
+    double first[MOST + 1], error[MOST + 1], other[MOST + 1];
+    for (int k = 0; k < 2 * isas.count; k++) {
+        OWNED_BY(free_scene) struct spot_scene s = lit_scene(11);
+        settle_scene(&s);
+        s.config.isa = isas.set[k % isas.count];
+        take_ours(&s, k == 0 ? first : other, error, 1 + k / isas.count);
+        if (k > 0) ck_assert_mem_eq(first, other, sizeof first);
+    }
 }
 
 /* A spot of .06 radii near the contact of two spheres. The numbers are those of 2e7 plain rays. */
