@@ -51,6 +51,30 @@ TEST(summary) {
     ck_assert_str_eq(said, "");
 }
 
+/* Points of a sphere within another one see only that. The warning says by how much a row errs: by 4e7 rays from the
+ * smaller sphere, which stay within the larger one where they begin there, .0042 and .0072. */
+TEST(overlaps_warn_with_their_error) {
+    static const double large[2] = {2, 4}, right[2] = {.19185, .26553};
+    for (int k = 0; k < 2; ++k) {
+        const char *pair = write_file("o.csv", formatted("x,y,z,r\n0,0,0,1\n0,0,%g,%g\n", .7 + large[k], large[k]));
+        const char *f = in_folder("of.csv"), *at;
+        double factor, error;
+        SUCCEED("bed", pair, "--directions", "4000", "-o", f);
+        ck_assert_int_eq(sscanf(read_file(f), "%*s 0,1,%lf", &factor), 1);
+        ck_assert_ptr_nonnull(at = strstr(said, "their view factors err by about "));
+        ck_assert_int_eq(sscanf(at, "their view factors err by about %lf", &error), 1);
+        ck_assert_double_eq_tol(right[k] - factor, error, .4 * error);
+    }
+}
+
+/* The exact factor has no other limit, but beds have. */
+TEST(a_centre_within_a_sphere_warns) {
+    SUCCEED("pair", "1", "1", "-.9");
+    ck_assert_str_eq(said, "");
+    SUCCEED("pair", "1", "1", "-1.5");
+    assert_has(said, "warning: the centre of one sphere lies inside the other");
+}
+
 TEST(same_bytes_for_any_threads) {
     static const char *const threads[] = {"1", "2", "7"};
     char *first = NULL;

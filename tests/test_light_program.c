@@ -144,6 +144,11 @@ TEST(faces_have_an_emissivity) {
     ck_assert_double_eq_tol(value_of("face_area_m2"), 4, 1e-9);
     ck_assert_double_gt(value_of("face_emissivity"), .9);
     ck_assert_double_lt(value_of("face_emissivity"), 1);
+    SUCCEED("heat", "tests/data/monoper2000.dump", "--length-unit", "cm", "--emissivity", ".2", "--directions", "24",
+            "--temperature", "300", "--ambient", "300", "--wall", "zmin=-.1", "--wall-temperature", "300",
+            "--wall-emissivity", ".5", "--face");
+    ck_assert_double_eq_tol(value_of("face_emissivity"), .39374, .0015 * .39374); /* by 4e6 plain rays */
+    ck_assert_double_eq_tol(value_of("face_emissivity"), .39374, 2 * value_of("face_emissivity_error") + 1e-4);
     FAIL_WITH(2, "heat", bed, "--emissivity", ".5", "--temperature", "300", "--ambient", "300", "--face");
     expect_message("--face: an open face has no end", "walls or periods");
     FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", "box", "--face");

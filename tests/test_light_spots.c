@@ -95,7 +95,8 @@ static void take_plain(const struct spot_scene *s, int rays, double share[MOST +
     memcpy(share, all, sizeof all);
 }
 
-static void take_ours(const struct spot_scene *s, double share[MOST + 1], double error[MOST + 1]) {
+static void take_ours(const struct spot_scene *s, double share[MOST + 1], double error[MOST + 1], int threads) {
+    fibrad_run run = {.threads = threads};
     double eps[SPHERES], first[MOST];
     OWNED_RADIATION *radiation = NULL;
     const fibrad_spheres spheres = spheres_of(&s->bed);
@@ -109,7 +110,7 @@ static void take_ours(const struct spot_scene *s, double share[MOST + 1], double
                                   .body_absorbed_error = error + SPHERES};
     for (int i = 0; i < SPHERES; i++) eps[i] = s->absorptivity;
     share[SPHERES] = error[SPHERES] = 0;
-    assert_ok(fibrad_radiation_new(&radiation, &s->config, &spheres, NULL, NULL));
+    assert_ok(fibrad_radiation_new(&radiation, &s->config, &spheres, NULL, &run));
     assert_ok(fibrad_radiation_shine(radiation, &sources, &result));
     share[MOST] = result.reflected + result.transmitted, error[MOST] = result.error;
     assert_near(result.incident, 1, 1e-9);
@@ -119,7 +120,7 @@ static void take_ours(const struct spot_scene *s, double share[MOST + 1], double
 static int check_scene(const struct spot_scene *s, int rays, int *values) {
     double ours[MOST + 1], error[MOST + 1], plain[MOST + 1], absorbed = 0, largest = 0, said = 0;
     int beyond = 0;
-    take_ours(s, ours, error);
+    take_ours(s, ours, error, 0);
     take_plain(s, rays, plain);
     for (int i = 0; i < MOST; i++) absorbed += plain[i];
     for (int i = 0; i <= MOST; i++) {
@@ -147,6 +148,19 @@ TEST(spots_of_all_sizes) {
     ck_assert_int_le(20 * beyond, values);
 }
 
+/* The light that is absorbed has the same bits on every instruction set and for any number of threads. */
+TEST(same_bits_everywhere) {
+    const struct isas isas = isas_there();
+    double first[MOST + 1], error[MOST + 1], other[MOST + 1];
+    for (int k = 0; k < 2 * isas.count; k++) {
+        OWNED_BY(free_scene) struct spot_scene s = lit_scene(11);
+        settle_scene(&s);
+        s.config.isa = isas.set[k % isas.count];
+        take_ours(&s, k == 0 ? first : other, error, 1 + k / isas.count);
+        if (k > 0) ck_assert_mem_eq(first, other, sizeof first);
+    }
+}
+
 /* A spot of .06 radii near the contact of two spheres. The numbers are those of 2e7 plain rays. */
 TEST(a_small_spot_near_a_contact) {
     const double eps[2] = {.3, .3}, x[2] = {0, 1.001}, y[2] = {0, 0}, r[2] = {.5, .5}, light_of[2] = {.88482, .17059};
@@ -167,4 +181,61 @@ TEST(a_small_spot_near_a_contact) {
             ck_assert_double_eq_tol(absorbed[i], light_of[i], 2.5 * error[i]);
         }
     }
+}
+
+/* Wide light from above on few spheres and an endless floor of absorptivity .1. The floor is lit between shadows, which
+ * are smaller than its patches. */
+TEST(shadows_on_an_endless_floor) {
+    enum { FEW = 25, RAYS = 2500000 };
+    OWNED_BED bed = packing(FEW, 1, 1, .08, 3, true);
+    for (int a = 0; a < 3; a++) bed.period[a] = 0;
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, eps[FEW];
+    for (int i = 0; i < FEW; i++) {
+        const double at[3] = {bed.x[i], bed.y[i], bed.z[i]};
+        for (int a = 0; a < 3; a++) low[a] = fmin(low[a], at[a] - 1), high[a] = fmax(high[a], at[a] + 1);
+        eps[i] = .5;
+    }
+    const double of_floor = .1, area = (high[0] - low[0]) * (high[1] - low[1]);
+    const fibrad_body floor = plane_at(2, 0, low[2] - .02);
+    const fibrad_scene_config config = {.body = &floor, .bodies = 1};
+    OWNED_BY(plain_free) struct plain_bed plain = plain_bed_of(&bed);
+    plain.low[2] = low[2] - .02;
+    const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1 / area};
+    double absorbed[FEW], first[FEW], error[FEW], wall, wall_first, rays[FEW] = {0};
+    OWNED_RADIATION *radiation = NULL;
+    const fibrad_spheres spheres = spheres_of(&bed);
+    const fibrad_light_sources sources = {
+        .light = &light, .lights = 1, .absorptivity = eps, .body_absorptivity = &of_floor};
+    fibrad_light_result result = {.absorbed = absorbed,
+                                  .absorbed_first = first,
+                                  .absorbed_error = error,
+                                  .body_absorbed = &wall,
+                                  .body_absorbed_first = &wall_first};
+    assert_ok(fibrad_radiation_new(&radiation, &config, &spheres, NULL, NULL));
+    assert_ok(fibrad_radiation_shine(radiation, &sources, &result));
+#pragma omp parallel for schedule(static) reduction(+ : rays[:FEW])
+    for (int k = 0; k < RAYS; k++) {
+        uint64_t state = (uint64_t)k * 1000003u;
+        const double x = (k + plain_random(&state)) / RAYS, y = fmod(k * .6180339887498949, 1);
+        double at[3] = {low[0] + x * (high[0] - low[0]), low[1] + y * (high[1] - low[1]), high[2] + 1};
+        double w[3] = {0, 0, -1}, weight = 1. / RAYS;
+        for (int hits = 0; hits < 30; hits++) {
+            const struct plain_end end = plain_trace(&plain, at, w);
+            if (end.sphere < 0 && end.side != 4) break;
+            if (end.sphere >= 0) rays[end.sphere] += eps[end.sphere] * weight;
+            weight *= end.sphere >= 0 ? .5 : 1 - of_floor;
+            for (int a = 0; a < 3; a++) at[a] = end.at[a];
+            plain_scatter(end.normal, &state, w);
+        }
+    }
+    int beyond = 0;
+    double squares = 0, all = 0;
+    for (int i = 0; i < FEW; i++) {
+        const double off = absorbed[i] - rays[i], noise = .5 * sqrt((rays[i] - first[i]) / RAYS);
+        beyond += fabs(off) > 2 * sqrt(error[i] * error[i] + noise * noise);
+        squares += off * off, all += rays[i] * rays[i];
+    }
+    printf("floor: error %.5f of rms, %d of %d beyond\n", sqrt(squares / all), beyond, FEW);
+    ck_assert_double_le(sqrt(squares / all), .0045);
+    ck_assert_int_le(beyond, 1);
 }

@@ -22,8 +22,9 @@ FIXTURE(make_folder, remove_folder)
 #define WITHIN   "solid s\n" FACET(".018 .018 .021", ".022 .018 .021", ".02 .022 .021") "endsolid s\n"
 #define FAR_AWAY "solid s\n" FACET("5 0 0", "5.1 0 0", "5 .1 0") "endsolid s\n"
 
-#define HEAT "heat", "--emissivity", ".6", "--directions", "21", "--patches", "24", "--ambient", "300"
-#define TIME "--until", "1", "--model", "patches"
+#define HEAT_AT(ambient) "heat", "--emissivity", ".6", "--directions", "21", "--patches", "24", "--ambient", ambient
+#define HEAT             HEAT_AT("300")
+#define TIME             "--until", "1", "--model", "patches"
 
 static const struct {
     const char *words[20], *bed, *more, *reason; /* more: a further frame; reason: NULL if there is no warning */
@@ -34,8 +35,6 @@ static const struct {
      PLAIN,
      NULL,
      "--ambient has no effect: nothing leaves a bed"},
-    {{HEAT, "--temperature", "T", "--ambient", "25"}, PLAIN, NULL, "--ambient is 25 K; --temperature-unit C"},
-    {{HEAT, "--temperature", "T", "--ambient", "4"}, PLAIN, NULL, NULL},
     {{HEAT, "--temperature", "T", "--wall", "zmin", "--wall-temperature", "30"},
      PLAIN,
      NULL,
@@ -80,6 +79,9 @@ static const struct {
      FRAME("0", OPEN, " T_C", ROWS(" 600", " 700", " 20")),
      NULL,
      NULL},
+    {{HEAT_AT("25"), "--temperature", "T"}, PLAIN, NULL, "--ambient is 25 K; --temperature-unit C"},
+    {{HEAT_AT("25"), "--temperature", "T", "--temperature-unit", "C"}, PLAIN, NULL, NULL},
+    {{HEAT_AT("4"), "--temperature", "T"}, PLAIN, NULL, NULL},
     {{HEAT, "--temperature", "T"},
      FRAME("0", OPEN, " T", ROWS(" 20", " 90", " 140")),
      NULL,

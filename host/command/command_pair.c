@@ -143,6 +143,9 @@ static int pair_check(struct pair_request *request, double f12) {
 static int pair_exact(struct pair_request *request, double *f12) {
     const int status = fibrad_pair_exact(request->r1, request->r2, request->gap, f12);
     if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
+    if (request->r1 + request->r2 + request->gap < fmax(request->r1, request->r2))
+        message(STATUS_OK, "warning: the centre of one sphere lies inside the other; beds and the other methods refuse "
+                           "such spheres");
     return request->check ? pair_check(request, *f12) : STATUS_OK;
 }
 

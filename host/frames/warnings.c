@@ -124,13 +124,26 @@ void warn_unit(struct warned *warned, const struct bed *bed) {
                    mean_radius(bed));
 }
 
+/* By how much the row of the smaller of two spheres errs that overlap by a share of its radius. Points of its surface
+ * within the other sphere see only this sphere. In a row they see what lies beside it as well, in directions away from
+ * it. These are the fraction (1 - cos t)/2 of all directions at an angle t from the line of centres. */
+static double overlap_error(const struct bed *bed, uint32_t first, uint32_t second, double overlap) {
+    const double small = fmin(bed->r[first], bed->r[second]), large = fmax(bed->r[first], bed->r[second]);
+    const double d = small + large - overlap * small;
+    const double rim = 1 - (d * d + small * small - large * large) / (2 * d * small);
+    return rim * rim / 8;
+}
+
 void warn_overlap(struct warned *warned, const struct bed *bed, const fibrad_scene_facts *facts) {
     const uint32_t first = facts->overlap_pair[0], second = facts->overlap_pair[1];
     char place[2][BED_LINE_TEXT];
     if (facts->overlap_max > OVERLAP_LARGE && is_new(warned, LARGE_OVERLAP))
-        message_at(STATUS_OK, warned->file, 0, "warning: sphere %lld%s and sphere %lld%s overlap by %.3g of a radius",
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: sphere %lld%s and sphere %lld%s overlap by %.3g of a radius, so their view factors err by "
+                   "about %.1g",
                    (long long)bed_name(bed, first), bed_line_text(bed, first, place[0]),
-                   (long long)bed_name(bed, second), bed_line_text(bed, second, place[1]), facts->overlap_max);
+                   (long long)bed_name(bed, second), bed_line_text(bed, second, place[1]), facts->overlap_max,
+                   overlap_error(bed, first, second, facts->overlap_max));
 }
 
 /* ---- walls ------------------------------------------------------------------------------------------------------ */

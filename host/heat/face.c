@@ -3,11 +3,16 @@
 
 #include <gsl/gsl_math.h>
 #include <math.h>
-#include <stdlib.h>
 
+#include "bed/bed_scene.h"
 #include "cli/message.h"
 
-#define FACE_TEMPERATURE 1000. /* [K] any one */
+/* Paths to begin with; the relative error at which to stop; the estimated error over that of a row, which eight batches
+ * of paths tell. The emissivity of a face is about the root of that of spheres. */
+enum { FACE_PATHS = 65536 };
+#define FACE_TOLERANCE 1e-3
+#define FACE_LEAST     .05 /* mean emissivity of spheres below which the tolerance stays */
+#define FACE_ERROR     1.2
 
 /* The ends of a bed: planes, openings and periods. Infinite: there is no end. */
 struct ends {
@@ -19,6 +24,13 @@ struct ends {
 static void end_at(struct ends *ends, const fibrad_plane *plane, bool wall) {
     *(plane->upper ? &ends->high[plane->axis] : &ends->low[plane->axis]) = plane->at;
     ends->walled[2 * plane->axis + plane->upper] = wall;
+}
+
+/* The area of the open face on a side, 0 if the side is closed. */
+static double open_area(const struct ends *ends, int side) {
+    const int u = (side / 2 + 1) % 3, v = (side / 2 + 2) % 3;
+    if (ends->walled[side]) return 0;
+    return ends->round > 0 ? ends->round : (ends->high[u] - ends->low[u]) * (ends->high[v] - ends->low[v]);
 }
 
 static struct ends ends_of(const struct bed *bed, const struct walls *walls) {
@@ -47,37 +59,47 @@ int face_begin(struct face *face, const struct bed *bed, const struct walls *wal
     if (walls->meshes && walls->meshes->triangles.n > 0)
         return message(STATUS_USAGE, "--face: the open face must be bounded by planes, a cylinder or periods, not by "
                                      "triangles");
-    for (int side = 0; side < 6; ++side) {
-        const int axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
-        if (ends.walled[side]) continue;
-        const double across = (ends.high[u] - ends.low[u]) * (ends.high[v] - ends.low[v]);
-        face->area += ends.round > 0 ? ends.round : across;
-    }
+    for (int side = 0; side < 6; ++side) face->area += open_area(&ends, side);
     if (face->area == 0) return message(STATUS_USAGE, "--face: the bed has no open face");
     if (!(face->area < INFINITY))
         return message(STATUS_USAGE, "--face: an open face has no end; walls or periods must stand around it");
     return STATUS_OK;
 }
 
-int face_solve(struct face *face, const fibrad_heat_sources *sources, uint32_t spheres, uint32_t walls,
-               fibrad_radiation *radiation) {
+/* The walls, with an opening on each open side. Where there is none, it lies at the end of the spheres. */
+static struct walls opened_walls(const struct bed *bed, const struct walls *walls, const struct ends *ends) {
+    struct walls all = *walls;
+    for (int side = 0; side < 6; ++side) {
+        const int axis = side / 2, upper = side % 2;
+        if (ends->walled[side] || isfinite(upper ? ends->high[axis] : ends->low[axis])) continue;
+        all.opening[all.openings++] = (fibrad_plane){axis, upper, bed_reach(bed, axis, upper)};
+    }
+    return all;
+}
+
+int face_solve(struct face *face, const struct bed *bed, const struct walls *walls, const fibrad_heat_sources *sources,
+               fibrad_run *run) {
     if (!face->wanted) return FIBRAD_OK;
-    double *power = calloc(spheres + (size_t)1, sizeof *power),
-           *temperature = calloc(spheres + (size_t)1, sizeof *power);
-    double of_walls[WALLS_MAX] = {0}, wall_temperature[WALLS_MAX];
-    fibrad_heat_sources same = *sources;
-    fibrad_heat_result result = {.power = power, .body_power = of_walls};
-    int status = power && temperature ? FIBRAD_OK : FIBRAD_E_MEMORY;
-    for (uint32_t i = 0; i < spheres && !status; ++i) temperature[i] = FACE_TEMPERATURE;
-    for (uint32_t k = 0; k < walls; ++k) wall_temperature[k] = FACE_TEMPERATURE;
-    same.temperature = temperature, same.body_temperature = wall_temperature, same.surroundings = 0;
-    same.power = same.body_power = same.hold = same.reference = same.side_temperature = same.absorbed = NULL;
-    same.conductivity = NULL; /* all of a sphere has one temperature */
-    if (!status) status = fibrad_radiation_solve(radiation, &same, &result);
-    const double black = same.sigma * gsl_pow_4(FACE_TEMPERATURE) * face->area;
-    face->emissivity = result.surroundings_power / black, face->error = result.surroundings_error / black;
-    free(power);
-    free(temperature);
+    const struct ends ends = ends_of(bed, walls);
+    const struct walls all = opened_walls(bed, walls, &ends);
+    const fibrad_scene_config scene = bed_scene(bed, &all);
+    const fibrad_spheres spheres = bed_spheres(bed);
+    double of_walls[WALLS_MAX], mean = 0, sum = 0, square = 0;
+    for (uint32_t k = 0; k < walls->count; ++k) of_walls[k] = sources->insulated[k] ? 0 : sources->body_emissivity[k];
+    for (uint32_t i = 0; i < bed->n; ++i) mean += sources->emissivity[i] / bed->n;
+    const fibrad_exchange_rule rule = {.emissivity = sources->emissivity,
+                                       .body_emissivity = of_walls,
+                                       .paths = FACE_PATHS,
+                                       .tolerance = FACE_TOLERANCE * sqrt(fmax(FACE_LEAST, mean))};
+    int status = FIBRAD_OK;
+    for (int side = 0; side < 6 && !status; ++side) {
+        const double area = open_area(&ends, side);
+        fibrad_body_row row;
+        if (!(area > 0)) continue;
+        status = fibrad_wall_row(&scene, &spheres, FIBRAD_OPENING(all.count, side / 2, side % 2), &rule, run, &row);
+        sum += area * (1 - row.escaped), square += gsl_pow_2(area * FACE_ERROR * row.error);
+    }
+    face->emissivity = sum / face->area, face->error = sqrt(square) / face->area;
     return status;
 }
 
@@ -85,4 +107,5 @@ void face_report(const struct face *face, double metres, struct report *report) 
     if (!face->wanted) return;
     report_value(report, "face_area_m2", face->area * metres * metres, 6);
     report_measured(report, "face_emissivity", face->emissivity, face->error);
+    report_value(report, "face_emissivity_error", face->error, 2);
 }

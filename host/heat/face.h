@@ -15,10 +15,10 @@ struct face {
 /* Finds the area of the open faces. Status 0, or STATUS_USAGE if there is none or one has no end. */
 int face_begin(struct face *face, const struct bed *bed, const struct walls *walls);
 
-/* Solves for the emissivity: `sources` with one temperature, and surroundings at 0 K. Returns a status of the library.
- */
-int face_solve(struct face *face, const fibrad_heat_sources *sources, uint32_t spheres, uint32_t walls,
-               fibrad_radiation *radiation);
+/* Finds the emissivity. By Kirchhoff's law it is the fraction of black radiation from outside that spheres and walls
+ * absorb: paths from the open faces tell it. Sets run->fault. Returns a status of the library. */
+int face_solve(struct face *face, const struct bed *bed, const struct walls *walls, const fibrad_heat_sources *sources,
+               fibrad_run *run);
 
 void face_report(const struct face *face, double metres, struct report *report);
 

@@ -275,7 +275,7 @@ static int heat_once(struct bed_options *options, const struct heat_problem *pro
         triangle_heat_show(&report->triangles, 1);
     }
     sources.emissivity = problem->emissivity, sources.body_emissivity = wall_emissivity;
-    if (!status) status = face_solve(problem->face, &sources, bed->n, problem->walls.count, radiation);
+    if (!status) status = face_solve(problem->face, bed, &problem->walls, &sources, &run);
     fibrad_radiation_describe(radiation, &report->facts, &run.fault);
     fibrad_radiation_free(radiation);
     if (status) progress_stop(&options->progress);

@@ -71,6 +71,36 @@ int fibrad_job_bodies(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_
     return status;
 }
 
+/* The paths of one wall or opening. */
+struct wall_paths {
+    fibrad_job job;
+    uint32_t body;
+    fibrad_exchange_rule rule;
+    fibrad_body_row part[FIBRAD_BODY_PARTS];
+};
+
+static int run_paths(void *wall_paths, int thread, uint32_t part) {
+    struct wall_paths *w = wall_paths;
+    return fibrad_exchange_body(w->job.scene, &w->job.team.work[thread], w->body, &w->rule, part, &w->part[part], NULL);
+}
+
+int fibrad_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t body,
+                    const fibrad_exchange_rule *rule, fibrad_run *run, fibrad_body_row *row) {
+    if (!rule || !row) return FIBRAD_E_ARGUMENT;
+    struct wall_paths w = {.body = body, .rule = *rule};
+    int status = fibrad_job_open(&w.job, config, spheres, run);
+    if (w.rule.paths == 0) w.rule.paths = FIBRAD_BODY_PATHS_DEFAULT;
+    for (bool again = true; again && !status;) {
+        status = fibrad_team_run(&w.job.team, "walls", FIBRAD_BODY_PARTS, 1, run_paths, &w, NULL);
+        if (run && status == FIBRAD_E_BACK) run->fault.triangle = w.job.team.triangle;
+        if (!status) status = fibrad_exchange_body_mean(w.part, row);
+        again = !status && rule->tolerance > 0 && row->error > rule->tolerance && w.rule.paths < PATHS_MOST;
+        if (again) w.rule.paths = more_paths(w.rule.paths, row->error / rule->tolerance);
+    }
+    fibrad_job_close(&w.job);
+    return status;
+}
+
 struct view_tasks {
     const fibrad_scene *scene;
     fibrad_team *team;

@@ -2,7 +2,8 @@
  *
  * Index
  *   run      fibrad_run: threads, progress, cancelling
- *   factors  fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_side_views, fibrad_displacements
+ *   factors  fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_wall_row, fibrad_side_views,
+ *            fibrad_displacements
  *   heat     fibrad_radiation_new, _move, _solve, _sides, _settle, _shine, _describe, _free
  *   time     fibrad_transient_new, _move, _powers, _sides, _shine, _advance, _describe, _free
  *   contacts fibrad_contacts_find, _conduct, _free
@@ -127,6 +128,16 @@ int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_sphe
 /* Frees factors. NULL is allowed.
  *   Errors   none */
 void fibrad_bed_free(fibrad_bed_factors *factors);
+
+/* The row of one wall or opening: fibrad_exchange_body and fibrad_exchange_body_mean. The number of paths is doubled
+ * until the error is at most rule->tolerance, up to 2^24 paths.
+ *   Input    body: as in fibrad_exchange_body
+ *            rule: paths, tolerance and the emissivities
+ *   Output   row
+ *   Errors   as fibrad_scene_init and fibrad_exchange_body; _CANCELLED
+ *   Cost     that of the paths */
+int fibrad_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t body,
+                    const fibrad_exchange_rule *rule, fibrad_run *run, fibrad_body_row *row);
 
 /* What all triangles of a bed see: fibrad_triangle_views of each.
  *   Input    rays: from each side, 1 to 2^30

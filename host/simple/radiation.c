@@ -456,8 +456,10 @@ static struct arrived arrived_of(const struct shine_tasks *t) {
 static int absorb(const struct shine_tasks *t, fibrad_light_result *result) {
     fibrad_radiation *r = t->radiation;
     const fibrad_light_sources *s = t->sources;
-    double *zero = calloc(2 * (r->n + t->bodies) + (size_t)1, sizeof *zero), *spots = zero + r->n + t->bodies;
+    const size_t surfaces = r->n + t->bodies;
+    double *zero = calloc(2 * surfaces + 1, sizeof *zero);
     if (!zero) return FIBRAD_E_MEMORY;
+    double *spots = zero + surfaces;
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);
     sources.temperature = zero, sources.body_temperature = zero + r->n, sources.surroundings = 0;

@@ -37,7 +37,11 @@ def warn_metres(packing: Packing) -> None:
 def warn_overlap(packing: Packing, facts: Any) -> None:
     if facts.overlap_max > _OVERLAP_LARGE:
         first, second = (packing.names(i) for i in facts.overlap_pair)
-        warn(f"{first} and {second} overlap by {facts.overlap_max:.3g} of a radius")
+        small, large = sorted(packing.r[list(facts.overlap_pair)])
+        d = small + large - facts.overlap_max * small
+        rim = 1 - (d * d + small * small - large * large) / (2 * d * small)  # as in host/frames/warnings.c
+        warn(f"{first} and {second} overlap by {facts.overlap_max:.3g} of a radius, so their view factors err by "
+             f"about {rim * rim / 8:.1g}")
 
 
 def _warn_cuts(packing: Packing, container: Container) -> None:
