@@ -158,8 +158,8 @@ typedef struct fibrad_heat_given {
     const double *absorbed;         /* [patches] light that patches have absorbed, the caller's; NULL: none */
     bool afloat;                    /* the sources fix differences of emissions, but not their level */
     double sigma, surroundings;
-    double tolerance;
-    uint32_t limit; /* sweeps after which to stop */
+    double tolerance, settled; /* of the residual; of what steps to come would change in powers, over these */
+    uint32_t limit;            /* sweeps after which to stop */
 } fibrad_heat_given;
 
 /* A solution, by conjugate gradients. */

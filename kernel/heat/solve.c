@@ -563,9 +563,9 @@ static bool gains_settled(fibrad_heat *heat) {
         if (b < heat->spheres)
             left += heat->solution.left[b] * heat->solution.left[b], gains += gain * gain;
         else
-            settled = settled && heat->solution.left[b] <= heat->sources.tolerance * gain;
+            settled = settled && heat->solution.left[b] <= heat->sources.settled * gain;
     }
-    return settled && left <= heat->sources.tolerance * heat->sources.tolerance * gains;
+    return settled && left <= heat->sources.settled * heat->sources.settled * gains;
 }
 
 /* Whether the radiosities of the present level are good enough. */

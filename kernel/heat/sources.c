@@ -457,6 +457,11 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     heat->sources.sigma = sources->sigma, heat->sources.surroundings = sources->surroundings;
     heat->solution.group = sources->uniform ? UINT32_MAX : FIBRAD_HEAT_FOUR;
     heat->sources.tolerance = sources->tolerance > 0 ? sources->tolerance : default_tolerance(heat, sources, unknown);
+    heat->sources.settled = heat->sources.tolerance;
+    if (unknown)
+        heat->sources.settled =
+            fibrad_max(heat->sources.tolerance,
+                       fibrad_min(HEAT_TOLERANCE, HEAT_TOLERANCE / FREE_TOLERANCE * heat->sources.tolerance));
     heat->sources.limit = sources->sweeps_max > 0 ? sources->sweeps_max : HEAT_SWEEPS_MAX;
     fibrad_zero(heat->solution.span, heat->spheres * sizeof *heat->solution.span);
     set_conduction(heat, sources);
