@@ -320,7 +320,7 @@ static void sum_rings(const fibrad_heat *heat, uint32_t b, const double axis[3],
             double fine[3];
             if (points == 1) normal_on_patch(heat, b, a - first, .5, .5, fine);
             const double *normal = points == 1 ? fine : heat->normal + 3 * (POINTS * (a - first) + k);
-            const uint32_t ring = fibrad_rings_at(&heat->rings, sign * fibrad_dot(normal, axis));
+            const uint32_t ring = fibrad_rings_at(heat->rings, sign * fibrad_dot(normal, axis));
             sums->area[ring] += area, sums->sent[ring] += area * sent;
             sums->arriving[ring] += area * sent + heat->solution.net[a] / points;
             sums->absorbed[ring] += entering(heat, a) / points;
@@ -352,7 +352,7 @@ static void take_other_off(const fibrad_heat *heat, const fibrad_rings_work *wor
     double light = 0, open = 0;
     for (uint32_t k = 0; k < FIBRAD_RINGS; k++) {
         double brought = 0;
-        if (heat->rings.cosine[k] < 1 - AROUND * AROUND * (1 - sets)) continue;
+        if (heat->rings->cosine[k] < 1 - AROUND * AROUND * (1 - sets)) continue;
         for (uint32_t m = 0; m < FIBRAD_RINGS; m++) brought += work->factor[i][k][m] * sent[m];
         light += area[k] * (1 - facing[k]) * (sphere->arriving[k] - brought);
         open += area[k] * (1 - facing[k]) * (1 - facing[k]);
@@ -376,11 +376,11 @@ static double emission_in_rings(const fibrad_heat *heat, uint32_t b, const struc
     if (count > 1) {
         const double radius[2] = {sphere[0].radius, sphere[1].radius};
         const double sets = (radius[0] - radius[1]) / place->distance; /* cosine of the angle where the other sets */
-        fibrad_rings_face(&heat->rings, radius, place->distance, work);
+        fibrad_rings_face(heat->rings, radius, place->distance, work);
         take_other_off(heat, work, 0, &sphere[0], sets, mean[0].area, mean[1].sent);
         take_other_off(heat, work, 1, &sphere[1], -sets, mean[1].area, mean[0].sent);
     }
-    return fibrad_rings_top(&heat->rings, sphere, count, work);
+    return fibrad_rings_top(heat->rings, sphere, count, work);
 }
 
 /* Moves a place to the middle of the patches around it, weighted by how much hotter, or colder, they are than the
@@ -437,7 +437,7 @@ void fibrad_heat_find_extremes(const fibrad_heat *heat, uint32_t begin, uint32_t
 }
 
 void fibrad_heat_make_rings(fibrad_heat *heat) {
-    fibrad_rings_make(&heat->rings);
+    fibrad_rings_make(heat->rings);
     for (uint32_t k = 0; k < POINTS * heat->config.patches; k++)
         normal_on_patch(heat, 0, k / POINTS, .25 + .5 * (k / 2 % 2), .25 + .5 * (k % 2), heat->normal + 3 * k);
 }
@@ -509,9 +509,9 @@ static struct spot find_spot(const fibrad_heat *heat, uint32_t body, uint32_t ot
     enter_at(heat, body, axis, entering_so_far);
     average_rings(&mean);
     const double less =
-        fibrad_rings_spot(&heat->rings, fibrad_min(radius / r, SPOT_LARGEST), eps, uneven, work, response);
+        fibrad_rings_spot(heat->rings, fibrad_min(radius / r, SPOT_LARGEST), eps, uneven, work, response);
     for (uint32_t m = 0; m < FIBRAD_RINGS; m++)
-        apart += heat->rings.share[m] * response[m] * (eps * mean.arriving[m] + mean.absorbed[m]);
+        apart += heat->rings->share[m] * response[m] * (eps * mean.arriving[m] + mean.absorbed[m]);
     spot.apart = apart / slope;
     spot.resistance = resistance_of_spot(k, radius / r, r) - less / (4 * FIBRAD_PI * r * r * slope);
     return spot;

@@ -138,6 +138,7 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     heat->sources.unevenness = fibrad_arena_take(arena, spheres, sizeof(double));
     heat->solution.span = fibrad_arena_take(arena, spheres, sizeof *heat->solution.span);
     heat->normal = fibrad_arena_take(arena, 12 * (size_t)heat->config.patches, sizeof(double));
+    heat->rings = fibrad_arena_take(arena, 1, sizeof *heat->rings);
     heat->near = fibrad_arena_take(arena, heat->config.parts, sizeof *heat->near);
     heat->density = fibrad_arena_take(arena, rows, sizeof(double));
     heat->samples.seen = fibrad_arena_take(arena, spheres, sizeof *heat->samples.seen);

@@ -226,7 +226,7 @@ struct fibrad_heat {
     fibrad_mesh_cut *cut; /* [2 triangles], by the caller's numbers; patches from first_meshed on */
     fibrad_heat_division division;
     fibrad_harmonics harmonics[2]; /* on patches, and on fours for the coarser level */
-    fibrad_rings rings;            /* made if spheres conduct */
+    fibrad_rings *rings;           /* made if spheres conduct */
     fibrad_rings_work *near;       /* [parts] */
     double *normal;                /* [patches of a sphere][4][3], normals at four points of each, made as well */
 
