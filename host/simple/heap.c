@@ -144,6 +144,8 @@ size_t fibrad_host_sizeof(const char *name) {
         STRUCTURE(fibrad_heat_result),
         STRUCTURE(fibrad_light),
         STRUCTURE(fibrad_light_ends),
+        STRUCTURE(fibrad_light_ray),
+        STRUCTURE(fibrad_light_hits),
         STRUCTURE(fibrad_light_sources),
         STRUCTURE(fibrad_light_result),
         STRUCTURE(fibrad_run),

@@ -5,6 +5,7 @@ import os
 import pydoc
 import re
 import runpy
+import shutil
 import subprocess
 import sys
 from types import SimpleNamespace
