@@ -196,7 +196,8 @@ TEST(refused_lights_are_named) {
         const int status =
             RUN(HEAT, "--temperature", "300", "--wall", refused[k].wall, "--irradiate", refused[k].light);
         ck_assert_msg(status == 2, "%s: exit status %d, '%s'", refused[k].light, status, said);
-        expect_message(refused[k].place, refused[k].reason);
+        assert_has(said, refused[k].place); /* a closed bed gets a warning about --ambient first */
+        assert_has(said, refused[k].reason);
     }
     FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", CUP, "--absorptivity", ".5");
     expect_message("--absorptivity needs --irradiate", "");

@@ -387,9 +387,10 @@ TEST(backs_of_meshes) {
     assert_has(said, "the back of wall half_b is seen, at triangle ");
     FAIL_WITH(3, "bed", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "2");
     ck_assert_str_eq(said, first);
-    SUCCEED("bed", bed, "--wall", wall_of("mesh:", text, ":both"));
-    ck_assert_str_eq(said, "");
-    soup.n -= 2; /* no longer closed */
+    SUCCEED("bed", bed, "--wall", wall_of("mesh:", text, ":both")); /* the mesh cuts a sphere, so rows contradict */
+    assert_lacks(said, "back of wall");
+    assert_lacks(said, "not closed");
+    soup.n -= 2;
     SUCCEED("bed", bed, "--wall", wall_of("mesh:", write_solid("half.stl", &soup), ":both"));
     expect_message(
         text, "warning: the mesh is not closed: 4 edges belong to one triangle, 0 to more than two; components: 1");
