@@ -250,16 +250,6 @@ static void rank_place(struct ranking *best, const struct place *place) {
     if (k < TRIED) best->place[k] = *place;
 }
 
-/* The patch of a sphere at a normal. */
-static uint32_t patch_facing(const fibrad_heat *heat, uint32_t b, const double normal[3]) {
-    double at[2];
-    const uint32_t face = fibrad_patch_place(normal, heat->side, at);
-    const uint32_t own = fibrad_patch_number(face, (uint32_t)at[0], (uint32_t)at[1], heat->side);
-    const uint32_t fine = fibrad_heat_fine_on_face(heat, b, own, at[0], at[1]);
-    if (fine == FIBRAD_NONE) return heat->first[b] + own;
-    return fibrad_heat_first_fine(heat, b) + fine - FIBRAD_HEAT_FOUR * heat->division.first_four[b];
-}
-
 /* The normal at shares u, v of the edges of a patch of sphere b, which has the number `patch` on the sphere. */
 static void normal_on_patch(const fibrad_heat *heat, uint32_t b, uint32_t patch, double u, double v, double normal[3]) {
     const uint32_t cube = heat->config.patches;
@@ -293,7 +283,7 @@ static uint32_t search_neighbours(const fibrad_heat *heat, uint32_t b, struct ra
                 if (!(place.distance > 0) || place.distance > both + NEAR * fibrad_min(r, scene->r[j])) continue;
                 for (int axis = 0; axis < 3; axis++) place.axis[axis] /= place.distance;
                 place.distance = fibrad_max(place.distance, both * (1 + APART));
-                place.emission = heat->solution.direction[patch_facing(heat, b, place.axis)];
+                place.emission = heat->solution.direction[fibrad_heat_patch_at(heat, b, place.axis)];
                 rank_place(&best[0], &place), rank_place(&best[1], &place);
                 found++;
                 const bool wide = heat->sources.unevenness[b] > STEEP || scene->r[j] > LARGER * r;
@@ -437,6 +427,8 @@ void fibrad_heat_find_extremes(const fibrad_heat *heat, uint32_t begin, uint32_t
 }
 
 void fibrad_heat_make_rings(fibrad_heat *heat) {
+    if (heat->ringed) return;
+    heat->ringed = true;
     fibrad_rings_make(heat->rings);
     for (uint32_t k = 0; k < POINTS * heat->config.patches; k++)
         normal_on_patch(heat, 0, k / POINTS, .25 + .5 * (k / 2 % 2), .25 + .5 * (k % 2), heat->normal + 3 * k);
@@ -473,9 +465,8 @@ static bool direction_of_spot(const fibrad_heat *heat, uint32_t body, uint32_t o
 
 /* Lets a power enter a sphere at a direction: evenly into the own patch there. */
 static void enter_at(const fibrad_heat *heat, uint32_t b, const double axis[3], double power) {
-    double at[2], area = 0;
-    const uint32_t face = fibrad_patch_place(axis, heat->side, at), cube = heat->config.patches, first = heat->first[b];
-    const uint32_t own = fibrad_patch_number(face, (uint32_t)at[0], (uint32_t)at[1], heat->side);
+    double area = 0;
+    const uint32_t cube = heat->config.patches, first = heat->first[b], own = fibrad_patch_of(axis, heat->side);
     const uint16_t *on_patch = heat->division.on_patch + heat->division.first_four[b];
     for (int pass = 0; pass < 2; pass++)
         for (uint32_t a = first; a < heat->first[b + 1]; a++) {

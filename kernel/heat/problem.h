@@ -17,6 +17,7 @@
 #include "sample/harmonics.h"
 #include "mesh/mesh_patch.h"
 #include "rings/rings.h"
+#include "sample/sphere_patch.h"
 #include "scene/scene.h"
 #include "workspace/workspace.h"
 
@@ -227,6 +228,7 @@ struct fibrad_heat {
     fibrad_heat_division division;
     fibrad_harmonics harmonics[2]; /* on patches, and on fours for the coarser level */
     fibrad_rings *rings;           /* made if spheres conduct */
+    bool ringed;                   /* rings and normal are made */
     fibrad_rings_work *near;       /* [parts] */
     double *normal;                /* [patches of a sphere][4][3], normals at four points of each, made as well */
 
@@ -397,6 +399,14 @@ static inline uint32_t fibrad_heat_patch_on_face(const fibrad_heat *heat, uint32
                               : FIBRAD_NONE;
     if (fine == FIBRAD_NONE) return heat->first[sphere] + patch;
     return fibrad_heat_first_fine(heat, sphere) + (fine - FIBRAD_HEAT_FOUR * heat->division.first_four[sphere]);
+}
+
+/* The patch of a sphere at a normal. */
+static inline uint32_t fibrad_heat_patch_at(const fibrad_heat *heat, uint32_t sphere, const double normal[3]) {
+    double at[2];
+    const uint32_t face = fibrad_patch_place(normal, heat->side, at);
+    return fibrad_heat_patch_on_face(heat, sphere,
+                                     fibrad_patch_number(face, (uint32_t)at[0], (uint32_t)at[1], heat->side), at);
 }
 
 /* Whether an own four of a sphere is divided. */

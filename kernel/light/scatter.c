@@ -10,7 +10,6 @@
 #include "heat/wall_patch.h"
 #include "light/light.h"
 #include "ray/tracer.h"
-#include "sample/sphere_patch.h"
 #include "scene/walls.h"
 
 #define SCATTER_TASK    2048u   /* rays of a task */
@@ -41,13 +40,6 @@ typedef struct light_place {
     uint32_t except;         /* the triangle there, or FIBRAD_NO_SIDE */
 } light_place;
 
-static uint32_t patch_of_normal(const fibrad_heat *heat, uint32_t sphere, const double normal[3]) {
-    double at[2];
-    const uint32_t face = fibrad_patch_place(normal, heat->side, at);
-    return fibrad_heat_patch_on_face(heat, sphere,
-                                     fibrad_patch_number(face, (uint32_t)at[0], (uint32_t)at[1], heat->side), at);
-}
-
 /* The place where a ray ends that a hit was found for. False: the ray leaves. */
 static bool find_light_place(const fibrad_heat *heat, const double origin[3], const double w[3], const fibrad_hit *hit,
                              light_place *place) {
@@ -77,7 +69,7 @@ static bool find_light_place(const fibrad_heat *heat, const double origin[3], co
 
 /* The patch where a ray ends. FIBRAD_NONE: on a side that belongs to no wall. */
 static uint32_t patch_met(const fibrad_heat *heat, const double origin[3], const double w[3], const fibrad_hit *hit) {
-    return hit->sphere != FIBRAD_NONE ? patch_of_normal(heat, hit->sphere, hit->normal)
+    return hit->sphere != FIBRAD_NONE ? fibrad_heat_patch_at(heat, hit->sphere, hit->normal)
                                       : fibrad_heat_ends(heat, origin, w, hit->side, hit->distance);
 }
 

@@ -96,10 +96,11 @@ static void open_of_masks(const fibrad_workspace *work, fibrad_points *points) {
 
 /* Computes window k by masks, or by exact areas if a triangle may come before it. whole: out: the size of the window in
  * points. Returns the open part. *points: out: which points of some set are open; count 0: the discs of `work` tell. */
-static double window_by_masks(fibrad_workspace *work, const beam_windows *windows, const double frame[9], uint32_t k,
-                              fibrad_points *points, double *whole) {
+static double window_by_masks(fibrad_workspace *work, beam_windows *windows, const double frame[9], uint32_t k,
+                              uint32_t line, double *whole) {
+    fibrad_points *points = &windows->points;
     work->entries.weight = 1, work->entries.halves = false;
-    open_masks(&work->masks, windows, k);
+    open_masks(&work->masks, windows, line);
     const bool done = LANED(fibrad_mask_window)(work, frame, k);
     *whole = work->masks.points;
     if (!done) {
@@ -112,25 +113,24 @@ static double window_by_masks(fibrad_workspace *work, const beam_windows *window
     return work->masks.open;
 }
 
-/* Computes the window in the other sense of line k, which only walls see. open: what window k has left to walls. */
-static void look_back(fibrad_workspace *work, beam_windows *windows, const fibrad_window_set *set, uint32_t k,
-                      double open, fibrad_beam_sums *sums) {
-    const uint32_t back = windows->count + k;
-    double frame[9], rest, whole = FIBRAD_PI;
-    LANED(frame_of_beam)(windows, back, 0, frame);
-    if (windows->chords > 0) {
-        open_masks(&work->masks, windows, k);
-        (void)LANED(fibrad_mask_window)(work, frame, FIBRAD_NONE);
-        open_of_masks(work, &windows->points);
-        rest = work->masks.open, whole = work->masks.points;
-    } else {
-        rest = LANED(fibrad_beam_window)(work, frame, &windows->points, FIBRAD_NONE);
-    }
-    LANED(fibrad_walls_share)(work, frame, &windows->points, back, set, rest, whole);
+/* Computes window k. Windows from windows->count on are those of the other senses: they add nothing to spheres. Returns
+ * the open part. frame, whole: out. */
+static double compute_window(fibrad_workspace *work, beam_windows *windows, uint32_t k, double frame[9],
+                             double *whole) {
+    fibrad_points *points = &windows->points;
+    const bool masked = windows->chords > 0;
+    const uint32_t adds = k < windows->count ? k : FIBRAD_NONE;
+    LANED(frame_of_beam)(windows, k, masked ? 0 : points->count, frame);
+    if (masked) return window_by_masks(work, windows, frame, adds, k % windows->count, whole);
+    *whole = points->count > 0 ? points->count : FIBRAD_PI;
+    return LANED(fibrad_beam_window)(work, frame, points, adds);
+}
+
+static void add_open(fibrad_workspace *work, uint32_t k, double rest, fibrad_beam_sums *sums) {
     if (work->entries.addends != NULL)
-        fibrad_addends_put(work->entries.addends, FIBRAD_ADD_OPEN, k, open);
+        fibrad_addends_put(work->entries.addends, FIBRAD_ADD_OPEN, k, rest);
     else
-        sums->open[k % 2] += open;
+        sums->open[k % 2] += rest;
 }
 
 /* Computes window k and adds it to all sums. False: there was no room for all discs. */
@@ -138,15 +138,12 @@ static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibr
                        fibrad_beam_sums *sums) {
     static const double centre[3] = {0, 0, 0};
     fibrad_points *points = &windows->points;
-    const bool masked = windows->chords > 0;
-    double frame[9], whole = points->count > 0 ? points->count : FIBRAD_PI;
-    LANED(frame_of_beam)(windows, k, masked ? 0 : points->count, frame);
+    double frame[9], whole;
     work->entries.end = set->ends && (k == 0 || k == windows->count - 1);
-    const double rest = masked ? window_by_masks(work, windows, frame, k, points, &whole)
-                               : LANED(fibrad_beam_window)(work, frame, points, k);
+    const double rest = compute_window(work, windows, k, frame, &whole);
     if (work->disc.count > work->disc.capacity || work->areas.overflow) return false;
     sums->whole[k % 2] += whole;
-    if (work->entries.addends != NULL && (masked || windows->lines != NULL))
+    if (work->entries.addends != NULL && (windows->chords > 0 || windows->lines != NULL))
         fibrad_addends_put(work->entries.addends, FIBRAD_ADD_WHOLE, k, whole);
     LANED(take_legs)(work, frame, k);
     const bool meets = work->met != NULL && work->met->any;
@@ -155,9 +152,12 @@ static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibr
     (work, frame, meets && points->count == 0 ? &work->met->points : points, k, set, rest, whole);
     else if (work->cut && rest != 0 && fibrad_work_met(work, centre, frame + 6, work->reach) == FIBRAD_BEYOND)
         fibrad_work_slot(work, FIBRAD_BEYOND, k, rest);
-    else if (work->entries.addends != NULL) fibrad_addends_put(work->entries.addends, FIBRAD_ADD_OPEN, k, rest);
-    else sums->open[k % 2] += rest;
-    if (windows->both) look_back(work, windows, set, k, rest, sums);
+    else add_open(work, k, rest, sums);
+    if (!windows->both) return true;
+    const uint32_t back = windows->count + k;
+    const double rest_back = compute_window(work, windows, back, frame, &whole);
+    LANED(fibrad_walls_share)(work, frame, points, back, set, rest_back, whole);
+    add_open(work, k, rest, sums); /* what walls get in all, see keep_open */
     return work->disc.count <= work->disc.capacity && !work->areas.overflow;
 }
 
@@ -186,6 +186,7 @@ static void gather_counts(fibrad_workspace *work) {
     }
 }
 
+/* Whether the sphere is near a wall, or near the border of the bed, from where it sees walls far away. */
 static bool near_walls(const fibrad_workspace *work) {
     const fibrad_scene *scene = work->scene;
     double near = fibrad_wall_nearest(&work->walls->view);
