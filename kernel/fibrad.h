@@ -231,6 +231,11 @@ typedef struct fibrad_plane {
     double at; /* L, coordinate of the plane on its axis */
 } fibrad_plane;
 
+/* A cylinder about an axis parallel to the z axis. */
+typedef struct fibrad_cylinder {
+    double x, y, radius; /* L, position of the axis, and radius above 0 */
+} fibrad_cylinder;
+
 /* A wall. The number of a wall is its index in fibrad_scene_config.body.
  *
  * Planes and the cylinder bound a convex container. Hence no plane and no cylinder hides one sphere from another.
@@ -254,11 +259,9 @@ typedef struct fibrad_plane {
  *
  * Otherwise fibrad_scene_init returns FIBRAD_E_ENDLESS. */
 typedef struct fibrad_body {
-    int kind;           /* a fibrad_body_kind */
-    fibrad_plane plane; /* used by FIBRAD_BODY_PLANE */
-    struct {
-        double x, y, radius; /* L, position of the axis, and radius above 0 */
-    } cylinder;              /* used by FIBRAD_BODY_CYLINDER */
+    int kind;                 /* a fibrad_body_kind */
+    fibrad_plane plane;       /* used by FIBRAD_BODY_PLANE */
+    fibrad_cylinder cylinder; /* used by FIBRAD_BODY_CYLINDER */
 } fibrad_body;
 
 /* Divided beds. Several machines may divide the spheres of a bed. Each machine computes the rows of its own spheres,
