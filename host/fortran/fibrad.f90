@@ -70,8 +70,8 @@ module fibrad
     type, bind(C) :: c_scene_config
         integer(c_int) :: isa = 0
         real(c_double) :: period(3) = 0
-        type(c_ptr) :: body = c_null_ptr
-        integer(c_int32_t) :: bodies = 0
+        type(c_ptr) :: wall = c_null_ptr
+        integer(c_int32_t) :: walls = 0
         type(c_ptr) :: opening = c_null_ptr
         integer(c_int32_t) :: openings = 0
         real(c_double) :: known_low(3) = 0, known_high(3) = 0
@@ -109,7 +109,7 @@ module fibrad
         type(c_ptr) :: beam = c_null_ptr, surface = c_null_ptr, cast = c_null_ptr, wanted = c_null_ptr
         integer(c_int) :: raw = 0
         real(c_double) :: drop = 0
-        integer(c_int) :: bodies = 1
+        integer(c_int) :: walls = 1
         type(c_ptr) :: scratch = c_null_ptr
     end type c_bed_options
 
@@ -126,16 +126,16 @@ module fibrad
     end type c_run
 
     type, bind(C) :: c_factors
-        integer(c_int32_t) :: n = 0, bodies = 0
+        integer(c_int32_t) :: n = 0, walls = 0
         type(c_ptr) :: start = c_null_ptr, col = c_null_ptr, f = c_null_ptr, escaped = c_null_ptr, &
-            beyond = c_null_ptr, error = c_null_ptr, body = c_null_ptr, body_body = c_null_ptr, &
-            body_escaped = c_null_ptr, body_error = c_null_ptr
-        real(c_double) :: body_correction = 0, body_closure = 0, changed = 0
+            beyond = c_null_ptr, error = c_null_ptr, wall = c_null_ptr, wall_wall = c_null_ptr, &
+            wall_escaped = c_null_ptr, wall_error = c_null_ptr
+        real(c_double) :: wall_correction = 0, wall_closure = 0, changed = 0
         integer(c_int32_t) :: changed_row = 0
     end type c_factors
 
     type, bind(C) :: c_scene_facts
-        integer(c_int32_t) :: spheres = 0, bodies = 0
+        integer(c_int32_t) :: spheres = 0, walls = 0
         integer(c_int) :: isa = 0
         integer(c_int32_t) :: cells = 0
         real(c_double) :: radius_min = 0, radius_max = 0, overlap_max = 0
@@ -145,7 +145,7 @@ module fibrad
     type, bind(C) :: c_bed_factors
         type(c_factors) :: matrix
         type(c_scene_facts) :: facts
-        type(c_ptr) :: body_area = c_null_ptr
+        type(c_ptr) :: wall_area = c_null_ptr
         integer(c_int) :: threads = 0
         integer(c_int32_t) :: directions = 0
         integer(c_int64_t) :: fallbacks = 0, rays = 0
@@ -153,7 +153,7 @@ module fibrad
     end type c_bed_factors
 
     type, bind(C) :: c_exchange_rule
-        type(c_ptr) :: emissivity = c_null_ptr, body_emissivity = c_null_ptr
+        type(c_ptr) :: emissivity = c_null_ptr, wall_emissivity = c_null_ptr
         integer(c_int32_t) :: directions = 0, paths = 0
         integer(c_int64_t) :: seed = 0
         real(c_double) :: cutoff = 0, tolerance = 0
@@ -163,13 +163,13 @@ module fibrad
         real(c_double) :: known_paths = 0
     end type c_exchange_rule
 
-    type, bind(C) :: c_body_row
-        real(c_double) :: body(32) = 0, spheres = 0, escaped = 0, error = 0
+    type, bind(C) :: c_wall_row
+        real(c_double) :: wall(32) = 0, spheres = 0, escaped = 0, error = 0
         integer(c_int64_t) :: rays = 0, paths = 0
-    end type c_body_row
+    end type c_wall_row
 
     type, bind(C) :: c_side_view
-        real(c_double) :: spheres = 0, bodies = 0, escaped = 0
+        real(c_double) :: spheres = 0, walls = 0, escaped = 0
     end type c_side_view
 
     type, bind(C) :: c_displacement
@@ -185,8 +185,8 @@ module fibrad
 
     type, bind(C) :: c_heat_sources
         type(c_ptr) :: temperature = c_null_ptr, emissivity = c_null_ptr, power = c_null_ptr, hold = c_null_ptr, &
-            reference = c_null_ptr, body_temperature = c_null_ptr, body_emissivity = c_null_ptr, &
-            body_power = c_null_ptr, insulated = c_null_ptr
+            reference = c_null_ptr, wall_temperature = c_null_ptr, wall_emissivity = c_null_ptr, &
+            wall_power = c_null_ptr, insulated = c_null_ptr
         real(c_double) :: surroundings = 0, sigma = fibrad_stefan_boltzmann, tolerance = 0
         integer(c_int32_t) :: sweeps_max = 0
         integer(c_int) :: uniform = 0
@@ -197,17 +197,17 @@ module fibrad
     end type c_heat_sources
 
     type, bind(C) :: c_heat_result
-        type(c_ptr) :: power = c_null_ptr, body_power = c_null_ptr
+        type(c_ptr) :: power = c_null_ptr, wall_power = c_null_ptr
         real(c_double) :: surroundings_power = 0
-        type(c_ptr) :: temperature = c_null_ptr, body_temperature = c_null_ptr, power_error = c_null_ptr, &
-            body_error = c_null_ptr, temperature_error = c_null_ptr, body_temperature_error = c_null_ptr
+        type(c_ptr) :: temperature = c_null_ptr, wall_temperature = c_null_ptr, power_error = c_null_ptr, &
+            wall_error = c_null_ptr, temperature_error = c_null_ptr, wall_temperature_error = c_null_ptr
         real(c_double) :: error_patches = 0, error_beams = 0, residual = 0
         integer(c_int32_t) :: sweeps = 0
-        type(c_ptr) :: body_absorbed = c_null_ptr
+        type(c_ptr) :: wall_absorbed = c_null_ptr
         real(c_double) :: surroundings_error = 0
-        type(c_ptr) :: body_area = c_null_ptr, least_temperature = c_null_ptr, largest_temperature = c_null_ptr, &
+        type(c_ptr) :: wall_area = c_null_ptr, least_temperature = c_null_ptr, largest_temperature = c_null_ptr, &
             centre_temperature = c_null_ptr, surface_error = c_null_ptr, centre_error = c_null_ptr, &
-            conducted = c_null_ptr, body_conducted = c_null_ptr, contact_flow = c_null_ptr
+            conducted = c_null_ptr, wall_conducted = c_null_ptr, contact_flow = c_null_ptr
     end type c_heat_result
 
     type, bind(C), public :: fibrad_light
@@ -220,14 +220,14 @@ module fibrad
     type, bind(C) :: c_light_sources
         type(c_ptr) :: light = c_null_ptr
         integer(c_int32_t) :: lights = 0
-        type(c_ptr) :: absorptivity = c_null_ptr, body_absorptivity = c_null_ptr
+        type(c_ptr) :: absorptivity = c_null_ptr, wall_absorptivity = c_null_ptr
         real(c_double) :: tolerance = 0
         integer(c_int) :: uniform = 0
     end type c_light_sources
 
     type, bind(C) :: c_light_result
         type(c_ptr) :: absorbed = c_null_ptr, absorbed_first = c_null_ptr, absorbed_error = c_null_ptr, &
-            body_absorbed = c_null_ptr, body_absorbed_first = c_null_ptr, body_absorbed_error = c_null_ptr
+            wall_absorbed = c_null_ptr, wall_absorbed_first = c_null_ptr, wall_absorbed_error = c_null_ptr
         real(c_double) :: incident = 0, transmitted = 0, reflected = 0, error = 0, error_patches = 0
         integer(c_int32_t) :: sweeps = 0, lights = 0
         type(c_ptr) :: patches = c_null_ptr
@@ -242,11 +242,11 @@ module fibrad
     type, bind(C) :: c_span
         type(c_ptr) :: temperature = c_null_ptr, capacity = c_null_ptr
         real(c_double) :: duration = 0
-        type(c_ptr) :: body_temperature = c_null_ptr, surroundings = c_null_ptr
+        type(c_ptr) :: wall_temperature = c_null_ptr, surroundings = c_null_ptr
         real(c_double) :: step = 0, tolerance = 0
-        type(c_ptr) :: power = c_null_ptr, body_power = c_null_ptr
+        type(c_ptr) :: power = c_null_ptr, wall_power = c_null_ptr
         real(c_double) :: surroundings_power = 0
-        type(c_ptr) :: body_energy = c_null_ptr
+        type(c_ptr) :: wall_energy = c_null_ptr
         real(c_double) :: surroundings_energy = 0
         type(c_funptr) :: observe = c_null_funptr, law = c_null_funptr
         type(c_ptr) :: context = c_null_ptr
@@ -311,14 +311,14 @@ module fibrad
             import
             type(c_bed_factors), intent(inout) :: factors
         end subroutine c_bed_free
-        function c_wall_row(config, spheres, body, rule, run, row) bind(C, name="fibrad_wall_row")
+        function c_wall_row(config, spheres, wall, rule, run, row) bind(C, name="fibrad_wall_row")
             import
             type(c_scene_config), intent(in) :: config
             type(c_spheres), intent(in) :: spheres
-            integer(c_int32_t), value :: body
+            integer(c_int32_t), value :: wall
             type(c_exchange_rule), intent(in) :: rule
             type(c_run), intent(inout) :: run
-            type(c_body_row), intent(inout) :: row
+            type(c_wall_row), intent(inout) :: row
             integer(c_int) :: c_wall_row
         end function c_wall_row
         function c_side_views(config, spheres, rays, run, view) bind(C, name="fibrad_side_views")
@@ -372,7 +372,7 @@ module fibrad
             type(c_ptr), value :: temperature
             integer(c_int) :: c_radiation_sides
         end function c_radiation_sides
-        function c_radiation_settle(radiation, sources, law, context, emissivity, body_emissivity, &
+        function c_radiation_settle(radiation, sources, law, context, emissivity, wall_emissivity, &
             result) bind(C, name="fibrad_radiation_settle")
             import
             type(c_ptr), value :: radiation
@@ -380,7 +380,7 @@ module fibrad
             type(c_funptr), value :: law
             type(c_ptr), value :: context
             type(c_ptr), value :: emissivity
-            type(c_ptr), value :: body_emissivity
+            type(c_ptr), value :: wall_emissivity
             type(c_heat_result), intent(inout) :: result
             integer(c_int) :: c_radiation_settle
         end function c_radiation_settle
@@ -491,10 +491,10 @@ module fibrad
     end interface
 
     character(24), parameter :: c_names(30) = [character(24) :: &
-        'fibrad_plane', 'fibrad_cylinder', 'fibrad_body', 'fibrad_occupancy', 'fibrad_triangles', &
+        'fibrad_plane', 'fibrad_cylinder', 'fibrad_wall', 'fibrad_occupancy', 'fibrad_triangles', &
         'fibrad_scene_config', 'fibrad_spheres', 'fibrad_beam_rule', 'fibrad_surface_rule', 'fibrad_cast_rule', &
         'fibrad_bed_options', 'fibrad_fault', 'fibrad_run', 'fibrad_factors', 'fibrad_scene_facts', &
-        'fibrad_bed_factors', 'fibrad_exchange_rule', 'fibrad_body_row', 'fibrad_side_view', 'fibrad_displacement', &
+        'fibrad_bed_factors', 'fibrad_exchange_rule', 'fibrad_wall_row', 'fibrad_side_view', 'fibrad_displacement', &
         'fibrad_heat_config', 'fibrad_heat_sources', 'fibrad_heat_result', 'fibrad_light', 'fibrad_light_sources', &
         'fibrad_light_result', 'fibrad_transient_config', 'fibrad_span', 'fibrad_contact_rule', 'fibrad_contact_list']
     integer, parameter :: c_bits(30) = [ &
@@ -503,7 +503,7 @@ module fibrad
         storage_size(c_beam_rule()), storage_size(c_surface_rule()), storage_size(c_cast_rule()), &
         storage_size(c_bed_options()), storage_size(c_fault()), storage_size(c_run()), storage_size(c_factors()), &
         storage_size(c_scene_facts()), storage_size(c_bed_factors()), storage_size(c_exchange_rule()), &
-        storage_size(c_body_row()), storage_size(c_side_view()), storage_size(c_displacement()), &
+        storage_size(c_wall_row()), storage_size(c_side_view()), storage_size(c_displacement()), &
         storage_size(c_heat_config()), storage_size(c_heat_sources()), storage_size(c_heat_result()), &
         storage_size(fibrad_light()), storage_size(c_light_sources()), storage_size(c_light_result()), &
         storage_size(c_transient_config()), storage_size(c_span()), storage_size(c_contact_rule()), &
@@ -710,7 +710,7 @@ contains
         if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
         rule%emissivity = c_loc(emissivity)
-        if (present(wall_emissivity)) rule%body_emissivity = c_loc(wall_emissivity)
+        if (present(wall_emissivity)) rule%wall_emissivity = c_loc(wall_emissivity)
         if (present(k_star)) then
             rule%conductivity = c_loc(k_star)
             node = [(c_node_emissivity(emissivity(i), k_star(i)), i = 1, size(x))]
@@ -765,7 +765,7 @@ contains
         if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
         rule%emissivity = c_loc(emissivity)
-        if (present(wall_emissivity)) rule%body_emissivity = c_loc(wall_emissivity)
+        if (present(wall_emissivity)) rule%wall_emissivity = c_loc(wall_emissivity)
         if (present(k_star)) rule%conductivity = c_loc(k_star)
         if (present(paths)) rule%paths = int(paths, c_int32_t)
         if (present(flights)) rule%flights = int(flights, c_int32_t)
@@ -862,11 +862,11 @@ contains
         if (status /= fibrad_ok) return
         sources%temperature = c_loc(temperature)
         sources%emissivity = c_loc(emissivity)
-        if (present(wall_temperature)) sources%body_temperature = c_loc(wall_temperature)
-        if (present(wall_emissivity)) sources%body_emissivity = c_loc(wall_emissivity)
+        if (present(wall_temperature)) sources%wall_temperature = c_loc(wall_temperature)
+        if (present(wall_emissivity)) sources%wall_emissivity = c_loc(wall_emissivity)
         sources%surroundings = surroundings
         result%power = c_loc(power)
-        result%body_power = c_loc(walls)
+        result%wall_power = c_loc(walls)
         status = c_radiation_solve(heat%radiation, sources, result)
         if (status /= fibrad_ok) return
         if (present(wall_power)) wall_power = walls(1:heat%walls)
@@ -940,8 +940,8 @@ contains
         sources%surroundings = surroundings
         if (present(wall_temperature)) walls_given(1:heat%walls) = wall_temperature
         if (present(wall_emissivity)) walls_emit(1:heat%walls) = wall_emissivity
-        if (heat%walls > 0) sources%body_temperature = c_loc(walls_given)
-        if (present(wall_source)) sources%body_power = c_loc(wall_source)
+        if (heat%walls > 0) sources%wall_temperature = c_loc(walls_given)
+        if (present(wall_source)) sources%wall_power = c_loc(wall_source)
         if (present(insulated)) then
             closed(1:heat%walls) = merge(1_c_signed_char, 0_c_signed_char, insulated)
             sources%insulated = c_loc(closed)
@@ -950,8 +950,8 @@ contains
         follows%n = heat%spheres
         result%power = c_loc(power)
         result%temperature = c_loc(temperature)
-        result%body_power = c_loc(walls_power)
-        result%body_temperature = c_loc(walls_found)
+        result%wall_power = c_loc(walls_power)
+        result%wall_temperature = c_loc(walls_found)
         if (present(temperature_error)) result%temperature_error = c_loc(temperature_error)
         if (present(conductivity)) sources%conductivity = c_loc(conductivity)
         if (present(least)) result%least_temperature = c_loc(least)
@@ -1007,11 +1007,11 @@ contains
         sources%light = c_loc(lights)
         sources%lights = size(lights)
         sources%absorptivity = c_loc(absorptivity)
-        if (present(wall_absorptivity)) sources%body_absorptivity = c_loc(wall_absorptivity)
+        if (present(wall_absorptivity)) sources%wall_absorptivity = c_loc(wall_absorptivity)
         result%absorbed = c_loc(absorbed)
         result%absorbed_first = c_loc(absorbed_first)
-        result%body_absorbed = c_loc(walls)
-        result%body_absorbed_first = c_loc(walls_first)
+        result%wall_absorbed = c_loc(walls)
+        result%wall_absorbed_first = c_loc(walls_first)
         status = c_radiation_shine(heat%radiation, sources, result)
         if (status /= fibrad_ok) return
         if (present(wall_absorbed)) wall_absorbed = walls(1:heat%walls)
@@ -1021,11 +1021,11 @@ contains
     end subroutine heat_shine
 
     ! Asks the law for emissivities of spheres. Emissivities of walls stay as they are.
-    subroutine follow_law(context, temperature, body_temperature, emissivity, body_emissivity) bind(C)
-        type(c_ptr), value :: context, temperature, body_temperature, emissivity, body_emissivity
+    subroutine follow_law(context, temperature, wall_temperature, emissivity, wall_emissivity) bind(C)
+        type(c_ptr), value :: context, temperature, wall_temperature, emissivity, wall_emissivity
         type(law_of_spheres), pointer :: follows
         real(c_double), pointer :: kelvins(:), shares(:)
-        associate (unused => body_temperature, stay => body_emissivity)
+        associate (unused => wall_temperature, stay => wall_emissivity)
         end associate
         call c_f_pointer(context, follows)
         call c_f_pointer(temperature, kelvins, [follows%n])
@@ -1137,17 +1137,17 @@ contains
         sources%emissivity = c_loc(emissivity)
         sources%surroundings = surroundings
         if (present(source)) sources%power = c_loc(source)
-        if (present(wall_temperature)) sources%body_temperature = c_loc(wall_temperature)
-        if (present(wall_emissivity)) sources%body_emissivity = c_loc(wall_emissivity)
+        if (present(wall_temperature)) sources%wall_temperature = c_loc(wall_temperature)
+        if (present(wall_emissivity)) sources%wall_emissivity = c_loc(wall_emissivity)
         span%temperature = c_loc(temperature)
         span%capacity = c_loc(capacity)
         span%duration = duration
-        if (present(wall_temperature_end)) span%body_temperature = c_loc(wall_temperature_end)
+        if (present(wall_temperature_end)) span%wall_temperature = c_loc(wall_temperature_end)
         if (present(surroundings_end)) span%surroundings = c_loc(surroundings_end)
         if (present(step)) span%step = step
         if (present(tolerance)) span%tolerance = tolerance
         if (present(power)) span%power = c_loc(power)
-        if (present(wall_energy)) span%body_energy = c_loc(wall_energy)
+        if (present(wall_energy)) span%wall_energy = c_loc(wall_energy)
         status = c_transient_advance(transient%transient, sources, span)
         call c_transient_describe(transient%transient, facts, found)
         if (status /= fibrad_ok .and. c_associated(transient%transient)) call tell_fault(found, size(temperature), fault)
@@ -1249,9 +1249,9 @@ contains
         if (present(walls)) then
             mesh%wall = pack(walls, walls%kind /= kind_open)
             mesh%opening = pack(walls%plane, walls%kind == kind_open)
-            if (size(mesh%wall) > 0) config%body = c_loc(mesh%wall)
+            if (size(mesh%wall) > 0) config%wall = c_loc(mesh%wall)
             if (size(mesh%opening) > 0) config%opening = c_loc(mesh%opening)
-            config%bodies = size(mesh%wall, kind=c_int32_t)
+            config%walls = size(mesh%wall, kind=c_int32_t)
             config%openings = size(mesh%opening, kind=c_int32_t)
         end if
         if (mesh%given%n > 0) config%triangles = c_loc(mesh%given)
@@ -1315,7 +1315,7 @@ contains
         integer :: n, walls
         call c_f_pointer(found, bed)
         n = bed%matrix%n
-        walls = bed%matrix%bodies
+        walls = bed%matrix%walls
         call c_f_pointer(bed%matrix%start, start, [n + 1])
         call c_f_pointer(bed%matrix%col, col, [start(n + 1)])
         factors%start = start + 1
@@ -1324,12 +1324,12 @@ contains
         factors%escaped = reals(bed%matrix%escaped, int(n, c_int64_t))
         factors%beyond = reals(bed%matrix%beyond, int(n, c_int64_t))
         factors%error = reals(bed%matrix%error, int(n, c_int64_t))
-        factors%wall = reshape(reals(bed%matrix%body, int(n, c_int64_t) * walls), [walls, n])
-        factors%wall_area = reals(bed%body_area, int(walls, c_int64_t))
-        if (c_associated(bed%matrix%body_body)) then
-            factors%wall_wall = reshape(reals(bed%matrix%body_body, int(walls, c_int64_t)**2), [walls, walls])
-            factors%wall_escaped = reals(bed%matrix%body_escaped, int(walls, c_int64_t))
-            factors%wall_error = reals(bed%matrix%body_error, int(walls, c_int64_t))
+        factors%wall = reshape(reals(bed%matrix%wall, int(n, c_int64_t) * walls), [walls, n])
+        factors%wall_area = reals(bed%wall_area, int(walls, c_int64_t))
+        if (c_associated(bed%matrix%wall_wall)) then
+            factors%wall_wall = reshape(reals(bed%matrix%wall_wall, int(walls, c_int64_t)**2), [walls, walls])
+            factors%wall_escaped = reals(bed%matrix%wall_escaped, int(walls, c_int64_t))
+            factors%wall_error = reals(bed%matrix%wall_error, int(walls, c_int64_t))
         end if
         factors%directions = bed%directions
         factors%threads = bed%threads

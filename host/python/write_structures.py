@@ -14,9 +14,9 @@ PYTHON = pathlib.Path("host/python/fibrad/_structures.py")
 FORTRAN = pathlib.Path("host/fortran/fibrad.f90")
 BEGIN, END = "    ! ---- of C, by `make structures`\n", "    ! ---- end of what `make structures` writes\n"
 ALSO = ["fibrad_version", "fibrad_status_text", "fibrad_why_text", "fibrad_node_emissivity"]
-PUBLIC = {"fibrad_body": "fibrad_wall", "fibrad_light": "fibrad_light"}  # of the Fortran module
+PUBLIC = {"fibrad_wall": "fibrad_wall", "fibrad_light": "fibrad_light"}  # of the Fortran module
 # What is not zero in Fortran by default. There flags are given where they are not wanted.
-DEFAULTS = {("fibrad_triangles", "stride"): "3", ("fibrad_fault", "triangle"): "-1", ("fibrad_bed_options", "bodies"): "1",
+DEFAULTS = {("fibrad_triangles", "stride"): "3", ("fibrad_fault", "triangle"): "-1", ("fibrad_bed_options", "walls"): "1",
             ("fibrad_heat_sources", "sigma"): "fibrad_stefan_boltzmann"}
 NUMBERS = {"double": ("c_double", "real(c_double)"), "int": ("c_int", "integer(c_int)"),
            "uint32_t": ("c_uint32", "integer(c_int32_t)"), "uint64_t": ("c_uint64", "integer(c_int64_t)"),

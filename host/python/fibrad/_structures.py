@@ -17,7 +17,7 @@ class Cylinder(Structure):
     _fields_ = [("x", c_double), ("y", c_double), ("radius", c_double)]
 
 
-class Body(Structure):
+class Wall(Structure):
     _fields_ = [("kind", c_int), ("plane", Plane), ("cylinder", Cylinder)]
 
 
@@ -33,7 +33,7 @@ class Triangles(Structure):
 
 
 class SceneConfig(Structure):
-    _fields_ = [("isa", c_int), ("period", c_double * 3), ("body", POINTER(Body)), ("bodies", c_uint32),
+    _fields_ = [("isa", c_int), ("period", c_double * 3), ("wall", POINTER(Wall)), ("walls", c_uint32),
                 ("opening", POINTER(Plane)), ("openings", c_uint32), ("known_low", c_double * 3),
                 ("known_high", c_double * 3), ("occupancy", POINTER(Occupancy)), ("triangles", POINTER(Triangles))]
 
@@ -58,7 +58,7 @@ class CastRule(Structure):
 
 class BedOptions(Structure):
     _fields_ = [("beam", POINTER(BeamRule)), ("surface", POINTER(SurfaceRule)), ("cast", POINTER(CastRule)),
-                ("wanted", POINTER(c_ubyte)), ("raw", c_int), ("drop", c_double), ("bodies", c_int),
+                ("wanted", POINTER(c_ubyte)), ("raw", c_int), ("drop", c_double), ("walls", c_int),
                 ("scratch", c_char_p)]
 
 
@@ -71,39 +71,39 @@ class Run(Structure):
 
 
 class Factors(Structure):
-    _fields_ = [("n", c_uint32), ("bodies", c_uint32), ("start", POINTER(c_uint64)), ("col", POINTER(c_uint32)),
+    _fields_ = [("n", c_uint32), ("walls", c_uint32), ("start", POINTER(c_uint64)), ("col", POINTER(c_uint32)),
                 ("f", POINTER(c_double)), ("escaped", POINTER(c_double)), ("beyond", POINTER(c_double)),
-                ("error", POINTER(c_double)), ("body", POINTER(c_double)), ("body_body", POINTER(c_double)),
-                ("body_escaped", POINTER(c_double)), ("body_error", POINTER(c_double)), ("body_correction", c_double),
-                ("body_closure", c_double), ("changed", c_double), ("changed_row", c_uint32)]
+                ("error", POINTER(c_double)), ("wall", POINTER(c_double)), ("wall_wall", POINTER(c_double)),
+                ("wall_escaped", POINTER(c_double)), ("wall_error", POINTER(c_double)), ("wall_correction", c_double),
+                ("wall_closure", c_double), ("changed", c_double), ("changed_row", c_uint32)]
 
 
 class SceneFacts(Structure):
-    _fields_ = [("spheres", c_uint32), ("bodies", c_uint32), ("isa", c_int), ("cells", c_uint32),
+    _fields_ = [("spheres", c_uint32), ("walls", c_uint32), ("isa", c_int), ("cells", c_uint32),
                 ("radius_min", c_double), ("radius_max", c_double), ("overlap_max", c_double),
                 ("overlap_pair", c_uint32 * 2), ("triangles", c_uint32)]
 
 
 class BedFactors(Structure):
-    _fields_ = [("matrix", Factors), ("facts", SceneFacts), ("body_area", POINTER(c_double)), ("threads", c_int),
+    _fields_ = [("matrix", Factors), ("facts", SceneFacts), ("wall_area", POINTER(c_double)), ("threads", c_int),
                 ("directions", c_uint32), ("fallbacks", c_uint64), ("rays", c_uint64), ("seconds", c_double),
                 ("closure_error", c_double), ("reciprocity_error", c_double)]
 
 
 class ExchangeRule(Structure):
-    _fields_ = [("emissivity", POINTER(c_double)), ("body_emissivity", POINTER(c_double)), ("directions", c_uint32),
+    _fields_ = [("emissivity", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)), ("directions", c_uint32),
                 ("paths", c_uint32), ("seed", c_uint64), ("cutoff", c_double), ("tolerance", c_double),
                 ("conductivity", POINTER(c_double)), ("node_emissivity", POINTER(c_double)), ("flights", c_uint32),
                 ("known", POINTER(c_double)), ("known_paths", c_double)]
 
 
-class BodyRow(Structure):
-    _fields_ = [("body", c_double * 32), ("spheres", c_double), ("escaped", c_double), ("error", c_double),
+class WallRow(Structure):
+    _fields_ = [("wall", c_double * 32), ("spheres", c_double), ("escaped", c_double), ("error", c_double),
                 ("rays", c_uint64), ("paths", c_uint64)]
 
 
 class SideView(Structure):
-    _fields_ = [("spheres", c_double), ("bodies", c_double), ("escaped", c_double)]
+    _fields_ = [("spheres", c_double), ("walls", c_double), ("escaped", c_double)]
 
 
 class Displacement(Structure):
@@ -117,8 +117,8 @@ class HeatConfig(Structure):
 
 class HeatSources(Structure):
     _fields_ = [("temperature", POINTER(c_double)), ("emissivity", POINTER(c_double)), ("power", POINTER(c_double)),
-                ("hold", POINTER(c_double)), ("reference", POINTER(c_double)), ("body_temperature", POINTER(c_double)),
-                ("body_emissivity", POINTER(c_double)), ("body_power", POINTER(c_double)),
+                ("hold", POINTER(c_double)), ("reference", POINTER(c_double)), ("wall_temperature", POINTER(c_double)),
+                ("wall_emissivity", POINTER(c_double)), ("wall_power", POINTER(c_double)),
                 ("insulated", POINTER(c_ubyte)), ("surroundings", c_double), ("sigma", c_double),
                 ("tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int),
                 ("side_temperature", POINTER(c_double)), ("light", POINTER(c_double)),
@@ -128,16 +128,16 @@ class HeatSources(Structure):
 
 
 class HeatResult(Structure):
-    _fields_ = [("power", POINTER(c_double)), ("body_power", POINTER(c_double)), ("surroundings_power", c_double),
-                ("temperature", POINTER(c_double)), ("body_temperature", POINTER(c_double)),
-                ("power_error", POINTER(c_double)), ("body_error", POINTER(c_double)),
-                ("temperature_error", POINTER(c_double)), ("body_temperature_error", POINTER(c_double)),
+    _fields_ = [("power", POINTER(c_double)), ("wall_power", POINTER(c_double)), ("surroundings_power", c_double),
+                ("temperature", POINTER(c_double)), ("wall_temperature", POINTER(c_double)),
+                ("power_error", POINTER(c_double)), ("wall_error", POINTER(c_double)),
+                ("temperature_error", POINTER(c_double)), ("wall_temperature_error", POINTER(c_double)),
                 ("error_patches", c_double), ("error_beams", c_double), ("residual", c_double), ("sweeps", c_uint32),
-                ("body_absorbed", POINTER(c_double)), ("surroundings_error", c_double),
-                ("body_area", POINTER(c_double)), ("least_temperature", POINTER(c_double)),
+                ("wall_absorbed", POINTER(c_double)), ("surroundings_error", c_double),
+                ("wall_area", POINTER(c_double)), ("least_temperature", POINTER(c_double)),
                 ("largest_temperature", POINTER(c_double)), ("centre_temperature", POINTER(c_double)),
                 ("surface_error", POINTER(c_double)), ("centre_error", POINTER(c_double)),
-                ("conducted", POINTER(c_double)), ("body_conducted", POINTER(c_double)),
+                ("conducted", POINTER(c_double)), ("wall_conducted", POINTER(c_double)),
                 ("contact_flow", POINTER(c_double))]
 
 
@@ -149,13 +149,13 @@ class Light(Structure):
 
 class LightSources(Structure):
     _fields_ = [("light", POINTER(Light)), ("lights", c_uint32), ("absorptivity", POINTER(c_double)),
-                ("body_absorptivity", POINTER(c_double)), ("tolerance", c_double), ("uniform", c_int)]
+                ("wall_absorptivity", POINTER(c_double)), ("tolerance", c_double), ("uniform", c_int)]
 
 
 class LightResult(Structure):
     _fields_ = [("absorbed", POINTER(c_double)), ("absorbed_first", POINTER(c_double)),
-                ("absorbed_error", POINTER(c_double)), ("body_absorbed", POINTER(c_double)),
-                ("body_absorbed_first", POINTER(c_double)), ("body_absorbed_error", POINTER(c_double)),
+                ("absorbed_error", POINTER(c_double)), ("wall_absorbed", POINTER(c_double)),
+                ("wall_absorbed_first", POINTER(c_double)), ("wall_absorbed_error", POINTER(c_double)),
                 ("incident", c_double), ("transmitted", c_double), ("reflected", c_double), ("error", c_double),
                 ("error_patches", c_double), ("sweeps", c_uint32), ("lights", c_uint32), ("patches", POINTER(c_double))]
 
@@ -166,9 +166,9 @@ class TransientConfig(Structure):
 
 class Span(Structure):
     _fields_ = [("temperature", POINTER(c_double)), ("capacity", POINTER(c_double)), ("duration", c_double),
-                ("body_temperature", POINTER(c_double)), ("surroundings", POINTER(c_double)), ("step", c_double),
-                ("tolerance", c_double), ("power", POINTER(c_double)), ("body_power", POINTER(c_double)),
-                ("surroundings_power", c_double), ("body_energy", POINTER(c_double)), ("surroundings_energy", c_double),
+                ("wall_temperature", POINTER(c_double)), ("surroundings", POINTER(c_double)), ("step", c_double),
+                ("tolerance", c_double), ("power", POINTER(c_double)), ("wall_power", POINTER(c_double)),
+                ("surroundings_power", c_double), ("wall_energy", POINTER(c_double)), ("surroundings_energy", c_double),
                 ("observe", Observe), ("law", EmissivityLaw), ("context", c_void_p), ("error", c_double),
                 ("steps", c_uint64), ("refused", c_uint64), ("sweeps", c_uint64), ("corrections", c_uint64)]
 
@@ -185,12 +185,12 @@ class ContactList(Structure):
 
 
 STRUCTURES: dict[str, Any] = {
-    "fibrad_plane": Plane, "fibrad_cylinder": Cylinder, "fibrad_body": Body, "fibrad_occupancy": Occupancy,
+    "fibrad_plane": Plane, "fibrad_cylinder": Cylinder, "fibrad_wall": Wall, "fibrad_occupancy": Occupancy,
     "fibrad_triangles": Triangles, "fibrad_scene_config": SceneConfig, "fibrad_spheres": Spheres,
     "fibrad_beam_rule": BeamRule, "fibrad_surface_rule": SurfaceRule, "fibrad_cast_rule": CastRule,
     "fibrad_bed_options": BedOptions, "fibrad_fault": Fault, "fibrad_run": Run, "fibrad_factors": Factors,
     "fibrad_scene_facts": SceneFacts, "fibrad_bed_factors": BedFactors, "fibrad_exchange_rule": ExchangeRule,
-    "fibrad_body_row": BodyRow, "fibrad_side_view": SideView, "fibrad_displacement": Displacement,
+    "fibrad_wall_row": WallRow, "fibrad_side_view": SideView, "fibrad_displacement": Displacement,
     "fibrad_heat_config": HeatConfig, "fibrad_heat_sources": HeatSources, "fibrad_heat_result": HeatResult,
     "fibrad_light": Light, "fibrad_light_sources": LightSources, "fibrad_light_result": LightResult,
     "fibrad_transient_config": TransientConfig, "fibrad_span": Span, "fibrad_contact_rule": ContactRule,
@@ -208,7 +208,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
         POINTER(BedOptions), POINTER(Run), POINTER(POINTER(BedFactors))]),
     "fibrad_bed_free": (None, [POINTER(BedFactors)]),
     "fibrad_wall_row": (c_int, [POINTER(SceneConfig), POINTER(Spheres), c_uint32, POINTER(ExchangeRule), POINTER(Run),
-        POINTER(BodyRow)]),
+        POINTER(WallRow)]),
     "fibrad_side_views": (c_int, [POINTER(SceneConfig), POINTER(Spheres), c_uint32, POINTER(Run), POINTER(SideView)]),
     "fibrad_displacements": (c_int, [POINTER(SceneConfig), POINTER(Spheres), POINTER(ExchangeRule), POINTER(c_ubyte),
         POINTER(Run), POINTER(Displacement), POINTER(SceneFacts)]),
