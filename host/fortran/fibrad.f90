@@ -311,7 +311,7 @@ module fibrad
             import
             type(c_bed_factors), intent(inout) :: factors
         end subroutine c_bed_free
-        function c_wall_row(config, spheres, wall, rule, run, row) bind(C, name="fibrad_wall_row")
+        function c_exchange_wall_row(config, spheres, wall, rule, run, row) bind(C, name="fibrad_exchange_wall_row")
             import
             type(c_scene_config), intent(in) :: config
             type(c_spheres), intent(in) :: spheres
@@ -319,8 +319,8 @@ module fibrad
             type(c_exchange_rule), intent(in) :: rule
             type(c_run), intent(inout) :: run
             type(c_wall_row), intent(inout) :: row
-            integer(c_int) :: c_wall_row
-        end function c_wall_row
+            integer(c_int) :: c_exchange_wall_row
+        end function c_exchange_wall_row
         function c_side_views(config, spheres, rays, run, view) bind(C, name="fibrad_side_views")
             import
             type(c_scene_config), intent(in) :: config

@@ -14,7 +14,7 @@ PYTHON = pathlib.Path("host/python/fibrad/_structures.py")
 FORTRAN = pathlib.Path("host/fortran/fibrad.f90")
 BEGIN, END = "    ! ---- of C, by `make structures`\n", "    ! ---- end of what `make structures` writes\n"
 ALSO = ["fibrad_version", "fibrad_status_text", "fibrad_why_text", "fibrad_node_emissivity"]
-PUBLIC = {"fibrad_wall": "fibrad_wall", "fibrad_light": "fibrad_light"}  # of the Fortran module
+PUBLIC = ["fibrad_wall", "fibrad_light"]  # of the Fortran module
 # What is not zero in Fortran by default. There flags are given where they are not wanted.
 DEFAULTS = {("fibrad_triangles", "stride"): "3", ("fibrad_fault", "triangle"): "-1", ("fibrad_bed_options", "walls"): "1",
             ("fibrad_heat_sources", "sigma"): "fibrad_stefan_boltzmann"}
@@ -112,7 +112,7 @@ def python():
 
 
 def fortran_name(name):
-    return PUBLIC.get(name) or name.replace("fibrad_", "c_", 1)
+    return name if name in PUBLIC else name.replace("fibrad_", "c_", 1)
 
 
 def fortran_field(name, field):
