@@ -98,7 +98,7 @@ COUNTING       = $(filter-out %/libfibrad.a,$(LIBRARIES)) $(BUILD)/counted/libfi
 COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
-.PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols calls format house bench bench-quick \
+.PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols calls format house structures bench bench-quick \
     bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed sanitized threads clang-warnings lint cppcheck nightly deps deps-ci man install install-lib clean help need-libraries need-check
 
 ## all: build/fibrad and the libraries (the default)
@@ -250,10 +250,15 @@ programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
 ## check: the symbols of libfibrad.a, calls among files, the format of the sources, and the house
 check: symbols calls format house
 
-## house: folders, includes, names and words, and the map of docs/design.md
+## house: folders, includes, names and words, the map of docs/design.md, and what `make structures` writes
 house:
 	tests/check_house.sh
 	tests/check_map.sh
+	python3 host/python/write_structures.py --check $(HEADERS)
+
+## structures: what Python and Fortran need of the public headers, after a change of these
+structures:
+	python3 host/python/write_structures.py $(HEADERS)
 
 ## calls: no circle of calls among files of the libraries and the program
 calls: lib lib-host $(BUILD)/libhost.a

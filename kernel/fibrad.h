@@ -230,6 +230,11 @@ typedef struct fibrad_plane {
     double at; /* L, coordinate of the plane on its axis */
 } fibrad_plane;
 
+/* A cylinder about an axis parallel to the z axis. */
+typedef struct fibrad_cylinder {
+    double x, y, radius; /* L, position of the axis, and radius above 0 */
+} fibrad_cylinder;
+
 /* A wall. The number of a wall is its index in fibrad_scene_config.wall.
  *
  * Planes and the cylinder bound a convex container. Hence no plane and no cylinder hides one sphere from another.
@@ -253,11 +258,9 @@ typedef struct fibrad_plane {
  *
  * Otherwise fibrad_scene_init returns FIBRAD_E_ENDLESS. */
 typedef struct fibrad_wall {
-    int kind;           /* a fibrad_wall_kind */
-    fibrad_plane plane; /* used by FIBRAD_WALL_PLANE */
-    struct {
-        double x, y, radius; /* L, position of the axis, and radius above 0 */
-    } cylinder;              /* used by FIBRAD_WALL_CYLINDER */
+    int kind;                 /* a fibrad_wall_kind */
+    fibrad_plane plane;       /* used by FIBRAD_WALL_PLANE */
+    fibrad_cylinder cylinder; /* used by FIBRAD_WALL_CYLINDER */
 } fibrad_wall;
 
 /* Divided beds. Several machines may divide the spheres of a bed. Each machine computes the rows of its own spheres,

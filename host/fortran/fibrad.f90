@@ -36,13 +36,7 @@ module fibrad
     integer(c_int), parameter :: kind_open = -1 ! of fibrad_wall; C has a list of its own for openings
     real(c_double), parameter, public :: fibrad_stefan_boltzmann = 5.670374419e-8_c_double
 
-    ! ---- structures of C, as in the headers
-    type, bind(C) :: c_spheres
-        type(c_ptr) :: x = c_null_ptr, y = c_null_ptr, z = c_null_ptr, r = c_null_ptr
-        integer(c_int32_t) :: n = 0, stride = 0, stride_r = 0
-        type(c_ptr) :: id = c_null_ptr
-    end type c_spheres
-
+    ! ---- of C, by `make structures`
     type, bind(C) :: c_plane
         integer(c_int) :: axis = 0, upper = 0
         real(c_double) :: at = 0
@@ -52,12 +46,26 @@ module fibrad
         real(c_double) :: x = 0, y = 0, radius = 0
     end type c_cylinder
 
-    ! A wall, made by fibrad_plane, fibrad_cylinder or fibrad_mesh; or an opening, made by fibrad_plane.
     type, bind(C), public :: fibrad_wall
         integer(c_int) :: kind = 0
         type(c_plane) :: plane
         type(c_cylinder) :: cylinder
     end type fibrad_wall
+
+    type, bind(C) :: c_occupancy
+        real(c_double) :: low(3) = 0, high(3) = 0
+        integer(c_int32_t) :: cells(3) = 0
+        integer(c_int) :: periodic(3) = 0
+        type(c_ptr) :: mark = c_null_ptr
+    end type c_occupancy
+
+    type, bind(C) :: c_triangles
+        type(c_ptr) :: x = c_null_ptr, y = c_null_ptr, z = c_null_ptr
+        integer(c_int32_t) :: stride = 3, vertices = 0
+        type(c_ptr) :: corner = c_null_ptr, front = c_null_ptr, back = c_null_ptr
+        integer(c_int32_t) :: n = 0
+        real(c_double) :: period(3) = 0
+    end type c_triangles
 
     type, bind(C) :: c_scene_config
         integer(c_int) :: isa = 0
@@ -70,50 +78,11 @@ module fibrad
         type(c_ptr) :: occupancy = c_null_ptr, triangles = c_null_ptr
     end type c_scene_config
 
-    type, bind(C) :: c_triangles
-        type(c_ptr) :: x = c_null_ptr, y = c_null_ptr, z = c_null_ptr
-        integer(c_int32_t) :: stride = 3, vertices = 0
-        type(c_ptr) :: corner = c_null_ptr, front = c_null_ptr, back = c_null_ptr
-        integer(c_int32_t) :: n = 0
-        real(c_double) :: period(3) = 0
-    end type c_triangles
-
-    ! The triangles of all walls that are meshes. Seen from its front, the corners of a triangle go counter-clockwise. A
-    ! side that belongs to no wall must not be seen.
-    type, public :: fibrad_triangles
-        real(c_double), allocatable :: vertex(:, :)    ! L, (3, vertices)
-        integer(c_int32_t), allocatable :: corner(:, :) ! (3, triangles), vertices of each triangle
-        integer(c_int32_t), allocatable :: front(:)     ! (triangles), wall of each front side; 0: none
-        integer(c_int32_t), allocatable :: back(:)      ! (triangles), wall of each back side; 0: none; or not allocated
-    end type fibrad_triangles
-
-    type :: walls_of_c ! walls as C takes them: openings in a list of their own, triangles counted from 0
-        type(fibrad_wall), allocatable :: wall(:)
-        type(c_plane), allocatable :: opening(:)
-        real(c_double), allocatable :: vertex(:, :)
-        integer(c_int32_t), allocatable :: corner(:, :), front(:), back(:)
-        type(c_triangles) :: given
-    end type walls_of_c
-
-    type, bind(C) :: c_fault
-        integer(c_int32_t) :: first = 0, second = 0, triangle = -1, wall = 0
-        integer(c_int) :: why = 0
-    end type c_fault
-
-    type, bind(C) :: c_scene_facts
-        integer(c_int32_t) :: spheres = 0, walls = 0
-        integer(c_int) :: isa = 0
-        integer(c_int32_t) :: cells = 0
-        real(c_double) :: radius_min = 0, radius_max = 0, overlap_max = 0
-        integer(c_int32_t) :: overlap_pair(2) = 0, triangles = 0
-    end type c_scene_facts
-
-    type, bind(C) :: c_run
-        integer(c_int) :: threads = 0
-        type(c_funptr) :: progress = c_null_funptr
-        type(c_ptr) :: context = c_null_ptr
-        type(c_fault) :: fault
-    end type c_run
+    type, bind(C) :: c_spheres
+        type(c_ptr) :: x = c_null_ptr, y = c_null_ptr, z = c_null_ptr, r = c_null_ptr
+        integer(c_int32_t) :: n = 0, stride = 0, stride_r = 0
+        type(c_ptr) :: id = c_null_ptr
+    end type c_spheres
 
     type, bind(C) :: c_beam_rule
         integer(c_int32_t) :: directions = 0, points = 0
@@ -123,6 +92,19 @@ module fibrad
         integer(c_int32_t) :: chords = 0
     end type c_beam_rule
 
+    type, bind(C) :: c_surface_rule
+        integer(c_int32_t) :: nodes = 0, flags = 0
+        real(c_double) :: cutoff = 0
+        integer(c_int) :: isa = 0
+    end type c_surface_rule
+
+    type, bind(C) :: c_cast_rule
+        integer(c_int32_t) :: rays = 0
+        integer(c_int) :: random = 0
+        integer(c_int64_t) :: seed = 0
+        real(c_double) :: cutoff = 0
+    end type c_cast_rule
+
     type, bind(C) :: c_bed_options
         type(c_ptr) :: beam = c_null_ptr, surface = c_null_ptr, cast = c_null_ptr, wanted = c_null_ptr
         integer(c_int) :: raw = 0
@@ -131,14 +113,34 @@ module fibrad
         type(c_ptr) :: scratch = c_null_ptr
     end type c_bed_options
 
+    type, bind(C) :: c_fault
+        integer(c_int32_t) :: first = 0, second = 0, triangle = -1, wall = 0
+        integer(c_int) :: why = 0
+    end type c_fault
+
+    type, bind(C) :: c_run
+        integer(c_int) :: threads = 0
+        type(c_funptr) :: progress = c_null_funptr
+        type(c_ptr) :: context = c_null_ptr
+        type(c_fault) :: fault
+    end type c_run
+
     type, bind(C) :: c_factors
         integer(c_int32_t) :: n = 0, walls = 0
-        type(c_ptr) :: start = c_null_ptr, col = c_null_ptr, f = c_null_ptr
-        type(c_ptr) :: escaped = c_null_ptr, beyond = c_null_ptr, error = c_null_ptr, wall = c_null_ptr
-        type(c_ptr) :: wall_wall = c_null_ptr, wall_escaped = c_null_ptr, wall_error = c_null_ptr
+        type(c_ptr) :: start = c_null_ptr, col = c_null_ptr, f = c_null_ptr, escaped = c_null_ptr, &
+            beyond = c_null_ptr, error = c_null_ptr, wall = c_null_ptr, wall_wall = c_null_ptr, &
+            wall_escaped = c_null_ptr, wall_error = c_null_ptr
         real(c_double) :: wall_correction = 0, wall_closure = 0, changed = 0
         integer(c_int32_t) :: changed_row = 0
     end type c_factors
+
+    type, bind(C) :: c_scene_facts
+        integer(c_int32_t) :: spheres = 0, walls = 0
+        integer(c_int) :: isa = 0
+        integer(c_int32_t) :: cells = 0
+        real(c_double) :: radius_min = 0, radius_max = 0, overlap_max = 0
+        integer(c_int32_t) :: overlap_pair(2) = 0, triangles = 0
+    end type c_scene_facts
 
     type, bind(C) :: c_bed_factors
         type(c_factors) :: matrix
@@ -161,6 +163,15 @@ module fibrad
         real(c_double) :: known_paths = 0
     end type c_exchange_rule
 
+    type, bind(C) :: c_wall_row
+        real(c_double) :: wall(32) = 0, spheres = 0, escaped = 0, error = 0
+        integer(c_int64_t) :: rays = 0, paths = 0
+    end type c_wall_row
+
+    type, bind(C) :: c_side_view
+        real(c_double) :: spheres = 0, walls = 0, escaped = 0
+    end type c_side_view
+
     type, bind(C) :: c_displacement
         real(c_double) :: square(3) = 0, error(3) = 0, absorbed = 0
         integer(c_int64_t) :: rays = 0
@@ -173,21 +184,32 @@ module fibrad
     end type c_heat_config
 
     type, bind(C) :: c_heat_sources
-        type(c_ptr) :: temperature = c_null_ptr, emissivity = c_null_ptr
-        type(c_ptr) :: power = c_null_ptr, hold = c_null_ptr, reference = c_null_ptr
-        type(c_ptr) :: wall_temperature = c_null_ptr, wall_emissivity = c_null_ptr, wall_power = c_null_ptr
-        type(c_ptr) :: insulated = c_null_ptr
+        type(c_ptr) :: temperature = c_null_ptr, emissivity = c_null_ptr, power = c_null_ptr, hold = c_null_ptr, &
+            reference = c_null_ptr, wall_temperature = c_null_ptr, wall_emissivity = c_null_ptr, &
+            wall_power = c_null_ptr, insulated = c_null_ptr
         real(c_double) :: surroundings = 0, sigma = fibrad_stefan_boltzmann, tolerance = 0
         integer(c_int32_t) :: sweeps_max = 0
         integer(c_int) :: uniform = 0
-        type(c_ptr) :: side_temperature = c_null_ptr, light = c_null_ptr, conductivity = c_null_ptr
-        type(c_ptr) :: absorbed = c_null_ptr
-        type(c_ptr) :: contact_first = c_null_ptr, contact_second = c_null_ptr, conductance = c_null_ptr
+        type(c_ptr) :: side_temperature = c_null_ptr, light = c_null_ptr, conductivity = c_null_ptr, &
+            absorbed = c_null_ptr, contact_first = c_null_ptr, contact_second = c_null_ptr, conductance = c_null_ptr
         integer(c_int32_t) :: contacts = 0
         type(c_ptr) :: contact_places = c_null_ptr
     end type c_heat_sources
 
-    ! Light from outside: fibrad_light in fibrad_light.h. Set direction and flux.
+    type, bind(C) :: c_heat_result
+        type(c_ptr) :: power = c_null_ptr, wall_power = c_null_ptr
+        real(c_double) :: surroundings_power = 0
+        type(c_ptr) :: temperature = c_null_ptr, wall_temperature = c_null_ptr, power_error = c_null_ptr, &
+            wall_error = c_null_ptr, temperature_error = c_null_ptr, wall_temperature_error = c_null_ptr
+        real(c_double) :: error_patches = 0, error_beams = 0, residual = 0
+        integer(c_int32_t) :: sweeps = 0
+        type(c_ptr) :: wall_absorbed = c_null_ptr
+        real(c_double) :: surroundings_error = 0
+        type(c_ptr) :: wall_area = c_null_ptr, least_temperature = c_null_ptr, largest_temperature = c_null_ptr, &
+            centre_temperature = c_null_ptr, surface_error = c_null_ptr, centre_error = c_null_ptr, &
+            conducted = c_null_ptr, wall_conducted = c_null_ptr, contact_flow = c_null_ptr
+    end type c_heat_result
+
     type, bind(C), public :: fibrad_light
         real(c_double) :: direction(3) = 0, flux = 0, half_angle = 0
         integer(c_int32_t) :: directions = 0
@@ -204,28 +226,12 @@ module fibrad
     end type c_light_sources
 
     type, bind(C) :: c_light_result
-        type(c_ptr) :: absorbed = c_null_ptr, absorbed_first = c_null_ptr, absorbed_error = c_null_ptr
-        type(c_ptr) :: wall_absorbed = c_null_ptr, wall_absorbed_first = c_null_ptr, wall_absorbed_error = c_null_ptr
+        type(c_ptr) :: absorbed = c_null_ptr, absorbed_first = c_null_ptr, absorbed_error = c_null_ptr, &
+            wall_absorbed = c_null_ptr, wall_absorbed_first = c_null_ptr, wall_absorbed_error = c_null_ptr
         real(c_double) :: incident = 0, transmitted = 0, reflected = 0, error = 0, error_patches = 0
         integer(c_int32_t) :: sweeps = 0, lights = 0
         type(c_ptr) :: patches = c_null_ptr
     end type c_light_result
-
-    type, bind(C) :: c_heat_result
-        type(c_ptr) :: power = c_null_ptr, wall_power = c_null_ptr
-        real(c_double) :: surroundings_power = 0
-        type(c_ptr) :: temperature = c_null_ptr, wall_temperature = c_null_ptr
-        type(c_ptr) :: power_error = c_null_ptr, wall_error = c_null_ptr
-        type(c_ptr) :: temperature_error = c_null_ptr, wall_temperature_error = c_null_ptr
-        real(c_double) :: error_patches = 0, error_beams = 0, residual = 0
-        integer(c_int32_t) :: sweeps = 0
-        type(c_ptr) :: wall_absorbed = c_null_ptr
-        real(c_double) :: surroundings_error = 0
-        type(c_ptr) :: wall_area = c_null_ptr
-        type(c_ptr) :: least_temperature = c_null_ptr, largest_temperature = c_null_ptr
-        type(c_ptr) :: centre_temperature = c_null_ptr, surface_error = c_null_ptr, centre_error = c_null_ptr
-        type(c_ptr) :: conducted = c_null_ptr, wall_conducted = c_null_ptr, contact_flow = c_null_ptr
-    end type c_heat_result
 
     type, bind(C) :: c_transient_config
         integer(c_int) :: method = 0
@@ -248,6 +254,279 @@ module fibrad
         integer(c_int64_t) :: steps = 0, refused = 0, sweeps = 0, corrections = 0
     end type c_span
 
+    type, bind(C) :: c_contact_rule
+        integer(c_int) :: spots = 0
+        real(c_double) :: scale = 0, gas_reach = 0, gas_jump = 0, gas_least = 0
+        integer(c_int) :: gas_alone = 0
+    end type c_contact_rule
+
+    type, bind(C) :: c_contact_list
+        integer(c_int32_t) :: n = 0
+        type(c_ptr) :: first = c_null_ptr, second = c_null_ptr, distance = c_null_ptr, radius = c_null_ptr, &
+            other = c_null_ptr, spot = c_null_ptr
+    end type c_contact_list
+
+    interface
+        function c_status_text(status) bind(C, name="fibrad_status_text")
+            import
+            integer(c_int), value :: status
+            type(c_ptr) :: c_status_text
+        end function c_status_text
+        function c_version() bind(C, name="fibrad_version")
+            import
+            type(c_ptr) :: c_version
+        end function c_version
+        function c_why_text(why) bind(C, name="fibrad_why_text")
+            import
+            integer(c_int), value :: why
+            type(c_ptr) :: c_why_text
+        end function c_why_text
+        function c_node_emissivity(emissivity, conductivity) bind(C, name="fibrad_node_emissivity")
+            import
+            real(c_double), value :: emissivity
+            real(c_double), value :: conductivity
+            real(c_double) :: c_node_emissivity
+        end function c_node_emissivity
+        function c_view_factors(config, spheres, options, run, factors) bind(C, name="fibrad_view_factors")
+            import
+            type(c_scene_config), intent(in) :: config
+            type(c_spheres), intent(in) :: spheres
+            type(c_bed_options), intent(in) :: options
+            type(c_run), intent(inout) :: run
+            type(c_ptr), intent(out) :: factors
+            integer(c_int) :: c_view_factors
+        end function c_view_factors
+        function c_exchange_factors(config, spheres, rule, options, run, &
+            factors) bind(C, name="fibrad_exchange_factors")
+            import
+            type(c_scene_config), intent(in) :: config
+            type(c_spheres), intent(in) :: spheres
+            type(c_exchange_rule), intent(in) :: rule
+            type(c_bed_options), intent(in) :: options
+            type(c_run), intent(inout) :: run
+            type(c_ptr), intent(out) :: factors
+            integer(c_int) :: c_exchange_factors
+        end function c_exchange_factors
+        subroutine c_bed_free(factors) bind(C, name="fibrad_bed_free")
+            import
+            type(c_bed_factors), intent(inout) :: factors
+        end subroutine c_bed_free
+        function c_exchange_wall_row(config, spheres, wall, rule, run, row) bind(C, name="fibrad_exchange_wall_row")
+            import
+            type(c_scene_config), intent(in) :: config
+            type(c_spheres), intent(in) :: spheres
+            integer(c_int32_t), value :: wall
+            type(c_exchange_rule), intent(in) :: rule
+            type(c_run), intent(inout) :: run
+            type(c_wall_row), intent(inout) :: row
+            integer(c_int) :: c_exchange_wall_row
+        end function c_exchange_wall_row
+        function c_side_views(config, spheres, rays, run, view) bind(C, name="fibrad_side_views")
+            import
+            type(c_scene_config), intent(in) :: config
+            type(c_spheres), intent(in) :: spheres
+            integer(c_int32_t), value :: rays
+            type(c_run), intent(inout) :: run
+            type(c_side_view), intent(inout) :: view(*)
+            integer(c_int) :: c_side_views
+        end function c_side_views
+        function c_displacements(config, spheres, rule, wanted, run, displacement, &
+            facts) bind(C, name="fibrad_displacements")
+            import
+            type(c_scene_config), intent(in) :: config
+            type(c_spheres), intent(in) :: spheres
+            type(c_exchange_rule), intent(in) :: rule
+            type(c_ptr), value :: wanted
+            type(c_run), intent(inout) :: run
+            type(c_displacement), intent(inout) :: displacement(*)
+            type(c_scene_facts), intent(inout) :: facts
+            integer(c_int) :: c_displacements
+        end function c_displacements
+        function c_radiation_new(radiation, config, spheres, heat_config, run) bind(C, name="fibrad_radiation_new")
+            import
+            type(c_ptr), intent(out) :: radiation
+            type(c_scene_config), intent(in) :: config
+            type(c_spheres), intent(in) :: spheres
+            type(c_heat_config), intent(in) :: heat_config
+            type(c_run), intent(inout) :: run
+            integer(c_int) :: c_radiation_new
+        end function c_radiation_new
+        function c_radiation_move(radiation, config, spheres) bind(C, name="fibrad_radiation_move")
+            import
+            type(c_ptr), value :: radiation
+            type(c_scene_config), intent(in) :: config
+            type(c_spheres), intent(in) :: spheres
+            integer(c_int) :: c_radiation_move
+        end function c_radiation_move
+        function c_radiation_solve(radiation, sources, result) bind(C, name="fibrad_radiation_solve")
+            import
+            type(c_ptr), value :: radiation
+            type(c_heat_sources), intent(in) :: sources
+            type(c_heat_result), intent(inout) :: result
+            integer(c_int) :: c_radiation_solve
+        end function c_radiation_solve
+        function c_radiation_sides(radiation, flux, temperature) bind(C, name="fibrad_radiation_sides")
+            import
+            type(c_ptr), value :: radiation
+            type(c_ptr), value :: flux
+            type(c_ptr), value :: temperature
+            integer(c_int) :: c_radiation_sides
+        end function c_radiation_sides
+        function c_radiation_settle(radiation, sources, law, context, emissivity, wall_emissivity, &
+            result) bind(C, name="fibrad_radiation_settle")
+            import
+            type(c_ptr), value :: radiation
+            type(c_heat_sources), intent(in) :: sources
+            type(c_funptr), value :: law
+            type(c_ptr), value :: context
+            type(c_ptr), value :: emissivity
+            type(c_ptr), value :: wall_emissivity
+            type(c_heat_result), intent(inout) :: result
+            integer(c_int) :: c_radiation_settle
+        end function c_radiation_settle
+        function c_radiation_shine(radiation, sources, result) bind(C, name="fibrad_radiation_shine")
+            import
+            type(c_ptr), value :: radiation
+            type(c_light_sources), intent(in) :: sources
+            type(c_light_result), intent(inout) :: result
+            integer(c_int) :: c_radiation_shine
+        end function c_radiation_shine
+        subroutine c_radiation_describe(radiation, facts, fault) bind(C, name="fibrad_radiation_describe")
+            import
+            type(c_ptr), value :: radiation
+            type(c_scene_facts), intent(inout) :: facts
+            type(c_fault), intent(inout) :: fault
+        end subroutine c_radiation_describe
+        subroutine c_radiation_free(radiation) bind(C, name="fibrad_radiation_free")
+            import
+            type(c_ptr), value :: radiation
+        end subroutine c_radiation_free
+        function c_transient_new(transient, scene, spheres, config, run) bind(C, name="fibrad_transient_new")
+            import
+            type(c_ptr), intent(out) :: transient
+            type(c_scene_config), intent(in) :: scene
+            type(c_spheres), intent(in) :: spheres
+            type(c_transient_config), intent(in) :: config
+            type(c_run), intent(inout) :: run
+            integer(c_int) :: c_transient_new
+        end function c_transient_new
+        function c_transient_move(transient, scene, spheres) bind(C, name="fibrad_transient_move")
+            import
+            type(c_ptr), value :: transient
+            type(c_scene_config), intent(in) :: scene
+            type(c_spheres), intent(in) :: spheres
+            integer(c_int) :: c_transient_move
+        end function c_transient_move
+        function c_transient_powers(transient, sources, result) bind(C, name="fibrad_transient_powers")
+            import
+            type(c_ptr), value :: transient
+            type(c_heat_sources), intent(in) :: sources
+            type(c_heat_result), intent(inout) :: result
+            integer(c_int) :: c_transient_powers
+        end function c_transient_powers
+        function c_transient_sides(transient, flux, temperature) bind(C, name="fibrad_transient_sides")
+            import
+            type(c_ptr), value :: transient
+            type(c_ptr), value :: flux
+            type(c_ptr), value :: temperature
+            integer(c_int) :: c_transient_sides
+        end function c_transient_sides
+        function c_transient_shine(transient, sources, result) bind(C, name="fibrad_transient_shine")
+            import
+            type(c_ptr), value :: transient
+            type(c_light_sources), intent(in) :: sources
+            type(c_light_result), intent(inout) :: result
+            integer(c_int) :: c_transient_shine
+        end function c_transient_shine
+        function c_transient_advance(transient, sources, span) bind(C, name="fibrad_transient_advance")
+            import
+            type(c_ptr), value :: transient
+            type(c_heat_sources), intent(in) :: sources
+            type(c_span), intent(inout) :: span
+            integer(c_int) :: c_transient_advance
+        end function c_transient_advance
+        subroutine c_transient_describe(transient, facts, fault) bind(C, name="fibrad_transient_describe")
+            import
+            type(c_ptr), value :: transient
+            type(c_scene_facts), intent(inout) :: facts
+            type(c_fault), intent(inout) :: fault
+        end subroutine c_transient_describe
+        subroutine c_transient_free(transient) bind(C, name="fibrad_transient_free")
+            import
+            type(c_ptr), value :: transient
+        end subroutine c_transient_free
+        function c_contacts_find(config, spheres, rule, list) bind(C, name="fibrad_contacts_find")
+            import
+            type(c_scene_config), intent(in) :: config
+            type(c_spheres), intent(in) :: spheres
+            type(c_contact_rule), intent(in) :: rule
+            type(c_ptr), intent(out) :: list
+            integer(c_int) :: c_contacts_find
+        end function c_contacts_find
+        function c_contacts_conduct(list, rule, solid, gas, conductance) bind(C, name="fibrad_contacts_conduct")
+            import
+            type(c_contact_list), intent(in) :: list
+            type(c_contact_rule), intent(in) :: rule
+            type(c_ptr), value :: solid
+            type(c_ptr), value :: gas
+            type(c_ptr), value :: conductance
+            integer(c_int) :: c_contacts_conduct
+        end function c_contacts_conduct
+        subroutine c_contacts_free(list) bind(C, name="fibrad_contacts_free")
+            import
+            type(c_contact_list), intent(inout) :: list
+        end subroutine c_contacts_free
+        function c_heap_resize(context, block, size) bind(C, name="fibrad_heap_resize")
+            import
+            type(c_ptr), value :: context
+            type(c_ptr), value :: block
+            integer(c_size_t), value :: size
+            type(c_ptr) :: c_heap_resize
+        end function c_heap_resize
+        function c_host_sizeof(name) bind(C, name="fibrad_host_sizeof")
+            import
+            character(kind=c_char), intent(in) :: name(*)
+            integer(c_size_t) :: c_host_sizeof
+        end function c_host_sizeof
+    end interface
+
+    character(24), parameter :: c_names(30) = [character(24) :: &
+        'fibrad_plane', 'fibrad_cylinder', 'fibrad_wall', 'fibrad_occupancy', 'fibrad_triangles', &
+        'fibrad_scene_config', 'fibrad_spheres', 'fibrad_beam_rule', 'fibrad_surface_rule', 'fibrad_cast_rule', &
+        'fibrad_bed_options', 'fibrad_fault', 'fibrad_run', 'fibrad_factors', 'fibrad_scene_facts', &
+        'fibrad_bed_factors', 'fibrad_exchange_rule', 'fibrad_wall_row', 'fibrad_side_view', 'fibrad_displacement', &
+        'fibrad_heat_config', 'fibrad_heat_sources', 'fibrad_heat_result', 'fibrad_light', 'fibrad_light_sources', &
+        'fibrad_light_result', 'fibrad_transient_config', 'fibrad_span', 'fibrad_contact_rule', 'fibrad_contact_list']
+    integer, parameter :: c_bits(30) = [ &
+        storage_size(c_plane()), storage_size(c_cylinder()), storage_size(fibrad_wall()), storage_size(c_occupancy()), &
+        storage_size(c_triangles()), storage_size(c_scene_config()), storage_size(c_spheres()), &
+        storage_size(c_beam_rule()), storage_size(c_surface_rule()), storage_size(c_cast_rule()), &
+        storage_size(c_bed_options()), storage_size(c_fault()), storage_size(c_run()), storage_size(c_factors()), &
+        storage_size(c_scene_facts()), storage_size(c_bed_factors()), storage_size(c_exchange_rule()), &
+        storage_size(c_wall_row()), storage_size(c_side_view()), storage_size(c_displacement()), &
+        storage_size(c_heat_config()), storage_size(c_heat_sources()), storage_size(c_heat_result()), &
+        storage_size(fibrad_light()), storage_size(c_light_sources()), storage_size(c_light_result()), &
+        storage_size(c_transient_config()), storage_size(c_span()), storage_size(c_contact_rule()), &
+        storage_size(c_contact_list())]
+    ! ---- end of what `make structures` writes
+
+    ! The triangles of all walls that are meshes. Seen from its front, the corners of a triangle go counter-clockwise. A
+    ! side that belongs to no wall must not be seen.
+    type, public :: fibrad_triangles
+        real(c_double), allocatable :: vertex(:, :)    ! L, (3, vertices)
+        integer(c_int32_t), allocatable :: corner(:, :) ! (3, triangles), vertices of each triangle
+        integer(c_int32_t), allocatable :: front(:)     ! (triangles), wall of each front side; 0: none
+        integer(c_int32_t), allocatable :: back(:)      ! (triangles), wall of each back side; 0: none; or not allocated
+    end type fibrad_triangles
+
+    type :: walls_of_c ! walls as C takes them: openings in a list of their own, triangles counted from 0
+        type(fibrad_wall), allocatable :: wall(:)
+        type(c_plane), allocatable :: opening(:)
+        real(c_double), allocatable :: vertex(:, :)
+        integer(c_int32_t), allocatable :: corner(:, :), front(:), back(:)
+        type(c_triangles) :: given
+    end type walls_of_c
+
     abstract interface
         ! A function of the caller: emissivities that depend on temperatures. Where a temperature is NaN, leave the
         ! emissivity as it is.
@@ -265,160 +544,6 @@ module fibrad
         procedure(fibrad_law), pointer, nopass :: law => null()
         integer :: n = 0
     end type law_of_spheres
-
-    interface
-        function c_status_text(status) bind(C, name="fibrad_status_text")
-            import :: c_int, c_ptr
-            integer(c_int), value :: status
-            type(c_ptr) :: c_status_text
-        end function c_status_text
-
-        function c_version() bind(C, name="fibrad_version")
-            import :: c_ptr
-            type(c_ptr) :: c_version
-        end function c_version
-
-        function c_sizeof_name(name) bind(C, name="fibrad_host_sizeof")
-            import :: c_char, c_size_t
-            character(kind=c_char), intent(in) :: name(*)
-            integer(c_size_t) :: c_sizeof_name
-        end function c_sizeof_name
-
-        function c_view_factors(config, spheres, options, run, factors) bind(C, name="fibrad_view_factors")
-            import :: c_int, c_ptr, c_scene_config, c_spheres, c_bed_options, c_run
-            type(c_scene_config), intent(in) :: config
-            type(c_spheres), intent(in) :: spheres
-            type(c_bed_options), intent(in) :: options
-            type(c_run), intent(inout) :: run
-            type(c_ptr), intent(out) :: factors
-            integer(c_int) :: c_view_factors
-        end function c_view_factors
-
-        function c_exchange_factors(config, spheres, rule, options, run, factors) bind(C, name="fibrad_exchange_factors")
-            import :: c_int, c_ptr, c_scene_config, c_spheres, c_exchange_rule, c_bed_options, c_run
-            type(c_scene_config), intent(in) :: config
-            type(c_spheres), intent(in) :: spheres
-            type(c_exchange_rule), intent(in) :: rule
-            type(c_bed_options), intent(in) :: options
-            type(c_run), intent(inout) :: run
-            type(c_ptr), intent(out) :: factors
-            integer(c_int) :: c_exchange_factors
-        end function c_exchange_factors
-
-        function c_displacements(config, spheres, rule, wanted, run, displacement, facts) bind(C, name="fibrad_displacements")
-            import :: c_int, c_ptr, c_scene_config, c_spheres, c_exchange_rule, c_run, c_displacement
-            type(c_scene_config), intent(in) :: config
-            type(c_spheres), intent(in) :: spheres
-            type(c_exchange_rule), intent(in) :: rule
-            type(c_ptr), value :: wanted, facts
-            type(c_run), intent(inout) :: run
-            type(c_displacement), intent(inout) :: displacement(*)
-            integer(c_int) :: c_displacements
-        end function c_displacements
-
-        function c_node_emissivity(emissivity, conductivity) bind(C, name="fibrad_node_emissivity")
-            import :: c_double
-            real(c_double), value :: emissivity, conductivity
-            real(c_double) :: c_node_emissivity
-        end function c_node_emissivity
-
-        subroutine c_bed_free(factors) bind(C, name="fibrad_bed_free")
-            import :: c_ptr
-            type(c_ptr), value :: factors
-        end subroutine c_bed_free
-
-        function c_radiation_new(radiation, config, spheres, heat_config, run) bind(C, name="fibrad_radiation_new")
-            import :: c_int, c_ptr, c_scene_config, c_spheres, c_heat_config, c_run
-            type(c_ptr), intent(out) :: radiation
-            type(c_scene_config), intent(in) :: config
-            type(c_spheres), intent(in) :: spheres
-            type(c_heat_config), intent(in) :: heat_config
-            type(c_run), intent(inout) :: run
-            integer(c_int) :: c_radiation_new
-        end function c_radiation_new
-
-        function c_radiation_move(radiation, config, spheres) bind(C, name="fibrad_radiation_move")
-            import :: c_int, c_ptr, c_scene_config, c_spheres
-            type(c_ptr), value :: radiation
-            type(c_scene_config), intent(in) :: config
-            type(c_spheres), intent(in) :: spheres
-            integer(c_int) :: c_radiation_move
-        end function c_radiation_move
-
-        function c_radiation_solve(radiation, sources, result) bind(C, name="fibrad_radiation_solve")
-            import :: c_int, c_ptr, c_heat_sources, c_heat_result
-            type(c_ptr), value :: radiation
-            type(c_heat_sources), intent(in) :: sources
-            type(c_heat_result), intent(inout) :: result
-            integer(c_int) :: c_radiation_solve
-        end function c_radiation_solve
-
-        function c_radiation_settle(radiation, sources, law, context, emissivity, wall_emissivity, result) &
-            bind(C, name="fibrad_radiation_settle")
-            import :: c_int, c_ptr, c_funptr, c_heat_sources, c_heat_result
-            type(c_ptr), value :: radiation, context, emissivity, wall_emissivity
-            type(c_funptr), value :: law
-            type(c_heat_sources), intent(in) :: sources
-            type(c_heat_result), intent(inout) :: result
-            integer(c_int) :: c_radiation_settle
-        end function c_radiation_settle
-
-        function c_radiation_shine(radiation, sources, result) bind(C, name="fibrad_radiation_shine")
-            import :: c_int, c_ptr, c_light_sources, c_light_result
-            type(c_ptr), value :: radiation
-            type(c_light_sources), intent(in) :: sources
-            type(c_light_result), intent(inout) :: result
-            integer(c_int) :: c_radiation_shine
-        end function c_radiation_shine
-
-        function c_transient_new(transient, config, spheres, transient_config, run) bind(C, name="fibrad_transient_new")
-            import :: c_int, c_ptr, c_scene_config, c_spheres, c_transient_config, c_run
-            type(c_ptr), intent(out) :: transient
-            type(c_scene_config), intent(in) :: config
-            type(c_spheres), intent(in) :: spheres
-            type(c_transient_config), intent(in) :: transient_config
-            type(c_run), intent(inout) :: run
-            integer(c_int) :: c_transient_new
-        end function c_transient_new
-
-        function c_transient_move(transient, config, spheres) bind(C, name="fibrad_transient_move")
-            import :: c_int, c_ptr, c_scene_config, c_spheres
-            type(c_ptr), value :: transient
-            type(c_scene_config), intent(in) :: config
-            type(c_spheres), intent(in) :: spheres
-            integer(c_int) :: c_transient_move
-        end function c_transient_move
-
-        function c_transient_advance(transient, sources, span) bind(C, name="fibrad_transient_advance")
-            import :: c_int, c_ptr, c_heat_sources, c_span
-            type(c_ptr), value :: transient
-            type(c_heat_sources), intent(in) :: sources
-            type(c_span), intent(inout) :: span
-            integer(c_int) :: c_transient_advance
-        end function c_transient_advance
-
-        subroutine c_transient_describe(transient, facts, fault) bind(C, name="fibrad_transient_describe")
-            import :: c_ptr, c_fault
-            type(c_ptr), value :: transient, facts
-            type(c_fault), intent(inout) :: fault
-        end subroutine c_transient_describe
-
-        subroutine c_transient_free(transient) bind(C, name="fibrad_transient_free")
-            import :: c_ptr
-            type(c_ptr), value :: transient
-        end subroutine c_transient_free
-
-        subroutine c_radiation_describe(radiation, facts, fault) bind(C, name="fibrad_radiation_describe")
-            import :: c_ptr, c_fault
-            type(c_ptr), value :: radiation, facts
-            type(c_fault), intent(inout) :: fault
-        end subroutine c_radiation_describe
-
-        subroutine c_radiation_free(radiation) bind(C, name="fibrad_radiation_free")
-            import :: c_ptr
-            type(c_ptr), value :: radiation
-        end subroutine c_radiation_free
-    end interface
 
     ! ---- results
     ! A matrix of factors in compressed rows. The sum of f of row i, wall(:, i), escaped(i) and beyond(i) is 1.
@@ -628,6 +753,7 @@ contains
         type(c_exchange_rule) :: rule
         type(c_run) :: run
         type(c_displacement), allocatable :: found(:)
+        type(c_scene_facts) :: facts
         integer :: i
         call set_run(run, threads, fault)
         status = check_sizes(size(x), size(y), size(z), size(r), size(emissivity))
@@ -644,7 +770,7 @@ contains
         if (present(paths)) rule%paths = int(paths, c_int32_t)
         if (present(flights)) rule%flights = int(flights, c_int32_t)
         allocate (found(size(x)))
-        status = c_displacements(scene_of(box, walls, mesh), spheres_of(x, y, z, r), rule, c_null_ptr, run, found, c_null_ptr)
+        status = c_displacements(scene_of(box, walls, mesh), spheres_of(x, y, z, r), rule, c_null_ptr, run, found, facts)
         call tell_fault(run%fault, size(x), fault)
         if (status /= fibrad_ok) return
         do i = 1, size(x)
@@ -695,12 +821,13 @@ contains
         integer, intent(out), optional :: fault(2)
         type(walls_of_c), target :: mesh
         type(c_fault) :: found
+        type(c_scene_facts) :: facts
         if (present(fault)) fault = 0
         status = check_sizes(size(x), size(y), size(z), size(r))
         if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
         status = c_radiation_move(heat%radiation, scene_of(box, walls, mesh), spheres_of(x, y, z, r))
-        call c_radiation_describe(heat%radiation, c_null_ptr, found)
+        call c_radiation_describe(heat%radiation, facts, found)
         if (c_associated(heat%radiation)) call tell_fault(found, size(x), fault)
     end subroutine heat_move
 
@@ -951,12 +1078,13 @@ contains
         integer, intent(out), optional :: fault(2)
         type(walls_of_c), target :: mesh
         type(c_fault) :: found
+        type(c_scene_facts) :: facts
         if (present(fault)) fault = 0
         status = check_sizes(size(x), size(y), size(z), size(r))
         if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
         status = c_transient_move(transient%transient, scene_of(box, walls, mesh), spheres_of(x, y, z, r))
-        call c_transient_describe(transient%transient, c_null_ptr, found)
+        call c_transient_describe(transient%transient, facts, found)
         if (c_associated(transient%transient)) call tell_fault(found, size(x), fault)
     end subroutine transient_move
 
@@ -995,6 +1123,7 @@ contains
         type(c_heat_sources) :: sources
         type(c_span) :: span
         type(c_fault) :: found
+        type(c_scene_facts) :: facts
         if (present(fault)) fault = 0
         status = check_sizes(transient%spheres, size(temperature), size(capacity), size(emissivity))
         if (status == fibrad_ok) status = check_sizes(transient%walls, count_values(wall_temperature), &
@@ -1020,7 +1149,7 @@ contains
         if (present(power)) span%power = c_loc(power)
         if (present(wall_energy)) span%wall_energy = c_loc(wall_energy)
         status = c_transient_advance(transient%transient, sources, span)
-        call c_transient_describe(transient%transient, c_null_ptr, found)
+        call c_transient_describe(transient%transient, facts, found)
         if (status /= fibrad_ok .and. c_associated(transient%transient)) call tell_fault(found, size(temperature), fault)
         if (status /= fibrad_ok) return
         if (present(surroundings_energy)) surroundings_energy = span%surroundings_energy
@@ -1060,47 +1189,9 @@ contains
 
     ! Whether the structures of this module have the same sizes as those of the library.
     logical function fibrad_layouts_agree()
-        type(c_spheres) :: spheres
-        type(fibrad_wall) :: wall
-        type(c_scene_config) :: scene_config
-        type(c_fault) :: fault
-        type(c_scene_facts) :: scene_facts
-        type(c_run) :: run
-        type(c_beam_rule) :: beam_rule
-        type(c_bed_options) :: bed_options
-        type(c_factors) :: factors
-        type(c_bed_factors) :: bed_factors
-        type(c_exchange_rule) :: exchange_rule
-        type(c_displacement) :: displacement
-        type(c_heat_config) :: heat_config
-        type(c_heat_sources) :: heat_sources
-        type(c_heat_result) :: heat_result
-        type(fibrad_light) :: light
-        type(c_light_sources) :: light_sources
-        type(c_light_result) :: light_result
-        type(c_transient_config) :: transient_config
-        type(c_span) :: span
-        type(c_triangles) :: triangles
-        fibrad_layouts_agree = all([ &
-            agrees('spheres', c_sizeof(spheres)), agrees('wall', c_sizeof(wall)), &
-            agrees('scene_config', c_sizeof(scene_config)), agrees('fault', c_sizeof(fault)), &
-            agrees('scene_facts', c_sizeof(scene_facts)), agrees('run', c_sizeof(run)), &
-            agrees('beam_rule', c_sizeof(beam_rule)), agrees('bed_options', c_sizeof(bed_options)), &
-            agrees('factors', c_sizeof(factors)), agrees('bed_factors', c_sizeof(bed_factors)), &
-            agrees('exchange_rule', c_sizeof(exchange_rule)), agrees('displacement', c_sizeof(displacement)), &
-            agrees('heat_config', c_sizeof(heat_config)), &
-            agrees('heat_sources', c_sizeof(heat_sources)), agrees('heat_result', c_sizeof(heat_result)), &
-            agrees('light', c_sizeof(light)), agrees('light_sources', c_sizeof(light_sources)), &
-            agrees('light_result', c_sizeof(light_result)), &
-            agrees('transient_config', c_sizeof(transient_config)), agrees('span', c_sizeof(span)), &
-            agrees('triangles', c_sizeof(triangles))])
+        integer :: k
+        fibrad_layouts_agree = all([(c_host_sizeof(trim(c_names(k))//c_null_char) * 8 == c_bits(k), k=1, size(c_bits))])
     end function fibrad_layouts_agree
-
-    logical function agrees(name, bytes)
-        character(*), intent(in) :: name
-        integer(c_size_t), intent(in) :: bytes
-        agrees = c_sizeof_name('fibrad_'//name//c_null_char) == bytes
-    end function agrees
 
     function text_of(from) result(text)
         type(c_ptr), intent(in) :: from
@@ -1245,7 +1336,7 @@ contains
         factors%seconds = bed%seconds
         factors%closure_error = bed%closure_error
         factors%reciprocity_error = bed%reciprocity_error
-        call c_bed_free(found)
+        call c_bed_free(bed)
     end subroutine take_factors
 
     function reals(from, n) result(values)

@@ -132,7 +132,8 @@ size_t fibrad_host_sizeof(const char *name) {
         STRUCTURE(fibrad_bed_options),   STRUCTURE(fibrad_bed_factors),  STRUCTURE(fibrad_transient_config),
         STRUCTURE(fibrad_span),          STRUCTURE(fibrad_wall_row),     STRUCTURE(fibrad_triangles),
         STRUCTURE(fibrad_triangle_hit),  STRUCTURE(fibrad_side_view),    STRUCTURE(fibrad_row_part),
-        STRUCTURE(fibrad_plane),         STRUCTURE(fibrad_contact_rule), STRUCTURE(fibrad_contact_list),
+        STRUCTURE(fibrad_plane),         STRUCTURE(fibrad_cylinder),     STRUCTURE(fibrad_contact_rule),
+        STRUCTURE(fibrad_contact_list),
     };
     for (size_t k = 0; name && k < sizeof structures / sizeof *structures; ++k)
         if (strcmp(name, structures[k].name) == 0) return structures[k].size;

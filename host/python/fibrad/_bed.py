@@ -12,9 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._call import Call
 from ._errors import StateError
-from ._library import Fault, HeatConfig, SceneFacts, library
+from ._library import library
 from ._limits import DIRECTIONS, PATCHES, POINTS, POWER_MAX, TEMPERATURE_MAX
 from ._scene import Container, Packing, Walls
+from ._structures import Fault, HeatConfig, SceneFacts
 from ._values import mapping, refuse, whole
 from ._warnings import warn_metres, warn_overlap, warn_walls
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, Optional
 
 from ._errors import CANCELLED, Cancelled, status_text
-from ._library import PROGRESS, Run
+from ._structures import Progress as ProgressFunction, Run
 from ._values import whole
 
 Progress = Callable[[str, int, int], Any]
@@ -47,7 +47,7 @@ class Call:
             raise TypeError("progress must be a function of stage, done and total")
         self._progress = progress
         self._raised: Optional[BaseException] = None
-        self.run = Run(threads=whole("threads", threads, 1, 1024), progress=PROGRESS(self._report))
+        self.run = Run(threads=whole("threads", threads, 1, 1024), progress=ProgressFunction(self._report))
 
     def _catch(self, error: BaseException) -> None:
         self._raised = self._raised or error

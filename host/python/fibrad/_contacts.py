@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._limits import CONDUCTANCE_MAX
-from ._library import ContactList, ContactRule, library
+from ._library import library
 from ._scene import Container, Packing, Walls, pointer
+from ._structures import ContactList, ContactRule
 from ._values import doubles, per_sphere, real, refuse
 
 _SPOTS: Mapping[Optional[str], int] = {None: 0, "lens": 1, "hertz": 2}

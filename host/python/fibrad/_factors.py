@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._call import Call, Progress
-from ._library import BeamRule, BedFactors, BedOptions, CastRule, Displacement, ExchangeRule, SurfaceRule, library
+from ._library import library
 from ._limits import DIRECTIONS, FLIGHTS_MAX, LENGTH_MAX, NODES, RELATIVE_CONDUCTIVITY_MIN
 from ._scene import Container, Packing, Walls, pointer
+from ._structures import BeamRule, BedFactors, BedOptions, CastRule, Displacement, ExchangeRule, SurfaceRule
 from ._values import marks, per_sphere, real, refuse, whole
 from ._warnings import warn, warn_overlap, warn_rows, warn_walls
 
@@ -503,5 +504,5 @@ def displacements(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: Opt
                              seed=whole("seed", seed, *_SEED), cutoff=real("cutoff", cutoff, *_FAR),
                              flights=whole("flights", flights, 1, FLIGHTS_MAX))
     found: NDArray[Any] = np.zeros(job.packing.n, Displacement)
-    job.call(library.fibrad_displacements, rule, job.wanted, job.run, found.ctypes.data, None)
+    job.call(library.fibrad_displacements, rule, job.wanted, job.run, pointer(found, ctypes.POINTER(Displacement)), None)
     return Displacements(*(np.ascontiguousarray(found[name]) for name in ("square", "error", "absorbed", "rays")))

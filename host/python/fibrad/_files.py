@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._errors import Error, InputError, OutOfMemory, file_error
-from ._library import DOUBLES, Spheres, structure_of_files
+from ._structures import Spheres
 from ._values import mapping, real, refuse, several, whole
 from ._warnings import warn
 
@@ -25,14 +25,21 @@ _KINDS: dict[int, Any] = {3: InputError, 4: file_error, 5: OutOfMemory}
 _busy = threading.Lock()
 _loaded: list[Any] = []
 
-FileBed = structure_of_files(
-    "file_bed", ("x y z r", DOUBLES), ("id", POINTER(c_int64)), ("extra", DOUBLES), ("low high period", c_double * 3),
-    ("frame timestep", c_int64), ("units", ctypes.c_char * 16), ("bed", c_void_p), ("n", c_uint32))
-FileWanted = structure_of_files("file_wanted", ("path", c_char_p), ("frame", c_int64),
-                                ("column name only skip", POINTER(c_char_p)), ("columns names onlys skips", c_size_t),
-                                ("no_radius", c_int))
-FileMesh = structure_of_files("file_mesh", ("vertex", DOUBLES), ("corner", POINTER(c_uint32)), ("meshes", c_void_p),
-                              ("vertices n", c_uint32), ("both", c_int))
+
+def _structure(name: str, *fields: tuple[str, Any]) -> Any:
+    """The structure NAME of file_arrays.h. Each field is one or more names, separated by blanks, and their type."""
+    return type(name, (ctypes.Structure,),
+                {"_fields_": [(one, kind) for names, kind in fields for one in names.split()]})
+
+
+FileBed = _structure(
+    "file_bed", ("x y z r", POINTER(c_double)), ("id", POINTER(c_int64)), ("extra", POINTER(c_double)),
+    ("low high period", c_double * 3), ("frame timestep", c_int64), ("units", ctypes.c_char * 16), ("bed", c_void_p),
+    ("n", c_uint32))
+FileWanted = _structure("file_wanted", ("path", c_char_p), ("frame", c_int64), ("column name only skip", POINTER(c_char_p)),
+                        ("columns names onlys skips", c_size_t), ("no_radius", c_int))
+FileMesh = _structure("file_mesh", ("vertex", POINTER(c_double)), ("corner", POINTER(c_uint32)), ("meshes", c_void_p),
+                      ("vertices n", c_uint32), ("both", c_int))
 
 
 def _library() -> Any:

@@ -13,10 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 from ._bed import Bed, heat_config
 from ._call import Call, Progress
 from ._contacts import contacts_of
-from ._library import HeatResult, HeatSources, LightResult, LightSources, library
+from ._library import library
 from ._light import Absorbed, Light, add, lights_of, patches_pointer
 from ._scene import Walls, pointer, pointers
 from ._limits import POWER_MAX, SIGMA, TEMPERATURE_MAX
+from ._structures import HeatResult, HeatSources, LightResult, LightSources
 from ._values import per_sphere, real, refuse, several
 from ._warnings import warn_around, warn_surfaces, warn_temperatures
 

@@ -10,8 +10,8 @@ from typing import Any, Optional, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ._library import LightStructure
 from ._limits import HALF_ANGLE_MAX, LENGTH_MAX, LIGHT_DIRECTIONS_MAX, POWER_MAX, SUN_HALF_ANGLE
+from ._structures import Light as LightStructure
 from ._values import real, refuse, whole
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._errors import ARGUMENT, BACK, ENDLESS, GEOMETRY, Error, error_of, status_text, why_text
-from ._library import DOUBLES, Wall, Plane, SceneConfig, Spheres, Triangles
 from ._limits import LENGTH_MAX
+from ._structures import Wall, Plane, SceneConfig, Spheres, Triangles
 from ._values import Names, doubles, real, refuse
 
 _AXES = "xyz"
@@ -24,14 +24,14 @@ Walls = Union[Mapping[str, Any], Sequence[tuple[str, Any]]]
 MARKS: Any = ctypes.POINTER(ctypes.c_ubyte)
 
 
-def pointer(array: Optional[NDArray[Any]], kind: Any = DOUBLES) -> Any:
+def pointer(array: Optional[NDArray[Any]], kind: Any = ctypes.POINTER(ctypes.c_double)) -> Any:
     """The address of an array, NULL for None."""
     return None if array is None else ctypes.cast(array.ctypes.data, kind)
 
 
 def pointers(arrays: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
     """Fields of a structure by name. An array is of doubles or of bytes."""
-    return {name: pointer(array, DOUBLES if array.dtype == np.float64 else MARKS)
+    return {name: pointer(array) if array.dtype == np.float64 else pointer(array, MARKS)
             for name, array in arrays.items()}
 
 

@@ -13,9 +13,10 @@ from ._bed import Bed, heat_config
 from ._call import Call, Progress
 from ._contacts import contacts_of
 from ._heat import STEFAN_BOLTZMANN
-from ._library import ExchangeRule, HeatSources, Span, TransientConfig, library
+from ._library import library
 from ._scene import Walls, pointer, pointers
 from ._limits import CAPACITY_MAX, DURATION_MAX, POWER_MAX, SIGMA, TEMPERATURE_MAX
+from ._structures import ExchangeRule, HeatSources, Span, TransientConfig
 from ._values import per_sphere, real, refuse, several
 from ._warnings import warn_around, warn_capacity, warn_temperatures
 
