@@ -7,6 +7,8 @@
 
 #include "couple/insitu.h"
 
+#define CHANGED_MOST 0.1 /* part of all particles that may come or go before all rows are made anew */
+
 static int find_known(const fibrad_insitu *s, const uint64_t *owned, size_t own, const uint64_t *used, size_t n,
                       unsigned char **known) {
     uint64_t *id = malloc((own + n + 1) * sizeof *id);
@@ -32,7 +34,7 @@ static void count_changes(fibrad_follow *f, const fibrad_insitu *s, size_t own) 
     f->came = sum[0], f->gone = sum[1];
 }
 
-int fibrad_follow_find(fibrad_follow *f, const fibrad_insitu *s, const fibrad_particle *particle, size_t own,
+static int find_follow(fibrad_follow *f, const fibrad_insitu *s, const fibrad_particle *particle, size_t own,
                        size_t halo) {
     const fibrad_insitu_set *set = &s->set;
     uint64_t *id = malloc((own + halo + 1) * sizeof *id);
@@ -43,6 +45,34 @@ int fibrad_follow_find(fibrad_follow *f, const fibrad_insitu *s, const fibrad_pa
     if (!status) count_changes(f, s, own);
     free(id);
     return status;
+}
+
+int fibrad_follow_changes(fibrad_insitu_build *b) {
+    fibrad_insitu *s = b->s;
+    const int status = find_follow(&b->follow, s, b->to->particle.at, b->own, 0);
+    if (status) return status;
+    b->to->changed = s->set.changed + b->follow.came + b->follow.gone;
+    b->to->facts.gone = s->set.facts.gone + b->follow.gone;
+    b->follows = (double)b->to->changed <= CHANGED_MOST * (double)b->to->facts.particles;
+    if (!b->follows) b->to->facts.gone = b->to->changed = b->follow.kept = b->follow.kept_seen = 0;
+    if (b->follows && !b->follow.came) b->own = 0;
+    return FIBRAD_OK;
+}
+
+int fibrad_follow_choose(fibrad_insitu_build *b) {
+    fibrad_follow_free(&b->follow);
+    b->follow = (fibrad_follow){0};
+    const int status = find_follow(&b->follow, b->s, b->to->particle.at, b->own, b->halo);
+    if (status) return status;
+    fibrad_particle *p = b->to->particle.at;
+    b->fresh = 0;
+    for (size_t i = 0; i < b->own; ++i) {
+        if (b->follow.has[i]) continue;
+        const fibrad_particle first = p[i];
+        p[i] = p[b->fresh], p[b->fresh] = first;
+        b->follow.has[i] = b->follow.has[b->fresh], b->follow.has[b->fresh++] = 0;
+    }
+    return FIBRAD_OK;
 }
 
 /* Appends an old row. f, col: scratch. The factors are halved on the way, since doubled ones are no factors. */
