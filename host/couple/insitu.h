@@ -134,6 +134,9 @@ int fibrad_insitu_measure(fibrad_insitu_build *b);
  * particles smaller whose centre lies inside another. Errors, on all ranks: as fibrad_insitu_rows. */
 int fibrad_insitu_gather(fibrad_insitu_build *b);
 
+/* Says why the spheres of n particles make no scene. Returns status, or FIBRAD_E_ARGUMENT. */
+int fibrad_insitu_fault(const fibrad_insitu_build *b, int status, const uint64_t *id, size_t n, fibrad_fault fault);
+
 /* Makes the scene of n particles in b->scene, with the periods of the box. With ids of a bed that is not whole, images
  * are particles of their own, and the coarse map tells where there are others. id[n]: out, may be NULL. Errors: as
  * fibrad_scene_init; _MEMORY. */

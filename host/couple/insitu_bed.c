@@ -250,20 +250,64 @@ static void reduce_radii(fibrad_insitu_build *b, const double *part) {
     b->own = own;
 }
 
+int fibrad_insitu_fault(const fibrad_insitu_build *b, int status, const uint64_t *id, size_t n, fibrad_fault fault) {
+    char *message = b->s->message;
+    if (b->bed->triangles && fault.triangle < b->bed->triangles->n)
+        return fibrad_refuse(message, status, "triangle %" PRIu32 " of the walls is not valid", fault.triangle);
+    if (fault.first >= n || fault.second >= n) return status;
+    const uint64_t first = id[fault.first], second = id[fault.second];
+    if (fault.first == fault.second)
+        return fibrad_refuse_particle(message, first, "it lies too far from the origin for its size");
+    if (first == second)
+        return fibrad_refuse(message, status, "particle %" PRIu64 ": the centre of its periodic image lies inside it",
+                             first);
+    return fibrad_refuse(message, status,
+                         "particles %" PRIu64 " and %" PRIu64 ": the centre of one lies inside the other",
+                         first < second ? first : second, first < second ? second : first);
+}
+
+static void describe_overlap(fibrad_remark *remark, const fibrad_particle *p, const fibrad_particle *other) {
+    char message[FIBRAD_MESSAGE];
+    const uint64_t first = p->id < other->id ? p->id : other->id, second = p->id < other->id ? other->id : p->id;
+    fibrad_refuse(message, 0,
+                  "particles %" PRIu64 " and %" PRIu64
+                  " at (%.6g, %.6g, %.6g): the centre of one lies inside the other",
+                  first, second, p->x[0], p->x[1], p->x[2]);
+    fibrad_remark_add(remark, p->id, message);
+}
+
+/* Finds to what part the radii of particles must be reduced, and remarks those of this rank. */
+static int find_overlaps(fibrad_insitu_build *b, fibrad_remark *remark) {
+    fibrad_insitu *s = b->s;
+    const size_t n = b->own + b->halo, size = n <= FIBRAD_SPHERES_MAX ? fibrad_scene_size((uint32_t)n, 1) : 0;
+    const fibrad_particle *p = b->to->particle.at;
+    if (!size || fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&s->emissivity, n, sizeof(double)) ||
+        fibrad_block_fit(&s->order, n, sizeof(uint32_t)) || fibrad_block_fit(&b->to->id, n, sizeof(uint64_t)))
+        return FIBRAD_E_MEMORY;
+    const fibrad_spheres spheres = fibrad_particle_spheres(p, n, b->to->id.at);
+    const uint32_t *other = s->order.at;
+    double *part = s->emissivity.at;
+    fibrad_fault fault;
+    const int status = fibrad_spheres_inside(&spheres, s->scene.at, s->scene.size, part, s->order.at, &fault);
+    for (size_t i = 0; i < b->own && !status; ++i)
+        if (part[i] < 1) describe_overlap(remark, &p[i], &p[other[i]]);
+    if (status != FIBRAD_E_GEOMETRY) return status ? fibrad_insitu_fault(b, status, spheres.id, n, fault) : FIBRAD_OK;
+    return fibrad_refuse(s->message, status,
+                         "particle %" PRIu64 " of radius %g has the centres of many others inside it: is its diameter "
+                         "right?",
+                         p[fault.first].id, p[fault.first].radius);
+}
+
 /* Makes particles smaller whose centre lies inside another, and tells the other ranks. */
 static int part_overlaps(fibrad_insitu_build *b) {
     fibrad_insitu *s = b->s;
     fibrad_remark *remark = &b->remark[FIBRAD_REMARK_OVERLAP];
-    int status = fibrad_block_fit(&s->emissivity, b->own, sizeof(double));
-    double *part = s->emissivity.at;
-    if (!status) status = fibrad_overlaps(b->to->particle.at, b->own, b->own + b->halo, part, remark);
-    if (status) fibrad_refuse(s->message, status, "%s", remark->message);
-    status = fibrad_agree(s->comm, status, s->message);
+    const int status = fibrad_agree(s->comm, b->own ? find_overlaps(b, remark) : FIBRAD_OK, s->message);
     if (status) return status;
     fibrad_remark_agree(s->comm, remark);
     if (!remark->count) return FIBRAD_OK;
     if (s->config.strict) return fibrad_refuse(s->message, FIBRAD_E_GEOMETRY, "%s", remark->message);
-    reduce_radii(b, part);
+    reduce_radii(b, s->emissivity.at);
     return find_halo(b);
 }
 

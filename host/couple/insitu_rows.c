@@ -9,23 +9,6 @@
 
 #define BACKS_MOST 0.1 /* part of all particles that may see what belongs to no wall */
 
-static int name_scene_fault(const fibrad_insitu_build *b, int status, const uint64_t *id, size_t n,
-                            fibrad_fault fault) {
-    char *message = b->s->message;
-    if (b->bed->triangles && fault.triangle < b->bed->triangles->n)
-        return fibrad_refuse(message, status, "triangle %" PRIu32 " of the walls is not valid", fault.triangle);
-    if (fault.first >= n || fault.second >= n) return status;
-    const uint64_t first = id[fault.first], second = id[fault.second];
-    if (fault.first == fault.second)
-        return fibrad_refuse_particle(message, first, "it lies too far from the origin for its size");
-    if (first == second)
-        return fibrad_refuse(message, status, "particle %" PRIu64 ": the centre of its periodic image lies inside it",
-                             first);
-    return fibrad_refuse(message, status,
-                         "particles %" PRIu64 " and %" PRIu64 ": the centre of one lies inside the other",
-                         first < second ? first : second, first < second ? second : first);
-}
-
 int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t n, uint64_t *id) {
     fibrad_insitu *s = b->s;
     const bool images = id && !b->whole, marked = id && b->to->facts.particles && (images || b->repeats);
@@ -56,7 +39,7 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
     const fibrad_spheres spheres = {x[0], x[1], x[2], &p->radius, (uint32_t)n, stride, stride, id};
     fibrad_fault fault;
     const int status = fibrad_scene_init(&b->scene, s->scene.at, s->scene.size, &config, &spheres, &fault);
-    return status && id ? name_scene_fault(b, status, id, n, fault) : status;
+    return status && id ? fibrad_insitu_fault(b, status, id, n, fault) : status;
 }
 
 fibrad_exchange_rule fibrad_insitu_rule(const fibrad_insitu_build *b, size_t n) {
