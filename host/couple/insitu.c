@@ -176,8 +176,8 @@ static void sum_facts(fibrad_insitu_build *b) {
     }
     MPI_Allreduce(MPI_IN_PLACE, sum, 5 + FIBRAD_WALLS_MAX, MPI_DOUBLE, MPI_SUM, b->s->comm);
     for (uint32_t k = 0; k < b->bed->walls; ++k) {
-        to->facts.wall[k] = of_wall[k] + to->walls.surroundings[k];
-        for (uint32_t c = 0; c < b->bed->walls; ++c) to->facts.wall[k] += to->walls.wall[k][c];
+        to->facts.wall[k] = of_wall[k] + to->wall_exchange.surroundings[k];
+        for (uint32_t c = 0; c < b->bed->walls; ++c) to->facts.wall[k] += to->wall_exchange.wall[k][c];
     }
     to->facts.beyond = sum[0] > 0 ? sum[1] / sum[0] : 0;
     to->facts.error = sum[4] > 0 ? sqrt(sum[2] / sum[4]) : 0;
@@ -202,7 +202,7 @@ static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_
     if (!status && follows && s->ready && s->set.walls == bed->walls) status = fibrad_follow_changes(&b);
     if (b.follows) b.to->conducts |= s->set.conducts;
     if (!status) status = fibrad_insitu_gather(&b);
-    if (b.follows) b.to->walls = s->set.walls;
+    if (b.follows) b.to->wall_exchange = s->set.wall_exchange;
     if (!status && !b.follows) status = fibrad_insitu_sources(&b);
     if (!status) status = fibrad_insitu_make(&b);
     fibrad_follow_free(&b.follow);

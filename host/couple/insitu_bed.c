@@ -34,7 +34,7 @@ static int check_bed(fibrad_insitu_build *b) {
     char *message = b->s->message;
     unsigned char block[FIBRAD_SCENE_BYTES(0)];
     fibrad_scene *empty;
-    fibrad_scene_walls walls;
+    fibrad_scene_walls turned;
     uint32_t walls = 0; /* without meshes, which bound no box */
     if (!bed || (bed->n && !(bed->id && bed->x && bed->radius && bed->emissivity)) || bed->n > FIBRAD_SPHERES_MAX ||
         bed->walls > FIBRAD_WALLS_MAX || (bed->walls && !(bed->wall && bed->wall_emissivity)) ||
@@ -54,13 +54,13 @@ static int check_bed(fibrad_insitu_build *b) {
         if (isnan(opening->at))
             opening->at = opening->upper ? FIBRAD_LENGTH_MAX : -FIBRAD_LENGTH_MAX; /* until the bed is known */
     }
-    fibrad_insitu_walls(b, &walls);
+    fibrad_insitu_walls(b, &turned);
     for (uint32_t k = 0; k < bed->walls; ++k)
-        if (walls.wall[k].kind != FIBRAD_WALL_MESH) walls.wall[walls++] = walls.wall[k];
-    const fibrad_scene_config config = {.period = {walls.period[0], walls.period[1], walls.period[2]},
-                                        .wall = walls.wall,
+        if (turned.wall[k].kind != FIBRAD_WALL_MESH) turned.wall[walls++] = turned.wall[k];
+    const fibrad_scene_config config = {.period = {turned.period[0], turned.period[1], turned.period[2]},
+                                        .wall = turned.wall,
                                         .walls = walls,
-                                        .opening = walls.opening,
+                                        .opening = turned.opening,
                                         .openings = bed->openings};
     const int status = fibrad_scene_init(&empty, block, sizeof block, &config, &(fibrad_spheres){0}, NULL);
     if (status == FIBRAD_E_ENDLESS) return fibrad_refuse(message, status, "%s", fibrad_status_text(status));

@@ -13,10 +13,10 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
     fibrad_insitu *s = b->s;
     const bool images = id && !b->whole, marked = id && b->to->facts.particles && (images || b->repeats);
     if (n > FIBRAD_SPHERES_MAX) return FIBRAD_E_MEMORY;
-    fibrad_scene_walls walls;
-    fibrad_insitu_walls(b, &walls);
+    fibrad_scene_walls turned;
+    fibrad_insitu_walls(b, &turned);
     const size_t size =
-        fibrad_scene_size((uint32_t)n, id != NULL) + fibrad_triangles_size(walls.triangles.n, (uint32_t)n);
+        fibrad_scene_size((uint32_t)n, id != NULL) + fibrad_triangles_size(turned.triangles.n, (uint32_t)n);
     if (fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&s->emissivity, 3 * n + 1, sizeof(double)))
         return FIBRAD_E_MEMORY;
     double *emissivity = s->emissivity.at;
@@ -26,13 +26,13 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
     }
     fibrad_scene_config config = {0}; /* no rows: an empty scene */
     if (n || !id)
-        config = (fibrad_scene_config){.wall = walls.wall,
+        config = (fibrad_scene_config){.wall = turned.wall,
                                        .walls = b->bed->walls,
-                                       .opening = walls.opening,
+                                       .opening = turned.opening,
                                        .openings = b->openings,
                                        .occupancy = marked ? &b->map : NULL,
-                                       .triangles = &walls.triangles};
-    if ((n || !id) && !images) memcpy(config.period, walls.period, sizeof config.period);
+                                       .triangles = &turned.triangles};
+    if ((n || !id) && !images) memcpy(config.period, turned.period, sizeof config.period);
     const uint32_t stride = sizeof *p / sizeof(double);
     const double *x[3];
     fibrad_turn_arrays(b->bed->cylinder, (const double *const[]){&p->x[0], &p->x[1], &p->x[2]}, x);
