@@ -72,6 +72,7 @@
  *   direction  directions spread evenly over a sphere   fibrad_direction
  *   pair       two spheres with nothing in between      fibrad_pair_exact
  *   scene      spheres, walls, divided beds             fibrad_scene_size, _init, _describe, _wall_area, _sphere
+ *              centres inside other spheres             fibrad_spheres_inside
  *   work       scratch memory of one thread             fibrad_work, FIBRAD_WORK_BYTES
  *   row        one row, by beams or by rays             fibrad_beam_row, fibrad_cast_row, fibrad_directions_for
  *              one row, computed by several threads     fibrad_beam_part, _join
@@ -402,6 +403,20 @@ size_t fibrad_scene_size(uint32_t n, int ids);
  *   Source   docs/methods.md section 6 */
 int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fibrad_scene_config *config,
                       const fibrad_spheres *spheres, fibrad_fault *fault);
+
+/* Finds spheres whose centres lie inside others, so that no scene has them, and how much smaller they must be.
+ *   Input    spheres: two spheres of one id are images of one, and are no pair
+ *            memory[size]: at least fibrad_scene_size(n, ids) bytes; a scene in this memory is lost
+ *   Output   part[n]: 1, or the least d/max(r_i, r_j) of all spheres j at a distance d < max(r_i, r_j). With the radii
+ *            r_i part[i] each centre lies on the surface of the other sphere or outside.
+ *            other[n]: this sphere j; n: there is none
+ *            fault: where an error is; may be NULL
+ *   Errors   _ARGUMENT, _SIZE
+ *            _GEOMETRY: there are more than 64 n pairs; fault->first is a large sphere
+ *   Cost     as fibrad_scene_init
+ *   Source   docs/coupling.md */
+int fibrad_spheres_inside(const fibrad_spheres *spheres, void *memory, size_t size, double *part, uint32_t *other,
+                          fibrad_fault *fault);
 
 /* Facts of a scene. */
 typedef struct fibrad_scene_facts {
@@ -1020,12 +1035,14 @@ typedef struct fibrad_flow {
     double *power;                /* U L^2, [spheres], in and out */
     double *wall_power;           /* U L^2, [walls], in and out */
     double surroundings_power;    /* U L^2, in and out */
+    const double *made;           /* [spheres], when the row of each sphere was made; NULL: all at once */
 } fibrad_flow;
 
 /* Adds the powers that follow from rows of exchange factors. The collection may have rows of some spheres only.
  *
  * An entry D_ij moves the power A_i eps_i D_ij (E_j - E_i)/2 from sphere j to sphere i. The other half comes from row
- * j, on this or on another machine. A factor to a wall or to the surroundings moves the full power, since walls and
+ * j, on this or on another machine. If flow->made differs for i and j, row i alone moves the full power: an older row
+ * has no factor to a newer sphere. A factor to a wall or to the surroundings moves the full power, since walls and
  * surroundings have no rows here. All factors of a row are first multiplied by 1/(1 - beyond). Sphere i gains exactly
  * what the others lose, to the bit. Nothing flows between equal emissions.
  *   Input    rows: a collection; its rows are taken in their order

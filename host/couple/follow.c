@@ -1,11 +1,12 @@
 /* follow.c - rows that stay when particles come or go. SPDX-License-Identifier: MIT
  *
- * Only particles that have come get rows. Old rows do not know of them. So the new rows carry all of what a new and an
- * old particle exchange, not half of it: their factors to old particles are doubled. Two new particles know each
- * other. Factors to particles that are gone are given back to the rest of the row. */
+ * Only particles that have come get rows. Old rows have no factors to them. So what a new and an old particle exchange
+ * follows from the new row alone, see fibrad_flow. Factors to particles that are gone count as beyond. */
 #include <string.h>
 
 #include "couple/insitu.h"
+
+#define CHANGED_MOST 0.1 /* part of all particles that may come or go before all rows are made anew */
 
 static int find_known(const fibrad_insitu *s, const uint64_t *owned, size_t own, const uint64_t *used, size_t n,
                       unsigned char **known) {
@@ -32,7 +33,7 @@ static void count_changes(fibrad_follow *f, const fibrad_insitu *s, size_t own) 
     f->came = sum[0], f->gone = sum[1];
 }
 
-int fibrad_follow_find(fibrad_follow *f, const fibrad_insitu *s, const fibrad_particle *particle, size_t own,
+static int find_follow(fibrad_follow *f, const fibrad_insitu *s, const fibrad_particle *particle, size_t own,
                        size_t halo) {
     const fibrad_insitu_set *set = &s->set;
     uint64_t *id = malloc((own + halo + 1) * sizeof *id);
@@ -45,24 +46,48 @@ int fibrad_follow_find(fibrad_follow *f, const fibrad_insitu *s, const fibrad_pa
     return status;
 }
 
-/* Appends an old row. f, col: scratch. The factors are halved on the way, since doubled ones are no factors. */
+int fibrad_follow_changes(fibrad_insitu_build *b) {
+    fibrad_insitu *s = b->s;
+    const int status = find_follow(&b->follow, s, b->to->particle.at, b->own, 0);
+    if (status) return status;
+    b->to->changed = s->set.changed + b->follow.came + b->follow.gone;
+    b->to->facts.gone = s->set.facts.gone + b->follow.gone;
+    b->follows = (double)b->to->changed <= CHANGED_MOST * (double)b->to->facts.particles;
+    if (!b->follows) b->to->facts.gone = b->to->changed = b->follow.kept = b->follow.kept_seen = 0;
+    if (b->follows && !b->follow.came) b->own = 0;
+    return FIBRAD_OK;
+}
+
+int fibrad_follow_choose(fibrad_insitu_build *b) {
+    fibrad_follow_free(&b->follow);
+    b->follow = (fibrad_follow){0};
+    const int status = find_follow(&b->follow, b->s, b->to->particle.at, b->own, b->halo);
+    if (status) return status;
+    fibrad_particle *p = b->to->particle.at;
+    b->fresh = 0;
+    for (size_t i = 0; i < b->own; ++i) {
+        if (b->follow.has[i]) continue;
+        const fibrad_particle first = p[i];
+        p[i] = p[b->fresh], p[b->fresh] = first;
+        b->follow.has[i] = b->follow.has[b->fresh], b->follow.has[b->fresh++] = 0;
+    }
+    return FIBRAD_OK;
+}
+
+/* Appends an old row. f, col: scratch. */
 static int keep_row(fibrad_rows *rows, const fibrad_row *old, const uint32_t *number, uint32_t walls, double *f,
                     uint32_t *col) {
-    fibrad_row row = *old, added;
-    size_t at = rows->used;
+    fibrad_row row = *old;
     row.f = f, row.col = col, row.sphere = number[old->sphere], row.length = 0;
     for (uint32_t k = 0; k < old->length; ++k) {
         if (number[old->col[k]] == UINT32_MAX) {
-            row.beyond += 0.5 * old->f[k];
+            row.beyond += old->f[k];
             continue;
         }
-        f[row.length] = 0.5 * old->f[k];
+        f[row.length] = old->f[k];
         col[row.length++] = number[old->col[k]];
     }
-    const int status = fibrad_rows_add(rows, &row, walls);
-    if (!status && fibrad_rows_read(rows, &at, &added))
-        for (uint32_t k = 0; k < added.length; ++k) added.f[k] *= 2;
-    return status;
+    return fibrad_rows_add(rows, &row, walls);
 }
 
 int fibrad_follow_keep(const fibrad_follow *follow, const fibrad_insitu *s, fibrad_insitu_set *to, size_t fresh) {

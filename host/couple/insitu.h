@@ -9,6 +9,7 @@
 #include "couple/ranks/collective.h"
 #include "couple/fibrad_couple.h"
 #include "couple/ranks/strays.h"
+#include "fibrad_mesh.h"
 
 #define FIBRAD_OPENINGS_MAX 6   /* one a side */
 #define FIBRAD_GATHER_MOST  1e6 /* up to so many particles each rank has all, unless there is a cutoff */
@@ -29,6 +30,7 @@ typedef struct fibrad_insitu_set {
     fibrad_block id;       /* uint64_t [columns] */
     fibrad_block weight;   /* L^2, double [columns], area times emissivity of the node */
     fibrad_block unknown;  /* double [own], what of each row was beyond when it was made */
+    fibrad_block made;     /* double [columns], makings when the row of each was made, as in fibrad_flow */
     fibrad_block root;     /* 1/L, double [own], square root of (1/n - 1/e)/A, see powers.c; unused unless conducts */
     fibrad_block emission; /* double [columns], sigma T^4 */
     fibrad_block power;    /* double [columns], net power by the rows on this rank */
@@ -59,6 +61,7 @@ struct fibrad_insitu {
     fibrad_insitu_set set;                             /* the rows in use */
     fibrad_insitu_set next;                            /* rows that are being made, in the memory of older rows */
     int ready;                                         /* 1: there are rows */
+    uint64_t makings;                                  /* number of times that rows were made */
     fibrad_block scene, order, emissivity, mark, sent; /* scratch while rows are made */
     fibrad_block known;  /* double [own][walls + 1], the same: as fibrad_exchange_rule.known of own particles */
     fibrad_block solver; /* double [4 own], where particles conduct: see powers.c */
@@ -110,6 +113,30 @@ typedef struct fibrad_insitu_build {
     fibrad_remark remark[FIBRAD_REMARKS];
 } fibrad_insitu_build;
 
+/* What bounds a scene, with the axes of the scene. */
+typedef struct fibrad_scene_walls {
+    fibrad_wall wall[FIBRAD_WALLS_MAX];
+    fibrad_plane opening[FIBRAD_OPENINGS_MAX];
+    fibrad_triangles triangles;
+    double period[3];
+} fibrad_scene_walls;
+
+void fibrad_insitu_walls(const fibrad_insitu_build *b, fibrad_scene_walls *walls);
+
+/* Collective. Checks the bed, and takes its particles. Errors, on all ranks: as fibrad_insitu_rows. */
+int fibrad_insitu_check(fibrad_insitu_build *b);
+
+/* Collective. Finds extents, radii and the cutoff. They must be the same to the bit whoever owns which particle.
+ * Errors, on all ranks: as fibrad_insitu_rows. */
+int fibrad_insitu_measure(fibrad_insitu_build *b);
+
+/* Collective. Gathers the particles of the scene, if rows are needed, and puts those first that get rows. Makes
+ * particles smaller whose centre lies inside another. Errors, on all ranks: as fibrad_insitu_rows. */
+int fibrad_insitu_gather(fibrad_insitu_build *b);
+
+/* Says why the spheres of n particles make no scene. Returns status, or FIBRAD_E_ARGUMENT. */
+int fibrad_insitu_fault(const fibrad_insitu_build *b, int status, const uint64_t *id, size_t n, fibrad_fault fault);
+
 /* Makes the scene of n particles in b->scene, with the periods of the box. With ids of a bed that is not whole, images
  * are particles of their own, and the coarse map tells where there are others. id[n]: out, may be NULL. Errors: as
  * fibrad_scene_init; _MEMORY. */
@@ -117,6 +144,10 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
 
 /* The rule of rows of the scene of n particles that was made last. It has no cutoff. */
 fibrad_exchange_rule fibrad_insitu_rule(const fibrad_insitu_build *b, size_t n);
+
+/* Collective. Makes the rows of the gathered particles and their links. Replaces the scene. Errors, on all ranks: as
+ * fibrad_insitu_rows. */
+int fibrad_insitu_make(fibrad_insitu_build *b);
 
 /* Collective. Follows paths from walls and surroundings. Finds what these exchange with each other, and what particles
  * exchange with them after a reflection. Replaces the scene. Errors, on all ranks: as fibrad_scene_init and
@@ -136,9 +167,12 @@ int fibrad_link_to(fibrad_link **link, MPI_Comm comm, size_t own, const fibrad_p
  * all ranks: _MEMORY. */
 int fibrad_link_known(MPI_Comm comm, const uint64_t *id, size_t own, size_t all, unsigned char *known);
 
-/* Collective. Finds which particles of the old rows are still there, and which of particle[own + halo] have a row. */
-int fibrad_follow_find(fibrad_follow *follow, const fibrad_insitu *insitu, const fibrad_particle *particle, size_t own,
-                       size_t halo);
+/* Collective. Finds how many particles have come and gone. All rows are made if they are too many, none if none have
+ * come. Errors, on all ranks: _MEMORY. */
+int fibrad_follow_changes(fibrad_insitu_build *b);
+
+/* Collective. Puts the particles that need rows first. Errors, on all ranks: _MEMORY. */
+int fibrad_follow_choose(fibrad_insitu_build *b);
 
 /* Puts the old rows of particles that are still there behind the new rows, of `fresh` particles, with the columns
  * [fresh][kept][kept seen]. What gone particles would get counts as beyond. Errors: _MEMORY. */

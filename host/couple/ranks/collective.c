@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: MIT */
 #include "couple/ranks/collective.h"
 
+#include <inttypes.h>
 #include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -15,6 +16,10 @@ int fibrad_refuse(char *message, int status, const char *format, ...) {
     vsnprintf(message, FIBRAD_MESSAGE, format, list);
     va_end(list);
     return status;
+}
+
+int fibrad_refuse_particle(char *message, uint64_t id, const char *fault) {
+    return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "particle %" PRIu64 ": %s", id, fault);
 }
 
 int fibrad_agree(MPI_Comm comm, int status, char *message) {

@@ -26,6 +26,9 @@ static inline uint64_t fibrad_hash_ids(const uint64_t *id, size_t n) {
 /* Prints a sentence into message[FIBRAD_MESSAGE] and returns status. */
 int fibrad_refuse(char *message, int status, const char *format, ...);
 
+/* The same for a particle. Returns FIBRAD_E_ARGUMENT. */
+int fibrad_refuse_particle(char *message, uint64_t id, const char *fault);
+
 /* Collective. Returns FIBRAD_OK if all ranks pass FIBRAD_OK. Else returns on all ranks the status of the lowest rank
  * that failed, and copies its message. message may be NULL. An empty message becomes the text of the status. */
 int fibrad_agree(MPI_Comm comm, int status, char *message);
