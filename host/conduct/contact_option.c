@@ -8,7 +8,6 @@
 #include "bed/bed_scene.h"
 #include "cli/message.h"
 
-#define GAP       0.65  /* default of --gas-gap */
 #define ROUNDING  1e-12 /* of flows, over the sum of their magnitudes */
 #define GAP_LEAST 4e-10 /* [m] least gap that counts: the distance of molecules */
 
@@ -77,7 +76,7 @@ static int find_contacts(struct contact_state *state, struct bed_options *bed_op
     state->of_solid = o->conductivity.given ? &o->conductivity : solid;
     state->rule = (fibrad_contact_rule){.spots = o->spots, .scale = o->scale, .gas_alone = solid->given};
     if (o->gas) {
-        state->rule.gas_reach = o->gap > 0 ? o->gap : GAP;
+        state->rule.gas_reach = o->gap > 0 ? o->gap : FIBRAD_GAS_REACH;
         state->rule.gas_jump = o->jump / state->metres, state->rule.gas_least = GAP_LEAST / state->metres;
     }
     int status = quantity_values(state->of_solid, bed, bed_options->name, "conductivity of the solid", 0,
