@@ -1018,12 +1018,14 @@ typedef struct fibrad_flow {
     double *power;                /* U L^2, [spheres], in and out */
     double *body_power;           /* U L^2, [bodies], in and out */
     double surroundings_power;    /* U L^2, in and out */
+    const double *made;           /* [spheres], when the row of each sphere was made; NULL: all at once */
 } fibrad_flow;
 
 /* Adds the powers that follow from rows of exchange factors. The collection may have rows of some spheres only.
  *
  * An entry D_ij moves the power A_i eps_i D_ij (E_j - E_i)/2 from sphere j to sphere i. The other half comes from row
- * j, on this or on another machine. A factor to a wall or to the surroundings moves the full power, since walls and
+ * j, on this or on another machine. If flow->made differs for i and j, row i alone moves the full power: an older row
+ * has no factor to a newer sphere. A factor to a wall or to the surroundings moves the full power, since walls and
  * surroundings have no rows here. All factors of a row are first multiplied by 1/(1 - beyond). Sphere i gains exactly
  * what the others lose, to the bit. Nothing flows between equal emissions.
  *   Input    rows: a collection; its rows are taken in their order

@@ -178,6 +178,28 @@ TEST(surroundings_tell_scenes_apart) {
     for (int k = 0; k < 7; k++) free(scene[k]);
 }
 
+TEST(an_entry_counts_alone_if_the_other_row_is_older) {
+    OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 3, 1});
+    uint32_t col[] = {0};
+    double f[] = {.25}, e[] = {1, .5}, made[] = {7, 7};
+    OWNED_ROWS rows = {.memory = memory_growing()};
+    const fibrad_row row = {.col = col, .f = f, .length = 1, .sphere = 1, .escaped = .75};
+    assert_ok(fibrad_rows_add(&rows, &row, 0));
+    double moved[3];
+    for (int k = 0; k < 3; k++) {
+        OWNED_POWERS p = powers_of(&bed, e);
+        powers_point(&p);
+        p.flow.made = k > 0 ? made : NULL, made[1] = 6 + k;
+        p.flow.surroundings_emission = p.emission[1];
+        assert_ok(fibrad_rows_flow(&rows, 2, 0, &p.flow));
+        moved[k] = p.power[1];
+        ck_assert_double_eq_tol(moved[k], (k == 2 ? 1 : .5) * p.weight[1] * .25 * (p.emission[0] - p.emission[1]),
+                                1e-15);
+        ck_assert(p.power[0] == -p.power[1] && p.power[1] != 0);
+    }
+    ck_assert(moved[1] == moved[0] && moved[2] == 2 * moved[0]);
+}
+
 TEST(bad_flows_are_refused) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 3, 1});
     uint32_t col[] = {0, 1};

@@ -1,8 +1,7 @@
 /* follow.c - rows that stay when particles come or go. SPDX-License-Identifier: MIT
  *
- * Only particles that have come get rows. Old rows do not know of them. So the new rows carry all of what a new and an
- * old particle exchange, not half of it: their factors to old particles are doubled. Two new particles know each
- * other. Factors to particles that are gone are given back to the rest of the row. */
+ * Only particles that have come get rows. Old rows have no factors to them. So what a new and an old particle exchange
+ * follows from the new row alone, see fibrad_flow. Factors to particles that are gone count as beyond. */
 #include <string.h>
 
 #include "couple/insitu.h"
@@ -75,24 +74,20 @@ int fibrad_follow_choose(fibrad_insitu_build *b) {
     return FIBRAD_OK;
 }
 
-/* Appends an old row. f, col: scratch. The factors are halved on the way, since doubled ones are no factors. */
+/* Appends an old row. f, col: scratch. */
 static int keep_row(fibrad_rows *rows, const fibrad_row *old, const uint32_t *number, uint32_t bodies, double *f,
                     uint32_t *col) {
-    fibrad_row row = *old, added;
-    size_t at = rows->used;
+    fibrad_row row = *old;
     row.f = f, row.col = col, row.sphere = number[old->sphere], row.length = 0;
     for (uint32_t k = 0; k < old->length; ++k) {
         if (number[old->col[k]] == UINT32_MAX) {
-            row.beyond += 0.5 * old->f[k];
+            row.beyond += old->f[k];
             continue;
         }
-        f[row.length] = 0.5 * old->f[k];
+        f[row.length] = old->f[k];
         col[row.length++] = number[old->col[k]];
     }
-    const int status = fibrad_rows_add(rows, &row, bodies);
-    if (!status && fibrad_rows_read(rows, &at, &added))
-        for (uint32_t k = 0; k < added.length; ++k) added.f[k] *= 2;
-    return status;
+    return fibrad_rows_add(rows, &row, bodies);
 }
 
 int fibrad_follow_keep(const fibrad_follow *follow, const fibrad_insitu *s, fibrad_insitu_set *to, size_t fresh) {

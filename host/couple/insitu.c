@@ -62,7 +62,7 @@ static void close_set(fibrad_insitu_set *set, int threads) {
     fibrad_link_free(set->seen);
     fibrad_link_free(set->present);
     fibrad_block *const blocks[] = {&set->particle, &set->id,    &set->weight, &set->root, &set->unknown,
-                                    &set->emission, &set->power, &set->now,    NULL};
+                                    &set->emission, &set->power, &set->now,    &set->made, NULL};
     free_blocks(blocks);
 }
 
@@ -117,7 +117,7 @@ static size_t set_bytes(const fibrad_insitu_set *set, int threads) {
     size_t sum =
         set->particle.size + set->id.size + set->weight.size + set->emission.size + set->power.size + set->root.size;
     for (int t = 0; t < threads; ++t) sum += set->rows[t].memory.size;
-    return sum + set->now.size + set->unknown.size;
+    return sum + set->made.size + set->now.size + set->unknown.size;
 }
 
 void fibrad_insitu_facts_get(const fibrad_insitu *s, fibrad_insitu_facts *facts) {
@@ -194,6 +194,7 @@ static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_
     if (!s) return FIBRAD_E_ARGUMENT;
     fibrad_insitu_build b = {.s = s, .to = &s->next, .bed = bed, .step = step};
     s->message[0] = 0;
+    s->makings++;
     int status = fibrad_insitu_check(&b);
     const double begun = MPI_Wtime();
     if (!status) status = fibrad_insitu_measure(&b);

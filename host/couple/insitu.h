@@ -30,6 +30,7 @@ typedef struct fibrad_insitu_set {
     fibrad_block id;       /* uint64_t [columns] */
     fibrad_block weight;   /* L^2, double [columns], area times emissivity of the node */
     fibrad_block unknown;  /* double [own], what of each row was beyond when it was made */
+    fibrad_block made;     /* double [columns], makings when the row of each was made, as in fibrad_flow */
     fibrad_block root;     /* 1/L, double [own], square root of (1/n - 1/e)/A, see powers.c; unused unless conducts */
     fibrad_block emission; /* double [columns], sigma T^4 */
     fibrad_block power;    /* double [columns], net power by the rows on this rank */
@@ -60,6 +61,7 @@ struct fibrad_insitu {
     fibrad_insitu_set set;                             /* the rows in use */
     fibrad_insitu_set next;                            /* rows that are being made, in the memory of older rows */
     int ready;                                         /* 1: there are rows */
+    uint64_t makings;                                  /* number of times that rows were made */
     fibrad_block scene, order, emissivity, mark, sent; /* scratch while rows are made */
     fibrad_block known;  /* double [own][bodies + 1], the same: as fibrad_exchange_rule.known of own particles */
     fibrad_block solver; /* double [4 own], where particles conduct: see powers.c */

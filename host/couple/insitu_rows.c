@@ -155,15 +155,6 @@ static int compute_rows(fibrad_insitu_build *b) {
     return status;
 }
 
-/* Doubles the factors of new rows to particles that have a row already, which does not know of the new ones. */
-static void double_new_to_old(const fibrad_insitu_build *b) {
-    fibrad_row row;
-    for (int t = 0; t < b->s->config.threads; ++t)
-        for (size_t at = 0; fibrad_rows_read(&b->to->rows[t], &at, &row);)
-            for (uint32_t k = 0; k < row.length; ++k)
-                if (b->follow.has[row.col[k]]) row.f[k] *= 2;
-}
-
 /* Numbers the columns of new rows: those with new rows, what is kept of the old columns, and what else is seen. */
 static int number_columns(fibrad_insitu_build *b) {
     fibrad_insitu_set *to = b->to;
@@ -205,6 +196,7 @@ static int list_home(fibrad_insitu_build *b) {
         fibrad_block_fit(&to->weight, to->columns, sizeof(double)) ||
         fibrad_block_fit(&to->root, to->own, sizeof(double)) ||
         fibrad_block_fit(&to->unknown, to->own, sizeof(double)) ||
+        fibrad_block_fit(&to->made, to->columns, sizeof(double)) ||
         fibrad_block_fit(&b->s->solver, to->conducts ? 4 * to->own : 0, sizeof(double)) ||
         fibrad_block_fit(&to->emission, to->columns, sizeof(double)) ||
         fibrad_block_fit(&to->power, to->columns, sizeof(double)) ||
@@ -213,11 +205,12 @@ static int list_home(fibrad_insitu_build *b) {
         return FIBRAD_E_MEMORY;
     fibrad_particle *p = to->particle.at;
     const fibrad_particle *old = set->particle.at;
-    double *unknown = to->unknown.at;
-    const double *before = set->unknown.at;
+    double *unknown = to->unknown.at, *made = to->made.at;
+    const double *before = set->unknown.at, *made_before = set->made.at;
     size_t own = b->fresh;
+    for (size_t c = 0; c < to->columns; ++c) made[c] = (double)b->s->makings;
     for (size_t c = 0; b->follows && c < set->own; ++c)
-        if (b->follow.there[c]) unknown[own] = before[c], p[own++] = old[c];
+        if (b->follow.there[c]) unknown[own] = before[c], made[own] = made_before[c], p[own++] = old[c];
     const uint32_t *number = b->s->order.at; /* of columns; 0: not seen */
     fibrad_place *place = b->s->sent.at;     /* of particles seen, for link_seen */
     for (size_t i = b->own; i < b->own + b->halo && !b->follows; ++i)
@@ -255,8 +248,10 @@ static int link_present(fibrad_insitu_build *b) {
 static int link_seen(fibrad_insitu_build *b) {
     fibrad_insitu_set *to = b->to;
     fibrad_link_free(to->seen);
-    return b->follows ? fibrad_link_new(&to->seen, b->s->comm, to->id.at, to->own, to->columns, NULL)
-                      : fibrad_link_to(&to->seen, b->s->comm, to->own, b->s->sent.at, to->columns - to->own);
+    if (!b->follows) return fibrad_link_to(&to->seen, b->s->comm, to->own, b->s->sent.at, to->columns - to->own);
+    const int status = fibrad_link_new(&to->seen, b->s->comm, to->id.at, to->own, to->columns, NULL);
+    if (!status) fibrad_link_forward(to->seen, to->made.at, 1);
+    return status;
 }
 
 static int make_rows(fibrad_insitu_build *b) {
@@ -265,7 +260,6 @@ static int make_rows(fibrad_insitu_build *b) {
     if (!status) status = fibrad_insitu_scene(b, b->to->particle.at, n, b->to->id.at);
     if (!status) status = list_own(b);
     if (!status) status = compute_rows(b);
-    if (!status && b->follows) double_new_to_old(b);
     if (!status) status = number_columns(b);
     if (!status && b->follows) status = fibrad_follow_keep(&b->follow, b->s, b->to, b->fresh);
     if (!status) status = list_home(b);
@@ -285,7 +279,7 @@ static int check_backs(fibrad_insitu_build *b) {
  * spite of the noise of the rows. */
 static void find_resistances(fibrad_insitu_build *b) {
     fibrad_insitu_set *to = b->to;
-    const double *weight = to->weight.at;
+    const double *weight = to->weight.at, *made = to->made.at;
     const fibrad_particle *p = to->particle.at;
     double *sum = to->power.at, *root = to->root.at;
     fibrad_row row;
@@ -297,8 +291,9 @@ static void find_resistances(fibrad_insitu_build *b) {
             for (uint32_t k = 0; k < b->bed->bodies; ++k) rest += row.body[k];
             sum[row.sphere] += all * rest;
             for (uint32_t k = 0; k < row.length; ++k) {
-                sum[row.sphere] += 0.5 * all * row.f[k];
-                sum[row.col[k]] += 0.5 * all * row.f[k];
+                const double said = (made[row.col[k]] == made[row.sphere] ? 0.5 : 1) * all * row.f[k];
+                sum[row.sphere] += said;
+                sum[row.col[k]] += said;
             }
         }
     fibrad_link_reverse(to->seen, sum, 1);

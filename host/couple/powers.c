@@ -111,9 +111,10 @@ static int solve_nodes(fibrad_insitu *s, const fibrad_flow *known) {
     const double *root = set->root.at, none[FIBRAD_BODIES_MAX] = {0};
     double *emission = set->emission.at, *power = set->power.at, unused[FIBRAD_BODIES_MAX] = {0};
     double *y = s->solver.at, *r = y + set->own, *p = r + set->own, *given = p + set->own;
-    fibrad_flow at_given = *known, change = {.weight = known->weight, .body_emission = none, .body_power = unused};
+    fibrad_flow at_given = *known, change;
     at_given.body_power = unused;
-    change.emission = emission, change.power = power;
+    change = at_given;
+    change.body_emission = none, change.surroundings_emission = 0;
     for (size_t i = 0; i < set->own; ++i) given[i] = emission[i];
     int status = flow_home(s, &at_given);
     for (size_t i = 0; i < set->own; ++i) y[i] = 0, r[i] = p[i] = root[i] * power[i];
@@ -175,7 +176,8 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
                         .body_emission = set->body_emission,
                         .surroundings_emission = set->surroundings_emission,
                         .power = set->power.at,
-                        .body_power = of_wall};
+                        .body_power = of_wall,
+                        .made = set->changed ? set->made.at : NULL};
     if (set->conducts) {
         status = fibrad_agree(s->comm, solve_nodes(s, &flow), NULL);
         if (status == FIBRAD_E_UNSOLVABLE)

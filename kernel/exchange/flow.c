@@ -25,15 +25,17 @@ static bool record_fits(const fibrad_record *row, const fibrad_flow *flow, uint3
 }
 
 /* Adds the power that one row exchanges. Nothing is known about what is beyond the row. So the known factors are scaled
- * to add up to 1. An entry counts half, because the row of the other sphere adds the other half. */
+ * to add up to 1. An entry counts half, because the row of the other sphere adds the other half. An entry counts alone
+ * if that row is older and has no such entry. */
 static void add_row(const fibrad_record *row, fibrad_flow *flow) {
     const uint32_t *col = fibrad_record_col(row);
     const double *f = fibrad_record_f(row), *body = fibrad_record_body(row), *emission = flow->emission;
     const double own = emission[row->sphere], given_back = row->beyond < BEYOND_MOST ? 1 / (1 - row->beyond) : 0;
-    const double weight = flow->weight[row->sphere] * given_back, half = 0.5 * weight;
+    const double weight = flow->weight[row->sphere] * given_back, half = 0.5 * weight, *made = flow->made;
     double gain = 0;
     for (uint32_t k = 0; k < row->length; k++) {
-        const double gained = half * f[k] * (emission[col[k]] - own);
+        const double part = made == NULL || made[col[k]] == made[row->sphere] ? half : weight;
+        const double gained = part * f[k] * (emission[col[k]] - own);
         flow->power[col[k]] -= gained;
         gain += gained;
     }

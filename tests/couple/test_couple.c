@@ -968,6 +968,32 @@ static void follow_changes(const struct kind *kind, const struct pile *all, cons
     free(found);
 }
 
+/* Twelve pairs of spheres, far apart. When one of a pair has gone, the other one gives all to the surroundings. */
+static void what_goes_is_given_back(void) {
+    enum { MOST = 24 };
+    double x[MOST][3], radius[MOST], emissivity[MOST], temperature[MOST], power[MOST], alone = NAN;
+    uint64_t id[MOST];
+    const double lost = 4 * acos(-1) * (pow(500, 4) - pow(300, 4));
+    fibrad_insitu *s;
+    CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, NULL) == FIBRAD_OK);
+    for (int gone = 0; gone < 2; ++gone) {
+        size_t n = 0;
+        for (uint64_t i = 0; i < MOST; ++i) {
+            if ((gone && i == 1) || i % (uint64_t)ranks != (uint64_t)rank) continue;
+            x[n][0] = 1e4 * (double)(i / 2) + 2.2 * (double)(i % 2), x[n][1] = x[n][2] = 0;
+            radius[n] = emissivity[n] = 1, temperature[n] = 500, id[n++] = i;
+        }
+        const fibrad_insitu_bed bed = {.n = n, .id = id, .x = x[0], .radius = radius, .emissivity = emissivity};
+        const fibrad_insitu_state state = {
+            .sigma = 1, .surroundings = 300, .n = n, .id = id, .temperature = temperature};
+        CHECK(fibrad_insitu_follow(s, &bed, 4) == FIBRAD_OK);
+        CHECK(fibrad_insitu_powers(s, &state, power, NULL) == FIBRAD_OK);
+        if (gone && rank == 0) alone = power[0];
+    }
+    if (rank == 0) CHECK(fabs(alone / -lost - 1) < 1e-6);
+    fibrad_insitu_free(s);
+}
+
 static void rows_follow_particles(double bound) {
     const struct kind kind = {"followed", 4, {1, 1, 0}, FLOORS, {.8, .5}, 0, 1, 0};
     struct pile all = pile_of(&kind), some = without(&all, 20), others = without(&all, 31);
@@ -1360,6 +1386,7 @@ int main(int argc, char **argv) {
     strays_do_not_end_a_run();
     one_way = 0;
     rows_follow_particles(.12);
+    what_goes_is_given_back();
     conducting = .1;
     rows_are_those_of_one_rank(&kinds[0], 2);
     powers_keep_energy(&kinds[3]);
