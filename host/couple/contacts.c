@@ -138,7 +138,7 @@ int fibrad_insitu_conduct(fibrad_insitu *s, const fibrad_insitu_contacts *contac
     if (!status) status = fibrad_insitu_check_state(s, state, power);
     if (!status) status = conductance || !bed->n ? check_contacts(s, contacts, bed, state) : FIBRAD_E_ARGUMENT;
     status = fibrad_agree(s->comm, status, s->message);
-    const double gas_reach = !status && contacts->gas > 0 ? FIBRAD_GAS_REACH : 0;
+    const double gas_reach = !status && contacts->gas > 0 ? FIBRAD_GAS_REACH_DEFAULT : 0;
     if (!status) status = gather_particles(&b, contacts, state, gas_reach);
     if (!status) {
         status = find_conductors(&b, contacts, gas_reach, &conductor, &count);

@@ -417,9 +417,6 @@ void fibrad_transient_free(fibrad_transient *transient);
  * The lens of equal spheres is 1.41 times as large as Hertz's spot. */
 typedef enum fibrad_spots { FIBRAD_SPOTS_NONE = 0, FIBRAD_SPOTS_LENS = 1, FIBRAD_SPOTS_HERTZ = 2 } fibrad_spots;
 
-/* A usual gas_reach, with which beds conduct most nearly what was measured: docs/validation.md. */
-#define FIBRAD_GAS_REACH 0.65
-
 /* Which contacts are found, and what they conduct. Zeroed: none. */
 typedef struct fibrad_contact_rule {
     int spots;        /* a fibrad_spots */

@@ -332,6 +332,58 @@ near "$work/stores1.out" "$work/restored.out" 1e-10 "a floor that stores heat, r
 run 2 warming moving.lmp hot 1000 steps 4000 capacity "capacity 2e4" stored 2e4
 balance warming 20e-3 0 1e-3 150 "energy of moving particles and a floor that stores heat"
 
+# ---- contacts -----------------------------------------------------------------------------------------------------------
+# closed EXPLICIT STEPS STEP: temperatures of contacts.lmp by eigenvectors of the chain and differences of pairs: after explicit
+# steps, or in continuous time. The floor counts as ball 14
+closed() {
+    awk -v OFMT=%.17g -v explicit="$1" -v steps="$2" -v step="$3" '
+        function left(rate) { return explicit ? exp(steps*log(1 - rate*step)) : exp(-rate*step*steps) }
+        function mass(r) { return 2500*4/3*pi*r^3*800 } # its heat capacity
+        # Hertz, scaled by .9; other 0: a wall
+        function spot(r, other, d) { return .9*sqrt((other ? r*other/(r + other) : r)*(r + other - d)) }
+        function pair(a, b, ca, cb, h, name,    mean, off) {
+            mean = (ca*a + cb*b)/(ca + cb); off = (a - b)*left(h*(1/ca + 1/cb))
+            print name, mean + off*cb/(ca + cb); print name + 1, mean - off*ca/(ca + cb)
+        }
+        BEGIN {
+            pi = 4*atan2(1, 1); n = 10; big = mass(.5)
+            for (i = 1; i <= n; i++) t[i] = 300
+            t[1] = 900; t[4] = 600
+            rate = 2*200*spot(.5, .5, .96)/big
+            for (k = 0; k < n; k++) for (i = 1; i <= n; i++) c[k] += t[i]*cos(k*pi*(i - .5)/n)*(k ? 2 : 1)/n
+            for (i = 1; i <= n; i++) {
+                sum = 0
+                for (k = 0; k < n; k++) sum += c[k]*cos(k*pi*(i - .5)/n)*left(2*rate*(1 - cos(k*pi/n)))
+                print i, sum
+            }
+            pair(500, 300, big, mass(.3), 2*240*spot(.5, .3, .7), 11)
+            pair(300, 700, big, 1e6, 4*200*spot(.5, 0, .47), 13)
+        }'
+}
+# with_floor NAME: temperatures at the end, the floor as ball 14
+with_floor() {
+    awk 'NF == 2 && /^[0-9]+ /' "$work/$1.out"
+    awk '$1 == "Step" { n = 1 } /^Loop/ { n = 0 } n && /^ *[0-9]/ { t = $5 } END { print 14, t }' "$work/$1.log"
+}
+run 1 contacts1 contacts.lmp
+run 1 contacts_half contacts.lmp step 0.5 steps 4000
+with_floor contacts1 >"$work/contacts1"
+with_floor contacts_half >"$work/contacts_half"
+closed 1 1000 2 >"$work/explicit"
+near "$work/explicit" "$work/contacts1" 1e-9 "contacts of chains, pairs and a floor, by closed forms of explicit steps"
+closed 0 1000 2 >"$work/continuous"
+paste -d ' ' "$work/contacts1" "$work/contacts_half" | awk '{ print $1, 2*$4 - $2 }' CONVFMT=%.17g OFMT=%.17g >"$work/extrapolated"
+near "$work/continuous" "$work/extrapolated" 1e-5 "the same in continuous time"
+run 2 contacts2 contacts.lmp newton off also "restart 1000 $work/contacts.*"
+run 4 contacts4 contacts.lmp restarted yes data "$work/contacts.1000" steps 1000
+for np in 2 4; do
+    with_floor contacts$np | cmp - "$work/contacts1"
+    verdict "contacts without radiation, np $np: the same bits" $?
+done
+# LAMMPS rounds coordinates when it balances
+run 2 contacts_moved contacts.lmp also "fix b all balance 10 1.0 shift y 10 1.01"
+near "$work/contacts1.out" "$work/contacts_moved.out" 1e-10 "contacts, balance during the run"
+
 # ---- what powers come from ---------------------------------------------------------------------------------------------
 for np in 1 2; do
     run $np parts$np frozen.lmp "${whole[@]}" steps 0 strict "no parts yes" \
