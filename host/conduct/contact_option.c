@@ -8,7 +8,7 @@
 #include "bed/bed_scene.h"
 #include "cli/message.h"
 
-#define ROUNDING  1e-12 /* of flows, over the sum of their magnitudes */
+#define ROUNDING 1e-12 /* of flows, over the sum of their magnitudes */
 
 int contacts_option(const char *text, void *contact_options) {
     struct contact_options *options = contact_options;
@@ -76,7 +76,8 @@ static int find_contacts(struct contact_state *state, struct bed_options *bed_op
     state->rule = (fibrad_contact_rule){.spots = o->spots, .scale = o->scale, .gas_alone = solid->given};
     if (o->gas) {
         state->rule.gas_reach = o->gap > 0 ? o->gap : FIBRAD_GAS_REACH_DEFAULT;
-        state->rule.gas_jump = o->jump / state->metres, state->rule.gas_least = FIBRAD_GAS_LEAST_DEFAULT / state->metres;
+        state->rule.gas_jump = o->jump / state->metres,
+        state->rule.gas_least = FIBRAD_GAS_LEAST_DEFAULT / state->metres;
     }
     int status = quantity_values(state->of_solid, bed, bed_options->name, "conductivity of the solid", 0,
                                  SOLID_CONDUCTIVITY_MIN, SOLID_CONDUCTIVITY_MAX, &state->solid);
@@ -124,7 +125,7 @@ int contacts_begin(struct contact_state *state, const struct contact_options *op
     if (!status) status = join_contacts(state, bed->n, &lines);
     state->first = lines.first, state->second = lines.second, state->conductance = lines.conductance;
     if (status) return status;
-    contacts_follow(state, bed, sources->temperature, sources->body_temperature);
+    contacts_follow(state, bed, sources->temperature, sources->wall_temperature);
     sources->contact_first = state->first, sources->contact_second = state->second;
     sources->conductance = state->conductance, sources->contacts = state->n;
     return STATUS_OK;
@@ -191,7 +192,7 @@ void contacts_follow(struct contact_state *state, const struct bed *bed, const d
 
 void contacts_result(struct contact_state *state, fibrad_heat_result *result) {
     if (!state->options) return;
-    result->conducted = state->conducted, result->body_conducted = state->wall, result->contact_flow = state->flow;
+    result->conducted = state->conducted, result->wall_conducted = state->wall, result->contact_flow = state->flow;
 }
 
 void contacts_scale(struct contact_state *state, uint32_t spheres, uint32_t walls) {

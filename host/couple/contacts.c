@@ -31,15 +31,15 @@ static int by_ends(const void *a, const void *b) {
 
 static int check_contacts(fibrad_insitu *s, const fibrad_insitu_contacts *contacts, const fibrad_insitu_bed *bed,
                           const fibrad_insitu_state *state) {
-    if (!contacts || (bed->n && !contacts->conductivity) || state->n != bed->n || bed->bodies != s->set.bodies ||
+    if (!contacts || (bed->n && !contacts->conductivity) || state->n != bed->n || bed->walls != s->set.walls ||
         (bed->n && memcmp(state->id, bed->id, bed->n * sizeof *bed->id) != 0) ||
         !(contacts->scale >= 0 && contacts->gas >= 0 && contacts->gas_least >= 0))
         return FIBRAD_E_ARGUMENT;
     if (bed->conductivity)
         return fibrad_refuse(s->message, FIBRAD_E_UNSUPPORTED,
                              "contacts need particles of one temperature each, not particles that conduct inside");
-    for (uint32_t k = 0; k < bed->bodies; ++k)
-        if (bed->body[k].kind == FIBRAD_BODY_MESH)
+    for (uint32_t k = 0; k < bed->walls; ++k)
+        if (bed->wall[k].kind == FIBRAD_WALL_MESH)
             return fibrad_refuse(s->message, FIBRAD_E_UNSUPPORTED,
                                  "wall %" PRIu32 " is a mesh, and contacts need planes or a cylinder", k + 1);
     for (size_t i = 0; i < bed->n; ++i)
@@ -81,7 +81,7 @@ static int find_conductors(const fibrad_insitu_build *b, const fibrad_insitu_con
                                       .gas_least = contacts->gas_least};
     fibrad_scene_walls walls;
     fibrad_insitu_walls(b, &walls);
-    fibrad_scene_config config = {.body = walls.body, .bodies = b->bed->bodies};
+    fibrad_scene_config config = {.wall = walls.wall, .walls = b->bed->walls};
     memcpy(config.period, walls.period, sizeof config.period);
     const fibrad_particle *p = b->to->particle.at;
     const fibrad_spheres spheres = fibrad_insitu_spheres(b, p, b->own + b->halo, NULL);
@@ -113,12 +113,12 @@ static void add_flows(const fibrad_insitu_build *b, const fibrad_insitu_state *s
         const struct conductor *c = &conductor[k];
         const fibrad_particle *first = &p[c->first], *second = c->second < particles ? &p[c->second] : NULL;
         const uint32_t wall = c->second - particles;
-        const double other = second ? second->temperature : state->body_temperature[wall];
+        const double other = second ? second->temperature : state->wall_temperature[wall];
         const double flow = c->conductance * (other - first->temperature);
         if (first->owner.rank == rank) {
             power[order[first->owner.index]] += flow, conductance[order[first->owner.index]] += c->conductance;
             sum->contacts += 1;
-            if (!second) sum->body[wall] -= flow, sum->particles += flow, sum->conductance[wall] += c->conductance;
+            if (!second) sum->wall[wall] -= flow, sum->particles += flow, sum->conductance[wall] += c->conductance;
         }
         if (second && second->owner.rank == rank)
             power[order[second->owner.index]] -= flow, conductance[order[second->owner.index]] += c->conductance;

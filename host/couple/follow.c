@@ -75,7 +75,7 @@ int fibrad_follow_choose(fibrad_insitu_build *b) {
 }
 
 /* Appends an old row. f, col: scratch. */
-static int keep_row(fibrad_rows *rows, const fibrad_row *old, const uint32_t *number, uint32_t bodies, double *f,
+static int keep_row(fibrad_rows *rows, const fibrad_row *old, const uint32_t *number, uint32_t walls, double *f,
                     uint32_t *col) {
     fibrad_row row = *old;
     row.f = f, row.col = col, row.sphere = number[old->sphere], row.length = 0;
@@ -87,7 +87,7 @@ static int keep_row(fibrad_rows *rows, const fibrad_row *old, const uint32_t *nu
         f[row.length] = old->f[k];
         col[row.length++] = number[old->col[k]];
     }
-    return fibrad_rows_add(rows, &row, bodies);
+    return fibrad_rows_add(rows, &row, walls);
 }
 
 int fibrad_follow_keep(const fibrad_follow *follow, const fibrad_insitu *s, fibrad_insitu_set *to, size_t fresh) {
@@ -101,7 +101,7 @@ int fibrad_follow_keep(const fibrad_follow *follow, const fibrad_insitu *s, fibr
     for (size_t c = 0; c < columns && !status; ++c) number[c] = follow->there[c] ? (uint32_t)next++ : UINT32_MAX;
     for (int t = 0; t < s->config.threads; ++t)
         for (size_t at = 0; !status && fibrad_rows_read(&set->rows[t], &at, &row);)
-            if (number[row.sphere] != UINT32_MAX) status = keep_row(&to->rows[t], &row, number, set->bodies, f, col);
+            if (number[row.sphere] != UINT32_MAX) status = keep_row(&to->rows[t], &row, number, set->walls, f, col);
     free(number);
     free(col);
     free(f);

@@ -160,7 +160,7 @@ static void sum_facts(fibrad_insitu_build *b) {
     double *unknown = to->unknown.at;
     fibrad_row row;
     /* emission, beyond, squared errors, entries, rows of emissivity above 0; then by walls */
-    double sum[5 + FIBRAD_BODIES_MAX] = {0}, *of_wall = sum + 5;
+    double sum[5 + FIBRAD_WALLS_MAX] = {0}, *of_wall = sum + 5;
     for (int t = 0; t < b->s->config.threads; ++t) {
         for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);) {
             sum[0] += weight[row.sphere];
@@ -169,15 +169,15 @@ static void sum_facts(fibrad_insitu_build *b) {
             tell_unknown(b, &particle[row.sphere], unknown[row.sphere]);
             sum[2] += row.error * row.error;
             sum[4] += weight[row.sphere] > 0;
-            for (uint32_t k = 0; k < b->bed->bodies; ++k)
-                of_wall[k] += fibrad_row_weight(&row, weight[row.sphere]) * row.body[k];
+            for (uint32_t k = 0; k < b->bed->walls; ++k)
+                of_wall[k] += fibrad_row_weight(&row, weight[row.sphere]) * row.wall[k];
         }
         sum[3] += (double)to->rows[t].entries;
     }
-    MPI_Allreduce(MPI_IN_PLACE, sum, 5 + FIBRAD_BODIES_MAX, MPI_DOUBLE, MPI_SUM, b->s->comm);
-    for (uint32_t k = 0; k < b->bed->bodies; ++k) {
-        to->facts.body[k] = of_wall[k] + to->walls.surroundings[k];
-        for (uint32_t c = 0; c < b->bed->bodies; ++c) to->facts.body[k] += to->walls.wall[k][c];
+    MPI_Allreduce(MPI_IN_PLACE, sum, 5 + FIBRAD_WALLS_MAX, MPI_DOUBLE, MPI_SUM, b->s->comm);
+    for (uint32_t k = 0; k < b->bed->walls; ++k) {
+        to->facts.wall[k] = of_wall[k] + to->wall_exchange.surroundings[k];
+        for (uint32_t c = 0; c < b->bed->walls; ++c) to->facts.wall[k] += to->wall_exchange.wall[k][c];
     }
     to->facts.beyond = sum[0] > 0 ? sum[1] / sum[0] : 0;
     to->facts.error = sum[4] > 0 ? sqrt(sum[2] / sum[4]) : 0;
@@ -199,10 +199,10 @@ static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_
     const double begun = MPI_Wtime();
     if (!status) status = fibrad_insitu_measure(&b);
     b.to->changed = 0;
-    if (!status && follows && s->ready && s->set.bodies == bed->bodies) status = fibrad_follow_changes(&b);
+    if (!status && follows && s->ready && s->set.walls == bed->walls) status = fibrad_follow_changes(&b);
     if (b.follows) b.to->conducts |= s->set.conducts;
     if (!status) status = fibrad_insitu_gather(&b);
-    if (b.follows) b.to->walls = s->set.walls;
+    if (b.follows) b.to->wall_exchange = s->set.wall_exchange;
     if (!status && !b.follows) status = fibrad_insitu_sources(&b);
     if (!status) status = fibrad_insitu_make(&b);
     fibrad_follow_free(&b.follow);
@@ -211,7 +211,7 @@ static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_
         return status;
     }
     sum_facts(&b);
-    b.to->bodies = bed->bodies;
+    b.to->walls = bed->walls;
     b.to->flows = 0;
     const fibrad_insitu_set made = s->next;
     s->next = s->set;

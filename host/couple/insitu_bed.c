@@ -17,7 +17,7 @@
 
 void fibrad_insitu_walls(const fibrad_insitu_build *b, fibrad_scene_walls *to) {
     const fibrad_insitu_bed *bed = b->bed;
-    for (uint32_t k = 0; k < bed->bodies; ++k) to->body[k] = fibrad_turned_body(bed->cylinder, bed->body[k]);
+    for (uint32_t k = 0; k < bed->walls; ++k) to->wall[k] = fibrad_turned_wall(bed->cylinder, bed->wall[k]);
     for (uint32_t k = 0; k < b->openings; ++k) to->opening[k] = fibrad_turned_plane(bed->cylinder, b->opening[k]);
     fibrad_turn(bed->cylinder, b->period, to->period);
     fibrad_triangles *t = &to->triangles;
@@ -42,10 +42,10 @@ static int check_bed(fibrad_insitu_build *b) {
     char *message = b->s->message;
     unsigned char block[FIBRAD_SCENE_BYTES(0)];
     fibrad_scene *empty;
-    fibrad_scene_walls walls;
-    uint32_t bodies = 0; /* without meshes, which bound no box */
+    fibrad_scene_walls turned;
+    uint32_t walls = 0; /* without meshes, which bound no box */
     if (!bed || (bed->n && !(bed->id && bed->x && bed->radius && bed->emissivity)) || bed->n > FIBRAD_SPHERES_MAX ||
-        bed->bodies > FIBRAD_BODIES_MAX || (bed->bodies && !(bed->body && bed->body_emissivity)) ||
+        bed->walls > FIBRAD_WALLS_MAX || (bed->walls && !(bed->wall && bed->wall_emissivity)) ||
         bed->openings > FIBRAD_OPENINGS_MAX || (bed->openings && !bed->opening) || bed->cylinder < 0 ||
         bed->cylinder > 2)
         return FIBRAD_E_ARGUMENT;
@@ -62,19 +62,19 @@ static int check_bed(fibrad_insitu_build *b) {
         if (isnan(opening->at))
             opening->at = opening->upper ? FIBRAD_LENGTH_MAX : -FIBRAD_LENGTH_MAX; /* until the bed is known */
     }
-    fibrad_insitu_walls(b, &walls);
-    for (uint32_t k = 0; k < bed->bodies; ++k)
-        if (walls.body[k].kind != FIBRAD_BODY_MESH) walls.body[bodies++] = walls.body[k];
-    const fibrad_scene_config config = {.period = {walls.period[0], walls.period[1], walls.period[2]},
-                                        .body = walls.body,
-                                        .bodies = bodies,
-                                        .opening = walls.opening,
+    fibrad_insitu_walls(b, &turned);
+    for (uint32_t k = 0; k < bed->walls; ++k)
+        if (turned.wall[k].kind != FIBRAD_WALL_MESH) turned.wall[walls++] = turned.wall[k];
+    const fibrad_scene_config config = {.period = {turned.period[0], turned.period[1], turned.period[2]},
+                                        .wall = turned.wall,
+                                        .walls = walls,
+                                        .opening = turned.opening,
                                         .openings = bed->openings};
     const int status = fibrad_scene_init(&empty, block, sizeof block, &config, &(fibrad_spheres){0}, NULL);
     if (status == FIBRAD_E_ENDLESS) return fibrad_refuse(message, status, "%s", fibrad_status_text(status));
     if (status) return fibrad_refuse(message, status, "the walls do not bound a box or a cylinder");
-    for (uint32_t k = 0; k < bed->bodies; ++k)
-        if (!(bed->body_emissivity[k] >= 0 && bed->body_emissivity[k] <= 1))
+    for (uint32_t k = 0; k < bed->walls; ++k)
+        if (!(bed->wall_emissivity[k] >= 0 && bed->wall_emissivity[k] <= 1))
             return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "wall %" PRIu32 ": its emissivity is not between 0 and 1",
                                  k + 1);
     return FIBRAD_OK;
@@ -82,7 +82,7 @@ static int check_bed(fibrad_insitu_build *b) {
 
 /* Whether a particle takes part. If not, counts it; with `strict` sets *status instead. */
 static bool takes_part(fibrad_insitu_build *b, const fibrad_particle *p, int *status) {
-    const fibrad_bounds bounds = {b->bed->body, b->opening, b->bed->bodies, b->bed->openings, b->bed->cylinder};
+    const fibrad_bounds bounds = {b->bed->wall, b->opening, b->bed->walls, b->bed->openings, b->bed->cylinder};
     char why[FIBRAD_MESSAGE];
     bool opening;
     if (fibrad_bounds_hold(&bounds, p, &opening, why)) return true;
@@ -164,11 +164,11 @@ static void take_box_ends(fibrad_insitu_build *b) {
     double longest = 0;
     for (int axis = 0; axis < 3; ++axis) {
         b->ends[0][axis] = b->bed->low[axis], b->ends[1][axis] = b->bed->high[axis];
-        for (uint32_t k = 0; k < b->bed->bodies; ++k) {
-            const fibrad_body *body = &b->bed->body[k];
-            if (body->kind != FIBRAD_BODY_PLANE || body->plane.axis != axis) continue;
-            b->ends[0][axis] = fmin(b->ends[0][axis], body->plane.at);
-            b->ends[1][axis] = fmax(b->ends[1][axis], body->plane.at);
+        for (uint32_t k = 0; k < b->bed->walls; ++k) {
+            const fibrad_wall *wall = &b->bed->wall[k];
+            if (wall->kind != FIBRAD_WALL_PLANE || wall->plane.axis != axis) continue;
+            b->ends[0][axis] = fmin(b->ends[0][axis], wall->plane.at);
+            b->ends[1][axis] = fmax(b->ends[1][axis], wall->plane.at);
         }
         longest = fmax(longest, b->ends[1][axis] - b->ends[0][axis]);
     }
@@ -216,7 +216,7 @@ int fibrad_insitu_measure(fibrad_insitu_build *b) {
     b->reach = b->whole ? 2 * b->radius_max : b->cutoff + REACH_RADII * b->radius_max;
     b->to->emissive = -most[1] < 1;
     b->to->conducts = most[14] > 0;
-    for (uint32_t k = 0; k < b->bed->bodies; ++k) b->to->emissive |= b->bed->body_emissivity[k] < 1;
+    for (uint32_t k = 0; k < b->bed->walls; ++k) b->to->emissive |= b->bed->wall_emissivity[k] < 1;
     for (int axis = 0; axis < 3; ++axis) {
         const bool periodic = b->period[axis] > 0;
         b->repeats |= periodic;

@@ -30,10 +30,10 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
     fibrad_insitu *s = b->s;
     const bool images = id && !b->whole, marked = id && b->to->facts.particles && (images || b->repeats);
     if (n > FIBRAD_SPHERES_MAX) return FIBRAD_E_MEMORY;
-    fibrad_scene_walls walls;
-    fibrad_insitu_walls(b, &walls);
+    fibrad_scene_walls turned;
+    fibrad_insitu_walls(b, &turned);
     const size_t size =
-        fibrad_scene_size((uint32_t)n, id != NULL) + fibrad_triangles_size(walls.triangles.n, (uint32_t)n);
+        fibrad_scene_size((uint32_t)n, id != NULL) + fibrad_triangles_size(turned.triangles.n, (uint32_t)n);
     if (fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&s->emissivity, 3 * n + 1, sizeof(double)))
         return FIBRAD_E_MEMORY;
     double *emissivity = s->emissivity.at;
@@ -43,13 +43,13 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
     }
     fibrad_scene_config config = {0}; /* no rows: an empty scene */
     if (n || !id)
-        config = (fibrad_scene_config){.body = walls.body,
-                                       .bodies = b->bed->bodies,
-                                       .opening = walls.opening,
+        config = (fibrad_scene_config){.wall = turned.wall,
+                                       .walls = b->bed->walls,
+                                       .opening = turned.opening,
                                        .openings = b->openings,
                                        .occupancy = marked ? &b->map : NULL,
-                                       .triangles = &walls.triangles};
-    if ((n || !id) && !images) memcpy(config.period, walls.period, sizeof config.period);
+                                       .triangles = &turned.triangles};
+    if ((n || !id) && !images) memcpy(config.period, turned.period, sizeof config.period);
     const fibrad_spheres spheres = fibrad_insitu_spheres(b, p, n, id);
     fibrad_fault fault;
     const int status = fibrad_scene_init(&b->scene, s->scene.at, s->scene.size, &config, &spheres, &fault);
@@ -61,7 +61,7 @@ fibrad_exchange_rule fibrad_insitu_rule(const fibrad_insitu_build *b, size_t n) 
     return (fibrad_exchange_rule){.emissivity = emissivity,
                                   .conductivity = b->to->conducts ? emissivity + n : NULL,
                                   .node_emissivity = b->to->conducts ? emissivity + 2 * n : NULL,
-                                  .body_emissivity = b->bed->body_emissivity,
+                                  .wall_emissivity = b->bed->wall_emissivity,
                                   .directions = b->s->config.directions,
                                   .paths = b->s->config.paths,
                                   .seed = b->s->config.seed + b->step * 0x9e3779b97f4a7c15u,
@@ -74,29 +74,29 @@ static int name_row_fault(const fibrad_insitu_build *b, int status, uint64_t id,
     const fibrad_triangles *t = b->bed->triangles;
     if (status != FIBRAD_E_BACK || !t || work->triangle >= t->n)
         return fibrad_refuse(message, status, "particle %" PRIu64 ": %s", id, fibrad_status_text(status));
-    const uint32_t front = t->front[work->triangle], back = t->back ? t->back[work->triangle] : FIBRAD_NO_BODY;
-    const uint32_t body = front == FIBRAD_NO_BODY ? back : front;
-    if (body == FIBRAD_NO_BODY)
+    const uint32_t front = t->front[work->triangle], back = t->back ? t->back[work->triangle] : FIBRAD_NO_WALL;
+    const uint32_t wall = front == FIBRAD_NO_WALL ? back : front;
+    if (wall == FIBRAD_NO_WALL)
         return fibrad_refuse(message, status,
                              "particle %" PRIu64 " sees triangle %" PRIu32 ", and no side of it belongs to a wall", id,
                              work->triangle);
     return fibrad_refuse(message, status,
                          "particle %" PRIu64 " sees the back of wall %" PRIu32 ", at triangle %" PRIu32 "; this side "
                          "belongs to no wall",
-                         id, body + 1, work->triangle);
+                         id, wall + 1, work->triangle);
 }
 
 /* Deals with a row that could not be computed. If its particle sees what belongs to no wall, the row becomes an empty
  * one, all of it beyond. */
 static int skip_row(fibrad_insitu_build *b, int status, uint32_t i, int thread) {
-    static const double none[FIBRAD_BODIES_MAX];
+    static const double none[FIBRAD_WALLS_MAX];
     const uint64_t id = ((uint64_t *)b->to->id.at)[i];
     char message[FIBRAD_MESSAGE];
     if (name_row_fault(b, status, id, &b->s->work[thread], message) != FIBRAD_E_BACK || b->s->config.strict)
         return b->s->message[0] ? status : fibrad_refuse(b->s->message, status, "%s", message);
     fibrad_remark_add(&b->remark[FIBRAD_REMARK_BACK], id, message);
-    const fibrad_row row = {.sphere = i, .body = (double *)none, .beyond = 1};
-    return fibrad_rows_add(&b->to->rows[thread], &row, b->bed->bodies);
+    const fibrad_row row = {.sphere = i, .wall = (double *)none, .beyond = 1};
+    return fibrad_rows_add(&b->to->rows[thread], &row, b->bed->walls);
 }
 
 /* Lists the particles of this rank in the order of the cells. */
@@ -114,7 +114,7 @@ static int list_own(fibrad_insitu_build *b) {
 /* Tells a row what paths from walls and surroundings have found about its particle. */
 static void know_sources(const fibrad_insitu_build *b, uint32_t i, fibrad_exchange_rule *rule) {
     const fibrad_particle *p = (const fibrad_particle *)b->to->particle.at + i;
-    rule->known = (const double *)b->s->known.at + (size_t)i * (b->bed->bodies + 1);
+    rule->known = (const double *)b->s->known.at + (size_t)i * (b->bed->walls + 1);
     rule->known_paths = b->density * fibrad_particle_weight(p);
 }
 
@@ -288,7 +288,7 @@ static void find_resistances(fibrad_insitu_build *b) {
         for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);) {
             const double all = fibrad_row_weight(&row, weight[row.sphere]);
             double rest = row.escaped;
-            for (uint32_t k = 0; k < b->bed->bodies; ++k) rest += row.body[k];
+            for (uint32_t k = 0; k < b->bed->walls; ++k) rest += row.wall[k];
             sum[row.sphere] += all * rest;
             for (uint32_t k = 0; k < row.length; ++k) {
                 const double said = (made[row.col[k]] == made[row.sphere] ? 0.5 : 1) * all * row.f[k];
