@@ -29,8 +29,8 @@ static int by_ends(const void *a, const void *b) {
     return x->distance < y->distance ? -1 : x->distance > y->distance;
 }
 
-static int check_contacts(fibrad_insitu *s, const fibrad_insitu_contacts *contacts, const fibrad_insitu_bed *bed,
-                          const fibrad_insitu_state *state) {
+static int check_conduction(fibrad_insitu *s, const fibrad_insitu_contacts *contacts, const fibrad_insitu_bed *bed,
+                            const fibrad_insitu_state *state) {
     if (!contacts || (bed->n && !contacts->conductivity) || state->n != bed->n || bed->walls != s->set.walls ||
         (bed->n && memcmp(state->id, bed->id, bed->n * sizeof *bed->id) != 0) ||
         !(contacts->scale >= 0 && contacts->gas >= 0 && contacts->gas_least >= 0))
@@ -135,8 +135,9 @@ int fibrad_insitu_conduct(fibrad_insitu *s, const fibrad_insitu_contacts *contac
     uint32_t count = 0;
     s->message[0] = 0;
     int status = fibrad_insitu_check(&b);
+    const double begun = MPI_Wtime();
     if (!status) status = fibrad_insitu_check_state(s, state, power);
-    if (!status) status = conductance || !bed->n ? check_contacts(s, contacts, bed, state) : FIBRAD_E_ARGUMENT;
+    if (!status) status = conductance || !bed->n ? check_conduction(s, contacts, bed, state) : FIBRAD_E_ARGUMENT;
     status = fibrad_agree(s->comm, status, s->message);
     const double gas_reach = !status && contacts->gas > 0 ? FIBRAD_GAS_REACH_DEFAULT : 0;
     if (!status) status = gather_particles(&b, contacts, state, gas_reach);
@@ -149,6 +150,7 @@ int fibrad_insitu_conduct(fibrad_insitu *s, const fibrad_insitu_contacts *contac
         add_flows(&b, state, conductor, count, power, conductance, &sum);
         MPI_Allreduce(MPI_IN_PLACE, &sum, sizeof sum / sizeof(double), MPI_DOUBLE, MPI_SUM, s->comm);
         if (conducted) *conducted = sum;
+        s->seconds_powers += MPI_Wtime() - begun;
     } else if (!s->message[0]) {
         fibrad_refuse(s->message, status, "%s", fibrad_status_text(status));
     }
