@@ -58,6 +58,8 @@
 #define FIBRAD_HEAT_PATCHES_MAX        384
 #define FIBRAD_HEAT_PARTS_DEFAULT      8
 #define FIBRAD_HEAT_PARTS_MAX          1024
+#define FIBRAD_GAS_REACH_DEFAULT       0.65   /* of --gas-gap and of couplings: docs/validation.md */
+#define FIBRAD_GAS_LEAST_DEFAULT       4e-10  /* m, least gap with gas that counts: the distance of molecules */
 #define FIBRAD_WALL_RAYS_DEFAULT       262144 /* least number of rays from all walls together */
 #define FIBRAD_WALL_RAYS_MAX           (1u << 30)
 

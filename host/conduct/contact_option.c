@@ -8,9 +8,7 @@
 #include "bed/bed_scene.h"
 #include "cli/message.h"
 
-#define GAP       0.65  /* default of --gas-gap */
-#define ROUNDING  1e-12 /* of flows, over the sum of their magnitudes */
-#define GAP_LEAST 4e-10 /* [m] least gap that counts: the distance of molecules */
+#define ROUNDING 1e-12 /* of flows, over the sum of their magnitudes */
 
 int contacts_option(const char *text, void *contact_options) {
     struct contact_options *options = contact_options;
@@ -77,8 +75,9 @@ static int find_contacts(struct contact_state *state, struct bed_options *bed_op
     state->of_solid = o->conductivity.given ? &o->conductivity : solid;
     state->rule = (fibrad_contact_rule){.spots = o->spots, .scale = o->scale, .gas_alone = solid->given};
     if (o->gas) {
-        state->rule.gas_reach = o->gap > 0 ? o->gap : GAP;
-        state->rule.gas_jump = o->jump / state->metres, state->rule.gas_least = GAP_LEAST / state->metres;
+        state->rule.gas_reach = o->gap > 0 ? o->gap : FIBRAD_GAS_REACH_DEFAULT;
+        state->rule.gas_jump = o->jump / state->metres,
+        state->rule.gas_least = FIBRAD_GAS_LEAST_DEFAULT / state->metres;
     }
     int status = quantity_values(state->of_solid, bed, bed_options->name, "conductivity of the solid", 0,
                                  SOLID_CONDUCTIVITY_MIN, SOLID_CONDUCTIVITY_MAX, &state->solid);

@@ -2,8 +2,9 @@
  *
  * Index
  *   link    values of particles that other ranks own  fibrad_link_new, _forward, _reverse, _free
- *   insitu  rows and powers while particles move      fibrad_insitu_new, _rows, _follow, _powers, _parts, _write,
- *                                                     _message, _remark, _facts_get, _free, fibrad_accuracy_named
+ *   insitu  rows and powers while particles move      fibrad_insitu_new, _rows, _follow, _powers, _parts, _conduct,
+ *                                                     _write, _message, _remark, _facts_get, _free,
+ *                                                     fibrad_accuracy_named
  *
  * Use         1. fibrad_insitu_new once.
  *             2. fibrad_insitu_rows every so many steps, with the particles that each rank owns at that time.
@@ -254,6 +255,38 @@ int fibrad_insitu_parts(fibrad_insitu *insitu, double (*part)[2]);
  *            _STATE: there are no rows, or particles have come or gone since all rows were made
  *            _FILE: a file cannot be written. The message names the file. No rank leaves a file behind. */
 int fibrad_insitu_write(fibrad_insitu *insitu, const char *path);
+
+/* What conducts heat where particles overlap each other or walls, as `fibrad heat --contacts` has it: docs/heat.md. The
+ * same on all ranks, but for conductivity. */
+typedef struct fibrad_insitu_contacts {
+    const double *conductivity; /* power/(L K), [n] of the bed, of the solid at spots, above 0 */
+    int hertz;                  /* 1: spots of elastic spheres; 0: the circles in which surfaces cut each other */
+    double scale;               /* of the radii of spots; 0: 1 */
+    double gas;                 /* power/(L K), conductivity of the gas in narrow gaps; 0: none */
+    double gas_least;           /* L, least gap that counts; 0: 1e-7 of the smaller radius */
+} fibrad_insitu_contacts;
+
+/* What all contacts conduct, the same on all ranks. Powers of particles and walls add up to 0, to rounding. */
+typedef struct fibrad_insitu_conducted {
+    double contacts;                      /* their number */
+    double particles;                     /* net power */
+    double wall[FIBRAD_WALLS_MAX];        /* net powers, [walls] */
+    double conductance[FIBRAD_WALLS_MAX]; /* power/K, [walls], of all contacts of a wall */
+} fibrad_insitu_conducted;
+
+/* Net power that particles gain through contacts at their present positions and temperatures, beside radiation.
+ * Contacts are found anew in each call. Particles that are left out of rows have none. A wall conducts whatever its
+ * emissivity. Steps of time are explicit. No difference of temperatures changes its sign in a step if 2 times the
+ * conductance of a particle times the step is less than its heat capacity, and the same holds for walls that store
+ * heat. Input    bed, state: the same particles in the same order. Emissivities must be valid. Output   power[n]: above
+ * 0 where heat is gained, the same bits for every number of ranks conductance[n]: power/K, of all contacts of a
+ * particle conducted: may be NULL Errors   _ARGUMENT: as for fibrad_insitu_rows and fibrad_insitu_powers; a
+ * conductivity is not above 0 _STATE: there are no rows _UNSUPPORTED: a wall is a mesh, or bed->conductivity is given
+ *            _MEMORY
+ *   Cost     3 microseconds for each particle; with gas 1 more for each pair within reach */
+int fibrad_insitu_conduct(fibrad_insitu *insitu, const fibrad_insitu_contacts *contacts, const fibrad_insitu_bed *bed,
+                          const fibrad_insitu_state *state, double *power, double *conductance,
+                          fibrad_insitu_conducted *conducted);
 
 /* The sentence of the last error. Not collective.
  *   Output   never NULL; "" if there was no error or insitu is NULL

@@ -123,6 +123,13 @@ typedef struct fibrad_scene_walls {
 
 void fibrad_insitu_walls(const fibrad_insitu_build *b, fibrad_scene_walls *walls);
 
+/* Particles as the spheres of a scene. id: may be NULL. */
+fibrad_spheres fibrad_insitu_spheres(const fibrad_insitu_build *b, const fibrad_particle *p, size_t n,
+                                     const uint64_t *id);
+
+/* Checks what is given with powers. Not collective. Errors: _ARGUMENT, _STATE. */
+int fibrad_insitu_check_state(fibrad_insitu *insitu, const fibrad_insitu_state *state, const double *power);
+
 /* Collective. Checks the bed, and takes its particles. Errors, on all ranks: as fibrad_insitu_rows. */
 int fibrad_insitu_check(fibrad_insitu_build *b);
 

@@ -28,6 +28,14 @@ void fibrad_insitu_walls(const fibrad_insitu_build *b, fibrad_scene_walls *to) {
     memcpy(t->period, to->period, sizeof t->period);
 }
 
+fibrad_spheres fibrad_insitu_spheres(const fibrad_insitu_build *b, const fibrad_particle *p, size_t n,
+                                     const uint64_t *id) {
+    const uint32_t stride = sizeof *p / sizeof(double);
+    const double *x[3];
+    fibrad_turn_arrays(b->bed->cylinder, (const double *const[]){&p->x[0], &p->x[1], &p->x[2]}, x);
+    return (fibrad_spheres){x[0], x[1], x[2], &p->radius, (uint32_t)n, stride, stride, id};
+}
+
 /* Checks the bed without its particles, which is the same on all ranks. */
 static int check_bed(fibrad_insitu_build *b) {
     const fibrad_insitu_bed *bed = b->bed;
@@ -229,7 +237,7 @@ int fibrad_insitu_measure(fibrad_insitu_build *b) {
 
 static int find_halo(fibrad_insitu_build *b) {
     fibrad_insitu_set *to = b->to;
-    return fibrad_halo(b->s->comm, b->period, b->reach, &to->particle, b->own, &b->s->sent, &b->halo);
+    return fibrad_halo(b->s->comm, b->period, b->reach, false, &to->particle, b->own, &b->s->sent, &b->halo);
 }
 
 /* Reduces the radii of own particles, and leaves out those of which next to nothing would remain. */

@@ -33,10 +33,7 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
                                        .occupancy = marked ? &b->map : NULL,
                                        .triangles = &turned.triangles};
     if ((n || !id) && !images) memcpy(config.period, turned.period, sizeof config.period);
-    const uint32_t stride = sizeof *p / sizeof(double);
-    const double *x[3];
-    fibrad_turn_arrays(b->bed->cylinder, (const double *const[]){&p->x[0], &p->x[1], &p->x[2]}, x);
-    const fibrad_spheres spheres = {x[0], x[1], x[2], &p->radius, (uint32_t)n, stride, stride, id};
+    const fibrad_spheres spheres = fibrad_insitu_spheres(b, p, n, id);
     fibrad_fault fault;
     const int status = fibrad_scene_init(&b->scene, s->scene.at, s->scene.size, &config, &spheres, &fault);
     return status && id ? fibrad_insitu_fault(b, status, id, n, fault) : status;

@@ -12,7 +12,7 @@ static double sigma_of(const fibrad_insitu_state *state) {
     return state->sigma == 0 ? FIBRAD_STEFAN_BOLTZMANN : state->sigma;
 }
 
-static int check_state(fibrad_insitu *s, const fibrad_insitu_state *state, const double *power) {
+int fibrad_insitu_check_state(fibrad_insitu *s, const fibrad_insitu_state *state, const double *power) {
     const int walls = (int)s->set.walls;
     if (!s->ready) return fibrad_refuse(s->message, FIBRAD_E_STATE, "there are no rows yet, which powers need");
     if (!state || (state->n && !(state->id && state->temperature && power)) || (walls && !state->wall_temperature) ||
@@ -153,7 +153,7 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
                          fibrad_insitu_totals *totals) {
     if (!s) return FIBRAD_E_ARGUMENT;
     s->message[0] = 0;
-    int status = fibrad_agree(s->comm, check_state(s, state, power), s->message);
+    int status = fibrad_agree(s->comm, fibrad_insitu_check_state(s, state, power), s->message);
     const double begun = MPI_Wtime();
     if (!status) status = follow_particles(s, state);
     if (status) {

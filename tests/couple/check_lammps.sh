@@ -329,8 +329,75 @@ done
 run 2 stored frozen.lmp "${whole[@]}" floor "$stores" steps 25 also "restart 25 $work/floor.*"
 run 4 restored frozen.lmp data "$work/floor.25" cutoff 4000 restarted yes steps 25 floor "$stores"
 near "$work/stores1.out" "$work/restored.out" 1e-10 "a floor that stores heat, restarted"
-run 2 warming moving.lmp hot 1000 steps 4000 capacity "capacity 2e4" stored 2e4
-balance warming 20e-3 0 1e-3 150 "energy of moving particles and a floor that stores heat"
+run 2 warming moving.lmp hot 1000 steps 4000 capacity "capacity 2e4 contacts 20 hertz gas .1" stored 2e4
+balance warming 20e-3 0 1e-3 150 "energy of moving particles with contacts and a floor that stores heat"
+
+# ---- contacts -----------------------------------------------------------------------------------------------------------
+# closed EXPLICIT STEPS STEP: temperatures of contacts.lmp by eigenvectors of the chain and differences of pairs: after explicit
+# steps, or in continuous time. The floor counts as ball 14
+closed() {
+    awk -v OFMT=%.17g -v explicit="$1" -v steps="$2" -v step="$3" '
+        function left(rate) { return explicit ? exp(steps*log(1 - rate*step)) : exp(-rate*step*steps) }
+        function mass(r) { return 2500*4/3*pi*r^3*800 } # its heat capacity
+        # Hertz, scaled by .9; other 0: a wall
+        function spot(r, other, d) { return .9*sqrt((other ? r*other/(r + other) : r)*(r + other - d)) }
+        function pair(a, b, ca, cb, h, name,    mean, off) {
+            mean = (ca*a + cb*b)/(ca + cb); off = (a - b)*left(h*(1/ca + 1/cb))
+            print name, mean + off*cb/(ca + cb); print name + 1, mean - off*ca/(ca + cb)
+        }
+        BEGIN {
+            pi = 4*atan2(1, 1); n = 10; big = mass(.5)
+            for (i = 1; i <= n; i++) t[i] = 300
+            t[1] = 900; t[4] = 600
+            rate = 2*200*spot(.5, .5, .96)/big
+            for (k = 0; k < n; k++) for (i = 1; i <= n; i++) c[k] += t[i]*cos(k*pi*(i - .5)/n)*(k ? 2 : 1)/n
+            for (i = 1; i <= n; i++) {
+                sum = 0
+                for (k = 0; k < n; k++) sum += c[k]*cos(k*pi*(i - .5)/n)*left(2*rate*(1 - cos(k*pi/n)))
+                print i, sum
+            }
+            pair(500, 300, big, mass(.3), 2*240*spot(.5, .3, .7), 11)
+            pair(300, 700, big, 1e6, 4*200*spot(.5, 0, .47), 13)
+        }'
+}
+# with_floor NAME: temperatures at the end, the floor as ball 14
+with_floor() {
+    awk 'NF == 2 && /^[0-9]+ /' "$work/$1.out"
+    awk '$1 == "Step" { n = 1 } /^Loop/ { n = 0 } n && /^ *[0-9]/ { t = $5 } END { print 14, t }' "$work/$1.log"
+}
+run 1 contacts1 contacts.lmp
+run 1 contacts_half contacts.lmp step 0.5 steps 4000
+with_floor contacts1 >"$work/contacts1"
+with_floor contacts_half >"$work/contacts_half"
+closed 1 1000 2 >"$work/explicit"
+near "$work/explicit" "$work/contacts1" 1e-9 "contacts of chains, pairs and a floor, by closed forms of explicit steps"
+closed 0 1000 2 >"$work/continuous"
+paste -d ' ' "$work/contacts1" "$work/contacts_half" | awk '{ print $1, 2*$4 - $2 }' CONVFMT=%.17g OFMT=%.17g >"$work/extrapolated"
+near "$work/continuous" "$work/extrapolated" 1e-5 "the same in continuous time"
+run 2 contacts2 contacts.lmp newton off also "restart 1000 $work/contacts.*"
+run 4 contacts4 contacts.lmp restarted yes data "$work/contacts.1000" steps 1000
+for np in 2 4; do
+    with_floor contacts$np | cmp - "$work/contacts1"
+    verdict "contacts without radiation, np $np: the same bits" $?
+done
+# LAMMPS rounds coordinates when it balances
+run 2 contacts_moved contacts.lmp also "fix b all balance 10 1.0 shift y 10 1.01"
+near "$work/contacts1.out" "$work/contacts_moved.out" 1e-10 "contacts, balance during the run"
+
+# beside radiation: what contacts bring is what fibrad heat says
+"$BUILD/fibrad" heat "$work/quarter.csv" --emissivity 1:.5,2:.8 --temperature T --ambient 300 --wall zmin=0 --wall-temperature 1000 \
+    --contacts lens --contact-conductivity 1:4,2:12 --gas-conductivity .03 --directions 50 --length-unit m -o "$work/touch.csv" >/dev/null 2>&1
+{
+    echo "dump powers all custom 1 $work/touch.dump id f_rad[1] f_rad[2] f_rad[3] f_rad[4] f_rad[5]"
+    echo 'dump_modify powers format float %.17g'
+} >"$work/touch.lmp"
+run 2 touch frozen.lmp "${whole[@]}" steps 0 strict "no parts yes contacts type 4 12 gas .03" also "include $work/touch.lmp"
+found=$(awk -F'[ ,]' 'FNR == 1 && NR == 1 { for (k = 1; k <= NF; k++) if ($k == "q_conduction_W") c = k }
+    NR == FNR && $1 ~ /^[0-9]/ { q[$1] = $c } NR > FNR && NF == 6 && $1 in q {
+        d = ($6 - q[$1])^2; if (d > worst) worst = d; if ($6^2 > most) most = $6^2; n++
+        d = ($2 - $3 - $4 - $5 - $6)^2; if (d > worst) worst = d }
+    END { printf "%.2g", sqrt(worst/most); exit !(n == 499 && worst < 1e-16*most) }' "$work/touch.csv" "$work/touch.dump")
+verdict "what contacts and gas bring is what fibrad heat says ($found)" $?
 
 # ---- what powers come from ---------------------------------------------------------------------------------------------
 for np in 1 2; do
@@ -511,6 +578,12 @@ for words in "solid 0" "solid -4" "solid type 4 0"; do
     fails "conductivity of the solid must be above 0" "$words" strict "no $words"
 done
 fails "instead of 'nan'" "a conductivity that is no number" strict "no solid nan"
+fails "the time step must be at most 0.0627" "contacts for which the time step is too long" heat 1 strict "no contacts 1e8"
+fails "contacts.* without .solid." "contacts beside solid" strict "no contacts 4 solid 4"
+fails "wall 1 is a mesh, and contacts need planes" "contacts beside a mesh" floor "mesh $work/box.stl 1000 0.9" strict "no contacts 4"
+fails "scale of contacts must be in" "a scale of 0" strict "no contacts 4 hertz scale 0"
+fails "contacts. needs temperatures" "contacts without temperatures" heat 0 strict "no contacts 4"
+fails "conductivity of the solid must be above 0" "contacts of conductivity 0" strict "no contacts type 4 0"
 fails "a word is missing" "a conductivity for one of two types" strict "no solid type 4"
 fails "property/atom d_none" "conductivities that are not there" strict "no solid d_none"
 fails "NEVERY must be above 0" "conductivities without temperatures" heat 0 strict "no solid 4"

@@ -142,6 +142,34 @@ run warming 2 'setforce 0 0 0' 600 -in warm --rows 300
 energy warming 600
 radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
 
+# Contacts that the driver conducts, against those of LIGGGHTS, whose spots conduct sqrt(pi) times as much: temperatures,
+# the same for 1 and 2 ranks; energy with a floor that conducts, too
+sed '/^fix floor/s/ temperature .*//' bed >plain
+transport="fix heat all transportequation/scalar equation_id heattransfer quantity Temp default_value 300 \
+flux_quantity heatFlux source_quantity heatSource capacity_quantity thermalCapacity"
+sed -e "s|^fix heat .*|$transport|" -e '/conducted/d' plain >free
+echo 'thermo_style custom step c_mean c_hottest' >>free
+for bed in plain free; do { echo 'run 0' && echo 'set atom 1*100 property/atom Temp 900' && echo "$dump" | sed "s/500 END/300 end_$bed/" && echo "$format"; } >>$bed; done
+radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9,-0.001 --every 1 --rows 300'
+run own_contacts 1 'setforce 0 0 0' 300 -in plain
+for ranks in 1 2; do
+    sed "s/end_free/end_free$ranks/" free >free$ranks
+    run contacts$ranks $ranks 'setforce 0 0 0' 300 -in free$ranks --contacts '5 lens scale 1.7724538509055159'
+    paste end_plain end_free$ranks | awk -v ranks=$ranks '
+        NF == 6 && $1 + 0 == $1 { off = ($2 - $5)^2; if (off > most) most = off; moved += ($2 != 900 && $2 != 300); n++ }
+        END {
+            printf "%d rank(s): contacts of the driver and of LIGGGHTS part by %.1e K\n", ranks, sqrt(most)
+            exit !(n == 588 && moved > 200 && most < 1e-16) }' || complain "contacts conduct otherwise than those of LIGGGHTS"
+done
+radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9 --capacity zlo=3'
+run touched 2 nve/sphere 300 -in free --contacts '5 hertz gas 0.03' --rows 100 --every 10
+echo "$(value touched heat_before) $(value touched heat_after) $(value touched radiation_surroundings) $(value touched temperature_zlo) \
+    $(value touched contacts_zlo) $(value touched contacts_particles)" | awk '{
+    lost = ($2 - $1 + $3 + 3 * ($4 - 1200)) / ($2 - $1)
+    printf "contacts bring %.3f J; energy off by %.1e\n", $6, lost
+    exit !(NF == 6 && $6 > 0.01 && ($5 + $6)^2 < 1e-24 * $6 * $6 && lost * lost < 1e-22) }' || complain "contacts: energy is not kept"
+radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
+
 # Meshes of the script. A box of triangles against planes in its place
 quad() { # NAME CORNER CORNER CORNER CORNER: two triangles
     printf 'solid %s\n' "$1"
@@ -269,6 +297,10 @@ refuse 1 2 "unknown option: --bad" -in bed --bad 3
 refuse 1 2 "'1.2' is not a number from 0 to 1" -in bed --emissivity 1.2
 refuse 1 2 "solid-conductivity: '0' is not a number above 0" -in bed --solid-conductivity 0
 refuse 1 2 "solid-conductivity: '5,nan' is not a number above 0" -in bed --solid-conductivity 5,nan
+refuse 1 2 "contacts: '5 scale' is not K" -in bed --contacts '5 scale'
+refuse 1 2 "contacts excludes" -in bed --emissivity 1 --surroundings 300 --steps 1 --contacts 5 --solid-conductivity 5
+# shellcheck disable=SC2086
+refuse 2 3 "fix heat/gran/conduction of the script conducts through contacts already" -in bed $radiation --steps 1 --contacts 5
 refuse 1 2 "none of SIDE=T,E" -in bed --wall floor=300,1
 refuse 1 2 "neither ID=E" -in bed --mesh lid=0.9:up
 refuse 1 2 "'lid=700,0.9' is of a mesh that was named already" -in bed --mesh lid=0.9 --mesh lid=700,0.9

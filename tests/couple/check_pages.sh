@@ -78,6 +78,10 @@ cp "$work/tube.stl" "$work/drum.stl"
 lammps 2 turning && grep -q 'is of wall drum, 2 triangles' "$work/turning.log"
 verdict "a mesh that turns" $?
 
+{ cat "$work/before" && block lammps.md "contacts 30 hertz" && echo 'run 10'; } >"$work/contacts"
+lammps 2 contacts && grep -q 'through contacts' "$work/contacts.log"
+verdict "contacts" $?
+
 # ---- docs/coupling.md -------------------------------------------------------------------------------------------------
 # the reader's program is the example
 sed 's|couple/fibrad_couple.h|fibrad_couple.h|' host/couple/example.c >"$work/mycode.c"

@@ -1004,6 +1004,97 @@ static void rows_follow_particles(double bound) {
     close_pile(&others);
 }
 
+/* ---- contacts -------------------------------------------------------------------------------------------------- */
+
+/* The radius of the circle in which two spheres at a distance d cut each other, or of Hertz's spot. other 0: a wall. */
+static double spot_radius(double d, double r, double other, bool hertz) {
+    const double overlap = r + other - d;
+    if (!(overlap > 0)) return 0;
+    if (hertz) return sqrt((other > 0 ? r * other / (r + other) : r) * overlap);
+    if (!(other > 0)) return sqrt(r * r - d * d);
+    const double side = d * d - other * other + r * r;
+    return sqrt(4 * d * d * r * r - side * side) / (2 * d);
+}
+
+/* What a sphere of the bed gains from one image of another, or from a wall, per kelvin. */
+static double conductance_of_pair(const struct pile *p, const double *solid, size_t i, size_t j, const int image[3],
+                                  bool hertz) {
+    double square = 0;
+    for (size_t axis = 0; axis < 3; ++axis)
+        square += pow(p->x[3 * j + axis] + image[axis] * (p->bed.high[axis] + 1) - p->x[3 * i + axis], 2);
+    const double a = spot_radius(sqrt(square), p->radius[i], p->radius[j], hertz);
+    return 2 * a * 2 * solid[i] * solid[j] / (solid[i] + solid[j]);
+}
+
+static double conductance_of_wall(const struct pile *p, const double *solid, size_t i, const fibrad_wall *wall,
+                                  bool hertz) {
+    const double *x = p->x + 3 * i;
+    const double d = wall->kind == FIBRAD_WALL_PLANE
+                         ? fabs(x[wall->plane.axis] - wall->plane.at)
+                         : wall->cylinder.radius - hypot(x[0] - wall->cylinder.x, x[1] - wall->cylinder.y);
+    return 4 * solid[i] * spot_radius(d, p->radius[i], 0, hertz);
+}
+
+/* Powers through contacts are those of all pairs of images, one by one. scale: of spots. */
+static void check_pairs(const struct pile *all, const double *solid, bool hertz, double scale, const double *power) {
+    for (size_t i = 0; i < all->bed.n; ++i) {
+        double gain = 0, sum = 0;
+        const int *most = all->bed.periodic;
+        for (size_t j = 0; j < all->bed.n; ++j)
+            for (int x = -most[0]; x <= most[0] && j != i; ++x)
+                for (int y = -most[1]; y <= most[1]; ++y)
+                    for (int z = -most[2]; z <= most[2]; ++z) {
+                        const double h = conductance_of_pair(all, solid, i, j, (const int[]){x, y, z}, hertz);
+                        sum += h, gain += h * (all->temperature[j] - all->temperature[i]);
+                    }
+        for (uint32_t k = 0; k < all->bed.walls; ++k) {
+            const double h = conductance_of_wall(all, solid, i, &all->wall[k], hertz);
+            sum += h, gain += h * (wall_temperature[k] - all->temperature[i]);
+        }
+        CHECK(fabs(power[i] - scale * gain) <= 1e-9 * scale * sum * 1000);
+    }
+}
+
+/* Contacts conduct the same, to the bit, whoever owns which particle and along whichever axis a tube lies. Their powers
+ * add up to zero. */
+static void contacts_conduct(const struct kind *kind, int axis, bool hertz, double gas) {
+    struct pile all = pile_of(kind);
+    for (size_t i = 0; i < all.bed.n; ++i) all.radius[i] *= 1.2;
+    double *solid = memory_of(all.bed.n, 2 * sizeof *solid), *kelvin = solid + all.bed.n;
+    for (size_t i = 0; i < all.bed.n; ++i) solid[i] = 1 + random_of(all.id[i], 6);
+    fibrad_insitu_contacts contacts = {.conductivity = solid, .hertz = hertz, .scale = .7, .gas = gas};
+    fibrad_insitu_conducted whole = {0}, parts = {0};
+    all.bed.conductivity = NULL;
+    if (rank == 0) {
+        fibrad_insitu *self = insitu_of(MPI_COMM_SELF, kind, 1);
+        const fibrad_insitu_state state = state_of(&all);
+        make_rows(self, &all, 7);
+        CHECK(fibrad_insitu_conduct(self, &contacts, &all.bed, &state, all.power, kelvin, &whole) == FIBRAD_OK);
+        fibrad_insitu_free(self);
+        if (gas == 0) check_pairs(&all, solid, hertz, .7, all.power);
+    }
+    lay_along(&all, axis);
+    struct pile part = part_of(&all, kind->spread);
+    part.bed.conductivity = NULL;
+    for (size_t i = 0; i < part.bed.n; ++i) solid[i] = 1 + random_of(part.id[i], 6);
+    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, kind->threads);
+    const fibrad_insitu_state state = state_of(&part);
+    make_rows(s, &part, 7);
+    CHECK(fibrad_insitu_conduct(s, &contacts, &part.bed, &state, part.power, kelvin, &parts) == FIBRAD_OK);
+    double *power = gather_powers(&all, &part), largest = 0, sum = 0, left = parts.particles;
+    if (rank == 0) CHECK(memcmp(power, all.power, all.bed.n * sizeof *power) == 0);
+    for (size_t i = 0; i < all.bed.n; ++i) sum += power[i], largest = fmax(largest, fabs(power[i]));
+    for (uint32_t k = 0; k < all.bed.walls; ++k) left += parts.wall[k];
+    CHECK(largest > 0 && parts.contacts > 20 && fabs(sum - parts.particles) < 1e-12 * largest);
+    CHECK(fabs(left) < 1e-12 * largest && (all.bed.walls == 0 || (parts.wall[0] != 0 && parts.conductance[0] > 0)));
+    CHECK(rank > 0 || (whole.contacts == parts.contacts && fabs(whole.particles - parts.particles) < 1e-12 * largest));
+    fibrad_insitu_free(s);
+    close_pile(&all);
+    close_pile(&part);
+    free(power);
+    free(solid);
+}
+
 /* ---- refusals -------------------------------------------------------------------------------------------------- */
 
 /* Asserts the same status and the same message on all ranks. The message contains `words`. */
@@ -1179,6 +1270,28 @@ static void files_are_refused(fibrad_insitu *s) {
     check_refused(s, fibrad_insitu_write(s, NULL), FIBRAD_E_ARGUMENT, "is empty or too long");
 }
 
+/* Contacts of particles that conduct inside, at meshes, and of conductivities that are not above 0. */
+static void contacts_are_refused(fibrad_insitu *s, const struct pile *good) {
+    struct pile part = part_of(good, 0);
+    const fibrad_insitu_state state = state_of(&part);
+    double *solid = memory_of(part.bed.n, 2 * sizeof *solid), *kelvin = solid + part.bed.n;
+    for (size_t i = 0; i < part.bed.n; ++i) solid[i] = 2;
+    const fibrad_insitu_contacts contacts = {.conductivity = solid};
+    const fibrad_wall kept = part.wall[1];
+    check_refused(s, fibrad_insitu_conduct(s, &contacts, &part.bed, &state, part.power, kelvin, NULL),
+                  FIBRAD_E_UNSUPPORTED, "not particles that conduct inside");
+    part.bed.conductivity = NULL;
+    part.wall[1].kind = FIBRAD_WALL_MESH;
+    check_refused(s, fibrad_insitu_conduct(s, &contacts, &part.bed, &state, part.power, kelvin, NULL),
+                  FIBRAD_E_UNSUPPORTED, "wall 2 is a mesh");
+    part.wall[1] = kept;
+    if (rank == ranks - 1) solid[1] = 0;
+    check_refused(s, fibrad_insitu_conduct(s, &contacts, &part.bed, &state, part.power, kelvin, NULL),
+                  FIBRAD_E_ARGUMENT, "its conductivity at contacts must be above 0, not 0");
+    close_pile(&part);
+    free(solid);
+}
+
 /* Particles that conduct very little: rows of few paths do not tell their powers, and rows of many paths do. */
 static void rows_are_too_inaccurate(void) {
     static const uint32_t paths[] = {50, 600};
@@ -1228,6 +1341,7 @@ static void refusals(void) {
     rows_are_refused(s);
     powers_are_refused(s, &all);
     files_are_refused(s);
+    contacts_are_refused(s, &all);
     CHECK(fibrad_insitu_powers(s, &state, part.power, NULL) == FIBRAD_OK);
     CHECK(memcmp(before, part.power, part.bed.n * sizeof *before) == 0);
     cylinders_are_refused(s);
@@ -1280,6 +1394,9 @@ int main(int argc, char **argv) {
     conducting = 0;
     a_lone_particle();
     walls_exchange_with_each_other();
+    for (int k = 0; k < KINDS; ++k)
+        for (int axis = kinds[k].walls >= TUBE ? 0 : 2; axis < 3; ++axis)
+            contacts_conduct(&kinds[k], axis, k % 2, axis < 2 || k == 4 ? .3 : 0);
     refusals();
     wrong_units_are_refused();
     rows_are_too_inaccurate();

@@ -5,9 +5,11 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "force.h"
 #include "group.h"
 #include "input.h"
 #include "modify.h"
+#include "pair.h"
 #include "update.h"
 #include "variable.h"
 
@@ -85,10 +87,10 @@ class FixFibrad::Words {
 };
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
-    : Fix(lammps, narg, arg), temperature(), kept_bit(0), surroundings{-1, ""}, columns(1), sampling(false),
+    : Fix(lammps, narg, arg), spots(), temperature(), kept_bit(0), surroundings{-1, ""}, columns(1), sampling(false),
       accuracy(false), cylinder(2), sigma(0), initial(0), config(), meshes(), moving(false), insitu(nullptr), totals(),
-      warned(false), wall_warned(false), told(), set_up(-1), powers_at(0), lost(0), restarted(false), begun(0),
-      before(), rows_made(0), rows_followed(0), powers_found(0) {
+      conducted(), warned(false), wall_warned(false), told(), set_up(-1), powers_at(0), lost(0), restarted(false),
+      begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // the default of docs/lammps.md
@@ -105,6 +107,8 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
             cp = read_property(words, "heat capacity", 1e-300, huge);
         else if (key == "solid")
             solid = read_property(words, "conductivity", 1e-300, huge);
+        else if (key == "contacts")
+            read_contacts(words);
         else if (key == "surroundings")
             surroundings = read_kelvins(words, "the temperature of the surroundings");
         else if (key == "wall")
@@ -151,12 +155,17 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
         if (!(e >= 0 && e <= 1)) error->all(FLERR, text("fix fibrad: emissivity must be within 0 and 1, not %g", e));
     for (double c : cp.of_type)
         if (!(c > 0)) error->all(FLERR, text("fix fibrad: cp must be above 0, not %g", c));
-    for (size_t type = 1; type < solid.of_type.size(); type++)
-        if (!(solid.of_type[type] > 0))
-            error->all(FLERR,
-                       text("fix fibrad: the conductivity of the solid must be above 0, not %g", solid.of_type[type]));
-    if (solid.given() && !heat_every)
-        error->all(FLERR, std::string("fix fibrad: `solid` needs temperatures: NEVERY must be above 0"));
+    for (const Property *k : {&solid, &contact})
+        for (size_t type = 1; type < k->of_type.size(); type++)
+            if (!(k->of_type[type] > 0))
+                error->all(FLERR,
+                           text("fix fibrad: the conductivity of the solid must be above 0, not %g", k->of_type[type]));
+    for (const char *word : {solid.given() ? "solid" : "", contact.given() ? "contacts" : ""})
+        if (*word && !heat_every)
+            error->all(FLERR, text("fix fibrad: `%s` needs temperatures: NEVERY must be above 0", word));
+    if (solid.given() && contact.given())
+        error->all(FLERR,
+                   std::string("fix fibrad: `contacts` needs particles of one temperature each, without `solid`"));
     if (!emissivity.table.empty() && !heat_every)
         error->all(FLERR, std::string("fix fibrad: `table` needs temperatures: NEVERY must be above 0"));
     if (heat_every && surroundings.variable.empty() && surroundings.value < 0)
@@ -173,12 +182,13 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
                                   " need `sigma S`, the Stefan-Boltzmann constant in energy/(time length^2 K^4)");
     }
 
+    if (columns > 1 && contact.given()) columns++;
     dynamic_group_allow = 1;
     create_attribute = 1;
     nevery = heat_every ? heat_every : rows_every;
     scalar_flag = vector_flag = peratom_flag = 1;
     size_peratom_cols = columns > 1 ? columns : 0;
-    size_vector = 5 + (int)walls.size() + 3 + (int)walls.size() + 1;
+    size_vector = 5 + (int)walls.size() + 3 + (int)walls.size() + 1 + 2;
     restart_global = wall_heat.any() || moving;
     global_freq = peratom_freq = 1;
     extscalar = extvector = 0;
@@ -375,6 +385,26 @@ void FixFibrad::read_accuracy(Words &words) {
     if (config.accuracy < 0) error->all(FLERR, "fix fibrad: `accuracy` is low, normal or high, not `" + word + "`");
 }
 
+// K [lens | hertz] [scale S] [gas KG]
+void FixFibrad::read_contacts(Words &words) {
+    const double huge = 1e300;
+    contact = read_property(words, "conductivity at contacts", 1e-300, huge);
+    for (bool more = true; more;) {
+        if (words.take("lens"))
+            spots.hertz = 0;
+        else if (words.take("hertz"))
+            spots.hertz = 1;
+        else if (words.take("scale"))
+            spots.scale = words.number("the scale of contacts", 1e-6, 1e6);
+        else if (words.take("gas"))
+            spots.gas = words.number("the conductivity of the gas", 0, huge);
+        else
+            more = false;
+    }
+    const double metre = !strcmp(update->unit_style, "si") ? 1 : !strcmp(update->unit_style, "cgs") ? 100 : 0;
+    spots.gas_least = FIBRAD_GAS_LEAST_DEFAULT * metre;
+}
+
 // VALUE | type VALUE VALUE ... | d_NAME
 FixFibrad::Property FixFibrad::read_property(Words &words, const char *what, double low, double high) {
     Property property;
@@ -458,6 +488,8 @@ void FixFibrad::init() {
     }
     if (!emissivity.of_atom.empty()) need(emissivity.of_atom);
     if (!solid.of_atom.empty()) need(solid.of_atom);
+    if (!contact.of_atom.empty()) need(contact.of_atom);
+    if (contact.given()) refuse_conduction();
     if (!heat_every) return;
 
     if (temperature.empty()) temperature = known("temperature") && known("heatflow") ? "temperature" : "d_T";
@@ -513,7 +545,9 @@ void FixFibrad::list_output() {
     }
     list += text(", [%d] outside, [%d] overlapping, [%d] behind", 6 + count, 7 + count, 8 + count);
     if (count) list += text(", [%d] to [%d] temperatures of walls", 9 + count, 8 + 2 * count);
-    say(text("fix fibrad: f_%s", id) + list + text(", [%d] gone", 9 + 2 * count));
+    list += text(", [%d] gone", 9 + 2 * count);
+    if (contact.given()) list += text(", [%d] through contacts, [%d] contacts", 10 + 2 * count, 11 + 2 * count);
+    say(text("fix fibrad: f_%s", id) + list);
 }
 
 void FixFibrad::post_run() {
@@ -591,38 +625,43 @@ void FixFibrad::place_meshes(const fibrad_insitu_bed &bed) {
         error->all(FLERR, std::string("fix fibrad: out of memory"));
 }
 
-// Makes the rows of all particles. follow: makes only the rows of particles that have come since the last rows.
-void FixFibrad::make_rows(bool follow) {
-    select();
-    std::vector<double> x, radius;
+// The members and walls at present.
+FixFibrad::Bed FixFibrad::present_bed() {
+    Bed b = {};
     for (int i : member) {
-        x.insert(x.end(), atom->x[i], atom->x[i] + 3);
-        radius.push_back(atom->radius[i]);
+        b.x.insert(b.x.end(), atom->x[i], atom->x[i] + 3);
+        b.radius.push_back(atom->radius[i]);
     }
-    const std::vector<double> e = values(emissivity), relative = conductivities();
+    b.emissivity = values(emissivity), b.conductivity = conductivities();
     for (size_t w = 0; w < walls.size(); w++)
         if (wall_face[w] >= 0) walls[w].plane.at = (wall_face[w] % 2 ? domain->boxhi : domain->boxlo)[wall_face[w] / 2];
 
-    fibrad_insitu_bed bed = {};
-    std::copy_n(domain->boxlo, 3, bed.low);
-    std::copy_n(domain->boxhi, 3, bed.high);
-    std::copy_n(domain->periodicity, 3, bed.periodic);
-    bed.wall = walls.data();
-    bed.wall_emissivity = wall_emissivity.data();
-    bed.walls = (uint32_t)walls.size();
-    bed.cylinder = (cylinder + 1) % 3;
-    bed.opening = openings.data();
-    bed.openings = (uint32_t)openings.size();
-    bed.triangles = &meshes.meshes.triangles;
-    bed.n = member.size();
-    bed.id = tags.data();
-    bed.x = x.data();
-    bed.radius = radius.data();
-    bed.emissivity = e.data();
-    bed.conductivity = solid.given() ? relative.data() : nullptr;
+    std::copy_n(domain->boxlo, 3, b.bed.low);
+    std::copy_n(domain->boxhi, 3, b.bed.high);
+    std::copy_n(domain->periodicity, 3, b.bed.periodic);
+    b.bed.wall = walls.data();
+    b.bed.wall_emissivity = wall_emissivity.data();
+    b.bed.walls = (uint32_t)walls.size();
+    b.bed.cylinder = (cylinder + 1) % 3;
+    b.bed.opening = openings.data();
+    b.bed.openings = (uint32_t)openings.size();
+    b.bed.triangles = &meshes.meshes.triangles;
+    b.bed.n = member.size();
+    b.bed.id = tags.data();
+    b.bed.x = b.x.data();
+    b.bed.radius = b.radius.data();
+    b.bed.emissivity = b.emissivity.data();
+    b.bed.conductivity = solid.given() ? b.conductivity.data() : nullptr;
+    return b;
+}
+
+// Makes the rows of all particles. follow: makes only the rows of particles that have come since the last rows.
+void FixFibrad::make_rows(bool follow) {
+    select();
+    const Bed present = present_bed();
     const bigint number = update->ntimestep / rows_every * rows_every;
-    place_meshes(bed);
-    const int status = (follow ? fibrad_insitu_follow : fibrad_insitu_rows)(insitu, &bed, (uint64_t)number);
+    place_meshes(present.bed);
+    const int status = (follow ? fibrad_insitu_follow : fibrad_insitu_rows)(insitu, &present.bed, (uint64_t)number);
     if (status == FIBRAD_E_BACK)
         error->all(FLERR, std::string("fix fibrad: ") + fibrad_insitu_message(insitu) +
                               "; with the word `both` both sides of a mesh are the wall");
@@ -668,6 +707,31 @@ void FixFibrad::refuse_second() {
     }
 }
 
+// Whether pair granular has a model of heat. The names of its models are in restart files alone.
+static bool has_heat(Pair *pair) {
+    char *bytes = nullptr;
+    size_t size = 0;
+    FILE *file = open_memstream(&bytes, &size);
+    if (!file) return false;
+    pair->write_restart(file);
+    fclose(file);
+    const std::string names(bytes, size);
+    free(bytes);
+    return names.find("area") != std::string::npos || names.find("radius") != std::string::npos;
+}
+
+void FixFibrad::refuse_conduction() {
+    std::string name;
+    for (int k = 0; k < modify->nfix; k++)
+        if (!strncmp(modify->fix[k]->style, "heat/gran", 9)) name = std::string("fix ") + modify->fix[k]->style;
+    Pair *pair = force->pair_match("granular", 1);
+    int heat = comm->me == 0 && pair && has_heat(pair);
+    MPI_Bcast(&heat, 1, MPI_INT, 0, world);
+    if (heat) name = "the heat model of pair granular";
+    if (!name.empty())
+        error->all(FLERR, "fix fibrad: " + name + " conducts through contacts already: leave out `contacts`");
+}
+
 // Evaluates the variables. A variable may use computes, which are then needed at steps of heat.
 void FixFibrad::find_temperatures() {
     const auto kelvins = [this](const Temperature &t) {
@@ -691,8 +755,8 @@ void FixFibrad::find_powers() {
     find_temperatures();
     select();
     const std::vector<double> t = temperatures(), of_walls = wall_temperatures();
-    std::vector<double> power(member.size());
-    check_step(t);
+    std::vector<double> power(member.size()), by_contacts(member.size()), conductance(member.size());
+    check_values(t);
 
     fibrad_insitu_state state = {};
     state.sigma = sigma;
@@ -707,22 +771,35 @@ void FixFibrad::find_powers() {
         status = fibrad_insitu_powers(insitu, &state, power.data(), &totals);
     }
     check(status);
+    if (contact.given()) conduct(state, by_contacts.data(), conductance.data());
+    check_step(t, conductance);
     check_walls();
     powers_found++;
     powers_at = update->ntimestep;
     std::fill(q.begin(), q.end(), 0.0);
-    for (size_t k = 0; k < member.size(); k++) q[member[k] * columns] = power[k];
-    if (columns > 1) find_parts();
+    for (size_t k = 0; k < member.size(); k++) q[member[k] * columns] = power[k] + by_contacts[k];
+    if (columns > 1) find_parts(by_contacts.data());
 }
 
-// Divides each power into what comes from particles, from walls and from surroundings.
-void FixFibrad::find_parts() {
+// Finds what members gain through contacts, and adds it to the totals.
+void FixFibrad::conduct(const fibrad_insitu_state &state, double *power, double *conductance) {
+    const std::vector<double> k = values(contact);
+    spots.conductivity = k.data();
+    const Bed present = present_bed();
+    check(fibrad_insitu_conduct(insitu, &spots, &present.bed, &state, power, conductance, &conducted));
+    totals.particles += conducted.particles;
+    for (size_t w = 0; w < walls.size(); w++) totals.wall[w] += conducted.wall[w];
+}
+
+// Divides each power into what comes by radiation from particles, from walls and from surroundings, and by contacts.
+void FixFibrad::find_parts(const double *by_contacts) {
     std::vector<double> part(2 * member.size());
     check(fibrad_insitu_parts(insitu, (double(*)[2])part.data()));
     for (size_t k = 0; k < member.size(); k++) {
         double *of_atom = &q[member[k] * columns];
         of_atom[2] = part[2 * k], of_atom[3] = part[2 * k + 1];
-        of_atom[1] = of_atom[0] - of_atom[2] - of_atom[3];
+        of_atom[1] = of_atom[0] - of_atom[2] - of_atom[3] - by_contacts[k];
+        if (contact.given()) of_atom[4] = by_contacts[k];
     }
 }
 
@@ -766,35 +843,40 @@ std::vector<double> FixFibrad::conductivities() {
     return relative;
 }
 
-// Checks that steps of temperatures are stable: 4 sigma T^3 A e dt < m cp. Then no particle overshoots its
-// surroundings.
-void FixFibrad::check_step(const std::vector<double> &t) {
+// Checks that temperatures and capacities are set.
+void FixFibrad::check_values(const std::vector<double> &t) {
+    const std::vector<double> capacity = values(cp);
+    tagint tag = 0;
+    for (size_t k = 0; k < member.size(); k++) {
+        const bool stepped = cp.given() && atom->mask[member[k]] & groupbit;
+        if (!(t[k] > 0 && t[k] < HUGE_VAL && (!stepped || capacity[k] > 0))) tag = std::max(tag, atom->tag[member[k]]);
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &tag, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+    if (tag)
+        error->all(FLERR, std::string("fix fibrad: the temperature ") + (cp.of_atom.empty() ? "" : "or cp ") +
+                              "of atom " + std::to_string(tag) + " is not set, or not above 0");
+}
+
+// Checks that steps of temperatures are stable: (4 sigma T^3 A e + 2 H) dt < m cp, H the sum over contacts. Then no
+// particle overshoots its surroundings, and no difference of temperatures changes its sign.
+void FixFibrad::check_step(const std::vector<double> &t, const std::vector<double> &conductance) {
     const std::vector<double> e = values(emissivity), capacity = values(cp);
     struct {
         double ratio;
         int rank;
     } worst = {0, comm->me};
     tagint tag = 0;
-    for (size_t k = 0; k < member.size(); k++) {
+    for (size_t k = 0; k < member.size() && cp.given(); k++) {
         const int i = member[k];
         const double area = 16 * std::atan(1) * atom->radius[i] * atom->radius[i];
-        const bool stepped = cp.given() && atom->mask[i] & groupbit;
-        double ratio = HUGE_VAL;
-        if (t[k] > 0 && t[k] < HUGE_VAL && (!stepped || capacity[k] > 0))
-            ratio = stepped ? 4 * sigma * t[k] * t[k] * t[k] * area * e[k] * update->dt * heat_every /
-                                  (mass(i) * capacity[k])
-                            : 0;
-        if (ratio > worst.ratio) worst.ratio = ratio, tag = atom->tag[i];
+        const double per_kelvin = 4 * sigma * t[k] * t[k] * t[k] * area * e[k] + 2 * conductance[k];
+        const double ratio = per_kelvin * update->dt * heat_every / (mass(i) * capacity[k]);
+        if (atom->mask[i] & groupbit && ratio > worst.ratio) worst.ratio = ratio, tag = atom->tag[i];
     }
     MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
     if (worst.ratio < 0.5 || (worst.ratio < 1 && warned)) return;
-
     MPI_Bcast(&tag, 1, MPI_LMP_TAGINT, worst.rank, world);
-    const std::string name = "atom " + std::to_string(tag);
-    if (worst.ratio == HUGE_VAL)
-        error->all(FLERR, std::string("fix fibrad: the temperature ") + (cp.of_atom.empty() ? "" : "or cp ") + "of " +
-                              name + " is not set, or not above 0");
-    judge_step(name, worst.ratio, warned);
+    judge_step("atom " + std::to_string(tag), worst.ratio, warned);
 }
 
 // Ends the run if steps of heat are longer than the longest stable step. Warns once if they are longer than its half.
@@ -804,7 +886,7 @@ void FixFibrad::judge_step(const std::string &name, double ratio, bool &already_
     if (ratio >= 1)
         error->all(FLERR, "fix fibrad: steps of heat are too long for " + name +
                               (most ? ": NEVERY must be at most " + std::to_string(most)
-                                    : "; the time step itself is too long"));
+                                    : text(": the time step must be at most %.3g", update->dt * heat_every / ratio)));
     already_warned = true;
     if (comm->me == 0)
         error->warning(FLERR, "fix fibrad: steps of heat are long for " + name +
@@ -816,7 +898,8 @@ void FixFibrad::check_walls() {
     size_t wall = 0;
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(insitu, &facts);
-    const double ratio = wall_heat.ratio(facts.wall, sigma, wall_temperatures(), update->dt * heat_every, &wall);
+    const double ratio =
+        wall_heat.ratio(facts.wall, conducted.conductance, sigma, wall_temperatures(), update->dt * heat_every, &wall);
     judge_step(text("wall %d", (int)wall + 1), ratio, wall_warned);
 }
 
@@ -870,12 +953,13 @@ double FixFibrad::compute_vector(int n) {
     fibrad_insitu_facts_get(insitu, &facts);
     const double first[] = {totals.surroundings, facts.beyond, facts.error, facts.seconds_rows, facts.seconds_powers};
     const double strays[] = {(double)facts.outside, (double)facts.overlapping, (double)facts.behind};
+    const double rest[] = {(double)facts.gone, conducted.particles, conducted.contacts};
     const int last = 5 + (int)walls.size();
     return n < 5                 ? first[n]
            : n < last            ? totals.wall[n - 5]
            : n < last + 3        ? strays[n - last]
-           : n < size_vector - 1 ? wall_kelvins[n - last - 3].value
-                                 : (double)facts.gone;
+           : n < size_vector - 3 ? wall_kelvins[n - last - 3].value
+                                 : rest[n - size_vector + 3];
 }
 
 double FixFibrad::memory_usage() {

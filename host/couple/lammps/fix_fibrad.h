@@ -70,6 +70,12 @@ class FixFibrad : public Fix {
         std::string variable; // name without v_; empty: none
     };
 
+    // The bed at present, with the arrays to which it points.
+    struct Bed {
+        std::vector<double> x, radius, emissivity, conductivity;
+        fibrad_insitu_bed bed;
+    };
+
     // Reading the arguments of the fix.
     class Words;
     void read_wall(Words &);
@@ -85,6 +91,7 @@ class FixFibrad : public Fix {
     Table read_table(const std::string &path, const char *what, double low, double high);
     Temperature read_kelvins(Words &, const char *what);
     void read_accuracy(Words &);
+    void read_contacts(Words &);
 
     // Vectors of atoms, of LAMMPS or of fix property/atom.
     double *vector(const std::string &name);      // NULL: there is no such vector, or this rank has no atoms
@@ -101,13 +108,16 @@ class FixFibrad : public Fix {
     bool takes_part(int i) const { return atom->mask[i] & (groupbit | kept_bit); }
     void select(); // finds member and tags
     double time() const;
+    Bed present_bed();
     void place_meshes(const fibrad_insitu_bed &);
     void make_rows(bool follow = false);
     void find_powers();
-    void find_parts();
+    void conduct(const fibrad_insitu_state &state, double *power, double *conductance);
+    void find_parts(const double *conducted);
     void heat_walls(bigint steps);
     void follow_heatflow();
-    void check_step(const std::vector<double> &temperature); // refuses steps of heat that are not stable
+    void check_values(const std::vector<double> &temperature); // refuses what is not set
+    void check_step(const std::vector<double> &temperature, const std::vector<double> &conductance);
     void check_walls();
     void list_output();
     void judge_step(const std::string &name, double ratio, bool &already_warned);
@@ -115,15 +125,18 @@ class FixFibrad : public Fix {
     void say(const std::string &); // a line in the log
     void tell_strays();            // says once of each kind what was done with strays
     void refuse_second();          // stops if another fix radiates from a particle of this one
+    void refuse_conduction();      // stops if LAMMPS conducts through contacts, too
 
     // Arguments of the fix.
     int heat_every, rows_every;     // NEVERY and NROWS; heat_every 0: no steps of heat
     Property emissivity, cp, solid; // solid: conductivity of the solid, energy/(time length K); not given: infinite
+    Property contact;               // conductivity of the solid at contacts; not given: contacts do not conduct
+    fibrad_insitu_contacts spots;   // the rest of what contacts are
     std::string temperature;        // name of the vector of temperatures
     std::string rows_file;          // first part of the names of the files of rows; empty: none
     int kept_bit;                   // bit of group2, whose temperatures this fix does not step; 0: none
     Temperature surroundings;
-    int columns;    // 4 with `parts`, else 1
+    int columns;    // 4 with `parts`, 5 if contacts conduct, else 1
     bool sampling;  // directions, paths or tolerance are given
     bool accuracy;  // accuracy is given
     int cylinder;   // axis of the cylinder
@@ -142,7 +155,8 @@ class FixFibrad : public Fix {
 
     // State.
     fibrad_insitu *insitu;
-    fibrad_insitu_totals totals; // of the last powers
+    fibrad_insitu_totals totals; // of the last powers, with what contacts conduct
+    fibrad_insitu_conducted conducted;
     std::vector<double> q;       // [nmax][columns], power of each atom; with `parts` also what it comes from
     std::vector<double *> lines; // [nmax], where each atom's values in q begin
     std::vector<int> member;     // atoms of the group that this rank owns

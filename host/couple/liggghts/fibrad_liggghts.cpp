@@ -62,12 +62,15 @@ struct Driver {
     std::vector<uint64_t> id;                                    /* [own] */
     std::vector<double> emissivity, gain;                        /* [own] */
     std::vector<double> conductivity;                            /* [own], k* when rows are made; empty: infinite */
-    fibrad_insitu_totals totals;                                 /* of the current powers */
+    std::vector<double> by_contacts, conductance, contact_solid; /* [own], of contacts: power, power/K, conductivity */
+    fibrad_insitu_totals totals;                                 /* of the current powers by radiation */
+    fibrad_insitu_conducted conducted;                           /* of those through contacts */
     bool counts;                                                 /* the heat of particles that come is counted */
     bool radiates;                                               /* there are powers */
     bool told[FIBRAD_REMARKS];                                   /* a message on strays of each kind was given */
     LAMMPS_NS::bigint since;                                     /* first step in which the current powers heat */
     double heat, heat_surroundings, heat_wall[FIBRAD_WALLS_MAX]; /* heat by radiation before that step */
+    double through, through_wall[FIBRAD_WALLS_MAX];              /* the same through contacts */
 };
 
 int rank() {
@@ -106,7 +109,13 @@ Fix *property(Driver *driver, const char *name, const char *style, const char *k
 }
 
 void find_properties(Driver *driver) {
-    const char *conduction = "fix heat/gran/conduction";
+    const bool contacts = !driver->options.contact.empty();
+    const LAMMPS_NS::Modify *modify = driver->lmp->modify;
+    for (int k = 0; k < modify->nfix && contacts; ++k)
+        if (std::strncmp(modify->fix[k]->style, "heat/gran", 9) == 0)
+            stop(WRONG_INPUT, std::string("fix ") + modify->fix[k]->style +
+                                  " of the script conducts through contacts already: leave out --contacts");
+    const char *conduction = contacts ? "fix transportequation/scalar" : "fix heat/gran/conduction";
     driver->temperature = property(driver, "Temp", "property/atom", "scalar", conduction);
     driver->source = property(driver, "heatSource", "property/atom", "scalar", conduction);
     driver->capacity = property(driver, "thermalCapacity", "property/global", "peratomtype",
@@ -134,6 +143,8 @@ void find_units(Driver *driver) {
     const int types = driver->lmp->atom->ntypes;
     expand(&driver->options.emissivity, types, "emissivities");
     expand(&driver->options.solid, types, "conductivities of the solid");
+    expand(&driver->options.contact, types, "conductivities at contacts");
+    driver->options.spots.gas_least = FIBRAD_GAS_LEAST_DEFAULT * (cgs ? 100 : 1);
 }
 
 void place_walls(Driver *driver) {
@@ -198,9 +209,14 @@ void take_particles(Driver *driver) {
     driver->id.resize(n);
     driver->emissivity.resize(n);
     driver->gain.resize(n);
+    driver->by_contacts.assign(n, 0);
+    driver->conductance.assign(n, 0);
+    driver->contact_solid.clear();
     for (size_t i = 0; i < n; ++i) {
+        const size_t type = (size_t)atom->type[i] - 1;
         driver->id[i] = (uint64_t)atom->tag[i];
-        driver->emissivity[i] = driver->options.emissivity[(size_t)atom->type[i] - 1];
+        driver->emissivity[i] = driver->options.emissivity[type];
+        if (!driver->options.contact.empty()) driver->contact_solid.push_back(driver->options.contact[type]);
     }
 }
 
@@ -220,7 +236,8 @@ double heat_capacity(const Driver *driver, int i) {
     return atom->rmass[i] * driver->capacity->compute_vector(atom->type[i] - 1);
 }
 
-/* Explicit steps are stable if a power lasts for less than the time in which it would cool the particle down. */
+/* Explicit steps are stable if a power lasts for less than the time in which it would cool the particle down. Twice the
+ * conductance of its contacts counts, so that no difference of temperatures changes its sign. */
 void check_time_step(const Driver *driver) {
     const LAMMPS_NS::Atom *atom = driver->lmp->atom;
     const double seconds = driver->lmp->update->dt * (double)driver->options.every;
@@ -230,7 +247,8 @@ void check_time_step(const Driver *driver) {
     } worst = {0, 0}, all;
     for (int i = 0; i < atom->nlocal; ++i) {
         const double r = atom->radius[i], t = driver->temperature->vector_atom[i];
-        const double conductance = 16 * M_PI * r * r * driver->emissivity[(size_t)i] * driver->sigma * t * t * t;
+        const double conductance = 16 * M_PI * r * r * driver->emissivity[(size_t)i] * driver->sigma * t * t * t +
+                                   2 * driver->conductance[(size_t)i];
         const double ratio = conductance * seconds / heat_capacity(driver, i);
         if (ratio > worst.ratio) worst = {ratio, atom->tag[i]};
     }
@@ -249,7 +267,8 @@ void check_walls(const Driver *driver) {
     const double seconds = driver->lmp->update->dt * (double)driver->options.every;
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(driver->radiation, &facts);
-    const double ratio = driver->wall_heat.ratio(facts.wall, driver->sigma, driver->wall_temperature, seconds, &wall);
+    const double ratio = driver->wall_heat.ratio(facts.wall, driver->conducted.conductance, driver->sigma,
+                                                 driver->wall_temperature, seconds, &wall);
     if (!(ratio > 1)) return;
     char text[200];
     std::snprintf(text, sizeof text,
@@ -349,8 +368,8 @@ void tell_strays(Driver *driver) {
     }
 }
 
-/* follow: only particles that have come since the last rows get new ones. */
-void make_rows(Driver *driver, bool follow) {
+/* The particles that this rank owns now, and walls. Meshes are where they were at the last rows. */
+fibrad_insitu_bed present_bed(const Driver *driver) {
     const LAMMPS_NS::Atom *atom = driver->lmp->atom;
     const LAMMPS_NS::Domain *domain = driver->lmp->domain;
     fibrad_insitu_bed bed{};
@@ -371,9 +390,15 @@ void make_rows(Driver *driver, bool follow) {
     bed.x = bed.n > 0 ? atom->x[0] : nullptr;
     bed.radius = atom->radius;
     bed.emissivity = driver->emissivity.data();
-    find_conductivities(driver);
     bed.conductivity = driver->options.solid.empty() ? nullptr : driver->conductivity.data();
+    return bed;
+}
+
+/* follow: only particles that have come since the last rows get new ones. */
+void make_rows(Driver *driver, bool follow) {
+    find_conductivities(driver);
     follow_meshes(driver);
+    const fibrad_insitu_bed bed = present_bed(driver);
     if (mesh_walls_face(&driver->triangles, MPI_COMM_WORLD, &bed) != 0) stop(WRONG_INPUT, "out of memory");
     const auto make = follow ? fibrad_insitu_follow : fibrad_insitu_rows;
     check(driver, make(driver->radiation, &bed, (uint64_t)driver->lmp->update->ntimestep));
@@ -406,6 +431,14 @@ void make_powers(Driver *driver) {
         status = fibrad_insitu_powers(driver->radiation, &state, driver->gain.data(), &driver->totals);
     }
     check(driver, status);
+    if (!driver->options.contact.empty()) {
+        const fibrad_insitu_bed bed = present_bed(driver);
+        fibrad_insitu_contacts *spots = &driver->options.spots;
+        spots->conductivity = driver->contact_solid.data();
+        check(driver, fibrad_insitu_conduct(driver->radiation, spots, &bed, &state, driver->by_contacts.data(),
+                                            driver->conductance.data(), &driver->conducted));
+    }
+    check_time_step(driver);
     check_walls(driver);
 }
 
@@ -415,9 +448,15 @@ void count_heat(Driver *driver, LAMMPS_NS::bigint now) {
     const double seconds = driver->lmp->update->dt * (double)(now - driver->since);
     driver->heat += seconds * driver->totals.particles;
     driver->heat_surroundings += seconds * driver->totals.surroundings;
-    for (size_t k = 0; k < driver->wall.size(); ++k) driver->heat_wall[k] += seconds * driver->totals.wall[k];
+    driver->through += seconds * driver->conducted.particles;
+    double power[FIBRAD_WALLS_MAX];
+    for (size_t k = 0; k < driver->wall.size(); ++k) {
+        driver->heat_wall[k] += seconds * driver->totals.wall[k];
+        driver->through_wall[k] += seconds * driver->conducted.wall[k];
+        power[k] = driver->totals.wall[k] + driver->conducted.wall[k];
+    }
     share_temperatures(driver, false);
-    driver->wall_heat.step(driver->totals.wall, seconds, &driver->wall_temperature);
+    driver->wall_heat.step(power, seconds, &driver->wall_temperature);
     share_temperatures(driver, true);
 }
 
@@ -442,13 +481,13 @@ void radiate(Driver *driver, LAMMPS_NS::bigint step, int n) {
     const LAMMPS_NS::bigint first = step + (driver->lmp->update->setupflag ? 1 : 0);
     count_heat(driver, first);
     take_particles(driver);
-    check_time_step(driver);
     if (!driver->radiates || step % driver->options.rows == 0) make_rows(driver, false);
     make_powers(driver);
     double *source = driver->source->vector_atom, *power = driver->power->vector_atom;
     for (int i = 0; i < n; ++i) {
-        source[i] = source[i] - power[i] + driver->gain[(size_t)i];
-        power[i] = driver->gain[(size_t)i];
+        const double gain = driver->gain[(size_t)i] + driver->by_contacts[(size_t)i];
+        source[i] = source[i] - power[i] + gain;
+        power[i] = gain;
     }
     driver->radiates = true;
     driver->since = first;
@@ -490,10 +529,13 @@ void print_summary(const Driver *driver, double before, double after, double sec
     std::printf("radiation_surroundings %.17g\n", driver->heat_surroundings);
     for (size_t k = 0; k < driver->wall.size(); ++k)
         std::printf("radiation_%s %.17g\n", driver->wall_name[k].c_str(), driver->heat_wall[k]);
+    if (!driver->options.contact.empty()) std::printf("contacts_particles %.17g\n", driver->through);
+    for (size_t k = 0; k < driver->wall.size() && !driver->options.contact.empty(); ++k)
+        std::printf("contacts_%s %.17g\n", driver->wall_name[k].c_str(), driver->through_wall[k]);
     for (size_t k = 0; k < driver->wall.size(); ++k)
         std::printf("temperature_%s %.17g\n", driver->wall_name[k].c_str(), driver->wall_temperature[k]);
     std::printf("heat_came %.17g\nheat_gone %.17g\n", came, gone);
-    std::printf("conduction_and_sources %.17g\n", after - before - driver->heat - came + gone);
+    std::printf("conduction_and_sources %.17g\n", after - before - driver->heat - driver->through - came + gone);
     std::printf("outside %" PRIu64 "\noverlapping %" PRIu64 "\nbehind %" PRIu64 "\ngone %" PRIu64 "\n", facts.outside,
                 facts.overlapping, facts.behind, facts.gone);
     std::printf("beyond_mean %.17g\nerror_rms %.17g\n", facts.beyond, facts.error);

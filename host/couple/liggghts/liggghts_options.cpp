@@ -9,12 +9,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
 
 namespace {
 
 const struct option names[] = {{"in", required_argument, nullptr, 'i'},
                                {"emissivity", required_argument, nullptr, 'e'},
                                {"solid-conductivity", required_argument, nullptr, 'k'},
+                               {"contacts", required_argument, nullptr, 'K'},
                                {"surroundings", required_argument, nullptr, 'T'},
                                {"wall", required_argument, nullptr, 'w'},
                                {"mesh", required_argument, nullptr, 'm'},
@@ -137,6 +139,20 @@ bool capacity(const char *text, wall_capacity *capacity) {
     return number(equals + 1, 1e-300, 1e300, &capacity->capacity);
 }
 
+/* Reads K[,K...] [lens|hertz] [scale S] [gas KG]. */
+bool contacts(const char *text, std::vector<double> *solid, fibrad_insitu_contacts *spots) {
+    std::istringstream words(text);
+    std::string word, value;
+    if (!(words >> word) || !numbers(word.c_str(), 1e-300, 1e300, solid)) return false;
+    while (words >> word)
+        if (word == "lens" || word == "hertz")
+            spots->hertz = word == "hertz";
+        else if (word == "scale" ? !(words >> value) || !number(value.c_str(), 1e-6, 1e6, &spots->scale)
+                                 : word != "gas" || !(words >> value) || !number(value.c_str(), 0, 1e300, &spots->gas))
+            return false;
+    return true;
+}
+
 /* Takes the argument of an option. Returns what is wrong with the argument. NULL: nothing. */
 const char *take(int key, const char *text, liggghts_options *options) {
     radiant_wall one;
@@ -159,6 +175,10 @@ const char *take(int key, const char *text, liggghts_options *options) {
     case 'k':
         return numbers(text, 1e-300, 1e300, &options->solid) ? nullptr
                                                              : "is not a number above 0, nor one for each type";
+    case 'K':
+        return contacts(text, &options->contact, &options->spots)
+                   ? nullptr
+                   : "is not K[,K...] [lens|hertz] [scale S] [gas KG], with K above 0";
     case 'T':
         return number(text, 0, 1e9, &options->surroundings) ? nullptr : "is not a temperature";
     case 'w':
@@ -208,6 +228,7 @@ const char *check(const liggghts_options *options) {
     if (options->surroundings < 0) return "--surroundings is missing, the temperature of the surroundings";
     if (options->steps < 0) return "--steps is missing, the number of steps with radiation";
     if (options->accuracy && options->config.tolerance > 0) return "--accuracy excludes --tolerance";
+    if (!options->contact.empty() && !options->solid.empty()) return "--contacts excludes --solid-conductivity";
     if (options->rows % options->every != 0) return "--rows is not a multiple of --every";
     return nullptr;
 }
@@ -243,12 +264,17 @@ void liggghts_options_help() {
         "mpirun -np N fibrad_liggghts -in SCRIPT --emissivity E --surroundings T --steps N [options] [-- OPTIONS OF "
         "LIGGGHTS]\n\n"
         "Runs a script of LIGGGHTS that has a fix heat/gran/conduction. Then runs N further steps with radiation\n"
-        "between all particles, walls and surroundings. Units are si or cgs. docs/liggghts.md has an example.\n\n"
+        "between all particles, walls and surroundings. Units are si or cgs. docs/liggghts.md has an example.\n"
+        "With --contacts the script has a fix transportequation/scalar instead, and contacts conduct here.\n\n"
         "  -in SCRIPT               the script; a run in the script is without radiation\n"
         "  --steps N                steps to run with radiation\n"
         "  --emissivity E[,E...]    emissivity of all particles, 0 to 1, or of each type\n"
         "  --solid-conductivity K[,K...]  conductivity of the solid of all particles, or of each type, in si\n"
         "                           W/(m K) [infinite: one temperature a particle]\n"
+        "  --contacts 'K[,K...] [lens|hertz] [scale S] [gas KG]'  contacts conduct: conductivity K of the solid at\n"
+        "                           contacts, in si W/(m K), spots as `fibrad heat --contacts` has them [lens], "
+        "factor\n"
+        "                           of their radii [1], conductivity of the gas in gaps [no gas]\n"
         "  --surroundings T         temperature [K] of what is seen where there is neither particle nor wall\n"
         "  --wall SIDE=T,E[,AT]     a plane that radiates: side xlo ... zhi, temperature [K], emissivity, place\n"
         "                           [fixed end of the box]\n"

@@ -34,6 +34,8 @@ struct liggghts_options {
     const char *rows_file = nullptr; /* --write */
     std::vector<double> emissivity;  /* one for all types, or one per type */
     std::vector<double> solid;       /* the same of the conductivity of the solid; empty: infinite */
+    std::vector<double> contact;     /* the same of the solid at contacts; empty: contacts do not conduct */
+    fibrad_insitu_contacts spots{};  /* the rest of --contacts */
     double surroundings = -1;        /* below 0: not given */
     std::vector<radiant_wall> walls;
     int cylinder = 0;                   /* axis of the cylinder, as in fibrad_insitu_bed */

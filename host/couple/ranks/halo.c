@@ -5,7 +5,6 @@
 #include "couple/ranks/halo.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <string.h>
 
 struct range_box {
@@ -54,9 +53,10 @@ static bool within_reach(const double x[3], const struct range_box *box, double 
     return square <= reach * reach;
 }
 
-/* Appends a particle and its images, if they lie within reach of a box. itself: the particle itself is left out. */
+/* Appends a particle and its images, if they lie within reach of a box; once: the particle alone. itself: the particle
+ * itself is left out. */
 static int add_images(const fibrad_particle *particle, const struct range_box *box, const double period[3],
-                      double reach, bool itself, fibrad_block *sent, size_t *count) {
+                      double reach, bool itself, bool once, fibrad_block *sent, size_t *count) {
     const struct range_box point = {{particle->x[0], particle->x[1], particle->x[2]},
                                     {particle->x[0], particle->x[1], particle->x[2]}};
     struct shift_range s;
@@ -71,7 +71,8 @@ static int add_images(const fibrad_particle *particle, const struct range_box *b
                 if ((itself && !i && !j && !k) || !within_reach(image.x, box, reach)) continue;
                 if (*count == FIBRAD_SPHERES_MAX || fibrad_block_fit(sent, *count + 1, sizeof image))
                     return FIBRAD_E_MEMORY;
-                ((fibrad_particle *)sent->at)[(*count)++] = image;
+                ((fibrad_particle *)sent->at)[(*count)++] = once ? *particle : image;
+                if (once) return FIBRAD_OK;
             }
     return FIBRAD_OK;
 }
@@ -82,21 +83,22 @@ static void set_owner(fibrad_particle *particle, size_t own, int rank) {
 
 /* Lists the particles and images for each rank. count[q]: their number for rank q. */
 static int choose_particles(const struct range_box *box, int rank, int ranks, const double period[3], double reach,
-                            fibrad_particle *particle, size_t own, fibrad_block *sent, int *count) {
+                            bool once, fibrad_particle *particle, size_t own, fibrad_block *sent, int *count) {
     size_t sum = 0;
     set_owner(particle, own, rank);
     for (int q = 0; q < ranks; ++q) {
         const size_t before = sum;
         struct shift_range any;
-        if (find_shifts(&box[rank], &box[q], period, reach, &any))
+        if (!(once && q == rank) && find_shifts(&box[rank], &box[q], period, reach, &any))
             for (size_t i = 0; i < own; ++i)
-                if (add_images(&particle[i], &box[q], period, reach, q == rank, sent, &sum)) return FIBRAD_E_MEMORY;
+                if (add_images(&particle[i], &box[q], period, reach, q == rank, once, sent, &sum))
+                    return FIBRAD_E_MEMORY;
         count[q] = (int)(sum - before);
     }
     return FIBRAD_OK;
 }
 
-int fibrad_halo(MPI_Comm comm, const double period[3], double reach, fibrad_block *particle, size_t own,
+int fibrad_halo(MPI_Comm comm, const double period[3], double reach, bool once, fibrad_block *particle, size_t own,
                 fibrad_block *sent, size_t *halo) {
     int rank, ranks;
     MPI_Comm_rank(comm, &rank);
@@ -108,7 +110,7 @@ int fibrad_halo(MPI_Comm comm, const double period[3], double reach, fibrad_bloc
     reach *= 1 + 1e-9; /* includes particles at the edge whatever the rounding */
     if (!status) {
         MPI_Allgather(&mine, 6, MPI_DOUBLE, box, 6, MPI_DOUBLE, comm);
-        status = choose_particles(box, rank, ranks, period, reach, particle->at, own, sent, count);
+        status = choose_particles(box, rank, ranks, period, reach, once, particle->at, own, sent, count);
         status = fibrad_deal(comm, status, sent->at, count, sizeof(fibrad_particle), particle, own, count + ranks);
     }
     if (!status) *halo = fibrad_count_sum(count + ranks, ranks);

@@ -3,6 +3,8 @@
 #ifndef FIBRAD_COUPLE_HALO_H
 #define FIBRAD_COUPLE_HALO_H
 
+#include <stdbool.h>
+
 #include "couple/ranks/collective.h"
 
 /* Where a rank has a particle: the rank, and the index there. */
@@ -13,9 +15,13 @@ typedef struct fibrad_place {
 /* A particle in a message. It consists of words alone, so that coordinates are doubles with a stride. */
 typedef struct fibrad_particle {
     uint64_t id;
-    double x[3], radius;                   /* [L] */
-    double emissivity, conductivity, node; /* k*, and the emissivity of the node, fibrad_node_emissivity */
-    fibrad_place owner;                    /* set by fibrad_halo and fibrad_gather: where its owner has it */
+    double x[3], radius;             /* [L] */
+    double emissivity, conductivity; /* k*; of contacts: power/(L K) */
+    union {
+        double node;        /* the emissivity of the node, fibrad_node_emissivity */
+        double temperature; /* K, of contacts */
+    };
+    fibrad_place owner; /* set by fibrad_halo and fibrad_gather: where its owner has it */
 } fibrad_particle;
 
 /* Particles as spheres. id: out, [n] */
@@ -27,9 +33,10 @@ static inline fibrad_spheres fibrad_particle_spheres(const fibrad_particle *p, s
 
 /* Collective. Appends to particle[own] the particles of other ranks, and the periodic images of particles of all ranks,
  * within `reach` of the box of the centres of particle[own]. Their order depends on who owns which particle. An image
- * has the coordinates x + s period with integers s, whoever owns the particle. period 0: the axis is open. sent:
- * scratch. *halo: number appended. Errors, on all ranks: _MEMORY. Cost: own particles times neighbouring ranks. */
-int fibrad_halo(MPI_Comm comm, const double period[3], double reach, fibrad_block *particle, size_t own,
+ * has the coordinates x + s period with integers s, whoever owns the particle. once: no images are appended, but each
+ * particle of another rank that is within reach, or has an image there. period 0: the axis is open. sent: scratch.
+ * *halo: number appended. Errors, on all ranks: _MEMORY. Cost: own particles times neighbouring ranks. */
+int fibrad_halo(MPI_Comm comm, const double period[3], double reach, bool once, fibrad_block *particle, size_t own,
                 fibrad_block *sent, size_t *halo);
 
 /* Collective. Appends to particle[own] all particles of other ranks, in the order of ranks. No image is appended. all:

@@ -15,14 +15,14 @@ class WallHeat {
 
     bool any() const { return std::any_of(capacity.begin(), capacity.end(), stores); }
 
-    /* A step of `seconds` over the longest one in which no wall overshoots what it sees: the largest
-     * 4 sigma T^3 G seconds/capacity. exchange: G of each wall, of fibrad_insitu_facts. *wall: the index of that wall.
-     */
-    double ratio(const double *exchange, double sigma, const std::vector<double> &temperature, double seconds,
-                 size_t *wall) const {
+    /* A step of `seconds` over the longest one in which no wall overshoots what it sees and touches: the largest
+     * (4 sigma T^3 G + 2 H) seconds/capacity. exchange, conductance: G and H of each wall, of fibrad_insitu_facts and
+     * fibrad_insitu_conducted. *wall: the index of that wall. */
+    double ratio(const double *exchange, const double *conductance, double sigma,
+                 const std::vector<double> &temperature, double seconds, size_t *wall) const {
         double worst = 0;
         for (size_t k = 0; k < capacity.size(); ++k) {
-            const double t = temperature[k], gain = 4 * sigma * t * t * t * exchange[k];
+            const double t = temperature[k], gain = 4 * sigma * t * t * t * exchange[k] + 2 * conductance[k];
             const double of_wall = stores(capacity[k]) ? gain * seconds / capacity[k] : 0;
             if (of_wall > worst) worst = of_wall, *wall = k;
         }

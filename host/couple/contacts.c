@@ -1,0 +1,159 @@
+/* contacts.c - heat that contacts and gas conduct between particles that are divided over ranks, and to walls.
+ * SPDX-License-Identifier: MIT
+ *
+ * A rank finds contacts among its own particles and those of other ranks that may touch them. All are sorted by id
+ * before. So both ranks that know of a contact find the same conductance, to the bit. Contacts are sorted, too. So each
+ * particle adds up its flows in one order, whoever owns which particle. */
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "couple/insitu.h"
+#include "simple/fibrad_host.h"
+
+/* The indices of both ends in the list of particles; a wall has that of the wall plus the number of particles. */
+struct conductor {
+    uint32_t first, second;
+    double distance, conductance;
+};
+
+static int by_id(const void *a, const void *b) {
+    const fibrad_particle *x = a, *y = b;
+    return x->id < y->id ? -1 : x->id > y->id;
+}
+
+static int by_ends(const void *a, const void *b) {
+    const struct conductor *x = a, *y = b;
+    if (x->first != y->first) return x->first < y->first ? -1 : 1;
+    if (x->second != y->second) return x->second < y->second ? -1 : 1;
+    return x->distance < y->distance ? -1 : x->distance > y->distance;
+}
+
+static int check_conduction(fibrad_insitu *s, const fibrad_insitu_contacts *contacts, const fibrad_insitu_bed *bed,
+                            const fibrad_insitu_state *state) {
+    if (!contacts || (bed->n && !contacts->conductivity) || state->n != bed->n || bed->walls != s->set.walls ||
+        (bed->n && memcmp(state->id, bed->id, bed->n * sizeof *bed->id) != 0) ||
+        !(contacts->scale >= 0 && contacts->gas >= 0 && contacts->gas_least >= 0))
+        return FIBRAD_E_ARGUMENT;
+    if (bed->conductivity)
+        return fibrad_refuse(s->message, FIBRAD_E_UNSUPPORTED,
+                             "contacts need particles of one temperature each, not particles that conduct inside");
+    for (uint32_t k = 0; k < bed->walls; ++k)
+        if (bed->wall[k].kind == FIBRAD_WALL_MESH)
+            return fibrad_refuse(s->message, FIBRAD_E_UNSUPPORTED,
+                                 "wall %" PRIu32 " is a mesh, and contacts need planes or a cylinder", k + 1);
+    for (size_t i = 0; i < bed->n; ++i)
+        if (!(contacts->conductivity[i] > 0 && isfinite(contacts->conductivity[i])))
+            return fibrad_refuse(s->message, FIBRAD_E_ARGUMENT,
+                                 "particle %" PRIu64 ": its conductivity at contacts must be above 0, not %g",
+                                 bed->id[i], contacts->conductivity[i]);
+    return FIBRAD_OK;
+}
+
+/* Gathers the particles of this rank that take part, and those of other ranks that may touch them, sorted by id. The
+ * first `own` of b->s->order are the indices in the bed of those of this rank. */
+static int gather_particles(fibrad_insitu_build *b, const fibrad_insitu_contacts *contacts,
+                            const fibrad_insitu_state *state, double gas_reach) {
+    double largest = 0;
+    int status = fibrad_agree(b->s->comm, fibrad_block_fit(&b->s->order, b->own, sizeof(uint32_t)), NULL);
+    if (status) return status;
+    fibrad_particle *own = b->to->particle.at;
+    uint32_t *order = b->s->order.at;
+    for (uint32_t i = 0, k = 0; k < b->own; ++i) {
+        if (own[k].id != b->bed->id[i]) continue; /* left out */
+        own[k].conductivity = contacts->conductivity[i], own[k].temperature = state->temperature[i];
+        largest = fmax(largest, own[k].radius);
+        order[k++] = i;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, b->s->comm);
+    status = fibrad_halo(b->s->comm, b->period, (2 + gas_reach) * largest, true, &b->to->particle, b->own, &b->s->sent,
+                         &b->halo);
+    if (!status) qsort(b->to->particle.at, b->own + b->halo, sizeof(fibrad_particle), by_id);
+    return status;
+}
+
+/* Finds the conductances of all contacts of the gathered particles. *conductor: [*count], in order; to be freed. */
+static int find_conductors(const fibrad_insitu_build *b, const fibrad_insitu_contacts *contacts, double gas_reach,
+                           struct conductor **conductor, uint32_t *count) {
+    const fibrad_contact_rule rule = {.spots = contacts->hertz ? FIBRAD_SPOTS_HERTZ : FIBRAD_SPOTS_LENS,
+                                      .scale = contacts->scale,
+                                      .gas_reach = gas_reach,
+                                      .gas_least = contacts->gas_least};
+    fibrad_scene_walls walls;
+    fibrad_insitu_walls(b, &walls);
+    fibrad_scene_config config = {.wall = walls.wall, .walls = b->bed->walls};
+    memcpy(config.period, walls.period, sizeof config.period);
+    const fibrad_particle *p = b->to->particle.at;
+    const fibrad_spheres spheres = fibrad_insitu_spheres(b, p, b->own + b->halo, NULL);
+    fibrad_contact_list *list;
+    int status = fibrad_contacts_find(&config, &spheres, &rule, &list);
+    if (status) return status;
+    double *solid = malloc((spheres.n + 2 * (size_t)list->n + 1) * sizeof *solid);
+    double *gas = solid + spheres.n, *conductance = gas + list->n;
+    struct conductor *c = *conductor = malloc(((size_t)list->n + 1) * sizeof *c);
+    status = solid && c ? FIBRAD_OK : FIBRAD_E_MEMORY;
+    for (uint32_t i = 0; i < spheres.n && !status; ++i) solid[i] = p[i].conductivity;
+    for (uint32_t k = 0; k < list->n && !status; ++k) gas[k] = contacts->gas;
+    if (!status) status = fibrad_contacts_conduct(list, &rule, solid, gas, conductance);
+    for (uint32_t k = 0; k < list->n && !status; ++k)
+        c[k] = (struct conductor){list->first[k], list->second[k], list->distance[k], conductance[k]};
+    *count = list->n;
+    if (!status) qsort(c, *count, sizeof *c, by_ends);
+    fibrad_contacts_free(list);
+    free(solid);
+    return status;
+}
+
+/* Adds up what particles of this rank gain, and what walls gain from them. */
+static void add_flows(const fibrad_insitu_build *b, const fibrad_insitu_state *state, const struct conductor *conductor,
+                      uint32_t count, double *power, double *conductance, fibrad_insitu_conducted *sum) {
+    const uint32_t rank = (uint32_t)b->s->rank, particles = (uint32_t)(b->own + b->halo), *order = b->s->order.at;
+    const fibrad_particle *p = b->to->particle.at;
+    for (uint32_t k = 0; k < count; ++k) {
+        const struct conductor *c = &conductor[k];
+        const fibrad_particle *first = &p[c->first], *second = c->second < particles ? &p[c->second] : NULL;
+        const uint32_t wall = c->second - particles;
+        const double other = second ? second->temperature : state->wall_temperature[wall];
+        const double flow = c->conductance * (other - first->temperature);
+        if (first->owner.rank == rank) {
+            power[order[first->owner.index]] += flow, conductance[order[first->owner.index]] += c->conductance;
+            sum->contacts += 1;
+            if (!second) sum->wall[wall] -= flow, sum->particles += flow, sum->conductance[wall] += c->conductance;
+        }
+        if (second && second->owner.rank == rank)
+            power[order[second->owner.index]] -= flow, conductance[order[second->owner.index]] += c->conductance;
+    }
+}
+
+int fibrad_insitu_conduct(fibrad_insitu *s, const fibrad_insitu_contacts *contacts, const fibrad_insitu_bed *bed,
+                          const fibrad_insitu_state *state, double *power, double *conductance,
+                          fibrad_insitu_conducted *conducted) {
+    if (!s) return FIBRAD_E_ARGUMENT;
+    fibrad_insitu_build b = {.s = s, .to = &s->next, .bed = bed};
+    struct conductor *conductor = NULL;
+    fibrad_insitu_conducted sum = {0};
+    uint32_t count = 0;
+    s->message[0] = 0;
+    int status = fibrad_insitu_check(&b);
+    const double begun = MPI_Wtime();
+    if (!status) status = fibrad_insitu_check_state(s, state, power);
+    if (!status) status = conductance || !bed->n ? check_conduction(s, contacts, bed, state) : FIBRAD_E_ARGUMENT;
+    status = fibrad_agree(s->comm, status, s->message);
+    const double gas_reach = !status && contacts->gas > 0 ? FIBRAD_GAS_REACH_DEFAULT : 0;
+    if (!status) status = gather_particles(&b, contacts, state, gas_reach);
+    if (!status) {
+        status = find_conductors(&b, contacts, gas_reach, &conductor, &count);
+        status = fibrad_agree(s->comm, status, s->message);
+    }
+    if (!status) {
+        for (size_t i = 0; i < bed->n; ++i) power[i] = conductance[i] = 0;
+        add_flows(&b, state, conductor, count, power, conductance, &sum);
+        MPI_Allreduce(MPI_IN_PLACE, &sum, sizeof sum / sizeof(double), MPI_DOUBLE, MPI_SUM, s->comm);
+        if (conducted) *conducted = sum;
+        s->seconds_powers += MPI_Wtime() - begun;
+    } else if (!s->message[0]) {
+        fibrad_refuse(s->message, status, "%s", fibrad_status_text(status));
+    }
+    free(conductor);
+    return status;
+}
