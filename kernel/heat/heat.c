@@ -3,12 +3,12 @@
 #include "base/arena.h"
 #include "base/constants.h"
 #include "base/dispatch.h"
-#include "heat/fine.h"
-#include "heat/hits_lanes.h"
-#include "heat/pencils.h"
+#include "patches/subdivision.h"
+#include "patches/patch_beams_lanes.h"
+#include "patches/pencils.h"
 #include "sample/sphere_patch.h"
 #include "heat/sweep.h"
-#include "heat/wall_patch.h"
+#include "patches/wall_patch.h"
 #include "sample/direction.h"
 
 #define HEAT_THIN_MAX  2u

@@ -29,7 +29,7 @@
  * eps or rho. One is their mean r = eps (S - h <J>)/D + q/A. It changes J by r/(1 + eps h/D). The other part is what
  * differs from the mean. It is treated as on other bodies. A black body has J = E everywhere.
  *
- * On a sphere that conducts the mean of J is treated as above. conduct.c treats the rest.
+ * On a sphere that conducts the mean of J is treated as above. sphere_conduction.c treats the rest.
  *
  * Contacts. A body of unknown temperature in contact with others is *joined*: its E is an unknown beside its J, since E
  * follows from the neighbours as well. With the flows H of contacts
@@ -41,8 +41,8 @@
  * (contact/contact.h). Then it changes J as on a body of the given emission E + x. No part divides by eps or rho. T is
  * not linear in E. So the search is one of conjugate gradients with exchange areas g of contacts that change from step
  * to step, and each direction is made conjugate to the last one with the present g. */
-#include "heat/problem.h"
-#include "heat/pencils.h"
+#include "heat/solution.h"
+#include "patches/pencils.h"
 #include "heat/sweep.h"
 
 /* A body of unknown temperature: its area, the means of J and of N J per area, and D. */
@@ -50,25 +50,15 @@ typedef struct free_body {
     double area, radiosity, net, divisor;
 } free_body;
 
-/* Whether the temperature of a body is unknown. */
-static bool is_free(const fibrad_heat *heat, uint32_t body) { return heat->sources.hold[body] >= 0; }
-
 /* Whether the unknown emission of a body follows from its own radiosities. */
 static bool follows_radiosity(const fibrad_heat *heat, uint32_t b) {
-    return is_free(heat, b) && !fibrad_heat_is_joined(heat, b);
-}
-
-/* The sum of values over the patches of a body. */
-static double sum_over(const fibrad_heat *heat, uint32_t body, const double *value) {
-    double sum = 0;
-    for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++) sum += value[a];
-    return sum;
+    return fibrad_heat_is_free(heat, b) && !fibrad_heat_is_joined(heat, b);
 }
 
 static free_body free_body_of(const fibrad_heat *heat, uint32_t b) {
-    const double eps = heat->sources.emissivity[b], area = sum_over(heat, b, heat->solution.area);
+    const double eps = heat->sources.emissivity[b], area = fibrad_heat_sum(heat, b, heat->solution.area);
     return (free_body){area, fibrad_heat_mean(heat, b, heat->solution.radiosity),
-                       area > 0 ? sum_over(heat, b, heat->solution.net) / area : 0,
+                       area > 0 ? fibrad_heat_sum(heat, b, heat->solution.net) / area : 0,
                        (1 - eps) * heat->sources.hold[b] + area * eps};
 }
 
@@ -178,7 +168,7 @@ static double absorbable(const fibrad_heat *heat, uint32_t b) {
 
 /* What a joined body gives off per unit of its emission. */
 static double stiffness_of_joined(const fibrad_heat *heat, uint32_t b) {
-    return heat->sources.hold[b] + heat->sources.emissivity[b] * sum_over(heat, b, heat->solution.area);
+    return heat->sources.hold[b] + heat->sources.emissivity[b] * fibrad_heat_sum(heat, b, heat->solution.area);
 }
 
 /* The tolerance of temperatures that balance the radiation of one step: a Newton step that changes none by more is the
@@ -215,7 +205,7 @@ static double find_residual(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++)
         slope += fibrad_heat_is_joined(heat, b)  ? joined_residual(heat, b)
                  : fibrad_heat_conducts(heat, b) ? conducting_residual(heat, b)
-                 : is_free(heat, b)              ? free_residual(heat, b)
+                 : fibrad_heat_is_free(heat, b)  ? free_residual(heat, b)
                                                  : given_residual(heat, b);
     return slope;
 }
@@ -234,8 +224,9 @@ static void find_emissions(fibrad_heat *heat) {
 
 /* Emissivity times area of a body. 0: the sources give its power. */
 static double emitting(const fibrad_heat *heat, uint32_t body) {
-    return heat->sources.hold[body] != 0 ? heat->sources.emissivity[body] * sum_over(heat, body, heat->solution.area)
-                                         : 0;
+    return heat->sources.hold[body] != 0
+               ? heat->sources.emissivity[body] * fibrad_heat_sum(heat, body, heat->solution.area)
+               : 0;
 }
 
 /* Finds the net powers of the bodies. The power of a body that reflects all is 0, and the power of some bodies is
@@ -244,10 +235,10 @@ static double emitting(const fibrad_heat *heat, uint32_t body) {
 static void find_powers(const fibrad_heat *heat, double *power) {
     double left = 0, weights = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        power[b] = sum_over(heat, b, heat->solution.net);
+        power[b] = fibrad_heat_sum(heat, b, heat->solution.net);
         if (fibrad_heat_is_joined(heat, b)) {
             const double gained = absorbable(heat, b) - heat->sources.emissivity[b] *
-                                                            sum_over(heat, b, heat->solution.area) *
+                                                            fibrad_heat_sum(heat, b, heat->solution.area) *
                                                             heat->sources.emission[b];
             left += power[b] - gained, power[b] = gained;
             continue;
@@ -354,7 +345,7 @@ static bool solvable(fibrad_heat *heat) {
     bool held = heat->contacts.count > 0 && heat->contacts.anchored, radiates = false;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         held = held || emitting(heat, b) > 0;
-        radiates = radiates || (is_free(heat, b) && heat->sources.emissivity[b] > 0);
+        radiates = radiates || (fibrad_heat_is_free(heat, b) && heat->sources.emissivity[b] > 0);
         if (heat->sources.hold[b] == 0) sum += heat->sources.drive[b], sizes += fibrad_abs(heat->sources.drive[b]);
         double light = 0;
         for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) light += light_on(heat, b, a);
@@ -423,7 +414,7 @@ void fibrad_heat_start(fibrad_heat *heat) {
 static void sink(fibrad_heat *heat) {
     double sum = 0, weights = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        const double area = heat->sources.emissivity[b] * sum_over(heat, b, heat->solution.area);
+        const double area = heat->sources.emissivity[b] * fibrad_heat_sum(heat, b, heat->solution.area);
         sum += area * heat->sources.emission[b], weights += area;
     }
     const double mean = weights > 0 ? sum / weights : 0;
@@ -446,7 +437,8 @@ static void set_balances(fibrad_heat *heat) {
     fibrad_heat_add_offsets(heat, c->supply);
     for (uint32_t b = 0; b < heat->bodies; b++) {
         const double emission = extrapolated_emission(heat, b), hold = heat->sources.hold[b];
-        c->temperature[b] = fibrad_contact_temperature(c, is_free(heat, b) ? emission : heat->sources.emission[b]);
+        c->temperature[b] =
+            fibrad_contact_temperature(c, fibrad_heat_is_free(heat, b) ? emission : heat->sources.emission[b]);
         if (!fibrad_heat_is_joined(heat, b)) continue;
         c->stiff[b] = stiffness_of_joined(heat, b);
         c->supply[b] += heat->sources.drive[b] + heat->solution.power[b] + (c->stiff[b] - hold) * emission;
@@ -490,14 +482,14 @@ static void finish_powers(fibrad_heat *heat) {
         fibrad_heat_find_spans(heat);
         fibrad_heat_make_rings(heat);
         for (uint32_t b = 0; b < heat->spheres && fibrad_heat_is_entered(heat); b++)
-            if (fibrad_heat_conducts(heat, b)) fibrad_heat_take_absorbed_off(heat, b);
+            if (fibrad_heat_conducts(heat, b)) fibrad_heat_stand_for_absorbed(heat, b, -1);
     }
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (heat->solution.group > 1)
             heat->solution.coarse[b] = heat->solution.power[b],
             heat->solution.coarse_emission[b] = heat->sources.emission[b];
         heat->solution.power[b] += FIBRAD_HEAT_EXTRAPOLATION * (heat->solution.power[b] - heat->solution.coarse[b]);
-        if (is_free(heat, b))
+        if (fibrad_heat_is_free(heat, b))
             heat->sources.temperature[b] = fibrad_heat_temperature(heat, extrapolated_emission(heat, b));
     }
     if (heat->contacts.count > 0) finish_contacts(heat);
@@ -517,7 +509,7 @@ static void finish_powers(fibrad_heat *heat) {
 /* A change of radiosity times this is a change of power: of the net power, or of what is absorbed if the net power is
  * given. */
 static double power_of_radiosity(const fibrad_heat *heat, uint32_t b) {
-    return is_free(heat, b) ? heat->sources.emissivity[b] : 1;
+    return fibrad_heat_is_free(heat, b) ? heat->sources.emissivity[b] : 1;
 }
 
 /* Finds how much the last step has changed the power of each body, and all that surfaces send out. product: N times the
@@ -525,12 +517,13 @@ static double power_of_radiosity(const fibrad_heat *heat, uint32_t b) {
 static void find_drifts(fibrad_heat *heat, double length, const double *product) {
     heat->solution.sent_drift = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        const bool known = !is_free(heat, b) && heat->sources.emissivity[b] > 0;
+        const bool known = !fibrad_heat_is_free(heat, b) && heat->sources.emissivity[b] > 0;
         double sent = 0;
         for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
             sent += heat->solution.area[a] * heat->solution.direction[a];
         heat->solution.sent_drift += length * sent;
-        heat->solution.drift[b] = length * (known ? sum_over(heat, b, product) : power_of_radiosity(heat, b) * sent);
+        heat->solution.drift[b] =
+            length * (known ? fibrad_heat_sum(heat, b, product) : power_of_radiosity(heat, b) * sent);
     }
 }
 
@@ -557,9 +550,9 @@ static bool gains_settled(fibrad_heat *heat) {
     bool settled = true;
     find_left(heat);
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        if (is_free(heat, b) || heat->sources.emissivity[b] == 0) continue;
-        const double gain =
-            fibrad_max(fibrad_abs(sum_over(heat, b, heat->solution.net)), GAIN_LEAST * fibrad_heat_absorbs(heat, b));
+        if (fibrad_heat_is_free(heat, b) || heat->sources.emissivity[b] == 0) continue;
+        const double gain = fibrad_max(fibrad_abs(fibrad_heat_sum(heat, b, heat->solution.net)),
+                                       GAIN_LEAST * fibrad_heat_absorbs(heat, b));
         if (b < heat->spheres)
             left += heat->solution.left[b] * heat->solution.left[b], gains += gain * gain;
         else
@@ -715,7 +708,7 @@ static double product_with_direction(const fibrad_heat *heat, const double *z, c
     for (uint32_t b = 0; b < heat->bodies; b++)
         sum += fibrad_heat_conducts(heat, b)    ? conducting_curvature(heat, b, product)
                : fibrad_heat_is_joined(heat, b) ? joined_product(heat, b, z, warmed[b], product)
-               : is_free(heat, b)               ? free_product(heat, b, z, product)
+               : fibrad_heat_is_free(heat, b)   ? free_product(heat, b, z, product)
                                                 : given_product(heat, b, z, product);
     if (heat->contacts.count > 0) sum += fibrad_contact_product(&heat->contacts, warmed, heat->contacts.direction);
     return sum;
@@ -781,7 +774,7 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
 static int end_sweep(fibrad_heat *heat) {
     const double *sum = fibrad_heat_gathered(heat);
     if (heat->solution.phase == FIBRAD_HEAT_CHECK) {
-        for (uint32_t b = 0; b < heat->bodies; b++) heat->samples.halves[b] = sum_over(heat, b, sum);
+        for (uint32_t b = 0; b < heat->bodies; b++) heat->samples.halves[b] = fibrad_heat_sum(heat, b, sum);
         heat->solution.phase = FIBRAD_HEAT_DONE;
         heat->solution.warm = true;
         return FIBRAD_OK;

@@ -1,6 +1,6 @@
 /* sources.c - checks the sources of a solution, and sets the first radiosities. SPDX-License-Identifier: MIT */
 #include "base/port.h"
-#include "heat/problem.h"
+#include "heat/solution.h"
 
 #define HEAT_TOLERANCE  1e-3
 #define FREE_TOLERANCE  1e-5  /* if temperatures are unknown: errors over long distances exceed their residuals */

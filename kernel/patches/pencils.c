@@ -3,9 +3,9 @@
  * The beams of a row are sorted by what they meet, about a hundred bodies. So the end of a beam is a patch of a known
  * body, which takes one byte. All beams that were followed tell how much two bodies exchange. Those that are kept tell
  * where on the bodies light leaves and arrives. Each of them stands for an equal number of beams. */
-#include "heat/fine.h"
-#include "heat/pencils.h"
-#include "heat/wall_patch.h"
+#include "patches/subdivision.h"
+#include "patches/pencils.h"
+#include "patches/wall_patch.h"
 #include "base/arena.h"
 #include "base/constants.h"
 #include "pair/free_pair.h"

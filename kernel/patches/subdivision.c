@@ -1,11 +1,11 @@
-/* fine.c - divides patches near small spheres. SPDX-License-Identifier: MIT */
+/* subdivision.c - divides patches near small spheres. SPDX-License-Identifier: MIT */
 #include "base/constants.h"
 #include "base/elementary.h"
 #include "base/random.h"
 #include "base/vector.h"
-#include "heat/fine.h"
+#include "patches/subdivision.h"
 #include "sample/sphere_patch.h"
-#include "heat/wall_patch.h"
+#include "patches/wall_patch.h"
 #include "scene/grid_walk.h"
 #include "scene/walls.h"
 

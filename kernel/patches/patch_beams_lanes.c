@@ -1,12 +1,12 @@
-/* hits_lanes.c - the patches that the beams of a sphere and the rays of walls connect. Compiled once per instruction
- * set. SPDX-License-Identifier: MIT */
+/* patch_beams_lanes.c - the patches that the beams of a sphere and the rays of walls connect. Compiled once per
+ * instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/random.h"
-#include "heat/fine.h"
-#include "heat/hits_lanes.h"
-#include "heat/pencils.h"
+#include "patches/subdivision.h"
+#include "patches/patch_beams_lanes.h"
+#include "patches/pencils.h"
 #include "sample/sphere_patch.h"
-#include "heat/wall_patch.h"
+#include "patches/wall_patch.h"
 #include "ray/tracer.h"
 #include "row/mesh_share_lanes.h"
 #include "sample/direction.h"
