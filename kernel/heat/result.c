@@ -71,10 +71,10 @@ static void read_temperatures(const fibrad_heat *heat, const fibrad_heat_errors 
         put(result->temperature_error, heat->order[b], t.error);
         read_inside(heat, errors, b, t, result);
     }
-    for (uint32_t k = 0; k < heat->given_bodies; k++) {
+    for (uint32_t k = 0; k < heat->given_walls; k++) {
         const measured t = temperature_of(heat, errors, fibrad_heat_body(heat, heat->slot[k]));
-        put(result->body_temperature, k, t.value);
-        put(result->body_temperature_error, k, t.error);
+        put(result->wall_temperature, k, t.value);
+        put(result->wall_temperature_error, k, t.error);
     }
 }
 
@@ -88,8 +88,8 @@ static bool all_found(const fibrad_heat *heat) {
 
 /* The result for the power of a slot. If the slot is an opening or empty: that of the surroundings. */
 static double *power_of_slot(const fibrad_heat *heat, uint32_t slot, fibrad_heat_result *result) {
-    for (uint32_t b = 0; b < heat->given_bodies; b++)
-        if (heat->slot[b] == slot) return &result->body_power[b];
+    for (uint32_t b = 0; b < heat->given_walls; b++)
+        if (heat->slot[b] == slot) return &result->wall_power[b];
     return &result->surroundings_power;
 }
 
@@ -137,15 +137,15 @@ static void read_net_powers(const fibrad_heat *heat, const fibrad_heat_errors *e
         put(result->conducted, heat->order[b], conducted);
         put(result->power_error, heat->order[b], fibrad_heat_power_error(heat, errors, b));
     }
-    for (uint32_t k = 0; k < heat->given_bodies; k++) {
+    for (uint32_t k = 0; k < heat->given_walls; k++) {
         const uint32_t slot = heat->slot[k], b = fibrad_heat_body(heat, slot);
         const double conducted = fibrad_heat_conducted(heat, b);
-        result->body_power[k] = heat->solution.power[b] + conducted;
-        put(result->body_conducted, k, conducted);
-        put(result->body_error, k, fibrad_heat_power_error(heat, errors, b));
-        put(result->body_absorbed, k, fibrad_heat_absorbs(heat, b));
-        put(result->body_area, k,
-            slot < FIBRAD_MESHES ? fibrad_heat_wall_area(heat, slot) : fibrad_scene_body_area(heat->scene, k));
+        result->wall_power[k] = heat->solution.power[b] + conducted;
+        put(result->wall_conducted, k, conducted);
+        put(result->wall_error, k, fibrad_heat_power_error(heat, errors, b));
+        put(result->wall_absorbed, k, fibrad_heat_absorbs(heat, b));
+        put(result->wall_area, k,
+            slot < FIBRAD_MESHES ? fibrad_heat_wall_area(heat, slot) : fibrad_scene_wall_area(heat->scene, k));
     }
     for (uint32_t k = 0; k < c->count; k++)
         put(result->contact_flow, k,
@@ -161,7 +161,7 @@ static void read_net_powers(const fibrad_heat *heat, const fibrad_heat_errors *e
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     fibrad_heat_errors errors;
     if (heat == NULL || result == NULL || (heat->spheres > 0 && result->power == NULL)) return FIBRAD_E_ARGUMENT;
-    if (heat->given_bodies > 0 && result->body_power == NULL) return FIBRAD_E_ARGUMENT;
+    if (heat->given_walls > 0 && result->wall_power == NULL) return FIBRAD_E_ARGUMENT;
     if (heat->solution.phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     const bool inside =
         result->least_temperature != NULL || result->largest_temperature != NULL || result->surface_error != NULL;
@@ -259,7 +259,7 @@ static double temperature_of_side(const fibrad_heat *heat, uint32_t b, const fib
 }
 
 int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temperature) {
-    double beyond[FIBRAD_BODIES_MAX][2];
+    double beyond[FIBRAD_WALLS_MAX][2];
     if (heat == NULL) return FIBRAD_E_ARGUMENT;
     if (heat->solution.phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     const fibrad_mesh *mesh = &heat->scene->mesh;
