@@ -38,7 +38,6 @@ typedef struct fibrad_heat_config {
     uint32_t points;  /* of each beam: 64, 128 or 256; 0: FIBRAD_HEAT_POINTS_DEFAULT */
     uint32_t patches; /* of each sphere: 24, 96 or 384; 0: FIBRAD_HEAT_PATCHES_DEFAULT */
     uint32_t parts;   /* of a sweep, 1 to FIBRAD_HEAT_PARTS_MAX; results depend on it by rounding; 0: _DEFAULT */
-    double cutoff;    /* must be 0, else FIBRAD_E_UNSUPPORTED */
     uint32_t wall_rays; /* least number of rays from all walls together, at most FIBRAD_WALL_RAYS_MAX; 0: see above */
 } fibrad_heat_config;
 
@@ -57,7 +56,7 @@ size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *sc
  *            scene: radii FIBRAD_HEAT_RADIUS_MIN to 1/FIBRAD_HEAT_RADIUS_MIN L
  *   Output   heat: a pointer into memory
  *   Errors   _ARGUMENT, _SIZE, _STATE
- *            _UNSUPPORTED: a cutoff, or a scene with a known region (fibrad.h); or surfaces are so near each other that
+ *            _UNSUPPORTED: a scene with a known region (fibrad.h); or surfaces are so near each other that
  *            more than 2^26 small patches would be needed there */
 int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad_heat_config *config,
                      const fibrad_scene *scene);
@@ -92,17 +91,17 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
 
 /* What radiates. Begin with fibrad_heat_sources_init, and set `surroundings`.
  *
- *   a sphere with             temperature  power     hold, reference
+ *   a sphere with             temperature  power     storage, reference
  *   a given temperature       T            0 or NaN  not used
  *   a given power P           NaN          P         0, R: a first guess of T, or NaN
  *   a power that varies       NaN          P         h, R: the sphere gives off P - h sigma (T^4 - R^4)
  *   emissivity 0              T            0 or NaN  not used
  *                             NaN          0         0, NaN
  *
- * `hold` makes the solution an implicit step in time. Let a sphere of heat capacity C have the temperature R at the
+ * `storage` makes the solution an implicit step in time. Let a sphere of heat capacity C have the temperature R at the
  * beginning of a step of length dt. Its h is C/(4 sigma R^3 dt).
  *
- * Walls have the same choices with wall_temperature and wall_power, but no hold and no reference. An insulated wall
+ * Walls have the same choices with wall_temperature and wall_power, but no storage and no reference. An insulated wall
  * sends back all that arrives, point by point. Its temperature, emissivity and power are not used. The sides of a mesh
  * may have temperatures of their own if the wall has a given temperature. An endless wall (fibrad.h) must have a given
  * temperature, unless it reflects everything.
@@ -130,7 +129,7 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * the mean of its surface.
  *
  * The residual is the error of the equations for J, relative to what drives the radiation: differences of emission,
- * given powers and light. tolerance = 0 stands for 1e-3, for 1e-5 if a temperature is unknown and its hold is 0, and
+ * given powers and light. tolerance = 0 stands for 1e-3, for 1e-5 if a temperature is unknown and its storage is 0, and
  * for 1e-12 with up to 16 spheres. The search also goes on until the power of each wall is settled to the tolerance,
  * relative to the larger of this power and 5 % of what the wall absorbs. If a temperature is unknown, this tolerance is
  * 100 times as large, at most 1e-3.
@@ -140,7 +139,7 @@ typedef struct fibrad_heat_sources {
     const double *temperature; /* K, [spheres], 0 to FIBRAD_TEMPERATURE_MAX; NaN: unknown */
     const double *emissivity;  /* [spheres], 0 to 1 */
     const double *power;       /* sigma K^4 L^2, [spheres], to FIBRAD_POWER_MAX; above 0: given off; NULL: all NaN */
-    const double *hold;        /* L^2, [spheres], 0 to 1e60; NULL: all 0 */
+    const double *storage;     /* L^2, [spheres], 0 to 1e60; NULL: all 0 */
     const double *reference;   /* K, [spheres], as temperature; NULL: all NaN */
     const double *wall_temperature; /* K, [walls], as temperature; NULL without walls */
     const double *wall_emissivity;  /* [walls], 0 to 1; NULL without walls */
@@ -202,7 +201,7 @@ int fibrad_heat_step(fibrad_heat *heat, int *solved);
 /* The solution. The arrays belong to the caller. Where a field may be NULL, NULL means that it is not wanted.
  *
  * A net power is above 0 where a surface gains heat, by radiation and through contacts. A given power has the other
- * sign: a sphere of power P (and hold 0) has the net power -P. Temperatures are written whether they were found or
+ * sign: a sphere of power P (and storage 0) has the net power -P. Temperatures are written whether they were found or
  * given. A temperature is NaN if the emissivity is 0, or if only a temperature below zero would give the power.
  * least_temperature, largest_temperature and centre_temperature differ only on spheres with a finite conductivity. For
  * any other sphere all three are its temperature. wall_temperature of an insulated wall is the fourth root of its mean

@@ -376,7 +376,7 @@ typedef struct fibrad_span {
  * surroundings gain, to rounding. The first automatic step of a span is as long as the last span has proposed.
  *
  *   field of sources                 use
- *   temperature, hold, reference     not used
+ *   temperature, storage, reference     not used
  *   power                            constant
  *   emissivity, wall_emissivity      constant, or where a law begins
  *   wall_temperature, surroundings   at the beginning of the span; NaN (to be found) only by PATCHES

@@ -187,7 +187,7 @@ static double ray_error(const fibrad_heat *heat, const fibrad_heat_errors *error
 /* Over the squared difference between even and odd beams. */
 static double beam_error(const fibrad_heat *heat, uint32_t b) {
     const fibrad_heat_seen *seen = &heat->samples.seen[b];
-    const double lone = b < heat->spheres && seen->squares > 0 ? seen->lone / seen->squares : 0;
+    const double lone = b < heat->spheres && seen->squares > 0 ? seen->one_parity / seen->squares : 0;
     return squared(BEAM_ERROR) + squared(ONE_PARITY_ERROR * lone);
 }
 
@@ -200,7 +200,8 @@ static double sampled_error(const fibrad_heat *heat, const fibrad_heat_errors *e
  * for, only rounding is left. */
 static double unseen_error(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b) {
     const double open = fibrad_max(0, 1 - heat->samples.seen[b].met / heat->beams);
-    const double unseen = heat->pencils.row[b].told ? 0 : open * squared(BETWEEN_BEAMS_ERROR / heat->config.directions);
+    const double unseen =
+        heat->pencils.row[b].complete ? 0 : open * squared(BETWEEN_BEAMS_ERROR / heat->config.directions);
     return (unseen + squared(FLOAT_ERROR)) * squared(exchange_of(heat, errors, b));
 }
 
@@ -448,7 +449,7 @@ double fibrad_heat_temperature_error(const fibrad_heat *heat, const fibrad_heat_
     const bool insulated = fibrad_heat_is_insulated(heat, b);
     if (fibrad_heat_is_joined(heat, b)) return heat->contacts.error[b];
     if (!(fibrad_heat_is_free(heat, b) || insulated) || !(slope > 0) || !(own.area > 0)) return 0;
-    const double eps = heat->sources.emissivity[b], held = fibrad_max(0, heat->sources.hold[b]);
+    const double eps = heat->sources.emissivity[b], held = fibrad_max(0, heat->sources.storage[b]);
     const double share = held > 0 ? eps * own.area / (eps * own.area + held) : 1;
     const double changed =
         (insulated ? errors->changed : changed_emission(heat, b)) + unsettled_emission(heat, b, own.area);

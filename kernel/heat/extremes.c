@@ -60,10 +60,8 @@ static uint32_t search_neighbours(const fibrad_heat *heat, uint32_t b, struct ra
     const double r = scene->r[b], centre[3] = {scene->x[b], scene->y[b], scene->z[b]};
     for (uint32_t l = 0; l < scene->levels; l++) {
         const double most = scene->level[l].radius_max, reach = r + most + NEAR * fibrad_min(r, most);
-        double low[3], high[3];
-        for (int axis = 0; axis < 3; axis++) low[axis] = centre[axis] - reach, high[axis] = centre[axis] + reach;
         fibrad_walk walk;
-        fibrad_walk_begin(&walk, scene, &scene->level[l], low, high);
+        fibrad_walk_about(&walk, scene, &scene->level[l], centre, reach);
         while (fibrad_walk_next(&walk))
             for (uint32_t j = walk.begin; j < walk.end; j++) {
                 const double both = r + scene->r[j];

@@ -251,10 +251,10 @@ static double temperature_of_side(const fibrad_heat *heat, uint32_t b, const fib
                                   const side_sum *sum) {
     if (fibrad_heat_is_insulated(heat, b))
         return sum->area > 0 ? fibrad_heat_temperature(heat, sum->radiosity / sum->area) : __builtin_nan("");
-    const double *lift = fibrad_heat_lift(heat, b);
-    if (lift == NULL) return heat->sources.temperature[b];
+    const double *excess = fibrad_heat_excess(heat, b);
+    if (excess == NULL) return heat->sources.temperature[b];
     const uint32_t a = fibrad_heat_first_meshed(heat) + cut->patch - heat->first[b];
-    const double t = fibrad_heat_temperature(heat, heat->sources.emission[b] + lift[a]);
+    const double t = fibrad_heat_temperature(heat, heat->sources.emission[b] + excess[a]);
     return t >= 0 ? t : 0;
 }
 

@@ -59,17 +59,18 @@ static free_body free_body_of(const fibrad_heat *heat, uint32_t b) {
     const double eps = heat->sources.emissivity[b], area = fibrad_heat_sum(heat, b, heat->solution.area);
     return (free_body){area, fibrad_heat_mean(heat, b, heat->solution.radiosity),
                        area > 0 ? fibrad_heat_sum(heat, b, heat->solution.net) / area : 0,
-                       (1 - eps) * heat->sources.hold[b] + area * eps};
+                       (1 - eps) * heat->sources.storage[b] + area * eps};
 }
 
 /* eps (S - h E)/D: the mean residual of a body of unknown temperature if <J> and all that it receives are E. */
-static double drive_at(const fibrad_heat *heat, uint32_t b, const free_body *body, double emission) {
-    return heat->sources.emissivity[b] * (heat->sources.drive[b] - heat->sources.hold[b] * emission) / body->divisor;
+static double mean_residual_at(const fibrad_heat *heat, uint32_t b, const free_body *body, double emission) {
+    return heat->sources.emissivity[b] * (heat->sources.given_power[b] - heat->sources.storage[b] * emission) /
+           body->divisor;
 }
 
 /* 1 + eps h/D */
 static double stiffness(const fibrad_heat *heat, uint32_t b, const free_body *body) {
-    return 1 + heat->sources.emissivity[b] * heat->sources.hold[b] / body->divisor;
+    return 1 + heat->sources.emissivity[b] * heat->sources.storage[b] / body->divisor;
 }
 
 /* The end of the group of patches that begins at a, at most `end`. */
@@ -83,7 +84,7 @@ static uint32_t group_end(const fibrad_heat *heat, uint32_t a, uint32_t end) {
  * this change. */
 static double given_residual(fibrad_heat *heat, uint32_t b) {
     const double eps = heat->sources.emissivity[b];
-    const double *lift = fibrad_heat_lift(heat, b);
+    const double *excess = fibrad_heat_excess(heat, b);
     const uint32_t begin = heat->first[b], end = heat->first[b + 1];
     double slope = 0;
     for (uint32_t a = begin, next; a < end; a = next) {
@@ -91,7 +92,7 @@ static double given_residual(fibrad_heat *heat, uint32_t b) {
         next = group_end(heat, a, end);
         for (uint32_t k = a; k < next; k++) {
             const double emission =
-                lift != NULL ? heat->sources.emission[b] + lift[k - begin] : heat->sources.emission[b];
+                excess != NULL ? heat->sources.emission[b] + excess[k - begin] : heat->sources.emission[b];
             sum += heat->solution.area[k] * eps * (emission - heat->solution.radiosity[k]) +
                    (1 - eps) * heat->solution.net[k];
             area += heat->solution.area[k];
@@ -109,7 +110,7 @@ static double free_residual(fibrad_heat *heat, uint32_t b) {
     const uint32_t end = heat->first[b + 1];
     const free_body body = free_body_of(heat, b);
     if (!(body.area > 0)) return 0;
-    const double mean = drive_at(heat, b, &body, body.radiosity) + body.net;
+    const double mean = mean_residual_at(heat, b, &body, body.radiosity) + body.net;
     const double shift = mean / stiffness(heat, b, &body);
     double slope = body.area * mean * shift;
     for (uint32_t a = heat->first[b], next; a < end; a = next) {
@@ -141,7 +142,7 @@ static double conducting_residual(fibrad_heat *heat, uint32_t b) {
     double shift = 0, slope = 0;
     if (!(body.area > 0)) return 0;
     if (follows_radiosity(heat, b)) {
-        const double mean = drive_at(heat, b, &body, body.radiosity) + body.net;
+        const double mean = mean_residual_at(heat, b, &body, body.radiosity) + body.net;
         shift = mean / stiffness(heat, b, &body);
         slope = body.area * mean * shift;
     } else if (!has_black_mean(heat, b)) {
@@ -168,7 +169,7 @@ static double absorbable(const fibrad_heat *heat, uint32_t b) {
 
 /* What a joined body gives off per unit of its emission. */
 static double stiffness_of_joined(const fibrad_heat *heat, uint32_t b) {
-    return heat->sources.hold[b] + heat->sources.emissivity[b] * fibrad_heat_sum(heat, b, heat->solution.area);
+    return heat->sources.storage[b] + heat->sources.emissivity[b] * fibrad_heat_sum(heat, b, heat->solution.area);
 }
 
 /* The tolerance of temperatures that balance the radiation of one step: a Newton step that changes none by more is the
@@ -187,7 +188,7 @@ static void warm_joined(fibrad_heat *heat) {
         c->missing[b] = 0;
         if (!fibrad_heat_is_joined(heat, b)) continue;
         c->stiff[b] = stiffness_of_joined(heat, b);
-        c->supply[b] += heat->sources.drive[b] + absorbable(heat, b);
+        c->supply[b] += heat->sources.given_power[b] + absorbable(heat, b);
         c->missing[b] = c->supply[b] - c->stiff[b] * heat->sources.emission[b];
     }
     fibrad_contact_gains(c, c->temperature, c->missing);
@@ -218,13 +219,13 @@ static void find_emissions(fibrad_heat *heat) {
         const double eps = heat->sources.emissivity[b];
         if (body.area > 0)
             heat->sources.emission[b] =
-                ((1 - eps) * heat->sources.drive[b] + body.area * eps * body.radiosity) / body.divisor;
+                ((1 - eps) * heat->sources.given_power[b] + body.area * eps * body.radiosity) / body.divisor;
     }
 }
 
 /* Emissivity times area of a body. 0: the sources give its power. */
 static double emitting(const fibrad_heat *heat, uint32_t body) {
-    return heat->sources.hold[body] != 0
+    return heat->sources.storage[body] != 0
                ? heat->sources.emissivity[body] * fibrad_heat_sum(heat, body, heat->solution.area)
                : 0;
 }
@@ -244,7 +245,8 @@ static void find_powers(const fibrad_heat *heat, double *power) {
             continue;
         }
         if (heat->sources.emissivity[b] == 0) left += power[b], power[b] = 0;
-        if (heat->sources.hold[b] == 0) left += power[b] + heat->sources.drive[b], power[b] = -heat->sources.drive[b];
+        if (heat->sources.storage[b] == 0)
+            left += power[b] + heat->sources.given_power[b], power[b] = -heat->sources.given_power[b];
     }
     for (uint32_t b = 0; b < heat->bodies && left != 0; b++) weights += emitting(heat, b);
     for (uint32_t b = 0; b < heat->bodies && weights > 0; b++) power[b] += left * (emitting(heat, b) / weights);
@@ -254,19 +256,19 @@ static void find_powers(const fibrad_heat *heat, double *power) {
 #define ROUNDING 1e-28
 
 /* Unevenness depends on temperatures. If temperatures of spheres that conduct are unknown, unevenness and temperatures
- * are found in turn. The first temperatures are found to the tolerance FIBRAD_HEAT_ROUGH, later ones to WITHIN times
- * the last change of unevenness. A relative change of unevenness below SETTLED no longer matters. */
+ * are found in turn. The first temperatures are found to the tolerance FIBRAD_HEAT_FIRST_TOLERANCE, later ones to
+ * WITHIN times the last change of unevenness. A relative change of unevenness below SETTLED no longer matters. */
 #define WITHIN  .03
 #define SETTLED 1e-3
 
 /* The sum over the patches of a mesh of emissivity times area times the square of the difference between the emissions
  * of patch and mesh. */
-static double lifted_squares(const fibrad_heat *heat, uint32_t b) {
-    const double *lift = fibrad_heat_lift(heat, b);
+static double excess_squares(const fibrad_heat *heat, uint32_t b) {
+    const double *excess = fibrad_heat_excess(heat, b);
     double sum = 0;
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && lift != NULL; a++)
-        sum +=
-            heat->sources.emissivity[b] * heat->solution.area[a] * lift[a - heat->first[b]] * lift[a - heat->first[b]];
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && excess != NULL; a++)
+        sum += heat->sources.emissivity[b] * heat->solution.area[a] * excess[a - heat->first[b]] *
+               excess[a - heat->first[b]];
     return sum;
 }
 
@@ -287,7 +289,7 @@ static double light_squares(const fibrad_heat *heat, uint32_t b) {
 }
 
 /* What drives joined bodies if all that radiates and all of them have one emission: powers, and given temperatures. */
-static double drive_through_contacts(fibrad_heat *heat, double emission) {
+static double scale_of_contacts(fibrad_heat *heat, double emission) {
     fibrad_contacts *c = &heat->contacts;
     double sum = 0;
     if (c->count == 0) return 0;
@@ -295,7 +297,7 @@ static double drive_through_contacts(fibrad_heat *heat, double emission) {
         const bool joined = fibrad_heat_is_joined(heat, b);
         c->temperature[b] = fibrad_contact_temperature(c, joined ? emission : heat->sources.emission[b]);
         c->stiff[b] = joined ? stiffness_of_joined(heat, b) : 0;
-        c->missing[b] = joined ? heat->sources.drive[b] - heat->sources.hold[b] * emission : 0;
+        c->missing[b] = joined ? heat->sources.given_power[b] - heat->sources.storage[b] * emission : 0;
     }
     fibrad_contact_gains(c, c->temperature, c->missing);
     fibrad_copy(c->load, c->missing, heat->bodies * sizeof *c->load);
@@ -311,7 +313,7 @@ static void find_scale(fibrad_heat *heat) {
     double weights = 0, sum = 0, largest = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         const double area = emitting(heat, b), emission = heat->sources.emission[b];
-        weights += area, sum += area * emission, largest += area * emission * emission + lifted_squares(heat, b);
+        weights += area, sum += area * emission, largest += area * emission * emission + excess_squares(heat, b);
     }
     heat->solution.scale = 0;
     const double mean = weights > 0 ? sum / weights : 0;
@@ -320,13 +322,13 @@ static void find_scale(fibrad_heat *heat) {
         heat->solution.scale += light_squares(heat, b);
         const free_body body = follows_radiosity(heat, b) ? free_body_of(heat, b) : (free_body){0};
         if (body.area > 0) {
-            const double drive = drive_at(heat, b, &body, mean);
-            heat->solution.scale += body.area * drive * drive / stiffness(heat, b, &body);
+            const double residual = mean_residual_at(heat, b, &body, mean);
+            heat->solution.scale += body.area * residual * residual / stiffness(heat, b, &body);
         } else if (!fibrad_heat_is_joined(heat, b)) {
-            heat->solution.scale += emitting(heat, b) * difference * difference + lifted_squares(heat, b);
+            heat->solution.scale += emitting(heat, b) * difference * difference + excess_squares(heat, b);
         }
     }
-    heat->solution.scale += drive_through_contacts(heat, mean);
+    heat->solution.scale += scale_of_contacts(heat, mean);
     heat->solution.smallest = ROUNDING * fibrad_max(largest, heat->solution.scale);
 }
 
@@ -336,7 +338,7 @@ static void heat_by_light(fibrad_heat *heat) {
         if (fibrad_heat_conducts(heat, b)) heat->solution.scale += fibrad_heat_add_absorbed(heat, b);
 }
 
-/* Whether there are temperatures that lead to the given powers. This is so if a temperature or a `hold` is given.
+/* Whether there are temperatures that lead to the given powers. This is so if a temperature or a `storage` is given.
  * Otherwise the powers and the light must add up to zero. Contacts need the level of temperatures: then one must be
  * given, unless nothing of unknown temperature radiates. */
 #define BALANCED 1e-9
@@ -346,18 +348,19 @@ static bool solvable(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++) {
         held = held || emitting(heat, b) > 0;
         radiates = radiates || (fibrad_heat_is_free(heat, b) && heat->sources.emissivity[b] > 0);
-        if (heat->sources.hold[b] == 0) sum += heat->sources.drive[b], sizes += fibrad_abs(heat->sources.drive[b]);
+        if (heat->sources.storage[b] == 0)
+            sum += heat->sources.given_power[b], sizes += fibrad_abs(heat->sources.given_power[b]);
         double light = 0;
         for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) light += light_on(heat, b, a);
         sum += light, sizes += light;
     }
-    heat->sources.afloat = !held;
+    heat->sources.free_level = !held;
     if (heat->contacts.count > 0) return held || !radiates;
     return held || fibrad_abs(sum) <= BALANCED * sizes;
 }
 
 /* Shifts the radiosities of each black sphere that conducts, so that their mean is its emission. */
-static void lift_black(fibrad_heat *heat) {
+static void shift_black(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->spheres && heat->sources.conducts; b++) {
         if (!fibrad_heat_conducts(heat, b) || !has_black_mean(heat, b)) continue;
         const double more = heat->sources.emission[b] - fibrad_heat_mean(heat, b, heat->solution.radiosity);
@@ -383,7 +386,7 @@ static void find_back(fibrad_heat *heat) {
 
 /* Has the next sweep form the net flows of the radiosities. */
 static void send_radiosities(fibrad_heat *heat, fibrad_heat_phase phase) {
-    lift_black(heat);
+    shift_black(heat);
     if (phase == FIBRAD_HEAT_FIRST) find_back(heat);
     for (uint32_t a = 0; a < heat->patches; a++) fibrad_heat_send(heat, a, heat->solution.radiosity[a]);
     heat->solution.phase = phase;
@@ -411,7 +414,7 @@ void fibrad_heat_start(fibrad_heat *heat) {
 }
 
 /* If the sources do not fix the level of emissions: shifts all, so that their mean is that of the surroundings. */
-static void sink(fibrad_heat *heat) {
+static void fix_level(fibrad_heat *heat) {
     double sum = 0, weights = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         const double area = heat->sources.emissivity[b] * fibrad_heat_sum(heat, b, heat->solution.area);
@@ -436,12 +439,12 @@ static void set_balances(fibrad_heat *heat) {
     fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
     fibrad_heat_add_offsets(heat, c->supply);
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        const double emission = extrapolated_emission(heat, b), hold = heat->sources.hold[b];
+        const double emission = extrapolated_emission(heat, b), storage = heat->sources.storage[b];
         c->temperature[b] =
             fibrad_contact_temperature(c, fibrad_heat_is_free(heat, b) ? emission : heat->sources.emission[b]);
         if (!fibrad_heat_is_joined(heat, b)) continue;
         c->stiff[b] = stiffness_of_joined(heat, b);
-        c->supply[b] += heat->sources.drive[b] + heat->solution.power[b] + (c->stiff[b] - hold) * emission;
+        c->supply[b] += heat->sources.given_power[b] + heat->solution.power[b] + (c->stiff[b] - storage) * emission;
     }
 }
 
@@ -457,8 +460,9 @@ static void finish_contacts(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (!fibrad_heat_is_joined(heat, b)) weights += emitting(heat, b);
         if (!fibrad_heat_is_joined(heat, b)) continue;
-        const double t = c->temperature[b], emits = c->stiff[b] - heat->sources.hold[b];
-        const double power = c->supply[b] - c->gain[b] - heat->sources.drive[b] - emits * fibrad_contact_emission(c, t);
+        const double t = c->temperature[b], emits = c->stiff[b] - heat->sources.storage[b];
+        const double power =
+            c->supply[b] - c->gain[b] - heat->sources.given_power[b] - emits * fibrad_contact_emission(c, t);
         left += heat->solution.power[b] - power, heat->solution.power[b] = power;
         heat->sources.temperature[b] = t >= 0 ? t : __builtin_nan("");
     }
@@ -474,10 +478,10 @@ static void finish_contacts(fibrad_heat *heat) {
 static void finish_powers(fibrad_heat *heat) {
     find_powers(heat, heat->solution.power);
     find_emissions(heat);
-    if (heat->sources.afloat) sink(heat);
+    if (heat->sources.free_level) fix_level(heat);
     heat->solution.steps = false;
     for (uint32_t b = 0; b < heat->bodies; b++)
-        heat->solution.steps = heat->solution.steps || heat->sources.hold[b] > 0;
+        heat->solution.steps = heat->solution.steps || heat->sources.storage[b] > 0;
     if (heat->sources.conducts) {
         fibrad_heat_find_spans(heat);
         fibrad_heat_make_rings(heat);
@@ -563,7 +567,7 @@ static bool gains_settled(fibrad_heat *heat) {
 
 /* Whether the radiosities of the present level are good enough. */
 static bool level_solved(fibrad_heat *heat) {
-    const double tolerance = fibrad_max(heat->sources.rough, heat->sources.tolerance);
+    const double tolerance = fibrad_max(heat->sources.first_tolerance, heat->sources.tolerance);
     if (heat->solution.slope <= heat->solution.smallest || heat->solution.sweeps >= heat->sources.limit) return true;
     if (heat->solution.slope > tolerance * tolerance * heat->solution.scale) return false;
     return tolerance > heat->sources.tolerance || tolerance < GAINS_ROUGHLY || gains_settled(heat);
@@ -589,7 +593,7 @@ static bool replaces_unevenness(fibrad_heat *heat) {
     if (!heat->sources.conducts || heat->solution.sweeps >= heat->sources.limit) return false;
     find_emissions(heat);
     const double change = fibrad_heat_find_unevenness(heat, SETTLED);
-    heat->sources.rough = change > SETTLED ? fibrad_min(FIBRAD_HEAT_ROUGH, WITHIN * change) : 0;
+    heat->sources.first_tolerance = change > SETTLED ? fibrad_min(FIBRAD_HEAT_FIRST_TOLERANCE, WITHIN * change) : 0;
     return change > SETTLED;
 }
 
@@ -598,8 +602,8 @@ static bool replaces_flows(fibrad_heat *heat) {
     if (heat->spots.entering == NULL || heat->solution.sweeps >= heat->sources.limit) return false;
     find_emissions(heat);
     const double change = fibrad_heat_find_spots(heat);
-    const double rough = change > SETTLED ? fibrad_min(FIBRAD_HEAT_ROUGH, WITHIN * change) : 0;
-    heat->sources.rough = fibrad_max(heat->sources.rough, rough);
+    const double rough = change > SETTLED ? fibrad_min(FIBRAD_HEAT_FIRST_TOLERANCE, WITHIN * change) : 0;
+    heat->sources.first_tolerance = fibrad_max(heat->sources.first_tolerance, rough);
     if (change > SETTLED) fibrad_heat_place_flows(heat);
     return change > SETTLED;
 }
@@ -607,7 +611,7 @@ static bool replaces_flows(fibrad_heat *heat) {
 /* Whether what a search takes as given was replaced. */
 static bool replaces_given(fibrad_heat *heat, bool coarse) {
     const bool uneven = coarse && replaces_unevenness(heat);
-    if (!coarse) heat->sources.rough = 0;
+    if (!coarse) heat->sources.first_tolerance = 0;
     return replaces_flows(heat) || uneven;
 }
 
@@ -626,7 +630,7 @@ static void turn_direction(fibrad_heat *heat, double keep) {
 static void refine_patches(fibrad_heat *heat) {
     find_powers(heat, heat->solution.coarse);
     find_emissions(heat);
-    if (heat->sources.afloat) sink(heat);
+    if (heat->sources.free_level) fix_level(heat);
     fibrad_copy(heat->solution.coarse_emission, heat->sources.emission, heat->bodies * sizeof *heat->sources.emission);
     heat->solution.group = 1;
     for (uint32_t a = 0; a < heat->patches; a++) {
@@ -678,7 +682,7 @@ static double joined_product(const fibrad_heat *heat, uint32_t b, const double *
                              const double *product) {
     const double eps = heat->sources.emissivity[b], share = eps < 1 ? eps / (1 - eps) : 0;
     const double warming = heat->contacts.direction[b];
-    double sum = heat->sources.hold[b] * warmed * warming;
+    double sum = heat->sources.storage[b] * warmed * warming;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
         sum += share * heat->solution.area[a] * (z[a] - warmed) * (heat->solution.direction[a] - warming) -
                z[a] * product[a];
@@ -695,7 +699,7 @@ static double conducting_curvature(const fibrad_heat *heat, uint32_t b, const do
                          : has_black_mean(heat, b)  ? 0
                                                     : eps / (1 - eps);
     double sum = share * body.area * (mean - warming) * (mean - warming) + fibrad_heat_pattern_curvature(heat, b);
-    if (fibrad_heat_is_joined(heat, b)) sum += heat->sources.hold[b] * warming * warming;
+    if (fibrad_heat_is_joined(heat, b)) sum += heat->sources.storage[b] * warming * warming;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) sum -= heat->solution.direction[a] * product[a];
     return sum;
 }
@@ -753,7 +757,8 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
         restart || heat->solution.slope == 0 ? 0 : fibrad_sqrt(fibrad_min(1, heat->solution.slope / last));
     while (level_solved(heat)) {
         const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
-        const bool rough = heat->sources.rough > heat->sources.tolerance && heat->solution.sweeps < heat->sources.limit;
+        const bool rough =
+            heat->sources.first_tolerance > heat->sources.tolerance && heat->solution.sweeps < heat->sources.limit;
         const bool replaced = replaces_given(heat, coarse);
         if (!replaced && !(coarse && rough)) {
             leave_level(heat);

@@ -151,7 +151,7 @@ static double reflectivity_of(const fibrad_heat *heat, const fibrad_heat_pencil 
 static void note_sphere(fibrad_heat_seen *seen, const fibrad_heat_pencil *pencil, double beams) {
     const double tilt = pencil->tilt / 32767., square = beams * tilt * (beams * tilt);
     seen->met += beams, seen->squares += square;
-    if (tilt == 1 || tilt == -1) seen->lone += square;
+    if (tilt == 1 || tilt == -1) seen->one_parity += square;
 }
 
 /* The flow to the surroundings of a pencil whose other end is not a sphere. */

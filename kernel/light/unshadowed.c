@@ -114,14 +114,7 @@ static void cut_sides(fibrad_unshadowed_polygon *p, const fibrad_light_line *lin
     }
 }
 
-static bool is_empty(const fibrad_unshadowed_polygon *p) {
-    double sum = 0;
-    for (uint32_t k = 1; k + 1 < p->sides; k++) {
-        const double *a = p->corner[0], *b = p->corner[k], *c = p->corner[k + 1];
-        sum += .5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
-    }
-    return sum < TINY;
-}
+static bool is_empty(fibrad_unshadowed_polygon *p) { return fibrad_light_area(p->corner, p->sides) < TINY; }
 
 static fibrad_light_line turned(const fibrad_light_line *line) {
     return (fibrad_light_line){{0 - line->n[0], 0 - line->n[1]}, 0 - line->c};

@@ -26,6 +26,16 @@ static inline bool fibrad_light_line_through(const double a[2], const double b[2
     return true;
 }
 
+/* The area of a convex polygon, above 0 if its corners run counter-clockwise. */
+static inline double fibrad_light_area(double (*const corner)[2], uint32_t corners) {
+    double sum = 0;
+    for (uint32_t k = 1; k + 1 < corners; k++) {
+        const double *a = corner[0], *b = corner[k], *c = corner[k + 1];
+        sum += .5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+    }
+    return sum;
+}
+
 /* A convex polygon, counter-clockwise. Side k goes from corner k to the next corner. Sides of the square about the
  * window have no line: their n is 0. */
 #define FIBRAD_UNSHADOWED_SIDES 32u

@@ -23,11 +23,11 @@
 
 #define FIBRAD_HEAT_TASK 1024u /* rays of walls in one task */
 
-#define FIBRAD_HEAT_FOUR          4u   /* patches of a four */
-#define FIBRAD_HEAT_BLOCK         256u /* patches of a wall that may be in one pencil */
-#define FIBRAD_HEAT_OTHERS        64u  /* bodies that are not spheres, rounded up */
-#define FIBRAD_HEAT_EXTRAPOLATION 0.4  /* extrapolation adds this part of the difference of both levels */
-#define FIBRAD_HEAT_ROUGH         1e-2 /* tolerance of the first temperatures of spheres that conduct */
+#define FIBRAD_HEAT_FOUR            4u   /* patches of a four */
+#define FIBRAD_HEAT_BLOCK           256u /* patches of a wall that may be in one pencil */
+#define FIBRAD_HEAT_OTHERS          64u  /* bodies that are not spheres, rounded up */
+#define FIBRAD_HEAT_EXTRAPOLATION   0.4  /* extrapolation adds this part of the difference of both levels */
+#define FIBRAD_HEAT_FIRST_TOLERANCE 1e-2 /* tolerance of the first temperatures of spheres that conduct */
 
 #define FIBRAD_HEAT_FINE (UINT32_C(1) << 31) /* plus the number of a fine four: a node without children */
 
@@ -57,7 +57,7 @@ typedef struct fibrad_heat_bundle {
  * part. Its position `at` is in units of four bytes after `begin` of the row. */
 typedef struct fibrad_heat_row {
     size_t begin, bytes;
-    bool told; /* every sphere that no beam meets has an exact factor */
+    bool complete; /* every sphere that no beam meets has an exact factor */
 } fibrad_heat_row;
 typedef struct fibrad_heat_link {
     uint32_t sphere, at;
@@ -95,10 +95,11 @@ typedef struct fibrad_heat_ray {
 
 /* What the beams of a sphere tell of the error of its power. */
 typedef struct fibrad_heat_seen {
-    double reflected[2];  /* beams times reflectivity of what they meet: spheres, walls */
-    double escaping;      /* power to the surroundings by even directions minus that by odd directions */
-    double met;           /* beams that meet spheres */
-    double squares, lone; /* squares of even minus odd beams to each sphere; those of spheres met by one kind alone */
+    double reflected[2]; /* beams times reflectivity of what they meet: spheres, walls */
+    double escaping;     /* power to the surroundings by even directions minus that by odd directions */
+    double met;          /* beams that meet spheres */
+    double squares,
+        one_parity; /* squares of even minus odd beams to each sphere; those of spheres met by one kind alone */
 } fibrad_heat_seen;
 
 typedef enum fibrad_heat_phase {
@@ -145,19 +146,20 @@ typedef struct fibrad_heat_span {
 /* What is given for a solution. Emissions E are differences from the emission of the surroundings. */
 typedef struct fibrad_heat_given {
     double *emissivity, *emission; /* [bodies], eps and E */
-    double *drive, *hold;          /* [bodies], hold < 0: E is given; else E is unknown, and drive - hold E given off */
-    double *temperature;           /* K, [bodies], given or found; NaN: none */
-    double *conductivity;          /* sigma K^3 L, [spheres] */
-    double *unevenness; /* [spheres], 4 r sigma T^3/conductivity; 0: at one temperature (sphere_conduction.c) */
-    bool conducts;      /* some sphere has a finite conductivity */
-    double rough;       /* tolerance while unevennesses are of temperatures still to be found better */
+    double *given_power,
+        *storage; /* [bodies], storage < 0: E is given; else E is unknown, and given_power - storage E given off */
+    double *temperature;    /* K, [bodies], given or found; NaN: none */
+    double *conductivity;   /* sigma K^3 L, [spheres] */
+    double *unevenness;     /* [spheres], 4 r sigma T^3/conductivity; 0: at one temperature (sphere_conduction.c) */
+    bool conducts;          /* some sphere has a finite conductivity */
+    double first_tolerance; /* tolerance while unevennesses are of temperatures still to be found better */
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
     bool insulated[FIBRAD_HEAT_OTHERS];                                /* by body, from the first wall on */
-    double *lift; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
-    bool lifted[FIBRAD_WALLS_MAX]; /* [meshes], whether sides of the mesh have temperatures */
-    const double *light;           /* [patches] power that arrives from outside, the caller's; NULL: none */
-    const double *absorbed;        /* [patches] light that patches have absorbed, the caller's; NULL: none */
-    bool afloat;                   /* the sources fix differences of emissions, but not their level */
+    double *excess; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
+    bool has_excess[FIBRAD_WALLS_MAX]; /* [meshes], whether sides of the mesh have temperatures */
+    const double *light;               /* [patches] power that arrives from outside, the caller's; NULL: none */
+    const double *absorbed;            /* [patches] light that patches have absorbed, the caller's; NULL: none */
+    bool free_level;                   /* the sources fix differences of emissions, but not their level */
     double sigma, surroundings;
     double tolerance, settled; /* of the residual; of what steps to come would change in powers, over these */
     uint32_t limit;            /* sweeps after which to stop */
@@ -269,7 +271,9 @@ static inline uint32_t fibrad_heat_beyond(const fibrad_heat *heat, uint32_t wall
     return heat->spheres + FIBRAD_WALLS + heat->meshes + wall;
 }
 /* Whether the temperature of a body is to be found. */
-static inline bool fibrad_heat_is_free(const fibrad_heat *heat, uint32_t body) { return heat->sources.hold[body] >= 0; }
+static inline bool fibrad_heat_is_free(const fibrad_heat *heat, uint32_t body) {
+    return heat->sources.storage[body] >= 0;
+}
 
 /* The sum of values over the patches of a body. */
 static inline double fibrad_heat_sum(const fibrad_heat *heat, uint32_t body, const double *value) {
@@ -290,12 +294,12 @@ static inline double fibrad_heat_mean(const fibrad_heat *heat, uint32_t body, co
 static inline uint32_t fibrad_heat_first_meshed(const fibrad_heat *heat) {
     return heat->first[fibrad_heat_body(heat, FIBRAD_MESHES)];
 }
-/* The lift of the patches of a body. NULL: no side has a temperature of its own. */
-static inline const double *fibrad_heat_lift(const fibrad_heat *heat, uint32_t body) {
+/* The excess of the patches of a body. NULL: no side has a temperature of its own. */
+static inline const double *fibrad_heat_excess(const fibrad_heat *heat, uint32_t body) {
     const uint32_t mesh = body - fibrad_heat_body(heat, FIBRAD_MESHES);
     const bool meshed = body >= fibrad_heat_body(heat, FIBRAD_MESHES) && mesh < heat->meshes;
-    return meshed && heat->sources.lifted[mesh]
-               ? heat->sources.lift + (heat->first[body] - fibrad_heat_first_meshed(heat))
+    return meshed && heat->sources.has_excess[mesh]
+               ? heat->sources.excess + (heat->first[body] - fibrad_heat_first_meshed(heat))
                : NULL;
 }
 /* The first patch that is not of a sphere, and the patch of the surroundings. */
@@ -378,37 +382,28 @@ static inline uint32_t fibrad_heat_body_of_row(const fibrad_heat *heat, uint32_t
     return row < heat->spheres ? row : heat->division.fine[row - heat->spheres].body;
 }
 
-/* The number of the fine patch at u, v, 0 to 1, of an own four of a body. FIBRAD_NONE: the four is not divided. */
-static inline uint32_t fibrad_heat_fine_patch(const fibrad_heat *heat, uint32_t body, uint32_t own, double u,
-                                              double v) {
-    if (heat->division.root[body] == FIBRAD_NONE) return FIBRAD_NONE;
-    uint32_t node = heat->division.node[heat->division.root[body] + own];
-    if (node == 0) return FIBRAD_NONE;
+/* The patch of a body at u, v, 0 to 1, of one of its own fours, fine or not. patch: the own patch there. */
+static inline uint32_t fibrad_heat_patch_in_four(const fibrad_heat *heat, uint32_t body, uint32_t patch, double u,
+                                                 double v) {
+    const uint32_t root = heat->division.root[body];
+    uint32_t node = root != FIBRAD_NONE ? heat->division.node[root + patch / FIBRAD_HEAT_FOUR] : 0;
+    if (node == 0) return heat->first[body] + patch;
     while (node < FIBRAD_HEAT_FINE) {
         const uint32_t right = 2 * u >= 1, up = 2 * v >= 1;
         u = 2 * u - right, v = 2 * v - up;
         node = heat->division.node[node + 2 * right + up];
     }
-    return FIBRAD_HEAT_FOUR * (node - FIBRAD_HEAT_FINE) + (2 * u >= 1 ? 2u : 0u) + (2 * v >= 1 ? 1u : 0u);
+    return fibrad_heat_first_fine(heat, body) +
+           FIBRAD_HEAT_FOUR * (node - FIBRAD_HEAT_FINE - heat->division.first_four[body]) + (2 * u >= 1 ? 2u : 0u) +
+           (2 * v >= 1 ? 1u : 0u);
 }
 
-/* The fine patch of a sphere at a place on a face of its cube [squares]. patch: the own patch there. FIBRAD_NONE: there
- * is no fine patch. */
-static inline uint32_t fibrad_heat_fine_on_face(const fibrad_heat *heat, uint32_t sphere, uint32_t patch, double x,
-                                                double y) {
-    const double u = x / 2 - fibrad_min(fibrad_floor(x / 2), heat->side / 2 - 1),
-                 v = y / 2 - fibrad_min(fibrad_floor(y / 2), heat->side / 2 - 1);
-    return fibrad_heat_fine_patch(heat, sphere, patch / FIBRAD_HEAT_FOUR, u, v);
-}
-
-/* The patch of a sphere at a place on a face of its cube [squares], fine or not. patch: as above. */
+/* The patch of a sphere at a place on a face of its cube [squares], fine or not. patch: the own patch there. */
 static inline uint32_t fibrad_heat_patch_on_face(const fibrad_heat *heat, uint32_t sphere, uint32_t patch,
                                                  const double at[2]) {
-    const uint32_t fine = heat->division.root[sphere] != FIBRAD_NONE
-                              ? fibrad_heat_fine_on_face(heat, sphere, patch, at[0], at[1])
-                              : FIBRAD_NONE;
-    if (fine == FIBRAD_NONE) return heat->first[sphere] + patch;
-    return fibrad_heat_first_fine(heat, sphere) + (fine - FIBRAD_HEAT_FOUR * heat->division.first_four[sphere]);
+    const double last = heat->side / 2 - 1, u = at[0] / 2, v = at[1] / 2;
+    return fibrad_heat_patch_in_four(heat, sphere, patch, u - fibrad_min(fibrad_floor(u), last),
+                                     v - fibrad_min(fibrad_floor(v), last));
 }
 
 /* The patch of a sphere at a normal. */
@@ -417,6 +412,14 @@ static inline uint32_t fibrad_heat_patch_at(const fibrad_heat *heat, uint32_t sp
     const uint32_t face = fibrad_patch_place(normal, heat->side, at);
     return fibrad_heat_patch_on_face(heat, sphere,
                                      fibrad_patch_number(face, (uint32_t)at[0], (uint32_t)at[1], heat->side), at);
+}
+
+/* The number of a patch of a body among all fine patches. FIBRAD_NONE: the patch is not fine. */
+static inline uint32_t fibrad_heat_fine_number(const fibrad_heat *heat, uint32_t body, uint32_t patch) {
+    const uint32_t begin = fibrad_heat_first_fine(heat, body);
+    return patch >= begin && patch < heat->first[body + 1]
+               ? FIBRAD_HEAT_FOUR * heat->division.first_four[body] + (patch - begin)
+               : FIBRAD_NONE;
 }
 
 /* Whether an own four of a sphere is divided. */

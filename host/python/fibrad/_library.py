@@ -64,9 +64,8 @@ ExchangeRule = _structure("exchange_rule", ("emissivity wall_emissivity", DOUBLE
                           ("seed", c_uint64), ("cutoff tolerance", c_double), ("conductivity node_emissivity", DOUBLES),
                           ("flights", c_uint32), ("known", DOUBLES), ("known_paths", c_double))
 Displacement = _structure("displacement", ("square error", c_double * 3), ("absorbed", c_double), ("rays", c_uint64))
-HeatConfig = _structure("heat_config", ("directions points patches parts", c_uint32), ("cutoff", c_double),
-                        ("wall_rays", c_uint32))
-HeatSources = _structure("heat_sources", ("temperature emissivity power hold reference", DOUBLES),
+HeatConfig = _structure("heat_config", ("directions points patches parts wall_rays", c_uint32))
+HeatSources = _structure("heat_sources", ("temperature emissivity power storage reference", DOUBLES),
                          ("wall_temperature wall_emissivity wall_power", DOUBLES), ("insulated", POINTER(c_ubyte)),
                          ("surroundings sigma tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int),
                          ("side_temperature light conductivity absorbed", DOUBLES),
