@@ -80,52 +80,57 @@ static uint32_t group_end(const fibrad_heat *heat, uint32_t a, uint32_t end) {
     return end_of_group(a, end, heat->solution.group);
 }
 
-/* Sends what one Jacobi iteration would change on a body of given temperature. Returns the product of the residual and
- * this change. */
-static double given_residual(fibrad_heat *heat, uint32_t b) {
-    const double eps = heat->sources.emissivity[b];
-    const double *excess = fibrad_heat_excess(heat, b);
-    const uint32_t begin = heat->first[b], end = heat->first[b + 1];
-    double slope = 0;
-    for (uint32_t a = begin, next; a < end; a = next) {
+/* Sends the mean residual of each group of patches of a body, plus `shift`. On entry heat->solution.source has
+ * residuals times areas. Returns `slope` plus the product of residuals and changes. */
+static double send_groups(fibrad_heat *heat, uint32_t b, double shift, double slope) {
+    const double rho = 1 - heat->sources.emissivity[b];
+    for (uint32_t a = heat->first[b], next; a < heat->first[b + 1]; a = next) {
         double sum = 0, area = 0;
-        next = group_end(heat, a, end);
-        for (uint32_t k = a; k < next; k++) {
-            const double emission =
-                excess != NULL ? heat->sources.emission[b] + excess[k - begin] : heat->sources.emission[b];
-            sum += heat->solution.area[k] * eps * (emission - heat->solution.radiosity[k]) +
-                   (1 - eps) * heat->solution.net[k];
-            area += heat->solution.area[k];
-        }
-        const double change = eps < 1 && area > 0 ? sum / area : 0;
-        for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, change);
-        if (eps < 1) slope += area * change * change / (1 - eps);
+        next = group_end(heat, a, heat->first[b + 1]);
+        for (uint32_t k = a; k < next; k++) sum += fibrad_heat_sent(heat, k), area += heat->solution.area[k];
+        const double change = rho > 0 && area > 0 ? sum / area : 0;
+        for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, shift + change);
+        if (rho > 0) slope += area * change * change / rho;
     }
     return slope;
 }
 
-/* The same for a body of unknown temperature. */
+/* Sends what one Jacobi iteration would change on a body of given temperature. Returns the product of the residual and
+ * this change. */
+static double given_residual(fibrad_heat *heat, uint32_t b) {
+    const double eps = heat->sources.emissivity[b], *excess = fibrad_heat_excess(heat, b);
+    const uint32_t begin = heat->first[b];
+    for (uint32_t a = begin; a < heat->first[b + 1]; a++) {
+        const double emission =
+            excess != NULL ? heat->sources.emission[b] + excess[a - begin] : heat->sources.emission[b];
+        fibrad_heat_send(heat, a,
+                         heat->solution.area[a] * eps * (emission - heat->solution.radiosity[a]) +
+                             (1 - eps) * heat->solution.net[a]);
+    }
+    return send_groups(heat, b, 0, 0);
+}
+
+/* The mean residual of a body of unknown temperature, and how much it changes the mean of J. Returns their product
+ * times the area. */
+static double mean_change(const fibrad_heat *heat, uint32_t b, const free_body *body, double *shift) {
+    const double mean = mean_residual_at(heat, b, body, body->radiosity) + body->net;
+    *shift = mean / stiffness(heat, b, body);
+    return body->area * mean * *shift;
+}
+
+/* What given_residual does, for a body of unknown temperature. */
 static double free_residual(fibrad_heat *heat, uint32_t b) {
     const double eps = heat->sources.emissivity[b], rho = 1 - eps;
-    const uint32_t end = heat->first[b + 1];
     const free_body body = free_body_of(heat, b);
+    double shift;
     if (!(body.area > 0)) return 0;
-    const double mean = mean_residual_at(heat, b, &body, body.radiosity) + body.net;
-    const double shift = mean / stiffness(heat, b, &body);
-    double slope = body.area * mean * shift;
-    for (uint32_t a = heat->first[b], next; a < end; a = next) {
-        double sum = 0, area = 0;
-        next = group_end(heat, a, end);
-        for (uint32_t k = a; k < next; k++) {
-            sum += heat->solution.area[k] * (eps * (body.radiosity - heat->solution.radiosity[k]) - rho * body.net) +
-                   rho * heat->solution.net[k];
-            area += heat->solution.area[k];
-        }
-        const double change = eps < 1 && area > 0 ? sum / area : 0;
-        for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, shift + change);
-        if (eps < 1) slope += area * change * change / rho;
-    }
-    return slope;
+    const double slope = mean_change(heat, b, &body, &shift);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+        fibrad_heat_send(heat, a,
+                         heat->solution.area[a] *
+                                 (eps * (body.radiosity - heat->solution.radiosity[a]) - rho * body.net) +
+                             rho * heat->solution.net[a]);
+    return send_groups(heat, b, shift, slope);
 }
 
 /* Whether a sphere that conducts reflects next to nothing. The mean of its J is then set to its emission. In a search
@@ -142,9 +147,7 @@ static double conducting_residual(fibrad_heat *heat, uint32_t b) {
     double shift = 0, slope = 0;
     if (!(body.area > 0)) return 0;
     if (follows_radiosity(heat, b)) {
-        const double mean = mean_residual_at(heat, b, &body, body.radiosity) + body.net;
-        shift = mean / stiffness(heat, b, &body);
-        slope = body.area * mean * shift;
+        slope = mean_change(heat, b, &body, &shift);
     } else if (!has_black_mean(heat, b)) {
         shift = eps * (heat->sources.emission[b] - body.radiosity) + (1 - eps) * body.net;
         slope = body.area * shift * shift / (1 - eps);

@@ -388,7 +388,6 @@ static void set_walls(fibrad_heat *heat, const fibrad_heat_sources *s, double mi
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         const bool emits = source[k].emissivity > 0 && is_given(source[k].temperature);
-        heat->sources.wall_emissivity[k] = source[k].emissivity;
         heat->sources.wall_emission[k] = emits ? emission_of(s, source[k].temperature) : 0;
         set_body(heat, s, middle, fibrad_heat_body(heat, k), &source[k]);
     }

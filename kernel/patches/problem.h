@@ -153,8 +153,8 @@ typedef struct fibrad_heat_given {
     double *unevenness;     /* [spheres], 4 r sigma T^3/conductivity; 0: at one temperature (sphere_conduction.c) */
     bool conducts;          /* some sphere has a finite conductivity */
     double first_tolerance; /* tolerance while unevennesses are of temperatures still to be found better */
-    double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
-    bool insulated[FIBRAD_HEAT_OTHERS];                                /* by body, from the first wall on */
+    double wall_emission[FIBRAD_WALLS]; /* by slot; 0: the wall emits nothing */
+    bool insulated[FIBRAD_HEAT_OTHERS]; /* by body, from the first wall on */
     double *excess; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
     bool has_excess[FIBRAD_WALLS_MAX]; /* [meshes], whether sides of the mesh have temperatures */
     const double *light;               /* [patches] power that arrives from outside, the caller's; NULL: none */
@@ -324,7 +324,8 @@ static inline size_t fibrad_heat_other_block(const fibrad_heat *heat, uint32_t o
  * FIBRAD_WALLS: to the surroundings. Between two walls of emissivity 0, all radiation comes from the surroundings. */
 static inline uint32_t fibrad_heat_facing(const fibrad_heat *heat, uint32_t k) {
     const uint32_t other = k == FIBRAD_CYLINDER ? k : fibrad_face_opposite(k);
-    const bool white = heat->sources.wall_emissivity[k] == 0 && heat->sources.wall_emissivity[other] == 0;
+    const double *emissivity = heat->sources.emissivity + heat->spheres;
+    const bool white = emissivity[k] == 0 && emissivity[other] == 0;
     return heat->wall[other].unbounded && !white ? other : FIBRAD_WALLS;
 }
 
@@ -332,8 +333,8 @@ static inline uint32_t fibrad_heat_facing(const fibrad_heat *heat, uint32_t k) {
  * */
 static inline double fibrad_heat_taken_beyond(const fibrad_heat *heat, uint32_t k) {
     const uint32_t facing = fibrad_heat_facing(heat, k);
-    const double eps = heat->sources.wall_emissivity[k],
-                 other = facing < FIBRAD_WALLS ? heat->sources.wall_emissivity[facing] : 1;
+    const double *emissivity = heat->sources.emissivity + heat->spheres;
+    const double eps = emissivity[k], other = facing < FIBRAD_WALLS ? emissivity[facing] : 1;
     return eps / (1 - (1 - eps) * (1 - other));
 }
 
