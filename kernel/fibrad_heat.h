@@ -121,18 +121,24 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *
  * Contacts conduct heat between spheres, and between spheres and walls. Contact k has the ends contact_first[k] and
  * contact_second[k]: an index of a sphere, or `spheres` plus the index of a wall. It carries the heat conductance[k]
- * times the difference of their temperatures. Several contacts may have the same ends; a contact of a sphere with
+ * times the difference of their temperatures. Several contacts may have the same ends. A contact of a sphere with
  * itself, across a period, carries nothing. A sphere of emissivity 0 that is in contact has a temperature, and may give
- * off a power. `conductance` is in units of sigma K^3 L^2: if lengths are in millimetres and sigma is in W/(m2 K4), 1
- * W/K is 1e6. With `contact_places` the contacts of a sphere with a finite conductivity act at their places: where
- * the line to the other centre, or the normal to a plane or cylinder, leaves the sphere. Those with meshes act on
- * the mean of its surface.
+ * off a power. `conductance` is in units of sigma K^3 L^2. If lengths are in millimetres and sigma is in W/(m2 K4), 1
+ * W/K is 1e6.
+ *
+ * With `contact_places` the contacts of a sphere with a finite conductivity act at their places. The place of a contact
+ * is where the line to the other centre leaves the sphere. For a plane or cylinder it is where the normal leaves the
+ * sphere. Contacts with meshes act on the mean of the sphere's surface.
  *
  * The residual is the error of the equations for J, relative to what drives the radiation: differences of emission,
- * given powers and light. tolerance = 0 stands for 1e-3, for 1e-5 if a temperature is unknown and its storage is 0, and
- * for 1e-12 with up to 16 spheres. The search also goes on until the power of each wall is settled to the tolerance,
- * relative to the larger of this power and 5 % of what the wall absorbs. If a temperature is unknown, this tolerance is
- * 100 times as large, at most 1e-3.
+ * given powers and light. tolerance = 0 stands for one of three numbers:
+ *   1e-12  up to 16 spheres, and no contacts
+ *   1e-5   else, if a temperature is unknown and its storage is 0
+ *   1e-3   else
+ * The search also goes on until the power of each wall is settled to the tolerance. This is relative to the power, or
+ * to 5 % of what the wall absorbs if that is more. If a temperature is unknown, the tolerance of these powers is 100
+ * times as large, at most 1e-3.
+ *
  * side_temperature is in the order of the caller's triangles. If sides share a patch, each side emits the mean of their
  * emissions. */
 typedef struct fibrad_heat_sources {
@@ -170,14 +176,16 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources);
  *   Output   fault: which sphere or wall is at fault, and why; may be NULL
  *   Errors   _ARGUMENT
  *            _UNSUPPORTED: the temperature of an endless wall is unknown, fault.why is FIBRAD_WHY_ENDLESS
- *            _UNSOLVABLE: a sphere has emissivity 0, and no contact leads from it, directly or by way of others, to a
- *            surface that radiates or has a given temperature; fault.why is FIBRAD_WHY_ALONE */
+ *            _UNSOLVABLE: nothing gives a sphere of emissivity 0 a temperature; fault.why is FIBRAD_WHY_ALONE. Its
+ *            contacts, and those of what it touches, lead to no surface that radiates or has a given temperature. */
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_fault *fault);
 
 /* Begins a solution. It starts from the radiosities of the last solution. It starts anew if there was none, or if only
  * one of the two solutions has `light`. After the call only the arrays `light`, `absorbed` and those of contacts are
- * still needed. They must stay until the solution is read. Errors   as fibrad_heat_check _STATE: a task is not traced,
- * or the scene has changed Cost     O(patches) */
+ * still needed. They must stay until the solution is read.
+ *   Errors   as fibrad_heat_check
+ *            _STATE: a task is not traced, or the scene has changed
+ *   Cost     O(patches) */
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources);
 
 /* Does one part of a sweep. Between two steps each part is swept once. Several threads may sweep different parts at the
@@ -192,10 +200,11 @@ int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
  *   Output   solved: 1 if the residual is below the tolerance, or after about sweeps_max sweeps; else 0
  *   Errors   _ARGUMENT
  *            _STATE: a part was not swept, no solution was begun, or the scene has changed
- *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, and the powers do not add up to zero; or they
- *            do, but there are contacts, which need the level of the temperatures
- *   If all temperatures are unknown, nothing escapes, and the powers do add up to zero, the level of the temperatures
- *   is free. The mean emission, weighted by emissivity and area, is then set to that of the surroundings. */
+ *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, and the powers do not add up to zero, or there
+ *            are contacts
+ *   Level    If all temperatures are unknown, nothing escapes, and the powers do add up to zero, the level of the
+ *            temperatures is free. Then the mean emission, weighted by emissivity and area, is set to that of the
+ *            surroundings. Contacts need the level. */
 int fibrad_heat_step(fibrad_heat *heat, int *solved);
 
 /* The solution. The arrays belong to the caller. Where a field may be NULL, NULL means that it is not wanted.

@@ -220,8 +220,10 @@ int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint
  * old particle has no factor to a new one: what the two exchange follows from the row of the new particle alone. If a
  * particle has gone, the factor of each old row to it counts as beyond. The function makes all rows if there are none,
  * if the number of walls has changed, or if more than a tenth of all particles have come or gone since all rows were
- * made. Input    as fibrad_insitu_rows Errors   as fibrad_insitu_rows Cost     about 2 microseconds for each particle
- * and 10 ns for each entry, and the new rows */
+ * made.
+ *   Input    as fibrad_insitu_rows
+ *   Errors   as fibrad_insitu_rows
+ *   Cost     about 2 microseconds for each particle and 10 ns for each entry, and the new rows */
 int fibrad_insitu_follow(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
 /* Net radiative power of each particle that this rank owns now. If particles conduct, `temperature` is the mean of each
