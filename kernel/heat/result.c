@@ -218,9 +218,8 @@ static mesh_gain gain_of_mesh(const fibrad_heat *heat, uint32_t m, const double 
         gain.whole = gain.whole && is_within_walls(heat->scene, fibrad_side_triangle(mesh->side[k]));
         if (sum.area > 0) gain.area += area, gain.flow += area * (sum.flow / sum.area);
     }
-    if (!gain.whole) gain.area = gain.flow = 0;
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && !gain.whole; a++)
-        gain.area += heat->solution.area[a], gain.flow += flow[a];
+    if (!gain.whole)
+        gain.area = fibrad_heat_sum(heat, b, heat->solution.area), gain.flow = fibrad_heat_sum(heat, b, flow);
     return gain;
 }
 

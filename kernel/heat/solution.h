@@ -59,10 +59,7 @@ void fibrad_heat_add_offsets(const fibrad_heat *heat, double *to);
 
 /* The light that a body has absorbed. */
 static inline double fibrad_heat_absorbed(const fibrad_heat *heat, uint32_t body) {
-    double sum = 0;
-    for (uint32_t a = heat->first[body]; a < heat->first[body + 1] && heat->sources.absorbed != NULL; a++)
-        sum += heat->sources.absorbed[a];
-    return sum;
+    return heat->sources.absorbed != NULL ? fibrad_heat_sum(heat, body, heat->sources.absorbed) : 0;
 }
 
 /* A patch that sends back all that arrives has few links to others. Too much of what arrives by a link goes back by it:

@@ -343,23 +343,19 @@ void fibrad_heat_link_pencils(fibrad_heat *heat) {
     size_t *first = heat->pencils.first_link;
     fibrad_zero(first, (n + 2) * sizeof *first);
     heat->pencils.link = (void *)(heat->pencils.pool + pool_of(heat->pencils.used, heat->pencils.links).links_at);
-    for (uint32_t place = 0; place < n; place++) {
-        const unsigned char *at = heat->pencils.pool + heat->pencils.row[place].begin,
-                            *end = at + heat->pencils.row[place].bytes;
-        for (; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {
-            const uint32_t other = fibrad_heat_pencil_at(at)->body;
-            if (other < n && !fibrad_heat_same_part(heat, place, other)) first[other + 2]++;
+    for (int pass = 0; pass < 2; pass++) { /* links are counted first */
+        for (uint32_t place = 0; place < n; place++) {
+            const unsigned char *begin = heat->pencils.pool + heat->pencils.row[place].begin,
+                                *end = begin + heat->pencils.row[place].bytes;
+            for (const unsigned char *at = begin; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {
+                const uint32_t other = fibrad_heat_pencil_at(at)->body;
+                if (other >= n || fibrad_heat_same_part(heat, place, other)) continue;
+                if (pass == 0)
+                    first[other + 2]++;
+                else
+                    heat->pencils.link[first[other + 1]++] = (fibrad_heat_link){place, (uint32_t)((at - begin) / 4)};
+            }
         }
-    }
-    for (uint32_t i = 2; i < n + 2; i++) first[i] += first[i - 1];
-    for (uint32_t place = 0; place < n; place++) {
-        const unsigned char *begin = heat->pencils.pool + heat->pencils.row[place].begin,
-                            *end = begin + heat->pencils.row[place].bytes;
-        for (const unsigned char *at = begin; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {
-            const uint32_t other = fibrad_heat_pencil_at(at)->body;
-            if (other < n && !fibrad_heat_same_part(heat, place, other))
-                heat->pencils.link[first[other + 1]++] =
-                    (fibrad_heat_link){place, (uint32_t)((size_t)(at - begin) / 4)};
-        }
+        for (uint32_t i = 2; i < n + 2 && pass == 0; i++) first[i] += first[i - 1];
     }
 }
