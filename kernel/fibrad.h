@@ -342,7 +342,7 @@ typedef enum fibrad_why {
     FIBRAD_WHY_BOTH = 8,          /* Both a temperature and a power are given. */
     FIBRAD_WHY_NEITHER = 9,       /* Neither a temperature nor a power is given. */
     FIBRAD_WHY_REFLECTS = 10,     /* A surface of emissivity 0 cannot give off a power. */
-    FIBRAD_WHY_HOLD = 11,         /* `hold` or `reference` (fibrad_heat.h) is out of range. */
+    FIBRAD_WHY_STORAGE = 11,      /* `storage` or `reference` (fibrad_heat.h) is out of range. */
     FIBRAD_WHY_ENDLESS = 12,      /* The temperature of an endless wall of emissivity above 0 is missing. */
     FIBRAD_WHY_SIDE = 13,         /* The temperature of a side is out of range, or its wall has no temperature. */
     FIBRAD_WHY_SURROUNDINGS = 14, /* The temperature of the surroundings is missing or out of range. */

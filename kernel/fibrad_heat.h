@@ -38,7 +38,6 @@ typedef struct fibrad_heat_config {
     uint32_t points;  /* of each beam: 64, 128 or 256; 0: FIBRAD_HEAT_POINTS_DEFAULT */
     uint32_t patches; /* of each sphere: 24, 96 or 384; 0: FIBRAD_HEAT_PATCHES_DEFAULT */
     uint32_t parts;   /* of a sweep, 1 to FIBRAD_HEAT_PARTS_MAX; results depend on it by rounding; 0: _DEFAULT */
-    double cutoff;    /* must be 0, else FIBRAD_E_UNSUPPORTED */
     uint32_t wall_rays; /* least number of rays from all walls together, at most FIBRAD_WALL_RAYS_MAX; 0: see above */
 } fibrad_heat_config;
 
@@ -57,7 +56,7 @@ size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *sc
  *            scene: radii FIBRAD_HEAT_RADIUS_MIN to 1/FIBRAD_HEAT_RADIUS_MIN L
  *   Output   heat: a pointer into memory
  *   Errors   _ARGUMENT, _SIZE, _STATE
- *            _UNSUPPORTED: a cutoff, or a scene with a known region (fibrad.h); or surfaces are so near each other that
+ *            _UNSUPPORTED: a scene with a known region (fibrad.h); or surfaces are so near each other that
  *            more than 2^26 small patches would be needed there */
 int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad_heat_config *config,
                      const fibrad_scene *scene);
@@ -92,17 +91,17 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
 
 /* What radiates. Begin with fibrad_heat_sources_init, and set `surroundings`.
  *
- *   a sphere with             temperature  power     hold, reference
+ *   a sphere with             temperature  power     storage, reference
  *   a given temperature       T            0 or NaN  not used
  *   a given power P           NaN          P         0, R: a first guess of T, or NaN
  *   a power that varies       NaN          P         h, R: the sphere gives off P - h sigma (T^4 - R^4)
  *   emissivity 0              T            0 or NaN  not used
  *                             NaN          0         0, NaN
  *
- * `hold` makes the solution an implicit step in time. Let a sphere of heat capacity C have the temperature R at the
+ * `storage` makes the solution an implicit step in time. Let a sphere of heat capacity C have the temperature R at the
  * beginning of a step of length dt. Its h is C/(4 sigma R^3 dt).
  *
- * Walls have the same choices with wall_temperature and wall_power, but no hold and no reference. An insulated wall
+ * Walls have the same choices with wall_temperature and wall_power, but no storage and no reference. An insulated wall
  * sends back all that arrives, point by point. Its temperature, emissivity and power are not used. The sides of a mesh
  * may have temperatures of their own if the wall has a given temperature. An endless wall (fibrad.h) must have a given
  * temperature, unless it reflects everything.
@@ -122,25 +121,31 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *
  * Contacts conduct heat between spheres, and between spheres and walls. Contact k has the ends contact_first[k] and
  * contact_second[k]: an index of a sphere, or `spheres` plus the index of a wall. It carries the heat conductance[k]
- * times the difference of their temperatures. Several contacts may have the same ends; a contact of a sphere with
+ * times the difference of their temperatures. Several contacts may have the same ends. A contact of a sphere with
  * itself, across a period, carries nothing. A sphere of emissivity 0 that is in contact has a temperature, and may give
- * off a power. `conductance` is in units of sigma K^3 L^2: if lengths are in millimetres and sigma is in W/(m2 K4), 1
- * W/K is 1e6. With `contact_places` the contacts of a sphere with a finite conductivity act at their places: where
- * the line to the other centre, or the normal to a plane or cylinder, leaves the sphere. Those with meshes act on
- * the mean of its surface.
+ * off a power. `conductance` is in units of sigma K^3 L^2. If lengths are in millimetres and sigma is in W/(m2 K4), 1
+ * W/K is 1e6.
+ *
+ * With `contact_places` the contacts of a sphere with a finite conductivity act at their places. The place of a contact
+ * is where the line to the other centre leaves the sphere. For a plane or cylinder it is where the normal leaves the
+ * sphere. Contacts with meshes act on the mean of the sphere's surface.
  *
  * The residual is the error of the equations for J, relative to what drives the radiation: differences of emission,
- * given powers and light. tolerance = 0 stands for 1e-3, for 1e-5 if a temperature is unknown and its hold is 0, and
- * for 1e-12 with up to 16 spheres. The search also goes on until the power of each wall is settled to the tolerance,
- * relative to the larger of this power and 5 % of what the wall absorbs. If a temperature is unknown, this tolerance is
- * 100 times as large, at most 1e-3.
+ * given powers and light. tolerance = 0 stands for one of three numbers:
+ *   1e-12  up to 16 spheres, and no contacts
+ *   1e-5   else, if a temperature is unknown and its storage is 0
+ *   1e-3   else
+ * The search also goes on until the power of each wall is settled to the tolerance. This is relative to the power, or
+ * to 5 % of what the wall absorbs if that is more. If a temperature is unknown, the tolerance of these powers is 100
+ * times as large, at most 1e-3.
+ *
  * side_temperature is in the order of the caller's triangles. If sides share a patch, each side emits the mean of their
  * emissions. */
 typedef struct fibrad_heat_sources {
     const double *temperature; /* K, [spheres], 0 to FIBRAD_TEMPERATURE_MAX; NaN: unknown */
     const double *emissivity;  /* [spheres], 0 to 1 */
     const double *power;       /* sigma K^4 L^2, [spheres], to FIBRAD_POWER_MAX; above 0: given off; NULL: all NaN */
-    const double *hold;        /* L^2, [spheres], 0 to 1e60; NULL: all 0 */
+    const double *storage;     /* L^2, [spheres], 0 to 1e60; NULL: all 0 */
     const double *reference;   /* K, [spheres], as temperature; NULL: all NaN */
     const double *wall_temperature; /* K, [walls], as temperature; NULL without walls */
     const double *wall_emissivity;  /* [walls], 0 to 1; NULL without walls */
@@ -171,14 +176,16 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources);
  *   Output   fault: which sphere or wall is at fault, and why; may be NULL
  *   Errors   _ARGUMENT
  *            _UNSUPPORTED: the temperature of an endless wall is unknown, fault.why is FIBRAD_WHY_ENDLESS
- *            _UNSOLVABLE: a sphere has emissivity 0, and no contact leads from it, directly or by way of others, to a
- *            surface that radiates or has a given temperature; fault.why is FIBRAD_WHY_ALONE */
+ *            _UNSOLVABLE: nothing gives a sphere of emissivity 0 a temperature; fault.why is FIBRAD_WHY_ALONE. Its
+ *            contacts, and those of what it touches, lead to no surface that radiates or has a given temperature. */
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_fault *fault);
 
 /* Begins a solution. It starts from the radiosities of the last solution. It starts anew if there was none, or if only
  * one of the two solutions has `light`. After the call only the arrays `light`, `absorbed` and those of contacts are
- * still needed. They must stay until the solution is read. Errors   as fibrad_heat_check _STATE: a task is not traced,
- * or the scene has changed Cost     O(patches) */
+ * still needed. They must stay until the solution is read.
+ *   Errors   as fibrad_heat_check
+ *            _STATE: a task is not traced, or the scene has changed
+ *   Cost     O(patches) */
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources);
 
 /* Does one part of a sweep. Between two steps each part is swept once. Several threads may sweep different parts at the
@@ -193,16 +200,17 @@ int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
  *   Output   solved: 1 if the residual is below the tolerance, or after about sweeps_max sweeps; else 0
  *   Errors   _ARGUMENT
  *            _STATE: a part was not swept, no solution was begun, or the scene has changed
- *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, and the powers do not add up to zero; or they
- *            do, but there are contacts, which need the level of the temperatures
- *   If all temperatures are unknown, nothing escapes, and the powers do add up to zero, the level of the temperatures
- *   is free. The mean emission, weighted by emissivity and area, is then set to that of the surroundings. */
+ *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, and the powers do not add up to zero, or there
+ *            are contacts
+ *   Level    If all temperatures are unknown, nothing escapes, and the powers do add up to zero, the level of the
+ *            temperatures is free. Then the mean emission, weighted by emissivity and area, is set to that of the
+ *            surroundings. Contacts need the level. */
 int fibrad_heat_step(fibrad_heat *heat, int *solved);
 
 /* The solution. The arrays belong to the caller. Where a field may be NULL, NULL means that it is not wanted.
  *
  * A net power is above 0 where a surface gains heat, by radiation and through contacts. A given power has the other
- * sign: a sphere of power P (and hold 0) has the net power -P. Temperatures are written whether they were found or
+ * sign: a sphere of power P (and storage 0) has the net power -P. Temperatures are written whether they were found or
  * given. A temperature is NaN if the emissivity is 0, or if only a temperature below zero would give the power.
  * least_temperature, largest_temperature and centre_temperature differ only on spheres with a finite conductivity. For
  * any other sphere all three are its temperature. wall_temperature of an insulated wall is the fourth root of its mean

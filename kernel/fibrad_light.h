@@ -7,14 +7,16 @@
  *
  * Sequence   1. fibrad_light_empty finds how much light would end on each wall, and how much would leave the bed, if
  *               there were neither spheres nor triangles.
- *            2. fibrad_light_spheres finds how much light each sphere of a range takes. `kept` is where this light
- * would end if there were neither spheres nor triangles: how much on each wall, how much outside the bed. The light
- * that ends on wall b is ends.wall[b] of step 1 minus the sum of kept.wall[b] over all ranges. The light that leaves
- * the bed is ends.through minus the sum of kept.through. Triangles take a part of the light on walls and of the light
- * that leaves. fibrad_heat_shine_walls finds these parts. fibrad_heat_shine does step 2 for a heat problem, and puts
- * the light on patches. Units      as in fibrad.h. A power is in units of flux times L^2. With a flux of 1 it is an
- * area. Words      Memory, errors and the layout of comments are as in fibrad.h. Source     docs/methods_heat.md, Light
- * from outside. docs/heat.md says what is assumed.
+ *            2. fibrad_light_spheres finds how much light each sphere of a range takes.
+ * Walls      Step 2 also gives `kept`: where the light that spheres take would end if there were neither spheres nor
+ *            triangles. So the light that ends on wall b is ends.wall[b] of step 1 minus the sum of kept.wall[b] over
+ *            all ranges. The light that leaves the bed is ends.through minus the sum of kept.through.
+ * Triangles  They take a part of the light on other walls, and of the light that leaves. fibrad_heat_shine_walls finds
+ *            these parts.
+ * Patches    fibrad_heat_shine does step 2 for a heat problem, and puts the light on patches.
+ * Units      as in fibrad.h. A power is in units of flux times L^2. With a flux of 1 it is an area.
+ * Words      Memory, errors and the layout of comments are as in fibrad.h.
+ * Source     docs/methods_heat.md, Light from outside. docs/heat.md says what is assumed.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_LIGHT_H
@@ -115,8 +117,8 @@ uint32_t fibrad_heat_shine_tasks(const fibrad_heat *heat);
  *   Input    task: 0 to fibrad_heat_shine_tasks - 1
  *   Output   hits[fibrad_heat_patches]: the light is added to it
  *            kept: as fibrad_light_spheres
- *            apart[spheres]: written for the spheres of the task: light of even directions of a cone minus that of odd
- *            ones; may be NULL
+ *            apart[spheres]: light of even directions of a cone minus that of odd ones; may be NULL. Only elements of
+ *            the spheres of the task are written.
  *   Errors   as fibrad_light_spheres; _STATE: the scene has changed
  *   Cost     as fibrad_light_spheres; work memory has 8 bytes for each patch of the task */
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,

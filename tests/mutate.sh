@@ -38,7 +38,7 @@ tests_of() {
     case $1 in
     host/couple/walls/*) echo liggghts ;;
     host/couple/*) echo couple ;;
-    kernel/exchange/flow.c | kernel/scene/surroundings.c) echo "beyond flow part $tests" ;;
+    kernel/exchange/row_powers.c | kernel/scene/surroundings.c) echo "beyond flow part $tests" ;;
     kernel/exchange/*) echo "exchange wall_rows known protocol part $tests" ;;
     kernel/heat/*) echo "protocol_heat heat heat_arguments heat_paths heat_patches heat_invariants $tests" ;;
     */points_*) echo "beam cast $tests" ;;

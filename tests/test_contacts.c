@@ -20,7 +20,7 @@ struct joint {
     fibrad_heat_config config;
     fibrad_heat_sources sources;
     fibrad_heat_result result;
-    double temperature[MOST], emissivity[MOST], power[MOST], hold[MOST], reference[MOST];
+    double temperature[MOST], emissivity[MOST], power[MOST], storage[MOST], reference[MOST];
     double wall_temperature[WALLS], wall_emissivity[WALLS], wall_power[WALLS];
     uint32_t first[CONTACTS], second[CONTACTS];
     double conductance[CONTACTS];

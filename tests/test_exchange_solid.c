@@ -5,7 +5,7 @@
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_sf_legendre.h>
 
-#include "exchange/conducting.h"
+#include "exchange/reemission.h"
 #include "host_owned.h"
 #include "program.h"
 #include "scenes.h"
@@ -27,7 +27,7 @@ TEST(emissivities_of_nodes) {
         double even, error;
         gsl_function least = {least_share, &a[k]};
         ck_assert_int_eq(gsl_integration_qags(&least, 0, 1, 0, 1e-11, 1000, space, &even, &error), 0);
-        assert_near(fibrad_conducted_evenly(a[k]), even, 1e-10);
+        assert_near(fibrad_reemitted_evenly(a[k]), even, 1e-10);
         if (a[k] < 4e5) assert_near(fibrad_node_emissivity(.8, .4 / a[k]), .8 * even, 1e-10);
     }
     gsl_integration_workspace_free(space);
@@ -51,12 +51,12 @@ TEST(patterns_that_are_not_even) {
                                    height};
             double to[] = {0, 0, 1}, p[DEGREES + 1];
             const fibrad_random own = fibrad_random_start(n, k);
-            fibrad_conduct_above(a[k], own, 9, even, to);
+            fibrad_reemit_above(a[k], own, 9, even, to);
             ck_assert_double_le(fabs(to[0] * to[0] + to[1] * to[1] + to[2] * to[2] - 1), 1e-12);
             gsl_sf_legendre_Pl_array(DEGREES, fmax(-1, fmin(1, to[2])), p);
             for (int l = 0; l <= DEGREES; ++l) mean[l] += p[l] / DRAWS;
         }
-        const double rest = a[k] < 1e-5 ? (1 + log(2)) * a[k] : 1 - fibrad_conducted_evenly(a[k]);
+        const double rest = a[k] < 1e-5 ? (1 + log(2)) * a[k] : 1 - fibrad_reemitted_evenly(a[k]);
         for (int l = 1; l <= DEGREES; ++l)
             ck_assert_double_le(fabs(mean[l] - a[k] / (a[k] + l) / rest), 4 / sqrt(DRAWS));
     }
@@ -103,7 +103,7 @@ static double by_ball(double r, double e, double a) {
     double sum = 0, given[LAST + 1], p[LAST + 1];
     light_ball(r, &ball);
     for (int l = 0; l <= LAST; ++l)
-        given[l] = e * (2 * l + 1) * (l == 0 ? 1 - fibrad_conducted_evenly(a) : a / (a + l));
+        given[l] = e * (2 * l + 1) * (l == 0 ? 1 - fibrad_reemitted_evenly(a) : a / (a + l));
     for (size_t i = 0; i < POINTS; ++i) {
         const double *from = ball.n[i], here = ball.weight[i] * ball.arrives[1][i];
         for (size_t k = 0; k < POINTS; ++k) {

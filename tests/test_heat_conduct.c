@@ -1,6 +1,6 @@
 /* test_heat_conduct.c - spheres that conduct, against closed forms and against themselves.
  * SPDX-License-Identifier: MIT */
-#include "heat/fine.h"
+#include "patches/subdivision.h"
 #include "fibrad_light.h"
 #include "heat_problem.h"
 

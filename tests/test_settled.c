@@ -16,7 +16,7 @@ struct settled {
     fibrad_heat_config config;
     fibrad_heat_sources sources;
     fibrad_heat_result result;
-    double temperature[N], emissivity[N], power[N], hold[N], reference[N];
+    double temperature[N], emissivity[N], power[N], storage[N], reference[N];
     double wall_temperature[WALLS], wall_emissivity[WALLS], wall_power[WALLS];
     unsigned char insulated[WALLS];
     struct {
@@ -78,22 +78,22 @@ static void close_to(double value, double truth, double error) {
                   value / truth - 1);
 }
 
-/* A sphere alone gives off A eps sigma (T^4 - T0^4), less the term of `hold`. */
+/* A sphere alone gives off A eps sigma (T^4 - T0^4), less the term of `storage`. */
 TEST(one_sphere) {
-    static const double eps[] = {.1, .5, 1}, hold[] = {0, 3, 1e6};
+    static const double eps[] = {.1, .5, 1}, storage[] = {0, 3, 1e6};
     for (int k = 0; k < 9; k++) {
         OWNED_BY(settled_free) struct settled s;
         begin(&s, BED({0, 0, 0, .5}));
-        s.temperature[0] = unknown, s.emissivity[0] = eps[k % 3], s.power[0] = 5e4, s.hold[0] = hold[k / 3];
+        s.temperature[0] = unknown, s.emissivity[0] = eps[k % 3], s.power[0] = 5e4, s.storage[0] = storage[k / 3];
         s.reference[0] = 900;
-        s.sources.power = s.power, s.sources.hold = s.hold, s.sources.reference = s.reference;
+        s.sources.power = s.power, s.sources.storage = s.storage, s.sources.reference = s.reference;
         s.sources.tolerance = 1e-12;
         assert_ok(settle(&s));
         const double link = pi * eps[k % 3], t0 = 300, t1 = 900;
         const double e =
-            (5e4 + sigma * (hold[k / 3] * pow(t1, 4) + link * pow(t0, 4))) / (sigma * (hold[k / 3] + link));
+            (5e4 + sigma * (storage[k / 3] * pow(t1, 4) + link * pow(t0, 4))) / (sigma * (storage[k / 3] + link));
         close_to(s.found.temperature[0], pow(e, .25), 1e-9);
-        close_to(-s.found.power[0], link * sigma * (e - pow(t0, 4)), hold[k / 3] > 1e3 ? 1e-6 : 1e-9);
+        close_to(-s.found.power[0], link * sigma * (e - pow(t0, 4)), storage[k / 3] > 1e3 ? 1e-6 : 1e-9);
         ck_assert_double_eq_tol(s.found.power[0] + s.result.surroundings_power, 0, 1e-9 * 5e4);
     }
 }
@@ -246,9 +246,9 @@ TEST(refused) {
     s.emissivity[3] = .5, s.power[3] = -1e7; /* more than the sphere can take up */
     ck_assert_int_eq(settle(&s), FIBRAD_E_UNSOLVABLE);
     ck_assert(isnan(s.found.temperature[3]) && s.found.temperature[2] == s.temperature[2]);
-    s.power[3] = 10, s.hold[3] = 1, s.sources.hold = s.hold; /* held at what? */
+    s.power[3] = 10, s.storage[3] = 1, s.sources.storage = s.storage; /* held at what? */
     assert_invalid(settle(&s));
-    s.hold[3] = 0;
+    s.storage[3] = 0;
     assert_ok(settle(&s));
     s.wall_temperature[2] = unknown;
     assert_invalid(settle(&s));

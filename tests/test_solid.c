@@ -7,7 +7,7 @@
 
 #include "bed/conduction.h"
 #include "bed/packing.h"
-#include "exchange/conducting.h"
+#include "exchange/reemission.h"
 #include "frames/solid_option.h"
 #include "program.h"
 
@@ -89,7 +89,7 @@ TEST(patterns_of_a_ball) {
             draw_point(&count, from), draw_point(&count, even);
             const double u[] = {draw(&count), draw(&count)};
             memcpy(to, from, sizeof to);
-            fibrad_conduct(1 / a[k], u, even, to);
+            fibrad_reemit(1 / a[k], u, even, to);
             ck_assert_double_eq_tol(to[0] * to[0] + to[1] * to[1] + to[2] * to[2], 1, 1e-12);
             const double cosine = fmax(-1, fmin(1, from[0] * to[0] + from[1] * to[1] + from[2] * to[2]));
             double p[DEGREES + 1];
@@ -110,7 +110,7 @@ TEST(extremes_of_a_ball) {
         double to[3];
         const double pair[] = {u[k % 4], u[k / 4 % 4]};
         memcpy(to, n, sizeof to);
-        fibrad_conduct(exponent[k / 16 % 6], pair, k / 96 ? n : even, to);
+        fibrad_reemit(exponent[k / 16 % 6], pair, k / 96 ? n : even, to);
         ck_assert_double_eq_tol(to[0] * to[0] + to[1] * to[1] + to[2] * to[2], 1, 1e-12);
     }
 }

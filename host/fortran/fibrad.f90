@@ -178,13 +178,11 @@ module fibrad
     end type c_displacement
 
     type, bind(C) :: c_heat_config
-        integer(c_int32_t) :: directions = 0, points = 0, patches = 0, parts = 0
-        real(c_double) :: cutoff = 0
-        integer(c_int32_t) :: wall_rays = 0
+        integer(c_int32_t) :: directions = 0, points = 0, patches = 0, parts = 0, wall_rays = 0
     end type c_heat_config
 
     type, bind(C) :: c_heat_sources
-        type(c_ptr) :: temperature = c_null_ptr, emissivity = c_null_ptr, power = c_null_ptr, hold = c_null_ptr, &
+        type(c_ptr) :: temperature = c_null_ptr, emissivity = c_null_ptr, power = c_null_ptr, storage = c_null_ptr, &
             reference = c_null_ptr, wall_temperature = c_null_ptr, wall_emissivity = c_null_ptr, &
             wall_power = c_null_ptr, insulated = c_null_ptr
         real(c_double) :: surroundings = 0, sigma = fibrad_stefan_boltzmann, tolerance = 0

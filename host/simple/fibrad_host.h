@@ -196,8 +196,9 @@ int fibrad_radiation_sides(const fibrad_radiation *radiation, double *flux, doub
 
 /* A function of the caller: emissivities that depend on temperatures. The thread that made the call runs this function.
  * A temperature is NaN if it has not been found yet, if the wall is insulated, or if the emissivity is 0. The function
- * leaves such an emissivity as it is. Input    temperature[spheres], wall_temperature[walls]: [K] Output
- * emissivity[spheres], wall_emissivity[walls]: 0 to 1 */
+ * leaves such an emissivity as it is.
+ *   Input    temperature[spheres], wall_temperature[walls]: [K]
+ *   Output   emissivity[spheres], wall_emissivity[walls]: 0 to 1 */
 typedef void fibrad_emissivity_law(void *context, const double *temperature, const double *wall_temperature,
                                    double *emissivity, double *wall_emissivity);
 
@@ -376,7 +377,7 @@ typedef struct fibrad_span {
  * surroundings gain, to rounding. The first automatic step of a span is as long as the last span has proposed.
  *
  *   field of sources                 use
- *   temperature, hold, reference     not used
+ *   temperature, storage, reference     not used
  *   power                            constant
  *   emissivity, wall_emissivity      constant, or where a law begins
  *   wall_temperature, surroundings   at the beginning of the span; NaN (to be found) only by PATCHES

@@ -14,10 +14,10 @@ enum { ROWS = 128, ITERATIONS_MAX = 2000 };
 
 struct fibrad_network {
     fibrad_bed_factors *factors;
-    double *weight;                                           /* [n] A e */
-    double *diagonal;                                         /* [n] of L */
-    double *outside;                                          /* [n] conductance to walls and surroundings */
-    double *emission, *hold, *residual, *direction, *product; /* [n] each, of the present solution */
+    double *weight;                                              /* [n] A e */
+    double *diagonal;                                            /* [n] of L */
+    double *outside;                                             /* [n] conductance to walls and surroundings */
+    double *emission, *storage, *residual, *direction, *product; /* [n] each, of the present solution */
 };
 
 enum { ARRAYS = 8 };
@@ -33,8 +33,8 @@ int fibrad_network_new(fibrad_network **network, fibrad_bed_factors *factors, co
         free(block);
         return FIBRAD_E_MEMORY;
     }
-    double **const arrays[ARRAYS] = {&w->weight, &w->diagonal, &w->outside,   &w->emission,
-                                     &w->hold,   &w->residual, &w->direction, &w->product};
+    double **const arrays[ARRAYS] = {&w->weight,  &w->diagonal, &w->outside,   &w->emission,
+                                     &w->storage, &w->residual, &w->direction, &w->product};
     for (size_t k = 0; k < ARRAYS; ++k) *arrays[k] = block + k * n;
     w->factors = factors;
     for (size_t i = 0; i < n; ++i) {
@@ -67,7 +67,7 @@ static int multiply_rows(void *network, int thread, uint32_t task) {
         const double own = w->direction[i];
         double sum = 0;
         for (uint64_t k = d->start[i]; k < d->start[i + 1]; ++k) sum += d->f[k] * (own - w->direction[d->col[k]]);
-        w->product[i] = w->weight[i] * sum + (w->outside[i] + w->hold[i]) * own;
+        w->product[i] = w->weight[i] * sum + (w->outside[i] + w->storage[i]) * own;
     }
     return FIBRAD_OK;
 }
@@ -92,14 +92,14 @@ static double received_outside(const fibrad_network *w, const fibrad_heat_source
 static int begin(fibrad_network *w, fibrad_team *team, const fibrad_heat_sources *s) {
     const uint32_t n = w->factors->matrix.n;
     for (uint32_t i = 0; i < n; ++i) {
-        w->hold[i] = 0;
+        w->storage[i] = 0;
         w->emission[i] = emission_at(s, isnan(s->temperature[i]) ? s->reference[i] : s->temperature[i]);
         w->direction[i] = w->emission[i];
     }
     const int status = multiply(w, team);
     for (uint32_t i = 0; i < n; ++i) {
         const bool unknown = isnan(s->temperature[i]);
-        w->hold[i] = unknown ? s->hold[i] : 0;
+        w->storage[i] = unknown ? s->storage[i] : 0;
         w->residual[i] = unknown ? s->power[i] + received_outside(w, s, i) - w->product[i] : 0;
     }
     return status;
@@ -114,15 +114,15 @@ static double turn(fibrad_network *w, const fibrad_heat_sources *s, const double
     *missing = 0;
     for (uint32_t i = 0; i < n; ++i) {
         if (!isnan(s->temperature[i])) continue;
-        const double size = w->hold[i] + w->diagonal[i], off = fabs(w->residual[i]);
+        const double size = w->storage[i] + w->diagonal[i], off = fabs(w->residual[i]);
         product += w->residual[i] * (w->residual[i] / size);
         if (off > allowed[i] && off > rounding * size * w->emission[i]) *missing = 1;
     }
     const double keep = last > 0 ? product / last : 0;
     for (uint32_t i = 0; i < n; ++i)
-        w->direction[i] = isnan(s->temperature[i])
-                              ? w->residual[i] / (w->hold[i] + w->diagonal[i]) + (keep > 0 ? keep * w->direction[i] : 0)
-                              : 0;
+        w->direction[i] = isnan(s->temperature[i]) ? w->residual[i] / (w->storage[i] + w->diagonal[i]) +
+                                                         (keep > 0 ? keep * w->direction[i] : 0)
+                                                   : 0;
     return product;
 }
 
@@ -173,7 +173,7 @@ int fibrad_network_solve(fibrad_network *w, fibrad_team *team, const fibrad_heat
         go(w, s, product);
         product = turn(w, s, allowed, product, &missing);
     }
-    for (uint32_t i = 0; i < w->factors->matrix.n; ++i) w->hold[i] = 0, w->direction[i] = w->emission[i];
+    for (uint32_t i = 0; i < w->factors->matrix.n; ++i) w->storage[i] = 0, w->direction[i] = w->emission[i];
     if (!status) status = multiply(w, team);
     if (status) return status;
     read_powers(w, s, result);

@@ -13,7 +13,7 @@ int fibrad_network_new(fibrad_network **network, fibrad_bed_factors *factors, co
 void fibrad_network_free(fibrad_network *network);
 
 /* Finds powers and temperatures like fibrad_radiation_solve. All walls have temperatures in `sources`; their powers are
- * those from spheres alone. Spheres of unknown temperature have a hold > 0 and a reference. allowed [n]: power that
+ * those from spheres alone. Spheres of unknown temperature have storage > 0 and a reference. allowed [n]: power that
  * each sphere may miss. Errors: _UNSOLVABLE: a temperature is below 0 K, or the iteration does not converge; the result
  * is written then, too. */
 int fibrad_network_solve(fibrad_network *network, fibrad_team *team, const fibrad_heat_sources *sources,

@@ -131,7 +131,8 @@ static int sweep_beams(void *heat, int thread, uint32_t part) {
 static int make_places(fibrad_radiation *r, fibrad_heat_sources *sources) {
     free(r->places);
     r->places = NULL;
-    if (sources->contacts == 0 || !sources->conductivity || sources->hold || sources->contact_places) return FIBRAD_OK;
+    if (sources->contacts == 0 || !sources->conductivity || sources->storage || sources->contact_places)
+        return FIBRAD_OK;
     r->places = malloc((4 * (size_t)sources->contacts + fibrad_heat_patches(r->heat)) * sizeof *r->places);
     sources->contact_places = r->places;
     return r->places ? FIBRAD_OK : FIBRAD_E_MEMORY;

@@ -6,11 +6,11 @@
  *     T1 = T + g h f(T1),    T' = T + (1 - g) h f(T1) + g h f(T').
  *
  * Each stage solves C (T - base)/(g h) = power + q(T), where base is known. Newton's method makes the equation linear
- * in E = sigma T^4 about T*: a sphere gives off power + C (base - T*)/(g h) - hold (E - E*) with hold = C/(g h dE/dT).
- * Temperatures then follow from the powers q of that solution. The energy that the sum over spheres misses is divided
- * among them. So spheres lose what walls and surroundings gain, whatever the tolerance of the solution. The embedded
- * solution of first order differs by g h |f(T') - f(T1)|. This difference is kept below the tolerance; the errors of
- * second order add up to about the tolerance. docs/methods_heat.md section 11. */
+ * in E = sigma T^4 about T*: a sphere gives off power + C (base - T*)/(g h) - storage (E - E*) with storage = C/(g h
+ * dE/dT). Temperatures then follow from the powers q of that solution. The energy that the sum over spheres misses is
+ * divided among them. So spheres lose what walls and surroundings gain, whatever the tolerance of the solution. The
+ * embedded solution of first order differs by g h |f(T') - f(T1)|. This difference is kept below the tolerance; the
+ * errors of second order add up to about the tolerance. docs/methods_heat.md section 11. */
 #include <math.h>
 #include <string.h>
 
@@ -85,7 +85,7 @@ static void linearise(struct stepper *m, double length) {
         const double at = t->guess[i], rate = m->span->capacity[i] / length;
         const bool reflects = stands_alone(m, i);
         t->given[i] = reflects ? at : NAN;
-        t->hold[i] = reflects ? 0 : rate / (4 * m->given->sigma * at * at * at);
+        t->storage[i] = reflects ? 0 : rate / (4 * m->given->sigma * at * at * at);
         t->source[i] = reflects ? 0 : power_of(m, i) + rate * (t->base[i] - at);
         t->allowed[i] = SOLVED * m->tolerance * rate * at;
     }
@@ -357,7 +357,7 @@ static int advance_span(fibrad_transient *t, const fibrad_heat_sources *sources,
                         .result = {.power = t->power, .temperature = t->found},
                         .stage_walls = {t->wall_stage + t->walls, t->wall_stage + 2 * (size_t)t->walls}};
     m.sources.temperature = t->given, m.sources.power = t->source;
-    m.sources.hold = t->hold, m.sources.reference = t->guess;
+    m.sources.storage = t->storage, m.sources.reference = t->guess;
     m.sources.wall_temperature = t->wall_stage;
     if (!(m.sources.tolerance > 0)) m.sources.tolerance = RESIDUAL * m.tolerance;
     if (span->law) {

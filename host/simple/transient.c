@@ -42,7 +42,7 @@ static fibrad_run run_of(fibrad_transient *t) {
 static int take_arrays(fibrad_transient *t) {
     double **const of_spheres[] = {
         &t->at[0],   &t->at[1],    &t->at[2],      &t->at[3],    &t->area,       &t->emissivity, &t->now,   &t->slope,
-        &t->base,    &t->first,    &t->guess,      &t->hold,     &t->source,     &t->found,      &t->power, &t->given,
+        &t->base,    &t->first,    &t->guess,      &t->storage,  &t->source,     &t->found,      &t->power, &t->given,
         &t->allowed, &t->solution, &t->correction, &t->compared, &t->by_patches, &t->conducts};
     double **const of_walls[] = {&t->wall_emissivity, &t->wall_correction, &t->wall_compared, &t->wall_power,
                                  &t->wall_stage}; /* the last one has four per wall */

@@ -35,19 +35,19 @@ struct fibrad_transient {
     double *by_patches;               /* [n] powers by patches at the last correction */
     double *wall_power;               /* [walls] powers by factors now */
     /* Steps (stepper.c). */
-    double step;                   /* proposed for the next span [s]; 0: none */
-    double *now;                   /* [n] temperatures at the beginning of the step */
-    double *slope;                 /* [n] dT/dt at the end of the last step; at first 0 */
-    double *base;                  /* [n] temperatures at which a stage starts */
-    double *first;                 /* [n] change of temperature in the first stage */
-    double *guess;                 /* [n] temperatures about which Newton's method is linear */
-    double *given, *hold, *source; /* [n] the linear problem: temperatures (NaN: unknown), holds, powers */
-    double *allowed;               /* [n] power that a sphere may miss in the solution of the linear problem */
-    double *found, *power;         /* [n] temperatures and powers of the linear problem */
-    double *solution;              /* [n] temperatures of the stage, which keep the energy */
-    double *conducts;              /* [n] what contacts conduct from a sphere for each kelvin [W/K] */
-    double *wall_stage;            /* [4 walls] temperatures, powers of each stage, energies of the span */
-    bool busy;                     /* within a call, see fibrad_transient_begin */
+    double step;                      /* proposed for the next span [s]; 0: none */
+    double *now;                      /* [n] temperatures at the beginning of the step */
+    double *slope;                    /* [n] dT/dt at the end of the last step; at first 0 */
+    double *base;                     /* [n] temperatures at which a stage starts */
+    double *first;                    /* [n] change of temperature in the first stage */
+    double *guess;                    /* [n] temperatures about which Newton's method is linear */
+    double *given, *storage, *source; /* [n] the linear problem: temperatures (NaN: unknown), storage, powers */
+    double *allowed;                  /* [n] power that a sphere may miss in the solution of the linear problem */
+    double *found, *power;            /* [n] temperatures and powers of the linear problem */
+    double *solution;                 /* [n] temperatures of the stage, which keep the energy */
+    double *conducts;                 /* [n] what contacts conduct from a sphere for each kelvin [W/K] */
+    double *wall_stage;               /* [4 walls] temperatures, powers of each stage, energies of the span */
+    bool busy;                        /* within a call, see fibrad_transient_begin */
 };
 
 /* Begins a call that ends with fibrad_transient_end. A function of the caller that runs within a call can begin no
@@ -66,7 +66,7 @@ int fibrad_transient_prepare(fibrad_transient *transient, const fibrad_heat_sour
  * Errors: as fibrad_radiation_solve. */
 int fibrad_transient_compare(fibrad_transient *transient, const fibrad_heat_sources *sources, uint64_t *corrections);
 
-/* Finds powers and temperatures of sources whose spheres have a hold, by factors or by patches. Errors: as
+/* Finds powers and temperatures of sources whose spheres have storage, by factors or by patches. Errors: as
  * fibrad_network_solve or fibrad_radiation_solve. */
 int fibrad_transient_solve(fibrad_transient *transient, const fibrad_heat_sources *sources, fibrad_heat_result *result);
 

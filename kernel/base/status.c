@@ -65,7 +65,7 @@ const char *fibrad_why_text(int why) {
         return "has neither a temperature nor a power";
     case FIBRAD_WHY_REFLECTS:
         return "has emissivity 0 and cannot give off a power";
-    case FIBRAD_WHY_HOLD:
+    case FIBRAD_WHY_STORAGE:
         return "hold or reference is out of range";
     case FIBRAD_WHY_ENDLESS:
         return "is endless and needs a temperature";

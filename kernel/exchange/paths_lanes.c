@@ -3,7 +3,7 @@
 #include "base/lanes/laned.h"
 #include "base/elementary.h"
 #include "base/lanes/turn.h"
-#include "exchange/conducting.h"
+#include "exchange/reemission.h"
 #include "exchange/paths.h"
 #include "scene/walls.h"
 #include "scene/surroundings.h"
@@ -308,7 +308,7 @@ static void leave_sphere(fibrad_paths *paths, struct grey_path *path, uint32_t l
     }
     if (fibrad_fraction(fibrad_random_ahead(path->own, first)) * (1 - node) < 1 - surface) return;
     next_sphere_point(paths, path, even);
-    fibrad_conduct_above(surface / (2 * conductivity), path->own, first + 1, even, path->n);
+    fibrad_reemit_above(surface / (2 * conductivity), path->own, first + 1, even, path->n);
 }
 
 /* Follows a first leg. Writes where it arrives, and what the surface there reflects. */
@@ -425,7 +425,7 @@ static void scatter(fibrad_paths *paths, struct grey_path *path, uint32_t leg) {
         draw[d] = fibrad_fraction(fibrad_random_ahead(path->own, (UINT64_C(1) << 32) + 3 * leg + d));
     if (!(draw[2] < emissivity)) return;
     next_sphere_point(paths, path, even);
-    fibrad_conduct(2 * conductivity / emissivity, draw, even, path->n);
+    fibrad_reemit(2 * conductivity / emissivity, draw, even, path->n);
 }
 
 /* Adds the products of flights that fibrad_paths_function tells. at[0] to at[steps]: the ends of the flights. */

@@ -3,12 +3,12 @@
 #include "base/arena.h"
 #include "base/constants.h"
 #include "base/dispatch.h"
-#include "heat/fine.h"
-#include "heat/hits_lanes.h"
-#include "heat/pencils.h"
+#include "patches/subdivision.h"
+#include "patches/patch_beams_lanes.h"
+#include "patches/pencils.h"
 #include "sample/sphere_patch.h"
 #include "heat/sweep.h"
-#include "heat/wall_patch.h"
+#include "patches/wall_patch.h"
 #include "sample/direction.h"
 
 #define HEAT_THIN_MAX  2u
@@ -37,10 +37,10 @@ static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
     const bool valid = c->directions >= FIBRAD_DIRECTIONS_MIN && c->directions <= FIBRAD_DIRECTIONS_MAX &&
                        fibrad_disc_points_get(c->points, &set) == FIBRAD_OK && side_of(c->patches) > 0 &&
                        c->parts <= FIBRAD_HEAT_PARTS_MAX && scene->facts.spheres <= (UINT32_MAX >> 1) / c->patches &&
-                       c->cutoff >= 0 && c->wall_rays <= FIBRAD_WALL_RAYS_MAX &&
+                       c->wall_rays <= FIBRAD_WALL_RAYS_MAX &&
                        (scene->facts.spheres == 0 || (scene->facts.radius_min >= FIBRAD_HEAT_RADIUS_MIN &&
                                                       scene->facts.radius_max <= 1 / FIBRAD_HEAT_RADIUS_MIN));
-    return !valid ? FIBRAD_E_ARGUMENT : c->cutoff > 0 || scene->region ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
+    return !valid ? FIBRAD_E_ARGUMENT : scene->region ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
 }
 
 static uint32_t meshes_of(const fibrad_scene *scene) {
@@ -121,8 +121,8 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
                                    &heat->solution.direction};
     for (size_t k = 0; k < sizeof of_patches / sizeof *of_patches; k++)
         *of_patches[k] = fibrad_arena_take(arena, patches, sizeof(double));
-    double **const of_bodies[] = {&heat->sources.emissivity,  &heat->sources.emission, &heat->sources.drive,
-                                  &heat->sources.hold,        &heat->solution.coarse,  &heat->solution.coarse_emission,
+    double **const of_bodies[] = {&heat->sources.emissivity,  &heat->sources.emission, &heat->sources.given_power,
+                                  &heat->sources.storage,     &heat->solution.coarse,  &heat->solution.coarse_emission,
                                   &heat->sources.temperature, &heat->solution.power,   &heat->samples.halves,
                                   &heat->solution.drift,      &heat->solution.left,    &heat->solution.unsettled};
     for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; k++)
@@ -154,7 +154,7 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     heat->division.on_patch = fibrad_arena_take(arena, nodes, sizeof *heat->division.on_patch);
     heat->division.fine = fibrad_arena_take(arena, nodes, sizeof *heat->division.fine);
     heat->cut = fibrad_arena_take(arena, 2 * (size_t)heat->triangles, sizeof *heat->cut);
-    heat->sources.lift = fibrad_arena_take(arena, heat->triangles > 0 ? others : 0, sizeof *heat->sources.lift);
+    heat->sources.excess = fibrad_arena_take(arena, heat->triangles > 0 ? others : 0, sizeof *heat->sources.excess);
     heat->traced = fibrad_arena_take(arena, tasks_for(rows, heat->rays_capacity), 1);
     heat->swept = fibrad_arena_take(arena, heat->config.parts, 1);
     heat->pencils.pool = fibrad_arena_take(arena, heat->pencils.room, 1);

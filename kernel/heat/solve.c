@@ -29,7 +29,7 @@
  * eps or rho. One is their mean r = eps (S - h <J>)/D + q/A. It changes J by r/(1 + eps h/D). The other part is what
  * differs from the mean. It is treated as on other bodies. A black body has J = E everywhere.
  *
- * On a sphere that conducts the mean of J is treated as above. conduct.c treats the rest.
+ * On a sphere that conducts the mean of J is treated as above. sphere_conduction.c treats the rest.
  *
  * Contacts. A body of unknown temperature in contact with others is *joined*: its E is an unknown beside its J, since E
  * follows from the neighbours as well. With the flows H of contacts
@@ -41,8 +41,8 @@
  * (contact/contact.h). Then it changes J as on a body of the given emission E + x. No part divides by eps or rho. T is
  * not linear in E. So the search is one of conjugate gradients with exchange areas g of contacts that change from step
  * to step, and each direction is made conjugate to the last one with the present g. */
-#include "heat/problem.h"
-#include "heat/pencils.h"
+#include "heat/solution.h"
+#include "patches/pencils.h"
 #include "heat/sweep.h"
 
 /* A body of unknown temperature: its area, the means of J and of N J per area, and D. */
@@ -50,36 +50,27 @@ typedef struct free_body {
     double area, radiosity, net, divisor;
 } free_body;
 
-/* Whether the temperature of a body is unknown. */
-static bool is_free(const fibrad_heat *heat, uint32_t body) { return heat->sources.hold[body] >= 0; }
-
 /* Whether the unknown emission of a body follows from its own radiosities. */
 static bool follows_radiosity(const fibrad_heat *heat, uint32_t b) {
-    return is_free(heat, b) && !fibrad_heat_is_joined(heat, b);
-}
-
-/* The sum of values over the patches of a body. */
-static double sum_over(const fibrad_heat *heat, uint32_t body, const double *value) {
-    double sum = 0;
-    for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++) sum += value[a];
-    return sum;
+    return fibrad_heat_is_free(heat, b) && !fibrad_heat_is_joined(heat, b);
 }
 
 static free_body free_body_of(const fibrad_heat *heat, uint32_t b) {
-    const double eps = heat->sources.emissivity[b], area = sum_over(heat, b, heat->solution.area);
+    const double eps = heat->sources.emissivity[b], area = fibrad_heat_sum(heat, b, heat->solution.area);
     return (free_body){area, fibrad_heat_mean(heat, b, heat->solution.radiosity),
-                       area > 0 ? sum_over(heat, b, heat->solution.net) / area : 0,
-                       (1 - eps) * heat->sources.hold[b] + area * eps};
+                       area > 0 ? fibrad_heat_sum(heat, b, heat->solution.net) / area : 0,
+                       (1 - eps) * heat->sources.storage[b] + area * eps};
 }
 
 /* eps (S - h E)/D: the mean residual of a body of unknown temperature if <J> and all that it receives are E. */
-static double drive_at(const fibrad_heat *heat, uint32_t b, const free_body *body, double emission) {
-    return heat->sources.emissivity[b] * (heat->sources.drive[b] - heat->sources.hold[b] * emission) / body->divisor;
+static double mean_residual_at(const fibrad_heat *heat, uint32_t b, const free_body *body, double emission) {
+    return heat->sources.emissivity[b] * (heat->sources.given_power[b] - heat->sources.storage[b] * emission) /
+           body->divisor;
 }
 
 /* 1 + eps h/D */
 static double stiffness(const fibrad_heat *heat, uint32_t b, const free_body *body) {
-    return 1 + heat->sources.emissivity[b] * heat->sources.hold[b] / body->divisor;
+    return 1 + heat->sources.emissivity[b] * heat->sources.storage[b] / body->divisor;
 }
 
 /* The end of the group of patches that begins at a, at most `end`. */
@@ -89,52 +80,57 @@ static uint32_t group_end(const fibrad_heat *heat, uint32_t a, uint32_t end) {
     return end_of_group(a, end, heat->solution.group);
 }
 
-/* Sends what one Jacobi iteration would change on a body of given temperature. Returns the product of the residual and
- * this change. */
-static double given_residual(fibrad_heat *heat, uint32_t b) {
-    const double eps = heat->sources.emissivity[b];
-    const double *lift = fibrad_heat_lift(heat, b);
-    const uint32_t begin = heat->first[b], end = heat->first[b + 1];
-    double slope = 0;
-    for (uint32_t a = begin, next; a < end; a = next) {
+/* Sends the mean residual of each group of patches of a body, plus `shift`. On entry heat->solution.source has
+ * residuals times areas. Returns `slope` plus the product of residuals and changes. */
+static double send_groups(fibrad_heat *heat, uint32_t b, double shift, double slope) {
+    const double rho = 1 - heat->sources.emissivity[b];
+    for (uint32_t a = heat->first[b], next; a < heat->first[b + 1]; a = next) {
         double sum = 0, area = 0;
-        next = group_end(heat, a, end);
-        for (uint32_t k = a; k < next; k++) {
-            const double emission =
-                lift != NULL ? heat->sources.emission[b] + lift[k - begin] : heat->sources.emission[b];
-            sum += heat->solution.area[k] * eps * (emission - heat->solution.radiosity[k]) +
-                   (1 - eps) * heat->solution.net[k];
-            area += heat->solution.area[k];
-        }
-        const double change = eps < 1 && area > 0 ? sum / area : 0;
-        for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, change);
-        if (eps < 1) slope += area * change * change / (1 - eps);
+        next = group_end(heat, a, heat->first[b + 1]);
+        for (uint32_t k = a; k < next; k++) sum += fibrad_heat_sent(heat, k), area += heat->solution.area[k];
+        const double change = rho > 0 && area > 0 ? sum / area : 0;
+        for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, shift + change);
+        if (rho > 0) slope += area * change * change / rho;
     }
     return slope;
 }
 
-/* The same for a body of unknown temperature. */
+/* Sends what one Jacobi iteration would change on a body of given temperature. Returns the product of the residual and
+ * this change. */
+static double given_residual(fibrad_heat *heat, uint32_t b) {
+    const double eps = heat->sources.emissivity[b], *excess = fibrad_heat_excess(heat, b);
+    const uint32_t begin = heat->first[b];
+    for (uint32_t a = begin; a < heat->first[b + 1]; a++) {
+        const double emission =
+            excess != NULL ? heat->sources.emission[b] + excess[a - begin] : heat->sources.emission[b];
+        fibrad_heat_send(heat, a,
+                         heat->solution.area[a] * eps * (emission - heat->solution.radiosity[a]) +
+                             (1 - eps) * heat->solution.net[a]);
+    }
+    return send_groups(heat, b, 0, 0);
+}
+
+/* The mean residual of a body of unknown temperature, and how much it changes the mean of J. Returns their product
+ * times the area. */
+static double mean_change(const fibrad_heat *heat, uint32_t b, const free_body *body, double *shift) {
+    const double mean = mean_residual_at(heat, b, body, body->radiosity) + body->net;
+    *shift = mean / stiffness(heat, b, body);
+    return body->area * mean * *shift;
+}
+
+/* What given_residual does, for a body of unknown temperature. */
 static double free_residual(fibrad_heat *heat, uint32_t b) {
     const double eps = heat->sources.emissivity[b], rho = 1 - eps;
-    const uint32_t end = heat->first[b + 1];
     const free_body body = free_body_of(heat, b);
+    double shift;
     if (!(body.area > 0)) return 0;
-    const double mean = drive_at(heat, b, &body, body.radiosity) + body.net;
-    const double shift = mean / stiffness(heat, b, &body);
-    double slope = body.area * mean * shift;
-    for (uint32_t a = heat->first[b], next; a < end; a = next) {
-        double sum = 0, area = 0;
-        next = group_end(heat, a, end);
-        for (uint32_t k = a; k < next; k++) {
-            sum += heat->solution.area[k] * (eps * (body.radiosity - heat->solution.radiosity[k]) - rho * body.net) +
-                   rho * heat->solution.net[k];
-            area += heat->solution.area[k];
-        }
-        const double change = eps < 1 && area > 0 ? sum / area : 0;
-        for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, shift + change);
-        if (eps < 1) slope += area * change * change / rho;
-    }
-    return slope;
+    const double slope = mean_change(heat, b, &body, &shift);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+        fibrad_heat_send(heat, a,
+                         heat->solution.area[a] *
+                                 (eps * (body.radiosity - heat->solution.radiosity[a]) - rho * body.net) +
+                             rho * heat->solution.net[a]);
+    return send_groups(heat, b, shift, slope);
 }
 
 /* Whether a sphere that conducts reflects next to nothing. The mean of its J is then set to its emission. In a search
@@ -151,9 +147,7 @@ static double conducting_residual(fibrad_heat *heat, uint32_t b) {
     double shift = 0, slope = 0;
     if (!(body.area > 0)) return 0;
     if (follows_radiosity(heat, b)) {
-        const double mean = drive_at(heat, b, &body, body.radiosity) + body.net;
-        shift = mean / stiffness(heat, b, &body);
-        slope = body.area * mean * shift;
+        slope = mean_change(heat, b, &body, &shift);
     } else if (!has_black_mean(heat, b)) {
         shift = eps * (heat->sources.emission[b] - body.radiosity) + (1 - eps) * body.net;
         slope = body.area * shift * shift / (1 - eps);
@@ -178,7 +172,7 @@ static double absorbable(const fibrad_heat *heat, uint32_t b) {
 
 /* What a joined body gives off per unit of its emission. */
 static double stiffness_of_joined(const fibrad_heat *heat, uint32_t b) {
-    return heat->sources.hold[b] + heat->sources.emissivity[b] * sum_over(heat, b, heat->solution.area);
+    return heat->sources.storage[b] + heat->sources.emissivity[b] * fibrad_heat_sum(heat, b, heat->solution.area);
 }
 
 /* The tolerance of temperatures that balance the radiation of one step: a Newton step that changes none by more is the
@@ -197,7 +191,7 @@ static void warm_joined(fibrad_heat *heat) {
         c->missing[b] = 0;
         if (!fibrad_heat_is_joined(heat, b)) continue;
         c->stiff[b] = stiffness_of_joined(heat, b);
-        c->supply[b] += heat->sources.drive[b] + absorbable(heat, b);
+        c->supply[b] += heat->sources.given_power[b] + absorbable(heat, b);
         c->missing[b] = c->supply[b] - c->stiff[b] * heat->sources.emission[b];
     }
     fibrad_contact_gains(c, c->temperature, c->missing);
@@ -215,7 +209,7 @@ static double find_residual(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++)
         slope += fibrad_heat_is_joined(heat, b)  ? joined_residual(heat, b)
                  : fibrad_heat_conducts(heat, b) ? conducting_residual(heat, b)
-                 : is_free(heat, b)              ? free_residual(heat, b)
+                 : fibrad_heat_is_free(heat, b)  ? free_residual(heat, b)
                                                  : given_residual(heat, b);
     return slope;
 }
@@ -228,14 +222,15 @@ static void find_emissions(fibrad_heat *heat) {
         const double eps = heat->sources.emissivity[b];
         if (body.area > 0)
             heat->sources.emission[b] =
-                ((1 - eps) * heat->sources.drive[b] + body.area * eps * body.radiosity) / body.divisor;
+                ((1 - eps) * heat->sources.given_power[b] + body.area * eps * body.radiosity) / body.divisor;
     }
 }
 
 /* Emissivity times area of a body. 0: the sources give its power. */
 static double emitting(const fibrad_heat *heat, uint32_t body) {
-    return heat->sources.hold[body] != 0 ? heat->sources.emissivity[body] * sum_over(heat, body, heat->solution.area)
-                                         : 0;
+    return heat->sources.storage[body] != 0
+               ? heat->sources.emissivity[body] * fibrad_heat_sum(heat, body, heat->solution.area)
+               : 0;
 }
 
 /* Finds the net powers of the bodies. The power of a body that reflects all is 0, and the power of some bodies is
@@ -244,16 +239,17 @@ static double emitting(const fibrad_heat *heat, uint32_t body) {
 static void find_powers(const fibrad_heat *heat, double *power) {
     double left = 0, weights = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        power[b] = sum_over(heat, b, heat->solution.net);
+        power[b] = fibrad_heat_sum(heat, b, heat->solution.net);
         if (fibrad_heat_is_joined(heat, b)) {
             const double gained = absorbable(heat, b) - heat->sources.emissivity[b] *
-                                                            sum_over(heat, b, heat->solution.area) *
+                                                            fibrad_heat_sum(heat, b, heat->solution.area) *
                                                             heat->sources.emission[b];
             left += power[b] - gained, power[b] = gained;
             continue;
         }
         if (heat->sources.emissivity[b] == 0) left += power[b], power[b] = 0;
-        if (heat->sources.hold[b] == 0) left += power[b] + heat->sources.drive[b], power[b] = -heat->sources.drive[b];
+        if (heat->sources.storage[b] == 0)
+            left += power[b] + heat->sources.given_power[b], power[b] = -heat->sources.given_power[b];
     }
     for (uint32_t b = 0; b < heat->bodies && left != 0; b++) weights += emitting(heat, b);
     for (uint32_t b = 0; b < heat->bodies && weights > 0; b++) power[b] += left * (emitting(heat, b) / weights);
@@ -263,19 +259,19 @@ static void find_powers(const fibrad_heat *heat, double *power) {
 #define ROUNDING 1e-28
 
 /* Unevenness depends on temperatures. If temperatures of spheres that conduct are unknown, unevenness and temperatures
- * are found in turn. The first temperatures are found to the tolerance FIBRAD_HEAT_ROUGH, later ones to WITHIN times
- * the last change of unevenness. A relative change of unevenness below SETTLED no longer matters. */
+ * are found in turn. The first temperatures are found to the tolerance FIBRAD_HEAT_FIRST_TOLERANCE, later ones to
+ * WITHIN times the last change of unevenness. A relative change of unevenness below SETTLED no longer matters. */
 #define WITHIN  .03
 #define SETTLED 1e-3
 
 /* The sum over the patches of a mesh of emissivity times area times the square of the difference between the emissions
  * of patch and mesh. */
-static double lifted_squares(const fibrad_heat *heat, uint32_t b) {
-    const double *lift = fibrad_heat_lift(heat, b);
+static double excess_squares(const fibrad_heat *heat, uint32_t b) {
+    const double *excess = fibrad_heat_excess(heat, b);
     double sum = 0;
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && lift != NULL; a++)
-        sum +=
-            heat->sources.emissivity[b] * heat->solution.area[a] * lift[a - heat->first[b]] * lift[a - heat->first[b]];
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && excess != NULL; a++)
+        sum += heat->sources.emissivity[b] * heat->solution.area[a] * excess[a - heat->first[b]] *
+               excess[a - heat->first[b]];
     return sum;
 }
 
@@ -296,7 +292,7 @@ static double light_squares(const fibrad_heat *heat, uint32_t b) {
 }
 
 /* What drives joined bodies if all that radiates and all of them have one emission: powers, and given temperatures. */
-static double drive_through_contacts(fibrad_heat *heat, double emission) {
+static double scale_of_contacts(fibrad_heat *heat, double emission) {
     fibrad_contacts *c = &heat->contacts;
     double sum = 0;
     if (c->count == 0) return 0;
@@ -304,7 +300,7 @@ static double drive_through_contacts(fibrad_heat *heat, double emission) {
         const bool joined = fibrad_heat_is_joined(heat, b);
         c->temperature[b] = fibrad_contact_temperature(c, joined ? emission : heat->sources.emission[b]);
         c->stiff[b] = joined ? stiffness_of_joined(heat, b) : 0;
-        c->missing[b] = joined ? heat->sources.drive[b] - heat->sources.hold[b] * emission : 0;
+        c->missing[b] = joined ? heat->sources.given_power[b] - heat->sources.storage[b] * emission : 0;
     }
     fibrad_contact_gains(c, c->temperature, c->missing);
     fibrad_copy(c->load, c->missing, heat->bodies * sizeof *c->load);
@@ -320,7 +316,7 @@ static void find_scale(fibrad_heat *heat) {
     double weights = 0, sum = 0, largest = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         const double area = emitting(heat, b), emission = heat->sources.emission[b];
-        weights += area, sum += area * emission, largest += area * emission * emission + lifted_squares(heat, b);
+        weights += area, sum += area * emission, largest += area * emission * emission + excess_squares(heat, b);
     }
     heat->solution.scale = 0;
     const double mean = weights > 0 ? sum / weights : 0;
@@ -329,13 +325,13 @@ static void find_scale(fibrad_heat *heat) {
         heat->solution.scale += light_squares(heat, b);
         const free_body body = follows_radiosity(heat, b) ? free_body_of(heat, b) : (free_body){0};
         if (body.area > 0) {
-            const double drive = drive_at(heat, b, &body, mean);
-            heat->solution.scale += body.area * drive * drive / stiffness(heat, b, &body);
+            const double residual = mean_residual_at(heat, b, &body, mean);
+            heat->solution.scale += body.area * residual * residual / stiffness(heat, b, &body);
         } else if (!fibrad_heat_is_joined(heat, b)) {
-            heat->solution.scale += emitting(heat, b) * difference * difference + lifted_squares(heat, b);
+            heat->solution.scale += emitting(heat, b) * difference * difference + excess_squares(heat, b);
         }
     }
-    heat->solution.scale += drive_through_contacts(heat, mean);
+    heat->solution.scale += scale_of_contacts(heat, mean);
     heat->solution.smallest = ROUNDING * fibrad_max(largest, heat->solution.scale);
 }
 
@@ -345,7 +341,7 @@ static void heat_by_light(fibrad_heat *heat) {
         if (fibrad_heat_conducts(heat, b)) heat->solution.scale += fibrad_heat_add_absorbed(heat, b);
 }
 
-/* Whether there are temperatures that lead to the given powers. This is so if a temperature or a `hold` is given.
+/* Whether there are temperatures that lead to the given powers. This is so if a temperature or a `storage` is given.
  * Otherwise the powers and the light must add up to zero. Contacts need the level of temperatures: then one must be
  * given, unless nothing of unknown temperature radiates. */
 #define BALANCED 1e-9
@@ -354,19 +350,20 @@ static bool solvable(fibrad_heat *heat) {
     bool held = heat->contacts.count > 0 && heat->contacts.anchored, radiates = false;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         held = held || emitting(heat, b) > 0;
-        radiates = radiates || (is_free(heat, b) && heat->sources.emissivity[b] > 0);
-        if (heat->sources.hold[b] == 0) sum += heat->sources.drive[b], sizes += fibrad_abs(heat->sources.drive[b]);
+        radiates = radiates || (fibrad_heat_is_free(heat, b) && heat->sources.emissivity[b] > 0);
+        if (heat->sources.storage[b] == 0)
+            sum += heat->sources.given_power[b], sizes += fibrad_abs(heat->sources.given_power[b]);
         double light = 0;
         for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) light += light_on(heat, b, a);
         sum += light, sizes += light;
     }
-    heat->sources.afloat = !held;
+    heat->sources.free_level = !held;
     if (heat->contacts.count > 0) return held || !radiates;
     return held || fibrad_abs(sum) <= BALANCED * sizes;
 }
 
 /* Shifts the radiosities of each black sphere that conducts, so that their mean is its emission. */
-static void lift_black(fibrad_heat *heat) {
+static void shift_black(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->spheres && heat->sources.conducts; b++) {
         if (!fibrad_heat_conducts(heat, b) || !has_black_mean(heat, b)) continue;
         const double more = heat->sources.emission[b] - fibrad_heat_mean(heat, b, heat->solution.radiosity);
@@ -392,7 +389,7 @@ static void find_back(fibrad_heat *heat) {
 
 /* Has the next sweep form the net flows of the radiosities. */
 static void send_radiosities(fibrad_heat *heat, fibrad_heat_phase phase) {
-    lift_black(heat);
+    shift_black(heat);
     if (phase == FIBRAD_HEAT_FIRST) find_back(heat);
     for (uint32_t a = 0; a < heat->patches; a++) fibrad_heat_send(heat, a, heat->solution.radiosity[a]);
     heat->solution.phase = phase;
@@ -420,10 +417,10 @@ void fibrad_heat_start(fibrad_heat *heat) {
 }
 
 /* If the sources do not fix the level of emissions: shifts all, so that their mean is that of the surroundings. */
-static void sink(fibrad_heat *heat) {
+static void fix_level(fibrad_heat *heat) {
     double sum = 0, weights = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        const double area = heat->sources.emissivity[b] * sum_over(heat, b, heat->solution.area);
+        const double area = heat->sources.emissivity[b] * fibrad_heat_sum(heat, b, heat->solution.area);
         sum += area * heat->sources.emission[b], weights += area;
     }
     const double mean = weights > 0 ? sum / weights : 0;
@@ -445,11 +442,12 @@ static void set_balances(fibrad_heat *heat) {
     fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
     fibrad_heat_add_offsets(heat, c->supply);
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        const double emission = extrapolated_emission(heat, b), hold = heat->sources.hold[b];
-        c->temperature[b] = fibrad_contact_temperature(c, is_free(heat, b) ? emission : heat->sources.emission[b]);
+        const double emission = extrapolated_emission(heat, b), storage = heat->sources.storage[b];
+        c->temperature[b] =
+            fibrad_contact_temperature(c, fibrad_heat_is_free(heat, b) ? emission : heat->sources.emission[b]);
         if (!fibrad_heat_is_joined(heat, b)) continue;
         c->stiff[b] = stiffness_of_joined(heat, b);
-        c->supply[b] += heat->sources.drive[b] + heat->solution.power[b] + (c->stiff[b] - hold) * emission;
+        c->supply[b] += heat->sources.given_power[b] + heat->solution.power[b] + (c->stiff[b] - storage) * emission;
     }
 }
 
@@ -465,8 +463,9 @@ static void finish_contacts(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (!fibrad_heat_is_joined(heat, b)) weights += emitting(heat, b);
         if (!fibrad_heat_is_joined(heat, b)) continue;
-        const double t = c->temperature[b], emits = c->stiff[b] - heat->sources.hold[b];
-        const double power = c->supply[b] - c->gain[b] - heat->sources.drive[b] - emits * fibrad_contact_emission(c, t);
+        const double t = c->temperature[b], emits = c->stiff[b] - heat->sources.storage[b];
+        const double power =
+            c->supply[b] - c->gain[b] - heat->sources.given_power[b] - emits * fibrad_contact_emission(c, t);
         left += heat->solution.power[b] - power, heat->solution.power[b] = power;
         heat->sources.temperature[b] = t >= 0 ? t : __builtin_nan("");
     }
@@ -482,22 +481,22 @@ static void finish_contacts(fibrad_heat *heat) {
 static void finish_powers(fibrad_heat *heat) {
     find_powers(heat, heat->solution.power);
     find_emissions(heat);
-    if (heat->sources.afloat) sink(heat);
+    if (heat->sources.free_level) fix_level(heat);
     heat->solution.steps = false;
     for (uint32_t b = 0; b < heat->bodies; b++)
-        heat->solution.steps = heat->solution.steps || heat->sources.hold[b] > 0;
+        heat->solution.steps = heat->solution.steps || heat->sources.storage[b] > 0;
     if (heat->sources.conducts) {
         fibrad_heat_find_spans(heat);
         fibrad_heat_make_rings(heat);
         for (uint32_t b = 0; b < heat->spheres && fibrad_heat_is_entered(heat); b++)
-            if (fibrad_heat_conducts(heat, b)) fibrad_heat_take_absorbed_off(heat, b);
+            if (fibrad_heat_conducts(heat, b)) fibrad_heat_stand_for_absorbed(heat, b, -1);
     }
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (heat->solution.group > 1)
             heat->solution.coarse[b] = heat->solution.power[b],
             heat->solution.coarse_emission[b] = heat->sources.emission[b];
         heat->solution.power[b] += FIBRAD_HEAT_EXTRAPOLATION * (heat->solution.power[b] - heat->solution.coarse[b]);
-        if (is_free(heat, b))
+        if (fibrad_heat_is_free(heat, b))
             heat->sources.temperature[b] = fibrad_heat_temperature(heat, extrapolated_emission(heat, b));
     }
     if (heat->contacts.count > 0) finish_contacts(heat);
@@ -517,7 +516,7 @@ static void finish_powers(fibrad_heat *heat) {
 /* A change of radiosity times this is a change of power: of the net power, or of what is absorbed if the net power is
  * given. */
 static double power_of_radiosity(const fibrad_heat *heat, uint32_t b) {
-    return is_free(heat, b) ? heat->sources.emissivity[b] : 1;
+    return fibrad_heat_is_free(heat, b) ? heat->sources.emissivity[b] : 1;
 }
 
 /* Finds how much the last step has changed the power of each body, and all that surfaces send out. product: N times the
@@ -525,12 +524,13 @@ static double power_of_radiosity(const fibrad_heat *heat, uint32_t b) {
 static void find_drifts(fibrad_heat *heat, double length, const double *product) {
     heat->solution.sent_drift = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        const bool known = !is_free(heat, b) && heat->sources.emissivity[b] > 0;
+        const bool known = !fibrad_heat_is_free(heat, b) && heat->sources.emissivity[b] > 0;
         double sent = 0;
         for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
             sent += heat->solution.area[a] * heat->solution.direction[a];
         heat->solution.sent_drift += length * sent;
-        heat->solution.drift[b] = length * (known ? sum_over(heat, b, product) : power_of_radiosity(heat, b) * sent);
+        heat->solution.drift[b] =
+            length * (known ? fibrad_heat_sum(heat, b, product) : power_of_radiosity(heat, b) * sent);
     }
 }
 
@@ -557,9 +557,9 @@ static bool gains_settled(fibrad_heat *heat) {
     bool settled = true;
     find_left(heat);
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        if (is_free(heat, b) || heat->sources.emissivity[b] == 0) continue;
-        const double gain =
-            fibrad_max(fibrad_abs(sum_over(heat, b, heat->solution.net)), GAIN_LEAST * fibrad_heat_absorbs(heat, b));
+        if (fibrad_heat_is_free(heat, b) || heat->sources.emissivity[b] == 0) continue;
+        const double gain = fibrad_max(fibrad_abs(fibrad_heat_sum(heat, b, heat->solution.net)),
+                                       GAIN_LEAST * fibrad_heat_absorbs(heat, b));
         if (b < heat->spheres)
             left += heat->solution.left[b] * heat->solution.left[b], gains += gain * gain;
         else
@@ -570,7 +570,7 @@ static bool gains_settled(fibrad_heat *heat) {
 
 /* Whether the radiosities of the present level are good enough. */
 static bool level_solved(fibrad_heat *heat) {
-    const double tolerance = fibrad_max(heat->sources.rough, heat->sources.tolerance);
+    const double tolerance = fibrad_max(heat->sources.first_tolerance, heat->sources.tolerance);
     if (heat->solution.slope <= heat->solution.smallest || heat->solution.sweeps >= heat->sources.limit) return true;
     if (heat->solution.slope > tolerance * tolerance * heat->solution.scale) return false;
     return tolerance > heat->sources.tolerance || tolerance < GAINS_ROUGHLY || gains_settled(heat);
@@ -596,7 +596,7 @@ static bool replaces_unevenness(fibrad_heat *heat) {
     if (!heat->sources.conducts || heat->solution.sweeps >= heat->sources.limit) return false;
     find_emissions(heat);
     const double change = fibrad_heat_find_unevenness(heat, SETTLED);
-    heat->sources.rough = change > SETTLED ? fibrad_min(FIBRAD_HEAT_ROUGH, WITHIN * change) : 0;
+    heat->sources.first_tolerance = change > SETTLED ? fibrad_min(FIBRAD_HEAT_FIRST_TOLERANCE, WITHIN * change) : 0;
     return change > SETTLED;
 }
 
@@ -605,8 +605,8 @@ static bool replaces_flows(fibrad_heat *heat) {
     if (heat->spots.entering == NULL || heat->solution.sweeps >= heat->sources.limit) return false;
     find_emissions(heat);
     const double change = fibrad_heat_find_spots(heat);
-    const double rough = change > SETTLED ? fibrad_min(FIBRAD_HEAT_ROUGH, WITHIN * change) : 0;
-    heat->sources.rough = fibrad_max(heat->sources.rough, rough);
+    const double rough = change > SETTLED ? fibrad_min(FIBRAD_HEAT_FIRST_TOLERANCE, WITHIN * change) : 0;
+    heat->sources.first_tolerance = fibrad_max(heat->sources.first_tolerance, rough);
     if (change > SETTLED) fibrad_heat_place_flows(heat);
     return change > SETTLED;
 }
@@ -614,7 +614,7 @@ static bool replaces_flows(fibrad_heat *heat) {
 /* Whether what a search takes as given was replaced. */
 static bool replaces_given(fibrad_heat *heat, bool coarse) {
     const bool uneven = coarse && replaces_unevenness(heat);
-    if (!coarse) heat->sources.rough = 0;
+    if (!coarse) heat->sources.first_tolerance = 0;
     return replaces_flows(heat) || uneven;
 }
 
@@ -633,7 +633,7 @@ static void turn_direction(fibrad_heat *heat, double keep) {
 static void refine_patches(fibrad_heat *heat) {
     find_powers(heat, heat->solution.coarse);
     find_emissions(heat);
-    if (heat->sources.afloat) sink(heat);
+    if (heat->sources.free_level) fix_level(heat);
     fibrad_copy(heat->solution.coarse_emission, heat->sources.emission, heat->bodies * sizeof *heat->sources.emission);
     heat->solution.group = 1;
     for (uint32_t a = 0; a < heat->patches; a++) {
@@ -685,7 +685,7 @@ static double joined_product(const fibrad_heat *heat, uint32_t b, const double *
                              const double *product) {
     const double eps = heat->sources.emissivity[b], share = eps < 1 ? eps / (1 - eps) : 0;
     const double warming = heat->contacts.direction[b];
-    double sum = heat->sources.hold[b] * warmed * warming;
+    double sum = heat->sources.storage[b] * warmed * warming;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
         sum += share * heat->solution.area[a] * (z[a] - warmed) * (heat->solution.direction[a] - warming) -
                z[a] * product[a];
@@ -702,7 +702,7 @@ static double conducting_curvature(const fibrad_heat *heat, uint32_t b, const do
                          : has_black_mean(heat, b)  ? 0
                                                     : eps / (1 - eps);
     double sum = share * body.area * (mean - warming) * (mean - warming) + fibrad_heat_pattern_curvature(heat, b);
-    if (fibrad_heat_is_joined(heat, b)) sum += heat->sources.hold[b] * warming * warming;
+    if (fibrad_heat_is_joined(heat, b)) sum += heat->sources.storage[b] * warming * warming;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) sum -= heat->solution.direction[a] * product[a];
     return sum;
 }
@@ -715,7 +715,7 @@ static double product_with_direction(const fibrad_heat *heat, const double *z, c
     for (uint32_t b = 0; b < heat->bodies; b++)
         sum += fibrad_heat_conducts(heat, b)    ? conducting_curvature(heat, b, product)
                : fibrad_heat_is_joined(heat, b) ? joined_product(heat, b, z, warmed[b], product)
-               : is_free(heat, b)               ? free_product(heat, b, z, product)
+               : fibrad_heat_is_free(heat, b)   ? free_product(heat, b, z, product)
                                                 : given_product(heat, b, z, product);
     if (heat->contacts.count > 0) sum += fibrad_contact_product(&heat->contacts, warmed, heat->contacts.direction);
     return sum;
@@ -760,7 +760,8 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
         restart || heat->solution.slope == 0 ? 0 : fibrad_sqrt(fibrad_min(1, heat->solution.slope / last));
     while (level_solved(heat)) {
         const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
-        const bool rough = heat->sources.rough > heat->sources.tolerance && heat->solution.sweeps < heat->sources.limit;
+        const bool rough =
+            heat->sources.first_tolerance > heat->sources.tolerance && heat->solution.sweeps < heat->sources.limit;
         const bool replaced = replaces_given(heat, coarse);
         if (!replaced && !(coarse && rough)) {
             leave_level(heat);
@@ -781,7 +782,7 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
 static int end_sweep(fibrad_heat *heat) {
     const double *sum = fibrad_heat_gathered(heat);
     if (heat->solution.phase == FIBRAD_HEAT_CHECK) {
-        for (uint32_t b = 0; b < heat->bodies; b++) heat->samples.halves[b] = sum_over(heat, b, sum);
+        for (uint32_t b = 0; b < heat->bodies; b++) heat->samples.halves[b] = fibrad_heat_sum(heat, b, sum);
         heat->solution.phase = FIBRAD_HEAT_DONE;
         heat->solution.warm = true;
         return FIBRAD_OK;

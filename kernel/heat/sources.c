@@ -1,13 +1,13 @@
 /* sources.c - checks the sources of a solution, and sets the first radiosities. SPDX-License-Identifier: MIT */
 #include "base/port.h"
-#include "heat/problem.h"
+#include "heat/solution.h"
 
 #define HEAT_TOLERANCE  1e-3
 #define FREE_TOLERANCE  1e-5  /* if temperatures are unknown: errors over long distances exceed their residuals */
 #define FEW_TOLERANCE   1e-12 /* of few spheres, which may exchange little of what they emit: this takes no time */
 #define FEW_SPHERES     16u
 #define HEAT_SWEEPS_MAX 1000u
-#define HOLD_MAX        1e60
+#define STORAGE_MAX     1e60
 
 void fibrad_heat_sources_init(fibrad_heat_sources *sources) {
     if (sources == NULL) return;
@@ -28,7 +28,7 @@ static bool is_sigma(double sigma) { return sigma >= FIBRAD_SIGMA_MIN && sigma <
 
 /* What the sources give for one body. */
 typedef struct radiator {
-    double temperature, emissivity, power, hold, reference; /* NaN: not given */
+    double temperature, emissivity, power, storage, reference; /* NaN: not given */
 } radiator;
 
 static double or_else(const double *value, uint32_t i, double otherwise) {
@@ -37,7 +37,7 @@ static double or_else(const double *value, uint32_t i, double otherwise) {
 
 static radiator of_sphere(const fibrad_heat_sources *s, uint32_t i) {
     return (radiator){s->temperature[i], s->emissivity[i], or_else(s->power, i, __builtin_nan("")),
-                      or_else(s->hold, i, 0), or_else(s->reference, i, __builtin_nan(""))};
+                      or_else(s->storage, i, 0), or_else(s->reference, i, __builtin_nan(""))};
 }
 
 /* A wall that is insulated reflects all, like one of emissivity 0. */
@@ -66,10 +66,10 @@ static int source_why(const radiator *s, bool touches) {
         if (!is_temperature(s->temperature)) return FIBRAD_WHY_TEMPERATURE;
         return is_given(s->power) && s->power != 0 ? FIBRAD_WHY_BOTH : FIBRAD_WHY_UNSAID;
     }
-    if (is_given(s->reference) ? !is_temperature(s->reference) : s->hold != 0) return FIBRAD_WHY_HOLD;
+    if (is_given(s->reference) ? !is_temperature(s->reference) : s->storage != 0) return FIBRAD_WHY_STORAGE;
     if (!is_given(s->power)) return FIBRAD_WHY_NEITHER;
     if (!(fibrad_abs(s->power) <= FIBRAD_POWER_MAX)) return FIBRAD_WHY_POWER;
-    if (!(s->hold >= 0 && s->hold <= HOLD_MAX)) return FIBRAD_WHY_HOLD;
+    if (!(s->storage >= 0 && s->storage <= STORAGE_MAX)) return FIBRAD_WHY_STORAGE;
     return s->emissivity > 0 || s->power == 0 || touches ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_REFLECTS;
 }
 
@@ -183,7 +183,7 @@ static int sources_why(const fibrad_heat *heat, const fibrad_heat_sources *s) {
     return s->tolerance >= 0 && s->tolerance < 1 ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_TOLERANCE;
 }
 
-/* Finds what exchanges heat. A given temperature, or `hold`, anchors its component. All that radiate belong to one
+/* Finds what exchanges heat. A given temperature, or `storage`, anchors its component. All that radiate belong to one
  * component. A component that neither radiates nor is anchored has no temperature: then the fault names a sphere. */
 static void check_components(const fibrad_heat *heat, const fibrad_heat_sources *s, fibrad_fault *fault) {
     const uint32_t all = heat->bodies, ends = heat->spheres + heat->given_walls;
@@ -196,7 +196,7 @@ static void check_components(const fibrad_heat *heat, const fibrad_heat_sources 
         if (of_end(heat, s, k).emissivity > 0) fibrad_contact_join(&parts, c->node[k], all);
     for (uint32_t k = 0; k < ends; k++) {
         const radiator source = of_end(heat, s, k);
-        if (touches(heat, k) && (is_given(source.temperature) || source.hold > 0))
+        if (touches(heat, k) && (is_given(source.temperature) || source.storage > 0))
             parts.anchored[fibrad_contact_root(&parts, c->node[k])] = 1;
     }
     const uint32_t radiating = fibrad_contact_root(&parts, all);
@@ -251,13 +251,13 @@ static double mean_temperature(const fibrad_heat *heat, const fibrad_heat_source
     return area > 0 ? fibrad_sqrt(fibrad_sqrt(sum / area)) : of_body;
 }
 
-/* Finds the lift of each patch of a mesh: its emission minus that of the mesh at the temperature `mean`. A patch of
+/* Finds the excess of each patch of a mesh: its emission minus that of the mesh at the temperature `mean`. A patch of
  * several sides has their mean. */
-static void lift_patches(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t m, double of_body, double mean) {
+static void find_excess(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t m, double of_body, double mean) {
     const fibrad_mesh *mesh = &heat->scene->mesh;
     const uint32_t *first = heat->first + fibrad_heat_body(heat, FIBRAD_MESHES + m);
-    double *lift = heat->sources.lift + (first[0] - fibrad_heat_first_meshed(heat)), *area = heat->solution.source;
-    fibrad_zero(lift, (first[1] - first[0]) * sizeof *lift);
+    double *excess = heat->sources.excess + (first[0] - fibrad_heat_first_meshed(heat)), *area = heat->solution.source;
+    fibrad_zero(excess, (first[1] - first[0]) * sizeof *excess);
     fibrad_zero(area, (first[1] - first[0]) * sizeof *area);
     for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
         const fibrad_mesh_cut cut = *fibrad_mesh_cut_of(mesh, heat->cut, mesh->side[k]);
@@ -265,9 +265,9 @@ static void lift_patches(fibrad_heat *heat, const fibrad_heat_sources *s, uint32
         const double own = fibrad_mesh_triangle_area(mesh, fibrad_side_triangle(mesh->side[k]));
         const double more = emission_of(s, side_temperature(heat, s, mesh->side[k], of_body)) - emission_of(s, mean);
         const uint32_t from = fibrad_heat_first_meshed(heat) + cut.patch - first[0];
-        for (uint32_t a = from; a < from + (UINT32_C(1) << cut.halvings); a++) lift[a] += own * more, area[a] += own;
+        for (uint32_t a = from; a < from + (UINT32_C(1) << cut.halvings); a++) excess[a] += own * more, area[a] += own;
     }
-    for (uint32_t a = 0; a < first[1] - first[0]; a++) lift[a] = area[a] > 0 ? lift[a] / area[a] : 0;
+    for (uint32_t a = 0; a < first[1] - first[0]; a++) excess[a] = area[a] > 0 ? excess[a] / area[a] : 0;
 }
 
 /* Widens a range of emissions by the emission of a body, if it emits and its temperature or reference is given. */
@@ -327,7 +327,7 @@ static void set_emission(fibrad_heat *heat, const fibrad_heat_sources *s, uint32
             heat->solution.radiosity[a] = emission, heat->solution.detail[a] = 0;
     }
     heat->sources.emissivity[b] = eps, heat->sources.emission[b] = emission;
-    heat->sources.drive[b] = 0, heat->sources.hold[b] = -1;
+    heat->sources.given_power[b] = 0, heat->sources.storage[b] = -1;
 }
 
 static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double middle, uint32_t b,
@@ -339,26 +339,27 @@ static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double mid
     heat->sources.emission[b] = emission;
     heat->sources.temperature[b] = dark && !touching ? __builtin_nan("") : source->temperature;
     if ((dark && !touching) || is_given(source->temperature)) return;
-    heat->sources.hold[b] = source->hold;
-    heat->sources.drive[b] = source->power + (source->hold > 0 ? source->hold * emission_of(s, source->reference) : 0);
+    heat->sources.storage[b] = source->storage;
+    heat->sources.given_power[b] =
+        source->power + (source->storage > 0 ? source->storage * emission_of(s, source->reference) : 0);
     if (touching) heat->contacts.kind[b] = FIBRAD_CONTACT_FREE;
 }
 
-/* Adds `times` emissivity times lift to the radiosities of a mesh. */
+/* Adds `times` emissivity times excess to the radiosities of a mesh. */
 static void shift_radiosities(fibrad_heat *heat, uint32_t b, double times) {
-    const double *lift = fibrad_heat_lift(heat, b);
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && lift != NULL; a++)
-        heat->solution.radiosity[a] += times * heat->sources.emissivity[b] * lift[a - heat->first[b]];
+    const double *excess = fibrad_heat_excess(heat, b);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && excess != NULL; a++)
+        heat->solution.radiosity[a] += times * heat->sources.emissivity[b] * excess[a - heat->first[b]];
 }
 
 static void set_mesh(fibrad_heat *heat, const fibrad_heat_sources *s, double middle, uint32_t m, radiator source) {
     const uint32_t b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
     const double own = source.temperature;
     if (heat->solution.warm) shift_radiosities(heat, b, -1);
-    heat->sources.lifted[m] = s->side_temperature != NULL && is_given(own) && source.emissivity > 0;
-    if (heat->sources.lifted[m]) {
+    heat->sources.has_excess[m] = s->side_temperature != NULL && is_given(own) && source.emissivity > 0;
+    if (heat->sources.has_excess[m]) {
         source.temperature = mean_temperature(heat, s, m, own);
-        lift_patches(heat, s, m, own, source.temperature);
+        find_excess(heat, s, m, own, source.temperature);
     }
     set_body(heat, s, middle, b, &source);
     shift_radiosities(heat, b, 1);
@@ -387,7 +388,6 @@ static void set_walls(fibrad_heat *heat, const fibrad_heat_sources *s, double mi
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         const bool emits = source[k].emissivity > 0 && is_given(source[k].temperature);
-        heat->sources.wall_emissivity[k] = source[k].emissivity;
         heat->sources.wall_emission[k] = emits ? emission_of(s, source[k].temperature) : 0;
         set_body(heat, s, middle, fibrad_heat_body(heat, k), &source[k]);
     }
@@ -402,10 +402,11 @@ static void set_conduction(fibrad_heat *heat, const fibrad_heat_sources *s) {
     bool found = false;
     for (uint32_t b = 0; b < heat->spheres; b++) {
         heat->sources.conductivity[b] = or_else(s->conductivity, heat->order[b], __builtin_inf());
-        found = found || heat->sources.hold[b] >= 0;
+        found = found || heat->sources.storage[b] >= 0;
     }
     fibrad_heat_find_unevenness(heat, -1);
-    heat->sources.rough = heat->sources.conducts && found && !heat->solution.warm ? FIBRAD_HEAT_ROUGH : 0;
+    heat->sources.first_tolerance =
+        heat->sources.conducts && found && !heat->solution.warm ? FIBRAD_HEAT_FIRST_TOLERANCE : 0;
 }
 
 /* Takes over the contacts that were checked. */
@@ -430,7 +431,7 @@ static void begin_spots(fibrad_heat *heat, const fibrad_heat_sources *s) {
     fibrad_copy(at, s->conductance, n * sizeof *at);
     fibrad_zero(at + n, (3 * (size_t)n + heat->patches) * sizeof *at);
     heat->contacts.conductance = at;
-    heat->sources.rough = FIBRAD_HEAT_ROUGH;
+    heat->sources.first_tolerance = FIBRAD_HEAT_FIRST_TOLERANCE;
     fibrad_heat_make_rings(heat);
 }
 
@@ -450,7 +451,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
         set_body(heat, sources, middle, b, &source);
     }
     set_walls(heat, sources, middle);
-    for (uint32_t b = 0; b < heat->bodies; b++) unknown = unknown || heat->sources.hold[b] == 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) unknown = unknown || heat->sources.storage[b] == 0;
     heat->sources.light = sources->light, heat->sources.absorbed = sources->absorbed;
     heat->sources.sigma = sources->sigma, heat->sources.surroundings = sources->surroundings;
     heat->solution.group = sources->uniform ? UINT32_MAX : FIBRAD_HEAT_FOUR;

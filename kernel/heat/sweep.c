@@ -35,8 +35,9 @@ struct pencil_ends {
 };
 
 /* Adds the flow of each strand to one end and takes it from the other end. areas: the sums are areas, so the flow is
- * added to both ends. */
-FIBRAD_INLINE void bring_strands(const fibrad_heat_pencil *pencil, const struct pencil_ends *ends, bool areas) {
+ * added to both ends. enlarged: an end may be a patch that sends back all. */
+FIBRAD_INLINE void bring_strands(const fibrad_heat_pencil *pencil, const struct pencil_ends *ends, bool areas,
+                                 bool enlarged) {
     const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
     const uint8_t *strand = fibrad_heat_strands(pencil), *end = strand + pencil->strands;
     const double *mine = ends->owner, *other = ends->other;
@@ -45,26 +46,14 @@ FIBRAD_INLINE void bring_strands(const fibrad_heat_pencil *pencil, const struct 
     for (; strand < end; strand++) {
         const uint32_t bits = *strand, a = FIBRAD_HEAT_FOUR * bundle->from + (bits >> 5 & 3),
                        b = FIBRAD_HEAT_FOUR * bundle->to + (bits >> 3 & 3);
-        const double flow = all[bits & 7] * (other[b] - mine[a]);
+        double area = all[bits & 7];
+        if (enlarged)
+            area =
+                fibrad_heat_enlarged(area, FIBRAD_HEAT_BEAMS_RETURN, ends->back_owner != NULL ? ends->back_owner[a] : 0,
+                                     ends->back_other != NULL ? ends->back_other[b] : 0);
+        const double flow = area * (other[b] - mine[a]);
         own[a] += flow;
         theirs[b] += areas ? flow : -flow;
-        bundle += bits >> 7;
-    }
-}
-
-/* The same for flows where an end may be a patch that sends back all. */
-static void bring_enlarged(const fibrad_heat_pencil *pencil, const struct pencil_ends *ends) {
-    const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
-    const uint8_t *strand = fibrad_heat_strands(pencil), *end = strand + pencil->strands;
-    for (; strand < end; strand++) {
-        const uint32_t bits = *strand, a = FIBRAD_HEAT_FOUR * bundle->from + (bits >> 5 & 3),
-                       b = FIBRAD_HEAT_FOUR * bundle->to + (bits >> 3 & 3);
-        const double area = fibrad_heat_enlarged(((bits & 7) + 1) * ends->area, FIBRAD_HEAT_BEAMS_RETURN,
-                                                 ends->back_owner != NULL ? ends->back_owner[a] : 0,
-                                                 ends->back_other != NULL ? ends->back_other[b] : 0);
-        const double flow = area * (ends->other[b] - ends->owner[a]);
-        ends->to_owner[a] += flow;
-        ends->to_other[b] -= flow;
         bundle += bits >> 7;
     }
 }
@@ -126,11 +115,11 @@ static void bring_ends(const fibrad_heat *heat, uint32_t owner, const fibrad_hea
     if (g->coarse && pencil->body < heat->rows)
         bring_bundles(pencil, &ends);
     else if (g->areas)
-        bring_strands(pencil, &ends, true);
+        bring_strands(pencil, &ends, true, false);
     else if (ends.back_owner != NULL || ends.back_other != NULL)
-        bring_enlarged(pencil, &ends);
+        bring_strands(pencil, &ends, false, true);
     else
-        bring_strands(pencil, &ends, false);
+        bring_strands(pencil, &ends, false, false);
 }
 
 /* The number of beams that a pencil stands for. */
@@ -151,7 +140,7 @@ static double reflectivity_of(const fibrad_heat *heat, const fibrad_heat_pencil 
 static void note_sphere(fibrad_heat_seen *seen, const fibrad_heat_pencil *pencil, double beams) {
     const double tilt = pencil->tilt / 32767., square = beams * tilt * (beams * tilt);
     seen->met += beams, seen->squares += square;
-    if (tilt == 1 || tilt == -1) seen->lone += square;
+    if (tilt == 1 || tilt == -1) seen->one_parity += square;
 }
 
 /* The flow to the surroundings of a pencil whose other end is not a sphere. */

@@ -2,7 +2,7 @@
 #ifndef FIBRAD_HEAT_SWEEP_H
 #define FIBRAD_HEAT_SWEEP_H
 
-#include "heat/problem.h"
+#include "heat/solution.h"
 
 /* Chooses the sequence of spheres in sweeps, and the part of each row. */
 void fibrad_heat_divide(fibrad_heat *heat);

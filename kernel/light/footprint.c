@@ -145,18 +145,9 @@ static void add_place(const fibrad_footprint *f, const double at[3], fibrad_ligh
     add_corner(p, uv[0], uv[1]);
 }
 
-static double polygon_area(const fibrad_light_polygon *p) {
-    double sum = 0;
-    for (uint32_t k = 1; k + 1 < p->corners; k++) {
-        const double *a = p->at[0], *b = p->at[k], *c = p->at[k + 1];
-        sum += (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    }
-    return .5 * sum;
-}
-
 /* Reverses the corners of a polygon if they run clockwise. */
 static void turn_polygon(fibrad_light_polygon *p) {
-    if (polygon_area(p) >= 0) return;
+    if (fibrad_light_area(p->at, p->corners) >= 0) return;
     for (uint32_t k = 0; 2 * k + 1 < p->corners; k++)
         for (int a = 0; a < 2; a++) {
             const double moving = p->at[k][a];
@@ -368,7 +359,7 @@ static void add_piece(fibrad_footprint *f, const fibrad_light_piece *piece) {
     p->corners = f->start.corners;
     for (uint32_t k = 0; k < f->common + (piece->far ? f->far : 0); k++) cut_polygon(p, &f->line[k], &f->clipped);
     for (uint32_t k = 0; k < piece->lines; k++) cut_polygon(p, &piece->line[k], &f->clipped);
-    const double area = polygon_area(p);
+    const double area = fibrad_light_area(p->at, p->corners);
     if (!(area > 0)) return;
     f->piece[f->pieces] = *piece;
     f->piece[f->pieces++].area = area;

@@ -7,12 +7,14 @@
 #define FIBRAD_LIGHT_FOOTPRINT_H
 
 #include "fibrad_light.h"
-#include "light/clear.h"
+#include "light/unshadowed.h"
 #include "window/areas.h"
 #include "workspace/workspace.h"
 
-#define FIBRAD_LIGHT_SIDES  256u /* of the polygon that stands for a circle */
-#define FIBRAD_LIGHT_LINES  (3 * FIBRAD_LIGHT_SIDES + 32u + FIBRAD_CLEAR_SIDES) /* around a piece, and around all */
+#define FIBRAD_LIGHT_SIDES 256u /* of the polygon that stands for a circle */
+#define FIBRAD_LIGHT_LINES                                                                                             \
+    (3 * FIBRAD_LIGHT_SIDES + 32u + FIBRAD_UNSHADOWED_SIDES) /* around a piece, and around all                         \
+                                                              */
 #define FIBRAD_LIGHT_PIECES 12u
 #define FIBRAD_LIGHT_OWN    4u
 
@@ -60,7 +62,7 @@ typedef struct fibrad_footprint {
     fibrad_light_polygon start, polygon, clipped; /* of all, and scratch */
     fibrad_light_edge edge[FIBRAD_LIGHT_LINES];   /* scratch */
     fibrad_light_arc arc[FIBRAD_LIGHT_LINES + 1]; /* scratch */
-    fibrad_clear clear;                           /* of the window in hand */
+    fibrad_unshadowed unshadowed;                 /* of the window in hand */
 } fibrad_footprint;
 
 /* What is wrong with a light, a fibrad_why. */
@@ -87,8 +89,8 @@ void fibrad_footprint_place(const fibrad_footprint *f, const double at[3], doubl
 bool fibrad_footprint_image(const fibrad_footprint *f, const double uv[2], uint32_t image, double at[2]);
 
 /* Adds to `area` by slot [L^2] what the open region of a completed window takes from the light that would end there.
- * f->clear tells what triangles leave of the window. The window has `open` in units of its radius r [L] squared, and
- * its middle at uv. */
+ * f->unshadowed tells what triangles leave of the window. The window has `open` in units of its radius r [L] squared,
+ * and its middle at uv. */
 void fibrad_footprint_share(fibrad_footprint *f, const fibrad_areas *areas, double open, const double uv[2], double r,
                             double area[FIBRAD_SLOTS]);
 

@@ -163,7 +163,7 @@ static bool list_edge(fibrad_footprint *f, const fibrad_light_line *line, const 
 
 /* What a window takes of a piece, in units of its radius squared. p: the polygon of the window that counts; NULL: all
  * of the window. */
-static double share_of_piece(fibrad_footprint *f, const fibrad_light_piece *piece, const fibrad_clear_polygon *p,
+static double share_of_piece(fibrad_footprint *f, const fibrad_light_piece *piece, const fibrad_unshadowed_polygon *p,
                              const fibrad_areas *areas, double open, const double uv[2], double r) {
     static const double middle[2] = {0, 0};
     uint32_t edges = 0;
@@ -181,11 +181,12 @@ static double share_of_piece(fibrad_footprint *f, const fibrad_light_piece *piec
 void fibrad_footprint_share(fibrad_footprint *f, const fibrad_areas *areas, double open, const double uv[2], double r,
                             double area[FIBRAD_SLOTS]) {
     double at[2];
-    const fibrad_clear *clear = &f->clear;
+    const fibrad_unshadowed *unshadowed = &f->unshadowed;
     for (uint32_t image = 0; fibrad_footprint_image(f, uv, image, at); image++)
         for (uint32_t k = 0; k < f->pieces; k++)
-            for (uint32_t n = 0; n < (clear->whole ? 1 : clear->count); n++)
+            for (uint32_t n = 0; n < (unshadowed->whole ? 1 : unshadowed->count); n++)
                 area[f->piece[k].slot] +=
                     f->piece[k].sign * r * r *
-                    share_of_piece(f, &f->piece[k], clear->whole ? NULL : &clear->polygon[n], areas, open, at, r);
+                    share_of_piece(f, &f->piece[k], unshadowed->whole ? NULL : &unshadowed->polygon[n], areas, open, at,
+                                   r);
 }

@@ -18,16 +18,17 @@ int fibrad_light_check(const fibrad_scene *scene, const fibrad_light *light, fib
 
 /* Gives the polygons of windows the room that is left after `extra` bytes of scratch. */
 static void place_polygons(fibrad_workspace *space, size_t extra) {
-    fibrad_clear *clear = &fibrad_light_footprint(space)->clear;
+    fibrad_unshadowed *unshadowed = &fibrad_light_footprint(space)->unshadowed;
     unsigned char *at = (unsigned char *)fibrad_light_scratch(space) +
                         (extra + FIBRAD_ALIGNMENT - 1) / FIBRAD_ALIGNMENT * FIBRAD_ALIGNMENT;
     const size_t used = (size_t)(at - (unsigned char *)space->extra);
-    *clear = (fibrad_clear){.whole = true, .polygon = (void *)at};
-    clear->room = used < space->plan.extra ? (uint32_t)((space->plan.extra - used) / sizeof *clear->polygon) : 0;
+    *unshadowed = (fibrad_unshadowed){.whole = true, .polygon = (void *)at};
+    unshadowed->room =
+        used < space->plan.extra ? (uint32_t)((space->plan.extra - used) / sizeof *unshadowed->polygon) : 0;
 }
 
 int fibrad_light_open(const fibrad_scene *scene, fibrad_work *work, size_t extra, fibrad_workspace **space) {
-    const size_t polygons = scene->mesh.triangles > 0 ? FIBRAD_CLEAR_FIRST * sizeof(fibrad_clear_polygon) : 0;
+    const size_t polygons = scene->mesh.triangles > 0 ? FIBRAD_UNSHADOWED_FIRST * sizeof(fibrad_unshadowed_polygon) : 0;
     const size_t bytes = sizeof(fibrad_footprint) + 2 * FIBRAD_ALIGNMENT + extra + polygons;
     const int status = fibrad_work_open(work, scene, bytes, bytes, space);
     if (status != FIBRAD_OK) return status;
@@ -90,7 +91,7 @@ static int take_one(const fibrad_scene *scene, fibrad_workspace *space, uint32_t
     const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
     double area[FIBRAD_SLOTS] = {0}, open = 0, uv[2];
     const int status =
-        FIBRAD_VERSION_OF(fibrad_sunlit, scene->facts.isa)(scene, space, place, f->frame, NULL, &open, &f->clear);
+        FIBRAD_VERSION_OF(fibrad_sunlit, scene->facts.isa)(scene, space, place, f->frame, NULL, &open, &f->unshadowed);
     if (status != FIBRAD_OK) return status;
     fibrad_footprint_place(f, centre, uv);
     if (open > 0) fibrad_footprint_share(f, &space->areas, open, uv, scene->r[place], area);

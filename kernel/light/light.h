@@ -2,7 +2,7 @@
 #ifndef FIBRAD_LIGHT_LIGHT_H
 #define FIBRAD_LIGHT_LIGHT_H
 
-#include "heat/problem.h"
+#include "patches/problem.h"
 #include "light/footprint.h"
 #include "light/sunlit_lanes.h"
 

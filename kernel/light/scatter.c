@@ -5,9 +5,9 @@
  * reflects is known. The rays that leave the body share it out. Patches that are lit wholly reflect without rays. */
 #include "base/random.h"
 #include "base/vector.h"
-#include "heat/fine.h"
-#include "heat/problem.h"
-#include "heat/wall_patch.h"
+#include "patches/subdivision.h"
+#include "patches/problem.h"
+#include "patches/wall_patch.h"
 #include "light/light.h"
 #include "ray/tracer.h"
 #include "scene/walls.h"

@@ -3,8 +3,8 @@
  * The light that a sphere takes is known exactly. The lit points of its window tell on which of its patches the light
  * falls. On a free sphere each patch gets exactly what falls on it. */
 #include "base/vector.h"
-#include "heat/fine.h"
-#include "heat/problem.h"
+#include "patches/subdivision.h"
+#include "patches/problem.h"
 #include "light/light.h"
 #include "sample/sphere_patch.h"
 
@@ -103,7 +103,7 @@ static void find_spread(const fibrad_heat *heat, const fibrad_footprint *f, spre
 static bool is_lit(const shining *s, const fibrad_points *points, uint32_t p) {
     const double at[2] = {s->uv[0] + s->r * points->set.x[p], s->uv[1] + s->r * points->set.y[p]};
     const double in_window[2] = {points->set.x[p], points->set.y[p]};
-    return (points->seen[p / 64] >> p % 64 & 1) != 0 && fibrad_clear_holds(&s->f->clear, in_window) &&
+    return (points->seen[p / 64] >> p % 64 & 1) != 0 && fibrad_unshadowed_holds(&s->f->unshadowed, in_window) &&
            (s->whole || fibrad_footprint_lights(s->f, at, NULL));
 }
 
@@ -151,8 +151,8 @@ static int shine_on_sphere(const fibrad_heat *heat, fibrad_workspace *space, uin
     const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
     double area[FIBRAD_SLOTS] = {0}, open = 0, sum = 0;
     shining s = {.heat = heat, .f = f, .how = shares_of(space), .place = place, .r = scene->r[place]};
-    const int status =
-        FIBRAD_VERSION_OF(fibrad_sunlit, scene->facts.isa)(scene, space, place, f->frame, &points, &open, &f->clear);
+    const int status = FIBRAD_VERSION_OF(fibrad_sunlit, scene->facts.isa)(scene, space, place, f->frame, &points, &open,
+                                                                          &f->unshadowed);
     if (status != FIBRAD_OK || !(open > 0)) return status;
     fibrad_footprint_place(f, centre, s.uv);
     fibrad_footprint_share(f, &space->areas, open, s.uv, s.r, area);
@@ -216,20 +216,14 @@ int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_l
     return status;
 }
 
-static double sum_of_light(const fibrad_heat *heat, uint32_t body, const double *hits) {
-    double sum = 0;
-    for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++) sum += hits[a];
-    return sum;
-}
-
 int fibrad_heat_sum_light(const fibrad_heat *heat, const double *hits, double *power, double *wall_power) {
     if (heat == NULL || hits == NULL || (heat->spheres > 0 && power == NULL)) return FIBRAD_E_ARGUMENT;
     if (heat->given_walls > 0 && wall_power == NULL) return FIBRAD_E_ARGUMENT;
-    for (uint32_t b = 0; b < heat->spheres; b++) power[heat->order[b]] = sum_of_light(heat, b, hits);
+    for (uint32_t b = 0; b < heat->spheres; b++) power[heat->order[b]] = fibrad_heat_sum(heat, b, hits);
     for (uint32_t b = 0; b < heat->given_walls; b++) {
         const uint32_t slot = heat->slot[b];
-        wall_power[b] = sum_of_light(heat, fibrad_heat_body(heat, slot), hits);
-        if (slot < FIBRAD_WALLS) wall_power[b] += sum_of_light(heat, fibrad_heat_beyond(heat, slot), hits);
+        wall_power[b] = fibrad_heat_sum(heat, fibrad_heat_body(heat, slot), hits);
+        if (slot < FIBRAD_WALLS) wall_power[b] += fibrad_heat_sum(heat, fibrad_heat_beyond(heat, slot), hits);
     }
     return FIBRAD_OK;
 }

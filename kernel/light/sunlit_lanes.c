@@ -20,21 +20,22 @@ static int find_open_points(const fibrad_workspace *space, fibrad_points *points
 }
 
 /* Finds what triangles leave of the window. */
-static int find_clear(fibrad_workspace *space, const double frame[9], fibrad_clear *clear) {
+static int find_unshadowed(fibrad_workspace *space, const double frame[9], fibrad_unshadowed *unshadowed) {
     fibrad_face_search search;
-    clear->whole = true, clear->count = 0;
+    unshadowed->whole = true, unshadowed->count = 0;
     if (!fibrad_mesh_near(space, __builtin_inf())) return FIBRAD_OK;
     LANED(fibrad_faces_begin)(space, frame, __builtin_inf(), 0, __builtin_inf(), &search);
-    for (bool more = true; more && (clear->whole || clear->count > 0);) {
+    for (bool more = true; more && (unshadowed->whole || unshadowed->count > 0);) {
         more = LANED(fibrad_faces_next)(space, &search);
         for (uint32_t k = 0; k < space->met->faces.count; k++)
-            if (!fibrad_clear_hide(clear, space, frame, k)) return fibrad_clear_missed(space, clear);
+            if (!fibrad_unshadowed_hide(unshadowed, space, frame, k))
+                return fibrad_unshadowed_missed(space, unshadowed);
     }
     return FIBRAD_OK;
 }
 
 int LANED(fibrad_sunlit)(const fibrad_scene *scene, fibrad_workspace *space, uint32_t place, const double frame[9],
-                         fibrad_points *points, double *open, fibrad_clear *clear) {
+                         fibrad_points *points, double *open, fibrad_unshadowed *unshadowed) {
     fibrad_points none = {.count = 0};
     space->areas.overflow = false;
     space->areas.fallbacks = 0;
@@ -48,5 +49,5 @@ int LANED(fibrad_sunlit)(const fibrad_scene *scene, fibrad_workspace *space, uin
     if (!(*open > 0)) return FIBRAD_OK;
     if (points != NULL && find_open_points(space, points) != FIBRAD_OK) return FIBRAD_E_TABLE;
     space->clear_mesh = scene->clear != NULL ? scene->clear[place] : __builtin_inf();
-    return find_clear(space, frame, clear);
+    return find_unshadowed(space, frame, unshadowed);
 }

@@ -3,7 +3,7 @@
 #define FIBRAD_LIGHT_SUNLIT_LANES_H
 
 #include "base/dispatch.h"
-#include "light/clear.h"
+#include "light/unshadowed.h"
 #include "window/points.h"
 #include "workspace/workspace.h"
 
@@ -11,9 +11,10 @@
 
 /* Resolves the window of the sphere at `place` in one direction, and leaves it in space->areas. points: gets the points
  * of the window that no sphere hides; NULL: they are not asked for. *open: the open area, in units of the radius
- * squared, whatever triangles hide. clear: gets the part that no triangle hides. Errors: FIBRAD_E_WORK, _TABLE. */
+ * squared, whatever triangles hide. unshadowed: gets the part that no triangle hides. Errors: FIBRAD_E_WORK, _TABLE. */
 typedef int fibrad_sunlit_function(const fibrad_scene *scene, fibrad_workspace *space, uint32_t place,
-                                   const double frame[9], fibrad_points *points, double *open, fibrad_clear *clear);
+                                   const double frame[9], fibrad_points *points, double *open,
+                                   fibrad_unshadowed *unshadowed);
 FIBRAD_DECLARE_VERSIONS(fibrad_sunlit_function, fibrad_sunlit);
 
 #endif

@@ -191,11 +191,8 @@ static void try_near(pair_search *search, double distance) {
     const double least = work->unit + scene->facts.radius_min;
     if (work->windows * (least * least) > SOME_WINDOWS * 4 * distance * distance) return;
     for (uint32_t l = 0; l < scene->levels; l++) {
-        double low[3], high[3];
         fibrad_walk walk;
-        for (int axis = 0; axis < 3; axis++)
-            low[axis] = work->centre[axis] - distance, high[axis] = work->centre[axis] + distance;
-        fibrad_walk_begin(&walk, scene, &scene->level[l], low, high);
+        fibrad_walk_about(&walk, scene, &scene->level[l], work->centre, distance);
         while (fibrad_walk_next(&walk))
             for (uint32_t j = walk.begin; j < walk.end; j++) try_sphere(search, j, false);
     }

@@ -75,10 +75,9 @@ static bool gather_candidates(fibrad_tracer *tracer, const struct ball *from, do
     const double *centre = from->centre, inverse = 1 / from->radius;
     *count = 0;
     for (uint32_t l = 0; l < scene->levels; l++) {
-        double ball = limit * from->radius + scene->level[l].radius_max, low[3], high[3];
-        for (int axis = 0; axis < 3; axis++) low[axis] = centre[axis] - ball, high[axis] = centre[axis] + ball;
+        double ball = limit * from->radius + scene->level[l].radius_max;
         fibrad_walk walk;
-        fibrad_walk_begin(&walk, scene, &scene->level[l], low, high);
+        fibrad_walk_about(&walk, scene, &scene->level[l], centre, ball);
         while (fibrad_walk_next(&walk)) {
             int32_t periods[3] = {0};
             for (int axis = 0; axis < 3; axis++)

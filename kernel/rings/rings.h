@@ -16,7 +16,8 @@ typedef struct fibrad_rings {
     double edge[FIBRAD_RINGS + 1]; /* (1 - cosine)/2 of the angle of the edges to the axis: the share within */
     double share[FIBRAD_RINGS];    /* of the sphere's area */
     double cosine[FIBRAD_RINGS], sine[FIBRAD_RINGS]; /* of the angle of the middle by area */
-    /* the emission of one ring for a flux that another one conducts inwards, if 1/(2 K) is 1 (heat/conduct.c) */
+    /* the emission of one ring for a flux that another one conducts inwards, if 1/(2 K) is 1 (heat/sphere_conduction.c)
+     */
     double spread[FIBRAD_RINGS][FIBRAD_RINGS];
 } fibrad_rings;
 
@@ -28,7 +29,7 @@ uint32_t fibrad_rings_at(const fibrad_rings *rings, double cosine);
 /* A sphere in rings. Of two spheres the axis of each points to the other. */
 typedef struct fibrad_ringed {
     double radius, emissivity;
-    double unevenness, emission;   /* as of heat/conduct.c; the mean emission of the surface */
+    double unevenness, emission;   /* as of heat/sphere_conduction.c; the mean emission of the surface */
     double arriving[FIBRAD_RINGS]; /* light per area that does not come from the other sphere */
     double absorbed[FIBRAD_RINGS]; /* light per area that was absorbed besides */
 } fibrad_ringed;

@@ -23,6 +23,14 @@ typedef struct fibrad_walk {
 void fibrad_walk_begin(fibrad_walk *walk, const fibrad_scene *scene, const fibrad_level *level, const double low[3],
                        const double high[3]);
 
+/* Starts a walk over the cube about a centre, whose edges are twice the reach [L]. */
+static inline void fibrad_walk_about(fibrad_walk *walk, const fibrad_scene *scene, const fibrad_level *level,
+                                     const double centre[3], double reach) {
+    const double low[3] = {centre[0] - reach, centre[1] - reach, centre[2] - reach},
+                 high[3] = {centre[0] + reach, centre[1] + reach, centre[2] + reach};
+    fibrad_walk_begin(walk, scene, level, low, high);
+}
+
 /* Goes to the next run that has spheres. False: no run is left. */
 bool fibrad_walk_next(fibrad_walk *walk);
 

@@ -332,10 +332,9 @@ static int each_overlap(fibrad_scene *scene, overlap_met *met, void *context) {
         for (uint32_t i = scene->level[l].first_sphere; i < end; i++) {
             for (uint32_t other = 0; other <= l; other++) {
                 double reach = scene->r[i] + scene->level[other].radius_max;
-                double low[3] = {scene->x[i] - reach, scene->y[i] - reach, scene->z[i] - reach};
-                double high[3] = {scene->x[i] + reach, scene->y[i] + reach, scene->z[i] + reach};
+                const double centre[3] = {scene->x[i], scene->y[i], scene->z[i]};
                 fibrad_walk walk;
-                fibrad_walk_begin(&walk, scene, &scene->level[other], low, high);
+                fibrad_walk_about(&walk, scene, &scene->level[other], centre, reach);
                 while (fibrad_walk_next(&walk))
                     for (uint32_t j = walk.begin; j < walk.end; j++) {
                         double dx = scene->x[j] - scene->x[i] + walk.shift[0];

@@ -19,11 +19,8 @@ static uint64_t list_blockers(fibrad_workspace *work) {
     const double reach = work->farthest * work->unit * (1 + 1e-9);
     uint64_t count = 0, visited = 0;
     for (uint32_t l = 0; l < scene->levels; l++) {
-        double low[3], high[3];
-        for (int axis = 0; axis < 3; axis++)
-            low[axis] = work->centre[axis] - reach, high[axis] = work->centre[axis] + reach;
         fibrad_walk walk;
-        fibrad_walk_begin(&walk, scene, &scene->level[l], low, high);
+        fibrad_walk_about(&walk, scene, &scene->level[l], work->centre, reach);
         while (fibrad_walk_next(&walk)) {
             visited += walk.end - walk.begin;
             if (visited > FIBRAD_WORK_MAX) return visited;

@@ -403,7 +403,6 @@ static void begin_heat(struct session *s) {
     s->heat_config = (fibrad_heat_config){.directions = 8 + byte() % 4, .patches = 24, .parts = 1 + byte() % 8};
     if (byte() == 1) s->heat_config.points = number();
     if (byte() == 1) s->heat_config.parts = number();
-    if (byte() == 1) s->heat_config.cutoff = coordinate();
     if (s->wide) s->heat_config.wall_rays = 1 + number() % 300;
     const size_t size = fibrad_heat_size(&s->heat_config, s->scene);
     if (size == 0 || size > 8 << 20 || !plain || s->heat_config.parts > 16) return;
@@ -443,7 +442,7 @@ static void trace_task(struct session *s, uint32_t task) {
 
 /* The powers and other values of walls whose temperatures are unknown. */
 struct unknowns {
-    double power[SPHERES], hold[SPHERES], reference[SPHERES], wall_power[WALLS], side[2 * TRIANGLES];
+    double power[SPHERES], storage[SPHERES], reference[SPHERES], wall_power[WALLS], side[2 * TRIANGLES];
     unsigned char insulated[WALLS];
 };
 
@@ -453,7 +452,7 @@ static void any_unknowns(struct session *s, struct unknowns *u, double *temperat
         const uint8_t kind = byte();
         if (kind % 2) temperature[i] = NAN;
         u->power[i] = isnan(temperature[i]) ? kind < 240 ? share() : coordinate() : 0;
-        u->hold[i] = kind % 3 == 0 ? share() : 0, u->reference[i] = u->hold[i] > 0 ? share() : NAN;
+        u->storage[i] = kind % 3 == 0 ? share() : 0, u->reference[i] = u->storage[i] > 0 ? share() : NAN;
     }
     for (uint32_t b = 0; b < s->contents.config.walls; b++) {
         const uint8_t kind = byte();
@@ -462,7 +461,7 @@ static void any_unknowns(struct session *s, struct unknowns *u, double *temperat
     }
     for (uint32_t k = 0; k < 2 * s->contents.triangles.n; k++) u->side[k] = byte() % 4 == 0 ? share() : NAN;
     sources->power = u->power, sources->wall_power = u->wall_power, sources->insulated = u->insulated;
-    if (byte() % 2) sources->hold = u->hold, sources->reference = u->reference;
+    if (byte() % 2) sources->storage = u->storage, sources->reference = u->reference;
     if (s->contents.triangles.n > 0 && byte() % 2) sources->side_temperature = u->side;
 }
 

@@ -112,15 +112,15 @@ class Displacement(Structure):
 
 class HeatConfig(Structure):
     _fields_ = [("directions", c_uint32), ("points", c_uint32), ("patches", c_uint32), ("parts", c_uint32),
-                ("cutoff", c_double), ("wall_rays", c_uint32)]
+                ("wall_rays", c_uint32)]
 
 
 class HeatSources(Structure):
     _fields_ = [("temperature", POINTER(c_double)), ("emissivity", POINTER(c_double)), ("power", POINTER(c_double)),
-                ("hold", POINTER(c_double)), ("reference", POINTER(c_double)), ("wall_temperature", POINTER(c_double)),
-                ("wall_emissivity", POINTER(c_double)), ("wall_power", POINTER(c_double)),
-                ("insulated", POINTER(c_ubyte)), ("surroundings", c_double), ("sigma", c_double),
-                ("tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int),
+                ("storage", POINTER(c_double)), ("reference", POINTER(c_double)),
+                ("wall_temperature", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)),
+                ("wall_power", POINTER(c_double)), ("insulated", POINTER(c_ubyte)), ("surroundings", c_double),
+                ("sigma", c_double), ("tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int),
                 ("side_temperature", POINTER(c_double)), ("light", POINTER(c_double)),
                 ("conductivity", POINTER(c_double)), ("absorbed", POINTER(c_double)),
                 ("contact_first", POINTER(c_uint32)), ("contact_second", POINTER(c_uint32)),

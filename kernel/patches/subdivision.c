@@ -1,16 +1,16 @@
-/* fine.c - divides patches near small spheres. SPDX-License-Identifier: MIT */
+/* subdivision.c - divides patches near small spheres. SPDX-License-Identifier: MIT */
 #include "base/constants.h"
 #include "base/elementary.h"
 #include "base/random.h"
 #include "base/vector.h"
-#include "heat/fine.h"
+#include "patches/subdivision.h"
 #include "sample/sphere_patch.h"
-#include "heat/wall_patch.h"
+#include "patches/wall_patch.h"
 #include "scene/grid_walk.h"
 #include "scene/walls.h"
 
 /* Let the height be the distance of a small sphere's centre from the surface. Fours are divided if the edges of patches
- * exceed FINE_FROM heights. Below the sphere the aim is FINE_EDGE heights. Both hold for FINE_PATCHES patches of a
+ * exceed FINE_FROM heights. Below the sphere the aim is FINE_EDGE heights. Both storage for FINE_PATCHES patches of a
  * sphere. Two equal spheres that touch have .36. Farther away edges may grow with the square of the distance, since
  * light that comes back falls with its fourth power. */
 #define FINE_FROM    .8
@@ -233,11 +233,9 @@ static void divide_sphere(fibrad_heat *heat, uint32_t body) {
     const double r = scene->r[body], reach = r * FINE_REACH,
                  centre[3] = {scene->x[body], scene->y[body], scene->z[body]};
     bool begun = false;
-    double low[3], high[3];
-    for (int axis = 0; axis < 3; axis++) low[axis] = centre[axis] - reach, high[axis] = centre[axis] + reach;
     for (uint32_t l = 0; l < scene->levels; l++) {
         fibrad_walk walk;
-        fibrad_walk_begin(&walk, scene, &scene->level[l], low, high);
+        fibrad_walk_about(&walk, scene, &scene->level[l], centre, reach);
         while (fibrad_walk_next(&walk))
             for (uint32_t j = walk.begin; j < walk.end; j++) {
                 struct near_sphere near = {{scene->x[j] + walk.shift[0] - centre[0],
@@ -385,12 +383,10 @@ double fibrad_heat_comes_back(const fibrad_heat *heat, uint32_t sphere) {
 }
 
 uint32_t fibrad_heat_fine_of(const fibrad_heat *heat, uint32_t patch) {
-    for (uint32_t k = 0; k < FIBRAD_WALLS && heat->division.fours > 0; k++) {
-        const uint32_t b = heat->spheres + k, *own = heat->division.first_four + b,
-                       begin = fibrad_heat_first_fine(heat, b);
-        if (patch >= begin && patch < heat->first[b + 1]) return FIBRAD_HEAT_FOUR * own[0] + (patch - begin);
-    }
-    return FIBRAD_NONE;
+    uint32_t fine = FIBRAD_NONE;
+    for (uint32_t k = 0; k < FIBRAD_WALLS && heat->division.fours > 0 && fine == FIBRAD_NONE; k++)
+        fine = fibrad_heat_fine_number(heat, heat->spheres + k, patch);
+    return fine;
 }
 
 /* The largest result of fibrad_heat_fine_point on a four, of nine points [L^2]. */

@@ -1,9 +1,9 @@
-/* hits_lanes.h - where beams and rays go, one version per instruction set. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_HEAT_HITS_LANES_H
-#define FIBRAD_HEAT_HITS_LANES_H
+/* patch_beams_lanes.h - where beams and rays go, one version per instruction set. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_PATCHES_PATCH_BEAMS_LANES_H
+#define FIBRAD_PATCHES_PATCH_BEAMS_LANES_H
 
 #include "base/dispatch.h"
-#include "heat/problem.h"
+#include "patches/problem.h"
 #include "workspace/workspace.h"
 
 /* Follows the beams of one task. The tasks are, in this order: spheres by their position, rows of fine fours, and

@@ -1,8 +1,8 @@
 /* wall_patch.h - the patches of walls, and the rays that leave them. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_HEAT_WALL_PATCH_H
-#define FIBRAD_HEAT_WALL_PATCH_H
+#ifndef FIBRAD_PATCHES_WALL_PATCH_H
+#define FIBRAD_PATCHES_WALL_PATCH_H
 
-#include "heat/problem.h"
+#include "patches/problem.h"
 
 /* Chooses the patches and rays of all walls, and the rays of meshes: heat->wall, heat->patch_area, heat->rays. Needs
  * heat->config, heat->scene and heat->meshes. */

@@ -1,4 +1,4 @@
-/* conducting.h - where a ball that conducts gives off what it absorbs at a point. SPDX-License-Identifier: MIT
+/* reemission.h - where a ball that conducts gives off what it absorbs at a point. SPDX-License-Identifier: MIT
  *
  * The ball is steady inside, and its net power is 0. Let e be its emissivity, k* its relative conductivity and
  * a = e/(2 k*). Of what the ball absorbs in a pattern of degree l (spherical harmonics) it gives off a/(a + l) in the
@@ -16,19 +16,19 @@
  * An even random number U gives s:
  *
  *     (1 - s)^2 (2 + s)/s = 4 t^2 (3 + t) U/((1 + t)^2 (1 - t)). */
-#ifndef FIBRAD_EXCHANGE_CONDUCTING_H
-#define FIBRAD_EXCHANGE_CONDUCTING_H
+#ifndef FIBRAD_EXCHANGE_REEMISSION_H
+#define FIBRAD_EXCHANGE_REEMISSION_H
 
 #include "base/constants.h"
 #include "base/elementary.h"
 #include "base/random.h"
 
 /* Below the first value of t all points are equally likely. Above the second the heat stays where it was absorbed. */
-#define FIBRAD_CONDUCTED_ANYWHERE 1e-9
-#define FIBRAD_CONDUCTED_NOWHERE  (1 - 1e-12)
+#define FIBRAD_REEMITTED_ANYWHERE 1e-9
+#define FIBRAD_REEMITTED_NOWHERE  (1 - 1e-12)
 
-/* Random numbers that fibrad_conduct_above may use. They do not suffice once in 10^11 times. */
-#define FIBRAD_CONDUCTED_DRAWS 127
+/* Random numbers that fibrad_reemit_above may use. They do not suffice once in 10^11 times. */
+#define FIBRAD_REEMITTED_DRAWS 127
 
 /* Turns the unit vector n by the angle whose cosine is 1 - x, in the plane of n and of `even`, a random unit vector. */
 static inline void fibrad_turn_by(double x, const double even[3], double n[3]) {
@@ -49,10 +49,10 @@ static inline void fibrad_turn_to(double distance, double t, const double even[3
 /* Moves n from the outward normal where a ball absorbs to the normal where the ball gives the absorbed heat off.
  * exponent: 1/a. If it is infinite, all points are equally likely. u: two even random numbers in [0, 1). even: a random
  * point of the unit sphere. */
-static inline void fibrad_conduct(double exponent, const double u[2], const double even[3], double n[3]) {
+static inline void fibrad_reemit(double exponent, const double u[2], const double even[3], double n[3]) {
     const double t = u[0] > 0 ? fibrad_exp(fibrad_max(-800, exponent * fibrad_log(1 - u[0]))) : 1;
-    if (t > FIBRAD_CONDUCTED_NOWHERE) return;
-    if (t < FIBRAD_CONDUCTED_ANYWHERE) {
+    if (t > FIBRAD_REEMITTED_NOWHERE) return;
+    if (t < FIBRAD_REEMITTED_ANYWHERE) {
         for (int axis = 0; axis < 3; axis++) n[axis] = even[axis];
         return;
     }
@@ -61,9 +61,9 @@ static inline void fibrad_conduct(double exponent, const double u[2], const doub
 }
 
 /* Draws t by the density that it has in K'. At least a third of all trials succeed. */
-static inline double fibrad_conducted_depth(double a, fibrad_random random, uint64_t first) {
+static inline double fibrad_reemitted_depth(double a, fibrad_random random, uint64_t first) {
     double t = 1;
-    for (uint64_t k = first; k < first + FIBRAD_CONDUCTED_DRAWS - 1; k += 2) {
+    for (uint64_t k = first; k < first + FIBRAD_REEMITTED_DRAWS - 1; k += 2) {
         const double u = 1 - fibrad_fraction(fibrad_random_ahead(random, k));
         t = fibrad_exp(fibrad_max(-800, fibrad_log(u) / (a + 1)));
         if (3 * (1 + t) * (1 + t) * fibrad_fraction(fibrad_random_ahead(random, k + 1)) < 3 + t) break;
@@ -71,14 +71,14 @@ static inline double fibrad_conducted_depth(double a, fibrad_random random, uint
     return t;
 }
 
-/* Does what fibrad_conduct does, for K' instead of K. a: e/(2 k*). The function uses the random numbers from `first` to
- * first + FIBRAD_CONDUCTED_DRAWS - 1. The equation for s has the form s^3 - p s + 2 = 0. Its root between 0 and 1 is 2
+/* Does what fibrad_reemit does, for K' instead of K. a: e/(2 k*). The function uses the random numbers from `first` to
+ * first + FIBRAD_REEMITTED_DRAWS - 1. The equation for s has the form s^3 - p s + 2 = 0. Its root between 0 and 1 is 2
  * sqrt(p/3) sin(q/3) with sin q = (3/p)^(3/2). */
-static inline void fibrad_conduct_above(double a, fibrad_random random, uint64_t first, const double even[3],
-                                        double n[3]) {
-    const double t = fibrad_max(FIBRAD_CONDUCTED_ANYWHERE, fibrad_conducted_depth(a, random, first));
-    const double u = fibrad_fraction(fibrad_random_ahead(random, first + FIBRAD_CONDUCTED_DRAWS - 1));
-    if (t > FIBRAD_CONDUCTED_NOWHERE) return;
+static inline void fibrad_reemit_above(double a, fibrad_random random, uint64_t first, const double even[3],
+                                       double n[3]) {
+    const double t = fibrad_max(FIBRAD_REEMITTED_ANYWHERE, fibrad_reemitted_depth(a, random, first));
+    const double u = fibrad_fraction(fibrad_random_ahead(random, first + FIBRAD_REEMITTED_DRAWS - 1));
+    if (t > FIBRAD_REEMITTED_NOWHERE) return;
     const double more = 4 * t * t * (3 + t) * u / ((1 + t) * (1 + t) * (1 - t)), p = 3 + more;
     const double angle =
         fibrad_quarter_angle(fibrad_sqrt(more * (p * p + 3 * p + 9)), 5.196152422706632); /* 27^(1/2) */
@@ -88,6 +88,6 @@ static inline void fibrad_conduct_above(double a, fibrad_random random, uint64_t
 }
 
 /* m, the even part of K, 0 to 1. a: e/(2 k*). */
-double fibrad_conducted_evenly(double a);
+double fibrad_reemitted_evenly(double a);
 
 #endif

@@ -1,4 +1,4 @@
-/* fine.h - divides patches near small spheres. SPDX-License-Identifier: MIT
+/* subdivision.h - divides patches near small spheres. SPDX-License-Identifier: MIT
  *
  * Light goes back and forth between a small sphere and the spot under it on a large sphere or a wall. Patches there
  * must be small against the distance. So a four of patches that is too large is divided into four fours, these are
@@ -8,10 +8,10 @@
  *
  * Two kinds of rays tell what fine patches exchange: beams of spheres that meet them, and rays of their own. The rays
  * stand in rows after those of the spheres. A row has fine fours of one body and one size. */
-#ifndef FIBRAD_HEAT_FINE_H
-#define FIBRAD_HEAT_FINE_H
+#ifndef FIBRAD_PATCHES_SUBDIVISION_H
+#define FIBRAD_PATCHES_SUBDIVISION_H
 
-#include "heat/problem.h"
+#include "patches/problem.h"
 
 /* A ray of a fine patch counts as this many beams, since beams are spread more evenly. Between a small sphere and the
  * spot under it the beams of the sphere count most. Between a fine patch and what is far or large its rays do. */

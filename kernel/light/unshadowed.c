@@ -1,5 +1,5 @@
-/* clear.c - the part of a window that no triangle hides from the light. SPDX-License-Identifier: MIT */
-#include "light/clear.h"
+/* unshadowed.c - the part of a window that no triangle hides from the light. SPDX-License-Identifier: MIT */
+#include "light/unshadowed.h"
 #include "base/constants.h"
 #include "base/vector.h"
 
@@ -7,7 +7,7 @@
 #define TINY  1e-13 /* shorter sides and smaller areas are rounding errors */
 #define SHORT 1e-12 /* a side of a face that is shorter than this part of its distance is a rounding error */
 #define SHARP 6u    /* corners of a triangle within the planes, at the most */
-#define MANY  (FIBRAD_CLEAR_SIDES - SHARP - 1)
+#define MANY  (FIBRAD_UNSHADOWED_SIDES - SHARP - 1)
 
 /* The visible part of a triangle in the frame of a window. */
 typedef struct clipped_face {
@@ -89,7 +89,7 @@ static uint32_t lines_of_face(const clipped_face *face, fibrad_light_line line[S
 }
 
 /* Appends a side. If the side before it is too short, the new side takes its place. */
-static void add_side(fibrad_clear_polygon *p, double u, double v, const fibrad_light_line *line) {
+static void add_side(fibrad_unshadowed_polygon *p, double u, double v, const fibrad_light_line *line) {
     const double *last = p->corner[p->sides > 0 ? p->sides - 1 : 0];
     if (p->sides > 0 && fibrad_abs(u - last[0]) + fibrad_abs(v - last[1]) < TINY) p->sides--;
     p->corner[p->sides][0] = u, p->corner[p->sides][1] = v;
@@ -98,8 +98,8 @@ static void add_side(fibrad_clear_polygon *p, double u, double v, const fibrad_l
 
 /* Cuts off the part of a polygon that lies beyond a line. Corners next to the line count as inside. So a polygon gets
  * no second side along a side that it has. */
-static void cut_sides(fibrad_clear_polygon *p, const fibrad_light_line *line) {
-    const fibrad_clear_polygon all = *p;
+static void cut_sides(fibrad_unshadowed_polygon *p, const fibrad_light_line *line) {
+    const fibrad_unshadowed_polygon all = *p;
     p->sides = 0;
     for (uint32_t k = 0; k < all.sides; k++) {
         const double *a = all.corner[k], *b = all.corner[(k + 1) % all.sides];
@@ -114,26 +114,19 @@ static void cut_sides(fibrad_clear_polygon *p, const fibrad_light_line *line) {
     }
 }
 
-static bool is_empty(const fibrad_clear_polygon *p) {
-    double sum = 0;
-    for (uint32_t k = 1; k + 1 < p->sides; k++) {
-        const double *a = p->corner[0], *b = p->corner[k], *c = p->corner[k + 1];
-        sum += .5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
-    }
-    return sum < TINY;
-}
+static bool is_empty(fibrad_unshadowed_polygon *p) { return fibrad_light_area(p->corner, p->sides) < TINY; }
 
 static fibrad_light_line turned(const fibrad_light_line *line) {
     return (fibrad_light_line){{0 - line->n[0], 0 - line->n[1]}, 0 - line->c};
 }
 
 /* Divides a polygon that has many sides. False: there is no room. */
-static bool divide_polygon(fibrad_clear *clear, uint32_t number) {
-    fibrad_clear_polygon *p = &clear->polygon[number];
+static bool divide_polygon(fibrad_unshadowed *unshadowed, uint32_t number) {
+    fibrad_unshadowed_polygon *p = &unshadowed->polygon[number];
     fibrad_light_line line;
     if (p->sides <= MANY || !fibrad_light_line_through(p->corner[0], p->corner[p->sides / 2], &line)) return true;
-    if (clear->count == clear->room) return false;
-    fibrad_clear_polygon *other = &clear->polygon[clear->count++];
+    if (unshadowed->count == unshadowed->room) return false;
+    fibrad_unshadowed_polygon *other = &unshadowed->polygon[unshadowed->count++];
     *other = *p;
     cut_sides(p, &line);
     line = turned(&line);
@@ -142,7 +135,7 @@ static bool divide_polygon(fibrad_clear *clear, uint32_t number) {
 }
 
 /* Whether a polygon lies beyond one of some lines. */
-static bool lies_beyond(const fibrad_clear_polygon *p, const fibrad_light_line *line, uint32_t lines) {
+static bool lies_beyond(const fibrad_unshadowed_polygon *p, const fibrad_light_line *line, uint32_t lines) {
     bool beyond = false;
     for (uint32_t k = 0; k < lines && !beyond; k++) {
         beyond = true;
@@ -153,57 +146,60 @@ static bool lies_beyond(const fibrad_clear_polygon *p, const fibrad_light_line *
 
 /* Takes the inside of some lines away from a polygon. What is outside of the first line is a polygon. So is what is
  * inside of the first line and outside of the second one, and so on. False: there is no room. */
-static bool hide_in_polygon(fibrad_clear *clear, uint32_t number, const fibrad_light_line *line, uint32_t lines) {
-    if (lies_beyond(&clear->polygon[number], line, lines)) return true;
-    if (!divide_polygon(clear, number)) return false;
-    const uint32_t before = clear->count;
-    fibrad_clear_polygon inside = clear->polygon[number];
+static bool hide_in_polygon(fibrad_unshadowed *unshadowed, uint32_t number, const fibrad_light_line *line,
+                            uint32_t lines) {
+    if (lies_beyond(&unshadowed->polygon[number], line, lines)) return true;
+    if (!divide_polygon(unshadowed, number)) return false;
+    const uint32_t before = unshadowed->count;
+    fibrad_unshadowed_polygon inside = unshadowed->polygon[number];
     for (uint32_t k = 0; k < lines; k++) {
         const fibrad_light_line other = turned(&line[k]);
-        fibrad_clear_polygon outside = inside;
+        fibrad_unshadowed_polygon outside = inside;
         cut_sides(&outside, &other);
         cut_sides(&inside, &line[k]);
         if (is_empty(&inside)) { /* the polygon stays whole */
-            clear->count = before;
+            unshadowed->count = before;
             return true;
         }
         if (is_empty(&outside)) continue;
-        if (clear->count == clear->room) return false;
-        clear->polygon[clear->count++] = outside;
+        if (unshadowed->count == unshadowed->room) return false;
+        unshadowed->polygon[unshadowed->count++] = outside;
     }
-    clear->count--;
-    if (number < clear->count) clear->polygon[number] = clear->polygon[clear->count];
+    unshadowed->count--;
+    if (number < unshadowed->count) unshadowed->polygon[number] = unshadowed->polygon[unshadowed->count];
     return true;
 }
 
-int fibrad_clear_missed(fibrad_workspace *space, const fibrad_clear *clear) {
-    space->needed.extra = space->plan.extra + (clear->room + FIBRAD_CLEAR_FIRST) * sizeof *clear->polygon;
+int fibrad_unshadowed_missed(fibrad_workspace *space, const fibrad_unshadowed *unshadowed) {
+    space->needed.extra =
+        space->plan.extra + (unshadowed->room + FIBRAD_UNSHADOWED_FIRST) * sizeof *unshadowed->polygon;
     return FIBRAD_E_WORK;
 }
 
-static void begin_with_square(fibrad_clear *clear) {
-    fibrad_clear_polygon *square = &clear->polygon[0];
+static void begin_with_square(fibrad_unshadowed *unshadowed) {
+    fibrad_unshadowed_polygon *square = &unshadowed->polygon[0];
     fibrad_zero(square, sizeof *square);
-    square->sides = 4, clear->count = 1, clear->whole = false;
+    square->sides = 4, unshadowed->count = 1, unshadowed->whole = false;
     for (uint32_t k = 0; k < 4; k++)
         square->corner[k][0] = k == 1 || k == 2 ? 1 : -1, square->corner[k][1] = k < 2 ? -1 : 1;
 }
 
-bool fibrad_clear_hide(fibrad_clear *clear, const fibrad_workspace *space, const double frame[9], uint32_t face) {
+bool fibrad_unshadowed_hide(fibrad_unshadowed *unshadowed, const fibrad_workspace *space, const double frame[9],
+                            uint32_t face) {
     const clipped_face seen = face_inside(space, frame, face);
     fibrad_light_line line[SHARP];
     if (seen.corners < 3 || !is_before(space, &seen, face)) return true;
     const uint32_t lines = lines_of_face(&seen, line);
-    if (clear->whole) begin_with_square(clear);
-    for (uint32_t k = clear->count; k-- > 0;)
-        if (!hide_in_polygon(clear, k, line, lines)) return false;
+    if (unshadowed->whole) begin_with_square(unshadowed);
+    for (uint32_t k = unshadowed->count; k-- > 0;)
+        if (!hide_in_polygon(unshadowed, k, line, lines)) return false;
     return true;
 }
 
-bool fibrad_clear_holds(const fibrad_clear *clear, const double at[2]) {
-    bool found = clear->whole;
-    for (uint32_t k = 0; k < clear->count && !found && !clear->whole; k++) {
-        const fibrad_clear_polygon *p = &clear->polygon[k];
+bool fibrad_unshadowed_holds(const fibrad_unshadowed *unshadowed, const double at[2]) {
+    bool found = unshadowed->whole;
+    for (uint32_t k = 0; k < unshadowed->count && !found && !unshadowed->whole; k++) {
+        const fibrad_unshadowed_polygon *p = &unshadowed->polygon[k];
         found = true;
         for (uint32_t s = 0; s < p->sides && found; s++) found = fibrad_light_beyond(&p->line[s], at) <= 0;
     }

@@ -1,5 +1,5 @@
-/* conducting.c - relative conductivity, and what a ball gives off evenly. SPDX-License-Identifier: MIT */
-#include "exchange/conducting.h"
+/* reemission.c - relative conductivity, and what a ball gives off evenly. SPDX-License-Identifier: MIT */
+#include "exchange/reemission.h"
 
 #include "fibrad.h"
 
@@ -19,7 +19,7 @@ static double above_leading(double z) {
 
 /* m = 1 - a + a (2 a - 1) b, b being the integral of t^a/(1 + t) over t from 0 to 1. For large a the leading terms
  * cancel in closed form. For small a, b follows from b at a + 24 by 24 steps of b(a - 1) = 1/a - b(a). */
-double fibrad_conducted_evenly(double a) {
+double fibrad_reemitted_evenly(double a) {
     if (a >= SERIES_FROM) {
         const double z = a + 0.5;
         return 0.5 / z + (z - 1.5 + 0.5 / z) * above_leading(z);
@@ -37,5 +37,5 @@ double fibrad_relative_conductivity(double conductivity, double radius, double t
 double fibrad_node_emissivity(double emissivity, double conductivity) {
     if (!(emissivity >= 0 && emissivity <= 1 && conductivity >= FIBRAD_RELATIVE_CONDUCTIVITY_MIN))
         return __builtin_nan("");
-    return emissivity * fibrad_conducted_evenly(emissivity / (2 * conductivity));
+    return emissivity * fibrad_reemitted_evenly(emissivity / (2 * conductivity));
 }

@@ -3,7 +3,7 @@
 #include "base/elementary.h"
 #include "base/random.h"
 #include "base/vector.h"
-#include "heat/wall_patch.h"
+#include "patches/wall_patch.h"
 #include "scene/walls.h"
 
 /* Patches of walls are about as large as those of spheres. Their number is limited: to FEW times the patches of one
@@ -177,11 +177,10 @@ static uint32_t patch_at(const fibrad_heat *heat, uint32_t wall, const double at
     if (!fibrad_heat_wall_place(heat, wall, at, place)) return heat->first[fibrad_heat_beyond(heat, wall)];
     for (int side = 0; side < 2; side++) cell[side] = (uint32_t)fibrad_min(place[side], squares[side] - 1);
     const uint32_t own = (cell[0] >> 1) * (squares[1] >> 1) + (cell[1] >> 1);
-    const uint32_t fine =
-        fibrad_heat_fine_patch(heat, body, own, place[0] / 2 - (cell[0] >> 1), place[1] / 2 - (cell[1] >> 1));
-    if (may_be_fine && fine != FIBRAD_NONE)
-        return fibrad_heat_first_fine(heat, body) + (fine - FIBRAD_HEAT_FOUR * heat->division.first_four[body]);
-    return heat->first[body] + own * FIBRAD_HEAT_FOUR + (cell[0] & 1) * 2 + (cell[1] & 1);
+    const uint32_t patch = own * FIBRAD_HEAT_FOUR + (cell[0] & 1) * 2 + (cell[1] & 1);
+    return may_be_fine ? fibrad_heat_patch_in_four(heat, body, patch, place[0] / 2 - (cell[0] >> 1),
+                                                   place[1] / 2 - (cell[1] >> 1))
+                       : heat->first[body] + patch;
 }
 
 uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]) {

@@ -1,4 +1,5 @@
-/* flow.c - powers from rows of exchange factors, one collection of rows at a time. SPDX-License-Identifier: MIT */
+/* row_powers.c - powers from rows of exchange factors, one collection of rows at a time. SPDX-License-Identifier: MIT
+ */
 #include "rows/record.h"
 
 /* A row with more than this beyond the cutoff says nothing about powers. */

@@ -1,8 +1,8 @@
 /* pencils.h - how the beams of a sphere are kept. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_HEAT_PENCILS_H
-#define FIBRAD_HEAT_PENCILS_H
+#ifndef FIBRAD_PATCHES_PENCILS_H
+#define FIBRAD_PATCHES_PENCILS_H
 
-#include "heat/problem.h"
+#include "patches/problem.h"
 
 /* A beam that is kept: the entry of the row that it belongs to, the patch that it leaves, and the patch that it meets.
  * Patches are numbered within their row or block. */

@@ -3,9 +3,9 @@
  * The beams of a row are sorted by what they meet, about a hundred bodies. So the end of a beam is a patch of a known
  * body, which takes one byte. All beams that were followed tell how much two bodies exchange. Those that are kept tell
  * where on the bodies light leaves and arrives. Each of them stands for an equal number of beams. */
-#include "heat/fine.h"
-#include "heat/pencils.h"
-#include "heat/wall_patch.h"
+#include "patches/subdivision.h"
+#include "patches/pencils.h"
+#include "patches/wall_patch.h"
 #include "base/arena.h"
 #include "base/constants.h"
 #include "pair/free_pair.h"
@@ -302,14 +302,14 @@ uint32_t fibrad_heat_free_beams(fibrad_heat *heat, fibrad_workspace *work, uint3
     fibrad_heat_beam *beam = work->extra;
     fibrad_entries *entries = &work->entries;
     const double all = heat->beams;
-    heat->pencils.row[work->place].told = false;
+    heat->pencils.row[work->place].complete = false;
     if (heat->division.root[work->place] != FIBRAD_NONE) return count;
     const fibrad_free_pairs pairs = fibrad_free_pairs_find(work, 1 / all);
     const struct free_share share = share_of_free(heat, entries);
     const double exact = (double)share.exact * 0x1p-60 * all, others = beams_in_parts(share.others);
     const double left = others + (beams_in_parts(share.seen) - exact);
     if (share.exact == 0 || !(left > 0)) return count;
-    heat->pencils.row[work->place].told = pairs.told && !share.left_out;
+    heat->pencils.row[work->place].complete = pairs.told && !share.left_out;
     for (uint32_t k = 0; k < entries->length; k++) {
         double *part = entries->part[k];
         if (entries->exact[k] > 0) {
@@ -343,23 +343,19 @@ void fibrad_heat_link_pencils(fibrad_heat *heat) {
     size_t *first = heat->pencils.first_link;
     fibrad_zero(first, (n + 2) * sizeof *first);
     heat->pencils.link = (void *)(heat->pencils.pool + pool_of(heat->pencils.used, heat->pencils.links).links_at);
-    for (uint32_t place = 0; place < n; place++) {
-        const unsigned char *at = heat->pencils.pool + heat->pencils.row[place].begin,
-                            *end = at + heat->pencils.row[place].bytes;
-        for (; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {
-            const uint32_t other = fibrad_heat_pencil_at(at)->body;
-            if (other < n && !fibrad_heat_same_part(heat, place, other)) first[other + 2]++;
+    for (int pass = 0; pass < 2; pass++) { /* links are counted first */
+        for (uint32_t place = 0; place < n; place++) {
+            const unsigned char *begin = heat->pencils.pool + heat->pencils.row[place].begin,
+                                *end = begin + heat->pencils.row[place].bytes;
+            for (const unsigned char *at = begin; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {
+                const uint32_t other = fibrad_heat_pencil_at(at)->body;
+                if (other >= n || fibrad_heat_same_part(heat, place, other)) continue;
+                if (pass == 0)
+                    first[other + 2]++;
+                else
+                    heat->pencils.link[first[other + 1]++] = (fibrad_heat_link){place, (uint32_t)((at - begin) / 4)};
+            }
         }
-    }
-    for (uint32_t i = 2; i < n + 2; i++) first[i] += first[i - 1];
-    for (uint32_t place = 0; place < n; place++) {
-        const unsigned char *begin = heat->pencils.pool + heat->pencils.row[place].begin,
-                            *end = begin + heat->pencils.row[place].bytes;
-        for (const unsigned char *at = begin; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {
-            const uint32_t other = fibrad_heat_pencil_at(at)->body;
-            if (other < n && !fibrad_heat_same_part(heat, place, other))
-                heat->pencils.link[first[other + 1]++] =
-                    (fibrad_heat_link){place, (uint32_t)((size_t)(at - begin) / 4)};
-        }
+        for (uint32_t i = 2; i < n + 2 && pass == 0; i++) first[i] += first[i - 1];
     }
 }

@@ -8,8 +8,8 @@
  *   surroundings    1
  * Body b has the patches first[b] to first[b + 1] - 1. A body that does not exist has none. Four patches at a time (a
  * "four") make up one patch of the coarser level. A body of `beyond` has one patch. */
-#ifndef FIBRAD_HEAT_PROBLEM_H
-#define FIBRAD_HEAT_PROBLEM_H
+#ifndef FIBRAD_PATCHES_PROBLEM_H
+#define FIBRAD_PATCHES_PROBLEM_H
 
 #include "fibrad_heat.h"
 #include "base/sobol.h"
@@ -23,11 +23,11 @@
 
 #define FIBRAD_HEAT_TASK 1024u /* rays of walls in one task */
 
-#define FIBRAD_HEAT_FOUR          4u   /* patches of a four */
-#define FIBRAD_HEAT_BLOCK         256u /* patches of a wall that may be in one pencil */
-#define FIBRAD_HEAT_OTHERS        64u  /* bodies that are not spheres, rounded up */
-#define FIBRAD_HEAT_EXTRAPOLATION 0.4  /* extrapolation adds this part of the difference of both levels */
-#define FIBRAD_HEAT_ROUGH         1e-2 /* tolerance of the first temperatures of spheres that conduct */
+#define FIBRAD_HEAT_FOUR            4u   /* patches of a four */
+#define FIBRAD_HEAT_BLOCK           256u /* patches of a wall that may be in one pencil */
+#define FIBRAD_HEAT_OTHERS          64u  /* bodies that are not spheres, rounded up */
+#define FIBRAD_HEAT_EXTRAPOLATION   0.4  /* extrapolation adds this part of the difference of both levels */
+#define FIBRAD_HEAT_FIRST_TOLERANCE 1e-2 /* tolerance of the first temperatures of spheres that conduct */
 
 #define FIBRAD_HEAT_FINE (UINT32_C(1) << 31) /* plus the number of a fine four: a node without children */
 
@@ -57,14 +57,14 @@ typedef struct fibrad_heat_bundle {
  * part. Its position `at` is in units of four bytes after `begin` of the row. */
 typedef struct fibrad_heat_row {
     size_t begin, bytes;
-    bool told; /* every sphere that no beam meets has an exact factor */
+    bool complete; /* every sphere that no beam meets has an exact factor */
 } fibrad_heat_row;
 typedef struct fibrad_heat_link {
     uint32_t sphere, at;
 } fibrad_heat_link;
 
-/* A fine four (fine.h). The own four of its body is divided into 2^level by 2^level fours; x and y number them. A
- * fibrad_heat_fine is a row of fine fours of one body and one level. */
+/* A fine four (subdivision.h). The own four of its body is divided into 2^level by 2^level fours; x and y number them.
+ * A fibrad_heat_fine is a row of fine fours of one body and one level. */
 typedef struct fibrad_heat_four {
     uint32_t body, own, level, x, y, row;
 } fibrad_heat_four;
@@ -95,10 +95,11 @@ typedef struct fibrad_heat_ray {
 
 /* What the beams of a sphere tell of the error of its power. */
 typedef struct fibrad_heat_seen {
-    double reflected[2];  /* beams times reflectivity of what they meet: spheres, walls */
-    double escaping;      /* power to the surroundings by even directions minus that by odd directions */
-    double met;           /* beams that meet spheres */
-    double squares, lone; /* squares of even minus odd beams to each sphere; those of spheres met by one kind alone */
+    double reflected[2]; /* beams times reflectivity of what they meet: spheres, walls */
+    double escaping;     /* power to the surroundings by even directions minus that by odd directions */
+    double met;          /* beams that meet spheres */
+    double squares,
+        one_parity; /* squares of even minus odd beams to each sphere; those of spheres met by one kind alone */
 } fibrad_heat_seen;
 
 typedef enum fibrad_heat_phase {
@@ -110,7 +111,7 @@ typedef enum fibrad_heat_phase {
     FIBRAD_HEAT_DONE
 } fibrad_heat_phase;
 
-/* Fours that are divided, and the fine fours that they are divided into (fine.h). */
+/* Fours that are divided, and the fine fours that they are divided into (subdivision.h). */
 typedef struct fibrad_heat_division {
     uint32_t nodes_capacity, nodes, fours; /* room for nodes; nodes in use; number of fine fours */
     uint32_t *root;         /* [spheres + FIBRAD_WALLS], node of the first own four; FIBRAD_NONE: none is divided */
@@ -136,7 +137,7 @@ typedef struct fibrad_heat_pencils {
 /* The least and the largest emission on a sphere's surface minus the mean emission, at both levels. */
 typedef struct fibrad_heat_span {
     double low, high;                  /* of patches */
-    double least, largest;             /* in rings (conduct.c) */
+    double least, largest;             /* in rings (sphere_conduction.c) */
     bool open_low, open_high;          /* these places do not face a neighbour */
     uint32_t neighbours;               /* number of those that are near */
     double coldest_spot, hottest_spot; /* K, of contacts at their places, minus the mean; 0: none */
@@ -145,19 +146,20 @@ typedef struct fibrad_heat_span {
 /* What is given for a solution. Emissions E are differences from the emission of the surroundings. */
 typedef struct fibrad_heat_given {
     double *emissivity, *emission; /* [bodies], eps and E */
-    double *drive, *hold;          /* [bodies], hold < 0: E is given; else E is unknown, and drive - hold E given off */
-    double *temperature;           /* K, [bodies], given or found; NaN: none */
-    double *conductivity;          /* sigma K^3 L, [spheres] */
-    double *unevenness;            /* [spheres], 4 r sigma T^3/conductivity; 0: at one temperature (conduct.c) */
-    bool conducts;                 /* some sphere has a finite conductivity */
-    double rough;                  /* tolerance while unevennesses are of temperatures still to be found better */
-    double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
-    bool insulated[FIBRAD_HEAT_OTHERS];                                /* by body, from the first wall on */
-    double *lift; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
-    bool lifted[FIBRAD_WALLS_MAX]; /* [meshes], whether sides of the mesh have temperatures */
-    const double *light;           /* [patches] power that arrives from outside, the caller's; NULL: none */
-    const double *absorbed;        /* [patches] light that patches have absorbed, the caller's; NULL: none */
-    bool afloat;                   /* the sources fix differences of emissions, but not their level */
+    double *given_power,
+        *storage; /* [bodies], storage < 0: E is given; else E is unknown, and given_power - storage E given off */
+    double *temperature;    /* K, [bodies], given or found; NaN: none */
+    double *conductivity;   /* sigma K^3 L, [spheres] */
+    double *unevenness;     /* [spheres], 4 r sigma T^3/conductivity; 0: at one temperature (sphere_conduction.c) */
+    bool conducts;          /* some sphere has a finite conductivity */
+    double first_tolerance; /* tolerance while unevennesses are of temperatures still to be found better */
+    double wall_emission[FIBRAD_WALLS]; /* by slot; 0: the wall emits nothing */
+    bool insulated[FIBRAD_HEAT_OTHERS]; /* by body, from the first wall on */
+    double *excess; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
+    bool has_excess[FIBRAD_WALLS_MAX]; /* [meshes], whether sides of the mesh have temperatures */
+    const double *light;               /* [patches] power that arrives from outside, the caller's; NULL: none */
+    const double *absorbed;            /* [patches] light that patches have absorbed, the caller's; NULL: none */
+    bool free_level;                   /* the sources fix differences of emissions, but not their level */
     double sigma, surroundings;
     double tolerance, settled; /* of the residual; of what steps to come would change in powers, over these */
     uint32_t limit;            /* sweeps after which to stop */
@@ -268,6 +270,18 @@ static inline uint32_t fibrad_heat_body(const fibrad_heat *heat, uint32_t slot) 
 static inline uint32_t fibrad_heat_beyond(const fibrad_heat *heat, uint32_t wall) {
     return heat->spheres + FIBRAD_WALLS + heat->meshes + wall;
 }
+/* Whether the temperature of a body is to be found. */
+static inline bool fibrad_heat_is_free(const fibrad_heat *heat, uint32_t body) {
+    return heat->sources.storage[body] >= 0;
+}
+
+/* The sum of values over the patches of a body. */
+static inline double fibrad_heat_sum(const fibrad_heat *heat, uint32_t body, const double *value) {
+    double sum = 0;
+    for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++) sum += value[a];
+    return sum;
+}
+
 /* The mean by area of values on the patches of a body. */
 static inline double fibrad_heat_mean(const fibrad_heat *heat, uint32_t body, const double *value) {
     double sum = 0, area = 0;
@@ -280,12 +294,12 @@ static inline double fibrad_heat_mean(const fibrad_heat *heat, uint32_t body, co
 static inline uint32_t fibrad_heat_first_meshed(const fibrad_heat *heat) {
     return heat->first[fibrad_heat_body(heat, FIBRAD_MESHES)];
 }
-/* The lift of the patches of a body. NULL: no side has a temperature of its own. */
-static inline const double *fibrad_heat_lift(const fibrad_heat *heat, uint32_t body) {
+/* The excess of the patches of a body. NULL: no side has a temperature of its own. */
+static inline const double *fibrad_heat_excess(const fibrad_heat *heat, uint32_t body) {
     const uint32_t mesh = body - fibrad_heat_body(heat, FIBRAD_MESHES);
     const bool meshed = body >= fibrad_heat_body(heat, FIBRAD_MESHES) && mesh < heat->meshes;
-    return meshed && heat->sources.lifted[mesh]
-               ? heat->sources.lift + (heat->first[body] - fibrad_heat_first_meshed(heat))
+    return meshed && heat->sources.has_excess[mesh]
+               ? heat->sources.excess + (heat->first[body] - fibrad_heat_first_meshed(heat))
                : NULL;
 }
 /* The first patch that is not of a sphere, and the patch of the surroundings. */
@@ -310,7 +324,8 @@ static inline size_t fibrad_heat_other_block(const fibrad_heat *heat, uint32_t o
  * FIBRAD_WALLS: to the surroundings. Between two walls of emissivity 0, all radiation comes from the surroundings. */
 static inline uint32_t fibrad_heat_facing(const fibrad_heat *heat, uint32_t k) {
     const uint32_t other = k == FIBRAD_CYLINDER ? k : fibrad_face_opposite(k);
-    const bool white = heat->sources.wall_emissivity[k] == 0 && heat->sources.wall_emissivity[other] == 0;
+    const double *emissivity = heat->sources.emissivity + heat->spheres;
+    const bool white = emissivity[k] == 0 && emissivity[other] == 0;
     return heat->wall[other].unbounded && !white ? other : FIBRAD_WALLS;
 }
 
@@ -318,8 +333,8 @@ static inline uint32_t fibrad_heat_facing(const fibrad_heat *heat, uint32_t k) {
  * */
 static inline double fibrad_heat_taken_beyond(const fibrad_heat *heat, uint32_t k) {
     const uint32_t facing = fibrad_heat_facing(heat, k);
-    const double eps = heat->sources.wall_emissivity[k],
-                 other = facing < FIBRAD_WALLS ? heat->sources.wall_emissivity[facing] : 1;
+    const double *emissivity = heat->sources.emissivity + heat->spheres;
+    const double eps = emissivity[k], other = facing < FIBRAD_WALLS ? emissivity[facing] : 1;
     return eps / (1 - (1 - eps) * (1 - other));
 }
 
@@ -368,37 +383,28 @@ static inline uint32_t fibrad_heat_body_of_row(const fibrad_heat *heat, uint32_t
     return row < heat->spheres ? row : heat->division.fine[row - heat->spheres].body;
 }
 
-/* The number of the fine patch at u, v, 0 to 1, of an own four of a body. FIBRAD_NONE: the four is not divided. */
-static inline uint32_t fibrad_heat_fine_patch(const fibrad_heat *heat, uint32_t body, uint32_t own, double u,
-                                              double v) {
-    if (heat->division.root[body] == FIBRAD_NONE) return FIBRAD_NONE;
-    uint32_t node = heat->division.node[heat->division.root[body] + own];
-    if (node == 0) return FIBRAD_NONE;
+/* The patch of a body at u, v, 0 to 1, of one of its own fours, fine or not. patch: the own patch there. */
+static inline uint32_t fibrad_heat_patch_in_four(const fibrad_heat *heat, uint32_t body, uint32_t patch, double u,
+                                                 double v) {
+    const uint32_t root = heat->division.root[body];
+    uint32_t node = root != FIBRAD_NONE ? heat->division.node[root + patch / FIBRAD_HEAT_FOUR] : 0;
+    if (node == 0) return heat->first[body] + patch;
     while (node < FIBRAD_HEAT_FINE) {
         const uint32_t right = 2 * u >= 1, up = 2 * v >= 1;
         u = 2 * u - right, v = 2 * v - up;
         node = heat->division.node[node + 2 * right + up];
     }
-    return FIBRAD_HEAT_FOUR * (node - FIBRAD_HEAT_FINE) + (2 * u >= 1 ? 2u : 0u) + (2 * v >= 1 ? 1u : 0u);
+    return fibrad_heat_first_fine(heat, body) +
+           FIBRAD_HEAT_FOUR * (node - FIBRAD_HEAT_FINE - heat->division.first_four[body]) + (2 * u >= 1 ? 2u : 0u) +
+           (2 * v >= 1 ? 1u : 0u);
 }
 
-/* The fine patch of a sphere at a place on a face of its cube [squares]. patch: the own patch there. FIBRAD_NONE: there
- * is no fine patch. */
-static inline uint32_t fibrad_heat_fine_on_face(const fibrad_heat *heat, uint32_t sphere, uint32_t patch, double x,
-                                                double y) {
-    const double u = x / 2 - fibrad_min(fibrad_floor(x / 2), heat->side / 2 - 1),
-                 v = y / 2 - fibrad_min(fibrad_floor(y / 2), heat->side / 2 - 1);
-    return fibrad_heat_fine_patch(heat, sphere, patch / FIBRAD_HEAT_FOUR, u, v);
-}
-
-/* The patch of a sphere at a place on a face of its cube [squares], fine or not. patch: as above. */
+/* The patch of a sphere at a place on a face of its cube [squares], fine or not. patch: the own patch there. */
 static inline uint32_t fibrad_heat_patch_on_face(const fibrad_heat *heat, uint32_t sphere, uint32_t patch,
                                                  const double at[2]) {
-    const uint32_t fine = heat->division.root[sphere] != FIBRAD_NONE
-                              ? fibrad_heat_fine_on_face(heat, sphere, patch, at[0], at[1])
-                              : FIBRAD_NONE;
-    if (fine == FIBRAD_NONE) return heat->first[sphere] + patch;
-    return fibrad_heat_first_fine(heat, sphere) + (fine - FIBRAD_HEAT_FOUR * heat->division.first_four[sphere]);
+    const double last = heat->side / 2 - 1, u = at[0] / 2, v = at[1] / 2;
+    return fibrad_heat_patch_in_four(heat, sphere, patch, u - fibrad_min(fibrad_floor(u), last),
+                                     v - fibrad_min(fibrad_floor(v), last));
 }
 
 /* The patch of a sphere at a normal. */
@@ -407,6 +413,14 @@ static inline uint32_t fibrad_heat_patch_at(const fibrad_heat *heat, uint32_t sp
     const uint32_t face = fibrad_patch_place(normal, heat->side, at);
     return fibrad_heat_patch_on_face(heat, sphere,
                                      fibrad_patch_number(face, (uint32_t)at[0], (uint32_t)at[1], heat->side), at);
+}
+
+/* The number of a patch of a body among all fine patches. FIBRAD_NONE: the patch is not fine. */
+static inline uint32_t fibrad_heat_fine_number(const fibrad_heat *heat, uint32_t body, uint32_t patch) {
+    const uint32_t begin = fibrad_heat_first_fine(heat, body);
+    return patch >= begin && patch < heat->first[body + 1]
+               ? FIBRAD_HEAT_FOUR * heat->division.first_four[body] + (patch - begin)
+               : FIBRAD_NONE;
 }
 
 /* Whether an own four of a sphere is divided. */
@@ -421,122 +435,5 @@ static inline uint32_t fibrad_heat_part_begin(const fibrad_heat *heat, uint32_t 
 
 /* Whether the scene is still the one in which the beams were followed. */
 static inline bool fibrad_heat_scene_kept(const fibrad_heat *heat) { return heat->scene->hash == heat->hash; }
-
-/* Whether a body is an insulated wall. */
-static inline bool fibrad_heat_is_insulated(const fibrad_heat *heat, uint32_t body) {
-    return body >= heat->spheres && heat->sources.insulated[body - heat->spheres];
-}
-
-/* Whether a body is a wall that sends back all that arrives: it is insulated, or its emissivity is 0. */
-static inline bool fibrad_heat_reflects(const fibrad_heat *heat, uint32_t body) {
-    return body >= heat->spheres && heat->sources.emissivity[body] == 0;
-}
-
-/* Whether the surface of a body has more than one temperature. */
-static inline bool fibrad_heat_conducts(const fibrad_heat *heat, uint32_t body) {
-    return body < heat->spheres && heat->sources.unevenness[body] > 0;
-}
-
-/* conduct.c: the fraction of the light on a patch that leaves from the same patch. It is reflected there, or it is
- * emitted because the patch is hotter than the rest of the body. */
-double fibrad_heat_sent_back(const fibrad_heat *heat, uint32_t body);
-
-/* Finds the unevenness of all spheres from their emissions. Returns the largest relative change. If the change is not
- * above `least`, the unevenness stays. */
-double fibrad_heat_find_unevenness(fibrad_heat *heat, double least);
-
-/* Sends, from the patches of a sphere, what one preconditioned iteration would change of the pattern of J, plus
- * `shift`. Returns the product of the residual and the change without `shift`. The function overwrites
- * heat->solution.gathered of the sphere. */
-double fibrad_heat_pattern_residual(fibrad_heat *heat, uint32_t sphere, double shift);
-
-/* Adds to the net flows of a sphere what stands for the pattern of light that its patches have absorbed. Returns the
- * sum over the patches of residual times change of a J that is even. */
-double fibrad_heat_add_absorbed(fibrad_heat *heat, uint32_t sphere);
-
-/* Takes it off again. */
-void fibrad_heat_take_absorbed_off(fibrad_heat *heat, uint32_t sphere);
-
-/* Whether heat enters surfaces at places, as light or through contacts. */
-static inline bool fibrad_heat_is_entered(const fibrad_heat *heat) {
-    return heat->sources.absorbed != NULL || heat->spots.entering != NULL;
-}
-
-/* Finds what contacts conduct at their places, with the present radiosities and emissions. Returns the largest change
- * of a flow over the largest flow. */
-double fibrad_heat_find_spots(fibrad_heat *heat);
-
-/* Lets the flows that were found enter the spheres. */
-void fibrad_heat_place_flows(fibrad_heat *heat);
-
-/* Adds to `to` what bodies gain through contacts if the means of all surfaces are equal. */
-void fibrad_heat_add_offsets(const fibrad_heat *heat, double *to);
-
-/* The light that a body has absorbed. */
-static inline double fibrad_heat_absorbed(const fibrad_heat *heat, uint32_t body) {
-    double sum = 0;
-    for (uint32_t a = heat->first[body]; a < heat->first[body + 1] && heat->sources.absorbed != NULL; a++)
-        sum += heat->sources.absorbed[a];
-    return sum;
-}
-
-/* A patch that sends back all that arrives has few links to others. Too much of what arrives by a link goes back by it:
- * 1/k of it if k links are spread at random. So exchange areas of such links are taken to be larger, by the share of
- * the link in the area of the patch. Rays are spread more evenly than random ones. Beams of one direction are parallel,
- * so that several of them connect the same two surfaces. docs/methods_heat.md section 7. */
-#define FIBRAD_HEAT_RAYS_RETURN  .7
-#define FIBRAD_HEAT_BEAMS_RETURN 1.5
-static inline double fibrad_heat_enlarged(double area, double factor, double back_from, double back_to) {
-    return area * (1 + factor * area * (back_from + back_to));
-}
-
-/* The same for a ray of walls. */
-static inline double fibrad_heat_ray_area(const fibrad_heat *heat, const fibrad_heat_ray *ray) {
-    const double *back = heat->solution.back;
-    const uint32_t others = fibrad_heat_others(heat);
-    return fibrad_heat_enlarged(ray->area, FIBRAD_HEAT_RAYS_RETURN, back[ray->from - others], back[ray->to - others]);
-}
-
-/* The power that a body absorbs at its patches. Radiosities are differences from that of the surroundings. */
-static inline double fibrad_heat_absorbs(const fibrad_heat *heat, uint32_t body) {
-    const double t = heat->sources.surroundings, black = heat->sources.sigma * (t * t) * (t * t);
-    double arrives = 0;
-    for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++)
-        arrives += heat->solution.area[a] * (heat->solution.radiosity[a] + black) + heat->solution.net[a];
-    return heat->sources.emissivity[body] * arrives;
-}
-
-/* The sum over the patches of a sphere of A p g p, p being the search direction without its mean. */
-double fibrad_heat_pattern_curvature(const fibrad_heat *heat, uint32_t sphere);
-
-/* Finds heat->solution.span of all spheres. The function overwrites heat->solution.gathered, source and direction. */
-void fibrad_heat_find_spans(fibrad_heat *heat);
-
-/* Makes heat->rings and heat->normal. */
-void fibrad_heat_make_rings(fibrad_heat *heat);
-
-/* Finds the hottest and the coldest places of the spheres from `begin` to `end` - 1 in heat->sequence. The solution has
- * ended, and no direction was set since. */
-void fibrad_heat_find_extremes(const fibrad_heat *heat, uint32_t begin, uint32_t end, fibrad_rings_work *work);
-
-/* solve.c: prepares the first sweep of a solution. */
-void fibrad_heat_start(fibrad_heat *heat);
-
-/* Whether a body in contact has an emission that is an unknown beside its radiosities. */
-static inline bool fibrad_heat_is_joined(const fibrad_heat *heat, uint32_t body) {
-    return heat->contacts.count > 0 && heat->contacts.kind[body] == FIBRAD_CONTACT_FREE;
-}
-
-/* What a body gains through contacts. */
-static inline double fibrad_heat_conducted(const fibrad_heat *heat, uint32_t body) {
-    return heat->contacts.count > 0 ? heat->contacts.gain[body] : 0;
-}
-
-/* The temperature of an emission, which is relative to that of the surroundings. NaN: the temperature would be below
- * zero. */
-static inline double fibrad_heat_temperature(const fibrad_heat *heat, double emission) {
-    const double t0 = heat->sources.surroundings, power = emission / heat->sources.sigma + (t0 * t0) * (t0 * t0);
-    return power >= 0 ? fibrad_sqrt(fibrad_sqrt(power)) : __builtin_nan("");
-}
 
 #endif

@@ -1,12 +1,12 @@
-/* hits_lanes.c - the patches that the beams of a sphere and the rays of walls connect. Compiled once per instruction
- * set. SPDX-License-Identifier: MIT */
+/* patch_beams_lanes.c - the patches that the beams of a sphere and the rays of walls connect. Compiled once per
+ * instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/random.h"
-#include "heat/fine.h"
-#include "heat/hits_lanes.h"
-#include "heat/pencils.h"
+#include "patches/subdivision.h"
+#include "patches/patch_beams_lanes.h"
+#include "patches/pencils.h"
 #include "sample/sphere_patch.h"
-#include "heat/wall_patch.h"
+#include "patches/wall_patch.h"
 #include "ray/tracer.h"
 #include "row/mesh_share_lanes.h"
 #include "sample/direction.h"
@@ -207,9 +207,10 @@ static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, fibrad_workspace *wo
         const uint32_t sphere = fibrad_work_sphere(work, window.disc[p]), from = leave[window.point[p]];
         const uint32_t entry = work->near.entry[work->disc.near[window.disc[p]]];
         const bool left_out = fibrad_heat_is_divided(heat, work->place, from / FIBRAD_HEAT_FOUR);
-        const uint32_t fine = heat->division.root[sphere] != FIBRAD_NONE
-                                  ? fibrad_heat_fine_on_face(heat, sphere, patch[p], window.x[p], window.y[p])
-                                  : FIBRAD_NONE;
+        uint32_t fine = FIBRAD_NONE;
+        if (heat->division.root[sphere] != FIBRAD_NONE)
+            fine = fibrad_heat_fine_number(
+                heat, sphere, fibrad_heat_patch_on_face(heat, sphere, patch[p], (double[]){window.x[p], window.y[p]}));
         if (left_out || fine != FIBRAD_NONE) fibrad_entries_add(&work->entries, entry, k, -1);
         if (left_out) continue;
         *beam++ = fine != FIBRAD_NONE ? fine_beam(heat, work, k, (uint16_t)from, fine)
@@ -348,15 +349,14 @@ static bool keep_fine_ray(const fibrad_heat *heat, fibrad_workspace *work, uint3
     if (hit.sphere != FIBRAD_NONE && !sphere && hit.distance == 0 && scene->container.cuts) return true;
     *next = beam + 1;
     if (hit.sphere != FIBRAD_NONE) {
-        double place[2];
-        const uint32_t face = fibrad_patch_place(hit.normal, heat->side, place);
-        const uint32_t patch = fibrad_patch_number(face, (uint32_t)place[0], (uint32_t)place[1], heat->side);
-        const uint32_t fine = fibrad_heat_fine_on_face(heat, hit.sphere, patch, place[0], place[1]);
+        const uint32_t patch = fibrad_heat_patch_at(heat, hit.sphere, hit.normal);
+        const uint32_t fine = fibrad_heat_fine_number(heat, hit.sphere, patch);
         if (fine != FIBRAD_NONE) {
             *beam = fine_beam(heat, work, ray->k, beam->from, fine);
             return true;
         }
-        beam->entry = fibrad_entries_of(&work->entries, hit.sphere), beam->to = (uint16_t)patch;
+        beam->entry = fibrad_entries_of(&work->entries, hit.sphere),
+        beam->to = (uint16_t)(patch - heat->first[hit.sphere]);
         fibrad_entries_add(&work->entries, beam->entry, ray->k, 1);
         return true;
     }

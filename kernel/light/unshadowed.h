@@ -1,10 +1,10 @@
-/* clear.h - the part of a window that no triangle hides from the light. SPDX-License-Identifier: MIT
+/* unshadowed.h - the part of a window that no triangle hides from the light. SPDX-License-Identifier: MIT
  *
  * The part is a list of convex polygons, which do not overlap. A triangle that comes before the sphere is taken away
  * from each polygon. What is left of a polygon is up to one polygon for each side of the triangle. Lengths are in radii
  * of the window. */
-#ifndef FIBRAD_LIGHT_CLEAR_H
-#define FIBRAD_LIGHT_CLEAR_H
+#ifndef FIBRAD_LIGHT_UNSHADOWED_H
+#define FIBRAD_LIGHT_UNSHADOWED_H
 
 #include "workspace/workspace.h"
 
@@ -26,30 +26,41 @@ static inline bool fibrad_light_line_through(const double a[2], const double b[2
     return true;
 }
 
+/* The area of a convex polygon, above 0 if its corners run counter-clockwise. */
+static inline double fibrad_light_area(double (*const corner)[2], uint32_t corners) {
+    double sum = 0;
+    for (uint32_t k = 1; k + 1 < corners; k++) {
+        const double *a = corner[0], *b = corner[k], *c = corner[k + 1];
+        sum += .5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+    }
+    return sum;
+}
+
 /* A convex polygon, counter-clockwise. Side k goes from corner k to the next corner. Sides of the square about the
  * window have no line: their n is 0. */
-#define FIBRAD_CLEAR_SIDES 32u
-typedef struct fibrad_clear_polygon {
+#define FIBRAD_UNSHADOWED_SIDES 32u
+typedef struct fibrad_unshadowed_polygon {
     uint32_t sides;
-    double corner[FIBRAD_CLEAR_SIDES][2];
-    fibrad_light_line line[FIBRAD_CLEAR_SIDES];
-} fibrad_clear_polygon;
+    double corner[FIBRAD_UNSHADOWED_SIDES][2];
+    fibrad_light_line line[FIBRAD_UNSHADOWED_SIDES];
+} fibrad_unshadowed_polygon;
 
-typedef struct fibrad_clear {
+typedef struct fibrad_unshadowed {
     bool whole; /* no triangle comes before the window, and there are no polygons */
     uint32_t count, room;
-    fibrad_clear_polygon *polygon; /* [room] */
-} fibrad_clear;
+    fibrad_unshadowed_polygon *polygon; /* [room] */
+} fibrad_unshadowed;
 
-#define FIBRAD_CLEAR_FIRST 16u /* polygons for which there is room at first */
+#define FIBRAD_UNSHADOWED_FIRST 16u /* polygons for which there is room at first */
 
 /* FIBRAD_E_WORK. space->needed.extra is set so that there is twice the room. */
-int fibrad_clear_missed(fibrad_workspace *space, const fibrad_clear *clear);
+int fibrad_unshadowed_missed(fibrad_workspace *space, const fibrad_unshadowed *unshadowed);
 
 /* Takes away what triangle number `face` of space->met->faces hides. False: there is no room. */
-bool fibrad_clear_hide(fibrad_clear *clear, const fibrad_workspace *space, const double frame[9], uint32_t face);
+bool fibrad_unshadowed_hide(fibrad_unshadowed *unshadowed, const fibrad_workspace *space, const double frame[9],
+                            uint32_t face);
 
 /* Whether no triangle hides a place. */
-bool fibrad_clear_holds(const fibrad_clear *clear, const double at[2]);
+bool fibrad_unshadowed_holds(const fibrad_unshadowed *unshadowed, const double at[2]);
 
 #endif
