@@ -287,7 +287,7 @@ TEST(frames_periods_and_ids) {
     input = "/dev/null";
 }
 
-/* Reads the lines i,T_K,q_W of a file: their number, their sum, the largest q, and the line of one body. */
+/* Reads the lines i,T_K,q_W of a file: their number, their sum, the largest q, and the line of one wall. */
 static int read_powers(const char *path, double *sum, double *largest, long wanted, double *temperature,
                        double *power) {
     char *text = read_file(path), *line = strchr(text, '\n');

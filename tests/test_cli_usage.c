@@ -363,7 +363,7 @@ static const union word rank_rows[RANKS][WORDS] = {{W(0x3153574f52424946),
                                                     R(.5),
                                                     R(.75),
                                                     R(.125),
-                                                    R(.125), /* f, body, escaped */
+                                                    R(.125), /* f, wall, escaped */
                                                     R(0),
                                                     R(.0625),
                                                     R(.01),

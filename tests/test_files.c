@@ -24,7 +24,7 @@ static const char *frame(const char *units, const char *step, const char *atoms,
 
 #define HEAT "heat", "--emissivity", "0.6", "--temperature", "T", "--directions", "21", "--patches", "24"
 
-/* The power of a body or sphere in a .csv of heat. The beginning or the end of its line tells which. */
+/* The power of a wall or sphere in a .csv of heat. The beginning or the end of its line tells which. */
 static double power_of(const char *path, const char *begin, const char *end) {
     char *text = read_file(path);
     double t, q = NAN;

@@ -30,36 +30,36 @@ static const unsigned char wanted[] = {1, 0, 1};
 static double row_sum[] = {0.1 + 1.0 / 3, 0, 0.0755868184216124}, escaped[] = {0.5, 0, 0.25}, error[] = {0.03, 0, 0.04};
 static double wall[3][2] = {{0.0625, 0.25}, {0, 0.125}, {0}}, area[] = {100, INFINITY};
 static const fibrad_bed_factors factors = {.matrix = {.n = 3,
-                                                      .bodies = 2,
+                                                      .walls = 2,
                                                       .start = start,
                                                       .col = col,
                                                       .f = f,
                                                       .escaped = escaped,
                                                       .beyond = (double[3]){0},
                                                       .error = error,
-                                                      .body = &wall[0][0]},
-                                           .body_area = area};
+                                                      .wall = &wall[0][0]},
+                                           .wall_area = area};
 static const struct walls walls = {
     .count = 2,
-    .body = {{.kind = FIBRAD_BODY_CYLINDER, .cylinder = {0, 0, 9}}, {.kind = FIBRAD_BODY_PLANE, .plane = {2, 0, -9}}}};
+    .wall = {{.kind = FIBRAD_WALL_CYLINDER, .cylinder = {0, 0, 9}}, {.kind = FIBRAD_WALL_PLANE, .plane = {2, 0, -9}}}};
 
 static char text[20000]; /* what a writer wrote */
 
 static double kelvins[] = {600, 1.0 / 3, 1e-300}, watts[] = {-1e-3, 2.5, 1e300}, wall_kelvins[] = {900, 77},
               wall_watts[] = {-0.1, 1e17};
 static fibrad_heat_sources sources = {
-    .temperature = kelvins, .emissivity = r, .body_temperature = wall_kelvins, .surroundings = 300};
+    .temperature = kelvins, .emissivity = r, .wall_temperature = wall_kelvins, .surroundings = 300};
 static double missed[] = {.25, .5, .75}, wall_missed[] = {2, NAN}, none_missed[] = {0, 1, 0};
 static fibrad_heat_result result = {.power = watts,
-                                    .body_power = wall_watts,
+                                    .wall_power = wall_watts,
                                     .surroundings_power = 0.1,
                                     .surroundings_error = 0.125,
                                     .temperature = kelvins,
-                                    .body_temperature = wall_kelvins,
+                                    .wall_temperature = wall_kelvins,
                                     .power_error = missed,
-                                    .body_error = wall_missed,
+                                    .wall_error = wall_missed,
                                     .temperature_error = none_missed,
-                                    .body_temperature_error = none_missed};
+                                    .wall_temperature_error = none_missed};
 
 static void write_text(write_function *write, const struct contents *what, bool first) {
     OWNED_FILE *file = tmpfile();
@@ -182,8 +182,8 @@ TEST(csv_has_walls_below_minus_one) {
     const double beyond[] = {0.125, 0, 0}, none[] = {INFINITY, INFINITY}, emissivity[] = {1, 1, 1};
     fibrad_bed_factors cut = factors;
     cut.matrix.beyond = beyond;
-    cut.body_area = none;
-    const fibrad_exchange_rule grey = {.emissivity = emissivity, .body_emissivity = none};
+    cut.wall_area = none;
+    const fibrad_exchange_rule grey = {.emissivity = emissivity, .wall_emissivity = none};
     struct walls nameless = {.count = 2};
     write_text(write_csv, &(struct contents){.bed = &bed, .factors = &cut, .walls = &nameless, .grey = &grey}, true);
     assert_begins(text, "i,j,D,body\n");
@@ -198,7 +198,7 @@ TEST(csv_has_walls_below_minus_one) {
 TEST(rows_of_walls_come_after_spheres) {
     static const double between[] = {0.5, 0.25, NAN, NAN}, leaves[] = {0.125, NAN}, off[] = {0.0625, NAN};
     fibrad_bed_factors whole = factors;
-    whole.matrix.body_body = between, whole.matrix.body_escaped = leaves, whole.matrix.body_error = off;
+    whole.matrix.wall_wall = between, whole.matrix.wall_escaped = leaves, whole.matrix.wall_error = off;
     const struct contents what = {.bed = &bed, .factors = &whole, .walls = &walls};
     write_text(write_csv, &what, true);
     const char *rows = strstr(text, "\n-2,0,");
@@ -407,7 +407,7 @@ TEST(numpy_files_have_all_arrays) {
         ck_assert_mem_eq(at, "PK\1\2", 4);
     }
     fibrad_bed_factors whole = factors; /* with rows of walls */
-    whole.matrix.body_body = &wall[0][0], whole.matrix.body_escaped = wall[1], whole.matrix.body_error = wall[2];
+    whole.matrix.wall_wall = &wall[0][0], whole.matrix.wall_escaped = wall[1], whole.matrix.wall_error = wall[2];
     what.factors = &whole;
     write_text(write_npz, &what, true);
     const char *at = text;
@@ -664,10 +664,10 @@ TEST(outputs_of_frames_are_written_whole) {
         ck_assert_int_eq(outputs_close(&outputs, status), status);
         ck_assert_int_eq(count_files(), failed ? 3 : 4);
         write_heat(write_heat_csv, &frames[1]);
-        char *alone = strdup(text), *body = strchr(alone, '\n') + 1;
+        char *alone = strdup(text), *rest = strchr(alone, '\n') + 1;
         OWNED char *joined = malloc(2 * sizeof text);
         write_heat(write_heat_csv, &frames[0]);
-        snprintf(joined, 2 * sizeof text, "%s%s", text, body);
+        snprintf(joined, 2 * sizeof text, "%s%s", text, rest);
         if (!failed) expect_file(joined);
         unlink(path);
         snprintf(path, sizeof path, "%s/q.10.csv", folder);

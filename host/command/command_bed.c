@@ -232,7 +232,7 @@ static int bed_frame(void *bed_request, struct bed *bed) {
             marks ? targets_mark(request->targets, bed->ids ? bed->id : NULL, bed->n, where, marks) : message_memory();
     }
     request->options.wanted = marks;
-    request->options.bodies = 1;
+    request->options.walls = 1;
     if (!status) status = bed_matrix(request, bed, &factors);
     fibrad_bed_free(factors);
     free(marks);

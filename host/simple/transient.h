@@ -30,21 +30,21 @@ int fibrad_radiation_make(fibrad_radiation **radiation, const fibrad_scene_confi
 struct fibrad_transient {
     fibrad_transient_config config;
     fibrad_run run;
-    uint32_t n, bodies;
+    uint32_t n, walls;
     fibrad_fault fault;
     fibrad_radiation *radiation;          /* the scene, the threads and, unless the method is FACTORS, the beams */
     bool placed;                          /* false: the last move has failed in its trace */
     double *doubles;                      /* the block of all arrays of doubles */
     double *area;                         /* [n] */
-    double *emissivity, *body_emissivity; /* [n], [bodies] of the network or of the law */
+    double *emissivity, *wall_emissivity; /* [n], [walls] of the network or of the law */
     fibrad_network *network;              /* NULL: none yet */
     /* The last correction: power by patches minus power by factors. */
     bool corrected;                       /* there is one */
-    double *correction, *wall_correction; /* [n], [bodies] */
+    double *correction, *wall_correction; /* [n], [walls] */
     double surroundings_correction;
-    double *compared, *wall_compared; /* [n], [bodies] powers by factors at the last correction */
+    double *compared, *wall_compared; /* [n], [walls] powers by factors at the last correction */
     double *by_patches;               /* [n] powers by patches at the last correction */
-    double *wall_power;               /* [bodies] powers by factors now */
+    double *wall_power;               /* [walls] powers by factors now */
     /* Steps (stepper.c). */
     double step;                   /* proposed for the next span [s]; 0: none */
     double *now;                   /* [n] temperatures at the beginning of the step */
@@ -57,7 +57,7 @@ struct fibrad_transient {
     double *found, *power;         /* [n] temperatures and powers of the linear problem */
     double *solution;              /* [n] temperatures of the stage, which keep the energy */
     double *conducts;              /* [n] what contacts conduct from a sphere for each kelvin [W/K] */
-    double *wall;                  /* [4 bodies] temperatures, powers of each stage, energies of the span */
+    double *wall_stage;            /* [4 walls] temperatures, powers of each stage, energies of the span */
     bool busy;                     /* within a call, see fibrad_transient_begin */
 };
 
