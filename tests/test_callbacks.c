@@ -121,6 +121,23 @@ LOOP_TEST(observers_that_move, 3) {
     ck_assert_mem_eq(temperature[0], temperature[1], sizeof temperature[0]);
 }
 
+/* A move that is stopped in its trace leaves a bed without powers, until a move succeeds. */
+LOOP_TEST(moves_that_stop_leave_no_powers, 2) {
+    OWNED_CUBE c;
+    make_cube(&c);
+    const fibrad_transient_config config = {.method = _i, .heat = coarse, .exchange = {.directions = 20, .paths = 50}};
+    fibrad_run run = {.threads = 1, .progress = show, .context = &c};
+    fibrad_span span = {.temperature = c.temperature, .capacity = c.capacity, .duration = 1e-9};
+    assert_ok(fibrad_transient_new(&c.transient, NULL, &c.spheres, &config, &run));
+    assert_ok(fibrad_transient_advance(c.transient, &c.sources, &span));
+    c.calls = 0, c.ask = 1;
+    ck_assert_int_eq(fibrad_transient_move(c.transient, NULL, &c.spheres), FIBRAD_E_CANCELLED);
+    c.ask = 0;
+    ck_assert_int_eq(fibrad_transient_advance(c.transient, &c.sources, &span), FIBRAD_E_STATE);
+    assert_ok(fibrad_transient_move(c.transient, NULL, &c.spheres));
+    assert_ok(fibrad_transient_advance(c.transient, &c.sources, &span));
+}
+
 /* Laws that never settle, or go wrong: emissivities up and down; NaN at the second call. */
 static void restless(void *calls, const double *temperature, const double *wall_temperature, double *emissivity,
                      double *wall_emissivity) {

@@ -1,4 +1,5 @@
 /* factors.c - view factors, exchange factors and displacements of whole beds. SPDX-License-Identifier: MIT */
+#include <omp.h>
 #include <stdlib.h>
 
 #include "simple/job.h"
@@ -117,7 +118,7 @@ static int run_exchange(fibrad_job *job, const fibrad_exchange_rule *rule, const
     int status = check_spheres(job, rule);
     if (status) return status;
     fibrad_exchange_rule walls = *rule;
-    walls.paths = fibrad_job_wall_paths(job, PER_PATH * (uint64_t)(rule->paths ? rule->paths : 400));
+    walls.paths = fibrad_job_wall_paths(job, PER_PATH * (uint64_t)(rule->paths ? rule->paths : FIBRAD_PATHS_DEFAULT));
     status = plan_matrix(job, options, &walls, wall_row, &how);
     if (status) return status;
     how.kind = FIBRAD_ROWS_EXCHANGE;
@@ -139,6 +140,18 @@ static int factors_of_bed(const fibrad_scene_config *config, const fibrad_sphere
     if (!status) status = check_options(options, grey ? 0 : 1);
     if (!status) status = fibrad_job_scratch(&job, options->scratch);
     if (!status) status = grey ? run_exchange(&job, rule, options, factors) : run_options(&job, options, factors);
+    fibrad_job_close(&job);
+    return status;
+}
+
+int fibrad_job_exchange_of(fibrad_scene *scene, const fibrad_exchange_rule *rule, fibrad_run *run,
+                           fibrad_bed_factors **factors) {
+    static const fibrad_bed_options defaults;
+    fibrad_job job = {.scene = scene, .run = run, .begun = omp_get_wtime()};
+    fibrad_scene_describe(scene, &job.facts);
+    run->fault = (fibrad_fault){job.facts.spheres, job.facts.spheres, UINT32_MAX, 0, 0};
+    int status = fibrad_team_open(&job.team, run);
+    if (!status) status = run_exchange(&job, rule, &defaults, factors);
     fibrad_job_close(&job);
     return status;
 }

@@ -82,33 +82,6 @@ void *fibrad_scratch_resize(void *context, void *block, size_t size) {
     return larger;
 }
 
-int fibrad_heap_triangles(fibrad_triangle_copy *copy, const struct fibrad_triangles *given) {
-    *copy = (fibrad_triangle_copy){.block = NULL};
-    if (!given || given->n == 0) return FIBRAD_OK;
-    const size_t n = given->n, vertices = given->vertices, stride = given->stride ? given->stride : 1;
-    const size_t sides = given->back ? 2 : 1;
-    copy->block = malloc(3 * vertices * sizeof(double) + (3 + sides) * n * sizeof(uint32_t));
-    if (!copy->block) return FIBRAD_E_MEMORY;
-    double *x = copy->block;
-    uint32_t *corner = (void *)(x + 3 * vertices);
-    for (size_t v = 0; v < vertices; ++v)
-        x[3 * v] = given->x[v * stride], x[3 * v + 1] = given->y[v * stride], x[3 * v + 2] = given->z[v * stride];
-    memcpy(corner, given->corner, 3 * n * sizeof *corner);
-    memcpy(corner + 3 * n, given->front, n * sizeof *corner);
-    if (given->back) memcpy(corner + 4 * n, given->back, n * sizeof *corner);
-    copy->triangles = (struct fibrad_triangles){.x = x,
-                                                .y = x + 1,
-                                                .z = x + 2,
-                                                .stride = 3,
-                                                .vertices = given->vertices,
-                                                .corner = corner,
-                                                .front = corner + 3 * n,
-                                                .back = given->back ? corner + 4 * n : NULL,
-                                                .n = given->n,
-                                                .period = {given->period[0], given->period[1], given->period[2]}};
-    return FIBRAD_OK;
-}
-
 typedef struct fibrad_triangles fibrad_triangles;
 
 #define STRUCTURE(name)                                                                                                \

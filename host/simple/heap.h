@@ -12,15 +12,6 @@
 int fibrad_heap_scene(fibrad_scene **scene, void **block, const fibrad_scene_config *config,
                       const fibrad_spheres *spheres, fibrad_fault *fault);
 
-/* A copy of triangles. The caller frees the block. */
-typedef struct fibrad_triangle_copy {
-    struct fibrad_triangles triangles;
-    void *block;
-} fibrad_triangle_copy;
-
-/* Copies triangles. Without triangles (NULL or 0) and after an error copy->block is NULL. Errors: _MEMORY. */
-int fibrad_heap_triangles(fibrad_triangle_copy *copy, const struct fibrad_triangles *given);
-
 /* A block that grows. Zeroed: empty, on the heap. */
 typedef struct fibrad_scratch {
     bool filed;  /* the block is a mapped file without a name */

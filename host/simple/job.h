@@ -9,17 +9,21 @@
 
 typedef struct fibrad_job {
     fibrad_scene *scene;
-    void *block; /* of the scene */
+    void *block; /* of the scene; NULL: the scene is not the job's */
     fibrad_scene_facts facts;
     fibrad_team team;
     fibrad_run *run;
-    const fibrad_spheres *spheres;
-    const char *scratch; /* a folder for rows and matrix; NULL: in memory */
-    double begun;        /* time of fibrad_job_open [s] */
+    const fibrad_spheres *spheres; /* for beams */
+    const char *scratch;           /* a folder for rows and matrix; NULL: in memory */
+    double begun;                  /* time of fibrad_job_open [s] */
 } fibrad_job;
 
 /* Makes a scene and a team. Close the job also after an error. Errors: as fibrad_view_factors; run->fault is set. */
 int fibrad_job_open(fibrad_job *job, const fibrad_scene_config *config, const fibrad_spheres *spheres, fibrad_run *run);
+
+/* The exchange factors of a scene that stays the caller's, as fibrad_exchange_factors with the default options. */
+int fibrad_job_exchange_of(fibrad_scene *scene, const fibrad_exchange_rule *rule, fibrad_run *run,
+                           fibrad_bed_factors **factors);
 
 /* Keeps rows and matrix in files of a folder. folder NULL: in memory. Errors: as fibrad_scratch_open. */
 int fibrad_job_scratch(fibrad_job *job, const char *folder);

@@ -3,25 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "simple/heap.h"
-#include "simple/team.h"
+#include "simple/transient.h"
 
 enum { PARTS = 16, TASKS_AT_ONCE = 16 };
-
-struct fibrad_radiation {
-    fibrad_team team;
-    fibrad_heat_config config;
-    fibrad_heat *heat; /* NULL: none yet */
-    void *heat_block;
-    size_t heat_size; /* bytes of heat_block; 0: none */
-    fibrad_scene *scene;
-    void *scene_block;
-    uint32_t n;
-    fibrad_fault fault;
-    double *light;  /* [patches] of the last fibrad_radiation_shine; NULL: none */
-    double *places; /* memory of fibrad_heat_sources.contact_places in the last solution; NULL: none */
-    bool busy;      /* within a call */
-};
 
 /* Begins a call that ends with end_call. A function of the caller that runs within a call can begin no other. */
 static int begin_call(fibrad_radiation *r) {
@@ -85,7 +69,7 @@ static int move_bed(fibrad_radiation *r, const fibrad_scene_config *config, cons
     r->fault = (fibrad_fault){spheres->n, spheres->n, UINT32_MAX, 0, 0};
     if (r->heat && spheres->n != r->n) return FIBRAD_E_ARGUMENT;
     int status = fibrad_heap_scene(&scene, &block, config, spheres, &r->fault);
-    if (!status) status = move_heat(r, scene);
+    if (!status && r->traced) status = move_heat(r, scene);
     if (status) {
         free(block);
         return status;
@@ -94,7 +78,7 @@ static int move_bed(fibrad_radiation *r, const fibrad_scene_config *config, cons
     r->scene = scene;
     r->scene_block = block;
     r->n = spheres->n;
-    return trace_all(r);
+    return r->traced ? trace_all(r) : FIBRAD_OK;
 }
 
 int fibrad_radiation_move(fibrad_radiation *r, const fibrad_scene_config *config, const fibrad_spheres *spheres) {
@@ -103,8 +87,9 @@ int fibrad_radiation_move(fibrad_radiation *r, const fibrad_scene_config *config
     return status ? status : end_call(r, move_bed(r, config, spheres));
 }
 
-int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config *config, const fibrad_spheres *spheres,
-                         const fibrad_heat_config *heat_config, fibrad_run *run) {
+int fibrad_radiation_make(fibrad_radiation **radiation, const fibrad_scene_config *config,
+                          const fibrad_spheres *spheres, const fibrad_heat_config *heat_config, bool traced,
+                          fibrad_run *run) {
     if (!radiation) return FIBRAD_E_ARGUMENT;
     fibrad_radiation *r = calloc(1, sizeof *r);
     *radiation = NULL;
@@ -112,6 +97,7 @@ int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config
     if (spheres) r->fault = (fibrad_fault){spheres->n, spheres->n, UINT32_MAX, 0, 0};
     if (heat_config) r->config = *heat_config;
     r->config.parts = PARTS;
+    r->traced = traced;
     int status = fibrad_team_open(&r->team, run);
     if (!status) status = fibrad_radiation_move(r, config, spheres);
     if (run) run->fault = r->fault;
@@ -120,6 +106,11 @@ int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config
     else
         *radiation = r;
     return status;
+}
+
+int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config *config, const fibrad_spheres *spheres,
+                         const fibrad_heat_config *heat_config, fibrad_run *run) {
+    return fibrad_radiation_make(radiation, config, spheres, heat_config, true, run);
 }
 
 static int sweep_beams(void *heat, int thread, uint32_t part) {

@@ -231,7 +231,7 @@ static int take_steps(struct stepper *m) {
         const double rest = span->duration - time;
         const uint64_t parts = (uint64_t)(rest / next * (1 - 1e-9)) + 1; /* equal parts: no last step is much shorter */
         const double step = rest / (double)parts;
-        int status = fibrad_team_report(&t->team, "steps", span->steps, 0);
+        int status = fibrad_team_report(&t->radiation->team, "steps", span->steps, 0);
         if (!status) status = compare(m, time);
         if (!status) status = try_step(m, time, step, &error);
         if (status && (fixed || status != FIBRAD_E_UNSOLVABLE)) return status;
@@ -302,8 +302,9 @@ static int powers_now(fibrad_transient *t, const fibrad_heat_sources *sources, f
     if (status) return status;
     fibrad_heat_sources given = *sources; /* a sphere has a temperature or a power, not both */
     given.power = NULL;
-    return t->radiation ? fibrad_radiation_solve(t->radiation, &given, result)
-                        : fibrad_network_solve(t->network, &t->team, sources, t->allowed, result);
+    return t->config.method == FIBRAD_TRANSIENT_FACTORS
+               ? fibrad_network_solve(t->network, &t->radiation->team, sources, t->allowed, result)
+               : fibrad_radiation_solve(t->radiation, &given, result);
 }
 
 int fibrad_transient_powers(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
@@ -319,13 +320,10 @@ int fibrad_transient_powers(fibrad_transient *t, const fibrad_heat_sources *sour
 }
 
 int fibrad_transient_sides(const fibrad_transient *t, double *flux, double *temperature) {
-    if (!t) return FIBRAD_E_ARGUMENT;
-    return t->radiation ? fibrad_radiation_sides(t->radiation, flux, temperature) : FIBRAD_E_STATE;
+    return t ? fibrad_radiation_sides(t->radiation, flux, temperature) : FIBRAD_E_ARGUMENT;
 }
 
 int fibrad_transient_shine(fibrad_transient *t, const fibrad_light_sources *sources, fibrad_light_result *result) {
-    if (!t) return FIBRAD_E_ARGUMENT;
-    if (!t->radiation) return FIBRAD_E_STATE;
     int status = fibrad_transient_begin(t);
     if (status) return status;
     status = fibrad_radiation_shine(t->radiation, sources, result);

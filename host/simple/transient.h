@@ -1,32 +1,43 @@
-/* transient.h - the fields of a bed whose temperatures change with time. SPDX-License-Identifier: MIT */
+/* transient.h - the fields of the heat problem of a bed, and of a bed whose temperatures change with time.
+ * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_SIMPLE_TRANSIENT_H
 #define FIBRAD_SIMPLE_TRANSIENT_H
 
-#include <stdbool.h>
-
-#include "simple/heap.h"
 #include "simple/network.h"
+#include "simple/team.h"
+
+struct fibrad_radiation {
+    fibrad_team team;
+    fibrad_heat_config config;
+    bool traced;       /* it has beams; else it is a scene and threads alone, and powers are FIBRAD_E_STATE */
+    fibrad_heat *heat; /* NULL: none yet */
+    void *heat_block;
+    size_t heat_size; /* bytes of heat_block; 0: none */
+    fibrad_scene *scene;
+    void *scene_block;
+    uint32_t n;
+    fibrad_fault fault;
+    double *light;  /* [patches] of the last fibrad_radiation_shine; NULL: none */
+    double *places; /* memory of fibrad_heat_sources.contact_places in the last solution; NULL: none */
+    bool busy;      /* within a call */
+};
+
+/* As fibrad_radiation_new. traced: as in fibrad_radiation. */
+int fibrad_radiation_make(fibrad_radiation **radiation, const fibrad_scene_config *config,
+                          const fibrad_spheres *spheres, const fibrad_heat_config *heat_config, bool traced,
+                          fibrad_run *run);
 
 struct fibrad_transient {
     fibrad_transient_config config;
     fibrad_run run;
-    fibrad_team team;
     uint32_t n, walls;
     fibrad_fault fault;
-    /* A copy of the bed: factors are computed later, when emissivities are known. */
-    fibrad_scene_config scene;
-    fibrad_wall *wall;       /* [walls] */
-    fibrad_plane opening[6]; /* [scene.openings] */
-    fibrad_triangle_copy mesh;
-    double *at[4]; /* [n] x, y, z, r */
-    bool named;    /* spheres have ids */
-    uint64_t *id;  /* [n] if named */
-    fibrad_scene_facts facts;
+    fibrad_radiation *radiation;          /* the scene, the threads and, unless the method is FACTORS, the beams */
+    bool placed;                          /* false: the last move has failed in its trace */
     double *doubles;                      /* the block of all arrays of doubles */
     double *area;                         /* [n] */
     double *emissivity, *wall_emissivity; /* [n], [walls] of the network or of the law */
     fibrad_network *network;              /* NULL: none yet */
-    fibrad_radiation *radiation;          /* powers by patches; NULL: the method is FACTORS */
     /* The last correction: power by patches minus power by factors. */
     bool corrected;                       /* there is one */
     double *correction, *wall_correction; /* [n], [walls] */
@@ -58,7 +69,7 @@ int fibrad_transient_begin(fibrad_transient *transient);
 int fibrad_transient_end(fibrad_transient *transient, int status);
 
 /* Computes factors for these sources unless the method needs none or they are there. Errors: as
- * fibrad_exchange_factors. */
+ * fibrad_exchange_factors; _STATE: the last move has failed in its trace. */
 int fibrad_transient_prepare(fibrad_transient *transient, const fibrad_heat_sources *sources);
 
 /* Corrects factors by patches at the temperatures of the sources, all of which are known. Does nothing if powers have
