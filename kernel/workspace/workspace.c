@@ -10,11 +10,9 @@
 #include "base/random.h"
 
 /* The sizes that a packed bed needs. */
-#define USUAL_DISCS    256u
-#define USUAL_ENTRIES  1024u
-#define ENOUGH_DISCS   64u
-#define ENOUGH_ENTRIES 256u
-#define MOST_SEEN      8192u /* octants of directions have lists of their own for up to so many near spheres */
+#define USUAL_DISCS   256u
+#define USUAL_ENTRIES 1024u
+#define MOST_SEEN     8192u /* octants of directions have lists of their own for up to so many near spheres */
 /* The smallest sizes that work. */
 #define LEAST_NEAR  16u
 #define LEAST_COUNT 4u
@@ -128,38 +126,24 @@ static fibrad_workspace *lay_out_work(fibrad_work *work, const fibrad_work_plan 
     return space;
 }
 
-static uint32_t less_of(uint32_t count, uint32_t least) {
-    const uint32_t less = count - count / 4;
-    return less > least && less < count ? less : least;
+static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
+
+/* The sizes of `best` divided by 2^times, but no less than `least`. */
+static fibrad_work_plan divided(const fibrad_work_plan *best, const fibrad_work_plan *least, int times) {
+    fibrad_work_plan plan = *least;
+    plan.near = larger(plan.near, best->near >> times);
+    plan.discs = larger(plan.discs, best->discs >> times);
+    plan.entries = larger(plan.entries, best->entries >> times);
+    if (best->extra >> times > plan.extra) plan.extra = best->extra >> times;
+    return plan;
 }
 
-/* Makes a plan smaller until it fits into `size` bytes. First the lists that only save time become shorter. Then the
- * larger one of discs and entries, down to `least`. False: the plan does not fit. */
-static bool shrink(fibrad_work_plan *plan, const fibrad_work_plan *least, size_t size) {
-    while (bytes_of(plan) > size) {
-        const bool entries_first = (size_t)plan->entries * 96 > (size_t)plan->discs * 768;
-        if (plan->legs > least->legs)
-            plan->legs = least->legs;
-        else if (plan->extra > least->extra && (plan->extra > (size_t)plan->near * 64 || plan->near == least->near))
-            plan->extra = plan->extra / 2 > least->extra ? plan->extra / 2 : least->extra;
-        else if (plan->near > least->near)
-            plan->near = less_of(plan->near, least->near);
-        else if (plan->entries > least->entries && (entries_first || plan->discs == least->discs))
-            plan->entries = less_of(plan->entries, least->entries);
-        else if (plan->discs > least->discs)
-            plan->discs = less_of(plan->discs, least->discs);
-        else
-            return false;
-    }
-    return true;
-}
-
-/* Lays out a plan in the block or in a larger block. If there is no larger block, it lays out as much as fits, but
- * no less than `least`. */
-static int fit(fibrad_work *work, fibrad_work_plan plan, const fibrad_work_plan *least, fibrad_workspace **space) {
+/* Lays out `best` if the block may grow. Otherwise as much of it as the block has room for, but no less than `least`.
+ * If even that has no room, memory.needed is what most rows of a packed bed need, or twice of what this row needs. */
+static int fit(fibrad_work *work, const fibrad_work_plan *best, const fibrad_work_plan *least,
+               fibrad_workspace **space) {
     fibrad_memory *memory = &work->memory;
-    const fibrad_work_plan wanted = {plan.walls,   plan.met,     least->near, plan.discs,
-                                     plan.entries, least->extra, least->legs};
+    fibrad_work_plan plan = divided(best, least, 0), enough = *least;
     size_t bytes = bytes_of(&plan);
     if (bytes == 0) return FIBRAD_E_ARGUMENT;
     work->inside = NULL;
@@ -169,12 +153,17 @@ static int fit(fibrad_work *work, fibrad_work_plan plan, const fibrad_work_plan 
         if (block == NULL) return FIBRAD_E_MEMORY;
         memory->block = block;
         memory->size = bytes;
-    } else if (memory->block == NULL || !shrink(&plan, least, memory->size)) {
-        memory->needed = bytes_of(&wanted);
-        return FIBRAD_E_WORK;
     }
+    for (int times = 1; times < 32 && bytes > memory->size; times++)
+        plan = divided(best, least, times), bytes = bytes_of(&plan);
+    enough.discs = larger(2 * least->discs, best->discs / 4),
+    enough.entries = larger(2 * least->entries, best->entries / 4);
+    memory->needed = bytes_of(&enough);
+    if (memory->block == NULL || bytes > memory->size) return FIBRAD_E_WORK;
     *space = lay_out_work(work, &plan);
-    return *space != NULL ? FIBRAD_OK : FIBRAD_E_WORK;
+    if (*space == NULL) return FIBRAD_E_WORK;
+    (*space)->best = *best, (*space)->least = *least;
+    return FIBRAD_OK;
 }
 
 int fibrad_work_open(fibrad_work *work, const fibrad_scene *scene, size_t extra_min, size_t extra_best,
@@ -182,44 +171,31 @@ int fibrad_work_open(fibrad_work *work, const fibrad_scene *scene, size_t extra_
     const uint32_t walls = scene->container.walls, met = scene->mesh.triangles > 0;
     if (!fibrad_memory_valid(&work->memory)) return FIBRAD_E_ARGUMENT;
     fibrad_workspace *inside = inside_of(work);
-    fibrad_work_plan plan = {walls, met, FIBRAD_NEAR_MOST, USUAL_DISCS, USUAL_ENTRIES, extra_best, 0};
     const fibrad_work_plan least = {walls, met, LEAST_NEAR, LEAST_COUNT, LEAST_COUNT, extra_min, 0};
     if (inside != NULL && inside->plan.extra >= extra_min && inside->plan.walls >= walls && inside->plan.met >= met) {
         inside->least = least;
         *space = inside;
         return FIBRAD_OK;
     }
-    if (inside != NULL) {
-        plan = inside->plan;
-        plan.walls = walls, plan.met = met;
-        plan.extra = extra_best;
-    }
-    const int status = fit(work, plan, &least, space);
-    if (status == FIBRAD_OK) (*space)->least = least;
-    if (status == FIBRAD_E_WORK) { /* the size that most rows of a packed bed need, which is not the fastest size */
-        const fibrad_work_plan enough = {walls, met, LEAST_NEAR, ENOUGH_DISCS, ENOUGH_ENTRIES, extra_min, 0};
-        work->memory.needed = bytes_of(&enough);
-    }
-    return status;
+    fibrad_work_plan best = {walls, met, FIBRAD_NEAR_MOST, USUAL_DISCS, USUAL_ENTRIES, extra_best, 0};
+    if (inside != NULL) best = inside->best, best.extra = extra_best;
+    return fit(work, &best, &least, space);
 }
 
 int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space) {
-    const fibrad_workspace *now = *space;
-    fibrad_work_plan plan = now->plan, least = now->least;
-    plan.walls = least.walls, plan.met = least.met;
-    const fibrad_work_plan needed = now->needed;
-    const bool more = needed.near > plan.near || needed.discs > plan.discs || needed.entries > plan.entries ||
-                      needed.extra > plan.extra || needed.legs > plan.legs;
+    const fibrad_work_plan now = (*space)->plan, needed = (*space)->needed;
+    fibrad_work_plan best = (*space)->best, least = (*space)->least;
+    const bool more = needed.near > now.near || needed.discs > now.discs || needed.entries > now.entries ||
+                      needed.extra > now.extra || needed.legs > now.legs;
     if (!more) return FIBRAD_E_UNSUPPORTED; /* without this the call would be repeated for ever */
     /* a size that was once too small in this call must not become smaller again */
-    if (needed.near > plan.near) plan.near = least.near = needed.near;
-    if (needed.discs > plan.discs) least.discs = plan.discs + 1, plan.discs = needed.discs;
-    if (needed.entries > plan.entries) least.entries = plan.entries + 1, plan.entries = needed.entries;
-    if (needed.extra > plan.extra) plan.extra = least.extra = needed.extra;
-    if (needed.legs > plan.legs) plan.legs = least.legs = needed.legs;
-    const int status = fit(work, plan, &least, space);
-    if (status == FIBRAD_OK) (*space)->least = least;
-    return status;
+    if (needed.near > now.near) least.near = needed.near;
+    if (needed.discs > now.discs) least.discs = needed.discs, best.discs = larger(best.discs, 2 * needed.discs);
+    if (needed.entries > now.entries)
+        least.entries = needed.entries, best.entries = larger(best.entries, needed.entries);
+    if (needed.extra > now.extra) least.extra = needed.extra;
+    if (needed.legs > now.legs) least.legs = needed.legs;
+    return fit(work, &best, &least, space);
 }
 
 int fibrad_work_entries_missed(fibrad_workspace *space) {
@@ -232,8 +208,7 @@ int fibrad_work_entries_missed(fibrad_workspace *space) {
 }
 
 int fibrad_work_discs_missed(fibrad_workspace *space) {
-    const uint32_t met = space->disc.count, room = space->disc.capacity;
-    space->needed.discs = met > 2 * room ? met : 2 * room;
+    space->needed.discs = larger(space->disc.count, space->disc.capacity + 1);
     return FIBRAD_E_WORK;
 }
 

@@ -43,6 +43,7 @@ typedef struct fibrad_work_plan {
 typedef struct fibrad_workspace {
     uint64_t seal;           /* shows that this block is laid out */
     fibrad_work_plan plan;   /* as laid out */
+    fibrad_work_plan best;   /* the sizes of growing memory: those of a packed bed, or more if rows have asked for it */
     fibrad_work_plan least;  /* the least that the present call needs */
     fibrad_work_plan needed; /* after FIBRAD_E_WORK inside the kernel: the sizes needed, where they differ from plan */
     fibrad_near near;
