@@ -126,14 +126,14 @@ static fibrad_workspace *lay_out_work(fibrad_work *work, const fibrad_work_plan 
     return space;
 }
 
-static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
+static uint32_t greater_count(uint32_t a, uint32_t b) { return a > b ? a : b; }
 
 /* The sizes of `best` divided by 2^times, but no less than `least`. */
 static fibrad_work_plan divided(const fibrad_work_plan *best, const fibrad_work_plan *least, int times) {
     fibrad_work_plan plan = *least;
-    plan.near = larger(plan.near, best->near >> times);
-    plan.discs = larger(plan.discs, best->discs >> times);
-    plan.entries = larger(plan.entries, best->entries >> times);
+    plan.near = greater_count(plan.near, best->near >> times);
+    plan.discs = greater_count(plan.discs, best->discs >> times);
+    plan.entries = greater_count(plan.entries, best->entries >> times);
     if (best->extra >> times > plan.extra) plan.extra = best->extra >> times;
     return plan;
 }
@@ -156,8 +156,8 @@ static int fit(fibrad_work *work, const fibrad_work_plan *best, const fibrad_wor
     }
     for (int times = 1; times < 32 && bytes > memory->size; times++)
         plan = divided(best, least, times), bytes = bytes_of(&plan);
-    enough.discs = larger(2 * least->discs, best->discs / 4),
-    enough.entries = larger(2 * least->entries, best->entries / 4);
+    enough.discs = greater_count(2 * least->discs, best->discs / 4),
+    enough.entries = greater_count(2 * least->entries, best->entries / 4);
     memory->needed = bytes_of(&enough);
     if (memory->block == NULL || bytes > memory->size) return FIBRAD_E_WORK;
     *space = lay_out_work(work, &plan);
@@ -190,9 +190,9 @@ int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space) {
     if (!more) return FIBRAD_E_UNSUPPORTED; /* without this the call would be repeated for ever */
     /* a size that was once too small in this call must not become smaller again */
     if (needed.near > now.near) least.near = needed.near;
-    if (needed.discs > now.discs) least.discs = needed.discs, best.discs = larger(best.discs, 2 * needed.discs);
+    if (needed.discs > now.discs) least.discs = needed.discs, best.discs = greater_count(best.discs, 2 * needed.discs);
     if (needed.entries > now.entries)
-        least.entries = needed.entries, best.entries = larger(best.entries, needed.entries);
+        least.entries = needed.entries, best.entries = greater_count(best.entries, needed.entries);
     if (needed.extra > now.extra) least.extra = needed.extra;
     if (needed.legs > now.legs) least.legs = needed.legs;
     return fit(work, &best, &least, space);
@@ -208,7 +208,7 @@ int fibrad_work_entries_missed(fibrad_workspace *space) {
 }
 
 int fibrad_work_discs_missed(fibrad_workspace *space) {
-    space->needed.discs = larger(space->disc.count, space->disc.capacity + 1);
+    space->needed.discs = greater_count(space->disc.count, space->disc.capacity + 1);
     return FIBRAD_E_WORK;
 }
 
