@@ -7,7 +7,7 @@
 
 #define ENTRY_BYTES (4 * sizeof(double) + sizeof(uint32_t))
 
-static unsigned char *append(unsigned char *to, const void *from, size_t size) {
+static unsigned char *keep_bytes(unsigned char *to, const void *from, size_t size) {
     fibrad_copy(to, from, size);
     return to + size;
 }
@@ -18,10 +18,11 @@ int fibrad_beam_keep(const fibrad_workspace *work, const fibrad_beam_sums *sums,
     part->used = sizeof *sums + sizeof work->wall + regions + entries->length * ENTRY_BYTES;
     const int status = fibrad_memory_reserve(&part->memory, part->used);
     if (status != FIBRAD_OK) return status;
-    unsigned char *to = append(append(part->memory.block, sums, sizeof *sums), work->wall, sizeof work->wall);
-    if (regions > 0) to = append(to, &work->walls->sums, regions);
+    unsigned char *to = keep_bytes(keep_bytes(part->memory.block, sums, sizeof *sums), work->wall, sizeof work->wall);
+    if (regions > 0) to = keep_bytes(to, &work->walls->sums, regions);
     for (uint32_t k = 0; k < entries->length; k++)
-        to = append(append(to, entries->part[k], sizeof *entries->part), &entries->sphere[k], sizeof *entries->sphere);
+        to = keep_bytes(keep_bytes(to, entries->part[k], sizeof *entries->part), &entries->sphere[k],
+                        sizeof *entries->sphere);
     return FIBRAD_OK;
 }
 
