@@ -27,7 +27,9 @@ static struct means measure(const fibrad_scene *scene, fibrad_work *work, const 
         fibrad_displacement moved;
         double own = 0;
         bench_check("row", fibrad_exchange_row(scene, work, i, rule, &row, NULL));
-        bench_check("displacement", fibrad_exchange_displacement(scene, work, i, rule, &moved));
+        const fibrad_displacement_rule carried = {
+            .emissivity = rule->emissivity, .paths = rule->paths, .cutoff = rule->cutoff};
+        bench_check("displacement", fibrad_exchange_displacement(scene, work, i, &carried, &moved));
         for (uint32_t k = 0; k < row.length; ++k)
             if (row.col[k] == i) own = row.f[k];
         sum.beyond += row.beyond / 64;

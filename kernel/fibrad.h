@@ -82,8 +82,7 @@
  *                                                       _reciprocity
  *   drift      which rows may stay when spheres move    fibrad_drift_row, _partners
  *   exchange   factors after reflections (grey)         fibrad_exchange_row, _wall, _wall_mean, _displacement
- *              spheres that conduct                     fibrad_relative_conductivity, fibrad_node_emissivity,
- *                                                       fibrad_exchange_walk
+ *              spheres that conduct                     fibrad_relative_conductivity, fibrad_node_emissivity
  *              powers from rows                         fibrad_rows_flow, fibrad_flow
  *
  * Other headers: fibrad_limits.h (bounds and defaults), fibrad_heat.h (net powers and temperatures), fibrad_light.h
@@ -871,37 +870,25 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
                           double *error);
 
 /* ---- exchange -------------------------------------------------------------------------------------------------- */
-/* How exchange factors are computed. The exchange factor D_ij is the fraction of the emission of sphere i that sphere j
- * absorbs, directly or after diffuse reflections. All surfaces are grey and diffuse. A surface of emissivity 0 reflects
- * everything.
+/* How a row of exchange factors is computed. The exchange factor D_ij is the fraction of the emission of sphere i that
+ * sphere j absorbs, directly or after diffuse reflections. All surfaces are grey and diffuse. A surface of emissivity 0
+ * reflects everything.
  *
  * Radiation first travels from sphere i to the surface that it meets. This first leg is a beam row. With up to 49
  * directions the beam row takes 64 points per window. With 50 to 144 directions it takes 256 points. With more
- * directions it takes exact areas. Then paths follow the reflections.
- *
- *   field                   _row                 _displacement        _wall                         _walk
- *   emissivity              needed               needed               NULL: all spheres are black   needed
- *   wall_emissivity         needed with walls    needed with walls    NULL: all walls are black     no walls
- *   directions, tolerance   used                 not used             not used                      not used
- *   cutoff                  used                 used                 must be 0                     must be 0
- *   paths, seed             used                 used                 used                          used
- *   known, known_paths      used                 not used             not used                      not used
- *   conductivity            if spheres conduct   not used             if spheres conduct            needed
- *   node_emissivity         if spheres conduct   not used             if spheres conduct            not used
- *   flights                 not used             not used             not used                      used */
+ * directions it takes exact areas. Then paths follow the reflections. */
 typedef struct fibrad_exchange_rule {
     const double *emissivity;      /* [spheres], 0 to 1 */
-    const double *wall_emissivity; /* [walls], 0 to 1 */
+    const double *wall_emissivity; /* [walls], 0 to 1; NULL without walls */
     uint32_t directions;           /* of the first leg; 0: FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT */
-    uint32_t paths;   /* 1 to FIBRAD_PATHS_MAX; 0: FIBRAD_PATHS_DEFAULT, in _wall FIBRAD_WALL_PATHS_DEFAULT */
-    uint64_t seed;    /* of random numbers, with the sphere's id; also the `turn` of the first leg */
-    double cutoff;    /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
-    double tolerance; /* the error allowed; directions and paths are added until it is met; 0: none */
-    /* [spheres], k* and not k_s: fibrad_relative_conductivity of each sphere, at least
-     * FIBRAD_RELATIVE_CONDUCTIVITY_MIN. INFINITY: the sphere has one temperature. */
-    const double *conductivity;
+    uint32_t paths;                /* 1 to FIBRAD_PATHS_MAX; 0: FIBRAD_PATHS_DEFAULT */
+    uint64_t seed;                 /* of random numbers, with the sphere's id; also the `turn` of the first leg */
+    double cutoff;                 /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
+    double tolerance;              /* the error allowed; directions and paths are added until it is met; 0: none */
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */
-    uint32_t flights;              /* of _walk, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
+    /* [spheres], k* and not k_s: fibrad_relative_conductivity of each sphere, at least
+     * FIBRAD_RELATIVE_CONDUCTIVITY_MIN. INFINITY: the sphere has one temperature. Needed with node_emissivity. */
+    const double *conductivity;
     /* [walls + 1], or NULL: what each wall and, last, the surroundings absorb of further paths of sphere i that
      * somebody else has followed. The unit is a path. What a path gives before its first reflection does not count.
      * NaN: nobody has counted it. The factor to a wall is then the mean over the paths of this call and the further
@@ -960,6 +947,16 @@ int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i
 /* The row of a wall or an opening is computed in this many batches of paths. The spread of the batches is the error. */
 #define FIBRAD_WALL_PARTS 8
 
+/* How the row of a wall is computed. Zeroed: all surfaces are black. */
+typedef struct fibrad_wall_rule {
+    const double *emissivity;      /* [spheres], 0 to 1; NULL: all spheres are black */
+    const double *wall_emissivity; /* [walls], 0 to 1; NULL: all walls are black */
+    const double *node_emissivity; /* [spheres], as in fibrad_exchange_rule; emissivity is then needed, too */
+    const double *conductivity;    /* [spheres], as in fibrad_exchange_rule */
+    uint32_t paths;                /* in all batches, 1 to FIBRAD_PATHS_MAX; 0: FIBRAD_WALL_PATHS_DEFAULT */
+    uint64_t seed;                 /* of random numbers */
+} fibrad_wall_rule;
+
 /* One batch of the row of a wall: the fractions of the wall's emission that walls, spheres and surroundings absorb.
  * The area that emits is the one that fibrad_scene_wall_area returns. Factors to single spheres follow from
  * reciprocity, A_b e_b D_bi = A_i e_i D_ib. A batch follows an eighth of rule->paths, and fewer paths if nearly nothing
@@ -973,10 +970,10 @@ int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i
  *            reflected[spheres]: the function adds what each sphere absorbs of the row->paths paths after at least
  *            one reflection, times 2^40; may be NULL
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY, _BACK, _SUM
- *            _UNSUPPORTED: an endless wall or opening, a cutoff, or a known region
+ *            _UNSUPPORTED: an endless wall or opening, or a known region
  *   Cost     0.1 to 0.5 microseconds per ray
  *   Source   docs/methods_heat.md section 4 */
-int fibrad_exchange_wall(const fibrad_scene *scene, fibrad_work *work, uint32_t wall, const fibrad_exchange_rule *rule,
+int fibrad_exchange_wall(const fibrad_scene *scene, fibrad_work *work, uint32_t wall, const fibrad_wall_rule *rule,
                          uint32_t part, fibrad_wall_row *row, uint64_t *reflected);
 
 /* The mean of all batches of a wall's row. The spread of the batches gives the standard error of the mean. The error is
@@ -987,27 +984,31 @@ int fibrad_exchange_wall(const fibrad_scene *scene, fibrad_work *work, uint32_t 
  *   Errors   _ARGUMENT */
 int fibrad_exchange_wall_mean(const fibrad_wall_row part[FIBRAD_WALL_PARTS], fibrad_wall_row *mean);
 
+/* How displacements are computed. */
+typedef struct fibrad_displacement_rule {
+    const double *emissivity;      /* [spheres], 0 to 1 */
+    const double *wall_emissivity; /* [walls], 0 to 1; NULL without walls */
+    const double *conductivity;    /* [spheres], as in fibrad_exchange_rule; NULL: spheres have one temperature */
+    uint32_t flights;              /* if spheres conduct, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
+    uint32_t paths;                /* 1 to FIBRAD_PATHS_MAX; 0: FIBRAD_PATHS_DEFAULT */
+    uint64_t seed;                 /* of random numbers, with the sphere's id */
+    double cutoff;                 /* L; paths end at this distance from centre i; 0: none */
+} fibrad_displacement_rule;
+
 /* How far the emission of a sphere is carried. */
 typedef struct fibrad_displacement {
     double square[3]; /* L^2: mean square displacement along each axis */
     double error[3];  /* L^2: estimated standard error of `square` */
-    double absorbed;  /* fraction of the emission that spheres absorb; fibrad_exchange_walk: see there */
+    double absorbed;  /* fraction that spheres absorb; if spheres conduct, of the paths that did not leave the bed */
     uint64_t rays;    /* rays traced */
 } fibrad_displacement;
 
 /* Mean square displacement of the emission of sphere i, from its centre to the centre of the sphere that absorbs.
  * Periods that a path has crossed count. Emission that no sphere absorbs counts as displacement 0.
- *   Input    i: 0 to spheres - 1
- *            rule: needed
- *   Output   displacement
- *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY, _BACK
- *   Cost     0.1 to 0.2 microseconds per ray
- *   Source   docs/methods_heat.md section 12 */
-int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
-                                 const fibrad_exchange_rule *rule, fibrad_displacement *displacement);
-
-/* How fast radiation spreads through a bed of spheres that conduct. Temperatures differ from point to point on each
- * sphere, and the net power of every sphere is 0. A path begins with an arrival at sphere i. At each sphere the path is
+ *
+ * With rule->conductivity spheres conduct. The result then shows how fast radiation spreads through the bed.
+ * Temperatures differ from point to point on each sphere, and the net power of every sphere is 0. A path begins with an
+ * arrival at sphere i. The starts of the paths are spread evenly over its surface. At each sphere the path is
  * reflected, or it is absorbed and given off at another point of the sphere. The way from one arrival to the next is a
  * flight. Let n be rule->flights. A path has 2 n flights. Let d[k] be the displacement of flight k along an axis. Then
  * `square` is the mean over all paths and over k = 1 to n of
@@ -1015,15 +1016,15 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
  * This estimates the mean square displacement of a long path, divided by its number of flights. The estimate leaves out
  * the correlation of flights that are more than n apart. For example, in a cubic lattice of emissivity 1 the sum of
  * `square` is 0.2 % too large with n = 12 at k* = 0.1. With n = 24 it is 0.2 % too large at k* = 0.01.
- *   Input    i: 0 to spheres - 1. The starts of the paths are spread evenly over the surface of sphere i.
+ *   Input    i: 0 to spheres - 1
  *            rule: needed
- *   Output   displacement; absorbed: fraction of the paths that did not leave the bed
- *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY
- *            _UNSUPPORTED: the scene has walls, openings or a known region, or there is a cutoff
- *   Cost     0.1 to 0.2 microseconds per ray, 2 n rays a path
- *   Source   docs/methods_heat.md section 14 */
-int fibrad_exchange_walk(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
-                         fibrad_displacement *displacement);
+ *   Output   displacement
+ *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY, _BACK
+ *            _UNSUPPORTED: spheres conduct, and the scene has walls, openings or a known region, or there is a cutoff
+ *   Cost     0.1 to 0.2 microseconds per ray; 2 n rays a path if spheres conduct
+ *   Source   docs/methods_heat.md sections 12 and 14 */
+int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
+                                 const fibrad_displacement_rule *rule, fibrad_displacement *displacement);
 
 /* Emissions and powers of spheres, walls and surroundings. Let U be the unit of emission, W/m2 for example. Powers are
  * in U L^2. A power above 0 is a gain of heat. fibrad_rows_flow adds to the powers: set them to 0 first. */

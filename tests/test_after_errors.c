@@ -46,7 +46,7 @@ TEST(row_of_a_wall_that_sees_a_back) {
     double emissivity[CUBE];
     const double wall = .5;
     const fibrad_scene *scene = scene_with_back(block, size, emissivity);
-    const fibrad_exchange_rule rule = {.emissivity = emissivity, .wall_emissivity = &wall};
+    const fibrad_wall_rule rule = {.emissivity = emissivity, .wall_emissivity = &wall};
     uint64_t reflected[CUBE], before[CUBE];
     fibrad_wall_row row;
     memset(&row, 0xEE, sizeof row);

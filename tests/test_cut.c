@@ -1,5 +1,6 @@
 /* test_cut.c - walls cut spheres: the part of a sphere behind a wall exchanges with that wall alone.
  * SPDX-License-Identifier: MIT */
+#include "grey_rules.h"
 #include "base/random.h"
 #include "host_owned.h"
 #include "scenes.h"
@@ -61,7 +62,7 @@ TEST(lone_sphere_by_rays) {
         ck_assert_double_le(row.escaped, 1 - (1 - heights[k]) / 2);
         fibrad_displacement displacement;
         rule.wall_emissivity = &black, rule.emissivity = &black;
-        assert_ok(fibrad_exchange_displacement(scene, &work, 0, &rule, &displacement));
+        assert_ok(displacement_of(scene, &work, 0, &rule, &displacement));
         ck_assert_double_eq_tol(displacement.absorbed, 0, 1e-14);
     }
 }

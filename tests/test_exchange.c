@@ -1,5 +1,6 @@
 /* test_exchange.c - exchange factors and displacements against view factors, radiosity solved by hand, closed forms,
  * plain paths, and balances. SPDX-License-Identifier: MIT */
+#include "grey_rules.h"
 #include "base/elementary.h"
 #include "exchange/paths.h"
 #include "scenes.h"
@@ -205,10 +206,10 @@ TEST(reflectors_have_empty_rows) {
         assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &row, &rays));
         assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &kept, NULL));
         ck_assert(same_bits_with(&row, &kept, 2));
-        assert_ok(fibrad_exchange_displacement(scene, &work, i, &rule, &d));
+        assert_ok(displacement_of(scene, &work, i, &rule, &d));
         rule.emissivity = nearly;
         assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &same, NULL));
-        assert_ok(fibrad_exchange_displacement(scene, &work, i, &rule, &of_nearly));
+        assert_ok(displacement_of(scene, &work, i, &rule, &of_nearly));
         for (uint32_t k = 0; k < row.length; k++) ck_assert(row.f[k] > 0 && row.col[k] % 4 != 0);
         if (i % 4 == 0) {
             assert_empty(&row, 2);
@@ -284,7 +285,7 @@ TEST(same_bits_always) {
     OWNED_ROW row = exchange_in(scene, bed.n, 70, &rule);
     fibrad_displacement displacement = {0};
     fibrad_work work = work_growing();
-    assert_ok(fibrad_exchange_displacement(scene, &work, 70, &rule, &displacement));
+    assert_ok(displacement_of(scene, &work, 70, &rule, &displacement));
     work_free(&work);
     const size_t room = FIBRAD_WORK_BYTES(256, 150) + ((size_t)1 << 17);
     const struct isas isas = isas_there();
@@ -301,7 +302,7 @@ TEST(same_bits_always) {
         const fibrad_workspace *space = work.inside;
         ck_assert_int_eq(((const fibrad_tracer *)space->extra)->lists < bed.n / 2, k % 2);
         fibrad_displacement repeated = {0};
-        assert_ok(fibrad_exchange_displacement(other, &work, 70, &rule, &repeated));
+        assert_ok(displacement_of(other, &work, 70, &rule, &repeated));
         ck_assert_mem_eq(&displacement, &repeated, sizeof displacement);
         free(work.memory.block);
     }
@@ -313,7 +314,7 @@ static double factor(const struct bed *bed, double solid, double emissivity, uin
     double square = 0;
     OWNED fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();
-    const fibrad_exchange_rule rule = {.emissivity = e, .paths = paths};
+    const fibrad_displacement_rule rule = {.emissivity = e, .paths = paths};
     for (uint32_t i = 0; i < bed->n; i++) {
         fibrad_displacement d;
         assert_ok(fibrad_exchange_displacement(scene, &work, i, &rule, &d));
@@ -346,7 +347,7 @@ TEST(displacement_in_a_chain) {
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     OWNED_WORK work = work_growing();
     fibrad_displacement d;
-    const fibrad_exchange_rule rule = {.emissivity = e, .paths = 400000};
+    const fibrad_displacement_rule rule = {.emissivity = e, .paths = 400000};
     assert_ok(fibrad_pair_exact(1, 1, 0, &exact));
     assert_ok(fibrad_exchange_displacement(scene, &work, 1, &rule, &d));
     /* little gets beyond the neighbours, which hide nearly all */
@@ -471,28 +472,33 @@ TEST(bad_arguments) {
     assert_invalid(fibrad_exchange_row(scene, &work, 0, &rule, NULL, NULL));
     ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &none, NULL), FIBRAD_E_CAPACITY);
     ck_assert_uint_gt(none.length, 0);
-    assert_invalid(fibrad_exchange_displacement(NULL, &work, 0, &rule, &d));
-    assert_invalid(fibrad_exchange_displacement(scene, NULL, 0, &rule, &d));
+    assert_invalid(displacement_of(NULL, &work, 0, &rule, &d));
+    assert_invalid(displacement_of(scene, NULL, 0, &rule, &d));
     assert_invalid(fibrad_exchange_displacement(scene, &work, 0, NULL, &d));
-    assert_invalid(fibrad_exchange_displacement(scene, &work, 0, &rule, NULL));
-    assert_invalid(fibrad_exchange_displacement(scene, &work, 2, &rule, &d));
+    assert_invalid(displacement_of(scene, &work, 0, &rule, NULL));
+    assert_invalid(displacement_of(scene, &work, 2, &rule, &d));
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         rule.emissivity = bad[k];
         assert_invalid(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL));
-        assert_invalid(fibrad_exchange_displacement(scene, &work, 0, &rule, &d));
+        assert_invalid(displacement_of(scene, &work, 0, &rule, &d));
     }
     static const struct {
         fibrad_exchange_rule rule;
         int status;
-    } others[] = {{{.tolerance = -1}, FIBRAD_E_ARGUMENT},       {{.tolerance = NAN}, FIBRAD_E_ARGUMENT},
-                  {{.tolerance = INFINITY}, FIBRAD_E_ARGUMENT}, {{.paths = FIBRAD_PATHS_MAX + 1}, FIBRAD_E_ARGUMENT},
-                  {{.cutoff = -1}, FIBRAD_E_ARGUMENT},          {{.cutoff = NAN}, FIBRAD_E_ARGUMENT},
+    } others[] = {{{.paths = FIBRAD_PATHS_MAX + 1}, FIBRAD_E_ARGUMENT},
+                  {{.cutoff = -1}, FIBRAD_E_ARGUMENT},
+                  {{.cutoff = NAN}, FIBRAD_E_ARGUMENT},
                   {{.cutoff = INFINITY}, FIBRAD_E_ARGUMENT}};
     for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
         rule = others[k].rule;
         rule.emissivity = good;
         ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL), others[k].status);
-        ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, 0, &rule, &d), others[k].status);
+        ck_assert_int_eq(displacement_of(scene, &work, 0, &rule, &d), others[k].status);
+    }
+    for (int k = 0; k < 3; k++) {
+        rule = fine;
+        rule.tolerance = (double[]){-1, NAN, INFINITY}[k];
+        assert_invalid(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL));
     }
     for (uint32_t directions = 1; directions < FIBRAD_DIRECTIONS_MIN; directions += 6) {
         rule = fine;
@@ -501,11 +507,11 @@ TEST(bad_arguments) {
     }
     rule = fine; /* a wall has no emissivity, or a bad one */
     assert_invalid(fibrad_exchange_row(walled, &work, 0, &rule, &row, NULL));
-    assert_invalid(fibrad_exchange_displacement(walled, &work, 0, &rule, &d));
+    assert_invalid(displacement_of(walled, &work, 0, &rule, &d));
     for (size_t k = 0; k < sizeof bad_wall / sizeof *bad_wall; k++) {
         rule.wall_emissivity = &bad_wall[k];
         assert_invalid(fibrad_exchange_row(walled, &work, 0, &rule, &row, NULL));
-        assert_invalid(fibrad_exchange_displacement(walled, &work, 0, &rule, &d));
+        assert_invalid(displacement_of(walled, &work, 0, &rule, &d));
     }
     rule.wall_emissivity = good;
     assert_invalid(fibrad_exchange_row(walled, &work, 0, &rule, &bare, NULL));
@@ -541,11 +547,11 @@ TEST(mirrors_end_in_the_error) {
         ck_assert_double_le(sqrt(square), row.error);
         ck_assert_double_le((double)rays, 1e6);
         fibrad_wall_row part;
-        assert_ok(fibrad_exchange_wall(scene, &work, 0, &rule, 0, &part, NULL));
+        assert_ok(wall_of(scene, &work, 0, &rule, 0, &part, NULL));
         ck_assert_double_ge(part.error, w > 0 ? .5 : 0);
         ck_assert_double_le((double)part.rays, 1e6);
         fibrad_displacement moved;
-        assert_ok(fibrad_exchange_displacement(scene, &work, 0, &rule, &moved));
+        assert_ok(displacement_of(scene, &work, 0, &rule, &moved));
         ck_assert_double_le((double)moved.rays, 1e6);
     }
 }

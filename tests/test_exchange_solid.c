@@ -127,11 +127,11 @@ static double to_side(double r, double e, double relative) {
     OWNED fibrad_scene *scene = scene_with(&bed, &config);
     OWNED_WORK work = work_growing();
     const double node = fibrad_node_emissivity(e, relative), black[] = {1, 1, 1, 1, 1, 1};
-    const fibrad_exchange_rule rule = {.emissivity = &e,
-                                       .wall_emissivity = black,
-                                       .paths = 1 << 21,
-                                       .conductivity = &relative,
-                                       .node_emissivity = &node};
+    const fibrad_wall_rule rule = {.emissivity = &e,
+                                   .wall_emissivity = black,
+                                   .paths = 1 << 21,
+                                   .conductivity = &relative,
+                                   .node_emissivity = &node};
     fibrad_wall_row part[FIBRAD_WALL_PARTS], mean;
     for (uint32_t k = 0; k < FIBRAD_WALL_PARTS; ++k)
         assert_ok(fibrad_exchange_wall(scene, &work, 5, &rule, k, &part[k], NULL));

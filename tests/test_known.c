@@ -1,5 +1,6 @@
 /* test_known.c - paths from walls and openings, and what they tell rows of spheres: closed forms, reciprocity,
  * balances. SPDX-License-Identifier: MIT */
+#include "grey_rules.h"
 #include "rectangles.h"
 #include "scenes.h"
 #include "suite.h"
@@ -249,7 +250,7 @@ static void give_back(struct hall *h, uint32_t wall, double emits, double mean[S
     for (uint32_t p = 0; p < FIBRAD_WALL_PARTS; p++) {
         uint64_t reflected[SPHERES] = {0};
         fibrad_wall_row row;
-        assert_ok(fibrad_exchange_wall(h->scene, &h->work, wall, &h->rule, p, &row, reflected));
+        assert_ok(wall_of(h->scene, &h->work, wall, &h->rule, p, &row, reflected));
         for (uint32_t i = 0; i < SPHERES; i++)
             part[p][i] = (double)reflected[i] * 0x1p-40 / (131072.0 / FIBRAD_WALL_PARTS) * emits / sphere_emits(h, i);
     }
@@ -309,11 +310,11 @@ TEST(reflected_is_what_first_legs_leave) {
     for (uint32_t k = 0; k < 2; k++) {
         const uint32_t wall = k ? FIBRAD_OPENING(h->walls, 0, 1) : 1;
         for (uint32_t i = 0; i < SPHERES; i++) h->e[i] = 1, reflected[i] = 0;
-        assert_ok(fibrad_exchange_wall(h->scene, &h->work, wall, &h->rule, 3, &black, reflected));
+        assert_ok(wall_of(h->scene, &h->work, wall, &h->rule, 3, &black, reflected));
         for (uint32_t i = 0; i < SPHERES; i++) ck_assert_uint_eq(reflected[i], 0);
         for (uint32_t i = 0; i < SPHERES; i++) h->e[i] = .03, more[i] = 1000 * i + 1;
-        assert_ok(fibrad_exchange_wall(h->scene, &h->work, wall, &h->rule, 3, &grey, reflected));
-        assert_ok(fibrad_exchange_wall(h->scene, &h->work, wall, &h->rule, 3, &grey, more));
+        assert_ok(wall_of(h->scene, &h->work, wall, &h->rule, 3, &grey, reflected));
+        assert_ok(wall_of(h->scene, &h->work, wall, &h->rule, 3, &grey, more));
         units = 0;
         for (uint32_t i = 0; i < SPHERES; i++) {
             ck_assert_uint_eq(more[i], reflected[i] + 1000 * i + 1);
@@ -335,7 +336,7 @@ TEST(reflected_among_mirrors) {
     for (uint32_t b = 0; b < 3; b++) h->wall_e[b] = .0007;
     for (uint32_t i = 0; i < SPHERES; i++) h->e[i] = .001;
     h->rule.paths = 1000 * FIBRAD_WALL_PARTS;
-    assert_ok(fibrad_exchange_wall(scene, &h->work, 1, &h->rule, 0, &row, reflected));
+    assert_ok(wall_of(scene, &h->work, 1, &h->rule, 0, &row, reflected));
     for (uint32_t i = 0; i < SPHERES; i++) units += reflected[i];
     ck_assert_uint_lt(row.paths, 900);
     assert_near((double)units * 0x1p-40 / (double)row.paths, row.spheres, .1);
@@ -350,7 +351,7 @@ TEST(reflected_of_invalid_emissivities) {
     h->rule.paths = 4000;
     for (int k = 0; k < 5; k++) {
         for (uint32_t i = 0; i < SPHERES; i++) h->e[i] = bad[k];
-        const int status = fibrad_exchange_wall(h->scene, &h->work, 0, &h->rule, 0, &row, reflected);
+        const int status = wall_of(h->scene, &h->work, 0, &h->rule, 0, &row, reflected);
         if (k == 0) assert_invalid(status);
     }
 }
@@ -372,7 +373,7 @@ TEST(openings_of_an_empty_box) {
         for (int k = 0; k < 2; k++) {
             const uint32_t open = FIBRAD_OPENING(4, opening[k].axis, opening[k].upper), axis = k ? 2 : 0;
             const double off = exact ? 1e-14 : 5e-3, across = size[axis], beside = size[2 - axis];
-            const fibrad_exchange_rule rule = {.wall_emissivity = exact ? NULL : e, .paths = 80000};
+            const fibrad_wall_rule rule = {.wall_emissivity = exact ? NULL : e, .paths = 80000};
             ck_assert_double_eq(fibrad_scene_wall_area(scene, open), size[1] * beside);
             assert_ok(fibrad_exchange_wall(scene, &work, open, &rule, 0, &row, NULL));
             ck_assert_double_eq(row.spheres, 0);
@@ -384,9 +385,9 @@ TEST(openings_of_an_empty_box) {
     for (uint32_t face = 0; face < 8; face++) {
         if (face == 0 || face == 5) continue;
         ck_assert_double_nan(fibrad_scene_wall_area(scene, 4 + face));
-        assert_invalid(fibrad_exchange_wall(scene, &work, 4 + face, &(fibrad_exchange_rule){0}, 0, &row, NULL));
+        assert_invalid(fibrad_exchange_wall(scene, &work, 4 + face, &(fibrad_wall_rule){0}, 0, &row, NULL));
     }
-    assert_invalid(fibrad_exchange_wall(scene, &work, UINT32_MAX, &(fibrad_exchange_rule){0}, 0, &row, NULL));
+    assert_invalid(fibrad_exchange_wall(scene, &work, UINT32_MAX, &(fibrad_wall_rule){0}, 0, &row, NULL));
     ck_assert_double_nan(fibrad_scene_wall_area(scene, UINT32_MAX));
 }
 
@@ -405,7 +406,7 @@ TEST(areas_of_openings) {
         fibrad_wall_row row;
         if (k > 0) ck_assert_double_eq_tol(fibrad_scene_wall_area(scene, wall), area[k], 1e-13);
         if (k == 0) ck_assert(isinf(fibrad_scene_wall_area(scene, wall)));
-        ck_assert_int_eq(fibrad_exchange_wall(scene, &work, wall, &(fibrad_exchange_rule){0}, 0, &row, NULL),
+        ck_assert_int_eq(fibrad_exchange_wall(scene, &work, wall, &(fibrad_wall_rule){0}, 0, &row, NULL),
                          k ? FIBRAD_OK : FIBRAD_E_UNSUPPORTED);
     }
 }
@@ -419,7 +420,7 @@ LOOP_TEST(openings_and_spheres_are_reciprocal, KINDS) {
         const uint32_t wall = FIBRAD_OPENING(h->walls, h->opening[k].axis, h->opening[k].upper);
         fibrad_wall_row part[FIBRAD_WALL_PARTS], mean;
         for (uint32_t p = 0; p < FIBRAD_WALL_PARTS; p++)
-            assert_ok(fibrad_exchange_wall(h->scene, &h->work, wall, &h->rule, p, &part[p], NULL));
+            assert_ok(wall_of(h->scene, &h->work, wall, &h->rule, p, &part[p], NULL));
         assert_ok(fibrad_exchange_wall_mean(part, &mean));
         there += wall_emits(h, wall) * mean.spheres, off += wall_emits(h, wall) * mean.error;
     }

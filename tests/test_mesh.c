@@ -1,5 +1,6 @@
 /* test_mesh.c - triangles in a scene: closed forms, planes and cylinders made of triangles, closure, random triangles.
  * SPDX-License-Identifier: MIT */
+#include "grey_rules.h"
 #include "scenes.h"
 #include "meshes.h"
 #include "sample/direction.h"
@@ -295,7 +296,7 @@ TEST(sides_of_nobody) {
     ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, &rays), FIBRAD_E_BACK);
     ck_assert_uint_eq(work.triangle, 1);
     work.triangle = 77;
-    ck_assert_int_eq(fibrad_exchange_wall(scene, &work, 0, &rule, 0, &wall_row, NULL), FIBRAD_E_BACK);
+    ck_assert_int_eq(wall_of(scene, &work, 0, &rule, 0, &wall_row, NULL), FIBRAD_E_BACK);
     ck_assert_uint_eq(work.triangle, 1);
     fibrad_side_view view[2];
     uint32_t triangle = 0;
@@ -640,7 +641,7 @@ TEST(grey_meshes) {
     rule.paths = 80000;
     for (int k = 0; k < 2; k++) {
         for (uint32_t p = 0; p < FIBRAD_WALL_PARTS; p++)
-            assert_ok(fibrad_exchange_wall(scene[k], &work, 1, &rule, p, &part[k][p], NULL));
+            assert_ok(wall_of(scene[k], &work, 1, &rule, p, &part[k][p], NULL));
         assert_ok(fibrad_exchange_wall_mean(part[k], &mean[k]));
     }
     ck_assert(mean[0].escaped == 0);

@@ -61,7 +61,7 @@ TEST(displacements_depend_on_what_is_near) {
         OWNED_PART near = part_near(&m.part, i, cutoff + radius_most(&m.part) + 1e-6, &own);
         OWNED fibrad_scene *little = part_scene(&near);
         OWNED double *of_near = emissivities_of(&near);
-        fibrad_exchange_rule rule = {
+        fibrad_displacement_rule rule = {
             .emissivity = e, .wall_emissivity = wall_emissivity, .paths = 200, .seed = 3, .cutoff = cutoff};
         fibrad_displacement expected, found;
         assert_ok(fibrad_exchange_displacement(whole, &work, i, &rule, &expected));

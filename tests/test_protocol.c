@@ -1,4 +1,5 @@
 /* test_protocol.c - calls at the wrong time, and scenes that are rebuilt in place. SPDX-License-Identifier: MIT */
+#include "grey_rules.h"
 #include "heat_calls.h"
 
 TEST(sources_missing) {
@@ -138,7 +139,7 @@ TEST(nothing_of_no_scene) {
     ck_assert_int_eq(fibrad_beam_row(scene, &p->work, 0, NULL, &added), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_cast_row(scene, &p->work, 0, NULL, &row, NULL), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_exchange_row(scene, &p->work, 0, &rule, &row, NULL), FIBRAD_E_STATE);
-    ck_assert_int_eq(fibrad_exchange_displacement(scene, &p->work, 0, &rule, &displacement), FIBRAD_E_STATE);
+    ck_assert_int_eq(displacement_of(scene, &p->work, 0, &rule, &displacement), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_heat_init(&heat, p->heat_block, p->heat_size, &heat_config, scene), FIBRAD_E_STATE);
     ck_assert_uint_eq(fibrad_heat_size(&heat_config, scene), 0);
     ck_assert_int_eq(fibrad_heat_move(p->heat, scene), FIBRAD_E_STATE);
@@ -162,8 +163,8 @@ static void assert_row_as_fresh(struct problem *p, fibrad_work *kept, uint32_t i
     ck_assert(same_bits_with(&a, &b, WALLS));
     ck_assert_uint_eq(rays_a, rays_b);
     work_free(&fresh), fresh = work_growing();
-    assert_ok(fibrad_exchange_displacement(p->scene, kept, i, &rule, &da));
-    assert_ok(fibrad_exchange_displacement(p->scene, &fresh, i, &rule, &db));
+    assert_ok(displacement_of(p->scene, kept, i, &rule, &da));
+    assert_ok(displacement_of(p->scene, &fresh, i, &rule, &db));
     ck_assert_mem_eq(&da, &db, sizeof da);
     work_free(&fresh), fresh = work_growing();
     assert_ok(fibrad_cast_row(p->scene, kept, i, NULL, &a, NULL));

@@ -174,6 +174,7 @@ TEST(exchange_does_not_depend_on_threads) {
     fibrad_displacement moved[3][150];
     for (int i = 0; i < 150; i++) emissivity[i] = .3 + i / 300.;
     const fibrad_exchange_rule rule = {.emissivity = emissivity, .directions = 20, .paths = 50};
+    const fibrad_displacement_rule carried = {.emissivity = emissivity, .paths = 50};
     fibrad_bed_factors *first = NULL, *next;
     memset(moved, 0, sizeof moved);
     for (int t = 0; t < 3; t++) {
@@ -184,7 +185,7 @@ TEST(exchange_does_not_depend_on_threads) {
         if (first) ck_assert(matrix_same_bits(&first->matrix, &next->matrix) && first->rays == next->rays);
         fibrad_bed_free(first);
         first = next;
-        assert_ok(fibrad_displacements(&config, &spheres, &rule, NULL, &run, moved[t], &facts));
+        assert_ok(fibrad_displacements(&config, &spheres, &carried, NULL, &run, moved[t], &facts));
         ck_assert_int_eq(memcmp(moved[t], moved[0], sizeof moved[0]), 0);
         ck_assert_uint_eq(facts.spheres, 150);
     }
@@ -201,6 +202,7 @@ TEST(reflectors_have_empty_rows) {
     double emissivity[150];
     fibrad_displacement moved[150];
     const fibrad_exchange_rule rule = {.emissivity = emissivity, .directions = 20, .paths = 50};
+    const fibrad_displacement_rule carried = {.emissivity = emissivity, .paths = 50};
     for (int all = 0; all <= 1; all++)
         for (int raw = 0; raw <= 1; raw++) {
             OWNED_FACTORS *factors = NULL;
@@ -212,7 +214,7 @@ TEST(reflectors_have_empty_rows) {
             ck_assert(factors->reciprocity_error >= 0 && (factors->rays > 0) == !all);
             for (uint32_t i = 0; i < 150; i++)
                 ck_assert_double_le(fabs(matrix_total(&factors->matrix, i) - (emissivity[i] > 0)), 1e-12);
-            assert_ok(fibrad_displacements(&config, &spheres, &rule, NULL, NULL, moved, NULL));
+            assert_ok(fibrad_displacements(&config, &spheres, &carried, NULL, NULL, moved, NULL));
             for (uint32_t i = 0; i < 150; i++) ck_assert((moved[i].square[0] > 0) == (emissivity[i] > 0));
         }
 }
@@ -293,6 +295,7 @@ TEST(faults_name_spheres) {
     for (int i = 0; i < 100; i++) emissivity[i] = .5;
     emissivity[70] = emissivity[71] = emissivity[3] = NAN;
     const fibrad_exchange_rule rule = {.emissivity = emissivity, .paths = 10};
+    const fibrad_displacement_rule carried = {.emissivity = emissivity, .paths = 10};
     const uint32_t first = 3;
     for (int t = 0; t < 3; t++) {
         run.threads = threads[t];
@@ -303,7 +306,7 @@ TEST(faults_name_spheres) {
         static fibrad_displacement moved[100];
         unsigned char wanted[100] = {[50] = 1};
         run.fault = (fibrad_fault){0, 0, 0, 0, 0};
-        assert_invalid(fibrad_displacements(NULL, &spheres, &rule, wanted, &run, moved, NULL));
+        assert_invalid(fibrad_displacements(NULL, &spheres, &carried, wanted, &run, moved, NULL));
         ck_assert(run.fault.first == first && run.fault.second == first);
     }
     bed.x[5] = bed.x[60], bed.y[5] = bed.y[60], bed.z[5] = bed.z[60];

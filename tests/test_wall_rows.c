@@ -1,5 +1,6 @@
 /* test_wall_rows.c - rows of walls against closed forms, grey plates and paths that are followed by other means;
  * balances of rows. SPDX-License-Identifier: MIT */
+#include "grey_rules.h"
 #include "host_owned.h"
 #include "rectangles.h"
 #include "scenes.h"
@@ -445,7 +446,7 @@ TEST(bad_arguments_of_walls) {
     OWNED_WORK work = work_growing();
     fibrad_wall_row row, part[FIBRAD_WALL_PARTS];
     memset(part, 0, sizeof part);
-    fibrad_exchange_rule rule = {.emissivity = room.e, .wall_emissivity = room.wall_e};
+    fibrad_wall_rule rule = {.emissivity = room.e, .wall_emissivity = room.wall_e};
     assert_ok(fibrad_exchange_wall(scene, &work, 4, &rule, 0, &row, NULL)); /* the floor */
     ck_assert_double_eq_tol(
         row.spheres + row.escaped + row.wall[0] + row.wall[1] + row.wall[2] + row.wall[3] + row.wall[4], 1, 1e-13);
@@ -457,9 +458,7 @@ TEST(bad_arguments_of_walls) {
     assert_invalid(fibrad_exchange_wall(scene, &work, 5, &rule, 0, &row, NULL));
     assert_invalid(fibrad_exchange_wall(scene, &work, 4, &rule, FIBRAD_WALL_PARTS, &row, NULL));
     ck_assert_int_eq(fibrad_exchange_wall(endless, &work, 0, &rule, 0, &row, NULL), FIBRAD_E_UNSUPPORTED);
-    rule.cutoff = 3;
-    ck_assert_int_eq(fibrad_exchange_wall(scene, &work, 4, &rule, 0, &row, NULL), FIBRAD_E_UNSUPPORTED);
-    rule.cutoff = 0, room.wall_e[1] = 1.5;
+    room.wall_e[1] = 1.5;
     assert_invalid(fibrad_exchange_wall(scene, &work, 4, &rule, 0, &row, NULL));
     room.wall_e[1] = NAN;
     assert_invalid(fibrad_exchange_wall(scene, &work, 4, &rule, 0, &row, NULL));
@@ -489,10 +488,10 @@ TEST(paths_end_in_openings) {
     OWNED_WORK work = work_growing();
     for (uint32_t k = 0; k < 10; k++) {
         const uint32_t b = k / 2;
-        const fibrad_exchange_rule *how = k % 2 ? &rule : &(fibrad_exchange_rule){0};
+        const fibrad_wall_rule how = k % 2 ? wall_rule(&rule) : (fibrad_wall_rule){0};
         fibrad_wall_row row[2];
         for (int with = 0; with < 2; with++)
-            assert_ok(fibrad_exchange_wall(scene[with], &work, b, how, b, &row[with], NULL));
+            assert_ok(fibrad_exchange_wall(scene[with], &work, b, &how, b, &row[with], NULL));
         ck_assert_mem_eq(row[0].wall, row[1].wall, 5 * sizeof(double));
         ck_assert(row[0].spheres == row[1].spheres && row[0].rays == row[1].rays);
         ck_assert(row[1].wall[5] > 0);
@@ -503,7 +502,7 @@ TEST(paths_end_in_openings) {
         fibrad_displacement carried[2];
         for (int k = 0; k < 2; k++) {
             assert_ok(fibrad_exchange_row(scene[k], &work, i, &rule, &row[k], NULL));
-            assert_ok(fibrad_exchange_displacement(scene[k], &work, i, &rule, &carried[k]));
+            assert_ok(displacement_of(scene[k], &work, i, &rule, &carried[k]));
         }
         ck_assert_mem_eq(&carried[0], &carried[1], sizeof carried[0]);
         ck_assert_double_eq_tol(row[0].escaped, row[1].wall[5], 1e-15);

@@ -1,5 +1,6 @@
 /* test_work.c - work memory: fixed and growing, of any alignment, for any scenes and functions in turn, without a trace
  * in the results. Also the blocks of heat problems. SPDX-License-Identifier: MIT */
+#include "grey_rules.h"
 #include "fibrad_surface.h"
 #include "heat_runs.h"
 #include "suite.h"
@@ -46,7 +47,7 @@ static int call(int function, const fibrad_scene *scene, fibrad_work *work, uint
     case SURFACE:
         return fibrad_surface_row(scene, work, i, &(fibrad_surface_rule){.nodes = 13, .cutoff = 5}, row);
     default:
-        return fibrad_exchange_displacement(scene, work, i, &exchange, &out->displacement);
+        return displacement_of(scene, work, i, &exchange, &out->displacement);
     }
 }
 

@@ -256,12 +256,12 @@ static int follow_round(const struct bed *bed, const unsigned char *emits, const
     struct round_progress round = {.run = run, .batches = batches};
     for (; round.batch < batches; ++round.batch) {
         const uint32_t share = (uint32_t)(paths / batches + (round.batch < paths % batches));
-        const fibrad_exchange_rule how = {.emissivity = rule->emissivity,
-                                          .wall_emissivity = mirrors,
-                                          .conductivity = rule->conductivity,
-                                          .flights = result->flights,
-                                          .paths = share,
-                                          .seed = rule->seed + tally->batches * 0x9e3779b97f4a7c15u};
+        const fibrad_displacement_rule how = {.emissivity = rule->emissivity,
+                                              .wall_emissivity = mirrors,
+                                              .conductivity = rule->conductivity,
+                                              .flights = result->flights,
+                                              .paths = share,
+                                              .seed = rule->seed + tally->batches * 0x9e3779b97f4a7c15u};
         fibrad_run own = {.threads =
                               result->emitters == 1 ? 1 : run->threads, /* batches are too short for several threads */
                           .progress = run->progress ? round_stage : NULL,

@@ -30,7 +30,7 @@ struct source {
 /* All sources of a bed. */
 struct sources {
     fibrad_insitu_build *b;
-    fibrad_exchange_rule rule;
+    fibrad_wall_rule rule;
     uint32_t count;
     struct source source[FIBRAD_WALLS_MAX + FIBRAD_OPENINGS_MAX];
     fibrad_wall_row part[FIBRAD_WALLS_MAX + FIBRAD_OPENINGS_MAX][FIBRAD_WALL_PARTS]; /* zero on all ranks but one */
@@ -127,7 +127,7 @@ static int follow_sources(struct sources *t) {
 #pragma omp for schedule(dynamic)
         for (uint32_t task = rank; task < tasks; task += ranks) {
             const uint32_t k = task / FIBRAD_WALL_PARTS, part = task % FIBRAD_WALL_PARTS;
-            fibrad_exchange_rule rule = t->rule;
+            fibrad_wall_rule rule = t->rule;
             rule.paths = t->source[k].paths;
             if (hits) memset(hits, 0, t->n * sizeof *hits);
             const int done = !hits ? FIBRAD_E_MEMORY
@@ -217,7 +217,12 @@ static int make_sources(struct sources *t, const fibrad_particle *particle) {
     int status = fibrad_insitu_scene(b, particle, t->n, NULL);
     status = fibrad_agree(b->s->comm, status, b->s->message);
     if (status) return status;
-    t->rule = fibrad_insitu_rule(b, t->n);
+    const fibrad_exchange_rule rule = fibrad_insitu_rule(b, t->n);
+    t->rule = (fibrad_wall_rule){.emissivity = rule.emissivity,
+                                 .wall_emissivity = rule.wall_emissivity,
+                                 .node_emissivity = rule.node_emissivity,
+                                 .conductivity = rule.conductivity,
+                                 .seed = rule.seed};
     list_sources(t);
     if (!t->count) return FIBRAD_OK;
     count_paths(t);

@@ -157,11 +157,16 @@ module fibrad
         integer(c_int32_t) :: directions = 0, paths = 0
         integer(c_int64_t) :: seed = 0
         real(c_double) :: cutoff = 0, tolerance = 0
-        type(c_ptr) :: conductivity = c_null_ptr, node_emissivity = c_null_ptr
-        integer(c_int32_t) :: flights = 0
-        type(c_ptr) :: known = c_null_ptr
+        type(c_ptr) :: node_emissivity = c_null_ptr, conductivity = c_null_ptr, known = c_null_ptr
         real(c_double) :: known_paths = 0
     end type c_exchange_rule
+
+    type, bind(C) :: c_wall_rule
+        type(c_ptr) :: emissivity = c_null_ptr, wall_emissivity = c_null_ptr, node_emissivity = c_null_ptr, &
+            conductivity = c_null_ptr
+        integer(c_int32_t) :: paths = 0
+        integer(c_int64_t) :: seed = 0
+    end type c_wall_rule
 
     type, bind(C) :: c_wall_row
         real(c_double) :: wall(32) = 0, spheres = 0, escaped = 0, error = 0
@@ -171,6 +176,13 @@ module fibrad
     type, bind(C) :: c_side_view
         real(c_double) :: spheres = 0, walls = 0, escaped = 0
     end type c_side_view
+
+    type, bind(C) :: c_displacement_rule
+        type(c_ptr) :: emissivity = c_null_ptr, wall_emissivity = c_null_ptr, conductivity = c_null_ptr
+        integer(c_int32_t) :: flights = 0, paths = 0
+        integer(c_int64_t) :: seed = 0
+        real(c_double) :: cutoff = 0
+    end type c_displacement_rule
 
     type, bind(C) :: c_displacement
         real(c_double) :: square(3) = 0, error(3) = 0, absorbed = 0
@@ -309,12 +321,14 @@ module fibrad
             import
             type(c_bed_factors), intent(inout) :: factors
         end subroutine c_bed_free
-        function c_exchange_wall_row(config, spheres, wall, rule, run, row) bind(C, name="fibrad_exchange_wall_row")
+        function c_exchange_wall_row(config, spheres, wall, rule, tolerance, run, &
+            row) bind(C, name="fibrad_exchange_wall_row")
             import
             type(c_scene_config), intent(in) :: config
             type(c_spheres), intent(in) :: spheres
             integer(c_int32_t), value :: wall
-            type(c_exchange_rule), intent(in) :: rule
+            type(c_wall_rule), intent(in) :: rule
+            real(c_double), value :: tolerance
             type(c_run), intent(inout) :: run
             type(c_wall_row), intent(inout) :: row
             integer(c_int) :: c_exchange_wall_row
@@ -333,7 +347,7 @@ module fibrad
             import
             type(c_scene_config), intent(in) :: config
             type(c_spheres), intent(in) :: spheres
-            type(c_exchange_rule), intent(in) :: rule
+            type(c_displacement_rule), intent(in) :: rule
             type(c_ptr), value :: wanted
             type(c_run), intent(inout) :: run
             type(c_displacement), intent(inout) :: displacement(*)
@@ -488,24 +502,25 @@ module fibrad
         end function c_host_sizeof
     end interface
 
-    character(24), parameter :: c_names(30) = [character(24) :: &
+    character(24), parameter :: c_names(32) = [character(24) :: &
         'fibrad_plane', 'fibrad_cylinder', 'fibrad_wall', 'fibrad_occupancy', 'fibrad_triangles', &
         'fibrad_scene_config', 'fibrad_spheres', 'fibrad_beam_rule', 'fibrad_surface_rule', 'fibrad_cast_rule', &
         'fibrad_bed_options', 'fibrad_fault', 'fibrad_run', 'fibrad_factors', 'fibrad_scene_facts', &
-        'fibrad_bed_factors', 'fibrad_exchange_rule', 'fibrad_wall_row', 'fibrad_side_view', 'fibrad_displacement', &
-        'fibrad_heat_config', 'fibrad_heat_sources', 'fibrad_heat_result', 'fibrad_light', 'fibrad_light_sources', &
-        'fibrad_light_result', 'fibrad_transient_config', 'fibrad_span', 'fibrad_contact_rule', 'fibrad_contact_list']
-    integer, parameter :: c_bits(30) = [ &
+        'fibrad_bed_factors', 'fibrad_exchange_rule', 'fibrad_wall_rule', 'fibrad_wall_row', 'fibrad_side_view', &
+        'fibrad_displacement_rule', 'fibrad_displacement', 'fibrad_heat_config', 'fibrad_heat_sources', &
+        'fibrad_heat_result', 'fibrad_light', 'fibrad_light_sources', 'fibrad_light_result', &
+        'fibrad_transient_config', 'fibrad_span', 'fibrad_contact_rule', 'fibrad_contact_list']
+    integer, parameter :: c_bits(32) = [ &
         storage_size(c_plane()), storage_size(c_cylinder()), storage_size(fibrad_wall()), storage_size(c_occupancy()), &
         storage_size(c_triangles()), storage_size(c_scene_config()), storage_size(c_spheres()), &
         storage_size(c_beam_rule()), storage_size(c_surface_rule()), storage_size(c_cast_rule()), &
         storage_size(c_bed_options()), storage_size(c_fault()), storage_size(c_run()), storage_size(c_factors()), &
         storage_size(c_scene_facts()), storage_size(c_bed_factors()), storage_size(c_exchange_rule()), &
-        storage_size(c_wall_row()), storage_size(c_side_view()), storage_size(c_displacement()), &
-        storage_size(c_heat_config()), storage_size(c_heat_sources()), storage_size(c_heat_result()), &
-        storage_size(fibrad_light()), storage_size(c_light_sources()), storage_size(c_light_result()), &
-        storage_size(c_transient_config()), storage_size(c_span()), storage_size(c_contact_rule()), &
-        storage_size(c_contact_list())]
+        storage_size(c_wall_rule()), storage_size(c_wall_row()), storage_size(c_side_view()), &
+        storage_size(c_displacement_rule()), storage_size(c_displacement()), storage_size(c_heat_config()), &
+        storage_size(c_heat_sources()), storage_size(c_heat_result()), storage_size(fibrad_light()), &
+        storage_size(c_light_sources()), storage_size(c_light_result()), storage_size(c_transient_config()), &
+        storage_size(c_span()), storage_size(c_contact_rule()), storage_size(c_contact_list())]
     ! ---- end of what `make structures` writes
 
     ! The triangles of all walls that are meshes. Seen from its front, the corners of a triangle go counter-clockwise. A
@@ -748,7 +763,7 @@ contains
         integer, intent(out), optional :: fault(2)
         type(fibrad_triangles), intent(in), optional :: triangles
         type(walls_of_c), target :: mesh
-        type(c_exchange_rule) :: rule
+        type(c_displacement_rule) :: rule
         type(c_run) :: run
         type(c_displacement), allocatable :: found(:)
         type(c_scene_facts) :: facts

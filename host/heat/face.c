@@ -87,17 +87,15 @@ int face_solve(struct face *face, const struct bed *bed, const struct walls *wal
     double of_walls[WALLS_MAX], mean = 0, sum = 0, square = 0;
     for (uint32_t k = 0; k < walls->count; ++k) of_walls[k] = sources->insulated[k] ? 0 : sources->wall_emissivity[k];
     for (uint32_t i = 0; i < bed->n; ++i) mean += sources->emissivity[i] / bed->n;
-    const fibrad_exchange_rule rule = {.emissivity = sources->emissivity,
-                                       .wall_emissivity = of_walls,
-                                       .paths = FACE_PATHS,
-                                       .tolerance = FACE_TOLERANCE * sqrt(fmax(FACE_LEAST, mean))};
+    const fibrad_wall_rule rule = {.emissivity = sources->emissivity, .wall_emissivity = of_walls, .paths = FACE_PATHS};
+    const double tolerance = FACE_TOLERANCE * sqrt(fmax(FACE_LEAST, mean));
     int status = FIBRAD_OK;
     for (int side = 0; side < 6 && !status; ++side) {
         const double area = open_area(&ends, side);
         fibrad_wall_row row;
         if (!(area > 0)) continue;
-        status =
-            fibrad_exchange_wall_row(&scene, &spheres, FIBRAD_OPENING(all.count, side / 2, side % 2), &rule, run, &row);
+        const uint32_t opening = FIBRAD_OPENING(all.count, side / 2, side % 2);
+        status = fibrad_exchange_wall_row(&scene, &spheres, opening, &rule, tolerance, run, &row);
         sum += area * (1 - row.escaped), square += gsl_pow_2(area * FACE_ERROR * row.error);
     }
     face->emissivity = sum / face->area, face->error = sqrt(square) / face->area;

@@ -28,7 +28,7 @@ int grey_conduction(const struct bed *bed, double emissivity, double conductivit
     double *e = constant(bed->n, emissivity), *k = constant(bed->n, conductivity), square = 0;
     fibrad_displacement *moved = calloc(bed->n, sizeof *moved);
     int status = e && k && moved ? STATUS_OK : message_memory();
-    const fibrad_exchange_rule rule = {.emissivity = e, .conductivity = conducts ? k : NULL, .paths = paths};
+    const fibrad_displacement_rule rule = {.emissivity = e, .conductivity = conducts ? k : NULL, .paths = paths};
     if (!status) {
         status = fibrad_displacements(&box, &spheres, &rule, NULL, &run, moved, NULL);
         progress_stop(&bar);

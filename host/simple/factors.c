@@ -34,18 +34,23 @@ enum { PER_DIRECTION = 64, PER_PATH = 8 };
 /* Error allowed in the row of a wall before averaging, over the error allowed after averaging. */
 #define WALL_BEFORE_AVERAGING 1.4
 
-/* Fills `rule` for the matrix of a bed. Computes rows of walls by `walls` if options->walls is set, all rows of
- * spheres are computed and there is no cutoff. */
-static int plan_matrix(fibrad_job *job, const fibrad_bed_options *options, const fibrad_exchange_rule *walls,
+/* How rows of walls are computed: to the tolerance of the matrix, 0: none, and not at all with a cutoff. */
+struct wall_plan {
+    fibrad_wall_rule rule;
+    double tolerance, cutoff;
+};
+
+/* Fills `rule` for the matrix of a bed. Computes rows of walls if options->walls is set, all rows of spheres are
+ * computed and there is no cutoff. */
+static int plan_matrix(fibrad_job *job, const fibrad_bed_options *options, const struct wall_plan *walls,
                        fibrad_wall_row *wall_row, fibrad_matrix_rule *rule) {
     *rule = (fibrad_matrix_rule){.raw = options->raw || options->wanted, .drop = options->drop};
     if (options->cast) rule->kind = FIBRAD_ROWS_SAMPLED;
     if (!options->walls || options->wanted || walls->cutoff > 0 || job->facts.walls == 0) return FIBRAD_OK;
-    fibrad_exchange_rule before = *walls;
-    if (!rule->raw) before.tolerance *= WALL_BEFORE_AVERAGING;
     rule->wall_row = wall_row;
-    rule->wall_emissivity = walls->wall_emissivity;
-    return fibrad_job_walls(job, &before, wall_row);
+    rule->wall_emissivity = walls->rule.wall_emissivity;
+    const double tolerance = rule->raw ? walls->tolerance : walls->tolerance * WALL_BEFORE_AVERAGING;
+    return fibrad_job_walls(job, &walls->rule, tolerance, wall_row);
 }
 
 /* Computes the rows by one rule, and their matrix. */
@@ -65,25 +70,25 @@ static int run_all_rows(fibrad_job *job, const fibrad_beam_rule *beam, const fib
     return status ? status : fibrad_job_factors(job, how, &report, factors);
 }
 
-/* A rule for rows of black walls, which makes them about as accurate as the rows of spheres. */
-static fibrad_exchange_rule black_bodies(const fibrad_job *job, const fibrad_bed_options *options) {
+/* A plan for rows of black walls, which makes them about as accurate as the rows of spheres. */
+static struct wall_plan black_bodies(const fibrad_job *job, const fibrad_bed_options *options) {
     const fibrad_beam_rule *beam = options->beam;
     const fibrad_cast_rule *cast = options->cast;
-    fibrad_exchange_rule rule = {.paths = 20000};
+    struct wall_plan plan = {.rule.paths = 20000};
     if (cast) {
-        if (cast->rays) rule.paths = cast->rays;
-        rule.seed = cast->seed, rule.cutoff = cast->cutoff;
+        if (cast->rays) plan.rule.paths = cast->rays;
+        plan.rule.seed = cast->seed, plan.cutoff = cast->cutoff;
     } else if (!options->surface) {
-        rule.paths = PER_DIRECTION * (beam && beam->directions ? beam->directions : FIBRAD_DIRECTIONS_DEFAULT);
-        if (beam) rule.tolerance = beam->tolerance, rule.cutoff = beam->cutoff;
+        plan.rule.paths = PER_DIRECTION * (beam && beam->directions ? beam->directions : FIBRAD_DIRECTIONS_DEFAULT);
+        if (beam) plan.tolerance = beam->tolerance, plan.cutoff = beam->cutoff;
     }
-    rule.paths = fibrad_job_wall_paths(job, rule.paths);
-    return rule;
+    plan.rule.paths = fibrad_job_wall_paths(job, plan.rule.paths);
+    return plan;
 }
 
 static int run_options(fibrad_job *job, const fibrad_bed_options *options, fibrad_bed_factors **factors) {
     const fibrad_beam_rule *beam = options->beam;
-    const fibrad_exchange_rule walls = black_bodies(job, options);
+    const struct wall_plan walls = black_bodies(job, options);
     fibrad_wall_row wall_row[FIBRAD_WALLS_MAX];
     fibrad_matrix_rule how;
     const int status = plan_matrix(job, options, &walls, wall_row, &how);
@@ -94,15 +99,14 @@ static int run_options(fibrad_job *job, const fibrad_bed_options *options, fibra
     return run_rule(job, fibrad_job_beam_row, beam, options, &how, factors);
 }
 
-/* Checks the properties of all spheres, since paths may meet each of them. The fault names the first invalid sphere. */
-static int check_spheres(fibrad_job *job, const fibrad_exchange_rule *rule) {
-    if (!rule || (!rule->emissivity && job->facts.spheres > 0)) return FIBRAD_E_ARGUMENT;
-    if (rule->node_emissivity && !rule->conductivity) return FIBRAD_E_ARGUMENT;
+/* Checks the properties of all spheres, since paths may meet each of them. The fault names the first invalid sphere.
+ * node, conductivity: may be NULL */
+static int check_spheres(fibrad_job *job, const double *emissivity, const double *node, const double *conductivity) {
+    if ((!emissivity && job->facts.spheres > 0) || (node && !conductivity)) return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < job->facts.spheres; ++i) {
-        const bool grey = rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1;
-        const double node = rule->node_emissivity ? rule->node_emissivity[i] : 0;
-        const bool solid = !rule->conductivity || (rule->conductivity[i] >= FIBRAD_RELATIVE_CONDUCTIVITY_MIN &&
-                                                   node >= 0 && node <= rule->emissivity[i]);
+        const bool grey = emissivity[i] >= 0 && emissivity[i] <= 1;
+        const bool solid = (!conductivity || conductivity[i] >= FIBRAD_RELATIVE_CONDUCTIVITY_MIN) &&
+                           (!node || (node[i] >= 0 && node[i] <= emissivity[i]));
         if (grey && solid) continue;
         const int why = grey ? FIBRAD_WHY_CONDUCTIVITY : FIBRAD_WHY_EMISSIVITY;
         if (job->run) job->run->fault = (fibrad_fault){i, i, UINT32_MAX, 0, why};
@@ -115,10 +119,18 @@ static int run_exchange(fibrad_job *job, const fibrad_exchange_rule *rule, const
                         fibrad_bed_factors **factors) {
     fibrad_wall_row wall_row[FIBRAD_WALLS_MAX];
     fibrad_matrix_rule how;
-    int status = check_spheres(job, rule);
+    if (!rule) return FIBRAD_E_ARGUMENT;
+    int status = check_spheres(job, rule->emissivity, rule->node_emissivity, rule->conductivity);
     if (status) return status;
-    fibrad_exchange_rule walls = *rule;
-    walls.paths = fibrad_job_wall_paths(job, PER_PATH * (uint64_t)(rule->paths ? rule->paths : FIBRAD_PATHS_DEFAULT));
+    const uint64_t paths = PER_PATH * (uint64_t)(rule->paths ? rule->paths : FIBRAD_PATHS_DEFAULT);
+    const struct wall_plan walls = {.rule = {.emissivity = rule->emissivity,
+                                             .wall_emissivity = rule->wall_emissivity,
+                                             .node_emissivity = rule->node_emissivity,
+                                             .conductivity = rule->conductivity,
+                                             .paths = fibrad_job_wall_paths(job, paths),
+                                             .seed = rule->seed},
+                                    .tolerance = rule->tolerance,
+                                    .cutoff = rule->cutoff};
     status = plan_matrix(job, options, &walls, wall_row, &how);
     if (status) return status;
     how.kind = FIBRAD_ROWS_EXCHANGE;
@@ -167,30 +179,29 @@ int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_sphe
     return factors_of_bed(config, spheres, true, rule, options, run, factors);
 }
 
-struct displacement_rule {
-    const fibrad_exchange_rule *rule;
+struct displaced {
+    const fibrad_displacement_rule *rule;
     fibrad_displacement *to; /* [spheres] */
 };
 
 /* A fibrad_job_row that computes the displacement of one sphere. The row stays empty. */
 static int displacement_of(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
                            uint64_t *rays) {
-    const struct displacement_rule *how = rule;
+    const struct displaced *how = rule;
     (void)rays;
     *row = (fibrad_row){0};
-    if (how->rule->conductivity) return fibrad_exchange_walk(scene, work, i, how->rule, &how->to[i]);
     return fibrad_exchange_displacement(scene, work, i, how->rule, &how->to[i]);
 }
 
 int fibrad_displacements(const fibrad_scene_config *config, const fibrad_spheres *spheres,
-                         const fibrad_exchange_rule *rule, const unsigned char *wanted, fibrad_run *run,
+                         const fibrad_displacement_rule *rule, const unsigned char *wanted, fibrad_run *run,
                          fibrad_displacement *displacement, fibrad_scene_facts *facts) {
     fibrad_job job;
     fibrad_job_report report;
-    const struct displacement_rule how = {rule, displacement};
+    const struct displaced how = {rule, displacement};
     int status = fibrad_job_open(&job, config, spheres, run);
-    if (!status && !displacement) status = FIBRAD_E_ARGUMENT;
-    if (!status) status = check_spheres(&job, rule);
+    if (!status && (!rule || !displacement)) status = FIBRAD_E_ARGUMENT;
+    if (!status) status = check_spheres(&job, rule->emissivity, NULL, rule->conductivity);
     if (!status) status = fibrad_job_rows(&job, displacement_of, &how, wanted, NULL, &report);
     if (!status && facts) *facts = job.facts;
     fibrad_job_close(&job);

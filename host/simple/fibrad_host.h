@@ -128,14 +128,15 @@ int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_sphe
 void fibrad_bed_free(fibrad_bed_factors *factors);
 
 /* The row of one wall or opening: fibrad_exchange_wall and fibrad_exchange_wall_mean. The number of paths is doubled
- * until the error is at most rule->tolerance, up to 2^24 paths.
+ * until the error is at most `tolerance`, up to 2^24 paths.
  *   Input    wall: as in fibrad_exchange_wall
- *            rule: paths, tolerance and the emissivities
+ *            rule: needed
+ *            tolerance: 0: any error is allowed
  *   Output   row
  *   Errors   as fibrad_scene_init and fibrad_exchange_wall; _CANCELLED
  *   Cost     that of the paths */
 int fibrad_exchange_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t wall,
-                             const fibrad_exchange_rule *rule, fibrad_run *run, fibrad_wall_row *row);
+                             const fibrad_wall_rule *rule, double tolerance, fibrad_run *run, fibrad_wall_row *row);
 
 /* What all triangles of a bed see: fibrad_triangle_views of each.
  *   Input    rays: from each side, 1 to 2^30
@@ -145,16 +146,15 @@ int fibrad_exchange_wall_row(const fibrad_scene_config *config, const fibrad_sph
 int fibrad_side_views(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t rays, fibrad_run *run,
                       fibrad_side_view *view);
 
-/* How far the emission of spheres is carried: fibrad_exchange_displacement of each. With rule->conductivity spheres
- * conduct: fibrad_exchange_walk of each.
+/* How far the emission of spheres is carried: fibrad_exchange_displacement of each.
  *   Input    rule: needed
  *            wanted[spheres]: not 0: this sphere is wanted; NULL: all spheres
  *   Output   displacement[spheres]: elements that are not wanted stay as they are
  *            facts: of the scene; may be NULL
- *   Errors   as fibrad_scene_init and fibrad_exchange_displacement or _walk; _CANCELLED. After an error some elements
- *            may be written. */
+ *   Errors   as fibrad_scene_init and fibrad_exchange_displacement; _CANCELLED. After an error some elements may be
+ *            written. */
 int fibrad_displacements(const fibrad_scene_config *config, const fibrad_spheres *spheres,
-                         const fibrad_exchange_rule *rule, const unsigned char *wanted, fibrad_run *run,
+                         const fibrad_displacement_rule *rule, const unsigned char *wanted, fibrad_run *run,
                          fibrad_displacement *displacement, fibrad_scene_facts *facts);
 
 /* ---- heat ------------------------------------------------------------------------------------------------------ */

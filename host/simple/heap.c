@@ -84,30 +84,23 @@ void *fibrad_scratch_resize(void *context, void *block, size_t size) {
 
 typedef struct fibrad_triangles fibrad_triangles;
 
-#define STRUCTURE(name)                                                                                                \
-    { #name, sizeof(name) }
+/* Structures whose sizes other languages may compare. */
+#define STRUCTURES                                                                                                     \
+    OF(memory), OF(spheres), OF(wall), OF(scene_config), OF(fault), OF(scene_facts), OF(work), OF(row), OF(rows),      \
+        OF(beam_rule), OF(cast_rule), OF(cast_means), OF(occupancy), OF(flow), OF(surface_rule), OF(surface_facts),    \
+        OF(matrix_rule), OF(factors), OF(exchange_rule), OF(displacement), OF(heat_config), OF(heat_sources),          \
+        OF(heat_result), OF(light), OF(light_ends), OF(light_ray), OF(light_hits), OF(light_sources),                  \
+        OF(light_result), OF(run), OF(bed_options), OF(bed_factors), OF(transient_config), OF(span), OF(wall_row),     \
+        OF(triangles), OF(triangle_hit), OF(side_view), OF(row_part), OF(plane), OF(cylinder), OF(wall_rule),          \
+        OF(displacement_rule), OF(contact_rule), OF(contact_list)
+#define OF(name)                                                                                                       \
+    { "fibrad_" #name, sizeof(fibrad_##name) }
 
 size_t fibrad_host_sizeof(const char *name) {
     static const struct {
-        char name[24];
+        char name[32];
         size_t size;
-    } structures[] = {
-        STRUCTURE(fibrad_memory),        STRUCTURE(fibrad_spheres),      STRUCTURE(fibrad_wall),
-        STRUCTURE(fibrad_scene_config),  STRUCTURE(fibrad_fault),        STRUCTURE(fibrad_scene_facts),
-        STRUCTURE(fibrad_work),          STRUCTURE(fibrad_row),          STRUCTURE(fibrad_rows),
-        STRUCTURE(fibrad_beam_rule),     STRUCTURE(fibrad_cast_rule),    STRUCTURE(fibrad_cast_means),
-        STRUCTURE(fibrad_occupancy),     STRUCTURE(fibrad_flow),         STRUCTURE(fibrad_surface_rule),
-        STRUCTURE(fibrad_surface_facts), STRUCTURE(fibrad_matrix_rule),  STRUCTURE(fibrad_factors),
-        STRUCTURE(fibrad_exchange_rule), STRUCTURE(fibrad_displacement), STRUCTURE(fibrad_heat_config),
-        STRUCTURE(fibrad_heat_sources),  STRUCTURE(fibrad_heat_result),  STRUCTURE(fibrad_light),
-        STRUCTURE(fibrad_light_ends),    STRUCTURE(fibrad_light_ray),    STRUCTURE(fibrad_light_hits),
-        STRUCTURE(fibrad_light_sources), STRUCTURE(fibrad_light_result), STRUCTURE(fibrad_run),
-        STRUCTURE(fibrad_bed_options),   STRUCTURE(fibrad_bed_factors),  STRUCTURE(fibrad_transient_config),
-        STRUCTURE(fibrad_span),          STRUCTURE(fibrad_wall_row),     STRUCTURE(fibrad_triangles),
-        STRUCTURE(fibrad_triangle_hit),  STRUCTURE(fibrad_side_view),    STRUCTURE(fibrad_row_part),
-        STRUCTURE(fibrad_plane),         STRUCTURE(fibrad_cylinder),     STRUCTURE(fibrad_contact_rule),
-        STRUCTURE(fibrad_contact_list),
-    };
+    } structures[] = {STRUCTURES};
     for (size_t k = 0; name && k < sizeof structures / sizeof *structures; ++k)
         if (strcmp(name, structures[k].name) == 0) return structures[k].size;
     return 0;

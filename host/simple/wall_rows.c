@@ -16,7 +16,7 @@ enum { VIEWS_AT_ONCE = 16 };
 
 struct wall_tasks {
     fibrad_job *job;
-    fibrad_exchange_rule rule;
+    fibrad_wall_rule rule;
     uint32_t paths[FIBRAD_WALLS_MAX]; /* from each wall; 0: its row is not computed in this round */
     fibrad_wall_row part[FIBRAD_WALLS_MAX][FIBRAD_WALL_PARTS];
 };
@@ -24,7 +24,7 @@ struct wall_tasks {
 static int run_part(void *tasks, int thread, uint32_t task) {
     struct wall_tasks *walls = tasks;
     const uint32_t wall = task / FIBRAD_WALL_PARTS, part = task % FIBRAD_WALL_PARTS;
-    fibrad_exchange_rule rule = walls->rule;
+    fibrad_wall_rule rule = walls->rule;
     rule.paths = walls->paths[wall];
     if (rule.paths == 0) return FIBRAD_OK;
     return fibrad_exchange_wall(walls->job->scene, &walls->job->team.work[thread], wall, &rule, part,
@@ -47,7 +47,7 @@ uint32_t fibrad_job_wall_paths(const fibrad_job *job, uint64_t paths) {
     return even;
 }
 
-int fibrad_job_walls(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_wall_row *row) {
+int fibrad_job_walls(fibrad_job *job, const fibrad_wall_rule *rule, double tolerance, fibrad_wall_row *row) {
     const uint32_t walls = job->facts.walls;
     struct wall_tasks tasks = {.job = job, .rule = *rule};
     int status = FIBRAD_OK;
@@ -62,9 +62,8 @@ int fibrad_job_walls(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_w
         for (uint32_t b = 0; b < walls && !status; ++b) {
             if (tasks.paths[b] == 0) continue;
             status = fibrad_exchange_wall_mean(tasks.part[b], &row[b]);
-            const bool enough =
-                !(rule->tolerance > 0 && row[b].error > rule->tolerance) || tasks.paths[b] == PATHS_MOST;
-            tasks.paths[b] = enough ? 0 : more_paths(tasks.paths[b], row[b].error / rule->tolerance);
+            const bool enough = !(tolerance > 0 && row[b].error > tolerance) || tasks.paths[b] == PATHS_MOST;
+            tasks.paths[b] = enough ? 0 : more_paths(tasks.paths[b], row[b].error / tolerance);
             again = again || !enough;
         }
     }
@@ -75,7 +74,7 @@ int fibrad_job_walls(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_w
 struct wall_paths {
     fibrad_job job;
     uint32_t wall;
-    fibrad_exchange_rule rule;
+    fibrad_wall_rule rule;
     fibrad_wall_row part[FIBRAD_WALL_PARTS];
 };
 
@@ -85,7 +84,7 @@ static int run_paths(void *wall_paths, int thread, uint32_t part) {
 }
 
 int fibrad_exchange_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t wall,
-                             const fibrad_exchange_rule *rule, fibrad_run *run, fibrad_wall_row *row) {
+                             const fibrad_wall_rule *rule, double tolerance, fibrad_run *run, fibrad_wall_row *row) {
     if (!rule || !row) return FIBRAD_E_ARGUMENT;
     struct wall_paths w = {.wall = wall, .rule = *rule};
     int status = fibrad_job_open(&w.job, config, spheres, run);
@@ -94,8 +93,8 @@ int fibrad_exchange_wall_row(const fibrad_scene_config *config, const fibrad_sph
         status = fibrad_team_run(&w.job.team, "walls", FIBRAD_WALL_PARTS, 1, run_paths, &w, NULL);
         if (run && status == FIBRAD_E_BACK) run->fault.triangle = w.job.team.triangle;
         if (!status) status = fibrad_exchange_wall_mean(w.part, row);
-        again = !status && rule->tolerance > 0 && row->error > rule->tolerance && w.rule.paths < PATHS_MOST;
-        if (again) w.rule.paths = more_paths(w.rule.paths, row->error / rule->tolerance);
+        again = !status && tolerance > 0 && row->error > tolerance && w.rule.paths < PATHS_MOST;
+        if (again) w.rule.paths = more_paths(w.rule.paths, row->error / tolerance);
     }
     fibrad_job_close(&w.job);
     return status;

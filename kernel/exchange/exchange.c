@@ -307,7 +307,8 @@ int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i
     int status = exchange_begin(&task, scene, i, rule);
     if (status != FIBRAD_OK) return status;
     if (rule->node_emissivity != NULL) task.emissivity = rule->node_emissivity;
-    if (!fibrad_nodes_given(rule) || !(task.emissivity[i] <= rule->emissivity[i])) return FIBRAD_E_ARGUMENT;
+    if (rule->node_emissivity != NULL && rule->conductivity == NULL) return FIBRAD_E_ARGUMENT;
+    if (!(task.emissivity[i] <= rule->emissivity[i])) return FIBRAD_E_ARGUMENT;
     if (rule->known != NULL && !(rule->known_paths >= 0 && fibrad_finite(rule->known_paths))) return FIBRAD_E_ARGUMENT;
     const fibrad_row_method method = {exchange_compute, &handle, fibrad_tracer_least(), fibrad_tracer_best(scene)};
     status = fibrad_row_run(scene, work, i, &method, row);
@@ -330,56 +331,58 @@ static void read_squares(const fibrad_paths *paths, double count, fibrad_displac
     }
 }
 
-int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
-                                 const fibrad_exchange_rule *rule, fibrad_displacement *displacement) {
-    exchange_task task;
-    fibrad_workspace *space;
-    int status = exchange_begin(&task, scene, i, rule);
-    if (status == FIBRAD_OK && (work == NULL || displacement == NULL)) status = FIBRAD_E_ARGUMENT;
-    if (status == FIBRAD_OK)
-        status = fibrad_work_open(work, scene, fibrad_tracer_least(), fibrad_tracer_best(scene), &space);
-    if (status != FIBRAD_OK) return status;
-    if (rule->emissivity[i] == 0) {
-        *displacement = (fibrad_displacement){0};
-        return FIBRAD_OK;
-    }
-    fibrad_paths paths = paths_of(&task, space, scene, i);
-    paths.first = true;
-    const double count = (double)fibrad_paths_begin(&paths, rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT);
-    work->triangle = paths.back;
-    if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
-    if (!fibrad_finite(paths.absorbed)) return FIBRAD_E_ARGUMENT; /* a number that a path met is not valid */
-    read_squares(&paths, count, displacement);
+/* The displacement of emission up to the sphere that absorbs it. */
+static int displace_emission(fibrad_paths *paths, uint32_t count, fibrad_displacement *displacement) {
+    paths->first = true;
+    const double followed = (double)fibrad_paths_begin(paths, count);
+    if (paths->back != UINT32_MAX) return FIBRAD_E_BACK;
+    if (!fibrad_finite(paths->absorbed)) return FIBRAD_E_ARGUMENT; /* a number that a path met is not valid */
+    read_squares(paths, followed, displacement);
     for (int axis = 0; axis < 3; axis++)
-        if (paths.left > 0 && paths.absorbed > 0) /* paths that were broken off would have gone at least as far */
-            displacement->error[axis] += displacement->square[axis] * (paths.left / paths.absorbed);
-    displacement->absorbed = paths.absorbed / count;
-    displacement->rays = paths.rays;
+        if (paths->left > 0 && paths->absorbed > 0) /* paths that were broken off would have gone at least as far */
+            displacement->error[axis] += displacement->square[axis] * (paths->left / paths->absorbed);
+    displacement->absorbed = paths->absorbed / followed;
+    displacement->rays = paths->rays;
     return FIBRAD_OK;
 }
 
-int fibrad_exchange_walk(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
-                         fibrad_displacement *displacement) {
+/* The displacement of a flight of walks among spheres that conduct. */
+static int displace_flights(fibrad_paths *paths, uint32_t count, fibrad_displacement *displacement) {
+    FIBRAD_VERSION_OF(fibrad_paths_follow, paths->tracer->scene->facts.isa)(paths, 0, count);
+    if (!fibrad_finite(paths->origins)) return FIBRAD_E_ARGUMENT; /* a number that a path met is not valid */
+    *displacement = (fibrad_displacement){.absorbed = 1 - paths->lost / (double)count, .rays = paths->rays};
+    if (paths->origins > 0) read_squares(paths, paths->origins, displacement);
+    return FIBRAD_OK;
+}
+
+int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
+                                 const fibrad_displacement_rule *rule, fibrad_displacement *displacement) {
     exchange_task task;
     fibrad_workspace *space;
-    int status = exchange_begin(&task, scene, i, rule);
-    if (status == FIBRAD_OK &&
-        (work == NULL || displacement == NULL || rule->conductivity == NULL || rule->flights > FIBRAD_FLIGHTS_MAX))
-        status = FIBRAD_E_ARGUMENT;
-    if (status == FIBRAD_OK &&
+    if (rule == NULL || work == NULL || displacement == NULL) return FIBRAD_E_ARGUMENT;
+    const bool conduct = rule->conductivity != NULL;
+    const fibrad_exchange_rule row = {.emissivity = rule->emissivity,
+                                      .wall_emissivity = rule->wall_emissivity,
+                                      .paths = rule->paths,
+                                      .seed = rule->seed,
+                                      .cutoff = rule->cutoff};
+    int status = exchange_begin(&task, scene, i, &row);
+    if (status == FIBRAD_OK && conduct && rule->flights > FIBRAD_FLIGHTS_MAX) status = FIBRAD_E_ARGUMENT;
+    if (status == FIBRAD_OK && conduct &&
         (scene->container.walls || scene->mesh.triangles > 0 || scene->region || rule->cutoff > 0))
         status = FIBRAD_E_UNSUPPORTED;
     if (status == FIBRAD_OK)
         status = fibrad_work_open(work, scene, fibrad_tracer_least(), fibrad_tracer_best(scene), &space);
     if (status != FIBRAD_OK) return status;
-    const uint64_t count = rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT;
+    if (rule->emissivity[i] == 0 && !conduct) {
+        *displacement = (fibrad_displacement){0};
+        return FIBRAD_OK;
+    }
+    const uint32_t count = rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT;
     fibrad_paths paths = paths_of(&task, space, scene, i);
     paths.conductivity = rule->conductivity;
-    paths.flights = rule->flights > 0 ? rule->flights : FIBRAD_FLIGHTS_DEFAULT;
-    fibrad_paths_function *follow = FIBRAD_VERSION_OF(fibrad_paths_follow, scene->facts.isa);
-    follow(&paths, 0, count);
-    if (!fibrad_finite(paths.origins)) return FIBRAD_E_ARGUMENT; /* a number that a path met is not valid */
-    *displacement = (fibrad_displacement){.absorbed = 1 - paths.lost / (double)count, .rays = paths.rays};
-    if (paths.origins > 0) read_squares(&paths, paths.origins, displacement);
-    return FIBRAD_OK;
+    if (conduct) paths.flights = rule->flights > 0 ? rule->flights : FIBRAD_FLIGHTS_DEFAULT;
+    status = conduct ? displace_flights(&paths, count, displacement) : displace_emission(&paths, count, displacement);
+    work->triangle = paths.back;
+    return status;
 }

@@ -63,11 +63,6 @@ static inline int fibrad_paths_emissivities(const fibrad_scene *scene, const dou
     return FIBRAD_OK;
 }
 
-/* Whether a rule with emissivities of nodes has the emissivities and conductivities that these follow from. */
-static inline bool fibrad_nodes_given(const fibrad_exchange_rule *rule) {
-    return rule->node_emissivity == NULL || (rule->emissivity != NULL && rule->conductivity != NULL);
-}
-
 /* Follows the first legs to where they arrive, and chooses those from which paths go on. A leg is chosen in proportion
  * to what the surface reflects where it arrives. So all paths go on with equal weights. Nothing counts as absorbed. */
 typedef void fibrad_paths_arrive_function(fibrad_paths *paths);

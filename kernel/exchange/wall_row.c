@@ -8,16 +8,17 @@
 #include "row/row.h"
 
 /* slot: out, of the wall or opening */
-static int wall_begin(const fibrad_scene *scene, uint32_t wall, const fibrad_exchange_rule *rule, uint32_t part,
+static int wall_begin(const fibrad_scene *scene, uint32_t wall, const fibrad_wall_rule *rule, uint32_t part,
                       double wall_emissivity[FIBRAD_SLOTS], uint32_t *slot) {
     if (scene == NULL || rule == NULL) return FIBRAD_E_ARGUMENT;
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
-    if (!fibrad_nodes_given(rule)) return FIBRAD_E_ARGUMENT;
+    if (rule->node_emissivity != NULL && (rule->emissivity == NULL || rule->conductivity == NULL))
+        return FIBRAD_E_ARGUMENT;
     *slot = fibrad_wall_slot(scene, wall);
     if (*slot == FIBRAD_NONE || part >= FIBRAD_WALL_PARTS || rule->paths > FIBRAD_PATHS_MAX) return FIBRAD_E_ARGUMENT;
     const int status = fibrad_paths_emissivities(scene, rule->wall_emissivity, wall_emissivity);
     if (status != FIBRAD_OK) return status;
-    const bool whole = fibrad_finite(scene->wall_area[*slot]) && !scene->region && rule->cutoff == 0;
+    const bool whole = fibrad_finite(scene->wall_area[*slot]) && !scene->region;
     return whole ? FIBRAD_OK : FIBRAD_E_UNSUPPORTED;
 }
 
@@ -93,7 +94,7 @@ static int row_of_paths(const fibrad_scene *scene, fibrad_paths *paths, uint64_t
     return fibrad_sum_checked(all);
 }
 
-int fibrad_exchange_wall(const fibrad_scene *scene, fibrad_work *work, uint32_t wall, const fibrad_exchange_rule *rule,
+int fibrad_exchange_wall(const fibrad_scene *scene, fibrad_work *work, uint32_t wall, const fibrad_wall_rule *rule,
                          uint32_t part, fibrad_wall_row *row, uint64_t *reflected) {
     double wall_emissivity[FIBRAD_SLOTS] = {0};
     fibrad_workspace *space;

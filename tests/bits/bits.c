@@ -389,22 +389,26 @@ static int hash_tolerance(const struct scene *s, int isa) {
     return 0;
 }
 
-/* Walks of spheres that conduct. */
-static int hash_walk(const struct scene *s, const fibrad_scene *scene, const fibrad_exchange_rule *of) {
-    static double conductivity[SPHERES];
-    fibrad_exchange_rule rule = *of;
-    for (uint32_t i = 0; i < s->n; i++) conductivity[i] = i % 7 == 0 ? __builtin_inf() : .01 * (1 << i % 11);
-    rule.conductivity = conductivity, rule.flights = 5;
+static int hash_displacements(const struct scene *s, const fibrad_scene *scene, const fibrad_displacement_rule *rule,
+                              const char *what) {
     hash_begin();
     for (uint32_t i = 0; i < s->n; i += 4) {
         fibrad_displacement displacement;
-        if (fibrad_exchange_walk(scene, &work, i, &rule, &displacement) != FIBRAD_OK) return 1;
+        if (fibrad_exchange_displacement(scene, &work, i, rule, &displacement) != FIBRAD_OK) return 1;
         for (int axis = 0; axis < 3; axis++)
             hash_number(displacement.square[axis]), hash_number(displacement.error[axis]);
         hash_number(displacement.absorbed), hash_word(displacement.rays);
     }
-    tell(s->name, "walk");
+    tell(s->name, what);
     return 0;
+}
+
+/* Walks of spheres that conduct. */
+static int hash_walk(const struct scene *s, const fibrad_scene *scene, fibrad_displacement_rule rule) {
+    static double conductivity[SPHERES];
+    for (uint32_t i = 0; i < s->n; i++) conductivity[i] = i % 7 == 0 ? __builtin_inf() : .01 * (1 << i % 11);
+    rule.conductivity = conductivity, rule.flights = 5;
+    return hash_displacements(s, scene, &rule, "walk");
 }
 
 /* Exchange rows by a fixed number of paths and to a tolerance, their matrix, and displacements. */
@@ -435,16 +439,10 @@ static int hash_exchange(const struct scene *s, int isa) {
     if (hash_matrix(s, scene, &(fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity},
                     "exchange.closed"))
         return 1;
-    hash_begin();
-    for (uint32_t i = 0; i < s->n; i += 4) {
-        fibrad_displacement displacement;
-        if (fibrad_exchange_displacement(scene, &work, i, &rule, &displacement) != FIBRAD_OK) return 1;
-        for (int axis = 0; axis < 3; axis++)
-            hash_number(displacement.square[axis]), hash_number(displacement.error[axis]);
-        hash_number(displacement.absorbed), hash_word(displacement.rays);
-    }
-    tell(s->name, "spread");
-    return walls == 0 && s->bounds == PERIODIC ? hash_walk(s, scene, &rule) : 0;
+    const fibrad_displacement_rule carried = {
+        .emissivity = emissivity, .wall_emissivity = wall_emissivity, .paths = rule.paths, .seed = rule.seed};
+    if (hash_displacements(s, scene, &carried, "spread")) return 1;
+    return walls == 0 && s->bounds == PERIODIC ? hash_walk(s, scene, carried) : 0;
 }
 
 /* Rows of a part of a bed with a cutoff, a known region and an occupancy: beams by areas, by points and turned, cast

@@ -133,8 +133,8 @@ static void try_views(struct session *s) {
 static void try_displacements(struct session *s) {
     fibrad_displacement d[SPHERES];
     fibrad_scene_facts facts;
-    const fibrad_exchange_rule grey = {
-        .emissivity = s->emissivity, .wall_emissivity = s->wall_emissivity, .directions = 8, .paths = 1 + byte() % 32};
+    const fibrad_displacement_rule grey = {
+        .emissivity = s->emissivity, .wall_emissivity = s->wall_emissivity, .paths = 1 + byte() % 32};
     const int status = CALL(fibrad_displacements(&s->contents.config, spheres_of(s), &grey, NULL, &s->run, d, &facts));
     for (uint32_t i = 0; status == FIBRAD_OK && i < s->contents.n; i++)
         for (int axis = 0; axis < 3; axis++) REQUIRE(d[i].square[axis] >= 0 && isfinite(d[i].square[axis]));

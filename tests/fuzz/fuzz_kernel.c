@@ -7,6 +7,7 @@
 #include "fibrad_heat.h"
 #include "fibrad_surface.h"
 #include "contents.h"
+#include "../grey_rules.h"
 
 /* ---- scenes and rows -------------------------------------------------------------------------------------------- */
 
@@ -164,7 +165,7 @@ static void try_displacement(struct session *s) {
     if (too_long(&m)) return;
     fibrad_displacement d;
     const uint32_t i = number() % (s->contents.n + 1);
-    const int status = CALL(fibrad_exchange_displacement(s->scene, &s->work, i, &m.exchange, &d));
+    const int status = CALL(displacement_of(s->scene, &s->work, i, &m.exchange, &d));
     if (status != FIBRAD_OK) return;
     /* few paths may absorb more than they carried, since some go on for others that have ended */
     REQUIRE(d.absorbed >= 0 && isfinite(d.absorbed));
@@ -645,7 +646,7 @@ static void try_parts(struct session *s) {
 }
 
 /* One batch of the row of a wall or an opening. Where all is black, nothing is reflected. */
-static int any_batch(struct session *s, const fibrad_exchange_rule *rule, uint32_t wall, uint32_t part,
+static int any_batch(struct session *s, const fibrad_wall_rule *rule, uint32_t wall, uint32_t part,
                      fibrad_wall_row *row) {
     const uint32_t n = s->contents.n;
     void *block;
@@ -664,7 +665,7 @@ static int any_batch(struct session *s, const fibrad_exchange_rule *rule, uint32
 }
 
 /* The row of a wall or an opening: all that it emits ends somewhere. */
-static bool any_wall_row(struct session *s, const fibrad_exchange_rule *rule, uint32_t wall, fibrad_wall_row *mean) {
+static bool any_wall_row(struct session *s, const fibrad_wall_rule *rule, uint32_t wall, fibrad_wall_row *mean) {
     fibrad_wall_row part[FIBRAD_WALL_PARTS];
     const uint32_t walls = s->contents.config.walls;
     for (uint32_t k = 0; k < FIBRAD_WALL_PARTS; k++) {
@@ -694,7 +695,7 @@ static void try_walls(struct session *s) {
     m.kind = grey ? EXCHANGE : BEAM;
     m.exchange.cutoff = m.beam.cutoff = 0, m.exchange.paths = 1 + m.exchange.paths % 64;
     if (too_long(&m)) return;
-    fibrad_exchange_rule rule = m.exchange;
+    fibrad_wall_rule rule = wall_rule(&m.exchange);
     if (!grey) rule.emissivity = rule.wall_emissivity = NULL;
     fibrad_wall_row rows_of_walls[WALLS] = {{{0}, 0, 0, 0, 0, 0}}, of_opening;
     for (uint32_t b = 0; b < walls; b++)

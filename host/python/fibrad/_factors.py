@@ -14,7 +14,8 @@ from ._call import Call, Progress
 from ._library import library
 from ._limits import DIRECTIONS, FLIGHTS_MAX, LENGTH_MAX, NODES, RELATIVE_CONDUCTIVITY_MIN
 from ._scene import Container, Packing, Walls, pointer
-from ._structures import BeamRule, BedFactors, BedOptions, CastRule, Displacement, ExchangeRule, SurfaceRule
+from ._structures import (BeamRule, BedFactors, BedOptions, CastRule, Displacement, DisplacementRule, ExchangeRule,
+                          SurfaceRule)
 from ._values import marks, per_sphere, real, refuse, whole
 from ._warnings import warn, warn_overlap, warn_rows, warn_walls
 
@@ -251,14 +252,14 @@ class _Job:
                  "directions or paths are possible")
         return factors
 
-    def exchange_rule(self, emissivity: ArrayLike, wall_emissivity: Any, k_star: Optional[ArrayLike] = None,
-                      **values: Any) -> Any:
+    def rule(self, kind: Any, emissivity: ArrayLike, wall_emissivity: Any, k_star: Optional[ArrayLike] = None,
+             **values: Any) -> Any:
         self._emissivity = per_sphere("emissivity", emissivity, self.packing.n, 0, 1, self.packing.names)
         self._wall_emissivity = self.container.per_wall("wall_emissivity", wall_emissivity, 0, 1)
         self._k_star = None if k_star is None else per_sphere(
             "k_star", k_star, self.packing.n, RELATIVE_CONDUCTIVITY_MIN, np.inf, self.packing.names)
-        return ExchangeRule(emissivity=pointer(self._emissivity), wall_emissivity=pointer(self._wall_emissivity),
-                            conductivity=pointer(self._k_star), **values)
+        return kind(emissivity=pointer(self._emissivity), wall_emissivity=pointer(self._wall_emissivity),
+                    conductivity=pointer(self._k_star), **values)
 
     def between_nodes(self, rule: Any) -> Any:
         """The rule for exchange factors: between nodes, if spheres conduct."""
@@ -429,9 +430,10 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
         As for `view_factors`.
     """
     job = _Job(x, r, box, walls, ids, wanted, threads, progress)
-    rule = job.exchange_rule(emissivity, wall_emissivity, k_star, directions=whole("directions", directions, *DIRECTIONS),
-                             paths=whole("paths", paths, 1, 2**28), seed=whole("seed", seed, *_SEED),
-                             cutoff=real("cutoff", cutoff, *_FAR), tolerance=real("tolerance", tolerance, 0, 1))
+    rule = job.rule(ExchangeRule, emissivity, wall_emissivity, k_star,
+                    directions=whole("directions", directions, *DIRECTIONS), paths=whole("paths", paths, 1, 2**28),
+                    seed=whole("seed", seed, *_SEED), cutoff=real("cutoff", cutoff, *_FAR),
+                    tolerance=real("tolerance", tolerance, 0, 1))
     options = BedOptions(wanted=job.wanted, raw=bool(raw), walls=1, drop=real("drop", drop, 0, 1),
                          scratch=_folder(scratch))
     return job.factors(library.fibrad_exchange_factors, tolerance, job.between_nodes(rule), options)
@@ -500,9 +502,9 @@ def displacements(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: Opt
         As for `view_factors`.
     """
     job = _Job(x, r, box, walls, ids, wanted, threads, progress)
-    rule = job.exchange_rule(emissivity, wall_emissivity, k_star, paths=whole("paths", paths, 1, 2**28),
-                             seed=whole("seed", seed, *_SEED), cutoff=real("cutoff", cutoff, *_FAR),
-                             flights=whole("flights", flights, 1, FLIGHTS_MAX))
+    rule = job.rule(DisplacementRule, emissivity, wall_emissivity, k_star, paths=whole("paths", paths, 1, 2**28),
+                    seed=whole("seed", seed, *_SEED), cutoff=real("cutoff", cutoff, *_FAR),
+                    flights=whole("flights", flights, 1, FLIGHTS_MAX))
     found: NDArray[Any] = np.zeros(job.packing.n, Displacement)
     job.call(library.fibrad_displacements, rule, job.wanted, job.run, pointer(found, ctypes.POINTER(Displacement)), None)
     return Displacements(*(np.ascontiguousarray(found[name]) for name in ("square", "error", "absorbed", "rays")))

@@ -93,8 +93,14 @@ class BedFactors(Structure):
 class ExchangeRule(Structure):
     _fields_ = [("emissivity", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)), ("directions", c_uint32),
                 ("paths", c_uint32), ("seed", c_uint64), ("cutoff", c_double), ("tolerance", c_double),
-                ("conductivity", POINTER(c_double)), ("node_emissivity", POINTER(c_double)), ("flights", c_uint32),
+                ("node_emissivity", POINTER(c_double)), ("conductivity", POINTER(c_double)),
                 ("known", POINTER(c_double)), ("known_paths", c_double)]
+
+
+class WallRule(Structure):
+    _fields_ = [("emissivity", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)),
+                ("node_emissivity", POINTER(c_double)), ("conductivity", POINTER(c_double)), ("paths", c_uint32),
+                ("seed", c_uint64)]
 
 
 class WallRow(Structure):
@@ -104,6 +110,12 @@ class WallRow(Structure):
 
 class SideView(Structure):
     _fields_ = [("spheres", c_double), ("walls", c_double), ("escaped", c_double)]
+
+
+class DisplacementRule(Structure):
+    _fields_ = [("emissivity", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)),
+                ("conductivity", POINTER(c_double)), ("flights", c_uint32), ("paths", c_uint32), ("seed", c_uint64),
+                ("cutoff", c_double)]
 
 
 class Displacement(Structure):
@@ -190,9 +202,10 @@ STRUCTURES: dict[str, Any] = {
     "fibrad_beam_rule": BeamRule, "fibrad_surface_rule": SurfaceRule, "fibrad_cast_rule": CastRule,
     "fibrad_bed_options": BedOptions, "fibrad_fault": Fault, "fibrad_run": Run, "fibrad_factors": Factors,
     "fibrad_scene_facts": SceneFacts, "fibrad_bed_factors": BedFactors, "fibrad_exchange_rule": ExchangeRule,
-    "fibrad_wall_row": WallRow, "fibrad_side_view": SideView, "fibrad_displacement": Displacement,
-    "fibrad_heat_config": HeatConfig, "fibrad_heat_sources": HeatSources, "fibrad_heat_result": HeatResult,
-    "fibrad_light": Light, "fibrad_light_sources": LightSources, "fibrad_light_result": LightResult,
+    "fibrad_wall_rule": WallRule, "fibrad_wall_row": WallRow, "fibrad_side_view": SideView,
+    "fibrad_displacement_rule": DisplacementRule, "fibrad_displacement": Displacement, "fibrad_heat_config": HeatConfig,
+    "fibrad_heat_sources": HeatSources, "fibrad_heat_result": HeatResult, "fibrad_light": Light,
+    "fibrad_light_sources": LightSources, "fibrad_light_result": LightResult,
     "fibrad_transient_config": TransientConfig, "fibrad_span": Span, "fibrad_contact_rule": ContactRule,
     "fibrad_contact_list": ContactList}
 
@@ -207,11 +220,11 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "fibrad_exchange_factors": (c_int, [POINTER(SceneConfig), POINTER(Spheres), POINTER(ExchangeRule),
         POINTER(BedOptions), POINTER(Run), POINTER(POINTER(BedFactors))]),
     "fibrad_bed_free": (None, [POINTER(BedFactors)]),
-    "fibrad_exchange_wall_row": (c_int, [POINTER(SceneConfig), POINTER(Spheres), c_uint32, POINTER(ExchangeRule),
+    "fibrad_exchange_wall_row": (c_int, [POINTER(SceneConfig), POINTER(Spheres), c_uint32, POINTER(WallRule), c_double,
         POINTER(Run), POINTER(WallRow)]),
     "fibrad_side_views": (c_int, [POINTER(SceneConfig), POINTER(Spheres), c_uint32, POINTER(Run), POINTER(SideView)]),
-    "fibrad_displacements": (c_int, [POINTER(SceneConfig), POINTER(Spheres), POINTER(ExchangeRule), POINTER(c_ubyte),
-        POINTER(Run), POINTER(Displacement), POINTER(SceneFacts)]),
+    "fibrad_displacements": (c_int, [POINTER(SceneConfig), POINTER(Spheres), POINTER(DisplacementRule),
+        POINTER(c_ubyte), POINTER(Run), POINTER(Displacement), POINTER(SceneFacts)]),
     "fibrad_radiation_new": (c_int, [POINTER(c_void_p), POINTER(SceneConfig), POINTER(Spheres), POINTER(HeatConfig),
         POINTER(Run)]),
     "fibrad_radiation_move": (c_int, [c_void_p, POINTER(SceneConfig), POINTER(Spheres)]),
