@@ -113,16 +113,6 @@ typedef struct fibrad_insitu_build {
     fibrad_remark remark[FIBRAD_REMARKS];
 } fibrad_insitu_build;
 
-/* What bounds a scene, with the axes of the scene. */
-typedef struct fibrad_scene_walls {
-    fibrad_wall wall[FIBRAD_WALLS_MAX];
-    fibrad_plane opening[FIBRAD_OPENINGS_MAX];
-    fibrad_triangles triangles;
-    double period[3];
-} fibrad_scene_walls;
-
-void fibrad_insitu_walls(const fibrad_insitu_build *b, fibrad_scene_walls *walls);
-
 /* Collective. Checks the bed, and takes its particles. Errors, on all ranks: as fibrad_insitu_rows. */
 int fibrad_insitu_check(fibrad_insitu_build *b);
 

@@ -362,7 +362,6 @@ void make_rows(Driver *driver, bool follow) {
     bed.wall = driver->wall.data();
     bed.wall_emissivity = driver->wall_emissivity.data();
     bed.walls = (uint32_t)driver->wall.size();
-    bed.cylinder = driver->options.cylinder;
     bed.opening = driver->options.openings.data();
     bed.openings = (uint32_t)driver->options.openings.size();
     bed.triangles = &driver->triangles.meshes.triangles;

@@ -36,7 +36,6 @@ struct liggghts_options {
     std::vector<double> solid;       /* the same of the conductivity of the solid; empty: infinite */
     double surroundings = -1;        /* below 0: not given */
     std::vector<radiant_wall> walls;
-    int cylinder = 0;                   /* axis of the cylinder, as in fibrad_insitu_bed */
     std::vector<fibrad_plane> openings; /* at NaN: at the end of the particles */
     std::vector<radiant_mesh> meshes;
     std::vector<wall_capacity> capacities;
