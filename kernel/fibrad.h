@@ -219,7 +219,7 @@ typedef struct fibrad_spheres {
 
 typedef enum fibrad_wall_kind {
     FIBRAD_WALL_PLANE = 1,    /* a plane across an axis; the scene lies on one side of the plane */
-    FIBRAD_WALL_CYLINDER = 2, /* a cylinder parallel to the z axis; the scene lies inside */
+    FIBRAD_WALL_CYLINDER = 2, /* a cylinder parallel to an axis; the scene lies inside */
     FIBRAD_WALL_MESH = 3      /* the triangles of fibrad_scene_config.triangles that name this wall, at least one */
 } fibrad_wall_kind;
 
@@ -230,9 +230,10 @@ typedef struct fibrad_plane {
     double at; /* L, coordinate of the plane on its axis */
 } fibrad_plane;
 
-/* A cylinder about an axis parallel to the z axis. */
+/* A cylinder about an axis parallel to x, y or z. */
 typedef struct fibrad_cylinder {
-    double x, y, radius; /* L, position of the axis, and radius above 0 */
+    double x, y, radius; /* L, position on the two other axes, in the order x, y, z; and radius above 0 */
+    int axis;            /* of the cylinder, 0: z, 1: x, 2: y */
 } fibrad_cylinder;
 
 /* A wall. The number of a wall is its index in fibrad_scene_config.wall.
@@ -240,7 +241,7 @@ typedef struct fibrad_cylinder {
  * Planes and the cylinder bound a convex container. Hence no plane and no cylinder hides one sphere from another.
  *   planes    At most two planes lie across one axis: a lower one and, above it, an upper one. A periodic axis has no
  *             planes.
- *   cylinder  There is at most one. The axes x and y then have no period and no planes.
+ *   cylinder  There is at most one. The two axes across it then have no period and no planes.
  *   meshes    Their triangles may hide spheres from each other. fibrad_mesh.h has the rules for triangles.
  *
  * Openings. An opening is a plane where the container ends and the surroundings begin. Radiation that meets an opening
@@ -254,7 +255,7 @@ typedef struct fibrad_cylinder {
  *   the scene has                     must be closed
  *   planes across one axis            no axis
  *   planes across two or three axes   all three axes
- *   a cylinder                        the z axis
+ *   a cylinder                        its own axis
  *
  * Otherwise fibrad_scene_init returns FIBRAD_E_ENDLESS. */
 typedef struct fibrad_wall {

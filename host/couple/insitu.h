@@ -113,20 +113,6 @@ typedef struct fibrad_insitu_build {
     fibrad_remark remark[FIBRAD_REMARKS];
 } fibrad_insitu_build;
 
-/* What bounds a scene, with the axes of the scene. */
-typedef struct fibrad_scene_walls {
-    fibrad_wall wall[FIBRAD_WALLS_MAX];
-    fibrad_plane opening[FIBRAD_OPENINGS_MAX];
-    fibrad_triangles triangles;
-    double period[3];
-} fibrad_scene_walls;
-
-void fibrad_insitu_walls(const fibrad_insitu_build *b, fibrad_scene_walls *walls);
-
-/* Particles as the spheres of a scene. id: may be NULL. */
-fibrad_spheres fibrad_insitu_spheres(const fibrad_insitu_build *b, const fibrad_particle *p, size_t n,
-                                     const uint64_t *id);
-
 /* Checks what is given with powers. Not collective. Errors: _ARGUMENT, _STATE. */
 int fibrad_insitu_check_state(fibrad_insitu *insitu, const fibrad_insitu_state *state, const double *power);
 

@@ -5,7 +5,6 @@
 
 #include "couple/insitu.h"
 #include "couple/ranks/coarse_map.h"
-#include "couple/ranks/turned.h"
 
 #define CUTOFF_RADII 8    /* least default cutoff: the largest diameter plus this many mean radii */
 #define CUTOFF_COUNT 1e5  /* particles in a cube that may be sent for the default cutoff, see below */
@@ -15,39 +14,17 @@
 #define PART_LEAST   1e-3 /* a particle whose radius would be reduced to less is left out */
 #define OUTSIDE_MOST 0.1  /* part of all particles that may be left out of the first rows */
 
-void fibrad_insitu_walls(const fibrad_insitu_build *b, fibrad_scene_walls *to) {
-    const fibrad_insitu_bed *bed = b->bed;
-    for (uint32_t k = 0; k < bed->walls; ++k) to->wall[k] = fibrad_turned_wall(bed->cylinder, bed->wall[k]);
-    for (uint32_t k = 0; k < b->openings; ++k) to->opening[k] = fibrad_turned_plane(bed->cylinder, b->opening[k]);
-    fibrad_turn(bed->cylinder, b->period, to->period);
-    fibrad_triangles *t = &to->triangles;
-    *t = bed->triangles ? *bed->triangles : (fibrad_triangles){0};
-    const double *x[3];
-    fibrad_turn_arrays(bed->cylinder, (const double *const[]){t->x, t->y, t->z}, x);
-    t->x = x[0], t->y = x[1], t->z = x[2];
-    memcpy(t->period, to->period, sizeof t->period);
-}
-
-fibrad_spheres fibrad_insitu_spheres(const fibrad_insitu_build *b, const fibrad_particle *p, size_t n,
-                                     const uint64_t *id) {
-    const uint32_t stride = sizeof *p / sizeof(double);
-    const double *x[3];
-    fibrad_turn_arrays(b->bed->cylinder, (const double *const[]){&p->x[0], &p->x[1], &p->x[2]}, x);
-    return (fibrad_spheres){x[0], x[1], x[2], &p->radius, (uint32_t)n, stride, stride, id};
-}
-
 /* Checks the bed without its particles, which is the same on all ranks. */
 static int check_bed(fibrad_insitu_build *b) {
     const fibrad_insitu_bed *bed = b->bed;
     char *message = b->s->message;
     unsigned char block[FIBRAD_SCENE_BYTES(0)];
     fibrad_scene *empty;
-    fibrad_scene_walls turned;
-    uint32_t walls = 0; /* without meshes, which bound no box */
+    fibrad_wall wall[FIBRAD_WALLS_MAX]; /* without meshes, which bound no box */
+    uint32_t walls = 0;
     if (!bed || (bed->n && !(bed->id && bed->x && bed->radius && bed->emissivity)) || bed->n > FIBRAD_SPHERES_MAX ||
         bed->walls > FIBRAD_WALLS_MAX || (bed->walls && !(bed->wall && bed->wall_emissivity)) ||
-        bed->openings > FIBRAD_OPENINGS_MAX || (bed->openings && !bed->opening) || bed->cylinder < 0 ||
-        bed->cylinder > 2)
+        bed->openings > FIBRAD_OPENINGS_MAX || (bed->openings && !bed->opening))
         return FIBRAD_E_ARGUMENT;
     for (int axis = 0; axis < 3; ++axis) {
         if (!bed->periodic[axis]) continue;
@@ -62,13 +39,12 @@ static int check_bed(fibrad_insitu_build *b) {
         if (isnan(opening->at))
             opening->at = opening->upper ? FIBRAD_LENGTH_MAX : -FIBRAD_LENGTH_MAX; /* until the bed is known */
     }
-    fibrad_insitu_walls(b, &turned);
     for (uint32_t k = 0; k < bed->walls; ++k)
-        if (turned.wall[k].kind != FIBRAD_WALL_MESH) turned.wall[walls++] = turned.wall[k];
-    const fibrad_scene_config config = {.period = {turned.period[0], turned.period[1], turned.period[2]},
-                                        .wall = turned.wall,
+        if (bed->wall[k].kind != FIBRAD_WALL_MESH) wall[walls++] = bed->wall[k];
+    const fibrad_scene_config config = {.period = {b->period[0], b->period[1], b->period[2]},
+                                        .wall = wall,
                                         .walls = walls,
-                                        .opening = turned.opening,
+                                        .opening = b->opening,
                                         .openings = bed->openings};
     const int status = fibrad_scene_init(&empty, block, sizeof block, &config, &(fibrad_spheres){0}, NULL);
     if (status == FIBRAD_E_ENDLESS) return fibrad_refuse(message, status, "%s", fibrad_status_text(status));
@@ -82,7 +58,7 @@ static int check_bed(fibrad_insitu_build *b) {
 
 /* Whether a particle takes part. If not, counts it; with `strict` sets *status instead. */
 static bool takes_part(fibrad_insitu_build *b, const fibrad_particle *p, int *status) {
-    const fibrad_bounds bounds = {b->bed->wall, b->opening, b->bed->walls, b->bed->openings, b->bed->cylinder};
+    const fibrad_bounds bounds = {b->bed->wall, b->opening, b->bed->walls, b->bed->openings};
     char why[FIBRAD_MESSAGE];
     bool opening;
     if (fibrad_bounds_hold(&bounds, p, &opening, why)) return true;
@@ -220,10 +196,9 @@ int fibrad_insitu_measure(fibrad_insitu_build *b) {
     for (int axis = 0; axis < 3; ++axis) {
         const bool periodic = b->period[axis] > 0;
         b->repeats |= periodic;
-        const int turned = fibrad_turned_axis(b->bed->cylinder, axis);
-        b->map.periodic[turned] = periodic;
-        b->map.low[turned] = periodic ? b->bed->low[axis] : -most[5 + axis] - b->radius_max;
-        b->map.high[turned] = periodic ? b->bed->high[axis] : most[2 + axis] + b->radius_max;
+        b->map.periodic[axis] = periodic;
+        b->map.low[axis] = periodic ? b->bed->low[axis] : -most[5 + axis] - b->radius_max;
+        b->map.high[axis] = periodic ? b->bed->high[axis] : most[2 + axis] + b->radius_max;
         if (periodic && !status && !(b->radius_max < b->period[axis]))
             status = fibrad_refuse(b->s->message, FIBRAD_E_GEOMETRY,
                                    "the largest radius, %g, is more than the period along %c, %g", b->radius_max,
@@ -336,8 +311,8 @@ static int gather_scene(fibrad_insitu_build *b) {
     if (!status && b->whole)
         status = fibrad_gather(b->s->comm, &b->to->particle, b->own, &b->s->sent, &b->halo, &b->lower);
     if (!status && (!b->whole || b->repeats))
-        status = fibrad_coarse_map(b->s->comm, CELL_RADII * b->radius_mean, b->radius_max, b->bed->cylinder,
-                                   b->to->particle.at, b->own, &b->s->mark, &b->map);
+        status = fibrad_coarse_map(b->s->comm, CELL_RADII * b->radius_mean, b->radius_max, b->to->particle.at, b->own,
+                                   &b->s->mark, &b->map);
     b->fresh = b->own;
     return !status && b->follows ? fibrad_follow_choose(b) : status;
 }

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "couple/insitu.h"
-#include "couple/ranks/turned.h"
 
 #define BACKS_MOST 0.1 /* part of all particles that may see what belongs to no wall */
 
@@ -13,27 +12,25 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
     fibrad_insitu *s = b->s;
     const bool images = id && !b->whole, marked = id && b->to->facts.particles && (images || b->repeats);
     if (n > FIBRAD_SPHERES_MAX) return FIBRAD_E_MEMORY;
-    fibrad_scene_walls turned;
-    fibrad_insitu_walls(b, &turned);
-    const size_t size =
-        fibrad_scene_size((uint32_t)n, id != NULL) + fibrad_triangles_size(turned.triangles.n, (uint32_t)n);
+    fibrad_triangles triangles = b->bed->triangles ? *b->bed->triangles : (fibrad_triangles){0};
+    memcpy(triangles.period, b->period, sizeof triangles.period);
+    const size_t size = fibrad_scene_size((uint32_t)n, id != NULL) + fibrad_triangles_size(triangles.n, (uint32_t)n);
     if (fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&s->emissivity, 3 * n + 1, sizeof(double)))
         return FIBRAD_E_MEMORY;
     double *emissivity = s->emissivity.at;
     for (size_t i = 0; i < n; ++i) {
-        if (id) id[i] = p[i].id;
         emissivity[i] = p[i].emissivity, emissivity[n + i] = p[i].conductivity, emissivity[2 * n + i] = p[i].node;
     }
     fibrad_scene_config config = {0}; /* no rows: an empty scene */
     if (n || !id)
-        config = (fibrad_scene_config){.wall = turned.wall,
+        config = (fibrad_scene_config){.wall = b->bed->wall,
                                        .walls = b->bed->walls,
-                                       .opening = turned.opening,
+                                       .opening = b->opening,
                                        .openings = b->openings,
                                        .occupancy = marked ? &b->map : NULL,
-                                       .triangles = &turned.triangles};
-    if ((n || !id) && !images) memcpy(config.period, turned.period, sizeof config.period);
-    const fibrad_spheres spheres = fibrad_insitu_spheres(b, p, n, id);
+                                       .triangles = &triangles};
+    if ((n || !id) && !images) memcpy(config.period, b->period, sizeof config.period);
+    const fibrad_spheres spheres = fibrad_particle_spheres(p, n, id);
     fibrad_fault fault;
     const int status = fibrad_scene_init(&b->scene, s->scene.at, s->scene.size, &config, &spheres, &fault);
     return status && id ? fibrad_insitu_fault(b, status, id, n, fault) : status;

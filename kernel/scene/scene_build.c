@@ -129,7 +129,7 @@ static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
         cells *= o->cells[axis];
     }
     for (uint64_t k = 0; o->mark != NULL && k < (cells + 63) / 64; k++) hash = fibrad_hash_word(hash, o->mark[k]);
-    hash = fibrad_hash_word(hash, (uint64_t)c->openings << 1 | (o->mark != NULL));
+    hash = fibrad_hash_word(hash, (uint64_t)c->turn << 32 | (uint64_t)c->openings << 1 | (o->mark != NULL));
     for (uint32_t b = 0; b < scene->facts.walls; b++) hash = fibrad_hash_word(hash, scene->slot[b]);
     for (uint32_t i = 0; i < s->n; i++) {
         for (int axis = 0; axis < 3; axis++) hash = fibrad_hash_number(hash, coordinate_of(s, axis, i));

@@ -139,7 +139,6 @@ class FixFibrad : public Fix {
     int columns;    // 4 with `parts`, 5 if contacts conduct, else 1
     bool sampling;  // directions, paths or tolerance are given
     bool accuracy;  // accuracy is given
-    int cylinder;   // axis of the cylinder
     double sigma;   // in units of the simulation
     double initial; // temperature of new atoms
     fibrad_insitu_config config;

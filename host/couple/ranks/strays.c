@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "contact/cylinder.h"
+
 #define OPENING_SLACK 1e-12 /* a particle may reach this much beyond an opening, as in fibrad_scene_init */
 
 /* ---- bounds ---- */
@@ -13,12 +15,11 @@ static bool plane_holds(const fibrad_plane *plane, const double x[3]) {
     return plane->upper ? x[plane->axis] <= plane->at : x[plane->axis] >= plane->at;
 }
 
-/* cylinder: its axis, as in fibrad_insitu_bed */
-static bool wall_holds(const fibrad_wall *wall, int cylinder, const double x[3]) {
+static bool wall_holds(const fibrad_wall *wall, const double x[3]) {
     if (wall->kind == FIBRAD_WALL_PLANE) return plane_holds(&wall->plane, x);
     if (wall->kind != FIBRAD_WALL_CYLINDER) return true;
-    const double a = (x[cylinder == 1 ? 1 : 0] - wall->cylinder.x) / wall->cylinder.radius;
-    const double b = (x[cylinder == 0 ? 1 : 2] - wall->cylinder.y) / wall->cylinder.radius;
+    const double a = (x[cylinder_across(wall, 0)] - wall->cylinder.x) / wall->cylinder.radius;
+    const double b = (x[cylinder_across(wall, 1)] - wall->cylinder.y) / wall->cylinder.radius;
     return a * a + b * b <= 1;
 }
 
@@ -38,7 +39,7 @@ bool fibrad_bounds_hold(const fibrad_bounds *bounds, const fibrad_particle *p, b
     *opening = false;
     for (uint32_t k = 0; k < bounds->walls; ++k) {
         const fibrad_wall *wall = &bounds->wall[k];
-        if (wall_holds(wall, bounds->cylinder, p->x)) continue;
+        if (wall_holds(wall, p->x)) continue;
         char fault[48];
         snprintf(fault, sizeof fault, "its centre lies beyond wall %" PRIu32 ",", k + 1);
         describe(message, p, fault, wall->kind == FIBRAD_WALL_PLANE ? &wall->plane : NULL);

@@ -12,7 +12,6 @@ typedef struct fibrad_bounds {
     const fibrad_wall *wall;     /* [walls] */
     const fibrad_plane *opening; /* [openings] */
     uint32_t walls, openings;
-    int cylinder; /* as in fibrad_insitu_bed */
 } fibrad_bounds;
 
 /* What happened to some particles of a bed: their number, and a sentence about the one with the least id. */
