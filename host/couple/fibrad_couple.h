@@ -283,7 +283,7 @@ typedef struct fibrad_insitu_conducted {
 } fibrad_insitu_conducted;
 
 /* Net power that particles gain through contacts at their present positions and temperatures, beside radiation.
- * Contacts are found anew in each call. Particles that are left out of rows have none. A wall conducts whatever its
+ * Contacts are found anew in each call. Particles beyond walls or openings have none. A wall conducts whatever its
  * emissivity. Steps of time are explicit. No difference of temperatures changes its sign in a step if 2 times the
  * conductance of a particle times the step is less than its heat capacity, and the same holds for walls that store
  * heat. Input    bed, state: the same particles in the same order. Emissivities must be valid. Output   power[n]: above

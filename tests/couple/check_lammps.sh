@@ -464,7 +464,7 @@ done
 
 # ---- strays -----------------------------------------------------------------------------------------------------------
 # LAMMPS goes on with centres inside others and beyond walls. So does radiation.
-run 2 soft soft.lmp
+run 2 soft soft.lmp strict "no contacts 0.01 gas 0.001"
 balance soft 10e-3 0 1e-3 90 "energy of particles inside one another and beyond a wall"
 awk '/^[0-9]/ { if ($4 > 0) left++; if ($5 > 0) smaller++ } END { exit !(left && smaller) }' "$work/soft.out.balance" &&
     test "$(grep -c 'left out until back; particle [0-9]* at .* beyond wall 1, zlo' "$work/soft.log")" -eq 1 &&
@@ -533,6 +533,8 @@ if "$LMP" -h | grep -q 'heat/flow'; then
     run 2 stores heatflow.lmp data "$work/quarter.data" boundary "p p f" falls yes conducts 2e5 steps 2000 heat 10 \
         capacity "capacity 1e5" stored 1e5
     balance stores 10e-3 1 1e-6 200 "energy of a falling bed and a floor that stores heat"
+    ! run 2 twice heatflow.lmp "${whole[@]}" capacity "contacts 3" && grep -q 'heat model of pair granular conducts' "$work/twice.log"
+    verdict "contacts beside those of pair granular are refused" $?
 fi
 
 # ---- a box that is empty at first --------------------------------------------------------------------------------------
