@@ -508,7 +508,7 @@ heat() {
 }
 for step in $(seq 1500 250 3250); do heat "$work/shell.out.frame.$step" "$step"; done >"$work/heats"
 # temperatures of the shell at steps 1500 and 3500
-shell_kelvins=$(awk '$1 ~ /^(1500|3500)$/ && NF > 10 { t[$1] = $(NF - 1) } END { print t[1500], t[3500] }' "$work/shell.log")
+shell_kelvins=$(awk '$1 ~ /^(1500|3500)$/ && NF > 10 { t[$1] = $(NF - 3) } END { print t[1500], t[3500] }' "$work/shell.log")
 found=$(awk -v kelvins="$shell_kelvins" '
     NR == 1 { split(kelvins, of); begin = t = of[1] }
     { for (k = 0; k < 25; k++) t += ($1 - $2*t^4)*.01/20 }
