@@ -2,9 +2,9 @@
  *
  * Index
  *   link    values of particles that other ranks own  fibrad_link_new, _forward, _reverse, _free
- *   insitu  rows and powers while particles move      fibrad_insitu_new, _rows, _follow, _powers, _parts, _conduct,
- *                                                     _write, _message, _remark, _facts_get, _free,
- *                                                     fibrad_accuracy_named
+ *   insitu  rows and powers while particles move      fibrad_insitu_new, _rows, _follow, _powers, _parts, _errors,
+ *                                                     _conduct, _write, _message, _remark, _facts_get,
+ *                                                     _free, fibrad_accuracy_named
  *
  * Use         1. fibrad_insitu_new once.
  *             2. fibrad_insitu_rows every so many steps, with the particles that each rank owns at that time.
@@ -245,6 +245,14 @@ int fibrad_insitu_powers(fibrad_insitu *insitu, const fibrad_insitu_state *state
  *   Cost     4 ns per entry, and two messages to each rank in contact */
 int fibrad_insitu_parts(fibrad_insitu *insitu, double (*part)[2]);
 
+/* What is not known of the rows of particles, as a fraction of what each emits. n, the order and errors are as for
+ * fibrad_insitu_parts.
+ *   Output   error[n][2]: what passes the cutoff or has gone and has no known end, and the estimated error of the row.
+ *            Particles without a row have 0.
+ *   Errors   as fibrad_insitu_parts
+ *   Cost     two messages to each rank in contact */
+int fibrad_insitu_errors(fibrad_insitu *insitu, double (*error)[2]);
+
 /* Writes the rows of each rank to the file PATH.RANK.rows, for `fibrad join`.
  *   Input    path: PATH
  *   Errors   _ARGUMENT: the path is empty or too long
@@ -271,7 +279,7 @@ typedef struct fibrad_insitu_conducted {
 } fibrad_insitu_conducted;
 
 /* Net power that particles gain through contacts at their present positions and temperatures, beside radiation.
- * Contacts are found anew in each call. Particles that are left out of rows have none. A wall conducts whatever its
+ * Contacts are found anew in each call. Particles beyond walls or openings have none. A wall conducts whatever its
  * emissivity. Steps of time are explicit. No difference of temperatures changes its sign in a step if 2 times the
  * conductance of a particle times the step is less than its heat capacity, and the same holds for walls that store
  * heat. Input    bed, state: the same particles in the same order. Emissivities must be valid. Output   power[n]: above

@@ -220,22 +220,37 @@ static void find_parts(const fibrad_insitu *s, double (*part)[2]) {
         }
 }
 
-int fibrad_insitu_parts(fibrad_insitu *s, double (*part)[2]) {
+/* Finds what is not known of the rows of particles at home: error[own][2]. */
+static void find_errors(const fibrad_insitu *s, double (*error)[2]) {
+    const fibrad_insitu_set *set = &s->set;
+    const double *unknown = set->unknown.at;
+    fibrad_row row;
+    for (int t = 0; t < s->config.threads; ++t)
+        for (size_t at = 0; fibrad_rows_read(&set->rows[t], &at, &row);)
+            error[row.sphere][0] = unknown[row.sphere], error[row.sphere][1] = row.error;
+}
+
+/* Finds two values of each particle at home, and sends them to the present owners. */
+static int tell_owners(fibrad_insitu *s, void (*find)(const fibrad_insitu *, double (*)[2]), double (*to)[2]) {
     if (!s) return FIBRAD_E_ARGUMENT;
     fibrad_insitu_set *set = &s->set;
     const size_t n = set->now_n;
     s->message[0] = 0;
     int status = FIBRAD_OK;
     if (!s->ready || !set->flows)
-        status = fibrad_refuse(s->message, FIBRAD_E_STATE, "there are no powers yet, whose parts are asked for");
-    if (!status && n && !part) status = FIBRAD_E_ARGUMENT;
+        status = fibrad_refuse(s->message, FIBRAD_E_STATE, "there are no powers yet, of which this would tell");
+    if (!status && n && !to) status = FIBRAD_E_ARGUMENT;
     if (!status) status = fibrad_block_fit(&s->value, 2 * (n + set->own), sizeof(double));
     status = fibrad_agree(s->comm, status, s->message);
     if (status) return status;
     double(*value)[2] = s->value.at;
     memset(value, 0, n * sizeof *value);
-    find_parts(s, value + n);
+    find(s, value + n);
     fibrad_link_reverse(set->present, value[0], 2);
-    if (n) memcpy(part, value, n * sizeof *value);
+    if (n) memcpy(to, value, n * sizeof *value);
     return FIBRAD_OK;
 }
+
+int fibrad_insitu_parts(fibrad_insitu *s, double (*part)[2]) { return tell_owners(s, find_parts, part); }
+
+int fibrad_insitu_errors(fibrad_insitu *s, double (*error)[2]) { return tell_owners(s, find_errors, error); }

@@ -173,7 +173,7 @@ run 1 lid mesh.lmp data "$work/quarter.data" walls "$sides wall zhi 300 1 at 20"
 run 2 rim mesh.lmp data "$work/quarter.data" walls "$sides wall zhi open" shown "$gained f_rad[1]"
 test -n "$(grep -A1 '^ *Step' "$work/rim.log")" && near "$work/lid.out" "$work/open1.out" 1e-10 "a bed without a lid" &&
     near "$work/open1.out" "$work/open2.out" 1e-10 "a bed without a lid, np 1 and 2"
-grep -q 'f_rad\[1\] surroundings.*, \[10\] wall zlo, \[11\] outside' "$work/rim.log"
+grep -q 'f_rad\[1\] surroundings by opening zhi,.*, \[10\] wall zlo, \[11\] outside.*, \[18\] T of wall zlo' "$work/rim.log"
 verdict "elements of the output are named" $?
 run 1 endless mesh.lmp data "$work/quarter.data" walls "$sides" shown "$gained"
 grep -q 'wall zhi open' "$work/endless.log"
@@ -413,6 +413,29 @@ sort -n "$work/parts2.dump" | awk 'NF == 5 { for (k = 2; k < 6; k++) printf "%.6
 sort -n "$work/parts1.dump" | awk 'NF == 5 { for (k = 2; k < 6; k++) printf "%.6e ", $k; print "" }' | cmp - "$work/parts2"
 verdict "parts of powers, np 1 and 2" $?
 
+# ---- errors of rows, and rows by the distance moved --------------------------------------------------------------------
+{
+    echo "dump errors all custom 1 $work/errors.dump id f_rad[2] f_rad[3]"
+    echo 'dump_modify errors format float %.17g'
+    echo "fix means all ave/time 1 1 1 f_rad[2] f_rad[3] format ' %.17g' file $work/errors.means"
+} >"$work/errors.lmp"
+run 2 errors frozen.lmp data "$work/quarter.data" cutoff 3 steps 0 strict "no errors yes" also "include $work/errors.lmp"
+found=$(awk 'NR == FNR && /^0 / { beyond = $2; error = $3 }
+    NR > FNR && NF == 3 && $1 > 0 && !/ITEM/ && FNR > 9 { e = $1%2 ? .5 : .8; n++; all += e; sum += e*$2; square += $3^2 }
+    END {
+        printf "%.2g, %.2g", sum/all/beyond - 1, sqrt(square/n)/error - 1
+        exit !(n == 499 && (sum/all/beyond - 1)^2 < 1e-24 && (sqrt(square/n)/error - 1)^2 < 1e-24)
+    }' "$work/errors.means" "$work/errors.dump")
+verdict "errors of rows have the means of the global vector ($found)" $?
+grep -q 'of atoms: \[1\] power, \[2\] beyond, \[3\] error' "$work/errors.log"
+verdict "values of atoms are named" $?
+run 2 moved moving.lmp hot 1000 steps 200 capacity "moved 0.1"
+run 1 still frozen.lmp "${whole[@]}" steps 3 every 1000 strict "no moved 0.001"
+moved_rows=$(sed -n 's/.*rows made \([0-9]*\) times.*/\1/p' "$work/moved.log")
+balance moved 20e-3 0 1e-9 9 "energy with rows by the distance moved, made $moved_rows times"
+test "$moved_rows" -gt 2 && grep -q 'rows made 1 times' "$work/still.log"
+verdict "rows are made anew when particles have moved" $?
+
 # ---- tables over temperature --------------------------------------------------------------------------------------------
 # table NAME T VALUE T VALUE
 table() { printf '# of the test\nT,value\n%s,%s\n%s,%s\n' "$2" "$3" "$4" "$5" >"$work/$1"; }
@@ -441,7 +464,7 @@ done
 
 # ---- strays -----------------------------------------------------------------------------------------------------------
 # LAMMPS goes on with centres inside others and beyond walls. So does radiation.
-run 2 soft soft.lmp
+run 2 soft soft.lmp strict "no contacts 0.01 gas 0.001"
 balance soft 10e-3 0 1e-3 90 "energy of particles inside one another and beyond a wall"
 awk '/^[0-9]/ { if ($4 > 0) left++; if ($5 > 0) smaller++ } END { exit !(left && smaller) }' "$work/soft.out.balance" &&
     test "$(grep -c 'left out until back; particle [0-9]* at .* beyond wall 1, zlo' "$work/soft.log")" -eq 1 &&
@@ -485,7 +508,7 @@ heat() {
 }
 for step in $(seq 1500 250 3250); do heat "$work/shell.out.frame.$step" "$step"; done >"$work/heats"
 # temperatures of the shell at steps 1500 and 3500
-shell_kelvins=$(awk '$1 ~ /^(1500|3500)$/ && NF > 10 { t[$1] = $(NF - 1) } END { print t[1500], t[3500] }' "$work/shell.log")
+shell_kelvins=$(awk '$1 ~ /^(1500|3500)$/ && NF > 10 { t[$1] = $(NF - 3) } END { print t[1500], t[3500] }' "$work/shell.log")
 found=$(awk -v kelvins="$shell_kelvins" '
     NR == 1 { split(kelvins, of); begin = t = of[1] }
     { for (k = 0; k < 25; k++) t += ($1 - $2*t^4)*.01/20 }
@@ -510,6 +533,8 @@ if "$LMP" -h | grep -q 'heat/flow'; then
     run 2 stores heatflow.lmp data "$work/quarter.data" boundary "p p f" falls yes conducts 2e5 steps 2000 heat 10 \
         capacity "capacity 1e5" stored 1e5
     balance stores 10e-3 1 1e-6 200 "energy of a falling bed and a floor that stores heat"
+    ! run 2 twice heatflow.lmp "${whole[@]}" capacity "contacts 3" && grep -q 'heat model of pair granular conducts' "$work/twice.log"
+    verdict "contacts beside those of pair granular are refused" $?
 fi
 
 # ---- a box that is empty at first --------------------------------------------------------------------------------------
@@ -529,6 +554,7 @@ fails() {
 }
 failing=4 fails "atom 10 .*not set" "unset temperature" also "set atom 10 d_T 0"
 fails "NEVERY must be at most" "steps of heat too long" also "timestep 400" heat 20
+fails "temperature d_T of atom 10 is -3, not above 0" "a temperature below 0" also "set atom 10 d_T -3"
 fails "particle.* 10 .*inside" "a centre inside another particle" also "set atom 10 diameter 2.5" strict yes
 fails "beyond wall 1, zlo" "a centre beyond a wall" floor "zlo 1000 0.9 at 1" strict yes
 fails "rad and bad both radiate from atom" "two fixes on one particle" \
@@ -583,6 +609,7 @@ fails "contacts.* without .solid." "contacts beside solid" strict "no contacts 4
 fails "wall 1 is a mesh, and contacts need planes" "contacts beside a mesh" floor "mesh $work/box.stl 1000 0.9" strict "no contacts 4"
 fails "scale of contacts must be in" "a scale of 0" strict "no contacts 4 hertz scale 0"
 fails "contacts. needs temperatures" "contacts without temperatures" heat 0 strict "no contacts 4"
+fails "moved. needs temperatures" "a distance moved without temperatures" heat 0 strict "no moved 0.1"
 fails "conductivity of the solid must be above 0" "contacts of conductivity 0" strict "no contacts type 4 0"
 fails "a word is missing" "a conductivity for one of two types" strict "no solid type 4"
 fails "property/atom d_none" "conductivities that are not there" strict "no solid d_none"

@@ -306,14 +306,20 @@ refuse 1 2 "neither ID=E" -in bed --mesh lid=0.9:up
 refuse 1 2 "'lid=700,0.9' is of a mesh that was named already" -in bed --mesh lid=0.9 --mesh lid=700,0.9
 refuse 1 2 "'zlo=0' is not NAME=C" -in bed --capacity zlo=0
 # shellcheck disable=SC2086
-refuse 2 3 "capacity zhi: no --wall or --mesh" -in bed $radiation --steps 1 --capacity zhi=5
+refuse 2 2 "capacity zhi: no --wall or --mesh" -in bed $radiation --steps 1 --capacity zhi=5
 # shellcheck disable=SC2086
 refuse 2 3 "wall zlo cools down in" -in bed $radiation --steps 1 --capacity zlo=1e-6
 refuse 1 2 "'fine' is none of low, normal and high" -in bed --accuracy fine
 # shellcheck disable=SC2086
 refuse 1 2 "--accuracy excludes --tolerance" -in bed $radiation --steps 1 --tolerance 0.01 --accuracy high
 refuse 1 2 "not a multiple" -in bed --emissivity 1 --surroundings 300 --steps 1 --every 20 --rows 30
-refuse 2 3 "2 emissivities for 1 types" -in bed --emissivity .5,.6 --surroundings 300 --steps 1
+# before the script runs
+{ cat bed && echo 'run 0' && echo 'shell touch has_run'; } >runs
+sed 's/^boundary f f f/boundary f f fm/' runs >open_lid
+refuse 2 3 "2 emissivities for 1 types" -in runs --emissivity .5,.6 --surroundings 300 --steps 1
+# shellcheck disable=SC2086
+refuse 1 3 "wall zhi: the box has no fixed end there" -in open_lid $radiation --wall zhi=300,1 --steps 1
+test ! -e has_run || complain "the script runs before options are refused"
 # shellcheck disable=SC2086
 refuse 2 3 "2 conductivities of the solid for 1 types" -in bed $radiation --solid-conductivity 5,6 --steps 1
 # shellcheck disable=SC2086

@@ -35,7 +35,11 @@ lammps() {
 }
 
 # ---- docs/lammps.md ---------------------------------------------------------------------------------------------------
-# a quarter of a bed of 2,000
+block lammps.md read_data | sed "s|/path/to/fibrad/build|$root/$BUILD|; s|/path/to/fibrad|$root|; s/run  *100000/run 200/" >"$work/whole"
+lammps 2 whole && grep -q 'fix fibrad: rows made' "$work/whole.log"
+verdict "the script of docs/lammps.md" $?
+
+# what a script has before the fix, with a quarter of a bed of 2,000 in the place of the pebbles
 awk '/BOX BOUNDS/ { side = 1; next }
     side && side < 4 { box[side++] = $1 " " $2; next }
     NF == 8 && !/ITEM/ && $3 < 6 && $4 < 6 { sphere[++n] = $1 " 1 " 2*$6 " 2500 " $3 " " $4 " " $5; t[n] = $1 " " $7 }
@@ -45,12 +49,8 @@ awk '/BOX BOUNDS/ { side = 1; next }
         print "\nTemperatures\n"
         for (i = 1; i <= n; i++) print t[i]
     }' CONVFMT=%.17g OFMT=%.17g tests/data/mono2000.dump >"$work/bed.data"
-block lammps.md read_data | sed "s|/path/to/fibrad/build|$root/$BUILD|; s/100000/200/" >"$work/whole"
-lammps 2 whole && grep -q 'fix fibrad: rows made' "$work/whole.log"
-verdict "the script of docs/lammps.md" $?
-
-# what a script has before the fix
-sed -n '1,/^read_data/p' "$work/whole" >"$work/before"
+sed -n '1,/^read_data/p' "$work/whole" | sed '$d' >"$work/before"
+block lammps.md "read_data       bed.data" >>"$work/before"
 printf 'pair_style zero 1.3\npair_coeff * *\ntimestep 1e-5\n' >>"$work/before"
 block lammps.md "rows bed" | cat "$work/before" - >"$work/rows"
 lammps 2 rows && "$BUILD/fibrad" join "$work"/bed.0.*.rows --quiet -o "$work/rows.npz"

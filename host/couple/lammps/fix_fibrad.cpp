@@ -88,10 +88,10 @@ class FixFibrad::Words {
 };
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
-    : Fix(lammps, narg, arg), spots(), temperature(), kept_bit(0), surroundings{-1, ""}, columns(1), sampling(false),
-      accuracy(false), sigma(0), initial(0), config(), meshes(), moving(false), insitu(nullptr), totals(),
-      conducted(), warned(false), wall_warned(false), told(), set_up(-1), powers_at(0), lost(0), restarted(false),
-      begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
+    : Fix(lammps, narg, arg), spots(), temperature(), kept_bit(0), surroundings{-1, ""}, parts(false), errors(false),
+      columns(1), moved(0), sampling(false), accuracy(false), sigma(0), initial(0), config(), meshes(),
+      moving(false), insitu(nullptr), totals(), conducted(), warned(false), wall_warned(false), told(), set_up(-1),
+      powers_at(0), lost(0), restarted(false), begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // the default of docs/lammps.md
@@ -139,7 +139,11 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
         else if (key == "rows")
             rows_file = words.next();
         else if (key == "parts")
-            columns = words.yes_or_no() ? 4 : 1;
+            parts = words.yes_or_no();
+        else if (key == "errors")
+            errors = words.yes_or_no();
+        else if (key == "moved")
+            moved = words.number("the distance that particles may move", 0, huge);
         else if (key == "oneway")
             config.one_way = words.yes_or_no();
         else if (key == "strict")
@@ -161,7 +165,8 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
             if (!(k->of_type[type] > 0))
                 error->all(FLERR,
                            text("fix fibrad: the conductivity of the solid must be above 0, not %g", k->of_type[type]));
-    for (const char *word : {solid.given() ? "solid" : "", contact.given() ? "contacts" : ""})
+    for (const char *word : {solid.given() ? "solid" : "", contact.given() ? "contacts" : "", errors ? "errors" : "",
+                             moved > 0 ? "moved" : ""})
         if (*word && !heat_every)
             error->all(FLERR, text("fix fibrad: `%s` needs temperatures: NEVERY must be above 0", word));
     if (solid.given() && contact.given())
@@ -183,7 +188,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
                                   " need `sigma S`, the Stefan-Boltzmann constant in energy/(time length^2 K^4)");
     }
 
-    if (columns > 1 && contact.given()) columns++;
+    columns = 1 + (parts ? 3 + contact.given() : 0) + (errors ? 2 : 0);
     dynamic_group_allow = 1;
     create_attribute = 1;
     nevery = heat_every ? heat_every : rows_every;
@@ -193,7 +198,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     restart_global = wall_heat.any() || moving;
     global_freq = peratom_freq = 1;
     extscalar = extvector = 0;
-    maxexchange = columns;
+    maxexchange = columns + 3;
     FixFibrad::grow_arrays(atom->nmax);
     atom->add_callback(Atom::GROW);
 
@@ -534,23 +539,30 @@ void FixFibrad::setup(int) {
              (double)facts.entries, bytes / 1e6, facts.seconds_rows - before.seconds_rows));
 }
 
-// Says what the elements of the global vector are.
+// Says what the elements of the global vector are, and what atoms have.
 void FixFibrad::list_output() {
     static const char *const faces[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
     const int count = (int)walls.size();
-    std::string list = "[1] surroundings, [2] beyond, [3] error, [4] [5] seconds";
+    std::string names, list = "[1] surroundings", atoms = ": [1] power";
+    for (const fibrad_plane &opening : openings)
+        list += std::string(" by opening ") + faces[2 * opening.axis + opening.upper];
+    list += ", [2] beyond, [3] error, [4] [5] seconds";
     for (int w = 0; w < count; w++) {
         const fibrad_wall &wall = walls[w];
         const std::string name = wall.kind == FIBRAD_WALL_PLANE      ? faces[2 * wall.plane.axis + wall.plane.upper]
-                                 : wall.kind == FIBRAD_WALL_CYLINDER ? "cylinder"
+                                 : wall.kind == FIBRAD_WALL_CYLINDER ? std::string(1, "xyz"[cylinder]) + "cylinder"
                                                                      : "mesh";
         list += text(", [%d] wall ", 6 + w) + name;
+        names += text(", [%d] T of wall ", 9 + count + w) + name;
     }
-    list += text(", [%d] outside, [%d] overlapping, [%d] behind", 6 + count, 7 + count, 8 + count);
-    if (count) list += text(", [%d] to [%d] temperatures of walls", 9 + count, 8 + 2 * count);
+    list += text(", [%d] outside, [%d] overlapping, [%d] behind", 6 + count, 7 + count, 8 + count) + names;
     list += text(", [%d] gone", 9 + 2 * count);
     if (contact.given()) list += text(", [%d] through contacts, [%d] contacts", 10 + 2 * count, 11 + 2 * count);
     say(text("fix fibrad: f_%s", id) + list);
+    if (parts) atoms += ", [2] from particles, [3] from walls, [4] from surroundings";
+    if (parts && contact.given()) atoms += ", [5] through contacts";
+    if (errors) atoms += text(", [%d] beyond, [%d] error", columns - 1, columns);
+    if (columns > 1) say(text("fix fibrad: f_%s of atoms", id) + atoms);
 }
 
 void FixFibrad::post_run() {
@@ -593,6 +605,8 @@ void FixFibrad::end_of_step() {
     if (update->ntimestep % rows_every == 0) make_rows();
     if (!heat_every) return;
     follow_heatflow();
+    select();
+    if (have_moved()) make_rows(MOVED);
     find_powers();
     if (temperature == "temperature") return;
     heat_walls(heat_every);
@@ -657,11 +671,32 @@ FixFibrad::Bed FixFibrad::present_bed() {
     return b;
 }
 
-// Makes the rows of all particles. follow: makes only the rows of particles that have come since the last rows.
-void FixFibrad::make_rows(bool follow) {
+// Whether more than a tenth of all particles have moved by more than `moved` radii since their rows were made. One
+// particle that falls makes no new rows.
+bool FixFibrad::have_moved() {
+    bigint count[] = {0, (bigint)member.size()};
+    if (!(moved > 0)) return false;
+    for (int i : member) {
+        double square = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            const double d = atom->x[i][axis] - rows_x[3 * i + axis];
+            const double away =
+                domain->periodicity[axis] ? d - domain->prd[axis] * std::round(d / domain->prd[axis]) : d;
+            square += away * away;
+        }
+        count[0] += square > moved * moved * atom->radius[i] * atom->radius[i];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, count, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+    return 10 * count[0] > count[1];
+}
+
+// Makes the rows of all particles, or only those of particles that have come since the last rows.
+void FixFibrad::make_rows(int which) {
+    const bool follow = which == NEW;
     select();
+    for (size_t k = 0; k < member.size() && !follow; k++) std::copy_n(atom->x[member[k]], 3, &rows_x[3 * member[k]]);
     const Bed present = present_bed();
-    const bigint number = update->ntimestep / rows_every * rows_every;
+    const bigint number = which == MOVED ? update->ntimestep : update->ntimestep / rows_every * rows_every;
     place_meshes(present.bed);
     const int status = (follow ? fibrad_insitu_follow : fibrad_insitu_rows)(insitu, &present.bed, (uint64_t)number);
     if (status == FIBRAD_E_BACK)
@@ -769,7 +804,7 @@ void FixFibrad::find_powers() {
     state.temperature = t.data();
     int status = fibrad_insitu_powers(insitu, &state, power.data(), &totals);
     if (status == FIBRAD_E_STATE) { // particles have come or gone since the rows were made
-        make_rows(true);
+        make_rows(NEW);
         status = fibrad_insitu_powers(insitu, &state, power.data(), &totals);
     }
     check(status);
@@ -780,7 +815,8 @@ void FixFibrad::find_powers() {
     powers_at = update->ntimestep;
     std::fill(q.begin(), q.end(), 0.0);
     for (size_t k = 0; k < member.size(); k++) q[member[k] * columns] = power[k] + by_contacts[k];
-    if (columns > 1) find_parts(by_contacts.data());
+    if (parts) find_parts(by_contacts.data());
+    if (errors) find_errors();
 }
 
 // Finds what members gain through contacts, and adds it to the totals.
@@ -803,6 +839,12 @@ void FixFibrad::find_parts(const double *by_contacts) {
         of_atom[1] = of_atom[0] - of_atom[2] - of_atom[3] - by_contacts[k];
         if (contact.given()) of_atom[4] = by_contacts[k];
     }
+}
+
+void FixFibrad::find_errors() {
+    std::vector<double> of_rows(2 * member.size());
+    check(fibrad_insitu_errors(insitu, (double(*)[2])of_rows.data()));
+    for (size_t k = 0; k < member.size(); k++) std::copy_n(&of_rows[2 * k], 2, lines[member[k]] + columns - 2);
 }
 
 std::vector<double> FixFibrad::wall_temperatures() const {
@@ -845,18 +887,30 @@ std::vector<double> FixFibrad::conductivities() {
     return relative;
 }
 
-// Checks that temperatures and capacities are set.
+// Checks that temperatures and capacities are above 0. The message has those of one atom.
 void FixFibrad::check_values(const std::vector<double> &t) {
     const std::vector<double> capacity = values(cp);
-    tagint tag = 0;
+    double at_fault[] = {0, 0, 0}; // id, temperature, cp
     for (size_t k = 0; k < member.size(); k++) {
-        const bool stepped = cp.given() && atom->mask[member[k]] & groupbit;
-        if (!(t[k] > 0 && t[k] < HUGE_VAL && (!stepped || capacity[k] > 0))) tag = std::max(tag, atom->tag[member[k]]);
+        const double c = cp.given() && atom->mask[member[k]] & groupbit ? capacity[k] : 1;
+        const double tag = (double)atom->tag[member[k]];
+        if ((t[k] > 0 && t[k] < HUGE_VAL && c > 0) || tag < at_fault[0]) continue;
+        at_fault[0] = tag, at_fault[1] = t[k], at_fault[2] = c;
     }
-    MPI_Allreduce(MPI_IN_PLACE, &tag, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-    if (tag)
-        error->all(FLERR, std::string("fix fibrad: the temperature ") + (cp.of_atom.empty() ? "" : "or cp ") +
-                              "of atom " + std::to_string(tag) + " is not set, or not above 0");
+    struct {
+        double id;
+        int rank;
+    } last = {at_fault[0], comm->me};
+    MPI_Allreduce(MPI_IN_PLACE, &last, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
+    if (!(last.id > 0)) return;
+    MPI_Bcast(at_fault, 3, MPI_DOUBLE, last.rank, world);
+    const std::string of = text(" of atom %.0f is ", last.id);
+    if (at_fault[1] == 0)
+        error->all(FLERR, "fix fibrad: the temperature " + temperature + of + "0, so it was not set: `set group all " +
+                              temperature + " T`, or `initial T` of the fix");
+    if (!(at_fault[1] > 0 && at_fault[1] < HUGE_VAL))
+        error->all(FLERR, "fix fibrad: the temperature " + temperature + of + text("%g, not above 0", at_fault[1]));
+    error->all(FLERR, "fix fibrad: cp" + of + text("%g, not above 0", at_fault[2]));
 }
 
 // Checks that steps of temperatures are stable: (4 sigma T^3 A e + 2 H) dt < m cp, H the sum over contacts. Then no
@@ -972,29 +1026,36 @@ double FixFibrad::memory_usage() {
 
 void FixFibrad::grow_arrays(int nmax) {
     q.resize(nmax * columns);
+    rows_x.resize(nmax * 3);
     lines.resize(nmax);
     for (int i = 0; i < nmax; i++) lines[i] = &q[i * columns];
     vector_atom = q.data();
     array_atom = lines.data();
 }
 
-void FixFibrad::copy_arrays(int i, int j, int) { std::copy_n(lines[i], columns, lines[j]); }
+void FixFibrad::copy_arrays(int i, int j, int) {
+    std::copy_n(lines[i], columns, lines[j]);
+    std::copy_n(&rows_x[3 * i], 3, &rows_x[3 * j]);
+}
 
 // Sets the values of a new atom. The elements of its index may have values of an atom that is gone.
 void FixFibrad::set_arrays(int i) {
     std::fill_n(lines[i], columns, 0.0);
+    std::copy_n(atom->x[i], 3, &rows_x[3 * i]);
     if (!takes_part(i)) return;
     if (double *t = temperature.empty() ? nullptr : vector(temperature)) t[i] = initial;
 }
 
 int FixFibrad::pack_exchange(int i, double *buffer) {
     std::copy_n(lines[i], columns, buffer);
-    return columns;
+    std::copy_n(&rows_x[3 * i], 3, buffer + columns);
+    return columns + 3;
 }
 
 int FixFibrad::unpack_exchange(int i, double *buffer) {
     std::copy_n(buffer, columns, lines[i]);
-    return columns;
+    std::copy_n(buffer + columns, 3, &rows_x[3 * i]);
+    return columns + 3;
 }
 
 // ---- restarts: temperatures of walls that store heat, and the time --------------------------------------------------

@@ -110,10 +110,13 @@ class FixFibrad : public Fix {
     double time() const;
     Bed present_bed();
     void place_meshes(const fibrad_insitu_bed &);
-    void make_rows(bool follow = false);
+    enum { ALL, NEW, MOVED }; // which rows are made: all, those of new particles, all since particles have moved
+    void make_rows(int which = ALL);
+    bool have_moved();
     void find_powers();
     void conduct(const fibrad_insitu_state &state, double *power, double *conductance);
     void find_parts(const double *conducted);
+    void find_errors();
     void heat_walls(bigint steps);
     void follow_heatflow();
     void check_values(const std::vector<double> &temperature); // refuses what is not set
@@ -136,11 +139,13 @@ class FixFibrad : public Fix {
     std::string rows_file;          // first part of the names of the files of rows; empty: none
     int kept_bit;                   // bit of group2, whose temperatures this fix does not step; 0: none
     Temperature surroundings;
-    int columns;    // 4 with `parts`, 5 if contacts conduct, else 1
-    bool sampling;  // directions, paths or tolerance are given
-    bool accuracy;  // accuracy is given
-    double sigma;   // in units of the simulation
-    double initial; // temperature of new atoms
+    bool parts, errors; // whether atoms have what powers come from, and errors of their rows
+    int columns;        // values of each atom
+    double moved;       // rows are made anew if particles have moved by so many radii; 0: never
+    bool sampling;      // directions, paths or tolerance are given
+    bool accuracy;      // accuracy is given
+    double sigma;       // in units of the simulation
+    double initial;     // temperature of new atoms
     fibrad_insitu_config config;
     std::vector<fibrad_wall> walls;
     std::vector<fibrad_plane> openings;
@@ -156,8 +161,9 @@ class FixFibrad : public Fix {
     fibrad_insitu *insitu;
     fibrad_insitu_totals totals; // of the last powers, with what contacts conduct
     fibrad_insitu_conducted conducted;
-    std::vector<double> q;       // [nmax][columns], power of each atom; with `parts` also what it comes from
+    std::vector<double> q;       // [nmax][columns], power of each atom; then what `parts` and `errors` ask for
     std::vector<double *> lines; // [nmax], where each atom's values in q begin
+    std::vector<double> rows_x;  // [nmax][3], where each atom was when its row was made
     std::vector<int> member;     // atoms of the group that this rank owns
     std::vector<uint64_t> tags;  // [member], their ids
     bool warned, wall_warned;    // whether the warnings about steps of particles and of walls were given

@@ -135,7 +135,9 @@ void expand(std::vector<double> *values, int ntypes, const char *what) {
     if (given == 1) values->resize(types, values->front());
 }
 
-void find_units(Driver *driver) {
+/* Checks the options by what no later command of the script can change, once it has made its box. */
+void check_box(Driver *driver) {
+    const LAMMPS_NS::Domain *domain = driver->lmp->domain;
     const char *units = driver->lmp->update->unit_style;
     const bool cgs = std::strcmp(units, "cgs") == 0;
     if (!cgs && std::strcmp(units, "si") != 0) stop(WRONG_INPUT, std::string("units are si or cgs, not ") + units);
@@ -145,18 +147,33 @@ void find_units(Driver *driver) {
     expand(&driver->options.solid, types, "conductivities of the solid");
     expand(&driver->options.contact, types, "conductivities at contacts");
     driver->options.spots.gas_least = FIBRAD_GAS_LEAST_DEFAULT * (cgs ? 100 : 1);
+    if (domain->triclinic) stop(WRONG_INPUT, "the box is triclinic");
+    for (const radiant_wall &wall : driver->options.walls)
+        if (!wall.placed && domain->boundary[wall.wall.plane.axis][wall.wall.plane.upper] != 1)
+            stop(WRONG_INPUT, "--wall " + wall.name + ": the box has no fixed end there; say where: T,E,AT");
+    if (driver->lmp->atom->radius_flag == 0 || driver->lmp->atom->rmass_flag == 0)
+        stop(WRONG_INPUT, "the script's particles have no radius: atom_style granular");
 }
+
+/* Takes the place of LIGGGHTS' Modify, so that options are checked before the first run of the script. */
+class FirstRun : public LAMMPS_NS::Modify {
+  public:
+    FirstRun(const LAMMPS_NS::Modify &of, Driver *whose) : Modify(of), driver(whose) {}
+    void init() override {
+        if (driver != nullptr) check_box(driver);
+        driver = nullptr;
+        Modify::init();
+    }
+
+  private:
+    Driver *driver; /* NULL: it was checked */
+};
 
 void place_walls(Driver *driver) {
     const LAMMPS_NS::Domain *domain = driver->lmp->domain;
-    if (domain->triclinic) stop(WRONG_INPUT, "the box is triclinic");
     for (radiant_wall &wall : driver->options.walls) {
-        if (!wall.placed) {
-            const int axis = wall.wall.plane.axis, upper = wall.wall.plane.upper;
-            if (domain->boundary[axis][upper] != 1)
-                stop(WRONG_INPUT, "--wall " + wall.name + ": the box has no fixed end there; say where: T,E,AT");
-            wall.wall.plane.at = upper ? domain->boxhi[axis] : domain->boxlo[axis];
-        }
+        const int axis = wall.wall.plane.axis;
+        if (!wall.placed) wall.wall.plane.at = (wall.wall.plane.upper ? domain->boxhi : domain->boxlo)[axis];
         driver->wall.push_back(wall.wall);
         driver->wall_name.push_back(wall.name);
         driver->wall_temperature.push_back(wall.temperature);
@@ -178,7 +195,6 @@ void find_meshes(Driver *driver) {
         script_mesh found{static_cast<LAMMPS_NS::FixMeshSurface *>(fix), {}};
         if (mesh.temperature < 0 && mesh_temperature(found.fix) == nullptr)
             stop(WRONG_INPUT, "--mesh " + mesh.id + ": the script gives no temperature: say ID=T,E");
-        if (driver->wall.size() == FIBRAD_WALLS_MAX) stop(WRONG_INPUT, "too many walls and meshes");
         fibrad_wall wall{};
         wall.kind = FIBRAD_WALL_MESH;
         driver->mesh.push_back(found);
@@ -194,8 +210,6 @@ void find_capacities(Driver *driver) {
     driver->wall_heat.capacity.resize(driver->wall.size());
     for (const wall_capacity &given : driver->options.capacities) {
         const auto at = std::find(driver->wall_name.begin(), driver->wall_name.end(), given.name);
-        if (at == driver->wall_name.end())
-            stop(WRONG_INPUT, "--capacity " + given.name + ": no --wall or --mesh has this name");
         driver->wall_heat.capacity[(size_t)(at - driver->wall_name.begin())] = given.capacity;
     }
 }
@@ -557,17 +571,16 @@ void check_script(const char *path) {
 }
 
 void run_script(Driver *driver) {
+    void *first = driver->lmp->modify;
+    driver->lmp->modify = new FirstRun(*driver->lmp->modify, driver);
+    ::operator delete(first); /* what it has is in use */
     lammps_file(driver->lmp, driver->options.script);
     if (driver->lmp->domain->box_exist == 0) stop(WRONG_INPUT, "the script makes no box");
-    find_units(driver);
+    check_box(driver);
     find_properties(driver);
     place_walls(driver);
     find_meshes(driver);
     find_capacities(driver);
-    if (driver->lmp->atom->rmass == nullptr || driver->lmp->atom->radius == nullptr)
-        stop(WRONG_INPUT, "the script's particles have no radius: atom_style granular");
-    if (fibrad_insitu_new(&driver->radiation, MPI_COMM_WORLD, &driver->options.config) != FIBRAD_OK)
-        stop(WRONG_INPUT, "out of memory");
     command(driver, "fix fibrad all external pf/callback 1 1");
     LAMMPS_NS::Modify *modify = driver->lmp->modify;
     Fix *fix = modify->fix[modify->find_fix("fibrad")];
@@ -601,6 +614,8 @@ int main(int argc, char **argv) {
         return 0;
     }
     check_script(driver.options.script);
+    if (fibrad_insitu_new(&driver.radiation, MPI_COMM_WORLD, &driver.options.config) != FIBRAD_OK)
+        stop(WRONG_INPUT, "out of memory");
     argv[rest - 1] = argv[0];
     void *lmp;
     lammps_open(argc - rest + 1, argv + rest - 1, MPI_COMM_WORLD, &lmp);

@@ -220,8 +220,16 @@ const char *take(int key, const char *text, liggghts_options *options) {
     }
 }
 
-/* Returns what is missing or contradicts itself. NULL: nothing. */
-const char *check(const liggghts_options *options) {
+/* Whether a wall or mesh has this name. */
+bool named(const liggghts_options *options, const std::string &name) {
+    const auto wall = [&name](const radiant_wall &w) { return w.name == name; };
+    const auto mesh = [&name](const radiant_mesh &m) { return m.id == name; };
+    return std::any_of(options->walls.begin(), options->walls.end(), wall) ||
+           std::any_of(options->meshes.begin(), options->meshes.end(), mesh);
+}
+
+/* Returns what is missing or contradicts itself. "": nothing. */
+std::string check(const liggghts_options *options) {
     if (options->script == nullptr) return "the script is missing: -in FILE";
     if (options->emissivity.empty()) return "--emissivity is missing: one number for all types, or E1,E2... for each";
     if (options->surroundings < 0) return "--surroundings is missing, the temperature of the surroundings";
@@ -229,7 +237,10 @@ const char *check(const liggghts_options *options) {
     if (options->accuracy && options->config.tolerance > 0) return "--accuracy excludes --tolerance";
     if (!options->contact.empty() && !options->solid.empty()) return "--contacts excludes --solid-conductivity";
     if (options->rows % options->every != 0) return "--rows is not a multiple of --every";
-    return nullptr;
+    if (options->walls.size() + options->meshes.size() > FIBRAD_WALLS_MAX) return "there are too many walls and meshes";
+    for (const wall_capacity &given : options->capacities)
+        if (!named(options, given.name)) return "--capacity " + given.name + ": no --wall or --mesh has this name";
+    return "";
 }
 
 } // namespace
@@ -253,9 +264,8 @@ int liggghts_options_parse(int argc, char **argv, liggghts_options *options, int
         return OPTIONS_WRONG;
     }
     *rest = optind;
-    const char *fault = check(options);
-    if (fault != nullptr) *wrong = fault;
-    return fault != nullptr ? OPTIONS_WRONG : OPTIONS_GO;
+    *wrong = check(options);
+    return wrong->empty() ? OPTIONS_GO : OPTIONS_WRONG;
 }
 
 void liggghts_options_help() {
