@@ -85,7 +85,7 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     entries->exact = fibrad_arena_take(arena, entries->capacity, sizeof(double));
     for (int list = 0; list < 2; list++)
         entries->key[list] = fibrad_arena_take(arena, entries->capacity, sizeof(uint64_t));
-    work->legs.leg = fibrad_arena_take(arena, plan->legs, sizeof *work->legs.leg);
+    work->segments.segment = fibrad_arena_take(arena, plan->segments, sizeof *work->segments.segment);
     if (plan->walls > 0) work->walls = fibrad_arena_take(arena, 1, sizeof *work->walls);
     if (plan->met > 0) work->met = fibrad_arena_take(arena, 1, sizeof *work->met);
     work->extra = fibrad_arena_take(arena, plan->extra, 1);
@@ -138,8 +138,8 @@ static uint32_t less_of(uint32_t count, uint32_t least) {
 static bool shrink(fibrad_work_plan *plan, const fibrad_work_plan *least, size_t size) {
     while (bytes_of(plan) > size) {
         const bool entries_first = (size_t)plan->entries * 96 > (size_t)plan->discs * 768;
-        if (plan->legs > least->legs)
-            plan->legs = least->legs;
+        if (plan->segments > least->segments)
+            plan->segments = least->segments;
         else if (plan->extra > least->extra && (plan->extra > (size_t)plan->near * 64 || plan->near == least->near))
             plan->extra = plan->extra / 2 > least->extra ? plan->extra / 2 : least->extra;
         else if (plan->near > least->near)
@@ -158,8 +158,8 @@ static bool shrink(fibrad_work_plan *plan, const fibrad_work_plan *least, size_t
  * no less than `least`. */
 static int fit(fibrad_work *work, fibrad_work_plan plan, const fibrad_work_plan *least, fibrad_workspace **space) {
     fibrad_memory *memory = &work->memory;
-    const fibrad_work_plan wanted = {plan.walls,   plan.met,     least->near, plan.discs,
-                                     plan.entries, least->extra, least->legs};
+    const fibrad_work_plan wanted = {plan.walls,   plan.met,     least->near,    plan.discs,
+                                     plan.entries, least->extra, least->segments};
     size_t bytes = bytes_of(&plan);
     if (bytes == 0) return FIBRAD_E_ARGUMENT;
     work->inside = NULL;
@@ -209,14 +209,14 @@ int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space) {
     plan.walls = least.walls, plan.met = least.met;
     const fibrad_work_plan needed = now->needed;
     const bool more = needed.near > plan.near || needed.discs > plan.discs || needed.entries > plan.entries ||
-                      needed.extra > plan.extra || needed.legs > plan.legs;
+                      needed.extra > plan.extra || needed.segments > plan.segments;
     if (!more) return FIBRAD_E_UNSUPPORTED; /* without this the call would be repeated for ever */
     /* a size that was once too small in this call must not become smaller again */
     if (needed.near > plan.near) plan.near = least.near = needed.near;
     if (needed.discs > plan.discs) least.discs = plan.discs + 1, plan.discs = needed.discs;
     if (needed.entries > plan.entries) least.entries = plan.entries + 1, plan.entries = needed.entries;
     if (needed.extra > plan.extra) plan.extra = least.extra = needed.extra;
-    if (needed.legs > plan.legs) plan.legs = least.legs = needed.legs;
+    if (needed.segments > plan.segments) plan.segments = least.segments = needed.segments;
     const int status = fit(work, plan, &least, space);
     if (status == FIBRAD_OK) (*space)->least = least;
     return status;
