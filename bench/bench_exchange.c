@@ -8,7 +8,7 @@
  * a row, without beams. The methods are
  *   analog    random paths; each path is absorbed as a whole when a random number says so
  *   expected  quasi-random paths that leave at each surface what the surface absorbs
- *   beam      fibrad_exchange_row: beams for the first leg, quasi-random paths for the others
+ *   beam      fibrad_exchange_row: beams for the first segment, quasi-random paths for the others
  *   rows      fibrad_exchange_factors: all rows of the bed, tolerance 0.01, two threads; directions are the most of a
  * row */
 #include "base/elementary.h"

@@ -875,15 +875,15 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
  * sphere j absorbs, directly or after diffuse reflections. All surfaces are grey and diffuse. A surface of emissivity 0
  * reflects everything.
  *
- * Radiation first travels from sphere i to the surface that it meets. This first leg is a beam row. With up to 49
+ * Radiation first travels from sphere i to the surface that it meets. This first segment is a beam row. With up to 49
  * directions the beam row takes 64 points per window. With 50 to 144 directions it takes 256 points. With more
  * directions it takes exact areas. Then paths follow the reflections. */
 typedef struct fibrad_exchange_rule {
     const double *emissivity;      /* [spheres], 0 to 1 */
     const double *wall_emissivity; /* [walls], 0 to 1; NULL without walls */
-    uint32_t directions;           /* of the first leg; 0: FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT */
+    uint32_t directions;           /* of the first segment; 0: FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT */
     uint32_t paths;                /* 1 to FIBRAD_PATHS_MAX; 0: FIBRAD_PATHS_DEFAULT */
-    uint64_t seed;                 /* of random numbers, with the sphere's id; also the `turn` of the first leg */
+    uint64_t seed;                 /* of random numbers, with the sphere's id; also the `turn` of the first segment */
     double cutoff;                 /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
     double tolerance;              /* the error allowed; directions and paths are added until it is met; 0: none */
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */

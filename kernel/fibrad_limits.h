@@ -32,7 +32,7 @@
 #define FIBRAD_NODES_MAX     987
 #define FIBRAD_NODES_DEFAULT 55
 
-/* Exchange factors: directions of the first leg, and paths of each sphere and of each wall */
+/* Exchange factors: directions of the first segment, and paths of each sphere and of each wall */
 #define FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT 50
 #define FIBRAD_PATHS_DEFAULT               400
 #define FIBRAD_WALL_PATHS_DEFAULT          8192

@@ -183,7 +183,7 @@ TEST(reflections_end_at_the_known_region) {
     assert_ok(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL));
     assert_ok(fibrad_exchange_row(told, &work, 0, &rule, &clear, NULL));
     ck_assert_double_gt(row_factor(&beam, 2), .04);
-    ck_assert_double_eq(row_factor(&row, 2), .9 * row_factor(&beam, 2)); /* the first leg alone */
+    ck_assert_double_eq(row_factor(&row, 2), .9 * row_factor(&beam, 2)); /* the first segment alone */
     ck_assert_double_eq(row_factor(&clear, 2), row_factor(&row, 2));
     ck_assert_double_gt(row.beyond, .3);
     ck_assert_double_eq(clear.beyond, 0);

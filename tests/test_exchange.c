@@ -64,7 +64,7 @@ TEST(one_and_two_spheres) {
 
 /* What black walls absorb at once has the whole error of the beams, however little the spheres absorb. It counts for
  * the tolerance. */
-TEST(walls_count_for_the_first_leg) {
+TEST(walls_count_for_the_first_segment) {
     const double e[2] = {.5, .02}, walls_e[6] = {1, 1, 1, 1, 1, 1};
     OWNED_BED bed = BED({0, 0, 0, 1}, {2.2, .5, .3, 1});
     fibrad_wall walls[6];
@@ -524,9 +524,9 @@ TEST(bad_arguments) {
     row_free(&row);
 }
 
-/* Two small spheres are in a room of mirrors, which absorb a thousandth of a thousandth of the light in each leg. Paths
- * end, and the error has what they leave. In truth, light that has been everywhere is absorbed in proportion to areas
- * times emissivities. */
+/* Two small spheres are in a room of mirrors, which absorb a thousandth of a thousandth of the light in each segment.
+ * Paths end, and the error has what they leave. In truth, light that has been everywhere is absorbed in proportion to
+ * areas times emissivities. */
 TEST(mirrors_end_in_the_error) {
     OWNED_BED bed = BED({.3, .5, .5, .05}, {.7, .5, .5, .05});
     const fibrad_wall walls[] = {plane_at(0, 0, 0), plane_at(0, 1, 1), plane_at(1, 0, 0),

@@ -187,7 +187,7 @@ LOOP_TEST(exchange_of_two_far_spheres, FAR_COUNT * 2) {
     check_closed(given);
 }
 
-/* What the first leg gives a sphere that no window meets, is reflected to a third one. */
+/* What the first segment gives a sphere that no window meets, is reflected to a third one. */
 TEST(light_goes_on_from_a_sphere_that_no_window_meets) {
     const double e[] = {1, 0, 1};
     OWNED_BED bed = BED({0, 0, 0, 1}, {60, 0, 0, 1}, {58, 3, 0, 1});

@@ -130,11 +130,12 @@ LOOP_TEST(nothing_known, KINDS) {
     }
 }
 
-/* What a row gives after the first leg, or what the first leg gives: to each wall, the surroundings, each sphere. */
+/* What a row gives after the first segment, or what the first segment gives: to each wall, the surroundings, each
+ * sphere. */
 enum { TARGETS = 8 + SPHERES };
 
-/* Among black surfaces there is no more than the first leg. */
-static void first_leg(struct hall *h, uint32_t i, double *direct) {
+/* Among black surfaces there is no more than the first segment. */
+static void first_segment(struct hall *h, uint32_t i, double *direct) {
     OWNED_ROW beam = row_of(SPHERES);
     double black[SPHERES];
     for (uint32_t j = 0; j < SPHERES; j++) black[j] = 1;
@@ -150,13 +151,14 @@ static void reflected_part(struct hall *h, uint32_t i, double *reflected) {
     double direct[TARGETS] = {0};
     OWNED_ROW row = row_in(h, i);
     check_row(h, &row);
-    first_leg(h, i, direct);
+    first_segment(h, i, direct);
     for (uint32_t b = 0; b <= h->walls; b++) reflected[b] = given(h, &row, b) - direct[b];
     for (uint32_t j = 0; j < SPHERES; j++) reflected[8 + j] = row_factor(&row, j) - direct[8 + j];
 }
 
-/* What paths of a row and others give after the first leg is weighed with their numbers. If there are very many others,
- * what they say holds. Spheres and walls that are not known share the rest, in the proportions of the row's own paths.
+/* What paths of a row and others give after the first segment is weighed with their numbers. If there are very many
+ * others, what they say holds. Spheres and walls that are not known share the rest, in the proportions of the row's own
+ * paths.
  */
 LOOP_TEST(known_is_pooled, 2 * KINDS) {
     enum { PATHS = 500 };
@@ -298,9 +300,9 @@ LOOP_TEST(sources_are_reciprocal, KINDS) {
 }
 
 /* All spheres have the emissivity e, and walls are black. If all surfaces are black, spheres absorb the fraction H of
- * paths. So the first leg gives them e H, and what is left comes after reflections. Paths lose so little weight that
- * none ends by chance. */
-TEST(reflected_is_what_first_legs_leave) {
+ * paths. So the first segment gives them e H, and what is left comes after reflections. Paths lose so little weight
+ * that none ends by chance. */
+TEST(reflected_is_what_first_segments_leave) {
     enum { PATHS = 8000 };
     OWNED_HALL *h = make_hall(0);
     uint64_t reflected[SPHERES] = {0}, more[SPHERES], units = 0;
@@ -326,7 +328,7 @@ TEST(reflected_is_what_first_legs_leave) {
 }
 
 /* Where nearly nothing absorbs, a batch follows fewer paths, and says so. What spheres absorb after reflections is all
- * but the first leg, which is next to nothing. */
+ * but the first segment, which is next to nothing. */
 TEST(reflected_among_mirrors) {
     OWNED_HALL *h = make_hall(0);
     const fibrad_wall tube[3] = {cylinder_at(2, 2, 4), plane_at(2, 0, 0), plane_at(2, 1, 4)};

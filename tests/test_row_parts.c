@@ -261,6 +261,6 @@ TEST(the_length_that_is_asked_for_suffices) {
     fibrad_exchange_rule exchange = {.emissivity = emissivity, .wall_emissivity = &(double){.5}, .directions = 8};
     ask_and_repeat(scene, &(fibrad_beam_rule){.directions = 8, .tolerance = 1e-3}, NULL);
     ask_and_repeat(scene, NULL, &exchange);
-    for (int i = 1; i < 100; i += 2) emissivity[i] = 0; /* the first leg sees it, and there are no entries */
+    for (int i = 1; i < 100; i += 2) emissivity[i] = 0; /* the first segment sees it, and there are no entries */
     ask_and_repeat(scene, NULL, &exchange);
 }

@@ -695,7 +695,7 @@ contains
     !   emissivity       (n) 0 to 1
     !   factors          the matrix
     !   wall_emissivity  (walls) 0 to 1, needed with walls
-    !   directions       of the first leg; absent: 50
+    !   directions       of the first segment; absent: 50
     !   paths            for reflections; absent: 400
     !   tolerance        the error allowed in each row; directions and paths are added until it is met; absent: none
     !   cutoff           [L] spheres farther away are left out; absent: none

@@ -11,16 +11,16 @@
 #define FEW_PATHS  4u
 #define USUAL_RAYS 1024u
 
-/* Largest number of paths that begin with legs of the beam row. */
-#define LEGS_MOST 2048u
+/* Largest number of paths that begin with segments of the beam row. */
+#define SEGMENTS_MOST 2048u
 
 /* Up to BY_POINTS directions, windows of 256 points are as good as exact areas and take a third of the time. Up to
  * BY_FEW_POINTS directions, the error comes from the directions, and 64 points take two thirds of the time of 256. */
 #define BY_POINTS     144u
 #define BY_FEW_POINTS (FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT - 1)
 
-/* The share of the tolerance that the first leg may take. At an emissivity of 0.8 beams and paths then take about as
- * much time. At lower emissivities beams take less. */
+/* The share of the tolerance that the first segment may take. At an emissivity of 0.8 beams and paths then take about
+ * as much time. At lower emissivities beams take less. */
 #define BEAM_SHARE 0.5
 
 /* One call: the rule, emissivities, and the number of rays that the call has traced. */
@@ -63,21 +63,21 @@ static fibrad_paths paths_of(const exchange_task *task, fibrad_workspace *space,
                           .back = UINT32_MAX};
 }
 
-/* Asks the beam row for the first legs of the first paths. Error: FIBRAD_E_WORK. */
-static int want_legs(fibrad_workspace *space, const fibrad_paths *paths, const fibrad_exchange_rule *rule) {
+/* Asks the beam row for the first segments of the first paths. Error: FIBRAD_E_WORK. */
+static int want_segments(fibrad_workspace *space, const fibrad_paths *paths, const fibrad_exchange_rule *rule) {
     const uint64_t count = rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT;
-    const uint32_t wanted = count < LEGS_MOST ? (uint32_t)count : LEGS_MOST;
+    const uint32_t wanted = count < SEGMENTS_MOST ? (uint32_t)count : SEGMENTS_MOST;
     space->needed = space->plan;
-    space->needed.legs = wanted;
-    if (wanted > space->plan.legs) return FIBRAD_E_WORK;
-    space->legs.wanted = wanted;
-    for (uint32_t d = 0; d < 4; d++) space->legs.shift[d] = fibrad_random_ahead(paths->stream, d);
+    space->needed.segments = wanted;
+    if (wanted > space->plan.segments) return FIBRAD_E_WORK;
+    space->segments.wanted = wanted;
+    for (uint32_t d = 0; d < 4; d++) space->segments.shift[d] = fibrad_random_ahead(paths->stream, d);
     return FIBRAD_OK;
 }
 
-/* Computes the first leg of all emission, a beam row. error: of what spheres and walls absorb there. */
-static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const exchange_task *task,
-                     fibrad_row *row, double *error) {
+/* Computes the first segment of all emission, a beam row. error: of what spheres and walls absorb there. */
+static int first_segment(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const exchange_task *task,
+                         fibrad_row *row, double *error) {
     const fibrad_exchange_rule *rule = task->rule;
     fibrad_beam_rule beam = {.directions = rule->directions > 0 ? rule->directions : FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT,
                              .cutoff = rule->cutoff,
@@ -98,8 +98,8 @@ static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_
     }
 }
 
-/* The fraction of the first leg that is reflected. wall: factors by slot. NaN: an emissivity is not valid. The sum over
- * spheres is a sum of whole numbers. So it does not depend on the order of the columns, which is the caller's. */
+/* The fraction of the first segment that is reflected. wall: factors by slot. NaN: an emissivity is not valid. The sum
+ * over spheres is a sum of whole numbers. So it does not depend on the order of the columns, which is the caller's. */
 static double reflected_of(const exchange_task *task, const fibrad_row *row, const double wall[FIBRAD_SLOTS]) {
     uint64_t units = 0;
     for (uint32_t k = 0; k < row->length; k++) {
@@ -218,17 +218,17 @@ static double pool_known(fibrad_paths *paths, const fibrad_exchange_rule *rule, 
     return others;
 }
 
-/* The entries of paths overwrite the row of the first leg. This function moves the row to where entries will be
+/* The entries of paths overwrite the row of the first segment. This function moves the row to where entries will be
  * sorted. */
-static void keep_first_leg(fibrad_entries *entries, fibrad_row *leg) {
-    fibrad_copy(entries->key[0], leg->f, leg->length * sizeof *leg->f);
-    fibrad_copy(entries->key[1], leg->col, leg->length * sizeof *leg->col);
-    leg->f = (double *)(void *)entries->key[0];
-    leg->col = (uint32_t *)(void *)entries->key[1];
+static void keep_first_segment(fibrad_entries *entries, fibrad_row *segment) {
+    fibrad_copy(entries->key[0], segment->f, segment->length * sizeof *segment->f);
+    fibrad_copy(entries->key[1], segment->col, segment->length * sizeof *segment->col);
+    segment->f = (double *)(void *)entries->key[0];
+    segment->col = (uint32_t *)(void *)entries->key[1];
 }
 
-/* Adds the first leg to the scaled sums of the paths. */
-static void add_first_leg(fibrad_workspace *work, const double *of_sphere, const fibrad_row *row, double scale) {
+/* Adds the first segment to the scaled sums of the paths. */
+static void add_first_segment(fibrad_workspace *work, const double *of_sphere, const fibrad_row *row, double scale) {
     fibrad_entries *entries = &work->entries;
     for (uint32_t k = 0; k < entries->length; k++)
         for (int part = 0; part < 4; part++) entries->part[k][part] *= scale;
@@ -255,18 +255,18 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     const fibrad_exchange_rule *rule = task->rule;
     double beam_error = 0, of_walls[FIBRAD_WALLS_MAX], wall[FIBRAD_SLOTS], scale = 0, to_spheres = 1;
     if (task->emissivity[i] == 0) return empty_row(scene, row);
-    fibrad_row leg = fibrad_row_scratch(space, of_walls);
+    fibrad_row segment = fibrad_row_scratch(space, of_walls);
     fibrad_paths paths = paths_of(task, space, scene, i);
-    int status = want_legs(space, &paths, rule);
-    if (status == FIBRAD_OK) status = first_leg(scene, space, i, task, &leg, &beam_error);
-    space->legs.wanted = 0;
+    int status = want_segments(space, &paths, rule);
+    if (status == FIBRAD_OK) status = first_segment(scene, space, i, task, &segment, &beam_error);
+    space->segments.wanted = 0;
     if (status != FIBRAD_OK) return status;
 
-    keep_first_leg(&space->entries, &leg);
+    keep_first_segment(&space->entries, &segment);
     fibrad_copy(wall, space->wall, sizeof wall);
-    const double carried = reflected_of(task, &leg, wall), met = 1 - leg.escaped - leg.beyond;
+    const double carried = reflected_of(task, &segment, wall), met = 1 - segment.escaped - segment.beyond;
     const double weight = carried > 0 ? carried / fibrad_max(carried, met) : 0;
-    paths.legs = &space->legs;
+    paths.segments = &space->segments;
     paths.entries = &space->entries;
     if (rule->node_emissivity != NULL) paths.conductivity = rule->conductivity;
     fibrad_work_begin(space, scene, paths.place, rule->cutoff, (fibrad_stride){0});
@@ -282,18 +282,18 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
         if (sum == 0) *(paths.cut ? &paths.beyond : &paths.escaped) = carried, scale = 1, beam_error += carried;
         if (sum != 0 && rule->known != NULL) to_spheres = pool_known(&paths, rule, scale, count);
     }
-    /* before add_first_leg, which adds the same to all parts */
+    /* before add_first_segment, which adds the same to all parts */
     const double paths_error = fibrad_min(carried, scale * spread_of_parts(&paths, weight));
-    add_first_leg(space, task->emissivity, &leg, scale * to_spheres);
+    add_first_segment(space, task->emissivity, &segment, scale * to_spheres);
     if (space->entries.missed > 0) return fibrad_work_entries_missed(space);
     const double error = fibrad_sqrt(paths_error * paths_error + beam_error * beam_error) + lost_of(&paths, carried);
     if (!fibrad_finite(error + scale)) return FIBRAD_E_ARGUMENT; /* a number that a path met is not valid */
     status = fibrad_entries_row(&space->entries, scene, 1, row);
     if (status != FIBRAD_OK) return status;
     row->error = error;
-    row->directions = leg.directions, row->fallbacks = leg.fallbacks, row->symmetric = 0;
-    row->escaped = leg.escaped + paths.escaped * scale;
-    row->beyond = leg.beyond + paths.beyond * scale;
+    row->directions = segment.directions, row->fallbacks = segment.fallbacks, row->symmetric = 0;
+    row->escaped = segment.escaped + paths.escaped * scale;
+    row->beyond = segment.beyond + paths.beyond * scale;
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
         wall[slot] = wall[slot] * task->wall_emissivity[slot] + paths.wall[slot] * scale;
     fibrad_row_walls(scene, wall, row);

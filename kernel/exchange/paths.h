@@ -15,9 +15,9 @@
 
 typedef struct fibrad_paths {
     fibrad_tracer *tracer;
-    uint32_t place;    /* position of the sphere that paths leave; FIBRAD_NONE: paths leave a wall, without a cutoff */
-    uint32_t from;     /* slot of the wall that paths leave */
-    fibrad_legs *legs; /* NULL, or the first legs of the first paths */
+    uint32_t place; /* position of the sphere that paths leave; FIBRAD_NONE: paths leave a wall, without a cutoff */
+    uint32_t from;  /* slot of the wall that paths leave */
+    fibrad_segments *segments;       /* NULL, or the first segments of the first paths */
     const fibrad_sobol *sobol;       /* evenly spread points, of paths from a wall */
     double inverse;                  /* 1/L, of the radius of the sphere */
     bool cut;                        /* whether there is a cutoff or a known region */
@@ -40,7 +40,7 @@ typedef struct fibrad_paths {
     uint64_t *reflected;             /* [spheres], by the caller's index, added to: absorbed after a reflection, in
                                         paths * 2^40; NULL: not counted */
     bool undo;                       /* subtract from `reflected` what these paths have added */
-    double left;                     /* out: weight of paths that are broken off after too many legs */
+    double left;                     /* out: weight of paths that are broken off after too many segments */
     /* L^2, out: sum over absorption by spheres times the squared displacement along each axis, path k in part k mod
      * FIBRAD_DISPLACEMENT_PARTS. The displacement is between the centres of the two spheres. */
     double square[FIBRAD_DISPLACEMENT_PARTS][3];
@@ -63,8 +63,9 @@ static inline int fibrad_paths_emissivities(const fibrad_scene *scene, const dou
     return FIBRAD_OK;
 }
 
-/* Follows the first legs to where they arrive, and chooses those from which paths go on. A leg is chosen in proportion
- * to what the surface reflects where it arrives. So all paths go on with equal weights. Nothing counts as absorbed. */
+/* Follows the first segments to where they arrive, and chooses those from which paths go on. A segment is chosen in
+ * proportion to what the surface reflects where it arrives. So all paths go on with equal weights. Nothing counts as
+ * absorbed. */
 typedef void fibrad_paths_arrive_function(fibrad_paths *paths);
 FIBRAD_DECLARE_VERSIONS(fibrad_paths_arrive_function, fibrad_paths_arrive);
 

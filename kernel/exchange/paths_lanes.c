@@ -10,20 +10,22 @@
 
 /* Points of the unit sphere are made this many at a time. */
 #define PATH_BATCH 8
-/* A path is broken off after so many legs, in case no surface absorbs. The weight that is left counts as an error. */
-#define PATH_LEGS 32768u
+/* A path is broken off after so many segments, in case no surface absorbs. The weight that is left counts as an error.
+ */
+#define PATH_SEGMENTS 32768u
 /* Russian roulette: a path whose weight w is below this survives with probability w/ROULETTE_WEIGHT. Its weight is then
  * ROULETTE_WEIGHT. Of 0.05, 0.1, 0.2 and 0.4 this value gave the least error for a given number of rays, at
  * emissivities of 0.3 and 0.8. */
 #define ROULETTE_WEIGHT 0.2
-/* The same for paths that go on from known first legs, as a part of the weight with which they go on. All these weights
- * are equal. Of 0.2, 0.4, 0.5, 0.7 and 1 the values from 0.4 to 0.7 gave the least error. */
+/* The same for paths that go on from known first segments, as a part of the weight with which they go on. All these
+ * weights are equal. Of 0.2, 0.4, 0.5, 0.7 and 1 the values from 0.4 to 0.7 gave the least error. */
 #define ROULETTE_PART 0.5
 /* The first coordinates of a path are quasi-random: those of its start and of its first two directions. Six such
  * coordinates take a tenth to a fifth fewer rays than four. */
 #define QUASI_COORDINATES FIBRAD_SOBOL_DIMENSIONS
-/* Paths go on from known first legs in steps of this prime. So the first paths come from windows of all directions. */
-#define LEG_STRIDE UINT64_C(2654435761)
+/* Paths go on from known first segments in steps of this prime. So the first paths come from windows of all directions.
+ */
+#define SEGMENT_STRIDE UINT64_C(2654435761)
 
 /* A path so far. */
 struct grey_path {
@@ -157,7 +159,7 @@ static void look_past(const fibrad_scene *scene, const struct grey_path *path, c
     hit->side = met.side, hit->distance = met.distance;
 }
 
-/* Ends a leg at a wall, or at a side of a mesh. */
+/* Ends a segment at a wall, or at a side of a mesh. */
 static void reach_wall(const fibrad_scene *scene, struct grey_path *path, uint32_t wall, uint32_t side,
                        const double at[3]) {
     double centre[3], point[3];
@@ -179,34 +181,36 @@ static void reach_wall(const fibrad_scene *scene, struct grey_path *path, uint32
     path->place = FIBRAD_NONE;
 }
 
-/* Sets the hit to where a known first leg meets its sphere. */
-static void meet_known(const fibrad_paths *paths, const fibrad_leg *leg, fibrad_hit *hit) {
+/* Sets the hit to where a known first segment meets its sphere. */
+static void meet_known(const fibrad_paths *paths, const fibrad_segment *segment, fibrad_hit *hit) {
     const fibrad_scene *scene = paths->tracer->scene;
-    const double unit = scene->r[paths->place], r = scene->r[leg->sphere] * paths->inverse;
-    const double *c = leg->centre, *w = leg->w, *n = leg->n;
+    const double unit = scene->r[paths->place], r = scene->r[segment->sphere] * paths->inverse;
+    const double *c = segment->centre, *w = segment->w, *n = segment->n;
     const double e[3] = {c[0] - n[0], c[1] - n[1], c[2] - n[2]};
     const double along = e[0] * w[0] + e[1] * w[1] + e[2] * w[2];
     const double across[3] = {e[0] - along * w[0], e[1] - along * w[1], e[2] - along * w[2]};
     const double square = r * r - (across[0] * across[0] + across[1] * across[1] + across[2] * across[2]);
     const double root = fibrad_sqrt(fibrad_max(0, square)), scale = 1 / r;
-    *hit = (fibrad_hit){.side = FIBRAD_NO_SIDE, .sphere = leg->sphere, .distance = unit * fibrad_max(0, along - root)};
+    *hit =
+        (fibrad_hit){.side = FIBRAD_NO_SIDE, .sphere = segment->sphere, .distance = unit * fibrad_max(0, along - root)};
     for (int axis = 0; axis < 3; axis++) {
         hit->centre[axis] = unit * c[axis];
         hit->normal[axis] = -(across[axis] + root * w[axis]) * scale;
     }
 }
 
-/* Whether the leg tells the sphere that it meets, so that no ray need be traced. */
-static bool is_met_known(const fibrad_paths *paths, const fibrad_leg *leg) {
+/* Whether the segment tells the sphere that it meets, so that no ray need be traced. */
+static bool is_met_known(const fibrad_paths *paths, const fibrad_segment *segment) {
     const fibrad_scene *scene = paths->tracer->scene;
-    return leg != NULL && leg->sphere != FIBRAD_NONE && scene->clear == NULL &&
-           !fibrad_walls_cut_place(scene, leg->sphere);
+    return segment != NULL && segment->sphere != FIBRAD_NONE && scene->clear == NULL &&
+           !fibrad_walls_cut_place(scene, segment->sphere);
 }
 
 /* Moves a path along w to what it meets. Returns FIBRAD_NONE for a sphere, and the slot for a wall or a mesh.
  * FIBRAD_ESCAPED and FIBRAD_BEYOND: the path ends. A side that belongs to no wall counts as beyond. A ray is traced
  * unless `known` tells what the path meets. */
-static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3], const fibrad_leg *known) {
+static uint32_t trace_segment(fibrad_paths *paths, struct grey_path *path, const double w[3],
+                              const fibrad_segment *known) {
     const fibrad_scene *scene = paths->tracer->scene;
     fibrad_hit hit;
     double centre[3], point[3], distance;
@@ -297,10 +301,10 @@ static void start_at_wall(const fibrad_paths *paths, struct grey_path *path) {
 
 /* The point from which a path leaves a sphere that conducts. Either the path was reflected and stays where it is. Or
  * the sphere has absorbed it, and gives off elsewhere what its node does not keep. */
-static void leave_sphere(fibrad_paths *paths, struct grey_path *path, uint32_t leg) {
+static void leave_sphere(fibrad_paths *paths, struct grey_path *path, uint32_t segment) {
     const uint32_t i = paths->tracer->scene->order[path->place];
     const double surface = paths->surface[i], node = paths->emissivity[i], conductivity = paths->conductivity[i];
-    const uint64_t first = UINT64_C(2) << 32 | (uint64_t)leg << 8;
+    const uint64_t first = UINT64_C(2) << 32 | (uint64_t)segment << 8;
     double even[3];
     if (!(surface >= node && surface <= 1 && conductivity >= FIBRAD_RELATIVE_CONDUCTIVITY_MIN)) {
         paths->absorbed = __builtin_nan("");
@@ -311,62 +315,63 @@ static void leave_sphere(fibrad_paths *paths, struct grey_path *path, uint32_t l
     fibrad_reemit_above(surface / (2 * conductivity), path->own, first + 1, even, path->n);
 }
 
-/* Follows a first leg. Writes where it arrives, and what the surface there reflects. */
-static void follow_first_leg(fibrad_paths *paths, fibrad_leg *leg) {
-    struct grey_path path = {.weight = leg->weight, .place = paths->place, .triangle = FIBRAD_NO_SIDE};
-    fibrad_copy(path.n, leg->n, sizeof path.n);
-    const uint32_t met = trace_leg(paths, &path, leg->w, leg);
-    leg->weight = 0;
+/* Follows a first segment. Writes where it arrives, and what the surface there reflects. */
+static void follow_first_segment(fibrad_paths *paths, fibrad_segment *segment) {
+    struct grey_path path = {.weight = segment->weight, .place = paths->place, .triangle = FIBRAD_NO_SIDE};
+    fibrad_copy(path.n, segment->n, sizeof path.n);
+    const uint32_t met = trace_segment(paths, &path, segment->w, segment);
+    segment->weight = 0;
     if (met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND) return;
     absorb_at_surface(paths, &path, met, false);
-    fibrad_copy(leg->n, path.n, sizeof leg->n);
-    fibrad_copy(leg->w, path.point, sizeof leg->w);
-    fibrad_copy(leg->centre, path.centre, sizeof leg->centre);
-    leg->weight = path.weight, leg->sphere = path.place, leg->triangle = path.triangle;
+    fibrad_copy(segment->n, path.n, sizeof segment->n);
+    fibrad_copy(segment->w, path.point, sizeof segment->w);
+    fibrad_copy(segment->centre, path.centre, sizeof segment->centre);
+    segment->weight = path.weight, segment->sphere = path.place, segment->triangle = path.triangle;
 }
 
-/* Chooses a leg for each path that begins with one, those of large weight several times and some of small weight not at
- * all. */
-static void choose_legs(fibrad_legs *legs, double offset) {
+/* Chooses a segment for each path that begins with one, those of large weight several times and some of small weight
+ * not at all. */
+static void choose_segments(fibrad_segments *segments, double offset) {
     double all = 0, sum = 0;
     uint32_t at = 0, last = 0;
-    for (uint32_t k = 0; k < legs->sources; k++) {
-        all += legs->leg[k].weight;
-        if (legs->leg[k].weight > 0) last = k;
+    for (uint32_t k = 0; k < segments->sources; k++) {
+        all += segments->segment[k].weight;
+        if (segments->segment[k].weight > 0) last = k;
     }
-    if (!(all > 0)) legs->length = 0;
-    legs->share = all / fibrad_max(1, legs->length);
-    for (uint32_t k = 0; k < legs->length; k++) {
-        while (at < last && sum + legs->leg[at].weight <= (k + offset) * legs->share) sum += legs->leg[at++].weight;
-        legs->leg[k].chosen = at;
+    if (!(all > 0)) segments->length = 0;
+    segments->share = all / fibrad_max(1, segments->length);
+    for (uint32_t k = 0; k < segments->length; k++) {
+        while (at < last && sum + segments->segment[at].weight <= (k + offset) * segments->share)
+            sum += segments->segment[at++].weight;
+        segments->segment[k].chosen = at;
     }
 }
 
 void LANED(fibrad_paths_arrive)(fibrad_paths *paths) {
-    for (uint32_t k = 0; k < paths->legs->sources; k++) follow_first_leg(paths, &paths->legs->leg[k]);
-    choose_legs(paths->legs, fibrad_fraction(fibrad_random_ahead(paths->stream, QUASI_COORDINATES)));
+    for (uint32_t k = 0; k < paths->segments->sources; k++) follow_first_segment(paths, &paths->segments->segment[k]);
+    choose_segments(paths->segments, fibrad_fraction(fibrad_random_ahead(paths->stream, QUASI_COORDINATES)));
 }
 
-/* Puts a path where the first leg arrived that was chosen for it. w: out: the direction in which it goes on. */
-static void begin_at_leg(fibrad_paths *paths, struct grey_path *path, double w[3]) {
-    const fibrad_legs *legs = paths->legs;
-    path->k = path->k * LEG_STRIDE % legs->length;
-    const uint32_t chosen = legs->leg[path->k].chosen;
-    const fibrad_leg *leg = &legs->leg[chosen];
+/* Puts a path where the first segment arrived that was chosen for it. w: out: the direction in which it goes on. */
+static void begin_at_segment(fibrad_paths *paths, struct grey_path *path, double w[3]) {
+    const fibrad_segments *segments = paths->segments;
+    path->k = path->k * SEGMENT_STRIDE % segments->length;
+    const uint32_t chosen = segments->segment[path->k].chosen;
+    const fibrad_segment *segment = &segments->segment[chosen];
     path->part = chosen % 4;
-    path->weight = legs->share, path->least = ROULETTE_PART * legs->share;
-    path->place = leg->sphere, path->triangle = leg->triangle;
-    fibrad_copy(path->n, leg->n, sizeof path->n);
-    fibrad_copy(path->point, leg->w, sizeof path->point);
-    fibrad_copy(path->centre, leg->centre, sizeof path->centre);
+    path->weight = segments->share, path->least = ROULETTE_PART * segments->share;
+    path->place = segment->sphere, path->triangle = segment->triangle;
+    fibrad_copy(path->n, segment->n, sizeof path->n);
+    fibrad_copy(path->point, segment->w, sizeof path->point);
+    fibrad_copy(path->centre, segment->centre, sizeof path->centre);
     if (path->place != FIBRAD_NONE && paths->conductivity != NULL) leave_sphere(paths, path, 0);
-    direction_about(path->n, legs->leg[path->k].even, w);
+    direction_about(path->n, segments->segment[path->k].even, w);
 }
 
 /* The end of a path whose weight has become small: it ends, or goes on with a larger weight. */
-static bool survives(struct grey_path *path, uint32_t leg) {
+static bool survives(struct grey_path *path, uint32_t segment) {
     if (path->weight >= path->least) return true;
-    const double draw = fibrad_fraction(fibrad_random_ahead(path->own, UINT64_C(1) << 32 | leg));
+    const double draw = fibrad_fraction(fibrad_random_ahead(path->own, UINT64_C(1) << 32 | segment));
     if (draw * path->least >= path->weight) return false;
     path->weight = path->least;
     return true;
@@ -388,41 +393,41 @@ static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]
                              .least = ROULETTE_WEIGHT,
                              .place = paths->place,
                              .triangle = FIBRAD_NO_SIDE};
-    const uint32_t first = paths->legs != NULL && k < paths->legs->length;
+    const uint32_t first = paths->segments != NULL && k < paths->segments->length;
     double w[3];
     if (first) {
-        begin_at_leg(paths, &path, w);
+        begin_at_segment(paths, &path, w);
     } else {
         next_sphere_point(paths, &path, path.n);
         if (path.place == FIBRAD_NONE) start_at_wall(paths, &path);
         draw_direction(paths, &path, w);
     }
-    for (uint32_t leg = first; leg < PATH_LEGS; leg++) {
-        const bool counts = leg > 0 || paths->first;
-        const uint32_t met = trace_leg(paths, &path, w, NULL);
+    for (uint32_t segment = first; segment < PATH_SEGMENTS; segment++) {
+        const bool counts = segment > 0 || paths->first;
+        const uint32_t met = trace_segment(paths, &path, w, NULL);
         if (met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND) {
             if (counts) leave_scene(paths, &path, met);
             return;
         }
         const double before = path.weight;
         absorb_at_surface(paths, &path, met, counts);
-        if (leg > 0 && met == FIBRAD_NONE) count_reflected(paths, &path, before - path.weight);
-        if (!survives(&path, leg)) return;
-        if (met == FIBRAD_NONE && paths->conductivity != NULL) leave_sphere(paths, &path, leg);
+        if (segment > 0 && met == FIBRAD_NONE) count_reflected(paths, &path, before - path.weight);
+        if (!survives(&path, segment)) return;
+        if (met == FIBRAD_NONE && paths->conductivity != NULL) leave_sphere(paths, &path, segment);
         draw_direction(paths, &path, w);
     }
     paths->left += path.weight;
 }
 
 /* A walk arrives at a sphere. It is reflected there, or absorbed and given off at another point. */
-static void scatter(fibrad_paths *paths, struct grey_path *path, uint32_t leg) {
+static void scatter(fibrad_paths *paths, struct grey_path *path, uint32_t segment) {
     const uint32_t i = paths->tracer->scene->order[path->place];
     const double emissivity = paths->surface[i], conductivity = paths->conductivity[i];
     double draw[3], even[3];
     if (!(emissivity >= 0 && emissivity <= 1 && conductivity >= FIBRAD_RELATIVE_CONDUCTIVITY_MIN))
         paths->origins = __builtin_nan("");
     for (uint32_t d = 0; d < 3; d++)
-        draw[d] = fibrad_fraction(fibrad_random_ahead(path->own, (UINT64_C(1) << 32) + 3 * leg + d));
+        draw[d] = fibrad_fraction(fibrad_random_ahead(path->own, (UINT64_C(1) << 32) + 3 * segment + d));
     if (!(draw[2] < emissivity)) return;
     next_sphere_point(paths, path, even);
     fibrad_reemit(2 * conductivity / emissivity, draw, even, path->n);
@@ -452,7 +457,7 @@ static void follow_walk(fibrad_paths *paths, uint64_t k) {
     while (steps < 2 * paths->flights) {
         scatter(paths, &path, steps);
         draw_direction(paths, &path, w);
-        if (trace_leg(paths, &path, w, NULL) != FIBRAD_NONE) {
+        if (trace_segment(paths, &path, w, NULL) != FIBRAD_NONE) {
             paths->lost++;
             break;
         }
@@ -461,7 +466,7 @@ static void follow_walk(fibrad_paths *paths, uint64_t k) {
     correlate(paths, k, at, steps);
 }
 
-/* Follows up to PATH_BATCH paths of one leg in a box, each to the wall that it would meet without spheres. */
+/* Follows up to PATH_BATCH paths of one segment in a box, each to the wall that it would meet without spheres. */
 static void follow_boxed(fibrad_paths *paths, uint32_t paths_left, uint32_t sobol[PATH_BATCH][8]) {
     const fibrad_scene *scene = paths->tracer->scene;
     _Alignas(64) double at[2][PATH_BATCH] = {{0}}, even[3][PATH_BATCH];

@@ -238,60 +238,61 @@ static void point_of_disc(uint64_t *random, double at[2]) {
     while (at[0] * at[0] + at[1] * at[1] > 1);
 }
 
-/* A leg from a random point of the disc across the line of centres to one of the other sphere's disc. */
-static fibrad_leg leg_to(const fibrad_workspace *work, uint32_t other, double weight) {
+/* A segment from a random point of the disc across the line of centres to one of the other sphere's disc. */
+static fibrad_segment segment_to(const fibrad_workspace *work, uint32_t other, double weight) {
     const fibrad_scene *scene = work->scene;
     const pair_hull hull = hull_of(scene, work->place, other);
     const double *c = hull.axis, r = hull.r[1] * work->inverse, length = hull.length * work->inverse;
-    uint64_t random = fibrad_mix(work->legs.shift[0] ^ fibrad_mix(fibrad_scene_rank(scene, other)));
+    uint64_t random = fibrad_mix(work->segments.shift[0] ^ fibrad_mix(fibrad_scene_rank(scene, other)));
     double p[2], q[2], u[3], v[3], from[3];
-    fibrad_leg leg = {.sphere = other, .weight = weight};
+    fibrad_segment segment = {.sphere = other, .weight = weight};
     fibrad_frame_about(c, u, v);
     point_of_disc(&random, p);
     point_of_disc(&random, q);
     for (int axis = 0; axis < 3; axis++) {
         from[axis] = p[0] * u[axis] + p[1] * v[axis];
-        leg.centre[axis] = length * c[axis];
-        leg.w[axis] = leg.centre[axis] + r * (q[0] * u[axis] + q[1] * v[axis]) - from[axis];
+        segment.centre[axis] = length * c[axis];
+        segment.w[axis] = segment.centre[axis] + r * (q[0] * u[axis] + q[1] * v[axis]) - from[axis];
     }
-    const double inverse = 1 / fibrad_sqrt(fibrad_dot(leg.w, leg.w));
-    for (int axis = 0; axis < 3; axis++) leg.w[axis] *= inverse;
-    const double along = fibrad_dot(from, leg.w);
+    const double inverse = 1 / fibrad_sqrt(fibrad_dot(segment.w, segment.w));
+    for (int axis = 0; axis < 3; axis++) segment.w[axis] *= inverse;
+    const double along = fibrad_dot(from, segment.w);
     const double out = fibrad_sqrt(fibrad_max(0, along * along + 1 - fibrad_dot(from, from))) - along;
-    for (int axis = 0; axis < 3; axis++) leg.n[axis] = from[axis] + out * leg.w[axis];
-    return leg;
+    for (int axis = 0; axis < 3; axis++) segment.n[axis] = from[axis] + out * segment.w[axis];
+    return segment;
 }
 
-/* The entry of the sphere that a leg meets. FIBRAD_NONE: there is none. */
-static uint32_t entry_of_leg(const fibrad_entries *entries, const fibrad_leg *leg) {
-    return leg->sphere != FIBRAD_NONE ? fibrad_entries_find(entries, leg->sphere) : FIBRAD_NONE;
+/* The entry of the sphere that a segment meets. FIBRAD_NONE: there is none. */
+static uint32_t entry_of_segment(const fibrad_entries *entries, const fibrad_segment *segment) {
+    return segment->sphere != FIBRAD_NONE ? fibrad_entries_find(entries, segment->sphere) : FIBRAD_NONE;
 }
 
-int fibrad_free_pairs_legs(fibrad_workspace *work, const fibrad_free_pairs *pairs) {
-    fibrad_legs *legs = &work->legs;
+int fibrad_free_pairs_segments(fibrad_workspace *work, const fibrad_free_pairs *pairs) {
+    fibrad_segments *segments = &work->segments;
     const fibrad_entries *entries = &work->entries;
-    double *count = entries->lengths; /* legs to each sphere */
+    double *count = entries->lengths; /* segments to each sphere */
     uint32_t more = 0;
-    legs->sources = legs->length;
-    if (legs->length == 0 || pairs->moved == 0) return FIBRAD_OK;
-    for (uint32_t k = 0; k < legs->length; k++) {
-        const uint32_t entry = entry_of_leg(entries, &legs->leg[k]);
+    segments->sources = segments->length;
+    if (segments->length == 0 || pairs->moved == 0) return FIBRAD_OK;
+    for (uint32_t k = 0; k < segments->length; k++) {
+        const uint32_t entry = entry_of_segment(entries, &segments->segment[k]);
         if (entry != FIBRAD_NONE) count[entry]++;
     }
-    for (uint32_t k = 0; k < legs->length; k++) {
-        fibrad_leg *leg = &legs->leg[k];
-        const uint32_t entry = entry_of_leg(entries, leg);
-        if (leg->sphere == FIBRAD_NONE) leg->weight = 1 + pairs->moved / pairs->open;
+    for (uint32_t k = 0; k < segments->length; k++) {
+        fibrad_segment *segment = &segments->segment[k];
+        const uint32_t entry = entry_of_segment(entries, segment);
+        if (segment->sphere == FIBRAD_NONE) segment->weight = 1 + pairs->moved / pairs->open;
         if (entry != FIBRAD_NONE && entries->exact[entry] > 0)
-            leg->weight = entries->exact[entry] * legs->length / count[entry];
+            segment->weight = entries->exact[entry] * segments->length / count[entry];
     }
     for (uint32_t k = 0; k < entries->length; k++) {
         if (!(entries->exact[k] > 0) || count[k] > 0) continue;
-        if (legs->length + ++more <= work->plan.legs)
-            legs->leg[legs->sources++] = leg_to(work, entries->sphere[k], entries->exact[k] * legs->length);
+        if (segments->length + ++more <= work->plan.segments)
+            segments->segment[segments->sources++] =
+                segment_to(work, entries->sphere[k], entries->exact[k] * segments->length);
     }
-    work->needed.legs = legs->length + more;
-    return legs->sources == work->needed.legs ? FIBRAD_OK : FIBRAD_E_WORK;
+    work->needed.segments = segments->length + more;
+    return segments->sources == work->needed.segments ? FIBRAD_OK : FIBRAD_E_WORK;
 }
 
 void fibrad_weigh_halves(const fibrad_workspace *work, fibrad_row *row) {

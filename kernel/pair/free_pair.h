@@ -25,9 +25,10 @@ typedef struct fibrad_free_pairs {
  * entries. Entries that find no room are counted in entries.missed. */
 fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale);
 
-/* Gives the legs that meet a sphere of a free pair their share of its factor, and those that meet no sphere their share
- * of the rest. If no leg meets a sphere of a free pair, one more leg does. Error: FIBRAD_E_WORK: there is no room. */
-int fibrad_free_pairs_legs(fibrad_workspace *work, const fibrad_free_pairs *pairs);
+/* Gives the segments that meet a sphere of a free pair their share of its factor, and those that meet no sphere their
+ * share of the rest. If no segment meets a sphere of a free pair, one more segment does. Error: FIBRAD_E_WORK: there is
+ * no room. */
+int fibrad_free_pairs_segments(fibrad_workspace *work, const fibrad_free_pairs *pairs);
 
 /* Raises the differences of halves of spheres that few windows should meet. Lines are spread evenly, so that the error
  * of a sphere that many windows meet is less than the difference. Whether a window meets a far sphere is chance. */

@@ -5,7 +5,7 @@
 #include "sample/direction.h"
 #include "row/beam_lanes.h"
 #include "pair/free_pair.h"
-#include "workspace/legs_lanes.h"
+#include "workspace/segments_lanes.h"
 #include "row/mesh_share_lanes.h"
 #include "row/wall_share_lanes.h"
 #include "row/window_lanes.h"
@@ -141,7 +141,7 @@ static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibr
     const double rest = compute_window(work, windows, k, frame, &whole);
     if (work->disc.count > work->disc.capacity || work->areas.overflow) return false;
     sums->whole[k % 2] += fibrad_on_grid(whole, work->entries.grid);
-    LANED(take_legs)(work, frame, k);
+    LANED(take_segments)(work, frame, k);
     const bool meets = work->met != NULL && work->met->any;
     if (meets) LANED(fibrad_mesh_count)(work, frame, k);
     if (work->scene->container.walls) LANED(fibrad_walls_share)
@@ -242,7 +242,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
                                    .turned = mixed,
                                    .ends = windows.lines == NULL && !masked};
     for (uint32_t p = 0; p < range->parts; p++) fibrad_beam_add_kept(work, &range->part[p], &sums);
-    LANED(begin_legs)(&work->legs);
+    LANED(begin_segments)(&work->segments);
     for (uint32_t k = range->from; k < range->to; k++)
         if (!add_window(work, &windows, &set, k, &sums)) return fibrad_work_discs_missed(work);
     if (masked) gather_counts(work);
@@ -258,7 +258,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     fibrad_free_pairs pairs = {.open = 1};
     if (range->exact) pairs = fibrad_free_pairs_find(work, scale);
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
-    status = fibrad_free_pairs_legs(work, &pairs);
+    status = fibrad_free_pairs_segments(work, &pairs);
     if (status != FIBRAD_OK) return status;
     status = fibrad_entries_row(&work->entries, scene, scale, row);
     if (status != FIBRAD_OK) return status;

@@ -83,7 +83,7 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     entries->exact = fibrad_arena_take(arena, entries->capacity, sizeof(double));
     for (int list = 0; list < 2; list++)
         entries->key[list] = fibrad_arena_take(arena, entries->capacity, sizeof(uint64_t));
-    work->legs.leg = fibrad_arena_take(arena, plan->legs, sizeof *work->legs.leg);
+    work->segments.segment = fibrad_arena_take(arena, plan->segments, sizeof *work->segments.segment);
     if (plan->walls > 0) work->walls = fibrad_arena_take(arena, 1, sizeof *work->walls);
     if (plan->met > 0) work->met = fibrad_arena_take(arena, 1, sizeof *work->met);
     work->extra = fibrad_arena_take(arena, plan->extra, 1);
@@ -186,7 +186,7 @@ int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space) {
     const fibrad_work_plan now = (*space)->plan, needed = (*space)->needed;
     fibrad_work_plan best = (*space)->best, least = (*space)->least;
     const bool more = needed.near > now.near || needed.discs > now.discs || needed.entries > now.entries ||
-                      needed.extra > now.extra || needed.legs > now.legs;
+                      needed.extra > now.extra || needed.segments > now.segments;
     if (!more) return FIBRAD_E_UNSUPPORTED; /* without this the call would be repeated for ever */
     /* a size that was once too small in this call must not become smaller again */
     if (needed.near > now.near) least.near = needed.near;
@@ -194,7 +194,7 @@ int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space) {
     if (needed.entries > now.entries)
         least.entries = needed.entries, best.entries = greater_count(best.entries, needed.entries);
     if (needed.extra > now.extra) least.extra = needed.extra;
-    if (needed.legs > now.legs) least.legs = needed.legs;
+    if (needed.segments > now.segments) least.segments = needed.segments;
     return fit(work, &best, &least, space);
 }
 

@@ -13,7 +13,7 @@
 #include "window/areas.h"
 #include "window/discs.h"
 #include "mask/masks.h"
-#include "workspace/legs.h"
+#include "workspace/segments.h"
 #include "workspace/met.h"
 #include "workspace/near_list.h"
 
@@ -30,13 +30,13 @@ typedef struct fibrad_wall_room {
 
 /* The sizes for which work memory is laid out, or which a row needs. */
 typedef struct fibrad_work_plan {
-    uint32_t walls;   /* 1: there may be planes, openings or a cylinder */
-    uint32_t met;     /* 1: there may be triangles */
-    uint32_t near;    /* near spheres listed for a row; for beams and rays it only changes the speed */
-    uint32_t discs;   /* discs of one window, hidden ones included */
-    uint32_t entries; /* different spheres and slots seen by one row */
-    size_t extra;     /* bytes for other methods */
-    uint32_t legs;    /* first legs of paths that a beam row takes */
+    uint32_t walls;    /* 1: there may be planes, openings or a cylinder */
+    uint32_t met;      /* 1: there may be triangles */
+    uint32_t near;     /* near spheres listed for a row; for beams and rays it only changes the speed */
+    uint32_t discs;    /* discs of one window, hidden ones included */
+    uint32_t entries;  /* different spheres and slots seen by one row */
+    size_t extra;      /* bytes for other methods */
+    uint32_t segments; /* first segments of paths that a beam row takes */
 } fibrad_work_plan;
 
 /* The inside of a fibrad_work. Only `extra` lasts from one call to the next. */
@@ -51,7 +51,7 @@ typedef struct fibrad_workspace {
     fibrad_areas areas;
     fibrad_masks masks;
     fibrad_entries entries;
-    fibrad_legs legs;
+    fibrad_segments segments;
     fibrad_met *met;      /* NULL unless plan.met */
     void *extra;          /* [plan.extra] */
     uint64_t extra_owner; /* who wrote the contents of `extra`; 0: nobody; each method has its number */

@@ -415,7 +415,7 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
     tolerance : float, optional
         The error allowed in every row. Directions and paths are added until it is met. Default: none.
     directions : int, optional
-        Directions of the first leg, the way to the first surface. Default: 50.
+        Directions of the first segment, the way to the first surface. Default: 50.
     paths : int, optional
         Paths that follow the reflections. Default: 400.
     seed : int, optional

@@ -1,10 +1,10 @@
-/* legs_lanes.h - first legs of paths, taken from the windows of a beam row. SPDX-License-Identifier: MIT
+/* segments_lanes.h - first segments of paths, taken from the windows of a beam row. SPDX-License-Identifier: MIT
  *
- * Each leg has four coordinates. Two tell in which direction the path goes on. They are those of an additive
+ * Each segment has four coordinates. Two tell in which direction the path goes on. They are those of an additive
  * recurrence. Two tell where in its window the beam passes. These are random. With a recurrence for them, too, the
- * noise of rows doubled where its steps matched those of the directions, as with 50 windows and 100 legs. */
-#ifndef FIBRAD_WORKSPACE_LEGS_LANES_H
-#define FIBRAD_WORKSPACE_LEGS_LANES_H
+ * noise of rows doubled where its steps matched those of the directions, as with 50 windows and 100 segments. */
+#ifndef FIBRAD_WORKSPACE_SEGMENTS_LANES_H
+#define FIBRAD_WORKSPACE_SEGMENTS_LANES_H
 
 #include "base/lanes/below.h"
 #include "base/lanes/laned.h"
@@ -13,14 +13,14 @@
 #include "workspace/workspace.h"
 
 /* Makes the first coordinates of normals along the axes of windows, and the even points. */
-static void LANED(begin_legs)(fibrad_legs *legs) {
-    legs->length = 0;
-    for (uint32_t k = 0; k < legs->wanted; k += VD_LANES) {
+static void LANED(begin_segments)(fibrad_segments *segments) {
+    segments->length = 0;
+    for (uint32_t k = 0; k < segments->wanted; k += VD_LANES) {
         _Alignas(64) double at[4][VD_LANES], to[4][VD_LANES];
         vd cosine, sine;
         for (uint32_t lane = 0; lane < VD_LANES; lane++)
             for (int d = 0; d < 4; d++) {
-                const uint64_t x = legs->shift[d] + (k + lane) * fibrad_quasirandom_step(4, d);
+                const uint64_t x = segments->shift[d] + (k + lane) * fibrad_quasirandom_step(4, d);
                 at[d][lane] = fibrad_fraction(d < 2 ? fibrad_mix(x) : x);
             }
         vd ring = vd_sqrt(vd_load(at[0])), height = vd_load(at[2]);
@@ -31,10 +31,11 @@ static void LANED(begin_legs)(fibrad_legs *legs) {
         vd_turn(vd_load(at[3]), &cosine, &sine);
         vd_store(to[2], ring * cosine);
         vd_store(to[3], ring * sine);
-        for (uint32_t lane = 0; lane < VD_LANES && k + lane < legs->wanted; lane++)
-            legs->leg[k + lane] = (fibrad_leg){.weight = 1,
-                                               .n = {to[0][lane], to[1][lane]},
-                                               .even = {to[2][lane], to[3][lane], 1 - (at[2][lane] + at[2][lane])}};
+        for (uint32_t lane = 0; lane < VD_LANES && k + lane < segments->wanted; lane++)
+            segments->segment[k + lane] =
+                (fibrad_segment){.weight = 1,
+                                 .n = {to[0][lane], to[1][lane]},
+                                 .even = {to[2][lane], to[3][lane], 1 - (at[2][lane] + at[2][lane])}};
     }
 }
 
@@ -55,26 +56,26 @@ static uint32_t LANED(first_disc)(const fibrad_discs *disc, double x, double y, 
     return first;
 }
 
-/* Takes the legs of window k. */
-static void LANED(take_legs)(fibrad_workspace *work, const double frame[9], uint32_t k) {
-    fibrad_legs *legs = &work->legs;
+/* Takes the segments of window k. */
+static void LANED(take_segments)(fibrad_workspace *work, const double frame[9], uint32_t k) {
+    fibrad_segments *segments = &work->segments;
     const fibrad_discs *disc = &work->disc;
-    const uint32_t end = (uint32_t)((uint64_t)legs->wanted * (k + 1) / work->windows);
-    for (uint32_t at = legs->length; at < end; at++) {
-        fibrad_leg *leg = &legs->leg[at];
+    const uint32_t end = (uint32_t)((uint64_t)segments->wanted * (k + 1) / work->windows);
+    for (uint32_t at = segments->length; at < end; at++) {
+        fibrad_segment *segment = &segments->segment[at];
         double depth;
-        const double x = leg->n[0], y = leg->n[1], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
+        const double x = segment->n[0], y = segment->n[1], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
         const uint32_t first = LANED(first_disc)(disc, x, y, &depth);
-        leg->sphere = first != FIBRAD_NONE ? fibrad_work_sphere(work, first) : FIBRAD_NONE;
+        segment->sphere = first != FIBRAD_NONE ? fibrad_work_sphere(work, first) : FIBRAD_NONE;
         for (int axis = 0; axis < 3; axis++) {
             const double *from = frame + axis;
-            leg->w[axis] = from[6];
-            leg->n[axis] = x * from[0] + y * from[3] + up * from[6];
+            segment->w[axis] = from[6];
+            segment->n[axis] = x * from[0] + y * from[3] + up * from[6];
             if (first != FIBRAD_NONE)
-                leg->centre[axis] = disc->u[first] * from[0] + disc->v[first] * from[3] + depth * from[6];
+                segment->centre[axis] = disc->u[first] * from[0] + disc->v[first] * from[3] + depth * from[6];
         }
     }
-    legs->length = end;
+    segments->length = end;
 }
 
 #endif
