@@ -40,11 +40,14 @@ static bool is_word(const char *word, size_t length, const char *name) {
 /* Whether a text begins with `begin`. */
 static bool begins_with(const char *text, const char *begin) { return strncmp(text, begin, strlen(begin)) == 0; }
 
-/* The wall with a name. NULL: there is none. */
-static const fibrad_wall *wall_named(const struct walls *walls, const char *name) {
-    for (uint32_t k = 0; k < walls->count; ++k)
-        if (strcmp(wall_name(walls, k), name) == 0) return &walls->wall[k];
-    return NULL;
+uint32_t wall_index(const struct walls *walls, const char *name, size_t length) {
+    uint32_t k = 0;
+    while (k < walls->count && !is_word(name, length, wall_name(walls, k))) ++k;
+    return k < walls->count ? k : WALLS_MAX;
+}
+
+static bool is_there(const struct walls *walls, const char *name) {
+    return wall_index(walls, name, strlen(name)) < WALLS_MAX;
 }
 
 /* The plane of a side, which may be a wall or an opening. NULL: there is none. */
@@ -66,7 +69,7 @@ static int add_wall(struct wall_options *options, fibrad_wall wall, bool placed)
     options->placed[k] = placed;
     walls->wall[k] = wall;
     const char *name = wall_name(walls, k);
-    if (wall_named(walls, name) || (wall.kind == FIBRAD_WALL_PLANE && plane_of_side(walls, plane_number(&wall.plane))))
+    if (is_there(walls, name) || (wall.kind == FIBRAD_WALL_PLANE && plane_of_side(walls, plane_number(&wall.plane))))
         return named_twice(name);
     ++walls->count;
     return STATUS_OK;
@@ -251,7 +254,7 @@ static int add_planes_of_box(struct wall_options *options, const struct bed *bed
 }
 
 static int check_axes(const struct walls *walls, const struct bed *bed) {
-    const bool cylinder = wall_named(walls, "cylinder");
+    const bool cylinder = is_there(walls, "cylinder");
     for (int k = 0; k < PLANES; ++k) {
         const fibrad_plane *wall = plane_of_side(walls, k), *lower = NULL;
         if (!wall) continue;
@@ -271,7 +274,7 @@ static int check_axes(const struct walls *walls, const struct bed *bed) {
 /* Whether walls end along an axis. */
 static bool is_closed(const struct walls *walls, const struct bed *bed, int axis) {
     const bool both = plane_of_side(walls, 2 * axis) && plane_of_side(walls, 2 * axis + 1);
-    return bed->period[axis] > 0 || both || (axis < 2 && wall_named(walls, "cylinder"));
+    return bed->period[axis] > 0 || both || (axis < 2 && is_there(walls, "cylinder"));
 }
 
 bool walls_closed(const struct walls *walls, const struct bed *bed) {

@@ -198,21 +198,20 @@ static int exchange_matrix(struct exchange_request *request, struct bed *bed) {
 
 /* With --solid-conductivity finds k* and the emissivity of the node of each sphere, *relative [2 n]. Free it also after
  * an error. */
-static int exchange_solid(struct exchange_request *request, const struct bed *bed, double **relative) {
+static int exchange_solid(struct exchange_request *request, struct bed *bed, double **relative) {
     fibrad_exchange_rule *rule = &request->rule;
-    double *solid = NULL, *temperature = NULL, metres;
+    double *temperature = NULL;
     if (!request->solid.given) return STATUS_OK;
     double *node = (*relative = malloc(2 * bed->n * sizeof **relative)) ? *relative + bed->n : NULL;
     int status = node ? STATUS_OK : message_memory();
     if (!status)
         status = quantity_values(&request->temperature, bed, request->bed.name, "temperature in kelvins", request->zero,
                                  0, TEMPERATURE_MAX, &temperature);
-    if (!status) status = solid_values(&request->bed, bed, &request->solid, &solid, &metres);
-    if (!status) status = solid_relative(&request->bed, bed, &request->solid, temperature, metres, solid, *relative);
+    if (!status) status = bed_options_metres(&request->bed, bed, SOLID_NEEDS);
+    if (!status) status = solid_relative(&request->bed, bed, &request->solid, temperature, *relative);
     for (uint32_t i = 0; i < bed->n && !status; ++i)
         node[i] = fibrad_node_emissivity(rule->emissivity[i], (*relative)[i]);
     rule->conductivity = *relative, rule->node_emissivity = node;
-    free(solid);
     free(temperature);
     return status;
 }

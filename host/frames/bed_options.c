@@ -170,6 +170,8 @@ static int complete_bed(struct bed_options *options, struct bed *bed) {
     if (options->periodic) memcpy(bed->period, options->period, sizeof bed->period);
     if (!bed->units[0] && options->length_unit)
         snprintf(bed->units, sizeof bed->units, "%s", options->length_unit); /* outputs show the unit */
+    const char *unit = bed_options_unit(options, bed);
+    if (!unit || !unit_of_length(unit, &bed->metres)) bed->metres = 0;
     if (!options->radius.given) return STATUS_OK;
     double *radius; /* copied: bed->r has room for larger frames, which must stay */
     const int status = quantity_values(&options->radius, bed, options->name, "radius", 0, FIBRAD_LENGTH_MIN,
@@ -289,23 +291,26 @@ const char *bed_options_unit(const struct bed_options *options, const struct bed
     return by_file ? bed->units : options->length_unit;
 }
 
-int bed_options_metres(struct bed_options *options, const struct bed *bed, double *metres) {
+int bed_options_metres(struct bed_options *options, struct bed *bed, const char *needed) {
     const char *unit = bed_options_unit(options, bed);
     double other;
-    *metres = 1;
     if (!unit && bed->units[0])
         return message_at(STATUS_USAGE, options->name, 0,
                           "units %.20s have no fixed length in metres; --length-unit gives the length", bed->units);
-    if (unit && !unit_of_length(unit, metres))
-        return message_at(STATUS_USAGE, options->name, 0, "unknown units '%.20s'", unit);
-    if (unit && options->length_unit && unit_of_length(options->length_unit, &other) && other != *metres)
+    if (!unit && needed)
+        return message_at(STATUS_USAGE, options->name, 0,
+                          "the file names no unit of length, which %s; --length-unit gives it", needed);
+    if (unit && bed->metres == 0) return message_at(STATUS_USAGE, options->name, 0, "unknown units '%.20s'", unit);
+    if (unit && options->length_unit && unit_of_length(options->length_unit, &other) && other != bed->metres)
         return message_at(STATUS_USAGE, options->name, 0,
                           "its units are %.20s; --length-unit is for files that name none", unit);
     if (!unit) warn_unit(&options->warned, bed);
-    if (options->metres > 0 && options->metres != *metres)
+    if (!unit) bed->metres = 1;
+    if (options->metres > 0 && options->metres != bed->metres)
         return message_at(STATUS_USAGE, options->name, 0,
-                          "the unit of length is %g m, but that of the files before is %g m", *metres, options->metres);
-    options->metres = *metres;
+                          "the unit of length is %g m, but that of the files before is %g m", bed->metres,
+                          options->metres);
+    options->metres = bed->metres;
     return STATUS_OK;
 }
 

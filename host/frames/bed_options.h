@@ -160,10 +160,10 @@ int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_o
 /* The unit of length of a bed: that of the file, or else that of --length-unit. NULL: neither names one. */
 const char *bed_options_unit(const struct bed_options *options, const struct bed *bed);
 
-/* Finds the bed's unit of length [m]. Without a known unit assumes metres, and warns if radii look too large for
- * metres. Status 0, or STATUS_USAGE if the unit has no length in metres (as units lj) or if earlier frames had another
- * unit. */
-int bed_options_metres(struct bed_options *options, const struct bed *bed, double *metres);
+/* Makes sure that bed->metres is known. Without a unit takes metres, and warns if radii look too large for metres.
+ * needed: what must not do without a unit, "contacts need" for example; NULL: nothing. Status 0, or STATUS_USAGE if a
+ * unit is missing, if it has no length in metres (as units lj), or if earlier frames had another one. */
+int bed_options_metres(struct bed_options *options, struct bed *bed, const char *needed);
 
 /* Writes the current frame to all outputs. The caller sets `what` but for bed, file and series. */
 int bed_options_write(struct bed_options *options, const struct bed *bed, struct contents *what);

@@ -1,6 +1,5 @@
 /* steady_contacts.c - conductivity of a bed by radiation and contacts together, between two plates.
  * SPDX-License-Identifier: MIT */
-#include <gsl/gsl_fit.h>
 #include <gsl/gsl_math.h>
 #include <math.h>
 #include <stdlib.h>
@@ -11,7 +10,7 @@
 #include "cli/message.h"
 #include "heat/steady.h"
 
-enum { FITTED_LEAST = 40, DIRECTIONS_ALL = 400 };
+enum { DIRECTIONS_ALL = 400 };
 /* Temperatures of the ends over their mean: so near that k_s and k_gas are the same everywhere. */
 #define HOT_END  1.0005
 #define COLD_END 0.9995
@@ -91,7 +90,7 @@ static int set_up(struct between *b, double period) {
     b->plate[0] = b->plate[1] = p->temperature;
     b->sources.temperature = b->given, b->sources.wall_temperature = b->plate;
     status = contacts_begin(&b->contacts, p->contacts, b->options, bed, &b->plates, p->solid,
-                            1 / (p->metres * p->metres), &b->sources);
+                            1 / (bed->metres * bed->metres), &b->sources);
     if (status) return status;
     warn_ends(b->options, &b->contacts, bed, b->given);
     cut_contacts(b, period);
@@ -119,22 +118,18 @@ static int set_up(struct between *b, double period) {
  * that of the line and, as a part of `gained`, that of the powers. */
 static int read_total(const struct between *b, struct conduction_value *total) {
     const struct bed *bed = b->bed;
-    const double low = b->plates.wall[0].plane.at, high = b->plates.wall[1].plane.at, metres = b->problem->metres;
-    double c0, slope, cov00, cov01, cov11, squares, gained = b->plate_power[1], square = gsl_pow_2(b->plate_error[1]);
-    size_t n = 0;
+    double gained = b->plate_power[1], square = gsl_pow_2(b->plate_error[1]);
+    struct steady_line line;
     for (uint32_t i = 0; i < bed->n; ++i) {
-        const double at = bed_centres(bed, b->axis)[i];
         if (plate_of(b, i) == 1) gained += b->gained[i], square += gsl_pow_2(b->error[i]);
-        if (plate_of(b, i) < 2 || isnan(b->temperature[i]) || fabs(at - (low + high) / 2) > (high - low) / 4) continue;
-        b->at[n] = at * metres, b->fitted[n++] = b->temperature[i];
+        if (plate_of(b, i) < 2) b->temperature[i] = NAN;
     }
-    if (n < FITTED_LEAST)
-        return message_at(STATUS_INPUT, b->options->name, 0,
-                          "%zu spheres in the inner half along %c are too few for a line", n, 'x' + b->axis);
-    gsl_fit_linear(b->at, 1, b->fitted, 1, n, &c0, &slope, &cov00, &cov01, &cov11, &squares);
+    const int status =
+        steady_fit(bed, b->options->name, b->axis, &b->plates, bed->metres, b->temperature, b->at, &line);
+    if (status) return status;
     const double area = steady_area(bed, b->problem->sides, b->axis);
-    total->k = gained / (area * -slope); /* lengths of both cancel: W/L2 per area in L2 */
-    total->error = fabs(total->k) * hypot(sqrt(cov11) / slope, gained != 0 ? sqrt(square) / gained : 0);
+    total->k = gained / (area * -line.slope); /* lengths of both cancel: W/L2 per area in L2 */
+    total->error = fabs(total->k) * hypot(line.error / line.slope, gained != 0 ? sqrt(square) / gained : 0);
     return STATUS_OK;
 }
 
@@ -156,22 +151,15 @@ static void drop_idle(struct between *b) {
 /* One conductivity: by radiation, contacts, or both. */
 static int solve_total(struct between *b, bool radiates, bool touches, uint32_t directions,
                        struct conduction_value *total) {
-    const fibrad_scene_config scene = bed_scene(b->bed, &b->walls);
-    const fibrad_spheres spheres = bed_spheres(b->bed);
     const double black[WALLS_MAX] = {radiates ? 1 : 0, radiates ? 1 : 0}; /* sides reflect */
     fibrad_run run = bed_options_run(b->options);
-    fibrad_radiation *radiation = NULL;
     fibrad_heat_sources sources = b->sources;
-    const fibrad_heat_config config = {.directions = directions};
     for (uint32_t i = 0; i < b->bed->n; ++i)
         b->emissivity[i] = fmax(radiates ? b->problem->emissivity[i] : 0, HARDLY_RADIATES);
     sources.wall_emissivity = black;
     if (!touches) sources.contacts = 0;
     if (!radiates) sources.conductivity = NULL, sources.tolerance = 1e-10;
-    int status = fibrad_radiation_new(&radiation, &scene, &spheres, &config, &run);
-    if (!status) status = fibrad_radiation_solve(radiation, &sources, &b->result);
-    fibrad_radiation_describe(radiation, NULL, &run.fault);
-    fibrad_radiation_free(radiation);
+    int status = bed_solve(b->bed, &b->walls, directions, &sources, &run, &b->result);
     const int refused = contacts_refuse(&b->contacts, b->options, b->bed, &b->plates, status, &run.fault);
     if (refused) return refused;
     status = bed_options_status(b->options, b->bed, status, &run.fault);
@@ -230,7 +218,7 @@ static int joint_twice(const struct bed *bed, const struct jump_contacts *networ
 static int total_of_periods(struct bed_options *options, const struct bed *bed, const struct total_problem *p, int axis,
                             struct conduction_total *total) {
     double *at = malloc(((size_t)bed->n + 1) * sizeof *at);
-    const double metres = p->metres, volume = steady_area(bed, p->sides, axis) * bed->period[axis];
+    const double metres = bed->metres, volume = steady_area(bed, p->sides, axis) * bed->period[axis];
     struct contact_state contacts = {0};
     const struct walls none = {.count = 0};
     fibrad_run run = bed_options_run(options);
