@@ -51,7 +51,7 @@ static int bed_overlap(const struct bed *bed, const char *file, uint32_t first, 
 int bed_status(const struct bed *bed, const char *file, int status, const fibrad_fault *fault) {
     const uint32_t first = fault->first, second = fault->second;
     const bool known = first < bed->n && second < bed->n;
-    if (status == FIBRAD_OK) return STATUS_OK;
+    if (!status) return STATUS_OK;
     if (status == FIBRAD_E_CANCELLED) return interrupt_status();
     if (status == FIBRAD_E_MEMORY) return message_memory();
     if (status == FIBRAD_E_GEOMETRY && known) return bed_overlap(bed, file, first, second);

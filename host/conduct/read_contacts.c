@@ -5,6 +5,7 @@
 
 #include "cli/memory.h"
 #include "cli/message.h"
+#include "cli/targets.h"
 #include "conduct/contact_option.h"
 #include "text/read_lines.h"
 
@@ -18,16 +19,8 @@ int contact_path(const char *pattern, int64_t frame, char path[CONTACT_PATH]) {
 
 /* The index of a sphere by its name. n: there is none. */
 static uint32_t find_sphere(const struct bed *bed, int64_t name) {
-    uint32_t low = 0, high = bed->n;
-    if (!bed->ids) return name >= 0 && name < (int64_t)bed->n ? (uint32_t)name : bed->n;
-    while (low < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (bed->id[middle] < name)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < bed->n && bed->id[low] == name ? low : bed->n;
+    const uint32_t i = targets_first(bed->ids ? bed->id : NULL, bed->n, (unsigned long long)name);
+    return i < bed->n && bed_name(bed, i) == name ? i : bed->n;
 }
 
 /* Finds an end: a wall by its name, or a sphere. */

@@ -234,7 +234,7 @@ static int run_frames(struct bed_options *options, bed_options_frame *frame, voi
 
 int bed_options_end(struct bed_options *options, int status, int (*help)(void), bed_options_frame *frame,
                     void *request) {
-    if (status == STATUS_OK)
+    if (!status)
         status = run_frames(options, frame, request);
     else if (status == STATUS_HELP)
         status = help();
@@ -262,26 +262,47 @@ int bed_options_status(struct bed_options *options, const struct bed *bed, int s
 /* What an entry of the raw rows takes while rows are averaged. */
 enum { ENTRY_BYTES = 48 };
 
-int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute,
-                       void *request) {
+static int compute_factors(struct bed_options *options, const struct bed *bed, const struct walls *walls,
+                           const fibrad_exchange_rule *rule, const fibrad_bed_options *rows,
+                           fibrad_bed_factors **factors) {
+    const fibrad_scene_config scene = bed_scene(bed, walls);
+    const fibrad_spheres spheres = bed_spheres(bed);
+    fibrad_run run = bed_options_run(options);
+    const int status = rule ? fibrad_exchange_factors(&scene, &spheres, rule, rows, &run, factors)
+                            : fibrad_view_factors(&scene, &spheres, rows, &run, factors);
+    return bed_options_status(options, bed, status, &run.fault);
+}
+
+static int check_room(struct bed_options *options, const struct bed *bed, const struct walls *walls,
+                      const fibrad_exchange_rule *rule, const fibrad_bed_options *rows) {
     enum { SAMPLE = 16, ENTRIES_MANY = 2000 };
+    fibrad_bed_options some = *rows;
     fibrad_bed_factors *factors = NULL;
-    const double left = options->scratch ? disk_left(options->scratch) : memory_left();
-    if (options->wanted || (double)bed->n * ENTRIES_MANY * ENTRY_BYTES < left) return STATUS_OK;
+    const double left = rows->scratch ? disk_left(rows->scratch) : memory_left();
+    if (rows->wanted || (double)bed->n * ENTRIES_MANY * ENTRY_BYTES < left) return STATUS_OK;
     unsigned char *marks = calloc(bed->n, 1);
     if (!marks) return message_memory();
     for (uint32_t k = 0; k < SAMPLE; ++k) marks[(uint64_t)bed->n * k / SAMPLE] = 1;
-    options->wanted = marks;
-    int status = compute(request, bed, &factors);
-    options->wanted = NULL;
+    some.wanted = marks;
+    int status = compute_factors(options, bed, walls, rule, &some, &factors);
     const double bytes = status ? 0 : (double)factors->matrix.start[bed->n] / SAMPLE * bed->n * ENTRY_BYTES;
     if (!status)
-        status = options->scratch
-                     ? disk_check(options->scratch, bytes)
+        status = rows->scratch
+                     ? disk_check(rows->scratch, bytes)
                      : memory_check(
                            bytes, "--cutoff, fewer directions or rays, or --targets take less; --scratch takes a disk");
     fibrad_bed_free(factors);
     free(marks);
+    return status;
+}
+
+int bed_options_factors(struct bed_options *options, const struct bed *bed, const struct walls *walls,
+                        const fibrad_exchange_rule *rule, fibrad_bed_options *rows, fibrad_bed_factors **factors) {
+    *factors = NULL;
+    rows->scratch = options->scratch, rows->walls = 1;
+    int status = check_room(options, bed, walls, rule, rows);
+    if (!status) status = compute_factors(options, bed, walls, rule, rows, factors);
+    if (!status) warn_rows(&options->warned, bed, *factors);
     return status;
 }
 

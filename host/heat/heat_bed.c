@@ -7,9 +7,10 @@
 #include "cli/message.h"
 #include "heat/heat.h"
 
-/* Arrays of a result for spheres: the last INSIDE are of spheres that conduct. */
-enum { ARRAYS = 9, INSIDE = 5 };
-static double **heat_array(fibrad_heat_result *result, size_t k) {
+/* Allocates the arrays of the result, those of spheres in one block. The last INSIDE are of spheres that conduct. */
+static int make_arrays(struct heat *h) {
+    enum { ARRAYS = 9, INSIDE = 5 };
+    fibrad_heat_result *result = &h->result;
     double **const of_spheres[ARRAYS] = {&result->power,
                                          &result->temperature,
                                          &result->power_error,
@@ -19,22 +20,13 @@ static double **heat_array(fibrad_heat_result *result, size_t k) {
                                          &result->centre_temperature,
                                          &result->surface_error,
                                          &result->centre_error};
-    return of_spheres[k];
-}
-
-/* Allocates the arrays of the result. */
-static int make_arrays(struct heat *h) {
-    fibrad_heat_result *result = &h->result;
-    int status = STATUS_OK;
-    for (size_t k = 0; k < (h->solid.given ? ARRAYS : ARRAYS - INSIDE); ++k) {
-        double **array = heat_array(result, k);
-        *array = calloc(h->bed->n, sizeof(double));
-        if (!*array && !status) status = message_memory();
-    }
+    double *block = calloc(ARRAYS * (size_t)h->bed->n + 1, sizeof *block);
+    for (size_t k = 0; block && k < (h->solid.given ? ARRAYS : ARRAYS - INSIDE); ++k)
+        *of_spheres[k] = block + k * h->bed->n;
     result->wall_power = h->of_walls[0], result->wall_temperature = h->of_walls[1];
     result->wall_error = h->of_walls[2], result->wall_temperature_error = h->of_walls[3];
     result->wall_absorbed = h->of_walls[4], result->wall_area = h->of_walls[5];
-    return status;
+    return block ? STATUS_OK : message_memory();
 }
 
 static double sum_of_sides(double a, double b) { return a + b; }
@@ -126,7 +118,7 @@ void heat_end(struct heat *h) {
     given_free(&h->values);
     free(h->conductivity);
     free(h->conductivity_scaled);
-    for (size_t k = 0; k < ARRAYS; ++k) free(*heat_array(&h->result, k));
+    free(h->result.power);
     side_arrays_free(&h->triangles);
 }
 

@@ -52,7 +52,7 @@ struct light_options {
 struct light_state {
     const struct light_options *options;       /* NULL: there is no light */
     double *absorptivity, of_walls[WALLS_MAX]; /* [spheres] */
-    double *absorbed, *first, *error;          /* [spheres] */
+    double *absorbed, *first, *error;          /* [spheres], with `power` in one block */
     double *power, wall_power[WALLS_MAX];      /* given powers and what is absorbed, for thermal radiation */
     double wall[WALLS_MAX], wall_first[WALLS_MAX], wall_error[WALLS_MAX];
     bool failed;                /* the library has refused the light, or its solution */

@@ -12,7 +12,6 @@ int light_begin(struct heat *h) {
     const struct light_options *options = &h->light;
     const uint32_t n = h->bed->n;
     struct light_state *state = &h->lit;
-    double **const arrays[] = {&state->absorbed, &state->first, &state->error, &state->power};
     int status = STATUS_OK;
     if (options->lights == 0) return STATUS_OK;
     if (options->absorptivity.given) {
@@ -25,19 +24,16 @@ int light_begin(struct heat *h) {
     if (!status)
         status = wall_fractions("--wall-absorptivity", options->wall_absorptivity, &h->walls, h->wall_emissivity,
                                 state->of_walls);
-    bool there = state->absorptivity;
-    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k)
-        there = (*arrays[k] = calloc(n + (size_t)1, sizeof(double))) && there;
+    state->absorbed = calloc(4 * (n + (size_t)1), sizeof(double));
+    if (state->absorbed)
+        state->first = state->absorbed + n, state->error = state->first + n, state->power = state->error + n;
     state->options = options;
-    return !status && !there ? message_memory() : status;
+    return !status && !(state->absorptivity && state->absorbed) ? message_memory() : status;
 }
 
 void light_free(struct light_state *state) {
     free(state->absorptivity);
     free(state->absorbed);
-    free(state->first);
-    free(state->error);
-    free(state->power);
     *state = (struct light_state){0};
 }
 
@@ -72,7 +68,7 @@ int light_absorb(struct heat *h, fibrad_transient *transient, fibrad_radiation *
                                           .wall_absorbed_error = state->wall_error};
     const int status = transient ? fibrad_transient_shine(transient, &light, &state->result)
                                  : fibrad_radiation_shine(radiation, &light, &state->result);
-    state->failed = status != FIBRAD_OK;
+    state->failed = status;
     if (!status) add_absorbed(h, sources);
     return status;
 }

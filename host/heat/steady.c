@@ -11,7 +11,7 @@
 #include "bed/conduction.h"
 #include "cli/message.h"
 
-enum { FITTED_MIN = 40, DIRECTIONS = 400 };
+enum { FITTED_MIN = 40 };
 
 bool steady_possible(const struct bed *bed, const struct walls *walls, int axis) {
     return !isnan(conduction_width(bed, walls, (axis + 1) % 3)) && !isnan(conduction_width(bed, walls, (axis + 2) % 3));
@@ -29,10 +29,6 @@ double steady_area(const struct bed *bed, const struct walls *sides, int axis) {
     return conduction_width(bed, sides, (axis + 1) % 3) * conduction_width(bed, sides, (axis + 2) % 3);
 }
 
-/* Temperatures of the plates over their mean. They differ so little that k* of spheres is the same everywhere. */
-#define HOTTER 1.0005
-#define COLDER 0.9995
-
 /* T^4 of a temperature T, 0 at the upper plate and 1 at the lower one. */
 static double steady_share(double t, const double plate[2]) {
     return (gsl_pow_4(t) - gsl_pow_4(plate[1])) / (gsl_pow_4(plate[0]) - gsl_pow_4(plate[1]));
@@ -43,13 +39,14 @@ static int steady_solve(struct bed_options *options, const struct bed *bed, cons
                         const double *emissivity, const double *relative, uint32_t directions, double *emission,
                         double power[WALLS_MAX], double error[WALLS_MAX]) {
     fibrad_run run = bed_options_run(options);
-    double *unknown = malloc(bed->n * sizeof *unknown), *given = calloc(bed->n, sizeof *given);
-    double *gained = malloc(bed->n * sizeof *gained), *conductivity = malloc(bed->n * sizeof *conductivity);
-    double plate[WALLS_MAX] = {relative ? HOTTER : 1, relative ? COLDER : 0}, black[WALLS_MAX] = {1, 1};
+    const size_t n = bed->n;
+    double *given = calloc(4 * n + 1, sizeof *given);
+    if (!given) return message_memory();
+    double *unknown = given + n, *gained = unknown + n, *conductivity = gained + n;
+    double plate[WALLS_MAX] = {relative ? STEADY_HOT : 1, relative ? STEADY_COLD : 0}, black[WALLS_MAX] = {1, 1};
     unsigned char insulated[WALLS_MAX] = {0};
     for (uint32_t k = 2; k < walls->count; ++k) plate[k] = NAN, insulated[k] = 1;
-    int status = unknown && given && gained && conductivity ? FIBRAD_OK : FIBRAD_E_MEMORY;
-    for (uint32_t i = 0; i < bed->n && !status; ++i) {
+    for (uint32_t i = 0; i < bed->n; ++i) {
         unknown[i] = NAN;
         conductivity[i] = relative ? relative[i] * 8 * bed->r[i] : INFINITY; /* sigma and T between the plates are 1 */
     }
@@ -60,16 +57,13 @@ static int steady_solve(struct bed_options *options, const struct bed *bed, cons
     sources.temperature = unknown, sources.emissivity = emissivity, sources.power = given;
     sources.wall_temperature = plate, sources.wall_emissivity = black, sources.insulated = insulated;
     fibrad_heat_result result = {.power = gained, .wall_power = power, .wall_error = error, .temperature = emission};
-    if (!status) status = bed_solve(bed, walls, directions, &sources, &run, &result);
+    const int status = bed_solve(bed, walls, directions, &sources, &run, &result);
     for (uint32_t i = 0; i < bed->n && !status; ++i) emission[i] = steady_share(emission[i], plate);
     for (int k = 0; k < 2; ++k) {
         power[k] /= gsl_pow_4(plate[0]) - gsl_pow_4(plate[1]);
         error[k] /= gsl_pow_4(plate[0]) - gsl_pow_4(plate[1]);
     }
-    free(unknown);
     free(given);
-    free(gained);
-    free(conductivity);
     return bed_options_status(options, bed, status, &run.fault);
 }
 
@@ -119,8 +113,8 @@ int steady_conduction(struct bed_options *options, const struct bed *bed, const 
     struct bed open = *bed;
     struct steady rough = {0};
     open.period[axis] = 0;
-    int status = steady_factor(options, &open, walls, emissivity, relative, axis, DIRECTIONS / 2, &rough);
-    if (!status) status = steady_factor(options, &open, walls, emissivity, relative, axis, DIRECTIONS, steady);
+    int status = steady_factor(options, &open, walls, emissivity, relative, axis, STEADY_DIRECTIONS / 2, &rough);
+    if (!status) status = steady_factor(options, &open, walls, emissivity, relative, axis, STEADY_DIRECTIONS, steady);
     steady->error = hypot(steady->error, steady->factor - rough.factor);
     steady->seconds = progress_clock() - begun;
     return status;

@@ -6,6 +6,12 @@
 #include "bed/conduction.h"
 #include "conduct/contact_option.h"
 
+/* Temperatures of the plates over their mean. They differ so little that conductivities are the same everywhere. */
+#define STEADY_HOT  1.0005
+#define STEADY_COLD 0.9995
+
+enum { STEADY_DIRECTIONS = 400 };
+
 /* Exchange factor F_E along one axis: flux / (mean diameter x gradient of sigma T^4). The gradient is that of a
  * straight line through the spheres of the inner half. */
 struct steady {

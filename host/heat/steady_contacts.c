@@ -10,10 +10,6 @@
 #include "cli/message.h"
 #include "heat/steady.h"
 
-enum { DIRECTIONS_ALL = 400 };
-/* Temperatures of the ends over their mean: so near that k_s and k_gas are the same everywhere. */
-#define HOT_END  1.0005
-#define COLD_END 0.9995
 /* A flow that is so small over the largest one is none. */
 #define IDLE 1e-6
 
@@ -29,8 +25,8 @@ struct between {
     fibrad_heat_result result;
     double plate[WALLS_MAX]; /* [K] of walls; NaN: a side */
     unsigned char insulated[WALLS_MAX];
-    double *given, *power, *emissivity, *conductivity;  /* [spheres] */
-    double *gained, *error, *temperature, *at, *fitted; /* [spheres] */
+    double *given, *power, *emissivity, *conductivity;   /* [spheres] */
+    double *gained, *error, *temperature, *at, *through; /* [spheres] */
     double plate_power[WALLS_MAX], plate_error[WALLS_MAX];
 };
 
@@ -40,22 +36,14 @@ static int plate_of(const struct between *b, uint32_t i) {
     return at - b->plates.wall[0].plane.at < 1.5 * d ? 0 : b->plates.wall[1].plane.at - at < 1.5 * d ? 1 : 2;
 }
 
+/* All arrays lie in one block. */
 static int take_room(struct between *b) {
     double **const of_spheres[] = {&b->given, &b->power,       &b->emissivity, &b->conductivity, &b->gained,
-                                   &b->error, &b->temperature, &b->at,         &b->fitted};
-    bool there = true;
-    for (size_t k = 0; k < sizeof of_spheres / sizeof *of_spheres; ++k) {
-        *of_spheres[k] = calloc(b->bed->n + (size_t)1, sizeof(double));
-        there = there && *of_spheres[k];
-    }
-    return there ? STATUS_OK : message_memory();
-}
-
-static void free_room(struct between *b) {
-    double *const of_spheres[] = {b->given, b->power,       b->emissivity, b->conductivity, b->gained,
-                                  b->error, b->temperature, b->at,         b->fitted};
-    for (size_t k = 0; k < sizeof of_spheres / sizeof *of_spheres; ++k) free(of_spheres[k]);
-    contacts_free(&b->contacts);
+                                   &b->error, &b->temperature, &b->at,         &b->through};
+    const size_t n = b->bed->n, arrays = sizeof of_spheres / sizeof *of_spheres;
+    double *block = calloc(arrays * n + 1, sizeof *block);
+    for (size_t k = 0; block && k < arrays; ++k) *of_spheres[k] = block + k * n;
+    return block ? STATUS_OK : message_memory();
 }
 
 /* Contacts of a file that join both ends across the period, which is now open, are left out. */
@@ -96,7 +84,7 @@ static int set_up(struct between *b, double period) {
     cut_contacts(b, period);
     for (uint32_t k = 2; k < b->walls.count; ++k) b->plate[k] = NAN, b->insulated[k] = 1;
     b->sources.insulated = b->insulated;
-    b->plate[0] = HOT_END * p->temperature, b->plate[1] = COLD_END * p->temperature;
+    b->plate[0] = STEADY_HOT * p->temperature, b->plate[1] = STEADY_COLD * p->temperature;
     for (uint32_t i = 0; i < bed->n; ++i) {
         const int end = plate_of(b, i);
         b->given[i] = end < 2 ? b->plate[end] : NAN;
@@ -136,7 +124,7 @@ static int read_total(const struct between *b, struct conduction_value *total) {
 /* Takes the temperatures away from spheres through which nothing is conducted. They are not on a way between the ends,
  * so they say nothing of the gradient. */
 static void drop_idle(struct between *b) {
-    double most = 0, *through = b->fitted;
+    double most = 0, *through = b->through;
     for (uint32_t i = 0; i < b->bed->n; ++i) through[i] = 0;
     for (uint32_t k = 0; k < b->contacts.n; ++k) {
         const uint32_t ends[2] = {b->contacts.first[k], b->contacts.second[k]};
@@ -171,8 +159,8 @@ static int solve_total(struct between *b, bool radiates, bool touches, uint32_t 
 /* The same from two numbers of directions, whose difference is part of the error. */
 static int solve_twice(struct between *b, bool touches, struct conduction_value *total) {
     struct conduction_value rough = {0, 0};
-    int status = solve_total(b, true, touches, DIRECTIONS_ALL / 2, &rough);
-    if (!status) status = solve_total(b, true, touches, DIRECTIONS_ALL, total);
+    int status = solve_total(b, true, touches, STEADY_DIRECTIONS / 2, &rough);
+    if (!status) status = solve_total(b, true, touches, STEADY_DIRECTIONS, total);
     total->error = hypot(total->error, total->k - rough.k);
     return status;
 }
@@ -190,7 +178,8 @@ static int total_of_plates(struct bed_options *options, const struct bed *bed, c
     if (!status) status = solve_twice(&b, false, &total->radiation);
     if (!status) status = solve_twice(&b, true, &total->both);
     total->contacts = b.contacts.n;
-    free_room(&b);
+    free(b.given);
+    contacts_free(&b.contacts);
     return status;
 }
 
@@ -206,9 +195,9 @@ static bool long_period(const struct bed *bed, const struct total_problem *probl
 static int joint_twice(const struct bed *bed, const struct jump_contacts *network, struct jump_radiation *radiation,
                        int axis, double volume, fibrad_run *run, double *k, double *error) {
     double rough;
-    radiation->directions = DIRECTIONS_ALL / 4;
+    radiation->directions = STEADY_DIRECTIONS / 4;
     int status = jump_joint(bed, network, radiation, axis, volume, run, &rough);
-    radiation->directions = DIRECTIONS_ALL / 2;
+    radiation->directions = STEADY_DIRECTIONS / 2;
     if (!status) status = jump_joint(bed, network, radiation, axis, volume, run, k);
     *error = *k - rough;
     return status;
