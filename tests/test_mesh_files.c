@@ -353,7 +353,7 @@ TEST(slice_through_a_mesh) {
     int pieces = 0, ends = 0;
     ck_assert_int_eq(walls_option(wall_of("mesh:", write_solid("box.stl", &soup), ""), &options), 0);
     ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.x = 1, .y = .3, .r = 3.5}), 0);
-    plot_slice_of(&slice, &(struct plot_plane){0}, &bed, &options.walls, 0);
+    plot_slice_of(&slice, &(struct plot_plane){0}, &bed, &options.walls);
     ck_assert(slice.low[0] == -4 && slice.high[2] == 4);
     OWNED_FILE *script = tmpfile();
     plot_slice_draw(script, &slice, &(struct plot_colours){.value = &value, .unit = 1});

@@ -128,17 +128,45 @@ TEST(a_bed_between_walls) {
 
 /* ---- heat -------------------------------------------------------------------------------------------------------- */
 
-static int draw_heat(const struct output *output, const void *what) { return plot_heat(output, "bed's.dump", what); }
+struct heat_shown {
+    const struct bed *bed;
+    const struct walls *walls;
+    const double *temperature, *power, *wall_temperature, *wall_power;
+    double surroundings_temperature, surroundings_power;
+    bool found;             /* temperatures of spheres were found */
+    const double *absorbed; /* NULL: there is no light */
+    struct plot_plane plane;
+};
+
+static int draw_heat(const struct output *output, const void *heat_shown) {
+    const struct heat_shown *shown = heat_shown;
+    double given[30];
+    for (uint32_t i = 0; i < shown->bed->n; ++i) given[i] = shown->found ? NAN : 0;
+    const fibrad_heat_sources sources = {.temperature = given, .surroundings = shown->surroundings_temperature};
+    const fibrad_heat_result result = {.temperature = (double *)shown->temperature,
+                                       .power = (double *)shown->power,
+                                       .wall_temperature = (double *)shown->wall_temperature,
+                                       .wall_power = (double *)shown->wall_power,
+                                       .surroundings_power = shown->surroundings_power};
+    const fibrad_light_result light = {.absorbed = (double *)shown->absorbed};
+    const struct contents what = {.bed = shown->bed,
+                                  .walls = shown->walls,
+                                  .sources = &sources,
+                                  .result = &result,
+                                  .light = shown->absorbed ? &light : NULL};
+    return plot_heat(output, "bed's.dump", &what, &shown->plane);
+}
 
 /* Three spheres have lengths in millimetres. The picture tells what gains power, what loses it, and who else takes
  * part. */
 TEST(where_heat_goes) {
     OWNED_BED bed = BED({0, 0, 0, 1e-3}, {.003, 0, 0, 1e-3}, {0, 0, .004, 1e-3});
+    bed.metres = 1;
     const double temperature[] = {300, 1200.5, 777}, power[] = {1.5, -4.25, .25};
     const double wall_temperature[] = {412, 900}, wall_power[] = {3.125, -.5};
     const struct walls walls = {.count = 2, .wall = {plane_at(2, 0, -.001), cylinder_at(0, 0, .0044)}};
-    struct heat_shown what = {&bed,       &walls, 1,     temperature,   power, wall_temperature,
-                              wall_power, 293,    -.125, .found = false};
+    struct heat_shown what = {&bed,       &walls, temperature, power,         wall_temperature,
+                              wall_power, 293,    -.125,       .found = false};
     OWNED char *svg = drawn(draw_heat, &what);
     assert_texts_inside(svg);
     static const char *const told[] = {"bed's.dump",
@@ -159,7 +187,7 @@ TEST(where_heat_goes) {
                                        ">-0.125<"};
     for (size_t k = 0; k < sizeof told / sizeof *told; ++k) assert_has(svg, told[k]);
     free(svg);
-    what.metres = 1e-3; /* the same lengths, from a file in millimetres */
+    bed.metres = 1e-3; /* the same lengths, from a file in millimetres */
     svg = drawn(draw_heat, &what);
     assert_has(svg, "layers of 2 ");
     assert_has(svg, "x [\302\265m]");
@@ -184,6 +212,7 @@ TEST(where_heat_goes) {
 LOOP_TEST(tall_and_flat_beds, 3) {
     enum { N = 30 };
     OWNED_BED bed = bed_empty();
+    bed.metres = 1;
     double temperature[N], power[N];
     for (int i = 0; i < N; ++i) {
         const double place = .06 * i;
@@ -193,7 +222,6 @@ LOOP_TEST(tall_and_flat_beds, 3) {
     }
     const struct heat_shown what = {.bed = &bed,
                                     .walls = &(struct walls){0},
-                                    .metres = 1,
                                     .temperature = temperature,
                                     .power = power,
                                     .surroundings_temperature = 293,
@@ -208,11 +236,12 @@ LOOP_TEST(tall_and_flat_beds, 3) {
 /* Powers have prefixes, and nothing is -0. */
 TEST(prefixes_of_powers) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1});
+    bed.metres = 1;
     const double temperature[] = {300, 1200, 777}, power[] = {125e3, 50e3, -0.};
     const struct walls walls = {.count = 1, .wall = {plane_at(2, 0, -1)}};
     const double wall_temperature = 412, wall_power = -0.;
-    struct heat_shown what = {&bed,        &walls, 1,      temperature,   power, &wall_temperature,
-                              &wall_power, 293,    -175e3, .found = false};
+    struct heat_shown what = {&bed,        &walls, temperature, power,         &wall_temperature,
+                              &wall_power, 293,    -175e3,      .found = false};
     OWNED char *svg = drawn(draw_heat, &what);
     static const char *const told[] = {"gain 175 kW by radiation",
                                        "Net power [kW], slice",
@@ -236,9 +265,10 @@ TEST(prefixes_of_powers) {
  * temperatures against radius take its place. */
 TEST(no_panel_of_one_colour) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1});
+    bed.metres = 1;
     const double temperature[] = {300, 1200, 777}, same[] = {-40, -40, -40}, light[] = {1, 2, 5};
     struct walls walls = {0};
-    struct heat_shown what = {&bed, &walls, 1, temperature, same, temperature, temperature, 293, 120, .found = true};
+    struct heat_shown what = {&bed, &walls, temperature, same, temperature, temperature, 293, 120, .found = true};
     OWNED char *svg = drawn(draw_heat, &what);
     assert_lacks(svg, "Net power [W], slice");
     assert_has(svg, "Temperature [K], slice at y = 0 m");
@@ -270,7 +300,8 @@ TEST(planes_of_slices) {
     ck_assert(plane.axis == 'z' && plane.placed && plane.at == 4.5);
     ck_assert_int_eq(plot_plane_check(&plane, &bed), 0);
     struct plot_slice slice;
-    plot_slice_of(&slice, &plane, &bed, NULL, 1e-3);
+    bed.metres = 1e-3;
+    plot_slice_of(&slice, &plane, &bed, NULL);
     ck_assert_str_eq(slice.place, "z = 4.5 mm");
     plane.at = 2;
     ck_assert_int_eq(plot_plane_check(&plane, &bed), STATUS_USAGE);
@@ -278,7 +309,8 @@ TEST(planes_of_slices) {
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k)
         ck_assert_int_eq(plot_plane_option(wrong[k], &plane), STATUS_USAGE);
     ck_assert_int_eq(plot_plane_option("x", &plane), 0);
-    plot_slice_of(&slice, &plane, &bed, NULL, 0);
+    bed.metres = 0;
+    plot_slice_of(&slice, &plane, &bed, NULL);
     ck_assert_str_eq(slice.place, "x = 0");
 }
 
@@ -286,6 +318,7 @@ TEST(planes_of_slices) {
  * are shown by height. */
 TEST(many_walls) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1});
+    bed.metres = 1;
     static struct meshes meshes;
     static struct walls walls = {.count = 9, .meshes = &meshes};
     double temperature[9], power[9];
@@ -294,7 +327,7 @@ TEST(many_walls) {
         snprintf(meshes.name[k], sizeof meshes.name[k], "wall_of_tube_%d", k);
         temperature[k] = 300 + k, power[k] = k - 4;
     }
-    struct heat_shown what = {&bed, &walls, 1, temperature, power, temperature, power, 293, -.125, .found = true};
+    struct heat_shown what = {&bed, &walls, temperature, power, temperature, power, 293, -.125, .found = true};
     OWNED char *svg = drawn(draw_heat, &what);
     assert_texts_inside(svg);
     assert_has(svg, ">wall_of_tube_0, 300 K<");

@@ -30,19 +30,18 @@ TEST(relative_conductivities) {
     static const double sigma = 5.670374419e-8, temperature[] = {1000, 500};
     const char *by_type = formatted("1:@%s,2:20", write_file("k.csv", "T,k\n900,3\n1100,5\n"));
     OWNED_BED bed = two_spheres();
+    struct bed_options options = {.name = "bed"};
+    bed.metres = 1e-3;
     for (int k = 0; k < 2; ++k) {
-        struct bed_options options = {.name = "bed", .length_unit = "mm"};
         OWNED_BY(quantity_free) struct quantity solid = {0};
-        double *conductivity, metres, relative[2];
+        double relative[2];
         ck_assert_int_eq(solid_option(k ? by_type : "8", &solid), 0);
-        ck_assert_int_eq(solid_values(&options, &bed, &solid, &conductivity, &metres), 0);
-        ck_assert_int_eq(solid_relative(&options, &bed, &solid, temperature, metres, conductivity, relative), 0);
+        ck_assert_int_eq(solid_relative(&options, &bed, &solid, temperature, relative), 0);
         ck_assert_double_eq_tol(relative[0], (k ? 4 : 8) / (4 * .006 * sigma * 1e9), 1e-12);
         ck_assert_double_eq_tol(relative[1] / ((k ? 20 : 8) / (4 * .002 * sigma * 1.25e8)), 1, 1e-14);
         const double extreme[] = {0, NAN};
-        ck_assert_int_eq(solid_relative(&options, &bed, &solid, extreme, metres, conductivity, relative), 0);
+        ck_assert_int_eq(solid_relative(&options, &bed, &solid, extreme, relative), 0);
         ck_assert(isinf(relative[0]) && isnan(relative[1]));
-        free(conductivity);
     }
 }
 
@@ -51,19 +50,17 @@ TEST(no_relative_conductivity) {
     OWNED_BED bed = two_spheres();
     struct bed_options options = {.name = "bed"};
     struct quantity solid = {0};
-    double *conductivity, metres, relative[2];
+    double relative[2];
     static const char *const wrong[] = {"0", "-1", "1e13", "1:0", "1:2,1:3", ""};
+    const double hot[] = {1000, 1e5};
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) ck_assert_int_eq(solid_option(wrong[k], &solid), 2);
     ck_assert_int_eq(solid_option("1:2", &solid), 0);
-    ck_assert_int_eq(solid_values(&options, &bed, &solid, &conductivity, &metres), 2); /* no unit */
-    options.length_unit = "m";
-    ck_assert_int_eq(solid_values(&options, &bed, &solid, &conductivity, &metres), 3); /* no such type */
-    free(conductivity);
+    ck_assert_int_eq(bed_options_metres(&options, &bed, SOLID_NEEDS), 2); /* no unit */
+    ck_assert_int_eq(bed_options_metres(&options, &bed, NULL), 0);
+    ck_assert_double_eq(bed.metres, 1);
+    ck_assert_int_eq(solid_relative(&options, &bed, &solid, hot, relative), 3); /* no such type */
     ck_assert_int_eq(solid_option("1e-3", &solid), 0);
-    ck_assert_int_eq(solid_values(&options, &bed, &solid, &conductivity, &metres), 0);
-    const double hot[] = {1000, 1e5};
-    ck_assert_int_eq(solid_relative(&options, &bed, &solid, hot, metres, conductivity, relative), 3);
-    free(conductivity);
+    ck_assert_int_eq(solid_relative(&options, &bed, &solid, hot, relative), 3);
 }
 
 /* ---- a ball ------------------------------------------------------------------------------------------------------ */

@@ -21,6 +21,7 @@ struct bed {
     double low[3], high[3]; /* box of the file; all 0: the file has none */
     double period[3];       /* length of the periodic box per axis; 0: the axis is open */
     char units[16];         /* units that the file names, such as "cgs"; "": none */
+    double metres;          /* unit of length [m], by the file or --length-unit; 0: not known */
     int64_t frame;          /* number of the frame in the file or in the series of files, from 0 */
     int64_t timestep;       /* timestep that the file names; -1: none */
 };

@@ -51,7 +51,7 @@ static int bed_overlap(const struct bed *bed, const char *file, uint32_t first, 
 int bed_status(const struct bed *bed, const char *file, int status, const fibrad_fault *fault) {
     const uint32_t first = fault->first, second = fault->second;
     const bool known = first < bed->n && second < bed->n;
-    if (status == FIBRAD_OK) return STATUS_OK;
+    if (!status) return STATUS_OK;
     if (status == FIBRAD_E_CANCELLED) return interrupt_status();
     if (status == FIBRAD_E_MEMORY) return message_memory();
     if (status == FIBRAD_E_GEOMETRY && known) return bed_overlap(bed, file, first, second);
@@ -61,4 +61,17 @@ int bed_status(const struct bed *bed, const char *file, int status, const fibrad
         return message_at(STATUS_INPUT, file, 0, "this bed and box cannot be computed: %s", fibrad_status_text(status));
     return message_at(STATUS_INPUT, file, bed->line[first], "sphere %lld: %s", (long long)bed_name(bed, first),
                       fibrad_status_text(status));
+}
+
+int bed_solve(const struct bed *bed, const struct walls *walls, uint32_t directions, const fibrad_heat_sources *sources,
+              fibrad_run *run, fibrad_heat_result *result) {
+    const fibrad_scene_config scene = bed_scene(bed, walls);
+    const fibrad_spheres spheres = bed_spheres(bed);
+    const fibrad_heat_config config = {.directions = directions};
+    fibrad_radiation *radiation = NULL;
+    int status = fibrad_radiation_new(&radiation, &scene, &spheres, &config, run);
+    if (!status) status = fibrad_radiation_solve(radiation, sources, result);
+    fibrad_radiation_describe(radiation, NULL, &run->fault);
+    fibrad_radiation_free(radiation);
+    return status;
 }

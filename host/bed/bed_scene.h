@@ -5,7 +5,7 @@
 
 #include "bed/bed.h"
 #include "bed/wall_option.h"
-#include "fibrad.h"
+#include "simple/fibrad_host.h"
 
 /* The spheres of a bed with their ids, and its periods and walls. Both refer to arrays of `bed` and `walls`. walls
  * NULL: none. */
@@ -16,5 +16,9 @@ fibrad_scene_config bed_scene(const struct bed *bed, const struct walls *walls);
  * `fault` names a sphere, its line. FIBRAD_OK gives STATUS_OK. FIBRAD_E_CANCELLED gives the status of the signal,
  * without a message. */
 int bed_status(const struct bed *bed, const char *file, int status, const fibrad_fault *fault);
+
+/* Solves a heat problem of a bed once. directions: of beams. Sets run->fault. Returns a status of the library. */
+int bed_solve(const struct bed *bed, const struct walls *walls, uint32_t directions, const fibrad_heat_sources *sources,
+              fibrad_run *run, fibrad_heat_result *result);
 
 #endif

@@ -360,7 +360,7 @@ static int follow_pilot(const struct bed *bed, const unsigned char *emits, const
 /* F_E of spheres that conduct is about that of spheres with one temperature and the emissivity 1/(1/e + 1/(2 k*)). The
  * paths of both emissivities are the same, so that their noise hardly counts. Between them F_E is a power of e. */
 int conduction_isothermal(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
-                          fibrad_run *run, const struct conduction *result, double metre, double *conductivity) {
+                          fibrad_run *run, const struct conduction *result, double *conductivity) {
     double grey, less, area = 0, weighted = 0;
     int status = follow_pilot(bed, emits, rule, 1, run, result, &grey);
     if (!status) status = follow_pilot(bed, emits, rule, RIGHT, run, result, &less);
@@ -368,7 +368,7 @@ int conduction_isothermal(const struct bed *bed, const unsigned char *emits, con
     const double power = log(less / grey) / log(RIGHT), over = pow(RIGHT, -1 / power) - 1; /* e/(2 k*) */
     for (uint32_t i = 0; i < bed->n; ++i) {
         area += pow(bed->r[i], 2);
-        weighted += pow(bed->r[i], 2) * rule->emissivity[i] * 2 * bed->r[i] * metre;
+        weighted += pow(bed->r[i], 2) * rule->emissivity[i] * 2 * bed->r[i] * bed->metres;
     }
     *conductivity = weighted / area / (2 * over) * 4 * FIBRAD_STEFAN_BOLTZMANN * pow(result->temperature, 3);
     return FIBRAD_OK;
@@ -408,9 +408,9 @@ const char *conduction_doubt(const struct conduction *result, int axis) {
     }
 }
 
-void conduction_at(struct conduction *result, double temperature, double metre) {
+void conduction_at(struct conduction *result, const struct bed *bed, double temperature) {
     result->temperature = temperature;
-    const double scale = 4 * FIBRAD_STEFAN_BOLTZMANN * pow(temperature, 3) * result->diameter * metre;
+    const double scale = 4 * FIBRAD_STEFAN_BOLTZMANN * pow(temperature, 3) * result->diameter * bed->metres;
     for (int axis = 0; axis < 3; ++axis) {
         result->k[axis] = result->factor[axis] * scale;
         result->k_error[axis] = result->error[axis] * scale;

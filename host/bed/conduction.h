@@ -105,9 +105,9 @@ int conduction_follow(const struct bed *bed, const unsigned char *emits, const s
                       fibrad_run *run, struct conduction *result);
 
 /* Estimates the conductivity of the solid [W/(m K)] at which F_E is 95 % of `result`, that of spheres with one
- * temperature, at result->temperature. metre: the bed's unit of length [m]. Returns a status of the library. */
+ * temperature, at result->temperature. Returns a status of the library. */
 int conduction_isothermal(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
-                          fibrad_run *run, const struct conduction *result, double metre, double *conductivity);
+                          fibrad_run *run, const struct conduction *result, double *conductivity);
 
 /* The emissivity at which a sphere with one temperature reflects patterns of degree 1 as a sphere of relative
  * conductivity k* does: 1/(1/e + 1/(2 k*)). */
@@ -131,7 +131,7 @@ bool conduction_wants(const struct conduction *result, int axis);
 /* The largest standard error over F_E of the axes that count. Axes with endless flights are left out. */
 double conduction_worst(const struct conduction_rule *rule, const struct conduction *result);
 
-/* Sets temperature and k at a temperature [K]. metre: the bed's unit of length [m]. */
-void conduction_at(struct conduction *result, double temperature, double metre);
+/* Sets temperature and k at a temperature [K]. */
+void conduction_at(struct conduction *result, const struct bed *bed, double temperature);
 
 #endif

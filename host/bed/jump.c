@@ -100,16 +100,8 @@ static int solve_once(const struct bed *bed, const struct jump_radiation *radiat
     add_sides(radiation->sides, walls, plate, insulated);
     sources->wall_temperature = plate, sources->wall_emissivity = emissivity, sources->insulated = insulated;
     sources->surroundings = radiation->temperature, sources->tolerance = 1e-6;
-    const fibrad_scene_config scene = bed_scene(bed, walls);
-    const fibrad_spheres spheres = bed_spheres(bed);
-    const fibrad_heat_config config = {.directions = radiation->directions};
     fibrad_heat_result result = {.power = power, .temperature = temperature, .wall_power = wall_power};
-    fibrad_radiation *solver = NULL;
-    int status = fibrad_radiation_new(&solver, &scene, &spheres, &config, run);
-    if (!status) status = fibrad_radiation_solve(solver, sources, &result);
-    fibrad_radiation_describe(solver, NULL, &run->fault);
-    fibrad_radiation_free(solver);
-    return status;
+    return bed_solve(bed, walls, radiation->directions, sources, run, &result);
 }
 
 /* What spheres gain by radiation if their temperatures rise along the axis by `slope` times their mean per length.

@@ -182,23 +182,14 @@ int quantity_values(const struct quantity *quantity, const struct bed *bed, cons
     return STATUS_OK;
 }
 
-/* The index of the wall with this name. -1: there is none. */
-static int number_of_wall(const struct walls *walls, const char *name, size_t length) {
-    for (uint32_t k = 0; k < walls->count; ++k) {
-        const char *known = wall_name(walls, k);
-        if (strlen(known) == length && strncmp(known, name, length) == 0) return (int)k;
-    }
-    return -1;
-}
-
-/* Reads an item of a list: NAME=VALUE or VALUE. *wall: index of the wall, or -1 without a name. Moves *text behind the
- * item. */
+/* Reads an item of a list: NAME=VALUE or VALUE. *wall: index of the wall, or WALLS_MAX without a name. Moves *text
+ * behind the item. */
 static int take_wall_value(const char *option, const char **text, const char *word, const struct walls *walls,
-                           int *wall, double *value) {
+                           uint32_t *wall, double *value) {
     const size_t length = strcspn(*text, "=,");
     const bool named = (*text)[length] == '=';
-    *wall = named ? number_of_wall(walls, *text, length) : -1;
-    if (named && *wall < 0) return wall_unknown(option, walls, *text, length);
+    *wall = named ? wall_index(walls, *text, length) : WALLS_MAX;
+    if (named && *wall == WALLS_MAX) return wall_unknown(option, walls, *text, length);
     const char *number = named ? *text + length + 1 : *text;
     const bool is_word = word && strcspn(number, ",") == strlen(word) && strncmp(number, word, strlen(word)) == 0;
     char *end = (char *)number + (is_word ? strlen(word) : 0), table[HINT_ROOM];
@@ -223,15 +214,15 @@ static bool names_table(const char *text, const struct wall_tables *tables) {
 }
 
 static int take_wall_table(const char *option, const char **text, double low, double high, const struct walls *walls,
-                           struct wall_tables *tables, int *wall, double *value) {
+                           struct wall_tables *tables, uint32_t *wall, double *value) {
     const size_t length = strcspn(*text, "=,");
     if ((*text)[length] != '=')
         return message(STATUS_USAGE, "%s: a table needs the name of its wall: zmin=%.60s", option, *text);
-    *wall = number_of_wall(walls, *text, length);
-    if (*wall < 0) return wall_unknown(option, walls, *text, length);
+    *wall = wall_index(walls, *text, length);
+    if (*wall == WALLS_MAX) return wall_unknown(option, walls, *text, length);
     struct curve *curve = &tables->curve[*wall], *column = &tables->column[*wall];
     if (curve->n > 0 || column->n > 0)
-        return message(STATUS_USAGE, "%s: %s has two values", option, wall_name(walls, (uint32_t)*wall));
+        return message(STATUS_USAGE, "%s: %s has two values", option, wall_name(walls, *wall));
     const bool timed = (*text)[length + 1] == '@';
     *text += length + 1 + strlen(timed ? "@" : TRIANGLES);
     const int status = take_table("temperature", text, !timed, tables->axes, low, high, timed ? curve : column);
@@ -249,7 +240,7 @@ int wall_list(const char *option, const char *text, const char *word, double low
     *list = (struct wall_list){.others = NAN};
     if (text && walls->count == 0) return message(STATUS_USAGE, "%s: there are no walls", option);
     while (text && *text) {
-        int wall = -1;
+        uint32_t wall = WALLS_MAX;
         double value = 0;
         const int status = names_table(text, tables)
                                ? take_wall_table(option, &text, low, high, walls, tables, &wall, &value)
@@ -257,12 +248,13 @@ int wall_list(const char *option, const char *text, const char *word, double low
         if (status) return status;
         if (!(value >= low && value <= high) && !(word && isinf(value)))
             return message(STATUS_USAGE, "%s: %g is not within %g and %g", option, value, low, high);
-        if (wall < 0 ? !isnan(list->others) : list->named[wall])
+        const bool named = wall < WALLS_MAX;
+        if (named ? list->named[wall] : !isnan(list->others))
             return message(STATUS_USAGE,
-                           wall < 0 ? "%s: two numbers have no name; name the walls, %s=%g for example"
-                                    : "%s: %s has two values, the second %g",
-                           option, wall_name(walls, wall < 0 ? 0 : (uint32_t)wall), value);
-        if (wall < 0)
+                           named ? "%s: %s has two values, the second %g"
+                                 : "%s: two numbers have no name; name the walls, %s=%g for example",
+                           option, wall_name(walls, named ? wall : 0), value);
+        if (!named)
             list->others = value;
         else
             list->named[wall] = true, list->value[wall] = value;
@@ -270,21 +262,19 @@ int wall_list(const char *option, const char *text, const char *word, double low
     return STATUS_OK;
 }
 
-/* Reads a list of values of walls and finds the value of each wall: that with its name, or the number without a name,
- * or else `otherwise`. Status 0, or STATUS_USAGE if there is no wall of a name or if the value of a wall is NaN. */
-static int wall_values(const char *option, const char *text, double otherwise, double low, double high,
-                       const struct walls *walls, double values[WALLS_MAX]) {
+int wall_fractions(const char *option, const char *text, const struct walls *walls, const double otherwise[WALLS_MAX],
+                   double values[WALLS_MAX]) {
     struct wall_list list;
-    const int status = wall_list(option, text, NULL, low, high, walls, NULL, &list);
-    if (status) return status;
-    if (!isnan(list.others)) otherwise = list.others;
-    for (uint32_t k = 0; k < walls->count; ++k) {
-        values[k] = list.named[k] ? list.value[k] : otherwise;
-        if (isnan(values[k]))
-            return message(STATUS_USAGE, "%s: %s has no value; give %s=NUMBER, or one number for all", option,
-                           wall_name(walls, k), wall_name(walls, k));
-    }
-    return STATUS_OK;
+    const int status = wall_list(option, text, NULL, 0, 1, walls, NULL, &list);
+    for (uint32_t k = 0; k < walls->count && !status; ++k)
+        values[k] = list.named[k] ? list.value[k] : isnan(list.others) ? otherwise[k] : list.others;
+    return status;
+}
+
+int wall_emissivities(const char *text, const struct walls *walls, double emissivity[WALLS_MAX]) {
+    double black[WALLS_MAX];
+    for (uint32_t k = 0; k < WALLS_MAX; ++k) black[k] = 1;
+    return wall_fractions("--wall-emissivity", text, walls, black, emissivity);
 }
 
 void quantity_report(const struct quantity *quantity, const char *key, struct report *report) {
@@ -309,8 +299,4 @@ void wall_values_report(const struct walls *walls, const double *values, const c
                         struct report *report) {
     for (uint32_t k = 0; k < walls->count; ++k)
         report_value(report, report_key(report, "wall_%s%s", wall_name(walls, k), ending), values[k], digits);
-}
-
-int wall_emissivities(const char *text, const struct walls *walls, double emissivity[WALLS_MAX]) {
-    return wall_values("--wall-emissivity", text, 1, 0, 1, walls, emissivity);
 }

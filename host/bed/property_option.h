@@ -112,7 +112,11 @@ void quantity_report(const struct quantity *quantity, const char *key, struct re
 void wall_values_report(const struct walls *walls, const double *values, const char *ending, int digits,
                         struct report *report);
 
-/* Reads the argument of --wall-emissivity. text NULL: all walls are black. Status 0 or STATUS_USAGE. */
+/* Reads such a list of values from 0 to 1. A wall without a value has that of `otherwise`. Status 0 or STATUS_USAGE. */
+int wall_fractions(const char *option, const char *text, const struct walls *walls, const double otherwise[WALLS_MAX],
+                   double values[WALLS_MAX]);
+
+/* The same for --wall-emissivity. text NULL: all walls are black. */
 int wall_emissivities(const char *text, const struct walls *walls, double emissivity[WALLS_MAX]);
 
 #endif

@@ -48,11 +48,14 @@ static bool is_word(const char *word, size_t length, const char *name) {
 /* Whether a text begins with `begin`. */
 static bool begins_with(const char *text, const char *begin) { return strncmp(text, begin, strlen(begin)) == 0; }
 
-/* The wall with a name. NULL: there is none. */
-static const fibrad_wall *wall_named(const struct walls *walls, const char *name) {
-    for (uint32_t k = 0; k < walls->count; ++k)
-        if (strcmp(wall_name(walls, k), name) == 0) return &walls->wall[k];
-    return NULL;
+uint32_t wall_index(const struct walls *walls, const char *name, size_t length) {
+    uint32_t k = 0;
+    while (k < walls->count && !is_word(name, length, wall_name(walls, k))) ++k;
+    return k < walls->count ? k : WALLS_MAX;
+}
+
+static bool is_there(const struct walls *walls, const char *name) {
+    return wall_index(walls, name, strlen(name)) < WALLS_MAX;
 }
 
 /* The cylinder. NULL: there is none. */
@@ -81,7 +84,7 @@ static int add_wall(struct wall_options *options, fibrad_wall wall, bool placed)
     options->placed[k] = placed;
     walls->wall[k] = wall;
     const char *name = wall_name(walls, k);
-    if (wall_named(walls, name) || (wall.kind == FIBRAD_WALL_PLANE && plane_of_side(walls, plane_number(&wall.plane))))
+    if (is_there(walls, name) || (wall.kind == FIBRAD_WALL_PLANE && plane_of_side(walls, plane_number(&wall.plane))))
         return named_twice(name);
     if (is_cylinder(&wall) && cylinder_among(walls))
         return message(STATUS_USAGE, "--wall: there can be one cylinder, not %s and %s too",

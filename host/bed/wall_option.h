@@ -56,6 +56,9 @@ struct wall_options {
 const char *wall_name(const struct walls *walls, uint32_t k);
 const char *plane_name(const fibrad_plane *plane);
 
+/* The index of the wall whose name is the first `length` letters of a text. WALLS_MAX: there is none. */
+uint32_t wall_index(const struct walls *walls, const char *name, size_t length);
+
 /* Prints that there is no wall of a name in an option, and which walls there are. Returns STATUS_USAGE. */
 int wall_unknown(const char *option, const struct walls *walls, const char *name, size_t length);
 

@@ -20,7 +20,7 @@ static size_t furnace_cells(const struct furnace_run *run) {
 
 /* Returns the exit status for a status of the kernel. After an error prints `context` and the text of the status. */
 static int furnace_status(int status, const char *context) {
-    if (status == FIBRAD_OK) return STATUS_OK;
+    if (!status) return STATUS_OK;
     return message(STATUS_INPUT, "furnace: %s: %s", context, fibrad_status_text(status));
 }
 
@@ -76,13 +76,13 @@ static int furnace_trace_plan(struct furnace_run *run, fibrad_furnace_physics ph
     for (uint64_t first = 0; first < planned; first += FURNACE_BATCH) {
         int status = interrupt_status();
         uint64_t count = planned - first < FURNACE_BATCH ? planned - first : FURNACE_BATCH;
-        if (status != STATUS_OK) {
+        if (status) {
 #pragma omp atomic write
             stop = status;
             continue;
         }
         status = fibrad_furnace_trace(run->furnace, run->tallies[omp_get_thread_num()], first, count);
-        if (status != FIBRAD_OK) {
+        if (status) {
 #pragma omp atomic write
             failed = status;
         }

@@ -19,8 +19,7 @@ static bool read_name(const char **text, unsigned long long *value) {
     return errno == 0;
 }
 
-/* The first sphere whose name is at least `name`. n: there is none. */
-static uint32_t first_from(const int64_t *id, uint32_t n, unsigned long long name) {
+uint32_t targets_first(const int64_t *id, uint32_t n, unsigned long long name) {
     uint32_t low = 0, high = n;
     if (!id) return name < n ? (uint32_t)name : n;
     while (low < high) {
@@ -35,7 +34,7 @@ static uint32_t first_from(const int64_t *id, uint32_t n, unsigned long long nam
 
 static int mark_range(const int64_t *id, uint32_t n, const char *where, unsigned long long first,
                       unsigned long long last, unsigned char *marks) {
-    const uint32_t begin = first_from(id, n, first), end = first_from(id, n, last + 1);
+    const uint32_t begin = targets_first(id, n, first), end = targets_first(id, n, last + 1);
     const unsigned long long least = id && n ? (unsigned long long)id[0] : 0;
     const unsigned long long most = n == 0 ? 0 : id ? (unsigned long long)id[n - 1] : n - 1;
     if (begin == end || first < least || last > most)

@@ -9,4 +9,7 @@
  * only checks the spelling. Status 0, or STATUS_USAGE if the list is misspelt or names spheres that do not exist. */
 int targets_mark(const char *list, const int64_t *id, uint32_t n, const char *where, unsigned char *marks);
 
+/* The first sphere whose name is at least `name`, for ids as above. n: there is none. */
+uint32_t targets_first(const int64_t *id, uint32_t n, unsigned long long name);
+
 #endif

@@ -110,7 +110,6 @@ static int bed_check(struct bed_request *request) {
     int status = bed_options_check(&request->bed, "bed", CONTENT_MATRIX);
     if (status) return status;
     request->options.raw = request->raw || request->targets;
-    request->options.scratch = request->bed.scratch;
     if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw or --targets");
     return bed_choose(request);
@@ -145,15 +144,6 @@ static void bed_report(struct bed_request *request, const struct contents *what,
     summary_report(summary, what, report);
     if (request->methods.method == METHOD_BEAM) report_count(report, "fallbacks", factors->fallbacks);
     report_end(report);
-}
-
-static int bed_compute(void *bed_request, const struct bed *bed, fibrad_bed_factors **factors) {
-    struct bed_request *request = bed_request;
-    const fibrad_scene_config scene = bed_scene(bed, &request->walls);
-    const fibrad_spheres spheres = bed_spheres(bed);
-    fibrad_run run = bed_options_run(&request->bed);
-    const int status = fibrad_view_factors(&scene, &spheres, &request->options, &run, factors);
-    return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
 /* Rays from each side of a triangle. Few sides have more rays each. */
@@ -193,16 +183,15 @@ static int bed_views(struct bed_request *request, const struct bed *bed, struct 
 }
 
 /* Computes the matrix of one frame and writes it to all outputs. */
-static int bed_matrix(struct bed_request *request, struct bed *bed, fibrad_bed_factors **factors) {
+static int bed_matrix(struct bed_request *request, struct bed *bed) {
+    fibrad_bed_factors *factors;
     struct contents what = {.wanted = request->options.wanted, .walls = &request->walls};
     struct side_arrays views = {0};
     struct summary summary;
-    int status = bed_options_memory(bed, &request->options, bed_compute, request);
-    if (!status) status = bed_compute(request, bed, factors);
+    int status = bed_options_factors(&request->bed, bed, &request->walls, NULL, &request->options, &factors);
     if (status) return status;
-    what.factors = *factors;
+    what.factors = factors;
     summary_make(&summary, &what);
-    warn_rows(&request->bed.warned, bed, what.factors);
     what.of_sides = &views;
     if (request->bed.wall_vtp) status = bed_views(request, bed, &views);
     if (!status) status = bed_options_write(&request->bed, bed, &what);
@@ -210,12 +199,12 @@ static int bed_matrix(struct bed_request *request, struct bed *bed, fibrad_bed_f
         status = plot_bed(&request->bed.picture, request->bed.name, &what, &request->bed.slice);
     if (!status) bed_report(request, &what, &summary);
     side_arrays_free(&views);
+    fibrad_bed_free(factors);
     return status;
 }
 
 static int bed_frame(void *bed_request, struct bed *bed) {
     struct bed_request *request = bed_request;
-    fibrad_bed_factors *factors = NULL;
     const bool periodic = bed->period[0] > 0 || bed->period[1] > 0 || bed->period[2] > 0;
     if (request->methods.method == METHOD_SURFACE && request->cutoff == 0 && periodic)
         return message(STATUS_USAGE, "--method surface needs a --cutoff in a periodic box");
@@ -232,9 +221,7 @@ static int bed_frame(void *bed_request, struct bed *bed) {
             marks ? targets_mark(request->targets, bed->ids ? bed->id : NULL, bed->n, where, marks) : message_memory();
     }
     request->options.wanted = marks;
-    request->options.walls = 1;
-    if (!status) status = bed_matrix(request, bed, &factors);
-    fibrad_bed_free(factors);
+    if (!status) status = bed_matrix(request, bed);
     free(marks);
     return status;
 }

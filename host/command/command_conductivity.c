@@ -291,11 +291,11 @@ static void conductivity_warn(const struct conductivity_request *request, const 
 
 /* If the unit of length is known, finds the k_s above which F_E with one temperature a sphere is right. */
 static int conductivity_isothermal(struct conductivity_request *request, const struct bed *bed,
-                                   const unsigned char *emits, double metres, const struct conduction *result) {
+                                   const unsigned char *emits, const struct conduction *result) {
     fibrad_run run = bed_options_run(&request->bed);
     request->isothermal = NAN;
     if (request->solid.given || !(result->temperature > 0) || !bed_options_unit(&request->bed, bed)) return STATUS_OK;
-    const int status = conduction_isothermal(bed, emits, &request->rule, &run, result, metres, &request->isothermal);
+    const int status = conduction_isothermal(bed, emits, &request->rule, &run, result, &request->isothermal);
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
@@ -313,18 +313,10 @@ static int conductivity_follow(struct conductivity_request *request, const struc
 /* Conductivities of the bed with contacts along an axis. */
 static int conductivity_total(struct conductivity_request *request, const struct bed *bed, struct conduction *result,
                               int axis) {
-    double metres;
-    const int status = bed_options_metres(&request->bed, bed, &metres);
-    const struct total_problem problem = {&request->contacts,
-                                          &request->solid,
-                                          request->rule.emissivity,
-                                          request->rule.conductivity,
-                                          &request->walls,
-                                          result->temperature,
-                                          metres,
-                                          result->diameter,
-                                          {result->k[axis], result->k_error[axis]}};
-    return status ? status : steady_contacts(&request->bed, bed, &problem, axis, &result->total[axis]);
+    const struct total_problem problem = {
+        &request->contacts, &request->solid,     request->rule.emissivity, request->rule.conductivity,
+        &request->walls,    result->temperature, result->diameter,         {result->k[axis], result->k_error[axis]}};
+    return steady_contacts(&request->bed, bed, &problem, axis, &result->total[axis]);
 }
 
 /* With --steady computes F_E between plates along each wanted axis whose other two axes are periodic. */
@@ -349,18 +341,16 @@ static int conductivity_steady(struct conductivity_request *request, const struc
 
 /* With --solid-conductivity finds k* of all spheres, *relative [n]. Free it also after an error. */
 static int conductivity_solid(struct conductivity_request *request, const struct bed *bed, double kelvins,
-                              double *metres, double **relative) {
+                              double **relative) {
     if (!request->solid.given) return STATUS_OK;
     if (request->walls.count > 0)
         return message(STATUS_USAGE, "--solid-conductivity: paths of spheres that conduct know no walls; leave out "
                                      "--wall, or --solid-conductivity");
-    double *solid = NULL, *temperature = malloc(bed->n * sizeof *temperature);
+    double *temperature = malloc(bed->n * sizeof *temperature);
     *relative = malloc(bed->n * sizeof **relative);
     int status = temperature && *relative ? STATUS_OK : message_memory();
     for (uint32_t i = 0; i < bed->n && !status; ++i) temperature[i] = kelvins;
-    if (!status) status = solid_values(&request->bed, bed, &request->solid, &solid, metres);
-    if (!status) status = solid_relative(&request->bed, bed, &request->solid, temperature, *metres, solid, *relative);
-    free(solid);
+    if (!status) status = solid_relative(&request->bed, bed, &request->solid, temperature, *relative);
     free(temperature);
     return status;
 }
@@ -398,16 +388,14 @@ static int conductivity_at(struct conductivity_request *request, struct bed *bed
                            struct conduction *result) {
     const char *file = request->bed.name;
     const double margin = request->solid.given ? CONDUCTION_MARGIN_WALK : CONDUCTION_MARGIN;
-    double *emissivity = NULL, *relative = NULL, metres = 0;
-    int status = STATUS_OK;
-    if (request->at) status = bed_options_metres(&request->bed, bed, &metres);
-    if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
-    if (!status) status = conductivity_solid(request, bed, kelvins, &metres, &relative);
+    double *emissivity = NULL, *relative = NULL;
+    int status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
+    if (!status) status = conductivity_solid(request, bed, kelvins, &relative);
     request->rule.emissivity = emissivity, request->rule.conductivity = relative, request->rule.walls = &request->walls;
     if (!status) status = conduction_emitters(bed, &request->walls, request->rule.axis, margin, file, emits, result);
     if (!status) status = conductivity_follow(request, bed, emits, result);
-    if (!status && request->at) conduction_at(result, kelvins, metres);
-    if (!status) status = conductivity_isothermal(request, bed, emits, metres, result);
+    if (!status && request->at) conduction_at(result, bed, kelvins);
+    if (!status) status = conductivity_isothermal(request, bed, emits, result);
     if (!status) status = conductivity_steady(request, bed, result);
     free(emissivity);
     free(relative);
@@ -415,13 +403,10 @@ static int conductivity_at(struct conductivity_request *request, struct bed *bed
 }
 
 /* If each sphere has one temperature, F_E is that of the first temperature. */
-static int conductivity_again(struct conductivity_request *request, const struct bed *bed, double kelvins,
-                              struct conduction *result) {
-    double metres = 0;
-    const int status = bed_options_metres(&request->bed, bed, &metres);
+static void conductivity_again(struct conductivity_request *request, const struct bed *bed, double kelvins,
+                               struct conduction *result) {
     request->isothermal *= pow(kelvins / result->temperature, 3);
-    if (!status) conduction_at(result, kelvins, metres);
-    return status;
+    conduction_at(result, bed, kelvins);
 }
 
 static int conductivity_frame(void *conductivity_request, struct bed *bed) {
@@ -429,13 +414,17 @@ static int conductivity_frame(void *conductivity_request, struct bed *bed) {
     struct conduction result;
     struct contents what = {.conduction = &result};
     unsigned char *emits = calloc(bed->n, 1);
+    const char *needs = request->solid.given ? SOLID_NEEDS : contacts_given(&request->contacts) ? CONTACTS_NEED : NULL;
     int status = emits ? conductivity_walls(request, bed) : message_memory();
+    if (!status && request->at) status = bed_options_metres(&request->bed, bed, needs);
     for (int k = 0; k < request->temperatures && !status; ++k) {
         const double kelvins = request->temperature[k];
         const bool again =
             k > 0 && !request->solid.given && !contacts_given(&request->contacts) && result.temperature > 0;
-        status = again ? conductivity_again(request, bed, kelvins, &result)
-                       : conductivity_at(request, bed, kelvins, emits, &result);
+        if (again)
+            conductivity_again(request, bed, kelvins, &result);
+        else
+            status = conductivity_at(request, bed, kelvins, emits, &result);
         if (!status) status = bed_options_write(&request->bed, bed, &what);
         if (!status && request->bed.outputs.picture)
             status = plot_conduction(&request->bed.picture, request->bed.name, &result);

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "bed/bed_scene.h"
 #include "cli/message.h"
 #include "command/commands.h"
 #include "frames/solid_option.h"
@@ -98,7 +97,6 @@ static int exchange_check(struct exchange_request *request) {
     if (request->solid.given != request->temperature.given)
         return message(STATUS_USAGE, "--solid-conductivity and --temperature need each other; %s is missing",
                        request->solid.given ? "--temperature" : "--solid-conductivity");
-    request->options.scratch = request->bed.scratch;
     bed_options_quantity(&request->bed, &request->emissivity, NULL);
     bed_options_quantity(&request->bed, &request->solid, SOLID_UNIT);
     bed_options_quantity(&request->bed, &request->temperature, temperature_unit(request->zero));
@@ -172,21 +170,10 @@ static void exchange_report(struct exchange_request *request, const struct conte
     report_end(report);
 }
 
-static int exchange_solve(void *exchange_request, const struct bed *bed, fibrad_bed_factors **factors) {
-    struct exchange_request *request = exchange_request;
-    const fibrad_scene_config scene = bed_scene(bed, &request->walls);
-    const fibrad_spheres spheres = bed_spheres(bed);
-    fibrad_run run = bed_options_run(&request->bed);
-    const int status = fibrad_exchange_factors(&scene, &spheres, &request->rule, &request->options, &run, factors);
-    return bed_options_status(&request->bed, bed, status, &run.fault);
-}
-
 /* Computes the factors of one frame and writes them to all outputs. */
 static int exchange_matrix(struct exchange_request *request, struct bed *bed) {
-    fibrad_bed_factors *factors = NULL;
-    int status = bed_options_memory(bed, &request->options, exchange_solve, request);
-    if (!status) status = exchange_solve(request, bed, &factors);
-    if (!status) warn_rows(&request->bed.warned, bed, factors);
+    fibrad_bed_factors *factors;
+    int status = bed_options_factors(&request->bed, bed, &request->walls, &request->rule, &request->options, &factors);
     struct contents what = {.factors = factors, .walls = &request->walls, .grey = &request->rule};
     if (!status) status = bed_options_write(&request->bed, bed, &what);
     if (!status && request->bed.outputs.picture)
@@ -198,21 +185,20 @@ static int exchange_matrix(struct exchange_request *request, struct bed *bed) {
 
 /* With --solid-conductivity finds k* and the emissivity of the node of each sphere, *relative [2 n]. Free it also after
  * an error. */
-static int exchange_solid(struct exchange_request *request, const struct bed *bed, double **relative) {
+static int exchange_solid(struct exchange_request *request, struct bed *bed, double **relative) {
     fibrad_exchange_rule *rule = &request->rule;
-    double *solid = NULL, *temperature = NULL, metres;
+    double *temperature = NULL;
     if (!request->solid.given) return STATUS_OK;
     double *node = (*relative = malloc(2 * bed->n * sizeof **relative)) ? *relative + bed->n : NULL;
     int status = node ? STATUS_OK : message_memory();
     if (!status)
         status = quantity_values(&request->temperature, bed, request->bed.name, "temperature in kelvins", request->zero,
                                  0, TEMPERATURE_MAX, &temperature);
-    if (!status) status = solid_values(&request->bed, bed, &request->solid, &solid, &metres);
-    if (!status) status = solid_relative(&request->bed, bed, &request->solid, temperature, metres, solid, *relative);
+    if (!status) status = bed_options_metres(&request->bed, bed, SOLID_NEEDS);
+    if (!status) status = solid_relative(&request->bed, bed, &request->solid, temperature, *relative);
     for (uint32_t i = 0; i < bed->n && !status; ++i)
         node[i] = fibrad_node_emissivity(rule->emissivity[i], (*relative)[i]);
     rule->conductivity = *relative, rule->node_emissivity = node;
-    free(solid);
     free(temperature);
     return status;
 }
@@ -226,7 +212,6 @@ static int exchange_frame(void *exchange_request, struct bed *bed) {
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     request->rule.emissivity = emissivity;
     request->rule.wall_emissivity = wall_emissivity;
-    request->options.walls = 1;
     if (!status) status = exchange_solid(request, bed, &relative);
     if (!status) status = exchange_matrix(request, bed);
     free(emissivity);

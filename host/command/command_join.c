@@ -102,7 +102,7 @@ static int join_scene(const struct joined *joined, fibrad_scene **scene, void **
     const fibrad_scene_config config = {.wall = wall, .walls = walls, .triangles = walls ? &triangles : NULL};
     fibrad_fault fault = {joined->n, joined->n, UINT32_MAX, 0, 0};
     const int status = fibrad_heap_scene(scene, block, &config, &spheres, &fault);
-    if (status == FIBRAD_OK) return STATUS_OK;
+    if (!status) return STATUS_OK;
     if (status == FIBRAD_E_MEMORY) return message_memory();
     if (fault.first >= joined->n || fault.second >= joined->n)
         return message(STATUS_INPUT, "these rows cannot be joined: %s", fibrad_status_text(status));

@@ -76,8 +76,8 @@ static int find_contacts(struct contact_state *state, struct bed_options *bed_op
     state->rule = (fibrad_contact_rule){.spots = o->spots, .scale = o->scale, .gas_alone = solid->given};
     if (o->gas) {
         state->rule.gas_reach = o->gap > 0 ? o->gap : FIBRAD_GAS_REACH_DEFAULT;
-        state->rule.gas_jump = o->jump / state->metres,
-        state->rule.gas_least = FIBRAD_GAS_LEAST_DEFAULT / state->metres;
+        state->rule.gas_jump = o->jump / bed->metres,
+        state->rule.gas_least = FIBRAD_GAS_LEAST_DEFAULT / bed->metres;
     }
     int status = quantity_values(state->of_solid, bed, bed_options->name, "conductivity of the solid", 0,
                                  SOLID_CONDUCTIVITY_MIN, SOLID_CONDUCTIVITY_MAX, &state->solid);
@@ -91,18 +91,14 @@ static int join_contacts(struct contact_state *state, uint32_t spheres, struct c
     const uint32_t found = state->list ? state->list->n : 0;
     if (found > UINT32_MAX - lines->n) return message(STATUS_INPUT, "too many contacts");
     const size_t n = (size_t)lines->n + found;
-    uint32_t *first = realloc(lines->first, (n + 1) * sizeof *first);
-    if (first) lines->first = first;
-    uint32_t *second = realloc(lines->second, (n + 1) * sizeof *second);
-    if (second) lines->second = second;
-    double *conductance = realloc(lines->conductance, (n + 1) * sizeof *conductance);
-    if (conductance) lines->conductance = conductance;
+    const int status = contacts_resize(lines, n + 1);
+    if (status) return status;
     state->flow = calloc(n + 1, sizeof *state->flow), state->gas = calloc(found + (size_t)1, sizeof *state->gas);
     state->conducted = calloc(spheres + (size_t)1, sizeof *state->conducted);
-    if (!first || !second || !conductance || !state->flow || !state->gas || !state->conducted) return message_memory();
-    for (uint32_t k = 0; k < lines->n; ++k) conductance[k] *= state->per_watt;
+    if (!state->flow || !state->gas || !state->conducted) return message_memory();
+    for (uint32_t k = 0; k < lines->n; ++k) lines->conductance[k] *= state->per_watt;
     for (uint32_t k = 0; k < found; ++k)
-        first[lines->n + k] = state->list->first[k], second[lines->n + k] = state->list->second[k];
+        lines->first[lines->n + k] = state->list->first[k], lines->second[lines->n + k] = state->list->second[k];
     state->n = (uint32_t)n, state->listed = lines->n;
     return STATUS_OK;
 }
@@ -115,10 +111,7 @@ int contacts_begin(struct contact_state *state, const struct contact_options *op
     sources->contacts = 0;
     if (!contacts_given(options)) return STATUS_OK;
     state->options = options;
-    if (!bed_options_unit(bed_options, bed))
-        return message_at(STATUS_USAGE, bed_options->name, 0,
-                          "the file names no unit of length, which contacts need; --length-unit gives it");
-    int status = bed_options_metres(bed_options, bed, &state->metres);
+    int status = STATUS_OK;
     for (uint32_t k = 0; k < options->files && !status; ++k)
         status = contacts_read(options->file[k], bed, walls, &lines);
     if (!status) status = find_contacts(state, bed_options, bed, walls, solid);
@@ -187,7 +180,7 @@ void contacts_follow(struct contact_state *state, const struct bed *bed, const d
     }
     double *conductance = state->conductance + state->listed;
     fibrad_contacts_conduct(state->list, &state->rule, state->solid, o->gas ? state->gas : NULL, conductance);
-    for (uint32_t k = 0; k < state->list->n; ++k) conductance[k] *= state->metres * state->per_watt;
+    for (uint32_t k = 0; k < state->list->n; ++k) conductance[k] *= bed->metres * state->per_watt;
 }
 
 void contacts_result(struct contact_state *state, fibrad_heat_result *result) {

@@ -8,6 +8,8 @@
 
 enum { CONTACT_FILES_MAX = 8 };
 
+#define CONTACTS_NEED "contacts need" /* for bed_options_metres */
+
 /* Bound of conductances [W/K] of the options. */
 #define CONDUCTANCE_MOST 1e12
 
@@ -71,7 +73,6 @@ struct contact_state {
     const struct quantity *of_solid;       /* their option */
     fibrad_contact_list *list;             /* contacts of overlaps and gas; NULL: none */
     fibrad_contact_rule rule;
-    double metres;          /* the bed's unit of length */
     double per_watt;        /* conductance over W/K */
     double wall[WALLS_MAX]; /* [W] conducted to walls */
 };
@@ -85,9 +86,9 @@ bool contacts_given(const struct contact_options *options);
  * curve_read. */
 int contacts_check(struct contact_options *options, struct bed_options *bed, bool solid);
 
-/* Reads and finds the contacts of a bed, and points `sources` to them. solid: --solid-conductivity. per_watt: as in
- * contact_state. Call contacts_free also after an error. Status 0, STATUS_USAGE, STATUS_INPUT, STATUS_FILE or
- * STATUS_MEMORY. */
+/* Reads and finds the contacts of a bed, whose unit of length is known, and points `sources` to them. solid:
+ * --solid-conductivity. per_watt: as in contact_state. Call contacts_free also after an error. Status 0, STATUS_USAGE,
+ * STATUS_INPUT, STATUS_FILE or STATUS_MEMORY. */
 int contacts_begin(struct contact_state *state, const struct contact_options *options, struct bed_options *bed_options,
                    const struct bed *bed, const struct walls *walls, const struct quantity *solid, double per_watt,
                    fibrad_heat_sources *sources);
@@ -124,6 +125,9 @@ struct contact_lines {
     uint32_t *first, *second;
     double *conductance; /* [W/K] */
 };
+
+/* Gives the arrays another size. Status 0 or STATUS_MEMORY. */
+int contacts_resize(struct contact_lines *to, size_t n);
 
 /* Adds the contacts of a file. `path` may have a *, for the number of the frame. Status as contacts_begin. */
 int contacts_read(const char *path, const struct bed *bed, const struct walls *walls, struct contact_lines *to);

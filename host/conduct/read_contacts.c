@@ -3,7 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/memory.h"
 #include "cli/message.h"
+#include "cli/targets.h"
 #include "conduct/contact_option.h"
 #include "text/read_lines.h"
 
@@ -17,27 +19,17 @@ int contact_path(const char *pattern, int64_t frame, char path[CONTACT_PATH]) {
 
 /* The index of a sphere by its name. n: there is none. */
 static uint32_t find_sphere(const struct bed *bed, int64_t name) {
-    uint32_t low = 0, high = bed->n;
-    if (!bed->ids) return name >= 0 && name < (int64_t)bed->n ? (uint32_t)name : bed->n;
-    while (low < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (bed->id[middle] < name)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < bed->n && bed->id[low] == name ? low : bed->n;
+    const uint32_t i = targets_first(bed->ids ? bed->id : NULL, bed->n, (unsigned long long)name);
+    return i < bed->n && bed_name(bed, i) == name ? i : bed->n;
 }
 
 /* Finds an end: a wall by its name, or a sphere. */
 static int name_of_end(const struct lines *lines, const char *text, const struct bed *bed, const struct walls *walls,
                        uint32_t *end) {
     int64_t name;
-    for (uint32_t k = 0; k < walls->count; ++k) {
-        if (strcmp(text, wall_name(walls, k)) != 0) continue;
-        *end = bed->n + k;
-        return STATUS_OK;
-    }
+    const uint32_t wall = wall_index(walls, text, strlen(text));
+    *end = bed->n + wall;
+    if (wall < WALLS_MAX) return STATUS_OK;
     char *rest;
     name = strtoll(text, &rest, 10);
     if (rest == text || *rest)
@@ -47,19 +39,21 @@ static int name_of_end(const struct lines *lines, const char *text, const struct
     return message_at(STATUS_INPUT, lines->name, lines->number, "there is no sphere %" PRId64, name);
 }
 
+int contacts_resize(struct contact_lines *to, size_t n) {
+    bool good = true;
+    to->first = memory_resized(to->first, n * sizeof *to->first, &good);
+    to->second = memory_resized(to->second, n * sizeof *to->second, &good);
+    to->conductance = memory_resized(to->conductance, n * sizeof *to->conductance, &good);
+    return good ? STATUS_OK : message_memory();
+}
+
 static int grow_lines(struct contact_lines *to) {
     if (to->n < to->room) return STATUS_OK;
     if (to->room > UINT32_MAX / 2) return message(STATUS_INPUT, "--contacts: too many contacts");
     const uint32_t room = 2 * to->room + 1024;
-    uint32_t *first = realloc(to->first, room * sizeof *first);
-    if (first) to->first = first;
-    uint32_t *second = realloc(to->second, room * sizeof *second);
-    if (second) to->second = second;
-    double *conductance = realloc(to->conductance, room * sizeof *conductance);
-    if (conductance) to->conductance = conductance;
-    if (!first || !second || !conductance) return message_memory();
-    to->room = room;
-    return STATUS_OK;
+    const int status = contacts_resize(to, room);
+    if (!status) to->room = room;
+    return status;
 }
 
 static int take_contact(const struct lines *lines, const struct fields *fields, const struct bed *bed,

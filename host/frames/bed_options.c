@@ -170,6 +170,8 @@ static int complete_bed(struct bed_options *options, struct bed *bed) {
     if (options->periodic) memcpy(bed->period, options->period, sizeof bed->period);
     if (!bed->units[0] && options->length_unit)
         snprintf(bed->units, sizeof bed->units, "%s", options->length_unit); /* outputs show the unit */
+    const char *unit = bed_options_unit(options, bed);
+    if (!unit || !unit_of_length(unit, &bed->metres)) bed->metres = 0;
     if (!options->radius.given) return STATUS_OK;
     double *radius; /* copied: bed->r has room for larger frames, which must stay */
     const int status = quantity_values(&options->radius, bed, options->name, "radius", 0, FIBRAD_LENGTH_MIN,
@@ -232,7 +234,7 @@ static int run_frames(struct bed_options *options, bed_options_frame *frame, voi
 
 int bed_options_end(struct bed_options *options, int status, int (*help)(void), bed_options_frame *frame,
                     void *request) {
-    if (status == STATUS_OK)
+    if (!status)
         status = run_frames(options, frame, request);
     else if (status == STATUS_HELP)
         status = help();
@@ -260,26 +262,47 @@ int bed_options_status(struct bed_options *options, const struct bed *bed, int s
 /* What an entry of the raw rows takes while rows are averaged. */
 enum { ENTRY_BYTES = 48 };
 
-int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute,
-                       void *request) {
+static int compute_factors(struct bed_options *options, const struct bed *bed, const struct walls *walls,
+                           const fibrad_exchange_rule *rule, const fibrad_bed_options *rows,
+                           fibrad_bed_factors **factors) {
+    const fibrad_scene_config scene = bed_scene(bed, walls);
+    const fibrad_spheres spheres = bed_spheres(bed);
+    fibrad_run run = bed_options_run(options);
+    const int status = rule ? fibrad_exchange_factors(&scene, &spheres, rule, rows, &run, factors)
+                            : fibrad_view_factors(&scene, &spheres, rows, &run, factors);
+    return bed_options_status(options, bed, status, &run.fault);
+}
+
+static int check_room(struct bed_options *options, const struct bed *bed, const struct walls *walls,
+                      const fibrad_exchange_rule *rule, const fibrad_bed_options *rows) {
     enum { SAMPLE = 16, ENTRIES_MANY = 2000 };
+    fibrad_bed_options some = *rows;
     fibrad_bed_factors *factors = NULL;
-    const double left = options->scratch ? disk_left(options->scratch) : memory_left();
-    if (options->wanted || (double)bed->n * ENTRIES_MANY * ENTRY_BYTES < left) return STATUS_OK;
+    const double left = rows->scratch ? disk_left(rows->scratch) : memory_left();
+    if (rows->wanted || (double)bed->n * ENTRIES_MANY * ENTRY_BYTES < left) return STATUS_OK;
     unsigned char *marks = calloc(bed->n, 1);
     if (!marks) return message_memory();
     for (uint32_t k = 0; k < SAMPLE; ++k) marks[(uint64_t)bed->n * k / SAMPLE] = 1;
-    options->wanted = marks;
-    int status = compute(request, bed, &factors);
-    options->wanted = NULL;
+    some.wanted = marks;
+    int status = compute_factors(options, bed, walls, rule, &some, &factors);
     const double bytes = status ? 0 : (double)factors->matrix.start[bed->n] / SAMPLE * bed->n * ENTRY_BYTES;
     if (!status)
-        status = options->scratch
-                     ? disk_check(options->scratch, bytes)
+        status = rows->scratch
+                     ? disk_check(rows->scratch, bytes)
                      : memory_check(
                            bytes, "--cutoff, fewer directions or rays, or --targets take less; --scratch takes a disk");
     fibrad_bed_free(factors);
     free(marks);
+    return status;
+}
+
+int bed_options_factors(struct bed_options *options, const struct bed *bed, const struct walls *walls,
+                        const fibrad_exchange_rule *rule, fibrad_bed_options *rows, fibrad_bed_factors **factors) {
+    *factors = NULL;
+    rows->scratch = options->scratch, rows->walls = 1;
+    int status = check_room(options, bed, walls, rule, rows);
+    if (!status) status = compute_factors(options, bed, walls, rule, rows, factors);
+    if (!status) warn_rows(&options->warned, bed, *factors);
     return status;
 }
 
@@ -289,23 +312,26 @@ const char *bed_options_unit(const struct bed_options *options, const struct bed
     return by_file ? bed->units : options->length_unit;
 }
 
-int bed_options_metres(struct bed_options *options, const struct bed *bed, double *metres) {
+int bed_options_metres(struct bed_options *options, struct bed *bed, const char *needed) {
     const char *unit = bed_options_unit(options, bed);
     double other;
-    *metres = 1;
     if (!unit && bed->units[0])
         return message_at(STATUS_USAGE, options->name, 0,
                           "units %.20s have no fixed length in metres; --length-unit gives the length", bed->units);
-    if (unit && !unit_of_length(unit, metres))
-        return message_at(STATUS_USAGE, options->name, 0, "unknown units '%.20s'", unit);
-    if (unit && options->length_unit && unit_of_length(options->length_unit, &other) && other != *metres)
+    if (!unit && needed)
+        return message_at(STATUS_USAGE, options->name, 0,
+                          "the file names no unit of length, which %s; --length-unit gives it", needed);
+    if (unit && bed->metres == 0) return message_at(STATUS_USAGE, options->name, 0, "unknown units '%.20s'", unit);
+    if (unit && options->length_unit && unit_of_length(options->length_unit, &other) && other != bed->metres)
         return message_at(STATUS_USAGE, options->name, 0,
                           "its units are %.20s; --length-unit is for files that name none", unit);
     if (!unit) warn_unit(&options->warned, bed);
-    if (options->metres > 0 && options->metres != *metres)
+    if (!unit) bed->metres = 1;
+    if (options->metres > 0 && options->metres != bed->metres)
         return message_at(STATUS_USAGE, options->name, 0,
-                          "the unit of length is %g m, but that of the files before is %g m", *metres, options->metres);
-    options->metres = *metres;
+                          "the unit of length is %g m, but that of the files before is %g m", bed->metres,
+                          options->metres);
+    options->metres = bed->metres;
     return STATUS_OK;
 }
 

@@ -149,21 +149,20 @@ fibrad_run bed_options_run(struct bed_options *options);
  * bed_status. */
 int bed_options_status(struct bed_options *options, const struct bed *bed, int status, const fibrad_fault *fault);
 
-/* Computes the factors of a bed for the request of a command. Prints a message if it fails. Returns a status. */
-typedef int bed_options_compute(void *request, const struct bed *bed, fibrad_bed_factors **factors);
-
-/* Refuses a bed whose rows will not fit into memory, or onto the disk of options->scratch. `compute` makes a few rows,
- * by options->wanted, to estimate the size. Small beds and lists of targets are not checked. Status 0, STATUS_MEMORY,
- * STATUS_FILE if the disk is too small, or that of compute. */
-int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute, void *request);
+/* Computes the factors of a bed: exchange factors by a rule, or without it (NULL) view factors. Warns of rows that
+ * contradict each other. Refuses a bed whose rows will not fit into memory, or onto the disk of rows->scratch. A few
+ * rows are made to estimate the size. Small beds and lists of targets are not checked. Free *factors also after an
+ * error. Status 0, STATUS_MEMORY, STATUS_FILE if the disk is too small, or as bed_options_status. */
+int bed_options_factors(struct bed_options *options, const struct bed *bed, const struct walls *walls,
+                        const fibrad_exchange_rule *rule, fibrad_bed_options *rows, fibrad_bed_factors **factors);
 
 /* The unit of length of a bed: that of the file, or else that of --length-unit. NULL: neither names one. */
 const char *bed_options_unit(const struct bed_options *options, const struct bed *bed);
 
-/* Finds the bed's unit of length [m]. Without a known unit assumes metres, and warns if radii look too large for
- * metres. Status 0, or STATUS_USAGE if the unit has no length in metres (as units lj) or if earlier frames had another
- * unit. */
-int bed_options_metres(struct bed_options *options, const struct bed *bed, double *metres);
+/* Makes sure that bed->metres is known. Without a unit takes metres, and warns if radii look too large for metres.
+ * needed: what must not do without a unit, "contacts need" for example; NULL: nothing. Status 0, or STATUS_USAGE if a
+ * unit is missing, if it has no length in metres (as units lj), or if earlier frames had another one. */
+int bed_options_metres(struct bed_options *options, struct bed *bed, const char *needed);
 
 /* Writes the current frame to all outputs. The caller sets `what` but for bed, file and series. */
 int bed_options_write(struct bed_options *options, const struct bed *bed, struct contents *what);

@@ -1,6 +1,8 @@
 /* solid_option.c - the conductivity of the solid that spheres are made of. SPDX-License-Identifier: MIT */
 #include "frames/solid_option.h"
 
+#include <stdlib.h>
+
 #include "cli/message.h"
 
 const struct curve_axes solid_axes = {CURVE_AXIS_KELVINS, {"k lambda conductivity", SOLID_UNIT}};
@@ -10,32 +12,32 @@ int solid_option(const char *text, void *solid) {
                         solid);
 }
 
-int solid_values(struct bed_options *options, const struct bed *bed, const struct quantity *solid,
-                 double **conductivity, double *metres) {
-    if (!bed_options_unit(options, bed))
-        return message_at(STATUS_USAGE, options->name, 0,
-                          "the file names no unit of length, which --solid-conductivity needs; --length-unit gives it");
-    const int status = bed_options_metres(options, bed, metres);
-    if (status) return status;
+int solid_values(const struct bed_options *options, const struct bed *bed, const struct quantity *solid,
+                 double **conductivity) {
     return quantity_values(solid, bed, options->name, "conductivity of the solid", 0, SOLID_CONDUCTIVITY_MIN,
                            SOLID_CONDUCTIVITY_MAX, conductivity);
 }
 
 int solid_relative(struct bed_options *options, const struct bed *bed, const struct quantity *solid,
-                   const double *temperature, double metres, double *conductivity, double *relative) {
+                   const double *temperature, double *relative) {
     struct table_excess excess = {0};
-    quantity_follow(solid, bed, temperature, conductivity);
-    quantity_excess(solid, bed, temperature, &excess);
-    warn_table(&options->warned, "--solid-conductivity", &excess);
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        relative[i] =
-            fibrad_relative_conductivity(conductivity[i], bed->r[i] * metres, temperature[i], FIBRAD_STEFAN_BOLTZMANN);
-        if (relative[i] < FIBRAD_RELATIVE_CONDUCTIVITY_MIN)
-            return message_at(STATUS_INPUT, options->name, bed->line[i],
-                              "sphere %lld: k_s/(4 d sigma T^3) is %g; it must be at least %g",
-                              (long long)bed_name(bed, i), relative[i], FIBRAD_RELATIVE_CONDUCTIVITY_MIN);
+    double *conductivity;
+    int status = solid_values(options, bed, solid, &conductivity);
+    if (!status) {
+        quantity_follow(solid, bed, temperature, conductivity);
+        quantity_excess(solid, bed, temperature, &excess);
+        warn_table(&options->warned, "--solid-conductivity", &excess);
     }
-    return STATUS_OK;
+    for (uint32_t i = 0; i < bed->n && !status; ++i) {
+        relative[i] = fibrad_relative_conductivity(conductivity[i], bed->r[i] * bed->metres, temperature[i],
+                                                   FIBRAD_STEFAN_BOLTZMANN);
+        if (relative[i] < FIBRAD_RELATIVE_CONDUCTIVITY_MIN)
+            status = message_at(STATUS_INPUT, options->name, bed->line[i],
+                                "sphere %lld: k_s/(4 d sigma T^3) is %g; it must be at least %g",
+                                (long long)bed_name(bed, i), relative[i], FIBRAD_RELATIVE_CONDUCTIVITY_MIN);
+    }
+    free(conductivity);
+    return status;
 }
 
 void solid_report(const struct quantity *solid, const struct k_star *all, struct report *report) {

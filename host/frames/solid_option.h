@@ -8,7 +8,8 @@
 #include "bed/conduction.h"
 #include "frames/bed_options.h"
 
-#define SOLID_UNIT "W/(m K)"
+#define SOLID_UNIT  "W/(m K)"
+#define SOLID_NEEDS "--solid-conductivity needs" /* for bed_options_metres */
 
 /* Bounds of k_s, in that unit. */
 #define SOLID_CONDUCTIVITY_MIN 1e-6
@@ -27,18 +28,16 @@ extern const struct curve_axes solid_axes;
 /* Takes the argument of --solid-conductivity into a quantity. Status as table_option. */
 int solid_option(const char *text, void *solid);
 
-/* Finds k_s of all spheres, *conductivity [n], and the unit of length [m], which must be known. A table gives one of
- * its values. Free *conductivity also after an error. Status as quantity_values and bed_options_metres, or STATUS_USAGE
- * if neither the file nor --length-unit names a unit. */
-int solid_values(struct bed_options *options, const struct bed *bed, const struct quantity *solid,
-                 double **conductivity, double *metres);
+/* Finds k_s of all spheres, *conductivity [n]. A table gives one of its values. Free *conductivity also after an error.
+ * Status as quantity_values. */
+int solid_values(const struct bed_options *options, const struct bed *bed, const struct quantity *solid,
+                 double **conductivity);
 
 /* Finds k* of all spheres, relative [n], at their temperatures [n] [K]: infinite at 0 K, NaN where the temperature is
- * NaN. Tables, with a warning where temperatures are beyond their ends, first give conductivity [n] at these
- * temperatures. Status 0, or STATUS_INPUT naming the line of a sphere whose k* is below
- * FIBRAD_RELATIVE_CONDUCTIVITY_MIN. */
+ * NaN. Warns where temperatures are beyond the ends of tables. The unit of length must be known. Status as
+ * solid_values, or STATUS_INPUT naming the line of a sphere whose k* is below FIBRAD_RELATIVE_CONDUCTIVITY_MIN. */
 int solid_relative(struct bed_options *options, const struct bed *bed, const struct quantity *solid,
-                   const double *temperature, double metres, double *conductivity, double *relative);
+                   const double *temperature, double *relative);
 
 /* Reports --solid-conductivity and the mean k* of the spheres, and the least and the largest one if they differ. */
 void solid_report(const struct quantity *solid, const struct k_star *all, struct report *report);

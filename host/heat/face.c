@@ -1,11 +1,10 @@
 /* face.c - the hemispherical emissivity of the open face of a bed. SPDX-License-Identifier: MIT */
-#include "heat/face.h"
-
 #include <gsl/gsl_math.h>
 #include <math.h>
 
 #include "bed/bed_scene.h"
 #include "cli/message.h"
+#include "heat/heat.h"
 
 /* Paths to begin with; the relative error at which to stop; the estimated error over that of a row, which eight batches
  * of paths tell. The emissivity of a face is about the root of that of spheres. */
@@ -52,11 +51,12 @@ static struct ends ends_of(const struct bed *bed, const struct walls *walls) {
     return ends;
 }
 
-int face_begin(struct face *face, const struct bed *bed, const struct walls *walls) {
-    const struct ends ends = ends_of(bed, walls);
+int face_begin(struct heat *h) {
+    const struct ends ends = ends_of(h->bed, &h->walls);
+    struct face *face = &h->face;
     face->area = 0;
     if (!face->wanted) return STATUS_OK;
-    if (walls->meshes && walls->meshes->triangles.n > 0)
+    if (h->walls.meshes && h->walls.meshes->triangles.n > 0)
         return message(STATUS_USAGE, "--face: the open face must be bounded by planes, a cylinder or periods, not by "
                                      "triangles");
     for (int side = 0; side < 6; ++side) face->area += open_area(&ends, side);
@@ -77,17 +77,18 @@ static struct walls opened_walls(const struct bed *bed, const struct walls *wall
     return all;
 }
 
-int face_solve(struct face *face, const struct bed *bed, const struct walls *walls, const fibrad_heat_sources *sources,
-               fibrad_run *run) {
+int face_solve(struct heat *h, const double *wall_emissivity, fibrad_run *run) {
+    const struct bed *bed = h->bed;
+    struct face *face = &h->face;
     if (!face->wanted) return FIBRAD_OK;
-    const struct ends ends = ends_of(bed, walls);
-    const struct walls all = opened_walls(bed, walls, &ends);
+    const struct ends ends = ends_of(bed, &h->walls);
+    const struct walls all = opened_walls(bed, &h->walls, &ends);
     const fibrad_scene_config scene = bed_scene(bed, &all);
     const fibrad_spheres spheres = bed_spheres(bed);
     double of_walls[WALLS_MAX], mean = 0, sum = 0, square = 0;
-    for (uint32_t k = 0; k < walls->count; ++k) of_walls[k] = sources->insulated[k] ? 0 : sources->wall_emissivity[k];
-    for (uint32_t i = 0; i < bed->n; ++i) mean += sources->emissivity[i] / bed->n;
-    const fibrad_wall_rule rule = {.emissivity = sources->emissivity, .wall_emissivity = of_walls, .paths = FACE_PATHS};
+    for (uint32_t k = 0; k < h->walls.count; ++k) of_walls[k] = h->sources.insulated[k] ? 0 : wall_emissivity[k];
+    for (uint32_t i = 0; i < bed->n; ++i) mean += h->emissivity[i] / bed->n;
+    const fibrad_wall_rule rule = {.emissivity = h->emissivity, .wall_emissivity = of_walls, .paths = FACE_PATHS};
     const double tolerance = FACE_TOLERANCE * sqrt(fmax(FACE_LEAST, mean));
     int status = FIBRAD_OK;
     for (int side = 0; side < 6 && !status; ++side) {
@@ -102,9 +103,11 @@ int face_solve(struct face *face, const struct bed *bed, const struct walls *wal
     return status;
 }
 
-void face_report(const struct face *face, double metres, struct report *report) {
+void face_report(struct heat *h) {
+    const struct face *face = &h->face;
+    struct report *report = &h->options.report;
     if (!face->wanted) return;
-    report_value(report, "face_area_m2", face->area * metres * metres, 6);
+    report_value(report, "face_area_m2", face->area * h->bed->metres * h->bed->metres, 6);
     report_measured(report, "face_emissivity", face->emissivity, face->error);
     report_value(report, "face_emissivity_error", face->error, 2);
 }

@@ -13,30 +13,15 @@ int given_power_option(const char *text, void *power) {
     return quantity_option("--power", text, -POWER_MAX, POWER_MAX, power);
 }
 
-int given_check(struct given_options *options, struct bed_options *bed) {
-    struct quantity *t = &options->temperature, *p = &options->power;
-    if (!t->given && !p->given)
-        return message(STATUS_USAGE, "--temperature or --power is missing; see fibrad heat --help");
-    if (options->timed && !t->given)
-        return message(STATUS_USAGE, "--until needs --temperature, the temperatures at the beginning");
-    if (!options->timed && t->given && !t->column && p->given && !p->column)
-        return message(STATUS_USAGE, "--temperature and --power: a sphere has only one of them; at least one of the "
-                                     "options must be a list or a column");
-    if (t->value < -options->zero) return message(STATUS_USAGE, "--temperature: %g is below absolute zero", t->value);
-    t->some = p->given && !options->timed;
-    p->some = true;
-    bed_options_quantity(bed, t, temperature_unit(options->zero));
-    bed_options_quantity(bed, p, "W");
-    return STATUS_OK;
-}
-
 /* Tables of temperatures over time are in the unit of the options. */
 static const struct curve_axes *given_axes(const struct given_options *options) {
     return options->zero > 0 ? &curve_celsius : &curve_kelvins;
 }
 
-int given_ambient(struct given_options *options, double *ambient) {
+/* Finds options->surroundings. */
+static int find_surroundings(struct given_options *options) {
     const double low = 0 - options->zero;
+    double *ambient = &options->surroundings;
     int status;
     *ambient = NAN;
     if (!options->ambient) return STATUS_OK;
@@ -52,6 +37,23 @@ int given_ambient(struct given_options *options, double *ambient) {
     }
     *ambient += options->zero;
     return status;
+}
+
+int given_check(struct given_options *options, struct bed_options *bed) {
+    struct quantity *t = &options->temperature, *p = &options->power;
+    if (!t->given && !p->given)
+        return message(STATUS_USAGE, "--temperature or --power is missing; see fibrad heat --help");
+    if (options->timed && !t->given)
+        return message(STATUS_USAGE, "--until needs --temperature, the temperatures at the beginning");
+    if (!options->timed && t->given && !t->column && p->given && !p->column)
+        return message(STATUS_USAGE, "--temperature and --power: a sphere has only one of them; at least one of the "
+                                     "options must be a list or a column");
+    if (t->value < -options->zero) return message(STATUS_USAGE, "--temperature: %g is below absolute zero", t->value);
+    t->some = p->given && !options->timed;
+    p->some = true;
+    bed_options_quantity(bed, t, temperature_unit(options->zero));
+    bed_options_quantity(bed, p, "W");
+    return find_surroundings(options);
 }
 
 /* Each wall has a temperature, has a power, or is insulated. A value with the wall's name goes before the number for
@@ -187,9 +189,9 @@ void given_free(struct given *given) {
     wall_tables_free(&given->tables);
 }
 
-void given_heat_sources(struct given *given, uint32_t n, double metres, fibrad_heat_sources *sources) {
-    for (uint32_t i = 0; i < n; ++i) given->power[i] /= metres * metres;
-    for (uint32_t k = 0; k < WALLS_MAX; ++k) given->wall_power[k] /= metres * metres;
+void given_heat_sources(struct given *given, uint32_t n, double square_metres, fibrad_heat_sources *sources) {
+    for (uint32_t i = 0; i < n; ++i) given->power[i] /= square_metres;
+    for (uint32_t k = 0; k < WALLS_MAX; ++k) given->wall_power[k] /= square_metres;
     sources->temperature = given->temperature, sources->power = given->power;
     sources->wall_temperature = given->wall_temperature, sources->wall_power = given->wall_power;
     sources->insulated = given->insulated, sources->side_temperature = given->side_temperature;

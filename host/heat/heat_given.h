@@ -13,6 +13,7 @@ struct given_options {
      * have a power too. The temperatures of walls and surroundings may be tables over time, @TABLE. */
     bool timed;
     struct curve ambient_curve; /* n = 0: --ambient is a number */
+    double surroundings;        /* [K] their temperature, of a table that at 0 s; NaN: not given */
 };
 
 /* Temperatures and powers of one bed. NaN: not given. */
@@ -28,12 +29,9 @@ struct given {
 /* Takes the argument of --power into a quantity. Status 0 or STATUS_USAGE. */
 int given_power_option(const char *text, void *power);
 
-/* Checks the options when all have been read, and asks `bed` for the columns they name. Status 0 or STATUS_USAGE. */
+/* Checks the options when all have been read, asks `bed` for the columns they name, and finds options->surroundings.
+ * The caller frees options->ambient_curve. Status 0, STATUS_USAGE, or as curve_read. */
 int given_check(struct given_options *options, struct bed_options *bed);
-
-/* Finds the temperature of the surroundings [K]. NaN: not given. If --ambient names a table, the temperature is that at
- * 0 s, and the caller frees options->ambient_curve. Status 0, STATUS_USAGE, or as curve_read. */
-int given_ambient(struct given_options *options, double *ambient);
 
 /* Finds the temperatures and powers of a bed and its walls. Call given_free also after an error. Status 0, STATUS_USAGE
  * naming a wall, STATUS_MEMORY, or STATUS_INPUT naming the line of a sphere that has both a temperature and a power, or
@@ -47,8 +45,7 @@ void given_free(struct given *given);
 int given_reflectors(const struct given *given, const double *emissivity, const struct walls *walls,
                      const double *wall_emissivity, const struct bed *bed, const char *file);
 
-/* Points `sources` to the arrays of a bed of n spheres. Divides powers by metres^2, metres being the bed's unit of
- * length: areas of the library are in that unit. */
-void given_heat_sources(struct given *given, uint32_t n, double metres, fibrad_heat_sources *sources);
+/* Points `sources` to the arrays of a bed of n spheres. Divides powers by the unit of area of the library [m2]. */
+void given_heat_sources(struct given *given, uint32_t n, double square_metres, fibrad_heat_sources *sources);
 
 #endif

@@ -1,6 +1,4 @@
 /* heat_time.c - temperatures of one bed in time. SPDX-License-Identifier: MIT */
-#include "heat/heat_time.h"
-
 #include <gsl/gsl_math.h>
 #include <gsl/gsl_sort.h>
 #include <omp.h>
@@ -9,6 +7,7 @@
 
 #include "bed/bed_scene.h"
 #include "cli/message.h"
+#include "heat/heat.h"
 #include "plot/plot_time.h"
 
 enum { TIMES_MAX = 10000 };
@@ -47,17 +46,12 @@ int time_check(struct time_options *time, struct bed_options *bed) {
 
 /* State of a run in time. */
 struct time_run {
-    struct bed_options *options;
-    const struct time_options *time;
-    const struct heat_problem *problem;
-    const struct bed *source; /* the bed as it was read */
-    struct bed bed;           /* the bed as it is written: its frame is the number of the output */
+    struct heat *heat;
+    struct bed bed; /* as it is written: its frame is the number of the output */
     bool by_patches;
     fibrad_transient *transient;
-    fibrad_heat_sources sources;
-    fibrad_heat_result *result;
-    struct side_arrays *triangles;
-    double square_metres; /* square of the bed's unit of length [m2] */
+    fibrad_heat_sources sources; /* as they change with time */
+    double square_metres;        /* square of the bed's unit of length [m2] */
     fibrad_span span;
     double now;                                   /* [s] since the beginning */
     double wall[WALLS_MAX];                       /* temperatures of walls now [K] */
@@ -96,16 +90,17 @@ static void note_point(void *time_run, double time, const double *temperature) {
 
 /* The temperature of a table at a time [K]. Without a table: `otherwise`. */
 static double temperature_at(const struct time_run *m, const struct curve *curve, double time, double otherwise) {
-    return curve->n > 0 ? curve_at(curve, time) + m->problem->zero : otherwise;
+    return curve->n > 0 ? curve_at(curve, time) + m->heat->given.zero : otherwise;
 }
 
 /* Temperatures of walls and surroundings at a time [K]. A closed bed has none for the surroundings (NaN). They get 0,
  * since no radiation reaches them. */
 static void outside_at(const struct time_run *m, double time, double wall[WALLS_MAX], double *surroundings) {
-    const fibrad_heat_sources *s = &m->problem->sources;
-    for (uint32_t k = 0; k < m->problem->walls.count; ++k)
-        wall[k] = temperature_at(m, &m->problem->wall_curve[k], time, s->wall_temperature[k]);
-    *surroundings = temperature_at(m, m->problem->ambient_curve, time, isnan(s->surroundings) ? 0 : s->surroundings);
+    const struct heat *h = m->heat;
+    const double around = h->given.surroundings;
+    for (uint32_t k = 0; k < h->walls.count; ++k)
+        wall[k] = temperature_at(m, &h->values.tables.curve[k], time, h->sources.wall_temperature[k]);
+    *surroundings = temperature_at(m, &h->given.ambient_curve, time, isnan(around) ? 0 : around);
 }
 
 /* Lists the times of a table that lie between 0 and `until`. The temperature is linear between them, so spans of the
@@ -119,13 +114,13 @@ static size_t list_table_times(const struct curve *curve, double until, double *
 
 /* Finds the ends of all spans in ascending order: times of output and times of tables. output[k]: (*times)[k] is a time
  * of output. */
-static int find_times(const struct time_run *m, double **times, bool **output, size_t *count) {
-    const struct time_options *o = m->time;
+static int find_times(const struct heat *h, double **times, bool **output, size_t *count) {
+    const struct time_options *o = &h->time;
+    const struct curve *wall = h->values.tables.curve, *ambient = &h->given.ambient_curve;
     const size_t every = o->every > 0 ? (size_t)ceil(o->until / o->every * (1 - 1e-12)) : 0;
     size_t room = every + TIMES_MAX + 2, n = 0, outputs;
-    const struct heat_problem *problem = m->problem;
-    for (uint32_t k = 0; k < problem->walls.count; ++k) room += problem->wall_curve[k].n;
-    room += problem->ambient_curve->n;
+    for (uint32_t k = 0; k < h->walls.count; ++k) room += wall[k].n;
+    room += ambient->n;
     double *t = *times = malloc(room * sizeof *t);
     *output = calloc(room, sizeof **output);
     if (!t || !*output) return message_memory();
@@ -143,8 +138,8 @@ static int find_times(const struct time_run *m, double **times, bool **output, s
     if (!wanted) return message_memory();
     memcpy(wanted, t, outputs * sizeof *wanted);
     if (t[n - 1] < o->until) t[n++] = o->until;
-    for (uint32_t k = 0; k < problem->walls.count; ++k) n += list_table_times(&problem->wall_curve[k], o->until, t + n);
-    n += list_table_times(problem->ambient_curve, o->until, t + n);
+    for (uint32_t k = 0; k < h->walls.count; ++k) n += list_table_times(&wall[k], o->until, t + n);
+    n += list_table_times(ambient, o->until, t + n);
     gsl_sort(t, 1, n);
     *count = 0;
     for (size_t k = 0, next = 0; k < n; ++k) {
@@ -159,129 +154,127 @@ static int find_times(const struct time_run *m, double **times, bool **output, s
 }
 
 /* Heat capacities of the spheres [J/K]. */
-static int find_capacities(struct time_run *m, double metres, double **capacity) {
+static int find_capacities(struct time_run *m, double **capacity) {
+    struct heat *h = m->heat;
+    const char *file = h->options.name;
     double *density = NULL;
-    int status =
-        quantity_values(&m->time->capacity, &m->bed, m->options->name, "heat capacity", 0, 1e-12, 1e12, capacity);
-    if (!status)
-        status = quantity_values(&m->time->density, &m->bed, m->options->name, "density", 0, 1e-12, 1e12, &density);
-    if (!status) warn_matter(&m->options->warned, &m->bed, *capacity, density);
-    for (uint32_t i = 0; i < m->bed.n && !status; ++i) {
+    int status = quantity_values(&h->time.capacity, h->bed, file, "heat capacity", 0, 1e-12, 1e12, capacity);
+    if (!status) status = quantity_values(&h->time.density, h->bed, file, "density", 0, 1e-12, 1e12, &density);
+    if (!status) warn_matter(&h->options.warned, h->bed, *capacity, density);
+    for (uint32_t i = 0; i < h->bed->n && !status; ++i) {
         if (!(m->span.temperature[i] > 0))
             status =
-                message_at(STATUS_INPUT, m->options->name, m->bed.line[i],
+                message_at(STATUS_INPUT, file, h->bed->line[i],
                            "the temperature is %g K; the initial temperature must be above 0", m->span.temperature[i]);
-        const double r = m->bed.r[i] * metres, store = (*capacity)[i] * density[i];
-        if (m->problem->solid) m->lag = fmax(m->lag, r * r * store / (M_PI * M_PI * m->problem->solid[i]));
+        const double r = h->bed->r[i] * h->bed->metres, store = (*capacity)[i] * density[i];
+        if (h->conductivity) m->lag = fmax(m->lag, r * r * store / (M_PI * M_PI * h->conductivity[i]));
         (*capacity)[i] = store * (4. / 3 * M_PI) * gsl_pow_3(r);
     }
     free(density);
     return status;
 }
 
-/* A fibrad_emissivity_law: emissivities of spheres that have a table over temperature. */
+/* A fibrad_emissivity_law. */
 static void follow_temperatures(void *time_run, const double *temperature, const double *wall_temperature,
                                 double *emissivity, double *wall_emissivity) {
     const struct time_run *m = time_run;
-    (void)wall_emissivity;
-    heat_properties(m->problem, &m->bed, temperature, emissivity);
-    contacts_follow(m->problem->contacts, &m->bed, temperature, wall_temperature);
+    heat_follow(m->heat, temperature, wall_temperature, emissivity, wall_emissivity);
 }
 
 /* Chooses the method of the library. Patches are needed if the temperature of a wall is to be found, if emissivities
  * follow temperatures, if spheres conduct, or if they are in contact. Else --model decides, whose default is corrected
  * factors. */
 static int choose_model(struct time_run *m) {
-    const struct heat_problem *problem = m->problem;
-    const struct contact_options *contacts = problem->contacts->options;
+    const struct heat *h = m->heat;
+    const struct contact_options *contacts = h->touching.options;
     const bool bends = contacts && (contacts->gas_curve.n > 0 || quantity_curves(&contacts->conductivity));
-    const bool follow = quantity_curves(problem->of_emissivity) || quantity_curves(problem->of_solid) || bends;
-    m->by_patches = problem->by_patches || follow || problem->solid || contacts;
+    const bool follow = quantity_curves(&h->emissivities) || quantity_curves(&h->solid) || bends;
+    m->by_patches = h->by_patches || follow || h->conductivity || contacts;
     m->span.law = follow ? follow_temperatures : NULL;
-    if (follow && problem->by_factors)
+    if (follow && h->by_factors)
         return message(STATUS_USAGE, "--model factors: emissivities cannot follow temperatures; use --model patches");
-    if (problem->by_factors && problem->sources.side_temperature)
+    if (h->by_factors && h->sources.side_temperature)
         return message(STATUS_USAGE,
                        "--model factors: triangles cannot have temperatures of their own; use --model patches");
-    for (uint32_t k = 0; k < problem->walls.count; ++k) {
-        if (!isnan(problem->sources.wall_temperature[k])) continue;
+    for (uint32_t k = 0; k < h->walls.count; ++k) {
+        if (!isnan(h->sources.wall_temperature[k])) continue;
         m->by_patches = true;
-        if (problem->by_factors)
+        if (h->by_factors)
             return message(STATUS_USAGE,
                            "--model factors: %s has no temperature; --model patches finds temperatures of walls",
-                           wall_name(&problem->walls, k));
+                           wall_name(&h->walls, k));
     }
     return STATUS_OK;
 }
 
 static int library_status(struct time_run *m, int status) {
+    struct heat *h = m->heat;
     fibrad_fault fault;
     fibrad_transient_describe(m->transient, NULL, &fault);
-    const int refused = contacts_refuse(m->problem->contacts, m->options, &m->bed, &m->problem->walls, status, &fault);
+    const int refused = contacts_refuse(&h->touching, &h->options, h->bed, &h->walls, status, &fault);
     if (refused) return refused;
-    if (status != FIBRAD_E_UNSOLVABLE) return bed_options_status(m->options, &m->bed, status, &fault);
-    progress_stop(&m->options->progress);
-    return message_at(STATUS_INPUT, m->options->name, 0, "after %g s no step keeps all temperatures above 0 K%s",
-                      m->now, m->time->step > 0 ? "; --step auto takes shorter steps" : "");
+    if (status != FIBRAD_E_UNSOLVABLE) return bed_options_status(&h->options, h->bed, status, &fault);
+    progress_stop(&h->options.progress);
+    return message_at(STATUS_INPUT, h->options.name, 0, "after %g s no step keeps all temperatures above 0 K%s", m->now,
+                      h->time.step > 0 ? "; --step auto takes shorter steps" : "");
 }
 
 /* Absorbed light heats surfaces all the time, by patches those that it falls on. An insulated wall would have to give
  * off as thermal radiation what it absorbs. */
 static int absorb_light(struct time_run *m) {
-    struct light_state *light = m->problem->light;
-    const fibrad_scene_config scene = bed_scene(&m->bed, &m->problem->walls);
-    const fibrad_spheres spheres = bed_spheres(&m->bed);
-    fibrad_run run = bed_options_run(m->options);
-    struct lit_bed lit = {&m->bed, &m->problem->walls, NULL, m->by_patches ? m->transient : NULL, m->square_metres};
+    struct heat *h = m->heat;
+    const fibrad_scene_config scene = bed_scene(h->bed, &h->walls);
+    const fibrad_spheres spheres = bed_spheres(h->bed);
+    fibrad_run run = bed_options_run(&h->options);
+    fibrad_radiation *radiation = NULL;
     int status = FIBRAD_OK;
-    if (!light->options) return STATUS_OK;
-    for (uint32_t k = 0; k < lit.walls->count; ++k)
-        if (m->sources.insulated[k] && light->of_walls[k] > 0)
+    if (!h->lit.options) return STATUS_OK;
+    for (uint32_t k = 0; k < h->walls.count; ++k)
+        if (m->sources.insulated[k] && h->lit.of_walls[k] > 0)
             return message(STATUS_USAGE, "--irradiate with --until: %s is insulated and needs --wall-absorptivity %s=0",
-                           wall_name(lit.walls, k), wall_name(lit.walls, k));
-    if (!m->by_patches) status = fibrad_radiation_new(&lit.radiation, &scene, &spheres, &m->problem->config, &run);
-    if (!status) status = light_absorb(light, &lit, &m->sources);
+                           wall_name(&h->walls, k), wall_name(&h->walls, k));
+    if (!m->by_patches) status = fibrad_radiation_new(&radiation, &scene, &spheres, &h->config, &run);
+    if (!status)
+        status = light_absorb(h, m->by_patches ? m->transient : NULL, radiation, m->square_metres, &m->sources);
     if (m->by_patches) fibrad_transient_describe(m->transient, NULL, &run.fault);
     if (!m->by_patches) {
-        fibrad_radiation_describe(lit.radiation, NULL, &run.fault);
-        fibrad_radiation_free(lit.radiation);
+        fibrad_radiation_describe(radiation, NULL, &run.fault);
+        fibrad_radiation_free(radiation);
         m->sources.absorbed = NULL;
     }
-    if (status) progress_stop(&m->options->progress);
-    if (light_refuse(light, &m->bed, status, &run.fault)) return STATUS_USAGE;
-    return bed_options_status(m->options, &m->bed, status, &run.fault);
+    if (status) progress_stop(&h->options.progress);
+    if (light_refuse(h, status, &run.fault)) return STATUS_USAGE;
+    return bed_options_status(&h->options, h->bed, status, &run.fault);
+}
+
+/* Fluxes of triangles in W/m2: those of the library are in watts per area in the bed's unit of length. */
+static int show_triangles(struct time_run *m) {
+    struct side_arrays *triangles = &m->heat->triangles;
+    double *flux = triangles->quantity[TRIANGLE_FLUX].side;
+    if (triangles->count == 0 || m->heat->by_factors) return FIBRAD_OK;
+    const int status = fibrad_transient_sides(m->transient, flux, triangles->quantity[TRIANGLE_TEMPERATURE].side);
+    for (size_t s = 0; s < 2 * (size_t)triangles->n; ++s) flux[s] /= m->square_metres;
+    side_arrays_show(triangles);
+    return status;
 }
 
 /* Computes the powers at m->now and writes all outputs. */
 static int write_state(struct time_run *m) {
-    const uint32_t walls = m->problem->walls.count;
+    struct heat *h = m->heat;
     fibrad_heat_sources shown = m->sources;
     shown.temperature = m->span.temperature;
-    heat_properties(m->problem, &m->bed, shown.temperature, m->problem->emissivity);
-    heat_excess_of(m->problem, &m->bed, shown.temperature, m->wall, m->excess);
-    contacts_follow(m->problem->contacts, &m->bed, shown.temperature, m->wall);
-    int status = fibrad_transient_powers(m->transient, &shown, m->result);
-    if (!status && m->triangles->count && !m->problem->by_factors) {
-        status = fibrad_transient_sides(m->transient, m->triangles->quantity[TRIANGLE_FLUX].side,
-                                        m->triangles->quantity[TRIANGLE_TEMPERATURE].side);
-        triangle_heat_show(m->triangles, m->square_metres);
-    }
+    heat_follow(h, shown.temperature, m->wall, h->emissivity, NULL);
+    heat_excess_of(h, shown.temperature, m->wall, m->excess);
+    int status = fibrad_transient_powers(m->transient, &shown, &h->result);
+    if (!status) status = show_triangles(m);
     status = library_status(m, status);
     if (status) return status;
-    for (uint32_t k = 0; k < walls; ++k)
-        if (!isnan(m->wall[k])) m->result->wall_temperature[k] = m->wall[k];
-    light_add(m->problem->light, &shown, m->bed.n, walls, m->result);
-    memcpy(m->result->temperature, m->span.temperature, m->bed.n * sizeof *m->span.temperature);
-    if (isnan(m->problem->sources.surroundings)) shown.surroundings = NAN;
-    const struct contents what = {.bed = &m->bed,
-                                  .walls = &m->problem->walls,
-                                  .time = &m->now,
-                                  .sources = &shown,
-                                  .result = m->result,
-                                  .light = m->problem->light->options ? &m->problem->light->result : NULL,
-                                  .of_sides = m->problem->by_factors ? NULL : m->triangles};
-    status = outputs_write(&m->options->outputs, &what);
-    if (!status) status = contacts_write(m->problem->contacts, &m->bed, &m->problem->walls);
+    for (uint32_t k = 0; k < h->walls.count; ++k)
+        if (!isnan(m->wall[k])) h->result.wall_temperature[k] = m->wall[k];
+    light_add(h);
+    memcpy(h->result.temperature, m->span.temperature, h->bed->n * sizeof *m->span.temperature);
+    if (isnan(h->given.surroundings)) shown.surroundings = NAN;
+    status = heat_write(h, &m->bed, &(struct contents){.time = &m->now, .sources = &shown});
     ++m->bed.frame;
     return status;
 }
@@ -297,7 +290,7 @@ static int advance(struct time_run *m, double time) {
     m->steps += m->span.steps, m->refused += m->span.refused, m->sweeps += m->span.sweeps;
     m->corrections += m->span.corrections;
     m->error = fmax(m->error, m->span.error);
-    for (uint32_t k = 0; k < m->problem->walls.count; ++k) m->energy[k] += m->wall_energy[k];
+    for (uint32_t k = 0; k < m->heat->walls.count; ++k) m->energy[k] += m->wall_energy[k];
     m->surroundings_energy += m->span.surroundings_energy;
     memcpy(m->wall, wall, sizeof wall);
     m->sources.surroundings = surroundings;
@@ -309,7 +302,7 @@ static int run_spans(struct time_run *m) {
     double *times = NULL;
     bool *output = NULL;
     size_t count = 0;
-    int status = find_times(m, &times, &output, &count);
+    int status = find_times(m->heat, &times, &output, &count);
     if (!status) note_point(m, 0, m->span.temperature);
     for (size_t k = 0; k < count && !status; ++k) {
         if (times[k] > 0) status = advance(m, times[k]);
@@ -322,32 +315,32 @@ static int run_spans(struct time_run *m) {
 }
 
 static void print_summary(struct time_run *m, const double *before, double seconds) {
-    const struct time_options *o = m->time;
-    const struct walls *walls = &m->problem->walls;
-    struct report *report = &m->options->report;
+    struct heat *h = m->heat;
+    const struct time_options *o = &h->time;
+    struct report *report = &h->options.report;
     fibrad_scene_facts facts;
     double supplied = 0, stored = 0, exchanged = 0;
     const struct time_point end = point_of(m, o->until, m->span.temperature);
-    for (uint32_t i = 0; i < m->bed.n; ++i) {
+    for (uint32_t i = 0; i < h->bed->n; ++i) {
         const double change = m->span.capacity[i] * (m->span.temperature[i] - before[i]);
         stored += change, exchanged += fabs(change);
         supplied += o->until * m->sources.power[i];
     }
     double balance = stored - supplied + m->surroundings_energy;
-    for (uint32_t k = 0; k < walls->count; ++k) balance += m->energy[k];
+    for (uint32_t k = 0; k < h->walls.count; ++k) balance += m->energy[k];
     fibrad_transient_describe(m->transient, &facts, NULL);
-    bed_options_report(m->options, m->source, walls, &facts);
+    bed_options_report(&h->options, h->bed, &h->walls, &facts);
     report_value(report, "until_s", o->until, 9);
-    report_text(report, "model", m->by_patches ? "patches" : m->problem->by_factors ? "factors" : "corrected");
-    quantity_report(m->problem->of_emissivity, "emissivity", report);
-    quantity_report(m->problem->of_solid, "solid_conductivity", report);
+    report_text(report, "model", m->by_patches ? "patches" : h->by_factors ? "factors" : "corrected");
+    quantity_report(&h->emissivities, "emissivity", report);
+    quantity_report(&h->solid, "solid_conductivity", report);
     if (m->lag > 0) report_value(report, "inner_lag_s", m->lag, 3);
     quantity_report(&o->capacity, "heat_capacity_J_kgK", report);
     quantity_report(&o->density, "density_kg_m3", report);
-    if (!isnan(m->problem->sources.surroundings)) report_value(report, "surroundings_K", m->sources.surroundings, 6);
-    wall_values_report(walls, m->wall, "_K", 6, report);
-    wall_values_report(walls, m->sources.wall_emissivity, "_emissivity", 6, report);
-    report_count(report, "threads", (uint64_t)(m->options->threads ? m->options->threads : omp_get_max_threads()));
+    if (h->given.ambient) report_value(report, "surroundings_K", m->sources.surroundings, 6);
+    wall_values_report(&h->walls, m->wall, "_K", 6, report);
+    wall_values_report(&h->walls, h->wall_emissivity, "_emissivity", 6, report);
+    report_count(report, "threads", (uint64_t)(h->options.threads ? h->options.threads : omp_get_max_threads()));
     report_value(report, "seconds", seconds, 3);
     report_count(report, "steps", m->steps);
     report_count(report, "steps_refused", m->refused);
@@ -359,10 +352,10 @@ static void print_summary(struct time_run *m, const double *before, double secon
     report_value(report, "temperature_max_K", end.most, 6);
     report_value(report, "supplied_J", supplied, 6);
     report_value(report, "stored_J", stored, 6);
-    if (!isnan(m->problem->sources.surroundings)) report_value(report, "surroundings_J", m->surroundings_energy, 6);
-    wall_values_report(walls, m->energy, "_J", 6, report);
-    light_report(m->problem->light, walls, m->bed.n, report);
-    contacts_report(m->problem->contacts, &m->bed, walls, report);
+    if (h->given.ambient) report_value(report, "surroundings_J", m->surroundings_energy, 6);
+    wall_values_report(&h->walls, m->energy, "_J", 6, report);
+    light_report(h);
+    contacts_report(&h->touching, h->bed, &h->walls, report);
     report_value(report, "balance_of_stored", exchanged > 0 ? balance / exchanged : 0, 2);
     report_end(report);
 }
@@ -370,17 +363,17 @@ static void print_summary(struct time_run *m, const double *before, double secon
 /* The inside of each sphere is taken to be steady. Warns if a sphere takes longer to become steady than a step, or than
  * the whole run. */
 static void warn_lag(const struct time_run *m) {
-    const double step = m->steps > 0 ? m->time->until / (double)m->steps : m->time->until;
-    if (!(m->lag > 0)) return;
-    if (m->lag > m->time->until)
+    const double until = m->heat->time.until, step = m->steps > 0 ? until / (double)m->steps : until;
+    const char *file = m->heat->options.name;
+    if (m->lag > until)
         message_at(
-            STATUS_OK, m->options->name, 0,
+            STATUS_OK, file, 0,
             "warning: --solid-conductivity: insides of spheres are taken to be steady, but become steady only after "
             "up to %.3g s; --until ends before, at %g s",
-            m->lag, m->time->until);
+            m->lag, until);
     else if (m->lag > step)
         message_at(
-            STATUS_OK, m->options->name, 0,
+            STATUS_OK, file, 0,
             "warning: --solid-conductivity: insides of spheres are taken to be steady, but become steady only after "
             "up to %.3g s; steps are shorter, %.3g s on the mean",
             m->lag, step);
@@ -388,70 +381,65 @@ static void warn_lag(const struct time_run *m) {
 
 /* Warns of tables whose ends the run has left. */
 static void warn_tables(const struct time_run *m) {
-    struct warned *warned = &m->options->warned;
-    const struct walls *walls = &m->problem->walls;
-    heat_warn_excess(warned, m->excess);
-    for (uint32_t k = 0; k < walls->count; ++k)
-        warn_times(warned, wall_name(walls, k), &m->problem->wall_curve[k], m->time->until);
-    warn_times(warned, "--ambient", m->problem->ambient_curve, m->time->until);
+    struct heat *h = m->heat;
+    struct warned *warned = &h->options.warned;
+    heat_warn_excess(h, m->excess);
+    for (uint32_t k = 0; k < h->walls.count; ++k)
+        warn_times(warned, wall_name(&h->walls, k), &h->values.tables.curve[k], h->time.until);
+    warn_times(warned, "--ambient", &h->given.ambient_curve, h->time.until);
 }
 
 /* Runs a bed from 0 to --until. before [spheres]: room for the initial temperatures. */
-static int run_bed(struct time_run *m, double *before, const struct output *picture) {
-    const fibrad_scene_config scene = bed_scene(&m->bed, &m->problem->walls);
-    const fibrad_spheres spheres = bed_spheres(&m->bed);
-    const fibrad_transient_config config = {.method = m->by_patches            ? FIBRAD_TRANSIENT_PATCHES
-                                                      : m->problem->by_factors ? FIBRAD_TRANSIENT_FACTORS
-                                                                               : FIBRAD_TRANSIENT_CORRECTED,
-                                            .heat = m->problem->config};
+static int run_bed(struct time_run *m, double *before) {
+    struct heat *h = m->heat;
+    const fibrad_scene_config scene = bed_scene(h->bed, &h->walls);
+    const fibrad_spheres spheres = bed_spheres(h->bed);
+    const fibrad_transient_config config = {.method = m->by_patches   ? FIBRAD_TRANSIENT_PATCHES
+                                                      : h->by_factors ? FIBRAD_TRANSIENT_FACTORS
+                                                                      : FIBRAD_TRANSIENT_CORRECTED,
+                                            .heat = h->config};
     const double begun = progress_clock();
-    fibrad_run run = bed_options_run(m->options);
+    fibrad_run run = bed_options_run(&h->options);
     int status = fibrad_transient_new(&m->transient, &scene, &spheres, &config, &run);
-    status = bed_options_status(m->options, &m->bed, status, &run.fault);
+    status = bed_options_status(&h->options, h->bed, status, &run.fault);
     if (status) return status;
     status = absorb_light(m);
-    if (!status) status = light_profile(m->problem->light, m->source, m->options->name);
+    if (!status) status = light_profile(h);
     outside_at(m, 0, m->wall, &m->sources.surroundings);
-    memcpy(before, m->span.temperature, m->bed.n * sizeof *before);
+    memcpy(before, m->span.temperature, h->bed->n * sizeof *before);
     if (!status) status = run_spans(m);
-    progress_stop(&m->options->progress);
-    if (!status && picture) status = plot_time(picture, m->options->name, m->point, m->points);
-    if (!status) warn_lag(m);
-    if (!status) warn_tables(m);
-    if (!status) print_summary(m, before, progress_clock() - begun);
+    progress_stop(&h->options.progress);
+    if (!status && h->options.outputs.picture)
+        status = plot_time(&h->options.picture, h->options.name, m->point, m->points);
+    if (!status) {
+        warn_lag(m);
+        warn_tables(m);
+        print_summary(m, before, progress_clock() - begun);
+    }
     fibrad_transient_free(m->transient);
     return status;
 }
 
-int heat_in_time(struct bed_options *options, const struct time_options *time, const struct heat_problem *problem,
-                 const struct bed *bed, struct heat_report *report, const struct output *picture) {
-    const double metres = report->metres;
-    fibrad_heat_result *result = &report->result;
-    struct time_run m = {.options = options,
-                         .time = time,
-                         .problem = problem,
-                         .source = bed,
-                         .bed = *bed,
-                         .sources = problem->sources,
-                         .result = result,
-                         .triangles = &report->triangles,
-                         .square_metres = metres * metres};
-    double *capacity = NULL, *now = malloc(2 * (size_t)bed->n * sizeof *now + 1);
+int heat_in_time(struct heat *h) {
+    const uint32_t n = h->bed->n;
+    fibrad_heat_result *result = &h->result;
+    double *capacity = NULL, *now = malloc(2 * (size_t)n * sizeof *now + 1);
     if (!now) return message_memory();
-    for (uint32_t i = 0; i < bed->n; ++i) now[i] = problem->sources.temperature[i];
-    int status = STATUS_OK;
+    struct time_run m = {
+        .heat = h, .bed = *h->bed, .sources = h->sources, .square_metres = h->bed->metres * h->bed->metres};
+    memcpy(now, h->sources.temperature, n * sizeof *now);
     m.bed.frame = 0, m.bed.timestep = -1;
     m.sources.sigma *= m.square_metres; /* areas are in the bed's unit of length, powers in watts */
     m.sources.temperature = now, m.sources.wall_temperature = m.wall;
     m.span = (fibrad_span){
-        .temperature = now, .step = time->step, .wall_energy = m.wall_energy, .observe = note_point, .context = &m};
-    for (uint32_t i = 0; i < bed->n; ++i) result->power_error[i] = result->temperature_error[i] = NAN;
+        .temperature = now, .step = h->time.step, .wall_energy = m.wall_energy, .observe = note_point, .context = &m};
+    for (uint32_t i = 0; i < n; ++i) result->power_error[i] = result->temperature_error[i] = NAN;
     result->surroundings_error = NAN;
-    for (uint32_t k = 0; k < problem->walls.count; ++k) result->wall_error[k] = result->wall_temperature_error[k] = NAN;
-    if (!status) status = choose_model(&m);
-    if (!status) status = find_capacities(&m, metres, &capacity);
+    for (uint32_t k = 0; k < h->walls.count; ++k) result->wall_error[k] = result->wall_temperature_error[k] = NAN;
+    int status = choose_model(&m);
+    if (!status) status = find_capacities(&m, &capacity);
     m.span.capacity = capacity;
-    if (!status) status = run_bed(&m, now + bed->n, picture);
+    if (!status) status = run_bed(&m, now + n);
     free(now);
     free(capacity);
     free(m.point);

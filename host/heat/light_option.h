@@ -52,7 +52,7 @@ struct light_options {
 struct light_state {
     const struct light_options *options;       /* NULL: there is no light */
     double *absorptivity, of_walls[WALLS_MAX]; /* [spheres] */
-    double *absorbed, *first, *error;          /* [spheres] */
+    double *absorbed, *first, *error;          /* [spheres], with `power` in one block */
     double *power, wall_power[WALLS_MAX];      /* given powers and what is absorbed, for thermal radiation */
     double wall[WALLS_MAX], wall_first[WALLS_MAX], wall_error[WALLS_MAX];
     bool failed;                /* the library has refused the light, or its solution */
@@ -64,42 +64,5 @@ option_take irradiate_option, absorptivity_option, profile_option;
 
 /* Checks the options when all have been read. of_emissivity: that of --emissivity. Status 0 or STATUS_USAGE. */
 int light_check(struct light_options *options, struct bed_options *bed, const struct quantity *of_emissivity);
-
-/* Begins with a bed. Without --irradiate state->options is NULL. Free it also after an error. Status 0, STATUS_INPUT,
- * STATUS_USAGE or STATUS_MEMORY. */
-int light_begin(struct light_state *state, const struct light_options *options, const struct bed *bed, const char *file,
-                const struct walls *walls, const double *emissivity, const double *wall_emissivity);
-void light_free(struct light_state *state);
-
-/* Where light is absorbed: a bed, by one of two objects of the library, and its walls. */
-struct lit_bed {
-    const struct bed *bed;
-    const struct walls *walls;
-    fibrad_radiation *radiation;
-    fibrad_transient *transient; /* NULL: radiation counts */
-    double unit;                 /* of powers: the square of the bed's length [m2] for watts; 1 */
-};
-
-/* Computes the light that is absorbed and adds it to the powers of the sources. These are then the sources of thermal
- * radiation. They have pointers into the object of the library. Without light the function does nothing. Returns a
- * status of the library. */
-int light_absorb(struct light_state *state, const struct lit_bed *lit, fibrad_heat_sources *sources);
-
-/* Says why light_absorb has failed. Returns STATUS_USAGE; 0: nothing is wrong with the light. */
-int light_refuse(const struct light_state *state, const struct bed *bed, int status, const fibrad_fault *fault);
-
-/* Multiplies all powers by a number. */
-void light_scale(struct light_state *state, uint32_t spheres, uint32_t walls, double factor);
-
-/* Adds the absorbed light to the net powers of a result, and its errors to theirs. Insulated walls are left out: they
- * give off what they absorb. */
-void light_add(const struct light_state *state, const fibrad_heat_sources *sources, uint32_t spheres, uint32_t walls,
-               fibrad_heat_result *result);
-
-/* Reports what is absorbed, reflected and transmitted. */
-void light_report(const struct light_state *state, const struct walls *walls, uint32_t spheres, struct report *report);
-
-/* Writes the profile, if one was asked for. Status 0, STATUS_FILE or STATUS_MEMORY. */
-int light_profile(const struct light_state *state, const struct bed *bed, const char *name);
 
 #endif

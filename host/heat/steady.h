@@ -6,6 +6,12 @@
 #include "bed/conduction.h"
 #include "conduct/contact_option.h"
 
+/* Temperatures of the plates over their mean. They differ so little that conductivities are the same everywhere. */
+#define STEADY_HOT  1.0005
+#define STEADY_COLD 0.9995
+
+enum { STEADY_DIRECTIONS = 400 };
+
 /* Exchange factor F_E along one axis: flux / (mean diameter x gradient of sigma T^4). The gradient is that of a
  * straight line through the spheres of the inner half. */
 struct steady {
@@ -31,6 +37,17 @@ struct walls steady_walls(const struct bed *bed, const struct walls *sides, int 
 /* The area of the bed across an axis. */
 double steady_area(const struct bed *bed, const struct walls *sides, int axis);
 
+/* A straight line through values of the spheres of the inner half between two plates. */
+struct steady_line {
+    double slope, error; /* of the slope */
+    uint32_t spheres;
+};
+
+/* Fits such a line to values [n], NaN: left out, against the place along the axis in a unit. Both arrays [n] are
+ * changed. file: name of the bed in messages. Status 0, or STATUS_INPUT if there are too few spheres. */
+int steady_fit(const struct bed *bed, const char *file, int axis, const struct walls *plates, double unit,
+               double *values, double *place, struct steady_line *line);
+
 /* What conducts in a bed. */
 struct total_problem {
     const struct contact_options *contacts;
@@ -39,8 +56,7 @@ struct total_problem {
     const double *relative;         /* [spheres] k* of spheres that conduct; NULL: each sphere has one temperature */
     const struct walls *sides;      /* insulated, in contact with nothing */
     double temperature;             /* [K] */
-    double metres;                  /* the bed's unit of length */
-    double diameter;                /* mean diameter, in that unit */
+    double diameter;                /* mean diameter [L] */
     struct conduction_value linear; /* by radiation if temperatures of spheres are linear */
 };
 

@@ -1,6 +1,5 @@
 /* steady_contacts.c - conductivity of a bed by radiation and contacts together, between two plates.
  * SPDX-License-Identifier: MIT */
-#include <gsl/gsl_fit.h>
 #include <gsl/gsl_math.h>
 #include <math.h>
 #include <stdlib.h>
@@ -11,10 +10,6 @@
 #include "cli/message.h"
 #include "heat/steady.h"
 
-enum { FITTED_LEAST = 40, DIRECTIONS_ALL = 400 };
-/* Temperatures of the ends over their mean: so near that k_s and k_gas are the same everywhere. */
-#define HOT_END  1.0005
-#define COLD_END 0.9995
 /* A flow that is so small over the largest one is none. */
 #define IDLE 1e-6
 
@@ -30,8 +25,8 @@ struct between {
     fibrad_heat_result result;
     double plate[WALLS_MAX]; /* [K] of walls; NaN: a side */
     unsigned char insulated[WALLS_MAX];
-    double *given, *power, *emissivity, *conductivity;  /* [spheres] */
-    double *gained, *error, *temperature, *at, *fitted; /* [spheres] */
+    double *given, *power, *emissivity, *conductivity;   /* [spheres] */
+    double *gained, *error, *temperature, *at, *through; /* [spheres] */
     double plate_power[WALLS_MAX], plate_error[WALLS_MAX];
 };
 
@@ -41,22 +36,14 @@ static int plate_of(const struct between *b, uint32_t i) {
     return at - b->plates.wall[0].plane.at < 1.5 * d ? 0 : b->plates.wall[1].plane.at - at < 1.5 * d ? 1 : 2;
 }
 
+/* All arrays lie in one block. */
 static int take_room(struct between *b) {
     double **const of_spheres[] = {&b->given, &b->power,       &b->emissivity, &b->conductivity, &b->gained,
-                                   &b->error, &b->temperature, &b->at,         &b->fitted};
-    bool there = true;
-    for (size_t k = 0; k < sizeof of_spheres / sizeof *of_spheres; ++k) {
-        *of_spheres[k] = calloc(b->bed->n + (size_t)1, sizeof(double));
-        there = there && *of_spheres[k];
-    }
-    return there ? STATUS_OK : message_memory();
-}
-
-static void free_room(struct between *b) {
-    double *const of_spheres[] = {b->given, b->power,       b->emissivity, b->conductivity, b->gained,
-                                  b->error, b->temperature, b->at,         b->fitted};
-    for (size_t k = 0; k < sizeof of_spheres / sizeof *of_spheres; ++k) free(of_spheres[k]);
-    contacts_free(&b->contacts);
+                                   &b->error, &b->temperature, &b->at,         &b->through};
+    const size_t n = b->bed->n, arrays = sizeof of_spheres / sizeof *of_spheres;
+    double *block = calloc(arrays * n + 1, sizeof *block);
+    for (size_t k = 0; block && k < arrays; ++k) *of_spheres[k] = block + k * n;
+    return block ? STATUS_OK : message_memory();
 }
 
 /* Contacts of a file that join both ends across the period, which is now open, are left out. */
@@ -91,13 +78,13 @@ static int set_up(struct between *b, double period) {
     b->plate[0] = b->plate[1] = p->temperature;
     b->sources.temperature = b->given, b->sources.wall_temperature = b->plate;
     status = contacts_begin(&b->contacts, p->contacts, b->options, bed, &b->plates, p->solid,
-                            1 / (p->metres * p->metres), &b->sources);
+                            1 / (bed->metres * bed->metres), &b->sources);
     if (status) return status;
     warn_ends(b->options, &b->contacts, bed, b->given);
     cut_contacts(b, period);
     for (uint32_t k = 2; k < b->walls.count; ++k) b->plate[k] = NAN, b->insulated[k] = 1;
     b->sources.insulated = b->insulated;
-    b->plate[0] = HOT_END * p->temperature, b->plate[1] = COLD_END * p->temperature;
+    b->plate[0] = STEADY_HOT * p->temperature, b->plate[1] = STEADY_COLD * p->temperature;
     for (uint32_t i = 0; i < bed->n; ++i) {
         const int end = plate_of(b, i);
         b->given[i] = end < 2 ? b->plate[end] : NAN;
@@ -119,29 +106,25 @@ static int set_up(struct between *b, double period) {
  * that of the line and, as a part of `gained`, that of the powers. */
 static int read_total(const struct between *b, struct conduction_value *total) {
     const struct bed *bed = b->bed;
-    const double low = b->plates.wall[0].plane.at, high = b->plates.wall[1].plane.at, metres = b->problem->metres;
-    double c0, slope, cov00, cov01, cov11, squares, gained = b->plate_power[1], square = gsl_pow_2(b->plate_error[1]);
-    size_t n = 0;
+    double gained = b->plate_power[1], square = gsl_pow_2(b->plate_error[1]);
+    struct steady_line line;
     for (uint32_t i = 0; i < bed->n; ++i) {
-        const double at = bed_centres(bed, b->axis)[i];
         if (plate_of(b, i) == 1) gained += b->gained[i], square += gsl_pow_2(b->error[i]);
-        if (plate_of(b, i) < 2 || isnan(b->temperature[i]) || fabs(at - (low + high) / 2) > (high - low) / 4) continue;
-        b->at[n] = at * metres, b->fitted[n++] = b->temperature[i];
+        if (plate_of(b, i) < 2) b->temperature[i] = NAN;
     }
-    if (n < FITTED_LEAST)
-        return message_at(STATUS_INPUT, b->options->name, 0,
-                          "%zu spheres in the inner half along %c are too few for a line", n, 'x' + b->axis);
-    gsl_fit_linear(b->at, 1, b->fitted, 1, n, &c0, &slope, &cov00, &cov01, &cov11, &squares);
+    const int status =
+        steady_fit(bed, b->options->name, b->axis, &b->plates, bed->metres, b->temperature, b->at, &line);
+    if (status) return status;
     const double area = steady_area(bed, b->problem->sides, b->axis);
-    total->k = gained / (area * -slope); /* lengths of both cancel: W/L2 per area in L2 */
-    total->error = fabs(total->k) * hypot(sqrt(cov11) / slope, gained != 0 ? sqrt(square) / gained : 0);
+    total->k = gained / (area * -line.slope); /* lengths of both cancel: W/L2 per area in L2 */
+    total->error = fabs(total->k) * hypot(line.error / line.slope, gained != 0 ? sqrt(square) / gained : 0);
     return STATUS_OK;
 }
 
 /* Takes the temperatures away from spheres through which nothing is conducted. They are not on a way between the ends,
  * so they say nothing of the gradient. */
 static void drop_idle(struct between *b) {
-    double most = 0, *through = b->fitted;
+    double most = 0, *through = b->through;
     for (uint32_t i = 0; i < b->bed->n; ++i) through[i] = 0;
     for (uint32_t k = 0; k < b->contacts.n; ++k) {
         const uint32_t ends[2] = {b->contacts.first[k], b->contacts.second[k]};
@@ -156,22 +139,15 @@ static void drop_idle(struct between *b) {
 /* One conductivity: by radiation, contacts, or both. */
 static int solve_total(struct between *b, bool radiates, bool touches, uint32_t directions,
                        struct conduction_value *total) {
-    const fibrad_scene_config scene = bed_scene(b->bed, &b->walls);
-    const fibrad_spheres spheres = bed_spheres(b->bed);
     const double black[WALLS_MAX] = {radiates ? 1 : 0, radiates ? 1 : 0}; /* sides reflect */
     fibrad_run run = bed_options_run(b->options);
-    fibrad_radiation *radiation = NULL;
     fibrad_heat_sources sources = b->sources;
-    const fibrad_heat_config config = {.directions = directions};
     for (uint32_t i = 0; i < b->bed->n; ++i)
         b->emissivity[i] = fmax(radiates ? b->problem->emissivity[i] : 0, HARDLY_RADIATES);
     sources.wall_emissivity = black;
     if (!touches) sources.contacts = 0;
     if (!radiates) sources.conductivity = NULL, sources.tolerance = 1e-10;
-    int status = fibrad_radiation_new(&radiation, &scene, &spheres, &config, &run);
-    if (!status) status = fibrad_radiation_solve(radiation, &sources, &b->result);
-    fibrad_radiation_describe(radiation, NULL, &run.fault);
-    fibrad_radiation_free(radiation);
+    int status = bed_solve(b->bed, &b->walls, directions, &sources, &run, &b->result);
     const int refused = contacts_refuse(&b->contacts, b->options, b->bed, &b->plates, status, &run.fault);
     if (refused) return refused;
     status = bed_options_status(b->options, b->bed, status, &run.fault);
@@ -183,8 +159,8 @@ static int solve_total(struct between *b, bool radiates, bool touches, uint32_t 
 /* The same from two numbers of directions, whose difference is part of the error. */
 static int solve_twice(struct between *b, bool touches, struct conduction_value *total) {
     struct conduction_value rough = {0, 0};
-    int status = solve_total(b, true, touches, DIRECTIONS_ALL / 2, &rough);
-    if (!status) status = solve_total(b, true, touches, DIRECTIONS_ALL, total);
+    int status = solve_total(b, true, touches, STEADY_DIRECTIONS / 2, &rough);
+    if (!status) status = solve_total(b, true, touches, STEADY_DIRECTIONS, total);
     total->error = hypot(total->error, total->k - rough.k);
     return status;
 }
@@ -202,7 +178,8 @@ static int total_of_plates(struct bed_options *options, const struct bed *bed, c
     if (!status) status = solve_twice(&b, false, &total->radiation);
     if (!status) status = solve_twice(&b, true, &total->both);
     total->contacts = b.contacts.n;
-    free_room(&b);
+    free(b.given);
+    contacts_free(&b.contacts);
     return status;
 }
 
@@ -218,9 +195,9 @@ static bool long_period(const struct bed *bed, const struct total_problem *probl
 static int joint_twice(const struct bed *bed, const struct jump_contacts *network, struct jump_radiation *radiation,
                        int axis, double volume, fibrad_run *run, double *k, double *error) {
     double rough;
-    radiation->directions = DIRECTIONS_ALL / 4;
+    radiation->directions = STEADY_DIRECTIONS / 4;
     int status = jump_joint(bed, network, radiation, axis, volume, run, &rough);
-    radiation->directions = DIRECTIONS_ALL / 2;
+    radiation->directions = STEADY_DIRECTIONS / 2;
     if (!status) status = jump_joint(bed, network, radiation, axis, volume, run, k);
     *error = *k - rough;
     return status;
@@ -230,7 +207,7 @@ static int joint_twice(const struct bed *bed, const struct jump_contacts *networ
 static int total_of_periods(struct bed_options *options, const struct bed *bed, const struct total_problem *p, int axis,
                             struct conduction_total *total) {
     double *at = malloc(((size_t)bed->n + 1) * sizeof *at);
-    const double metres = p->metres, volume = steady_area(bed, p->sides, axis) * bed->period[axis];
+    const double metres = bed->metres, volume = steady_area(bed, p->sides, axis) * bed->period[axis];
     struct contact_state contacts = {0};
     const struct walls none = {.count = 0};
     fibrad_run run = bed_options_run(options);

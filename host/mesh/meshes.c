@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/memory.h"
 #include "cli/message.h"
 
 bool mesh_name(const char *name) {
@@ -71,15 +72,12 @@ static int append(struct meshes *meshes) {
     const struct surface *s = &mesh->surface;
     const size_t n = (size_t)all->n + s->n, vertices = (size_t)all->vertices + s->vertices;
     if (n > FIBRAD_TRIANGLES_MAX) return message(STATUS_USAGE, "--wall: more than %u triangles", FIBRAD_TRIANGLES_MAX);
-    double *vertex = realloc(meshes->vertex, 3 * vertices * sizeof *vertex);
-    if (vertex) meshes->vertex = vertex;
-    uint32_t *corner = realloc(meshes->corner, 3 * n * sizeof *corner);
-    if (corner) meshes->corner = corner;
-    uint32_t *front = realloc(meshes->front, n * sizeof *front);
-    if (front) meshes->front = front;
-    uint32_t *back = realloc(meshes->back, n * sizeof *back);
-    if (back) meshes->back = back;
-    if (!vertex || !corner || !front || !back) return message_memory();
+    bool good = true;
+    double *vertex = meshes->vertex = memory_resized(meshes->vertex, 3 * vertices * sizeof *vertex, &good);
+    uint32_t *corner = meshes->corner = memory_resized(meshes->corner, 3 * n * sizeof *corner, &good);
+    meshes->front = memory_resized(meshes->front, n * sizeof *corner, &good);
+    meshes->back = memory_resized(meshes->back, n * sizeof *corner, &good);
+    if (!good) return message_memory();
     memcpy(vertex + 3 * (size_t)all->vertices, s->vertex, s->vertices * sizeof *s->vertex);
     for (uint32_t t = 0; t < s->n; ++t)
         for (int k = 0; k < 3; ++k) corner[3 * ((size_t)all->n + t) + (size_t)k] = all->vertices + s->corner[t][k];
@@ -89,8 +87,8 @@ static int append(struct meshes *meshes) {
                                      .stride = 3,
                                      .vertices = (uint32_t)vertices,
                                      .corner = corner,
-                                     .front = front,
-                                     .back = back,
+                                     .front = meshes->front,
+                                     .back = meshes->back,
                                      .n = (uint32_t)n};
     return STATUS_OK;
 }

@@ -10,6 +10,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "cli/memory.h"
 #include "cli/message.h"
 #include "fibrad_mesh.h"
 #include "text/read_lines.h"
@@ -30,14 +31,12 @@ void stl_free(struct stl *stl) {
 }
 
 static bool stl_grow(struct stl *stl, uint32_t capacity) {
-    void *corner = realloc(stl->corner, capacity * sizeof *stl->corner);
-    if (corner) stl->corner = corner;
-    void *place = realloc(stl->place, capacity * sizeof *stl->place);
-    if (place) stl->place = place;
-    void *solid = realloc(stl->solid, capacity * sizeof *stl->solid);
-    if (solid) stl->solid = solid;
-    if (corner && place && solid) stl->capacity = capacity;
-    return corner && place && solid;
+    bool good = true;
+    stl->corner = memory_resized(stl->corner, capacity * sizeof *stl->corner, &good);
+    stl->place = memory_resized(stl->place, capacity * sizeof *stl->place, &good);
+    stl->solid = memory_resized(stl->solid, capacity * sizeof *stl->solid, &good);
+    if (good) stl->capacity = capacity;
+    return good;
 }
 
 /* Adds a triangle to the last solid. The caller fills in its corners. */

@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "bed/units.h"
 #include "cli/message.h"
 #include "plot/gnuplot.h"
 #include "plot/plot_data.h"
@@ -47,14 +46,13 @@ static void print_style(FILE *script, const struct output *output, const char *n
 static int print_slice(FILE *script, const struct contents *what, const struct plot_plane *plane) {
     const fibrad_factors *matrix = &what->factors->matrix;
     struct plot_slice slice;
-    double metres = 0, *away = malloc(matrix->n * sizeof *away);
+    double *away = malloc(matrix->n * sizeof *away);
     if (!away) return message_memory();
     for (uint32_t i = 0; i < matrix->n; ++i) {
         away[i] = matrix->escaped[i];
         for (uint32_t k = 0; k < matrix->walls; ++k) away[i] += matrix->wall[(size_t)i * matrix->walls + k];
     }
-    unit_of_length(what->bed->units, &metres);
-    plot_slice_of(&slice, plane, what->bed, what->walls, metres);
+    plot_slice_of(&slice, plane, what->bed, what->walls);
     fprintf(script, "set title '%s, slice at %s'; set cbrange [0:*]\n",
             matrix->walls > 0 ? "Fraction to walls and out of the bed" : "Escaped fraction", slice.place);
     plot_slice_draw(script, &slice, &(struct plot_colours){.value = away, .unit = 1, .wanted = what->wanted});

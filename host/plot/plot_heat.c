@@ -33,27 +33,35 @@ static bool varies(const double *value, uint32_t n) {
     return all.high - all.low > 1e-6 * fmax(fabs(all.low), fabs(all.high));
 }
 
+/* Whether temperatures of spheres were found. The picture then has them by height, not powers. */
+static bool any_found(const struct contents *what) {
+    bool found = false;
+    for (uint32_t i = 0; i < what->bed->n; ++i)
+        found = found || (isnan(what->sources->temperature[i]) && !isnan(what->result->temperature[i]));
+    return found;
+}
+
 /* Sums over the spheres that gain heat and over those that lose heat. */
 struct turnover {
     double gained, lost; /* [W] both >= 0 */
 };
 
-static struct turnover turnover_of(const struct heat_shown *what) {
+static struct turnover turnover_of(const struct contents *what) {
     struct turnover all = {0, 0};
     for (uint32_t i = 0; i < what->bed->n; ++i) {
-        all.gained += fmax(what->power[i], 0);
-        all.lost += fmax(-what->power[i], 0);
+        all.gained += fmax(what->result->power[i], 0);
+        all.lost += fmax(-what->result->power[i], 0);
     }
     return all;
 }
 
-static void print_head(FILE *script, const struct output *output, const char *name, const struct heat_shown *what) {
-    const struct extremes kelvins = extremes_of(what->temperature, what->bed->n);
+static void print_head(FILE *script, const struct output *output, const char *name, const struct contents *what) {
+    const struct extremes kelvins = extremes_of(what->result->temperature, what->bed->n);
     const struct turnover all = turnover_of(what);
     const double net = all.gained - all.lost;
     const struct prefixed unit = unit_prefixed(fabs(net), "W");
     double light = 0;
-    for (uint32_t i = 0; i < what->bed->n && what->absorbed; ++i) light += what->absorbed[i];
+    for (uint32_t i = 0; i < what->bed->n && what->light; ++i) light += what->light->absorbed[i];
     const struct prefixed unit_of_light = unit_prefixed(light, "W");
     gnuplot_style(script, output->path, 1500, 1240);
     fputs("set multiplot layout 2,2 margins 0.075,0.89,0.065,0.90 spacing 0.16,0.115\n"
@@ -64,8 +72,7 @@ static void print_head(FILE *script, const struct output *output, const char *na
             "' at screen 0.015,0.975 font ',19' tc '#111111' noenhanced\n"
             "set label 2 '%u spheres of %.5g to %.5g K %s %.4g %s by radiation",
             what->bed->n, kelvins.low, kelvins.high, net >= 0 ? "gain" : "lose", fabs(net) / unit.scale, unit.name);
-    if (what->absorbed)
-        fprintf(script, "; they absorb %.4g %s of light", light / unit_of_light.scale, unit_of_light.name);
+    if (what->light) fprintf(script, "; they absorb %.4g %s of light", light / unit_of_light.scale, unit_of_light.name);
     fputs("' at screen 0.015,0.945 tc '#444444'\n", script);
 }
 
@@ -91,17 +98,19 @@ static double power_shown(const double *value, uint32_t n) {
 enum shown { TEMPERATURE, LIGHT, POWER, QUANTITIES };
 
 /* Draws a slice. Spheres are coloured by a quantity, and walls by their temperatures if that is it. */
-static int print_panel(FILE *script, enum shown shown, const struct plot_slice *slice, const struct heat_shown *what) {
+static int print_panel(FILE *script, enum shown shown, const struct plot_slice *slice, const struct contents *what) {
     static const char *const title[] = {"Temperature", "Absorbed light", "Net power"};
     static const char *const palette[] = {
         "(0 '#000004', 1 '#3b0f70', 2 '#8c2981', 3 '#de4968', 4 '#fe9f6d', 5 '#fcfdbf')",
         "(0 '#1c1c3a', 1 '#7a3b69', 2 '#d9704f', 3 '#f6c25b', 4 '#fffbe0')",
         "(0 '#" LOST "', 0.5 '#e9e9e9', 1 '#" GAINED "')"};
-    const double *const value[] = {what->temperature, what->absorbed, what->power};
+    const double *const value[] = {what->result->temperature, what->light ? what->light->absorbed : NULL,
+                                   what->result->power};
     const double most = shown == TEMPERATURE ? 1 : power_shown(value[shown], what->bed->n);
     const struct prefixed unit = unit_prefixed(shown == TEMPERATURE ? 0 : most, shown == TEMPERATURE ? "K" : "W");
-    const struct plot_colours colours = {
-        .value = value[shown], .unit = unit.scale, .wall_value = shown == TEMPERATURE ? what->wall_temperature : NULL};
+    const struct plot_colours colours = {.value = value[shown],
+                                         .unit = unit.scale,
+                                         .wall_value = shown == TEMPERATURE ? what->result->wall_temperature : NULL};
     if (!(most > 0)) return message_memory();
     fprintf(script, "set palette defined %s\nset title '%s [%s], slice at %s'\nset format cb '%%.4g'; ", palette[shown],
             title[shown], unit.name, slice->place);
@@ -153,14 +162,14 @@ static void print_layers_axis(FILE *script, const struct layers *layers, const c
 }
 
 /* Draws gains and losses of layers, and their sums. */
-static void print_layers(FILE *script, const struct plot_slice *slice, const struct heat_shown *what) {
+static void print_layers(FILE *script, const struct plot_slice *slice, const struct contents *what) {
     const struct layers layers = layers_of(what->bed, NULL);
     struct turnover layer[LAYERS_MAX] = {{0, 0}};
     double most = 0;
     for (uint32_t i = 0; i < what->bed->n; ++i) {
         const int k = layer_of(&layers, i);
-        layer[k].gained += fmax(what->power[i], 0);
-        layer[k].lost += fmax(-what->power[i], 0);
+        layer[k].gained += fmax(what->result->power[i], 0);
+        layer[k].lost += fmax(-what->result->power[i], 0);
     }
     for (int k = 0; k < layers.n; ++k) most = fmax(most, fmax(layer[k].gained, layer[k].lost));
     const struct prefixed unit = unit_prefixed(most, "W");
@@ -182,7 +191,7 @@ static void print_layers(FILE *script, const struct plot_slice *slice, const str
 }
 
 /* Draws mean, least and largest temperature of each layer, or of each ring within a tube. */
-static void print_profile(FILE *script, const struct plot_slice *slice, const struct heat_shown *what,
+static void print_profile(FILE *script, const struct plot_slice *slice, const struct contents *what,
                           const fibrad_wall *tube) {
     const struct layers layers = layers_of(what->bed, tube);
     struct {
@@ -193,10 +202,10 @@ static void print_profile(FILE *script, const struct plot_slice *slice, const st
         layer[k].sum = layer[k].n = 0, layer[k].least = INFINITY, layer[k].most = -INFINITY;
     for (uint32_t i = 0; i < what->bed->n; ++i) {
         const int k = layer_of(&layers, i);
-        if (isnan(what->temperature[i])) continue; /* emissivity 0: no temperature */
-        layer[k].sum += what->temperature[i];
-        layer[k].least = fmin(layer[k].least, what->temperature[i]);
-        layer[k].most = fmax(layer[k].most, what->temperature[i]);
+        if (isnan(what->result->temperature[i])) continue; /* emissivity 0: no temperature */
+        layer[k].sum += what->result->temperature[i];
+        layer[k].least = fmin(layer[k].least, what->result->temperature[i]);
+        layer[k].most = fmax(layer[k].most, what->result->temperature[i]);
         ++layer[k].n;
     }
     fputs("$layers << END\n", script);
@@ -227,24 +236,24 @@ static void print_bar(FILE *script, int at, const char *what, const char *betwee
 }
 
 /* Draws a bar for spheres, each wall and the surroundings. If there are many bars, their names are rotated. */
-static void print_bars(FILE *script, const struct heat_shown *what) {
+static void print_bars(FILE *script, const struct contents *what) {
     const struct turnover all = turnover_of(what);
-    const bool open = !isnan(what->surroundings_power), many = what->walls->count + open > 4;
+    const bool open = !isnan(what->sources->surroundings), many = what->walls->count + open > 4;
     const char *between = many ? ", " : "\\n";
-    double most = fmax(fmax(all.gained, all.lost), open ? fabs(what->surroundings_power) : 0);
+    double most = fmax(fmax(all.gained, all.lost), open ? fabs(what->result->surroundings_power) : 0);
     int bars = 0;
-    for (uint32_t k = 0; k < what->walls->count; ++k) most = fmax(most, fabs(what->wall_power[k]));
+    for (uint32_t k = 0; k < what->walls->count; ++k) most = fmax(most, fabs(what->result->wall_power[k]));
     const struct prefixed unit = unit_prefixed(most, "W");
     fputs("$bars << END\n", script);
     print_bar(script, bars++, many ? "spheres that gain" : "spheres\\nthat gain", between, NAN,
               all.gained / unit.scale);
     print_bar(script, bars++, many ? "spheres that lose" : "spheres\\nthat lose", between, NAN, -all.lost / unit.scale);
     for (uint32_t k = 0; k < what->walls->count; ++k)
-        print_bar(script, bars++, wall_name(what->walls, k), between, what->wall_temperature[k],
-                  what->wall_power[k] / unit.scale);
+        print_bar(script, bars++, wall_name(what->walls, k), between, what->result->wall_temperature[k],
+                  what->result->wall_power[k] / unit.scale);
     if (open)
-        print_bar(script, bars++, "surroundings", between, what->surroundings_temperature,
-                  what->surroundings_power / unit.scale);
+        print_bar(script, bars++, "surroundings", between, what->sources->surroundings,
+                  what->result->surroundings_power / unit.scale);
     fprintf(script,
             "END\n"
             "set title 'Where the heat goes: gained above, lost below [%s]'\n"
@@ -273,11 +282,11 @@ static const fibrad_wall *cylinder_of(const struct walls *walls) {
 }
 
 /* Draws two slices, or a slice and temperatures against radius. */
-static int print_slices(FILE *script, const struct plot_slice *slice, const struct heat_shown *what) {
+static int print_slices(FILE *script, const struct plot_slice *slice, const struct contents *what) {
     const uint32_t n = what->bed->n;
-    const bool shows[QUANTITIES] = {varies(what->temperature, n), what->absorbed && varies(what->absorbed, n),
-                                    varies(what->power, n)};
-    const fibrad_wall *tube = what->found && !what->absorbed ? cylinder_of(what->walls) : NULL;
+    const bool shows[QUANTITIES] = {varies(what->result->temperature, n),
+                                    what->light && varies(what->light->absorbed, n), varies(what->result->power, n)};
+    const fibrad_wall *tube = any_found(what) && !what->light ? cylinder_of(what->walls) : NULL;
     enum shown shown[QUANTITIES];
     int count = 0;
     for (enum shown k = TEMPERATURE; k < QUANTITIES; ++k)
@@ -289,21 +298,22 @@ static int print_slices(FILE *script, const struct plot_slice *slice, const stru
     } else if (!status) {
         const struct plot_plane other = {.axis = slice->across == 1 ? 'x' : 'y'};
         struct plot_slice second = *slice;
-        if (count == 1) plot_slice_of(&second, &other, what->bed, what->walls, what->metres);
+        if (count == 1) plot_slice_of(&second, &other, what->bed, what->walls);
         status = print_panel(script, shown[count > 1], &second, what);
     }
     return status;
 }
 
-int plot_heat(const struct output *output, const char *name, const struct heat_shown *what) {
+int plot_heat(const struct output *output, const char *name, const struct contents *what,
+              const struct plot_plane *plane) {
     struct gnuplot gnuplot;
     struct plot_slice slice;
     int status = gnuplot_start(&gnuplot, output);
     if (status) return status;
-    plot_slice_of(&slice, &what->plane, what->bed, what->walls, what->metres);
+    plot_slice_of(&slice, plane, what->bed, what->walls);
     print_head(gnuplot.script, output, name, what);
     status = print_slices(gnuplot.script, &slice, what);
-    if (what->found)
+    if (any_found(what))
         print_profile(gnuplot.script, &slice, what, NULL);
     else
         print_layers(gnuplot.script, &slice, what);

@@ -132,15 +132,16 @@ static void include_line(void *context, double end[2][2], uint32_t k) {
 }
 
 /* Chooses the unit of the axes. */
-static void choose_scale(struct plot_slice *slice, double metres) {
-    const bool known = metres > 0;
+static void choose_scale(struct plot_slice *slice) {
+    const bool known = slice->bed->metres > 0;
+    const double metres = known ? slice->bed->metres : 1;
     double largest = 0;
     for (int up = 0; up < 2; ++up) {
         const int axis = slice->axis[up];
-        largest = fmax(largest, fmax(fabs(slice->low[axis]), fabs(slice->high[axis])) * (known ? metres : 1));
+        largest = fmax(largest, fmax(fabs(slice->low[axis]), fabs(slice->high[axis])) * metres);
     }
     const struct prefixed unit = unit_prefixed(largest, known ? "m" : "");
-    slice->scale = unit.scale / (known ? metres : 1);
+    slice->scale = unit.scale / metres;
     snprintf(slice->unit, sizeof slice->unit, "%s", unit.name);
     const double place = slice->at / slice->scale;
     snprintf(slice->place, sizeof slice->place, "%c = %.4g%s%s", 'x' + slice->across, place + 0.0, /* no -0 */
@@ -151,7 +152,7 @@ static void choose_scale(struct plot_slice *slice, double metres) {
 }
 
 void plot_slice_of(struct plot_slice *slice, const struct plot_plane *plane, const struct bed *bed,
-                   const struct walls *walls, double metres) {
+                   const struct walls *walls) {
     const int across = plane->axis ? plane->axis - 'x' : 1;
     *slice = (struct plot_slice){.bed = bed, .walls = walls, .across = across, .at = plane->placed ? plane->at : NAN};
     slice->axis[0] = across == 0, slice->axis[1] = across == 2 ? 1 : 2;
@@ -166,7 +167,7 @@ void plot_slice_of(struct plot_slice *slice, const struct plot_plane *plane, con
     memcpy(widening.low, slice->low, sizeof widening.low);
     memcpy(widening.high, slice->high, sizeof widening.high);
     see_walls(slice, include_line, &widening);
-    choose_scale(slice, metres);
+    choose_scale(slice);
 }
 
 /* Where and how lines of walls are printed. */

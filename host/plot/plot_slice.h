@@ -33,9 +33,9 @@ struct plot_slice {
     char place[64];            /* "y = 3 mm", for titles */
 };
 
-/* Makes a slice through a bed. metres: the bed's unit of length [m]; 0: not known. */
+/* Makes a slice through a bed. */
 void plot_slice_of(struct plot_slice *slice, const struct plot_plane *plane, const struct bed *bed,
-                   const struct walls *walls, double metres);
+                   const struct walls *walls);
 
 /* What colours a slice. */
 struct plot_colours {

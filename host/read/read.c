@@ -56,7 +56,7 @@ static bool wants_frame(const struct reader *r) {
 static int at_end(struct lines *lines, bool *end) {
     bool more;
     int status;
-    while ((status = lines_next(lines, &more)) == STATUS_OK && more && lines_blank(lines)) continue;
+    while (!(status = lines_next(lines, &more)) && more && lines_blank(lines)) continue;
     *end = !status && !more && !lines->truncated;
     if (!status && more) lines_hold(lines);
     return status;

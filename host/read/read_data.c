@@ -115,7 +115,7 @@ static int read_header(struct source *source, int64_t *atoms, char *style, struc
     bool more, header = true;
     int status = lines_next(lines, &more);
     if (!status && more) read_comment(lines, style, bed);
-    while (!status && (status = lines_next(lines, &more)) == STATUS_OK && more) {
+    while (!status && !(status = lines_next(lines, &more)) && more) {
         char word[WORD] = "";
         char *comment = strchr(lines->text, '#');
         if (comment) *comment++ = 0;
@@ -142,7 +142,7 @@ static int guess_style(struct source *source, char *style) {
     int n = 0, length;
     bool more;
     int status;
-    while ((status = lines_next(&source->lines, &more)) == STATUS_OK && more && lines_blank(&source->lines)) continue;
+    while (!(status = lines_next(&source->lines, &more)) && more && lines_blank(&source->lines)) continue;
     if (status || !more) return status;
     snprintf(line, sizeof line, "%.*s", (int)strcspn(source->lines.text, "#"), source->lines.text);
     for (const char *text = line; sscanf(text, "%*s%n", &length) != EOF; text += length) ++n;
@@ -183,7 +183,7 @@ static int read_data(struct source *source, struct bed *bed) {
     int status = read_header(source, &atoms, style, bed);
     if (!status && !*style) status = guess_style(source, style);
     if (!status) status = find_style(source, style, &more, bed);
-    while (!status && (status = lines_next(&source->lines, &there)) == STATUS_OK && there)
+    while (!status && !(status = lines_next(&source->lines, &there)) && there)
         if (!lines_blank(&source->lines)) {
             lines_hold(&source->lines);
             break;

@@ -56,7 +56,7 @@ static int skip_units(struct source *source, bool *more) {
 /* Skips the lines up to the next ITEM. */
 static int skip_section(struct source *source, bool *more) {
     int status;
-    while ((status = lines_next(&source->lines, more)) == STATUS_OK && *more)
+    while (!(status = lines_next(&source->lines, more)) && *more)
         if (item(source, "ITEM:")) {
             lines_hold(&source->lines);
             break;
@@ -69,7 +69,7 @@ static int skip_dump(struct source *source, enum found *found, char *lack) {
     bool more, begun = false;
     int status;
     *found = FOUND_END;
-    while ((status = lines_next(&source->lines, &more)) == STATUS_OK && more) {
+    while (!(status = lines_next(&source->lines, &more)) && more) {
         if (lines_blank(&source->lines)) continue;
         if (!item(source, "ITEM:"))
             return source_fail(source, "more atoms than declared, or a line that belongs to no section");

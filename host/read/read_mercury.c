@@ -59,7 +59,7 @@ static int mercury_head(struct source *source, double head[8]) {
 static int mercury_count(struct source *source, int64_t *spheres, bool *more) {
     int status;
     char word[32] = "";
-    while ((status = lines_next(&source->lines, more)) == STATUS_OK && *more && lines_blank(&source->lines)) continue;
+    while (!(status = lines_next(&source->lines, more)) && *more && lines_blank(&source->lines)) continue;
     if (status || !*more) return status;
     sscanf(source->lines.text, "%31s", word);
     return source_count(source, word, spheres);

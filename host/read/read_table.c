@@ -50,7 +50,7 @@ static int find_header(struct source *source, struct header *header, bool *of_ya
     struct lines *lines = &source->lines;
     bool more;
     int status;
-    while ((status = lines_next(lines, &more)) == STATUS_OK && more) {
+    while (!(status = lines_next(lines, &more)) && more) {
         if (*lines->text == '#') status = take_comment(header, of_yade, lines);
         if (status) return status;
         if (*lines->text == '#' || lines_blank(lines)) continue;
@@ -87,7 +87,7 @@ static int read_table(struct source *source, struct bed *bed) {
     bool more, of_yade = false;
     int status = find_header(source, &header, &of_yade, &separator);
     if (!status && header.names.n > 0) status = find_columns(source, &header, separator, bed);
-    while (!status && (status = lines_next(lines, &more)) == STATUS_OK && more)
+    while (!status && !(status = lines_next(lines, &more)) && more)
         if (*lines->text != '#' && !lines_blank(lines)) status = read_row(source, &header, of_yade, separator, bed);
     header_free(&header);
     return status;

@@ -36,7 +36,7 @@ static int skip_xyz(struct source *source, enum found *found, char *lack) {
     char word[32];
     int status;
     *found = FOUND_END;
-    while ((status = lines_next(&source->lines, &more)) == STATUS_OK && more && lines_blank(&source->lines)) continue;
+    while (!(status = lines_next(&source->lines, &more)) && more && lines_blank(&source->lines)) continue;
     if (status || !more) return status;
     status = source_count(source, source_word(source, word, sizeof word), &atoms);
     if (!status) status = source_skip(source, 1, found, lack);
@@ -166,7 +166,7 @@ static int read_xyz(struct source *source, struct bed *bed) {
     int64_t atoms = 0;
     char word[32], properties[4000];
     int status;
-    while ((status = lines_next(&source->lines, &more)) == STATUS_OK && lines_blank(&source->lines)) continue;
+    while (!(status = lines_next(&source->lines, &more)) && lines_blank(&source->lines)) continue;
     if (!status) status = source_count(source, source_word(source, word, sizeof word), &atoms);
     if (!status) status = lines_next(&source->lines, &more);
     if (status || atoms == 0) return status;

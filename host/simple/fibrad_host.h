@@ -3,9 +3,11 @@
  * Index
  *   run      fibrad_run: threads, progress, cancelling
  *   factors  fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_exchange_wall_row,
- * fibrad_side_views, fibrad_displacements heat     fibrad_radiation_new, _move, _solve, _sides, _settle, _shine,
- * _describe, _free time     fibrad_transient_new, _move, _powers, _sides, _shine, _advance, _describe, _free contacts
- * fibrad_contacts_find, _conduct, _free kernel   fibrad_heap_resize, fibrad_host_sizeof
+ *            fibrad_side_views, fibrad_displacements
+ *   heat     fibrad_radiation_new, _move, _solve, _sides, _settle, _shine, _describe, _free
+ *   time     fibrad_transient_new, _move, _powers, _sides, _shine, _advance, _describe, _free
+ *   contacts fibrad_contacts_find, _conduct, _free
+ *   kernel   fibrad_heap_resize, fibrad_host_sizeof
  *
  * Example   fibrad_bed_factors *bed;
  *           int status = fibrad_view_factors(NULL, &spheres, NULL, NULL, &bed);

@@ -107,7 +107,8 @@ static int begin(fibrad_network *w, fibrad_team *team, const fibrad_heat_sources
 
 /* Finds the next search direction: the preconditioned residual plus `keep` times the last direction. Returns residual
  * times preconditioned residual. *missing: 1 if a sphere misses more power than both `allowed` and rounding error. */
-static double turn(fibrad_network *w, const fibrad_heat_sources *s, const double *allowed, double last, int *missing) {
+static double next_direction(fibrad_network *w, const fibrad_heat_sources *s, const double *allowed, double last,
+                             int *missing) {
     const double rounding = 1e-14;
     const uint32_t n = w->factors->matrix.n;
     double product = 0;
@@ -127,7 +128,7 @@ static double turn(fibrad_network *w, const fibrad_heat_sources *s, const double
 }
 
 /* Moves the emissions along the search direction to the least error. */
-static void go(fibrad_network *w, const fibrad_heat_sources *s, double product) {
+static void move_emissions(fibrad_network *w, const fibrad_heat_sources *s, double product) {
     const uint32_t n = w->factors->matrix.n;
     double curvature = 0;
     for (uint32_t i = 0; i < n; ++i) curvature += w->direction[i] * w->product[i];
@@ -167,11 +168,11 @@ static int find_temperatures(const fibrad_network *w, const fibrad_heat_sources 
 int fibrad_network_solve(fibrad_network *w, fibrad_team *team, const fibrad_heat_sources *s, const double *allowed,
                          fibrad_heat_result *result) {
     int missing, status = begin(w, team, s);
-    double product = turn(w, s, allowed, 0, &missing);
+    double product = next_direction(w, s, allowed, 0, &missing);
     for (result->sweeps = 1; !status && missing && result->sweeps < ITERATIONS_MAX; ++result->sweeps) {
         status = multiply(w, team);
-        go(w, s, product);
-        product = turn(w, s, allowed, product, &missing);
+        move_emissions(w, s, product);
+        product = next_direction(w, s, allowed, product, &missing);
     }
     for (uint32_t i = 0; i < w->factors->matrix.n; ++i) w->storage[i] = 0, w->direction[i] = w->emission[i];
     if (!status) status = multiply(w, team);

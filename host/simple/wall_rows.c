@@ -14,21 +14,24 @@
 
 enum { VIEWS_AT_ONCE = 16 };
 
+/* Walls one behind the other, or one opening. */
 struct wall_tasks {
     fibrad_job *job;
     fibrad_wall_rule rule;
+    double tolerance;                 /* 0: none */
+    uint32_t first, walls;            /* number of the first one, and how many */
     uint32_t paths[FIBRAD_WALLS_MAX]; /* from each wall; 0: its row is not computed in this round */
     fibrad_wall_row part[FIBRAD_WALLS_MAX][FIBRAD_WALL_PARTS];
 };
 
 static int run_part(void *tasks, int thread, uint32_t task) {
     struct wall_tasks *walls = tasks;
-    const uint32_t wall = task / FIBRAD_WALL_PARTS, part = task % FIBRAD_WALL_PARTS;
+    const uint32_t k = task / FIBRAD_WALL_PARTS, part = task % FIBRAD_WALL_PARTS;
     fibrad_wall_rule rule = walls->rule;
-    rule.paths = walls->paths[wall];
+    rule.paths = walls->paths[k];
     if (rule.paths == 0) return FIBRAD_OK;
-    return fibrad_exchange_wall(walls->job->scene, &walls->job->team.work[thread], wall, &rule, part,
-                                &walls->part[wall][part], NULL);
+    return fibrad_exchange_wall(walls->job->scene, &walls->job->team.work[thread], walls->first + k, &rule, part,
+                                &walls->part[k][part], NULL);
 }
 
 /* The next number of paths if the error of `paths` is `ratio` times the tolerance. The error falls about as paths^-0.7:
@@ -47,56 +50,45 @@ uint32_t fibrad_job_wall_paths(const fibrad_job *job, uint64_t paths) {
     return even;
 }
 
-int fibrad_job_walls(fibrad_job *job, const fibrad_wall_rule *rule, double tolerance, fibrad_wall_row *row) {
-    const uint32_t walls = job->facts.walls;
-    struct wall_tasks tasks = {.job = job, .rule = *rule};
+/* Follows the paths of all tasks, more and more until each wall has its tolerance. row [walls]: those with paths. */
+static int follow_paths(struct wall_tasks *tasks, fibrad_wall_row *row) {
+    fibrad_job *job = tasks->job;
+    const double tolerance = tasks->tolerance;
     int status = FIBRAD_OK;
-    for (uint32_t b = 0; b < walls; ++b) {
-        row[b] = (fibrad_wall_row){0};
-        tasks.paths[b] = isfinite(fibrad_scene_wall_area(job->scene, b)) ? rule->paths : 0;
-    }
     for (bool again = true; again && !status;) {
-        status = fibrad_team_run(&job->team, "walls", walls * FIBRAD_WALL_PARTS, 1, run_part, &tasks, NULL);
+        status = fibrad_team_run(&job->team, "walls", tasks->walls * FIBRAD_WALL_PARTS, 1, run_part, tasks, NULL);
         if (job->run) job->run->fault.triangle = job->team.triangle;
         again = false;
-        for (uint32_t b = 0; b < walls && !status; ++b) {
-            if (tasks.paths[b] == 0) continue;
-            status = fibrad_exchange_wall_mean(tasks.part[b], &row[b]);
-            const bool enough = !(tolerance > 0 && row[b].error > tolerance) || tasks.paths[b] == PATHS_MOST;
-            tasks.paths[b] = enough ? 0 : more_paths(tasks.paths[b], row[b].error / tolerance);
+        for (uint32_t b = 0; b < tasks->walls && !status; ++b) {
+            uint32_t *paths = &tasks->paths[b];
+            if (*paths == 0) continue;
+            status = fibrad_exchange_wall_mean(tasks->part[b], &row[b]);
+            const bool enough = !(tolerance > 0 && row[b].error > tolerance) || *paths >= PATHS_MOST;
+            *paths = enough ? 0 : more_paths(*paths, row[b].error / tolerance);
             again = again || !enough;
         }
     }
     return status;
 }
 
-/* The paths of one wall or opening. */
-struct wall_paths {
-    fibrad_job job;
-    uint32_t wall;
-    fibrad_wall_rule rule;
-    fibrad_wall_row part[FIBRAD_WALL_PARTS];
-};
-
-static int run_paths(void *wall_paths, int thread, uint32_t part) {
-    struct wall_paths *w = wall_paths;
-    return fibrad_exchange_wall(w->job.scene, &w->job.team.work[thread], w->wall, &w->rule, part, &w->part[part], NULL);
+int fibrad_job_walls(fibrad_job *job, const fibrad_wall_rule *rule, double tolerance, fibrad_wall_row *row) {
+    struct wall_tasks tasks = {.job = job, .rule = *rule, .tolerance = tolerance, .walls = job->facts.walls};
+    for (uint32_t b = 0; b < tasks.walls; ++b) {
+        row[b] = (fibrad_wall_row){0};
+        tasks.paths[b] = isfinite(fibrad_scene_wall_area(job->scene, b)) ? rule->paths : 0;
+    }
+    return follow_paths(&tasks, row);
 }
 
 int fibrad_exchange_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t wall,
                              const fibrad_wall_rule *rule, double tolerance, fibrad_run *run, fibrad_wall_row *row) {
+    fibrad_job job;
     if (!rule || !row) return FIBRAD_E_ARGUMENT;
-    struct wall_paths w = {.wall = wall, .rule = *rule};
-    int status = fibrad_job_open(&w.job, config, spheres, run);
-    if (w.rule.paths == 0) w.rule.paths = FIBRAD_WALL_PATHS_DEFAULT;
-    for (bool again = true; again && !status;) {
-        status = fibrad_team_run(&w.job.team, "walls", FIBRAD_WALL_PARTS, 1, run_paths, &w, NULL);
-        if (run && status == FIBRAD_E_BACK) run->fault.triangle = w.job.team.triangle;
-        if (!status) status = fibrad_exchange_wall_mean(w.part, row);
-        again = !status && tolerance > 0 && row->error > tolerance && w.rule.paths < PATHS_MOST;
-        if (again) w.rule.paths = more_paths(w.rule.paths, row->error / tolerance);
-    }
-    fibrad_job_close(&w.job);
+    struct wall_tasks tasks = {.job = &job, .rule = *rule, .tolerance = tolerance, .first = wall, .walls = 1};
+    tasks.paths[0] = rule->paths ? rule->paths : FIBRAD_WALL_PATHS_DEFAULT;
+    int status = fibrad_job_open(&job, config, spheres, run);
+    if (!status) status = follow_paths(&tasks, row);
+    fibrad_job_close(&job);
     return status;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "cli/memory.h"
 #include "cli/message.h"
 #include "text/header.h"
 #include "text/unit.h"
@@ -39,11 +40,10 @@ enum { X, Y };
 static int curve_grow(struct curve *curve) {
     if (curve->n & (curve->n - 1)) return STATUS_OK; /* room doubles when n is a power of 2 */
     const size_t room = curve->n ? 2 * curve->n : 1;
-    double *x = realloc(curve->x, room * sizeof *x);
-    if (x) curve->x = x;
-    double *y = realloc(curve->y, room * sizeof *y);
-    if (y) curve->y = y;
-    return x && y ? STATUS_OK : message_memory();
+    bool good = true;
+    curve->x = memory_resized(curve->x, room * sizeof *curve->x, &good);
+    curve->y = memory_resized(curve->y, room * sizeof *curve->y, &good);
+    return good ? STATUS_OK : message_memory();
 }
 
 /* ---- header ----------------------------------------------------------------------------------------------------- */

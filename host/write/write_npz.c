@@ -24,10 +24,20 @@ struct member {
     uint32_t crc;
 };
 
-/* Writes a number in `bytes` bytes, the lowest first. */
-static void put_little(FILE *file, uint64_t value, int bytes) {
-    for (; bytes > 0; --bytes, value >>= 8) putc((int)(value & 255), file);
+/* Writes numbers in so many bytes each, the lowest first. */
+struct little {
+    uint64_t value;
+    int bytes;
+};
+
+static void put_all(FILE *file, const struct little *fields, size_t n) {
+    for (size_t k = 0; k < n; ++k)
+        for (int byte = 0; byte < fields[k].bytes; ++byte) putc((int)(fields[k].value >> 8 * byte & 255), file);
 }
+
+#define PUT(file, ...)                                                                                                 \
+    put_all(file, (const struct little[]){__VA_ARGS__},                                                                \
+            sizeof(const struct little[]){__VA_ARGS__} / sizeof(struct little))
 
 static void make_header(const struct member *member, unsigned char header[HEADER]) {
     static const char magic[] = "\x93NUMPY\1";
@@ -52,23 +62,18 @@ static void make_header(const struct member *member, unsigned char header[HEADER
     header[HEADER - 1] = '\n';
 }
 
-/* Writes the fields that are the same in local and central headers, from the version to the length of the name. */
+/* Writes the fields that are the same in local and central headers: version that reads ZIP64, flags, stored, time and
+ * date (1 January 1980, so that equal matrices make equal files), checksum, both sizes (they are in the ZIP64 field),
+ * and the length of the name. */
 static void put_common(FILE *file, const struct member *member) {
-    put_little(file, 45, 2);         /* version that reads ZIP64 */
-    put_little(file, 0, 2);          /* flags */
-    put_little(file, 0, 2);          /* stored */
-    put_little(file, 0x00210000, 4); /* time and date: 1 January 1980, so that equal matrices make equal files */
-    put_little(file, member->crc, 4);
-    put_little(file, UINT32_MAX, 4); /* both sizes are in the ZIP64 field */
-    put_little(file, UINT32_MAX, 4);
-    put_little(file, strlen(member->array.name), 2);
+    PUT(file, {45, 2}, {0, 2}, {0, 2}, {0x00210000, 4}, {member->crc, 4}, {UINT32_MAX, 4}, {UINT32_MAX, 4},
+        {strlen(member->array.name), 2});
 }
 
+/* Writes the ZIP64 field, which is `field` bytes long. */
 static void put_sizes(FILE *file, const struct member *member, uint64_t field) {
-    put_little(file, 1, 2); /* the ZIP64 field */
-    put_little(file, field, 2);
-    put_little(file, HEADER + member->bytes, 8);
-    put_little(file, HEADER + member->bytes, 8);
+    const uint64_t size = HEADER + member->bytes;
+    PUT(file, {1, 2}, {field, 2}, {size, 8}, {size, 8});
 }
 
 static int write_member(FILE *file, struct member *member) {
@@ -82,9 +87,9 @@ static int write_member(FILE *file, struct member *member) {
         crc = crc32_z(crc, data + done, left < BLOCK ? left : BLOCK);
     }
     member->crc = (uint32_t)crc;
-    put_little(file, 0x04034b50, 4);
+    PUT(file, {0x04034b50, 4});
     put_common(file, member);
-    put_little(file, 20, 2);
+    PUT(file, {20, 2});
     fputs(member->array.name, file);
     put_sizes(file, member, 16);
     fwrite(header, 1, HEADER, file);
@@ -103,45 +108,22 @@ static uint64_t member_size(const struct member *member) {
 
 static uint64_t entry_size(const struct member *member) { return 46 + strlen(member->array.name) + 28; }
 
+/* Writes an entry of the directory. Behind the length of the ZIP64 field: comment, disk, attributes, and the offset,
+ * which is in the ZIP64 field, too. */
 static void put_entry(FILE *file, const struct member *member) {
-    put_little(file, 0x02014b50, 4);
-    put_little(file, 45, 2);
+    PUT(file, {0x02014b50, 4}, {45, 2});
     put_common(file, member);
-    put_little(file, 28, 2);
-    put_little(file, 0, 2);          /* comment */
-    put_little(file, 0, 2);          /* disk */
-    put_little(file, 0, 2);          /* internal attributes */
-    put_little(file, 0, 4);          /* external attributes */
-    put_little(file, UINT32_MAX, 4); /* the offset is in the ZIP64 field, too */
+    PUT(file, {28, 2}, {0, 2}, {0, 2}, {0, 2}, {0, 4}, {UINT32_MAX, 4});
     fputs(member->array.name, file);
     put_sizes(file, member, 24);
-    put_little(file, member->offset, 8);
+    PUT(file, {member->offset, 8});
 }
 
-/* Writes the end of the directory in ZIP64, and the old form with all bits set, which refers to ZIP64. */
+/* Writes the end of the directory in ZIP64, where it is, and the old form with all bits set, which refers to ZIP64. */
 static void put_end(FILE *file, uint64_t members, uint64_t offset, uint64_t size) {
-    put_little(file, 0x06064b50, 4);
-    put_little(file, 44, 8);
-    put_little(file, 45, 2);
-    put_little(file, 45, 2);
-    put_little(file, 0, 8); /* disks */
-    put_little(file, members, 8);
-    put_little(file, members, 8);
-    put_little(file, size, 8);
-    put_little(file, offset, 8);
-
-    put_little(file, 0x07064b50, 4);
-    put_little(file, 0, 4);
-    put_little(file, offset + size, 8);
-    put_little(file, 1, 4); /* disks in all */
-
-    put_little(file, 0x06054b50, 4);
-    put_little(file, 0, 4); /* disks */
-    put_little(file, members, 2);
-    put_little(file, members, 2);
-    put_little(file, UINT32_MAX, 4);
-    put_little(file, UINT32_MAX, 4);
-    put_little(file, 0, 2); /* comment */
+    PUT(file, {0x06064b50, 4}, {44, 8}, {45, 2}, {45, 2}, {0, 8}, {members, 8}, {members, 8}, {size, 8}, {offset, 8});
+    PUT(file, {0x07064b50, 4}, {0, 4}, {offset + size, 8}, {1, 4});
+    PUT(file, {0x06054b50, 4}, {0, 4}, {members, 2}, {members, 2}, {UINT32_MAX, 4}, {UINT32_MAX, 4}, {0, 2});
 }
 
 static struct member make_member(const struct array *array) {

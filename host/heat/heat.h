@@ -1,0 +1,193 @@
+/* heat.h - a run of `fibrad heat`: what the options say, the bed in hand, its heat problem and the result.
+ * SPDX-License-Identifier: MIT */
+#ifndef HEAT_H
+#define HEAT_H
+
+#include "conduct/contact_option.h"
+#include "heat/heat_given.h"
+#include "heat/light_option.h"
+
+#define SECONDS_MAX 1e15
+
+/* Rows of a table of options, without the outermost braces, for a request with a field `time`. */
+#define OPTIONS_TIME(request)                                                                                          \
+    {0, "until", "S", "follow the temperatures up to S seconds, from those given [powers at one time]",                \
+     TO_NUMBER(request, time.until, 1 / SECONDS_MAX, SECONDS_MAX)},                                                    \
+        {0, "heat-capacity", "C",                                                                                      \
+         "specific heat of the spheres, a number, TYPE:C,..., or a column of the file [J/(kg K)]",                     \
+         TO_FUNCTION(capacity_option, request, time.capacity)},                                                        \
+        {0, "density", "RHO", "density of the spheres, a number, TYPE:RHO,..., or a column of the file [kg/m3]",       \
+         TO_FUNCTION(density_option, request, time.density)},                                                          \
+        {0, "step", "S", "longest step in seconds, or auto for steps with errors of 1e-4 [auto]",                      \
+         TO_FUNCTION(step_option, request, time.step)},                                                                \
+        {0, "times", "LIST", "times of output in seconds, 0,10,60 for example [the end]",                              \
+         TO_TEXT(request, time.times)},                                                                                \
+    {                                                                                                                  \
+        0, "every", "S", "output every S seconds, from 0 on",                                                          \
+            TO_NUMBER(request, time.every, 1 / SECONDS_MAX, SECONDS_MAX)                                               \
+    }
+/* Arguments of the options. Begin with zeroes. */
+struct time_options {
+    double until, step, every; /* [s] 0: not given, automatic, not given */
+    struct quantity capacity, density;
+    const char *times;
+};
+
+/* Functions of the rows above. */
+option_take capacity_option, density_option, step_option;
+
+/* Checks the options when all have been read, and asks `bed` for the columns they name. Without --until the other
+ * options are refused. Status 0 or STATUS_USAGE. */
+int time_check(struct time_options *time, struct bed_options *bed);
+
+/* The emissivity of a bed's open face: what spheres and walls of one temperature send out through the open faces,
+ * divided by what black faces would send out. */
+struct face {
+    bool wanted; /* by the options; the rest is of the bed in hand */
+    double area; /* of all open faces [L^2] */
+    double emissivity, error;
+};
+
+/* Quantities of a triangle: the sum of the fluxes of its two sides, and the temperature whose T^4 is the mean of T^4 of
+ * both sides. */
+enum { TRIANGLE_FLUX, TRIANGLE_TEMPERATURE, TRIANGLE_QUANTITIES };
+
+/* The figures of the summary. */
+struct heat_figures {
+    double power_rms;  /* root mean square power of a sphere [W] */
+    double largest;    /* largest power of a sphere, a wall or the surroundings [W] */
+    double emitted;    /* emitted by all spheres [W] */
+    double throughput; /* root mean square over spheres of the larger of emitted and absorbed power [W] */
+    double error;      /* root mean square error of a sphere's power [W] */
+    /* largest error of a wall: that of its power over the larger of power and absorbed power, or, where the temperature
+     * was found, that of sigma T^4, relative */
+    double wall_error;
+    double balance_of_emission; /* sum of all powers over that of the larger of emitted and absorbed power of spheres */
+    uint32_t unknown;           /* spheres whose temperatures were found; the figures below are of these spheres */
+    double coldest, hottest, temperature_mean; /* [K] */
+    double temperature_error;                  /* root mean square error [K] */
+    double emission_error;                     /* root mean square error of sigma T^4 over its root mean square */
+    /* of spheres that conduct */
+    double surface_min, surface_max; /* [K] least and largest temperature of all surfaces */
+    double surface_span;             /* [K] largest difference on the surface of a sphere */
+    double surface_error;            /* [K] root mean square error of least and largest temperatures */
+    double centre_max;               /* [K] */
+};
+
+struct heat {
+    /* ---- options; the same for all beds ---- */
+    struct bed_options options; /* first, for OPTIONS_INPUT */
+    struct given_options given;
+    struct time_options time;
+    struct light_options light;
+    struct contact_options contacts;
+    struct face face;
+    const char *wall_emissivities;
+    struct quantity emissivities, solid;
+    fibrad_heat_config config;            /* directions 0: chosen by the emissivities of the bed */
+    bool uniform, by_patches, by_factors; /* --model; in time only: none of them means corrected factors */
+    /* --error: error allowed in powers, and in sigma T^4 of temperatures that are found, over their root mean squares;
+     * 0: not given */
+    double error;
+
+    /* ---- the bed in hand, whose unit of length is known: what is given ---- */
+    const struct bed *bed;
+    struct walls walls;
+    struct given values;                            /* temperatures and powers */
+    double *emissivity, wall_emissivity[WALLS_MAX]; /* [spheres] changes where a table over T is given */
+    /* [spheres] conductivities of the solid [W/(m K)], which change where a table over T is given, and the same in the
+     * unit of sources.conductivity; NULL: spheres have one temperature each */
+    double *conductivity, *conductivity_scaled;
+    double per_watt;               /* sources.conductivity over conductivity */
+    struct light_state lit;        /* light from outside; its options NULL: there is none */
+    struct contact_state touching; /* what conducts between spheres; options NULL: nothing does */
+    fibrad_heat_sources sources;   /* [K]; surroundings NaN: the bed is closed; powers in watts only in time */
+
+    /* ---- its result ---- */
+    fibrad_heat_result result;     /* [W] */
+    double of_walls[6][WALLS_MAX]; /* arrays of the result */
+    struct side_arrays triangles;  /* if an output has triangles */
+    fibrad_heat_config used;       /* the last configuration */
+    fibrad_scene_facts facts;
+    double seconds;       /* time of computing, without reading and writing [s] */
+    double error_reached; /* in the sense of `error` */
+    struct heat_figures figures;
+};
+
+/* heat_bed.c: the heat problem of a bed. Begins with a bed, with zeroes from heat->bed on. End it also after an error.
+ * Status 0, STATUS_USAGE, STATUS_INPUT, STATUS_FILE or STATUS_MEMORY. */
+int heat_begin(struct heat *heat, struct bed *bed);
+void heat_end(struct heat *heat);
+
+/* A law of the library, whose context is the heat. It sets emissivities and conductivities of spheres and contacts that
+ * have tables to those at these temperatures. */
+fibrad_emissivity_law heat_follow;
+
+/* Finds how far spheres and contacts are beyond the ends of tables, as quantity_excess, and warns of it. */
+enum { TABLES = 4 };
+void heat_excess_of(struct heat *heat, const double *temperature, const double *wall_temperature,
+                    struct table_excess excess[TABLES]);
+void heat_warn_excess(struct heat *heat, const struct table_excess excess[TABLES]);
+
+/* Writes the result: all outputs, and the flows of contacts. `what` has further fields, or zeroes. */
+int heat_write(struct heat *heat, const struct bed *bed, struct contents *what);
+
+/* heat_run.c: solves the problem with the configuration heat->used. Status 0, STATUS_INPUT if no temperatures above 0 K
+ * have the given powers, STATUS_MEMORY, as bed_options_status, or FIBRAD_E_UNSUPPORTED if there is a solution already
+ * and the configuration is too fine for this bed. The solution then stays. */
+int heat_solve(struct heat *heat);
+
+/* heat_error.c: solves the problem. With --error, solves again with more beams and patches until the estimated error is
+ * small enough. Status as heat_solve. */
+int heat_run(struct heat *heat);
+
+/* Whether a wall is insulated. */
+bool heat_insulates(const struct heat *heat);
+
+/* heat_figures.c: finds the figures of the summary: those of temperatures and surfaces in K as soon as they are known,
+ * the others when powers are in watts. Reports the summary. */
+void heat_find_temperatures(struct heat *heat);
+void heat_find_figures(struct heat *heat);
+void heat_report(struct heat *heat);
+
+/* heat_time.c: advances the temperatures in time, writes them at the times of output, draws the picture and prints the
+ * summary. Status 0, STATUS_USAGE, STATUS_INPUT naming the line of a sphere, or as bed_options_status. */
+int heat_in_time(struct heat *heat);
+
+/* face.c: finds the area of the open faces. Status 0, or STATUS_USAGE if there is none or one has no end. */
+int face_begin(struct heat *heat);
+
+/* Finds the emissivity of the face. By Kirchhoff's law it is the fraction of black radiation from outside that spheres
+ * and walls absorb: paths from the open faces tell it. Sets run->fault. Returns a status of the library. */
+int face_solve(struct heat *heat, const double *wall_emissivity, fibrad_run *run);
+void face_report(struct heat *heat);
+
+/* lit_bed.c: light that falls on the bed; without light these functions do nothing. Finds absorptivities and allocates
+ * arrays. Without --irradiate heat->lit.options is NULL. Free them also after an
+ * error. Status 0, STATUS_INPUT, STATUS_USAGE or STATUS_MEMORY. */
+int light_begin(struct heat *heat);
+void light_free(struct light_state *state);
+
+/* Computes the light that is absorbed, by one of two objects of the library, and adds it to the powers of the sources.
+ * These are then the sources of thermal radiation. They have pointers into the object. transient NULL: radiation
+ * counts. unit: of powers, the square of the bed's length [m2] for watts, or 1. Returns a status of the library. */
+int light_absorb(struct heat *heat, fibrad_transient *transient, fibrad_radiation *radiation, double unit,
+                 fibrad_heat_sources *sources);
+
+/* Says why light_absorb has failed. Returns STATUS_USAGE; 0: nothing is wrong with the light. */
+int light_refuse(const struct heat *heat, int status, const fibrad_fault *fault);
+
+/* Multiplies all powers by a number. */
+void light_scale(struct heat *heat, double factor);
+
+/* Adds the absorbed light to the net powers of the result, and its errors to theirs. Insulated walls are left out: they
+ * give off what they absorb. */
+void light_add(struct heat *heat);
+
+/* Reports what is absorbed, reflected and transmitted. */
+void light_report(struct heat *heat);
+
+/* Writes the profile, if one was asked for. Status 0, STATUS_FILE or STATUS_MEMORY. */
+int light_profile(const struct heat *heat);
+
+#endif

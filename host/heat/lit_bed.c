@@ -1,0 +1,257 @@
+/* lit_bed.c - what a bed absorbs of light from outside, and its profile along an axis. SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bed/units.h"
+#include "cli/message.h"
+#include "heat/heat.h"
+#include "plot/gnuplot.h"
+
+int light_begin(struct heat *h) {
+    const struct light_options *options = &h->light;
+    const uint32_t n = h->bed->n;
+    struct light_state *state = &h->lit;
+    int status = STATUS_OK;
+    if (options->lights == 0) return STATUS_OK;
+    if (options->absorptivity.given) {
+        status = quantity_values(&options->absorptivity, h->bed, h->options.name, "absorptivity", 0, 0, 1,
+                                 &state->absorptivity);
+    } else {
+        state->absorptivity = malloc((n + (size_t)1) * sizeof(double));
+        if (state->absorptivity) memcpy(state->absorptivity, h->emissivity, n * sizeof(double));
+    }
+    if (!status)
+        status = wall_fractions("--wall-absorptivity", options->wall_absorptivity, &h->walls, h->wall_emissivity,
+                                state->of_walls);
+    state->absorbed = calloc(4 * (n + (size_t)1), sizeof(double));
+    if (state->absorbed)
+        state->first = state->absorbed + n, state->error = state->first + n, state->power = state->error + n;
+    state->options = options;
+    return !status && !(state->absorptivity && state->absorbed) ? message_memory() : status;
+}
+
+void light_free(struct light_state *state) {
+    free(state->absorptivity);
+    free(state->absorbed);
+    *state = (struct light_state){0};
+}
+
+/* The powers of thermal radiation: what is given, and what is absorbed of the light. */
+static void add_absorbed(struct heat *h, fibrad_heat_sources *sources) {
+    struct light_state *state = &h->lit;
+    for (uint32_t i = 0; i < h->bed->n; ++i)
+        state->power[i] = (sources->power ? sources->power[i] : NAN) + state->absorbed[i];
+    for (uint32_t k = 0; k < h->walls.count; ++k)
+        state->wall_power[k] = (sources->wall_power ? sources->wall_power[k] : NAN) + state->wall[k];
+    sources->power = state->power, sources->wall_power = state->wall_power;
+    sources->absorbed = state->result.patches;
+}
+
+int light_absorb(struct heat *h, fibrad_transient *transient, fibrad_radiation *radiation, double unit,
+                 fibrad_heat_sources *sources) {
+    struct light_state *state = &h->lit;
+    const struct light_options *options = state->options;
+    fibrad_light scaled[LIGHTS_MAX];
+    if (!options) return FIBRAD_OK;
+    for (uint32_t k = 0; k < options->lights; ++k) scaled[k] = options->light[k], scaled[k].flux *= unit;
+    fibrad_light_sources light = {.lights = options->lights,
+                                  .light = scaled,
+                                  .absorptivity = state->absorptivity,
+                                  .wall_absorptivity = state->of_walls,
+                                  .uniform = sources->uniform};
+    state->result = (fibrad_light_result){.absorbed = state->absorbed,
+                                          .absorbed_first = state->first,
+                                          .absorbed_error = state->error,
+                                          .wall_absorbed = state->wall,
+                                          .wall_absorbed_first = state->wall_first,
+                                          .wall_absorbed_error = state->wall_error};
+    const int status = transient ? fibrad_transient_shine(transient, &light, &state->result)
+                                 : fibrad_radiation_shine(radiation, &light, &state->result);
+    state->failed = status;
+    if (!status) add_absorbed(h, sources);
+    return status;
+}
+
+int light_refuse(const struct heat *h, int status, const fibrad_fault *fault) {
+    const uint32_t light = h->lit.result.lights + 1;
+    if (!h->lit.failed) return STATUS_OK;
+    if (status == FIBRAD_E_UNSOLVABLE)
+        return message(STATUS_USAGE, "--irradiate: nothing absorbs the light, and it cannot leave");
+    switch (fault->why) {
+    case FIBRAD_WHY_DARK:
+        return message(STATUS_USAGE,
+                       "--irradiate: no open face lets light %u in; it needs an opening where it comes from, such as "
+                       "zmax=open, or zmax=H:open at the rim of side walls",
+                       light);
+    case FIBRAD_WHY_FOOTPRINT:
+        return message(STATUS_USAGE,
+                       "--irradiate: the disc of light %u lies inside the bed: sphere %lld is before it; move the disc "
+                       "against the light",
+                       light, (long long)bed_name(h->bed, fault->first));
+    case FIBRAD_WHY_LIGHT:
+        return message(STATUS_USAGE,
+                       "--irradiate: light %u: a number is out of range, or its beam is wider than a period", light);
+    default:
+        return STATUS_OK;
+    }
+}
+
+void light_scale(struct heat *h, double factor) {
+    struct light_state *state = &h->lit;
+    fibrad_light_result *r = &state->result;
+    if (!state->options) return;
+    for (uint32_t i = 0; i < h->bed->n; ++i)
+        state->absorbed[i] *= factor, state->first[i] *= factor, state->error[i] *= factor;
+    for (uint32_t k = 0; k < h->walls.count; ++k)
+        state->wall[k] *= factor, state->wall_first[k] *= factor, state->wall_error[k] *= factor;
+    r->incident *= factor, r->transmitted *= factor, r->reflected *= factor, r->error *= factor;
+    r->error_patches *= factor;
+}
+
+void light_add(struct heat *h) {
+    const struct light_state *state = &h->lit;
+    const fibrad_light_result *light = &state->result;
+    const uint32_t spheres = h->bed->n;
+    fibrad_heat_result *result = &h->result;
+    double square = 0;
+    if (!state->options) return;
+    for (uint32_t i = 0; i < spheres; ++i) {
+        result->power[i] += state->absorbed[i];
+        if (isnan(h->sources.temperature[i])) continue;
+        result->power_error[i] = hypot(result->power_error[i], state->error[i]);
+        square += state->error[i] * state->error[i];
+    }
+    square /= spheres > 0 ? spheres : 1;
+    const double patches = fmin(light->error_patches, sqrt(square));
+    result->error_patches = hypot(result->error_patches, patches);
+    result->error_beams = hypot(result->error_beams, sqrt(square - patches * patches));
+    for (uint32_t k = 0; k < h->walls.count; ++k) {
+        if (h->sources.insulated[k]) continue; /* it gives off what it absorbs */
+        result->wall_power[k] += state->wall[k];
+        result->wall_absorbed[k] += state->wall[k];
+        if (!isnan(h->sources.wall_temperature[k]))
+            result->wall_error[k] = hypot(result->wall_error[k], state->wall_error[k]);
+    }
+    result->surroundings_power += light->reflected + light->transmitted - light->incident;
+    result->surroundings_error = hypot(result->surroundings_error, light->error);
+}
+
+void light_report(struct heat *h) {
+    const struct light_state *state = &h->lit;
+    const fibrad_light_result *light = &state->result;
+    struct report *report = &h->options.report;
+    const double all = light->incident > 0 ? light->incident : 1;
+    double sum = 0, first = 0;
+    if (!state->options) return;
+    for (uint32_t i = 0; i < h->bed->n; ++i) sum += state->absorbed[i], first += state->first[i];
+    for (uint32_t k = 0; k < h->walls.count; ++k) sum += state->wall[k], first += state->wall_first[k];
+    report_value(report, "irradiated_W", light->incident, 6);
+    quantity_report(&state->options->absorptivity, "absorptivity", report);
+    wall_values_report(&h->walls, state->of_walls, "_absorptivity", 6, report);
+    report_value(report, "absorbed_first_W", first, 6);
+    report_value(report, "absorbed_W", sum, 6);
+    wall_values_report(&h->walls, state->wall, "_absorbed_W", 6, report);
+    report_measured(report, "absorbed", sum / all, light->error / all);
+    report_measured(report, "reflected", light->reflected / all, light->error / all);
+    report_value(report, "transmitted", light->transmitted / all, 6);
+    report_value(report, "balance_of_light", (sum + light->reflected + light->transmitted) / all - 1, 2);
+}
+
+/* ---- profile --------------------------------------------------------------------------------------------------- */
+
+/* One bin: from `low` on, the spheres whose centres lie in it, and what these absorb [W]. */
+struct light_bin {
+    double low, first, absorbed;
+    uint32_t spheres;
+};
+
+struct light_bins {
+    struct light_bin *bin; /* [count] */
+    uint32_t count;
+    double width;
+};
+
+/* Divides the extent of the spheres along the axis into bins. If the number of bins is not given, a bin is one mean
+ * diameter wide, and the last one may reach beyond the spheres. Status 0 or STATUS_MEMORY. */
+static int make_bins(const struct light_options *options, const struct bed *bed, struct light_bins *bins) {
+    const double *at = bed_centres(bed, options->axis - 'x');
+    double low = INFINITY, high = -INFINITY, diameter = 0;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        low = fmin(low, at[i] - bed->r[i]), high = fmax(high, at[i] + bed->r[i]);
+        diameter += 2 * bed->r[i] / bed->n;
+    }
+    const double most = 1e6;
+    bins->count = options->bins > 0 ? options->bins : (uint32_t)fmin(ceil((high - low) / diameter * (1 - 1e-9)), most);
+    bins->width = options->bins > 0 ? (high - low) / options->bins : fmax(diameter, (high - low) / most);
+    bins->bin = calloc(bins->count, sizeof *bins->bin);
+    if (!bins->bin) return message_memory();
+    for (uint32_t k = 0; k < bins->count; ++k) bins->bin[k].low = low + k * bins->width;
+    return STATUS_OK;
+}
+
+static void fill_bins(const struct light_state *state, const struct bed *bed, struct light_bins *bins) {
+    const double *at = bed_centres(bed, state->options->axis - 'x');
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double place = (at[i] - bins->bin[0].low) / bins->width;
+        struct light_bin *bin = &bins->bin[(uint32_t)fmin(place, bins->count - 1.)];
+        ++bin->spheres;
+        bin->first += state->first[i], bin->absorbed += state->absorbed[i];
+    }
+}
+
+/* Writes the bins with a separator. Columns: low end, high end, spheres, absorbed first, absorbed, in units of
+ * `watts`. */
+static void print_bins(FILE *file, const struct light_bins *bins, char separator, double watts) {
+    for (uint32_t k = 0; k < bins->count; ++k) {
+        const struct light_bin *bin = &bins->bin[k];
+        fprintf(file, "%.9g%c%.9g%c%u%c%.9g%c%.9g\n", bin->low, separator, bin->low + bins->width, separator,
+                bin->spheres, separator, bin->first / watts, separator, bin->absorbed / watts);
+    }
+}
+
+static int draw_bins(const struct output *output, const struct light_state *state, const struct light_bins *bins,
+                     const char *name) {
+    struct gnuplot gnuplot;
+    const int status = gnuplot_start(&gnuplot, output);
+    if (status) return status;
+    FILE *script = gnuplot.script;
+    double most = 0;
+    for (uint32_t k = 0; k < bins->count; ++k) most = fmax(most, bins->bin[k].absorbed);
+    const struct prefixed unit = unit_prefixed(most, "W");
+    gnuplot_style(script, output->path, 800, 560);
+    fputs("$bins << END\n", script);
+    print_bins(script, bins, ' ', unit.scale);
+    fputs("END\nset label 1 '", script);
+    gnuplot_name(script, name);
+    fprintf(script,
+            "' at screen 0.03,0.955 font ',17' tc '#111111' noenhanced\n"
+            "set tmargin at screen 0.9; set bmargin at screen 0.13; set grid y; set yrange [0:*]; set key top left\n"
+            "set xrange [%.9g:%.9g]; set xlabel '%c'; set ylabel 'absorbed of the light [%s]'; set style fill solid "
+            "0.8 noborder\n"
+            "plot $bins using (($1+$2)/2):5:($2-$1) with boxes fc '#365c8d' title 'with reflections', "
+            "'' using (($1+$2)/2):4 with histeps lw 2 lc '#d1495b' title 'where it falls first'\n",
+            bins->bin[0].low, bins->bin[0].low + bins->count * bins->width, state->options->axis, unit.name);
+    return gnuplot_end(&gnuplot);
+}
+
+int light_profile(const struct heat *h) {
+    const struct light_state *state = &h->lit;
+    const struct light_options *options = state->options;
+    const struct bed *bed = h->bed;
+    struct output output = {0};
+    struct light_bins bins = {0};
+    if (!options || !options->profile || bed->n == 0) return STATUS_OK;
+    int status = output_open(&output, options->profile);
+    if (!status) status = make_bins(options, bed, &bins);
+    if (!status) fill_bins(state, bed, &bins);
+    if (!status && output_ends(options->profile, ".csv")) {
+        fprintf(output.file, "%c_low,%c_high,spheres,absorbed_first_W,absorbed_W\n", options->axis, options->axis);
+        print_bins(output.file, &bins, ',', 1);
+        status = output_flush(&output);
+    } else if (!status) {
+        status = draw_bins(&output, state, &bins, h->options.name);
+    }
+    free(bins.bin);
+    return output_close(&output, status);
+}
