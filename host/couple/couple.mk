@@ -13,6 +13,7 @@ COUPLE_WALLS = host/couple/walls/mesh_motion.c host/couple/walls/mesh_walls.c
 # walls of triangles and tables, for programs that read files of them; a library of its own, since it has names of the program
 COUPLE_MESH = $(COUPLE_WALLS) \
     host/cli/interrupt.c \
+    host/cli/memory.c \
     host/cli/message.c \
     host/cli/output.c \
     host/mesh/edges.c \

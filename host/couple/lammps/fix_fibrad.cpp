@@ -550,7 +550,7 @@ void FixFibrad::list_output() {
     for (int w = 0; w < count; w++) {
         const fibrad_wall &wall = walls[w];
         const std::string name = wall.kind == FIBRAD_WALL_PLANE      ? faces[2 * wall.plane.axis + wall.plane.upper]
-                                 : wall.kind == FIBRAD_WALL_CYLINDER ? std::string(1, "xyz"[cylinder]) + "cylinder"
+                                 : wall.kind == FIBRAD_WALL_CYLINDER ? std::string(1, "zxy"[wall.cylinder.axis]) + "cylinder"
                                                                      : "mesh";
         list += text(", [%d] wall ", 6 + w) + name;
         names += text(", [%d] T of wall ", 9 + count + w) + name;
