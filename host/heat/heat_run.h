@@ -2,8 +2,8 @@
 #ifndef HEAT_RUN_H
 #define HEAT_RUN_H
 
-#include "conduct/contact_option.h"
-#include "heat/face.h"
+#include "contact_options/contact_option.h"
+#include "heat/face_emissivity.h"
 #include "heat/light_option.h"
 #include "heat/triangle_heat.h"
 

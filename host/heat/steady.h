@@ -3,8 +3,8 @@
 #ifndef STEADY_H
 #define STEADY_H
 
-#include "bed/conduction.h"
-#include "conduct/contact_option.h"
+#include "bed/conductivity.h"
+#include "contact_options/contact_option.h"
 
 /* Exchange factor F_E along one axis: flux / (mean diameter x gradient of sigma T^4). The gradient is that of a
  * straight line through the spheres of the inner half. */

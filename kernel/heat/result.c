@@ -6,7 +6,7 @@
 #include "scene/walls.h"
 
 /* Writes a value that is wanted. */
-static void put(double *values, uint32_t k, double value) {
+static void put_wanted(double *values, uint32_t k, double value) {
     if (values != NULL) values[k] = value;
 }
 
@@ -47,11 +47,11 @@ static void read_inside(const fibrad_heat *heat, const fibrad_heat_errors *error
                    high = extreme_of(heat, b, 1, span->largest, span->high, span->open_high, span->hottest_spot),
                    centre = centre_of(heat, errors, b, mean);
     const double worst = fibrad_max(low.error, high.error);
-    put(result->least_temperature, i, mean.value + low.value);
-    put(result->largest_temperature, i, mean.value + high.value);
-    put(result->surface_error, i, fibrad_sqrt(mean.error * mean.error + worst * worst));
-    put(result->centre_temperature, i, centre.value);
-    put(result->centre_error, i, centre.error);
+    put_wanted(result->least_temperature, i, mean.value + low.value);
+    put_wanted(result->largest_temperature, i, mean.value + high.value);
+    put_wanted(result->surface_error, i, fibrad_sqrt(mean.error * mean.error + worst * worst));
+    put_wanted(result->centre_temperature, i, centre.value);
+    put_wanted(result->centre_error, i, centre.error);
 }
 
 /* The temperature of a surface. An insulated wall has the one at which a black wall would emit what it sends back. */
@@ -67,14 +67,14 @@ static void read_temperatures(const fibrad_heat *heat, const fibrad_heat_errors 
                               const fibrad_heat_result *result) {
     for (uint32_t b = 0; b < heat->spheres; b++) {
         const measured t = temperature_of(heat, errors, b);
-        put(result->temperature, heat->order[b], t.value);
-        put(result->temperature_error, heat->order[b], t.error);
+        put_wanted(result->temperature, heat->order[b], t.value);
+        put_wanted(result->temperature_error, heat->order[b], t.error);
         read_inside(heat, errors, b, t, result);
     }
     for (uint32_t k = 0; k < heat->given_walls; k++) {
         const measured t = temperature_of(heat, errors, fibrad_heat_body(heat, heat->slot[k]));
-        put(result->wall_temperature, k, t.value);
-        put(result->wall_temperature_error, k, t.error);
+        put_wanted(result->wall_temperature, k, t.value);
+        put_wanted(result->wall_temperature_error, k, t.error);
     }
 }
 
@@ -134,23 +134,23 @@ static void read_net_powers(const fibrad_heat *heat, const fibrad_heat_errors *e
     for (uint32_t b = 0; b < heat->spheres; b++) {
         const double conducted = fibrad_heat_conducted(heat, b);
         result->power[heat->order[b]] = heat->solution.power[b] + conducted;
-        put(result->conducted, heat->order[b], conducted);
-        put(result->power_error, heat->order[b], fibrad_heat_power_error(heat, errors, b));
+        put_wanted(result->conducted, heat->order[b], conducted);
+        put_wanted(result->power_error, heat->order[b], fibrad_heat_power_error(heat, errors, b));
     }
     for (uint32_t k = 0; k < heat->given_walls; k++) {
         const uint32_t slot = heat->slot[k], b = fibrad_heat_body(heat, slot);
         const double conducted = fibrad_heat_conducted(heat, b);
         result->wall_power[k] = heat->solution.power[b] + conducted;
-        put(result->wall_conducted, k, conducted);
-        put(result->wall_error, k, fibrad_heat_power_error(heat, errors, b));
-        put(result->wall_absorbed, k, fibrad_heat_absorbs(heat, b));
-        put(result->wall_area, k,
-            slot < FIBRAD_MESHES ? fibrad_heat_wall_area(heat, slot) : fibrad_scene_wall_area(heat->scene, k));
+        put_wanted(result->wall_conducted, k, conducted);
+        put_wanted(result->wall_error, k, fibrad_heat_power_error(heat, errors, b));
+        put_wanted(result->wall_absorbed, k, fibrad_heat_absorbs(heat, b));
+        put_wanted(result->wall_area, k,
+                   slot < FIBRAD_MESHES ? fibrad_heat_wall_area(heat, slot) : fibrad_scene_wall_area(heat->scene, k));
     }
     for (uint32_t k = 0; k < c->count; k++)
-        put(result->contact_flow, k,
-            c->conductance[k] * (c->temperature[c->node[c->first[k]]] - c->temperature[c->node[c->second[k]]]) +
-                (heat->spots.entering != NULL ? heat->spots.offset[k] : 0));
+        put_wanted(result->contact_flow, k,
+                   c->conductance[k] * (c->temperature[c->node[c->first[k]]] - c->temperature[c->node[c->second[k]]]) +
+                       (heat->spots.entering != NULL ? heat->spots.offset[k] : 0));
     result->surroundings_power = heat->solution.power[heat->bodies - 1];
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         if (heat->openings >> k & 1) result->surroundings_power += heat->solution.power[fibrad_heat_body(heat, k)];

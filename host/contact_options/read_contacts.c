@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "conduct/contact_option.h"
+#include "contact_options/contact_option.h"
 #include "text/read_lines.h"
 
 int contact_path(const char *pattern, int64_t frame, char path[CONTACT_PATH]) {
