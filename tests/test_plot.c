@@ -3,7 +3,7 @@
 
 #include "cli/message.h"
 #include "plot/plot_bed.h"
-#include "plot/plot_conduction.h"
+#include "plot/plot_conductivity.h"
 #include "plot/plot_heat.h"
 #include "host_owned.h"
 #include "scenes.h"

@@ -5,12 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bed/conduction.h"
+#include "bed/conductivity.h"
 #include "cli/message.h"
 #include "command/commands.h"
 #include "frames/solid_option.h"
 #include "heat/steady.h"
-#include "plot/plot_conduction.h"
+#include "plot/plot_conductivity.h"
 
 enum { TEMPERATURES_MAX = 1000 };
 

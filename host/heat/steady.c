@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 #include "bed/bed_scene.h"
-#include "bed/conduction.h"
+#include "bed/conductivity.h"
 #include "cli/message.h"
 
 enum { FITTED_MIN = 40 };

@@ -3,8 +3,8 @@
 #ifndef STEADY_H
 #define STEADY_H
 
-#include "bed/conduction.h"
-#include "conduct/contact_option.h"
+#include "bed/conductivity.h"
+#include "contact_options/contact_option.h"
 
 /* Temperatures of the plates over their mean. They differ so little that conductivities are the same everywhere. */
 #define STEADY_HOT  1.0005

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "bed/bed_scene.h"
-#include "bed/conduction.h"
+#include "bed/conductivity.h"
 #include "bed/jump.h"
 #include "cli/message.h"
 #include "heat/steady.h"

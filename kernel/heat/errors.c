@@ -11,7 +11,8 @@
  *   5. Walls that send out too much or too little make all surfaces err that see them.
  *
  * The sum of these five is the *own sample* of a surface. It may be small by chance. Errors of surfaces of one kind are
- * nearly what each surface exchanges times a random number of the normal distribution. So all samples of one kind, over
+ * what each surface exchanges times a random number that is nearly normally distributed (docs/notebook.md "Errors over
+ * what spheres exchange"). So all samples of one kind, over
  * all that this kind exchanges, tell the error of each. The estimate is the mean of both: of the own sample, and of
  * what all samples tell. What is smooth from wall to wall or from sphere to sphere has no part in this mean: the size
  * of the patches of walls, and of meshes beside spheres.
@@ -31,7 +32,7 @@
 
 /* Beams: the difference between even and odd beams. Directions are evenly spread, so that the error is smaller than the
  * difference where several of them meet a sphere: settled beds, bench_heat and bench_walls. */
-#define BEAM_ERROR .7
+#define BEAM_ERROR FIBRAD_HEAT_BEAM_ERROR
 
 /* The same times the share of spheres that only even or only odd directions meet. Whether one direction meets a far
  * sphere or none does is chance: seven dilute beds, docs/notebook.md "Dilute beds". */
@@ -45,7 +46,7 @@
 
 /* Rays: the difference between even and odd rays of a wall, which are two independent sequences: black cups and boxes
  * with closed forms, docs/notebook.md "Estimates of powers against closed forms". */
-#define RAY_ERROR 1.75
+#define RAY_ERROR FIBRAD_HEAT_RAY_ERROR
 
 /* Largest number of samples of a mesh, whose rays are divided into so many ranges: as above. */
 #define RAY_SAMPLES 16

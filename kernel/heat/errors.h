@@ -4,6 +4,10 @@
 
 #include "heat/solution.h"
 
+/* Errors over differences between even and odd samples, of beams and of rays: constants of the model in errors.c. */
+#define FIBRAD_HEAT_BEAM_ERROR .7
+#define FIBRAD_HEAT_RAY_ERROR  1.75
+
 /* The area of patches, and mean and variance of their radiosities. */
 typedef struct fibrad_heat_spread {
     double area, mean, variance;

@@ -6,7 +6,7 @@
 #include "scene/walls.h"
 
 /* Writes a value that is wanted. */
-static void put(double *values, uint32_t k, double value) {
+static void put_wanted(double *values, uint32_t k, double value) {
     if (values != NULL) values[k] = value;
 }
 
@@ -47,11 +47,11 @@ static void read_inside(const fibrad_heat *heat, const fibrad_heat_errors *error
                    high = extreme_of(heat, b, 1, span->largest, span->high, span->open_high, span->hottest_spot),
                    centre = centre_of(heat, errors, b, mean);
     const double worst = fibrad_max(low.error, high.error);
-    put(result->least_temperature, i, mean.value + low.value);
-    put(result->largest_temperature, i, mean.value + high.value);
-    put(result->surface_error, i, fibrad_sqrt(mean.error * mean.error + worst * worst));
-    put(result->centre_temperature, i, centre.value);
-    put(result->centre_error, i, centre.error);
+    put_wanted(result->least_temperature, i, mean.value + low.value);
+    put_wanted(result->largest_temperature, i, mean.value + high.value);
+    put_wanted(result->surface_error, i, fibrad_sqrt(mean.error * mean.error + worst * worst));
+    put_wanted(result->centre_temperature, i, centre.value);
+    put_wanted(result->centre_error, i, centre.error);
 }
 
 /* The temperature of a surface. An insulated wall has the one at which a black wall would emit what it sends back. */
@@ -67,14 +67,14 @@ static void read_temperatures(const fibrad_heat *heat, const fibrad_heat_errors 
                               const fibrad_heat_result *result) {
     for (uint32_t b = 0; b < heat->spheres; b++) {
         const measured t = temperature_of(heat, errors, b);
-        put(result->temperature, heat->order[b], t.value);
-        put(result->temperature_error, heat->order[b], t.error);
+        put_wanted(result->temperature, heat->order[b], t.value);
+        put_wanted(result->temperature_error, heat->order[b], t.error);
         read_inside(heat, errors, b, t, result);
     }
     for (uint32_t k = 0; k < heat->given_walls; k++) {
         const measured t = temperature_of(heat, errors, fibrad_heat_body(heat, heat->slot[k]));
-        put(result->wall_temperature, k, t.value);
-        put(result->wall_temperature_error, k, t.error);
+        put_wanted(result->wall_temperature, k, t.value);
+        put_wanted(result->wall_temperature_error, k, t.error);
     }
 }
 
@@ -134,23 +134,23 @@ static void read_net_powers(const fibrad_heat *heat, const fibrad_heat_errors *e
     for (uint32_t b = 0; b < heat->spheres; b++) {
         const double conducted = fibrad_heat_conducted(heat, b);
         result->power[heat->order[b]] = heat->solution.power[b] + conducted;
-        put(result->conducted, heat->order[b], conducted);
-        put(result->power_error, heat->order[b], fibrad_heat_power_error(heat, errors, b));
+        put_wanted(result->conducted, heat->order[b], conducted);
+        put_wanted(result->power_error, heat->order[b], fibrad_heat_power_error(heat, errors, b));
     }
     for (uint32_t k = 0; k < heat->given_walls; k++) {
         const uint32_t slot = heat->slot[k], b = fibrad_heat_body(heat, slot);
         const double conducted = fibrad_heat_conducted(heat, b);
         result->wall_power[k] = heat->solution.power[b] + conducted;
-        put(result->wall_conducted, k, conducted);
-        put(result->wall_error, k, fibrad_heat_power_error(heat, errors, b));
-        put(result->wall_absorbed, k, fibrad_heat_absorbs(heat, b));
-        put(result->wall_area, k,
-            slot < FIBRAD_MESHES ? fibrad_heat_wall_area(heat, slot) : fibrad_scene_wall_area(heat->scene, k));
+        put_wanted(result->wall_conducted, k, conducted);
+        put_wanted(result->wall_error, k, fibrad_heat_power_error(heat, errors, b));
+        put_wanted(result->wall_absorbed, k, fibrad_heat_absorbs(heat, b));
+        put_wanted(result->wall_area, k,
+                   slot < FIBRAD_MESHES ? fibrad_heat_wall_area(heat, slot) : fibrad_scene_wall_area(heat->scene, k));
     }
     for (uint32_t k = 0; k < c->count; k++)
-        put(result->contact_flow, k,
-            c->conductance[k] * (c->temperature[c->node[c->first[k]]] - c->temperature[c->node[c->second[k]]]) +
-                (heat->spots.entering != NULL ? heat->spots.offset[k] : 0));
+        put_wanted(result->contact_flow, k,
+                   c->conductance[k] * (c->temperature[c->node[c->first[k]]] - c->temperature[c->node[c->second[k]]]) +
+                       (heat->spots.entering != NULL ? heat->spots.offset[k] : 0));
     result->surroundings_power = heat->solution.power[heat->bodies - 1];
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         if (heat->openings >> k & 1) result->surroundings_power += heat->solution.power[fibrad_heat_body(heat, k)];
@@ -193,12 +193,6 @@ static side_sum sum_of_side(const fibrad_heat *heat, const fibrad_mesh_cut *cut,
     return sum;
 }
 
-/* The area of those sides of a mesh whose patches are met, and their flow. */
-typedef struct mesh_gain {
-    double area, flow;
-    bool whole; /* no plane or cylinder cuts the mesh; areas are then those of triangles, else those from beams */
-} mesh_gain;
-
 static bool is_within_walls(const fibrad_scene *scene, uint32_t triangle) {
     bool inside = true;
     double corner[3][3];
@@ -208,26 +202,23 @@ static bool is_within_walls(const fibrad_scene *scene, uint32_t triangle) {
     return inside;
 }
 
-static mesh_gain gain_of_mesh(const fibrad_heat *heat, uint32_t m, const double *flow) {
+/* A power of a mesh per area minus the flow of its patches per area: from extrapolation, residuals, and areas by beams.
+ * Areas are those of triangles whose patches are met. If a plane or the cylinder cuts the mesh, areas are those from
+ * beams. */
+static double flux_beyond_patches(const fibrad_heat *heat, uint32_t m, const double *flow, double power) {
     const fibrad_mesh *mesh = &heat->scene->mesh;
     const uint32_t b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
-    mesh_gain gain = {0, 0, true};
+    double area = 0, gained = 0;
+    bool whole = true;
     for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
+        const uint32_t triangle = fibrad_side_triangle(mesh->side[k]);
         const side_sum sum = sum_of_side(heat, fibrad_mesh_cut_of(mesh, heat->cut, mesh->side[k]), flow);
-        const double area = fibrad_mesh_triangle_area(mesh, fibrad_side_triangle(mesh->side[k]));
-        gain.whole = gain.whole && is_within_walls(heat->scene, fibrad_side_triangle(mesh->side[k]));
-        if (sum.area > 0) gain.area += area, gain.flow += area * (sum.flow / sum.area);
+        const double own = fibrad_mesh_triangle_area(mesh, triangle);
+        whole = whole && is_within_walls(heat->scene, triangle);
+        if (sum.area > 0) area += own, gained += own * (sum.flow / sum.area);
     }
-    if (!gain.whole)
-        gain.area = fibrad_heat_sum(heat, b, heat->solution.area), gain.flow = fibrad_heat_sum(heat, b, flow);
-    return gain;
-}
-
-/* A power of a mesh per area minus the flow of its patches per area: from extrapolation, residuals, and areas by beams.
- */
-static double flux_beyond_patches(const fibrad_heat *heat, uint32_t m, const double *flow, double power) {
-    const mesh_gain gain = gain_of_mesh(heat, m, flow);
-    return gain.area > 0 ? (power - gain.flow) / gain.area : 0;
+    if (!whole) area = fibrad_heat_sum(heat, b, heat->solution.area), gained = fibrad_heat_sum(heat, b, flow);
+    return area > 0 ? (power - gained) / area : 0;
 }
 
 /* The light that the sides of a mesh have absorbed, by patch. NULL: none, or they give it off again. */
@@ -237,13 +228,13 @@ static const double *light_of_mesh(const fibrad_heat *heat, uint32_t m) {
 
 /* The net power of a side per area. beyond: what patches lack of the powers of its mesh: of net powers, and of light.
  */
-static double flux_of_side(const fibrad_heat *heat, uint32_t m, const fibrad_mesh_cut *cut, const double beyond[2]) {
-    const side_sum net = sum_of_side(heat, cut, heat->solution.net);
+static double flux_of_side(const fibrad_heat *heat, uint32_t m, const fibrad_mesh_cut *cut, const side_sum *net,
+                           const double beyond[2]) {
     const double *light = light_of_mesh(heat, m);
-    if (!(net.area > 0)) return __builtin_nan("");
+    if (!(net->area > 0)) return __builtin_nan("");
     const bool emits = heat->sources.emissivity[fibrad_heat_body(heat, FIBRAD_MESHES + m)] > 0;
-    return (emits ? net.flow / net.area + beyond[0] : 0) +
-           (light != NULL ? sum_of_side(heat, cut, light).flow / net.area + beyond[1] : 0);
+    return (emits ? net->flow / net->area + beyond[0] : 0) +
+           (light != NULL ? sum_of_side(heat, cut, light).flow / net->area + beyond[1] : 0);
 }
 
 static double temperature_of_side(const fibrad_heat *heat, uint32_t b, const fibrad_mesh_cut *cut,
@@ -270,16 +261,16 @@ int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temper
     }
     for (uint32_t s = 0; s < 2 * heat->triangles; s++) {
         const fibrad_mesh_cut *cut = fibrad_mesh_cut_of(mesh, heat->cut, s);
-        const size_t to = (size_t)(cut - heat->cut);
+        const uint32_t to = (uint32_t)(cut - heat->cut);
         double q = __builtin_nan(""), t = q;
         if (cut->patch != UINT32_MAX) {
             const uint32_t m = fibrad_side_mesh(mesh, s), b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
             const side_sum sum = sum_of_side(heat, cut, heat->solution.net);
-            q = flux_of_side(heat, m, cut, beyond[m]);
+            q = flux_of_side(heat, m, cut, &sum, beyond[m]);
             t = temperature_of_side(heat, b, cut, &sum);
         }
-        if (flux != NULL) flux[to] = q;
-        if (temperature != NULL) temperature[to] = t;
+        put_wanted(flux, to, q);
+        put_wanted(temperature, to, t);
     }
     return FIBRAD_OK;
 }

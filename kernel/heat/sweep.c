@@ -7,14 +7,15 @@
  * spheres of one part is visited once and serves both ends. A beam between two parts is visited by both, and each
  * serves its own end. */
 #include "heat/sweep.h"
+#include "heat/errors.h"
 
 #define AHEAD  8
 #define BEYOND (FIBRAD_WALLS + 1)
 
-/* Errors are told from the difference between even and odd rays, or between even and odd directions. Halves of rays are
- * independent, so their difference is their error. Even and odd directions differ by more than their error. So
- * differences of rays are enlarged by this factor. */
-#define RAYS_WEIGHT 2.5
+/* Differences of the rays of fine patches are added to those of beams, whose error is a smaller part of the difference
+ * (errors.c). So they are enlarged by this factor. */
+#define RAYS_WEIGHT (FIBRAD_HEAT_RAY_ERROR / FIBRAD_HEAT_BEAM_ERROR)
+
 /* The area that a beam of a pencil stands for. If its two surfaces send out n and m beams per area, this is 1/(n + m).
  * So the beams of both together tell what they exchange. The share is the number of beams that were followed for each
  * beam that was kept. In the sweep for the error, the share is the difference between even and odd directions

@@ -29,9 +29,9 @@ static double container_size(const fibrad_scene *scene) {
     return longest > 0 ? longest : 1;
 }
 
-/* The stretch of a wall along one axis that is cut into patches: all of it, or, if the wall is endless, the bed and as
+/* The interval of a wall along one axis that is cut into patches: all of it, or, if the wall is endless, the bed and as
  * much on either side. Returns whether the wall is endless. */
-static bool stretch(const fibrad_scene *scene, uint32_t axis, double *low, double *size) {
+static bool interval_along(const fibrad_scene *scene, uint32_t axis, double *low, double *size) {
     const fibrad_container *c = &scene->container;
     double wide = 0;
     for (int a = 0; a < 3; a++)
@@ -100,8 +100,8 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
         if (!(scene->wall_area[k] > 0)) continue;
         wall->size[0] = 1;
         for (uint32_t side = k == FIBRAD_CYLINDER; side < 2; side++)
-            wall->unbounded |=
-                stretch(scene, fibrad_wall_along(&scene->container, k, side), &wall->low[side], &wall->size[side]);
+            wall->unbounded |= interval_along(scene, fibrad_wall_along(&scene->container, k, side), &wall->low[side],
+                                              &wall->size[side]);
         area += fibrad_heat_wall_area(heat, k);
     }
     for (uint32_t m = 0; m < heat->meshes; m++)

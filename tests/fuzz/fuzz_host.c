@@ -192,7 +192,7 @@ static fibrad_heat_config any_heat_config(void) {
     if (which == 1) config.directions = number();
     if (which == 2) config.points = number();
     if (which == 3) config.patches = number();
-    if (which == 4) config.cutoff = coordinate();
+    if (which == 4) config.wall_rays = number();
     return config;
 }
 

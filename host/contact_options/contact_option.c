@@ -1,5 +1,5 @@
 /* contact_option.c - heat that contacts and gas conduct, from options. SPDX-License-Identifier: MIT */
-#include "conduct/contact_option.h"
+#include "contact_options/contact_option.h"
 
 #include <math.h>
 #include <stdlib.h>

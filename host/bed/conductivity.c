@@ -1,8 +1,8 @@
-/* conduction.c - effective radiative conductivity of a bed of grey spheres. SPDX-License-Identifier: MIT
+/* conductivity.c - effective radiative conductivity of a bed of grey spheres. SPDX-License-Identifier: MIT
  *
  * Each batch of paths has a seed of its own. The paths of one sphere in one batch are a group. The kernel estimates the
  * standard error of a group. Groups are independent, so their variances add up. */
-#include "bed/conduction.h"
+#include "bed/conductivity.h"
 
 #include <math.h>
 #include <stdlib.h>

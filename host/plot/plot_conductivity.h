@@ -1,8 +1,8 @@
-/* plot_conduction.h - a picture of exchange factors along the axes, by gnuplot. SPDX-License-Identifier: MIT */
-#ifndef PLOT_CONDUCTION_H
-#define PLOT_CONDUCTION_H
+/* plot_conductivity.h - a picture of exchange factors along the axes, by gnuplot. SPDX-License-Identifier: MIT */
+#ifndef PLOT_CONDUCTIVITY_H
+#define PLOT_CONDUCTIVITY_H
 
-#include "bed/conduction.h"
+#include "bed/conductivity.h"
 #include "cli/output.h"
 
 /* Draws F_E along each wanted axis with twice its standard error, and F_E between plates where it is known. The names

@@ -1,4 +1,4 @@
-/* conduction.h - effective radiative conductivity of a bed of grey spheres. SPDX-License-Identifier: MIT
+/* conductivity.h - effective radiative conductivity of a bed of grey spheres. SPDX-License-Identifier: MIT
  *
  * The temperature is linear with gradient g, and each sphere has the temperature at its centre. Then the spheres of a
  * volume V carry along the gradient the flux k g = g/(2 V) sum over i, j of 4 sigma T^3 A_i e_i D_ij dz_ij^2.
@@ -6,8 +6,8 @@
  * If spheres conduct, temperatures differ from point to point on each sphere, and the net power of each sphere is 0.
  * The flux is then that of walks, which go on at every sphere: k g = g/(2 V) 4 sigma T^3 A <z^2>. A is the area of all
  * spheres. <z^2> is the mean square displacement of a flight. */
-#ifndef CONDUCTION_H
-#define CONDUCTION_H
+#ifndef CONDUCTIVITY_H
+#define CONDUCTIVITY_H
 
 #include <stdbool.h>
 

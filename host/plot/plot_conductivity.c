@@ -1,5 +1,5 @@
-/* plot_conduction.c - a picture of exchange factors along the axes, by gnuplot. SPDX-License-Identifier: MIT */
-#include "plot/plot_conduction.h"
+/* plot_conductivity.c - a picture of exchange factors along the axes, by gnuplot. SPDX-License-Identifier: MIT */
+#include "plot/plot_conductivity.h"
 
 #include <math.h>
 #include <string.h>
