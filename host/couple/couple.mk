@@ -70,7 +70,7 @@ install-couple: install-lib $(BUILD)/couple/libfibrad_couple.a
 $(BUILD)/couple/libfibrad_couple.a: $(COUPLE_OBJECTS) $(CONTACT_OBJECTS)
 	@mkdir -p $(@D)
 	rm -f $@
-	$(AR) rcs $@ $^
+	$(AR) rcs $@ $(COUPLE_OBJECTS) $(CONTACT_OBJECTS)
 
 $(COUPLE_OBJECTS): $(BUILD)/%.o: %.c | need-mpi
 	@mkdir -p $(@D)

@@ -155,7 +155,7 @@ run own_contacts 1 'setforce 0 0 0' 300 -in plain
 for ranks in 1 2; do
     sed "s/end_free/end_free$ranks/" free >free$ranks
     run contacts$ranks $ranks 'setforce 0 0 0' 300 -in free$ranks --contacts '5 lens scale 1.7724538509055159'
-    paste end_plain end_free$ranks | awk -v ranks=$ranks '
+    paste end_plain "end_free$ranks" | awk -v ranks="$ranks" '
         NF == 6 && $1 + 0 == $1 { off = ($2 - $5)^2; if (off > most) most = off; moved += ($2 != 900 && $2 != 300); n++ }
         END {
             printf "%d rank(s): contacts of the driver and of LIGGGHTS part by %.1e K\n", ranks, sqrt(most)
