@@ -365,10 +365,10 @@ fuzz: fuzz-programs
 	done
 
 ## fuzz-fixed: fuzz with a fixed number of inputs, the same ones every time (a minute)
-FUZZ_RUNS = read:13000 kernel:700 host:100
+FUZZ_RUNS = kernel:700 host:100 read:13000
 # what comparisons show would bring addresses in, which differ from run to run: -use_cmp=0
 fuzz-fixed: fuzz-programs
-	@echo $(FUZZ_RUNS) | tr ' ' '\n' | xargs -P 2 -I{} sh -ec 'run={}; target=$${run%:*}; \
+	@echo $(FUZZ_RUNS) | tr ' ' '\n' | OMP_WAIT_POLICY=passive xargs -P 2 -I{} sh -ec 'run={}; target=$${run%:*}; \
 	    rm -rf $(FUZZ)/fixed_$$target; mkdir -p $(FUZZ)/fixed_$$target; \
 	    if $(FUZZ)/fuzz_$$target $(FUZZ_FLAGS) -seed=1 -use_cmp=0 -runs=$${run#*:} -artifact_prefix=$(FUZZ)/$$target- \
 	        $(FUZZ)/fixed_$$target tests/fuzz/corpus_$$target >$(FUZZ)/$$target.log 2>&1; \
@@ -408,7 +408,7 @@ lint: cppcheck
 	else echo "No MPI: couplings are not checked"; fi
 
 cppcheck:
-	cppcheck --quiet --std=c11 --error-exitcode=1 --enable=warning,portability,performance \
+	cppcheck --quiet -j 2 --std=c11 --error-exitcode=1 --enable=warning,portability,performance \
 	    --suppress=missingIncludeSystem --suppressions-list=.cppcheck $(LINT_FLAGS) $(LINT_SCALAR) kernel host
 
 ## nightly: long checks that .ci/run leaves out: all bits, all sanitizers, clang-tidy, benches, longer fuzzing
