@@ -5,12 +5,8 @@
 
 #include "cli/memory.h"
 #include "cli/message.h"
-<<<<<<< HEAD:host/conduct/read_contacts.c
 #include "cli/targets.h"
-#include "conduct/contact_option.h"
-=======
 #include "contact_options/contact_option.h"
->>>>>>> heat:host/contact_options/read_contacts.c
 #include "text/read_lines.h"
 
 int contact_path(const char *pattern, int64_t frame, char path[CONTACT_PATH]) {

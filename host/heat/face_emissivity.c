@@ -1,10 +1,4 @@
-<<<<<<< HEAD:host/heat/face.c
-/* face.c - the hemispherical emissivity of the open face of a bed. SPDX-License-Identifier: MIT */
-=======
 /* face_emissivity.c - the hemispherical emissivity of the open face of a bed. SPDX-License-Identifier: MIT */
-#include "heat/face_emissivity.h"
-
->>>>>>> heat:host/heat/face_emissivity.c
 #include <gsl/gsl_math.h>
 #include <math.h>
 

@@ -3,7 +3,7 @@
 #ifndef HEAT_H
 #define HEAT_H
 
-#include "conduct/contact_option.h"
+#include "contact_options/contact_option.h"
 #include "heat/heat_given.h"
 #include "heat/light_option.h"
 
