@@ -89,9 +89,9 @@ class FixFibrad::Words {
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     : Fix(lammps, narg, arg), spots(), temperature(), kept_bit(0), surroundings{-1, ""}, parts(false), errors(false),
-      columns(1), moved(0), sampling(false), accuracy(false), sigma(0), initial(0), config(), meshes(),
-      moving(false), insitu(nullptr), totals(), conducted(), warned(false), wall_warned(false), told(), set_up(-1),
-      powers_at(0), lost(0), restarted(false), begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
+      columns(1), moved(0), sampling(false), accuracy(false), sigma(0), initial(0), config(), meshes(), moving(false),
+      insitu(nullptr), totals(), conducted(), warned(false), wall_warned(false), told(), set_up(-1), powers_at(0),
+      lost(0), restarted(false), begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // the default of docs/lammps.md
@@ -549,9 +549,10 @@ void FixFibrad::list_output() {
     list += ", [2] beyond, [3] error, [4] [5] seconds";
     for (int w = 0; w < count; w++) {
         const fibrad_wall &wall = walls[w];
-        const std::string name = wall.kind == FIBRAD_WALL_PLANE      ? faces[2 * wall.plane.axis + wall.plane.upper]
-                                 : wall.kind == FIBRAD_WALL_CYLINDER ? std::string(1, "zxy"[wall.cylinder.axis]) + "cylinder"
-                                                                     : "mesh";
+        const std::string name = wall.kind == FIBRAD_WALL_PLANE ? faces[2 * wall.plane.axis + wall.plane.upper]
+                                 : wall.kind == FIBRAD_WALL_CYLINDER
+                                     ? std::string(1, "zxy"[wall.cylinder.axis]) + "cylinder"
+                                     : "mesh";
         list += text(", [%d] wall ", 6 + w) + name;
         names += text(", [%d] T of wall ", 9 + count + w) + name;
     }
