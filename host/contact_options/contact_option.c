@@ -76,8 +76,7 @@ static int find_contacts(struct contact_state *state, struct bed_options *bed_op
     state->rule = (fibrad_contact_rule){.spots = o->spots, .scale = o->scale, .gas_alone = solid->given};
     if (o->gas) {
         state->rule.gas_reach = o->gap > 0 ? o->gap : FIBRAD_GAS_REACH_DEFAULT;
-        state->rule.gas_jump = o->jump / bed->metres,
-        state->rule.gas_least = FIBRAD_GAS_LEAST_DEFAULT / bed->metres;
+        state->rule.gas_jump = o->jump / bed->metres, state->rule.gas_least = FIBRAD_GAS_LEAST_DEFAULT / bed->metres;
     }
     int status = quantity_values(state->of_solid, bed, bed_options->name, "conductivity of the solid", 0,
                                  SOLID_CONDUCTIVITY_MIN, SOLID_CONDUCTIVITY_MAX, &state->solid);

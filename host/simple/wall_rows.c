@@ -51,7 +51,7 @@ uint32_t fibrad_job_wall_paths(const fibrad_job *job, uint64_t paths) {
 }
 
 /* Follows the paths of all tasks, more and more until each wall has its tolerance. row [walls]: those with paths. */
-static int settle_rows(struct wall_tasks *tasks, fibrad_wall_row *row) {
+static int run_rounds(struct wall_tasks *tasks, fibrad_wall_row *row) {
     fibrad_job *job = tasks->job;
     const double tolerance = tasks->tolerance;
     int status = FIBRAD_OK;
@@ -77,7 +77,7 @@ int fibrad_job_walls(fibrad_job *job, const fibrad_wall_rule *rule, double toler
         row[b] = (fibrad_wall_row){0};
         tasks.paths[b] = isfinite(fibrad_scene_wall_area(job->scene, b)) ? rule->paths : 0;
     }
-    return settle_rows(&tasks, row);
+    return run_rounds(&tasks, row);
 }
 
 int fibrad_exchange_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t wall,
@@ -87,7 +87,7 @@ int fibrad_exchange_wall_row(const fibrad_scene_config *config, const fibrad_sph
     struct wall_tasks tasks = {.job = &job, .rule = *rule, .tolerance = tolerance, .first = wall, .walls = 1};
     tasks.paths[0] = rule->paths ? rule->paths : FIBRAD_WALL_PATHS_DEFAULT;
     int status = fibrad_job_open(&job, config, spheres, run);
-    if (!status) status = settle_rows(&tasks, row);
+    if (!status) status = run_rounds(&tasks, row);
     fibrad_job_close(&job);
     return status;
 }
