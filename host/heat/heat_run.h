@@ -3,7 +3,7 @@
 #define HEAT_RUN_H
 
 #include "contact_options/contact_option.h"
-#include "heat/face_emissivity.h"
+#include "heat/face.h"
 #include "heat/light_option.h"
 #include "heat/triangle_heat.h"
 

@@ -1,6 +1,6 @@
-/* face_emissivity.h - the hemispherical emissivity of the open face of a bed. SPDX-License-Identifier: MIT */
-#ifndef FACE_EMISSIVITY_H
-#define FACE_EMISSIVITY_H
+/* face.h - the hemispherical emissivity of the open face of a bed. SPDX-License-Identifier: MIT */
+#ifndef FACE_H
+#define FACE_H
 
 #include "frames/bed_options.h"
 

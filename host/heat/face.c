@@ -1,5 +1,5 @@
-/* face_emissivity.c - the hemispherical emissivity of the open face of a bed. SPDX-License-Identifier: MIT */
-#include "heat/face_emissivity.h"
+/* face.c - the hemispherical emissivity of the open face of a bed. SPDX-License-Identifier: MIT */
+#include "heat/face.h"
 
 #include <gsl/gsl_math.h>
 #include <math.h>
