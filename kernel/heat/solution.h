@@ -19,43 +19,10 @@ static inline bool fibrad_heat_conducts(const fibrad_heat *heat, uint32_t body) 
     return body < heat->spheres && heat->sources.unevenness[body] > 0;
 }
 
-/* sphere_conduction.c: the fraction of the light on a patch that leaves from the same patch. It is reflected there, or
- * it is emitted because the patch is hotter than the rest of the body. */
-double fibrad_heat_sent_back(const fibrad_heat *heat, uint32_t body);
-
-/* Finds the unevenness of all spheres from their emissions. Returns the largest relative change. If the change is not
- * above `least`, the unevenness stays. */
-double fibrad_heat_find_unevenness(fibrad_heat *heat, double least);
-
-/* Sends, from the patches of a sphere, what one preconditioned iteration would change of the pattern of J, plus
- * `shift`. Returns the product of the residual and the change without `shift`. The function overwrites
- * heat->solution.gathered of the sphere. */
-double fibrad_heat_pattern_residual(fibrad_heat *heat, uint32_t sphere, double shift);
-
-/* Adds to the net flows of a sphere what stands for the pattern of light that its patches have absorbed. Returns the
- * sum over the patches of residual times change of a J that is even. */
-double fibrad_heat_add_absorbed(fibrad_heat *heat, uint32_t sphere);
-
-/* Adds `share` of the same, and returns nothing. */
-void fibrad_heat_stand_for_absorbed(fibrad_heat *heat, uint32_t sphere, double share);
-
-/* The power that enters a sphere at a patch: absorbed light, and heat of contacts. */
-double fibrad_heat_entering(const fibrad_heat *heat, uint32_t patch);
-
 /* Whether heat enters surfaces at places, as light or through contacts. */
 static inline bool fibrad_heat_is_entered(const fibrad_heat *heat) {
     return heat->sources.absorbed != NULL || heat->spots.entering != NULL;
 }
-
-/* Finds what contacts conduct at their places, with the present radiosities and emissions. Returns the largest change
- * of a flow over the largest flow. */
-double fibrad_heat_find_spots(fibrad_heat *heat);
-
-/* Lets the flows that were found enter the spheres. */
-void fibrad_heat_place_flows(fibrad_heat *heat);
-
-/* Adds to `to` what bodies gain through contacts if the means of all surfaces are equal. */
-void fibrad_heat_add_offsets(const fibrad_heat *heat, double *to);
 
 /* The light that a body has absorbed. */
 static inline double fibrad_heat_absorbed(const fibrad_heat *heat, uint32_t body) {
@@ -65,7 +32,8 @@ static inline double fibrad_heat_absorbed(const fibrad_heat *heat, uint32_t body
 /* A patch that sends back all that arrives has few links to others. Too much of what arrives by a link goes back by it:
  * 1/k of it if k links are spread at random. So exchange areas of such links are taken to be larger, by the share of
  * the link in the area of the patch. Rays are spread more evenly than random ones. Beams of one direction are parallel,
- * so that several of them connect the same two surfaces. docs/methods_heat.md section 7. */
+ * so that several of them connect the same two surfaces. The two factors are measured in cubes, cups and mono2000 with
+ * insulated walls: docs/methods_heat.md section 7. */
 #define FIBRAD_HEAT_RAYS_RETURN  .7
 #define FIBRAD_HEAT_BEAMS_RETURN 1.5
 static inline double fibrad_heat_enlarged(double area, double factor, double back_from, double back_to) {
@@ -88,30 +56,6 @@ static inline double fibrad_heat_absorbs(const fibrad_heat *heat, uint32_t body)
     return heat->sources.emissivity[body] * arrives;
 }
 
-/* The sum over the patches of a sphere of A p g p, p being the search direction without its mean. */
-double fibrad_heat_pattern_curvature(const fibrad_heat *heat, uint32_t sphere);
-
-/* Finds heat->solution.span of all spheres. The function overwrites heat->solution.gathered, source and direction. */
-void fibrad_heat_find_spans(fibrad_heat *heat);
-
-/* What a sphere has in rings about an axis: areas, and means of irradiation, J and the power that enters. A ring
- * without patches, which is near the axis, has the means of the next ring. sign: -1: the axis is turned over. */
-typedef struct fibrad_heat_ringed {
-    double area[FIBRAD_RINGS], arriving[FIBRAD_RINGS], sent[FIBRAD_RINGS], absorbed[FIBRAD_RINGS];
-} fibrad_heat_ringed;
-void fibrad_heat_look_in_rings(const fibrad_heat *heat, uint32_t sphere, const double axis[3], double sign,
-                               fibrad_heat_ringed *mean);
-
-/* Makes heat->rings and heat->normal. */
-void fibrad_heat_make_rings(fibrad_heat *heat);
-
-/* Finds the hottest and the coldest places of the spheres from `begin` to `end` - 1 in heat->sequence. The solution has
- * ended, and no direction was set since. */
-void fibrad_heat_find_extremes(const fibrad_heat *heat, uint32_t begin, uint32_t end, fibrad_rings_work *work);
-
-/* solve.c: prepares the first sweep of a solution. */
-void fibrad_heat_start(fibrad_heat *heat);
-
 /* Whether a body in contact has an emission that is an unknown beside its radiosities. */
 static inline bool fibrad_heat_is_joined(const fibrad_heat *heat, uint32_t body) {
     return heat->contacts.count > 0 && heat->contacts.kind[body] == FIBRAD_CONTACT_FREE;
@@ -128,5 +72,70 @@ static inline double fibrad_heat_temperature(const fibrad_heat *heat, double emi
     const double t0 = heat->sources.surroundings, power = emission / heat->sources.sigma + (t0 * t0) * (t0 * t0);
     return power >= 0 ? fibrad_sqrt(fibrad_sqrt(power)) : __builtin_nan("");
 }
+
+/* ---- sphere_conduction.c: patterns of spheres that conduct ------------------------------------------------------- */
+
+/* The fraction of the light on a patch that leaves from the same patch. It is reflected there, or
+ * it is emitted because the patch is hotter than the rest of the body. */
+double fibrad_heat_sent_back(const fibrad_heat *heat, uint32_t body);
+
+/* Finds the unevenness of all spheres from their emissions. Returns the largest relative change. If the change is not
+ * above `least`, the unevenness stays. */
+double fibrad_heat_find_unevenness(fibrad_heat *heat, double least);
+
+/* Sends, from the patches of a sphere, what one preconditioned iteration would change of the pattern of J, plus
+ * `shift`. Returns the product of the residual and the change without `shift`. The function overwrites
+ * heat->solution.gathered of the sphere. */
+double fibrad_heat_pattern_residual(fibrad_heat *heat, uint32_t sphere, double shift);
+
+/* The sum over the patches of a sphere of A p g p, p being the search direction without its mean. */
+double fibrad_heat_pattern_curvature(const fibrad_heat *heat, uint32_t sphere);
+
+/* The power that enters a sphere at a patch: absorbed light, and heat of contacts. */
+double fibrad_heat_entering(const fibrad_heat *heat, uint32_t patch);
+
+/* Adds to the net flows of a sphere what stands for the pattern of light that its patches have absorbed. Returns the
+ * sum over the patches of residual times change of a J that is even. */
+double fibrad_heat_add_absorbed(fibrad_heat *heat, uint32_t sphere);
+
+/* Adds `share` times what stands for that pattern. -1 takes it off again. */
+void fibrad_heat_stand_for_absorbed(fibrad_heat *heat, uint32_t sphere, double share);
+
+/* Finds heat->solution.span of all spheres. The function overwrites heat->solution.gathered, source and direction. */
+void fibrad_heat_find_spans(fibrad_heat *heat);
+
+/* ---- extremes.c: hottest and coldest places, in rings ------------------------------------------------------------ */
+
+/* Makes heat->rings and heat->normal. */
+void fibrad_heat_make_rings(fibrad_heat *heat);
+
+/* What a sphere has in rings about an axis: areas, and means of irradiation, J and the power that enters. A ring
+ * without patches, which is near the axis, has the means of the next ring. sign: -1: the axis is turned over. */
+typedef struct fibrad_heat_ringed {
+    double area[FIBRAD_RINGS], arriving[FIBRAD_RINGS], sent[FIBRAD_RINGS], absorbed[FIBRAD_RINGS];
+} fibrad_heat_ringed;
+void fibrad_heat_look_in_rings(const fibrad_heat *heat, uint32_t sphere, const double axis[3], double sign,
+                               fibrad_heat_ringed *mean);
+
+/* Finds the hottest and the coldest places of the spheres from `begin` to `end` - 1 in heat->sequence. The solution has
+ * ended, and no direction was set since. */
+void fibrad_heat_find_extremes(const fibrad_heat *heat, uint32_t begin, uint32_t end, fibrad_rings_work *work);
+
+/* ---- contact_spots.c: contacts at their places ------------------------------------------------------------------- */
+
+/* Finds what contacts conduct at their places, with the present radiosities and emissions. Returns the largest change
+ * of a flow over the largest flow. */
+double fibrad_heat_find_spots(fibrad_heat *heat);
+
+/* Lets the flows that were found enter the spheres. */
+void fibrad_heat_place_flows(fibrad_heat *heat);
+
+/* Adds to `to` what bodies gain through contacts if the means of all surfaces are equal. */
+void fibrad_heat_add_offsets(const fibrad_heat *heat, double *to);
+
+/* ---- solve.c ----------------------------------------------------------------------------------------------------- */
+
+/* Prepares the first sweep of a solution. */
+void fibrad_heat_start(fibrad_heat *heat);
 
 #endif

@@ -17,14 +17,14 @@
 #define RAYS_WEIGHT (FIBRAD_HEAT_RAY_ERROR / FIBRAD_HEAT_BEAM_ERROR)
 
 /* The area that a beam of a pencil stands for. If its two surfaces send out n and m beams per area, this is 1/(n + m).
- * So the beams of both together tell what they exchange. The share is the number of beams that were followed for each
- * beam that was kept. In the sweep for the error, the share is the difference between even and odd directions
+ * So the beams of both together tell what they exchange. The weight is the number of beams that were followed for each
+ * beam that was kept. In the sweep for the error, the weight is the difference between even and odd directions
  * instead. */
 static double beam_area(const fibrad_heat *heat, uint32_t owner, const fibrad_heat_pencil *pencil) {
     const double other = pencil->body < heat->rows ? heat->density[pencil->body] : 0;
     const double check = pencil->tilt / 32767. * (owner < heat->spheres ? 1 : RAYS_WEIGHT);
-    const double share = heat->solution.phase == FIBRAD_HEAT_CHECK ? pencil->share * check : pencil->share;
-    return share / (heat->density[owner] + other);
+    const double weight = heat->solution.phase == FIBRAD_HEAT_CHECK ? pencil->weight * check : pencil->weight;
+    return weight / (heat->density[owner] + other);
 }
 
 /* What both ends of a pencil send, and the sums of what each end receives. The owner is the row that has the pencil. */
@@ -128,7 +128,7 @@ static double beams_of(const fibrad_heat_pencil *pencil) {
     const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
     uint32_t beams = 0;
     for (uint32_t k = 0; k < pencil->bundles; k++) beams += bundle[k].count;
-    return (double)pencil->share * beams;
+    return (double)pencil->weight * beams;
 }
 
 /* The reflectivity of the other end of a pencil. */

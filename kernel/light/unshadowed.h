@@ -27,7 +27,7 @@ static inline bool fibrad_light_line_through(const double a[2], const double b[2
 }
 
 /* The area of a convex polygon, above 0 if its corners run counter-clockwise. */
-static inline double fibrad_light_area(double (*const corner)[2], uint32_t corners) {
+static inline double fibrad_light_area(double corner[][2], uint32_t corners) {
     double sum = 0;
     for (uint32_t k = 1; k + 1 < corners; k++) {
         const double *a = corner[0], *b = corner[k], *c = corner[k + 1];

@@ -207,7 +207,7 @@ static uint32_t write_row(const fibrad_heat *heat, uint32_t place, const fibrad_
         const uint64_t beams = entries->key[0][e] - begin;
         const uint32_t body = entries->sphere[e], joined = join_beams(heat, scratch->sorted + begin, beams, scratch);
         draft.pencil = (fibrad_heat_pencil){
-            .body = body, .share = (float)(weight * (even + odd) / (double)beams), .tilt = (int16_t)(32767 * tilt)};
+            .body = body, .weight = (float)(weight * (even + odd) / (double)beams), .tilt = (int16_t)(32767 * tilt)};
         draft.written = 0;
         for (uint32_t k = 0; k < joined; k++) write_bundle(&draft, &scratch->fours[k]);
         write_pencil(&draft);

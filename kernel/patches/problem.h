@@ -38,7 +38,7 @@
  *   padding  to a multiple of four bytes */
 typedef struct fibrad_heat_pencil {
     uint32_t body; /* the other row, or fibrad_heat_other of the block */
-    float share;   /* beams followed for each beam kept */
+    float weight;  /* beams followed for each beam kept */
     int16_t tilt;  /* 32767 (even - odd)/all, numbers of beams followed by the parity of their directions */
     uint8_t bundles, strands;
 } fibrad_heat_pencil;

@@ -1,4 +1,4 @@
-/* face_emissivity.c - the hemispherical emissivity of the open face of a bed. SPDX-License-Identifier: MIT */
+/* face.c - the hemispherical emissivity of the open face of a bed. SPDX-License-Identifier: MIT */
 #include <gsl/gsl_math.h>
 #include <math.h>
 
