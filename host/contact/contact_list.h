@@ -4,11 +4,8 @@
 
 #include <math.h>
 
-#include "simple/fibrad_host.h"
+#include "simple/heap.h"
 
-/* These need no library. */
-static inline double larger_of(double a, double b) { return a > b ? a : b; }
-static inline double smaller_of(double a, double b) { return a < b ? a : b; }
 static inline double length_of(double x, double y, double z) { return sqrt(x * x + y * y + z * z); }
 
 /* Two ends that are near enough, as in fibrad_contact_list. */

@@ -1,4 +1,5 @@
-/* heap.h - memory of the kernel on the heap or in files. SPDX-License-Identifier: MIT */
+/* heap.h - memory of the kernel on the heap or in files; the larger and the smaller of two numbers.
+ * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_SIMPLE_HEAP_H
 #define FIBRAD_SIMPLE_HEAP_H
 
@@ -6,6 +7,10 @@
 
 #include "fibrad_mesh.h"
 #include "simple/fibrad_host.h"
+
+/* fmax and fmin would need the library of mathematics. */
+static inline double larger_of(double a, double b) { return a > b ? a : b; }
+static inline double smaller_of(double a, double b) { return a < b ? a : b; }
 
 /* Makes a scene in *block. The caller frees *block, which is NULL after an error. Errors: as fibrad_scene_init;
  * _MEMORY. */

@@ -52,8 +52,6 @@ struct row_tasks {
     fibrad_job_report *report; /* [threads] */
 };
 
-static double larger_of(double a, double b) { return a > b ? a : b; } /* fmax would need the library of mathematics */
-
 static double sum_of_row(const fibrad_row *row, uint32_t walls) {
     double sum = 0;
     for (uint32_t k = 0; k < row->length; ++k) sum += row->f[k];

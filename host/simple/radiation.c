@@ -413,12 +413,10 @@ struct arrived {
     const double *cones; /* [spheres + walls] */
 };
 
-static double lesser(double a, double b) { return a < b ? a : b; }
-
 /* The square of the error that rays and beams bring to what a surface absorbs. solved: what it absorbs in the solution.
  * A fraction of the beams that leave patches arrives at the surface; it is taken to be the same for all patches. */
 static double error_of_rays(const struct arrived *a, uint32_t surface, double absorptivity, double solved) {
-    const double share = absorptivity > 0 && a->all > 0 ? lesser(1, fabs(solved) / (absorptivity * a->all)) : 0;
+    const double share = absorptivity > 0 && a->all > 0 ? smaller_of(1, fabs(solved) / (absorptivity * a->all)) : 0;
     const double rays = RAYS_ERROR * RAYS_ERROR * a->squares[surface];
     const double beams = BEAMS_ERROR * BEAMS_ERROR * share * (1 - share) * a->beams;
     return absorptivity * absorptivity * (rays + beams);
@@ -484,32 +482,29 @@ static bool shine_valid(const fibrad_radiation *r, const fibrad_light_sources *s
            (walls == 0 || (s->wall_absorptivity && result->wall_absorbed && result->wall_absorbed_first));
 }
 
-/* fmax would need the library of mathematics. */
-static double above_zero(double a) { return a > 0 ? a : 0; }
-
 /* Adds up what surfaces absorb after reflections, above and below 0. */
 static void add_reflections(const double *absorbed, const double *first, uint32_t n, double *above, double *below) {
     for (uint32_t i = 0; i < n; ++i) {
-        *above += above_zero(absorbed[i] - first[i]);
-        *below += above_zero(first[i] - absorbed[i]);
+        *above += larger_of(absorbed[i] - first[i], 0);
+        *below += larger_of(first[i] - absorbed[i], 0);
     }
 }
 
 static void scale_reflections(double *absorbed, const double *first, uint32_t n, double factor) {
-    for (uint32_t i = 0; i < n; ++i) absorbed[i] = first[i] + factor * above_zero(absorbed[i] - first[i]);
+    for (uint32_t i = 0; i < n; ++i) absorbed[i] = first[i] + factor * larger_of(absorbed[i] - first[i], 0);
 }
 
 /* By the errors of patches a surface may absorb less than of the light that it meets first. Then it absorbs just that.
  * What all absorb after reflections, and what leaves, are scaled, so that the sum of all stays. */
 static void keep_first(uint32_t n, uint32_t walls, fibrad_light_result *light) {
-    double above = above_zero(light->reflected), below = above_zero(-light->reflected);
+    double above = larger_of(light->reflected, 0), below = larger_of(-light->reflected, 0);
     add_reflections(light->absorbed, light->absorbed_first, n, &above, &below);
     add_reflections(light->wall_absorbed, light->wall_absorbed_first, walls, &above, &below);
     if (below == 0) return;
     const double factor = above > below ? 1 - below / above : 0;
     scale_reflections(light->absorbed, light->absorbed_first, n, factor);
     scale_reflections(light->wall_absorbed, light->wall_absorbed_first, walls, factor);
-    light->reflected = factor * above_zero(light->reflected);
+    light->reflected = factor * larger_of(light->reflected, 0);
 }
 
 /* After an error result->lights alone is written. */

@@ -35,10 +35,6 @@ struct stepper {
     double *stage_walls[2], to_surroundings[2]; /* powers of walls [walls] and of the surroundings in each stage */
 };
 
-/* fmax and fmin would need the library of mathematics. */
-static double larger_one(double a, double b) { return a > b ? a : b; }
-static double smaller_one(double a, double b) { return a < b ? a : b; }
-
 static double power_of(const struct stepper *m, uint32_t i) { return m->given->power ? m->given->power[i] : 0; }
 
 static double share_between(double from, double to, double share) { return from + share * (to - from); }
@@ -176,7 +172,7 @@ static int try_step(struct stepper *m, double time, double step, double *error) 
     status = solve_stage(m, 1, time + step, length);
     *error = 0;
     for (uint32_t i = 0; i < t->n && !status; ++i)
-        *error = larger_one(*error, fabs(t->solution[i] - t->base[i] - t->first[i]) / t->solution[i]);
+        *error = larger_of(*error, fabs(t->solution[i] - t->base[i] - t->first[i]) / t->solution[i]);
     return status;
 }
 
@@ -192,7 +188,7 @@ static void accept_step(struct stepper *m, double step, double error) {
         for (uint32_t b = 0; b < t->walls; ++b) span->wall_energy[b] += share[stage] * m->stage_walls[stage][b];
         span->surroundings_energy += share[stage] * m->to_surroundings[stage];
     }
-    span->error = larger_one(span->error, error);
+    span->error = larger_of(span->error, error);
     ++span->steps;
 }
 
@@ -202,12 +198,12 @@ static double first_step(const struct stepper *m) {
     const fibrad_transient *t = m->t;
     double hottest = m->given->surroundings, step = m->span->duration;
     for (uint32_t b = 0; b < t->walls; ++b)
-        hottest = larger_one(m->given->wall_temperature[b], hottest); /* NaN, not known: hottest stays */
-    for (uint32_t i = 0; i < t->n; ++i) hottest = larger_one(hottest, t->now[i]);
+        hottest = larger_of(m->given->wall_temperature[b], hottest); /* NaN, not known: hottest stays */
+    for (uint32_t i = 0; i < t->n; ++i) hottest = larger_of(hottest, t->now[i]);
     const double emission = m->given->sigma * (hottest * hottest) * (hottest * hottest);
     for (uint32_t i = 0; i < t->n; ++i) {
         const double rate = t->area[i] * m->given->emissivity[i] * emission + fabs(power_of(m, i));
-        if (rate > 0) step = smaller_one(step, sqrt(m->tolerance) * m->span->capacity[i] * t->now[i] / rate);
+        if (rate > 0) step = smaller_of(step, sqrt(m->tolerance) * m->span->capacity[i] * t->now[i] / rate);
     }
     return step;
 }
@@ -235,16 +231,16 @@ static int take_steps(struct stepper *m) {
         if (!status) status = compare(m, time);
         if (!status) status = try_step(m, time, step, &error);
         if (status && (fixed || status != FIBRAD_E_UNSOLVABLE)) return status;
-        const double wanted = status ? step / GROWTH : SAFETY * step * sqrt(m->tolerance / larger_one(error, 1e-300));
+        const double wanted = status ? step / GROWTH : SAFETY * step * sqrt(m->tolerance / larger_of(error, 1e-300));
         if (status || (!fixed && error > m->tolerance)) {
             ++span->refused;
-            next = larger_one(wanted, step / GROWTH);
+            next = larger_of(wanted, step / GROWTH);
             continue;
         }
         accept_step(m, step, error);
         time = parts > 1 ? time + step : span->duration;
         if (span->observe) span->observe(span->context, time, t->now);
-        if (!fixed) next = smaller_one(wanted, larger_one(GROWTH * step, next));
+        if (!fixed) next = smaller_of(wanted, larger_of(GROWTH * step, next));
     }
     if (!fixed) t->step = next;
     return FIBRAD_OK;
