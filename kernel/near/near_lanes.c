@@ -73,11 +73,9 @@ void LANED(fibrad_near_extend)(fibrad_workspace *work) {
                  (shell > 0 && to < work->free_path); /* few windows would meet a sphere of another shell */
     for (uint32_t l = 0; l < scene->levels && !near->full; l++) {
         double wide = 1 + scene->level[l].radius_max * work->inverse;
-        double ball = fibrad_min(fibrad_sqrt(to * to + wide * wide), work->reach) * work->unit, low[3], high[3];
-        for (int axis = 0; axis < 3; axis++)
-            low[axis] = work->centre[axis] - ball, high[axis] = work->centre[axis] + ball;
+        double ball = fibrad_min(fibrad_sqrt(to * to + wide * wide), work->reach) * work->unit;
         fibrad_walk walk;
-        fibrad_walk_begin(&walk, scene, &scene->level[l], low, high);
+        fibrad_walk_about(&walk, scene, &scene->level[l], work->centre, work->centre, ball);
         near->full = !collect_near(work, &walk, shell > 0 ? from * from : -__builtin_inf(), to * to, &count);
     }
     if (near->full) return;

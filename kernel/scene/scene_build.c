@@ -328,18 +328,16 @@ static int check_overlaps(fibrad_scene *scene, fibrad_fault *fault) {
         for (uint32_t i = scene->level[l].first_sphere; i < end; i++) {
             for (uint32_t other = 0; other <= l; other++) {
                 double reach = scene->r[i] + scene->level[other].radius_max;
-                double low[3] = {scene->x[i] - reach, scene->y[i] - reach, scene->z[i] - reach};
-                double high[3] = {scene->x[i] + reach, scene->y[i] + reach, scene->z[i] + reach};
+                const double centre[3] = {scene->x[i], scene->y[i], scene->z[i]};
                 fibrad_walk walk;
-                fibrad_walk_begin(&walk, scene, &scene->level[other], low, high);
+                fibrad_walk_about(&walk, scene, &scene->level[other], centre, centre, reach);
                 while (fibrad_walk_next(&walk))
                     for (uint32_t j = walk.begin; j < walk.end; j++) {
                         double dx = scene->x[j] - scene->x[i] + walk.shift[0];
                         double dy = scene->y[j] - scene->y[i] + walk.shift[1];
                         double dz = scene->z[j] - scene->z[i] + walk.shift[2], sum = scene->r[i] + scene->r[j];
-                        bool image = walk.shift[0] != 0 || walk.shift[1] != 0 || walk.shift[2] != 0;
                         if (fibrad_abs(dx) >= sum || fibrad_abs(dy) >= sum || fibrad_abs(dz) >= sum) continue;
-                        if (j == i && !image) continue;
+                        if (j == i && !walk.image) continue;
                         /* in units of the sum of the radii, so that no square overflows or vanishes */
                         dx /= sum, dy /= sum, dz /= sum;
                         double distance = sum * fibrad_sqrt(dx * dx + dy * dy + dz * dz);
