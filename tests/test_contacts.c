@@ -316,7 +316,7 @@ LOOP_TEST(spheres_in_a_room, 2) {
     OWNED_FACTORS *d;
     const fibrad_spheres spheres = spheres_of(&j->bed);
     const fibrad_exchange_rule rule = {
-        .emissivity = j->emissivity, .wall_emissivity = j->wall_emissivity, .tolerance = 5e-4};
+        .emissivity = j->emissivity, .wall_emissivity = j->wall_emissivity, .tolerance = 1e-3};
     assert_ok(fibrad_exchange_factors(&j->scene, &spheres, &rule, NULL, NULL, &d));
     for (uint32_t i = 0; i < n; i++) t[i] = isnan(j->temperature[i]) ? 1000 : j->temperature[i];
     by_newton(j, d, t, q);

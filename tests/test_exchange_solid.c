@@ -315,14 +315,14 @@ LOOP_TEST(errors_of_powers, 3) {
     }
     memcpy(h.config.period, h.bed.period, sizeof h.config.period);
     for (uint64_t seed = 0; seed < 2; ++seed) {
-        OWNED_FACTORS *factors = factors_of(&h, 2000, seed);
+        OWNED_FACTORS *factors = factors_of(&h, 500, seed);
         powers_by_rows(&h, &factors->matrix, found[seed]);
     }
     const double noise = difference_of(found[0], found[1], h.bed.n) / sqrt(2);
     const char *solid = formatted("%.9g", bad_k[_i] * 8 * 5.670374419e-8 * 1e9);
     const char *period = formatted("%.17g,%.17g,%.17g", h.bed.period[0], h.bed.period[1], h.bed.period[2]);
     SUCCEED("exchange", write_file("bad.csv", text), "--length-unit", "m", "--emissivity", "0.8", "--periodic", period,
-            "--temperature", "1000", "--solid-conductivity", solid, "--rays", "2000", "--directions", "400");
+            "--temperature", "1000", "--solid-conductivity", solid, "--rays", "500", "--directions", "400");
     const double error = value_of("error_of_powers");
     ck_assert_msg(error > .4 * noise && error < 3 * noise, "%g for %g", error, noise);
     ck_assert_int_eq(strstr(said, "powers by these factors") != NULL, error > .03);

@@ -365,7 +365,7 @@ LOOP_TEST(paths_and_patches_of_a_random_bed, 3) {
     const char *file = write_tower(period), *solid = formatted("%.17g", k_star[_i] * 8e-3 * 5.670374419e-8 * 1e9);
     const char *periods = formatted("%.17g,%.17g,%.17g", period[0], period[1], 8 * period[2]);
     SUCCEED("conductivity", file, "--periodic", periods, "--axis", "z", "--emissivity", "0.8", "--temperature", "1000",
-            "--length-unit", "mm", "--error", "0.003", "--steady", "--solid-conductivity", solid);
+            "--length-unit", "mm", "--error", "0.005", "--steady", "--solid-conductivity", solid);
     ck_assert_double_eq_tol(value_of("F_E_steady_z") / value_of("F_E_z"), 1, most[_i]);
 }
 

@@ -61,7 +61,7 @@ static uint32_t search_neighbours(const fibrad_heat *heat, uint32_t b, struct ra
     for (uint32_t l = 0; l < scene->levels; l++) {
         const double most = scene->level[l].radius_max, reach = r + most + NEAR * fibrad_min(r, most);
         fibrad_walk walk;
-        fibrad_walk_about(&walk, scene, &scene->level[l], centre, reach);
+        fibrad_walk_about(&walk, scene, &scene->level[l], centre, centre, reach);
         while (fibrad_walk_next(&walk))
             for (uint32_t j = walk.begin; j < walk.end; j++) {
                 const double both = r + scene->r[j];

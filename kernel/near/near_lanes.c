@@ -75,7 +75,7 @@ void LANED(fibrad_near_extend)(fibrad_workspace *work) {
         double wide = 1 + scene->level[l].radius_max * work->inverse;
         double ball = fibrad_min(fibrad_sqrt(to * to + wide * wide), work->reach) * work->unit;
         fibrad_walk walk;
-        fibrad_walk_about(&walk, scene, &scene->level[l], work->centre, ball);
+        fibrad_walk_about(&walk, scene, &scene->level[l], work->centre, work->centre, ball);
         near->full = !collect_near(work, &walk, shell > 0 ? from * from : -__builtin_inf(), to * to, &count);
     }
     if (near->full) return;

@@ -67,13 +67,8 @@ static bool hull_meets(const pair_hull *hull, const double at[3], double r) {
 static bool spheres_between(const fibrad_scene *scene, const pair_hull *hull, uint32_t place, uint32_t other) {
     for (uint32_t l = 0; l < scene->levels; l++) {
         const double wide = hull->most + scene->level[l].radius_max;
-        double low[3], high[3];
         fibrad_walk walk;
-        for (int axis = 0; axis < 3; axis++) {
-            low[axis] = fibrad_min(hull->from[axis], hull->to[axis]) - wide;
-            high[axis] = fibrad_max(hull->from[axis], hull->to[axis]) + wide;
-        }
-        fibrad_walk_begin(&walk, scene, &scene->level[l], low, high);
+        fibrad_walk_about(&walk, scene, &scene->level[l], hull->from, hull->to, wide);
         while (fibrad_walk_next(&walk))
             for (uint32_t j = walk.begin; j < walk.end; j++) {
                 const double at[3] = {scene->x[j], scene->y[j], scene->z[j]};
@@ -192,7 +187,7 @@ static void try_near(pair_search *search, double distance) {
     if (work->windows * (least * least) > SOME_WINDOWS * 4 * distance * distance) return;
     for (uint32_t l = 0; l < scene->levels; l++) {
         fibrad_walk walk;
-        fibrad_walk_about(&walk, scene, &scene->level[l], work->centre, distance);
+        fibrad_walk_about(&walk, scene, &scene->level[l], work->centre, work->centre, distance);
         while (fibrad_walk_next(&walk))
             for (uint32_t j = walk.begin; j < walk.end; j++) try_sphere(search, j, false);
     }

@@ -243,7 +243,7 @@ static void divide_sphere(fibrad_heat *heat, uint32_t body) {
     bool begun = false;
     for (uint32_t l = 0; l < scene->levels; l++) {
         fibrad_walk walk;
-        fibrad_walk_about(&walk, scene, &scene->level[l], centre, reach);
+        fibrad_walk_about(&walk, scene, &scene->level[l], centre, centre, reach);
         while (fibrad_walk_next(&walk))
             for (uint32_t j = walk.begin; j < walk.end; j++) {
                 struct near_sphere near = {{scene->x[j] + walk.shift[0] - centre[0],

@@ -125,25 +125,21 @@ static void cross_box(const struct trace_ray *ray, bool grid, double *enter, dou
 /* Compares all spheres that the ray meets between the lengths `from` and `to`, and perhaps others. */
 static void intersect_stretch(const struct trace_ray *ray, double from, double to, struct trace_first *first) {
     const fibrad_scene *scene = ray->scene;
+    double ends[2][3];
+    for (int axis = 0; axis < 3; axis++) {
+        ends[0][axis] = ray->base[axis] + (ray->o[axis] + from * ray->w[axis]) * ray->unit;
+        ends[1][axis] = ray->base[axis] + (ray->o[axis] + to * ray->w[axis]) * ray->unit;
+    }
     for (uint32_t l = 0; l < scene->levels; l++) {
-        double low[3], high[3], wide = scene->level[l].radius_max * (1 + 1e-9);
-        for (int axis = 0; axis < 3; axis++) {
-            double a = (ray->o[axis] + from * ray->w[axis]) * ray->unit;
-            double b = (ray->o[axis] + to * ray->w[axis]) * ray->unit;
-            low[axis] = ray->base[axis] + fibrad_min(a, b) - wide;
-            high[axis] = ray->base[axis] + fibrad_max(a, b) + wide;
-        }
         fibrad_walk walk;
-        fibrad_walk_begin(&walk, scene, &scene->level[l], low, high);
-        while (fibrad_walk_next(&walk)) {
-            bool image = walk.shift[0] != 0 || walk.shift[1] != 0 || walk.shift[2] != 0;
+        fibrad_walk_about(&walk, scene, &scene->level[l], ends[0], ends[1], scene->level[l].radius_max * (1 + 1e-9));
+        while (fibrad_walk_next(&walk))
             for (uint32_t j = walk.begin; j < walk.end; j++) {
                 double c[3] = {(scene->x[j] - ray->base[0] + walk.shift[0]) * ray->inverse,
                                (scene->y[j] - ray->base[1] + walk.shift[1]) * ray->inverse,
                                (scene->z[j] - ray->base[2] + walk.shift[2]) * ray->inverse};
-                if (j != ray->place || image) intersect_sphere(ray, j, c, first);
+                if (j != ray->place || walk.image) intersect_sphere(ray, j, c, first);
             }
-        }
     }
 }
 

@@ -75,26 +75,24 @@ static bool gather_candidates(fibrad_tracer *tracer, const struct ball *from, do
     const double *centre = from->centre, inverse = 1 / from->radius;
     *count = 0;
     for (uint32_t l = 0; l < scene->levels; l++) {
-        double ball = limit * from->radius + scene->level[l].radius_max;
+        const double wide = limit * from->radius + scene->level[l].radius_max;
         fibrad_walk walk;
-        fibrad_walk_about(&walk, scene, &scene->level[l], centre, ball);
-        while (fibrad_walk_next(&walk)) {
-            int32_t periods[3] = {0};
-            for (int axis = 0; axis < 3; axis++)
-                if (scene->period[axis] > 0)
-                    periods[axis] = (int32_t)fibrad_floor(walk.shift[axis] / scene->period[axis] + 0.5);
-            bool image = periods[0] != 0 || periods[1] != 0 || periods[2] != 0;
+        fibrad_walk_about(&walk, scene, &scene->level[l], centre, centre, wide);
+        while (fibrad_walk_next(&walk))
             for (uint32_t j = walk.begin; j < walk.end; j++) {
                 double x = (scene->x[j] - centre[0] + walk.shift[0]) * inverse;
                 double y = (scene->y[j] - centre[1] + walk.shift[1]) * inverse;
                 double z = (scene->z[j] - centre[2] + walk.shift[2]) * inverse, r = scene->r[j] * inverse;
                 double clearance = fibrad_sqrt(x * x + y * y + z * z) - r;
-                if (clearance > limit || (j == from->place && !image)) continue;
+                if (clearance > limit || (j == from->place && !walk.image)) continue;
                 if (*count == CANDIDATES) return false;
-                tracer->candidate[(*count)++] = (fibrad_candidate){
-                    clearance, {x, y, z}, r, j, {(int8_t)periods[0], (int8_t)periods[1], (int8_t)periods[2]}};
+                tracer->candidate[(*count)++] =
+                    (fibrad_candidate){clearance,
+                                       {x, y, z},
+                                       r,
+                                       j,
+                                       {(int8_t)walk.periods[0], (int8_t)walk.periods[1], (int8_t)walk.periods[2]}};
             }
-        }
     }
     return true;
 }

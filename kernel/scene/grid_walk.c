@@ -19,21 +19,21 @@ void fibrad_walk_begin(fibrad_walk *walk, const fibrad_scene *scene, const fibra
     }
 }
 
-/* The cell of the box for cell `at` of an axis, and the shift of that periodic image. */
-static inline int32_t image(const fibrad_walk *walk, int axis, double *shift) {
-    int32_t cells = walk->level->cells[axis], at = walk->at[axis];
-    *shift = 0;
-    if ((uint32_t)at < (uint32_t)cells) return at;
-    int32_t periods = at < 0 ? -((cells - 1 - at) / cells) : at / cells;
-    *shift = periods * walk->scene->period[axis];
+/* The cell of the box for the cell of the walk along an axis, and the shift of that periodic image. */
+static inline int32_t cell_of_image(fibrad_walk *walk, int axis) {
+    const int32_t cells = walk->level->cells[axis], at = walk->at[axis];
+    const bool within = (uint32_t)at < (uint32_t)cells;
+    const int32_t periods = within ? 0 : at < 0 ? -((cells - 1 - at) / cells) : at / cells;
+    walk->periods[axis] = periods;
+    walk->shift[axis] = within ? 0 : periods * walk->scene->period[axis];
     return at - periods * cells;
 }
 
 bool fibrad_walk_next(fibrad_walk *walk) {
     const fibrad_level *level = walk->level;
     while (walk->at[2] <= walk->high[2]) {
-        int32_t x = image(walk, 0, &walk->shift[0]), y = image(walk, 1, &walk->shift[1]);
-        int32_t z = image(walk, 2, &walk->shift[2]);
+        const int32_t x = cell_of_image(walk, 0), y = cell_of_image(walk, 1), z = cell_of_image(walk, 2);
+        walk->image = walk->periods[0] != 0 || walk->periods[1] != 0 || walk->periods[2] != 0;
         int32_t run = level->cells[0] - x; /* to the end of the box, or to the end of the walk */
         if (run > walk->high[0] - walk->at[0] + 1) run = walk->high[0] - walk->at[0] + 1;
         uint32_t row =

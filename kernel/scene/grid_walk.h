@@ -14,20 +14,25 @@ typedef struct fibrad_walk {
     const fibrad_scene *scene;
     const fibrad_level *level;
     int32_t low[3], high[3], at[3]; /* cells; those outside [0, cells) are periodic images */
-    /* the run: spheres [begin, end), shifted by whole periods */
+    /* the run: spheres [begin, end), shifted by whole periods; image: by at least one */
     uint32_t begin, end;
+    int32_t periods[3];
     double shift[3];
+    bool image;
 } fibrad_walk;
 
 /* Starts a walk over the box from low to high [L]. */
 void fibrad_walk_begin(fibrad_walk *walk, const fibrad_scene *scene, const fibrad_level *level, const double low[3],
                        const double high[3]);
 
-/* Starts a walk over the cube about a centre, whose edges are twice the reach [L]. */
+/* Starts a walk over the box about two points whose faces lie `wide` [L] beyond them. For a cube the points are one. */
 static inline void fibrad_walk_about(fibrad_walk *walk, const fibrad_scene *scene, const fibrad_level *level,
-                                     const double centre[3], double reach) {
-    const double low[3] = {centre[0] - reach, centre[1] - reach, centre[2] - reach},
-                 high[3] = {centre[0] + reach, centre[1] + reach, centre[2] + reach};
+                                     const double from[3], const double to[3], double wide) {
+    double low[3], high[3];
+    for (int axis = 0; axis < 3; axis++) {
+        low[axis] = fibrad_min(from[axis], to[axis]) - wide;
+        high[axis] = fibrad_max(from[axis], to[axis]) + wide;
+    }
     fibrad_walk_begin(walk, scene, level, low, high);
 }
 

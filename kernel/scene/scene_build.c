@@ -334,15 +334,14 @@ static int each_overlap(fibrad_scene *scene, overlap_met *met, void *context) {
                 double reach = scene->r[i] + scene->level[other].radius_max;
                 const double centre[3] = {scene->x[i], scene->y[i], scene->z[i]};
                 fibrad_walk walk;
-                fibrad_walk_about(&walk, scene, &scene->level[other], centre, reach);
+                fibrad_walk_about(&walk, scene, &scene->level[other], centre, centre, reach);
                 while (fibrad_walk_next(&walk))
                     for (uint32_t j = walk.begin; j < walk.end; j++) {
                         double dx = scene->x[j] - scene->x[i] + walk.shift[0];
                         double dy = scene->y[j] - scene->y[i] + walk.shift[1];
                         double dz = scene->z[j] - scene->z[i] + walk.shift[2], sum = scene->r[i] + scene->r[j];
-                        bool image = walk.shift[0] != 0 || walk.shift[1] != 0 || walk.shift[2] != 0;
                         if (fibrad_abs(dx) >= sum || fibrad_abs(dy) >= sum || fibrad_abs(dz) >= sum) continue;
-                        if (j == i && !image) continue;
+                        if (j == i && !walk.image) continue;
                         /* in units of the sum of the radii, so that no square overflows or vanishes */
                         dx /= sum, dy /= sum, dz /= sum;
                         const int status = met(scene, i, j, sum * fibrad_sqrt(dx * dx + dy * dy + dz * dz), context);

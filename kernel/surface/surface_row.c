@@ -20,16 +20,16 @@ static uint64_t list_blockers(fibrad_workspace *work) {
     uint64_t count = 0, visited = 0;
     for (uint32_t l = 0; l < scene->levels; l++) {
         fibrad_walk walk;
-        fibrad_walk_about(&walk, scene, &scene->level[l], work->centre, reach);
+        fibrad_walk_about(&walk, scene, &scene->level[l], work->centre, work->centre, reach);
         while (fibrad_walk_next(&walk)) {
             visited += walk.end - walk.begin;
             if (visited > FIBRAD_WORK_MAX) return visited;
-            bool image = walk.shift[0] != 0 || walk.shift[1] != 0 || walk.shift[2] != 0;
             for (uint32_t j = walk.begin; j < walk.end; j++) {
                 double x = scene->x[j] + walk.shift[0], dx = (x - work->centre[0]) * work->inverse;
                 double y = scene->y[j] + walk.shift[1], dy = (y - work->centre[1]) * work->inverse;
                 double z = scene->z[j] + walk.shift[2], dz = (z - work->centre[2]) * work->inverse;
-                if ((j == work->place && !image) || dx * dx + dy * dy + dz * dz > work->reach * work->reach) continue;
+                if ((j == work->place && !walk.image) || dx * dx + dy * dy + dz * dz > work->reach * work->reach)
+                    continue;
                 if (count < near->capacity) {
                     near->x[count] = x, near->y[count] = y, near->z[count] = z, near->r[count] = scene->r[j];
                     near->sphere[count] = j;
