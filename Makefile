@@ -330,7 +330,7 @@ SANITIZED = $(MAKE) -s --no-print-directory BUILD=$(BUILD)/sanitized ISAS="$(SAN
             CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE) -fno-sanitize-recover=undefined"
 
 ## sanitized: tests of memory, protocols and readers under the address and undefined behaviour sanitizers
-OF_MEMORY = bed_make beyond body_rows curve flow heat_arguments matrix matrix_calls part plot protocol protocol_heat read \
+OF_MEMORY = bed_make beyond wall_rows curve flow heat_arguments matrix matrix_calls part plot protocol protocol_heat read \
             read_furnace row_parts scene status work write
 sanitized:
 	+@LSAN_OPTIONS=suppressions=tests/leaks.txt:print_suppressions=0 CK_FORK=no \

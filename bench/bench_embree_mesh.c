@@ -119,7 +119,7 @@ static void print_error(const struct bundle *b, const char *method, uint32_t set
 static void spread_row(const fibrad_row *row, uint32_t n, double *full) {
     memset(full, 0, (n + 1) * sizeof *full);
     for (uint32_t e = 0; e < row->length; ++e) full[row->col[e]] = row->f[e];
-    full[n] = row->body[0];
+    full[n] = row->wall[0];
 }
 
 static void bench_beams(struct bundle *b, const fibrad_scene *scene, uint32_t directions, uint32_t points) {
@@ -129,7 +129,7 @@ static void bench_beams(struct bundle *b, const fibrad_scene *scene, uint32_t di
     double *full = bench_array(n + 1, sizeof *full), best = INFINITY;
     const fibrad_beam_rule rule = {.directions = directions, .points = points};
     struct bundle_error sum = {0};
-    row.body = bench_array(1, sizeof *row.body);
+    row.wall = bench_array(1, sizeof *row.wall);
     for (int round = 0; round < (b->truth ? ROUNDS : 1); ++round) {
         double seconds = 0;
         sum = (struct bundle_error){0};
@@ -144,7 +144,7 @@ static void bench_beams(struct bundle *b, const fibrad_scene *scene, uint32_t di
     }
     print_error(b, points ? "beam 256 points" : "beam", directions, best, &sum);
     free(work.memory.block);
-    free(row.col), free(row.f), free(row.body);
+    free(row.col), free(row.f), free(row.wall);
     free(full);
 }
 
@@ -174,8 +174,8 @@ static void bench_rays(struct bundle *b, RTCScene scene, const float *spheres, u
 static void find_truth(struct bundle *b, const fibrad_scene *scene, uint32_t directions) {
     fibrad_work work = BENCH_GROWING;
     fibrad_row row = bench_arrays(b->bed.n);
-    double body;
-    row.body = &body;
+    double wall;
+    row.wall = &wall;
     b->truth = bench_array((size_t)b->rows * (b->bed.n + 1), sizeof *b->truth);
     for (uint32_t k = 0; k < b->rows; ++k) {
         const fibrad_beam_rule rule = {.directions = directions};
@@ -214,7 +214,7 @@ int main(int argc, char **argv) {
     find_rows(&bundle);
 
     void *block;
-    const fibrad_body mesh = {.kind = FIBRAD_BODY_MESH};
+    const fibrad_wall mesh = {.kind = FIBRAD_WALL_MESH};
     const fibrad_scene *scene = bench_scene_in(&bundle.bed, &mesh, 1, &bundle.triangles, &block);
     _mm_setcsr(_mm_getcsr() | 0x8040); /* no denormal numbers, as Embree's manual asks */
     RTCDevice device = rtcNewDevice("threads=1");

@@ -16,18 +16,18 @@
 #include "read/read.h"
 #include "sample/direction.h"
 
-enum { CAPACITY = 20000, ROUNDS = 3, BODIES = 6, SETTINGS = 7 };
+enum { CAPACITY = 20000, ROUNDS = 3, WALLS = 6, SETTINGS = 7 };
 
 static const double pi = 3.14159265358979323846;
 
 /* A row with room for factors to walls. */
 static fibrad_row row_in(uint32_t capacity) {
     fibrad_row row = bench_arrays(capacity);
-    row.body = bench_array(BODIES, sizeof *row.body);
+    row.wall = bench_array(WALLS, sizeof *row.wall);
     return row;
 }
 
-static void free_row(fibrad_row *row) { free(row->col), free(row->f), free(row->body); }
+static void free_row(fibrad_row *row) { free(row->col), free(row->f), free(row->wall); }
 
 static void find_ends(const struct bed *bed, double low[3], double high[3]) {
     const double *at[3] = {bed->x, bed->y, bed->z};
@@ -51,7 +51,7 @@ static uint32_t find_deep(const fibrad_scene *scene, fibrad_work *work, fibrad_r
     for (uint32_t i = 0; i < n; i += step) {
         double walls = 0;
         bench_check("row", fibrad_beam_row(scene, work, i, &rule, row));
-        for (int b = 0; b < BODIES; ++b) walls += row->body[b];
+        for (int b = 0; b < WALLS; ++b) walls += row->wall[b];
         if (walls == 0) list[deep++] = i;
     }
     return deep;
@@ -82,7 +82,7 @@ static void time_rows(fibrad_scene *const scene[SCENES], const char *rows, const
 
 static void bench_time(const struct bed *bed, bool quick) {
     double low[3], high[3];
-    fibrad_body plane[BODIES], mesh[BODIES];
+    fibrad_wall plane[WALLS], mesh[WALLS];
     fibrad_scene *scene[SCENES];
     void *block[SCENES];
     fibrad_work work = BENCH_GROWING;
@@ -93,11 +93,11 @@ static void bench_time(const struct bed *bed, bool quick) {
     find_ends(bed, low, high);
     bench_planes(plane, low, high);
     bench_box(&triangles, low, high, cells);
-    for (int b = 0; b < BODIES; ++b) mesh[b] = (fibrad_body){.kind = FIBRAD_BODY_MESH};
+    for (int b = 0; b < WALLS; ++b) mesh[b] = (fibrad_wall){.kind = FIBRAD_WALL_MESH};
     scene[OPEN] = bench_scene_in(bed, NULL, 0, NULL, &block[OPEN]);
-    scene[PLANES] = bench_scene_in(bed, plane, BODIES, NULL, &block[PLANES]);
+    scene[PLANES] = bench_scene_in(bed, plane, WALLS, NULL, &block[PLANES]);
     const double begun = bench_thread_seconds();
-    scene[TRIANGLES] = bench_scene_in(bed, mesh, BODIES, &triangles, &block[TRIANGLES]);
+    scene[TRIANGLES] = bench_scene_in(bed, mesh, WALLS, &triangles, &block[TRIANGLES]);
     printf("# %u spheres, %u triangles; their scene: %.3f s\n", bed->n, triangles.list.n,
            bench_thread_seconds() - begun);
     puts("rows,number,walls,us_per_row,over_planes,over_open");
@@ -150,7 +150,7 @@ static double random_triangle(struct bench_triangles *triangles, uint64_t seed) 
 
 static void bench_polygons(uint64_t cases, int few) {
     double square[SETTINGS][KINDS] = {{0}}, worst[SETTINGS][KINDS] = {{0}};
-    const fibrad_body mesh = {.kind = FIBRAD_BODY_MESH};
+    const fibrad_wall mesh = {.kind = FIBRAD_WALL_MESH};
     struct bed bed = bed_empty();
     bench_check("bed", bed_add(&bed, &(struct bed_sphere){.r = 1}) ? FIBRAD_E_MEMORY : FIBRAD_OK);
     fibrad_work work = BENCH_GROWING;
@@ -164,7 +164,7 @@ static void bench_polygons(uint64_t cases, int few) {
             for (int k = 0; k < KINDS; ++k) {
                 const fibrad_beam_rule rule = {.directions = settings[s], .points = kinds[k]};
                 bench_check("row", fibrad_beam_row(scene, &work, 0, &rule, &row));
-                const double error = fabs(row.body[0] - exact);
+                const double error = fabs(row.wall[0] - exact);
                 square[s][k] += error * error / (double)cases, worst[s][k] = fmax(worst[s][k], error);
             }
         free(block);
@@ -181,7 +181,7 @@ static void bench_polygons(uint64_t cases, int few) {
 
 /* Computes rows in the same container twice: with triangles and few directions, and without triangles and many. */
 static void bench_container(const char *name, const struct bed *bed, fibrad_scene *scene, fibrad_scene *smooth,
-                            uint32_t bodies, int few) {
+                            uint32_t walls, int few) {
     fibrad_work work = BENCH_GROWING;
     fibrad_row row = row_in(bed->n), *truth = bench_array(bed->n, sizeof *truth);
     for (uint32_t i = 0; i < bed->n; ++i) {
@@ -189,7 +189,7 @@ static void bench_container(const char *name, const struct bed *bed, fibrad_scen
         const fibrad_beam_rule rule = {.directions = few < SETTINGS ? 2000 : 10000};
         bench_check("row", fibrad_beam_row(smooth, &work, i, &rule, &truth[i]));
     }
-    printf("# %s, %u spheres\ndirections,walls,spheres_rms,bodies_rms,estimate_rms,us_per_window\n", name, bed->n);
+    printf("# %s, %u spheres\ndirections,walls,spheres_rms,walls_rms,estimate_rms,us_per_window\n", name, bed->n);
     for (int s = 0; s < few; ++s)
         for (int mesh = 0; mesh < 2; ++mesh) {
             const fibrad_beam_rule rule = {.directions = settings[s]};
@@ -199,7 +199,7 @@ static void bench_container(const char *name, const struct bed *bed, fibrad_scen
                 bench_check("row", fibrad_beam_row(mesh ? scene : smooth, &work, i, &rule, &row));
                 seconds += bench_thread_seconds() - begun;
                 spheres += pow(bench_distance(bench_row_entries(&row), bench_row_entries(&truth[i])), 2);
-                for (uint32_t b = 0; b < bodies; ++b) walls += pow(row.body[b] - truth[i].body[b], 2);
+                for (uint32_t b = 0; b < walls; ++b) walls += pow(row.wall[b] - truth[i].wall[b], 2);
                 estimate += row.error * row.error;
             }
             printf("%u,%s,%.2g,%.2g,%.2g,%.2f\n", settings[s], mesh ? "triangles" : "smooth", sqrt(spheres / bed->n),
@@ -213,16 +213,16 @@ static void bench_container(const char *name, const struct bed *bed, fibrad_scen
 
 static void bench_boxes(const struct bed *bed, int few) {
     double low[3], high[3];
-    fibrad_body plane[BODIES], mesh[BODIES];
+    fibrad_wall plane[WALLS], mesh[WALLS];
     void *block[2];
     struct bench_triangles triangles = bench_triangles_new(12);
     find_ends(bed, low, high);
     bench_planes(plane, low, high);
     bench_box(&triangles, low, high, 1);
-    for (int b = 0; b < BODIES; ++b) mesh[b] = (fibrad_body){.kind = FIBRAD_BODY_MESH};
-    fibrad_scene *scene = bench_scene_in(bed, mesh, BODIES, &triangles, &block[0]);
-    fibrad_scene *smooth = bench_scene_in(bed, plane, BODIES, NULL, &block[1]);
-    bench_container("a box of 12 triangles and of planes", bed, scene, smooth, BODIES, few);
+    for (int b = 0; b < WALLS; ++b) mesh[b] = (fibrad_wall){.kind = FIBRAD_WALL_MESH};
+    fibrad_scene *scene = bench_scene_in(bed, mesh, WALLS, &triangles, &block[0]);
+    fibrad_scene *smooth = bench_scene_in(bed, plane, WALLS, NULL, &block[1]);
+    bench_container("a box of 12 triangles and of planes", bed, scene, smooth, WALLS, few);
     free(block[0]), free(block[1]);
     bench_triangles_free(&triangles);
 }
@@ -231,7 +231,7 @@ static void bench_boxes(const struct bed *bed, int few) {
 static void bench_cylinders(const struct bed *from, int few) {
     enum { FACETS = 1000 };
     double low[3], high[3], middle[2];
-    fibrad_body smooth[3];
+    fibrad_wall smooth[3];
     void *block[2];
     struct bed bed = bed_empty();
     struct bench_triangles triangles = bench_triangles_new(2 * FACETS);
@@ -242,10 +242,10 @@ static void bench_cylinders(const struct bed *from, int few) {
         if (hypot(from->x[i] - middle[0], from->y[i] - middle[1]) + from->r[i] < 0.9999 * radius &&
             bed_add(&bed, &(struct bed_sphere){.x = from->x[i], .y = from->y[i], .z = from->z[i], .r = from->r[i]}))
             bench_check("bed", FIBRAD_E_MEMORY);
-    fibrad_body plane[BODIES], faceted[3] = {{.kind = FIBRAD_BODY_MESH}};
+    fibrad_wall plane[WALLS], faceted[3] = {{.kind = FIBRAD_WALL_MESH}};
     bench_planes(plane, low, high);
     faceted[1] = smooth[1] = plane[4], faceted[2] = smooth[2] = plane[5];
-    smooth[0] = (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {middle[0], middle[1], radius}};
+    smooth[0] = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {middle[0], middle[1], radius}};
     bench_tube(&triangles, middle, radius, ends, FACETS, 1, false, 0);
     fibrad_scene *scene = bench_scene_in(&bed, faceted, 3, &triangles, &block[0]);
     bench_container("a cylinder of 2,000 triangles and a smooth one, between planes", &bed, scene,

@@ -33,19 +33,19 @@ static inline uint32_t bench_vertex(struct bench_triangles *t, double x, double 
 }
 
 /* Adds a square. Its corners go counter-clockwise as seen from the front. Nothing may see the back. */
-static inline void bench_triangle(struct bench_triangles *t, uint32_t a, uint32_t b, uint32_t c, uint32_t body) {
+static inline void bench_triangle(struct bench_triangles *t, uint32_t a, uint32_t b, uint32_t c, uint32_t wall) {
     uint32_t *corner = t->corner + 3 * (size_t)t->list.n;
     corner[0] = a, corner[1] = b, corner[2] = c;
-    t->front[t->list.n] = body, t->back[t->list.n] = FIBRAD_NO_BODY;
+    t->front[t->list.n] = wall, t->back[t->list.n] = FIBRAD_NO_WALL;
     t->list.n++;
 }
 
-static inline void bench_quad(struct bench_triangles *t, const uint32_t v[4], uint32_t body) {
-    bench_triangle(t, v[0], v[1], v[2], body);
-    bench_triangle(t, v[0], v[2], v[3], body);
+static inline void bench_quad(struct bench_triangles *t, const uint32_t v[4], uint32_t wall) {
+    bench_triangle(t, v[0], v[1], v[2], wall);
+    bench_triangle(t, v[0], v[2], v[3], wall);
 }
 
-/* Adds a box whose fronts are inside. Each face has cells^2 squares of two triangles. The faces are bodies 0 to 5, as
+/* Adds a box whose fronts are inside. Each face has cells^2 squares of two triangles. The faces are walls 0 to 5, as
  * those of bench_planes. */
 static inline void bench_box(struct bench_triangles *t, const double low[3], const double high[3], uint32_t cells) {
     for (uint32_t face = 0; face < 6; ++face) {
@@ -68,7 +68,7 @@ static inline void bench_box(struct bench_triangles *t, const double low[3], con
 
 /* Adds a tube about the line (x, y), whose fronts are outside or inside. It has rings of facets of two triangles. */
 static inline void bench_tube(struct bench_triangles *t, const double middle[2], double radius, const double ends[2],
-                              uint32_t facets, uint32_t rings, bool outside, uint32_t body) {
+                              uint32_t facets, uint32_t rings, bool outside, uint32_t wall) {
     const uint32_t first = t->list.vertices;
     for (uint32_t ring = 0; ring <= rings; ++ring)
         for (uint32_t k = 0; k < facets; ++k) {
@@ -79,24 +79,24 @@ static inline void bench_tube(struct bench_triangles *t, const double middle[2],
     for (uint32_t k = 0; k < rings * facets; ++k) {
         const uint32_t a = first + k, b = first + k / facets * facets + (k + 1) % facets;
         const uint32_t out[4] = {a, b, b + facets, a + facets}, in[4] = {a, a + facets, b + facets, b};
-        bench_quad(t, outside ? out : in, body);
+        bench_quad(t, outside ? out : in, wall);
     }
 }
 
 /* The planes of a box. */
-static inline void bench_planes(fibrad_body body[6], const double low[3], const double high[3]) {
+static inline void bench_planes(fibrad_wall wall[6], const double low[3], const double high[3]) {
     for (int k = 0; k < 6; ++k)
-        body[k] = (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {k / 2, k % 2, (k % 2 ? high : low)[k / 2]}};
+        wall[k] = (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = {k / 2, k % 2, (k % 2 ? high : low)[k / 2]}};
 }
 
-/* The scene of a bed with bodies and triangles (NULL: none) in *block, which the caller frees. */
-static inline fibrad_scene *bench_scene_in(const struct bed *bed, const fibrad_body *body, uint32_t bodies,
+/* The scene of a bed with walls and triangles (NULL: none) in *block, which the caller frees. */
+static inline fibrad_scene *bench_scene_in(const struct bed *bed, const fibrad_wall *wall, uint32_t walls,
                                            const struct bench_triangles *t, void **block) {
     const fibrad_spheres spheres = bench_spheres(bed);
     fibrad_scene_config config = bench_config(bed, FIBRAD_ISA_BEST);
     const size_t size = fibrad_scene_size(bed->n, 0) + (t ? fibrad_triangles_size(t->list.n, bed->n) : 0);
     fibrad_scene *scene = NULL;
-    config.body = body, config.bodies = bodies, config.triangles = t ? &t->list : NULL;
+    config.wall = wall, config.walls = walls, config.triangles = t ? &t->list : NULL;
     bench_check("scene", (*block = malloc(size)) ? FIBRAD_OK : FIBRAD_E_MEMORY);
     bench_check("scene", fibrad_scene_init(&scene, *block, size, &config, &spheres, NULL));
     return scene;

@@ -32,27 +32,27 @@ struct answer {
 static struct answer solve(const struct room *room, const fibrad_heat_config *config) {
     const fibrad_spheres spheres = {
         .x = room->x, .y = room->y, .z = room->z, .r = room->r, .n = (uint32_t)room->spheres};
-    fibrad_body body[WALLS_MAX] = {{0}};
+    fibrad_wall body[WALLS_MAX] = {{0}};
     for (int wall = 0; wall < room->walls; wall++) {
         const int axis = room->round ? 2 : wall / 2;
-        body[wall].kind = FIBRAD_BODY_PLANE;
+        body[wall].kind = FIBRAD_WALL_PLANE;
         body[wall].plane.axis = axis, body[wall].plane.upper = wall % 2;
         body[wall].plane.at = wall % 2 ? room->size[axis] : 0;
     }
-    if (room->round) body[2].kind = FIBRAD_BODY_CYLINDER, body[2].cylinder.radius = room->size[0];
+    if (room->round) body[2].kind = FIBRAD_WALL_CYLINDER, body[2].cylinder.radius = room->size[0];
     const fibrad_scene_config scene = {.body = body, .bodies = (uint32_t)room->walls};
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);
     sources.temperature = room->temperature, sources.emissivity = room->emissivity;
-    sources.body_temperature = room->temperature + room->spheres;
-    sources.body_emissivity = room->emissivity + room->spheres;
+    sources.wall_temperature = room->temperature + room->spheres;
+    sources.wall_emissivity = room->emissivity + room->spheres;
     sources.surroundings = 0, sources.sigma = 1, sources.tolerance = 1e-6;
     fibrad_run run = {.threads = 1};
     fibrad_radiation *radiation;
     struct answer answer = {.seconds = 0};
     const double begun = bench_thread_seconds();
-    answer.result.power = answer.power, answer.result.body_power = answer.power + room->spheres;
-    answer.result.power_error = answer.error, answer.result.body_error = answer.error + room->spheres;
+    answer.result.power = answer.power, answer.result.wall_power = answer.power + room->spheres;
+    answer.result.power_error = answer.error, answer.result.wall_error = answer.error + room->spheres;
     bench_check("radiation", fibrad_radiation_new(&radiation, &scene, &spheres, config, &run));
     bench_check("solve", fibrad_radiation_solve(radiation, &sources, &answer.result));
     fibrad_radiation_free(radiation);

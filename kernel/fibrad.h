@@ -41,8 +41,8 @@
  *   f.escaped[i] is its factor to the surroundings, f.error[i] its estimated error.
  *
  * Words
- *   wall           A plane, a cylinder or a mesh of triangles. Names in the code say `body` for a wall. Wall b is
- *                  element b of fibrad_scene_config.body.
+ *   wall           A plane, a cylinder or a mesh of triangles. Names in the code say `wall` for a wall. Wall b is
+ *                  element b of fibrad_scene_config.wall.
  *   surroundings   What lies outside the scene, black. Radiation reaches them past everything, or through an opening.
  *   direction      A unit vector. Directions of a row are spread evenly.
  *   line           A direction and its opposite.
@@ -72,7 +72,7 @@
  *   isa        instruction sets, chosen at run time     fibrad_isa_best, _name
  *   direction  directions spread evenly over a sphere   fibrad_direction
  *   pair       two spheres with nothing in between      fibrad_pair_exact
- *   scene      spheres, walls, divided beds             fibrad_scene_size, _init, _describe, _body_area, _sphere
+ *   scene      spheres, walls, divided beds             fibrad_scene_size, _init, _describe, _wall_area, _sphere
  *   work       scratch memory of one thread             fibrad_work, FIBRAD_WORK_BYTES
  *   row        one row, by beams or by rays             fibrad_beam_row, fibrad_cast_row, fibrad_directions_for
  *              one row, computed by several threads     fibrad_beam_part, _join
@@ -81,7 +81,7 @@
  *   matrix     all rows: averaged, reciprocal, closed   fibrad_matrix_size, _init, _average, _close, _read,
  *                                                       _reciprocity
  *   drift      which rows may stay when spheres move    fibrad_drift_row, _partners
- *   exchange   factors after reflections (grey)         fibrad_exchange_row, _body, _body_mean, _displacement
+ *   exchange   factors after reflections (grey)         fibrad_exchange_row, _wall, _wall_mean, _displacement
  *              spheres that conduct                     fibrad_relative_conductivity, fibrad_node_emissivity,
  *                                                       fibrad_exchange_walk
  *              powers from rows                         fibrad_rows_flow, fibrad_flow
@@ -218,11 +218,11 @@ typedef struct fibrad_spheres {
     const uint64_t *id;        /* [n], ids seed random paths and decide ties; NULL: the index is the id */
 } fibrad_spheres;
 
-typedef enum fibrad_body_kind {
-    FIBRAD_BODY_PLANE = 1,    /* a plane across an axis; the scene lies on one side of the plane */
-    FIBRAD_BODY_CYLINDER = 2, /* a cylinder parallel to the z axis; the scene lies inside */
-    FIBRAD_BODY_MESH = 3      /* the triangles of fibrad_scene_config.triangles that name this wall, at least one */
-} fibrad_body_kind;
+typedef enum fibrad_wall_kind {
+    FIBRAD_WALL_PLANE = 1,    /* a plane across an axis; the scene lies on one side of the plane */
+    FIBRAD_WALL_CYLINDER = 2, /* a cylinder parallel to the z axis; the scene lies inside */
+    FIBRAD_WALL_MESH = 3      /* the triangles of fibrad_scene_config.triangles that name this wall, at least one */
+} fibrad_wall_kind;
 
 /* A plane across an axis. */
 typedef struct fibrad_plane {
@@ -231,7 +231,7 @@ typedef struct fibrad_plane {
     double at; /* L, coordinate of the plane on its axis */
 } fibrad_plane;
 
-/* A wall. The number of a wall is its index in fibrad_scene_config.body.
+/* A wall. The number of a wall is its index in fibrad_scene_config.wall.
  *
  * Planes and the cylinder bound a convex container. Hence no plane and no cylinder hides one sphere from another.
  *   planes    At most two planes lie across one axis: a lower one and, above it, an upper one. A periodic axis has no
@@ -253,13 +253,13 @@ typedef struct fibrad_plane {
  *   a cylinder                        the z axis
  *
  * Otherwise fibrad_scene_init returns FIBRAD_E_ENDLESS. */
-typedef struct fibrad_body {
-    int kind;           /* a fibrad_body_kind */
-    fibrad_plane plane; /* used by FIBRAD_BODY_PLANE */
+typedef struct fibrad_wall {
+    int kind;           /* a fibrad_wall_kind */
+    fibrad_plane plane; /* used by FIBRAD_WALL_PLANE */
     struct {
         double x, y, radius; /* L, position of the axis, and radius above 0 */
-    } cylinder;              /* used by FIBRAD_BODY_CYLINDER */
-} fibrad_body;
+    } cylinder;              /* used by FIBRAD_WALL_CYLINDER */
+} fibrad_wall;
 
 /* Divided beds. Several machines may divide the spheres of a bed. Each machine computes the rows of its own spheres,
  * with a cutoff. The cutoff is a distance between centres: a row leaves out the spheres that are farther from sphere i.
@@ -307,15 +307,15 @@ typedef struct fibrad_occupancy {
 /* How a scene is made. Zeroed: open on all sides, no walls, the best instruction set.
  *
  * Example: a box that is periodic along x and y, with a floor at z = 0 and an open top at z = 20.
- *   const fibrad_body floor = {.kind = FIBRAD_BODY_PLANE, .plane = {.axis = 2, .upper = 0, .at = 0}};
+ *   const fibrad_wall floor = {.kind = FIBRAD_WALL_PLANE, .plane = {.axis = 2, .upper = 0, .at = 0}};
  *   const fibrad_plane top = {.axis = 2, .upper = 1, .at = 20};
  *   const fibrad_scene_config config = {
- *       .period = {10, 10, 0}, .body = &floor, .bodies = 1, .opening = &top, .openings = 1}; */
+ *       .period = {10, 10, 0}, .wall = &floor, .walls = 1, .opening = &top, .openings = 1}; */
 typedef struct fibrad_scene_config {
     int isa;                                  /* a fibrad_isa */
     double period[3];                         /* L, length of the periodic box along each axis; 0: no period */
-    const fibrad_body *body;                  /* [bodies], the walls; copied */
-    uint32_t bodies;                          /* number of walls, 0 to FIBRAD_BODIES_MAX, else FIBRAD_E_UNSUPPORTED */
+    const fibrad_wall *wall;                  /* [walls], the walls; copied */
+    uint32_t walls;                          /* number of walls, 0 to FIBRAD_WALLS_MAX, else FIBRAD_E_UNSUPPORTED */
     const fibrad_plane *opening;              /* [openings], copied; no sphere may reach beyond an opening */
     uint32_t openings;                        /* 0 to 6 */
     double known_low[3], known_high[3];       /* L, known region; low equals high: unlimited along the axis */
@@ -392,7 +392,7 @@ size_t fibrad_scene_size(uint32_t n, int ids);
  *            spheres
  *   Output   scene: a pointer into memory
  *            fault: where an error is; may be NULL. After FIBRAD_OK `fault` is as before.
- *   Errors   _ARGUMENT, _SIZE, _ISA, _ENDLESS, _UNSUPPORTED (more than FIBRAD_BODIES_MAX walls)
+ *   Errors   _ARGUMENT, _SIZE, _ISA, _ENDLESS, _UNSUPPORTED (more than FIBRAD_WALLS_MAX walls)
  *            _GEOMETRY: a centre lies inside another sphere, a sphere reaches beyond an opening, or a period is less
  *            than the largest radius
  *            After an error an earlier scene in the same memory may be lost.
@@ -403,7 +403,7 @@ int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fib
 
 /* Facts of a scene. */
 typedef struct fibrad_scene_facts {
-    uint32_t spheres, bodies;      /* numbers of spheres and of walls */
+    uint32_t spheres, walls;      /* numbers of spheres and of walls */
     int isa;                       /* the fibrad_isa in use */
     uint32_t cells;                /* cells of the grid, all levels together */
     double radius_min, radius_max; /* L; 0 without spheres */
@@ -418,13 +418,13 @@ void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts)
 
 /* Area of a wall or an opening [L^2]. Only the part that bounds the container counts. Along a periodic axis this is the
  * area of one period. For a mesh this is the sum over all sides that belong to the wall.
- *   Input    body: 0 to bodies - 1, or FIBRAD_OPENING(bodies, axis, upper)
+ *   Input    wall: 0 to walls - 1, or FIBRAD_OPENING(walls, axis, upper)
  *   Output   infinity: the wall or opening is endless. NaN: there is none, or the scene is not complete.
  *   Errors   none */
-double fibrad_scene_body_area(const fibrad_scene *scene, uint32_t body);
+double fibrad_scene_wall_area(const fibrad_scene *scene, uint32_t wall);
 
 /* The number of an opening, for functions that take a wall or an opening. upper: 0 or 1, as in fibrad_plane */
-#define FIBRAD_OPENING(bodies, axis, upper) ((uint32_t)(bodies) + 2 * (uint32_t)(axis) + (uint32_t)(upper))
+#define FIBRAD_OPENING(walls, axis, upper) ((uint32_t)(walls) + 2 * (uint32_t)(axis) + (uint32_t)(upper))
 
 /* Sphere k in the order of the grid's cells. In this order neighbours in space mostly follow each other. Each sphere
  * occurs once. Compute the rows of a large bed in this order: rows are faster if their data are still in the cache.
@@ -460,8 +460,8 @@ typedef struct fibrad_rows fibrad_rows; /* a collection of rows, see below */
 /* One row of factors. The caller chooses where the entries go.
  *
  *               into arrays of the caller          into a collection
- *   before        Set col, f, body and capacity.     Set rows.
- *   after         The arrays have the row.           The row is appended. col, f and body point into the collection
+ *   before        Set col, f, wall and capacity.     Set rows.
+ *   after         The arrays have the row.           The row is appended. col, f and wall point into the collection
  *                                                    until the next row is appended.
  *   no room       FIBRAD_E_CAPACITY. `length` is     FIBRAD_E_CAPACITY. rows->memory.needed is the size that
  *                 the capacity that suffices.        suffices.
@@ -472,7 +472,7 @@ typedef struct fibrad_rows fibrad_rows; /* a collection of rows, see below */
 typedef struct fibrad_row {
     uint32_t *col;       /* [capacity], out: the spheres that receive, ascending */
     double *f;           /* [capacity], out: factor from sphere i to sphere col[k], above 0 */
-    double *body;        /* [bodies], out: factor to each wall; may be NULL if there are no walls */
+    double *wall;        /* [walls], out: factor to each wall; may be NULL if there are no walls */
     uint32_t capacity;   /* in: elements of col and f; out: 0 if the row was appended to `rows`, else as before */
     fibrad_rows *rows;   /* in: NULL, or the collection; then capacity is not used */
     uint32_t sphere;     /* out: i */
@@ -653,11 +653,11 @@ struct fibrad_rows {
 /* Appends a row that was computed elsewhere, on another machine for example. A row does not say which scene it is from.
  * So a matrix takes this row for a row of its own scene, if that has such a sphere. If the row is of another scene, no
  * call notices.
- *   Input    row: sphere, col, f, length, body, escaped, beyond, error, symmetric. row->rows must be NULL. The columns
+ *   Input    row: sphere, col, f, length, wall, escaped, beyond, error, symmetric. row->rows must be NULL. The columns
  *            ascend. Each factor is 0 to 1.01. Of a row along lines also lines, half, noise and shares.
- *            bodies: elements of row->body
+ *            walls: elements of row->wall
  *   Errors   _ARGUMENT, _CAPACITY, _MEMORY */
-int fibrad_rows_add(fibrad_rows *rows, const fibrad_row *row, uint32_t bodies);
+int fibrad_rows_add(fibrad_rows *rows, const fibrad_row *row, uint32_t walls);
 
 /* Removes all rows and keeps the memory. NULL is allowed.
  *   Errors   none */
@@ -672,18 +672,18 @@ void fibrad_rows_clear(fibrad_rows *rows);
 int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
 
 /* ---- matrix ---------------------------------------------------------------------------------------------------- */
-/* The row of a wall. fibrad_exchange_body makes one batch of the row. fibrad_exchange_body_mean makes the row, the mean
+/* The row of a wall. fibrad_exchange_wall makes one batch of the row. fibrad_exchange_wall_mean makes the row, the mean
  * of all batches. The factors of the row add up to 1. If the emissivity of the wall is 0, all factors of the row are 0.
  * Paths among surfaces that absorb little end after many rays. The fraction lost is what such paths still carry then.
  */
-typedef struct fibrad_body_row {
-    double body[FIBRAD_BODIES_MAX]; /* factor to each wall; a batch may have a factor a little below 0, by chance */
+typedef struct fibrad_wall_row {
+    double wall[FIBRAD_WALLS_MAX]; /* factor to each wall; a batch may have a factor a little below 0, by chance */
     double spheres;                 /* factor to all spheres together */
     double escaped;                 /* factor to the surroundings */
     double error;                   /* in the mean: the estimated error; in a batch: the fraction lost, see above */
     uint64_t rays;                  /* rays traced */
     uint64_t paths;                 /* paths followed; of the mean: those of all batches */
-} fibrad_body_row;
+} fibrad_wall_row;
 
 /* Does piece k of a job. The library hands this function to fibrad_parallel. */
 typedef void fibrad_piece(void *job, uint32_t k);
@@ -707,14 +707,14 @@ typedef struct fibrad_matrix_rule {
     const double *emissivity;        /* [spheres], 0 to 1, needed with FIBRAD_ROWS_EXCHANGE; else NULL */
     double drop;                     /* 0 to 1: pairs of entries are dropped if both are below `drop`; 0: keep all */
     uint32_t tasks;                  /* number of tasks for threads, 1 to 1024; changes no bit; 0 means 1 */
-    const fibrad_body_row *body_row; /* [bodies], copied; rows of endless walls are not read; NULL: no rows of walls */
-    const double *body_emissivity;   /* [bodies], 0 to 1, read if body_row is set; NULL: 1 */
+    const fibrad_wall_row *wall_row; /* [walls], copied; rows of endless walls are not read; NULL: no rows of walls */
+    const double *wall_emissivity;   /* [walls], 0 to 1, read if wall_row is set; NULL: 1 */
     fibrad_parallel *parallel;       /* used by all calls for this matrix; NULL: the calling thread does all */
     void *context;                   /* handed to parallel */
 } fibrad_matrix_rule;
 
 /* A matrix of factors in compressed rows. The arrays belong to the matrix that they were read from. If walls have no
- * rows, the three arrays body_body, body_escaped and body_error are NULL. If walls have rows, the elements of these
+ * rows, the three arrays wall_wall, wall_escaped and wall_error are NULL. If walls have rows, the elements of these
  * arrays for an endless wall are NaN.
  *
  * `changed` shows whether the raw rows agree with each other. Raw row i gives fractions of its radiation to walls, to
@@ -723,19 +723,19 @@ typedef struct fibrad_matrix_rule {
  * that error is at least 5 times the error of the raw row. A value well above 1 means that the raw rows contradict each
  * other by more than their errors. */
 typedef struct fibrad_factors {
-    uint32_t n, bodies;         /* numbers of spheres and of walls */
+    uint32_t n, walls;         /* numbers of spheres and of walls */
     const uint64_t *start;      /* [n + 1], row i is elements start[i] to start[i + 1] - 1 of col and f */
     const uint32_t *col;        /* [start[n]], columns, ascending within each row */
     const double *f;            /* [start[n]], factor from i to col */
     const double *escaped;      /* [n], factor to the surroundings */
     const double *beyond;       /* [n], fraction that leaves the cutoff or the known region, as in fibrad_row */
     const double *error;        /* [n], estimated error of each row */
-    const double *body;         /* [n][bodies], factors to walls */
-    const double *body_body;    /* [bodies][bodies], factors from wall to wall */
-    const double *body_escaped; /* [bodies], factors from walls to the surroundings */
-    const double *body_error;   /* [bodies], estimated error of each wall's factors to walls and surroundings */
-    double body_correction;     /* largest |sum - 1| of a wall's row before closing */
-    double body_closure;        /* largest |sum - 1| of a wall's row after closing; see fibrad_matrix_close */
+    const double *wall;         /* [n][walls], factors to walls */
+    const double *wall_wall;    /* [walls][walls], factors from wall to wall */
+    const double *wall_escaped; /* [walls], factors from walls to the surroundings */
+    const double *wall_error;   /* [walls], estimated error of each wall's factors to walls and surroundings */
+    double wall_correction;     /* largest |sum - 1| of a wall's row before closing */
+    double wall_closure;        /* largest |sum - 1| of a wall's row after closing; see fibrad_matrix_close */
     double changed;             /* largest change of a row over its error, see above; raw: 0 */
     uint32_t changed_row;       /* the row of that change */
 } fibrad_factors;
@@ -801,7 +801,7 @@ int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
  *      and c, let s = (F_bc + F_cb)/(A_b + A_c). Then F_bc becomes A_c s, and F_cb becomes A_b s. Let p and q be any
  *      spheres or walls. Numbers v are found so that all rows have the sum 1 once each F_pq is multiplied by v_p v_q.
  *      `escaped` and `beyond` of row p are multiplied by v_p. If triangles cut spheres, such v may not exist. Then no
- *      factor is multiplied, and body_closure equals body_correction.
+ *      factor is multiplied, and wall_closure equals wall_correction.
  *   5. If F_ij and F_ji are both below `drop`, both are removed. F_ii stays. The other entries are scaled so that the
  *      sums of the rows stay. The part of a sum that no scaling can restore is added to F_ii.
  *   Errors   _ARGUMENT
@@ -862,9 +862,9 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
  * directions the beam row takes 64 points per window. With 50 to 144 directions it takes 256 points. With more
  * directions it takes exact areas. Then paths follow the reflections.
  *
- *   field                   _row                 _displacement        _body                         _walk
+ *   field                   _row                 _displacement        _wall                         _walk
  *   emissivity              needed               needed               NULL: all spheres are black   needed
- *   body_emissivity         needed with walls    needed with walls    NULL: all walls are black     no walls
+ *   wall_emissivity         needed with walls    needed with walls    NULL: all walls are black     no walls
  *   directions, tolerance   used                 not used             not used                      not used
  *   cutoff                  used                 used                 must be 0                     must be 0
  *   paths, seed             used                 used                 used                          used
@@ -874,9 +874,9 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
  *   flights                 not used             not used             not used                      used */
 typedef struct fibrad_exchange_rule {
     const double *emissivity;      /* [spheres], 0 to 1 */
-    const double *body_emissivity; /* [bodies], 0 to 1 */
+    const double *wall_emissivity; /* [walls], 0 to 1 */
     uint32_t directions;           /* of the first leg; 0: FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT */
-    uint32_t paths;   /* 1 to FIBRAD_PATHS_MAX; 0: FIBRAD_PATHS_DEFAULT, in _body FIBRAD_BODY_PATHS_DEFAULT */
+    uint32_t paths;   /* 1 to FIBRAD_PATHS_MAX; 0: FIBRAD_PATHS_DEFAULT, in _wall FIBRAD_WALL_PATHS_DEFAULT */
     uint64_t seed;    /* of random numbers, with the sphere's id; also the `turn` of the first leg */
     double cutoff;    /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
     double tolerance; /* the error allowed; directions and paths are added until it is met; 0: none */
@@ -885,12 +885,12 @@ typedef struct fibrad_exchange_rule {
     const double *conductivity;
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */
     uint32_t flights;              /* of _walk, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
-    /* [bodies + 1], or NULL: what each wall and, last, the surroundings absorb of further paths of sphere i that
+    /* [walls + 1], or NULL: what each wall and, last, the surroundings absorb of further paths of sphere i that
      * somebody else has followed. The unit is a path. What a path gives before its first reflection does not count.
      * NaN: nobody has counted it. The factor to a wall is then the mean over the paths of this call and the further
      * ones. Other entries are scaled so that the sum of the row is 1.
      *
-     * Paths that begin at walls (fibrad_exchange_body) can take the place of further paths, by reciprocity. Let a wall
+     * Paths that begin at walls (fibrad_exchange_wall) can take the place of further paths, by reciprocity. Let a wall
      * have the area A_b and the emissivity e_b. If sphere i absorbs x of n paths from this wall, then the wall absorbs
      * x of n A_i e_i/(A_b e_b) paths of sphere i. If spheres conduct, e_i is node_emissivity. */
     const double *known;
@@ -941,16 +941,16 @@ int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i
                         fibrad_row *row, uint64_t *rays);
 
 /* The row of a wall or an opening is computed in this many batches of paths. The spread of the batches is the error. */
-#define FIBRAD_BODY_PARTS 8
+#define FIBRAD_WALL_PARTS 8
 
 /* One batch of the row of a wall: the fractions of the wall's emission that walls, spheres and surroundings absorb.
- * The area that emits is the one that fibrad_scene_body_area returns. Factors to single spheres follow from
+ * The area that emits is the one that fibrad_scene_wall_area returns. Factors to single spheres follow from
  * reciprocity, A_b e_b D_bi = A_i e_i D_ib. A batch follows an eighth of rule->paths, and fewer paths if nearly nothing
  * absorbs. The error falls as paths^-0.6, at low emissivities as paths^-0.5.
  *
  * An opening has a row, too. It is black, and emits what the surroundings send through it.
- *   Input    body: 0 to bodies - 1, or FIBRAD_OPENING(bodies, axis, upper)
- *            part: number of the batch, 0 to FIBRAD_BODY_PARTS - 1
+ *   Input    wall: 0 to walls - 1, or FIBRAD_OPENING(walls, axis, upper)
+ *            part: number of the batch, 0 to FIBRAD_WALL_PARTS - 1
  *            rule: needed
  *   Output   row
  *            reflected[spheres]: the function adds what each sphere absorbs of the row->paths paths after at least
@@ -959,16 +959,16 @@ int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i
  *            _UNSUPPORTED: an endless wall or opening, a cutoff, or a known region
  *   Cost     0.1 to 0.5 microseconds per ray
  *   Source   docs/methods_heat.md section 4 */
-int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t body, const fibrad_exchange_rule *rule,
-                         uint32_t part, fibrad_body_row *row, uint64_t *reflected);
+int fibrad_exchange_wall(const fibrad_scene *scene, fibrad_work *work, uint32_t wall, const fibrad_exchange_rule *rule,
+                         uint32_t part, fibrad_wall_row *row, uint64_t *reflected);
 
 /* The mean of all batches of a wall's row. The spread of the batches gives the standard error of the mean. The error is
- * this standard error plus the fraction lost (fibrad_body_row). A mean below 0 becomes 0. Then the other factors are
+ * this standard error plus the fraction lost (fibrad_wall_row). A mean below 0 becomes 0. Then the other factors are
  * scaled so that their sum is 1.
- *   Input    part[FIBRAD_BODY_PARTS]: all batches
+ *   Input    part[FIBRAD_WALL_PARTS]: all batches
  *   Output   mean
  *   Errors   _ARGUMENT */
-int fibrad_exchange_body_mean(const fibrad_body_row part[FIBRAD_BODY_PARTS], fibrad_body_row *mean);
+int fibrad_exchange_wall_mean(const fibrad_wall_row part[FIBRAD_WALL_PARTS], fibrad_wall_row *mean);
 
 /* How far the emission of a sphere is carried. */
 typedef struct fibrad_displacement {
@@ -1013,10 +1013,10 @@ int fibrad_exchange_walk(const fibrad_scene *scene, fibrad_work *work, uint32_t 
 typedef struct fibrad_flow {
     const double *weight;         /* L^2, [spheres], area times emissivity, 4 pi r^2 eps; read for spheres with a row */
     const double *emission;       /* U, [spheres], sigma T^4 */
-    const double *body_emission;  /* U, [bodies], sigma T^4 of each wall */
+    const double *wall_emission;  /* U, [walls], sigma T^4 of each wall */
     double surroundings_emission; /* U, sigma T^4 of the surroundings */
     double *power;                /* U L^2, [spheres], in and out */
-    double *body_power;           /* U L^2, [bodies], in and out */
+    double *wall_power;           /* U L^2, [walls], in and out */
     double surroundings_power;    /* U L^2, in and out */
 } fibrad_flow;
 
@@ -1027,14 +1027,14 @@ typedef struct fibrad_flow {
  * surroundings have no rows here. All factors of a row are first multiplied by 1/(1 - beyond). Sphere i gains exactly
  * what the others lose, to the bit. Nothing flows between equal emissions.
  *   Input    rows: a collection; its rows are taken in their order
- *            spheres, bodies: lengths of the arrays in `flow`
+ *            spheres, walls: lengths of the arrays in `flow`
  *   Output   flow: the powers
- *   Errors   _ARGUMENT: also a sphere or column not below `spheres`, a number of walls other than `bodies`, or a value
+ *   Errors   _ARGUMENT: also a sphere or column not below `spheres`, a number of walls other than `walls`, or a value
  *            that is not finite
  *            _STATE: the block of the collection was moved to another alignment
  *   Cost     2 ns per entry
  *   Source   docs/coupling.md */
-int fibrad_rows_flow(const fibrad_rows *rows, uint32_t spheres, uint32_t bodies, fibrad_flow *flow);
+int fibrad_rows_flow(const fibrad_rows *rows, uint32_t spheres, uint32_t walls, fibrad_flow *flow);
 
 #ifdef __cplusplus
 }

@@ -102,7 +102,7 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * `hold` makes the solution an implicit step in time. Let a sphere of heat capacity C have the temperature R at the
  * beginning of a step of length dt. Its h is C/(4 sigma R^3 dt).
  *
- * Walls have the same choices with body_temperature and body_power, but no hold and no reference. An insulated wall
+ * Walls have the same choices with wall_temperature and wall_power, but no hold and no reference. An insulated wall
  * sends back all that arrives, point by point. Its temperature, emissivity and power are not used. The sides of a mesh
  * may have temperatures of their own if the wall has a given temperature. An endless wall (fibrad.h) must have a given
  * temperature, unless it reflects everything.
@@ -142,10 +142,10 @@ typedef struct fibrad_heat_sources {
     const double *power;       /* sigma K^4 L^2, [spheres], to FIBRAD_POWER_MAX; above 0: given off; NULL: all NaN */
     const double *hold;        /* L^2, [spheres], 0 to 1e60; NULL: all 0 */
     const double *reference;   /* K, [spheres], as temperature; NULL: all NaN */
-    const double *body_temperature; /* K, [bodies], as temperature; NULL without walls */
-    const double *body_emissivity;  /* [bodies], 0 to 1; NULL without walls */
-    const double *body_power;       /* sigma K^4 L^2, [bodies], as power; NULL: all NaN */
-    const unsigned char *insulated; /* [bodies], not 0: insulated; NULL: no wall is insulated */
+    const double *wall_temperature; /* K, [walls], as temperature; NULL without walls */
+    const double *wall_emissivity;  /* [walls], 0 to 1; NULL without walls */
+    const double *wall_power;       /* sigma K^4 L^2, [walls], as power; NULL: all NaN */
+    const unsigned char *insulated; /* [walls], not 0: insulated; NULL: no wall is insulated */
     double surroundings;            /* K, 0 to FIBRAD_TEMPERATURE_MAX, of the black surroundings */
     double sigma;                   /* of E = sigma T^4, FIBRAD_SIGMA_MIN to _MAX */
     double tolerance;               /* residual at which to stop, 0 to below 1; 0: see above */
@@ -205,33 +205,33 @@ int fibrad_heat_step(fibrad_heat *heat, int *solved);
  * sign: a sphere of power P (and hold 0) has the net power -P. Temperatures are written whether they were found or
  * given. A temperature is NaN if the emissivity is 0, or if only a temperature below zero would give the power.
  * least_temperature, largest_temperature and centre_temperature differ only on spheres with a finite conductivity. For
- * any other sphere all three are its temperature. body_temperature of an insulated wall is the fourth root of its mean
+ * any other sphere all three are its temperature. wall_temperature of an insulated wall is the fourth root of its mean
  * T^4. The same holds for a mesh whose sides have temperatures of their own. The root mean square error of the powers
  * of all spheres follows from error_patches and error_beams: it is the root of the sum of their squares. */
 typedef struct fibrad_heat_result {
     double *power;                  /* sigma K^4 L^2, [spheres], out: net power */
-    double *body_power;             /* sigma K^4 L^2, [bodies], out: net power; NULL without walls */
+    double *wall_power;             /* sigma K^4 L^2, [walls], out: net power; NULL without walls */
     double surroundings_power;      /* sigma K^4 L^2, out: net power */
     double *temperature;            /* K, [spheres], out; may be NULL */
-    double *body_temperature;       /* K, [bodies], out; may be NULL */
+    double *wall_temperature;       /* K, [walls], out; may be NULL */
     double *power_error;            /* sigma K^4 L^2, [spheres], out: estimated error of power; may be NULL */
-    double *body_error;             /* sigma K^4 L^2, [bodies], out: estimated error of body_power; may be NULL */
+    double *wall_error;             /* sigma K^4 L^2, [walls], out: estimated error of wall_power; may be NULL */
     double *temperature_error;      /* K, [spheres], out: estimated error, 0 if given; may be NULL */
-    double *body_temperature_error; /* K, [bodies], out: estimated error, 0 if given; may be NULL */
+    double *wall_temperature_error; /* K, [walls], out: estimated error, 0 if given; may be NULL */
     double error_patches;           /* sigma K^4 L^2, out: root mean square error of power from patches */
     double error_beams;             /* sigma K^4 L^2, out: root mean square error of power from beams */
     double residual;                /* out: at the end, to compare with `tolerance` */
     uint32_t sweeps;                /* out */
-    double *body_absorbed;          /* sigma K^4 L^2, [bodies], out: eps H, summed over body_area; may be NULL */
+    double *wall_absorbed;          /* sigma K^4 L^2, [walls], out: eps H, summed over wall_area; may be NULL */
     double surroundings_error;      /* sigma K^4 L^2, out: estimated error of surroundings_power */
-    double *body_area;           /* L^2, [bodies], out: area; of an endless wall the part near the bed; may be NULL */
+    double *wall_area;           /* L^2, [walls], out: area; of an endless wall the part near the bed; may be NULL */
     double *least_temperature;   /* K, [spheres], out: least of the surface; may be NULL */
     double *largest_temperature; /* K, [spheres], out: largest of the surface; may be NULL */
     double *centre_temperature;  /* K, [spheres], out; may be NULL */
     double *surface_error;       /* K, [spheres], out: estimated error of least and largest; may be NULL */
     double *centre_error;        /* K, [spheres], out: estimated error of centre_temperature; may be NULL */
     double *conducted;           /* sigma K^4 L^2, [spheres], out: part of power, through contacts; may be NULL */
-    double *body_conducted;      /* sigma K^4 L^2, [bodies], out: part of body_power, through contacts; may be NULL */
+    double *wall_conducted;      /* sigma K^4 L^2, [walls], out: part of wall_power, through contacts; may be NULL */
     double *contact_flow;        /* sigma K^4 L^2, [contacts], out: from the first end to the second; may be NULL */
 } fibrad_heat_result;
 
@@ -246,9 +246,9 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result);
  * t. A value is the mean over the patches of the side. Sides that share a patch have equal values. Flux times area,
  * summed over the sides of a mesh, is to rounding:
  *   a mesh that a plane or the cylinder cuts        none of the following
- *   a mesh that is insulated                        body_power
- *   any other mesh, if sources.absorbed is NULL     body_power
- *   any other mesh, if sources.absorbed is an array body_power + the light that the mesh absorbs
+ *   a mesh that is insulated                        wall_power
+ *   any other mesh, if sources.absorbed is NULL     wall_power
+ *   any other mesh, if sources.absorbed is an array wall_power + the light that the mesh absorbs
  *   Output   flux[2 triangles]: net power per area [sigma K^4]; may be NULL. NaN: the side belongs to no wall, or no
  *            beam and no ray reaches it.
  *            temperature[2 triangles]: [K]; may be NULL. NaN: the side belongs to no wall, its wall has no temperature,

@@ -9,7 +9,7 @@
  *               there were neither spheres nor triangles.
  *            2. fibrad_light_spheres finds how much light each sphere of a range takes. `kept` is where this light
  * would end if there were neither spheres nor triangles: how much on each wall, how much outside the bed. The light
- * that ends on wall b is ends.body[b] of step 1 minus the sum of kept.body[b] over all ranges. The light that leaves
+ * that ends on wall b is ends.wall[b] of step 1 minus the sum of kept.wall[b] over all ranges. The light that leaves
  * the bed is ends.through minus the sum of kept.through. Triangles take a part of the light on walls and of the light
  * that leaves. fibrad_heat_shine_walls finds these parts. fibrad_heat_shine does step 2 for a heat problem, and puts
  * the light on patches. Units      as in fibrad.h. A power is in units of flux times L^2. With a flux of 1 it is an
@@ -59,7 +59,7 @@ typedef struct fibrad_light {
 typedef struct fibrad_light_ends {
     double spheres;                 /* on spheres */
     double through;                 /* leaves without having met anything */
-    double body[FIBRAD_BODIES_MAX]; /* on each wall */
+    double wall[FIBRAD_WALLS_MAX]; /* on each wall */
 } fibrad_light_ends;
 
 /* Where light ends if there are neither spheres nor triangles.
@@ -79,7 +79,7 @@ int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibra
  * time.
  *   Input    from, to: spheres from to to - 1, up to the number of spheres
  *   Output   power[to - from]: the light that falls on each sphere, absorbed or not
- *            kept: `spheres` is the sum of `power`. `body` and `through` are where this light would end if there were
+ *            kept: `spheres` is the sum of `power`. `wall` and `through` are where this light would end if there were
  *            neither spheres nor triangles. They add up to `spheres`.
  *   Errors   as fibrad_light_empty
  *   Cost     2 microseconds for each sphere and direction; work memory has 8 bytes for each sphere */
@@ -161,22 +161,22 @@ typedef struct fibrad_light_hits {
     const double *first; /* [patches], of fibrad_heat_shine and fibrad_heat_shine_walls */
     double *light;       /* [patches], out: what patches reflect; takes the place of fibrad_heat_sources.light */
     double *spots;       /* [patches], out: what of `first` rays have reflected */
-    double *squares; /* [spheres + bodies + 2], out: sums of squared powers of rays that arrive on spheres, walls and
+    double *squares; /* [spheres + walls + 2], out: sums of squared powers of rays that arrive on spheres, walls and
                         outside; last: of squared powers of beams that leave the patches where rays have arrived */
 } fibrad_light_hits;
 
 /* Carries light that falls on parts of patches to where it arrives next.
- *   Input    absorptivity[spheres], body_absorptivity[bodies]: of the light
+ *   Input    absorptivity[spheres], wall_absorptivity[walls]: of the light
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY */
 int fibrad_heat_reflect(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light,
                         const fibrad_light_ray *ray, uint32_t rays, const double *absorptivity,
-                        const double *body_absorptivity, const fibrad_light_hits *hits);
+                        const double *wall_absorptivity, const fibrad_light_hits *hits);
 
 /* Sums the light on the patches of each sphere and wall.
  *   Input    hits[fibrad_heat_patches]
- *   Output   power[spheres], body_power[bodies]
+ *   Output   power[spheres], wall_power[walls]
  *   Errors   _ARGUMENT */
-int fibrad_heat_sum_light(const fibrad_heat *heat, const double *hits, double *power, double *body_power);
+int fibrad_heat_sum_light(const fibrad_heat *heat, const double *hits, double *power, double *wall_power);
 
 /* Replaces spots by the light that patches of spheres and walls absorb: of the spots, and in the present solution.
  *   Input    spots[fibrad_heat_patches]: of fibrad_heat_reflect; zeros, if the solution has all first hits as its light

@@ -11,7 +11,7 @@
 #define FIBRAD_LENGTH_MAX    1e150  /* L, of radii, periods and coordinates */
 #define FIBRAD_SPHERES_MAX   100000000u
 #define FIBRAD_TRIANGLES_MAX 100000000u
-#define FIBRAD_BODIES_MAX    32
+#define FIBRAD_WALLS_MAX    32
 
 /* Rows by beams */
 #define FIBRAD_DIRECTIONS_MIN     8
@@ -35,7 +35,7 @@
 /* Exchange factors: directions of the first leg, and paths of each sphere and of each wall */
 #define FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT 50
 #define FIBRAD_PATHS_DEFAULT               400
-#define FIBRAD_BODY_PATHS_DEFAULT          8192
+#define FIBRAD_WALL_PATHS_DEFAULT          8192
 #define FIBRAD_PATHS_MAX                   (1u << 28)
 
 /* Spheres that conduct: relative conductivities k* = k_s/(4 d sigma T^3) */

@@ -9,7 +9,7 @@
  * Units, words, errors and the layout of comments are as in fibrad.h.
  *
  * Sides    Seen from its front, the corners of a triangle go counter-clockwise. Each side belongs to a wall of kind
- *          FIBRAD_BODY_MESH, or to no wall. A side that belongs to no wall must not be seen. A call that sees such a
+ *          FIBRAD_WALL_MESH, or to no wall. A side that belongs to no wall must not be seen. A call that sees such a
  *          side ends with FIBRAD_E_BACK and writes the number of the triangle. Both sides block, receive, emit and
  *          reflect alike.
  * Spheres  A triangle may cut a sphere, as in settled beds. A part of the sphere's surface then lies beyond the
@@ -35,7 +35,7 @@
 extern "C" {
 #endif
 
-#define FIBRAD_NO_BODY UINT32_MAX
+#define FIBRAD_NO_WALL UINT32_MAX
 
 /* All triangles of all meshes of a scene, for fibrad_scene_config.triangles. fibrad_scene_init copies them.
  *
@@ -49,8 +49,8 @@ typedef struct fibrad_triangles {
     uint32_t stride;         /* doubles; 0: 1 */
     uint32_t vertices;       /* number of vertices */
     const uint32_t *corner;  /* [n][3], vertices of each triangle; a triangle without area is never met */
-    const uint32_t *front;   /* [n], wall of each front side; FIBRAD_NO_BODY: none */
-    const uint32_t *back;    /* [n], wall of each back side; FIBRAD_NO_BODY: none; NULL: none for all */
+    const uint32_t *front;   /* [n], wall of each front side; FIBRAD_NO_WALL: none */
+    const uint32_t *back;    /* [n], wall of each back side; FIBRAD_NO_WALL: none; NULL: none for all */
     uint32_t n;              /* number of triangles, 0 to FIBRAD_TRIANGLES_MAX */
     double period[3];        /* L, of triangles alone, along an axis that is open for spheres; 0: none */
 } fibrad_triangles;
@@ -81,7 +81,7 @@ int fibrad_triangle_ray(const fibrad_scene *scene, const double origin[3], const
  * if the side belongs to no wall, or if no point of the side lies within the planes and the cylinder. */
 typedef struct fibrad_side_view {
     double spheres; /* fraction that meets spheres */
-    double bodies;  /* fraction that meets walls */
+    double walls;  /* fraction that meets walls */
     double escaped; /* fraction that reaches the surroundings */
 } fibrad_side_view;
 

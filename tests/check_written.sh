@@ -42,14 +42,14 @@ if ! command -v python3 >/dev/null; then
 fi
 cat >known.py <<'END'
 import csv, json
-powers, bodies = {}, {}
+powers, walls = {}, {}
 for row in csv.DictReader(open('q.csv')):
-    (bodies if row['body'] else powers)[row['body'] or int(row['i'])] = float(row['T_K']), float(row['q_W'])
-assert list(powers) == list(range(1, 2001)) and list(bodies) == ['surroundings', 'zmin']
+    (walls if row['wall'] else powers)[row['wall'] or int(row['i'])] = float(row['T_K']), float(row['q_W'])
+assert list(powers) == list(range(1, 2001)) and list(walls) == ['surroundings', 'zmin']
 factors, outside = {}, {}
 for row in csv.DictReader(open('F.csv')):
     i, j = int(row['i']), int(row['j'])
-    if row['body']: outside[row['body'], i, j] = float(row['F'])
+    if row['wall']: outside[row['wall'], i, j] = float(row['F'])
     else: factors[i, j] = float(row['F'])
 def strict(text): raise ValueError(text)  # NaN and Infinity are no JSON
 def lines(path): return [json.loads(line, parse_constant=strict) for line in open(path)]
@@ -58,8 +58,8 @@ python3 - <<'END'
 from known import *
 q, = lines('q.json')
 assert dict(zip(q['id'], zip(q['T_K'], q['q_W']))) == powers and q['frame'] == 0
-assert [q['surroundings'][key] for key in ('T_K', 'q_W')] == list(bodies['surroundings'])
-assert [q['walls']['zmin'][key] for key in ('T_K', 'q_W')] == list(bodies['zmin'])
+assert [q['surroundings'][key] for key in ('T_K', 'q_W')] == list(walls['surroundings'])
+assert [q['walls']['zmin'][key] for key in ('T_K', 'q_W')] == list(walls['zmin'])
 two = lines('two.json')
 assert [frame.pop('file') for frame in two] == ['a.dump', 'b.dump']
 assert [frame.pop('timestep') for frame in two] == [75000, 76000] and q.pop('timestep') == 75000
@@ -67,7 +67,7 @@ assert [frame.pop('frame') for frame in two] == [0, 1] and q.pop('frame') == 0
 assert two == [q, q]
 rows = list(csv.DictReader(open('two.csv')))
 assert len(rows) == 2 * 2002 and {row['file'] for row in rows} == {'a.dump', 'b.dump'}
-assert all(powers[int(row['i'])][1] == float(row['q_W']) for row in rows if not row['body'])
+assert all(powers[int(row['i'])][1] == float(row['q_W']) for row in rows if not row['wall'])
 
 F, = lines('F.json')
 ids, start = F['id'], F['indptr']
@@ -75,7 +75,7 @@ found = {(ids[i], ids[F['indices'][k]]): F['data'][k] for i in range(2000) for k
 assert found == factors
 for name, j in ('surroundings', -1), ('zmin', -2), ('zmax', -3):
     values = F['escaped'] if name == 'surroundings' else F['walls'][name]
-    assert {i: f for i, f in zip(ids, values) if f} == {i: f for (body, i, to), f in outside.items() if body == name and i > 0}
+    assert {i: f for i, f in zip(ids, values) if f} == {i: f for (wall, i, to), f in outside.items() if wall == name and i > 0}
 assert [e is None for e in F['error']] == [i > 999 for i in ids]
 
 names, comments, entries = [], '', {}

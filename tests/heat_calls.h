@@ -5,7 +5,7 @@
 #include "heat_runs.h"
 #include "suite.h"
 
-enum { N = 14, PARTS = 8, BODIES = 3 };
+enum { N = 14, PARTS = 8, WALLS = 3 };
 
 struct problem {
     unsigned char *scene_block, *heat_block;
@@ -13,16 +13,16 @@ struct problem {
     fibrad_scene *scene;
     fibrad_heat *heat;
     fibrad_work work;
-    double temperature[N], emissivity[N], body_temperature[BODIES], body_emissivity[BODIES];
+    double temperature[N], emissivity[N], wall_temperature[WALLS], wall_emissivity[WALLS];
     fibrad_heat_sources sources;
-    double power[N], body_power[BODIES];
+    double power[N], wall_power[WALLS];
     fibrad_heat_result result;
 };
 
 /* The scene, the sources and the memory of a problem. */
 struct contents {
     double x[N], y[N], z[N], r[N];
-    fibrad_body body[BODIES];
+    fibrad_wall wall[WALLS];
     double period_x;
     uint32_t n;
 };
@@ -31,7 +31,7 @@ static const fibrad_heat_config heat_config = {.directions = 24, .patches = 24, 
 
 /* Spheres in two layers between a floor, a ceiling and one side wall. The other sides are open. */
 static inline struct contents contents_of(uint64_t seed) {
-    struct contents c = {.body = {plane_at(2, 0, -1.2), plane_at(2, 1, 3.4), plane_at(1, 0, -1.3)}, .n = N};
+    struct contents c = {.wall = {plane_at(2, 0, -1.2), plane_at(2, 1, 3.4), plane_at(1, 0, -1.3)}, .n = N};
     for (uint32_t i = 0; i < N; i++) {
         c.x[i] = 2.1 * (i % 4) + .1 * bed_make_random(seed, 4 * i);
         c.y[i] = 2.1 * (i / 4 % 2) + .1 * bed_make_random(seed, 4 * i + 1);
@@ -46,11 +46,11 @@ static inline int build_at(void *block, size_t size, const struct contents *c, f
     uint32_t openings = 0;
     for (int side = c->period_x > 0 ? 2 : 0; side < 6; side++) {
         bool walled = false;
-        for (int b = 0; b < BODIES; b++) walled = walled || 2 * c->body[b].plane.axis + c->body[b].plane.upper == side;
+        for (int b = 0; b < WALLS; b++) walled = walled || 2 * c->wall[b].plane.axis + c->wall[b].plane.upper == side;
         if (!walled) opening[openings++] = (fibrad_plane){side / 2, side % 2, side % 2 ? 9 : -9};
     }
     const fibrad_scene_config config = {
-        .period = {c->period_x}, .body = c->body, .bodies = BODIES, .opening = opening, .openings = openings};
+        .period = {c->period_x}, .wall = c->wall, .walls = WALLS, .opening = opening, .openings = openings};
     const fibrad_spheres spheres = {.x = c->x, .y = c->y, .z = c->z, .r = c->r, .n = c->n};
     return fibrad_scene_init(scene, block, size, &config, &spheres, NULL);
 }
@@ -63,12 +63,12 @@ static inline void build(struct problem *p, const struct contents *c) {
 static inline void set_sources(struct problem *p) {
     for (uint32_t i = 0; i < N; i++)
         p->temperature[i] = 1 + bed_make_random(7, i), p->emissivity[i] = .2 + .7 * bed_make_random(8, i);
-    for (uint32_t b = 0; b < BODIES; b++) p->body_temperature[b] = 1 + .3 * b, p->body_emissivity[b] = .4 + .2 * b;
+    for (uint32_t b = 0; b < WALLS; b++) p->wall_temperature[b] = 1 + .3 * b, p->wall_emissivity[b] = .4 + .2 * b;
     fibrad_heat_sources_init(&p->sources);
     p->sources.temperature = p->temperature, p->sources.emissivity = p->emissivity;
-    p->sources.body_temperature = p->body_temperature, p->sources.body_emissivity = p->body_emissivity;
+    p->sources.wall_temperature = p->wall_temperature, p->sources.wall_emissivity = p->wall_emissivity;
     p->sources.surroundings = .7, p->sources.tolerance = 1e-9;
-    p->result.power = p->power, p->result.body_power = p->body_power;
+    p->result.power = p->power, p->result.wall_power = p->wall_power;
 }
 
 /* Makes a problem by fibrad_heat_init. All bytes of the block are `fill` before. */
@@ -114,7 +114,7 @@ static inline struct problem *by_the_book(const struct contents *c) {
 
 static inline void assert_same_powers(const struct problem *p, const struct problem *book) {
     ck_assert_mem_eq(p->power, book->power, sizeof p->power);
-    ck_assert_mem_eq(p->body_power, book->body_power, sizeof p->body_power);
+    ck_assert_mem_eq(p->wall_power, book->wall_power, sizeof p->wall_power);
     ck_assert_mem_eq(&p->result.surroundings_power, &book->result.surroundings_power, sizeof(double));
 }
 
@@ -152,10 +152,10 @@ static inline struct contents changed(const struct contents *from, int what) {
         swap = c.r[2], c.r[2] = c.r[3], c.r[3] = swap;
         break;
     case 4:
-        c.body[1].plane.at += 1e-9;
+        c.wall[1].plane.at += 1e-9;
         break;
     case 5: /* walls in another order */
-        c.body[0] = from->body[1], c.body[1] = from->body[0];
+        c.wall[0] = from->wall[1], c.wall[1] = from->wall[0];
         break;
     case 6:
         c.period_x = 40;

@@ -35,14 +35,14 @@ static inline struct lit light_up(const struct bed *bed, const fibrad_scene_conf
         fibrad_light_ends kept;
         assert_ok(fibrad_light_spheres(scene, &work, light, from, to, lit.power + from, &kept));
         lit.ends.spheres += kept.spheres, lit.ends.through -= kept.through;
-        for (int b = 0; b < FIBRAD_BODIES_MAX; b++) lit.ends.body[b] -= kept.body[b];
+        for (int b = 0; b < FIBRAD_WALLS_MAX; b++) lit.ends.wall[b] -= kept.wall[b];
     }
     return lit;
 }
 
 static inline double sum_of(const fibrad_light_ends *ends) {
     double sum = ends->spheres + ends->through;
-    for (int b = 0; b < FIBRAD_BODIES_MAX; b++) sum += ends->body[b];
+    for (int b = 0; b < FIBRAD_WALLS_MAX; b++) sum += ends->wall[b];
     return sum;
 }
 

@@ -9,12 +9,12 @@
 
 enum { MESH_VERTICES = 40000, MESH_TRIANGLES = 20000 };
 
-/* Triangles that are added one by one. All `bodies` are meshes. */
+/* Triangles that are added one by one. All `walls` are meshes. */
 struct mesh {
     double at[MESH_VERTICES][3];
     uint32_t corner[MESH_TRIANGLES][3], front[MESH_TRIANGLES], back[MESH_TRIANGLES];
     struct fibrad_triangles triangles;
-    fibrad_body body[FIBRAD_BODIES_MAX];
+    fibrad_wall wall[FIBRAD_WALLS_MAX];
 };
 
 static inline struct mesh *mesh_new(void) {
@@ -27,7 +27,7 @@ static inline struct mesh *mesh_new(void) {
                                                 .corner = &mesh->corner[0][0],
                                                 .front = mesh->front,
                                                 .back = mesh->back};
-    for (int b = 0; b < FIBRAD_BODIES_MAX; b++) mesh->body[b].kind = FIBRAD_BODY_MESH;
+    for (int b = 0; b < FIBRAD_WALLS_MAX; b++) mesh->wall[b].kind = FIBRAD_WALL_MESH;
     return mesh;
 }
 
@@ -51,7 +51,7 @@ static inline void mesh_quad(struct mesh *mesh, const uint32_t v[4], uint32_t fr
     mesh_triangle(mesh, v[0], v[2], v[3], front, back);
 }
 
-/* Adds a box whose fronts are inside. Side 2 axis + upper is body `first` + 2 axis + upper. */
+/* Adds a box whose fronts are inside. Side 2 axis + upper is wall `first` + 2 axis + upper. */
 static inline void mesh_box(struct mesh *mesh, const double low[3], const double high[3], uint32_t first) {
     uint32_t v[8];
     for (uint32_t k = 0; k < 8; k++)
@@ -60,7 +60,7 @@ static inline void mesh_box(struct mesh *mesh, const double low[3], const double
         for (uint32_t upper = 0; upper < 2; upper++) {
             const uint32_t o = upper << axis, p = 1u << (axis + 1) % 3, q = 1u << (axis + 2) % 3;
             const uint32_t up[4] = {v[o], v[o | p], v[o | p | q], v[o | q]}, down[4] = {up[0], up[3], up[2], up[1]};
-            mesh_quad(mesh, upper ? down : up, first + 2 * axis + upper, FIBRAD_NO_BODY);
+            mesh_quad(mesh, upper ? down : up, first + 2 * axis + upper, FIBRAD_NO_WALL);
         }
 }
 

@@ -8,7 +8,7 @@
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${JOBS:=$(nproc 2>/dev/null || echo 1)}"
 export BUILD MAKE CC
-tests="base pair_exact surface matrix scene direction drift areas furnace surface_row work beam cast walls trace exchange body_rows known protocol part heat light_mesh stress"
+tests="base pair_exact surface matrix scene direction drift areas furnace surface_row work beam cast walls trace exchange wall_rows known protocol part heat light_mesh stress"
 whole=$BUILD/mutate/whole # built and unbroken; every break starts from a copy
 export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-60}"
 
@@ -39,7 +39,7 @@ tests_of() {
     host/couple/walls/*) echo liggghts ;;
     host/couple/*) echo couple ;;
     kernel/exchange/flow.c | kernel/scene/surroundings.c) echo "beyond flow part $tests" ;;
-    kernel/exchange/*) echo "exchange body_rows known protocol part $tests" ;;
+    kernel/exchange/*) echo "exchange wall_rows known protocol part $tests" ;;
     kernel/heat/*) echo "protocol_heat heat heat_arguments heat_paths heat_patches heat_invariants $tests" ;;
     */points_*) echo "beam cast $tests" ;;
     kernel/window/*) echo "lines_rows areas beam $tests" ;;

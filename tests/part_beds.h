@@ -133,7 +133,7 @@ static inline struct named_row row_by(const struct part *p, const fibrad_scene *
                                    .turn = method == 2 ? 99 : 0};
     const fibrad_cast_rule cast = {.rays = 600, .seed = 4, .cutoff = cutoff};
     const fibrad_exchange_rule exchange = {.emissivity = e,
-                                           .body_emissivity = wall_emissivity,
+                                           .wall_emissivity = wall_emissivity,
                                            .directions = method == 5 ? 145 : 0,
                                            .paths = 60,
                                            .seed = method == 6 ? 12345 : 0,
@@ -144,7 +144,7 @@ static inline struct named_row row_by(const struct part *p, const fibrad_scene *
                                      : fibrad_exchange_row(scene, &work, i, &exchange, &out.row, &out.rays);
     assert_ok(status);
     double sum = out.row.escaped + out.row.beyond;
-    for (int b = 0; b < BODIES_MOST; b++) sum += out.row.body[b];
+    for (int b = 0; b < WALLS_MOST; b++) sum += out.row.wall[b];
     for (uint32_t k = 0; k < out.row.length; k++) {
         sum += out.row.f[k];
         out.by_id[p->id[out.row.col[k]]] += out.row.f[k];
@@ -161,8 +161,8 @@ static inline void expect_same_named(const struct named_row *a, const struct nam
     for (uint32_t id = 0; id < ids; id++)
         ck_assert_msg(same_double(a->by_id[id], b->by_id[id]), "%s: id %u: %a, %a", what, id, a->by_id[id],
                       b->by_id[id]);
-    for (int body = 0; body < BODIES_MOST; body++)
-        ck_assert_msg(same_double(a->row.body[body], b->row.body[body]), "%s: body %d", what, body);
+    for (int wall = 0; wall < WALLS_MOST; wall++)
+        ck_assert_msg(same_double(a->row.wall[wall], b->row.wall[wall]), "%s: wall %d", what, wall);
     ck_assert_msg(same_double(a->row.escaped, b->row.escaped), "%s: escaped", what);
     ck_assert_msg(same_double(a->row.beyond, b->row.beyond), "%s: beyond", what);
     ck_assert_msg(same_double(a->row.error, b->row.error), "%s: error %a, %a", what, a->row.error, b->row.error);
@@ -187,12 +187,12 @@ static const struct kind kinds[] = {{"open", 0, false, false, 0},
                                     {"vessel", 0, false, false, 3},
                                     {"layer", 0, true, false, 3}};
 
-enum { KINDS = sizeof kinds / sizeof *kinds, BODIES = 7 };
+enum { KINDS = sizeof kinds / sizeof *kinds, WALLS = 7 };
 
 struct made {
     struct part part;
     fibrad_occupancy occupancy;
-    fibrad_body body[BODIES];
+    fibrad_wall wall[WALLS];
     struct mesh *mesh; /* NULL: none */
     double low[3], high[3];
 };
@@ -211,8 +211,8 @@ static inline void make_mesh(struct made *m, const double period[3], fibrad_scen
     }
     const uint32_t tube = period[0] > 0 ? 4 : 6;
     mesh_tube(m->mesh, 3, 4, .75, m->low[2], m->high[2], 12, 1, true, tube, tube);
-    memcpy(m->body, m->mesh->body, sizeof m->body);
-    config->bodies = tube + 1;
+    memcpy(m->wall, m->mesh->wall, sizeof m->wall);
+    config->walls = tube + 1;
     config->triangles = &m->mesh->triangles;
 }
 
@@ -232,15 +232,15 @@ static inline void make_kind(struct made *m, const struct kind *k) {
         m->low[axis] = k->lattice != 0 ? -9 : 0, m->high[axis] = k->lattice != 0 ? 9 : period;
         high = m->high[axis];
     }
-    fibrad_scene_config config = {.body = m->body};
+    fibrad_scene_config config = {.wall = m->wall};
     for (int axis = 0; axis < 3; axis++) {
         if (k->walls == 0 || k->walls == 3 || bed.period[axis] > 0 || (k->walls == 2 && axis < 2)) continue;
-        m->body[config.bodies++] = plane_at(axis, 0, m->low[axis]);
-        m->body[config.bodies++] = plane_at(axis, 1, m->high[axis]);
+        m->wall[config.walls++] = plane_at(axis, 0, m->low[axis]);
+        m->wall[config.walls++] = plane_at(axis, 1, m->high[axis]);
     }
     m->mesh = NULL;
     if (k->walls == 3) make_mesh(m, bed.period, &config);
-    if (k->walls == 2) m->body[config.bodies++] = cylinder_at(high / 2, high / 2, high);
+    if (k->walls == 2) m->wall[config.walls++] = cylinder_at(high / 2, high / 2, high);
     m->part = part_of(&bed, config);
     m->occupancy = occupancy_of(&m->part, m->low, m->high, 5);
     m->part.config.occupancy = &m->occupancy;

@@ -122,12 +122,12 @@ static inline fibrad_spheres spheres_of(const struct bed *bed) {
     return (fibrad_spheres){.x = bed->x, .y = bed->y, .z = bed->z, .r = bed->r, .n = bed->n};
 }
 
-static inline fibrad_body plane_at(int axis, int upper, double at) {
-    return (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {axis, upper, at}};
+static inline fibrad_wall plane_at(int axis, int upper, double at) {
+    return (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = {axis, upper, at}};
 }
 
-static inline fibrad_body cylinder_at(double x, double y, double radius) {
-    return (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {x, y, radius}};
+static inline fibrad_wall cylinder_at(double x, double y, double radius) {
+    return (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {x, y, radius}};
 }
 
 /* A scene of a bed in its periodic box. config: walls and the like, or NULL. The period of config is not used. Returns
@@ -227,19 +227,19 @@ static inline void rows_free(fibrad_rows *rows) {
 
 /* ---- rows ------------------------------------------------------------------------------------------------------- */
 
-#define BODIES_MOST FIBRAD_BODIES_MAX
+#define WALLS_MOST FIBRAD_WALLS_MAX
 
 static inline fibrad_row row_of(uint32_t capacity) {
     return (fibrad_row){.col = calloc((size_t)capacity + 1, sizeof(uint32_t)),
                         .f = calloc((size_t)capacity + 1, sizeof(double)),
-                        .body = calloc(BODIES_MOST, sizeof(double)),
+                        .wall = calloc(WALLS_MOST, sizeof(double)),
                         .capacity = capacity};
 }
 
 static inline void row_free(fibrad_row *row) {
     free(row->col);
     free(row->f);
-    free(row->body);
+    free(row->wall);
 }
 
 static inline double row_sum(const fibrad_row *row) {
@@ -273,9 +273,9 @@ static inline bool same_bits(const fibrad_row *a, const fibrad_row *b) {
            memcmp(&a->beyond, &b->beyond, sizeof a->beyond) == 0 && memcmp(&a->error, &b->error, sizeof a->error) == 0;
 }
 
-/* The same for scenes with bodies. */
-static inline bool same_bits_with(const fibrad_row *a, const fibrad_row *b, uint32_t bodies) {
-    return same_bits(a, b) && memcmp(a->body, b->body, bodies * sizeof *a->body) == 0;
+/* The same for scenes with walls. */
+static inline bool same_bits_with(const fibrad_row *a, const fibrad_row *b, uint32_t walls) {
+    return same_bits(a, b) && memcmp(a->wall, b->wall, walls * sizeof *a->wall) == 0;
 }
 
 /* A set of lines. free(*set) frees it. */
@@ -349,7 +349,7 @@ static inline fibrad_row matrix_row(const fibrad_factors *m, uint32_t i) {
     row.capacity = row.length;
     row.col = (uint32_t *)(uintptr_t)(m->col + begin);
     row.f = (double *)(uintptr_t)(m->f + begin);
-    row.body = (double *)(uintptr_t)(m->body + (size_t)i * m->bodies);
+    row.wall = (double *)(uintptr_t)(m->wall + (size_t)i * m->walls);
     row.escaped = m->escaped[i], row.beyond = m->beyond[i], row.error = m->error[i];
     return row;
 }
@@ -359,7 +359,7 @@ static inline double matrix_factor(const fibrad_factors *m, uint32_t i, uint32_t
     return row_factor(&row, j);
 }
 
-/* Sum of the factors of row i to spheres. matrix_total also has bodies, escaped and beyond. */
+/* Sum of the factors of row i to spheres. matrix_total also has walls, escaped and beyond. */
 static inline double matrix_sum(const fibrad_factors *m, uint32_t i) {
     const fibrad_row row = matrix_row(m, i);
     return row_sum(&row);
@@ -367,15 +367,15 @@ static inline double matrix_sum(const fibrad_factors *m, uint32_t i) {
 
 static inline double matrix_total(const fibrad_factors *m, uint32_t i) {
     double sum = matrix_sum(m, i) + m->escaped[i] + m->beyond[i];
-    for (uint32_t b = 0; b < m->bodies; b++) sum += m->body[(size_t)i * m->bodies + b];
+    for (uint32_t b = 0; b < m->walls; b++) sum += m->wall[(size_t)i * m->walls + b];
     return sum;
 }
 
 static inline bool matrix_same_bits(const fibrad_factors *a, const fibrad_factors *b) {
-    bool same = a->n == b->n && a->bodies == b->bodies;
+    bool same = a->n == b->n && a->walls == b->walls;
     for (uint32_t i = 0; same && i < a->n; i++) {
         const fibrad_row p = matrix_row(a, i), q = matrix_row(b, i);
-        same = a->start[i] == b->start[i] && same_bits_with(&p, &q, a->bodies);
+        same = a->start[i] == b->start[i] && same_bits_with(&p, &q, a->walls);
     }
     return same;
 }

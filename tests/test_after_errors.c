@@ -15,8 +15,8 @@ static bool is_all(const void *bytes, size_t size, unsigned char fill) {
 /* A cube of spheres, and below it two triangles. The back of the second one belongs to no wall and is seen. */
 static fibrad_scene *scene_with_back(void *block, size_t size, double emissivity[CUBE]) {
     static const double at[5][3] = {{-9, -9, 9}, {20, -9, 9}, {-9, 20, 9}, {-9, -9, 12}, {20, -9, 12}};
-    static const uint32_t corner[2][3] = {{0, 1, 2}, {0, 4, 3}}, front[2] = {0, FIBRAD_NO_BODY},
-                          back[2] = {0, FIBRAD_NO_BODY};
+    static const uint32_t corner[2][3] = {{0, 1, 2}, {0, 4, 3}}, front[2] = {0, FIBRAD_NO_WALL},
+                          back[2] = {0, FIBRAD_NO_WALL};
     const fibrad_triangles two = {.x = &at[0][0],
                                   .y = &at[0][1],
                                   .z = &at[0][2],
@@ -26,8 +26,8 @@ static fibrad_scene *scene_with_back(void *block, size_t size, double emissivity
                                   .front = front,
                                   .back = back,
                                   .n = 2};
-    const fibrad_body mesh = {.kind = FIBRAD_BODY_MESH};
-    const fibrad_scene_config config = {.body = &mesh, .bodies = 1, .triangles = &two};
+    const fibrad_wall mesh = {.kind = FIBRAD_WALL_MESH};
+    const fibrad_scene_config config = {.wall = &mesh, .walls = 1, .triangles = &two};
     double x[CUBE], y[CUBE], z[CUBE], r[CUBE];
     for (int i = 0; i < CUBE; i++) {
         x[i] = 2.1 * (i % SIDE), y[i] = 2.1 * (i / SIDE % SIDE), z[i] = 2.1 * (i / SIDE / SIDE), r[i] = 1;
@@ -46,12 +46,12 @@ TEST(row_of_a_wall_that_sees_a_back) {
     double emissivity[CUBE];
     const double wall = .5;
     const fibrad_scene *scene = scene_with_back(block, size, emissivity);
-    const fibrad_exchange_rule rule = {.emissivity = emissivity, .body_emissivity = &wall};
+    const fibrad_exchange_rule rule = {.emissivity = emissivity, .wall_emissivity = &wall};
     uint64_t reflected[CUBE], before[CUBE];
-    fibrad_body_row row;
+    fibrad_wall_row row;
     memset(&row, 0xEE, sizeof row);
     for (uint64_t i = 0; i < CUBE; i++) reflected[i] = before[i] = i << 50 | 12345;
-    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 0, &rule, 0, &row, reflected), FIBRAD_E_BACK);
+    ck_assert_int_eq(fibrad_exchange_wall(scene, &work, 0, &rule, 0, &row, reflected), FIBRAD_E_BACK);
     ck_assert(is_all(&row, sizeof row, 0xEE));
     ck_assert_mem_eq(reflected, before, sizeof before);
     ck_assert_uint_eq(work.triangle, 1);
@@ -148,9 +148,9 @@ TEST(light_of_a_closed_box) {
     const size_t size = fibrad_scene_size(1, 0);
     OWNED void *block = block_of(size);
     OWNED_WORK work = work_growing();
-    fibrad_body wall[6];
+    fibrad_wall wall[6];
     for (int k = 0; k < 6; k++) wall[k] = plane_at(k / 2, k % 2, k % 2 ? 2 : -2);
-    const fibrad_scene_config config = {.body = wall, .bodies = 6};
+    const fibrad_scene_config config = {.wall = wall, .walls = 6};
     fibrad_scene *scene;
     fibrad_heat *heat;
     fibrad_light_ends ends;

@@ -606,6 +606,6 @@ TEST(bad_arguments_are_refused) {
     assert_invalid(fibrad_beam_row(scene, &work, 0, NULL, &arrays));
     arrays = row, arrays.f = NULL;
     assert_invalid(fibrad_beam_row(scene, &work, 0, NULL, &arrays));
-    arrays = row, arrays.body = NULL; /* there are none */
+    arrays = row, arrays.wall = NULL; /* there are none */
     assert_ok(fibrad_beam_row(scene, &work, 0, NULL, &arrays));
 }

@@ -18,7 +18,7 @@ LOOP_TEST(nothing_is_beyond_what_holds_all, 2) {
                 OWNED_NAMED cut = row_by(&m.part, plain, i, method, 99);
                 ck_assert_double_eq(cut.row.beyond, 0);
                 expect_same_named(&expected, &cut, m.part.ids, kinds[_i].name);
-                if (m.part.config.bodies > 0 || occupied) { /* lines end within the region, or are clear */
+                if (m.part.config.walls > 0 || occupied) { /* lines end within the region, or are clear */
                     OWNED_NAMED region = row_by(&m.part, known, i, method, 0);
                     ck_assert_double_eq(region.row.beyond, 0);
                     expect_same_named(&expected, &region, m.part.ids, kinds[_i].name);
@@ -223,8 +223,8 @@ TEST(a_cutoff_leaves_the_sky_of_a_flat_bed) {
     OWNED_BED bed = packing(700, .6, 1, .5, 11, true);
     const double side = bed.period[0];
     bed.period[2] = 0;
-    const fibrad_body floor = plane_at(2, 0, -1);
-    OWNED_PART p = part_of(&bed, (fibrad_scene_config){.body = &floor, .bodies = 1});
+    const fibrad_wall floor = plane_at(2, 0, -1);
+    OWNED_PART p = part_of(&bed, (fibrad_scene_config){.wall = &floor, .walls = 1});
     const fibrad_occupancy o = occupancy_of(&p, (double[3]){0, 0, -1}, (double[3]){side, side, side + 1}, 128);
     p.config.occupancy = &o;
     fibrad_scene *scene = part_scene(&p);
@@ -242,18 +242,18 @@ TEST(a_cutoff_leaves_the_sky_of_a_flat_bed) {
 
 /* The known region ends half way up a can. A lone sphere sends a fraction there that is a solid angle over 4 pi. */
 TEST(a_known_region_ends_in_a_can) {
-    const fibrad_body body[] = {plane_at(2, 0, -40), plane_at(2, 1, 40), cylinder_at(0, 0, 10)};
+    const fibrad_wall wall[] = {plane_at(2, 0, -40), plane_at(2, 1, 40), cylinder_at(0, 0, 10)};
     OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 35, 1});
     OWNED_PART p = part_of(
-        &bed, (fibrad_scene_config){.body = body, .bodies = 3, .known_low = {0, 0, -1000}, .known_high = {0, 0, 20}});
+        &bed, (fibrad_scene_config){.wall = wall, .walls = 3, .known_low = {0, 0, -1000}, .known_high = {0, 0, 20}});
     OWNED fibrad_scene *scene = part_scene(&p);
     const double share = .5 * (1 - 20 / sqrt(500)), below = .5 * (1 - 40 / sqrt(1700));
     for (int method = 0; method < METHODS; method++) {
         OWNED_NAMED row = row_by(&p, scene, 0, method, 0);
         const double tolerance = method < 3 ? 6e-3 : method == 3 ? .02 : 1; /* only sums of exchange rows are checked */
         ck_assert_double_eq_tol(row.row.beyond, share, tolerance);
-        ck_assert_double_eq_tol(row.row.body[0], below, tolerance);
-        ck_assert_double_eq(row.row.body[1], 0); /* what may be there could hide the wall and the sphere above */
+        ck_assert_double_eq_tol(row.row.wall[0], below, tolerance);
+        ck_assert_double_eq(row.row.wall[1], 0); /* what may be there could hide the wall and the sphere above */
         ck_assert_double_gt(row.row.beyond, share / 2);
         ck_assert_double_eq(row.row.escaped, 0);
     }
@@ -266,7 +266,7 @@ TEST(a_known_region_ends_in_a_can) {
     for (int method = 0; method < METHODS; method++) {
         OWNED_NAMED row = row_by(&p, told, 0, method, 0);
         ck_assert_double_eq(row.row.beyond, 0);
-        ck_assert_double_gt(row.row.body[1], 0);
+        ck_assert_double_gt(row.row.wall[1], 0);
     }
     /* the sphere lies beyond the region: all is `beyond` that meets no wall on the way out */
     p.config = config;

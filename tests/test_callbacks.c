@@ -70,9 +70,9 @@ static int show(void *cube, const char *stage, uint64_t done, uint64_t total) {
     return c->ask > 0 && c->calls >= c->ask;
 }
 
-static void warm(void *cube, const double *temperature, const double *body_temperature, double *emissivity,
-                 double *body_emissivity) {
-    (void)body_temperature, (void)body_emissivity;
+static void warm(void *cube, const double *temperature, const double *wall_temperature, double *emissivity,
+                 double *wall_emissivity) {
+    (void)wall_temperature, (void)wall_emissivity;
     call_again(cube);
     for (int i = 0; i < CUBE; i++) emissivity[i] = isnan(temperature[i]) ? .5 : .3 + .4 * temperature[i] / 2000;
 }
@@ -122,16 +122,16 @@ LOOP_TEST(observers_that_move, 3) {
 }
 
 /* Laws that never settle, or go wrong: emissivities up and down; NaN at the second call. */
-static void restless(void *calls, const double *temperature, const double *body_temperature, double *emissivity,
-                     double *body_emissivity) {
-    (void)temperature, (void)body_temperature, (void)body_emissivity;
+static void restless(void *calls, const double *temperature, const double *wall_temperature, double *emissivity,
+                     double *wall_emissivity) {
+    (void)temperature, (void)wall_temperature, (void)wall_emissivity;
     for (int i = 0; i < CUBE; i++) emissivity[i] = *(int *)calls % 2 ? .2 : .9;
     ++*(int *)calls;
 }
 
-static void wrong(void *calls, const double *temperature, const double *body_temperature, double *emissivity,
-                  double *body_emissivity) {
-    restless(calls, temperature, body_temperature, emissivity, body_emissivity);
+static void wrong(void *calls, const double *temperature, const double *wall_temperature, double *emissivity,
+                  double *wall_emissivity) {
+    restless(calls, temperature, wall_temperature, emissivity, wall_emissivity);
     if (*(int *)calls == 2) emissivity[5] = NAN;
 }
 
@@ -207,16 +207,16 @@ TEST(rules_that_time_does_not_take) {
 TEST(cancelled_span_writes_nothing) {
     OWNED_CUBE c;
     const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_PATCHES, .heat = coarse};
-    const fibrad_body floor = {.kind = FIBRAD_BODY_PLANE, .plane = {.axis = 2, .at = -1.1}};
-    const fibrad_scene_config scene = {.body = &floor, .bodies = 1};
+    const fibrad_wall floor = {.kind = FIBRAD_WALL_PLANE, .plane = {.axis = 2, .at = -1.1}};
+    const fibrad_scene_config scene = {.wall = &floor, .walls = 1};
     const double wall_temperature = 400, wall_emissivity = .5;
     double energy = 77, wall_power = 77, temperature[CUBE];
     make_cube(&c);
-    c.sources.body_temperature = &wall_temperature, c.sources.body_emissivity = &wall_emissivity;
+    c.sources.wall_temperature = &wall_temperature, c.sources.wall_emissivity = &wall_emissivity;
     fibrad_run run = {.threads = 1, .progress = show, .context = &c};
     memcpy(temperature, c.temperature, sizeof temperature);
     fibrad_span span = {.temperature = temperature, .capacity = c.capacity, .duration = 1e-2, .power = c.power};
-    span.body_power = &wall_power, span.body_energy = &energy;
+    span.wall_power = &wall_power, span.wall_energy = &energy;
     span.steps = span.refused = span.sweeps = 77, span.surroundings_energy = span.error = 77;
     assert_ok(fibrad_transient_new(&c.transient, &scene, &c.spheres, &config, &run));
     c.calls = 0, c.ask = 3; /* within the span */

@@ -15,7 +15,7 @@ enum { MOST = 80, WALLS = 6, CONTACTS = 400 };
 /* A bed, its walls, contacts and results. */
 struct joint {
     struct bed bed;
-    fibrad_body body[WALLS];
+    fibrad_wall wall[WALLS];
     fibrad_scene_config scene;
     fibrad_heat_config config;
     fibrad_heat_sources sources;
@@ -46,27 +46,27 @@ static void begin(struct joint *j, struct bed bed, double emissivity) {
     }
     fibrad_heat_sources_init(&j->sources);
     j->sources.temperature = j->temperature, j->sources.emissivity = j->emissivity, j->sources.power = j->power;
-    j->sources.body_temperature = j->wall_temperature, j->sources.body_emissivity = j->wall_emissivity;
-    j->sources.body_power = j->wall_power;
+    j->sources.wall_temperature = j->wall_temperature, j->sources.wall_emissivity = j->wall_emissivity;
+    j->sources.wall_power = j->wall_power;
     j->sources.contact_first = j->first, j->sources.contact_second = j->second;
     j->sources.conductance = j->conductance;
     j->sources.surroundings = 300;
-    j->scene.body = j->body;
+    j->scene.wall = j->wall;
     j->result = (fibrad_heat_result){.power = j->q,
-                                     .body_power = j->wall_q,
+                                     .wall_power = j->wall_q,
                                      .temperature = j->t,
-                                     .body_temperature = j->wall_t,
+                                     .wall_temperature = j->wall_t,
                                      .power_error = j->q_error,
                                      .temperature_error = j->t_error,
                                      .conducted = j->conducted,
-                                     .body_conducted = j->wall_conducted,
+                                     .wall_conducted = j->wall_conducted,
                                      .contact_flow = j->flow};
 }
 
 /* Adds a wall and returns the number by which contacts call it. */
 static uint32_t add_wall(struct joint *j, int axis, int upper, double at, double temperature, double emissivity) {
-    const uint32_t k = j->scene.bodies++;
-    j->body[k] = plane_at(axis, upper, at);
+    const uint32_t k = j->scene.walls++;
+    j->wall[k] = plane_at(axis, upper, at);
     j->wall_temperature[k] = temperature, j->wall_emissivity[k] = emissivity, j->wall_power[k] = NAN;
     return j->bed.n + k;
 }
@@ -101,7 +101,7 @@ static void assert_balanced(const struct joint *j) {
         sum += j->q[i], conducted += j->conducted[i];
         worst_of(&largest, fabs(j->q[i])), worst_of(&largest, fabs(j->conducted[i]));
     }
-    for (uint32_t k = 0; k < j->scene.bodies; k++) {
+    for (uint32_t k = 0; k < j->scene.walls; k++) {
         sum += j->wall_q[k], conducted += j->wall_conducted[k];
         worst_of(&largest, fabs(j->wall_q[k]));
     }
@@ -233,8 +233,8 @@ static void by_newton(const struct joint *j, const fibrad_bed_factors *d, double
                 q[i] += area * (pow(t[o], 4) - own);
                 matrix[i * n + i] += area * 4 * pow(t[i], 3), matrix[i * n + o] -= area * 4 * pow(t[o], 3);
             }
-            for (uint32_t b = 0; b < j->scene.bodies; b++) {
-                const double area = emits * d->matrix.body[i * j->scene.bodies + b];
+            for (uint32_t b = 0; b < j->scene.walls; b++) {
+                const double area = emits * d->matrix.wall[i * j->scene.walls + b];
                 q[i] += area * (pow(j->wall_temperature[b], 4) - own);
                 matrix[i * n + i] += area * 4 * pow(t[i], 3);
             }
@@ -316,7 +316,7 @@ LOOP_TEST(spheres_in_a_room, 2) {
     OWNED_FACTORS *d;
     const fibrad_spheres spheres = spheres_of(&j->bed);
     const fibrad_exchange_rule rule = {
-        .emissivity = j->emissivity, .body_emissivity = j->wall_emissivity, .tolerance = 5e-4};
+        .emissivity = j->emissivity, .wall_emissivity = j->wall_emissivity, .tolerance = 5e-4};
     assert_ok(fibrad_exchange_factors(&j->scene, &spheres, &rule, NULL, NULL, &d));
     for (uint32_t i = 0; i < n; i++) t[i] = isnan(j->temperature[i]) ? 1000 : j->temperature[i];
     by_newton(j, d, t, q);
@@ -443,8 +443,8 @@ static fibrad_contact_list *found_in(const struct bed *bed, const fibrad_scene_c
 
 TEST(spots_of_a_pair_and_a_wall) {
     OWNED_BED bed = BED({0, 0, 0.98, 1}, {0, 0, 2.46, .5});
-    const fibrad_body floor = plane_at(2, 0, 0);
-    const fibrad_scene_config scene = {.body = &floor, .bodies = 1};
+    const fibrad_wall floor = plane_at(2, 0, 0);
+    const fibrad_scene_config scene = {.wall = &floor, .walls = 1};
     const double solid[2] = {30, 10};
     for (int spots = FIBRAD_SPOTS_LENS; spots <= FIBRAD_SPOTS_HERTZ; spots++) {
         const fibrad_contact_rule rule = {.spots = spots, .scale = .5};
@@ -468,11 +468,11 @@ LOOP_TEST(contacts_with_triangles, 2) {
     const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
     struct mesh *mesh = mesh_new();
     mesh_box(mesh, low, high, 0);
-    fibrad_body planes[6];
+    fibrad_wall planes[6];
     for (int side = 0; side < 6; side++) planes[side] = plane_at(side / 2, side % 2, side % 2);
     for (uint32_t t = 0; t < mesh->triangles.n && _i == 1; t++) mesh->front[t] = 0;
-    const fibrad_scene_config box = {.body = planes, .bodies = 6},
-                              meshes = {.body = mesh->body, .bodies = _i ? 1 : 6, .triangles = &mesh->triangles};
+    const fibrad_scene_config box = {.wall = planes, .walls = 6},
+                              meshes = {.wall = mesh->wall, .walls = _i ? 1 : 6, .triangles = &mesh->triangles};
     fibrad_contact_list *list[2] = {found_in(&bed, &box, &rule), found_in(&bed, &meshes, &rule)};
     double sum[2] = {0, 0}, square[2] = {0, 0};
     uint32_t at_walls = 0;
@@ -539,8 +539,8 @@ LOOP_TEST(gas_between_surfaces, 10) {
     struct bed bed = bed_empty();
     add_sphere(&bed, 0, 0, d, cases[_i].r_i);
     if (!wall) add_sphere(&bed, 0, 0, 0, cases[_i].r_j);
-    const fibrad_body floor = plane_at(2, 0, 0);
-    const fibrad_scene_config scene = {.body = &floor, .bodies = wall};
+    const fibrad_wall floor = plane_at(2, 0, 0);
+    const fibrad_scene_config scene = {.wall = &floor, .walls = wall};
     const fibrad_contact_rule rule = {
         .gas_reach = reach, .gas_jump = cases[_i].jump, .gas_least = least, .gas_alone = alone};
     fibrad_contact_list *list = found_in(&bed, &scene, &rule);

@@ -11,7 +11,7 @@ static const char *row(void) {
 }
 static const char *contacts(const char *text) { return write_file("contacts.csv", text); }
 
-/* Column k of the line of body i of a .csv, both from 0. */
+/* Column k of the line of wall i of a .csv, both from 0. */
 static double column(const char *file, int i, int k) {
     char *at = read_file(file);
     for (int line = 0; line <= i; ++line) ck_assert_ptr_nonnull(at = strchr(at, '\n') + 1);
@@ -37,7 +37,7 @@ TEST(a_row_conducts) {
     char *text = read_file(flows);
     assert_begins(text, "i,j,W/K,W\n1,0,0.5,");
     assert_has(text, "\n0,zmin,1,40\n");
-    assert_has(read_file(q), "T_error_K,q_radiation_W,q_conduction_W,body\n");
+    assert_has(read_file(q), "T_error_K,q_radiation_W,q_conduction_W,wall\n");
 }
 
 /* The text after the first `what`. */
@@ -47,7 +47,7 @@ static char *after(char *text, const char *what) {
     return at + strlen(what);
 }
 
-/* Radiation and conduction are the two parts of the power of each body. Files and spots may be combined, and each frame
+/* Radiation and conduction are the two parts of the power of each wall. Files and spots may be combined, and each frame
  * may have a file of its own. */
 TEST(parts_add_up) {
     const char *q = in_folder("q.csv"), *json = in_folder("q.json"), *dump = in_folder("q.dump"),

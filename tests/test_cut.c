@@ -17,10 +17,10 @@ static const double heights[] = {0, .5, .9};
 #define HEIGHTS (sizeof heights / sizeof *heights)
 
 /* A unit sphere whose centre lies at a height above a plane across some axis. */
-static fibrad_scene *above(double height, int axis, int upper, fibrad_body *plane) {
+static fibrad_scene *above(double height, int axis, int upper, fibrad_wall *plane) {
     OWNED_BED bed = BED({0, 0, 0, 1});
     *plane = plane_at(axis, upper, upper ? height : -height);
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = plane, .bodies = 1});
+    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = plane, .walls = 1});
     return scene;
 }
 
@@ -28,14 +28,14 @@ TEST(lone_sphere_by_beams) {
     static const uint32_t directions[] = {9, 100, 233}, points[] = {0, 128};
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(1);
-    fibrad_body plane;
+    fibrad_wall plane;
     for (size_t k = 0; k < HEIGHTS; k++)
         for (int wall = 0; wall < 6; wall++) {
             OWNED fibrad_scene *scene = above(heights[k], wall / 2, wall % 2, &plane);
             for (int n = 0; n < 6; n++) {
                 const fibrad_beam_rule rule = {.directions = directions[n / 2], .points = points[n % 2]};
                 assert_ok(fibrad_beam_row(scene, &work, 0, &rule, &row));
-                ck_assert_double_eq_tol(row.body[0], to_plane(heights[k]), 1e-14);
+                ck_assert_double_eq_tol(row.wall[0], to_plane(heights[k]), 1e-14);
                 ck_assert_double_eq_tol(row.escaped, 1 - to_plane(heights[k]), 1e-14);
             }
         }
@@ -45,22 +45,22 @@ TEST(lone_sphere_by_rays) {
     const double emissivity = .5, black = 1, grey = .2;
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(2);
-    fibrad_body plane;
+    fibrad_wall plane;
     for (size_t k = 0; k < HEIGHTS; k++) {
         OWNED fibrad_scene *scene = above(heights[k], 2, 0, &plane);
         const double expected = to_plane(heights[k]);
         assert_ok(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 200000}, &row, NULL));
-        ck_assert_double_eq_tol(row.body[0], expected, 2e-4);
-        fibrad_exchange_rule rule = {.emissivity = &emissivity, .body_emissivity = &black, .paths = 100000};
+        ck_assert_double_eq_tol(row.wall[0], expected, 2e-4);
+        fibrad_exchange_rule rule = {.emissivity = &emissivity, .wall_emissivity = &black, .paths = 100000};
         assert_ok(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL));
-        ck_assert_double_eq_tol(row.body[0], expected, 1e-14);
+        ck_assert_double_eq_tol(row.wall[0], expected, 1e-14);
         ck_assert_uint_eq(row.length, 0);
-        rule.body_emissivity = &grey; /* light goes back and forth between cap and plane until it is absorbed */
+        rule.wall_emissivity = &grey; /* light goes back and forth between cap and plane until it is absorbed */
         assert_ok(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL));
         ck_assert_double_ge(row.escaped, 1 - expected - 1e-12);
         ck_assert_double_le(row.escaped, 1 - (1 - heights[k]) / 2);
         fibrad_displacement displacement;
-        rule.body_emissivity = &black, rule.emissivity = &black;
+        rule.wall_emissivity = &black, rule.emissivity = &black;
         assert_ok(fibrad_exchange_displacement(scene, &work, 0, &rule, &displacement));
         ck_assert_double_eq_tol(displacement.absorbed, 0, 1e-14);
     }
@@ -72,19 +72,19 @@ struct heat {
     double power[8], plane, sky;
 };
 
-/* Powers of the bodies, in units in which sigma is 1. */
-static struct heat heat_of(const struct bed *bed, const fibrad_body *plane, const double *temperature,
+/* Powers of the walls, in units in which sigma is 1. */
+static struct heat heat_of(const struct bed *bed, const fibrad_wall *plane, const double *temperature,
                            const double *emissivity, const double of_plane[2], double sky) {
     const fibrad_spheres spheres = spheres_of(bed);
     OWNED_RADIATION *radiation = NULL;
     fibrad_heat_sources sources;
     struct heat heat;
-    fibrad_heat_result result = {.power = heat.power, .body_power = &heat.plane};
+    fibrad_heat_result result = {.power = heat.power, .wall_power = &heat.plane};
     assert_ok(
-        fibrad_radiation_new(&radiation, &(fibrad_scene_config){.body = plane, .bodies = 1}, &spheres, NULL, NULL));
+        fibrad_radiation_new(&radiation, &(fibrad_scene_config){.wall = plane, .walls = 1}, &spheres, NULL, NULL));
     fibrad_heat_sources_init(&sources);
     sources.temperature = temperature, sources.emissivity = emissivity;
-    sources.body_temperature = of_plane, sources.body_emissivity = of_plane + 1;
+    sources.wall_temperature = of_plane, sources.wall_emissivity = of_plane + 1;
     sources.surroundings = sky, sources.sigma = 1, sources.tolerance = 1e-8;
     assert_ok(fibrad_radiation_solve(radiation, &sources, &result));
     heat.sky = result.surroundings_power;
@@ -96,7 +96,7 @@ TEST(lone_sphere_by_heat) {
     OWNED_BED bed = BED({0, 0, 0, 1});
     for (size_t k = 0; k < HEIGHTS; k++)
         for (int wall = 0; wall < 6; wall++) {
-            const fibrad_body plane = plane_at(wall / 2, wall % 2, wall % 2 ? heights[k] : -heights[k]);
+            const fibrad_wall plane = plane_at(wall / 2, wall % 2, wall % 2 ? heights[k] : -heights[k]);
             const struct heat heat = heat_of(&bed, &plane, &hot, &black, cold_black, 0);
             ck_assert_double_eq_tol(heat.power[0], -4 * PI, 1e-2);
             ck_assert_double_eq_tol(heat.plane, 4 * PI * to_plane(heights[k]), 2e-2);
@@ -154,7 +154,7 @@ static void plain_factors(uint32_t rays, double f[SOME][SOME + 2]) {
 
 /* The Euclidean distance of a row from the plain one. */
 static double distance_of(const fibrad_row *row, const double f[SOME + 2]) {
-    double square = pow(row->body[0] - f[SOME], 2) + pow(row->escaped - f[SOME + 1], 2);
+    double square = pow(row->wall[0] - f[SOME], 2) + pow(row->escaped - f[SOME + 1], 2);
     for (uint32_t j = 0; j < SOME; j++) square += pow(row_factor(row, j) - f[j], 2);
     return sqrt(square);
 }
@@ -163,8 +163,8 @@ static double distance_of(const fibrad_row *row, const double f[SOME + 2]) {
 TEST(some_spheres) {
     double f[SOME][SOME + 2], by_rays = 0, by_beams = 0, by_points = 0, reciprocity = 0;
     OWNED_BED bed = bed_of(SOME, some);
-    const fibrad_body floor = plane_at(2, 0, 0);
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor, .bodies = 1});
+    const fibrad_wall floor = plane_at(2, 0, 0);
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = &floor, .walls = 1});
     OWNED_WORK work = work_growing();
     fibrad_row rays[SOME], row = row_of(SOME);
     const fibrad_beam_rule areas = {.directions = 987}, points = {.directions = 987, .points = 128};
@@ -190,8 +190,8 @@ TEST(some_spheres) {
 /* Rows are reciprocal and closed, as without cuts. */
 TEST(matrix_of_some) {
     OWNED_BED bed = bed_of(SOME, some);
-    const fibrad_body floor = plane_at(2, 0, 0);
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor, .bodies = 1});
+    const fibrad_wall floor = plane_at(2, 0, 0);
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = &floor, .walls = 1});
     OWNED_MATRIX m = matrix_by_beams(scene, NULL, false);
     for (uint32_t i = 0; i < SOME; i++) {
         ck_assert_double_eq_tol(matrix_total(&m.factors, i), 1, 1e-14);
@@ -204,7 +204,7 @@ TEST(matrix_of_some) {
 TEST(heat_of_some) {
     double f[SOME][SOME + 2], worst = 0, black[SOME], grey[SOME], warm[SOME];
     OWNED_BED bed = bed_of(SOME, some);
-    const fibrad_body floor = plane_at(2, 0, 0);
+    const fibrad_wall floor = plane_at(2, 0, 0);
     const double cold[] = {0, 1}, warm_grey[] = {1, .3};
     plain_factors(400000, f);
     for (uint32_t j = 0; j < SOME; j++) black[j] = warm[j] = 1, grey[j] = .2 + .15 * j;
@@ -231,11 +231,11 @@ TEST(heat_of_some) {
 /* Lines that graze a cylinder meet it again. The mean over a cap beside the cylinder leaves this out. */
 TEST(beside_a_cylinder) {
     OWNED_BED bed = BED({3.4, 0, 0, 1});
-    const fibrad_body body[] = {cylinder_at(0, 0, 4), plane_at(2, 0, -1.2), plane_at(2, 1, 1.2)};
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = 3});
+    const fibrad_wall wall[] = {cylinder_at(0, 0, 4), plane_at(2, 0, -1.2), plane_at(2, 1, 1.2)};
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = wall, .walls = 3});
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(1), rays = row_of(1);
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 987}, &row), 0);
     ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 400000}, &rays, NULL), 0);
-    for (int b = 0; b < 3; b++) ck_assert_double_eq_tol(row.body[b], rays.body[b], .4 * .04);
+    for (int b = 0; b < 3; b++) ck_assert_double_eq_tol(row.wall[b], rays.wall[b], .4 * .04);
 }

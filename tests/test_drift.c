@@ -132,8 +132,8 @@ TEST(what_comes_into_sight_is_found) {
 /* The estimate counts spheres alone. Walls may have moved, or may be other walls. */
 TEST(walls_that_move_are_not_counted) {
     OWNED_BED bed = packing(100, .8, 1.2, .4, 1, false);
-    fibrad_body wall = plane_at(2, 1, 30);
-    fibrad_scene_config config = {.body = &wall, .bodies = 1};
+    fibrad_wall wall = plane_at(2, 1, 30);
+    fibrad_scene_config config = {.wall = &wall, .walls = 1};
     OWNED fibrad_scene *before = scene_with(&bed, &config), *open = scene_of(&bed, FIBRAD_ISA_BEST);
     wall.plane.at = 31;
     OWNED fibrad_scene *now = scene_with(&bed, &config);

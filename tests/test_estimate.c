@@ -170,7 +170,7 @@ static const struct scene_in_walls {
 enum { SCENES = sizeof scenes_in_walls / sizeof *scenes_in_walls };
 
 /* Makes the walls about a bed. */
-static uint32_t walls_about(const struct bed *bed, const struct scene_in_walls *of, fibrad_body body[6]) {
+static uint32_t walls_about(const struct bed *bed, const struct scene_in_walls *of, fibrad_wall wall[6]) {
     double low[3] = {1e9, 1e9, 1e9}, high[3] = {-1e9, -1e9, -1e9};
     for (uint32_t i = 0; i < bed->n; i++)
         for (int axis = 0; axis < 3; axis++) {
@@ -178,17 +178,17 @@ static uint32_t walls_about(const struct bed *bed, const struct scene_in_walls *
             least_of(&low[axis], c - bed->r[i]), worst_of(&high[axis], c + bed->r[i]);
         }
     for (int axis = 0; axis < 3; axis++) high[axis] = low[axis] + of->room * (high[axis] - low[axis]);
-    uint32_t bodies = 0;
+    uint32_t walls = 0;
     for (int k = of->round ? 4 : 0; k < 6; k++)
-        body[bodies++] = plane_at(k / 2, k % 2, k % 2 ? high[k / 2] : low[k / 2]);
+        wall[walls++] = plane_at(k / 2, k % 2, k % 2 ? high[k / 2] : low[k / 2]);
     const double x = (low[0] + high[0]) / 2, y = (low[1] + high[1]) / 2;
-    if (of->round) body[bodies++] = cylinder_at(x, y, hypot(high[0] - x, high[1] - y));
-    return bodies;
+    if (of->round) wall[walls++] = cylinder_at(x, y, hypot(high[0] - x, high[1] - y));
+    return walls;
 }
 
-static double distance_with_walls(const fibrad_row *a, const fibrad_row *b, uint32_t bodies) {
+static double distance_with_walls(const fibrad_row *a, const fibrad_row *b, uint32_t walls) {
     double square = pow(row_distance(a, b), 2);
-    for (uint32_t k = 0; k < bodies; k++) square += pow(a->body[k] - b->body[k], 2);
+    for (uint32_t k = 0; k < walls; k++) square += pow(a->wall[k] - b->wall[k], 2);
     return sqrt(square);
 }
 
@@ -207,8 +207,8 @@ static fibrad_bed_factors *rows_among(const struct bed *bed, const fibrad_scene_
 LOOP_TEST(estimates_count_walls, SCENES) {
     const struct scene_in_walls *of = &scenes_in_walls[_i];
     OWNED_BED bed = packing(of->spheres, of->low, of->high, of->fraction, 5 + (uint64_t)_i, false);
-    fibrad_body body[6];
-    const fibrad_scene_config config = {.body = body, .bodies = walls_about(&bed, of, body)};
+    fibrad_wall wall[6];
+    const fibrad_scene_config config = {.wall = wall, .walls = walls_about(&bed, of, wall)};
     unsigned char wanted[1000] = {0};
     for (uint32_t k = 0; k < ROWS; k++) wanted[bed.n * (2 * k + 1) / (2 * ROWS)] = 1;
     OWNED_FACTORS *truth = rows_among(&bed, &config, &(fibrad_beam_rule){.directions = 20000}, true, wanted);
@@ -222,7 +222,7 @@ LOOP_TEST(estimates_count_walls, SCENES) {
             for (uint32_t i = 0; i < bed.n; i++) {
                 if (!wanted[i]) continue;
                 const fibrad_row here = matrix_row(&factors->matrix, i), there = matrix_row(&truth->matrix, i);
-                const double error = distance_with_walls(&here, &there, config.bodies);
+                const double error = distance_with_walls(&here, &there, config.walls);
                 if (step == 3) ck_assert_double_le(here.error, tolerant.tolerance);
                 if (error < 1e-12 && here.error < 1e-12) continue; /* solid angles alone give this row */
                 above += error > 2 * here.error;

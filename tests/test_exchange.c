@@ -22,7 +22,7 @@ static double *constant(uint32_t n, double value) {
 
 static double whole(const fibrad_row *row) {
     double sum = row_sum(row) + row->escaped;
-    for (int b = 0; b < BODIES_MOST; b++) sum += row->body[b]; /* those that do not exist have 0 */
+    for (int b = 0; b < WALLS_MOST; b++) sum += row->wall[b]; /* those that do not exist have 0 */
     return sum;
 }
 
@@ -66,10 +66,10 @@ TEST(one_and_two_spheres) {
 TEST(walls_count_for_the_first_leg) {
     const double e[2] = {.5, .02}, walls_e[6] = {1, 1, 1, 1, 1, 1};
     OWNED_BED bed = BED({0, 0, 0, 1}, {2.2, .5, .3, 1});
-    fibrad_body walls[6];
+    fibrad_wall walls[6];
     for (int k = 0; k < 6; k++) walls[k] = plane_at(k / 2, k % 2, k % 2 ? 4 : -2);
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 6});
-    fibrad_exchange_rule rule = {.emissivity = e, .body_emissivity = walls_e, .directions = 50, .paths = 20000};
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = walls, .walls = 6});
+    fibrad_exchange_rule rule = {.emissivity = e, .wall_emissivity = walls_e, .directions = 50, .paths = 20000};
     OWNED_ROW row = exchange_in(scene, 2, 0, &rule), beam = row_of(2);
     OWNED_WORK work = work_growing();
     const fibrad_beam_rule first = {.directions = 50, .points = 256};
@@ -100,11 +100,11 @@ TEST(hardly_seen) {
  * back, of what it emits, D_11 = (1 - e_2) F_21 e_1/(1 - (1 - e_2)(1 - F_21) - (1 - e_2) F_21 (1 - e_1)). */
 TEST(sphere_in_a_grey_box) {
     OWNED_BED bed = BED({.1, -.2, .3, 1});
-    const fibrad_body walls[] = {plane_at(0, 0, -4), plane_at(0, 1, 4),  plane_at(1, 0, -4),
+    const fibrad_wall walls[] = {plane_at(0, 0, -4), plane_at(0, 1, 4),  plane_at(1, 0, -4),
                                  plane_at(1, 1, 4),  plane_at(2, 0, -4), plane_at(2, 1, 4)};
     const double e[1] = {.4}, grey[6] = {.1, .1, .1, .1, .1, .1}, white[6] = {0};
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 6});
-    fibrad_exchange_rule rule = {.emissivity = e, .body_emissivity = grey, .directions = 1000, .paths = 400000};
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = walls, .walls = 6});
+    fibrad_exchange_rule rule = {.emissivity = e, .wall_emissivity = grey, .directions = 1000, .paths = 400000};
     OWNED_ROW row = exchange_in(scene, 1, 0, &rule);
     double back = 4 * PI / (6 * 64), gap = .9 * back;
     ck_assert_double_eq_tol(row_factor(&row, 0), gap * .4 / (1 - .9 * (1 - back) - gap * .6), .02 * .105);
@@ -112,7 +112,7 @@ TEST(sphere_in_a_grey_box) {
     ck_assert_double_eq_tol(row.escaped, 0, 1e-13);
     row_free(&row);
     /* walls reflect all: the sphere gets back all that it emits */
-    rule.body_emissivity = white;
+    rule.wall_emissivity = white;
     rule.paths = 200;
     row = exchange_in(scene, 1, 0, &rule);
     ck_assert_double_eq_tol(row_factor(&row, 0), 1, 1e-13);
@@ -177,30 +177,30 @@ LOOP_TEST(against_plain_paths, 4) {
     ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
 }
 
-static void assert_empty(const fibrad_row *row, uint32_t bodies) {
+static void assert_empty(const fibrad_row *row, uint32_t walls) {
     ck_assert(row->length == 0 && row->escaped == 0 && row->beyond == 0 && row->error == 0);
-    for (uint32_t b = 0; b < bodies; b++) ck_assert_double_eq(row->body[b], 0);
+    for (uint32_t b = 0; b < walls; b++) ck_assert_double_eq(row->wall[b], 0);
 }
 
 /* The row and the displacement of a sphere of emissivity 0 are empty, and no other row has a factor to it. The other
  * rows are those of emissivity 1e-6, but for what that sphere absorbs. */
 TEST(reflectors_have_empty_rows) {
     OWNED_BED bed = packing(80, .5, 1, .5, 6, false);
-    const fibrad_body walls[] = {plane_at(0, 0, bed.x[0] - 50), plane_at(0, 1, bed.x[0] + 50)};
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 2});
+    const fibrad_wall walls[] = {plane_at(0, 0, bed.x[0] - 50), plane_at(0, 1, bed.x[0] + 50)};
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = walls, .walls = 2});
     OWNED double *e = calloc(bed.n, sizeof *e), *nearly = calloc(bed.n, sizeof *e);
     for (uint32_t i = 0; i < bed.n; i++) {
         e[i] = i % 4 == 0 ? 0 : .2 + .8 * bed_make_random(1, i);
         nearly[i] = i % 4 == 0 ? 1e-6 : e[i];
     }
-    fibrad_exchange_rule rule = {.emissivity = e, .body_emissivity = (double[]){.5, 0}};
+    fibrad_exchange_rule rule = {.emissivity = e, .wall_emissivity = (double[]){.5, 0}};
     OWNED_ROWS rows = {.memory = memory_growing()};
     OWNED_WORK work = work_growing();
     for (uint32_t i = 0; i < bed.n; i++) {
         uint64_t rays = 77;
         fibrad_row row = row_of(bed.n), same = row_of(bed.n), kept = {.rows = &rows};
         fibrad_displacement d, of_nearly;
-        row.body[0] = row.body[1] = row.error = row.escaped = 7; /* to be written over */
+        row.wall[0] = row.wall[1] = row.error = row.escaped = 7; /* to be written over */
         rule.emissivity = e;
         assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &row, &rays));
         assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &kept, NULL));
@@ -216,7 +216,7 @@ TEST(reflectors_have_empty_rows) {
             for (int axis = 0; axis < 3; axis++) ck_assert(d.square[axis] == 0 && d.error[axis] == 0);
         } else {
             ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
-            ck_assert_double_eq(row.body[1], 0);
+            ck_assert_double_eq(row.wall[1], 0);
             ck_assert_double_lt(row_distance(&row, &same), 1e-4);
             ck_assert_double_eq_tol(d.absorbed, of_nearly.absorbed, 1e-4);
         }
@@ -275,11 +275,11 @@ TEST(error_and_its_estimate) {
  * spheres. */
 TEST(same_bits_always) {
     OWNED_BED bed = packing(150, .3, 1, .5, 6, false);
-    const fibrad_body walls[] = {plane_at(0, 0, bed.x[0] - 50), plane_at(0, 1, bed.x[0] + 50)};
-    fibrad_scene_config config = {.isa = FIBRAD_ISA_SCALAR, .body = walls, .bodies = 2};
+    const fibrad_wall walls[] = {plane_at(0, 0, bed.x[0] - 50), plane_at(0, 1, bed.x[0] + 50)};
+    fibrad_scene_config config = {.isa = FIBRAD_ISA_SCALAR, .wall = walls, .walls = 2};
     OWNED double *e = calloc(bed.n, sizeof *e);
     for (uint32_t i = 0; i < bed.n; i++) e[i] = .2 + .8 * bed_make_random(1, i);
-    const fibrad_exchange_rule rule = {.emissivity = e, .body_emissivity = (double[]){.5, .5}};
+    const fibrad_exchange_rule rule = {.emissivity = e, .wall_emissivity = (double[]){.5, .5}};
     OWNED fibrad_scene *scene = scene_with(&bed, &config);
     OWNED_ROW row = exchange_in(scene, bed.n, 70, &rule);
     fibrad_displacement displacement = {0};
@@ -323,7 +323,7 @@ static double factor(const struct bed *bed, double solid, double emissivity, uin
     return 3 * solid * emissivity * square / 4;
 }
 
-/* F_E of body- and face-centred lattices at two emissivities is that of other programs (DESIGN: to 1-2 %). */
+/* F_E of wall- and face-centred lattices at two emissivities is that of other programs (DESIGN: to 1-2 %). */
 TEST(conductivity_of_lattices) {
     const double b = 4 / sqrt(3), f = 2 * sqrt(2);
     OWNED_BED centred = BED({0, 0, 0, 1}, {b / 2, b / 2, b / 2, 1});
@@ -453,9 +453,9 @@ TEST(paths_go_by_the_numbers_of_spheres) {
 
 TEST(bad_arguments) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {3, 0, 0, 1});
-    const fibrad_body wall = plane_at(2, 0, -2);
+    const fibrad_wall wall = plane_at(2, 0, -2);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    OWNED fibrad_scene *walled = scene_with(&bed, &(fibrad_scene_config){.body = &wall, .bodies = 1});
+    OWNED fibrad_scene *walled = scene_with(&bed, &(fibrad_scene_config){.wall = &wall, .walls = 1});
     OWNED_WORK work = work_growing();
     fibrad_row row = row_of(2), none = {0}, bare = {.col = row.col, .f = row.f, .capacity = 2};
     const double good[2] = {.5, .5}, bad[][2] = {{1.1, 1}, {NAN, 1}, {-.1, 1}};
@@ -503,15 +503,15 @@ TEST(bad_arguments) {
     assert_invalid(fibrad_exchange_row(walled, &work, 0, &rule, &row, NULL));
     assert_invalid(fibrad_exchange_displacement(walled, &work, 0, &rule, &d));
     for (size_t k = 0; k < sizeof bad_wall / sizeof *bad_wall; k++) {
-        rule.body_emissivity = &bad_wall[k];
+        rule.wall_emissivity = &bad_wall[k];
         assert_invalid(fibrad_exchange_row(walled, &work, 0, &rule, &row, NULL));
         assert_invalid(fibrad_exchange_displacement(walled, &work, 0, &rule, &d));
     }
-    rule.body_emissivity = good;
+    rule.wall_emissivity = good;
     assert_invalid(fibrad_exchange_row(walled, &work, 0, &rule, &bare, NULL));
     assert_ok(fibrad_exchange_row(walled, &work, 0, &rule, &row, NULL));
     ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
-    row.body[0] = 0;
+    row.wall[0] = 0;
     assert_ok(fibrad_exchange_row(scene, &work, 0, &fine, &row, NULL));
     ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
     assert_ok(fibrad_exchange_row(scene, &work, 0, &fine, &bare, NULL));
@@ -523,25 +523,25 @@ TEST(bad_arguments) {
  * times emissivities. */
 TEST(mirrors_end_in_the_error) {
     OWNED_BED bed = BED({.3, .5, .5, .05}, {.7, .5, .5, .05});
-    const fibrad_body walls[] = {plane_at(0, 0, 0), plane_at(0, 1, 1), plane_at(1, 0, 0),
+    const fibrad_wall walls[] = {plane_at(0, 0, 0), plane_at(0, 1, 1), plane_at(1, 0, 0),
                                  plane_at(1, 1, 1), plane_at(2, 0, 0), plane_at(2, 1, 1)};
-    const fibrad_scene_config config = {.body = walls, .bodies = 6};
+    const fibrad_scene_config config = {.wall = walls, .walls = 6};
     OWNED fibrad_scene *scene = scene_with(&bed, &config);
     OWNED_WORK work = work_growing();
     static const double of_walls[] = {1e-5, 1e-6, 0};
     for (int k = 0; k < 3; k++) {
         const double e[] = {1e-6, 1e-6}, w = of_walls[k], wall[] = {w, w, w, w, w, w};
         const double area = 4 * PI * .05 * .05, truth = area * e[0] / (2 * area * e[0] + 6 * w);
-        const fibrad_exchange_rule rule = {.emissivity = e, .body_emissivity = wall};
+        const fibrad_exchange_rule rule = {.emissivity = e, .wall_emissivity = wall};
         OWNED_ROW row = row_of(bed.n);
         uint64_t rays = 0;
         assert_ok(fibrad_exchange_row(scene, &work, 0, &rule, &row, &rays));
         double square = pow(row_factor(&row, 0) - truth, 2) + pow(row_factor(&row, 1) - truth, 2);
-        for (int b = 0; b < 6; b++) square += pow(row.body[b] - w / (2 * area * e[0] + 6 * w), 2);
+        for (int b = 0; b < 6; b++) square += pow(row.wall[b] - w / (2 * area * e[0] + 6 * w), 2);
         ck_assert_double_le(sqrt(square), row.error);
         ck_assert_double_le((double)rays, 1e6);
-        fibrad_body_row part;
-        assert_ok(fibrad_exchange_body(scene, &work, 0, &rule, 0, &part, NULL));
+        fibrad_wall_row part;
+        assert_ok(fibrad_exchange_wall(scene, &work, 0, &rule, 0, &part, NULL));
         ck_assert_double_ge(part.error, w > 0 ? .5 : 0);
         ck_assert_double_le((double)part.rays, 1e6);
         fibrad_displacement moved;

@@ -20,7 +20,7 @@ static const struct room rooms[] = {{8, 5, .3, .8, .02}, {15, 2, .6, .9, .5}, {1
 static fibrad_bed_factors *factors_of(const struct room *room, double tolerance, uint64_t seed) {
     static const int axis[WALLS] = {2, 0, 0, 1, 1, 2}, upper[WALLS] = {0, 0, 1, 0, 1, 1};
     double emissivity[MOST], wall_emissivity[WALLS];
-    fibrad_body body[WALLS];
+    fibrad_wall wall[WALLS];
     const fibrad_plane lid = {2, 1, 4.5};
     OWNED_BED bed = bed_empty();
     for (uint32_t i = 0; i < room->spheres; i++) {
@@ -29,14 +29,14 @@ static fibrad_bed_factors *factors_of(const struct room *room, double tolerance,
         emissivity[i] = room->low + (room->high - room->low) * bed_make_random(10, i);
     }
     for (uint32_t k = 0; k < room->walls; k++) {
-        body[k] = plane_at(axis[k], upper[k], k == 0 ? 0 : k == 5 ? 4.5 : upper[k] ? 2 : -2);
+        wall[k] = plane_at(axis[k], upper[k], k == 0 ? 0 : k == 5 ? 4.5 : upper[k] ? 2 : -2);
         wall_emissivity[k] = room->wall;
     }
-    if (room->walls == 2) body[1] = (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {0, 0, 2}};
+    if (room->walls == 2) wall[1] = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {0, 0, 2}};
     const bool open = room->walls == 2 || room->walls == 5;
-    const fibrad_scene_config scene = {.body = body, .bodies = room->walls, .opening = &lid, .openings = open};
+    const fibrad_scene_config scene = {.wall = wall, .walls = room->walls, .opening = &lid, .openings = open};
     const fibrad_exchange_rule rule = {
-        .emissivity = emissivity, .body_emissivity = wall_emissivity, .tolerance = tolerance, .seed = seed};
+        .emissivity = emissivity, .wall_emissivity = wall_emissivity, .tolerance = tolerance, .seed = seed};
     const fibrad_spheres spheres = spheres_of(&bed);
     fibrad_bed_factors *factors = NULL;
     assert_ok(fibrad_exchange_factors(&scene, &spheres, &rule, NULL, NULL, &factors));
@@ -47,7 +47,7 @@ static fibrad_bed_factors *factors_of(const struct room *room, double tolerance,
 static void read_row(const fibrad_factors *m, uint32_t i, double row[MOST + WALLS + 1]) {
     memset(row, 0, (MOST + WALLS + 1) * sizeof *row);
     for (uint64_t k = m->start[i]; k < m->start[i + 1]; k++) row[m->col[k]] = m->f[k];
-    for (uint32_t b = 0; b < m->bodies; b++) row[MOST + b] = m->body[(size_t)i * m->bodies + b];
+    for (uint32_t b = 0; b < m->walls; b++) row[MOST + b] = m->wall[(size_t)i * m->walls + b];
     row[MOST + WALLS] = m->escaped[i];
 }
 

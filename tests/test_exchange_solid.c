@@ -121,22 +121,22 @@ static double by_ball(double r, double e, double a) {
 /* The factor from wall z = 1 to wall x = 1, both black. */
 static double to_side(double r, double e, double relative) {
     OWNED_BED bed = BED({0, 0, 0, r});
-    fibrad_body body[6];
-    for (int k = 0; k < 6; ++k) body[k] = plane_at(k / 2, k % 2, k % 2 ? 1 : -1);
-    const fibrad_scene_config config = {.body = body, .bodies = 6};
+    fibrad_wall wall[6];
+    for (int k = 0; k < 6; ++k) wall[k] = plane_at(k / 2, k % 2, k % 2 ? 1 : -1);
+    const fibrad_scene_config config = {.wall = wall, .walls = 6};
     OWNED fibrad_scene *scene = scene_with(&bed, &config);
     OWNED_WORK work = work_growing();
     const double node = fibrad_node_emissivity(e, relative), black[] = {1, 1, 1, 1, 1, 1};
     const fibrad_exchange_rule rule = {.emissivity = &e,
-                                       .body_emissivity = black,
+                                       .wall_emissivity = black,
                                        .paths = 1 << 21,
                                        .conductivity = &relative,
                                        .node_emissivity = &node};
-    fibrad_body_row part[FIBRAD_BODY_PARTS], mean;
-    for (uint32_t k = 0; k < FIBRAD_BODY_PARTS; ++k)
-        assert_ok(fibrad_exchange_body(scene, &work, 5, &rule, k, &part[k], NULL));
-    assert_ok(fibrad_exchange_body_mean(part, &mean));
-    return mean.body[1];
+    fibrad_wall_row part[FIBRAD_WALL_PARTS], mean;
+    for (uint32_t k = 0; k < FIBRAD_WALL_PARTS; ++k)
+        assert_ok(fibrad_exchange_wall(scene, &work, 5, &rule, k, &part[k], NULL));
+    assert_ok(fibrad_exchange_wall_mean(part, &mean));
+    return mean.wall[1];
 }
 
 /* A ball in a black box conducts heat from one side of the box to another. */

@@ -38,7 +38,7 @@ static double free_of(const struct bed *bed, uint32_t i, uint32_t j) {
 static double sum_of(const fibrad_factors *m, uint32_t i) {
     double sum = m->escaped[i] + m->beyond[i];
     for (uint64_t k = m->start[i]; k < m->start[i + 1]; k++) sum += m->f[k];
-    for (uint32_t b = 0; b < m->bodies; b++) sum += m->body[i * m->bodies + b];
+    for (uint32_t b = 0; b < m->walls; b++) sum += m->wall[i * m->walls + b];
     return sum;
 }
 
@@ -102,8 +102,8 @@ TEST(what_comes_between_is_seen) {
 
 /* Walls take the difference between what lines have seen and what is exact. A wall that cuts a sphere ends this. */
 TEST(walls_take_the_difference) {
-    const fibrad_body body[] = {plane_at(2, 0, -1), plane_at(2, 1, 9), cylinder_at(0, 0, 30)};
-    const fibrad_scene_config config = {.body = body, .bodies = 3};
+    const fibrad_wall wall[] = {plane_at(2, 0, -1), plane_at(2, 1, 9), cylinder_at(0, 0, 30)};
+    const fibrad_scene_config config = {.wall = wall, .walls = 3};
     OWNED_BED bed = BED({0, 0, 0, 1}, {6, 0, 3, 2}), cut = BED({0, 0, 0, 1.1}, {6, 0, 3, 2});
     OWNED_FACTORS *factors = factors_of(&bed, &config, NULL), *of_cut = factors_of(&cut, &config, NULL);
     ck_assert_double_eq_tol(factor_of(&factors->matrix, 0, 1) / free_of(&bed, 0, 1), 1, 1e-12);
@@ -135,7 +135,7 @@ TEST(triangles_come_between) {
         uint32_t corner[4];
         for (int k = 0; k < 4; k++) corner[k] = mesh_vertex(mesh, 4, at[k][0], at[k][1]);
         mesh_quad(mesh, corner, 0, 0);
-        const fibrad_scene_config config = {.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles};
+        const fibrad_scene_config config = {.wall = mesh->wall, .walls = 1, .triangles = &mesh->triangles};
         OWNED_FACTORS *factors = factors_of(&bed, &config, NULL);
         ck_assert((fabs(factor_of(&factors->matrix, 0, 1) / free_of(&bed, 0, 1) - 1) < 1e-12) == (aside == 1));
         check_closed(factors);

@@ -3,7 +3,7 @@
 
 struct powers {
     fibrad_flow flow;
-    double *weight, *emission, *power, body_emission[BODIES_MOST], body_power[BODIES_MOST];
+    double *weight, *emission, *power, wall_emission[WALLS_MOST], wall_power[WALLS_MOST];
 };
 
 static struct powers powers_of(const struct bed *bed, const double *emissivity) {
@@ -15,14 +15,14 @@ static struct powers powers_of(const struct bed *bed, const double *emissivity) 
         p.weight[i] = 4 * 3.14159265358979323846 * bed->r[i] * bed->r[i] * emissivity[i];
         p.emission[i] = 100 + 900 * fibrad_random_next(&random);
     }
-    for (int b = 0; b < BODIES_MOST; b++) p.body_emission[b] = 300 + 100 * b;
+    for (int b = 0; b < WALLS_MOST; b++) p.wall_emission[b] = 300 + 100 * b;
     p.flow.surroundings_emission = 77;
     return p;
 }
 
 static void powers_point(struct powers *p) {
     p->flow.weight = p->weight, p->flow.emission = p->emission, p->flow.power = p->power;
-    p->flow.body_emission = p->body_emission, p->flow.body_power = p->body_power;
+    p->flow.wall_emission = p->wall_emission, p->flow.wall_power = p->wall_power;
 }
 
 static void powers_free(struct powers *p) { free(p->weight), free(p->emission), free(p->power); }
@@ -40,22 +40,22 @@ static fibrad_rows exchange_rows(const fibrad_scene *scene, uint32_t n, const fi
 /* Powers add up to zero. Nothing flows between equals. A part of the rows gives a part of the powers. */
 TEST(what_one_gains_others_lose) {
     OWNED_BED bed = packing(60, .6, 1, .5, 9, false);
-    const fibrad_body body[] = {plane_at(2, 0, -1), plane_at(0, 0, -1)};
+    const fibrad_wall wall[] = {plane_at(2, 0, -1), plane_at(0, 0, -1)};
     const fibrad_plane open[] = {{0, 1, 9}, {1, 0, -2}, {1, 1, 9}, {2, 1, 9}};
     fibrad_scene *scene =
-        scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = 2, .opening = open, .openings = 4});
+        scene_with(&bed, &(fibrad_scene_config){.wall = wall, .walls = 2, .opening = open, .openings = 4});
     double e[60];
     for (int i = 0; i < 60; i++) e[i] = .4 + .01 * i;
     OWNED_ROWS rows = exchange_rows(
         scene, bed.n,
-        &(fibrad_exchange_rule){.emissivity = e, .body_emissivity = wall_emissivity, .seed = 5, .cutoff = 3});
+        &(fibrad_exchange_rule){.emissivity = e, .wall_emissivity = wall_emissivity, .seed = 5, .cutoff = 3});
     OWNED_POWERS p = powers_of(&bed, e);
     powers_point(&p);
     assert_ok(fibrad_rows_flow(&rows, bed.n, 2, &p.flow));
-    double sum = p.flow.surroundings_power + p.body_power[0] + p.body_power[1], size = fabs(sum);
+    double sum = p.flow.surroundings_power + p.wall_power[0] + p.wall_power[1], size = fabs(sum);
     for (uint32_t i = 0; i < bed.n; i++) sum += p.power[i], size += fabs(p.power[i]);
     ck_assert_double_eq_tol(sum / size, 0, 1e-14);
-    ck_assert(p.power[0] != 0 && p.body_power[0] != 0 && p.body_power[1] != 0 && p.flow.surroundings_power != 0);
+    ck_assert(p.power[0] != 0 && p.wall_power[0] != 0 && p.wall_power[1] != 0 && p.flow.surroundings_power != 0);
     /* the second call adds to the powers of the first */
     OWNED_POWERS twice = powers_of(&bed, e);
     powers_point(&twice);
@@ -72,7 +72,7 @@ TEST(what_one_gains_others_lose) {
             const double gained = .5 * weight * row.f[k] * (p.emission[row.col[k]] - p.emission[i]);
             expected[i] += gained, expected[row.col[k]] -= gained;
         }
-        for (int b = 0; b < 2; b++) expected[i] += weight * row.body[b] * (p.body_emission[b] - p.emission[i]);
+        for (int b = 0; b < 2; b++) expected[i] += weight * row.wall[b] * (p.wall_emission[b] - p.emission[i]);
         expected[i] += weight * row.escaped * (77 - p.emission[i]);
     }
     for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq_tol(p.power[i], expected[i], 1e-13 * size);
@@ -80,10 +80,10 @@ TEST(what_one_gains_others_lose) {
     OWNED_POWERS same = powers_of(&bed, e);
     powers_point(&same);
     for (uint32_t i = 0; i < bed.n; i++) same.emission[i] = 77;
-    for (int b = 0; b < 2; b++) same.body_emission[b] = 77;
+    for (int b = 0; b < 2; b++) same.wall_emission[b] = 77;
     assert_ok(fibrad_rows_flow(&rows, bed.n, 2, &same.flow));
     for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq(same.power[i], 0);
-    ck_assert(same.body_power[0] == 0 && same.body_power[1] == 0 && same.flow.surroundings_power == 0);
+    ck_assert(same.wall_power[0] == 0 && same.wall_power[1] == 0 && same.flow.surroundings_power == 0);
     free(expected), free((void *)(uintptr_t)raw.matrix);
     free(scene);
 }
@@ -181,9 +181,9 @@ TEST(surroundings_tell_scenes_apart) {
 TEST(bad_flows_are_refused) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 3, 1});
     uint32_t col[] = {0, 1};
-    double f[] = {.1, .2}, body[] = {.3}, e[] = {1, 1};
+    double f[] = {.1, .2}, wall[] = {.3}, e[] = {1, 1};
     OWNED_ROWS rows = {.memory = memory_growing()};
-    fibrad_row row = {.col = col, .f = f, .body = body, .length = 2, .sphere = 1, .escaped = .1, .beyond = .3};
+    fibrad_row row = {.col = col, .f = f, .wall = wall, .length = 2, .sphere = 1, .escaped = .1, .beyond = .3};
     assert_ok(fibrad_rows_add(&rows, &row, 1));
     OWNED_POWERS p = powers_of(&bed, e);
     powers_point(&p);
@@ -193,7 +193,7 @@ TEST(bad_flows_are_refused) {
     assert_invalid(fibrad_rows_flow(&rows, 1, 1, &flow));
     assert_invalid(fibrad_rows_flow(&rows, 2, 2, &flow));
     assert_invalid(fibrad_rows_flow(&rows, 2, 0, &flow));
-    double *const nan_of[] = {&p.weight[1], &p.emission[0], &p.body_emission[0], &flow.surroundings_emission};
+    double *const nan_of[] = {&p.weight[1], &p.emission[0], &p.wall_emission[0], &flow.surroundings_emission};
     for (int k = 0; k < 4; k++)
         for (int infinite = 0; infinite < 2; infinite++) {
             const double before = *nan_of[k];
@@ -207,16 +207,16 @@ TEST(bad_flows_are_refused) {
         if (k == 0) bad.weight = NULL;
         if (k == 1) bad.emission = NULL;
         if (k == 2) bad.power = NULL;
-        if (k == 3) bad.body_emission = NULL;
-        if (k == 4) bad.body_power = NULL;
+        if (k == 3) bad.wall_emission = NULL;
+        if (k == 4) bad.wall_power = NULL;
         assert_invalid(fibrad_rows_flow(&rows, 2, 1, &bad));
     }
-    ck_assert(p.power[0] == 0 && p.power[1] == 0 && flow.surroundings_power == 0 && p.body_power[0] == 0);
+    ck_assert(p.power[0] == 0 && p.power[1] == 0 && flow.surroundings_power == 0 && p.wall_power[0] == 0);
     assert_ok(fibrad_rows_flow(&rows, 2, 1, &flow));
     ck_assert(p.power[0] != 0 && isfinite(p.power[0] + p.power[1]));
     /* a row that knows nothing adds nothing */
     fibrad_rows_clear(&rows);
-    row = (fibrad_row){.sphere = 0, .beyond = 1, .body = (double[]){0}};
+    row = (fibrad_row){.sphere = 0, .beyond = 1, .wall = (double[]){0}};
     assert_ok(fibrad_rows_add(&rows, &row, 1));
     p.weight[0] = 1, p.power[0] = p.power[1] = 5;
     assert_ok(fibrad_rows_flow(&rows, 2, 1, &flow));

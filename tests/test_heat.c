@@ -72,7 +72,7 @@ TEST(two_parallel_grey_walls) {
 TEST(a_black_sphere_touches_a_black_plane) {
     OWNED_PROBLEM p = problem_of(BED({0, 0, 0, 1}), 2, 1);
     double estimate[FIBRAD_WALLS], errors = 0, estimates = 0;
-    p.result.body_error = estimate;
+    p.result.wall_error = estimate;
     for (uint32_t wall = 0; wall < 6; wall++) {
         p.walls = (struct walls){.planes = 1u << wall};
         p.walls.at[wall] = wall % 2 ? 1 : -1;
@@ -114,7 +114,7 @@ TEST(a_pair_of_endless_plates) {
     OWNED_PROBLEM p = problem_of(BED({0, 0, 0, 1e-3}, {.3, .1, 0, 1e-3}), 2, 1e-3);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -.5, .5}};
     p.wall_temperature[4] = 3, p.wall_temperature[5] = 1;
-    p.result.body_area = area;
+    p.result.wall_area = area;
     for (int grey = 0; grey < 2; grey++) {
         if (grey) p.wall_emissivity[4] = .8, p.wall_emissivity[5] = .3;
         trace_and_solve(&p);
@@ -188,7 +188,7 @@ TEST(walls_know_their_errors) {
         OWNED_PROBLEM p = problem_of(BED({0, 0, 0, 1e-4}), 0, 1);
         p.walls = box_of(.5);
         p.wall_temperature[hot] = 1;
-        p.result.body_error = error;
+        p.result.wall_error = error;
         trace_and_solve(&p);
         for (uint32_t k = 0; k < 6; k++) {
             const double truth = k == hot ? -1 : k == (hot ^ 1) ? 0.1998249 : 0.2000438;
@@ -308,7 +308,7 @@ static void assert_adiabatic(const struct problem *p) {
 }
 
 /* Reflectors gain nothing, and their temperature changes no bit. All is the same as at emissivity 1e-6. The powers of
- * the others are those of paths. With one radiosity for each body they are those by hand, where a reflector sends back
+ * the others are those of paths. With one radiosity for each wall they are those by hand, where a reflector sends back
  * what arrives. */
 LOOP_TEST(reflectors_gain_nothing, 2) {
     const bool uniform = _i == 1;

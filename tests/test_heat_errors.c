@@ -11,7 +11,7 @@ enum { MOST = 20 };
 /* A few spheres and walls, all black, and their results. sigma is 1. */
 struct given {
     struct bed bed;
-    fibrad_body body[MOST];
+    fibrad_wall wall[MOST];
     fibrad_plane opening;
     fibrad_scene_config scene;
     fibrad_heat_config config;
@@ -29,10 +29,10 @@ static void solve(struct given *g) {
     for (int k = 0; k < MOST; k++) g->emissivity[k] = g->wall_emissivity[k] = 1;
     sources.sigma = 1, sources.surroundings = g->surroundings;
     sources.temperature = g->temperature, sources.emissivity = g->emissivity;
-    sources.body_temperature = g->wall_temperature, sources.body_emissivity = g->wall_emissivity;
+    sources.wall_temperature = g->wall_temperature, sources.wall_emissivity = g->wall_emissivity;
     g->result = (fibrad_heat_result){.power = g->power, .power_error = g->error, .surroundings_error = NAN};
-    g->result.body_power = g->wall_power, g->result.body_error = g->wall_error;
-    g->scene.body = g->body, g->scene.opening = &g->opening;
+    g->result.wall_power = g->wall_power, g->result.wall_error = g->wall_error;
+    g->scene.wall = g->wall, g->scene.opening = &g->opening;
     assert_ok(fibrad_radiation_new(&radiation, &g->scene, &spheres, &g->config, &run));
     assert_ok(fibrad_radiation_solve(radiation, &sources, &g->result));
     bed_free(&g->bed);
@@ -155,13 +155,13 @@ TEST(a_box_and_its_opening) {
     for (uint64_t seed = 1; seed <= 30; seed++) {
         const double size[3] = {drawn(seed, 0, .5, 1.5), drawn(seed, 1, .5, 1.5), drawn(seed, 2, .5, 1.5)};
         struct given g = {.bed = BED({.2, .25, .3, 1e-4}), .opening = {2, 1, size[2]}};
-        g.surroundings = drawn(seed, 3, 0, .6), g.scene.bodies = 5, g.scene.openings = 1;
+        g.surroundings = drawn(seed, 3, 0, .6), g.scene.walls = 5, g.scene.openings = 1;
         double power = 0, sent = 0;
         for (uint32_t k = 0; k < 5; k++) {
             const uint32_t a = k / 2, b = 1 - a; /* the axis across the wall, and the other axis of the opening */
             const double factor = k == 4 ? opposite(size[0], size[1], size[2]) : adjacent(size[b], size[2], size[a]);
             const double area = k == 4 ? size[0] * size[1] : size[b] * size[2];
-            g.body[k] = plane_at((int)a, k % 2, k % 2 ? size[a] : 0);
+            g.wall[k] = plane_at((int)a, k % 2, k % 2 ? size[a] : 0);
             g.wall_temperature[k] = drawn(seed, 4 + k, .6, 1);
             power += area * factor * (fourth(g.wall_temperature[k]) - fourth(g.surroundings));
             sent += area * factor * fourth(g.wall_temperature[k]);
@@ -182,8 +182,8 @@ static struct mesh *cup_of(uint32_t sides, double radius, double height) {
     }
     for (uint32_t k = 0; k < sides; k++) {
         const uint32_t a = 1 + 2 * k, b = 1 + 2 * ((k + 1) % sides);
-        mesh_quad(mesh, (const uint32_t[]){a, a + 1, b + 1, b}, 0, FIBRAD_NO_BODY);
-        mesh_triangle(mesh, middle, a, b, 0, FIBRAD_NO_BODY);
+        mesh_quad(mesh, (const uint32_t[]){a, a + 1, b + 1, b}, 0, FIBRAD_NO_WALL);
+        mesh_triangle(mesh, middle, a, b, 0, FIBRAD_NO_WALL);
     }
     return mesh;
 }
@@ -199,7 +199,7 @@ TEST(a_cup_of_triangles) {
         OWNED struct mesh *mesh = cup_of(sides, radius, height);
         const double power = sides * .5 * radius * radius * sin(2 * PI / sides);
         g.temperature[0] = g.wall_temperature[0] = 1, g.config.wall_rays = 1 << 20;
-        g.body[0].kind = FIBRAD_BODY_MESH, g.scene.bodies = 1, g.scene.triangles = &mesh->triangles;
+        g.wall[0].kind = FIBRAD_WALL_MESH, g.scene.walls = 1, g.scene.triangles = &mesh->triangles;
         solve(&g);
         judge(&honesty, g.result.surroundings_power - power, g.result.surroundings_error, power);
         judge(&of_cup, g.wall_power[0] + g.power[0] + power, g.wall_error[0], power);
@@ -212,8 +212,8 @@ TEST(a_cup_of_triangles) {
 /* If nothing reaches the surroundings, they have no power and no error. */
 TEST(no_surroundings) {
     struct given g = {.bed = BED({0, 0, 0, .5}), .temperature = {1}};
-    g.scene.bodies = 6;
-    for (uint32_t k = 0; k < 6; k++) g.body[k] = plane_at((int)k / 2, k % 2, k % 2 ? 1 : -1);
+    g.scene.walls = 6;
+    for (uint32_t k = 0; k < 6; k++) g.wall[k] = plane_at((int)k / 2, k % 2, k % 2 ? 1 : -1);
     solve(&g);
     ck_assert(g.result.surroundings_power == 0 && g.result.surroundings_error == 0);
     ck_assert(g.error[0] > 0 && g.wall_error[0] > 0);

@@ -46,11 +46,11 @@ TEST(the_order_of_the_work_changes_no_bit) {
 }
 
 /* Walls listed from the last to the first are the same walls. */
-TEST(the_order_of_bodies_changes_but_roundings) {
+TEST(the_order_of_walls_changes_but_roundings) {
     OWNED_PROBLEM p = small_problem(FIBRAD_ISA_BEST, false, false), q = small_problem(FIBRAD_ISA_BEST, false, true);
     double largest;
     (void)sum_of_powers(&p, &largest);
-    ck_assert_uint_eq(p.bodies, 5);
+    ck_assert_uint_eq(p.walls, 5);
     ck_assert_uint_eq(p.slot[0], q.slot[4]);
     for (uint32_t i = 0; i < p.bed.n; i++)
         ck_assert_double_eq_tol(p.result.power[i], q.result.power[i], 1e-12 * largest);

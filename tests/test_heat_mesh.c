@@ -7,7 +7,7 @@
 #include "suite.h"
 
 #define PI   3.14159265358979323846
-#define MOST 16 /* bodies */
+#define MOST 16 /* walls */
 
 /* Adds a parallelogram, cut into cells of two triangles. From where it is seen, a to b goes counter-clockwise. */
 static void add_sheet(struct mesh *mesh, const double origin[3], const double a[3], const double b[3], uint32_t cells,
@@ -24,7 +24,7 @@ static void add_sheet(struct mesh *mesh, const double origin[3], const double a[
     }
 }
 
-/* Adds the six faces of a box seen from within, as bodies 0 to 5 or all as body 0. */
+/* Adds the six faces of a box seen from within, as walls 0 to 5 or all as wall 0. */
 static void add_box(struct mesh *mesh, double low, double high, uint32_t cells, bool one) {
     const double size = high - low;
     for (uint32_t axis = 0; axis < 3; axis++)
@@ -32,7 +32,7 @@ static void add_box(struct mesh *mesh, double low, double high, uint32_t cells, 
             double origin[3] = {low, low, low}, a[3] = {0}, b[3] = {0};
             if (upper) origin[axis] = high;
             a[(axis + 1 + upper) % 3] = size, b[(axis + 2 - upper) % 3] = size;
-            add_sheet(mesh, origin, a, b, cells, one ? 0 : 2 * axis + upper, FIBRAD_NO_BODY);
+            add_sheet(mesh, origin, a, b, cells, one ? 0 : 2 * axis + upper, FIBRAD_NO_WALL);
         }
 }
 
@@ -40,8 +40,8 @@ static void add_box(struct mesh *mesh, double low, double high, uint32_t cells, 
 struct problem {
     struct bed bed;
     struct mesh *mesh;
-    fibrad_body body[MOST];
-    uint32_t bodies;
+    fibrad_wall wall[MOST];
+    uint32_t walls;
     fibrad_plane opening;
     uint32_t openings;
     double temperature[64], emissivity[64], wall_temperature[MOST], wall_emissivity[MOST], wall_power[MOST];
@@ -65,15 +65,15 @@ static struct problem *problem_of(struct bed bed, double temperature, double emi
     p->mesh = mesh_new();
     for (uint32_t i = 0; i < bed.n; i++) p->temperature[i] = temperature, p->emissivity[i] = emissivity;
     for (int b = 0; b < MOST; b++)
-        p->body[b].kind = FIBRAD_BODY_MESH, p->wall_emissivity[b] = 1, p->wall_power[b] = NAN;
+        p->wall[b].kind = FIBRAD_WALL_MESH, p->wall_emissivity[b] = 1, p->wall_power[b] = NAN;
     fibrad_heat_sources_init(&p->sources);
     p->sources.sigma = 1, p->sources.surroundings = 0;
     p->sources.temperature = p->temperature, p->sources.emissivity = p->emissivity;
-    p->sources.body_temperature = p->wall_temperature, p->sources.body_emissivity = p->wall_emissivity;
-    p->sources.body_power = p->wall_power, p->sources.insulated = p->insulated;
-    p->result.power = p->power, p->result.body_power = p->q;
-    p->result.power_error = p->error, p->result.body_error = p->q_error;
-    p->result.body_temperature = p->found, p->result.body_absorbed = p->absorbed;
+    p->sources.wall_temperature = p->wall_temperature, p->sources.wall_emissivity = p->wall_emissivity;
+    p->sources.wall_power = p->wall_power, p->sources.insulated = p->insulated;
+    p->result.power = p->power, p->result.wall_power = p->q;
+    p->result.power_error = p->error, p->result.wall_error = p->q_error;
+    p->result.wall_temperature = p->found, p->result.wall_absorbed = p->absorbed;
     return p;
 }
 
@@ -96,8 +96,8 @@ static void end_problem(struct problem **owned) {
 
 static fibrad_scene *build_scene(const struct problem *p) {
     return scene_with(&p->bed, &(fibrad_scene_config){.isa = p->isa,
-                                                      .body = p->body,
-                                                      .bodies = p->bodies,
+                                                      .wall = p->wall,
+                                                      .walls = p->walls,
                                                       .opening = &p->opening,
                                                       .openings = p->openings,
                                                       .triangles = &p->mesh->triangles});
@@ -128,18 +128,18 @@ static void trace_and_solve(struct problem *p) {
 /* The sum of all powers, over the largest one. */
 static double imbalance(const struct problem *p) {
     double sum = p->result.surroundings_power, largest = fabs(sum);
-    for (uint32_t b = 0; b < p->bodies; b++) sum += p->q[b], worst_of(&largest, fabs(p->q[b]));
+    for (uint32_t b = 0; b < p->walls; b++) sum += p->q[b], worst_of(&largest, fabs(p->q[b]));
     for (uint32_t i = 0; i < p->bed.n; i++) sum += p->power[i], worst_of(&largest, fabs(p->power[i]));
     return fabs(sum) / largest;
 }
 
 static void make_planes(struct problem *p, double low, double high) {
-    p->bodies = 6;
-    for (int k = 0; k < 6; k++) p->body[k] = plane_at(k / 2, k % 2, k % 2 ? high : low);
+    p->walls = 6;
+    for (int k = 0; k < 6; k++) p->wall[k] = plane_at(k / 2, k % 2, k % 2 ? high : low);
 }
 
 static void make_box(struct problem *p, double low, double high, uint32_t cells) {
-    p->bodies = 6;
+    p->walls = 6;
     add_box(p->mesh, low, high, cells, false);
 }
 
@@ -192,7 +192,7 @@ TEST(a_cup_of_triangles_is_one_of_planes_and_an_opening) {
         p[k]->config = (fibrad_heat_config){.directions = 2000, .wall_rays = 1000000};
         if (k == 0) make_planes(p[k], 0, 1), p[k]->opening = (fibrad_plane){2, 1, 1}, p[k]->openings = 1;
         if (k == 1) make_box(p[k], 0, 1, 1), p[k]->mesh->triangles.n -= 2; /* its lid */
-        p[k]->bodies = 5, p[k]->bed.n = 8;
+        p[k]->walls = 5, p[k]->bed.n = 8;
         p[k]->sources.surroundings = .8;
         for (int b = 0; b < 5; b++) p[k]->wall_temperature[b] = 2.5, p[k]->wall_emissivity[b] = .6;
         assert_ok(trace(p[k]));
@@ -214,7 +214,7 @@ TEST(a_cup_of_triangles_is_one_of_planes_and_an_opening) {
 TEST(a_grey_sphere_in_a_black_cube) {
     for (uint32_t cells = 1; cells <= 16; cells *= 4) {
         ENDED struct problem *p = problem_of(BED({.1, .2, .3, 1}), 2, .5);
-        p->bodies = 1, p->wall_temperature[0] = 1;
+        p->walls = 1, p->wall_temperature[0] = 1;
         add_box(p->mesh, -2, 2, cells, true);
         trace_and_solve(p);
         assert_near(p->power[0], .5 * 4 * PI * (1 - 16), 2e-3);
@@ -226,7 +226,7 @@ TEST(a_grey_sphere_in_a_black_cube) {
  * spheres. */
 TEST(a_grey_sphere_in_a_large_grey_cube) {
     ENDED struct problem *p = problem_of(BED({.1, .2, .3, 1}), 2, .3);
-    p->bodies = 1, p->wall_temperature[0] = 1, p->wall_emissivity[0] = .05;
+    p->walls = 1, p->wall_temperature[0] = 1, p->wall_emissivity[0] = .05;
     add_box(p->mesh, -20, 20, 1, true);
     trace_and_solve(p);
     assert_near(p->power[0], 4 * PI * (1 - 16) / (1 / .3 + 4 * PI / 9600 * (1 / .05 - 1)), 2e-3);
@@ -253,12 +253,12 @@ static struct problem *plates(bool planes, uint32_t cells, bool shield) {
     const double low[3] = {0, 0, 0}, middle[3] = {0, 0, 1. / 3}, high[3] = {0, 0, 1}, a[3] = {2, 0, 0},
                  b[3] = {0, 2, 0};
     p->bed.period[0] = p->bed.period[1] = 2;
-    p->bodies = 2 + shield;
-    add_sheet(p->mesh, low, a, b, cells, 0, FIBRAD_NO_BODY);
+    p->walls = 2 + shield;
+    add_sheet(p->mesh, low, a, b, cells, 0, FIBRAD_NO_WALL);
     if (planes)
-        p->body[1] = plane_at(2, 1, 1);
+        p->wall[1] = plane_at(2, 1, 1);
     else
-        add_sheet(p->mesh, high, b, a, cells, 1, FIBRAD_NO_BODY);
+        add_sheet(p->mesh, high, b, a, cells, 1, FIBRAD_NO_WALL);
     if (shield) add_sheet(p->mesh, middle, a, b, cells, 2, 2);
     p->wall_temperature[0] = 3, p->wall_emissivity[0] = .3;
     p->wall_temperature[1] = 2, p->wall_emissivity[1] = .6;
@@ -283,7 +283,7 @@ TEST(two_plates_and_a_shield) {
         }
 }
 
-/* The patches of an insulated sheet, which is one body, have temperatures of their own: they send back what they
+/* The patches of an insulated sheet, which is one wall, have temperatures of their own: they send back what they
  * get. */
 TEST(an_insulated_sheet_lets_nothing_through) {
     ENDED struct problem *p = plates(false, 2, true);
@@ -301,7 +301,7 @@ TEST(a_black_sphere_sees_a_plate) {
     for (int k = 0; k < 3; k++) {
         const double d = distance[k], origin[3] = {d, -d, -d}, a[3] = {0, 0, 2 * d}, b[3] = {0, 2 * d, 0};
         ENDED struct problem *p = problem_of(BED({0, 0, 0, 1}), 2, 1);
-        p->bodies = 1, p->config.directions = 700;
+        p->walls = 1, p->config.directions = 700;
         add_sheet(p->mesh, origin, a, b, 1, 0, 0);
         trace_and_solve(p);
         assert_near(p->q[0], 16 * 4 * PI / 6, 5e-3); /* a side of a cube */
@@ -315,7 +315,7 @@ TEST(a_shelf_between_planes) {
     ENDED struct problem *both = thirty(), *half = thirty();
     const double origin[3] = {-.4, -.3, .5}, a[3] = {2, 0, 0}, b[3] = {0, 2, 0};
     make_planes(both, 0, 1), make_planes(half, 0, 1);
-    both->bodies = 8, half->body[5].plane.at = .5;
+    both->walls = 8, half->wall[5].plane.at = .5;
     both->config = half->config = (fibrad_heat_config){.directions = 700, .patches = 384, .wall_rays = 300000};
     add_sheet(both->mesh, origin, a, b, 2, 6, 7);
     for (uint32_t i = 0; i < 30; i++) {
@@ -422,7 +422,7 @@ TEST(a_mesh_moves) {
     ck_assert_double_le(difference_of(p->power, power, 30), 2e-2);
     ck_assert_double_le(imbalance(p), 1e-12);
 
-    p->mesh->front[3] ^= 1; /* another body */
+    p->mesh->front[3] ^= 1; /* another wall */
     OWNED fibrad_scene *other = build_scene(p);
     assert_invalid(fibrad_heat_move(p->heat, other));
     p->mesh->front[3] ^= 1, p->mesh->triangles.n--; /* a triangle less */
@@ -455,15 +455,15 @@ TEST(estimates_of_errors_are_honest) {
     }
 }
 
-/* Fluxes through triangles add up to the powers of their bodies. A plate that faces a hot sphere is lit most where the
+/* Fluxes through triangles add up to the powers of their walls. A plate that faces a hot sphere is lit most where the
  * sphere is nearest. If the plate is insulated, it is hottest there. */
 TEST(fluxes_through_triangles) {
     enum { CELLS = 16, PIECES = 2 * CELLS * CELLS };
     const double origin[3] = {-3, -3, 1.5}, a[3] = {6, 0, 0}, b[3] = {0, 6, 0};
     ENDED struct problem *p = problem_of(BED({0, 0, 0, 1}), 2, .8);
     double flux[2 * PIECES], temperature[2 * PIECES], sum = 0;
-    p->bodies = 1, p->wall_temperature[0] = 1, p->wall_emissivity[0] = .7, p->config.directions = 700;
-    add_sheet(p->mesh, origin, b, a, CELLS, 0, FIBRAD_NO_BODY); /* its front is below */
+    p->walls = 1, p->wall_temperature[0] = 1, p->wall_emissivity[0] = .7, p->config.directions = 700;
+    add_sheet(p->mesh, origin, b, a, CELLS, 0, FIBRAD_NO_WALL); /* its front is below */
     assert_invalid(fibrad_heat_read_sides(NULL, flux, temperature));
     assert_ok(trace(p));
     ck_assert_int_eq(fibrad_heat_read_sides(p->heat, flux, temperature), FIBRAD_E_STATE);
@@ -495,49 +495,49 @@ static double area_of_triangle(const struct mesh *mesh, uint32_t t) {
     return .5 * hypot(hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2]), u[0] * v[1] - u[1] * v[0]);
 }
 
-/* The sum over the sides of a body of what they gain, from fluxes [2 triangles]. */
-static double gain_of_body(const struct problem *p, const double *flux, uint32_t body) {
+/* The sum over the sides of a wall of what they gain, from fluxes [2 triangles]. */
+static double gain_of_wall(const struct problem *p, const double *flux, uint32_t wall) {
     const struct mesh *mesh = p->mesh;
     double sum = 0;
     for (uint32_t t = 0; t < mesh->triangles.n; t++) {
         const double area = area_of_triangle(mesh, t);
-        if (mesh->front[t] == body && !isnan(flux[2 * t])) sum += area * flux[2 * t];
-        if (mesh->back[t] == body && !isnan(flux[2 * t + 1])) sum += area * flux[2 * t + 1];
+        if (mesh->front[t] == wall && !isnan(flux[2 * t])) sum += area * flux[2 * t];
+        if (mesh->back[t] == wall && !isnan(flux[2 * t + 1])) sum += area * flux[2 * t + 1];
     }
     return sum;
 }
 
-/* A box whose faces have temperatures of their own gives what a box gives whose faces are bodies. The fluxes of faces
- * are the powers of these bodies, whether triangles are cut into patches or share them. The next solution begins with
+/* A box whose faces have temperatures of their own gives what a box gives whose faces are walls. The fluxes of faces
+ * are the powers of these walls, whether triangles are cut into patches or share them. The next solution begins with
  * this one. */
 TEST(faces_with_temperatures_of_their_own) {
     static double side[2 * 12 * 144], flux[2 * 12 * 144], found[2 * 12 * 144];
     for (uint32_t cells = 1; cells <= 12; cells += 11) {
-        ENDED struct problem *bodies = thirty(), *one = thirty();
-        bodies->config = one->config = (fibrad_heat_config){.directions = 700, .patches = 384, .wall_rays = 300000};
-        make_box(bodies, 0, 1, cells);
-        one->bodies = 1, one->wall_temperature[0] = 1.7, one->wall_emissivity[0] = .6;
+        ENDED struct problem *walls = thirty(), *one = thirty();
+        walls->config = one->config = (fibrad_heat_config){.directions = 700, .patches = 384, .wall_rays = 300000};
+        make_box(walls, 0, 1, cells);
+        one->walls = 1, one->wall_temperature[0] = 1.7, one->wall_emissivity[0] = .6;
         add_box(one->mesh, 0, 1, cells, true);
-        for (int b = 0; b < 6; b++) bodies->wall_emissivity[b] = .6;
+        for (int b = 0; b < 6; b++) walls->wall_emissivity[b] = .6;
         const uint32_t n = one->mesh->triangles.n;
         for (uint32_t t = 0; t < n; t++)
-            side[2 * t] = bodies->wall_temperature[bodies->mesh->front[t]], side[2 * t + 1] = NAN;
+            side[2 * t] = walls->wall_temperature[walls->mesh->front[t]], side[2 * t + 1] = NAN;
         one->sources.side_temperature = side;
-        trace_and_solve(bodies), trace_and_solve(one);
-        ck_assert_double_le(difference_of(one->power, bodies->power, 30), 1e-3);
+        trace_and_solve(walls), trace_and_solve(one);
+        ck_assert_double_le(difference_of(one->power, walls->power, 30), 1e-3);
         assert_ok(fibrad_heat_read_sides(one->heat, flux, found));
-        assert_near(gain_of_body(one, flux, 0), one->q[0], 1e-11);
+        assert_near(gain_of_wall(one, flux, 0), one->q[0], 1e-11);
         double gain[6] = {0}, mean = 0;
         for (uint32_t t = 0; t < n; t++) {
-            gain[bodies->mesh->front[t]] += flux[2 * t] * area_of_triangle(one->mesh, t);
+            gain[walls->mesh->front[t]] += flux[2 * t] * area_of_triangle(one->mesh, t);
             mean += pow(side[2 * t], 4) / n;
             if (cells == 1) assert_near(found[2 * t], side[2 * t], 1e-12);
         }
-        ck_assert_double_le(difference_of(gain, bodies->q, 6), 5e-3);
+        ck_assert_double_le(difference_of(gain, walls->q, 6), 5e-3);
         assert_near(pow(one->found[0], 4), mean, 1e-9);
         ck_assert_double_le(imbalance(one), 1e-12);
-        assert_ok(fibrad_heat_read_sides(bodies->heat, flux, NULL));
-        for (uint32_t b = 0; b < 6; b++) assert_near(gain_of_body(bodies, flux, b), bodies->q[b], 1e-11);
+        assert_ok(fibrad_heat_read_sides(walls->heat, flux, NULL));
+        for (uint32_t b = 0; b < 6; b++) assert_near(gain_of_wall(walls, flux, b), walls->q[b], 1e-11);
 
         const uint32_t cold = one->result.sweeps;
         double power[30];
@@ -578,9 +578,9 @@ static void check_squares(double temperature(double x, double y), double flux_er
     const double low[3] = {0, 0, 0}, high[3] = {0, 0, 1}, a[3] = {1, 0, 0}, b[3] = {0, 1, 0};
     double side[4 * PIECES], flux[4 * PIECES], due[PIECES], got[PIECES], all = 0;
     ENDED struct problem *p = problem_of(BED({-5, -5, .5, 1e-3}), 0, 1);
-    p->bodies = 2, p->config.wall_rays = 1u << 21;
-    add_sheet(p->mesh, low, a, b, CELLS, 0, FIBRAD_NO_BODY);
-    add_sheet(p->mesh, high, b, a, CELLS, 1, FIBRAD_NO_BODY);
+    p->walls = 2, p->config.wall_rays = 1u << 21;
+    add_sheet(p->mesh, low, a, b, CELLS, 0, FIBRAD_NO_WALL);
+    add_sheet(p->mesh, high, b, a, CELLS, 1, FIBRAD_NO_WALL);
     for (uint32_t t = 0; t < 2 * PIECES; t++) {
         double x = 0, y = 0;
         for (int k = 0; k < 3; k++)
@@ -595,7 +595,7 @@ static void check_squares(double temperature(double x, double y), double flux_er
     const double error = difference_of(got, due, PIECES);
     ck_assert_msg(error <= flux_error, "off by %.3g", error);
     assert_near(p->q[1], all / PIECES, power_error);
-    for (uint32_t body = 0; body < 2; body++) assert_near(gain_of_body(p, flux, body), p->q[body], 1e-11);
+    for (uint32_t wall = 0; wall < 2; wall++) assert_near(gain_of_wall(p, flux, wall), p->q[wall], 1e-11);
 }
 
 static double linear(double x, double y) { return 1 + x + .5 * y; }
@@ -611,10 +611,10 @@ TEST(squares_with_fields_of_temperature) {
 TEST(temperatures_of_triangles_that_are_refused) {
     ENDED struct problem *p = problem_of(BED({.5, .5, .5, .2}), 2, .8);
     double side[24];
-    p->bodies = 1, p->wall_temperature[0] = 1;
+    p->walls = 1, p->wall_temperature[0] = 1;
     add_box(p->mesh, 0, 1, 1, true);
     for (int k = 0; k < 24; k++) side[k] = NAN;
-    side[6] = 2, side[7] = -1; /* the latter belongs to no body */
+    side[6] = 2, side[7] = -1; /* the latter belongs to no wall */
     p->sources.side_temperature = side;
     trace_and_solve(p);
     const double wrong[] = {-1, 1e21, INFINITY};
@@ -685,7 +685,7 @@ TEST(soups_have_finite_powers_that_add_up) {
     for (uint64_t seed = 0; seed < 8; seed++) {
         ENDED struct problem *p = problem_of(thirty_spheres(), 1, .5);
         for (int axis = 0; axis < 3; axis++) p->bed.period[axis] = seed == 7 && axis == 1;
-        p->bodies = 3;
+        p->walls = 3;
         const uint32_t pieces = 1 + (uint32_t)(60 * bed_make_random(seed, 0));
         const double size = seed % 3 == 0 ? 2 : .2;
         for (uint32_t t = 0; t < pieces; t++) {
@@ -719,8 +719,8 @@ TEST(a_back_that_is_seen_is_named) {
     ENDED struct problem *p = thirty();
     const double origin[3] = {-9, -9, .5}, a[3] = {20, 0, 0}, b[3] = {0, 20, 0};
     make_planes(p, 0, 1);
-    p->bodies = 7;
-    add_sheet(p->mesh, origin, a, b, 1, 6, FIBRAD_NO_BODY); /* a shelf goes through the bed */
+    p->walls = 7;
+    add_sheet(p->mesh, origin, a, b, 1, 6, FIBRAD_NO_WALL); /* a shelf goes through the bed */
     ck_assert_int_eq(trace(p), FIBRAD_E_BACK);
     ck_assert_uint_lt(p->seen, 2);
     free_heat(p);

@@ -49,7 +49,7 @@ LOOP_TEST(powers_in_open_containers_are_those_of_paths, 3) {
 /* An opening is a black plane at the temperature of the surroundings, and its power is theirs. This holds to the bit,
  * except that powers of several openings are added. It holds for powers of spheres and other walls, their errors, and
  * temperatures that are found; for one opening or several, endless plates that face them, insulated walls, and one
- * radiosity for each body. */
+ * radiosity for each wall. */
 TEST(an_opening_is_a_black_plane_as_hot_as_the_surroundings) {
     static const struct {
         uint32_t planes, open;

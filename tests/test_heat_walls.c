@@ -37,11 +37,11 @@ static struct room room_of(uint64_t seed, uint32_t spheres) {
 
 static fibrad_radiation *radiation_of(const struct room *room) {
     static const fibrad_heat_config config = {.directions = 32, .patches = 24, .wall_rays = 20000};
-    fibrad_body body[WALLS];
+    fibrad_wall wall[WALLS];
     const fibrad_plane lid = {2, 1, room->size[2]};
     const fibrad_spheres spheres = spheres_of(&room->bed);
-    for (int k = 0; k < WALLS; k++) body[k] = plane_at(k / 2, k % 2, k % 2 ? room->size[k / 2] : 0);
-    const fibrad_scene_config scene = {.body = body, .bodies = WALLS, .opening = &lid, .openings = 1};
+    for (int k = 0; k < WALLS; k++) wall[k] = plane_at(k / 2, k % 2, k % 2 ? room->size[k / 2] : 0);
+    const fibrad_scene_config scene = {.wall = wall, .walls = WALLS, .opening = &lid, .openings = 1};
     fibrad_run run = {.threads = 1};
     fibrad_radiation *radiation;
     assert_ok(fibrad_radiation_new(&radiation, &scene, &spheres, &config, &run));
@@ -52,13 +52,13 @@ static void solve(fibrad_radiation *radiation, struct room *room, double toleran
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);
     sources.temperature = room->temperature, sources.emissivity = room->emissivity;
-    sources.body_temperature = room->wall_temperature, sources.body_emissivity = room->wall_emissivity;
+    sources.wall_temperature = room->wall_temperature, sources.wall_emissivity = room->wall_emissivity;
     sources.surroundings = room->surroundings, sources.tolerance = tolerance;
     room->result = (fibrad_heat_result){.power = room->power,
                                         .power_error = room->error,
-                                        .body_power = room->wall_power,
-                                        .body_error = room->wall_error,
-                                        .body_absorbed = room->absorbed};
+                                        .wall_power = room->wall_power,
+                                        .wall_error = room->wall_error,
+                                        .wall_absorbed = room->absorbed};
     assert_ok(fibrad_radiation_solve(radiation, &sources, &room->result));
 }
 
@@ -122,9 +122,9 @@ TEST(insulated_sides) {
     static const unsigned char insulated[6] = {1, 1, 1, 1, 0, 0};
     static const double wall_temperature[6] = {[4] = 1000, [5] = 300}, wall_emissivity[6] = {[4] = 1, [5] = 1};
     static const double temperature = NAN, emissivity = .5, none = 0;
-    fibrad_body body[6];
-    for (int k = 0; k < 6; k++) body[k] = plane_at(k / 2, k % 2, k % 2);
-    const fibrad_scene_config scene = {.body = body, .bodies = 6};
+    fibrad_wall wall[6];
+    for (int k = 0; k < 6; k++) wall[k] = plane_at(k / 2, k % 2, k % 2);
+    const fibrad_scene_config scene = {.wall = wall, .walls = 6};
     for (uint32_t patches = 24; patches <= 384; patches *= 4) {
         OWNED_BED bed = BED({.5, .5, .5, 1e-4});
         const fibrad_spheres spheres = spheres_of(&bed);
@@ -133,9 +133,9 @@ TEST(insulated_sides) {
         fibrad_heat_sources sources;
         fibrad_heat_sources_init(&sources);
         sources.temperature = &temperature, sources.emissivity = &emissivity, sources.power = &none;
-        sources.body_temperature = wall_temperature, sources.body_emissivity = wall_emissivity;
+        sources.wall_temperature = wall_temperature, sources.wall_emissivity = wall_emissivity;
         sources.insulated = insulated, sources.surroundings = 300;
-        fibrad_heat_result result = {.power = &power, .body_power = gained, .body_error = error};
+        fibrad_heat_result result = {.power = &power, .wall_power = gained, .wall_error = error};
         OWNED_RADIATION *radiation = NULL;
         assert_ok(fibrad_radiation_new(&radiation, &scene, &spheres, &config, NULL));
         assert_ok(fibrad_radiation_solve(radiation, &sources, &result));

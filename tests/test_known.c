@@ -12,8 +12,8 @@ enum { SPHERES = 30, DIRECTIONS = 300, KINDS = 4 };
 struct hall {
     struct bed bed;
     struct mesh *mesh;
-    fibrad_body wall[7];
-    uint32_t bodies;
+    fibrad_wall wall[7];
+    uint32_t walls;
     fibrad_plane opening[2];
     uint32_t openings;
     double e[SPHERES], node[SPHERES], conductivity[SPHERES], wall_e[7];
@@ -43,18 +43,18 @@ static void add_mesh(struct hall *h) {
     h->mesh = mesh_new();
     const uint32_t v[4] = {mesh_vertex(h->mesh, .5, 1, 2), mesh_vertex(h->mesh, 3, 1, 2), mesh_vertex(h->mesh, 3, 3, 2),
                            mesh_vertex(h->mesh, .5, 3, 2)};
-    mesh_quad(h->mesh, v, h->bodies, h->bodies);
-    h->wall[h->bodies++] = h->mesh->body[0];
+    mesh_quad(h->mesh, v, h->walls, h->walls);
+    h->wall[h->walls++] = h->mesh->wall[0];
 }
 
 /* What bounds the space from 0 to 4 along each axis. */
 static void add_bounds(struct hall *h, int kind) {
-    if (kind == 1) h->wall[h->bodies++] = cylinder_at(2, 2, 2);
+    if (kind == 1) h->wall[h->walls++] = cylinder_at(2, 2, 2);
     for (int face = kind == 1 ? 4 : 0; face < 6; face++) {
         if (face == 1 || face == 5)
             h->opening[h->openings++] = (fibrad_plane){face / 2, 1, 4};
         else
-            h->wall[h->bodies++] = plane_at(face / 2, face % 2, face % 2 * 4);
+            h->wall[h->walls++] = plane_at(face / 2, face % 2, face % 2 * 4);
     }
     if (kind == 2) add_mesh(h);
 }
@@ -70,19 +70,19 @@ static struct hall *make_hall(int kind) {
         for (uint32_t a = 0; a < 3; a++) c[a] = r + (4 - 2 * r) * bed_make_random(7, 4 * k + 1 + a);
         if (is_free(h, kind, c, r)) add_sphere(&h->bed, c[0], c[1], c[2], r);
     }
-    memcpy(h->wall_e, kind == 1 ? walls_of_tube : of_wall, h->bodies * sizeof *h->wall_e);
+    memcpy(h->wall_e, kind == 1 ? walls_of_tube : of_wall, h->walls * sizeof *h->wall_e);
     for (uint32_t i = 0; i < SPHERES; i++) {
         h->e[i] = i % 2 ? .8 : .3, h->conductivity[i] = .2 + i % 3;
         h->node[i] = fibrad_node_emissivity(h->e[i], h->conductivity[i]);
     }
-    const fibrad_scene_config config = {.body = h->wall,
-                                        .bodies = h->bodies,
+    const fibrad_scene_config config = {.wall = h->wall,
+                                        .walls = h->walls,
                                         .opening = h->opening,
                                         .openings = h->openings,
                                         .triangles = h->mesh ? &h->mesh->triangles : NULL};
     h->scene = scene_with(&h->bed, &config);
     h->work = work_growing();
-    h->rule = (fibrad_exchange_rule){.emissivity = h->e, .body_emissivity = h->wall_e, .directions = DIRECTIONS};
+    h->rule = (fibrad_exchange_rule){.emissivity = h->e, .wall_emissivity = h->wall_e, .directions = DIRECTIONS};
     if (kind == 3) h->rule.conductivity = h->conductivity, h->rule.node_emissivity = h->node;
     return h;
 }
@@ -99,13 +99,13 @@ static fibrad_row row_in(struct hall *h, uint32_t i) {
 
 /* What a row gives to wall b, or to the surroundings. */
 static double given(const struct hall *h, const fibrad_row *row, uint32_t b) {
-    return b < h->bodies ? row->body[b] : row->escaped;
+    return b < h->walls ? row->wall[b] : row->escaped;
 }
 
 /* The sum of a row is 1, and nothing is below 0. */
 static void check_row(const struct hall *h, const fibrad_row *row) {
     double sum = row_sum(row) + row->beyond;
-    for (uint32_t b = 0; b <= h->bodies; b++) {
+    for (uint32_t b = 0; b <= h->walls; b++) {
         sum += given(h, row, b);
         ck_assert_double_ge(given(h, row, b), 0);
     }
@@ -124,7 +124,7 @@ LOOP_TEST(nothing_known, KINDS) {
         OWNED_ROW without = row_in(h, i);
         h->rule.known = known, h->rule.known_paths = 1000;
         OWNED_ROW with = row_in(h, i);
-        ck_assert(same_bits_with(&without, &with, h->bodies));
+        ck_assert(same_bits_with(&without, &with, h->walls));
         ck_assert_double_eq(with.escaped, without.escaped);
     }
 }
@@ -138,10 +138,10 @@ static void first_leg(struct hall *h, uint32_t i, double *direct) {
     double black[SPHERES];
     for (uint32_t j = 0; j < SPHERES; j++) black[j] = 1;
     const fibrad_exchange_rule rule = {
-        .emissivity = black, .body_emissivity = black, .directions = DIRECTIONS, .seed = h->rule.seed};
+        .emissivity = black, .wall_emissivity = black, .directions = DIRECTIONS, .seed = h->rule.seed};
     const double *e = h->rule.node_emissivity ? h->node : h->e;
     assert_ok(fibrad_exchange_row(h->scene, &h->work, i, &rule, &beam, NULL));
-    for (uint32_t b = 0; b <= h->bodies; b++) direct[b] = given(h, &beam, b) * (b < h->bodies ? h->wall_e[b] : 1);
+    for (uint32_t b = 0; b <= h->walls; b++) direct[b] = given(h, &beam, b) * (b < h->walls ? h->wall_e[b] : 1);
     for (uint32_t j = 0; j < SPHERES; j++) direct[8 + j] = row_factor(&beam, j) * e[j];
 }
 
@@ -150,7 +150,7 @@ static void reflected_part(struct hall *h, uint32_t i, double *reflected) {
     OWNED_ROW row = row_in(h, i);
     check_row(h, &row);
     first_leg(h, i, direct);
-    for (uint32_t b = 0; b <= h->bodies; b++) reflected[b] = given(h, &row, b) - direct[b];
+    for (uint32_t b = 0; b <= h->walls; b++) reflected[b] = given(h, &row, b) - direct[b];
     for (uint32_t j = 0; j < SPHERES; j++) reflected[8 + j] = row_factor(&row, j) - direct[8 + j];
 }
 
@@ -165,7 +165,7 @@ LOOP_TEST(known_is_pooled, 2 * KINDS) {
     for (uint32_t i = 0; i < SPHERES; i += 3) {
         double known[TARGETS], own[TARGETS] = {0}, pooled[TARGETS] = {0}, rest = 0, left = 0;
         for (uint32_t b = 0; b < TARGETS; b++)
-            known[b] = (i + b) % 4 == 0 || b > h->bodies ? NAN : others * .01 * bed_make_random(i, b);
+            known[b] = (i + b) % 4 == 0 || b > h->walls ? NAN : others * .01 * bed_make_random(i, b);
         h->rule.known = NULL;
         reflected_part(h, i, own);
         h->rule.known = known, h->rule.known_paths = others;
@@ -199,9 +199,9 @@ LOOP_TEST(any_claim, KINDS) {
  * is known of them. */
 TEST(all_is_known) {
     OWNED_BED bed = BED({1, 2, 2, .01});
-    fibrad_body wall[6];
+    fibrad_wall wall[6];
     for (int k = 0; k < 6; k++) wall[k] = plane_at(k / 2, k % 2, k % 2 * 4);
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = wall, .bodies = 6});
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = wall, .walls = 6});
     OWNED_WORK work = work_growing();
     const double e[1] = {.5}, wall_e[6] = {.1, .3, .7, .9, .6, .37};
     for (uint64_t seed = 0; seed < 30; seed++) {
@@ -209,7 +209,7 @@ TEST(all_is_known) {
         double known[7] = {.1, .7, .3, .9, .2, .11, 0}, sum = 0, left = 1;
         for (int b = 0; b < 6; b++) known[b] *= much ? pow(100, much) : 0;
         const fibrad_exchange_rule rule = {.emissivity = e,
-                                           .body_emissivity = wall_e,
+                                           .wall_emissivity = wall_e,
                                            .directions = DIRECTIONS,
                                            .paths = 37,
                                            .seed = seed,
@@ -220,10 +220,10 @@ TEST(all_is_known) {
         const fibrad_beam_rule first = {.directions = DIRECTIONS, .turn = seed};
         assert_ok(fibrad_beam_row(scene, &work, 0, &first, &beam));
         ck_assert_double_eq(row_sum(&row), 0);
-        for (int b = 0; b < 6; b++) sum += row.body[b], left -= beam.body[b] * wall_e[b];
+        for (int b = 0; b < 6; b++) sum += row.wall[b], left -= beam.wall[b] * wall_e[b];
         ck_assert_double_eq_tol(sum, 1, 1e-12);
         for (int b = 0; b < 6 && much == 2; b++)
-            ck_assert_double_eq_tol(row.body[b] - beam.body[b] * wall_e[b], known[b] / 2.31e4 * left, 1e-2 * left);
+            ck_assert_double_eq_tol(row.wall[b] - beam.wall[b] * wall_e[b], known[b] / 2.31e4 * left, 1e-2 * left);
     }
 }
 
@@ -243,26 +243,26 @@ TEST(impossible_numbers_of_paths) {
 /* ---- paths from walls and openings ------------------------------------------------------------------------------ */
 
 /* What the source has given to a sphere after reflections, as a part of the sphere's emission: mean and its error. */
-static void give_back(struct hall *h, uint32_t body, double emits, double mean[SPHERES], double square[SPHERES]) {
-    double part[FIBRAD_BODY_PARTS][SPHERES];
+static void give_back(struct hall *h, uint32_t wall, double emits, double mean[SPHERES], double square[SPHERES]) {
+    double part[FIBRAD_WALL_PARTS][SPHERES];
     h->rule.known = NULL, h->rule.paths = 131072;
-    for (uint32_t p = 0; p < FIBRAD_BODY_PARTS; p++) {
+    for (uint32_t p = 0; p < FIBRAD_WALL_PARTS; p++) {
         uint64_t reflected[SPHERES] = {0};
-        fibrad_body_row row;
-        assert_ok(fibrad_exchange_body(h->scene, &h->work, body, &h->rule, p, &row, reflected));
+        fibrad_wall_row row;
+        assert_ok(fibrad_exchange_wall(h->scene, &h->work, wall, &h->rule, p, &row, reflected));
         for (uint32_t i = 0; i < SPHERES; i++)
-            part[p][i] = (double)reflected[i] * 0x1p-40 / (131072.0 / FIBRAD_BODY_PARTS) * emits / sphere_emits(h, i);
+            part[p][i] = (double)reflected[i] * 0x1p-40 / (131072.0 / FIBRAD_WALL_PARTS) * emits / sphere_emits(h, i);
     }
     for (uint32_t i = 0; i < SPHERES; i++) {
         double sum = 0, squares = 0;
-        for (int p = 0; p < FIBRAD_BODY_PARTS; p++) sum += part[p][i] / FIBRAD_BODY_PARTS;
-        for (int p = 0; p < FIBRAD_BODY_PARTS; p++) squares += pow(part[p][i] - sum, 2);
-        mean[i] += sum, square[i] += squares / (FIBRAD_BODY_PARTS * (FIBRAD_BODY_PARTS - 1));
+        for (int p = 0; p < FIBRAD_WALL_PARTS; p++) sum += part[p][i] / FIBRAD_WALL_PARTS;
+        for (int p = 0; p < FIBRAD_WALL_PARTS; p++) squares += pow(part[p][i] - sum, 2);
+        mean[i] += sum, square[i] += squares / (FIBRAD_WALL_PARTS * (FIBRAD_WALL_PARTS - 1));
     }
 }
 
-static double body_emits(const struct hall *h, uint32_t b) {
-    return fibrad_scene_body_area(h->scene, b) * (b < h->bodies ? h->wall_e[b] : 1);
+static double wall_emits(const struct hall *h, uint32_t b) {
+    return fibrad_scene_wall_area(h->scene, b) * (b < h->walls ? h->wall_e[b] : 1);
 }
 
 /* What walls and openings give to spheres after reflections is what spheres give to them, A_b e_b D_bi = A_i e_i D_ib.
@@ -271,10 +271,10 @@ LOOP_TEST(sources_are_reciprocal, KINDS) {
     enum { SEEDS = 60, STEP = 6 };
     OWNED_HALL *h = make_hall(_i);
     double mean[8][SPHERES] = {{0}}, square[8][SPHERES] = {{0}}, all = 0, count = 0;
-    for (uint32_t b = 0; b < h->bodies; b++) give_back(h, b, body_emits(h, b), mean[b], square[b]);
+    for (uint32_t b = 0; b < h->walls; b++) give_back(h, b, wall_emits(h, b), mean[b], square[b]);
     for (uint32_t k = 0; k < h->openings; k++) {
-        const uint32_t body = FIBRAD_OPENING(h->bodies, h->opening[k].axis, h->opening[k].upper);
-        give_back(h, body, body_emits(h, body), mean[h->bodies], square[h->bodies]);
+        const uint32_t wall = FIBRAD_OPENING(h->walls, h->opening[k].axis, h->opening[k].upper);
+        give_back(h, wall, wall_emits(h, wall), mean[h->walls], square[h->walls]);
     }
     h->rule.paths = 1000;
     for (uint32_t i = 0; i < SPHERES; i += STEP) {
@@ -283,14 +283,14 @@ LOOP_TEST(sources_are_reciprocal, KINDS) {
             double reflected[TARGETS];
             h->rule.seed = seed;
             reflected_part(h, i, reflected);
-            for (uint32_t b = 0; b <= h->bodies; b++) sum[b] += reflected[b], squares[b] += pow(reflected[b], 2);
+            for (uint32_t b = 0; b <= h->walls; b++) sum[b] += reflected[b], squares[b] += pow(reflected[b], 2);
         }
-        for (uint32_t b = 0; b <= h->bodies; b++) {
+        for (uint32_t b = 0; b <= h->walls; b++) {
             const double average = sum[b] / SEEDS, spread = fmax(0, squares[b] / SEEDS - average * average);
             const double error = sqrt(spread / (SEEDS - 1) + square[b][i]), difference = average - mean[b][i];
             ck_assert_double_le(fabs(difference), 5 * error + 1e-15);
             if (error > 0) all += pow(difference / error, 2), count++;
-            if (b == h->bodies || h->wall_e[b] > 0) ck_assert_double_gt(average, 20 * error / 3);
+            if (b == h->walls || h->wall_e[b] > 0) ck_assert_double_gt(average, 20 * error / 3);
         }
     }
     ck_assert_double_lt(all / count, 1.7); /* 1, but for the error of errors from 8 batches */
@@ -303,17 +303,17 @@ TEST(reflected_is_what_first_legs_leave) {
     enum { PATHS = 8000 };
     OWNED_HALL *h = make_hall(0);
     uint64_t reflected[SPHERES] = {0}, more[SPHERES], units = 0;
-    fibrad_body_row black, grey;
-    h->rule.paths = PATHS * FIBRAD_BODY_PARTS;
-    for (uint32_t b = 0; b < h->bodies; b++) h->wall_e[b] = 1;
+    fibrad_wall_row black, grey;
+    h->rule.paths = PATHS * FIBRAD_WALL_PARTS;
+    for (uint32_t b = 0; b < h->walls; b++) h->wall_e[b] = 1;
     for (uint32_t k = 0; k < 2; k++) {
-        const uint32_t body = k ? FIBRAD_OPENING(h->bodies, 0, 1) : 1;
+        const uint32_t wall = k ? FIBRAD_OPENING(h->walls, 0, 1) : 1;
         for (uint32_t i = 0; i < SPHERES; i++) h->e[i] = 1, reflected[i] = 0;
-        assert_ok(fibrad_exchange_body(h->scene, &h->work, body, &h->rule, 3, &black, reflected));
+        assert_ok(fibrad_exchange_wall(h->scene, &h->work, wall, &h->rule, 3, &black, reflected));
         for (uint32_t i = 0; i < SPHERES; i++) ck_assert_uint_eq(reflected[i], 0);
         for (uint32_t i = 0; i < SPHERES; i++) h->e[i] = .03, more[i] = 1000 * i + 1;
-        assert_ok(fibrad_exchange_body(h->scene, &h->work, body, &h->rule, 3, &grey, reflected));
-        assert_ok(fibrad_exchange_body(h->scene, &h->work, body, &h->rule, 3, &grey, more));
+        assert_ok(fibrad_exchange_wall(h->scene, &h->work, wall, &h->rule, 3, &grey, reflected));
+        assert_ok(fibrad_exchange_wall(h->scene, &h->work, wall, &h->rule, 3, &grey, more));
         units = 0;
         for (uint32_t i = 0; i < SPHERES; i++) {
             ck_assert_uint_eq(more[i], reflected[i] + 1000 * i + 1);
@@ -328,14 +328,14 @@ TEST(reflected_is_what_first_legs_leave) {
  * but the first leg, which is next to nothing. */
 TEST(reflected_among_mirrors) {
     OWNED_HALL *h = make_hall(0);
-    const fibrad_body tube[3] = {cylinder_at(2, 2, 4), plane_at(2, 0, 0), plane_at(2, 1, 4)};
-    fibrad_body_row row;
+    const fibrad_wall tube[3] = {cylinder_at(2, 2, 4), plane_at(2, 0, 0), plane_at(2, 1, 4)};
+    fibrad_wall_row row;
     uint64_t reflected[SPHERES] = {0}, units = 0;
-    OWNED fibrad_scene *scene = scene_with(&h->bed, &(fibrad_scene_config){.body = tube, .bodies = 3});
+    OWNED fibrad_scene *scene = scene_with(&h->bed, &(fibrad_scene_config){.wall = tube, .walls = 3});
     for (uint32_t b = 0; b < 3; b++) h->wall_e[b] = .0007;
     for (uint32_t i = 0; i < SPHERES; i++) h->e[i] = .001;
-    h->rule.paths = 1000 * FIBRAD_BODY_PARTS;
-    assert_ok(fibrad_exchange_body(scene, &h->work, 1, &h->rule, 0, &row, reflected));
+    h->rule.paths = 1000 * FIBRAD_WALL_PARTS;
+    assert_ok(fibrad_exchange_wall(scene, &h->work, 1, &h->rule, 0, &row, reflected));
     for (uint32_t i = 0; i < SPHERES; i++) units += reflected[i];
     ck_assert_uint_lt(row.paths, 900);
     assert_near((double)units * 0x1p-40 / (double)row.paths, row.spheres, .1);
@@ -346,11 +346,11 @@ TEST(reflected_of_invalid_emissivities) {
     static const double bad[] = {NAN, -3, 1e300, INFINITY, -INFINITY};
     OWNED_HALL *h = make_hall(0);
     uint64_t reflected[SPHERES] = {0};
-    fibrad_body_row row;
+    fibrad_wall_row row;
     h->rule.paths = 4000;
     for (int k = 0; k < 5; k++) {
         for (uint32_t i = 0; i < SPHERES; i++) h->e[i] = bad[k];
-        const int status = fibrad_exchange_body(h->scene, &h->work, 0, &h->rule, 0, &row, reflected);
+        const int status = fibrad_exchange_wall(h->scene, &h->work, 0, &h->rule, 0, &row, reflected);
         if (k == 0) assert_invalid(status);
     }
 }
@@ -362,50 +362,50 @@ TEST(reflected_of_invalid_emissivities) {
 TEST(openings_of_an_empty_box) {
     const double size[3] = {1, 1.5, .6}, e[4] = {1, 1, 1, 1};
     const fibrad_plane opening[2] = {{0, 0, 0}, {2, 1, .6}};
-    const fibrad_body wall[4] = {plane_at(0, 1, 1), plane_at(1, 0, 0), plane_at(1, 1, 1.5), plane_at(2, 0, 0)};
+    const fibrad_wall wall[4] = {plane_at(0, 1, 1), plane_at(1, 0, 0), plane_at(1, 1, 1.5), plane_at(2, 0, 0)};
     struct bed none = bed_empty();
     OWNED fibrad_scene *scene =
-        scene_with(&none, &(fibrad_scene_config){.body = wall, .bodies = 4, .opening = opening, .openings = 2});
+        scene_with(&none, &(fibrad_scene_config){.wall = wall, .walls = 4, .opening = opening, .openings = 2});
     OWNED_WORK work = work_growing();
-    fibrad_body_row row;
+    fibrad_wall_row row;
     for (int exact = 0; exact < 2; exact++)
         for (int k = 0; k < 2; k++) {
-            const uint32_t body = FIBRAD_OPENING(4, opening[k].axis, opening[k].upper), axis = k ? 2 : 0;
+            const uint32_t wall = FIBRAD_OPENING(4, opening[k].axis, opening[k].upper), axis = k ? 2 : 0;
             const double off = exact ? 1e-14 : 5e-3, across = size[axis], beside = size[2 - axis];
-            const fibrad_exchange_rule rule = {.body_emissivity = exact ? NULL : e, .paths = 80000};
-            ck_assert_double_eq(fibrad_scene_body_area(scene, body), size[1] * beside);
-            assert_ok(fibrad_exchange_body(scene, &work, body, &rule, 0, &row, NULL));
+            const fibrad_exchange_rule rule = {.wall_emissivity = exact ? NULL : e, .paths = 80000};
+            ck_assert_double_eq(fibrad_scene_wall_area(scene, wall), size[1] * beside);
+            assert_ok(fibrad_exchange_wall(scene, &work, wall, &rule, 0, &row, NULL));
             ck_assert_double_eq(row.spheres, 0);
-            ck_assert_double_eq_tol(row.body[k ? 3 : 0], opposite(size[1], beside, across), off);
-            ck_assert_double_eq_tol(row.body[1], adjacent(beside, size[1], across), off);
-            ck_assert_double_eq_tol(row.body[2], adjacent(beside, size[1], across), off);
+            ck_assert_double_eq_tol(row.wall[k ? 3 : 0], opposite(size[1], beside, across), off);
+            ck_assert_double_eq_tol(row.wall[1], adjacent(beside, size[1], across), off);
+            ck_assert_double_eq_tol(row.wall[2], adjacent(beside, size[1], across), off);
             ck_assert_double_eq_tol(row.escaped, adjacent(size[1], beside, across), off);
         }
     for (uint32_t face = 0; face < 8; face++) {
         if (face == 0 || face == 5) continue;
-        ck_assert_double_nan(fibrad_scene_body_area(scene, 4 + face));
-        assert_invalid(fibrad_exchange_body(scene, &work, 4 + face, &(fibrad_exchange_rule){0}, 0, &row, NULL));
+        ck_assert_double_nan(fibrad_scene_wall_area(scene, 4 + face));
+        assert_invalid(fibrad_exchange_wall(scene, &work, 4 + face, &(fibrad_exchange_rule){0}, 0, &row, NULL));
     }
-    assert_invalid(fibrad_exchange_body(scene, &work, UINT32_MAX, &(fibrad_exchange_rule){0}, 0, &row, NULL));
-    ck_assert_double_nan(fibrad_scene_body_area(scene, UINT32_MAX));
+    assert_invalid(fibrad_exchange_wall(scene, &work, UINT32_MAX, &(fibrad_exchange_rule){0}, 0, &row, NULL));
+    ck_assert_double_nan(fibrad_scene_wall_area(scene, UINT32_MAX));
 }
 
 /* An opening has the area of one period, or of the disc that ends a cylinder. An endless opening has no row. */
 TEST(areas_of_openings) {
     OWNED_BED bed = BED({1, 1, 1, .5});
     const fibrad_plane top = {2, 1, 3};
-    const fibrad_body floor[2] = {plane_at(2, 0, 0), cylinder_at(1, 1, 1.5)};
+    const fibrad_wall floor[2] = {plane_at(2, 0, 0), cylinder_at(1, 1, 1.5)};
     const double area[3] = {INFINITY, PI * 1.5 * 1.5, 6};
     for (int k = 0; k < 3; k++) {
         if (k == 2) bed.period[0] = 2, bed.period[1] = 3;
-        const uint32_t bodies = k == 1 ? 2 : 1, body = FIBRAD_OPENING(bodies, 2, 1);
+        const uint32_t walls = k == 1 ? 2 : 1, wall = FIBRAD_OPENING(walls, 2, 1);
         OWNED fibrad_scene *scene =
-            scene_with(&bed, &(fibrad_scene_config){.body = floor, .bodies = bodies, .opening = &top, .openings = 1});
+            scene_with(&bed, &(fibrad_scene_config){.wall = floor, .walls = walls, .opening = &top, .openings = 1});
         OWNED_WORK work = work_growing();
-        fibrad_body_row row;
-        if (k > 0) ck_assert_double_eq_tol(fibrad_scene_body_area(scene, body), area[k], 1e-13);
-        if (k == 0) ck_assert(isinf(fibrad_scene_body_area(scene, body)));
-        ck_assert_int_eq(fibrad_exchange_body(scene, &work, body, &(fibrad_exchange_rule){0}, 0, &row, NULL),
+        fibrad_wall_row row;
+        if (k > 0) ck_assert_double_eq_tol(fibrad_scene_wall_area(scene, wall), area[k], 1e-13);
+        if (k == 0) ck_assert(isinf(fibrad_scene_wall_area(scene, wall)));
+        ck_assert_int_eq(fibrad_exchange_wall(scene, &work, wall, &(fibrad_exchange_rule){0}, 0, &row, NULL),
                          k ? FIBRAD_OK : FIBRAD_E_UNSUPPORTED);
     }
 }
@@ -416,12 +416,12 @@ LOOP_TEST(openings_and_spheres_are_reciprocal, KINDS) {
     double there = 0, back = 0, off = 0;
     h->rule.paths = 16384;
     for (uint32_t k = 0; k < h->openings; k++) {
-        const uint32_t body = FIBRAD_OPENING(h->bodies, h->opening[k].axis, h->opening[k].upper);
-        fibrad_body_row part[FIBRAD_BODY_PARTS], mean;
-        for (uint32_t p = 0; p < FIBRAD_BODY_PARTS; p++)
-            assert_ok(fibrad_exchange_body(h->scene, &h->work, body, &h->rule, p, &part[p], NULL));
-        assert_ok(fibrad_exchange_body_mean(part, &mean));
-        there += body_emits(h, body) * mean.spheres, off += body_emits(h, body) * mean.error;
+        const uint32_t wall = FIBRAD_OPENING(h->walls, h->opening[k].axis, h->opening[k].upper);
+        fibrad_wall_row part[FIBRAD_WALL_PARTS], mean;
+        for (uint32_t p = 0; p < FIBRAD_WALL_PARTS; p++)
+            assert_ok(fibrad_exchange_wall(h->scene, &h->work, wall, &h->rule, p, &part[p], NULL));
+        assert_ok(fibrad_exchange_wall_mean(part, &mean));
+        there += wall_emits(h, wall) * mean.spheres, off += wall_emits(h, wall) * mean.error;
     }
     for (uint32_t i = 0; i < SPHERES; i++) {
         OWNED_ROW row = row_in(h, i);

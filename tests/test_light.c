@@ -32,14 +32,14 @@ static struct bed layers(double x, double y, bool hexagonal) {
 
 TEST(a_simple_cubic_bed_is_lit_in_its_first_layer) {
     OWNED_BED bed = layers(8, 8, false);
-    const fibrad_body floor_body = plane_at(2, 0, -1);
+    const fibrad_wall floor_wall = plane_at(2, 0, -1);
     for (int walled = 0; walled < 2; walled++) {
-        const fibrad_scene_config config = {.period = {8, 8, 0}, .body = &floor_body, .bodies = (uint32_t)walled};
+        const fibrad_scene_config config = {.period = {8, 8, 0}, .wall = &floor_wall, .walls = (uint32_t)walled};
         const fibrad_light light = along(0, 0, -1);
         OWNED_LIT lit = light_up(&bed, &config, &light);
         for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq_tol(lit.power[i], bed.z[i] > 3 ? PI : 0, 1e-9);
         ck_assert_double_eq_tol(lit.ends.spheres / 64, PI / 4, 1e-9);
-        ck_assert_double_eq_tol((walled ? lit.ends.body[0] : lit.ends.through) / 64, 1 - PI / 4, 1e-9);
+        ck_assert_double_eq_tol((walled ? lit.ends.wall[0] : lit.ends.through) / 64, 1 - PI / 4, 1e-9);
         ck_assert_double_eq_tol(sum_of(&lit.ends), 64, 1e-12);
     }
 }
@@ -56,14 +56,14 @@ TEST(a_hexagonal_layer_takes_nine_tenths) {
 struct course {
     struct bed bed;
     fibrad_scene_config config;
-    fibrad_body body[6];
+    fibrad_wall wall[6];
     fibrad_plane opening[6];
     struct plain_bed plain;
     double d[3];
 };
 
 static void add_wall(struct course *c, int axis, int upper, double at) {
-    c->body[c->config.bodies++] = plane_at(axis, upper, at);
+    c->wall[c->config.walls++] = plane_at(axis, upper, at);
     *(upper ? &c->plain.high[axis] : &c->plain.low[axis]) = at;
 }
 
@@ -78,7 +78,7 @@ static void begin_course(struct course *c, struct bed bed, double x, double y, d
     *c = (struct course){.bed = bed, .d = {x / size, y / size, z / size}};
     c->plain = plain_bed_of(&c->bed);
     for (int a = 0; a < 3; a++) c->config.period[a] = bed.period[a];
-    c->config.body = c->body, c->config.opening = c->opening;
+    c->config.wall = c->wall, c->config.opening = c->opening;
 }
 
 /* Compares with plain rays. `rays` of them are spread over a rectangle across the light about the place `middle`; those
@@ -114,10 +114,10 @@ static void compare(struct course *c, const fibrad_light *light, const double mi
     ck_assert_double_le(worst, 60 * each);
     ck_assert_double_eq_tol(sum_of(&lit.empty), all, 200 * each);
     ck_assert_double_eq_tol(lit.ends.through, ends[PLAIN_OUTSIDE], 200 * each);
-    for (uint32_t b = 0; b < c->config.bodies; b++) {
-        const fibrad_plane *plane = &c->body[b].plane;
-        const int side = c->body[b].kind == FIBRAD_BODY_CYLINDER ? PLAIN_CYLINDER : 2 * plane->axis + plane->upper;
-        ck_assert_double_eq_tol(lit.ends.body[b], ends[side], 200 * each);
+    for (uint32_t b = 0; b < c->config.walls; b++) {
+        const fibrad_plane *plane = &c->wall[b].plane;
+        const int side = c->wall[b].kind == FIBRAD_WALL_CYLINDER ? PLAIN_CYLINDER : 2 * plane->axis + plane->upper;
+        ck_assert_double_eq_tol(lit.ends.wall[b], ends[side], 200 * each);
     }
     assert_near(sum_of(&lit.ends), sum_of(&lit.empty), 1e-12);
     free(count), free(lit.power);
@@ -178,8 +178,8 @@ TEST(a_cup_as_by_rays) {
         begin_course(&c, bed, d[k][0], d[k][1], d[k][2]);
         add_wall(&c, 2, 0, low[2]);
         add_opening(&c, 2, 1, high[2] + .5);
-        c.body[c.config.bodies++] =
-            (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {middle[0], middle[1], round}};
+        c.wall[c.config.walls++] =
+            (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {middle[0], middle[1], round}};
         c.plain.axis[0] = middle[0], c.plain.axis[1] = middle[1], c.plain.round = round;
         const fibrad_light light = along(d[k][0], d[k][1], d[k][2]);
         compare(&c, &light, middle, 6, RAYS);

@@ -29,12 +29,12 @@ struct absorbed {
 static void check_sides(fibrad_radiation *radiation, const fibrad_scene_config *config, const double *eps,
                         const struct absorbed *a) {
     const struct fibrad_triangles *t = config->triangles;
-    double flux[2 * 12], cold[100] = {0}, power[100], body_power[6], sum = 0, all = 0;
+    double flux[2 * 12], cold[100] = {0}, power[100], wall_power[6], sum = 0, all = 0;
     fibrad_heat_sources sources;
-    fibrad_heat_result result = {.power = power, .body_power = body_power};
+    fibrad_heat_result result = {.power = power, .wall_power = wall_power};
     fibrad_heat_sources_init(&sources);
-    sources.temperature = cold, sources.body_temperature = cold, sources.surroundings = 0;
-    sources.emissivity = eps, sources.body_emissivity = a->wall_eps, sources.absorbed = a->result.patches;
+    sources.temperature = cold, sources.wall_temperature = cold, sources.surroundings = 0;
+    sources.emissivity = eps, sources.wall_emissivity = a->wall_eps, sources.absorbed = a->result.patches;
     ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &result), 0);
     ck_assert_int_eq(fibrad_radiation_sides(radiation, flux, NULL), 0);
     for (uint32_t k = 0; k < t->n; k++) {
@@ -43,7 +43,7 @@ static void check_sides(fibrad_radiation *radiation, const fibrad_scene_config *
         for (uint32_t s = 0; s < 2; s++)
             sum += isnan(flux[2 * k + s]) ? 0 : .5 * sqrt(plain_product(n, n)) * flux[2 * k + s];
     }
-    for (uint32_t b = 0; b < config->bodies; b++) all += a->wall[b];
+    for (uint32_t b = 0; b < config->walls; b++) all += a->wall[b];
     ck_assert_double_eq_tol(sum, all, 1e-12 * a->result.incident);
 }
 
@@ -61,12 +61,12 @@ static struct absorbed absorb_light(const struct bed *bed, const fibrad_scene_co
     OWNED_RADIATION *radiation = NULL;
     const fibrad_spheres spheres = {.x = bed->x, .y = bed->y, .z = bed->z, .r = bed->r, .n = bed->n};
     const fibrad_light_sources sources = {
-        .light = light, .lights = 1, .absorptivity = eps, .body_absorptivity = a.wall_eps};
+        .light = light, .lights = 1, .absorptivity = eps, .wall_absorptivity = a.wall_eps};
     for (uint32_t i = 0; i < bed->n; i++) eps[i] = absorptivity;
     for (int b = 0; b < 6; b++) a.wall_eps[b] = of_walls;
     a.result = (fibrad_light_result){.absorbed = a.sphere, .absorbed_first = a.first, .absorbed_error = a.error};
-    a.result.body_absorbed = a.wall, a.result.body_absorbed_first = a.wall_first,
-    a.result.body_absorbed_error = a.wall_error;
+    a.result.wall_absorbed = a.wall, a.result.wall_absorbed_first = a.wall_first,
+    a.result.wall_absorbed_error = a.wall_error;
     ck_assert_int_eq(fibrad_radiation_new(&radiation, config, &spheres, NULL, NULL), 0);
     ck_assert_int_eq(fibrad_radiation_shine(radiation, &sources, &a.result), 0);
     if (config->triangles) check_sides(radiation, config, eps, &a);
@@ -141,10 +141,10 @@ TEST(a_settled_bed_absorbs_as_plain_rays_say) {
 TEST(a_floor_alone_absorbs_what_it_absorbs) {
     const double far_away[][4] = {{0, 0, 1, .5}};
     OWNED_BED bed = bed_of(1, far_away);
-    const fibrad_body body = plane_at(2, 0, 0);
+    const fibrad_wall wall = plane_at(2, 0, 0);
     const fibrad_plane top = {2, 1, 2};
     const fibrad_scene_config config = {
-        .period = {4, 4, 0}, .body = &body, .bodies = 1, .opening = &top, .openings = 1};
+        .period = {4, 4, 0}, .wall = &wall, .walls = 1, .opening = &top, .openings = 1};
     const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
     for (int k = 0; k <= 4; k++) {
         const double share = k / 4.;
@@ -190,16 +190,16 @@ TEST(a_cup_of_triangles_absorbs_as_one_of_planes) {
         for (int a = 0; a < 3; a++) place[a][i] = .35 + place[a][i];
     }
     const double wide = side + .7;
-    fibrad_body body[5];
-    for (int k = 0; k < 5; k++) body[k] = plane_at(k / 2, k % 2, k % 2 ? wide : 0);
+    fibrad_wall wall[5];
+    for (int k = 0; k < 5; k++) wall[k] = plane_at(k / 2, k % 2, k % 2 ? wide : 0);
     OWNED struct mesh *mesh = mesh_new();
     mesh_box(mesh, (const double[]){0, 0, 0}, (const double[]){wide, wide, wide}, 0);
     mesh->triangles.n -= 2; /* without its lid */
     for (uint32_t t = 0; t < mesh->triangles.n; t++) mesh->front[t] = 0, mesh->back[t] = 1;
     const fibrad_plane top = {2, 1, wide};
-    const fibrad_scene_config planes = {.body = body, .bodies = 5, .opening = &top, .openings = 1};
+    const fibrad_scene_config planes = {.wall = wall, .walls = 5, .opening = &top, .openings = 1};
     const fibrad_scene_config triangles = {
-        .body = mesh->body, .bodies = 2, .triangles = &mesh->triangles, .opening = &top, .openings = 1};
+        .wall = mesh->wall, .walls = 2, .triangles = &mesh->triangles, .opening = &top, .openings = 1};
     OWNED_BY(plain_free) struct plain_bed plain = plain_bed_of(&bed);
     plain.triangles = &mesh->triangles, plain.high[2] = wide, plain.open[5] = true;
     for (int k = 0; k < 4; k++) {
@@ -237,7 +237,7 @@ TEST(a_tilted_triangle_takes_its_shadow) {
     OWNED struct mesh *mesh = mesh_new();
     const uint32_t a = mesh_vertex(mesh, 2, -1, 0), b = mesh_vertex(mesh, 4, 0, 1), c = mesh_vertex(mesh, 3, 2, .5);
     mesh_triangle(mesh, a, b, c, 0, 0);
-    const fibrad_scene_config config = {.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles};
+    const fibrad_scene_config config = {.wall = mesh->wall, .walls = 1, .triangles = &mesh->triangles};
     const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
     struct absorbed lit = absorb_light(&bed, &config, &light, 1, .25);
     ck_assert_double_eq_tol(lit.first[0], PI, 1e-12);
@@ -252,17 +252,17 @@ TEST(light_on_a_side_of_no_wall) {
     OWNED_BED bed = bed_of(1, one);
     OWNED struct mesh *mesh = mesh_new();
     const uint32_t a = mesh_vertex(mesh, 2, -1, 3), b = mesh_vertex(mesh, 4, 0, 3), c = mesh_vertex(mesh, 3, 2, 3);
-    mesh_triangle(mesh, a, b, c, FIBRAD_NO_BODY, 0);
-    const fibrad_scene_config config = {.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles};
+    mesh_triangle(mesh, a, b, c, FIBRAD_NO_WALL, 0);
+    const fibrad_scene_config config = {.wall = mesh->wall, .walls = 1, .triangles = &mesh->triangles};
     const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
     const double eps = .5;
     double absorbed[2], first[2];
     OWNED_RADIATION *radiation = NULL;
     const fibrad_spheres spheres = {.x = bed.x, .y = bed.y, .z = bed.z, .r = bed.r, .n = 1};
     const fibrad_light_sources sources = {
-        .light = &light, .lights = 1, .absorptivity = &eps, .body_absorptivity = &eps};
+        .light = &light, .lights = 1, .absorptivity = &eps, .wall_absorptivity = &eps};
     fibrad_light_result result = {
-        .absorbed = absorbed, .absorbed_first = first, .body_absorbed = absorbed + 1, .body_absorbed_first = first + 1};
+        .absorbed = absorbed, .absorbed_first = first, .wall_absorbed = absorbed + 1, .wall_absorbed_first = first + 1};
     fibrad_fault fault;
     ck_assert_int_eq(fibrad_radiation_new(&radiation, &config, &spheres, NULL, NULL), 0);
     ck_assert_int_eq(fibrad_radiation_shine(radiation, &sources, &result), FIBRAD_E_BACK);
@@ -274,10 +274,10 @@ TEST(light_on_a_side_of_no_wall) {
 TEST(white_walls_absorb_nothing) {
     const double one[][4] = {{0, 0, .6, .5}};
     OWNED_BED bed = bed_of(1, one);
-    fibrad_body body[5];
-    for (int side = 0; side < 5; side++) body[side] = plane_at(side / 2, side % 2, side == 4 ? 0 : side % 2 ? 1 : -1);
+    fibrad_wall wall[5];
+    for (int side = 0; side < 5; side++) wall[side] = plane_at(side / 2, side % 2, side == 4 ? 0 : side % 2 ? 1 : -1);
     const fibrad_plane top = {2, 1, 1.5};
-    const fibrad_scene_config config = {.body = body, .bodies = 5, .opening = &top, .openings = 1};
+    const fibrad_scene_config config = {.wall = wall, .walls = 5, .opening = &top, .openings = 1};
     const fibrad_light light = {.direction = {.4, .1, -1}, .flux = 3, .half_angle = .1};
     OWNED_ABSORBED a = absorb_light(&bed, &config, &light, .3, 0);
     for (int b = 0; b < 5; b++) ck_assert_double_eq_tol(a.wall[b], 0, 1e-12);
@@ -290,8 +290,8 @@ TEST(emissivity_of_a_face_is_its_mean_absorptance) {
     OWNED_BED bed = packing(40, .5, .5, .5, 9, true);
     const double side = bed.period[0], floor_at = -.5;
     bed.period[2] = 0;
-    const fibrad_body body = plane_at(2, 0, floor_at);
-    const fibrad_scene_config config = {.period = {side, side, 0}, .body = &body, .bodies = 1};
+    const fibrad_wall wall = plane_at(2, 0, floor_at);
+    const fibrad_scene_config config = {.period = {side, side, 0}, .wall = &wall, .walls = 1};
     enum { RINGS = 4, TURNS = 3 };
     double mean = 0, hot[40], power[40], eps[40], wall_hot = 1000, wall_power, wall_eps = .4;
     for (int k = 0; k < RINGS * TURNS; k++) {
@@ -305,11 +305,11 @@ TEST(emissivity_of_a_face_is_its_mean_absorptance) {
     OWNED_RADIATION *radiation = NULL;
     const fibrad_spheres spheres = {.x = bed.x, .y = bed.y, .z = bed.z, .r = bed.r, .n = bed.n};
     fibrad_heat_sources sources;
-    fibrad_heat_result result = {.power = power, .body_power = &wall_power};
+    fibrad_heat_result result = {.power = power, .wall_power = &wall_power};
     fibrad_heat_sources_init(&sources);
     for (int i = 0; i < 40; i++) hot[i] = 1000, eps[i] = .4;
     sources.temperature = hot, sources.emissivity = eps, sources.surroundings = 0;
-    sources.body_temperature = &wall_hot, sources.body_emissivity = &wall_eps;
+    sources.wall_temperature = &wall_hot, sources.wall_emissivity = &wall_eps;
     ck_assert_int_eq(fibrad_radiation_new(&radiation, &config, &spheres, NULL, NULL), 0);
     ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &result), 0);
     const double emissivity = result.surroundings_power / (FIBRAD_STEFAN_BOLTZMANN * 1e12 * side * side);
@@ -322,8 +322,8 @@ TEST(emissivity_of_a_face_is_its_mean_absorptance) {
 TEST(nothing_absorbs_less_than_its_first_light) {
     enum { SIDE = 4, CUBE = SIDE * SIDE * SIDE };
     const fibrad_heat_config coarse = {.directions = 12, .patches = 24};
-    const fibrad_body floor = plane_at(2, 0, -1.1);
-    const fibrad_scene_config config = {.body = &floor, .bodies = 1};
+    const fibrad_wall floor = plane_at(2, 0, -1.1);
+    const fibrad_scene_config config = {.wall = &floor, .walls = 1};
     for (int k = 0; k < 6; k++) {
         OWNED_BED bed = bed_empty();
         OWNED_RADIATION *radiation = NULL;
@@ -340,9 +340,9 @@ TEST(nothing_absorbs_less_than_its_first_light) {
                                     .centre = {.5 * k, .3 * k, 99},
                                     .radius = .5};
         const fibrad_light_sources sources = {
-            .light = &light, .lights = 1, .absorptivity = eps, .body_absorptivity = &of_wall};
+            .light = &light, .lights = 1, .absorptivity = eps, .wall_absorptivity = &of_wall};
         fibrad_light_result result = {
-            .absorbed = absorbed, .absorbed_first = first, .body_absorbed = &wall, .body_absorbed_first = &wall_first};
+            .absorbed = absorbed, .absorbed_first = first, .wall_absorbed = &wall, .wall_absorbed_first = &wall_first};
         assert_ok(fibrad_radiation_new(&radiation, &config, &spheres, &coarse, NULL));
         assert_ok(fibrad_radiation_shine(radiation, &sources, &result));
         for (int i = 0; i < CUBE; i++) {

@@ -5,7 +5,7 @@
 #include "suite.h"
 
 static fibrad_scene_config config_of(const struct mesh *mesh) {
-    return (fibrad_scene_config){.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles};
+    return (fibrad_scene_config){.wall = mesh->wall, .walls = 1, .triangles = &mesh->triangles};
 }
 
 /* Two axes across a direction. */

@@ -11,7 +11,7 @@ enum { SPHERES = 60, SCENES = 20, MOST = SPHERES + 1 };
 struct spot_scene {
     struct bed bed;
     struct mesh *mesh;
-    fibrad_body floor;
+    fibrad_wall floor;
     fibrad_scene_config config;
     struct plain_bed plain;
     fibrad_light light;
@@ -35,7 +35,7 @@ static struct spot_scene lit_scene(int k) {
     s.plain = plain_bed_of(&s.bed);
     const int floor = k % FLOORS;
     if (floor == PLANE) {
-        s.floor = plane_at(2, 0, under), s.config.bodies = 1;
+        s.floor = plane_at(2, 0, under), s.config.walls = 1;
         s.plain.low[2] = under;
     }
     if (floor == TRIANGLES) {
@@ -44,7 +44,7 @@ static struct spot_scene lit_scene(int k) {
         for (int c = 0; c < 4; c++)
             v[c] = mesh_vertex(s.mesh, c == 1 || c == 2 ? wide : side - wide, c > 1 ? wide : side - wide, under);
         mesh_quad(s.mesh, v, 0, 0);
-        s.config.body = s.mesh->body, s.config.bodies = 1, s.config.triangles = &s.mesh->triangles;
+        s.config.wall = s.mesh->wall, s.config.walls = 1, s.config.triangles = &s.mesh->triangles;
         s.plain.triangles = &s.mesh->triangles;
     }
     const double slant = .2 * (k % 3);
@@ -61,7 +61,7 @@ static struct spot_scene lit_scene(int k) {
 /* Sets pointers into a scene, which has been moved. */
 static void settle_scene(struct spot_scene *s) {
     s->plain.bed = &s->bed;
-    if (s->config.bodies > 0 && s->mesh == NULL) s->config.body = &s->floor;
+    if (s->config.walls > 0 && s->mesh == NULL) s->config.wall = &s->floor;
 }
 
 /* Fractions of the light that spheres, the floor and the surroundings take. */
@@ -101,13 +101,13 @@ static void take_ours(const struct spot_scene *s, double share[MOST + 1], double
     OWNED_RADIATION *radiation = NULL;
     const fibrad_spheres spheres = spheres_of(&s->bed);
     const fibrad_light_sources sources = {
-        .light = &s->light, .lights = 1, .absorptivity = eps, .body_absorptivity = &s->of_floor};
+        .light = &s->light, .lights = 1, .absorptivity = eps, .wall_absorptivity = &s->of_floor};
     fibrad_light_result result = {.absorbed = share,
                                   .absorbed_first = first,
                                   .absorbed_error = error,
-                                  .body_absorbed = share + SPHERES,
-                                  .body_absorbed_first = first + SPHERES,
-                                  .body_absorbed_error = error + SPHERES};
+                                  .wall_absorbed = share + SPHERES,
+                                  .wall_absorbed_first = first + SPHERES,
+                                  .wall_absorbed_error = error + SPHERES};
     for (int i = 0; i < SPHERES; i++) eps[i] = s->absorptivity;
     share[SPHERES] = error[SPHERES] = 0;
     assert_ok(fibrad_radiation_new(&radiation, &s->config, &spheres, NULL, &run));
@@ -196,8 +196,8 @@ TEST(shadows_on_an_endless_floor) {
         eps[i] = .5;
     }
     const double of_floor = .1, area = (high[0] - low[0]) * (high[1] - low[1]);
-    const fibrad_body floor = plane_at(2, 0, low[2] - .02);
-    const fibrad_scene_config config = {.body = &floor, .bodies = 1};
+    const fibrad_wall floor = plane_at(2, 0, low[2] - .02);
+    const fibrad_scene_config config = {.wall = &floor, .walls = 1};
     OWNED_BY(plain_free) struct plain_bed plain = plain_bed_of(&bed);
     plain.low[2] = low[2] - .02;
     const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1 / area};
@@ -205,12 +205,12 @@ TEST(shadows_on_an_endless_floor) {
     OWNED_RADIATION *radiation = NULL;
     const fibrad_spheres spheres = spheres_of(&bed);
     const fibrad_light_sources sources = {
-        .light = &light, .lights = 1, .absorptivity = eps, .body_absorptivity = &of_floor};
+        .light = &light, .lights = 1, .absorptivity = eps, .wall_absorptivity = &of_floor};
     fibrad_light_result result = {.absorbed = absorbed,
                                   .absorbed_first = first,
                                   .absorbed_error = error,
-                                  .body_absorbed = &wall,
-                                  .body_absorbed_first = &wall_first};
+                                  .wall_absorbed = &wall,
+                                  .wall_absorbed_first = &wall_first};
     assert_ok(fibrad_radiation_new(&radiation, &config, &spheres, NULL, NULL));
     assert_ok(fibrad_radiation_shine(radiation, &sources, &result));
 #pragma omp parallel for schedule(static) reduction(+ : rays[:FEW])

@@ -29,7 +29,7 @@ static void all_closed(const fibrad_factors *m) {
         ck_assert_double_eq_tol(matrix_total(m, i), 1, 1e-13);
         ck_assert_double_le(matrix_sum(m, i), 1 + 1e-14);
         ck_assert(m->escaped[i] >= 0 && m->beyond[i] == 0 && m->error[i] >= 0);
-        for (uint32_t b = 0; b < m->bodies; b++) ck_assert(m->body[(size_t)i * m->bodies + b] >= 0);
+        for (uint32_t b = 0; b < m->walls; b++) ck_assert(m->wall[(size_t)i * m->walls + b] >= 0);
     }
 }
 
@@ -313,13 +313,13 @@ TEST(all_rows_may_be_empty) {
 /* The rows of a walled bed with reflectors become reciprocal and closed. */
 TEST(rows_among_walls_and_reflectors_are_closed) {
     OWNED_BED bed = packing(120, .5, 1.5, .45, 3, false);
-    const fibrad_body floor_plane = plane_at(2, 0, -100);
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
+    const fibrad_wall floor_plane = plane_at(2, 0, -100);
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = &floor_plane, .walls = 1});
     OWNED double *emissivity = calloc(bed.n, sizeof *emissivity);
     for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = i % 3 == 1 ? 0 : .2 + .8 * bed_make_random(5, i);
     OWNED_ROWS rows = {.memory = memory_growing()};
     OWNED_WORK work = work_growing();
-    const fibrad_exchange_rule rule = {.emissivity = emissivity, .body_emissivity = (double[]){.4}};
+    const fibrad_exchange_rule rule = {.emissivity = emissivity, .wall_emissivity = (double[]){.4}};
     for (uint32_t i = 0; i < bed.n; i++)
         assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL));
     for (int drop = 0; drop <= 1; drop++) {
@@ -424,8 +424,8 @@ TEST(a_lone_factor_counts_in_full) {
 /* Raw rows stay as they were, in the order of the spheres. Missing rows are empty. */
 TEST(raw_rows_stay_as_they_are) {
     OWNED_BED bed = packing(100, .5, 1.5, .4, 3, false);
-    const fibrad_body floor_plane = plane_at(2, 0, -100);
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
+    const fibrad_wall floor_plane = plane_at(2, 0, -100);
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = &floor_plane, .walls = 1});
     OWNED_WORK work = work_growing();
     OWNED_ROWS rows = {.memory = memory_growing()};
     const fibrad_beam_rule rule = {.directions = 34};
@@ -437,12 +437,12 @@ TEST(raw_rows_stay_as_they_are) {
     for (uint32_t i = 0; i < bed.n; i++) {
         const fibrad_row there = matrix_row(&m.factors, i);
         if (i % 3 == 1) {
-            ck_assert(there.length == 0 && there.escaped == 0 && there.error == 0 && there.body[0] == 0);
+            ck_assert(there.length == 0 && there.escaped == 0 && there.error == 0 && there.wall[0] == 0);
             continue;
         }
         assert_ok(fibrad_beam_row(scene, &work, i, &rule, &row));
         ck_assert(same_bits_with(&row, &there, 1));
-        ck_assert_double_gt(there.body[0], 0);
+        ck_assert_double_gt(there.wall[0], 0);
     }
     uint32_t sphere = 999;
     fibrad_matrix *none = NULL;

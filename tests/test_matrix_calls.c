@@ -190,14 +190,14 @@ TEST(bad_matrices_are_refused) {
     OWNED fibrad_scene *scene = apart(2, r);
     uint32_t col = 1;
     OWNED_ROWS rows = {.memory = memory_growing()}, stranger = rows, seen = rows, walled = rows;
-    const double body = .1;
+    const double wall = .1;
     fibrad_row row = {.col = &col, .f = (double *)(uintptr_t)&f, .length = 1};
     for (row.sphere = 0; row.sphere < 2; row.sphere++) {
         col = 1;
         assert_ok(fibrad_rows_add(&rows, &row, 0));
-        row.body = (double *)(uintptr_t)&body;
+        row.wall = (double *)(uintptr_t)&wall;
         assert_ok(fibrad_rows_add(&walled, &row, 1));
-        row.body = NULL;
+        row.wall = NULL;
         col = 1 + row.sphere; /* 2: no such sphere */
         assert_ok(fibrad_rows_add(&seen, &row, 0));
     }
@@ -247,8 +247,8 @@ static bool same_collection(const fibrad_rows *a, const fibrad_rows *b) {
 TEST(bad_rows_are_refused) {
     OWNED_ROWS rows = {.memory = memory_growing()};
     uint32_t col[] = {1, 3}, descending[] = {3, 1}, equal[] = {1, 1};
-    double f[] = {.1, .2}, body[] = {.5};
-    const fibrad_row good = {.sphere = 7, .col = col, .f = f, .body = body, .length = 2, .escaped = .7, .error = .01};
+    double f[] = {.1, .2}, wall[] = {.5};
+    const fibrad_row good = {.sphere = 7, .col = col, .f = f, .wall = wall, .length = 2, .escaped = .7, .error = .01};
     assert_ok(fibrad_rows_add(&rows, &good, 1));
     ck_assert(rows.count == 1 && rows.entries == 2 && rows.used > 0);
     const fibrad_rows before = rows;
@@ -261,7 +261,7 @@ TEST(bad_rows_are_refused) {
     assert_invalid(fibrad_rows_add(&rows, &bad, 1));
     bad = good, bad.f = NULL;
     assert_invalid(fibrad_rows_add(&rows, &bad, 1));
-    bad = good, bad.body = NULL;
+    bad = good, bad.wall = NULL;
     assert_invalid(fibrad_rows_add(&rows, &bad, 1));
     const double wrong[] = {-.1, 1.1, NAN, INFINITY, -INFINITY};
     for (size_t k = 0; k < 2 * sizeof wrong / sizeof *wrong; k++) {
@@ -272,7 +272,7 @@ TEST(bad_rows_are_refused) {
     }
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
         double g = wrong[k];
-        bad = good, bad.body = &g;
+        bad = good, bad.wall = &g;
         assert_invalid(fibrad_rows_add(&rows, &bad, 1));
     }
     bad = good, bad.escaped = NAN;
@@ -282,7 +282,7 @@ TEST(bad_rows_are_refused) {
     assert_invalid(fibrad_rows_add(NULL, &good, 1));
     assert_invalid(fibrad_rows_add(&rows, NULL, 1));
     ck_assert(same_collection(&rows, &before) && rows.used == before.used);
-    bad = good, bad.body = NULL; /* no bodies, no array */
+    bad = good, bad.wall = NULL; /* no walls, no array */
     assert_ok(fibrad_rows_add(&rows, &bad, 0));
     bad = (fibrad_row){.sphere = 3, .escaped = 1}; /* nothing seen */
     assert_ok(fibrad_rows_add(&rows, &bad, 0));
@@ -297,8 +297,8 @@ TEST(bad_rows_are_refused) {
  * collection is then emptied and used again without more memory. */
 TEST(rows_added_are_rows_computed) {
     OWNED_BED bed = packing(50, .5, 1.5, .4, 3, false);
-    const fibrad_body walls[] = {plane_at(2, 0, -100), plane_at(2, 1, 500)};
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 2});
+    const fibrad_wall walls[] = {plane_at(2, 0, -100), plane_at(2, 1, 500)};
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = walls, .walls = 2});
     OWNED_WORK work = work_growing();
     const fibrad_beam_rule rule = {.directions = 34};
     OWNED_ROWS computed = rows_by_beams(scene, &rule), mixed = {.memory = memory_growing()};
@@ -414,10 +414,10 @@ TEST(collections_grow_when_asked) {
 /* Rows come back as they were appended, also empty ones. Their columns may be written. */
 TEST(rows_are_read_as_they_were_appended) {
     uint32_t col[] = {3, 5, 9};
-    double f[] = {.25, .125, .0625}, body[] = {.5};
+    double f[] = {.25, .125, .0625}, wall[] = {.5};
     const fibrad_row in = {.col = col,
                            .f = f,
-                           .body = body,
+                           .wall = wall,
                            .length = 3,
                            .escaped = .03125,
                            .beyond = .03125,
@@ -436,7 +436,7 @@ TEST(rows_are_read_as_they_were_appended) {
         at = 0;
         for (uint32_t i = 0; i < 40; i++) {
             ck_assert_int_eq(fibrad_rows_read(&rows, &at, &out), 1);
-            ck_assert(out.sphere == i && out.length == i % 4 && out.body[0] == .5 && out.symmetric == 1);
+            ck_assert(out.sphere == i && out.length == i % 4 && out.wall[0] == .5 && out.symmetric == 1);
             ck_assert(out.escaped == .03125 && out.beyond == .03125 && out.error == .01 && out.rows == NULL);
             for (uint32_t k = 0; k < out.length; k++) {
                 ck_assert(out.col[k] == col[k] + again * 100 && out.f[k] == f[k]);

@@ -7,14 +7,14 @@
 
 static double uniform(double low, double high) { return low + (high - low) * (rand() / (RAND_MAX + 1.0)); }
 
-static fibrad_scene *scene_of_mesh(const struct bed *bed, const struct mesh *mesh, uint32_t bodies) {
-    return scene_with(bed, &(fibrad_scene_config){.body = mesh->body, .bodies = bodies, .triangles = &mesh->triangles});
+static fibrad_scene *scene_of_mesh(const struct bed *bed, const struct mesh *mesh, uint32_t walls) {
+    return scene_with(bed, &(fibrad_scene_config){.wall = mesh->wall, .walls = walls, .triangles = &mesh->triangles});
 }
 
-/* The sum of a row with its bodies. */
-static double total_of(const fibrad_row *row, uint32_t bodies) {
+/* The sum of a row with its walls. */
+static double total_of(const fibrad_row *row, uint32_t walls) {
     double sum = row_sum(row) + row->escaped + row->beyond;
-    for (uint32_t b = 0; b < bodies; b++) sum += row->body[b];
+    for (uint32_t b = 0; b < walls; b++) sum += row->wall[b];
     return sum;
 }
 
@@ -60,18 +60,18 @@ TEST(a_sphere_and_a_triangle) {
         for (int rule = 0; rule < 3; rule++) {
             assert_ok(fibrad_beam_row(scene, &work, 0, &rules[rule], &row));
             ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
-            const double error = fabs(row.body[0] - exact);
+            const double error = fabs(row.wall[0] - exact);
             worst_of(&worst[rule], error);
             if (rule == 0) square += error * error;
         }
         assert_ok(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 100000}, &row, NULL));
-        ck_assert_double_eq_tol(row.body[0], exact, 2e-3);
-        const double whole = 4 * PI * exact / fibrad_scene_body_area(scene, 0); /* the mean of both sides */
+        ck_assert_double_eq_tol(row.wall[0], exact, 2e-3);
+        const double whole = 4 * PI * exact / fibrad_scene_wall_area(scene, 0); /* the mean of both sides */
         fibrad_side_view view[2];
         uint32_t triangle = 7;
         assert_ok(fibrad_triangle_views(scene, 0, 1 << 16, &triangle, view));
         ck_assert_uint_eq(triangle, 0);
-        ck_assert(view[0].spheres * view[1].spheres == 0 && view[0].bodies + view[1].bodies == 0);
+        ck_assert(view[0].spheres * view[1].spheres == 0 && view[0].walls + view[1].walls == 0);
         ck_assert_double_eq_tol((view[0].spheres + view[1].spheres) / 2, whole, 1e-3);
         for (int side = 0; side < 2; side++) ck_assert_double_eq(view[side].spheres + view[side].escaped, 1);
     }
@@ -97,8 +97,8 @@ TEST(small_spheres_behind) {
     OWNED_ROW row = row_of(bed.n);
     assert_ok(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 600}, &row));
     const double screen = .5 - 4 * sqrt(2) * 1.02 / 500 / (4 * PI); /* it ends a little above the horizon */
-    printf("    behind: %.2g is seen, the screen errs by %.2g\n", row_sum(&row), row.body[0] - screen);
-    ck_assert_double_eq_tol(row.body[0], screen, 1e-3);
+    printf("    behind: %.2g is seen, the screen errs by %.2g\n", row_sum(&row), row.wall[0] - screen);
+    ck_assert_double_eq_tol(row.wall[0], screen, 1e-3);
     ck_assert_double_le(row_sum(&row), 1e-5);
     ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
 }
@@ -124,15 +124,15 @@ TEST(a_box_of_triangles) {
     static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
     OWNED_BED bed = crowd(60, 3);
     OWNED struct mesh *mesh = mesh_new();
-    fibrad_body plane[6];
+    fibrad_wall plane[6];
     mesh_box(mesh, low, high, 0);
     for (int k = 0; k < 6; k++) plane[k] = plane_at(k / 2, k % 2, k % 2);
     OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 6),
-                       *other = scene_with(&bed, &(fibrad_scene_config){.body = plane, .bodies = 6});
+                       *other = scene_with(&bed, &(fibrad_scene_config){.wall = plane, .walls = 6});
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(bed.n), of_planes = row_of(bed.n);
     double spheres = 0, walls = 0, estimate = 0;
-    for (int k = 0; k < 6; k++) ck_assert_double_eq_tol(fibrad_scene_body_area(scene, (uint32_t)k), 1, 1e-15);
+    for (int k = 0; k < 6; k++) ck_assert_double_eq_tol(fibrad_scene_wall_area(scene, (uint32_t)k), 1, 1e-15);
     /* this work memory was laid out without triangles, and is laid out anew */
     assert_ok(fibrad_beam_row(other, &work, 0, NULL, &of_planes));
     for (uint32_t points = 0; points <= 256; points += 256)
@@ -145,7 +145,7 @@ TEST(a_box_of_triangles) {
             const double distance = row_distance(&row, &of_planes);
             spheres += distance * distance / bed.n;
             estimate += row.error * row.error / bed.n;
-            for (int k = 0; k < 6; k++) walls += pow(row.body[k] - of_planes.body[k], 2) / bed.n;
+            for (int k = 0; k < 6; k++) walls += pow(row.wall[k] - of_planes.wall[k], 2) / bed.n;
         }
     printf("    box: spheres differ by %.2g, walls by %.2g, estimate %.2g\n", sqrt(spheres), sqrt(walls),
            sqrt(estimate));
@@ -167,8 +167,8 @@ TEST(a_drum) {
     }
     static const double turn[3][9] = {
         {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 1, 1, 0, 0, 0, 1, 0}, {.6, -.8, 0, .8, .6, 0, 0, 0, 1}};
-    const fibrad_body round[3] = {cylinder_at(0, 0, .5), plane_at(2, 0, 0), plane_at(2, 1, 1)};
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = round, .bodies = 3});
+    const fibrad_wall round[3] = {cylinder_at(0, 0, .5), plane_at(2, 0, 0), plane_at(2, 1, 1)};
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = round, .walls = 3});
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(bed.n), exact = row_of(bed.n);
     for (int t = 0; t < 3; t++) {
@@ -176,12 +176,12 @@ TEST(a_drum) {
         OWNED_BED turned = bed_empty();
         enum { FACETS = 200 };
         double square = 0;
-        mesh_tube(mesh, 0, 0, .5, 0, 1, FACETS, 4, false, 0, FIBRAD_NO_BODY);
+        mesh_tube(mesh, 0, 0, .5, 0, 1, FACETS, 4, false, 0, FIBRAD_NO_WALL);
         for (uint32_t lid = 0; lid < 2; lid++) {
             const uint32_t middle = mesh_vertex(mesh, 0, 0, lid), rim = lid * 4 * FACETS;
             for (uint32_t k = 0; k < FACETS; k++) {
                 const uint32_t a = rim + k, b = rim + (k + 1) % FACETS;
-                mesh_triangle(mesh, middle, lid ? b : a, lid ? a : b, 1 + lid, FIBRAD_NO_BODY);
+                mesh_triangle(mesh, middle, lid ? b : a, lid ? a : b, 1 + lid, FIBRAD_NO_WALL);
             }
         }
         mesh_turn(mesh, turn[t]);
@@ -197,7 +197,7 @@ TEST(a_drum) {
             assert_ok(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 4000}, &exact));
             ck_assert(row.escaped == 0);
             ck_assert_double_eq_tol(total_of(&row, 3), 1, 1e-12);
-            for (int k = 0; k < 3; k++) square += pow(row.body[k] - exact.body[k], 2) / bed.n;
+            for (int k = 0; k < 3; k++) square += pow(row.wall[k] - exact.wall[k], 2) / bed.n;
         }
         printf("    drum %d: walls differ by %.2g\n", t, sqrt(square));
         ck_assert_double_le(sqrt(square), 1.5e-3);
@@ -212,21 +212,21 @@ TEST(tubes_through_walls) {
     OWNED_WORK work = work_growing();
     for (int k = 0; k < 2; k++) {
         OWNED struct mesh *mesh = mesh_new();
-        fibrad_body body[7];
-        mesh_tube(mesh, .47, .45, .1, k ? -5 : 0, k ? 6 : 1, 24, 1, true, 6, FIBRAD_NO_BODY);
-        for (int b = 0; b < 6; b++) body[b] = plane_at(b / 2, b % 2, b % 2);
-        body[6] = mesh->body[0];
-        scene[k] = scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = 7, .triangles = &mesh->triangles});
+        fibrad_wall wall[7];
+        mesh_tube(mesh, .47, .45, .1, k ? -5 : 0, k ? 6 : 1, 24, 1, true, 6, FIBRAD_NO_WALL);
+        for (int b = 0; b < 6; b++) wall[b] = plane_at(b / 2, b % 2, b % 2);
+        wall[6] = mesh->wall[0];
+        scene[k] = scene_with(&bed, &(fibrad_scene_config){.wall = wall, .walls = 7, .triangles = &mesh->triangles});
         row[k] = row_of(2);
         assert_ok(fibrad_beam_row(scene[k], &work, 0, &(fibrad_beam_rule){.directions = 2000}, &row[k]));
         ck_assert_double_eq_tol(total_of(&row[k], 7), 1, 1e-12);
         ck_assert(row[k].escaped == 0);
     }
-    for (int b = 0; b < 7; b++) ck_assert_double_eq_tol(row[0].body[b], row[1].body[b], 3e-4);
-    ck_assert_double_gt(row[0].body[6], .05);
+    for (int b = 0; b < 7; b++) ck_assert_double_eq_tol(row[0].wall[b], row[1].wall[b], 3e-4);
+    ck_assert_double_gt(row[0].wall[6], .05);
     OWNED_ROW cast = row_of(2);
     assert_ok(fibrad_cast_row(scene[1], &work, 0, &(fibrad_cast_rule){.rays = 400000}, &cast, NULL));
-    for (int b = 0; b < 7; b++) ck_assert_double_eq_tol(row[1].body[b], cast.body[b], 1.5e-3);
+    for (int b = 0; b < 7; b++) ck_assert_double_eq_tol(row[1].wall[b], cast.wall[b], 1.5e-3);
     ck_assert_double_eq_tol(row_factor(&row[1], 1), row_factor(&cast, 1), 1.5e-3);
     for (int k = 0; k < 2; k++) row_free(&row[k]), free(scene[k]);
 }
@@ -239,29 +239,29 @@ TEST(open_meshes_within_walls) {
     for (uint32_t k = 0; k < 3; k++) mesh_vertex(mesh, k == 1 ? .9 : .1, k == 2 ? .8 : .2, .3 + .2 * k);
     mesh_triangle(mesh, 0, 1, 2, 6, 6);
     for (int round = 0; round < 2; round++) {
-        fibrad_body body[7];
-        for (int b = 0; b < 6; b++) body[b] = plane_at(b / 2, b % 2, b % 2);
-        if (round) body[0] = cylinder_at(.5, .5, .75), body[1] = body[4], body[2] = body[5];
-        const uint32_t bodies = round ? 4 : 7, from = bodies - 1;
-        body[from] = mesh->body[0];
+        fibrad_wall wall[7];
+        for (int b = 0; b < 6; b++) wall[b] = plane_at(b / 2, b % 2, b % 2);
+        if (round) wall[0] = cylinder_at(.5, .5, .75), wall[1] = wall[4], wall[2] = wall[5];
+        const uint32_t walls = round ? 4 : 7, from = walls - 1;
+        wall[from] = mesh->wall[0];
         mesh->front[0] = mesh->back[0] = from;
         OWNED fibrad_scene *scene =
-            scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = bodies, .triangles = &mesh->triangles});
+            scene_with(&bed, &(fibrad_scene_config){.wall = wall, .walls = walls, .triangles = &mesh->triangles});
         OWNED_WORK work = work_growing();
         OWNED_ROW row = row_of(bed.n), exact = row_of(bed.n), grey = row_of(bed.n);
-        double emissivity[150], of_body[7], square = 0;
+        double emissivity[150], of_wall[7], square = 0;
         for (uint32_t k = 0; k < 150; k++) emissivity[k] = .8;
-        for (uint32_t b = 0; b < 7; b++) of_body[b] = .5;
+        for (uint32_t b = 0; b < 7; b++) of_wall[b] = .5;
         const fibrad_exchange_rule rule = {
-            .emissivity = emissivity, .body_emissivity = of_body, .directions = 150, .paths = 100};
+            .emissivity = emissivity, .wall_emissivity = of_wall, .directions = 150, .paths = 100};
         for (uint32_t i = 0; i < bed.n; i++) {
             assert_ok(fibrad_beam_row(scene, &work, i, NULL, &exact));
-            ck_assert_double_eq_tol(total_of(&exact, bodies), 1, 1e-12);
+            ck_assert_double_eq_tol(total_of(&exact, walls), 1, 1e-12);
             assert_ok(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.points = 256}, &row));
-            ck_assert_double_eq_tol(total_of(&row, bodies), 1, 1e-12);
+            ck_assert_double_eq_tol(total_of(&row, walls), 1, 1e-12);
             assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &grey, NULL));
-            ck_assert_double_eq_tol(total_of(&grey, bodies), 1, 1e-12);
-            for (uint32_t b = 0; b < bodies; b++) square += pow(row.body[b] - exact.body[b], 2) / bed.n;
+            ck_assert_double_eq_tol(total_of(&grey, walls), 1, 1e-12);
+            for (uint32_t b = 0; b < walls; b++) square += pow(row.wall[b] - exact.wall[b], 2) / bed.n;
         }
         printf("    within walls: by points and by areas differ by %.2g\n", sqrt(square));
         ck_assert_double_le(sqrt(square), 1.5e-3);
@@ -270,32 +270,32 @@ TEST(open_meshes_within_walls) {
 
 /* ---- sides ------------------------------------------------------------------------------------------------------- */
 
-/* A plate faces a sphere with its back, which belongs to no body. The row ends, and the fault names the plate. If the
- * back has a body of its own, this takes its part. */
+/* A plate faces a sphere with its back, which belongs to no wall. The row ends, and the fault names the plate. If the
+ * back has a wall of its own, this takes its part. */
 TEST(sides_of_nobody) {
     OWNED_BED bed = BED({0, 0, 0, 1});
     OWNED struct mesh *mesh = mesh_new();
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(1);
     uint64_t rays;
-    const double emissivity = .5, of_body[2] = {.5, .5};
-    fibrad_body_row body_row;
+    const double emissivity = .5, of_wall[2] = {.5, .5};
+    fibrad_wall_row wall_row;
     mesh_vertex(mesh, 0, 9, -3), mesh_vertex(mesh, 9, 9, -3), mesh_vertex(mesh, 0, 9, 3); /* seen from the front */
     mesh_vertex(mesh, -4, -4, 2), mesh_vertex(mesh, 4, -4, 2), mesh_vertex(mesh, 0, 5, 2);
-    mesh_triangle(mesh, 0, 1, 2, 0, FIBRAD_NO_BODY);
-    mesh_triangle(mesh, 3, 4, 5, 1, FIBRAD_NO_BODY); /* its normal is +z, away from the sphere */
+    mesh_triangle(mesh, 0, 1, 2, 0, FIBRAD_NO_WALL);
+    mesh_triangle(mesh, 3, 4, 5, 1, FIBRAD_NO_WALL); /* its normal is +z, away from the sphere */
     OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 2);
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &row), FIBRAD_E_BACK);
     ck_assert_uint_eq(work.triangle, 1);
     work.triangle = 77;
     ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, NULL, &row, NULL), FIBRAD_E_BACK);
     ck_assert_uint_eq(work.triangle, 1);
-    const fibrad_exchange_rule rule = {.emissivity = &emissivity, .body_emissivity = of_body};
+    const fibrad_exchange_rule rule = {.emissivity = &emissivity, .wall_emissivity = of_wall};
     work.triangle = 77;
     ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, &rays), FIBRAD_E_BACK);
     ck_assert_uint_eq(work.triangle, 1);
     work.triangle = 77;
-    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 0, &rule, 0, &body_row, NULL), FIBRAD_E_BACK);
+    ck_assert_int_eq(fibrad_exchange_wall(scene, &work, 0, &rule, 0, &wall_row, NULL), FIBRAD_E_BACK);
     ck_assert_uint_eq(work.triangle, 1);
     fibrad_side_view view[2];
     uint32_t triangle = 0;
@@ -310,9 +310,9 @@ TEST(sides_of_nobody) {
     mesh->back[1] = 0;
     scene = scene_of_mesh(&bed, mesh, 2);
     assert_ok(fibrad_beam_row(scene, &work, 0, NULL, &row));
-    ck_assert_double_gt(row.body[0], .1);
-    ck_assert_double_eq(row.body[1], 0);
-    ck_assert_double_eq_tol(fibrad_scene_body_area(scene, 0), 27 + 36, 1e-12);
+    ck_assert_double_gt(row.wall[0], .1);
+    ck_assert_double_eq(row.wall[1], 0);
+    ck_assert_double_eq_tol(fibrad_scene_wall_area(scene, 0), 27 + 36, 1e-12);
 }
 
 TEST(bad_triangles_are_named) {
@@ -320,7 +320,7 @@ TEST(bad_triangles_are_named) {
     OWNED struct mesh *mesh = mesh_new();
     const double low[3] = {-2, -2, -2}, high[3] = {2, 2, 2};
     mesh_box(mesh, low, high, 0);
-    const fibrad_scene_config config = {.body = mesh->body, .bodies = 6, .triangles = &mesh->triangles};
+    const fibrad_scene_config config = {.wall = mesh->wall, .walls = 6, .triangles = &mesh->triangles};
     fibrad_scene *scene = NULL;
     fibrad_fault fault;
     mesh->at[3][1] = NAN;
@@ -333,7 +333,7 @@ TEST(bad_triangles_are_named) {
     mesh->corner[7][2] = 7, mesh->front[5] = 6;
     assert_invalid(scene_try(&scene, &bed, &config, &fault));
     ck_assert_uint_eq(fault.triangle, 5);
-    mesh->front[5] = FIBRAD_NO_BODY, mesh->front[4] = FIBRAD_NO_BODY; /* body 2 has no triangle */
+    mesh->front[5] = FIBRAD_NO_WALL, mesh->front[4] = FIBRAD_NO_WALL; /* wall 2 has no triangle */
     assert_invalid(scene_try(&scene, &bed, &config, &fault));
     ck_assert_uint_eq(fault.triangle, UINT32_MAX);
 }
@@ -349,7 +349,7 @@ static int status_of(double size, double x, double z, const double period[3], fi
         mesh_vertex(mesh, x + size * ((k == 1) - .3), size * ((k == 2) - .3), z + size * .1 * (k == 2));
     mesh_triangle(mesh, 0, 1, 2, 0, 0);
     for (int axis = 0; axis < 3 && period != NULL; axis++) mesh->triangles.period[axis] = period[axis];
-    const fibrad_scene_config config = {.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles};
+    const fibrad_scene_config config = {.wall = mesh->wall, .walls = 1, .triangles = &mesh->triangles};
     free(*scene);
     *scene = NULL;
     const int status = scene_try(scene, &bed, &config, &fault);
@@ -485,10 +485,10 @@ TEST(periodic_meshes) {
     OWNED_BED bed = BED({.2, .2, .3, .19}, {.25, .75, .7, .2}), many = bed_empty();
     OWNED struct mesh *mesh = mesh_new(), *copies = mesh_new();
     enum { FAR = 6 };
-    mesh_tube(mesh, .65 + 3, .5 - 2, .2, 5, 6, 12, 1, true, 0, FIBRAD_NO_BODY); /* wherever it is */
+    mesh_tube(mesh, .65 + 3, .5 - 2, .2, 5, 6, 12, 1, true, 0, FIBRAD_NO_WALL); /* wherever it is */
     for (int x = -FAR; x <= FAR; x++)
         for (int y = -FAR; y <= FAR; y++) {
-            mesh_tube(copies, x + .65, y + .5, .2, -15, 15, 12, 1, true, 0, FIBRAD_NO_BODY);
+            mesh_tube(copies, x + .65, y + .5, .2, -15, 15, 12, 1, true, 0, FIBRAD_NO_WALL);
             for (int z = -FAR; z <= FAR; z++)
                 for (uint32_t i = 0; i < 2; i++) add_sphere(&many, x + bed.x[i], y + bed.y[i], z + bed.z[i], bed.r[i]);
         }
@@ -501,14 +501,14 @@ TEST(periodic_meshes) {
     assert_ok(fibrad_beam_row(scene, &work, 0, &rule, &row));
     assert_ok(fibrad_beam_row(other, &work, middle, &rule, &far));
     ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
-    ck_assert_double_gt(row.body[0], .2);
-    ck_assert_double_eq_tol(row.body[0] + row.escaped, far.body[0] + far.escaped, .02); /* but for spheres beyond FAR */
+    ck_assert_double_gt(row.wall[0], .2);
+    ck_assert_double_eq_tol(row.wall[0] + row.escaped, far.wall[0] + far.escaped, .02); /* but for spheres beyond FAR */
     double of_first = 0;
     for (uint32_t k = 0; k < far.length; k++) of_first += far.col[k] % 2 == 0 ? far.f[k] : 0;
     ck_assert_double_eq_tol(row_factor(&row, 0), of_first, .01);
     assert_ok(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 200000}, &cast, NULL));
 
-    ck_assert_double_eq_tol(cast.body[0], row.body[0], 3e-3);
+    ck_assert_double_eq_tol(cast.wall[0], row.wall[0], 3e-3);
     ck_assert_double_eq_tol(row_factor(&cast, 1), row_factor(&row, 1), 3e-3);
 }
 
@@ -535,7 +535,7 @@ TEST(more_entries_than_spheres) {
     static unsigned char block[FIBRAD_WORK_BYTES(512, N) + FIBRAD_WORK_TRIANGLES];
     OWNED_BED bed = BED({0, 0, 0, 1});
     OWNED struct mesh *mesh = mesh_new();
-    double of_body[3] = {.5, .5, .5}, emissivity[N];
+    double of_wall[3] = {.5, .5, .5}, emissivity[N];
     for (uint32_t k = 0; k + 1 < N; k++) {
         double w[3];
         fibrad_direction(k, N - 1, w);
@@ -552,12 +552,12 @@ TEST(more_entries_than_spheres) {
             const fibrad_beam_rule rule = {.directions = 1000, .points = points};
             assert_ok(fibrad_beam_row(scene, &work[k], 0, &rule, &row));
             ck_assert_uint_eq(row.length, N - 1);
-            for (int b = 0; b < 3; b++) ck_assert_double_gt(row.body[b], .1);
+            for (int b = 0; b < 3; b++) ck_assert_double_gt(row.wall[b], .1);
         }
         assert_ok(fibrad_cast_row(scene, &work[k], 0, &(fibrad_cast_rule){.rays = 50000}, &row, NULL));
     }
     const fibrad_exchange_rule rule = {
-        .emissivity = emissivity, .body_emissivity = of_body, .directions = 1000, .paths = 100};
+        .emissivity = emissivity, .wall_emissivity = of_wall, .directions = 1000, .paths = 100};
     assert_ok(fibrad_exchange_row(scene, &work[0], 0, &rule, &row, NULL));
     work_free(&work[0]);
 }
@@ -590,7 +590,7 @@ TEST(soups) {
         for (int set = 0; set < isas.count; set++) {
             OWNED fibrad_scene *scene = scene_with(
                 &bed, &(fibrad_scene_config){
-                          .isa = isas.set[set], .body = mesh->body, .bodies = 3, .triangles = &mesh->triangles});
+                          .isa = isas.set[set], .wall = mesh->wall, .walls = 3, .triangles = &mesh->triangles});
             for (uint32_t i = 0; i < 4; i++) {
                 const fibrad_beam_rule rule = {.directions = 300, .points = soup % 2 ? 128 : 0};
                 assert_ok(fibrad_beam_row(scene, &work, i, &rule, &row));
@@ -600,14 +600,14 @@ TEST(soups) {
                 if (i == 3 && set == 0) {
                     memcpy(again.col, row.col, row.length * sizeof *row.col),
                         memcpy(again.f, row.f, row.length * sizeof *row.f);
-                    memcpy(again.body, row.body, 3 * sizeof *row.body);
+                    memcpy(again.wall, row.wall, 3 * sizeof *row.wall);
                     again.length = row.length, again.escaped = row.escaped, again.error = row.error,
                     again.beyond = row.beyond;
                 }
                 if (set > 0) continue;
                 assert_ok(fibrad_cast_row(scene, &work, i, &(fibrad_cast_rule){.rays = 30000}, &cast, NULL));
                 ck_assert_double_le(row_distance(&row, &cast), .01);
-                for (int b = 0; b < 3; b++) ck_assert_double_eq_tol(row.body[b], cast.body[b], .012);
+                for (int b = 0; b < 3; b++) ck_assert_double_eq_tol(row.wall[b], cast.wall[b], .012);
             }
         }
     }
@@ -618,34 +618,34 @@ TEST(grey_meshes) {
     static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1}, wall[6] = {.8, .3, .5, 1, .2, .6};
     OWNED_BED bed = crowd(30, 8);
     OWNED struct mesh *mesh = mesh_new();
-    fibrad_body plane[6];
+    fibrad_wall plane[6];
     double emissivity[30];
     mesh_box(mesh, low, high, 0);
     for (int k = 0; k < 6; k++) plane[k] = plane_at(k / 2, k % 2, k % 2);
     for (int i = 0; i < 30; i++) emissivity[i] = .2 + .02 * i;
     fibrad_scene *scene[2] = {scene_of_mesh(&bed, mesh, 6),
-                              scene_with(&bed, &(fibrad_scene_config){.body = plane, .bodies = 6})};
+                              scene_with(&bed, &(fibrad_scene_config){.wall = plane, .walls = 6})};
     OWNED_WORK work = work_growing();
     fibrad_row row[2] = {row_of(30), row_of(30)};
-    fibrad_exchange_rule rule = {.emissivity = emissivity, .body_emissivity = wall, .directions = 400, .paths = 40000};
+    fibrad_exchange_rule rule = {.emissivity = emissivity, .wall_emissivity = wall, .directions = 400, .paths = 40000};
     for (uint32_t i = 0; i < 3; i++) {
         for (int k = 0; k < 2; k++) {
             assert_ok(fibrad_exchange_row(scene[k], &work, i, &rule, &row[k], NULL));
             ck_assert_double_eq_tol(total_of(&row[k], 6), 1, 1e-12);
         }
         ck_assert_double_le(row_distance(&row[0], &row[1]), 2e-3);
-        for (int b = 0; b < 6; b++) ck_assert_double_eq_tol(row[0].body[b], row[1].body[b], 2e-3);
+        for (int b = 0; b < 6; b++) ck_assert_double_eq_tol(row[0].wall[b], row[1].wall[b], 2e-3);
     }
-    fibrad_body_row part[2][FIBRAD_BODY_PARTS], mean[2];
+    fibrad_wall_row part[2][FIBRAD_WALL_PARTS], mean[2];
     rule.paths = 80000;
     for (int k = 0; k < 2; k++) {
-        for (uint32_t p = 0; p < FIBRAD_BODY_PARTS; p++)
-            assert_ok(fibrad_exchange_body(scene[k], &work, 1, &rule, p, &part[k][p], NULL));
-        assert_ok(fibrad_exchange_body_mean(part[k], &mean[k]));
+        for (uint32_t p = 0; p < FIBRAD_WALL_PARTS; p++)
+            assert_ok(fibrad_exchange_wall(scene[k], &work, 1, &rule, p, &part[k][p], NULL));
+        assert_ok(fibrad_exchange_wall_mean(part[k], &mean[k]));
     }
     ck_assert(mean[0].escaped == 0);
     const double error = 5 * (mean[0].error + mean[1].error);
-    for (int b = 0; b < 6; b++) ck_assert_double_eq_tol(mean[0].body[b], mean[1].body[b], error);
+    for (int b = 0; b < 6; b++) ck_assert_double_eq_tol(mean[0].wall[b], mean[1].wall[b], error);
     for (int k = 0; k < 2; k++) free(scene[k]), row_free(&row[k]);
 }
 
@@ -657,19 +657,19 @@ TEST(few_turned_windows) {
     const double x = bed.period[0], y = bed.period[1];
     const uint32_t corner[4] = {mesh_vertex(mesh, 0, 0, 0), mesh_vertex(mesh, x, 0, 0), mesh_vertex(mesh, x, y, 0),
                                 mesh_vertex(mesh, 0, y, 0)};
-    mesh_quad(mesh, corner, 0, FIBRAD_NO_BODY);
-    const fibrad_body body[2][2] = {{plane_at(2, 0, 0), plane_at(2, 1, bed.high[2])},
-                                    {{.kind = FIBRAD_BODY_MESH}, plane_at(2, 1, bed.high[2])}};
+    mesh_quad(mesh, corner, 0, FIBRAD_NO_WALL);
+    const fibrad_wall wall[2][2] = {{plane_at(2, 0, 0), plane_at(2, 1, bed.high[2])},
+                                    {{.kind = FIBRAD_WALL_MESH}, plane_at(2, 1, bed.high[2])}};
     double sum[2] = {0};
     for (int k = 0; k < 2; k++) {
         OWNED fibrad_scene *scene = scene_with(
-            &bed, &(fibrad_scene_config){.body = body[k], .bodies = 2, .triangles = k ? &mesh->triangles : NULL});
+            &bed, &(fibrad_scene_config){.wall = wall[k], .walls = 2, .triangles = k ? &mesh->triangles : NULL});
         OWNED_WORK work = work_growing();
         OWNED_ROW row = row_of(bed.n);
         for (uint32_t n = 0; n < 2000; n++) {
             const fibrad_beam_rule rule = {.directions = 24, .points = 64, .turn = n + 1};
             assert_ok(fibrad_beam_row(scene, &work, n % bed.n, &rule, &row));
-            sum[k] += row.body[0];
+            sum[k] += row.wall[0];
         }
     }
     ck_assert_double_eq_tol(sum[1] / sum[0], 1, 1e-9);

@@ -139,7 +139,7 @@ static struct meshes faced(const struct soup *soup, enum mesh_sides sides, uint3
     return meshes;
 }
 
-/* Checks that the side of a triangle on which a point lies belongs to the body, and that the other side belongs to
+/* Checks that the side of a triangle on which a point lies belongs to the wall, and that the other side belongs to
  * none. */
 static void assert_side(const struct meshes *meshes, uint32_t t, const double point[3]) {
     const struct surface *s = &meshes->mesh[0].surface;
@@ -147,8 +147,8 @@ static void assert_side(const struct meshes *meshes, uint32_t t, const double po
     double normal[3], height = 0;
     surface_normal(s, t, normal);
     for (int axis = 0; axis < 3; ++axis) height += normal[axis] * (point[axis] - at[axis]);
-    ck_assert_uint_eq(meshes->front[t], height > 0 ? 0 : FIBRAD_NO_BODY);
-    ck_assert_uint_eq(meshes->back[t], height > 0 ? FIBRAD_NO_BODY : 0);
+    ck_assert_uint_eq(meshes->front[t], height > 0 ? 0 : FIBRAD_NO_WALL);
+    ck_assert_uint_eq(meshes->back[t], height > 0 ? FIBRAD_NO_WALL : 0);
 }
 
 /* The triangles of a cube are wound at random. Spheres lie within it, or around it. */
@@ -223,7 +223,7 @@ TEST(sides_that_are_asked_for) {
     struct meshes both = faced(&soup, SIDES_BOTH, 1, centre), normals = faced(&soup, SIDES_NORMALS, 1, centre);
     for (uint32_t t = 0; t < 12; ++t) {
         ck_assert(both.front[t] == 0 && both.back[t] == 0);
-        ck_assert(normals.front[t] == 0 && normals.back[t] == FIBRAD_NO_BODY);
+        ck_assert(normals.front[t] == 0 && normals.back[t] == FIBRAD_NO_WALL);
     }
     ck_assert_uint_eq(both.enclosing + normals.enclosing, 0);
     soup_flip(&soup, 1);

@@ -62,7 +62,7 @@ TEST(displacements_depend_on_what_is_near) {
         OWNED fibrad_scene *little = part_scene(&near);
         OWNED double *of_near = emissivities_of(&near);
         fibrad_exchange_rule rule = {
-            .emissivity = e, .body_emissivity = wall_emissivity, .paths = 200, .seed = 3, .cutoff = cutoff};
+            .emissivity = e, .wall_emissivity = wall_emissivity, .paths = 200, .seed = 3, .cutoff = cutoff};
         fibrad_displacement expected, found;
         assert_ok(fibrad_exchange_displacement(whole, &work, i, &rule, &expected));
         rule.emissivity = of_near;
@@ -123,7 +123,7 @@ TEST(far_triangles_are_met) {
     OWNED_BED bed = BED({0, 0, 0, 1});
     OWNED struct mesh *mesh = mesh_new();
     mesh_box(mesh, (const double[]){-30, -20, -10}, (const double[]){40, 50, 60}, 0);
-    const fibrad_scene_config config = {.body = mesh->body, .bodies = 6, .triangles = &mesh->triangles};
+    const fibrad_scene_config config = {.wall = mesh->wall, .walls = 6, .triangles = &mesh->triangles};
     OWNED_PART alone = part_of(&bed, config);
     OWNED fibrad_scene *scene = part_scene(&alone);
     /* the last method takes as many paths as its tolerance needs: some come back from afar, or end beyond the cutoff */
@@ -144,15 +144,15 @@ TEST(triangles_repeat_alone) {
             for (int y = copies ? -FAR : 0; y <= (copies ? FAR : 0); y++) {
                 uint32_t v[4];
                 for (int k = 0; k < 4; k++) v[k] = mesh_vertex(mesh, x + (k == 1 || k == 2) * .5, y + (k > 1) * .5, -1);
-                mesh_quad(mesh, v, 0, FIBRAD_NO_BODY);
+                mesh_quad(mesh, v, 0, FIBRAD_NO_WALL);
             }
         for (int axis = 0; axis < 2 && !copies; axis++) mesh->triangles.period[axis] = 1;
         OWNED_PART p =
-            part_of(&bed, (fibrad_scene_config){.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles});
+            part_of(&bed, (fibrad_scene_config){.wall = mesh->wall, .walls = 1, .triangles = &mesh->triangles});
         OWNED fibrad_scene *scene = part_scene(&p);
         for (int method = 0; method < METHODS; method++) {
             OWNED_NAMED row = row_by(&p, scene, 0, method, 0);
-            seen[copies][method] = row.row.body[0];
+            seen[copies][method] = row.row.wall[0];
         }
     }
     for (int method = 0; method < METHODS; method++) {
@@ -187,14 +187,14 @@ LOOP_TEST(ids_decide_among_equals, 3) {
 LOOP_TEST(turned_rows_average_to_the_fine_one, 3) {
     enum { TURNS = 300 };
     OWNED_BED bed = packing(120, .5, 1, .45, 4, false);
-    const fibrad_body floor_below = plane_at(2, 0, -1);
-    const fibrad_scene_config config = {.body = &floor_below, .bodies = _i < 2 ? 1 : 0};
+    const fibrad_wall floor_below = plane_at(2, 0, -1);
+    const fibrad_scene_config config = {.wall = &floor_below, .walls = _i < 2 ? 1 : 0};
     OWNED fibrad_scene *scene = scene_with(&bed, &config);
     OWNED_WORK work = work_growing();
     const uint32_t points = _i % 2 ? 256 : 0;
     for (uint32_t i = 0; i < bed.n; i += 50) {
         OWNED_ROW fine = row_of(bed.n), row = row_of(bed.n), mean = row_of(bed.n);
-        double body = 0, escaped = 0, square = 0, estimate = 0;
+        double wall = 0, escaped = 0, square = 0, estimate = 0;
         int less = 0;
         assert_ok(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 20000}, &fine));
         for (uint32_t j = 0; j < bed.n; j++) mean.col[j] = j;
@@ -203,7 +203,7 @@ LOOP_TEST(turned_rows_average_to_the_fine_one, 3) {
             const fibrad_beam_rule rule = {.directions = 50, .points = points, .turn = turn};
             assert_ok(fibrad_beam_row(scene, &work, i, &rule, &row));
             for (uint32_t k = 0; k < row.length; k++) mean.f[row.col[k]] += row.f[k] / TURNS;
-            body += row.body[0] / TURNS, escaped += row.escaped / TURNS;
+            wall += row.wall[0] / TURNS, escaped += row.escaped / TURNS;
             const double off = row_distance(&row, &fine);
             square += off * off / TURNS, estimate += row.error * row.error / TURNS;
             less += row.error < off;
@@ -211,7 +211,7 @@ LOOP_TEST(turned_rows_average_to_the_fine_one, 3) {
         const double typical = sqrt(square), ratio = sqrt(estimate) / typical;
         ck_assert_double_lt(row_distance(&mean, &fine), 4 * typical / sqrt(TURNS) + 1e-3);
         ck_assert_double_lt(row_distance(&mean, &fine), .35 * typical);
-        ck_assert_double_eq_tol(body, fine.body[0], 5e-3); /* sharing in bands has an error of about 1/directions */
+        ck_assert_double_eq_tol(wall, fine.wall[0], 5e-3); /* sharing in bands has an error of about 1/directions */
         ck_assert_double_eq_tol(escaped, fine.escaped, 5e-3);
         ck_assert_msg(ratio > 1 && ratio < 4, "estimate over error: %g", ratio);
         ck_assert_int_lt(less, TURNS / 10);
@@ -222,16 +222,16 @@ LOOP_TEST(turned_rows_average_to_the_fine_one, 3) {
  * cuts the sphere or not. */
 LOOP_TEST(a_floor_below_turned_directions, 2) {
     OWNED_BED bed = BED({0, 0, 3, 1});
-    const fibrad_body floor_below = plane_at(2, 0, 0);
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_below, .bodies = 1});
+    const fibrad_wall floor_below = plane_at(2, 0, 0);
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = &floor_below, .walls = 1});
     OWNED_WORK work = work_growing();
     OWNED_ROW row = row_of(1);
     double mean = 0;
     for (uint64_t turn = 1; turn <= 100; turn++) {
         const fibrad_beam_rule rule = {.directions = 233, .turn = turn, .cutoff = _i > 0 ? 5 : 0};
         assert_ok(fibrad_beam_row(scene, &work, 0, &rule, &row));
-        ck_assert_double_eq_tol(row.body[0], .5, 1.5e-3);
-        mean += row.body[0] / 100;
+        ck_assert_double_eq_tol(row.wall[0], .5, 1.5e-3);
+        mean += row.wall[0] / 100;
     }
     ck_assert_double_eq_tol(mean, .5, 1e-4);
 }

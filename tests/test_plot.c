@@ -93,8 +93,8 @@ static int draw_bed(const struct output *output, const void *what) {
 /* Makes a picture of a bed of this size, with or without walls. */
 static char *picture_of_bed(double size, bool walled) {
     OWNED_BED bed = packing(60, .4 * size, .6 * size, .4, 3, false);
-    struct walls walls = {.count = walled ? 1 : 0, .body = {plane_at(2, 0, -2 * size)}};
-    const fibrad_scene_config config = {.body = walls.body, .bodies = walls.count};
+    struct walls walls = {.count = walled ? 1 : 0, .wall = {plane_at(2, 0, -2 * size)}};
+    const fibrad_scene_config config = {.wall = walls.wall, .walls = walls.count};
     const fibrad_spheres spheres = spheres_of(&bed);
     OWNED_FACTORS *factors;
     assert_ok(fibrad_view_factors(&config, &spheres, NULL, NULL, &factors));
@@ -136,7 +136,7 @@ TEST(where_heat_goes) {
     OWNED_BED bed = BED({0, 0, 0, 1e-3}, {.003, 0, 0, 1e-3}, {0, 0, .004, 1e-3});
     const double temperature[] = {300, 1200.5, 777}, power[] = {1.5, -4.25, .25};
     const double wall_temperature[] = {412, 900}, wall_power[] = {3.125, -.5};
-    const struct walls walls = {.count = 2, .body = {plane_at(2, 0, -.001), cylinder_at(0, 0, .0044)}};
+    const struct walls walls = {.count = 2, .wall = {plane_at(2, 0, -.001), cylinder_at(0, 0, .0044)}};
     struct heat_shown what = {&bed,       &walls, 1,     temperature,   power, wall_temperature,
                               wall_power, 293,    -.125, .found = false};
     OWNED char *svg = drawn(draw_heat, &what);
@@ -209,7 +209,7 @@ LOOP_TEST(tall_and_flat_beds, 3) {
 TEST(prefixes_of_powers) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1});
     const double temperature[] = {300, 1200, 777}, power[] = {125e3, 50e3, -0.};
-    const struct walls walls = {.count = 1, .body = {plane_at(2, 0, -1)}};
+    const struct walls walls = {.count = 1, .wall = {plane_at(2, 0, -1)}};
     const double wall_temperature = 412, wall_power = -0.;
     struct heat_shown what = {&bed,        &walls, 1,      temperature,   power, &wall_temperature,
                               &wall_power, 293,    -175e3, .found = false};
@@ -249,7 +249,7 @@ TEST(no_panel_of_one_colour) {
     assert_has(svg, "they absorb 8 W of light");
     assert_has(svg, "Absorbed light [W], slice at y = 0 m");
     free(svg);
-    walls.count = 1, walls.body[0] = cylinder_at(1, 0, 4);
+    walls.count = 1, walls.wall[0] = cylinder_at(1, 0, 4);
     what.absorbed = NULL;
     svg = drawn(draw_heat, &what);
     assert_has(svg, "Temperature by radius, rings of 1 m");
@@ -290,7 +290,7 @@ TEST(many_walls) {
     static struct walls walls = {.count = 9, .meshes = &meshes};
     double temperature[9], power[9];
     for (int k = 0; k < 9; ++k) {
-        walls.body[k] = (fibrad_body){.kind = FIBRAD_BODY_MESH};
+        walls.wall[k] = (fibrad_wall){.kind = FIBRAD_WALL_MESH};
         snprintf(meshes.name[k], sizeof meshes.name[k], "wall_of_tube_%d", k);
         temperature[k] = 300 + k, power[k] = k - 4;
     }

@@ -13,7 +13,7 @@ TEST(sources_missing) {
     assert_invalid(fibrad_heat_begin(p->heat, &initial));
     for (int what = 0; what < 12; what++) {
         fibrad_heat_sources s = good;
-        const double **const arrays[] = {&s.temperature, &s.emissivity, &s.body_temperature, &s.body_emissivity};
+        const double **const arrays[] = {&s.temperature, &s.emissivity, &s.wall_temperature, &s.wall_emissivity};
         double *const values[] = {&s.surroundings, &s.sigma, &s.tolerance};
         if (what < 4) *arrays[what] = NULL;
         if (what >= 4 && what < 7) *values[what - 4] = NAN;
@@ -23,10 +23,10 @@ TEST(sources_missing) {
         ck_assert_msg(fibrad_heat_begin(p->heat, &s) == FIBRAD_E_ARGUMENT, "sources %d", what);
         assert_nothing_to_solve(p);
     }
-    double *const arrays[] = {p->temperature, p->emissivity, p->body_temperature, p->body_emissivity};
+    double *const arrays[] = {p->temperature, p->emissivity, p->wall_temperature, p->wall_emissivity};
     static const double bad[] = {NAN, -1e-300, -1, INFINITY, 1.0000001};
     for (int a = 0; a < 4; a++)
-        for (uint32_t i = 0; i < (a < 2 ? N : BODIES); i++)
+        for (uint32_t i = 0; i < (a < 2 ? N : WALLS); i++)
             for (size_t k = 0; k < (a % 2 == 0 ? 4 : 5); k++) { /* temperatures may be above 1 */
                 const double was = arrays[a][i];
                 arrays[a][i] = bad[k];
@@ -49,11 +49,11 @@ TEST(zero_is_a_value) {
     ENDED struct problem *p = begin_problem(&c, 0);
     trace_all(p);
     for (uint32_t i = 0; i < N; i++) p->temperature[i] = 0, p->emissivity[i] = i % 2;
-    for (uint32_t b = 0; b < BODIES; b++) p->body_temperature[b] = 0, p->body_emissivity[b] = 0;
+    for (uint32_t b = 0; b < WALLS; b++) p->wall_temperature[b] = 0, p->wall_emissivity[b] = 0;
     p->sources.surroundings = 0;
     solve(p);
     for (uint32_t i = 0; i < N; i++) ck_assert_double_eq(p->power[i], 0);
-    for (uint32_t b = 0; b < BODIES; b++) ck_assert_double_eq(p->body_power[b], 0);
+    for (uint32_t b = 0; b < WALLS; b++) ck_assert_double_eq(p->wall_power[b], 0);
     ck_assert_double_eq(p->result.surroundings_power, 0);
     p->temperature[1] = 10, p->sources.sigma = 1;
     solve(p);
@@ -64,9 +64,9 @@ TEST(zero_is_a_value) {
         sum += p->power[i];
         if (i % 2 == 0) ck_assert_double_le(fabs(p->power[i]), 1e-6 * fabs(p->power[1])); /* white */
     }
-    for (uint32_t b = 0; b < BODIES; b++) {
-        ck_assert_double_le(fabs(p->body_power[b]), 1e-6 * fabs(p->power[1]));
-        sum += p->body_power[b];
+    for (uint32_t b = 0; b < WALLS; b++) {
+        ck_assert_double_le(fabs(p->wall_power[b]), 1e-6 * fabs(p->power[1]));
+        sum += p->wall_power[b];
     }
     ck_assert_double_lt(p->power[1], 0);
     ck_assert_double_le(fabs(sum), 1e-12 * largest);
@@ -126,7 +126,7 @@ TEST(nothing_of_no_scene) {
     bad.x[9] = bad.x[8], bad.y[9] = bad.y[8], bad.z[9] = bad.z[8];
     ENDED struct problem *p = begin_problem(&c, 0);
     fibrad_scene *const scene = p->scene, *none = NULL;
-    const fibrad_exchange_rule rule = {.emissivity = p->emissivity, .body_emissivity = p->body_emissivity};
+    const fibrad_exchange_rule rule = {.emissivity = p->emissivity, .wall_emissivity = p->wall_emissivity};
     OWNED_ROWS rows = {.memory = memory_growing()};
     fibrad_row row = row_of(N), added = {.rows = &rows};
     fibrad_displacement displacement;
@@ -152,14 +152,14 @@ TEST(nothing_of_no_scene) {
  * and in old memory. */
 static void assert_row_as_fresh(struct problem *p, fibrad_work *kept, uint32_t i) {
     const fibrad_exchange_rule rule = {
-        .emissivity = p->emissivity, .body_emissivity = p->body_emissivity, .paths = 300, .seed = 2};
+        .emissivity = p->emissivity, .wall_emissivity = p->wall_emissivity, .paths = 300, .seed = 2};
     OWNED_ROW a = row_of(N), b = row_of(N);
     fibrad_displacement da = {0}, db = {0};
     OWNED_WORK fresh = work_growing();
     uint64_t rays_a, rays_b;
     assert_ok(fibrad_exchange_row(p->scene, kept, i, &rule, &a, &rays_a));
     assert_ok(fibrad_exchange_row(p->scene, &fresh, i, &rule, &b, &rays_b));
-    ck_assert(same_bits_with(&a, &b, BODIES));
+    ck_assert(same_bits_with(&a, &b, WALLS));
     ck_assert_uint_eq(rays_a, rays_b);
     work_free(&fresh), fresh = work_growing();
     assert_ok(fibrad_exchange_displacement(p->scene, kept, i, &rule, &da));
@@ -168,11 +168,11 @@ static void assert_row_as_fresh(struct problem *p, fibrad_work *kept, uint32_t i
     work_free(&fresh), fresh = work_growing();
     assert_ok(fibrad_cast_row(p->scene, kept, i, NULL, &a, NULL));
     assert_ok(fibrad_cast_row(p->scene, &fresh, i, NULL, &b, NULL));
-    ck_assert(same_bits_with(&a, &b, BODIES));
+    ck_assert(same_bits_with(&a, &b, WALLS));
     work_free(&fresh), fresh = work_growing();
     assert_ok(fibrad_beam_row(p->scene, kept, i, NULL, &a));
     assert_ok(fibrad_beam_row(p->scene, &fresh, i, NULL, &b));
-    ck_assert(same_bits_with(&a, &b, BODIES));
+    ck_assert(same_bits_with(&a, &b, WALLS));
 }
 
 TEST(work_serves_while_scenes_change) {
@@ -280,11 +280,11 @@ TEST(wrong_rows_make_no_matrix) {
         ck_assert_int_eq(fibrad_matrix_init(&m, block, size, p->scene, rows + 1, 3, &rule, &sphere), FIBRAD_E_STATE);
     }
     fibrad_row again = matrix_row(&book.factors, 2);
-    assert_ok(fibrad_rows_add(&rows[0], &again, BODIES));
+    assert_ok(fibrad_rows_add(&rows[0], &again, WALLS));
     ck_assert_int_eq(fibrad_matrix_init(&m, block, size, p->scene, rows, 2, NULL, &sphere), FIBRAD_E_STATE);
     ck_assert_uint_eq(sphere, 2);
 
-    /* these rows have other bodies, more spheres, or spheres that do not exist */
+    /* these rows have other walls, more spheres, or spheres that do not exist */
     for (int what = 0; what < 3; what++) {
         OWNED_ROWS wrong = {.memory = memory_growing()};
         fibrad_row row = matrix_row(&book.factors, 0);
@@ -292,7 +292,7 @@ TEST(wrong_rows_make_no_matrix) {
         uint32_t col[] = {1, N};
         double f[] = {.1, .1};
         if (what == 2) row.col = col, row.f = f, row.length = 2;
-        assert_ok(fibrad_rows_add(&wrong, &row, what == 0 ? 2 : BODIES));
+        assert_ok(fibrad_rows_add(&wrong, &row, what == 0 ? 2 : WALLS));
         ck_assert_uint_eq(fibrad_matrix_size(p->scene, &wrong, 1, &(fibrad_matrix_rule){.raw = 1}), 0);
         assert_invalid(fibrad_matrix_init(&m, block, size, p->scene, &wrong, 1, &(fibrad_matrix_rule){.raw = 1}, NULL));
     }

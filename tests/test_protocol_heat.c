@@ -10,7 +10,7 @@ static void assert_like_powers(const struct problem *p, const struct problem *bo
         worst_of(&largest, fabs(book->power[i]));
         worst_of(&difference, fabs(p->power[i] - book->power[i]));
     }
-    for (uint32_t b = 0; b < BODIES; b++) worst_of(&difference, fabs(p->body_power[b] - book->body_power[b]));
+    for (uint32_t b = 0; b < WALLS; b++) worst_of(&difference, fabs(p->wall_power[b] - book->wall_power[b]));
     worst_of(&difference, fabs(p->result.surroundings_power - book->result.surroundings_power));
     ck_assert_double_gt(largest, 0);
     ck_assert_double_lt(difference, 1e-6 * largest);
@@ -294,10 +294,10 @@ TEST(moves_refused) {
         int expected = FIBRAD_E_ARGUMENT;
         if (what == 1) d.n = N - 1;
         if (what == 2) d.n = 0;
-        if (what == 3) d.body[2] = plane_at(1, 1, 5);                        /* the other side */
-        if (what == 4) d.body[0] = c.body[1], d.body[1] = c.body[0];         /* another order */
-        if (what == 5) d.body[2].plane.at = -2000, expected = FIBRAD_E_SIZE; /* or it fits */
-        const fibrad_scene_config fewer = {.body = d.body, .bodies = 2}, open = {0};
+        if (what == 3) d.wall[2] = plane_at(1, 1, 5);                        /* the other side */
+        if (what == 4) d.wall[0] = c.wall[1], d.wall[1] = c.wall[0];         /* another order */
+        if (what == 5) d.wall[2].plane.at = -2000, expected = FIBRAD_E_SIZE; /* or it fits */
+        const fibrad_scene_config fewer = {.wall = d.wall, .walls = 2}, open = {0};
         const fibrad_spheres spheres = {.x = d.x, .y = d.y, .z = d.z, .r = d.r, .n = N};
         if (what == 6 || what == 7)
             assert_ok(fibrad_scene_init(&scene, block, p->scene_size, what == 6 ? &fewer : &open, &spheres, NULL));

@@ -24,7 +24,7 @@ static int row_in_parts(const fibrad_scene *scene, uint32_t i, const fibrad_beam
 }
 
 /* Compares row i, computed at once and in parts. */
-static void compare_row(const fibrad_scene *scene, uint32_t n, uint32_t bodies, uint32_t i,
+static void compare_row(const fibrad_scene *scene, uint32_t n, uint32_t walls, uint32_t i,
                         const fibrad_beam_rule *rule, uint32_t parts, double seen[2]) {
     OWNED_WORK work = work_growing();
     OWNED_ROW one = row_of(n), joined = row_of(n);
@@ -32,18 +32,18 @@ static void compare_row(const fibrad_scene *scene, uint32_t n, uint32_t bodies, 
     one.half = half, joined.half = joined_half;
     assert_ok(fibrad_beam_row(scene, &work, i, rule, &one));
     assert_ok(row_in_parts(scene, i, rule, parts, &joined));
-    ck_assert(same_bits_with(&one, &joined, bodies));
+    ck_assert(same_bits_with(&one, &joined, walls));
     ck_assert_uint_eq(joined.directions, rule->lines != NULL ? fibrad_line_set_count(rule->lines) : rule->directions);
     ck_assert_uint_eq(joined.fallbacks, one.fallbacks);
     ck_assert_uint_eq(joined.sphere, i);
     ck_assert(joined.noise == one.noise && joined.shares == one.shares && joined.lines == one.lines);
     if (rule->lines != NULL) ck_assert_mem_eq(half, joined_half, one.length * sizeof *half);
     seen[0] += row_sum(&one);
-    for (uint32_t b = 0; b < bodies; b++) seen[1] += one.body[b];
+    for (uint32_t b = 0; b < walls; b++) seen[1] += one.wall[b];
 }
 
 /* Compares rows of a large, a small and the last sphere, computed at once and in parts. Adds what spheres get and what
- * bodies get. */
+ * walls get. */
 static void compare_rows(const struct bed *bed, const fibrad_scene_config *config, double cutoff, double seen[2]) {
     OWNED fibrad_scene *scene = scene_with(bed, config);
     static unsigned char block[1 << 16];
@@ -54,12 +54,12 @@ static void compare_rows(const struct bed *bed, const fibrad_scene_config *confi
         const uint32_t i = rows[k % 3], parts = 1 + (uint32_t)k % PARTS_MOST;
         const fibrad_beam_rule rule = {
             .directions = 50 + (uint32_t)k, .points = k % 2 == 0 ? 0 : 64, .cutoff = cutoff, .turn = k < 9 ? 0 : 5};
-        compare_row(scene, bed->n, config->bodies, i, &rule, parts, seen);
+        compare_row(scene, bed->n, config->walls, i, &rule, parts, seen);
         assert_ok(fibrad_line_set_init(&lines, block, sizeof block, rule.directions, rule.turn));
         const fibrad_beam_rule along = {.lines = lines, .chords = chords[k % 3], .cutoff = cutoff};
-        compare_row(scene, bed->n, config->bodies, rows[(k + k / 3) % 3], &along, parts, seen);
+        compare_row(scene, bed->n, config->walls, rows[(k + k / 3) % 3], &along, parts, seen);
         const fibrad_beam_rule masks = {.directions = rule.directions, .chords = 32, .cutoff = cutoff};
-        compare_row(scene, bed->n, config->bodies, i, &masks, parts, seen);
+        compare_row(scene, bed->n, config->walls, i, &masks, parts, seen);
     }
 }
 
@@ -74,14 +74,14 @@ TEST(parts_make_the_row_of_spheres_alone) {
 
 TEST(parts_make_the_row_among_walls) {
     OWNED_BED bed = strewn(SPHERES, 5);
-    const fibrad_body planes[] = {plane_at(0, 0, -.3), plane_at(0, 1, 1.3), plane_at(1, 0, -.3),
+    const fibrad_wall planes[] = {plane_at(0, 0, -.3), plane_at(0, 1, 1.3), plane_at(1, 0, -.3),
                                   plane_at(1, 1, 1.3), plane_at(2, 0, -.3), plane_at(2, 1, 1.3)};
-    const fibrad_body tube[] = {cylinder_at(.5, .5, 1.2), plane_at(2, 0, -.3), plane_at(2, 1, 1.3)};
+    const fibrad_wall tube[] = {cylinder_at(.5, .5, 1.2), plane_at(2, 0, -.3), plane_at(2, 1, 1.3)};
     double seen[2] = {0, 0};
-    compare_rows(&bed, &(fibrad_scene_config){.body = planes, .bodies = 6}, 0, seen);
-    compare_rows(&bed, &(fibrad_scene_config){.body = planes + 4, .bodies = 2}, 0, seen);
-    compare_rows(&bed, &(fibrad_scene_config){.body = planes, .bodies = 6}, .5, seen);
-    compare_rows(&bed, &(fibrad_scene_config){.body = tube, .bodies = 3}, 0, seen);
+    compare_rows(&bed, &(fibrad_scene_config){.wall = planes, .walls = 6}, 0, seen);
+    compare_rows(&bed, &(fibrad_scene_config){.wall = planes + 4, .walls = 2}, 0, seen);
+    compare_rows(&bed, &(fibrad_scene_config){.wall = planes, .walls = 6}, .5, seen);
+    compare_rows(&bed, &(fibrad_scene_config){.wall = tube, .walls = 3}, 0, seen);
     ck_assert_double_gt(seen[1], 20);
 }
 
@@ -91,7 +91,7 @@ TEST(parts_make_the_row_among_triangles) {
     double seen[2] = {0, 0};
     mesh_box(mesh, (const double[]){-.3, -.3, -.3}, (const double[]){1.3, 1.3, 1.3}, 0);
     mesh_tube(mesh, .5, .5, .05, -.2, 1.2, 12, 3, true, 6, 6);
-    compare_rows(&bed, &(fibrad_scene_config){.body = mesh->body, .bodies = 7, .triangles = &mesh->triangles}, 0, seen);
+    compare_rows(&bed, &(fibrad_scene_config){.wall = mesh->wall, .walls = 7, .triangles = &mesh->triangles}, 0, seen);
     ck_assert_double_gt(seen[1], 10);
 }
 
@@ -232,10 +232,10 @@ static void ask_and_repeat(const fibrad_scene *scene, const fibrad_beam_rule *be
     fibrad_rows rows = {0};
     fibrad_row append = {.rows = &rows};
     uint32_t col[MOST];
-    double f[MOST], body[1];
+    double f[MOST], wall[1];
     for (int k = 0; k < MOST; k++) col[k] = 7, f[k] = -7;
-    body[0] = -7;
-    fibrad_row row = {.col = col, .f = f, .body = body};
+    wall[0] = -7;
+    fibrad_row row = {.col = col, .f = f, .wall = wall};
     for (uint32_t tries = 0; tries < 2; tries++) {
         const int expected = tries == 0 ? FIBRAD_E_CAPACITY : FIBRAD_OK;
         ck_assert_int_eq(beam ? fibrad_beam_row(scene, &work, 0, beam, &row)
@@ -243,7 +243,7 @@ static void ask_and_repeat(const fibrad_scene *scene, const fibrad_beam_rule *be
                          expected);
         if (tries == 1) ck_assert_uint_eq(row.length, row.capacity);
         for (int k = tries == 0 ? 0 : (int)row.length; k < MOST; k++) ck_assert(col[k] == 7 && f[k] == -7);
-        if (tries == 0) ck_assert(body[0] == -7 && row.error == 0 && row.escaped == 0);
+        if (tries == 0) ck_assert(wall[0] == -7 && row.error == 0 && row.escaped == 0);
         row.capacity = row.length;
         ck_assert_int_eq(beam ? fibrad_beam_row(scene, &work, 0, beam, &append)
                               : fibrad_exchange_row(scene, &work, 0, exchange, &append, NULL),
@@ -255,11 +255,11 @@ static void ask_and_repeat(const fibrad_scene *scene, const fibrad_beam_rule *be
 
 TEST(the_length_that_is_asked_for_suffices) {
     OWNED_BED bed = packing(100, .5, 1.5, .3, 4, false);
-    const fibrad_body floor = plane_at(2, 0, -100);
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor, .bodies = 1});
+    const fibrad_wall floor = plane_at(2, 0, -100);
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = &floor, .walls = 1});
     double emissivity[100];
     for (int i = 0; i < 100; i++) emissivity[i] = .2;
-    fibrad_exchange_rule exchange = {.emissivity = emissivity, .body_emissivity = &(double){.5}, .directions = 8};
+    fibrad_exchange_rule exchange = {.emissivity = emissivity, .wall_emissivity = &(double){.5}, .directions = 8};
     ask_and_repeat(scene, &(fibrad_beam_rule){.directions = 8, .tolerance = 1e-3}, NULL);
     ask_and_repeat(scene, NULL, &exchange);
     for (int i = 1; i < 100; i += 2) emissivity[i] = 0; /* the first leg sees it, and there are no entries */

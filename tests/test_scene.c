@@ -93,15 +93,15 @@ TEST(strides_change_no_bit) {
 TEST(a_scene_may_be_empty) {
     static unsigned char memory[FIBRAD_SCENE_BYTES(0)];
     const fibrad_spheres none = {.n = 0};
-    const fibrad_body floor_plane = plane_at(2, 0, 0);
+    const fibrad_wall floor_plane = plane_at(2, 0, 0);
     for (int walls = 0; walls < 2; walls++) {
-        const fibrad_scene_config config = {.body = &floor_plane, .bodies = (uint32_t)walls, .period = {3, 0, 0}};
+        const fibrad_scene_config config = {.wall = &floor_plane, .walls = (uint32_t)walls, .period = {3, 0, 0}};
         fibrad_scene *scene = NULL;
         fibrad_scene_facts facts;
         assert_ok(fibrad_scene_init(&scene, memory, sizeof memory, &config, &none, NULL));
         fibrad_scene_describe(scene, &facts);
         ck_assert_uint_eq(facts.spheres, 0);
-        ck_assert_uint_eq(facts.bodies, (uint32_t)walls);
+        ck_assert_uint_eq(facts.walls, (uint32_t)walls);
         ck_assert_uint_eq(facts.cells, 0);
         ck_assert(facts.radius_min == 0 && facts.radius_max == 0 && facts.overlap_max == 0);
         ck_assert_uint_eq(fibrad_scene_sphere(scene, 0), UINT32_MAX);

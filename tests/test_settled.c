@@ -11,7 +11,7 @@ static const double pi = 3.14159265358979323846, sigma = FIBRAD_STEFAN_BOLTZMANN
 /* A bed in a box or in the open, its sources and its results. */
 struct settled {
     struct bed bed;
-    fibrad_body body[WALLS];
+    fibrad_wall wall[WALLS];
     fibrad_scene_config scene;
     fibrad_heat_config config;
     fibrad_heat_sources sources;
@@ -34,18 +34,18 @@ static void begin(struct settled *s, struct bed bed) {
     s->sources.temperature = s->temperature, s->sources.emissivity = s->emissivity;
     s->sources.surroundings = 300;
     s->result = (fibrad_heat_result){.power = s->found.power,
-                                     .body_power = s->found.wall_power,
+                                     .wall_power = s->found.wall_power,
                                      .temperature = s->found.temperature,
-                                     .body_temperature = s->found.wall_temperature,
+                                     .wall_temperature = s->found.wall_temperature,
                                      .temperature_error = s->found.error};
 }
 
 static void add_wall(struct settled *s, int axis, int upper, double at, double temperature, double emissivity) {
-    const uint32_t k = s->scene.bodies++;
-    s->body[k] = (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {axis, upper, at}};
-    s->scene.body = s->body;
+    const uint32_t k = s->scene.walls++;
+    s->wall[k] = (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = {axis, upper, at}};
+    s->scene.wall = s->wall;
     s->wall_temperature[k] = temperature, s->wall_emissivity[k] = emissivity;
-    s->sources.body_temperature = s->wall_temperature, s->sources.body_emissivity = s->wall_emissivity;
+    s->sources.wall_temperature = s->wall_temperature, s->sources.wall_emissivity = s->wall_emissivity;
 }
 
 /* N unequal spheres in a box of six grey walls. */
@@ -105,7 +105,7 @@ TEST(plates) {
     s.scene.period[0] = s.scene.period[1] = 2;
     add_wall(&s, 2, 0, 0, unknown, .3);
     add_wall(&s, 2, 1, 1.5, 500, .6);
-    s.sources.body_power = s.wall_power;
+    s.sources.wall_power = s.wall_power;
     s.wall_power[0] = 4 * 8000;
     assert_ok(settle(&s));
     close_to(s.found.wall_temperature[0], pow(pow(500, 4) + 8000 / sigma * (1 / .3 + 1 / .6 - 1), .25), 1e-6);
@@ -113,8 +113,8 @@ TEST(plates) {
     ck_assert_double_eq(s.found.wall_temperature[1], 500);
 }
 
-/* Powers follow from given temperatures. Then the powers of every other body are given, and the temperatures must come
- * back. With one radiosity per body they come back exactly. Both solutions by patches extrapolate, so a difference of
+/* Powers follow from given temperatures. Then the powers of every other wall are given, and the temperatures must come
+ * back. With one radiosity per wall they come back exactly. Both solutions by patches extrapolate, so a difference of
  * second order remains. */
 TEST(there_and_back) {
     for (int uniform = 0; uniform < 2; uniform++) {
@@ -132,7 +132,7 @@ TEST(there_and_back) {
         }
         for (int k = 0; k < WALLS; k++) s.wall_power[k] = k % 3 == 2 ? -s.found.wall_power[k] : unknown;
         s.wall_temperature[2] = s.wall_temperature[5] = unknown;
-        s.sources.power = s.power, s.sources.body_power = s.wall_power;
+        s.sources.power = s.power, s.sources.wall_power = s.wall_power;
         assert_ok(settle(&s));
         for (uint32_t i = 0; i < N; i++) close_to(s.found.temperature[i], temperature[i], uniform ? 1e-7 : 1e-3);
         for (int k = 0; k < WALLS; k++)
@@ -141,11 +141,11 @@ TEST(there_and_back) {
     }
 }
 
-/* In a box at one temperature, bodies that give off nothing have the same temperature. */
+/* In a box at one temperature, walls that give off nothing have the same temperature. */
 TEST(equilibrium) {
     OWNED_BY(settled_free) struct settled s;
     begin_box(&s, 3);
-    s.sources.power = s.power, s.sources.body_power = s.wall_power, s.sources.insulated = s.insulated;
+    s.sources.power = s.power, s.sources.wall_power = s.wall_power, s.sources.insulated = s.insulated;
     for (int k = 0; k < WALLS; k++) s.wall_temperature[k] = k == 1 ? unknown : 700;
     s.insulated[4] = 1;
     for (uint32_t i = 0; i < N; i++) s.temperature[i] = unknown;
@@ -157,7 +157,7 @@ TEST(equilibrium) {
     for (int k = 0; k < WALLS; k++) close_to(s.found.wall_temperature[k], 700, 1e-12);
 }
 
-/* An insulated wall reflects all, but has a temperature between those of the bodies about it. */
+/* An insulated wall reflects all, but has a temperature between those of the walls about it. */
 TEST(insulated) {
     OWNED_BY(settled_free) struct settled s;
     double power[N];
@@ -181,7 +181,7 @@ TEST(afloat) {
     begin_box(&s, 9);
     for (uint32_t i = 0; i < N; i++) s.temperature[i] = unknown, s.power[i] = i % 2 ? 1000 : -1000;
     for (int k = 0; k < WALLS; k++) s.wall_temperature[k] = unknown;
-    s.sources.power = s.power, s.sources.body_power = s.wall_power;
+    s.sources.power = s.power, s.sources.wall_power = s.wall_power;
     s.sources.surroundings = 800, s.sources.uniform = 1;
     assert_ok(settle(&s));
     for (uint32_t i = 0; i < N; i++) {
@@ -189,7 +189,7 @@ TEST(afloat) {
         sum += weight * pow(s.found.temperature[i], 4), weights += weight;
     }
     for (int k = 0; k < WALLS; k++) {
-        const fibrad_body *b = s.body;
+        const fibrad_wall *b = s.wall;
         const double size[3] = {b[1].plane.at - b[0].plane.at, b[3].plane.at - b[2].plane.at,
                                 b[5].plane.at - b[4].plane.at};
         const double weight = s.wall_emissivity[k] * size[0] * size[1] * size[2] / size[k / 2];
@@ -204,11 +204,11 @@ TEST(afloat) {
 }
 
 /* The emissivity of spheres and of the floor: .9 - T/2000. */
-static void falling(void *calls, const double *temperature, const double *body_temperature, double *emissivity,
-                    double *body_emissivity) {
+static void falling(void *calls, const double *temperature, const double *wall_temperature, double *emissivity,
+                    double *wall_emissivity) {
     ++*(int *)calls;
     if (!isnan(temperature[0])) emissivity[0] = .9 - temperature[0] / 2000;
-    if (body_emissivity && !isnan(body_temperature[0])) body_emissivity[0] = .9 - body_temperature[0] / 2000;
+    if (wall_emissivity && !isnan(wall_temperature[0])) wall_emissivity[0] = .9 - wall_temperature[0] / 2000;
 }
 
 /* A sphere alone has an emissivity that falls with its temperature. Whether the temperature or the power is given, A
@@ -252,8 +252,8 @@ TEST(refused) {
     assert_ok(settle(&s));
     s.wall_temperature[2] = unknown;
     assert_invalid(settle(&s));
-    s.sources.body_power = s.wall_power;
+    s.sources.wall_power = s.wall_power;
     assert_ok(settle(&s));
-    s.scene.bodies = 2, s.wall_temperature[1] = unknown; /* walls without end */
+    s.scene.walls = 2, s.wall_temperature[1] = unknown; /* walls without end */
     ck_assert_int_eq(settle(&s), FIBRAD_E_UNSUPPORTED);
 }

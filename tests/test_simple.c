@@ -17,7 +17,7 @@ static fibrad_scene_config box_of(const struct bed *bed) {
 }
 
 /* Computes the beam rows of all spheres. */
-static fibrad_rows rows_one_by_one(const fibrad_scene *scene, uint32_t n, uint32_t bodies,
+static fibrad_rows rows_one_by_one(const fibrad_scene *scene, uint32_t n, uint32_t walls,
                                    const fibrad_beam_rule *rule) {
     OWNED_WORK work = work_growing();
     fibrad_rows rows = {.memory = memory_growing()};
@@ -26,7 +26,7 @@ static fibrad_rows rows_one_by_one(const fibrad_scene *scene, uint32_t n, uint32
         assert_ok(fibrad_beam_row(scene, &work, i, rule, &row));
         double sum = row.escaped;
         for (uint32_t k = 0; k < row.length; k++) sum += row.f[k];
-        for (uint32_t b = 0; b < bodies; b++) sum += row.body[b];
+        for (uint32_t b = 0; b < walls; b++) sum += row.wall[b];
         ck_assert_double_eq_tol(sum, 1, 1e-12); /* the row can be read where it lies in the collection */
     }
     return rows;
@@ -39,15 +39,15 @@ static struct matrix kernel_matrix(const struct bed *bed, const fibrad_scene_con
     OWNED fibrad_scene *scene = scene_with(bed, config);
     OWNED fibrad_line_set *lines = raw ? NULL : lines_of(rule->directions, rule->turn);
     const fibrad_beam_rule along = {.lines = lines, .chords = rule->points / 4, .cutoff = rule->cutoff};
-    OWNED_ROWS rows = rows_one_by_one(scene, bed->n, config ? config->bodies : 0, raw ? rule : &along);
+    OWNED_ROWS rows = rows_one_by_one(scene, bed->n, config ? config->walls : 0, raw ? rule : &along);
     return matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = raw});
 }
 
 TEST(view_factors_are_the_kernels) {
     OWNED_BED bed = packing(300, .8, 1.2, .5, 3, false);
-    const fibrad_body body[] = {plane_at(2, 0, -20), cylinder_at(10, 10, 60)};
+    const fibrad_wall wall[] = {plane_at(2, 0, -20), cylinder_at(10, 10, 60)};
     const fibrad_plane opening = {2, 1, 90};
-    const fibrad_scene_config config = {.body = body, .bodies = 2, .opening = &opening, .openings = 1};
+    const fibrad_scene_config config = {.wall = wall, .walls = 2, .opening = &opening, .openings = 1};
     const fibrad_spheres spheres = spheres_of(&bed);
     const fibrad_beam_rule rule = {.directions = 40};
     OWNED_MATRIX expected = kernel_matrix(&bed, &config, &rule, false);
@@ -61,7 +61,7 @@ TEST(view_factors_are_the_kernels) {
         ck_assert_uint_eq(factors->facts.spheres, 300);
         ck_assert_double_lt(factors->closure_error, 1e-12);
         ck_assert_double_lt(factors->reciprocity_error, 1e-14);
-        ck_assert(factors->body_area[0] > 0 && isfinite(factors->body_area[1]));
+        ck_assert(factors->wall_area[0] > 0 && isfinite(factors->wall_area[1]));
     }
 }
 
@@ -84,8 +84,8 @@ static int count_calls(void *context, const char *stage, uint64_t done, uint64_t
  * are. */
 TEST(long_rows_are_divided) {
     OWNED_BED bed = strewn(300, 3);
-    const fibrad_body floor = plane_at(2, 0, -.3);
-    const fibrad_scene_config config = {.body = &floor, .bodies = 1};
+    const fibrad_wall floor = plane_at(2, 0, -.3);
+    const fibrad_scene_config config = {.wall = &floor, .walls = 1};
     const fibrad_spheres spheres = spheres_of(&bed);
     const fibrad_beam_rule rule = {.directions = 60};
     unsigned char two[300] = {[1] = 1, [200] = 1};
@@ -112,8 +112,8 @@ TEST(long_rows_are_divided) {
 /* The same holds along lines, with masks and without. A bed of fewer spheres than threads has masks, too. */
 TEST(long_rows_along_lines_are_divided) {
     struct bed beds[] = {strewn(300, 3), strewn(3, 3)};
-    const fibrad_body floor = plane_at(2, 0, -.3);
-    const fibrad_scene_config config = {.body = &floor, .bodies = 1};
+    const fibrad_wall floor = plane_at(2, 0, -.3);
+    const fibrad_scene_config config = {.wall = &floor, .walls = 1};
     for (int b = 0; b < 2; b++)
         for (uint32_t points = 0; points <= 64; points += 64) {
             const fibrad_spheres spheres = spheres_of(&beds[b]);
@@ -236,17 +236,17 @@ static bool is_filed(const void *address, const char *folder) {
 TEST(factors_in_files) {
     char folder[] = "/tmp/fibrad_filed_XXXXXX";
     OWNED_BED bed = packing(300, .8, 1.2, .5, 3, false);
-    const fibrad_body body[] = {plane_at(2, 0, -20), cylinder_at(10, 10, 60)};
+    const fibrad_wall wall[] = {plane_at(2, 0, -20), cylinder_at(10, 10, 60)};
     const fibrad_plane opening = {2, 1, 90};
-    const fibrad_scene_config config = {.body = body, .bodies = 2, .opening = &opening, .openings = 1};
+    const fibrad_scene_config config = {.wall = wall, .walls = 2, .opening = &opening, .openings = 1};
     const fibrad_spheres spheres = spheres_of(&bed);
     double emissivity[300], wall_emissivity[] = {.5, .9};
     for (int i = 0; i < 300; i++) emissivity[i] = .3 + i / 500.;
     const fibrad_exchange_rule rule = {
-        .emissivity = emissivity, .body_emissivity = wall_emissivity, .directions = 20, .paths = 50};
+        .emissivity = emissivity, .wall_emissivity = wall_emissivity, .directions = 20, .paths = 50};
     ck_assert_ptr_nonnull(mkdtemp(folder));
     for (int k = 0; k < 3; k++) {
-        const fibrad_bed_options kept = {.bodies = 1, .raw = k == 1, .drop = k == 2 ? 1e-3 : 0};
+        const fibrad_bed_options kept = {.walls = 1, .raw = k == 1, .drop = k == 2 ? 1e-3 : 0};
         fibrad_bed_options filed = kept;
         OWNED_FACTORS *here = NULL, *there = NULL;
         fibrad_run run = {.threads = threads[k]};
@@ -324,9 +324,9 @@ TEST(faults_of_divided_rows) {
     fibrad_fault first = {0, 0, 0, 0, 0};
     fibrad_bed_factors *factors;
     mesh_box(mesh, (const double[]){-9, -9, -9}, (const double[]){9, 9, 9}, 0);
-    for (uint32_t t = 0; t < mesh->triangles.n; ++t) /* all see its back, which belongs to no body */
-        mesh->back[t] = mesh->front[t], mesh->front[t] = FIBRAD_NO_BODY;
-    const fibrad_scene_config config = {.body = mesh->body, .bodies = 6, .triangles = &mesh->triangles};
+    for (uint32_t t = 0; t < mesh->triangles.n; ++t) /* all see its back, which belongs to no wall */
+        mesh->back[t] = mesh->front[t], mesh->front[t] = FIBRAD_NO_WALL;
+    const fibrad_scene_config config = {.wall = mesh->wall, .walls = 6, .triangles = &mesh->triangles};
     for (int t = 0; t < 3; t++) {
         struct calls calls = {.stop_at = 1};
         fibrad_run run = {.threads = threads[t]};
@@ -442,7 +442,7 @@ TEST(radiation_moves) {
     OWNED_BED bed = packing(N, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed), fewer = {bed.x, bed.y, bed.z, bed.r, N - 1, 0, 0, NULL};
     const fibrad_heat_config config = {.directions = 20, .patches = 24};
-    const fibrad_body wall = plane_at(0, 0, -5);
+    const fibrad_wall wall = plane_at(0, 0, -5);
     double temperature[N], emissivity[N], first[N], power[N], again[N], kept;
     for (int i = 0; i < N; i++) temperature[i] = 300 + i, emissivity[i] = .6;
     const fibrad_heat_sources sources = sources_of(temperature, emissivity);
@@ -459,7 +459,7 @@ TEST(radiation_moves) {
 
         /* a refused call leaves the bed as it was */
         assert_invalid(fibrad_radiation_move(radiation, NULL, &fewer));
-        assert_invalid(fibrad_radiation_move(radiation, &(fibrad_scene_config){.body = &wall, .bodies = 1}, &spheres));
+        assert_invalid(fibrad_radiation_move(radiation, &(fibrad_scene_config){.wall = &wall, .walls = 1}, &spheres));
         kept = bed.x[7], bed.x[7] = NAN;
         assert_invalid(fibrad_radiation_move(radiation, NULL, &spheres));
         bed.x[7] = kept;
@@ -536,8 +536,8 @@ TEST(radiation_with_walls) {
     double temperature[N], emissivity[N], power[N], wall_power[6], wall_temperature[6], wall_emissivity[6];
     for (int i = 0; i < N; i++) temperature[i] = 400, emissivity[i] = .6;
     fibrad_heat_sources sources = sources_of(temperature, emissivity);
-    sources.body_temperature = wall_temperature, sources.body_emissivity = wall_emissivity;
-    fibrad_body walls[6];
+    sources.wall_temperature = wall_temperature, sources.wall_emissivity = wall_emissivity;
+    fibrad_wall walls[6];
     OWNED_RADIATION *radiation = NULL;
     for (int far = 0; far < 2; far++) {
         const double edge = far ? 200 : 40;
@@ -545,12 +545,12 @@ TEST(radiation_with_walls) {
             walls[w] = plane_at(w / 2, w % 2, w % 2 ? edge : -edge);
             wall_temperature[w] = 400, wall_emissivity[w] = 1;
         }
-        const fibrad_scene_config config = {.body = walls, .bodies = 6};
+        const fibrad_scene_config config = {.wall = walls, .walls = 6};
         const fibrad_heat_config heat = {.directions = 8, .patches = 24};
         assert_ok(far ? fibrad_radiation_move(radiation, &config, &spheres)
                       : fibrad_radiation_new(&radiation, &config, &spheres, &heat, NULL));
         assert_ok(fibrad_radiation_solve(radiation, &sources,
-                                         &(fibrad_heat_result){.power = power, .body_power = wall_power}));
+                                         &(fibrad_heat_result){.power = power, .wall_power = wall_power}));
         for (int i = 0; i < N; i++) ck_assert_double_lt(fabs(power[i]), 1e-6); /* all have one temperature */
     }
 }
@@ -562,24 +562,24 @@ struct law {
     bool null;
 };
 
-static void follow_law(void *context, const double *temperature, const double *body_temperature, double *emissivity,
-                       double *body_emissivity) {
+static void follow_law(void *context, const double *temperature, const double *wall_temperature, double *emissivity,
+                       double *wall_emissivity) {
     struct law *law = context;
-    law->null = law->null || temperature == NULL || body_temperature == NULL;
-    emissivity[0] = .5, body_emissivity[0] = .8;
-    if (law->asked++ == law->fails) *(law->asked % 2 ? emissivity : body_emissivity) = law->wrong;
+    law->null = law->null || temperature == NULL || wall_temperature == NULL;
+    emissivity[0] = .5, wall_emissivity[0] = .8;
+    if (law->asked++ == law->fails) *(law->asked % 2 ? emissivity : wall_emissivity) = law->wrong;
 }
 
 /* Laws get temperatures, and their answers are checked each time. */
 TEST(laws_are_checked) {
     const fibrad_spheres one = {&(double){0}, &(double){0}, &(double){0}, &(double){1}, .n = 1};
-    const fibrad_body floor = plane_at(2, 0, -3);
+    const fibrad_wall floor = plane_at(2, 0, -3);
     const double temperature = 400, wrong[] = {NAN, -.1, 1.1, INFINITY};
-    double emissivity, body_emissivity, power, found, body_power, body_found;
+    double emissivity, wall_emissivity, power, found, wall_power, wall_found;
     fibrad_heat_result result = {
-        .power = &power, .body_power = &body_power, .temperature = &found, .body_temperature = &body_found};
+        .power = &power, .wall_power = &wall_power, .temperature = &found, .wall_temperature = &wall_found};
     OWNED_RADIATION *radiation = NULL;
-    assert_ok(fibrad_radiation_new(&radiation, &(fibrad_scene_config){.body = &floor, .bodies = 1}, &one,
+    assert_ok(fibrad_radiation_new(&radiation, &(fibrad_scene_config){.wall = &floor, .walls = 1}, &one,
                                    &(fibrad_heat_config){.directions = 8, .patches = 24}, NULL));
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);
@@ -587,15 +587,15 @@ TEST(laws_are_checked) {
     for (int given = 0; given < 4; given++) {
         struct law law = {.fails = -1};
         sources.temperature = given % 2 ? &temperature : NULL;
-        sources.body_temperature = given / 2 ? &temperature : NULL;
+        sources.wall_temperature = given / 2 ? &temperature : NULL;
         ck_assert_int_eq(
-            fibrad_radiation_settle(radiation, &sources, follow_law, &law, &emissivity, &body_emissivity, &result),
+            fibrad_radiation_settle(radiation, &sources, follow_law, &law, &emissivity, &wall_emissivity, &result),
             given == 3 ? FIBRAD_OK : FIBRAD_E_ARGUMENT);
         ck_assert(!law.null && law.asked == (given == 3 ? 2 : 0));
     }
     for (int k = 0; k < 8; k++) {
         struct law law = {.fails = k / 4, .wrong = wrong[k % 4]};
         assert_invalid(
-            fibrad_radiation_settle(radiation, &sources, follow_law, &law, &emissivity, &body_emissivity, &result));
+            fibrad_radiation_settle(radiation, &sources, follow_law, &law, &emissivity, &wall_emissivity, &result));
     }
 }

@@ -323,16 +323,16 @@ TEST(refusals) {
     static _Alignas(64) unsigned char memory[40000], room[2000000];
     const double at[] = {0, 0, 0}, r = 1;
     const fibrad_spheres spheres = {at, at + 1, at + 2, &r, 1, .stride = 3};
-    const fibrad_body floor = {.kind = FIBRAD_BODY_PLANE, .plane = {2, 0, -1}};
+    const fibrad_wall floor = {.kind = FIBRAD_WALL_PLANE, .plane = {2, 0, -1}};
     double emissivity = .5, conductivity = 1, grey = .5;
     fibrad_displacement moved;
     for (int k = 0; k < 6; ++k) {
-        const fibrad_scene_config config = {.period = {3, 3, 0}, .body = &floor, .bodies = k == 4};
+        const fibrad_scene_config config = {.period = {3, 3, 0}, .wall = &floor, .walls = k == 4};
         fibrad_scene *scene;
         fibrad_work work = {.memory = {.block = room, .size = sizeof room}};
         assert_ok(fibrad_scene_init(&scene, memory, sizeof memory, &config, &spheres, NULL));
         fibrad_exchange_rule rule = {
-            .emissivity = &emissivity, .conductivity = &conductivity, .body_emissivity = &grey, .paths = 16};
+            .emissivity = &emissivity, .conductivity = &conductivity, .wall_emissivity = &grey, .paths = 16};
         conductivity = k == 1 ? NAN : k == 2 ? 0 : 1;
         if (k == 3) rule.flights = FIBRAD_FLIGHTS_MAX + 1;
         if (k == 5) rule.cutoff = 3;

@@ -240,15 +240,15 @@ TEST(refuses_what_is_wrong) {
     assert_invalid(fibrad_surface_row(scene, &work, 0, &flags, &row));
     ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, &many, &row), FIBRAD_E_TABLE);
     OWNED_BED one = BED({0, 0, 0, 1});
-    const fibrad_body floor_plane = plane_at(2, 0, -2);
-    OWNED fibrad_scene *walled = scene_with(&one, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
-    double body = -5;
-    row.body = &body;
+    const fibrad_wall floor_plane = plane_at(2, 0, -2);
+    OWNED fibrad_scene *walled = scene_with(&one, &(fibrad_scene_config){.wall = &floor_plane, .walls = 1});
+    double wall = -5;
+    row.wall = &wall;
     ck_assert_int_eq(fibrad_surface_row(walled, &work, 0, NULL, &row), FIBRAD_E_UNSUPPORTED);
-    ck_assert(body == -5 && row.length == 77);
+    ck_assert(wall == -5 && row.length == 77);
     /* a triangle that belongs to no wall */
     const double x[] = {-9, 9, 0}, y[] = {-9, -9, 9}, z[] = {2, 2, 2};
-    const uint32_t corner[] = {0, 1, 2}, none = FIBRAD_NO_BODY;
+    const uint32_t corner[] = {0, 1, 2}, none = FIBRAD_NO_WALL;
     const fibrad_triangles triangle = {.x = x, .y = y, .z = z, .vertices = 3, .corner = corner, .front = &none, .n = 1};
     OWNED fibrad_scene *cut = scene_with(&one, &(fibrad_scene_config){.triangles = &triangle});
     ck_assert_int_eq(fibrad_surface_row(cut, &work, 0, NULL, &row), FIBRAD_E_UNSUPPORTED);

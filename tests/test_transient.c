@@ -22,7 +22,7 @@ static fibrad_transient *transient_of(const struct bed *bed, const fibrad_scene_
     return transient;
 }
 
-/* The time in which a body of loss factor a = A e sigma/C goes from T0 to T in black surroundings at Ts. */
+/* The time in which a wall of loss factor a = A e sigma/C goes from T0 to T in black surroundings at Ts. */
 static double time_between(double a, double from, double to, double ts) {
     const double turn = 2 * (atan(to / ts) - atan(from / ts));
     return (log(fabs((to + ts) / (to - ts))) - log(fabs((from + ts) / (from - ts))) + turn) / (4 * a * ts * ts * ts);
@@ -85,10 +85,10 @@ TEST(second_order) {
 }
 
 /* The emissivity T/2000. Counts its calls. */
-static void proportional(void *calls, const double *temperature, const double *body_temperature, double *emissivity,
-                         double *body_emissivity) {
-    (void)body_temperature;
-    (void)body_emissivity;
+static void proportional(void *calls, const double *temperature, const double *wall_temperature, double *emissivity,
+                         double *wall_emissivity) {
+    (void)wall_temperature;
+    (void)wall_emissivity;
     emissivity[0] = temperature[0] / 2000;
     ++*(int *)calls;
 }
@@ -127,7 +127,7 @@ TEST(emissivity_follows) {
 enum { N = 60 };
 struct furnace {
     struct bed bed;
-    fibrad_body body[2];
+    fibrad_wall wall[2];
     fibrad_scene_config scene;
     double temperature[N], emissivity[N], capacity[N], power[N], wall[2], wall_emissivity[2];
     fibrad_heat_sources sources;
@@ -145,12 +145,12 @@ static void furnace_init(struct furnace *f) {
         f->capacity[i] = 1e5 * pow(f->bed.r[i], 3);
         f->power[i] = i % 7 == 0 ? 2e4 : 0;
     }
-    f->body[0] = plane_at(2, 0, low), f->body[1] = plane_at(2, 1, high + 1);
-    f->scene = (fibrad_scene_config){.period = {f->bed.period[0], f->bed.period[1], 0}, .body = f->body, .bodies = 2};
+    f->wall[0] = plane_at(2, 0, low), f->wall[1] = plane_at(2, 1, high + 1);
+    f->scene = (fibrad_scene_config){.period = {f->bed.period[0], f->bed.period[1], 0}, .wall = f->wall, .walls = 2};
     f->wall[0] = 1200, f->wall[1] = 500, f->wall_emissivity[0] = .8, f->wall_emissivity[1] = .4;
     f->sources = sources_about(f->emissivity, 300);
     f->sources.power = f->power;
-    f->sources.body_temperature = f->wall, f->sources.body_emissivity = f->wall_emissivity;
+    f->sources.wall_temperature = f->wall, f->sources.wall_emissivity = f->wall_emissivity;
 }
 
 /* What spheres lose, less their powers, is what walls and surroundings get. This holds by factors and by patches, at
@@ -165,7 +165,7 @@ TEST(energy_is_kept) {
         for (int k = 0; k < 3; k++) {
             double temperature[N], energy[2], balance = 0, exchanged = 0;
             memcpy(temperature, f.temperature, sizeof temperature);
-            fibrad_span span = {temperature, f.capacity, .duration = k == 2 ? 400 : 20, .body_energy = energy};
+            fibrad_span span = {temperature, f.capacity, .duration = k == 2 ? 400 : 20, .wall_energy = energy};
             span.tolerance = k == 0 ? 1e-2 : 1e-3, span.step = k == 2 ? 200 : 0;
             f.sources.tolerance = 1e-2;
             assert_ok(fibrad_transient_advance(t, &f.sources, &span));
@@ -187,7 +187,7 @@ static void slopes(const struct furnace *f, const fibrad_factors *d, double time
     const double roof = SIGMA * pow(f->wall[1], 4), sky = SIGMA * pow(300, 4);
     for (int i = 0; i < N; i++) {
         const double own = SIGMA * pow(t[i], 4);
-        double sum = d->escaped[i] * (sky - own) + d->body[2 * i] * (floor - own) + d->body[2 * i + 1] * (roof - own);
+        double sum = d->escaped[i] * (sky - own) + d->wall[2 * i] * (floor - own) + d->wall[2 * i + 1] * (roof - own);
         for (uint64_t k = d->start[i]; k < d->start[i + 1]; k++) sum += d->f[k] * (SIGMA * pow(t[d->col[k]], 4) - own);
         slope[i] = (f->power[i] + 4 * PI * f->bed.r[i] * f->bed.r[i] * f->emissivity[i] * sum) / f->capacity[i];
     }
@@ -211,7 +211,7 @@ TEST(bed_against_runge_kutta) {
     OWNED_BY(furnace_free) struct furnace f;
     furnace_init(&f);
     const fibrad_exchange_rule rule = {
-        .emissivity = f.emissivity, .body_emissivity = f.wall_emissivity, .tolerance = .03};
+        .emissivity = f.emissivity, .wall_emissivity = f.wall_emissivity, .tolerance = .03};
     const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_FACTORS, .exchange.tolerance = .03};
     const fibrad_spheres spheres = spheres_of(&f.bed);
     const double end[2] = {800, f.wall[1]}, duration = 30;
@@ -222,7 +222,7 @@ TEST(bed_against_runge_kutta) {
     memcpy(temperature, f.temperature, sizeof temperature);
     runge_kutta(&f, &factors->matrix, duration, 5000, expected);
     OWNED_TRANSIENT *t = transient_of(&f.bed, &f.scene, &config);
-    fibrad_span span = {temperature, f.capacity, duration, .body_temperature = end, .power = power};
+    fibrad_span span = {temperature, f.capacity, duration, .wall_temperature = end, .power = power};
     assert_ok(fibrad_transient_advance(t, &f.sources, &span));
     slopes(&f, &factors->matrix, duration, duration, temperature, slope);
     for (int i = 0; i < N; i++) {
@@ -310,15 +310,15 @@ static void warm_stack(double residual, double temperature[STACK], fibrad_span *
         add_sphere(&bed, 2.3 * (i % 3), 2.3 * (i / 3 % 3), 2.3 * (i / 9), .9);
         emissivity[i] = .3 + .03 * i, capacity[i] = 2 + i, temperature[i] = 400 + 50 * i;
     }
-    fibrad_body wall[6];
+    fibrad_wall wall[6];
     for (int k = 0; k < 6; k++) {
         wall[k] = plane_at(k / 2, k % 2, k % 2 ? k < 4 ? 5.9 : 3.6 : -1.3);
         wall_temperature[k] = 300 + 200 * k, wall_emissivity[k] = .2 + .1 * k;
     }
-    const fibrad_scene_config scene = {.body = wall, .bodies = 6};
+    const fibrad_scene_config scene = {.wall = wall, .walls = 6};
     OWNED_TRANSIENT *t = transient_of(&bed, &scene, &config);
     fibrad_heat_sources sources = sources_about(emissivity, 300);
-    sources.body_temperature = wall_temperature, sources.body_emissivity = wall_emissivity;
+    sources.wall_temperature = wall_temperature, sources.wall_emissivity = wall_emissivity;
     sources.tolerance = residual;
     *span = (fibrad_span){.temperature = temperature, .capacity = capacity, .duration = .05};
     assert_ok(fibrad_transient_advance(t, &sources, span));

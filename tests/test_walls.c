@@ -15,10 +15,10 @@ struct container {
     double at[6], cylinder[3];
 };
 
-/* The places of a configuration's bodies. */
+/* The places of a configuration's walls. */
 struct places {
     uint32_t count, place[WALLS];
-    fibrad_body body[WALLS];
+    fibrad_wall wall[WALLS];
     uint32_t openings;
     fibrad_plane opening[6];
 };
@@ -28,7 +28,7 @@ static const uint32_t orders[][WALLS] = {
     {0, 1, 2, 3, 4, 5, 6}, {3, 6, 0, 5, 2, 4, 1}, {6, 5, 4, 3, 2, 1, 0}, {4, 2, 6, 1, 5, 3, 0}};
 enum { ORDERS = sizeof orders / sizeof *orders };
 
-static struct places bodies_of(const struct container *walls, const uint32_t order[WALLS]) {
+static struct places walls_of(const struct container *walls, const uint32_t order[WALLS]) {
     struct places places = {0};
     for (int k = 0; k < WALLS; k++) {
         const uint32_t place = order[k];
@@ -36,51 +36,51 @@ static struct places bodies_of(const struct container *walls, const uint32_t ord
             places.opening[places.openings++] = (fibrad_plane){(int)place / 2, place % 2, walls->at[place]};
         if (!(place == 6 ? walls->cylinder[2] > 0 : walls->planes >> place & 1)) continue;
         places.place[places.count] = place;
-        places.body[places.count++] = place == 6
+        places.wall[places.count++] = place == 6
                                           ? cylinder_at(walls->cylinder[0], walls->cylinder[1], walls->cylinder[2])
                                           : plane_at((int)place / 2, place % 2, walls->at[place]);
     }
     return places;
 }
 
-/* Makes a scene with bodies; free(*scene) frees it. */
-static int init(fibrad_scene **scene, const struct bed *bed, uint32_t bodies, const fibrad_body *body,
+/* Makes a scene with walls; free(*scene) frees it. */
+static int init(fibrad_scene **scene, const struct bed *bed, uint32_t walls, const fibrad_wall *wall,
                 fibrad_fault *fault) {
-    return scene_try(scene, bed, &(fibrad_scene_config){.body = body, .bodies = bodies}, fault);
+    return scene_try(scene, bed, &(fibrad_scene_config){.wall = wall, .walls = walls}, fault);
 }
 
 static fibrad_scene *scene_at(const struct bed *bed, const struct places *places, int isa) {
     return scene_with(bed, &(fibrad_scene_config){.isa = isa,
-                                                  .body = places->body,
-                                                  .bodies = places->count,
+                                                  .wall = places->wall,
+                                                  .walls = places->count,
                                                   .opening = places->opening,
                                                   .openings = places->openings});
 }
 
 static fibrad_scene *scene_in(const struct bed *bed, const struct container *walls, int isa) {
-    const struct places places = bodies_of(walls, orders[1]);
+    const struct places places = walls_of(walls, orders[1]);
     return scene_at(bed, &places, isa);
 }
 
-/* Turns factors to bodies, in the order in which they are named, into factors to walls by place. A wall that does not
+/* Turns factors to walls, in the order in which they are named, into factors to walls by place. A wall that does not
  * exist has 0. */
-static void by_place(const struct container *walls, const uint32_t order[WALLS], double body[BODIES_MOST]) {
-    const struct places places = bodies_of(walls, order);
+static void by_place(const struct container *walls, const uint32_t order[WALLS], double wall[WALLS_MOST]) {
+    const struct places places = walls_of(walls, order);
     double wall[WALLS] = {0};
-    for (uint32_t b = 0; b < places.count; b++) wall[places.place[b]] = body[b];
-    memcpy(body, wall, sizeof wall);
+    for (uint32_t b = 0; b < places.count; b++) wall[places.place[b]] = wall[b];
+    memcpy(wall, wall, sizeof wall);
 }
 
-/* Row i by beams, with the walls in row.body by place. */
+/* Row i by beams, with the walls in row.wall by place. */
 static fibrad_row beam_in_order(const struct bed *bed, const struct container *walls, const uint32_t order[WALLS],
                                 uint32_t i, const fibrad_beam_rule *rule, int isa) {
-    const struct places places = bodies_of(walls, order);
+    const struct places places = walls_of(walls, order);
     OWNED fibrad_scene *scene = scene_at(bed, &places, isa);
     OWNED_WORK work = work_growing();
     fibrad_row row = row_of(1024);
     assert_ok(fibrad_beam_row(scene, &work, i, rule, &row));
-    for (uint32_t b = places.count; b < BODIES_MOST; b++) ck_assert(row.body[b] == 0); /* not touched */
-    by_place(walls, order, row.body);
+    for (uint32_t b = places.count; b < WALLS_MOST; b++) ck_assert(row.wall[b] == 0); /* not touched */
+    by_place(walls, order, row.wall);
     return row;
 }
 
@@ -94,7 +94,7 @@ static fibrad_row beam(const struct bed *bed, const struct container *walls, uin
 static void cast(const fibrad_scene *scene, const struct container *walls, fibrad_work *work, uint32_t i, uint32_t rays,
                  fibrad_row *row) {
     assert_ok(fibrad_cast_row(scene, work, i, &(fibrad_cast_rule){.rays = rays}, row, NULL));
-    by_place(walls, orders[1], row->body);
+    by_place(walls, orders[1], row->wall);
 }
 
 static fibrad_row lone(double x, double y, double z, double r, const struct container *walls, uint32_t directions) {
@@ -105,8 +105,8 @@ static fibrad_row lone(double x, double y, double z, double r, const struct cont
 static double wall_sum(const fibrad_row *row) {
     double sum = 0;
     for (int k = 0; k < WALLS; k++) {
-        ck_assert(row->body[k] >= 0);
-        sum += row->body[k];
+        ck_assert(row->wall[k] >= 0);
+        sum += row->wall[k];
     }
     return sum;
 }
@@ -144,11 +144,11 @@ TEST(bad_walls_are_refused) {
     OWNED fibrad_scene *scene = NULL;
     fibrad_fault fault;
     free(scene_in(&bed, &box10, 0)); /* a sphere may reach through a wall */
-    const fibrad_body z_low = plane_at(2, 0, 0), z_high = plane_at(2, 1, 20), x_low = plane_at(0, 0, 0),
+    const fibrad_wall z_low = plane_at(2, 0, 0), z_high = plane_at(2, 1, 20), x_low = plane_at(0, 0, 0),
                       y_high = plane_at(1, 1, 20), can = cylinder_at(5, 5, 9);
     const struct {
         uint32_t count;
-        fibrad_body body[3];
+        fibrad_wall wall[3];
     } bad[] = {{1, {{.kind = 0}}},
                {1, {{.kind = 4}}},
                {1, {{.kind = -1}}},
@@ -174,13 +174,13 @@ TEST(bad_walls_are_refused) {
                {2, {can, y_high}}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         fault = (fibrad_fault){9, 9, 9, 0, 0};
-        ck_assert_msg(init(&scene, &bed, bad[k].count, bad[k].body, &fault) == FIBRAD_E_ARGUMENT, "bodies %zu", k);
+        ck_assert_msg(init(&scene, &bed, bad[k].count, bad[k].wall, &fault) == FIBRAD_E_ARGUMENT, "walls %zu", k);
         ck_assert(fault.first == 3 && fault.second == 3); /* none of the spheres */
-        assert_invalid(init(&scene, &bed, bad[k].count, bad[k].body, NULL));
+        assert_invalid(init(&scene, &bed, bad[k].count, bad[k].wall, NULL));
     }
     assert_invalid(init(&scene, &bed, 1, NULL, &fault));
     const struct {
-        fibrad_body body;
+        fibrad_wall wall;
         uint32_t whose;
     } beyond[] = {{plane_at(0, 0, 3), 1},
                   {plane_at(2, 1, 9.25), 2},
@@ -189,7 +189,7 @@ TEST(bad_walls_are_refused) {
     for (size_t k = 0; k < 4; k++) {
         fault = (fibrad_fault){9, 9, 9, 0, 0};
         bed.period[2] = k == 3 ? 20 : 0;
-        assert_invalid(init(&scene, &bed, 1, &beyond[k].body, &fault));
+        assert_invalid(init(&scene, &bed, 1, &beyond[k].wall, &fault));
         ck_assert_uint_eq(fault.first, beyond[k].whose);
         ck_assert_uint_eq(fault.second, beyond[k].whose);
     }
@@ -204,39 +204,39 @@ TEST(bad_walls_are_refused) {
     assert_ok(init(&scene, &bed, 1, &can, &fault));
 }
 
-/* This version does not compute these: meshes, more than seven bodies, a known region. */
+/* This version does not compute these: meshes, more than seven walls, a known region. */
 TEST(what_is_not_supported) {
     OWNED_BED bed = BED({5, 5, 5, 1});
     fibrad_scene *scene = NULL;
     fibrad_fault fault;
-    fibrad_body bodies[FIBRAD_BODIES_MAX + 1];
-    for (int k = 0; k <= FIBRAD_BODIES_MAX; k++) bodies[k] = plane_at(k / 2 % 3, k % 2, k % 2 ? 10 : 0);
-    ck_assert_int_eq(init(&scene, &bed, FIBRAD_BODIES_MAX + 1, bodies, &fault), FIBRAD_E_UNSUPPORTED);
-    assert_invalid(init(&scene, &bed, 7, bodies, &fault)); /* a side twice */
-    assert_ok(init(&scene, &bed, 6, bodies, &fault));
+    fibrad_wall walls[FIBRAD_WALLS_MAX + 1];
+    for (int k = 0; k <= FIBRAD_WALLS_MAX; k++) walls[k] = plane_at(k / 2 % 3, k % 2, k % 2 ? 10 : 0);
+    ck_assert_int_eq(init(&scene, &bed, FIBRAD_WALLS_MAX + 1, walls, &fault), FIBRAD_E_UNSUPPORTED);
+    assert_invalid(init(&scene, &bed, 7, walls, &fault)); /* a side twice */
+    assert_ok(init(&scene, &bed, 6, walls, &fault));
     free(scene), scene = NULL;
-    const fibrad_body mesh = {.kind = FIBRAD_BODY_MESH}; /* without triangles */
+    const fibrad_wall mesh = {.kind = FIBRAD_WALL_MESH}; /* without triangles */
     assert_invalid(init(&scene, &bed, 1, &mesh, &fault));
-    bodies[5] = mesh;
-    assert_invalid(init(&scene, &bed, 6, bodies, &fault));
+    walls[5] = mesh;
+    assert_invalid(init(&scene, &bed, 6, walls, &fault));
     ck_assert_ptr_null(scene);
 }
 
-/* A row of a scene with bodies needs room for them. Nothing is written after it. */
-TEST(rows_need_room_for_bodies) {
+/* A row of a scene with walls needs room for them. Nothing is written after it. */
+TEST(rows_need_room_for_walls) {
     OWNED_BED bed = BED({5, 5, 5, 1}, {2, 5, 5, 1});
     OWNED fibrad_scene *scene = scene_in(&bed, &can10, 0);
     OWNED_WORK work = work_growing();
-    double body[4] = {-3, -3, -3, -3};
+    double wall[4] = {-3, -3, -3, -3};
     fibrad_row row = row_of(2), without = row;
-    without.body = NULL;
+    without.wall = NULL;
     without.length = 77;
     assert_invalid(fibrad_beam_row(scene, &work, 0, NULL, &without));
     assert_invalid(fibrad_cast_row(scene, &work, 0, NULL, &without, NULL));
     ck_assert_uint_eq(without.length, 77);
-    without.body = body;
+    without.wall = wall;
     assert_ok(fibrad_beam_row(scene, &work, 0, NULL, &without));
-    ck_assert(body[0] > 0 && body[1] > 0 && body[2] > 0 && body[3] == -3);
+    ck_assert(wall[0] > 0 && wall[1] > 0 && wall[2] > 0 && wall[3] == -3);
     row_free(&row);
 }
 
@@ -254,7 +254,7 @@ static void mean_of_turns(const struct bed *bed, const fibrad_scene *scene, doub
         for (uint32_t i = 0; i < bed->n; i++) {
             const fibrad_beam_rule rule = {.directions = 14, .points = 64, .turn = turn * bed->n + i};
             assert_ok(fibrad_beam_row(scene, &work, i, &rule, &row));
-            for (int k = 0; k < WALLS; k++) sum[k] += row.body[k] / bed->n;
+            for (int k = 0; k < WALLS; k++) sum[k] += row.wall[k] / bed->n;
             sum[WALLS] += row.escaped / bed->n;
         }
         for (int k = 0; k <= WALLS; k++) mean[k] += sum[k] / turns, square[k] += sum[k] * sum[k] / turns;
@@ -275,7 +275,7 @@ TEST(few_turned_windows_have_no_bias) {
         OWNED_ROW row = row_of(1024);
         for (uint32_t i = 0; i < bed.n; i++) {
             assert_ok(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 2000}, &row));
-            for (int k = 0; k < WALLS; k++) truth[k] += row.body[k] / bed.n;
+            for (int k = 0; k < WALLS; k++) truth[k] += row.wall[k] / bed.n;
             truth[WALLS] += row.escaped / bed.n;
         }
         mean_of_turns(&bed, scene, mean, error);
@@ -284,8 +284,8 @@ TEST(few_turned_windows_have_no_bias) {
     }
 }
 
-/* Factors follow the index of the body and have the same bits, in whatever order bodies are named. */
-TEST(bodies_in_any_order) {
+/* Factors follow the index of the wall and have the same bits, in whatever order walls are named. */
+TEST(walls_in_any_order) {
     OWNED_BED bed = packing(60, .6, 1.4, .3, 3, false);
     const struct container walls[] = {{.planes = 63, .at = {-3, 40, -4, 41, -5, 42}},
                                       {.planes = 48, .at = {[4] = -3, [5] = 40}, .cylinder = {5, 6, 30}}};
@@ -323,8 +323,8 @@ TEST(openings_take_what_planes_would) {
             cast(opened, &open, &work, i, 2000, &open_rays);
             for (uint32_t wall = 0; wall < 6; wall++) {
                 if (!(open.open >> wall & 1)) continue;
-                of_planes += row.body[wall], of_rays += rays.body[wall];
-                row.body[wall] = rays.body[wall] = 0;
+                of_planes += row.wall[wall], of_rays += rays.wall[wall];
+                row.wall[wall] = rays.wall[wall] = 0;
             }
             ck_assert_double_eq_tol(open_row.escaped, row.escaped + of_planes, 1e-15);
             ck_assert_double_eq_tol(open_rays.escaped, of_rays, 1e-15);
@@ -339,13 +339,13 @@ TEST(openings_take_what_planes_would) {
 /* Returns the status for walls and openings about a sphere at (5, 5, 5) of radius 1. */
 static int status_of(const struct container *walls, const double period[3], fibrad_fault *fault) {
     OWNED_BED bed = BED({5, 5, 5, 1});
-    const struct places places = bodies_of(walls, orders[0]);
+    const struct places places = walls_of(walls, orders[0]);
     memcpy(bed.period, period, sizeof bed.period);
     OWNED fibrad_scene *scene = NULL;
     const int status = scene_try(
         &scene, &bed,
         &(fibrad_scene_config){
-            .body = places.body, .bodies = places.count, .opening = places.opening, .openings = places.openings},
+            .wall = places.wall, .walls = places.count, .opening = places.opening, .openings = places.openings},
         fault);
     return status;
 }
@@ -422,20 +422,20 @@ TEST(areas_of_walls) {
     for (size_t k = 0; k < 5; k++)
         for (int order = 0; order < ORDERS; order++) {
             bed.period[0] = k == 3 ? 3 : 0, bed.period[1] = k == 3 ? 4 : 0, bed.period[2] = k == 4 ? 7 : 0;
-            const struct places places = bodies_of(&walls[k], orders[order]);
+            const struct places places = walls_of(&walls[k], orders[order]);
             OWNED fibrad_scene *scene = NULL;
             fibrad_scene_facts facts;
-            assert_ok(init(&scene, &bed, places.count, places.body, NULL));
+            assert_ok(init(&scene, &bed, places.count, places.wall, NULL));
             fibrad_scene_describe(scene, &facts);
-            ck_assert_uint_eq(facts.bodies, places.count);
+            ck_assert_uint_eq(facts.walls, places.count);
             for (uint32_t b = 0; b < places.count; b++) {
-                const double is = fibrad_scene_body_area(scene, b), should = area[k][places.place[b]];
+                const double is = fibrad_scene_wall_area(scene, b), should = area[k][places.place[b]];
                 ck_assert(is == should || fabs(is - should) < 1e-12);
             }
-            ck_assert_double_nan(fibrad_scene_body_area(scene, places.count));
-            ck_assert_double_nan(fibrad_scene_body_area(scene, UINT32_MAX));
+            ck_assert_double_nan(fibrad_scene_wall_area(scene, places.count));
+            ck_assert_double_nan(fibrad_scene_wall_area(scene, UINT32_MAX));
         }
-    ck_assert_double_nan(fibrad_scene_body_area(NULL, 0));
+    ck_assert_double_nan(fibrad_scene_wall_area(NULL, 0));
 }
 
 /* How far a place lies within a wall. */
@@ -525,14 +525,14 @@ TEST(half_of_a_sphere_sees_a_plane) {
             const struct container plane = {.planes = 1u << wall, .at = {-1, 1, -1, 1, -1, 1}};
             OWNED_ROW row = lone(0, 0, 0, 1, &plane, directions[k]);
             double tolerance = 1e-14;
-            ck_assert_double_eq_tol(row.body[wall], .5, tolerance);
+            ck_assert_double_eq_tol(row.wall[wall], .5, tolerance);
             ck_assert_double_eq_tol(row.escaped, .5, tolerance);
             assert_closed(&row);
         }
     const struct container slit = {.planes = 48, .at = {[4] = -1.5, [5] = 40}};
     OWNED_ROW row = lone(0, 0, 0, 2, &slit, 101); /* a plane cuts off an eighth of the surface: tests/test_cut.c */
-    ck_assert_double_eq_tol(row.body[4], .5 + 1. / 128, 1e-14);
-    ck_assert_double_eq_tol(row.body[5], .5 - 1. / 128, 1e-14);
+    ck_assert_double_eq_tol(row.wall[4], .5 + 1. / 128, 1e-14);
+    ck_assert_double_eq_tol(row.wall[5], .5 - 1. / 128, 1e-14);
     ck_assert(row.escaped == 0);
 }
 
@@ -556,7 +556,7 @@ TEST(sphere_in_a_box) {
                 uint32_t a = wall / 2, b = (a + 1) % 3, d = (a + 2) % 3;
                 double away = wall % 2 ? side[a] - c[a] : c[a];
                 double exact = to_rectangle(-c[b], side[b] - c[b], -c[d], side[d] - c[d], away);
-                ck_assert_double_eq_tol(row.body[wall], exact, 1e-12);
+                ck_assert_double_eq_tol(row.wall[wall], exact, 1e-12);
             }
             ck_assert(row.escaped == 0);
             ck_assert_double_le(row.error, 1e-12);
@@ -572,9 +572,9 @@ TEST(factors_are_smooth_where_walls_touch) {
         const double away = 1.2 - .001 * k;
         OWNED_ROW row = lone(3, 4, away, 1, &(struct container){.planes = 63, .at = {0, 7, 0, 9, 0, 8}}, 233);
         for (int wall = 0; wall < 6; wall++) {
-            const double change = fabs(row.body[wall] - before[wall]);
+            const double change = fabs(row.wall[wall] - before[wall]);
             if (k > 0) ck_assert_msg(change < 3e-4, "%g at %g", change, away);
-            before[wall] = row.body[wall];
+            before[wall] = row.wall[wall];
         }
         assert_closed(&row);
     }
@@ -595,7 +595,7 @@ TEST(walls_of_a_heap) {
         for (uint32_t i = 0; i < bed.n; i++) {
             if (bed.z[i] < top - 2.5) continue;
             OWNED_ROW row = beam(&bed, &walls[k], i, 233, 0, 0), fine = beam(&bed, &walls[k], i, 20000, 0, 0);
-            for (int wall = 0; wall < WALLS; wall++) square += pow(row.body[wall] - fine.body[wall], 2);
+            for (int wall = 0; wall < WALLS; wall++) square += pow(row.wall[wall] - fine.wall[wall], 2);
             far += wall_sum(&fine);
             rows++;
         }
@@ -615,10 +615,10 @@ TEST(sphere_in_a_cylinder) {
             can.open = 48 & ~can.planes;
             can.cylinder[0] = 3, can.cylinder[1] = -4, can.cylinder[2] = R;
             OWNED_ROW row = lone(3 + s * cos(phi), -4 + s * sin(phi), 2 + z, 1, &can, 987);
-            if (kind == 0) ck_assert_double_eq_tol(row.body[5], top, 2e-5);
-            if (kind < 2) ck_assert_double_eq_tol(row.body[4], bottom, 2e-5);
+            if (kind == 0) ck_assert_double_eq_tol(row.wall[5], top, 2e-5);
+            if (kind < 2) ck_assert_double_eq_tol(row.wall[4], bottom, 2e-5);
             ck_assert_double_eq_tol(row.escaped, kind == 0 ? 0 : kind == 1 ? top : bottom + top, 2e-5);
-            ck_assert_double_eq_tol(row.body[6], 1 - bottom - top, 2e-5);
+            ck_assert_double_eq_tol(row.wall[6], 1 - bottom - top, 2e-5);
             assert_closed(&row);
         }
     }
@@ -655,7 +655,7 @@ TEST(walls_take_what_escapes) {
                 assert_closed(&row);
                 cast(scene, &walls[k], &work, i, 50000, &rays);
                 assert_closed(&rays);
-                for (int wall = 0; wall < WALLS; wall++) worst_of(&worst, fabs(rays.body[wall] - row.body[wall]));
+                for (int wall = 0; wall < WALLS; wall++) worst_of(&worst, fabs(rays.wall[wall] - row.wall[wall]));
                 worst_of(&worst, fabs(rays.escaped - row.escaped));
             }
     }
@@ -678,7 +678,7 @@ TEST(walls_of_a_periodic_bed) {
         assert_closed(&rays);
         ck_assert(row.escaped == 0 && rays.escaped == 0);
         assert_closed(&row);
-        for (int wall = 4; wall < 6; wall++) ck_assert_double_eq_tol(row.body[wall], rays.body[wall], 3e-3);
+        for (int wall = 4; wall < 6; wall++) ck_assert_double_eq_tol(row.wall[wall], rays.wall[wall], 3e-3);
     }
 }
 
@@ -718,60 +718,60 @@ TEST(order_scale_and_axes) {
         OWNED_ROW row = beam(&bed, &box, i, 987, 0, 0), again = beam(&other, &scaled, bed.n - 1 - i, 987, 0, 0);
         OWNED_ROW round = beam(&turned, &cyclic, i, 987, 0, 0);
         for (int wall = 0; wall < 6; wall++) {
-            ck_assert_double_eq_tol(row.body[wall], again.body[wall], 1e-12);
-            ck_assert_double_eq_tol(row.body[wall], round.body[(wall + 2) % 6], 2e-3);
+            ck_assert_double_eq_tol(row.wall[wall], again.wall[wall], 1e-12);
+            ck_assert_double_eq_tol(row.wall[wall], round.wall[(wall + 2) % 6], 2e-3);
         }
     }
 }
 
-/* Makes a matrix of three reciprocal rows in a scene with three bodies. The halves of the rows agree: no row has
+/* Makes a matrix of three reciprocal rows in a scene with three walls. The halves of the rows agree: no row has
  * noise. */
-static struct matrix closed(const double body[3][3], const double escaped[3]) {
+static struct matrix closed(const double wall[3][3], const double escaped[3]) {
     OWNED_BED bed = BED({0, 0, 50, 1}, {0, 0, 10, 1}, {0, 0, 90, 2});
-    const fibrad_body walls[] = {plane_at(2, 0, 0), cylinder_at(0, 0, 99), plane_at(2, 1, 100)};
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 3});
+    const fibrad_wall walls[] = {plane_at(2, 0, 0), cylinder_at(0, 0, 99), plane_at(2, 1, 100)};
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = walls, .walls = 3});
     OWNED_ROWS rows = {.memory = memory_growing()};
     uint32_t col[][2] = {{1, 0}, {0, 2}, {1, 0}};
     double f[][2] = {{.5, 0}, {.5, .4}, {.1, 0}}, own[3];
     float half[2] = {0, 0};
     for (uint32_t i = 0; i < 3; i++) {
-        memcpy(own, body[i], sizeof own);
+        memcpy(own, wall[i], sizeof own);
         const fibrad_row row = {.sphere = i,
                                 .lines = true,
                                 .col = col[i],
                                 .f = f[i],
                                 .half = half,
-                                .body = own,
+                                .wall = own,
                                 .length = i == 1 ? 2 : 1,
                                 .escaped = escaped[i]};
         assert_ok(fibrad_rows_add(&rows, &row, 3));
     }
     struct matrix m = matrix_of(scene, &rows, 1, NULL);
     for (uint32_t i = 0; i < 3; i++) ck_assert_double_eq_tol(matrix_total(&m.factors, i), 1, 1e-15);
-    ck_assert_uint_eq(m.factors.bodies, 3);
+    ck_assert_uint_eq(m.factors.walls, 3);
     return m;
 }
 
 /* Averaged rows are closed, too, whatever the error of the method. */
 TEST(closing_rows) {
     OWNED_MATRIX m = closed((const double[][3]){{.2, .1, 0}, {0, 0, 0}, {0, 0, .2}}, (const double[]){.1, 0, 0});
-    const double(*body)[3] = (const double(*)[3])m.factors.body, *escaped = m.factors.escaped;
-    ck_assert_double_eq_tol(body[0][0], .25, 1e-15);
-    ck_assert_double_eq_tol(body[0][1], .125, 1e-15);
-    ck_assert(body[0][2] == 0);
+    const double(*wall)[3] = (const double(*)[3])m.factors.wall, *escaped = m.factors.escaped;
+    ck_assert_double_eq_tol(wall[0][0], .25, 1e-15);
+    ck_assert_double_eq_tol(wall[0][1], .125, 1e-15);
+    ck_assert(wall[0][2] == 0);
     ck_assert_double_eq_tol(escaped[0], .125, 1e-15);
-    ck_assert_double_eq_tol(body[2][2], .9, 1e-15);
-    ck_assert(escaped[2] == 0 && body[2][0] == 0 && body[2][1] == 0);
+    ck_assert_double_eq_tol(wall[2][2], .9, 1e-15);
+    ck_assert(escaped[2] == 0 && wall[2][0] == 0 && wall[2][1] == 0);
     /* this sphere met nothing outside: .2, .1 and .1 come from sphere 0, 4 x .2 from sphere 2, of 1.2 in all */
-    ck_assert_double_eq_tol(body[1][0], .1 * .2 / 1.2, 1e-15);
-    ck_assert_double_eq_tol(body[1][1], .1 * .1 / 1.2, 1e-15);
-    ck_assert_double_eq_tol(body[1][2], .1 * .8 / 1.2, 1e-15);
+    ck_assert_double_eq_tol(wall[1][0], .1 * .2 / 1.2, 1e-15);
+    ck_assert_double_eq_tol(wall[1][1], .1 * .1 / 1.2, 1e-15);
+    ck_assert_double_eq_tol(wall[1][2], .1 * .8 / 1.2, 1e-15);
     ck_assert_double_eq_tol(escaped[1], .1 * .1 / 1.2, 1e-15);
     matrix_free(&m);
     m = closed((const double[3][3]){{0}}, (const double[3]){0});
     ck_assert_double_eq_tol(m.factors.escaped[0], .5, 1e-15);
     ck_assert_double_eq_tol(m.factors.escaped[1], .1, 1e-15);
-    for (int k = 0; k < 9; k++) ck_assert(m.factors.body[k] == 0);
+    for (int k = 0; k < 9; k++) ck_assert(m.factors.wall[k] == 0);
 }
 
 static const char *const misspelt[] = {"",
@@ -820,17 +820,17 @@ static void assert_walls(const struct wall_options *options, const struct bed *b
     ck_assert_int_eq(walls_of(options, bed, "bed", &walls), 0);
     ck_assert_uint_eq(walls.count, count);
     for (uint32_t k = 0; k < count; k++) {
-        const fibrad_body *body = &walls.body[k];
+        const fibrad_wall *wall = &walls.wall[k];
         if (place[k] == 6) {
-            ck_assert_int_eq(body->kind, FIBRAD_BODY_CYLINDER);
-            ck_assert(body->cylinder.x == cylinder[0] && body->cylinder.y == cylinder[1]);
-            ck_assert(body->cylinder.radius == cylinder[2]);
+            ck_assert_int_eq(wall->kind, FIBRAD_WALL_CYLINDER);
+            ck_assert(wall->cylinder.x == cylinder[0] && wall->cylinder.y == cylinder[1]);
+            ck_assert(wall->cylinder.radius == cylinder[2]);
             ck_assert_str_eq(wall_name(&walls, k), "cylinder");
         } else {
             static const char *const names[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
-            ck_assert_int_eq(body->kind, FIBRAD_BODY_PLANE);
-            ck_assert_int_eq(2 * body->plane.axis + body->plane.upper, (int)place[k]);
-            ck_assert(body->plane.at == at[place[k]]);
+            ck_assert_int_eq(wall->kind, FIBRAD_WALL_PLANE);
+            ck_assert_int_eq(2 * wall->plane.axis + wall->plane.upper, (int)place[k]);
+            ck_assert(wall->plane.at == at[place[k]]);
             ck_assert_str_eq(wall_name(&walls, k), names[place[k]]);
         }
     }
@@ -882,7 +882,7 @@ TEST(option_places_openings) {
         ck_assert(walls.opening[k].at == should[k].at);
     }
     ck_assert(!walls_closed(&walls, &bed));
-    for (uint32_t k = 0; k < walls.count; k++) ck_assert(!wall_endless(&walls, &bed, &walls.body[k]));
+    for (uint32_t k = 0; k < walls.count; k++) ck_assert(!wall_endless(&walls, &bed, &walls.wall[k]));
     bed.period[0] = 200;
     ck_assert_int_eq(walls_of(&options, &bed, "bed", &walls), 2); /* this opening lies across a periodic axis */
 }

@@ -26,12 +26,12 @@ static void output_free(struct output *out) { row_free(&out->row); }
 static int call(int function, const fibrad_scene *scene, fibrad_work *work, uint32_t i, struct output *out) {
     static double grey[MOST];
     for (uint32_t k = 0; k < MOST; k++) grey[k] = .6 + .001 * (k % 100);
-    const fibrad_exchange_rule exchange = {.emissivity = grey, .body_emissivity = grey, .directions = 34, .paths = 100};
+    const fibrad_exchange_rule exchange = {.emissivity = grey, .wall_emissivity = grey, .directions = 34, .paths = 100};
     fibrad_row *row = &out->row;
     fibrad_scene_facts facts;
     fibrad_scene_describe(scene, &facts);
-    if (function == SURFACE && facts.bodies > 0) function = BEAM; /* the surface method has no walls */
-    memset(row->body, 0, WALLS * sizeof *row->body);
+    if (function == SURFACE && facts.walls > 0) function = BEAM; /* the surface method has no walls */
+    memset(row->wall, 0, WALLS * sizeof *row->wall);
     switch (function) {
     case BEAM:
         return fibrad_beam_row(scene, work, i, &(fibrad_beam_rule){.directions = 55}, row);
@@ -71,8 +71,8 @@ static struct bed bed_number(int k) {
 }
 
 static fibrad_scene *scene_number(int k, const struct bed *bed) {
-    const fibrad_body walls[WALLS] = {plane_at(2, 0, -1), plane_at(2, 1, 5)};
-    return scene_with(bed, &(fibrad_scene_config){.body = walls, .bodies = k == SCENES - 1 ? WALLS : 0});
+    const fibrad_wall walls[WALLS] = {plane_at(2, 0, -1), plane_at(2, 1, 5)};
+    return scene_with(bed, &(fibrad_scene_config){.wall = walls, .walls = k == SCENES - 1 ? WALLS : 0});
 }
 
 /* The output of a function with new and plentiful memory. */
@@ -286,9 +286,9 @@ static void powers_in(unsigned char *block, size_t size, size_t offset, const fi
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);
     sources.temperature = temperature, sources.emissivity = emissivity;
-    sources.body_temperature = &floor_temperature, sources.body_emissivity = &floor_emissivity;
+    sources.wall_temperature = &floor_temperature, sources.wall_emissivity = &floor_emissivity;
     sources.surroundings = 500;
-    fibrad_heat_result result = {.power = power, .body_power = power + n};
+    fibrad_heat_result result = {.power = power, .wall_power = power + n};
     heat_solve(heat, &sources, &result, false);
     power[n + 1] = result.surroundings_power;
     power[n + 2] = result.error_patches, power[n + 3] = result.error_beams, power[n + 4] = result.residual;
@@ -298,8 +298,8 @@ static void powers_in(unsigned char *block, size_t size, size_t offset, const fi
  * little. */
 TEST(heat_blocks_of_any_alignment) {
     OWNED_BED bed = packing(20, .8, 1.2, .5, 7, false);
-    const fibrad_body floor_plane = plane_at(2, 0, -3);
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
+    const fibrad_wall floor_plane = plane_at(2, 0, -3);
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = &floor_plane, .walls = 1});
     const size_t size = fibrad_heat_size(&(fibrad_heat_config){.directions = 21, .patches = 24, .parts = 3}, scene);
     ck_assert_uint_gt(size, 0);
     OWNED unsigned char *block = block_of(size + 128);

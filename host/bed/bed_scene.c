@@ -16,8 +16,8 @@ fibrad_spheres bed_spheres(const struct bed *bed) {
 
 fibrad_scene_config bed_scene(const struct bed *bed, const struct walls *walls) {
     return (fibrad_scene_config){.period = {bed->period[0], bed->period[1], bed->period[2]},
-                                 .body = walls ? walls->body : NULL,
-                                 .bodies = walls ? walls->count : 0,
+                                 .wall = walls ? walls->wall : NULL,
+                                 .walls = walls ? walls->count : 0,
                                  .opening = walls ? walls->opening : NULL,
                                  .openings = walls ? walls->openings : 0,
                                  .triangles = walls && walls->meshes ? &walls->meshes->triangles : NULL};

@@ -52,8 +52,8 @@ struct core {
 /* Where a wall across an axis ends the bed, low or high. NaN: there is no such wall. */
 static double wall_end(const struct walls *walls, int axis, bool upper) {
     for (uint32_t k = 0; walls && k < walls->count; ++k) {
-        const fibrad_body *wall = &walls->body[k];
-        if (wall->kind == FIBRAD_BODY_PLANE && wall->plane.axis == axis && wall->plane.upper == upper)
+        const fibrad_wall *wall = &walls->wall[k];
+        if (wall->kind == FIBRAD_WALL_PLANE && wall->plane.axis == axis && wall->plane.upper == upper)
             return wall->plane.at;
     }
     return NAN;
@@ -62,7 +62,7 @@ static double wall_end(const struct walls *walls, int axis, bool upper) {
 double conduction_width(const struct bed *bed, const struct walls *walls, int axis) {
     if (bed->period[axis] > 0) return bed->period[axis];
     for (uint32_t k = 0; walls && axis < 2 && k < walls->count; ++k)
-        if (walls->body[k].kind == FIBRAD_BODY_CYLINDER) return sqrt(PI) * walls->body[k].cylinder.radius;
+        if (walls->wall[k].kind == FIBRAD_WALL_CYLINDER) return sqrt(PI) * walls->wall[k].cylinder.radius;
     return wall_end(walls, axis, true) - wall_end(walls, axis, false);
 }
 
@@ -257,7 +257,7 @@ static int follow_round(const struct bed *bed, const unsigned char *emits, const
     for (; round.batch < batches; ++round.batch) {
         const uint32_t share = (uint32_t)(paths / batches + (round.batch < paths % batches));
         const fibrad_exchange_rule how = {.emissivity = rule->emissivity,
-                                          .body_emissivity = mirrors,
+                                          .wall_emissivity = mirrors,
                                           .conductivity = rule->conductivity,
                                           .flights = result->flights,
                                           .paths = share,

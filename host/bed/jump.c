@@ -86,7 +86,7 @@ enum { COPIES = 3 };
 static void add_sides(const struct walls *sides, struct walls *walls, double *temperature, unsigned char *insulated) {
     for (uint32_t k = 0; sides && k < sides->count && walls->count < WALLS_MAX; ++k) {
         temperature[walls->count] = NAN, insulated[walls->count] = 1;
-        walls->body[walls->count++] = sides->body[k];
+        walls->wall[walls->count++] = sides->wall[k];
     }
 }
 
@@ -98,12 +98,12 @@ static int solve_once(const struct bed *bed, const struct jump_radiation *radiat
     double emissivity[WALLS_MAX], wall_power[WALLS_MAX];
     for (uint32_t k = 0; k < WALLS_MAX; ++k) emissivity[k] = 1;
     add_sides(radiation->sides, walls, plate, insulated);
-    sources->body_temperature = plate, sources->body_emissivity = emissivity, sources->insulated = insulated;
+    sources->wall_temperature = plate, sources->wall_emissivity = emissivity, sources->insulated = insulated;
     sources->surroundings = radiation->temperature, sources->tolerance = 1e-6;
     const fibrad_scene_config scene = bed_scene(bed, walls);
     const fibrad_spheres spheres = bed_spheres(bed);
     const fibrad_heat_config config = {.directions = radiation->directions};
-    fibrad_heat_result result = {.power = power, .temperature = temperature, .body_power = wall_power};
+    fibrad_heat_result result = {.power = power, .temperature = temperature, .wall_power = wall_power};
     fibrad_radiation *solver = NULL;
     int status = fibrad_radiation_new(&solver, &scene, &spheres, &config, run);
     if (!status) status = fibrad_radiation_solve(solver, sources, &result);
@@ -127,7 +127,7 @@ static int gain_by_radiation(const struct bed *bed, const struct jump_radiation 
     stack.period[axis] = 0;
     for (uint32_t k = 0; k < 2 && !status; ++k) {
         const double end = bed_reach(&stack, axis, k == 1);
-        walls.body[k] = (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {axis, (int)k, end}};
+        walls.wall[k] = (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = {axis, (int)k, end}};
         mean += end / 2, plate[k] = end;
     }
     for (int k = 0; k < 2; ++k) plate[k] = radiation->temperature * (1 + slope * (plate[k] - mean));

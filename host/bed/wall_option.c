@@ -15,16 +15,16 @@ static const char *const plane_names[PLANES] = {"xmin", "xmax", "ymin", "ymax", 
 /* The plane of a side, whose number is that of its name in plane_names. */
 static fibrad_plane plane_at(int number, double at) { return (fibrad_plane){number / 2, number % 2, at}; }
 
-static fibrad_body wall_at(int number, double at) {
-    return (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = plane_at(number, at)};
+static fibrad_wall wall_at(int number, double at) {
+    return (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = plane_at(number, at)};
 }
 
-static bool is_cylinder(const fibrad_body *wall) { return wall->kind == FIBRAD_BODY_CYLINDER; }
+static bool is_cylinder(const fibrad_wall *wall) { return wall->kind == FIBRAD_WALL_CYLINDER; }
 
-static bool is_mesh(const fibrad_body *wall) { return wall->kind == FIBRAD_BODY_MESH; }
+static bool is_mesh(const fibrad_wall *wall) { return wall->kind == FIBRAD_WALL_MESH; }
 
 const char *wall_name(const struct walls *walls, uint32_t k) {
-    const fibrad_body *wall = &walls->body[k];
+    const fibrad_wall *wall = &walls->wall[k];
     if (is_mesh(wall)) return walls->meshes->name[k];
     return is_cylinder(wall) ? "cylinder" : plane_name(&wall->plane);
 }
@@ -41,17 +41,17 @@ static bool is_word(const char *word, size_t length, const char *name) {
 static bool begins_with(const char *text, const char *begin) { return strncmp(text, begin, strlen(begin)) == 0; }
 
 /* The wall with a name. NULL: there is none. */
-static const fibrad_body *wall_named(const struct walls *walls, const char *name) {
+static const fibrad_wall *wall_named(const struct walls *walls, const char *name) {
     for (uint32_t k = 0; k < walls->count; ++k)
-        if (strcmp(wall_name(walls, k), name) == 0) return &walls->body[k];
+        if (strcmp(wall_name(walls, k), name) == 0) return &walls->wall[k];
     return NULL;
 }
 
 /* The plane of a side, which may be a wall or an opening. NULL: there is none. */
 static const fibrad_plane *plane_of_side(const struct walls *walls, int number) {
     for (uint32_t k = 0; k < walls->count; ++k)
-        if (walls->body[k].kind == FIBRAD_BODY_PLANE && plane_number(&walls->body[k].plane) == number)
-            return &walls->body[k].plane;
+        if (walls->wall[k].kind == FIBRAD_WALL_PLANE && plane_number(&walls->wall[k].plane) == number)
+            return &walls->wall[k].plane;
     for (uint32_t k = 0; k < walls->openings; ++k)
         if (plane_number(&walls->opening[k]) == number) return &walls->opening[k];
     return NULL;
@@ -59,14 +59,14 @@ static const fibrad_plane *plane_of_side(const struct walls *walls, int number) 
 
 static int named_twice(const char *name) { return message(STATUS_USAGE, "--wall: %s is named twice", name); }
 
-static int add_wall(struct wall_options *options, fibrad_body wall, bool placed) {
+static int add_wall(struct wall_options *options, fibrad_wall wall, bool placed) {
     struct walls *walls = &options->walls;
     const uint32_t k = walls->count;
     if (k == WALLS_MAX) return message(STATUS_USAGE, "--wall: more than %d walls", WALLS_MAX);
     options->placed[k] = placed;
-    walls->body[k] = wall;
+    walls->wall[k] = wall;
     const char *name = wall_name(walls, k);
-    if (wall_named(walls, name) || (wall.kind == FIBRAD_BODY_PLANE && plane_of_side(walls, plane_number(&wall.plane))))
+    if (wall_named(walls, name) || (wall.kind == FIBRAD_WALL_PLANE && plane_of_side(walls, plane_number(&wall.plane))))
         return named_twice(name);
     ++walls->count;
     return STATUS_OK;
@@ -94,7 +94,7 @@ static int take_cylinder(const char **text, struct wall_options *options) {
     for (int k = 1; k < 3 && good; ++k) good = *(*text)++ == ',' && take_number(text, &c[k]);
     if (!good || !(c[2] > 0))
         return message(STATUS_USAGE, "--wall: a cylinder is cylinder:X,Y,R with a radius R above 0");
-    return add_wall(options, (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {c[0], c[1], c[2]}}, true);
+    return add_wall(options, (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {c[0], c[1], c[2]}}, true);
 }
 
 /* Whether *text begins with `begin`. If so, moves *text behind it. */
@@ -164,9 +164,9 @@ static int add_mesh(struct wall_options *options, const struct mesh_file *file) 
     if (!walls->meshes) walls->meshes = calloc(1, sizeof *walls->meshes);
     if (!walls->meshes) return message_memory();
     int status = meshes_add(walls->meshes, file, walls->count);
-    const uint32_t bodies = walls->meshes->mesh ? walls->meshes->mesh[walls->meshes->count - 1].bodies : 0;
-    for (uint32_t k = 0; k < bodies && !status; ++k)
-        status = add_wall(options, (fibrad_body){.kind = FIBRAD_BODY_MESH}, true);
+    const uint32_t walls = walls->meshes->mesh ? walls->meshes->mesh[walls->meshes->count - 1].walls : 0;
+    for (uint32_t k = 0; k < walls && !status; ++k)
+        status = add_wall(options, (fibrad_wall){.kind = FIBRAD_WALL_MESH}, true);
     return status;
 }
 
@@ -279,7 +279,7 @@ bool walls_closed(const struct walls *walls, const struct bed *bed) {
     return walls->openings == 0 && is_closed(walls, bed, 0) && is_closed(walls, bed, 1) && is_closed(walls, bed, 2);
 }
 
-bool wall_endless(const struct walls *walls, const struct bed *bed, const fibrad_body *wall) {
+bool wall_endless(const struct walls *walls, const struct bed *bed, const fibrad_wall *wall) {
     for (int axis = 0; axis < 3 && !is_mesh(wall); ++axis)
         if (!(is_cylinder(wall) ? axis < 2 : axis == wall->plane.axis) && !is_closed(walls, bed, axis)) return true;
     return false;
@@ -315,7 +315,7 @@ int wall_unknown(const char *option, const struct walls *walls, const char *name
                    name, hint, names_list(list, names, walls->count));
 }
 
-static bool is_beyond(const fibrad_body *wall, const double centre[3]) {
+static bool is_beyond(const fibrad_wall *wall, const double centre[3]) {
     if (is_mesh(wall)) return false;
     if (is_cylinder(wall))
         return hypot(centre[0] - wall->cylinder.x, centre[1] - wall->cylinder.y) > wall->cylinder.radius;
@@ -326,7 +326,7 @@ static bool is_beyond(const fibrad_body *wall, const double centre[3]) {
 static int check_centres(const struct walls *walls, const struct bed *bed, const char *file) {
     for (uint32_t i = 0; i < bed->n; ++i)
         for (uint32_t k = 0; k < walls->count; ++k)
-            if (is_beyond(&walls->body[k], (const double[]){bed->x[i], bed->y[i], bed->z[i]}))
+            if (is_beyond(&walls->wall[k], (const double[]){bed->x[i], bed->y[i], bed->z[i]}))
                 return message_at(STATUS_INPUT, file, bed->line[i], "the centre of sphere %lld lies beyond the wall %s",
                                   (long long)bed_name(bed, i), wall_name(walls, k));
     return STATUS_OK;
@@ -342,7 +342,7 @@ int walls_of(const struct wall_options *options, const struct bed *bed, const ch
         if (isnan(opening->at)) opening->at = bed_reach(bed, opening->axis, opening->upper);
     }
     for (uint32_t k = 0; k < walls->count; ++k) {
-        fibrad_body *wall = &walls->body[k];
+        fibrad_wall *wall = &walls->wall[k];
         if (!all.placed[k]) wall->plane.at = bed_wall_end(bed, wall->plane.axis, wall->plane.upper, &walls->moved);
     }
     status = check_axes(walls, bed);

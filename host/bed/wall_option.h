@@ -9,13 +9,13 @@
 #include "fibrad.h"
 #include "mesh/meshes.h"
 
-enum { WALLS_MAX = FIBRAD_BODIES_MAX, PLANES = 6 };
+enum { WALLS_MAX = FIBRAD_WALLS_MAX, PLANES = 6 };
 
-/* Walls in the order of the option; those of auto and box come last. body[k] is j = -2 - k in a matrix. Openings are no
+/* Walls in the order of the option; those of auto and box come last. wall[k] is j = -2 - k in a matrix. Openings are no
  * walls: radiation that meets them goes to the surroundings. */
 struct walls {
     uint32_t count;
-    fibrad_body body[WALLS_MAX];
+    fibrad_wall wall[WALLS_MAX];
     uint32_t openings;
     fibrad_plane opening[PLANES]; /* at: NaN if the plane lies at the end of the spheres and the bed is not known yet */
     struct meshes *meshes;        /* owned by the options; NULL: none */
@@ -75,6 +75,6 @@ int walls_of(const struct wall_options *options, const struct bed *bed, const ch
 bool walls_closed(const struct walls *walls, const struct bed *bed);
 
 /* Whether a wall is infinite along an axis. */
-bool wall_endless(const struct walls *walls, const struct bed *bed, const fibrad_body *wall);
+bool wall_endless(const struct walls *walls, const struct bed *bed, const fibrad_wall *wall);
 
 #endif

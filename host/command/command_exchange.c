@@ -61,8 +61,8 @@ static int exchange_help(void) {
          "the emission of sphere i that sphere j absorbs, directly or after reflections.\n");
     options_print(exchange_table);
     puts("\n" FILES_MORE "\n" WALLS_MORE "\n"
-         "The .csv has the columns i,j,D,body. The surroundings are j = -1. Walls are j = -2, -3, ... with their\n"
-         "names in the column `body`. Rows i = -2, -3, ... are those of walls that are not endless. .mtx has\n"
+         "The .csv has the columns i,j,D,wall. The surroundings are j = -1. Walls are j = -2, -3, ... with their\n"
+         "names in the column `wall`. Rows i = -2, -3, ... are those of walls that are not endless. .mtx has\n"
          "spheres only.\n"
          "\n"
          "The net power of sphere i is the sum over j of A_i e_i D_ij sigma (T_j^4 - T_i^4), with A_i = 4 pi r_i^2\n"
@@ -157,7 +157,7 @@ static void exchange_report(struct exchange_request *request, const struct conte
     summary_make(&summary, what);
     bed_options_report(&request->bed, what->bed, what->walls, &factors->facts);
     quantity_report(&request->emissivity, "emissivity", report);
-    wall_values_report(what->walls, request->rule.body_emissivity, "_emissivity", 6, report);
+    wall_values_report(what->walls, request->rule.wall_emissivity, "_emissivity", 6, report);
     if (request->solid.given) exchange_report_solid(request, &factors->matrix);
     report_count(report, "directions", factors->directions);
     report_count(report, "rays", factors->rays);
@@ -225,8 +225,8 @@ static int exchange_frame(void *exchange_request, struct bed *bed) {
     if (!status) status = wall_emissivities(request->wall_emissivity, &request->walls, wall_emissivity);
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     request->rule.emissivity = emissivity;
-    request->rule.body_emissivity = wall_emissivity;
-    request->options.bodies = 1;
+    request->rule.wall_emissivity = wall_emissivity;
+    request->options.walls = 1;
     if (!status) status = exchange_solid(request, bed, &relative);
     if (!status) status = exchange_matrix(request, bed);
     free(emissivity);

@@ -132,8 +132,8 @@ static int heat_help(void) {
          "temperature of the centre, and their estimated errors: T_min_K, T_max_K, T_surface_error_K,\n"
          "T_centre_K, T_centre_error_K. The unit of length must be known.\n"
          "\n"
-         "The .csv has the columns i,T_K,q_W,q_error_W,T_error_K,body, with estimated errors. The surroundings are\n"
-         "i = -1. Walls are i = -2, -3, ... with their names in the column `body`. All q_W add up to zero.\n"
+         "The .csv has the columns i,T_K,q_W,q_error_W,T_error_K,wall, with estimated errors. The surroundings are\n"
+         "i = -1. Walls are i = -2, -3, ... with their names in the column `wall`. All q_W add up to zero.\n"
          "\n"
          "Several frames go into one .csv, .dump or .json with their numbers. If OUT has a *, each frame has a\n"
          "file. Standard output ends with a summary of each frame, one `key value` on a line. Its balance and\n"
@@ -227,8 +227,8 @@ static void heat_print(struct heat_request *request, const struct bed *bed, cons
     quantity_report(&request->given.temperature, request->given.zero > 0 ? "temperature_C" : "temperature_K", report);
     quantity_report(&request->given.power, "power_W", report);
     if (request->given.ambient) report_value(report, "surroundings_K", sources->surroundings, 6);
-    wall_values_report(&request->problem.walls, result->body_temperature, "_K", 6, report);
-    wall_values_report(&request->problem.walls, sources->body_emissivity, "_emissivity", 6, report);
+    wall_values_report(&request->problem.walls, result->wall_temperature, "_K", 6, report);
+    wall_values_report(&request->problem.walls, sources->wall_emissivity, "_emissivity", 6, report);
     report_count(report, "patches", heat->config.patches);
     report_count(report, "directions", heat->config.directions);
     report_count(report, "points", heat->config.points);
@@ -243,12 +243,12 @@ static void heat_print(struct heat_request *request, const struct bed *bed, cons
         report_measured(report, "surroundings_W", result->surroundings_power, result->surroundings_error);
         report_value(report, "surroundings_error_W", result->surroundings_error, 2);
     }
-    wall_values_report(&request->problem.walls, result->body_power, "_W", 6, report);
-    wall_values_report(&request->problem.walls, result->body_error, "_error_W", 2, report);
+    wall_values_report(&request->problem.walls, result->wall_power, "_W", 6, report);
+    wall_values_report(&request->problem.walls, result->wall_error, "_error_W", 2, report);
     for (uint32_t k = 0; k < request->problem.walls.count; ++k) {
-        if (!wall_endless(&request->problem.walls, bed, &request->problem.walls.body[k])) continue;
+        if (!wall_endless(&request->problem.walls, bed, &request->problem.walls.wall[k])) continue;
         report_value(report, report_key(report, "wall_%s_part_m2", wall_name(&request->problem.walls, k)),
-                     result->body_area[k], 6);
+                     result->wall_area[k], 6);
     }
     if (heat->unknown) {
         report_measured(report, "temperature_min_K", heat->coldest, heat->temperature_error);
@@ -276,8 +276,8 @@ static int heat_picture(const struct heat_request *request, const struct bed *be
                                      .metres = report->metres,
                                      .temperature = report->result.temperature,
                                      .power = report->result.power,
-                                     .wall_temperature = report->result.body_temperature,
-                                     .wall_power = report->result.body_power,
+                                     .wall_temperature = report->result.wall_temperature,
+                                     .wall_power = report->result.wall_power,
                                      .surroundings_temperature = problem->sources.surroundings,
                                      .surroundings_power =
                                          request->given.ambient ? report->result.surroundings_power : NAN,
@@ -392,7 +392,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     if (!status && request->bed.wall_vtp) status = triangle_heat_begin(&report.triangles, walls);
     if (!status) {
         given_heat_sources(&given, bed->n, request->given.timed ? 1 : report.metres, sources);
-        sources->emissivity = emissivity, sources->body_emissivity = of_walls[0];
+        sources->emissivity = emissivity, sources->wall_emissivity = of_walls[0];
         const double per_watt = request->given.timed ? 1 : 1 / (report.metres * report.metres);
         status = contacts_begin(&contacts, &request->contacts, &request->bed, bed, walls, &request->solid, per_watt,
                                 sources);
@@ -402,9 +402,9 @@ static int heat_frame(void *heat_request, struct bed *bed) {
         request->problem.ambient_curve = &request->given.ambient_curve;
         request->problem.light = &light, request->problem.face = &request->face;
         request->problem.emissivity = emissivity, request->problem.of_emissivity = &request->emissivity;
-        report.result.body_power = of_walls[1], report.result.body_temperature = of_walls[2];
-        report.result.body_absorbed = of_walls[5], report.result.body_area = of_walls[6];
-        report.result.body_error = of_walls[3], report.result.body_temperature_error = of_walls[4];
+        report.result.wall_power = of_walls[1], report.result.wall_temperature = of_walls[2];
+        report.result.wall_absorbed = of_walls[5], report.result.wall_area = of_walls[6];
+        report.result.wall_error = of_walls[3], report.result.wall_temperature_error = of_walls[4];
     }
     if (!status) {
         status = request->given.timed ? heat_in_time(&request->bed, &request->time, &request->problem, bed, &report,

@@ -75,7 +75,7 @@ static int join_parse(struct join_request *request, int argc, char **argv) {
 static int join_scene(const struct joined *joined, fibrad_scene **scene, void **block) {
     const double *x = joined->x;
     const fibrad_spheres spheres = {x, x + 1, x + 2, joined->radius, joined->n, .stride = 3};
-    const uint32_t bodies = joined->n > 0 ? joined->bodies : 0;
+    const uint32_t walls = joined->n > 0 ? joined->walls : 0;
     double top = -INFINITY;
     for (uint32_t i = 0; i < joined->n; ++i) top = fmax(top, x[3 * (size_t)i + 2] + joined->radius[i]);
     double vertex[3][3] = {{0}};
@@ -84,10 +84,10 @@ static int join_scene(const struct joined *joined, fibrad_scene **scene, void **
         vertex[k][1] = x[1] + (k == 2) * joined->radius[0];
         vertex[k][2] = top;
     }
-    fibrad_body body[FIBRAD_BODIES_MAX];
-    uint32_t corner[FIBRAD_BODIES_MAX][3], front[FIBRAD_BODIES_MAX];
-    for (uint32_t k = 0; k < bodies; ++k) {
-        body[k] = (fibrad_body){.kind = FIBRAD_BODY_MESH};
+    fibrad_wall wall[FIBRAD_WALLS_MAX];
+    uint32_t corner[FIBRAD_WALLS_MAX][3], front[FIBRAD_WALLS_MAX];
+    for (uint32_t k = 0; k < walls; ++k) {
+        wall[k] = (fibrad_wall){.kind = FIBRAD_WALL_MESH};
         for (uint32_t c = 0; c < 3; ++c) corner[k][c] = c;
         front[k] = k;
     }
@@ -98,8 +98,8 @@ static int join_scene(const struct joined *joined, fibrad_scene **scene, void **
                                                .vertices = 3,
                                                .corner = &corner[0][0],
                                                .front = front,
-                                               .n = bodies};
-    const fibrad_scene_config config = {.body = body, .bodies = bodies, .triangles = bodies ? &triangles : NULL};
+                                               .n = walls};
+    const fibrad_scene_config config = {.wall = wall, .walls = walls, .triangles = walls ? &triangles : NULL};
     fibrad_fault fault = {joined->n, joined->n, UINT32_MAX, 0, 0};
     const int status = fibrad_heap_scene(scene, block, &config, &spheres, &fault);
     if (status == FIBRAD_OK) return STATUS_OK;
@@ -151,9 +151,9 @@ static void join_report(struct join_request *request, const struct joined *joine
 /* Writes the matrix and its summary. x: room for [3][n] numbers. */
 static int join_write(struct join_request *request, const struct joined *joined, double *x,
                       const fibrad_bed_factors *factors) {
-    double unbounded[FIBRAD_BODIES_MAX];
+    double unbounded[FIBRAD_WALLS_MAX];
     const size_t n = joined->n;
-    for (size_t b = 0; b < FIBRAD_BODIES_MAX; ++b) unbounded[b] = INFINITY;
+    for (size_t b = 0; b < FIBRAD_WALLS_MAX; ++b) unbounded[b] = INFINITY;
     for (size_t k = 0; k < 3 * n; ++k) x[k % 3 * n + k / 3] = joined->x[k];
     const struct array ids = {"ids.npy", "u8", joined->id, n, 0};
     const struct bed bed = {.n = joined->n,
@@ -165,10 +165,10 @@ static int join_write(struct join_request *request, const struct joined *joined,
                             .id = (int64_t *)joined->id,
                             .frame = (int64_t)joined->step, /* the number for a * in OUT */
                             .timestep = (int64_t)joined->step};
-    const struct walls walls = {.count = joined->bodies};
-    const fibrad_exchange_rule grey = {.emissivity = joined->emissivity, .body_emissivity = unbounded};
+    const struct walls walls = {.count = joined->walls};
+    const fibrad_exchange_rule grey = {.emissivity = joined->emissivity, .wall_emissivity = unbounded};
     fibrad_bed_factors with_areas = *factors;
-    with_areas.body_area = unbounded; /* not known; INFINITY leaves out the rows of walls */
+    with_areas.wall_area = unbounded; /* not known; INFINITY leaves out the rows of walls */
     const struct contents what = {.bed = &bed,
                                   .factors = &with_areas,
                                   .walls = &walls,

@@ -126,7 +126,7 @@ int contacts_begin(struct contact_state *state, const struct contact_options *op
     if (!status) status = join_contacts(state, bed->n, &lines);
     state->first = lines.first, state->second = lines.second, state->conductance = lines.conductance;
     if (status) return status;
-    contacts_follow(state, bed, sources->temperature, sources->body_temperature);
+    contacts_follow(state, bed, sources->temperature, sources->wall_temperature);
     sources->contact_first = state->first, sources->contact_second = state->second;
     sources->conductance = state->conductance, sources->contacts = state->n;
     return STATUS_OK;
@@ -193,7 +193,7 @@ void contacts_follow(struct contact_state *state, const struct bed *bed, const d
 
 void contacts_result(struct contact_state *state, fibrad_heat_result *result) {
     if (!state->options) return;
-    result->conducted = state->conducted, result->body_conducted = state->wall, result->contact_flow = state->flow;
+    result->conducted = state->conducted, result->wall_conducted = state->wall, result->contact_flow = state->flow;
 }
 
 void contacts_scale(struct contact_state *state, uint32_t spheres, uint32_t walls) {

@@ -189,14 +189,14 @@ static int find_pairs(struct search *s) {
 }
 
 /* Distances of centres from a plane or the cylinder. */
-static int find_at_body(struct search *s, const fibrad_body *body, uint32_t wall) {
+static int find_at_wall(struct search *s, const fibrad_wall *wall, uint32_t wall) {
     int status = FIBRAD_OK;
     for (uint32_t i = 0; i < s->n && !status; ++i) {
         const double *at = s->at[i];
         const double distance =
-            body->kind == FIBRAD_BODY_PLANE
-                ? fabs(at[body->plane.axis] - body->plane.at)
-                : body->cylinder.radius - length_of(at[0] - body->cylinder.x, at[1] - body->cylinder.y, 0);
+            wall->kind == FIBRAD_WALL_PLANE
+                ? fabs(at[wall->plane.axis] - wall->plane.at)
+                : wall->cylinder.radius - length_of(at[0] - wall->cylinder.x, at[1] - wall->cylinder.y, 0);
         if (distance < at[3] + reach_of(s, at[3]))
             status = fibrad_contact_add(s->found, &(struct contact_found){i, s->n + wall, distance, at[3], INFINITY});
     }
@@ -241,8 +241,8 @@ int fibrad_contacts_find(const fibrad_scene_config *config, const fibrad_spheres
     for (int axis = 0; axis < 3 && config; ++axis) s.period[axis] = config->period[axis];
     if (!status) copy_spheres(&s, spheres);
     if (!status) sort_spheres(&s), status = find_pairs(&s);
-    for (uint32_t b = 0; config && b < config->bodies && !status; ++b)
-        if (config->body[b].kind != FIBRAD_BODY_MESH) status = find_at_body(&s, &config->body[b], b);
+    for (uint32_t b = 0; config && b < config->walls && !status; ++b)
+        if (config->wall[b].kind != FIBRAD_WALL_MESH) status = find_at_wall(&s, &config->wall[b], b);
     if (!status && config && config->triangles) status = find_at_triangles(&s, config->triangles);
     free(s.at);
     free(s.celled);

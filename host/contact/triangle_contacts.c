@@ -137,9 +137,9 @@ int fibrad_contact_triangles(const struct fibrad_triangles *triangles, const str
             const size_t v = triangles->corner[3 * (size_t)t + (size_t)c] * stride;
             corner[c][0] = triangles->x[v], corner[c][1] = triangles->y[v], corner[c][2] = triangles->z[v];
         }
-        const uint32_t front = triangles->front[t], back = triangles->back ? triangles->back[t] : FIBRAD_NO_BODY;
-        if (front != FIBRAD_NO_BODY) status = touch_triangle(search, corner, front, &all);
-        if (!status && back != FIBRAD_NO_BODY && back != front) status = touch_triangle(search, corner, back, &all);
+        const uint32_t front = triangles->front[t], back = triangles->back ? triangles->back[t] : FIBRAD_NO_WALL;
+        if (front != FIBRAD_NO_WALL) status = touch_triangle(search, corner, front, &all);
+        if (!status && back != FIBRAD_NO_WALL && back != front) status = touch_triangle(search, corner, back, &all);
     }
     if (!status) status = keep_touches(search, &all, block);
     free(all.touch);

@@ -25,9 +25,9 @@ static size_t make_particles(int k, int step) {
 }
 
 int main(int argc, char **argv) {
-    const double high = 2e-3 * SIDE, body_emissivity[] = {0.9, 0.9}, body_temperature[] = {1000, 300};
-    const fibrad_body wall[] = {{.kind = FIBRAD_BODY_PLANE, .plane = {.axis = 2, .upper = 0, .at = 0}},
-                                {.kind = FIBRAD_BODY_PLANE, .plane = {.axis = 2, .upper = 1, .at = high}}};
+    const double high = 2e-3 * SIDE, wall_emissivity[] = {0.9, 0.9}, wall_temperature[] = {1000, 300};
+    const fibrad_wall wall[] = {{.kind = FIBRAD_WALL_PLANE, .plane = {.axis = 2, .upper = 0, .at = 0}},
+                                {.kind = FIBRAD_WALL_PLANE, .plane = {.axis = 2, .upper = 1, .at = high}}};
     const double dt = 0.5, capacity = 4.19e-9 * 7800 * 500; /* [s], [J/K] of one particle */
     double stored = 0, from_walls = 0;
     int rank, ranks, status;
@@ -35,11 +35,11 @@ int main(int argc, char **argv) {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     const size_t n = make_particles(rank, ranks);
-    fibrad_insitu_bed bed = {.high = {high, high, high}, .periodic = {1, 1, 0}, .body = wall, .bodies = 2};
-    bed.body_emissivity = body_emissivity;
+    fibrad_insitu_bed bed = {.high = {high, high, high}, .periodic = {1, 1, 0}, .wall = wall, .walls = 2};
+    bed.wall_emissivity = wall_emissivity;
     bed.n = n, bed.id = id, bed.x = x[0], bed.radius = radius, bed.emissivity = emissivity;
     const fibrad_insitu_state state = {
-        .body_temperature = body_temperature, .n = n, .id = id, .temperature = temperature};
+        .wall_temperature = wall_temperature, .n = n, .id = id, .temperature = temperature};
     fibrad_insitu *radiation;
     fibrad_insitu_totals totals;
     status = fibrad_insitu_new(&radiation, MPI_COMM_WORLD, NULL);
@@ -48,7 +48,7 @@ int main(int argc, char **argv) {
             status = fibrad_insitu_rows(radiation, &bed, step); /* in a real code the particles have moved */
         if (!status) status = fibrad_insitu_powers(radiation, &state, power, &totals);
         for (size_t i = 0; i < n && !status; ++i) temperature[i] += power[i] * dt / capacity;
-        stored += totals.particles * dt, from_walls -= (totals.body[0] + totals.body[1]) * dt;
+        stored += totals.particles * dt, from_walls -= (totals.wall[0] + totals.wall[1]) * dt;
     }
     if (status && rank == 0) fprintf(stderr, "%s\n", fibrad_insitu_message(radiation));
     if (!status && rank == 0) printf("%.9g J stored, %.9g J from the walls\n", stored, from_walls);

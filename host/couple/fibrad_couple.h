@@ -132,9 +132,9 @@ typedef struct fibrad_insitu_config {
 typedef struct fibrad_insitu_bed {
     double low[3], high[3];                   /* L, the box, used along periodic axes only */
     int periodic[3];                          /* 1: the bed repeats along the axis with the period high - low */
-    const fibrad_body *body;                  /* [bodies], walls; a particle beyond one is a stray, see above */
-    const double *body_emissivity;            /* [bodies], 0 to 1 */
-    uint32_t bodies;                          /* number of walls, 0 to FIBRAD_BODIES_MAX */
+    const fibrad_wall *wall;                  /* [walls], walls; a particle beyond one is a stray, see above */
+    const double *wall_emissivity;            /* [walls], 0 to 1 */
+    uint32_t walls;                          /* number of walls, 0 to FIBRAD_WALLS_MAX */
     int cylinder;                             /* the axis of the cylinder, 0: z, 1: x, 2: y */
     const fibrad_plane *opening;              /* [openings]; `at` NaN: where the particles end */
     uint32_t openings;                        /* 0 to 6 */
@@ -153,7 +153,7 @@ typedef struct fibrad_insitu_bed {
 typedef struct fibrad_insitu_state {
     double sigma;                   /* of E = sigma T^4, at most FIBRAD_SIGMA_MAX; 0: FIBRAD_STEFAN_BOLTZMANN */
     double surroundings;            /* K, 0 to FIBRAD_TEMPERATURE_MAX */
-    const double *body_temperature; /* K, [bodies of the rows], 0 to FIBRAD_TEMPERATURE_MAX */
+    const double *wall_temperature; /* K, [walls of the rows], 0 to FIBRAD_TEMPERATURE_MAX */
     size_t n;                       /* number of particles that this rank owns now */
     const uint64_t *id;             /* [n] */
     const double *temperature;      /* K, [n], above 0 to FIBRAD_TEMPERATURE_MAX */
@@ -164,7 +164,7 @@ typedef struct fibrad_insitu_state {
 typedef struct fibrad_insitu_totals {
     double particles;               /* sigma K^4 L^2 */
     double surroundings;            /* sigma K^4 L^2 */
-    double body[FIBRAD_BODIES_MAX]; /* sigma K^4 L^2, [bodies of the rows] */
+    double wall[FIBRAD_WALLS_MAX]; /* sigma K^4 L^2, [walls of the rows] */
 } fibrad_insitu_totals;
 
 /* A particle is remarked if a larger fraction of its emission has no known end. Its power may be wrong by this
@@ -188,8 +188,8 @@ typedef struct fibrad_insitu_facts {
     size_t halo;                 /* particles of other ranks, and periodic images, that this rank was sent */
     size_t bytes;                /* bytes, memory of this rank */
 
-    /* L^2, [bodies], what a wall emits and others absorb, divided by its sigma T^4 */
-    double body[FIBRAD_BODIES_MAX];
+    /* L^2, [walls], what a wall emits and others absorb, divided by its sigma T^4 */
+    double wall[FIBRAD_WALLS_MAX];
 } fibrad_insitu_facts;
 
 /* Makes an object without rows. The communicator is duplicated.

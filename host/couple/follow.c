@@ -46,7 +46,7 @@ int fibrad_follow_find(fibrad_follow *f, const fibrad_insitu *s, const fibrad_pa
 }
 
 /* Appends an old row. f, col: scratch. The factors are halved on the way, since doubled ones are no factors. */
-static int keep_row(fibrad_rows *rows, const fibrad_row *old, const uint32_t *number, uint32_t bodies, double *f,
+static int keep_row(fibrad_rows *rows, const fibrad_row *old, const uint32_t *number, uint32_t walls, double *f,
                     uint32_t *col) {
     fibrad_row row = *old, added;
     size_t at = rows->used;
@@ -59,7 +59,7 @@ static int keep_row(fibrad_rows *rows, const fibrad_row *old, const uint32_t *nu
         f[row.length] = 0.5 * old->f[k];
         col[row.length++] = number[old->col[k]];
     }
-    const int status = fibrad_rows_add(rows, &row, bodies);
+    const int status = fibrad_rows_add(rows, &row, walls);
     if (!status && fibrad_rows_read(rows, &at, &added))
         for (uint32_t k = 0; k < added.length; ++k) added.f[k] *= 2;
     return status;
@@ -76,7 +76,7 @@ int fibrad_follow_keep(const fibrad_follow *follow, const fibrad_insitu *s, fibr
     for (size_t c = 0; c < columns && !status; ++c) number[c] = follow->there[c] ? (uint32_t)next++ : UINT32_MAX;
     for (int t = 0; t < s->config.threads; ++t)
         for (size_t at = 0; !status && fibrad_rows_read(&set->rows[t], &at, &row);)
-            if (number[row.sphere] != UINT32_MAX) status = keep_row(&to->rows[t], &row, number, set->bodies, f, col);
+            if (number[row.sphere] != UINT32_MAX) status = keep_row(&to->rows[t], &row, number, set->walls, f, col);
     free(number);
     free(col);
     free(f);

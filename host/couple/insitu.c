@@ -151,7 +151,7 @@ void fibrad_insitu_facts_get(const fibrad_insitu *s, fibrad_insitu_facts *facts)
 
 /* What bounds a scene, with the axes of the scene. */
 struct scene_walls {
-    fibrad_body body[FIBRAD_BODIES_MAX];
+    fibrad_wall wall[FIBRAD_WALLS_MAX];
     fibrad_plane opening[FIBRAD_OPENINGS_MAX];
     fibrad_triangles triangles;
     double period[3];
@@ -159,7 +159,7 @@ struct scene_walls {
 
 static void turn_walls(const fibrad_insitu_build *b, struct scene_walls *to) {
     const fibrad_insitu_bed *bed = b->bed;
-    for (uint32_t k = 0; k < bed->bodies; ++k) to->body[k] = fibrad_turned_body(bed->cylinder, bed->body[k]);
+    for (uint32_t k = 0; k < bed->walls; ++k) to->wall[k] = fibrad_turned_wall(bed->cylinder, bed->wall[k]);
     for (uint32_t k = 0; k < b->openings; ++k) to->opening[k] = fibrad_turned_plane(bed->cylinder, b->opening[k]);
     fibrad_turn(bed->cylinder, b->period, to->period);
     fibrad_triangles *t = &to->triangles;
@@ -177,9 +177,9 @@ static int check_bed(fibrad_insitu_build *b) {
     unsigned char block[FIBRAD_SCENE_BYTES(0)];
     fibrad_scene *empty;
     struct scene_walls walls;
-    uint32_t bodies = 0; /* without meshes, which bound no box */
+    uint32_t walls = 0; /* without meshes, which bound no box */
     if (!bed || (bed->n && !(bed->id && bed->x && bed->radius && bed->emissivity)) || bed->n > FIBRAD_SPHERES_MAX ||
-        bed->bodies > FIBRAD_BODIES_MAX || (bed->bodies && !(bed->body && bed->body_emissivity)) ||
+        bed->walls > FIBRAD_WALLS_MAX || (bed->walls && !(bed->wall && bed->wall_emissivity)) ||
         bed->openings > FIBRAD_OPENINGS_MAX || (bed->openings && !bed->opening) || bed->cylinder < 0 ||
         bed->cylinder > 2)
         return FIBRAD_E_ARGUMENT;
@@ -197,18 +197,18 @@ static int check_bed(fibrad_insitu_build *b) {
             opening->at = opening->upper ? FIBRAD_LENGTH_MAX : -FIBRAD_LENGTH_MAX; /* until the bed is known */
     }
     turn_walls(b, &walls);
-    for (uint32_t k = 0; k < bed->bodies; ++k)
-        if (walls.body[k].kind != FIBRAD_BODY_MESH) walls.body[bodies++] = walls.body[k];
+    for (uint32_t k = 0; k < bed->walls; ++k)
+        if (walls.wall[k].kind != FIBRAD_WALL_MESH) walls.wall[walls++] = walls.wall[k];
     const fibrad_scene_config config = {.period = {walls.period[0], walls.period[1], walls.period[2]},
-                                        .body = walls.body,
-                                        .bodies = bodies,
+                                        .wall = walls.wall,
+                                        .walls = walls,
                                         .opening = walls.opening,
                                         .openings = bed->openings};
     const int status = fibrad_scene_init(&empty, block, sizeof block, &config, &(fibrad_spheres){0}, NULL);
     if (status == FIBRAD_E_ENDLESS) return fibrad_refuse(message, status, "%s", fibrad_status_text(status));
     if (status) return fibrad_refuse(message, status, "the walls do not bound a box or a cylinder");
-    for (uint32_t k = 0; k < bed->bodies; ++k)
-        if (!(bed->body_emissivity[k] >= 0 && bed->body_emissivity[k] <= 1))
+    for (uint32_t k = 0; k < bed->walls; ++k)
+        if (!(bed->wall_emissivity[k] >= 0 && bed->wall_emissivity[k] <= 1))
             return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "wall %" PRIu32 ": its emissivity is not between 0 and 1",
                                  k + 1);
     return FIBRAD_OK;
@@ -220,7 +220,7 @@ static int refuse_particle(char *message, uint64_t id, const char *fault) {
 
 /* Whether a particle takes part. If not, counts it; with `strict` sets *status instead. */
 static bool takes_part(fibrad_insitu_build *b, const fibrad_particle *p, int *status) {
-    const fibrad_bounds bounds = {b->bed->body, b->opening, b->bed->bodies, b->bed->openings, b->bed->cylinder};
+    const fibrad_bounds bounds = {b->bed->wall, b->opening, b->bed->walls, b->bed->openings, b->bed->cylinder};
     char why[FIBRAD_MESSAGE];
     bool opening;
     if (fibrad_bounds_hold(&bounds, p, &opening, why)) return true;
@@ -301,11 +301,11 @@ static void take_box_ends(fibrad_insitu_build *b) {
     double longest = 0;
     for (int axis = 0; axis < 3; ++axis) {
         b->ends[0][axis] = b->bed->low[axis], b->ends[1][axis] = b->bed->high[axis];
-        for (uint32_t k = 0; k < b->bed->bodies; ++k) {
-            const fibrad_body *body = &b->bed->body[k];
-            if (body->kind != FIBRAD_BODY_PLANE || body->plane.axis != axis) continue;
-            b->ends[0][axis] = fmin(b->ends[0][axis], body->plane.at);
-            b->ends[1][axis] = fmax(b->ends[1][axis], body->plane.at);
+        for (uint32_t k = 0; k < b->bed->walls; ++k) {
+            const fibrad_wall *wall = &b->bed->wall[k];
+            if (wall->kind != FIBRAD_WALL_PLANE || wall->plane.axis != axis) continue;
+            b->ends[0][axis] = fmin(b->ends[0][axis], wall->plane.at);
+            b->ends[1][axis] = fmax(b->ends[1][axis], wall->plane.at);
         }
         longest = fmax(longest, b->ends[1][axis] - b->ends[0][axis]);
     }
@@ -354,7 +354,7 @@ static int measure_bed(fibrad_insitu_build *b) {
     b->reach = b->whole ? 2 * b->radius_max : b->cutoff + REACH_RADII * b->radius_max;
     b->to->emissive = -most[1] < 1;
     b->to->conducts = most[14] > 0;
-    for (uint32_t k = 0; k < b->bed->bodies; ++k) b->to->emissive |= b->bed->body_emissivity[k] < 1;
+    for (uint32_t k = 0; k < b->bed->walls; ++k) b->to->emissive |= b->bed->wall_emissivity[k] < 1;
     for (int axis = 0; axis < 3; ++axis) {
         const bool periodic = b->period[axis] > 0;
         b->repeats |= periodic;
@@ -472,8 +472,8 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
     }
     fibrad_scene_config config = {0}; /* no rows: an empty scene */
     if (n || !id)
-        config = (fibrad_scene_config){.body = walls.body,
-                                       .bodies = b->bed->bodies,
+        config = (fibrad_scene_config){.wall = walls.wall,
+                                       .walls = b->bed->walls,
                                        .opening = walls.opening,
                                        .openings = b->openings,
                                        .occupancy = marked ? &b->map : NULL,
@@ -493,7 +493,7 @@ fibrad_exchange_rule fibrad_insitu_rule(const fibrad_insitu_build *b, size_t n) 
     return (fibrad_exchange_rule){.emissivity = emissivity,
                                   .conductivity = b->to->conducts ? emissivity + n : NULL,
                                   .node_emissivity = b->to->conducts ? emissivity + 2 * n : NULL,
-                                  .body_emissivity = b->bed->body_emissivity,
+                                  .wall_emissivity = b->bed->wall_emissivity,
                                   .directions = b->s->config.directions,
                                   .paths = b->s->config.paths,
                                   .seed = b->s->config.seed + b->step * 0x9e3779b97f4a7c15u,
@@ -506,29 +506,29 @@ static int name_row_fault(const fibrad_insitu_build *b, int status, uint64_t id,
     const fibrad_triangles *t = b->bed->triangles;
     if (status != FIBRAD_E_BACK || !t || work->triangle >= t->n)
         return fibrad_refuse(message, status, "particle %" PRIu64 ": %s", id, fibrad_status_text(status));
-    const uint32_t front = t->front[work->triangle], back = t->back ? t->back[work->triangle] : FIBRAD_NO_BODY;
-    const uint32_t body = front == FIBRAD_NO_BODY ? back : front;
-    if (body == FIBRAD_NO_BODY)
+    const uint32_t front = t->front[work->triangle], back = t->back ? t->back[work->triangle] : FIBRAD_NO_WALL;
+    const uint32_t wall = front == FIBRAD_NO_WALL ? back : front;
+    if (wall == FIBRAD_NO_WALL)
         return fibrad_refuse(message, status,
                              "particle %" PRIu64 " sees triangle %" PRIu32 ", and no side of it belongs to a wall", id,
                              work->triangle);
     return fibrad_refuse(message, status,
                          "particle %" PRIu64 " sees the back of wall %" PRIu32 ", at triangle %" PRIu32 "; this side "
                          "belongs to no wall",
-                         id, body + 1, work->triangle);
+                         id, wall + 1, work->triangle);
 }
 
 /* Deals with a row that could not be computed. If its particle sees what belongs to no wall, the row becomes an empty
  * one, all of it beyond. */
 static int skip_row(fibrad_insitu_build *b, int status, uint32_t i, int thread) {
-    static const double none[FIBRAD_BODIES_MAX];
+    static const double none[FIBRAD_WALLS_MAX];
     const uint64_t id = ((uint64_t *)b->to->id.at)[i];
     char message[FIBRAD_MESSAGE];
     if (name_row_fault(b, status, id, &b->s->work[thread], message) != FIBRAD_E_BACK || b->s->config.strict)
         return b->s->message[0] ? status : fibrad_refuse(b->s->message, status, "%s", message);
     fibrad_remark_add(&b->remark[FIBRAD_REMARK_BACK], id, message);
-    const fibrad_row row = {.sphere = i, .body = (double *)none, .beyond = 1};
-    return fibrad_rows_add(&b->to->rows[thread], &row, b->bed->bodies);
+    const fibrad_row row = {.sphere = i, .wall = (double *)none, .beyond = 1};
+    return fibrad_rows_add(&b->to->rows[thread], &row, b->bed->walls);
 }
 
 /* Lists the particles of this rank in the order of the cells. */
@@ -546,7 +546,7 @@ static int list_own(fibrad_insitu_build *b) {
 /* Tells a row what paths from walls and surroundings have found about its particle. */
 static void know_sources(const fibrad_insitu_build *b, uint32_t i, fibrad_exchange_rule *rule) {
     const fibrad_particle *p = (const fibrad_particle *)b->to->particle.at + i;
-    rule->known = (const double *)b->s->known.at + (size_t)i * (b->bed->bodies + 1);
+    rule->known = (const double *)b->s->known.at + (size_t)i * (b->bed->walls + 1);
     rule->known_paths = b->density * fibrad_particle_weight(p);
 }
 
@@ -767,7 +767,7 @@ static void find_resistances(fibrad_insitu_build *b) {
         for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);) {
             const double all = fibrad_row_weight(&row, weight[row.sphere]);
             double rest = row.escaped;
-            for (uint32_t k = 0; k < b->bed->bodies; ++k) rest += row.body[k];
+            for (uint32_t k = 0; k < b->bed->walls; ++k) rest += row.wall[k];
             sum[row.sphere] += all * rest;
             for (uint32_t k = 0; k < row.length; ++k) {
                 sum[row.sphere] += 0.5 * all * row.f[k];
@@ -797,7 +797,7 @@ static void sum_facts(fibrad_insitu_build *b) {
     double *unknown = to->unknown.at;
     fibrad_row row;
     /* emission, beyond, squared errors, entries, rows of emissivity above 0; then by walls */
-    double sum[5 + FIBRAD_BODIES_MAX] = {0}, *of_wall = sum + 5;
+    double sum[5 + FIBRAD_WALLS_MAX] = {0}, *of_wall = sum + 5;
     for (int t = 0; t < b->s->config.threads; ++t) {
         for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);) {
             sum[0] += weight[row.sphere];
@@ -806,15 +806,15 @@ static void sum_facts(fibrad_insitu_build *b) {
             tell_unknown(b, &particle[row.sphere], unknown[row.sphere]);
             sum[2] += row.error * row.error;
             sum[4] += weight[row.sphere] > 0;
-            for (uint32_t k = 0; k < b->bed->bodies; ++k)
-                of_wall[k] += fibrad_row_weight(&row, weight[row.sphere]) * row.body[k];
+            for (uint32_t k = 0; k < b->bed->walls; ++k)
+                of_wall[k] += fibrad_row_weight(&row, weight[row.sphere]) * row.wall[k];
         }
         sum[3] += (double)to->rows[t].entries;
     }
-    MPI_Allreduce(MPI_IN_PLACE, sum, 5 + FIBRAD_BODIES_MAX, MPI_DOUBLE, MPI_SUM, b->s->comm);
-    for (uint32_t k = 0; k < b->bed->bodies; ++k) {
-        to->facts.body[k] = of_wall[k] + to->walls.surroundings[k];
-        for (uint32_t c = 0; c < b->bed->bodies; ++c) to->facts.body[k] += to->walls.wall[k][c];
+    MPI_Allreduce(MPI_IN_PLACE, sum, 5 + FIBRAD_WALLS_MAX, MPI_DOUBLE, MPI_SUM, b->s->comm);
+    for (uint32_t k = 0; k < b->bed->walls; ++k) {
+        to->facts.wall[k] = of_wall[k] + to->walls.surroundings[k];
+        for (uint32_t c = 0; c < b->bed->walls; ++c) to->facts.wall[k] += to->walls.wall[k][c];
     }
     to->facts.beyond = sum[0] > 0 ? sum[1] / sum[0] : 0;
     to->facts.error = sum[4] > 0 ? sqrt(sum[2] / sum[4]) : 0;
@@ -835,7 +835,7 @@ static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_
     const double begun = MPI_Wtime();
     if (!status) status = measure_bed(&b);
     b.to->changed = 0;
-    if (!status && follows && s->ready && s->set.bodies == bed->bodies) status = find_changes(&b);
+    if (!status && follows && s->ready && s->set.walls == bed->walls) status = find_changes(&b);
     if (b.follows) b.to->conducts |= s->set.conducts;
     if (!status && b.to->facts.particles && !(b.follows && !b.follow.came)) status = gather_bed(&b);
     if (!status) status = check_outside(&b);
@@ -852,7 +852,7 @@ static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_
     }
     if (b.to->conducts) find_resistances(&b);
     sum_facts(&b);
-    b.to->bodies = bed->bodies;
+    b.to->walls = bed->walls;
     b.to->flows = 0;
     const fibrad_insitu_set made = s->next;
     s->next = s->set;

@@ -15,8 +15,8 @@
 
 /* What walls exchange with each other and with the surroundings: areas times emissivities times factors [L^2]. */
 typedef struct fibrad_wall_exchange {
-    double wall[FIBRAD_BODIES_MAX][FIBRAD_BODIES_MAX]; /* of two walls; 0 for a wall and itself */
-    double surroundings[FIBRAD_BODIES_MAX];
+    double wall[FIBRAD_WALLS_MAX][FIBRAD_WALLS_MAX]; /* of two walls; 0 for a wall and itself */
+    double surroundings[FIBRAD_WALLS_MAX];
 } fibrad_wall_exchange;
 
 /* The rows of one step. The home of a particle is the rank that owned it when its row was made. The row stays there.
@@ -32,7 +32,7 @@ typedef struct fibrad_insitu_set {
     fibrad_block root;     /* 1/L, double [own], square root of (1/n - 1/e)/A, see powers.c; unused unless conducts */
     fibrad_block emission; /* double [columns], sigma T^4 */
     fibrad_block power;    /* double [columns], net power by the rows on this rank */
-    uint32_t bodies;       /* number of walls */
+    uint32_t walls;       /* number of walls */
     int conducts;          /* 1: some particles have a finite k* */
     int emissive;          /* 1: exchange factors; 0: all emissivities are 1 */
     fibrad_link *seen;     /* connects home particles with columns */
@@ -43,7 +43,7 @@ typedef struct fibrad_insitu_set {
     uint64_t hash;         /* sum of the hashes of their ids */
     uint64_t changed;      /* number of particles that have come or gone since all rows were made */
     fibrad_wall_exchange walls;
-    double body_emission[FIBRAD_BODIES_MAX], surroundings_emission; /* sigma T^4 of the last powers */
+    double wall_emission[FIBRAD_WALLS_MAX], surroundings_emission; /* sigma T^4 of the last powers */
     int flows;                                                      /* 1: there were powers since rows were made */
     fibrad_insitu_facts facts;
     fibrad_remark remark[FIBRAD_REMARKS];
@@ -60,7 +60,7 @@ struct fibrad_insitu {
     fibrad_insitu_set next;                            /* rows that are being made, in the memory of older rows */
     int ready;                                         /* 1: there are rows */
     fibrad_block scene, order, emissivity, mark, sent; /* scratch while rows are made */
-    fibrad_block known;  /* double [own][bodies + 1], the same: as fibrad_exchange_rule.known of own particles */
+    fibrad_block known;  /* double [own][walls + 1], the same: as fibrad_exchange_rule.known of own particles */
     fibrad_block solver; /* double [4 own], where particles conduct: see powers.c */
     fibrad_block value;  /* double, of present owners' particles, then of home particles */
     double seconds_rows, seconds_powers; /* s, so far */
@@ -120,7 +120,7 @@ fibrad_exchange_rule fibrad_insitu_rule(const fibrad_insitu_build *b, size_t n);
 
 /* Collective. Follows paths from walls and surroundings. Finds what these exchange with each other, and what particles
  * exchange with them after a reflection. Replaces the scene. Errors, on all ranks: as fibrad_scene_init and
- * fibrad_exchange_body; _MEMORY. */
+ * fibrad_exchange_wall; _MEMORY. */
 int fibrad_insitu_sources(fibrad_insitu_build *b);
 
 /* Collective. As fibrad_link_new. once: it is known that no id is owned twice, or used twice. An id that its owner uses

@@ -13,17 +13,17 @@ static double sigma_of(const fibrad_insitu_state *state) {
 }
 
 static int check_state(fibrad_insitu *s, const fibrad_insitu_state *state, const double *power) {
-    const int bodies = (int)s->set.bodies;
+    const int walls = (int)s->set.walls;
     if (!s->ready) return fibrad_refuse(s->message, FIBRAD_E_STATE, "there are no rows yet, which powers need");
-    if (!state || (state->n && !(state->id && state->temperature && power)) || (bodies && !state->body_temperature) ||
+    if (!state || (state->n && !(state->id && state->temperature && power)) || (walls && !state->wall_temperature) ||
         state->n > FIBRAD_SPHERES_MAX)
         return FIBRAD_E_ARGUMENT;
     if (!(sigma_of(state) > 0 && sigma_of(state) <= FIBRAD_SIGMA_MAX))
         return fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "sigma is not above 0");
     if (!temperature_valid(state->surroundings, 1))
         return fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "the temperature of the surroundings is not valid");
-    for (int k = 0; k < bodies; ++k)
-        if (!temperature_valid(state->body_temperature[k], 1))
+    for (int k = 0; k < walls; ++k)
+        if (!temperature_valid(state->wall_temperature[k], 1))
             return fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "wall %d: its temperature is not valid", k + 1);
     for (size_t i = 0; i < state->n; ++i)
         if (!temperature_valid(state->temperature[i], 0))
@@ -84,7 +84,7 @@ static int flow_home(fibrad_insitu *s, fibrad_flow *flow) {
     fibrad_link_forward(set->seen, set->emission.at, 1);
     memset(flow->power, 0, set->columns * sizeof *flow->power);
     for (int t = 0; t < s->config.threads && !status; ++t)
-        status = fibrad_rows_flow(&set->rows[t], (uint32_t)set->columns, set->bodies, flow);
+        status = fibrad_rows_flow(&set->rows[t], (uint32_t)set->columns, set->walls, flow);
     fibrad_link_reverse(set->seen, flow->power, 1);
     return status;
 }
@@ -108,11 +108,11 @@ static double inner_product(const fibrad_insitu *s, const double *a, const doubl
  * which conjugate gradients solve. Source: docs/methods_heat.md section 15. */
 static int solve_nodes(fibrad_insitu *s, const fibrad_flow *known) {
     fibrad_insitu_set *set = &s->set;
-    const double *root = set->root.at, none[FIBRAD_BODIES_MAX] = {0};
-    double *emission = set->emission.at, *power = set->power.at, unused[FIBRAD_BODIES_MAX] = {0};
+    const double *root = set->root.at, none[FIBRAD_WALLS_MAX] = {0};
+    double *emission = set->emission.at, *power = set->power.at, unused[FIBRAD_WALLS_MAX] = {0};
     double *y = s->solver.at, *r = y + set->own, *p = r + set->own, *given = p + set->own;
-    fibrad_flow at_given = *known, change = {.weight = known->weight, .body_emission = none, .body_power = unused};
-    at_given.body_power = unused;
+    fibrad_flow at_given = *known, change = {.weight = known->weight, .wall_emission = none, .wall_power = unused};
+    at_given.wall_power = unused;
     change.emission = emission, change.power = power;
     for (size_t i = 0; i < set->own; ++i) given[i] = emission[i];
     int status = flow_home(s, &at_given);
@@ -138,13 +138,13 @@ static int solve_nodes(fibrad_insitu *s, const fibrad_flow *known) {
 
 /* Adds what walls exchange with each other and with the surroundings. */
 static void add_walls(const fibrad_insitu_set *set, fibrad_insitu_totals *totals) {
-    const double *emission = set->body_emission;
-    for (uint32_t a = 0; a < set->bodies; ++a) {
+    const double *emission = set->wall_emission;
+    for (uint32_t a = 0; a < set->walls; ++a) {
         const double escapes = set->walls.surroundings[a] * (emission[a] - set->surroundings_emission);
         totals->surroundings += escapes;
-        totals->body[a] -= escapes;
-        for (uint32_t b = 0; b < set->bodies; ++b)
-            totals->body[a] += set->walls.wall[a][b] * (emission[b] - emission[a]);
+        totals->wall[a] -= escapes;
+        for (uint32_t b = 0; b < set->walls; ++b)
+            totals->wall[a] += set->walls.wall[a][b] * (emission[b] - emission[a]);
     }
 }
 
@@ -163,8 +163,8 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
     const size_t n = state->n;
     const double sigma = sigma_of(state);
     double *value = s->value.at, *home = value + n, *emission = set->emission.at;
-    double of_wall[FIBRAD_BODIES_MAX] = {0}, sum[FIBRAD_BODIES_MAX + 3] = {0};
-    for (uint32_t k = 0; k < set->bodies; ++k) set->body_emission[k] = sigma * fourth(state->body_temperature[k]);
+    double of_wall[FIBRAD_WALLS_MAX] = {0}, sum[FIBRAD_WALLS_MAX + 3] = {0};
+    for (uint32_t k = 0; k < set->walls; ++k) set->wall_emission[k] = sigma * fourth(state->wall_temperature[k]);
     set->surroundings_emission = sigma * fourth(state->surroundings);
     if (n) memcpy(value, state->temperature, n * sizeof *value);
     fibrad_link_forward(set->present, value, 1);
@@ -172,10 +172,10 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
 
     fibrad_flow flow = {.weight = set->weight.at,
                         .emission = emission,
-                        .body_emission = set->body_emission,
+                        .wall_emission = set->wall_emission,
                         .surroundings_emission = set->surroundings_emission,
                         .power = set->power.at,
-                        .body_power = of_wall};
+                        .wall_power = of_wall};
     if (set->conducts) {
         status = fibrad_agree(s->comm, solve_nodes(s, &flow), NULL);
         if (status == FIBRAD_E_UNSOLVABLE)
@@ -190,12 +190,12 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
     memcpy(home, flow.power, set->own * sizeof *home);
     memset(value, 0, n * sizeof *value);
     fibrad_link_reverse(set->present, value, 1);
-    MPI_Allreduce(MPI_IN_PLACE, sum, FIBRAD_BODIES_MAX + 3, MPI_DOUBLE, MPI_SUM, s->comm);
+    MPI_Allreduce(MPI_IN_PLACE, sum, FIBRAD_WALLS_MAX + 3, MPI_DOUBLE, MPI_SUM, s->comm);
     if (sum[2] > 0) return fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "%s", fibrad_status_text(FIBRAD_E_ARGUMENT));
     if (n) memcpy(power, value, n * sizeof *power);
     if (totals) {
         *totals = (fibrad_insitu_totals){.particles = sum[0], .surroundings = sum[1]};
-        memcpy(totals->body, sum + 3, sizeof totals->body);
+        memcpy(totals->wall, sum + 3, sizeof totals->wall);
         add_walls(set, totals);
     }
     set->flows = 1;
@@ -212,8 +212,8 @@ static void find_parts(const fibrad_insitu *s, double (*part)[2]) {
     for (int t = 0; t < s->config.threads; ++t)
         for (size_t at = 0; fibrad_rows_read(&set->rows[t], &at, &row);) {
             const double own = emission[row.sphere], all = fibrad_row_weight(&row, weight[row.sphere]);
-            for (uint32_t k = 0; k < set->bodies; ++k)
-                part[row.sphere][0] += all * row.body[k] * (set->body_emission[k] - own);
+            for (uint32_t k = 0; k < set->walls; ++k)
+                part[row.sphere][0] += all * row.wall[k] * (set->wall_emission[k] - own);
             part[row.sphere][1] = all * row.escaped * (set->surroundings_emission - own);
         }
 }

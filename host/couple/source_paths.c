@@ -16,15 +16,15 @@
 #define PATHS_SHARE 2       /* all sources have at most so many times the paths of all particles, or PATHS_LEAST each */
 #define PATHS_LEAST 512     /* of each source */
 #define PATHS_EMPTY 8192    /* of each source of a bed without particles */
-#define UNIT        0x1p-40 /* of fibrad_exchange_body */
+#define UNIT        0x1p-40 /* of fibrad_exchange_wall */
 
 /* A wall or an opening. */
 struct source {
-    uint32_t body, known; /* number for fibrad_exchange_body; element of what particles know */
+    uint32_t wall, known; /* number for fibrad_exchange_wall; element of what particles know */
     double emits;         /* L^2, area times emissivity */
     double density;       /* 1/L^2, number of paths followed for each `emits` */
     uint32_t paths;
-    fibrad_body_row row;
+    fibrad_wall_row row;
 };
 
 /* All sources of a bed. */
@@ -32,10 +32,10 @@ struct sources {
     fibrad_insitu_build *b;
     fibrad_exchange_rule rule;
     uint32_t count;
-    struct source source[FIBRAD_BODIES_MAX + FIBRAD_OPENINGS_MAX];
-    fibrad_body_row part[FIBRAD_BODIES_MAX + FIBRAD_OPENINGS_MAX][FIBRAD_BODY_PARTS]; /* zero on all ranks but one */
+    struct source source[FIBRAD_WALLS_MAX + FIBRAD_OPENINGS_MAX];
+    fibrad_wall_row part[FIBRAD_WALLS_MAX + FIBRAD_OPENINGS_MAX][FIBRAD_WALL_PARTS]; /* zero on all ranks but one */
     /* 1: paths meet a side that belongs to no wall, so there is no row */
-    unsigned char back[FIBRAD_BODIES_MAX + FIBRAD_OPENINGS_MAX];
+    unsigned char back[FIBRAD_WALLS_MAX + FIBRAD_OPENINGS_MAX];
     uint64_t *hits;  /* [count][n], particles in the order of ranks */
     size_t n, first; /* numbers of particles: all, and those of lower ranks */
 };
@@ -64,10 +64,10 @@ static double outer_end(const fibrad_insitu_build *b, int axis, int upper) {
  * would cut a wall that is endless. */
 static void close_bed(fibrad_insitu_build *b) {
     bool face[3][2] = {{false}}, any[3], open[3];
-    for (uint32_t k = 0; k < b->bed->bodies; ++k) {
-        const fibrad_body *body = &b->bed->body[k];
-        if (body->kind == FIBRAD_BODY_PLANE) face[body->plane.axis][body->plane.upper] = true;
-        if (body->kind == FIBRAD_BODY_CYLINDER) return; /* its ends are closed */
+    for (uint32_t k = 0; k < b->bed->walls; ++k) {
+        const fibrad_wall *wall = &b->bed->wall[k];
+        if (wall->kind == FIBRAD_WALL_PLANE) face[wall->plane.axis][wall->plane.upper] = true;
+        if (wall->kind == FIBRAD_WALL_CYLINDER) return; /* its ends are closed */
     }
     for (uint32_t k = 0; k < b->openings; ++k) face[b->opening[k].axis][b->opening[k].upper] = true;
     for (int axis = 0; axis < 3; ++axis) {
@@ -85,16 +85,16 @@ static void close_bed(fibrad_insitu_build *b) {
 
 static void list_sources(struct sources *t) {
     const fibrad_insitu_build *b = t->b;
-    const uint32_t bodies = b->bed->bodies;
-    for (uint32_t k = 0; k < bodies + b->openings; ++k) {
+    const uint32_t walls = b->bed->walls;
+    for (uint32_t k = 0; k < walls + b->openings; ++k) {
         struct source *source = &t->source[t->count];
-        *source = (struct source){.body = k, .known = k < bodies ? k : bodies};
-        if (k >= bodies) {
-            const fibrad_plane at = fibrad_turned_plane(b->bed->cylinder, b->opening[k - bodies]);
-            source->body = FIBRAD_OPENING(bodies, at.axis, at.upper);
+        *source = (struct source){.wall = k, .known = k < walls ? k : walls};
+        if (k >= walls) {
+            const fibrad_plane at = fibrad_turned_plane(b->bed->cylinder, b->opening[k - walls]);
+            source->wall = FIBRAD_OPENING(walls, at.axis, at.upper);
         }
-        source->emits = fibrad_scene_body_area(b->scene, source->body);
-        if (k < bodies) source->emits *= b->bed->body_emissivity[k];
+        source->emits = fibrad_scene_wall_area(b->scene, source->wall);
+        if (k < walls) source->emits *= b->bed->wall_emissivity[k];
         t->count += source->emits > 0 && isfinite(source->emits);
     }
 }
@@ -112,27 +112,27 @@ static void count_paths(struct sources *t) {
         struct source *source = &t->source[k];
         const double count =
             fmin(fmax(empty ? PATHS_EMPTY : PATHS_LEAST, t->b->density * source->emits), FIBRAD_PATHS_MAX);
-        source->paths = ((uint32_t)count + FIBRAD_BODY_PARTS - 1) / FIBRAD_BODY_PARTS * FIBRAD_BODY_PARTS;
+        source->paths = ((uint32_t)count + FIBRAD_WALL_PARTS - 1) / FIBRAD_WALL_PARTS * FIBRAD_WALL_PARTS;
     }
 }
 
 /* Follows the paths of the batches that this rank does. */
 static int follow_sources(struct sources *t) {
     const fibrad_insitu *s = t->b->s;
-    const uint32_t rank = (uint32_t)s->rank, ranks = (uint32_t)s->ranks, tasks = t->count * FIBRAD_BODY_PARTS;
+    const uint32_t rank = (uint32_t)s->rank, ranks = (uint32_t)s->ranks, tasks = t->count * FIBRAD_WALL_PARTS;
     int status = FIBRAD_OK;
 #pragma omp parallel num_threads(s->config.threads)
     {
         uint64_t *hits = malloc((t->n + 1) * sizeof *hits);
 #pragma omp for schedule(dynamic)
         for (uint32_t task = rank; task < tasks; task += ranks) {
-            const uint32_t k = task / FIBRAD_BODY_PARTS, part = task % FIBRAD_BODY_PARTS;
+            const uint32_t k = task / FIBRAD_WALL_PARTS, part = task % FIBRAD_WALL_PARTS;
             fibrad_exchange_rule rule = t->rule;
             rule.paths = t->source[k].paths;
             if (hits) memset(hits, 0, t->n * sizeof *hits);
             const int done = !hits ? FIBRAD_E_MEMORY
-                                   : fibrad_exchange_body(t->b->scene, &s->work[omp_get_thread_num()],
-                                                          t->source[k].body, &rule, part, &t->part[k][part], hits);
+                                   : fibrad_exchange_wall(t->b->scene, &s->work[omp_get_thread_num()],
+                                                          t->source[k].wall, &rule, part, &t->part[k][part], hits);
 #pragma omp critical
             {
                 if (done == FIBRAD_E_BACK) t->back[k] = 1;
@@ -152,7 +152,7 @@ static void sum_up(struct sources *t) {
     MPI_Allreduce(MPI_IN_PLACE, t->back, (int)sizeof t->back, MPI_BYTE, MPI_BOR, comm);
     MPI_Allreduce(MPI_IN_PLACE, t->hits, (int)(t->count * t->n), MPI_UINT64_T, MPI_SUM, comm);
     for (uint32_t k = 0; k < t->count; ++k) {
-        fibrad_exchange_body_mean(t->part[k], &t->source[k].row);
+        fibrad_exchange_wall_mean(t->part[k], &t->source[k].row);
         t->source[k].density = (double)t->source[k].row.paths / t->source[k].emits;
     }
 }
@@ -160,25 +160,25 @@ static void sum_up(struct sources *t) {
 /* ---- what they tell ---- */
 
 /* Whether walls and, last, the surroundings have rows. The surroundings have one if all openings do. has: out:
- * [bodies + 1] */
-static void mark_rows(const struct sources *t, bool has[FIBRAD_BODIES_MAX + 1]) {
-    memset(has, 0, (FIBRAD_BODIES_MAX + 1) * sizeof *has);
+ * [walls + 1] */
+static void mark_rows(const struct sources *t, bool has[FIBRAD_WALLS_MAX + 1]) {
+    memset(has, 0, (FIBRAD_WALLS_MAX + 1) * sizeof *has);
     for (uint32_t k = 0; k < t->count; ++k) has[t->source[k].known] = true;
     for (uint32_t k = 0; k < t->count; ++k) has[t->source[k].known] &= !t->back[k];
 }
 
 /* Two sources exchange the mean of what their rows say, or what the row of one says if the other has none. */
 static void find_exchange(const struct sources *t, const bool *has, fibrad_wall_exchange *exchange) {
-    const uint32_t bodies = t->b->bed->bodies;
+    const uint32_t walls = t->b->bed->walls;
     for (uint32_t k = 0; k < t->count; ++k) {
         const struct source *source = &t->source[k];
         const uint32_t a = source->known;
-        for (uint32_t c = 0; c <= bodies && has[a]; ++c) {
-            const double factor = c < bodies ? source->row.body[c] : source->row.escaped;
+        for (uint32_t c = 0; c <= walls && has[a]; ++c) {
+            const double factor = c < walls ? source->row.wall[c] : source->row.escaped;
             const double said = source->emits * factor * (has[c] ? 0.5 : 1);
             if (c == a) continue;
-            if (a == bodies || c == bodies) {
-                exchange->surroundings[a == bodies ? c : a] += said;
+            if (a == walls || c == walls) {
+                exchange->surroundings[a == walls ? c : a] += said;
             } else {
                 exchange->wall[a][c] += said;
                 exchange->wall[c][a] += said;
@@ -189,17 +189,17 @@ static void find_exchange(const struct sources *t, const bool *has, fibrad_wall_
 
 /* Whether all that absorbs, other than particles, has a row. */
 static bool have_all(const struct sources *t, const bool *has) {
-    const uint32_t bodies = t->b->bed->bodies;
+    const uint32_t walls = t->b->bed->walls;
     bool all = true, escapes = false;
     for (uint32_t k = 0; k < t->count; ++k) escapes = escapes || t->source[k].row.escaped > 0;
-    for (uint32_t k = 0; k < bodies; ++k) all = all && (has[k] || t->b->bed->body_emissivity[k] == 0);
-    return all && (has[bodies] || !escapes);
+    for (uint32_t k = 0; k < walls; ++k) all = all && (has[k] || t->b->bed->wall_emissivity[k] == 0);
+    return all && (has[walls] || !escapes);
 }
 
 /* Keeps what own particles know: paths that sources absorb of those that are worth as many. */
 static int keep_known(const struct sources *t, const bool *has) {
     fibrad_insitu_build *b = t->b;
-    const size_t width = b->bed->bodies + 1;
+    const size_t width = b->bed->walls + 1;
     if (fibrad_block_fit(&b->s->known, b->own * width, sizeof(double))) return FIBRAD_E_MEMORY;
     double *known = b->s->known.at;
     for (size_t i = 0; i < b->own * width; ++i) known[i] = has[i % width] ? 0 : NAN;
@@ -225,7 +225,7 @@ static int make_sources(struct sources *t, const fibrad_particle *particle) {
     status = fibrad_agree(b->s->comm, t->hits ? follow_sources(t) : FIBRAD_E_MEMORY, b->s->message);
     if (status) return status;
     sum_up(t);
-    bool has[FIBRAD_BODIES_MAX + 1];
+    bool has[FIBRAD_WALLS_MAX + 1];
     mark_rows(t, has);
     find_exchange(t, has, &b->to->walls);
     b->knows = !b->s->config.one_way;
@@ -252,7 +252,7 @@ int fibrad_insitu_sources(fibrad_insitu_build *b) {
     fibrad_block all = {0};
     const uint32_t openings = b->openings;
     b->to->walls = (fibrad_wall_exchange){0};
-    if ((!b->to->facts.particles && !b->bed->bodies) || (double)b->to->facts.particles > FIBRAD_GATHER_MOST)
+    if ((!b->to->facts.particles && !b->bed->walls) || (double)b->to->facts.particles > FIBRAD_GATHER_MOST)
         return FIBRAD_OK;
     close_bed(b);
     struct sources *t = calloc(1, sizeof *t);

@@ -37,7 +37,7 @@ static int compare_entries(const void *a, const void *b) {
 /* The arrays of a file. */
 struct rows_arrays {
     uint64_t *id, *start, *col;
-    double *f, *body, *escaped, *beyond, *error, *radius, *emissivity, *x;
+    double *f, *wall, *escaped, *beyond, *error, *radius, *emissivity, *x;
 };
 
 /* Puts a row into the arrays as row i. Images of one particle are joined in one entry, in an order that does not depend
@@ -65,7 +65,7 @@ static void put_row(const fibrad_insitu_set *set, const fibrad_row *row, size_t 
     to->radius[i] = p->radius;
     to->emissivity[i] = p->node;
     memcpy(to->x + 3 * i, p->x, sizeof p->x);
-    if (set->bodies) memcpy(to->body + i * set->bodies, row->body, set->bodies * sizeof *to->body);
+    if (set->walls) memcpy(to->wall + i * set->walls, row->wall, set->walls * sizeof *to->wall);
 }
 
 static int write_words(FILE *file, const void *words, size_t count) {
@@ -78,7 +78,7 @@ static int write_file(const char *name, const fibrad_rows_head *head, const stru
     const size_t n = head->rows;
     const int whole = write_words(file, head, sizeof *head / sizeof(uint64_t)) && write_words(file, a->id, n) &&
                       write_words(file, a->start, n + 1) && write_words(file, a->col, head->entries) &&
-                      write_words(file, a->f, head->entries) && write_words(file, a->body, n * head->bodies) &&
+                      write_words(file, a->f, head->entries) && write_words(file, a->wall, n * head->walls) &&
                       write_words(file, a->escaped, n) && write_words(file, a->beyond, n) &&
                       write_words(file, a->error, n) && write_words(file, a->radius, n) &&
                       write_words(file, a->emissivity, n) && write_words(file, a->x, 3 * n);
@@ -104,12 +104,12 @@ static uint32_t list_rows(fibrad_insitu *s, struct row_place *place) {
 static int open_arrays(const fibrad_insitu_set *set, uint64_t entries, struct rows_arrays *a) {
     const size_t n = set->own;
     a->id = malloc((2 * n + 1 + entries) * sizeof *a->id);
-    a->f = malloc((n * (8 + set->bodies) + entries + 1) * sizeof *a->f);
+    a->f = malloc((n * (8 + set->walls) + entries + 1) * sizeof *a->f);
     if (!a->id || !a->f) return FIBRAD_E_MEMORY;
     a->start = a->id + n;
     a->col = a->start + n + 1;
-    a->body = a->f + entries;
-    a->escaped = a->body + n * set->bodies;
+    a->wall = a->f + entries;
+    a->escaped = a->wall + n * set->walls;
     a->beyond = a->escaped + n;
     a->error = a->beyond + n;
     a->radius = a->error + n;
@@ -150,7 +150,7 @@ static int write_draft(fibrad_insitu *s, const char *name) {
                                  .step = set->facts.step,
                                  .rows = set->own,
                                  .entries = a.start[set->own],
-                                 .bodies = set->bodies,
+                                 .walls = set->walls,
                                  .emissive = (uint64_t)set->emissive,
                                  .cutoff = set->facts.cutoff};
         memcpy(head.magic, FIBRAD_ROWS_MAGIC, sizeof head.magic);

@@ -62,8 +62,8 @@ module fibrad
     type, bind(C) :: c_scene_config
         integer(c_int) :: isa = 0
         real(c_double) :: period(3) = 0
-        type(c_ptr) :: body = c_null_ptr
-        integer(c_int32_t) :: bodies = 0
+        type(c_ptr) :: wall = c_null_ptr
+        integer(c_int32_t) :: walls = 0
         type(c_ptr) :: opening = c_null_ptr
         integer(c_int32_t) :: openings = 0
         real(c_double) :: known_low(3) = 0, known_high(3) = 0
@@ -101,7 +101,7 @@ module fibrad
     end type c_fault
 
     type, bind(C) :: c_scene_facts
-        integer(c_int32_t) :: spheres = 0, bodies = 0
+        integer(c_int32_t) :: spheres = 0, walls = 0
         integer(c_int) :: isa = 0
         integer(c_int32_t) :: cells = 0
         real(c_double) :: radius_min = 0, radius_max = 0, overlap_max = 0
@@ -127,23 +127,23 @@ module fibrad
         type(c_ptr) :: beam = c_null_ptr, surface = c_null_ptr, cast = c_null_ptr, wanted = c_null_ptr
         integer(c_int) :: raw = 0
         real(c_double) :: drop = 0
-        integer(c_int) :: bodies = 1
+        integer(c_int) :: walls = 1
         type(c_ptr) :: scratch = c_null_ptr
     end type c_bed_options
 
     type, bind(C) :: c_factors
-        integer(c_int32_t) :: n = 0, bodies = 0
+        integer(c_int32_t) :: n = 0, walls = 0
         type(c_ptr) :: start = c_null_ptr, col = c_null_ptr, f = c_null_ptr
-        type(c_ptr) :: escaped = c_null_ptr, beyond = c_null_ptr, error = c_null_ptr, body = c_null_ptr
-        type(c_ptr) :: body_body = c_null_ptr, body_escaped = c_null_ptr, body_error = c_null_ptr
-        real(c_double) :: body_correction = 0, body_closure = 0, changed = 0
+        type(c_ptr) :: escaped = c_null_ptr, beyond = c_null_ptr, error = c_null_ptr, wall = c_null_ptr
+        type(c_ptr) :: wall_wall = c_null_ptr, wall_escaped = c_null_ptr, wall_error = c_null_ptr
+        real(c_double) :: wall_correction = 0, wall_closure = 0, changed = 0
         integer(c_int32_t) :: changed_row = 0
     end type c_factors
 
     type, bind(C) :: c_bed_factors
         type(c_factors) :: matrix
         type(c_scene_facts) :: facts
-        type(c_ptr) :: body_area = c_null_ptr
+        type(c_ptr) :: wall_area = c_null_ptr
         integer(c_int) :: threads = 0
         integer(c_int32_t) :: directions = 0
         integer(c_int64_t) :: fallbacks = 0, rays = 0
@@ -151,7 +151,7 @@ module fibrad
     end type c_bed_factors
 
     type, bind(C) :: c_exchange_rule
-        type(c_ptr) :: emissivity = c_null_ptr, body_emissivity = c_null_ptr
+        type(c_ptr) :: emissivity = c_null_ptr, wall_emissivity = c_null_ptr
         integer(c_int32_t) :: directions = 0, paths = 0
         integer(c_int64_t) :: seed = 0
         real(c_double) :: cutoff = 0, tolerance = 0
@@ -175,7 +175,7 @@ module fibrad
     type, bind(C) :: c_heat_sources
         type(c_ptr) :: temperature = c_null_ptr, emissivity = c_null_ptr
         type(c_ptr) :: power = c_null_ptr, hold = c_null_ptr, reference = c_null_ptr
-        type(c_ptr) :: body_temperature = c_null_ptr, body_emissivity = c_null_ptr, body_power = c_null_ptr
+        type(c_ptr) :: wall_temperature = c_null_ptr, wall_emissivity = c_null_ptr, wall_power = c_null_ptr
         type(c_ptr) :: insulated = c_null_ptr
         real(c_double) :: surroundings = 0, sigma = fibrad_stefan_boltzmann, tolerance = 0
         integer(c_int32_t) :: sweeps_max = 0
@@ -198,33 +198,33 @@ module fibrad
     type, bind(C) :: c_light_sources
         type(c_ptr) :: light = c_null_ptr
         integer(c_int32_t) :: lights = 0
-        type(c_ptr) :: absorptivity = c_null_ptr, body_absorptivity = c_null_ptr
+        type(c_ptr) :: absorptivity = c_null_ptr, wall_absorptivity = c_null_ptr
         real(c_double) :: tolerance = 0
         integer(c_int) :: uniform = 0
     end type c_light_sources
 
     type, bind(C) :: c_light_result
         type(c_ptr) :: absorbed = c_null_ptr, absorbed_first = c_null_ptr, absorbed_error = c_null_ptr
-        type(c_ptr) :: body_absorbed = c_null_ptr, body_absorbed_first = c_null_ptr, body_absorbed_error = c_null_ptr
+        type(c_ptr) :: wall_absorbed = c_null_ptr, wall_absorbed_first = c_null_ptr, wall_absorbed_error = c_null_ptr
         real(c_double) :: incident = 0, transmitted = 0, reflected = 0, error = 0, error_patches = 0
         integer(c_int32_t) :: sweeps = 0, lights = 0
         type(c_ptr) :: patches = c_null_ptr
     end type c_light_result
 
     type, bind(C) :: c_heat_result
-        type(c_ptr) :: power = c_null_ptr, body_power = c_null_ptr
+        type(c_ptr) :: power = c_null_ptr, wall_power = c_null_ptr
         real(c_double) :: surroundings_power = 0
-        type(c_ptr) :: temperature = c_null_ptr, body_temperature = c_null_ptr
-        type(c_ptr) :: power_error = c_null_ptr, body_error = c_null_ptr
-        type(c_ptr) :: temperature_error = c_null_ptr, body_temperature_error = c_null_ptr
+        type(c_ptr) :: temperature = c_null_ptr, wall_temperature = c_null_ptr
+        type(c_ptr) :: power_error = c_null_ptr, wall_error = c_null_ptr
+        type(c_ptr) :: temperature_error = c_null_ptr, wall_temperature_error = c_null_ptr
         real(c_double) :: error_patches = 0, error_beams = 0, residual = 0
         integer(c_int32_t) :: sweeps = 0
-        type(c_ptr) :: body_absorbed = c_null_ptr
+        type(c_ptr) :: wall_absorbed = c_null_ptr
         real(c_double) :: surroundings_error = 0
-        type(c_ptr) :: body_area = c_null_ptr
+        type(c_ptr) :: wall_area = c_null_ptr
         type(c_ptr) :: least_temperature = c_null_ptr, largest_temperature = c_null_ptr
         type(c_ptr) :: centre_temperature = c_null_ptr, surface_error = c_null_ptr, centre_error = c_null_ptr
-        type(c_ptr) :: conducted = c_null_ptr, body_conducted = c_null_ptr, contact_flow = c_null_ptr
+        type(c_ptr) :: conducted = c_null_ptr, wall_conducted = c_null_ptr, contact_flow = c_null_ptr
     end type c_heat_result
 
     type, bind(C) :: c_transient_config
@@ -236,11 +236,11 @@ module fibrad
     type, bind(C) :: c_span
         type(c_ptr) :: temperature = c_null_ptr, capacity = c_null_ptr
         real(c_double) :: duration = 0
-        type(c_ptr) :: body_temperature = c_null_ptr, surroundings = c_null_ptr
+        type(c_ptr) :: wall_temperature = c_null_ptr, surroundings = c_null_ptr
         real(c_double) :: step = 0, tolerance = 0
-        type(c_ptr) :: power = c_null_ptr, body_power = c_null_ptr
+        type(c_ptr) :: power = c_null_ptr, wall_power = c_null_ptr
         real(c_double) :: surroundings_power = 0
-        type(c_ptr) :: body_energy = c_null_ptr
+        type(c_ptr) :: wall_energy = c_null_ptr
         real(c_double) :: surroundings_energy = 0
         type(c_funptr) :: observe = c_null_funptr, law = c_null_funptr
         type(c_ptr) :: context = c_null_ptr
@@ -353,10 +353,10 @@ module fibrad
             integer(c_int) :: c_radiation_solve
         end function c_radiation_solve
 
-        function c_radiation_settle(radiation, sources, law, context, emissivity, body_emissivity, result) &
+        function c_radiation_settle(radiation, sources, law, context, emissivity, wall_emissivity, result) &
             bind(C, name="fibrad_radiation_settle")
             import :: c_int, c_ptr, c_funptr, c_heat_sources, c_heat_result
-            type(c_ptr), value :: radiation, context, emissivity, body_emissivity
+            type(c_ptr), value :: radiation, context, emissivity, wall_emissivity
             type(c_funptr), value :: law
             type(c_heat_sources), intent(in) :: sources
             type(c_heat_result), intent(inout) :: result
@@ -585,7 +585,7 @@ contains
         if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
         rule%emissivity = c_loc(emissivity)
-        if (present(wall_emissivity)) rule%body_emissivity = c_loc(wall_emissivity)
+        if (present(wall_emissivity)) rule%wall_emissivity = c_loc(wall_emissivity)
         if (present(k_star)) then
             rule%conductivity = c_loc(k_star)
             node = [(c_node_emissivity(emissivity(i), k_star(i)), i = 1, size(x))]
@@ -639,7 +639,7 @@ contains
         if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
         rule%emissivity = c_loc(emissivity)
-        if (present(wall_emissivity)) rule%body_emissivity = c_loc(wall_emissivity)
+        if (present(wall_emissivity)) rule%wall_emissivity = c_loc(wall_emissivity)
         if (present(k_star)) rule%conductivity = c_loc(k_star)
         if (present(paths)) rule%paths = int(paths, c_int32_t)
         if (present(flights)) rule%flights = int(flights, c_int32_t)
@@ -735,11 +735,11 @@ contains
         if (status /= fibrad_ok) return
         sources%temperature = c_loc(temperature)
         sources%emissivity = c_loc(emissivity)
-        if (present(wall_temperature)) sources%body_temperature = c_loc(wall_temperature)
-        if (present(wall_emissivity)) sources%body_emissivity = c_loc(wall_emissivity)
+        if (present(wall_temperature)) sources%wall_temperature = c_loc(wall_temperature)
+        if (present(wall_emissivity)) sources%wall_emissivity = c_loc(wall_emissivity)
         sources%surroundings = surroundings
         result%power = c_loc(power)
-        result%body_power = c_loc(walls)
+        result%wall_power = c_loc(walls)
         status = c_radiation_solve(heat%radiation, sources, result)
         if (status /= fibrad_ok) return
         if (present(wall_power)) wall_power = walls(1:heat%walls)
@@ -813,8 +813,8 @@ contains
         sources%surroundings = surroundings
         if (present(wall_temperature)) walls_given(1:heat%walls) = wall_temperature
         if (present(wall_emissivity)) walls_emit(1:heat%walls) = wall_emissivity
-        if (heat%walls > 0) sources%body_temperature = c_loc(walls_given)
-        if (present(wall_source)) sources%body_power = c_loc(wall_source)
+        if (heat%walls > 0) sources%wall_temperature = c_loc(walls_given)
+        if (present(wall_source)) sources%wall_power = c_loc(wall_source)
         if (present(insulated)) then
             closed(1:heat%walls) = merge(1_c_signed_char, 0_c_signed_char, insulated)
             sources%insulated = c_loc(closed)
@@ -823,8 +823,8 @@ contains
         follows%n = heat%spheres
         result%power = c_loc(power)
         result%temperature = c_loc(temperature)
-        result%body_power = c_loc(walls_power)
-        result%body_temperature = c_loc(walls_found)
+        result%wall_power = c_loc(walls_power)
+        result%wall_temperature = c_loc(walls_found)
         if (present(temperature_error)) result%temperature_error = c_loc(temperature_error)
         if (present(conductivity)) sources%conductivity = c_loc(conductivity)
         if (present(least)) result%least_temperature = c_loc(least)
@@ -880,11 +880,11 @@ contains
         sources%light = c_loc(lights)
         sources%lights = size(lights)
         sources%absorptivity = c_loc(absorptivity)
-        if (present(wall_absorptivity)) sources%body_absorptivity = c_loc(wall_absorptivity)
+        if (present(wall_absorptivity)) sources%wall_absorptivity = c_loc(wall_absorptivity)
         result%absorbed = c_loc(absorbed)
         result%absorbed_first = c_loc(absorbed_first)
-        result%body_absorbed = c_loc(walls)
-        result%body_absorbed_first = c_loc(walls_first)
+        result%wall_absorbed = c_loc(walls)
+        result%wall_absorbed_first = c_loc(walls_first)
         status = c_radiation_shine(heat%radiation, sources, result)
         if (status /= fibrad_ok) return
         if (present(wall_absorbed)) wall_absorbed = walls(1:heat%walls)
@@ -894,11 +894,11 @@ contains
     end subroutine heat_shine
 
     ! Asks the law for emissivities of spheres. Emissivities of walls stay as they are.
-    subroutine follow_law(context, temperature, body_temperature, emissivity, body_emissivity) bind(C)
-        type(c_ptr), value :: context, temperature, body_temperature, emissivity, body_emissivity
+    subroutine follow_law(context, temperature, wall_temperature, emissivity, wall_emissivity) bind(C)
+        type(c_ptr), value :: context, temperature, wall_temperature, emissivity, wall_emissivity
         type(law_of_spheres), pointer :: follows
         real(c_double), pointer :: kelvins(:), shares(:)
-        associate (unused => body_temperature, stay => body_emissivity)
+        associate (unused => wall_temperature, stay => wall_emissivity)
         end associate
         call c_f_pointer(context, follows)
         call c_f_pointer(temperature, kelvins, [follows%n])
@@ -1008,17 +1008,17 @@ contains
         sources%emissivity = c_loc(emissivity)
         sources%surroundings = surroundings
         if (present(source)) sources%power = c_loc(source)
-        if (present(wall_temperature)) sources%body_temperature = c_loc(wall_temperature)
-        if (present(wall_emissivity)) sources%body_emissivity = c_loc(wall_emissivity)
+        if (present(wall_temperature)) sources%wall_temperature = c_loc(wall_temperature)
+        if (present(wall_emissivity)) sources%wall_emissivity = c_loc(wall_emissivity)
         span%temperature = c_loc(temperature)
         span%capacity = c_loc(capacity)
         span%duration = duration
-        if (present(wall_temperature_end)) span%body_temperature = c_loc(wall_temperature_end)
+        if (present(wall_temperature_end)) span%wall_temperature = c_loc(wall_temperature_end)
         if (present(surroundings_end)) span%surroundings = c_loc(surroundings_end)
         if (present(step)) span%step = step
         if (present(tolerance)) span%tolerance = tolerance
         if (present(power)) span%power = c_loc(power)
-        if (present(wall_energy)) span%body_energy = c_loc(wall_energy)
+        if (present(wall_energy)) span%wall_energy = c_loc(wall_energy)
         status = c_transient_advance(transient%transient, sources, span)
         call c_transient_describe(transient%transient, c_null_ptr, found)
         if (status /= fibrad_ok .and. c_associated(transient%transient)) call tell_fault(found, size(temperature), fault)
@@ -1061,7 +1061,7 @@ contains
     ! Whether the structures of this module have the same sizes as those of the library.
     logical function fibrad_layouts_agree()
         type(c_spheres) :: spheres
-        type(fibrad_wall) :: body
+        type(fibrad_wall) :: wall
         type(c_scene_config) :: scene_config
         type(c_fault) :: fault
         type(c_scene_facts) :: scene_facts
@@ -1082,7 +1082,7 @@ contains
         type(c_span) :: span
         type(c_triangles) :: triangles
         fibrad_layouts_agree = all([ &
-            agrees('spheres', c_sizeof(spheres)), agrees('body', c_sizeof(body)), &
+            agrees('spheres', c_sizeof(spheres)), agrees('wall', c_sizeof(wall)), &
             agrees('scene_config', c_sizeof(scene_config)), agrees('fault', c_sizeof(fault)), &
             agrees('scene_facts', c_sizeof(scene_facts)), agrees('run', c_sizeof(run)), &
             agrees('beam_rule', c_sizeof(beam_rule)), agrees('bed_options', c_sizeof(bed_options)), &
@@ -1158,9 +1158,9 @@ contains
         if (present(walls)) then
             mesh%wall = pack(walls, walls%kind /= kind_open)
             mesh%opening = pack(walls%plane, walls%kind == kind_open)
-            if (size(mesh%wall) > 0) config%body = c_loc(mesh%wall)
+            if (size(mesh%wall) > 0) config%wall = c_loc(mesh%wall)
             if (size(mesh%opening) > 0) config%opening = c_loc(mesh%opening)
-            config%bodies = size(mesh%wall, kind=c_int32_t)
+            config%walls = size(mesh%wall, kind=c_int32_t)
             config%openings = size(mesh%opening, kind=c_int32_t)
         end if
         if (mesh%given%n > 0) config%triangles = c_loc(mesh%given)
@@ -1224,7 +1224,7 @@ contains
         integer :: n, walls
         call c_f_pointer(found, bed)
         n = bed%matrix%n
-        walls = bed%matrix%bodies
+        walls = bed%matrix%walls
         call c_f_pointer(bed%matrix%start, start, [n + 1])
         call c_f_pointer(bed%matrix%col, col, [start(n + 1)])
         factors%start = start + 1
@@ -1233,12 +1233,12 @@ contains
         factors%escaped = reals(bed%matrix%escaped, int(n, c_int64_t))
         factors%beyond = reals(bed%matrix%beyond, int(n, c_int64_t))
         factors%error = reals(bed%matrix%error, int(n, c_int64_t))
-        factors%wall = reshape(reals(bed%matrix%body, int(n, c_int64_t) * walls), [walls, n])
-        factors%wall_area = reals(bed%body_area, int(walls, c_int64_t))
-        if (c_associated(bed%matrix%body_body)) then
-            factors%wall_wall = reshape(reals(bed%matrix%body_body, int(walls, c_int64_t)**2), [walls, walls])
-            factors%wall_escaped = reals(bed%matrix%body_escaped, int(walls, c_int64_t))
-            factors%wall_error = reals(bed%matrix%body_error, int(walls, c_int64_t))
+        factors%wall = reshape(reals(bed%matrix%wall, int(n, c_int64_t) * walls), [walls, n])
+        factors%wall_area = reals(bed%wall_area, int(walls, c_int64_t))
+        if (c_associated(bed%matrix%wall_wall)) then
+            factors%wall_wall = reshape(reals(bed%matrix%wall_wall, int(walls, c_int64_t)**2), [walls, walls])
+            factors%wall_escaped = reals(bed%matrix%wall_escaped, int(walls, c_int64_t))
+            factors%wall_error = reals(bed%matrix%wall_error, int(walls, c_int64_t))
         end if
         factors%directions = bed%directions
         factors%threads = bed%threads

@@ -326,7 +326,7 @@ int bed_options_walls(struct bed_options *options, const struct bed *bed, struct
 }
 
 static void report_mesh(struct report *report, const struct walls *walls, uint32_t k) {
-    const struct mesh *mesh = mesh_of_body(walls->meshes, k);
+    const struct mesh *mesh = mesh_of_wall(walls->meshes, k);
     const char *name = wall_name(walls, k);
     double low[3], high[3];
     mesh_extents(walls->meshes, k, low, high);
@@ -337,11 +337,11 @@ static void report_mesh(struct report *report, const struct walls *walls, uint32
 }
 
 static void report_wall(struct report *report, const struct walls *walls, uint32_t k) {
-    const fibrad_body *wall = &walls->body[k];
+    const fibrad_wall *wall = &walls->wall[k];
     const char *key = report_key(report, "wall_%s_at", wall_name(walls, k));
-    if (wall->kind == FIBRAD_BODY_MESH)
+    if (wall->kind == FIBRAD_WALL_MESH)
         report_mesh(report, walls, k);
-    else if (wall->kind == FIBRAD_BODY_CYLINDER)
+    else if (wall->kind == FIBRAD_WALL_CYLINDER)
         report_vector(report, key, (const double[]){wall->cylinder.x, wall->cylinder.y, wall->cylinder.radius});
     else
         report_value(report, key, wall->plane.at, 9);

@@ -60,16 +60,16 @@ static bool is_new(struct warned *warned, enum kind kind) {
 
 void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_bed_factors *factors) {
     const fibrad_factors *matrix = &factors->matrix;
-    const bool walls = matrix->body_body != NULL, meshed = factors->facts.triangles > 0;
-    if (walls && matrix->body_closure > CLOSED && is_new(warned, WALLS_OPEN))
+    const bool walls = matrix->wall_wall != NULL, meshed = factors->facts.triangles > 0;
+    if (walls && matrix->wall_closure > CLOSED && is_new(warned, WALLS_OPEN))
         message_at(STATUS_OK, warned->file, 0,
                    "warning: rows of walls are not closed: their sums are off by %.2g, because they contradict the "
                    "rows of spheres%s",
-                   matrix->body_closure, meshed ? "; do triangles cut spheres?" : "");
-    else if (walls && matrix->body_correction > APART && is_new(warned, WALLS_APART))
+                   matrix->wall_closure, meshed ? "; do triangles cut spheres?" : "");
+    else if (walls && matrix->wall_correction > APART && is_new(warned, WALLS_APART))
         message_at(STATUS_OK, warned->file, 0,
                    "warning: rows of walls and of spheres disagreed by %.2g before they were closed; %s",
-                   matrix->body_correction,
+                   matrix->wall_correction,
                    meshed ? "do triangles cut spheres? If not, more directions help" : "more directions help");
     else if (matrix->changed > CHANGE_LARGE && is_new(warned, CLOSING))
         message_at(STATUS_OK, warned->file, bed->line[matrix->changed_row],
@@ -149,11 +149,11 @@ void warn_overlap(struct warned *warned, const struct bed *bed, const fibrad_sce
 /* ---- walls ------------------------------------------------------------------------------------------------------ */
 
 /* How far sphere i reaches beyond a plane or a cylinder. For a mesh: 0. */
-static double cut(const struct bed *bed, const fibrad_body *wall, uint32_t i) {
+static double cut(const struct bed *bed, const fibrad_wall *wall, uint32_t i) {
     const double at[3] = {bed->x[i], bed->y[i], bed->z[i]};
-    if (wall->kind == FIBRAD_BODY_CYLINDER)
+    if (wall->kind == FIBRAD_WALL_CYLINDER)
         return hypot(at[0] - wall->cylinder.x, at[1] - wall->cylinder.y) + bed->r[i] - wall->cylinder.radius;
-    if (wall->kind != FIBRAD_BODY_PLANE) return 0;
+    if (wall->kind != FIBRAD_WALL_PLANE) return 0;
     const double beyond = at[wall->plane.axis] - wall->plane.at;
     return bed->r[i] + (wall->plane.upper ? beyond : -beyond);
 }
@@ -163,7 +163,7 @@ static void warn_of_cuts(struct warned *warned, const struct bed *bed, const str
     double worst = 0;
     for (uint32_t k = 0; k < walls->count; ++k)
         for (uint32_t i = 0; i < bed->n; ++i) {
-            const double depth = cut(bed, &walls->body[k], i) / bed->r[i];
+            const double depth = cut(bed, &walls->wall[k], i) / bed->r[i];
             count += depth > CUT_LARGE;
             if (depth > worst) worst = depth, sphere = i, wall = k;
         }
@@ -207,7 +207,7 @@ void warn_walls(struct warned *warned, const struct bed *bed, const struct walls
                    "coordinate stand where the spheres end. xmin=VALUE gives a coordinate");
     warn_of_cuts(warned, bed, walls);
     for (uint32_t k = 0; k < walls->count; ++k)
-        if (walls->body[k].kind == FIBRAD_BODY_MESH) warn_of_mesh(warned, bed, walls->meshes, k);
+        if (walls->wall[k].kind == FIBRAD_WALL_MESH) warn_of_mesh(warned, bed, walls->meshes, k);
 }
 
 /* ---- values ----------------------------------------------------------------------------------------------------- */

@@ -41,10 +41,10 @@ static struct ends ends_of(const struct bed *bed, const struct walls *walls) {
         ends.walled[2 * axis] = ends.walled[2 * axis + 1] = periodic;
     }
     for (uint32_t k = 0; k < walls->count; ++k) {
-        const fibrad_body *body = &walls->body[k];
-        if (body->kind == FIBRAD_BODY_PLANE) end_at(&ends, &body->plane, true);
-        if (body->kind == FIBRAD_BODY_CYLINDER) {
-            ends.round = M_PI * gsl_pow_2(body->cylinder.radius);
+        const fibrad_wall *wall = &walls->wall[k];
+        if (wall->kind == FIBRAD_WALL_PLANE) end_at(&ends, &wall->plane, true);
+        if (wall->kind == FIBRAD_WALL_CYLINDER) {
+            ends.round = M_PI * gsl_pow_2(wall->cylinder.radius);
             for (int side = 0; side < 4; ++side) ends.walled[side] = true;
         }
     }
@@ -85,16 +85,16 @@ int face_solve(struct face *face, const struct bed *bed, const struct walls *wal
     const fibrad_scene_config scene = bed_scene(bed, &all);
     const fibrad_spheres spheres = bed_spheres(bed);
     double of_walls[WALLS_MAX], mean = 0, sum = 0, square = 0;
-    for (uint32_t k = 0; k < walls->count; ++k) of_walls[k] = sources->insulated[k] ? 0 : sources->body_emissivity[k];
+    for (uint32_t k = 0; k < walls->count; ++k) of_walls[k] = sources->insulated[k] ? 0 : sources->wall_emissivity[k];
     for (uint32_t i = 0; i < bed->n; ++i) mean += sources->emissivity[i] / bed->n;
     const fibrad_exchange_rule rule = {.emissivity = sources->emissivity,
-                                       .body_emissivity = of_walls,
+                                       .wall_emissivity = of_walls,
                                        .paths = FACE_PATHS,
                                        .tolerance = FACE_TOLERANCE * sqrt(fmax(FACE_LEAST, mean))};
     int status = FIBRAD_OK;
     for (int side = 0; side < 6 && !status; ++side) {
         const double area = open_area(&ends, side);
-        fibrad_body_row row;
+        fibrad_wall_row row;
         if (!(area > 0)) continue;
         status = fibrad_wall_row(&scene, &spheres, FIBRAD_OPENING(all.count, side / 2, side % 2), &rule, run, &row);
         sum += area * (1 - row.escaped), square += gsl_pow_2(area * FACE_ERROR * row.error);

@@ -75,7 +75,7 @@ static int given_walls(const struct given_options *options, const struct bed *be
                            "--wall-temperature: %s has no value; give %s=NUMBER, one number for all, %s=insulated, or "
                            "--wall-power",
                            name, name, name);
-        if (isnan(temperature) && wall_endless(walls, bed, &walls->body[k]))
+        if (isnan(temperature) && wall_endless(walls, bed, &walls->wall[k]))
             return message(STATUS_USAGE, "--wall-power: %s is endless and needs a --wall-temperature", name);
     }
     return status;
@@ -85,7 +85,7 @@ static int given_walls(const struct given_options *options, const struct bed *be
  * as its triangles together. */
 static int given_triangles(const struct walls *walls, uint32_t wall, const struct curve *column, double zero,
                            struct given *given) {
-    const struct mesh *mesh = walls->meshes ? mesh_of_body(walls->meshes, wall) : NULL;
+    const struct mesh *mesh = walls->meshes ? mesh_of_wall(walls->meshes, wall) : NULL;
     const char *name = wall_name(walls, wall);
     double sum = 0, areas = 0;
     if (!mesh) return message(STATUS_USAGE, "--wall-temperature: %s has no triangles", name);
@@ -93,7 +93,7 @@ static int given_triangles(const struct walls *walls, uint32_t wall, const struc
         return message(STATUS_INPUT, "--wall-temperature: %s: %zu numbers; %s has %u triangles", name, column->n,
                        mesh->file, mesh->surface.given);
     for (uint32_t t = 0; t < mesh->surface.n; ++t) {
-        if (mesh_body(mesh, t) != wall) continue;
+        if (mesh_wall(mesh, t) != wall) continue;
         const double kelvins = column->y[mesh->surface.number[t]] + zero, area = surface_area(&mesh->surface, t);
         double *side = given->side_temperature + 2 * ((size_t)mesh->first + t);
         side[0] = side[1] = kelvins;
@@ -191,6 +191,6 @@ void given_heat_sources(struct given *given, uint32_t n, double metres, fibrad_h
     for (uint32_t i = 0; i < n; ++i) given->power[i] /= metres * metres;
     for (uint32_t k = 0; k < WALLS_MAX; ++k) given->wall_power[k] /= metres * metres;
     sources->temperature = given->temperature, sources->power = given->power;
-    sources->body_temperature = given->wall_temperature, sources->body_power = given->wall_power;
+    sources->wall_temperature = given->wall_temperature, sources->wall_power = given->wall_power;
     sources->insulated = given->insulated, sources->side_temperature = given->side_temperature;
 }

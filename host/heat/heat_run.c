@@ -19,7 +19,7 @@ static bool heat_insulates(const fibrad_heat_sources *sources, uint32_t walls) {
 static double heat_outside_error(const fibrad_heat_result *result, uint32_t spheres, uint32_t walls) {
     double sum = fabs(result->surroundings_power);
     for (uint32_t i = 0; i < spheres; ++i) sum += fabs(result->power[i]);
-    for (uint32_t k = 0; k < walls; ++k) sum += fabs(result->body_power[k]);
+    for (uint32_t k = 0; k < walls; ++k) sum += fabs(result->wall_power[k]);
     const double error = result->surroundings_error;
     return error > 0 ? error / fmax(fabs(result->surroundings_power), SMALL_SHARE * sum / 2) : 0;
 }
@@ -30,10 +30,10 @@ static double heat_wall_error(const fibrad_heat_result *result, const fibrad_hea
                               uint32_t walls) {
     double worst = heat_insulates(sources, walls) ? heat_outside_error(result, spheres, walls) : 0;
     for (uint32_t k = 0; k < walls; ++k) {
-        if (result->body_error[k] > 0)
-            worst = fmax(worst, result->body_error[k] / fmax(fabs(result->body_power[k]), result->body_absorbed[k]));
-        if (result->body_temperature_error[k] > 0)
-            worst = fmax(worst, 4 * result->body_temperature_error[k] / result->body_temperature[k]);
+        if (result->wall_error[k] > 0)
+            worst = fmax(worst, result->wall_error[k] / fmax(fabs(result->wall_power[k]), result->wall_absorbed[k]));
+        if (result->wall_temperature_error[k] > 0)
+            worst = fmax(worst, 4 * result->wall_temperature_error[k] / result->wall_temperature[k]);
     }
     return worst;
 }
@@ -46,8 +46,8 @@ static void heat_summarise(const struct bed *bed, const fibrad_heat_sources *sou
     report->balance = result->surroundings_power;
     report->largest = fabs(result->surroundings_power);
     for (uint32_t k = 0; k < walls; ++k) {
-        report->balance += result->body_power[k];
-        report->largest = fmax(report->largest, fabs(result->body_power[k]));
+        report->balance += result->wall_power[k];
+        report->largest = fmax(report->largest, fabs(result->wall_power[k]));
     }
     report->emitted = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {
@@ -131,10 +131,10 @@ static int heat_unsolvable(const struct bed_options *options, const struct heat_
         magnitude += fabs(sources->power[i]) * square_metres;
     }
     for (uint32_t k = 0; k < walls; ++k) {
-        given |= !isnan(sources->body_temperature[k]);
-        if (!isnan(sources->body_temperature[k]) || sources->insulated[k]) continue;
-        sum += sources->body_power[k] * square_metres;
-        magnitude += fabs(sources->body_power[k]) * square_metres;
+        given |= !isnan(sources->wall_temperature[k]);
+        if (!isnan(sources->wall_temperature[k]) || sources->insulated[k]) continue;
+        sum += sources->wall_power[k] * square_metres;
+        magnitude += fabs(sources->wall_power[k]) * square_metres;
     }
     if (!given) return heat_no_level(options->name, sum, magnitude);
     for (uint32_t i = 0; i < bed->n; ++i)
@@ -144,9 +144,9 @@ static int heat_unsolvable(const struct bed_options *options, const struct heat_
                               "sphere %lld: no temperature above 0 K gives off %g W here", (long long)bed_name(bed, i),
                               sources->power[i] * square_metres);
     for (uint32_t k = 0; k < walls; ++k)
-        if (isnan(sources->body_temperature[k]) && !sources->insulated[k] && isnan(report->result.body_temperature[k]))
+        if (isnan(sources->wall_temperature[k]) && !sources->insulated[k] && isnan(report->result.wall_temperature[k]))
             return message_at(STATUS_INPUT, options->name, 0, "wall %s: no temperature above 0 K gives off %g W here",
-                              wall_name(&problem->walls, k), sources->body_power[k] * square_metres);
+                              wall_name(&problem->walls, k), sources->wall_power[k] * square_metres);
     return heat_no_level(options->name, sum, magnitude);
 }
 
@@ -155,10 +155,10 @@ static void heat_scale(const struct bed *bed, uint32_t walls, double square_metr
     if (square_metres == 1) return;
     for (uint32_t i = 0; i < bed->n; ++i) result->power[i] *= square_metres, result->power_error[i] *= square_metres;
     for (uint32_t k = 0; k < walls; ++k) {
-        result->body_power[k] *= square_metres;
-        result->body_error[k] *= square_metres;
-        result->body_absorbed[k] *= square_metres;
-        result->body_area[k] *= square_metres;
+        result->wall_power[k] *= square_metres;
+        result->wall_error[k] *= square_metres;
+        result->wall_absorbed[k] *= square_metres;
+        result->wall_area[k] *= square_metres;
     }
     result->surroundings_power *= square_metres, result->surroundings_error *= square_metres;
     result->error_patches *= square_metres;
@@ -257,7 +257,7 @@ static int heat_once(struct bed_options *options, const struct heat_problem *pro
     fibrad_run run = bed_options_run(options);
     fibrad_radiation *radiation;
     double wall_emissivity[WALLS_MAX];
-    for (uint32_t k = 0; k < problem->walls.count; ++k) wall_emissivity[k] = sources.body_emissivity[k];
+    for (uint32_t k = 0; k < problem->walls.count; ++k) wall_emissivity[k] = sources.wall_emissivity[k];
     if (problem->error > 0) sources.tolerance = fmin(1e-5, SOLVED * problem->error);
     if (isnan(sources.surroundings)) sources.surroundings = 0; /* closed bed: no radiation reaches the surroundings */
     int status = heat_memory(bed, &report->config);
@@ -274,7 +274,7 @@ static int heat_once(struct bed_options *options, const struct heat_problem *pro
                                         report->triangles.quantity[TRIANGLE_TEMPERATURE].side);
         triangle_heat_show(&report->triangles, 1);
     }
-    sources.emissivity = problem->emissivity, sources.body_emissivity = wall_emissivity;
+    sources.emissivity = problem->emissivity, sources.wall_emissivity = wall_emissivity;
     if (!status) status = face_solve(problem->face, bed, &problem->walls, &sources, &run);
     fibrad_radiation_describe(radiation, &report->facts, &run.fault);
     fibrad_radiation_free(radiation);
@@ -451,7 +451,7 @@ int heat_run(struct bed_options *options, const struct heat_problem *problem, co
     if (!status && problem->error > 0) status = heat_improve(options, problem, bed, report);
     report->seconds = progress_clock() - begun;
     struct table_excess excess[TABLES] = {{0}};
-    if (!status) heat_excess_of(problem, bed, report->result.temperature, report->result.body_temperature, excess);
+    if (!status) heat_excess_of(problem, bed, report->result.temperature, report->result.wall_temperature, excess);
     heat_warn_excess(&options->warned, excess);
     return status;
 }

@@ -104,7 +104,7 @@ static double temperature_at(const struct time_run *m, const struct curve *curve
 static void outside_at(const struct time_run *m, double time, double wall[WALLS_MAX], double *surroundings) {
     const fibrad_heat_sources *s = &m->problem->sources;
     for (uint32_t k = 0; k < m->problem->walls.count; ++k)
-        wall[k] = temperature_at(m, &m->problem->wall_curve[k], time, s->body_temperature[k]);
+        wall[k] = temperature_at(m, &m->problem->wall_curve[k], time, s->wall_temperature[k]);
     *surroundings = temperature_at(m, m->problem->ambient_curve, time, isnan(s->surroundings) ? 0 : s->surroundings);
 }
 
@@ -204,7 +204,7 @@ static int choose_model(struct time_run *m) {
         return message(STATUS_USAGE,
                        "--model factors: triangles cannot have temperatures of their own; use --model patches");
     for (uint32_t k = 0; k < problem->walls.count; ++k) {
-        if (!isnan(problem->sources.body_temperature[k])) continue;
+        if (!isnan(problem->sources.wall_temperature[k])) continue;
         m->by_patches = true;
         if (problem->by_factors)
             return message(STATUS_USAGE,
@@ -269,7 +269,7 @@ static int write_state(struct time_run *m) {
     status = library_status(m, status);
     if (status) return status;
     for (uint32_t k = 0; k < walls; ++k)
-        if (!isnan(m->wall[k])) m->result->body_temperature[k] = m->wall[k];
+        if (!isnan(m->wall[k])) m->result->wall_temperature[k] = m->wall[k];
     light_add(m->problem->light, &shown, m->bed.n, walls, m->result);
     memcpy(m->result->temperature, m->span.temperature, m->bed.n * sizeof *m->span.temperature);
     if (isnan(m->problem->sources.surroundings)) shown.surroundings = NAN;
@@ -291,7 +291,7 @@ static int advance(struct time_run *m, double time) {
     double wall[WALLS_MAX], surroundings;
     outside_at(m, time, wall, &surroundings);
     m->span.duration = time - m->now;
-    m->span.body_temperature = wall, m->span.surroundings = &surroundings;
+    m->span.wall_temperature = wall, m->span.surroundings = &surroundings;
     const int status = fibrad_transient_advance(m->transient, &m->sources, &m->span);
     if (status) return library_status(m, status);
     m->steps += m->span.steps, m->refused += m->span.refused, m->sweeps += m->span.sweeps;
@@ -346,7 +346,7 @@ static void print_summary(struct time_run *m, const double *before, double secon
     quantity_report(&o->density, "density_kg_m3", report);
     if (!isnan(m->problem->sources.surroundings)) report_value(report, "surroundings_K", m->sources.surroundings, 6);
     wall_values_report(walls, m->wall, "_K", 6, report);
-    wall_values_report(walls, m->sources.body_emissivity, "_emissivity", 6, report);
+    wall_values_report(walls, m->sources.wall_emissivity, "_emissivity", 6, report);
     report_count(report, "threads", (uint64_t)(m->options->threads ? m->options->threads : omp_get_max_threads()));
     report_value(report, "seconds", seconds, 3);
     report_count(report, "steps", m->steps);
@@ -442,12 +442,12 @@ int heat_in_time(struct bed_options *options, const struct time_options *time, c
     int status = STATUS_OK;
     m.bed.frame = 0, m.bed.timestep = -1;
     m.sources.sigma *= m.square_metres; /* areas are in the bed's unit of length, powers in watts */
-    m.sources.temperature = now, m.sources.body_temperature = m.wall;
+    m.sources.temperature = now, m.sources.wall_temperature = m.wall;
     m.span = (fibrad_span){
-        .temperature = now, .step = time->step, .body_energy = m.wall_energy, .observe = note_point, .context = &m};
+        .temperature = now, .step = time->step, .wall_energy = m.wall_energy, .observe = note_point, .context = &m};
     for (uint32_t i = 0; i < bed->n; ++i) result->power_error[i] = result->temperature_error[i] = NAN;
     result->surroundings_error = NAN;
-    for (uint32_t k = 0; k < problem->walls.count; ++k) result->body_error[k] = result->body_temperature_error[k] = NAN;
+    for (uint32_t k = 0; k < problem->walls.count; ++k) result->wall_error[k] = result->wall_temperature_error[k] = NAN;
     if (!status) status = choose_model(&m);
     if (!status) status = find_capacities(&m, metres, &capacity);
     m.span.capacity = capacity;

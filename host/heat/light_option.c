@@ -179,8 +179,8 @@ static void add_absorbed(struct light_state *state, const struct bed *bed, const
     for (uint32_t i = 0; i < bed->n; ++i)
         state->power[i] = (sources->power ? sources->power[i] : NAN) + state->absorbed[i];
     for (uint32_t k = 0; k < walls->count; ++k)
-        state->wall_power[k] = (sources->body_power ? sources->body_power[k] : NAN) + state->wall[k];
-    sources->power = state->power, sources->body_power = state->wall_power;
+        state->wall_power[k] = (sources->wall_power ? sources->wall_power[k] : NAN) + state->wall[k];
+    sources->power = state->power, sources->wall_power = state->wall_power;
     sources->absorbed = state->result.patches;
 }
 
@@ -192,14 +192,14 @@ int light_absorb(struct light_state *state, const struct lit_bed *lit, fibrad_he
     fibrad_light_sources light = {.lights = options->lights,
                                   .light = scaled,
                                   .absorptivity = state->absorptivity,
-                                  .body_absorptivity = state->of_walls,
+                                  .wall_absorptivity = state->of_walls,
                                   .uniform = sources->uniform};
     state->result = (fibrad_light_result){.absorbed = state->absorbed,
                                           .absorbed_first = state->first,
                                           .absorbed_error = state->error,
-                                          .body_absorbed = state->wall,
-                                          .body_absorbed_first = state->wall_first,
-                                          .body_absorbed_error = state->wall_error};
+                                          .wall_absorbed = state->wall,
+                                          .wall_absorbed_first = state->wall_first,
+                                          .wall_absorbed_error = state->wall_error};
     const int status = lit->transient ? fibrad_transient_shine(lit->transient, &light, &state->result)
                                       : fibrad_radiation_shine(lit->radiation, &light, &state->result);
     state->failed = status != FIBRAD_OK;
@@ -259,10 +259,10 @@ void light_add(const struct light_state *state, const fibrad_heat_sources *sourc
     result->error_beams = hypot(result->error_beams, sqrt(square - patches * patches));
     for (uint32_t k = 0; k < walls; ++k) {
         if (sources->insulated[k]) continue; /* it gives off what it absorbs */
-        result->body_power[k] += state->wall[k];
-        result->body_absorbed[k] += state->wall[k];
-        if (!isnan(sources->body_temperature[k]))
-            result->body_error[k] = hypot(result->body_error[k], state->wall_error[k]);
+        result->wall_power[k] += state->wall[k];
+        result->wall_absorbed[k] += state->wall[k];
+        if (!isnan(sources->wall_temperature[k]))
+            result->wall_error[k] = hypot(result->wall_error[k], state->wall_error[k]);
     }
     result->surroundings_power += light->reflected + light->transmitted - light->incident;
     result->surroundings_error = hypot(result->surroundings_error, light->error);

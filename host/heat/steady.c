@@ -20,8 +20,8 @@ bool steady_possible(const struct bed *bed, const struct walls *walls, int axis)
 struct walls steady_walls(const struct bed *bed, const struct walls *sides, int axis) {
     struct walls walls = {.count = 2};
     for (int k = 0; k < 2; ++k)
-        walls.body[k] = (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {axis, k, bed_reach(bed, axis, k == 1)}};
-    for (uint32_t k = 0; sides && k < sides->count; ++k) walls.body[walls.count++] = sides->body[k];
+        walls.wall[k] = (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = {axis, k, bed_reach(bed, axis, k == 1)}};
+    for (uint32_t k = 0; sides && k < sides->count; ++k) walls.wall[walls.count++] = sides->wall[k];
     return walls;
 }
 
@@ -61,8 +61,8 @@ static int steady_solve(struct bed_options *options, const struct bed *bed, cons
     sources.sigma = 1, sources.surroundings = relative ? 1 : 0;
     sources.conductivity = relative ? conductivity : NULL;
     sources.temperature = unknown, sources.emissivity = emissivity, sources.power = given;
-    sources.body_temperature = plate, sources.body_emissivity = black, sources.insulated = insulated;
-    fibrad_heat_result result = {.power = gained, .body_power = power, .body_error = error, .temperature = emission};
+    sources.wall_temperature = plate, sources.wall_emissivity = black, sources.insulated = insulated;
+    fibrad_heat_result result = {.power = gained, .wall_power = power, .wall_error = error, .temperature = emission};
     const fibrad_heat_config config = {.directions = directions};
     if (!status) status = fibrad_radiation_new(&radiation, &scene, &spheres, &config, &run);
     if (!status) status = fibrad_radiation_solve(radiation, &sources, &result);
@@ -82,7 +82,7 @@ static int steady_solve(struct bed_options *options, const struct bed *bed, cons
 /* Fits a straight line to sigma T^4 of the spheres of the inner half. */
 static void steady_fit(const struct bed *bed, int axis, const struct walls *walls, double *emission, double *place,
                        struct steady *steady, double *slope, double *slope_error) {
-    const double low = walls->body[0].plane.at, high = walls->body[1].plane.at, *centre = bed_centres(bed, axis);
+    const double low = walls->wall[0].plane.at, high = walls->wall[1].plane.at, *centre = bed_centres(bed, axis);
     double c0, cov00, cov01, cov11, squares;
     size_t n = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {

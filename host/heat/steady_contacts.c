@@ -38,7 +38,7 @@ struct between {
 /* The end to which a sphere belongs: 0 the lower one, 1 the upper one, 2 none. */
 static int plate_of(const struct between *b, uint32_t i) {
     const double at = bed_centres(b->bed, b->axis)[i], d = b->problem->diameter;
-    return at - b->plates.body[0].plane.at < 1.5 * d ? 0 : b->plates.body[1].plane.at - at < 1.5 * d ? 1 : 2;
+    return at - b->plates.wall[0].plane.at < 1.5 * d ? 0 : b->plates.wall[1].plane.at - at < 1.5 * d ? 1 : 2;
 }
 
 static int take_room(struct between *b) {
@@ -89,7 +89,7 @@ static int set_up(struct between *b, double period) {
             b->conductivity[i] = p->relative[i] * 8 * bed->r[i] * FIBRAD_STEFAN_BOLTZMANN * gsl_pow_3(p->temperature);
     }
     b->plate[0] = b->plate[1] = p->temperature;
-    b->sources.temperature = b->given, b->sources.body_temperature = b->plate;
+    b->sources.temperature = b->given, b->sources.wall_temperature = b->plate;
     status = contacts_begin(&b->contacts, p->contacts, b->options, bed, &b->plates, p->solid,
                             1 / (p->metres * p->metres), &b->sources);
     if (status) return status;
@@ -109,8 +109,8 @@ static int set_up(struct between *b, double period) {
     b->result = (fibrad_heat_result){.power = b->gained,
                                      .power_error = b->error,
                                      .temperature = b->temperature,
-                                     .body_power = b->plate_power,
-                                     .body_error = b->plate_error,
+                                     .wall_power = b->plate_power,
+                                     .wall_error = b->plate_error,
                                      .contact_flow = b->contacts.flow};
     return STATUS_OK;
 }
@@ -119,7 +119,7 @@ static int set_up(struct between *b, double period) {
  * that of the line and, as a part of `gained`, that of the powers. */
 static int read_total(const struct between *b, struct conduction_value *total) {
     const struct bed *bed = b->bed;
-    const double low = b->plates.body[0].plane.at, high = b->plates.body[1].plane.at, metres = b->problem->metres;
+    const double low = b->plates.wall[0].plane.at, high = b->plates.wall[1].plane.at, metres = b->problem->metres;
     double c0, slope, cov00, cov01, cov11, squares, gained = b->plate_power[1], square = gsl_pow_2(b->plate_error[1]);
     size_t n = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {
@@ -165,7 +165,7 @@ static int solve_total(struct between *b, bool radiates, bool touches, uint32_t 
     const fibrad_heat_config config = {.directions = directions};
     for (uint32_t i = 0; i < b->bed->n; ++i)
         b->emissivity[i] = fmax(radiates ? b->problem->emissivity[i] : 0, HARDLY_RADIATES);
-    sources.body_emissivity = black;
+    sources.wall_emissivity = black;
     if (!touches) sources.contacts = 0;
     if (!radiates) sources.conductivity = NULL, sources.tolerance = 1e-10;
     int status = fibrad_radiation_new(&radiation, &scene, &spheres, &config, &run);

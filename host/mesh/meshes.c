@@ -34,20 +34,20 @@ static bool is_taken(const struct meshes *meshes, uint32_t first, uint32_t last,
 
 /* Names the walls of a file: NAME, or with :solids NAME_SOLID for each. A solid without a name of its own becomes
  * NAME_1, NAME_2 ... by its number. */
-static void name_bodies(struct meshes *meshes, const struct mesh_file *file, const struct stl *stl, uint32_t body) {
+static void name_walls(struct meshes *meshes, const struct mesh_file *file, const struct stl *stl, uint32_t wall) {
     char name[MESH_NAME], solid[SOLID_NAME];
     if (file->name)
         snprintf(name, sizeof name, "%s", file->name);
     else
         stem_of(file->path, name);
     for (uint32_t k = 0; k < (file->solids ? stl->solids : 1); ++k) {
-        char *to = meshes->name[body + k];
+        char *to = meshes->name[wall + k];
         stem_of(stl->name[k], solid);
         if (!file->solids)
             memcpy(to, name, sizeof name);
         else
             snprintf(to, MESH_NAME, "%.15s_%.15s", name, solid);
-        if (file->solids && (!stl->name[k][0] || is_taken(meshes, body, body + k, to)))
+        if (file->solids && (!stl->name[k][0] || is_taken(meshes, wall, wall + k, to)))
             snprintf(to, MESH_NAME, "%.15s_%u", name, k + 1);
     }
 }
@@ -95,7 +95,7 @@ static int append(struct meshes *meshes) {
     return STATUS_OK;
 }
 
-int meshes_take(struct meshes *meshes, const struct mesh_file *file, const struct stl *stl, uint32_t body) {
+int meshes_take(struct meshes *meshes, const struct mesh_file *file, const struct stl *stl, uint32_t wall) {
     struct mesh *mesh = realloc(meshes->mesh, (meshes->count + (size_t)1) * sizeof *mesh);
     if (!mesh) return message_memory();
     meshes->mesh = mesh;
@@ -103,48 +103,48 @@ int meshes_take(struct meshes *meshes, const struct mesh_file *file, const struc
     *mesh = (struct mesh){.file = strdup(file->path),
                           .text = stl->text,
                           .sides = file->sides,
-                          .body = body,
-                          .bodies = file->solids ? stl->solids : 1,
+                          .wall = wall,
+                          .walls = file->solids ? stl->solids : 1,
                           .first = meshes->triangles.n};
     if (!mesh->file) return message_memory();
-    if (mesh->bodies > FIBRAD_BODIES_MAX - body)
+    if (mesh->walls > FIBRAD_WALLS_MAX - wall)
         return message_at(STATUS_USAGE, file->path, 0, "more than %d walls; without :solids the file is one wall",
-                          FIBRAD_BODIES_MAX);
+                          FIBRAD_WALLS_MAX);
     int status = surface_weld(&mesh->surface, stl, file->scale);
     if (!status && mesh->surface.flat + mesh->surface.twice == stl->n)
         status = message_at(STATUS_INPUT, file->path, 0, "no triangle has an area");
     if (!status) status = surface_find_components(&mesh->surface);
     if (!status) {
         warn_of_surface(file->path, &mesh->surface);
-        name_bodies(meshes, file, stl, body);
+        name_walls(meshes, file, stl, wall);
         status = append(meshes);
     }
     return status;
 }
 
-int meshes_add(struct meshes *meshes, const struct mesh_file *file, uint32_t body) {
+int meshes_add(struct meshes *meshes, const struct mesh_file *file, uint32_t wall) {
     struct stl stl;
     int status = stl_read(&stl, file->path);
-    if (!status) status = meshes_take(meshes, file, &stl, body);
+    if (!status) status = meshes_take(meshes, file, &stl, wall);
     stl_free(&stl);
     return status;
 }
 
-uint32_t mesh_body(const struct mesh *mesh, uint32_t own) {
-    return mesh->body + (mesh->bodies > 1 ? mesh->surface.solid[own] : 0);
+uint32_t mesh_wall(const struct mesh *mesh, uint32_t own) {
+    return mesh->wall + (mesh->walls > 1 ? mesh->surface.solid[own] : 0);
 }
 
-uint32_t mesh_triangles(const struct mesh *mesh, uint32_t body) {
+uint32_t mesh_triangles(const struct mesh *mesh, uint32_t wall) {
     uint32_t count = 0;
-    for (uint32_t t = 0; t < mesh->surface.n; ++t) count += mesh_body(mesh, t) == body;
+    for (uint32_t t = 0; t < mesh->surface.n; ++t) count += mesh_wall(mesh, t) == wall;
     return count;
 }
 
-void mesh_extents(const struct meshes *meshes, uint32_t body, double low[3], double high[3]) {
-    const struct mesh *mesh = mesh_of_body(meshes, body);
+void mesh_extents(const struct meshes *meshes, uint32_t wall, double low[3], double high[3]) {
+    const struct mesh *mesh = mesh_of_wall(meshes, wall);
     for (int axis = 0; axis < 3; ++axis) low[axis] = INFINITY, high[axis] = -INFINITY;
     for (uint32_t t = 0; t < mesh->surface.n; ++t)
-        for (int k = 0; k < 3 && mesh_body(mesh, t) == body; ++k)
+        for (int k = 0; k < 3 && mesh_wall(mesh, t) == wall; ++k)
             for (int axis = 0; axis < 3; ++axis) {
                 const double at = surface_corner(&mesh->surface, t, k)[axis];
                 low[axis] = fmin(low[axis], at), high[axis] = fmax(high[axis], at);
@@ -159,9 +159,9 @@ const struct mesh *mesh_of_triangle(const struct meshes *meshes, uint32_t triang
     return NULL;
 }
 
-const struct mesh *mesh_of_body(const struct meshes *meshes, uint32_t body) {
+const struct mesh *mesh_of_wall(const struct meshes *meshes, uint32_t wall) {
     for (uint32_t m = 0; m < meshes->count; ++m)
-        if (body >= meshes->mesh[m].body && body - meshes->mesh[m].body < meshes->mesh[m].bodies)
+        if (wall >= meshes->mesh[m].wall && wall - meshes->mesh[m].wall < meshes->mesh[m].walls)
             return &meshes->mesh[m];
     return NULL;
 }
@@ -171,7 +171,7 @@ int meshes_refuse(const struct meshes *meshes, int status, uint32_t triangle) {
     char where[STL_PLACE];
     if (!mesh) return message(STATUS_INPUT, "triangle %u: %s", triangle, fibrad_status_text(status));
     const uint64_t place = mesh->surface.place[triangle - mesh->first];
-    const char *name = meshes->name[mesh_body(mesh, triangle - mesh->first)];
+    const char *name = meshes->name[mesh_wall(mesh, triangle - mesh->first)];
     stl_place(mesh->text, place, where);
     if (status != FIBRAD_E_BACK)
         return message_at(STATUS_INPUT, mesh->file, 0, "%s, wall %s: %s", where, name, fibrad_status_text(status));

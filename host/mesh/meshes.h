@@ -26,8 +26,8 @@ struct mesh {
     bool text;
     enum mesh_sides sides;
     uint32_t first;  /* its first triangle among those of all meshes */
-    uint32_t body;   /* its first wall */
-    uint32_t bodies; /* its number of walls: 1, or one per solid */
+    uint32_t wall;   /* its first wall */
+    uint32_t walls; /* its number of walls: 1, or one per solid */
     struct surface surface;
 };
 
@@ -35,7 +35,7 @@ struct mesh {
 struct meshes {
     uint32_t count;
     struct mesh *mesh;
-    char name[FIBRAD_BODIES_MAX][MESH_NAME]; /* names of the walls that are meshes */
+    char name[FIBRAD_WALLS_MAX][MESH_NAME]; /* names of the walls that are meshes */
     struct fibrad_triangles triangles;       /* of all meshes, with the sides of the last meshes_face */
     uint32_t enclosing;                      /* closed components whose inner side alone is a wall, by meshes_face */
     /* arrays of `triangles` */
@@ -46,12 +46,12 @@ struct meshes {
 /* Whether a name is valid for a wall: 1 to 31 letters, digits and _. */
 bool mesh_name(const char *name);
 
-/* Adds the mesh of a file. Its first wall gets the index `body`. Warns of faults of the mesh. Status 0, STATUS_USAGE if
+/* Adds the mesh of a file. Its first wall gets the index `wall`. Warns of faults of the mesh. Status 0, STATUS_USAGE if
  * there are too many walls, or as stl_read. */
-int meshes_add(struct meshes *meshes, const struct mesh_file *file, uint32_t body);
+int meshes_add(struct meshes *meshes, const struct mesh_file *file, uint32_t wall);
 
 /* Adds a mesh of triangles in memory, as if the file had them. The caller keeps `stl`. */
-int meshes_take(struct meshes *meshes, const struct mesh_file *file, const struct stl *stl, uint32_t body);
+int meshes_take(struct meshes *meshes, const struct mesh_file *file, const struct stl *stl, uint32_t wall);
 
 /* Finds which sides of triangles are walls, for these spheres; sets `inner` of all components. Status 0 or
  * STATUS_MEMORY. */
@@ -67,16 +67,16 @@ const char *meshes_beyond(const struct meshes *meshes, const double centre[3], d
 
 /* The mesh of a triangle or of a wall. NULL: there is none. */
 const struct mesh *mesh_of_triangle(const struct meshes *meshes, uint32_t triangle);
-const struct mesh *mesh_of_body(const struct meshes *meshes, uint32_t body);
+const struct mesh *mesh_of_wall(const struct meshes *meshes, uint32_t wall);
 
 /* The wall of triangle `own` of a mesh, counted within the mesh. */
-uint32_t mesh_body(const struct mesh *mesh, uint32_t own);
+uint32_t mesh_wall(const struct mesh *mesh, uint32_t own);
 
 /* The number of triangles of a wall. */
-uint32_t mesh_triangles(const struct mesh *mesh, uint32_t body);
+uint32_t mesh_triangles(const struct mesh *mesh, uint32_t wall);
 
 /* The least and largest coordinates of a wall. */
-void mesh_extents(const struct meshes *meshes, uint32_t body, double low[3], double high[3]);
+void mesh_extents(const struct meshes *meshes, uint32_t wall, double low[3], double high[3]);
 
 /* Prints why the library refuses a triangle. Returns STATUS_INPUT. */
 int meshes_refuse(const struct meshes *meshes, int status, uint32_t triangle);

@@ -12,7 +12,7 @@ int side_arrays_begin(struct side_arrays *arrays, const struct fibrad_triangles 
     const size_t n = triangles->n;
     *arrays = (struct side_arrays){.n = triangles->n, .arrays = 1, .count = count};
     for (size_t t = 0; t < n; ++t)
-        if (triangles->front[t] != FIBRAD_NO_BODY && triangles->back[t] != FIBRAD_NO_BODY) arrays->arrays = 3;
+        if (triangles->front[t] != FIBRAD_NO_WALL && triangles->back[t] != FIBRAD_NO_WALL) arrays->arrays = 3;
     double *next = arrays->values = malloc((2 + arrays->arrays) * count * n * sizeof *next);
     if (!next) return message_memory();
     for (size_t q = 0; q < count; ++q) {

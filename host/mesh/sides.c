@@ -12,7 +12,7 @@ static int inner_of(const struct meshes *meshes, const struct mesh *mesh, const 
     if (!component->closed || component->twisted) return 0;
     for (uint32_t k = component->first; k < component->first + component->n; ++k) {
         const uint32_t t = surface->in_components[k], number = mesh->first + t;
-        const bool front = meshes->front[number] != FIBRAD_NO_BODY, back = meshes->back[number] != FIBRAD_NO_BODY;
+        const bool front = meshes->front[number] != FIBRAD_NO_WALL, back = meshes->back[number] != FIBRAD_NO_WALL;
         const int own = front == back ? 0 : front != surface->turned[t] ? 1 : -1;
         if (own == 0 || (k > component->first && own != inner)) return 0;
         inner = own;
@@ -36,9 +36,9 @@ static uint32_t count_enclosing(struct meshes *meshes) {
 
 /* Gives the front, the back or both sides of a triangle to its wall. */
 static void give_sides(struct meshes *meshes, const struct mesh *mesh, uint32_t own, bool front, bool back) {
-    const uint32_t body = mesh_body(mesh, own);
-    meshes->front[mesh->first + own] = front ? body : FIBRAD_NO_BODY;
-    meshes->back[mesh->first + own] = back ? body : FIBRAD_NO_BODY;
+    const uint32_t wall = mesh_wall(mesh, own);
+    meshes->front[mesh->first + own] = front ? wall : FIBRAD_NO_WALL;
+    meshes->back[mesh->first + own] = back ? wall : FIBRAD_NO_WALL;
 }
 
 static int face_spheres(struct meshes *meshes, const struct mesh *mesh, const fibrad_spheres *spheres,
@@ -74,7 +74,7 @@ int meshes_face(struct meshes *meshes, const fibrad_spheres *spheres, const doub
 int meshes_side(const struct meshes *meshes, uint32_t triangle, bool back) {
     const struct mesh *mesh = mesh_of_triangle(meshes, triangle);
     if (mesh->surface.component[mesh->surface.component_of[triangle - mesh->first]].inner == 0) return 0;
-    return (back ? meshes->back : meshes->front)[triangle] != FIBRAD_NO_BODY ? 1 : -1;
+    return (back ? meshes->back : meshes->front)[triangle] != FIBRAD_NO_WALL ? 1 : -1;
 }
 
 const char *meshes_beyond(const struct meshes *meshes, const double centre[3], double r, const double period[3]) {
@@ -86,7 +86,7 @@ const char *meshes_beyond(const struct meshes *meshes, const double centre[3], d
             int side;
             if (component->inner != 0 && facing_distance(surface, component, centre, period, &side) >= r &&
                 side == -component->inner)
-                return meshes->name[mesh_body(mesh, surface->in_components[component->first])];
+                return meshes->name[mesh_wall(mesh, surface->in_components[component->first])];
         }
     }
     return NULL;

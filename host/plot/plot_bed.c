@@ -18,8 +18,8 @@ static const char *symbol_of(const struct contents *what) { return what->grey ? 
 /* Prints how much radiation goes to walls and leaves the bed. */
 static void print_losses(FILE *script, const struct contents *what, const struct summary *summary) {
     double walls = 0;
-    for (uint32_t k = 0; k < what->factors->matrix.bodies; ++k) walls += summary->wall_mean[k];
-    if (what->factors->matrix.bodies > 0)
+    for (uint32_t k = 0; k < what->factors->matrix.walls; ++k) walls += summary->wall_mean[k];
+    if (what->factors->matrix.walls > 0)
         fprintf(script, "%.2f %% of the radiation goes to walls, %.2f %% leaves the bed", 100 * walls,
                 100 * summary->escaped_mean);
     else
@@ -51,12 +51,12 @@ static int print_slice(FILE *script, const struct contents *what, const struct p
     if (!away) return message_memory();
     for (uint32_t i = 0; i < matrix->n; ++i) {
         away[i] = matrix->escaped[i];
-        for (uint32_t k = 0; k < matrix->bodies; ++k) away[i] += matrix->body[(size_t)i * matrix->bodies + k];
+        for (uint32_t k = 0; k < matrix->walls; ++k) away[i] += matrix->wall[(size_t)i * matrix->walls + k];
     }
     unit_of_length(what->bed->units, &metres);
     plot_slice_of(&slice, plane, what->bed, what->walls, metres);
     fprintf(script, "set title '%s, slice at %s'; set cbrange [0:*]\n",
-            matrix->bodies > 0 ? "Fraction to walls and out of the bed" : "Escaped fraction", slice.place);
+            matrix->walls > 0 ? "Fraction to walls and out of the bed" : "Escaped fraction", slice.place);
     plot_slice_draw(script, &slice, &(struct plot_colours){.value = away, .unit = 1, .wanted = what->wanted});
     fputs("unset label 1; unset label 2\n", script);
     free(away);

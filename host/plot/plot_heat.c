@@ -116,12 +116,12 @@ static int print_panel(FILE *script, enum shown shown, const struct plot_slice *
 /* Layers of the bed across z, about one mean diameter thick, or rings about the axis of a cylinder, half as thick. */
 struct layers {
     const struct bed *bed;
-    const fibrad_body *tube; /* the cylinder of rings; NULL: layers */
+    const fibrad_wall *tube; /* the cylinder of rings; NULL: layers */
     int n;
     double low, high, thick;
 };
 
-static struct layers layers_of(const struct bed *bed, const fibrad_body *tube) {
+static struct layers layers_of(const struct bed *bed, const fibrad_wall *tube) {
     struct layers layers = {.bed = bed, .tube = tube};
     double diameter = 0;
     for (uint32_t i = 0; i < bed->n; ++i) diameter += 2 * bed->r[i] / bed->n;
@@ -134,7 +134,7 @@ static struct layers layers_of(const struct bed *bed, const fibrad_body *tube) {
 
 static int layer_of(const struct layers *layers, uint32_t i) {
     const struct bed *bed = layers->bed;
-    const fibrad_body *tube = layers->tube;
+    const fibrad_wall *tube = layers->tube;
     const double place = tube ? hypot(bed->x[i] - tube->cylinder.x, bed->y[i] - tube->cylinder.y) : bed->z[i];
     return (int)fmin(layers->n - 1, floor((place - layers->low) / layers->thick));
 }
@@ -182,7 +182,7 @@ static void print_layers(FILE *script, const struct plot_slice *slice, const str
 
 /* Draws mean, least and largest temperature of each layer, or of each ring within a tube. */
 static void print_profile(FILE *script, const struct plot_slice *slice, const struct heat_shown *what,
-                          const fibrad_body *tube) {
+                          const fibrad_wall *tube) {
     const struct layers layers = layers_of(what->bed, tube);
     struct {
         double sum, least, most;
@@ -265,9 +265,9 @@ static void print_bars(FILE *script, const struct heat_shown *what) {
 }
 
 /* The cylinder about the bed. NULL: there is none. */
-static const fibrad_body *cylinder_of(const struct walls *walls) {
+static const fibrad_wall *cylinder_of(const struct walls *walls) {
     for (uint32_t k = 0; k < walls->count; ++k)
-        if (walls->body[k].kind == FIBRAD_BODY_CYLINDER) return &walls->body[k];
+        if (walls->wall[k].kind == FIBRAD_WALL_CYLINDER) return &walls->wall[k];
     return NULL;
 }
 
@@ -276,7 +276,7 @@ static int print_slices(FILE *script, const struct plot_slice *slice, const stru
     const uint32_t n = what->bed->n;
     const bool shows[QUANTITIES] = {varies(what->temperature, n), what->absorbed && varies(what->absorbed, n),
                                     varies(what->power, n)};
-    const fibrad_body *tube = what->found && !what->absorbed ? cylinder_of(what->walls) : NULL;
+    const fibrad_wall *tube = what->found && !what->absorbed ? cylinder_of(what->walls) : NULL;
     enum shown shown[QUANTITIES];
     int count = 0;
     for (enum shown k = TEMPERATURE; k < QUANTITIES; ++k)

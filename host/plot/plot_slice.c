@@ -51,7 +51,7 @@ static void plane_line(const struct plot_slice *slice, const fibrad_plane *plane
 }
 
 /* A cylinder is a circle across z, and two lines across x or y. */
-static void cylinder_lines(const struct plot_slice *slice, const fibrad_body *wall, uint32_t k, line_seen *seen,
+static void cylinder_lines(const struct plot_slice *slice, const fibrad_wall *wall, uint32_t k, line_seen *seen,
                            void *context) {
     enum { CHORDS = 90 };
     const double middle[2] = {wall->cylinder.x, wall->cylinder.y}, radius = wall->cylinder.radius;
@@ -96,13 +96,13 @@ static void see_walls(const struct plot_slice *slice, line_seen *seen, void *con
     const struct meshes *meshes = slice->walls ? slice->walls->meshes : NULL;
     double end[2][2];
     for (uint32_t k = 0; k < walls_shown(slice); ++k) {
-        const fibrad_body *wall = &slice->walls->body[k];
-        if (wall->kind == FIBRAD_BODY_PLANE) plane_line(slice, &wall->plane, k, seen, context);
-        if (wall->kind == FIBRAD_BODY_CYLINDER) cylinder_lines(slice, wall, k, seen, context);
+        const fibrad_wall *wall = &slice->walls->wall[k];
+        if (wall->kind == FIBRAD_WALL_PLANE) plane_line(slice, &wall->plane, k, seen, context);
+        if (wall->kind == FIBRAD_WALL_CYLINDER) cylinder_lines(slice, wall, k, seen, context);
     }
     for (uint32_t m = 0; meshes && m < meshes->count; ++m)
         for (uint32_t t = 0; t < meshes->mesh[m].surface.n; ++t)
-            if (cut_of(slice, &meshes->mesh[m].surface, t, end)) seen(context, end, mesh_body(&meshes->mesh[m], t));
+            if (cut_of(slice, &meshes->mesh[m].surface, t, end)) seen(context, end, mesh_wall(&meshes->mesh[m], t));
 }
 
 /* A slice whose range is being widened, and its range without walls. */

@@ -62,8 +62,8 @@ static int turn_to_walls(const struct meshes *meshes, struct file_mesh *found) {
     uint32_t both = 0;
     for (uint32_t t = 0; t < found->n; ++t) {
         uint32_t *corner = &found->corner[3 * (size_t)t];
-        both += meshes->front[t] != FIBRAD_NO_BODY && meshes->back[t] != FIBRAD_NO_BODY;
-        if (meshes->front[t] != FIBRAD_NO_BODY) continue;
+        both += meshes->front[t] != FIBRAD_NO_WALL && meshes->back[t] != FIBRAD_NO_WALL;
+        if (meshes->front[t] != FIBRAD_NO_WALL) continue;
         const uint32_t second = corner[1];
         corner[1] = corner[2];
         corner[2] = second;

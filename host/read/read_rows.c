@@ -54,7 +54,7 @@ static int check_size(const struct rank_file *rank_file, uint64_t bytes) {
     const uint64_t most = bytes / WORD;
     if (head->rows > most || head->entries > most)
         return message_at(STATUS_INPUT, rank_file->path, 0, "ends too early");
-    const uint64_t words = sizeof *head / WORD + 1 + 2 * head->entries + (10 + head->bodies) * head->rows;
+    const uint64_t words = sizeof *head / WORD + 1 + 2 * head->entries + (10 + head->walls) * head->rows;
     if (bytes < WORD * words)
         return message_at(STATUS_INPUT, rank_file->path, 0, "ends too early, after %" PRIu64 " of %" PRIu64 " bytes",
                           bytes, WORD * words);
@@ -67,7 +67,7 @@ static int check_head(const struct rank_file *rank_file, uint64_t bytes) {
     const fibrad_rows_head *head = &rank_file->head;
     if (bytes < sizeof *head || memcmp(head->magic, FIBRAD_ROWS_MAGIC, sizeof head->magic) != 0)
         return message_at(STATUS_INPUT, rank_file->path, 0, "is no file of rows");
-    if (head->rank >= head->ranks || head->emissive > 1 || head->bodies > FIBRAD_BODIES_MAX ||
+    if (head->rank >= head->ranks || head->emissive > 1 || head->walls > FIBRAD_WALLS_MAX ||
         !(head->cutoff >= 0 && head->cutoff < INFINITY))
         return message_at(STATUS_INPUT, rank_file->path, 0, "its head is damaged");
     return check_size(rank_file, bytes);
@@ -91,7 +91,7 @@ static int read_head(struct rank_file *rank_file) {
 static const char *head_difference(const fibrad_rows_head *a, const fibrad_rows_head *b) {
     if (a->ranks != b->ranks) return "another number of ranks";
     if (a->step != b->step) return "another step";
-    if (a->bodies != b->bodies) return "another number of walls";
+    if (a->walls != b->walls) return "another number of walls";
     if (a->emissive != b->emissive) return "another kind of factors";
     return a->cutoff != b->cutoff ? "another cutoff" : NULL;
 }
@@ -191,7 +191,7 @@ struct file_rows {
     const struct rank_file *rank_file;
     struct joined *joined;
     uint64_t *id, *start; /* [rows], [rows + 1] */
-    double *body;         /* [rows][bodies] */
+    double *wall;         /* [rows][walls] */
     double *rest;         /* [8 rows]: escaped, beyond, error, radius, emissivity, x[rows][3] */
     uint64_t *col_id;     /* [longest row] columns of the current row by id */
     uint32_t *col;        /* [longest row] columns by number */
@@ -216,14 +216,14 @@ static int load_around(struct file_rows *from) {
     const fibrad_rows_head *head = &from->rank_file->head;
     const uint64_t n = head->rows;
     from->id = joined_memory(2 * n + 1, WORD);
-    from->body = joined_memory((head->bodies + 8) * n, WORD);
-    if (!from->id || !from->body) return message_memory();
+    from->wall = joined_memory((head->walls + 8) * n, WORD);
+    if (!from->id || !from->wall) return message_memory();
     from->start = from->id + n;
-    from->rest = from->body + n * head->bodies;
+    from->rest = from->wall + n * head->walls;
     int status = file_open(from->rank_file, 0, &from->cols);
     if (!status) status = file_read(from->rank_file, from->cols, from->id, 2 * n + 1);
     if (!status) status = file_open(from->rank_file, 2 * n + 1 + 2 * head->entries, &from->values);
-    if (!status) status = file_read(from->rank_file, from->values, from->body, (head->bodies + 8) * n);
+    if (!status) status = file_read(from->rank_file, from->values, from->wall, (head->walls + 8) * n);
     if (status) return status;
     const off_t entries = (off_t)(sizeof *head + WORD * (2 * n + 1 + head->entries));
     return fseeko(from->values, entries, SEEK_SET) == 0
@@ -280,7 +280,7 @@ static int take_row(struct file_rows *from, uint64_t k) {
     const uint32_t length = (uint32_t)(from->start[k + 1] - from->start[k]);
     const fibrad_row row = {.col = from->col,
                             .f = from->f,
-                            .body = from->body + k * head->bodies,
+                            .wall = from->wall + k * head->walls,
                             .sphere = sphere_of(from->joined, from->id[k]),
                             .length = length,
                             .escaped = from->rest[k],
@@ -290,7 +290,7 @@ static int take_row(struct file_rows *from, uint64_t k) {
     if (!status) status = take_entries(from, k, length);
     if (!status && !(row.error < INFINITY)) return row_fault(from, k, "its error is not finite");
     if (status) return status;
-    switch (fibrad_rows_add(&from->joined->rows, &row, from->joined->bodies)) {
+    switch (fibrad_rows_add(&from->joined->rows, &row, from->joined->walls)) {
     case FIBRAD_OK:
         return interrupt_status();
     case FIBRAD_E_ARGUMENT:
@@ -308,7 +308,7 @@ static int join_file(const struct rank_file *rank_file, struct joined *joined) {
     if (from.cols) fclose(from.cols);
     if (from.values) fclose(from.values);
     free(from.id);
-    free(from.body);
+    free(from.wall);
     free(from.col_id);
     free(from.col);
     free(from.f);
@@ -323,7 +323,7 @@ static int join_files(struct rank_file *rank_file, size_t count, struct joined *
     const fibrad_rows_head *head = &rank_file[0].head;
     joined->ranks = head->ranks;
     joined->step = head->step;
-    joined->bodies = (uint32_t)head->bodies;
+    joined->walls = (uint32_t)head->walls;
     joined->emissive = head->emissive != 0;
     joined->cutoff = head->cutoff;
     status = join_ids(rank_file, joined);

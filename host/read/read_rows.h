@@ -10,7 +10,7 @@
 
 /* The rows of one step from all ranks. Sphere k has the id id[k]. */
 struct joined {
-    uint32_t n, bodies;
+    uint32_t n, walls;
     uint64_t ranks, step;
     bool emissive;               /* the rows have exchange factors; false: view factors */
     double cutoff;               /* [L] */

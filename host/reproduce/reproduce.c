@@ -58,12 +58,12 @@ static int draw_figure(const struct reproduce *reproduce, const char *name, cons
     int status = output_open(&output, path);
     if (!status) status = gnuplot_start(&gnuplot, &output);
     if (!status) {
-        const char *body = strchr(reproduce->text, '\n');
+        const char *wall = strchr(reproduce->text, '\n');
         fprintf(gnuplot.script,
                 "set terminal svg size 900,600 font 'Helvetica,13' background 'white'\n"
                 "set datafile separator ','\nset grid\nset style data linespoints\nset key font ',11'\n"
                 "$data << END%s\nEND\n%s\n",
-                body ? body : "\n", script);
+                wall ? wall : "\n", script);
         status = gnuplot_end(&gnuplot);
     }
     status = output_close(&output, status);

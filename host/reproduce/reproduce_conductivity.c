@@ -24,12 +24,12 @@ static int lattice_cell(struct bed *bed, double edge, int sites, const double si
 
 static int conductivities(struct bed beds[1 + LATTICES], double factor[1 + LATTICES][EMISSIVITIES]) {
     static const double site[4][3] = {{0, 0, 0}, {.5, .5, 0}, {0, .5, .5}, {.5, 0, .5}},
-                        body[2][3] = {{0}, {.5, .5, .5}};
+                        wall[2][3] = {{0}, {.5, .5, .5}};
     static const uint32_t paths[1 + LATTICES] = {300, 400000, 200000, 100000};
     for (int k = 0; k <= LATTICES; ++k) beds[k] = bed_empty();
     int status = bed_make_packing(&beds[0], 2000, 1, 1, .586, 1);
     if (!status) status = lattice_cell(&beds[1], 2, 1, site);
-    if (!status) status = lattice_cell(&beds[2], 4 / sqrt(3), 2, body);
+    if (!status) status = lattice_cell(&beds[2], 4 / sqrt(3), 2, wall);
     if (!status) status = lattice_cell(&beds[3], 2 * sqrt(2), 4, site);
     for (int k = 0; k <= LATTICES; ++k)
         for (int e = 0; e < EMISSIVITIES && !status; ++e)

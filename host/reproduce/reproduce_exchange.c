@@ -85,21 +85,21 @@ static int sphere_to_sphere(const struct bed *bed, const struct johnson_table *t
 /* Both faces of the layer are equal walls, and both count. */
 static int sphere_to_wall(const struct bed *layer, const struct johnson_table *table,
                           struct line_fit fit[JOHNSON_ROWS]) {
-    const fibrad_body wall[2] = {{.kind = FIBRAD_BODY_PLANE, .plane = {.axis = 2, .at = 0}},
-                                 {.kind = FIBRAD_BODY_PLANE, .plane = {.axis = 2, .upper = 1, .at = layer->high[2]}}};
+    const fibrad_wall wall[2] = {{.kind = FIBRAD_WALL_PLANE, .plane = {.axis = 2, .at = 0}},
+                                 {.kind = FIBRAD_WALL_PLANE, .plane = {.axis = 2, .upper = 1, .at = layer->high[2]}}};
     const double wall_emissivity[2] = {table->wall_emissivity, table->wall_emissivity};
     const fibrad_bed_options raw = {.raw = 1};
     fibrad_bed_factors *factors = NULL;
     fibrad_scene_config scene = bed_scene(layer, NULL);
     fibrad_exchange_rule walled = rule;
-    scene.body = wall;
-    scene.bodies = 2;
-    walled.body_emissivity = wall_emissivity;
+    scene.wall = wall;
+    scene.walls = 2;
+    walled.wall_emissivity = wall_emissivity;
     walled.paths = WALL_PATHS;
     const int status = grey_factors(layer, &scene, &walled, table->emissivity, &raw, &factors);
     for (uint32_t i = 0; i < layer->n && !status; ++i) {
-        add_factor(table, fit, layer->z[i], factors->matrix.body[2 * i]);
-        add_factor(table, fit, layer->high[2] - layer->z[i], factors->matrix.body[2 * i + 1]);
+        add_factor(table, fit, layer->z[i], factors->matrix.wall[2 * i]);
+        add_factor(table, fit, layer->high[2] - layer->z[i], factors->matrix.wall[2 * i + 1]);
     }
     fibrad_bed_free(factors);
     return status;

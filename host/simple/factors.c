@@ -31,20 +31,20 @@ static int check_options(const fibrad_bed_options *options, int most) {
 enum { PER_DIRECTION = 64, PER_PATH = 8 };
 
 /* Error allowed in the row of a wall before averaging, over the error allowed after averaging. */
-#define BODY_BEFORE_AVERAGING 1.4
+#define WALL_BEFORE_AVERAGING 1.4
 
-/* Fills `rule` for the matrix of a bed. Computes rows of walls by `walls` if options->bodies is set, all rows of
+/* Fills `rule` for the matrix of a bed. Computes rows of walls by `walls` if options->walls is set, all rows of
  * spheres are computed and there is no cutoff. */
 static int plan_matrix(fibrad_job *job, const fibrad_bed_options *options, const fibrad_exchange_rule *walls,
-                       fibrad_body_row *body_row, fibrad_matrix_rule *rule) {
+                       fibrad_wall_row *wall_row, fibrad_matrix_rule *rule) {
     *rule = (fibrad_matrix_rule){.raw = options->raw || options->wanted, .drop = options->drop};
     if (options->cast) rule->kind = FIBRAD_ROWS_SAMPLED;
-    if (!options->bodies || options->wanted || walls->cutoff > 0 || job->facts.bodies == 0) return FIBRAD_OK;
+    if (!options->walls || options->wanted || walls->cutoff > 0 || job->facts.walls == 0) return FIBRAD_OK;
     fibrad_exchange_rule before = *walls;
-    if (!rule->raw) before.tolerance *= BODY_BEFORE_AVERAGING;
-    rule->body_row = body_row;
-    rule->body_emissivity = walls->body_emissivity;
-    return fibrad_job_bodies(job, &before, body_row);
+    if (!rule->raw) before.tolerance *= WALL_BEFORE_AVERAGING;
+    rule->wall_row = wall_row;
+    rule->wall_emissivity = walls->wall_emissivity;
+    return fibrad_job_walls(job, &before, wall_row);
 }
 
 /* Computes the rows by one rule, and their matrix. */
@@ -76,16 +76,16 @@ static fibrad_exchange_rule black_bodies(const fibrad_job *job, const fibrad_bed
         rule.paths = PER_DIRECTION * (beam && beam->directions ? beam->directions : FIBRAD_DIRECTIONS_DEFAULT);
         if (beam) rule.tolerance = beam->tolerance, rule.cutoff = beam->cutoff;
     }
-    rule.paths = fibrad_job_body_paths(job, rule.paths);
+    rule.paths = fibrad_job_wall_paths(job, rule.paths);
     return rule;
 }
 
 static int run_options(fibrad_job *job, const fibrad_bed_options *options, fibrad_bed_factors **factors) {
     const fibrad_beam_rule *beam = options->beam;
     const fibrad_exchange_rule walls = black_bodies(job, options);
-    fibrad_body_row body_row[FIBRAD_BODIES_MAX];
+    fibrad_wall_row wall_row[FIBRAD_WALLS_MAX];
     fibrad_matrix_rule how;
-    const int status = plan_matrix(job, options, &walls, body_row, &how);
+    const int status = plan_matrix(job, options, &walls, wall_row, &how);
     if (status) return status;
     if (options->surface) return run_rule(job, row_by_surface, options->surface, options, &how, factors);
     if (options->cast) return run_rule(job, row_by_rays, options->cast, options, &how, factors);
@@ -112,13 +112,13 @@ static int check_spheres(fibrad_job *job, const fibrad_exchange_rule *rule) {
 
 static int run_exchange(fibrad_job *job, const fibrad_exchange_rule *rule, const fibrad_bed_options *options,
                         fibrad_bed_factors **factors) {
-    fibrad_body_row body_row[FIBRAD_BODIES_MAX];
+    fibrad_wall_row wall_row[FIBRAD_WALLS_MAX];
     fibrad_matrix_rule how;
     int status = check_spheres(job, rule);
     if (status) return status;
     fibrad_exchange_rule walls = *rule;
-    walls.paths = fibrad_job_body_paths(job, PER_PATH * (uint64_t)(rule->paths ? rule->paths : 400));
-    status = plan_matrix(job, options, &walls, body_row, &how);
+    walls.paths = fibrad_job_wall_paths(job, PER_PATH * (uint64_t)(rule->paths ? rule->paths : 400));
+    status = plan_matrix(job, options, &walls, wall_row, &how);
     if (status) return status;
     how.kind = FIBRAD_ROWS_EXCHANGE;
     how.emissivity = rule->node_emissivity ? rule->node_emissivity : rule->emissivity;

@@ -72,7 +72,7 @@ typedef struct fibrad_run {
  * A tolerance in the beam rule raises the number of lines or directions. If raw is 0, it is the same number for all
  * rows, so that the worst row meets the tolerance. If raw is 1, each row has the number of directions that it needs.
  *
- * Rows of walls are computed if bodies is 1, all rows are wanted, and the rule has no cutoff. If raw is 0, the rows of
+ * Rows of walls are computed if walls is 1, all rows are wanted, and the rule has no cutoff. If raw is 0, the rows of
  * spheres and walls are closed together. This changes the factors between spheres by less than their errors.
  *
  * Raw rows are those before averaging. Files in the scratch folder take bytes for each entry of the raw rows. Rows
@@ -85,7 +85,7 @@ typedef struct fibrad_bed_options {
     const unsigned char *wanted;        /* [spheres], not 0: compute this row; implies raw; NULL: all rows */
     int raw;                            /* 1: leave the rows as the method gave them */
     double drop;                        /* 0 to 1, as in fibrad_matrix_rule */
-    int bodies;                         /* 1: rows of walls, too */
+    int walls;                         /* 1: rows of walls, too */
     const char *scratch;                /* folder for unnamed files instead of memory, same bits; NULL: memory */
 } fibrad_bed_options;
 
@@ -93,7 +93,7 @@ typedef struct fibrad_bed_options {
 typedef struct fibrad_bed_factors {
     fibrad_factors matrix;    /* a row that is not wanted is empty */
     fibrad_scene_facts facts; /* of the scene */
-    const double *body_area;  /* L^2, [bodies], as fibrad_scene_body_area */
+    const double *wall_area;  /* L^2, [walls], as fibrad_scene_wall_area */
     int threads;              /* threads used */
     uint32_t directions;      /* largest number of directions of a row, or lines; 0: the method has none */
     uint64_t fallbacks;       /* windows that took a slower, more robust method */
@@ -129,15 +129,15 @@ int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_sphe
  *   Errors   none */
 void fibrad_bed_free(fibrad_bed_factors *factors);
 
-/* The row of one wall or opening: fibrad_exchange_body and fibrad_exchange_body_mean. The number of paths is doubled
+/* The row of one wall or opening: fibrad_exchange_wall and fibrad_exchange_wall_mean. The number of paths is doubled
  * until the error is at most rule->tolerance, up to 2^24 paths.
- *   Input    body: as in fibrad_exchange_body
+ *   Input    wall: as in fibrad_exchange_wall
  *            rule: paths, tolerance and the emissivities
  *   Output   row
- *   Errors   as fibrad_scene_init and fibrad_exchange_body; _CANCELLED
+ *   Errors   as fibrad_scene_init and fibrad_exchange_wall; _CANCELLED
  *   Cost     that of the paths */
-int fibrad_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t body,
-                    const fibrad_exchange_rule *rule, fibrad_run *run, fibrad_body_row *row);
+int fibrad_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t wall,
+                    const fibrad_exchange_rule *rule, fibrad_run *run, fibrad_wall_row *row);
 
 /* What all triangles of a bed see: fibrad_triangle_views of each.
  *   Input    rays: from each side, 1 to 2^30
@@ -198,32 +198,32 @@ int fibrad_radiation_sides(const fibrad_radiation *radiation, double *flux, doub
 
 /* A function of the caller: emissivities that depend on temperatures. The thread that made the call runs this function.
  * A temperature is NaN if it has not been found yet, if the wall is insulated, or if the emissivity is 0. The function
- * leaves such an emissivity as it is. Input    temperature[spheres], body_temperature[bodies]: [K] Output
- * emissivity[spheres], body_emissivity[bodies]: 0 to 1 */
-typedef void fibrad_emissivity_law(void *context, const double *temperature, const double *body_temperature,
-                                   double *emissivity, double *body_emissivity);
+ * leaves such an emissivity as it is. Input    temperature[spheres], wall_temperature[walls]: [K] Output
+ * emissivity[spheres], wall_emissivity[walls]: 0 to 1 */
+typedef void fibrad_emissivity_law(void *context, const double *temperature, const double *wall_temperature,
+                                   double *emissivity, double *wall_emissivity);
 
 /* Net powers and temperatures with emissivities that follow a law. The call solves again until the emissivities change
  * by at most 1e-5. The law may also change the elements of sources->conductivity and of sources->conductance. The call
  * then goes on until each of these changes by at most 1e-4 of its value.
- *   Input    sources: emissivity and body_emissivity are not used
+ *   Input    sources: emissivity and wall_emissivity are not used
  *            context: handed to law
- *            emissivity[spheres], body_emissivity[bodies]: first values, used where temperatures are unknown
- *   Output   emissivity, body_emissivity: those of the solution
- *            result: temperature, and body_temperature with walls, must be set
+ *            emissivity[spheres], wall_emissivity[walls]: first values, used where temperatures are unknown
+ *   Output   emissivity, wall_emissivity: those of the solution
+ *            result: temperature, and wall_temperature with walls, must be set
  *   Errors   as fibrad_radiation_solve
  *            _UNSOLVABLE: also if 100 solutions do not suffice
- *            After an error `emissivity` and `body_emissivity` are as before. Conductivities and conductances are as
+ *            After an error `emissivity` and `wall_emissivity` are as before. Conductivities and conductances are as
  *            the law has left them. */
 int fibrad_radiation_settle(fibrad_radiation *radiation, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
-                            void *context, double *emissivity, double *body_emissivity, fibrad_heat_result *result);
+                            void *context, double *emissivity, double *wall_emissivity, fibrad_heat_result *result);
 
 /* Light from outside, and what absorbs it. Set the lights and the absorptivities. */
 typedef struct fibrad_light_sources {
     const fibrad_light *light;       /* [lights] */
     uint32_t lights;                 /* number of lights */
     const double *absorptivity;      /* [spheres], 0 to 1, of the light */
-    const double *body_absorptivity; /* [bodies], 0 to 1; NULL without walls */
+    const double *wall_absorptivity; /* [walls], 0 to 1; NULL without walls */
     double tolerance;                /* as in fibrad_heat_sources; 0: 1e-5 */
     int uniform;                     /* as in fibrad_heat_sources */
 } fibrad_light_sources;
@@ -233,9 +233,9 @@ typedef struct fibrad_light_result {
     double *absorbed;            /* sigma K^4 L^2, [spheres], out: directly and after reflections */
     double *absorbed_first;      /* sigma K^4 L^2, [spheres], out: of the light that the sphere meets first */
     double *absorbed_error;      /* sigma K^4 L^2, [spheres], out: estimated error of absorbed; may be NULL */
-    double *body_absorbed;       /* sigma K^4 L^2, [bodies], out; NULL without walls */
-    double *body_absorbed_first; /* sigma K^4 L^2, [bodies], out; NULL without walls */
-    double *body_absorbed_error; /* sigma K^4 L^2, [bodies], out; may be NULL */
+    double *wall_absorbed;       /* sigma K^4 L^2, [walls], out; NULL without walls */
+    double *wall_absorbed_first; /* sigma K^4 L^2, [walls], out; NULL without walls */
+    double *wall_absorbed_error; /* sigma K^4 L^2, [walls], out; may be NULL */
     double incident;             /* sigma K^4 L^2, out: what all lights bring */
     double transmitted;          /* sigma K^4 L^2, out: light that leaves without having met anything */
     double reflected;            /* sigma K^4 L^2, out: light that leaves after reflections, on any side */
@@ -246,7 +246,7 @@ typedef struct fibrad_light_result {
     const double *patches;       /* [patches], out: what fibrad_heat_sources.absorbed takes */
 } fibrad_light_result;
 
-/* What a bed absorbs of light from outside. All elements of `absorbed` and `body_absorbed`, `reflected` and
+/* What a bed absorbs of light from outside. All elements of `absorbed` and `wall_absorbed`, `reflected` and
  * `transmitted` add up to `incident`, to rounding. No surface absorbs less than of the light that it meets first. Where
  * the solution by patches says so, by its error, what surfaces absorb after reflections and what leaves are scaled. The
  * elements of `patches` are not scaled: for each surface they add up to what the solution says.
@@ -322,7 +322,7 @@ int fibrad_transient_move(fibrad_transient *transient, const fibrad_scene_config
 /* Net radiative powers at given temperatures of spheres. CORRECTED and PATCHES find them by patches, FACTORS by
  * exchange factors.
  *   Input    sources: temperature has no NaN; power is not used
- *   Output   result: as for fibrad_radiation_solve. FACTORS writes power, body_power, surroundings_power, temperature
+ *   Output   result: as for fibrad_radiation_solve. FACTORS writes power, wall_power, surroundings_power, temperature
  *            and sweeps only.
  *   Errors   as fibrad_transient_advance */
 int fibrad_transient_powers(fibrad_transient *transient, const fibrad_heat_sources *sources,
@@ -354,14 +354,14 @@ typedef struct fibrad_span {
     double *temperature;    /* K, [spheres], above 0 to FIBRAD_TEMPERATURE_MAX; in: at the beginning; out: at the end */
     const double *capacity; /* J/K, [spheres], above 0 to FIBRAD_CAPACITY_MAX */
     double duration;        /* s, above 0 to FIBRAD_DURATION_MAX */
-    const double *body_temperature; /* K, [bodies], at the end, linear in between; NULL: constant */
+    const double *wall_temperature; /* K, [walls], at the end, linear in between; NULL: constant */
     const double *surroundings;     /* K, one number, at the end, linear in between; NULL: constant */
     double step;                    /* s; all steps are equal and at most this long; 0: automatic steps */
     double tolerance;               /* of automatic steps, relative error of a temperature, below 1; 0: 1e-4 */
     double *power;                  /* W, [spheres], out: net radiative power at the end; may be NULL */
-    double *body_power;             /* W, [bodies], out: net radiative power at the end; may be NULL */
+    double *wall_power;             /* W, [walls], out: net radiative power at the end; may be NULL */
     double surroundings_power;      /* W, out: net radiative power at the end */
-    double *body_energy;            /* J, [bodies], out: gained by radiation during the span; may be NULL */
+    double *wall_energy;            /* J, [walls], out: gained by radiation during the span; may be NULL */
     double surroundings_energy;     /* J, out: gained by radiation during the span */
     fibrad_observe *observe;        /* NULL: none */
     fibrad_emissivity_law *law;     /* called in each stage, by PATCHES only; NULL: emissivities are constant */
@@ -380,9 +380,9 @@ typedef struct fibrad_span {
  *   field of sources                 use
  *   temperature, hold, reference     not used
  *   power                            constant
- *   emissivity, body_emissivity      constant, or where a law begins
- *   body_temperature, surroundings   at the beginning of the span; NaN (to be found) only by PATCHES
- *   body_power, insulated            constant; by PATCHES only
+ *   emissivity, wall_emissivity      constant, or where a law begins
+ *   wall_temperature, surroundings   at the beginning of the span; NaN (to be found) only by PATCHES
+ *   wall_power, insulated            constant; by PATCHES only
  *   side_temperature                 constant; not by FACTORS
  *   conductivity                     by FACTORS it must be NULL
  *   conductance                      constant, or changed by a law; contacts by PATCHES only, on means of surfaces

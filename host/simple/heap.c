@@ -119,7 +119,7 @@ size_t fibrad_host_sizeof(const char *name) {
         char name[24];
         size_t size;
     } structures[] = {
-        STRUCTURE(fibrad_memory),        STRUCTURE(fibrad_spheres),      STRUCTURE(fibrad_body),
+        STRUCTURE(fibrad_memory),        STRUCTURE(fibrad_spheres),      STRUCTURE(fibrad_wall),
         STRUCTURE(fibrad_scene_config),  STRUCTURE(fibrad_fault),        STRUCTURE(fibrad_scene_facts),
         STRUCTURE(fibrad_work),          STRUCTURE(fibrad_row),          STRUCTURE(fibrad_rows),
         STRUCTURE(fibrad_beam_rule),     STRUCTURE(fibrad_cast_rule),    STRUCTURE(fibrad_cast_means),
@@ -130,7 +130,7 @@ size_t fibrad_host_sizeof(const char *name) {
         STRUCTURE(fibrad_light_ends),    STRUCTURE(fibrad_light_ray),    STRUCTURE(fibrad_light_hits),
         STRUCTURE(fibrad_light_sources), STRUCTURE(fibrad_light_result), STRUCTURE(fibrad_run),
         STRUCTURE(fibrad_bed_options),   STRUCTURE(fibrad_bed_factors),  STRUCTURE(fibrad_transient_config),
-        STRUCTURE(fibrad_span),          STRUCTURE(fibrad_body_row),     STRUCTURE(fibrad_triangles),
+        STRUCTURE(fibrad_span),          STRUCTURE(fibrad_wall_row),     STRUCTURE(fibrad_triangles),
         STRUCTURE(fibrad_triangle_hit),  STRUCTURE(fibrad_side_view),    STRUCTURE(fibrad_row_part),
         STRUCTURE(fibrad_plane),         STRUCTURE(fibrad_contact_rule), STRUCTURE(fibrad_contact_list),
     };

@@ -54,11 +54,11 @@ struct row_tasks {
 
 static double larger_of(double a, double b) { return a > b ? a : b; } /* fmax would need the library of mathematics */
 
-static double sum_of_row(const fibrad_row *row, uint32_t bodies) {
+static double sum_of_row(const fibrad_row *row, uint32_t walls) {
     double sum = 0;
     for (uint32_t k = 0; k < row->length; ++k) sum += row->f[k];
     sum += row->escaped;
-    for (uint32_t b = 0; b < bodies; ++b) sum += row->body[b];
+    for (uint32_t b = 0; b < walls; ++b) sum += row->wall[b];
     return sum + row->beyond;
 }
 
@@ -69,7 +69,7 @@ static void note_row(const struct row_tasks *rows, int thread, const fibrad_row 
     ++report->rows;
     report->directions = row->directions > report->directions ? row->directions : report->directions;
     report->fallbacks += row->fallbacks;
-    const double sum = row->rows ? sum_of_row(row, rows->job->facts.bodies) : 0;
+    const double sum = row->rows ? sum_of_row(row, rows->job->facts.walls) : 0;
     if (sum != 0) /* 0: there is no row, or the sphere emits nothing */
         report->closure_error = larger_of(report->closure_error, fabs(sum - 1));
 }
@@ -239,7 +239,7 @@ static bool takes_lines(const fibrad_beam_rule *beam) {
  * about 10 ms. */
 enum { WINDOWS_UNFELT = 40000 };
 static uint32_t default_lines(const fibrad_scene_facts *facts) {
-    const uint32_t usual = facts->bodies > 0 ? FIBRAD_LINES_AMONG_WALLS : FIBRAD_LINES_DEFAULT;
+    const uint32_t usual = facts->walls > 0 ? FIBRAD_LINES_AMONG_WALLS : FIBRAD_LINES_DEFAULT;
     const uint32_t lines = facts->spheres > 0 ? WINDOWS_UNFELT / facts->spheres : 0;
     if (lines <= usual) return usual;
     return lines < FIBRAD_LINES_EVEN_MAX ? lines : FIBRAD_LINES_EVEN_MAX;
@@ -323,8 +323,8 @@ void fibrad_bed_free(fibrad_bed_factors *factors) {
 
 int fibrad_job_factors(fibrad_job *job, const fibrad_matrix_rule *rule, const fibrad_job_report *report,
                        fibrad_bed_factors **factors) {
-    const uint32_t bodies = job->facts.bodies;
-    struct owned_factors *owned = calloc(1, sizeof *owned + bodies * sizeof *owned->area);
+    const uint32_t walls = job->facts.walls;
+    struct owned_factors *owned = calloc(1, sizeof *owned + walls * sizeof *owned->area);
     fibrad_matrix *matrix;
     if (!owned) return FIBRAD_E_MEMORY;
     int status = make_matrix(job, rule, &matrix, &owned->store);
@@ -334,8 +334,8 @@ int fibrad_job_factors(fibrad_job *job, const fibrad_matrix_rule *rule, const fi
         return status;
     }
     fibrad_bed_factors *f = &owned->factors;
-    for (uint32_t b = 0; b < bodies; ++b) owned->area[b] = fibrad_scene_body_area(job->scene, b);
-    f->body_area = owned->area;
+    for (uint32_t b = 0; b < walls; ++b) owned->area[b] = fibrad_scene_wall_area(job->scene, b);
+    f->wall_area = owned->area;
     f->facts = job->facts;
     f->threads = job->team.threads;
     f->directions = report->directions;

@@ -68,10 +68,10 @@ int fibrad_job_exchange(fibrad_job *job, fibrad_job_row *row, const fibrad_excha
                         const fibrad_matrix_rule *average, fibrad_bed_factors **factors);
 
 /* Computes the rows of all walls of finite area, by rule->paths paths from each wall. With rule->tolerance > 0 a wall
- * gets more paths until its error is at most rule->tolerance. row [bodies]: out. Errors: as fibrad_exchange_body. */
-int fibrad_job_bodies(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_body_row *row);
+ * gets more paths until its error is at most rule->tolerance. row [walls]: out. Errors: as fibrad_exchange_wall. */
+int fibrad_job_walls(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_wall_row *row);
 
 /* The number of paths from a wall: `paths`, scaled by the number of spheres and rounded up to a power of two. */
-uint32_t fibrad_job_body_paths(const fibrad_job *job, uint64_t paths);
+uint32_t fibrad_job_wall_paths(const fibrad_job *job, uint64_t paths);
 
 #endif

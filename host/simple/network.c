@@ -42,7 +42,7 @@ int fibrad_network_new(fibrad_network **network, fibrad_bed_factors *factors, co
         double within = 0, outside = d->escaped[i];
         for (uint64_t k = d->start[i]; k < d->start[i + 1]; ++k)
             if (d->col[k] != i) within += d->f[k];
-        for (uint32_t b = 0; b < d->bodies; ++b) outside += d->body[i * d->bodies + b];
+        for (uint32_t b = 0; b < d->walls; ++b) outside += d->wall[i * d->walls + b];
         w->outside[i] = w->weight[i] * outside;
         w->diagonal[i] = w->weight[i] * (within + outside);
     }
@@ -82,8 +82,8 @@ static double emission_at(const fibrad_heat_sources *s, double t) { return s->si
 static double received_outside(const fibrad_network *w, const fibrad_heat_sources *s, uint32_t i) {
     const fibrad_factors *d = &w->factors->matrix;
     double sum = d->escaped[i] * emission_at(s, s->surroundings);
-    for (uint32_t b = 0; b < d->bodies; ++b)
-        sum += d->body[(size_t)i * d->bodies + b] * emission_at(s, s->body_temperature[b]);
+    for (uint32_t b = 0; b < d->walls; ++b)
+        sum += d->wall[(size_t)i * d->walls + b] * emission_at(s, s->wall_temperature[b]);
     return w->weight[i] * sum;
 }
 
@@ -143,12 +143,12 @@ static void go(fibrad_network *w, const fibrad_heat_sources *s, double product) 
 static void read_powers(const fibrad_network *w, const fibrad_heat_sources *s, fibrad_heat_result *result) {
     const fibrad_factors *d = &w->factors->matrix;
     result->surroundings_power = 0, result->surroundings_error = NAN;
-    for (uint32_t b = 0; b < d->bodies; ++b) result->body_power[b] = 0;
+    for (uint32_t b = 0; b < d->walls; ++b) result->wall_power[b] = 0;
     for (uint32_t i = 0; i < d->n; ++i) {
         result->power[i] = received_outside(w, s, i) - w->product[i];
-        for (uint32_t b = 0; b < d->bodies; ++b)
-            result->body_power[b] += w->weight[i] * d->body[(size_t)i * d->bodies + b] *
-                                     (w->emission[i] - emission_at(s, s->body_temperature[b]));
+        for (uint32_t b = 0; b < d->walls; ++b)
+            result->wall_power[b] += w->weight[i] * d->wall[(size_t)i * d->walls + b] *
+                                     (w->emission[i] - emission_at(s, s->wall_temperature[b]));
         result->surroundings_power += w->weight[i] * d->escaped[i] * (w->emission[i] - emission_at(s, s->surroundings));
     }
 }

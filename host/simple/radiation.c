@@ -174,7 +174,7 @@ enum { SETTLE_MAX = 100 };
 
 /* Whether the sources have the arrays of temperatures that the law reads first. */
 static bool temperatures_given(const fibrad_heat_sources *s, const fibrad_scene_facts *facts) {
-    return (!facts->spheres || s->temperature) && (!facts->bodies || s->body_temperature);
+    return (!facts->spheres || s->temperature) && (!facts->walls || s->wall_temperature);
 }
 
 static bool are_emissivities(const double *emissivity, uint32_t n) {
@@ -202,18 +202,18 @@ static double largest_ratio(const double *before, const double *now, uint32_t n)
     return largest;
 }
 
-/* The arrays of a problem that follows a law, [spheres] and [bodies] each unless said, in one block. */
+/* The arrays of a problem that follows a law, [spheres] and [walls] each unless said, in one block. */
 struct settling {
-    double *emissivity, *body_emissivity, *before, *body_before, *power, *body_power, *temperature, *body_temperature;
+    double *emissivity, *wall_emissivity, *before, *wall_before, *power, *wall_power, *temperature, *wall_temperature;
     double *conductivity, *conductance; /* [spheres] and [contacts], of the last solution */
 };
 
-static void divide_block(double *block, uint32_t n, uint32_t bodies, struct settling *s) {
+static void divide_block(double *block, uint32_t n, uint32_t walls, struct settling *s) {
     double **const of_spheres[] = {&s->emissivity, &s->before, &s->power, &s->temperature, &s->conductivity};
-    double **const of_bodies[] = {&s->body_emissivity, &s->body_before, &s->body_power, &s->body_temperature};
+    double **const of_walls[] = {&s->wall_emissivity, &s->wall_before, &s->wall_power, &s->wall_temperature};
     for (size_t k = 0; k < sizeof of_spheres / sizeof *of_spheres; ++k, block += n) *of_spheres[k] = n ? block : NULL;
-    for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; ++k, block += bodies)
-        *of_bodies[k] = bodies ? block : NULL;
+    for (size_t k = 0; k < sizeof of_walls / sizeof *of_walls; ++k, block += walls)
+        *of_walls[k] = walls ? block : NULL;
     s->conductance = block;
 }
 
@@ -225,16 +225,16 @@ static void copy_values(double *to, const double *from, uint32_t n) {
 static int follow_law(fibrad_radiation *r, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
                       void *context, const fibrad_scene_facts *facts, const struct settling *s,
                       fibrad_heat_result *result) {
-    const uint32_t n = facts->spheres, bodies = facts->bodies, conducting = sources->conductivity ? n : 0;
+    const uint32_t n = facts->spheres, walls = facts->walls, conducting = sources->conductivity ? n : 0;
     const uint32_t contacts = sources->conductance ? sources->contacts : 0;
     fibrad_heat_result found = {.power = s->power,
-                                .body_power = s->body_power,
+                                .wall_power = s->wall_power,
                                 .temperature = s->temperature,
-                                .body_temperature = s->body_temperature};
+                                .wall_temperature = s->wall_temperature};
     fibrad_heat_sources now = *sources;
-    now.emissivity = s->emissivity, now.body_emissivity = s->body_emissivity;
+    now.emissivity = s->emissivity, now.wall_emissivity = s->wall_emissivity;
     if (contacts) now.conductance = s->conductance; /* the law may change those of the caller before they are read */
-    law(context, sources->temperature, sources->body_temperature, s->emissivity, s->body_emissivity);
+    law(context, sources->temperature, sources->wall_temperature, s->emissivity, s->wall_emissivity);
     for (int k = 0; k < SETTLE_MAX; ++k) {
         copy_values(s->conductance, sources->conductance, contacts);
         int status = find_solution(r, &now);
@@ -243,12 +243,12 @@ static int follow_law(fibrad_radiation *r, const fibrad_heat_sources *sources, f
         if (status == FIBRAD_E_UNSOLVABLE) (void)fibrad_heat_read(r->heat, result); /* a temperature may be missing */
         if (status) return status;
         copy_values(s->before, s->emissivity, n);
-        copy_values(s->body_before, s->body_emissivity, bodies);
+        copy_values(s->wall_before, s->wall_emissivity, walls);
         copy_values(s->conductivity, sources->conductivity, conducting);
-        law(context, s->temperature, s->body_temperature, s->emissivity, s->body_emissivity);
-        if (!are_emissivities(s->emissivity, n) || !are_emissivities(s->body_emissivity, bodies))
+        law(context, s->temperature, s->wall_temperature, s->emissivity, s->wall_emissivity);
+        if (!are_emissivities(s->emissivity, n) || !are_emissivities(s->wall_emissivity, walls))
             return FIBRAD_E_ARGUMENT;
-        if (largest_change(s->before, s->emissivity, n) + largest_change(s->body_before, s->body_emissivity, bodies) <=
+        if (largest_change(s->before, s->emissivity, n) + largest_change(s->wall_before, s->wall_emissivity, walls) <=
                 EMISSIVITY_CHANGE &&
             largest_ratio(s->conductivity, sources->conductivity, conducting) <= CONDUCTIVITY_CHANGE &&
             largest_ratio(s->conductance, sources->conductance, contacts) <= CONDUCTIVITY_CHANGE)
@@ -258,27 +258,27 @@ static int follow_law(fibrad_radiation *r, const fibrad_heat_sources *sources, f
 }
 
 int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
-                            void *context, double *emissivity, double *body_emissivity, fibrad_heat_result *result) {
+                            void *context, double *emissivity, double *wall_emissivity, fibrad_heat_result *result) {
     fibrad_scene_facts facts = {0};
     if (!r || !sources || !law || !result) return FIBRAD_E_ARGUMENT;
     fibrad_scene_describe(r->scene, &facts);
-    const uint32_t n = facts.spheres, bodies = facts.bodies;
-    if ((n && !(emissivity && result->temperature)) || (bodies && !(body_emissivity && result->body_temperature)) ||
+    const uint32_t n = facts.spheres, walls = facts.walls;
+    if ((n && !(emissivity && result->temperature)) || (walls && !(wall_emissivity && result->wall_temperature)) ||
         !temperatures_given(sources, &facts))
         return FIBRAD_E_ARGUMENT;
     int status = begin_call(r);
     if (status) return status;
     struct settling s;
     const uint32_t contacts = sources->conductance ? sources->contacts : 0;
-    double *block = malloc((5 * (size_t)n + 4 * (size_t)bodies + contacts + 1) * sizeof *block);
+    double *block = malloc((5 * (size_t)n + 4 * (size_t)walls + contacts + 1) * sizeof *block);
     if (!block) return end_call(r, FIBRAD_E_MEMORY);
-    divide_block(block, n, bodies, &s);
+    divide_block(block, n, walls, &s);
     copy_values(s.emissivity, emissivity, n);
-    copy_values(s.body_emissivity, body_emissivity, bodies);
+    copy_values(s.wall_emissivity, wall_emissivity, walls);
     status = follow_law(r, sources, law, context, &facts, &s, result);
     if (!status) {
         copy_values(emissivity, s.emissivity, n);
-        copy_values(body_emissivity, s.body_emissivity, bodies);
+        copy_values(wall_emissivity, s.wall_emissivity, walls);
     }
     free(block);
     return end_call(r, status);
@@ -290,22 +290,22 @@ int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sour
 struct shine_tasks {
     fibrad_radiation *radiation;
     const fibrad_light_sources *sources;
-    uint32_t bodies;
+    uint32_t walls;
     const fibrad_light *light; /* the light in hand */
     fibrad_light_ends *kept;   /* [tasks], of this light */
     fibrad_light_ray *ray;     /* [rays], of this light */
     uint32_t rays;
     double *now, *all;      /* [patches], first hits of this light, and of all lights so far */
-    double *power, *apart;  /* [spheres + bodies], first hits of this light, and those of even less odd directions */
+    double *power, *apart;  /* [spheres + walls], first hits of this light, and those of even less odd directions */
     fibrad_light_hits hits; /* of all lights so far */
-    double *cones;          /* [spheres + bodies], squared errors of first hits of all lights so far, from cones */
+    double *cones;          /* [spheres + walls], squared errors of first hits of all lights so far, from cones */
 };
 
 /* Allocates the arrays, in one block but for kept and ray. hits.spots is the radiation's. */
 static int begin_shine(struct shine_tasks *t) {
     fibrad_radiation *r = t->radiation;
     const size_t patches = fibrad_heat_patches(r->heat);
-    const size_t surfaces = r->n + t->bodies;
+    const size_t surfaces = r->n + t->walls;
     double *block = calloc(3 * patches + 4 * surfaces + 2, sizeof *block);
     t->kept = calloc(fibrad_heat_shine_tasks(r->heat) + (size_t)1, sizeof *t->kept);
     if (!block || !t->kept) {
@@ -336,10 +336,10 @@ static int scatter_task(void *tasks, int thread, uint32_t task) {
 }
 
 /* Subtracts from `ends` the light that the spheres of a task keep. */
-static void take_kept(const fibrad_light_ends *kept, uint32_t bodies, fibrad_light_ends *ends) {
+static void take_kept(const fibrad_light_ends *kept, uint32_t walls, fibrad_light_ends *ends) {
     ends->spheres += kept->spheres;
     ends->through -= kept->through;
-    for (uint32_t b = 0; b < bodies; ++b) ends->body[b] -= kept->body[b];
+    for (uint32_t b = 0; b < walls; ++b) ends->wall[b] -= kept->wall[b];
 }
 
 /* Follows the rays of a light. */
@@ -367,7 +367,7 @@ static void add_cone_errors(struct shine_tasks *t) {
     for (uint32_t i = 0; i < n && differences > 0; ++i)
         t->cones[i] += CONE_ERROR * CONE_ERROR / 2 *
                        (t->apart[i] * t->apart[i] + t->power[i] * t->power[i] * (differences / powers));
-    for (uint32_t b = n; b < n + t->bodies; ++b)
+    for (uint32_t b = n; b < n + t->walls; ++b)
         if (t->power[b] > 0) t->cones[b] += CONE_ERROR * CONE_ERROR * differences;
 }
 
@@ -381,14 +381,14 @@ static int shine_one(struct shine_tasks *t, fibrad_light_result *result) {
     if (status) return status;
     memset(t->now, 0, patches * sizeof *t->now);
     result->incident += ends.through;
-    for (uint32_t b = 0; b < t->bodies; ++b) result->incident += ends.body[b];
+    for (uint32_t b = 0; b < t->walls; ++b) result->incident += ends.wall[b];
     status = fibrad_team_run(&r->team, "light", tasks, 1, shine_task, t, NULL);
-    for (uint32_t k = 0; k < tasks && !status; ++k) take_kept(&t->kept[k], t->bodies, &ends);
+    for (uint32_t k = 0; k < tasks && !status; ++k) take_kept(&t->kept[k], t->walls, &ends);
     if (!status) status = scatter_rays(t);
     if (!status) status = fibrad_heat_shine_walls(r->heat, &r->team.work[0], t->ray, t->rays, &ends, t->now);
     if (!status)
         status = fibrad_heat_reflect(r->heat, &r->team.work[0], t->light, t->ray, t->rays, t->sources->absorptivity,
-                                     t->sources->body_absorptivity, &t->hits);
+                                     t->sources->wall_absorptivity, &t->hits);
     if (!status) status = fibrad_heat_sum_light(r->heat, t->now, t->power, t->power + r->n);
     if (!status) add_cone_errors(t);
     for (uint32_t a = 0; a < patches; ++a) t->all[a] += t->now[a];
@@ -417,9 +417,9 @@ static int shine_all(struct shine_tasks *t, fibrad_light_result *result) {
 /* What has arrived by rays, and what tells its error: sums of squared powers as of fibrad_light_hits. */
 struct arrived {
     double all;            /* what rays and patches have reflected once */
-    const double *squares; /* [spheres + bodies + 1] */
+    const double *squares; /* [spheres + walls + 1] */
     double beams;
-    const double *cones; /* [spheres + bodies] */
+    const double *cones; /* [spheres + walls] */
 };
 
 static double lesser(double a, double b) { return a < b ? a : b; }
@@ -446,7 +446,7 @@ static void add_spots(const struct arrived *a, uint32_t first, uint32_t n, const
 }
 
 static struct arrived arrived_of(const struct shine_tasks *t) {
-    const uint32_t surfaces = t->radiation->n + t->bodies;
+    const uint32_t surfaces = t->radiation->n + t->walls;
     struct arrived arrived = {0, t->hits.squares, t->hits.squares[surfaces + 1], t->cones};
     for (uint32_t a = 0; a < fibrad_heat_patches(t->radiation->heat); ++a) arrived.all += t->hits.light[a];
     return arrived;
@@ -456,28 +456,28 @@ static struct arrived arrived_of(const struct shine_tasks *t) {
 static int absorb(const struct shine_tasks *t, fibrad_light_result *result) {
     fibrad_radiation *r = t->radiation;
     const fibrad_light_sources *s = t->sources;
-    const size_t surfaces = r->n + t->bodies;
+    const size_t surfaces = r->n + t->walls;
     double *zero = calloc(2 * surfaces + 1, sizeof *zero);
     if (!zero) return FIBRAD_E_MEMORY;
     double *spots = zero + surfaces;
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);
-    sources.temperature = zero, sources.body_temperature = zero + r->n, sources.surroundings = 0;
-    sources.emissivity = s->absorptivity, sources.body_emissivity = s->body_absorptivity;
+    sources.temperature = zero, sources.wall_temperature = zero + r->n, sources.surroundings = 0;
+    sources.emissivity = s->absorptivity, sources.wall_emissivity = s->wall_absorptivity;
     sources.tolerance = s->tolerance > 0 ? s->tolerance : LIGHT_TOLERANCE, sources.uniform = s->uniform;
     sources.light = t->hits.light;
     fibrad_heat_result solved = {.power = result->absorbed,
-                                 .body_power = result->body_absorbed,
+                                 .wall_power = result->wall_absorbed,
                                  .power_error = result->absorbed_error,
-                                 .body_error = result->body_absorbed_error};
+                                 .wall_error = result->wall_absorbed_error};
     int status = solve_sources(r, &sources, &solved);
     if (!status) status = fibrad_heat_sum_light(r->heat, t->hits.spots, spots, spots + r->n);
     const struct arrived arrived = arrived_of(t);
     if (!status) {
         add_spots(&arrived, 0, r->n, s->absorptivity, spots, result->absorbed, result->absorbed_error);
-        add_spots(&arrived, r->n, t->bodies, s->body_absorptivity, spots, result->body_absorbed,
-                  result->body_absorbed_error);
-        const double rays = error_of_rays(&arrived, r->n + t->bodies, 1, solved.surroundings_power);
+        add_spots(&arrived, r->n, t->walls, s->wall_absorptivity, spots, result->wall_absorbed,
+                  result->wall_absorbed_error);
+        const double rays = error_of_rays(&arrived, r->n + t->walls, 1, solved.surroundings_power);
         result->error = sqrt(solved.surroundings_error * solved.surroundings_error + rays);
     }
     result->reflected = solved.surroundings_power, result->error_patches = solved.error_patches,
@@ -486,11 +486,11 @@ static int absorb(const struct shine_tasks *t, fibrad_light_result *result) {
     return status;
 }
 
-static bool shine_valid(const fibrad_radiation *r, const fibrad_light_sources *s, uint32_t bodies,
+static bool shine_valid(const fibrad_radiation *r, const fibrad_light_sources *s, uint32_t walls,
                         const fibrad_light_result *result) {
     return (s->light || s->lights == 0) &&
            (r->n == 0 || (s->absorptivity && result->absorbed && result->absorbed_first)) &&
-           (bodies == 0 || (s->body_absorptivity && result->body_absorbed && result->body_absorbed_first));
+           (walls == 0 || (s->wall_absorptivity && result->wall_absorbed && result->wall_absorbed_first));
 }
 
 /* fmax would need the library of mathematics. */
@@ -510,37 +510,37 @@ static void scale_reflections(double *absorbed, const double *first, uint32_t n,
 
 /* By the errors of patches a surface may absorb less than of the light that it meets first. Then it absorbs just that.
  * What all absorb after reflections, and what leaves, are scaled, so that the sum of all stays. */
-static void keep_first(uint32_t n, uint32_t bodies, fibrad_light_result *light) {
+static void keep_first(uint32_t n, uint32_t walls, fibrad_light_result *light) {
     double above = above_zero(light->reflected), below = above_zero(-light->reflected);
     add_reflections(light->absorbed, light->absorbed_first, n, &above, &below);
-    add_reflections(light->body_absorbed, light->body_absorbed_first, bodies, &above, &below);
+    add_reflections(light->wall_absorbed, light->wall_absorbed_first, walls, &above, &below);
     if (below == 0) return;
     const double factor = above > below ? 1 - below / above : 0;
     scale_reflections(light->absorbed, light->absorbed_first, n, factor);
-    scale_reflections(light->body_absorbed, light->body_absorbed_first, bodies, factor);
+    scale_reflections(light->wall_absorbed, light->wall_absorbed_first, walls, factor);
     light->reflected = factor * above_zero(light->reflected);
 }
 
 /* After an error result->lights alone is written. */
-static int shine_lights(fibrad_radiation *r, const fibrad_light_sources *s, uint32_t bodies,
+static int shine_lights(fibrad_radiation *r, const fibrad_light_sources *s, uint32_t walls,
                         fibrad_light_result *result) {
     fibrad_light_result now = *result;
     double *const last = r->light, *light = calloc(fibrad_heat_patches(r->heat) + (size_t)1, sizeof *light);
     if (!light) return FIBRAD_E_MEMORY;
     r->light = light;
-    struct shine_tasks tasks = {.radiation = r, .sources = s, .bodies = bodies};
+    struct shine_tasks tasks = {.radiation = r, .sources = s, .walls = walls};
     int status = shine_all(&tasks, &now);
     result->lights = now.lights;
     if (!status) status = absorb(&tasks, &now);
-    if (!status) status = fibrad_heat_sum_light(r->heat, tasks.all, now.absorbed_first, now.body_absorbed_first);
+    if (!status) status = fibrad_heat_sum_light(r->heat, tasks.all, now.absorbed_first, now.wall_absorbed_first);
     if (!status) status = fibrad_heat_keep_light(r->heat, light);
     end_shine(&tasks);
     r->light = status ? last : light;
     free(status ? light : last);
     if (status) return status;
     for (uint32_t i = 0; i < r->n; ++i) now.absorbed_first[i] *= s->absorptivity[i];
-    for (uint32_t b = 0; b < bodies; ++b) now.body_absorbed_first[b] *= s->body_absorptivity[b];
-    keep_first(r->n, bodies, &now);
+    for (uint32_t b = 0; b < walls; ++b) now.wall_absorbed_first[b] *= s->wall_absorptivity[b];
+    keep_first(r->n, walls, &now);
     now.patches = light;
     *result = now;
     return FIBRAD_OK;
@@ -551,9 +551,9 @@ int fibrad_radiation_shine(fibrad_radiation *r, const fibrad_light_sources *s, f
     if (!r || !s || !result) return FIBRAD_E_ARGUMENT;
     if (!r->heat) return FIBRAD_E_STATE;
     fibrad_scene_describe(r->scene, &facts);
-    if (!shine_valid(r, s, facts.bodies, result)) return FIBRAD_E_ARGUMENT;
+    if (!shine_valid(r, s, facts.walls, result)) return FIBRAD_E_ARGUMENT;
     const int status = begin_call(r);
-    return status ? status : end_call(r, shine_lights(r, s, facts.bodies, result));
+    return status ? status : end_call(r, shine_lights(r, s, facts.walls, result));
 }
 
 void fibrad_radiation_describe(const fibrad_radiation *r, fibrad_scene_facts *facts, fibrad_fault *fault) {

@@ -32,7 +32,7 @@ struct stepper {
     double tolerance;
     fibrad_heat_sources sources; /* of the linear problem of a stage */
     fibrad_heat_result result;
-    double *stage_walls[2], to_surroundings[2]; /* powers of walls [bodies] and of the surroundings in each stage */
+    double *stage_walls[2], to_surroundings[2]; /* powers of walls [walls] and of the surroundings in each stage */
 };
 
 /* fmax and fmin would need the library of mathematics. */
@@ -47,10 +47,10 @@ static double share_between(double from, double to, double share) { return from 
 static void set_outside(struct stepper *m, double time) {
     const double share = time / m->span->duration;
     const fibrad_span *span = m->span;
-    for (uint32_t b = 0; b < m->t->bodies; ++b)
-        m->t->wall[b] = span->body_temperature
-                            ? share_between(m->given->body_temperature[b], span->body_temperature[b], share)
-                            : m->given->body_temperature[b];
+    for (uint32_t b = 0; b < m->t->walls; ++b)
+        m->t->wall[b] = span->wall_temperature
+                            ? share_between(m->given->wall_temperature[b], span->wall_temperature[b], share)
+                            : m->given->wall_temperature[b];
     m->sources.surroundings =
         span->surroundings ? share_between(m->given->surroundings, *span->surroundings, share) : m->given->surroundings;
 }
@@ -58,7 +58,7 @@ static void set_outside(struct stepper *m, double time) {
 /* Sets emissivities at t->guess, which is near enough to the solution for second order. */
 static void set_surfaces(struct stepper *m) {
     const fibrad_transient *t = m->t;
-    if (m->span->law) m->span->law(m->span->context, t->guess, t->wall, t->emissivity, t->body_emissivity);
+    if (m->span->law) m->span->law(m->span->context, t->guess, t->wall, t->emissivity, t->wall_emissivity);
 }
 
 /* Whether a sphere exchanges no heat with any other. */
@@ -112,7 +112,7 @@ static bool accept_solution(struct stepper *m, double length) {
 static void balance_energy(struct stepper *m, double length) {
     fibrad_transient *t = m->t;
     double left = -m->result.surroundings_power, capacity = 0;
-    for (uint32_t b = 0; b < t->bodies; ++b) left -= m->result.body_power[b];
+    for (uint32_t b = 0; b < t->walls; ++b) left -= m->result.wall_power[b];
     for (uint32_t i = 0; i < t->n; ++i) {
         const double rate = m->span->capacity[i] / length, at = t->solution[i];
         const double stiff =
@@ -136,7 +136,7 @@ static bool all_positive(const double *values, uint32_t count) {
 static int solve_stage(struct stepper *m, int stage, double time, double length) {
     fibrad_transient *t = m->t;
     set_outside(m, time);
-    m->result.body_power = m->stage_walls[stage];
+    m->result.wall_power = m->stage_walls[stage];
     for (int k = 0; k < NEWTON_MAX; ++k) {
         set_surfaces(m);
         find_conducts(m);
@@ -189,7 +189,7 @@ static void accept_step(struct stepper *m, double step, double error) {
         t->now[i] = t->solution[i];
     }
     for (int stage = 0; stage < 2; ++stage) {
-        for (uint32_t b = 0; b < t->bodies; ++b) span->body_energy[b] += share[stage] * m->stage_walls[stage][b];
+        for (uint32_t b = 0; b < t->walls; ++b) span->wall_energy[b] += share[stage] * m->stage_walls[stage][b];
         span->surroundings_energy += share[stage] * m->to_surroundings[stage];
     }
     span->error = larger_one(span->error, error);
@@ -201,8 +201,8 @@ static void accept_step(struct stepper *m, double step, double error) {
 static double first_step(const struct stepper *m) {
     const fibrad_transient *t = m->t;
     double hottest = m->given->surroundings, step = m->span->duration;
-    for (uint32_t b = 0; b < t->bodies; ++b)
-        hottest = larger_one(m->given->body_temperature[b], hottest); /* NaN, not known: hottest stays */
+    for (uint32_t b = 0; b < t->walls; ++b)
+        hottest = larger_one(m->given->wall_temperature[b], hottest); /* NaN, not known: hottest stays */
     for (uint32_t i = 0; i < t->n; ++i) hottest = larger_one(hottest, t->now[i]);
     const double emission = m->given->sigma * (hottest * hottest) * (hottest * hottest);
     for (uint32_t i = 0; i < t->n; ++i) {
@@ -217,7 +217,7 @@ static int compare(struct stepper *m, double time) {
     fibrad_heat_sources now = *m->given;
     set_outside(m, time);
     now.temperature = m->t->now;
-    now.body_temperature = m->t->wall, now.surroundings = m->sources.surroundings;
+    now.wall_temperature = m->t->wall, now.surroundings = m->sources.surroundings;
     return fibrad_transient_compare(m->t, &now, &m->span->corrections);
 }
 
@@ -273,7 +273,7 @@ static int check_span(fibrad_transient *t, const fibrad_heat_sources *s, const f
  * that conduct. */
 static bool surfaces_given(const fibrad_transient *t, const fibrad_heat_sources *s) {
     if (s->conductivity && t->config.method == FIBRAD_TRANSIENT_FACTORS) return false;
-    bool given = (t->n == 0 || s->emissivity) && (t->bodies == 0 || (s->body_temperature && s->body_emissivity));
+    bool given = (t->n == 0 || s->emissivity) && (t->walls == 0 || (s->wall_temperature && s->wall_emissivity));
     for (uint32_t i = 0; i < t->n && given; ++i) given = s->emissivity[i] >= 0 && s->emissivity[i] <= 1;
     return given;
 }
@@ -282,8 +282,8 @@ static bool surfaces_given(const fibrad_transient *t, const fibrad_heat_sources 
 static bool outside_known(const fibrad_transient *t, const fibrad_heat_sources *s) {
     if (t->config.method == FIBRAD_TRANSIENT_PATCHES) return true;
     bool known = s->surroundings >= 0 && s->surroundings <= FIBRAD_TEMPERATURE_MAX;
-    for (uint32_t b = 0; b < t->bodies; ++b)
-        known = known && s->body_temperature[b] >= 0 && s->body_temperature[b] <= FIBRAD_TEMPERATURE_MAX &&
+    for (uint32_t b = 0; b < t->walls; ++b)
+        known = known && s->wall_temperature[b] >= 0 && s->wall_temperature[b] <= FIBRAD_TEMPERATURE_MAX &&
                 !(s->insulated && s->insulated[b]);
     return known;
 }
@@ -293,7 +293,7 @@ static bool contacts_valid(const fibrad_transient *t, const fibrad_heat_sources 
     bool valid = s->contacts == 0 || (t->config.method == FIBRAD_TRANSIENT_PATCHES && s->contact_first &&
                                       s->contact_second && s->conductance);
     for (uint32_t k = 0; k < s->contacts && valid; ++k)
-        valid = s->contact_first[k] < t->n + t->bodies && s->contact_second[k] < t->n + t->bodies;
+        valid = s->contact_first[k] < t->n + t->walls && s->contact_second[k] < t->n + t->walls;
     return valid;
 }
 
@@ -338,12 +338,12 @@ static void end_span(const struct stepper *m, fibrad_span *span) {
     const fibrad_transient *t = m->t;
     const fibrad_span given = *span;
     *span = *m->span;
-    span->body_energy = given.body_energy, span->surroundings_power = m->to_surroundings[1];
+    span->wall_energy = given.wall_energy, span->surroundings_power = m->to_surroundings[1];
     memcpy(span->temperature, t->now, t->n * sizeof *t->now);
     if (span->power) memcpy(span->power, t->power, t->n * sizeof *t->power);
-    for (uint32_t b = 0; b < t->bodies; ++b) {
-        if (span->body_power) span->body_power[b] = m->stage_walls[1][b];
-        if (span->body_energy) span->body_energy[b] = m->span->body_energy[b];
+    for (uint32_t b = 0; b < t->walls; ++b) {
+        if (span->wall_power) span->wall_power[b] = m->stage_walls[1][b];
+        if (span->wall_energy) span->wall_energy[b] = m->span->wall_energy[b];
     }
 }
 
@@ -355,20 +355,20 @@ static int advance_span(fibrad_transient *t, const fibrad_heat_sources *sources,
                         .tolerance = span->tolerance > 0 ? span->tolerance : TOLERANCE,
                         .sources = *sources,
                         .result = {.power = t->power, .temperature = t->found},
-                        .stage_walls = {t->wall + t->bodies, t->wall + 2 * (size_t)t->bodies}};
+                        .stage_walls = {t->wall + t->walls, t->wall + 2 * (size_t)t->walls}};
     m.sources.temperature = t->given, m.sources.power = t->source;
     m.sources.hold = t->hold, m.sources.reference = t->guess;
-    m.sources.body_temperature = t->wall;
+    m.sources.wall_temperature = t->wall;
     if (!(m.sources.tolerance > 0)) m.sources.tolerance = RESIDUAL * m.tolerance;
     if (span->law) {
         memcpy(t->emissivity, sources->emissivity, t->n * sizeof *t->emissivity);
-        for (uint32_t b = 0; b < t->bodies; ++b) t->body_emissivity[b] = sources->body_emissivity[b];
-        m.sources.emissivity = t->emissivity, m.sources.body_emissivity = t->body_emissivity;
+        for (uint32_t b = 0; b < t->walls; ++b) t->wall_emissivity[b] = sources->wall_emissivity[b];
+        m.sources.emissivity = t->emissivity, m.sources.wall_emissivity = t->wall_emissivity;
     }
     now.surroundings_energy = now.error = 0;
     now.steps = now.refused = now.sweeps = now.corrections = 0;
-    now.body_energy = t->wall + 3 * (size_t)t->bodies;
-    for (uint32_t b = 0; b < t->bodies; ++b) now.body_energy[b] = 0;
+    now.wall_energy = t->wall + 3 * (size_t)t->walls;
+    for (uint32_t b = 0; b < t->walls; ++b) now.wall_energy[b] = 0;
     memcpy(t->now, span->temperature, t->n * sizeof *t->now);
     const int status = take_steps(&m);
     if (!status) end_span(&m, span);

@@ -44,16 +44,16 @@ static int take_arrays(fibrad_transient *t) {
         &t->at[0],   &t->at[1],    &t->at[2],      &t->at[3],    &t->area,       &t->emissivity, &t->now,   &t->slope,
         &t->base,    &t->first,    &t->guess,      &t->hold,     &t->source,     &t->found,      &t->power, &t->given,
         &t->allowed, &t->solution, &t->correction, &t->compared, &t->by_patches, &t->conducts};
-    double **const of_bodies[] = {&t->body_emissivity, &t->wall_correction, &t->wall_compared, &t->wall_power,
-                                  &t->wall}; /* the last one has four per body */
-    const size_t spheres = sizeof of_spheres / sizeof *of_spheres, bodies = sizeof of_bodies / sizeof *of_bodies;
-    double *next = calloc(spheres * t->n + (bodies + 3) * t->bodies + 1, sizeof *next);
+    double **const of_walls[] = {&t->wall_emissivity, &t->wall_correction, &t->wall_compared, &t->wall_power,
+                                  &t->wall}; /* the last one has four per wall */
+    const size_t spheres = sizeof of_spheres / sizeof *of_spheres, walls = sizeof of_walls / sizeof *of_walls;
+    double *next = calloc(spheres * t->n + (walls + 3) * t->walls + 1, sizeof *next);
     t->doubles = next;
-    t->body = calloc((size_t)t->bodies + 1, sizeof *t->body);
+    t->wall = calloc((size_t)t->walls + 1, sizeof *t->wall);
     t->id = calloc((size_t)t->n + 1, sizeof *t->id);
-    if (!next || !t->body || !t->id) return FIBRAD_E_MEMORY;
+    if (!next || !t->wall || !t->id) return FIBRAD_E_MEMORY;
     for (size_t k = 0; k < spheres; ++k, next += t->n) *of_spheres[k] = next;
-    for (size_t k = 0; k < bodies; ++k, next += t->bodies) *of_bodies[k] = next;
+    for (size_t k = 0; k < walls; ++k, next += t->walls) *of_walls[k] = next;
     return FIBRAD_OK;
 }
 
@@ -67,9 +67,9 @@ static void copy_bed(fibrad_transient *t, const fibrad_scene_config *scene, cons
     }
     t->named = s->id != NULL;
     if (scene) t->scene = *scene;
-    for (uint32_t b = 0; b < t->bodies; ++b) t->body[b] = scene->body[b];
+    for (uint32_t b = 0; b < t->walls; ++b) t->wall[b] = scene->wall[b];
     for (uint32_t k = 0; k < t->scene.openings; ++k) t->opening[k] = scene->opening[k];
-    t->scene.body = t->body, t->scene.opening = t->opening;
+    t->scene.wall = t->wall, t->scene.opening = t->opening;
     t->scene.triangles = &t->mesh.triangles;
 }
 
@@ -123,7 +123,7 @@ int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config
                          const fibrad_transient_config *config, fibrad_run *run) {
     if (!transient) return FIBRAD_E_ARGUMENT;
     *transient = NULL;
-    if (!spheres || (scene && scene->bodies > 0 && !scene->body)) return FIBRAD_E_ARGUMENT;
+    if (!spheres || (scene && scene->walls > 0 && !scene->wall)) return FIBRAD_E_ARGUMENT;
     fibrad_transient *t = calloc(1, sizeof *t);
     if (!t) return FIBRAD_E_MEMORY;
     if (config) t->config = *config;
@@ -133,7 +133,7 @@ int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config
             t->config.method == FIBRAD_TRANSIENT_FACTORS ? FACTORS_TOLERANCE : ROUGH_TOLERANCE;
     if (run) t->run = *run;
     t->n = spheres->n;
-    t->bodies = scene ? scene->bodies : 0;
+    t->walls = scene ? scene->walls : 0;
     const fibrad_run own = run_of(t);
     int status = time_config_valid(&t->config) ? fibrad_team_open(&t->team, &own) : FIBRAD_E_ARGUMENT;
     if (!status) status = take_arrays(t);
@@ -147,8 +147,8 @@ int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config
 }
 
 int fibrad_transient_move(fibrad_transient *t, const fibrad_scene_config *scene, const fibrad_spheres *spheres) {
-    if (!t || !spheres || spheres->n != t->n || (scene ? scene->bodies : 0) != t->bodies) return FIBRAD_E_ARGUMENT;
-    if (t->bodies > 0 && !scene->body) return FIBRAD_E_ARGUMENT;
+    if (!t || !spheres || spheres->n != t->n || (scene ? scene->walls : 0) != t->walls) return FIBRAD_E_ARGUMENT;
+    if (t->walls > 0 && !scene->wall) return FIBRAD_E_ARGUMENT;
     const int status = fibrad_transient_begin(t);
     return status ? status : fibrad_transient_end(t, place(t, scene, spheres));
 }
@@ -157,7 +157,7 @@ int fibrad_transient_move(fibrad_transient *t, const fibrad_scene_config *scene,
 static bool same_surfaces(const fibrad_transient *t, const fibrad_heat_sources *s) {
     bool same = t->network != NULL;
     for (uint32_t i = 0; i < t->n && same; ++i) same = t->emissivity[i] == s->emissivity[i];
-    for (uint32_t b = 0; b < t->bodies && same; ++b) same = t->body_emissivity[b] == s->body_emissivity[b];
+    for (uint32_t b = 0; b < t->walls && same; ++b) same = t->wall_emissivity[b] == s->wall_emissivity[b];
     return same;
 }
 
@@ -168,7 +168,7 @@ static int make_network(fibrad_transient *t, const fibrad_heat_sources *s) {
     fibrad_bed_factors *factors;
     fibrad_exchange_rule rule = t->config.exchange;
     rule.emissivity = s->emissivity;
-    rule.body_emissivity = s->body_emissivity;
+    rule.wall_emissivity = s->wall_emissivity;
     fibrad_network_free(t->network);
     t->network = NULL;
     t->corrected = false;
@@ -178,7 +178,7 @@ static int make_network(fibrad_transient *t, const fibrad_heat_sources *s) {
     status = fibrad_network_new(&t->network, factors, s->emissivity, t->area);
     if (status) fibrad_bed_free(factors);
     for (uint32_t i = 0; i < t->n; ++i) t->emissivity[i] = s->emissivity[i];
-    for (uint32_t b = 0; b < t->bodies; ++b) t->body_emissivity[b] = s->body_emissivity[b];
+    for (uint32_t b = 0; b < t->walls; ++b) t->wall_emissivity[b] = s->wall_emissivity[b];
     return status;
 }
 
@@ -201,19 +201,19 @@ static bool powers_changed(const fibrad_transient *t, const fibrad_heat_sources 
         const double emission = t->area[i] * s->emissivity[i] * s->sigma * square * square;
         change += less * less, emitted += emission * emission;
     }
-    for (uint32_t b = 0; b < t->bodies; ++b) {
+    for (uint32_t b = 0; b < t->walls; ++b) {
         const double less = t->wall_power[b] - t->wall_compared[b];
         change += less * less;
     }
     const double most =
-        sum_of_squares(t->power, t->n) + sum_of_squares(t->wall_power, t->bodies) + SMALL * SMALL * emitted;
+        sum_of_squares(t->power, t->n) + sum_of_squares(t->wall_power, t->walls) + SMALL * SMALL * emitted;
     return change > CHANGED * CHANGED * most;
 }
 
 int fibrad_transient_compare(fibrad_transient *t, const fibrad_heat_sources *s, uint64_t *corrections) {
     if (t->config.method != FIBRAD_TRANSIENT_CORRECTED) return FIBRAD_OK;
-    fibrad_heat_result factors = {.power = t->power, .body_power = t->wall_power};
-    fibrad_heat_result patches = {.power = t->by_patches, .body_power = t->wall_correction};
+    fibrad_heat_result factors = {.power = t->power, .wall_power = t->wall_power};
+    fibrad_heat_result patches = {.power = t->by_patches, .wall_power = t->wall_correction};
     int status = fibrad_network_solve(t->network, &t->team, s, t->allowed, &factors);
     if (status || (t->corrected && !powers_changed(t, s))) return status;
     fibrad_heat_sources given = *s; /* a sphere has a temperature or a power, not both */
@@ -224,7 +224,7 @@ int fibrad_transient_compare(fibrad_transient *t, const fibrad_heat_sources *s, 
         t->correction[i] = t->by_patches[i] - t->power[i];
         t->compared[i] = t->power[i];
     }
-    for (uint32_t b = 0; b < t->bodies; ++b) {
+    for (uint32_t b = 0; b < t->walls; ++b) {
         t->wall_correction[b] -= t->wall_power[b];
         t->wall_compared[b] = t->wall_power[b];
     }
@@ -239,7 +239,7 @@ int fibrad_transient_solve(fibrad_transient *t, const fibrad_heat_sources *sourc
     for (uint32_t i = 0; i < t->n && t->corrected; ++i) t->source[i] += t->correction[i];
     const int status = fibrad_network_solve(t->network, &t->team, sources, t->allowed, result);
     for (uint32_t i = 0; i < t->n && t->corrected; ++i) result->power[i] += t->correction[i];
-    for (uint32_t b = 0; b < t->bodies && t->corrected; ++b) result->body_power[b] += t->wall_correction[b];
+    for (uint32_t b = 0; b < t->walls && t->corrected; ++b) result->wall_power[b] += t->wall_correction[b];
     if (t->corrected) result->surroundings_power += t->surroundings_correction;
     return status;
 }
@@ -253,7 +253,7 @@ void fibrad_transient_describe(const fibrad_transient *t, fibrad_scene_facts *fa
 void fibrad_transient_free(fibrad_transient *t) {
     if (!t) return;
     free(t->doubles);
-    free(t->body);
+    free(t->wall);
     free(t->mesh.block);
     free(t->id);
     fibrad_network_free(t->network);

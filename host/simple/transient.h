@@ -11,11 +11,11 @@ struct fibrad_transient {
     fibrad_transient_config config;
     fibrad_run run;
     fibrad_team team;
-    uint32_t n, bodies;
+    uint32_t n, walls;
     fibrad_fault fault;
     /* A copy of the bed: factors are computed later, when emissivities are known. */
     fibrad_scene_config scene;
-    fibrad_body *body;       /* [bodies] */
+    fibrad_wall *wall;       /* [walls] */
     fibrad_plane opening[6]; /* [scene.openings] */
     fibrad_triangle_copy mesh;
     double *at[4]; /* [n] x, y, z, r */
@@ -24,16 +24,16 @@ struct fibrad_transient {
     fibrad_scene_facts facts;
     double *doubles;                      /* the block of all arrays of doubles */
     double *area;                         /* [n] */
-    double *emissivity, *body_emissivity; /* [n], [bodies] of the network or of the law */
+    double *emissivity, *wall_emissivity; /* [n], [walls] of the network or of the law */
     fibrad_network *network;              /* NULL: none yet */
     fibrad_radiation *radiation;          /* powers by patches; NULL: the method is FACTORS */
     /* The last correction: power by patches minus power by factors. */
     bool corrected;                       /* there is one */
-    double *correction, *wall_correction; /* [n], [bodies] */
+    double *correction, *wall_correction; /* [n], [walls] */
     double surroundings_correction;
-    double *compared, *wall_compared; /* [n], [bodies] powers by factors at the last correction */
+    double *compared, *wall_compared; /* [n], [walls] powers by factors at the last correction */
     double *by_patches;               /* [n] powers by patches at the last correction */
-    double *wall_power;               /* [bodies] powers by factors now */
+    double *wall_power;               /* [walls] powers by factors now */
     /* Steps (stepper.c). */
     double step;                   /* proposed for the next span [s]; 0: none */
     double *now;                   /* [n] temperatures at the beginning of the step */
@@ -46,7 +46,7 @@ struct fibrad_transient {
     double *found, *power;         /* [n] temperatures and powers of the linear problem */
     double *solution;              /* [n] temperatures of the stage, which keep the energy */
     double *conducts;              /* [n] what contacts conduct from a sphere for each kelvin [W/K] */
-    double *wall;                  /* [4 bodies] temperatures, powers of each stage, energies of the span */
+    double *wall;                  /* [4 walls] temperatures, powers of each stage, energies of the span */
     bool busy;                     /* within a call, see fibrad_transient_begin */
 };
 

@@ -10,9 +10,9 @@ double summary_row(const fibrad_factors *matrix, uint32_t i) {
 }
 
 static void add_summary(struct summary *summary, const fibrad_factors *matrix, uint32_t i, double rows) {
-    const double sum = summary_row(matrix, i), *wall = matrix->body + (size_t)i * matrix->bodies;
+    const double sum = summary_row(matrix, i), *wall = matrix->wall + (size_t)i * matrix->walls;
     double all = sum + matrix->escaped[i] + matrix->beyond[i];
-    for (uint32_t k = 0; k < matrix->bodies; ++k) {
+    for (uint32_t k = 0; k < matrix->walls; ++k) {
         summary->wall_mean[k] += wall[k] / rows;
         all += wall[k];
     }
@@ -41,8 +41,8 @@ void summary_make(struct summary *summary, const struct contents *what) {
     }
     for (uint32_t i = 0; i < matrix->n; ++i)
         if (has_row(what, i)) add_summary(summary, matrix, i, rows);
-    for (uint32_t k = 0; matrix->body_body && k < matrix->bodies; ++k)
-        summary->wall_error_max = fmax(summary->wall_error_max, matrix->body_error[k]); /* fmax() ignores NaN */
+    for (uint32_t k = 0; matrix->wall_wall && k < matrix->walls; ++k)
+        summary->wall_error_max = fmax(summary->wall_error_max, matrix->wall_error[k]); /* fmax() ignores NaN */
     summary->escaped_mean /= rows;
     summary->beyond_mean /= rows;
     summary->error_rms = sqrt(summary->error_rms);
@@ -51,10 +51,10 @@ void summary_make(struct summary *summary, const struct contents *what) {
 /* Reports the mean factor to a wall and, if the wall is finite, its area. */
 static void report_wall_share(const struct summary *summary, const struct contents *what, uint32_t k,
                               struct report *report) {
-    const char *kind = what->walls->body[k].kind ? "wall_" : ""; /* names of unknown walls begin with wall_ */
-    const double area = what->factors->body_area[k];
-    char own[BODY_NAME];
-    const char *name = contents_body(what, k, own);
+    const char *kind = what->walls->wall[k].kind ? "wall_" : ""; /* names of unknown walls begin with wall_ */
+    const double area = what->factors->wall_area[k];
+    char own[WALL_NAME];
+    const char *name = contents_wall(what, k, own);
     report_value(report, report_key(report, "%s%s_F", kind, name), summary->wall_mean[k], 6);
     if (area < INFINITY) report_value(report, report_key(report, "%s%s_area", kind, name), area, 6);
 }
@@ -62,15 +62,15 @@ static void report_wall_share(const struct summary *summary, const struct conten
 /* Reports the factors from a wall to all walls and to the surroundings, and their error, if the wall has a row. */
 static void report_wall_row(const struct contents *what, uint32_t k, struct report *report) {
     const fibrad_factors *matrix = &what->factors->matrix;
-    char own[BODY_NAME];
-    const char *name = contents_body(what, k, own);
+    char own[WALL_NAME];
+    const char *name = contents_wall(what, k, own);
     double sum = 0;
-    for (uint32_t j = 0; j < matrix->bodies; ++j) sum += matrix->body_body[(size_t)k * matrix->bodies + j];
+    for (uint32_t j = 0; j < matrix->walls; ++j) sum += matrix->wall_wall[(size_t)k * matrix->walls + j];
     if (isnan(sum)) return;
-    report_measured(report, report_key(report, "wall_%s_to_walls", name), sum, matrix->body_error[k]);
-    report_measured(report, report_key(report, "wall_%s_escaped", name), matrix->body_escaped[k],
-                    matrix->body_error[k]);
-    report_value(report, report_key(report, "wall_%s_error", name), matrix->body_error[k], 2);
+    report_measured(report, report_key(report, "wall_%s_to_walls", name), sum, matrix->wall_error[k]);
+    report_measured(report, report_key(report, "wall_%s_escaped", name), matrix->wall_escaped[k],
+                    matrix->wall_error[k]);
+    report_value(report, report_key(report, "wall_%s_error", name), matrix->wall_error[k], 2);
 }
 
 void summary_report(const struct summary *summary, const struct contents *what, struct report *report) {
@@ -81,10 +81,10 @@ void summary_report(const struct summary *summary, const struct contents *what, 
     report_measured(report, "escaped_mean", summary->escaped_mean, summary->error_rms);
     report_measured(report, "beyond_mean", summary->beyond_mean, summary->error_rms);
     for (uint32_t k = 0; k < what->walls->count; ++k) report_wall_share(summary, what, k, report);
-    if (matrix->body_body) {
-        for (uint32_t k = 0; k < matrix->bodies; ++k) report_wall_row(what, k, report);
-        report_value(report, "wall_correction", matrix->body_correction, 2);
-        report_value(report, "wall_closure", matrix->body_closure, 2);
+    if (matrix->wall_wall) {
+        for (uint32_t k = 0; k < matrix->walls; ++k) report_wall_row(what, k, report);
+        report_value(report, "wall_correction", matrix->wall_correction, 2);
+        report_value(report, "wall_closure", matrix->wall_closure, 2);
     }
     report_value(report, "closure_max", fmax(what->factors->closure_error, summary->closure_max), 2);
     report_value(report, "reciprocity_max", what->factors->reciprocity_error, 2);

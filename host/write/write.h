@@ -54,8 +54,8 @@ write_function write_mesh_vtp; /* for walls with meshes */
 write_function write_heat_csv, write_heat_vtp, write_heat_json, write_heat_dump;
 
 /* The name of a wall in outputs: "zmin" for example, or "wall_1" for the first one if walls are not known. */
-enum { BODY_NAME = MESH_NAME };
-const char *contents_body(const struct contents *what, uint32_t k, char name[BODY_NAME]);
+enum { WALL_NAME = MESH_NAME };
+const char *contents_wall(const struct contents *what, uint32_t k, char name[WALL_NAME]);
 
 /* Names of columns of spheres that conduct, and the values of one of them. */
 #define INSIDE_NAMES  "T_min_K", "T_max_K", "T_surface_error_K", "T_centre_K", "T_centre_error_K"

@@ -1,7 +1,7 @@
 /* write_csv.c - comma-separated values: i,j,F or i,j,D of a matrix, i,T_K,q_W,... of heat, F_E and k of conduction.
  * SPDX-License-Identifier: MIT
  *
- * Numbers below 0 are not spheres, and the column body has their names: -1 is the surroundings, -2, -3 ... are walls,
+ * Numbers below 0 are not spheres, and the column wall has their names: -1 is the surroundings, -2, -3 ... are walls,
  * and the next number is `beyond`. */
 #include <gsl/gsl_math.h>
 #include <limits.h>
@@ -19,7 +19,7 @@ enum { SURROUNDINGS = -1, FIRST_WALL = -2 };
 struct csv {
     FILE *file;
     const struct contents *what;
-    bool named;     /* the file has a column body */
+    bool named;     /* the file has a column wall */
     size_t columns; /* length of the columns file, frame, timestep and time_s, with which all lines begin */
     char line[2 * PATH_MAX + 16 * TEXT_NUMBER];
 };
@@ -49,7 +49,7 @@ static void begin_csv(struct csv *csv, FILE *file, const struct contents *what, 
     csv->what = what;
     if (first)
         fprintf(file, "%s%s%s%s%s\n", what->file ? "file," : "", what->series ? "frame,timestep," : "",
-                what->time ? "time_s," : "", names, csv->named ? ",body" : "");
+                what->time ? "time_s," : "", names, csv->named ? ",wall" : "");
     if (what->file) at = put_comma(put_text(at, what->file));
     if (what->series) {
         at = put_comma(text_whole(at, bed->frame));
@@ -59,47 +59,47 @@ static void begin_csv(struct csv *csv, FILE *file, const struct contents *what, 
     csv->columns = (size_t)(at - csv->line);
 }
 
-static void end_line(struct csv *csv, char *at, const char *body) {
+static void end_line(struct csv *csv, char *at, const char *wall) {
     if (csv->named) at = put_comma(at);
-    for (; csv->named && *body; ++body) *at++ = *body;
+    for (; csv->named && *wall; ++wall) *at++ = *wall;
     *at++ = '\n';
     fwrite(csv->line, 1, (size_t)(at - csv->line), csv->file);
 }
 
-static void write_entry(struct csv *csv, int64_t i, int64_t j, double f, const char *body) {
+static void write_entry(struct csv *csv, int64_t i, int64_t j, double f, const char *wall) {
     if (!(f > 0)) return;
     char *at = put_comma(text_whole(csv->line + csv->columns, i));
     at = put_comma(text_whole(at, j));
-    end_line(csv, text_real(at, f), body);
+    end_line(csv, text_real(at, f), wall);
 }
 
 static double wall_factor(const struct contents *what, uint32_t i, uint32_t wall) {
-    return what->factors->matrix.body[(size_t)i * what->walls->count + wall];
+    return what->factors->matrix.wall[(size_t)i * what->walls->count + wall];
 }
 
 static void write_outside(struct csv *csv, uint32_t i) {
     const struct contents *what = csv->what;
     const uint32_t walls = what->walls->count;
     const int64_t row = bed_name(what->bed, i);
-    char name[BODY_NAME];
+    char name[WALL_NAME];
     write_entry(csv, row, SURROUNDINGS, what->factors->matrix.escaped[i], "surroundings");
     for (uint32_t k = 0; k < walls; ++k)
-        write_entry(csv, row, FIRST_WALL - (int64_t)k, wall_factor(what, i, k), contents_body(what, k, name));
+        write_entry(csv, row, FIRST_WALL - (int64_t)k, wall_factor(what, i, k), contents_wall(what, k, name));
     write_entry(csv, row, FIRST_WALL - (int64_t)walls, what->factors->matrix.beyond[i], "beyond");
 }
 
-/* Writes the factors from a wall to walls and surroundings. The column body has both names. */
+/* Writes the factors from a wall to walls and surroundings. The column wall has both names. */
 static void write_wall_row(struct csv *csv, uint32_t k) {
     const struct contents *what = csv->what;
     const fibrad_factors *matrix = &what->factors->matrix;
     const uint32_t walls = what->walls->count;
-    char from[BODY_NAME], to[BODY_NAME], both[2 * BODY_NAME + 16];
-    const char *name = contents_body(what, k, from);
-    if (!matrix->body_body) return;
+    char from[WALL_NAME], to[WALL_NAME], both[2 * WALL_NAME + 16];
+    const char *name = contents_wall(what, k, from);
+    if (!matrix->wall_wall) return;
     for (uint32_t j = 0; j <= walls; ++j) {
-        snprintf(both, sizeof both, "%s:%s", name, j < walls ? contents_body(what, j, to) : "surroundings");
+        snprintf(both, sizeof both, "%s:%s", name, j < walls ? contents_wall(what, j, to) : "surroundings");
         write_entry(csv, FIRST_WALL - (int64_t)k, j < walls ? FIRST_WALL - (int64_t)j : SURROUNDINGS,
-                    j < walls ? matrix->body_body[(size_t)k * walls + j] : matrix->body_escaped[k], both);
+                    j < walls ? matrix->wall_wall[(size_t)k * walls + j] : matrix->wall_escaped[k], both);
     }
 }
 
@@ -108,17 +108,17 @@ static int write_walls(struct csv *csv) {
     const struct contents *what = csv->what;
     const struct bed *bed = what->bed;
     const double *emissivity = what->grey ? what->grey->emissivity : NULL;
-    char name[BODY_NAME];
+    char name[WALL_NAME];
     if (what->grey && what->grey->node_emissivity) emissivity = what->grey->node_emissivity;
     for (uint32_t k = 0; k < what->walls->count; ++k) {
         if (interrupt_status()) return interrupt_status();
-        const double weight = what->factors->body_area[k] * (what->grey ? what->grey->body_emissivity[k] : 1);
+        const double weight = what->factors->wall_area[k] * (what->grey ? what->grey->wall_emissivity[k] : 1);
         if (!(weight > 0 && weight < INFINITY)) continue;
         for (uint32_t j = 0; j < bed->n; ++j)
             write_entry(csv, FIRST_WALL - (int64_t)k, bed_name(bed, j),
                         4 * M_PI * bed->r[j] * bed->r[j] * (emissivity ? emissivity[j] : 1) * wall_factor(what, j, k) /
                             weight,
-                        contents_body(what, k, name));
+                        contents_wall(what, k, name));
         write_wall_row(csv, k);
     }
     return STATUS_OK;
@@ -151,7 +151,7 @@ static char *put_inside(char *at, const struct contents *what, uint32_t i) {
 
 /* i: index of a sphere, or UINT32_MAX. light[2]: light from outside that is absorbed, first and in all. conducted: part
  * of the power. */
-static void write_power(struct csv *csv, int64_t name, uint32_t i, const char *body, double temperature, double power,
+static void write_power(struct csv *csv, int64_t name, uint32_t i, const char *wall, double temperature, double power,
                         double power_error, double temperature_error, const double light[2], double conducted) {
     char *at = put_comma(text_whole(csv->line + csv->columns, name));
     at = put_comma(text_real(at, temperature));
@@ -161,14 +161,14 @@ static void write_power(struct csv *csv, int64_t name, uint32_t i, const char *b
     for (int k = 0; k < 2 && csv->what->light; ++k) at = text_real(put_comma(at), light[k]);
     if (csv->what->result->conducted) at = text_real(put_comma(at), power - conducted);
     if (csv->what->result->conducted) at = text_real(put_comma(at), conducted);
-    end_line(csv, at, body);
+    end_line(csv, at, wall);
 }
 
 int write_heat_csv(FILE *file, const struct contents *what, bool first) {
     const double surroundings = what->sources->surroundings;
     const fibrad_heat_result *result = what->result;
     struct csv csv = {.named = true};
-    char name[BODY_NAME];
+    char name[WALL_NAME];
     const fibrad_light_result *light = what->light;
     double of_light[2] = {0, 0};
     char columns[200];
@@ -189,10 +189,10 @@ int write_heat_csv(FILE *file, const struct contents *what, bool first) {
         write_power(&csv, SURROUNDINGS, UINT32_MAX, "surroundings", surroundings, result->surroundings_power,
                     result->surroundings_error, 0, of_light, 0);
     for (uint32_t k = 0; k < what->walls->count; ++k) {
-        if (light) of_light[0] = light->body_absorbed_first[k], of_light[1] = light->body_absorbed[k];
-        write_power(&csv, FIRST_WALL - (int64_t)k, UINT32_MAX, contents_body(what, k, name),
-                    result->body_temperature[k], result->body_power[k], result->body_error[k],
-                    result->body_temperature_error[k], of_light, result->conducted ? result->body_conducted[k] : 0);
+        if (light) of_light[0] = light->wall_absorbed_first[k], of_light[1] = light->wall_absorbed[k];
+        write_power(&csv, FIRST_WALL - (int64_t)k, UINT32_MAX, contents_wall(what, k, name),
+                    result->wall_temperature[k], result->wall_power[k], result->wall_error[k],
+                    result->wall_temperature_error[k], of_light, result->conducted ? result->wall_conducted[k] : 0);
     }
     return STATUS_OK;
 }

@@ -65,12 +65,12 @@ static void json_begin(FILE *file, const struct contents *what, const char *kind
 /* Writes the factors from each wall to all walls, in the order of `walls`, and to the surroundings. */
 static void json_wall_rows(FILE *file, const struct contents *what) {
     const fibrad_factors *matrix = &what->factors->matrix;
-    char name[BODY_NAME];
-    for (uint32_t k = 0; k < matrix->bodies; ++k) {
-        fprintf(file, "%s\"%s\":{", k > 0 ? "," : ",\"wall_rows\":{", contents_body(what, k, name));
-        json_reals(file, "", "walls", matrix->body_body + (size_t)k * matrix->bodies, matrix->bodies, 1, NULL);
-        json_entry(file, "escaped", matrix->body_escaped[k]);
-        json_entry(file, "error", matrix->body_error[k]);
+    char name[WALL_NAME];
+    for (uint32_t k = 0; k < matrix->walls; ++k) {
+        fprintf(file, "%s\"%s\":{", k > 0 ? "," : ",\"wall_rows\":{", contents_wall(what, k, name));
+        json_reals(file, "", "walls", matrix->wall_wall + (size_t)k * matrix->walls, matrix->walls, 1, NULL);
+        json_entry(file, "escaped", matrix->wall_escaped[k]);
+        json_entry(file, "error", matrix->wall_error[k]);
         putc('}', file);
     }
     putc('}', file);
@@ -81,7 +81,7 @@ int write_json(FILE *file, const struct contents *what, bool first) {
     const fibrad_factors *matrix = &what->factors->matrix;
     const uint64_t entries = matrix->start[matrix->n];
     const uint32_t walls = what->walls ? what->walls->count : 0;
-    char name[BODY_NAME];
+    char name[WALL_NAME];
     (void)first;
     json_begin(file, what, what->grey ? "exchange factors" : "view factors");
     fputs(",\"indptr\":[0", file);
@@ -99,10 +99,10 @@ int write_json(FILE *file, const struct contents *what, bool first) {
     if (what->grey && what->grey->node_emissivity)
         json_reals(file, ",", "node_emissivity", what->grey->node_emissivity, matrix->n, 1, NULL);
     for (uint32_t k = 0; k < walls; ++k)
-        json_reals(file, k > 0 ? "," : ",\"walls\":{", contents_body(what, k, name), matrix->body + k, matrix->n, walls,
+        json_reals(file, k > 0 ? "," : ",\"walls\":{", contents_wall(what, k, name), matrix->wall + k, matrix->n, walls,
                    what->wanted);
     if (walls > 0) putc('}', file);
-    if (walls > 0 && matrix->body_body) json_wall_rows(file, what);
+    if (walls > 0 && matrix->wall_wall) json_wall_rows(file, what);
     fputs("}\n", file);
     return interrupt_status();
 }
@@ -134,7 +134,7 @@ int write_heat_json(FILE *file, const struct contents *what, bool first) {
     const double surroundings = what->sources->surroundings;
     const fibrad_heat_result *result = what->result;
     const uint32_t walls = what->walls ? what->walls->count : 0, n = what->bed->n;
-    char name[BODY_NAME];
+    char name[WALL_NAME];
     (void)first;
     json_begin(file, what, "heat");
     json_reals(file, ",", "T_K", result->temperature, n, 1, NULL);
@@ -151,9 +151,9 @@ int write_heat_json(FILE *file, const struct contents *what, bool first) {
         json_power(file, ",", "surroundings", surroundings, result->surroundings_power, result->surroundings_error, 0,
                    NULL);
     for (uint32_t k = 0; k < walls; ++k)
-        json_power(file, k > 0 ? "," : ",\"walls\":{", contents_body(what, k, name), result->body_temperature[k],
-                   result->body_power[k], result->body_error[k], result->body_temperature_error[k],
-                   result->conducted ? &result->body_conducted[k] : NULL);
+        json_power(file, k > 0 ? "," : ",\"walls\":{", contents_wall(what, k, name), result->wall_temperature[k],
+                   result->wall_power[k], result->wall_error[k], result->wall_temperature_error[k],
+                   result->conducted ? &result->wall_conducted[k] : NULL);
     fputs(walls > 0 ? "}}\n" : "}\n", file);
     return interrupt_status();
 }

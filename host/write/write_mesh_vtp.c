@@ -1,6 +1,6 @@
 /* write_mesh_vtp.c - VTK XML polydata for ParaView: the triangles of all meshes. SPDX-License-Identifier: MIT
  *
- * Arrays on triangles: `body`, k of wall -2 - k; `front` and `back`, 1 if this side is a wall; `place`, the line or
+ * Arrays on triangles: `wall`, k of wall -2 - k; `front` and `back`, 1 if this side is a wall; `place`, the line or
  * number in the mesh's file; `area`; arrays of the contents. */
 #include <math.h>
 
@@ -28,17 +28,17 @@ static void mesh_corners(FILE *file, const struct fibrad_triangles *all) {
 /* A whole number of a triangle. */
 typedef int64_t mesh_count(const struct mesh *mesh, const struct fibrad_triangles *all, uint32_t own);
 
-static int64_t body_of(const struct mesh *mesh, const struct fibrad_triangles *all, uint32_t own) {
+static int64_t wall_of(const struct mesh *mesh, const struct fibrad_triangles *all, uint32_t own) {
     (void)all;
-    return mesh_body(mesh, own);
+    return mesh_wall(mesh, own);
 }
 
 static int64_t front_of(const struct mesh *mesh, const struct fibrad_triangles *all, uint32_t own) {
-    return all->front[mesh->first + own] != FIBRAD_NO_BODY;
+    return all->front[mesh->first + own] != FIBRAD_NO_WALL;
 }
 
 static int64_t back_of(const struct mesh *mesh, const struct fibrad_triangles *all, uint32_t own) {
-    return all->back[mesh->first + own] != FIBRAD_NO_BODY;
+    return all->back[mesh->first + own] != FIBRAD_NO_WALL;
 }
 
 static int64_t place_of(const struct mesh *mesh, const struct fibrad_triangles *all, uint32_t own) {
@@ -75,8 +75,8 @@ int write_mesh_vtp(FILE *file, const struct contents *what, bool first) {
     const struct fibrad_triangles *all = &meshes->triangles;
     (void)first;
     vtp_head(file, all->vertices, "Polys", all->n);
-    fputs("<CellData Scalars=\"body\">\n", file);
-    mesh_counts(file, "body", meshes, body_of);
+    fputs("<CellData Scalars=\"wall\">\n", file);
+    mesh_counts(file, "wall", meshes, wall_of);
     mesh_counts(file, "front", meshes, front_of);
     mesh_counts(file, "back", meshes, back_of);
     mesh_counts(file, "place", meshes, place_of);

@@ -180,19 +180,19 @@ static int add_spheres(struct arrays *arrays, const struct bed *bed) {
     return STATUS_OK;
 }
 
-/* The array of names of walls. Each takes 8 bytes, or BODY_NAME bytes if a name is longer. */
-static struct array wall_names(const struct contents *what, char names[WALLS_MAX * BODY_NAME]) {
+/* The array of names of walls. Each takes 8 bytes, or WALL_NAME bytes if a name is longer. */
+static struct array wall_names(const struct contents *what, char names[WALLS_MAX * WALL_NAME]) {
     const uint32_t walls = what->walls->count;
-    char name[BODY_NAME];
+    char name[WALL_NAME];
     size_t width = 8;
     for (uint32_t k = 0; k < walls; ++k)
-        if (strlen(contents_body(what, k, name)) > width) width = BODY_NAME;
-    for (uint32_t k = 0; k < walls; ++k) strncpy(names + k * width, contents_body(what, k, name), width);
+        if (strlen(contents_wall(what, k, name)) > width) width = WALL_NAME;
+    for (uint32_t k = 0; k < walls; ++k) strncpy(names + k * width, contents_wall(what, k, name), width);
     return (struct array){"wall_names.npy", width > 8 ? "S32" : "S8", names, walls, 0};
 }
 
 /* Adds the arrays of rows besides the matrix. */
-static void add_rows(struct arrays *arrays, const struct contents *what, char names[WALLS_MAX * BODY_NAME]) {
+static void add_rows(struct arrays *arrays, const struct contents *what, char names[WALLS_MAX * WALL_NAME]) {
     const fibrad_factors *matrix = &what->factors->matrix;
     const uint64_t n = matrix->n;
     const uint32_t walls = what->walls ? what->walls->count : 0;
@@ -204,13 +204,13 @@ static void add_rows(struct arrays *arrays, const struct contents *what, char na
     if (what->grey && what->grey->node_emissivity)
         add_array(arrays, (struct array){"node_emissivity.npy", "f8", what->grey->node_emissivity, n, 0});
     if (walls == 0) return;
-    add_array(arrays, (struct array){"body.npy", "f8", matrix->body, n, walls});
+    add_array(arrays, (struct array){"wall.npy", "f8", matrix->wall, n, walls});
     add_array(arrays, wall_names(what, names));
-    if (!matrix->body_body) return;
-    add_array(arrays, (struct array){"wall_area.npy", "f8", what->factors->body_area, walls, 0});
-    add_array(arrays, (struct array){"wall_wall.npy", "f8", matrix->body_body, walls, walls});
-    add_array(arrays, (struct array){"wall_escaped.npy", "f8", matrix->body_escaped, walls, 0});
-    add_array(arrays, (struct array){"wall_error.npy", "f8", matrix->body_error, walls, 0});
+    if (!matrix->wall_wall) return;
+    add_array(arrays, (struct array){"wall_area.npy", "f8", what->factors->wall_area, walls, 0});
+    add_array(arrays, (struct array){"wall_wall.npy", "f8", matrix->wall_wall, walls, walls});
+    add_array(arrays, (struct array){"wall_escaped.npy", "f8", matrix->wall_escaped, walls, 0});
+    add_array(arrays, (struct array){"wall_error.npy", "f8", matrix->wall_error, walls, 0});
 }
 
 static int write_archive(FILE *file, const struct arrays *arrays) {
@@ -241,7 +241,7 @@ int write_npz(FILE *file, const struct contents *what, bool first) {
                                      {"shape.npy", "i8", shape, 2, 0},
                                      {"data.npy", "f8", matrix->f, entries, 0}},
                             .count = 5};
-    char names[WALLS_MAX * BODY_NAME];
+    char names[WALLS_MAX * WALL_NAME];
     (void)first;
     for (size_t k = 0; k < what->arrays; ++k) add_array(&arrays, what->array[k]);
     int status = add_spheres(&arrays, what->bed);

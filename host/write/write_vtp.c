@@ -61,10 +61,10 @@ static void vtp_row_sums(FILE *file, const struct contents *what, double *values
 static void vtp_walls(FILE *file, const struct contents *what, double *values) {
     const fibrad_factors *matrix = &what->factors->matrix;
     for (uint32_t k = 0; what->walls && k < what->walls->count; ++k) {
-        char body[BODY_NAME], name[BODY_NAME + 8];
-        const char *known = contents_body(what, k, body);
-        snprintf(name, sizeof name, "%s%s", known == body ? "" : "wall_", known);
-        for (uint32_t i = 0; i < matrix->n; ++i) values[i] = matrix->body[(size_t)i * matrix->bodies + k];
+        char wall[WALL_NAME], name[WALL_NAME + 8];
+        const char *known = contents_wall(what, k, wall);
+        snprintf(name, sizeof name, "%s%s", known == wall ? "" : "wall_", known);
+        for (uint32_t i = 0; i < matrix->n; ++i) values[i] = matrix->wall[(size_t)i * matrix->walls + k];
         vtp_doubles(file, name, values, matrix->n, what->wanted);
     }
 }

@@ -36,12 +36,12 @@ static int exchange_begin(exchange_task *task, const fibrad_scene *scene, uint32
                           const fibrad_exchange_rule *rule) {
     if (scene == NULL || rule == NULL || rule->emissivity == NULL) return FIBRAD_E_ARGUMENT;
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
-    const uint32_t bodies = scene->facts.bodies;
-    if (i >= scene->facts.spheres || (bodies > 0 && rule->body_emissivity == NULL)) return FIBRAD_E_ARGUMENT;
+    const uint32_t walls = scene->facts.walls;
+    if (i >= scene->facts.spheres || (walls > 0 && rule->wall_emissivity == NULL)) return FIBRAD_E_ARGUMENT;
     if (!(rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1) || rule->paths > FIBRAD_PATHS_MAX)
         return FIBRAD_E_ARGUMENT;
     *task = (exchange_task){.rule = rule, .emissivity = rule->emissivity};
-    const int status = fibrad_paths_emissivities(scene, rule->body_emissivity, task->wall_emissivity);
+    const int status = fibrad_paths_emissivities(scene, rule->wall_emissivity, task->wall_emissivity);
     if (status != FIBRAD_OK) return status;
     const bool valid =
         rule->tolerance >= 0 && fibrad_finite(rule->tolerance) && rule->cutoff >= 0 && fibrad_finite(rule->cutoff);
@@ -89,8 +89,8 @@ static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_
         if (status != FIBRAD_OK) return status;
         double most = 0;
         for (uint32_t k = 0; k < row->length; k++) most = fibrad_max(most, task->emissivity[row->col[k]]);
-        for (uint32_t b = 0; b < scene->facts.bodies; b++)
-            if (row->body[b] > 0) most = fibrad_max(most, rule->body_emissivity[b]);
+        for (uint32_t b = 0; b < scene->facts.walls; b++)
+            if (row->wall[b] > 0) most = fibrad_max(most, rule->wall_emissivity[b]);
         *error = most * row->error;
         double wanted = BEAM_SHARE * rule->tolerance;
         if (!(wanted > 0 && *error > wanted) || beam.directions == FIBRAD_DIRECTIONS_MAX) return FIBRAD_OK;
@@ -109,7 +109,7 @@ static double reflected_of(const exchange_task *task, const fibrad_row *row, con
     }
     double sum = (double)units * 0x1p-60;
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
-        if (fibrad_slot_of_body(slot)) sum += wall[slot] * (1 - task->wall_emissivity[slot]);
+        if (fibrad_slot_of_wall(slot)) sum += wall[slot] * (1 - task->wall_emissivity[slot]);
     return sum;
 }
 
@@ -197,14 +197,14 @@ static uint64_t follow_paths(fibrad_paths *paths, const fibrad_exchange_rule *ru
  * scale: fraction of the emission for a path of weight 1; count: number of paths */
 static double pool_known(fibrad_paths *paths, const fibrad_exchange_rule *rule, double scale, uint64_t count) {
     const fibrad_scene *scene = paths->tracer->scene;
-    const uint32_t bodies = scene->facts.bodies;
+    const uint32_t walls = scene->facts.walls;
     const double all = fibrad_paths_sum(paths), own = (double)count;
-    double *given[FIBRAD_BODIES_MAX + 1], pooled[FIBRAD_BODIES_MAX + 1] = {0}, sum = 0;
-    for (uint32_t b = 0; b < bodies; b++) given[b] = &paths->wall[scene->slot[b]];
-    given[bodies] = &paths->escaped;
-    for (uint32_t slot = 0; slot < FIBRAD_WALLS && rule->known[bodies] >= 0; slot++)
+    double *given[FIBRAD_WALLS_MAX + 1], pooled[FIBRAD_WALLS_MAX + 1] = {0}, sum = 0;
+    for (uint32_t b = 0; b < walls; b++) given[b] = &paths->wall[scene->slot[b]];
+    given[walls] = &paths->escaped;
+    for (uint32_t slot = 0; slot < FIBRAD_WALLS && rule->known[walls] >= 0; slot++)
         if (fibrad_is_opening(&scene->container, slot)) paths->escaped += paths->wall[slot], paths->wall[slot] = 0;
-    for (uint32_t b = 0; b <= bodies; b++) {
+    for (uint32_t b = 0; b <= walls; b++) {
         if (!(rule->known[b] >= 0)) continue;
         pooled[b] = fibrad_min((own * *given[b] + rule->known[b] / scale) / (own + rule->known_paths), all);
         sum += pooled[b], *given[b] = 0;
@@ -213,7 +213,7 @@ static double pool_known(fibrad_paths *paths, const fibrad_exchange_rule *rule, 
     const double fit = others > 0 || sum == 0 ? 1 : all / sum;
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) paths->wall[slot] *= others;
     paths->escaped *= others, paths->beyond *= others;
-    for (uint32_t b = 0; b <= bodies; b++)
+    for (uint32_t b = 0; b <= walls; b++)
         if (rule->known[b] >= 0) *given[b] = fit * pooled[b];
     return others;
 }
@@ -245,7 +245,7 @@ static int empty_row(const fibrad_scene *scene, fibrad_row *row) {
     row->length = row->directions = row->fallbacks = 0;
     row->symmetric = 0;
     row->escaped = row->error = 0;
-    for (uint32_t b = 0; b < scene->facts.bodies; b++) row->body[b] = 0;
+    for (uint32_t b = 0; b < scene->facts.walls; b++) row->wall[b] = 0;
     return FIBRAD_OK;
 }
 
@@ -253,9 +253,9 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
                             fibrad_row *row) {
     exchange_task *task = *(exchange_task *const *)of;
     const fibrad_exchange_rule *rule = task->rule;
-    double beam_error = 0, body[FIBRAD_BODIES_MAX], wall[FIBRAD_SLOTS], scale = 0, to_spheres = 1;
+    double beam_error = 0, wall[FIBRAD_WALLS_MAX], wall[FIBRAD_SLOTS], scale = 0, to_spheres = 1;
     if (task->emissivity[i] == 0) return empty_row(scene, row);
-    fibrad_row leg = fibrad_row_scratch(space, body);
+    fibrad_row leg = fibrad_row_scratch(space, wall);
     fibrad_paths paths = paths_of(task, space, scene, i);
     int status = want_legs(space, &paths, rule);
     if (status == FIBRAD_OK) status = first_leg(scene, space, i, task, &leg, &beam_error);
@@ -296,7 +296,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     row->beyond = leg.beyond + paths.beyond * scale;
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
         wall[slot] = wall[slot] * task->wall_emissivity[slot] + paths.wall[slot] * scale;
-    fibrad_row_bodies(scene, wall, row);
+    fibrad_row_walls(scene, wall, row);
     task->rays = paths.rays;
     return fibrad_row_checked(scene, row);
 }

@@ -50,13 +50,13 @@ typedef struct fibrad_paths {
     uint32_t back;  /* in: UINT32_MAX; out: a triangle that a path met on a side that belongs to no wall */
 } fibrad_paths;
 
-/* Sets emissivities by slot from those by wall. of_body: NULL: all walls are black. Openings are black. Errors:
+/* Sets emissivities by slot from those by wall. of_wall: NULL: all walls are black. Openings are black. Errors:
  * FIBRAD_E_ARGUMENT. */
-static inline int fibrad_paths_emissivities(const fibrad_scene *scene, const double *of_body,
+static inline int fibrad_paths_emissivities(const fibrad_scene *scene, const double *of_wall,
                                             double wall[FIBRAD_SLOTS]) {
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) wall[slot] = fibrad_is_opening(&scene->container, slot);
-    for (uint32_t b = 0; b < scene->facts.bodies; b++) {
-        const double emissivity = of_body != NULL ? of_body[b] : 1;
+    for (uint32_t b = 0; b < scene->facts.walls; b++) {
+        const double emissivity = of_wall != NULL ? of_wall[b] : 1;
         if (!(emissivity >= 0 && emissivity <= 1)) return FIBRAD_E_ARGUMENT;
         wall[scene->slot[b]] = emissivity;
     }

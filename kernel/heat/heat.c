@@ -45,7 +45,7 @@ static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
 
 static uint32_t meshes_of(const fibrad_scene *scene) {
     uint32_t meshes = 0;
-    for (uint32_t b = 0; b < scene->facts.bodies; b++) meshes += scene->slot[b] >= FIBRAD_MESHES;
+    for (uint32_t b = 0; b < scene->facts.walls; b++) meshes += scene->slot[b] >= FIBRAD_MESHES;
     return meshes;
 }
 
@@ -57,7 +57,7 @@ static void dimension(fibrad_heat *heat, const fibrad_heat_config *config, const
     heat->scene = scene;
     heat->hash = scene->hash;
     heat->spheres = spheres;
-    heat->given_bodies = scene->facts.bodies;
+    heat->given_walls = scene->facts.walls;
     fibrad_copy(heat->slot, scene->slot, sizeof heat->slot);
     heat->openings = scene->container.openings;
     heat->beams = config->directions * config->points;
@@ -95,10 +95,10 @@ static void take_contacts(fibrad_arena *arena, fibrad_heat *heat) {
                                                       &c->diagonal,    &c->search,    &c->product, &c->missing};
     for (size_t k = 0; k < FIBRAD_CONTACT_ARRAYS; k++)
         *of_nodes[k] = fibrad_arena_take(arena, heat->bodies, sizeof(double));
-    c->node = fibrad_arena_take(arena, heat->spheres + FIBRAD_BODIES_MAX, sizeof *c->node);
+    c->node = fibrad_arena_take(arena, heat->spheres + FIBRAD_WALLS_MAX, sizeof *c->node);
     c->kind = fibrad_arena_take(arena, heat->bodies, 1);
     c->nodes = heat->bodies;
-    heat->checked_node = fibrad_arena_take(arena, heat->spheres + FIBRAD_BODIES_MAX, sizeof *heat->checked_node);
+    heat->checked_node = fibrad_arena_take(arena, heat->spheres + FIBRAD_WALLS_MAX, sizeof *heat->checked_node);
     heat->checked_kind = fibrad_arena_take(arena, heat->bodies, 1);
     heat->joined.root = fibrad_arena_take(arena, heat->bodies + 1, sizeof *heat->joined.root);
     heat->joined.anchored = fibrad_arena_take(arena, heat->bodies + 1, 1);
@@ -359,9 +359,9 @@ static bool same_triangles(const fibrad_heat *heat, const fibrad_scene *scene) {
 int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene) {
     if (heat == NULL || scene == NULL) return FIBRAD_E_ARGUMENT;
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
-    if (scene->facts.spheres != heat->spheres || scene->facts.bodies != heat->given_bodies) return FIBRAD_E_ARGUMENT;
+    if (scene->facts.spheres != heat->spheres || scene->facts.walls != heat->given_walls) return FIBRAD_E_ARGUMENT;
     if (scene->region) return FIBRAD_E_UNSUPPORTED;
-    for (uint32_t b = 0; b < heat->given_bodies; b++)
+    for (uint32_t b = 0; b < heat->given_walls; b++)
         if (scene->slot[b] != heat->slot[b]) return FIBRAD_E_ARGUMENT;
     if (scene->container.openings != heat->openings) return FIBRAD_E_ARGUMENT;
     if (!same_triangles(heat, scene)) return FIBRAD_E_ARGUMENT;

@@ -154,7 +154,7 @@ typedef struct fibrad_heat_given {
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
     bool insulated[FIBRAD_HEAT_OTHERS];                                /* by body, from the first wall on */
     double *lift; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
-    bool lifted[FIBRAD_BODIES_MAX]; /* [meshes], whether sides of the mesh have temperatures */
+    bool lifted[FIBRAD_WALLS_MAX]; /* [meshes], whether sides of the mesh have temperatures */
     const double *light;            /* [patches] power that arrives from outside, the caller's; NULL: none */
     const double *absorbed;         /* [patches] light that patches have absorbed, the caller's; NULL: none */
     bool afloat;                    /* the sources fix differences of emissions, but not their level */
@@ -214,7 +214,7 @@ struct fibrad_heat {
 
     /* bodies and their patches */
     uint32_t spheres, meshes, triangles;            /* numbers of them */
-    uint32_t given_bodies, slot[FIBRAD_BODIES_MAX]; /* number of walls, and their slots */
+    uint32_t given_walls, slot[FIBRAD_WALLS_MAX]; /* number of walls, and their slots */
     uint32_t openings;                              /* bit k: slot k is an opening */
     uint32_t bodies;                                /* number of bodies, see the top of this file */
     uint32_t patches, patches_capacity;             /* number of patches, and room */
@@ -223,7 +223,7 @@ struct fibrad_heat {
     uint32_t *first;                                /* [bodies + 1], first patch of each body */
     uint32_t *order;                                /* [spheres], the caller's index, a copy of that of the scene */
     fibrad_heat_wall wall[FIBRAD_WALLS];            /* by slot */
-    uint32_t of_mesh[FIBRAD_BODIES_MAX];            /* patches of each mesh */
+    uint32_t of_mesh[FIBRAD_WALLS_MAX];            /* patches of each mesh */
     fibrad_mesh_cut *cut; /* [2 triangles], by the caller's numbers; patches from first_meshed on */
     fibrad_heat_division division;
     fibrad_harmonics harmonics[2]; /* on patches, and on fours for the coarser level */

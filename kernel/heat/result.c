@@ -348,12 +348,12 @@ static void read_errors(const fibrad_heat *heat, fibrad_heat_result *result) {
         if (square > 0) patches += squared(patch_error(heat, b)) + squared(spot_error(heat, b));
         all += square;
     }
-    for (uint32_t k = 0; k < heat->given_bodies && result->body_error != NULL; k++)
-        result->body_error[k] = whole_power_error(heat, &errors, fibrad_heat_body(heat, heat->slot[k]));
+    for (uint32_t k = 0; k < heat->given_walls && result->wall_error != NULL; k++)
+        result->wall_error[k] = whole_power_error(heat, &errors, fibrad_heat_body(heat, heat->slot[k]));
     result->surroundings_error = fibrad_sqrt(surroundings_error_of(heat, &errors));
-    for (uint32_t k = 0; k < heat->given_bodies && result->body_area != NULL; k++)
-        result->body_area[k] = heat->slot[k] < FIBRAD_MESHES ? fibrad_heat_wall_area(heat, heat->slot[k])
-                                                             : fibrad_scene_body_area(heat->scene, k);
+    for (uint32_t k = 0; k < heat->given_walls && result->wall_area != NULL; k++)
+        result->wall_area[k] = heat->slot[k] < FIBRAD_MESHES ? fibrad_heat_wall_area(heat, heat->slot[k])
+                                                             : fibrad_scene_wall_area(heat->scene, k);
     patches = fibrad_min(patches, all);
     result->error_patches = fibrad_sqrt(patches / spheres);
     result->error_beams = fibrad_sqrt((all - patches) / spheres);
@@ -591,22 +591,22 @@ static bool read_temperatures(const fibrad_heat *heat, const fibrad_heat_result 
         if (result->temperature_error != NULL) result->temperature_error[i] = mean.error;
         read_inside(heat, b, mean, fibrad_sqrt(power_error_of(heat, &errors, b)), result);
     }
-    for (uint32_t k = 0; k < heat->given_bodies; k++) {
+    for (uint32_t k = 0; k < heat->given_walls; k++) {
         const uint32_t b = fibrad_heat_body(heat, heat->slot[k]);
         if (heat->sources.hold[b] >= 0) found = found && heat->sources.temperature[b] >= 0;
         const double t =
             fibrad_heat_is_insulated(heat, b) ? insulated_temperature(heat, b) : heat->sources.temperature[b];
-        if (result->body_temperature != NULL) result->body_temperature[k] = t;
-        if (result->body_temperature_error != NULL)
-            result->body_temperature_error[k] = temperature_error_of(heat, &errors, &level, b, t);
+        if (result->wall_temperature != NULL) result->wall_temperature[k] = t;
+        if (result->wall_temperature_error != NULL)
+            result->wall_temperature_error[k] = temperature_error_of(heat, &errors, &level, b, t);
     }
     return found;
 }
 
 /* The result for the power of a slot. If the slot is an opening or empty: that of the surroundings. */
 static double *power_of_slot(const fibrad_heat *heat, uint32_t slot, fibrad_heat_result *result) {
-    for (uint32_t b = 0; b < heat->given_bodies; b++)
-        if (heat->slot[b] == slot) return &result->body_power[b];
+    for (uint32_t b = 0; b < heat->given_walls; b++)
+        if (heat->slot[b] == slot) return &result->wall_power[b];
     return &result->surroundings_power;
 }
 
@@ -652,8 +652,8 @@ static void read_contacts(const fibrad_heat *heat, fibrad_heat_result *result) {
         if (c->count > 0) result->power[heat->order[b]] += c->gain[b];
         if (result->conducted != NULL) result->conducted[heat->order[b]] = fibrad_heat_conducted(heat, b);
     }
-    for (uint32_t k = 0; k < heat->given_bodies && result->body_conducted != NULL; k++)
-        result->body_conducted[k] = fibrad_heat_conducted(heat, fibrad_heat_body(heat, heat->slot[k]));
+    for (uint32_t k = 0; k < heat->given_walls && result->wall_conducted != NULL; k++)
+        result->wall_conducted[k] = fibrad_heat_conducted(heat, fibrad_heat_body(heat, heat->slot[k]));
     for (uint32_t k = 0; k < c->count && result->contact_flow != NULL; k++)
         result->contact_flow[k] =
             c->conductance[k] * (c->temperature[c->node[c->first[k]]] - c->temperature[c->node[c->second[k]]]) +
@@ -662,17 +662,17 @@ static void read_contacts(const fibrad_heat *heat, fibrad_heat_result *result) {
 
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     if (heat == NULL || result == NULL || (heat->spheres > 0 && result->power == NULL)) return FIBRAD_E_ARGUMENT;
-    if (heat->given_bodies > 0 && result->body_power == NULL) return FIBRAD_E_ARGUMENT;
+    if (heat->given_walls > 0 && result->wall_power == NULL) return FIBRAD_E_ARGUMENT;
     if (heat->solution.phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     const uint32_t spheres = heat->spheres, open = heat->bodies - 1;
     for (uint32_t b = 0; b < spheres; b++) result->power[heat->order[b]] = heat->solution.power[b];
     read_contacts(heat, result);
     result->surroundings_power = heat->solution.power[open];
-    for (uint32_t b = 0; b < heat->given_bodies; b++) {
+    for (uint32_t b = 0; b < heat->given_walls; b++) {
         const uint32_t own = fibrad_heat_body(heat, heat->slot[b]);
-        result->body_power[b] = heat->solution.power[own];
-        if (heat->contacts.count > 0) result->body_power[b] += heat->contacts.gain[own];
-        if (result->body_absorbed != NULL) result->body_absorbed[b] = fibrad_heat_absorbs(heat, own);
+        result->wall_power[b] = heat->solution.power[own];
+        if (heat->contacts.count > 0) result->wall_power[b] += heat->contacts.gain[own];
+        if (result->wall_absorbed != NULL) result->wall_absorbed[b] = fibrad_heat_absorbs(heat, own);
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         if (heat->openings >> k & 1) result->surroundings_power += heat->solution.power[fibrad_heat_body(heat, k)];
@@ -771,7 +771,7 @@ static double temperature_of_side(const fibrad_heat *heat, uint32_t b, const fib
 }
 
 int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temperature) {
-    double beyond[FIBRAD_BODIES_MAX][2];
+    double beyond[FIBRAD_WALLS_MAX][2];
     if (heat == NULL) return FIBRAD_E_ARGUMENT;
     if (heat->solution.phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     const fibrad_mesh *mesh = &heat->scene->mesh;

@@ -43,8 +43,8 @@ static radiator of_sphere(const fibrad_heat_sources *s, uint32_t i) {
 /* A wall that is insulated reflects all, like one of emissivity 0. */
 static radiator of_body(const fibrad_heat_sources *s, uint32_t b) {
     const bool insulated = s->insulated != NULL && s->insulated[b] != 0;
-    return (radiator){insulated ? __builtin_nan("") : s->body_temperature[b], insulated ? 0 : s->body_emissivity[b],
-                      insulated ? 0 : or_else(s->body_power, b, __builtin_nan("")), 0, __builtin_nan("")};
+    return (radiator){insulated ? __builtin_nan("") : s->wall_temperature[b], insulated ? 0 : s->wall_emissivity[b],
+                      insulated ? 0 : or_else(s->wall_power, b, __builtin_nan("")), 0, __builtin_nan("")};
 }
 
 /* A sphere or a wall by the caller's number. */
@@ -102,7 +102,7 @@ static bool is_endless_unknown(const fibrad_heat *heat, const fibrad_heat_source
 
 /* The reason why a contact is not valid. */
 static int contact_why(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t k) {
-    const uint32_t ends = heat->spheres + heat->given_bodies;
+    const uint32_t ends = heat->spheres + heat->given_walls;
     if (s->contact_first[k] >= ends || s->contact_second[k] >= ends) return FIBRAD_WHY_CONTACT;
     return s->conductance[k] >= 0 && s->conductance[k] <= FIBRAD_CONDUCTANCE_MAX ? FIBRAD_WHY_UNSAID
                                                                                  : FIBRAD_WHY_CONDUCTANCE;
@@ -112,7 +112,7 @@ static int contact_why(const fibrad_heat *heat, const fibrad_heat_sources *s, ui
 static void name_end(const fibrad_heat *heat, uint32_t end, fibrad_fault *fault) {
     if (end < heat->spheres)
         fault->first = fault->second = end;
-    else if (end < heat->spheres + heat->given_bodies)
+    else if (end < heat->spheres + heat->given_walls)
         fault->wall = end - heat->spheres + 1;
 }
 
@@ -134,7 +134,7 @@ static void check_contacts(const fibrad_heat *heat, const fibrad_heat_sources *s
     c->first = s->contact_first, c->second = s->contact_second, c->conductance = s->conductance, c->count = s->contacts;
     c->sigma = s->sigma, c->zero = s->surroundings;
     for (uint32_t b = 0; b < heat->spheres; b++) c->node[heat->order[b]] = b;
-    for (uint32_t k = 0; k < heat->given_bodies; k++)
+    for (uint32_t k = 0; k < heat->given_walls; k++)
         c->node[heat->spheres + k] = fibrad_heat_body(heat, heat->slot[k]);
     fibrad_contact_mark(c);
 }
@@ -176,7 +176,7 @@ static bool light_valid(const fibrad_heat *heat, const double *light) {
 /* The reason why the sources as a whole are not valid. */
 static int sources_why(const fibrad_heat *heat, const fibrad_heat_sources *s) {
     if (heat->spheres > 0 && (s->temperature == NULL || s->emissivity == NULL)) return FIBRAD_WHY_MISSING;
-    if (heat->given_bodies > 0 && (s->body_temperature == NULL || s->body_emissivity == NULL))
+    if (heat->given_walls > 0 && (s->wall_temperature == NULL || s->wall_emissivity == NULL))
         return FIBRAD_WHY_MISSING;
     if (!is_temperature(s->surroundings)) return FIBRAD_WHY_SURROUNDINGS;
     if (!is_sigma(s->sigma)) return FIBRAD_WHY_SIGMA;
@@ -188,7 +188,7 @@ static int sources_why(const fibrad_heat *heat, const fibrad_heat_sources *s) {
 /* Finds what exchanges heat. A given temperature, or `hold`, anchors its component. All that radiate belong to one
  * component. A component that neither radiates nor is anchored has no temperature: then the fault names a sphere. */
 static void check_components(const fibrad_heat *heat, const fibrad_heat_sources *s, fibrad_fault *fault) {
-    const uint32_t all = heat->bodies, ends = heat->spheres + heat->given_bodies;
+    const uint32_t all = heat->bodies, ends = heat->spheres + heat->given_walls;
     fibrad_contacts *c = heat->checked;
     fibrad_contact_parts parts = heat->joined;
     for (uint32_t b = 0; b <= all; b++) parts.root[b] = b, parts.anchored[b] = 0;
@@ -222,7 +222,7 @@ int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *s, fib
             found.why = FIBRAD_WHY_CONDUCTIVITY;
         if (found.why != FIBRAD_WHY_UNSAID) found.first = found.second = i;
     }
-    for (uint32_t b = 0; b < heat->given_bodies && found.why == FIBRAD_WHY_UNSAID; b++) {
+    for (uint32_t b = 0; b < heat->given_walls && found.why == FIBRAD_WHY_UNSAID; b++) {
         found.why = wall_why(heat, s, b);
         if (found.why != FIBRAD_WHY_UNSAID) found.wall = b + 1;
     }
@@ -290,7 +290,7 @@ static double middle_emission(const fibrad_heat *heat, const fibrad_heat_sources
     }
     const radiator opening = of_opening(s);
     if (heat->openings != 0) widen_range(range, s, &opening);
-    for (uint32_t b = 0; b < heat->given_bodies; b++) {
+    for (uint32_t b = 0; b < heat->given_walls; b++) {
         const radiator source = of_body(s, b);
         widen_range(range, s, &source);
         if (heat->slot[b] < FIBRAD_MESHES || s->side_temperature == NULL) continue;
@@ -382,7 +382,7 @@ static void set_walls(fibrad_heat *heat, const fibrad_heat_sources *s, double mi
     for (uint32_t k = 0; k < FIBRAD_SLOTS; k++)
         source[k] = fibrad_is_opening(&heat->scene->container, k) ? of_opening(s) : absent;
     fibrad_zero(heat->sources.insulated, sizeof heat->sources.insulated);
-    for (uint32_t b = 0; b < heat->given_bodies; b++) {
+    for (uint32_t b = 0; b < heat->given_walls; b++) {
         source[heat->slot[b]] = of_body(s, b);
         heat->sources.insulated[fibrad_heat_body(heat, heat->slot[b]) - heat->spheres] =
             s->insulated != NULL && s->insulated[b] != 0;
@@ -417,7 +417,7 @@ static void begin_contacts(fibrad_heat *heat) {
     if (c->count == 0) return;
     c->first = checked->first, c->second = checked->second, c->conductance = checked->conductance;
     c->sigma = checked->sigma, c->zero = checked->zero, c->anchored = checked->anchored;
-    fibrad_copy(c->node, checked->node, (heat->spheres + heat->given_bodies) * sizeof *c->node);
+    fibrad_copy(c->node, checked->node, (heat->spheres + heat->given_walls) * sizeof *c->node);
     fibrad_copy(c->kind, checked->kind, heat->bodies);
 }
 

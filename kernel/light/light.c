@@ -54,7 +54,7 @@ double *fibrad_light_scratch(const fibrad_workspace *space) {
 void fibrad_light_add_ends(const fibrad_scene *scene, const double area[FIBRAD_SLOTS], double flux,
                            fibrad_light_ends *ends) {
     ends->through += flux * area[FIBRAD_ESCAPED];
-    for (uint32_t b = 0; b < scene->facts.bodies; b++) ends->body[b] += flux * area[scene->slot[b]];
+    for (uint32_t b = 0; b < scene->facts.walls; b++) ends->wall[b] += flux * area[scene->slot[b]];
 }
 
 int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibrad_light *light, fibrad_light_ends *ends,

@@ -194,12 +194,12 @@ static double spread_on_walls(const fibrad_heat *heat, const ray_counts *counts,
     if (!(all > 0)) return power;
     for (int n = 0; n < 2 && wall; n++)
         spread_on_body(heat, body[n], counts->patch + (heat->first[body[n]] - counts->others), all, power, hits);
-    for (uint32_t b = 0; b < heat->given_bodies; b++) {
+    for (uint32_t b = 0; b < heat->given_walls; b++) {
         const uint32_t mesh = fibrad_heat_body(heat, heat->slot[b]);
         if (heat->slot[b] < FIBRAD_MESHES) continue;
         const double *count = meshed + (heat->first[mesh] - counts->first_meshed);
         spread_on_body(heat, mesh, count, all, power, hits);
-        ends->body[b] += power * (sum_of(count, heat->first[mesh + 1] - heat->first[mesh]) / all);
+        ends->wall[b] += power * (sum_of(count, heat->first[mesh + 1] - heat->first[mesh]) / all);
     }
     return power * (left / all);
 }
@@ -218,9 +218,9 @@ int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fi
     for (uint32_t n = 0; n < rays; n++)
         if (ray[n].first != FIBRAD_NONE && ray[n].first >= counts.others)
             add_ray(heat, &counts, ray[n].slot, ray[n].first);
-    for (uint32_t b = 0; b < heat->given_bodies; b++)
+    for (uint32_t b = 0; b < heat->given_walls; b++)
         if (heat->slot[b] < FIBRAD_WALLS)
-            ends->body[b] = spread_on_walls(heat, &counts, heat->slot[b], fibrad_max(0, ends->body[b]), hits, ends);
+            ends->wall[b] = spread_on_walls(heat, &counts, heat->slot[b], fibrad_max(0, ends->wall[b]), hits, ends);
     if (heat->meshes > 0)
         ends->through = spread_on_walls(heat, &counts, FIBRAD_ESCAPED, fibrad_max(0, ends->through), hits, ends);
     return FIBRAD_OK;
@@ -314,17 +314,17 @@ static void add_squares_of(const reflection *r, uint32_t body, double absorptivi
     }
 }
 
-static void add_squares(const reflection *r, const double *absorptivity, const double *body_absorptivity,
+static void add_squares(const reflection *r, const double *absorptivity, const double *wall_absorptivity,
                         double *squares) {
     const fibrad_heat *heat = r->heat;
-    double *outside = squares + heat->spheres + heat->given_bodies, *beams = outside + 1;
+    double *outside = squares + heat->spheres + heat->given_walls, *beams = outside + 1;
     for (uint32_t b = 0; b < heat->spheres; b++)
         add_squares_of(r, b, absorptivity[heat->order[b]], &squares[heat->order[b]], beams);
-    for (uint32_t k = 0; k < heat->given_bodies; k++) {
+    for (uint32_t k = 0; k < heat->given_walls; k++) {
         const uint32_t slot = heat->slot[k];
         double *own = &squares[heat->spheres + k];
-        add_squares_of(r, fibrad_heat_body(heat, slot), body_absorptivity[k], own, beams);
-        if (slot < FIBRAD_WALLS) add_squares_of(r, fibrad_heat_beyond(heat, slot), body_absorptivity[k], own, beams);
+        add_squares_of(r, fibrad_heat_body(heat, slot), wall_absorptivity[k], own, beams);
+        if (slot < FIBRAD_WALLS) add_squares_of(r, fibrad_heat_beyond(heat, slot), wall_absorptivity[k], own, beams);
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
         if (heat->openings >> k & 1) add_squares_of(r, heat->spheres + k, 1, outside, beams);
@@ -333,10 +333,10 @@ static void add_squares(const reflection *r, const double *absorptivity, const d
 
 int fibrad_heat_reflect(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light,
                         const fibrad_light_ray *ray, uint32_t rays, const double *absorptivity,
-                        const double *body_absorptivity, const fibrad_light_hits *hits) {
+                        const double *wall_absorptivity, const fibrad_light_hits *hits) {
     fibrad_workspace *space;
     if (heat == NULL || work == NULL || (rays > 0 && ray == NULL) || hits == NULL) return FIBRAD_E_ARGUMENT;
-    if ((heat->spheres > 0 && absorptivity == NULL) || (heat->given_bodies > 0 && body_absorptivity == NULL))
+    if ((heat->spheres > 0 && absorptivity == NULL) || (heat->given_walls > 0 && wall_absorptivity == NULL))
         return FIBRAD_E_ARGUMENT;
     if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     const size_t patches = heat->patches, bytes = (4 * patches + counts_of(heat, NULL).of_meshes) * sizeof(double);
@@ -360,14 +360,14 @@ int fibrad_heat_reflect(const fibrad_heat *heat, fibrad_work *work, const fibrad
     for (uint32_t n = 0; n < rays; n++)
         if (ray[n].first != FIBRAD_NONE) r.count[ray[n].first]++;
     for (uint32_t b = 0; b < heat->spheres; b++) divide_light(&r, b, absorptivity[heat->order[b]], hits);
-    for (uint32_t k = 0; k < heat->given_bodies; k++)
-        divide_light_of_wall(&r, heat->slot[k], body_absorptivity[k], hits);
+    for (uint32_t k = 0; k < heat->given_walls; k++)
+        divide_light_of_wall(&r, heat->slot[k], wall_absorptivity[k], hits);
     for (uint32_t n = 0; n < rays; n++) {
         if (ray[n].first == FIBRAD_NONE || !(r.count[ray[n].first] > 0)) continue;
         const double sent = r.sent[ray[n].first];
         r.came[ray[n].second] += sent, r.squares[ray[n].second] += sent * sent;
     }
     for (uint32_t a = 0; a < heat->patches; a++) hits->light[a] += r.came[a];
-    add_squares(&r, absorptivity, body_absorptivity, hits->squares);
+    add_squares(&r, absorptivity, wall_absorptivity, hits->squares);
     return FIBRAD_OK;
 }

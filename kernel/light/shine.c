@@ -222,14 +222,14 @@ static double sum_of_light(const fibrad_heat *heat, uint32_t body, const double 
     return sum;
 }
 
-int fibrad_heat_sum_light(const fibrad_heat *heat, const double *hits, double *power, double *body_power) {
+int fibrad_heat_sum_light(const fibrad_heat *heat, const double *hits, double *power, double *wall_power) {
     if (heat == NULL || hits == NULL || (heat->spheres > 0 && power == NULL)) return FIBRAD_E_ARGUMENT;
-    if (heat->given_bodies > 0 && body_power == NULL) return FIBRAD_E_ARGUMENT;
+    if (heat->given_walls > 0 && wall_power == NULL) return FIBRAD_E_ARGUMENT;
     for (uint32_t b = 0; b < heat->spheres; b++) power[heat->order[b]] = sum_of_light(heat, b, hits);
-    for (uint32_t b = 0; b < heat->given_bodies; b++) {
+    for (uint32_t b = 0; b < heat->given_walls; b++) {
         const uint32_t slot = heat->slot[b];
-        body_power[b] = sum_of_light(heat, fibrad_heat_body(heat, slot), hits);
-        if (slot < FIBRAD_WALLS) body_power[b] += sum_of_light(heat, fibrad_heat_beyond(heat, slot), hits);
+        wall_power[b] = sum_of_light(heat, fibrad_heat_body(heat, slot), hits);
+        if (slot < FIBRAD_WALLS) wall_power[b] += sum_of_light(heat, fibrad_heat_beyond(heat, slot), hits);
     }
     return FIBRAD_OK;
 }
@@ -249,7 +249,7 @@ int fibrad_heat_keep_light(const fibrad_heat *heat, double *spots) {
     if (heat == NULL || spots == NULL) return FIBRAD_E_ARGUMENT;
     if (heat->solution.phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     for (uint32_t b = 0; b < heat->spheres; b++) keep_on_body(heat, b, spots);
-    for (uint32_t k = 0; k < heat->given_bodies; k++) keep_on_body(heat, fibrad_heat_body(heat, heat->slot[k]), spots);
+    for (uint32_t k = 0; k < heat->given_walls; k++) keep_on_body(heat, fibrad_heat_body(heat, heat->slot[k]), spots);
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
         for (uint32_t b = fibrad_heat_beyond(heat, k), a = heat->first[b]; a < heat->first[b + 1]; a++) spots[a] = 0;
     return FIBRAD_OK;

@@ -14,10 +14,10 @@
 #define JOINT_STEPS   200
 
 /* The factor from one wall to another. */
-static double *between(const fibrad_matrix *m, uint32_t b, uint32_t c) { return &m->between[b * m->bodies + c]; }
+static double *between(const fibrad_matrix *m, uint32_t b, uint32_t c) { return &m->between[b * m->walls + c]; }
 
 /* A_i e_i over A_b e_b. */
-static double over_body(const fibrad_matrix *m, uint32_t i, uint32_t b) {
+static double over_wall(const fibrad_matrix *m, uint32_t i, uint32_t b) {
     const double ratio = m->r[i] / m->length[b];
     return ratio * ratio;
 }
@@ -25,42 +25,42 @@ static double over_body(const fibrad_matrix *m, uint32_t i, uint32_t b) {
 /* The mean of both directions between walls, weighted by the paths per area. The square of a row's error is divided
  * among its entries by their share. Entries to spheres come from elsewhere. */
 static void join_ways(fibrad_matrix *m) {
-    double square[FIBRAD_BODIES_MAX];
-    for (uint32_t b = 0; b < m->bodies; b++)
-        square[b] = m->body_error[b] * m->body_error[b] * (m->body_escaped[b] + *between(m, b, b));
-    for (uint32_t b = 0; b < m->bodies; b++)
+    double square[FIBRAD_WALLS_MAX];
+    for (uint32_t b = 0; b < m->walls; b++)
+        square[b] = m->wall_error[b] * m->wall_error[b] * (m->wall_escaped[b] + *between(m, b, b));
+    for (uint32_t b = 0; b < m->walls; b++)
         for (uint32_t c = 0; c < b; c++) {
             if (m->length[b] == 0 || m->length[c] == 0) continue;
             const double larger = fibrad_max(m->length[b], m->length[c]);
             double a_b = m->length[b] / larger, a_c = m->length[c] / larger;
             a_b *= a_b, a_c *= a_c;
             const double sum = (*between(m, b, c) + *between(m, c, b)) / (a_b + a_c);
-            const double both = (*between(m, b, c) * m->body_error[b] * m->body_error[b] +
-                                 *between(m, c, b) * m->body_error[c] * m->body_error[c]) /
+            const double both = (*between(m, b, c) * m->wall_error[b] * m->wall_error[b] +
+                                 *between(m, c, b) * m->wall_error[c] * m->wall_error[c]) /
                                 ((a_b + a_c) * (a_b + a_c));
             square[b] += a_c * a_c * both, square[c] += a_b * a_b * both;
             *between(m, b, c) = a_c * sum, *between(m, c, b) = a_b * sum;
         }
-    for (uint32_t b = 0; b < m->bodies; b++)
-        if (m->length[b] > 0) m->body_error[b] = fibrad_sqrt(square[b]);
+    for (uint32_t b = 0; b < m->walls; b++)
+        if (m->length[b] > 0) m->wall_error[b] = fibrad_sqrt(square[b]);
 }
 
 /* What a wall sends to other walls and the surroundings. */
 static double rest_of(const fibrad_matrix *m, uint32_t b) {
-    double rest = m->body_escaped[b];
-    for (uint32_t c = 0; c < m->bodies; c++) rest += *between(m, b, c);
+    double rest = m->wall_escaped[b];
+    for (uint32_t c = 0; c < m->walls; c++) rest += *between(m, b, c);
     return rest;
 }
 
 /* What a wall should send to all but spheres. This is a mean of what the paths tell and of what the rows of spheres
  * leave. The variance of the latter is about that of their entries, by share. */
 static double rest_wanted(fibrad_matrix *m, uint32_t b) {
-    const double rest = rest_of(m, b), error = m->body_error[b];
+    const double rest = rest_of(m, b), error = m->wall_error[b];
     double spheres = 0, variance = 0;
     for (uint32_t i = 0; i < m->result.n; i++) {
-        const double share = m->body[(size_t)i * m->bodies + b] * over_body(m, i, b), own = m->error[i];
+        const double share = m->wall[(size_t)i * m->walls + b] * over_wall(m, i, b), own = m->error[i];
         spheres += share;
-        variance += share * over_body(m, i, b) * own * own;
+        variance += share * over_wall(m, i, b) * own * own;
     }
     m->correction = fibrad_max(m->correction, fibrad_abs(spheres + rest - 1));
     const double all = variance + error * error;
@@ -86,52 +86,52 @@ static void solve_linear(uint32_t n, double *a, double *x) {
 /* Finds v with v_b (fixed_b + sum over c of D_bc v_c) = wanted_b. In the logarithms of v this is the minimum of a
  * convex function. Newton's method finds it. Simple iterations would never end if two walls see little but each
  * other. Returns the largest error of the last step. */
-static double balance_bodies(const fibrad_matrix *m, const double fixed[], const double wanted[], double v[]) {
+static double balance_walls(const fibrad_matrix *m, const double fixed[], const double wanted[], double v[]) {
     double worst = 0;
     for (int step = 0; step < OWN_STEPS; step++) {
-        double *a = m->newton, x[FIBRAD_BODIES_MAX] = {0};
+        double *a = m->newton, x[FIBRAD_WALLS_MAX] = {0};
         worst = 0;
-        fibrad_zero(a, m->bodies * m->bodies * sizeof *a);
-        for (uint32_t b = 0; b < m->bodies; b++) {
-            a[b * m->bodies + b] = 1;
+        fibrad_zero(a, m->walls * m->walls * sizeof *a);
+        for (uint32_t b = 0; b < m->walls; b++) {
+            a[b * m->walls + b] = 1;
             if (m->length[b] == 0) continue;
             double sum = v[b] * fixed[b];
-            for (uint32_t c = 0; c < m->bodies; c++) {
+            for (uint32_t c = 0; c < m->walls; c++) {
                 const double part = v[b] * *between(m, b, c) * v[c];
                 sum += part;
-                a[b * m->bodies + c] = m->length[c] > 0 ? part : 0;
+                a[b * m->walls + c] = m->length[c] > 0 ? part : 0;
             }
-            a[b * m->bodies + b] += sum;
+            a[b * m->walls + b] += sum;
             x[b] = wanted[b] - sum;
             worst = fibrad_max(worst, fibrad_abs(x[b]));
         }
         if (worst <= CLOSED_TO / 8) return worst;
-        solve_linear(m->bodies, a, x);
-        for (uint32_t b = 0; b < m->bodies; b++) v[b] = x[b] > 0 ? v[b] * (1 + fibrad_min(x[b], 1)) : v[b] / (1 - x[b]);
+        solve_linear(m->walls, a, x);
+        for (uint32_t b = 0; b < m->walls; b++) v[b] = x[b] > 0 ? v[b] * (1 + fibrad_min(x[b], 1)) : v[b] / (1 - x[b]);
     }
     return worst;
 }
 
-static void scale_bodies(fibrad_matrix *m, const double v[]) {
-    for (uint32_t b = 0; b < m->bodies; b++) {
-        for (uint32_t c = 0; c < m->bodies; c++) *between(m, b, c) *= v[b] * v[c];
-        m->body_escaped[b] *= v[b];
+static void scale_walls(fibrad_matrix *m, const double v[]) {
+    for (uint32_t b = 0; b < m->walls; b++) {
+        for (uint32_t c = 0; c < m->walls; c++) *between(m, b, c) *= v[b] * v[c];
+        m->wall_escaped[b] *= v[b];
     }
 }
 
 /* What walls send to spheres that are scaled by u, and to the surroundings. */
 static void sum_outside(const fibrad_matrix *m, const double *u, double outside[]) {
-    for (uint32_t b = 0; b < m->bodies; b++) outside[b] = m->body_escaped[b];
+    for (uint32_t b = 0; b < m->walls; b++) outside[b] = m->wall_escaped[b];
     for (uint32_t i = 0; i < m->result.n; i++)
-        for (uint32_t b = 0; b < m->bodies; b++)
-            if (m->length[b] > 0) outside[b] += m->body[(size_t)i * m->bodies + b] * over_body(m, i, b) * u[i];
+        for (uint32_t b = 0; b < m->walls; b++)
+            if (m->length[b] > 0) outside[b] += m->wall[(size_t)i * m->walls + b] * over_wall(m, i, b) * u[i];
 }
 
 /* One step of the spheres towards sums of 1. v: scales of the walls. Returns the largest error. */
 static double closing_step(fibrad_matrix *m, const double v[]) {
     for (uint32_t i = 0; i < m->result.n; i++) {
         m->scratch[i] = m->escaped[i] + m->beyond[i];
-        for (uint32_t b = 0; b < m->bodies; b++) m->scratch[i] += m->body[(size_t)i * m->bodies + b] * v[b];
+        for (uint32_t b = 0; b < m->walls; b++) m->scratch[i] += m->wall[(size_t)i * m->walls + b] * v[b];
     }
     return fibrad_matrix_step(m, true);
 }
@@ -139,14 +139,14 @@ static double closing_step(fibrad_matrix *m, const double v[]) {
 /* Brings all sums to 1. Returns the largest error in the end. If it is above CLOSED_ENOUGH, nothing has changed. */
 static double close_all(fibrad_matrix *m) {
     const fibrad_sparse *rows = &m->result;
-    double *u = m->scratch + rows->n, v[FIBRAD_BODIES_MAX] = {0}, one[FIBRAD_BODIES_MAX] = {0},
-           outside[FIBRAD_BODIES_MAX] = {0};
+    double *u = m->scratch + rows->n, v[FIBRAD_WALLS_MAX] = {0}, one[FIBRAD_WALLS_MAX] = {0},
+           outside[FIBRAD_WALLS_MAX] = {0};
     for (uint32_t i = 0; i < 2 * rows->n; i++) u[i] = 1;
-    for (uint32_t b = 0; b < m->bodies; b++) v[b] = one[b] = 1;
+    for (uint32_t b = 0; b < m->walls; b++) v[b] = one[b] = 1;
     double worst = 0;
     for (int step = 0; step < JOINT_STEPS; step++) {
         sum_outside(m, u, outside);
-        worst = balance_bodies(m, outside, one, v);
+        worst = balance_walls(m, outside, one, v);
         worst = fibrad_max(worst, closing_step(m, v));
         if (worst <= CLOSED_TO) break;
         fibrad_matrix_advance(m);
@@ -154,60 +154,60 @@ static double close_all(fibrad_matrix *m) {
     if (!(worst <= CLOSED_ENOUGH)) return worst;
     for (uint32_t i = 0; i < rows->n; i++) {
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) rows->f[k] *= u[i] * u[rows->col[k]];
-        for (uint32_t b = 0; b < m->bodies; b++) m->body[(size_t)i * m->bodies + b] *= u[i] * v[b];
+        for (uint32_t b = 0; b < m->walls; b++) m->wall[(size_t)i * m->walls + b] *= u[i] * v[b];
         m->escaped[i] *= u[i], m->beyond[i] *= u[i];
     }
-    scale_bodies(m, v);
+    scale_walls(m, v);
     return worst;
 }
 
-void fibrad_matrix_take_bodies(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_matrix_rule *rule) {
-    for (uint32_t b = 0; b < m->bodies; b++) {
+void fibrad_matrix_take_walls(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_matrix_rule *rule) {
+    for (uint32_t b = 0; b < m->walls; b++) {
         const double area = scene->wall_area[scene->slot[b]];
-        const double emitting = area * (rule->body_emissivity != NULL ? rule->body_emissivity[b] : 1);
+        const double emitting = area * (rule->wall_emissivity != NULL ? rule->wall_emissivity[b] : 1);
         const bool unbounded = !fibrad_finite(area);
         m->length[b] = unbounded ? 0 : fibrad_sqrt(emitting / (4 * FIBRAD_PI));
-        for (uint32_t c = 0; c < m->bodies; c++)
-            *between(m, b, c) = unbounded ? __builtin_nan("") : fibrad_max(0, rule->body_row[b].body[c]);
-        m->body_escaped[b] = unbounded ? __builtin_nan("") : rule->body_row[b].escaped;
-        m->body_error[b] = unbounded ? __builtin_nan("") : rule->body_row[b].error;
+        for (uint32_t c = 0; c < m->walls; c++)
+            *between(m, b, c) = unbounded ? __builtin_nan("") : fibrad_max(0, rule->wall_row[b].wall[c]);
+        m->wall_escaped[b] = unbounded ? __builtin_nan("") : rule->wall_row[b].escaped;
+        m->wall_error[b] = unbounded ? __builtin_nan("") : rule->wall_row[b].error;
     }
 }
 
 /* Keeps the shares among walls and to the surroundings as the paths tell them. */
-static void leave_bodies_open(fibrad_matrix *m) {
-    for (uint32_t b = 0; b < m->bodies; b++) {
-        const double *before = m->before + b * (m->bodies + 1);
-        for (uint32_t c = 0; c < m->bodies; c++) *between(m, b, c) = before[c];
-        m->body_escaped[b] = before[m->bodies];
+static void leave_walls_open(fibrad_matrix *m) {
+    for (uint32_t b = 0; b < m->walls; b++) {
+        const double *before = m->before + b * (m->walls + 1);
+        for (uint32_t c = 0; c < m->walls; c++) *between(m, b, c) = before[c];
+        m->wall_escaped[b] = before[m->walls];
     }
-    m->body_closure = m->correction;
+    m->wall_closure = m->correction;
 }
 
 void fibrad_matrix_enclose(fibrad_matrix *m) {
-    const uint32_t wide = m->bodies + 1;
-    double *before = m->before, wanted[FIBRAD_BODIES_MAX] = {0}, v[FIBRAD_BODIES_MAX], most = 0;
-    for (uint32_t b = 0; b < m->bodies; b++) most = fibrad_max(most, m->length[b]);
+    const uint32_t wide = m->walls + 1;
+    double *before = m->before, wanted[FIBRAD_WALLS_MAX] = {0}, v[FIBRAD_WALLS_MAX], most = 0;
+    for (uint32_t b = 0; b < m->walls; b++) most = fibrad_max(most, m->length[b]);
     if (most == 0) return;
     join_ways(m);
-    for (uint32_t b = 0; b < m->bodies; b++) {
-        for (uint32_t c = 0; c < m->bodies; c++) before[b * wide + c] = *between(m, b, c);
-        before[b * wide + m->bodies] = m->body_escaped[b];
+    for (uint32_t b = 0; b < m->walls; b++) {
+        for (uint32_t c = 0; c < m->walls; c++) before[b * wide + c] = *between(m, b, c);
+        before[b * wide + m->walls] = m->wall_escaped[b];
     }
-    for (uint32_t b = 0; b < m->bodies; b++)
+    for (uint32_t b = 0; b < m->walls; b++)
         if (m->length[b] > 0) wanted[b] = rest_wanted(m, b);
-    for (uint32_t b = 0; b < m->bodies; b++) v[b] = 1;
-    balance_bodies(m, m->body_escaped, wanted, v);
-    scale_bodies(m, v);
-    m->body_closure = close_all(m);
-    if (!(m->body_closure <= CLOSED_ENOUGH)) leave_bodies_open(m);
-    for (uint32_t b = 0; b < m->bodies; b++) { /* the change of a row by this is an error, too */
-        double square = 0, difference = before[b * wide + m->bodies] - m->body_escaped[b];
+    for (uint32_t b = 0; b < m->walls; b++) v[b] = 1;
+    balance_walls(m, m->wall_escaped, wanted, v);
+    scale_walls(m, v);
+    m->wall_closure = close_all(m);
+    if (!(m->wall_closure <= CLOSED_ENOUGH)) leave_walls_open(m);
+    for (uint32_t b = 0; b < m->walls; b++) { /* the change of a row by this is an error, too */
+        double square = 0, difference = before[b * wide + m->walls] - m->wall_escaped[b];
         square += difference * difference;
-        for (uint32_t c = 0; c < m->bodies; c++) {
+        for (uint32_t c = 0; c < m->walls; c++) {
             difference = before[b * wide + c] - *between(m, b, c);
             square += difference * difference;
         }
-        m->body_error[b] = fibrad_max(m->body_error[b], fibrad_sqrt(square));
+        m->wall_error[b] = fibrad_max(m->wall_error[b], fibrad_sqrt(square));
     }
 }

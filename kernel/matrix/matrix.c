@@ -26,14 +26,14 @@ static bool matrix_rule_valid(const fibrad_scene *scene, const fibrad_matrix_rul
     if (rule->kind < FIBRAD_ROWS_AREAS || rule->kind > FIBRAD_ROWS_EXCHANGE) return false;
     if (rule->emissivity != NULL ? !exchange : exchange && scene->facts.spheres > 0) return false;
     if (rule->tasks > TASKS_MAX || !(rule->drop >= 0 && rule->drop <= 1)) return false;
-    for (uint32_t b = 0; b < scene->facts.bodies && rule->body_row != NULL; b++) {
-        const fibrad_body_row *row = &rule->body_row[b];
+    for (uint32_t b = 0; b < scene->facts.walls && rule->wall_row != NULL; b++) {
+        const fibrad_wall_row *row = &rule->wall_row[b];
         if (!fibrad_finite(scene->wall_area[scene->slot[b]])) continue;
-        if (rule->body_emissivity != NULL && !(rule->body_emissivity[b] >= 0 && rule->body_emissivity[b] <= 1))
+        if (rule->wall_emissivity != NULL && !(rule->wall_emissivity[b] >= 0 && rule->wall_emissivity[b] <= 1))
             return false;
         bool valid = row->escaped >= 0 && fibrad_finite(row->escaped) && row->error >= 0 && fibrad_finite(row->error);
-        for (uint32_t c = 0; c < scene->facts.bodies; c++)
-            valid = valid && fibrad_finite(row->body[c]); /* values of what a deep bed hides may be slightly negative */
+        for (uint32_t c = 0; c < scene->facts.walls; c++)
+            valid = valid && fibrad_finite(row->wall[c]); /* values of what a deep bed hides may be slightly negative */
         if (!valid) return false;
     }
     for (uint32_t i = 0; i < scene->facts.spheres && rule->emissivity != NULL; i++)
@@ -60,7 +60,7 @@ static uint64_t entries_of(const fibrad_scene *scene, const fibrad_rows *rows, u
         size_t at = 0;
         for (const fibrad_record *row; (row = fibrad_rows_next(&rows[c], &at)) != NULL; entries += row->length) {
             const uint32_t *col = fibrad_record_col(row);
-            if (row->sphere >= scene->facts.spheres || row->bodies != scene->facts.bodies) return UINT64_MAX;
+            if (row->sphere >= scene->facts.spheres || row->walls != scene->facts.walls) return UINT64_MAX;
             if (row->length > 0 && col[row->length - 1] >= scene->facts.spheres) return UINT64_MAX;
             if (emissivity != NULL && !entries_emit(row, emissivity)) return UINT64_MAX;
             *lines = *lines && row->lines > 0;
@@ -80,12 +80,12 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
     m->escaped = fibrad_arena_take(arena, n, sizeof *m->escaped);
     m->beyond = fibrad_arena_take(arena, n, sizeof *m->beyond);
     m->error = fibrad_arena_take(arena, n, sizeof *m->error);
-    m->body = fibrad_arena_take(arena, n * m->bodies, sizeof *m->body);
-    m->between = fibrad_arena_take(arena, m->enclosed ? m->bodies * m->bodies : 0, sizeof *m->between);
-    m->body_escaped = fibrad_arena_take(arena, m->enclosed ? m->bodies : 0, sizeof *m->body_escaped);
-    m->body_error = fibrad_arena_take(arena, m->enclosed ? m->bodies : 0, sizeof *m->body_error);
-    m->newton = fibrad_arena_take(arena, m->enclosed ? m->bodies * (m->bodies + 1) : 0, sizeof *m->newton);
-    m->before = fibrad_arena_take(arena, m->enclosed ? m->bodies * (m->bodies + 1) : 0, sizeof *m->before);
+    m->wall = fibrad_arena_take(arena, n * m->walls, sizeof *m->wall);
+    m->between = fibrad_arena_take(arena, m->enclosed ? m->walls * m->walls : 0, sizeof *m->between);
+    m->wall_escaped = fibrad_arena_take(arena, m->enclosed ? m->walls : 0, sizeof *m->wall_escaped);
+    m->wall_error = fibrad_arena_take(arena, m->enclosed ? m->walls : 0, sizeof *m->wall_error);
+    m->newton = fibrad_arena_take(arena, m->enclosed ? m->walls * (m->walls + 1) : 0, sizeof *m->newton);
+    m->before = fibrad_arena_take(arena, m->enclosed ? m->walls * (m->walls + 1) : 0, sizeof *m->before);
     m->r = fibrad_arena_take(arena, n, sizeof *m->r);
     m->radius = fibrad_arena_take(arena, m->sampled ? n : 0, sizeof *m->radius);
     m->area = fibrad_arena_take(arena, m->raw ? 0 : n, sizeof *m->area);
@@ -105,12 +105,12 @@ static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const 
     if ((rows == NULL && count > 0) || !matrix_rule_valid(scene, rule)) return false;
     bool lines;
     const uint64_t entries = entries_of(scene, rows, count, rule != NULL ? rule->emissivity : NULL, &lines);
-    *m = (fibrad_matrix){.bodies = scene->facts.bodies, .tasks = tasks_of(rule)};
+    *m = (fibrad_matrix){.walls = scene->facts.walls, .tasks = tasks_of(rule)};
     m->raw = rule != NULL && rule->raw;
     m->exchange = rule != NULL && rule->kind == FIBRAD_ROWS_EXCHANGE;
     m->sampled = rule != NULL && rule->kind != FIBRAD_ROWS_AREAS;
     m->lines = lines && !m->raw && !m->sampled;
-    m->enclosed = rule != NULL && rule->body_row != NULL;
+    m->enclosed = rule != NULL && rule->wall_row != NULL;
     m->drop = rule != NULL ? rule->drop : 0;
     m->parallel = rule != NULL ? rule->parallel : NULL;
     m->context = rule != NULL ? rule->context : NULL;
@@ -172,8 +172,8 @@ static void copy_rest(fibrad_matrix *m, uint32_t i) {
     m->escaped[i] = row != NULL ? row->escaped : 0;
     m->beyond[i] = row != NULL ? row->beyond : 0;
     m->error[i] = row != NULL ? row->error : 0;
-    double *body = m->body + (size_t)i * m->bodies;
-    for (uint32_t b = 0; b < m->bodies; b++) body[b] = row != NULL ? fibrad_record_body(row)[b] : 0;
+    double *wall = m->wall + (size_t)i * m->walls;
+    for (uint32_t b = 0; b < m->walls; b++) wall[b] = row != NULL ? fibrad_record_wall(row)[b] : 0;
 }
 
 /* Copies the rows in order. */
@@ -245,7 +245,7 @@ int fibrad_matrix_init(fibrad_matrix **out, void *memory, size_t size, const fib
         m->area[i] = ratio * ratio, m->noise[i] = __builtin_inf();
         if (m->lines) m->variance[i] = m->row[i]->noise * m->row[i]->noise;
     }
-    if (m->enclosed) fibrad_matrix_take_bodies(m, scene, rule);
+    if (m->enclosed) fibrad_matrix_take_walls(m, scene, rule);
     if (m->raw)
         copy_raw(m);
     else
@@ -304,15 +304,15 @@ static void gather_parts(fibrad_matrix *m) {
  * nothing of that, in the proportions of all spheres together. */
 static void share_out(fibrad_matrix *m, uint32_t i, double rest) {
     const double *all = m->all;
-    double *body = m->body + (size_t)i * m->bodies, sum = 0, total = 0;
-    for (uint32_t b = 0; b < m->bodies; b++) sum += body[b], total += all[b];
-    sum += m->escaped[i], total += all[m->bodies];
-    sum += m->beyond[i], total += all[m->bodies + 1];
+    double *wall = m->wall + (size_t)i * m->walls, sum = 0, total = 0;
+    for (uint32_t b = 0; b < m->walls; b++) sum += wall[b], total += all[b];
+    sum += m->escaped[i], total += all[m->walls];
+    sum += m->beyond[i], total += all[m->walls + 1];
     const bool own = sum > 0;
     if (!own) sum = total;
-    for (uint32_t b = 0; b < m->bodies; b++) body[b] = sum > 0 ? rest * ((own ? body[b] : all[b]) / sum) : 0;
-    m->escaped[i] = sum > 0 ? rest * ((own ? m->escaped[i] : all[m->bodies]) / sum) : rest;
-    m->beyond[i] = sum > 0 ? rest * ((own ? m->beyond[i] : all[m->bodies + 1]) / sum) : 0;
+    for (uint32_t b = 0; b < m->walls; b++) wall[b] = sum > 0 ? rest * ((own ? wall[b] : all[b]) / sum) : 0;
+    m->escaped[i] = sum > 0 ? rest * ((own ? m->escaped[i] : all[m->walls]) / sum) : rest;
+    m->beyond[i] = sum > 0 ? rest * ((own ? m->beyond[i] : all[m->walls + 1]) / sum) : 0;
 }
 
 static void close_part(void *matrix, uint32_t p) {
@@ -325,11 +325,11 @@ static void close_part(void *matrix, uint32_t p) {
  * directions and is as good a measure as the raw row's. Rows of spheres that reflect all stay empty. */
 static void close_rows(fibrad_matrix *m) {
     double *all = m->all;
-    const uint32_t n = m->result.n, bodies = m->bodies;
+    const uint32_t n = m->result.n, walls = m->walls;
     for (uint32_t i = 0; i < n; i++) {
         const double area = m->area[i];
-        for (uint32_t b = 0; b < bodies; b++) all[b] += area * m->body[(size_t)i * bodies + b];
-        all[bodies] += area * m->escaped[i], all[bodies + 1] += area * m->beyond[i];
+        for (uint32_t b = 0; b < walls; b++) all[b] += area * m->wall[(size_t)i * walls + b];
+        all[walls] += area * m->escaped[i], all[walls + 1] += area * m->beyond[i];
     }
     fibrad_matrix_share(m, m->tasks, close_part, m);
 }
@@ -337,10 +337,10 @@ static void close_rows(fibrad_matrix *m) {
 /* How much of a row, besides its factors to spheres, differs from the raw row. */
 static double change_of(const fibrad_matrix *m, uint32_t i) {
     const fibrad_record *raw = m->row[i];
-    const double *body = m->body + (size_t)i * m->bodies, *before = fibrad_record_body(raw);
+    const double *wall = m->wall + (size_t)i * m->walls, *before = fibrad_record_wall(raw);
     const double escaped = m->escaped[i] - raw->escaped, beyond = m->beyond[i] - raw->beyond;
     double square = escaped * escaped + beyond * beyond;
-    for (uint32_t b = 0; b < m->bodies; b++) square += (body[b] - before[b]) * (body[b] - before[b]);
+    for (uint32_t b = 0; b < m->walls; b++) square += (wall[b] - before[b]) * (wall[b] - before[b]);
     return fibrad_sqrt(square);
 }
 
@@ -376,7 +376,7 @@ static double distance_to_raw(const fibrad_matrix *m, uint32_t i, double *own) {
 static double error_of_mean(const fibrad_matrix *m, uint32_t i) {
     double met = 0, own;
     const double distance = distance_to_raw(m, i, &own);
-    for (uint32_t b = 0; b < m->bodies; b++) met += m->body[(size_t)i * m->bodies + b];
+    for (uint32_t b = 0; b < m->walls; b++) met += m->wall[(size_t)i * m->walls + b];
     if (!m->exchange) return fibrad_max(VIEW_ERROR * distance, (own + (1 - own) * met) * m->error[i]);
     /* of paths: the square of the error is in proportion to what they find, and no mean changes walls and the open */
     const double ends = fibrad_min(1, met + m->escaped[i] + m->beyond[i]), raw = m->error[i] * m->error[i];
@@ -425,22 +425,22 @@ int fibrad_matrix_read(const fibrad_matrix *m, fibrad_factors *factors) {
     if (m == NULL || factors == NULL) return FIBRAD_E_ARGUMENT;
     if (!m->closed) return FIBRAD_E_STATE;
     *factors = (fibrad_factors){.n = m->result.n,
-                                .bodies = m->bodies,
+                                .walls = m->walls,
                                 .start = m->result.start,
                                 .col = m->result.col,
                                 .f = m->result.f,
                                 .escaped = m->escaped,
                                 .beyond = m->beyond,
                                 .error = m->error,
-                                .body = m->body,
+                                .wall = m->wall,
                                 .changed = m->changed,
                                 .changed_row = m->changed_row};
     if (!m->enclosed) return FIBRAD_OK;
-    factors->body_body = m->between;
-    factors->body_escaped = m->body_escaped;
-    factors->body_error = m->body_error;
-    factors->body_correction = m->correction;
-    factors->body_closure = m->body_closure;
+    factors->wall_wall = m->between;
+    factors->wall_escaped = m->wall_escaped;
+    factors->wall_error = m->wall_error;
+    factors->wall_correction = m->correction;
+    factors->wall_closure = m->wall_closure;
     return FIBRAD_OK;
 }
 

@@ -28,7 +28,7 @@ typedef struct fibrad_sparse {
 
 struct fibrad_matrix {
     fibrad_sparse result;
-    uint32_t bodies, tasks;
+    uint32_t walls, tasks;
     bool raw, exchange, open, closed;
     bool sampled;             /* exchange factors, or view factors by rays: averaged by variances */
     bool lines;               /* all rows are along lines */
@@ -44,18 +44,18 @@ struct fibrad_matrix {
     double *variance;                  /* [n], of the noise of raw rows; of all rows along lines */
     uint64_t *place;                   /* [n], position of the next entry of each row of the transpose */
     double *scratch;                   /* [3 n] */
-    double all[FIBRAD_BODIES_MAX + 2]; /* sums over all spheres: to each wall, the surroundings, beyond */
+    double all[FIBRAD_WALLS_MAX + 2]; /* sums over all spheres: to each wall, the surroundings, beyond */
     fibrad_parallel *parallel;
     void *context;
     double *escaped, *beyond, *error;
-    double *body;    /* [n][bodies] */
-    bool enclosed;   /* whether walls have rows; otherwise the fields up to body_closure are not used */
-    double *between; /* [bodies][bodies] */
-    double *body_escaped, *body_error;
-    double *newton, *before;          /* [bodies][bodies + 1] scratch */
-    double length[FIBRAD_BODIES_MAX]; /* L, as r of spheres; 0: the wall has no row */
+    double *wall;    /* [n][walls] */
+    bool enclosed;   /* whether walls have rows; otherwise the fields up to wall_closure are not used */
+    double *between; /* [walls][walls] */
+    double *wall_escaped, *wall_error;
+    double *newton, *before;          /* [walls][walls + 1] scratch */
+    double length[FIBRAD_WALLS_MAX]; /* L, as r of spheres; 0: the wall has no row */
     double correction;                /* largest |sum - 1| of a wall's row before closing */
-    double body_closure;              /* largest |sum - 1| of a wall's row after closing */
+    double wall_closure;              /* largest |sum - 1| of a wall's row after closing */
     double changed;                   /* as in fibrad_factors, with changed_row */
     uint32_t changed_row;
     fibrad_matrix_part *part; /* [tasks] */
@@ -87,7 +87,7 @@ static inline double fibrad_matrix_own(const fibrad_matrix *m, uint32_t i, uint3
 void fibrad_matrix_average_part(fibrad_matrix *matrix, fibrad_matrix_part *part);
 
 /* Copies the rows of walls of a rule. */
-void fibrad_matrix_take_bodies(fibrad_matrix *matrix, const fibrad_scene *scene, const fibrad_matrix_rule *rule);
+void fibrad_matrix_take_walls(fibrad_matrix *matrix, const fibrad_scene *scene, const fibrad_matrix_rule *rule);
 
 /* Makes the rows of walls reciprocal, and closes all rows together. The rows of spheres must be closed already. */
 void fibrad_matrix_enclose(fibrad_matrix *matrix);

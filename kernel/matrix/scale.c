@@ -135,9 +135,9 @@ static void find_rest(void *matrix, uint32_t p) {
     const fibrad_matrix *m = matrix;
     for (uint32_t i = m->part[p].begin; i < m->part[p].end; i++) {
         const fibrad_record *row = m->row[i];
-        const double *f = fibrad_record_f(row), *body = fibrad_record_body(row);
+        const double *f = fibrad_record_f(row), *wall = fibrad_record_wall(row);
         double sum = 0, open = row->escaped + row->beyond;
-        for (uint32_t b = 0; b < m->bodies; b++) open += body[b];
+        for (uint32_t b = 0; b < m->walls; b++) open += wall[b];
         for (uint32_t k = 0; k < row->length && m->sampled; k++) sum += f[k];
         if (!m->sampled) sum = fibrad_sparse_sum(&m->result, i);
         const bool closed = !m->sampled && !(open > 0) && !(1 - sum > NOISE_MOST * m->noise[i] + ROUNDING);

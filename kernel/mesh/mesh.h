@@ -45,7 +45,7 @@ typedef struct fibrad_mesh {
     uint8_t (*mesh)[2];     /* [triangles], mesh of front and back; FIBRAD_NO_MESH: no wall */
     uint32_t *side;         /* [2 triangles], the sides of all meshes, mesh by mesh */
     double *area;           /* L^2, [2 triangles], sum of the areas from the first side of the mesh to this side */
-    uint32_t first[FIBRAD_BODIES_MAX + 1]; /* first element of side and area of each mesh */
+    uint32_t first[FIBRAD_WALLS_MAX + 1]; /* first element of side and area of each mesh */
 } fibrad_mesh;
 
 /* The side of a triangle; the triangle of a side, and whether the side is its back. */
@@ -108,12 +108,12 @@ static inline bool fibrad_mesh_next(fibrad_mesh_walk *walk, const fibrad_mesh *m
 void fibrad_mesh_layout(fibrad_arena *arena, fibrad_mesh *mesh, uint32_t triangles);
 
 /* Fills a mesh that is laid out.
- *   Input    mesh_of[bodies]: mesh of each wall, or FIBRAD_NO_MESH
+ *   Input    mesh_of[walls]: mesh of each wall, or FIBRAD_NO_MESH
  *            longest: [L], bound of coordinates and periods
  *   Output   fault: the triangle at fault, or UINT32_MAX
  *   Errors   FIBRAD_E_ARGUMENT */
 int fibrad_mesh_build(fibrad_mesh *mesh, const struct fibrad_triangles *given, const double period[3],
-                      const uint8_t *mesh_of, uint32_t bodies, double longest, uint32_t *fault);
+                      const uint8_t *mesh_of, uint32_t walls, double longest, uint32_t *fault);
 
 /* The caller's number of a triangle that reaches highest along an axis. */
 uint32_t fibrad_mesh_highest(const fibrad_mesh *mesh, int axis);

@@ -217,10 +217,10 @@ uint32_t fibrad_mesh_highest(const fibrad_mesh *mesh, int axis) {
 
 /* Lists the sides of each mesh with the running sum of their areas. */
 static void list_sides(fibrad_mesh *mesh) {
-    uint32_t end[FIBRAD_BODIES_MAX + 1] = {0};
+    uint32_t end[FIBRAD_WALLS_MAX + 1] = {0};
     for (uint32_t s = 0; s < 2 * mesh->triangles; s++)
         if (fibrad_side_mesh(mesh, s) != FIBRAD_NO_MESH) end[fibrad_side_mesh(mesh, s) + 1]++;
-    for (uint32_t m = 0; m < FIBRAD_BODIES_MAX; m++) end[m + 1] += end[m];
+    for (uint32_t m = 0; m < FIBRAD_WALLS_MAX; m++) end[m + 1] += end[m];
     fibrad_copy(mesh->first, end, sizeof mesh->first);
     for (uint32_t s = 0; s < 2 * mesh->triangles; s++) {
         const uint8_t m = fibrad_side_mesh(mesh, s);
@@ -255,17 +255,17 @@ static bool take_triangle(fibrad_mesh *mesh, const struct fibrad_triangles *give
     return true;
 }
 
-/* The mesh of a side whose wall is `body`. False: there is no such wall. */
-static bool mesh_of_side(uint32_t body, const uint8_t *mesh_of, uint32_t bodies, uint8_t *number) {
+/* The mesh of a side whose wall is `wall`. False: there is no such wall. */
+static bool mesh_of_side(uint32_t wall, const uint8_t *mesh_of, uint32_t walls, uint8_t *number) {
     *number = FIBRAD_NO_MESH;
-    if (body == FIBRAD_NO_BODY) return true;
-    if (body >= bodies || mesh_of[body] == FIBRAD_NO_MESH) return false;
-    *number = mesh_of[body];
+    if (wall == FIBRAD_NO_WALL) return true;
+    if (wall >= walls || mesh_of[wall] == FIBRAD_NO_MESH) return false;
+    *number = mesh_of[wall];
     return true;
 }
 
 int fibrad_mesh_build(fibrad_mesh *mesh, const struct fibrad_triangles *given, const double period[3],
-                      const uint8_t *mesh_of, uint32_t bodies, double longest, uint32_t *fault) {
+                      const uint8_t *mesh_of, uint32_t walls, double longest, uint32_t *fault) {
     const bool arrays = given->x != NULL && given->y != NULL && given->z != NULL && given->corner != NULL;
     *fault = UINT32_MAX;
     if (given->n > 0 && (!arrays || given->front == NULL)) return FIBRAD_E_ARGUMENT;
@@ -277,8 +277,8 @@ int fibrad_mesh_build(fibrad_mesh *mesh, const struct fibrad_triangles *given, c
     for (uint32_t t = 0; t < given->n; t++) {
         uint8_t ignored;
         *fault = t;
-        if (!take_triangle(mesh, given, t, longest) || !mesh_of_side(given->front[t], mesh_of, bodies, &ignored) ||
-            (given->back != NULL && !mesh_of_side(given->back[t], mesh_of, bodies, &ignored)))
+        if (!take_triangle(mesh, given, t, longest) || !mesh_of_side(given->front[t], mesh_of, walls, &ignored) ||
+            (given->back != NULL && !mesh_of_side(given->back[t], mesh_of, walls, &ignored)))
             return FIBRAD_E_ARGUMENT;
     }
     double scale = 0;
@@ -293,8 +293,8 @@ int fibrad_mesh_build(fibrad_mesh *mesh, const struct fibrad_triangles *given, c
     mesh->grain = 1e-11 * scale;
     build_tree(mesh);
     for (uint32_t t = 0; t < mesh->triangles; t++) { /* from here on in the order of the tree */
-        mesh_of_side(given->front[mesh->number[t]], mesh_of, bodies, &mesh->mesh[t][0]);
-        mesh_of_side(given->back != NULL ? given->back[mesh->number[t]] : FIBRAD_NO_BODY, mesh_of, bodies,
+        mesh_of_side(given->front[mesh->number[t]], mesh_of, walls, &mesh->mesh[t][0]);
+        mesh_of_side(given->back != NULL ? given->back[mesh->number[t]] : FIBRAD_NO_WALL, mesh_of, walls,
                      &mesh->mesh[t][1]);
     }
     list_sides(mesh);

@@ -270,8 +270,8 @@ int LANED(fibrad_cast_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     row->escaped = work->wall[FIBRAD_ESCAPED] * (1.0 / rule->rays);
     row->beyond = work->wall[FIBRAD_BEYOND] * (1.0 / rule->rays);
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
-        if (fibrad_slot_of_body(slot)) work->wall[slot] *= 1.0 / rule->rays;
-    fibrad_row_bodies(scene, work->wall, row);
+        if (fibrad_slot_of_wall(slot)) work->wall[slot] *= 1.0 / rule->rays;
+    fibrad_row_walls(scene, work->wall, row);
     row->directions = row->fallbacks = 0;
     row->symmetric = 0;
     /* row->error is right as it is: each half has half as many rays, so its error is sqrt 2 times as large, and the

@@ -19,7 +19,7 @@ static bool direction_from(const double normal[3], const double x[2], double w[3
 
 /* Counts of what rays meet. */
 typedef struct view_counts {
-    uint32_t rays, spheres, bodies;
+    uint32_t rays, spheres, walls;
 } view_counts;
 
 /* Counts what a ray meets. FIBRAD_E_BACK: *seen is the index of the triangle. */
@@ -35,7 +35,7 @@ static int count_ray(const fibrad_scene *scene, uint32_t side, const double poin
     }
     const uint32_t wall = scene->container.walls ? fibrad_walls_exit(scene, point, w, &distance) : FIBRAD_NONE;
     const bool meshed = hit.side != FIBRAD_NO_SIDE && (wall == FIBRAD_NONE || hit.distance < distance);
-    counts->bodies += meshed || (wall != FIBRAD_NONE && !fibrad_is_opening(&scene->container, wall));
+    counts->walls += meshed || (wall != FIBRAD_NONE && !fibrad_is_opening(&scene->container, wall));
     *seen = meshed ? fibrad_side_triangle(hit.side) : *seen;
     return meshed && fibrad_scene_slot(scene, hit.side) == FIBRAD_NONE ? FIBRAD_E_BACK : FIBRAD_OK;
 }
@@ -63,8 +63,8 @@ static int view_of_side(const fibrad_scene *scene, const fibrad_sobol *sobol, ui
     }
     if (status != FIBRAD_OK || counts.rays == 0) return status;
     view->spheres = (double)counts.spheres / counts.rays;
-    view->bodies = (double)counts.bodies / counts.rays;
-    view->escaped = (double)(counts.rays - counts.spheres - counts.bodies) / counts.rays;
+    view->walls = (double)counts.walls / counts.rays;
+    view->escaped = (double)(counts.rays - counts.spheres - counts.walls) / counts.rays;
     return FIBRAD_OK;
 }
 

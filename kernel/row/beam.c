@@ -42,8 +42,8 @@ static int beam_to_tolerance(const fibrad_scene *scene, fibrad_workspace *space,
                              fibrad_row *row) {
     fibrad_beam_rule rule = *(const fibrad_beam_rule *)given;
     if (rule.tolerance == 0) return fibrad_beam_compute(scene, space, i, &rule, rule.lines != NULL, row);
-    double body[FIBRAD_BODIES_MAX];
-    fibrad_row trial = fibrad_row_scratch(space, body);
+    double wall[FIBRAD_WALLS_MAX];
+    fibrad_row trial = fibrad_row_scratch(space, wall);
     for (;;) {
         const int status = fibrad_beam_compute(scene, space, i, &rule, false, &trial);
         if (status != FIBRAD_OK) return status;

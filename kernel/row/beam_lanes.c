@@ -278,10 +278,10 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     row->escaped = (sums.open[0] + sums.open[1] + work->wall[FIBRAD_ESCAPED]) * scale;
     row->beyond = work->wall[FIBRAD_BEYOND] * scale;
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
-        if (fibrad_slot_of_body(slot)) work->wall[slot] = fibrad_max(0, work->wall[slot]) * scale;
+        if (fibrad_slot_of_wall(slot)) work->wall[slot] = fibrad_max(0, work->wall[slot]) * scale;
     fibrad_free_pairs_share(&pairs, work->wall, row);
     fibrad_row_cut(scene, work->place, work->wall, row);
-    fibrad_row_bodies(scene, work->wall, row);
+    fibrad_row_walls(scene, work->wall, row);
     row->lines = rule->lines != NULL ? windows.count : 0;
     row->noise = masked ? noise_of(&windows, all, work->masks.regions) : 0;
     const double shares = (windows.both ? SHARES_BOTH : SHARES_ERROR) *

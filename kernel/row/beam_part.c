@@ -42,8 +42,8 @@ static int compute_range(const fibrad_scene *scene, fibrad_workspace *space, uin
 int fibrad_beam_part(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *given,
                      uint32_t from, uint32_t to, fibrad_row_part *part) {
     part_rule how;
-    double body[FIBRAD_BODIES_MAX];
-    fibrad_row row = {.body = body};
+    double wall[FIBRAD_WALLS_MAX];
+    fibrad_row row = {.wall = wall};
     const int checked = complete_rule(given, &how.rule);
     if (checked != FIBRAD_OK) return checked;
     if (part == NULL || !fibrad_memory_valid(&part->memory) || from >= to || to > how.rule.directions)

@@ -45,8 +45,8 @@ void fibrad_row_cut(const fibrad_scene *scene, uint32_t place, double wall[FIBRA
     row->escaped *= left, row->beyond *= left;
 }
 
-void fibrad_row_bodies(const fibrad_scene *scene, double wall[FIBRAD_SLOTS], fibrad_row *row) {
-    for (uint32_t b = 0; b < scene->facts.bodies; b++) row->body[b] = wall[scene->slot[b]];
+void fibrad_row_walls(const fibrad_scene *scene, double wall[FIBRAD_SLOTS], fibrad_row *row) {
+    for (uint32_t b = 0; b < scene->facts.walls; b++) row->wall[b] = wall[scene->slot[b]];
     for (uint32_t slot = 0; slot < FIBRAD_WALLS; slot++)
         if (fibrad_is_opening(&scene->container, slot)) row->escaped += wall[slot], wall[slot] = 0;
 }
@@ -56,14 +56,14 @@ int fibrad_sum_checked(double sum) { return fibrad_abs(sum - 1) <= SUM_ERROR ? F
 int fibrad_row_checked(const fibrad_scene *scene, const fibrad_row *row) {
     double sum = row->escaped + row->beyond;
     for (uint32_t k = 0; k < row->length; k++) sum += row->f[k];
-    for (uint32_t b = 0; b < scene->facts.bodies; b++) sum += row->body[b];
+    for (uint32_t b = 0; b < scene->facts.walls; b++) sum += row->wall[b];
     return fibrad_sum_checked(sum);
 }
 
-fibrad_row fibrad_row_scratch(fibrad_workspace *space, double *body) {
+fibrad_row fibrad_row_scratch(fibrad_workspace *space, double *wall) {
     fibrad_entries *entries = &space->entries;
     return (fibrad_row){
-        .col = (uint32_t *)(void *)entries->angles, .f = entries->lengths, .body = body, .capacity = entries->capacity};
+        .col = (uint32_t *)(void *)entries->angles, .f = entries->lengths, .wall = wall, .capacity = entries->capacity};
 }
 
 int fibrad_row_give(const fibrad_scene *scene, const fibrad_row *row, fibrad_row *to) {
@@ -71,23 +71,23 @@ int fibrad_row_give(const fibrad_scene *scene, const fibrad_row *row, fibrad_row
     to->length = row->length;
     if (row->length > to->capacity) return FIBRAD_E_CAPACITY;
     for (uint32_t k = 0; k < row->length; k++) to->col[k] = row->col[k], to->f[k] = row->f[k];
-    for (uint32_t b = 0; b < scene->facts.bodies; b++) to->body[b] = row->body[b];
-    given.col = to->col, given.f = to->f, given.body = to->body, given.half = to->half;
+    for (uint32_t b = 0; b < scene->facts.walls; b++) to->wall[b] = row->wall[b];
+    given.col = to->col, given.f = to->f, given.wall = to->wall, given.half = to->half;
     given.capacity = to->capacity;
     *to = given;
     return FIBRAD_OK;
 }
 
-static bool arrays_valid(const fibrad_row *row, uint32_t bodies) {
+static bool arrays_valid(const fibrad_row *row, uint32_t walls) {
     if (row->rows != NULL) return fibrad_memory_valid(&row->rows->memory);
-    return (row->capacity == 0 || (row->col != NULL && row->f != NULL)) && (bodies == 0 || row->body != NULL);
+    return (row->capacity == 0 || (row->col != NULL && row->f != NULL)) && (walls == 0 || row->wall != NULL);
 }
 
 /* Computes a row without room for it, to find its length. Status: FIBRAD_E_CAPACITY. */
 static int measure_row(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_row_method *method,
                        fibrad_row *own) {
-    double body[FIBRAD_BODIES_MAX];
-    fibrad_row row = {.body = body};
+    double wall[FIBRAD_WALLS_MAX];
+    fibrad_row row = {.wall = wall};
     const int status = method->compute(scene, space, i, method->rule, &row);
     own->length = row.length;
     return status == FIBRAD_OK ? FIBRAD_E_CAPACITY : status;
@@ -96,12 +96,12 @@ static int measure_row(const fibrad_scene *scene, fibrad_workspace *space, uint3
 /* Makes one attempt, into the arrays of `row` or into the free space of a collection. */
 static int attempt(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_row_method *method,
                    fibrad_rows *rows, fibrad_row *own) {
-    const uint32_t bodies = scene->facts.bodies;
-    if (rows != NULL && !fibrad_rows_open(rows, bodies, own)) {
-        const int status = fibrad_rows_reserve(rows, rows->memory.resize != NULL ? FIRST_ENTRIES : 0, bodies);
+    const uint32_t walls = scene->facts.walls;
+    if (rows != NULL && !fibrad_rows_open(rows, walls, own)) {
+        const int status = fibrad_rows_reserve(rows, rows->memory.resize != NULL ? FIRST_ENTRIES : 0, walls);
         if (status == FIBRAD_E_CAPACITY) return measure_row(scene, space, i, method, own);
         if (status != FIBRAD_OK) return status;
-        fibrad_rows_open(rows, bodies, own);
+        fibrad_rows_open(rows, walls, own);
     }
     return method->compute(scene, space, i, method->rule, own);
 }
@@ -110,7 +110,7 @@ int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, con
                    fibrad_row *row) {
     if (scene == NULL || work == NULL || row == NULL) return FIBRAD_E_ARGUMENT;
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
-    if (i >= scene->facts.spheres || !arrays_valid(row, scene->facts.bodies)) return FIBRAD_E_ARGUMENT;
+    if (i >= scene->facts.spheres || !arrays_valid(row, scene->facts.walls)) return FIBRAD_E_ARGUMENT;
     fibrad_rows *rows = row->rows;
     fibrad_row own = *row;
     fibrad_workspace *space;
@@ -123,7 +123,7 @@ int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, con
         if (status == FIBRAD_E_WORK)
             status = fibrad_work_grow(work, &space);
         else if (status == FIBRAD_E_CAPACITY && rows != NULL && own.length >= least) {
-            status = fibrad_rows_reserve(rows, own.length, scene->facts.bodies);
+            status = fibrad_rows_reserve(rows, own.length, scene->facts.walls);
             least = own.length + 1; /* without this the call would be repeated for ever */
         }
     }
@@ -131,7 +131,7 @@ int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, con
     if (status == FIBRAD_E_BACK) work->triangle = space->back;
     if (status != FIBRAD_OK) return status;
     own.sphere = i;
-    if (rows != NULL) fibrad_rows_commit(rows, scene->hash, scene->facts.bodies, &own);
+    if (rows != NULL) fibrad_rows_commit(rows, scene->hash, scene->facts.walls, &own);
     own.rows = rows;
     if (rows != NULL)
         own.col = (uint32_t *)(void *)(own.f + own.length), own.capacity = 0; /* these arrays are not the caller's */

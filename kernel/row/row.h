@@ -26,17 +26,17 @@ int fibrad_row_checked(const fibrad_scene *scene, const fibrad_row *row);
 int fibrad_sum_checked(double sum);
 
 /* A row in scratch memory. Its arrays lie in parts of `entries` that only rays use otherwise. They are valid until
- * fibrad_work_begin. body [FIBRAD_BODIES_MAX]. */
-fibrad_row fibrad_row_scratch(fibrad_workspace *space, double *body);
+ * fibrad_work_begin. wall [FIBRAD_WALLS_MAX]. */
+fibrad_row fibrad_row_scratch(fibrad_workspace *space, double *wall);
 
 /* Copies a row into the row of the caller. After FIBRAD_E_CAPACITY only the length is copied. */
 int fibrad_row_give(const fibrad_scene *scene, const fibrad_row *row, fibrad_row *to);
 
 /* Gives walls what belongs to the caps of spheres behind them: the caps of sphere i at `place`, and those of the
- * spheres of its row. To be called before fibrad_row_bodies. */
+ * spheres of its row. To be called before fibrad_row_walls. */
 void fibrad_row_cut(const fibrad_scene *scene, uint32_t place, double wall[FIBRAD_SLOTS], fibrad_row *row);
 
 /* Sets the factors to walls from the factors by slot. Factors of openings are moved to row->escaped. */
-void fibrad_row_bodies(const fibrad_scene *scene, double wall[FIBRAD_SLOTS], fibrad_row *row);
+void fibrad_row_walls(const fibrad_scene *scene, double wall[FIBRAD_SLOTS], fibrad_row *row);
 
 #endif

@@ -10,15 +10,15 @@
 #include "base/port.h"
 
 typedef struct fibrad_record {
-    uint32_t sphere, length, bodies, lines;
+    uint32_t sphere, length, walls, lines;
     uint64_t symmetric;
     uint64_t scene; /* hash of the scene of the row; 0: none */
     double escaped, beyond, error, noise, shares;
 } fibrad_record;
 
-static inline const double *fibrad_record_body(const fibrad_record *record) { return (const double *)(record + 1); }
+static inline const double *fibrad_record_wall(const fibrad_record *record) { return (const double *)(record + 1); }
 static inline const double *fibrad_record_f(const fibrad_record *record) {
-    return fibrad_record_body(record) + record->bodies;
+    return fibrad_record_wall(record) + record->walls;
 }
 static inline const uint32_t *fibrad_record_col(const fibrad_record *record) {
     return (const uint32_t *)(const void *)(fibrad_record_f(record) + record->length);
@@ -33,9 +33,9 @@ static inline const float *fibrad_record_half(const fibrad_record *record) {
 }
 
 /* Bytes of a record. lines: of the row. */
-static inline size_t fibrad_record_size(uint32_t length, uint32_t bodies, uint32_t lines) {
+static inline size_t fibrad_record_size(uint32_t length, uint32_t walls, uint32_t lines) {
     const size_t words = lines > 0 ? 2 * (size_t)length : length; /* of 4 bytes */
-    return sizeof(fibrad_record) + ((size_t)bodies + length) * sizeof(double) + (words + 1) / 2 * 8;
+    return sizeof(fibrad_record) + ((size_t)walls + length) * sizeof(double) + (words + 1) / 2 * 8;
 }
 
 /* The first record at or after byte `at` of a collection. NULL: there is none. *at: out: where the next record
@@ -44,13 +44,13 @@ const fibrad_record *fibrad_rows_next(const fibrad_rows *rows, size_t *at);
 
 /* Makes the free space of a collection into the arrays of a row, with the largest capacity possible. False: not even
  * an empty row fits. */
-bool fibrad_rows_open(const fibrad_rows *rows, uint32_t bodies, fibrad_row *row);
+bool fibrad_rows_open(const fibrad_rows *rows, uint32_t walls, fibrad_row *row);
 
 /* Makes room for one more row of `length` entries. Errors: FIBRAD_E_CAPACITY: memory.needed is written. _MEMORY. */
-int fibrad_rows_reserve(fibrad_rows *rows, uint32_t length, uint32_t bodies);
+int fibrad_rows_reserve(fibrad_rows *rows, uint32_t length, uint32_t walls);
 
 /* Appends the row that has been written into the arrays of fibrad_rows_open. */
-void fibrad_rows_commit(fibrad_rows *rows, uint64_t scene, uint32_t bodies, const fibrad_row *row);
+void fibrad_rows_commit(fibrad_rows *rows, uint64_t scene, uint32_t walls, const fibrad_row *row);
 
 /* Whether the records are where they were written. If the caller has moved the block to another alignment, this is
  * false until a row is appended. */

@@ -50,8 +50,8 @@ struct fibrad_scene {
     bool region;                        /* whether a known region was given */
     double known_low[3], known_high[3]; /* L, infinite where it is unlimited */
     fibrad_occupancy occupancy;         /* the caller's, or one cell */
-    uint32_t slot[FIBRAD_BODIES_MAX];   /* [facts.bodies], slot of each wall */
-    double wall_area[FIBRAD_SLOTS];     /* L^2, by slot, as fibrad_scene_body_area; 0: no such wall */
+    uint32_t slot[FIBRAD_WALLS_MAX];   /* [facts.walls], slot of each wall */
+    double wall_area[FIBRAD_SLOTS];     /* L^2, by slot, as fibrad_scene_wall_area; 0: no such wall */
     uint64_t hash;                      /* of all input; 0: the scene is not complete */
     double spacing;                     /* L, cube root of the volume per sphere */
     uint32_t levels;
@@ -74,9 +74,9 @@ static inline uint32_t fibrad_scene_slot(const fibrad_scene *scene, uint32_t sid
 }
 
 /* The slot of a wall, or of an opening with a number by FIBRAD_OPENING. FIBRAD_NONE: there is none. */
-static inline uint32_t fibrad_body_slot(const fibrad_scene *scene, uint32_t body) {
-    if (body < scene->facts.bodies) return scene->slot[body];
-    const uint32_t face = body - scene->facts.bodies;
+static inline uint32_t fibrad_wall_slot(const fibrad_scene *scene, uint32_t wall) {
+    if (wall < scene->facts.walls) return scene->slot[wall];
+    const uint32_t face = wall - scene->facts.walls;
     return fibrad_is_opening(&scene->container, face) ? face : FIBRAD_NONE;
 }
 

@@ -65,9 +65,9 @@ static int sphere_fault(fibrad_fault *fault, uint32_t sphere, int why) {
 static int wall_fault(int status, fibrad_fault *fault, uint32_t n, const fibrad_scene_config *config) {
     fibrad_scene_config some = *config;
     uint32_t wall = 0;
-    if (status == FIBRAD_E_ARGUMENT && config->body != NULL && config->bodies <= FIBRAD_BODIES_MAX)
-        for (some.bodies = 1; some.bodies <= config->bodies && wall == 0; some.bodies++)
-            if (fibrad_walls_check(&some) == FIBRAD_E_ARGUMENT) wall = some.bodies;
+    if (status == FIBRAD_E_ARGUMENT && config->wall != NULL && config->walls <= FIBRAD_WALLS_MAX)
+        for (some.walls = 1; some.walls <= config->walls && wall == 0; some.walls++)
+            if (fibrad_walls_check(&some) == FIBRAD_E_ARGUMENT) wall = some.walls;
     if (fault != NULL) *fault = (fibrad_fault){n, n, UINT32_MAX, wall, wall > 0 ? FIBRAD_WHY_WALL : 0};
     return status;
 }
@@ -130,7 +130,7 @@ static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
     }
     for (uint64_t k = 0; o->mark != NULL && k < (cells + 63) / 64; k++) hash = fibrad_hash_word(hash, o->mark[k]);
     hash = fibrad_hash_word(hash, (uint64_t)c->openings << 1 | (o->mark != NULL));
-    for (uint32_t b = 0; b < scene->facts.bodies; b++) hash = fibrad_hash_word(hash, scene->slot[b]);
+    for (uint32_t b = 0; b < scene->facts.walls; b++) hash = fibrad_hash_word(hash, scene->slot[b]);
     for (uint32_t i = 0; i < s->n; i++) {
         for (int axis = 0; axis < 3; axis++) hash = fibrad_hash_number(hash, coordinate_of(s, axis, i));
         hash = fibrad_hash_number(hash, radius_of(s, i));
@@ -395,12 +395,12 @@ static int check_mesh(const fibrad_scene *scene, uint32_t *triangle) {
 /* Builds the mesh, and finds the distance of each sphere from it. From one sphere to the next this distance changes
  * by at most the distance of the two. */
 static int build_mesh(fibrad_scene *scene, const fibrad_scene_config *config, fibrad_fault *fault) {
-    uint8_t mesh_of[FIBRAD_BODIES_MAX] = {0};
+    uint8_t mesh_of[FIBRAD_WALLS_MAX] = {0};
     const uint32_t n = scene->facts.spheres;
     uint32_t triangle;
-    for (uint32_t b = 0; b < config->bodies; b++)
+    for (uint32_t b = 0; b < config->walls; b++)
         mesh_of[b] = fibrad_slot_is_mesh(scene->slot[b]) ? (uint8_t)fibrad_slot_mesh(scene->slot[b]) : FIBRAD_NO_MESH;
-    int status = fibrad_mesh_build(&scene->mesh, config->triangles, scene->period, mesh_of, config->bodies,
+    int status = fibrad_mesh_build(&scene->mesh, config->triangles, scene->period, mesh_of, config->walls,
                                    longest_among(scene), &triangle);
     if (status == FIBRAD_OK) status = check_mesh(scene, &triangle);
     if (status != FIBRAD_OK) {
@@ -408,7 +408,7 @@ static int build_mesh(fibrad_scene *scene, const fibrad_scene_config *config, fi
         return status;
     }
     const fibrad_mesh *mesh = &scene->mesh;
-    for (uint32_t b = 0; b < config->bodies; b++) {
+    for (uint32_t b = 0; b < config->walls; b++) {
         if (mesh_of[b] == FIBRAD_NO_MESH) continue;
         const double area = scene->wall_area[scene->slot[b]] = fibrad_mesh_area(mesh, mesh_of[b]);
         if (!(area > 0 && fibrad_finite(area))) return scene_fault(FIBRAD_E_ARGUMENT, fault, n, n);
@@ -453,7 +453,7 @@ int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibra
         scene_layout(&arena, n, s.id != NULL, triangles); /* the hash is 0 until the scene is complete, so objects of
                                                              the last scene in this block return FIBRAD_E_STATE */
     scene->facts.spheres = n;
-    scene->facts.bodies = config.bodies;
+    scene->facts.walls = config.walls;
     scene->facts.isa = fibrad_isa_choose(config.isa);
     scene->facts.triangles = triangles;
     fibrad_copy(scene->period, config.period, sizeof scene->period);
@@ -481,8 +481,8 @@ int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibra
     return FIBRAD_OK;
 }
 
-double fibrad_scene_body_area(const fibrad_scene *scene, uint32_t body) {
-    const uint32_t slot = fibrad_scene_ready(scene) ? fibrad_body_slot(scene, body) : FIBRAD_NONE;
+double fibrad_scene_wall_area(const fibrad_scene *scene, uint32_t wall) {
+    const uint32_t slot = fibrad_scene_ready(scene) ? fibrad_wall_slot(scene, wall) : FIBRAD_NONE;
     return slot != FIBRAD_NONE ? scene->wall_area[slot] : __builtin_nan("");
 }
 

@@ -20,10 +20,10 @@
 #define FIBRAD_ESCAPED  7
 #define FIBRAD_BEYOND   8
 #define FIBRAD_MESHES   9u
-#define FIBRAD_SLOTS    (FIBRAD_MESHES + FIBRAD_BODIES_MAX)
+#define FIBRAD_SLOTS    (FIBRAD_MESHES + FIBRAD_WALLS_MAX)
 
 /* Whether a slot belongs to a wall: a plane, the cylinder or a mesh. */
-static inline bool fibrad_slot_of_body(uint32_t slot) { return slot < FIBRAD_WALLS || slot >= FIBRAD_MESHES; }
+static inline bool fibrad_slot_of_wall(uint32_t slot) { return slot < FIBRAD_WALLS || slot >= FIBRAD_MESHES; }
 
 static inline bool fibrad_slot_is_plane(uint32_t slot) { return slot < FIBRAD_CYLINDER; }
 

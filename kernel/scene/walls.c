@@ -17,11 +17,11 @@ static uint32_t slot_of_plane(const fibrad_plane *plane) {
     return valid ? fibrad_face((uint32_t)axis, upper) : FIBRAD_WALLS;
 }
 
-static uint32_t slot_of_body(const fibrad_body *body) {
-    if (body->kind == FIBRAD_BODY_PLANE) return slot_of_plane(&body->plane);
-    const bool valid = body->kind == FIBRAD_BODY_CYLINDER && wall_length_valid(body->cylinder.x) &&
-                       wall_length_valid(body->cylinder.y) && wall_length_valid(body->cylinder.radius) &&
-                       body->cylinder.radius > 0;
+static uint32_t slot_of_wall(const fibrad_wall *wall) {
+    if (wall->kind == FIBRAD_WALL_PLANE) return slot_of_plane(&wall->plane);
+    const bool valid = wall->kind == FIBRAD_WALL_CYLINDER && wall_length_valid(wall->cylinder.x) &&
+                       wall_length_valid(wall->cylinder.y) && wall_length_valid(wall->cylinder.radius) &&
+                       wall->cylinder.radius > 0;
     return valid ? FIBRAD_CYLINDER : FIBRAD_WALLS;
 }
 
@@ -40,11 +40,11 @@ static int find_plane(const fibrad_scene_config *config, const fibrad_plane *pla
     return FIBRAD_OK;
 }
 
-static int find_body(const fibrad_scene_config *config, const fibrad_body *body, found_walls *found) {
-    if (body->kind == FIBRAD_BODY_PLANE) return find_plane(config, &body->plane, found);
-    if (body->kind == FIBRAD_BODY_MESH)
+static int find_wall(const fibrad_scene_config *config, const fibrad_wall *wall, found_walls *found) {
+    if (wall->kind == FIBRAD_WALL_PLANE) return find_plane(config, &wall->plane, found);
+    if (wall->kind == FIBRAD_WALL_MESH)
         return config->triangles == NULL || config->triangles->n == 0 ? FIBRAD_E_ARGUMENT : FIBRAD_OK;
-    if (slot_of_body(body) == FIBRAD_WALLS || found->cylinder) return FIBRAD_E_ARGUMENT;
+    if (slot_of_wall(wall) == FIBRAD_WALLS || found->cylinder) return FIBRAD_E_ARGUMENT;
     found->cylinder = true;
     return FIBRAD_OK;
 }
@@ -59,12 +59,12 @@ static bool axis_is_closed(const fibrad_scene_config *config, const found_walls 
 
 int fibrad_walls_check(const fibrad_scene_config *config) {
     found_walls found = {0};
-    if ((config->bodies > 0 && config->body == NULL) || (config->openings > 0 && config->opening == NULL))
+    if ((config->walls > 0 && config->wall == NULL) || (config->openings > 0 && config->opening == NULL))
         return FIBRAD_E_ARGUMENT;
-    if (config->bodies > FIBRAD_BODIES_MAX) return FIBRAD_E_UNSUPPORTED;
+    if (config->walls > FIBRAD_WALLS_MAX) return FIBRAD_E_UNSUPPORTED;
     int status = FIBRAD_OK;
-    for (uint32_t b = 0; b < config->bodies && status == FIBRAD_OK; b++)
-        status = find_body(config, &config->body[b], &found);
+    for (uint32_t b = 0; b < config->walls && status == FIBRAD_OK; b++)
+        status = find_wall(config, &config->wall[b], &found);
     for (uint32_t k = 0; k < config->openings && status == FIBRAD_OK; k++)
         status = find_plane(config, &config->opening[k], &found);
     if (status != FIBRAD_OK) return status;
@@ -107,20 +107,20 @@ static double end_of_axis(const fibrad_container *c, uint32_t slot) {
 
 void fibrad_walls_build(fibrad_scene *scene, const fibrad_scene_config *config) {
     fibrad_container *c = &scene->container;
-    const fibrad_body *body = config->body;
+    const fibrad_wall *wall = config->wall;
     for (int axis = 0; axis < 3; axis++) c->low[axis] = -INFINITE, c->high[axis] = INFINITE;
     c->axis[0] = c->axis[1] = 0;
     c->radius = INFINITE;
     uint32_t meshes = 0, walls = 0;
-    for (uint32_t b = 0; b < config->bodies; b++) {
-        const bool mesh = body[b].kind == FIBRAD_BODY_MESH;
-        const uint32_t slot = scene->slot[b] = mesh ? fibrad_slot_of_mesh(meshes++) : slot_of_body(&body[b]);
+    for (uint32_t b = 0; b < config->walls; b++) {
+        const bool mesh = wall[b].kind == FIBRAD_WALL_MESH;
+        const uint32_t slot = scene->slot[b] = mesh ? fibrad_slot_of_mesh(meshes++) : slot_of_wall(&wall[b]);
         if (mesh) continue;
         walls |= 1u << slot;
         if (slot == FIBRAD_CYLINDER)
-            c->axis[0] = body[b].cylinder.x, c->axis[1] = body[b].cylinder.y, c->radius = body[b].cylinder.radius;
+            c->axis[0] = wall[b].cylinder.x, c->axis[1] = wall[b].cylinder.y, c->radius = wall[b].cylinder.radius;
         else
-            set_plane(c, &body[b].plane);
+            set_plane(c, &wall[b].plane);
     }
     for (uint32_t k = 0; k < config->openings; k++) {
         set_plane(c, &config->opening[k]);

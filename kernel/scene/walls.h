@@ -8,11 +8,11 @@
 
 #include "scene/scene.h"
 
-/* Whether bodies, openings and periods of a configuration fit together. Errors: FIBRAD_E_ARGUMENT, _UNSUPPORTED,
+/* Whether walls, openings and periods of a configuration fit together. Errors: FIBRAD_E_ARGUMENT, _UNSUPPORTED,
  * _ENDLESS. */
 int fibrad_walls_check(const fibrad_scene_config *config);
 
-/* Sets scene->container, slot and wall_area from bodies and openings that are valid. scene->period is set before. */
+/* Sets scene->container, slot and wall_area from walls and openings that are valid. scene->period is set before. */
 void fibrad_walls_build(fibrad_scene *scene, const fibrad_scene_config *config);
 
 /* Whether a point [L] lies within the walls or on one of them. */

@@ -32,7 +32,7 @@ static void append_obstacles(fibrad_obstacles *list, uint32_t lanes, vd x, vd y,
 }
 
 /* A cone touches both spheres. Its normals are inclined by asin(slope) to the planes z = const. Rays between points
- * that face each other lie inside the cone, between its two circles of contact. Obstacles that overlap this body are
+ * that face each other lie inside the cone, between its two circles of contact. Obstacles that overlap this wall are
  * kept. An obstacle hides the pair if it covers the cross-section of the cone in the plane of its own centre and if
  * the spheres lie on different sides of this plane. */
 bool LANED(fibrad_surface_filter)(fibrad_surface_task *task, const fibrad_surface_frame *frame,

@@ -89,13 +89,13 @@ static unsigned char rows_memory[SPHERES * (12 * SPHERES + 128)], matrix_memory[
 static fibrad_work work = {.memory = {.block = work_memory, .size = sizeof work_memory}}; /* of all that follows */
 static fibrad_rows rows = {.memory = {.block = rows_memory, .size = sizeof rows_memory}};
 static uint32_t col[SPHERES];
-static double f[SPHERES], on_body[WALLS];
+static double f[SPHERES], on_wall[WALLS];
 
-static uint32_t bodies;
-static uint32_t wall_of[WALLS]; /* the wall of each body: x low, x high, y low, y high, z low, z high or cylinder */
+static uint32_t walls;
+static uint32_t wall_of[WALLS]; /* the wall of each wall: x low, x high, y low, y high, z low, z high or cylinder */
 
 /* A row with room for all spheres and walls. */
-static fibrad_row row_here(void) { return (fibrad_row){.col = col, .f = f, .body = on_body, .capacity = SPHERES}; }
+static fibrad_row row_here(void) { return (fibrad_row){.col = col, .f = f, .wall = on_wall, .capacity = SPHERES}; }
 
 static void hash_factors(const fibrad_factors *factors) {
     hash_begin();
@@ -103,17 +103,17 @@ static void hash_factors(const fibrad_factors *factors) {
     for (uint64_t k = 0; k < factors->start[factors->n]; k++) hash_word(factors->col[k]), hash_number(factors->f[k]);
 }
 
-/* Factors of bodies by wall. Walls that do not exist have 0. */
-static void hash_walls(const double *of_body) {
+/* Factors of walls by wall. Walls that do not exist have 0. */
+static void hash_walls(const double *of_wall) {
     double wall[WALLS] = {0};
-    for (uint32_t b = 0; b < bodies; b++) wall[wall_of[b]] = of_body[b];
+    for (uint32_t b = 0; b < walls; b++) wall[wall_of[b]] = of_wall[b];
     for (int k = 0; k < WALLS; k++) hash_number(wall[k]);
 }
 
 static void hash_row(const fibrad_row *row) {
     hash_word(row->length);
     for (uint32_t k = 0; k < row->length; k++) hash_word(row->col[k]), hash_number(row->f[k]);
-    hash_walls(row->body);
+    hash_walls(row->wall);
     hash_number(row->escaped), hash_number(row->error);
 }
 
@@ -141,28 +141,28 @@ static int hash_directions(void) {
     return 0;
 }
 
-static void add_body(fibrad_body *body, uint32_t wall, fibrad_body fields) {
-    wall_of[bodies] = wall;
-    body[bodies++] = fields;
+static void add_wall(fibrad_wall *wall, uint32_t wall, fibrad_wall fields) {
+    wall_of[walls] = wall;
+    wall[walls++] = fields;
 }
 
-/* Makes the scene. Its bodies are in the order of wall_of. part: NULL, or known region, occupancy and ids. */
+/* Makes the scene. Its walls are in the order of wall_of. part: NULL, or known region, occupancy and ids. */
 static int scene_part(void *memory, size_t size, const struct scene *s, int isa, const fibrad_scene_config *part,
                       const uint64_t *id, fibrad_scene **scene) {
     const double low = -.95, high = s->spacing * (s->side - 1) - low, middle = (low + high) / 2;
     const double period = s->spacing * s->side, across = s->bounds == PERIODIC || s->bounds == SLAB ? period : 0;
     const uint32_t planes = s->bounds < BOX ? 0 : s->bounds == BOX ? 63 : s->bounds == FLOOR ? 16 : 48;
-    fibrad_body body[WALLS];
-    bodies = 0;
+    fibrad_wall wall[WALLS];
+    walls = 0;
     for (uint32_t k = 0; k < 6; k++)
         if (planes >> k & 1)
-            add_body(body, k,
-                     (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {(int)k / 2, k % 2, k % 2 ? high : low}});
+            add_wall(wall, k,
+                     (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = {(int)k / 2, k % 2, k % 2 ? high : low}});
     if (s->bounds == CAN)
-        add_body(body, 6,
-                 (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {middle, middle, .75 * (high - low)}});
+        add_wall(wall, 6,
+                 (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {middle, middle, .75 * (high - low)}});
     fibrad_scene_config config = part != NULL ? *part : (fibrad_scene_config){0};
-    config.isa = isa, config.body = body, config.bodies = bodies;
+    config.isa = isa, config.wall = wall, config.walls = walls;
     config.period[0] = config.period[1] = across, config.period[2] = s->bounds == PERIODIC ? period : 0;
     const fibrad_spheres spheres = {.x = x, .y = y, .z = z, .r = r, .n = s->n, .id = id};
     return fibrad_scene_init(scene, memory, size, &config, &spheres, NULL) != FIBRAD_OK;
@@ -248,7 +248,7 @@ static int hash_lines(const struct scene *s, int isa) {
         if (matrix_of(scene, &(fibrad_matrix_rule){.tasks = 3}, &factors, &largest)) return 1;
         hash_factors(&factors);
         for (uint32_t i = 0; i < s->n; i++) {
-            hash_walls(factors.body + (size_t)i * bodies);
+            hash_walls(factors.wall + (size_t)i * walls);
             hash_number(factors.escaped[i]), hash_number(factors.error[i]);
         }
     }
@@ -293,29 +293,29 @@ static int hash_cast(const struct scene *s, int isa, int random) {
 /* ---- heat, exchange, walls, what moves: small scenes ------------------------------------------------------------ */
 
 static double temperature[SPHERES], emissivity[SPHERES], power[SPHERES];
-static double wall_temperature[WALLS], wall_emissivity[WALLS]; /* values of all walls, and of the existing bodies: */
-static double body_temperature[WALLS], body_emissivity[WALLS], body_power[WALLS];
+static double wall_temperature[WALLS], wall_emissivity[WALLS]; /* values of all walls, and of the existing walls: */
+static double wall_temperature[WALLS], wall_emissivity[WALLS], wall_power[WALLS];
 
 /* Temperatures and emissivities of all spheres and walls, between two bounds. */
 static fibrad_heat_sources sources_of(const struct scene *s, uint64_t seed, double lowest, double highest) {
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);
     sources.temperature = temperature, sources.emissivity = emissivity;
-    sources.body_temperature = body_temperature, sources.body_emissivity = body_emissivity;
+    sources.wall_temperature = wall_temperature, sources.wall_emissivity = wall_emissivity;
     sources.surroundings = .5, sources.sigma = 1;
     state = seed;
     for (uint32_t i = 0; i < s->n; i++) temperature[i] = random_in(1, 2), emissivity[i] = random_in(lowest, highest);
     for (int k = 0; k < WALLS; k++)
         wall_temperature[k] = random_in(1, 2), wall_emissivity[k] = random_in(lowest, highest);
-    for (uint32_t b = 0; b < bodies; b++)
-        body_temperature[b] = wall_temperature[wall_of[b]], body_emissivity[b] = wall_emissivity[wall_of[b]];
+    for (uint32_t b = 0; b < walls; b++)
+        wall_temperature[b] = wall_temperature[wall_of[b]], wall_emissivity[b] = wall_emissivity[wall_of[b]];
     return sources;
 }
 
 static void hash_result(const struct scene *s, const fibrad_heat_result *result) {
     hash_begin();
     for (uint32_t i = 0; i < s->n; i++) hash_number(result->power[i]);
-    hash_walls(result->body_power);
+    hash_walls(result->wall_power);
     hash_number(result->surroundings_power), hash_number(result->error_patches), hash_number(result->error_beams);
     hash_number(result->residual), hash_word(result->sweeps);
 }
@@ -327,7 +327,7 @@ static void hash_facts(const struct scene *s, const fibrad_scene *scene) {
     hash_word(facts.spheres), hash_number(facts.radius_min), hash_number(facts.radius_max);
     hash_number(facts.overlap_max), hash_word(facts.overlap_pair[0]), hash_word(facts.overlap_pair[1]);
     double area[WALLS];
-    for (uint32_t b = 0; b < bodies; b++) area[b] = fibrad_scene_body_area(scene, b);
+    for (uint32_t b = 0; b < walls; b++) area[b] = fibrad_scene_wall_area(scene, b);
     hash_walls(area);
     tell(s->name, "facts");
 }
@@ -341,7 +341,7 @@ static int hash_matrix(const struct scene *s, const fibrad_scene *scene, const f
     hash_factors(&factors);
     hash_number(largest);
     for (uint32_t i = 0; i < s->n; i++) {
-        hash_walls(factors.body + (size_t)i * bodies);
+        hash_walls(factors.wall + (size_t)i * walls);
         hash_number(factors.escaped[i]), hash_number(factors.error[i]);
     }
     tell(s->name, name);
@@ -361,7 +361,7 @@ static int hash_closed(const struct scene *s, int isa, uint32_t points) {
         rule.directions = 34 + 13 * (i % 3);
         fibrad_row row = row_here();
         if (fibrad_beam_row(scene, &work, i, &rule, &row) != FIBRAD_OK ||
-            fibrad_rows_add(&rows, &row, bodies) != FIBRAD_OK)
+            fibrad_rows_add(&rows, &row, walls) != FIBRAD_OK)
             return 1;
         hash_row(&row);
         hash_word(row.directions);
@@ -412,9 +412,9 @@ static int hash_exchange(const struct scene *s, int isa) {
     fibrad_scene *scene;
     if (set_up(s, isa, &scene)) return 1;
     (void)sources_of(s, 9, .2, 1);
-    for (uint32_t b = 0; b < bodies; b++)
-        body_emissivity[b] = wall_of[b] == 6 ? .4 : wall_of[b] % 3 ? wall_emissivity[wall_of[b]] : 0;
-    fibrad_exchange_rule rule = {.emissivity = emissivity, .body_emissivity = body_emissivity, .paths = 100, .seed = 3};
+    for (uint32_t b = 0; b < walls; b++)
+        wall_emissivity[b] = wall_of[b] == 6 ? .4 : wall_of[b] % 3 ? wall_emissivity[wall_of[b]] : 0;
+    fibrad_exchange_rule rule = {.emissivity = emissivity, .wall_emissivity = wall_emissivity, .paths = 100, .seed = 3};
     uint64_t rays;
     for (int tolerance = 0; tolerance < 2; tolerance++) {
         rule.tolerance = tolerance ? .03 : 0;
@@ -444,7 +444,7 @@ static int hash_exchange(const struct scene *s, int isa) {
         hash_number(displacement.absorbed), hash_word(displacement.rays);
     }
     tell(s->name, "spread");
-    return bodies == 0 && s->bounds == PERIODIC ? hash_walk(s, scene, &rule) : 0;
+    return walls == 0 && s->bounds == PERIODIC ? hash_walk(s, scene, &rule) : 0;
 }
 
 /* Rows of a part of a bed with a cutoff, a known region and an occupancy: beams by areas, by points and turned, cast
@@ -462,7 +462,7 @@ static int hash_part(const struct scene *s, int isa) {
         if (which == 1) config.known_low[2] = -1, config.known_high[2] = 3;
         fibrad_scene *scene;
         if (scene_part(scene_memory, sizeof scene_memory, s, isa, &config, id, &scene)) return 1;
-        for (uint32_t b = 0; b < bodies; b++) body_emissivity[b] = wall_emissivity[wall_of[b]];
+        for (uint32_t b = 0; b < walls; b++) wall_emissivity[b] = wall_emissivity[wall_of[b]];
         const double cutoff = which == 1 ? 0 : 3.1;
         hash_begin();
         fibrad_rows_clear(&rows);
@@ -471,7 +471,7 @@ static int hash_part(const struct scene *s, int isa) {
                 .directions = 34, .points = i % 2 ? 64 : 0, .cutoff = cutoff, .turn = i % 3 ? i : 0};
             const fibrad_cast_rule cast = {.rays = 200, .cutoff = cutoff};
             const fibrad_exchange_rule exchange = {.emissivity = emissivity,
-                                                   .body_emissivity = body_emissivity,
+                                                   .wall_emissivity = wall_emissivity,
                                                    .paths = 50,
                                                    .seed = i % 2 ? 77 : 0,
                                                    .cutoff = cutoff};
@@ -483,20 +483,20 @@ static int hash_part(const struct scene *s, int isa) {
                 if (status != FIBRAD_OK) return 1;
                 hash_row(&row);
                 hash_number(row.beyond);
-                if (method == 2 && fibrad_rows_add(&rows, &row, bodies) != FIBRAD_OK) return 1;
+                if (method == 2 && fibrad_rows_add(&rows, &row, walls) != FIBRAD_OK) return 1;
             }
         }
         for (uint32_t i = 0; i < s->n; i++) power[i] = 0;
-        for (uint32_t b = 0; b < bodies; b++) body_power[b] = 0, body_temperature[b] = wall_temperature[wall_of[b]];
+        for (uint32_t b = 0; b < walls; b++) wall_power[b] = 0, wall_temperature[b] = wall_temperature[wall_of[b]];
         fibrad_flow flow = {.weight = r,
                             .emission = temperature,
-                            .body_emission = body_temperature,
+                            .wall_emission = wall_temperature,
                             .surroundings_emission = 1,
                             .power = power,
-                            .body_power = body_power};
-        if (fibrad_rows_flow(&rows, s->n, bodies, &flow) != FIBRAD_OK) return 1;
+                            .wall_power = wall_power};
+        if (fibrad_rows_flow(&rows, s->n, walls, &flow) != FIBRAD_OK) return 1;
         for (uint32_t i = 0; i < s->n; i++) hash_number(power[i]);
-        hash_walls(body_power);
+        hash_walls(wall_power);
         hash_number(flow.surroundings_power);
         tell(s->name, names[which]);
     }
@@ -544,7 +544,7 @@ static int heat_trace(const struct scene *s, int isa, const fibrad_heat_config *
 }
 
 static int heat_solve(const struct scene *s, fibrad_heat *heat, const fibrad_heat_sources *sources, const char *name) {
-    fibrad_heat_result result = {.power = power, .body_power = body_power};
+    fibrad_heat_result result = {.power = power, .wall_power = wall_power};
     if (fibrad_heat_begin(heat, sources) != FIBRAD_OK) return 1;
     for (int solved = 0; !solved;) {
         for (uint32_t k = 0; k < fibrad_heat_parts(heat); k++)

@@ -43,8 +43,8 @@ int main(int count, char **argument) {
         id[n++] = number;
     }
 
-    const fibrad_body wall = {.kind = FIBRAD_BODY_PLANE, .plane = {.axis = 2}};
-    const fibrad_scene_config config = {.body = &wall, .bodies = 1};
+    const fibrad_wall wall = {.kind = FIBRAD_WALL_PLANE, .plane = {.axis = 2}};
+    const fibrad_scene_config config = {.wall = &wall, .walls = 1};
     const fibrad_spheres spheres = {.x = x, .y = y, .z = z, .r = r, .n = n, .id = id};
     const size_t size = fibrad_scene_size(n, 1);
     void *memory = malloc(size);
@@ -57,15 +57,15 @@ int main(int count, char **argument) {
         if (step % every == 0) {
             fibrad_exchange_rule rule = {/* defaults of fibrad_insitu_config */
                                          .emissivity = emissivity,
-                                         .body_emissivity = &floor_emissivity,
+                                         .wall_emissivity = &floor_emissivity,
                                          .directions = 36,
                                          .paths = 80,
                                          .cutoff = cutoff};
             fibrad_rows_clear(&rows);
             for (uint32_t i = 0; i < n; i++) {
-                double body;
+                double wall;
                 rule.seed = 1 + (uint64_t)step * 0x9e3779b97f4a7c15u + id[i] * 0xd1342543de82ef95u;
-                fibrad_row row = {.body = &body, .rows = &rows};
+                fibrad_row row = {.wall = &wall, .rows = &rows};
                 stop_unless(fibrad_exchange_row(scene, &work, i, &rule, &row, NULL));
             }
         }
@@ -78,10 +78,10 @@ int main(int count, char **argument) {
         double floor_power = 0;
         fibrad_flow flow = {.weight = weight,
                             .emission = emission,
-                            .body_emission = &floor_emission,
+                            .wall_emission = &floor_emission,
                             .surroundings_emission = sigma * pow(300, 4),
                             .power = power,
-                            .body_power = &floor_power};
+                            .wall_power = &floor_power};
         stop_unless(fibrad_rows_flow(&rows, n, 1, &flow));
         for (uint32_t i = 0; i < n; i++) t[i] += power[i] * dt / (2500 * 4 * pi / 3 * r[i] * r[i] * r[i] * 800);
         floor_t += floor_power * dt / capacity;

@@ -32,7 +32,7 @@ static void read_rank(const char *prefix, uint64_t rank) {
     fibrad_rows_head *const h = &head[rank];
     if (!file || fread(h, sizeof *h, 1, file) != 1) stop(name);
     if (memcmp(h->magic, FIBRAD_ROWS_MAGIC, sizeof h->magic) != 0 || h->rank != rank || h->ranks > RANKS) stop(name);
-    const uint64_t count = h->rows * (10 + h->bodies) + 1 + 2 * h->entries;
+    const uint64_t count = h->rows * (10 + h->walls) + 1 + 2 * h->entries;
     words[rank] = room(8 * count);
     if (fread(words[rank], 8, count, file) != count || fgetc(file) != EOF) stop(name);
     fclose(file);
@@ -50,13 +50,13 @@ static void put(const uint64_t *from, uint64_t count) {
 static void put_row(const place *p) {
     const fibrad_rows_head *const h = &head[p->rank];
     const uint64_t *start = words[p->rank] + h->rows, *col = start + h->rows + 1, *f = col + h->entries;
-    const uint64_t *body = f + h->entries, *scalars = body + h->rows * h->bodies, *x = scalars + 5 * h->rows;
+    const uint64_t *wall = f + h->entries, *scalars = wall + h->rows * h->walls, *x = scalars + 5 * h->rows;
     const uint64_t first = start[p->row], length = start[p->row + 1] - first;
     put(&p->id, 1);
     put(&length, 1);
     put(col + first, length);
     put(f + first, length);
-    put(body + p->row * h->bodies, h->bodies);
+    put(wall + p->row * h->walls, h->walls);
     for (int k = 0; k < 5; k++) put(scalars + (uint64_t)k * h->rows + p->row, 1); /* escaped, ..., emissivity */
     put(x + 3 * p->row, 3);
 }

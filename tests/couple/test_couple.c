@@ -161,8 +161,8 @@ struct pile {
     fibrad_insitu_bed bed;
     uint64_t *id;
     double *x, *radius, *emissivity, *conductivity, *temperature, *power;
-    fibrad_body *body;
-    double *body_emissivity;
+    fibrad_wall *wall;
+    double *wall_emissivity;
 };
 
 static void open_pile(struct pile *p, size_t n) {
@@ -173,11 +173,11 @@ static void open_pile(struct pile *p, size_t n) {
     p->conductivity = memory_of(n, sizeof *p->conductivity);
     p->temperature = memory_of(n, sizeof *p->temperature);
     p->power = memory_of(n, sizeof *p->power);
-    p->body = memory_of(2, sizeof *p->body);
-    p->body_emissivity = memory_of(2, sizeof *p->body_emissivity);
+    p->wall = memory_of(2, sizeof *p->wall);
+    p->wall_emissivity = memory_of(2, sizeof *p->wall_emissivity);
     p->bed.id = p->id, p->bed.x = p->x, p->bed.radius = p->radius, p->bed.emissivity = p->emissivity;
     p->bed.conductivity = p->conductivity;
-    p->bed.body = p->body, p->bed.body_emissivity = p->body_emissivity;
+    p->bed.wall = p->wall, p->bed.wall_emissivity = p->wall_emissivity;
 }
 
 static void close_pile(struct pile *p) {
@@ -188,8 +188,8 @@ static void close_pile(struct pile *p) {
     free(p->conductivity);
     free(p->temperature);
     free(p->power);
-    free(p->body);
-    free(p->body_emissivity);
+    free(p->wall);
+    free(p->wall_emissivity);
 }
 
 enum walls { OPEN, FLOORS, TUBE, PIPE };
@@ -236,12 +236,12 @@ static struct pile pile_of(const struct kind *kind) {
     }
     if (kind->walls == FLOORS)
         for (int k = 0; k < 2; ++k)
-            p.body[p.bed.bodies++] = (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {2, k, k ? box - 1 : -1}};
+            p.wall[p.bed.walls++] = (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = {2, k, k ? box - 1 : -1}};
     if (kind->walls == PIPE) p.bed.opening = ends[2], p.bed.openings = 2;
     if (kind->walls >= TUBE)
-        p.body[p.bed.bodies++] =
-            (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {box / 2 - 1, box / 2 - .75, box / 2}};
-    p.body_emissivity[0] = kind->emissivity[0], p.body_emissivity[1] = .5;
+        p.wall[p.bed.walls++] =
+            (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {box / 2 - 1, box / 2 - .75, box / 2}};
+    p.wall_emissivity[0] = kind->emissivity[0], p.wall_emissivity[1] = .5;
     return p;
 }
 
@@ -253,13 +253,13 @@ static void turn_axes(double x[3], int axis) {
 
 /* Turns a tube or a pipe until it lies along another axis. */
 static void lay_along(struct pile *p, int axis) {
-    const double x = p->body->cylinder.x;
+    const double x = p->wall->cylinder.x;
     const int periodic = p->bed.periodic[2];
     for (size_t i = 0; i < p->bed.n; ++i) turn_axes(p->x + 3 * i, axis);
     p->bed.cylinder = (axis + 1) % 3;
     p->bed.periodic[2] = 0, p->bed.periodic[axis] = periodic;
     if (p->bed.openings) p->bed.opening = ends[axis];
-    if (axis == 1) p->body->cylinder.x = p->body->cylinder.y, p->body->cylinder.y = x; /* x y z become z x y, y z x */
+    if (axis == 1) p->wall->cylinder.x = p->wall->cylinder.y, p->wall->cylinder.y = x; /* x y z become z x y, y z x */
 }
 
 /* The owner of a particle: by chance, by height, the last rank owns all, all ranks but rank 0. */
@@ -282,8 +282,8 @@ static int owner_of(const struct pile *p, size_t i, int spread) {
 static struct pile emptied(const struct pile *all) {
     struct pile p = *all;
     open_pile(&p, all->bed.n);
-    memcpy(p.body, all->body, 2 * sizeof *p.body);
-    memcpy(p.body_emissivity, all->body_emissivity, 2 * sizeof *p.body_emissivity);
+    memcpy(p.wall, all->wall, 2 * sizeof *p.wall);
+    memcpy(p.wall_emissivity, all->wall_emissivity, 2 * sizeof *p.wall_emissivity);
     p.bed.n = 0;
     return p;
 }
@@ -316,7 +316,7 @@ static struct pile part_of(const struct pile *all, int spread) {
 struct rows_file {
     fibrad_rows_head head;
     uint64_t *word, *id, *start, *col;
-    double *f, *body, *escaped, *beyond, *error, *radius, *emissivity, *x;
+    double *f, *wall, *escaped, *beyond, *error, *radius, *emissivity, *x;
 };
 
 static const char *path_of(const char *name) {
@@ -334,13 +334,13 @@ static struct rows_file read_rows(const char *name, int of) {
     if (!file) return r;
     CHECK(fread(&r.head, sizeof r.head, 1, file) == 1 && memcmp(r.head.magic, FIBRAD_ROWS_MAGIC, 8) == 0);
     const size_t n = r.head.rows, entries = r.head.entries;
-    const size_t words = 2 * n + 1 + 2 * entries + n * (8 + r.head.bodies);
+    const size_t words = 2 * n + 1 + 2 * entries + n * (8 + r.head.walls);
     r.word = memory_of(words + 1, sizeof *r.word);
     CHECK(fread(r.word, sizeof *r.word, words + 1, file) == words);
     fclose(file);
     remove(path);
     r.id = r.word, r.start = r.id + n, r.col = r.start + n + 1;
-    r.f = (double *)(r.col + entries), r.body = r.f + entries, r.escaped = r.body + n * r.head.bodies;
+    r.f = (double *)(r.col + entries), r.wall = r.f + entries, r.escaped = r.wall + n * r.head.walls;
     r.beyond = r.escaped + n, r.error = r.beyond + n, r.radius = r.error + n, r.emissivity = r.radius + n;
     r.x = r.emissivity + n;
     return r;
@@ -351,7 +351,7 @@ static bool equal_words(const void *a, const void *b, size_t words) { return mem
 /* Whether row i of one file is row k of another, to the bit. The row must be closed, or empty at emissivity 0, and its
  * columns must ascend. */
 static bool same_row(const struct rows_file *a, size_t i, const struct rows_file *b, size_t k) {
-    const uint64_t length = a->start[i + 1] - a->start[i], bodies = a->head.bodies;
+    const uint64_t length = a->start[i + 1] - a->start[i], walls = a->head.walls;
     if (length != b->start[k + 1] - b->start[k]) return false;
     const uint64_t *col = a->col + a->start[i];
     const double *f = a->f + a->start[i];
@@ -360,10 +360,10 @@ static bool same_row(const struct rows_file *a, size_t i, const struct rows_file
         if (m && col[m] <= col[m - 1]) return false;
         sum += f[m];
     }
-    for (uint64_t m = 0; m < bodies; ++m) sum += a->body[i * bodies + m];
+    for (uint64_t m = 0; m < walls; ++m) sum += a->wall[i * walls + m];
     return fabs(sum - (a->emissivity[i] > 0)) < 1e-12 && equal_words(col, b->col + b->start[k], length) &&
            equal_words(f, b->f + b->start[k], length) &&
-           equal_words(a->body + i * bodies, b->body + k * bodies, bodies) &&
+           equal_words(a->wall + i * walls, b->wall + k * walls, walls) &&
            equal_words(&a->escaped[i], &b->escaped[k], 1) && equal_words(&a->beyond[i], &b->beyond[k], 1) &&
            equal_words(&a->error[i], &b->error[k], 1) && equal_words(&a->radius[i], &b->radius[k], 1) &&
            equal_words(&a->emissivity[i], &b->emissivity[k], 1) && equal_words(a->x + 3 * i, b->x + 3 * k, 3);
@@ -384,7 +384,7 @@ static void compare_files(const char *part, const char *whole, int axis) {
     for (int q = 0; q < ranks; ++q) {
         struct rows_file a = read_rows(part, q);
         CHECK(a.head.rank == (uint64_t)q && a.head.ranks == (uint64_t)ranks && a.head.step == b.head.step);
-        CHECK(a.head.bodies == b.head.bodies && a.head.emissive == b.head.emissive && a.head.cutoff == b.head.cutoff);
+        CHECK(a.head.walls == b.head.walls && a.head.emissive == b.head.emissive && a.head.cutoff == b.head.cutoff);
         for (size_t i = 0; i < a.head.rows; ++i, ++rows) {
             const size_t k = place_of(&b, a.id[i]);
             same += k < b.head.rows && (i == 0 || a.id[i] > a.id[i - 1]) && same_row(&a, i, &b, k);
@@ -459,11 +459,11 @@ static void rows_are_those_of_one_rank(const struct kind *kind, int axis) {
 
 /* ---- powers ---------------------------------------------------------------------------------------------------- */
 
-static const double body_temperature[2] = {1500, 400};
+static const double wall_temperature[2] = {1500, 400};
 
 static fibrad_insitu_state state_of(const struct pile *p) {
     return (fibrad_insitu_state){.surroundings = 500,
-                                 .body_temperature = body_temperature,
+                                 .wall_temperature = wall_temperature,
                                  .n = p->bed.n,
                                  .id = p->id,
                                  .temperature = p->temperature};
@@ -485,16 +485,16 @@ static void powers_keep_energy(const struct kind *kind) {
                    pow(all.temperature[i], 4);
     MPI_Allreduce(&here, &sum, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
     double left = totals.particles + totals.surroundings;
-    for (uint32_t k = 0; k < all.bed.bodies; ++k) left += totals.body[k];
+    for (uint32_t k = 0; k < all.bed.walls; ++k) left += totals.wall[k];
     CHECK(fabs(left) < 1e-14 * emitted);
     CHECK(fabs(sum - totals.particles) < 1e-14 * emitted);
     CHECK(largest > 0 || part.bed.n == 0);
 
     const double same[2] = {777, 777};
     for (size_t i = 0; i < part.bed.n; ++i) part.temperature[i] = 777;
-    state.surroundings = 777, state.body_temperature = same;
+    state.surroundings = 777, state.wall_temperature = same;
     CHECK(fibrad_insitu_powers(s, &state, part.power, &totals) == FIBRAD_OK);
-    bool zero = totals.particles == 0 && totals.surroundings == 0 && totals.body[0] == 0 && totals.body[1] == 0;
+    bool zero = totals.particles == 0 && totals.surroundings == 0 && totals.wall[0] == 0 && totals.wall[1] == 0;
     for (size_t i = 0; i < part.bed.n; ++i) zero = zero && part.power[i] == 0;
     CHECK(zero);
     fibrad_insitu_free(s);
@@ -515,7 +515,7 @@ static void parts_change_with_walls(const struct kind *kind) {
     for (size_t i = 0; i < n; ++i) part.temperature[i] = 800;
     for (int k = 0; k < 3; ++k) {
         fibrad_insitu_state state = state_of(&part);
-        state.body_temperature = k == 1 ? hot : cold;
+        state.wall_temperature = k == 1 ? hot : cold;
         state.surroundings = k == 2 ? 1100 : 500;
         power[k] = memory_of(n, sizeof **power), parts[k] = memory_of(n, sizeof **parts);
         CHECK(fibrad_insitu_powers(s, &state, power[k], NULL) == FIBRAD_OK);
@@ -588,7 +588,7 @@ static fibrad_insitu_totals powers_beside_a_speck(const fibrad_insitu_bed *walls
     fibrad_insitu_bed bed = *walls;
     bed.n = speck && rank == 0, bed.id = &id, bed.x = x, bed.radius = &r, bed.emissivity = &e;
     const fibrad_insitu_state state = {
-        .sigma = 1, .surroundings = 0, .body_temperature = temperature, .n = bed.n, .id = &id, .temperature = &t};
+        .sigma = 1, .surroundings = 0, .wall_temperature = temperature, .n = bed.n, .id = &id, .temperature = &t};
     const fibrad_insitu_config config = {.paths = SPECK_PATHS};
     fibrad_insitu *s;
     fibrad_insitu_totals totals;
@@ -604,28 +604,28 @@ static fibrad_insitu_totals powers_beside_a_speck(const fibrad_insitu_bed *walls
 /* Two plates of emissivities e and d exchange A/(1/e + 1/d - 1). A black face of a cube and the opposite one exchange
  * 0.19982 A (Siegel, Howell, configuration C-11), the surroundings behind an opening as well. */
 static void walls_exchange_with_each_other(void) {
-    static const fibrad_body face[6] = {
-        {.kind = FIBRAD_BODY_PLANE, .plane = {2, 0, 0}}, {.kind = FIBRAD_BODY_PLANE, .plane = {2, 1, 1}},
-        {.kind = FIBRAD_BODY_PLANE, .plane = {0, 0, 0}}, {.kind = FIBRAD_BODY_PLANE, .plane = {0, 1, 1}},
-        {.kind = FIBRAD_BODY_PLANE, .plane = {1, 0, 0}}, {.kind = FIBRAD_BODY_PLANE, .plane = {1, 1, 1}}};
+    static const fibrad_wall face[6] = {
+        {.kind = FIBRAD_WALL_PLANE, .plane = {2, 0, 0}}, {.kind = FIBRAD_WALL_PLANE, .plane = {2, 1, 1}},
+        {.kind = FIBRAD_WALL_PLANE, .plane = {0, 0, 0}}, {.kind = FIBRAD_WALL_PLANE, .plane = {0, 1, 1}},
+        {.kind = FIBRAD_WALL_PLANE, .plane = {1, 0, 0}}, {.kind = FIBRAD_WALL_PLANE, .plane = {1, 1, 1}}};
     static const double grey[] = {.6, .3}, black[] = {1, 1, 1, 1, 1, 1}, hot[] = {10, 20, 0, 0, 0, 0};
     const double between = 1 / (1 / grey[0] + 1 / grey[1] - 1), opposite = .19982, beside = (1 - opposite) / 4;
     fibrad_insitu_facts facts;
 
     const fibrad_insitu_bed plates = {
-        .high = {1, 1, 1}, .periodic = {1, 1, 0}, .body = face, .body_emissivity = grey, .bodies = 2};
-    const fibrad_insitu_bed cube = {.body = face, .body_emissivity = black, .bodies = 6};
+        .high = {1, 1, 1}, .periodic = {1, 1, 0}, .wall = face, .wall_emissivity = grey, .walls = 2};
+    const fibrad_insitu_bed cube = {.wall = face, .wall_emissivity = black, .walls = 6};
     const fibrad_insitu_bed open = {
-        .body = face + 1, .body_emissivity = black, .bodies = 5, .opening = &face[0].plane, .openings = 1};
+        .wall = face + 1, .wall_emissivity = black, .walls = 5, .opening = &face[0].plane, .openings = 1};
     for (int speck = 0; speck < 2; ++speck) { /* without particles walls exchange, too */
         fibrad_insitu_totals totals = powers_beside_a_speck(&plates, hot, speck, &facts);
         const double tolerance = (speck ? 3 : 6) * SPECK_TOLERANCE;
-        CHECK(fabs(totals.body[0] / 150000 - between) < tolerance);
-        CHECK(fabs(totals.body[0] + totals.body[1] + totals.particles) < 1e-9);
-        CHECK(fabs(facts.body[0] - between) < tolerance && fabs(facts.body[1] / facts.body[0] - 1) < 1e-6);
+        CHECK(fabs(totals.wall[0] / 150000 - between) < tolerance);
+        CHECK(fabs(totals.wall[0] + totals.wall[1] + totals.particles) < 1e-9);
+        CHECK(fabs(facts.wall[0] - between) < tolerance && fabs(facts.wall[1] / facts.wall[0] - 1) < 1e-6);
         totals = powers_beside_a_speck(&cube, hot, speck, &facts);
-        CHECK(fabs(totals.body[0] / 150000 - (opposite - 4 * beside / 15)) < tolerance);
-        for (int k = 2; k < 6; ++k) CHECK(fabs(totals.body[k] / 170000 - beside) < tolerance);
+        CHECK(fabs(totals.wall[0] / 150000 - (opposite - 4 * beside / 15)) < tolerance);
+        for (int k = 2; k < 6; ++k) CHECK(fabs(totals.wall[k] / 170000 - beside) < tolerance);
         totals = powers_beside_a_speck(&open, hot + 1, speck, &facts);
         CHECK(fabs(totals.surroundings / 160000 - opposite) < tolerance);
     }
@@ -752,8 +752,8 @@ static void *grow(void *context, void *block, size_t size) {
 
 /* Temperatures after all steps by rows of the kernel in one scene, with sums written as in the formula. */
 static void step_by_kernel(struct pile *p, double cutoff) {
-    const uint32_t n = (uint32_t)p->bed.n, bodies = p->bed.bodies;
-    const fibrad_scene_config config = {.body = p->body, .bodies = bodies};
+    const uint32_t n = (uint32_t)p->bed.n, walls = p->bed.walls;
+    const fibrad_scene_config config = {.wall = p->wall, .walls = walls};
     const fibrad_spheres spheres = {p->x, p->x + 1, p->x + 2, p->radius, n, 3, 1, p->id};
     const size_t size = fibrad_scene_size(n, 1);
     void *block = memory_of(size, 1);
@@ -761,16 +761,16 @@ static void step_by_kernel(struct pile *p, double cutoff) {
     fibrad_work work = {.memory.resize = grow};
     CHECK(fibrad_scene_init(&scene, block, size, &config, &spheres, NULL) == FIBRAD_OK);
     fibrad_exchange_rule rule = {.emissivity = p->emissivity,
-                                 .body_emissivity = p->body_emissivity,
+                                 .wall_emissivity = p->wall_emissivity,
                                  .directions = 50,
                                  .paths = 100,
                                  .cutoff = cutoff};
     uint32_t *col = memory_of((size_t)n * n, sizeof *col);
     double *f = memory_of((size_t)n * n, sizeof *f), *emission = memory_of(n, sizeof *emission);
     fibrad_row *row = memory_of(n, sizeof *row);
-    double(*body)[2] = memory_of(n, sizeof *body);
+    double(*wall)[2] = memory_of(n, sizeof *wall);
     for (uint32_t i = 0; i < n; ++i) {
-        row[i] = (fibrad_row){.col = col + (size_t)i * n, .f = f + (size_t)i * n, .body = body[i], .capacity = n};
+        row[i] = (fibrad_row){.col = col + (size_t)i * n, .f = f + (size_t)i * n, .wall = wall[i], .capacity = n};
         rule.seed = 3 + p->id[i] * 0xd1342543de82ef95u;
         CHECK(fibrad_exchange_row(scene, &work, i, &rule, &row[i], NULL) == FIBRAD_OK);
     }
@@ -783,9 +783,9 @@ static void step_by_kernel(struct pile *p, double cutoff) {
                 const double half = weight * row[i].f[k] * (emission[row[i].col[k]] - emission[i]) / 2;
                 p->power[i] += half, p->power[row[i].col[k]] -= half;
             }
-            for (uint32_t b = 0; b < bodies; ++b)
+            for (uint32_t b = 0; b < walls; ++b)
                 p->power[i] +=
-                    weight * body[i][b] * (FIBRAD_STEFAN_BOLTZMANN * pow(body_temperature[b], 4) - emission[i]);
+                    weight * wall[i][b] * (FIBRAD_STEFAN_BOLTZMANN * pow(wall_temperature[b], 4) - emission[i]);
             p->power[i] += weight * row[i].escaped * (FIBRAD_STEFAN_BOLTZMANN * pow(500, 4) - emission[i]);
         }
         for (uint32_t i = 0; i < n; ++i) p->temperature[i] += p->power[i] / heat_capacity;
@@ -796,7 +796,7 @@ static void step_by_kernel(struct pile *p, double cutoff) {
     free(f);
     free(emission);
     free(row);
-    free(body);
+    free(wall);
 }
 
 /* Particles change ranks and positions at every third step. The rows stay where they were made. */
@@ -946,7 +946,7 @@ static void follow_changes(const struct kind *kind, const struct pile *all, cons
     for (size_t i = 0; i < all->bed.n; ++i)
         error += pow(found[i] - expected[i], 2), norm += pow(expected[i], 2), emitted += fabs(found[i]);
     CHECK(error < bound * bound * norm);
-    CHECK(fabs(totals.particles + totals.surroundings + totals.body[0] + totals.body[1]) < 1e-13 * emitted);
+    CHECK(fabs(totals.particles + totals.surroundings + totals.wall[0] + totals.wall[1]) < 1e-13 * emitted);
     if (rank == 0) { /* the same by one rank */
         fibrad_insitu *u = insitu_of(MPI_COMM_SELF, kind, 1);
         const fibrad_insitu_state whole = state_of(after);
@@ -1026,16 +1026,16 @@ static void spoil(struct pile *p, enum fault fault) {
         p->bed.high[0] = p->bed.low[0];
         break;
     case NO_WALL:
-        p->body_emissivity[1] = 2;
+        p->wall_emissivity[1] = 2;
         break;
     case ENDLESS:
-        p->body[1] = (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {3, 3, 9}};
+        p->wall[1] = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {3, 3, 9}};
         memset(p->bed.periodic, 0, sizeof p->bed.periodic);
         break;
     default:
         p->bed.opening = &beneath, p->bed.openings = 1;
-        memmove(p->body, p->body + 1, sizeof *p->body);
-        p->bed.bodies = 1;
+        memmove(p->wall, p->wall + 1, sizeof *p->wall);
+        p->bed.walls = 1;
         break;
     }
 }
@@ -1099,7 +1099,7 @@ static void wrong_units_are_refused(void) {
         struct pile all = pile_of(fault < 2 ? &open : &floors);
         for (size_t i = 0; i < all.bed.n && fault < 2; ++i) all.radius[i] *= 100;
         if (fault == 1) all.bed.periodic[1] = 1;
-        if (fault == 2) all.body[0].plane.at += PITCH;
+        if (fault == 2) all.wall[0].plane.at += PITCH;
         struct pile part = part_of(&all, 0);
         fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, &open, 1);
         check_refused(s, fibrad_insitu_rows(s, &part.bed, 0), FIBRAD_E_GEOMETRY,
@@ -1116,22 +1116,22 @@ static void wrong_units_are_refused(void) {
 static void cylinders_are_refused(fibrad_insitu *s) {
     static const char *const place[] = {"at (0.5, 9.5, 0.25): its centre lies beyond wall 1, the cylinder",
                                         "at (0.25, 0.5, 9.5): its centre lies beyond wall 1, the cylinder"};
-    const fibrad_body tube = {.kind = FIBRAD_BODY_CYLINDER, .cylinder = {3, 4, 6}};
+    const fibrad_wall tube = {.kind = FIBRAD_WALL_CYLINDER, .cylinder = {3, 4, 6}};
     for (int axis = 0; axis < 2; ++axis) {
         const fibrad_plane across[] = {{2, 0, -1}, {2, 1, 9}};
-        const fibrad_body both[] = {tube, tube}, floor[] = {tube, {.kind = FIBRAD_BODY_PLANE, .plane = across[0]}};
+        const fibrad_wall both[] = {tube, tube}, floor[] = {tube, {.kind = FIBRAD_WALL_PLANE, .plane = across[0]}};
         double x[3] = {9.5, .25, .5};
         turn_axes(x, axis);
         fibrad_insitu_bed bed = {.low = {0}, .high = {9, 9, 9}, .cylinder = (axis + 1) % 3};
-        bed.periodic[axis] = 1, bed.body_emissivity = (const double[]){1, 1};
+        bed.periodic[axis] = 1, bed.wall_emissivity = (const double[]){1, 1};
         bed.n = 1, bed.id = &(const uint64_t){5}, bed.x = x, bed.radius = bed.emissivity = &(const double){.5};
-        bed.body = &tube, bed.bodies = 1;
+        bed.wall = &tube, bed.walls = 1;
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, place[axis]);
-        bed.body = both, bed.bodies = 2;
+        bed.wall = both, bed.walls = 2;
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "do not bound a box or a cylinder");
-        bed.body = floor;
+        bed.wall = floor;
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "do not bound a box or a cylinder");
-        bed.bodies = 1, bed.opening = across, bed.openings = 2;
+        bed.walls = 1, bed.opening = across, bed.openings = 2;
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "do not bound a box or a cylinder");
         bed.openings = 0, bed.periodic[axis] = 0;
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ENDLESS, "an opening");

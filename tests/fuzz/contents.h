@@ -5,7 +5,7 @@
 #include "fibrad_mesh.h"
 #include "choices.h"
 
-enum { SPHERES = 24, PLANES = 7, MESHES = 3, BODIES = PLANES + MESHES, VERTICES = 16, TRIANGLES = 12 };
+enum { SPHERES = 24, PLANES = 7, MESHES = 3, WALLS = PLANES + MESHES, VERTICES = 16, TRIANGLES = 12 };
 
 static bool plain; /* all lengths lie within what a bed can be */
 static bool tame;  /* they are far from that, but a row takes far less than a second: no 1e9 radii across a box */
@@ -30,7 +30,7 @@ struct contents {
     double x[SPHERES], y[SPHERES], z[SPHERES], r[SPHERES];
     uint64_t id[SPHERES];
     bool ids;
-    fibrad_body body[BODIES + 1];
+    fibrad_wall wall[WALLS + 1];
     fibrad_plane opening[PLANES];
     bool occupied;
     fibrad_occupancy occupancy;
@@ -64,15 +64,15 @@ static inline void any_surroundings(struct contents *c) {
 /* Triangles between a few vertices, many of which coincide, and the meshes that have their sides. */
 static inline void any_triangles(struct contents *c) {
     fibrad_triangles *t = &c->triangles;
-    const uint32_t first = c->config.bodies, meshes = 1 + byte() % MESHES;
+    const uint32_t first = c->config.walls, meshes = 1 + byte() % MESHES;
     t->n = 1 + byte() % TRIANGLES, t->vertices = 3 + byte() % (VERTICES - 3);
-    for (uint32_t b = 0; b < meshes; b++) c->body[c->config.bodies++] = (fibrad_body){.kind = FIBRAD_BODY_MESH};
+    for (uint32_t b = 0; b < meshes; b++) c->wall[c->config.walls++] = (fibrad_wall){.kind = FIBRAD_WALL_MESH};
     for (uint32_t v = 0; v < t->vertices; v++)
         for (int axis = 0; axis < 3; axis++) c->vertex[axis][v] = length();
     for (uint32_t k = 0; k < 3 * t->n; k++) c->corner[k] = byte() % t->vertices;
     for (uint32_t k = 0; k < t->n; k++) {
         c->front[k] = first + byte() % meshes;
-        c->back[k] = byte() < 20 ? FIBRAD_NO_BODY : first + byte() % meshes;
+        c->back[k] = byte() < 20 ? FIBRAD_NO_WALL : first + byte() % meshes;
     }
     const uint8_t odd = byte();
     if (odd == 1) c->corner[byte() % TRIANGLES] = number();
@@ -84,15 +84,15 @@ static inline void any_triangles(struct contents *c) {
 static inline void any_openings(struct contents *c) {
     uint32_t kept = 0;
     const uint8_t open = byte();
-    for (uint32_t b = 0; b < c->config.bodies; b++) {
-        fibrad_body body = c->body[b];
-        body.plane.at = fabs(body.plane.at) * (body.plane.upper ? 1 : -1);
-        if (body.kind == FIBRAD_BODY_PLANE && (open >> b & 1) != 0)
-            c->opening[c->config.openings++] = body.plane;
+    for (uint32_t b = 0; b < c->config.walls; b++) {
+        fibrad_wall wall = c->wall[b];
+        wall.plane.at = fabs(wall.plane.at) * (wall.plane.upper ? 1 : -1);
+        if (wall.kind == FIBRAD_WALL_PLANE && (open >> b & 1) != 0)
+            c->opening[c->config.openings++] = wall.plane;
         else
-            c->body[kept++] = body;
+            c->wall[kept++] = wall;
     }
-    c->config.bodies = kept;
+    c->config.walls = kept;
 }
 
 /* How far the centre of sphere i lies within a plane; infinity: the plane is none. */
@@ -109,8 +109,8 @@ static inline bool fits(const struct contents *c, uint32_t i) {
         const double x = c->x[i] - c->x[j], y = c->y[i] - c->y[j], z = c->z[i] - c->z[j];
         may = may && sqrt(x * x + y * y + z * z) > fmax(c->r[i], c->r[j]);
     }
-    for (uint32_t b = 0; b < c->config.bodies; b++)
-        may = may && (c->body[b].kind != FIBRAD_BODY_PLANE || depth_within(c, i, &c->body[b].plane) > 0);
+    for (uint32_t b = 0; b < c->config.walls; b++)
+        may = may && (c->wall[b].kind != FIBRAD_WALL_PLANE || depth_within(c, i, &c->wall[b].plane) > 0);
     for (uint32_t k = 0; k < c->config.openings; k++) may = may && depth_within(c, i, &c->opening[k]) > c->r[i];
     return may;
 }
@@ -138,27 +138,27 @@ static inline struct contents any_contents(bool walled, bool meshed) {
     if (part == 1 || part > 240) any_surroundings(&c);
     for (uint32_t planes = walled ? byte() : 0, k = 0; k < 6; k++)
         if (planes >> k & 1)
-            c.body[c.config.bodies++] =
-                (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {(int)k / 2, k % 2, 8 * length()}};
+            c.wall[c.config.walls++] =
+                (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = {(int)k / 2, k % 2, 8 * length()}};
     if (walled && byte() % 4 == 0)
-        c.body[c.config.bodies++] =
-            (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {length(), length(), 4 * fabs(length())}};
-    if (walled && byte() == 1) c.body[byte() % PLANES].kind = byte();
-    if (walled && byte() == 1) c.body[byte() % PLANES].plane.axis = (int)number();
-    if (walled && byte() == 1) c.config.bodies = number() % (PLANES + 2);
-    if (meshed && c.config.bodies <= PLANES) any_openings(&c);
+        c.wall[c.config.walls++] =
+            (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {length(), length(), 4 * fabs(length())}};
+    if (walled && byte() == 1) c.wall[byte() % PLANES].kind = byte();
+    if (walled && byte() == 1) c.wall[byte() % PLANES].plane.axis = (int)number();
+    if (walled && byte() == 1) c.config.walls = number() % (PLANES + 2);
+    if (meshed && c.config.walls <= PLANES) any_openings(&c);
     for (uint32_t i = 0; i < c.n; i++) {
         c.x[i] = length(), c.y[i] = length(), c.z[i] = length(), c.r[i] = radius();
         c.id[i] = c.ids ? number() : i;
     }
-    if (meshed && c.config.bodies <= PLANES) any_triangles(&c);
+    if (meshed && c.config.walls <= PLANES) any_triangles(&c);
     if (meshed && byte() < 250) leave_out(&c);
     return c;
 }
 
 /* Sets the pointers of the configuration, which point into the contents themselves. */
 static inline void contents_complete(struct contents *c) {
-    c->config.body = c->body;
+    c->config.wall = c->wall;
     c->config.opening = c->opening;
     fibrad_triangles *t = &c->triangles;
     t->x = c->vertex[0], t->y = c->vertex[1], t->z = c->vertex[2];
@@ -211,9 +211,9 @@ static inline void check_row(const fibrad_row *row, const fibrad_scene *scene, u
         REQUIRE(row->f[k] > 0 && row->f[k] <= 1 + 1e-9);
         sum += row->f[k];
     }
-    for (uint32_t b = 0; b < facts.bodies; b++) {
-        REQUIRE(row->body[b] >= 0 && (row->body[b] == 0 || fibrad_scene_body_area(scene, b) > 0));
-        sum += row->body[b];
+    for (uint32_t b = 0; b < facts.walls; b++) {
+        REQUIRE(row->wall[b] >= 0 && (row->wall[b] == 0 || fibrad_scene_wall_area(scene, b) > 0));
+        sum += row->wall[b];
     }
     REQUIRE(row->escaped >= -1e-9 && row->beyond >= -1e-9 && row->error >= 0 && isfinite(row->error));
     REQUIRE(row->symmetric == 0 || row->symmetric == 1);

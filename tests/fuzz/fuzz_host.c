@@ -12,7 +12,7 @@ struct session {
     fibrad_spheres spheres;
     fibrad_run run;
     uint32_t reports; /* number of reports until progress asks to stop */
-    double emissivity[SPHERES], body_emissivity[BODIES];
+    double emissivity[SPHERES], wall_emissivity[WALLS];
     fibrad_radiation *radiation;
     fibrad_transient *transient;
     bool solved, powers; /* there is a solution of this bed */
@@ -48,7 +48,7 @@ static bool same(const fibrad_factors *a, const fibrad_factors *b) {
     const uint64_t entries = a->start[a->n];
     return memcmp(a->start, b->start, (a->n + 1) * sizeof *a->start) == 0 &&
            memcmp(a->col, b->col, entries * sizeof *a->col) == 0 && memcmp(a->f, b->f, entries * sizeof *a->f) == 0 &&
-           memcmp(a->body, b->body, (size_t)a->n * a->bodies * sizeof *a->body) == 0 &&
+           memcmp(a->wall, b->wall, (size_t)a->n * a->walls * sizeof *a->wall) == 0 &&
            memcmp(a->escaped, b->escaped, a->n * sizeof *a->escaped) == 0 &&
            memcmp(a->error, b->error, a->n * sizeof *a->error) == 0;
 }
@@ -56,7 +56,7 @@ static bool same(const fibrad_factors *a, const fibrad_factors *b) {
 /* closed: all rows add up to 1, and pairs are reciprocal. */
 static void check_factors(const fibrad_bed_factors *bed, const struct session *s, bool closed) {
     const fibrad_factors *m = &bed->matrix;
-    REQUIRE(m->n == s->contents.n && m->bodies == s->contents.config.bodies && m->start[0] == 0);
+    REQUIRE(m->n == s->contents.n && m->walls == s->contents.config.walls && m->start[0] == 0);
     REQUIRE(!(bed->closure_error > 1e-9) || !plain);
     for (uint32_t i = 0; i < m->n; i++) {
         double sum = m->escaped[i] + m->beyond[i];
@@ -64,9 +64,9 @@ static void check_factors(const fibrad_bed_factors *bed, const struct session *s
             REQUIRE(m->col[k] < m->n && (k == m->start[i] || m->col[k] > m->col[k - 1]) && m->f[k] >= 0);
             sum += m->f[k];
         }
-        for (uint32_t b = 0; b < m->bodies; b++) {
-            REQUIRE(m->body[(size_t)i * m->bodies + b] >= 0);
-            sum += m->body[(size_t)i * m->bodies + b];
+        for (uint32_t b = 0; b < m->walls; b++) {
+            REQUIRE(m->wall[(size_t)i * m->walls + b] >= 0);
+            sum += m->wall[(size_t)i * m->walls + b];
         }
         REQUIRE(m->error[i] >= 0);
         if (closed) REQUIRE(fabs(sum - 1) < 1e-9 || m->start[i] == m->start[i + 1]);
@@ -92,11 +92,11 @@ static void try_factors(struct session *s) {
     const fibrad_surface_rule surface = {.nodes = 8};
     const fibrad_cast_rule cast = {.rays = 1 + number() % 300, .seed = which};
     const fibrad_exchange_rule grey = {.emissivity = s->emissivity,
-                                       .body_emissivity = s->body_emissivity,
+                                       .wall_emissivity = s->wall_emissivity,
                                        .directions = beam.directions,
                                        .paths = 1 + byte() % 32,
                                        .tolerance = which == 3 ? .2 + share() : 0};
-    fibrad_bed_options options = {.raw = byte() % 4 == 0, .bodies = byte() % 2, .drop = which % 8 == 0 ? share() : 0};
+    fibrad_bed_options options = {.raw = byte() % 4 == 0, .walls = byte() % 2, .drop = which % 8 == 0 ? share() : 0};
     if (method < 4) options.beam = &beam;
     if (method == 4) options.surface = &surface;
     if (method == 5) options.cast = &cast;
@@ -125,7 +125,7 @@ static void try_views(struct session *s) {
     fibrad_side_view view[2 * TRIANGLES];
     const int status = CALL(fibrad_side_views(&s->contents.config, spheres, number() % 40, &s->run, view));
     for (uint32_t k = 0; status == FIBRAD_OK && k < 2 * s->contents.triangles.n; k++) {
-        const double sum = view[k].spheres + view[k].bodies + view[k].escaped;
+        const double sum = view[k].spheres + view[k].walls + view[k].escaped;
         REQUIRE(isnan(sum) || fabs(sum - 1) < 1e-12);
     }
 }
@@ -134,7 +134,7 @@ static void try_displacements(struct session *s) {
     fibrad_displacement d[SPHERES];
     fibrad_scene_facts facts;
     const fibrad_exchange_rule grey = {
-        .emissivity = s->emissivity, .body_emissivity = s->body_emissivity, .directions = 8, .paths = 1 + byte() % 32};
+        .emissivity = s->emissivity, .wall_emissivity = s->wall_emissivity, .directions = 8, .paths = 1 + byte() % 32};
     const int status = CALL(fibrad_displacements(&s->contents.config, spheres_of(s), &grey, NULL, &s->run, d, &facts));
     for (uint32_t i = 0; status == FIBRAD_OK && i < s->contents.n; i++)
         for (int axis = 0; axis < 3; axis++) REQUIRE(d[i].square[axis] >= 0 && isfinite(d[i].square[axis]));
@@ -145,8 +145,8 @@ static void try_displacements(struct session *s) {
 /* The sources and their arrays. */
 struct sources {
     fibrad_heat_sources sources;
-    double temperature[SPHERES], power[SPHERES], body_temperature[BODIES], body_power[BODIES], side[2 * TRIANGLES];
-    unsigned char insulated[BODIES];
+    double temperature[SPHERES], power[SPHERES], wall_temperature[WALLS], wall_power[WALLS], side[2 * TRIANGLES];
+    unsigned char insulated[WALLS];
     bool usual; /* no number is out of the usual range of a bed */
 };
 
@@ -163,15 +163,15 @@ static void any_sources(struct session *s, struct sources *all, bool known, bool
         all->power[i] = in_time || isnan(all->temperature[i]) ? share() : 0;
         all->usual = all->usual && fabs(all->power[i]) <= 1;
     }
-    for (uint32_t b = 0; b < s->contents.config.bodies; b++) {
+    for (uint32_t b = 0; b < s->contents.config.walls; b++) {
         const uint8_t kind = byte();
-        all->body_temperature[b] = kind % 5 == 0 ? NAN : kind / 16., all->body_power[b] = kind % 5 == 0 ? kind % 3 : 0;
+        all->wall_temperature[b] = kind % 5 == 0 ? NAN : kind / 16., all->wall_power[b] = kind % 5 == 0 ? kind % 3 : 0;
         all->insulated[b] = kind % 7 == 0;
     }
     for (uint32_t k = 0; k < 2 * s->contents.triangles.n; k++) all->side[k] = k % 3 == 0 ? 1 + which / 16. : NAN;
     f->temperature = all->temperature, f->emissivity = s->emissivity, f->power = all->power;
-    f->body_temperature = all->body_temperature, f->body_emissivity = s->body_emissivity;
-    f->body_power = all->body_power, f->insulated = all->insulated;
+    f->wall_temperature = all->wall_temperature, f->wall_emissivity = s->wall_emissivity;
+    f->wall_power = all->wall_power, f->insulated = all->insulated;
     if (which == 2) f->sigma = coordinate();
     if (which == 3) f->temperature = NULL;
     if (which > 200 && s->contents.triangles.n > 0) f->side_temperature = all->side;
@@ -181,8 +181,8 @@ static void any_sources(struct session *s, struct sources *all, bool known, bool
 static void check_powers(const struct session *s, const fibrad_heat_result *result) {
     double sum = result->surroundings_power, size = fabs(sum);
     for (uint32_t i = 0; i < s->contents.n; i++) sum += result->power[i], size += fabs(result->power[i]);
-    for (uint32_t b = 0; b < s->contents.config.bodies; b++)
-        sum += result->body_power[b], size += fabs(result->body_power[b]);
+    for (uint32_t b = 0; b < s->contents.config.walls; b++)
+        sum += result->wall_power[b], size += fabs(result->wall_power[b]);
     REQUIRE(fabs(sum) <= 1e-9 * size + 1e-6);
 }
 
@@ -202,24 +202,24 @@ static void move_some(struct session *s) {
 }
 
 /* Emissivities that fall with temperature. Seldom, from some call on, values that are no emissivities. */
-static void law(void *context, const double *temperature, const double *body_temperature, double *emissivity,
-                double *body_emissivity) {
+static void law(void *context, const double *temperature, const double *wall_temperature, double *emissivity,
+                double *wall_emissivity) {
     struct session *s = context;
     const bool wrong = s->law % 8 == 1 && ++s->asked > (uint32_t)s->law / 8 % 4;
     REQUIRE(temperature != NULL);
     for (uint32_t i = 0; i < s->contents.n; i++)
         if (!isnan(temperature[i])) emissivity[i] = wrong ? NAN : .2 + .6 / (1 + fabs(temperature[i]));
-    for (uint32_t b = 0; b < s->contents.config.bodies; b++)
-        if (!isnan(body_temperature[b])) body_emissivity[b] = .2 + .6 / (1 + fabs(body_temperature[b]));
+    for (uint32_t b = 0; b < s->contents.config.walls; b++)
+        if (!isnan(wall_temperature[b])) wall_emissivity[b] = .2 + .6 / (1 + fabs(wall_temperature[b]));
 }
 
 static void try_radiation(struct session *s) {
-    double power[SPHERES], temperature[SPHERES], body_power[BODIES], body_temperature[BODIES], flux[2 * TRIANGLES];
+    double power[SPHERES], temperature[SPHERES], wall_power[WALLS], wall_temperature[WALLS], flux[2 * TRIANGLES];
     double power_error[SPHERES];
     fibrad_heat_result result = {.power = power,
                                  .temperature = temperature,
-                                 .body_power = body_power,
-                                 .body_temperature = body_temperature,
+                                 .wall_power = wall_power,
+                                 .wall_temperature = wall_temperature,
                                  .power_error = power_error};
     struct sources all;
     int status;
@@ -246,13 +246,13 @@ static void try_radiation(struct session *s) {
         REQUIRE(status == (s->solved ? FIBRAD_OK : FIBRAD_E_STATE));
         break;
     case 2: {
-        double emissivity[SPHERES], body_emissivity[BODIES];
+        double emissivity[SPHERES], wall_emissivity[WALLS];
         memcpy(emissivity, s->emissivity, sizeof emissivity);
-        memcpy(body_emissivity, s->body_emissivity, sizeof body_emissivity);
+        memcpy(wall_emissivity, s->wall_emissivity, sizeof wall_emissivity);
         any_sources(s, &all, false, false);
         s->law = byte(), s->asked = 0;
         status =
-            CALL(fibrad_radiation_settle(s->radiation, &all.sources, law, s, emissivity, body_emissivity, &result));
+            CALL(fibrad_radiation_settle(s->radiation, &all.sources, law, s, emissivity, wall_emissivity, &result));
         s->solved = status == FIBRAD_OK;
         if (s->solved && all.usual) check_powers(s, &result);
         for (uint32_t i = 0; i < s->contents.n && s->solved; i++) REQUIRE(emissivity[i] >= 0 && emissivity[i] <= 1);
@@ -281,7 +281,7 @@ static void try_radiation(struct session *s) {
 /* ---- time ------------------------------------------------------------------------------------------------------- */
 
 static void advance(struct session *s, struct sources *all) {
-    double capacity[SPHERES], temperature[SPHERES], power[SPHERES], body_power[BODIES], body_energy[BODIES];
+    double capacity[SPHERES], temperature[SPHERES], power[SPHERES], wall_power[WALLS], wall_energy[WALLS];
     for (uint32_t i = 0; i < s->contents.n; i++) {
         const uint8_t kind = byte();
         temperature[i] = kind == 255 ? coordinate() : .5 + kind / 64.;
@@ -296,8 +296,8 @@ static void advance(struct session *s, struct sources *all) {
                         .step = which == 2 ? coordinate() : 0,
                         .tolerance = 1e-2,
                         .power = power,
-                        .body_power = body_power,
-                        .body_energy = body_energy,
+                        .wall_power = wall_power,
+                        .wall_energy = wall_energy,
                         .context = s};
     if (which > 240) span.law = law, s->law = which, s->asked = 0;
     if (which == 2 && !(span.step > .01)) span.step = .1;
@@ -312,7 +312,7 @@ static void advance(struct session *s, struct sources *all) {
         stored += capacity[i] * (temperature[i] - before[i]), size += capacity[i] * temperature[i];
         sources += all->power[i] * span.duration;
     }
-    for (uint32_t b = 0; b < s->contents.config.bodies; b++) given += body_energy[b], size += fabs(body_energy[b]);
+    for (uint32_t b = 0; b < s->contents.config.walls; b++) given += wall_energy[b], size += fabs(wall_energy[b]);
     if (all->usual) REQUIRE(fabs(stored + given - sources) <= 1e-8 * (size + fabs(sources)) + 1e-9);
 }
 
@@ -330,8 +330,8 @@ static void try_transient(struct session *s) {
         s->powers = false;
         if (status != FIBRAD_OK) return;
     }
-    double power[SPHERES], body_power[BODIES], flux[2 * TRIANGLES];
-    fibrad_heat_result result = {.power = power, .body_power = body_power};
+    double power[SPHERES], wall_power[WALLS], flux[2 * TRIANGLES];
+    fibrad_heat_result result = {.power = power, .wall_power = wall_power};
     switch (byte() % 5) {
     case 0:
         move_some(s);
@@ -359,7 +359,7 @@ static void try_bed(void) {
     const uint8_t kind = byte();
     struct session s = {.contents = any_contents(kind & 1, kind & 2)};
     for (uint32_t i = 0; i < SPHERES; i++) s.emissivity[i] = i % 5 == kind % 5u ? share() : .3 + .05 * (i % 14);
-    for (uint32_t b = 0; b < BODIES; b++) s.body_emissivity[b] = b == kind % 8u ? share() : .2 + .08 * b;
+    for (uint32_t b = 0; b < WALLS; b++) s.wall_emissivity[b] = b == kind % 8u ? share() : .2 + .08 * b;
     for (int k = byte() % 12; k > 0 && plain; k--) {
         any_run(&s);
         switch (byte() % 8) {

@@ -30,7 +30,7 @@ struct session {
     bool begun, solved, of_other;
     bool measured; /* temperatures and sigma allow powers to be compared with rounding */
     bool unknown;  /* some temperatures are unknown */
-    bool wide;     /* the input asks for everything: parts of rows, rows of bodies, triangles, unknown temperatures */
+    bool wide;     /* the input asks for everything: parts of rows, rows of walls, triangles, unknown temperatures */
 };
 
 /* If nothing moves, the drift of every row is 0. */
@@ -50,7 +50,7 @@ struct method {
     fibrad_cast_rule cast;
     fibrad_surface_rule surface;
     fibrad_exchange_rule exchange;
-    double emissivity[SPHERES + 1], body_emissivity[BODIES + 1], known[BODIES + 1];
+    double emissivity[SPHERES + 1], wall_emissivity[WALLS + 1], known[WALLS + 1];
 };
 
 static void any_method(struct method *m) {
@@ -66,7 +66,7 @@ static void any_method(struct method *m) {
     m->cast = (fibrad_cast_rule){.rays = 1 + number() % 300, .random = m->kind == RAYS, .seed = number()};
     if (which > 200) m->cast.cutoff = coordinate();
     m->surface = (fibrad_surface_rule){.nodes = nodes[which % 6], .flags = byte() & 31, .cutoff = coordinate()};
-    m->exchange.emissivity = m->emissivity, m->exchange.body_emissivity = m->body_emissivity;
+    m->exchange.emissivity = m->emissivity, m->exchange.wall_emissivity = m->wall_emissivity;
     m->exchange.directions = 8 + number() % 64, m->exchange.paths = 1 + number() % 64, m->exchange.seed = number();
     if (which == 104 || (which > 200 && m->kind == EXCHANGE)) m->exchange.cutoff = coordinate();
     if (which > 150 && which <= 200) m->beam.turn = which;
@@ -79,13 +79,13 @@ static void any_method(struct method *m) {
         m->emissivity[i] = which == 109 ? bad : k < 26 ? .05 + .037 * k : 0;
     }
     /* if little is absorbed, paths go on for long */
-    for (uint32_t b = 0; b < BODIES; b++) m->body_emissivity[b] = b < PLANES ? .2 + .8 * share() : .1 * b;
-    if (which == 107) m->body_emissivity[byte() % PLANES] = coordinate() + .2;
-    if (which == 108) m->exchange.body_emissivity = NULL;
+    for (uint32_t b = 0; b < WALLS; b++) m->wall_emissivity[b] = b < PLANES ? .2 + .8 * share() : .1 * b;
+    if (which == 107) m->wall_emissivity[byte() % PLANES] = coordinate() + .2;
+    if (which == 108) m->exchange.wall_emissivity = NULL;
     if (which % 4 != 3) return;
     m->exchange.known = m->known;
     m->exchange.known_paths = which == 111 ? coordinate() : number() % 4096;
-    for (uint32_t b = 0; b <= BODIES; b++) m->known[b] = byte() % 8 == 0 ? coordinate() : 64 * share();
+    for (uint32_t b = 0; b <= WALLS; b++) m->known[b] = byte() % 8 == 0 ? coordinate() : 64 * share();
 }
 
 /* Whether a row would take too long to try. */
@@ -113,14 +113,14 @@ static void try_row(struct session *s) {
     struct method m;
     any_method(&m);
     if (too_long(&m)) return;
-    const uint32_t capacity = number() % 32, bodies = s->contents.config.bodies, i = number() % (s->contents.n + 1);
+    const uint32_t capacity = number() % 32, walls = s->contents.config.walls, i = number() % (s->contents.n + 1);
     const bool append = byte() % 4 == 0;
     void *blocks[5];
-    for (uint32_t b = 0; b < bodies; b++)
-        if (fibrad_scene_body_area(s->scene, b) == 0) m.known[b] = NAN; /* a body without triangles absorbs nothing */
+    for (uint32_t b = 0; b < walls; b++)
+        if (fibrad_scene_wall_area(s->scene, b) == 0) m.known[b] = NAN; /* a wall without triangles absorbs nothing */
     fibrad_row row = {.col = memory_of(capacity * sizeof(uint32_t), 0, &blocks[0]),
                       .f = memory_of(capacity * sizeof(double), 0, &blocks[1]),
-                      .body = memory_of(bodies * sizeof(double), 0, &blocks[2]),
+                      .wall = memory_of(walls * sizeof(double), 0, &blocks[2]),
                       .capacity = capacity};
     const fibrad_cast_means means = {memory_of(capacity * sizeof(double), 0, &blocks[3]),
                                      memory_of(capacity * sizeof(double), 0, &blocks[4])};
@@ -142,7 +142,7 @@ static void try_row(struct session *s) {
             for (uint32_t k = 0; k < row.length; k++) REQUIRE(row.f[k] >= 0 && (k == 0 || row.col[k] > row.col[k - 1]));
         } else if (m.kind == EXCHANGE && m.emissivity[i] == 0) {
             REQUIRE(row.length == 0 && row.escaped == 0 && row.beyond == 0 && row.error == 0);
-            for (uint32_t b = 0; b < bodies; b++) REQUIRE(row.body[b] == 0);
+            for (uint32_t b = 0; b < walls; b++) REQUIRE(row.wall[b] == 0);
         } else {
             check_row(&row, s->scene, i, m.kind == BEAM ? m.beam.points : m.kind != EXCHANGE);
             check_unmoved(s->scene, s->contents.n, &row);
@@ -174,21 +174,21 @@ static void try_displacement(struct session *s) {
 
 /* Powers from any rows: some gain what others lose. */
 static void try_flow(struct session *s) {
-    double weight[SPHERES], emission[SPHERES], power[SPHERES] = {0}, body_emission[BODIES + 1];
-    double body_power[BODIES + 1] = {0}, sum, size;
-    const uint32_t n = s->contents.n, bodies = s->contents.config.bodies;
+    double weight[SPHERES], emission[SPHERES], power[SPHERES] = {0}, wall_emission[WALLS + 1];
+    double wall_power[WALLS + 1] = {0}, sum, size;
+    const uint32_t n = s->contents.n, walls = s->contents.config.walls;
     for (uint32_t i = 0; i < n; i++) weight[i] = share(), emission[i] = byte() < 250 ? share() : coordinate();
-    for (uint32_t b = 0; b < bodies; b++) body_emission[b] = share();
+    for (uint32_t b = 0; b < walls; b++) wall_emission[b] = share();
     fibrad_flow flow = {.weight = weight,
                         .emission = emission,
                         .power = power,
-                        .body_emission = body_emission,
-                        .body_power = body_power,
+                        .wall_emission = wall_emission,
+                        .wall_power = wall_power,
                         .surroundings_emission = share()};
-    const int status = CALL(fibrad_rows_flow(&s->rows, n, bodies, &flow));
+    const int status = CALL(fibrad_rows_flow(&s->rows, n, walls, &flow));
     sum = flow.surroundings_power, size = fabs(sum);
     for (uint32_t i = 0; i < n; i++) sum += power[i], size += fabs(power[i]);
-    for (uint32_t b = 0; b < bodies; b++) sum += body_power[b], size += fabs(body_power[b]);
+    for (uint32_t b = 0; b < walls; b++) sum += wall_power[b], size += fabs(wall_power[b]);
     if (status != FIBRAD_OK) REQUIRE(size == 0);
     if (size < 1e3) REQUIRE(fabs(sum) < 1e-9);
 }
@@ -210,8 +210,8 @@ static void try_drift(struct session *s) {
     if (now == NULL || s->contents.n == 0) return;
     const uint32_t i = number() % s->contents.n;
     uint32_t col[SPHERES];
-    double f[SPHERES], body[BODIES], later_f[SPHERES], error[SPHERES] = {0}, own;
-    fibrad_row before = {.col = col, .f = f, .body = body, .capacity = SPHERES}, later = before;
+    double f[SPHERES], wall[WALLS], later_f[SPHERES], error[SPHERES] = {0}, own;
+    fibrad_row before = {.col = col, .f = f, .wall = wall, .capacity = SPHERES}, later = before;
     uint32_t later_col[SPHERES];
     later.col = later_col, later.f = later_f;
     const fibrad_beam_rule rule = {.directions = 8 + byte() % 8, .points = 64};
@@ -263,9 +263,9 @@ static void check_matrix(const fibrad_matrix *matrix, const fibrad_matrix_rule *
             REQUIRE(m.col[k] < m.n && (k == m.start[i] || m.col[k] > m.col[k - 1]) && m.f[k] >= 0);
             sum += m.f[k];
         }
-        for (uint32_t b = 0; b < m.bodies; b++) {
-            REQUIRE(m.body[(size_t)i * m.bodies + b] >= 0);
-            sum += m.body[(size_t)i * m.bodies + b];
+        for (uint32_t b = 0; b < m.walls; b++) {
+            REQUIRE(m.wall[(size_t)i * m.walls + b] >= 0);
+            sum += m.wall[(size_t)i * m.walls + b];
         }
         if (rule->emissivity != NULL && rule->emissivity[i] == 0)
             REQUIRE(m.start[i + 1] == m.start[i]);
@@ -365,12 +365,12 @@ static void try_rows(void) {
     fibrad_rows rows = {.memory = any_memory(&supply)};
     if (build(&scene, memory, fibrad_scene_size(c.n, 0), &c) == FIBRAD_OK) {
         uint32_t col[SPHERES];
-        double f[SPHERES], body[BODIES] = {0};
+        double f[SPHERES], wall[WALLS] = {0};
         bool all = true;
         modest = true;
         for (uint32_t i = 0; i < c.n; i++) {
             double sum = 0;
-            fibrad_row row = {.sphere = byte() < 250 ? i : number(), .col = col, .f = f, .body = body};
+            fibrad_row row = {.sphere = byte() < 250 ? i : number(), .col = col, .f = f, .wall = wall};
             const bool sound = byte() < 240;
             for (uint32_t j = 0; j < c.n; j++) {
                 if (byte() % 3 == 0) continue;
@@ -380,10 +380,10 @@ static void try_rows(void) {
             }
             row.escaped = share(), row.error = share();
             modest = modest && sum <= 1;
-            const uint32_t bodies = byte() < 250 ? 0 : byte() % PLANES;
-            const int status = CALL(fibrad_rows_add(&rows, &row, bodies));
+            const uint32_t walls = byte() < 250 ? 0 : byte() % PLANES;
+            const int status = CALL(fibrad_rows_add(&rows, &row, walls));
             if (status == FIBRAD_E_CAPACITY) REQUIRE(rows.memory.needed > rows.memory.size);
-            all = all && status == FIBRAD_OK && row.sphere == i && bodies == 0;
+            all = all && status == FIBRAD_OK && row.sphere == i && walls == 0;
         }
         try_matrix(scene, &rows, 1, c.n, all ? FIBRAD_OK : FIBRAD_E_ARGUMENT, NULL);
     }
@@ -410,7 +410,7 @@ static void begin_heat(struct session *s) {
     if (has_many_images(&s->contents)) return;
     /* the rays of walls take a second */
     static int walled;
-    if (s->contents.config.bodies > 0 && !s->wide && walled++ >= 40) return;
+    if (s->contents.config.walls > 0 && !s->wide && walled++ >= 40) return;
     const uint8_t fault = byte();
     void *memory = memory_of(size - (fault == 1), fault % 64, &s->heat_block);
     const int status = fibrad_heat_init(&s->heat, memory, size - (fault == 1), &s->heat_config, s->scene);
@@ -441,13 +441,13 @@ static void trace_task(struct session *s, uint32_t task) {
     if (status == FIBRAD_OK) s->traced[task] = 1;
 }
 
-/* The powers and other values of bodies whose temperatures are unknown. */
+/* The powers and other values of walls whose temperatures are unknown. */
 struct unknowns {
-    double power[SPHERES], hold[SPHERES], reference[SPHERES], body_power[BODIES], side[2 * TRIANGLES];
-    unsigned char insulated[BODIES];
+    double power[SPHERES], hold[SPHERES], reference[SPHERES], wall_power[WALLS], side[2 * TRIANGLES];
+    unsigned char insulated[WALLS];
 };
 
-static void any_unknowns(struct session *s, struct unknowns *u, double *temperature, double *body_temperature,
+static void any_unknowns(struct session *s, struct unknowns *u, double *temperature, double *wall_temperature,
                          fibrad_heat_sources *sources) {
     for (uint32_t i = 0; i < s->contents.n; i++) {
         const uint8_t kind = byte();
@@ -455,24 +455,24 @@ static void any_unknowns(struct session *s, struct unknowns *u, double *temperat
         u->power[i] = isnan(temperature[i]) ? kind < 240 ? share() : coordinate() : 0;
         u->hold[i] = kind % 3 == 0 ? share() : 0, u->reference[i] = u->hold[i] > 0 ? share() : NAN;
     }
-    for (uint32_t b = 0; b < s->contents.config.bodies; b++) {
+    for (uint32_t b = 0; b < s->contents.config.walls; b++) {
         const uint8_t kind = byte();
-        if (kind % 3 == 0) body_temperature[b] = NAN;
-        u->body_power[b] = isnan(body_temperature[b]) ? share() : 0, u->insulated[b] = kind % 5 == 0;
+        if (kind % 3 == 0) wall_temperature[b] = NAN;
+        u->wall_power[b] = isnan(wall_temperature[b]) ? share() : 0, u->insulated[b] = kind % 5 == 0;
     }
     for (uint32_t k = 0; k < 2 * s->contents.triangles.n; k++) u->side[k] = byte() % 4 == 0 ? share() : NAN;
-    sources->power = u->power, sources->body_power = u->body_power, sources->insulated = u->insulated;
+    sources->power = u->power, sources->wall_power = u->wall_power, sources->insulated = u->insulated;
     if (byte() % 2) sources->hold = u->hold, sources->reference = u->reference;
     if (s->contents.triangles.n > 0 && byte() % 2) sources->side_temperature = u->side;
 }
 
 static void begin_solution(struct session *s) {
-    double temperature[SPHERES], emissivity[SPHERES], body_temperature[BODIES], body_emissivity[BODIES];
+    double temperature[SPHERES], emissivity[SPHERES], wall_temperature[WALLS], wall_emissivity[WALLS];
     fibrad_heat_sources sources;
     bool all = true, valid = true;
     fibrad_heat_sources_init(&sources);
     sources.temperature = temperature, sources.emissivity = emissivity;
-    sources.body_temperature = body_temperature, sources.body_emissivity = body_emissivity;
+    sources.wall_temperature = wall_temperature, sources.wall_emissivity = wall_emissivity;
     sources.surroundings = byte() == 1 ? coordinate() : byte() / 16.;
     sources.sweeps_max = 1 + byte() % 20, sources.uniform = byte() % 4 == 0;
     if (byte() == 1) sources.sigma = coordinate();
@@ -481,16 +481,16 @@ static void begin_solution(struct session *s) {
         temperature[i] = byte() < 250 ? byte() / 16. : coordinate(), emissivity[i] = share();
         valid = valid && temperature[i] >= 0 && temperature[i] <= 1e20 && emissivity[i] >= 0 && emissivity[i] <= 1;
     }
-    for (uint32_t b = 0; b < s->contents.config.bodies; b++) {
-        body_temperature[b] = byte() / 16., body_emissivity[b] = share();
-        valid = valid && body_emissivity[b] >= 0 && body_emissivity[b] <= 1;
+    for (uint32_t b = 0; b < s->contents.config.walls; b++) {
+        wall_temperature[b] = byte() / 16., wall_emissivity[b] = share();
+        valid = valid && wall_emissivity[b] >= 0 && wall_emissivity[b] <= 1;
     }
     valid = valid && sources.surroundings >= 0 && sources.surroundings <= 1e20 && sources.sigma >= 1e-30 &&
             sources.sigma <= 1e30 && sources.tolerance >= 0 && sources.tolerance < 1;
     for (uint32_t k = 0; k < s->tasks; k++) all = all && s->traced[k];
     struct unknowns unknowns;
     s->unknown = s->wide && byte() % 2;
-    if (s->unknown) any_unknowns(s, &unknowns, temperature, body_temperature, &sources);
+    if (s->unknown) any_unknowns(s, &unknowns, temperature, wall_temperature, &sources);
     const int status = CALL(fibrad_heat_begin(s->heat, &sources));
     if (!s->unknown || status == FIBRAD_OK)
         REQUIRE(status == (!valid ? FIBRAD_E_ARGUMENT : !kept(s) || !all ? FIBRAD_E_STATE : FIBRAD_OK));
@@ -529,9 +529,9 @@ static void step(struct session *s) {
 
 /* Asserts that powers add up to zero, but for rounding of the emissions. */
 static void read_powers(struct session *s) {
-    double power[SPHERES], body_power[BODIES];
+    double power[SPHERES], wall_power[WALLS];
     double temperature[SPHERES], error[SPHERES], flux[2 * TRIANGLES], side[2 * TRIANGLES];
-    fibrad_heat_result result = {.power = power, .body_power = body_power};
+    fibrad_heat_result result = {.power = power, .wall_power = wall_power};
     if (s->wide) result.temperature = temperature, result.power_error = error;
     const int status = CALL(fibrad_heat_read(s->heat, &result));
     const bool below_zero = s->unknown && s->solved && status == FIBRAD_E_UNSOLVABLE;
@@ -541,7 +541,7 @@ static void read_powers(struct session *s) {
     if (s->wide) REQUIRE(CALL(fibrad_heat_read_sides(s->heat, flux, side)) == FIBRAD_OK);
     double sum = result.surroundings_power, size = fabs(sum);
     for (uint32_t i = 0; i < s->contents.n; i++) sum += power[i], size += fabs(power[i]);
-    for (uint32_t b = 0; b < s->contents.config.bodies; b++) sum += body_power[b], size += fabs(body_power[b]);
+    for (uint32_t b = 0; b < s->contents.config.walls; b++) sum += wall_power[b], size += fabs(wall_power[b]);
     if (s->measured) REQUIRE(fabs(sum) <= 1e-9 * size + 1e-6);
     REQUIRE(!(result.error_patches < 0) && !(result.error_beams < 0) && !(result.residual < 0));
 }
@@ -612,9 +612,9 @@ static void try_parts(struct session *s) {
     const uint32_t i = number() % (s->contents.n + 1), n = m.beam.directions;
     const uint32_t cut[PARTS + 1] = {0, n > 0 ? number() % n : 0, n > 0 ? number() % n : 0, n};
     uint32_t col[SPHERES], whole_col[SPHERES];
-    double f[SPHERES], body[BODIES], whole_f[SPHERES], whole_body[BODIES];
-    fibrad_row row = {.col = col, .f = f, .body = body, .capacity = SPHERES};
-    fibrad_row whole = {.col = whole_col, .f = whole_f, .body = whole_body, .capacity = SPHERES};
+    double f[SPHERES], wall[WALLS], whole_f[SPHERES], whole_wall[WALLS];
+    fibrad_row row = {.col = col, .f = f, .wall = wall, .capacity = SPHERES};
+    fibrad_row whole = {.col = whole_col, .f = whole_f, .wall = whole_wall, .capacity = SPHERES};
     struct supply supply[PARTS];
     fibrad_row_part part[PARTS];
     int status = FIBRAD_OK;
@@ -638,69 +638,69 @@ static void try_parts(struct session *s) {
         REQUIRE(row.length == whole.length && row.fallbacks == whole.fallbacks);
         REQUIRE(memcmp(col, whole_col, row.length * sizeof *col) == 0);
         REQUIRE(memcmp(f, whole_f, row.length * sizeof *f) == 0);
-        REQUIRE(memcmp(body, whole_body, s->contents.config.bodies * sizeof *body) == 0);
+        REQUIRE(memcmp(wall, whole_wall, s->contents.config.walls * sizeof *wall) == 0);
         REQUIRE(memcmp(&row.escaped, &whole.escaped, sizeof row.escaped) == 0);
         REQUIRE(memcmp(&row.error, &whole.error, sizeof row.error) == 0);
     }
     for (uint32_t k = 0; k < PARTS; k++) supply_end(&supply[k]);
 }
 
-/* One batch of the row of a body or an opening. Where all is black, nothing is reflected. */
-static int any_batch(struct session *s, const fibrad_exchange_rule *rule, uint32_t body, uint32_t part,
-                     fibrad_body_row *row) {
+/* One batch of the row of a wall or an opening. Where all is black, nothing is reflected. */
+static int any_batch(struct session *s, const fibrad_exchange_rule *rule, uint32_t wall, uint32_t part,
+                     fibrad_wall_row *row) {
     const uint32_t n = s->contents.n;
     void *block;
     uint64_t *reflected = memory_of(n * sizeof *reflected, 0, &block);
     int status;
     memset(reflected, 0, n * sizeof *reflected);
     for (int tries = 0;; tries++) {
-        status = CALL(fibrad_exchange_body(s->scene, &s->work, body, rule, part, row, reflected));
+        status = CALL(fibrad_exchange_wall(s->scene, &s->work, wall, rule, part, row, reflected));
         REQUIRE(tries < 80);
         if (status != FIBRAD_E_WORK || s->work.memory.resize != NULL || !give_more(&s->work.memory, &s->supply)) break;
     }
-    for (uint32_t i = 0; i < n && rule->emissivity == NULL && rule->body_emissivity == NULL; i++)
+    for (uint32_t i = 0; i < n && rule->emissivity == NULL && rule->wall_emissivity == NULL; i++)
         REQUIRE(reflected[i] == 0);
     free(block);
     return status;
 }
 
-/* The row of a body or an opening: all that it emits ends somewhere. */
-static bool any_body_row(struct session *s, const fibrad_exchange_rule *rule, uint32_t body, fibrad_body_row *mean) {
-    fibrad_body_row part[FIBRAD_BODY_PARTS];
-    const uint32_t bodies = s->contents.config.bodies;
-    for (uint32_t k = 0; k < FIBRAD_BODY_PARTS; k++) {
-        const int status = any_batch(s, rule, body, k, &part[k]);
-        if (isnan(fibrad_scene_body_area(s->scene, body))) REQUIRE(status == FIBRAD_E_ARGUMENT);
+/* The row of a wall or an opening: all that it emits ends somewhere. */
+static bool any_wall_row(struct session *s, const fibrad_exchange_rule *rule, uint32_t wall, fibrad_wall_row *mean) {
+    fibrad_wall_row part[FIBRAD_WALL_PARTS];
+    const uint32_t walls = s->contents.config.walls;
+    for (uint32_t k = 0; k < FIBRAD_WALL_PARTS; k++) {
+        const int status = any_batch(s, rule, wall, k, &part[k]);
+        if (isnan(fibrad_scene_wall_area(s->scene, wall))) REQUIRE(status == FIBRAD_E_ARGUMENT);
         if (status != FIBRAD_OK) return false;
     }
-    REQUIRE(CALL(fibrad_exchange_body_mean(part, mean)) == FIBRAD_OK);
+    REQUIRE(CALL(fibrad_exchange_wall_mean(part, mean)) == FIBRAD_OK);
     double sum = mean->spheres + mean->escaped;
-    for (uint32_t b = 0; b < bodies; b++) {
-        REQUIRE(mean->body[b] >= 0);
-        sum += mean->body[b];
+    for (uint32_t b = 0; b < walls; b++) {
+        REQUIRE(mean->wall[b] >= 0);
+        sum += mean->wall[b];
     }
     REQUIRE(mean->spheres >= 0 && mean->escaped >= -1e-9 && mean->error >= 0);
-    const double *emissivity = rule->body_emissivity;
-    if (plain) REQUIRE(fabs(sum - (emissivity == NULL || body >= bodies || emissivity[body] > 0)) < 1e-9);
+    const double *emissivity = rule->wall_emissivity;
+    if (plain) REQUIRE(fabs(sum - (emissivity == NULL || wall >= walls || emissivity[wall] > 0)) < 1e-9);
     return true;
 }
 
-/* The matrix of all spheres and bodies. Rows of spheres are exchange or beam rows, those of bodies come from paths. */
-static void try_bodies(struct session *s) {
+/* The matrix of all spheres and walls. Rows of spheres are exchange or beam rows, those of walls come from paths. */
+static void try_walls(struct session *s) {
     struct method m;
     any_method(&m);
-    const uint32_t n = s->contents.n, bodies = s->contents.config.bodies;
-    if (n == 0 || bodies == 0 || !plain) return;
+    const uint32_t n = s->contents.n, walls = s->contents.config.walls;
+    if (n == 0 || walls == 0 || !plain) return;
     const bool grey = m.kind == EXCHANGE;
     m.kind = grey ? EXCHANGE : BEAM;
     m.exchange.cutoff = m.beam.cutoff = 0, m.exchange.paths = 1 + m.exchange.paths % 64;
     if (too_long(&m)) return;
     fibrad_exchange_rule rule = m.exchange;
-    if (!grey) rule.emissivity = rule.body_emissivity = NULL;
-    fibrad_body_row rows_of_bodies[BODIES] = {{{0}, 0, 0, 0, 0, 0}}, of_opening;
-    for (uint32_t b = 0; b < bodies; b++)
-        if (fibrad_scene_body_area(s->scene, b) < INFINITY && !any_body_row(s, &rule, b, &rows_of_bodies[b])) return;
-    (void)any_body_row(s, &rule, FIBRAD_OPENING(bodies, m.exchange.seed % 4, rule.paths % 2), &of_opening);
+    if (!grey) rule.emissivity = rule.wall_emissivity = NULL;
+    fibrad_wall_row rows_of_walls[WALLS] = {{{0}, 0, 0, 0, 0, 0}}, of_opening;
+    for (uint32_t b = 0; b < walls; b++)
+        if (fibrad_scene_wall_area(s->scene, b) < INFINITY && !any_wall_row(s, &rule, b, &rows_of_walls[b])) return;
+    (void)any_wall_row(s, &rule, FIBRAD_OPENING(walls, m.exchange.seed % 4, rule.paths % 2), &of_opening);
     struct supply supply = {.left = UINT32_MAX};
     fibrad_rows rows = {.memory = {.resize = supply_more, .context = &supply}};
     bool complete = true;
@@ -710,8 +710,8 @@ static void try_bodies(struct session *s) {
     }
     const fibrad_matrix_rule closed = {.kind = grey ? FIBRAD_ROWS_EXCHANGE : FIBRAD_ROWS_AREAS,
                                        .emissivity = grey ? m.emissivity : NULL,
-                                       .body_row = rows_of_bodies,
-                                       .body_emissivity = grey ? m.body_emissivity : NULL};
+                                       .wall_row = rows_of_walls,
+                                       .wall_emissivity = grey ? m.wall_emissivity : NULL};
     const size_t size = complete ? CALL(fibrad_matrix_size(s->scene, &rows, 1, &closed)) : 0;
     void *block = NULL, *memory = size > 0 ? memory_of(size, byte() % 64, &block) : NULL;
     fibrad_matrix *matrix;
@@ -744,8 +744,8 @@ static void try_triangles(struct session *s) {
     if (status != FIBRAD_OK) return;
     REQUIRE(triangle < n);
     for (int side = 0; side < 2; side++) {
-        const double sum = view[side].spheres + view[side].bodies + view[side].escaped;
-        REQUIRE(isnan(sum) || (view[side].spheres >= 0 && view[side].bodies >= 0 && fabs(sum - 1) < 1e-12));
+        const double sum = view[side].spheres + view[side].walls + view[side].escaped;
+        REQUIRE(isnan(sum) || (view[side].spheres >= 0 && view[side].walls >= 0 && fabs(sum - 1) < 1e-12));
     }
 }
 
@@ -768,7 +768,7 @@ static void try_wide(struct session *s) {
         try_parts(s);
         break;
     case 1:
-        try_bodies(s);
+        try_walls(s);
         break;
     case 2:
         try_triangles(s);

@@ -103,7 +103,7 @@ static void read_mesh(const char *path, uint8_t asked) {
         for (uint32_t p = 0; p < s->components; p++) listed += s->component[p].n;
         if (s->n == 0 || listed != s->n || meshes_face(&meshes, &spheres, period) != 0) abort();
         for (uint32_t t = 0; t < s->n; t++)
-            if (meshes.front[t] == FIBRAD_NO_BODY && meshes.back[t] == FIBRAD_NO_BODY) abort();
+            if (meshes.front[t] == FIBRAD_NO_WALL && meshes.back[t] == FIBRAD_NO_WALL) abort();
         (void)meshes_beyond(&meshes, (const double[]){3, 3, 3}, 1, period);
     }
     meshes_free(&meshes);

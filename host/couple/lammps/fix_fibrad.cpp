@@ -223,8 +223,8 @@ void FixFibrad::read_wall(Words &words) {
     const int face = (int)(std::find(faces, faces + 9, name) - faces);
     const bool round = face >= 6;
     if (face < 6 && words.take("open")) return read_opening(words, face);
-    if (walls.size() == FIBRAD_BODIES_MAX)
-        error->all(FLERR, text("fix fibrad: there are at most %d walls", FIBRAD_BODIES_MAX));
+    if (walls.size() == FIBRAD_WALLS_MAX)
+        error->all(FLERR, text("fix fibrad: there are at most %d walls", FIBRAD_WALLS_MAX));
     if (name == "mesh") return read_mesh(words);
     if (face == 9)
         error->all(FLERR,
@@ -232,29 +232,29 @@ void FixFibrad::read_wall(Words &words) {
                        name + "`");
 
     const double huge = 1e300;
-    fibrad_body body = {};
+    fibrad_wall wall = {};
     if (round) {
         cylinder = face - 6;
-        body.kind = FIBRAD_BODY_CYLINDER;
-        body.cylinder.radius = words.number("the cylinder's radius", 0, huge);
+        wall.kind = FIBRAD_WALL_CYLINDER;
+        wall.cylinder.radius = words.number("the cylinder's radius", 0, huge);
     } else {
-        body.kind = FIBRAD_BODY_PLANE;
-        body.plane.axis = face / 2;
-        body.plane.upper = face % 2;
+        wall.kind = FIBRAD_WALL_PLANE;
+        wall.plane.axis = face / 2;
+        wall.plane.upper = face % 2;
     }
     wall_kelvins.push_back(read_kelvins(words, "a wall's temperature"));
     wall_emissivity.push_back(words.number("a wall's emissivity", 0, 1));
     const bool at = words.take("at");
     if (at) {
         if (round) {
-            body.cylinder.x = words.number(text("%c of the cylinder", across[cylinder][0]).c_str(), -huge, huge);
-            body.cylinder.y = words.number(text("%c of the cylinder", across[cylinder][1]).c_str(), -huge, huge);
+            wall.cylinder.x = words.number(text("%c of the cylinder", across[cylinder][0]).c_str(), -huge, huge);
+            wall.cylinder.y = words.number(text("%c of the cylinder", across[cylinder][1]).c_str(), -huge, huge);
         } else {
-            body.plane.at = words.number("the place of a wall", -huge, huge);
+            wall.plane.at = words.number("the place of a wall", -huge, huge);
         }
     }
     wall_heat.capacity.push_back(words.take("capacity") ? read_capacity(words, wall_kelvins.back()) : 0);
-    walls.push_back(body);
+    walls.push_back(wall);
     wall_face.push_back(at || round ? -1 : face);
 }
 
@@ -311,18 +311,18 @@ void FixFibrad::read_mesh(Words &words) {
         if (!mesh_name(file.name))
             error->all(FLERR, "fix fibrad: a wall cannot be called `" + name + "`: letters, digits and _, at most 31");
     }
-    uint32_t bodies;
-    const int status = mesh_walls_add(&meshes, world, &file, nullptr, first, &bodies);
+    uint32_t walls;
+    const int status = mesh_walls_add(&meshes, world, &file, nullptr, first, &walls);
     if (status) error->all(FLERR, std::string("fix fibrad: ") + (meshes.messages[0] ? meshes.messages : path.c_str()));
-    fibrad_body body = {};
-    body.kind = FIBRAD_BODY_MESH;
-    walls.insert(walls.end(), bodies, body);
-    wall_kelvins.insert(wall_kelvins.end(), bodies, t);
-    wall_emissivity.insert(wall_emissivity.end(), bodies, e);
-    wall_heat.capacity.insert(wall_heat.capacity.end(), bodies, capacity);
-    wall_face.insert(wall_face.end(), bodies, -1);
+    fibrad_wall wall = {};
+    wall.kind = FIBRAD_WALL_MESH;
+    walls.insert(walls.end(), walls, wall);
+    wall_kelvins.insert(wall_kelvins.end(), walls, t);
+    wall_emissivity.insert(wall_emissivity.end(), walls, e);
+    wall_heat.capacity.insert(wall_heat.capacity.end(), walls, capacity);
+    wall_face.insert(wall_face.end(), walls, -1);
     motions.push_back(motion);
-    if (comm->me == 0) describe_meshes(first, bodies, path);
+    if (comm->me == 0) describe_meshes(first, walls, path);
 }
 
 // rotate AX AY AZ PERIOD [about X Y Z] | velocity VX VY VZ; false: it is another word
@@ -349,11 +349,11 @@ bool FixFibrad::read_motion(Words &words, mesh_motion *motion) {
 }
 
 // Prints warnings about a file, and the indices of its walls in the output. Only rank 0 has the names of the walls.
-void FixFibrad::describe_meshes(uint32_t first, uint32_t bodies, const std::string &path) {
+void FixFibrad::describe_meshes(uint32_t first, uint32_t walls, const std::string &path) {
     if (meshes.messages[0]) error->warning(FLERR, std::string("fix fibrad: ") + meshes.messages);
-    for (uint32_t k = first; k < first + bodies; k++)
+    for (uint32_t k = first; k < first + walls; k++)
         say(text("fix fibrad: f_%s[%d] is of wall %s, %u triangles of ", id, 6 + (int)k, meshes.meshes.name[k],
-                 mesh_triangles(mesh_of_body(&meshes.meshes, k), k)) +
+                 mesh_triangles(mesh_of_wall(&meshes.meshes, k), k)) +
             path);
 }
 
@@ -438,8 +438,8 @@ void FixFibrad::init() {
     if (domain->triclinic) error->all(FLERR, std::string("fix fibrad: the box must not be triclinic"));
     if (strstr(update->integrate_style, "respa"))
         error->all(FLERR, std::string("fix fibrad: run_style must be verlet"));
-    for (const fibrad_body &body : walls)
-        if (body.kind == FIBRAD_BODY_CYLINDER &&
+    for (const fibrad_wall &wall : walls)
+        if (wall.kind == FIBRAD_WALL_CYLINDER &&
             (domain->periodicity[(cylinder + 1) % 3] || domain->periodicity[(cylinder + 2) % 3]))
             error->all(FLERR, text("fix fibrad: wall %ccylinder needs open axes %c and %c: what is in it has no images "
                                    "beyond it",
@@ -505,9 +505,9 @@ void FixFibrad::list_output() {
     const int count = (int)walls.size();
     std::string list = "[1] surroundings, [2] beyond, [3] error, [4] [5] seconds";
     for (int w = 0; w < count; w++) {
-        const fibrad_body &body = walls[w];
-        const std::string name = body.kind == FIBRAD_BODY_PLANE      ? faces[2 * body.plane.axis + body.plane.upper]
-                                 : body.kind == FIBRAD_BODY_CYLINDER ? "cylinder"
+        const fibrad_wall &wall = walls[w];
+        const std::string name = wall.kind == FIBRAD_WALL_PLANE      ? faces[2 * wall.plane.axis + wall.plane.upper]
+                                 : wall.kind == FIBRAD_WALL_CYLINDER ? "cylinder"
                                                                      : "mesh";
         list += text(", [%d] wall ", 6 + w) + name;
     }
@@ -607,9 +607,9 @@ void FixFibrad::make_rows(bool follow) {
     std::copy_n(domain->boxlo, 3, bed.low);
     std::copy_n(domain->boxhi, 3, bed.high);
     std::copy_n(domain->periodicity, 3, bed.periodic);
-    bed.body = walls.data();
-    bed.body_emissivity = wall_emissivity.data();
-    bed.bodies = (uint32_t)walls.size();
+    bed.wall = walls.data();
+    bed.wall_emissivity = wall_emissivity.data();
+    bed.walls = (uint32_t)walls.size();
     bed.cylinder = (cylinder + 1) % 3;
     bed.opening = openings.data();
     bed.openings = (uint32_t)openings.size();
@@ -697,7 +697,7 @@ void FixFibrad::find_powers() {
     fibrad_insitu_state state = {};
     state.sigma = sigma;
     state.surroundings = surroundings.value;
-    state.body_temperature = of_walls.data();
+    state.wall_temperature = of_walls.data();
     state.n = member.size();
     state.id = tags.data();
     state.temperature = t.data();
@@ -735,7 +735,7 @@ std::vector<double> FixFibrad::wall_temperatures() const {
 // Gives walls the heat that the present powers bring in some steps of the simulation.
 void FixFibrad::heat_walls(bigint steps) {
     std::vector<double> t = wall_temperatures();
-    wall_heat.step(totals.body, update->dt * (double)steps, &t);
+    wall_heat.step(totals.wall, update->dt * (double)steps, &t);
     for (size_t k = 0; k < t.size(); k++) wall_kelvins[k].value = t[k];
 }
 
@@ -816,7 +816,7 @@ void FixFibrad::check_walls() {
     size_t wall = 0;
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(insitu, &facts);
-    const double ratio = wall_heat.ratio(facts.body, sigma, wall_temperatures(), update->dt * heat_every, &wall);
+    const double ratio = wall_heat.ratio(facts.wall, sigma, wall_temperatures(), update->dt * heat_every, &wall);
     judge_step(text("wall %d", (int)wall + 1), ratio, wall_warned);
 }
 
@@ -872,7 +872,7 @@ double FixFibrad::compute_vector(int n) {
     const double strays[] = {(double)facts.outside, (double)facts.overlapping, (double)facts.behind};
     const int last = 5 + (int)walls.size();
     return n < 5                 ? first[n]
-           : n < last            ? totals.body[n - 5]
+           : n < last            ? totals.wall[n - 5]
            : n < last + 3        ? strays[n - last]
            : n < size_vector - 1 ? wall_kelvins[n - last - 3].value
                                  : (double)facts.gone;

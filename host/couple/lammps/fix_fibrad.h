@@ -77,7 +77,7 @@ class FixFibrad : public Fix {
     double read_capacity(Words &, const Temperature &);
     void read_mesh(Words &);
     bool read_motion(Words &, mesh_motion *);
-    void describe_meshes(uint32_t first, uint32_t bodies, const std::string &path);
+    void describe_meshes(uint32_t first, uint32_t walls, const std::string &path);
     void read_temperature(Words &);
     void read_group(Words &);
     Property read_property(Words &, const char *what, double low, double high);
@@ -130,7 +130,7 @@ class FixFibrad : public Fix {
     double sigma;   // in units of the simulation
     double initial; // temperature of new atoms
     fibrad_insitu_config config;
-    std::vector<fibrad_body> walls;
+    std::vector<fibrad_wall> walls;
     std::vector<fibrad_plane> openings;
     std::vector<Temperature> wall_kelvins;
     std::vector<double> wall_emissivity;

@@ -51,11 +51,11 @@ struct Driver {
     LAMMPS *lmp;
     fibrad_insitu *radiation;
     double sigma; /* in the script's units */
-    std::vector<fibrad_body> body;
-    std::vector<std::string> body_name;
-    std::vector<script_mesh> mesh; /* the last walls of `body` */
+    std::vector<fibrad_wall> wall;
+    std::vector<std::string> wall_name;
+    std::vector<script_mesh> mesh; /* the last walls of `wall` */
     mesh_walls triangles;          /* of all meshes, at the last rows */
-    std::vector<double> body_temperature, body_emissivity;
+    std::vector<double> wall_temperature, wall_emissivity;
     WallHeat wall_heat;
     Fix *temperature, *source, *power, *known, *capacity;         /* properties of particles, and of types */
     double came, gone;                                            /* heat of particles that have come or gone, here */
@@ -67,7 +67,7 @@ struct Driver {
     bool radiates;                                                /* there are powers */
     bool told[FIBRAD_REMARKS];                                    /* a message on strays of each kind was given */
     LAMMPS_NS::bigint since;                                      /* first step in which the current powers heat */
-    double heat, heat_surroundings, heat_body[FIBRAD_BODIES_MAX]; /* heat by radiation before that step */
+    double heat, heat_surroundings, heat_wall[FIBRAD_WALLS_MAX]; /* heat by radiation before that step */
 };
 
 int rank() {
@@ -141,15 +141,15 @@ void place_walls(Driver *driver) {
     if (domain->triclinic) stop(WRONG_INPUT, "the box is triclinic");
     for (radiant_wall &wall : driver->options.walls) {
         if (!wall.placed) {
-            const int axis = wall.body.plane.axis, upper = wall.body.plane.upper;
+            const int axis = wall.wall.plane.axis, upper = wall.wall.plane.upper;
             if (domain->boundary[axis][upper] != 1)
                 stop(WRONG_INPUT, "--wall " + wall.name + ": the box has no fixed end there; say where: T,E,AT");
-            wall.body.plane.at = upper ? domain->boxhi[axis] : domain->boxlo[axis];
+            wall.wall.plane.at = upper ? domain->boxhi[axis] : domain->boxlo[axis];
         }
-        driver->body.push_back(wall.body);
-        driver->body_name.push_back(wall.name);
-        driver->body_temperature.push_back(wall.temperature);
-        driver->body_emissivity.push_back(wall.emissivity);
+        driver->wall.push_back(wall.wall);
+        driver->wall_name.push_back(wall.name);
+        driver->wall_temperature.push_back(wall.temperature);
+        driver->wall_emissivity.push_back(wall.emissivity);
     }
 }
 
@@ -167,25 +167,25 @@ void find_meshes(Driver *driver) {
         script_mesh found{static_cast<LAMMPS_NS::FixMeshSurface *>(fix), {}};
         if (mesh.temperature < 0 && mesh_temperature(found.fix) == nullptr)
             stop(WRONG_INPUT, "--mesh " + mesh.id + ": the script gives no temperature: say ID=T,E");
-        if (driver->body.size() == FIBRAD_BODIES_MAX) stop(WRONG_INPUT, "too many walls and meshes");
-        fibrad_body body{};
-        body.kind = FIBRAD_BODY_MESH;
+        if (driver->wall.size() == FIBRAD_WALLS_MAX) stop(WRONG_INPUT, "too many walls and meshes");
+        fibrad_wall wall{};
+        wall.kind = FIBRAD_WALL_MESH;
         driver->mesh.push_back(found);
-        driver->body.push_back(body);
-        driver->body_name.push_back(mesh.id);
-        driver->body_temperature.push_back(mesh.temperature);
-        driver->body_emissivity.push_back(mesh.emissivity);
+        driver->wall.push_back(wall);
+        driver->wall_name.push_back(mesh.id);
+        driver->wall_temperature.push_back(mesh.temperature);
+        driver->wall_emissivity.push_back(mesh.emissivity);
     }
 }
 
 /* Takes --capacity. */
 void find_capacities(Driver *driver) {
-    driver->wall_heat.capacity.resize(driver->body.size());
+    driver->wall_heat.capacity.resize(driver->wall.size());
     for (const wall_capacity &given : driver->options.capacities) {
-        const auto at = std::find(driver->body_name.begin(), driver->body_name.end(), given.name);
-        if (at == driver->body_name.end())
+        const auto at = std::find(driver->wall_name.begin(), driver->wall_name.end(), given.name);
+        if (at == driver->wall_name.end())
             stop(WRONG_INPUT, "--capacity " + given.name + ": no --wall or --mesh has this name");
-        driver->wall_heat.capacity[(size_t)(at - driver->body_name.begin())] = given.capacity;
+        driver->wall_heat.capacity[(size_t)(at - driver->wall_name.begin())] = given.capacity;
     }
 }
 
@@ -249,12 +249,12 @@ void check_walls(const Driver *driver) {
     const double seconds = driver->lmp->update->dt * (double)driver->options.every;
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(driver->radiation, &facts);
-    const double ratio = driver->wall_heat.ratio(facts.body, driver->sigma, driver->body_temperature, seconds, &wall);
+    const double ratio = driver->wall_heat.ratio(facts.wall, driver->sigma, driver->wall_temperature, seconds, &wall);
     if (!(ratio > 1)) return;
     char text[200];
     std::snprintf(text, sizeof text,
                   "wall %.60s cools down in %.2g of the time between powers: take a smaller --every or time step",
-                  driver->body_name[wall].c_str(), 1 / ratio);
+                  driver->wall_name[wall].c_str(), 1 / ratio);
     stop(WRONG_INPUT, text);
 }
 
@@ -290,7 +290,7 @@ bool same_places(const std::vector<script_triangle> &a, const std::vector<script
 }
 
 /* Adds the triangles of one mesh as if they came from a file. */
-void take_mesh(Driver *driver, const radiant_mesh &mesh, const std::vector<script_triangle> &triangle, uint32_t body) {
+void take_mesh(Driver *driver, const radiant_mesh &mesh, const std::vector<script_triangle> &triangle, uint32_t wall) {
     const size_t n = triangle.size();
     std::vector<double> corner(9 * n);
     std::vector<uint64_t> place(n);
@@ -314,8 +314,8 @@ void take_mesh(Driver *driver, const radiant_mesh &mesh, const std::vector<scrip
     file.sides = mesh.sides;
     file.scale = 1;
     const bool first = !driver->radiates;
-    uint32_t bodies;
-    const int status = mesh_walls_add(&driver->triangles, MPI_COMM_WORLD, &file, &stl, body, &bodies);
+    uint32_t walls;
+    const int status = mesh_walls_add(&driver->triangles, MPI_COMM_WORLD, &file, &stl, wall, &walls);
     if (status != 0) stop(WRONG_INPUT, driver->triangles.messages);
     if (first && driver->triangles.messages[0] != 0)
         std::fprintf(stderr, "fibrad_liggghts: %s\n", driver->triangles.messages);
@@ -332,7 +332,7 @@ void follow_meshes(Driver *driver) {
     MPI_Bcast(&moved, 1, MPI_INT, 0, MPI_COMM_WORLD);
     if (moved == 0) return;
     mesh_walls_free(&driver->triangles);
-    const size_t first = driver->body.size() - driver->mesh.size();
+    const size_t first = driver->wall.size() - driver->mesh.size();
     for (size_t m = 0; m < driver->mesh.size(); ++m)
         take_mesh(driver, driver->options.meshes[m], driver->mesh[m].triangle, (uint32_t)(first + m));
 }
@@ -359,9 +359,9 @@ void make_rows(Driver *driver, bool follow) {
         bed.high[axis] = domain->boxhi[axis];
         bed.periodic[axis] = domain->periodicity[axis];
     }
-    bed.body = driver->body.data();
-    bed.body_emissivity = driver->body_emissivity.data();
-    bed.bodies = (uint32_t)driver->body.size();
+    bed.wall = driver->wall.data();
+    bed.wall_emissivity = driver->wall_emissivity.data();
+    bed.walls = (uint32_t)driver->wall.size();
     bed.cylinder = driver->options.cylinder;
     bed.opening = driver->options.openings.data();
     bed.openings = (uint32_t)driver->options.openings.size();
@@ -382,10 +382,10 @@ void make_rows(Driver *driver, bool follow) {
 
 /* The temperatures of meshes that the script gives. They are taken from the script or, if `give`, given to it. */
 void share_temperatures(Driver *driver, bool give) {
-    const size_t first = driver->body.size() - driver->mesh.size();
+    const size_t first = driver->wall.size() - driver->mesh.size();
     for (size_t m = 0; m < driver->mesh.size(); ++m) {
         if (driver->options.meshes[m].temperature >= 0) continue;
-        double &of_script = (*mesh_temperature(driver->mesh[m].fix))(0), &ours = driver->body_temperature[first + m];
+        double &of_script = (*mesh_temperature(driver->mesh[m].fix))(0), &ours = driver->wall_temperature[first + m];
         (give ? of_script : ours) = give ? ours : of_script;
     }
 }
@@ -396,7 +396,7 @@ void make_powers(Driver *driver) {
     fibrad_insitu_state state{};
     state.sigma = driver->sigma;
     state.surroundings = driver->options.surroundings;
-    state.body_temperature = driver->body_temperature.data();
+    state.wall_temperature = driver->wall_temperature.data();
     state.n = driver->id.size();
     state.id = driver->id.data();
     state.temperature = driver->temperature->vector_atom;
@@ -415,9 +415,9 @@ void count_heat(Driver *driver, LAMMPS_NS::bigint now) {
     const double seconds = driver->lmp->update->dt * (double)(now - driver->since);
     driver->heat += seconds * driver->totals.particles;
     driver->heat_surroundings += seconds * driver->totals.surroundings;
-    for (size_t k = 0; k < driver->body.size(); ++k) driver->heat_body[k] += seconds * driver->totals.body[k];
+    for (size_t k = 0; k < driver->wall.size(); ++k) driver->heat_wall[k] += seconds * driver->totals.wall[k];
     share_temperatures(driver, false);
-    driver->wall_heat.step(driver->totals.body, seconds, &driver->body_temperature);
+    driver->wall_heat.step(driver->totals.wall, seconds, &driver->wall_temperature);
     share_temperatures(driver, true);
 }
 
@@ -488,10 +488,10 @@ void print_summary(const Driver *driver, double before, double after, double sec
     std::printf("heat_before %.17g\nheat_after %.17g\n", before, after);
     std::printf("radiation_particles %.17g\n", driver->heat);
     std::printf("radiation_surroundings %.17g\n", driver->heat_surroundings);
-    for (size_t k = 0; k < driver->body.size(); ++k)
-        std::printf("radiation_%s %.17g\n", driver->body_name[k].c_str(), driver->heat_body[k]);
-    for (size_t k = 0; k < driver->body.size(); ++k)
-        std::printf("temperature_%s %.17g\n", driver->body_name[k].c_str(), driver->body_temperature[k]);
+    for (size_t k = 0; k < driver->wall.size(); ++k)
+        std::printf("radiation_%s %.17g\n", driver->wall_name[k].c_str(), driver->heat_wall[k]);
+    for (size_t k = 0; k < driver->wall.size(); ++k)
+        std::printf("temperature_%s %.17g\n", driver->wall_name[k].c_str(), driver->wall_temperature[k]);
     std::printf("heat_came %.17g\nheat_gone %.17g\n", came, gone);
     std::printf("conduction_and_sources %.17g\n", after - before - driver->heat - came + gone);
     std::printf("outside %" PRIu64 "\noverlapping %" PRIu64 "\nbehind %" PRIu64 "\ngone %" PRIu64 "\n", facts.outside,

@@ -95,20 +95,20 @@ bool wall(const char *text, radiant_wall *wall, int *cylinder) {
     wall->temperature = values[0];
     wall->emissivity = values[1];
     wall->placed = values.size() > 2;
-    wall->body = fibrad_body{};
+    wall->wall = fibrad_wall{};
     if (!(wall->temperature >= 0 && wall->emissivity >= 0 && wall->emissivity <= 1)) return false;
     for (int along = 0; along < 3; ++along)
         if (wall->name == cylinders[along]) {
             if (values.size() != 5 || !(values[4] > 0)) return false;
             *cylinder = along;
-            wall->body.kind = FIBRAD_BODY_CYLINDER;
-            wall->body.cylinder = {values[2], values[3], values[4]};
+            wall->wall.kind = FIBRAD_WALL_CYLINDER;
+            wall->wall.cylinder = {values[2], values[3], values[4]};
             return true;
         }
     for (int side = 0; side < 6; ++side)
         if (wall->name == sides[side]) {
-            wall->body.kind = FIBRAD_BODY_PLANE;
-            wall->body.plane = {side / 2, side % 2, wall->placed ? values[2] : 0};
+            wall->wall.kind = FIBRAD_WALL_PLANE;
+            wall->wall.plane = {side / 2, side % 2, wall->placed ? values[2] : 0};
             return values.size() < 4;
         }
     return false;

@@ -11,7 +11,7 @@
 /* A wall that radiates. */
 struct radiant_wall {
     std::string name; /* xlo ... zhi, cylinder, xcylinder, ycylinder */
-    fibrad_body body;
+    fibrad_wall wall;
     bool placed; /* the option gives the coordinate; else the wall is at the end of the box */
     double temperature, emissivity;
 };

@@ -16,11 +16,11 @@ static bool plane_holds(const fibrad_plane *plane, const double x[3]) {
 }
 
 /* cylinder: its axis, as in fibrad_insitu_bed */
-static bool body_holds(const fibrad_body *body, int cylinder, const double x[3]) {
-    if (body->kind == FIBRAD_BODY_PLANE) return plane_holds(&body->plane, x);
-    if (body->kind != FIBRAD_BODY_CYLINDER) return true;
-    const double a = (x[cylinder == 1 ? 1 : 0] - body->cylinder.x) / body->cylinder.radius;
-    const double b = (x[cylinder == 0 ? 1 : 2] - body->cylinder.y) / body->cylinder.radius;
+static bool wall_holds(const fibrad_wall *wall, int cylinder, const double x[3]) {
+    if (wall->kind == FIBRAD_WALL_PLANE) return plane_holds(&wall->plane, x);
+    if (wall->kind != FIBRAD_WALL_CYLINDER) return true;
+    const double a = (x[cylinder == 1 ? 1 : 0] - wall->cylinder.x) / wall->cylinder.radius;
+    const double b = (x[cylinder == 0 ? 1 : 2] - wall->cylinder.y) / wall->cylinder.radius;
     return a * a + b * b <= 1;
 }
 
@@ -38,12 +38,12 @@ static void describe(char *message, const fibrad_particle *p, const char *fault,
 
 bool fibrad_bounds_hold(const fibrad_bounds *bounds, const fibrad_particle *p, bool *opening, char *message) {
     *opening = false;
-    for (uint32_t k = 0; k < bounds->bodies; ++k) {
-        const fibrad_body *body = &bounds->body[k];
-        if (body_holds(body, bounds->cylinder, p->x)) continue;
+    for (uint32_t k = 0; k < bounds->walls; ++k) {
+        const fibrad_wall *wall = &bounds->wall[k];
+        if (wall_holds(wall, bounds->cylinder, p->x)) continue;
         char fault[48];
         snprintf(fault, sizeof fault, "its centre lies beyond wall %" PRIu32 ",", k + 1);
-        describe(message, p, fault, body->kind == FIBRAD_BODY_PLANE ? &body->plane : NULL);
+        describe(message, p, fault, wall->kind == FIBRAD_WALL_PLANE ? &wall->plane : NULL);
         return false;
     }
     for (uint32_t k = 0; k < bounds->openings; ++k) {

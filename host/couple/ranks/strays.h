@@ -9,9 +9,9 @@
 
 /* The walls and openings around a bed, the same on all ranks. The place of each opening is known. */
 typedef struct fibrad_bounds {
-    const fibrad_body *body;     /* [bodies] */
+    const fibrad_wall *wall;     /* [walls] */
     const fibrad_plane *opening; /* [openings] */
-    uint32_t bodies, openings;
+    uint32_t walls, openings;
     int cylinder; /* as in fibrad_insitu_bed */
 } fibrad_bounds;
 

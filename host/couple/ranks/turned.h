@@ -26,12 +26,12 @@ static inline fibrad_plane fibrad_turned_plane(int cylinder, fibrad_plane plane)
     return plane;
 }
 
-static inline fibrad_body fibrad_turned_body(int cylinder, fibrad_body body) {
-    const double at[2] = {body.cylinder.x, body.cylinder.y};
+static inline fibrad_wall fibrad_turned_wall(int cylinder, fibrad_wall wall) {
+    const double at[2] = {wall.cylinder.x, wall.cylinder.y};
     const bool swapped = cylinder == 2; /* x and z of the bed are y and x of the scene */
-    body.plane = fibrad_turned_plane(cylinder, body.plane);
-    body.cylinder.x = at[swapped], body.cylinder.y = at[!swapped];
-    return body;
+    wall.plane = fibrad_turned_plane(cylinder, wall.plane);
+    wall.cylinder.x = at[swapped], wall.cylinder.y = at[!swapped];
+    return wall;
 }
 
 #endif

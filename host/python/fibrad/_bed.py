@@ -82,13 +82,13 @@ class Bed:
         temperature, sides = container.sides("wall_temperature", temperature, 0, TEMPERATURE_MAX)
         shares = container.per_wall("wall_emissivity", emissivity, 0, 1, frozenset(insulated))
         arrays: dict[str, NDArray[Any]] = {
-            "body_temperature": container.per_wall("wall_temperature", temperature, 0, TEMPERATURE_MAX, found),
-            "body_emissivity": np.nan_to_num(shares),
+            "wall_temperature": container.per_wall("wall_temperature", temperature, 0, TEMPERATURE_MAX, found),
+            "wall_emissivity": np.nan_to_num(shares),
             "insulated": np.array([wall in insulated for wall in container.names], np.uint8)}
         if sides is not None:
             arrays["side_temperature"] = sides
         if powers:
-            arrays["body_power"] = container.per_wall("wall_power", powers, -POWER_MAX, POWER_MAX,
+            arrays["wall_power"] = container.per_wall("wall_power", powers, -POWER_MAX, POWER_MAX,
                                                       frozenset(container.names))
         return arrays
 

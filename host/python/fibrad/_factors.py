@@ -184,7 +184,7 @@ class Factors:
         if self.node_emissivity is not None:
             arrays["node_emissivity"] = self.node_emissivity
         if self.wall_names:
-            arrays |= {"body": self.walls, "wall_names": np.array([name.encode() for name in self.wall_names]),
+            arrays |= {"wall": self.walls, "wall_names": np.array([name.encode() for name in self.wall_names]),
                        "wall_area": self.wall_area}
         if self.wall_wall is not None and self.wall_names:
             arrays |= {"wall_wall": self.wall_wall, "wall_escaped": self.wall_escaped, "wall_error": self.wall_error}
@@ -199,19 +199,19 @@ def _factors(owner: _Owner, wall_names: tuple[str, ...], ids: Optional[NDArray[n
              nodes: Optional[NDArray[np.float64]]) -> Factors:
     found = owner.factors.contents
     matrix = found.matrix
-    n, walls = matrix.n, matrix.bodies
+    n, walls = matrix.n, matrix.walls
     entries = matrix.start[n]
     return Factors(
         indptr=_array(owner, matrix.start, (n + 1,), "i8"), indices=_array(owner, matrix.col, (entries,), "i4"),
         data=_array(owner, matrix.f, (entries,)), escaped=_array(owner, matrix.escaped, (n,)),
         beyond=_array(owner, matrix.beyond, (n,)), error=_array(owner, matrix.error, (n,)),
-        walls=_array(owner, matrix.body, (n, walls)), wall_names=wall_names,
-        wall_area=_array(owner, found.body_area, (walls,)),
-        wall_wall=_array(owner, matrix.body_body, (walls, walls)) if matrix.body_body else None,
-        wall_escaped=_array(owner, matrix.body_escaped, (walls,)) if matrix.body_escaped else None,
-        wall_error=_array(owner, matrix.body_error, (walls,)) if matrix.body_error else None, ids=ids,
-        wall_correction=matrix.body_correction if matrix.body_body else None,
-        wall_closure=matrix.body_closure if matrix.body_body else None, closure_error=found.closure_error,
+        walls=_array(owner, matrix.wall, (n, walls)), wall_names=wall_names,
+        wall_area=_array(owner, found.wall_area, (walls,)),
+        wall_wall=_array(owner, matrix.wall_wall, (walls, walls)) if matrix.wall_wall else None,
+        wall_escaped=_array(owner, matrix.wall_escaped, (walls,)) if matrix.wall_escaped else None,
+        wall_error=_array(owner, matrix.wall_error, (walls,)) if matrix.wall_error else None, ids=ids,
+        wall_correction=matrix.wall_correction if matrix.wall_wall else None,
+        wall_closure=matrix.wall_closure if matrix.wall_wall else None, closure_error=found.closure_error,
         reciprocity_error=found.reciprocity_error, node_emissivity=nodes, directions=found.directions, fallbacks=found.fallbacks,
         rays=found.rays, overlap=found.facts.overlap_max, threads=found.threads, seconds=found.seconds)
 
@@ -256,7 +256,7 @@ class _Job:
         self._wall_emissivity = self.container.per_wall("wall_emissivity", wall_emissivity, 0, 1)
         self._k_star = None if k_star is None else per_sphere(
             "k_star", k_star, self.packing.n, RELATIVE_CONDUCTIVITY_MIN, np.inf, self.packing.names)
-        return ExchangeRule(emissivity=pointer(self._emissivity), body_emissivity=pointer(self._wall_emissivity),
+        return ExchangeRule(emissivity=pointer(self._emissivity), wall_emissivity=pointer(self._wall_emissivity),
                             conductivity=pointer(self._k_star), **values)
 
     def between_nodes(self, rule: Any) -> Any:
@@ -376,7 +376,7 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
               "seed": seed}
     rule = _method_options(method, values, cutoff)
     job = _Job(x, r, box, walls, ids, wanted, threads, progress)
-    options = BedOptions(wanted=job.wanted, raw=bool(raw), bodies=1, drop=real("drop", drop, 0, 1),
+    options = BedOptions(wanted=job.wanted, raw=bool(raw), walls=1, drop=real("drop", drop, 0, 1),
                          scratch=_folder(scratch), **rule)
     return job.factors(library.fibrad_view_factors, tolerance, options)
 
@@ -431,7 +431,7 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
     rule = job.exchange_rule(emissivity, wall_emissivity, k_star, directions=whole("directions", directions, *DIRECTIONS),
                              paths=whole("paths", paths, 1, 2**28), seed=whole("seed", seed, *_SEED),
                              cutoff=real("cutoff", cutoff, *_FAR), tolerance=real("tolerance", tolerance, 0, 1))
-    options = BedOptions(wanted=job.wanted, raw=bool(raw), bodies=1, drop=real("drop", drop, 0, 1),
+    options = BedOptions(wanted=job.wanted, raw=bool(raw), walls=1, drop=real("drop", drop, 0, 1),
                          scratch=_folder(scratch))
     return job.factors(library.fibrad_exchange_factors, tolerance, job.between_nodes(rule), options)
 

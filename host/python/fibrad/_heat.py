@@ -208,14 +208,14 @@ class Heat(Bed):
         of_walls = container.per_wall("wall_absorptivity", wall_absorptivity, 0, 1, frozenset())
         array = lights_of(lights)
         arrays = {name: np.zeros(n) for name in ("absorbed", "absorbed_first", "absorbed_error")}
-        arrays |= {name: np.zeros(len(container.names)) for name in ("body_absorbed", "body_absorbed_first")}
+        arrays |= {name: np.zeros(len(container.names)) for name in ("wall_absorbed", "wall_absorbed_first")}
         sources = LightSources(light=array, lights=len(array), absorptivity=pointer(shares),
-                               body_absorptivity=pointer(of_walls))
+                               wall_absorptivity=pointer(of_walls))
         result = LightResult(**{name: pointer(values) for name, values in arrays.items()})
         self._use(library.fibrad_radiation_shine, self._packing, sources, result)
-        walls = {name: dict(zip(container.names, arrays[name].tolist())) for name in ("body_absorbed", "body_absorbed_first")}
+        walls = {name: dict(zip(container.names, arrays[name].tolist())) for name in ("wall_absorbed", "wall_absorbed_first")}
         return Absorbed(spheres=arrays["absorbed"], first=arrays["absorbed_first"], errors=arrays["absorbed_error"],
-                        walls=walls["body_absorbed"], walls_first=walls["body_absorbed_first"], incident=result.incident,
+                        walls=walls["wall_absorbed"], walls_first=walls["wall_absorbed_first"], incident=result.incident,
                         transmitted=result.transmitted, reflected=result.reflected, error=result.error,
                         _patches=result.patches, _of=self)
 
@@ -294,7 +294,7 @@ class Heat(Bed):
         if conducts is not None and uniform:
             raise refuse("conductivity is given, and uniform is True: with one radiosity a sphere has no sides")
         insulated = several("insulated", insulated)
-        of_bodies = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
+        of_walls = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
         if light is not None:
             if not isinstance(light, Absorbed):
                 raise refuse(f"light must be what shine returns, not {light!r}")
@@ -302,7 +302,7 @@ class Heat(Bed):
                 raise refuse("light is of another bed")
             powers = add(powers, light.spheres)
             walls_absorb = np.array([0.0 if wall in insulated else light.walls[wall] for wall in container.names])
-            of_bodies["body_power"] = add(of_bodies.get("body_power"), walls_absorb)
+            of_walls["wall_power"] = add(of_walls.get("wall_power"), walls_absorb)
         if surroundings is None and not container.closed():
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
         law = _law(emissivity)
@@ -311,8 +311,8 @@ class Heat(Bed):
                               sigma=real("sigma", sigma, *SIGMA), tolerance=real("tolerance", tolerance, 0, 1),
                               uniform=bool(uniform), temperature=pointer(kelvins), power=pointer(powers),
                               conductivity=pointer(conducts),
-                              **pointers(of_bodies))
-        warn_around(container, surroundings, of_bodies["body_temperature"], kelvins)
+                              **pointers(of_walls))
+        warn_around(container, surroundings, of_walls["wall_temperature"], kelvins)
         if light is not None:
             sources.absorbed = patches_pointer(light)
         joined = contacts_of(((), (), ()) if contacts is None else contacts, n, container)
@@ -321,8 +321,8 @@ class Heat(Bed):
         ends = ctypes.POINTER(ctypes.c_uint32)
         sources.contact_first, sources.contact_second = pointer(joined.first, ends), pointer(joined.second, ends)
         of_spheres = {name: np.zeros(n) for name in _OF_SPHERES}
-        of_walls = {name: np.zeros(len(container.names)) for name in ("body_power", "body_temperature", "body_error",
-                                                                            "body_conducted")}
+        of_walls = {name: np.zeros(len(container.names)) for name in ("wall_power", "wall_temperature", "wall_error",
+                                                                            "wall_conducted")}
         result = HeatResult(**{name: pointer(array) for name, array in (of_spheres | of_walls).items()})
         result.contact_flow = pointer(flows)
         for _ in range(_SETTLE_MAX):
@@ -336,7 +336,7 @@ class Heat(Bed):
             raise refuse("the emissivities do not settle")
         if light is not None:
             of_spheres["power"] += light.spheres
-            of_walls["body_power"] += walls_absorb
+            of_walls["wall_power"] += walls_absorb
             result.surroundings_power += light.reflected + light.transmitted - light.incident
         if surroundings is None and result.surroundings_power != 0:
             raise refuse(f"{result.surroundings_power} W leave the bed after 100 periods: surroundings is needed")
@@ -346,16 +346,16 @@ class Heat(Bed):
         if sides.size:
             self._use(library.fibrad_radiation_sides, self._packing, pointer(sides[0]), pointer(sides[1]))
         walls = {name: dict(zip(container.names, array.tolist())) for name, array in of_walls.items()}
-        return Powers(spheres=of_spheres["power"], walls=walls["body_power"], surroundings=result.surroundings_power,
-                      temperatures=of_spheres["temperature"], wall_temperatures=walls["body_temperature"],
+        return Powers(spheres=of_spheres["power"], walls=walls["wall_power"], surroundings=result.surroundings_power,
+                      temperatures=of_spheres["temperature"], wall_temperatures=walls["wall_temperature"],
                       triangle_fluxes=container.by_mesh(sides[0]), triangle_temperatures=container.by_mesh(sides[1]),
-                      emissivities=before, errors=of_spheres["power_error"], wall_errors=walls["body_error"],
+                      emissivities=before, errors=of_spheres["power_error"], wall_errors=walls["wall_error"],
                       surroundings_error=result.surroundings_error,
                       temperature_errors=of_spheres["temperature_error"],
                       least_temperatures=of_spheres["least_temperature"],
                       largest_temperatures=of_spheres["largest_temperature"],
                       centre_temperatures=of_spheres["centre_temperature"], surface_errors=of_spheres["surface_error"],
                       centre_errors=of_spheres["centre_error"], conducted=of_spheres["conducted"],
-                      wall_conducted=walls["body_conducted"], contact_flows=flows,
+                      wall_conducted=walls["wall_conducted"], contact_flows=flows,
                       error=math.hypot(result.error_patches, result.error_beams), error_patches=result.error_patches,
                       error_beams=result.error_beams, residual=result.residual, sweeps=result.sweeps)

@@ -35,15 +35,15 @@ def _structure(name: str, *fields: tuple[str, Any]) -> Any:
 
 Spheres = _structure("spheres", ("x y z r", DOUBLES), ("n stride stride_r", c_uint32), ("id", POINTER(c_uint64)))
 Plane = _structure("plane", ("axis upper", c_int), ("at", c_double))
-Body = _structure("body", ("kind", c_int), ("plane", Plane), ("cylinder", _Cylinder))
+Wall = _structure("wall", ("kind", c_int), ("plane", Plane), ("cylinder", _Cylinder))
 Triangles = _structure("triangles", ("x y z", DOUBLES), ("stride vertices", c_uint32),
                        ("corner front back", POINTER(c_uint32)), ("n", c_uint32), ("period", c_double * 3))
-SceneConfig = _structure("scene_config", ("isa", c_int), ("period", c_double * 3), ("body", POINTER(Body)),
-                         ("bodies", c_uint32), ("opening", POINTER(Plane)), ("openings", c_uint32),
+SceneConfig = _structure("scene_config", ("isa", c_int), ("period", c_double * 3), ("wall", POINTER(Wall)),
+                         ("walls", c_uint32), ("opening", POINTER(Plane)), ("openings", c_uint32),
                          ("known_low known_high", c_double * 3), ("occupancy", c_void_p),
                          ("triangles", POINTER(Triangles)))
 Fault = _structure("fault", ("first second triangle wall", c_uint32), ("why", c_int))
-SceneFacts = _structure("scene_facts", ("spheres bodies", c_uint32), ("isa", c_int), ("cells", c_uint32),
+SceneFacts = _structure("scene_facts", ("spheres walls", c_uint32), ("isa", c_int), ("cells", c_uint32),
                         ("radius_min radius_max overlap_max", c_double), ("overlap_pair", c_uint32 * 2),
                         ("triangles", c_uint32))
 Run = _structure("run", ("threads", c_int), ("progress", PROGRESS), ("context", c_void_p), ("fault", Fault))
@@ -53,32 +53,32 @@ SurfaceRule = _structure("surface_rule", ("nodes flags", c_uint32), ("cutoff", c
 CastRule = _structure("cast_rule", ("rays", c_uint32), ("random", c_int), ("seed", c_uint64), ("cutoff", c_double))
 BedOptions = _structure("bed_options", ("beam", POINTER(BeamRule)), ("surface", POINTER(SurfaceRule)),
                         ("cast", POINTER(CastRule)), ("wanted", POINTER(c_ubyte)), ("raw", c_int), ("drop", c_double),
-                        ("bodies", c_int), ("scratch", c_char_p))
-Matrix = _structure("factors", ("n bodies", c_uint32), ("start", POINTER(c_uint64)), ("col", POINTER(c_uint32)),
-                    ("f escaped beyond error body body_body body_escaped body_error", DOUBLES),
-                    ("body_correction body_closure changed", c_double), ("changed_row", c_uint32))
-BedFactors = _structure("bed_factors", ("matrix", Matrix), ("facts", SceneFacts), ("body_area", DOUBLES),
+                        ("walls", c_int), ("scratch", c_char_p))
+Matrix = _structure("factors", ("n walls", c_uint32), ("start", POINTER(c_uint64)), ("col", POINTER(c_uint32)),
+                    ("f escaped beyond error wall wall_wall wall_escaped wall_error", DOUBLES),
+                    ("wall_correction wall_closure changed", c_double), ("changed_row", c_uint32))
+BedFactors = _structure("bed_factors", ("matrix", Matrix), ("facts", SceneFacts), ("wall_area", DOUBLES),
                         ("threads", c_int), ("directions", c_uint32), ("fallbacks rays", c_uint64),
                         ("seconds closure_error reciprocity_error", c_double))
-ExchangeRule = _structure("exchange_rule", ("emissivity body_emissivity", DOUBLES), ("directions paths", c_uint32),
+ExchangeRule = _structure("exchange_rule", ("emissivity wall_emissivity", DOUBLES), ("directions paths", c_uint32),
                           ("seed", c_uint64), ("cutoff tolerance", c_double), ("conductivity node_emissivity", DOUBLES),
                           ("flights", c_uint32), ("known", DOUBLES), ("known_paths", c_double))
 Displacement = _structure("displacement", ("square error", c_double * 3), ("absorbed", c_double), ("rays", c_uint64))
 HeatConfig = _structure("heat_config", ("directions points patches parts", c_uint32), ("cutoff", c_double),
                         ("wall_rays", c_uint32))
 HeatSources = _structure("heat_sources", ("temperature emissivity power hold reference", DOUBLES),
-                         ("body_temperature body_emissivity body_power", DOUBLES), ("insulated", POINTER(c_ubyte)),
+                         ("wall_temperature wall_emissivity wall_power", DOUBLES), ("insulated", POINTER(c_ubyte)),
                          ("surroundings sigma tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int),
                          ("side_temperature light conductivity absorbed", DOUBLES),
                          ("contact_first contact_second", POINTER(c_uint32)), ("conductance", DOUBLES),
                          ("contacts", c_uint32), ("contact_places", DOUBLES))
-HeatResult = _structure("heat_result", ("power body_power", DOUBLES), ("surroundings_power", c_double),
-                        ("temperature body_temperature power_error body_error", DOUBLES),
-                        ("temperature_error body_temperature_error", DOUBLES),
+HeatResult = _structure("heat_result", ("power wall_power", DOUBLES), ("surroundings_power", c_double),
+                        ("temperature wall_temperature power_error wall_error", DOUBLES),
+                        ("temperature_error wall_temperature_error", DOUBLES),
                         ("error_patches error_beams residual", c_double), ("sweeps", c_uint32),
-                        ("body_absorbed", DOUBLES), ("surroundings_error", c_double), ("body_area", DOUBLES),
+                        ("wall_absorbed", DOUBLES), ("surroundings_error", c_double), ("wall_area", DOUBLES),
                         ("least_temperature largest_temperature centre_temperature", DOUBLES),
-                        ("surface_error centre_error", DOUBLES), ("conducted body_conducted contact_flow", DOUBLES))
+                        ("surface_error centre_error", DOUBLES), ("conducted wall_conducted contact_flow", DOUBLES))
 ContactRule = _structure("contact_rule", ("spots", c_int), ("scale gas_reach gas_jump gas_least", c_double),
                          ("gas_alone", c_int))
 ContactList = _structure("contact_list", ("n", c_uint32), ("first second", POINTER(c_uint32)),
@@ -88,15 +88,15 @@ LightStructure = _structure("light", ("direction", c_double * 3), ("flux half_an
                             ("shape", c_int), ("centre", c_double * 3), ("radius", c_double),
                             ("low high", c_double * 2))
 LightSources = _structure("light_sources", ("light", POINTER(LightStructure)), ("lights", c_uint32),
-                          ("absorptivity body_absorptivity", DOUBLES), ("tolerance", c_double), ("uniform", c_int))
+                          ("absorptivity wall_absorptivity", DOUBLES), ("tolerance", c_double), ("uniform", c_int))
 LightResult = _structure("light_result", ("absorbed absorbed_first absorbed_error", DOUBLES),
-                         ("body_absorbed body_absorbed_first body_absorbed_error", DOUBLES),
+                         ("wall_absorbed wall_absorbed_first wall_absorbed_error", DOUBLES),
                          ("incident transmitted reflected error error_patches", c_double), ("sweeps lights", c_uint32),
                          ("patches", c_void_p))
 TransientConfig = _structure("transient_config", ("method", c_int), ("exchange", ExchangeRule), ("heat", HeatConfig))
 Span = _structure("span", ("temperature capacity", DOUBLES), ("duration", c_double),
-                  ("body_temperature surroundings", DOUBLES), ("step tolerance", c_double),
-                  ("power body_power", DOUBLES), ("surroundings_power", c_double), ("body_energy", DOUBLES),
+                  ("wall_temperature surroundings", DOUBLES), ("step tolerance", c_double),
+                  ("power wall_power", DOUBLES), ("surroundings_power", c_double), ("wall_energy", DOUBLES),
                   ("surroundings_energy", c_double), ("observe law context", c_void_p), ("error", c_double),
                   ("steps refused sweeps corrections", c_uint64))
 

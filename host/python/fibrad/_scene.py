@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._errors import ARGUMENT, BACK, ENDLESS, GEOMETRY, Error, error_of, status_text, why_text
-from ._library import DOUBLES, Body, Plane, SceneConfig, Spheres, Triangles
+from ._library import DOUBLES, Wall, Plane, SceneConfig, Spheres, Triangles
 from ._limits import LENGTH_MAX
 from ._values import Names, doubles, real, refuse
 
 _AXES = "xyz"
 _PLANES = {f"{axis}{end}": (k, upper) for k, axis in enumerate(_AXES) for upper, end in enumerate(("min", "max"))}
 _PLANE, _CYLINDER, _MESH = 1, 2, 3
-_NO_BODY = 2**32 - 1
+_NO_WALL = 2**32 - 1
 _STRIDE_MAX = 2**32 - 1
 
 Walls = Union[Mapping[str, Any], Sequence[tuple[str, Any]]]
@@ -188,16 +188,16 @@ def _opening(name: str, value: Any, packing: Packing) -> tuple[int, int, float]:
     return _plane(name, float((x + packing.r).max() if upper else (x - packing.r).min()))
 
 
-def _body(name: str, value: Any) -> Any:
+def _wall(name: str, value: Any) -> Any:
     if isinstance(value, Mesh):
-        return Body(kind=_MESH)
+        return Wall(kind=_MESH)
     if name in _PLANES:
-        return Body(kind=_PLANE, plane=_plane(name, value))
+        return Wall(kind=_PLANE, plane=_plane(name, value))
     if name == "cylinder":
         numbers = doubles("wall cylinder", value)
         if numbers.shape != (3,) or not np.isfinite(numbers).all() or numbers[2] <= 0:
             raise refuse("wall cylinder must be (x, y, radius), x and y of its axis along z")
-        return Body(kind=_CYLINDER, cylinder=tuple(numbers))
+        return Wall(kind=_CYLINDER, cylinder=tuple(numbers))
     raise refuse(f"there is no wall {name!r}; there are {', '.join(_PLANES)}, cylinder, and any name for a Mesh")
 
 
@@ -225,21 +225,21 @@ class Container:
         self.opened = frozenset(openings)
         self.kinds = (*self.names, *(f"{name} open" for name in sorted(openings)))
         self._openings = (Plane * len(openings))(*openings.values())
-        self._bodies = (Body * len(pairs))(*(_body(name, value) for name, value in pairs))
-        self.config = SceneConfig(period=tuple(self.period), body=self._bodies, bodies=len(pairs),
+        self._walls = (Wall * len(pairs))(*(_wall(name, value) for name, value in pairs))
+        self.config = SceneConfig(period=tuple(self.period), wall=self._walls, walls=len(pairs),
                                   opening=self._openings, openings=len(openings))
         self._meshes = [(b, value) for b, (_, value) in enumerate(pairs) if isinstance(value, Mesh)]
         if self._meshes:
             self.config.triangles = ctypes.pointer(self._triangles())
 
-    def _back_of(self, body: int, mesh: Mesh) -> int:
+    def _back_of(self, wall: int, mesh: Mesh) -> int:
         if mesh.back is None or mesh.back is False:
-            return _NO_BODY
+            return _NO_WALL
         if mesh.back is True:
-            return body
+            return wall
         numbers = [b for b, _ in self._meshes if self.names[b] == mesh.back]
         if not numbers:
-            raise refuse(f"the back of wall {self.names[body]} is to be {mesh.back!r}, and no mesh has that name")
+            raise refuse(f"the back of wall {self.names[wall]} is to be {mesh.back!r}, and no mesh has that name")
         return numbers[0]
 
     def _triangles(self) -> Any:
@@ -256,12 +256,12 @@ class Container:
 
     def planes(self) -> list[tuple[str, int, int, float]]:
         """Name, axis, whether it is the upper end, and place of each plane that is a wall."""
-        return [(name, b.plane.axis, b.plane.upper, b.plane.at) for name, b in zip(self.names, self._bodies)
+        return [(name, b.plane.axis, b.plane.upper, b.plane.at) for name, b in zip(self.names, self._walls)
                 if b.kind == _PLANE]
 
     def cylinders(self) -> list[tuple[str, float, float, float]]:
         """Name, place of the axis and radius of the cylinder, if there is one."""
-        return [(name, b.cylinder.x, b.cylinder.y, b.cylinder.radius) for name, b in zip(self.names, self._bodies)
+        return [(name, b.cylinder.x, b.cylinder.y, b.cylinder.radius) for name, b in zip(self.names, self._walls)
                 if b.kind == _CYLINDER]
 
     def meshes(self) -> list[tuple[str, Mesh]]:

@@ -166,7 +166,7 @@ class Transient(Bed):
             raise refuse(f"{', '.join(sorted(found))}: walls of unknown temperature need method='patches'")
         if "side_temperature" in walls and self._method == "factors":
             raise refuse("triangles with temperatures of their own need another method than 'factors'")
-        end, constant = walls["body_temperature"], container.with_arrays(wall_temperature)
+        end, constant = walls["wall_temperature"], container.with_arrays(wall_temperature)
         if isinstance(wall_temperature_end, Mapping) and constant & set(wall_temperature_end):
             raise refuse(f"wall_temperature_end of {', '.join(sorted(constant & set(wall_temperature_end)))}: "
                          "triangles with temperatures of their own keep them")
@@ -182,15 +182,15 @@ class Transient(Bed):
                                       0, TEMPERATURE_MAX))
         sources = HeatSources(emissivity=pointer(shares), power=pointer(given), sigma=real("sigma", sigma, *SIGMA),
                               surroundings=real("surroundings", surroundings, 0, TEMPERATURE_MAX), **pointers(walls))
-        warn_around(container, surroundings, walls["body_temperature"], now)
+        warn_around(container, surroundings, walls["wall_temperature"], now)
         ends = ctypes.POINTER(ctypes.c_uint32)
         sources.contacts, sources.conductance = joined.conductance.size, pointer(joined.conductance)
         sources.contact_first, sources.contact_second = pointer(joined.first, ends), pointer(joined.second, ends)
         flow, energy = np.zeros(n), np.zeros(len(container.names))
         span = Span(temperature=pointer(now), capacity=pointer(heat), duration=real("duration", duration, 0, DURATION_MAX),
-                    body_temperature=pointer(end), surroundings=ctypes.pointer(around),
+                    wall_temperature=pointer(end), surroundings=ctypes.pointer(around),
                     step=real("step", step, 0, DURATION_MAX), tolerance=real("tolerance", tolerance, 0, 1),
-                    power=pointer(flow), body_energy=pointer(energy))
+                    power=pointer(flow), wall_energy=pointer(energy))
         self._use(library.fibrad_transient_advance, self._packing, sources, span)
         return Advance(temperatures=now, spheres=flow, walls=dict(zip(container.names, energy.tolist())),
                        surroundings=span.surroundings_energy, steps=span.steps, refused=span.refused,

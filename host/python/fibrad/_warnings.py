@@ -126,14 +126,14 @@ def warn_capacity(packing: Packing, capacity: NDArray[np.float64]) -> None:
 def warn_rows(packing: Packing, factors: Any) -> None:
     """Rows of walls that contradict those of spheres, and rows that closing has changed much."""
     matrix, meshed = factors.matrix, factors.facts.triangles > 0
-    walls = bool(matrix.body_body)
-    if walls and matrix.body_closure > _CLOSED:
+    walls = bool(matrix.wall_wall)
+    if walls and matrix.wall_closure > _CLOSED:
         asked = "; do triangles cut spheres?" if meshed else ""
-        warn(f"rows of walls are not closed: their sums are off by {matrix.body_closure:.2g}, because they contradict "
+        warn(f"rows of walls are not closed: their sums are off by {matrix.wall_closure:.2g}, because they contradict "
              f"the rows of spheres{asked}")
-    elif walls and matrix.body_correction > _APART:
+    elif walls and matrix.wall_correction > _APART:
         asked = "do triangles cut spheres? If not, " if meshed else ""
-        warn(f"rows of walls and of spheres disagreed by {matrix.body_correction:.2g} before they were closed; {asked}"
+        warn(f"rows of walls and of spheres disagreed by {matrix.wall_correction:.2g} before they were closed; {asked}"
              "more directions help")
     elif matrix.changed > _CHANGE_LARGE:
         asked = "do triangles cut this sphere? If not, " if meshed else ""

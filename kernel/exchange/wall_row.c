@@ -1,4 +1,4 @@
-/* body_row.c - what absorbs the emission of a wall, by paths. SPDX-License-Identifier: MIT
+/* wall_row.c - what absorbs the emission of a wall, by paths. SPDX-License-Identifier: MIT
  *
  * The paths come in parts. Each part begins at evenly spread points, which are moved at random, part by part. So the
  * spread of the parts tells the error of their mean. */
@@ -8,14 +8,14 @@
 #include "row/row.h"
 
 /* slot: out, of the wall or opening */
-static int body_begin(const fibrad_scene *scene, uint32_t body, const fibrad_exchange_rule *rule, uint32_t part,
+static int wall_begin(const fibrad_scene *scene, uint32_t wall, const fibrad_exchange_rule *rule, uint32_t part,
                       double wall_emissivity[FIBRAD_SLOTS], uint32_t *slot) {
     if (scene == NULL || rule == NULL) return FIBRAD_E_ARGUMENT;
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
     if (!fibrad_nodes_given(rule)) return FIBRAD_E_ARGUMENT;
-    *slot = fibrad_body_slot(scene, body);
-    if (*slot == FIBRAD_NONE || part >= FIBRAD_BODY_PARTS || rule->paths > FIBRAD_PATHS_MAX) return FIBRAD_E_ARGUMENT;
-    const int status = fibrad_paths_emissivities(scene, rule->body_emissivity, wall_emissivity);
+    *slot = fibrad_wall_slot(scene, wall);
+    if (*slot == FIBRAD_NONE || part >= FIBRAD_WALL_PARTS || rule->paths > FIBRAD_PATHS_MAX) return FIBRAD_E_ARGUMENT;
+    const int status = fibrad_paths_emissivities(scene, rule->wall_emissivity, wall_emissivity);
     if (status != FIBRAD_OK) return status;
     const bool whole = fibrad_finite(scene->wall_area[*slot]) && !scene->region && rule->cutoff == 0;
     return whole ? FIBRAD_OK : FIBRAD_E_UNSUPPORTED;
@@ -24,7 +24,7 @@ static int body_begin(const fibrad_scene *scene, uint32_t body, const fibrad_exc
 /* Whether the walls and openings are the six sides of a box, and there is no other wall. */
 static bool is_box(const fibrad_scene *scene) {
     bool box = true;
-    for (uint32_t b = 0; b < scene->facts.bodies; b++) box = box && scene->slot[b] < FIBRAD_CYLINDER;
+    for (uint32_t b = 0; b < scene->facts.walls; b++) box = box && scene->slot[b] < FIBRAD_CYLINDER;
     for (uint32_t slot = 0; slot < FIBRAD_CYLINDER; slot++) box = box && scene->wall_area[slot] > 0;
     return box;
 }
@@ -73,12 +73,12 @@ static void share_out_box(fibrad_paths *paths, double followed) {
 }
 
 /* The row that paths give. */
-static int row_of_paths(const fibrad_scene *scene, fibrad_paths *paths, uint64_t followed, fibrad_body_row *row) {
+static int row_of_paths(const fibrad_scene *scene, fibrad_paths *paths, uint64_t followed, fibrad_wall_row *row) {
     if (paths->back != UINT32_MAX) return FIBRAD_E_BACK;
     if (paths->boxed) share_out_box(paths, (double)followed);
     const double sum = fibrad_paths_sum(paths);
     if (!fibrad_finite(sum)) return FIBRAD_E_ARGUMENT; /* a path met an emissivity that is NaN */
-    *row = (fibrad_body_row){.rays = paths->rays, .paths = followed};
+    *row = (fibrad_wall_row){.rays = paths->rays, .paths = followed};
     row->error = paths->left > 0 ? paths->left / (paths->left + sum) : 0;
     if (sum == 0) {
         row->escaped = 1;
@@ -89,17 +89,17 @@ static int row_of_paths(const fibrad_scene *scene, fibrad_paths *paths, uint64_t
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
         if (fibrad_is_opening(&scene->container, k)) row->escaped += paths->wall[k] / sum;
     double all = row->spheres + row->escaped;
-    for (uint32_t b = 0; b < scene->facts.bodies; b++) all += row->body[b] = paths->wall[scene->slot[b]] / sum;
+    for (uint32_t b = 0; b < scene->facts.walls; b++) all += row->wall[b] = paths->wall[scene->slot[b]] / sum;
     return fibrad_sum_checked(all);
 }
 
-int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t body, const fibrad_exchange_rule *rule,
-                         uint32_t part, fibrad_body_row *row, uint64_t *reflected) {
+int fibrad_exchange_wall(const fibrad_scene *scene, fibrad_work *work, uint32_t wall, const fibrad_exchange_rule *rule,
+                         uint32_t part, fibrad_wall_row *row, uint64_t *reflected) {
     double wall_emissivity[FIBRAD_SLOTS] = {0};
     fibrad_workspace *space;
-    fibrad_body_row own = {0};
+    fibrad_wall_row own = {0};
     uint32_t slot;
-    int status = body_begin(scene, body, rule, part, wall_emissivity, &slot);
+    int status = wall_begin(scene, wall, rule, part, wall_emissivity, &slot);
     if (status == FIBRAD_OK && (work == NULL || row == NULL)) status = FIBRAD_E_ARGUMENT;
     if (status == FIBRAD_OK)
         status = fibrad_work_open(work, scene, fibrad_tracer_least(), fibrad_tracer_best(scene), &space);
@@ -110,12 +110,12 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
     }
 
     const bool nodes = rule->node_emissivity != NULL;
-    const bool black = rule->emissivity == NULL && rule->body_emissivity == NULL;
+    const bool black = rule->emissivity == NULL && rule->wall_emissivity == NULL;
     fibrad_sobol sobol;
     fibrad_sobol_make(&sobol);
-    const uint32_t wanted = rule->paths > 0 ? rule->paths : FIBRAD_BODY_PATHS_DEFAULT;
-    const uint32_t count = (wanted + FIBRAD_BODY_PARTS - 1) / FIBRAD_BODY_PARTS;
-    const uint64_t turn = (uint64_t)slot * FIBRAD_BODY_PARTS + part; /* streams of walls count down, those of ids up */
+    const uint32_t wanted = rule->paths > 0 ? rule->paths : FIBRAD_WALL_PATHS_DEFAULT;
+    const uint32_t count = (wanted + FIBRAD_WALL_PARTS - 1) / FIBRAD_WALL_PARTS;
+    const uint64_t turn = (uint64_t)slot * FIBRAD_WALL_PARTS + part; /* streams of walls count down, those of ids up */
     const fibrad_paths none = {.tracer = fibrad_tracer_of(space, scene),
                                .place = FIBRAD_NONE,
                                .from = slot,
@@ -143,38 +143,38 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
 }
 
 /* By chance a factor may be below 0. Such a factor becomes 0, and the others are scaled so that the sum is 1. */
-static void body_row_settle(fibrad_body_row *row) {
+static void wall_row_settle(fibrad_wall_row *row) {
     double below = 0;
-    for (uint32_t b = 0; b < FIBRAD_BODIES_MAX; b++) {
-        below += fibrad_min(0, row->body[b]);
-        row->body[b] = fibrad_max(0, row->body[b]);
+    for (uint32_t b = 0; b < FIBRAD_WALLS_MAX; b++) {
+        below += fibrad_min(0, row->wall[b]);
+        row->wall[b] = fibrad_max(0, row->wall[b]);
     }
     const double all = 1 - below;
     row->spheres /= all, row->escaped /= all;
-    for (uint32_t b = 0; b < FIBRAD_BODIES_MAX; b++) row->body[b] /= all;
+    for (uint32_t b = 0; b < FIBRAD_WALLS_MAX; b++) row->wall[b] /= all;
 }
 
-int fibrad_exchange_body_mean(const fibrad_body_row part[FIBRAD_BODY_PARTS], fibrad_body_row *mean) {
+int fibrad_exchange_wall_mean(const fibrad_wall_row part[FIBRAD_WALL_PARTS], fibrad_wall_row *mean) {
     if (part == NULL || mean == NULL) return FIBRAD_E_ARGUMENT;
-    fibrad_body_row sum = {0};
-    for (uint32_t p = 0; p < FIBRAD_BODY_PARTS; p++) {
-        for (uint32_t b = 0; b < FIBRAD_BODIES_MAX; b++) sum.body[b] += part[p].body[b] / FIBRAD_BODY_PARTS;
-        sum.spheres += part[p].spheres / FIBRAD_BODY_PARTS;
-        sum.escaped += part[p].escaped / FIBRAD_BODY_PARTS;
-        sum.error += part[p].error / FIBRAD_BODY_PARTS;
+    fibrad_wall_row sum = {0};
+    for (uint32_t p = 0; p < FIBRAD_WALL_PARTS; p++) {
+        for (uint32_t b = 0; b < FIBRAD_WALLS_MAX; b++) sum.wall[b] += part[p].wall[b] / FIBRAD_WALL_PARTS;
+        sum.spheres += part[p].spheres / FIBRAD_WALL_PARTS;
+        sum.escaped += part[p].escaped / FIBRAD_WALL_PARTS;
+        sum.error += part[p].error / FIBRAD_WALL_PARTS;
         sum.rays += part[p].rays, sum.paths += part[p].paths;
     }
     double square = 0;
-    for (uint32_t p = 0; p < FIBRAD_BODY_PARTS; p++) {
+    for (uint32_t p = 0; p < FIBRAD_WALL_PARTS; p++) {
         const double escaped = part[p].escaped - sum.escaped, spheres = part[p].spheres - sum.spheres;
         square += escaped * escaped + spheres * spheres;
-        for (uint32_t b = 0; b < FIBRAD_BODIES_MAX; b++) {
-            const double difference = part[p].body[b] - sum.body[b];
+        for (uint32_t b = 0; b < FIBRAD_WALLS_MAX; b++) {
+            const double difference = part[p].wall[b] - sum.wall[b];
             square += difference * difference;
         }
     }
-    sum.error += fibrad_sqrt(square / (FIBRAD_BODY_PARTS * (FIBRAD_BODY_PARTS - 1)));
-    body_row_settle(&sum);
+    sum.error += fibrad_sqrt(square / (FIBRAD_WALL_PARTS * (FIBRAD_WALL_PARTS - 1)));
+    wall_row_settle(&sum);
     *mean = sum;
     return FIBRAD_OK;
 }

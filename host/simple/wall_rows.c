@@ -1,4 +1,4 @@
-/* body_rows.c - rows of walls by paths, and what the triangles of walls see. SPDX-License-Identifier: MIT */
+/* wall_rows.c - rows of walls by paths, and what the triangles of walls see. SPDX-License-Identifier: MIT */
 #include "simple/job.h"
 
 #include <math.h>
@@ -14,21 +14,21 @@
 
 enum { VIEWS_AT_ONCE = 16 };
 
-struct body_tasks {
+struct wall_tasks {
     fibrad_job *job;
     fibrad_exchange_rule rule;
-    uint32_t paths[FIBRAD_BODIES_MAX]; /* from each body; 0: its row is not computed in this round */
-    fibrad_body_row part[FIBRAD_BODIES_MAX][FIBRAD_BODY_PARTS];
+    uint32_t paths[FIBRAD_WALLS_MAX]; /* from each wall; 0: its row is not computed in this round */
+    fibrad_wall_row part[FIBRAD_WALLS_MAX][FIBRAD_WALL_PARTS];
 };
 
 static int run_part(void *tasks, int thread, uint32_t task) {
-    struct body_tasks *bodies = tasks;
-    const uint32_t body = task / FIBRAD_BODY_PARTS, part = task % FIBRAD_BODY_PARTS;
-    fibrad_exchange_rule rule = bodies->rule;
-    rule.paths = bodies->paths[body];
+    struct wall_tasks *walls = tasks;
+    const uint32_t wall = task / FIBRAD_WALL_PARTS, part = task % FIBRAD_WALL_PARTS;
+    fibrad_exchange_rule rule = walls->rule;
+    rule.paths = walls->paths[wall];
     if (rule.paths == 0) return FIBRAD_OK;
-    return fibrad_exchange_body(bodies->job->scene, &bodies->job->team.work[thread], body, &rule, part,
-                                &bodies->part[body][part], NULL);
+    return fibrad_exchange_wall(walls->job->scene, &walls->job->team.work[thread], wall, &rule, part,
+                                &walls->part[wall][part], NULL);
 }
 
 /* The next number of paths if the error of `paths` is `ratio` times the tolerance. The error falls about as paths^-0.7:
@@ -39,29 +39,29 @@ static uint32_t more_paths(uint32_t paths, double ratio) {
     return paths;
 }
 
-uint32_t fibrad_job_body_paths(const fibrad_job *job, uint64_t paths) {
+uint32_t fibrad_job_wall_paths(const fibrad_job *job, uint64_t paths) {
     const uint64_t share = paths * job->facts.spheres / SPHERES_PER_SHARE, few = paths < FEW_PATHS ? paths : FEW_PATHS;
     const uint64_t wanted = share > few ? share : few;
-    uint32_t even = FIBRAD_BODY_PARTS;
+    uint32_t even = FIBRAD_WALL_PARTS;
     while (even < wanted && even < PATHS_MOST) even *= 2;
     return even;
 }
 
-int fibrad_job_bodies(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_body_row *row) {
-    const uint32_t bodies = job->facts.bodies;
-    struct body_tasks tasks = {.job = job, .rule = *rule};
+int fibrad_job_walls(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_wall_row *row) {
+    const uint32_t walls = job->facts.walls;
+    struct wall_tasks tasks = {.job = job, .rule = *rule};
     int status = FIBRAD_OK;
-    for (uint32_t b = 0; b < bodies; ++b) {
-        row[b] = (fibrad_body_row){0};
-        tasks.paths[b] = isfinite(fibrad_scene_body_area(job->scene, b)) ? rule->paths : 0;
+    for (uint32_t b = 0; b < walls; ++b) {
+        row[b] = (fibrad_wall_row){0};
+        tasks.paths[b] = isfinite(fibrad_scene_wall_area(job->scene, b)) ? rule->paths : 0;
     }
     for (bool again = true; again && !status;) {
-        status = fibrad_team_run(&job->team, "walls", bodies * FIBRAD_BODY_PARTS, 1, run_part, &tasks, NULL);
+        status = fibrad_team_run(&job->team, "walls", walls * FIBRAD_WALL_PARTS, 1, run_part, &tasks, NULL);
         if (job->run) job->run->fault.triangle = job->team.triangle;
         again = false;
-        for (uint32_t b = 0; b < bodies && !status; ++b) {
+        for (uint32_t b = 0; b < walls && !status; ++b) {
             if (tasks.paths[b] == 0) continue;
-            status = fibrad_exchange_body_mean(tasks.part[b], &row[b]);
+            status = fibrad_exchange_wall_mean(tasks.part[b], &row[b]);
             const bool enough =
                 !(rule->tolerance > 0 && row[b].error > rule->tolerance) || tasks.paths[b] == PATHS_MOST;
             tasks.paths[b] = enough ? 0 : more_paths(tasks.paths[b], row[b].error / rule->tolerance);
@@ -74,26 +74,26 @@ int fibrad_job_bodies(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_
 /* The paths of one wall or opening. */
 struct wall_paths {
     fibrad_job job;
-    uint32_t body;
+    uint32_t wall;
     fibrad_exchange_rule rule;
-    fibrad_body_row part[FIBRAD_BODY_PARTS];
+    fibrad_wall_row part[FIBRAD_WALL_PARTS];
 };
 
 static int run_paths(void *wall_paths, int thread, uint32_t part) {
     struct wall_paths *w = wall_paths;
-    return fibrad_exchange_body(w->job.scene, &w->job.team.work[thread], w->body, &w->rule, part, &w->part[part], NULL);
+    return fibrad_exchange_wall(w->job.scene, &w->job.team.work[thread], w->wall, &w->rule, part, &w->part[part], NULL);
 }
 
-int fibrad_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t body,
-                    const fibrad_exchange_rule *rule, fibrad_run *run, fibrad_body_row *row) {
+int fibrad_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t wall,
+                    const fibrad_exchange_rule *rule, fibrad_run *run, fibrad_wall_row *row) {
     if (!rule || !row) return FIBRAD_E_ARGUMENT;
-    struct wall_paths w = {.body = body, .rule = *rule};
+    struct wall_paths w = {.wall = wall, .rule = *rule};
     int status = fibrad_job_open(&w.job, config, spheres, run);
-    if (w.rule.paths == 0) w.rule.paths = FIBRAD_BODY_PATHS_DEFAULT;
+    if (w.rule.paths == 0) w.rule.paths = FIBRAD_WALL_PATHS_DEFAULT;
     for (bool again = true; again && !status;) {
-        status = fibrad_team_run(&w.job.team, "walls", FIBRAD_BODY_PARTS, 1, run_paths, &w, NULL);
+        status = fibrad_team_run(&w.job.team, "walls", FIBRAD_WALL_PARTS, 1, run_paths, &w, NULL);
         if (run && status == FIBRAD_E_BACK) run->fault.triangle = w.job.team.triangle;
-        if (!status) status = fibrad_exchange_body_mean(w.part, row);
+        if (!status) status = fibrad_exchange_wall_mean(w.part, row);
         again = !status && rule->tolerance > 0 && row->error > rule->tolerance && w.rule.paths < PATHS_MOST;
         if (again) w.rule.paths = more_paths(w.rule.paths, row->error / rule->tolerance);
     }
