@@ -181,7 +181,7 @@ static void bench_polygons(uint64_t cases, int few) {
 
 /* Computes rows in the same container twice: with triangles and few directions, and without triangles and many. */
 static void bench_container(const char *name, const struct bed *bed, fibrad_scene *scene, fibrad_scene *smooth,
-                            uint32_t walls, int few) {
+                            uint32_t number, int few) {
     fibrad_work work = BENCH_GROWING;
     fibrad_row row = row_in(bed->n), *truth = bench_array(bed->n, sizeof *truth);
     for (uint32_t i = 0; i < bed->n; ++i) {
@@ -189,7 +189,7 @@ static void bench_container(const char *name, const struct bed *bed, fibrad_scen
         const fibrad_beam_rule rule = {.directions = few < SETTINGS ? 2000 : 10000};
         bench_check("row", fibrad_beam_row(smooth, &work, i, &rule, &truth[i]));
     }
-    printf("# %s, %u spheres\ndirections,walls,spheres_rms,walls_rms,estimate_rms,us_per_window\n", name, bed->n);
+    printf("# %s, %u spheres\ndirections,walls,spheres_rms,bodies_rms,estimate_rms,us_per_window\n", name, bed->n);
     for (int s = 0; s < few; ++s)
         for (int mesh = 0; mesh < 2; ++mesh) {
             const fibrad_beam_rule rule = {.directions = settings[s]};
@@ -199,7 +199,7 @@ static void bench_container(const char *name, const struct bed *bed, fibrad_scen
                 bench_check("row", fibrad_beam_row(mesh ? scene : smooth, &work, i, &rule, &row));
                 seconds += bench_thread_seconds() - begun;
                 spheres += pow(bench_distance(bench_row_entries(&row), bench_row_entries(&truth[i])), 2);
-                for (uint32_t b = 0; b < walls; ++b) walls += pow(row.wall[b] - truth[i].wall[b], 2);
+                for (uint32_t b = 0; b < number; ++b) walls += pow(row.wall[b] - truth[i].wall[b], 2);
                 estimate += row.error * row.error;
             }
             printf("%u,%s,%.2g,%.2g,%.2g,%.2f\n", settings[s], mesh ? "triangles" : "smooth", sqrt(spheres / bed->n),

@@ -40,7 +40,7 @@ static struct answer solve(const struct room *room, const fibrad_heat_config *co
         body[wall].plane.at = wall % 2 ? room->size[axis] : 0;
     }
     if (room->round) body[2].kind = FIBRAD_WALL_CYLINDER, body[2].cylinder.radius = room->size[0];
-    const fibrad_scene_config scene = {.body = body, .bodies = (uint32_t)room->walls};
+    const fibrad_scene_config scene = {.wall = body, .walls = (uint32_t)room->walls};
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);
     sources.temperature = room->temperature, sources.emissivity = room->emissivity;

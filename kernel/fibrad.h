@@ -41,8 +41,7 @@
  *   f.escaped[i] is its factor to the surroundings, f.error[i] its estimated error.
  *
  * Words
- *   wall           A plane, a cylinder or a mesh of triangles. Names in the code say `wall` for a wall. Wall b is
- *                  element b of fibrad_scene_config.wall.
+ *   wall           A plane, a cylinder or a mesh of triangles. Wall b is element b of fibrad_scene_config.wall.
  *   surroundings   What lies outside the scene, black. Radiation reaches them past everything, or through an opening.
  *   direction      A unit vector. Directions of a row are spread evenly.
  *   line           A direction and its opposite.
@@ -315,7 +314,7 @@ typedef struct fibrad_scene_config {
     int isa;                                  /* a fibrad_isa */
     double period[3];                         /* L, length of the periodic box along each axis; 0: no period */
     const fibrad_wall *wall;                  /* [walls], the walls; copied */
-    uint32_t walls;                          /* number of walls, 0 to FIBRAD_WALLS_MAX, else FIBRAD_E_UNSUPPORTED */
+    uint32_t walls;                           /* number of walls, 0 to FIBRAD_WALLS_MAX, else FIBRAD_E_UNSUPPORTED */
     const fibrad_plane *opening;              /* [openings], copied; no sphere may reach beyond an opening */
     uint32_t openings;                        /* 0 to 6 */
     double known_low[3], known_high[3];       /* L, known region; low equals high: unlimited along the axis */
@@ -403,7 +402,7 @@ int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fib
 
 /* Facts of a scene. */
 typedef struct fibrad_scene_facts {
-    uint32_t spheres, walls;      /* numbers of spheres and of walls */
+    uint32_t spheres, walls;       /* numbers of spheres and of walls */
     int isa;                       /* the fibrad_isa in use */
     uint32_t cells;                /* cells of the grid, all levels together */
     double radius_min, radius_max; /* L; 0 without spheres */
@@ -678,11 +677,11 @@ int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
  */
 typedef struct fibrad_wall_row {
     double wall[FIBRAD_WALLS_MAX]; /* factor to each wall; a batch may have a factor a little below 0, by chance */
-    double spheres;                 /* factor to all spheres together */
-    double escaped;                 /* factor to the surroundings */
-    double error;                   /* in the mean: the estimated error; in a batch: the fraction lost, see above */
-    uint64_t rays;                  /* rays traced */
-    uint64_t paths;                 /* paths followed; of the mean: those of all batches */
+    double spheres;                /* factor to all spheres together */
+    double escaped;                /* factor to the surroundings */
+    double error;                  /* in the mean: the estimated error; in a batch: the fraction lost, see above */
+    uint64_t rays;                 /* rays traced */
+    uint64_t paths;                /* paths followed; of the mean: those of all batches */
 } fibrad_wall_row;
 
 /* Does piece k of a job. The library hands this function to fibrad_parallel. */
@@ -723,7 +722,7 @@ typedef struct fibrad_matrix_rule {
  * that error is at least 5 times the error of the raw row. A value well above 1 means that the raw rows contradict each
  * other by more than their errors. */
 typedef struct fibrad_factors {
-    uint32_t n, walls;         /* numbers of spheres and of walls */
+    uint32_t n, walls;          /* numbers of spheres and of walls */
     const uint64_t *start;      /* [n + 1], row i is elements start[i] to start[i + 1] - 1 of col and f */
     const uint32_t *col;        /* [start[n]], columns, ascending within each row */
     const double *f;            /* [start[n]], factor from i to col */

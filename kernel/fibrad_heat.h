@@ -224,15 +224,15 @@ typedef struct fibrad_heat_result {
     uint32_t sweeps;                /* out */
     double *wall_absorbed;          /* sigma K^4 L^2, [walls], out: eps H, summed over wall_area; may be NULL */
     double surroundings_error;      /* sigma K^4 L^2, out: estimated error of surroundings_power */
-    double *wall_area;           /* L^2, [walls], out: area; of an endless wall the part near the bed; may be NULL */
-    double *least_temperature;   /* K, [spheres], out: least of the surface; may be NULL */
-    double *largest_temperature; /* K, [spheres], out: largest of the surface; may be NULL */
-    double *centre_temperature;  /* K, [spheres], out; may be NULL */
-    double *surface_error;       /* K, [spheres], out: estimated error of least and largest; may be NULL */
-    double *centre_error;        /* K, [spheres], out: estimated error of centre_temperature; may be NULL */
-    double *conducted;           /* sigma K^4 L^2, [spheres], out: part of power, through contacts; may be NULL */
-    double *wall_conducted;      /* sigma K^4 L^2, [walls], out: part of wall_power, through contacts; may be NULL */
-    double *contact_flow;        /* sigma K^4 L^2, [contacts], out: from the first end to the second; may be NULL */
+    double *wall_area;              /* L^2, [walls], out: area; of an endless wall the part near the bed; may be NULL */
+    double *least_temperature;      /* K, [spheres], out: least of the surface; may be NULL */
+    double *largest_temperature;    /* K, [spheres], out: largest of the surface; may be NULL */
+    double *centre_temperature;     /* K, [spheres], out; may be NULL */
+    double *surface_error;          /* K, [spheres], out: estimated error of least and largest; may be NULL */
+    double *centre_error;           /* K, [spheres], out: estimated error of centre_temperature; may be NULL */
+    double *conducted;              /* sigma K^4 L^2, [spheres], out: part of power, through contacts; may be NULL */
+    double *wall_conducted;         /* sigma K^4 L^2, [walls], out: part of wall_power, through contacts; may be NULL */
+    double *contact_flow;           /* sigma K^4 L^2, [contacts], out: from the first end to the second; may be NULL */
 } fibrad_heat_result;
 
 /* Reads the solution.

@@ -57,8 +57,8 @@ typedef struct fibrad_light {
 
 /* Where light ends. */
 typedef struct fibrad_light_ends {
-    double spheres;                 /* on spheres */
-    double through;                 /* leaves without having met anything */
+    double spheres;                /* on spheres */
+    double through;                /* leaves without having met anything */
     double wall[FIBRAD_WALLS_MAX]; /* on each wall */
 } fibrad_light_ends;
 
@@ -161,8 +161,8 @@ typedef struct fibrad_light_hits {
     const double *first; /* [patches], of fibrad_heat_shine and fibrad_heat_shine_walls */
     double *light;       /* [patches], out: what patches reflect; takes the place of fibrad_heat_sources.light */
     double *spots;       /* [patches], out: what of `first` rays have reflected */
-    double *squares; /* [spheres + walls + 2], out: sums of squared powers of rays that arrive on spheres, walls and
-                        outside; last: of squared powers of beams that leave the patches where rays have arrived */
+    double *squares;     /* [spheres + walls + 2], out: sums of squared powers of rays that arrive on spheres, walls and
+                            outside; last: of squared powers of beams that leave the patches where rays have arrived */
 } fibrad_light_hits;
 
 /* Carries light that falls on parts of patches to where it arrives next.

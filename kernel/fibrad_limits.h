@@ -11,7 +11,7 @@
 #define FIBRAD_LENGTH_MAX    1e150  /* L, of radii, periods and coordinates */
 #define FIBRAD_SPHERES_MAX   100000000u
 #define FIBRAD_TRIANGLES_MAX 100000000u
-#define FIBRAD_WALLS_MAX    32
+#define FIBRAD_WALLS_MAX     32
 
 /* Rows by beams */
 #define FIBRAD_DIRECTIONS_MIN     8

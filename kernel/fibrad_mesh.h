@@ -81,7 +81,7 @@ int fibrad_triangle_ray(const fibrad_scene *scene, const double origin[3], const
  * if the side belongs to no wall, or if no point of the side lies within the planes and the cylinder. */
 typedef struct fibrad_side_view {
     double spheres; /* fraction that meets spheres */
-    double walls;  /* fraction that meets walls */
+    double walls;   /* fraction that meets walls */
     double escaped; /* fraction that reaches the surroundings */
 } fibrad_side_view;
 

@@ -27,7 +27,7 @@ struct problem {
     struct bed bed;
     struct walls walls;
     double wall_temperature[FIBRAD_WALLS], wall_emissivity[FIBRAD_WALLS], wall_power[FIBRAD_WALLS]; /* by slot */
-    uint32_t walls, slot[FIBRAD_WALLS]; /* the walls of the scene are these walls */
+    uint32_t given, slot[FIBRAD_WALLS]; /* the walls of the scene are at these slots */
     fibrad_heat_config config;
     fibrad_heat_sources sources;
     double *temperature, *emissivity;
@@ -75,20 +75,20 @@ static inline void build_scene(struct problem *p) {
     fibrad_wall wall[FIBRAD_WALLS];
     fibrad_plane opening[6];
     uint32_t openings = 0;
-    p->walls = 0;
+    p->given = 0;
     for (int slot = 0; slot < 6; slot++)
         if (walls->open >> slot & 1) opening[openings++] = (fibrad_plane){slot / 2, slot % 2, walls->at[slot]};
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         const uint32_t slot = p->turned ? FIBRAD_WALLS - 1 - k : k;
         if (slot == FIBRAD_CYLINDER ? !(walls->cylinder[2] > 0) : (walls->planes >> slot & 1) == 0) continue;
-        wall[p->walls] = slot == FIBRAD_CYLINDER
-                              ? cylinder_at(walls->cylinder[0], walls->cylinder[1], walls->cylinder[2])
-                              : plane_at((int)slot / 2, slot % 2, walls->at[slot]);
-        p->slot[p->walls++] = slot;
+        wall[p->given] = slot == FIBRAD_CYLINDER
+                             ? cylinder_at(walls->cylinder[0], walls->cylinder[1], walls->cylinder[2])
+                             : plane_at((int)slot / 2, slot % 2, walls->at[slot]);
+        p->slot[p->given++] = slot;
     }
     p->scene = scene_with(
         &p->bed, &(fibrad_scene_config){
-                     .isa = p->isa, .wall = wall, .walls = p->walls, .opening = opening, .openings = openings});
+                     .isa = p->isa, .wall = wall, .walls = p->given, .opening = opening, .openings = openings});
 }
 
 static inline void trace_beams(struct problem *p) {
@@ -111,14 +111,14 @@ static inline void trace(struct problem *p) {
 static inline void solve(struct problem *p) {
     const uint32_t parts = p->config.parts ? p->config.parts : 8;
     double temperature[FIBRAD_WALLS], emissivity[FIBRAD_WALLS], power[FIBRAD_WALLS];
-    for (uint32_t b = 0; b < p->walls; b++)
+    for (uint32_t b = 0; b < p->given; b++)
         temperature[b] = p->wall_temperature[p->slot[b]], emissivity[b] = p->wall_emissivity[p->slot[b]];
     p->sources.wall_temperature = temperature, p->sources.wall_emissivity = emissivity;
     p->result.wall_power = power;
     ck_assert_uint_eq(fibrad_heat_parts(p->heat), parts);
     heat_solve(p->heat, &p->sources, &p->result, p->backwards);
     memset(p->wall_power, 0, sizeof p->wall_power);
-    for (uint32_t b = 0; b < p->walls; b++) p->wall_power[p->slot[b]] = power[b];
+    for (uint32_t b = 0; b < p->given; b++) p->wall_power[p->slot[b]] = power[b];
     p->sources.wall_temperature = p->sources.wall_emissivity = NULL;
     p->result.wall_power = NULL;
 }

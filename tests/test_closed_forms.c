@@ -27,7 +27,7 @@ static const char *speck_at(double x, double y, double z) {
     SUCCEED("heat", speck, "--length-unit", "m", "--emissivity", "1", "--temperature", "0", "--ambient", "0",          \
             __VA_ARGS__)
 
-/* A cube of 0.2 m at 1000 degrees Celsius gives off 35,755.4 W. Nothing comes back to a convex body. */
+/* A cube of 0.2 m at 1000 degrees Celsius gives off 35,755.4 W. Nothing comes back to a convex wall. */
 TEST(a_hot_cube) {
     static struct soup cube;
     soup_cube(&cube, .1);

@@ -50,7 +50,7 @@ TEST(the_order_of_walls_changes_but_roundings) {
     OWNED_PROBLEM p = small_problem(FIBRAD_ISA_BEST, false, false), q = small_problem(FIBRAD_ISA_BEST, false, true);
     double largest;
     (void)sum_of_powers(&p, &largest);
-    ck_assert_uint_eq(p.walls, 5);
+    ck_assert_uint_eq(p.given, 5);
     ck_assert_uint_eq(p.slot[0], q.slot[4]);
     for (uint32_t i = 0; i < p.bed.n; i++)
         ck_assert_double_eq_tol(p.result.power[i], q.result.power[i], 1e-12 * largest);

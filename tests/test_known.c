@@ -370,11 +370,11 @@ TEST(openings_of_an_empty_box) {
     fibrad_wall_row row;
     for (int exact = 0; exact < 2; exact++)
         for (int k = 0; k < 2; k++) {
-            const uint32_t wall = FIBRAD_OPENING(4, opening[k].axis, opening[k].upper), axis = k ? 2 : 0;
+            const uint32_t open = FIBRAD_OPENING(4, opening[k].axis, opening[k].upper), axis = k ? 2 : 0;
             const double off = exact ? 1e-14 : 5e-3, across = size[axis], beside = size[2 - axis];
             const fibrad_exchange_rule rule = {.wall_emissivity = exact ? NULL : e, .paths = 80000};
-            ck_assert_double_eq(fibrad_scene_wall_area(scene, wall), size[1] * beside);
-            assert_ok(fibrad_exchange_wall(scene, &work, wall, &rule, 0, &row, NULL));
+            ck_assert_double_eq(fibrad_scene_wall_area(scene, open), size[1] * beside);
+            assert_ok(fibrad_exchange_wall(scene, &work, open, &rule, 0, &row, NULL));
             ck_assert_double_eq(row.spheres, 0);
             ck_assert_double_eq_tol(row.wall[k ? 3 : 0], opposite(size[1], beside, across), off);
             ck_assert_double_eq_tol(row.wall[1], adjacent(beside, size[1], across), off);

@@ -143,17 +143,17 @@ TEST(a_floor_alone_absorbs_what_it_absorbs) {
     OWNED_BED bed = bed_of(1, far_away);
     const fibrad_wall wall = plane_at(2, 0, 0);
     const fibrad_plane top = {2, 1, 2};
-    const fibrad_scene_config config = {
-        .period = {4, 4, 0}, .wall = &wall, .walls = 1, .opening = &top, .openings = 1};
+    const fibrad_scene_config config = {.period = {4, 4, 0}, .wall = &wall, .walls = 1, .opening = &top, .openings = 1};
     const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
     for (int k = 0; k <= 4; k++) {
         const double share = k / 4.;
         OWNED_ABSORBED a = absorb_light(&bed, &config, &light, 1, share);
-        const double sphere = PI / 4, wall = 16 - sphere; /* the light that meets the sphere first, and the wall */
+        const double sphere = PI / 4,
+                     floor_light = 16 - sphere; /* the light that meets the sphere first, and the floor */
         ck_assert_double_eq_tol(a.first[0], sphere, 1e-12);
-        ck_assert_double_eq_tol(a.wall_first[0], share * wall, 1e-12);
-        ck_assert_double_eq_tol(a.wall[0], share * wall, 1e-9); /* no light comes back to the wall */
-        ck_assert_double_eq_tol(a.sphere[0] + a.result.reflected, sphere + (1 - share) * wall, 1e-9);
+        ck_assert_double_eq_tol(a.wall_first[0], share * floor_light, 1e-12);
+        ck_assert_double_eq_tol(a.wall[0], share * floor_light, 1e-9); /* no light comes back to the floor */
+        ck_assert_double_eq_tol(a.sphere[0] + a.result.reflected, sphere + (1 - share) * floor_light, 1e-9);
         ck_assert_double_eq_tol(a.result.transmitted, 0, 1e-12);
     }
 }

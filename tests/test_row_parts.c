@@ -24,8 +24,8 @@ static int row_in_parts(const fibrad_scene *scene, uint32_t i, const fibrad_beam
 }
 
 /* Compares row i, computed at once and in parts. */
-static void compare_row(const fibrad_scene *scene, uint32_t n, uint32_t walls, uint32_t i,
-                        const fibrad_beam_rule *rule, uint32_t parts, double seen[2]) {
+static void compare_row(const fibrad_scene *scene, uint32_t n, uint32_t walls, uint32_t i, const fibrad_beam_rule *rule,
+                        uint32_t parts, double seen[2]) {
     OWNED_WORK work = work_growing();
     OWNED_ROW one = row_of(n), joined = row_of(n);
     OWNED float *half = calloc(n, sizeof *half), *joined_half = calloc(n, sizeof *half);

@@ -129,7 +129,7 @@ struct furnace {
     struct bed bed;
     fibrad_wall wall[2];
     fibrad_scene_config scene;
-    double temperature[N], emissivity[N], capacity[N], power[N], wall[2], wall_emissivity[2];
+    double temperature[N], emissivity[N], capacity[N], power[N], wall_heat[2], wall_emissivity[2];
     fibrad_heat_sources sources;
 };
 
@@ -147,10 +147,10 @@ static void furnace_init(struct furnace *f) {
     }
     f->wall[0] = plane_at(2, 0, low), f->wall[1] = plane_at(2, 1, high + 1);
     f->scene = (fibrad_scene_config){.period = {f->bed.period[0], f->bed.period[1], 0}, .wall = f->wall, .walls = 2};
-    f->wall[0] = 1200, f->wall[1] = 500, f->wall_emissivity[0] = .8, f->wall_emissivity[1] = .4;
+    f->wall_heat[0] = 1200, f->wall_heat[1] = 500, f->wall_emissivity[0] = .8, f->wall_emissivity[1] = .4;
     f->sources = sources_about(f->emissivity, 300);
     f->sources.power = f->power;
-    f->sources.wall_temperature = f->wall, f->sources.wall_emissivity = f->wall_emissivity;
+    f->sources.wall_temperature = f->wall_heat, f->sources.wall_emissivity = f->wall_emissivity;
 }
 
 /* What spheres lose, less their powers, is what walls and surroundings get. This holds by factors and by patches, at
@@ -183,8 +183,8 @@ TEST(energy_is_kept) {
 /* The slopes for Runge and Kutta's explicit scheme, from the factors themselves. */
 static void slopes(const struct furnace *f, const fibrad_factors *d, double time, double duration, const double *t,
                    double *slope) {
-    const double floor = SIGMA * pow(f->wall[0] + (800 - f->wall[0]) * time / duration, 4);
-    const double roof = SIGMA * pow(f->wall[1], 4), sky = SIGMA * pow(300, 4);
+    const double floor = SIGMA * pow(f->wall_heat[0] + (800 - f->wall_heat[0]) * time / duration, 4);
+    const double roof = SIGMA * pow(f->wall_heat[1], 4), sky = SIGMA * pow(300, 4);
     for (int i = 0; i < N; i++) {
         const double own = SIGMA * pow(t[i], 4);
         double sum = d->escaped[i] * (sky - own) + d->wall[2 * i] * (floor - own) + d->wall[2 * i + 1] * (roof - own);
@@ -214,7 +214,7 @@ TEST(bed_against_runge_kutta) {
         .emissivity = f.emissivity, .wall_emissivity = f.wall_emissivity, .tolerance = .03};
     const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_FACTORS, .exchange.tolerance = .03};
     const fibrad_spheres spheres = spheres_of(&f.bed);
-    const double end[2] = {800, f.wall[1]}, duration = 30;
+    const double end[2] = {800, f.wall_heat[1]}, duration = 30;
     OWNED_FACTORS *factors = NULL;
     assert_ok(fibrad_exchange_factors(&f.scene, &spheres, &rule, NULL, NULL, &factors));
     double expected[N], temperature[N], power[N], slope[N];
@@ -383,9 +383,9 @@ TEST(what_is_refused) {
     }
     f.sources.surroundings = NAN;
     assert_invalid(fibrad_transient_advance(t, &f.sources, &span));
-    f.sources.surroundings = 300, f.wall[1] = NAN;
+    f.sources.surroundings = 300, f.wall_heat[1] = NAN;
     assert_invalid(fibrad_transient_advance(t, &f.sources, &span));
-    f.wall[1] = 500;
+    f.wall_heat[1] = 500;
     assert_ok(fibrad_transient_advance(t, &f.sources, &span));
     fibrad_transient_free(t);
     fibrad_transient_free(NULL);

@@ -75,8 +75,8 @@ TEST(empty_box) {
     const double size[3] = {1, 1.5, .6};
     fibrad_wall wall[6];
     for (int k = 0; k < 6; k++) wall[k] = plane_at(k / 2, k % 2, k % 2 * size[k / 2]);
-    OWNED_FACTORS *f = factors_of(&none, &(fibrad_scene_config){.wall = wall, .walls = 6}, NULL,
-                                  &(fibrad_bed_options){.beam = &fine});
+    OWNED_FACTORS *f =
+        factors_of(&none, &(fibrad_scene_config){.wall = wall, .walls = 6}, NULL, &(fibrad_bed_options){.beam = &fine});
     check_balance(&none, f, NULL, NULL);
     for (uint32_t b = 0; b < 6; b++) {
         const uint32_t axis = b / 2;
@@ -96,8 +96,8 @@ TEST(empty_cylinder) {
     struct bed none = bed_empty();
     const double r = 1.5, h = 2;
     const fibrad_wall wall[3] = {cylinder_at(3, -4, r), plane_at(2, 0, 1), plane_at(2, 1, 1 + h)};
-    OWNED_FACTORS *f = factors_of(&none, &(fibrad_scene_config){.wall = wall, .walls = 3}, NULL,
-                                  &(fibrad_bed_options){.beam = &fine});
+    OWNED_FACTORS *f =
+        factors_of(&none, &(fibrad_scene_config){.wall = wall, .walls = 3}, NULL, &(fibrad_bed_options){.beam = &fine});
     const double end_end = discs(r, h), side_end = r / (2 * h) * (1 - end_end);
     check_balance(&none, f, NULL, NULL);
     ck_assert_double_eq_tol(between(f, 1, 2), end_end, 4e-4);

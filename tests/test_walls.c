@@ -28,7 +28,7 @@ static const uint32_t orders[][WALLS] = {
     {0, 1, 2, 3, 4, 5, 6}, {3, 6, 0, 5, 2, 4, 1}, {6, 5, 4, 3, 2, 1, 0}, {4, 2, 6, 1, 5, 3, 0}};
 enum { ORDERS = sizeof orders / sizeof *orders };
 
-static struct places walls_of(const struct container *walls, const uint32_t order[WALLS]) {
+static struct places places_of(const struct container *walls, const uint32_t order[WALLS]) {
     struct places places = {0};
     for (int k = 0; k < WALLS; k++) {
         const uint32_t place = order[k];
@@ -58,23 +58,23 @@ static fibrad_scene *scene_at(const struct bed *bed, const struct places *places
 }
 
 static fibrad_scene *scene_in(const struct bed *bed, const struct container *walls, int isa) {
-    const struct places places = walls_of(walls, orders[1]);
+    const struct places places = places_of(walls, orders[1]);
     return scene_at(bed, &places, isa);
 }
 
 /* Turns factors to walls, in the order in which they are named, into factors to walls by place. A wall that does not
  * exist has 0. */
 static void by_place(const struct container *walls, const uint32_t order[WALLS], double wall[WALLS_MOST]) {
-    const struct places places = walls_of(walls, order);
-    double wall[WALLS] = {0};
-    for (uint32_t b = 0; b < places.count; b++) wall[places.place[b]] = wall[b];
-    memcpy(wall, wall, sizeof wall);
+    const struct places places = places_of(walls, order);
+    double ordered[WALLS] = {0};
+    for (uint32_t b = 0; b < places.count; b++) ordered[places.place[b]] = wall[b];
+    memcpy(wall, ordered, sizeof ordered);
 }
 
 /* Row i by beams, with the walls in row.wall by place. */
 static fibrad_row beam_in_order(const struct bed *bed, const struct container *walls, const uint32_t order[WALLS],
                                 uint32_t i, const fibrad_beam_rule *rule, int isa) {
-    const struct places places = walls_of(walls, order);
+    const struct places places = places_of(walls, order);
     OWNED fibrad_scene *scene = scene_at(bed, &places, isa);
     OWNED_WORK work = work_growing();
     fibrad_row row = row_of(1024);
@@ -339,7 +339,7 @@ TEST(openings_take_what_planes_would) {
 /* Returns the status for walls and openings about a sphere at (5, 5, 5) of radius 1. */
 static int status_of(const struct container *walls, const double period[3], fibrad_fault *fault) {
     OWNED_BED bed = BED({5, 5, 5, 1});
-    const struct places places = walls_of(walls, orders[0]);
+    const struct places places = places_of(walls, orders[0]);
     memcpy(bed.period, period, sizeof bed.period);
     OWNED fibrad_scene *scene = NULL;
     const int status = scene_try(
@@ -422,7 +422,7 @@ TEST(areas_of_walls) {
     for (size_t k = 0; k < 5; k++)
         for (int order = 0; order < ORDERS; order++) {
             bed.period[0] = k == 3 ? 3 : 0, bed.period[1] = k == 3 ? 4 : 0, bed.period[2] = k == 4 ? 7 : 0;
-            const struct places places = walls_of(&walls[k], orders[order]);
+            const struct places places = places_of(&walls[k], orders[order]);
             OWNED fibrad_scene *scene = NULL;
             fibrad_scene_facts facts;
             assert_ok(init(&scene, &bed, places.count, places.wall, NULL));

@@ -160,12 +160,12 @@ TEST(csv_has_a_line_for_each_entry) {
 }
 
 /* After each sphere's row come the surroundings, -1, and the walls from -2 on. Then come the rows of walls of finite
- * area. The column `wall` says what they are. */
+ * area. The column `body` says what they are. */
 TEST(csv_has_walls_below_minus_one) {
     char all[1000];
     write_matrix(write_csv, true, &walls);
     snprintf(all, sizeof all,
-             "i,j,F,wall\n0,70,%s,\n0,123456789012,%s,\n0,-1,0.5,surroundings\n0,-2,0.0625,cylinder\n"
+             "i,j,F,body\n0,70,%s,\n0,123456789012,%s,\n0,-1,0.5,surroundings\n0,-2,0.0625,cylinder\n"
              "0,-3,0.25,zmin\n70,-3,0.125,zmin\n123456789012,0,%s,\n123456789012,123456789012,%s,\n"
              "123456789012,-1,0.25,surroundings\n-2,0,%s,cylinder\n",
              shortest(f[0]), shortest(f[1]), shortest(f[2]), shortest(f[3]),
@@ -173,7 +173,7 @@ TEST(csv_has_walls_below_minus_one) {
     ck_assert_str_eq(text, all);
     write_matrix(write_csv, true, &(struct walls){0}); /* surroundings alone */
     snprintf(all, sizeof all,
-             "i,j,F,wall\n0,70,%s,\n0,123456789012,%s,\n0,-1,0.5,surroundings\n123456789012,0,%s,\n"
+             "i,j,F,body\n0,70,%s,\n0,123456789012,%s,\n0,-1,0.5,surroundings\n123456789012,0,%s,\n"
              "123456789012,123456789012,%s,\n123456789012,-1,0.25,surroundings\n",
              shortest(f[0]), shortest(f[1]), shortest(f[2]), shortest(f[3]));
     ck_assert_str_eq(text, all);
@@ -186,7 +186,7 @@ TEST(csv_has_walls_below_minus_one) {
     const fibrad_exchange_rule grey = {.emissivity = emissivity, .wall_emissivity = none};
     struct walls nameless = {.count = 2};
     write_text(write_csv, &(struct contents){.bed = &bed, .factors = &cut, .walls = &nameless, .grey = &grey}, true);
-    assert_begins(text, "i,j,D,wall\n");
+    assert_begins(text, "i,j,D,body\n");
     assert_has(text, "\n0,-2,0.0625,wall_1\n0,-3,0.25,wall_2\n0,-4,0.125,beyond\n");
     assert_lacks(text, "\n-2,");
     nameless.count = 0; /* `grey` makes these exchange factors */
@@ -222,7 +222,7 @@ TEST(series_have_one_header) {
     write_text(write_csv, &what, true);
     assert_begins(text, "file,frame,timestep,i,j,F\n");
     write_heat(write_heat_csv, &(struct contents){.bed = &bed, .series = true});
-    assert_begins(text, "frame,timestep,i,T_K,q_W,q_error_W,T_error_K,wall\n0,1200,0,600,");
+    assert_begins(text, "frame,timestep,i,T_K,q_W,q_error_W,T_error_K,body\n0,1200,0,600,");
 }
 
 /* If surroundings have no temperature, they do not appear. */
@@ -232,7 +232,7 @@ TEST(heat_leaves_out_surroundings_without_temperature) {
         sources.surroundings = closed ? NAN : 300;
         write_heat(write_heat_csv, &(struct contents){.bed = &bed, .walls = &walls});
         snprintf(all, sizeof all,
-                 "i,T_K,q_W,q_error_W,T_error_K,wall\n0,600,-0.001,0.25,0,\n70,%s,2.5,0.5,1,\n"
+                 "i,T_K,q_W,q_error_W,T_error_K,body\n0,600,-0.001,0.25,0,\n70,%s,2.5,0.5,1,\n"
                  "123456789012,%s,1e+300,0.75,0,\n%s"
                  "-2,900,-0.1,2,0,cylinder\n-3,77,1e+17,,1,zmin\n",
                  shortest(kelvins[1]), shortest(kelvins[2]), closed ? "" : "-1,300,0.1,0.125,0,surroundings\n");
@@ -396,7 +396,7 @@ TEST(numpy_files_have_all_arrays) {
             {"beyond.npy", 3 * sizeof(double), (double[3]){0}},
             {"error.npy", sizeof error, error},
             {"computed.npy", sizeof wanted, wanted},
-            {"wall.npy", sizeof wall, wall},
+            {"body.npy", sizeof wall, wall},
             {"wall_names.npy", 16, "cylinderzmin\0\0\0"}};
         const char *at = text;
         for (size_t k = 0; k < sizeof members / sizeof *members; ++k) {
@@ -664,10 +664,10 @@ TEST(outputs_of_frames_are_written_whole) {
         ck_assert_int_eq(outputs_close(&outputs, status), status);
         ck_assert_int_eq(count_files(), failed ? 3 : 4);
         write_heat(write_heat_csv, &frames[1]);
-        char *alone = strdup(text), *wall = strchr(alone, '\n') + 1;
+        char *alone = strdup(text), *rest = strchr(alone, '\n') + 1;
         OWNED char *joined = malloc(2 * sizeof text);
         write_heat(write_heat_csv, &frames[0]);
-        snprintf(joined, 2 * sizeof text, "%s%s", text, wall);
+        snprintf(joined, 2 * sizeof text, "%s%s", text, rest);
         if (!failed) expect_file(joined);
         unlink(path);
         snprintf(path, sizeof path, "%s/q.10.csv", folder);

@@ -164,8 +164,8 @@ static int add_mesh(struct wall_options *options, const struct mesh_file *file) 
     if (!walls->meshes) walls->meshes = calloc(1, sizeof *walls->meshes);
     if (!walls->meshes) return message_memory();
     int status = meshes_add(walls->meshes, file, walls->count);
-    const uint32_t walls = walls->meshes->mesh ? walls->meshes->mesh[walls->meshes->count - 1].walls : 0;
-    for (uint32_t k = 0; k < walls && !status; ++k)
+    const uint32_t more = walls->meshes->mesh ? walls->meshes->mesh[walls->meshes->count - 1].walls : 0;
+    for (uint32_t k = 0; k < more && !status; ++k)
         status = add_wall(options, (fibrad_wall){.kind = FIBRAD_WALL_MESH}, true);
     return status;
 }

@@ -189,7 +189,7 @@ static int find_pairs(struct search *s) {
 }
 
 /* Distances of centres from a plane or the cylinder. */
-static int find_at_wall(struct search *s, const fibrad_wall *wall, uint32_t wall) {
+static int find_at_wall(struct search *s, const fibrad_wall *wall, uint32_t index) {
     int status = FIBRAD_OK;
     for (uint32_t i = 0; i < s->n && !status; ++i) {
         const double *at = s->at[i];
@@ -198,7 +198,7 @@ static int find_at_wall(struct search *s, const fibrad_wall *wall, uint32_t wall
                 ? fabs(at[wall->plane.axis] - wall->plane.at)
                 : wall->cylinder.radius - length_of(at[0] - wall->cylinder.x, at[1] - wall->cylinder.y, 0);
         if (distance < at[3] + reach_of(s, at[3]))
-            status = fibrad_contact_add(s->found, &(struct contact_found){i, s->n + wall, distance, at[3], INFINITY});
+            status = fibrad_contact_add(s->found, &(struct contact_found){i, s->n + index, distance, at[3], INFINITY});
     }
     return status;
 }

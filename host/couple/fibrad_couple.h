@@ -134,7 +134,7 @@ typedef struct fibrad_insitu_bed {
     int periodic[3];                          /* 1: the bed repeats along the axis with the period high - low */
     const fibrad_wall *wall;                  /* [walls], walls; a particle beyond one is a stray, see above */
     const double *wall_emissivity;            /* [walls], 0 to 1 */
-    uint32_t walls;                          /* number of walls, 0 to FIBRAD_WALLS_MAX */
+    uint32_t walls;                           /* number of walls, 0 to FIBRAD_WALLS_MAX */
     int cylinder;                             /* the axis of the cylinder, 0: z, 1: x, 2: y */
     const fibrad_plane *opening;              /* [openings]; `at` NaN: where the particles end */
     uint32_t openings;                        /* 0 to 6 */
@@ -162,8 +162,8 @@ typedef struct fibrad_insitu_state {
 /* Net powers summed over all ranks, the same on all ranks. A power is above 0 where heat is gained. All of them add up
  * to 0, to rounding. */
 typedef struct fibrad_insitu_totals {
-    double particles;               /* sigma K^4 L^2 */
-    double surroundings;            /* sigma K^4 L^2 */
+    double particles;              /* sigma K^4 L^2 */
+    double surroundings;           /* sigma K^4 L^2 */
     double wall[FIBRAD_WALLS_MAX]; /* sigma K^4 L^2, [walls of the rows] */
 } fibrad_insitu_totals;
 

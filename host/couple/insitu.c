@@ -176,7 +176,7 @@ static int check_bed(fibrad_insitu_build *b) {
     char *message = b->s->message;
     unsigned char block[FIBRAD_SCENE_BYTES(0)];
     fibrad_scene *empty;
-    struct scene_walls walls;
+    struct scene_walls turned;
     uint32_t walls = 0; /* without meshes, which bound no box */
     if (!bed || (bed->n && !(bed->id && bed->x && bed->radius && bed->emissivity)) || bed->n > FIBRAD_SPHERES_MAX ||
         bed->walls > FIBRAD_WALLS_MAX || (bed->walls && !(bed->wall && bed->wall_emissivity)) ||
@@ -196,13 +196,13 @@ static int check_bed(fibrad_insitu_build *b) {
         if (isnan(opening->at))
             opening->at = opening->upper ? FIBRAD_LENGTH_MAX : -FIBRAD_LENGTH_MAX; /* until the bed is known */
     }
-    turn_walls(b, &walls);
+    turn_walls(b, &turned);
     for (uint32_t k = 0; k < bed->walls; ++k)
-        if (walls.wall[k].kind != FIBRAD_WALL_MESH) walls.wall[walls++] = walls.wall[k];
-    const fibrad_scene_config config = {.period = {walls.period[0], walls.period[1], walls.period[2]},
-                                        .wall = walls.wall,
+        if (turned.wall[k].kind != FIBRAD_WALL_MESH) turned.wall[walls++] = turned.wall[k];
+    const fibrad_scene_config config = {.period = {turned.period[0], turned.period[1], turned.period[2]},
+                                        .wall = turned.wall,
                                         .walls = walls,
-                                        .opening = walls.opening,
+                                        .opening = turned.opening,
                                         .openings = bed->openings};
     const int status = fibrad_scene_init(&empty, block, sizeof block, &config, &(fibrad_spheres){0}, NULL);
     if (status == FIBRAD_E_ENDLESS) return fibrad_refuse(message, status, "%s", fibrad_status_text(status));
@@ -459,10 +459,10 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
     fibrad_insitu *s = b->s;
     const bool images = id && !b->whole, marked = id && b->to->facts.particles && (images || b->repeats);
     if (n > FIBRAD_SPHERES_MAX) return FIBRAD_E_MEMORY;
-    struct scene_walls walls;
-    turn_walls(b, &walls);
+    struct scene_walls turned;
+    turn_walls(b, &turned);
     const size_t size =
-        fibrad_scene_size((uint32_t)n, id != NULL) + fibrad_triangles_size(walls.triangles.n, (uint32_t)n);
+        fibrad_scene_size((uint32_t)n, id != NULL) + fibrad_triangles_size(turned.triangles.n, (uint32_t)n);
     if (fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&s->emissivity, 3 * n + 1, sizeof(double)))
         return FIBRAD_E_MEMORY;
     double *emissivity = s->emissivity.at;
@@ -472,13 +472,13 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
     }
     fibrad_scene_config config = {0}; /* no rows: an empty scene */
     if (n || !id)
-        config = (fibrad_scene_config){.wall = walls.wall,
+        config = (fibrad_scene_config){.wall = turned.wall,
                                        .walls = b->bed->walls,
-                                       .opening = walls.opening,
+                                       .opening = turned.opening,
                                        .openings = b->openings,
                                        .occupancy = marked ? &b->map : NULL,
-                                       .triangles = &walls.triangles};
-    if ((n || !id) && !images) memcpy(config.period, walls.period, sizeof config.period);
+                                       .triangles = &turned.triangles};
+    if ((n || !id) && !images) memcpy(config.period, turned.period, sizeof config.period);
     const uint32_t stride = sizeof *p / sizeof(double);
     const double *x[3];
     fibrad_turn_arrays(b->bed->cylinder, (const double *const[]){&p->x[0], &p->x[1], &p->x[2]}, x);
@@ -813,8 +813,8 @@ static void sum_facts(fibrad_insitu_build *b) {
     }
     MPI_Allreduce(MPI_IN_PLACE, sum, 5 + FIBRAD_WALLS_MAX, MPI_DOUBLE, MPI_SUM, b->s->comm);
     for (uint32_t k = 0; k < b->bed->walls; ++k) {
-        to->facts.wall[k] = of_wall[k] + to->walls.surroundings[k];
-        for (uint32_t c = 0; c < b->bed->walls; ++c) to->facts.wall[k] += to->walls.wall[k][c];
+        to->facts.wall[k] = of_wall[k] + to->wall_exchange.surroundings[k];
+        for (uint32_t c = 0; c < b->bed->walls; ++c) to->facts.wall[k] += to->wall_exchange.wall[k][c];
     }
     to->facts.beyond = sum[0] > 0 ? sum[1] / sum[0] : 0;
     to->facts.error = sum[4] > 0 ? sqrt(sum[2] / sum[4]) : 0;
@@ -839,7 +839,7 @@ static int make_new_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_
     if (b.follows) b.to->conducts |= s->set.conducts;
     if (!status && b.to->facts.particles && !(b.follows && !b.follow.came)) status = gather_bed(&b);
     if (!status) status = check_outside(&b);
-    if (b.follows) b.to->walls = s->set.walls;
+    if (b.follows) b.to->wall_exchange = s->set.wall_exchange;
     if (!status && !b.follows) status = fibrad_insitu_sources(&b);
     if (!status) status = make_rows(&b);
     if (!status) status = check_backs(&b);

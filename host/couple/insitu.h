@@ -32,7 +32,7 @@ typedef struct fibrad_insitu_set {
     fibrad_block root;     /* 1/L, double [own], square root of (1/n - 1/e)/A, see powers.c; unused unless conducts */
     fibrad_block emission; /* double [columns], sigma T^4 */
     fibrad_block power;    /* double [columns], net power by the rows on this rank */
-    uint32_t walls;       /* number of walls */
+    uint32_t walls;        /* number of walls */
     int conducts;          /* 1: some particles have a finite k* */
     int emissive;          /* 1: exchange factors; 0: all emissivities are 1 */
     fibrad_link *seen;     /* connects home particles with columns */
@@ -42,9 +42,9 @@ typedef struct fibrad_insitu_set {
     uint64_t all;          /* number of particles of all ranks, with those left out */
     uint64_t hash;         /* sum of the hashes of their ids */
     uint64_t changed;      /* number of particles that have come or gone since all rows were made */
-    fibrad_wall_exchange walls;
+    fibrad_wall_exchange wall_exchange;
     double wall_emission[FIBRAD_WALLS_MAX], surroundings_emission; /* sigma T^4 of the last powers */
-    int flows;                                                      /* 1: there were powers since rows were made */
+    int flows;                                                     /* 1: there were powers since rows were made */
     fibrad_insitu_facts facts;
     fibrad_remark remark[FIBRAD_REMARKS];
 } fibrad_insitu_set;

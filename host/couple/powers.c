@@ -140,11 +140,11 @@ static int solve_nodes(fibrad_insitu *s, const fibrad_flow *known) {
 static void add_walls(const fibrad_insitu_set *set, fibrad_insitu_totals *totals) {
     const double *emission = set->wall_emission;
     for (uint32_t a = 0; a < set->walls; ++a) {
-        const double escapes = set->walls.surroundings[a] * (emission[a] - set->surroundings_emission);
+        const double escapes = set->wall_exchange.surroundings[a] * (emission[a] - set->surroundings_emission);
         totals->surroundings += escapes;
         totals->wall[a] -= escapes;
         for (uint32_t b = 0; b < set->walls; ++b)
-            totals->wall[a] += set->walls.wall[a][b] * (emission[b] - emission[a]);
+            totals->wall[a] += set->wall_exchange.wall[a][b] * (emission[b] - emission[a]);
     }
 }
 

@@ -227,7 +227,7 @@ static int make_sources(struct sources *t, const fibrad_particle *particle) {
     sum_up(t);
     bool has[FIBRAD_WALLS_MAX + 1];
     mark_rows(t, has);
-    find_exchange(t, has, &b->to->walls);
+    find_exchange(t, has, &b->to->wall_exchange);
     b->knows = !b->s->config.one_way;
     b->knows_all = b->knows && have_all(t, has);
     return fibrad_agree(b->s->comm, b->knows ? keep_known(t, has) : FIBRAD_OK, b->s->message);
@@ -251,7 +251,7 @@ static int find_all(struct sources *t, fibrad_block *all) {
 int fibrad_insitu_sources(fibrad_insitu_build *b) {
     fibrad_block all = {0};
     const uint32_t openings = b->openings;
-    b->to->walls = (fibrad_wall_exchange){0};
+    b->to->wall_exchange = (fibrad_wall_exchange){0};
     if ((!b->to->facts.particles && !b->bed->walls) || (double)b->to->facts.particles > FIBRAD_GATHER_MOST)
         return FIBRAD_OK;
     close_bed(b);

@@ -96,7 +96,8 @@ int face_solve(struct face *face, const struct bed *bed, const struct walls *wal
         const double area = open_area(&ends, side);
         fibrad_wall_row row;
         if (!(area > 0)) continue;
-        status = fibrad_wall_row(&scene, &spheres, FIBRAD_OPENING(all.count, side / 2, side % 2), &rule, run, &row);
+        status =
+            fibrad_exchange_wall_row(&scene, &spheres, FIBRAD_OPENING(all.count, side / 2, side % 2), &rule, run, &row);
         sum += area * (1 - row.escaped), square += gsl_pow_2(area * FACE_ERROR * row.error);
     }
     face->emissivity = sum / face->area, face->error = sqrt(square) / face->area;

@@ -25,8 +25,8 @@ struct mesh {
     char *file;
     bool text;
     enum mesh_sides sides;
-    uint32_t first;  /* its first triangle among those of all meshes */
-    uint32_t wall;   /* its first wall */
+    uint32_t first; /* its first triangle among those of all meshes */
+    uint32_t wall;  /* its first wall */
     uint32_t walls; /* its number of walls: 1, or one per solid */
     struct surface surface;
 };
@@ -36,8 +36,8 @@ struct meshes {
     uint32_t count;
     struct mesh *mesh;
     char name[FIBRAD_WALLS_MAX][MESH_NAME]; /* names of the walls that are meshes */
-    struct fibrad_triangles triangles;       /* of all meshes, with the sides of the last meshes_face */
-    uint32_t enclosing;                      /* closed components whose inner side alone is a wall, by meshes_face */
+    struct fibrad_triangles triangles;      /* of all meshes, with the sides of the last meshes_face */
+    uint32_t enclosing;                     /* closed components whose inner side alone is a wall, by meshes_face */
     /* arrays of `triangles` */
     double *vertex;
     uint32_t *corner, *front, *back;

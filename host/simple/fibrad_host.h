@@ -2,12 +2,10 @@
  *
  * Index
  *   run      fibrad_run: threads, progress, cancelling
- *   factors  fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_wall_row, fibrad_side_views,
- *            fibrad_displacements
- *   heat     fibrad_radiation_new, _move, _solve, _sides, _settle, _shine, _describe, _free
- *   time     fibrad_transient_new, _move, _powers, _sides, _shine, _advance, _describe, _free
- *   contacts fibrad_contacts_find, _conduct, _free
- *   kernel   fibrad_heap_resize, fibrad_host_sizeof
+ *   factors  fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_exchange_wall_row,
+ * fibrad_side_views, fibrad_displacements heat     fibrad_radiation_new, _move, _solve, _sides, _settle, _shine,
+ * _describe, _free time     fibrad_transient_new, _move, _powers, _sides, _shine, _advance, _describe, _free contacts
+ * fibrad_contacts_find, _conduct, _free kernel   fibrad_heap_resize, fibrad_host_sizeof
  *
  * Example   fibrad_bed_factors *bed;
  *           int status = fibrad_view_factors(NULL, &spheres, NULL, NULL, &bed);
@@ -85,7 +83,7 @@ typedef struct fibrad_bed_options {
     const unsigned char *wanted;        /* [spheres], not 0: compute this row; implies raw; NULL: all rows */
     int raw;                            /* 1: leave the rows as the method gave them */
     double drop;                        /* 0 to 1, as in fibrad_matrix_rule */
-    int walls;                         /* 1: rows of walls, too */
+    int walls;                          /* 1: rows of walls, too */
     const char *scratch;                /* folder for unnamed files instead of memory, same bits; NULL: memory */
 } fibrad_bed_options;
 
@@ -136,8 +134,8 @@ void fibrad_bed_free(fibrad_bed_factors *factors);
  *   Output   row
  *   Errors   as fibrad_scene_init and fibrad_exchange_wall; _CANCELLED
  *   Cost     that of the paths */
-int fibrad_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t wall,
-                    const fibrad_exchange_rule *rule, fibrad_run *run, fibrad_wall_row *row);
+int fibrad_exchange_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t wall,
+                             const fibrad_exchange_rule *rule, fibrad_run *run, fibrad_wall_row *row);
 
 /* What all triangles of a bed see: fibrad_triangle_views of each.
  *   Input    rays: from each side, 1 to 2^30

@@ -212,8 +212,7 @@ static void divide_block(double *block, uint32_t n, uint32_t walls, struct settl
     double **const of_spheres[] = {&s->emissivity, &s->before, &s->power, &s->temperature, &s->conductivity};
     double **const of_walls[] = {&s->wall_emissivity, &s->wall_before, &s->wall_power, &s->wall_temperature};
     for (size_t k = 0; k < sizeof of_spheres / sizeof *of_spheres; ++k, block += n) *of_spheres[k] = n ? block : NULL;
-    for (size_t k = 0; k < sizeof of_walls / sizeof *of_walls; ++k, block += walls)
-        *of_walls[k] = walls ? block : NULL;
+    for (size_t k = 0; k < sizeof of_walls / sizeof *of_walls; ++k, block += walls) *of_walls[k] = walls ? block : NULL;
     s->conductance = block;
 }
 

@@ -48,9 +48,9 @@ static void set_outside(struct stepper *m, double time) {
     const double share = time / m->span->duration;
     const fibrad_span *span = m->span;
     for (uint32_t b = 0; b < m->t->walls; ++b)
-        m->t->wall[b] = span->wall_temperature
-                            ? share_between(m->given->wall_temperature[b], span->wall_temperature[b], share)
-                            : m->given->wall_temperature[b];
+        m->t->wall_stage[b] = span->wall_temperature
+                                  ? share_between(m->given->wall_temperature[b], span->wall_temperature[b], share)
+                                  : m->given->wall_temperature[b];
     m->sources.surroundings =
         span->surroundings ? share_between(m->given->surroundings, *span->surroundings, share) : m->given->surroundings;
 }
@@ -58,7 +58,7 @@ static void set_outside(struct stepper *m, double time) {
 /* Sets emissivities at t->guess, which is near enough to the solution for second order. */
 static void set_surfaces(struct stepper *m) {
     const fibrad_transient *t = m->t;
-    if (m->span->law) m->span->law(m->span->context, t->guess, t->wall, t->emissivity, t->wall_emissivity);
+    if (m->span->law) m->span->law(m->span->context, t->guess, t->wall_stage, t->emissivity, t->wall_emissivity);
 }
 
 /* Whether a sphere exchanges no heat with any other. */
@@ -217,7 +217,7 @@ static int compare(struct stepper *m, double time) {
     fibrad_heat_sources now = *m->given;
     set_outside(m, time);
     now.temperature = m->t->now;
-    now.wall_temperature = m->t->wall, now.surroundings = m->sources.surroundings;
+    now.wall_temperature = m->t->wall_stage, now.surroundings = m->sources.surroundings;
     return fibrad_transient_compare(m->t, &now, &m->span->corrections);
 }
 
@@ -355,10 +355,10 @@ static int advance_span(fibrad_transient *t, const fibrad_heat_sources *sources,
                         .tolerance = span->tolerance > 0 ? span->tolerance : TOLERANCE,
                         .sources = *sources,
                         .result = {.power = t->power, .temperature = t->found},
-                        .stage_walls = {t->wall + t->walls, t->wall + 2 * (size_t)t->walls}};
+                        .stage_walls = {t->wall_stage + t->walls, t->wall_stage + 2 * (size_t)t->walls}};
     m.sources.temperature = t->given, m.sources.power = t->source;
     m.sources.hold = t->hold, m.sources.reference = t->guess;
-    m.sources.wall_temperature = t->wall;
+    m.sources.wall_temperature = t->wall_stage;
     if (!(m.sources.tolerance > 0)) m.sources.tolerance = RESIDUAL * m.tolerance;
     if (span->law) {
         memcpy(t->emissivity, sources->emissivity, t->n * sizeof *t->emissivity);
@@ -367,7 +367,7 @@ static int advance_span(fibrad_transient *t, const fibrad_heat_sources *sources,
     }
     now.surroundings_energy = now.error = 0;
     now.steps = now.refused = now.sweeps = now.corrections = 0;
-    now.wall_energy = t->wall + 3 * (size_t)t->walls;
+    now.wall_energy = t->wall_stage + 3 * (size_t)t->walls;
     for (uint32_t b = 0; b < t->walls; ++b) now.wall_energy[b] = 0;
     memcpy(t->now, span->temperature, t->n * sizeof *t->now);
     const int status = take_steps(&m);

@@ -45,7 +45,7 @@ static int take_arrays(fibrad_transient *t) {
         &t->base,    &t->first,    &t->guess,      &t->hold,     &t->source,     &t->found,      &t->power, &t->given,
         &t->allowed, &t->solution, &t->correction, &t->compared, &t->by_patches, &t->conducts};
     double **const of_walls[] = {&t->wall_emissivity, &t->wall_correction, &t->wall_compared, &t->wall_power,
-                                  &t->wall}; /* the last one has four per wall */
+                                 &t->wall_stage}; /* the last one has four per wall */
     const size_t spheres = sizeof of_spheres / sizeof *of_spheres, walls = sizeof of_walls / sizeof *of_walls;
     double *next = calloc(spheres * t->n + (walls + 3) * t->walls + 1, sizeof *next);
     t->doubles = next;

@@ -46,7 +46,7 @@ struct fibrad_transient {
     double *found, *power;         /* [n] temperatures and powers of the linear problem */
     double *solution;              /* [n] temperatures of the stage, which keep the energy */
     double *conducts;              /* [n] what contacts conduct from a sphere for each kelvin [W/K] */
-    double *wall;                  /* [4 walls] temperatures, powers of each stage, energies of the span */
+    double *wall_stage;            /* [4 walls] temperatures, powers of each stage, energies of the span */
     bool busy;                     /* within a call, see fibrad_transient_begin */
 };
 

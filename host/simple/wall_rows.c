@@ -84,8 +84,8 @@ static int run_paths(void *wall_paths, int thread, uint32_t part) {
     return fibrad_exchange_wall(w->job.scene, &w->job.team.work[thread], w->wall, &w->rule, part, &w->part[part], NULL);
 }
 
-int fibrad_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t wall,
-                    const fibrad_exchange_rule *rule, fibrad_run *run, fibrad_wall_row *row) {
+int fibrad_exchange_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t wall,
+                             const fibrad_exchange_rule *rule, fibrad_run *run, fibrad_wall_row *row) {
     if (!rule || !row) return FIBRAD_E_ARGUMENT;
     struct wall_paths w = {.wall = wall, .rule = *rule};
     int status = fibrad_job_open(&w.job, config, spheres, run);

@@ -1,6 +1,6 @@
 /* write_mesh_vtp.c - VTK XML polydata for ParaView: the triangles of all meshes. SPDX-License-Identifier: MIT
  *
- * Arrays on triangles: `wall`, k of wall -2 - k; `front` and `back`, 1 if this side is a wall; `place`, the line or
+ * Arrays on triangles: `body`, k of wall -2 - k; `front` and `back`, 1 if this side is a wall; `place`, the line or
  * number in the mesh's file; `area`; arrays of the contents. */
 #include <math.h>
 
@@ -75,8 +75,8 @@ int write_mesh_vtp(FILE *file, const struct contents *what, bool first) {
     const struct fibrad_triangles *all = &meshes->triangles;
     (void)first;
     vtp_head(file, all->vertices, "Polys", all->n);
-    fputs("<CellData Scalars=\"wall\">\n", file);
-    mesh_counts(file, "wall", meshes, wall_of);
+    fputs("<CellData Scalars=\"body\">\n", file);
+    mesh_counts(file, "body", meshes, wall_of);
     mesh_counts(file, "front", meshes, front_of);
     mesh_counts(file, "back", meshes, back_of);
     mesh_counts(file, "place", meshes, place_of);

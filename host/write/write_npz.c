@@ -204,7 +204,7 @@ static void add_rows(struct arrays *arrays, const struct contents *what, char na
     if (what->grey && what->grey->node_emissivity)
         add_array(arrays, (struct array){"node_emissivity.npy", "f8", what->grey->node_emissivity, n, 0});
     if (walls == 0) return;
-    add_array(arrays, (struct array){"wall.npy", "f8", matrix->wall, n, walls});
+    add_array(arrays, (struct array){"body.npy", "f8", matrix->wall, n, walls});
     add_array(arrays, wall_names(what, names));
     if (!matrix->wall_wall) return;
     add_array(arrays, (struct array){"wall_area.npy", "f8", what->factors->wall_area, walls, 0});

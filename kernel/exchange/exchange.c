@@ -253,9 +253,9 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
                             fibrad_row *row) {
     exchange_task *task = *(exchange_task *const *)of;
     const fibrad_exchange_rule *rule = task->rule;
-    double beam_error = 0, wall[FIBRAD_WALLS_MAX], wall[FIBRAD_SLOTS], scale = 0, to_spheres = 1;
+    double beam_error = 0, of_walls[FIBRAD_WALLS_MAX], wall[FIBRAD_SLOTS], scale = 0, to_spheres = 1;
     if (task->emissivity[i] == 0) return empty_row(scene, row);
-    fibrad_row leg = fibrad_row_scratch(space, wall);
+    fibrad_row leg = fibrad_row_scratch(space, of_walls);
     fibrad_paths paths = paths_of(task, space, scene, i);
     int status = want_legs(space, &paths, rule);
     if (status == FIBRAD_OK) status = first_leg(scene, space, i, task, &leg, &beam_error);

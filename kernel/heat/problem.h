@@ -155,9 +155,9 @@ typedef struct fibrad_heat_given {
     bool insulated[FIBRAD_HEAT_OTHERS];                                /* by body, from the first wall on */
     double *lift; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
     bool lifted[FIBRAD_WALLS_MAX]; /* [meshes], whether sides of the mesh have temperatures */
-    const double *light;            /* [patches] power that arrives from outside, the caller's; NULL: none */
-    const double *absorbed;         /* [patches] light that patches have absorbed, the caller's; NULL: none */
-    bool afloat;                    /* the sources fix differences of emissions, but not their level */
+    const double *light;           /* [patches] power that arrives from outside, the caller's; NULL: none */
+    const double *absorbed;        /* [patches] light that patches have absorbed, the caller's; NULL: none */
+    bool afloat;                   /* the sources fix differences of emissions, but not their level */
     double sigma, surroundings;
     double tolerance, settled; /* of the residual; of what steps to come would change in powers, over these */
     uint32_t limit;            /* sweeps after which to stop */
@@ -213,17 +213,17 @@ struct fibrad_heat {
     uint64_t hash; /* of the scene */
 
     /* bodies and their patches */
-    uint32_t spheres, meshes, triangles;            /* numbers of them */
+    uint32_t spheres, meshes, triangles;          /* numbers of them */
     uint32_t given_walls, slot[FIBRAD_WALLS_MAX]; /* number of walls, and their slots */
-    uint32_t openings;                              /* bit k: slot k is an opening */
-    uint32_t bodies;                                /* number of bodies, see the top of this file */
-    uint32_t patches, patches_capacity;             /* number of patches, and room */
-    uint32_t side;                                  /* patches of a sphere along an edge of its cube */
-    double patch_area;                              /* L^2, about the area of a patch of a wall */
-    uint32_t *first;                                /* [bodies + 1], first patch of each body */
-    uint32_t *order;                                /* [spheres], the caller's index, a copy of that of the scene */
-    fibrad_heat_wall wall[FIBRAD_WALLS];            /* by slot */
-    uint32_t of_mesh[FIBRAD_WALLS_MAX];            /* patches of each mesh */
+    uint32_t openings;                            /* bit k: slot k is an opening */
+    uint32_t bodies;                              /* number of bodies, see the top of this file */
+    uint32_t patches, patches_capacity;           /* number of patches, and room */
+    uint32_t side;                                /* patches of a sphere along an edge of its cube */
+    double patch_area;                            /* L^2, about the area of a patch of a wall */
+    uint32_t *first;                              /* [bodies + 1], first patch of each body */
+    uint32_t *order;                              /* [spheres], the caller's index, a copy of that of the scene */
+    fibrad_heat_wall wall[FIBRAD_WALLS];          /* by slot */
+    uint32_t of_mesh[FIBRAD_WALLS_MAX];           /* patches of each mesh */
     fibrad_mesh_cut *cut; /* [2 triangles], by the caller's numbers; patches from first_meshed on */
     fibrad_heat_division division;
     fibrad_harmonics harmonics[2]; /* on patches, and on fours for the coarser level */

@@ -134,8 +134,7 @@ static void check_contacts(const fibrad_heat *heat, const fibrad_heat_sources *s
     c->first = s->contact_first, c->second = s->contact_second, c->conductance = s->conductance, c->count = s->contacts;
     c->sigma = s->sigma, c->zero = s->surroundings;
     for (uint32_t b = 0; b < heat->spheres; b++) c->node[heat->order[b]] = b;
-    for (uint32_t k = 0; k < heat->given_walls; k++)
-        c->node[heat->spheres + k] = fibrad_heat_body(heat, heat->slot[k]);
+    for (uint32_t k = 0; k < heat->given_walls; k++) c->node[heat->spheres + k] = fibrad_heat_body(heat, heat->slot[k]);
     fibrad_contact_mark(c);
 }
 
@@ -176,8 +175,7 @@ static bool light_valid(const fibrad_heat *heat, const double *light) {
 /* The reason why the sources as a whole are not valid. */
 static int sources_why(const fibrad_heat *heat, const fibrad_heat_sources *s) {
     if (heat->spheres > 0 && (s->temperature == NULL || s->emissivity == NULL)) return FIBRAD_WHY_MISSING;
-    if (heat->given_walls > 0 && (s->wall_temperature == NULL || s->wall_emissivity == NULL))
-        return FIBRAD_WHY_MISSING;
+    if (heat->given_walls > 0 && (s->wall_temperature == NULL || s->wall_emissivity == NULL)) return FIBRAD_WHY_MISSING;
     if (!is_temperature(s->surroundings)) return FIBRAD_WHY_SURROUNDINGS;
     if (!is_sigma(s->sigma)) return FIBRAD_WHY_SIGMA;
     if (!light_valid(heat, s->light) || !light_valid(heat, s->absorbed)) return FIBRAD_WHY_LIGHT;

@@ -195,7 +195,7 @@ uint32_t fibrad_heat_cap_patch(const fibrad_heat *heat, uint32_t wall, const dou
 double fibrad_heat_wall_density(const fibrad_heat *heat, uint32_t patch) {
     for (uint32_t slot = 0; slot < FIBRAD_MESHES + heat->meshes; slot++) {
         const uint32_t *first = heat->first + fibrad_heat_body(heat, slot);
-        if (fibrad_slot_of_body(slot) && patch >= first[0] && patch < first[1]) return heat->sent[slot].density;
+        if (fibrad_slot_of_wall(slot) && patch >= first[0] && patch < first[1]) return heat->sent[slot].density;
     }
     return 0;
 }

@@ -36,14 +36,14 @@ struct fibrad_matrix {
     uint32_t given_count;
     uint64_t given_serial;
     double drop;
-    const fibrad_record **row;         /* [n], raw row of each sphere */
-    double *r;                         /* L, [n], radii, for exchange factors times the root of the emissivity */
-    double *radius;                    /* L, [n], radii, if sampled */
-    double *area;                      /* [n], square of r over the largest r */
-    double *noise;                     /* [n], that of the sum of each averaged row; infinity: not along lines */
-    double *variance;                  /* [n], of the noise of raw rows; of all rows along lines */
-    uint64_t *place;                   /* [n], position of the next entry of each row of the transpose */
-    double *scratch;                   /* [3 n] */
+    const fibrad_record **row;        /* [n], raw row of each sphere */
+    double *r;                        /* L, [n], radii, for exchange factors times the root of the emissivity */
+    double *radius;                   /* L, [n], radii, if sampled */
+    double *area;                     /* [n], square of r over the largest r */
+    double *noise;                    /* [n], that of the sum of each averaged row; infinity: not along lines */
+    double *variance;                 /* [n], of the noise of raw rows; of all rows along lines */
+    uint64_t *place;                  /* [n], position of the next entry of each row of the transpose */
+    double *scratch;                  /* [3 n] */
     double all[FIBRAD_WALLS_MAX + 2]; /* sums over all spheres: to each wall, the surroundings, beyond */
     fibrad_parallel *parallel;
     void *context;
@@ -52,11 +52,11 @@ struct fibrad_matrix {
     bool enclosed;   /* whether walls have rows; otherwise the fields up to wall_closure are not used */
     double *between; /* [walls][walls] */
     double *wall_escaped, *wall_error;
-    double *newton, *before;          /* [walls][walls + 1] scratch */
+    double *newton, *before;         /* [walls][walls + 1] scratch */
     double length[FIBRAD_WALLS_MAX]; /* L, as r of spheres; 0: the wall has no row */
-    double correction;                /* largest |sum - 1| of a wall's row before closing */
-    double wall_closure;              /* largest |sum - 1| of a wall's row after closing */
-    double changed;                   /* as in fibrad_factors, with changed_row */
+    double correction;               /* largest |sum - 1| of a wall's row before closing */
+    double wall_closure;             /* largest |sum - 1| of a wall's row after closing */
+    double changed;                  /* as in fibrad_factors, with changed_row */
     uint32_t changed_row;
     fibrad_matrix_part *part; /* [tasks] */
 };

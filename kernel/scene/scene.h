@@ -50,7 +50,7 @@ struct fibrad_scene {
     bool region;                        /* whether a known region was given */
     double known_low[3], known_high[3]; /* L, infinite where it is unlimited */
     fibrad_occupancy occupancy;         /* the caller's, or one cell */
-    uint32_t slot[FIBRAD_WALLS_MAX];   /* [facts.walls], slot of each wall */
+    uint32_t slot[FIBRAD_WALLS_MAX];    /* [facts.walls], slot of each wall */
     double wall_area[FIBRAD_SLOTS];     /* L^2, by slot, as fibrad_scene_wall_area; 0: no such wall */
     uint64_t hash;                      /* of all input; 0: the scene is not complete */
     double spacing;                     /* L, cube root of the volume per sphere */

@@ -141,8 +141,8 @@ static int hash_directions(void) {
     return 0;
 }
 
-static void add_wall(fibrad_wall *wall, uint32_t wall, fibrad_wall fields) {
-    wall_of[walls] = wall;
+static void add_wall(fibrad_wall *wall, uint32_t place, fibrad_wall fields) {
+    wall_of[walls] = place;
     wall[walls++] = fields;
 }
 

@@ -63,9 +63,9 @@ int main(int count, char **argument) {
                                          .cutoff = cutoff};
             fibrad_rows_clear(&rows);
             for (uint32_t i = 0; i < n; i++) {
-                double wall;
+                double to_floor;
                 rule.seed = 1 + (uint64_t)step * 0x9e3779b97f4a7c15u + id[i] * 0xd1342543de82ef95u;
-                fibrad_row row = {.wall = &wall, .rows = &rows};
+                fibrad_row row = {.wall = &to_floor, .rows = &rows};
                 stop_unless(fibrad_exchange_row(scene, &work, i, &rule, &row, NULL));
             }
         }

@@ -362,8 +362,7 @@ static bool same_row(const struct rows_file *a, size_t i, const struct rows_file
     }
     for (uint64_t m = 0; m < walls; ++m) sum += a->wall[i * walls + m];
     return fabs(sum - (a->emissivity[i] > 0)) < 1e-12 && equal_words(col, b->col + b->start[k], length) &&
-           equal_words(f, b->f + b->start[k], length) &&
-           equal_words(a->wall + i * walls, b->wall + k * walls, walls) &&
+           equal_words(f, b->f + b->start[k], length) && equal_words(a->wall + i * walls, b->wall + k * walls, walls) &&
            equal_words(&a->escaped[i], &b->escaped[k], 1) && equal_words(&a->beyond[i], &b->beyond[k], 1) &&
            equal_words(&a->error[i], &b->error[k], 1) && equal_words(&a->radius[i], &b->radius[k], 1) &&
            equal_words(&a->emissivity[i], &b->emissivity[k], 1) && equal_words(a->x + 3 * i, b->x + 3 * k, 3);

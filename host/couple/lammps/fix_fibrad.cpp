@@ -311,18 +311,18 @@ void FixFibrad::read_mesh(Words &words) {
         if (!mesh_name(file.name))
             error->all(FLERR, "fix fibrad: a wall cannot be called `" + name + "`: letters, digits and _, at most 31");
     }
-    uint32_t walls;
-    const int status = mesh_walls_add(&meshes, world, &file, nullptr, first, &walls);
+    uint32_t count;
+    const int status = mesh_walls_add(&meshes, world, &file, nullptr, first, &count);
     if (status) error->all(FLERR, std::string("fix fibrad: ") + (meshes.messages[0] ? meshes.messages : path.c_str()));
     fibrad_wall wall = {};
     wall.kind = FIBRAD_WALL_MESH;
-    walls.insert(walls.end(), walls, wall);
-    wall_kelvins.insert(wall_kelvins.end(), walls, t);
-    wall_emissivity.insert(wall_emissivity.end(), walls, e);
-    wall_heat.capacity.insert(wall_heat.capacity.end(), walls, capacity);
-    wall_face.insert(wall_face.end(), walls, -1);
+    walls.insert(walls.end(), count, wall);
+    wall_kelvins.insert(wall_kelvins.end(), count, t);
+    wall_emissivity.insert(wall_emissivity.end(), count, e);
+    wall_heat.capacity.insert(wall_heat.capacity.end(), count, capacity);
+    wall_face.insert(wall_face.end(), count, -1);
     motions.push_back(motion);
-    if (comm->me == 0) describe_meshes(first, walls, path);
+    if (comm->me == 0) describe_meshes(first, count, path);
 }
 
 // rotate AX AY AZ PERIOD [about X Y Z] | velocity VX VY VZ; false: it is another word
@@ -349,9 +349,9 @@ bool FixFibrad::read_motion(Words &words, mesh_motion *motion) {
 }
 
 // Prints warnings about a file, and the indices of its walls in the output. Only rank 0 has the names of the walls.
-void FixFibrad::describe_meshes(uint32_t first, uint32_t walls, const std::string &path) {
+void FixFibrad::describe_meshes(uint32_t first, uint32_t count, const std::string &path) {
     if (meshes.messages[0]) error->warning(FLERR, std::string("fix fibrad: ") + meshes.messages);
-    for (uint32_t k = first; k < first + walls; k++)
+    for (uint32_t k = first; k < first + count; k++)
         say(text("fix fibrad: f_%s[%d] is of wall %s, %u triangles of ", id, 6 + (int)k, meshes.meshes.name[k],
                  mesh_triangles(mesh_of_wall(&meshes.meshes, k), k)) +
             path);

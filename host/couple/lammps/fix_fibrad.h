@@ -77,7 +77,7 @@ class FixFibrad : public Fix {
     double read_capacity(Words &, const Temperature &);
     void read_mesh(Words &);
     bool read_motion(Words &, mesh_motion *);
-    void describe_meshes(uint32_t first, uint32_t walls, const std::string &path);
+    void describe_meshes(uint32_t first, uint32_t count, const std::string &path);
     void read_temperature(Words &);
     void read_group(Words &);
     Property read_property(Words &, const char *what, double low, double high);

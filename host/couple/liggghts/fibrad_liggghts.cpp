@@ -57,16 +57,16 @@ struct Driver {
     mesh_walls triangles;          /* of all meshes, at the last rows */
     std::vector<double> wall_temperature, wall_emissivity;
     WallHeat wall_heat;
-    Fix *temperature, *source, *power, *known, *capacity;         /* properties of particles, and of types */
-    double came, gone;                                            /* heat of particles that have come or gone, here */
-    std::vector<uint64_t> id;                                     /* [own] */
-    std::vector<double> emissivity, gain;                         /* [own] */
-    std::vector<double> conductivity;                             /* [own], k* when rows are made; empty: infinite */
-    fibrad_insitu_totals totals;                                  /* of the current powers */
-    bool counts;                                                  /* the heat of particles that come is counted */
-    bool radiates;                                                /* there are powers */
-    bool told[FIBRAD_REMARKS];                                    /* a message on strays of each kind was given */
-    LAMMPS_NS::bigint since;                                      /* first step in which the current powers heat */
+    Fix *temperature, *source, *power, *known, *capacity;        /* properties of particles, and of types */
+    double came, gone;                                           /* heat of particles that have come or gone, here */
+    std::vector<uint64_t> id;                                    /* [own] */
+    std::vector<double> emissivity, gain;                        /* [own] */
+    std::vector<double> conductivity;                            /* [own], k* when rows are made; empty: infinite */
+    fibrad_insitu_totals totals;                                 /* of the current powers */
+    bool counts;                                                 /* the heat of particles that come is counted */
+    bool radiates;                                               /* there are powers */
+    bool told[FIBRAD_REMARKS];                                   /* a message on strays of each kind was given */
+    LAMMPS_NS::bigint since;                                     /* first step in which the current powers heat */
     double heat, heat_surroundings, heat_wall[FIBRAD_WALLS_MAX]; /* heat by radiation before that step */
 };
 

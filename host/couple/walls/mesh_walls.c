@@ -73,18 +73,18 @@ static int share_triangles(struct mesh_walls *walls, MPI_Comm comm) {
 }
 
 int mesh_walls_add(struct mesh_walls *walls, MPI_Comm comm, const struct mesh_file *file, const struct stl *stl,
-                   uint32_t wall, uint32_t *walls) {
+                   uint32_t first, uint32_t *count) {
     int rank, status = STATUS_OK;
     MPI_Comm_rank(comm, &rank);
-    *walls = 0;
+    *count = 0;
     if (rank == 0) {
         collect_messages(walls);
-        status = stl ? meshes_take(&walls->meshes, file, stl, wall) : meshes_add(&walls->meshes, file, wall);
+        status = stl ? meshes_take(&walls->meshes, file, stl, first) : meshes_add(&walls->meshes, file, first);
         message_redirect(NULL, NULL);
-        if (!status) *walls = walls->meshes.mesh[walls->meshes.count - 1].walls;
+        if (!status) *count = walls->meshes.mesh[walls->meshes.count - 1].walls;
     }
     status = share_status(comm, status);
-    MPI_Bcast(walls, 1, MPI_UINT32_T, 0, comm);
+    MPI_Bcast(count, 1, MPI_UINT32_T, 0, comm);
     return status ? status : share_triangles(walls, comm);
 }
 

@@ -22,10 +22,10 @@ struct mesh_walls {
 };
 
 /* Collective. Adds a mesh. Rank 0 reads the file, or takes the triangles of `stl` if that is not NULL, and sends the
- * corners to the other ranks, which need no file. The first wall gets the index `wall`. *walls: number of walls.
+ * corners to the other ranks, which need no file. The first wall gets the index `first`. *count: number of walls.
  * Status, the same on all ranks, as meshes_add, or STATUS_MEMORY. */
 int mesh_walls_add(struct mesh_walls *walls, MPI_Comm comm, const struct mesh_file *file, const struct stl *stl,
-                   uint32_t wall, uint32_t *walls);
+                   uint32_t first, uint32_t *count);
 
 /* Collective. Puts the triangles of all meshes where they are at a time. At time 0 they are where mesh_walls_add has
  * put them. motion: [meshes], read on rank 0 alone. The bed has the periods. Call it when all meshes have been added.

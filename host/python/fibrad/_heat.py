@@ -294,7 +294,7 @@ class Heat(Bed):
         if conducts is not None and uniform:
             raise refuse("conductivity is given, and uniform is True: with one radiosity a sphere has no sides")
         insulated = several("insulated", insulated)
-        of_walls = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
+        given_walls = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
         if light is not None:
             if not isinstance(light, Absorbed):
                 raise refuse(f"light must be what shine returns, not {light!r}")
@@ -302,7 +302,7 @@ class Heat(Bed):
                 raise refuse("light is of another bed")
             powers = add(powers, light.spheres)
             walls_absorb = np.array([0.0 if wall in insulated else light.walls[wall] for wall in container.names])
-            of_walls["wall_power"] = add(of_walls.get("wall_power"), walls_absorb)
+            given_walls["wall_power"] = add(given_walls.get("wall_power"), walls_absorb)
         if surroundings is None and not container.closed():
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
         law = _law(emissivity)
@@ -311,8 +311,8 @@ class Heat(Bed):
                               sigma=real("sigma", sigma, *SIGMA), tolerance=real("tolerance", tolerance, 0, 1),
                               uniform=bool(uniform), temperature=pointer(kelvins), power=pointer(powers),
                               conductivity=pointer(conducts),
-                              **pointers(of_walls))
-        warn_around(container, surroundings, of_walls["wall_temperature"], kelvins)
+                              **pointers(given_walls))
+        warn_around(container, surroundings, given_walls["wall_temperature"], kelvins)
         if light is not None:
             sources.absorbed = patches_pointer(light)
         joined = contacts_of(((), (), ()) if contacts is None else contacts, n, container)
