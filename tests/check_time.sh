@@ -27,7 +27,7 @@ end=$(awk 'BEGIN { print (1200^-3 + 3 * 0.6 * 5.670374419e-8 * 3 / (800 * 2500 *
 is "$(value temperature_mean_K)" "$end" 0.05 || fault "one sphere ends at $(value temperature_mean_K) K, not $end K"
 is "$(value stored_J)" "-$(value surroundings_J)" 0.1 || fault "stored_J is not what the surroundings got"
 is "$(value balance_of_stored)" 0 1e-12 || fault "the energy is not kept: $(value balance_of_stored)"
-test "$(sed -n 1p "$work/one.out.csv")" = "time_s,i,T_K,q_W,q_error_W,T_error_K,wall" || fault "header of .csv"
+test "$(sed -n 1p "$work/one.out.csv")" = "time_s,i,T_K,q_W,q_error_W,T_error_K,body" || fault "header of .csv"
 test "$(awk -F , '$2 == 5 { printf "%s ", $1 }' "$work/one.out.csv")" = "0 200 400 600 " || fault "times in .csv"
 test "$(grep -c 'file="cool\.[0-3]\.vtp"' "$work/cool.pvd")" = 4 || fault "cool.pvd does not name four files"
 test -s "$work/cool.3.vtp" || fault "no cool.3.vtp"

@@ -280,7 +280,7 @@ TEST(frames_periods_and_ids) {
     ck_assert_double_eq(value_of("row_sum_min"), across);
     SUCCEED("bed", dump, "--periodic", "none", "--targets", "70", "-o", in_folder("ids.csv"));
     ck_assert_double_lt(value_of("row_sum_min"), 0.01);
-    assert_begins(read_file(in_folder("ids.csv")), "i,j,F,wall\n70,5,");
+    assert_begins(read_file(in_folder("ids.csv")), "i,j,F,body\n70,5,");
     input = dump;
     SUCCEED("bed", "-");
     ck_assert_double_eq(value_of("row_sum_min"), across);
@@ -292,7 +292,7 @@ static int read_powers(const char *path, double *sum, double *largest, long want
                        double *power) {
     char *text = read_file(path), *line = strchr(text, '\n');
     int count = 0;
-    ck_assert_int_eq(strncmp(text, "i,T_K,q_W,q_error_W,T_error_K,wall\n", 15), 0);
+    ck_assert_int_eq(strncmp(text, "i,T_K,q_W,q_error_W,T_error_K,body\n", 15), 0);
     for (*sum = *largest = 0; line && line[1]; line = strchr(line + 1, '\n'), count++) {
         long i;
         double t, q;
@@ -493,7 +493,7 @@ TEST(exchange_factors) {
             "zmin=0.5,zmax=0", "--threads", "3", "-o", other);
     char *text = read_file(out), *again = read_file(other);
     ck_assert_str_eq(text, again);
-    assert_begins(text, "i,j,D,wall\n");
+    assert_begins(text, "i,j,D,body\n");
     for (char *line = strchr(text, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
         int i, j;
         double factor;

@@ -223,7 +223,7 @@ TEST(columns_meant) {
 
 /* The order of columns in the help is that in the file; .vtp of `exchange`. */
 TEST(help_is_true) {
-    const char *columns = "i,T_K,q_W,q_error_W,T_error_K,wall";
+    const char *columns = "i,T_K,q_W,q_error_W,T_error_K,body";
     SUCCEED("heat", "--help");
     assert_has(printed, columns);
     SUCCEED("exchange", "--help");
@@ -441,7 +441,7 @@ TEST(joined) {
     ck_assert_double_eq(value_of("closure_max"), 0);
     ck_assert_double_eq_tol(json_of(json, "reciprocity_max"), (.75 * .375 - .5 * .25) / .75, 1e-15);
     ck_assert_str_eq(read_file(csv),
-                     "i,j,D,wall\n0,1,0.25,\n0,2,0.125,\n0,-1,0.125,surroundings\n0,-2,0.5,wall_1\n1,0,0.375,\n"
+                     "i,j,D,body\n0,1,0.25,\n0,2,0.125,\n0,-1,0.125,surroundings\n0,-2,0.5,wall_1\n1,0,0.375,\n"
                      "1,-1,0.125,surroundings\n1,-2,0.5,wall_1\n2,0,0.0625,\n2,-1,0.125,surroundings\n"
                      "2,-2,0.75,wall_1\n2,-3,0.0625,beyond\n");
     SUCCEED("join", zero, one, "--raw", "-o", csv);

@@ -37,7 +37,7 @@ TEST(a_row_conducts) {
     char *text = read_file(flows);
     assert_begins(text, "i,j,W/K,W\n1,0,0.5,");
     assert_has(text, "\n0,zmin,1,40\n");
-    assert_has(read_file(q), "T_error_K,q_radiation_W,q_conduction_W,wall\n");
+    assert_has(read_file(q), "T_error_K,q_radiation_W,q_conduction_W,body\n");
 }
 
 /* The text after the first `what`. */

@@ -326,9 +326,9 @@ TEST(ids_in_any_order) {
     }
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", UNSORTED)), *out = in_folder("rows.csv");
     SUCCEED("bed", bed, "--targets", "7-19", "-o", out);
-    assert_begins(read_file(out), "i,j,F,wall\n7,3,");
+    assert_begins(read_file(out), "i,j,F,body\n7,3,");
     SUCCEED("bed", bed, "--targets", "0", "--positions", "-o", out);
-    assert_begins(read_file(out), "i,j,F,wall\n0,1,");
+    assert_begins(read_file(out), "i,j,F,body\n0,1,");
     FAIL_WITH(2, "bed", bed, "--targets", "8-19");
     expect_message("", "there is no sphere 8 in frame 0 of ");
 }
@@ -385,7 +385,7 @@ TEST(all_frames) {
     SUCCEED(HEAT, bed, "--frame", "all", "--ambient", "300", "-o", all, "-o", in_folder("q.*.vtp"), "-o",
             in_folder("all.json"));
     char *text = read_file(all), *at = strchr(text, '\n') + 1;
-    ck_assert_int_eq(strncmp(text, "frame,timestep,i,T_K,q_W,q_error_W,T_error_K,wall\n", 30), 0);
+    ck_assert_int_eq(strncmp(text, "frame,timestep,i,T_K,q_W,q_error_W,T_error_K,body\n", 30), 0);
     for (int k = 0; k < 3; ++k) {
         const char *one = in_folder("one.csv");
         SUCCEED(HEAT, bed, "--frame", number[k], "--ambient", "300", "-o", one);
@@ -410,7 +410,7 @@ TEST(some_frames) {
     const char *bed = write_frames("bed.dump", 3), *out = in_folder("F.csv");
     SUCCEED("bed", bed, "--frame", "0:3:2", "--directions", "8", "-o", out);
     char *text = read_file(out);
-    assert_begins(text, "frame,timestep,i,j,F,wall\n0,100,3,");
+    assert_begins(text, "frame,timestep,i,j,F,body\n0,100,3,");
     assert_has(text, "\n2,900,3,");
     assert_lacks(text, "\n1,");
     SUCCEED("bed", bed, "--frame", "-1", "--directions", "8");
@@ -432,7 +432,7 @@ TEST(several_files) {
     write_frames("bed.2.dump", 2);
     SUCCEED("bed", names, "--directions", "8", "-o", out, "-o", in_folder("F.*.mtx"));
     char *text = read_file(out);
-    assert_begins(text, formatted("file,frame,timestep,i,j,F,wall\n%s,0,100,3,", first));
+    assert_begins(text, formatted("file,frame,timestep,i,j,F,body\n%s,0,100,3,", first));
     assert_has(text, "bed.2.dump,1,250,3,7,");
     read_file(in_folder("F.1.mtx"));
     SUCCEED("bed", first, first, "--directions", "8", "-o", in_folder("F.*.json"), "-o", in_folder("F.*.vtp"));

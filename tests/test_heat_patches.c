@@ -24,14 +24,14 @@ static double cosine_of(const double a[3], const double b[3]) {
     return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / sqrt(squares);
 }
 
-/* The strands from the row of `place` to a wall: the patches that each leaves and meets, and the number of its
+/* The strands from the row of `place` to a body: the patches that each leaves and meets, and the number of its
  * beams. */
 struct strands {
     uint32_t count, sum, from[10752], to[10752], beams[10752];
     double share;
 };
 
-static void strands_to(const fibrad_heat *heat, uint32_t place, uint32_t wall, struct strands *s) {
+static void strands_to(const fibrad_heat *heat, uint32_t place, uint32_t body, struct strands *s) {
     const unsigned char *at = heat->pencils.pool + heat->pencils.row[place].begin,
                         *end = at + heat->pencils.row[place].bytes;
     s->count = s->sum = 0;
@@ -39,7 +39,7 @@ static void strands_to(const fibrad_heat *heat, uint32_t place, uint32_t wall, s
         const fibrad_heat_pencil *pencil = fibrad_heat_pencil_at(at);
         const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
         const uint8_t *strand = fibrad_heat_strands(pencil);
-        if (pencil->wall != wall) continue;
+        if (pencil->body != body) continue;
         s->share = (double)pencil->share;
         uint32_t of_bundle = 0;
         for (uint32_t k = 0; k < pencil->strands; k++) {
@@ -147,10 +147,10 @@ TEST(parts_are_compact_and_even) {
 static void beams_expected(const fibrad_heat *heat, uint32_t place, const uint32_t followed[13], double expected[13]) {
     double f;
     expected[12] = heat->beams;
-    for (uint32_t wall = 0; wall < 12; wall++) {
-        expected[wall] = followed[wall];
-        if (wall != place && fibrad_free_pair(heat->scene, place, wall, &f)) expected[wall] = f * heat->beams;
-        expected[12] -= expected[wall];
+    for (uint32_t body = 0; body < 12; body++) {
+        expected[body] = followed[body];
+        if (body != place && fibrad_free_pair(heat->scene, place, body, &f)) expected[body] = f * heat->beams;
+        expected[12] -= expected[body];
     }
 }
 
@@ -177,25 +177,25 @@ TEST(a_patch_of_a_sphere_is_one_place) {
         uint32_t followed[13] = {0};
         double stands_for[13];
         memset(met, 0, sizeof met);
-        for (uint32_t wall = 0; wall < 12; wall++) strands_to(heat, place, wall, &strands[wall]);
+        for (uint32_t body = 0; body < 12; body++) strands_to(heat, place, body, &strands[body]);
         strands_to(heat, place, fibrad_heat_other(heat, fibrad_heat_open(heat)), &strands[12]);
         for (uint32_t b = 0; b < heat->beams; b++) {
             const uint32_t i = p.scene->order[place];
             beam(&p, i, b / points, b % points, o, w, n);
             least_of(&leaving, cosine_of(mean[heat->leave[b]], n));
-            const uint32_t j = first_met(&p, i, o, w, n), wall = j == UINT32_MAX ? 12 : p.scene->place[j];
-            const struct strands *s = &strands[wall];
-            followed[wall]++;
+            const uint32_t j = first_met(&p, i, o, w, n), body = j == UINT32_MAX ? 12 : p.scene->place[j];
+            const struct strands *s = &strands[body];
+            followed[body]++;
             for (uint32_t k = 0; k < s->count; k++)
-                if (s->from[k] == heat->leave[b] && (wall == 12 || cosine_of(mean[s->to[k]], n) > cos(PI / 9)))
-                    met[wall][k]++;
+                if (s->from[k] == heat->leave[b] && (body == 12 || cosine_of(mean[s->to[k]], n) > cos(PI / 9)))
+                    met[body][k]++;
         }
         beams_expected(heat, place, followed, stands_for);
-        for (uint32_t wall = 0; wall <= 12; wall++) {
-            const struct strands *s = &strands[wall];
-            for (uint32_t k = 0; k < s->count; k++) missed += met[wall][k] < s->beams[k];
+        for (uint32_t body = 0; body <= 12; body++) {
+            const struct strands *s = &strands[body];
+            for (uint32_t k = 0; k < s->count; k++) missed += met[body][k] < s->beams[k];
             kept += s->sum;
-            if (s->count > 0) ck_assert_double_eq_tol(s->share * s->sum, stands_for[wall], 3);
+            if (s->count > 0) ck_assert_double_eq_tol(s->share * s->sum, stands_for[body], 3);
         }
     }
     ck_assert_uint_gt(kept, p.bed.n * heat->beams / 4);
@@ -212,8 +212,8 @@ TEST(a_patch_of_a_cylinder_is_one_place) {
     p.config.directions = 8;
     trace(&p);
     const fibrad_heat *heat = p.heat;
-    const uint32_t wall = fibrad_heat_body(heat, FIBRAD_CYLINDER), first = heat->first[wall];
-    const uint32_t patches = heat->first[wall + 1] - first, *squares = heat->wall[FIBRAD_CYLINDER].squares;
+    const uint32_t body = fibrad_heat_body(heat, FIBRAD_CYLINDER), first = heat->first[body];
+    const uint32_t patches = heat->first[body + 1] - first, *squares = heat->wall[FIBRAD_CYLINDER].squares;
     double(*mean)[4] = calloc(patches, sizeof *mean), turning = 1, rising = 0;
     uint32_t missed = 0;
     for (int round = 0; round < 2; round++)

@@ -56,7 +56,7 @@ TEST(files_have_insides) {
             "--ambient", "600", "--solid-conductivity", "k", "-o", q, "-o", json, "-o", vtp);
     char *text = read_file(q);
     assert_has(text,
-               "i,T_K,q_W,q_error_W,T_error_K,T_min_K,T_max_K,T_surface_error_K,T_centre_K,T_centre_error_K,wall\n");
+               "i,T_K,q_W,q_error_W,T_error_K,T_min_K,T_max_K,T_surface_error_K,T_centre_K,T_centre_error_K,body\n");
     assert_has(text, ",,,,,,surroundings\n");
     for (int i = 0; i < 3; ++i) {
         ck_assert(entry(q, i, 5) < entry(q, i, 1) && entry(q, i, 1) < entry(q, i, 6));

@@ -27,7 +27,7 @@ TEST(what_is_absorbed_is_said_and_written) {
     ck_assert_double_eq_tol(value_of("absorbed_first_W"), 1000 * (.5 * PI + .25 * (4 - PI)), .01);
     ck_assert_double_eq_tol(fractions(), 1, .01);
     char *text = read_file(csv);
-    assert_begins(text, "i,T_K,q_W,q_error_W,T_error_K,absorbed_first_W,absorbed_W,wall\n");
+    assert_begins(text, "i,T_K,q_W,q_error_W,T_error_K,absorbed_first_W,absorbed_W,body\n");
     double sum = 0, all = 0;
     for (const char *line = strchr(text, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
         double q, first, absorbed;

@@ -64,7 +64,7 @@ static int bed_help(void) {
     options_print(bed_table);
     puts("\n" FILES_MORE "\n" WALLS_MORE "\n"
          "A factor to a wall is the fraction that arrives there directly. In .csv the surroundings are j = -1 and\n"
-         "walls are j = -2, -3, ... with their names in the column `wall`, so that rows add up to 1. Rows i = -2,\n"
+         "walls are j = -2, -3, ... with their names in the column `body`, so that rows add up to 1. Rows i = -2,\n"
          "-3, ... are those of walls that are not endless. With --targets or --cutoff there are no such rows. .vtp\n"
          "has an array for each wall. .mtx has spheres only. `beyond` is the fraction that leaves the cutoff and\n"
          "whose end is not followed.\n"

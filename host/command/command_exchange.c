@@ -61,8 +61,8 @@ static int exchange_help(void) {
          "the emission of sphere i that sphere j absorbs, directly or after reflections.\n");
     options_print(exchange_table);
     puts("\n" FILES_MORE "\n" WALLS_MORE "\n"
-         "The .csv has the columns i,j,D,wall. The surroundings are j = -1. Walls are j = -2, -3, ... with their\n"
-         "names in the column `wall`. Rows i = -2, -3, ... are those of walls that are not endless. .mtx has\n"
+         "The .csv has the columns i,j,D,body. The surroundings are j = -1. Walls are j = -2, -3, ... with their\n"
+         "names in the column `body`. Rows i = -2, -3, ... are those of walls that are not endless. .mtx has\n"
          "spheres only.\n"
          "\n"
          "The net power of sphere i is the sum over j of A_i e_i D_ij sigma (T_j^4 - T_i^4), with A_i = 4 pi r_i^2\n"

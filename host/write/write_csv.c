@@ -49,7 +49,7 @@ static void begin_csv(struct csv *csv, FILE *file, const struct contents *what, 
     csv->what = what;
     if (first)
         fprintf(file, "%s%s%s%s%s\n", what->file ? "file," : "", what->series ? "frame,timestep," : "",
-                what->time ? "time_s," : "", names, csv->named ? ",wall" : "");
+                what->time ? "time_s," : "", names, csv->named ? ",body" : "");
     if (what->file) at = put_comma(put_text(at, what->file));
     if (what->series) {
         at = put_comma(text_whole(at, bed->frame));

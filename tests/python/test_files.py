@@ -126,7 +126,7 @@ def test_saved(small, tmp_path):
     back = sparse.load_npz(tmp_path / "F.npz")
     assert (back != factors.matrix).nnz == 0
     arrays = np.load(tmp_path / "F.npz")
-    assert (arrays["escaped"] == factors.escaped).all() and (arrays["wall"] == factors.walls).all()
+    assert (arrays["escaped"] == factors.escaped).all() and (arrays["body"] == factors.walls).all()
     assert (arrays["ids"] == factors.ids).all() and arrays["wall_names"].tolist() == [b"zmin"]
     with pytest.raises(fibrad.InputError, match="npz"):
         factors.save(tmp_path / "F.txt")

@@ -184,7 +184,7 @@ class Factors:
         if self.node_emissivity is not None:
             arrays["node_emissivity"] = self.node_emissivity
         if self.wall_names:
-            arrays |= {"wall": self.walls, "wall_names": np.array([name.encode() for name in self.wall_names]),
+            arrays |= {"body": self.walls, "wall_names": np.array([name.encode() for name in self.wall_names]),
                        "wall_area": self.wall_area}
         if self.wall_wall is not None and self.wall_names:
             arrays |= {"wall_wall": self.wall_wall, "wall_escaped": self.wall_escaped, "wall_error": self.wall_error}
