@@ -884,6 +884,7 @@ typedef struct fibrad_exchange_rule {
     const double *conductivity;
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */
     uint32_t flights;              /* of _walk, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
+    uint32_t open_directions; /* of the first leg of rows that send much past all spheres; 0: as for the others */
     /* [walls + 1], or NULL: what each wall and, last, the surroundings absorb of further paths of sphere i that
      * somebody else has followed. The unit is a path. What a path gives before its first reflection does not count.
      * NaN: nobody has counted it. The factor to a wall is then the mean over the paths of this call and the further
