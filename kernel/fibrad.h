@@ -573,21 +573,21 @@ int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
 uint32_t fibrad_directions_for(uint32_t directions, double error, double tolerance);
 
 /* A part of a beam row: what some of its directions contribute. The factors of a row come from sums over its windows.
- * What one window adds to one sum is a term. Set `memory`, and zero the rest. */
+ * A part has such sums over its own windows. Set `memory`, and zero the rest. */
 typedef struct fibrad_row_part {
-    fibrad_memory memory;         /* 16 bytes for each term; a growing block may be twice as large */
+    fibrad_memory memory;         /* about 400 bytes, 36 for each sphere seen, and 19 KB if there are walls */
     uint64_t key;                 /* of the library: the row, rule and scene of this part; 0: none */
-    size_t count;                 /* of the library: number of terms */
+    size_t used;                  /* of the library: bytes of memory */
     uint32_t from, to, fallbacks; /* of the library: the directions, and the windows left to the robust method */
 } fibrad_row_part;
 
-/* Part of a beam row: the terms that directions `from` to `to` - 1 of the row give. Several threads may compute
+/* Part of a beam row: what directions `from` to `to` - 1 of the row contribute. Several threads may compute
  * different parts of one row at the same time.
  *   Input    work: of the calling thread
  *            i: 0 to spheres - 1
  *            rule: as for fibrad_beam_row; NULL for all defaults
  *            from, to: 0 <= from < to <= directions of the rule
- *   Output   part: after an error it has no terms
+ *   Output   part: after an error it makes no row
  *   Errors   _ARGUMENT, _STATE, _TABLE, _WORK, _MEMORY, _BACK
  *            _CAPACITY: fixed part->memory is too small; part->memory.needed is the size that suffices
  *            _UNSUPPORTED: the rule has a tolerance
@@ -602,7 +602,7 @@ int fibrad_beam_part(const fibrad_scene *scene, fibrad_work *work, uint32_t i, c
  *   Errors   as fibrad_beam_row
  *            _STATE: a part is missing, or belongs to another row, rule or scene
  *            _UNSUPPORTED: the rule has a tolerance
- *   Cost     some ns per term */
+ *   Cost     some ns for each sphere that a part sees, and some microseconds for each part if there are walls */
 int fibrad_beam_join(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
                      const fibrad_row_part *part, uint32_t parts, fibrad_row *row);
 

@@ -67,7 +67,7 @@ static int choose_windows(const fibrad_scene *scene, uint32_t i, const fibrad_be
 /* The noise of a row from the points of masks. A window is divided into regions, the visible parts of spheres. The
  * variance of a region's area is about as its border times the cube of the distance of points (D. G. Kendall, Q. J.
  * Math. 19 (1948) 1). regions: of all windows. The factors are measured, docs/accuracy.md. */
-static double noise_of(const beam_windows *windows, double points, uint32_t regions) {
+static double noise_of(const beam_windows *windows, double points, double regions) {
     const double n = windows->count, cell = FIBRAD_PI * n / points, chords = windows->chords / windows->words;
     const double factor = chords <= 16 ? 1.37 / 14 : chords <= 32 ? 1.04 / 14 : 1.18 / 14;
     const double border = 2 * FIBRAD_PI * fibrad_sqrt(regions / n);
@@ -130,10 +130,7 @@ static double compute_window(fibrad_workspace *work, beam_windows *windows, uint
 }
 
 static void add_open(fibrad_workspace *work, uint32_t k, double rest, fibrad_beam_sums *sums) {
-    if (work->entries.addends != NULL)
-        fibrad_addends_put(work->entries.addends, FIBRAD_ADD_OPEN, k, rest);
-    else
-        sums->open[k % 2] += rest;
+    sums->open[k % 2] += fibrad_on_grid(rest, work->entries.grid);
 }
 
 /* Computes window k and adds it to all sums. False: there was no room for all discs. */
@@ -142,19 +139,18 @@ static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibr
     static const double centre[3] = {0, 0, 0};
     fibrad_points *points = &windows->points;
     double frame[9], whole;
+    work->entries.grid = fibrad_grid_of(set->middle[1], k);
     work->entries.end = set->ends && (k == 0 || k == windows->count - 1);
     const double rest = compute_window(work, windows, k, frame, &whole);
     if (work->disc.count > work->disc.capacity || work->areas.overflow) return false;
-    sums->whole[k % 2] += whole;
-    if (work->entries.addends != NULL && (windows->chords > 0 || windows->lines != NULL))
-        fibrad_addends_put(work->entries.addends, FIBRAD_ADD_WHOLE, k, whole);
+    sums->whole[k % 2] += fibrad_on_grid(whole, work->entries.grid);
     LANED(take_legs)(work, frame, k);
     const bool meets = work->met != NULL && work->met->any;
     if (meets) LANED(fibrad_mesh_count)(work, frame, k);
     if (work->scene->container.walls) LANED(fibrad_walls_share)
     (work, frame, meets && points->count == 0 ? &work->met->points : points, k, set, rest, whole);
     else if (work->cut && rest != 0 && fibrad_work_met(work, centre, frame + 6, work->reach) == FIBRAD_BEYOND)
-        fibrad_work_slot(work, FIBRAD_BEYOND, k, rest);
+        fibrad_work_slot(work, FIBRAD_BEYOND, rest);
     else add_open(work, k, rest, sums);
     if (!windows->both) return true;
     const uint32_t back = windows->count + k;
@@ -238,30 +234,28 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
         work->walls->view = view_of_lines(work, windows.count);
         windows.both = windows.lines != NULL && scene->mesh.triangles == 0 && near_walls(work);
         fibrad_zero(&work->walls->sums, sizeof work->walls->sums);
-        work->walls->sums.addends = range->addends;
     }
     const uint32_t directions = windows.count << windows.both;
-    const fibrad_window_set set = {LANED(frame_of_beam),
-                                   &windows,
-                                   directions,
-                                   directions,
-                                   masked ? FIBRAD_PI / 4 * square : each,
-                                   mixed,
-                                   windows.lines == NULL && !masked};
-    work->entries.addends = range->addends;
-    if (range->part != NULL) fibrad_beam_replay(work, range, set.ends ? windows.count - 1 : 0, &sums);
+    const double size = masked ? FIBRAD_PI / 4 * square : each, most = masked ? square : each;
+    const fibrad_window_set set = {.frame = LANED(frame_of_beam),
+                                   .from = &windows,
+                                   .directions = directions,
+                                   .whole = size,
+                                   .middle = {fibrad_grid_middle(directions), fibrad_grid_middle(most * directions),
+                                              fibrad_grid_middle(most * most * directions)},
+                                   .mixed = mixed,
+                                   .ends = windows.lines == NULL && !masked};
+    for (uint32_t p = 0; p < range->parts; p++) fibrad_beam_add_kept(work, &range->part[p], &sums);
     LANED(begin_legs)(&work->legs);
     for (uint32_t k = range->from; k < range->to; k++)
         if (!add_window(work, &windows, &set, k, &sums)) return fibrad_work_discs_missed(work);
     if (masked) gather_counts(work);
+    sums.seen += work->masks.regions;
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
     if (work->back != UINT32_MAX) return FIBRAD_E_BACK;
     row->fallbacks = work->areas.fallbacks;
     row->length = 0;
-    if (range->addends != NULL) {
-        if (masked) fibrad_addends_put(range->addends, FIBRAD_ADD_SEEN, 0, work->masks.regions);
-        return FIBRAD_OK;
-    }
+    if (range->kept != NULL) return fibrad_beam_keep(work, &sums, range->kept);
     const double all = sums.whole[0] + sums.whole[1], scale = masked ? 1 / all : 1 / (windows.count * each);
     for (int half = 0; half < 2 && windows.lines != NULL; half++)
         work->entries.balance[half] = all / (2 * sums.whole[half]);
@@ -283,7 +277,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     fibrad_row_cut(scene, work->place, work->wall, row);
     fibrad_row_walls(scene, work->wall, row);
     row->lines = rule->lines != NULL ? windows.count : 0;
-    row->noise = masked ? noise_of(&windows, all, work->masks.regions) : 0;
+    row->noise = masked ? noise_of(&windows, all, sums.seen) : 0;
     const double shares = (windows.both ? SHARES_BOTH : SHARES_ERROR) *
                           fibrad_sqrt(fibrad_max(parts[0], SHARES_FOURTHS * parts[1])) * scale;
     row->shares = fibrad_sqrt(shares * shares + pairs.unseen * pairs.unseen);

@@ -1,8 +1,8 @@
 /* beam_part.c - rows in parts. A part is a range of windows. All parts together make the row.
  * SPDX-License-Identifier: MIT
  *
- * A part lists the terms that its windows add to the sums of the row. The row adds the terms of all parts in the
- * order of the windows. So its bits are those of a row computed at once. Counts of points may come in any order. */
+ * A part keeps what its windows add to the sums of the row. These sums are the same in any order. So the bits of the
+ * row are those of a row computed at once. */
 #include "base/arena.h"
 #include "base/random.h"
 #include "row/beam.h"
@@ -35,7 +35,6 @@ static int complete_rule(const fibrad_beam_rule *given, fibrad_beam_rule *rule) 
 static int compute_range(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *given,
                          fibrad_row *row) {
     const part_rule *part = given;
-    if (part->range.addends != NULL) part->range.addends->count = 0, part->range.addends->missed = false;
     return FIBRAD_VERSION_OF(fibrad_beam_lanes, scene->facts.isa)(scene, space, i, &part->rule, &part->range, row);
 }
 
@@ -48,15 +47,11 @@ int fibrad_beam_part(const fibrad_scene *scene, fibrad_work *work, uint32_t i, c
     if (checked != FIBRAD_OK) return checked;
     if (part == NULL || !fibrad_memory_valid(&part->memory) || from >= to || to > how.rule.directions)
         return FIBRAD_E_ARGUMENT;
-    fibrad_addends addends = {.memory = &part->memory};
-    how.range = (fibrad_beam_range){.from = from, .to = to, .addends = &addends};
+    how.range = (fibrad_beam_range){.from = from, .to = to, .kept = part};
     part->key = 0;
     const int status = fibrad_row_run(scene, work, i, &(fibrad_row_method){compute_range, &how, 0, 0}, &row);
     if (status != FIBRAD_OK) return status;
-    part->memory.needed = addends.count * sizeof(fibrad_addend);
-    if (addends.missed) return part->memory.resize != NULL ? FIBRAD_E_MEMORY : FIBRAD_E_CAPACITY;
     part->from = from, part->to = to;
-    part->count = addends.count;
     part->fallbacks = row.fallbacks;
     part->key = key_of(scene, i, &how.rule);
     return FIBRAD_OK;
@@ -71,8 +66,7 @@ int fibrad_beam_join(const fibrad_scene *scene, fibrad_work *work, uint32_t i, c
     const uint64_t key = key_of(scene, i, &how.rule);
     uint32_t to = 0;
     for (uint32_t p = 0; p < parts; to = part[p++].to)
-        if (part[p].key != key || part[p].from != to || part[p].count > part[p].memory.size / sizeof(fibrad_addend))
-            return FIBRAD_E_STATE;
+        if (part[p].key != key || part[p].from != to || part[p].used > part[p].memory.size) return FIBRAD_E_STATE;
     if (to != how.rule.directions) return FIBRAD_E_STATE;
     how.range = (fibrad_beam_range){.part = part, .parts = parts, .exact = how.rule.lines != NULL};
     return fibrad_row_run(scene, work, i, &(fibrad_row_method){compute_range, &how, 0, 0}, row);

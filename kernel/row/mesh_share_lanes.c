@@ -352,6 +352,7 @@ void LANED(fibrad_mesh_count)(fibrad_workspace *work, const double frame[9], uin
     const fibrad_scene *scene = work->scene;
     fibrad_met *met = work->met;
     const fibrad_points *points = &met->points;
+    double weight[FIBRAD_SLOTS] = {0}; /* added as one term, which is rounded once */
     for (uint32_t p = 0; p < points->count; p++) {
         const uint32_t side = met->side[p];
         if (side == FIBRAD_NO_SIDE) continue;
@@ -362,7 +363,10 @@ void LANED(fibrad_mesh_count)(fibrad_workspace *work, const double frame[9], uin
                                                 side); /* a part of a row has the same triangle at fault as the row */
             continue;
         }
-        const uint32_t entry = fibrad_entries_of(&work->entries, scene->facts.spheres + slot);
-        fibrad_entries_add(&work->entries, entry, k, met->weight[p]);
+        weight[slot] += met->weight[p];
     }
+    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
+        if (weight[slot] != 0)
+            fibrad_entries_add(&work->entries, fibrad_entries_of(&work->entries, scene->facts.spheres + slot), k,
+                               weight[slot]);
 }

@@ -323,7 +323,7 @@ static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, 
         if (sums->cuts[wall] == 0)
             continue; /* the way of one line decides for all lines that would meet the same wall */
         const fibrad_wall_line *first = &sums->first_cut[wall];
-        fibrad_work_slot(work, end_of_cut(work, first, window->frame + 6), window->k,
+        fibrad_work_slot(work, end_of_cut(work, first, window->frame + 6),
                          window->open * sums->cuts[wall] / points->open);
     }
 }
@@ -332,10 +332,10 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
                                const fibrad_window_set *set, double rest, double whole) {
     if (rest == 0) {
         work->walls->sums.hidden[k / 64] |= UINT64_C(1) << k % 64;
-        if (work->entries.addends != NULL) fibrad_addends_put(work->entries.addends, FIBRAD_ADD_HIDDEN, k, 0);
         return;
     }
     fibrad_wall_window window = {.frame = frame, .k = k, .n = set->directions, .open = rest, .part = 1};
+    for (int n = 0; n < 3; n++) window.grid[n] = fibrad_grid_of(set->middle[n], k);
     window.weight = whole / set->whole;
     window.end = work->entries.end;
     window.parallel = work->parallel;
@@ -354,11 +354,12 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
 static void add_hidden(fibrad_workspace *work, const fibrad_window_set *set) {
     fibrad_points *all = &work->walls->points;
     all_points(HIDDEN_POINTS, all);
-    for (uint32_t k = 0; k < set->count; k++) {
+    for (uint32_t k = 0; k < set->directions; k++) {
         if ((work->walls->sums.hidden[k / 64] >> k % 64 & 1) == 0) continue;
         double frame[9];
         set->frame(set->from, k, HIDDEN_POINTS, frame);
         fibrad_wall_window window = {.frame = frame, .k = k, .n = set->directions, .hidden = 1, .weight = 1, .part = 1};
+        for (int n = 0; n < 3; n++) window.grid[n] = fibrad_grid_of(set->middle[n], k);
         window.end = set->ends && (k == 0 || k == set->directions - 1);
         fibrad_wall_window_begin(&window, &work->walls->view);
         if (!fibrad_wall_window_simple(&window, &work->walls->view, set->mixed, &work->walls->sums))

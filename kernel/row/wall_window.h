@@ -19,6 +19,7 @@ typedef struct fibrad_wall_course {
 
 typedef struct fibrad_wall_window {
     const double *frame;       /* axes of the window */
+    fibrad_grid grid[3];       /* for shares of windows, sizes and squared sizes */
     uint32_t k, n;             /* window k of n */
     double open, hidden;       /* open and hidden part of the window, areas or points */
     double weight;             /* size of the window over that of the others: masks differ by some points */

@@ -20,10 +20,6 @@ uint32_t fibrad_entries_of(fibrad_entries *entries, uint32_t sphere) {
     return entry;
 }
 
-void fibrad_entries_list(fibrad_entries *entries, uint32_t entry, uint32_t k, double area) {
-    fibrad_addends_put(entries->addends, entries->sphere[entry], k, area);
-}
-
 uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere) {
     return entries->at[hash_slot_of(entries, sphere)];
 }

@@ -2,8 +2,8 @@
 #ifndef FIBRAD_SUMS_ROW_SUM_H
 #define FIBRAD_SUMS_ROW_SUM_H
 
-#include "base/addends.h"
 #include "scene/scene.h"
+#include "sums/grid.h"
 
 /* What the windows have seen of each sphere so far, in the order of first sight. Each fourth direction or ray has a
  * sum of its own, from which the error is estimated. */
@@ -17,11 +17,11 @@ typedef struct fibrad_entries {
     double *exact;     /* [capacity] an exact factor, which takes the place of the sums; 0: none */
     uint64_t *key[2];  /* [capacity] scratch of the sort by columns */
     uint32_t slots, capacity, length, missed;
-    fibrad_addends *addends; /* NULL, or a list of terms that are to be added later */
-    double weight;           /* by which values are multiplied; 1 but for areas among windows by masks */
-    double balance[2];       /* by which sums over even and over odd windows count in their difference; 1 if both are
-                                equally many */
-    bool masked;             /* of a row by masks: the order of the entries may depend on the lists of near spheres */
+    fibrad_grid grid;  /* of the present window, for all sums */
+    double weight;     /* by which values are multiplied; 1 but for areas among windows by masks */
+    double balance[2]; /* by which sums over even and over odd windows count in their difference; 1 if both are
+                          equally many */
+    bool masked;       /* of a row by masks: the order of the entries may depend on the lists of near spheres */
     bool halves; /* areas of window k go to part k mod 2. The other parts have counts of points, exact in any order */
     bool end; /* the present window is the first or the last: it counts half in differences of even and odd windows */
 } fibrad_entries;
@@ -29,25 +29,19 @@ typedef struct fibrad_entries {
 /* The entry of a sphere. A sphere without an entry gets a new one. FIBRAD_NONE: there is no room. */
 uint32_t fibrad_entries_of(fibrad_entries *entries, uint32_t sphere);
 
-/* Puts a term for an entry on the list of terms. */
-void fibrad_entries_list(fibrad_entries *entries, uint32_t entry, uint32_t k, double area);
-
 /* Adds visible area to part k mod 4 of an entry. If the entry is FIBRAD_NONE, it is counted in entries.missed. */
 static inline void fibrad_entries_add(fibrad_entries *entries, uint32_t entry, uint32_t k, double area) {
     if (entry == FIBRAD_NONE) {
         entries->missed++;
         return;
     }
-    area *= entries->weight;
+    area = fibrad_on_grid(area * entries->weight, entries->grid);
     if (entries->halves) k %= 2;
-    if (entries->addends != NULL) {
-        fibrad_entries_list(entries, entry, k, area);
-        return;
-    }
     double *part = entries->part[entry];
     if (entries->end) { /* so half of it is in the difference of even and odd */
-        part[k % 4 ^ 1] += area / 4;
-        area -= area / 4;
+        const double quarter = fibrad_on_grid(area / 4, entries->grid);
+        part[k % 4 ^ 1] += quarter;
+        area -= quarter;
     }
     part[k % 4] += area;
 }

@@ -3,8 +3,8 @@
 #ifndef FIBRAD_SUMS_WALL_SUM_H
 #define FIBRAD_SUMS_WALL_SUM_H
 
-#include "base/addends.h"
 #include "scene/surroundings.h"
+#include "sums/grid.h"
 
 /* The walls and the known space in the frame of a sphere: relative to its centre, in units of its radius. */
 typedef struct fibrad_wall_view {
@@ -36,17 +36,14 @@ typedef struct fibrad_wall_sums {
     double all[FIBRAD_REGIONS][4];  /* the same if nothing were hidden, in windows */
     double mixed[FIBRAD_REGIONS];   /* the open part times the hidden part */
     uint64_t hidden[2 * FIBRAD_DIRECTIONS_MAX / 64 + 1]; /* bit k: window k is hidden and does not count in `all` */
-    fibrad_addends *addends;                             /* NULL, or a list of terms that are to be added later */
 } fibrad_wall_sums;
 
 /* Adds the value of window k to part k mod 4 of a sum. end: the window counts half in differences between parts, as in
- * fibrad_entries_add. */
-static inline void fibrad_wall_add(double part[4], uint32_t k, bool end, double value) {
-    if (end) {
-        part[k % 4 ^ 1] += value / 4;
-        value -= value / 4;
-    }
-    part[k % 4] += value;
+ * fibrad_entries_add. grid: of the sum, see grid.h. */
+static inline void fibrad_wall_add(double part[4], uint32_t k, bool end, double value, fibrad_grid grid) {
+    const double quarter = end ? fibrad_on_grid(value / 4, grid) : 0;
+    part[k % 4 ^ 1] += quarter;
+    part[k % 4] += fibrad_on_grid(value, grid) - quarter;
 }
 
 /* Sums over the points of a window in one octant, for each wall. There are eight partial sums for each, so that the

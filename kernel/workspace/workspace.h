@@ -124,12 +124,9 @@ static inline uint32_t fibrad_work_sphere(const fibrad_workspace *work, uint32_t
     return work->near.sphere[work->disc.near[disc]];
 }
 
-/* Adds a value of window k to a slot. */
-static inline void fibrad_work_slot(fibrad_workspace *work, uint32_t slot, uint32_t k, double value) {
-    if (work->entries.addends != NULL)
-        fibrad_addends_put(work->entries.addends, FIBRAD_ADD_SLOT + slot, k, value);
-    else
-        work->wall[slot] += value;
+/* Adds what a window sees of a slot. */
+static inline void fibrad_work_slot(fibrad_workspace *work, uint32_t slot, double value) {
+    work->wall[slot] += fibrad_on_grid(value, work->entries.grid);
 }
 
 /* Adds the area of a disc that window k sees. */
