@@ -532,7 +532,8 @@ typedef struct fibrad_beam_rule {
     uint32_t points;     /* 0: exact visible areas; 64, 128 or 256: that many points per window */
     double cutoff;       /* L; spheres are left out if their centre is farther than (1 + 1e-12) cutoff; 0: no cutoff */
     double tolerance;    /* the error allowed; directions are added until it is met; 0: no tolerance */
-    uint64_t turn;       /* seed of a random rotation of all directions together; 0: no rotation */
+    uint64_t turn;       /* seed of a random turn of all directions about z, or about the only axis with walls; each
+                            direction also moves along the axis, at most half way to the next; 0: no turn */
     const fibrad_line_set *lines; /* lines to take; directions, turn, tolerance, points are 0; NULL: directions */
     uint32_t chords;              /* 16, 32 or 64: points on so many chords of each window, which are bits of words;
                                      FIBRAD_CHORDS_NONE: exact areas; FIBRAD_CHORDS_SUITED: as many as suit the
@@ -865,6 +866,7 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
  *   emissivity              needed               needed               NULL: all spheres are black   needed
  *   wall_emissivity         needed with walls    needed with walls    NULL: all walls are black     no walls
  *   directions, tolerance   used                 not used             not used                      not used
+ *   open_directions         used                 not used             not used                      not used
  *   cutoff                  used                 used                 must be 0                     must be 0
  *   paths, seed             used                 used                 used                          used
  *   known, known_paths      used                 not used             not used                      not used
@@ -884,7 +886,7 @@ typedef struct fibrad_exchange_rule {
     const double *conductivity;
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */
     uint32_t flights;              /* of _walk, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
-    uint32_t open_directions; /* of the first leg of rows that send much past all spheres; 0: as for the others */
+    uint32_t open_directions; /* of the first leg of rows of which more than a tenth meets no sphere; 0: no other */
     /* [walls + 1], or NULL: what each wall and, last, the surroundings absorb of further paths of sphere i that
      * somebody else has followed. The unit is a path. What a path gives before its first reflection does not count.
      * NaN: nobody has counted it. The factor to a wall is then the mean over the paths of this call and the further

@@ -41,7 +41,8 @@ static int exchange_begin(exchange_task *task, const fibrad_scene *scene, uint32
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
     const uint32_t walls = scene->facts.walls;
     if (i >= scene->facts.spheres || (walls > 0 && rule->wall_emissivity == NULL)) return FIBRAD_E_ARGUMENT;
-    if (!(rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1) || rule->paths > FIBRAD_PATHS_MAX)
+    if (!(rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1) || rule->paths > FIBRAD_PATHS_MAX ||
+        rule->open_directions > FIBRAD_DIRECTIONS_MAX)
         return FIBRAD_E_ARGUMENT;
     *task = (exchange_task){.rule = rule, .emissivity = rule->emissivity};
     const int status = fibrad_paths_emissivities(scene, rule->wall_emissivity, task->wall_emissivity);

@@ -113,6 +113,7 @@ FIBRAD_INLINE void list_faces(fibrad_workspace *work, fibrad_face_search *search
         search->shallow = fibrad_min(search->shallow, faces->low[k]);
         search->nearest = fibrad_min(search->nearest, faces->middle[k]);
     }
+    if (search->nearest < search->near) search->wide = 0;
 }
 
 /* Lists those of up to VD_LANES triangles that may come before the window: the window does not lie outside one of
@@ -208,9 +209,9 @@ static bool enter_stretch(const fibrad_workspace *work, fibrad_face_search *sear
 }
 
 void LANED(fibrad_faces_begin)(const fibrad_workspace *work, const double frame[9], double deepest, double wide,
-                               fibrad_face_search *search) {
+                               double near, fibrad_face_search *search) {
     const fibrad_mesh *mesh = &work->scene->mesh;
-    search->frame = frame, search->wide = wide, search->cut = work->clear_mesh < 1;
+    search->frame = frame, search->wide = wide, search->near = near, search->cut = work->clear_mesh < 1;
     search->slack = mesh->grain * work->inverse + 1e-12;
     search->nearest = search->shallow = __builtin_inf();
     search->most = IMAGES_MOST, search->rest = __builtin_inf();

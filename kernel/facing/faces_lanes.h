@@ -9,7 +9,8 @@
 typedef struct fibrad_face_search {
     const double *frame;
     double deepest; /* greatest depth that matters; the caller may lessen it during the search */
-    double wide;    /* greatest distance aside of lines, per depth */
+    double wide;    /* greatest distance aside of lines, per depth; it may become less during the search */
+    double near;    /* if a triangle is nearer than this, lines do not spread */
     double slack;   /* lengths below this may be rounding errors */
     bool cut;       /* whether triangles may cut sphere i */
     double nearest; /* approximate least depth of the triangles found */
@@ -29,7 +30,7 @@ typedef struct fibrad_face_search {
 
 /* Begins a search for triangles down to a depth. */
 void LANED(fibrad_faces_begin)(const fibrad_workspace *work, const double frame[9], double deepest, double wide,
-                               fibrad_face_search *search);
+                               double near, fibrad_face_search *search);
 
 /* Lists the next triangles in work->met->faces, roughly from front to back. False: no triangle is left. */
 bool LANED(fibrad_faces_next)(fibrad_workspace *work, fibrad_face_search *search);

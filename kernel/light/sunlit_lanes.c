@@ -24,7 +24,7 @@ static int find_clear(fibrad_workspace *space, const double frame[9], fibrad_cle
     fibrad_face_search search;
     clear->whole = true, clear->count = 0;
     if (!fibrad_mesh_near(space, __builtin_inf())) return FIBRAD_OK;
-    LANED(fibrad_faces_begin)(space, frame, __builtin_inf(), 0, &search);
+    LANED(fibrad_faces_begin)(space, frame, __builtin_inf(), 0, __builtin_inf(), &search);
     for (bool more = true; more && (clear->whole || clear->count > 0);) {
         more = LANED(fibrad_faces_next)(space, &search);
         for (uint32_t k = 0; k < space->met->faces.count; k++)

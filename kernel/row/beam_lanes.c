@@ -226,6 +226,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
      * does not follow them that far. Factors of walls would be too large by up to 1.5 % at 14 windows. If such rows are
      * turned at random, parallel lines have no bias. */
     work->parallel = windows.turned && rule->points == FEW_POINTS;
+    work->turned = windows.turned;
     /* directions do not pair off along the axis of walls */
     const bool mixed = windows.lines != NULL || (!windows.turned && fibrad_walls_only(&scene->container) < 2);
     const double each = rule->points > 0 ? rule->points : FIBRAD_PI;

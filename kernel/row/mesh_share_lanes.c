@@ -117,6 +117,13 @@ static uint32_t share_disc(fibrad_workspace *work, fibrad_points *points, uint32
     return own;
 }
 
+/* How wide the directions of open lines spread if the nearest thing that they meet is at some depth. */
+static double spread_at(double depth, uint32_t n) {
+    const double wide = FIBRAD_WINDOW_SPREAD / fibrad_sqrt(n),
+                 ratio = FIBRAD_WINDOW_NEAR / fibrad_max(depth * wide, 1e-300);
+    return ratio < 1 && depth < __builtin_inf() ? wide * fibrad_sqrt(1 - ratio * ratio) : 0;
+}
+
 static void see_all(fibrad_points *points) {
     for (uint32_t word = 0; word < points->count / 64; word++) points->seen[word] = UINT64_MAX;
 }
@@ -216,7 +223,7 @@ static void meet_found(fibrad_workspace *work, mesh_found *found, double deepest
     const double spread = lines->parallel > 0 ? 0 : found->spread, slack = search->slack * (1 + spread * found->at);
     bool more = found->more;
     if (!found->listed) {
-        LANED(fibrad_faces_begin)(work, search->frame, deepest, 1.0001 * spread, search);
+        LANED(fibrad_faces_begin)(work, search->frame, deepest, 1.0001 * spread, 0, search);
         more = LANED(fibrad_faces_next)(work, search);
     }
     search->most = lines->count / FIBRAD_LINE_BLOCK;
@@ -266,14 +273,19 @@ static bool meet_window(fibrad_workspace *work, mesh_found *found, const fibrad_
 /* Searches for triangles before a window down to a depth. False: there are none. */
 static bool find_faces(fibrad_workspace *work, const double frame[9], double deepest, bool open, mesh_found *found) {
     fibrad_face_search *search = &found->search;
-    const bool spreads = open && !work->parallel && !(work->clear_mesh < 1);
-    found->spread = spreads ? FIBRAD_WINDOW_SPREAD / fibrad_sqrt(work->windows) : 0;
-    LANED(fibrad_faces_begin)(work, frame, deepest, 1.0001 * found->spread, search);
+    const bool spreads = open && !work->turned;
+    const double wide = spreads ? 1.0001 * FIBRAD_WINDOW_SPREAD / fibrad_sqrt(work->windows) : 0;
+    const double near = spreads ? FIBRAD_WINDOW_NEAR / wide : __builtin_inf();
+    LANED(fibrad_faces_begin)(work, frame, deepest, wide, near, search);
     found->more = LANED(fibrad_faces_next)(work, search);
     found->listed = true;
-    while (found->more && !(search->nearest < __builtin_inf()))
-        found->more = LANED(fibrad_faces_next)(work, search), found->listed = false;
+    while (found->more && !(search->nearest < near)) {
+        search->deepest = fibrad_min(search->deepest, search->nearest);
+        found->more = LANED(fibrad_faces_next)(work, search);
+        found->listed = false;
+    }
     found->at = fibrad_min(search->nearest, search->rest); /* beyond this depth nothing has been searched */
+    found->spread = spreads ? spread_at(found->at, work->windows) : 0;
     if (found->more || !found->listed || search->rest < __builtin_inf()) search->shallow = -__builtin_inf();
     return found->at < __builtin_inf();
 }

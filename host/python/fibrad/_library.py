@@ -62,7 +62,7 @@ BedFactors = _structure("bed_factors", ("matrix", Matrix), ("facts", SceneFacts)
                         ("seconds closure_error reciprocity_error", c_double))
 ExchangeRule = _structure("exchange_rule", ("emissivity wall_emissivity", DOUBLES), ("directions paths", c_uint32),
                           ("seed", c_uint64), ("cutoff tolerance", c_double), ("conductivity node_emissivity", DOUBLES),
-                          ("flights", c_uint32), ("known", DOUBLES), ("known_paths", c_double))
+                          ("flights", c_uint32), ("open_directions", c_uint32), ("known", DOUBLES), ("known_paths", c_double))
 Displacement = _structure("displacement", ("square error", c_double * 3), ("absorbed", c_double), ("rays", c_uint64))
 HeatConfig = _structure("heat_config", ("directions points patches parts", c_uint32), ("cutoff", c_double),
                         ("wall_rays", c_uint32))
