@@ -35,7 +35,7 @@ static const struct {
     uint32_t directions, open, paths, alone;
 } samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 36, 72, 24, 80},
                [FIBRAD_ACCURACY_LOW] = {"low", 18, 36, 8, 34},
-               [FIBRAD_ACCURACY_HIGH] = {"high", 144, 576, 800, 1600}};
+               [FIBRAD_ACCURACY_HIGH] = {"high", 144, 1000, 800, 1600}};
 
 int fibrad_accuracy_named(const char *name) {
     for (int k = FIBRAD_ACCURACY_NORMAL; k <= FIBRAD_ACCURACY_HIGH && name; ++k)
