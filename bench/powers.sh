@@ -2,69 +2,166 @@
 # powers.sh - powers of fix fibrad in LAMMPS, whose rows are made once, against those of `fibrad heat`. docs/lammps.md
 # has the table. SPDX-License-Identifier: MIT
 #
-# bench/powers.sh [WORD]: all cases, or those whose name has this word. A line has a case, an accuracy and a seed. The
-# error is the root mean square of the differences between powers of particles, over that of the powers. The error of
-# the sum is over the sum of magnitudes. Where surroundings and floor are at 0 K, the line ends with the errors of their
-# powers. The script needs `make lammps build/fibrad`.
+# bench/powers.sh [WORD [ACCURACIES [SEEDS]]]: all cases, or those whose name has this word; "high normal low" and
+# "1 2 3" if nothing else is given. "directions=300,paths=800" is an accuracy, too. A line has a case and an accuracy. Errors are differences from `fibrad heat`:
+#     rms           root mean square of those of particles over that of their powers, the mean of all seeds
+#     largest       that of a particle over its power, or over the root mean square of all powers if that is larger;
+#                   this and the next two are the largest of all seeds
+#     sum           that of the sum of all powers over the sum of their magnitudes
+#     rest, floor   those of the surroundings and of the first wall over their powers
+#     warnings      number of warnings of the fix, all seeds
+# What `fibrad heat` finds is kept in build/bench/powers. The script needs `make lammps build/fibrad`.
 set -eu
 : "${BUILD:=build}" "${LMP:=lmp}"
 . tests/couple/mpi.sh
 . tests/couple/beds.sh
-work=$BUILD/bench/powers only=${1:-}
+work=${WORK:-$BUILD/bench/powers} only=${1:-} accuracies=${2:-high normal low} seeds=${3:-1 2 3}
 mkdir -p "$work"
 
-# measure CASE BED CHANGE T SURROUNDINGS EMISSIVITIES WALLS LIST TEMPERATURES: CHANGE is a program of awk that prints
-# lines of the dump BED. T is a formula of LAMMPS. The first of two EMISSIVITIES is that of odd ids. WALLS are keywords
-# of the fix. LIST and TEMPERATURES are the same walls for fibrad heat.
+# What the lines are compared with, in %: rms, or largest, sum and floor.
+declare -A bar=(
+    ["below high"]="1.5 .2 .2" ["hopper high"]="1.5 .2 .2" ["curtain high"]="1.5 .2 .2"
+    ["closed high"]=.6 ["closed normal"]=2.5 ["closed low"]=5 ["box 0.8 high"]=.7 ["box 0.8 normal"]=3.2 ["box 0.8 low"]=6
+    ["poured high"]=.8 ["poured normal"]=3 ["poured low"]=5.5 ["drum high"]=1.1 ["drum normal"]=5.5 ["drum low"]=9.5
+    ["flat 0.8 high"]=.5 ["flat 0.8 normal"]=2.2 ["flat 0.8 low"]=4.7 ["plate high"]=.8 ["plate normal"]=5.5 ["plate low"]=10.5
+)
+
+# measure CASE BED WALLS LIST TEMPERATURES: BED is a dump. WALLS are keywords of the fix, LIST and TEMPERATURES the same
+# walls for fibrad heat. Variables tell more: `e`, emissivities of odd and even ids; `field`, temperatures of particles as a
+# formula of LAMMPS; `cold`, that of the surroundings; `error`, allowed to fibrad heat; `turn`, a program of awk for what
+# fibrad heat reads.
 measure() {
-    local name=$1 bed=$2 change=$3 field=$4 cold=$5 emissivities=$6 walls=$7 list=$8 temperatures=$9
-    local boundary="f f f" error=0.002 out=$work/powers.dump accuracy seed
+    local name=$1 bed=$2 walls=$3 list=$4 temperatures=$5 out=$work/powers.dump boundary accuracy words seed heat key
+    local e=${e:-0.8 0.8} field=${field:-300} cold=${cold:-300} error=${error:-0.002} turn=${turn:-1}
     [[ $name == *"$only"* ]] || return 0
 
-    test "$bed" != monoper2000 || boundary="p p f"
-    case $name in apart*) error=0.005 ;; *" 0.3") error=0.003 ;; esac
-    awk "$change" "tests/data/$bed.dump" >"$work/bed.dump"
-    as_data "$work/bed.dump" >"$work/bed.data"
-    rm -f "$work/heat.csv"
-    for accuracy in normal high; do
-        for seed in 1 2 3; do
-            "$LMP" -in bench/powers.lmp -screen none -log "$work/log" -var load "$BUILD/couple/fibrad.lmp" \
+    boundary=$(awk '/BOX BOUNDS/ { for (i = 4; i < 7; i++) printf "%s ", substr($i, 1, 1) }' "$bed")
+    as_data "$bed" >"$work/bed.data"
+    for accuracy in $accuracies; do
+        words="accuracy $accuracy"
+        [[ $accuracy != *=* ]] || words=${accuracy//[=,]/ }
+        rm -f "$work"/log.* "$work/errors"
+        for seed in $seeds; do
+            "$LMP" -in bench/powers.lmp -screen none -log "$work/log.$seed" -var load "$BUILD/couple/fibrad.lmp" \
                 -var data "$work/bed.data" -var boundary "$boundary" -var T "$field" -var out "$out" -var words \
-                "emissivity type $emissivities surroundings $cold $walls accuracy $accuracy seed $seed"
-            test -e "$work/heat.csv" || "$BUILD/fibrad" heat "$out" --length-unit m --temperature d_T \
-                --ambient "$cold" --emissivity "1:${emissivities/ /,2:}" --wall "$list" \
-                --wall-temperature "$temperatures" --wall-emissivity 0.9 --error $error --quiet -o "$work/heat.csv"
-            echo "$name, $accuracy, seed $seed: $(compare "$work/heat.csv" "$out")"
+                "emissivity type $e surroundings $cold $walls $words seed $seed"
+            heat=(--length-unit m --temperature d_T --ambient "$cold" --emissivity "1:${e/ /,2:}" --wall "$list"
+                --wall-temperature "$temperatures" --wall-emissivity 0.9 --error "$error" --quiet)
+            awk '/ITEM: ATOMS/ || (NF == 8 && !/ITEM/) { NF-- } 1' "$out" | awk "$turn" >"$work/heat.dump"
+            key=$(echo "${heat[@]}" | cat - "$work/heat.dump" | cksum | cut -d ' ' -f 1)
+            test -e "$work/$key.csv" || "$BUILD/fibrad" heat "$work/heat.dump" "${heat[@]}" -o "$work/$key.csv"
+            compare "$work/$key.csv" "$out" >>"$work/errors"
         done
+        awk -v warnings="$(cat "$work"/log.* | grep -c 'WARNING: fix fibrad')" -v bar="${bar[$name $accuracy]:--}" '
+            function most(k, x) { if (x < 0) x = -x; if (x > worst[k]) worst[k] = x }
+            { rms += $2; for (k = 3; k < 7; k++) most(k, $k); if ($3 == worst[3]) whose = $7 }
+            END { printf "%d particles, rms %.2f %%, largest %.2f %% (%d), sum %.2f %%, rest %.2f %%, floor %.2f %%, " \
+                "warnings %d; bar %s\n", $1, rms/NR, worst[3], whose, worst[4], worst[5], worst[6], warnings, bar }' \
+            "$work/errors" | sed "s/^/$name, $accuracy: /"
     done
 }
 
-# compare CSV DUMP: the errors of DUMP and of DUMP.rest, which has the surroundings and the first wall
+# compare CSV DUMP: number, rms, largest, sum, rest, floor and the id of the largest, of DUMP and of DUMP.rest
 compare() {
-    awk 'NR == FNR { t[$1] = $2; power[$1] = $3; next }
-        !/^-?[0-9]+ / { next }
+    awk 'NR == FNR { power[$1] = $3; if ($1 + 0 > 0) { n++; squares += $3^2 } next }
+        !/^-?[0-9]+ / || (FNR < 10 && !/^-/) { next }
         { difference = $NF - power[$1] }
-        $1 < 0 { rest = rest sprintf(", %.2f %%", 100*difference/power[$1]); next }
-        { n++; squares += power[$1]^2; errors += difference^2; sum += difference; all += sqrt(power[$1]^2) }
-        END { printf "%d particles, error %.2f %%, of the sum %.2f %%%s\n", n, 100*sqrt(errors/squares), 100*sum/all,
-                  t[-1] + t[-2] == 0 ? rest : "" }' FS=, "$1" FS=' ' "$2" "$2.rest"
+        $1 < 0 { rest[$1] = power[$1] ? 100*difference/power[$1] : 0; next }
+        {
+            m++; errors += difference^2; sum += difference; size = sqrt(power[$1]^2); all += size
+            if (size < sqrt(squares/n)) size = sqrt(squares/n)
+            if ((difference/size)^2 > most^2) { most = sqrt((difference/size)^2); whose = $1 }
+        }
+        END { if (m != n) exit 1
+            print n, 100*sqrt(errors/squares), 100*most, 100*sum/all, rest[-1], rest[-2], whose }' \
+        FS=, "$1" FS=' ' "$2" "$2.rest"
 }
 
-high=$(awk 'NF == 8 && $5 + $6 > high { high = $5 + $6 } END { print high }' tests/data/poly2000.dump)
+# bed WIDE HIGH: a dump of the lines `x y z radius` of the input, in a box that is periodic along x and y
+bed() {
+    awk -v wide="$1" -v high="$2" '{ line[NR] = $0 }
+        END {
+            print "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n" NR "\nITEM: BOX BOUNDS pp pp ff"
+            print "0 " wide "\n0 " wide "\n0 " high "\nITEM: ATOMS id type x y z radius v_T v_none"
+            for (i = 1; i <= NR; i++) print i, 1, line[i], 300, 0
+        }'
+}
+
+# part BED PROGRAM: BED of tests/data with what a program of awk does to its particles, whose z is $5
+part() {
+    awk "NF == 8 && !/ITEM/ { $2 } 1" "tests/data/$1.dump"
+}
+
+# funnel WIDE LOW HIGH HOLE: four sides of a hopper about the axis of a box, from an opening at the height LOW to WIDE at
+# HIGH
+funnel() {
+    awk -v wide="$1" -v low="$2" -v high="$3" -v hole="$4" '
+        function corner(s, up,   w) {
+            w = (up ? wide : hole)/2
+            return "vertex " wide/2 + (s%4%3 ? w : -w) " " wide/2 + (s%4 > 1 ? w : -w) " " (up ? high : low) "\n"
+        }
+        function facet(a, b, c) { print "facet normal 0 0 0\nouter loop\n" a b c "endloop\nendfacet" }
+        BEGIN {
+            print "solid funnel"
+            for (s = 0; s < 4; s++) {
+                facet(corner(s, 0), corner(s + 1, 0), corner(s + 1, 1))
+                facet(corner(s, 0), corner(s + 1, 1), corner(s, 1))
+            }
+            print "endsolid"
+        }'
+}
+
+# a layer of a lattice, and three balls below it
+awk 'BEGIN {
+    print "6.006 6.006 2.5025 .5\n9.009 4.004 1.5015 .5\n2.002 2.002 3.5035 .5"
+    for (n = 0; n < 1440; n++) print (n%12 + .5)*1.001, (int(n/12)%12 + .5)*1.001, (int(n/144) + 6.5)*1.001, .5
+}' | bed 12.012 20.02 >"$work/below.dump"
+# 650 particles that lie in a hopper with an opening of 4, and 30 that have left it
+awk 'function near(x) { s = s*16807%2147483647; return x + .1*(s/2147483647 - .5) }
+    BEGIN {
+        s = 1
+        for (n = 0; n < 30; n++) print near(4.5 + n%3), near(4.5 + int(n/3)%2*2), near(4.4 - .85*int(n/6)), .4
+        for (n = 0; m < 650; n++) {
+            x = n%11 + .5; y = int(n/11)%11 + .5; z = 5.4 + .9*int(n/121); r = 1.4 + .3*(z - 5)
+            if ((x - 5.5)^2 < r^2 && (y - 5.5)^2 < r^2) { m++; print near(x), near(y), near(z), .4 }
+        }
+    }' | bed 11 25 >"$work/hopper.dump"
+# two rows of balls that fall
+awk 'function near(x) { s = s*16807%2147483647; return x + .4*(s/2147483647 - .5) }
+    BEGIN { s = 1; for (n = 0; n < 416; n++) print near(1.5*(n%8) + .75), near(5.25 + 1.5*(int(n/8)%2)), near(1.5*int(n/16) + 1), .5 }' |
+    bed 12 50 >"$work/curtain.dump"
+part mono2000 '$6 /= 2' >"$work/apart.dump"
+# shellcheck disable=SC2016  # columns of awk
+{
+    part mono2000 'if (($3 - 6)^2 + ($4 - 6)^2 >= 25) next' >"$work/cylinder.dump"
+    part mono2000 'if (($3 - 6)^2 + ($4 - 6)^2 >= 25) next; if ($5 > 6) $5 = 6 + 3*($5 - 6)' >"$work/poured.dump"
+    part mono2000 'if (($4 - 6)^2 + ($5 - 6)^2 >= 30.25 || $5 > 6.5) next' >"$work/drum.dump"
+    lying='NF == 7 && !/ITEM/ { x = $3; $3 = $4; $4 = $5; $5 = x } 1'
+}
+poly=tests/data/poly2000.dump flat=tests/data/monoper2000.dump
+high=$(awk 'NF == 8 && $5 + $6 > high { high = $5 + $6 } END { print high }' $poly)
 box 12 "$high" | sed '/solid zhi/,$d' >"$work/box.stl"
+box 12 1 | sed -n '/solid zlo/,/endsolid/p' >"$work/plate.stl"
+funnel 11 5 25 4 >"$work/funnel.stl"
 sides=
 for face in xlo xhi ylo yhi zlo; do sides="$sides wall $face 1000 0.9"; done
-cylinder="wall zcylinder 5.5 300 0.9 at 6 6 wall zhi open"
-# shellcheck disable=SC2016  # columns of awk
-inside='NF < 8 || /ITEM/ || ($3 - 6)^2 + ($4 - 6)^2 < 25' halved='NF == 8 && !/ITEM/ { $6 /= 2 } 1'
 
-measure "box 0.8" poly2000 1 300 300 "0.8 0.8" "$sides wall zhi open" box:open=zmax 1000
-measure "box 0.8 and 0.3" poly2000 1 300 300 "0.8 0.3" "$sides wall zhi open" box:open=zmax 1000
-measure "triangles 0.8" poly2000 1 300 300 "0.8 0.8" "wall mesh $work/box.stl 1000 0.9" "mesh:$work/box.stl" 1000
+measure below "$work/below.dump" "wall zlo 1000 0.9" zmin 1000
+error=0.01 measure hopper "$work/hopper.dump" "wall zlo 1000 0.9 wall mesh $work/funnel.stl 300 0.9 both" "zmin,mesh:$work/funnel.stl:both" zmin=1000,300
+error=0.005 measure curtain "$work/curtain.dump" "wall zlo 1000 0.9" zmin 1000
+measure closed $poly "$sides wall zhi 1000 0.9 at $high" "xmin,xmax,ymin,ymax,zmin,zmax=$high" 1000
+measure "box 0.8" $poly "$sides wall zhi open" box:open=zmax 1000
+e="0.8 0.3" measure "box 0.8 and 0.3" $poly "$sides wall zhi open" box:open=zmax 1000
+measure "triangles 0.8" $poly "wall mesh $work/box.stl 1000 0.9" "mesh:$work/box.stl" 1000
+cylinder="wall zlo 1000 0.9 wall zcylinder 5.5 300 0.9 at 6 6 wall zhi open"
+measure poured "$work/poured.dump" "$cylinder" zmin,zmax=open,cylinder:6,6,5.5 zmin=1000,300
+turn=$lying measure drum "$work/drum.dump" "wall xcylinder 6 1000 0.9 at 6 6 wall xlo 300 0.9 wall xhi 300 0.9" \
+    cylinder:6,6,6,zmin=0,zmax=12 cylinder=1000,300
+measure plate tests/data/mono2000.dump "wall mesh $work/plate.stl 1000 0.9" "mesh:$work/plate.stl" 1000
 for e in 0.8 0.3; do
-    measure "apart $e" mono2000 "$halved" 300 600 "$e $e" "wall zlo 1000 0.9" zmin 1000
-    measure "cylinder $e" mono2000 "$inside" 300 300 "$e $e" "wall zlo 1000 0.9 $cylinder" \
-        zmin,zmax=open,cylinder:6,6,5.5 zmin=1000,300
-    measure "flat $e" monoper2000 1 1000 0 "$e $e" "wall zlo 0 0.9" zmin 0
+    test $e = 0.8 || error=0.003
+    e="$e $e" error=0.005 cold=600 measure "apart $e" "$work/apart.dump" "wall zlo 1000 0.9" zmin 1000
+    e="$e $e" measure "cylinder $e" "$work/cylinder.dump" "$cylinder" zmin,zmax=open,cylinder:6,6,5.5 zmin=1000,300
+    e="$e $e" field=1000 cold=0 measure "flat $e" $flat "wall zlo 0 0.9" zmin 0
 done
-measure "linear 0.8" monoper2000 1 "300+700*z/bound(all,zmax)" 1000 "0.8 0.8" "wall zlo 300 0.9" zmin 300
+field="300+700*z/bound(all,zmax)" cold=1000 measure "linear 0.8" $flat "wall zlo 300 0.9" zmin 300

@@ -550,7 +550,8 @@ typedef struct fibrad_beam_rule {
     uint32_t points;     /* 0: exact visible areas; 64, 128 or 256: that many points per window */
     double cutoff;       /* L; spheres are left out if their centre is farther than (1 + 1e-12) cutoff; 0: no cutoff */
     double tolerance;    /* the error allowed; directions are added until it is met; 0: no tolerance */
-    uint64_t turn;       /* seed of a random rotation of all directions together; 0: no rotation */
+    uint64_t turn;       /* seed of a random turn of all directions about z, or about the only axis with walls; each
+                            direction also moves along the axis, at most half way to the next; 0: no turn */
     const fibrad_line_set *lines; /* lines to take; directions, turn, tolerance, points are 0; NULL: directions */
     uint32_t chords;              /* 16, 32 or 64: points on so many chords of each window, which are bits of words;
                                      FIBRAD_CHORDS_NONE: exact areas; FIBRAD_CHORDS_SUITED: as many as suit the
@@ -887,6 +888,7 @@ typedef struct fibrad_exchange_rule {
     double cutoff;                 /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
     double tolerance;              /* the error allowed; directions and paths are added until it is met; 0: none */
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */
+    uint32_t open_directions; /* of the first segment of rows of which more than a tenth meets no sphere; 0: no other */
     /* [spheres], k* and not k_s: fibrad_relative_conductivity of each sphere, at least
      * FIBRAD_RELATIVE_CONDUCTIVITY_MIN. INFINITY: the sphere has one temperature. Needed with node_emissivity. */
     const double *conductivity;

@@ -136,7 +136,7 @@ static inline struct named_row row_by(const struct part *p, const fibrad_scene *
                                            .wall_emissivity = wall_emissivity,
                                            .directions = method == 5 ? 145 : 0,
                                            .paths = 60,
-                                           .seed = method == 6 ? 12345 : 0,
+                                           .seed = method == 6 ? 12347 : 0,
                                            .cutoff = cutoff,
                                            .tolerance = method == 7 ? .03 : 0};
     const int status = method < 3    ? fibrad_beam_row(scene, &work, i, &beam, &out.row)

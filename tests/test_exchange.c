@@ -96,6 +96,33 @@ TEST(hardly_seen) {
     }
 }
 
+/* Rows that see much besides spheres take open_directions. */
+TEST(open_rows_have_more_directions) {
+    OWNED_BED bed = packing(200, .5, 1, .55, 4, false);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(bed.n);
+    double *emissivity = calloc(bed.n, sizeof *emissivity);
+    for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = .8;
+    int open = 0;
+    for (uint32_t i = 0; i < bed.n; i++) {
+        fibrad_exchange_rule rule = {
+            .emissivity = emissivity, .directions = 36, .open_directions = 90, .paths = 8, .seed = i + 1};
+        assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &row, NULL));
+        const uint32_t taken = row.directions;
+        open += taken == 90;
+        rule.directions = taken, rule.open_directions = 0;
+        OWNED_ROW same = row_of(bed.n), first = row_of(bed.n);
+        assert_ok(fibrad_exchange_row(scene, &work, i, &rule, &same, NULL));
+        ck_assert(same_bits(&row, &same));
+        assert_ok(fibrad_beam_row(scene, &work, i,
+                                  &(fibrad_beam_rule){.directions = 36, .points = 64, .turn = rule.seed}, &first));
+        ck_assert(fabs(first.escaped - .1) < .02 || (taken == 90) == (first.escaped > .1));
+    }
+    ck_assert(open > 20 && open < (int)bed.n - 20);
+    free(emissivity);
+}
+
 /* A sphere stands in a much larger closed box of grey walls, which reflect back to it. Walls and sphere nearly form an
  * enclosure of two surfaces. By the balance of two grey surfaces with F_12 = 1 and F_21 = A_1/A_2, the sphere gets
  * back, of what it emits, D_11 = (1 - e_2) F_21 e_1/(1 - (1 - e_2)(1 - F_21) - (1 - e_2) F_21 (1 - e_1)). */

@@ -35,6 +35,33 @@ static double solid_angle(double v[3][3]) {
     return 2 * fabs(atan2(volume, r[0] * r[1] * r[2] + dot[0] * r[2] + dot[1] * r[0] + dot[2] * r[1]));
 }
 
+/* The mean over turned rows is the solid angle of a square over 4 pi, above its middle and near its edge. */
+LOOP_TEST(a_square_below_turned_directions, 2) {
+    enum { TURNS = 2000 };
+    OWNED_BED bed = BED({_i ? 10 : 0, 0, 6, 1});
+    OWNED struct mesh *mesh = mesh_new();
+    const double corner[4][2] = {{-12, -12}, {12, -12}, {12, 12}, {-12, 12}};
+    double v[4][3], mean = 0, square = 0;
+    for (int k = 0; k < 4; k++) {
+        mesh_vertex(mesh, corner[k][0], corner[k][1], 0);
+        v[k][0] = corner[k][0] - bed.x[0], v[k][1] = corner[k][1], v[k][2] = -6;
+    }
+    mesh_triangle(mesh, 0, 1, 2, 0, 0);
+    mesh_triangle(mesh, 0, 2, 3, 0, 0);
+    double half[3][3];
+    memcpy(half[0], v[0], sizeof half[0]), memcpy(half[1], v[2], 2 * sizeof half[0]);
+    const double exact = (solid_angle(v) + solid_angle(half)) / (4 * PI);
+    OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1);
+    OWNED_WORK work = work_growing();
+    OWNED_ROW row = row_of(1);
+    for (uint64_t turn = 1; turn <= TURNS; turn++) {
+        const fibrad_beam_rule rule = {.directions = 144, .points = 256, .turn = turn};
+        assert_ok(fibrad_beam_row(scene, &work, 0, &rule, &row));
+        mean += row.wall[0] / TURNS, square += pow(row.wall[0] - exact, 2) / TURNS;
+    }
+    ck_assert_double_eq_tol(mean, exact, 3.5 * sqrt(square / TURNS) + 1e-5);
+}
+
 /* The plane of a triangle does not cut the sphere. So F is the solid angle of the triangle over 4 pi. */
 TEST(a_sphere_and_a_triangle) {
     double square = 0, worst[3] = {0};

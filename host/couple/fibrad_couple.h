@@ -98,9 +98,10 @@ typedef struct fibrad_insitu fibrad_insitu;
 /* Directions and paths of each row. More paths take the place of paths of sources: if config.one_way is 1, or if some
  * source has no paths of its own. docs/lammps.md has errors and times. */
 typedef enum fibrad_accuracy {
-    FIBRAD_ACCURACY_NORMAL = 0, /* 36 directions, 24 paths, or 80 without paths of sources */
-    FIBRAD_ACCURACY_LOW = 1,    /* 18 directions, 8 paths, or 34 */
-    FIBRAD_ACCURACY_HIGH = 2    /* 144 directions, 800 paths, or 1,600 */
+    FIBRAD_ACCURACY_NORMAL = 0, /* 36 directions, 24 paths, or 80 without paths of sources; rows of which more than a
+                                   tenth meets walls or surroundings at once: 72 directions */
+    FIBRAD_ACCURACY_LOW = 1,    /* 18 and 36 directions, 8 paths, or 34 */
+    FIBRAD_ACCURACY_HIGH = 2    /* 144 and 1,000 directions, 800 paths, or 1,600 */
 } fibrad_accuracy;
 
 /* The fibrad_accuracy of the name low, normal or high. Not collective.
@@ -116,7 +117,7 @@ int fibrad_accuracy_named(const char *name);
  * and images. The default is no longer than the bed. Rows take about as long with any cutoff. */
 typedef struct fibrad_insitu_config {
     double cutoff;       /* L, as in fibrad_exchange_rule, at least the largest diameter; 0: see above */
-    uint32_t directions; /* as in fibrad_exchange_rule; 0: those of `accuracy` */
+    uint32_t directions; /* as in fibrad_exchange_rule, for all rows; 0: those of `accuracy` */
     uint32_t paths;      /* of particles, as in fibrad_exchange_rule; 0: those of `accuracy` */
     double tolerance;    /* as in fibrad_exchange_rule; 0: none */
     uint64_t seed;       /* of random numbers, together with the step and the id of the particle */

@@ -23,6 +23,9 @@
  * as much time. At lower emissivities beams take less. */
 #define BEAM_SHARE 0.5
 
+/* Rows that send more than this past all spheres take the open_directions of the rule. */
+#define OPEN_PART 0.1
+
 /* One call: the rule, emissivities, and the number of rays that the call has traced. */
 typedef struct exchange_task {
     const fibrad_exchange_rule *rule;
@@ -38,7 +41,8 @@ static int exchange_begin(exchange_task *task, const fibrad_scene *scene, uint32
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
     const uint32_t walls = scene->facts.walls;
     if (i >= scene->facts.spheres || (walls > 0 && rule->wall_emissivity == NULL)) return FIBRAD_E_ARGUMENT;
-    if (!(rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1) || rule->paths > FIBRAD_PATHS_MAX)
+    if (!(rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1) || rule->paths > FIBRAD_PATHS_MAX ||
+        rule->open_directions > FIBRAD_DIRECTIONS_MAX)
         return FIBRAD_E_ARGUMENT;
     *task = (exchange_task){.rule = rule, .emissivity = rule->emissivity};
     const int status = fibrad_paths_emissivities(scene, rule->wall_emissivity, task->wall_emissivity);
@@ -75,6 +79,13 @@ static int want_segments(fibrad_workspace *space, const fibrad_paths *paths, con
     return FIBRAD_OK;
 }
 
+/* The fraction that meets no sphere. */
+static double open_part(const fibrad_scene *scene, const fibrad_row *row) {
+    double open = row->escaped + row->beyond;
+    for (uint32_t b = 0; b < scene->facts.walls; b++) open += row->wall[b];
+    return open;
+}
+
 /* Computes the first segment of all emission, a beam row. error: of what spheres and walls absorb there. */
 static int first_segment(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const exchange_task *task,
                          fibrad_row *row, double *error) {
@@ -92,6 +103,10 @@ static int first_segment(const fibrad_scene *scene, fibrad_workspace *space, uin
         for (uint32_t b = 0; b < scene->facts.walls; b++)
             if (row->wall[b] > 0) most = fibrad_max(most, rule->wall_emissivity[b]);
         *error = most * row->error;
+        if (beam.directions < rule->open_directions && open_part(scene, row) > OPEN_PART) {
+            beam.directions = rule->open_directions;
+            continue;
+        }
         double wanted = BEAM_SHARE * rule->tolerance;
         if (!(wanted > 0 && *error > wanted) || beam.directions == FIBRAD_DIRECTIONS_MAX) return FIBRAD_OK;
         beam.directions = fibrad_directions_for(beam.directions, *error, wanted);

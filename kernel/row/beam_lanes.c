@@ -26,7 +26,7 @@ typedef struct beam_windows {
     uint32_t count;
     bool turned; /* directions have been turned */
     bool both;   /* walls are also seen in the other sense of each line */
-    double turn[9];
+    fibrad_turning turning;
     uint32_t chords, words; /* of masks; 0: none */
     fibrad_points points;   /* count 0: exact areas */
 } beam_windows;
@@ -38,14 +38,17 @@ static void LANED(frame_of_beam)(const void *from, uint32_t k, uint32_t points, 
         for (int n = 3; n < 9 && k >= windows->count; n++) frame[n] = -frame[n];
         return;
     }
-    fibrad_beam_frame(k, windows->count, points, frame);
-    if (windows->turned) fibrad_rotate_axes(windows->turn, frame);
+    if (windows->turned)
+        fibrad_turned_frame(&windows->turning, k, windows->count, points, frame);
+    else
+        fibrad_beam_frame(k, windows->count, points, frame);
 }
 
 /* Error: _TABLE. */
 static int choose_windows(const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule, beam_windows *windows) {
     *windows = (beam_windows){.lines = rule->lines, .count = rule->directions, .turned = rule->turn != 0};
-    if (windows->turned) fibrad_rotation(rule->turn, windows->turn);
+    const int only = fibrad_walls_only(&scene->container);
+    if (windows->turned) windows->turning = fibrad_turning_of(rule->turn, only < 3 ? only : 2);
     windows->words = fibrad_mask_words(scene, i);
     if (rule->chords > 0 && windows->words > 0) windows->chords = rule->chords * windows->words;
     windows->points.count = rule->points;
@@ -164,7 +167,7 @@ static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibr
 static fibrad_wall_view view_of_lines(const fibrad_workspace *work, uint32_t windows) {
     const double *period = work->scene->period;
     const bool repeats = period[0] > 0 || period[1] > 0 || period[2] > 0;
-    const bool marked = !work->cut && repeats && work->scene->occupancy.mark != NULL;
+    const bool marked = !work->cut && repeats && work->scene->occupancy.mark != NULL && fibrad_walls_only(&work->scene->container) == 3;
     return fibrad_wall_view_of(work->scene, work->place, work->cut || marked,
                                marked ? fibrad_sqrt(windows) : work->reach);
 }
@@ -223,7 +226,9 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
      * does not follow them that far. Factors of walls would be too large by up to 1.5 % at 14 windows. If such rows are
      * turned at random, parallel lines have no bias. */
     work->parallel = windows.turned && rule->points == FEW_POINTS;
-    const bool mixed = windows.turned || windows.lines != NULL; /* directions do not pair off */
+    work->turned = windows.turned;
+    /* directions do not pair off along the axis of walls */
+    const bool mixed = windows.lines != NULL || (!windows.turned && fibrad_walls_only(&scene->container) < 2);
     const double each = rule->points > 0 ? rule->points : FIBRAD_PI;
     const double square = 32.0 * windows.words * windows.chords; /* points of masks in the square about a window */
     if (scene->container.walls) {
@@ -239,7 +244,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
                                    .whole = size,
                                    .middle = {fibrad_grid_middle(directions), fibrad_grid_middle(most * directions),
                                               fibrad_grid_middle(most * most * directions)},
-                                   .turned = mixed,
+                                   .mixed = mixed,
                                    .ends = windows.lines == NULL && !masked};
     for (uint32_t p = 0; p < range->parts; p++) fibrad_beam_add_kept(work, &range->part[p], &sums);
     LANED(begin_segments)(&work->segments);

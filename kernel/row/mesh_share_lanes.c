@@ -273,7 +273,7 @@ static bool meet_window(fibrad_workspace *work, mesh_found *found, const fibrad_
 /* Searches for triangles before a window down to a depth. False: there are none. */
 static bool find_faces(fibrad_workspace *work, const double frame[9], double deepest, bool open, mesh_found *found) {
     fibrad_face_search *search = &found->search;
-    const bool spreads = open && !work->parallel;
+    const bool spreads = open && !work->turned;
     const double wide = spreads ? 1.0001 * FIBRAD_WINDOW_SPREAD / fibrad_sqrt(work->windows) : 0;
     const double near = spreads ? FIBRAD_WINDOW_NEAR / wide : __builtin_inf();
     LANED(fibrad_faces_begin)(work, frame, deepest, wide, near, search);

@@ -347,7 +347,7 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
     if (points->count == 0) fibrad_areas_slope(&work->areas, work->disc.resolved, window.slope);
     for (int axis = 0; axis < 2; axis++) window.slope[axis] *= whole / FIBRAD_PI;
     fibrad_wall_window_begin(&window, &work->walls->view, frame);
-    if (!fibrad_wall_window_simple(&window, &work->walls->view, set->turned, &work->walls->sums))
+    if (!fibrad_wall_window_simple(&window, &work->walls->view, set->mixed, &work->walls->sums))
         share_by_lines(work, points, &window);
 }
 
@@ -363,7 +363,7 @@ static void add_hidden(fibrad_workspace *work, const fibrad_window_set *set) {
         for (int n = 0; n < 3; n++) window.grid[n] = fibrad_grid_of(set->middle[n], k);
         window.end = set->ends && (k == 0 || k == set->directions - 1);
         fibrad_wall_window_begin(&window, &work->walls->view, frame);
-        if (!fibrad_wall_window_simple(&window, &work->walls->view, set->turned, &work->walls->sums))
+        if (!fibrad_wall_window_simple(&window, &work->walls->view, set->mixed, &work->walls->sums))
             share_by_lines(work, all, &window);
     }
 }

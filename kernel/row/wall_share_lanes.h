@@ -13,7 +13,7 @@ typedef struct fibrad_window_set {
     uint32_t directions;                                                           /* how many windows there are */
     double whole;     /* the size of a window, or about that of masks */
     double middle[3]; /* of the grids for shares of windows, sizes and squared sizes, see sums/grid.h */
-    bool turned;      /* directions do not pair off across z */
+    bool mixed;       /* directions do not pair off along the only axis of walls */
     bool ends;        /* the first and the last window count half in differences of even and odd windows */
 } fibrad_window_set;
 

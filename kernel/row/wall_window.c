@@ -121,11 +121,11 @@ static double rising_share(double slope, double width) {
     return fibrad_max(0, fibrad_min(1, share));
 }
 
-/* All walls are planes across one axis: a band of directions tells the shares. Across z no band is needed if the
- * directions are not turned: they form pairs, except one that is level. */
-static void add_band(const fibrad_wall_window *window, int axis, bool turned, fibrad_wall_sums *sums) {
+/* All walls are planes across one axis: a band of directions tells the shares. No band is needed if as many directions
+ * rise along the axis as fall, except one that is level. */
+static void add_band(const fibrad_wall_window *window, int axis, bool mixed, fibrad_wall_sums *sums) {
     const double *frame = window->frame, level = frame[6 + axis];
-    const double band = window->parallel || (axis == 2 && !turned) ? 0 : WALL_BAND / fibrad_sqrt(window->n);
+    const double band = window->parallel || !mixed ? 0 : WALL_BAND / fibrad_sqrt(window->n);
     const double up = rising_share(level, band);
     double more = 0;
     if (fibrad_abs(level) < band) { /* the mean of the rising part lies above the direction */
@@ -172,10 +172,10 @@ static uint32_t sole_wall(const fibrad_wall_window *window, const fibrad_wall_vi
     return a;
 }
 
-bool fibrad_wall_window_simple(const fibrad_wall_window *window, const fibrad_wall_view *view, bool turned,
+bool fibrad_wall_window_simple(const fibrad_wall_window *window, const fibrad_wall_view *view, bool mixed,
                                fibrad_wall_sums *sums) {
     if (view->only < 3) {
-        add_band(window, view->only, turned, sums);
+        add_band(window, view->only, mixed, sums);
         return true;
     }
     const uint32_t sole = view->cut ? 4 : sole_wall(window, view);

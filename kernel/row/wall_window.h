@@ -41,8 +41,8 @@ typedef struct fibrad_wall_window {
 void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view *view, const double frame[9]);
 
 /* Adds to the regions a window that one wall gets as a whole, or whose shares follow from one number. False: lines
- * must tell the shares. turned: whether the directions have been turned. */
-bool fibrad_wall_window_simple(const fibrad_wall_window *window, const fibrad_wall_view *view, bool turned,
+ * must tell the shares. mixed: as in fibrad_window_set. */
+bool fibrad_wall_window_simple(const fibrad_wall_window *window, const fibrad_wall_view *view, bool mixed,
                                fibrad_wall_sums *sums);
 
 /* Sets `sharpness`, which lines need. */

@@ -1,5 +1,6 @@
 /* direction.c - directions of the spherical Fibonacci set. SPDX-License-Identifier: MIT */
 #include "sample/direction.h"
+#include "base/elementary.h"
 #include "base/random.h"
 
 typedef struct sum {
@@ -58,15 +59,38 @@ int fibrad_direction(uint32_t k, uint32_t n, double direction[3]) {
 /* Each window of points is turned by five golden angles more than the last one, so that its points lie differently
  * from those of its neighbours. Among the angles tried this one has the least error. For 2,000 directions of 256
  * points the error is half of that without turning. */
-void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double frame[9]) {
-    fibrad_polar d = fibrad_direction_polar(k, directions);
-    double across[2][3] = {{-d.sin, d.cos, 0}, {-d.z * d.cos, -d.z * d.sin, d.ring}}, cos = 1, sin = 0;
+static void frame_about(const fibrad_polar *d, uint32_t k, uint32_t points, double frame[9]) {
+    double across[2][3] = {{-d->sin, d->cos, 0}, {-d->z * d->cos, -d->z * d->sin, d->ring}}, cos = 1, sin = 0;
     if (points > 0) fibrad_azimuth(5 * k % FIBRAD_DIRECTIONS_MAX, &cos, &sin);
     for (int axis = 0; axis < 3; axis++) {
         double u = across[0][axis], v = across[1][axis];
         frame[axis] = cos * u + sin * v, frame[3 + axis] = cos * v - sin * u;
     }
-    frame[6] = d.ring * d.cos, frame[7] = d.ring * d.sin, frame[8] = d.z;
+    frame[6] = d->ring * d->cos, frame[7] = d->ring * d->sin, frame[8] = d->z;
+}
+
+void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double frame[9]) {
+    const fibrad_polar d = fibrad_direction_polar(k, directions);
+    frame_about(&d, k, points, frame);
+}
+
+fibrad_turning fibrad_turning_of(uint64_t seed, int axis) {
+    fibrad_random random = fibrad_random_start(seed, 0);
+    fibrad_turning turn = {.height = 2 * fibrad_random_next(&random) - 1, .axis = axis};
+    fibrad_sincos_turn(fibrad_random_next(&random), &turn.sin, &turn.cos);
+    return turn;
+}
+
+void fibrad_turned_frame(const fibrad_turning *turn, uint32_t k, uint32_t directions, uint32_t points, double frame[9]) {
+    fibrad_polar d = fibrad_direction_polar(k, directions);
+    const double cos = d.cos, sin = d.sin, height = turn->height / directions;
+    double about[9];
+    d.z += k % 2 ? height : -height;
+    d.ring = fibrad_sqrt((1 - d.z) * (1 + d.z));
+    d.cos = turn->cos * cos - turn->sin * sin, d.sin = turn->cos * sin + turn->sin * cos;
+    frame_about(&d, k, points, about);
+    for (int n = 0; n < 9; n += 3)
+        for (int axis = 0; axis < 3; axis++) frame[n + axis] = about[n + (axis + 2 - turn->axis) % 3];
 }
 
 /* A unit quaternion gives a rotation. For a uniform quaternion take a uniform point of the unit ball in four

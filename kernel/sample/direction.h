@@ -41,6 +41,18 @@ static inline fibrad_polar fibrad_direction_polar(uint32_t k, uint32_t n) {
  * areas. */
 void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double frame[9]);
 
+/* A random turn of the directions about an axis. Each direction also has a random height within its share of all
+ * heights. So the mean over turns has no error, and half of an even number of directions rise along the axis. */
+typedef struct fibrad_turning {
+    double height, cos, sin; /* height: -1 to 1, times the half height of a share */
+    int axis;
+} fibrad_turning;
+
+fibrad_turning fibrad_turning_of(uint64_t seed, int axis);
+
+/* As fibrad_beam_frame, for a direction that is turned. */
+void fibrad_turned_frame(const fibrad_turning *turn, uint32_t k, uint32_t directions, uint32_t points, double frame[9]);
+
 /* A random rotation, uniform over all rotations. It depends on the seed alone. The result is the rotation matrix,
  * which turns the axes of a frame. */
 void fibrad_rotation(uint64_t seed, double rotation[9]);

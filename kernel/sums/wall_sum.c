@@ -5,8 +5,7 @@
 
 #define HARDLY 1e-4 /* of a window: weight of the prior where hardly any line has met a region */
 
-/* The only axis with walls, or 3. */
-static int only_axis(const fibrad_container *c) {
+int fibrad_walls_only(const fibrad_container *c) {
     int only = 3, axes = c->radius < __builtin_inf() ? 2 : 0;
     for (int axis = 0; axis < 3; axis++)
         if (c->low[axis] > -__builtin_inf() || c->high[axis] < __builtin_inf()) only = axis, axes++;
@@ -44,7 +43,7 @@ fibrad_wall_view fibrad_wall_view_of(const fibrad_scene *scene, uint32_t place, 
         if (a < 2) view.axis[a] = (c->axis[a] - centre[axis]) * inverse;
     }
     view.cut = cut && !all_known(&view);
-    view.only = view.cut ? 3 : only_axis(c);
+    view.only = view.cut ? 3 : fibrad_walls_only(c);
     return view;
 }
 

@@ -20,6 +20,9 @@ typedef struct fibrad_wall_view {
 /* The distance of a wall that does not exist, where a finite number is needed. In units of the radius. */
 #define FIBRAD_FAR_AWAY 1e30
 
+/* The axis across which all walls are planes, or 3. */
+int fibrad_walls_only(const fibrad_container *container);
+
 /* cut: whether there is a known region or a cutoff. ball: the cutoff in radii. */
 fibrad_wall_view fibrad_wall_view_of(const fibrad_scene *scene, uint32_t place, bool cut, double ball);
 
