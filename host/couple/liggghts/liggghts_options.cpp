@@ -133,8 +133,9 @@ bool contacts(const char *text, std::vector<double> *solid, fibrad_insitu_contac
     while (words >> word)
         if (word == "lens" || word == "hertz")
             spots->hertz = word == "hertz";
-        else if (word == "scale" ? !(words >> value) || !number(value.c_str(), 1e-6, 1e6, &spots->scale)
-                                 : word != "gas" || !(words >> value) || !number(value.c_str(), 0, 1e300, &spots->gas))
+        else if (word == "scale"
+                     ? !(words >> value) || !setting_number(value.c_str(), 1e-6, 1e6, &spots->scale)
+                     : word != "gas" || !(words >> value) || !setting_number(value.c_str(), 0, 1e300, &spots->gas))
             return false;
     return true;
 }
