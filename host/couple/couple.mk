@@ -34,6 +34,7 @@ COUPLE_TESTS   = tests/couple/test_couple.c
 COUPLE_SCRIPTS = tests/couple/check_couple.sh tests/couple/check_made.sh
 
 COUPLE_OBJECTS = $(COUPLE:%.c=$(BUILD)/%.o)
+COUPLE_SIMPLE  = $(BUILD)/host/simple/heap.o $(BUILD)/host/simple/team.o # threads, and their memory
 COUPLE_MESH_OBJECTS = $(COUPLE_MESH:%.c=$(BUILD)/couple/%.o)
 COUPLE_MESH_LIB     = $(BUILD)/couple/libmesh_walls.a
 COUPLE_LIBS    = $(BUILD)/couple/libfibrad_couple.a $(BUILD)/libfibrad.a
@@ -65,10 +66,10 @@ install-couple: install-lib $(BUILD)/couple/libfibrad_couple.a
 	install -m 644 $(BUILD)/couple/libfibrad_couple.a $(DESTDIR)$(PREFIX)/lib
 	$(call install_pc,host/couple/fibrad_couple.pc.in)
 
-$(BUILD)/couple/libfibrad_couple.a: $(COUPLE_OBJECTS)
+$(BUILD)/couple/libfibrad_couple.a: $(COUPLE_OBJECTS) $(COUPLE_SIMPLE)
 	@mkdir -p $(@D)
 	rm -f $@
-	$(AR) rcs $@ $(COUPLE_OBJECTS)
+	$(AR) rcs $@ $(COUPLE_OBJECTS) $(COUPLE_SIMPLE)
 
 $(COUPLE_OBJECTS): $(BUILD)/%.o: %.c | need-mpi
 	@mkdir -p $(@D)
