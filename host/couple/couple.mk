@@ -35,7 +35,8 @@ COUPLE_TESTS   = tests/couple/test_couple.c
 COUPLE_SCRIPTS = tests/couple/check_couple.sh tests/couple/check_made.sh
 
 COUPLE_OBJECTS = $(COUPLE:%.c=$(BUILD)/%.o)
-CONTACT_OBJECTS = $(filter $(BUILD)/host/contact/%,$(SIMPLE_OBJECTS)) # of the simple layer, which users need not link
+# of the simple layer, which users need not link: contacts; threads and their memory
+COUPLE_SIMPLE = $(filter $(BUILD)/host/contact/%,$(SIMPLE_OBJECTS)) $(BUILD)/host/simple/heap.o $(BUILD)/host/simple/team.o
 COUPLE_MESH_OBJECTS = $(COUPLE_MESH:%.c=$(BUILD)/couple/%.o)
 COUPLE_MESH_LIB     = $(BUILD)/couple/libmesh_walls.a
 COUPLE_LIBS    = $(BUILD)/couple/libfibrad_couple.a $(BUILD)/libfibrad.a
@@ -67,10 +68,10 @@ install-couple: install-lib $(BUILD)/couple/libfibrad_couple.a
 	install -m 644 $(BUILD)/couple/libfibrad_couple.a $(DESTDIR)$(PREFIX)/lib
 	$(call install_pc,host/couple/fibrad_couple.pc.in)
 
-$(BUILD)/couple/libfibrad_couple.a: $(COUPLE_OBJECTS) $(CONTACT_OBJECTS)
+$(BUILD)/couple/libfibrad_couple.a: $(COUPLE_OBJECTS) $(COUPLE_SIMPLE)
 	@mkdir -p $(@D)
 	rm -f $@
-	$(AR) rcs $@ $(COUPLE_OBJECTS) $(CONTACT_OBJECTS)
+	$(AR) rcs $@ $(COUPLE_OBJECTS) $(COUPLE_SIMPLE)
 
 $(COUPLE_OBJECTS): $(BUILD)/%.o: %.c | need-mpi
 	@mkdir -p $(@D)

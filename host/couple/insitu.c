@@ -8,11 +8,6 @@
 
 #define THREADS_MAX 1024
 
-static void *resize_on_heap(void *context, void *block, size_t size) {
-    (void)context;
-    return realloc(block, size);
-}
-
 /* What a fibrad_accuracy stands for. alone: paths if rows do not know all sources, see source_paths.c */
 static const struct {
     const char *name;
@@ -48,7 +43,7 @@ static void complete_config(fibrad_insitu *s) {
 
 static int open_set(fibrad_insitu_set *set, int threads) {
     set->rows = calloc((size_t)threads, sizeof *set->rows);
-    for (int t = 0; t < threads && set->rows; ++t) set->rows[t].memory.resize = resize_on_heap;
+    for (int t = 0; t < threads && set->rows; ++t) set->rows[t].memory.resize = fibrad_heap_resize;
     return set->rows ? FIBRAD_OK : FIBRAD_E_MEMORY;
 }
 
@@ -77,18 +72,16 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
     }
     if (!status) status = open_set(&s->set, s->config.threads);
     if (!status) status = open_set(&s->next, s->config.threads);
-    if (!status) s->work = calloc((size_t)s->config.threads, sizeof *s->work);
-    if (!status && !s->work) status = FIBRAD_E_MEMORY;
+    if (!status) status = fibrad_team_open(&s->team, &(fibrad_run){.threads = s->config.threads});
     status = fibrad_agree(comm, status, NULL);
     if (insitu) *insitu = status ? NULL : s;
     if (status && s) {
         if (s->set.rows) close_set(&s->set, s->config.threads);
         if (s->next.rows) close_set(&s->next, s->config.threads);
-        free(s->work);
+        fibrad_team_close(&s->team);
         free(s);
     }
     if (status) return status;
-    for (int t = 0; t < s->config.threads; ++t) s->work[t].memory.resize = resize_on_heap;
     MPI_Comm_dup(comm, &s->comm);
     MPI_Comm_rank(s->comm, &s->rank);
     MPI_Comm_size(s->comm, &s->ranks);
@@ -99,8 +92,7 @@ void fibrad_insitu_free(fibrad_insitu *s) {
     if (!s) return;
     close_set(&s->set, s->config.threads);
     close_set(&s->next, s->config.threads);
-    for (int t = 0; t < s->config.threads; ++t) free(s->work[t].memory.block);
-    free(s->work);
+    fibrad_team_close(&s->team);
     fibrad_block *const blocks[] = {&s->scene, &s->order,  &s->emissivity, &s->mark, &s->known,
                                     &s->sent,  &s->solver, &s->value,      NULL};
     free_blocks(blocks);
@@ -129,7 +121,7 @@ void fibrad_insitu_facts_get(const fibrad_insitu *s, fibrad_insitu_facts *facts)
     facts->bytes = set_bytes(&s->set, s->config.threads) + set_bytes(&s->next, s->config.threads) + s->scene.size +
                    s->order.size + s->emissivity.size + s->mark.size + s->known.size + s->sent.size + s->solver.size +
                    s->value.size;
-    for (int t = 0; t < s->config.threads; ++t) facts->bytes += s->work[t].memory.size;
+    for (int t = 0; t < s->config.threads; ++t) facts->bytes += s->team.work[t].memory.size;
 }
 
 /* Writes the sentence on particles of one kind; "" if there are none. */

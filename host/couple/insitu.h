@@ -10,6 +10,7 @@
 #include "couple/fibrad_couple.h"
 #include "couple/ranks/strays.h"
 #include "fibrad_mesh.h"
+#include "simple/team.h"
 
 #define FIBRAD_OPENINGS_MAX 6   /* one a side */
 #define FIBRAD_GATHER_MOST  1e6 /* up to so many particles each rank has all, unless there is a cutoff */
@@ -58,7 +59,7 @@ struct fibrad_insitu {
     uint32_t paths_alone;     /* paths of a row that does not know all sources */
     uint32_t open_directions; /* directions of a row that sees much of walls and surroundings; 0: as others */
     char message[FIBRAD_MESSAGE];
-    fibrad_work *work;                                 /* [threads] */
+    fibrad_team team;                                  /* the threads, and their work memory */
     fibrad_insitu_set set;                             /* the rows in use */
     fibrad_insitu_set next;                            /* rows that are being made, in the memory of older rows */
     int ready;                                         /* 1: there are rows */

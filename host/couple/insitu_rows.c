@@ -1,7 +1,6 @@
 /* insitu_rows.c - makes the rows of the particles of a rank. SPDX-License-Identifier: MIT */
 #include <inttypes.h>
 #include <math.h>
-#include <omp.h>
 #include <string.h>
 
 #include "couple/insitu.h"
@@ -69,15 +68,15 @@ static int name_row_fault(const fibrad_insitu_build *b, int status, uint64_t id,
 
 /* Deals with a row that could not be computed. If its particle sees what belongs to no wall, the row becomes an empty
  * one, all of it beyond. */
-static int skip_row(fibrad_insitu_build *b, int status, uint32_t i, int thread) {
+static int skip_row(fibrad_insitu_build *b, int status, uint32_t i, const fibrad_work *work, fibrad_rows *rows) {
     static const double none[FIBRAD_WALLS_MAX];
     const uint64_t id = ((uint64_t *)b->to->id.at)[i];
     char message[FIBRAD_MESSAGE];
-    if (name_row_fault(b, status, id, &b->s->work[thread], message) != FIBRAD_E_BACK || b->s->config.strict)
+    if (name_row_fault(b, status, id, work, message) != FIBRAD_E_BACK || b->s->config.strict)
         return b->s->message[0] ? status : fibrad_refuse(b->s->message, status, "%s", message);
     fibrad_remark_add(&b->remark[FIBRAD_REMARK_BACK], id, message);
     const fibrad_row row = {.sphere = i, .wall = (double *)none, .beyond = 1};
-    return fibrad_rows_add(&b->to->rows[thread], &row, b->bed->walls);
+    return fibrad_rows_add(rows, &row, b->bed->walls);
 }
 
 /* Lists the particles of this rank in the order of the cells. */
@@ -99,41 +98,41 @@ static void know_sources(const fibrad_insitu_build *b, uint32_t i, fibrad_exchan
     rule->known_paths = b->density * fibrad_particle_weight(p);
 }
 
-/* Computes all rows. Each thread takes an equal part of the list, one after the other. So rows are in the order of the
- * list for any number of threads. */
-static int compute_rows(fibrad_insitu_build *b) {
-    fibrad_insitu *s = b->s;
-    fibrad_exchange_rule rule = fibrad_insitu_rule(b, b->own + b->halo);
-    rule.cutoff = b->cutoff;
-    if (!b->knows_all) rule.paths = s->paths_alone;
-    const uint32_t *order = s->order.at;
-    const int64_t own = (int64_t)b->fresh;
+/* The making of all rows. */
+struct row_making {
+    fibrad_insitu_build *b;
+    fibrad_exchange_rule rule;
+};
+
+/* Computes the rows of one of equal parts of the list. */
+static int compute_part(void *making, int thread, uint32_t part) {
+    const struct row_making *m = making;
+    fibrad_insitu_build *b = m->b;
+    const uint32_t *order = b->s->order.at;
+    const size_t parts = (size_t)b->s->config.threads, end = b->fresh * (part + 1) / parts;
     int status = FIBRAD_OK;
-    for (int t = 0; t < s->config.threads; ++t) fibrad_rows_clear(&b->to->rows[t]);
-#pragma omp parallel for schedule(static) num_threads(s->config.threads)
-    for (int64_t k = 0; k < own; ++k) {
-        const int thread = omp_get_thread_num();
-        fibrad_row row = {.rows = &b->to->rows[thread]};
-        int before;
-#pragma omp atomic read
-        before = status;
-        if (before) continue;
-        fibrad_exchange_rule turned =
-            rule; /* each row has its own directions, so that their errors average out in powers of walls */
-        turned.seed += ((uint64_t *)b->to->id.at)[order[k]] * 0xd1342543de82ef95u;
-        if (b->knows) know_sources(b, order[k], &turned);
-        int result = fibrad_exchange_row(b->scene, &s->work[thread], order[k], &turned, &row, NULL);
-        if (!result) continue;
+    for (size_t k = b->fresh * part / parts; k < end && !status; ++k) {
+        fibrad_row row = {.rows = &b->to->rows[part]};
+        fibrad_exchange_rule rule =
+            m->rule; /* each row has its own directions, so that their errors average out in powers of walls */
+        rule.seed += ((uint64_t *)b->to->id.at)[order[k]] * 0xd1342543de82ef95u;
+        if (b->knows) know_sources(b, order[k], &rule);
+        status = fibrad_exchange_row(b->scene, &b->s->team.work[thread], order[k], &rule, &row, NULL);
+        if (!status) continue;
 #pragma omp critical
-        {
-            result = skip_row(b, result, order[k], thread);
-            if (result && !status) {
-#pragma omp atomic write
-                status = result;
-            }
-        }
+        status = skip_row(b, status, order[k], &b->s->team.work[thread], &b->to->rows[part]);
     }
     return status;
+}
+
+/* Computes all rows. The collections of rows one after the other have the order of the list, whatever their number. */
+static int compute_rows(fibrad_insitu_build *b) {
+    fibrad_insitu *s = b->s;
+    struct row_making making = {b, fibrad_insitu_rule(b, b->own + b->halo)};
+    making.rule.cutoff = b->cutoff;
+    if (!b->knows_all) making.rule.paths = s->paths_alone;
+    for (int t = 0; t < s->config.threads; ++t) fibrad_rows_clear(&b->to->rows[t]);
+    return fibrad_team_run(&s->team, NULL, (uint32_t)s->config.threads, 1, compute_part, &making, NULL);
 }
 
 /* Numbers the columns of new rows: those with new rows, what is kept of the old columns, and what else is seen. */

@@ -5,7 +5,6 @@
  * those of a particle go anywhere, and few of them end at a hot wall. Such paths may cross the whole bed. So every rank
  * has all particles, and the ranks share the paths out. */
 #include <math.h>
-#include <omp.h>
 #include <string.h>
 
 #include "couple/insitu.h"
@@ -115,33 +114,32 @@ static void count_paths(struct sources *t) {
     }
 }
 
-/* Follows the paths of the batches that this rank does. */
-static int follow_sources(struct sources *t) {
+/* Follows the paths of one of the batches that this rank does. */
+static int follow_batch(void *sources, int thread, uint32_t batch) {
+    struct sources *t = sources;
     const fibrad_insitu *s = t->b->s;
-    const uint32_t rank = (uint32_t)s->rank, ranks = (uint32_t)s->ranks, tasks = t->count * FIBRAD_WALL_PARTS;
-    int status = FIBRAD_OK;
-#pragma omp parallel num_threads(s->config.threads)
-    {
-        uint64_t *hits = malloc((t->n + 1) * sizeof *hits);
-#pragma omp for schedule(dynamic)
-        for (uint32_t task = rank; task < tasks; task += ranks) {
-            const uint32_t k = task / FIBRAD_WALL_PARTS, part = task % FIBRAD_WALL_PARTS;
-            fibrad_wall_rule rule = t->rule;
-            rule.paths = t->source[k].paths;
-            if (hits) memset(hits, 0, t->n * sizeof *hits);
-            const int done = !hits ? FIBRAD_E_MEMORY
-                                   : fibrad_exchange_wall(t->b->scene, &s->work[omp_get_thread_num()],
-                                                          t->source[k].wall, &rule, part, &t->part[k][part], hits);
+    const uint32_t task = (uint32_t)s->rank + batch * (uint32_t)s->ranks;
+    const uint32_t k = task / FIBRAD_WALL_PARTS, part = task % FIBRAD_WALL_PARTS;
+    uint64_t *hits = calloc(t->n + 1, sizeof *hits);
+    fibrad_wall_rule rule = t->rule;
+    rule.paths = t->source[k].paths;
+    const int status = !hits ? FIBRAD_E_MEMORY
+                             : fibrad_exchange_wall(t->b->scene, &s->team.work[thread], t->source[k].wall, &rule, part,
+                                                    &t->part[k][part], hits);
 #pragma omp critical
-            {
-                if (done == FIBRAD_E_BACK) t->back[k] = 1;
-                if (done && done != FIBRAD_E_BACK) status = done;
-                for (size_t i = 0; i < t->n && !done; ++i) t->hits[k * t->n + ranked(t, i)] += hits[i];
-            }
-        }
-        free(hits);
+    {
+        if (status == FIBRAD_E_BACK) t->back[k] = 1;
+        for (size_t i = 0; i < t->n && !status; ++i) t->hits[k * t->n + ranked(t, i)] += hits[i];
     }
-    return status;
+    free(hits);
+    return status == FIBRAD_E_BACK ? FIBRAD_OK : status;
+}
+
+static int follow_sources(struct sources *t) {
+    fibrad_insitu *s = t->b->s;
+    const uint32_t rank = (uint32_t)s->rank, ranks = (uint32_t)s->ranks, tasks = t->count * FIBRAD_WALL_PARTS;
+    const uint32_t own = tasks > rank ? (tasks - rank + ranks - 1) / ranks : 0;
+    return fibrad_team_run(&s->team, NULL, own, 1, follow_batch, t, NULL);
 }
 
 /* Gives all ranks what each of them has found. All but one have zeroes. */
