@@ -1306,7 +1306,7 @@ static void contacts_are_refused(fibrad_insitu *s, const struct pile *good) {
 
 /* Particles that conduct very little: rows of few paths do not tell their powers, and rows of many paths do. */
 static void rows_are_too_inaccurate(void) {
-    static const uint32_t paths[] = {50, 600};
+    static const uint32_t paths[] = {24, 600};
     conducting = 1e-3;
     struct pile all = pile_of(&small), part = part_of(&all, 0);
     conducting = 0;
