@@ -40,7 +40,7 @@ static void strands_to(const fibrad_heat *heat, uint32_t place, uint32_t body, s
         const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
         const uint8_t *strand = fibrad_heat_strands(pencil);
         if (pencil->body != body) continue;
-        s->share = (double)pencil->share;
+        s->share = (double)pencil->weight;
         uint32_t of_bundle = 0;
         for (uint32_t k = 0; k < pencil->strands; k++) {
             const uint32_t n = s->count++;
