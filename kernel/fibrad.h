@@ -72,6 +72,7 @@
  *   direction  directions spread evenly over a sphere   fibrad_direction
  *   pair       two spheres with nothing in between      fibrad_pair_exact
  *   scene      spheres, walls, divided beds             fibrad_scene_size, _init, _describe, _wall_area, _sphere
+ *              centres inside other spheres             fibrad_spheres_inside
  *   work       scratch memory of one thread             fibrad_work, FIBRAD_WORK_BYTES
  *   row        one row, by beams or by rays             fibrad_beam_row, fibrad_cast_row, fibrad_directions_for
  *              one row, computed by several threads     fibrad_beam_part, _join
@@ -219,7 +220,7 @@ typedef struct fibrad_spheres {
 
 typedef enum fibrad_wall_kind {
     FIBRAD_WALL_PLANE = 1,    /* a plane across an axis; the scene lies on one side of the plane */
-    FIBRAD_WALL_CYLINDER = 2, /* a cylinder parallel to the z axis; the scene lies inside */
+    FIBRAD_WALL_CYLINDER = 2, /* a cylinder parallel to an axis; the scene lies inside */
     FIBRAD_WALL_MESH = 3      /* the triangles of fibrad_scene_config.triangles that name this wall, at least one */
 } fibrad_wall_kind;
 
@@ -235,7 +236,7 @@ typedef struct fibrad_plane {
  * Planes and the cylinder bound a convex container. Hence no plane and no cylinder hides one sphere from another.
  *   planes    At most two planes lie across one axis: a lower one and, above it, an upper one. A periodic axis has no
  *             planes.
- *   cylinder  There is at most one. The axes x and y then have no period and no planes.
+ *   cylinder  There is at most one. The two axes across it then have no period and no planes.
  *   meshes    Their triangles may hide spheres from each other. fibrad_mesh.h has the rules for triangles.
  *
  * Openings. An opening is a plane where the container ends and the surroundings begin. Radiation that meets an opening
@@ -249,14 +250,15 @@ typedef struct fibrad_plane {
  *   the scene has                     must be closed
  *   planes across one axis            no axis
  *   planes across two or three axes   all three axes
- *   a cylinder                        the z axis
+ *   a cylinder                        its own axis
  *
  * Otherwise fibrad_scene_init returns FIBRAD_E_ENDLESS. */
 typedef struct fibrad_wall {
     int kind;           /* a fibrad_wall_kind */
     fibrad_plane plane; /* used by FIBRAD_WALL_PLANE */
     struct {
-        double x, y, radius; /* L, position of the axis, and radius above 0 */
+        double x, y, radius; /* L, position on the two other axes, in the order x, y, z; and radius above 0 */
+        int axis;            /* of the cylinder, 0: z, 1: x, 2: y */
     } cylinder;              /* used by FIBRAD_WALL_CYLINDER */
 } fibrad_wall;
 
@@ -399,6 +401,20 @@ size_t fibrad_scene_size(uint32_t n, int ids);
  *   Source   docs/methods.md section 6 */
 int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fibrad_scene_config *config,
                       const fibrad_spheres *spheres, fibrad_fault *fault);
+
+/* Finds spheres whose centres lie inside others, so that no scene has them, and how much smaller they must be.
+ *   Input    spheres: two spheres of one id are images of one, and are no pair
+ *            memory[size]: at least fibrad_scene_size(n, ids) bytes; a scene in this memory is lost
+ *   Output   part[n]: 1, or the least d/max(r_i, r_j) of all spheres j at a distance d < max(r_i, r_j). With the radii
+ *            r_i part[i] each centre lies on the surface of the other sphere or outside.
+ *            other[n]: this sphere j; n: there is none
+ *            fault: where an error is; may be NULL
+ *   Errors   _ARGUMENT, _SIZE
+ *            _GEOMETRY: there are more than 64 n pairs; fault->first is a large sphere
+ *   Cost     as fibrad_scene_init
+ *   Source   docs/coupling.md */
+int fibrad_spheres_inside(const fibrad_spheres *spheres, void *memory, size_t size, double *part, uint32_t *other,
+                          fibrad_fault *fault);
 
 /* Facts of a scene. */
 typedef struct fibrad_scene_facts {

@@ -130,6 +130,28 @@ static inline fibrad_wall cylinder_at(double x, double y, double radius) {
     return (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {x, y, radius}};
 }
 
+/* A point whose coordinate on axis a was that on axis a - turn; walls and beds, too. Wall and point stay together. */
+static inline void turned_point(const double at[3], int turn, double turned[3]) {
+    for (int a = 0; a < 3; a++) turned[(a + turn) % 3] = at[a];
+}
+
+/* A cylinder must lie along z. */
+static inline fibrad_wall turned_wall(fibrad_wall wall, int turn) {
+    const double x = wall.cylinder.x, y = wall.cylinder.y;
+    wall.plane.axis = (wall.plane.axis + turn) % 3;
+    wall.cylinder.axis = turn;
+    if (turn == 2) wall.cylinder.x = y, wall.cylinder.y = x;
+    return wall;
+}
+
+static inline void turn_bed(struct bed *bed, int turn) {
+    for (uint32_t i = 0; i < bed->n; i++) {
+        double at[3];
+        turned_point((const double[]){bed->x[i], bed->y[i], bed->z[i]}, turn, at);
+        bed->x[i] = at[0], bed->y[i] = at[1], bed->z[i] = at[2];
+    }
+}
+
 /* A scene of a bed in its periodic box. config: walls and the like, or NULL. The period of config is not used. Returns
  * the status. free(*scene) frees the scene. */
 static inline int scene_try(fibrad_scene **scene, const struct bed *bed, const fibrad_scene_config *config,

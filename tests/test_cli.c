@@ -136,6 +136,19 @@ TEST(walls) {
     ck_assert_double_eq_tol(value_of("wall_zmax_F") * SPHERES * acos(-1), 12 * 12, .02);
     SUCCEED("bed", MONO, "--directions", "13", "--wall", "cylinder:6,6,9,zmin,zmax=open", "--targets", "1-9");
     ck_assert_double_gt(value_of("wall_cylinder_F"), 0);
+    static const struct {
+        const char *cylinder, *name;
+    } along[] = {{"cylinder:6,7,2,zmin=3,zmax=13", "cylinder"},
+                 {"xcylinder:7,8,2,xmin=1,xmax=11", "xcylinder"},
+                 {"ycylinder:6,8,2,ymin=2,ymax=12", "ycylinder"}};
+    const char *sphere = write_file("sphere.csv", "x,y,z,r\n6,7,8,1\n"), *picture = in_folder("sphere.svg");
+    for (int k = 0; k < 3; ++k) { /* discs at a distance of 2.5 radii */
+        char key[32];
+        snprintf(key, sizeof key, "wall_%s_F", along[k].name);
+        SUCCEED("bed", sphere, "--wall", along[k].cylinder, "-o", in_folder("F.csv"), "--plot", picture);
+        ck_assert_double_eq_tol(value_of(key), 2.5 / hypot(1, 2.5), 2e-6);
+        ck_assert_double_eq_tol(value_of("escaped_mean"), 0, 1e-14);
+    }
     FAIL_WITH(3, "bed", MONO, "--wall", "zmin=2");
     expect_message(MONO ":", "lies beyond the wall zmin");
 }

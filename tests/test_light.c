@@ -166,6 +166,29 @@ TEST(a_corner_that_is_open_on_three_sides_as_by_rays) {
     compare(&c, &light, middle, 6, RAYS);
 }
 
+/* The same in a bed that is turned by an exchange of the axes, light and all. */
+static void compare_turned(const struct course *c, const fibrad_light *light) {
+    struct lit lit = light_up(&c->bed, &c->config, light);
+    ck_assert_int_eq(lit.status, 0);
+    for (int turn = 1; turn < 3; turn++) {
+        struct course other = *c;
+        fibrad_light aslant = *light;
+        OWNED_BED bed = packing(20, .4, .8, .3, 5, false);
+        turn_bed(&bed, turn);
+        for (uint32_t b = 0; b < c->config.walls; b++) other.wall[b] = turned_wall(c->wall[b], turn);
+        other.opening[0].axis = (c->opening[0].axis + turn) % 3;
+        other.config.wall = other.wall, other.config.opening = other.opening;
+        turned_point(light->direction, turn, aslant.direction);
+        struct lit same = light_up(&bed, &other.config, &aslant);
+        ck_assert_int_eq(same.status, 0);
+        for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq_tol(same.power[i], lit.power[i], 1e-9);
+        for (uint32_t b = 0; b < c->config.walls; b++)
+            ck_assert_double_eq_tol(same.ends.wall[b], lit.ends.wall[b], 1e-9);
+        free(same.power);
+    }
+    free(lit.power);
+}
+
 TEST(a_cup_as_by_rays) {
     static const double d[][3] = {{.5, .3, -.8}, {0, .1, -1}, {0, 0, -1}};
     for (int k = 0; k < 3; k++) {
@@ -182,6 +205,7 @@ TEST(a_cup_as_by_rays) {
             (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {middle[0], middle[1], round}};
         c.plain.axis[0] = middle[0], c.plain.axis[1] = middle[1], c.plain.round = round;
         const fibrad_light light = along(d[k][0], d[k][1], d[k][2]);
+        compare_turned(&c, &light);
         compare(&c, &light, middle, 6, RAYS);
     }
 }

@@ -32,6 +32,41 @@ TEST(sizes_hold) {
     if (sizeof(size_t) > 4) ck_assert_uint_gt(fibrad_scene_size(FIBRAD_SPHERES_MAX, 1), FIBRAD_SPHERES_MAX * 52.);
 }
 
+/* Against all pairs. Each third sphere has the id of the one before: images of one are no pair. */
+TEST(spheres_inside_others_are_found) {
+    OWNED_BED bed = packing(400, .5, 1, .4, 7, false);
+    uint64_t id[400];
+    for (uint32_t i = 0; i < bed.n; i++) id[i] = i - (i % 3 == 2), bed.r[i] *= 1 + 3 * (i % 50 == 0);
+    fibrad_spheres spheres = spheres_of(&bed);
+    spheres.id = id;
+    const size_t size = fibrad_scene_size(bed.n, 1);
+    OWNED unsigned char *block = block_of(size);
+    double part[400];
+    uint32_t other[400], some = 0;
+    assert_ok(fibrad_spheres_inside(&spheres, block, size, part, other, NULL));
+    for (uint32_t i = 0; i < bed.n; i++) {
+        double least = 1;
+        for (uint32_t j = 0; j < bed.n; j++)
+            if (id[j] != id[i])
+                least = fmin(least, hypot(hypot(bed.x[j] - bed.x[i], bed.y[j] - bed.y[i]), bed.z[j] - bed.z[i]) /
+                                        fmax(bed.r[i], bed.r[j]));
+        ck_assert_double_eq_tol(part[i], least, 2e-9);
+        ck_assert((other[i] == bed.n) == (part[i] == 1));
+        some += part[i] < 1;
+    }
+    ck_assert(some > 20 && some < 380);
+    fibrad_scene *scene;
+    ck_assert_int_eq(fibrad_scene_init(&scene, block, size, NULL, &spheres, NULL), FIBRAD_E_GEOMETRY);
+    for (uint32_t i = 0; i < bed.n; i++) bed.r[i] *= part[i];
+    assert_ok(fibrad_spheres_inside(&spheres, block, size, part, other, NULL));
+    for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq_tol(part[i], 1, 1e-8);
+    fibrad_fault fault;
+    for (uint32_t i = 0; i < bed.n; i++) bed.r[i] = i == 9 ? 1e9 : 1e3;
+    ck_assert_int_eq(fibrad_spheres_inside(&spheres, block, size, part, other, &fault), FIBRAD_E_GEOMETRY);
+    ck_assert(fault.first < bed.n && fault.second == fault.first);
+    ck_assert_int_eq(fibrad_spheres_inside(&spheres, block, size - 1, part, other, &fault), FIBRAD_E_SIZE);
+}
+
 /* Scene and work memory at each of the 64 offsets from a boundary. */
 TEST(blocks_may_have_any_alignment) {
     OWNED_BED bed = packing(80, .5, 1, .4, 3, true);

@@ -93,17 +93,20 @@ TEST(empty_box) {
 }
 
 TEST(empty_cylinder) {
-    struct bed none = bed_empty();
     const double r = 1.5, h = 2;
-    const fibrad_wall wall[3] = {cylinder_at(3, -4, r), plane_at(2, 0, 1), plane_at(2, 1, 1 + h)};
-    OWNED_FACTORS *f =
-        factors_of(&none, &(fibrad_scene_config){.wall = wall, .walls = 3}, NULL, &(fibrad_bed_options){.beam = &fine});
-    const double end_end = discs(r, h), side_end = r / (2 * h) * (1 - end_end);
-    check_balance(&none, f, NULL, NULL);
-    ck_assert_double_eq_tol(between(f, 1, 2), end_end, 4e-4);
-    ck_assert_double_eq_tol(between(f, 1, 0), 1 - end_end, 4e-4);
-    ck_assert_double_eq_tol(between(f, 0, 1), side_end, 4e-4);
-    ck_assert_double_eq_tol(between(f, 0, 0), 1 - 2 * side_end, 4e-4);
+    for (int turn = 0; turn < 3; turn++) {
+        struct bed none = bed_empty();
+        const fibrad_wall wall[3] = {turned_wall(cylinder_at(3, -4, r), turn), turned_wall(plane_at(2, 0, 1), turn),
+                                     turned_wall(plane_at(2, 1, 1 + h), turn)};
+        OWNED_FACTORS *f = factors_of(&none, &(fibrad_scene_config){.wall = wall, .walls = 3}, NULL,
+                                      &(fibrad_bed_options){.beam = &fine});
+        const double end_end = discs(r, h), side_end = r / (2 * h) * (1 - end_end);
+        check_balance(&none, f, NULL, NULL);
+        ck_assert_double_eq_tol(between(f, 1, 2), end_end, 4e-4);
+        ck_assert_double_eq_tol(between(f, 1, 0), 1 - end_end, 4e-4);
+        ck_assert_double_eq_tol(between(f, 0, 1), side_end, 4e-4);
+        ck_assert_double_eq_tol(between(f, 0, 0), 1 - 2 * side_end, 4e-4);
+    }
 }
 
 /* If walls are missing, what they would get escapes. With periods the box has no end. Walls without bounds have no

@@ -61,8 +61,9 @@ static double wall_end(const struct walls *walls, int axis, bool upper) {
 
 double conduction_width(const struct bed *bed, const struct walls *walls, int axis) {
     if (bed->period[axis] > 0) return bed->period[axis];
-    for (uint32_t k = 0; walls && axis < 2 && k < walls->count; ++k)
-        if (walls->wall[k].kind == FIBRAD_WALL_CYLINDER) return sqrt(PI) * walls->wall[k].cylinder.radius;
+    for (uint32_t k = 0; walls && k < walls->count; ++k)
+        if (walls->wall[k].kind == FIBRAD_WALL_CYLINDER && wall_across(&walls->wall[k], axis))
+            return sqrt(PI) * walls->wall[k].cylinder.radius;
     return wall_end(walls, axis, true) - wall_end(walls, axis, false);
 }
 

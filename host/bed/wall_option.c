@@ -8,6 +8,7 @@
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/spelling.h"
+#include "contact/cylinder.h"
 #include "text/text.h"
 
 static const char *const plane_names[PLANES] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
@@ -19,6 +20,9 @@ static fibrad_wall wall_at(int number, double at) {
     return (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = plane_at(number, at)};
 }
 
+/* By fibrad_wall.cylinder.axis. */
+static const char *const cylinder_names[] = {"cylinder", "xcylinder", "ycylinder"};
+
 static bool is_cylinder(const fibrad_wall *wall) { return wall->kind == FIBRAD_WALL_CYLINDER; }
 
 static bool is_mesh(const fibrad_wall *wall) { return wall->kind == FIBRAD_WALL_MESH; }
@@ -26,7 +30,11 @@ static bool is_mesh(const fibrad_wall *wall) { return wall->kind == FIBRAD_WALL_
 const char *wall_name(const struct walls *walls, uint32_t k) {
     const fibrad_wall *wall = &walls->wall[k];
     if (is_mesh(wall)) return walls->meshes->name[k];
-    return is_cylinder(wall) ? "cylinder" : plane_name(&wall->plane);
+    return is_cylinder(wall) ? cylinder_names[wall->cylinder.axis] : plane_name(&wall->plane);
+}
+
+bool wall_across(const fibrad_wall *wall, int axis) {
+    return is_cylinder(wall) ? axis != cylinder_along(wall) : !is_mesh(wall) && axis == wall->plane.axis;
 }
 
 static int plane_number(const fibrad_plane *plane) { return 2 * plane->axis + plane->upper; }
@@ -44,6 +52,13 @@ static bool begins_with(const char *text, const char *begin) { return strncmp(te
 static const fibrad_wall *wall_named(const struct walls *walls, const char *name) {
     for (uint32_t k = 0; k < walls->count; ++k)
         if (strcmp(wall_name(walls, k), name) == 0) return &walls->wall[k];
+    return NULL;
+}
+
+/* The cylinder. NULL: there is none. */
+static const fibrad_wall *cylinder_among(const struct walls *walls) {
+    for (uint32_t k = 0; k < walls->count; ++k)
+        if (is_cylinder(&walls->wall[k])) return &walls->wall[k];
     return NULL;
 }
 
@@ -68,6 +83,9 @@ static int add_wall(struct wall_options *options, fibrad_wall wall, bool placed)
     const char *name = wall_name(walls, k);
     if (wall_named(walls, name) || (wall.kind == FIBRAD_WALL_PLANE && plane_of_side(walls, plane_number(&wall.plane))))
         return named_twice(name);
+    if (is_cylinder(&wall) && cylinder_among(walls))
+        return message(STATUS_USAGE, "--wall: there can be one cylinder, not %s and %s too",
+                       wall_name(walls, (uint32_t)(cylinder_among(walls) - walls->wall)), name);
     ++walls->count;
     return STATUS_OK;
 }
@@ -87,14 +105,16 @@ static bool take_number(const char **text, double *value) {
     return found;
 }
 
-/* Reads X,Y,R and moves *text behind them. */
-static int take_cylinder(const char **text, struct wall_options *options) {
+/* Reads X,Y,R and moves *text behind them. axis: as in fibrad_wall.cylinder. */
+static int take_cylinder(int axis, const char **text, struct wall_options *options) {
+    static const char *const position[] = {"X,Y", "Y,Z", "X,Z"};
     double c[3];
     bool good = take_number(text, &c[0]);
     for (int k = 1; k < 3 && good; ++k) good = *(*text)++ == ',' && take_number(text, &c[k]);
     if (!good || !(c[2] > 0))
-        return message(STATUS_USAGE, "--wall: a cylinder is cylinder:X,Y,R with a radius R above 0");
-    return add_wall(options, (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {c[0], c[1], c[2]}}, true);
+        return message(STATUS_USAGE, "--wall: a cylinder is %s:%s,R with a radius R above 0", cylinder_names[axis],
+                       position[axis]);
+    return add_wall(options, (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {c[0], c[1], c[2], axis}}, true);
 }
 
 /* Whether *text begins with `begin`. If so, moves *text behind it. */
@@ -123,7 +143,8 @@ static int take_plane(const char *word, size_t length, const char **text, struct
         return add_wall(options, wall_at(k, at), placed);
     }
     return message(STATUS_USAGE,
-                   "--wall: '%.40s' is none of auto, box, xmin ... zmax, cylinder:X,Y,R, mesh:FILE and NAME=mesh:FILE",
+                   "--wall: '%.40s' is none of auto, box, xmin ... zmax, cylinder:X,Y,R, xcylinder:Y,Z,R, "
+                   "ycylinder:X,Z,R, mesh:FILE and NAME=mesh:FILE",
                    word);
 }
 
@@ -170,10 +191,17 @@ static int add_mesh(struct wall_options *options, const struct mesh_file *file) 
     return status;
 }
 
+/* The axis of the cylinder with a name, as in fibrad_wall.cylinder. -1: there is none. */
+static int cylinder_named(const char *word, size_t length) {
+    int axis = 2;
+    while (axis >= 0 && !is_word(word, length, cylinder_names[axis])) --axis;
+    return axis;
+}
+
 /* Names that have a meaning of their own in options and outputs. */
 static bool is_reserved(const char *name) {
-    static const char *const others[] = {"auto", "box", "open", "mesh", "cylinder", "surroundings", "beyond"};
-    bool found = false;
+    static const char *const others[] = {"auto", "box", "open", "mesh", "surroundings", "beyond"};
+    bool found = cylinder_named(name, strlen(name)) >= 0;
     for (int k = 0; k < PLANES; ++k) found = found || strcmp(name, plane_names[k]) == 0;
     for (size_t k = 0; k < sizeof others / sizeof *others; ++k) found = found || strcmp(name, others[k]) == 0;
     return found;
@@ -215,11 +243,12 @@ int walls_option(const char *text, void *wall_options) {
     for (;;) {
         const char *word = text;
         const size_t length = strcspn(word, ",=:");
+        const int cylinder = cylinder_named(word, length);
         int status = STATUS_OK;
         text += length;
-        if (is_word(word, length, "cylinder") && *text == ':') {
+        if (cylinder >= 0 && *text == ':') {
             ++text;
-            status = take_cylinder(&text, options);
+            status = take_cylinder(cylinder, &text, options);
         } else if (begins_with(word, "mesh:")) {
             ++text;
             status = take_mesh(NULL, 0, &text, options);
@@ -251,27 +280,32 @@ static int add_planes_of_box(struct wall_options *options, const struct bed *bed
 }
 
 static int check_axes(const struct walls *walls, const struct bed *bed) {
-    const bool cylinder = wall_named(walls, "cylinder");
+    const fibrad_wall *cylinder = cylinder_among(walls);
     for (int k = 0; k < PLANES; ++k) {
         const fibrad_plane *wall = plane_of_side(walls, k), *lower = NULL;
         if (!wall) continue;
         if (bed->period[k / 2] > 0)
             return message(STATUS_USAGE, "--wall: %s lies across a periodic axis", plane_names[k]);
-        if (cylinder && k / 2 < 2)
-            return message(STATUS_USAGE, "--wall: %s cannot be combined with a cylinder", plane_names[k]);
+        if (cylinder && wall_across(cylinder, k / 2))
+            return message(STATUS_USAGE, "--wall: %s cannot be combined with a cylinder along %c", plane_names[k],
+                           "xyz"[cylinder_along(cylinder)]);
         if (k % 2) lower = plane_of_side(walls, k - 1);
         if (lower && !(lower->at < wall->at))
             return message(STATUS_USAGE, "--wall: %s does not lie below %s", plane_names[k - 1], plane_names[k]);
     }
-    if (cylinder && (bed->period[0] > 0 || bed->period[1] > 0))
-        return message(STATUS_USAGE, "--wall: a cylinder needs x and y axes that are not periodic");
+    for (int k = 0; k < 2 && cylinder; ++k)
+        if (bed->period[cylinder_across(cylinder, k)] > 0)
+            return message(STATUS_USAGE, "--wall: a cylinder along %c needs %c and %c axes that are not periodic",
+                           "xyz"[cylinder_along(cylinder)], "xyz"[cylinder_across(cylinder, 0)],
+                           "xyz"[cylinder_across(cylinder, 1)]);
     return STATUS_OK;
 }
 
 /* Whether walls end along an axis. */
 static bool is_closed(const struct walls *walls, const struct bed *bed, int axis) {
     const bool both = plane_of_side(walls, 2 * axis) && plane_of_side(walls, 2 * axis + 1);
-    return bed->period[axis] > 0 || both || (axis < 2 && wall_named(walls, "cylinder"));
+    const fibrad_wall *cylinder = cylinder_among(walls);
+    return bed->period[axis] > 0 || both || (cylinder && wall_across(cylinder, axis));
 }
 
 bool walls_closed(const struct walls *walls, const struct bed *bed) {
@@ -281,7 +315,7 @@ bool walls_closed(const struct walls *walls, const struct bed *bed) {
 
 bool wall_endless(const struct walls *walls, const struct bed *bed, const fibrad_wall *wall) {
     for (int axis = 0; axis < 3 && !is_mesh(wall); ++axis)
-        if (!(is_cylinder(wall) ? axis < 2 : axis == wall->plane.axis) && !is_closed(walls, bed, axis)) return true;
+        if (!wall_across(wall, axis) && !is_closed(walls, bed, axis)) return true;
     return false;
 }
 
@@ -317,8 +351,7 @@ int wall_unknown(const char *option, const struct walls *walls, const char *name
 
 static bool is_beyond(const fibrad_wall *wall, const double centre[3]) {
     if (is_mesh(wall)) return false;
-    if (is_cylinder(wall))
-        return hypot(centre[0] - wall->cylinder.x, centre[1] - wall->cylinder.y) > wall->cylinder.radius;
+    if (is_cylinder(wall)) return cylinder_distance(wall, centre) > wall->cylinder.radius;
     const double c = centre[wall->plane.axis];
     return wall->plane.upper ? c > wall->plane.at : c < wall->plane.at;
 }

@@ -39,7 +39,7 @@ struct wall_options {
     "  zmax=open              an opening where the spheres end: the walls end there and the surroundings begin\n"      \
     "  zmax=H:open            an opening at the coordinate H\n"                                                        \
     "  box:open=zmax          a box without a lid\n"                                                                   \
-    "  cylinder:X,Y,R         a cylinder parallel to the z axis\n"                                                     \
+    "  cylinder:X,Y,R         a cylinder parallel to the z axis; also xcylinder:Y,Z,R and ycylinder:X,Z,R\n"           \
     "  mesh:FILE              triangles of an STL file, in the bed's unit of length; the wall is named after FILE\n"   \
     "  NAME=mesh:FILE         the same, with a name\n"                                                                 \
     "LIST may have auto or box, and also a side with a place of its own, as box,zmin=0.1 has. Walls must not\n"        \
@@ -51,7 +51,8 @@ struct wall_options {
     "  solids                 each solid of the file is a wall\n"                                                      \
     "  scale=S                coordinates are multiplied by S\n"
 
-/* The name of a wall, "xmin" ... "zmax", "cylinder" or that of a mesh; the name of the side of a plane. */
+/* The name of a wall, "xmin" ... "zmax", "cylinder", "xcylinder", "ycylinder" or that of a mesh; the name of the side
+ * of a plane. */
 const char *wall_name(const struct walls *walls, uint32_t k);
 const char *plane_name(const fibrad_plane *plane);
 
@@ -73,6 +74,9 @@ int walls_of(const struct wall_options *options, const struct bed *bed, const ch
 /* Whether no radiation can escape. Either a closed mesh encloses the bed, or there are no openings, and each axis is
  * periodic, has walls at both ends, or lies across the cylinder. */
 bool walls_closed(const struct walls *walls, const struct bed *bed);
+
+/* Whether a wall lies across an axis: a plane, or a cylinder along another axis. */
+bool wall_across(const fibrad_wall *wall, int axis);
 
 /* Whether a wall is infinite along an axis. */
 bool wall_endless(const struct walls *walls, const struct bed *bed, const fibrad_wall *wall);

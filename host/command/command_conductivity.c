@@ -368,7 +368,7 @@ static int conductivity_solid(struct conductivity_request *request, const struct
 /* Whether a wall lies across an axis. */
 static bool has_wall_across(const struct walls *walls, int axis) {
     for (uint32_t k = 0; k < walls->count; ++k)
-        if (walls->wall[k].kind == FIBRAD_WALL_CYLINDER ? axis < 2 : walls->wall[k].plane.axis == axis) return true;
+        if (wall_across(&walls->wall[k], axis)) return true;
     return false;
 }
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "contact/contact_list.h"
+#include "contact/cylinder.h"
 
 enum { CLASSES_MAX = 64 };
 
@@ -196,7 +197,8 @@ static int find_at_wall(struct search *s, const fibrad_wall *wall, uint32_t inde
         const double distance =
             wall->kind == FIBRAD_WALL_PLANE
                 ? fabs(at[wall->plane.axis] - wall->plane.at)
-                : wall->cylinder.radius - length_of(at[0] - wall->cylinder.x, at[1] - wall->cylinder.y, 0);
+                : wall->cylinder.radius - length_of(at[cylinder_across(wall, 0)] - wall->cylinder.x,
+                                                    at[cylinder_across(wall, 1)] - wall->cylinder.y, 0);
         if (distance < at[3] + reach_of(s, at[3]))
             status = fibrad_contact_add(s->found, &(struct contact_found){i, s->n + index, distance, at[3], INFINITY});
     }

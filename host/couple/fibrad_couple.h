@@ -126,17 +126,13 @@ typedef struct fibrad_insitu_config {
     int one_way;         /* 1: rows of particles use no paths of sources */
 } fibrad_insitu_config;
 
-/* The bed for which rows are made. Box, walls, openings and triangles are the same on all ranks.
- *
- * A cylinder may lie along any axis, and the rules of fibrad.h for z hold for this axis. Then cylinder.x and .y of the
- * wall are coordinates on the two other axes: y and z, x and z, or x and y. */
+/* The bed for which rows are made. Box, walls, openings and triangles are the same on all ranks. */
 typedef struct fibrad_insitu_bed {
     double low[3], high[3];                   /* L, the box, used along periodic axes only */
     int periodic[3];                          /* 1: the bed repeats along the axis with the period high - low */
     const fibrad_wall *wall;                  /* [walls], walls; a particle beyond one is a stray, see above */
     const double *wall_emissivity;            /* [walls], 0 to 1 */
     uint32_t walls;                           /* number of walls, 0 to FIBRAD_WALLS_MAX */
-    int cylinder;                             /* the axis of the cylinder, 0: z, 1: x, 2: y */
     const fibrad_plane *opening;              /* [openings]; `at` NaN: where the particles end */
     uint32_t openings;                        /* 0 to 6 */
     const struct fibrad_triangles *triangles; /* of all meshes, repeated along periodic axes; NULL: none */

@@ -113,20 +113,6 @@ typedef struct fibrad_insitu_build {
     fibrad_remark remark[FIBRAD_REMARKS];
 } fibrad_insitu_build;
 
-/* What bounds a scene, with the axes of the scene. */
-typedef struct fibrad_scene_walls {
-    fibrad_wall wall[FIBRAD_WALLS_MAX];
-    fibrad_plane opening[FIBRAD_OPENINGS_MAX];
-    fibrad_triangles triangles;
-    double period[3];
-} fibrad_scene_walls;
-
-void fibrad_insitu_walls(const fibrad_insitu_build *b, fibrad_scene_walls *walls);
-
-/* Particles as the spheres of a scene. id: may be NULL. */
-fibrad_spheres fibrad_insitu_spheres(const fibrad_insitu_build *b, const fibrad_particle *p, size_t n,
-                                     const uint64_t *id);
-
 /* Checks what is given with powers. Not collective. Errors: _ARGUMENT, _STATE. */
 int fibrad_insitu_check_state(fibrad_insitu *insitu, const fibrad_insitu_state *state, const double *power);
 
@@ -140,6 +126,9 @@ int fibrad_insitu_measure(fibrad_insitu_build *b);
 /* Collective. Gathers the particles of the scene, if rows are needed, and puts those first that get rows. Makes
  * particles smaller whose centre lies inside another. Errors, on all ranks: as fibrad_insitu_rows. */
 int fibrad_insitu_gather(fibrad_insitu_build *b);
+
+/* Says why the spheres of n particles make no scene. Returns status, or FIBRAD_E_ARGUMENT. */
+int fibrad_insitu_fault(const fibrad_insitu_build *b, int status, const uint64_t *id, size_t n, fibrad_fault fault);
 
 /* Makes the scene of n particles in b->scene, with the periods of the box. With ids of a bed that is not whole, images
  * are particles of their own, and the coarse map tells where there are others. id[n]: out, may be NULL. Errors: as

@@ -5,7 +5,6 @@
 
 #include "couple/insitu.h"
 #include "couple/ranks/coarse_map.h"
-#include "couple/ranks/turned.h"
 
 #define CUTOFF_RADII 8    /* least default cutoff: the largest diameter plus this many mean radii */
 #define CUTOFF_COUNT 1e5  /* particles in a cube that may be sent for the default cutoff, see below */
@@ -15,39 +14,17 @@
 #define PART_LEAST   1e-3 /* a particle whose radius would be reduced to less is left out */
 #define OUTSIDE_MOST 0.1  /* part of all particles that may be left out of the first rows */
 
-void fibrad_insitu_walls(const fibrad_insitu_build *b, fibrad_scene_walls *to) {
-    const fibrad_insitu_bed *bed = b->bed;
-    for (uint32_t k = 0; k < bed->walls; ++k) to->wall[k] = fibrad_turned_wall(bed->cylinder, bed->wall[k]);
-    for (uint32_t k = 0; k < b->openings; ++k) to->opening[k] = fibrad_turned_plane(bed->cylinder, b->opening[k]);
-    fibrad_turn(bed->cylinder, b->period, to->period);
-    fibrad_triangles *t = &to->triangles;
-    *t = bed->triangles ? *bed->triangles : (fibrad_triangles){0};
-    const double *x[3];
-    fibrad_turn_arrays(bed->cylinder, (const double *const[]){t->x, t->y, t->z}, x);
-    t->x = x[0], t->y = x[1], t->z = x[2];
-    memcpy(t->period, to->period, sizeof t->period);
-}
-
-fibrad_spheres fibrad_insitu_spheres(const fibrad_insitu_build *b, const fibrad_particle *p, size_t n,
-                                     const uint64_t *id) {
-    const uint32_t stride = sizeof *p / sizeof(double);
-    const double *x[3];
-    fibrad_turn_arrays(b->bed->cylinder, (const double *const[]){&p->x[0], &p->x[1], &p->x[2]}, x);
-    return (fibrad_spheres){x[0], x[1], x[2], &p->radius, (uint32_t)n, stride, stride, id};
-}
-
 /* Checks the bed without its particles, which is the same on all ranks. */
 static int check_bed(fibrad_insitu_build *b) {
     const fibrad_insitu_bed *bed = b->bed;
     char *message = b->s->message;
     unsigned char block[FIBRAD_SCENE_BYTES(0)];
     fibrad_scene *empty;
-    fibrad_scene_walls turned;
-    uint32_t walls = 0; /* without meshes, which bound no box */
+    fibrad_wall wall[FIBRAD_WALLS_MAX]; /* without meshes, which bound no box */
+    uint32_t walls = 0;
     if (!bed || (bed->n && !(bed->id && bed->x && bed->radius && bed->emissivity)) || bed->n > FIBRAD_SPHERES_MAX ||
         bed->walls > FIBRAD_WALLS_MAX || (bed->walls && !(bed->wall && bed->wall_emissivity)) ||
-        bed->openings > FIBRAD_OPENINGS_MAX || (bed->openings && !bed->opening) || bed->cylinder < 0 ||
-        bed->cylinder > 2)
+        bed->openings > FIBRAD_OPENINGS_MAX || (bed->openings && !bed->opening))
         return FIBRAD_E_ARGUMENT;
     for (int axis = 0; axis < 3; ++axis) {
         if (!bed->periodic[axis]) continue;
@@ -62,13 +39,12 @@ static int check_bed(fibrad_insitu_build *b) {
         if (isnan(opening->at))
             opening->at = opening->upper ? FIBRAD_LENGTH_MAX : -FIBRAD_LENGTH_MAX; /* until the bed is known */
     }
-    fibrad_insitu_walls(b, &turned);
     for (uint32_t k = 0; k < bed->walls; ++k)
-        if (turned.wall[k].kind != FIBRAD_WALL_MESH) turned.wall[walls++] = turned.wall[k];
-    const fibrad_scene_config config = {.period = {turned.period[0], turned.period[1], turned.period[2]},
-                                        .wall = turned.wall,
+        if (bed->wall[k].kind != FIBRAD_WALL_MESH) wall[walls++] = bed->wall[k];
+    const fibrad_scene_config config = {.period = {b->period[0], b->period[1], b->period[2]},
+                                        .wall = wall,
                                         .walls = walls,
-                                        .opening = turned.opening,
+                                        .opening = b->opening,
                                         .openings = bed->openings};
     const int status = fibrad_scene_init(&empty, block, sizeof block, &config, &(fibrad_spheres){0}, NULL);
     if (status == FIBRAD_E_ENDLESS) return fibrad_refuse(message, status, "%s", fibrad_status_text(status));
@@ -82,7 +58,7 @@ static int check_bed(fibrad_insitu_build *b) {
 
 /* Whether a particle takes part. If not, counts it; with `strict` sets *status instead. */
 static bool takes_part(fibrad_insitu_build *b, const fibrad_particle *p, int *status) {
-    const fibrad_bounds bounds = {b->bed->wall, b->opening, b->bed->walls, b->bed->openings, b->bed->cylinder};
+    const fibrad_bounds bounds = {b->bed->wall, b->opening, b->bed->walls, b->bed->openings};
     char why[FIBRAD_MESSAGE];
     bool opening;
     if (fibrad_bounds_hold(&bounds, p, &opening, why)) return true;
@@ -220,10 +196,9 @@ int fibrad_insitu_measure(fibrad_insitu_build *b) {
     for (int axis = 0; axis < 3; ++axis) {
         const bool periodic = b->period[axis] > 0;
         b->repeats |= periodic;
-        const int turned = fibrad_turned_axis(b->bed->cylinder, axis);
-        b->map.periodic[turned] = periodic;
-        b->map.low[turned] = periodic ? b->bed->low[axis] : -most[5 + axis] - b->radius_max;
-        b->map.high[turned] = periodic ? b->bed->high[axis] : most[2 + axis] + b->radius_max;
+        b->map.periodic[axis] = periodic;
+        b->map.low[axis] = periodic ? b->bed->low[axis] : -most[5 + axis] - b->radius_max;
+        b->map.high[axis] = periodic ? b->bed->high[axis] : most[2 + axis] + b->radius_max;
         if (periodic && !status && !(b->radius_max < b->period[axis]))
             status = fibrad_refuse(b->s->message, FIBRAD_E_GEOMETRY,
                                    "the largest radius, %g, is more than the period along %c, %g", b->radius_max,
@@ -258,20 +233,64 @@ static void reduce_radii(fibrad_insitu_build *b, const double *part) {
     b->own = own;
 }
 
+int fibrad_insitu_fault(const fibrad_insitu_build *b, int status, const uint64_t *id, size_t n, fibrad_fault fault) {
+    char *message = b->s->message;
+    if (b->bed->triangles && fault.triangle < b->bed->triangles->n)
+        return fibrad_refuse(message, status, "triangle %" PRIu32 " of the walls is not valid", fault.triangle);
+    if (fault.first >= n || fault.second >= n) return status;
+    const uint64_t first = id[fault.first], second = id[fault.second];
+    if (fault.first == fault.second)
+        return fibrad_refuse_particle(message, first, "it lies too far from the origin for its size");
+    if (first == second)
+        return fibrad_refuse(message, status, "particle %" PRIu64 ": the centre of its periodic image lies inside it",
+                             first);
+    return fibrad_refuse(message, status,
+                         "particles %" PRIu64 " and %" PRIu64 ": the centre of one lies inside the other",
+                         first < second ? first : second, first < second ? second : first);
+}
+
+static void describe_overlap(fibrad_remark *remark, const fibrad_particle *p, const fibrad_particle *other) {
+    char message[FIBRAD_MESSAGE];
+    const uint64_t first = p->id < other->id ? p->id : other->id, second = p->id < other->id ? other->id : p->id;
+    fibrad_refuse(message, 0,
+                  "particles %" PRIu64 " and %" PRIu64
+                  " at (%.6g, %.6g, %.6g): the centre of one lies inside the other",
+                  first, second, p->x[0], p->x[1], p->x[2]);
+    fibrad_remark_add(remark, p->id, message);
+}
+
+/* Finds to what part the radii of particles must be reduced, and remarks those of this rank. */
+static int find_overlaps(fibrad_insitu_build *b, fibrad_remark *remark) {
+    fibrad_insitu *s = b->s;
+    const size_t n = b->own + b->halo, size = n <= FIBRAD_SPHERES_MAX ? fibrad_scene_size((uint32_t)n, 1) : 0;
+    const fibrad_particle *p = b->to->particle.at;
+    if (!size || fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&s->emissivity, n, sizeof(double)) ||
+        fibrad_block_fit(&s->order, n, sizeof(uint32_t)) || fibrad_block_fit(&b->to->id, n, sizeof(uint64_t)))
+        return FIBRAD_E_MEMORY;
+    const fibrad_spheres spheres = fibrad_particle_spheres(p, n, b->to->id.at);
+    const uint32_t *other = s->order.at;
+    double *part = s->emissivity.at;
+    fibrad_fault fault;
+    const int status = fibrad_spheres_inside(&spheres, s->scene.at, s->scene.size, part, s->order.at, &fault);
+    for (size_t i = 0; i < b->own && !status; ++i)
+        if (part[i] < 1) describe_overlap(remark, &p[i], &p[other[i]]);
+    if (status != FIBRAD_E_GEOMETRY) return status ? fibrad_insitu_fault(b, status, spheres.id, n, fault) : FIBRAD_OK;
+    return fibrad_refuse(s->message, status,
+                         "particle %" PRIu64 " of radius %g has the centres of many others inside it: is its diameter "
+                         "right?",
+                         p[fault.first].id, p[fault.first].radius);
+}
+
 /* Makes particles smaller whose centre lies inside another, and tells the other ranks. */
 static int part_overlaps(fibrad_insitu_build *b) {
     fibrad_insitu *s = b->s;
     fibrad_remark *remark = &b->remark[FIBRAD_REMARK_OVERLAP];
-    int status = fibrad_block_fit(&s->emissivity, b->own, sizeof(double));
-    double *part = s->emissivity.at;
-    if (!status) status = fibrad_overlaps(b->to->particle.at, b->own, b->own + b->halo, part, remark);
-    if (status) fibrad_refuse(s->message, status, "%s", remark->message);
-    status = fibrad_agree(s->comm, status, s->message);
+    const int status = fibrad_agree(s->comm, b->own ? find_overlaps(b, remark) : FIBRAD_OK, s->message);
     if (status) return status;
     fibrad_remark_agree(s->comm, remark);
     if (!remark->count) return FIBRAD_OK;
     if (s->config.strict) return fibrad_refuse(s->message, FIBRAD_E_GEOMETRY, "%s", remark->message);
-    reduce_radii(b, part);
+    reduce_radii(b, s->emissivity.at);
     return find_halo(b);
 }
 
@@ -292,8 +311,8 @@ static int gather_scene(fibrad_insitu_build *b) {
     if (!status && b->whole)
         status = fibrad_gather(b->s->comm, &b->to->particle, b->own, &b->s->sent, &b->halo, &b->lower);
     if (!status && (!b->whole || b->repeats))
-        status = fibrad_coarse_map(b->s->comm, CELL_RADII * b->radius_mean, b->radius_max, b->bed->cylinder,
-                                   b->to->particle.at, b->own, &b->s->mark, &b->map);
+        status = fibrad_coarse_map(b->s->comm, CELL_RADII * b->radius_mean, b->radius_max, b->to->particle.at, b->own,
+                                   &b->s->mark, &b->map);
     b->fresh = b->own;
     return !status && b->follows ? fibrad_follow_choose(b) : status;
 }

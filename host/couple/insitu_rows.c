@@ -5,55 +5,35 @@
 #include <string.h>
 
 #include "couple/insitu.h"
-#include "couple/ranks/turned.h"
 
 #define BACKS_MOST 0.1 /* part of all particles that may see what belongs to no wall */
-
-static int name_scene_fault(const fibrad_insitu_build *b, int status, const uint64_t *id, size_t n,
-                            fibrad_fault fault) {
-    char *message = b->s->message;
-    if (b->bed->triangles && fault.triangle < b->bed->triangles->n)
-        return fibrad_refuse(message, status, "triangle %" PRIu32 " of the walls is not valid", fault.triangle);
-    if (fault.first >= n || fault.second >= n) return status;
-    const uint64_t first = id[fault.first], second = id[fault.second];
-    if (fault.first == fault.second)
-        return fibrad_refuse_particle(message, first, "it lies too far from the origin for its size");
-    if (first == second)
-        return fibrad_refuse(message, status, "particle %" PRIu64 ": the centre of its periodic image lies inside it",
-                             first);
-    return fibrad_refuse(message, status,
-                         "particles %" PRIu64 " and %" PRIu64 ": the centre of one lies inside the other",
-                         first < second ? first : second, first < second ? second : first);
-}
 
 int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t n, uint64_t *id) {
     fibrad_insitu *s = b->s;
     const bool images = id && !b->whole, marked = id && b->to->facts.particles && (images || b->repeats);
     if (n > FIBRAD_SPHERES_MAX) return FIBRAD_E_MEMORY;
-    fibrad_scene_walls turned;
-    fibrad_insitu_walls(b, &turned);
-    const size_t size =
-        fibrad_scene_size((uint32_t)n, id != NULL) + fibrad_triangles_size(turned.triangles.n, (uint32_t)n);
+    fibrad_triangles triangles = b->bed->triangles ? *b->bed->triangles : (fibrad_triangles){0};
+    memcpy(triangles.period, b->period, sizeof triangles.period);
+    const size_t size = fibrad_scene_size((uint32_t)n, id != NULL) + fibrad_triangles_size(triangles.n, (uint32_t)n);
     if (fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&s->emissivity, 3 * n + 1, sizeof(double)))
         return FIBRAD_E_MEMORY;
     double *emissivity = s->emissivity.at;
     for (size_t i = 0; i < n; ++i) {
-        if (id) id[i] = p[i].id;
         emissivity[i] = p[i].emissivity, emissivity[n + i] = p[i].conductivity, emissivity[2 * n + i] = p[i].node;
     }
     fibrad_scene_config config = {0}; /* no rows: an empty scene */
     if (n || !id)
-        config = (fibrad_scene_config){.wall = turned.wall,
+        config = (fibrad_scene_config){.wall = b->bed->wall,
                                        .walls = b->bed->walls,
-                                       .opening = turned.opening,
+                                       .opening = b->opening,
                                        .openings = b->openings,
                                        .occupancy = marked ? &b->map : NULL,
-                                       .triangles = &turned.triangles};
-    if ((n || !id) && !images) memcpy(config.period, turned.period, sizeof config.period);
-    const fibrad_spheres spheres = fibrad_insitu_spheres(b, p, n, id);
+                                       .triangles = &triangles};
+    if ((n || !id) && !images) memcpy(config.period, b->period, sizeof config.period);
+    const fibrad_spheres spheres = fibrad_particle_spheres(p, n, id);
     fibrad_fault fault;
     const int status = fibrad_scene_init(&b->scene, s->scene.at, s->scene.size, &config, &spheres, &fault);
-    return status && id ? name_scene_fault(b, status, id, n, fault) : status;
+    return status && id ? fibrad_insitu_fault(b, status, id, n, fault) : status;
 }
 
 fibrad_exchange_rule fibrad_insitu_rule(const fibrad_insitu_build *b, size_t n) {

@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "couple/insitu.h"
-#include "couple/ranks/turned.h"
 #include "fibrad_mesh.h"
 
 #define PATHS_WORTH 25      /* paths of a source are worth so many times those of a particle */
@@ -90,8 +89,8 @@ static void list_sources(struct sources *t) {
         struct source *source = &t->source[t->count];
         *source = (struct source){.wall = k, .known = k < walls ? k : walls};
         if (k >= walls) {
-            const fibrad_plane at = fibrad_turned_plane(b->bed->cylinder, b->opening[k - walls]);
-            source->wall = FIBRAD_OPENING(walls, at.axis, at.upper);
+            const fibrad_plane *at = &b->opening[k - walls];
+            source->wall = FIBRAD_OPENING(walls, at->axis, at->upper);
         }
         source->emits = fibrad_scene_wall_area(b->scene, source->wall);
         if (k < walls) source->emits *= b->bed->wall_emissivity[k];

@@ -50,6 +50,7 @@ module fibrad
 
     type, bind(C) :: c_cylinder
         real(c_double) :: x = 0, y = 0, radius = 0
+        integer(c_int) :: axis = 0
     end type c_cylinder
 
     ! A wall, made by fibrad_plane, fibrad_cylinder or fibrad_mesh; or an opening, made by fibrad_plane.
@@ -493,14 +494,20 @@ contains
         end do
     end function fibrad_plane
 
-    ! A cylinder around the bed, parallel to the z axis.
-    !   x, y    [L] position of the axis
+    ! A cylinder around the bed.
+    !   x, y    [L] position on the two axes across it, in the order x, y, z
     !   radius  [L] above 0
-    pure function fibrad_cylinder(x, y, radius) result(wall)
+    !   along   'x', 'y' or 'z', the axis to which it is parallel; absent: 'z'. A cylinder along another letter is
+    !           refused where it is used.
+    pure function fibrad_cylinder(x, y, radius, along) result(wall)
         real(c_double), intent(in) :: x, y, radius
+        character(1), intent(in), optional :: along
         type(fibrad_wall) :: wall
+        integer(c_int) :: axis
+        axis = 0
+        if (present(along)) axis = int(index('zxy', along), c_int) - 1
         wall%kind = 2
-        wall%cylinder = c_cylinder(x, y, radius)
+        wall%cylinder = c_cylinder(x, y, radius, axis)
     end function fibrad_cylinder
 
     ! A wall of triangles: those of fibrad_triangles that have its number.

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "contact/cylinder.h"
 
 enum kind {
     OTHER_NAMES,
@@ -151,8 +152,7 @@ void warn_overlap(struct warned *warned, const struct bed *bed, const fibrad_sce
 /* How far sphere i reaches beyond a plane or a cylinder. For a mesh: 0. */
 static double cut(const struct bed *bed, const fibrad_wall *wall, uint32_t i) {
     const double at[3] = {bed->x[i], bed->y[i], bed->z[i]};
-    if (wall->kind == FIBRAD_WALL_CYLINDER)
-        return hypot(at[0] - wall->cylinder.x, at[1] - wall->cylinder.y) + bed->r[i] - wall->cylinder.radius;
+    if (wall->kind == FIBRAD_WALL_CYLINDER) return cylinder_distance(wall, at) + bed->r[i] - wall->cylinder.radius;
     if (wall->kind != FIBRAD_WALL_PLANE) return 0;
     const double beyond = at[wall->plane.axis] - wall->plane.at;
     return bed->r[i] + (wall->plane.upper ? beyond : -beyond);

@@ -45,7 +45,7 @@ static struct ends ends_of(const struct bed *bed, const struct walls *walls) {
         if (wall->kind == FIBRAD_WALL_PLANE) end_at(&ends, &wall->plane, true);
         if (wall->kind == FIBRAD_WALL_CYLINDER) {
             ends.round = M_PI * gsl_pow_2(wall->cylinder.radius);
-            for (int side = 0; side < 4; ++side) ends.walled[side] = true;
+            for (int side = 0; side < 6; ++side) ends.walled[side] |= wall_across(wall, side / 2);
         }
     }
     for (uint32_t k = 0; k < walls->openings; ++k) end_at(&ends, &walls->opening[k], false);

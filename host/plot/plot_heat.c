@@ -8,6 +8,7 @@
 #include "bed/units.h"
 #include "cli/message.h"
 #include "plot/gnuplot.h"
+#include "contact/cylinder.h"
 
 enum { LAYERS_MAX = 60 };
 
@@ -135,7 +136,7 @@ static struct layers layers_of(const struct bed *bed, const fibrad_wall *tube) {
 static int layer_of(const struct layers *layers, uint32_t i) {
     const struct bed *bed = layers->bed;
     const fibrad_wall *tube = layers->tube;
-    const double place = tube ? hypot(bed->x[i] - tube->cylinder.x, bed->y[i] - tube->cylinder.y) : bed->z[i];
+    const double at[3] = {bed->x[i], bed->y[i], bed->z[i]}, place = tube ? cylinder_distance(tube, at) : at[2];
     return (int)fmin(layers->n - 1, floor((place - layers->low) / layers->thick));
 }
 

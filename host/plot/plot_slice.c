@@ -7,6 +7,7 @@
 #include "bed/units.h"
 #include "cli/message.h"
 #include "cli/options.h"
+#include "contact/cylinder.h"
 
 /* A wall is shown if its distance from the bed is at most this part of the bed's length. With farther walls the bed
  * would become too small in the picture. */
@@ -50,13 +51,15 @@ static void plane_line(const struct plot_slice *slice, const fibrad_plane *plane
     seen(context, end, k);
 }
 
-/* A cylinder is a circle across z, and two lines across x or y. */
+/* A cylinder is a circle across its axis, and two lines across the other axes. */
 static void cylinder_lines(const struct plot_slice *slice, const fibrad_wall *wall, uint32_t k, line_seen *seen,
                            void *context) {
     enum { CHORDS = 90 };
     const double middle[2] = {wall->cylinder.x, wall->cylinder.y}, radius = wall->cylinder.radius;
     const double pi = 3.14159265358979323846;
-    if (slice->across == 2) {
+    const int along = cylinder_along(wall), up = slice->axis[1] == along,
+              second = slice->across == cylinder_across(wall, 1);
+    if (slice->across == along) {
         for (int c = 0; c < CHORDS; ++c) {
             double end[2][2];
             for (int e = 0; e < 2; ++e) {
@@ -67,10 +70,12 @@ static void cylinder_lines(const struct plot_slice *slice, const fibrad_wall *wa
         }
         return;
     }
-    const double off = slice->at - middle[slice->across], half = sqrt(fmax(radius * radius - off * off, 0));
+    const double off = slice->at - middle[second], half = sqrt(fmax(radius * radius - off * off, 0));
     for (int side = -1; side < 2 && half > 0; side += 2) {
-        const double at = middle[1 - slice->across] + side * half;
-        seen(context, (double[2][2]){{at, slice->low[2]}, {at, slice->high[2]}}, k);
+        double end[2][2];
+        end[0][1 - up] = end[1][1 - up] = middle[1 - second] + side * half;
+        end[0][up] = slice->low[along], end[1][up] = slice->high[along];
+        seen(context, end, k);
     }
 }
 

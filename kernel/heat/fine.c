@@ -79,9 +79,17 @@ static double point_on_wall(const fibrad_heat *heat, uint32_t wall, const double
         const double turn = 4 * share[0], quarter = fibrad_min(fibrad_floor(turn), 3), t = turn - quarter;
         const double square = (1 - t) * (1 - t) + t * t, r = c->radius / fibrad_sqrt(square);
         const double along = r * (1 - t), across = r * t;
-        at[0] = c->axis[0] + (quarter == 0 ? along : quarter == 1 ? -across : quarter == 2 ? -along : across);
-        at[1] = c->axis[1] + (quarter == 0 ? across : quarter == 1 ? along : quarter == 2 ? -across : -along);
-        at[2] = coordinate[1];
+        fibrad_wall_about(c,
+                          quarter == 0   ? along
+                          : quarter == 1 ? -across
+                          : quarter == 2 ? -along
+                                         : across,
+                          quarter == 0   ? across
+                          : quarter == 1 ? along
+                          : quarter == 2 ? -across
+                                         : -along,
+                          at);
+        at[fibrad_wall_along(c, wall, 1)] = coordinate[1];
         stretched = 2 / (FIBRAD_PI * square);
     } else {
         fibrad_wall_point(c, wall, coordinate, at);

@@ -73,7 +73,7 @@ typedef struct fibrad_heat_fine {
 } fibrad_heat_fine;
 
 /* The rectangle of a wall that is cut into patches. On a plane across axis a its sides lie along the axes a + 1 and
- * a + 2 modulo 3. On the cylinder they lie around the axis [turns, or quarters of the square around] and along z. */
+ * a + 2 modulo 3. On the cylinder they lie around the axis [turns, or quarters of the square around] and along it. */
 typedef struct fibrad_heat_wall {
     double low[2], size[2]; /* L, lower ends and lengths of the sides */
     uint32_t squares[2];    /* patches along the sides */

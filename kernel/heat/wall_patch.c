@@ -37,10 +37,9 @@ static bool stretch(const fibrad_scene *scene, uint32_t axis, double *low, doubl
     for (int a = 0; a < 3; a++)
         wide = fibrad_max(wide, scene->box_high[a] - scene->box_low[a] + 2 * scene->facts.radius_max);
     double from = c->low[axis], to = c->high[axis];
-    if (scene->period[axis] > 0)
-        from = scene->low[axis], to = scene->low[axis] + scene->period[axis];
-    else if (c->radius < __builtin_inf() && axis < 2)
-        from = c->axis[axis] - c->radius, to = c->axis[axis] + c->radius;
+    if (scene->period[axis] > 0) from = scene->low[axis], to = scene->low[axis] + scene->period[axis];
+    for (uint32_t a = 0; a < 2 && c->radius < __builtin_inf(); a++)
+        if (axis == fibrad_cylinder_axis(c->turn, a)) from = c->axis[a] - c->radius, to = c->axis[a] + c->radius;
     double begin = scene->box_low[axis], end = scene->box_high[axis];
     if (scene->facts.spheres == 0) { /* no bed tells where walls are */
         wide = container_size(scene);
@@ -101,7 +100,8 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
         if (!(scene->wall_area[k] > 0)) continue;
         wall->size[0] = 1;
         for (uint32_t side = k == FIBRAD_CYLINDER; side < 2; side++)
-            wall->unbounded |= stretch(scene, fibrad_wall_along(k, side), &wall->low[side], &wall->size[side]);
+            wall->unbounded |=
+                stretch(scene, fibrad_wall_along(&scene->container, k, side), &wall->low[side], &wall->size[side]);
         area += fibrad_heat_wall_area(heat, k);
     }
     for (uint32_t m = 0; m < heat->meshes; m++)
@@ -149,18 +149,21 @@ static double around(double x, double y) {
 }
 
 bool fibrad_heat_wall_wraps(const fibrad_heat *heat, uint32_t wall, uint32_t side) {
-    return (wall == FIBRAD_CYLINDER && side == 0) || heat->scene->period[fibrad_wall_along(wall, side)] > 0;
+    const uint32_t axis = fibrad_wall_along(&heat->scene->container, wall, side);
+    return (wall == FIBRAD_CYLINDER && side == 0) || heat->scene->period[axis] > 0;
 }
 
 bool fibrad_heat_wall_place(const fibrad_heat *heat, uint32_t wall, const double at[3], double place[2]) {
     const fibrad_heat_wall *w = &heat->wall[wall];
     const fibrad_scene *scene = heat->scene;
+    const fibrad_container *c = &scene->container;
     bool inside = true;
     for (uint32_t side = 0; side < 2; side++) {
-        const uint32_t axis = fibrad_wall_along(wall, side);
+        const uint32_t axis = fibrad_wall_along(c, wall, side);
         double share = (at[axis] - w->low[side]) / w->size[side];
         if (wall == FIBRAD_CYLINDER && side == 0)
-            share = around(at[0] - scene->container.axis[0], at[1] - scene->container.axis[1]);
+            share = around(at[fibrad_cylinder_axis(c->turn, 0)] - c->axis[0],
+                           at[fibrad_cylinder_axis(c->turn, 1)] - c->axis[1]);
         else if (scene->period[axis] > 0)
             share -= fibrad_floor(share);
         else if (w->unbounded && !(share >= 0 && share <= 1))
@@ -270,9 +273,13 @@ bool fibrad_heat_wall_ray(const fibrad_heat *heat, uint32_t wall, uint32_t k, do
     fibrad_wall_point(c, wall, coordinate, origin);
     if (fibrad_slot_is_plane(wall) && !fibrad_walls_hold(c, origin)) return false;
     fibrad_wall_normal(heat->scene, wall, origin, normal);
-    double across[3] = {-normal[1], normal[0], 0}, along[3] = {0, 0, 0}; /* along the edges of the wall */
-    along[fibrad_wall_along(wall, 1)] = 1;
-    for (uint32_t a = 0; a < 3 && fibrad_slot_is_plane(wall); a++) across[a] = a == fibrad_wall_along(wall, 0);
+    double across[3] = {0, 0, 0}, along[3] = {0, 0, 0}; /* along the edges of the wall */
+    const uint32_t u = fibrad_cylinder_axis(c->turn, 0), v = fibrad_cylinder_axis(c->turn, 1);
+    along[fibrad_wall_along(c, wall, 1)] = 1;
+    if (fibrad_slot_is_plane(wall))
+        across[fibrad_wall_along(c, wall, 0)] = 1;
+    else
+        across[u] = -normal[v], across[v] = normal[u];
     cosine_direction(x + 2, normal, across, along, w);
     return true;
 }

@@ -9,6 +9,7 @@
 #include "base/elementary.h"
 #include "base/vector.h"
 #include "sample/direction.h"
+#include "scene/walls.h"
 
 #define NO_FACE 3u
 
@@ -118,9 +119,12 @@ static void find_box(fibrad_footprint *f, const fibrad_scene *scene) {
             if (!fibrad_finite(c->low[a])) f->low[a] = fibrad_min(f->low[a], scene->mesh.low[a]);
             if (!fibrad_finite(c->high[a])) f->high[a] = fibrad_max(f->high[a], scene->mesh.high[a]);
         }
-        if (fibrad_finite(c->radius) && a < 2) f->low[a] = c->axis[a] - c->radius, f->high[a] = c->axis[a] + c->radius;
-        f->origin[a] = f->low[a] + .5 * (f->high[a] - f->low[a]);
     }
+    for (uint32_t k = 0; k < 2 && fibrad_finite(c->radius); k++) {
+        const uint32_t a = fibrad_cylinder_axis(c->turn, k);
+        f->low[a] = c->axis[k] - c->radius, f->high[a] = c->axis[k] + c->radius;
+    }
+    for (int a = 0; a < 3; a++) f->origin[a] = f->low[a] + .5 * (f->high[a] - f->low[a]);
 }
 
 double fibrad_footprint_area(const fibrad_footprint *f) {
@@ -178,11 +182,27 @@ static void add_disc(const fibrad_footprint *f, const double centre[3], double r
     turn_polygon(p);
 }
 
+/* Whether light is slanted against the axis of the cylinder, if there is one. */
+static bool is_slanted(const fibrad_footprint *f, const fibrad_container *c) {
+    const double *w = f->frame + 6;
+    return fibrad_finite(c->radius) &&
+           !(w[fibrad_cylinder_axis(c->turn, 0)] == 0 && w[fibrad_cylinder_axis(c->turn, 1)] == 0);
+}
+
 /* The cylinder's circle at some height. */
-static void add_circle(const fibrad_footprint *f, const fibrad_container *c, double z, fibrad_light_polygon *p) {
-    const double centre[3] = {c->axis[0], c->axis[1], z}, x[3] = {1, 0, 0}, y[3] = {0, 1, 0};
+static void add_circle(const fibrad_footprint *f, const fibrad_container *c, double height, fibrad_light_polygon *p) {
+    double centre[3], x[3] = {0, 0, 0}, y[3] = {0, 0, 0};
+    fibrad_wall_about(c, 0, 0, centre);
+    centre[fibrad_cylinder_axis(c->turn, 2)] = height;
+    x[fibrad_cylinder_axis(c->turn, 0)] = y[fibrad_cylinder_axis(c->turn, 1)] = 1;
     p->corners = 0;
     add_disc(f, centre, c->radius, x, y, p);
+}
+
+/* The circle of the end of the cylinder by which light enters. */
+static void add_end(const fibrad_footprint *f, const fibrad_container *c, fibrad_light_polygon *p) {
+    const uint32_t axis = fibrad_cylinder_axis(c->turn, 2);
+    add_circle(f, c, f->frame[6 + axis] > 0 ? f->high[axis] : f->low[axis], p);
 }
 
 /* The outline of the box as seen along the light, which is convex. Of the two faces across each axis one is lit. The
@@ -314,7 +334,7 @@ static void cut_polygon(fibrad_light_polygon *p, const fibrad_light_line *line, 
  * next. */
 static void find_outline(fibrad_footprint *f, const fibrad_scene *scene, const fibrad_light *light) {
     const fibrad_container *c = &scene->container;
-    const bool round = fibrad_finite(c->radius), level = f->frame[6] == 0 && f->frame[7] == 0;
+    const bool round = fibrad_finite(c->radius);
     int periodic[3], periods = 0;
     for (int a = 0; a < 3; a++)
         if (scene->period[a] > 0) periodic[periods++] = a;
@@ -326,8 +346,8 @@ static void find_outline(fibrad_footprint *f, const fibrad_scene *scene, const f
     } else if (light->shape == FIBRAD_LIGHT_BOX) {
         add_rectangle(f, light, &f->start);
     } else if (round) {
-        add_circle(f, c, f->frame[8] > 0 ? f->high[2] : f->low[2], &f->start);
-        if (level) return; /* no line of light cuts the cylinder */
+        add_end(f, c, &f->start);
+        if (!is_slanted(f, c)) return; /* no line of light cuts the cylinder */
     } else if (periods == 0) {
         add_outline(f, &f->start);
     } else if (periods == 1) {
@@ -357,7 +377,7 @@ static void bound_beam(fibrad_footprint *f, const fibrad_scene *scene) {
                 (fibrad_light_line){{sign * f->frame[a], sign * f->frame[3 + a]}, sign * (at - f->origin[a])};
         }
     if (!fibrad_finite(c->radius)) return;
-    add_circle(f, c, f->frame[8] > 0 ? f->high[2] : f->low[2], &f->polygon);
+    add_end(f, c, &f->polygon);
     f->common += lines_of(&f->polygon, f->line + f->common);
 }
 
@@ -378,7 +398,7 @@ static void add_piece(fibrad_footprint *f, const fibrad_light_piece *piece) {
 static void add_ends(fibrad_footprint *f, const fibrad_scene *scene, const fibrad_light_piece *entry) {
     const fibrad_container *c = &scene->container;
     const ways_out out = planes_met(f, scene, -1);
-    const bool round = fibrad_finite(c->radius) && !(f->frame[6] == 0 && f->frame[7] == 0);
+    const bool round = is_slanted(f, c);
     fibrad_light_piece piece = *entry;
     piece.slot = round ? FIBRAD_CYLINDER : FIBRAD_ESCAPED;
     if (out.count == 0 || round) add_piece(f, &piece);
@@ -416,7 +436,7 @@ void fibrad_footprint_make(fibrad_footprint *f, const fibrad_scene *scene, const
     find_outline(f, scene, light);
     find_bounds(f);
     if (light->shape != FIBRAD_LIGHT_ALL) bound_beam(f, scene);
-    const bool slanted = fibrad_finite(c->radius) && !(f->frame[6] == 0 && f->frame[7] == 0);
+    const bool slanted = is_slanted(f, c);
     const ways_out in = planes_met(f, scene, 1), out = planes_met(f, scene, -1);
     if (slanted && out.count > 0) {
         add_circle(f, c, out.at[0], &f->polygon);

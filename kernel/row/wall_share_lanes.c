@@ -144,12 +144,13 @@ static vd exit_known(const fibrad_wall_view *view, const vd origin[3], const vd 
 }
 
 /* One of the lines in a vector. */
-static fibrad_wall_line line_of_lane(const wall_lines *lines, int lane) {
+static fibrad_wall_line line_of_lane(const fibrad_wall_view *view, const wall_lines *lines, int lane) {
     _Alignas(64) double at[VD_LANES], along[VD_LANES];
     fibrad_wall_line line;
-    for (int axis = 0; axis < 3; axis++) {
-        vd_store(at, lines->origin[axis]);
-        vd_store(along, lines->w[axis]);
+    for (uint32_t a = 0; a < 3; a++) {
+        const uint32_t axis = fibrad_cylinder_axis(view->turn, a);
+        vd_store(at, lines->origin[a]);
+        vd_store(along, lines->w[a]);
         line.origin[axis] = at[lane], line.w[axis] = along[lane];
     }
     return line;
@@ -208,14 +209,14 @@ FIBRAD_INLINE void add_octant(const wall_lines *lines, bool round, bool several,
 static void add_cuts(const fibrad_wall_view *view, const wall_lines *lines, uint32_t bits, fibrad_point_sums *sums) {
     for (; bits != 0; bits &= bits - 1) {
         const int lane = __builtin_ctz(bits);
-        const fibrad_wall_line line = line_of_lane(lines, lane);
+        const fibrad_wall_line line = line_of_lane(view, lines, lane);
         uint32_t wall = FIBRAD_WALLS;
         double most = 0;
         for (uint32_t n = 0; n < 4; n++) {
             _Alignas(64) double share[VD_LANES];
             vd_store(share, lines->share[n]);
             if (!(share[lane] > most)) continue;
-            const bool up = n < 3 && line.w[n] >= 0;
+            const bool up = n < 3 && line.w[fibrad_cylinder_axis(view->turn, n)] >= 0;
             const bool there = n == 3 || (up ? view->high[n] : -view->low[n]) < __builtin_inf();
             most = share[lane];
             wall = n == 3 ? FIBRAD_CYLINDER : there ? fibrad_face(n, up) : FIBRAD_WALLS;
@@ -323,7 +324,7 @@ static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, 
         if (sums->cuts[wall] == 0)
             continue; /* the way of one line decides for all lines that would meet the same wall */
         const fibrad_wall_line *first = &sums->first_cut[wall];
-        fibrad_work_slot(work, end_of_cut(work, first, window->frame + 6),
+        fibrad_work_slot(work, end_of_cut(work, first, window->direction),
                          window->open * sums->cuts[wall] / points->open);
     }
 }
@@ -334,7 +335,7 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
         work->walls->sums.hidden[k / 64] |= UINT64_C(1) << k % 64;
         return;
     }
-    fibrad_wall_window window = {.frame = frame, .k = k, .n = set->directions, .open = rest, .part = 1};
+    fibrad_wall_window window = {.k = k, .n = set->directions, .open = rest, .part = 1};
     for (int n = 0; n < 3; n++) window.grid[n] = fibrad_grid_of(set->middle[n], k);
     window.weight = whole / set->whole;
     window.end = work->entries.end;
@@ -345,7 +346,7 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
         window.part *= 1.25; /* there is no solid angle here that corrects the unevenness of the discs */
     if (points->count == 0) fibrad_areas_slope(&work->areas, work->disc.resolved, window.slope);
     for (int axis = 0; axis < 2; axis++) window.slope[axis] *= whole / FIBRAD_PI;
-    fibrad_wall_window_begin(&window, &work->walls->view);
+    fibrad_wall_window_begin(&window, &work->walls->view, frame);
     if (!fibrad_wall_window_simple(&window, &work->walls->view, set->turned, &work->walls->sums))
         share_by_lines(work, points, &window);
 }
@@ -358,10 +359,10 @@ static void add_hidden(fibrad_workspace *work, const fibrad_window_set *set) {
         if ((work->walls->sums.hidden[k / 64] >> k % 64 & 1) == 0) continue;
         double frame[9];
         set->frame(set->from, k, HIDDEN_POINTS, frame);
-        fibrad_wall_window window = {.frame = frame, .k = k, .n = set->directions, .hidden = 1, .weight = 1, .part = 1};
+        fibrad_wall_window window = {.k = k, .n = set->directions, .hidden = 1, .weight = 1, .part = 1};
         for (int n = 0; n < 3; n++) window.grid[n] = fibrad_grid_of(set->middle[n], k);
         window.end = set->ends && (k == 0 || k == set->directions - 1);
-        fibrad_wall_window_begin(&window, &work->walls->view);
+        fibrad_wall_window_begin(&window, &work->walls->view, frame);
         if (!fibrad_wall_window_simple(&window, &work->walls->view, set->turned, &work->walls->sums))
             share_by_lines(work, all, &window);
     }

@@ -74,8 +74,10 @@ static double sharpness_of(const fibrad_wall_window *window, double first, doubl
     return 1 / fibrad_sqrt(soft * soft * (first * first + second * second) + length * length);
 }
 
-void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view *view) {
+void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view *view, const double frame[9]) {
     const double *w = window->frame + 6;
+    window->direction = frame + 6;
+    for (uint32_t k = 0; k < 9; k++) window->frame[k] = frame[k - k % 3 + fibrad_cylinder_axis(view->turn, k % 3)];
     window->wide = window->parallel ? WALL_PARALLEL : window->part * FIBRAD_WINDOW_SPREAD / fibrad_sqrt(window->n);
     for (int axis = 0; axis < 2; axis++) window->slope[axis] *= WALL_SLOPE;
     if (view->only < 3) return;

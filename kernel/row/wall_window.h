@@ -18,7 +18,8 @@ typedef struct fibrad_wall_course {
 } fibrad_wall_course;
 
 typedef struct fibrad_wall_window {
-    const double *frame;       /* axes of the window */
+    double frame[9];           /* axes of the window, by the axes of the cylinder */
+    const double *direction;   /* by the axes x, y and z */
     fibrad_grid grid[3];       /* for shares of windows, sizes and squared sizes */
     uint32_t k, n;             /* window k of n */
     double open, hidden;       /* open and hidden part of the window, areas or points */
@@ -35,8 +36,9 @@ typedef struct fibrad_wall_window {
                             to the other */
 } fibrad_wall_window;
 
-/* Completes a window of which the fields down to slope are set, but for `sharpness`. */
-void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view *view);
+/* Completes a window of which the fields from k to slope are set, but for `sharpness`. frame: axes of the window, by
+ * the axes x, y and z; they must stay. */
+void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view *view, const double frame[9]);
 
 /* Adds to the regions a window that one wall gets as a whole, or whose shares follow from one number. False: lines
  * must tell the shares. turned: whether the directions have been turned. */

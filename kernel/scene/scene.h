@@ -35,7 +35,12 @@ typedef struct fibrad_container {
     uint32_t openings;      /* bit k: the plane of slot k is an opening */
     double low[3], high[3]; /* L, of the planes; infinite where there is none */
     double axis[2], radius; /* L, of the cylinder; an infinite radius: there is none */
+    uint32_t turn;          /* 0 without a cylinder */
 } fibrad_container;
+
+/* Axis a = 0, 1 or 2 of the cylinder: the first two lie across it, the last one along it. They are the axes x, y and z,
+ * turned cyclically. */
+static inline uint32_t fibrad_cylinder_axis(uint32_t turn, uint32_t a) { return (a + turn) % 3; }
 
 /* Whether a slot is an opening, so that its radiation goes to the surroundings. */
 static inline bool fibrad_is_opening(const fibrad_container *container, uint32_t slot) {

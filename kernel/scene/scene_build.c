@@ -129,7 +129,7 @@ static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
         cells *= o->cells[axis];
     }
     for (uint64_t k = 0; o->mark != NULL && k < (cells + 63) / 64; k++) hash = fibrad_hash_word(hash, o->mark[k]);
-    hash = fibrad_hash_word(hash, (uint64_t)c->openings << 1 | (o->mark != NULL));
+    hash = fibrad_hash_word(hash, (uint64_t)c->turn << 32 | (uint64_t)c->openings << 1 | (o->mark != NULL));
     for (uint32_t b = 0; b < scene->facts.walls; b++) hash = fibrad_hash_word(hash, scene->slot[b]);
     for (uint32_t i = 0; i < s->n; i++) {
         for (int axis = 0; axis < 3; axis++) hash = fibrad_hash_number(hash, coordinate_of(s, axis, i));
@@ -321,8 +321,12 @@ static void write_coarse(fibrad_scene *scene) {
     }
 }
 
-/* Finds the largest overlap, and refuses centres inside other spheres. */
-static int check_overlaps(fibrad_scene *scene, fibrad_fault *fault) {
+/* A function for two spheres at places i and j, or an image of j, that overlap. A status other than FIBRAD_OK ends the
+ * search. */
+typedef int overlap_met(fibrad_scene *scene, uint32_t i, uint32_t j, double distance, void *context);
+
+/* Calls a function for each overlap. Spheres of one level are met twice. */
+static int each_overlap(fibrad_scene *scene, overlap_met *met, void *context) {
     for (uint32_t l = 0; l < scene->levels; l++) {
         uint32_t end = l + 1 < scene->levels ? scene->level[l + 1].first_sphere : scene->facts.spheres;
         for (uint32_t i = scene->level[l].first_sphere; i < end; i++) {
@@ -342,21 +346,25 @@ static int check_overlaps(fibrad_scene *scene, fibrad_fault *fault) {
                         if (j == i && !image) continue;
                         /* in units of the sum of the radii, so that no square overflows or vanishes */
                         dx /= sum, dy /= sum, dz /= sum;
-                        double distance = sum * fibrad_sqrt(dx * dx + dy * dy + dz * dz);
-                        double smaller = fibrad_min(scene->r[i], scene->r[j]);
-                        if (distance < sum - smaller || distance == 0) {
-                            uint32_t a = scene->order[i], b = scene->order[j];
-                            return scene_fault(FIBRAD_E_GEOMETRY, fault, a < b ? a : b, a < b ? b : a);
-                        }
-                        double overlap = (sum - distance) / smaller;
-                        if (overlap > scene->facts.overlap_max) {
-                            scene->facts.overlap_max = overlap;
-                            scene->facts.overlap_pair[0] = scene->order[i];
-                            scene->facts.overlap_pair[1] = scene->order[j];
-                        }
+                        const int status = met(scene, i, j, sum * fibrad_sqrt(dx * dx + dy * dy + dz * dz), context);
+                        if (status != FIBRAD_OK) return status;
                     }
             }
         }
+    }
+    return FIBRAD_OK;
+}
+
+/* Finds the largest overlap, and refuses a centre inside another sphere. */
+static int check_overlap(fibrad_scene *scene, uint32_t i, uint32_t j, double distance, void *fault) {
+    const uint32_t a = scene->order[i], b = scene->order[j];
+    const double sum = scene->r[i] + scene->r[j], smaller = fibrad_min(scene->r[i], scene->r[j]);
+    if (distance < sum - smaller || distance == 0)
+        return scene_fault(FIBRAD_E_GEOMETRY, fault, a < b ? a : b, a < b ? b : a);
+    const double overlap = (sum - distance) / smaller;
+    if (overlap > scene->facts.overlap_max) {
+        scene->facts.overlap_max = overlap;
+        scene->facts.overlap_pair[0] = a, scene->facts.overlap_pair[1] = b;
     }
     return FIBRAD_OK;
 }
@@ -431,54 +439,99 @@ static int build_mesh(fibrad_scene *scene, const fibrad_scene_config *config, fi
     return FIBRAD_OK;
 }
 
-int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibrad_scene_config *given,
-                      const fibrad_spheres *spheres, fibrad_fault *fault) {
-    const fibrad_scene_config config = given != NULL ? *given : (fibrad_scene_config){0};
-    if (out == NULL || spheres == NULL) return scene_fault(FIBRAD_E_ARGUMENT, fault, 0, 0);
-    const uint32_t n = spheres->n;
-    if (n > 0 && (spheres->x == NULL || spheres->y == NULL || spheres->z == NULL || spheres->r == NULL))
+/* Copies the spheres into a scene with its grid and container. The scene is not complete yet. */
+static int lay_out_scene(fibrad_scene **out, void *memory, size_t size, const fibrad_scene_config *config,
+                         const fibrad_spheres *given, fibrad_fault *fault) {
+    const uint32_t n = given->n, triangles = config->triangles != NULL ? config->triangles->n : 0;
+    if (n > 0 && (given->x == NULL || given->y == NULL || given->z == NULL || given->r == NULL))
         return scene_fault(FIBRAD_E_ARGUMENT, fault, n, n);
     fibrad_arena arena;
-    const uint32_t triangles = config.triangles != NULL ? config.triangles->n : 0;
-    int status = triangles > FIBRAD_TRIANGLES_MAX ? FIBRAD_E_ARGUMENT : check_config(&config);
+    int status = triangles > FIBRAD_TRIANGLES_MAX ? FIBRAD_E_ARGUMENT : check_config(config);
     if (status == FIBRAD_OK) {
-        size_t needed = fibrad_scene_size(n, spheres->id != NULL);
+        size_t needed = fibrad_scene_size(n, given->id != NULL);
         if (needed > 0 && triangles > 0) needed += fibrad_triangles_size(triangles, n);
         status = fibrad_arena_open(&arena, memory, size, needed);
     }
-    if (status != FIBRAD_OK) return wall_fault(status, fault, n, &config);
+    if (status != FIBRAD_OK) return wall_fault(status, fault, n, config);
 
-    const fibrad_spheres s = with_strides(spheres);
-    fibrad_scene *scene =
+    const fibrad_spheres s = with_strides(given);
+    fibrad_scene *scene = *out =
         scene_layout(&arena, n, s.id != NULL, triangles); /* the hash is 0 until the scene is complete, so objects of
                                                              the last scene in this block return FIBRAD_E_STATE */
     scene->facts.spheres = n;
-    scene->facts.walls = config.walls;
-    scene->facts.isa = fibrad_isa_choose(config.isa);
+    scene->facts.walls = config->walls;
+    scene->facts.isa = fibrad_isa_choose(config->isa);
     scene->facts.triangles = triangles;
-    fibrad_copy(scene->period, config.period, sizeof scene->period);
-    fibrad_walls_build(scene, &config);
+    fibrad_copy(scene->period, config->period, sizeof scene->period);
+    fibrad_walls_build(scene, config);
     status = measure_spheres(scene, &s, fault);
     if (status != FIBRAD_OK) return status;
     for (int axis = 0; axis < 3; axis++)
         if (scene->period[axis] > 0 && scene->period[axis] < scene->facts.radius_max)
             return scene_fault(FIBRAD_E_GEOMETRY, fault, n, n);
-    if (n > 0) {
+    if (n > 0) sort_into_cells(scene, &s);
+    if (s.id != NULL && n > 0) fibrad_copy(scene->id, s.id, n * sizeof *s.id);
+    return FIBRAD_OK;
+}
+
+int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibrad_scene_config *given,
+                      const fibrad_spheres *spheres, fibrad_fault *fault) {
+    const fibrad_scene_config config = given != NULL ? *given : (fibrad_scene_config){0};
+    if (out == NULL || spheres == NULL) return scene_fault(FIBRAD_E_ARGUMENT, fault, 0, 0);
+    fibrad_scene *scene;
+    int status = lay_out_scene(&scene, memory, size, &config, spheres, fault);
+    if (status != FIBRAD_OK) return status;
+    if (spheres->n > 0) {
         scene->spacing = spacing_of(scene);
-        sort_into_cells(scene, &s);
         write_coarse(scene);
-        if (s.id != NULL) fibrad_copy(scene->id, s.id, n * sizeof *s.id);
-        status = check_overlaps(scene, fault);
+        status = each_overlap(scene, check_overlap, fault);
         if (status != FIBRAD_OK) return status;
     }
-    if (triangles > 0) {
+    if (scene->facts.triangles > 0) {
         status = build_mesh(scene, &config, fault);
         if (status != FIBRAD_OK) return status;
     }
     fibrad_surroundings_build(scene, &config);
+    const fibrad_spheres s = with_strides(spheres);
     scene->hash = hash_of(scene, &s);
     *out = scene;
     return FIBRAD_OK;
+}
+
+/* The search for centres inside other spheres. */
+typedef struct inside_search {
+    double *part;
+    uint32_t *other;
+    uint64_t left; /* centres that may still be found */
+    fibrad_fault *fault;
+} inside_search;
+
+#define INSIDE_MOST  64   /* centres inside others that are found, for each sphere */
+#define INSIDE_SLACK 1e-9 /* catches a centre at the surface of another sphere whatever the rounding */
+
+static int note_inside(fibrad_scene *scene, uint32_t i, uint32_t j, double distance, void *context) {
+    const inside_search *search = context;
+    const double larger = fibrad_max(scene->r[i], scene->r[j]), part = distance / larger;
+    const uint32_t pair[] = {scene->order[i], scene->order[j]};
+    if (!(part < 1 + INSIDE_SLACK) || fibrad_scene_id(scene, pair[0]) == fibrad_scene_id(scene, pair[1]))
+        return FIBRAD_OK;
+    for (int k = 0; k < 2; k++)
+        if (part * (1 - INSIDE_SLACK) < search->part[pair[k]])
+            search->part[pair[k]] = part * (1 - INSIDE_SLACK), search->other[pair[k]] = pair[1 - k];
+    if (--((inside_search *)context)->left > 0) return FIBRAD_OK;
+    const uint32_t largest = pair[scene->r[j] > scene->r[i]];
+    return scene_fault(FIBRAD_E_GEOMETRY, search->fault, largest, largest);
+}
+
+int fibrad_spheres_inside(const fibrad_spheres *spheres, void *memory, size_t size, double *part, uint32_t *other,
+                          fibrad_fault *fault) {
+    if (spheres == NULL || (spheres->n > 0 && (part == NULL || other == NULL)))
+        return scene_fault(FIBRAD_E_ARGUMENT, fault, 0, 0);
+    for (uint32_t i = 0; i < spheres->n; i++) part[i] = 1, other[i] = spheres->n;
+    fibrad_scene *scene;
+    const int status = lay_out_scene(&scene, memory, size, &(fibrad_scene_config){0}, spheres, fault);
+    inside_search search = {part, other, INSIDE_MOST * (uint64_t)spheres->n, fault};
+    return status == FIBRAD_OK ? each_overlap(scene, note_inside, &search) : status;
 }
 
 double fibrad_scene_wall_area(const fibrad_scene *scene, uint32_t wall) {

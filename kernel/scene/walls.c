@@ -21,14 +21,14 @@ static uint32_t slot_of_wall(const fibrad_wall *wall) {
     if (wall->kind == FIBRAD_WALL_PLANE) return slot_of_plane(&wall->plane);
     const bool valid = wall->kind == FIBRAD_WALL_CYLINDER && wall_length_valid(wall->cylinder.x) &&
                        wall_length_valid(wall->cylinder.y) && wall_length_valid(wall->cylinder.radius) &&
-                       wall->cylinder.radius > 0;
+                       wall->cylinder.radius > 0 && wall->cylinder.axis >= 0 && wall->cylinder.axis < 3;
     return valid ? FIBRAD_CYLINDER : FIBRAD_WALLS;
 }
 
-/* The planes found so far by slot, openings too, and whether there is a cylinder. */
+/* The planes found so far by slot, openings too, and the cylinder. */
 typedef struct found_walls {
     const fibrad_plane *plane[FIBRAD_CYLINDER];
-    bool cylinder;
+    const fibrad_wall *cylinder;
 } found_walls;
 
 /* Notes a plane. FIBRAD_E_ARGUMENT: the plane is not valid, its side has a plane already, or its axis is periodic. */
@@ -44,9 +44,14 @@ static int find_wall(const fibrad_scene_config *config, const fibrad_wall *wall,
     if (wall->kind == FIBRAD_WALL_PLANE) return find_plane(config, &wall->plane, found);
     if (wall->kind == FIBRAD_WALL_MESH)
         return config->triangles == NULL || config->triangles->n == 0 ? FIBRAD_E_ARGUMENT : FIBRAD_OK;
-    if (slot_of_wall(wall) == FIBRAD_WALLS || found->cylinder) return FIBRAD_E_ARGUMENT;
-    found->cylinder = true;
+    if (slot_of_wall(wall) == FIBRAD_WALLS || found->cylinder != NULL) return FIBRAD_E_ARGUMENT;
+    found->cylinder = wall;
     return FIBRAD_OK;
+}
+
+/* Whether an axis lies across the cylinder. */
+static bool is_across(const found_walls *found, uint32_t axis) {
+    return found->cylinder != NULL && axis != fibrad_cylinder_axis((uint32_t)found->cylinder->cylinder.axis, 2);
 }
 
 /* Whether an axis is bounded on both sides or periodic. */
@@ -54,7 +59,7 @@ static bool axis_is_closed(const fibrad_scene_config *config, const found_walls 
     const bool periodic = config->period[axis] > 0 || (config->occupancy != NULL && config->occupancy->periodic[axis]);
     return periodic ||
            (found->plane[fibrad_face(axis, false)] != NULL && found->plane[fibrad_face(axis, true)] != NULL) ||
-           (found->cylinder && axis < 2);
+           is_across(found, axis);
 }
 
 int fibrad_walls_check(const fibrad_scene_config *config) {
@@ -75,11 +80,11 @@ int fibrad_walls_check(const fibrad_scene_config *config) {
         const fibrad_plane *high = found.plane[fibrad_face(axis, true)];
         if (low != NULL && high != NULL && !(low->at < high->at)) return FIBRAD_E_ARGUMENT;
         walled += low != NULL || high != NULL;
-        across = across || (axis < 2 && (low != NULL || high != NULL || config->period[axis] > 0));
+        across = across || (is_across(&found, axis) && (low != NULL || high != NULL || config->period[axis] > 0));
         closed = closed && axis_is_closed(config, &found, axis);
     }
-    if (found.cylinder && across) return FIBRAD_E_ARGUMENT;
-    return (found.cylinder || walled > 1) && !closed ? FIBRAD_E_ENDLESS : FIBRAD_OK;
+    if (across) return FIBRAD_E_ARGUMENT;
+    return (found.cylinder != NULL || walled > 1) && !closed ? FIBRAD_E_ENDLESS : FIBRAD_OK;
 }
 
 /* The length of the container along an axis. On a periodic axis this is the period. */
@@ -91,13 +96,26 @@ static double container_extent(const fibrad_scene *scene, uint32_t axis) {
 /* Area of the wall of a slot. */
 static double wall_area_of(const fibrad_scene *scene, uint32_t slot) {
     const double radius = scene->container.radius;
-    if (slot == FIBRAD_CYLINDER) return 2 * FIBRAD_PI * radius * container_extent(scene, 2);
+    if (slot == FIBRAD_CYLINDER)
+        return 2 * FIBRAD_PI * radius * container_extent(scene, fibrad_cylinder_axis(scene->container.turn, 2));
     if (radius < INFINITE) return FIBRAD_PI * radius * radius;
     return container_extent(scene, fibrad_face_along(slot, 0)) * container_extent(scene, fibrad_face_along(slot, 1));
 }
 
 static void set_plane(fibrad_container *c, const fibrad_plane *plane) {
     (plane->upper ? c->high : c->low)[plane->axis] = plane->at;
+}
+
+/* The position is given in the order x, y, z. Of a cylinder along y, the first axis across it is z. */
+static void set_cylinder(fibrad_container *c, const fibrad_wall *wall) {
+    const double at[2] = {wall->cylinder.x, wall->cylinder.y};
+    c->turn = (uint32_t)wall->cylinder.axis;
+    c->axis[0] = at[c->turn == 2], c->axis[1] = at[c->turn != 2], c->radius = wall->cylinder.radius;
+}
+
+/* A vector across the cylinder, from its axis to a point [L]. */
+static void from_axis(const fibrad_container *c, const double at[3], double across[2]) {
+    for (uint32_t a = 0; a < 2; a++) across[a] = at[fibrad_cylinder_axis(c->turn, a)] - c->axis[a];
 }
 
 /* Where a plane crosses its axis [L]. */
@@ -110,7 +128,7 @@ void fibrad_walls_build(fibrad_scene *scene, const fibrad_scene_config *config) 
     const fibrad_wall *wall = config->wall;
     for (int axis = 0; axis < 3; axis++) c->low[axis] = -INFINITE, c->high[axis] = INFINITE;
     c->axis[0] = c->axis[1] = 0;
-    c->radius = INFINITE;
+    c->radius = INFINITE, c->turn = 0;
     uint32_t meshes = 0, walls = 0;
     for (uint32_t b = 0; b < config->walls; b++) {
         const bool mesh = wall[b].kind == FIBRAD_WALL_MESH;
@@ -118,7 +136,7 @@ void fibrad_walls_build(fibrad_scene *scene, const fibrad_scene_config *config) 
         if (mesh) continue;
         walls |= 1u << slot;
         if (slot == FIBRAD_CYLINDER)
-            c->axis[0] = wall[b].cylinder.x, c->axis[1] = wall[b].cylinder.y, c->radius = wall[b].cylinder.radius;
+            set_cylinder(c, &wall[b]);
         else
             set_plane(c, &wall[b].plane);
     }
@@ -136,7 +154,9 @@ bool fibrad_walls_hold(const fibrad_container *c, const double at[3]) {
     for (int axis = 0; axis < 3; axis++)
         if (!(at[axis] >= c->low[axis] && at[axis] <= c->high[axis])) return false;
     if (c->radius == INFINITE) return true;
-    const double x = (at[0] - c->axis[0]) / c->radius, y = (at[1] - c->axis[1]) / c->radius;
+    double across[2];
+    from_axis(c, at, across);
+    const double x = across[0] / c->radius, y = across[1] / c->radius;
     return x * x + y * y <= 1;
 }
 
@@ -144,8 +164,9 @@ double fibrad_walls_away(const fibrad_container *c, uint32_t slot, const double 
     const uint32_t axis = fibrad_face_axis(slot);
     if (fibrad_slot_is_plane(slot))
         return fibrad_face_is_upper(slot) ? c->high[axis] - at[axis] : at[axis] - c->low[axis];
-    const double x = at[0] - c->axis[0], y = at[1] - c->axis[1];
-    return c->radius - fibrad_sqrt(x * x + y * y);
+    double across[2];
+    from_axis(c, at, across);
+    return c->radius - fibrad_sqrt(across[0] * across[0] + across[1] * across[1]);
 }
 
 bool fibrad_walls_hold_ball(const fibrad_container *c, const double centre[3], double radius) {
@@ -198,10 +219,13 @@ uint32_t fibrad_walls_exit(const fibrad_scene *scene, const double origin[3], co
         const double t = ((high ? c->high[axis] : c->low[axis]) - origin[axis]) / w[axis];
         if (t < least) least = t, wall = fibrad_face(axis, high);
     }
-    const double across = w[0] * w[0] + w[1] * w[1];
+    const double u = w[fibrad_cylinder_axis(c->turn, 0)], v = w[fibrad_cylinder_axis(c->turn, 1)];
+    const double across = u * u + v * v;
     if (c->radius < INFINITE && across > 0) {
-        const double x = origin[0] - c->axis[0], y = origin[1] - c->axis[1];
-        const double along = x * w[0] + y * w[1], inside = c->radius * c->radius - (x * x + y * y);
+        double from[2];
+        from_axis(c, origin, from);
+        const double x = from[0], y = from[1];
+        const double along = x * u + y * v, inside = c->radius * c->radius - (x * x + y * y);
         const double root = fibrad_sqrt(fibrad_max(0, along * along + across * inside));
         const double t = along > 0 ? inside / (along + root) : (root - along) / across; /* without cancellation */
         if (t < least) least = t, wall = FIBRAD_CYLINDER;
@@ -216,22 +240,28 @@ void fibrad_wall_normal(const fibrad_scene *scene, uint32_t wall, const double a
         normal[fibrad_face_axis(wall)] = fibrad_face_is_upper(wall) ? -1 : 1;
         return;
     }
-    const double x = scene->container.axis[0] - at[0], y = scene->container.axis[1] - at[1];
-    const double radius = fibrad_sqrt(x * x + y * y);
-    normal[0] = x / radius, normal[1] = y / radius;
+    const fibrad_container *c = &scene->container;
+    double from[2];
+    from_axis(c, at, from);
+    const double radius = fibrad_sqrt(from[0] * from[0] + from[1] * from[1]);
+    for (uint32_t a = 0; a < 2; a++) normal[fibrad_cylinder_axis(c->turn, a)] = (0 - from[a]) / radius;
 }
 
-/* Sets x and y to the point at a distance [L] and an angle [turns] from the axis of the cylinder. */
+void fibrad_wall_about(const fibrad_container *c, double u, double v, double at[3]) {
+    at[fibrad_cylinder_axis(c->turn, 0)] = c->axis[0] + u, at[fibrad_cylinder_axis(c->turn, 1)] = c->axis[1] + v;
+}
+
+/* Moves a point to a distance [L] and an angle [turns] from the axis of the cylinder, without moving it along. */
 static void turn_about_axis(const fibrad_container *c, double radius, double turns, double at[3]) {
     double sine, cosine;
     fibrad_sincos_turn(turns, &sine, &cosine);
-    at[0] = c->axis[0] + radius * cosine, at[1] = c->axis[1] + radius * sine;
+    fibrad_wall_about(c, radius * cosine, radius * sine, at);
 }
 
 void fibrad_wall_point(const fibrad_container *c, uint32_t wall, const double coordinate[2], double at[3]) {
     if (wall == FIBRAD_CYLINDER) {
         turn_about_axis(c, c->radius, coordinate[0], at);
-        at[2] = coordinate[1];
+        at[fibrad_cylinder_axis(c->turn, 2)] = coordinate[1];
         return;
     }
     at[fibrad_face_axis(wall)] = end_of_axis(c, wall);
@@ -247,7 +277,7 @@ void fibrad_wall_even_point(const fibrad_scene *scene, uint32_t wall, const doub
         return;
     }
     for (uint32_t edge = wall == FIBRAD_CYLINDER; edge < 2; edge++) {
-        const uint32_t axis = fibrad_wall_along(wall, edge);
+        const uint32_t axis = fibrad_wall_along(c, wall, edge);
         const double low = scene->period[axis] > 0 ? 0 : c->low[axis];
         coordinate[edge] = low + container_extent(scene, axis) * share[edge];
     }

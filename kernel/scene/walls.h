@@ -58,9 +58,12 @@ void fibrad_wall_normal(const fibrad_scene *scene, uint32_t wall, const double a
 
 /* The axis along edge 0 or edge 1 of a plane, and along edge 1 of the cylinder. Edge 0 of the cylinder goes around it.
  */
-static inline uint32_t fibrad_wall_along(uint32_t wall, uint32_t edge) {
-    return wall == FIBRAD_CYLINDER ? 2 : fibrad_face_along(wall, edge);
+static inline uint32_t fibrad_wall_along(const fibrad_container *container, uint32_t wall, uint32_t edge) {
+    return wall == FIBRAD_CYLINDER ? fibrad_cylinder_axis(container->turn, 2) : fibrad_face_along(wall, edge);
 }
+
+/* Moves a point [L] across the cylinder, to u and v from its axis. */
+void fibrad_wall_about(const fibrad_container *container, double u, double v, double at[3]);
 
 /* The point [L] of a wall at two coordinates along its edges [L; turns around the cylinder]. */
 void fibrad_wall_point(const fibrad_container *container, uint32_t wall, const double coordinate[2], double at[3]);

@@ -31,16 +31,18 @@ static bool all_known(const fibrad_wall_view *view) {
 fibrad_wall_view fibrad_wall_view_of(const fibrad_scene *scene, uint32_t place, bool cut, double ball) {
     const fibrad_container *c = &scene->container;
     const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]}, inverse = 1 / scene->r[place];
-    fibrad_wall_view view = {.radius = c->radius * inverse, .round = c->radius < __builtin_inf(), .ball = ball};
-    for (int axis = 0; axis < 3; axis++) {
-        view.low[axis] = (c->low[axis] - centre[axis]) * inverse;
-        view.high[axis] = (c->high[axis] - centre[axis]) * inverse;
-        view.known_low[axis] = (scene->known_low[axis] - centre[axis]) * inverse;
-        view.known_high[axis] = (scene->known_high[axis] - centre[axis]) * inverse;
-        if (!(view.known_low[axis] <= 0 && view.known_high[axis] >= 0))
+    fibrad_wall_view view = {
+        .turn = c->turn, .radius = c->radius * inverse, .round = c->radius < __builtin_inf(), .ball = ball};
+    for (uint32_t a = 0; a < 3; a++) {
+        const uint32_t axis = fibrad_cylinder_axis(c->turn, a);
+        view.low[a] = (c->low[axis] - centre[axis]) * inverse;
+        view.high[a] = (c->high[axis] - centre[axis]) * inverse;
+        view.known_low[a] = (scene->known_low[axis] - centre[axis]) * inverse;
+        view.known_high[a] = (scene->known_high[axis] - centre[axis]) * inverse;
+        if (!(view.known_low[a] <= 0 && view.known_high[a] >= 0))
             view.ball = 0; /* the sphere lies outside the known box */
+        if (a < 2) view.axis[a] = (c->axis[a] - centre[axis]) * inverse;
     }
-    for (int axis = 0; axis < 2; axis++) view.axis[axis] = (c->axis[axis] - centre[axis]) * inverse;
     view.cut = cut && !all_known(&view);
     view.only = view.cut ? 3 : only_axis(c);
     return view;
@@ -120,7 +122,7 @@ static uint32_t slot_of_region(const fibrad_wall_view *view, uint32_t region) {
     const uint32_t axis = region % 4, up = region / 4 >> axis & 1;
     if (axis == 3) return FIBRAD_CYLINDER;
     const double away = up ? view->high[axis] : -view->low[axis];
-    return away < __builtin_inf() ? fibrad_face(axis, up) : FIBRAD_ESCAPED;
+    return away < __builtin_inf() ? fibrad_face(fibrad_cylinder_axis(view->turn, axis), up) : FIBRAD_ESCAPED;
 }
 
 static double all_parts(const double part[4]) { return (part[0] + part[2]) + (part[1] + part[3]); }

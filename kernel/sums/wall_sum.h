@@ -6,8 +6,10 @@
 #include "scene/surroundings.h"
 #include "sums/grid.h"
 
-/* The walls and the known space in the frame of a sphere: relative to its centre, in units of its radius. */
+/* The walls and the known space in the frame of a sphere: relative to its centre, in units of its radius, by the axes
+ * of the cylinder. */
 typedef struct fibrad_wall_view {
+    uint32_t turn;                            /* as in fibrad_container */
     double low[3], high[3], axis[2], radius;  /* infinite where there is no wall */
     int only;                                 /* the axis across which all walls are planes, or 3 */
     bool round;                               /* whether there is a cylinder */
@@ -23,7 +25,7 @@ fibrad_wall_view fibrad_wall_view_of(const fibrad_scene *scene, uint32_t place, 
 
 /* A region of the sky is the directions of one octant in which a line meets one wall. Region 4 octant + n belongs to
  * the plane across axis n, or to the cylinder if n = 3. Bit b of an octant is set if lines rise along axis b. With a
- * cylinder only octants 0 and 4 are used, for all lines that fall or rise along z. If all walls are across one axis,
+ * cylinder only octants 0 and 4 are used, for all lines that fall or rise along it. If all walls are across one axis,
  * only octant 0 and the octant of that axis are used. */
 #define FIBRAD_REGIONS 32
 
@@ -51,7 +53,7 @@ typedef struct fibrad_octant_sums {
     uint32_t octant;
 } fibrad_octant_sums;
 
-/* A line in the frame of a sphere. */
+/* A line in the frame of a sphere, by the axes x, y and z. */
 typedef struct fibrad_wall_line {
     double origin[3], w[3];
 } fibrad_wall_line;

@@ -256,7 +256,7 @@ static void lay_along(struct pile *p, int axis) {
     const double x = p->wall->cylinder.x;
     const int periodic = p->bed.periodic[2];
     for (size_t i = 0; i < p->bed.n; ++i) turn_axes(p->x + 3 * i, axis);
-    p->bed.cylinder = (axis + 1) % 3;
+    p->wall->cylinder.axis = (axis + 1) % 3;
     p->bed.periodic[2] = 0, p->bed.periodic[axis] = periodic;
     if (p->bed.openings) p->bed.opening = ends[axis];
     if (axis == 1) p->wall->cylinder.x = p->wall->cylinder.y, p->wall->cylinder.y = x; /* x y z become z x y, y z x */
@@ -374,11 +374,10 @@ static size_t place_of(const struct rows_file *r, uint64_t id) {
     return k;
 }
 
-/* Compares the rows of all ranks in the files `part` with those of the one file `whole`, whose z became `axis`. */
-static void compare_files(const char *part, const char *whole, int axis) {
+/* Compares the rows of all ranks in the files `part` with those of the one file `whole`. */
+static void compare_files(const char *part, const char *whole) {
     if (rank) return;
     struct rows_file b = read_rows(whole, 0);
-    for (size_t k = 0; k < b.head.rows; ++k) turn_axes(b.x + 3 * k, axis);
     uint64_t rows = 0, same = 0;
     for (int q = 0; q < ranks; ++q) {
         struct rows_file a = read_rows(part, q);
@@ -428,17 +427,17 @@ static void make_rows(fibrad_insitu *s, const struct pile *p, uint64_t step) {
     if (status) fprintf(stderr, "%s\n", fibrad_insitu_message(s));
 }
 
-/* The rows of all ranks, whichever rank owns which particles, are those of one rank that owns all. Those of a tube or
- * a pipe along another axis are the same. */
+/* The rows of all ranks, whichever rank owns which particles, are those of one rank that owns all. A tube or a pipe
+ * lies along an axis. */
 static void rows_are_those_of_one_rank(const struct kind *kind, int axis) {
     struct pile all = pile_of(kind);
+    lay_along(&all, axis);
     if (rank == 0) {
         fibrad_insitu *self = insitu_of(MPI_COMM_SELF, kind, 1);
         make_rows(self, &all, 7);
         CHECK(fibrad_insitu_write(self, path_of("whole")) == FIBRAD_OK);
         fibrad_insitu_free(self);
     }
-    lay_along(&all, axis);
     fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, kind->threads);
     for (int again = 0; again < 2; ++again) { /* first other rows, so that the memory is not empty */
         struct pile part = part_of(&all, again ? kind->spread : (kind->spread + 1) % SPREADS);
@@ -447,7 +446,7 @@ static void rows_are_those_of_one_rank(const struct kind *kind, int axis) {
     }
     CHECK(fibrad_insitu_write(s, path_of("part")) == FIBRAD_OK);
     MPI_Barrier(MPI_COMM_WORLD);
-    compare_files("part", "whole", axis);
+    compare_files("part", "whole");
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(s, &facts);
     CHECK(facts.particles == all.bed.n && facts.step == 7 && facts.entries > 0 && facts.bytes > 0);
@@ -667,7 +666,7 @@ static void the_map_has_all(const struct kind *kind) {
         map.low[axis] = all.bed.low[axis] - (kind->periodic[axis] ? 0 : 5);
         map.high[axis] = all.bed.high[axis] + (kind->periodic[axis] ? 0 : 5);
     }
-    CHECK(fibrad_coarse_map(MPI_COMM_WORLD, .4, .5, 0, own, part.bed.n, &mark, &map) == FIBRAD_OK);
+    CHECK(fibrad_coarse_map(MPI_COMM_WORLD, .4, .5, own, part.bed.n, &mark, &map) == FIBRAD_OK);
     size_t marked = 0, cells = (size_t)map.cells[0] * map.cells[1] * map.cells[2];
     for (size_t c = 0; c < cells; ++c) marked += map.mark[c / 64] >> c % 64 & 1;
     bool there = true;
@@ -1029,9 +1028,10 @@ static double conductance_of_pair(const struct pile *p, const double *solid, siz
 static double conductance_of_wall(const struct pile *p, const double *solid, size_t i, const fibrad_wall *wall,
                                   bool hertz) {
     const double *x = p->x + 3 * i;
+    const int along = (wall->cylinder.axis + 2) % 3, u = along == 0, v = along == 2 ? 1 : 2;
     const double d = wall->kind == FIBRAD_WALL_PLANE
                          ? fabs(x[wall->plane.axis] - wall->plane.at)
-                         : wall->cylinder.radius - hypot(x[0] - wall->cylinder.x, x[1] - wall->cylinder.y);
+                         : wall->cylinder.radius - hypot(x[u] - wall->cylinder.x, x[v] - wall->cylinder.y);
     return 4 * solid[i] * spot_radius(d, p->radius[i], 0, hertz);
 }
 
@@ -1055,29 +1055,31 @@ static void check_pairs(const struct pile *all, const double *solid, bool hertz,
     }
 }
 
-/* Contacts conduct the same, to the bit, whoever owns which particle and along whichever axis a tube lies. Their powers
- * add up to zero. */
+/* Contacts conduct the same, to the bit, whoever owns which particle. Their powers add up to zero. */
 static void contacts_conduct(const struct kind *kind, int axis, bool hertz, double gas) {
     struct pile all = pile_of(kind);
+    lay_along(&all, axis);
     for (size_t i = 0; i < all.bed.n; ++i) all.radius[i] *= 1.2;
     double *solid = memory_of(all.bed.n, 2 * sizeof *solid), *kelvin = solid + all.bed.n;
     for (size_t i = 0; i < all.bed.n; ++i) solid[i] = 1 + random_of(all.id[i], 6);
     fibrad_insitu_contacts contacts = {.conductivity = solid, .hertz = hertz, .scale = .7, .gas = gas};
     fibrad_insitu_conducted whole = {0}, parts = {0};
+    const fibrad_insitu_config quick = {.cutoff = 4, .directions = FIBRAD_DIRECTIONS_MIN, .paths = 1, .one_way = 1};
     all.bed.conductivity = NULL;
     if (rank == 0) {
-        fibrad_insitu *self = insitu_of(MPI_COMM_SELF, kind, 1);
+        fibrad_insitu *self;
+        CHECK(fibrad_insitu_new(&self, MPI_COMM_SELF, &quick) == FIBRAD_OK);
         const fibrad_insitu_state state = state_of(&all);
         make_rows(self, &all, 7);
         CHECK(fibrad_insitu_conduct(self, &contacts, &all.bed, &state, all.power, kelvin, &whole) == FIBRAD_OK);
         fibrad_insitu_free(self);
         if (gas == 0) check_pairs(&all, solid, hertz, .7, all.power);
     }
-    lay_along(&all, axis);
     struct pile part = part_of(&all, kind->spread);
     part.bed.conductivity = NULL;
     for (size_t i = 0; i < part.bed.n; ++i) solid[i] = 1 + random_of(part.id[i], 6);
-    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, kind->threads);
+    fibrad_insitu *s;
+    CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &quick) == FIBRAD_OK);
     const fibrad_insitu_state state = state_of(&part);
     make_rows(s, &part, 7);
     CHECK(fibrad_insitu_conduct(s, &contacts, &part.bed, &state, part.power, kelvin, &parts) == FIBRAD_OK);
@@ -1232,13 +1234,13 @@ static void wrong_units_are_refused(void) {
 static void cylinders_are_refused(fibrad_insitu *s) {
     static const char *const place[] = {"at (0.5, 9.5, 0.25): its centre lies beyond wall 1, the cylinder",
                                         "at (0.25, 0.5, 9.5): its centre lies beyond wall 1, the cylinder"};
-    const fibrad_wall tube = {.kind = FIBRAD_WALL_CYLINDER, .cylinder = {3, 4, 6}};
     for (int axis = 0; axis < 2; ++axis) {
+        fibrad_wall tube = {.kind = FIBRAD_WALL_CYLINDER, .cylinder = {3, 4, 6, axis + 1}};
         const fibrad_plane across[] = {{2, 0, -1}, {2, 1, 9}};
         const fibrad_wall both[] = {tube, tube}, floor[] = {tube, {.kind = FIBRAD_WALL_PLANE, .plane = across[0]}};
         double x[3] = {9.5, .25, .5};
         turn_axes(x, axis);
-        fibrad_insitu_bed bed = {.low = {0}, .high = {9, 9, 9}, .cylinder = (axis + 1) % 3};
+        fibrad_insitu_bed bed = {.low = {0}, .high = {9, 9, 9}};
         bed.periodic[axis] = 1, bed.wall_emissivity = (const double[]){1, 1};
         bed.n = 1, bed.id = &(const uint64_t){5}, bed.x = x, bed.radius = bed.emissivity = &(const double){.5};
         bed.wall = &tube, bed.walls = 1;
@@ -1251,7 +1253,7 @@ static void cylinders_are_refused(fibrad_insitu *s) {
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "do not bound a box or a cylinder");
         bed.openings = 0, bed.periodic[axis] = 0;
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ENDLESS, "an opening");
-        bed.cylinder = 3;
+        tube.cylinder.axis = 3, bed.wall = &tube;
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "");
     }
 }

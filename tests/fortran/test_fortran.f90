@@ -69,6 +69,12 @@ contains
         call expect(abs(found%wall_wall(1, 2) - (sqrt(8.0_dp) - 2)) < 1e-2_dp, 'from a disc to the tube')
         call expect(abs(20**2 * found%wall_wall(1, 2) - 1600 * found%wall_wall(2, 1)) < 1e-10_dp, 'reciprocal walls')
         call expect(maxval(abs(found%wall_escaped)) < 1e-12_dp .and. maxval(found%wall_error) < 1e-2_dp, 'nothing escapes')
+        call fibrad_view_factors([0.0_dp], [2.0_dp], [3.0_dp], [1.0_dp], found, status, &
+            walls=[fibrad_cylinder(2.0_dp, 3.0_dp, 20.0_dp, 'x'), fibrad_plane('xmax', 20.0_dp), fibrad_plane('xmin', -20.0_dp)])
+        call expect(abs(found%wall(2, 1) - (1 - sqrt(0.5_dp)) / 2) < 2e-6_dp, 'a tube along x')
+        call fibrad_view_factors([0.0_dp], [0.0_dp], [0.0_dp], [1.0_dp], found, status, &
+            walls=[fibrad_cylinder(0.0_dp, 0.0_dp, 20.0_dp, 'w'), fibrad_plane('xmax', 20.0_dp), fibrad_plane('xmin', -20.0_dp)])
+        call expect(status == fibrad_e_argument, 'a tube along nothing')
         call fibrad_view_factors([0.5_dp], [0.5_dp], [0.5_dp], [0.5_dp], found, status, box=[1.0_dp, 1.0_dp, 1.0_dp])
         call expect(size(found%f) == 1 .and. abs(found%f(1) - 1) < 1e-2_dp, 'it sees its own images')
     end subroutine walls_and_boxes

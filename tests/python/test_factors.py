@@ -238,11 +238,15 @@ def test_walls():
     assert cube.wall_area == pytest.approx(100) and cube.wall_names == tuple(CUBE)
     turned = fibrad.view_factors([[0, 0, 1]], 1, walls=list(reversed(CUBE.items())))
     assert turned.wall("zmax") == pytest.approx(turned.walls[:, 0]) and turned.wall("zmax") > turned.wall("zmin")
-    tube = fibrad.view_factors([[0, 0, 0]], 1, walls={"cylinder": (0, 0, 2), "zmin": -2, "zmax": 2}, directions=10000)
-    assert tube.wall_area == pytest.approx([16 * np.pi, 4 * np.pi, 4 * np.pi])
-    # from the centre of a small sphere the discs are seen under half angles of 45 degrees
-    point = fibrad.view_factors([[0, 0, 0]], 1e-3, walls={"cylinder": (0, 0, 2), "zmin": -2, "zmax": 2}, directions=10000)
-    assert point.wall("zmax") == pytest.approx((1 - np.sqrt(0.5)) / 2, abs=1e-3)
+    for cylinder, axis, at in (("cylinder", "z", (4, 5)), ("xcylinder", "x", (5, 6)), ("ycylinder", "y", (4, 6))):
+        middle = {"x": 4, "y": 5, "z": 6}
+        low, high = f"{axis}min", f"{axis}max"
+        walls = {cylinder: (*at, 2), low: middle[axis] - 2, high: middle[axis] + 2}
+        tube = fibrad.view_factors([[4, 5, 6]], 1, walls=walls)
+        assert tube.wall_area == pytest.approx([16 * np.pi, 4 * np.pi, 4 * np.pi])
+        # from the centre of a sphere the discs are seen under half angles of 45 degrees
+        assert tube.wall(high) == pytest.approx((1 - np.sqrt(0.5)) / 2, abs=2e-6)
+        assert tube.wall_names == (cylinder, low, high)
 
 
 def test_rows_of_walls():
@@ -384,6 +388,9 @@ def test_beds_that_cannot_be(x, r, text, spheres):
     ({"box": [-1, 2, 3]}, "three lengths"), ({"box": [0.1, 0, 0]}, "smaller than a sphere's radius"),
     ({"walls": {"floor": 0}}, "no wall 'floor'; there are xmin"), ({"walls": {"zmin": np.nan}}, "wall zmin"),
     ({"walls": [("zmin", 0), ("zmin", 1)]}, "twice"), ({"walls": {"cylinder": 3}}, r"\(x, y, radius\)"),
+    ({"walls": {"xcylinder": (0, 3)}}, r"\(y, z, radius\), y and z of its axis along x"),
+    ({"walls": {"ycylinder": (0, 0, 3), "cylinder": (0, 0, 3)}}, "wall cylinder: contradicts"),
+    ({"walls": {"ycylinder": (0, 0, 3), "zmin": -1}}, "wall zmin: contradicts"),
     ({"walls": {"zmin": -1, "cylinder": (0, 0, 3)}}, "walls={'zmax': 'open'}"),
     ({"walls": {"zmax": ("open", 3.5)}}, "a sphere reaches beyond an open side"), ({"walls": {"top": "open"}}, "'top' cannot be open"),
     ({"walls": {"zmax": "opened"}}, "wall zmax"), ({"walls": {"zmax": ("open", np.nan)}}, "wall zmax"),

@@ -57,10 +57,12 @@ def test_planes_inside_spheres(make):
         make({"zmin": 0.01})
 
 
-def test_cylinders_inside_spheres():
-    tube = {"cylinder": (0.0, 0.0, 0.06), "zmin": "open", "zmax": "open"}
-    with pytest.warns(UserWarning, match=r"sphere of id 9 reaches through the wall cylinder by 0.5 of its radius \(1 such"):
-        fibrad.view_factors(X, R, walls=tube, ids=[7, 9])
+@pytest.mark.parametrize("name, axis", [("cylinder", 2), ("xcylinder", 0), ("ycylinder", 1)])
+def test_cylinders_inside_spheres(name, axis):
+    x = np.roll(X, axis + 1, axis=1)
+    tube = {name: (0.0, 0.0, 0.06), "xyz"[axis] + "min": "open", "xyz"[axis] + "max": "open"}
+    with pytest.warns(UserWarning, match=rf"sphere of id 9 reaches through the wall {name} by 0.5 of its radius \(1 such"):
+        fibrad.view_factors(x, R, walls=tube, ids=[7, 9])
 
 
 def test_meshes_of_another_unit(tmp_path):

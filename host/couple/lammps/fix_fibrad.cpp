@@ -16,6 +16,7 @@
 extern "C" {
 #include "cli/message.h"
 }
+#include "contact/cylinder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -88,9 +89,9 @@ class FixFibrad::Words {
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     : Fix(lammps, narg, arg), spots(), temperature(), kept_bit(0), surroundings{-1, ""}, parts(false), errors(false),
-      columns(1), moved(0), sampling(false), accuracy(false), cylinder(2), sigma(0), initial(0), config(), meshes(),
-      moving(false), insitu(nullptr), totals(), conducted(), warned(false), wall_warned(false), told(), set_up(-1),
-      powers_at(0), lost(0), restarted(false), begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
+      columns(1), moved(0), sampling(false), accuracy(false), sigma(0), initial(0), config(), meshes(), moving(false),
+      insitu(nullptr), totals(), conducted(), warned(false), wall_warned(false), told(), set_up(-1), powers_at(0),
+      lost(0), restarted(false), begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // the default of docs/lammps.md
@@ -249,8 +250,8 @@ void FixFibrad::read_wall(Words &words) {
     const double huge = 1e300;
     fibrad_wall wall = {};
     if (round) {
-        cylinder = face - 6;
         wall.kind = FIBRAD_WALL_CYLINDER;
+        wall.cylinder.axis = (face - 5) % 3; // 0: z, 1: x, 2: y
         wall.cylinder.radius = words.number("the cylinder's radius", 0, huge);
     } else {
         wall.kind = FIBRAD_WALL_PLANE;
@@ -262,8 +263,8 @@ void FixFibrad::read_wall(Words &words) {
     const bool at = words.take("at");
     if (at) {
         if (round) {
-            wall.cylinder.x = words.number(text("%c of the cylinder", across[cylinder][0]).c_str(), -huge, huge);
-            wall.cylinder.y = words.number(text("%c of the cylinder", across[cylinder][1]).c_str(), -huge, huge);
+            wall.cylinder.x = words.number(text("%c of the cylinder", across[face - 6][0]).c_str(), -huge, huge);
+            wall.cylinder.y = words.number(text("%c of the cylinder", across[face - 6][1]).c_str(), -huge, huge);
         } else {
             wall.plane.at = words.number("the place of a wall", -huge, huge);
         }
@@ -473,12 +474,14 @@ void FixFibrad::init() {
     if (domain->triclinic) error->all(FLERR, std::string("fix fibrad: the box must not be triclinic"));
     if (strstr(update->integrate_style, "respa"))
         error->all(FLERR, std::string("fix fibrad: run_style must be verlet"));
-    for (const fibrad_wall &wall : walls)
+    for (const fibrad_wall &wall : walls) {
+        const int along = cylinder_along(&wall);
         if (wall.kind == FIBRAD_WALL_CYLINDER &&
-            (domain->periodicity[(cylinder + 1) % 3] || domain->periodicity[(cylinder + 2) % 3]))
+            (domain->periodicity[(along + 1) % 3] || domain->periodicity[(along + 2) % 3]))
             error->all(FLERR, text("fix fibrad: wall %ccylinder needs open axes %c and %c: what is in it has no images "
                                    "beyond it",
-                                   "xyz"[cylinder], across[cylinder][0], across[cylinder][1]));
+                                   "xyz"[along], across[along][0], across[along][1]));
+    }
     for (const fibrad_plane &opening : openings)
         if (domain->periodicity[opening.axis])
             error->all(FLERR, std::string("fix fibrad: wall ") + "xyz"[opening.axis] + (opening.upper ? "hi" : "lo") +
@@ -546,9 +549,10 @@ void FixFibrad::list_output() {
     list += ", [2] beyond, [3] error, [4] [5] seconds";
     for (int w = 0; w < count; w++) {
         const fibrad_wall &wall = walls[w];
-        const std::string name = wall.kind == FIBRAD_WALL_PLANE      ? faces[2 * wall.plane.axis + wall.plane.upper]
-                                 : wall.kind == FIBRAD_WALL_CYLINDER ? std::string(1, "xyz"[cylinder]) + "cylinder"
-                                                                     : "mesh";
+        const std::string name = wall.kind == FIBRAD_WALL_PLANE ? faces[2 * wall.plane.axis + wall.plane.upper]
+                                 : wall.kind == FIBRAD_WALL_CYLINDER
+                                     ? std::string(1, "xyz"[cylinder_along(&wall)]) + "cylinder"
+                                     : "mesh";
         list += text(", [%d] wall ", 6 + w) + name;
         names += text(", [%d] T of wall ", 9 + count + w) + name;
     }
@@ -656,7 +660,6 @@ FixFibrad::Bed FixFibrad::present_bed() {
     b.bed.wall = walls.data();
     b.bed.wall_emissivity = wall_emissivity.data();
     b.bed.walls = (uint32_t)walls.size();
-    b.bed.cylinder = (cylinder + 1) % 3;
     b.bed.opening = openings.data();
     b.bed.openings = (uint32_t)openings.size();
     b.bed.triangles = &meshes.meshes.triangles;

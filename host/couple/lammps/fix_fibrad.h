@@ -144,7 +144,6 @@ class FixFibrad : public Fix {
     double moved;       // rows are made anew if particles have moved by so many radii; 0: never
     bool sampling;      // directions, paths or tolerance are given
     bool accuracy;      // accuracy is given
-    int cylinder;       // axis of the cylinder
     double sigma;       // in units of the simulation
     double initial;     // temperature of new atoms
     fibrad_insitu_config config;

@@ -395,7 +395,6 @@ fibrad_insitu_bed present_bed(const Driver *driver) {
     bed.wall = driver->wall.data();
     bed.wall_emissivity = driver->wall_emissivity.data();
     bed.walls = (uint32_t)driver->wall.size();
-    bed.cylinder = driver->options.cylinder;
     bed.opening = driver->options.openings.data();
     bed.openings = (uint32_t)driver->options.openings.size();
     bed.triangles = &driver->triangles.meshes.triangles;

@@ -69,7 +69,7 @@ bool whole(const char *text, uint64_t *value) {
 }
 
 const char sides[6][4] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
-const char *const cylinders[] = {"cylinder", "xcylinder", "ycylinder"}; /* in the order of fibrad_insitu_bed.cylinder */
+const char *const cylinders[] = {"cylinder", "xcylinder", "ycylinder"}; /* by fibrad_wall.cylinder.axis */
 
 /* Reads SIDE=open or SIDE=open,AT. */
 bool opening(const char *text, fibrad_plane *plane) {
@@ -87,8 +87,8 @@ bool opening(const char *text, fibrad_plane *plane) {
     return false;
 }
 
-/* Reads SIDE=T,E[,AT], or one of xcylinder=T,E,Y,Z,R, ycylinder=T,E,X,Z,R and cylinder=T,E,X,Y,R. *cylinder: which. */
-bool wall(const char *text, radiant_wall *wall, int *cylinder) {
+/* Reads SIDE=T,E[,AT], or one of xcylinder=T,E,Y,Z,R, ycylinder=T,E,X,Z,R and cylinder=T,E,X,Y,R. */
+bool wall(const char *text, radiant_wall *wall) {
     const char *equals = std::strchr(text, '=');
     std::vector<double> values;
     if (equals == nullptr || !numbers(equals + 1, -FIBRAD_LENGTH_MAX, FIBRAD_LENGTH_MAX, &values) || values.size() < 2)
@@ -102,9 +102,8 @@ bool wall(const char *text, radiant_wall *wall, int *cylinder) {
     for (int along = 0; along < 3; ++along)
         if (wall->name == cylinders[along]) {
             if (values.size() != 5 || !(values[4] > 0)) return false;
-            *cylinder = along;
             wall->wall.kind = FIBRAD_WALL_CYLINDER;
-            wall->wall.cylinder = {values[2], values[3], values[4]};
+            wall->wall.cylinder = {values[2], values[3], values[4], along};
             return true;
         }
     for (int side = 0; side < 6; ++side)
@@ -186,7 +185,7 @@ const char *take(int key, const char *text, liggghts_options *options) {
             options->openings.push_back(open);
             return nullptr;
         }
-        if (!wall(text, &one, &options->cylinder))
+        if (!wall(text, &one))
             return "is none of SIDE=T,E[,AT], SIDE=open[,AT], cylinder=T,E,X,Y,R, xcylinder=T,E,Y,Z,R and "
                    "ycylinder=T,E,X,Z,R, with SIDE from xlo to zhi";
         options->walls.push_back(one);

@@ -38,7 +38,6 @@ struct liggghts_options {
     fibrad_insitu_contacts spots{};  /* the rest of --contacts */
     double surroundings = -1;        /* below 0: not given */
     std::vector<radiant_wall> walls;
-    int cylinder = 0;                   /* axis of the cylinder, as in fibrad_insitu_bed */
     std::vector<fibrad_plane> openings; /* at NaN: at the end of the particles */
     std::vector<radiant_mesh> meshes;
     std::vector<wall_capacity> capacities;

@@ -5,8 +5,6 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "couple/ranks/turned.h"
-
 #define CELLS_MAX 0x1p24
 #define AXIS_MAX  0x1p20
 #define MARGIN    1e-6 /* in widths of a cell, far above rounding */
@@ -29,14 +27,13 @@ static double divide_box(double width, fibrad_occupancy *map) {
 /* Narrows the box along open axes to mean and four standard deviations of the centres, again and again while centres
  * are left out. So particles lost far away do not make the cells wide. Sums are of whole numbers, so the result does
  * not depend on who owns which particle. */
-static void leave_out_strays(MPI_Comm comm, int cylinder, const fibrad_particle *particle, size_t own, double radius,
+static void leave_out_strays(MPI_Comm comm, const fibrad_particle *particle, size_t own, double radius,
                              fibrad_occupancy *map) {
     bool less = true;
     for (int round = 0; round < TRIM_ROUNDS && less; ++round) {
         uint64_t sum[3][3] = {{0}}; /* by axis: number of centres, sum of their positions, sum of squared positions */
         for (size_t i = 0; i < own; ++i) {
-            double x[3];
-            fibrad_turn(cylinder, particle[i].x, x);
+            const double *x = particle[i].x;
             for (int axis = 0; axis < 3; ++axis) {
                 const double at = (x[axis] - map->low[axis]) / (map->high[axis] - map->low[axis]);
                 if (!(at >= 0 && at <= 1)) continue;
@@ -115,19 +112,15 @@ static void mark_sphere(const fibrad_occupancy *map, const fibrad_particle *p, u
     }
 }
 
-int fibrad_coarse_map(MPI_Comm comm, double width, double radius, int cylinder, const fibrad_particle *particle,
-                      size_t own, fibrad_block *mark, fibrad_occupancy *map) {
-    if (divide_box(width, map) > CELLS_MAX) leave_out_strays(comm, cylinder, particle, own, radius, map);
+int fibrad_coarse_map(MPI_Comm comm, double width, double radius, const fibrad_particle *particle, size_t own,
+                      fibrad_block *mark, fibrad_occupancy *map) {
+    if (divide_box(width, map) > CELLS_MAX) leave_out_strays(comm, particle, own, radius, map);
     while (divide_box(width, map) > CELLS_MAX) width *= 1.25;
     const size_t words = ((size_t)map->cells[0] * map->cells[1] * map->cells[2] + 63) / 64;
     const int status = fibrad_agree(comm, fibrad_block_fit(mark, words, sizeof(uint64_t)), NULL);
     if (status) return status;
     memset(mark->at, 0, words * sizeof(uint64_t));
-    for (size_t i = 0; i < own; ++i) {
-        fibrad_particle turned = particle[i];
-        fibrad_turn(cylinder, particle[i].x, turned.x);
-        mark_sphere(map, &turned, mark->at);
-    }
+    for (size_t i = 0; i < own; ++i) mark_sphere(map, &particle[i], mark->at);
     MPI_Allreduce(MPI_IN_PLACE, mark->at, (int)words, MPI_UINT64_T, MPI_BOR, comm);
     map->mark = mark->at;
     return FIBRAD_OK;

@@ -24,6 +24,13 @@ typedef struct fibrad_particle {
     fibrad_place owner; /* set by fibrad_halo and fibrad_gather: where its owner has it */
 } fibrad_particle;
 
+/* Particles as spheres. id: out, [n]; NULL: they get no ids */
+static inline fibrad_spheres fibrad_particle_spheres(const fibrad_particle *p, size_t n, uint64_t *id) {
+    const uint32_t stride = sizeof *p / sizeof(double);
+    for (size_t i = 0; i < n && id; ++i) id[i] = p[i].id;
+    return (fibrad_spheres){&p->x[0], &p->x[1], &p->x[2], &p->radius, (uint32_t)n, stride, stride, id};
+}
+
 /* Collective. Appends to particle[own] the particles of other ranks, and the periodic images of particles of all ranks,
  * within `reach` of the box of the centres of particle[own]. Their order depends on who owns which particle. An image
  * has the coordinates x + s period with integers s, whoever owns the particle. once: no images are appended, but each

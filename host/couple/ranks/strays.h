@@ -1,5 +1,5 @@
-/* strays.h - particles with which a simulation goes on, but of which no scene can be made as they are: those beyond
- * walls, and those whose centre lies inside another. SPDX-License-Identifier: MIT */
+/* strays.h - particles beyond walls, and what is said of particles of which no scene can be made as they are.
+ * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_STRAYS_H
 #define FIBRAD_COUPLE_STRAYS_H
 
@@ -12,7 +12,6 @@ typedef struct fibrad_bounds {
     const fibrad_wall *wall;     /* [walls] */
     const fibrad_plane *opening; /* [openings] */
     uint32_t walls, openings;
-    int cylinder; /* as in fibrad_insitu_bed */
 } fibrad_bounds;
 
 /* What happened to some particles of a bed: their number, and a sentence about the one with the least id. */
@@ -31,12 +30,5 @@ void fibrad_remark_add(fibrad_remark *remark, uint64_t id, const char *message);
 
 /* Collective. Makes the remark that of all ranks together. */
 void fibrad_remark_agree(MPI_Comm comm, fibrad_remark *remark);
-
-/* For each of the first `own` particles finds to what part its radius must be reduced so that no centre lies inside
- * another particle: part[i] is 1, or else the least d/max(r_i, r_j) of all particles j at a distance d < max(r_i, r_j).
- * With radii reduced so, each centre lies on the other surface or outside. All particles within the largest radius of
- * own ones must be among particle[all]. Images of a particle do not count as others. remark: own particles with a part
- * below 1; after an error a sentence. Errors: _GEOMETRY: particles have tens of centres inside; _MEMORY. */
-int fibrad_overlaps(const fibrad_particle *particle, size_t own, size_t all, double *part, fibrad_remark *remark);
 
 #endif

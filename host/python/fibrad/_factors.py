@@ -320,7 +320,8 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
     walls : mapping or sequence of pairs, optional
         Walls by name: ``{"zmin": 0.0, "zmax": 1.0, "cylinder": (x, y, radius), "hopper": Mesh(...)}``. The names of
         planes are xmin, xmax, ymin, ymax, zmin and zmax, with the coordinate [L]. The cylinder is parallel to the z
-        axis. A `Mesh` has any other name. ``"zmax": "open"`` is an opening: the container ends there and the
+        axis. ``"xcylinder": (y, z, radius)`` and ``"ycylinder": (x, z, radius)`` are parallel to the other axes. A
+        `Mesh` has any other name. ``"zmax": "open"`` is an opening: the container ends there and the
         surroundings begin, where the spheres end. ``"zmax": ("open", at)`` is an opening at the coordinate ``at``.
         Default: no walls.
     tolerance : float, optional

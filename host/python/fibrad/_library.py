@@ -16,7 +16,7 @@ _structures: list[Any] = []
 
 
 class _Cylinder(ctypes.Structure):
-    _fields_ = [("x", c_double), ("y", c_double), ("radius", c_double)]
+    _fields_ = [("x", c_double), ("y", c_double), ("radius", c_double), ("axis", c_int)]
 
 
 def structure_of_files(name: str, *fields: tuple[str, Any]) -> Any:

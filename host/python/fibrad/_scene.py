@@ -17,6 +17,7 @@ from ._values import Names, doubles, real, refuse
 _AXES = "xyz"
 _PLANES = {f"{axis}{end}": (k, upper) for k, axis in enumerate(_AXES) for upper, end in enumerate(("min", "max"))}
 _PLANE, _CYLINDER, _MESH = 1, 2, 3
+_CYLINDERS = ("cylinder", "xcylinder", "ycylinder")  # by fibrad_wall.cylinder.axis
 _NO_WALL = 2**32 - 1
 _STRIDE_MAX = 2**32 - 1
 
@@ -163,6 +164,11 @@ class Mesh:
         return np.asarray(np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2)
 
 
+def across_cylinder(axis: int) -> tuple[int, int]:
+    """The two axes across a cylinder, of fibrad_wall.cylinder.axis."""
+    return ((0, 1), (1, 2), (0, 2))[axis]
+
+
 def _plane(name: str, at: Any) -> tuple[int, int, float]:
     if at is None or isinstance(at, str):
         raise refuse(f"wall {name} is {at!r}; a place, 'open' or ('open', place) is wanted")
@@ -193,12 +199,14 @@ def _wall(name: str, value: Any) -> Any:
         return Wall(kind=_MESH)
     if name in _PLANES:
         return Wall(kind=_PLANE, plane=_plane(name, value))
-    if name == "cylinder":
-        numbers = doubles("wall cylinder", value)
+    if name in _CYLINDERS:
+        axis, (u, v) = _CYLINDERS.index(name), across_cylinder(_CYLINDERS.index(name))
+        numbers = doubles(f"wall {name}", value)
         if numbers.shape != (3,) or not np.isfinite(numbers).all() or numbers[2] <= 0:
-            raise refuse("wall cylinder must be (x, y, radius), x and y of its axis along z")
-        return Wall(kind=_CYLINDER, cylinder=tuple(numbers))
-    raise refuse(f"there is no wall {name!r}; there are {', '.join(_PLANES)}, cylinder, and any name for a Mesh")
+            raise refuse(f"wall {name} must be ({_AXES[u]}, {_AXES[v]}, radius), {_AXES[u]} and {_AXES[v]} of its axis "
+                         f"along {_AXES[3 - u - v]}")
+        return Wall(kind=_CYLINDER, cylinder=(*numbers, axis))
+    raise refuse(f"there is no wall {name!r}; there are {', '.join((*_PLANES, *_CYLINDERS))}, and any name for a Mesh")
 
 
 def _pairs_of(walls: Optional[Walls]) -> list[tuple[str, Any]]:
@@ -259,10 +267,9 @@ class Container:
         return [(name, b.plane.axis, b.plane.upper, b.plane.at) for name, b in zip(self.names, self._walls)
                 if b.kind == _PLANE]
 
-    def cylinders(self) -> list[tuple[str, float, float, float]]:
-        """Name, place of the axis and radius of the cylinder, if there is one."""
-        return [(name, b.cylinder.x, b.cylinder.y, b.cylinder.radius) for name, b in zip(self.names, self._walls)
-                if b.kind == _CYLINDER]
+    def cylinders(self) -> list[tuple[str, Any]]:
+        """Name, and fibrad_wall.cylinder, of the cylinder, if there is one."""
+        return [(name, b.cylinder) for name, b in zip(self.names, self._walls) if b.kind == _CYLINDER]
 
     def meshes(self) -> list[tuple[str, Mesh]]:
         """Name and mesh of each wall of triangles."""
@@ -323,7 +330,8 @@ class Container:
     def _bounded(self, axis: int) -> bool:
         """Whether an axis has an end or a period: two planes, a period, or the cylinder across it."""
         ends = {f"{_AXES[axis]}min", f"{_AXES[axis]}max"}
-        return bool(self.period[axis] > 0 or ends <= {*self.names, *self.opened} or (axis < 2 and "cylinder" in self.names))
+        round_it = any(axis in across_cylinder(cylinder.axis) for _, cylinder in self.cylinders())
+        return bool(self.period[axis] > 0 or ends <= {*self.names, *self.opened} or round_it)
 
     def closed(self) -> bool:
         """Whether no radiation can leave."""

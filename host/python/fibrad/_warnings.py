@@ -9,7 +9,7 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import NDArray
 
-from ._scene import Container, Packing
+from ._scene import Container, Packing, across_cylinder
 
 # The bounds are those of host/frames/warnings.c.
 _SPACE, _WARM_CELSIUS = 5.0, 75.0  # [K] colder surroundings are those of space, warmer ones no degrees Celsius
@@ -51,8 +51,9 @@ def _warn_cuts(packing: Packing, container: Container) -> None:
         beyond = packing.x[:, axis] - at
         depth = (r + (beyond if upper else -beyond)) / r
         count, worst = count + int((depth > _CUT_LARGE).sum()), max(worst, (depth.max(), int(depth.argmax()), name))
-    for name, x, y, radius in container.cylinders():
-        depth = (np.hypot(packing.x[:, 0] - x, packing.x[:, 1] - y) + r - radius) / r
+    for name, cylinder in container.cylinders():
+        u, v = across_cylinder(cylinder.axis)
+        depth = (np.hypot(packing.x[:, u] - cylinder.x, packing.x[:, v] - cylinder.y) + r - cylinder.radius) / r
         count, worst = count + int((depth > _CUT_LARGE).sum()), max(worst, (depth.max(), int(depth.argmax()), name))
     if count:
         warn(f"{packing.names(worst[1])} reaches through the wall {worst[2]} by {worst[0]:.2g} of its radius ({count} "
