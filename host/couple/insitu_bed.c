@@ -14,6 +14,25 @@
 #define PART_LEAST   1e-3 /* a particle whose radius would be reduced to less is left out */
 #define OUTSIDE_MOST 0.1  /* part of all particles that may be left out of the first rows */
 
+/* Says which walls do not bound a box or a cylinder. wall: 1 + index of the first one at fault; 0: it is an opening. */
+static int refuse_walls(const fibrad_insitu_bed *bed, uint32_t wall, char *message) {
+    const char *bound = "the walls do not bound a box or a cylinder";
+    for (uint32_t k = 0; k < bed->walls; ++k)
+        for (uint32_t c = 0; c < bed->walls; ++c) {
+            const fibrad_plane *low = &bed->wall[k].plane, *high = &bed->wall[c].plane;
+            const bool planes = bed->wall[k].kind == FIBRAD_WALL_PLANE && bed->wall[c].kind == FIBRAD_WALL_PLANE;
+            if (planes && low->axis == high->axis && !low->upper && high->upper && !(low->at < high->at))
+                return fibrad_refuse(message, FIBRAD_E_ARGUMENT,
+                                     "%s: wall %" PRIu32 " at %g does not lie below wall %" PRIu32 " at %g", bound,
+                                     k + 1, low->at, c + 1, high->at);
+        }
+    if (wall == 0)
+        return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "%s: an opening contradicts the box or walls", bound);
+    for (uint32_t k = 0; k < wall; ++k) wall += bed->wall[k].kind == FIBRAD_WALL_MESH;
+    return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "%s: wall %" PRIu32 " contradicts the box or the walls before it",
+                         bound, wall);
+}
+
 /* Checks the bed without its particles, which is the same on all ranks. */
 static int check_bed(fibrad_insitu_build *b) {
     const fibrad_insitu_bed *bed = b->bed;
@@ -46,9 +65,10 @@ static int check_bed(fibrad_insitu_build *b) {
                                         .walls = walls,
                                         .opening = b->opening,
                                         .openings = bed->openings};
-    const int status = fibrad_scene_init(&empty, block, sizeof block, &config, &(fibrad_spheres){0}, NULL);
+    fibrad_fault fault = {0};
+    const int status = fibrad_scene_init(&empty, block, sizeof block, &config, &(fibrad_spheres){0}, &fault);
     if (status == FIBRAD_E_ENDLESS) return fibrad_refuse(message, status, "%s", fibrad_status_text(status));
-    if (status) return fibrad_refuse(message, status, "the walls do not bound a box or a cylinder");
+    if (status) return refuse_walls(bed, fault.wall, message);
     for (uint32_t k = 0; k < bed->walls; ++k)
         if (!(bed->wall_emissivity[k] >= 0 && bed->wall_emissivity[k] <= 1))
             return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "wall %" PRIu32 ": its emissivity is not between 0 and 1",

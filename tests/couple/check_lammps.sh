@@ -269,16 +269,17 @@ for axis in z x y; do
     tube="wall ${axis}cylinder 4.6 600 0.8 at $at"
     low="wall ${axis}lo 1000 0.9 at 0"
     caps="wall mesh $work/caps.$axis.stl 1000 0.9 both wall ${axis}lo open at -1 wall ${axis}hi open at 15"
-    case $axis in z) numbers="1 2" ;; *) numbers=2 ;; esac
+    # along x and y rows have other directions than along z, so temperatures and powers agree within errors
+    case $axis in z) numbers="1 2" most=1e-10 off=1e-10 ;; *) numbers=2 most=6 off=.03 ;; esac
     for np in $numbers; do
         run $np "tube$axis$np" mesh.lmp data "$work/laid.data" walls "$tube $low wall ${axis}hi open at 20" shown "f_rad f_rad[1] f_rad[6] f_rad[7]"
         run $np "endless$axis$np" mesh.lmp data "$work/period.data" boundary "$ends" walls "$tube" shown "f_rad f_rad[6]"
         run $np "caps$axis$np" mesh.lmp data "$work/laid.data" walls "$tube $caps" shown "f_rad f_rad[6] f_rad[7]"
         for bed in tube endless caps; do
-            near "$work/${bed}z1.out" "$work/$bed$axis$np.out" 1e-10 "a bed in ${axis}cylinder, $bed, np $np"
-            found=$({ walls ${bed}z1 && walls "$bed$axis$np"; } | awk 'NR == 1 { for (k = 2; k <= NF; k++) p[k] = $k; next }
+            near "$work/${bed}z1.out" "$work/$bed$axis$np.out" $most "a bed in ${axis}cylinder, $bed, np $np"
+            found=$({ walls ${bed}z1 && walls "$bed$axis$np"; } | awk -v off=$off 'NR == 1 { for (k = 2; k <= NF; k++) p[k] = $k; next }
                 { for (k = 2; k <= NF; k++) { d = $k/p[k] - 1; if (!(d*d < worst*worst)) worst = d } print worst }
-                END { exit !(NR == 2 && NF > 2 && worst*worst < 1e-20) }')
+                END { exit !(NR == 2 && NF > 2 && worst*worst < off*off) }')
             verdict "its powers and those of its walls ($found)" $?
         done
     done
@@ -564,9 +565,14 @@ fails "has a temperature of its own, not v_hot" "a capacity beside a variable" f
 fails "too long for wall 1" "steps of heat too long for a wall" floor "zlo 1000 0.9 at 0 capacity 1e4" heat 1
 fails "variable .moves. is not of equal style" "a variable of atoms" floor "zlo v_moves 0.9" also "variable moves atom x"
 fails "an open side has no temperature" "an opening with a temperature" floor "zlo 1000 0.9 wall zhi open 300"
-fails ".0.7. is a number too many" "an emissivity for one type too many" radiates "type 0.5 0.8 0.7"
-fails "capacity must be in" "a capacity of 0" floor "zlo 1000 0.9 capacity 0"
-fails "low, normal or high, not .fine" "an accuracy that is not there" strict "no accuracy fine"
+fails "too many values of the emissivity: atoms have 2 types" "an emissivity for one type too many" radiates "type 0.5 0.8 0.7"
+fails "emissivity of type 2 of 2 must be a number, not .cp" "an emissivity for one type too few" radiates "type 0.5"
+fails "values of types follow the word .type" "emissivities without the word type" radiates "0.5 0.8"
+fails "wall's emissivity must be a number, not .cutoff" "a wall with too few values" floor "zlo 1000"
+fails "wall 1 at 9 does not lie below wall 2 at 3" "walls that cross" floor "zlo 1000 0.9 at 9 wall zhi 1000 0.9 at 3"
+fails "capacity must be above 0" "a capacity of 0" floor "zlo 1000 0.9 capacity 0"
+fails "one of low, normal and high, not .fine" "an accuracy that is not there" strict "no accuracy fine"
+fails ".paths. is a number of paths above 0, not .-3" "a number of paths below 0" strict "no paths -3"
 table wrong 300 .5 900 1.5
 fails "wrong:4: the emissivity is 1.5; it must be within 0 and 1" "a table out of range" radiates "table $work/wrong"
 fails "$work/none: No such file" "a table that is not there" cp "table $work/none"
@@ -595,23 +601,23 @@ fails "empty.stl: the file is empty" "an empty mesh" \
 fails "sees the back of wall 1.*both" "the back of a mesh" \
     also "fix bad all fibrad 0 1 emissivity 1 surroundings 300 cp 1 wall mesh $work/box.stl 300 1 normals"
 for words in "rotate 0 0 1 0:the period of a mesh must not be 0" "rotate 0 0 0 1:the axis of a mesh must not be 0 0 0" \
-    "rotate 0 0 1:a word is missing" "rotate 0 0 1 5 about 0 0:a word is missing" "velocity 0 1e305 0:a mesh's velocity must be in" \
-    "velocity 0 nan 0:instead of 'nan'"; do
+    "rotate 0 0 1:period is missing after" "rotate 0 0 1 5 about 0 0:axis is missing after" "velocity 0 1e305 0:a mesh's velocity must be in" \
+    "velocity 0 nan 0:must be in .*, not nan"; do
     fails "${words#*:}" "a mesh with ${words%:*}" \
         also "fix bad all fibrad 0 1 emissivity 1 wall mesh $work/box.stl 300 1 ${words%:*}"
 done
 for words in "solid 0" "solid -4" "solid type 4 0"; do
-    fails "conductivity of the solid must be above 0" "$words" strict "no $words"
+    fails "conductivity of the solid.* must be above 0" "$words" strict "no $words"
 done
-fails "instead of 'nan'" "a conductivity that is no number" strict "no solid nan"
+fails "must be above 0, not nan" "a conductivity that is no number" strict "no solid nan"
 fails "the time step must be at most 0.0627" "contacts for which the time step is too long" heat 1 strict "no contacts 1e8"
 fails "contacts.* without .solid." "contacts beside solid" strict "no contacts 4 solid 4"
 fails "wall 1 is a mesh, and contacts need planes" "contacts beside a mesh" floor "mesh $work/box.stl 1000 0.9" strict "no contacts 4"
 fails "scale of contacts must be in" "a scale of 0" strict "no contacts 4 hertz scale 0"
 fails "contacts. needs temperatures" "contacts without temperatures" heat 0 strict "no contacts 4"
 fails "moved. needs temperatures" "a distance moved without temperatures" heat 0 strict "no moved 0.1"
-fails "conductivity of the solid must be above 0" "contacts of conductivity 0" strict "no contacts type 4 0"
-fails "a word is missing" "a conductivity for one of two types" strict "no solid type 4"
+fails "conductivity at contacts of type 2.* must be above 0" "contacts of conductivity 0" strict "no contacts type 4 0"
+fails "conductivity of the solid of type 2 of 2 is missing after .4" "a conductivity for one of two types" strict "no solid type 4"
 fails "property/atom d_none" "conductivities that are not there" strict "no solid d_none"
 fails "NEVERY must be above 0" "conductivities without temperatures" heat 0 strict "no solid 4"
 fails "property/atom d_none" "temperatures that are not there" \

@@ -82,16 +82,15 @@ echo "$(value joined2 wall_1_F) $(value serial wall_zmin_F)" |
     awk '{ printf "the floor takes %.5f, %.5f in one scene\n", $1, $2; off = $1 / $2 - 1; exit !(off * off < 1e-4) }' ||
     complain "the floor takes something else"
 
-# What a cylinder along x or y takes, and its ends: in one scene the bed is turned and the cylinder lies along z
+# what a cylinder along x or y takes, and its ends
+{ echo x,y,z,r && awk '{ print $3 "," $4 "," $5 ",.003" }' atoms; } >round_bed.csv
 for axis in x y; do
-    case $axis in x) column=4 middle=.024,.018 ;; *) column=5 middle=.018,.024 ;; esac
-    { echo x,y,z,r && awk -v c=$column '{ print $(4 + (c - 3)%3) "," $(4 + (c - 2)%3) "," $c ",.003" }' atoms; } >turned.csv
-    "$fibrad" exchange turned.csv --emissivity 0.8 --wall cylinder:$middle,.025,zmin=0,zmax=.048 --wall-emissivity .9 --raw \
-        >along_z 2>/dev/null || complain "no factors of a turned bed"
+    "$fibrad" exchange round_bed.csv --emissivity 0.8 --wall ${axis}cylinder:.024,.018,.025,${axis}min=0,${axis}max=.048 \
+        --wall-emissivity .9 --raw >alone 2>/dev/null || complain "no factors of a bed in ${axis}cylinder"
     radiation="--emissivity 0.8 --surroundings 300 --wall ${axis}cylinder=600,.9,.024,.018,.025 --wall ${axis}lo=600,.9 --wall ${axis}hi=600,.9"
     run round 2 'setforce 0 0 0' 1 -in bed --write round
     "$fibrad" join round.0.rows round.1.rows --raw -o round.csv >joined_round || complain "${axis}cylinder: no rows"
-    echo "$(value joined_round wall_1_F) $(value along_z wall_cylinder_F) $(value joined_round wall_3_F) $(value along_z wall_zmax_F)" |
+    echo "$(value joined_round wall_1_F) $(value alone wall_${axis}cylinder_F) $(value joined_round wall_3_F) $(value alone wall_${axis}max_F)" |
         awk -v axis=$axis '{
             printf "%scylinder takes %.5f, %.5f in one scene, its end %.5f, %.5f\n", axis, $1, $2, $3, $4
             round = $1 / $2 - 1; end = $3 / $4 - 1
@@ -309,7 +308,7 @@ refuse 1 2 "'zlo=0' is not NAME=C" -in bed --capacity zlo=0
 refuse 2 2 "capacity zhi: no --wall or --mesh" -in bed $radiation --steps 1 --capacity zhi=5
 # shellcheck disable=SC2086
 refuse 2 3 "wall zlo cools down in" -in bed $radiation --steps 1 --capacity zlo=1e-6
-refuse 1 2 "'fine' is none of low, normal and high" -in bed --accuracy fine
+refuse 1 2 "'fine' is not one of low, normal and high" -in bed --accuracy fine
 # shellcheck disable=SC2086
 refuse 1 2 "--accuracy excludes --tolerance" -in bed $radiation --steps 1 --tolerance 0.01 --accuracy high
 refuse 1 2 "not a multiple" -in bed --emissivity 1 --surroundings 300 --steps 1 --every 20 --rows 30
@@ -331,7 +330,11 @@ refuse 2 3 "step 0: .*wall" -in bed $radiation --strict --wall zhi=300,1,0.02 --
 # shellcheck disable=SC2086
 # shellcheck disable=SC2086  # options
 refuse 2 3 "step 0: .*--wall zhi=open" -in bed $sides --steps 1
-refuse 1 2 "none of SIDE=T,E" -in bed --wall zhi=opened
+refuse 1 2 "neither numbers behind =" -in bed --wall zhi=opened
+refuse 1 2 "'zhi=300' has too few numbers" -in bed --wall zhi=300
+refuse 1 2 "'zhi=300,1,2,3' has too many numbers" -in bed --wall zhi=300,1,2,3
+refuse 1 2 "does not have five numbers" -in bed --wall xcylinder=300,1,2
+refuse 1 2 "'-1' is not a length of 0 or more" -in bed --cutoff -1
 # shellcheck disable=SC2086  # options
 refuse 2 3 "no such fix mesh/surface" -in bed $radiation --mesh lid=0.9 --steps 1
 # shellcheck disable=SC2086

@@ -1248,7 +1248,8 @@ static void cylinders_are_refused(fibrad_insitu *s) {
         bed.wall = both, bed.walls = 2;
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "do not bound a box or a cylinder");
         bed.wall = floor;
-        check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "do not bound a box or a cylinder");
+        check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT,
+                      "do not bound a box or a cylinder: wall 2 contradicts");
         bed.walls = 1, bed.opening = across, bed.openings = 2;
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "do not bound a box or a cylinder");
         bed.openings = 0, bed.periodic[axis] = 0;
@@ -1256,6 +1257,18 @@ static void cylinders_are_refused(fibrad_insitu *s) {
         tube.cylinder.axis = 3, bed.wall = &tube;
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "");
     }
+}
+
+/* The message names planes that cross, whatever meshes stand before them. */
+static void walls_that_cross_are_refused(fibrad_insitu *s) {
+    const fibrad_wall wall[] = {{.kind = FIBRAD_WALL_MESH},
+                                {.kind = FIBRAD_WALL_PLANE, .plane = {2, 1, 3}},
+                                {.kind = FIBRAD_WALL_PLANE, .plane = {2, 0, 5}}};
+    fibrad_insitu_bed bed = {.wall = wall, .walls = 3, .wall_emissivity = (const double[]){1, 1, 1}};
+    check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "wall 3 at 5 does not lie below wall 2 at 3");
+    const fibrad_wall twice[] = {wall[0], wall[1], wall[1]};
+    bed.wall = twice;
+    check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "wall 3 contradicts the box or the walls");
 }
 
 /* If one rank cannot write its file, no file is left. */
@@ -1347,6 +1360,7 @@ static void refusals(void) {
     CHECK(fibrad_insitu_powers(s, &state, part.power, NULL) == FIBRAD_OK);
     CHECK(memcmp(before, part.power, part.bed.n * sizeof *before) == 0);
     cylinders_are_refused(s);
+    walls_that_cross_are_refused(s);
     fibrad_insitu_free(s);
 
     s = insitu_of(MPI_COMM_WORLD, &(struct kind){.cutoff = 1000}, 1);

@@ -19,6 +19,7 @@ extern "C" {
 #include "contact/cylinder.h"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 #include <cstdarg>
 #include <cstring>
@@ -60,18 +61,27 @@ class FixFibrad::Words {
         return words[at++];
     }
     // Takes a number from low to high.
-    double number(const char *what, double low, double high) {
-        const double value = utils::numeric(FLERR, next().c_str(), false, lmp);
-        if (!(value >= low && value <= high))
-            lmp->error->all(FLERR, text("fix fibrad: %s must be in [%g, %g], not %g", what, low, high, value));
+    double number(const std::string &what, double low, double high) {
+        double value;
+        const std::string before = words[at - 1], word = more() ? next() : std::string();
+        if (setting_number(word, low, high, &value)) return value;
+        if (word.empty()) lmp->error->all(FLERR, "fix fibrad: " + what + " is missing after `" + before + "`");
+        if (!is_number(word))
+            lmp->error->all(FLERR,
+                            "fix fibrad: " + what + " must be a number, not `" + word + "`: is a value missing?");
+        const std::string bounds = low > 0 && high >= 1e300 ? "above 0" : text("in [%g, %g]", low, high);
+        lmp->error->all(FLERR, "fix fibrad: " + what + " must be " + bounds + ", not " + word);
         return value;
     }
-    double number() { return utils::numeric(FLERR, next().c_str(), false, lmp); }
+    std::string peek() const { return more() ? words[at] : ""; }
     bool next_is_number() const { return more() && is_number(words[at]); }
-    bool next_is_vector() const { return more() && words[at].compare(0, 2, "d_") == 0; } // of fix property/atom
+    bool next_begins(const char *with) const { return more() && words[at].compare(0, 2, with) == 0; }
     int count(const char *what, int low) {
-        const int value = utils::inumeric(FLERR, next().c_str(), false, lmp);
-        if (value < low) lmp->error->all(FLERR, text("fix fibrad: %s must be at least %d, not %d", what, low, value));
+        int value;
+        const std::string word = next();
+        if (!setting_whole(word, low, INT_MAX, &value))
+            lmp->error->all(FLERR,
+                            text("fix fibrad: %s must be a whole number, at least %d, not `", what, low) + word + "`");
         return value;
     }
 
@@ -103,11 +113,11 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     while (words.more()) {
         const std::string key = words.next();
         if (key == "emissivity")
-            emissivity = read_property(words, "emissivity", 0, 1);
+            emissivity = read_property(words, "the emissivity", 0, 1);
         else if (key == "cp")
-            cp = read_property(words, "heat capacity", 1e-300, huge);
+            cp = read_property(words, "the heat capacity", 1e-300, huge);
         else if (key == "solid")
-            solid = read_property(words, "conductivity", 1e-300, huge);
+            solid = read_property(words, "the conductivity of the solid", 1e-300, huge);
         else if (key == "contacts")
             read_contacts(words);
         else if (key == "surroundings")
@@ -120,20 +130,8 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
             read_group(words);
         else if (key == "initial")
             initial = words.number("the initial temperature", 0, huge);
-        else if (key == "cutoff")
-            config.cutoff = words.number("the cutoff", 0, huge);
-        else if (key == "tolerance")
-            config.tolerance = words.number("the tolerance", 0, 1), sampling = true;
-        else if (key == "directions")
-            config.directions = words.count("directions", FIBRAD_DIRECTIONS_MIN), sampling = true;
-        else if (key == "paths")
-            config.paths = words.count("paths", 1), sampling = true;
-        else if (key == "accuracy")
-            read_accuracy(words);
-        else if (key == "seed")
-            config.seed = utils::bnumeric(FLERR, words.next().c_str(), false, lmp);
-        else if (key == "threads")
-            config.threads = words.count("threads", 1);
+        else if (setting_named(key))
+            read_setting(words, *setting_named(key));
         else if (key == "sigma")
             sigma = words.number("sigma", 0, huge);
         else if (key == "rows")
@@ -144,10 +142,6 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
             errors = words.yes_or_no();
         else if (key == "moved")
             moved = words.number("the distance that particles may move", 0, huge);
-        else if (key == "oneway")
-            config.one_way = words.yes_or_no();
-        else if (key == "strict")
-            config.strict = words.yes_or_no();
         else if (is_number(key))
             error->all(FLERR, "fix fibrad: `" + key + "` is a number too many, or its keyword is missing");
         else
@@ -156,15 +150,6 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     if (accuracy && sampling)
         error->all(FLERR, std::string("fix fibrad: `accuracy` excludes `directions`, `paths` and `tolerance`"));
     if (!emissivity.given()) error->all(FLERR, std::string("fix fibrad: `emissivity` is missing"));
-    for (double e : emissivity.of_type)
-        if (!(e >= 0 && e <= 1)) error->all(FLERR, text("fix fibrad: emissivity must be within 0 and 1, not %g", e));
-    for (double c : cp.of_type)
-        if (!(c > 0)) error->all(FLERR, text("fix fibrad: cp must be above 0, not %g", c));
-    for (const Property *k : {&solid, &contact})
-        for (size_t type = 1; type < k->of_type.size(); type++)
-            if (!(k->of_type[type] > 0))
-                error->all(FLERR,
-                           text("fix fibrad: the conductivity of the solid must be above 0, not %g", k->of_type[type]));
     for (const char *word : {solid.given() ? "solid" : "", contact.given() ? "contacts" : "", errors ? "errors" : "",
                              moved > 0 ? "moved" : ""})
         if (*word && !heat_every)
@@ -263,8 +248,8 @@ void FixFibrad::read_wall(Words &words) {
     const bool at = words.take("at");
     if (at) {
         if (round) {
-            wall.cylinder.x = words.number(text("%c of the cylinder", across[face - 6][0]).c_str(), -huge, huge);
-            wall.cylinder.y = words.number(text("%c of the cylinder", across[face - 6][1]).c_str(), -huge, huge);
+            wall.cylinder.x = words.number(text("%c of the cylinder", across[face - 6][0]), -huge, huge);
+            wall.cylinder.y = words.number(text("%c of the cylinder", across[face - 6][1]), -huge, huge);
         } else {
             wall.plane.at = words.number("the place of a wall", -huge, huge);
         }
@@ -278,10 +263,10 @@ void FixFibrad::read_wall(Words &words) {
 void FixFibrad::read_opening(Words &words, int face) {
     const double huge = 1e300;
     fibrad_plane opening = {face / 2, face % 2, NAN};
-    const bool at = words.take("at");
-    if (at) opening.at = words.number("the place of an open side", -huge, huge);
-    if (!at && words.next_is_number())
-        error->all(FLERR, std::string("fix fibrad: an open side has no temperature: it has that of the surroundings"));
+    if (words.take("at")) opening.at = words.number("the place of an open side", -huge, huge);
+    if (words.next_is_number())
+        error->all(FLERR, std::string("fix fibrad: an open side has no temperature: it has that of the surroundings; "
+                                      "its place follows the word `at`"));
     openings.push_back(opening);
 }
 
@@ -375,37 +360,28 @@ void FixFibrad::describe_meshes(uint32_t first, uint32_t count, const std::strin
 
 // T | v_NAME
 FixFibrad::Temperature FixFibrad::read_kelvins(Words &words, const char *what) {
-    const std::string word = words.next();
-    if (word.compare(0, 2, "v_") == 0) return {0, word.substr(2)};
-    const double value = utils::numeric(FLERR, word.c_str(), false, lmp);
-    if (!(value >= 0 && value < HUGE_VAL))
-        error->all(FLERR, text("fix fibrad: %s must not be below 0: %g", what, value));
-    return {value, ""};
+    if (words.next_begins("v_")) return {0, words.next().substr(2)};
+    return {words.number(what, 0, FIBRAD_TEMPERATURE_MAX), ""};
 }
 
-// low | normal | high
-void FixFibrad::read_accuracy(Words &words) {
-    const std::string word = words.next();
-    accuracy = true;
-    config.accuracy = fibrad_accuracy_named(word.c_str());
-    if (config.accuracy < 0) error->all(FLERR, "fix fibrad: `accuracy` is low, normal or high, not `" + word + "`");
+// An option of rows.
+void FixFibrad::read_setting(Words &words, const radiation_setting &setting) {
+    const std::string name = setting.name, word = words.next();
+    if (!setting_take(setting, word, &config))
+        error->all(FLERR, "fix fibrad: `" + name + "` is " + setting.wanted + ", not `" + word + "`");
+    accuracy |= name == "accuracy";
+    sampling |= name == "tolerance" || name == "directions" || name == "paths";
 }
 
 // K [lens | hertz] [scale S] [gas KG]
 void FixFibrad::read_contacts(Words &words) {
-    const double huge = 1e300;
-    contact = read_property(words, "conductivity at contacts", 1e-300, huge);
-    for (bool more = true; more;) {
-        if (words.take("lens"))
-            spots.hertz = 0;
-        else if (words.take("hertz"))
-            spots.hertz = 1;
-        else if (words.take("scale"))
-            spots.scale = words.number("the scale of contacts", 1e-6, 1e6);
-        else if (words.take("gas"))
-            spots.gas = words.number("the conductivity of the gas", 0, huge);
+    contact = read_property(words, "the conductivity at contacts", 1e-300, 1e300);
+    while (const contact_setting *setting = contact_named(words.peek())) {
+        words.next();
+        if (setting->number)
+            spots.*setting->number = words.number(setting->what, setting->low, setting->high);
         else
-            more = false;
+            spots.hertz = setting->hertz;
     }
     const double metre = !strcmp(update->unit_style, "si") ? 1 : !strcmp(update->unit_style, "cgs") ? 100 : 0;
     spots.gas_least = FIBRAD_GAS_LEAST_DEFAULT * metre;
@@ -414,7 +390,7 @@ void FixFibrad::read_contacts(Words &words) {
 // VALUE | type VALUE VALUE ... | d_NAME
 FixFibrad::Property FixFibrad::read_property(Words &words, const char *what, double low, double high) {
     Property property;
-    if (words.next_is_vector()) {
+    if (words.next_begins("d_")) { // of fix property/atom
         property.of_atom = words.next();
         return property;
     }
@@ -424,16 +400,21 @@ FixFibrad::Property FixFibrad::read_property(Words &words, const char *what, dou
     property.of_type.assign(types + 1, by_type ? 1 : read_value(words, what, low, high, &table)); // types count from 1
     property.table.assign(types + 1, table);
     for (size_t type = 1; by_type && type <= types; type++)
-        property.of_type[type] = read_value(words, what, low, high, &property.table[type]);
+        property.of_type[type] =
+            read_value(words, text("%s of type %zu of %zu", what, type, types), low, high, &property.table[type]);
+    if (words.next_is_number())
+        error->all(FLERR,
+                   text("fix fibrad: there are too many values of %s: ", what) +
+                       (by_type ? text("atoms have %zu types", types) : "values of types follow the word `type`"));
     const auto given = [](const Table &t) { return t.given(); };
     if (std::none_of(property.table.begin(), property.table.end(), given)) property.table.clear();
     return property;
 }
 
 // number | table FILE; returns the number, or the first value of the table
-double FixFibrad::read_value(Words &words, const char *what, double low, double high, Table *table) {
-    if (!words.take("table")) return words.number();
-    *table = read_table(words.next(), what, low, high);
+double FixFibrad::read_value(Words &words, const std::string &what, double low, double high, Table *table) {
+    if (!words.take("table")) return words.number(what, low, high);
+    *table = read_table(words.next(), what.c_str(), low, high);
     return table->value[0];
 }
 
@@ -777,7 +758,9 @@ void FixFibrad::find_temperatures() {
         const int k = input->variable->find(t.variable.c_str());
         if (k < 0 || !input->variable->equalstyle(k))
             error->all(FLERR, "fix fibrad: " + (k < 0 ? "there is no equal-style variable `" + t.variable + "`"
-                                                      : "the variable `" + t.variable + "` is not of equal style"));
+                                                      : "the variable `" + t.variable +
+                                                            "` is not of equal style; a wall or the surroundings have "
+                                                            "one temperature"));
         const double value = input->variable->compute_equal(k);
         if (!(value >= 0 && value < HUGE_VAL))
             error->all(FLERR, text("fix fibrad: the temperature v_%s is %g", t.variable.c_str(), value));

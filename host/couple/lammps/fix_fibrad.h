@@ -15,6 +15,7 @@
 #include "fix.h"
 
 #include "couple/walls/mesh_walls.h"
+#include "couple/walls/settings.h"
 #include "couple/walls/wall_heat.h"
 
 extern "C" {
@@ -87,11 +88,11 @@ class FixFibrad : public Fix {
     void read_temperature(Words &);
     void read_group(Words &);
     Property read_property(Words &, const char *what, double low, double high);
-    double read_value(Words &, const char *what, double low, double high, Table *);
+    double read_value(Words &, const std::string &what, double low, double high, Table *);
     Table read_table(const std::string &path, const char *what, double low, double high);
     Temperature read_kelvins(Words &, const char *what);
-    void read_accuracy(Words &);
     void read_contacts(Words &);
+    void read_setting(Words &, const radiation_setting &);
 
     // Vectors of atoms, of LAMMPS or of fix property/atom.
     double *vector(const std::string &name);      // NULL: there is no such vector, or this rank has no atoms

@@ -1,10 +1,11 @@
 /* liggghts_options.cpp - the options of the driver of LIGGGHTS. SPDX-License-Identifier: MIT */
 #include "couple/liggghts/liggghts_options.h"
+#include "couple/walls/settings.h"
 
 #include <getopt.h>
 
 #include <algorithm>
-#include <cerrno>
+#include <climits>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +13,8 @@
 #include <sstream>
 
 namespace {
+
+enum { SETTING = 1 }; /* an option of rows, see settings.h */
 
 const struct option names[] = {{"in", required_argument, nullptr, 'i'},
                                {"emissivity", required_argument, nullptr, 'e'},
@@ -24,10 +27,10 @@ const struct option names[] = {{"in", required_argument, nullptr, 'i'},
                                {"steps", required_argument, nullptr, 's'},
                                {"every", required_argument, nullptr, 'E'},
                                {"rows", required_argument, nullptr, 'R'},
-                               {"cutoff", required_argument, nullptr, 'c'},
-                               {"accuracy", required_argument, nullptr, 'a'},
-                               {"tolerance", required_argument, nullptr, 't'},
-                               {"seed", required_argument, nullptr, 'S'},
+                               {"cutoff", required_argument, nullptr, SETTING},
+                               {"accuracy", required_argument, nullptr, SETTING},
+                               {"tolerance", required_argument, nullptr, SETTING},
+                               {"seed", required_argument, nullptr, SETTING},
                                {"write", required_argument, nullptr, 'W'},
                                {"strict", no_argument, nullptr, 'x'},
                                {"help", no_argument, nullptr, 'h'},
@@ -47,28 +50,7 @@ bool numbers(const char *text, double low, double high, std::vector<double> *val
     }
 }
 
-bool number(const char *text, double low, double high, double *value) {
-    std::vector<double> values;
-    if (!numbers(text, low, high, &values) || values.size() != 1) return false;
-    *value = values[0];
-    return true;
-}
-
-bool whole(const char *text, long low, long *value) {
-    char *end;
-    errno = 0;
-    *value = std::strtol(text, &end, 10);
-    return end != text && *end == 0 && errno == 0 && *value >= low;
-}
-
-bool whole(const char *text, uint64_t *value) {
-    char *end;
-    errno = 0;
-    *value = std::strtoull(text, &end, 10);
-    return *text >= '0' && *text <= '9' && *end == 0 && errno == 0;
-}
-
-const char sides[6][4] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
+const char *const sides[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
 const char *const cylinders[] = {"cylinder", "xcylinder", "ycylinder"}; /* by fibrad_wall.cylinder.axis */
 
 /* Reads SIDE=open or SIDE=open,AT. */
@@ -87,32 +69,37 @@ bool opening(const char *text, fibrad_plane *plane) {
     return false;
 }
 
-/* Reads SIDE=T,E[,AT], or one of xcylinder=T,E,Y,Z,R, ycylinder=T,E,X,Z,R and cylinder=T,E,X,Y,R. */
-bool wall(const char *text, radiant_wall *wall) {
+/* Reads SIDE=T,E[,AT], or one of xcylinder=T,E,Y,Z,R, ycylinder=T,E,X,Z,R and cylinder=T,E,X,Y,R. Returns what is
+ * wrong. NULL: nothing. */
+const char *wall(const char *text, radiant_wall *wall) {
     const char *equals = std::strchr(text, '=');
     std::vector<double> values;
-    if (equals == nullptr || !numbers(equals + 1, -FIBRAD_LENGTH_MAX, FIBRAD_LENGTH_MAX, &values) || values.size() < 2)
-        return false;
-    wall->name.assign(text, equals);
+    wall->name.assign(text, equals != nullptr ? equals : text + std::strlen(text));
+    const int along = (int)(std::find(cylinders, cylinders + 3, wall->name) - cylinders);
+    const int side = (int)(std::find(sides, sides + 6, wall->name) - sides);
+    if (along == 3 && side == 6)
+        return "is none of SIDE=T,E[,AT], SIDE=open[,AT], cylinder=T,E,X,Y,R, xcylinder=T,E,Y,Z,R and "
+               "ycylinder=T,E,X,Z,R, with SIDE from xlo to zhi";
+    if (equals == nullptr || !numbers(equals + 1, -FIBRAD_LENGTH_MAX, FIBRAD_LENGTH_MAX, &values))
+        return "has neither numbers behind =, with commas in between, nor the word open";
+    if (along < 3 && values.size() != 5) return "does not have five numbers: T, E, the position on two axes, and R";
+    if (side < 6 && values.size() < 2) return "has too few numbers: a temperature and an emissivity are needed";
+    if (side < 6 && values.size() > 3) return "has too many numbers: they are T,E or T,E,AT";
     wall->temperature = values[0];
     wall->emissivity = values[1];
     wall->placed = values.size() > 2;
     wall->wall = fibrad_wall{};
-    if (!(wall->temperature >= 0 && wall->emissivity >= 0 && wall->emissivity <= 1)) return false;
-    for (int along = 0; along < 3; ++along)
-        if (wall->name == cylinders[along]) {
-            if (values.size() != 5 || !(values[4] > 0)) return false;
-            wall->wall.kind = FIBRAD_WALL_CYLINDER;
-            wall->wall.cylinder = {values[2], values[3], values[4], along};
-            return true;
-        }
-    for (int side = 0; side < 6; ++side)
-        if (wall->name == sides[side]) {
-            wall->wall.kind = FIBRAD_WALL_PLANE;
-            wall->wall.plane = {side / 2, side % 2, wall->placed ? values[2] : 0};
-            return values.size() < 4;
-        }
-    return false;
+    if (!(wall->temperature >= 0)) return "has a temperature below 0";
+    if (!(wall->emissivity >= 0 && wall->emissivity <= 1)) return "has an emissivity that is not within 0 and 1";
+    if (side < 6) {
+        wall->wall.kind = FIBRAD_WALL_PLANE;
+        wall->wall.plane = {side / 2, side % 2, wall->placed ? values[2] : 0};
+        return nullptr;
+    }
+    if (!(values[4] > 0)) return "has a radius that is not above 0";
+    wall->wall.kind = FIBRAD_WALL_CYLINDER;
+    wall->wall.cylinder = {values[2], values[3], values[4], along};
+    return nullptr;
 }
 
 /* Reads ID=E or ID=T,E, which :both or :normals may follow. */
@@ -135,7 +122,7 @@ bool capacity(const char *text, wall_capacity *capacity) {
     const char *equals = std::strchr(text, '=');
     if (equals == nullptr || equals == text) return false;
     capacity->name.assign(text, equals);
-    return number(equals + 1, 1e-300, 1e300, &capacity->capacity);
+    return setting_number(equals + 1, 1e-300, 1e300, &capacity->capacity);
 }
 
 /* Reads K[,K...] [lens|hertz] [scale S] [gas KG]. */
@@ -143,12 +130,14 @@ bool contacts(const char *text, std::vector<double> *solid, fibrad_insitu_contac
     std::istringstream words(text);
     std::string word, value;
     if (!(words >> word) || !numbers(word.c_str(), 1e-300, 1e300, solid)) return false;
-    while (words >> word)
-        if (word == "lens" || word == "hertz")
-            spots->hertz = word == "hertz";
-        else if (word == "scale" ? !(words >> value) || !number(value.c_str(), 1e-6, 1e6, &spots->scale)
-                                 : word != "gas" || !(words >> value) || !number(value.c_str(), 0, 1e300, &spots->gas))
+    while (words >> word) {
+        const contact_setting *setting = contact_named(word);
+        if (setting == nullptr) return false;
+        if (setting->number == nullptr)
+            spots->hertz = setting->hertz;
+        else if (!(words >> value) || !setting_number(value, setting->low, setting->high, &(spots->*setting->number)))
             return false;
+    }
     return true;
 }
 
@@ -179,15 +168,13 @@ const char *take(int key, const char *text, liggghts_options *options) {
                    ? nullptr
                    : "is not K[,K...] [lens|hertz] [scale S] [gas KG], with K above 0";
     case 'T':
-        return number(text, 0, 1e9, &options->surroundings) ? nullptr : "is not a temperature";
+        return setting_number(text, 0, 1e9, &options->surroundings) ? nullptr : "is not a temperature";
     case 'w':
         if (opening(text, &open)) {
             options->openings.push_back(open);
             return nullptr;
         }
-        if (!wall(text, &one))
-            return "is none of SIDE=T,E[,AT], SIDE=open[,AT], cylinder=T,E,X,Y,R, xcylinder=T,E,Y,Z,R and "
-                   "ycylinder=T,E,X,Z,R, with SIDE from xlo to zhi";
+        if (const char *fault = wall(text, &one)) return fault;
         options->walls.push_back(one);
         return nullptr;
     case 'm':
@@ -201,22 +188,13 @@ const char *take(int key, const char *text, liggghts_options *options) {
         options->capacities.push_back(heat);
         return nullptr;
     case 's':
-        return whole(text, 0, &options->steps) ? nullptr : "is not a number of steps";
+        return setting_whole(text, 0, LONG_MAX, &options->steps) ? nullptr : "is not a number of steps";
     case 'E':
-        return whole(text, 1, &options->every) ? nullptr : "is not a number of steps above 0";
+        return setting_whole(text, 1, LONG_MAX, &options->every) ? nullptr : "is not a number of steps above 0";
     case 'R':
-        return whole(text, 1, &options->rows) ? nullptr : "is not a number of steps above 0";
-    case 'c':
-        return number(text, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &options->config.cutoff) ? nullptr
-                                                                                           : "is not a length above 0";
-    case 'a':
-        options->accuracy = true;
-        options->config.accuracy = fibrad_accuracy_named(text);
-        return options->config.accuracy >= 0 ? nullptr : "is none of low, normal and high";
-    case 't':
-        return number(text, 1e-5, 1, &options->config.tolerance) ? nullptr : "is not within 1e-5 and 1";
+        return setting_whole(text, 1, LONG_MAX, &options->rows) ? nullptr : "is not a number of steps above 0";
     default:
-        return whole(text, &options->config.seed) ? nullptr : "is not a whole number";
+        return nullptr;
     }
 }
 
@@ -254,9 +232,13 @@ int liggghts_options_parse(int argc, char **argv, liggghts_options *options, int
             *wrong = std::string(key == ':' ? "an argument is missing: " : "unknown option: ") + argv[optind - 1];
             return OPTIONS_WRONG;
         }
+        const radiation_setting *setting = key == SETTING ? setting_named(names[index].name) : nullptr;
         const char *fault = take(key, optarg, options);
+        if (setting != nullptr && !setting_take(*setting, optarg, &options->config)) fault = setting->wanted;
+        options->accuracy |= setting != nullptr && std::strcmp(setting->name, "accuracy") == 0;
         if (fault == nullptr) continue;
-        *wrong = std::string("--") + names[index].name + ": '" + optarg + "' " + fault;
+        *wrong = std::string("--") + names[index].name + ": '" + optarg + "' " + (setting != nullptr ? "is not " : "") +
+                 fault;
         return OPTIONS_WRONG;
     }
     if (optind < argc && std::strcmp(argv[optind - 1], "--") != 0) {
@@ -302,7 +284,7 @@ void liggghts_options_help() {
         "  --cutoff R               particles with centres farther apart than R do not see each other [follows\n"
         "                           from the number of particles: docs/coupling.md]\n"
         "  --accuracy WORD          low, normal or high: directions and paths of each row, docs/lammps.md [normal]\n"
-        "  --tolerance E            error allowed in each row, estimated, 1e-5 to 1 [none]\n"
+        "  --tolerance E            error allowed in each row, estimated, 0 to 1 [none]\n"
         "  --seed S                 seed of paths and directions [0]\n"
         "  --strict                 end the run when a centre lies inside another particle or beyond a wall\n"
         "  --write NAME             write the last rows to NAME.RANK.rows, for fibrad join\n");
