@@ -79,8 +79,8 @@ static int find_conductors(const fibrad_insitu_build *b, const fibrad_insitu_con
                                       .scale = contacts->scale,
                                       .gas_reach = gas_reach,
                                       .gas_least = contacts->gas_least};
-    fibrad_scene_config config = {.wall = b->bed->wall, .walls = b->bed->walls};
-    memcpy(config.period, b->period, sizeof config.period);
+    const fibrad_scene_config config = {
+        .wall = b->bed->wall, .walls = b->bed->walls, .period = {b->period[0], b->period[1], b->period[2]}};
     const fibrad_particle *p = b->to->particle.at;
     const fibrad_spheres spheres = fibrad_particle_spheres(p, b->own + b->halo, NULL);
     fibrad_contact_list *list;

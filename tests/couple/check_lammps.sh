@@ -609,14 +609,14 @@ done
 for words in "solid 0" "solid -4" "solid type 4 0"; do
     fails "conductivity of the solid.* must be above 0" "$words" strict "no $words"
 done
+fails "must be above 0, not nan" "a conductivity that is no number" strict "no solid nan"
 fails "the time step must be at most 0.0627" "contacts for which the time step is too long" heat 1 strict "no contacts 1e8"
 fails "contacts.* without .solid." "contacts beside solid" strict "no contacts 4 solid 4"
 fails "wall 1 is a mesh, and contacts need planes" "contacts beside a mesh" floor "mesh $work/box.stl 1000 0.9" strict "no contacts 4"
 fails "scale of contacts must be in" "a scale of 0" strict "no contacts 4 hertz scale 0"
 fails "contacts. needs temperatures" "contacts without temperatures" heat 0 strict "no contacts 4"
 fails "moved. needs temperatures" "a distance moved without temperatures" heat 0 strict "no moved 0.1"
-fails "must be above 0" "contacts of conductivity 0" strict "no contacts type 4 0"
-fails "must be above 0, not nan" "a conductivity that is no number" strict "no solid nan"
+fails "conductivity at contacts of type 2.* must be above 0" "contacts of conductivity 0" strict "no contacts type 4 0"
 fails "conductivity of the solid of type 2 of 2 is missing after .4" "a conductivity for one of two types" strict "no solid type 4"
 fails "property/atom d_none" "conductivities that are not there" strict "no solid d_none"
 fails "NEVERY must be above 0" "conductivities without temperatures" heat 0 strict "no solid 4"

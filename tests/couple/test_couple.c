@@ -1028,9 +1028,10 @@ static double conductance_of_pair(const struct pile *p, const double *solid, siz
 static double conductance_of_wall(const struct pile *p, const double *solid, size_t i, const fibrad_wall *wall,
                                   bool hertz) {
     const double *x = p->x + 3 * i;
+    const int along = (wall->cylinder.axis + 2) % 3, u = along == 0, v = along == 2 ? 1 : 2;
     const double d = wall->kind == FIBRAD_WALL_PLANE
                          ? fabs(x[wall->plane.axis] - wall->plane.at)
-                         : wall->cylinder.radius - hypot(x[0] - wall->cylinder.x, x[1] - wall->cylinder.y);
+                         : wall->cylinder.radius - hypot(x[u] - wall->cylinder.x, x[v] - wall->cylinder.y);
     return 4 * solid[i] * spot_radius(d, p->radius[i], 0, hertz);
 }
 
@@ -1054,29 +1055,31 @@ static void check_pairs(const struct pile *all, const double *solid, bool hertz,
     }
 }
 
-/* Contacts conduct the same, to the bit, whoever owns which particle and along whichever axis a tube lies. Their powers
- * add up to zero. */
+/* Contacts conduct the same, to the bit, whoever owns which particle. Their powers add up to zero. */
 static void contacts_conduct(const struct kind *kind, int axis, bool hertz, double gas) {
     struct pile all = pile_of(kind);
+    lay_along(&all, axis);
     for (size_t i = 0; i < all.bed.n; ++i) all.radius[i] *= 1.2;
     double *solid = memory_of(all.bed.n, 2 * sizeof *solid), *kelvin = solid + all.bed.n;
     for (size_t i = 0; i < all.bed.n; ++i) solid[i] = 1 + random_of(all.id[i], 6);
     fibrad_insitu_contacts contacts = {.conductivity = solid, .hertz = hertz, .scale = .7, .gas = gas};
     fibrad_insitu_conducted whole = {0}, parts = {0};
+    const fibrad_insitu_config quick = {.cutoff = 4, .directions = FIBRAD_DIRECTIONS_MIN, .paths = 1, .one_way = 1};
     all.bed.conductivity = NULL;
     if (rank == 0) {
-        fibrad_insitu *self = insitu_of(MPI_COMM_SELF, kind, 1);
+        fibrad_insitu *self;
+        CHECK(fibrad_insitu_new(&self, MPI_COMM_SELF, &quick) == FIBRAD_OK);
         const fibrad_insitu_state state = state_of(&all);
         make_rows(self, &all, 7);
         CHECK(fibrad_insitu_conduct(self, &contacts, &all.bed, &state, all.power, kelvin, &whole) == FIBRAD_OK);
         fibrad_insitu_free(self);
         if (gas == 0) check_pairs(&all, solid, hertz, .7, all.power);
     }
-    lay_along(&all, axis);
     struct pile part = part_of(&all, kind->spread);
     part.bed.conductivity = NULL;
     for (size_t i = 0; i < part.bed.n; ++i) solid[i] = 1 + random_of(part.id[i], 6);
-    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, kind->threads);
+    fibrad_insitu *s;
+    CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &quick) == FIBRAD_OK);
     const fibrad_insitu_state state = state_of(&part);
     make_rows(s, &part, 7);
     CHECK(fibrad_insitu_conduct(s, &contacts, &part.bed, &state, part.power, kelvin, &parts) == FIBRAD_OK);

@@ -73,6 +73,7 @@ class FixFibrad::Words {
         lmp->error->all(FLERR, "fix fibrad: " + what + " must be " + bounds + ", not " + word);
         return value;
     }
+    std::string peek() const { return more() ? words[at] : ""; }
     bool next_is_number() const { return more() && is_number(words[at]); }
     bool next_begins(const char *with) const { return more() && words[at].compare(0, 2, with) == 0; }
     int count(const char *what, int low) {
@@ -374,19 +375,13 @@ void FixFibrad::read_setting(Words &words, const radiation_setting &setting) {
 
 // K [lens | hertz] [scale S] [gas KG]
 void FixFibrad::read_contacts(Words &words) {
-    const double huge = 1e300;
-    contact = read_property(words, "the conductivity at contacts", 1e-300, huge);
-    for (bool more = true; more;) {
-        if (words.take("lens"))
-            spots.hertz = 0;
-        else if (words.take("hertz"))
-            spots.hertz = 1;
-        else if (words.take("scale"))
-            spots.scale = words.number("the scale of contacts", 1e-6, 1e6);
-        else if (words.take("gas"))
-            spots.gas = words.number("the conductivity of the gas", 0, huge);
+    contact = read_property(words, "the conductivity at contacts", 1e-300, 1e300);
+    while (const contact_setting *setting = contact_named(words.peek())) {
+        words.next();
+        if (setting->number)
+            spots.*setting->number = words.number(setting->what, setting->low, setting->high);
         else
-            more = false;
+            spots.hertz = setting->hertz;
     }
     const double metre = !strcmp(update->unit_style, "si") ? 1 : !strcmp(update->unit_style, "cgs") ? 100 : 0;
     spots.gas_least = FIBRAD_GAS_LEAST_DEFAULT * metre;
@@ -537,7 +532,7 @@ void FixFibrad::list_output() {
         const fibrad_wall &wall = walls[w];
         const std::string name = wall.kind == FIBRAD_WALL_PLANE ? faces[2 * wall.plane.axis + wall.plane.upper]
                                  : wall.kind == FIBRAD_WALL_CYLINDER
-                                     ? std::string(1, "zxy"[wall.cylinder.axis]) + "cylinder"
+                                     ? std::string(1, "xyz"[cylinder_along(&wall)]) + "cylinder"
                                      : "mesh";
         list += text(", [%d] wall ", 6 + w) + name;
         names += text(", [%d] T of wall ", 9 + count + w) + name;

@@ -130,13 +130,14 @@ bool contacts(const char *text, std::vector<double> *solid, fibrad_insitu_contac
     std::istringstream words(text);
     std::string word, value;
     if (!(words >> word) || !numbers(word.c_str(), 1e-300, 1e300, solid)) return false;
-    while (words >> word)
-        if (word == "lens" || word == "hertz")
-            spots->hertz = word == "hertz";
-        else if (word == "scale"
-                     ? !(words >> value) || !setting_number(value.c_str(), 1e-6, 1e6, &spots->scale)
-                     : word != "gas" || !(words >> value) || !setting_number(value.c_str(), 0, 1e300, &spots->gas))
+    while (words >> word) {
+        const contact_setting *setting = contact_named(word);
+        if (setting == nullptr) return false;
+        if (setting->number == nullptr)
+            spots->hertz = setting->hertz;
+        else if (!(words >> value) || !setting_number(value, setting->low, setting->high, &(spots->*setting->number)))
             return false;
+    }
     return true;
 }
 

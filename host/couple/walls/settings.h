@@ -1,5 +1,5 @@
-/* settings.h - what the fix of LAMMPS and the driver of LIGGGHTS read alike, C++: numbers within bounds, and the
- * options of rows. SPDX-License-Identifier: MIT */
+/* settings.h - what the fix of LAMMPS and the driver of LIGGGHTS read alike, C++: numbers within bounds, the
+ * options of rows, and words of contacts. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_SETTINGS_H
 #define FIBRAD_COUPLE_SETTINGS_H
 
@@ -64,6 +64,26 @@ inline bool setting_take(const radiation_setting &s, const std::string &word, fi
     int *choice = s.choice != nullptr ? &(config->*s.choice) : &config->accuracy;
     *choice = s.choice == nullptr ? fibrad_accuracy_named(word.c_str()) : word == "yes" ? 1 : word == "no" ? 0 : -1;
     return *choice >= 0;
+}
+
+/* A word behind the conductivity of contacts. One without a number chooses spots. */
+struct contact_setting {
+    const char *name, *what; /* for messages: what its number is */
+    double low, high;
+    double fibrad_insitu_contacts::*number;
+    int hertz;
+};
+
+/* The word with a name. NULL: there is none. */
+inline const contact_setting *contact_named(const std::string &name) {
+    static const contact_setting settings[] = {
+        {"lens", nullptr, 0, 0, nullptr, 0},
+        {"hertz", nullptr, 0, 0, nullptr, 1},
+        {"scale", "the scale of contacts", 1e-6, 1e6, &fibrad_insitu_contacts::scale, 0},
+        {"gas", "the conductivity of the gas", 0, 1e300, &fibrad_insitu_contacts::gas, 0}};
+    for (const contact_setting &setting : settings)
+        if (name == setting.name) return &setting;
+    return nullptr;
 }
 
 #endif
