@@ -167,7 +167,8 @@ static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibr
 static fibrad_wall_view view_of_lines(const fibrad_workspace *work, uint32_t windows) {
     const double *period = work->scene->period;
     const bool repeats = period[0] > 0 || period[1] > 0 || period[2] > 0;
-    const bool marked = !work->cut && repeats && work->scene->occupancy.mark != NULL && fibrad_walls_only(&work->scene->container) == 3;
+    const bool marked =
+        !work->cut && repeats && work->scene->occupancy.mark != NULL && fibrad_walls_only(&work->scene->container) == 3;
     return fibrad_wall_view_of(work->scene, work->place, work->cut || marked,
                                marked ? fibrad_sqrt(windows) : work->reach);
 }

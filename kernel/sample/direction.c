@@ -81,7 +81,8 @@ fibrad_turning fibrad_turning_of(uint64_t seed, int axis) {
     return turn;
 }
 
-void fibrad_turned_frame(const fibrad_turning *turn, uint32_t k, uint32_t directions, uint32_t points, double frame[9]) {
+void fibrad_turned_frame(const fibrad_turning *turn, uint32_t k, uint32_t directions, uint32_t points,
+                         double frame[9]) {
     fibrad_polar d = fibrad_direction_polar(k, directions);
     const double cos = d.cos, sin = d.sin, height = turn->height / directions;
     double about[9];
