@@ -98,10 +98,10 @@ typedef struct fibrad_insitu fibrad_insitu;
 /* Directions and paths of each row. More paths take the place of paths of sources: if config.one_way is 1, or if some
  * source has no paths of its own. docs/lammps.md has errors and times. */
 typedef enum fibrad_accuracy {
-    FIBRAD_ACCURACY_NORMAL = 0, /* 36 directions, 24 paths, or 80 without paths of sources; rows of which more than a
-                                   tenth meets walls or surroundings at once: 72 directions */
-    FIBRAD_ACCURACY_LOW = 1,    /* 18 and 36 directions, 8 paths, or 34 */
-    FIBRAD_ACCURACY_HIGH = 2    /* 144 and 1,000 directions, 800 paths, or 1,600 */
+    FIBRAD_ACCURACY_NORMAL = 0, /* 36 directions, 24 paths, or 80 without paths of sources */
+    FIBRAD_ACCURACY_LOW = 1,    /* 18 directions, 8 paths, or 34 */
+    FIBRAD_ACCURACY_HIGH = 2    /* 144 directions, or 1,000 if more than a tenth of a row meets walls or surroundings at
+                                   once; 800 paths, or 1,600 */
 } fibrad_accuracy;
 
 /* The fibrad_accuracy of the name low, normal or high. Not collective.
