@@ -130,9 +130,9 @@ awk 'function near(x) { s = s*16807%2147483647; return x + .1*(s/2147483647 - .5
 awk 'function near(x) { s = s*16807%2147483647; return x + .4*(s/2147483647 - .5) }
     BEGIN { s = 1; for (n = 0; n < 416; n++) print near(1.5*(n%8) + .75), near(5.25 + 1.5*(int(n/8)%2)), near(1.5*int(n/16) + 1), .5 }' |
     bed 12 50 >"$work/curtain.dump"
-part mono2000 '$6 /= 2' >"$work/apart.dump"
 # shellcheck disable=SC2016  # columns of awk
 {
+    part mono2000 '$6 /= 2' >"$work/apart.dump"
     part mono2000 'if (($3 - 6)^2 + ($4 - 6)^2 >= 25) next' >"$work/cylinder.dump"
     part mono2000 'if (($3 - 6)^2 + ($4 - 6)^2 >= 25) next; if ($5 > 6) $5 = 6 + 3*($5 - 6)' >"$work/poured.dump"
     part mono2000 'if (($4 - 6)^2 + ($5 - 6)^2 >= 30.25 || $5 > 6.5) next' >"$work/drum.dump"
@@ -158,6 +158,7 @@ measure poured "$work/poured.dump" "$cylinder" zmin,zmax=open,cylinder:6,6,5.5 z
 turn=$lying measure drum "$work/drum.dump" "wall xcylinder 6 1000 0.9 at 6 6 wall xlo 300 0.9 wall xhi 300 0.9" \
     cylinder:6,6,6,zmin=0,zmax=12 cylinder=1000,300
 measure plate tests/data/mono2000.dump "wall mesh $work/plate.stl 1000 0.9" "mesh:$work/plate.stl" 1000
+# shellcheck disable=SC2097,SC2098  # measure is a function
 for e in 0.8 0.3; do
     test $e = 0.8 || error=0.003
     e="$e $e" error=0.005 cold=600 measure "apart $e" "$work/apart.dump" "wall zlo 1000 0.9" zmin 1000
