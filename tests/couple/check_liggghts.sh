@@ -83,9 +83,8 @@ echo "$(value joined2 wall_1_F) $(value serial wall_zmin_F)" |
     complain "the floor takes something else"
 
 # what a cylinder along x or y takes, and its ends
-{ echo x,y,z,r && awk '{ print $3 "," $4 "," $5 ",.003" }' atoms; } >round_bed.csv
 for axis in x y; do
-    "$fibrad" exchange round_bed.csv --emissivity 0.8 --wall ${axis}cylinder:.024,.018,.025,${axis}min=0,${axis}max=.048 \
+    "$fibrad" exchange bed.csv --emissivity 0.8 --wall ${axis}cylinder:.024,.018,.025,${axis}min=0,${axis}max=.048 \
         --wall-emissivity .9 --raw >alone 2>/dev/null || complain "no factors of a bed in ${axis}cylinder"
     radiation="--emissivity 0.8 --surroundings 300 --wall ${axis}cylinder=600,.9,.024,.018,.025 --wall ${axis}lo=600,.9 --wall ${axis}hi=600,.9"
     run round 2 'setforce 0 0 0' 1 -in bed --write round

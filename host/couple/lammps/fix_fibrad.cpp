@@ -427,7 +427,7 @@ FixFibrad::Table FixFibrad::read_table(const std::string &path, const char *what
     int status = 0;
     if (comm->me == 0) {
         message_redirect(keep_line, &message);
-        status = curve_read(path.c_str(), what, &curve_values, low, high, &read);
+        status = curve_read(path.c_str(), what + strlen("the "), &curve_values, low, high, &read);
         message_redirect(nullptr, nullptr);
     }
     int size[] = {status, (int)read.n};
