@@ -127,7 +127,7 @@ static inline fibrad_wall plane_at(int axis, int upper, double at) {
 }
 
 static inline fibrad_wall cylinder_at(double x, double y, double radius) {
-    return (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {x, y, radius}};
+    return (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {x, y, radius, 0}};
 }
 
 /* A point whose coordinate on axis a was that on axis a - turn; walls and beds, too. Wall and point stay together. */
