@@ -171,8 +171,9 @@ static double sample_all_rays(const fibrad_heat *heat, fibrad_heat_errors *error
     double more = 0;
     for (uint32_t slot = 0; slot < FIBRAD_MESHES + heat->meshes; slot++) {
         const fibrad_heat_rays *sent = &heat->sent[slot];
-        const uint32_t *side = heat->scene->mesh.first + (slot - FIBRAD_MESHES);
-        const uint32_t ranges = slot < FIBRAD_MESHES || side[1] - side[0] < RAY_SAMPLES ? 1 : RAY_SAMPLES;
+        const uint32_t *first = heat->scene->mesh.first, mesh = slot - FIBRAD_MESHES;
+        const bool many = slot >= FIBRAD_MESHES && first[mesh + 1] - first[mesh] >= RAY_SAMPLES;
+        const uint32_t ranges = many ? RAY_SAMPLES : 1;
         more += ranges - 1;
         for (uint32_t k = 0; k < ranges; k++)
             sample_rays(heat, sent->first + (uint32_t)((uint64_t)sent->count * k / ranges),
