@@ -8,17 +8,17 @@
  *            has a radiosity J = eps E + (1 - eps) H. Here E = sigma T^4, and H is the radiation that arrives.
  *            Conjugate gradients find J, first on coarse patches, four times as large, then on the patches themselves.
  *            Each step of this search is a sweep: one pass over all beams. A sweep is divided into parts, which threads
- *            may do at the same time. Powers and temperatures are extrapolated from both results to patches of size 0.
+ *            may do at the same time. Both results are extrapolated to patches of size 0: this gives the powers and
+ *            temperatures.
  * Sequence   1. fibrad_heat_init
  *            2. fibrad_heat_trace for every task
  *            3. fibrad_heat_begin
  *            4. fibrad_heat_sweep for every part, then fibrad_heat_step; repeat step 4 until solved is 1
  *            5. fibrad_heat_read
- *            For other sources, go on with step 3. For spheres that have moved, call fibrad_heat_move and go on with
- *            step 2.
+ *            For other sources, go on with step 3. If spheres have moved, call fibrad_heat_move and go on with step 2.
  * Units      as in fibrad.h. Powers are in sigma K^4 L^2. They are watts if L is the metre and sigma is in W/(m2 K4).
  * Words      Memory, errors and the layout of comments are as in fibrad.h.
- * Source     docs/methods_heat.md sections 5 to 9. docs/heat.md says what is assumed.
+ * Source     docs/methods_heat.md sections 5 to 9, 13 and 16. docs/heat.md says what is assumed.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_HEAT_H
@@ -95,7 +95,7 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *   a given temperature       T            0 or NaN  not used
  *   a given power P           NaN          P         0, R: a first guess of T, or NaN
  *   a power that varies       NaN          P         h, R: the sphere gives off P - h sigma (T^4 - R^4)
- *   emissivity 0              T            0 or NaN  not used
+ *   emissivity 0, no contact  T            0 or NaN  not used
  *                             NaN          0         0, NaN
  *
  * `storage` makes the solution an implicit step in time. Let a sphere of heat capacity C have the temperature R at the
@@ -113,8 +113,8 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * is in units of sigma K^3 L. If lengths are in millimetres and sigma is in W/(m2 K4), a solid of 30 W/(m K) has the
  * conductivity 30/0.001.
  *
- * To a given power, add the light that the surface absorbs (fibrad_heat_sum_light). `absorbed` is where this light
- * heats:
+ * To a given power, add the light that the surface absorbs (fibrad_heat_sum_light). `absorbed` says which patches this
+ * light heats:
  *   a sphere with a finite conductivity  is hotter at the lit patches
  *   an insulated wall                    sends the light out as thermal radiation, at the same patch; it has no power
  *   any other sphere or wall             `absorbed` has no effect
@@ -122,7 +122,7 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * Contacts conduct heat between spheres, and between spheres and walls. Contact k has the ends contact_first[k] and
  * contact_second[k]: an index of a sphere, or `spheres` plus the index of a wall. It carries the heat conductance[k]
  * times the difference of their temperatures. Several contacts may have the same ends. A contact of a sphere with
- * itself, across a period, carries nothing. A sphere of emissivity 0 that is in contact has a temperature, and may give
+ * itself, across a period, carries nothing. A sphere of emissivity 0 that is in contact has a temperature. It may give
  * off a power. `conductance` is in units of sigma K^3 L^2. If lengths are in millimetres and sigma is in W/(m2 K4), 1
  * W/K is 1e6.
  *
@@ -135,9 +135,9 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *   1e-12  up to 16 spheres, and no contacts
  *   1e-5   else, if a temperature is unknown and its storage is 0
  *   1e-3   else
- * The search also goes on until the power of each wall is settled to the tolerance. This is relative to the power, or
- * to 5 % of what the wall absorbs if that is more. If a temperature is unknown, the tolerance of these powers is 100
- * times as large, at most 1e-3.
+ * The search also goes on until the power of each wall is settled to the tolerance. The tolerance is here relative to
+ * the power, or to 5 % of what the wall absorbs, whichever is more. If a temperature is unknown, the tolerance of these
+ * powers is 100 times as large, at most 1e-3.
  *
  * side_temperature is in the order of the caller's triangles. If sides share a patch, each side emits the mean of their
  * emissions. */
@@ -181,8 +181,8 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources);
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_fault *fault);
 
 /* Begins a solution. It starts from the radiosities of the last solution. It starts anew if there was none, or if only
- * one of the two solutions has `light`. After the call only the arrays `light`, `absorbed` and those of contacts are
- * still needed. They must stay until the solution is read.
+ * one of the two solutions has `light`. The arrays `light`, `absorbed` and those of contacts must stay until the
+ * solution is read. The others are no longer needed after the call.
  *   Errors   as fibrad_heat_check
  *            _STATE: a task is not traced, or the scene has changed
  *   Cost     O(patches) */
@@ -193,29 +193,30 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources);
  *   Input    part: 0 to fibrad_heat_parts - 1
  *   Errors   _ARGUMENT
  *            _STATE: the part was swept already, or no solution was begun
- *   Cost     2 ns per beam. If temperatures are found in a deep bed, it takes some sweeps for each layer of spheres. */
+ *   Cost     2 ns per beam. If temperatures are found in a deep bed, a solution takes some sweeps for each layer of
+ *            spheres. */
 int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
 
 /* Ends a sweep.
  *   Output   solved: 1 if the residual is below the tolerance, or after about sweeps_max sweeps; else 0
  *   Errors   _ARGUMENT
  *            _STATE: a part was not swept, no solution was begun, or the scene has changed
- *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, and the powers do not add up to zero, or there
- *            are contacts
- *   Level    If all temperatures are unknown, nothing escapes, and the powers do add up to zero, the level of the
- *            temperatures is free. Then the mean emission, weighted by emissivity and area, is set to that of the
- *            surroundings. Contacts need the level. */
+ *            _UNSOLVABLE: nothing gives the level of the temperatures (see Level), and there are contacts, or the
+ *            powers do not add up to zero
+ *   Level    If all temperatures are unknown and nothing escapes, nothing gives the level of the temperatures. Then the
+ *            mean emission, weighted by emissivity and area, is set to that of the surroundings. */
 int fibrad_heat_step(fibrad_heat *heat, int *solved);
 
 /* The solution. The arrays belong to the caller. Where a field may be NULL, NULL means that it is not wanted.
  *
  * A net power is above 0 where a surface gains heat, by radiation and through contacts. A given power has the other
  * sign: a sphere of power P (and storage 0) has the net power -P. Temperatures are written whether they were found or
- * given. A temperature is NaN if the emissivity is 0, or if only a temperature below zero would give the power.
+ * given. A temperature is NaN in two cases: the emissivity is 0 and there is no contact; or only a temperature below
+ * zero would give the power.
  * least_temperature, largest_temperature and centre_temperature differ only on spheres with a finite conductivity. For
  * any other sphere all three are its temperature. wall_temperature of an insulated wall is the fourth root of its mean
  * T^4. The same holds for a mesh whose sides have temperatures of their own. The root mean square error of the powers
- * of all spheres follows from error_patches and error_beams: it is the root of the sum of their squares. */
+ * of all spheres is the root of error_patches^2 + error_beams^2. */
 typedef struct fibrad_heat_result {
     double *power;                  /* sigma K^4 L^2, [spheres], out: net power */
     double *wall_power;             /* sigma K^4 L^2, [walls], out: net power; NULL without walls */

@@ -2,8 +2,8 @@
  *
  * Light of one direction is a bundle of parallel rays. The rays come from outside and enter through the open faces of
  * the container. Each ray ends on the first sphere or wall that it meets. Seen along the light, a sphere is a disc.
- * Other spheres and walls may hide parts of this disc. The sphere takes the light on the open part. The areas of open
- * parts are exact.
+ * Other spheres and walls may hide parts of this disc. The sphere takes the light on the part that is not hidden. The
+ * areas of these parts are exact.
  *
  * Sequence   1. fibrad_light_empty finds how much light would end on each wall, and how much would leave the bed, if
  *               there were neither spheres nor triangles.
@@ -65,7 +65,7 @@ typedef struct fibrad_light_ends {
 } fibrad_light_ends;
 
 /* Where light ends if there are neither spheres nor triangles.
- *   Output   ends: spheres is 0, the others add up to the power of the light
+ *   Output   ends: `spheres` is 0. The others add up to the power of the light.
  *            fault: which sphere is at fault, and why; may be NULL
  *   Errors   _ARGUMENT: fault.why is the cause
  *              FIBRAD_WHY_LIGHT: a number is out of range
@@ -79,7 +79,7 @@ int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibra
 
 /* The light that comes to some spheres straight from outside. Several threads may ask for different spheres at the same
  * time.
- *   Input    from, to: spheres from to to - 1, up to the number of spheres
+ *   Input    from, to: the first sphere, and the one after the last sphere; at most the number of spheres
  *   Output   power[to - from]: the light that falls on each sphere, absorbed or not
  *            kept: `spheres` is the sum of `power`. `wall` and `through` are where this light would end if there were
  *            neither spheres nor triangles. They add up to `spheres`.
@@ -101,8 +101,8 @@ int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fib
  *   4. Call fibrad_heat_begin for thermal radiation, with `absorbed` = spots. To each given power, add the light that
  *      the surface absorbs. Insulated walls have no given power: `absorbed` is enough for them.
  *
- * Light that falls on a part of a patch is reflected from where it falls: rays carry it to where it arrives next. From
- * there on, patches reflect it. Patches that are lit wholly reflect without rays. */
+ * Light that falls on a part of a patch is reflected from where it falls: rays carry it to the patch where it arrives
+ * next. From there on, patches reflect it. Patches that are lit wholly reflect without rays. */
 
 /* Number of patches of a heat problem.
  *   Errors   0 if heat is NULL */
@@ -117,8 +117,8 @@ uint32_t fibrad_heat_shine_tasks(const fibrad_heat *heat);
  *   Input    task: 0 to fibrad_heat_shine_tasks - 1
  *   Output   hits[fibrad_heat_patches]: the light is added to it
  *            kept: as fibrad_light_spheres
- *            apart[spheres]: light of even directions of a cone minus that of odd ones; may be NULL. Only elements of
- *            the spheres of the task are written.
+ *            apart[spheres]: light of even directions of a cone minus that of odd ones, for the spheres of the task
+ *            alone; may be NULL
  *   Errors   as fibrad_light_spheres; _STATE: the scene has changed
  *   Cost     as fibrad_light_spheres; work memory has 8 bytes for each patch of the task */
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,
@@ -131,7 +131,8 @@ typedef struct fibrad_light_ray {
     uint32_t slot; /* where it would end if there were neither spheres nor triangles; a number inside the kernel */
 } fibrad_light_ray;
 
-/* Number of rays for a light: 12 for each beam of a sphere, and 1/16 for each beam of each sphere in the light.
+/* Number of rays for a light: 12 for each beam of a sphere, and 1/16 for each beam of each sphere in the light. There
+ * are 131,072 rays at least, and 2^24 at most.
  *   Input    hits[fibrad_heat_patches]: of fibrad_heat_shine
  *   Errors   0 if an argument is NULL */
 uint32_t fibrad_heat_light_rays(const fibrad_heat *heat, const double *hits);
@@ -162,7 +163,7 @@ int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fi
 typedef struct fibrad_light_hits {
     const double *first; /* [patches], of fibrad_heat_shine and fibrad_heat_shine_walls */
     double *light;       /* [patches], out: what patches reflect; takes the place of fibrad_heat_sources.light */
-    double *spots;       /* [patches], out: what of `first` rays have reflected */
+    double *spots;       /* [patches], out: the part of `first` that rays have reflected */
     double *squares;     /* [spheres + walls + 2], out: sums of squared powers of rays that arrive on spheres, walls and
                             outside; last: of squared powers of beams that leave the patches where rays have arrived */
 } fibrad_light_hits;
@@ -180,7 +181,7 @@ int fibrad_heat_reflect(const fibrad_heat *heat, fibrad_work *work, const fibrad
  *   Errors   _ARGUMENT */
 int fibrad_heat_sum_light(const fibrad_heat *heat, const double *hits, double *power, double *wall_power);
 
-/* Replaces spots by the light that patches of spheres and walls absorb: of the spots, and in the present solution.
+/* Replaces `spots` by the light that patches of spheres and walls absorb: of the spots, and in the present solution.
  *   Input    spots[fibrad_heat_patches]: of fibrad_heat_reflect; zeros, if the solution has all first hits as its light
  *   Errors   _ARGUMENT
  *            _STATE: there is no solution, or the scene has changed */
