@@ -109,9 +109,8 @@ extern "C" {
 /* What a call returned. The numbers never change their meaning. The error for a null pointer is FIBRAD_E_ARGUMENT. The
  * error for a scene that is not complete is FIBRAD_E_STATE. A scene is complete once fibrad_scene_init has returned
  * FIBRAD_OK. A fibrad_heat refers to one scene. If a different scene has been made in the memory of this scene, calls
- * that read the scene return FIBRAD_E_STATE.
- * FIBRAD_E_SUM has two causes: a row part was changed,
- * or the library has a fault. No status has the number -3. */
+ * that read the scene return FIBRAD_E_STATE. FIBRAD_E_SUM has two causes: a row part was changed, or the library has a
+ * fault. No status has the number -3. */
 typedef enum fibrad_status {
     FIBRAD_OK = 0,
     FIBRAD_E_ARGUMENT = -1,     /* A pointer is null, or a value is out of its range, NaN or infinite. */
@@ -291,8 +290,8 @@ typedef struct fibrad_wall {
  * axis the box repeats without end. If the occupancy is periodic and the way is longer than 100 of its periods, the
  * radiation counts as `beyond`. If there is neither a cutoff nor a known region, `beyond` is 0.
  *
- * A periodic scene may have an occupancy of all its spheres without a cutoff. It then tells where lines between walls
- * end whose directions spread about that of a window (docs/methods.md section 11).
+ * A periodic scene without a cutoff may have an occupancy of all its spheres. Lines from a window to walls spread about
+ * the direction of the window. The occupancy then tells where these lines end (docs/methods.md section 11).
  *
  * A scene may have spheres outside its known region. View factors count these spheres, if they are within the cutoff.
  * Paths after a reflection do not meet these spheres. */
@@ -504,15 +503,16 @@ typedef struct fibrad_row {
     float *half;         /* [capacity], out, of a row along lines: half the difference of the factors by even and by odd
                             lines; infinity: the factor is exact, since nothing can come between both spheres. May be
                             NULL. Rows in a collection keep it. */
-    double noise, shares; /* out, of a row along lines: the parts of `error` that come from the points of masks, and
-                             from the factors of walls and surroundings */
+    double noise, shares; /* out, of a row along lines: the part of `error` that comes from the points of windows, and
+                             the part that comes from the factors of walls and surroundings */
 } fibrad_row;
 
 /* ---- lines ----------------------------------------------------------------------------------------------------- */
 /* A set of lines, for the rows of a matrix. Each line has a sense, so that a set is also a set of directions. The lines
  * are spread evenly, and the directions are spread evenly, too. The factor between two spheres is the mean of both of
  * their rows. So it counts each line in both senses, and its error is about half of that by as many Fibonacci
- * directions. What walls and surroundings get counts each line in its own sense only. */
+ * directions. Walls and surroundings are seen in the sense of each line alone. If the scene has planes, openings or a
+ * cylinder and no triangles, spheres near these walls or near the border of the bed see them in both senses. */
 typedef struct fibrad_line_set fibrad_line_set;
 
 /* The number of lines of the smallest built-in set with at least `lines` lines. If there is none, `lines`.
@@ -538,8 +538,8 @@ int fibrad_line_set_init(fibrad_line_set **set, void *memory, size_t size, uint3
  *   Errors   0 */
 uint32_t fibrad_line_set_count(const fibrad_line_set *set);
 
-/* For fibrad_beam_rule.chords: exact areas along lines, too; as many chords as suit the number along directions, too.
- */
+/* For fibrad_beam_rule.chords. FIBRAD_CHORDS_NONE: exact areas. FIBRAD_CHORDS_SUITED: points on as many chords as suit
+ * the number of lines or directions. */
 #define FIBRAD_CHORDS_NONE   1
 #define FIBRAD_CHORDS_SUITED 2
 
@@ -550,12 +550,12 @@ typedef struct fibrad_beam_rule {
     uint32_t points;     /* 0: exact visible areas; 64, 128 or 256: that many points per window */
     double cutoff;       /* L; spheres are left out if their centre is farther than (1 + 1e-12) cutoff; 0: no cutoff */
     double tolerance;    /* the error allowed; directions are added until it is met; 0: no tolerance */
-    uint64_t turn;       /* seed of a random turn of all directions about z, or about the only axis with walls; each
-                            direction also moves along the axis, at most half way to the next; 0: no turn */
+    uint64_t turn;       /* seed of a random turn of all directions about z, or about the only axis with walls. Each
+                            direction also moves along this axis, at most half way to the next one. 0: no turn */
     const fibrad_line_set *lines; /* lines to take; directions, turn, tolerance, points are 0; NULL: directions */
-    uint32_t chords;              /* 16, 32 or 64: points on so many chords of each window, which are bits of words;
-                                     FIBRAD_CHORDS_NONE: exact areas; FIBRAD_CHORDS_SUITED: as many as suit the
-                                     number; 0: that along lines, exact areas along directions */
+    uint32_t chords;              /* 16, 32 or 64: points on so many chords of each window, kept as bits of words;
+                                     or one of the two numbers above; 0: FIBRAD_CHORDS_SUITED along lines,
+                                     FIBRAD_CHORDS_NONE along directions */
 } fibrad_beam_rule;
 
 /* Row i of the view factors of a scene, by parallel beams.
@@ -592,7 +592,8 @@ int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
 uint32_t fibrad_directions_for(uint32_t directions, double error, double tolerance);
 
 /* A part of a beam row: what some of its directions contribute. The factors of a row come from sums over its windows.
- * A part has such sums over its own windows. Set `memory`, and zero the rest. */
+ * These sums are the same to the bit in any order of the windows. A part has such sums over its own windows. Set
+ * `memory`, and zero the rest. */
 typedef struct fibrad_row_part {
     fibrad_memory memory;         /* about 400 bytes, 36 for each sphere seen, and 19 KB if there are walls */
     uint64_t key;                 /* of the library: the row, rule and scene of this part; 0: none */
@@ -668,9 +669,9 @@ struct fibrad_rows {
     uint64_t entries;  /* out: entries of all rows */
 };
 
-/* Appends a row that was computed elsewhere, on another machine for example. A row does not say which scene it is from.
- * So a matrix takes this row for a row of its own scene, if that has such a sphere. If the row is of another scene, no
- * call notices.
+/* Appends a row that was computed elsewhere, on another machine for example. The row does not say which scene it is
+ * from. A matrix takes it for a row of its own scene, if this scene has such a sphere. If the row is of another scene,
+ * no call notices.
  *   Input    row: sphere, col, f, length, wall, escaped, beyond, error, symmetric. row->rows must be NULL. The columns
  *            ascend. Each factor is 0 to 1.01. Of a row along lines also lines, half, noise and shares.
  *            walls: elements of row->wall
@@ -888,14 +889,14 @@ typedef struct fibrad_exchange_rule {
     double cutoff;                 /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
     double tolerance;              /* the error allowed; directions and paths are added until it is met; 0: none */
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */
-    uint32_t open_directions; /* of the first segment of rows of which more than a tenth meets no sphere; 0: no other */
+    uint32_t open_directions;      /* of the first segment if more than a tenth of it meets no sphere; 0: no other */
     /* [spheres], k* and not k_s: fibrad_relative_conductivity of each sphere, at least
      * FIBRAD_RELATIVE_CONDUCTIVITY_MIN. INFINITY: the sphere has one temperature. Needed with node_emissivity. */
     const double *conductivity;
-    /* [walls + 1], or NULL: what each wall and, last, the surroundings absorb of further paths of sphere i that
-     * somebody else has followed. The unit is a path. What a path gives before its first reflection does not count.
-     * NaN: nobody has counted it. The factor to a wall is then the mean over the paths of this call and the further
-     * ones. Other entries are scaled so that the sum of the row is 1.
+    /* [walls + 1], or NULL: what each wall and, last, the surroundings absorb of further paths of sphere i. Further
+     * paths are followed outside this call. The unit is a path. What a path gives before its first reflection does not
+     * count. NaN: not counted. The factor to a wall is the mean over the paths of this call and the further paths.
+     * Other entries are scaled so that the sum of the row is 1.
      *
      * Paths that begin at walls (fibrad_exchange_wall) can take the place of further paths, by reciprocity. Let a wall
      * have the area A_b and the emissivity e_b. If sphere i absorbs x of n paths from this wall, then the wall absorbs
@@ -906,7 +907,7 @@ typedef struct fibrad_exchange_rule {
 
 /* The relative conductivity k* = k_s/(4 d sigma T^3) of a sphere of diameter d. The smaller k* is, the more the
  * temperature differs from point to point on the sphere. Warning: exchange rules take k*, and sources of heat
- * (fibrad_heat.h) take k_s. Neither call can notice the other number, and k_s may be 1e8 k*.
+ * (fibrad_heat.h) take k_s. Neither of them can notice that it was given the other number. k_s may be 1e8 k*.
  *   Input    conductivity: k_s of the solid. In SI units [W/(m K)]
  *            radius, temperature: of the sphere. In SI units [m], [K]
  *            sigma: the Stefan-Boltzmann constant in the same units, in SI units FIBRAD_STEFAN_BOLTZMANN
@@ -1045,10 +1046,10 @@ typedef struct fibrad_flow {
 /* Adds the powers that follow from rows of exchange factors. The collection may have rows of some spheres only.
  *
  * An entry D_ij moves the power A_i eps_i D_ij (E_j - E_i)/2 from sphere j to sphere i. The other half comes from row
- * j, on this or on another machine. If flow->made differs for i and j, row i alone moves the full power: an older row
- * has no factor to a newer sphere. A factor to a wall or to the surroundings moves the full power, since walls and
- * surroundings have no rows here. All factors of a row are first multiplied by 1/(1 - beyond). Sphere i gains exactly
- * what the others lose, to the bit. Nothing flows between equal emissions.
+ * j, on this or on another machine. If flow->made differs for i and j, row i alone moves the full power. The reason is
+ * that an older row has no factor to a newer sphere. A factor to a wall or to the surroundings moves the full power,
+ * since walls and surroundings have no rows here. All factors of a row are first multiplied by 1/(1 - beyond). Sphere i
+ * gains exactly what the others lose, to the bit. Nothing flows between equal emissions.
  *   Input    rows: a collection; its rows are taken in their order
  *            spheres, walls: lengths of the arrays in `flow`
  *   Output   flow: the powers
