@@ -19,27 +19,23 @@
  *             particle gains what the other loses. So no heat is lost, whatever the error of the rows. Nothing flows
  *             between particles of equal temperature.
  * Sources     A wall of emissivity above 0 is a source, and so is an opening. Paths begin at particles and at sources.
- *             What sources exchange with each other comes from paths of sources. Totals contain this exchange. Paths
- *             of sources also make rows of particles more accurate. Two kinds of walls have no paths of their own: an
- *             endless wall, and a wall from which paths reach a side that belongs to no wall. What such walls exchange
- *             with each other is left out. docs/coupling.md has the details.
+ *             Paths of sources tell what sources exchange with each other. Totals contain this exchange. Paths of
+ *             sources also make rows of particles more accurate. Three kinds of walls have no paths: an endless wall, a
+ *             wall from which paths reach a side that belongs to no wall, and any wall of a bed of more than 1e6
+ *             particles. What such walls exchange with each other is left out. docs/coupling.md has the details.
  * Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
  * Collective  Every rank must call a collective function, and all ranks get the same status. All functions are
  *             collective over the communicator, except fibrad_link_free, fibrad_insitu_message, fibrad_insitu_remark,
  *             fibrad_insitu_facts_get and fibrad_accuracy_named.
  * Errors      After an error of a function other than fibrad_insitu_new, fibrad_insitu_message has a sentence. It is
  *             the same on all ranks, and names particles by id. The object is as it was before the call.
- * Strays      A simulation may go on with particles beyond walls or inside each other, which no scene can have. With
- *             config.strict such a particle is an error. Otherwise rows are made, and fibrad_insitu_remark says what
- *             was done:
+ * Strays      A stray is a particle beyond a wall or an opening, inside another particle, or in sight of a side of a
+ *             triangle that belongs to no wall. With config.strict a stray is an error. Otherwise rows are made, and
+ *             fibrad_insitu_remark says what was done (docs/coupling.md has more):
  *               left out  The centre of the particle lies beyond a plane or the cylinder, or the particle reaches
- *                         beyond an opening. It exchanges nothing and hides nothing. Rows that are made when it is
- *                         back contain it.
- *               smaller   The centre of one particle lies inside another, at a distance d. Both radii are multiplied
- *                         by d/max(r_i, r_j). Then the centre lies on the surface. If less than a thousandth of a
- *                         radius would remain, both are left out.
- *               no row    The particle sees a side of a triangle that belongs to no wall. If more than a tenth of all
- *                         particles see such sides, the call fails, with or without config.strict.
+ *                         beyond an opening. It exchanges nothing and hides nothing.
+ *               smaller   The centre of one particle lies inside another. The rows take smaller radii for both.
+ *               no row    The particle sees a side of a triangle that belongs to no wall.
  * Units       One length unit L, which the caller chooses. Powers are in sigma K^4 L^2.
  * Words       Words and the layout of comments are as in fibrad.h.
  * Source      docs/coupling.md
@@ -67,8 +63,8 @@ typedef struct fibrad_link fibrad_link;
  *            culprit: the least id at fault on all ranks; may be NULL
  *   Errors   _ARGUMENT: an id is owned twice, or used and not owned
  *            _MEMORY
- *   Cost     each id has a rank that keeps its owner, which follows from the id. A message of 16 bytes per own id goes
- *            to that rank, 8 bytes per used id go there and back, 4 bytes per different used id go to its owner. */
+ *   Cost     For each id one rank knows its owner. The number of this rank follows from the id. The rank gets 16 bytes
+ *            per own id. 8 bytes per used id go there and back. 4 bytes per different used id go to its owner. */
 int fibrad_link_new(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_t own, size_t all, uint64_t *culprit);
 
 /* Copies the values of the owners to the ranks that use these ids. Only ranks that share particles exchange messages.
@@ -95,11 +91,11 @@ void fibrad_link_free(fibrad_link *link);
 /* The rows of a bed, and what is needed to make them. */
 typedef struct fibrad_insitu fibrad_insitu;
 
-/* Directions and paths of each row. More paths take the place of paths of sources: if config.one_way is 1, or if some
- * source has no paths of its own. docs/lammps.md has errors and times. */
+/* Directions and paths of each row. If config.one_way is 1, or if a wall or the surroundings have no paths, a row has
+ * the second number of paths. docs/lammps.md has errors and times. */
 typedef enum fibrad_accuracy {
-    FIBRAD_ACCURACY_NORMAL = 0, /* 36 directions, 24 paths, or 80 without paths of sources */
-    FIBRAD_ACCURACY_LOW = 1,    /* 18 directions, 8 paths, or 34 */
+    FIBRAD_ACCURACY_NORMAL = 0, /* 36 directions; 24 paths, or 80 */
+    FIBRAD_ACCURACY_LOW = 1,    /* 18 directions; 8 paths, or 34 */
     FIBRAD_ACCURACY_HIGH = 2    /* 144 directions, or 1,000 if more than a tenth of a row meets walls or surroundings at
                                    once; 800 paths, or 1,600 */
 } fibrad_accuracy;
@@ -112,9 +108,8 @@ int fibrad_accuracy_named(const char *name);
 /* How rows are made. The same on all ranks. Zeroed: all defaults.
  *
  * Up to 1e6 particles there is no cutoff by default, and each rank has all particles while rows are made. With more
- * particles the default cutoff R bounds the number of particles that ranks send each other. R begins at the largest
- * diameter plus 8 mean radii. R is multiplied by 1.25 as long as a cube of side 2 R then has no more than 1e5 particles
- * and images. The default is no longer than the bed. Rows take about as long with any cutoff. */
+ * particles the default cutoff follows from their number, so that ranks do not send each other too many: see
+ * docs/coupling.md. Rows take about as long with any cutoff. */
 typedef struct fibrad_insitu_config {
     double cutoff;       /* L, as in fibrad_exchange_rule, at least the largest diameter; 0: see above */
     uint32_t directions; /* as in fibrad_exchange_rule, for all rows; 0: those of `accuracy` */
@@ -165,8 +160,8 @@ typedef struct fibrad_insitu_totals {
     double wall[FIBRAD_WALLS_MAX]; /* sigma K^4 L^2, [walls of the rows] */
 } fibrad_insitu_totals;
 
-/* A particle is remarked if a larger fraction of its emission has no known end. Its power may be wrong by this
- * fraction. */
+/* fibrad_insitu_remark names a particle of whose emission a larger fraction goes beyond the cutoff. Its power may be
+ * wrong by this fraction. */
 #define FIBRAD_BEYOND_MUCH 0.005
 
 /* Facts of the last rows, of all ranks together except halo and bytes. */
@@ -177,11 +172,11 @@ typedef struct fibrad_insitu_facts {
     uint64_t gone;               /* number of particles that have gone since all rows were made */
     uint64_t behind;             /* number of particles without a row, since they see a side that belongs to no wall */
     double cutoff;               /* L, in use; 0: none, each rank has all particles */
-    double beyond;               /* mean fraction of the emission that leaves the cutoff among particles. Its end is not
-                                    followed; all other targets get it, in proportion. */
+    double beyond;               /* mean fraction of the emission of particles that passes the cutoff; a particle that
+                                    has no row counts as 1. The other targets share this fraction in proportion. */
     double error;                /* root mean square of the rows' estimated errors */
     double seconds_rows;         /* s, of the slowest rank, in all calls of fibrad_insitu_rows and _follow so far */
-    double seconds_powers;       /* s, of the slowest rank, in all calls of fibrad_insitu_powers so far */
+    double seconds_powers;       /* s, of the slowest rank, in all calls of fibrad_insitu_powers and _conduct so far */
     uint64_t step;               /* of the rows */
     size_t halo;                 /* particles of other ranks, and periodic images, that this rank was sent */
     size_t bytes;                /* bytes, memory of this rank */
@@ -216,9 +211,8 @@ int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint
 
 /* Makes rows of those particles alone that have come since the last rows, and keeps the other rows. The row of an
  * old particle has no factor to a new one: what the two exchange follows from the row of the new particle alone. If a
- * particle has gone, the factor of each old row to it counts as beyond. The function makes all rows if there are none,
- * if the number of walls has changed, or if more than a tenth of all particles have come or gone since all rows were
- * made.
+ * particle has gone, the factor of each old row to it counts as beyond. In three cases all rows are made: there are
+ * none, the number of walls has changed, or more than a tenth of all particles have come or gone since all were made.
  *   Input    as fibrad_insitu_rows
  *   Errors   as fibrad_insitu_rows
  *   Cost     about 2 microseconds for each particle and 10 ns for each entry, and the new rows */
@@ -232,8 +226,8 @@ int fibrad_insitu_follow(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, ui
  *            _STATE: there are no rows, or the particles of all ranks together are not those of the rows
  *            _MEMORY
  *            _UNSOLVABLE: rows of particles that conduct are too inaccurate for powers
- *   Cost     4 ns per entry, and some messages. If particles conduct, a linear system is solved. For 4,096 particles of
- *            emissivity 0.8 this took 9 times as long at k* = 5, 27 times at k* = 1 and 140 times at k* = 0.3. */
+ *   Cost     4 ns per entry, and some messages. If particles conduct, a linear system is solved, which takes 9 to 140
+ *            times as long: docs/coupling.md */
 int fibrad_insitu_powers(fibrad_insitu *insitu, const fibrad_insitu_state *state, double *power,
                          fibrad_insitu_totals *totals);
 
@@ -246,10 +240,10 @@ int fibrad_insitu_powers(fibrad_insitu *insitu, const fibrad_insitu_state *state
  *   Cost     4 ns per entry, and two messages to each rank in contact */
 int fibrad_insitu_parts(fibrad_insitu *insitu, double (*part)[2]);
 
-/* What is not known of the rows of particles, as a fraction of what each emits. n, the order and errors are as for
+/* What is not known of the row of each particle, as a fraction of its emission. n, the order and errors are as for
  * fibrad_insitu_parts.
- *   Output   error[n][2]: what passes the cutoff or has gone and has no known end, and the estimated error of the row.
- *            Particles without a row have 0.
+ *   Output   error[n][2]: what passed the cutoff when the row was made, and the estimated error of the row. The first
+ *            is 1 for a particle that has no row. Both are 0 for a particle that is left out.
  *   Errors   as fibrad_insitu_parts
  *   Cost     two messages to each rank in contact */
 int fibrad_insitu_errors(fibrad_insitu *insitu, double (*error)[2]);
@@ -261,8 +255,8 @@ int fibrad_insitu_errors(fibrad_insitu *insitu, double (*error)[2]);
  *            _FILE: a file cannot be written. The message names the file. No rank leaves a file behind. */
 int fibrad_insitu_write(fibrad_insitu *insitu, const char *path);
 
-/* What conducts heat where particles overlap each other or walls, as `fibrad heat --contacts` has it: docs/heat.md. The
- * same on all ranks, but for conductivity. */
+/* What conducts heat where particles overlap each other or walls, by the rules of `fibrad heat --contacts`
+ * (docs/heat.md). All but the conductivity is the same on all ranks. */
 typedef struct fibrad_insitu_contacts {
     const double *conductivity; /* power/(L K), [n] of the bed, of the solid at spots, above 0 */
     int hertz;                  /* 1: spots of elastic spheres; 0: the circles in which surfaces cut each other */
@@ -280,13 +274,17 @@ typedef struct fibrad_insitu_conducted {
 } fibrad_insitu_conducted;
 
 /* Net power that particles gain through contacts at their present positions and temperatures, beside radiation.
- * Contacts are found anew in each call. Particles beyond walls or openings have none. A wall conducts whatever its
- * emissivity. Steps of time are explicit. No difference of temperatures changes its sign in a step if 2 times the
- * conductance of a particle times the step is less than its heat capacity, and the same holds for walls that store
- * heat. Input    bed, state: the same particles in the same order. Emissivities must be valid. Output   power[n]: above
- * 0 where heat is gained, the same bits for every number of ranks conductance[n]: power/K, of all contacts of a
- * particle conducted: may be NULL Errors   _ARGUMENT: as for fibrad_insitu_rows and fibrad_insitu_powers; a
- * conductivity is not above 0 _STATE: there are no rows _UNSUPPORTED: a wall is a mesh, or bed->conductivity is given
+ * Contacts are found anew in each call. Particles beyond walls or openings have no contacts, and openings have none. A
+ * wall conducts whatever its emissivity. Steps of time are explicit: for particles, and for walls that store heat, 2
+ * times the conductance times the step must be less than the heat capacity. Otherwise differences of temperatures may
+ * change their sign in a step.
+ *   Input    bed, state: the same particles in the same order. Emissivities must be valid.
+ *   Output   power[n]: above 0 where heat is gained, the same bits for every number of ranks
+ *            conductance[n]: power/K, of all contacts of a particle
+ *            conducted: may be NULL
+ *   Errors   _ARGUMENT: as for fibrad_insitu_rows and fibrad_insitu_powers; a conductivity is not above 0
+ *            _STATE: there are no rows
+ *            _UNSUPPORTED: a wall is a mesh, or bed->conductivity is given
  *            _MEMORY
  *   Cost     3 microseconds for each particle; with gas 1 more for each pair within reach */
 int fibrad_insitu_conduct(fibrad_insitu *insitu, const fibrad_insitu_contacts *contacts, const fibrad_insitu_bed *bed,
@@ -298,7 +296,7 @@ int fibrad_insitu_conduct(fibrad_insitu *insitu, const fibrad_insitu_contacts *c
  *   Errors   none */
 const char *fibrad_insitu_message(const fibrad_insitu *insitu);
 
-/* What fibrad_insitu_rows has done with strays, and whom a cutoff concerns. */
+/* What fibrad_insitu_remark tells: what was done with strays, and which particles a cutoff concerns. */
 typedef enum fibrad_remark_kind {
     FIBRAD_REMARK_OUTSIDE = 0, /* particles are left out */
     FIBRAD_REMARK_OVERLAP = 1, /* particles are smaller, since a centre lies inside another particle */
@@ -307,8 +305,8 @@ typedef enum fibrad_remark_kind {
     FIBRAD_REMARKS = 4
 } fibrad_remark_kind;
 
-/* A sentence on the particles of one kind in the last rows. The sentence has their number. It names one of
- * them by its id, with its place and wall. Not collective, the same on all ranks.
+/* A sentence on the particles of one kind in the last rows: their number, and the id, place and wall of one of them.
+ * Not collective, the same on all ranks.
  *   Input    kind: a fibrad_remark_kind
  *   Output   never NULL; "" if there are none
  *   Errors   none */
