@@ -40,7 +40,7 @@
 
 /* Spheres that conduct: relative conductivities k* = k_s/(4 d sigma T^3) */
 #define FIBRAD_RELATIVE_CONDUCTIVITY_MIN 1e-6
-#define FIBRAD_FLIGHTS_DEFAULT           12 /* of a walk */
+#define FIBRAD_FLIGHTS_DEFAULT           12 /* half of a path, see fibrad_exchange_displacement */
 #define FIBRAD_FLIGHTS_MAX               256
 
 /* Heat */

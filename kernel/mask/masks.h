@@ -3,7 +3,8 @@
  * The window is the unit disc about the origin. Parallel chords cut the square about it. Each chord has points at equal
  * steps, 32 to a word. A disc hides on each chord the points between two ends, so a few operations on whole words take
  * the place of a test for each point. Counts are whole numbers, which no order of terms and no instruction set changes.
- * Source: L. Carpenter, "The A-buffer, an antialiased hidden surface method", SIGGRAPH 1984. docs/methods.md section 4.
+ * Source: L. Carpenter, "The A-buffer, an antialiased hidden surface method", SIGGRAPH 1984.
+ * docs/methods.md section 12.
  */
 #ifndef FIBRAD_MASK_MASKS_H
 #define FIBRAD_MASK_MASKS_H
