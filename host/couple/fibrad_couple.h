@@ -196,9 +196,10 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
  *            step: any number, seeds the random numbers
  *   Errors   _ARGUMENT: a value is out of its range, an id occurs twice, or the cutoff is less than the largest
  *            diameter or more than 100 periods
- *            _GEOMETRY: a centre lies inside an image of its own particle; the largest radius is more than a period;
- *            particles have more than 64 centres of others inside, on the mean; in the first rows more than a tenth of
- *            all particles would be left out
+ *            _GEOMETRY: a centre lies inside an image of its own particle; radii seem to have another unit than
+ *            positions, since the largest is more than a period, or particles have more than 64 centres of others
+ *            inside, on the mean; a wall seems to be in a wrong place, since more than a tenth of all particles would
+ *            be left out of the first rows
  *            _ENDLESS: walls, as for fibrad_scene_init
  *            _BACK: more than a tenth of all particles see a side of a triangle that belongs to no wall
  *            _MEMORY
