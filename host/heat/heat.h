@@ -119,6 +119,9 @@ struct heat {
 int heat_begin(struct heat *heat, struct bed *bed);
 void heat_end(struct heat *heat);
 
+/* Whether a wall is insulated. */
+bool heat_insulates(const struct heat *heat);
+
 /* A law of the library, whose context is the heat. It sets emissivities and conductivities of spheres and contacts that
  * have tables to those at these temperatures. */
 fibrad_emissivity_law heat_follow;
@@ -140,9 +143,6 @@ int heat_solve(struct heat *heat);
 /* heat_error.c: solves the problem. With --error, solves again with more beams and patches until the estimated error is
  * small enough. Status as heat_solve. */
 int heat_run(struct heat *heat);
-
-/* Whether a wall is insulated. */
-bool heat_insulates(const struct heat *heat);
 
 /* heat_figures.c: finds the figures of the summary: those of temperatures and surfaces in K as soon as they are known,
  * the others when powers are in watts. Reports the summary. */

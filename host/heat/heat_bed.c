@@ -111,6 +111,12 @@ int heat_begin(struct heat *h, struct bed *bed) {
     return status;
 }
 
+bool heat_insulates(const struct heat *h) {
+    bool any = false;
+    for (uint32_t k = 0; k < h->walls.count; ++k) any |= h->sources.insulated[k];
+    return any;
+}
+
 void heat_end(struct heat *h) {
     free(h->emissivity);
     light_free(&h->lit);

@@ -20,12 +20,6 @@ enum {
  * need more rays than other ones: docs/methods_heat.md section 7. */
 #define RAYS_INSULATED (2 * FIBRAD_WALL_RAYS_DEFAULT / FIBRAD_HEAT_PATCHES_DEFAULT)
 
-bool heat_insulates(const struct heat *h) {
-    bool any = false;
-    for (uint32_t k = 0; k < h->walls.count; ++k) any |= h->sources.insulated[k];
-    return any;
-}
-
 /* The configuration of the options with defaults filled in. The number of directions follows from the emissivities of
  * the bed. refined: it is the number to begin with for --error. insulated: a wall is. */
 static fibrad_heat_config fill_config(const struct heat *h, bool refined, bool insulated) {
