@@ -53,7 +53,7 @@ import csv, sys, numpy, scipy.sparse
 ids = numpy.load(sys.argv[1])['ids']
 matrix = scipy.sparse.load_npz(sys.argv[1])
 assert matrix.format == 'csr' and matrix.has_sorted_indices
-entries = [entry for entry in csv.DictReader(open(sys.argv[2])) if not entry['wall']]
+entries = [entry for entry in csv.DictReader(open(sys.argv[2])) if not entry['body']]
 matrix = matrix.tocoo()
 assert matrix.nnz == len(entries)
 for i, j, f, entry in zip(matrix.row, matrix.col, matrix.data, entries):
@@ -73,10 +73,10 @@ assert names == ['zmin', 'cylinder']
 row = {i: k for k, i in enumerate(a['ids'])}
 known = {name: {} for name in names + ['surroundings', '']}
 for entry in csv.DictReader(open(sys.argv[2])):
-    if int(entry['i']) >= 0: known[entry['wall']][int(entry['i'])] = float(entry['F'])
+    if int(entry['i']) >= 0: known[entry['body']][int(entry['i'])] = float(entry['F'])
 for k, name in enumerate(names):
-    assert known[name] and sum(a['wall'][:, k] > 0) == len(known[name])
-    for i, f in known[name].items(): assert a['wall'][row[i], k] == f
+    assert known[name] and sum(a['body'][:, k] > 0) == len(known[name])
+    for i, f in known[name].items(): assert a['body'][row[i], k] == f
 for i, f in known['surroundings'].items(): assert a['escaped'][row[i]] == f
 assert a['computed'].sum() == 99 and a['computed'][row[7]] and not a['computed'][row[100]]
 END
@@ -108,7 +108,7 @@ def array(name):
     return head['shape'], struct.unpack('<%d%s' % (len(data) // 8, 'Q' if 'u' in head['descr'] else 'd'), data)
 assert array('ids') == ((2,), (7, 1 << 63))
 assert array('x') == ((2, 3), (0, 0, 0, 4, 0, 0))
-assert array('wall') == ((2, 1), (.25, 1))
+assert array('body') == ((2, 1), (.25, 1))
 assert array('escaped') == ((2,), (.125, 0)) and array('beyond') == ((2,), (.125, 0))
 assert array('error') == ((2,), (.1, 0)) and array('radius') == ((2,), (1, 2)) and array('emissivity') == ((2,), (.5, 1))
 END

@@ -44,12 +44,12 @@ cat >known.py <<'END'
 import csv, json
 powers, walls = {}, {}
 for row in csv.DictReader(open('q.csv')):
-    (walls if row['wall'] else powers)[row['wall'] or int(row['i'])] = float(row['T_K']), float(row['q_W'])
+    (walls if row['body'] else powers)[row['body'] or int(row['i'])] = float(row['T_K']), float(row['q_W'])
 assert list(powers) == list(range(1, 2001)) and list(walls) == ['surroundings', 'zmin']
 factors, outside = {}, {}
 for row in csv.DictReader(open('F.csv')):
     i, j = int(row['i']), int(row['j'])
-    if row['wall']: outside[row['wall'], i, j] = float(row['F'])
+    if row['body']: outside[row['body'], i, j] = float(row['F'])
     else: factors[i, j] = float(row['F'])
 def strict(text): raise ValueError(text)  # NaN and Infinity are no JSON
 def lines(path): return [json.loads(line, parse_constant=strict) for line in open(path)]
@@ -67,7 +67,7 @@ assert [frame.pop('frame') for frame in two] == [0, 1] and q.pop('frame') == 0
 assert two == [q, q]
 rows = list(csv.DictReader(open('two.csv')))
 assert len(rows) == 2 * 2002 and {row['file'] for row in rows} == {'a.dump', 'b.dump'}
-assert all(powers[int(row['i'])][1] == float(row['q_W']) for row in rows if not row['wall'])
+assert all(powers[int(row['i'])][1] == float(row['q_W']) for row in rows if not row['body'])
 
 F, = lines('F.json')
 ids, start = F['id'], F['indptr']

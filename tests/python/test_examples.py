@@ -100,17 +100,17 @@ def test_ovito_modifier(small, examples):
 
 
 def test_yade_runner_with_a_stand_in(small, examples):
-    """Walls with the attributes that YADE's have, one of them no sphere."""
+    """Bodies with the attributes that YADE's have, one of them no sphere."""
     class Sphere:
         def __init__(self, radius):
             self.radius = radius
 
-    def wall(i):
+    def body(i):
         state = SimpleNamespace(pos=tuple(small.x[i]), mass=0.01)
         return SimpleNamespace(id=3 * i, shape=Sphere(small.r[i]), state=state)
 
     wall = SimpleNamespace(id=1, shape=None, state=SimpleNamespace(pos=(0, 0, 0), mass=0))
-    scene = SimpleNamespace(walls=[wall, *map(wall, range(small.n))], periodic=True, time=0.0,
+    scene = SimpleNamespace(bodies=[wall, *map(body, range(small.n))], periodic=True, time=0.0,
                             cell=SimpleNamespace(size=(12.0, 12.0, 0.0)))
     names = runpy.run_path(str(examples / "yade_radiation.py"), {"O": scene, "Sphere": Sphere}, "yade_radiation")
     radiate = names["radiate"]
@@ -121,7 +121,7 @@ def test_yade_runner_with_a_stand_in(small, examples):
     radiate()
     stored = sum(0.01 * 800 * (t - 300) for t in state["temperature"].values())
     assert state["absorbed"] == pytest.approx(stored, rel=1e-6) and state["absorbed"] > 0 and state["heat"] is first
-    scene.walls.pop()
+    scene.bodies.pop()
     radiate()
     assert state["heat"].n == small.n - 1
 
