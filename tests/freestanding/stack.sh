@@ -2,8 +2,8 @@
 # stack.sh OBJDUMP FOLDER - bytes of stack that the deepest chain of calls takes. SPDX-License-Identifier: MIT
 #
 # Sizes of frames come from the compiler (-fstack-usage), calls from the disassembly. Calls through pointers are added
-# by name: those of fibrad_surface_factor, of fibrad_row_run to the methods, of fibrad_matrix_share to the pieces, and
-# of fibrad_walls_complete to the frames of windows. The caller's functions that resize memory and divide work are not
+# by name: those of fibrad_surface_factor, of fibrad_row_run to the methods, of fibrad_matrix_share to the pieces, of
+# fibrad_walls_complete to the frames of windows, and of each_overlap. The caller's functions that resize memory and divide work are not
 # counted. The script fails on recursion, on frames without a bound and on other calls through pointers.
 set -u
 find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $6}' >"$2/frames"
@@ -14,7 +14,7 @@ find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $
         /R_ARM_(THM_)?(CALL|JUMP24)|R_RISCV_(CALL|JAL)/ {
             to = $NF; sub(/[-+].*/, "", to); sub(/^\.text\./, "", to); sub(/\.(part|constprop|isra)\..*/, "", to)
             if (to != from && to !~ /^\./) print "call", from, to}
-        /\tblx\tr/ && from !~ /^(fibrad_surface_factor|fibrad_row_run|attempt|fibrad_memory_reserve|fit|fibrad_matrix_share|fibrad_walls_complete_scalar|add_hidden|fibrad_entries_list|fibrad_addends_put)$/ {
+        /\tblx\tr/ && from !~ /^(fibrad_surface_factor|fibrad_row_run|attempt|fibrad_memory_reserve|fit|fibrad_matrix_share|fibrad_walls_complete_scalar|add_hidden|each_overlap)$/ {
             print "pointer", from}'
     for version in filter sum; do echo "call fibrad_surface_factor fibrad_surface_${version}_scalar"; done
     for frame in frame_of_beam frame_of_window; do
@@ -24,6 +24,10 @@ find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $
     for method in beam_to_tolerance cast_compute exchange_compute surface_compute; do
         grep -q "^frame $method " "$2/frames" || echo "gone $method"
         echo "call fibrad_row_run $method"
+    done
+    for met in check_overlap note_inside; do
+        grep -q "^frame $met " "$2/frames" || echo "gone $met"
+        echo "call each_overlap $met"
     done
     sed -n 's/.*fibrad_matrix_share([^,]*, [^,]*, \([a-z_]*\),.*/call fibrad_matrix_share \1/p' kernel/matrix/*.c
 } | awk '
