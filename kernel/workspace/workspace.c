@@ -156,10 +156,12 @@ static int fit(fibrad_work *work, const fibrad_work_plan *best, const fibrad_wor
     }
     for (int times = 1; times < 32 && bytes > memory->size; times++)
         plan = divided(best, least, times), bytes = bytes_of(&plan);
-    enough.discs = greater_count(2 * least->discs, best->discs / 4),
-    enough.entries = greater_count(2 * least->entries, best->entries / 4);
-    memory->needed = bytes_of(&enough);
-    if (memory->block == NULL || bytes > memory->size) return FIBRAD_E_WORK;
+    if (memory->block == NULL || bytes > memory->size) {
+        enough.discs = greater_count(2 * least->discs, best->discs / 4);
+        enough.entries = greater_count(2 * least->entries, best->entries / 4);
+        memory->needed = bytes_of(&enough);
+        return FIBRAD_E_WORK;
+    }
     *space = lay_out_work(work, &plan);
     if (*space == NULL) return FIBRAD_E_WORK;
     (*space)->best = *best, (*space)->least = *least;
