@@ -21,9 +21,9 @@
  * Sources     A wall of emissivity above 0 is a source, and so is an opening. Paths begin at particles and at sources.
  *             Paths of sources tell what sources exchange with each other. Totals contain this exchange. Paths of
  *             sources also make rows of particles more accurate. Three kinds of walls have no paths: an endless wall, a
- *             wall from which paths reach a side that belongs to no wall, and any wall of a bed of more than 1e6
- *             particles. What such walls exchange with each other is left out. docs/coupling.md has the details.
- * Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
+ *             wall from which paths reach a side that belongs to no wall, and any wall of a bed of more than
+ *             config.gather particles. What such walls exchange with each other is left out. docs/coupling.md has the
+ * details. Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
  * Collective  Every rank must call a collective function, and all ranks get the same status. All functions are
  *             collective over the communicator, except fibrad_link_free, fibrad_insitu_message, fibrad_insitu_remark,
  *             fibrad_insitu_facts_get and fibrad_accuracy_named.
@@ -107,8 +107,8 @@ int fibrad_accuracy_named(const char *name);
 
 /* How rows are made. The same on all ranks. Zeroed: all defaults.
  *
- * Up to 1e6 particles there is no cutoff by default, and each rank has all particles while rows are made. With more
- * particles the default cutoff follows from their number, so that ranks do not send each other too many: see
+ * Up to `gather` particles there is no cutoff by default, and each rank has all particles while rows are made. With
+ * more particles the default cutoff follows from their number, so that ranks do not send each other too many: see
  * docs/coupling.md. Rows take about as long with any cutoff. */
 typedef struct fibrad_insitu_config {
     double cutoff;       /* L, as in fibrad_exchange_rule, at least the largest diameter; 0: see above */
@@ -120,6 +120,7 @@ typedef struct fibrad_insitu_config {
     int strict;          /* 1: strays are errors; 0: they are left out, or smaller, see above */
     int accuracy;        /* a fibrad_accuracy */
     int one_way;         /* 1: rows of particles use no paths of sources */
+    double gather;       /* number of particles up to which each rank has all; 0: 4e6 */
 } fibrad_insitu_config;
 
 /* The bed for which rows are made. Box, walls, openings and triangles are the same on all ranks. */

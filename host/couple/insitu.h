@@ -13,7 +13,7 @@
 #include "simple/team.h"
 
 #define FIBRAD_OPENINGS_MAX 6   /* one a side */
-#define FIBRAD_GATHER_MOST  1e6 /* up to so many particles each rank has all, unless there is a cutoff */
+#define FIBRAD_GATHER_MOST  4e6 /* the default of fibrad_insitu_config.gather */
 
 /* What walls exchange with each other and with the surroundings: areas times emissivities times factors [L^2]. */
 typedef struct fibrad_wall_exchange {

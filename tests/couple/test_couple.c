@@ -407,6 +407,7 @@ static const struct kind kinds[] = {
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 static int strict, one_way; /* of the next objects */
+static double gather;       /* the same */
 
 static fibrad_insitu *insitu_of(MPI_Comm comm, const struct kind *kind, int threads) {
     const fibrad_insitu_config config = {.cutoff = kind->cutoff,
@@ -415,7 +416,8 @@ static fibrad_insitu *insitu_of(MPI_Comm comm, const struct kind *kind, int thre
                                          .seed = 3,
                                          .threads = threads,
                                          .strict = strict,
-                                         .one_way = one_way};
+                                         .one_way = one_way,
+                                         .gather = gather};
     fibrad_insitu *s;
     CHECK(fibrad_insitu_new(&s, comm, &config) == FIBRAD_OK);
     return s;
@@ -451,6 +453,7 @@ static void rows_are_those_of_one_rank(const struct kind *kind, int axis) {
     fibrad_insitu_facts_get(s, &facts);
     CHECK(facts.particles == all.bed.n && facts.step == 7 && facts.entries > 0 && facts.bytes > 0);
     CHECK(facts.error > 0 && facts.error < .1 && facts.beyond >= 0 && facts.beyond < .3);
+    CHECK((facts.cutoff > 0) == (kind->cutoff > 0 ? kind->cutoff < 1000 : gather > 0));
     fibrad_insitu_free(s);
     close_pile(&all);
 }
@@ -795,7 +798,7 @@ static void *grow(void *context, void *block, size_t size) {
 }
 
 /* Temperatures after all steps by rows of the kernel in one scene, with sums written as in the formula. */
-static void step_by_kernel(struct pile *p, double cutoff) {
+static void step_by_kernel(struct pile *p) {
     const uint32_t n = (uint32_t)p->bed.n, walls = p->bed.walls;
     const fibrad_scene_config config = {.wall = p->wall, .walls = walls};
     const fibrad_spheres spheres = {p->x, p->x + 1, p->x + 2, p->radius, n, 3, 1, p->id};
@@ -804,11 +807,8 @@ static void step_by_kernel(struct pile *p, double cutoff) {
     fibrad_scene *scene = NULL;
     fibrad_work work = {.memory.resize = grow};
     CHECK(fibrad_scene_init(&scene, block, size, &config, &spheres, NULL) == FIBRAD_OK);
-    fibrad_exchange_rule rule = {.emissivity = p->emissivity,
-                                 .wall_emissivity = p->wall_emissivity,
-                                 .directions = 50,
-                                 .paths = 100,
-                                 .cutoff = cutoff};
+    fibrad_exchange_rule rule = {
+        .emissivity = p->emissivity, .wall_emissivity = p->wall_emissivity, .directions = 50, .paths = 100};
     uint32_t *col = memory_of((size_t)n * n, sizeof *col);
     double *f = memory_of((size_t)n * n, sizeof *f), *emission = memory_of(n, sizeof *emission);
     fibrad_row *row = memory_of(n, sizeof *row);
@@ -843,8 +843,9 @@ static void step_by_kernel(struct pile *p, double cutoff) {
     free(wall);
 }
 
-/* Particles change ranks and positions at every third step. The rows stay where they were made. */
-static void temperatures_are_those_of_the_kernel(enum walls walls, double cutoff) {
+/* Particles change ranks and positions at every third step. The rows stay where they were made. A cutoff that all
+ * particles are within is none. */
+static void temperatures_are_those_of_the_kernel(enum walls walls) {
     const struct kind kind = {"reference", 6, {0, 0, 0}, walls, {.3, .8}, 1000, 1, 0};
     struct pile all = pile_of(&kind), expected = pile_of(&kind);
     fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, &kind, 1);
@@ -864,7 +865,7 @@ static void temperatures_are_those_of_the_kernel(enum walls walls, double cutoff
     }
     if (rank == 0) {
         double worst = 0, change = 0;
-        step_by_kernel(&expected, cutoff);
+        step_by_kernel(&expected);
         struct pile begin = pile_of(&kind);
         for (size_t i = 0; i < all.bed.n; ++i) {
             worst = fmax(worst, fabs(all.temperature[i] - expected.temperature[i]));
@@ -1381,6 +1382,7 @@ static void rows_are_too_inaccurate(void) {
 static void refusals(void) {
     fibrad_insitu *s = NULL;
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.cutoff = -1}) == FIBRAD_E_ARGUMENT && !s);
+    CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.gather = -1}) == FIBRAD_E_ARGUMENT && !s);
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.accuracy = 3}) == FIBRAD_E_ARGUMENT && !s);
     CHECK(fibrad_accuracy_named("normal") == FIBRAD_ACCURACY_NORMAL);
     CHECK(fibrad_accuracy_named("low") == FIBRAD_ACCURACY_LOW);
@@ -1444,12 +1446,16 @@ int main(int argc, char **argv) {
     unknown_parts_are_told(FLOORS);
     large_particles_are_seen();
     one_way = 1;
-    temperatures_are_those_of_the_kernel(OPEN, 0); /* no cutoff: larger than the bed */
-    temperatures_are_those_of_the_kernel(FLOORS, 1000);
+    temperatures_are_those_of_the_kernel(OPEN);
+    temperatures_are_those_of_the_kernel(FLOORS);
     strays_do_not_end_a_run();
     one_way = 0;
     rows_follow_particles(.12);
     what_goes_is_given_back();
+    gather = 10; /* a bed with more particles than each rank may have */
+    rows_are_those_of_one_rank(&kinds[5], 2);
+    powers_keep_energy(&kinds[5]);
+    gather = 0;
     conducting = .1;
     rows_are_those_of_one_rank(&kinds[0], 2);
     powers_keep_energy(&kinds[3]);
