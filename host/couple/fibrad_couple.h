@@ -109,7 +109,8 @@ int fibrad_accuracy_named(const char *name);
  *
  * Up to `gather` particles there is no cutoff by default, and each rank has all particles while rows are made. With
  * more particles the default cutoff follows from their number, so that ranks do not send each other too many: see
- * docs/coupling.md. Rows take about as long with any cutoff. */
+ * docs/coupling.md. Rows take about as long with any cutoff. In a bed without periods a cutoff that all particles are
+ * within is none. */
 typedef struct fibrad_insitu_config {
     double cutoff;       /* L, as in fibrad_exchange_rule, at least the largest diameter; 0: see above */
     uint32_t directions; /* as in fibrad_exchange_rule, for all rows; 0: those of `accuracy` */
