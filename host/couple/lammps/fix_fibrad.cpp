@@ -694,13 +694,14 @@ void FixFibrad::make_rows(int which) {
 }
 
 void FixFibrad::tell_strays() {
+    const char *beyond =
+        config.cutoff > 0 ? "a larger `cutoff`, or none, tells what is there" : "a larger `gather` tells what is there";
     for (int kind = 0; kind < FIBRAD_REMARKS; kind++) {
         const char *remark = fibrad_insitu_remark(insitu, kind);
         if (*remark && !told[kind] && comm->me == 0)
             error->warning(FLERR,
                            text("fix fibrad: %s, at step %s; %s", remark, std::to_string(update->ntimestep).c_str(),
-                                kind == FIBRAD_REMARK_BEYOND ? "a larger `cutoff`, or none, tells what is there"
-                                                             : "`strict yes` would end the run"));
+                                kind == FIBRAD_REMARK_BEYOND ? beyond : "`strict yes` would end the run"));
         told[kind] = told[kind] || *remark;
     }
 }
