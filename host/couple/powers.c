@@ -201,6 +201,7 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
         add_walls(set, totals);
     }
     set->flows = 1;
+    fibrad_unknown_tell(s);
     s->seconds_powers += MPI_Wtime() - begun;
     return FIBRAD_OK;
 }
