@@ -273,12 +273,13 @@ static void absorb_at_surface(fibrad_paths *paths, struct grey_path *path, uint3
         return;
     }
     paths->absorbed += absorbed;
-    for (int axis = 0; axis < 3; axis++)
-        paths->square[path->k % FIBRAD_DISPLACEMENT_PARTS][axis] +=
-            absorbed * (path->centre[axis] * path->centre[axis]);
-    if (paths->entries == NULL) return;
-    uint32_t entry = fibrad_entries_of(paths->entries, path->place);
-    fibrad_entries_add(paths->entries, entry, path->part, absorbed);
+    if (paths->entries != NULL) {
+        const uint32_t entry = fibrad_entries_of(paths->entries, path->place);
+        fibrad_entries_add(paths->entries, entry, path->part, absorbed);
+        return;
+    }
+    double *square = paths->square[path->k % FIBRAD_DISPLACEMENT_PARTS];
+    for (int axis = 0; axis < 3; axis++) square[axis] += absorbed * (path->centre[axis] * path->centre[axis]);
 }
 
 /* Counts what the sphere where the path is has absorbed. The number may be anything if an emissivity is not valid. */
