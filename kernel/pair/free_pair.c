@@ -11,9 +11,9 @@
 #define FEW_SPHERES 256u
 /* Otherwise a row tries the spheres within this distance, in cube roots of the volume per sphere: about 50. */
 #define NEAR_SPACINGS 2.3
-/* Pairs so far apart are not tried: the distance times the section of sphere i is this many times the volume per
- * sphere. Among equal spheres in random places, four times as many reach into the hull on the mean. */
-#define FREE_HULLS 2.0
+/* A pair is not tried if so many other spheres may be expected to reach into its hull: 4 pi r^2 (d + 8 r/3) over the
+ * volume per sphere, among equal spheres of radius r in random places, d being the distance of the centres. */
+#define MANY_BETWEEN 8.0
 /* If a sphere should meet more windows than this, they tell whether something hides it: they see less of it. */
 #define SOME_WINDOWS 2.0
 /* Rows with fewer entries than this ask all spheres which of them no window has met. */
@@ -222,8 +222,9 @@ fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale) {
     fibrad_free_pairs pairs = {.open = open_of(work, scale)};
     if (periodic || !(pairs.open > (n <= FEW_SPHERES ? LEAST_OPEN : WORTH_WHILE))) return pairs;
     pair_search search = {.work = work, .scale = scale, .far = work->reach, .all = n <= FEW_SPHERES};
-    const double spacings = scene->spacing * work->inverse, hulls = spacings * spacings * spacings / FIBRAD_PI;
-    if (!search.all) search.far = fibrad_min(work->reach, FREE_HULLS * hulls);
+    const double spacings = scene->spacing * work->inverse, volume = spacings * spacings * spacings;
+    if (!search.all)
+        search.far = fibrad_min(work->reach, fibrad_max(0, MANY_BETWEEN / (4 * FIBRAD_PI) * volume - 8.0 / 3));
     search.sparse = search.all || met < FEW_ENTRIES, search.pairs = lies_free(scene, work->place);
     for (uint32_t k = 0; k < met && !search.all; k++)
         if (entries->sphere[k] < n) try_sphere(&search, entries->sphere[k], true);
