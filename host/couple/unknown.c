@@ -38,7 +38,8 @@ static double mean_power(const fibrad_insitu *s) {
 static double doubt(const fibrad_insitu_set *set, size_t i, const double range[2]) {
     const double unknown = ((const double *)set->unknown.at)[i], weight = ((const double *)set->weight.at)[i];
     const double own = ((const double *)set->emission.at)[i], power = ((const double *)set->power.at)[i];
-    return unknown < 1 ? unknown * fmax(weight * (range[1] - own) - power, power - weight * (range[0] - own)) : 0;
+    if (unknown == 1 && set->facts.behind) return 0;
+    return unknown * fmax(weight * (range[1] - own) - power, power - weight * (range[0] - own));
 }
 
 void fibrad_unknown_tell(fibrad_insitu *s) {
