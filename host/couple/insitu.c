@@ -12,8 +12,8 @@
 static const struct {
     const char *name;
     uint32_t directions, open, paths, alone;
-} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 36, 0, 24, 80},
-               [FIBRAD_ACCURACY_LOW] = {"low", 18, 0, 8, 34},
+} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 28, 0, 24, 80},
+               [FIBRAD_ACCURACY_LOW] = {"low", 16, 0, 8, 34},
                [FIBRAD_ACCURACY_HIGH] = {"high", 144, 1000, 800, 1600}};
 
 int fibrad_accuracy_named(const char *name) {
