@@ -119,8 +119,9 @@ typedef struct fibrad_insitu_build {
 /* Checks what is given with powers. Not collective. Errors: _ARGUMENT, _STATE. */
 int fibrad_insitu_check_state(fibrad_insitu *insitu, const fibrad_insitu_state *state, const double *power);
 
-/* Collective. Finds what the unknown parts of rows could change in the powers that were found last, and remarks it. */
-void fibrad_unknown_tell(fibrad_insitu *insitu);
+/* Collective. Finds what the unknown parts of rows could change in the powers that were found last, and remarks it.
+ * unit: the root mean square of these powers */
+void fibrad_unknown_tell(fibrad_insitu *insitu, double unit);
 
 /* Collective. Checks the bed, and takes its particles. Errors, on all ranks: as fibrad_insitu_rows. */
 int fibrad_insitu_check(fibrad_insitu_build *b);

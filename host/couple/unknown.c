@@ -24,24 +24,16 @@ static void find_range(const fibrad_insitu *s, double range[2]) {
     range[0] = -most[0], range[1] = most[1];
 }
 
-/* The root mean square of the powers of all particles. Collective. */
-static double mean_power(const fibrad_insitu *s) {
-    const double *power = s->set.power.at;
-    double sum[2] = {0, (double)s->set.own};
-    for (size_t i = 0; i < s->set.own; ++i) sum[0] += power[i] * power[i];
-    MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, s->comm);
-    return sqrt(sum[0] / sum[1]);
-}
-
 /* What the unknown part of a row could change in the power of particle i at home. A row that sees a back is unknown as
  * a whole, and is remarked as such. */
 static double doubt(const fibrad_insitu_set *set, size_t i, const double range[2]) {
     const double unknown = ((const double *)set->unknown.at)[i], weight = ((const double *)set->weight.at)[i];
     const double own = ((const double *)set->emission.at)[i], power = ((const double *)set->power.at)[i];
-    return unknown < 1 ? unknown * fmax(weight * (range[1] - own) - power, power - weight * (range[0] - own)) : 0;
+    if (unknown == 1 && set->facts.behind) return 0;
+    return unknown * fmax(weight * (range[1] - own) - power, power - weight * (range[0] - own));
 }
 
-void fibrad_unknown_tell(fibrad_insitu *s) {
+void fibrad_unknown_tell(fibrad_insitu *s, double unit) {
     fibrad_insitu_set *set = &s->set;
     char *message = set->remark[FIBRAD_REMARK_BEYOND].message;
     struct {
@@ -54,21 +46,21 @@ void fibrad_unknown_tell(fibrad_insitu *s) {
     message[0] = 0;
     if (!(set->facts.cutoff > 0 && set->facts.beyond > 0)) return;
     find_range(s, range);
-    const double unit = mean_power(s);
     for (size_t i = 0; i < set->own; ++i) {
         const double change = doubt(set, i, range);
         count += change > FIBRAD_BEYOND_MUCH * unit;
         if (change > worst.doubt) worst.doubt = change, whose = i;
     }
-    MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_UINT64_T, MPI_SUM, s->comm);
-    if (!count) return;
     MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, s->comm);
+    if (!(worst.doubt > FIBRAD_BEYOND_MUCH * unit)) return;
+    MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_UINT64_T, MPI_SUM, s->comm);
     if (worst.rank == s->rank) {
         const fibrad_particle *p = (const fibrad_particle *)set->particle.at + whose;
         fibrad_refuse(message, 0,
                       "what lies beyond the cutoff %g could change the power of %" PRIu64
-                      " particle%s by more than %g %% of the root mean "
-                      "square of all powers, that of particle %" PRIu64 " at (%.6g, %.6g, %.6g) by %.3g %%",
+                      " particle%s by more than %g %% "
+                      "of the root mean square of all powers, that of particle %" PRIu64 " at (%.6g, %.6g, %.6g) by "
+                      "%.3g %%",
                       set->facts.cutoff, count, count > 1 ? "s" : "", 100 * FIBRAD_BEYOND_MUCH, p->id, p->x[0], p->x[1],
                       p->x[2], 100 * worst.doubt / unit);
     }
