@@ -489,7 +489,8 @@ LOOP_TEST(contacts_with_triangles, 2) {
     free(mesh);
 }
 
-/* Contacts of a periodic bed of all sizes, against all pairs and images. */
+/* Contacts of a periodic bed of all sizes, against all pairs and images. A sphere far away, for which there are too
+ * many cells for a table, changes none. */
 TEST(contacts_of_many_sizes) {
     OWNED_BED bed = strewn(400, 3);
     const fibrad_contact_rule rule = {.spots = FIBRAD_SPOTS_LENS, .gas_reach = .5};
@@ -508,6 +509,13 @@ TEST(contacts_of_many_sizes) {
     ck_assert_uint_gt(pairs, 30);
     ck_assert_uint_eq(list->n, pairs);
     assert_near(distances, sum, 1e-12);
+    add_sphere(&bed, .5, .5, 1e5, .01);
+    fibrad_contact_list *same = found_in(&bed, &scene, &rule);
+    ck_assert_uint_eq(same->n, list->n);
+    ck_assert_mem_eq(same->first, list->first, list->n * sizeof *list->first);
+    ck_assert_mem_eq(same->second, list->second, list->n * sizeof *list->second);
+    ck_assert_mem_eq(same->distance, list->distance, list->n * sizeof *list->distance);
+    fibrad_contacts_free(same);
     fibrad_contacts_free(list);
 }
 

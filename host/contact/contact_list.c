@@ -71,23 +71,33 @@ struct gas_pair {
 /* What a ring of lines conducts for each length du by which its gap u is wider than that of the ring within. Let l_i
  * and l_j be the lengths of a line within the spheres, and c = l_i + l_j = distance - u. Then l_i - l_j = (R_i^2 -
  * R_j^2)/c, and 2 pi r dr = 2 pi l_i l_j/c du. */
-static double ring_of(const struct gas_pair *p, double u) {
+static inline double ring_of(const struct gas_pair *p, double u) {
     const double c = p->distance - u, gap = larger_of(u + p->jump, p->least);
-    if (isinf(p->large)) return 2 * PI * c / (c / p->k_small + gap / p->k_gas);
     const double less = p->small * p->small - p->large * p->large;
     const double l_small = (c + less / c) / 2, l_large = (c - less / c) / 2;
     return 2 * PI * l_small * l_large / c / (l_small / p->k_small + l_large / p->k_large + gap / p->k_gas);
 }
 
+/* The same between a sphere and a wall. */
+static inline double ring_at_wall(const struct gas_pair *p, double u) {
+    const double c = p->distance - u, gap = larger_of(u + p->jump, p->least);
+    return 2 * PI * c / (c / p->k_small + gap / p->k_gas);
+}
+
 /* The integral of ring_of over a stretch of gaps, by Gauss's rule of eight points. */
 static double stretch_of(const struct gas_pair *p, double from, double to) {
-    static const double x[4] = {.18343464249564980494, .52553240991632898582, .79666647741362673959,
-                                .96028985649753623168},
+    static const double x[8] = {-.18343464249564980494, .18343464249564980494,  -.52553240991632898582,
+                                .52553240991632898582,  -.79666647741362673959, .79666647741362673959,
+                                -.96028985649753623168, .96028985649753623168},
                         w[4] = {.36268378337836198297, .31370664587788728734, .22238103445337447054,
                                 .10122853629037625915};
     const double middle = (from + to) / 2, half = (to - from) / 2;
-    double sum = 0;
-    for (int k = 0; k < 4; ++k) sum += w[k] * (ring_of(p, middle - half * x[k]) + ring_of(p, middle + half * x[k]));
+    double sum = 0, ring[8];
+    if (isinf(p->large))
+        for (int k = 0; k < 8; ++k) ring[k] = ring_at_wall(p, middle + half * x[k]);
+    else
+        for (int k = 0; k < 8; ++k) ring[k] = ring_of(p, middle + half * x[k]);
+    for (int k = 0; k < 4; ++k) sum += w[k] * (ring[2 * k] + ring[2 * k + 1]);
     return half * sum;
 }
 

@@ -289,7 +289,7 @@ typedef struct fibrad_insitu_conducted {
  *            _STATE: there are no rows
  *            _UNSUPPORTED: a wall is a mesh, or bed->conductivity is given
  *            _MEMORY
- *   Cost     3 microseconds for each particle; with gas 1 more for each pair within reach */
+ *   Cost     1 microsecond for each particle; with gas half of one more for each pair within reach */
 int fibrad_insitu_conduct(fibrad_insitu *insitu, const fibrad_insitu_contacts *contacts, const fibrad_insitu_bed *bed,
                           const fibrad_insitu_state *state, double *power, double *conductance,
                           fibrad_insitu_conducted *conducted);
