@@ -184,9 +184,10 @@ $(BUILD)/host/main.o $(HOST_OBJECTS): $(BUILD)/%.o: %.c | need-libraries
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(HOST_FLAGS) -c $< -o $@
 
+# -O1: a test takes longer to compile than to run
 $(TEST_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-libraries need-check
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(TEST_FLAGS) $(LDFLAGS) $< $(LIBRARIES) $(CHECK_LIBS) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
+	$(CC) $(CFLAGS) -O1 $(TEST_FLAGS) $(LDFLAGS) $< $(LIBRARIES) $(CHECK_LIBS) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
 
 $(BENCH_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-libraries
 	@mkdir -p $(@D)
@@ -414,6 +415,8 @@ cppcheck:
 ## nightly: long checks that .ci/run leaves out: all bits, all sanitizers, clang-tidy, benches, longer fuzzing
 nightly: bits threads lint bench-quick programs
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
+	BUILD=$(BUILD) tests/check_tables.sh all
+	BUILD=$(BUILD) NIGHTLY=1 $(BUILD)/tests/test_reproduce
 	BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/couple/check_couple.sh all
 	BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/couple/check_lammps.sh all
 	$(MAKE) sanitized $(ALL_ISAS) OF_MEMORY="$(filter-out accuracy furnace reference reproduce,$(TESTS:tests/test_%.c=%))"

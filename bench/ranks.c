@@ -1,15 +1,18 @@
 /* ranks.c - rows and powers over ranks: seconds, entries, halos, memory and messages, for docs/scale.md.
  * SPDX-License-Identifier: MIT
  *
- * mpirun -np P build/couple/ranks DUMP COPIES EMISSIVITY [CUTOFF]: the bed is that of a LAMMPS dump (columns id type x
- * y z radius), repeated COPIES times along each periodic axis. The bed is divided into bricks, one for each rank; more
- * than one copy is divided along periodic axes alone. The program writes a header and one line of CSV. Messages are
- * those of the rank that sends most: in a making of rows, in a step of heat, and in the first step of heat after
- * particles have moved by half a unit of length along all axes. */
+ * mpirun -np P build/couple/ranks DUMP COPIES EMISSIVITY [CUTOFF [ACCURACY]]: the bed is that of a LAMMPS dump (columns
+ * id type x y z radius), repeated COPIES times along each periodic axis. With ACCURACY there is a floor at the low end
+ * of z. The bed is divided into bricks, one for each rank; more than one copy is divided along periodic axes alone. The
+ * program writes a header and one line of CSV. once_seconds and once_bytes are processor time and memory of a rank when
+ * rows have been made once, the most of all ranks. Messages are those of the rank that sends most: in a making of rows,
+ * in a step of heat, and in the first step of heat after particles have moved by half a unit of length along all axes.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include "couple/fibrad_couple.h"
 #include "messages.h"
@@ -97,7 +100,17 @@ static void read_bed_of(struct brick_bed *b, const char *path, double emissivity
 }
 
 static fibrad_insitu_state state_of(const struct brick_bed *b) {
-    return (fibrad_insitu_state){.surroundings = 300, .n = b->bed.n, .id = b->id, .temperature = b->temperature};
+    static const double floor_temperature = 1500;
+    return (fibrad_insitu_state){.surroundings = 300,
+                                 .wall_temperature = &floor_temperature,
+                                 .n = b->bed.n,
+                                 .id = b->id,
+                                 .temperature = b->temperature};
+}
+
+static double seconds_of(const struct rusage *used) {
+    return (double)(used->ru_utime.tv_sec + used->ru_stime.tv_sec) +
+           1e-6 * (double)(used->ru_utime.tv_usec + used->ru_stime.tv_usec);
 }
 
 /* Prints what this rank has sent in a part of the run, and begins to count anew. */
@@ -113,15 +126,22 @@ int main(int argc, char **argv) {
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-    if (argc != 4 && argc != 5) fail("DUMP COPIES EMISSIVITY [CUTOFF]");
+    if (argc < 4 || argc > 6) fail("DUMP COPIES EMISSIVITY [CUTOFF [ACCURACY]]");
     struct brick_bed b = {.copies = atoi(argv[2])}, moved = {.copies = b.copies, .moved = .5};
     double part[3 * COUNTERS];
     read_bed_of(&b, argv[1], atof(argv[3]));
     read_bed_of(&moved, argv[1], atof(argv[3]));
-    const fibrad_insitu_config config = {.cutoff = argc > 4 ? atof(argv[4]) : 0};
+    const int accuracy = argc > 5 ? fibrad_accuracy_named(argv[5]) : FIBRAD_ACCURACY_NORMAL;
+    const fibrad_insitu_config config = {.cutoff = argc > 4 ? atof(argv[4]) : 0, .accuracy = accuracy};
+    const fibrad_wall floor_wall = {.kind = FIBRAD_WALL_PLANE, .plane = {.axis = 2, .at = b.bed.low[2]}};
+    const double floor_emissivity = 0.9;
+    struct rusage read, once;
+    b.bed.wall = &floor_wall, b.bed.wall_emissivity = &floor_emissivity, b.bed.walls = argc > 5;
     const fibrad_insitu_state state = state_of(&b), then = state_of(&moved);
     if (fibrad_insitu_new(&radiation, MPI_COMM_WORLD, &config)) fail("out of memory");
+    getrusage(RUSAGE_SELF, &read);
     if (fibrad_insitu_rows(radiation, &b.bed, 1)) fail(fibrad_insitu_message(radiation));
+    getrusage(RUSAGE_SELF, &once);
     end_part(part);
     if (fibrad_insitu_rows(radiation, &b.bed, 2))
         fail(fibrad_insitu_message(radiation)); /* memory of both sets of rows */
@@ -133,18 +153,20 @@ int main(int argc, char **argv) {
     if (fibrad_insitu_powers(radiation, &then, moved.power, NULL)) fail(fibrad_insitu_message(radiation));
     end_part(part + 2 * COUNTERS);
     for (int k = 0; k < COUNTERS; ++k) part[COUNTERS + k] /= HEATS;
-    double most[3] = {(double)b.bed.n, (double)facts.halo, (double)facts.bytes};
-    MPI_Allreduce(MPI_IN_PLACE, most, 3, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    double most[5] = {(double)b.bed.n, (double)facts.halo, (double)facts.bytes, seconds_of(&once) - seconds_of(&read),
+                      1024.0 * (double)once.ru_maxrss};
+    MPI_Allreduce(MPI_IN_PLACE, most, 5, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
     MPI_Allreduce(MPI_IN_PLACE, part, 3 * COUNTERS, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
     if (rank == 0) {
-        printf("ranks,particles,emissivity,own,halo,entries_a_row,beyond,bytes,seconds_rows,seconds_powers");
+        printf("ranks,particles,emissivity,own,halo,entries_a_row,beyond,bytes,once_seconds,once_bytes,seconds_rows,"
+               "seconds_powers");
         for (int k = 0; k < 3; ++k)
             for (int c = 0; c < COUNTERS; ++c)
                 printf(",%s_%s", (const char *const[]){"rows", "heat", "moved"}[k],
                        (const char *const[]){"messages", "bytes", "collectives"}[c]);
-        printf("\n%d,%llu,%s,%.0f,%.0f,%.1f,%.2e,%.0f,%.4f,%.6f", ranks, (unsigned long long)facts.particles, argv[3],
-               most[0], most[1], (double)facts.entries / (double)facts.particles, facts.beyond, most[2],
-               facts.seconds_rows / 2, facts.seconds_powers / HEATS);
+        printf("\n%d,%llu,%s,%.0f,%.0f,%.1f,%.2e,%.0f,%.2f,%.0f,%.4f,%.6f", ranks, (unsigned long long)facts.particles,
+               argv[3], most[0], most[1], (double)facts.entries / (double)facts.particles, facts.beyond, most[2],
+               most[3], most[4], facts.seconds_rows / 2, facts.seconds_powers / HEATS);
         for (int k = 0; k < 3 * COUNTERS; ++k) printf(",%.0f", part[k]);
         printf("\n");
     }

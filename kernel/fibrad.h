@@ -595,7 +595,7 @@ uint32_t fibrad_directions_for(uint32_t directions, double error, double toleran
  * These sums are the same to the bit in any order of the windows. A part has such sums over its own windows. Set
  * `memory`, and zero the rest. */
 typedef struct fibrad_row_part {
-    fibrad_memory memory;         /* about 400 bytes, 36 for each sphere seen, and 19 KB if there are walls */
+    fibrad_memory memory;         /* about 400 bytes, 36 for each sphere seen, and 2.5 KB if there are walls */
     uint64_t key;                 /* of the library: the row, rule and scene of this part; 0: none */
     size_t used;                  /* of the library: bytes of memory */
     uint32_t from, to, fallbacks; /* of the library: the directions, and the windows left to the robust method */

@@ -50,9 +50,8 @@ variant() {
     done
 }
 
-variant gcc -O1 "" "" sse2 avx2
 case $(gcc -dumpmachine) in
-x86_64*) variant gcc "-O2 -march=native" "" "" scalar avx512 ;;
+x86_64*) variant gcc "-O2 -march=native" "" "" scalar sse2 avx2 avx512 ;;
 *) variant gcc -O2 "" "" scalar ;;
 esac
 # needs COMPILER NM FLAG...: the object takes square roots from the processor, not from the mathematical library
@@ -71,6 +70,7 @@ needs() {
 needs arm-linux-gnueabihf-gcc arm-linux-gnueabihf-nm
 case $(gcc -dumpmachine) in x86_64*) needs gcc nm -m32 -msse2 -mfpmath=sse -ffreestanding ;; esac
 test "${1:-}" = all || exit $faults
+variant gcc -O1 "" "" sse2 avx2
 variant gcc -O2 "" "" scalar sse2 avx2 avx512
 variant gcc "-O3 -march=native" "" "" scalar avx512
 variant clang -O2 "" "" scalar sse2 avx2 avx512

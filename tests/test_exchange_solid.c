@@ -233,7 +233,7 @@ static void powers_by_patches(const struct hot_bed *h, double *power) {
 /* Powers by rows are those by patches, but for the noise of paths, which two seeds tell. */
 static const double bed_k[] = {.1, .1, 1, 10, 0}, bed_e[] = {.8, 1, .6, .8, 0};
 LOOP_TEST(powers_are_those_of_patches, 5) {
-    OWNED_BY(hot_bed_free) struct hot_bed h = hot_bed(120, bed_e[_i], bed_k[_i]);
+    OWNED_BY(hot_bed_free) struct hot_bed h = hot_bed(80, bed_e[_i], bed_k[_i]);
     double truth[MOST], found[2][MOST], mean[MOST];
     powers_by_patches(&h, truth);
     for (uint64_t seed = 0; seed < 2; ++seed) {

@@ -100,9 +100,11 @@ TEST(exchange_factors) {
     ck_assert_int_eq(lines, 2);
 }
 
-/* The cubic lattice against the independent program, in per cent: three standard errors of 0.5 %. */
+/* The cubic lattice against the independent program, in per cent: three standard errors of 0.5 %. simple_cubic of
+ * test_solid.c asserts the same values, so this is left to `make nightly`. */
 TEST(conducting) {
     int lines;
+    if (!getenv("NIGHTLY")) return;
     ck_assert_double_le(largest("conducting", "check", &lines), 1.5);
     ck_assert_int_eq(lines, 10);
 }

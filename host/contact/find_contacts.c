@@ -24,6 +24,7 @@ struct size_class {
     double largest;      /* radius */
     double edge;         /* of cells */
     uint32_t cells[3];
+    uint32_t *start; /* [cells + 1], the first sphere of each; NULL: too many cells for a table */
 };
 
 /* A bed in which contacts are looked for. */
@@ -32,6 +33,7 @@ struct search {
     double period[3];
     double low[3], high[3]; /* of all centres */
     double (*at)[4];        /* [spheres], centre, within the period, and radius */
+    double (*sorted)[4];    /* the same in the order of `celled` */
     uint32_t n;
     struct celled *celled;
     struct size_class class[CLASSES_MAX];
@@ -61,7 +63,22 @@ static uint64_t cell_number(const struct size_class *class, const uint32_t cell[
     return ((uint64_t)cell[0] * class->cells[1] + cell[1]) * class->cells[2] + cell[2];
 }
 
-static void sort_class(struct search *s, struct size_class *class) {
+/* Notes where the spheres of each cell begin. Most beds fill their cells. If a sphere is far away, cells are so many
+ * that they are searched for instead. */
+static int note_starts(const struct search *s, struct size_class *class) {
+    const uint32_t *cells = class->cells;
+    const double count = (double)cells[0] * cells[1] * cells[2];
+    uint64_t next = 0;
+    if (count > 8. * (class->end - class->begin)) return FIBRAD_OK;
+    class->start = malloc(((size_t)count + 1) * sizeof *class->start);
+    if (!class->start) return FIBRAD_E_MEMORY;
+    for (uint32_t k = class->begin; k < class->end; ++k)
+        while (next <= s->celled[k].cell) class->start[next++] = k;
+    while (next <= (uint64_t)count) class->start[next++] = class->end;
+    return FIBRAD_OK;
+}
+
+static int sort_class(struct search *s, struct size_class *class) {
     class->edge = 2 * class->largest * (1 + s->rule->gas_reach);
     for (int axis = 0; axis < 3; ++axis) {
         const double wide = (s->high[axis] - s->low[axis]) / class->edge;
@@ -74,10 +91,13 @@ static void sort_class(struct search *s, struct size_class *class) {
         s->celled[k].cell = cell_number(class, cell);
     }
     qsort(s->celled + class->begin, class->end - class->begin, sizeof *s->celled, by_cell);
+    for (uint32_t k = class->begin; k < class->end; ++k)
+        memcpy(s->sorted[k], s->at[s->celled[k].sphere], sizeof *s->sorted);
+    return note_starts(s, class);
 }
 
 /* Sorts spheres into classes and cells. */
-static void sort_spheres(struct search *s) {
+static int sort_spheres(struct search *s) {
     double largest = 0;
     for (uint32_t i = 0; i < s->n; ++i) {
         largest = larger_of(largest, s->at[i][3]);
@@ -87,7 +107,8 @@ static void sort_spheres(struct search *s) {
         }
     }
     uint32_t to = 0;
-    for (uint32_t c = 0; c < CLASSES_MAX && to < s->n; ++c) {
+    int status = FIBRAD_OK;
+    for (uint32_t c = 0; c < CLASSES_MAX && to < s->n && !status; ++c) {
         struct size_class class = {.begin = to};
         for (uint32_t i = 0; i < s->n; ++i) {
             if (class_of(s->at[i][3], largest) != c) continue;
@@ -96,13 +117,15 @@ static void sort_spheres(struct search *s) {
         }
         class.end = to;
         if (class.end == class.begin) continue;
-        sort_class(s, &class);
+        status = sort_class(s, &class);
         s->class[s->classes++] = class;
     }
+    return status;
 }
 
 /* The first sphere of a class whose cell is at least this one. */
 static uint32_t first_in_cell(const struct search *s, const struct size_class *class, uint64_t cell) {
+    if (class->start) return class->start[cell];
     uint32_t low = class->begin, high = class->end;
     while (low < high) {
         const uint32_t middle = low + (high - low) / 2;
@@ -112,27 +135,6 @@ static uint32_t first_in_cell(const struct search *s, const struct size_class *c
             high = middle;
     }
     return low;
-}
-
-/* A function that is called for each sphere of a class whose centre may lie within a box. */
-typedef int met_sphere(void *context, const struct search *search, uint32_t sphere);
-
-static int spheres_in_box(const struct search *s, const struct size_class *class, const double low[3],
-                          const double high[3], met_sphere *met, void *context) {
-    uint32_t from[3], to[3];
-    int status = FIBRAD_OK;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (high[axis] < s->low[axis] || low[axis] > s->high[axis]) return FIBRAD_OK;
-        from[axis] = class_cell(s, class, axis, low[axis]), to[axis] = class_cell(s, class, axis, high[axis]);
-    }
-    for (uint32_t x = from[0]; x <= to[0]; ++x)
-        for (uint32_t y = from[1]; y <= to[1] && !status; ++y) {
-            const uint64_t last = cell_number(class, (const uint32_t[3]){x, y, to[2]});
-            uint32_t k = first_in_cell(s, class, cell_number(class, (const uint32_t[3]){x, y, from[2]}));
-            for (; k < class->end && s->celled[k].cell <= last && !status; ++k)
-                status = met(context, s, s->celled[k].sphere);
-        }
-    return status;
 }
 
 /* Gas conducts up to this distance of surfaces. */
@@ -146,13 +148,34 @@ struct looking {
 
 /* Takes a smaller sphere that is near enough. Of two equal ones the one with the larger number looks for the other. A
  * sphere and its own image conduct nothing. */
-static int take_pair(void *context, const struct search *s, uint32_t other) {
-    const struct looking *from = context;
-    const double r = s->at[from->sphere][3], *o = s->at[other];
-    if (o[3] > r || (o[3] == r && other >= from->sphere)) return FIBRAD_OK;
-    const double distance = length_of(o[0] - from->at[0], o[1] - from->at[1], o[2] - from->at[2]);
-    if (distance >= r + o[3] + reach_of(s, o[3])) return FIBRAD_OK;
+static int take_pair(const struct looking *from, const struct search *s, uint32_t k) {
+    const uint32_t other = s->celled[k].sphere;
+    const double r = s->at[from->sphere][3], *o = s->sorted[k], reach = r + o[3] + reach_of(s, o[3]);
+    const double x = o[0] - from->at[0], y = o[1] - from->at[1], z = o[2] - from->at[2];
+    /* one jump for all conditions: few are near */
+    if ((x * x + y * y + z * z > (1 + 1e-9) * reach * reach) | (o[3] > r) | ((o[3] == r) & (other >= from->sphere)))
+        return FIBRAD_OK;
+    const double distance = length_of(x, y, z);
+    if (distance >= reach) return FIBRAD_OK;
     return fibrad_contact_add(s->found, &(struct contact_found){from->sphere, other, distance, r, o[3]});
+}
+
+/* Takes the spheres of a class that are near enough. */
+static int take_in_box(const struct search *s, const struct size_class *class, const double low[3],
+                       const double high[3], const struct looking *from) {
+    uint32_t first[3], to[3];
+    int status = FIBRAD_OK;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (high[axis] < s->low[axis] || low[axis] > s->high[axis]) return FIBRAD_OK;
+        first[axis] = class_cell(s, class, axis, low[axis]), to[axis] = class_cell(s, class, axis, high[axis]);
+    }
+    for (uint32_t x = first[0]; x <= to[0]; ++x)
+        for (uint32_t y = first[1]; y <= to[1] && !status; ++y) {
+            const uint64_t last = cell_number(class, (const uint32_t[3]){x, y, to[2]});
+            uint32_t k = first_in_cell(s, class, cell_number(class, (const uint32_t[3]){x, y, first[2]}));
+            for (; k < class->end && s->celled[k].cell <= last && !status; ++k) status = take_pair(from, s, k);
+        }
+    return status;
 }
 
 /* Looks for smaller spheres about one image of a sphere. */
@@ -163,7 +186,7 @@ static int look_about(const struct search *s, struct looking *from) {
         const double reach = s->at[from->sphere][3] + class->largest + reach_of(s, class->largest);
         double low[3], high[3];
         for (int axis = 0; axis < 3; ++axis) low[axis] = from->at[axis] - reach, high[axis] = from->at[axis] + reach;
-        status = spheres_in_box(s, class, low, high, take_pair, from);
+        status = take_in_box(s, class, low, high, from);
     }
     return status;
 }
@@ -238,15 +261,18 @@ int fibrad_contacts_find(const fibrad_scene_config *config, const fibrad_spheres
         return FIBRAD_E_ARGUMENT;
     struct contact_block found = {.n = 0};
     struct search s = {.rule = rule, .n = spheres->n, .found = &found};
-    s.at = malloc((s.n + (size_t)1) * sizeof *s.at), s.celled = malloc((s.n + (size_t)1) * sizeof *s.celled);
+    s.at = malloc(2 * (s.n + (size_t)1) * sizeof *s.at), s.celled = malloc((s.n + (size_t)1) * sizeof *s.celled);
+    s.sorted = s.at + s.n;
     int status = s.at && s.celled ? FIBRAD_OK : FIBRAD_E_MEMORY;
     for (int axis = 0; axis < 3 && config; ++axis) s.period[axis] = config->period[axis];
     if (!status) copy_spheres(&s, spheres);
-    if (!status) sort_spheres(&s), status = find_pairs(&s);
+    if (!status) status = sort_spheres(&s);
+    if (!status) status = find_pairs(&s);
     for (uint32_t b = 0; config && b < config->walls && !status; ++b)
         if (config->wall[b].kind != FIBRAD_WALL_MESH) status = find_at_wall(&s, &config->wall[b], b);
     if (!status && config && config->triangles) status = find_at_triangles(&s, config->triangles);
     free(s.at);
     free(s.celled);
+    for (uint32_t c = 0; c < s.classes; ++c) free(s.class[c].start);
     return fibrad_contact_list_of(&found, rule, status, list);
 }

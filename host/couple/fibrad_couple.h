@@ -21,9 +21,9 @@
  * Sources     A wall of emissivity above 0 is a source, and so is an opening. Paths begin at particles and at sources.
  *             Paths of sources tell what sources exchange with each other. Totals contain this exchange. Paths of
  *             sources also make rows of particles more accurate. Three kinds of walls have no paths: an endless wall, a
- *             wall from which paths reach a side that belongs to no wall, and any wall of a bed of more than 1e6
- *             particles. What such walls exchange with each other is left out. docs/coupling.md has the details.
- * Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
+ *             wall from which paths reach a side that belongs to no wall, and any wall of a bed of more than
+ *             config.gather particles. What such walls exchange with each other is left out. docs/coupling.md has the
+ * details. Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
  * Collective  Every rank must call a collective function, and all ranks get the same status. All functions are
  *             collective over the communicator, except fibrad_link_free, fibrad_insitu_message, fibrad_insitu_remark,
  *             fibrad_insitu_facts_get and fibrad_accuracy_named.
@@ -94,8 +94,8 @@ typedef struct fibrad_insitu fibrad_insitu;
 /* Directions and paths of each row. If config.one_way is 1, or if a wall or the surroundings have no paths, a row has
  * the second number of paths. docs/lammps.md has errors and times. */
 typedef enum fibrad_accuracy {
-    FIBRAD_ACCURACY_NORMAL = 0, /* 36 directions; 24 paths, or 80 */
-    FIBRAD_ACCURACY_LOW = 1,    /* 18 directions; 8 paths, or 34 */
+    FIBRAD_ACCURACY_NORMAL = 0, /* 28 directions; 24 paths, or 80 */
+    FIBRAD_ACCURACY_LOW = 1,    /* 16 directions; 8 paths, or 34 */
     FIBRAD_ACCURACY_HIGH = 2    /* 144 directions, or 1,000 if more than a tenth of a row meets walls or surroundings at
                                    once; 800 paths, or 1,600 */
 } fibrad_accuracy;
@@ -107,9 +107,10 @@ int fibrad_accuracy_named(const char *name);
 
 /* How rows are made. The same on all ranks. Zeroed: all defaults.
  *
- * Up to 1e6 particles there is no cutoff by default, and each rank has all particles while rows are made. With more
- * particles the default cutoff follows from their number, so that ranks do not send each other too many: see
- * docs/coupling.md. Rows take about as long with any cutoff. */
+ * Up to `gather` particles there is no cutoff by default, and each rank has all particles while rows are made. With
+ * more particles the default cutoff follows from their number, so that ranks do not send each other too many: see
+ * docs/coupling.md. Rows take about as long with any cutoff. In a bed without periods a cutoff that all particles are
+ * within is none. */
 typedef struct fibrad_insitu_config {
     double cutoff;       /* L, as in fibrad_exchange_rule, at least the largest diameter; 0: see above */
     uint32_t directions; /* as in fibrad_exchange_rule, for all rows; 0: those of `accuracy` */
@@ -120,6 +121,7 @@ typedef struct fibrad_insitu_config {
     int strict;          /* 1: strays are errors; 0: they are left out, or smaller, see above */
     int accuracy;        /* a fibrad_accuracy */
     int one_way;         /* 1: rows of particles use no paths of sources */
+    double gather;       /* number of particles up to which each rank has all; 0: 4e6 */
 } fibrad_insitu_config;
 
 /* The bed for which rows are made. Box, walls, openings and triangles are the same on all ranks. */
@@ -160,9 +162,9 @@ typedef struct fibrad_insitu_totals {
     double wall[FIBRAD_WALLS_MAX]; /* sigma K^4 L^2, [walls of the rows] */
 } fibrad_insitu_totals;
 
-/* fibrad_insitu_remark names a particle of whose emission a larger fraction goes beyond the cutoff. Its power may be
- * wrong by this fraction. */
-#define FIBRAD_BEYOND_MUCH 0.005
+/* fibrad_insitu_remark tells of particles whose power could change by more than this part of the root mean square of
+ * all powers, if what they emit beyond the cutoff went to what is hottest or coldest. */
+#define FIBRAD_BEYOND_MUCH 0.01
 
 /* Facts of the last rows, of all ranks together except halo and bytes. */
 typedef struct fibrad_insitu_facts {
@@ -297,16 +299,16 @@ int fibrad_insitu_conduct(fibrad_insitu *insitu, const fibrad_insitu_contacts *c
  *   Errors   none */
 const char *fibrad_insitu_message(const fibrad_insitu *insitu);
 
-/* What fibrad_insitu_remark tells: what was done with strays, and which particles a cutoff concerns. */
+/* What fibrad_insitu_remark tells: what was done with strays, and what a cutoff could change in powers. */
 typedef enum fibrad_remark_kind {
     FIBRAD_REMARK_OUTSIDE = 0, /* particles are left out */
     FIBRAD_REMARK_OVERLAP = 1, /* particles are smaller, since a centre lies inside another particle */
     FIBRAD_REMARK_BACK = 2,    /* particles have no row, since they see a side that belongs to no wall */
-    FIBRAD_REMARK_BEYOND = 3,  /* more than FIBRAD_BEYOND_MUCH of what particles emit goes beyond the cutoff */
+    FIBRAD_REMARK_BEYOND = 3,  /* powers could change by more than FIBRAD_BEYOND_MUCH; of the last powers */
     FIBRAD_REMARKS = 4
 } fibrad_remark_kind;
 
-/* A sentence on the particles of one kind in the last rows: their number, and the id, place and wall of one of them.
+/* A sentence on the particles of one kind in the last rows or powers: their number, and the id, place and wall of one.
  * Not collective, the same on all ranks.
  *   Input    kind: a fibrad_remark_kind
  *   Output   never NULL; "" if there are none

@@ -13,8 +13,8 @@ static const struct {
     const char *name;
     uint32_t directions, paths, alone;
     double open; /* error of what meets no sphere, see fibrad_exchange_rule */
-} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 36, 24, 80, 0},
-               [FIBRAD_ACCURACY_LOW] = {"low", 18, 8, 34, 0},
+} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 28, 24, 80, 0},
+               [FIBRAD_ACCURACY_LOW] = {"low", 16, 8, 34, 0},
                [FIBRAD_ACCURACY_HIGH] = {"high", 144, 800, 1600, 8e-4}};
 
 int fibrad_accuracy_named(const char *name) {
@@ -26,8 +26,8 @@ int fibrad_accuracy_named(const char *name) {
 static bool config_valid(const fibrad_insitu_config *c) {
     const bool directions =
         !c->directions || (c->directions >= FIBRAD_DIRECTIONS_MIN && c->directions <= FIBRAD_DIRECTIONS_MAX);
-    return c->cutoff >= 0 && isfinite(c->cutoff) && directions && c->paths <= FIBRAD_PATHS_MAX && c->tolerance >= 0 &&
-           isfinite(c->tolerance) && c->threads >= 0 && c->threads <= THREADS_MAX &&
+    return c->cutoff >= 0 && isfinite(c->cutoff) && c->gather >= 0 && directions && c->paths <= FIBRAD_PATHS_MAX &&
+           c->tolerance >= 0 && isfinite(c->tolerance) && c->threads >= 0 && c->threads <= THREADS_MAX &&
            (c->strict == 0 || c->strict == 1) && (c->one_way == 0 || c->one_way == 1) &&
            c->accuracy >= FIBRAD_ACCURACY_NORMAL && c->accuracy <= FIBRAD_ACCURACY_HIGH;
 }
@@ -40,6 +40,7 @@ static void complete_config(fibrad_insitu *s) {
     if (!c->directions) c->directions = samples[c->accuracy].directions;
     if (!c->paths) c->paths = samples[c->accuracy].paths;
     if (!c->threads) c->threads = 1;
+    if (c->gather == 0) c->gather = FIBRAD_GATHER_MOST;
 }
 
 static int open_set(fibrad_insitu_set *set, int threads) {
@@ -128,47 +129,35 @@ void fibrad_insitu_facts_get(const fibrad_insitu *s, fibrad_insitu_facts *facts)
 /* Writes the sentence on particles of one kind; "" if there are none. */
 static void tell_remark(const fibrad_remark *remark, int kind, char *message) {
     static const char *const done[FIBRAD_REMARKS] = {"left out until back",
-                                                     "smaller, so that no centre is inside another", "without a row",
-                                                     "in sight of particles beyond the cutoff"};
+                                                     "smaller, so that no centre is inside another", "without a row"};
     message[0] = 0;
     if (remark->count)
         fibrad_refuse(message, 0, "%" PRIu64 " particle%s %s %s; %s", remark->count, remark->count > 1 ? "s" : "",
                       remark->count > 1 ? "are" : "is", done[kind], remark->message);
 }
 
-/* Remarks a particle if much of what it emits has no known end. Particles that see backs are remarked as such. */
-static void tell_unknown(fibrad_insitu_build *b, const fibrad_particle *p, double unknown) {
-    char message[FIBRAD_MESSAGE];
-    if (!(unknown > FIBRAD_BEYOND_MUCH && unknown < 1)) return;
-    fibrad_refuse(message, 0,
-                  "%.2g %% of what particle %" PRIu64 " at (%.6g, %.6g, %.6g) emits goes beyond the cutoff %g",
-                  100 * unknown, p->id, p->x[0], p->x[1], p->x[2], b->cutoff);
-    fibrad_remark_add(&b->remark[FIBRAD_REMARK_BEYOND], p->id, message);
-}
-
 /* Sums the facts of the rows over all ranks. */
 static void sum_facts(fibrad_insitu_build *b) {
     fibrad_insitu_set *to = b->to;
     const double *weight = to->weight.at;
-    const fibrad_particle *particle = to->particle.at;
     double *unknown = to->unknown.at;
     fibrad_row row;
-    /* emission, beyond, squared errors, entries, rows of emissivity above 0; then by walls */
-    double sum[5 + FIBRAD_WALLS_MAX] = {0}, *of_wall = sum + 5;
+    /* emission, beyond, squared errors, entries, rows of emissivity above 0, escaped; then by walls */
+    double sum[6 + FIBRAD_WALLS_MAX] = {0}, *of_wall = sum + 6;
     for (int t = 0; t < b->s->config.threads; ++t) {
         for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);) {
             sum[0] += weight[row.sphere];
             if (row.sphere < b->fresh) unknown[row.sphere] = row.beyond;
             sum[1] += weight[row.sphere] * unknown[row.sphere];
-            tell_unknown(b, &particle[row.sphere], unknown[row.sphere]);
             sum[2] += row.error * row.error;
             sum[4] += weight[row.sphere] > 0;
+            sum[5] += row.escaped;
             for (uint32_t k = 0; k < b->bed->walls; ++k)
                 of_wall[k] += fibrad_row_weight(&row, weight[row.sphere]) * row.wall[k];
         }
         sum[3] += (double)to->rows[t].entries;
     }
-    MPI_Allreduce(MPI_IN_PLACE, sum, 5 + FIBRAD_WALLS_MAX, MPI_DOUBLE, MPI_SUM, b->s->comm);
+    MPI_Allreduce(MPI_IN_PLACE, sum, 6 + FIBRAD_WALLS_MAX, MPI_DOUBLE, MPI_SUM, b->s->comm);
     for (uint32_t k = 0; k < b->bed->walls; ++k) {
         to->facts.wall[k] = of_wall[k] + to->wall_exchange.surroundings[k];
         for (uint32_t c = 0; c < b->bed->walls; ++c) to->facts.wall[k] += to->wall_exchange.wall[k][c];
@@ -176,8 +165,8 @@ static void sum_facts(fibrad_insitu_build *b) {
     to->facts.beyond = sum[0] > 0 ? sum[1] / sum[0] : 0;
     to->facts.error = sum[4] > 0 ? sqrt(sum[2] / sum[4]) : 0;
     to->facts.entries = (uint64_t)sum[3];
+    to->escapes = sum[5] > 0;
     to->facts.halo = b->halo;
-    fibrad_remark_agree(b->s->comm, &b->remark[FIBRAD_REMARK_BEYOND]);
     to->facts.outside = b->remark[FIBRAD_REMARK_OUTSIDE].count;
     to->facts.overlapping = b->remark[FIBRAD_REMARK_OVERLAP].count;
     to->facts.behind = b->remark[FIBRAD_REMARK_BACK].count;

@@ -142,17 +142,20 @@ static double count_within(const fibrad_insitu_build *b, const double span[3], d
 }
 
 /* A cutoff hardly changes the time that rows take, but the number of particles that are sent. So the default is as long
- * as that number allows, and no longer than the bed. ends: high and -low of centres. */
-static double default_cutoff(const fibrad_insitu_build *b, const double ends[6], double particles) {
+ * as that number allows. A cutoff that all particles are within is none. ends: high and -low of centres. */
+static void choose_cutoff(fibrad_insitu_build *b, const double ends[6], double particles) {
+    const bool given = b->s->config.cutoff > 0;
     double span[3], longest = 0, cutoff = 2 * b->radius_max + CUTOFF_RADII * b->radius_mean;
     for (int axis = 0; axis < 3; ++axis) {
         span[axis] = ends[axis] + ends[axis + 3];
-        longest += span[axis] * span[axis];
-        if (b->period[axis] > 0) longest = INFINITY;
+        longest += b->period[axis] > 0 ? INFINITY : span[axis] * span[axis];
     }
     longest = sqrt(longest) + 2 * b->radius_max;
-    while (cutoff < longest && count_within(b, span, particles, 1.25 * cutoff) <= CUTOFF_COUNT) cutoff *= 1.25;
-    return cutoff;
+    while (!given && cutoff < longest && count_within(b, span, particles, 1.25 * cutoff) <= CUTOFF_COUNT)
+        cutoff *= 1.25;
+    if (given) cutoff = b->s->config.cutoff;
+    b->whole = cutoff >= longest || (!given && particles <= b->s->config.gather);
+    b->cutoff = b->whole ? 0 : cutoff;
 }
 
 /* Without particles a bed ends with its box, or a little beyond the outermost plane. */
@@ -174,7 +177,6 @@ static void take_box_ends(fibrad_insitu_build *b) {
 /* The mean radius comes from a sum of whole numbers, so that it does not depend on who owns which particle. */
 int fibrad_insitu_measure(fibrad_insitu_build *b) {
     const fibrad_particle *particle = b->to->particle.at;
-    const fibrad_insitu_config *config = &b->s->config;
     double most[15] = {0, -1}; /* radius, -emissivity, high and -low of centres and of surfaces, whether it conducts */
     uint64_t sum[2] = {b->own, 0};
     int status = FIBRAD_OK;
@@ -202,8 +204,7 @@ int fibrad_insitu_measure(fibrad_insitu_build *b) {
         if (isnan(b->bed->opening[k].at)) opening->at = b->ends[opening->upper][opening->axis];
     }
     if (sum[0]) b->radius_mean = (double)sum[1] / (double)sum[0] / 0x1p32 * b->radius_max;
-    b->whole = !(config->cutoff > 0) && (double)sum[0] <= FIBRAD_GATHER_MOST;
-    b->cutoff = config->cutoff > 0 || b->whole ? config->cutoff : default_cutoff(b, most + 2, (double)sum[0]);
+    choose_cutoff(b, most + 2, (double)sum[0]);
     if (!b->whole && b->cutoff < 2 * b->radius_max)
         status = fibrad_refuse(b->s->message, FIBRAD_E_ARGUMENT,
                                "the cutoff %g is less than the diameter of the largest particle, %g", b->cutoff,
@@ -328,8 +329,7 @@ static int check_outside(fibrad_insitu_build *b) {
 static int gather_scene(fibrad_insitu_build *b) {
     int status = find_halo(b);
     if (!status) status = part_overlaps(b);
-    if (!status && b->whole)
-        status = fibrad_gather(b->s->comm, &b->to->particle, b->own, &b->s->sent, &b->halo, &b->lower);
+    if (!status && b->whole) status = fibrad_gather(b->s->comm, &b->to->particle, b->own, &b->halo, &b->lower);
     if (!status && (!b->whole || b->repeats))
         status = fibrad_coarse_map(b->s->comm, CELL_RADII * b->radius_mean, b->radius_max, b->to->particle.at, b->own,
                                    &b->s->mark, &b->map);

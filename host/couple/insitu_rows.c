@@ -14,12 +14,13 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
     fibrad_triangles triangles = b->bed->triangles ? *b->bed->triangles : (fibrad_triangles){0};
     memcpy(triangles.period, b->period, sizeof triangles.period);
     const size_t size = fibrad_scene_size((uint32_t)n, id != NULL) + fibrad_triangles_size(triangles.n, (uint32_t)n);
-    if (fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&s->emissivity, 3 * n + 1, sizeof(double)))
+    if (fibrad_block_fit(&s->scene, size, 1) ||
+        fibrad_block_fit(&s->emissivity, (b->to->conducts ? 3 : 1) * n, sizeof(double)))
         return FIBRAD_E_MEMORY;
     double *emissivity = s->emissivity.at;
-    for (size_t i = 0; i < n; ++i) {
-        emissivity[i] = p[i].emissivity, emissivity[n + i] = p[i].conductivity, emissivity[2 * n + i] = p[i].node;
-    }
+    for (size_t i = 0; i < n; ++i) emissivity[i] = p[i].emissivity;
+    for (size_t i = 0; i < n && b->to->conducts; ++i)
+        emissivity[n + i] = p[i].conductivity, emissivity[2 * n + i] = p[i].node;
     fibrad_scene_config config = {0}; /* no rows: an empty scene */
     if (n || !id)
         config = (fibrad_scene_config){.wall = b->bed->wall,
@@ -287,5 +288,7 @@ int fibrad_insitu_make(fibrad_insitu_build *b) {
     if (!status) status = link_present(b);
     if (!status) status = link_seen(b);
     if (!status && b->to->conducts) find_resistances(b);
+    fibrad_block_trim(&b->to->particle, b->to->own, sizeof(fibrad_particle));
+    fibrad_block_trim(&b->to->id, b->to->columns, sizeof(uint64_t));
     return status;
 }

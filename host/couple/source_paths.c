@@ -147,8 +147,8 @@ static void sum_up(struct sources *t) {
     const MPI_Comm comm = t->b->s->comm;
     MPI_Allreduce(MPI_IN_PLACE, t->part, (int)sizeof t->part, MPI_BYTE, MPI_BOR, comm);
     MPI_Allreduce(MPI_IN_PLACE, t->back, (int)sizeof t->back, MPI_BYTE, MPI_BOR, comm);
-    MPI_Allreduce(MPI_IN_PLACE, t->hits, (int)(t->count * t->n), MPI_UINT64_T, MPI_SUM, comm);
     for (uint32_t k = 0; k < t->count; ++k) {
+        MPI_Allreduce(MPI_IN_PLACE, t->hits + k * t->n, (int)t->n, MPI_UINT64_T, MPI_SUM, comm);
         fibrad_exchange_wall_mean(t->part[k], &t->source[k].row);
         t->source[k].density = (double)t->source[k].row.paths / t->source[k].emits;
     }
@@ -244,7 +244,7 @@ static int find_all(struct sources *t, fibrad_block *all) {
     if (!b->whole) {
         status = fibrad_agree(b->s->comm, fibrad_block_fit(all, b->own, sizeof(fibrad_particle)), b->s->message);
         if (!status && b->own) memcpy(all->at, b->to->particle.at, b->own * sizeof(fibrad_particle));
-        if (!status) status = fibrad_gather(b->s->comm, all, b->own, &b->s->sent, &others, &t->first);
+        if (!status) status = fibrad_gather(b->s->comm, all, b->own, &others, &t->first);
     }
     t->n = b->own + others;
     return status;
@@ -254,7 +254,8 @@ int fibrad_insitu_sources(fibrad_insitu_build *b) {
     fibrad_block all = {0};
     const uint32_t openings = b->openings;
     b->to->wall_exchange = (fibrad_wall_exchange){0};
-    if ((!b->to->facts.particles && !b->bed->walls) || (double)b->to->facts.particles > FIBRAD_GATHER_MOST)
+    if ((!b->to->facts.particles && !b->bed->walls) ||
+        (!b->whole && (double)b->to->facts.particles > b->s->config.gather))
         return FIBRAD_OK;
     close_bed(b);
     struct sources *t = calloc(1, sizeof *t);

@@ -14,15 +14,19 @@ static inline uint64_t fibrad_sort_first_gap(uint64_t count) {
 }
 static inline uint64_t fibrad_sort_next_gap(uint64_t gap) { return gap == 1 ? 0 : 4 * gap / 9 + (gap == 2); }
 
-/* Sorts keys by the number above their lowest `low` bits, 8 bits at a time. Equal keys keep their order. largest:
+/* Sorts keys by the number above their lowest `low` bits, up to 8 bits at a time. Equal keys keep their order. largest:
  * bound of this number. Returns the array that holds the result, `key` or `other`. For 135 columns below 20,000 this
  * takes a third of the time of Shell's method, whose branches cannot be predicted. */
 static inline uint64_t *fibrad_sort_keys(uint64_t *key, uint64_t *other, uint32_t count, int low, uint64_t largest) {
-    for (int shift = low; shift < 64 && largest >> (shift - low) != 0; shift += 8) {
+    int bits = 0;
+    while (bits < 64 - low && largest >> bits != 0) bits++;
+    const int passes = (bits + 7) / 8, wide = passes > 0 ? (bits + passes - 1) / passes : 0, digits = 1 << wide;
+    for (int pass = 0; pass < passes; pass++) {
+        const int shift = low + pass * wide;
         uint32_t end[257] = {0};
-        for (uint32_t k = 0; k < count; k++) end[(key[k] >> shift & 255) + 1]++;
-        for (int digit = 0; digit < 255; digit++) end[digit + 1] += end[digit];
-        for (uint32_t k = 0; k < count; k++) other[end[key[k] >> shift & 255]++] = key[k];
+        for (uint32_t k = 0; k < count; k++) end[(key[k] >> shift & (uint64_t)(digits - 1)) + 1]++;
+        for (int digit = 1; digit < digits; digit++) end[digit] += end[digit - 1];
+        for (uint32_t k = 0; k < count; k++) other[end[key[k] >> shift & (uint64_t)(digits - 1)]++] = key[k];
         uint64_t *sorted = other;
         other = key, key = sorted;
     }

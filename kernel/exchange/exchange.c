@@ -248,9 +248,10 @@ static void add_first_segment(fibrad_workspace *work, const double *of_sphere, c
         for (int part = 0; part < 4; part++) entries->part[k][part] *= scale;
     for (uint32_t k = 0; k < row->length; k++) {
         const double emissivity = of_sphere[row->col[k]];
-        for (uint32_t part = 0; part < 4 && emissivity > 0; part++)
-            fibrad_entries_add(entries, fibrad_entries_of(entries, work->scene->place[row->col[k]]), part,
-                               0.25 * row->f[k] * emissivity);
+        if (!(emissivity > 0)) continue;
+        const uint32_t entry = fibrad_entries_of(entries, work->scene->place[row->col[k]]);
+        for (uint32_t part = 0; part < 4; part++)
+            fibrad_entries_add(entries, entry, part, 0.25 * row->f[k] * emissivity);
     }
 }
 

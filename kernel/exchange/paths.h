@@ -42,7 +42,7 @@ typedef struct fibrad_paths {
     bool undo;                       /* subtract from `reflected` what these paths have added */
     double left;                     /* out: weight of paths that are broken off after too many segments */
     /* L^2, out: sum over absorption by spheres times the squared displacement along each axis, path k in part k mod
-     * FIBRAD_DISPLACEMENT_PARTS. The displacement is between the centres of the two spheres. */
+     * FIBRAD_DISPLACEMENT_PARTS; only without entries. The displacement is between the centres of the two spheres. */
     double square[FIBRAD_DISPLACEMENT_PARTS][3];
     double origins; /* out, of walks: flights that were correlated with those after them */
     double lost;    /* out, of walks: paths that left the bed */

@@ -8,7 +8,9 @@
 #include "scene/walls.h"
 #include "scene/surroundings.h"
 
-/* Points of the unit sphere are made this many at a time. */
+/* Points of the unit sphere are made this many at a time. Most paths from a sphere take fewer. */
+#define PATH_POINTS 4
+/* So many paths in a box are followed at a time. */
 #define PATH_BATCH 8
 /* A path is broken off after so many segments, in case no surface absorbs. The weight that is left counts as an error.
  */
@@ -71,17 +73,17 @@ static void make_even(double at[2][PATH_BATCH], double even[3][PATH_BATCH]) {
     }
 }
 
-/* Makes the next PATH_BATCH points of the unit sphere. The first point of a path is where it starts. Each further point
- * belongs to a direction. */
+/* Makes the next PATH_POINTS points of the unit sphere. The first point of a path is where it starts. Each further
+ * point belongs to a direction. */
 static void make_sphere_points(const fibrad_paths *paths, struct grey_path *path) {
-    _Alignas(64) double at[2][PATH_BATCH];
-    for (uint32_t b = 0; b < PATH_BATCH; b++)
+    _Alignas(64) double at[2][PATH_BATCH] = {{0}};
+    for (uint32_t b = 0; b < PATH_POINTS; b++)
         for (uint32_t d = 0; d < 2; d++) at[d][b] = path_coordinate(paths, path, 2 * (path->used + b) + d);
     make_even(at, path->even);
 }
 
 static void next_sphere_point(const fibrad_paths *paths, struct grey_path *path, double at[3]) {
-    uint32_t b = path->used % PATH_BATCH;
+    uint32_t b = path->used % PATH_POINTS;
     if (b == 0) make_sphere_points(paths, path);
     path->used++;
     for (int axis = 0; axis < 3; axis++) at[axis] = path->even[axis][b];
@@ -199,11 +201,11 @@ static void meet_known(const fibrad_paths *paths, const fibrad_segment *segment,
     }
 }
 
-/* Whether the segment tells the sphere that it meets, so that no ray need be traced. */
+/* Whether the segment tells the sphere that it meets, or that it meets none, so that no ray need be traced. */
 static bool is_met_known(const fibrad_paths *paths, const fibrad_segment *segment) {
     const fibrad_scene *scene = paths->tracer->scene;
-    return segment != NULL && segment->sphere != FIBRAD_NONE && scene->clear == NULL &&
-           !fibrad_walls_cut_place(scene, segment->sphere);
+    if (segment == NULL || scene->clear != NULL) return false;
+    return segment->open || (segment->sphere != FIBRAD_NONE && !scene->cut[segment->sphere]);
 }
 
 /* Moves a path along w to what it meets. Returns FIBRAD_NONE for a sphere, and the slot for a wall or a mesh.
@@ -212,7 +214,7 @@ static bool is_met_known(const fibrad_paths *paths, const fibrad_segment *segmen
 static uint32_t trace_segment(fibrad_paths *paths, struct grey_path *path, const double w[3],
                               const fibrad_segment *known) {
     const fibrad_scene *scene = paths->tracer->scene;
-    fibrad_hit hit;
+    fibrad_hit hit = {.side = FIBRAD_NO_SIDE, .sphere = FIBRAD_NONE};
     double centre[3], point[3], distance;
     if (!is_met_known(paths, known)) known = NULL;
     paths->rays += known == NULL;
@@ -222,12 +224,13 @@ static uint32_t trace_segment(fibrad_paths *paths, struct grey_path *path, const
         if (behind != FIBRAD_NONE) reach_wall(scene, path, behind, FIBRAD_NO_SIDE, point);
         if (behind != FIBRAD_NONE) return behind;
     }
-    if (known != NULL)
-        meet_known(paths, known, &hit);
-    else if (path->place != FIBRAD_NONE)
+    if (known != NULL) {
+        if (!known->open) meet_known(paths, known, &hit);
+    } else if (path->place != FIBRAD_NONE) {
         LANED(fibrad_trace)(paths->tracer, path->place, path->n, w, &hit);
-    else
+    } else {
         LANED(fibrad_trace_wall)(paths->tracer, path->point, w, path->triangle, &hit);
+    }
     if (hit.sphere != FIBRAD_NONE && is_known(paths, path, w, hit.distance)) {
         for (int axis = 0; axis < 3 && path->place == FIBRAD_NONE; axis++) path->centre[axis] += path->point[axis];
         for (int axis = 0; axis < 3; axis++) {
@@ -270,12 +273,13 @@ static void absorb_at_surface(fibrad_paths *paths, struct grey_path *path, uint3
         return;
     }
     paths->absorbed += absorbed;
-    for (int axis = 0; axis < 3; axis++)
-        paths->square[path->k % FIBRAD_DISPLACEMENT_PARTS][axis] +=
-            absorbed * (path->centre[axis] * path->centre[axis]);
-    if (paths->entries == NULL) return;
-    uint32_t entry = fibrad_entries_of(paths->entries, path->place);
-    fibrad_entries_add(paths->entries, entry, path->part, absorbed);
+    if (paths->entries != NULL) {
+        const uint32_t entry = fibrad_entries_of(paths->entries, path->place);
+        fibrad_entries_add(paths->entries, entry, path->part, absorbed);
+        return;
+    }
+    double *square = paths->square[path->k % FIBRAD_DISPLACEMENT_PARTS];
+    for (int axis = 0; axis < 3; axis++) square[axis] += absorbed * (path->centre[axis] * path->centre[axis]);
 }
 
 /* Counts what the sphere where the path is has absorbed. The number may be anything if an emissivity is not valid. */

@@ -2,28 +2,25 @@
  * per instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
+#include "near/cull_lanes.h"
 #include "near/near_lanes.h"
 #include "scene/grid_walk.h"
 
-/* Computes the floats for comparisons (culls) of spheres [from, to) of the list. A cull may pass a sphere that the
- * exact test rejects later. It never rejects a sphere that the exact test would pass. The errors of three products
- * and two sums are less than 4 ulp of the distance. Those of their squares are less than 40 ulp of its square.
- * Beyond the range of floats a cull passes all spheres. */
+/* Up to this length of a hull, in radii, floats tell what certainly reaches into it. */
+#define BETWEEN_MOST 1e3
+
+/* Computes the floats for culls of spheres [from, to) of the list. */
 static void prepare_culls(fibrad_near *near, uint32_t from, uint32_t to) {
-    const vd one = vd_set1(1), zero = vd_set1(0);
+    const vd zero = vd_set1(0);
     for (uint32_t k = from; k < to; k += VD_LANES) {
-        vd x = vd_load(near->x + k), y = vd_load(near->y + k), z = vd_load(near->z + k), r = vd_load(near->r + k);
-        vd square = x * x + y * y + z * z, wide = one + r;
-        vd size = vd_abs(x) + vd_abs(y) + vd_abs(z); /* an upper bound of the distance */
-        vd e = vd_sqrt(vd_max(square - wide * wide, zero)), about = one + size;
-        vd q = square + one - r * r;
-        vm small = vd_lt(size, vd_set1(1e18));
-        vd_store_float(near->fx + k, vd_select(small, x, zero));
-        vd_store_float(near->fy + k, vd_select(small, y, zero));
-        vd_store_float(near->fz + k, vd_select(small, z, zero));
-        vd_store_float(near->fe + k, vd_select(small, e - 1e-6 * size, vd_set1(-1)));
-        q -= 4e-6 * (about * about);
-        vd_store_float(near->fq + k, vd_select(small, q, vd_set1(-FLT_MAX)));
+        const vd x = vd_load(near->x + k), y = vd_load(near->y + k), z = vd_load(near->z + k), r = vd_load(near->r + k);
+        const sphere_cull cull = cull_of_sphere(x, y, z, r);
+        const vd wide = 1 + r, e = vd_sqrt(vd_max(cull.square - wide * wide, zero));
+        vd_store_float(near->fx + k, cull.x);
+        vd_store_float(near->fy + k, cull.y);
+        vd_store_float(near->fz + k, cull.z);
+        vd_store_float(near->fe + k, vd_select(cull.small, e - 1e-6 * cull.size, vd_set1(-1)));
+        vd_store_float(near->fq + k, cull.q);
         vd_store_float(near->fsquare + k, r * r);
     }
 }
@@ -126,6 +123,27 @@ const fibrad_sight *LANED(fibrad_near_sight)(fibrad_near *near, const double w[3
         near->seen[octant] = list_octant(near, octant, sight) ? sight : &near->all;
     }
     return near->seen[octant];
+}
+
+/* Compares spheres with the part of the hull about its axis that is as wide as the smaller sphere. Points that fill a
+ * shell up, and spheres beyond the range of floats, lie at 0. No other centre lies inside a sphere of the pair. */
+bool LANED(fibrad_near_between)(const fibrad_near *near, const double c[3], double r) {
+    const double length = fibrad_sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]), least = fibrad_min(1, r);
+    const vf cx = vf_set1((float)c[0]), cy = vf_set1((float)c[1]), cz = vf_set1((float)c[2]), zero = vf_set1(0);
+    const vf wx = vf_set1((float)(c[0] / length)), wy = vf_set1((float)(c[1] / length));
+    const vf wz = vf_set1((float)(c[2] / length)), end = vf_set1((float)length);
+    const vf wide = vf_set1((float)least), inside = vf_set1((float)(least * least / 4));
+    if (near->shells == 0 || !(length < BETWEEN_MOST)) return false;
+    for (uint32_t k = 0; k < near->end[near->shells - 1]; k += VF_LANES) {
+        const vf x = vf_load(near->fx + k), y = vf_load(near->fy + k), z = vf_load(near->fz + k);
+        const vf along = vf_max(zero, vf_min(end, wx * x + wy * y + wz * z));
+        const vf px = x - along * wx, py = y - along * wy, pz = z - along * wz; /* from the axis */
+        const vf dx = x - cx, dy = y - cy, dz = z - cz, reach = wide + vf_sqrt(vf_load(near->fsquare + k));
+        const uint32_t other =
+            vf_lt_bits(inside, x * x + y * y + z * z) & vf_lt_bits(inside, dx * dx + dy * dy + dz * dz);
+        if ((vf_lt_bits(px * px + py * py + pz * pz, reach * reach * 0.999f) & other) != 0) return true;
+    }
+    return false;
 }
 
 /* Removes those discs from number `from` on that do not overlap the window or do not lie ahead. */

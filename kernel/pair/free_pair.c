@@ -1,7 +1,9 @@
 /* free_pair.c - finds pairs of spheres that nothing can come between. SPDX-License-Identifier: MIT */
 #include "pair/free_pair.h"
+#include "base/constants.h"
 #include "base/random.h"
 #include "base/vector.h"
+#include "near/near_lanes.h"
 #include "scene/grid_walk.h"
 #include "scene/walls.h"
 
@@ -9,6 +11,9 @@
 #define FEW_SPHERES 256u
 /* Otherwise a row tries the spheres within this distance, in cube roots of the volume per sphere: about 50. */
 #define NEAR_SPACINGS 2.3
+/* A pair is not tried if so many other spheres may be expected to reach into its hull: 4 pi r^2 (d + 8 r/3) over the
+ * volume per sphere, among equal spheres of radius r in random places, d being the distance of the centres. */
+#define MANY_BETWEEN 8.0
 /* If a sphere should meet more windows than this, they tell whether something hides it: they see less of it. */
 #define SOME_WINDOWS 2.0
 /* Rows with fewer entries than this ask all spheres which of them no window has met. */
@@ -97,7 +102,7 @@ static bool lies_free(const fibrad_scene *scene, uint32_t place) {
     const double at[3] = {scene->x[place], scene->y[place], scene->z[place]}, r = scene->r[place];
     for (int axis = 0; axis < 3 && scene->region; axis++)
         if (!(at[axis] - r >= scene->known_low[axis] && at[axis] + r <= scene->known_high[axis])) return false;
-    return !fibrad_walls_cut_place(scene, place);
+    return !scene->cut[place];
 }
 
 bool fibrad_free_pair(const fibrad_scene *scene, uint32_t place, uint32_t other, double *f) {
@@ -134,12 +139,12 @@ static double windows_meeting(const fibrad_workspace *work, uint32_t other, doub
 /* A row while its free pairs are searched. */
 typedef struct pair_search {
     fibrad_workspace *work;
-    double scale;
-    int64_t moved;   /* [UNIT] */
-    uint64_t unseen; /* [SQUARE_UNIT] */
-    bool all, pairs; /* all spheres are tried; pairs may be free */
-    bool sparse;     /* what no window has met may count; in dense scenes other spheres hide it */
-    bool untold;     /* some sphere has been met by no window, and its pair is not free */
+    double scale, far; /* no pair is tried whose centres are farther apart, in radii of sphere i */
+    int64_t moved;     /* [UNIT] */
+    uint64_t unseen;   /* [SQUARE_UNIT] */
+    bool all, pairs;   /* all spheres are tried; pairs may be free */
+    bool sparse;       /* what no window has met may count; in dense scenes other spheres hide it */
+    bool untold;       /* some sphere has been met by no window, and its pair is not free */
 } pair_search;
 
 /* About the factor to a free sphere of radius r, at a squared distance. It is a few percent off. */
@@ -149,9 +154,15 @@ static double free_factor(double r, double square) {
 
 /* Takes the exact factor to the sphere at a place if its pair is free. seen: what the windows have seen of it. */
 static bool take_free_pair(pair_search *search, uint32_t other, double seen) {
+    const fibrad_workspace *work = search->work;
+    const fibrad_scene *scene = work->scene;
     fibrad_entries *entries = &search->work->entries;
-    double f;
-    if (!fibrad_free_pair(search->work->scene, search->work->place, other, &f)) return false;
+    const double at[3] = {scene->x[other], scene->y[other], scene->z[other]}, inverse = work->inverse;
+    double c[3], f;
+    for (int axis = 0; axis < 3; axis++) c[axis] = (at[axis] - work->centre[axis]) * inverse;
+    if (FIBRAD_VERSION_OF(fibrad_near_between, scene->facts.isa)(&work->near, c, scene->r[other] * inverse))
+        return false;
+    if (!fibrad_free_pair(scene, work->place, other, &f)) return false;
     const uint32_t entry = fibrad_entries_of(entries, other);
     if (entry == FIBRAD_NONE)
         entries->missed++;
@@ -166,7 +177,7 @@ static void try_sphere(pair_search *search, uint32_t other, bool many) {
     const fibrad_workspace *work = search->work;
     const double square = square_between(work, other), r = work->scene->r[other] * work->inverse;
     const double windows = windows_meeting(work, other, square), least = r * r / (4 * square);
-    if (other == work->place || !(square <= work->reach * work->reach)) return;
+    if (other == work->place || !(square <= search->far * search->far)) return;
     if (!search->all && many != (windows > SOME_WINDOWS)) return;
     const uint32_t entry = fibrad_entries_find(&work->entries, other);
     const double seen = entry != FIBRAD_NONE ? sum_of_entry(&work->entries, entry) * search->scale : 0;
@@ -210,11 +221,14 @@ fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale) {
     const bool periodic = scene->period[0] > 0 || scene->period[1] > 0 || scene->period[2] > 0;
     fibrad_free_pairs pairs = {.open = open_of(work, scale)};
     if (periodic || !(pairs.open > (n <= FEW_SPHERES ? LEAST_OPEN : WORTH_WHILE))) return pairs;
-    pair_search search = {.work = work, .scale = scale, .all = n <= FEW_SPHERES};
+    pair_search search = {.work = work, .scale = scale, .far = work->reach, .all = n <= FEW_SPHERES};
+    const double spacings = scene->spacing * work->inverse, volume = spacings * spacings * spacings;
+    if (!search.all)
+        search.far = fibrad_min(work->reach, fibrad_max(0, MANY_BETWEEN / (4 * FIBRAD_PI) * volume - 8.0 / 3));
     search.sparse = search.all || met < FEW_ENTRIES, search.pairs = lies_free(scene, work->place);
     for (uint32_t k = 0; k < met && !search.all; k++)
         if (entries->sphere[k] < n) try_sphere(&search, entries->sphere[k], true);
-    if (!search.all) try_near(&search, NEAR_SPACINGS * scene->spacing);
+    if (!search.all) try_near(&search, fibrad_min(NEAR_SPACINGS * scene->spacing, search.far * work->unit));
     search.pairs = search.pairs && search.all;
     for (uint32_t j = 0; j < n && search.sparse; j++) try_sphere(&search, j, false);
     pairs.unseen = fibrad_sqrt((double)search.unseen * SQUARE_UNIT);

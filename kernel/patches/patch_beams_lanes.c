@@ -86,7 +86,7 @@ static uint64_t points_behind(const fibrad_workspace *work, const double frame[9
     const fibrad_scene *scene = work->scene;
     double at[3];
     uint64_t behind = 0;
-    if (!fibrad_walls_cut_place(scene, place)) return 0;
+    if (!scene->cut[place]) return 0;
     const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
     for (; points != 0; points &= points - 1) {
         const uint32_t p = (uint32_t)__builtin_ctzll(points);

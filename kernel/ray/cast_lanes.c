@@ -165,8 +165,7 @@ static double angle_of_tangent(double y, double x) {
 static bool is_behind(const fibrad_scene *scene, const struct cast_ray *ray, const double from[3],
                       const struct cast_hit *hit) {
     double n[3], at[3];
-    if (!(hit->distance > 0 && hit->distance < __builtin_inf()) || !fibrad_walls_cut_place(scene, hit->sphere))
-        return false;
+    if (!(hit->distance > 0 && hit->distance < __builtin_inf()) || !scene->cut[hit->sphere]) return false;
     for (int axis = 0; axis < 3; axis++) {
         const double *frame = ray->frame + axis;
         const double centre = hit->u * frame[0] + hit->v * frame[3] + hit->depth * frame[6];

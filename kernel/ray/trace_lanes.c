@@ -4,6 +4,7 @@
  * Near spheres are compared with the ray in floats first, in lanes. For the few that pass, distances are computed in
  * doubles. */
 #include FIBRAD_LANES_HEADER
+#include "base/lanes/below.h"
 #include "base/vector.h"
 #include "ray/tracer.h"
 #include "workspace/workspace.h"
@@ -122,6 +123,29 @@ static void cross_box(const struct trace_ray *ray, bool grid, double *enter, dou
     }
 }
 
+/* Compares the spheres of a run. Lanes pass all spheres that the ray meets, and perhaps a few others. */
+static void intersect_run(const struct trace_ray *ray, const fibrad_walk *walk, struct trace_first *first) {
+    const fibrad_scene *scene = ray->scene;
+    const double *const of_axis[3] = {scene->x, scene->y, scene->z}, *w = ray->w;
+    for (uint32_t j = walk->begin; j < walk->end; j += VD_LANES) {
+        vd c[3], along = vd_set1(0), square = vd_set1(0);
+        for (int axis = 0; axis < 3; axis++) {
+            c[axis] = (vd_loadu(of_axis[axis] + j) - ray->base[axis] + walk->shift[axis]) * ray->inverse;
+            const vd e = c[axis] - ray->o[axis];
+            along += e * w[axis], square += e * e;
+        }
+        const vd r = vd_loadu(scene->r + j) * ray->inverse;
+        uint32_t bits = vm_bits(vd_lt(square * (1 - 1e-12), along * along + r * r)) & vd_lanes_below(walk->end - j);
+        for (; bits != 0; bits &= bits - 1) {
+            const uint32_t lane = (uint32_t)__builtin_ctz(bits);
+            _Alignas(64) double at[3][VD_LANES];
+            for (int axis = 0; axis < 3; axis++) vd_store(at[axis], c[axis]);
+            const double centre[3] = {at[0][lane], at[1][lane], at[2][lane]};
+            if (j + lane != ray->place || walk->image) intersect_sphere(ray, j + lane, centre, first);
+        }
+    }
+}
+
 /* Compares all spheres that the ray meets between the lengths `from` and `to`, and perhaps others. */
 static void intersect_stretch(const struct trace_ray *ray, double from, double to, struct trace_first *first) {
     const fibrad_scene *scene = ray->scene;
@@ -133,13 +157,7 @@ static void intersect_stretch(const struct trace_ray *ray, double from, double t
     for (uint32_t l = 0; l < scene->levels; l++) {
         fibrad_walk walk;
         fibrad_walk_about(&walk, scene, &scene->level[l], ends[0], ends[1], scene->level[l].radius_max * (1 + 1e-9));
-        while (fibrad_walk_next(&walk))
-            for (uint32_t j = walk.begin; j < walk.end; j++) {
-                double c[3] = {(scene->x[j] - ray->base[0] + walk.shift[0]) * ray->inverse,
-                               (scene->y[j] - ray->base[1] + walk.shift[1]) * ray->inverse,
-                               (scene->z[j] - ray->base[2] + walk.shift[2]) * ray->inverse};
-                if (j != ray->place || walk.image) intersect_sphere(ray, j, c, first);
-            }
+        while (fibrad_walk_next(&walk)) intersect_run(ray, &walk, first);
     }
 }
 

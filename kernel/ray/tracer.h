@@ -46,6 +46,17 @@ typedef struct fibrad_tracer_cell {
     fibrad_nearby *list;
 } fibrad_tracer_cell;
 
+/* Scratch: spheres that may be listed, relative to the centre of the ball and in units of its radius. */
+#define FIBRAD_CANDIDATES 512
+typedef struct fibrad_candidates {
+    double *x, *y, *z, *r, *clearance; /* [FIBRAD_CANDIDATES], as all arrays */
+    float *fx, *fy, *fz, *fq;          /* as x, y, z, q of fibrad_nearby_group */
+    uint32_t *sphere;
+    int8_t (*periods)[4];
+    uint16_t *order; /* candidates by clearance */
+    uint8_t *step;   /* the clearance of each in whole steps */
+} fibrad_candidates;
+
 typedef struct fibrad_tracer {
     const fibrad_scene *scene;
     uint32_t lists;           /* a power of two */
@@ -53,8 +64,7 @@ typedef struct fibrad_tracer {
     fibrad_nearby *nearby;    /* [lists] */
     uint32_t cells;           /* a power of two */
     fibrad_tracer_cell *cell; /* [cells] */
-    uint64_t *key[2];         /* [] scratch: clearances and numbers of spheres that may be listed */
-    struct fibrad_candidate *candidate;
+    fibrad_candidates candidates;
 } fibrad_tracer;
 
 /* Extra bytes of work memory for a tracer: with the fewest lists, and with the best number: that of the spheres, at
@@ -75,6 +85,16 @@ typedef struct fibrad_hit {
     double centre[3]; /* [L] to the centre of the image met, from the sphere or point that the ray leaves */
     double normal[3]; /* outward normal of the sphere where the ray enters it */
 } fibrad_hit;
+
+/* The ball that a list belongs to. */
+typedef struct fibrad_ball {
+    double centre[3], radius; /* L */
+    uint32_t place;           /* of the sphere that it is, or FIBRAD_NONE */
+} fibrad_ball;
+
+/* Makes the list of a ball. */
+typedef void fibrad_nearby_function(const fibrad_tracer *tracer, const fibrad_ball *from, fibrad_nearby *list);
+FIBRAD_DECLARE_VERSIONS(fibrad_nearby_function, fibrad_nearby_make);
 
 /* The list of the sphere at `place`. It is made if it does not exist. */
 const fibrad_nearby *fibrad_tracer_nearby(fibrad_tracer *tracer, uint32_t place);

@@ -14,7 +14,7 @@ static unsigned char *keep_bytes(unsigned char *to, const void *from, size_t siz
 
 int fibrad_beam_keep(const fibrad_workspace *work, const fibrad_beam_sums *sums, fibrad_row_part *part) {
     const fibrad_entries *entries = &work->entries;
-    const size_t regions = work->walls != NULL ? sizeof work->walls->sums : 0;
+    const size_t regions = work->scene->container.walls ? work->walls->sums.used : 0;
     part->used = sizeof *sums + sizeof work->wall + regions + entries->length * ENTRY_BYTES;
     const int status = fibrad_memory_reserve(&part->memory, part->used);
     if (status != FIBRAD_OK) return status;
@@ -48,8 +48,9 @@ static void add_entry(fibrad_entries *entries, const unsigned char *from) {
 static const unsigned char *add_regions(fibrad_wall_sums *sums, const unsigned char *from) {
     from = add(sums->open[0], 4 * FIBRAD_REGIONS, from);
     from = add(sums->all[0], 4 * FIBRAD_REGIONS, from);
-    from = add(sums->mixed, FIBRAD_REGIONS, from);
-    for (size_t k = 0; k < sizeof sums->hidden / sizeof *sums->hidden; k++, from += sizeof *sums->hidden) {
+    from = add(sums->mixed, FIBRAD_REGIONS, from) + sizeof sums->used;
+    const size_t words = (sums->used - offsetof(fibrad_wall_sums, hidden)) / sizeof *sums->hidden;
+    for (size_t k = 0; k < words; k++, from += sizeof *sums->hidden) {
         uint64_t hidden;
         fibrad_copy(&hidden, from, sizeof hidden);
         sums->hidden[k] |= hidden;
@@ -63,7 +64,7 @@ void fibrad_beam_add_kept(fibrad_workspace *work, const fibrad_row_part *part, f
     from = add(sums->whole, 2, from);
     from = add(&sums->seen, 1, from);
     from = add(work->wall, FIBRAD_SLOTS, from);
-    if (work->walls != NULL) from = add_regions(&work->walls->sums, from);
+    if (work->scene->container.walls) from = add_regions(&work->walls->sums, from);
     for (; from < end; from += ENTRY_BYTES) add_entry(&work->entries, from);
     work->areas.fallbacks += part->fallbacks;
 }

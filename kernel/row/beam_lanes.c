@@ -178,7 +178,7 @@ static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibr
     const double rest = compute_window(work, windows, k, frame, &whole);
     if (work->disc.count > work->disc.capacity || work->areas.overflow) return false;
     sums->whole[k % 2] += fibrad_on_grid(whole, work->entries.grid);
-    LANED(take_segments)(work, frame, k);
+    LANED(take_segments)(work, frame, k, rest > 0);
     if (windows->chords == 0) compare_window(windows, from, k, work->bare / whole);
     const bool meets = work->met != NULL && work->met->any;
     if (meets) LANED(fibrad_mesh_count)(work, frame, k);
@@ -272,9 +272,9 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     if (scene->container.walls) {
         work->walls->view = view_of_lines(work, windows.count);
         windows.both = windows.lines != NULL && scene->mesh.triangles == 0 && near_walls(work);
-        fibrad_zero(&work->walls->sums, sizeof work->walls->sums);
     }
     const uint32_t directions = windows.count << windows.both;
+    if (scene->container.walls) fibrad_wall_sums_begin(&work->walls->sums, directions);
     const double size = masked ? FIBRAD_PI / 4 * square : each, most = masked ? square : each;
     const fibrad_window_set set = {.frame = LANED(frame_of_beam),
                                    .from = &windows,

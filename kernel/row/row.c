@@ -13,9 +13,9 @@
  * behind the wall: f^2 on average for a cap of the fraction f. Returns the rest of these lines. 1: no wall cuts the
  * sphere. */
 static double share_of_caps(const fibrad_scene *scene, uint32_t place, double share[FIBRAD_WALLS]) {
+    if (!scene->cut[place]) return 1;
     const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
     double sum = 0;
-    if (!fibrad_walls_cut_place(scene, place)) return 1;
     for (uint32_t slot = 0; slot < FIBRAD_WALLS; slot++) {
         const double cap = fibrad_walls_cap(&scene->container, slot, centre, scene->r[place]);
         sum += share[slot] = cap * cap;

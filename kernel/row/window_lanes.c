@@ -14,12 +14,19 @@
 #include "mask/masks_lanes.h"
 #include "window/points_lanes.h"
 
+/* Rows of fewer windows than this look at the whole first shell: lists of octants cost more than they save. */
+#define WINDOWS_LISTED 64
+
+static const fibrad_sight *sight_of(fibrad_workspace *work, const double w[3]) {
+    return work->windows < WINDOWS_LISTED ? &work->near.all : LANED(fibrad_near_sight)(&work->near, w);
+}
+
 /* Appends the discs of one shell that come before the window. A cull in floats comes first. Its result is a list of
  * places, used afterwards. For most vectors this avoids a branch that would be mispredicted. */
 static void cull_for_window(fibrad_workspace *work, const double frame[9], uint32_t shell) {
     fibrad_sight sight = work->near.all;
     size_t begin = shell > 0 ? work->near.end[shell - 1] : 0, end = work->near.end[shell];
-    if (shell == 0) sight = *LANED(fibrad_near_sight)(&work->near, frame + 6), end = sight.count;
+    if (shell == 0) sight = *sight_of(work, frame + 6), end = sight.count;
     uint32_t *from = work->disc.near + work->disc.count, *to = from;
     vf wx = vf_set1((float)frame[6]), wy = vf_set1((float)frame[7]), wz = vf_set1((float)frame[8]);
     for (size_t j = begin; j < end; j += VF_LANES) {
@@ -36,7 +43,7 @@ static void cull_for_masks(fibrad_workspace *work, const double frame[9], uint32
     fibrad_sight sight = work->near.all;
     size_t begin = shell > 0 ? work->near.end[shell - 1] : 0, end = work->near.end[shell];
     uint32_t n = disc.count;
-    if (shell == 0) sight = *LANED(fibrad_near_sight)(&work->near, frame + 6), end = sight.count;
+    if (shell == 0) sight = *sight_of(work, frame + 6), end = sight.count;
     const vf ux = vf_set1((float)frame[0]), uy = vf_set1((float)frame[1]), uz = vf_set1((float)frame[2]);
     const vf vx = vf_set1((float)frame[3]), vy = vf_set1((float)frame[4]), vz = vf_set1((float)frame[5]);
     const vf wx = vf_set1((float)frame[6]), wy = vf_set1((float)frame[7]), wz = vf_set1((float)frame[8]);

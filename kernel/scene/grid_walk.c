@@ -2,11 +2,10 @@
 #include "scene/grid_walk.h"
 
 int32_t fibrad_grid_cell(const fibrad_scene *scene, const fibrad_level *level, int axis, double c) {
-    double from_low = c - scene->box_low[axis];
-    if (scene->period[axis] == 0) from_low += level->radius_max;
-    double cell = fibrad_floor(from_low * level->inverse[axis]);
-    if (scene->period[axis] == 0) cell = fibrad_max(0, fibrad_min(cell, level->cells[axis] - 1));
-    return (int32_t)fibrad_max(-1e9, fibrad_min(cell, 1e9));
+    const bool periodic = scene->period[axis] > 0;
+    const double cell = (c - scene->box_low[axis] + (periodic ? 0 : level->radius_max)) * level->inverse[axis];
+    if (!periodic) return (int32_t)fibrad_max(0, fibrad_min(cell, level->cells[axis] - 1));
+    return (int32_t)fibrad_max(-1e9, fibrad_min(fibrad_floor(cell), 1e9));
 }
 
 void fibrad_walk_begin(fibrad_walk *walk, const fibrad_scene *scene, const fibrad_level *level, const double low[3],

@@ -69,6 +69,7 @@ struct fibrad_scene {
     uint32_t *start;                                     /* [cells + 1], position of the first sphere of each cell */
     uint64_t *id;                                        /* [n], by the caller's index; NULL: the index is the id */
     fibrad_mesh mesh;
+    unsigned char *cut; /* [n], 1: a wall cuts the sphere, so that a cap of it lies behind the wall */
     float *clear; /* [n], lower bound of the distance to the nearest triangle over the radius; NULL: no triangles */
 };
 

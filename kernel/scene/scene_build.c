@@ -21,6 +21,7 @@ static fibrad_scene *scene_layout(fibrad_arena *arena, uint32_t n, bool ids, uin
     uint32_t *order = fibrad_arena_take(arena, n, sizeof *order), *place = fibrad_arena_take(arena, n, sizeof *place);
     uint32_t *start = fibrad_arena_take(arena, (size_t)n + FIBRAD_LEVELS * SPARE_CELLS + 1, sizeof *start);
     uint64_t *id = ids ? fibrad_arena_take(arena, n, sizeof *id) : NULL;
+    unsigned char *cut = fibrad_arena_take(arena, n, sizeof *cut);
     fibrad_mesh mesh = {0};
     if (triangles > 0) fibrad_mesh_layout(arena, &mesh, triangles);
     float *clear = triangles > 0 ? fibrad_arena_take(arena, n, sizeof *clear) : NULL;
@@ -28,7 +29,7 @@ static fibrad_scene *scene_layout(fibrad_arena *arena, uint32_t n, bool ids, uin
         fibrad_zero(scene, sizeof *scene);
         scene->x = x, scene->y = y, scene->z = z, scene->r = r, scene->coarse = coarse;
         scene->order = order, scene->place = place, scene->start = start, scene->id = id;
-        scene->mesh = mesh, scene->clear = clear;
+        scene->cut = cut, scene->mesh = mesh, scene->clear = clear;
     }
     return scene;
 }
@@ -468,6 +469,10 @@ static int lay_out_scene(fibrad_scene **out, void *memory, size_t size, const fi
         if (scene->period[axis] > 0 && scene->period[axis] < scene->facts.radius_max)
             return scene_fault(FIBRAD_E_GEOMETRY, fault, n, n);
     if (n > 0) sort_into_cells(scene, &s);
+    for (uint32_t k = 0; k < n; k++) {
+        const double centre[3] = {scene->x[k], scene->y[k], scene->z[k]};
+        scene->cut[k] = scene->container.cuts && fibrad_walls_cut(&scene->container, centre, scene->r[k]);
+    }
     if (s.id != NULL && n > 0) fibrad_copy(scene->id, s.id, n * sizeof *s.id);
     return FIBRAD_OK;
 }

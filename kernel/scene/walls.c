@@ -191,9 +191,9 @@ double fibrad_walls_cap(const fibrad_container *c, uint32_t slot, const double c
 }
 
 uint32_t fibrad_walls_behind(const fibrad_scene *scene, uint32_t place, const double n[3], double at[3]) {
+    if (!scene->cut[place]) return FIBRAD_NONE;
     const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
     double distance;
-    if (!fibrad_walls_cut_place(scene, place)) return FIBRAD_NONE;
     const uint32_t wall = fibrad_walls_exit(scene, centre, n, &distance);
     if (!(distance < scene->r[place])) return FIBRAD_NONE;
     for (int axis = 0; axis < 3; axis++) at[axis] = centre[axis] + distance * n[axis];

@@ -28,14 +28,9 @@ bool fibrad_walls_hold_ball(const fibrad_container *container, const double cent
  * it next to the sphere takes its place. 0: the sphere lies before the wall, but for rounding. */
 double fibrad_walls_cap(const fibrad_container *container, uint32_t slot, const double centre[3], double radius);
 
-/* Whether a wall cuts a sphere, so that a cap of the sphere lies behind the wall. */
+/* Whether a wall cuts a sphere, so that a cap of the sphere lies behind the wall. scene->cut tells it of the spheres of
+ * a scene. */
 bool fibrad_walls_cut(const fibrad_container *container, const double centre[3], double radius);
-
-/* Whether a wall cuts the sphere at `place`. */
-static inline bool fibrad_walls_cut_place(const fibrad_scene *scene, uint32_t place) {
-    const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
-    return scene->container.cuts && fibrad_walls_cut(&scene->container, centre, scene->r[place]);
-}
 
 /* The wall behind which a point of a sphere lies, or FIBRAD_NONE. The sphere is at `place`, and n is the outward
  * normal of the point. If several walls cut off the point, the first on the way from the centre counts. at: out:

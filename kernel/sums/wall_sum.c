@@ -5,6 +5,12 @@
 
 #define HARDLY 1e-4 /* of a window: weight of the prior where hardly any line has met a region */
 
+void fibrad_wall_sums_begin(fibrad_wall_sums *sums, uint32_t windows) {
+    const size_t used = offsetof(fibrad_wall_sums, hidden) + (windows / 64 + 1) * sizeof *sums->hidden;
+    fibrad_zero(sums, used);
+    sums->used = used;
+}
+
 int fibrad_walls_only(const fibrad_container *c) {
     int only = 3, axes = c->radius < __builtin_inf() ? 2 : 0;
     for (int axis = 0; axis < 3; axis++)
@@ -142,9 +148,9 @@ static void open_means(const fibrad_wall_sums *sums, double mean[FIBRAD_REGIONS]
 
 void fibrad_wall_factors(const fibrad_wall_sums *sums, const fibrad_wall_view *view, uint32_t windows, double apart,
                          double wall[FIBRAD_SLOTS], double parts[2]) {
-    double sky[FIBRAD_REGIONS], mean[FIBRAD_REGIONS], got[FIBRAD_REGIONS], rest[FIBRAD_WALLS + 1][4];
+    double sky[FIBRAD_REGIONS] = {0}, mean[FIBRAD_REGIONS], got[FIBRAD_REGIONS], rest[FIBRAD_WALLS + 1][4];
     double open = 0, sum = 0, mixed = 0, whole = 0;
-    sky_of_regions(view, sky);
+    if (apart > 0) sky_of_regions(view, sky);
     open_means(sums, mean);
     fibrad_zero(rest, sizeof rest);
     for (uint32_t region = 0; region < FIBRAD_REGIONS; region++) {

@@ -37,8 +37,12 @@ typedef struct fibrad_wall_sums {
     double open[FIBRAD_REGIONS][4]; /* the open part, an area or points, in four parts as in fibrad_entries */
     double all[FIBRAD_REGIONS][4];  /* the same if nothing were hidden, in windows */
     double mixed[FIBRAD_REGIONS];   /* the open part times the hidden part */
+    size_t used;                    /* bytes of the structure up to the last word of `hidden` that windows have */
     uint64_t hidden[2 * FIBRAD_DIRECTIONS_MAX / 64 + 1]; /* bit k: window k is hidden and does not count in `all` */
 } fibrad_wall_sums;
+
+/* Begins the sums over a number of windows. */
+void fibrad_wall_sums_begin(fibrad_wall_sums *sums, uint32_t windows);
 
 /* Adds the value of window k to part k mod 4 of a sum. end: the window counts half in differences between parts, as in
  * fibrad_entries_add. grid: of the sum, see grid.h. */

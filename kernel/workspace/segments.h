@@ -11,7 +11,8 @@ typedef struct fibrad_segment {
     double w[3];       /* direction of the beam; later, at a wall: where the segment ends [L] */
     double even[3];    /* an even point of the unit sphere, by which a path goes on */
     double centre[3];  /* of the sphere met, from the centre of sphere i, in its radii; later: centre of the path [L] */
-    uint32_t sphere;   /* place of the sphere met; FIBRAD_NONE: not known; later FIBRAD_NONE: a wall is met */
+    uint32_t sphere;   /* place of the sphere met; FIBRAD_NONE: see open; later FIBRAD_NONE: a wall is met */
+    bool open;         /* whether no sphere is met; if there is no sphere either, it is not known what is met */
     uint32_t triangle; /* later: the triangle met; FIBRAD_NO_SIDE: none */
     uint32_t
         chosen;    /* later: the number of the segment from which path k goes on, k being the number of this segment */

@@ -56,8 +56,8 @@ static uint32_t LANED(first_disc)(const fibrad_discs *disc, double x, double y, 
     return first;
 }
 
-/* Takes the segments of window k. */
-static void LANED(take_segments)(fibrad_workspace *work, const double frame[9], uint32_t k) {
+/* Takes the segments of window k. open: all spheres that the window could meet are known. */
+static void LANED(take_segments)(fibrad_workspace *work, const double frame[9], uint32_t k, bool open) {
     fibrad_segments *segments = &work->segments;
     const fibrad_discs *disc = &work->disc;
     const uint32_t end = (uint32_t)((uint64_t)segments->wanted * (k + 1) / work->windows);
@@ -67,6 +67,7 @@ static void LANED(take_segments)(fibrad_workspace *work, const double frame[9], 
         const double x = segment->n[0], y = segment->n[1], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
         const uint32_t first = LANED(first_disc)(disc, x, y, &depth);
         segment->sphere = first != FIBRAD_NONE ? fibrad_work_sphere(work, first) : FIBRAD_NONE;
+        segment->open = open && first == FIBRAD_NONE;
         for (int axis = 0; axis < 3; axis++) {
             const double *from = frame + axis;
             segment->w[axis] = from[6];

@@ -58,11 +58,11 @@ balance() {
 }
 
 # ---- frozen beds ------------------------------------------------------------------------------------------------------
-# a quarter of a bed of 2,000, all of which every particle sees
+# a quarter of a bed of 2,000, with a cutoff that all particles are within, which is none
 awk '/^[0-9]+ 1 / && ($3 >= 6 || $4 >= 6) { next } { print }' tests/data/mono2000.dump >"$work/quarter.dump"
 as_data "$work/quarter.dump" >"$work/quarter.data"
 awk '/^[0-9]+ 1 / { print $1, $3, $4, $5, $6, $7 }' "$work/quarter.dump" |
-    tee "$work/quarter" | "$BUILD/tests/couple/serial_bed" 50 20 4000 100 >"$work/serial.out"
+    tee "$work/quarter" | "$BUILD/tests/couple/serial_bed" 50 20 100 >"$work/serial.out"
 whole=(data "$work/quarter.data" cutoff 4000)
 
 for np in 1 2 4; do
@@ -193,6 +193,8 @@ for np in 1 2; do
     run $np floor$np frozen.lmp data "$work/quarter.data" boundary "p p f" floor "mesh $work/floor.stl 1000 0.9" steps 5
 done
 near "$work/floor1.out" "$work/floor2.out" 1e-10 "a floor of triangles in a periodic box, np 1 and 2"
+grep -q 'floor.stl: the mesh is not closed: 4 edges' "$work/floor2.log" && ! grep -q 'WARNING: fix fibrad' "$work/floor2.log"
+verdict "a floor of triangles is not closed, which is no warning" $?
 run 1 flat frozen.lmp data "$work/quarter.data" boundary "p p f" steps 5
 found=$({ walls floor1 && walls flat; } | awk 'NR == 1 { p = $2; next } { d = $2/p - 1; printf "%.2g", d } END { exit !(NR == 2 && d*d < 1e-4) }')
 verdict "particles above a floor of triangles have the power of those above a plane ($found)" $?
@@ -270,7 +272,7 @@ for axis in z x y; do
     low="wall ${axis}lo 1000 0.9 at 0"
     caps="wall mesh $work/caps.$axis.stl 1000 0.9 both wall ${axis}lo open at -1 wall ${axis}hi open at 15"
     # along x and y rows have other directions than along z, so temperatures and powers agree within errors
-    case $axis in z) numbers="1 2" most=1e-10 off=1e-10 ;; *) numbers=2 most=6 off=.03 ;; esac
+    case $axis in z) numbers="1 2" most=1e-10 off=1e-10 ;; *) numbers=2 most=6 off=.04 ;; esac
     for np in $numbers; do
         run $np "tube$axis$np" mesh.lmp data "$work/laid.data" walls "$tube $low wall ${axis}hi open at 20" shown "f_rad f_rad[1] f_rad[6] f_rad[7]"
         run $np "endless$axis$np" mesh.lmp data "$work/period.data" boundary "$ends" walls "$tube" shown "f_rad f_rad[6]"
@@ -318,7 +320,7 @@ verdict "a wall that a variable heats" $?
 # ---- walls that store heat ----------------------------------------------------------------------------------------------
 # floor NAME: its temperature at the last step
 floor() { awk '$1 == "Step" { n = 1 } n && NF == 5 && $1 ~ /^[0-9]/ { t = $5 } /^Loop/ { n = 0 } END { print t + 0 }' CONVFMT=%.17g OFMT=%.17g "$work/$1.log"; }
-"$BUILD/tests/couple/serial_bed" 50 20 4000 100 1e7 <"$work/quarter" >"$work/serial_floor.out"
+"$BUILD/tests/couple/serial_bed" 50 20 100 1e7 <"$work/quarter" >"$work/serial_floor.out"
 stores="zlo 1000 0.9 at 0 capacity 1e7"
 for np in 1 2 4; do
     run $np stores$np frozen.lmp "${whole[@]}" floor "$stores"
@@ -430,6 +432,11 @@ found=$(awk 'NR == FNR && /^0 / { beyond = $2; error = $3 }
 verdict "errors of rows have the means of the global vector ($found)" $?
 grep -q 'of atoms: \[1\] power, \[2\] beyond, \[3\] error' "$work/errors.log"
 verdict "values of atoms are named" $?
+grep -q 'WARNING: fix fibrad: what lies beyond the cutoff 3 could change the power of .* by [0-9.]* %, at step 0; a larger .cutoff' "$work/errors.log"
+verdict "a warning of what a cutoff could change" $?
+run 1 many frozen.lmp data "$work/quarter.data" boundary "p p f" steps 0 strict "no gather 400"
+grep -q '499 particles, cutoff [0-9]' "$work/many.log" && grep -q 'a larger .gather. tells' "$work/many.log"
+verdict "more particles than each rank may have get a cutoff" $?
 run 2 moved moving.lmp hot 1000 steps 200 capacity "moved 0.1"
 run 1 still frozen.lmp "${whole[@]}" steps 3 every 1000 strict "no moved 0.001"
 moved_rows=$(sed -n 's/.*rows made \([0-9]*\) times.*/\1/p' "$work/moved.log")
@@ -526,7 +533,7 @@ verdict "rerun has powers" $?
 
 # ---- temperatures that LAMMPS steps -------------------------------------------------------------------------------------
 if "$LMP" -h | grep -q 'heat/flow'; then
-    "$BUILD/tests/couple/serial_bed" 50 1000 4000 100 <"$work/quarter" >"$work/serial.out"
+    "$BUILD/tests/couple/serial_bed" 50 1000 100 <"$work/quarter" >"$work/serial.out"
     run 2 heatflow heatflow.lmp "${whole[@]}"
     near "$work/serial.out" "$work/heatflow.out" 1e-10 "frozen bed by fix heat/flow against one scene"
     run 2 falls heatflow.lmp data "$work/quarter.data" boundary "p p f" falls yes conducts 2e5 steps 2000 heat 10

@@ -1,7 +1,7 @@
 /* serial_bed.c - a frozen bed above a hot floor, on one scene of the kernel: what simulators over ranks must agree
  * with.
  *
- * serial_bed STEPS NROWS CUTOFF DT [CAPACITY] < BED > TEMPERATURES. Lines of BED are `id x y z r T`, of TEMPERATURES
+ * serial_bed STEPS NROWS DT [CAPACITY] < BED > TEMPERATURES. Lines of BED are `id x y z r T`, of TEMPERATURES
  * `id T`. With a heat capacity [J/K] the temperature of the floor follows what it gets. The last line is `floor T`.
  * Emissivity 0.5 for odd ids and 0.8 for even ones, floor z = 0 of 1000 K and emissivity 0.9, surroundings 300 K,
  * density 2500, 800 J/(kg K); a step of heat of DT seconds in each of STEPS, new rows at multiples of NROWS.
@@ -29,10 +29,10 @@ static void stop_unless(int status) {
 }
 
 int main(int count, char **argument) {
-    if (count != 5 && count != 6) return 2;
+    if (count != 4 && count != 5) return 2;
     const long steps = atol(argument[1]), every = atol(argument[2]);
-    const double cutoff = atof(argument[3]), dt = atof(argument[4]), pi = 4 * atan(1), sigma = FIBRAD_STEFAN_BOLTZMANN;
-    const double floor_emissivity = 0.9, capacity = count == 6 ? atof(argument[5]) : HUGE_VAL;
+    const double dt = atof(argument[3]), pi = 4 * atan(1), sigma = FIBRAD_STEFAN_BOLTZMANN;
+    const double floor_emissivity = 0.9, capacity = count == 5 ? atof(argument[4]) : HUGE_VAL;
     double floor_t = 1000;
 
     uint32_t n = 0;
@@ -58,9 +58,8 @@ int main(int count, char **argument) {
             fibrad_exchange_rule rule = {/* defaults of fibrad_insitu_config */
                                          .emissivity = emissivity,
                                          .wall_emissivity = &floor_emissivity,
-                                         .directions = 36,
-                                         .paths = 80,
-                                         .cutoff = cutoff};
+                                         .directions = 28,
+                                         .paths = 80};
             fibrad_rows_clear(&rows);
             for (uint32_t i = 0; i < n; i++) {
                 double to_floor;

@@ -407,6 +407,7 @@ static const struct kind kinds[] = {
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 static int strict, one_way; /* of the next objects */
+static double gather;       /* the same */
 
 static fibrad_insitu *insitu_of(MPI_Comm comm, const struct kind *kind, int threads) {
     const fibrad_insitu_config config = {.cutoff = kind->cutoff,
@@ -415,7 +416,8 @@ static fibrad_insitu *insitu_of(MPI_Comm comm, const struct kind *kind, int thre
                                          .seed = 3,
                                          .threads = threads,
                                          .strict = strict,
-                                         .one_way = one_way};
+                                         .one_way = one_way,
+                                         .gather = gather};
     fibrad_insitu *s;
     CHECK(fibrad_insitu_new(&s, comm, &config) == FIBRAD_OK);
     return s;
@@ -451,6 +453,7 @@ static void rows_are_those_of_one_rank(const struct kind *kind, int axis) {
     fibrad_insitu_facts_get(s, &facts);
     CHECK(facts.particles == all.bed.n && facts.step == 7 && facts.entries > 0 && facts.bytes > 0);
     CHECK(facts.error > 0 && facts.error < .1 && facts.beyond >= 0 && facts.beyond < .3);
+    CHECK((facts.cutoff > 0) == (kind->cutoff > 0 ? kind->cutoff < 1000 : gather > 0));
     fibrad_insitu_free(s);
     close_pile(&all);
 }
@@ -715,6 +718,52 @@ static void the_sky_stays_open(void) {
     }
 }
 
+/* Powers with a cutoff and without one: what is said of the first bounds the difference. Nothing is said if nothing
+ * could change, at equal temperatures or without a cutoff. */
+static void unknown_parts_are_told(enum walls walls) {
+    const struct kind kind = {"unknown", 5, {walls == FLOORS, walls == FLOORS, 0}, walls, {.8, .8}, 4, 1, 0};
+    struct kind whole = kind;
+    whole.cutoff = 0;
+    struct pile all = pile_of(&kind), part = part_of(&all, 0);
+    fibrad_insitu *near = insitu_of(MPI_COMM_WORLD, &kind, 1), *far = insitu_of(MPI_COMM_WORLD, &whole, 1);
+    const double even[2] = {500, 500};
+    double *power = memory_of(part.bed.n, sizeof *power), sum[3] = {0}, most = 0, said[2] = {0};
+    fibrad_insitu_state state = state_of(&part);
+    fibrad_insitu_facts facts;
+    make_rows(near, &part, 0);
+    make_rows(far, &part, 0);
+    CHECK(!*fibrad_insitu_remark(near, FIBRAD_REMARK_BEYOND));
+    CHECK(fibrad_insitu_powers(near, &state, part.power, NULL) == FIBRAD_OK);
+    CHECK(fibrad_insitu_powers(far, &state, power, NULL) == FIBRAD_OK);
+    for (size_t i = 0; i < part.bed.n; ++i) sum[0]++, sum[1] += part.power[i] * part.power[i];
+    MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    const double unit = sqrt(sum[1] / sum[0]);
+    for (size_t i = 0; i < part.bed.n; ++i) {
+        const double change = fabs(part.power[i] - power[i]) / unit;
+        most = fmax(most, 100 * change), sum[2] += change > .01;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, sum + 2, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    CHECK(
+        sscanf(
+            fibrad_insitu_remark(near, FIBRAD_REMARK_BEYOND),
+            "what lies beyond the cutoff 4 could change the power of %lf particles by more than 1 %% of the root mean "
+            "square of all powers, that of particle %*u at (%*f, %*f, %*f) by %lf %%",
+            &said[0], &said[1]) == 2);
+    CHECK(most > 1 && most < said[1] && said[1] < 20 * most && sum[2] > 0 && sum[2] <= said[0]);
+    CHECK(!*fibrad_insitu_remark(far, FIBRAD_REMARK_BEYOND));
+    for (size_t i = 0; i < part.bed.n; ++i) part.temperature[i] = 500;
+    state.wall_temperature = even;
+    CHECK(fibrad_insitu_powers(near, &state, part.power, NULL) == FIBRAD_OK);
+    fibrad_insitu_facts_get(near, &facts);
+    CHECK(facts.beyond > 1e-3 && !*fibrad_insitu_remark(near, FIBRAD_REMARK_BEYOND));
+    fibrad_insitu_free(near);
+    fibrad_insitu_free(far);
+    free(power);
+    close_pile(&all);
+    close_pile(&part);
+}
+
 /* A particle larger than all others together sees them, and they see it. A cutoff less than its diameter is refused. */
 static void large_particles_are_seen(void) {
     const struct kind kind = {"large", 4, {0, 0, 0}, OPEN, {.8, .8}, 0, 1, 0};
@@ -749,7 +798,7 @@ static void *grow(void *context, void *block, size_t size) {
 }
 
 /* Temperatures after all steps by rows of the kernel in one scene, with sums written as in the formula. */
-static void step_by_kernel(struct pile *p, double cutoff) {
+static void step_by_kernel(struct pile *p) {
     const uint32_t n = (uint32_t)p->bed.n, walls = p->bed.walls;
     const fibrad_scene_config config = {.wall = p->wall, .walls = walls};
     const fibrad_spheres spheres = {p->x, p->x + 1, p->x + 2, p->radius, n, 3, 1, p->id};
@@ -758,11 +807,8 @@ static void step_by_kernel(struct pile *p, double cutoff) {
     fibrad_scene *scene = NULL;
     fibrad_work work = {.memory.resize = grow};
     CHECK(fibrad_scene_init(&scene, block, size, &config, &spheres, NULL) == FIBRAD_OK);
-    fibrad_exchange_rule rule = {.emissivity = p->emissivity,
-                                 .wall_emissivity = p->wall_emissivity,
-                                 .directions = 50,
-                                 .paths = 100,
-                                 .cutoff = cutoff};
+    fibrad_exchange_rule rule = {
+        .emissivity = p->emissivity, .wall_emissivity = p->wall_emissivity, .directions = 50, .paths = 100};
     uint32_t *col = memory_of((size_t)n * n, sizeof *col);
     double *f = memory_of((size_t)n * n, sizeof *f), *emission = memory_of(n, sizeof *emission);
     fibrad_row *row = memory_of(n, sizeof *row);
@@ -797,8 +843,9 @@ static void step_by_kernel(struct pile *p, double cutoff) {
     free(wall);
 }
 
-/* Particles change ranks and positions at every third step. The rows stay where they were made. */
-static void temperatures_are_those_of_the_kernel(enum walls walls, double cutoff) {
+/* Particles change ranks and positions at every third step. The rows stay where they were made. A cutoff that all
+ * particles are within is none. */
+static void temperatures_are_those_of_the_kernel(enum walls walls) {
     const struct kind kind = {"reference", 6, {0, 0, 0}, walls, {.3, .8}, 1000, 1, 0};
     struct pile all = pile_of(&kind), expected = pile_of(&kind);
     fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, &kind, 1);
@@ -818,7 +865,7 @@ static void temperatures_are_those_of_the_kernel(enum walls walls, double cutoff
     }
     if (rank == 0) {
         double worst = 0, change = 0;
-        step_by_kernel(&expected, cutoff);
+        step_by_kernel(&expected);
         struct pile begin = pile_of(&kind);
         for (size_t i = 0; i < all.bed.n; ++i) {
             worst = fmax(worst, fabs(all.temperature[i] - expected.temperature[i]));
@@ -1335,6 +1382,7 @@ static void rows_are_too_inaccurate(void) {
 static void refusals(void) {
     fibrad_insitu *s = NULL;
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.cutoff = -1}) == FIBRAD_E_ARGUMENT && !s);
+    CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.gather = -1}) == FIBRAD_E_ARGUMENT && !s);
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.accuracy = 3}) == FIBRAD_E_ARGUMENT && !s);
     CHECK(fibrad_accuracy_named("normal") == FIBRAD_ACCURACY_NORMAL);
     CHECK(fibrad_accuracy_named("low") == FIBRAD_ACCURACY_LOW);
@@ -1394,14 +1442,20 @@ int main(int argc, char **argv) {
     the_map_has_all(&kinds[0]);
     the_map_has_all(&kinds[4]);
     the_sky_stays_open();
+    unknown_parts_are_told(OPEN);
+    unknown_parts_are_told(FLOORS);
     large_particles_are_seen();
     one_way = 1;
-    temperatures_are_those_of_the_kernel(OPEN, 0); /* no cutoff: larger than the bed */
-    temperatures_are_those_of_the_kernel(FLOORS, 1000);
+    temperatures_are_those_of_the_kernel(OPEN);
+    temperatures_are_those_of_the_kernel(FLOORS);
     strays_do_not_end_a_run();
     one_way = 0;
     rows_follow_particles(.12);
     what_goes_is_given_back();
+    gather = 10; /* a bed with more particles than each rank may have */
+    rows_are_those_of_one_rank(&kinds[5], 2);
+    powers_keep_energy(&kinds[5]);
+    gather = 0;
     conducting = .1;
     rows_are_those_of_one_rank(&kinds[0], 2);
     powers_keep_energy(&kinds[3]);

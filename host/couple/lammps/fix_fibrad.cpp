@@ -349,9 +349,9 @@ bool FixFibrad::read_motion(Words &words, mesh_motion *motion) {
     return moving = true;
 }
 
-// Prints warnings about a file, and the indices of its walls in the output. Only rank 0 has the names of the walls.
+// Prints what is said about a file, and the indices of its walls in the output. Only rank 0 has the names of the walls.
 void FixFibrad::describe_meshes(uint32_t first, uint32_t count, const std::string &path) {
-    if (meshes.messages[0]) error->warning(FLERR, std::string("fix fibrad: ") + meshes.messages);
+    if (meshes.messages[0]) say(std::string("fix fibrad: ") + meshes.messages);
     for (uint32_t k = first; k < first + count; k++)
         say(text("fix fibrad: f_%s[%d] is of wall %s, %u triangles of ", id, 6 + (int)k, meshes.meshes.name[k],
                  mesh_triangles(mesh_of_wall(&meshes.meshes, k), k)) +
@@ -694,13 +694,14 @@ void FixFibrad::make_rows(int which) {
 }
 
 void FixFibrad::tell_strays() {
+    const char *beyond =
+        config.cutoff > 0 ? "a larger `cutoff`, or none, tells what is there" : "a larger `gather` tells what is there";
     for (int kind = 0; kind < FIBRAD_REMARKS; kind++) {
         const char *remark = fibrad_insitu_remark(insitu, kind);
         if (*remark && !told[kind] && comm->me == 0)
-            error->warning(
-                FLERR,
-                text("fix fibrad: %s, at step %s; %s", remark, std::to_string(update->ntimestep).c_str(),
-                     kind == FIBRAD_REMARK_BEYOND ? "`cutoff` should be larger" : "`strict yes` would end the run"));
+            error->warning(FLERR,
+                           text("fix fibrad: %s, at step %s; %s", remark, std::to_string(update->ntimestep).c_str(),
+                                kind == FIBRAD_REMARK_BEYOND ? beyond : "`strict yes` would end the run"));
         told[kind] = told[kind] || *remark;
     }
 }
@@ -792,6 +793,7 @@ void FixFibrad::find_powers() {
         status = fibrad_insitu_powers(insitu, &state, power.data(), &totals);
     }
     check(status);
+    tell_strays();
     if (contact.given()) conduct(state, by_contacts.data(), conductance.data());
     check_step(t, conductance);
     check_walls();

@@ -372,12 +372,14 @@ void follow_meshes(Driver *driver) {
 
 /* Says once of each kind of strays what was done with them. */
 void tell_strays(Driver *driver) {
+    const char *beyond = driver->options.config.cutoff > 0 ? "a larger --cutoff, or none, tells what is there"
+                                                           : "a larger --gather tells what is there";
     for (int kind = 0; kind < FIBRAD_REMARKS; ++kind) {
         const char *remark = fibrad_insitu_remark(driver->radiation, kind);
         if (*remark != 0 && !driver->told[kind] && rank() == 0)
             std::fprintf(stderr, "fibrad_liggghts: warning: step %s: %s; %s\n",
                          std::to_string(driver->lmp->update->ntimestep).c_str(), remark,
-                         kind == FIBRAD_REMARK_BEYOND ? "--cutoff should be larger" : "--strict would end the run");
+                         kind == FIBRAD_REMARK_BEYOND ? beyond : "--strict would end the run");
         driver->told[kind] = driver->told[kind] || *remark != 0;
     }
 }
@@ -444,6 +446,7 @@ void make_powers(Driver *driver) {
         status = fibrad_insitu_powers(driver->radiation, &state, driver->gain.data(), &driver->totals);
     }
     check(driver, status);
+    tell_strays(driver);
     if (!driver->options.contact.empty()) {
         const fibrad_insitu_bed bed = present_bed(driver);
         fibrad_insitu_contacts *spots = &driver->options.spots;

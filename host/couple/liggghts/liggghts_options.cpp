@@ -28,6 +28,7 @@ const struct option names[] = {{"in", required_argument, nullptr, 'i'},
                                {"every", required_argument, nullptr, 'E'},
                                {"rows", required_argument, nullptr, 'R'},
                                {"cutoff", required_argument, nullptr, SETTING},
+                               {"gather", required_argument, nullptr, SETTING},
                                {"accuracy", required_argument, nullptr, SETTING},
                                {"tolerance", required_argument, nullptr, SETTING},
                                {"seed", required_argument, nullptr, SETTING},
@@ -281,8 +282,9 @@ void liggghts_options_help() {
         "  --every N                compute powers every N steps [20]\n"
         "  --rows N                 make all rows, the exchange factors, every N steps; N is a multiple of --every\n"
         "                           [1000]\n"
-        "  --cutoff R               particles with centres farther apart than R do not see each other [follows\n"
-        "                           from the number of particles: docs/coupling.md]\n"
+        "  --cutoff R               particles with centres farther apart than R do not see each other [none up\n"
+        "                           to --gather particles; then it follows from their number]\n"
+        "  --gather N               up to N particles each rank has all while rows are made [4000000]\n"
         "  --accuracy WORD          low, normal or high: directions and paths of each row, docs/lammps.md [normal]\n"
         "  --tolerance E            error allowed in each row, estimated, 0 to 1 [none]\n"
         "  --seed S                 seed of paths and directions [0]\n"

@@ -25,6 +25,14 @@ static inline int fibrad_block_fit(fibrad_block *block, size_t count, size_t siz
     return FIBRAD_OK;
 }
 
+/* Gives back what `count` elements of `size` bytes do not need. */
+static inline void fibrad_block_trim(fibrad_block *block, size_t count, size_t size) {
+    void *at = realloc(block->at, (count + 1) * size);
+    if (!at) return;
+    block->at = at;
+    block->size = (count + 1) * size;
+}
+
 static inline void fibrad_block_free(fibrad_block *block) {
     free(block->at);
     *block = (fibrad_block){0};

@@ -119,40 +119,46 @@ int fibrad_halo(MPI_Comm comm, const double period[3], double reach, bool once, 
     return status;
 }
 
-/* Gathers all particles in the order of ranks. count, start: [ranks], out. */
-static int gather_all(MPI_Comm comm, const fibrad_particle *particle, size_t own, fibrad_block *all, int *count,
-                      int *start, int ranks) {
-    const int mine = (int)own;
-    MPI_Datatype one;
-    MPI_Allgather(&mine, 1, MPI_INT, count, 1, MPI_INT, comm);
-    fibrad_count_starts(count, ranks, start);
-    const int status =
-        fibrad_agree(comm, fibrad_block_fit(all, fibrad_count_sum(count, ranks), sizeof *particle), NULL);
-    if (status) return status;
-    MPI_Type_contiguous(sizeof *particle, MPI_BYTE, &one);
-    MPI_Type_commit(&one);
-    MPI_Allgatherv(particle, mine, one, all->at, count, start, one, comm);
-    MPI_Type_free(&one);
-    return FIBRAD_OK;
+/* Reverses the order of particles. */
+static void turn_round(fibrad_particle *particle, size_t n) {
+    for (size_t i = 0; i < n / 2; ++i) {
+        const fibrad_particle p = particle[i];
+        particle[i] = particle[n - 1 - i], particle[n - 1 - i] = p;
+    }
 }
 
-int fibrad_gather(MPI_Comm comm, fibrad_block *particle, size_t own, fibrad_block *all, size_t *others, size_t *first) {
+/* Gathers all particles in the order of ranks, in place. */
+static void gather_in_place(MPI_Comm comm, fibrad_particle *all, size_t own, size_t first, const int *count,
+                            const int *start) {
+    MPI_Datatype one;
+    memmove(all + first, all, own * sizeof *all);
+    MPI_Type_contiguous(sizeof *all, MPI_BYTE, &one);
+    MPI_Type_commit(&one);
+    MPI_Allgatherv(MPI_IN_PLACE, 0, one, all, count, start, one, comm);
+    MPI_Type_free(&one);
+}
+
+int fibrad_gather(MPI_Comm comm, fibrad_block *particle, size_t own, size_t *others, size_t *first) {
     int rank, ranks;
+    const int mine = (int)own;
     MPI_Comm_rank(comm, &rank);
     MPI_Comm_size(comm, &ranks);
     int *count = malloc(2 * (size_t)ranks * sizeof *count);
     int status = fibrad_agree(comm, count ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
-    set_owner(particle->at, own, rank);
-    if (!status) status = gather_all(comm, particle->at, own, all, count, count + ranks, ranks);
     if (!status) {
-        *first = (size_t)count[ranks + rank], *others = fibrad_count_sum(count, ranks) - own;
+        int *start = count + ranks;
+        MPI_Allgather(&mine, 1, MPI_INT, count, 1, MPI_INT, comm);
+        fibrad_count_starts(count, ranks, start);
+        *first = (size_t)start[rank], *others = fibrad_count_sum(count, ranks) - own;
         status = fibrad_agree(comm, fibrad_block_fit(particle, own + *others, sizeof(fibrad_particle)), NULL);
     }
     if (!status) {
-        const fibrad_particle *from = all->at;
-        fibrad_particle *to = (fibrad_particle *)particle->at + own;
-        memcpy(to, from, *first * sizeof *to);
-        memcpy(to + *first, from + *first + own, (*others - *first) * sizeof *to);
+        fibrad_particle *all = particle->at;
+        set_owner(all, own, rank);
+        gather_in_place(comm, all, own, *first, count, count + ranks);
+        turn_round(all, *first); /* own particles and those of lower ranks change places */
+        turn_round(all + *first, own);
+        turn_round(all, *first + own);
     }
     free(count);
     return status;

@@ -39,8 +39,8 @@ static inline fibrad_spheres fibrad_particle_spheres(const fibrad_particle *p, s
 int fibrad_halo(MPI_Comm comm, const double period[3], double reach, bool once, fibrad_block *particle, size_t own,
                 fibrad_block *sent, size_t *halo);
 
-/* Collective. Appends to particle[own] all particles of other ranks, in the order of ranks. No image is appended. all:
- * scratch. *others: number appended; *first: number of those of lower ranks. Errors, on all ranks: _MEMORY. */
-int fibrad_gather(MPI_Comm comm, fibrad_block *particle, size_t own, fibrad_block *all, size_t *others, size_t *first);
+/* Collective. Appends to particle[own] all particles of other ranks, in the order of ranks. No image is appended.
+ * *others: number appended; *first: number of those of lower ranks. Errors, on all ranks: _MEMORY. */
+int fibrad_gather(MPI_Comm comm, fibrad_block *particle, size_t own, size_t *others, size_t *first);
 
 #endif

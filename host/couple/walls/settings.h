@@ -41,6 +41,8 @@ inline const radiation_setting *setting_named(const std::string &name) {
     using config = fibrad_insitu_config;
     static const radiation_setting settings[] = {
         {"cutoff", "a length of 0 or more", 0, FIBRAD_LENGTH_MAX, &config::cutoff, nullptr, nullptr, nullptr},
+        {"gather", "a number of particles, 1 or more", 1, FIBRAD_SPHERES_MAX, &config::gather, nullptr, nullptr,
+         nullptr},
         {"tolerance", "within 0 and 1", 0, 1, &config::tolerance, nullptr, nullptr, nullptr},
         {"directions", "a number of directions, 8 to 65536", FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX, nullptr,
          &config::directions, nullptr, nullptr},
