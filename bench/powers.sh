@@ -122,8 +122,8 @@ awk 'function near(x) { s = s*16807%2147483647; return x + .1*(s/2147483647 - .5
         s = 1
         for (n = 0; n < 30; n++) print near(4.5 + n%3), near(4.5 + int(n/3)%2*2), near(4.4 - .85*int(n/6)), .4
         for (n = 0; m < 650; n++) {
-            x = n%11 + .5; y = int(n/11)%11 + .5; z = 5.4 + .9*int(n/121); r = 1.4 + .3*(z - 5)
-            if ((x - 5.5)^2 < r^2 && (y - 5.5)^2 < r^2) { m++; print near(x), near(y), near(z), .4 }
+            x = n%11 + .5; y = int(n/11)%11 + .5; z = 5.5 + .9*int(n/121); wide = 1.5 + .175*(z - 5)
+            if ((x - 5.5)^2 < wide^2 && (y - 5.5)^2 < wide^2) { m++; print near(x), near(y), near(z), .4 }
         }
     }' | bed 11 25 >"$work/hopper.dump"
 # two rows of balls that fall
@@ -147,8 +147,8 @@ sides=
 for face in xlo xhi ylo yhi zlo; do sides="$sides wall $face 1000 0.9"; done
 
 measure below "$work/below.dump" "wall zlo 1000 0.9" zmin 1000
-error=0.01 measure hopper "$work/hopper.dump" "wall zlo 1000 0.9 wall mesh $work/funnel.stl 300 0.9 both" "zmin,mesh:$work/funnel.stl:both" zmin=1000,300
-error=0.005 measure curtain "$work/curtain.dump" "wall zlo 1000 0.9" zmin 1000
+measure hopper "$work/hopper.dump" "wall zlo 1000 0.9 wall mesh $work/funnel.stl 300 0.9 both" "zmin,mesh:$work/funnel.stl:both" zmin=1000,300
+measure curtain "$work/curtain.dump" "wall zlo 1000 0.9" zmin 1000
 measure closed $poly "$sides wall zhi 1000 0.9 at $high" "xmin,xmax,ymin,ymax,zmin,zmax=$high" 1000
 measure "box 0.8" $poly "$sides wall zhi open" box:open=zmax 1000
 e="0.8 0.3" measure "box 0.8 and 0.3" $poly "$sides wall zhi open" box:open=zmax 1000

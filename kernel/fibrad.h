@@ -889,7 +889,8 @@ typedef struct fibrad_exchange_rule {
     double cutoff;                 /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
     double tolerance;              /* the error allowed; directions and paths are added until it is met; 0: none */
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */
-    uint32_t open_directions;      /* of the first segment if more than a tenth of it meets no sphere; 0: no other */
+    double open_error; /* allowed of what meets no sphere: if the first segment may err by more there, it is computed
+                        * once more, with more directions; 0: none */
     /* [spheres], k* and not k_s: fibrad_relative_conductivity of each sphere, at least
      * FIBRAD_RELATIVE_CONDUCTIVITY_MIN. INFINITY: the sphere has one temperature. Needed with node_emissivity. */
     const double *conductivity;

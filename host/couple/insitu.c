@@ -11,10 +11,11 @@
 /* What a fibrad_accuracy stands for. alone: paths if rows do not know all sources, see source_paths.c */
 static const struct {
     const char *name;
-    uint32_t directions, open, paths, alone;
-} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 28, 0, 24, 80},
-               [FIBRAD_ACCURACY_LOW] = {"low", 16, 0, 8, 34},
-               [FIBRAD_ACCURACY_HIGH] = {"high", 144, 1000, 800, 1600}};
+    uint32_t directions, paths, alone;
+    double open; /* error of what meets no sphere, see fibrad_exchange_rule */
+} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 28, 24, 80, 0},
+               [FIBRAD_ACCURACY_LOW] = {"low", 16, 8, 34, 0},
+               [FIBRAD_ACCURACY_HIGH] = {"high", 144, 800, 1600, 8e-4}};
 
 int fibrad_accuracy_named(const char *name) {
     for (int k = FIBRAD_ACCURACY_NORMAL; k <= FIBRAD_ACCURACY_HIGH && name; ++k)
@@ -35,7 +36,7 @@ static bool config_valid(const fibrad_insitu_config *c) {
 static void complete_config(fibrad_insitu *s) {
     fibrad_insitu_config *c = &s->config;
     s->paths_alone = c->paths ? c->paths : samples[c->accuracy].alone;
-    s->open_directions = c->directions ? 0 : samples[c->accuracy].open;
+    s->open_error = c->directions ? 0 : samples[c->accuracy].open;
     if (!c->directions) c->directions = samples[c->accuracy].directions;
     if (!c->paths) c->paths = samples[c->accuracy].paths;
     if (!c->threads) c->threads = 1;

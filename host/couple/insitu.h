@@ -57,8 +57,8 @@ struct fibrad_insitu {
     MPI_Comm comm;
     int rank, ranks;
     fibrad_insitu_config config;
-    uint32_t paths_alone;     /* paths of a row that does not know all sources */
-    uint32_t open_directions; /* directions of a row that sees much of walls and surroundings; 0: as others */
+    uint32_t paths_alone; /* paths of a row that does not know all sources */
+    double open_error;    /* as in fibrad_exchange_rule */
     char message[FIBRAD_MESSAGE];
     fibrad_team team;                                  /* the threads, and their work memory */
     fibrad_insitu_set set;                             /* the rows in use */

@@ -44,7 +44,7 @@ fibrad_exchange_rule fibrad_insitu_rule(const fibrad_insitu_build *b, size_t n) 
                                   .wall_emissivity = b->bed->wall_emissivity,
                                   .directions = b->s->config.directions,
                                   .paths = b->s->config.paths,
-                                  .open_directions = b->s->open_directions,
+                                  .open_error = b->s->open_error,
                                   .seed = b->s->config.seed + b->step * 0x9e3779b97f4a7c15u,
                                   .tolerance = b->s->config.tolerance};
 }

@@ -159,7 +159,7 @@ module fibrad
         integer(c_int64_t) :: seed = 0
         real(c_double) :: cutoff = 0, tolerance = 0
         type(c_ptr) :: node_emissivity = c_null_ptr
-        integer(c_int32_t) :: open_directions = 0
+        real(c_double) :: open_error = 0
         type(c_ptr) :: conductivity = c_null_ptr, known = c_null_ptr
         real(c_double) :: known_paths = 0
     end type c_exchange_rule

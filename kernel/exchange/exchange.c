@@ -23,9 +23,6 @@
  * as much time. At lower emissivities beams take less. */
 #define BEAM_SHARE 0.5
 
-/* Rows that send more than this past all spheres take the open_directions of the rule. */
-#define OPEN_PART 0.1
-
 /* One call: the rule, emissivities, and the number of rays that the call has traced. */
 typedef struct exchange_task {
     const fibrad_exchange_rule *rule;
@@ -42,7 +39,7 @@ static int exchange_begin(exchange_task *task, const fibrad_scene *scene, uint32
     const uint32_t walls = scene->facts.walls;
     if (i >= scene->facts.spheres || (walls > 0 && rule->wall_emissivity == NULL)) return FIBRAD_E_ARGUMENT;
     if (!(rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1) || rule->paths > FIBRAD_PATHS_MAX ||
-        rule->open_directions > FIBRAD_DIRECTIONS_MAX)
+        !(rule->open_error >= 0 && fibrad_finite(rule->open_error)))
         return FIBRAD_E_ARGUMENT;
     *task = (exchange_task){.rule = rule, .emissivity = rule->emissivity};
     const int status = fibrad_paths_emissivities(scene, rule->wall_emissivity, task->wall_emissivity);
@@ -79,11 +76,10 @@ static int want_segments(fibrad_workspace *space, const fibrad_paths *paths, con
     return FIBRAD_OK;
 }
 
-/* The fraction that meets no sphere. */
-static double open_part(const fibrad_scene *scene, const fibrad_row *row) {
-    double open = row->escaped + row->beyond;
-    for (uint32_t b = 0; b < scene->facts.walls; b++) open += row->wall[b];
-    return open;
+/* The number of directions with which the open part has about the error that is allowed. */
+static uint32_t directions_for_open(uint32_t directions, double error, double wanted) {
+    const double ratio = error / wanted, n = directions * (ratio * fibrad_sqrt(fibrad_sqrt(ratio)));
+    return n < FIBRAD_DIRECTIONS_MAX ? (uint32_t)n : FIBRAD_DIRECTIONS_MAX;
 }
 
 /* Computes the first segment of all emission, a beam row. error: of what spheres and walls absorb there. */
@@ -93,9 +89,11 @@ static int first_segment(const fibrad_scene *scene, fibrad_workspace *space, uin
     fibrad_beam_rule beam = {.directions = rule->directions > 0 ? rule->directions : FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT,
                              .cutoff = rule->cutoff,
                              .turn = rule->seed};
+    double open_error = rule->open_error;
+    uint32_t by_points = BY_POINTS;
     int status = fibrad_beam_complete(&beam, &beam);
     for (;;) {
-        beam.points = beam.directions <= BY_FEW_POINTS ? 64 : beam.directions <= BY_POINTS ? 256 : 0;
+        beam.points = beam.directions <= BY_FEW_POINTS ? 64 : beam.directions <= by_points ? 256 : 0;
         if (status == FIBRAD_OK) status = fibrad_beam_compute(scene, space, i, &beam, true, row);
         if (status != FIBRAD_OK) return status;
         double most = 0;
@@ -103,8 +101,9 @@ static int first_segment(const fibrad_scene *scene, fibrad_workspace *space, uin
         for (uint32_t b = 0; b < scene->facts.walls; b++)
             if (row->wall[b] > 0) most = fibrad_max(most, rule->wall_emissivity[b]);
         *error = most * row->error;
-        if (beam.directions < rule->open_directions && open_part(scene, row) > OPEN_PART) {
-            beam.directions = rule->open_directions;
+        if (open_error > 0 && space->open_error > open_error) {
+            by_points = beam.directions = directions_for_open(beam.directions, space->open_error, open_error);
+            open_error = 0;
             continue;
         }
         double wanted = BEAM_SHARE * rule->tolerance;

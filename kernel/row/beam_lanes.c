@@ -20,6 +20,12 @@
  * free paths. The others see little of walls. */
 #define WALL_NEAR 1.2
 
+/* Numbers of nearby directions differ by a Fibonacci number. The one whose product with the next is at least NEARBY
+ * times the number of directions leads to the nearest directions. */
+#define NEARBY 1.4
+/* How many windows a row remembers: more than two steps to a window of a nearby direction. */
+#define WINDOWS_RECENT 1024u
+
 /* The windows of a row. */
 typedef struct beam_windows {
     const fibrad_line_set *lines; /* NULL: directions */
@@ -29,6 +35,10 @@ typedef struct beam_windows {
     fibrad_turning turning;
     uint32_t chords, words; /* of masks; 0: none */
     fibrad_points points;   /* count 0: exact areas */
+    uint32_t nearby;        /* directions whose numbers differ by this are near each other */
+    uint32_t compared;      /* number of windows that were compared with two nearby ones */
+    double roughness;       /* sum of the squared differences */
+    float *open;            /* [WINDOWS_RECENT], the part of each of the last windows that no sphere covers */
 } beam_windows;
 
 static void LANED(frame_of_beam)(const void *from, uint32_t k, uint32_t points, double frame[9]) {
@@ -52,6 +62,11 @@ static int choose_windows(const fibrad_scene *scene, uint32_t i, const fibrad_be
     windows->words = fibrad_mask_words(scene, i);
     if (rule->chords > 0 && windows->words > 0) windows->chords = rule->chords * windows->words;
     windows->points.count = rule->points;
+    uint32_t next = 2;
+    for (windows->nearby = 1; windows->nearby * next < NEARBY * rule->directions;) {
+        next += windows->nearby;
+        windows->nearby = next - windows->nearby;
+    }
     return rule->points > 0 ? fibrad_disc_points_get(rule->points, &windows->points.set) : FIBRAD_OK;
 }
 
@@ -129,13 +144,32 @@ static double compute_window(fibrad_workspace *work, beam_windows *windows, uint
     return LANED(fibrad_beam_window)(work, frame, points, adds);
 }
 
+/* Compares what window k has open with the two nearby windows before it. If what is open changed evenly from one
+ * direction to the next, the difference would be 0. open: a part of the window */
+static void compare_window(beam_windows *windows, uint32_t from, uint32_t k, double open) {
+    const uint32_t once = windows->nearby, twice = 2 * windows->nearby;
+    float *of = windows->open;
+    of[k % WINDOWS_RECENT] = (float)open;
+    if (k < from + twice) return;
+    const double difference = open - 2 * of[(k - once) % WINDOWS_RECENT] + of[(k - twice) % WINDOWS_RECENT];
+    windows->roughness += difference * difference, windows->compared++;
+}
+
+/* The error of the open part of the row, if what windows have open differed at random as much as it differs between
+ * nearby windows. Measured: docs/methods.md section 11. */
+static double open_error_of(const beam_windows *windows) {
+    if (windows->compared == 0) return 0;
+    return fibrad_sqrt(windows->roughness / (6.0 * windows->compared * windows->count));
+}
+
 static void add_open(fibrad_workspace *work, uint32_t k, double rest, fibrad_beam_sums *sums) {
     sums->open[k % 2] += fibrad_on_grid(rest, work->entries.grid);
 }
 
-/* Computes window k and adds it to all sums. False: there was no room for all discs. */
-static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibrad_window_set *set, uint32_t k,
-                       fibrad_beam_sums *sums) {
+/* Computes window k and adds it to all sums. from: the first window of this call. False: there was no room for all
+ * discs. */
+static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibrad_window_set *set, uint32_t from,
+                       uint32_t k, fibrad_beam_sums *sums) {
     static const double centre[3] = {0, 0, 0};
     fibrad_points *points = &windows->points;
     double frame[9], whole;
@@ -145,6 +179,7 @@ static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibr
     if (work->disc.count > work->disc.capacity || work->areas.overflow) return false;
     sums->whole[k % 2] += fibrad_on_grid(whole, work->entries.grid);
     LANED(take_segments)(work, frame, k, rest > 0);
+    if (windows->chords == 0) compare_window(windows, from, k, work->bare / whole);
     const bool meets = work->met != NULL && work->met->any;
     if (meets) LANED(fibrad_mesh_count)(work, frame, k);
     if (work->scene->container.walls) LANED(fibrad_walls_share)
@@ -212,10 +247,12 @@ static void keep_open(fibrad_workspace *work, fibrad_beam_sums *sums, double par
 int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i,
                              const fibrad_beam_rule *rule, const fibrad_beam_range *range, fibrad_row *row) {
     beam_windows windows;
+    float open[WINDOWS_RECENT];
     fibrad_beam_sums sums = {.open = {0, 0}, .whole = {0, 0}};
     double parts[2] = {0, 0};
     int status = choose_windows(scene, scene->place[i], rule, &windows);
     if (status != FIBRAD_OK) return status;
+    windows.open = open;
     const bool masked = windows.chords > 0;
     work->areas.overflow = false;
     work->areas.fallbacks = 0;
@@ -250,7 +287,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     for (uint32_t p = 0; p < range->parts; p++) fibrad_beam_add_kept(work, &range->part[p], &sums);
     LANED(begin_segments)(&work->segments);
     for (uint32_t k = range->from; k < range->to; k++)
-        if (!add_window(work, &windows, &set, k, &sums)) return fibrad_work_discs_missed(work);
+        if (!add_window(work, &windows, &set, range->from, k, &sums)) return fibrad_work_discs_missed(work);
     if (masked) gather_counts(work);
     sums.seen += work->masks.regions;
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
@@ -278,6 +315,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     fibrad_free_pairs_share(&pairs, work->wall, row);
     fibrad_row_cut(scene, work->place, work->wall, row);
     fibrad_row_walls(scene, work->wall, row);
+    work->open_error = open_error_of(&windows);
     row->lines = rule->lines != NULL ? windows.count : 0;
     row->noise = masked ? noise_of(&windows, all, sums.seen) : 0;
     const double shares = (windows.both ? SHARES_BOTH : SHARES_ERROR) *

@@ -280,8 +280,8 @@ double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], 
     }
     const bool near = fibrad_mesh_near(work, open ? __builtin_inf() : known);
     if (work->met != NULL) work->met->any = false;
-    if (points->count > 0) return near ? LANED(fibrad_mesh_share)(work, frame, points, k, points->open) : points->open;
-    double rest = LANED(fibrad_areas_end)(&work->areas);
+    double rest = work->bare = points->count > 0 ? points->open : LANED(fibrad_areas_end)(&work->areas);
+    if (points->count > 0) return near ? LANED(fibrad_mesh_share)(work, frame, points, k, rest) : rest;
     if (near) rest = LANED(fibrad_mesh_share)(work, frame, points, k, rest);
     if (near && work->met->any) return rest;
     for (uint32_t c = 1; c < work->areas.circles && k != FIBRAD_NONE; c++)

@@ -70,6 +70,8 @@ typedef struct fibrad_workspace {
     uint32_t windows;          /* number of windows of a beam row */
     uint32_t back;             /* a triangle seen from a side that belongs to no wall; UINT32_MAX: none */
     bool cut;                  /* whether there is a cutoff or a known region */
+    double bare;               /* what spheres leave open of the last window, as if there were no triangles */
+    double open_error;         /* estimated error of what a row along directions has open */
     bool parallel, turned;     /* whether open lines keep the direction of their window, all or those to triangles */
     fibrad_wall_room *walls;   /* NULL unless plan.walls */
     double wall[FIBRAD_SLOTS]; /* by slot: areas, points or rays; then factors */

@@ -93,8 +93,8 @@ class BedFactors(Structure):
 class ExchangeRule(Structure):
     _fields_ = [("emissivity", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)), ("directions", c_uint32),
                 ("paths", c_uint32), ("seed", c_uint64), ("cutoff", c_double), ("tolerance", c_double),
-                ("node_emissivity", POINTER(c_double)), ("open_directions", c_uint32),
-                ("conductivity", POINTER(c_double)), ("known", POINTER(c_double)), ("known_paths", c_double)]
+                ("node_emissivity", POINTER(c_double)), ("open_error", c_double), ("conductivity", POINTER(c_double)),
+                ("known", POINTER(c_double)), ("known_paths", c_double)]
 
 
 class WallRule(Structure):
