@@ -165,4 +165,4 @@ for e in 0.8 0.3; do
     e="$e $e" measure "cylinder $e" "$work/cylinder.dump" "$cylinder" zmin,zmax=open,cylinder:6,6,5.5 zmin=1000,300
     e="$e $e" field=1000 cold=0 measure "flat $e" $flat "wall zlo 0 0.9" zmin 0
 done
-field="300+700*z/bound(all,zmax)" cold=1000 measure "linear 0.8" $flat "wall zlo 300 0.9" zmin 300
+e="0.8 0.8" error=0.002 field="300+700*z/bound(all,zmax)" cold=1000 measure "linear 0.8" $flat "wall zlo 300 0.9" zmin 300

@@ -94,7 +94,7 @@ typedef struct fibrad_insitu fibrad_insitu;
 /* Directions and paths of each row. If config.one_way is 1, or if a wall or the surroundings have no paths, a row has
  * the second number of paths. docs/lammps.md has errors and times. */
 typedef enum fibrad_accuracy {
-    FIBRAD_ACCURACY_NORMAL = 0, /* 28 directions; 24 paths, or 80 */
+    FIBRAD_ACCURACY_NORMAL = 0, /* 30 directions; 24 paths, or 80 */
     FIBRAD_ACCURACY_LOW = 1,    /* 16 directions; 8 paths, or 34 */
     FIBRAD_ACCURACY_HIGH = 2    /* 144 directions, or 1,000 if more than a tenth of a row meets walls or surroundings at
                                    once; 800 paths, or 1,600 */

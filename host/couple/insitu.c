@@ -13,7 +13,7 @@ static const struct {
     const char *name;
     uint32_t directions, paths, alone;
     double open; /* error of what meets no sphere, see fibrad_exchange_rule */
-} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 28, 24, 80, 0},
+} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 30, 24, 80, 0},
                [FIBRAD_ACCURACY_LOW] = {"low", 16, 8, 34, 0},
                [FIBRAD_ACCURACY_HIGH] = {"high", 144, 800, 1600, 8e-4}};
 

@@ -58,7 +58,7 @@ int main(int count, char **argument) {
             fibrad_exchange_rule rule = {/* defaults of fibrad_insitu_config */
                                          .emissivity = emissivity,
                                          .wall_emissivity = &floor_emissivity,
-                                         .directions = 28,
+                                         .directions = 30,
                                          .paths = 80};
             fibrad_rows_clear(&rows);
             for (uint32_t i = 0; i < n; i++) {
