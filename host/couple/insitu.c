@@ -13,9 +13,10 @@ static const struct {
     const char *name;
     uint32_t directions, paths, alone;
     double open; /* error of what meets no sphere, see fibrad_exchange_rule */
-} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 30, 24, 80, 0},
-               [FIBRAD_ACCURACY_LOW] = {"low", 16, 8, 34, 0},
-               [FIBRAD_ACCURACY_HIGH] = {"high", 144, 800, 1600, 8e-4}};
+    double most; /* paths of all sources over those of all particles, at most */
+} samples[] = {[FIBRAD_ACCURACY_NORMAL] = {"normal", 30, 24, 80, 0, 2},
+               [FIBRAD_ACCURACY_LOW] = {"low", 16, 8, 34, 0, 2},
+               [FIBRAD_ACCURACY_HIGH] = {"high", 144, 800, 1600, 7e-4, 10}};
 
 int fibrad_accuracy_named(const char *name) {
     for (int k = FIBRAD_ACCURACY_NORMAL; k <= FIBRAD_ACCURACY_HIGH && name; ++k)
@@ -36,6 +37,7 @@ static bool config_valid(const fibrad_insitu_config *c) {
 static void complete_config(fibrad_insitu *s) {
     fibrad_insitu_config *c = &s->config;
     s->paths_alone = c->paths ? c->paths : samples[c->accuracy].alone;
+    s->source_paths = samples[c->accuracy].most;
     s->open_error = c->directions ? 0 : samples[c->accuracy].open;
     if (!c->directions) c->directions = samples[c->accuracy].directions;
     if (!c->paths) c->paths = samples[c->accuracy].paths;

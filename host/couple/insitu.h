@@ -59,6 +59,7 @@ struct fibrad_insitu {
     fibrad_insitu_config config;
     uint32_t paths_alone; /* paths of a row that does not know all sources */
     double open_error;    /* as in fibrad_exchange_rule */
+    double source_paths;  /* paths of all sources over those of all particles, at most */
     char message[FIBRAD_MESSAGE];
     fibrad_team team;                                  /* the threads, and their work memory */
     fibrad_insitu_set set;                             /* the rows in use */

@@ -11,7 +11,6 @@
 #include "fibrad_mesh.h"
 
 #define PATHS_WORTH 25      /* paths of a source are worth so many times those of a particle */
-#define PATHS_SHARE 2       /* all sources have at most so many times the paths of all particles, or PATHS_LEAST each */
 #define PATHS_LEAST 512     /* of each source */
 #define PATHS_EMPTY 8192    /* of each source of a bed without particles */
 #define UNIT        0x1p-40 /* of fibrad_exchange_wall */
@@ -103,7 +102,7 @@ static void count_paths(struct sources *t) {
     double emits = 0;
     for (uint32_t k = 0; k < t->count; ++k) emits += t->source[k].emits;
     const bool empty = !t->b->to->facts.particles;
-    const double most = PATHS_SHARE * (double)t->b->to->facts.particles * paths / emits;
+    const double most = t->b->s->source_paths * (double)t->b->to->facts.particles * paths / emits;
     const bool teach = t->b->to->emissive && !t->b->s->config.one_way && !empty;
     t->b->density = teach ? fmin(PATHS_WORTH * paths / particle, most) : 0;
     for (uint32_t k = 0; k < t->count; ++k) {
