@@ -2,8 +2,9 @@
 # powers.sh - powers of fix fibrad in LAMMPS, whose rows are made once, against those of `fibrad heat`. docs/lammps.md
 # has the table. SPDX-License-Identifier: MIT
 #
-# bench/powers.sh [WORD [ACCURACIES [SEEDS]]]: all cases, or those whose name has this word; "high normal low" and
-# "1 2 3" if nothing else is given. "directions=300,paths=800" is an accuracy, too. A line has a case and an accuracy. Errors are differences from `fibrad heat`:
+# bench/powers.sh [WORD [ACCURACIES [SEEDS]]]: all cases, or those whose name has this word. ACCURACIES are "high normal
+# low" and SEEDS "1 2 3" if nothing else is given. "directions=300,paths=800" is an accuracy, too. A line has a case and
+# an accuracy. Errors are differences from `fibrad heat`:
 #     rms           root mean square of those of particles over that of their powers, the mean of all seeds
 #     largest       that of a particle over its power, or over the root mean square of all powers if that is larger;
 #                   this and the next two are the largest of all seeds
@@ -18,7 +19,7 @@ set -eu
 work=${WORK:-$BUILD/bench/powers} only=${1:-} accuracies=${2:-high normal low} seeds=${3:-1 2 3}
 mkdir -p "$work"
 
-# What the lines are compared with, in %: rms, or largest, sum and floor.
+# What the lines should stay below, in %: rms; or largest, sum and floor.
 declare -A bar=(
     ["below high"]="1.5 .2 .2" ["hopper high"]="1.5 .2 .2" ["curtain high"]="1.5 .2 .2"
     ["closed high"]=.6 ["closed normal"]=2.5 ["closed low"]=5 ["box 0.8 high"]=.7 ["box 0.8 normal"]=3.2 ["box 0.8 low"]=6

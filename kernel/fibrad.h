@@ -889,8 +889,9 @@ typedef struct fibrad_exchange_rule {
     double cutoff;                 /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
     double tolerance;              /* the error allowed; directions and paths are added until it is met; 0: none */
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */
-    double open_error; /* allowed of what meets no sphere: if the first segment may err by more there, it is computed
-                        * once more, with more directions; 0: none */
+    /* The error allowed of the part of the first segment that meets no sphere. If its estimate is larger, the first
+     * segment is computed once more, with more directions of 256 points. 0: any error is allowed. */
+    double open_error;
     /* [spheres], k* and not k_s: fibrad_relative_conductivity of each sphere, at least
      * FIBRAD_RELATIVE_CONDUCTIVITY_MIN. INFINITY: the sphere has one temperature. Needed with node_emissivity. */
     const double *conductivity;

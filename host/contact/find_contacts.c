@@ -63,8 +63,8 @@ static uint64_t cell_number(const struct size_class *class, const uint32_t cell[
     return ((uint64_t)cell[0] * class->cells[1] + cell[1]) * class->cells[2] + cell[2];
 }
 
-/* Notes where the spheres of each cell begin. Most beds fill their cells. If a sphere is far away, cells are so many
- * that they are searched for instead. */
+/* Notes where the spheres of each cell begin. With a sphere far away there may be too many cells for a table. Spheres
+ * of a cell are then found by bisection. */
 static int note_starts(const struct search *s, struct size_class *class) {
     const uint32_t *cells = class->cells;
     const double count = (double)cells[0] * cells[1] * cells[2];

@@ -22,8 +22,8 @@
  *             Paths of sources tell what sources exchange with each other. Totals contain this exchange. Paths of
  *             sources also make rows of particles more accurate. Three kinds of walls have no paths: an endless wall, a
  *             wall from which paths reach a side that belongs to no wall, and any wall of a bed of more than
- *             config.gather particles. What such walls exchange with each other is left out. docs/coupling.md has the
- * details. Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
+ *             config.gather particles. What such walls exchange with each other is left out. See docs/coupling.md.
+ * Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
  * Collective  Every rank must call a collective function, and all ranks get the same status. All functions are
  *             collective over the communicator, except fibrad_link_free, fibrad_insitu_message, fibrad_insitu_remark,
  *             fibrad_insitu_facts_get and fibrad_accuracy_named.
@@ -96,8 +96,8 @@ typedef struct fibrad_insitu fibrad_insitu;
 typedef enum fibrad_accuracy {
     FIBRAD_ACCURACY_NORMAL = 0, /* 30 directions; 24 paths, or 80 */
     FIBRAD_ACCURACY_LOW = 1,    /* 16 directions; 8 paths, or 34 */
-    FIBRAD_ACCURACY_HIGH = 2    /* 144 directions, or 1,000 if more than a tenth of a row meets walls or surroundings at
-                                   once; 800 paths, or 1,600 */
+    FIBRAD_ACCURACY_HIGH = 2    /* 144 directions, or more for an open_error of 7e-4 (fibrad_exchange_rule); 800 paths,
+                                   or 1,600 */
 } fibrad_accuracy;
 
 /* The fibrad_accuracy of the name low, normal or high. Not collective.
@@ -109,8 +109,8 @@ int fibrad_accuracy_named(const char *name);
  *
  * Up to `gather` particles there is no cutoff by default, and each rank has all particles while rows are made. With
  * more particles the default cutoff follows from their number, so that ranks do not send each other too many: see
- * docs/coupling.md. Rows take about as long with any cutoff. In a bed without periods a cutoff that all particles are
- * within is none. */
+ * docs/coupling.md. Rows take about as long with any cutoff. A cutoff that is longer than a bed without periods is
+ * none. */
 typedef struct fibrad_insitu_config {
     double cutoff;       /* L, as in fibrad_exchange_rule, at least the largest diameter; 0: see above */
     uint32_t directions; /* as in fibrad_exchange_rule, for all rows; 0: those of `accuracy` */
@@ -121,7 +121,7 @@ typedef struct fibrad_insitu_config {
     int strict;          /* 1: strays are errors; 0: they are left out, or smaller, see above */
     int accuracy;        /* a fibrad_accuracy */
     int one_way;         /* 1: rows of particles use no paths of sources */
-    double gather;       /* number of particles up to which each rank has all; 0: 4e6 */
+    double gather;       /* number of particles up to which each rank has all, see above; 0: 4e6 */
 } fibrad_insitu_config;
 
 /* The bed for which rows are made. Box, walls, openings and triangles are the same on all ranks. */
@@ -162,8 +162,8 @@ typedef struct fibrad_insitu_totals {
     double wall[FIBRAD_WALLS_MAX]; /* sigma K^4 L^2, [walls of the rows] */
 } fibrad_insitu_totals;
 
-/* fibrad_insitu_remark tells of particles whose power could change by more than this part of the root mean square of
- * all powers, if what they emit beyond the cutoff went to what is hottest or coldest. */
+/* What a particle emits beyond the cutoff may end on what emits most or least. If its power could change so by more
+ * than this part of the root mean square of all powers, fibrad_insitu_remark tells of the particle. */
 #define FIBRAD_BEYOND_MUCH 0.01
 
 /* Facts of the last rows, of all ranks together except halo and bytes. */
@@ -289,7 +289,7 @@ typedef struct fibrad_insitu_conducted {
  *            _STATE: there are no rows
  *            _UNSUPPORTED: a wall is a mesh, or bed->conductivity is given
  *            _MEMORY
- *   Cost     1 microsecond for each particle; with gas half of one more for each pair within reach */
+ *   Cost     1 microsecond for each particle; with gas 0.5 more for each pair within reach */
 int fibrad_insitu_conduct(fibrad_insitu *insitu, const fibrad_insitu_contacts *contacts, const fibrad_insitu_bed *bed,
                           const fibrad_insitu_state *state, double *power, double *conductance,
                           fibrad_insitu_conducted *conducted);
@@ -304,7 +304,7 @@ typedef enum fibrad_remark_kind {
     FIBRAD_REMARK_OUTSIDE = 0, /* particles are left out */
     FIBRAD_REMARK_OVERLAP = 1, /* particles are smaller, since a centre lies inside another particle */
     FIBRAD_REMARK_BACK = 2,    /* particles have no row, since they see a side that belongs to no wall */
-    FIBRAD_REMARK_BEYOND = 3,  /* powers could change by more than FIBRAD_BEYOND_MUCH; of the last powers */
+    FIBRAD_REMARK_BEYOND = 3,  /* some of the last powers could change by more than FIBRAD_BEYOND_MUCH */
     FIBRAD_REMARKS = 4
 } fibrad_remark_kind;
 

@@ -1,8 +1,9 @@
 /* unknown.c - what the unknown parts of rows could change in powers. SPDX-License-Identifier: MIT
  *
  * A fraction b of what particle i emits goes beyond the cutoff. Powers are as if b ended where the rest of the row
- * does. It may end instead on what emits most, or on what emits least. With W = A n, and the power q_i by the known
- * part, the power then changes by b (W (E - E_i) - q_i). */
+ * does. It may end instead on what emits most, or on what emits least: let E be the emission of this one. Let W be the
+ * area times the emissivity of the particle, and q_i its power as found. The power then changes by
+ * b (W (E - E_i) - q_i). */
 #include <inttypes.h>
 #include <math.h>
 
@@ -25,7 +26,7 @@ static void find_range(const fibrad_insitu *s, double range[2]) {
 }
 
 /* What the unknown part of a row could change in the power of particle i at home. A row that sees a back is unknown as
- * a whole, and is remarked as such. */
+ * a whole: FIBRAD_REMARK_BACK tells of it. */
 static double doubt(const fibrad_insitu_set *set, size_t i, const double range[2]) {
     const double unknown = ((const double *)set->unknown.at)[i], weight = ((const double *)set->weight.at)[i];
     const double own = ((const double *)set->emission.at)[i], power = ((const double *)set->power.at)[i];

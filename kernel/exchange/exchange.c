@@ -76,7 +76,7 @@ static int want_segments(fibrad_workspace *space, const fibrad_paths *paths, con
     return FIBRAD_OK;
 }
 
-/* The number of directions with which the open part has about the error that is allowed. */
+/* The number of directions with which the open part has about the error `wanted`. */
 static uint32_t directions_for_open(uint32_t directions, double error, double wanted) {
     const double ratio = error / wanted, n = directions * (ratio * fibrad_sqrt(fibrad_sqrt(ratio)));
     return n < FIBRAD_DIRECTIONS_MAX ? (uint32_t)n : FIBRAD_DIRECTIONS_MAX;

@@ -10,7 +10,7 @@
 
 /* Points of the unit sphere are made this many at a time. Most paths from a sphere take fewer. */
 #define PATH_POINTS 4
-/* So many paths in a box are followed at a time. */
+/* Paths in a box are followed this many at a time. */
 #define PATH_BATCH 8
 /* A path is broken off after so many segments, in case no surface absorbs. The weight that is left counts as an error.
  */

@@ -7,11 +7,13 @@
 
 #include "base/port.h"
 
-/* Numbers that floats can hold: the centre, and a little less than square + 1 - r^2, `square` being that of the
- * distance. small: whether the distance is within the range of floats. If it is not, culls pass the sphere. */
+/* x, y, z, q are numbers that floats can hold. */
 typedef struct sphere_cull {
-    vd x, y, z, q, square, size; /* size: an upper bound of the distance */
-    vm small;
+    vd x, y, z; /* the centre */
+    vd q;       /* a little less than square + 1 - r^2 */
+    vd square;  /* of the distance */
+    vd size;    /* an upper bound of the distance */
+    vm small;   /* whether the distance is within the range of floats; if not, culls pass the sphere */
 } sphere_cull;
 
 /* The errors of three products and two sums are less than 4 ulp of the distance. Those of their squares are less than

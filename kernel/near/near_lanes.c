@@ -125,8 +125,9 @@ const fibrad_sight *LANED(fibrad_near_sight)(fibrad_near *near, const double w[3
     return near->seen[octant];
 }
 
-/* Compares spheres with the part of the hull about its axis that is as wide as the smaller sphere. Points that fill a
- * shell up, and spheres beyond the range of floats, lie at 0. No other centre lies inside a sphere of the pair. */
+/* Compares spheres with the part of the hull about its axis that is as wide as the smaller sphere. Spheres whose
+ * centres lie near a centre of the pair are passed over. They are the pair itself, spheres beyond the range of floats,
+ * and those that fill a shell up: the last two kinds lie at 0. */
 bool LANED(fibrad_near_between)(const fibrad_near *near, const double c[3], double r) {
     const double length = fibrad_sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]), least = fibrad_min(1, r);
     const vf cx = vf_set1((float)c[0]), cy = vf_set1((float)c[1]), cz = vf_set1((float)c[2]), zero = vf_set1(0);

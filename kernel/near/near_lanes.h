@@ -13,8 +13,8 @@ void LANED(fibrad_near_extend)(fibrad_workspace *work);
 /* A list with all spheres of the first shell that come before the window of direction w. The first shell must exist. */
 const fibrad_sight *LANED(fibrad_near_sight)(fibrad_near *near, const double w[3]);
 
-/* Whether a listed sphere certainly reaches into the hull of the sphere of the row and of one that has the centre c and
- * the radius r. False: this is not known. */
+/* Whether a listed sphere certainly reaches into the hull of two spheres: that of the row, and one with the centre c
+ * and the radius r. False: a sphere may reach into it or not. */
 typedef bool fibrad_near_between_function(const fibrad_near *near, const double c[3], double r);
 FIBRAD_DECLARE_VERSIONS(fibrad_near_between_function, fibrad_near_between);
 

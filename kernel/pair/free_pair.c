@@ -11,8 +11,9 @@
 #define FEW_SPHERES 256u
 /* Otherwise a row tries the spheres within this distance, in cube roots of the volume per sphere: about 50. */
 #define NEAR_SPACINGS 2.3
-/* A pair is not tried if so many other spheres may be expected to reach into its hull: 4 pi r^2 (d + 8 r/3) over the
- * volume per sphere, among equal spheres of radius r in random places, d being the distance of the centres. */
+/* A pair is not tried if so many other spheres are expected to reach into its hull. Let r be the radius of equal
+ * spheres in random places, and d the distance of the centres. The number is 4 pi r^2 (d + 8 r/3) over the volume per
+ * sphere. */
 #define MANY_BETWEEN 8.0
 /* If a sphere should meet more windows than this, they tell whether something hides it: they see less of it. */
 #define SOME_WINDOWS 2.0
@@ -139,7 +140,7 @@ static double windows_meeting(const fibrad_workspace *work, uint32_t other, doub
 /* A row while its free pairs are searched. */
 typedef struct pair_search {
     fibrad_workspace *work;
-    double scale, far; /* no pair is tried whose centres are farther apart, in radii of sphere i */
+    double scale, far; /* far: distance of centres up to which pairs are tried, in radii of sphere i */
     int64_t moved;     /* [UNIT] */
     uint64_t unseen;   /* [SQUARE_UNIT] */
     bool all, pairs;   /* all spheres are tried; pairs may be free */

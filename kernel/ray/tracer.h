@@ -53,7 +53,7 @@ typedef struct fibrad_candidates {
     float *fx, *fy, *fz, *fq;          /* as x, y, z, q of fibrad_nearby_group */
     uint32_t *sphere;
     int8_t (*periods)[4];
-    uint16_t *order; /* candidates by clearance */
+    uint16_t *order; /* numbers of candidates, by clearance */
     uint8_t *step;   /* the clearance of each in whole steps */
 } fibrad_candidates;
 

@@ -20,10 +20,10 @@
  * free paths. The others see little of walls. */
 #define WALL_NEAR 1.2
 
-/* Numbers of nearby directions differ by a Fibonacci number. The one whose product with the next is at least NEARBY
- * times the number of directions leads to the nearest directions. */
+/* Numbers of nearby directions differ by a Fibonacci number. The nearest directions belong to the least Fibonacci
+ * number whose product with the next one is at least NEARBY times the number of directions. */
 #define NEARBY 1.4
-/* How many windows a row remembers: more than two steps to a window of a nearby direction. */
+/* A row remembers this many windows. It is more than twice `nearby` for any number of directions. */
 #define WINDOWS_RECENT 1024u
 
 /* The windows of a row. */
@@ -155,8 +155,8 @@ static void compare_window(beam_windows *windows, uint32_t from, uint32_t k, dou
     windows->roughness += difference * difference, windows->compared++;
 }
 
-/* The error of the open part of the row, if what windows have open differed at random as much as it differs between
- * nearby windows. Measured: docs/methods.md section 11. */
+/* The error that the open part of the row would have if windows differed at random, by as much as nearby windows do.
+ * docs/methods.md, section 11, compares it with errors. */
 static double open_error_of(const beam_windows *windows) {
     if (windows->compared == 0) return 0;
     return fibrad_sqrt(windows->roughness / (6.0 * windows->compared * windows->count));

@@ -12,7 +12,7 @@ typedef struct fibrad_segment {
     double even[3];    /* an even point of the unit sphere, by which a path goes on */
     double centre[3];  /* of the sphere met, from the centre of sphere i, in its radii; later: centre of the path [L] */
     uint32_t sphere;   /* place of the sphere met; FIBRAD_NONE: see open; later FIBRAD_NONE: a wall is met */
-    bool open;         /* whether no sphere is met; if there is no sphere either, it is not known what is met */
+    bool open;         /* no sphere is met. If false, and there is no sphere: it is not known what is met */
     uint32_t triangle; /* later: the triangle met; FIBRAD_NO_SIDE: none */
     uint32_t
         chosen;    /* later: the number of the segment from which path k goes on, k being the number of this segment */

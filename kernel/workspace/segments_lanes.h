@@ -56,7 +56,7 @@ static uint32_t LANED(first_disc)(const fibrad_discs *disc, double x, double y, 
     return first;
 }
 
-/* Takes the segments of window k. open: all spheres that the window could meet are known. */
+/* Takes the segments of window k. open: a part of the window is open, so all spheres that it meets have been found. */
 static void LANED(take_segments)(fibrad_workspace *work, const double frame[9], uint32_t k, bool open) {
     fibrad_segments *segments = &work->segments;
     const fibrad_discs *disc = &work->disc;

@@ -432,10 +432,10 @@ found=$(awk 'NR == FNR && /^0 / { beyond = $2; error = $3 }
 verdict "errors of rows have the means of the global vector ($found)" $?
 grep -q 'of atoms: \[1\] power, \[2\] beyond, \[3\] error' "$work/errors.log"
 verdict "values of atoms are named" $?
-grep -q 'WARNING: fix fibrad: what lies beyond the cutoff 3 could change the power of .* by [0-9.]* %, at step 0; a larger .cutoff' "$work/errors.log"
+grep -q 'WARNING: fix fibrad: what lies beyond the cutoff 3 could change the power of .* by [0-9.]* %, at step 0; take a larger .cutoff' "$work/errors.log"
 verdict "a warning of what a cutoff could change" $?
 run 1 many frozen.lmp data "$work/quarter.data" boundary "p p f" steps 0 strict "no gather 400"
-grep -q '499 particles, cutoff [0-9]' "$work/many.log" && grep -q 'a larger .gather. tells' "$work/many.log"
+grep -q '499 particles, cutoff [0-9]' "$work/many.log" && grep -q 'with a larger .gather. there is no cutoff' "$work/many.log"
 verdict "more particles than each rank may have get a cutoff" $?
 run 2 moved moving.lmp hot 1000 steps 200 capacity "moved 0.1"
 run 1 still frozen.lmp "${whole[@]}" steps 3 every 1000 strict "no moved 0.001"

@@ -695,7 +695,7 @@ void FixFibrad::make_rows(int which) {
 
 void FixFibrad::tell_strays() {
     const char *beyond =
-        config.cutoff > 0 ? "a larger `cutoff`, or none, tells what is there" : "a larger `gather` tells what is there";
+        config.cutoff > 0 ? "take a larger `cutoff`, or none" : "with a larger `gather` there is no cutoff";
     for (int kind = 0; kind < FIBRAD_REMARKS; kind++) {
         const char *remark = fibrad_insitu_remark(insitu, kind);
         if (*remark && !told[kind] && comm->me == 0)

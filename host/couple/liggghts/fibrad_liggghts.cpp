@@ -372,8 +372,8 @@ void follow_meshes(Driver *driver) {
 
 /* Says once of each kind of strays what was done with them. */
 void tell_strays(Driver *driver) {
-    const char *beyond = driver->options.config.cutoff > 0 ? "a larger --cutoff, or none, tells what is there"
-                                                           : "a larger --gather tells what is there";
+    const char *beyond = driver->options.config.cutoff > 0 ? "take a larger --cutoff, or none"
+                                                           : "with a larger --gather there is no cutoff";
     for (int kind = 0; kind < FIBRAD_REMARKS; ++kind) {
         const char *remark = fibrad_insitu_remark(driver->radiation, kind);
         if (*remark != 0 && !driver->told[kind] && rank() == 0)

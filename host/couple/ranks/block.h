@@ -25,7 +25,7 @@ static inline int fibrad_block_fit(fibrad_block *block, size_t count, size_t siz
     return FIBRAD_OK;
 }
 
-/* Gives back what `count` elements of `size` bytes do not need. */
+/* Gives back the memory that is more than `count` elements of `size` bytes need. */
 static inline void fibrad_block_trim(fibrad_block *block, size_t count, size_t size) {
     void *at = realloc(block->at, (count + 1) * size);
     if (!at) return;

@@ -11,7 +11,8 @@
 
 enum { VOTERS = 1000 };
 
-/* Keeps a message for the simulation to print. That a mesh is not closed is no warning there: a floor is not. */
+/* Keeps a message for the simulation to print, without its word `warning`. It may say that a mesh is not closed, and a
+ * floor need not be. */
 static void keep_line(void *context, const char *line) {
     struct mesh_walls *walls = context;
     const size_t length = strlen(walls->messages);
