@@ -3,7 +3,6 @@
 #ifndef FIBRAD_NEAR_NEAR_LANES_H
 #define FIBRAD_NEAR_NEAR_LANES_H
 
-#include "base/dispatch.h"
 #include "base/lanes/laned.h"
 #include "workspace/workspace.h"
 
@@ -12,11 +11,6 @@ void LANED(fibrad_near_extend)(fibrad_workspace *work);
 
 /* A list with all spheres of the first shell that come before the window of direction w. The first shell must exist. */
 const fibrad_sight *LANED(fibrad_near_sight)(fibrad_near *near, const double w[3]);
-
-/* Whether a listed sphere certainly reaches into the hull of two spheres: that of the row, and one with the centre c
- * and the radius r. False: a sphere may reach into it or not. */
-typedef bool fibrad_near_between_function(const fibrad_near *near, const double c[3], double r);
-FIBRAD_DECLARE_VERSIONS(fibrad_near_between_function, fibrad_near_between);
 
 /* Appends the discs of near spheres that overlap the window and lie ahead to work->disc. found: number of spheres.
  * Their places are listed in work->disc.near. Discs beyond the capacity are only counted. */

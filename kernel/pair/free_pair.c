@@ -3,7 +3,6 @@
 #include "base/constants.h"
 #include "base/random.h"
 #include "base/vector.h"
-#include "near/near_lanes.h"
 #include "scene/grid_walk.h"
 #include "scene/walls.h"
 

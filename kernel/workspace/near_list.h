@@ -2,6 +2,7 @@
 #ifndef FIBRAD_WORKSPACE_NEAR_LIST_H
 #define FIBRAD_WORKSPACE_NEAR_LIST_H
 
+#include "base/dispatch.h"
 #include "base/port.h"
 
 #define FIBRAD_SHELLS 8
@@ -48,5 +49,10 @@ static inline bool fibrad_near_pays(fibrad_near *near) {
     near->asked = 0;
     return true;
 }
+
+/* Whether a listed sphere certainly reaches into the hull of two spheres: that of the row, and one with the centre c
+ * and the radius r. False: a sphere may reach into it or not. */
+typedef bool fibrad_near_between_function(const fibrad_near *near, const double c[3], double r);
+FIBRAD_DECLARE_VERSIONS(fibrad_near_between_function, fibrad_near_between);
 
 #endif
