@@ -201,8 +201,8 @@ int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
  *   Output   solved: 1 if the residual is below the tolerance, or after about sweeps_max sweeps; else 0
  *   Errors   _ARGUMENT
  *            _STATE: a part was not swept, no solution was begun, or the scene has changed
- *            _UNSOLVABLE: nothing gives the level of the temperatures (see Level), and there are contacts, or the
- *            powers do not add up to zero
+ *            _UNSOLVABLE: nothing gives the level of the temperatures (see Level), and one of two things is so.
+ *            There are contacts, or the powers do not add up to zero
  *   Level    If all temperatures are unknown and nothing escapes, nothing gives the level of the temperatures. Then the
  *            mean emission, weighted by emissivity and area, is set to that of the surroundings. */
 int fibrad_heat_step(fibrad_heat *heat, int *solved);

@@ -20,13 +20,14 @@ static inline uint64_t fibrad_sort_next_gap(uint64_t gap) { return gap == 1 ? 0 
 static inline uint64_t *fibrad_sort_keys(uint64_t *key, uint64_t *other, uint32_t count, int low, uint64_t largest) {
     int bits = 0;
     while (bits < 64 - low && largest >> bits != 0) bits++;
-    const int passes = (bits + 7) / 8, wide = passes > 0 ? (bits + passes - 1) / passes : 0, digits = 1 << wide;
+    const int passes = (bits + 7) / 8, wide = passes > 0 ? (bits + passes - 1) / passes : 0;
+    const uint64_t last = (UINT64_C(1) << wide) - 1; /* of the digits of a pass */
     for (int pass = 0; pass < passes; pass++) {
         const int shift = low + pass * wide;
         uint32_t end[257] = {0};
-        for (uint32_t k = 0; k < count; k++) end[(key[k] >> shift & (uint64_t)(digits - 1)) + 1]++;
-        for (int digit = 1; digit < digits; digit++) end[digit] += end[digit - 1];
-        for (uint32_t k = 0; k < count; k++) other[end[key[k] >> shift & (uint64_t)(digits - 1)]++] = key[k];
+        for (uint32_t k = 0; k < count; k++) end[(key[k] >> shift & last) + 1]++;
+        for (uint64_t digit = 1; digit <= last; digit++) end[digit] += end[digit - 1];
+        for (uint32_t k = 0; k < count; k++) other[end[key[k] >> shift & last]++] = key[k];
         uint64_t *sorted = other;
         other = key, key = sorted;
     }
