@@ -98,7 +98,7 @@ COUNTING       = $(filter-out %/libfibrad.a,$(LIBRARIES)) $(BUILD)/counted/libfi
 COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
-.PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols calls format house structures bench bench-quick \
+.PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols calls format house map structures bench bench-quick \
     bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed sanitized threads clang-warnings lint cppcheck nightly deps deps-ci man install install-lib clean help need-libraries need-check
 
 ## all: build/fibrad and the libraries (the default)
@@ -251,10 +251,14 @@ programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
 ## check: the symbols of libfibrad.a, calls among files, the format of the sources, and the house
 check: symbols calls format house
 
-## house: folders, includes, names and words, the map of docs/design.md, and what `make structures` writes
+## map: folders of kernel and host and what they are for; ROOM=heat: the files of one folder
+ROOM =
+map:
+	@python3 tests/rooms.py map $(ROOM)
+
+## house: circles of folders and files, links of the pages, and what `make structures` writes
 house:
 	tests/check_house.sh
-	tests/check_map.sh
 	python3 host/python/write_structures.py --check $(HEADERS)
 
 ## structures: what Python and Fortran need of the public headers, after a change of these
@@ -412,11 +416,12 @@ cppcheck:
 	cppcheck --quiet -j 2 --std=c11 --error-exitcode=1 --enable=warning,portability,performance \
 	    --suppress=missingIncludeSystem --suppressions-list=.cppcheck $(LINT_FLAGS) $(LINT_SCALAR) kernel host
 
-## nightly: long checks that .ci/run leaves out: all bits, all sanitizers, clang-tidy, benches, longer fuzzing
+## nightly: long checks that .ci/run leaves out: all bits, all sanitizers, clang-tidy, benches, broken lines, longer fuzzing
 nightly: bits threads lint bench-quick programs
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
 	BUILD=$(BUILD) tests/check_tables.sh all
 	BUILD=$(BUILD) NIGHTLY=1 $(BUILD)/tests/test_reproduce
+	$(MAKE) mutate
 	BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/couple/check_couple.sh all
 	BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/couple/check_lammps.sh all
 	$(MAKE) sanitized $(ALL_ISAS) OF_MEMORY="$(filter-out accuracy furnace reference reproduce,$(TESTS:tests/test_%.c=%))"
