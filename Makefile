@@ -98,7 +98,7 @@ COUNTING       = $(filter-out %/libfibrad.a,$(LIBRARIES)) $(BUILD)/counted/libfi
 COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
-.PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols calls format house map structures bench bench-quick \
+.PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols calls format house budget map structures bench bench-quick \
     bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed sanitized threads clang-warnings lint cppcheck nightly deps deps-ci man install install-lib clean help need-libraries need-check
 
 ## all: build/fibrad and the libraries (the default)
@@ -256,9 +256,14 @@ ROOM =
 map:
 	@python3 tests/rooms.py map $(ROOM)
 
-## house: circles of folders and files, links of the pages, and what `make structures` writes
+## budget: write today's code lines of folders and words of pages into tests/budget.txt
+budget:
+	python3 tests/rooms.py write
+
+## house: circles of folders and files, links of pages, tests/budget.txt, and what `make structures` writes
 house:
 	tests/check_house.sh
+	python3 tests/rooms.py check
 	python3 host/python/write_structures.py --check $(HEADERS)
 
 ## structures: what Python and Fortran need of the public headers, after a change of these
