@@ -241,6 +241,16 @@ test: deps
 	@BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" \
 	    tests/run.sh $(COUPLE_SCRIPTS) $(SCRIPTS) $(TEST_PROGRAMS)
 
+## test-ROOM: build and run the tests of one room, in seconds: test-heat, test-mesh, test-read ...; tests/rooms.txt has all
+ROOMS   = $(shell sed -n 's/^\([a-z]*\) .*/\1/p' tests/rooms.txt)
+of_room = $(shell sed -n 's/^$(1) //p' tests/rooms.txt)
+scripts_of  = $(addprefix tests/,$(filter %.sh,$(call of_room,$(1))))
+programs_of = $(patsubst %.c,$(BUILD)/%,$(wildcard $(patsubst %,tests/test_%.c,$(filter-out %.sh,$(call of_room,$(1))))))
+test-%:
+	@test -n "$(call of_room,$*)" || { echo "There is no room $*. The rooms are $(ROOMS)." >&2; exit 1; }
+	@$(MAKE) -s --no-print-directory $(BUILD)/fibrad $(call programs_of,$*) $(if $(call scripts_of,$*),all man)
+	@BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/run.sh $(call scripts_of,$*) $(call programs_of,$*)
+
 ## run-programs: build and run the test programs without the scripts
 run-programs: programs
 	@BUILD=$(BUILD) tests/run.sh $(TEST_PROGRAMS)
@@ -493,4 +503,5 @@ clean:
 ## help: this list
 help:
 	@sed -n 's/^## \([^:]*\): /  \1\t/p' Makefile $(wildcard host/*/*.mk host/*/*/*.mk) | expand -t 16
+	@echo "  Rooms of test-ROOM: $(ROOMS)" | fold -s -w 118
 	@echo "  Settable: CC AR CFLAGS LDFLAGS PREFIX DESTDIR BUILD ISAS TABLES PIC WERROR"
