@@ -80,7 +80,6 @@
  *   rows       a collection of rows                     fibrad_rows_add, _clear, _read
  *   matrix     all rows: averaged, reciprocal, closed   fibrad_matrix_size, _init, _average, _close, _read,
  *                                                       _reciprocity
- *   drift      which rows may stay when spheres move    fibrad_drift_row, _partners
  *   exchange   factors after reflections (grey)         fibrad_exchange_row, _wall, _wall_mean, _displacement
  *              spheres that conduct                     fibrad_relative_conductivity, fibrad_node_emissivity
  *              powers from rows                         fibrad_rows_flow, fibrad_flow
@@ -841,36 +840,6 @@ int fibrad_matrix_read(const fibrad_matrix *matrix, fibrad_factors *factors);
  *            _STATE: the matrix is not closed
  *   Cost     O(entries). Uses memory of the matrix: one call at a time */
 int fibrad_matrix_reciprocity(const fibrad_matrix *matrix, double *largest);
-
-/* ---- drift ----------------------------------------------------------------------------------------------------- */
-/* Estimates the error of an old row after the spheres have moved:
- *   error = 2 sqrt(sum over j of (F_ij delta_ij/w_ij)^2),   F_ij = r_j^2/(4 d^2),   w_ij = min(r_j, max(d - r_j, r_i)).
- * delta_ij [L] is the change of the vector from sphere i to sphere j. d [L] is the smaller one of the old and the new
- * distance of their centres. j runs over the spheres that the old row sees. Errors of successive steps may be added up.
- * Walls are not counted. Spheres that come into sight are not counted here: fibrad_drift_partners counts them.
- *   Input    before, now: the scene of the row and the present scene. Both have the same spheres and the same periods.
- *            i: 0 to spheres - 1
- *            col[length]: columns of the old row
- *   Output   error
- *   Errors   _ARGUMENT, _STATE
- *   Cost     10 ns per entry
- *   Source   docs/methods.md section 10 */
-int fibrad_drift_row(const fibrad_scene *before, const fibrad_scene *now, uint32_t i, const uint32_t *col,
-                     uint32_t length, double *error);
-
-/* Raises the errors of old rows j, once row i is new. If F_ij has grown, F_ji has grown as well, but the old row j
- * still has the smaller F_ji. For each j for which F_ij has more than doubled,
- *   error[j] = sqrt(error[j]^2 + (2 (F_ij new - F_ij old) A_i/A_j)^2).
- * The last bits of `error` depend on the order of the calls.
- *   Input    i: 0 to spheres - 1
- *            before, row: the old and the new row i. Both have col, f and length. Columns ascend, and f is 0 to 2.
- *            error[spheres]: errors of all rows
- *   Output   error[spheres]
- *   Errors   _ARGUMENT, _STATE
- *   Cost     10 ns per entry
- *   Source   docs/methods.md section 10 */
-int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row *before, const fibrad_row *row,
-                          double *error);
 
 /* ---- exchange -------------------------------------------------------------------------------------------------- */
 /* How a row of exchange factors is computed. The exchange factor D_ij is the fraction of the emission of sphere i that

@@ -501,34 +501,6 @@ static int hash_part(const struct scene *s, int isa) {
     return 0;
 }
 
-/* Drift in a bed in which a few spheres have moved: some a little, some so far that they come into sight of others. */
-static int hash_moved(const struct scene *s, int isa) {
-    static unsigned char now_memory[FIBRAD_SCENE_BYTES(SPHERES)];
-    static uint32_t old_col[SPHERES];
-    static double old_f[SPHERES], error[SPHERES], seen[SPHERES];
-    fibrad_scene *before, *now;
-    if (set_up(s, isa, &before)) return 1;
-    for (uint32_t i = 0; i < s->n; i += 29) x[i] += random_in(-.02, .02), z[i] += i % 2 ? .35 : .01;
-    if (scene_at(now_memory, sizeof now_memory, s, isa, &now)) return 1;
-    const fibrad_beam_rule rule = {.directions = 20, .points = 64};
-    for (uint32_t i = 0; i < s->n; i++) seen[i] = 0;
-    for (uint32_t i = 0; i < s->n; i++) {
-        fibrad_row old = {.col = old_col, .f = old_f, .capacity = SPHERES}, row = row_here();
-        if (fibrad_beam_row(before, &work, i, &rule, &old) != FIBRAD_OK ||
-            fibrad_beam_row(now, &work, i, &rule, &row) != FIBRAD_OK ||
-            fibrad_drift_row(before, now, i, old.col, old.length, &error[i]) != FIBRAD_OK ||
-            fibrad_drift_partners(now, i, &old, &row, seen) != FIBRAD_OK)
-            return 1;
-    }
-    hash_begin();
-    for (uint32_t i = 0; i < s->n; i++) hash_number(error[i]);
-    tell(s->name, "moved.error");
-    hash_begin();
-    for (uint32_t i = 0; i < s->n; i++) hash_number(seen[i]);
-    tell(s->name, "moved.seen");
-    return 0;
-}
-
 static unsigned char heat_memory[12 << 20];
 
 /* Traces the beams of all surfaces. */
@@ -662,7 +634,6 @@ int main(int argc, char **argv) {
     }
     failed |= hash_furnace();
     make(&scenes[1]);
-    failed |= hash_moved(&scenes[1], isa);
     for (size_t k = 0; k < sizeof small / sizeof *small; k++) {
         make(&small[k]);
         failed |= hash_small(&small[k], isa);
