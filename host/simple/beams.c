@@ -69,7 +69,7 @@ int fibrad_bed_find(fibrad_bed *bed, const fibrad_heat_sources *given) {
     if (!status) status = make_places(bed, &sources);
     if (!status) status = fibrad_heat_begin(bed->heat, &sources);
     for (uint64_t sweeps = 0; !status && !solved; ++sweeps) {
-        status = fibrad_team_report(&bed->team, "sweeps", sweeps, 0);
+        if (!sources.storage) status = fibrad_team_report(&bed->team, "sweeps", sweeps, 0); /* steps are shown, too */
         if (!status) status = fibrad_team_run(&bed->team, NULL, PARTS, 1, sweep_beams, bed->heat, NULL);
         if (!status) status = fibrad_heat_step(bed->heat, &solved);
     }
