@@ -149,7 +149,7 @@ fibrad_run bed_options_run(struct bed_options *options);
  * bed_status. */
 int bed_options_status(struct bed_options *options, const struct bed *bed, int status, const fibrad_fault *fault);
 
-/* Makes the bed of the library, and warns if spheres and walls contradict each other. Free *made with fibrad_bed_free.
+/* Makes the bed of the library, and warns if spheres and walls contradict each other. Free *made with fibrad_bed_matrix_free.
  * Returns the exit status, as bed_options_status. */
 int bed_options_make(struct bed_options *options, const struct bed *bed, const struct walls *walls, fibrad_bed **made);
 
