@@ -115,7 +115,7 @@ typedef enum fibrad_status {
     FIBRAD_E_ARGUMENT = -1,     /* A pointer is null, or a value is out of its range, NaN or infinite. */
     FIBRAD_E_SIZE = -2,         /* The block is smaller than the `_size` function says. */
     FIBRAD_E_CAPACITY = -4,     /* An output is too small. `length` or memory.needed is the size that suffices. */
-    FIBRAD_E_TABLE = -5,        /* There is no built-in set of so many points. */
+    FIBRAD_E_TABLE = -5,        /* There is no set of so many points or lines. */
     FIBRAD_E_GEOMETRY = -6,     /* A centre lies inside another sphere, or a sphere reaches beyond an opening. */
     FIBRAD_E_WORK = -7,         /* Fixed work memory is too small. work.memory.needed is the size that suffices. */
     FIBRAD_E_STATE = -8,        /* A call is missing, too early or repeated, or the scene was made anew. */
@@ -498,7 +498,8 @@ typedef struct fibrad_row {
  * cylinder and no triangles, spheres near these walls or near the border of the bed see them in both senses. */
 typedef struct fibrad_line_set fibrad_line_set;
 
-/* The number of lines of the smallest built-in set with at least `lines` lines. If there is none, `lines`.
+/* The number of lines of the smallest set with at least `lines` lines. 0: there is none. There are sets of 8, 11, 16, 23,
+ * 32, 45, 55, 64, 91, 100, 128, 181, 233, 256, 362, 512, 724 and 1024 lines.
  *   Errors   none */
 uint32_t fibrad_line_set_lines(uint32_t lines);
 
@@ -512,8 +513,8 @@ size_t fibrad_line_set_size(uint32_t lines);
  *            lines: FIBRAD_DIRECTIONS_MIN to FIBRAD_LINES_EVEN_MAX
  *            turn: seed of a random rotation of all lines together; 0: no rotation
  *   Output   set: a pointer into memory
- *   Errors   _ARGUMENT, _SIZE
- *   Cost     microseconds; up to 1 s if this build has no built-in set of so many lines
+ *   Errors   _ARGUMENT, _SIZE, _TABLE
+ *   Cost     microseconds
  *   Source   docs/methods.md section 12 */
 int fibrad_line_set_init(fibrad_line_set **set, void *memory, size_t size, uint32_t lines, uint64_t turn);
 

@@ -228,9 +228,9 @@ int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
 /* Masks take the place of the points of a window: 16, 32 and 64 chords for 64, 128 and 256 points. */
 enum { POINTS_PER_CHORD = 4 };
 
-/* Rows along lines serve a matrix. With more lines than sets are made of, rows have directions. */
+/* Rows along lines serve a matrix. */
 static bool takes_lines(const fibrad_beam_rule *beam) {
-    return !beam->lines && beam->directions <= FIBRAD_LINES_EVEN_MAX;
+    return !beam->lines && beam->directions <= FIBRAD_DIRECTIONS_AS_LINES;
 }
 
 /* The default number of lines. Small scenes have more lines, of which nobody feels the time: this many windows take
@@ -243,8 +243,9 @@ static uint32_t default_lines(const fibrad_scene_facts *facts) {
     return lines < FIBRAD_LINES_EVEN_MAX ? lines : FIBRAD_LINES_EVEN_MAX;
 }
 
-/* Makes a rule with so many lines. *block: out: to be freed. */
+/* Makes a rule with so many lines, or with those of the largest set. *block: out: to be freed. */
 static int take_lines(fibrad_beam_rule *rule, uint32_t lines, void **block) {
+    if (lines > FIBRAD_LINES_EVEN_MAX) lines = FIBRAD_LINES_EVEN_MAX;
     const size_t size = fibrad_line_set_size(lines);
     fibrad_line_set *set = NULL;
     if (!size) return FIBRAD_E_ARGUMENT;

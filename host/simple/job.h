@@ -50,8 +50,12 @@ typedef struct fibrad_job_report {
 int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, const unsigned char *wanted, double *error,
                     fibrad_job_report *report);
 
+/* The matrix along the largest set of lines errs as much as a matrix along so many directions. */
+#define FIBRAD_DIRECTIONS_AS_LINES (FIBRAD_LINES_EVEN_MAX / 2 * 3)
+
 /* Empties the collections of the team and computes all rows of a matrix into them, along as many lines as the rule has
- * directions. With more than FIBRAD_LINES_EVEN_MAX of them, rows have directions. beam NULL: the defaults.
+ * directions, at most FIBRAD_LINES_EVEN_MAX. With more than FIBRAD_DIRECTIONS_AS_LINES, rows have directions. beam
+ * NULL: the defaults.
  * Errors: as fibrad_job_rows. */
 int fibrad_job_line_rows(fibrad_job *job, const fibrad_beam_rule *beam, fibrad_job_report *report);
 
