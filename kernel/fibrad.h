@@ -231,7 +231,7 @@ typedef struct fibrad_plane {
 /* A cylinder about an axis parallel to x, y or z. */
 typedef struct fibrad_cylinder {
     double x, y, radius; /* L, position on the two other axes, in the order x, y, z; and radius above 0 */
-    int axis;            /* of the cylinder, 0: z, 1: x, 2: y */
+    int along;           /* the axis to which it is parallel, 0: x, 1: y, 2: z */
 } fibrad_cylinder;
 
 /* A wall. The number of a wall is its index in fibrad_scene_config.wall.
@@ -498,9 +498,8 @@ typedef struct fibrad_row {
  * cylinder and no triangles, spheres near these walls or near the border of the bed see them in both senses. */
 typedef struct fibrad_line_set fibrad_line_set;
 
-/* The number of lines of the smallest set with at least `lines` lines. 0: there is none. There are sets of 8, 11, 16, 23,
- * 32, 45, 55, 64, 91, 100, 128, 181, 233, 256, 362, 512, 724 and 1024 lines.
- *   Errors   none */
+/* The number of lines of the smallest set with at least `lines` lines. 0: there is none. There are sets of 8, 11, 16,
+ * 23, 32, 45, 55, 64, 91, 100, 128, 181, 233, 256, 362, 512, 724 and 1024 lines. Errors   none */
 uint32_t fibrad_line_set_lines(uint32_t lines);
 
 /* Bytes that fibrad_line_set_init needs.

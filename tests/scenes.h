@@ -127,7 +127,7 @@ static inline fibrad_wall plane_at(int axis, int upper, double at) {
 }
 
 static inline fibrad_wall cylinder_at(double x, double y, double radius) {
-    return (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {x, y, radius, 0}};
+    return (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {x, y, radius, 2}};
 }
 
 /* A point whose coordinate on axis a was that on axis a - turn; walls and beds, too. Wall and point stay together. */
@@ -139,7 +139,7 @@ static inline void turned_point(const double at[3], int turn, double turned[3]) 
 static inline fibrad_wall turned_wall(fibrad_wall wall, int turn) {
     const double x = wall.cylinder.x, y = wall.cylinder.y;
     wall.plane.axis = (wall.plane.axis + turn) % 3;
-    wall.cylinder.axis = turn;
+    wall.cylinder.along = (2 + turn) % 3;
     if (turn == 2) wall.cylinder.x = y, wall.cylinder.y = x;
     return wall;
 }

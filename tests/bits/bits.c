@@ -160,7 +160,7 @@ static int scene_part(void *memory, size_t size, const struct scene *s, int isa,
                      (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = {(int)k / 2, k % 2, k % 2 ? high : low}});
     if (s->bounds == CAN)
         add_wall(wall, 6,
-                 (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {middle, middle, .75 * (high - low), 0}});
+                 (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {middle, middle, .75 * (high - low), 2}});
     fibrad_scene_config config = part != NULL ? *part : (fibrad_scene_config){0};
     config.isa = isa, config.wall = wall, config.walls = walls;
     config.period[0] = config.period[1] = across, config.period[2] = s->bounds == PERIODIC ? period : 0;

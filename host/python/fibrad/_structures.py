@@ -14,7 +14,7 @@ class Plane(Structure):
 
 
 class Cylinder(Structure):
-    _fields_ = [("x", c_double), ("y", c_double), ("radius", c_double), ("axis", c_int)]
+    _fields_ = [("x", c_double), ("y", c_double), ("radius", c_double), ("along", c_int)]
 
 
 class Wall(Structure):
