@@ -301,11 +301,11 @@ static inline bool same_bits_with(const fibrad_row *a, const fibrad_row *b, uint
 }
 
 /* A set of lines. free(*set) frees it. */
-static inline fibrad_line_set *lines_of(uint32_t lines, uint64_t turn) {
+static inline fibrad_line_set *lines_of(uint32_t lines) {
     const size_t size = fibrad_line_set_size(lines);
     fibrad_line_set *set = NULL;
     void *block = block_of(size);
-    assert_ok(fibrad_line_set_init(&set, block, size, lines, turn));
+    assert_ok(fibrad_line_set_init(&set, block, size, lines));
     ck_assert_ptr_eq(set, block);
     return set;
 }
@@ -355,7 +355,7 @@ static inline struct matrix matrix_by_beams(const fibrad_scene *scene, const fib
 
 /* The same along lines. chords: as in fibrad_beam_rule. */
 static inline struct matrix matrix_by_lines(const fibrad_scene *scene, uint32_t lines, uint32_t chords, bool raw) {
-    OWNED fibrad_line_set *set = lines_of(lines, 0);
+    OWNED fibrad_line_set *set = lines_of(lines);
     return matrix_by_beams(scene, &(fibrad_beam_rule){.lines = set, .chords = chords}, raw);
 }
 

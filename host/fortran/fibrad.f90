@@ -183,7 +183,6 @@ module fibrad
         type(c_ptr) :: emissivity = c_null_ptr, wall_emissivity = c_null_ptr, conductivity = c_null_ptr
         integer(c_int32_t) :: flights = 0, paths = 0
         integer(c_int64_t) :: seed = 0
-        real(c_double) :: cutoff = 0
     end type c_displacement_rule
 
     type, bind(C) :: c_displacement

@@ -65,7 +65,8 @@ static void note_row(const struct row_tasks *rows, int thread, const fibrad_row 
     fibrad_job_report *report = &rows->report[thread];
     if (rows->error) rows->error[row->sphere] = row->error;
     ++report->rows;
-    report->directions = row->directions > report->directions ? row->directions : report->directions;
+    const uint32_t taken = row->directions + row->lines; /* one of both is 0 */
+    report->directions = taken > report->directions ? taken : report->directions;
     report->fallbacks += row->fallbacks;
     const double sum = row->rows ? sum_of_row(row, rows->job->facts.walls) : 0;
     if (sum != 0) /* 0: there is no row, or the sphere emits nothing */
@@ -228,9 +229,9 @@ int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
 /* Masks take the place of the points of a window: 16, 32 and 64 chords for 64, 128 and 256 points. */
 enum { POINTS_PER_CHORD = 4 };
 
-/* Rows along lines serve a matrix. */
+/* Rows along lines serve a matrix. Directions alone can be turned. */
 static bool takes_lines(const fibrad_beam_rule *beam) {
-    return !beam->lines && beam->directions <= FIBRAD_DIRECTIONS_AS_LINES;
+    return !beam->lines && !beam->turn && beam->directions <= FIBRAD_DIRECTIONS_AS_LINES;
 }
 
 /* The default number of lines. Small scenes have more lines, of which nobody feels the time: this many windows take
@@ -250,8 +251,8 @@ static int take_lines(fibrad_beam_rule *rule, uint32_t lines, void **block) {
     fibrad_line_set *set = NULL;
     if (!size) return FIBRAD_E_ARGUMENT;
     *block = malloc(size);
-    const int status = *block ? fibrad_line_set_init(&set, *block, size, lines, rule->turn) : FIBRAD_E_MEMORY;
-    rule->lines = set, rule->directions = 0, rule->turn = 0;
+    const int status = *block ? fibrad_line_set_init(&set, *block, size, lines) : FIBRAD_E_MEMORY;
+    rule->lines = set, rule->directions = 0;
     return status;
 }
 

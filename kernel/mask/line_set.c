@@ -46,9 +46,9 @@ static void frame_of_line(uint32_t n, const double (*line)[3], uint32_t k, doubl
     fibrad_cross(w, frame, frame + 3);
 }
 
-int fibrad_line_set_init(fibrad_line_set **made, void *memory, size_t size, uint32_t lines, uint64_t turn) {
+int fibrad_line_set_init(fibrad_line_set **made, void *memory, size_t size, uint32_t lines) {
     fibrad_arena arena = {0};
-    fibrad_line_set fields = {.turn = turn};
+    fibrad_line_set fields = {0};
     if (made == NULL || memory == NULL || lines < FIBRAD_DIRECTIONS_MIN) return FIBRAD_E_ARGUMENT;
     const uint32_t n = fields.n = fibrad_lines_next(lines);
     if (n == 0) return FIBRAD_E_TABLE;
@@ -56,11 +56,8 @@ int fibrad_line_set_init(fibrad_line_set **made, void *memory, size_t size, uint
     if (status != FIBRAD_OK) return status;
     fibrad_line_set *set = line_set_layout(&arena, n, &fields);
     fibrad_lines_read(n, fields.line);
-    double rotation[9];
-    if (turn != 0) fibrad_rotation(turn, rotation);
     for (uint32_t k = 0; k < n; k++) {
         frame_of_line(n, (const double(*)[3])fields.line, k, fields.frame[k]);
-        if (turn != 0) fibrad_rotate_axes(rotation, fields.frame[k]);
         if (fields.chords == 0) continue;
         fibrad_masks masks;
         fibrad_masks_open_scalar(&masks, fields.chords, 1, k);

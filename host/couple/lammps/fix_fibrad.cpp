@@ -16,7 +16,6 @@
 extern "C" {
 #include "cli/message.h"
 }
-#include "contact/cylinder.h"
 
 #include <algorithm>
 #include <climits>

@@ -114,8 +114,7 @@ class SideView(Structure):
 
 class DisplacementRule(Structure):
     _fields_ = [("emissivity", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)),
-                ("conductivity", POINTER(c_double)), ("flights", c_uint32), ("paths", c_uint32), ("seed", c_uint64),
-                ("cutoff", c_double)]
+                ("conductivity", POINTER(c_double)), ("flights", c_uint32), ("paths", c_uint32), ("seed", c_uint64)]
 
 
 class Displacement(Structure):
