@@ -61,8 +61,7 @@
  *             objects. A fibrad_work or a fibrad_rows belongs to one thread at a time.
  *   Errors    A function that can fail returns FIBRAD_OK or a negative fibrad_status. After an error the outputs are
  *             as before, except where the function's comment says otherwise.
- *   Defaults  Set all fields of a structure to 0. Then set the fields that you need. The comment of a field says what
- *   0
+ *   Defaults  Set all fields of a structure to 0. Then set the fields that you need. The comment of a field says what 0
  *             means. "Zeroed" says what a structure of zeros means.
  *   Bits      Results depend on the arguments alone. They are the same to the bit for every number of threads,
  *             instruction set, compiler and optimisation level.
@@ -137,8 +136,7 @@ const char *fibrad_version(void);
 
 /* ---- memory ---------------------------------------------------------------------------------------------------- */
 /* A function of the caller that makes a block larger, as realloc does. block: NULL at the first call. It returns a
- * block of `size` bytes with the contents of the old block. If there is no memory, it returns NULL, and the old block
- * stays. */
+ * block of `size` bytes with the contents of the old block, or NULL if there is no memory. Then the old block stays. */
 typedef void *fibrad_resize(void *context, void *block, size_t size);
 
 /* A block of memory that the library fills and never frees. There are two kinds.
@@ -169,8 +167,7 @@ fibrad_isa fibrad_isa_best(void);
 /* "best", "scalar", "sse2", "avx2", "avx512" or "neon"; "?" for any other number. */
 const char *fibrad_isa_name(int isa);
 
-/* ---- direction, pair ---------------------------------------------------------------------------------------------
- * */
+/* ---- direction, pair ------------------------------------------------------------------------------------------- */
 /* Direction k of the spherical Fibonacci set of n directions: z = 1 - (2k + 1)/n, azimuth = k golden angles.
  *   Input    n: FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX
  *   Errors   _ARGUMENT
@@ -455,8 +452,7 @@ typedef struct fibrad_row {
 /* A set of lines, for the rows of a matrix. A row looks along one of the two directions of each line. These are spread
  * evenly, as the lines are. The factor between two spheres is the mean of both of their rows. So it counts both
  * directions of each line. Walls and surroundings are seen along one direction of each line. If the scene has planes,
- * openings or a cylinder and no triangles, spheres near these walls or near the border of the bed see them along both.
- * */
+ * openings or a cylinder and no triangles, spheres near these walls or near the border of the bed see both. */
 typedef struct fibrad_line_set fibrad_line_set;
 
 /* The number of lines of the smallest set with at least `lines` lines. 0: there is none. There are sets of 8, 11, 16,
@@ -604,9 +600,8 @@ int fibrad_rows_add(fibrad_rows *rows, const fibrad_row *row, uint32_t walls);
 /* Removes all rows and keeps the memory. NULL is allowed. */
 void fibrad_rows_clear(fibrad_rows *rows);
 
-/* Reads the next row of a collection, and returns 1, or 0 after the last row. The arrays of `row` lie in the
- * collection until a row is appended, and row->rows is NULL. The caller may write the columns, ascending, to number
- * spheres anew.
+/* Reads the next row of a collection, and returns 1, or 0 after the last row. The arrays of `row` lie in the collection
+ * until a row is appended, and row->rows is NULL. The caller may write the columns, ascending, to number spheres anew.
  *   Input    at: 0 at the first call; each call moves `at` to the next row
  *   Output   row */
 int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
@@ -680,8 +675,7 @@ typedef struct fibrad_factors {
 typedef struct fibrad_matrix fibrad_matrix; /* a matrix in the making */
 
 /* Bytes that fibrad_matrix_init needs: 24 for each entry of the rows, or 32 if all rows are along lines, and 104 + 8 b
- * for each sphere, b being the number of walls. With `raw` 12 for each entry and 48 + 8 b for each sphere. 0: an
- * error. */
+ * for each sphere, b being the number of walls. With `raw` 12 for each entry, 48 + 8 b for each sphere. 0: error. */
 size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                           const fibrad_matrix_rule *rule);
 
@@ -730,9 +724,8 @@ int fibrad_matrix_reciprocity(const fibrad_matrix *matrix, double *largest);
 /* How a row of exchange factors is computed. The exchange factor D_ij is the fraction of the emission of sphere i that
  * sphere j absorbs, directly or after diffuse reflections. All surfaces are grey and diffuse.
  *
- * The first segment of all radiation is its way from sphere i to the surface that it meets. This is a beam row: with
- * 64 points per window up to 49 directions, with 256 up to 144, with exact areas beyond. Paths follow what is
- * reflected.
+ * The first segment of all radiation is its way from sphere i to the surface that it meets. This is a beam row: with 64
+ * points per window up to 49 directions, with 256 up to 144, with exact areas beyond. Paths follow what is reflected.
  *
  * Further paths may be followed elsewhere, and their results given as `known`. Paths that begin at walls
  * (fibrad_exchange_wall) can take the place of further paths. Let a wall have the area A_b and the emissivity e_b. If
@@ -853,13 +846,12 @@ typedef struct fibrad_displacement {
  *
  * With rule->conductivity spheres conduct, and the net power of every sphere is 0. A path begins with an arrival at
  * sphere i, evenly over its surface. At each sphere the path is reflected, or it is absorbed and given off at another
- * point of the sphere. The way from one arrival to the next is a flight. With n = rule->flights a path has 2 n of
- * them. Let d[k] be the displacement of flight k along an axis. Then `square` is the mean over all paths and k = 1 to
- * n of
+ * point of the sphere. The way from one arrival to the next is a flight. With n = rule->flights a path has 2 n
+ * flights. Let d[k] be the displacement of flight k along an axis. Then `square` is the mean over all paths and over k
+ * = 1 to n of
  *   d[k] (d[k] + 2 (d[k+1] + ... + d[k+n-1]) + d[k+n]).
  * This is the mean square displacement of a long path over its number of flights, but for the correlation of flights
- * that are more than n apart. In a cubic lattice of emissivity 1 that makes 0.2 % with n = 12 at k* = 0.1, and with n
- * = 24 at k* = 0.01.
+ * that are more than n apart. In a cubic lattice of emissivity 1 it is 0.2 % with 12 at k* = 0.1 and 24 at k* = 0.01.
  *   Input    i: 0 to spheres - 1
  *            rule: needed
  *   Output   displacement

@@ -3,8 +3,7 @@
  * A surface is a sphere or a wall. Each surface has a given temperature, or it gives off a given power and its
  * temperature is found.
  *
- * Method     Surfaces are cut into patches. A beam connects two patches that see each other, and carries radiation
- * both
+ * Method     Surfaces are cut into patches. A beam connects two patches that see each other, and carries radiation both
  *            ways. Hence nothing flows at equal temperatures, and all powers add up to zero. Each patch has a
  *            radiosity J = eps E + (1 - eps) H. Here E = sigma T^4, and H is the radiation that arrives. Conjugate
  *            gradients find J, first on fours (four patches together), then on the patches themselves. Each step of
@@ -33,12 +32,11 @@ extern "C" {
 /* How finely the problem is resolved. A field of 0 stands for its default. The default of wall_rays is the largest of
  * three numbers: FIBRAD_WALL_RAYS_DEFAULT, 6 * directions * points, and 8 times the number of patches of all walls. */
 typedef struct fibrad_heat_config {
-    uint32_t
-        directions;   /* of windows of each sphere, FIBRAD_DIRECTIONS_MIN to _MAX; 0: FIBRAD_HEAT_DIRECTIONS_DEFAULT */
-    uint32_t points;  /* of each window, one beam each: 64, 128 or 256; 0: FIBRAD_HEAT_POINTS_DEFAULT */
-    uint32_t patches; /* of each sphere: 24, 96 or 384; 0: FIBRAD_HEAT_PATCHES_DEFAULT */
-    uint32_t parts;   /* of a sweep, 1 to FIBRAD_HEAT_PARTS_MAX; results depend on it by rounding; 0: _DEFAULT */
-    uint32_t wall_rays; /* least number of rays from all walls together, at most FIBRAD_WALL_RAYS_MAX; 0: see above */
+    uint32_t directions; /* of each sphere, FIBRAD_DIRECTIONS_MIN to _MAX; 0: FIBRAD_HEAT_DIRECTIONS_DEFAULT */
+    uint32_t points;     /* of each direction, where beams begin: 64, 128 or 256; 0: FIBRAD_HEAT_POINTS_DEFAULT */
+    uint32_t patches;    /* of each sphere: 24, 96 or 384; 0: FIBRAD_HEAT_PATCHES_DEFAULT */
+    uint32_t parts;      /* of a sweep, 1 to FIBRAD_HEAT_PARTS_MAX; results depend on it by rounding; 0: _DEFAULT */
+    uint32_t wall_rays;  /* least number of rays from all walls together, at most FIBRAD_WALL_RAYS_MAX; 0: see above */
 } fibrad_heat_config;
 
 /* A heat problem: the patches, beams and radiosities of a scene. */
