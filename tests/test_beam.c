@@ -210,20 +210,6 @@ TEST(points_agree_with_areas) {
     ck_assert_double_lt(sqrt(square / 20), 5e-4);
 }
 
-TEST(same_bits_in_every_instruction_set) {
-    OWNED_BED bed = packing(300, .5, 1.5, .55, 3, true);
-    const struct isas isas = isas_there();
-    for (uint32_t points = 0; points <= 128; points += 128)
-        for (uint32_t i = 0; i < bed.n; i += 23) {
-            fibrad_beam_rule rule = {.directions = 100, .points = points};
-            OWNED_ROW scalar = beam(&bed, i, rule, FIBRAD_ISA_SCALAR);
-            for (int s = 1; s < isas.count; s++) {
-                OWNED_ROW row = beam(&bed, i, rule, isas.set[s]);
-                ck_assert_msg(same_bits(&scalar, &row), "row %u differs in %s", i, fibrad_isa_name(isas.set[s]));
-            }
-        }
-}
-
 /* With the least memory there is room for few near spheres, so the others are looked up along each direction. This
  * changes the time alone, not the rows. */
 TEST(work_memory_is_a_matter_of_speed) {

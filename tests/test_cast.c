@@ -204,27 +204,6 @@ TEST(seeds_give_other_rays) {
     }
 }
 
-TEST(same_bits_in_every_instruction_set) {
-    OWNED_BED bed = packing(300, .5, 1.5, .55, 3, true);
-    const struct isas isas = isas_there();
-    for (int random = 0; random <= 1; random++)
-        for (uint32_t i = 0; i < bed.n; i += 23) {
-            const fibrad_cast_rule rule = {1001, random, i, 0};
-            double length[2][300], angle[2][300];
-            for (int k = 0; k < isas.count; k++) {
-                OWNED fibrad_scene *scene = scene_of(&bed, isas.set[k]);
-                OWNED_WORK work = work_growing();
-                OWNED_ROW scalar = cast(&bed, i, rule, FIBRAD_ISA_SCALAR), row = row_of(bed.n);
-                const int which = k > 0;
-                const fibrad_cast_means means = {length[which], angle[which]};
-                assert_ok(fibrad_cast_row(scene, &work, i, &rule, &row, &means));
-                ck_assert_msg(same_bits(&scalar, &row), "row %u differs in %s", i, fibrad_isa_name(isas.set[k]));
-                ck_assert_mem_eq(length[0], length[which], row.length * sizeof(double));
-                ck_assert_mem_eq(angle[0], angle[which], row.length * sizeof(double));
-            }
-        }
-}
-
 /* Spheres are kept near, or they are looked up along each ray for want of room. The rows are the same, also if spheres
  * overlap. */
 TEST(room_is_a_matter_of_speed) {

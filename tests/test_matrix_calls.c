@@ -383,34 +383,6 @@ TEST(collections_in_fixed_memory_say_what_they_lack) {
     free(block);
 }
 
-TEST(collections_grow_when_asked) {
-    OWNED_BED bed = packing(60, .5, 1.5, .4, 3, false);
-    OWNED fibrad_scene *scene = scene_of(&bed, 0);
-    const fibrad_beam_rule rule = {.directions = 13};
-    OWNED_ROWS plenty = rows_by_beams(scene, &rule);
-    OWNED_MATRIX expected = matrix_of(scene, &plenty, 1, NULL);
-    for (uint32_t refuse = 0; refuse < 5; refuse++) {
-        struct source source = {.refuse_at = refuse};
-        fibrad_rows rows = {.memory = {.resize = source_resize, .context = &source}};
-        OWNED_WORK work = work_growing();
-        uint32_t refused = 0;
-        for (uint32_t i = 0; i < bed.n; i++) {
-            int status = fibrad_beam_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows});
-            if (status == FIBRAD_E_MEMORY) {
-                refused++;
-                ck_assert_uint_eq(rows.count, i);
-                status = fibrad_beam_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows});
-            }
-            assert_ok(status);
-        }
-        ck_assert_uint_eq(refused, refuse > 0 && source.calls >= refuse);
-        ck_assert(same_collection(&rows, &plenty));
-        OWNED_MATRIX m = matrix_of(scene, &rows, 1, NULL);
-        ck_assert(matrix_same_bits(&m.factors, &expected.factors));
-        free(source.whole);
-    }
-}
-
 /* Rows come back as they were appended, also empty ones. Their columns may be written. */
 TEST(rows_are_read_as_they_were_appended) {
     uint32_t col[] = {3, 5, 9};

@@ -59,42 +59,6 @@ static void move(struct bed *to, const struct bed *from, double factor, const do
 
 /* ---- scale and place -------------------------------------------------------------------------------------------- */
 
-TEST(pairs_at_every_scale) {
-    double two = 0, ten = 0;
-    for (uint64_t k = 0; k < rounds(200, 20000); k++) {
-        double r1 = pow(10, random_in(1, -3, 0)), r2 = pow(10, random_in(1, -3, 0));
-        double gap = k % 2 ? pow(10, random_in(1, -16, 3)) : -fmin(r1, r2) * pow(10, random_in(1, -16, .3));
-        double f = exact(r1, r2, gap);
-        for (int e = -400; e <= 400; e += all() ? 1 : 40) two += exact(ldexp(r1, e), ldexp(r2, e), ldexp(gap, e)) != f;
-        for (int e = -100; e <= 100; e += 10) {
-            double s = pow(10, e);
-            worst_of(&ten, fabs(exact(r1 * s, r2 * s, gap * s) / f - 1));
-        }
-    }
-    report("pairs times 2^k, k = -400 ... 400: results with other bits", two, 0);
-    report("pairs times 10^k, k = -100 ... 100: relative", ten, 1e-13);
-}
-
-TEST(rows_at_every_scale) {
-    static const double nowhere[3] = {0, 0, 0};
-    OWNED_BED bed = packing(100, .5, 1.5, .5, 3, false), scaled = packing(100, .5, 1.5, .5, 3, false);
-    OWNED_ROW row = beam(&bed, 42, 55), cast = rays(&bed, 42, 500);
-    double two = 0, two_cast = 0, ten = 0;
-    for (int k = -400; k <= 400; k += all() ? 1 : 25) {
-        move(&scaled, &bed, ldexp(1, k), nowhere);
-        OWNED_ROW by_two = beam(&scaled, 42, 55), cast_by_two = rays(&scaled, 42, 500);
-        two += !same_bits(&row, &by_two);
-        two_cast += !same_bits(&cast, &cast_by_two);
-        if (abs(k) > 100) continue;
-        move(&scaled, &bed, pow(10, k), nowhere);
-        OWNED_ROW by_ten = beam(&scaled, 42, 55);
-        worst_of(&ten, row_distance(&row, &by_ten));
-    }
-    report("rows times 2^k, k = -400 ... 400: results with other bits", two, 0);
-    report("rows by rays times 2^k: results with other bits", two_cast, 0);
-    report("rows times 10^k, k = -100 ... 100", ten, 1e-13);
-}
-
 /* The coordinates of a moved bed are rounded. The rounded bed is moved back without a further rounding. Its row tells
  * how much of the loss is the kernel's own. */
 TEST(rows_far_from_the_origin) {
@@ -117,33 +81,6 @@ TEST(rows_far_from_the_origin) {
 }
 
 /* ---- contact ---------------------------------------------------------------------------------------------------- */
-
-/* Gaps go from an overlap of half the smaller radius to 1e12 radii, in steps that are fine near contact. F falls, and
- * two neighbours differ by no more than the slope there allows. */
-TEST(pairs_across_contact) {
-    static const double ratios[] = {1, .5, .1, 1e-3, 1e-6, 2, 10, 1e3, 1e6};
-    double rise = 0, jump = 0;
-    for (size_t q = 0; q < sizeof ratios / sizeof *ratios; q++) {
-        double r1 = 1, r2 = ratios[q], smaller = fmin(r1, r2), contact = exact(r1, r2, 0);
-        uint64_t steps = rounds(2000, 200000);
-        double last = exact(r1, r2, -.5 * smaller), last_gap = -.5 * smaller;
-        for (uint64_t k = 1; k <= 2 * steps; k++) {
-            double part = ((double)k - (double)steps) / (double)steps; /* (-1, 1] */
-            double gap = part < 0 ? -smaller * .5 * pow(10, 16 * (-part - 1)) : smaller * pow(10, 28 * part - 16);
-            if (part == 0) gap = 0;
-            double f = exact(r1, r2, gap);
-            worst_of(&rise, (f - last) / f);
-            /* the bound |dF/dgap| <= r2^2/(r1^2 smaller) is too large by a factor of two at least */
-            double allowed = fmin(1, r2 * r2 / (r1 * r1)) * fabs(gap - last_gap) / smaller;
-            if (fabs(gap) < 1e-3 * smaller) worst_of(&jump, (last - f - allowed) / contact);
-            last = f, last_gap = gap;
-        }
-        static const double tiny[] = {1e-300, -1e-300, 1e-16, -1e-16};
-        for (int k = 0; k < 4; k++) worst_of(&jump, fabs(exact(r1, r2, tiny[k] * smaller) / contact - 1) - 1e-15);
-    }
-    report("pairs, overlap .5 to gap 1e12, ratios 1e-6 ... 1e6: F rises by", rise, 1e-15);
-    report("pairs across contact: F jumps by", jump, 2e-15);
-}
 
 /* The same holds for beams: in each direction the disc moves out as the gap grows. */
 TEST(beams_across_contact) {
