@@ -1,13 +1,10 @@
-/* test_stress.c - attempts to break the numerics: scale, distance from the origin, contact, ratio of radii, degenerate
- * windows, lattices along the beams, obstacles, random scenes by the million. SPDX-License-Identifier: MIT
+/* test_stress.c - attempts to break the numerics: distance from the origin, contact, ratio of radii, lattices along the
+ * beams, obstacles, random scenes by the million. SPDX-License-Identifier: MIT
  *
  * `make test` runs a part of each attack, and `make stress` (STRESS=1 in the environment) runs all. One line for each
  * attack tells the worst error that was seen and the tolerance. */
 #include <stdio.h>
 
-#define FIBRAD_ISA_SUFFIX _scalar
-#include "window/clip_lanes.h"
-#include "reference/reference.h"
 #include "scenes.h"
 #include "suite.h"
 
@@ -128,60 +125,6 @@ TEST(radius_ratios) {
     report("radius ratios 1e-6 ... 1e6: sum + escaped - 1", open, 1e-12);
 }
 
-/* ---- windows ---------------------------------------------------------------------------------------------------- */
-
-#define DISCS 24
-
-/* Discs are drawn from few places and radii. So some are equal, concentric, tangent inside and outside, or as large as
- * the window, and three and more meet in one point. Every second disc is then moved by an ulp or a little more. */
-TEST(degenerate_windows) {
-    double worst = 0, open = 0;
-    fibrad_arena arena = {0};
-    fibrad_areas areas;
-    fibrad_areas_layout(&areas, &arena, DISCS);
-    size_t size = arena.used;
-    OWNED void *block = block_of(size);
-    memset(block, 0, size);
-    arena = (fibrad_arena){block, 0, size};
-    fibrad_areas_layout(&areas, &arena, DISCS);
-    const double h = sqrt(3) / 2;
-    const double places[] = {0, .5, 1, 1.5, 2, h, h / 2, .25, .75, sqrt(.5), sqrt(2)},
-                 radii[] = {1, .5, 2, h, .25, 1.5, .75, sqrt(.5)};
-    for (uint64_t round = 0; round < rounds(30000, 300000); round++) {
-        double u[DISCS], v[DISCS], r[DISCS], mine[DISCS] = {0}, expected[DISCS], rest_expected;
-        uint32_t n = 2 + (uint32_t)random_in(3, 0, round % 10 == 0 ? DISCS - 2 : 7);
-        uint32_t kinds = 2 + (uint32_t)random_in(3, 0, 7); /* a few kinds make many coincidences */
-        for (uint32_t k = 0; k < n; k++) {
-            u[k] = places[(int)random_in(3, 0, kinds + 2)] * (random_in(3, 0, 1) < .5 ? -1 : 1);
-            v[k] = places[(int)random_in(3, 0, kinds + 2)] * (random_in(3, 0, 1) < .5 ? -1 : 1);
-            r[k] = radii[(int)random_in(3, 0, kinds)];
-            double nudge = random_in(3, 0, 1);
-            if (nudge < .2) u[k] = nextafter(u[k], nudge < .1 ? 9 : -9);
-            if (nudge > .1 && nudge < .3) v[k] = nextafter(v[k], nudge < .2 ? 9 : -9);
-            if (nudge > .25 && nudge < .4) r[k] = nextafter(r[k], nudge < .3 ? 9 : -9);
-            if (nudge > .9) u[k] += pow(10, random_in(3, -16, -5));
-        }
-        fibrad_areas_begin_scalar(&areas);
-        uint32_t order[DISCS];
-        for (uint32_t k = 0; k < n; k++) order[k] = k;
-        fibrad_areas_discs_scalar(&areas, 0, order, n, u, v, r);
-        double rest = fibrad_areas_end_scalar(&areas), total = rest;
-        ck_assert(!areas.overflow);
-        for (uint32_t c = 1; c < areas.circles; c++) mine[areas.whose[c]] = areas.area[c];
-        ck_assert_int_eq(reference_window(n, u, v, r, expected, &rest_expected), REFERENCE_OK);
-        for (uint32_t k = 0; k < n; k++) {
-            worst_of(&worst, fabs(mine[k] - expected[k]));
-            total += mine[k];
-        }
-        worst_of(&worst, fabs(rest - rest_expected));
-        worst_of(&open, fabs(total - acos(-1)));
-    }
-    /* three circles that are tangent in one point within rounding meet at points 1.5e-8 apart, the root of the rounding
-     * error */
-    report("degenerate windows and 1 ulp beside them: visible area", worst, 1.5e-8);
-    report("degenerate windows: sum of areas + rest - pi", open, 1.5e-8);
-}
-
 /* Lattices are turned so that one of their axes lies along a beam, or a little beside it. The row agrees with that of
  * the lattice in which each sphere is moved by 1e-9. So no single beam matters that much. */
 TEST(lattices_along_the_beams) {
@@ -248,18 +191,6 @@ TEST(obstacle_across_a_pair) {
     report("obstacle across a pair: F above the free F by", above, 1e-14);
     report("obstacle across a pair: F jumps by", jump, 1e-14);
     report("obstacle gone: F differs from the free F by", left, 1e-14);
-}
-
-/* A dilute periodic box lets no light through in the end: only a few beams from a sphere find a channel without end. */
-TEST(sight_through_many_periods) {
-    OWNED_BED bed = BED({.1, .2, .3, .2});
-    for (int axis = 0; axis < 3; axis++) bed.period[axis] = 1;
-    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    OWNED_WORK work = work_growing();
-    OWNED_ROW row = row_of(1);
-    assert_ok(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 144}, &row));
-    report("dilute periodic box: escaped", row.escaped, .05);
-    report("dilute periodic box: sum + escaped - 1", closure(&row), 1e-12);
 }
 
 /* ---- random scenes ---------------------------------------------------------------------------------------------- */
