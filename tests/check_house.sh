@@ -22,7 +22,8 @@ faults=$(
 
     find kernel -name '*.c' -exec awk '
         /^(static|FIBRAD_INLINE)[^=;]*\(/ && !/;$/ {
-            sub(/LANED\(/, ""); sub(/[()].*/, ""); sub(/.*[ *]/, ""); print $0 " " FILENAME
+            sub(/LANED\(/, ""); sub(/[()].*/, ""); sub(/.*[ *]/, "")
+            print $0 (FILENAME ~ /_lanes/ ? "_ISA" : "") " " FILENAME
         }' {} + | sort -u | awk '
         $1 == last { print $2 " and " file ": static " $1 } { last = $1; file = $2 }'
 

@@ -60,20 +60,6 @@ TEST(hidden_sphere_is_not_seen) {
     ck_assert_uint_eq(hidden.length, 1);
 }
 
-/* Checks rows of a sphere of radius 1 among spheres of radius r, in layers up to 42 r above it. */
-static void check_shell(uint32_t count, double r) {
-    OWNED_BED bed = BED({0, 0, 0, 1});
-    for (uint32_t k = 0; k < count; k++) {
-        double w[3];
-        fibrad_direction(k, count, w);
-        const double d = 1 + r * (1.2 + 41 * fmod(k * .618033988749895, 1));
-        add_sphere(&bed, d * w[0], d * w[1], d * w[2], r);
-    }
-    OWNED_ROW row = beam(&bed, 0, (fibrad_beam_rule){.directions = 8}, FIBRAD_ISA_BEST);
-    ck_assert_uint_eq(row.fallbacks, 0);
-    ck_assert_double_eq_tol(row_sum(&row) + row.escaped, 1, 1e-12);
-}
-
 /* Windows with discs far larger than the window are left to the robust method. Windows with hundreds of small discs
  * before a large one are not, nor are windows of beds. */
 TEST(fallbacks_are_counted) {
