@@ -37,14 +37,6 @@ static fibrad_row beam(const struct bed *bed, uint32_t i, uint32_t directions) {
     return row;
 }
 
-static fibrad_row rays(const struct bed *bed, uint32_t i, uint32_t number) {
-    OWNED fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
-    OWNED_WORK work = work_growing();
-    fibrad_row row = row_of(bed->n);
-    assert_ok(fibrad_cast_row(scene, &work, i, &(fibrad_cast_rule){.rays = number}, &row, NULL));
-    return row;
-}
-
 static double closure(const fibrad_row *row) { return fabs(row_sum(row) + row->escaped - 1); }
 
 static void move(struct bed *to, const struct bed *from, double factor, const double shift[3]) {
