@@ -388,7 +388,7 @@ run 2 contacts_moved contacts.lmp also "fix b all balance 10 1.0 shift y 10 1.01
 near "$work/contacts1.out" "$work/contacts_moved.out" 1e-10 "contacts, balance during the run"
 
 # beside radiation: what contacts bring is what fibrad heat says
-"$BUILD/fibrad" heat "$work/quarter.csv" --emissivity 1:.5,2:.8 --temperature T --ambient 300 --wall zmin=0 --wall-temperature 1000 \
+"$BUILD/fibrad" heat "$work/quarter.csv" --emissivity 1:.5,2:.8 --temperature T --ambient 300 --wall zmin:at=0:temperature=1000 \
     --contacts lens --contact-conductivity 1:4,2:12 --gas-conductivity .03 --directions 50 --length-unit m -o "$work/touch.csv" >/dev/null 2>&1
 {
     echo "dump powers all custom 1 $work/touch.dump id f_rad[1] f_rad[2] f_rad[3] f_rad[4] f_rad[5]"
