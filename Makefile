@@ -70,7 +70,7 @@ sources = $(sort $(wildcard $(1)))
 LANED   := $(call sources,kernel/*/*_lanes.c) # compiled once per instruction set
 KERNEL  := $(filter-out %_lanes.c kernel/sample/generate_%.c,$(call sources,kernel/*/*.c))
 SIMPLE  := $(call sources,host/simple/*.c host/contact/*.c) # libfibrad_host.a
-HOST    := $(filter-out $(addprefix host/,simple/% contact/% couple/% python/%),$(call sources,host/*/*.c host/read/*/*.c)) # the program, besides main.c
+HOST    := $(filter-out $(addprefix host/,simple/% contact/% couple/% python/%),$(call sources,host/*/*.c host/read/*/*.c host/papers/*/*.c)) # the program, besides main.c
 TESTS   := $(call sources,tests/test_*.c)
 SCRIPTS := $(filter-out tests/couple/%,$(call sources,tests/check_*.sh tests/*/check_*.sh))
 

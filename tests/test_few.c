@@ -5,8 +5,8 @@
 #include "bed/packing.h"
 #include "host_owned.h"
 #include "meshes.h"
-#include "reference/exact_gsl.h"
-#include "reference/reference.h"
+#include "papers/pair/exact_gsl.h"
+#include "papers/pair/reference.h"
 #include "scenes.h"
 #include "suite.h"
 

@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 #include "bed/bed.h"
-#include "bed/conductivity.h"
+#include "conductivity/conductivity.h"
 #include "bed/wall_option.h"
 #include "text/report.h"
 #include "simple/fibrad_host.h"
