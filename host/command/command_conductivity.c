@@ -300,21 +300,35 @@ static int conductivity_follow(struct conductivity_request *request, const struc
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
+/* Leaves out contacts with walls other than the plates, which are the first two. Returns how many are left. */
+static uint32_t contacts_of_plates(struct contact_state *contacts, uint32_t spheres) {
+    uint32_t kept = 0;
+    for (uint32_t k = 0; k < contacts->n; ++k) {
+        if (contacts->first[k] >= spheres + 2 || contacts->second[k] >= spheres + 2) continue;
+        contacts->first[kept] = contacts->first[k], contacts->second[kept] = contacts->second[k];
+        contacts->conductance[kept++] = contacts->conductance[k];
+    }
+    return kept;
+}
+
 /* Conductivities between plates along an axis, in W/(m K). Without a temperature there is F_E alone. */
 static int conductivity_plates(struct conductivity_request *request, const struct bed *bed, double kelvins, int axis,
                                struct conduction_plates *plates) {
     struct bed open = *bed;
     open.period[axis] = 0;
-    const struct walls walls = plates_walls(&open, NULL, axis);
+    const struct walls walls = plates_walls(&open, &request->walls, axis);
     const double any = kelvins > 0 ? kelvins : 1000, metres = bed->metres > 0 ? bed->metres : 1;
     double *at = malloc(((size_t)bed->n + 1) * sizeof *at);
-    struct contact_state contacts;
+    struct contact_state contacts = {0};
     struct table_excess excess[2] = {{0}};
-    fibrad_run run = bed_options_run(&request->bed);
+    fibrad_bed *made = NULL;
+    fibrad_fault fault;
     fibrad_heat_sources sources = {.temperature = at, .wall_temperature = (const double[]){any, any}};
     if (!at) return message_memory();
     for (uint32_t i = 0; i < bed->n; ++i) at[i] = any;
-    int status = contacts_begin(&contacts, &request->contacts, &request->bed, &open, &walls, &request->solid,
+    int status = bed_options_make(&request->bed, &open, &walls, &made);
+    if (!status)
+        status = contacts_begin(&contacts, &request->contacts, &request->bed, &open, made, &walls, &request->solid,
                                 1 / (metres * metres), &sources);
     if (!status) {
         contacts_excess(&contacts, &open, at, NULL, excess);
@@ -325,17 +339,19 @@ static int conductivity_plates(struct conductivity_request *request, const struc
                                                request->rule.conductivity,
                                                any,
                                                contacts_given(&request->contacts),
-                                               contacts.n,
+                                               contacts_of_plates(&contacts, bed->n),
                                                contacts.first,
                                                contacts.second,
                                                contacts.conductance};
-        status = plates_conduct(&problem, axis, &run, plates);
-        const int refused = contacts_refuse(&contacts, &request->bed, &open, &walls, status, &run.fault);
-        status = refused ? refused : bed_options_status(&request->bed, bed, status, &run.fault);
+        status = plates_conduct(&problem, made, axis, plates);
+        fibrad_bed_describe(made, NULL, &fault);
+        const int refused = contacts_refuse(&contacts, &request->bed, &open, &walls, status, &fault);
+        status = refused ? refused : bed_options_status(&request->bed, bed, status, &fault);
     }
     struct conduction_value *const in_metres[] = {&plates->radiation, &plates->conduction, &plates->both};
     for (int k = 0; k < 3 && !status; ++k) in_metres[k]->k *= metres, in_metres[k]->error *= metres;
     contacts_free(&contacts);
+    fibrad_bed_free(made);
     free(at);
     if (!status && plates->spheres < PLATES_FITTED)
         return message_at(STATUS_INPUT, request->bed.name, 0,

@@ -6,7 +6,6 @@
 #include <gsl/gsl_math.h>
 #include <stdlib.h>
 
-#include "bed/bed_scene.h"
 #include "cli/progress.h"
 
 /* Temperatures of the plates over their mean. They differ so little that conductivities are the same everywhere. */
@@ -54,7 +53,7 @@ struct walls plates_walls(const struct bed *bed, const struct walls *sides, int 
 /* The plate that a sphere is at: 0 the lower one, 1 the upper one, 2 none. */
 static int plate_of(const struct between *b, uint32_t i) {
     const double at = bed_centres(&b->bed, b->axis)[i];
-    return at - b->walls.wall[0].plane.at < 1.5 * b->diameter ? 0
+    return at - b->walls.wall[0].plane.at < 1.5 * b->diameter   ? 0
            : b->walls.wall[1].plane.at - at < 1.5 * b->diameter ? 1
                                                                 : 2;
 }
@@ -141,8 +140,7 @@ static void read_conductivity(struct between *b, struct conduction_value *value)
     value->error = fabs(value->k) * hypot(sqrt(variance) / slope, gained != 0 ? sqrt(square) / gained : 0);
 }
 
-static int solve(struct between *b, fibrad_radiation *beams, bool radiates, bool touches,
-                 struct conduction_value *value) {
+static int solve(struct between *b, fibrad_bed *made, bool radiates, bool touches, struct conduction_value *value) {
     fibrad_heat_sources sources = b->sources;
     for (uint32_t i = 0; i < b->bed.n; ++i)
         b->emissivity[i] = fmax(radiates ? b->problem->emissivity[i] : 0, HARDLY_RADIATES);
@@ -150,7 +148,7 @@ static int solve(struct between *b, fibrad_radiation *beams, bool radiates, bool
     sources.contacts = touches ? b->problem->contacts : 0;
     if (!radiates) sources.tolerance = 1e-10;
     if (radiates && b->problem->relative) sources.conductivity = b->conductivity;
-    const int status = fibrad_radiation_solve(beams, &sources, &b->result);
+    const int status = fibrad_bed_solve(made, &sources, NULL, &b->result);
     if (status) return status;
     if (!radiates) drop_idle(b);
     read_conductivity(b, value);
@@ -158,18 +156,13 @@ static int solve(struct between *b, fibrad_radiation *beams, bool radiates, bool
 }
 
 /* Solves along so many directions. */
-static int solve_all(struct between *b, uint32_t directions, fibrad_run *run, struct conduction_plates *result) {
-    const fibrad_scene_config scene = bed_scene(&b->bed, &b->walls);
-    const fibrad_spheres spheres = bed_spheres(&b->bed);
+static int solve_all(struct between *b, fibrad_bed *made, uint32_t directions, struct conduction_plates *result) {
     const fibrad_heat_config config = {.directions = directions};
     const bool alone = directions == DIRECTIONS_CONTACTS;
-    fibrad_radiation *beams = NULL;
-    int status = fibrad_radiation_new(&beams, &scene, &spheres, &config, run);
-    if (!status && alone) status = solve(b, beams, false, true, &result->conduction);
-    if (!status && !alone) status = solve(b, beams, true, false, &result->radiation);
-    if (!status && !alone && b->problem->contacts > 0) status = solve(b, beams, true, true, &result->both);
-    fibrad_radiation_describe(beams, NULL, &run->fault);
-    fibrad_radiation_free(beams);
+    int status = fibrad_bed_beams(made, &config);
+    if (!status && alone) status = solve(b, made, false, true, &result->conduction);
+    if (!status && !alone) status = solve(b, made, true, false, &result->radiation);
+    if (!status && !alone && b->problem->contacts > 0) status = solve(b, made, true, true, &result->both);
     return status;
 }
 
@@ -178,7 +171,7 @@ static void add_error(struct conduction_value *value, const struct conduction_va
     value->error = hypot(value->error, value->k - rough->k);
 }
 
-int plates_conduct(const struct plates_problem *problem, int axis, fibrad_run *run, struct conduction_plates *result) {
+int plates_conduct(const struct plates_problem *problem, fibrad_bed *made, int axis, struct conduction_plates *result) {
     struct between b = {.problem = problem, .bed = *problem->bed, .axis = axis};
     struct conduction_plates rough = {.spheres = 0};
     const double begun = progress_clock();
@@ -188,9 +181,9 @@ int plates_conduct(const struct plates_problem *problem, int axis, fibrad_run *r
     for (uint32_t i = 0; i < b.bed.n; ++i) b.diameter += 2 * b.bed.r[i] / b.bed.n;
     int status = take_room(&b);
     if (!status) set_up(&b);
-    if (!status && problem->contacts > 0) status = solve_all(&b, DIRECTIONS_CONTACTS, run, result);
-    if (!status && problem->emissivity) status = solve_all(&b, DIRECTIONS_ROUGH, run, &rough);
-    if (!status && problem->emissivity) status = solve_all(&b, DIRECTIONS, run, result);
+    if (!status && problem->contacts > 0) status = solve_all(&b, made, DIRECTIONS_CONTACTS, result);
+    if (!status && problem->emissivity) status = solve_all(&b, made, DIRECTIONS_ROUGH, &rough);
+    if (!status && problem->emissivity) status = solve_all(&b, made, DIRECTIONS, result);
     add_error(&result->radiation, &rough.radiation);
     add_error(&result->both, &rough.both);
     if (problem->contacts == 0) result->both = result->radiation;

@@ -9,6 +9,7 @@
 
 #include "bed/bed.h"
 #include "cli/output.h"
+#include "fibrad_surface.h"
 #include "simple/fibrad_host.h"
 
 /* The run of `fibrad reproduce`, and the current experiment. */
@@ -45,8 +46,7 @@ typedef int experiment(struct reproduce *reproduce);
 
 experiment reproduce_fig3, reproduce_fig4, reproduce_third_sphere, reproduce_fig10, reproduce_table1,
     reproduce_pebble_pair, reproduce_pebble_rays, reproduce_pebble_bed, reproduce_conductivity, reproduce_correlations,
-    reproduce_conducting, reproduce_contacts, reproduce_exchange, reproduce_exchange_wall,
-    reproduce_faces;
+    reproduce_conducting, reproduce_contacts, reproduce_exchange, reproduce_exchange_wall, reproduce_faces;
 
 /* ---- rows of a bed, one thread ---- */
 
@@ -64,9 +64,16 @@ struct rows {
 int rows_open(struct rows *rows, const struct bed *bed, bool periodic);
 void rows_close(struct rows *rows);
 
+/* How rows are computed: one of them is set. */
+struct row_rule {
+    const fibrad_beam_rule *beam;
+    const fibrad_surface_rule *surface;
+    const fibrad_cast_rule *cast;
+};
+
 /* Computes row i by the rule of `method`. rows->col and rows->f get the entries, *row the other results. Returns a
  * status. */
-int rows_row(struct rows *rows, const fibrad_bed_options *method, uint32_t i, fibrad_row *row);
+int rows_row(struct rows *rows, const struct row_rule *method, uint32_t i, fibrad_row *row);
 
 /* ---- grey spheres of one emissivity, one thread ---- */
 
@@ -75,8 +82,8 @@ int rows_row(struct rows *rows, const fibrad_bed_options *method, uint32_t i, fi
 int grey_conduction(const struct bed *bed, double emissivity, double conductivity, uint32_t paths, double *factor);
 
 /* Exchange factors of a bed in a scene. The emissivities of spheres in `rule` are not used. Free the factors with
- * fibrad_bed_free. Returns a status. */
+ * fibrad_bed_matrix_free. Returns a status. */
 int grey_factors(const struct bed *bed, const fibrad_scene_config *scene, const fibrad_exchange_rule *rule,
-                 double emissivity, const fibrad_bed_options *options, fibrad_bed_factors **factors);
+                 double emissivity, const fibrad_bed_rule *options, fibrad_bed_matrix **factors);
 
 #endif

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "bed/bed_scene.h"
+#include "contact/contact_list.h"
 #include "bed/packing.h"
 #include "cli/message.h"
 #include "conductivity/plates.h"
@@ -29,7 +30,7 @@ struct touching_bed {
 };
 
 static void touching_free(struct touching_bed *t) {
-    fibrad_contacts_free(t->list);
+    free(t->list);
     free(t->solid);
     free(t->gas);
     free(t->conductance);
@@ -69,8 +70,16 @@ static int touching_conduct(struct touching_bed *t, double k_solid, double k_gas
         if (t->list->distance[c] < 2 + TOUCHING) t->conductance[c] += 2 * k_solid * spot;
     *k = 0;
     for (int axis = 0; axis < 3 && !status; ++axis) {
-        struct conduction_plates along;
-        status = plates_conduct(&problem, axis, &run, &along);
+        struct conduction_plates along = {.spheres = 0};
+        struct bed open = t->bed;
+        fibrad_bed *made;
+        open.period[axis] = 0;
+        const struct walls plates = plates_walls(&open, NULL, axis);
+        const fibrad_scene_config scene = bed_scene(&open, &plates);
+        const fibrad_spheres spheres = bed_spheres(&open);
+        status = fibrad_bed_new(&made, &scene, &spheres, &run);
+        if (!status) status = plates_conduct(&problem, made, axis, &along);
+        fibrad_bed_free(made);
         *k += along.conduction.k / 3;
     }
     return bed_status(&t->bed, "bed", status, &run.fault);

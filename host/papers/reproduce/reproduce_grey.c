@@ -41,16 +41,17 @@ int grey_conduction(const struct bed *bed, double emissivity, double conductivit
 }
 
 int grey_factors(const struct bed *bed, const fibrad_scene_config *scene, const fibrad_exchange_rule *rule,
-                 double emissivity, const fibrad_bed_options *options, fibrad_bed_factors **factors) {
+                 double emissivity, const fibrad_bed_rule *options, fibrad_bed_matrix **factors) {
     const fibrad_spheres spheres = bed_spheres(bed);
     struct progress bar = {0};
     fibrad_run run = one_thread(&bar);
     double *e = constant(bed->n, emissivity);
     fibrad_exchange_rule filled = *rule;
-    filled.emissivity = e;
+    fibrad_bed_rule grey = *options;
+    filled.emissivity = e, grey.exchange = &filled;
     int status = e ? STATUS_OK : message_memory();
     if (!status) {
-        status = fibrad_exchange_factors(scene, &spheres, &filled, options, &run, factors);
+        status = fibrad_view_factors(scene, &spheres, &grey, &run, factors);
         progress_stop(&bar);
         status = bed_status(bed, "bed", status, &run.fault);
     }

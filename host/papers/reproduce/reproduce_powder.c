@@ -20,13 +20,13 @@ static const double face_emissivities[EMISSIVITIES] = {.2, .4, .6, .8, 1}, face_
 static int face_emissivity(const struct bed *layer, double emissivity, double *face) {
     const fibrad_scene_config open = bed_scene(layer, NULL);
     const fibrad_exchange_rule rule = {.directions = 89, .paths = 50};
-    const fibrad_bed_options raw = {.raw = 1};
-    fibrad_bed_factors *factors = NULL;
+    const fibrad_bed_rule raw = {.raw = 1};
+    fibrad_bed_matrix *factors = NULL;
     const int status = grey_factors(layer, &open, &rule, emissivity, &raw, &factors);
     double escaped = 0;
     for (uint32_t i = 0; i < layer->n && !status; ++i) escaped += factors->matrix.escaped[i];
     *face = 4 * PI * emissivity * escaped / (2 * layer->period[0] * layer->period[1]);
-    fibrad_bed_free(factors);
+    fibrad_bed_matrix_free(factors);
     return status;
 }
 
@@ -37,18 +37,18 @@ static int face_absorptances(const struct bed *layer, double face[EMISSIVITIES])
     const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
     struct progress bar = {0};
     fibrad_run run = {.threads = 1, .progress = progress_stage, .context = &bar};
-    fibrad_radiation *radiation = NULL;
+    fibrad_bed *made = NULL;
     double *of_light = malloc(3 * layer->n * sizeof *of_light);
-    int status = of_light ? fibrad_radiation_new(&radiation, &open, &spheres, NULL, &run) : FIBRAD_E_MEMORY;
+    int status = of_light ? fibrad_bed_new(&made, &open, &spheres, &run) : FIBRAD_E_MEMORY;
     for (int e = 0; e < EMISSIVITIES && !status; ++e) {
         for (uint32_t i = 0; i < layer->n; ++i) of_light[i] = face_emissivities[e];
         const fibrad_light_sources sources = {.light = &light, .lights = 1, .absorptivity = of_light};
         fibrad_light_result result = {.absorbed = of_light + layer->n, .absorbed_first = of_light + 2 * layer->n};
-        status = fibrad_radiation_shine(radiation, &sources, &result);
+        status = fibrad_bed_shine(made, &sources, &result);
         face[e] = 1 - (result.reflected + result.transmitted) / result.incident;
     }
     progress_stop(&bar);
-    fibrad_radiation_free(radiation);
+    fibrad_bed_free(made);
     free(of_light);
     return bed_status(layer, "bed", status, &run.fault);
 }
