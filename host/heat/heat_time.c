@@ -25,19 +25,22 @@ int step_option(const char *text, void *step) {
 int time_check(struct time_options *time, struct bed_options *bed) {
     const struct quantity *c = &time->capacity, *rho = &time->density;
     if (!(time->until > 0)) {
-        const char *needs = c->given          ? "--heat-capacity"
-                            : rho->given      ? "--density"
-                            : time->times     ? "--times"
-                            : time->every > 0 ? "--every"
-                            : time->step > 0  ? "--step"
-                                              : NULL;
+        const char *needs = c->given         ? "--heat-capacity"
+                            : rho->given     ? "--density"
+                            : time->times    ? "--times"
+                            : time->step > 0 ? "--step"
+                                             : NULL;
         return needs ? message(STATUS_USAGE, "%s needs --until", needs) : STATUS_OK;
     }
     if (!c->given) return message(STATUS_USAGE, "--until needs --heat-capacity");
     if (!rho->given) return message(STATUS_USAGE, "--until needs --density");
-    if (time->times && time->every > 0) return message(STATUS_USAGE, "--times and --every cannot be combined");
-    if (time->every > 0 && time->until / time->every > TIMES_MAX)
-        return message(STATUS_USAGE, "--every: more than %d times", TIMES_MAX);
+    if (time->times && strncmp(time->times, "every:", 6) == 0) {
+        const int status = options_number("--times every", time->times + 6, 1 / SECONDS_MAX, SECONDS_MAX, &time->every);
+        if (status) return status;
+        if (time->until / time->every > TIMES_MAX)
+            return message(STATUS_USAGE, "--times: more than %d times", TIMES_MAX);
+        time->times = NULL;
+    }
     bed_options_quantity(bed, &time->capacity, "J/(kg K)");
     bed_options_quantity(bed, &time->density, "kg/m3");
     return STATUS_OK;
