@@ -98,8 +98,8 @@ class FixFibrad::Words {
 };
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
-    : Fix(lammps, narg, arg), spots(), temperature(), kept_bit(0), surroundings{-1, ""}, parts(false), errors(false),
-      columns(1), moved(0), sampling(false), accuracy(false), sigma(0), initial(0), config(), meshes(), moving(false),
+    : Fix(lammps, narg, arg), spots(), temperature(), kept_bit(0), surroundings{-1, ""}, errors(false), columns(1),
+      moved(0), sampling(false), accuracy(false), sigma(0), initial(0), config(), meshes(), moving(false),
       insitu(nullptr), totals(), conducted(), warned(false), wall_warned(false), told(), set_up(-1), powers_at(0),
       lost(0), restarted(false), begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
     const double huge = 1e300;
@@ -136,8 +136,6 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
             sigma = words.number("sigma", 0, huge);
         else if (key == "rows")
             rows_file = words.next();
-        else if (key == "parts")
-            parts = words.yes_or_no();
         else if (key == "errors")
             errors = words.yes_or_no();
         else if (key == "moved")
@@ -173,7 +171,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
                                   " need `sigma S`, the Stefan-Boltzmann constant in energy/(time length^2 K^4)");
     }
 
-    columns = 1 + (parts ? 3 + contact.given() : 0) + (errors ? 2 : 0);
+    columns = errors ? 3 : 1;
     dynamic_group_allow = 1;
     create_attribute = 1;
     nevery = heat_every ? heat_every : rows_every;
@@ -524,7 +522,7 @@ void FixFibrad::setup(int) {
 void FixFibrad::list_output() {
     static const char *const faces[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
     const int count = (int)walls.size();
-    std::string names, list = "[1] surroundings", atoms = ": [1] power";
+    std::string names, list = ": [1] surroundings";
     for (const fibrad_plane &opening : openings)
         list += std::string(" by opening ") + faces[2 * opening.axis + opening.upper];
     list += ", [2] beyond, [3] error, [4] [5] seconds";
@@ -541,10 +539,7 @@ void FixFibrad::list_output() {
     list += text(", [%d] gone", 9 + 2 * count);
     if (contact.given()) list += text(", [%d] through contacts, [%d] contacts", 10 + 2 * count, 11 + 2 * count);
     say(text("fix fibrad: f_%s", id) + list);
-    if (parts) atoms += ", [2] from particles, [3] from walls, [4] from surroundings";
-    if (parts && contact.given()) atoms += ", [5] through contacts";
-    if (errors) atoms += text(", [%d] beyond, [%d] error", columns - 1, columns);
-    if (columns > 1) say(text("fix fibrad: f_%s of atoms", id) + atoms);
+    if (errors) say(text("fix fibrad: f_%s of atoms: [1] power, [2] beyond, [3] error", id));
 }
 
 void FixFibrad::post_run() {
@@ -694,14 +689,13 @@ void FixFibrad::make_rows(int which) {
 }
 
 void FixFibrad::tell_strays() {
-    const char *beyond =
-        config.cutoff > 0 ? "take a larger `cutoff`, or none" : "with a larger `gather` there is no cutoff";
     for (int kind = 0; kind < FIBRAD_REMARKS; kind++) {
         const char *remark = fibrad_insitu_remark(insitu, kind);
         if (*remark && !told[kind] && comm->me == 0)
-            error->warning(FLERR,
-                           text("fix fibrad: %s, at step %s; %s", remark, std::to_string(update->ntimestep).c_str(),
-                                kind == FIBRAD_REMARK_BEYOND ? beyond : "`strict yes` would end the run"));
+            error->warning(
+                FLERR,
+                text("fix fibrad: %s, at step %s; %s", remark, std::to_string(update->ntimestep).c_str(),
+                     kind == FIBRAD_REMARK_BEYOND ? "take a larger `cutoff`" : "`strict yes` would end the run"));
         told[kind] = told[kind] || *remark;
     }
 }
@@ -801,7 +795,6 @@ void FixFibrad::find_powers() {
     powers_at = update->ntimestep;
     std::fill(q.begin(), q.end(), 0.0);
     for (size_t k = 0; k < member.size(); k++) q[member[k] * columns] = power[k] + by_contacts[k];
-    if (parts) find_parts(by_contacts.data());
     if (errors) find_errors();
 }
 
@@ -815,22 +808,10 @@ void FixFibrad::conduct(const fibrad_insitu_state &state, double *power, double 
     for (size_t w = 0; w < walls.size(); w++) totals.wall[w] += conducted.wall[w];
 }
 
-// Divides each power into what comes by radiation from particles, from walls and from surroundings, and by contacts.
-void FixFibrad::find_parts(const double *by_contacts) {
-    std::vector<double> part(2 * member.size());
-    check(fibrad_insitu_parts(insitu, (double(*)[2])part.data()));
-    for (size_t k = 0; k < member.size(); k++) {
-        double *of_atom = &q[member[k] * columns];
-        of_atom[2] = part[2 * k], of_atom[3] = part[2 * k + 1];
-        of_atom[1] = of_atom[0] - of_atom[2] - of_atom[3] - by_contacts[k];
-        if (contact.given()) of_atom[4] = by_contacts[k];
-    }
-}
-
 void FixFibrad::find_errors() {
     std::vector<double> of_rows(2 * member.size());
     check(fibrad_insitu_errors(insitu, (double(*)[2])of_rows.data()));
-    for (size_t k = 0; k < member.size(); k++) std::copy_n(&of_rows[2 * k], 2, lines[member[k]] + columns - 2);
+    for (size_t k = 0; k < member.size(); k++) std::copy_n(&of_rows[2 * k], 2, lines[member[k]] + 1);
 }
 
 std::vector<double> FixFibrad::wall_temperatures() const {

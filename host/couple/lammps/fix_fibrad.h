@@ -116,7 +116,6 @@ class FixFibrad : public Fix {
     bool have_moved();
     void find_powers();
     void conduct(const fibrad_insitu_state &state, double *power, double *conductance);
-    void find_parts(const double *conducted);
     void find_errors();
     void heat_walls(bigint steps);
     void follow_heatflow();
@@ -140,13 +139,13 @@ class FixFibrad : public Fix {
     std::string rows_file;          // first part of the names of the files of rows; empty: none
     int kept_bit;                   // bit of group2, whose temperatures this fix does not step; 0: none
     Temperature surroundings;
-    bool parts, errors; // whether atoms have what powers come from, and errors of their rows
-    int columns;        // values of each atom
-    double moved;       // rows are made anew if particles have moved by so many radii; 0: never
-    bool sampling;      // directions, paths or tolerance are given
-    bool accuracy;      // accuracy is given
-    double sigma;       // in units of the simulation
-    double initial;     // temperature of new atoms
+    bool errors;    // whether atoms have errors of their rows
+    int columns;    // values of each atom
+    double moved;   // rows are made anew if particles have moved by so many radii; 0: never
+    bool sampling;  // directions, paths or tolerance are given
+    bool accuracy;  // accuracy is given
+    double sigma;   // in units of the simulation
+    double initial; // temperature of new atoms
     fibrad_insitu_config config;
     std::vector<fibrad_wall> walls;
     std::vector<fibrad_plane> openings;
@@ -162,7 +161,7 @@ class FixFibrad : public Fix {
     fibrad_insitu *insitu;
     fibrad_insitu_totals totals; // of the last powers, with what contacts conduct
     fibrad_insitu_conducted conducted;
-    std::vector<double> q;       // [nmax][columns], power of each atom; then what `parts` and `errors` ask for
+    std::vector<double> q;       // [nmax][columns], power of each atom; then its errors
     std::vector<double *> lines; // [nmax], where each atom's values in q begin
     std::vector<double> rows_x;  // [nmax][3], where each atom was when its row was made
     std::vector<int> member;     // atoms of the group that this rank owns

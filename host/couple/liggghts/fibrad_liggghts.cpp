@@ -372,14 +372,12 @@ void follow_meshes(Driver *driver) {
 
 /* Says once of each kind of strays what was done with them. */
 void tell_strays(Driver *driver) {
-    const char *beyond = driver->options.config.cutoff > 0 ? "take a larger --cutoff, or none"
-                                                           : "with a larger --gather there is no cutoff";
     for (int kind = 0; kind < FIBRAD_REMARKS; ++kind) {
         const char *remark = fibrad_insitu_remark(driver->radiation, kind);
         if (*remark != 0 && !driver->told[kind] && rank() == 0)
             std::fprintf(stderr, "fibrad_liggghts: warning: step %s: %s; %s\n",
                          std::to_string(driver->lmp->update->ntimestep).c_str(), remark,
-                         kind == FIBRAD_REMARK_BEYOND ? beyond : "--strict would end the run");
+                         kind == FIBRAD_REMARK_BEYOND ? "take a larger --cutoff" : "--strict would end the run");
         driver->told[kind] = driver->told[kind] || *remark != 0;
     }
 }

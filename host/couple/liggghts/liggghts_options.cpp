@@ -28,7 +28,6 @@ const struct option names[] = {{"in", required_argument, nullptr, 'i'},
                                {"every", required_argument, nullptr, 'E'},
                                {"rows", required_argument, nullptr, 'R'},
                                {"cutoff", required_argument, nullptr, SETTING},
-                               {"gather", required_argument, nullptr, SETTING},
                                {"accuracy", required_argument, nullptr, SETTING},
                                {"tolerance", required_argument, nullptr, SETTING},
                                {"seed", required_argument, nullptr, SETTING},
@@ -283,9 +282,7 @@ void liggghts_options_help() {
         "  --rows N                 make all rows, the exchange factors, every N steps; N is a multiple of --every\n"
         "                           [1000]\n"
         "  --cutoff R               particles with centres farther apart than R do not see each other [none up\n"
-        "                           to --gather particles; then it follows from their number]\n"
-        "  --gather N               up to N particles each rank has all while rows are made, so that no cutoff is\n"
-        "                           needed [4000000]\n"
+        "                           to 4e6 particles; then it follows from their number]\n"
         "  --accuracy WORD          low, normal or high: directions and paths of each row, docs/lammps.md [normal]\n"
         "  --tolerance E            error allowed in each row, estimated, 0 to 1 [none]\n"
         "  --seed S                 seed of paths and directions [0]\n"

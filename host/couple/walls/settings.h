@@ -41,14 +41,11 @@ inline const radiation_setting *setting_named(const std::string &name) {
     using config = fibrad_insitu_config;
     static const radiation_setting settings[] = {
         {"cutoff", "a length of 0 or more", 0, FIBRAD_LENGTH_MAX, &config::cutoff, nullptr, nullptr, nullptr},
-        {"gather", "a number of particles, 1 or more", 1, FIBRAD_SPHERES_MAX, &config::gather, nullptr, nullptr,
-         nullptr},
         {"tolerance", "within 0 and 1", 0, 1, &config::tolerance, nullptr, nullptr, nullptr},
         {"directions", "a number of directions, 8 to 65536", FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX, nullptr,
          &config::directions, nullptr, nullptr},
         {"paths", "a number of paths above 0", 1, FIBRAD_PATHS_MAX, nullptr, &config::paths, nullptr, nullptr},
         {"threads", "a number of threads, 1 to 1024", 1, 1024, nullptr, nullptr, &config::threads, nullptr},
-        {"oneway", "yes or no", 0, 0, nullptr, nullptr, &config::one_way, nullptr},
         {"strict", "yes or no", 0, 0, nullptr, nullptr, &config::strict, nullptr},
         {"seed", "a whole number", 0, 1.8446744073709552e19, nullptr, nullptr, nullptr, &config::seed},
         {"accuracy", "one of low, normal and high", 0, 0, nullptr, nullptr, nullptr, nullptr}};
