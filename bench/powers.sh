@@ -3,7 +3,7 @@
 # has the table. SPDX-License-Identifier: MIT
 #
 # bench/powers.sh [WORD [ACCURACIES [SEEDS]]]: all cases, or those whose name has this word. ACCURACIES are "high normal
-# low" and SEEDS "1 2 3" if nothing else is given. "directions=300,paths=800" is an accuracy, too. A line has a case and
+# low" and SEEDS "1 2 3" if nothing else is given. "tolerance=0.01" is an accuracy, too. A line has a case and
 # an accuracy. Errors are differences from `fibrad heat`:
 #     rms           root mean square of those of particles over that of their powers, the mean of all seeds
 #     largest       that of a particle over its power, or over the root mean square of all powers if that is larger;
@@ -40,7 +40,7 @@ measure() {
     as_data "$bed" >"$work/bed.data"
     for accuracy in $accuracies; do
         words="accuracy $accuracy"
-        [[ $accuracy != *=* ]] || words=${accuracy//[=,]/ }
+        [[ $accuracy != *=* ]] || words=${accuracy/=/ }
         rm -f "$work"/log.* "$work/errors"
         for seed in $seeds; do
             "$LMP" -in bench/powers.lmp -screen none -log "$work/log.$seed" -var load "$BUILD/couple/fibrad.lmp" \
@@ -145,25 +145,25 @@ box 12 "$high" | sed '/solid zhi/,$d' >"$work/box.stl"
 box 12 1 | sed -n '/solid zlo/,/endsolid/p' >"$work/plate.stl"
 funnel 11 5 25 4 >"$work/funnel.stl"
 sides=
-for face in xlo xhi ylo yhi zlo; do sides="$sides wall $face 1000 0.9"; done
+for face in xmin xmax ymin ymax zmin; do sides="$sides wall $face temperature 1000 emissivity 0.9"; done
 
-measure below "$work/below.dump" "wall zlo 1000 0.9" zmin 1000
-measure hopper "$work/hopper.dump" "wall zlo 1000 0.9 wall mesh $work/funnel.stl 300 0.9 both" "zmin,mesh:$work/funnel.stl:both" zmin=1000,300
-measure curtain "$work/curtain.dump" "wall zlo 1000 0.9" zmin 1000
-measure closed $poly "$sides wall zhi 1000 0.9 at $high" "xmin,xmax,ymin,ymax,zmin,zmax=$high" 1000
-measure "box 0.8" $poly "$sides wall zhi open" box:open=zmax 1000
-e="0.8 0.3" measure "box 0.8 and 0.3" $poly "$sides wall zhi open" box:open=zmax 1000
-measure "triangles 0.8" $poly "wall mesh $work/box.stl 1000 0.9" "mesh:$work/box.stl" 1000
-cylinder="wall zlo 1000 0.9 wall zcylinder 5.5 300 0.9 at 6 6 wall zhi open"
+measure below "$work/below.dump" "wall zmin temperature 1000 emissivity 0.9" zmin 1000
+measure hopper "$work/hopper.dump" "wall zmin temperature 1000 emissivity 0.9 wall mesh $work/funnel.stl temperature 300 emissivity 0.9 both" "zmin,mesh:$work/funnel.stl:both" zmin=1000,300
+measure curtain "$work/curtain.dump" "wall zmin temperature 1000 emissivity 0.9" zmin 1000
+measure closed $poly "$sides wall zmax temperature 1000 emissivity 0.9 at $high" "xmin,xmax,ymin,ymax,zmin,zmax=$high" 1000
+measure "box 0.8" $poly "$sides wall zmax open" box:open=zmax 1000
+e="0.8 0.3" measure "box 0.8 and 0.3" $poly "$sides wall zmax open" box:open=zmax 1000
+measure "triangles 0.8" $poly "wall mesh $work/box.stl temperature 1000 emissivity 0.9" "mesh:$work/box.stl" 1000
+cylinder="wall zmin temperature 1000 emissivity 0.9 wall zcylinder 6 6 5.5 temperature 300 emissivity 0.9 wall zmax open"
 measure poured "$work/poured.dump" "$cylinder" zmin,zmax=open,cylinder:6,6,5.5 zmin=1000,300
-turn=$lying measure drum "$work/drum.dump" "wall xcylinder 6 1000 0.9 at 6 6 wall xlo 300 0.9 wall xhi 300 0.9" \
+turn=$lying measure drum "$work/drum.dump" "wall xcylinder 6 6 6 temperature 1000 emissivity 0.9 wall xmin temperature 300 emissivity 0.9 wall xmax temperature 300 emissivity 0.9" \
     cylinder:6,6,6,zmin=0,zmax=12 cylinder=1000,300
-measure plate tests/data/mono2000.dump "wall mesh $work/plate.stl 1000 0.9" "mesh:$work/plate.stl" 1000
+measure plate tests/data/mono2000.dump "wall mesh $work/plate.stl temperature 1000 emissivity 0.9" "mesh:$work/plate.stl" 1000
 # shellcheck disable=SC2097,SC2098  # measure is a function
 for e in 0.8 0.3; do
     test $e = 0.8 || error=0.003
-    e="$e $e" error=0.005 cold=600 measure "apart $e" "$work/apart.dump" "wall zlo 1000 0.9" zmin 1000
+    e="$e $e" error=0.005 cold=600 measure "apart $e" "$work/apart.dump" "wall zmin temperature 1000 emissivity 0.9" zmin 1000
     e="$e $e" measure "cylinder $e" "$work/cylinder.dump" "$cylinder" zmin,zmax=open,cylinder:6,6,5.5 zmin=1000,300
-    e="$e $e" field=1000 cold=0 measure "flat $e" $flat "wall zlo 0 0.9" zmin 0
+    e="$e $e" field=1000 cold=0 measure "flat $e" $flat "wall zmin temperature 0 emissivity 0.9" zmin 0
 done
-e="0.8 0.8" error=0.002 field="300+700*z/bound(all,zmax)" cold=1000 measure "linear 0.8" $flat "wall zlo 300 0.9" zmin 300
+e="0.8 0.8" error=0.002 field="300+700*z/bound(all,zmax)" cold=1000 measure "linear 0.8" $flat "wall zmin temperature 300 emissivity 0.9" zmin 300

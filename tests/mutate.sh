@@ -36,7 +36,7 @@ breaks() {
 # tests_of FILE: what is most likely to notice comes first
 tests_of() {
     case $1 in
-    host/couple/walls/*) echo liggghts ;;
+    host/couple/simulation/*) echo liggghts ;;
     host/couple/*) echo couple ;;
     kernel/exchange/row_powers.c | kernel/scene/surroundings.c) echo "beyond flow part $tests" ;;
     kernel/exchange/*) echo "exchange wall_rows known protocol part $tests" ;;

@@ -8,7 +8,7 @@ MPIRUN = mpirun
 
 COUPLE := $(filter-out host/couple/example.c,$(call sources,host/couple/*.c host/couple/ranks/*.c))
 
-COUPLE_WALLS = host/couple/walls/mesh_motion.c host/couple/walls/mesh_walls.c
+COUPLE_WALLS = $(call sources,host/couple/simulation/*.c)
 
 # walls of triangles and tables, for programs that read files of them; a library of its own, since it has names of the program
 COUPLE_MESH = $(COUPLE_WALLS) \

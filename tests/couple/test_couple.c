@@ -1175,7 +1175,7 @@ static void rows_are_refused(fibrad_insitu *s) {
                                               "coordinate",
                                               "radius",
                                               "its emissivity",
-                                              "beyond wall 1, zlo",
+                                              "beyond wall 1, zmin",
                                               "no extent along x",
                                               "wall 2",
                                               "an opening",
