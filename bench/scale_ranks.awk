@@ -1,4 +1,4 @@
-# scale_ranks.awk - the table of docs/scale.md, from what build/couple/ranks measured: awk -f bench/scale_ranks.awk
+# scale_ranks.awk - the table of docs/lammps.md, from what build/couple/ranks measured: awk -f bench/scale_ranks.awk
 # SPDX-License-Identifier: MIT
 # Lengths in radii. A rank has a cube of the bed; messages cost latency and bytes over bandwidth.
 function ceil(x) { return x == int(x) ? x : int(x) + 1 }

@@ -52,7 +52,7 @@ COUPLE_DEPS     = $(filter deps-couple,$(MAKECMDGOALS))
 # couplings with other codes add to these lists
 include $(wildcard host/couple/lammps/*.mk host/couple/liggghts/*.mk)
 
-# what docs/scale.md rests on: mpirun -np 2 build/couple/ranks tests/data/monoper2000.dump 2 0.8
+# what docs/lammps.md rests on: mpirun -np 2 build/couple/ranks tests/data/monoper2000.dump 2 0.8
 $(BUILD)/couple/ranks: bench/ranks.c bench/messages.h $(COUPLE_LIBS)
 	$(MPICC) $(CFLAGS) $(COUPLE_FLAGS) $(LDFLAGS) $< $(COUPLE_LIBS) -lm -o $@
 

@@ -31,14 +31,14 @@
  *             the same on all ranks, and names particles by id. The object is as it was before the call.
  * Strays      A stray is a particle beyond a wall or an opening, inside another particle, or in sight of a side of a
  *             triangle that belongs to no wall. With config.strict a stray is an error. Otherwise rows are made, and
- *             fibrad_insitu_remark says what was done (docs/coupling.md has more):
+ *             fibrad_insitu_remark says what was done (docs/lammps.md has more):
  *               left out  The centre of the particle lies beyond a plane or the cylinder, or the particle reaches
  *                         beyond an opening. It exchanges nothing and hides nothing.
  *               smaller   The centre of one particle lies inside another. The rows take smaller radii for both.
  *               no row    The particle sees a side of a triangle that belongs to no wall.
  * Units       One length unit L, which the caller chooses. Powers are in sigma K^4 L^2.
  * Words       Words and the layout of comments are as in fibrad.h.
- * Source      docs/coupling.md
+ * Source      docs/lammps.md
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_H
@@ -204,7 +204,7 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
  *            _ARGUMENT: a centre lies beyond a wall
  *            _GEOMETRY: a centre lies inside another particle, or a particle reaches beyond an opening
  *            _BACK: one particle sees a side of a triangle that belongs to no wall
- *   Cost     that of fibrad_exchange_row for each particle, and of the paths of sources: docs/coupling.md */
+ *   Cost     that of fibrad_exchange_row for each particle, and of the paths of sources: docs/lammps.md */
 int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
 /* Makes rows of those particles alone that have come since the last rows, and keeps the other rows. The row of an
@@ -225,7 +225,7 @@ int fibrad_insitu_follow(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, ui
  *            _MEMORY
  *            _UNSOLVABLE: rows of particles that conduct are too inaccurate for powers
  *   Cost     4 ns per entry, and some messages. If particles conduct, a linear system is solved, which takes 9 to 140
- *            times as long: docs/coupling.md */
+ *            times as long: docs/lammps.md */
 int fibrad_insitu_powers(fibrad_insitu *insitu, const fibrad_insitu_state *state, double *power,
                          fibrad_insitu_totals *totals);
 
