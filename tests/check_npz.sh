@@ -63,7 +63,7 @@ done
 
 # walls by their names, and which rows were computed
 if test -n "${scipy:-}"; then
-    "$BUILD/fibrad" bed tests/data/mono2000.dump --directions 21 --wall zmin,cylinder:6,6,9,zmax=open --targets 1-99 --quiet \
+    "$BUILD/fibrad" bed tests/data/mono2000.dump --directions 21 --wall zmin,cylinder:6,6,9,zmax:open --targets 1-99 --quiet \
         -o "$work/W.npz" -o "$work/W.csv" 2>"$work/said"
     "$scipy" - "$work/W.npz" "$work/W.csv" <<'END'
 import csv, sys, numpy

@@ -19,7 +19,7 @@ sed 's/^75000$/76000/' a.dump >b.dump
 
 heat() { # COLUMN FILES AND OUTPUTS
     "$fibrad" heat --temperature "$@" --emissivity 0.5 --directions 13 --patches 24 --threads 2 --ambient 300 \
-        --wall zmin=0 --wall-temperature 900 --quiet
+        --wall zmin:at=0:temperature=900 --quiet
 }
 heat v_T a.dump -o q.csv -o q.json -o q.dump -o q.vtp -o - --format json >out.json
 cmp out.json q.json

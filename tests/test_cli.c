@@ -134,13 +134,13 @@ TEST(walls) {
     SUCCEED("bed", PERIODIC, "--directions", "50", "--wall", "auto"); /* a deep bed sees all of an endless wall */
     ck_assert_double_eq_tol(value_of("wall_zmin_F") * SPHERES * acos(-1), 12 * 12, .02);
     ck_assert_double_eq_tol(value_of("wall_zmax_F") * SPHERES * acos(-1), 12 * 12, .02);
-    SUCCEED("bed", MONO, "--directions", "13", "--wall", "cylinder:6,6,9,zmin,zmax=open", "--targets", "1-9");
+    SUCCEED("bed", MONO, "--directions", "13", "--wall", "cylinder:6,6,9,zmin,zmax:open", "--targets", "1-9");
     ck_assert_double_gt(value_of("wall_cylinder_F"), 0);
     static const struct {
         const char *cylinder, *name;
-    } along[] = {{"cylinder:6,7,2,zmin=3,zmax=13", "cylinder"},
-                 {"xcylinder:7,8,2,xmin=1,xmax=11", "xcylinder"},
-                 {"ycylinder:6,8,2,ymin=2,ymax=12", "ycylinder"}};
+    } along[] = {{"cylinder:6,7,2,zmin:at=3,zmax:at=13", "cylinder"},
+                 {"xcylinder:7,8,2,xmin:at=1,xmax:at=11", "xcylinder"},
+                 {"ycylinder:6,8,2,ymin:at=2,ymax:at=12", "ycylinder"}};
     const char *sphere = write_file("sphere.csv", "x,y,z,r\n6,7,8,1\n"), *picture = in_folder("sphere.svg");
     for (int k = 0; k < 3; ++k) { /* discs at a distance of 2.5 radii */
         char key[32];
@@ -149,7 +149,7 @@ TEST(walls) {
         ck_assert_double_eq_tol(value_of(key), 2.5 / hypot(1, 2.5), 2e-6);
         ck_assert_double_eq_tol(value_of("escaped_mean"), 0, 1e-14);
     }
-    FAIL_WITH(3, "bed", MONO, "--wall", "zmin=2");
+    FAIL_WITH(3, "bed", MONO, "--wall", "zmin:at=2");
     expect_message(MONO ":", "lies beyond the wall zmin");
 }
 
@@ -169,11 +169,11 @@ static double number_of_line(const char *path, const char *end, int column) {
 TEST(a_box_without_a_lid) {
     const char *open = in_folder("open.csv"), *closed = in_folder("closed.csv"), *json = in_folder("open.json");
 #define STATE "--length-unit=mm", "--emissivity=.6", "--temperature=500", "--ambient=300", "--directions=30"
-    SUCCEED("heat", MONO, STATE, "--wall=box:open=zmax", "--wall-temperature=zmin=900,600", "--wall-emissivity=.4",
-            "-o", open, "--json", json, "--plot", in_folder("open.svg"));
-    const char *lid = formatted("--wall=box,zmax=%.17g", json_of(json, "open_zmax_at"));
-    SUCCEED("heat", MONO, STATE, lid, "--wall-temperature=zmin=900,zmax=300,600", "--wall-emissivity=zmax=1,.4", "-o",
-            closed);
+    const char *walls = "--wall=box:temperature=600:emissivity=.4,zmin:temperature=900:emissivity=.4";
+    SUCCEED("heat", MONO, STATE, walls, "--wall=zmax:open", "-o", open, "--json", json, "--plot",
+            in_folder("open.svg"));
+    const char *lid = formatted("--wall=zmax:at=%.17g:temperature=300", json_of(json, "open_zmax_at"));
+    SUCCEED("heat", MONO, STATE, lid, walls, "-o", closed);
 #undef STATE
     const char *const lines[] = {",xmin", ",ymax", ",zmin", "\n4,", "\n1000,"};
     for (size_t k = 0; k < sizeof lines / sizeof *lines; ++k)
@@ -181,9 +181,9 @@ TEST(a_box_without_a_lid) {
     ck_assert_double_gt(number_of_line(open, ",surroundings", 2), 1e-3);
     ck_assert_double_eq(number_of_line(open, ",surroundings", 2), number_of_line(closed, ",zmax", 2));
     ck_assert(isnan(number_of_line(open, ",zmax", 2)));
-    FAIL_WITH(3, "bed", MONO, "--wall", "box,zmax=13:open");
+    FAIL_WITH(3, "bed", MONO, "--wall", "box,zmax:open:at=13");
     expect_message(MONO ":", "reaches beyond an opening");
-    SUCCEED("bed", PERIODIC, "--directions=13", "--wall", "zmin,zmax=open");
+    SUCCEED("bed", PERIODIC, "--directions=13", "--wall", "zmin,zmax:open");
     ck_assert_double_gt(value_of("escaped_mean"), 0);
 }
 
@@ -221,12 +221,10 @@ TEST(rows_in_files) {
     static const char *const names[2][3] = {{"a.csv", "a.npz", "a.json"}, {"b.csv", "b.npz", "b.json"}};
     const char *scratch = in_folder("scratch");
     ck_assert_int_eq(mkdir(scratch, 0777), 0);
-    SUCCEED("exchange", PERIODIC, "--emissivity=.5", "--directions=8", "--rays=9", "--wall=zmin",
-            "--wall-emissivity=.5", "-o", in_folder(names[0][0]), "-o", in_folder(names[0][1]), "-o",
-            in_folder(names[0][2]));
-    SUCCEED("exchange", PERIODIC, "--emissivity=.5", "--directions=8", "--rays=9", "--wall=zmin",
-            "--wall-emissivity=.5", "-o", in_folder(names[1][0]), "-o", in_folder(names[1][1]), "-o",
-            in_folder(names[1][2]), "--scratch", scratch);
+    SUCCEED("exchange", PERIODIC, "--emissivity=.5", "--directions=8", "--rays=9", "--wall=zmin:emissivity=.5", "-o",
+            in_folder(names[0][0]), "-o", in_folder(names[0][1]), "-o", in_folder(names[0][2]));
+    SUCCEED("exchange", PERIODIC, "--emissivity=.5", "--directions=8", "--rays=9", "--wall=zmin:emissivity=.5", "-o",
+            in_folder(names[1][0]), "-o", in_folder(names[1][1]), "-o", in_folder(names[1][2]), "--scratch", scratch);
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
     for (int k = 0; k < 3; ++k) {
         size_t first, second;
@@ -335,8 +333,8 @@ TEST(temperatures) {
     double warm[2];
     for (int k = 0; k < 2; ++k) {
         SUCCEED("heat", file, "--emissivity", ".5", "--power", k ? "4e-3" : "4e3", "--length-unit", k ? "mm" : "m",
-                "--wall", "box", "--wall-temperature", "zmax=400,insulated", "--wall-power",
-                k ? "xmin=1e-2" : "xmin=1e4", "--wall-emissivity", ".6", "-o", out);
+                "--wall", "box:insulated:emissivity=.6,zmax:temperature=400:emissivity=.6", "--wall",
+                k ? "xmin:power=1e-2:emissivity=.6" : "xmin:power=1e4:emissivity=.6", "-o", out);
         read_powers(out, &sum, &largest, 1, &warm[k], &q);
         ck_assert_double_le(fabs(sum), 1e-12 * largest);
         ck_assert_double_eq_tol(q, k ? -4e-3 : -4e3, 1e-14 * fabs(q));
@@ -364,15 +362,13 @@ TEST(temperatures) {
     FAIL_WITH(3, "heat", file, "--emissivity", all, "--temperature", "600", "--ambient", "300");
     expect_message(table, ":2: 400 is not above the number before");
 
-    FAIL_WITH(3, "heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "4", "--wall", "box",
-              "--wall-temperature", "insulated");
+    FAIL_WITH(3, "heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "4", "--wall", "box:insulated");
     expect_message(file, "its powers add up to 12 W, not to 0");
-    FAIL_WITH(3, "heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "1:4,2:-8", "--wall", "box",
-              "--wall-temperature", "insulated");
+    FAIL_WITH(3, "heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "1:4,2:-8", "--wall",
+              "box:insulated");
     expect_message(file, "no temperature is given in this closed bed; give one, or --ambient");
-    FAIL_WITH(3, "heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "1:.15,2:-.1", "--wall", "box",
-              "--wall-power", "xmin=-.2", "--wall-temperature",
-              "xmax=insulated,ymin=insulated,ymax=insulated,zmin=insulated,zmax=insulated");
+    FAIL_WITH(3, "heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "1:.15,2:-.1", "--wall",
+              "box:insulated,xmin:power=-.2");
     expect_message(file, "no temperature is given in this closed bed; give one, or --ambient");
     ck_assert_int_eq(
         RUN("heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "-1e6", "--ambient", "300"), 3);
@@ -411,13 +407,13 @@ TEST(temperatures_to_an_error) {
         snprintf(bed + strlen(bed), 60, "%d,%d,%d,%g\n", 2 * (i % 3), 2 * (i / 3 % 3), 2 * (i / 9), .95 - .2 * (i % 4));
     const char *file = write_file("found.csv", bed), *out = in_folder("found.out.csv"), *fine = in_folder("fine.csv");
     double sum, largest, wall[2], q;
+#define WALL ":emissivity=.4"
     for (int k = 0; k < 4; ++k) { /* first finely, then to an error; open, then in a box */
         const char *to = k % 2 ? out : fine;
         SUCCEED("heat", file, "--length-unit", "m", "--emissivity", ".4", "--power", "4000", "--ambient=300",
                 k % 2 ? "--error=.004" : "--directions=1500", k % 2 ? "--threads=2" : "--patches=384", "-o", to,
-                k < 2 ? "--threads=2" : "--wall=box",
-                k < 2 ? "--threads=2" : "--wall-temperature=ymax=insulated,zmin=900,400",
-                k < 2 ? "--threads=2" : "--wall-power=xmin=20000", k < 2 ? "--threads=2" : "--wall-emissivity=.4");
+                k < 2 ? "--threads=2" : "--wall=box:temperature=400" WALL ",ymax:insulated" WALL,
+                k < 2 ? "--threads=2" : "--wall=xmin:power=20000" WALL ",zmin:temperature=900" WALL);
         assert_lacks(said, "is not reached");
         if (k >= 2) read_powers(to, &sum, &largest, -2, &wall[k % 2], &q);
         if (k % 2 == 0) continue;
@@ -442,9 +438,9 @@ TEST(powers) {
     /* walls are -2, -3 in the order given; the bytes are the same for any number of threads */
     char *text[2];
     for (int k = 0; k < 2; ++k) {
-        SUCCEED("heat", file, "--emissivity", "eps", "--temperature", "T", "--wall", "zmax=3,zmin=-1,cylinder:0,0,5",
-                "--wall-temperature", "zmin=400,zmax=700,500", "--wall-emissivity", "zmax=.5", "--threads",
-                k == 0 ? "1" : "3", "-o", out, "--json", in_folder("q.json"));
+        SUCCEED("heat", file, "--emissivity", "eps", "--temperature", "T", "--wall",
+                "zmax:at=3:temperature=700:emissivity=.5,zmin:at=-1:temperature=400,cylinder:0,0,5:temperature=500",
+                "--threads", k == 0 ? "1" : "3", "-o", out, "--json", in_folder("q.json"));
         text[k] = read_file(out);
     }
     ck_assert_str_eq(text[0], text[1]);
@@ -458,15 +454,15 @@ TEST(powers) {
     ck_assert_double_eq(t, 500);
 
     /* all have one temperature: figures are relative to what is emitted */
-    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "500", "--wall", "box", "--wall-temperature", "500",
-            "--wall-emissivity", ".2", "-o", out);
+    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "500", "--wall", "box:temperature=500:emissivity=.2",
+            "-o", out);
     read_powers(out, &sum, &largest, 0, &t, &q);
     ck_assert_double_le(largest, 1e-10 * 5.67e-8 * 500. * 500. * 500. * 500.);
     ck_assert_double_le(fabs(value_of("balance_of_emission")), 1e-12);
     ck_assert_double_le(value_of("error_of_emission"), 1e-9);
     ck_assert_double_eq_tol(value_of("emitted_W"), .3 * 5.670374419e-8 * pow(500, 4) * 4 * acos(-1) * 2.49, 1);
-    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "500", "--wall", "box", "--wall-temperature", "500",
-            "--error", ".01", "--length-unit", "m"); /* powers that are nothing but noise reach the error, too */
+    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "500", "--wall", "box:temperature=500", "--error",
+            ".01", "--length-unit", "m"); /* powers that are nothing but noise reach the error, too */
     ck_assert_str_eq(said, "");
 
     SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "T", "--ambient", "0", "--error", "0.01", "-o",
@@ -497,13 +493,13 @@ TEST(exchange_factors) {
         weight[i] = r * r * e;
     }
     const char *file = write_file("bed.csv", bed), *out = in_folder("D.csv"), *other = in_folder("E.csv");
-    SUCCEED("exchange", file, "--emissivity", "e", "--rays", "300", "--wall", "zmin=-1.5,zmax=4", "--wall-emissivity",
-            "zmin=0.5,zmax=0", "--threads", "1", "-o", out);
+    SUCCEED("exchange", file, "--emissivity", "e", "--rays", "300", "--wall",
+            "zmin:at=-1.5:emissivity=.5,zmax:at=4:emissivity=0", "--threads", "1", "-o", out);
     ck_assert_double_lt(value_of("closure_max"), 1e-12);
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-12);
     ck_assert_double_lt(value_of("error_estimate"), .1);
-    SUCCEED("exchange", file, "--emissivity", "e", "--rays", "300", "--wall", "zmin=-1.5,zmax=4", "--wall-emissivity",
-            "zmin=0.5,zmax=0", "--threads", "3", "-o", other);
+    SUCCEED("exchange", file, "--emissivity", "e", "--rays", "300", "--wall",
+            "zmin:at=-1.5:emissivity=.5,zmax:at=4:emissivity=0", "--threads", "3", "-o", other);
     char *text = read_file(out), *again = read_file(other);
     ck_assert_str_eq(text, again);
     assert_begins(text, "i,j,D,body\n");
@@ -526,7 +522,7 @@ TEST(exchange_factors) {
     FAIL_WITH(3, "exchange", file, "--emissivity", "x");
     expect_message(file, "the emissivity is 2; it must be within 0 and 1");
     FAIL_WITH(3, "exchange", file, "--emissivity", "missing");
-    FAIL_WITH(2, "exchange", file, "--emissivity", "e", "--wall-emissivity", "0.5");
+    FAIL_WITH(2, "exchange", file, "--emissivity", "e", "--wall", "emissivity=0.5");
     remove_files(0);
 }
 

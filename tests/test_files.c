@@ -45,11 +45,13 @@ static double power_of(const char *path, const char *begin, const char *end) {
 /* Temperatures belong to the walls by name, whatever the order of the names. */
 TEST(wall_temperatures_by_name) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED)), *out = in_folder("q.csv");
-    static const char *const lists[] = {"zmin=1200,zmax=300,700", "700,zmax=300,zmin=1200"};
+    static const char *const lists[] = {
+        "zmin:at=-.001:temperature=1200:emissivity=.5,auto:temperature=700,zmax:temperature=300",
+        "zmin:at=-.001,zmax:temperature=300,auto:temperature=700,"
+        "zmin:emissivity=.5:temperature=1200:at=-1e-3"};
     char *first = NULL;
     for (int k = 0; k < 2; ++k) {
-        SUCCEED(HEAT, bed, "--wall", "auto,zmin=-0.001", "--wall-temperature", lists[k], "--wall-emissivity", "zmin=.5",
-                "-o", out);
+        SUCCEED(HEAT, bed, "--wall", lists[k], "-o", out);
         ck_assert_double_eq(value_of("wall_zmin_K"), 1200);
         ck_assert_double_eq(value_of("wall_zmax_K"), 300);
         ck_assert_double_eq(value_of("wall_ymax_K"), 700);
@@ -64,18 +66,20 @@ TEST(wall_temperatures_by_name) {
 
 /* The program makes up no temperature: if something reaches the surroundings, it asks for theirs. */
 TEST(surroundings_are_asked_for) {
+#define WARM ":temperature=300"
+#define TUBE "cylinder:4,4,6" WARM
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED));
-    static const char *const open[] = {"zmin", "zmin,zmax", "cylinder:4,4,6,zmin=open,zmax=open",
-                                       "cylinder:4,4,6,zmin,zmax=open"};
-    static const char *const closed[] = {"auto", "cylinder:4,4,6,zmin,zmax"};
+    static const char *const open[] = {"zmin" WARM, "zmin" WARM ",zmax" WARM, TUBE ",zmin:open,zmax:open",
+                                       TUBE ",zmin" WARM ",zmax:open"};
+    static const char *const closed[] = {"auto" WARM, TUBE ",zmin" WARM ",zmax" WARM};
     for (int k = 0; k < 4; ++k) {
-        FAIL_WITH(2, HEAT, bed, "--wall", open[k], "--wall-temperature", "300");
+        FAIL_WITH(2, HEAT, bed, "--wall", open[k]);
         expect_message("", "--ambient is missing: the bed is open");
-        SUCCEED(HEAT, bed, "--wall", open[k], "--wall-temperature", "300", "--ambient", "290");
+        SUCCEED(HEAT, bed, "--wall", open[k], "--ambient", "290");
         ck_assert_double_eq(value_of("surroundings_K"), 290);
     }
-    for (int k = 0; k < 2; ++k) SUCCEED(HEAT, bed, "--wall", closed[k], "--wall-temperature", "300");
-    SUCCEED(HEAT, bed, "--periodic", "8,8,0", "--wall", "zmin,zmax", "--wall-temperature", "300");
+    for (int k = 0; k < 2; ++k) SUCCEED(HEAT, bed, "--wall", closed[k]);
+    SUCCEED(HEAT, bed, "--periodic", "8,8,0", "--wall", "zmin" WARM ",zmax" WARM);
     SUCCEED(HEAT, bed, "--periodic", "8,8,8");
     FAIL_WITH(2, HEAT, bed, "--periodic", "8,8,0");
     expect_message("", "--ambient is missing");
@@ -166,9 +170,9 @@ TEST(degrees_celsius) {
     const char *kelvins = write_file("k.csv", "x,y,z,r,T\n0,0,0,.01,600\n.03,0,0,.01,300\n");
     const char *celsius = write_file("c.csv", "x,y,z,r,T\n0,0,0,.01,326.85\n.03,0,0,.01,26.85\n");
     const char *one = in_folder("one.csv"), *two = in_folder("two.csv");
-    SUCCEED(HEAT, kelvins, "--ambient", "290", "--wall", "zmin", "--wall-temperature", "zmin=500", "-o", one);
-    SUCCEED(HEAT, celsius, "--ambient", "16.85", "--wall", "zmin", "--wall-temperature", "zmin=226.85",
-            "--temperature-unit", "C", "-o", two);
+    SUCCEED(HEAT, kelvins, "--ambient", "290", "--wall", "zmin:temperature=500", "-o", one);
+    SUCCEED(HEAT, celsius, "--ambient", "16.85", "--wall", "zmin:temperature=226.85", "--temperature-unit", "C", "-o",
+            two);
     for (int k = 0; k < 4; ++k) {
         static const char *const begin[] = {"0,", "1,", "-1,", "-2,"};
         const double q = power_of(one, begin[k], "");
@@ -246,17 +250,18 @@ TEST(units_and_ends_of_tables_of_time) {
                                         "T_C;t [h]\n20;0\n500;0,0166666666666666666\n"};
 #define ROOM                                                                                                           \
     "heat", bed, "--length-unit", "m", "--emissivity", ".8", "--temperature", "600", "--heat-capacity", "800",         \
-        "--density", "2500", "--directions", "21", "--wall", "zmin=-1", "--wall-temperature"
+        "--density", "2500", "--directions", "21", "--wall"
     char *first = NULL;
     for (int k = 0; k < 3; ++k) {
         const char *room = formatted("@%s", write_file("room.csv", rooms[k]));
-        SUCCEED(ROOM, "zmin=25", "--temperature-unit", "C", "--until", "60", "--ambient", room, "-o", out);
+        SUCCEED(ROOM, "zmin:at=-1:temperature=25", "--temperature-unit", "C", "--until", "60", "--ambient", room, "-o",
+                out);
         read_same(out, &first);
         ck_assert_str_eq(said, "");
-        FAIL_WITH(k > 0 ? 3 : 0, ROOM, "zmin=25", "--until", "30", "--ambient", room);
+        FAIL_WITH(k > 0 ? 3 : 0, ROOM, "zmin:at=-1:temperature=25", "--until", "30", "--ambient", room);
         if (k > 0) expect_message(in_folder("room.csv"), "in [C], but is taken as [K]; see --temperature-unit");
     }
-    const char *lid = formatted("zmin=@%s", write_file("lid.csv", "5 300\n10 400\n"));
+    const char *lid = formatted("zmin:at=-1:temperature=@%s", write_file("lid.csv", "5 300\n10 400\n"));
     SUCCEED(ROOM, lid, "--until", "30", "--ambient", "300");
     assert_has(said, "warning: the table of zmin begins at 5 s; before, its first temperature is taken");
     assert_has(said, "warning: the table of zmin ends at 10 s; from there to 30 s its last temperature is taken");
@@ -506,7 +511,7 @@ TEST(summary_says_what_was_computed) {
         "\nradius_max 1\n",     "\nbox_high 8 8 8\n",         "\nperiods 0 0 0\n",      "\nmodel patches\n",
         "\nemissivity 0.6\n",   "\ntemperature_K column T\n", "\nsurroundings_K 300\n", "\nwall_zmin_at 0\n",
         "\nwall_zmin_K 1200\n", "\nwall_zmin_emissivity 1\n", "\nnamed_by ids\n"};
-    SUCCEED(HEAT, bed, "--ambient", "300", "--wall", "zmin", "--wall-temperature", "1200", "--json", json);
+    SUCCEED(HEAT, bed, "--ambient", "300", "--wall", "zmin:temperature=1200", "--json", json);
     for (size_t k = 0; k < sizeof lines / sizeof *lines; ++k) assert_has(printed, lines[k]);
     assert_begins(printed, "file ");
     ck_assert_double_eq(json_of(json, "wall_zmin_K"), 1200);
@@ -562,14 +567,15 @@ TEST(inputs_stay) {
     static const char *const outputs[] = {"-o", "--wall-vtp", "-o", "--json", "-o", "--plot"};
     const char *path[6];
     for (int k = 0; k < 6; ++k) path[k] = write_file(names[k], k ? contents[k] : frame(NULL, "0", "3", SORTED));
-    const char *wall = formatted("floor=mesh:%s:both,zmax=20", path[1]), *law = formatted("@%s", path[2]);
-    const char *ambient = formatted("@%s", path[3]),
-               *walls = formatted("zmax=@%s,floor=triangles:%s", path[4], path[5]);
+    const char *wall = formatted("mesh:%s:name=floor:both:temperatures=%s,zmax:at=20:temperature=@%s", path[1], path[5],
+                                 path[4]),
+               *law = formatted("@%s", path[2]);
+    const char *ambient = formatted("@%s", path[3]);
     for (int k = 0; k < 6; ++k) {
         const char *other_name = formatted("%s/./%s", folder, k == 1 ? "floor.*.vtp" : names[k]); /* of the same file */
-        FAIL_WITH(2, "heat", path[0], "--temperature", "T", "--emissivity", law, "--wall", wall, "--wall-temperature",
-                  walls, "--ambient", ambient, "--until", "5", "--heat-capacity", "800", "--density", "2500", "--model",
-                  "patches", "--directions", "21", "--patches", "24", outputs[k], other_name);
+        FAIL_WITH(2, "heat", path[0], "--temperature", "T", "--emissivity", law, "--wall", wall, "--ambient", ambient,
+                  "--until", "5", "--heat-capacity", "800", "--density", "2500", "--model", "patches", "--directions",
+                  "21", "--patches", "24", outputs[k], other_name);
         assert_has(said, "is read in this run and would be replaced");
         ck_assert_str_eq(read_file(path[k]), k ? contents[k] : frame(NULL, "0", "3", SORTED));
     }
@@ -639,7 +645,7 @@ TEST(versions_and_help) {
     SUCCEED("help");
     assert_has(printed, "Commands:");
     SUCCEED("help", "heat");
-    assert_has(printed, "--wall-temperature");
+    assert_has(printed, "--emissivity");
     FAIL_WITH(2, "help", "nothing");
 }
 

@@ -93,9 +93,16 @@ bool wall_words_no_shape(const char *word, char fault[WALL_FAULT]) {
     return false;
 }
 
-static bool begin_wall(struct wall_words *wall, const char *word, unsigned allowed, char fault[WALL_FAULT]) {
+static int find_shape(const char *word) {
     int k = 0;
     while (k < SHAPES && strcmp(word, shapes[k].name) != 0) ++k;
+    return k;
+}
+
+bool wall_words_shape(const char *word) { return find_shape(word) < SHAPES; }
+
+static bool begin_wall(struct wall_words *wall, const char *word, unsigned allowed, char fault[WALL_FAULT]) {
+    const int k = find_shape(word);
     if (k == SHAPES && !(allowed & WALL_NAMES_TOO)) return wall_words_no_shape(word, fault);
     *wall = (struct wall_words){.shape = k < SHAPES ? shapes[k].shape : WALL_NAMED,
                                 .word = word,
@@ -265,6 +272,7 @@ bool wall_words_take(struct wall_words *wall, char **text, unsigned allowed, cha
         char *value = strchr(item, '=');
         if (value) *value++ = 0;
         const struct key *key = find_key(item);
+        if (!key && !value && wall->shape == WALL_NAMED) return wall_words_no_shape(wall->word, fault);
         if (!key) return no_key(wall, item, allowed, fault);
         if (!take_key(wall, key, value, allowed, fault)) return false;
     }

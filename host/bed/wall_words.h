@@ -75,6 +75,9 @@ int wall_words_read(struct wall_words *wall, const char *const *word, int count,
  * moves to the next wall, or becomes NULL after the last one. False: `fault` says what is wrong. */
 bool wall_words_take(struct wall_words *wall, char **text, unsigned allowed, char fault[WALL_FAULT]);
 
+/* Whether a word is a shape. */
+bool wall_words_shape(const char *word);
+
 /* Says that a word is no shape, and which shapes there are. Returns false. */
 bool wall_words_no_shape(const char *word, char fault[WALL_FAULT]);
 

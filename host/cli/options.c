@@ -82,6 +82,14 @@ static const struct option *find_option(const struct option *table, const char *
     return NULL;
 }
 
+/* Options that have another form since 0.3.0. */
+static const struct {
+    const char *old, *now;
+} renamed[] = {{"wall-temperature", "--wall-temperature zmin=1200 is now --wall zmin:temperature=1200"},
+               {"wall-power", "--wall-power zmin=500 is now --wall zmin:power=500"},
+               {"wall-emissivity", "--wall-emissivity zmin=0.8 is now --wall zmin:emissivity=0.8"},
+               {"wall-absorptivity", "--wall-absorptivity zmin=0.8 is now --wall zmin:absorptivity=0.8"}};
+
 static int unknown_option(const struct walk *walk, const char *text, size_t length) {
     enum { OPTIONS_MOST = 80 };
     const char *names[OPTIONS_MOST], *name = text + strspn(text, "-");
@@ -89,6 +97,9 @@ static int unknown_option(const struct walk *walk, const char *text, size_t leng
     size_t n = 0;
     for (const struct option *option = walk->table; option->name && n < OPTIONS_MOST; ++option)
         names[n++] = option->name;
+    for (size_t k = 0; k < sizeof renamed / sizeof *renamed; ++k)
+        if (strcspn(name, "=") == strlen(renamed[k].old) && strncmp(name, renamed[k].old, strlen(renamed[k].old)) == 0)
+            return message(STATUS_USAGE, "%s", renamed[k].now);
     name_hint(hint, "--", name, strcspn(name, "="), names, n);
     return message(STATUS_USAGE, "unknown option %.*s%s see fibrad %s --help", (int)length, text, hint, walk->command);
 }

@@ -78,7 +78,7 @@ static int bed_help(void) {
          "  fibrad bed packing.dump --error 0.001 -o F.mtx -o F.csv --json F.json\n"
          "  fibrad bed spheres.csv --directions 987 --periodic 12,12,0 -o F.csv\n"
          "  fibrad bed packing.dump --wall auto -o F.csv\n"
-         "  fibrad bed spheres.csv --wall cylinder:0,0,25,zmin=0 -o F.csv\n"
+         "  fibrad bed spheres.csv --wall cylinder:0,0,25,zmin:at=0 -o F.csv\n"
          "  fibrad bed packing.dump --method cast --rays 200000 -o F.csv\n"
          "  fibrad bed packing.dump --frame 3 --targets 1,7,100-199 -o rows.csv\n"
          "  fibrad bed packing.dump.gz --frame all -o 'F.*.npz'");

@@ -12,7 +12,6 @@
 
 struct exchange_request {
     struct bed_options bed;
-    const char *wall_emissivity;
     struct quantity emissivity, solid, temperature;
     double zero; /* 0 of the unit of temperature [K] */
     struct walls walls;
@@ -38,7 +37,6 @@ static const struct option exchange_table[] = {
      "error allowed in every row, estimated, 1e-5 to 1; rays and directions are added until it is met [none]",
      TO_NUMBER(struct exchange_request, rule.tolerance, 1e-5, 1)},
     OPTIONS_WALL,
-    {OPTION_WALL_EMISSIVITY(struct exchange_request, wall_emissivity)},
     {0, "raw", NULL, "leave the rows as they were computed [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]",
      TO_FLAG(struct exchange_request, raw)},
     {0, "drop", "D", "drop pairs of entries if both are below D, and enlarge the others; rows stay closed [0]",
@@ -59,7 +57,7 @@ static int exchange_help(void) {
          "Exchange factors between all spheres of FILE. The spheres are grey and diffuse. D_ij is the fraction of\n"
          "the emission of sphere i that sphere j absorbs, directly or after reflections.\n");
     options_print(exchange_table);
-    puts("\n" FILES_MORE "\n" WALLS_MORE "\n"
+    puts("\n" FILES_MORE "\n" WALLS_MORE WALLS_OF_EMISSIVITY "\n"
          "The .csv has the columns i,j,D,body. The surroundings are j = -1. Walls are j = -2, -3, ... with their\n"
          "names in the column `body`. Rows i = -2, -3, ... are those of walls that are not endless. .mtx has\n"
          "spheres only.\n"
@@ -82,7 +80,8 @@ static int exchange_help(void) {
          "  fibrad exchange packing.dump --emissivity 1:0.8,2:0.3 --frame all -o 'D.*.npz'\n"
          "  fibrad exchange pebbles.csv --length-unit m --emissivity 0.8 --temperature T --solid-conductivity 30 -o "
          "D.npz\n"
-         "  fibrad exchange packing.csv --emissivity e --wall box --wall-emissivity zmin=0.3,0.9 --rays 2000 -o D.npz");
+         "  fibrad exchange packing.csv --emissivity e --wall box:emissivity=0.9,zmin:emissivity=0.3 --rays 2000 -o "
+         "D.npz");
     return STATUS_OK;
 }
 
@@ -208,7 +207,7 @@ static int exchange_frame(void *exchange_request, struct bed *bed) {
     double *emissivity = NULL, *relative = NULL, wall_emissivity[WALLS_MAX];
     const char *file = request->bed.name;
     int status = bed_options_walls(&request->bed, bed, &request->walls);
-    if (!status) status = wall_emissivities(request->wall_emissivity, &request->walls, wall_emissivity);
+    for (uint32_t k = 0; k < request->walls.count; ++k) wall_emissivity[k] = request->walls.said[k].emissivity;
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     request->rule.emissivity = emissivity;
     request->rule.wall_emissivity = wall_emissivity;
@@ -220,7 +219,7 @@ static int exchange_frame(void *exchange_request, struct bed *bed) {
 }
 
 int command_exchange(int argc, char **argv) {
-    struct exchange_request request = {0};
+    struct exchange_request request = {.bed.walls.keys = WALL_EMISSIVITY};
     const int status = exchange_parse(&request, argc, argv);
     const int ended = bed_options_end(&request.bed, status, exchange_help, exchange_frame, &request);
     quantity_free(&request.solid);

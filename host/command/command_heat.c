@@ -37,13 +37,6 @@ static const struct option heat_table[] = {
     {0, "ambient", "T", "temperature of the black surroundings; needed unless walls and periods close the bed",
      TO_TEXT(struct heat, given.ambient)},
     OPTIONS_WALL,
-    {0, "wall-temperature", "LIST",
-     "temperatures of walls, zmin=1200,zmax=insulated,300 for example; a number without a name is for all others; "
-     "NAME=triangles:FILE is a column of temperatures, one for each triangle of the mesh",
-     TO_TEXT(struct heat, given.wall_temperature)},
-    {0, "wall-power", "LIST", "powers that walls of unknown temperature give off, zmin=500 for example [W]",
-     TO_TEXT(struct heat, given.wall_power)},
-    {OPTION_WALL_EMISSIVITY(struct heat, wall_emissivities)},
     {OPTION_TEMPERATURE_UNIT(struct heat, given.zero)},
     OPTIONS_LIGHT(struct heat),
     OPTIONS_CONTACTS(struct heat),
@@ -86,7 +79,7 @@ static int heat_help(void) {
          "Net radiative powers [W] of all spheres of FILE, of walls and of the surroundings, all grey and diffuse.\n"
          "A net power is above 0 where heat is gained. Where a power is given, the temperature is found [K].\n");
     options_print(heat_table);
-    puts("\n" FILES_MORE "\n" WALLS_MORE "\n"
+    puts("\n" FILES_MORE "\n" WALLS_MORE WALLS_OF_HEAT "\n"
          "Each sphere has a temperature or a power. With both options, each sphere has a value from one of them.\n"
          "Example: --temperature 1:600 --power 2:5 gives 600 K to spheres of type 1, and 5 W to those of type 2.\n"
          "Columns have a blank or nan where the other option counts. A single number beside a list or a column is\n"
@@ -103,7 +96,8 @@ static int heat_help(void) {
          "\n"
          "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
          "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
-         "the temperature of a wall (zmin=@TABLE) or of the surroundings. The .csv then has the time in its first\n"
+         "the temperature of a wall (zmin:temperature=@TABLE) or of the surroundings. The .csv then has the time in "
+         "its first\n"
          "column. A series of .vtp has a .pvd for ParaView.\n");
     puts("@TABLE: A header has names and units, `t [min],T [C]` or `k [W/(m K)],T [K]`, and says which column is\n"
          "which. Beyond the ends of a table its first or last value is taken, with a warning.\n"
@@ -119,22 +113,19 @@ static int heat_help(void) {
          "Several frames go into one .csv, .dump or .json with their numbers. If OUT has a *, each frame has a\n"
          "file. Standard output ends with a summary of each frame, one `key value` on a line. Its balance and\n"
          "error are relative to what the spheres emit, or to what they absorb if that is more.\n");
-    puts(
-        "\nExamples:\n"
-        "  fibrad heat packing.dump --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
-        "  fibrad heat 'bed.*.dump.gz' --frame all --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
-        "  fibrad heat packing.dump --emissivity 0.8 --power 40 --ambient 300 --wall box \\\n"
-        "      --wall-temperature zmin=1200,insulated -o q.csv\n"
-        "  fibrad heat spheres.csv --length-unit mm --emissivity eps --temperature T --temperature-unit C \\\n"
-        "      --wall box --wall-temperature zmin=900,20 -o q.csv\n"
-        "  fibrad heat packing.dump --emissivity 0.8 --temperature 1200 --ambient @room.csv --until 3600 \\\n"
-        "      --heat-capacity 800 --density 2500 --every 60 -o 'cool.*.vtp' -o cool.csv --plot cool.png\n"
-        "  fibrad heat pebbles.csv --length-unit m --emissivity 0.8 --solid-conductivity 30 --power 500 \\\n"
-        "      --ambient 900 -o q.csv\n"
-        "  fibrad heat packing.dump --emissivity 1:0.3,2:0.9 --temperature v_T --wall zmin,zmax=open,cylinder:0,0,0.48 "
-        "\\\n"
-        "      --wall-temperature zmin=1200,cylinder=600 --wall-emissivity cylinder=0.4 --ambient 300 --error 0.005 "
-        "-o q.vtp");
+    puts("\nExamples:\n"
+         "  fibrad heat packing.dump --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
+         "  fibrad heat 'bed.*.dump.gz' --frame all --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
+         "  fibrad heat packing.dump --emissivity 0.8 --power 40 --ambient 300 \\\n"
+         "      --wall box:insulated,zmin:temperature=1200 -o q.csv\n"
+         "  fibrad heat spheres.csv --length-unit mm --emissivity eps --temperature T --temperature-unit C \\\n"
+         "      --wall box:temperature=20,zmin:temperature=900 -o q.csv\n"
+         "  fibrad heat packing.dump --emissivity 0.8 --temperature 1200 --ambient @room.csv --until 3600 \\\n"
+         "      --heat-capacity 800 --density 2500 --every 60 -o 'cool.*.vtp' -o cool.csv --plot cool.png\n"
+         "  fibrad heat pebbles.csv --length-unit m --emissivity 0.8 --solid-conductivity 30 --power 500 \\\n"
+         "      --ambient 900 -o q.csv\n"
+         "  fibrad heat packing.dump --emissivity 1:0.3,2:0.9 --temperature v_T --ambient 300 --error 0.005 \\\n"
+         "      --wall zmin:temperature=1200,zmax:open,cylinder:0,0,0.48:temperature=600:emissivity=0.4 -o q.vtp");
     return STATUS_OK;
 }
 
@@ -192,7 +183,7 @@ static int heat_frame(void *heat, struct bed *bed) {
 }
 
 int command_heat(int argc, char **argv) {
-    struct heat heat = {0};
+    struct heat heat = {.options.walls.keys = WALL_HEAT | WALL_EMISSIVITY | WALL_ABSORPTIVITY};
     int status = options_read("heat", heat_table, argc, argv, &heat);
     if (!status) status = check_heat(&heat);
     const int ended = bed_options_end(&heat.options, status, heat_help, heat_frame, &heat);

@@ -49,8 +49,7 @@
         OPTION_HELP                                                                                                    \
     }
 #define OPTIONS_WALL                                                                                                   \
-    {0, "wall", "LIST",                                                                                                \
-     "walls: auto, box, xmin, xmax, ymin, ymax, zmin, zmax, cylinder:X,Y,R, mesh:FILE; see below [none]",              \
+    {0, "wall", "LIST", "walls: box, auto, xmin ... zmax, cylinder:X,Y,R, mesh:FILE; see below [none]",                \
      TO_FUNCTION(walls_option, struct bed_options, walls)},                                                            \
     {                                                                                                                  \
         0, "wall-vtp", "OUT", "write the triangles of the walls of mesh:FILE, a .vtp for ParaView [none]",             \

@@ -82,7 +82,6 @@ struct heat {
     struct light_options light;
     struct contact_options contacts;
     struct face face;
-    const char *wall_emissivities;
     struct quantity emissivities, solid;
     fibrad_heat_config config;            /* directions 0: chosen by the emissivities of the bed */
     bool uniform, by_patches, by_factors; /* --model; in time only: none of them means corrected factors */

@@ -231,7 +231,8 @@ static int absorb_light(struct time_run *m) {
     if (!h->lit.options) return STATUS_OK;
     for (uint32_t k = 0; k < h->walls.count; ++k)
         if (m->sources.insulated[k] && h->lit.of_walls[k] > 0)
-            return message(STATUS_USAGE, "--irradiate with --until: %s is insulated and needs --wall-absorptivity %s=0",
+            return message(STATUS_USAGE,
+                           "--irradiate with --until: %s is insulated and needs --wall %s:insulated:absorptivity=0",
                            wall_name(&h->walls, k), wall_name(&h->walls, k));
     if (!m->by_patches) status = fibrad_radiation_new(&radiation, &scene, &spheres, &h->config, &run);
     if (!status)
