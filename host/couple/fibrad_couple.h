@@ -161,6 +161,10 @@ typedef struct fibrad_insitu_totals {
     double wall[FIBRAD_WALLS_MAX]; /* sigma K^4 L^2, [walls of the rows] */
 } fibrad_insitu_totals;
 
+/* What a particle emits beyond the cutoff may end on what emits most or least. If its power could change so by more
+ * than this part of the root mean square of all powers, fibrad_insitu_remark tells of the particle. */
+#define FIBRAD_BEYOND_MUCH 0.01
+
 /* Facts of the last rows, of all ranks together except halo and bytes. */
 typedef struct fibrad_insitu_facts {
     uint64_t particles, entries; /* numbers of particles that take part and of entries of rows */
@@ -287,15 +291,16 @@ int fibrad_insitu_conduct(fibrad_insitu *insitu, const fibrad_insitu_contacts *c
  *   Errors   none */
 const char *fibrad_insitu_message(const fibrad_insitu *insitu);
 
-/* What fibrad_insitu_remark tells: what was done with strays. */
+/* What fibrad_insitu_remark tells: what was done with strays, and what a cutoff could change in powers. */
 typedef enum fibrad_remark_kind {
     FIBRAD_REMARK_OUTSIDE = 0, /* particles are left out */
     FIBRAD_REMARK_OVERLAP = 1, /* particles are smaller, since a centre lies inside another particle */
     FIBRAD_REMARK_BACK = 2,    /* particles have no row, since they see a side that belongs to no wall */
-    FIBRAD_REMARKS = 3
+    FIBRAD_REMARK_BEYOND = 3,  /* some of the last powers could change by more than FIBRAD_BEYOND_MUCH */
+    FIBRAD_REMARKS = 4
 } fibrad_remark_kind;
 
-/* A sentence on the particles of one kind in the last rows: their number, and the id, place and wall of one.
+/* A sentence on the particles of one kind in the last rows or powers: their number, and the id, place and wall of one.
  * Not collective, the same on all ranks.
  *   Input    kind: a fibrad_remark_kind
  *   Output   never NULL; "" if there are none

@@ -144,8 +144,8 @@ static void sum_facts(fibrad_insitu_build *b) {
     const double *weight = to->weight.at;
     double *unknown = to->unknown.at;
     fibrad_row row;
-    /* emission, beyond, squared errors, entries, rows of emissivity above 0; then by walls */
-    double sum[5 + FIBRAD_WALLS_MAX] = {0}, *of_wall = sum + 5;
+    /* emission, beyond, squared errors, entries, rows of emissivity above 0, escaped; then by walls */
+    double sum[6 + FIBRAD_WALLS_MAX] = {0}, *of_wall = sum + 6;
     for (int t = 0; t < b->s->config.threads; ++t) {
         for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);) {
             sum[0] += weight[row.sphere];
@@ -153,12 +153,13 @@ static void sum_facts(fibrad_insitu_build *b) {
             sum[1] += weight[row.sphere] * unknown[row.sphere];
             sum[2] += row.error * row.error;
             sum[4] += weight[row.sphere] > 0;
+            sum[5] += row.escaped;
             for (uint32_t k = 0; k < b->bed->walls; ++k)
                 of_wall[k] += fibrad_row_weight(&row, weight[row.sphere]) * row.wall[k];
         }
         sum[3] += (double)to->rows[t].entries;
     }
-    MPI_Allreduce(MPI_IN_PLACE, sum, 5 + FIBRAD_WALLS_MAX, MPI_DOUBLE, MPI_SUM, b->s->comm);
+    MPI_Allreduce(MPI_IN_PLACE, sum, 6 + FIBRAD_WALLS_MAX, MPI_DOUBLE, MPI_SUM, b->s->comm);
     for (uint32_t k = 0; k < b->bed->walls; ++k) {
         to->facts.wall[k] = of_wall[k] + to->wall_exchange.surroundings[k];
         for (uint32_t c = 0; c < b->bed->walls; ++c) to->facts.wall[k] += to->wall_exchange.wall[k][c];
@@ -166,6 +167,7 @@ static void sum_facts(fibrad_insitu_build *b) {
     to->facts.beyond = sum[0] > 0 ? sum[1] / sum[0] : 0;
     to->facts.error = sum[4] > 0 ? sqrt(sum[2] / sum[4]) : 0;
     to->facts.entries = (uint64_t)sum[3];
+    to->escapes = sum[5] > 0;
     to->facts.halo = b->halo;
     to->facts.outside = b->remark[FIBRAD_REMARK_OUTSIDE].count;
     to->facts.overlapping = b->remark[FIBRAD_REMARK_OVERLAP].count;

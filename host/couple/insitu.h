@@ -48,6 +48,7 @@ typedef struct fibrad_insitu_set {
     fibrad_wall_exchange wall_exchange;
     double wall_emission[FIBRAD_WALLS_MAX], surroundings_emission; /* sigma T^4 of the last powers */
     int flows;                                                     /* 1: there were powers since rows were made */
+    int escapes;                                                   /* 1: some particles see the surroundings */
     fibrad_insitu_facts facts;
     fibrad_remark remark[FIBRAD_REMARKS];
 } fibrad_insitu_set;
@@ -119,6 +120,10 @@ typedef struct fibrad_insitu_build {
 
 /* Checks what is given with powers. Not collective. Errors: _ARGUMENT, _STATE. */
 int fibrad_insitu_check_state(fibrad_insitu *insitu, const fibrad_insitu_state *state, const double *power);
+
+/* Collective. Finds what the unknown parts of rows could change in the powers that were found last, and remarks it.
+ * unit: the root mean square of these powers */
+void fibrad_unknown_tell(fibrad_insitu *insitu, double unit);
 
 /* Collective. Checks the bed, and takes its particles. Errors, on all ranks: as fibrad_insitu_rows. */
 int fibrad_insitu_check(fibrad_insitu_build *b);

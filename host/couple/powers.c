@@ -164,7 +164,7 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
     const size_t n = state->n;
     const double sigma = sigma_of(state);
     double *value = s->value.at, *home = value + n, *emission = set->emission.at;
-    double of_wall[FIBRAD_WALLS_MAX] = {0}, sum[FIBRAD_WALLS_MAX + 3] = {0};
+    double of_wall[FIBRAD_WALLS_MAX] = {0}, sum[FIBRAD_WALLS_MAX + 4] = {0};
     for (uint32_t k = 0; k < set->walls; ++k) set->wall_emission[k] = sigma * fourth(state->wall_temperature[k]);
     set->surroundings_emission = sigma * fourth(state->surroundings);
     if (n) memcpy(value, state->temperature, n * sizeof *value);
@@ -185,22 +185,23 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
                                  "the rows are too inaccurate for particles that conduct so little: take more paths");
     }
     if (!status) status = flow_home(s, &flow);
-    for (size_t i = 0; i < set->own; ++i) sum[0] += flow.power[i];
+    for (size_t i = 0; i < set->own; ++i) sum[0] += flow.power[i], sum[3] += flow.power[i] * flow.power[i];
     sum[1] = flow.surroundings_power;
     sum[2] = status != FIBRAD_OK;
-    memcpy(sum + 3, of_wall, sizeof of_wall);
+    memcpy(sum + 4, of_wall, sizeof of_wall);
     memcpy(home, flow.power, set->own * sizeof *home);
     memset(value, 0, n * sizeof *value);
     fibrad_link_reverse(set->present, value, 1);
-    MPI_Allreduce(MPI_IN_PLACE, sum, FIBRAD_WALLS_MAX + 3, MPI_DOUBLE, MPI_SUM, s->comm);
+    MPI_Allreduce(MPI_IN_PLACE, sum, FIBRAD_WALLS_MAX + 4, MPI_DOUBLE, MPI_SUM, s->comm);
     if (sum[2] > 0) return fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "%s", fibrad_status_text(FIBRAD_E_ARGUMENT));
     if (n) memcpy(power, value, n * sizeof *power);
     if (totals) {
         *totals = (fibrad_insitu_totals){.particles = sum[0], .surroundings = sum[1]};
-        memcpy(totals->wall, sum + 3, sizeof totals->wall);
+        memcpy(totals->wall, sum + 4, sizeof totals->wall);
         add_walls(set, totals);
     }
     set->flows = 1;
+    fibrad_unknown_tell(s, sqrt(sum[3] / (double)set->facts.particles));
     s->seconds_powers += MPI_Wtime() - begun;
     return FIBRAD_OK;
 }

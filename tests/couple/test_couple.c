@@ -679,6 +679,52 @@ static void the_sky_stays_open(void) {
     }
 }
 
+/* Powers with a cutoff and without one: what is said of the first bounds the difference. Nothing is said if nothing
+ * could change, at equal temperatures or without a cutoff. */
+static void unknown_parts_are_told(enum walls walls) {
+    const struct kind kind = {"unknown", 5, {walls == FLOORS, walls == FLOORS, 0}, walls, {.8, .8}, 4, 1, 0};
+    struct kind whole = kind;
+    whole.cutoff = 0;
+    struct pile all = pile_of(&kind), part = part_of(&all, 0);
+    fibrad_insitu *near = insitu_of(MPI_COMM_WORLD, &kind, 1), *far = insitu_of(MPI_COMM_WORLD, &whole, 1);
+    const double even[2] = {500, 500};
+    double *power = memory_of(part.bed.n, sizeof *power), sum[3] = {0}, most = 0, said[2] = {0};
+    fibrad_insitu_state state = state_of(&part);
+    fibrad_insitu_facts facts;
+    make_rows(near, &part, 0);
+    make_rows(far, &part, 0);
+    CHECK(!*fibrad_insitu_remark(near, FIBRAD_REMARK_BEYOND));
+    CHECK(fibrad_insitu_powers(near, &state, part.power, NULL) == FIBRAD_OK);
+    CHECK(fibrad_insitu_powers(far, &state, power, NULL) == FIBRAD_OK);
+    for (size_t i = 0; i < part.bed.n; ++i) sum[0]++, sum[1] += part.power[i] * part.power[i];
+    MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    const double unit = sqrt(sum[1] / sum[0]);
+    for (size_t i = 0; i < part.bed.n; ++i) {
+        const double change = fabs(part.power[i] - power[i]) / unit;
+        most = fmax(most, 100 * change), sum[2] += change > .01;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, sum + 2, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    CHECK(
+        sscanf(
+            fibrad_insitu_remark(near, FIBRAD_REMARK_BEYOND),
+            "what lies beyond the cutoff 4 could change the power of %lf particles by more than 1 %% of the root mean "
+            "square of all powers, that of particle %*u at (%*f, %*f, %*f) by %lf %%",
+            &said[0], &said[1]) == 2);
+    CHECK(most > 1 && most < said[1] && said[1] < 20 * most && sum[2] > 0 && sum[2] <= said[0]);
+    CHECK(!*fibrad_insitu_remark(far, FIBRAD_REMARK_BEYOND));
+    for (size_t i = 0; i < part.bed.n; ++i) part.temperature[i] = 500;
+    state.wall_temperature = even;
+    CHECK(fibrad_insitu_powers(near, &state, part.power, NULL) == FIBRAD_OK);
+    fibrad_insitu_facts_get(near, &facts);
+    CHECK(facts.beyond > 1e-3 && !*fibrad_insitu_remark(near, FIBRAD_REMARK_BEYOND));
+    fibrad_insitu_free(near);
+    fibrad_insitu_free(far);
+    free(power);
+    close_pile(&all);
+    close_pile(&part);
+}
+
 /* A particle larger than all others together sees them, and they see it. A cutoff less than its diameter is refused. */
 static void large_particles_are_seen(void) {
     const struct kind kind = {"large", 4, {0, 0, 0}, OPEN, {.8, .8}, 0, 1, 0};
@@ -1354,6 +1400,8 @@ int main(int argc, char **argv) {
     the_map_has_all(&kinds[0]);
     the_map_has_all(&kinds[4]);
     the_sky_stays_open();
+    unknown_parts_are_told(OPEN);
+    unknown_parts_are_told(FLOORS);
     large_particles_are_seen();
     temperatures_are_those_of_the_kernel(OPEN);
     temperatures_are_those_of_the_kernel(FLOORS);

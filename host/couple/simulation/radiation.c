@@ -13,8 +13,6 @@
 #include "contact/cylinder.h"
 #include "couple/ranks/collective.h"
 
-#define BEYOND_MUCH 0.01 /* part of the emission of particles beyond a cutoff, of which a warning tells */
-
 /* Keeps a sentence. Returns false. */
 __attribute__((format(printf, 2, 3))) static bool refuse(struct radiation *r, const char *format, ...) {
     va_list arguments;
@@ -216,44 +214,30 @@ fibrad_insitu_bed radiation_bed(const struct radiation *r, const double low[3], 
 
 /* ---- rows and powers -------------------------------------------------------------------------------------------- */
 
-/* Says a sentence about a step once. */
-static void warn(struct radiation *r, bool *told, uint64_t step, const char *what, const char *advice) {
-    char sentence[2 * WALL_FAULT];
-    snprintf(sentence, sizeof sentence, "%s, at step %" PRIu64 "; %s", what, step, advice);
-    if (!*told) r->say(r->simulation, sentence, true);
-    *told = true;
-}
-
-/* Takes a status of fibrad_insitu. */
+/* Takes a status of fibrad_insitu. Tells once of each kind what was done with strays. */
 static bool take(struct radiation *r, int status, uint64_t step) {
     const char *hint = status == FIBRAD_E_BACK      ? "; with the word `both` both sides of a mesh are the wall"
                        : status == FIBRAD_E_ENDLESS ? ", `zmax open` for example"
                                                     : "";
-    return !status || refuse(r, "step %" PRIu64 ": %s%s", step, fibrad_insitu_message(r->insitu), hint);
-}
-
-/* Tells once of each kind what was done with strays, and of a cutoff that hides much. */
-static void tell(struct radiation *r, uint64_t step) {
-    char beyond[128];
-    fibrad_insitu_facts facts;
-    fibrad_insitu_facts_get(r->insitu, &facts);
-    for (int kind = 0; kind < FIBRAD_REMARKS; ++kind)
-        if (*fibrad_insitu_remark(r->insitu, kind))
-            warn(r, &r->told[kind], step, fibrad_insitu_remark(r->insitu, kind),
-                 "with the option `strict` this ends the run");
-    snprintf(beyond, sizeof beyond, "%.2g %% of what particles emit lies beyond the cutoff %g", 100 * facts.beyond,
-             facts.cutoff);
-    if (facts.cutoff > 0 && facts.beyond > BEYOND_MUCH)
-        warn(r, &r->told[FIBRAD_REMARKS], step, beyond, "take a larger `cutoff`");
+    if (status) return refuse(r, "step %" PRIu64 ": %s%s", step, fibrad_insitu_message(r->insitu), hint);
+    for (int kind = 0; kind < FIBRAD_REMARKS; ++kind) {
+        const char *remark = fibrad_insitu_remark(r->insitu, kind);
+        char sentence[2 * WALL_FAULT];
+        if (!*remark || r->told[kind]) continue;
+        snprintf(sentence, sizeof sentence, "%s, at step %" PRIu64 "; %s", remark, step,
+                 kind == FIBRAD_REMARK_BEYOND ? "take a larger `cutoff`"
+                                              : "with the option `strict` this ends the run");
+        r->say(r->simulation, sentence, true);
+        r->told[kind] = true;
+    }
+    return true;
 }
 
 bool radiation_rows(struct radiation *r, const fibrad_insitu_bed *bed, uint64_t step, bool follow) {
     r->place_meshes(r->simulation);
     if (mesh_walls_face(&r->meshes, r->comm, bed)) return refuse(r, "out of memory");
     *(follow ? &r->rows_followed : &r->rows_made) += 1;
-    if (!take(r, (follow ? fibrad_insitu_follow : fibrad_insitu_rows)(r->insitu, bed, step), step)) return false;
-    tell(r, step);
-    return true;
+    return take(r, (follow ? fibrad_insitu_follow : fibrad_insitu_rows)(r->insitu, bed, step), step);
 }
 
 bool radiation_powers(struct radiation *r, const fibrad_insitu_bed *bed, const double *temperature, uint64_t step,

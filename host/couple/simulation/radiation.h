@@ -51,7 +51,7 @@ struct radiation {
     fibrad_insitu_totals totals;       /* of the last powers, by radiation */
     fibrad_insitu_conducted conducted; /* of the same, through contacts */
     int rows_made, rows_followed, powers_found;
-    bool told[FIBRAD_REMARKS + 1]; /* that strays of a kind, and much beyond the cutoff, were told of */
+    bool told[FIBRAD_REMARKS];
     char fault[2 * WALL_FAULT];
 
     /* Set by the simulation: puts meshes where they are, before rows are made; prints a sentence on rank 0. */
