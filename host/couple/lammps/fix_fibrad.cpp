@@ -36,8 +36,9 @@ __attribute__((format(printf, 1, 2))) static std::string text(const char *format
 }
 
 static bool is_number(const std::string &word) {
-    double value;
-    return radiation_number(word.c_str(), -HUGE_VAL, HUGE_VAL, &value);
+    char *end;
+    strtod(word.c_str(), &end);
+    return !word.empty() && !*end;
 }
 
 [[noreturn]] void FixFibrad::stop(const std::string &sentence) const {
@@ -77,7 +78,7 @@ double FixFibrad::number(const std::string &what, double low, double high) {
 }
 
 int FixFibrad::count(const char *what, int low) {
-    uint64_t value;
+    int64_t value;
     const std::string given = next();
     if (!radiation_whole(given.c_str(), low, INT_MAX, &value))
         stop(text("%s must be a whole number, at least %d, not `", what, low) + given + "`");
@@ -206,7 +207,7 @@ void FixFibrad::read_wall() {
     wall_words wall = {};
     mesh_motion motion = {};
     do {
-        const int count = wall_words_read(&wall, &words[at], (int)(words.size() - at), KEYS, radiation.fault);
+        const int count = wall_words_read(&wall, words.data() + at, (int)(words.size() - at), KEYS, radiation.fault);
         if (count == 0 && *radiation.fault) stop(std::string("wall ") + radiation.fault);
         at += count;
     } while (wall.shape == WALL_MESH && read_motion(&motion));

@@ -358,13 +358,14 @@ void radiate(Driver *driver, LAMMPS_NS::bigint step, int n) {
     const LAMMPS_NS::bigint first = step + (driver->lmp->update->setupflag ? 1 : 0);
     count_heat(driver, first);
     struct radiation *r = &driver->radiation;
-    const uint64_t number = (uint64_t)driver->lmp->update->ntimestep;
+    const int64_t number = driver->lmp->update->ntimestep;
     const long every = (long)driver->options.every;
     const double *t = driver->temperature->vector_atom;
     const fibrad_insitu_bed bed = present_bed(driver);
-    if (!driver->radiates || number % driver->options.rows == 0) check(driver, radiation_rows(r, &bed, number, false));
+    if (!driver->radiates || number % driver->options.rows == 0)
+        check(driver, radiation_rows(r, &bed, (uint64_t)number, false));
     share_temperatures(driver, false);
-    check(driver, radiation_powers(r, &bed, t, number, driver->contact_solid.data(), driver->gain.data(),
+    check(driver, radiation_powers(r, &bed, t, (uint64_t)number, driver->contact_solid.data(), driver->gain.data(),
                                    driver->conductance.data()));
     check(driver, radiation_stable(r, &bed, t, driver->heat_capacity.data(), driver->conductance.data(),
                                    driver->lmp->update->dt * (double)every, every));
@@ -383,7 +384,7 @@ void step(void *context, LAMMPS_NS::bigint number, int n, int *, double **, doub
     Driver *driver = static_cast<Driver *>(context);
     for (int i = 0; i < n; ++i) std::fill(force[i], force[i] + 3, 0.0);
     count_particles(driver);
-    if (number % (LAMMPS_NS::bigint)driver->options.every == 0) radiate(driver, number, n);
+    if (number % driver->options.every == 0) radiate(driver, number, n);
 }
 
 /* ---- summary ------------------------------------------------------------------------------------------- */

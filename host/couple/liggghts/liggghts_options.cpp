@@ -65,9 +65,9 @@ const char *take(const std::string &name, char *text, liggghts_options *o, radia
                                               : "is not K[,K...] [lens|hertz] [scale S] [gas KG], with K above 0";
     if (name == "surroundings")
         return radiation_number(text, 0, FIBRAD_TEMPERATURE_MAX, &r->surroundings) ? nullptr : "is not a temperature";
-    if (name == "steps") return radiation_whole(text, 0, 1e18, &o->steps) ? nullptr : "is not a number of steps";
-    if (name == "every") return radiation_whole(text, 1, 1e9, &o->every) ? nullptr : steps;
-    if (name == "rows") return radiation_whole(text, 1, 1e18, &o->rows) ? nullptr : steps;
+    if (name == "steps") return radiation_whole(text, 0, INT64_MAX, &o->steps) ? nullptr : "is not a number of steps";
+    if (name == "every") return radiation_whole(text, 1, INT_MAX, &o->every) ? nullptr : steps;
+    if (name == "rows") return radiation_whole(text, 1, INT64_MAX, &o->rows) ? nullptr : steps;
     const char *wanted = radiation_option(r, name.c_str(), text);
     if (wanted == nullptr || *wanted == 0) return wanted;
     std::snprintf(r->fault, sizeof r->fault, "is not %s", wanted);
@@ -79,7 +79,7 @@ std::string check(const liggghts_options *options, const radiation *r) {
     if (options->script == nullptr) return "the script is missing: -in FILE";
     if (options->emissivity.empty()) return "--emissivity is missing: one number for all types, or E1,E2... for each";
     if (std::isnan(r->surroundings)) return "--surroundings is missing, the temperature of the surroundings";
-    if (options->steps == UINT64_MAX) return "--steps is missing, the number of steps with radiation";
+    if (options->steps < 0) return "--steps is missing, the number of steps with radiation";
     if (!options->contact.empty() && !options->solid.empty()) return "--contacts excludes --solid-conductivity";
     if (options->rows % options->every != 0) return "--rows is not a multiple of --every";
     return "";

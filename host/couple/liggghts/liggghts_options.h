@@ -9,11 +9,11 @@
 
 struct liggghts_options {
     const char *script = nullptr;
-    const char *rows_file = nullptr; /* --write */
-    std::vector<double> emissivity;  /* one for all types, or one per type */
-    std::vector<double> solid;       /* the same of the conductivity of the solid; empty: infinite */
-    std::vector<double> contact;     /* the same of the solid at contacts; empty: contacts do not conduct */
-    uint64_t every = 20, rows = 1000, steps = UINT64_MAX; /* UINT64_MAX: not given */
+    const char *rows_file = nullptr;             /* --write */
+    std::vector<double> emissivity;              /* one for all types, or one per type */
+    std::vector<double> solid;                   /* the same of the conductivity of the solid; empty: infinite */
+    std::vector<double> contact;                 /* the same of the solid at contacts; empty: contacts do not conduct */
+    int64_t every = 20, rows = 1000, steps = -1; /* steps below 0: not given */
 };
 
 enum { OPTIONS_GO, OPTIONS_HELP, OPTIONS_WRONG };

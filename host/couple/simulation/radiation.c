@@ -1,7 +1,6 @@
 /* radiation.c - what the fix of LAMMPS and the driver of LIGGGHTS have in common. SPDX-License-Identifier: MIT */
 #include "couple/simulation/radiation.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
@@ -12,6 +11,7 @@
 
 #include "contact/cylinder.h"
 #include "couple/ranks/collective.h"
+#include "text/read_number.h"
 
 /* Keeps a sentence. Returns false. */
 __attribute__((format(printf, 2, 3))) static bool refuse(struct radiation *r, const char *format, ...) {
@@ -25,29 +25,28 @@ __attribute__((format(printf, 2, 3))) static bool refuse(struct radiation *r, co
 /* ---- words ------------------------------------------------------------------------------------------------------ */
 
 bool radiation_number(const char *word, double low, double high, double *value) {
-    char *end;
-    *value = strtod(word, &end);
-    return *word && *end == 0 && *value >= low && *value <= high;
+    return number_read(word, value) && *value >= low && *value <= high;
 }
 
-bool radiation_whole(const char *word, double low, double high, uint64_t *value) {
-    char *end;
-    errno = 0;
-    *value = strtoull(word, &end, 10);
-    return *word >= '0' && *word <= '9' && *end == 0 && errno == 0 && (double)*value >= low && (double)*value <= high;
+bool radiation_whole(const char *word, int64_t low, int64_t high, int64_t *value) {
+    return number_read_whole(word, value) && *value >= low && *value <= high;
 }
 
 const char *radiation_option(struct radiation *r, const char *name, const char *word) {
     fibrad_insitu_config *c = &r->config;
-    uint64_t whole;
+    int64_t whole = 0;
     if (strcmp(name, "cutoff") == 0)
         return radiation_number(word, 0, FIBRAD_LENGTH_MAX, &c->cutoff) ? NULL : "a length of 0 or more";
     if (strcmp(name, "tolerance") == 0) return radiation_number(word, 0, 1, &c->tolerance) ? NULL : "within 0 and 1";
-    if (strcmp(name, "seed") == 0) return radiation_whole(word, 0, 0x1p64, &c->seed) ? NULL : "a whole number";
+    if (strcmp(name, "seed") == 0) {
+        const bool good = radiation_whole(word, 0, INT64_MAX, &whole);
+        c->seed = (uint64_t)whole;
+        return good ? NULL : "a whole number";
+    }
     if (strcmp(name, "threads") == 0) {
-        if (!radiation_whole(word, 1, 1024, &whole)) return "a number of threads, 1 to 1024";
+        const bool good = radiation_whole(word, 1, 1024, &whole);
         c->threads = (int)whole;
-        return NULL;
+        return good ? NULL : "a number of threads, 1 to 1024";
     }
     if (strcmp(name, "strict") == 0) {
         c->strict = strcmp(word, "yes") == 0;

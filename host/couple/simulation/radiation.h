@@ -64,7 +64,7 @@ struct radiation {
 bool radiation_number(const char *word, double low, double high, double *value);
 
 /* The same for a whole number. */
-bool radiation_whole(const char *word, double low, double high, uint64_t *value);
+bool radiation_whole(const char *word, int64_t low, int64_t high, int64_t *value);
 
 /* Takes an option of rows: cutoff, tolerance, accuracy, threads, seed, strict. NULL: taken, or "": there is no such
  * option. Else says what its value is, not beginning with "is". */
