@@ -43,8 +43,7 @@ struct script_triangle {
 
 struct script_mesh {
     LAMMPS_NS::FixMeshSurface *fix;
-    uint32_t wall;                         /* its index */
-    std::vector<script_triangle> triangle; /* on rank 0: all triangles by id, at the last rows */
+    uint32_t wall; /* its index */
 };
 
 struct Driver {
@@ -171,7 +170,7 @@ void find_meshes(Driver *driver) {
         Fix *fix = k < 0 ? nullptr : driver->lmp->modify->fix[k];
         if (fix == nullptr || std::strncmp(fix->style, "mesh/surface", 12) != 0)
             stop(WRONG_INPUT, name + ": the script has no such fix mesh/surface");
-        script_mesh found{static_cast<LAMMPS_NS::FixMeshSurface *>(fix), wall, {}};
+        script_mesh found{static_cast<LAMMPS_NS::FixMeshSurface *>(fix), wall};
         if (words->temperature_text == nullptr && mesh_temperature(found.fix) == nullptr)
             stop(WRONG_INPUT, name + ": the script gives no temperature: add temperature=T");
         driver->mesh.push_back(found);
@@ -240,19 +239,13 @@ std::vector<script_triangle> gather_mesh(LAMMPS_NS::FixMeshSurface *fix) {
     return all;
 }
 
-bool same_places(const std::vector<script_triangle> &a, const std::vector<script_triangle> &b) {
-    bool same = a.size() == b.size();
-    for (size_t t = 0; t < a.size() && same; ++t) same = std::memcmp(a[t].corner, b[t].corner, sizeof a[t].corner) == 0;
-    return same;
-}
-
 void say(void *, const char *sentence, bool warning) {
     if (rank() == 0) std::fprintf(stderr, "fibrad_liggghts: %s%s\n", warning ? "warning: " : "", sentence);
 }
 
 /* Adds the triangles of one mesh as if they came from a file. */
 void take_mesh(Driver *driver, const script_mesh &mesh) {
-    const std::vector<script_triangle> &triangle = mesh.triangle;
+    const std::vector<script_triangle> triangle = gather_mesh(mesh.fix);
     const size_t n = triangle.size();
     std::vector<double> corner(9 * n);
     std::vector<uint64_t> place(n);
@@ -280,17 +273,9 @@ void take_mesh(Driver *driver, const script_mesh &mesh) {
     if (!driver->radiates && meshes->messages[0] != 0) say(driver, meshes->messages, false);
 }
 
-/* Takes all meshes anew if a mesh has moved. */
-void follow_meshes(void *context) {
+/* Takes all meshes anew. */
+void place_meshes(void *context) {
     Driver *driver = static_cast<Driver *>(context);
-    int moved = 0;
-    for (script_mesh &mesh : driver->mesh) {
-        std::vector<script_triangle> now = gather_mesh(mesh.fix);
-        if (!same_places(now, mesh.triangle)) moved = 1;
-        mesh.triangle = std::move(now);
-    }
-    MPI_Bcast(&moved, 1, MPI_INT, 0, MPI_COMM_WORLD);
-    if (moved == 0) return;
     mesh_walls_free(&driver->radiation.meshes);
     for (const script_mesh &mesh : driver->mesh) take_mesh(driver, mesh);
 }
@@ -481,7 +466,7 @@ int main(int argc, char **argv) {
     std::string wrong;
     driver.radiation.surroundings = NAN;
     driver.radiation.heats = true;
-    driver.radiation.place_meshes = follow_meshes;
+    driver.radiation.place_meshes = place_meshes;
     driver.radiation.say = say;
     driver.radiation.simulation = &driver;
     const int parsed = liggghts_options_parse(argc, argv, &driver.options, &driver.radiation, &rest, &wrong);
