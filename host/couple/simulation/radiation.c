@@ -130,7 +130,14 @@ bool radiation_add_wall(struct radiation *r, const struct wall_words *words) {
     return true;
 }
 
-/* Adds `count` walls of some words. names: of them. */
+/* The name of the next wall. */
+static const char *name_of(const struct radiation *r, const struct wall_words *w) {
+    if (w->shape == WALL_PLANE) return wall_plane_names[side_of(w)];
+    if (w->shape == WALL_CYLINDER) return wall_cylinder_names[w->wall.cylinder.axis];
+    return r->files ? r->meshes.meshes.name[r->walls] : w->mesh.path;
+}
+
+/* Adds `count` walls of some words. */
 static bool push_walls(struct radiation *r, const struct wall_words *w, uint32_t count) {
     for (uint32_t k = 0; k < count; ++k, ++r->walls) {
         if (r->walls == FIBRAD_WALLS_MAX) return refuse(r, "there are at most %d walls", FIBRAD_WALLS_MAX);
@@ -139,10 +146,7 @@ static bool push_walls(struct radiation *r, const struct wall_words *w, uint32_t
         r->temperature[r->walls] = w->given & WALL_TEMPERATURE || r->heats ? w->temperature : 0;
         r->emissivity[r->walls] = w->emissivity;
         if (w->given & WALL_INSULATED) r->temperature[r->walls] = r->emissivity[r->walls] = 0;
-        r->name[r->walls] = w->shape != WALL_MESH ? side_of(w) < 0 ? wall_cylinder_names[w->wall.cylinder.axis]
-                                                                   : wall_plane_names[side_of(w)]
-                            : r->files ? r->meshes.meshes.name[r->walls]
-                                                  : w->mesh.path;
+        r->name[r->walls] = name_of(r, w);
     }
     return true;
 }
