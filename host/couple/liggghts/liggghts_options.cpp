@@ -96,12 +96,15 @@ int liggghts_options_parse(int argc, char **argv, liggghts_options *options, rad
         name.erase(0, name[1] == '-' ? 2 : 1);
         if (name == "help") return OPTIONS_HELP;
         static char yes[] = "yes";
-        char *text = name == "strict" ? yes : k + 1 < argc ? argv[++k] : nullptr;
+        char *equals = std::strchr(argv[k], '=');
+        if (equals != nullptr) name.resize(name.find('='));
+        char *text = name == "strict" ? yes : equals != nullptr ? equals + 1 : k + 1 < argc ? argv[++k] : nullptr;
         if (text == nullptr) return *wrong = "an argument is missing: --" + name, OPTIONS_WRONG;
         const std::string given = text;
         const char *fault = take(name, text, options, radiation);
         if (fault == nullptr) continue;
-        *wrong = *fault == 0 ? "unknown option: --" + name : "--" + name + ": '" + given + "' " + fault;
+        *wrong = *fault == 0 ? "unknown option: --" + name
+                             : "--" + name + ": " + (name == "wall" ? "" : "'" + given + "' ") + fault;
         return OPTIONS_WRONG;
     }
     *rest = k < argc ? k + 1 : k;
