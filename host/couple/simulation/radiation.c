@@ -133,7 +133,7 @@ bool radiation_add_wall(struct radiation *r, const struct wall_words *words) {
 /* The name of the next wall. */
 static const char *name_of(const struct radiation *r, const struct wall_words *w) {
     if (w->shape == WALL_PLANE) return wall_plane_names[side_of(w)];
-    if (w->shape == WALL_CYLINDER) return wall_cylinder_names[w->wall.cylinder.axis];
+    if (w->shape == WALL_CYLINDER) return w->word;
     return r->files ? r->meshes.meshes.name[r->walls] : w->mesh.path;
 }
 
