@@ -21,7 +21,7 @@ is() { awk -v a="$1" -v b="$2" -v most="$3" 'BEGIN { exit !(a - b <= most && b -
 
 # A sphere of 2 cm into 0 K: 1/T^3 grows by 3 A e sigma/C a second, by nine times that of density rho c r/3.
 printf 'id,x,y,z,r,T\n5,0,0,0,20,1200\n' >"$work/one.csv"
-march "$work/one.csv" --length-unit mm --temperature T --ambient 0 --until 600 --every 200 -o "$work/one.out.csv" \
+march "$work/one.csv" --length-unit mm --temperature T --ambient 0 --until 600 --times every:200 -o "$work/one.out.csv" \
     -o "$work/cool.*.vtp" || fault "$(cat "$work/errors")"
 end=$(awk 'BEGIN { print (1200^-3 + 3 * 0.6 * 5.670374419e-8 * 3 / (800 * 2500 * 0.02) * 600)^(-1/3) }')
 is "$(value temperature_mean_K)" "$end" 0.05 || fault "one sphere ends at $(value temperature_mean_K) K, not $end K"
@@ -91,7 +91,7 @@ refused 3 'cold.csv:2: the temperature is -1' --temperature T --ambient "@$work/
 refused 2 'zmin has no temperature' "$@" --temperature T --wall zmin:at=-30
 refused 2 '3 is not above the time before' "$@" --temperature T --times 5,3
 refused 2 '90 is not above the time before, or not within 0 and 60' "$@" --temperature T --times 90
-refused 2 'cannot be combined' "$@" --temperature T --times 5 --every 3
+refused 2 'times every: .0. is not a number\|not within' "$@" --temperature T --times every:0
 refused 2 'put \* into its name' "$@" --temperature T -o "$work/x.vtp"
 refused 2 'model factors: emissivities cannot follow' "$@" --temperature T --emissivity "@$work/eps.csv" --model factors
 refused 2 'not for --until' "$@" --temperature T --error 0.01

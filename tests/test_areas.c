@@ -7,7 +7,7 @@
 #include "window/arrangement_lanes.h"
 #include "window/clip_lanes.h"
 #include "window/dense_lanes.h"
-#include "reference/reference.h"
+#include "papers/pair/reference.h"
 #include "scenes.h"
 #include "suite.h"
 

@@ -1,6 +1,6 @@
 /* test_beam.c - beam rows against exact pairs, against symmetries of the problem, and against themselves under settings
  * that must not matter. SPDX-License-Identifier: MIT */
-#include "reference/reference.h"
+#include "papers/pair/reference.h"
 #include "scenes.h"
 #include "suite.h"
 

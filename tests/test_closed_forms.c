@@ -127,7 +127,7 @@ TEST(a_sphere_and_a_disc) {
         }
         for (int size = 0; size < 2; ++size) {
             const char *bed = write_file("one.csv", size ? "x,y,z,r\n0,0,1.5,1.4\n" : "x,y,z,r\n0,0,1.5,.1\n");
-            SUCCEED("bed", bed, "--wall", formatted("mesh:%s:both", write_solid("disc.stl", &disc)), "--directions",
+            SUCCEED("factors", bed, "--wall", formatted("mesh:%s:both", write_solid("disc.stl", &disc)), "--directions",
                     "4000");
             ck_assert_double_eq_tol(value_of("wall_disc_F"), (1 - 1 / hypot(1, radius[k] / a)) / 2, 1e-3);
         }

@@ -149,7 +149,7 @@ TEST(units_of_length) {
         if (k == 0) metres = q;
         ck_assert_double_eq_tol(q, metres * square, 1e-13 * fabs(metres) * square);
         assert_lacks(said, "taken as metres");
-        SUCCEED("bed", bed, "--directions", "21", "-o", out);
+        SUCCEED("factors", bed, "--directions", "21", "-o", out);
         read_same(out, &factors);
     }
     FAIL_WITH(2, HEAT, write_file("lj.dump", frame("lj", "0", "3", SORTED)), "--ambient", "300");
@@ -230,7 +230,7 @@ TEST(names_and_ends_of_tables) {
         read_same(out, &first);
         expect_message(bed,
                        "warning: --solid-conductivity: 2 spheres have temperatures beyond the table, by up to 100 K");
-        SUCCEED("exchange", bed, "--emissivity", ".8", "--solid-conductivity", tables[k], "--temperature", "T",
+        SUCCEED("factors", bed, "--emissivity", ".8", "--solid-conductivity", tables[k], "--temperature", "T",
                 "--length-unit", "m", "--directions", "21");
         expect_message(bed,
                        "warning: --solid-conductivity: 2 spheres have temperatures beyond the table, by up to 100 K");
@@ -288,9 +288,9 @@ TEST(columns_and_rows_of_another_code) {
     read_same(out, &first);
     SUCCEED(HEAT, write_file("c.csv", "x,y,z,r,heat_C\n0,0,0,.01,600\n"), "--ambient", "300", "--columns", "T=heat_C");
     expect_message(in_folder("c.csv"), "warning: the column heat_C is taken as kelvins");
-    FAIL_WITH(3, "bed", other, "--columns", NAMED);
+    FAIL_WITH(3, "factors", other, "--columns", NAMED);
     expect_message(other, ":4: the id 3 occurs in line 3, too");
-    FAIL_WITH(3, "bed", bare);
+    FAIL_WITH(3, "factors", bare);
     expect_message(bare, ":1: numbers without a header that names their columns, such as x,y,z,r; --columns x=1,y=2");
     static const char *const bad[][3] = {{"--columns", "x", "--columns: 'x' is not x=NAME"},
                                          {"--columns", "x=a,,y=b", "'' is not x=NAME"},
@@ -301,12 +301,12 @@ TEST(columns_and_rows_of_another_code) {
                                          {"--only", "mat", "--only: 'mat' is not COLUMN=VALUE"},
                                          {"--skip", "=3", "--skip: '=3' is not"}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
-        FAIL_WITH(2, "bed", other, bad[k][0], bad[k][1]);
+        FAIL_WITH(2, "factors", other, bad[k][0], bad[k][1]);
         assert_has(said, bad[k][2]);
     }
-    FAIL_WITH(2, "bed", other, "--columns", NAMED, "--radius", ".01");
+    FAIL_WITH(2, "factors", other, "--columns", NAMED, "--radius", ".01");
     expect_message("", "--radius and --columns d=diameters both give radii");
-    SUCCEED("exchange", other, "--emissivity", ".5", "--columns", NAMED, "--only", "mat=steel", "--skip", "note=8");
+    SUCCEED("factors", other, "--emissivity", ".5", "--columns", NAMED, "--only", "mat=steel", "--skip", "note=8");
     SUCCEED("conductivity", PERIODIC, "--emissivity", ".5", "--columns", "x=x", "--skip", "id=1", "--error", ".2");
 }
 
@@ -321,7 +321,7 @@ TEST(ids_in_any_order) {
         const char *out = in_folder(endings[format]);
         for (int k = 0; k < 2; ++k) {
             const char *bed = write_file("bed.dump", frame(NULL, "0", "3", rows[k]));
-            SUCCEED("bed", bed, "--directions", "21", "-o", out);
+            SUCCEED("factors", bed, "--directions", "21", "-o", out);
             struct stat there;
             ck_assert_int_eq(stat(out, &there), 0);
             char *text = read_file(out);
@@ -330,25 +330,25 @@ TEST(ids_in_any_order) {
         }
     }
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", UNSORTED)), *out = in_folder("rows.csv");
-    SUCCEED("bed", bed, "--targets", "7-19", "-o", out);
+    SUCCEED("factors", bed, "--targets", "7-19", "-o", out);
     assert_begins(read_file(out), "i,j,F,body\n7,3,");
-    SUCCEED("bed", bed, "--targets", "0", "--positions", "-o", out);
+    SUCCEED("factors", bed, "--targets", "0", "--positions", "-o", out);
     assert_begins(read_file(out), "i,j,F,body\n0,1,");
-    FAIL_WITH(2, "bed", bed, "--targets", "8-19");
+    FAIL_WITH(2, "factors", bed, "--targets", "8-19");
     expect_message("", "there is no sphere 8 in frame 0 of ");
 }
 
 TEST(ambiguous_ids) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "2", "3 1 1 4 4 1 9\n3 1 4 4 4 1 9\n"));
-    FAIL_WITH(3, "bed", bed);
+    FAIL_WITH(3, "factors", bed);
     expect_message(bed, ":11: the id 3 occurs in line 10, too");
-    SUCCEED("bed", bed, "--positions");
+    SUCCEED("factors", bed, "--positions");
     bed = write_file("bed.dump", frame(NULL, "0", "2", "3 1 1 4 4 1 9\n-1 1 4 4 4 1 9\n"));
-    FAIL_WITH(3, "bed", bed);
+    FAIL_WITH(3, "factors", bed);
     expect_message(bed, ":11: the id -1 is negative");
-    SUCCEED("bed", bed, "--positions");
+    SUCCEED("factors", bed, "--positions");
     bed = write_file("bed.dump", frame(NULL, "0", "2", "30 1 1 4 4 1 9\n7 1 1.5 4 4 1 9\n"));
-    FAIL_WITH(3, "bed", bed);
+    FAIL_WITH(3, "factors", bed);
     expect_message(bed, "sphere 7"); /* messages, too */
 }
 
@@ -365,9 +365,9 @@ TEST(values_by_type) {
     ck_assert_double_le(fabs(power_of(one, "1,", "")), 1e-9 * fabs(power_of(one, "0,", ""))); /* reflects all */
     const char *colons = write_file("colons.csv", "x,y,z,r,velo:0\n0,0,0,.01,300\n");
     SUCCEED("heat", colons, "--emissivity", "1", "--temperature", "velo:0", "--ambient", "300"); /* no list of types */
-    FAIL_WITH(3, "bed", bed, "--radius", "1:.01");
+    FAIL_WITH(3, "factors", bed, "--radius", "1:.01");
     expect_message(bed, ":3: the list of the radius has no type 2");
-    SUCCEED("bed", bed, "--radius", ".01");
+    SUCCEED("factors", bed, "--radius", ".01");
     ck_assert_double_eq(value_of("radius_max"), .01);
 }
 
@@ -413,21 +413,21 @@ TEST(all_frames) {
 
 TEST(some_frames) {
     const char *bed = write_frames("bed.dump", 3), *out = in_folder("F.csv");
-    SUCCEED("bed", bed, "--frame", "0:3:2", "--directions", "8", "-o", out);
+    SUCCEED("factors", bed, "--frame", "0:3:2", "--directions", "8", "-o", out);
     char *text = read_file(out);
     assert_begins(text, "frame,timestep,i,j,F,body\n0,100,3,");
     assert_has(text, "\n2,900,3,");
     assert_lacks(text, "\n1,");
-    SUCCEED("bed", bed, "--frame", "-1", "--directions", "8");
+    SUCCEED("factors", bed, "--frame", "-1", "--directions", "8");
     ck_assert_double_eq(value_of("frame"), 2);
     ck_assert_double_eq(value_of("timestep"), 900);
-    SUCCEED("bed", bed, "--frame", ":2", "--directions", "8");
+    SUCCEED("factors", bed, "--frame", ":2", "--directions", "8");
     ck_assert_double_eq(value_of("frame"), 1);
-    FAIL_WITH(3, "bed", bed, "--frame", "3");
+    FAIL_WITH(3, "factors", bed, "--frame", "3");
     expect_message(bed, "there is no frame 3; the last is 2");
-    FAIL_WITH(2, "bed", bed, "--frame", "99999999999999999999");
+    FAIL_WITH(2, "factors", bed, "--frame", "99999999999999999999");
     expect_message("--frame", "is none of K");
-    FAIL_WITH(2, "bed", bed, "--frame", "all", "-o", in_folder("F.npz"));
+    FAIL_WITH(2, "factors", bed, "--frame", "all", "-o", in_folder("F.npz"));
     expect_message(in_folder("F.npz"), "holds one frame");
 }
 
@@ -435,38 +435,38 @@ TEST(some_frames) {
 TEST(several_files) {
     const char *first = write_frames("bed.1.dump", 1), *out = in_folder("F.csv"), *names = in_folder("bed.*.dump");
     write_frames("bed.2.dump", 2);
-    SUCCEED("bed", names, "--directions", "8", "-o", out, "-o", in_folder("F.*.mtx"));
+    SUCCEED("factors", names, "--directions", "8", "-o", out, "-o", in_folder("F.*.mtx"));
     char *text = read_file(out);
     assert_begins(text, formatted("file,frame,timestep,i,j,F,body\n%s,0,100,3,", first));
     assert_has(text, "bed.2.dump,1,250,3,7,");
     read_file(in_folder("F.1.mtx"));
-    SUCCEED("bed", first, first, "--directions", "8", "-o", in_folder("F.*.json"), "-o", in_folder("F.*.vtp"));
+    SUCCEED("factors", first, first, "--directions", "8", "-o", in_folder("F.*.json"), "-o", in_folder("F.*.vtp"));
     assert_has(read_file(in_folder("F.1.json")), "\"frame\":1,"); /* frames are counted through all files */
     text = read_file(in_folder("F.pvd")); /* two frames have the same timestep, so their numbers stand for it */
     ck_assert(strstr(text, "timestep=\"0\" file=\"F.0.vtp\"") && strstr(text, "timestep=\"1\" file=\"F.1.vtp\""));
     write_frames("bed.10.dump", 3); /* times are not padded with zeros: 10 comes after 2 */
-    SUCCEED("bed", names, "--directions", "8", "-o", out);
+    SUCCEED("factors", names, "--directions", "8", "-o", out);
     text = read_file(out);
     assert_has(text, "bed.10.dump,2,900,3,7,");
     ck_assert(strstr(text, "bed.10.dump,") > strstr(text, "bed.2.dump,"));
     names = in_folder("none.*.dump");
-    FAIL_WITH(4, "bed", names);
+    FAIL_WITH(4, "factors", names);
     expect_message(names, "no file has such a name");
-    SUCCEED("bed", first, write_file("bed.csv", "x,y,z,r\n0,0,0,1\n"), "--directions", "8");
+    SUCCEED("factors", first, write_file("bed.csv", "x,y,z,r\n0,0,0,1\n"), "--directions", "8");
     expect_message(in_folder("bed.csv"),
                    "warning: spheres are named by positions, but those of the frames before by ids");
-    FAIL_WITH(2, "bed", "-", first, "-");
+    FAIL_WITH(2, "factors", "-", first, "-");
     expect_message("standard input", "once only");
 }
 
 /* A series may begin before the first sphere is there. */
 TEST(empty_files_of_a_series) {
     const char *empty = write_file("0.dump", frame(NULL, "0", "0", "")), *bed = write_frames("1.dump", 1);
-    SUCCEED("bed", empty, bed, "--directions", "8");
+    SUCCEED("factors", empty, bed, "--directions", "8");
     expect_message(empty, "warning: frame 0 is empty and is left out");
     ck_assert_double_eq(value_of("timestep"), 100);
-    FAIL_WITH(3, "bed", empty);
-    FAIL_WITH(3, "bed", empty, empty);
+    FAIL_WITH(3, "factors", empty);
+    FAIL_WITH(3, "factors", empty, empty);
     assert_has(said, "there are no spheres in any of the files");
 }
 
@@ -476,12 +476,12 @@ TEST(truncated_last_frame) {
     struct stat there;
     ck_assert_int_eq(stat(bed, &there), 0);
     ck_assert_int_eq(truncate(bed, there.st_size - 30), 0);
-    SUCCEED("bed", bed, "--frame", "all", "--directions", "8");
+    SUCCEED("factors", bed, "--frame", "all", "--directions", "8");
     expect_message(bed, "warning: ");
     ck_assert_double_eq(value_of("frame"), 1);
-    FAIL_WITH(3, "bed", bed, "--directions", "8");
+    FAIL_WITH(3, "factors", bed, "--directions", "8");
     expect_message(bed, "the last whole frame is 1");
-    FAIL_WITH(3, "bed", bed, "--frame", "2", "--directions", "8");
+    FAIL_WITH(3, "factors", bed, "--frame", "2", "--directions", "8");
 }
 
 /* If radii are given for the first frame, they also serve frames with more spheres. */
@@ -494,8 +494,8 @@ TEST(radii_of_growing_frames) {
         for (int i = 0; i < counts[k]; ++i) fprintf(file, "%d %d %d %d\n", i + 1, i % 7, i / 7 % 7, i / 49);
     }
     fclose(file);
-    SUCCEED("bed", bed, "--frame", "all", "--radius", ".4", "--directions", "8", "-o", all);
-    SUCCEED("bed", bed, "--frame", "1:", "--radius", ".4", "--directions", "8", "-o", last);
+    SUCCEED("factors", bed, "--frame", "all", "--radius", ".4", "--directions", "8", "-o", all);
+    SUCCEED("factors", bed, "--frame", "1:", "--radius", ".4", "--directions", "8", "-o", last);
     char *text = read_file(all), *expected = read_file(last);
     const char *frame = strstr(text, "\n1,1,1,2,");
     ck_assert_ptr_nonnull(frame);
@@ -517,22 +517,19 @@ TEST(summary_says_what_was_computed) {
     ck_assert_double_eq(json_of(json, "wall_zmin_K"), 1200);
     const double exact = json_of(json, "wall_zmin_W"), shown = value_of("wall_zmin_W");
     ck_assert_double_eq_tol(shown, exact, 1e-5 * fabs(exact));
-    SUCCEED("bed", MONO, "--directions", "21");
+    SUCCEED("factors", MONO, "--directions", "21");
     for (const char *line = strtok(printed, "\n"); line; line = strtok(NULL, "\n")) /* no digits without meaning */
         ck_assert_msg(strlen(line) < 60, "%s", line);
 }
 
 TEST(quiet_and_streams) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED));
-    SUCCEED("bed", bed, "--quiet", "--progress", "-o", in_folder("F.csv"));
+    SUCCEED("factors", bed, "--quiet", "-o", in_folder("F.csv"));
     ck_assert_str_eq(printed, "");
     ck_assert_str_eq(said, "");
-    SUCCEED("bed", bed, "-o", "-", "--format", "csv");
+    SUCCEED("factors", bed, "-o", "-", "--format", "csv");
     ck_assert_str_eq(printed, read_file(in_folder("F.csv")));
     assert_has(said, "\nspheres 3\n");
-    SUCCEED("heat", bed, "--emissivity", ".5", "--temperature", "T", "--ambient", "300", "--length-unit", "mm",
-            "--progress");
-    assert_has(said, " sweeps, ");
 }
 
 /* Before the work begins, the program says what does not fit, and what would help. */
@@ -585,14 +582,14 @@ TEST(inputs_stay) {
               in_folder("q.*.vtp"));
     ck_assert_str_eq(read_file(path[0]), frame(NULL, "0", "3", SORTED));
     input = path[0] = write_file("bed.csv", "x,y,z,r\n0,0,0,1\n3,0,0,1\n"); /* as standard input */
-    FAIL_WITH(2, "bed", "-", "-o", path[0]);
+    FAIL_WITH(2, "factors", "-", "-o", path[0]);
     input = "/dev/null";
 }
 
 /* If nothing is emitted, there are no rows, and their figures are 0. */
 TEST(summary_of_no_rows) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED));
-    SUCCEED("exchange", bed, "--emissivity", "0");
+    SUCCEED("factors", bed, "--emissivity", "0");
     ck_assert_double_eq(value_of("row_sum_min"), 0);
     ck_assert_double_eq(value_of("row_sum_max"), 0);
     ck_assert_double_eq(value_of("escaped_mean"), 0);

@@ -62,7 +62,7 @@ static const struct {
               {FACET("vertex 0 0 0\nvertex 1 0 0\nvertex 1 0 0\n"), "", "no triangle has an area"}};
 
 static void refuse(const char *path, const char *line, const char *reason) {
-    FAIL_WITH(3, "bed", MONO, "--wall", formatted("mesh:%s", path));
+    FAIL_WITH(3, "factors", MONO, "--wall", formatted("mesh:%s", path));
     expect_message(formatted("%s%s: ", path, line), reason);
 }
 
@@ -79,7 +79,7 @@ TEST(broken_binaries_are_refused) {
     refuse(write_binary("x.stl", &soup, "", 0), "", "triangle 7: a coordinate is not finite");
     soup.n = 0;
     refuse(write_binary("x.stl", &soup, "", 0), "", "no triangles");
-    FAIL_WITH(4, "bed", MONO, "--wall", "mesh:nothing.stl");
+    FAIL_WITH(4, "factors", MONO, "--wall", "mesh:nothing.stl");
     expect_message("nothing.stl: ", "No such file");
 }
 
@@ -319,11 +319,11 @@ TEST(rows_in_a_closed_mesh) {
     struct soup soup = cube();
     soup_flip(&soup, 0);
     const char *bed = write_file("bed.csv", BED), *box = write_solid("box.stl", &soup), *out = in_folder("w.vtp");
-    SUCCEED("bed", bed, "--wall", "xmin:at=-4,xmax:at=4,ymin:at=-4,ymax:at=4,zmin:at=-4,zmax:at=4");
+    SUCCEED("factors", bed, "--wall", "xmin:at=-4,xmax:at=4,ymin:at=-4,ymax:at=4,zmin:at=-4,zmax:at=4");
     double planes = 0;
     static const char *const names[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
     for (int k = 0; k < 6; ++k) planes += value_of(formatted("wall_%s_F", names[k]));
-    SUCCEED("bed", bed, "--wall", wall_of("mesh:", box, ":name=tub"), "--wall-vtp", out);
+    SUCCEED("factors", bed, "--wall", wall_of("mesh:", box, ":name=tub"), "--wall-vtp", out);
     ck_assert_double_eq_tol(value_of("wall_tub_F"), planes, 1e-3);
     ck_assert_double_eq_tol(value_of("wall_tub_area"), 384, 1e-3);
     ck_assert_double_eq(value_of("wall_tub_triangles"), 12);
@@ -339,7 +339,7 @@ TEST(rows_in_a_closed_mesh) {
     ck_assert_double_eq(fabs(grid.points[23]), 4);
     assert_has(text, "NumberOfPolys=\"12\"");
     free(grid.points);
-    FAIL_WITH(2, "bed", bed, "--wall-vtp", out);
+    FAIL_WITH(2, "factors", bed, "--wall-vtp", out);
     expect_message("--wall-vtp", "no --wall mesh:FILE");
 }
 
@@ -381,20 +381,20 @@ TEST(backs_of_meshes) {
     soup_box(&soup, (const double[]){-3, -3, -3}, (const double[]){0, 3, 3});
     const char *bed = write_file("bed.csv", BED "5,0,0,1,300\n"), *text = write_solid("half.stl", &soup);
     const char *binary = write_binary("half_b.stl", &soup, "", 0);
-    FAIL_WITH(3, "bed", bed, "--wall", wall_of("mesh:", text, ""));
+    FAIL_WITH(3, "factors", bed, "--wall", wall_of("mesh:", text, ""));
     assert_has(said, "the back of wall half is seen, at line ");
     assert_has(said, "half.stl:both makes both sides the wall");
     assert_has(said, "bed.csv:3: warning: all of sphere 1 lies beyond wall half");
-    FAIL_WITH(3, "bed", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "1");
+    FAIL_WITH(3, "factors", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "1");
     OWNED char *first = strdup(said);
     assert_has(said, "the back of wall half_b is seen, at triangle ");
-    FAIL_WITH(3, "bed", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "2");
+    FAIL_WITH(3, "factors", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "2");
     ck_assert_str_eq(said, first);
-    SUCCEED("bed", bed, "--wall", wall_of("mesh:", text, ":both")); /* the mesh cuts a sphere, so rows contradict */
+    SUCCEED("factors", bed, "--wall", wall_of("mesh:", text, ":both")); /* the mesh cuts a sphere, so rows contradict */
     assert_lacks(said, "back of wall");
     assert_lacks(said, "not closed");
     soup.n -= 2;
-    SUCCEED("bed", bed, "--wall", wall_of("mesh:", write_solid("half.stl", &soup), ":both"));
+    SUCCEED("factors", bed, "--wall", wall_of("mesh:", write_solid("half.stl", &soup), ":both"));
     expect_message(
         text, "warning: the mesh is not closed: 4 edges belong to one triangle, 0 to more than two; components: 1");
 }

@@ -7,7 +7,7 @@
 
 #define FIBRAD_ISA_SUFFIX _scalar
 #include "window/clip_lanes.h"
-#include "reference/reference.h"
+#include "papers/pair/reference.h"
 #include "scenes.h"
 #include "suite.h"
 

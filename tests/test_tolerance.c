@@ -50,7 +50,7 @@ TEST(pair_behind_an_overlapping_obstacle) {
 
 /* These commands are asked for an error that they cannot reach. */
 static const char *const unreached[][16] = {
-    {"bed", "--error", "1e-7", "--points", "64"},
+    {"factors", "--error", "1e-7", "--points", "64"},
     {"heat", "--length-unit", "m", "--emissivity", ".9", "--temperature", "T", "--ambient", "300", "--error", "1e-5"}};
 
 LOOP_TEST(a_warning_where_it_is_not_reached, sizeof unreached / sizeof *unreached) {

@@ -16,13 +16,12 @@
 
 /* Rows of tables of options, without braces. */
 #define OPTION_EMISSIVITY(request, field)                                                                              \
-    0, "emissivity", "E", "emissivity of all spheres, 0 to 1, or TYPE:E,..., or a column of the file",                 \
+    0, "emissivity", "E", "emissivity of all spheres, 0 to 1; or TYPE:E,..., or a column of the file",                 \
         TO_FUNCTION(emissivity_option, request, field)
 #define OPTION_EMISSIVITY_CURVES(request, field)                                                                       \
     0, "emissivity", "E",                                                                                              \
-        "emissivity of all spheres, 0 to 1, or @TABLE of temperatures [K] and emissivities, or "                       \
-        "TYPE:E,TYPE:@TABLE,..., "                                                                                     \
-        "or a column of the file",                                                                                     \
+        "emissivity of all spheres, 0 to 1; or TYPE:E,..., or a column of the file; @TABLE of temperatures [K] and "   \
+        "emissivities may stand for a number",                                                                         \
         TO_FUNCTION(emissivity_curves_option, request, field)
 /* A quantity of spheres that an option gives: a number for all spheres, a value for each type, or a column. */
 enum { QUANTITY_TYPES_MAX = 64 };

@@ -7,19 +7,20 @@
 
 enum { LIGHTS_MAX = 32 };
 
-/* Rows of the table of options, for a request with a field `light`. */
+/* Rows of the table of options, for a request with a field `light`: with braces, and without. */
 #define OPTIONS_LIGHT(request)                                                                                         \
     {0, "irradiate", "LIGHT",                                                                                          \
-     "light from outside, DX,DY,DZ:FLUX: its direction, and its W/m2 across that direction; see below [none]",         \
+     "light from outside, DX,DY,DZ:FLUX; its direction, and its W/m2 across that direction [none]",                    \
      TO_FUNCTION(irradiate_option, request, light)},                                                                   \
-        {0, "absorptivity", "A",                                                                                       \
-         "absorptivity of all spheres for that light, 0 to 1, or TYPE:A,..., or a column of the file [emissivity]",    \
-         TO_FUNCTION(absorptivity_option, request, light.absorptivity)},                                               \
     {                                                                                                                  \
-        0, "profile", "AXIS[:BINS]:OUT",                                                                               \
-            "write the absorbed light against x, y or z: .csv, .svg or .png; a bin is one mean diameter [none]",       \
-            TO_FUNCTION(profile_option, request, light)                                                                \
+        0, "absorptivity", "A",                                                                                        \
+            "absorptivity of all spheres for that light; 0 to 1, or TYPE:A,..., or a column of the file [emissivity]", \
+            TO_FUNCTION(absorptivity_option, request, light.absorptivity)                                              \
     }
+#define OPTION_PROFILE(request)                                                                                        \
+    0, "profile", "AXIS[:BINS]:OUT",                                                                                   \
+        "write the absorbed light against x, y or z: .csv, .svg or .png; a bin is one mean diameter [none]",           \
+        TO_FUNCTION(profile_option, request, light)
 
 /* A paragraph of --help. */
 #define LIGHT_MORE                                                                                                     \

@@ -471,7 +471,7 @@ for case in $cases; do
     run 2 "$case" "$case.lmp" && ! grep -q "^ERROR" "$work/$case.log" && balance "$case" 10e-3 0 1e-3 200 "energy in a $case"
     verdict "a $case to its end" $?
 done
-# half a drum that stores heat and turns once, from step 1500 to 3500. Its temperature follows from factors of `fibrad exchange`
+# half a drum that stores heat and turns once, from step 1500 to 3500. Its temperature follows from factors of `fibrad factors`
 # of frames, too, among triangles that are laid out anew. Both hold factors for 250 steps
 # shell STEP: 12 of 24 facets
 shell() {
@@ -493,7 +493,7 @@ balance shell 10e-3 0 1e-5 200 "energy in a drum of triangles that turns and sto
 # heat FRAME STEP: what particles and surroundings send to the shell, and what it sends to them at 1 K
 heat() {
     shell "$2" >"$work/turned.stl"
-    "$BUILD/fibrad" exchange "$1" --emissivity .8 --wall "mesh:$work/turned.stl:both:emissivity=.7" --raw --quiet \
+    "$BUILD/fibrad" factors "$1" --emissivity .8 --wall "mesh:$work/turned.stl:both:emissivity=.7" --raw --quiet \
         --directions 150 -o "$work/factors.csv" 2>/dev/null
     awk -F'[ ,]' -v both="$(awk 'BEGIN { print 2*12*8*2*5*sin(atan2(1, 1)/6) }')" '
         NR == FNR && NF >= 6 && $1 ~ /^[0-9]/ { area[$1] = 16*atan2(1, 1)*$5^2; e[$1] = 1e-11*$6^4 }

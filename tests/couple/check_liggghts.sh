@@ -77,14 +77,14 @@ test "$(value joined2 spheres)" = 294 || complain "294 spheres, not $(value join
 
 # What the floor takes, without a cutoff and ranks
 { echo x,y,z,r && awk '{ print $4 "," $5 "," $6 ",.003" }' atoms; } >bed.csv
-"$fibrad" exchange bed.csv --emissivity 0.8 --wall zmin:at=0:emissivity=0.9 --raw >serial 2>/dev/null || complain "no serial factors"
+"$fibrad" factors bed.csv --emissivity 0.8 --wall zmin:at=0:emissivity=0.9 --raw >serial 2>/dev/null || complain "no serial factors"
 echo "$(value joined2 wall_1_F) $(value serial wall_zmin_F)" |
     awk '{ printf "the floor takes %.5f, %.5f in one scene\n", $1, $2; off = $1 / $2 - 1; exit !(off * off < 1e-4) }' ||
     complain "the floor takes something else"
 
 # what a cylinder along x or y takes, and its ends
 for axis in x y; do
-    "$fibrad" exchange bed.csv --emissivity 0.8 --wall ${axis}cylinder:.024,.018,.025:emissivity=.9 \
+    "$fibrad" factors bed.csv --emissivity 0.8 --wall ${axis}cylinder:.024,.018,.025:emissivity=.9 \
         --wall ${axis}min:at=0:emissivity=.9,${axis}max:at=.048:emissivity=.9 --raw >alone 2>/dev/null || complain "no factors of a bed in ${axis}cylinder"
     radiation="--emissivity 0.8 --surroundings 300 --wall ${axis}cylinder:.024,.018,.025:temperature=600:emissivity=.9,${axis}min:temperature=600:emissivity=.9,${axis}max:temperature=600:emissivity=.9"
     run round 2 'setforce 0 0 0' 1 -in bed --write round
@@ -228,7 +228,7 @@ echo "$(value joined_low wall_1_F) $(value joined_high wall_1_F) $(value joined_
     off = $3 / $2 - 1; exit !(NF == 3 && $1 > 1.2 * $2 && off * off < 1e-8) }' || complain "rows do not follow a mesh that moves"
 radiation='--emissivity 0.8 --surroundings 300 --wall zmin:temperature=1200:emissivity=0.9'
 
-# A drum of triangles that turns once and stores heat. Its temperature follows from factors of `fibrad exchange` of
+# A drum of triangles that turns once and stores heat. Its temperature follows from factors of `fibrad factors` of
 # frames, too, and what particles and drum lose goes to the ends. Both sides are the wall, since pebbles in the corners
 # of drum and ends see the back of the shell
 awk -v pi=3.14159265358979 'BEGIN {
@@ -256,7 +256,7 @@ echo "$(value turning heat_before) $(value turning heat_after) $(value turning r
     exit !(NF == 5 && $2 > $1 && lost * lost < 1e-24) }' || complain "a drum that stores heat: energy is not kept"
 for step in $(seq 0 1000 10000); do
     mv "$step.shell" shell.stl
-    "$fibrad" exchange "$step.frame" --emissivity .8 --wall mesh:shell.stl:both:emissivity=.7,xmin:at=0:emissivity=.9,xmax:at=.048:emissivity=.9 --raw \
+    "$fibrad" factors "$step.frame" --emissivity .8 --wall mesh:shell.stl:both:emissivity=.7,xmin:at=0:emissivity=.9,xmax:at=.048:emissivity=.9 --raw \
         --quiet -o factors.csv 2>/dev/null || complain "no factors of step $step" >&2
     # what particles, ends and surroundings send to the drum, and what it sends to them at 1 K
     awk -F'[ ,]' 'BEGIN { pi = 3.14159265358979; s = 5.670374419e-8; both = 2 * 24 * .048 * 2 * .0235 * sin(pi / 24) }
