@@ -19,7 +19,6 @@ count=$(echo "$commands" | wc -w)
 test "$count" -ge 8 || fault "only $count commands"
 
 # ---- pages: as many as commands, and one; all words of the help in their order but headings and synopsis
-# --------------
 words() { sed 's/  */\n/g' | grep -v '^$'; }
 if command -v groff >/dev/null; then
     for name in "" $commands; do
@@ -46,8 +45,7 @@ fi
 test "$(find "$BUILD/man" -type f | wc -l)" = $((count + 1)) || fault "other files in $BUILD/man"
 
 # ---- completion
-# -------------------------------------------------------------------------------------------------------- complete
-# WORD...: the completions of the last word
+# complete_words WORD...: the completions of the last word
 complete_words() {
     (cd "$work/files" && bash -c '
         source "$0"
@@ -68,8 +66,9 @@ if command -v bash >/dev/null; then
     mkdir "$work/files" && touch "$work/files/bed one.dump" "$work/files/bed.csv" "$work/files/-odd"
     for name in $commands; do
         offers "$name" "$name"
+        complete_words "$name" -- | tr ' ' '\n' >"$work/offered"
         for option in $("$fibrad" "$name" --help | sed -n 's/^  \(-., \)\{0,1\}\(--[a-z-]*\) .*/\2/p'); do
-            complete_words "$name" "$option" | tr ' ' '\n' | grep -qx -e "$option" || fault "fibrad $name $option: not offered"
+            grep -qx -e "$option" "$work/offered" || fault "fibrad $name $option: not offered"
         done
     done
     test "$(complete_words "" | wc -w)" -ge 13 || fault "fibrad: offers '$(complete_words "")'"

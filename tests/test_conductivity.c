@@ -1,7 +1,7 @@
 /* test_conductivity.c - effective conductivity: gaps, rays, axes, units and files. SPDX-License-Identifier: MIT
  *
  * The results are compared with laws of flights in slabs, closed forms of lattices, and the spread over seeds. */
-#include "bed/conductivity.h"
+#include "conductivity/conductivity.h"
 #include "bed/packing.h"
 #include "program.h"
 

@@ -129,7 +129,7 @@ TEST(beds_turn_with_the_axes) {
         double emissivity[40], temperature[40], wall[3] = {.5, .8, .3}, hot[3] = {500, 900, 300}, at_wall[3];
         for (uint32_t i = 0; i < can.bed.n; i++) emissivity[i] = .7, temperature[i] = 400 + 5 * i;
         assert_ok(fibrad_view_factors(&can.config, &spheres,
-                                      &(fibrad_bed_options){.beam = &(fibrad_beam_rule){.directions = 500}}, NULL, &f));
+                                      &(fibrad_bed_rule){.beam = &(fibrad_beam_rule){.directions = 500}}, NULL, &f));
         const fibrad_exchange_rule rule = {
             .emissivity = emissivity, .wall_emissivity = wall, .directions = 100, .paths = 1000};
         assert_ok(fibrad_exchange_factors(&can.config, &spheres, &rule, NULL, NULL, &d));
@@ -173,14 +173,13 @@ TEST(cylinders_that_do_not_fit_are_refused) {
             OWNED_BED bed = BED({0, 0, 0, 1});
             fibrad_scene *scene;
             fibrad_wall wall[2] = {cylinder_at(0, 0, 3), plane_at(across, 0, -2)};
-            wall[0].cylinder.axis = axis;
-            const int along = (axis + 2) % 3;
+            wall[0].cylinder.along = axis;
             const bool valid = axis >= 0 && axis < 3;
             ck_assert_int_eq(scene_try(&scene, &bed, &(fibrad_scene_config){.wall = wall, .walls = 2}, NULL),
-                             valid && along == across ? FIBRAD_E_ENDLESS : FIBRAD_E_ARGUMENT);
+                             valid && axis == across ? FIBRAD_E_ENDLESS : FIBRAD_E_ARGUMENT);
             bed.period[across] = 8;
             const int status = scene_try(&scene, &bed, &(fibrad_scene_config){.wall = wall, .walls = 1}, NULL);
-            ck_assert_int_eq(status, valid && along == across ? FIBRAD_OK : FIBRAD_E_ARGUMENT);
+            ck_assert_int_eq(status, valid && axis == across ? FIBRAD_OK : FIBRAD_E_ARGUMENT);
             if (status == FIBRAD_OK) free(scene);
         }
 }

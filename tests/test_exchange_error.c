@@ -17,7 +17,7 @@ struct room {
 static const struct room rooms[] = {{8, 5, .3, .8, .02}, {15, 2, .6, .9, .5}, {12, 6, .1, .5, .3}, {6, 6, .8, .8, .1}};
 
 /* Computes the matrix of a room. */
-static fibrad_bed_factors *factors_of(const struct room *room, double tolerance, uint64_t seed) {
+static fibrad_bed_matrix *factors_of(const struct room *room, double tolerance, uint64_t seed) {
     static const int axis[WALLS] = {2, 0, 0, 1, 1, 2}, upper[WALLS] = {0, 0, 1, 0, 1, 1};
     double emissivity[MOST], wall_emissivity[WALLS];
     fibrad_wall wall[WALLS];
@@ -32,13 +32,13 @@ static fibrad_bed_factors *factors_of(const struct room *room, double tolerance,
         wall[k] = plane_at(axis[k], upper[k], k == 0 ? 0 : k == 5 ? 4.5 : upper[k] ? 2 : -2);
         wall_emissivity[k] = room->wall;
     }
-    if (room->walls == 2) wall[1] = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {0, 0, 2, 0}};
+    if (room->walls == 2) wall[1] = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {0, 0, 2, 2}};
     const bool open = room->walls == 2 || room->walls == 5;
     const fibrad_scene_config scene = {.wall = wall, .walls = room->walls, .opening = &lid, .openings = open};
     const fibrad_exchange_rule rule = {
         .emissivity = emissivity, .wall_emissivity = wall_emissivity, .tolerance = tolerance, .seed = seed};
     const fibrad_spheres spheres = spheres_of(&bed);
-    fibrad_bed_factors *factors = NULL;
+    fibrad_bed_matrix *factors = NULL;
     assert_ok(fibrad_exchange_factors(&scene, &spheres, &rule, NULL, NULL, &factors));
     return factors;
 }

@@ -1,4 +1,5 @@
-/* test_matrix_calls.c - collections of rows, and tasks, states and memory of matrices. SPDX-License-Identifier: MIT */
+/* test_matrix_calls.c - collections of rows, and threads, states and memory of matrices. SPDX-License-Identifier: MIT
+ */
 #include "matrices.h"
 
 static void at_once(void *calls, uint32_t pieces, fibrad_piece *piece, void *job) {
@@ -7,10 +8,9 @@ static void at_once(void *calls, uint32_t pieces, fibrad_piece *piece, void *job
     for (uint32_t k = 0; k < pieces; k++) piece(job, pieces - 1 - k);
 }
 
-/* Makes a matrix of `tasks` tasks. This function averages all but each `left`-th task, backwards or in several threads.
- * Closing does the tasks that are left. */
+/* Makes a matrix of `tasks` tasks, backwards in several threads or not. */
 static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
-                              fibrad_matrix_rule rule, uint32_t tasks, uint32_t left, bool threads) {
+                              fibrad_matrix_rule rule, uint32_t tasks, bool threads) {
     struct matrix m = {NULL, {0}};
     int calls = 0;
     rule.tasks = tasks;
@@ -19,11 +19,6 @@ static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows
     void *block = block_of(size);
     memset(block, 0xa5, size);
     assert_ok(fibrad_matrix_init(&m.matrix, block, size, scene, rows, count, &rule, NULL));
-    int failed = 0;
-#pragma omp parallel for num_threads(threads ? 4 : 1) schedule(dynamic, 1) reduction(+ : failed)
-    for (uint32_t k = 0; k < tasks; k++)
-        if (left == 0 || k % left != 0) failed += fibrad_matrix_average(m.matrix, tasks - 1 - k) != FIBRAD_OK;
-    ck_assert_int_eq(failed, 0);
     assert_ok(fibrad_matrix_close(m.matrix));
     assert_ok(fibrad_matrix_read(m.matrix, &m.factors));
     double largest, same;
@@ -36,7 +31,7 @@ static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows
     return m;
 }
 
-/* No bit depends on the number of tasks, on who averages them, nor on how rows are spread over collections. */
+/* No bit depends on the number of tasks, on threads, nor on how rows are spread over collections. */
 TEST(tasks_change_no_bit) {
     OWNED_BED bed = packing(150, .3, 1.5, .5, 3, true);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -54,9 +49,8 @@ TEST(tasks_change_no_bit) {
         OWNED_MATRIX whole = matrix_of(scene, &rows, 1, &rules[k]), other = matrix_of(scene, spread, 4, &rules[k]);
         ck_assert(matrix_same_bits(&whole.factors, &other.factors));
         for (uint32_t tasks = 1; tasks <= 1024; tasks += tasks < 16 ? 1 : 1008) {
-            for (uint32_t left = 0; left <= 3; left++) {
-                OWNED_MATRIX m =
-                    by_tasks(scene, left % 2 ? spread : &rows, left % 2 ? 4 : 1, rules[k], tasks, left, left == 0);
+            for (int way = 0; way < 4; way++) {
+                OWNED_MATRIX m = by_tasks(scene, way % 2 ? spread : &rows, way % 2 ? 4 : 1, rules[k], tasks, way < 2);
                 ck_assert(matrix_same_bits(&whole.factors, &m.factors));
             }
         }
@@ -81,18 +75,10 @@ TEST(calls_out_of_order_are_refused) {
         ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_E_STATE);
         ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_E_STATE);
         ck_assert(factors.n == 77 && factors.start == NULL && largest == -7);
-        assert_invalid(fibrad_matrix_average(m, 2));
-        assert_invalid(fibrad_matrix_average(m, UINT32_MAX));
-        if (!raw) {
-            assert_ok(fibrad_matrix_average(m, 1));
-            ck_assert_int_eq(fibrad_matrix_average(m, 1), FIBRAD_E_STATE);
-            assert_ok(fibrad_matrix_average(m, 0));
-        }
         assert_ok(fibrad_matrix_close(m));
         assert_ok(fibrad_matrix_read(m, &factors));
         const double first = factors.f[0];
         ck_assert_int_eq(fibrad_matrix_close(m), FIBRAD_E_STATE);
-        if (!raw) ck_assert_int_eq(fibrad_matrix_average(m, 0), FIBRAD_E_STATE);
         assert_ok(fibrad_matrix_read(m, &factors)); /* this may be repeated */
         ck_assert_double_eq(factors.f[0], first);
         assert_ok(fibrad_matrix_reciprocity(m, &largest));
@@ -101,7 +87,6 @@ TEST(calls_out_of_order_are_refused) {
     }
     fibrad_factors factors;
     double largest;
-    assert_invalid(fibrad_matrix_average(NULL, 0));
     assert_invalid(fibrad_matrix_close(NULL));
     assert_invalid(fibrad_matrix_read(NULL, &factors));
     assert_invalid(fibrad_matrix_reciprocity(NULL, &largest));
@@ -186,55 +171,50 @@ TEST(matrix_blocks_may_have_any_alignment) {
 }
 
 TEST(bad_matrices_are_refused) {
-    const double r[] = {1, 2}, f = .5;
+    const double r[] = {1, 2}, f = .5, wall = .1;
     OWNED fibrad_scene *scene = apart(2, r);
-    uint32_t col = 1;
     OWNED_ROWS rows = {.memory = memory_growing()}, stranger = rows, seen = rows, walled = rows;
-    const double wall = .1;
-    fibrad_row row = {.col = &col, .f = (double *)(uintptr_t)&f, .length = 1};
+    uint32_t other = 1, none = 2; /* no such sphere */
+    fibrad_row row = {.col = &other, .f = (double *)(uintptr_t)&f, .wall = (double *)(uintptr_t)&wall, .length = 1};
     for (row.sphere = 0; row.sphere < 2; row.sphere++) {
-        col = 1;
         assert_ok(fibrad_rows_add(&rows, &row, 0));
-        row.wall = (double *)(uintptr_t)&wall;
         assert_ok(fibrad_rows_add(&walled, &row, 1));
-        row.wall = NULL;
-        col = 1 + row.sphere; /* 2: no such sphere */
-        assert_ok(fibrad_rows_add(&seen, &row, 0));
     }
-    col = 1;
-    row.sphere = 2; /* no such sphere */
-    assert_ok(fibrad_rows_add(&stranger, &row, 0));
+    assert_ok(fibrad_rows_add(&stranger, &row, 0)); /* of sphere 2 */
+    row.sphere = 0, row.col = &none;
+    assert_ok(fibrad_rows_add(&seen, &row, 0));
     static unsigned char block[8192];
     fibrad_matrix *m = NULL;
     assert_invalid(fibrad_matrix_init(NULL, block, sizeof block, scene, &rows, 1, NULL, NULL));
     assert_invalid(fibrad_matrix_init(&m, NULL, sizeof block, scene, &rows, 1, NULL, NULL));
-    assert_invalid(fibrad_matrix_init(&m, block, sizeof block, NULL, &rows, 1, NULL, NULL));
-    assert_invalid(fibrad_matrix_init(&m, block, sizeof block, scene, NULL, 1, NULL, NULL));
-    ck_assert_uint_eq(fibrad_matrix_size(NULL, &rows, 1, NULL), 0);
-    ck_assert_uint_eq(fibrad_matrix_size(scene, NULL, 1, NULL), 0);
-    const fibrad_rows *const bad_rows[] = {&stranger, &seen, &walled};
-    for (int k = 0; k < 3; k++) {
-        ck_assert_uint_eq(fibrad_matrix_size(scene, bad_rows[k], 1, NULL), 0);
-        assert_invalid(fibrad_matrix_init(&m, block, sizeof block, scene, bad_rows[k], 1, NULL, NULL));
-    }
-    static const double emissivity[][2] = {{1, 0}, {1, -1}, {NAN, 1}, {1, INFINITY}, {1.5, 1}};
-    static const double grey[] = {1, 1};
-    fibrad_matrix_rule bad[] = {{.tasks = 1025},
-                                {.tasks = UINT32_MAX},
-                                {.drop = -1},
-                                {.drop = NAN},
-                                {.kind = -1},
-                                {.kind = 3},
-                                {.kind = FIBRAD_ROWS_EXCHANGE}, /* the emissivities are missing */
-                                {.emissivity = grey},
-                                {.kind = FIBRAD_ROWS_SAMPLED, .emissivity = grey},
-                                {0}};
-    const size_t last = sizeof bad / sizeof *bad - 1;
-    for (size_t k = 0; k < last + 5; k++) {
-        const size_t at = k < last ? k : last;
-        if (k >= last) bad[at] = (fibrad_matrix_rule){.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = emissivity[k - last]};
-        ck_assert_uint_eq(fibrad_matrix_size(scene, &rows, 1, &bad[at]), 0);
-        assert_invalid(fibrad_matrix_init(&m, block, sizeof block, scene, &rows, 1, &bad[at], NULL));
+    static const double white[] = {1, 1}, grey[][2] = {{1, 0}, {1, -1}, {NAN, 1}, {1, INFINITY}, {1.5, 1}};
+    const fibrad_matrix_rule plain = {0};
+    const struct {
+        const fibrad_scene *scene;
+        const fibrad_rows *rows;
+        fibrad_matrix_rule rule;
+    } bad[] = {{NULL, &rows, plain},
+               {scene, NULL, plain},
+               {scene, &stranger, plain},
+               {scene, &seen, plain},
+               {scene, &walled, plain},
+               {scene, &rows, {.tasks = 1025}},
+               {scene, &rows, {.drop = -1}},
+               {scene, &rows, {.drop = NAN}},
+               {scene, &rows, {.kind = -1}},
+               {scene, &rows, {.kind = 3}},
+               {scene, &rows, {.kind = FIBRAD_ROWS_EXCHANGE}}, /* the emissivities are missing */
+               {scene, &rows, {.emissivity = white}},
+               {scene, &rows, {.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = grey[0]}},
+               {scene, &rows, {.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = grey[1]}},
+               {scene, &rows, {.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = grey[2]}},
+               {scene, &rows, {.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = grey[3]}},
+               {scene, &rows, {.kind = FIBRAD_ROWS_EXCHANGE, .emissivity = grey[4]}}};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        const int status =
+            fibrad_matrix_init(&m, block, sizeof block, bad[k].scene, bad[k].rows, 1, &bad[k].rule, NULL);
+        const bool accepted = fibrad_matrix_size(bad[k].scene, bad[k].rows, 1, &bad[k].rule) != 0;
+        ck_assert_msg(!accepted && status == FIBRAD_E_ARGUMENT, "matrix %zu: %d", k, status);
     }
     ck_assert_ptr_null(m);
     assert_ok(fibrad_matrix_init(&m, block, sizeof block, scene, &rows, 1, NULL, NULL));
@@ -253,32 +233,23 @@ TEST(bad_rows_are_refused) {
     ck_assert(rows.count == 1 && rows.entries == 2 && rows.used > 0);
     const fibrad_rows before = rows;
     fibrad_row bad = good;
-    bad.col = descending;
-    assert_invalid(fibrad_rows_add(&rows, &bad, 1));
-    bad.col = equal;
-    assert_invalid(fibrad_rows_add(&rows, &bad, 1));
-    bad.col = NULL;
-    assert_invalid(fibrad_rows_add(&rows, &bad, 1));
-    bad = good, bad.f = NULL;
-    assert_invalid(fibrad_rows_add(&rows, &bad, 1));
-    bad = good, bad.wall = NULL;
-    assert_invalid(fibrad_rows_add(&rows, &bad, 1));
+    const fibrad_row lacking[] = {{.col = descending, .f = f, .wall = wall, .length = 2},
+                                  {.col = equal, .f = f, .wall = wall, .length = 2},
+                                  {.f = f, .wall = wall, .length = 2},
+                                  {.col = col, .wall = wall, .length = 2},
+                                  {.col = col, .f = f, .length = 2},
+                                  {.col = col, .f = f, .wall = wall, .length = 2, .escaped = NAN},
+                                  {.col = col, .f = f, .wall = wall, .length = 2, .error = NAN}};
+    for (size_t k = 0; k < sizeof lacking / sizeof *lacking; k++)
+        assert_invalid(fibrad_rows_add(&rows, &lacking[k], 1));
     const double wrong[] = {-.1, 1.1, NAN, INFINITY, -INFINITY};
-    for (size_t k = 0; k < 2 * sizeof wrong / sizeof *wrong; k++) {
-        double g[] = {.1, .2};
-        g[k % 2] = wrong[k / 2];
-        bad = good, bad.f = g;
-        assert_invalid(fibrad_rows_add(&rows, &bad, 1));
+    double *const places[] = {&f[0], &f[1], &wall[0]};
+    for (size_t k = 0; k < 3 * sizeof wrong / sizeof *wrong; k++) {
+        const double was = *places[k % 3];
+        *places[k % 3] = wrong[k / 3];
+        assert_invalid(fibrad_rows_add(&rows, &good, 1));
+        *places[k % 3] = was;
     }
-    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
-        double g = wrong[k];
-        bad = good, bad.wall = &g;
-        assert_invalid(fibrad_rows_add(&rows, &bad, 1));
-    }
-    bad = good, bad.escaped = NAN;
-    assert_invalid(fibrad_rows_add(&rows, &bad, 1));
-    bad = good, bad.error = NAN;
-    assert_invalid(fibrad_rows_add(&rows, &bad, 1));
     assert_invalid(fibrad_rows_add(NULL, &good, 1));
     assert_invalid(fibrad_rows_add(&rows, NULL, 1));
     ck_assert(same_collection(&rows, &before) && rows.used == before.used);
@@ -381,34 +352,6 @@ TEST(collections_in_fixed_memory_say_what_they_lack) {
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rule, &append), FIBRAD_E_CAPACITY);
     ck_assert_uint_gt(nothing.memory.needed, 0);
     free(block);
-}
-
-TEST(collections_grow_when_asked) {
-    OWNED_BED bed = packing(60, .5, 1.5, .4, 3, false);
-    OWNED fibrad_scene *scene = scene_of(&bed, 0);
-    const fibrad_beam_rule rule = {.directions = 13};
-    OWNED_ROWS plenty = rows_by_beams(scene, &rule);
-    OWNED_MATRIX expected = matrix_of(scene, &plenty, 1, NULL);
-    for (uint32_t refuse = 0; refuse < 5; refuse++) {
-        struct source source = {.refuse_at = refuse};
-        fibrad_rows rows = {.memory = {.resize = source_resize, .context = &source}};
-        OWNED_WORK work = work_growing();
-        uint32_t refused = 0;
-        for (uint32_t i = 0; i < bed.n; i++) {
-            int status = fibrad_beam_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows});
-            if (status == FIBRAD_E_MEMORY) {
-                refused++;
-                ck_assert_uint_eq(rows.count, i);
-                status = fibrad_beam_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows});
-            }
-            assert_ok(status);
-        }
-        ck_assert_uint_eq(refused, refuse > 0 && source.calls >= refuse);
-        ck_assert(same_collection(&rows, &plenty));
-        OWNED_MATRIX m = matrix_of(scene, &rows, 1, NULL);
-        ck_assert(matrix_same_bits(&m.factors, &expected.factors));
-        free(source.whole);
-    }
 }
 
 /* Rows come back as they were appended, also empty ones. Their columns may be written. */

@@ -62,6 +62,26 @@ LOOP_TEST(a_square_below_turned_directions, 2) {
     ck_assert_double_eq_tol(mean, exact, 3.5 * sqrt(square / TURNS) + 1e-5);
 }
 
+/* A unit quaternion gives a rotation. For a uniform quaternion take a uniform point of the unit ball in four
+ * dimensions and divide it by its distance from the centre. Rejection finds such a point in three draws on average.
+ * Points near the centre are rejected too, since they have few digits. */
+static void random_rotation(uint64_t seed, double rotation[9]) {
+    fibrad_random random = fibrad_random_start(seed, 0);
+    double q[4], square;
+    do {
+        square = 0;
+        for (int k = 0; k < 4; k++) {
+            q[k] = 2 * fibrad_random_next(&random) - 1;
+            square += q[k] * q[k];
+        }
+    } while (!(square <= 1 && square > 1e-4));
+    const double s = 2 / square, a = q[0], b = q[1], c = q[2], d = q[3];
+    const double by_row[9] = {1 - s * (c * c + d * d), s * (b * c - a * d),     s * (b * d + a * c),
+                              s * (b * c + a * d),     1 - s * (b * b + d * d), s * (c * d - a * b),
+                              s * (b * d - a * c),     s * (c * d + a * b),     1 - s * (b * b + c * c)};
+    memcpy(rotation, by_row, sizeof by_row);
+}
+
 /* The plane of a triangle does not cut the sphere. So F is the solid angle of the triangle over 4 pi. */
 TEST(a_sphere_and_a_triangle) {
     double square = 0, worst[3] = {0};
@@ -72,7 +92,7 @@ TEST(a_sphere_and_a_triangle) {
         OWNED struct mesh *mesh = mesh_new();
         const double away = exp(uniform(log(1.05), log(30))), size = exp(uniform(log(.3), log(30)));
         double rotation[9], v[3][3];
-        fibrad_rotation((uint64_t)c + 1, rotation);
+        random_rotation((uint64_t)c + 1, rotation);
         for (int k = 0; k < 3; k++) {
             v[k][0] = uniform(-size, size), v[k][1] = uniform(-size, size), v[k][2] = away;
             turn_point(rotation, v[k]);
@@ -540,22 +560,6 @@ TEST(periodic_meshes) {
     ck_assert_double_eq_tol(row_factor(&cast, 1), row_factor(&row, 1), 3e-3);
 }
 
-/* The size FIBRAD_WORK_TRIANGLES is enough. */
-TEST(work_among_triangles) {
-    static unsigned char block[FIBRAD_WORK_BYTES(64, 64) + FIBRAD_WORK_TRIANGLES + 64];
-    static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
-    OWNED_BED bed = crowd(20, 4);
-    OWNED struct mesh *mesh = mesh_new();
-    mesh_box(mesh, low, high, 0);
-    OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 6);
-    OWNED_ROW row = row_of(bed.n);
-    for (size_t offset = 0; offset < 64; offset += 9) {
-        fibrad_work work = work_fixed(block + offset, sizeof block - 64);
-        for (uint32_t points = 0; points <= 256; points += 256)
-            assert_ok(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.points = points}, &row));
-    }
-}
-
 /* A sphere sees all others, which are as many as work memory begins with, and three meshes besides. So there are more
  * entries than spheres. This works in memory that grows, and in as much as FIBRAD_WORK_BYTES says. */
 TEST(more_entries_than_spheres) {
@@ -675,30 +679,4 @@ TEST(grey_meshes) {
     const double error = 5 * (mean[0].error + mean[1].error);
     for (int b = 0; b < 6; b++) ck_assert_double_eq_tol(mean[0].wall[b], mean[1].wall[b], error);
     for (int k = 0; k < 2; k++) free(scene[k]), row_free(&row[k]);
-}
-
-/* Rows of few windows, turned at random, give a floor of two triangles on the mean what they give to a plane. */
-TEST(few_turned_windows) {
-    OWNED_BED bed = bed_empty();
-    ck_assert_int_eq(bed_make_layer(&bed, 200, .5, 200, 3), 0);
-    OWNED struct mesh *mesh = mesh_new();
-    const double x = bed.period[0], y = bed.period[1];
-    const uint32_t corner[4] = {mesh_vertex(mesh, 0, 0, 0), mesh_vertex(mesh, x, 0, 0), mesh_vertex(mesh, x, y, 0),
-                                mesh_vertex(mesh, 0, y, 0)};
-    mesh_quad(mesh, corner, 0, FIBRAD_NO_WALL);
-    const fibrad_wall wall[2][2] = {{plane_at(2, 0, 0), plane_at(2, 1, bed.high[2])},
-                                    {{.kind = FIBRAD_WALL_MESH}, plane_at(2, 1, bed.high[2])}};
-    double sum[2] = {0};
-    for (int k = 0; k < 2; k++) {
-        OWNED fibrad_scene *scene = scene_with(
-            &bed, &(fibrad_scene_config){.wall = wall[k], .walls = 2, .triangles = k ? &mesh->triangles : NULL});
-        OWNED_WORK work = work_growing();
-        OWNED_ROW row = row_of(bed.n);
-        for (uint32_t n = 0; n < 2000; n++) {
-            const fibrad_beam_rule rule = {.directions = 24, .points = 64, .turn = n + 1};
-            assert_ok(fibrad_beam_row(scene, &work, n % bed.n, &rule, &row));
-            sum[k] += row.wall[0];
-        }
-    }
-    ck_assert_double_eq_tol(sum[1] / sum[0], 1, 1e-9);
 }

@@ -48,31 +48,6 @@ LOOP_TEST(rows_depend_on_what_is_near, KINDS) {
         }
 }
 
-/* The same holds for displacements. */
-TEST(displacements_depend_on_what_is_near) {
-    OWNED_MADE m;
-    make_kind(&m, &kinds[3]);
-    OWNED fibrad_scene *whole = part_scene(&m.part);
-    double *e = emissivities_of(&m.part), cutoff = 4;
-    OWNED_WORK work = work_growing();
-    for (uint32_t i = 0; i < m.part.n; i++) {
-        if (m.part.z[i] > 1.2) continue; /* paths go back and forth between spheres and the wall */
-        uint32_t own = UINT32_MAX;
-        OWNED_PART near = part_near(&m.part, i, cutoff + radius_most(&m.part) + 1e-6, &own);
-        OWNED fibrad_scene *little = part_scene(&near);
-        OWNED double *of_near = emissivities_of(&near);
-        fibrad_displacement_rule rule = {
-            .emissivity = e, .wall_emissivity = wall_emissivity, .paths = 200, .seed = 3, .cutoff = cutoff};
-        fibrad_displacement expected, found;
-        assert_ok(fibrad_exchange_displacement(whole, &work, i, &rule, &expected));
-        rule.emissivity = of_near;
-        assert_ok(fibrad_exchange_displacement(little, &work, own, &rule, &found));
-        ck_assert_int_eq(memcmp(&expected, &found, sizeof found), 0);
-        for (int axis = 0; axis < 3; axis++) ck_assert_double_lt(expected.square[axis], pow(cutoff + 1, 2));
-    }
-    free(e);
-}
-
 /* A periodic bed is compared with an open one that has images of the same ids. Coordinates have few digits, so that
  * images are where they should be to the bit. The sum of the factors to all images of a sphere is the factor to this
  * sphere: counts of points to the bit, sums of paths to rounding. */
@@ -216,24 +191,6 @@ LOOP_TEST(turned_rows_average_to_the_fine_one, 3) {
         ck_assert_msg(ratio > 1 && ratio < 4, "estimate over error: %g", ratio);
         ck_assert_int_lt(less, TURNS / 10);
     }
-}
-
-/* Of an even number of turned directions as many rise as fall. Of an odd number one more may. So a floor has half of
- * what a free sphere sends out, whether it cuts the sphere or not. */
-LOOP_TEST(a_floor_below_turned_directions, 3) {
-    OWNED_BED bed = BED({0, 0, 3, 1});
-    const fibrad_wall floor_below = plane_at(2, 0, 0);
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = &floor_below, .walls = 1});
-    OWNED_WORK work = work_growing();
-    OWNED_ROW row = row_of(1);
-    double mean = 0;
-    for (uint64_t turn = 1; turn <= 100; turn++) {
-        const fibrad_beam_rule rule = {.directions = _i > 1 ? 234 : 233, .turn = turn, .cutoff = _i == 1 ? 5 : 0};
-        assert_ok(fibrad_beam_row(scene, &work, 0, &rule, &row));
-        ck_assert_double_eq_tol(row.wall[0], .5, _i > 1 ? 1e-14 : 2.5e-3);
-        mean += row.wall[0] / 100;
-    }
-    ck_assert_double_eq_tol(mean, .5, 3e-4);
 }
 
 /* A sphere between a floor and a periodic layer that hides all above. What it sends down reaches the floor, and next to

@@ -33,7 +33,8 @@ static void compare_row(const fibrad_scene *scene, uint32_t n, uint32_t walls, u
     assert_ok(fibrad_beam_row(scene, &work, i, rule, &one));
     assert_ok(row_in_parts(scene, i, rule, parts, &joined));
     ck_assert(same_bits_with(&one, &joined, walls));
-    ck_assert_uint_eq(joined.directions, rule->lines != NULL ? fibrad_line_set_count(rule->lines) : rule->directions);
+    ck_assert_uint_eq(joined.directions + joined.lines,
+                      rule->lines != NULL ? fibrad_line_set_count(rule->lines) : rule->directions);
     ck_assert_uint_eq(joined.fallbacks, one.fallbacks);
     ck_assert_uint_eq(joined.sphere, i);
     ck_assert(joined.noise == one.noise && joined.shares == one.shares && joined.lines == one.lines);
@@ -55,7 +56,7 @@ static void compare_rows(const struct bed *bed, const fibrad_scene_config *confi
         const fibrad_beam_rule rule = {
             .directions = 50 + (uint32_t)k, .points = k % 2 == 0 ? 0 : 64, .cutoff = cutoff, .turn = k < 9 ? 0 : 5};
         compare_row(scene, bed->n, config->walls, i, &rule, parts, seen);
-        assert_ok(fibrad_line_set_init(&lines, block, sizeof block, rule.directions, rule.turn));
+        assert_ok(fibrad_line_set_init(&lines, block, sizeof block, rule.directions));
         const fibrad_beam_rule along = {.lines = lines, .chords = chords[k % 3], .cutoff = cutoff};
         compare_row(scene, bed->n, config->walls, rows[(k + k / 3) % 3], &along, parts, seen);
         const fibrad_beam_rule masks = {.directions = rule.directions, .chords = 32, .cutoff = cutoff};
@@ -141,60 +142,6 @@ TEST(parts_that_were_changed_make_no_row) {
     assert_ok(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part));
     assert_ok(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &row));
     free(part.memory.block);
-}
-
-/* Fixed memory that is too small says how much suffices. */
-TEST(fixed_memory_of_a_part_says_what_it_lacks) {
-    OWNED_BED bed = strewn(50, 9);
-    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    OWNED_WORK work = work_growing();
-    const fibrad_beam_rule rule = {.directions = 20};
-    fibrad_row_part part = {.memory = {.block = malloc(16), .size = 16}};
-    ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_E_CAPACITY);
-    const size_t needed = part.memory.needed;
-    ck_assert_uint_gt(needed, 16);
-    free(part.memory.block);
-    part.memory = (fibrad_memory){.block = malloc(needed), .size = needed};
-    assert_ok(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part));
-    free(part.memory.block);
-}
-
-/* For a resize function that fails once, at call number `fails`. */
-struct supply {
-    uint32_t asked, fails;
-};
-
-static void *resize_but_once(void *context, void *block, size_t size) {
-    struct supply *supply = context;
-    return supply->asked++ == supply->fails ? NULL : realloc(block, size);
-}
-
-/* If memory is refused once, at whatever call, this is an error. The next call gets memory, and makes the part that it
- * makes with plenty of memory. */
-TEST(memory_refused_once_is_no_lasting_error) {
-    OWNED_BED bed = strewn(50, 9);
-    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    OWNED_WORK work = work_growing();
-    OWNED_ROW one = row_of(50), joined = row_of(50);
-    const fibrad_beam_rule rule = {.directions = 20};
-    assert_ok(fibrad_beam_row(scene, &work, 1, &rule, &one));
-    uint32_t asked = 1;
-    for (uint32_t fails = 0; fails < asked; fails++) {
-        struct supply supply = {.fails = fails};
-        fibrad_row_part part = {.memory = {.resize = resize_but_once, .context = &supply}};
-        ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_E_MEMORY);
-        ck_assert_uint_eq(supply.asked, fails + 1);
-        ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &joined), FIBRAD_E_STATE);
-        assert_ok(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part));
-        asked = supply.asked - 1;
-        assert_ok(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &joined));
-        ck_assert(same_bits_with(&one, &joined, 0));
-        part.memory.size /= 2; /* less memory than the part was made in */
-        ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &joined),
-                         part.used > part.memory.size ? FIBRAD_E_STATE : FIBRAD_OK);
-        free(part.memory.block);
-    }
-    ck_assert_uint_eq(asked, 1);
 }
 
 /* A block of size 0 is too small. NULL that is said to have bytes is refused. */
