@@ -27,12 +27,12 @@ declare -A bar=(
     ["flat 0.8 high"]=.5 ["flat 0.8 normal"]=2.2 ["flat 0.8 low"]=4.7 ["plate high"]=.8 ["plate normal"]=5.5 ["plate low"]=10.5
 )
 
-# measure CASE BED WALLS LIST TEMPERATURES: BED is a dump. WALLS are keywords of the fix, LIST and TEMPERATURES the same
-# walls for fibrad heat. Variables tell more: `e`, emissivities of odd and even ids; `field`, temperatures of particles as a
+# measure CASE BED WALLS LIST: BED is a dump. WALLS are keywords of the fix, LIST has the same walls for fibrad heat, all
+# of emissivity 0.9. Variables tell more: `e`, emissivities of odd and even ids; `field`, temperatures of particles as a
 # formula of LAMMPS; `cold`, that of the surroundings; `error`, allowed to fibrad heat; `turn`, a program of awk for what
 # fibrad heat reads.
 measure() {
-    local name=$1 bed=$2 walls=$3 list=$4 temperatures=$5 out=$work/powers.dump boundary accuracy words seed heat key
+    local name=$1 bed=$2 walls=$3 list=$4 out=$work/powers.dump boundary accuracy words seed heat key
     local e=${e:-0.8 0.8} field=${field:-300} cold=${cold:-300} error=${error:-0.002} turn=${turn:-1}
     [[ $name == *"$only"* ]] || return 0
 
@@ -46,8 +46,8 @@ measure() {
             "$LMP" -in bench/powers.lmp -screen none -log "$work/log.$seed" -var load "$BUILD/couple/fibrad.lmp" \
                 -var data "$work/bed.data" -var boundary "$boundary" -var T "$field" -var out "$out" -var words \
                 "emissivity type $e surroundings $cold $walls $words seed $seed"
-            heat=(--length-unit m --temperature d_T --ambient "$cold" --emissivity "1:${e/ /,2:}" --wall "$list"
-                --wall-temperature "$temperatures" --wall-emissivity 0.9 --error "$error" --quiet)
+            heat=(--length-unit m --temperature d_T --ambient "$cold" --emissivity "1:${e/ /,2:}" 
+                --wall "$(echo "$list" | sed "s/:temperature/:emissivity=0.9&/g")" --error "$error" --quiet)
             awk '/ITEM: ATOMS/ || (NF == 8 && !/ITEM/) { NF-- } 1' "$out" | awk "$turn" >"$work/heat.dump"
             key=$(echo "${heat[@]}" | cat - "$work/heat.dump" | cksum | cut -d ' ' -f 1)
             test -e "$work/$key.csv" || "$BUILD/fibrad" heat "$work/heat.dump" "${heat[@]}" -o "$work/$key.csv"
@@ -147,23 +147,24 @@ funnel 11 5 25 4 >"$work/funnel.stl"
 sides=
 for face in xlo xhi ylo yhi zlo; do sides="$sides wall $face 1000 0.9"; done
 
-measure below "$work/below.dump" "wall zlo 1000 0.9" zmin 1000
-measure hopper "$work/hopper.dump" "wall zlo 1000 0.9 wall mesh $work/funnel.stl 300 0.9 both" "zmin,mesh:$work/funnel.stl:both" zmin=1000,300
-measure curtain "$work/curtain.dump" "wall zlo 1000 0.9" zmin 1000
-measure closed $poly "$sides wall zhi 1000 0.9 at $high" "xmin,xmax,ymin,ymax,zmin,zmax=$high" 1000
-measure "box 0.8" $poly "$sides wall zhi open" box:open=zmax 1000
-e="0.8 0.3" measure "box 0.8 and 0.3" $poly "$sides wall zhi open" box:open=zmax 1000
-measure "triangles 0.8" $poly "wall mesh $work/box.stl 1000 0.9" "mesh:$work/box.stl" 1000
+t=:temperature=1000
+measure below "$work/below.dump" "wall zlo 1000 0.9" zmin:temperature=1000
+measure hopper "$work/hopper.dump" "wall zlo 1000 0.9 wall mesh $work/funnel.stl 300 0.9 both" "zmin:temperature=1000,mesh:$work/funnel.stl:both:temperature=300"
+measure curtain "$work/curtain.dump" "wall zlo 1000 0.9" zmin:temperature=1000
+measure closed $poly "$sides wall zhi 1000 0.9 at $high" "xmin$t,xmax$t,ymin$t,ymax$t,zmin$t,zmax:at=$high$t"
+measure "box 0.8" $poly "$sides wall zhi open" box:temperature=1000,zmax:open
+e="0.8 0.3" measure "box 0.8 and 0.3" $poly "$sides wall zhi open" box:temperature=1000,zmax:open
+measure "triangles 0.8" $poly "wall mesh $work/box.stl 1000 0.9" "mesh:$work/box.stl:temperature=1000"
 cylinder="wall zlo 1000 0.9 wall zcylinder 5.5 300 0.9 at 6 6 wall zhi open"
-measure poured "$work/poured.dump" "$cylinder" zmin,zmax=open,cylinder:6,6,5.5 zmin=1000,300
+measure poured "$work/poured.dump" "$cylinder" zmin:temperature=1000,zmax:open,cylinder:6,6,5.5:temperature=300
 turn=$lying measure drum "$work/drum.dump" "wall xcylinder 6 1000 0.9 at 6 6 wall xlo 300 0.9 wall xhi 300 0.9" \
-    cylinder:6,6,6,zmin=0,zmax=12 cylinder=1000,300
-measure plate tests/data/mono2000.dump "wall mesh $work/plate.stl 1000 0.9" "mesh:$work/plate.stl" 1000
+    cylinder:6,6,6:temperature=1000,zmin:at=0:temperature=300,zmax:at=12:temperature=300
+measure plate tests/data/mono2000.dump "wall mesh $work/plate.stl 1000 0.9" "mesh:$work/plate.stl:temperature=1000"
 # shellcheck disable=SC2097,SC2098  # measure is a function
 for e in 0.8 0.3; do
     test $e = 0.8 || error=0.003
-    e="$e $e" error=0.005 cold=600 measure "apart $e" "$work/apart.dump" "wall zlo 1000 0.9" zmin 1000
-    e="$e $e" measure "cylinder $e" "$work/cylinder.dump" "$cylinder" zmin,zmax=open,cylinder:6,6,5.5 zmin=1000,300
-    e="$e $e" field=1000 cold=0 measure "flat $e" $flat "wall zlo 0 0.9" zmin 0
+    e="$e $e" error=0.005 cold=600 measure "apart $e" "$work/apart.dump" "wall zlo 1000 0.9" zmin:temperature=1000
+    e="$e $e" measure "cylinder $e" "$work/cylinder.dump" "$cylinder" zmin:temperature=1000,zmax:open,cylinder:6,6,5.5:temperature=300
+    e="$e $e" field=1000 cold=0 measure "flat $e" $flat "wall zlo 0 0.9" zmin:temperature=0
 done
-e="0.8 0.8" error=0.002 field="300+700*z/bound(all,zmax)" cold=1000 measure "linear 0.8" $flat "wall zlo 300 0.9" zmin 300
+e="0.8 0.8" error=0.002 field="300+700*z/bound(all,zmax)" cold=1000 measure "linear 0.8" $flat "wall zlo 300 0.9" zmin:temperature=300

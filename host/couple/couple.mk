@@ -12,10 +12,12 @@ COUPLE_WALLS = host/couple/walls/mesh_motion.c host/couple/walls/mesh_walls.c
 
 # walls of triangles and tables, for programs that read files of them; a library of its own, since it has names of the program
 COUPLE_MESH = $(COUPLE_WALLS) \
+    host/bed/wall_words.c \
     host/cli/interrupt.c \
     host/cli/memory.c \
     host/cli/message.c \
     host/cli/output.c \
+    host/cli/spelling.c \
     host/mesh/edges.c \
     host/mesh/facing.c \
     host/mesh/meshes.c \

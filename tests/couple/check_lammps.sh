@@ -110,8 +110,8 @@ done
 awk 'NF == 8 && /^[0-9]/ { $2 = 2 - $1%2 } { print }' tests/data/monoper2000.dump >"$work/types.dump"
 as_data tests/data/monoper2000.dump >"$work/flat.data"
 run 1 sky frozen.lmp data "$work/flat.data" boundary "p p f" steps 0 also "set group all d_T 1000"
-found=$("$BUILD/fibrad" heat "$work/types.dump" --emissivity 1:.5,2:.8 --temperature 1000 --ambient 300 --wall zmin=0 \
-    --wall-temperature 1000 --wall-emissivity .9 --directions 200 2>/dev/null |
+found=$("$BUILD/fibrad" heat "$work/types.dump" --emissivity 1:.5,2:.8 --temperature 1000 --ambient 300 \
+    --wall zmin:at=0:temperature=1000:emissivity=.9 --directions 200 2>/dev/null |
     awk '$1 == "surroundings_W" { print $2; exit }')
 awk '$1 == "Step" { getline; print $3; exit }' "$work/sky.log" |
     awk -v heat="${found:-0}" '{ d = $1/heat - 1; printf "%.2g", d; exit !(heat > 0 && d*d < 8e-3^2) }' >"$work/sky.error"
@@ -120,8 +120,8 @@ verdict "the sky above a flat bed gets what fibrad heat says ($(cat "$work/sky.e
 
 # ---- single particles below a periodic bed, against fibrad heat --------------------------------------------------------
 run 2 below below.lmp
-"$BUILD/fibrad" heat "$work/below.out" --emissivity .8 --temperature 300 --ambient 300 --wall zmin=0 --wall-temperature 1000 \
-    --wall-emissivity .9 --directions 600 --length-unit m -o "$work/below.csv" >/dev/null 2>&1
+"$BUILD/fibrad" heat "$work/below.out" --emissivity .8 --temperature 300 --ambient 300 \
+    --wall zmin:at=0:temperature=1000:emissivity=.9 --directions 600 --length-unit m -o "$work/below.csv" >/dev/null 2>&1
 found=$(awk -F'[ ,]' 'NR == FNR && $1 ~ /^[0-9]/ { q[$1] = $3; next } NR == FNR && /zmin$/ { floor = $3 }
     NR > FNR && NF == 7 && $1 in q { all += $7; truth += q[$1]; n++ }
     NR > FNR && NF == 7 && $1 > 192 { alone += $7; expected += q[$1] }
@@ -141,8 +141,8 @@ powers_near() {
 }
 awk 'BEGIN { print "id,type,x,y,z,radius,T" } { print $1 "," 2 - $1%2 "," $2 "," $3 "," $4 "," $5 "," $6 }' \
     "$work/quarter" >"$work/quarter.csv"
-"$BUILD/fibrad" heat "$work/quarter.csv" --emissivity 1:.5,2:.8 --temperature T --ambient 300 --wall zmin=0 \
-    --wall-temperature 1000 --wall-emissivity .9 --solid-conductivity 1:4,2:12 --directions 600 --length-unit m \
+"$BUILD/fibrad" heat "$work/quarter.csv" --emissivity 1:.5,2:.8 --temperature T --ambient 300 \
+    --wall zmin:at=0:temperature=1000:emissivity=.9 --solid-conductivity 1:4,2:12 --directions 600 --length-unit m \
     -o "$work/conduct.csv" >/dev/null 2>&1
 run 2 conduct frozen.lmp "${whole[@]}" steps 0 strict "no solid type 4 12 accuracy high" also "dump powers all custom 1 $work/powers id f_rad"
 powers_near "$work/conduct.csv" "$work/powers" "powers of particles that conduct are those of fibrad heat"
@@ -290,8 +290,8 @@ for axis in z x y; do
     done
 done
 "$BUILD/fibrad" heat "$work/quarter.csv" --emissivity 1:.5,2:.8 --temperature T --ambient 300 --length-unit m \
-    --wall zmin=0,zmax=20:open,cylinder:3.25,3.4,4.6 --wall-temperature zmin=1000,cylinder=600 \
-    --wall-emissivity zmin=.9,cylinder=.8 --directions 600 -o "$work/tube.csv" >/dev/null 2>&1
+    --wall zmin:at=0:temperature=1000:emissivity=.9,zmax:open:at=20,cylinder:3.25,3.4,4.6:temperature=600:emissivity=.8 \
+    --directions 600 -o "$work/tube.csv" >/dev/null 2>&1
 laid x <"$work/quarter.dump" | as_data - >"$work/laid.data"
 run 2 tube frozen.lmp data "$work/laid.data" steps 0 strict "no accuracy high" also "dump powers all custom 1 $work/powers id f_rad" \
     floor "xcylinder 4.6 600 0.8 at 3.25 3.4 wall xlo 1000 0.9 at 0 wall xhi open at 20"
@@ -391,7 +391,7 @@ run 2 contacts_moved contacts.lmp also "fix b all balance 10 1.0 shift y 10 1.01
 near "$work/contacts1.out" "$work/contacts_moved.out" 1e-10 "contacts, balance during the run"
 
 # beside radiation: what contacts bring is what fibrad heat says
-"$BUILD/fibrad" heat "$work/quarter.csv" --emissivity 1:.5,2:.8 --temperature T --ambient 300 --wall zmin=0 --wall-temperature 1000 \
+"$BUILD/fibrad" heat "$work/quarter.csv" --emissivity 1:.5,2:.8 --temperature T --ambient 300 --wall zmin:at=0:temperature=1000 \
     --contacts lens --contact-conductivity 1:4,2:12 --gas-conductivity .03 --directions 50 --length-unit m -o "$work/touch.csv" >/dev/null 2>&1
 {
     echo "dump powers all custom 1 $work/touch.dump id f_rad[1] f_rad[2] f_rad[3] f_rad[4] f_rad[5]"
@@ -486,7 +486,7 @@ for case in chute drum hopper; do
     run 2 "$case" "$case.lmp" && ! grep -q "^ERROR" "$work/$case.log" && balance "$case" 10e-3 0 1e-3 200 "energy in a $case"
     verdict "a $case to its end" $?
 done
-# half a drum that stores heat and turns once, from step 1500 to 3500. Its temperature follows from factors of `fibrad exchange`
+# half a drum that stores heat and turns once, from step 1500 to 3500. Its temperature follows from factors of `fibrad factors`
 # of frames, too, among triangles that are laid out anew. Both hold factors for 250 steps
 # shell STEP: 12 of 24 facets
 shell() {
@@ -508,7 +508,7 @@ balance shell 10e-3 0 1e-5 200 "energy in a drum of triangles that turns and sto
 # heat FRAME STEP: what particles and surroundings send to the shell, and what it sends to them at 1 K
 heat() {
     shell "$2" >"$work/turned.stl"
-    "$BUILD/fibrad" exchange "$1" --emissivity .8 --wall "mesh:$work/turned.stl:both" --wall-emissivity .7 --raw --quiet \
+    "$BUILD/fibrad" factors "$1" --emissivity .8 --wall "mesh:$work/turned.stl:both:emissivity=.7" --raw --quiet \
         --directions 150 -o "$work/factors.csv" 2>/dev/null
     awk -F'[ ,]' -v both="$(awk 'BEGIN { print 2*12*8*2*5*sin(atan2(1, 1)/6) }')" '
         NR == FNR && NF >= 6 && $1 ~ /^[0-9]/ { area[$1] = 16*atan2(1, 1)*$5^2; e[$1] = 1e-11*$6^4 }

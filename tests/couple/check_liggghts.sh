@@ -79,15 +79,15 @@ done
 
 # What the floor takes, without a cutoff and ranks
 { echo x,y,z,r && awk '{ print $4 "," $5 "," $6 ",.003" }' atoms; } >bed.csv
-"$fibrad" exchange bed.csv --emissivity 0.8 --wall zmin=0 --wall-emissivity 0.9 --raw >serial 2>/dev/null || complain "no serial factors"
+"$fibrad" factors bed.csv --emissivity 0.8 --wall zmin:at=0:emissivity=0.9 --raw >serial 2>/dev/null || complain "no serial factors"
 echo "$(value joined2 wall_1_F) $(value serial wall_zmin_F)" |
     awk '{ printf "the floor takes %.5f, %.5f in one scene\n", $1, $2; off = $1 / $2 - 1; exit !(off * off < 1e-4) }' ||
     complain "the floor takes something else"
 
 # what a cylinder along x or y takes, and its ends
 for axis in x y; do
-    "$fibrad" exchange bed.csv --emissivity 0.8 --wall ${axis}cylinder:.024,.018,.025,${axis}min=0,${axis}max=.048 \
-        --wall-emissivity .9 --raw >alone 2>/dev/null || complain "no factors of a bed in ${axis}cylinder"
+    "$fibrad" factors bed.csv --emissivity 0.8 --wall ${axis}cylinder:.024,.018,.025:emissivity=.9 \
+        --wall ${axis}min:at=0:emissivity=.9,${axis}max:at=.048:emissivity=.9 --raw >alone 2>/dev/null || complain "no factors of a bed in ${axis}cylinder"
     radiation="--emissivity 0.8 --surroundings 300 --wall ${axis}cylinder=600,.9,.024,.018,.025 --wall ${axis}lo=600,.9 --wall ${axis}hi=600,.9"
     run round 2 'setforce 0 0 0' 1 -in bed --write round
     "$fibrad" join round.0.rows round.1.rows --raw -o round.csv >joined_round || complain "${axis}cylinder: no rows"
@@ -125,7 +125,7 @@ awk -v came="$(value coming heat_came)" -v gone="$(value coming heat_gone)" -v o
 # would bring 15 % more; energy, at temperatures that rise
 sed 's/initial_temperature 300/initial_temperature 1000/' bed >warm
 radiation='--emissivity 0.8 --surroundings 900 --wall zlo=1200,0.9 --solid-conductivity 0.68'
-"$fibrad" heat bed.csv --emissivity 0.8 --temperature 1000 --ambient 900 --wall zmin=0 --wall-temperature 1200 --wall-emissivity 0.9 \
+"$fibrad" heat bed.csv --emissivity 0.8 --temperature 1000 --ambient 900 --wall zmin:at=0:temperature=1200:emissivity=0.9 \
     --length-unit m --directions 600 --solid-conductivity 0.68 -o heat.csv >/dev/null 2>&1 || complain "no powers of fibrad heat"
 for ranks in 1 2; do
     { cat warm && echo 'fix fibradPower all property/atom fibradPower scalar yes no no 0' &&
@@ -230,7 +230,7 @@ echo "$(value joined_low wall_1_F) $(value joined_high wall_1_F) $(value joined_
     off = $3 / $2 - 1; exit !(NF == 3 && $1 > 1.2 * $2 && off * off < 1e-8) }' || complain "rows do not follow a mesh that moves"
 radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
 
-# A drum of triangles that turns once and stores heat. Its temperature follows from factors of `fibrad exchange` of
+# A drum of triangles that turns once and stores heat. Its temperature follows from factors of `fibrad factors` of
 # frames, too, and what particles and drum lose goes to the ends. Both sides are the wall, since pebbles in the corners
 # of drum and ends see the back of the shell
 awk -v pi=3.14159265358979 'BEGIN {
@@ -258,7 +258,7 @@ echo "$(value turning heat_before) $(value turning heat_after) $(value turning r
     exit !(NF == 5 && $2 > $1 && lost * lost < 1e-24) }' || complain "a drum that stores heat: energy is not kept"
 for step in $(seq 0 1000 10000); do
     mv "$step.shell" shell.stl
-    "$fibrad" exchange "$step.frame" --emissivity .8 --wall mesh:shell.stl:both,xmin=0,xmax=.048 --wall-emissivity .9,shell=.7 --raw \
+    "$fibrad" factors "$step.frame" --emissivity .8 --wall mesh:shell.stl:both:emissivity=.7,xmin:at=0:emissivity=.9,xmax:at=.048:emissivity=.9 --raw \
         --quiet -o factors.csv 2>/dev/null || complain "no factors of step $step" >&2
     # what particles, ends and surroundings send to the drum, and what it sends to them at 1 K
     awk -F'[ ,]' 'BEGIN { pi = 3.14159265358979; s = 5.670374419e-8; both = 2 * 24 * .048 * 2 * .0235 * sin(pi / 24) }
