@@ -352,7 +352,7 @@ TEST(exchange_factors_shown) {
     for (int i = 0; i < 60; ++i) emissivity[i] = .5;
     const fibrad_exchange_rule rule = {.emissivity = emissivity};
     OWNED_FACTORS *factors;
-    assert_ok(fibrad_exchange_factors(NULL, &spheres, &rule, NULL, NULL, &factors));
+    assert_ok(exchange_of(NULL, &spheres, &rule, NULL, NULL, &factors));
     const struct contents what = {.bed = &bed, .factors = factors, .walls = &(struct walls){0}, .grey = &rule};
     OWNED char *svg = drawn(draw_bed, &what);
     assert_texts_inside(svg);
