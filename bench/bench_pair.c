@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "bench.h"
-#include "reference/exact_gsl.h"
+#include "papers/pair/exact_gsl.h"
 
 enum { RADII = 16 };
 

@@ -1,7 +1,7 @@
 /* test_accuracy.c - beam rows against the adaptive reference. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 
-#include "reference/reference.h"
+#include "papers/pair/reference.h"
 #include "scenes.h"
 #include "suite.h"
 

@@ -175,7 +175,7 @@ static struct hot_bed hot_bed(uint32_t n, double emissivity, double relative) {
     return h;
 }
 
-static fibrad_bed_factors *factors_of(const struct hot_bed *h, uint32_t paths, uint64_t seed) {
+static fibrad_bed_matrix *factors_of(const struct hot_bed *h, uint32_t paths, uint64_t seed) {
     const fibrad_spheres spheres = spheres_of(&h->bed);
     const fibrad_exchange_rule rule = {.emissivity = h->emissivity,
                                        .paths = paths,
@@ -183,7 +183,7 @@ static fibrad_bed_factors *factors_of(const struct hot_bed *h, uint32_t paths, u
                                        .seed = seed,
                                        .conductivity = h->relative,
                                        .node_emissivity = h->node};
-    fibrad_bed_factors *factors;
+    fibrad_bed_matrix *factors;
     assert_ok(fibrad_exchange_factors(&h->config, &spheres, &rule, NULL, NULL, &factors));
     return factors;
 }
@@ -255,12 +255,12 @@ TEST(good_conductors) {
     double power[2][MOST];
     const fibrad_spheres spheres = spheres_of(&h.bed);
     const fibrad_exchange_rule plain = {.emissivity = h.emissivity, .paths = 2000, .directions = 400, .seed = 1};
-    fibrad_bed_factors *one, *all = factors_of(&h, 2000, 1);
+    fibrad_bed_matrix *one, *all = factors_of(&h, 2000, 1);
     assert_ok(fibrad_exchange_factors(NULL, &spheres, &plain, NULL, NULL, &one));
     ck_assert(matrix_same_bits(&one->matrix, &all->matrix));
     powers_by_rows(&h, &one->matrix, power[0]);
-    fibrad_bed_free(one);
-    fibrad_bed_free(all);
+    fibrad_bed_matrix_free(one);
+    fibrad_bed_matrix_free(all);
     for (uint32_t i = 0; i < h.bed.n; ++i) {
         h.relative[i] = 1e6, h.node[i] = fibrad_node_emissivity(.7, 1e6);
         ck_assert_double_lt(h.node[i], .7);
@@ -268,7 +268,7 @@ TEST(good_conductors) {
     all = factors_of(&h, 2000, 1);
     powers_by_rows(&h, &all->matrix, power[1]);
     ck_assert_double_le(difference_of(power[1], power[0], h.bed.n), 1e-4);
-    fibrad_bed_free(all);
+    fibrad_bed_matrix_free(all);
 }
 
 /* Impossible numbers are refused: nodes without conductivities, nodes above the emissivity, k* too small or NaN. Both
@@ -321,7 +321,7 @@ LOOP_TEST(errors_of_powers, 3) {
     const double noise = difference_of(found[0], found[1], h.bed.n) / sqrt(2);
     const char *solid = formatted("%.9g", bad_k[_i] * 8 * 5.670374419e-8 * 1e9);
     const char *period = formatted("%.17g,%.17g,%.17g", h.bed.period[0], h.bed.period[1], h.bed.period[2]);
-    SUCCEED("exchange", write_file("bad.csv", text), "--length-unit", "m", "--emissivity", "0.8", "--periodic", period,
+    SUCCEED("factors", write_file("bad.csv", text), "--length-unit", "m", "--emissivity", "0.8", "--periodic", period,
             "--temperature", "1000", "--solid-conductivity", solid, "--rays", "500", "--directions", "400");
     const double error = value_of("error_of_powers");
     ck_assert_msg(error > .4 * noise && error < 3 * noise, "%g for %g", error, noise);
@@ -330,7 +330,7 @@ LOOP_TEST(errors_of_powers, 3) {
 
 TEST(outputs) {
     const char *json = in_folder("D.json"), *npz = in_folder("D.npz");
-    SUCCEED("exchange", pebbles(), "--length-unit", "mm", "--emissivity", "0.8", "--solid-conductivity", "k",
+    SUCCEED("factors", pebbles(), "--length-unit", "mm", "--emissivity", "0.8", "--solid-conductivity", "k",
             "--temperature", "T", "-o", json, "-o", npz);
     double mean = 0, star = 0;
     for (int i = 0; i < 3; ++i) {
@@ -343,7 +343,7 @@ TEST(outputs) {
     ck_assert_ptr_nonnull(at);
     ck_assert_double_le(
         fabs(strtod(strchr(at, '[') + 1, NULL) - fibrad_node_emissivity(.8, 2 / (.24 * 5.670374419e-8 * 1e9))), 1e-12);
-    SUCCEED("exchange", pebbles(), "--emissivity", "0.8", "-o", json);
+    SUCCEED("factors", pebbles(), "--emissivity", "0.8", "-o", json);
     assert_lacks(read_file(json), "node_emissivity");
 }
 
@@ -367,12 +367,12 @@ TEST(mistakes) {
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
         const char *solid = wrong[k].solid, *kelvins = wrong[k].temperature;
         const int status = solid && kelvins
-                               ? RUN("exchange", file, "--length-unit", "mm", "--emissivity", "0.8",
+                               ? RUN("factors", file, "--length-unit", "mm", "--emissivity", "0.8",
                                      "--solid-conductivity", solid, "--temperature", kelvins)
-                               : RUN("exchange", file, "--length-unit", "mm", "--emissivity", "0.8",
+                               : RUN("factors", file, "--length-unit", "mm", "--emissivity", "0.8",
                                      solid ? "--solid-conductivity" : "--temperature", solid ? solid : kelvins);
         ck_assert_msg(status == wrong[k].status && strstr(said, wrong[k].reason), "%zu: %d, %s", k, status, said);
     }
-    FAIL_WITH(2, "exchange", file, "--emissivity", "0.8", "--solid-conductivity", "5", "--temperature", "900");
+    FAIL_WITH(2, "factors", file, "--emissivity", "0.8", "--solid-conductivity", "5", "--temperature", "900");
     assert_has(said, "--length-unit");
 }

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "reference/exact_gsl.h"
+#include "papers/pair/exact_gsl.h"
 #include "fibrad.h"
 #include "suite.h"
 

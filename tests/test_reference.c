@@ -3,7 +3,7 @@
 #include <stdint.h>
 
 #include "fibrad.h"
-#include "reference/reference.h"
+#include "papers/pair/reference.h"
 #include "suite.h"
 
 enum { MAX = 300 };

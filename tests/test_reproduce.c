@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "command/commands.h"
-#include "reproduce/published.h"
+#include "papers/reproduce/published.h"
 #include "suite.h"
 
 static char directory[200];

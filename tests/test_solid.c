@@ -5,7 +5,7 @@
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_sf_legendre.h>
 
-#include "bed/conductivity.h"
+#include "conductivity/conductivity.h"
 #include "bed/packing.h"
 #include "exchange/reemission.h"
 #include "frames/solid_option.h"

@@ -5,12 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bed/conductivity.h"
 #include "cli/message.h"
 #include "command/commands.h"
-#include "frames/solid_option.h"
-#include "heat/steady.h"
-#include "plot/plot_conductivity.h"
+#include "conductivity/plates.h"
+#include "contact_options/contact_option.h"
 
 enum { TEMPERATURES_MAX = 1000 };
 
@@ -25,8 +23,7 @@ struct conductivity_request {
     struct conduction_rule rule;
     bool steady;
     struct contact_options contacts;
-    double isothermal;        /* [W/(m K)] of conduction_isothermal; NaN: not known */
-    struct steady between[3]; /* results between plates along each axis; 0 spheres: not computed */
+    double isothermal; /* [W/(m K)] of conduction_isothermal; NaN: not known */
 };
 
 static int take_axis(const char *text, void *axis) {
@@ -68,11 +65,12 @@ static const struct option conductivity_table[] = {
      "lies across the axis of F_E [none]",
      TO_FUNCTION(walls_option, struct bed_options, walls)},
     OPTIONS_CONTACTS(struct conductivity_request),
+    OPTIONS_CONTACTS_RARE(struct conductivity_request),
     {0, "seed", "S", "seed of paths and directions [0]", TO_WHOLE(struct conductivity_request, rule.seed, 0, INFINITY)},
     OPTIONS_INPUT,
+    OPTIONS_INPUT_RARE,
     {OPTION_BED_OUTPUT("write F_E and k of each axis: .csv .json, - for standard output [summary only]")},
     {OPTION_BED_FORMAT},
-    {OPTION_PLOT("draw F_E along the axes by gnuplot, .svg or .png [none]")},
     OPTIONS_RUN,
     {.name = NULL}};
 
@@ -104,9 +102,8 @@ static int conductivity_help(void) {
          "sphere is right to 5 %.\n"
          "\n" CONTACTS_MORE
          "With --contacts or --gas-conductivity, --steady finds k_total of the bed with radiation and contacts,\n"
-         "k_radiation without contacts and k_conduction without radiation. If the bed is periodic along the axis,\n"
-         "temperatures rise from one period to the next (`ends_z periodic`). Else, or with --solid-conductivity,\n"
-         "the bed lies between plates, and spheres within a diameter of a plate have its temperature.\n"
+         "k_radiation without contacts and k_conduction without radiation. Spheres within a diameter of a plate\n"
+         "have its temperature.\n"
          "\n"
          "Examples:\n"
          "  fibrad conductivity pebbles.dump --emissivity 0.8 --steady --temperature 1000 --contacts hertz \\\n"
@@ -154,7 +151,6 @@ static int take_temperatures(struct conductivity_request *request) {
 static int check_outputs(const struct conductivity_request *request) {
     const struct outputs *outputs = &request->bed.outputs;
     if (request->temperatures == 1) return STATUS_OK;
-    if (outputs->picture) return message(STATUS_USAGE, "--plot shows one temperature; --temperature has several");
     for (size_t k = 0; k < outputs->count; ++k)
         if (outputs->to[k].star)
             return message_at(STATUS_USAGE, outputs->to[k].path, 0,
@@ -211,23 +207,20 @@ static void report_axes(struct report *report, const struct conduction *result, 
             report_value(report, report_key(report, "%s_%c%s_error", name, 'x' + axis, unit), error[axis], 2);
 }
 
-static void report_steady(struct report *report, int axis, const struct steady *steady) {
-    if (steady->spheres == 0) return;
-    report_measured(report, report_key(report, "F_E_steady_%c", 'x' + axis), steady->factor, steady->error);
-    report_value(report, report_key(report, "F_E_steady_%c_error", 'x' + axis), steady->error, 2);
-    report_value(report, report_key(report, "seconds_steady_%c", 'x' + axis), steady->seconds, 3);
-}
-
-/* Reports conductivities of a bed with contacts along an axis. */
-static void report_total(struct report *report, int axis, const struct conduction_total *total) {
-    static const char *const names[] = {"k_total", "k_radiation", "k_conduction"};
-    const struct conduction_value *const of[] = {&total->both, &total->radiation, &total->conduction};
-    if (!total->computed) return;
-    report_count(report, report_key(report, "contacts_%c", 'x' + axis), total->contacts);
-    report_text(report, report_key(report, "ends_%c", 'x' + axis), total->periodic ? "periodic" : "plates");
-    for (int k = 0; k < 3; ++k) {
-        report_measured(report, report_key(report, "%s_%c_W_mK", names[k], 'x' + axis), of[k]->k, of[k]->error);
-        report_value(report, report_key(report, "%s_%c_W_mK_error", names[k], 'x' + axis), of[k]->error, 2);
+/* Reports what was found between plates along an axis. */
+static void report_plates(struct report *report, int axis, const struct conduction_plates *plates) {
+    static const char *const names[] = {"F_E_steady_%c", "k_total_%c_W_mK", "k_radiation_%c_W_mK",
+                                        "k_conduction_%c_W_mK"};
+    const struct conduction_value *const of[] = {&plates->factor, &plates->both, &plates->radiation,
+                                                 &plates->conduction};
+    if (plates->spheres == 0) return;
+    report_value(report, report_key(report, "seconds_steady_%c", 'x' + axis), plates->seconds, 3);
+    if (plates->touches) report_count(report, report_key(report, "contacts_%c", 'x' + axis), plates->contacts);
+    for (int k = 0; k < (plates->touches ? 4 : 1); ++k) {
+        char name[40];
+        snprintf(name, sizeof name, names[k], 'x' + axis);
+        report_measured(report, report_key(report, "%s", name), of[k]->k, of[k]->error);
+        report_value(report, report_key(report, "%s_error", name), of[k]->error, 2);
     }
 }
 
@@ -260,8 +253,7 @@ static void conductivity_report(struct conductivity_request *request, const stru
         report_value(report, "temperature_K", result->temperature, 6);
         report_axes(report, result, "k", "_W_mK", result->k, result->k_error);
     }
-    for (int axis = 0; axis < 3; ++axis) report_steady(report, axis, &request->between[axis]);
-    for (int axis = 0; axis < 3; ++axis) report_total(report, axis, &result->total[axis]);
+    for (int axis = 0; axis < 3; ++axis) report_plates(report, axis, &result->plates[axis]);
     report_axes(report, result, "F_E", "", result->factor, result->error);
     report_end(report);
 }
@@ -310,28 +302,74 @@ static int conductivity_follow(struct conductivity_request *request, const struc
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
-/* Conductivities of the bed with contacts along an axis. */
-static int conductivity_total(struct conductivity_request *request, const struct bed *bed, struct conduction *result,
-                              int axis) {
-    const struct total_problem problem = {
-        &request->contacts, &request->solid,     request->rule.emissivity, request->rule.conductivity,
-        &request->walls,    result->temperature, result->diameter,         {result->k[axis], result->k_error[axis]}};
-    return steady_contacts(&request->bed, bed, &problem, axis, &result->total[axis]);
+/* Leaves out contacts with walls other than the plates, which are the first two. Returns how many are left. */
+static uint32_t contacts_of_plates(struct contact_state *contacts, uint32_t spheres) {
+    uint32_t kept = 0;
+    for (uint32_t k = 0; k < contacts->n; ++k) {
+        if (contacts->first[k] >= spheres + 2 || contacts->second[k] >= spheres + 2) continue;
+        contacts->first[kept] = contacts->first[k], contacts->second[kept] = contacts->second[k];
+        contacts->conductance[kept++] = contacts->conductance[k];
+    }
+    return kept;
 }
 
-/* With --steady computes F_E between plates along each wanted axis whose other two axes are periodic. */
-static int conductivity_steady(struct conductivity_request *request, const struct bed *bed, struct conduction *result) {
+/* Conductivities between plates along an axis, in W/(m K). Without a temperature there is F_E alone. */
+static int conductivity_plates(struct conductivity_request *request, const struct bed *bed, double kelvins, int axis,
+                               struct conduction_plates *plates) {
+    struct bed open = *bed;
+    open.period[axis] = 0;
+    const struct walls walls = plates_walls(&open, &request->walls, axis);
+    const double any = kelvins > 0 ? kelvins : 1000, metres = bed->metres > 0 ? bed->metres : 1;
+    double *at = malloc(((size_t)bed->n + 1) * sizeof *at);
+    struct contact_state contacts = {0};
+    struct table_excess excess[2] = {{0}};
+    fibrad_bed *made = NULL;
+    fibrad_fault fault;
+    fibrad_heat_sources sources = {.temperature = at, .wall_temperature = (const double[]){any, any}};
+    if (!at) return message_memory();
+    for (uint32_t i = 0; i < bed->n; ++i) at[i] = any;
+    int status = bed_options_make(&request->bed, &open, &walls, &made);
+    if (!status)
+        status = contacts_begin(&contacts, &request->contacts, &request->bed, &open, made, &walls, &request->solid,
+                                1 / (metres * metres), &sources);
+    if (!status) {
+        contacts_excess(&contacts, &open, at, NULL, excess);
+        contacts_warn(&request->bed.warned, excess);
+        const struct plates_problem problem = {bed,
+                                               &request->walls,
+                                               request->rule.emissivity,
+                                               request->rule.conductivity,
+                                               any,
+                                               contacts_given(&request->contacts),
+                                               contacts_of_plates(&contacts, bed->n),
+                                               contacts.first,
+                                               contacts.second,
+                                               contacts.conductance};
+        status = plates_conduct(&problem, made, axis, plates);
+        fibrad_bed_describe(made, NULL, &fault);
+        const int refused = contacts_refuse(&contacts, &request->bed, &open, &walls, status, &fault);
+        status = refused ? refused : bed_options_status(&request->bed, bed, status, &fault);
+    }
+    struct conduction_value *const in_metres[] = {&plates->radiation, &plates->conduction, &plates->both};
+    for (int k = 0; k < 3 && !status; ++k) in_metres[k]->k *= metres, in_metres[k]->error *= metres;
+    contacts_free(&contacts);
+    fibrad_bed_free(made);
+    free(at);
+    if (!status && plates->spheres < PLATES_FITTED)
+        return message_at(STATUS_INPUT, request->bed.name, 0,
+                          "%u spheres in the inner half along %c are too few for a line", plates->spheres, 'x' + axis);
+    return status;
+}
+
+/* With --steady computes conductivities between plates along each wanted axis for which it is possible. */
+static int conductivity_steady(struct conductivity_request *request, const struct bed *bed, double kelvins,
+                               struct conduction *result) {
     int status = STATUS_OK;
     bool any = false;
-    for (int axis = 0; axis < 3 && !status; ++axis) {
-        request->between[axis] = (struct steady){0}, result->total[axis].computed = false;
-        if (!request->steady || !conduction_wants(result, axis) || !steady_possible(bed, &request->walls, axis))
-            continue;
+    for (int axis = 0; axis < 3 && !status && request->steady; ++axis) {
+        if (!conduction_wants(result, axis) || !plates_possible(bed, &request->walls, axis)) continue;
         any = true;
-        status = steady_conduction(&request->bed, bed, &request->walls, request->rule.emissivity,
-                                   request->rule.conductivity, axis, &request->between[axis]);
-        if (!status && contacts_given(&request->contacts)) status = conductivity_total(request, bed, result, axis);
-        result->steady[axis] = request->between[axis].factor, result->steady_error[axis] = request->between[axis].error;
+        status = conductivity_plates(request, bed, kelvins, axis, &result->plates[axis]);
     }
     if (request->steady && !any)
         return message_at(STATUS_USAGE, request->bed.name, 0,
@@ -396,7 +434,7 @@ static int conductivity_at(struct conductivity_request *request, struct bed *bed
     if (!status) status = conductivity_follow(request, bed, emits, result);
     if (!status && request->at) conduction_at(result, bed, kelvins);
     if (!status) status = conductivity_isothermal(request, bed, emits, result);
-    if (!status) status = conductivity_steady(request, bed, result);
+    if (!status) status = conductivity_steady(request, bed, kelvins, result);
     free(emissivity);
     free(relative);
     return status;
@@ -426,8 +464,6 @@ static int conductivity_frame(void *conductivity_request, struct bed *bed) {
         else
             status = conductivity_at(request, bed, kelvins, emits, &result);
         if (!status) status = bed_options_write(&request->bed, bed, &what);
-        if (!status && request->bed.outputs.picture)
-            status = plot_conduction(&request->bed.picture, request->bed.name, &result);
         if (status) break;
         if (!again) conductivity_warn(request, &result);
         conductivity_report(request, bed, &result);

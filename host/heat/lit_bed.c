@@ -21,9 +21,10 @@ int light_begin(struct heat *h) {
         state->absorptivity = malloc((n + (size_t)1) * sizeof(double));
         if (state->absorptivity) memcpy(state->absorptivity, h->emissivity, n * sizeof(double));
     }
-    if (!status)
-        status = wall_fractions("--wall-absorptivity", options->wall_absorptivity, &h->walls, h->wall_emissivity,
-                                state->of_walls);
+    for (uint32_t k = 0; k < h->walls.count; ++k) {
+        const double absorptivity = h->walls.said[k].absorptivity;
+        state->of_walls[k] = isnan(absorptivity) ? h->wall_emissivity[k] : absorptivity;
+    }
     state->absorbed = calloc(4 * (n + (size_t)1), sizeof(double));
     if (state->absorbed)
         state->first = state->absorbed + n, state->error = state->first + n, state->power = state->error + n;
@@ -48,8 +49,7 @@ static void add_absorbed(struct heat *h, fibrad_heat_sources *sources) {
     sources->absorbed = state->result.patches;
 }
 
-int light_absorb(struct heat *h, fibrad_transient *transient, fibrad_radiation *radiation, double unit,
-                 fibrad_heat_sources *sources) {
+int light_absorb(struct heat *h, double unit, fibrad_heat_sources *sources) {
     struct light_state *state = &h->lit;
     const struct light_options *options = state->options;
     fibrad_light scaled[LIGHTS_MAX];
@@ -58,16 +58,14 @@ int light_absorb(struct heat *h, fibrad_transient *transient, fibrad_radiation *
     fibrad_light_sources light = {.lights = options->lights,
                                   .light = scaled,
                                   .absorptivity = state->absorptivity,
-                                  .wall_absorptivity = state->of_walls,
-                                  .uniform = sources->uniform};
+                                  .wall_absorptivity = state->of_walls};
     state->result = (fibrad_light_result){.absorbed = state->absorbed,
                                           .absorbed_first = state->first,
                                           .absorbed_error = state->error,
                                           .wall_absorbed = state->wall,
                                           .wall_absorbed_first = state->wall_first,
                                           .wall_absorbed_error = state->wall_error};
-    const int status = transient ? fibrad_transient_shine(transient, &light, &state->result)
-                                 : fibrad_radiation_shine(radiation, &light, &state->result);
+    const int status = fibrad_bed_shine(h->made, &light, &state->result);
     state->failed = status;
     if (!status) add_absorbed(h, sources);
     return status;
@@ -82,7 +80,7 @@ int light_refuse(const struct heat *h, int status, const fibrad_fault *fault) {
     case FIBRAD_WHY_DARK:
         return message(STATUS_USAGE,
                        "--irradiate: no open face lets light %u in; it needs an opening where it comes from, such as "
-                       "zmax=open, or zmax=H:open at the rim of side walls",
+                       "zmax:open, or zmax:open:at=H at the rim of side walls",
                        light);
     case FIBRAD_WHY_FOOTPRINT:
         return message(STATUS_USAGE,

@@ -198,11 +198,11 @@ int write_heat_csv(FILE *file, const struct contents *what, bool first) {
 }
 
 /* The conductivities of a bed with contacts along an axis; empty if they were not computed. */
-static char *put_total(char *at, const struct conduction_total *total) {
-    const struct conduction_value *const of[] = {&total->both, &total->radiation, &total->conduction};
+static char *put_total(char *at, const struct conduction_plates *plates) {
+    const struct conduction_value *const of[] = {&plates->both, &plates->radiation, &plates->conduction};
     for (int k = 0; k < 3; ++k) {
-        at = put_error(put_comma(at), total->computed ? of[k]->k : NAN);
-        at = put_error(put_comma(at), total->computed ? of[k]->error : NAN);
+        at = put_error(put_comma(at), plates->touches ? of[k]->k : NAN);
+        at = put_error(put_comma(at), plates->touches ? of[k]->error : NAN);
     }
     return at;
 }
@@ -230,13 +230,14 @@ int write_conduction_csv(FILE *file, const struct contents *what, bool first) {
         if (!isnan(conduction->temperature)) at = text_real(at, conduction->k_error[axis]);
         at = put_comma(at);
         *at++ = conduction_flights(conduction, axis) == FLIGHTS_SETTLED ? '1' : '0';
-        at = put_error(put_comma(at), conduction->steady[axis]);
-        at = put_error(put_comma(at), conduction->steady_error[axis]);
+        const struct conduction_plates *plates = &conduction->plates[axis];
+        at = put_error(put_comma(at), plates->spheres > 0 ? plates->factor.k : NAN);
+        at = put_error(put_comma(at), plates->spheres > 0 ? plates->factor.error : NAN);
         at = put_error(put_comma(at), k_star_mean(&conduction->k_star));
         at = put_error(put_comma(at), conduction->temperature);
         const char *doubt = conduction_doubt(conduction, axis);
         at = put_text(put_comma(at), doubt ? doubt : "");
-        if (contacts) at = put_total(at, &conduction->total[axis]);
+        if (contacts) at = put_total(at, plates);
         end_line(&csv, at, "");
     }
     return STATUS_OK;

@@ -158,14 +158,17 @@ int write_heat_json(FILE *file, const struct contents *what, bool first) {
     return interrupt_status();
 }
 
-static void json_total(FILE *file, const struct conduction_total *total) {
-    if (!total->computed) return;
-    json_entry(file, "k_total_W_mK", total->both.k);
-    json_entry(file, "k_total_W_mK_error", total->both.error);
-    json_entry(file, "k_radiation_W_mK", total->radiation.k);
-    json_entry(file, "k_radiation_W_mK_error", total->radiation.error);
-    json_entry(file, "k_conduction_W_mK", total->conduction.k);
-    json_entry(file, "k_conduction_W_mK_error", total->conduction.error);
+static void json_plates(FILE *file, const struct conduction_plates *plates) {
+    static const char *const names[] = {"F_E_steady", "k_total_W_mK", "k_radiation_W_mK", "k_conduction_W_mK"};
+    const struct conduction_value *const of[] = {&plates->factor, &plates->both, &plates->radiation,
+                                                 &plates->conduction};
+    char error[40];
+    if (plates->spheres == 0) return;
+    for (int k = 0; k < (plates->touches ? 4 : 1); ++k) {
+        snprintf(error, sizeof error, "%s_error", names[k]);
+        json_entry(file, names[k], of[k]->k);
+        json_entry(file, error, of[k]->error);
+    }
 }
 
 int write_conduction_json(FILE *file, const struct contents *what, bool first) {
@@ -192,11 +195,7 @@ int write_conduction_json(FILE *file, const struct contents *what, bool first) {
             json_entry(file, "k_W_mK", conduction->k[axis]);
             json_entry(file, "k_W_mK_error", conduction->k_error[axis]);
         }
-        if (!isnan(conduction->steady[axis])) {
-            json_entry(file, "F_E_steady", conduction->steady[axis]);
-            json_entry(file, "F_E_steady_error", conduction->steady_error[axis]);
-        }
-        json_total(file, &conduction->total[axis]);
+        json_plates(file, &conduction->plates[axis]);
         putc('}', file);
     }
     fputs("]}\n", file);

@@ -1,0 +1,110 @@
+/* command_reproduce.c - `fibrad reproduce`: our numbers beside those of the papers. SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "cli/options.h"
+#include "cli/progress.h"
+#include "command/commands.h"
+#include "papers/reproduce/reproduce.h"
+
+static const struct {
+    const char *name, *what;
+    experiment *run;
+} experiments[] = {
+    {"fig3", "error of the surface method against the gap, with nothing in between", reproduce_fig3},
+    {"fig4", "equal spheres: the exact factor and other formulas", reproduce_fig4},
+    {"fig7-9", "two spheres, and a third one that touches both", reproduce_third_sphere},
+    {"fig10", "face-centred cubic beds: sum of the factors against distance", reproduce_fig10},
+    {"table1", "time for all factors of random beds", reproduce_table1},
+    {"pebble-pair", "two pebbles: factor, ray length, angle, received radiation", reproduce_pebble_pair},
+    {"pebble-rays", "two pebbles by rays: error, and rays for 1 %", reproduce_pebble_rays},
+    {"pebble-bed", "random bed of pebbles: factors within 2 and 3 diameters", reproduce_pebble_bed},
+    {"conductivity", "grey spheres: exchange factor F_E of a random bed and of lattices", reproduce_conductivity},
+    {"correlations", "grey spheres: F_E of random beds beside correlations that reactor codes use",
+     reproduce_correlations},
+    {"conducting", "spheres that conduct: F_E against k*", reproduce_conducting},
+    {"contacts", "beds with contacts and gas: conductivities that were measured", reproduce_contacts},
+    {"exchange", "grey spheres: exchange factor against the distance of the centres", reproduce_exchange},
+    {"exchange-wall", "grey spheres: exchange factor to a wall against distance", reproduce_exchange_wall},
+    {"faces", "grey spheres: emissivity and absorptance of the face of a bed", reproduce_faces},
+};
+enum { EXPERIMENTS = sizeof experiments / sizeof *experiments };
+
+struct reproduce_request {
+    const char *directory;
+    int only; /* number of the experiment; -1: all */
+    bool no_plots;
+};
+
+static int take_experiment(const char *name, void *only) {
+    int k = EXPERIMENTS - 1;
+    while (k >= 0 && strcmp(experiments[k].name, name) != 0) --k;
+    *(int *)only = k;
+    return k >= 0 ? STATUS_OK : message(STATUS_USAGE, "no experiment %.40s; see fibrad reproduce --help", name);
+}
+
+static const struct option reproduce_table[] = {
+    {'o', "output", "DIR", "write CSV files and plots into this folder [none]",
+     TO_PATH(struct reproduce_request, directory)},
+    {0, "only", "NAME", "run this experiment only [all]", TO_FUNCTION(take_experiment, struct reproduce_request, only)},
+    {0, "no-plots", NULL, "write CSV files only [off]", TO_FLAG(struct reproduce_request, no_plots)},
+    {OPTION_HELP},
+    {.name = NULL}};
+
+static int reproduce_help(void) {
+    puts("fibrad reproduce [options]\n\n"
+         "Computes the tables and figures of the papers that the methods come from, on one thread. Prints our numbers\n"
+         "beside those that were published (paper) or computed independently by the papers' methods (check).\n");
+    options_print(reproduce_table);
+    puts("\nExperiments:");
+    for (int k = 0; k < EXPERIMENTS; ++k) printf("  %-13s %s\n", experiments[k].name, experiments[k].what);
+    puts("\nExamples:\n"
+         "  fibrad reproduce\n"
+         "  fibrad reproduce --only fig3 -o figures");
+    return STATUS_OK;
+}
+
+static int run_experiment(struct reproduce *reproduce, int which) {
+    reproduce->experiment = experiments[which].name;
+    reproduce->data = open_memstream(&reproduce->text, &reproduce->length);
+    if (!reproduce->data) return message_memory();
+    printf("\n%s: %s\n", experiments[which].name, experiments[which].what);
+    const double begun = progress_clock();
+    int status = experiments[which].run(reproduce);
+    fprintf(stderr, "%s: %.1f s\n", experiments[which].name, progress_clock() - begun);
+    fclose(reproduce->data);
+    free(reproduce->text);
+    return status ? status : interrupt_status();
+}
+
+static int open_directory(struct reproduce *reproduce, char **path) {
+    if (!reproduce->directory) return STATUS_OK;
+    if (mkdir(reproduce->directory, 0777) != 0 && errno != EEXIST)
+        return message_at(STATUS_FILE, reproduce->directory, 0, "%s", strerror(errno));
+    *path = reproduce_path(reproduce, "comparison", ".csv");
+    if (!*path) return message_memory();
+    const int status = output_open(&reproduce->comparison, *path);
+    if (!status)
+        fputs("experiment,what,source,unit,theirs,ours,difference_percent_or_points\n", reproduce->comparison.file);
+    return status;
+}
+
+int command_reproduce(int argc, char **argv) {
+    struct reproduce_request request = {.only = -1};
+    int status = options_read("reproduce", reproduce_table, argc, argv, &request);
+    if (status) return status == STATUS_HELP ? reproduce_help() : status;
+    struct reproduce reproduce = {.directory = request.directory, .plots = !request.no_plots};
+    char *path = NULL;
+    status = open_directory(&reproduce, &path);
+    if (!status)
+        printf("%-12s %-70s %-5s %12s %12s     %s\n", "experiment", "what", "from", "theirs", "ours", "difference");
+    for (int k = 0; k < EXPERIMENTS && !status; ++k)
+        if (request.only < 0 || request.only == k) status = run_experiment(&reproduce, k);
+    status = output_close(&reproduce.comparison, status);
+    free(path);
+    return status;
+}

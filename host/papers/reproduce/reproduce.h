@@ -1,0 +1,89 @@
+/* reproduce.h - functions that all experiments of `fibrad reproduce` share.
+ * SPDX-License-Identifier: MIT */
+#ifndef REPRODUCE_H
+#define REPRODUCE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "bed/bed.h"
+#include "cli/output.h"
+#include "fibrad_surface.h"
+#include "simple/fibrad_host.h"
+
+/* The run of `fibrad reproduce`, and the current experiment. */
+struct reproduce {
+    const char *directory; /* for files; NULL: no files are written */
+    bool plots;
+    struct output comparison; /* comparison.csv */
+    const char *experiment;   /* name of the current experiment, at the beginning of each line */
+    /* data of the current experiment as CSV: write to `data`; text [length] has them */
+    FILE *data;
+    char *text;
+    size_t length;
+};
+
+/* The source of a number that ours is compared with: the paper, or an independent calculation by its method. */
+#define SOURCE_PAPER "paper"
+#define SOURCE_CHECK "check"
+
+/* Writes a line with the published number and ours, to standard output and to comparison.csv. theirs NAN: nothing was
+ * published. If the unit is "%", the difference is in points, else in per cent. what: format of the text that says what
+ * is compared. */
+void reproduce_compare(struct reproduce *reproduce, const char *source, const char *unit, double theirs, double ours,
+                       const char *what, ...) __attribute__((format(printf, 6, 7)));
+
+/* The path DIRECTORY/NAME and the ending, to be freed. NULL: no memory. */
+char *reproduce_path(const struct reproduce *reproduce, const char *name, const char *ending);
+
+/* Writes the data of the experiment as NAME.csv, and NAME.svg by a gnuplot script that reads them from $data. script
+ * NULL: no picture. Returns a status. */
+int reproduce_figure(struct reproduce *reproduce, const char *name, const char *script);
+
+/* An experiment: writes its data to reproduce->data, the header line first, and compares numbers. Returns a status. */
+typedef int experiment(struct reproduce *reproduce);
+
+experiment reproduce_fig3, reproduce_fig4, reproduce_third_sphere, reproduce_fig10, reproduce_table1,
+    reproduce_pebble_pair, reproduce_pebble_rays, reproduce_pebble_bed, reproduce_conductivity, reproduce_correlations,
+    reproduce_conducting, reproduce_contacts, reproduce_exchange, reproduce_exchange_wall, reproduce_faces;
+
+/* ---- rows of a bed, one thread ---- */
+
+/* The scene of a bed, and memory for one row. */
+struct rows {
+    fibrad_scene *scene;
+    void *block; /* of the scene */
+    fibrad_work work;
+    uint32_t n;
+    uint32_t *col; /* [n] */
+    double *f;     /* [n] */
+};
+
+/* Makes the scene of a bed; periodic: with its periods. Close it also after an error. Returns a status. */
+int rows_open(struct rows *rows, const struct bed *bed, bool periodic);
+void rows_close(struct rows *rows);
+
+/* How rows are computed: one of them is set. */
+struct row_rule {
+    const fibrad_beam_rule *beam;
+    const fibrad_surface_rule *surface;
+    const fibrad_cast_rule *cast;
+};
+
+/* Computes row i by the rule of `method`. rows->col and rows->f get the entries, *row the other results. Returns a
+ * status. */
+int rows_row(struct rows *rows, const struct row_rule *method, uint32_t i, fibrad_row *row);
+
+/* ---- grey spheres of one emissivity, one thread ---- */
+
+/* F_E of a periodic bed of unit spheres, as the mean of three axes, with `paths` paths from each sphere. conductivity:
+ * k* = k_s/(4 sigma T^3 d) of the spheres; INFINITY: each has one temperature. Returns a status. */
+int grey_conduction(const struct bed *bed, double emissivity, double conductivity, uint32_t paths, double *factor);
+
+/* Exchange factors of a bed in a scene. The emissivities of spheres in `rule` are not used. Free the factors with
+ * fibrad_bed_matrix_free. Returns a status. */
+int grey_factors(const struct bed *bed, const fibrad_scene_config *scene, const fibrad_exchange_rule *rule,
+                 double emissivity, const fibrad_bed_rule *options, fibrad_bed_matrix **factors);
+
+#endif

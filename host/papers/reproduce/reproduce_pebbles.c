@@ -1,0 +1,204 @@
+/* reproduce_pebbles.c - tables and figures of the pebble-bed paper. SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdlib.h>
+
+#include "bed/packing.h"
+#include "cli/message.h"
+#include "papers/reproduce/reproduce.h"
+
+#define PI 3.14159265358979323846
+
+/* ---- two unit spheres at centre distance H ---- */
+
+/* Finds the area common to two unit discs at distance s, and the integral over that area of the height of a unit sphere
+ * above its disc. */
+static void lens(double s, double *area, double *height) {
+    enum { STEPS = 400 };
+    const double half = s / 2, width = 1 - half;
+    *area = 2 * acos(half) - s * sqrt(1 - half * half);
+    /* numerically from the rim of disc 2 to the chord, with x = s - 1 + width sin^2; then exactly to the rim of disc 1
+     */
+    double sum = 0;
+    for (int k = 0; k < STEPS; ++k) {
+        const double t = PI / 2 * (k + .5) / STEPS, x = s - 1 + width * sin(t) * sin(t);
+        const double y = sqrt(fmax(0, 1 - (x - s) * (x - s))), a = sqrt(fmax(0, 1 - x * x));
+        const double chord = y * sqrt(fmax(0, a * a - y * y)) + a * a * asin(fmin(1, y / a));
+        sum += chord * width * 2 * sin(t) * cos(t);
+    }
+    *height = sum * (PI / 2 / STEPS) + PI / 2 * ((1 - 1. / 3) - (half - half * half * half / 3));
+}
+
+/* Finds factor, mean length and mean angle of all rays between two unit spheres, as integrals over directions. Along a
+ * direction at angle t to the line of centres the rays fill the lens of both shadows. A ray is as long as the distance
+ * of the centres along the direction, less a height on each sphere. */
+static void pair_of(double h, double *f12, double *length, double *angle) {
+    enum { STEPS = 2000 };
+    const double widest = asin(2 / h);
+    double areas = 0, lengths = 0, angles = 0;
+    for (int k = 0; k < STEPS; ++k) {
+        const double u = PI / 2 * (k + .5) / STEPS, t = widest * sin(u), weight = sin(t) * cos(u);
+        double area, height;
+        lens(h * sin(t), &area, &height);
+        areas += weight * area;
+        lengths += weight * (area * h * cos(t) - 2 * height);
+        angles += weight * area * t;
+    }
+    *f12 = areas * widest * (PI / 2 / STEPS) / (2 * PI);
+    *length = lengths / areas;
+    *angle = angles / areas * 180 / PI;
+}
+
+/* The factor from a plane element to a unit sphere at distance h. t: angle between the normal and the direction of the
+ * centre. */
+static double element(double h, double t) {
+    if (cos(t) >= 1 / h) return cos(t) / (h * h);
+    if (cos(t) <= -1 / h) return 0;
+    const double x = sqrt(h * h - 1), y = -x * cos(t) / sin(t), root = sin(t) * sqrt(fmax(0, 1 - y * y));
+    if (x == 0) return cos(t) > 0 ? cos(t) : 0;
+    return (cos(t) * acos(y) - x * root) / (PI * h * h) + atan(root / x) / PI;
+}
+
+/* The factor from sphere 2 at a point at angle t from the line of centres to sphere 1: distance and angle of sphere 1
+ * depend on the point. */
+static double received(double h, double t) {
+    const double distance = sqrt(h * h + 1 - 2 * h * cos(t));
+    if (distance <= 1) return 1; /* the point of contact */
+    return element(distance, acos(fmax(-1, fmin(1, (h * cos(t) - 1) / distance))));
+}
+
+/* The fraction of the radiation received that sphere 2 receives within the angle t. */
+static double share_within(double h, double t) {
+    enum { STEPS = 4000 };
+    double within = 0, all = 0;
+    for (int k = 0; k < STEPS; ++k) {
+        const double a = PI / 2 * (k + .5) / STEPS, power = received(h, a) * sin(a);
+        all += power;
+        if (a < t) within += power;
+    }
+    return within / all;
+}
+
+int reproduce_pebble_pair(struct reproduce *reproduce) {
+    static const struct {
+        double h, rays, numerical, length, length_check, angle, angle_check;
+    } table[] = {{2, 7.573e-2, 7.558e-2, .358, .3589, 30.05, 30.85},
+                 {3, 2.964e-2, 2.959e-2, 1.494, 1.4922, 18.25, 18.24},
+                 {4, 1.605e-2, 1.615e-2, 2.620, 2.5403, 13.35, 13.34},
+                 {5, 1.017e-2, 1.021e-2, 3.621, 3.5668, 10.51, 10.56},
+                 {6, .698e-2, .704e-2, 4.597, 4.5824, 8.73, 8.75}};
+    enum { ROWS = sizeof table / sizeof *table };
+    for (int k = 0; k < ROWS; ++k) {
+        const double h = table[k].h;
+        double f12 = 0, sum, length, angle;
+        fibrad_pair_exact(1, 1, h - 2, &f12);
+        pair_of(h, &sum, &length, &angle);
+        reproduce_compare(reproduce, SOURCE_PAPER, "", table[k].rays, f12, "H = %g: F, rays", h);
+        reproduce_compare(reproduce, SOURCE_PAPER, "", table[k].numerical, f12, "H = %g: F, numerical", h);
+        reproduce_compare(reproduce, SOURCE_CHECK, "", f12, sum, "H = %g: F, by directions", h);
+        reproduce_compare(reproduce, SOURCE_PAPER, "r", table[k].length, length, "H = %g: mean ray length", h);
+        reproduce_compare(reproduce, SOURCE_CHECK, "r", table[k].length_check, length, "H = %g: mean ray length", h);
+        reproduce_compare(reproduce, SOURCE_PAPER, "deg", table[k].angle, angle, "H = %g: mean angle", h);
+        reproduce_compare(reproduce, SOURCE_CHECK, "deg", table[k].angle_check, angle, "H = %g: mean angle", h);
+        reproduce_compare(reproduce, SOURCE_PAPER, "", .25, share_within(h, PI / 6),
+                          "H = %g: received within 30 deg; cosine law", h);
+        reproduce_compare(reproduce, SOURCE_PAPER, "", .75, share_within(h, PI / 3),
+                          "H = %g: received within 60 deg; cosine law", h);
+    }
+    fputs("angle_degrees,cosine,H2,H3,H4,H6\n", reproduce->data);
+    for (int degrees = 0; degrees <= 90; degrees += 2) {
+        const double t = degrees * PI / 180;
+        fprintf(reproduce->data, "%d,%.5f,%.5f,%.5f,%.5f,%.5f\n", degrees, cos(t), received(2, t) / received(2, 0),
+                received(3, t) / received(3, 0), received(4, t) / received(4, 0), received(6, t) / received(6, 0));
+    }
+    return reproduce_figure(
+        reproduce, "pebble_received",
+        "set xlabel 'angle from the line of centres [degrees]'\n"
+        "set ylabel 'received per area, of that at angle 0'\nset xrange [0:90]\nset yrange [0:1.02]\n"
+        "plot $data using 1:2 with lines lw 4 lc rgb '#bbbbbb' title 'cosine', "
+        "for [k=3:6] '' using 1:k with lines lw 2 title word('2 3 4 6',k-2).' radii apart'");
+}
+
+/* ---- a random bed ---- */
+
+enum { PEBBLES = 1000, SAMPLE = 100, BINS = 81 };
+#define BIN 0.1 /* [radii] of the centre distance, up to 8 */
+
+struct within {
+    double factor[BINS], spheres[BINS]; /* sums of factors within each distance, as means over the sample */
+};
+
+/* The distance between the centres of the nearest images of two spheres. */
+static double apart(const struct bed *bed, uint32_t i, uint32_t j) {
+    const double *const axis[3] = {bed->x, bed->y, bed->z};
+    double square = 0;
+    for (int a = 0; a < 3; ++a) {
+        double e = axis[a][j] - axis[a][i];
+        e -= bed->period[a] * round(e / bed->period[a]);
+        square += e * e;
+    }
+    return sqrt(square);
+}
+
+static int collect_within(struct within *within, const struct bed *bed, struct rows *rows) {
+    const fibrad_beam_rule rule = {.directions = 610};
+    const struct row_rule beam = {.beam = &rule};
+    for (uint32_t s = 0; s < SAMPLE; ++s) {
+        const uint32_t i = s * (PEBBLES / SAMPLE);
+        fibrad_row row;
+        const int status = rows_row(rows, &beam, i, &row);
+        if (status) return status;
+        for (int b = 0; b < BINS; ++b) {
+            for (uint32_t k = 0; k < row.length; ++k)
+                if (rows->col[k] != i && apart(bed, i, rows->col[k]) <= b * BIN)
+                    within->factor[b] += rows->f[k] / SAMPLE;
+            for (uint32_t j = 0; j < bed->n; ++j)
+                if (j != i && apart(bed, i, j) <= b * BIN) within->spheres[b] += 1.0 / SAMPLE;
+        }
+    }
+    return STATUS_OK;
+}
+
+static void report_bed(struct reproduce *reproduce, double fraction, const struct within *within) {
+    static const struct {
+        int bin;
+        const char *distance;
+        double factor, spheres; /* NAN: nothing published */
+    } published[] = {{40, "from centre to centre within 2 diameters", .98, 100},
+                     {50, "from centre to surface within 2 diameters", .98, 100},
+                     {60, "from surface to surface within 2 diameters", .98, 100},
+                     {60, "from centre to centre within 3 diameters", .99, NAN},
+                     {70, "from centre to surface within 3 diameters", .99, NAN},
+                     {80, "from surface to surface within 3 diameters", .99, NAN}};
+    for (size_t k = 0; k < sizeof published / sizeof *published; ++k) {
+        reproduce_compare(reproduce, SOURCE_PAPER, "", published[k].factor, within->factor[published[k].bin],
+                          "solid %g, %s: factor, over", fraction, published[k].distance);
+        reproduce_compare(reproduce, SOURCE_PAPER, "", published[k].spheres, within->spheres[published[k].bin],
+                          "solid %g, %s: spheres, under", fraction, published[k].distance);
+    }
+    for (int b = 0; b < BINS; ++b)
+        fprintf(reproduce->data, "%g,%.1f,%.6f,%.3f\n", fraction, b * BIN, within->factor[b], within->spheres[b]);
+}
+
+int reproduce_pebble_bed(struct reproduce *reproduce) {
+    static const double fractions[] = {.55, .6};
+    fputs("fraction,centre_distance_radii,factor,spheres\n", reproduce->data);
+    for (size_t k = 0; k < sizeof fractions / sizeof *fractions; ++k) {
+        struct bed bed = bed_empty();
+        struct rows rows = {0};
+        struct within within = {0};
+        int status = bed_make_packing(&bed, PEBBLES, 1, 1, fractions[k], 1);
+        if (!status) status = rows_open(&rows, &bed, true);
+        if (!status) status = collect_within(&within, &bed, &rows);
+        if (!status) report_bed(reproduce, fractions[k], &within);
+        rows_close(&rows);
+        bed_free(&bed);
+        if (status) return status;
+    }
+    return reproduce_figure(
+        reproduce, "pebble_bed",
+        "set xlabel 'centre distance [radii]'\nset ylabel 'sum of the factors within'\n"
+        "set y2label 'spheres within'\nset y2tics\nset ytics nomirror\nset key right center\n"
+        "plot for [p in '0.55 0.6'] $data using 2:($1==real(p)?$3:1/0) with lines lw 2 title 'factor, "
+        "solid '.p, for [p in '0.55 0.6'] '' using 2:($1==real(p)?$4:1/0) axes x1y2 with lines dt 2 "
+        "title 'spheres, solid '.p");
+}
