@@ -3,7 +3,6 @@
 
 #include "cli/message.h"
 #include "plot/plot_bed.h"
-#include "plot/plot_conductivity.h"
 #include "plot/plot_heat.h"
 #include "host_owned.h"
 #include "scenes.h"
@@ -343,7 +342,7 @@ TEST(many_walls) {
     assert_has(svg, "Net power by height");
 }
 
-/* ---- exchange and conductivity ----------------------------------------------------------------------------------- */
+/* ---- exchange --------------------------------------------------------------------------------------------------- */
 
 TEST(exchange_factors_shown) {
     OWNED_BED bed = packing(60, .4, .6, .4, 3, false);
@@ -360,31 +359,4 @@ TEST(exchange_factors_shown) {
     assert_has(svg, "Exchange factor against distance");
     assert_lacks(svg, "View factor");
     assert_lacks(svg, "nothing between");
-}
-
-static int draw_conduction(const struct output *output, const void *what) {
-    return plot_conduction(output, "folder/bed_1.dump", what);
-}
-
-TEST(conductivity_shown) {
-    struct conduction what = {.solid_fraction = .61,
-                              .emitters = 49,
-                              .factor = {.75, .76, .77},
-                              .error = {.01, .01, .01},
-                              .axis = -1,
-                              .temperature = 1200,
-                              .k = {.3, .31, .32},
-                              .steady = {NAN, NAN, NAN},
-                              .steady_error = {NAN, NAN, NAN}};
-    OWNED char *svg = drawn(draw_conduction, &what);
-    assert_has(svg, "bed_1.dump");
-    assert_has(svg, "solid fraction 0.610, 49 spheres emit, 1200 K");
-    assert_has(svg, ">k = 0.31 W/(m K)<");
-    assert_lacks(svg, "plates");
-    free(svg);
-    what.axis = 2, what.steady[2] = .78, what.steady_error[2] = .01, what.temperature = NAN;
-    svg = drawn(draw_conduction, &what);
-    assert_has(svg, "between two plates");
-    assert_has(svg, ">z<");
-    ck_assert(!strstr(svg, ">x<") && !strstr(svg, "k = "));
 }
