@@ -98,7 +98,7 @@ COUNTING       = $(filter-out %/libfibrad.a,$(LIBRARIES)) $(BUILD)/counted/libfi
 COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
-.PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols calls format house structures bench bench-quick \
+.PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols calls format house budget map structures bench bench-quick \
     bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed sanitized threads clang-warnings lint cppcheck nightly deps deps-ci man install install-lib clean help need-libraries need-check
 
 ## all: build/fibrad and the libraries (the default)
@@ -241,6 +241,16 @@ test: deps
 	@BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" \
 	    tests/run.sh $(COUPLE_SCRIPTS) $(SCRIPTS) $(TEST_PROGRAMS)
 
+## test-ROOM: build and run the tests of one room, in seconds: test-heat, test-mesh, test-read ...; tests/rooms.txt has all
+ROOMS   = $(shell sed -n 's/^\([a-z]*\) .*/\1/p' tests/rooms.txt)
+of_room = $(shell sed -n 's/^$(1) //p' tests/rooms.txt)
+scripts_of  = $(addprefix tests/,$(filter %.sh,$(call of_room,$(1))))
+programs_of = $(patsubst %.c,$(BUILD)/%,$(wildcard $(patsubst %,tests/test_%.c,$(filter-out %.sh,$(call of_room,$(1))))))
+test-%:
+	@test -n "$(call of_room,$*)" || { echo "There is no room $*. The rooms are $(ROOMS)." >&2; exit 1; }
+	@$(MAKE) -s --no-print-directory $(BUILD)/fibrad $(call programs_of,$*) $(if $(call scripts_of,$*),all man)
+	@BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/run.sh $(call scripts_of,$*) $(call programs_of,$*)
+
 ## run-programs: build and run the test programs without the scripts
 run-programs: programs
 	@BUILD=$(BUILD) tests/run.sh $(TEST_PROGRAMS)
@@ -251,10 +261,19 @@ programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
 ## check: the symbols of libfibrad.a, calls among files, the format of the sources, and the house
 check: symbols calls format house
 
-## house: folders, includes, names and words, the map of docs/design.md, and what `make structures` writes
+## map: folders of kernel and host and what they are for; ROOM=heat: the files of one folder
+ROOM =
+map:
+	@python3 tests/rooms.py map $(ROOM)
+
+## budget: write today's code lines of folders and words of pages into tests/budget.txt
+budget:
+	python3 tests/rooms.py write
+
+## house: circles of folders and files, links of pages, tests/budget.txt, and what `make structures` writes
 house:
 	tests/check_house.sh
-	tests/check_map.sh
+	python3 tests/rooms.py check
 	python3 host/python/write_structures.py --check $(HEADERS)
 
 ## structures: what Python and Fortran need of the public headers, after a change of these
@@ -412,11 +431,12 @@ cppcheck:
 	cppcheck --quiet -j 2 --std=c11 --error-exitcode=1 --enable=warning,portability,performance \
 	    --suppress=missingIncludeSystem --suppressions-list=.cppcheck $(LINT_FLAGS) $(LINT_SCALAR) kernel host
 
-## nightly: long checks that .ci/run leaves out: all bits, all sanitizers, clang-tidy, benches, longer fuzzing
+## nightly: long checks that .ci/run leaves out: all bits, all sanitizers, clang-tidy, benches, broken lines, longer fuzzing
 nightly: bits threads lint bench-quick programs
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
 	BUILD=$(BUILD) tests/check_tables.sh all
 	BUILD=$(BUILD) NIGHTLY=1 $(BUILD)/tests/test_reproduce
+	$(MAKE) mutate
 	BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/couple/check_couple.sh all
 	BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/couple/check_lammps.sh all
 	$(MAKE) sanitized $(ALL_ISAS) OF_MEMORY="$(filter-out accuracy furnace reference reproduce,$(TESTS:tests/test_%.c=%))"
@@ -483,4 +503,5 @@ clean:
 ## help: this list
 help:
 	@sed -n 's/^## \([^:]*\): /  \1\t/p' Makefile $(wildcard host/*/*.mk host/*/*/*.mk) | expand -t 16
+	@echo "  Rooms of test-ROOM: $(ROOMS)" | fold -s -w 118
 	@echo "  Settable: CC AR CFLAGS LDFLAGS PREFIX DESTDIR BUILD ISAS TABLES PIC WERROR"

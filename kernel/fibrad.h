@@ -80,7 +80,6 @@
  *   rows       a collection of rows                     fibrad_rows_add, _clear, _read
  *   matrix     all rows: averaged, reciprocal, closed   fibrad_matrix_size, _init, _average, _close, _read,
  *                                                       _reciprocity
- *   drift      which rows may stay when spheres move    fibrad_drift_row, _partners
  *   exchange   factors after reflections (grey)         fibrad_exchange_row, _wall, _wall_mean, _displacement
  *              spheres that conduct                     fibrad_relative_conductivity, fibrad_node_emissivity
  *              powers from rows                         fibrad_rows_flow, fibrad_flow
@@ -265,36 +264,21 @@ typedef struct fibrad_wall {
 
 /* Divided beds. Several machines may divide the spheres of a bed. Each machine computes the rows of its own spheres,
  * with a cutoff. The cutoff is a distance between centres: a row leaves out the spheres that are farther from sphere i.
- * A scene may have a known region, a box. The scene then has all spheres of the bed that reach into the box. Outside
- * the box the bed may have spheres that the scene does not have.
+ * Let R be the largest radius. The scene of a machine needs all spheres whose centres lie within cutoff + 1.5 R of one
+ * of its own centres. If no spheres overlap, cutoff + R suffices. No other sphere changes a bit of its rows, and
+ * neither does the order of the spheres. Rows also depend on the walls, the occupancy and the ids.
  *
- * What a row depends on. Let R be the largest radius. Row i depends on the spheres whose centres lie within cutoff
- * + 1.5 R of centre i. If no spheres overlap, the distance cutoff + R suffices. Spheres farther away change no bit of
- * row i. The order of the spheres changes no bit either. Row i also depends on the walls, the occupancy and the ids.
+ * The fraction `beyond`. Radiation of sphere i ends at the first sphere within the cutoff that it meets. If it meets
+ * none, it ends at the first wall within the ball whose radius is the cutoff. All other radiation leaves the ball. The
+ * occupancy (fibrad_occupancy) marks the cells of a box in which the bed may have spheres. If the way from the ball to
+ * a wall or to the surroundings passes through no marked cell, the radiation counts there. If it passes through a
+ * marked cell, it counts as `beyond`. A scene without an occupancy takes the box of all its spheres as the only marked
+ * cell. This is the box of all centres, made larger by the largest radius on every side. Along a periodic axis it
+ * repeats without end. A way longer than 100 periods of the occupancy counts as `beyond`. Without a cutoff `beyond` is
+ * 0.
  *
- * The fraction `beyond`. The occupancy (fibrad_occupancy) marks the cells of a box in which the bed may have spheres.
- * Let the known space of row i be the ball whose radius is the cutoff, about centre i. If the scene has a known region,
- * the known space is the part of the ball within this region. Radiation of sphere i ends at the first sphere within the
- * cutoff that it meets. If it meets no such sphere, it ends at the first wall that it meets within the known space. All
- * other radiation leaves the known space. From there its way goes on to a wall or to the surroundings. This way decides
- * what the radiation counts as.
- *
- *   occupancy  known region  the way outside the known space                counts as
- *   yes        yes or no     passes through no marked cell before its end   the wall at its end, or `escaped`
- *   yes        yes or no     passes through a marked cell                   `beyond`
- *   no         no            misses the box of all spheres                  the wall at its end, or `escaped`
- *   no         no            passes through the box of all spheres          `beyond`
- *   no         yes           not looked at                                  `beyond`
- *
- * The box of all spheres is the box of all centres, made larger by the largest radius on every side. Along a periodic
- * axis the box repeats without end. If the occupancy is periodic and the way is longer than 100 of its periods, the
- * radiation counts as `beyond`. If there is neither a cutoff nor a known region, `beyond` is 0.
- *
- * A periodic scene without a cutoff may have an occupancy of all its spheres. Lines from a window to walls spread about
- * the direction of the window. The occupancy then tells where these lines end (docs/methods.md section 11).
- *
- * A scene may have spheres outside its known region. View factors count these spheres, if they are within the cutoff.
- * Paths after a reflection do not meet these spheres. */
+ * A periodic scene without a cutoff may have an occupancy of all its spheres. It then serves lines to walls, which
+ * spread about the direction of their window: docs/methods.md section 11. */
 /* Where a bed has spheres: the marked cells of a box. There is no part of any sphere in other cells or outside the box.
  * The occupancy must stay as it is while the scene is used. All machines use the same occupancy.
  *
@@ -320,7 +304,6 @@ typedef struct fibrad_scene_config {
     uint32_t walls;                           /* number of walls, 0 to FIBRAD_WALLS_MAX, else FIBRAD_E_UNSUPPORTED */
     const fibrad_plane *opening;              /* [openings], copied; no sphere may reach beyond an opening */
     uint32_t openings;                        /* 0 to 6 */
-    double known_low[3], known_high[3];       /* L, known region; low equals high: unlimited along the axis */
     const fibrad_occupancy *occupancy;        /* where the bed has spheres; NULL: none; not copied */
     const struct fibrad_triangles *triangles; /* triangles of all meshes (fibrad_mesh.h); NULL: none; copied */
 } fibrad_scene_config;
@@ -494,7 +477,7 @@ typedef struct fibrad_row {
     uint32_t sphere;     /* out: i */
     uint32_t length;     /* out: number of entries */
     double escaped;      /* out: fraction that reaches the surroundings, through an opening or past everything */
-    double beyond;       /* out: fraction that leaves the cutoff or the known region; where it ends is not computed */
+    double beyond;       /* out: fraction that leaves the cutoff, and whose end is not computed */
     double error;        /* out: estimated error of the row; in the median it is twice the true error */
     uint32_t directions; /* out: directions taken; rows by rays: 0 */
     uint32_t fallbacks;  /* out: windows that needed a slower, more robust method; rows by rays: 0 */
@@ -565,7 +548,7 @@ typedef struct fibrad_beam_rule {
  *   exact areas  The fraction is a visible area over the area of the window. The error of the entries falls as
  *                directions^-1.5. The error of factors to walls falls a little more slowly. Suppose that sphere i sees
  *                no other sphere and cuts no wall. Then the factors to planes and to the cylinder are exact. With a
- *                cutoff or a known region they are not.
+ *                cutoff they are not.
  *   points       Each point of the window is one ray. The fraction is the number of points that meet sphere j, divided
  *                by the number of all points.
  *
@@ -747,7 +730,7 @@ typedef struct fibrad_factors {
     const uint32_t *col;        /* [start[n]], columns, ascending within each row */
     const double *f;            /* [start[n]], factor from i to col */
     const double *escaped;      /* [n], factor to the surroundings */
-    const double *beyond;       /* [n], fraction that leaves the cutoff or the known region, as in fibrad_row */
+    const double *beyond;       /* [n], fraction that leaves the cutoff, as in fibrad_row */
     const double *error;        /* [n], estimated error of each row */
     const double *wall;         /* [n][walls], factors to walls */
     const double *wall_wall;    /* [walls][walls], factors from wall to wall */
@@ -841,36 +824,6 @@ int fibrad_matrix_read(const fibrad_matrix *matrix, fibrad_factors *factors);
  *            _STATE: the matrix is not closed
  *   Cost     O(entries). Uses memory of the matrix: one call at a time */
 int fibrad_matrix_reciprocity(const fibrad_matrix *matrix, double *largest);
-
-/* ---- drift ----------------------------------------------------------------------------------------------------- */
-/* Estimates the error of an old row after the spheres have moved:
- *   error = 2 sqrt(sum over j of (F_ij delta_ij/w_ij)^2),   F_ij = r_j^2/(4 d^2),   w_ij = min(r_j, max(d - r_j, r_i)).
- * delta_ij [L] is the change of the vector from sphere i to sphere j. d [L] is the smaller one of the old and the new
- * distance of their centres. j runs over the spheres that the old row sees. Errors of successive steps may be added up.
- * Walls are not counted. Spheres that come into sight are not counted here: fibrad_drift_partners counts them.
- *   Input    before, now: the scene of the row and the present scene. Both have the same spheres and the same periods.
- *            i: 0 to spheres - 1
- *            col[length]: columns of the old row
- *   Output   error
- *   Errors   _ARGUMENT, _STATE
- *   Cost     10 ns per entry
- *   Source   docs/methods.md section 10 */
-int fibrad_drift_row(const fibrad_scene *before, const fibrad_scene *now, uint32_t i, const uint32_t *col,
-                     uint32_t length, double *error);
-
-/* Raises the errors of old rows j, once row i is new. If F_ij has grown, F_ji has grown as well, but the old row j
- * still has the smaller F_ji. For each j for which F_ij has more than doubled,
- *   error[j] = sqrt(error[j]^2 + (2 (F_ij new - F_ij old) A_i/A_j)^2).
- * The last bits of `error` depend on the order of the calls.
- *   Input    i: 0 to spheres - 1
- *            before, row: the old and the new row i. Both have col, f and length. Columns ascend, and f is 0 to 2.
- *            error[spheres]: errors of all rows
- *   Output   error[spheres]
- *   Errors   _ARGUMENT, _STATE
- *   Cost     10 ns per entry
- *   Source   docs/methods.md section 10 */
-int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row *before, const fibrad_row *row,
-                          double *error);
 
 /* ---- exchange -------------------------------------------------------------------------------------------------- */
 /* How a row of exchange factors is computed. The exchange factor D_ij is the fraction of the emission of sphere i that
@@ -976,7 +929,7 @@ typedef struct fibrad_wall_rule {
  *            reflected[spheres]: the function adds what each sphere absorbs of the row->paths paths after at least
  *            one reflection, times 2^40; may be NULL
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY, _BACK, _SUM
- *            _UNSUPPORTED: an endless wall or opening, or a known region
+ *            _UNSUPPORTED: an endless wall or opening
  *   Cost     0.1 to 0.5 microseconds per ray
  *   Source   docs/methods_heat.md section 4 */
 int fibrad_exchange_wall(const fibrad_scene *scene, fibrad_work *work, uint32_t wall, const fibrad_wall_rule *rule,
@@ -1026,7 +979,7 @@ typedef struct fibrad_displacement {
  *            rule: needed
  *   Output   displacement
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY, _BACK
- *            _UNSUPPORTED: spheres conduct, and the scene has walls, openings or a known region, or there is a cutoff
+ *            _UNSUPPORTED: spheres conduct, and the scene has walls or openings, or there is a cutoff
  *   Cost     0.1 to 0.2 microseconds per ray; 2 n rays a path if spheres conduct
  *   Source   docs/methods_heat.md sections 12 and 14 */
 int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, uint32_t i,

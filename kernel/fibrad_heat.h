@@ -56,8 +56,7 @@ size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *sc
  *            scene: radii FIBRAD_HEAT_RADIUS_MIN to 1/FIBRAD_HEAT_RADIUS_MIN L
  *   Output   heat: a pointer into memory
  *   Errors   _ARGUMENT, _SIZE, _STATE
- *            _UNSUPPORTED: a scene with a known region (fibrad.h); or surfaces are so near each other that
- *            more than 2^26 small patches would be needed there */
+ *            _UNSUPPORTED: surfaces are so near each other that more than 2^26 small patches would be needed there */
 int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad_heat_config *config,
                      const fibrad_scene *scene);
 
@@ -66,8 +65,7 @@ int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad
  *   Input    scene: as many spheres and triangles as before, the same walls in the same order, and the same openings.
  *            Each side of a triangle belongs to the same wall as before. Positions and sizes may differ.
  *   Errors   _ARGUMENT, _STATE
- *            _SIZE: walls, or small spheres beside large ones, need more patches than the memory has room for
- *            _UNSUPPORTED: the scene has a known region */
+ *            _SIZE: walls, or small spheres beside large ones, need more patches than the memory has room for */
 int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene);
 
 /* Number of tasks for fibrad_heat_trace: one for each sphere, and some for the walls and for fine patches.

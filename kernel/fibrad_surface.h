@@ -83,7 +83,7 @@ int fibrad_surface_pair(double r1, double r2, double gap, const fibrad_spheres *
  *   Errors   _ARGUMENT: also a periodic scene without a cutoff, or more than 2^28 spheres or images in the cube about
  *            the cutoff
  *            _STATE, _TABLE (nodes), _CAPACITY, _WORK, _MEMORY, _SUM
- *            _UNSUPPORTED: the scene has walls, triangles, openings or a known region
+ *            _UNSUPPORTED: the scene has walls, triangles or openings
  *   Cost     5 microseconds for each partly hidden sphere at 55 nodes, and 3 ns for each pair of spheres within the
  *            cutoff. Work memory must hold all spheres within the cutoff, 132 bytes each.
  *   Source   as fibrad_surface_pair */

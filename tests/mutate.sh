@@ -8,7 +8,7 @@
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${JOBS:=$(nproc 2>/dev/null || echo 1)}"
 export BUILD MAKE CC
-tests="base pair_exact surface matrix scene direction drift areas furnace surface_row work beam cast walls trace exchange wall_rows known protocol part heat light_mesh stress"
+tests="base pair_exact surface matrix scene direction areas furnace surface_row work beam cast walls trace exchange wall_rows protocol part heat light_mesh stress"
 whole=$BUILD/mutate/whole # built and unbroken; every break starts from a copy
 export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-60}"
 
@@ -33,30 +33,12 @@ breaks() {
     awk -v numbers=" $* " '!/^#/ && (++n && numbers == "  " || index(numbers, " " n " "))' tests/mutants.txt
 }
 
-# tests_of FILE: what is most likely to notice comes first
+# tests_of FILE: what is most likely to notice comes first, by tests/rooms.txt
 tests_of() {
     case $1 in
     host/couple/walls/*) echo liggghts ;;
     host/couple/*) echo couple ;;
-    kernel/exchange/row_powers.c | kernel/scene/surroundings.c) echo "beyond flow part $tests" ;;
-    kernel/exchange/*) echo "exchange wall_rows known protocol part $tests" ;;
-    kernel/heat/*) echo "protocol_heat heat heat_arguments heat_paths heat_patches heat_invariants $tests" ;;
-    */points_*) echo "beam cast $tests" ;;
-    kernel/window/*) echo "lines_rows areas beam $tests" ;;
-    */surface_row*) echo "surface_row $tests" ;;
-    */walls.* | */wall_*) echo "walls part estimate $tests" ;;
-    kernel/surface/*) echo "surface $tests" ;;
-    kernel/workspace/*) echo "work beam cast $tests" ;;
-    kernel/row/mesh*) echo "mesh beam $tests" ;;
-    kernel/row/*) echo "beam cast protocol $tests" ;;
-    */cast*) echo "cast $tests" ;;
-    kernel/ray/*) echo "trace $tests" ;;
-    */drift*) echo "drift $tests" ;;
-    kernel/scene/*) echo "scene beam $tests" ;;
-    kernel/matrix/*) echo "matrix matrix_calls estimate protocol $tests" ;;
-    kernel/near/* | kernel/facing/* | kernel/sums/* | kernel/rows/*) echo "matrix matrix_calls protocol $tests" ;;
-    kernel/furnace/*) echo "furnace furnace_calls $tests" ;;
-    *) echo "$tests" ;;
+    *) room=${1%/*} && echo "$(sed -n "s/^${room##*/} //p" tests/rooms.txt) $tests" ;;
     esac
 }
 

@@ -1,28 +1,19 @@
 /* test_beyond.c - what rows say of radiation if they do not know where it ends. SPDX-License-Identifier: MIT */
 #include "part_beds.h"
 
-/* A cutoff or a known region that holds the whole bed and its walls changes no bit. */
+/* A cutoff that holds the whole bed and its walls changes no bit. */
 LOOP_TEST(nothing_is_beyond_what_holds_all, 2) {
     OWNED_MADE m;
     make_kind(&m, &kinds[_i]);
     for (int occupied = 0; occupied < 2; occupied++) {
         m.part.config.occupancy = occupied ? &m.occupancy : NULL;
         OWNED fibrad_scene *plain = part_scene(&m.part);
-        for (int axis = 0; axis < 3; axis++) m.part.config.known_low[axis] = -99, m.part.config.known_high[axis] = 99;
-        OWNED fibrad_scene *known = part_scene(&m.part);
-        memset(m.part.config.known_low, 0, sizeof m.part.config.known_low);
-        memset(m.part.config.known_high, 0, sizeof m.part.config.known_high);
         for (uint32_t i = 3; i < m.part.n; i += 150)
             for (int method = 0; method < METHODS; method++) {
                 OWNED_NAMED expected = row_by(&m.part, plain, i, method, 0);
                 OWNED_NAMED cut = row_by(&m.part, plain, i, method, 99);
                 ck_assert_double_eq(cut.row.beyond, 0);
                 expect_same_named(&expected, &cut, m.part.ids, kinds[_i].name);
-                if (m.part.config.walls > 0 || occupied) { /* lines end within the region, or are clear */
-                    OWNED_NAMED region = row_by(&m.part, known, i, method, 0);
-                    ck_assert_double_eq(region.row.beyond, 0);
-                    expect_same_named(&expected, &region, m.part.ids, kinds[_i].name);
-                }
             }
     }
 }
@@ -167,28 +158,6 @@ TEST(cells_are_walked_one_by_one) {
     }
 }
 
-/* Radiation is `beyond` if it is reflected towards a sphere outside the known region. Beams see this sphere. */
-TEST(reflections_end_at_the_known_region) {
-    OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 2.5, 1}, {2.2, 0, 1.25, 1});
-    OWNED_PART p = part_of(&bed, (fibrad_scene_config){.known_low = {-2, 0, 0}, .known_high = {1.1, 0, 0}});
-    OWNED fibrad_scene *scene = part_scene(&p);
-    const fibrad_occupancy none = {.high = {1, 1, 1}, .cells = {1, 1, 1}, .mark = (const uint64_t[]){0}};
-    p.config.occupancy = &none;
-    OWNED fibrad_scene *told = part_scene(&p);
-    const double e[] = {.5, 1e-3, .9}; /* the third absorbs what it receives, and receives from the second */
-    OWNED_WORK work = work_growing();
-    OWNED_ROW beam = row_of(3), row = row_of(3), clear = row_of(3);
-    const fibrad_exchange_rule rule = {.emissivity = e, .paths = 4000};
-    assert_ok(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 50, .points = 256}, &beam));
-    assert_ok(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL));
-    assert_ok(fibrad_exchange_row(told, &work, 0, &rule, &clear, NULL));
-    ck_assert_double_gt(row_factor(&beam, 2), .04);
-    ck_assert_double_eq(row_factor(&row, 2), .9 * row_factor(&beam, 2)); /* the first segment alone */
-    ck_assert_double_eq(row_factor(&clear, 2), row_factor(&row, 2));
-    ck_assert_double_gt(row.beyond, .3);
-    ck_assert_double_eq(clear.beyond, 0);
-}
-
 /* One sphere that flies far above a bed must not hide the sky from the spheres at the top. */
 TEST(a_flying_sphere_leaves_the_sky) {
     OWNED_BED bed = packing(700, .6, 1, .5, 11, true);
@@ -238,38 +207,4 @@ TEST(a_cutoff_leaves_the_sky_of_a_flat_bed) {
     ck_assert_double_lt(beyond / sky[0], 3e-3);
     free(scene);
     free((void *)(uintptr_t)o.mark);
-}
-
-/* The known region ends half way up a can. A lone sphere sends a fraction there that is a solid angle over 4 pi. */
-TEST(a_known_region_ends_in_a_can) {
-    const fibrad_wall wall[] = {plane_at(2, 0, -40), plane_at(2, 1, 40), cylinder_at(0, 0, 10)};
-    OWNED_BED bed = BED({0, 0, 0, 1}, {0, 0, 35, 1});
-    OWNED_PART p = part_of(
-        &bed, (fibrad_scene_config){.wall = wall, .walls = 3, .known_low = {0, 0, -1000}, .known_high = {0, 0, 20}});
-    OWNED fibrad_scene *scene = part_scene(&p);
-    const double share = .5 * (1 - 20 / sqrt(500)), below = .5 * (1 - 40 / sqrt(1700));
-    for (int method = 0; method < METHODS; method++) {
-        OWNED_NAMED row = row_by(&p, scene, 0, method, 0);
-        const double tolerance = method < 3 ? 6e-3 : method == 3 ? .02 : 1; /* only sums of exchange rows are checked */
-        ck_assert_double_eq_tol(row.row.beyond, share, tolerance);
-        ck_assert_double_eq_tol(row.row.wall[0], below, tolerance);
-        ck_assert_double_eq(row.row.wall[1], 0); /* what may be there could hide the wall and the sphere above */
-        ck_assert_double_gt(row.row.beyond, share / 2);
-        ck_assert_double_eq(row.row.escaped, 0);
-    }
-    /* with an occupancy that says that nothing is there, the row has the wall again */
-    const fibrad_occupancy none = {
-        .low = {-20, -20, -60}, .high = {20, 20, 60}, .cells = {1, 1, 1}, .mark = (const uint64_t[]){0}};
-    fibrad_scene_config config = p.config;
-    p.config.occupancy = &none;
-    OWNED fibrad_scene *told = part_scene(&p);
-    for (int method = 0; method < METHODS; method++) {
-        OWNED_NAMED row = row_by(&p, told, 0, method, 0);
-        ck_assert_double_eq(row.row.beyond, 0);
-        ck_assert_double_gt(row.row.wall[1], 0);
-    }
-    /* the sphere lies beyond the region: all is `beyond` that meets no wall on the way out */
-    p.config = config;
-    OWNED_NAMED row = row_by(&p, scene, 1, 0, 0);
-    ck_assert_double_gt(row.row.beyond, .9);
 }

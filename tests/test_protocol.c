@@ -132,7 +132,6 @@ TEST(nothing_of_no_scene) {
     fibrad_row row = row_of(N), added = {.rows = &rows};
     fibrad_displacement displacement;
     fibrad_heat *heat = NULL;
-    double error = 0;
     assert_ok(fibrad_beam_row(scene, &p->work, 0, NULL, &row));
     ck_assert_int_eq(build_at(p->scene_block, p->scene_size, &bad, &none), FIBRAD_E_GEOMETRY);
     ck_assert_int_eq(fibrad_beam_row(scene, &p->work, 0, NULL, &row), FIBRAD_E_STATE);
@@ -143,7 +142,6 @@ TEST(nothing_of_no_scene) {
     ck_assert_int_eq(fibrad_heat_init(&heat, p->heat_block, p->heat_size, &heat_config, scene), FIBRAD_E_STATE);
     ck_assert_uint_eq(fibrad_heat_size(&heat_config, scene), 0);
     ck_assert_int_eq(fibrad_heat_move(p->heat, scene), FIBRAD_E_STATE);
-    ck_assert_int_ne(fibrad_drift_row(scene, scene, 0, row.col, row.length, &error), FIBRAD_OK);
     ck_assert_uint_eq(fibrad_matrix_size(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1}), 0);
     ck_assert_uint_eq(rows.count, 0);
     row_free(&row);

@@ -204,7 +204,7 @@ TEST(bad_walls_are_refused) {
     assert_ok(init(&scene, &bed, 1, &can, &fault));
 }
 
-/* This version does not compute these: meshes, more than seven walls, a known region. */
+/* More walls than there may be, a side twice, and a mesh without triangles. */
 TEST(what_is_not_supported) {
     OWNED_BED bed = BED({5, 5, 5, 1});
     fibrad_scene *scene = NULL;

@@ -55,7 +55,7 @@ $(BUILD)/couple/ranks: bench/ranks.c bench/messages.h $(COUPLE_LIBS)
 	$(MPICC) $(CFLAGS) $(COUPLE_FLAGS) $(LDFLAGS) $< $(COUPLE_LIBS) -lm -o $@
 
 ## couple: libfibrad_couple.a, fix fibrad of LAMMPS and the driver of LIGGGHTS, into build/couple (on a fresh machine: make deps-couple couple)
-.PHONY: couple couple-lib install-couple need-mpi test-couple deps-couple
+.PHONY: couple couple-lib install-couple need-mpi deps-couple
 
 couple: $(COUPLE_PRODUCTS)
 
@@ -98,10 +98,6 @@ need-mpi: | $(COUPLE_DEPS)
 $(COUPLE_OBJECTS) $(COUPLE_MESH_OBJECTS) $(COUPLE_PRODUCTS): Makefile host/couple/couple.mk
 
 -include $(COUPLE_OBJECTS:.o=.d) $(COUPLE_MESH_OBJECTS:.o=.d) $(BUILD)/couple/example.d $(BUILD)/couple/test_couple.d
-
-## test-couple: build and run the tests of the couplings; tests are skipped, with a message, if packages are missing
-test-couple:
-	@BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/run.sh $(COUPLE_SCRIPTS)
 
 ## deps-couple: install the Debian packages of the couplings: MPI, LAMMPS, LIGGGHTS
 deps-couple:

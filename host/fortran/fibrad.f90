@@ -75,7 +75,6 @@ module fibrad
         integer(c_int32_t) :: walls = 0
         type(c_ptr) :: opening = c_null_ptr
         integer(c_int32_t) :: openings = 0
-        real(c_double) :: known_low(3) = 0, known_high(3) = 0
         type(c_ptr) :: occupancy = c_null_ptr, triangles = c_null_ptr
     end type c_scene_config
 

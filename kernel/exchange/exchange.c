@@ -55,7 +55,7 @@ static fibrad_paths paths_of(const exchange_task *task, fibrad_workspace *space,
     return (fibrad_paths){.tracer = fibrad_tracer_of(space, scene),
                           .place = place,
                           .inverse = 1 / scene->r[place],
-                          .cut = task->rule->cutoff > 0 || scene->region,
+                          .cut = task->rule->cutoff > 0,
                           .cutoff = task->rule->cutoff > 0 ? task->rule->cutoff / scene->r[place] : __builtin_inf(),
                           .emissivity = task->emissivity,
                           .surface = task->rule->emissivity,
@@ -383,8 +383,7 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
                                       .cutoff = rule->cutoff};
     int status = exchange_begin(&task, scene, i, &row);
     if (status == FIBRAD_OK && conduct && rule->flights > FIBRAD_FLIGHTS_MAX) status = FIBRAD_E_ARGUMENT;
-    if (status == FIBRAD_OK && conduct &&
-        (scene->container.walls || scene->mesh.triangles > 0 || scene->region || rule->cutoff > 0))
+    if (status == FIBRAD_OK && conduct && (scene->container.walls || scene->mesh.triangles > 0 || rule->cutoff > 0))
         status = FIBRAD_E_UNSUPPORTED;
     if (status == FIBRAD_OK)
         status = fibrad_work_open(work, scene, fibrad_tracer_least(), fibrad_tracer_best(scene), &space);

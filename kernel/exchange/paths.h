@@ -20,7 +20,7 @@ typedef struct fibrad_paths {
     fibrad_segments *segments;       /* NULL, or the first segments of the first paths */
     const fibrad_sobol *sobol;       /* evenly spread points, of paths from a wall */
     double inverse;                  /* 1/L, of the radius of the sphere */
-    bool cut;                        /* whether there is a cutoff or a known region */
+    bool cut;                        /* whether there is a cutoff */
     double cutoff;                   /* from the centre of the sphere, in its radii; infinity: none */
     const double *emissivity;        /* [spheres], by the caller's index: fraction absorbed; NULL: all are black */
     const double *conductivity;      /* [spheres], relative, by the caller's index; NULL: one temperature a sphere */
@@ -34,7 +34,7 @@ typedef struct fibrad_paths {
     bool first;                      /* whether absorption by the first surface counts */
     fibrad_entries *entries;         /* out: absorbed by each sphere, path k in part k mod 4; NULL: not counted */
     double wall[FIBRAD_SLOTS];       /* out: absorbed by each wall */
-    double escaped, beyond;          /* out: to the surroundings; beyond the cutoff or the known region */
+    double escaped, beyond;          /* out: to the surroundings; beyond the cutoff */
     double end[FIBRAD_SLOTS + 2][4]; /* out: wall, escaped and beyond, path k in part k mod 4 */
     double absorbed;                 /* out: absorbed by all spheres */
     uint64_t *reflected;             /* [spheres], by the caller's index, added to: absorbed after a reflection, in

@@ -139,18 +139,14 @@ static double ball_length(const fibrad_paths *paths, const struct grey_path *pat
     return fibrad_ball_exit(start, w, paths->cutoff) * paths->tracer->scene->r[paths->place];
 }
 
-/* Whether a ray stays within the cutoff and the known region up to a length. For most rays the triangle inequality
+/* Whether a ray stays within the cutoff up to a length. For most rays the triangle inequality
  * tells. */
-static bool is_known(const fibrad_paths *paths, const struct grey_path *path, const double w[3], double length) {
-    const fibrad_scene *scene = paths->tracer->scene;
-    double start[3], centre[3], point[3], rest = paths->cutoff - length * paths->inverse;
+static bool is_within(const fibrad_paths *paths, const struct grey_path *path, const double w[3], double length) {
+    double start[3], rest = paths->cutoff - length * paths->inverse;
     if (!paths->cut) return true;
     find_start(paths, path, start);
     const double square = start[0] * start[0] + start[1] * start[1] + start[2] * start[2];
-    if (!(rest > 0 && square < rest * rest * (1 - 1e-9)) && length > ball_length(paths, path, w)) return false;
-    if (!scene->region) return true;
-    find_point(scene, path, centre, point);
-    return length <= fibrad_region_exit(scene, point, w);
+    return (rest > 0 && square < rest * rest * (1 - 1e-9)) || !(length > ball_length(paths, path, w));
 }
 
 /* Sets the hit to the triangle that a ray meets if there are no spheres. */
@@ -231,7 +227,7 @@ static uint32_t trace_segment(fibrad_paths *paths, struct grey_path *path, const
     } else {
         LANED(fibrad_trace_wall)(paths->tracer, path->point, w, path->triangle, &hit);
     }
-    if (hit.sphere != FIBRAD_NONE && is_known(paths, path, w, hit.distance)) {
+    if (hit.sphere != FIBRAD_NONE && is_within(paths, path, w, hit.distance)) {
         for (int axis = 0; axis < 3 && path->place == FIBRAD_NONE; axis++) path->centre[axis] += path->point[axis];
         for (int axis = 0; axis < 3; axis++) {
             path->centre[axis] += hit.centre[axis];

@@ -18,8 +18,7 @@ static int wall_begin(const fibrad_scene *scene, uint32_t wall, const fibrad_wal
     if (*slot == FIBRAD_NONE || part >= FIBRAD_WALL_PARTS || rule->paths > FIBRAD_PATHS_MAX) return FIBRAD_E_ARGUMENT;
     const int status = fibrad_paths_emissivities(scene, rule->wall_emissivity, wall_emissivity);
     if (status != FIBRAD_OK) return status;
-    const bool whole = fibrad_finite(scene->wall_area[*slot]) && !scene->region;
-    return whole ? FIBRAD_OK : FIBRAD_E_UNSUPPORTED;
+    return fibrad_finite(scene->wall_area[*slot]) ? FIBRAD_OK : FIBRAD_E_UNSUPPORTED;
 }
 
 /* Whether the walls and openings are the six sides of a box, and there is no other wall. */

@@ -29,7 +29,7 @@ static fibrad_heat_config heat_config_of(const fibrad_heat_config *config) {
 /* Patches along an edge of a sphere's cube. 0: there is no such number of patches. */
 static uint32_t side_of(uint32_t patches) { return patches == 24 ? 2 : patches == 96 ? 4 : patches == 384 ? 8 : 0; }
 
-/* Checks a completed configuration against a scene. Errors: FIBRAD_E_ARGUMENT, _UNSUPPORTED, _STATE. */
+/* Checks a completed configuration against a scene. Errors: FIBRAD_E_ARGUMENT, _STATE. */
 static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
     fibrad_disc_points set;
     if (scene == NULL) return FIBRAD_E_ARGUMENT;
@@ -40,7 +40,7 @@ static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
                        c->wall_rays <= FIBRAD_WALL_RAYS_MAX &&
                        (scene->facts.spheres == 0 || (scene->facts.radius_min >= FIBRAD_HEAT_RADIUS_MIN &&
                                                       scene->facts.radius_max <= 1 / FIBRAD_HEAT_RADIUS_MIN));
-    return !valid ? FIBRAD_E_ARGUMENT : scene->region ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
+    return valid ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
 }
 
 static uint32_t meshes_of(const fibrad_scene *scene) {
@@ -360,7 +360,6 @@ int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene) {
     if (heat == NULL || scene == NULL) return FIBRAD_E_ARGUMENT;
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
     if (scene->facts.spheres != heat->spheres || scene->facts.walls != heat->given_walls) return FIBRAD_E_ARGUMENT;
-    if (scene->region) return FIBRAD_E_UNSUPPORTED;
     for (uint32_t b = 0; b < heat->given_walls; b++)
         if (scene->slot[b] != heat->slot[b]) return FIBRAD_E_ARGUMENT;
     if (scene->container.openings != heat->openings) return FIBRAD_E_ARGUMENT;

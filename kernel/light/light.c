@@ -12,8 +12,7 @@ int fibrad_light_check(const fibrad_scene *scene, const fibrad_light *light, fib
         if (before != FIBRAD_NONE) found.first = found.second = before, found.why = FIBRAD_WHY_FOOTPRINT;
     }
     if (fault != NULL) *fault = found;
-    if (found.why != FIBRAD_WHY_UNSAID) return FIBRAD_E_ARGUMENT;
-    return scene->region ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
+    return found.why == FIBRAD_WHY_UNSAID ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
 }
 
 /* Gives the polygons of windows the room that is left after `extra` bytes of scratch. */

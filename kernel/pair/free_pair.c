@@ -97,17 +97,9 @@ static bool triangles_between(const fibrad_scene *scene, const pair_hull *hull) 
     return x < hull->length || fibrad_mesh_distance(&scene->mesh, hull->to, 2 * hull->r[1]) < hull->r[1];
 }
 
-/* Whether a sphere lies in the known region, and no wall cuts it. */
-static bool lies_free(const fibrad_scene *scene, uint32_t place) {
-    const double at[3] = {scene->x[place], scene->y[place], scene->z[place]}, r = scene->r[place];
-    for (int axis = 0; axis < 3 && scene->region; axis++)
-        if (!(at[axis] - r >= scene->known_low[axis] && at[axis] + r <= scene->known_high[axis])) return false;
-    return !scene->cut[place];
-}
-
 bool fibrad_free_pair(const fibrad_scene *scene, uint32_t place, uint32_t other, double *f) {
     const pair_hull hull = hull_of(scene, place, other);
-    if (!lies_free(scene, other) || spheres_between(scene, &hull, place, other)) return false;
+    if (scene->cut[other] || spheres_between(scene, &hull, place, other)) return false;
     if (scene->mesh.triangles > 0 && triangles_between(scene, &hull)) return false;
     return fibrad_pair_exact(hull.r[0], hull.r[1], hull.length - (hull.r[0] + hull.r[1]), f) == FIBRAD_OK;
 }
@@ -225,7 +217,7 @@ fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale) {
     const double spacings = scene->spacing * work->inverse, volume = spacings * spacings * spacings;
     if (!search.all)
         search.far = fibrad_min(work->reach, fibrad_max(0, MANY_BETWEEN / (4 * FIBRAD_PI) * volume - 8.0 / 3));
-    search.sparse = search.all || met < FEW_ENTRIES, search.pairs = lies_free(scene, work->place);
+    search.sparse = search.all || met < FEW_ENTRIES, search.pairs = !scene->cut[work->place];
     for (uint32_t k = 0; k < met && !search.all; k++)
         if (entries->sphere[k] < n) try_sphere(&search, entries->sphere[k], true);
     if (!search.all) try_near(&search, fibrad_min(NEAR_SPACINGS * scene->spacing, search.far * work->unit));

@@ -7,7 +7,7 @@
 
 #include "workspace/workspace.h"
 
-/* Whether nothing can come between the spheres at two places, both within the known region. f: out: the factor from
+/* Whether nothing can come between the spheres at two places. f: out: the factor from
  * `place` to `other`. */
 bool fibrad_free_pair(const fibrad_scene *scene, uint32_t place, uint32_t other, double *f);
 

@@ -350,7 +350,7 @@ static uint32_t slot_along(const fibrad_workspace *work, uint32_t p, const doubl
     return fibrad_surroundings_side(work->scene, origin, w, ball, met->side[p], length, &distance);
 }
 
-/* The slot of what a line meets. This may be beyond the cutoff or the known region. */
+/* The slot of what a line meets. This may be beyond the cutoff. */
 static uint32_t slot_met(const fibrad_workspace *work, const double frame[9], uint32_t p) {
     double origin[3], w[3];
     if (!work->cut || work->met->depth[p] < -1) return fibrad_scene_slot(work->scene, work->met->side[p]);

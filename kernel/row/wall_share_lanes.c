@@ -125,22 +125,14 @@ FIBRAD_INLINE void meet_walls(const fibrad_wall_window *window, const fibrad_wal
     }
 }
 
-/* The length at which lines leave the ball or the known region. */
-static vd exit_known(const fibrad_wall_view *view, const vd origin[3], const vd w[3]) {
+/* The length at which lines leave the ball of the cutoff. */
+static vd exit_ball(const fibrad_wall_view *view, const vd origin[3], const vd w[3]) {
     const vd zero = vd_set1(0);
-    vd least = vd_set1(__builtin_inf());
-    if (view->ball < __builtin_inf()) {
-        vd along = origin[0] * w[0] + origin[1] * w[1] + origin[2] * w[2];
-        vd square = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
-        vd inside = view->ball * view->ball - (origin[0] * origin[0] + origin[1] * origin[1] + origin[2] * origin[2]);
-        least = (vd_sqrt(vd_max(along * along + square * inside, zero)) - along) / square;
-    }
-    for (int axis = 0; axis < 3; axis++) {
-        vd end = vd_select(vd_lt(w[axis], zero), origin[axis] - view->known_low[axis],
-                           view->known_high[axis] - origin[axis]);
-        least = vd_min(quotient(end, vd_abs(w[axis])), least);
-    }
-    return vd_max(least, zero);
+    if (!(view->ball < __builtin_inf())) return vd_set1(__builtin_inf());
+    vd along = origin[0] * w[0] + origin[1] * w[1] + origin[2] * w[2];
+    vd square = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
+    vd inside = view->ball * view->ball - (origin[0] * origin[0] + origin[1] * origin[1] + origin[2] * origin[2]);
+    return vd_max((vd_sqrt(vd_max(along * along + square * inside, zero)) - along) / square, zero);
 }
 
 /* One of the lines in a vector. */
@@ -227,7 +219,7 @@ static void add_cuts(const fibrad_wall_view *view, const wall_lines *lines, uint
 
 /* Sets the weight of open lines that are cut to 0, and counts them. */
 static vd weight_uncut(const fibrad_wall_view *view, const wall_lines *lines, vd weight, fibrad_point_sums *sums) {
-    vm cut = vd_lt(exit_known(view, lines->origin, lines->w), lines->nearest);
+    vm cut = vd_lt(exit_ball(view, lines->origin, lines->w), lines->nearest);
     add_cuts(view, lines, vm_bits(cut & vd_lt(vd_set1(0), weight)), sums);
     return vd_select(cut, vd_set1(0), weight);
 }

@@ -52,13 +52,11 @@ struct fibrad_scene {
     double period[3], low[3], high[3]; /* L, box of the centres; on a periodic axis high = low + period */
     double box_low[3], box_high[3];    /* L, box of the grid: the same without stray spheres */
     fibrad_container container;
-    bool region;                        /* whether a known region was given */
-    double known_low[3], known_high[3]; /* L, infinite where it is unlimited */
-    fibrad_occupancy occupancy;         /* the caller's, or one cell */
-    uint32_t slot[FIBRAD_WALLS_MAX];    /* [facts.walls], slot of each wall */
-    double wall_area[FIBRAD_SLOTS];     /* L^2, by slot, as fibrad_scene_wall_area; 0: no such wall */
-    uint64_t hash;                      /* of all input; 0: the scene is not complete */
-    double spacing;                     /* L, cube root of the volume per sphere */
+    fibrad_occupancy occupancy;      /* the caller's, or one cell */
+    uint32_t slot[FIBRAD_WALLS_MAX]; /* [facts.walls], slot of each wall */
+    double wall_area[FIBRAD_SLOTS];  /* L^2, by slot, as fibrad_scene_wall_area; 0: no such wall */
+    uint64_t hash;                   /* of all input; 0: the scene is not complete */
+    double spacing;                  /* L, cube root of the volume per sphere */
     uint32_t levels;
     fibrad_level level[FIBRAD_LEVELS]; /* by ascending radius, without empty levels */
     double *x, *y, *z, *r;             /* L, [n], in scene order, which is that of the cells */

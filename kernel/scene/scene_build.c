@@ -119,8 +119,6 @@ static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
         const double fixed[] = {scene->period[axis],
                                 c->low[axis],
                                 c->high[axis],
-                                scene->known_low[axis],
-                                scene->known_high[axis],
                                 o->low[axis],
                                 o->high[axis],
                                 scene->mesh.period[axis],

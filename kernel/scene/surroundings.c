@@ -5,12 +5,6 @@
 
 #define OCCUPANCY_CELLS (1u << 20)
 
-static bool region_given(const fibrad_scene_config *config) {
-    for (int axis = 0; axis < 3; axis++)
-        if (config->known_low[axis] < config->known_high[axis]) return true;
-    return false;
-}
-
 static bool occupancy_valid(const fibrad_occupancy *o) {
     for (int axis = 0; axis < 3; axis++) {
         if (!(fibrad_abs(o->low[axis]) <= FIBRAD_LENGTH_MAX && fibrad_abs(o->high[axis]) <= FIBRAD_LENGTH_MAX))
@@ -23,35 +17,21 @@ static bool occupancy_valid(const fibrad_occupancy *o) {
 }
 
 int fibrad_surroundings_check(const fibrad_scene_config *config) {
-    for (int axis = 0; axis < 3; axis++) {
-        const double low = config->known_low[axis], high = config->known_high[axis];
-        if (!(fibrad_abs(low) <= FIBRAD_LENGTH_MAX && fibrad_abs(high) <= FIBRAD_LENGTH_MAX && low <= high))
-            return FIBRAD_E_ARGUMENT;
-        if (low < high && config->period[axis] > 0) return FIBRAD_E_ARGUMENT;
-    }
     return config->occupancy == NULL || occupancy_valid(config->occupancy) ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
 }
 
 void fibrad_surroundings_build(fibrad_scene *scene, const fibrad_scene_config *config) {
-    const bool region = region_given(config);
-    for (int axis = 0; axis < 3; axis++) {
-        const bool open = !(config->known_low[axis] < config->known_high[axis]);
-        scene->known_low[axis] = open ? -__builtin_inf() : config->known_low[axis];
-        scene->known_high[axis] = open ? __builtin_inf() : config->known_high[axis];
-    }
-    scene->region = region;
     if (config->occupancy != NULL) {
         scene->occupancy = *config->occupancy;
         return;
     }
-    /* one cell: all space around a known region, otherwise the box of the spheres */
-    fibrad_occupancy *all = &scene->occupancy;
+    fibrad_occupancy *all = &scene->occupancy; /* one cell, the box of the spheres */
     for (int axis = 0; axis < 3; axis++) {
         const double wide = scene->period[axis] > 0 ? 0 : scene->facts.radius_max;
-        all->low[axis] = region ? 0 : scene->low[axis] - wide;
-        all->high[axis] = region ? 1 : scene->high[axis] + wide;
+        all->low[axis] = scene->low[axis] - wide;
+        all->high[axis] = scene->high[axis] + wide;
         all->cells[axis] = 1;
-        all->periodic[axis] = region || scene->period[axis] > 0;
+        all->periodic[axis] = scene->period[axis] > 0;
     }
 }
 
@@ -63,17 +43,6 @@ double fibrad_ball_exit(const double o[3], const double w[3], double radius) {
     if (!(inside >= 0)) return -1;
     const double root = fibrad_sqrt(along * along + square * inside);
     return along > 0 ? inside / (along + root) : (root - along) / square; /* without cancellation */
-}
-
-double fibrad_region_exit(const fibrad_scene *scene, const double o[3], const double w[3]) {
-    double least = __builtin_inf();
-    for (int axis = 0; axis < 3 && scene->region; axis++) {
-        if (!(o[axis] >= scene->known_low[axis] && o[axis] <= scene->known_high[axis])) return -1;
-        if (w[axis] == 0) continue;
-        const double end = w[axis] > 0 ? scene->known_high[axis] : scene->known_low[axis];
-        least = fibrad_min(least, (end - o[axis]) / w[axis]);
-    }
-    return least;
 }
 
 /* A ray in units of the cells of an occupancy. */
@@ -145,9 +114,8 @@ static bool way_is_clear(const fibrad_occupancy *o, const double origin[3], cons
 uint32_t fibrad_surroundings_met(const fibrad_scene *scene, const double origin[3], const double w[3], double ball,
                                  double *distance) {
     const uint32_t wall = fibrad_walls_exit(scene, origin, w, distance);
-    const double known = fibrad_max(0, fibrad_min(ball, fibrad_region_exit(scene, origin, w)));
-    const bool clear = *distance <= known || way_is_clear(&scene->occupancy, origin, w, known, *distance);
-    if (!clear) return FIBRAD_BEYOND;
+    const double within = fibrad_max(0, ball);
+    if (*distance > within && !way_is_clear(&scene->occupancy, origin, w, within, *distance)) return FIBRAD_BEYOND;
     return wall == FIBRAD_NONE ? FIBRAD_ESCAPED : wall;
 }
 
@@ -156,8 +124,8 @@ uint32_t fibrad_surroundings_side(const fibrad_scene *scene, const double origin
     const uint32_t wall = fibrad_walls_exit(scene, origin, w, distance);
     const bool before = wall == FIBRAD_NONE || length < *distance;
     if (before) *distance = length;
-    const double known = fibrad_max(0, fibrad_min(ball, fibrad_region_exit(scene, origin, w)));
-    if (*distance > known && !way_is_clear(&scene->occupancy, origin, w, known, *distance)) return FIBRAD_BEYOND;
+    const double within = fibrad_max(0, ball);
+    if (*distance > within && !way_is_clear(&scene->occupancy, origin, w, within, *distance)) return FIBRAD_BEYOND;
     return before ? fibrad_scene_slot(scene, side) : wall;
 }
 

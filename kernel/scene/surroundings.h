@@ -5,10 +5,10 @@
 
 #include "scene/scene.h"
 
-/* Checks the known region and the occupancy of a configuration. Errors: FIBRAD_E_ARGUMENT. */
+/* Checks the occupancy of a configuration. Errors: FIBRAD_E_ARGUMENT. */
 int fibrad_surroundings_check(const fibrad_scene_config *config);
 
-/* Sets scene->known_low, known_high and occupancy from a valid configuration. Centres and radii must be measured. */
+/* Sets scene->occupancy from a valid configuration. Centres and radii must be measured. */
 void fibrad_surroundings_build(fibrad_scene *scene, const fibrad_scene_config *config);
 
 /* The length at which a ray from o along w leaves the ball about the origin. The length is in units of |w|. w is not 0.
@@ -16,17 +16,10 @@ void fibrad_surroundings_build(fibrad_scene *scene, const fibrad_scene_config *c
  * neither overflow nor vanish. */
 double fibrad_ball_exit(const double o[3], const double w[3], double radius);
 
-/* The length at which a ray from o along w leaves the known region. o is in coordinates of the scene [L]. Otherwise as
- * fibrad_ball_exit. */
-double fibrad_region_exit(const fibrad_scene *scene, const double o[3], const double w[3]);
-
-/* The slot at which a ray ends that meets no sphere in the known space. The known space ends at the length `ball` and
- * at the known region. A wall within the known space is the end. Otherwise the occupancy decides. If no marked cell
- * lies on the way on, the end is the wall there or FIBRAD_ESCAPED. If a marked cell lies there, the end is
- * FIBRAD_BEYOND.
- *   Input    origin [L], w
- *            ball: [L]
- *   Output   distance: to the wall, as of fibrad_walls_exit */
+/* The slot at which a ray ends that meets no sphere within the cutoff. A wall within the length `ball` is the end.
+ * Otherwise the occupancy decides. If no marked cell lies on the way on, the end is the wall there or FIBRAD_ESCAPED.
+ * If a marked cell lies there, the end is FIBRAD_BEYOND. Input    origin [L], w ball: [L] Output   distance: to the
+ * wall, as of fibrad_walls_exit */
 uint32_t fibrad_surroundings_met(const fibrad_scene *scene, const double origin[3], const double w[3], double ball,
                                  double *distance);
 
@@ -39,8 +32,8 @@ FIBRAD_INLINE uint32_t fibrad_surroundings_of_window(uint32_t met, uint32_t alon
 }
 
 /* The slot at which a ray ends that meets the side of a triangle at some length, before any sphere. This is the slot of
- * the side, or of a plane or the cylinder if that comes first. FIBRAD_BEYOND: the way there is neither known nor clear.
- * FIBRAD_NONE: the side belongs to no wall. w is a unit vector. */
+ * the side, or of a plane or the cylinder if that comes first. FIBRAD_BEYOND: beyond the cutoff, and the way there is
+ * not clear. FIBRAD_NONE: the side belongs to no wall. w is a unit vector. */
 uint32_t fibrad_surroundings_side(const fibrad_scene *scene, const double origin[3], const double w[3], double ball,
                                   uint32_t side, double length, double *distance);
 

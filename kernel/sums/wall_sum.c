@@ -18,19 +18,17 @@ int fibrad_walls_only(const fibrad_container *c) {
     return axes == 1 ? only : 3;
 }
 
-/* Whether no line is cut before it meets a wall: the ball and the known box contain the sphere and the container. */
-static bool all_known(const fibrad_wall_view *view) {
+/* Whether no line is cut before it meets a wall: the ball contains the sphere and the container. */
+static bool all_within(const fibrad_wall_view *view) {
     double farthest = 0;
-    bool within = true;
     for (int axis = 0; axis < 3; axis++) {
         const bool round = view->round && axis < 2;
         const double low = fibrad_min(-1, round ? view->axis[axis] - view->radius : view->low[axis]);
         const double high = fibrad_max(1, round ? view->axis[axis] + view->radius : view->high[axis]);
         const double far = fibrad_max(-low, high);
-        within = within && low >= view->known_low[axis] && high <= view->known_high[axis];
         farthest += far * far;
     }
-    return within && farthest <= view->ball * view->ball && fibrad_finite(farthest);
+    return farthest <= view->ball * view->ball && fibrad_finite(farthest);
 }
 
 fibrad_wall_view fibrad_wall_view_of(const fibrad_scene *scene, uint32_t place, bool cut, double ball) {
@@ -42,13 +40,9 @@ fibrad_wall_view fibrad_wall_view_of(const fibrad_scene *scene, uint32_t place, 
         const uint32_t axis = fibrad_cylinder_axis(c->turn, a);
         view.low[a] = (c->low[axis] - centre[axis]) * inverse;
         view.high[a] = (c->high[axis] - centre[axis]) * inverse;
-        view.known_low[a] = (scene->known_low[axis] - centre[axis]) * inverse;
-        view.known_high[a] = (scene->known_high[axis] - centre[axis]) * inverse;
-        if (!(view.known_low[a] <= 0 && view.known_high[a] >= 0))
-            view.ball = 0; /* the sphere lies outside the known box */
         if (a < 2) view.axis[a] = (c->axis[a] - centre[axis]) * inverse;
     }
-    view.cut = cut && !all_known(&view);
+    view.cut = cut && !all_within(&view);
     view.only = view.cut ? 3 : fibrad_walls_only(c);
     return view;
 }

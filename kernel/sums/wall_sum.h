@@ -6,15 +6,15 @@
 #include "scene/surroundings.h"
 #include "sums/grid.h"
 
-/* The walls and the known space in the frame of a sphere: relative to its centre, in units of its radius, by the axes
+/* The walls and the cutoff in the frame of a sphere: relative to its centre, in units of its radius, by the axes
  * of the cylinder. */
 typedef struct fibrad_wall_view {
-    uint32_t turn;                            /* as in fibrad_container */
-    double low[3], high[3], axis[2], radius;  /* infinite where there is no wall */
-    int only;                                 /* the axis across which all walls are planes, or 3 */
-    bool round;                               /* whether there is a cylinder */
-    bool cut;                                 /* whether lines may be cut */
-    double known_low[3], known_high[3], ball; /* lines are cut where they leave this box or the ball of this radius */
+    uint32_t turn;                           /* as in fibrad_container */
+    double low[3], high[3], axis[2], radius; /* infinite where there is no wall */
+    int only;                                /* the axis across which all walls are planes, or 3 */
+    bool round;                              /* whether there is a cylinder */
+    bool cut;                                /* whether lines may be cut */
+    double ball;                             /* lines are cut where they leave the ball of this radius */
 } fibrad_wall_view;
 
 /* The distance of a wall that does not exist, where a finite number is needed. In units of the radius. */
@@ -23,7 +23,7 @@ typedef struct fibrad_wall_view {
 /* The axis across which all walls are planes, or 3. */
 int fibrad_walls_only(const fibrad_container *container);
 
-/* cut: whether there is a known region or a cutoff. ball: the cutoff in radii. */
+/* cut: whether there is a cutoff. ball: the cutoff in radii. */
 fibrad_wall_view fibrad_wall_view_of(const fibrad_scene *scene, uint32_t place, bool cut, double ball);
 
 /* A region of the sky is the directions of one octant in which a line meets one wall. Region 4 octant + n belongs to

@@ -155,8 +155,7 @@ int fibrad_surface_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
     if (!(cutoff >= 0 && fibrad_finite(cutoff))) return FIBRAD_E_ARGUMENT;
     const bool periodic = scene->period[0] > 0 || scene->period[1] > 0 || scene->period[2] > 0;
     if ((periodic && cutoff == 0) || periods_exceeded(scene, cutoff)) return FIBRAD_E_ARGUMENT;
-    if (scene->facts.walls > 0 || scene->facts.triangles > 0 || scene->container.walls || scene->region)
-        return FIBRAD_E_UNSUPPORTED;
+    if (scene->facts.walls > 0 || scene->facts.triangles > 0 || scene->container.walls) return FIBRAD_E_UNSUPPORTED;
     const int status = fibrad_surface_nodes_of(&task.rule, &task.nodes);
     if (status != FIBRAD_OK) return status;
     return fibrad_row_run(scene, work, i, &(fibrad_row_method){surface_compute, &task, 0, lists_bytes(1024)}, row);

@@ -239,7 +239,7 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
     work->inverse = 1 / work->unit;
     work->centre[0] = scene->x[place], work->centre[1] = scene->y[place], work->centre[2] = scene->z[place];
     work->reach = cutoff > 0 ? cutoff * (1 + 1e-12) * work->inverse : __builtin_inf();
-    work->cut = cutoff > 0 || scene->region;
+    work->cut = cutoff > 0;
     work->step = stride.first * scene->spacing * work->inverse;
     work->growth = stride.growth;
     const double thin = scene->spacing / scene->facts.radius_max;

@@ -69,7 +69,7 @@ typedef struct fibrad_workspace {
     double clear_mesh;         /* lower bound of the distance from the centre to a triangle */
     uint32_t windows;          /* number of windows of a beam row */
     uint32_t back;             /* a triangle seen from a side that belongs to no wall; UINT32_MAX: none */
-    bool cut;                  /* whether there is a cutoff or a known region */
+    bool cut;                  /* whether there is a cutoff */
     double bare;               /* what spheres leave open of the last window, as if there were no triangles */
     double open_error;         /* estimated error of what a row along directions has open */
     bool parallel, turned;     /* whether open lines keep the direction of their window, all or those to triangles */

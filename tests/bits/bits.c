@@ -146,7 +146,7 @@ static void add_wall(fibrad_wall *wall, uint32_t place, fibrad_wall fields) {
     wall[walls++] = fields;
 }
 
-/* Makes the scene. Its walls are in the order of wall_of. part: NULL, or known region, occupancy and ids. */
+/* Makes the scene. Its walls are in the order of wall_of. part: NULL, or occupancy and ids. */
 static int scene_part(void *memory, size_t size, const struct scene *s, int isa, const fibrad_scene_config *part,
                       const uint64_t *id, fibrad_scene **scene) {
     const double low = -.95, high = s->spacing * (s->side - 1) - low, middle = (low + high) / 2;
@@ -445,23 +445,21 @@ static int hash_exchange(const struct scene *s, int isa) {
     return walls == 0 && s->bounds == PERIODIC ? hash_walk(s, scene, carried) : 0;
 }
 
-/* Rows of a part of a bed with a cutoff, a known region and an occupancy: beams by areas, by points and turned, cast
+/* Rows of a part of a bed with a cutoff, without and with an occupancy: beams by areas, by points and turned, cast
  * and exchange. The powers that follow from them are hashed, too. */
 static int hash_part(const struct scene *s, int isa) {
-    static const char *const names[] = {"cut", "region", "part"};
     static const uint64_t mark[] = {UINT64_C(0x0f3c55aa00ff9981)};
     static uint64_t id[SPHERES];
     const fibrad_occupancy occupancy = {
         .low = {-2, -2, -2}, .high = {7, 8, 9}, .cells = {4, 4, 4}, .periodic = {1, 0, 1}, .mark = mark};
     for (uint32_t i = 0; i < s->n; i++) id[i] = (uint64_t)(s->n - i) << 40;
     (void)sources_of(s, 9, .2, 1);
-    for (int which = s->bounds == PERIODIC ? 2 : 0; which < 3; which++) {
-        fibrad_scene_config config = {.occupancy = which == 2 ? &occupancy : NULL};
-        if (which == 1) config.known_low[2] = -1, config.known_high[2] = 3;
+    for (int occupied = s->bounds == PERIODIC; occupied < 2; occupied++) {
+        const fibrad_scene_config config = {.occupancy = occupied ? &occupancy : NULL};
         fibrad_scene *scene;
         if (scene_part(scene_memory, sizeof scene_memory, s, isa, &config, id, &scene)) return 1;
         for (uint32_t b = 0; b < walls; b++) wall_emissivity[b] = wall_emissivity[wall_of[b]];
-        const double cutoff = which == 1 ? 0 : 3.1;
+        const double cutoff = 3.1;
         hash_begin();
         fibrad_rows_clear(&rows);
         for (uint32_t i = 0; i < s->n; i++) {
@@ -496,36 +494,8 @@ static int hash_part(const struct scene *s, int isa) {
         for (uint32_t i = 0; i < s->n; i++) hash_number(power[i]);
         hash_walls(wall_power);
         hash_number(flow.surroundings_power);
-        tell(s->name, names[which]);
+        tell(s->name, occupied ? "part" : "cut");
     }
-    return 0;
-}
-
-/* Drift in a bed in which a few spheres have moved: some a little, some so far that they come into sight of others. */
-static int hash_moved(const struct scene *s, int isa) {
-    static unsigned char now_memory[FIBRAD_SCENE_BYTES(SPHERES)];
-    static uint32_t old_col[SPHERES];
-    static double old_f[SPHERES], error[SPHERES], seen[SPHERES];
-    fibrad_scene *before, *now;
-    if (set_up(s, isa, &before)) return 1;
-    for (uint32_t i = 0; i < s->n; i += 29) x[i] += random_in(-.02, .02), z[i] += i % 2 ? .35 : .01;
-    if (scene_at(now_memory, sizeof now_memory, s, isa, &now)) return 1;
-    const fibrad_beam_rule rule = {.directions = 20, .points = 64};
-    for (uint32_t i = 0; i < s->n; i++) seen[i] = 0;
-    for (uint32_t i = 0; i < s->n; i++) {
-        fibrad_row old = {.col = old_col, .f = old_f, .capacity = SPHERES}, row = row_here();
-        if (fibrad_beam_row(before, &work, i, &rule, &old) != FIBRAD_OK ||
-            fibrad_beam_row(now, &work, i, &rule, &row) != FIBRAD_OK ||
-            fibrad_drift_row(before, now, i, old.col, old.length, &error[i]) != FIBRAD_OK ||
-            fibrad_drift_partners(now, i, &old, &row, seen) != FIBRAD_OK)
-            return 1;
-    }
-    hash_begin();
-    for (uint32_t i = 0; i < s->n; i++) hash_number(error[i]);
-    tell(s->name, "moved.error");
-    hash_begin();
-    for (uint32_t i = 0; i < s->n; i++) hash_number(seen[i]);
-    tell(s->name, "moved.seen");
     return 0;
 }
 
@@ -662,7 +632,6 @@ int main(int argc, char **argv) {
     }
     failed |= hash_furnace();
     make(&scenes[1]);
-    failed |= hash_moved(&scenes[1], isa);
     for (size_t k = 0; k < sizeof small / sizeof *small; k++) {
         make(&small[k]);
         failed |= hash_small(&small[k], isa);

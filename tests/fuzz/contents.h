@@ -41,14 +41,9 @@ struct contents {
     fibrad_triangles triangles;
 };
 
-/* A known region, an occupancy, or both. */
+/* An occupancy, or none. */
 static inline void any_surroundings(struct contents *c) {
     const uint8_t which = byte();
-    if (which % 2 == 0) {
-        const uint32_t axis = which / 2 % 3;
-        c->config.known_high[axis] = length();
-        if (which > 128) c->config.known_low[axis] = length();
-    }
     c->occupied = which % 4 != 0;
     c->occupancy = (fibrad_occupancy){.cells = {1 + byte() % 8, 1 + byte() % 8, 1 + byte() % 8}};
     for (int axis = 0; axis < 3; axis++) {

@@ -34,14 +34,6 @@ struct session {
     bool wide;     /* the input asks for everything: parts of rows, rows of walls, triangles, unknown temperatures */
 };
 
-/* If nothing moves, the drift of every row is 0. */
-static void check_unmoved(const fibrad_scene *scene, uint32_t n, const fibrad_row *row) {
-    double error[SPHERES] = {0}, moved;
-    REQUIRE(fibrad_drift_row(scene, scene, row->sphere, row->col, row->length, &moved) == FIBRAD_OK && moved == 0);
-    REQUIRE(fibrad_drift_partners(scene, row->sphere, row, row, error) == FIBRAD_OK);
-    for (uint32_t j = 0; j < n; j++) REQUIRE(error[j] == 0);
-}
-
 enum { BEAM, CAST, RAYS, SURFACE, EXCHANGE, METHODS };
 
 /* The method of the next row. */
@@ -146,7 +138,6 @@ static void try_row(struct session *s) {
             for (uint32_t b = 0; b < walls; b++) REQUIRE(row.wall[b] == 0);
         } else {
             check_row(&row, s->scene, i, m.kind == BEAM ? m.beam.points : m.kind != EXCHANGE);
-            check_unmoved(s->scene, s->contents.n, &row);
         }
         for (uint32_t k = 0; m.kind == CAST && !append && k < row.length; k++)
             REQUIRE(means.length[k] >= 0 && means.angle[k] >= 0 && means.angle[k] < 1.6);
@@ -202,28 +193,6 @@ static fibrad_scene *other_scene(struct session *s, struct contents *c) {
     free(s->other_block);
     s->other_memory = memory_of(s->size, byte() % 64, &s->other_block);
     return build(&other, s->other_memory, s->size, c) == FIBRAD_OK ? other : NULL;
-}
-
-static void try_drift(struct session *s) {
-    struct contents moved;
-    if (s->of_other) return; /* the heat problem needs it */
-    const fibrad_scene *now = other_scene(s, &moved);
-    if (now == NULL || s->contents.n == 0) return;
-    const uint32_t i = number() % s->contents.n;
-    uint32_t col[SPHERES];
-    double f[SPHERES], wall[WALLS], later_f[SPHERES], error[SPHERES] = {0}, own;
-    fibrad_row before = {.col = col, .f = f, .wall = wall, .capacity = SPHERES}, later = before;
-    uint32_t later_col[SPHERES];
-    later.col = later_col, later.f = later_f;
-    const fibrad_beam_rule rule = {.directions = 8 + byte() % 8, .points = 64};
-    if (fibrad_beam_row(s->scene, &s->work, i, &rule, &before) != FIBRAD_OK ||
-        fibrad_beam_row(now, &s->work, i, &rule, &later) != FIBRAD_OK)
-        return;
-    REQUIRE(fibrad_drift_row(s->scene, now, i, col, before.length, &own) == FIBRAD_OK);
-    REQUIRE(fibrad_drift_partners(now, i, &before, &later, error) == FIBRAD_OK);
-    if (!plain) return;
-    REQUIRE(own >= 0 && isfinite(own));
-    for (uint32_t j = 0; j < s->contents.n; j++) REQUIRE(error[j] >= 0 && isfinite(error[j]));
 }
 
 /* Replaces the work memory, or the contents of the scene. */
@@ -805,8 +774,6 @@ static void try_scene(bool walled, bool meshed) {
             try_displacement(&s);
             break;
         case 4:
-            try_drift(&s);
-            break;
         case 5:
         case 6:
         case 7:

@@ -34,8 +34,8 @@ class Triangles(Structure):
 
 class SceneConfig(Structure):
     _fields_ = [("isa", c_int), ("period", c_double * 3), ("wall", POINTER(Wall)), ("walls", c_uint32),
-                ("opening", POINTER(Plane)), ("openings", c_uint32), ("known_low", c_double * 3),
-                ("known_high", c_double * 3), ("occupancy", POINTER(Occupancy)), ("triangles", POINTER(Triangles))]
+                ("opening", POINTER(Plane)), ("openings", c_uint32), ("occupancy", POINTER(Occupancy)),
+                ("triangles", POINTER(Triangles))]
 
 
 class Spheres(Structure):
