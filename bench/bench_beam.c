@@ -31,14 +31,14 @@ static void bench_whole(struct centre *centre, uint32_t lines) {
     struct centre_error sum = {0};
     for (int round = 0; round < 3; ++round) {
         const double begun = bench_thread_seconds();
-        fibrad_bed_factors *factors = bench_factors(&centre->bed, &(fibrad_bed_options){.beam = &rule}, 1);
+        fibrad_bed_matrix *factors = bench_factors(&centre->bed, &(fibrad_bed_rule){.beam = &rule}, 1);
         best = fmin(best, bench_thread_seconds() - begun);
         sum = (struct centre_error){0};
         for (uint32_t k = 0; k < centre->rows; ++k) {
             centre_spread(centre, bench_matrix_entries(&factors->matrix, centre->sphere[k]), full);
             centre_add_error(centre, k, full, &sum);
         }
-        fibrad_bed_free(factors);
+        fibrad_bed_matrix_free(factors);
     }
     centre_print("whole", "lines", lines, best * centre->rows / centre->bed.n, &sum);
     free(full);

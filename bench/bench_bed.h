@@ -57,12 +57,12 @@ static inline void bench_row(const fibrad_scene *scene, fibrad_work *work, const
     bench_check("row", bench_try_row(scene, work, method, i, row));
 }
 
-/* Factors of a whole bed. The caller frees them by fibrad_bed_free. */
-static inline fibrad_bed_factors *bench_factors(const struct bed *bed, const fibrad_bed_options *options, int threads) {
+/* Factors of a whole bed. The caller frees them by fibrad_bed_matrix_free. */
+static inline fibrad_bed_matrix *bench_factors(const struct bed *bed, const fibrad_bed_rule *options, int threads) {
     const fibrad_spheres spheres = bench_spheres(bed);
     const fibrad_scene_config config = bench_config(bed, FIBRAD_ISA_BEST);
     fibrad_run run = {.threads = threads};
-    fibrad_bed_factors *factors = NULL;
+    fibrad_bed_matrix *factors = NULL;
     bench_check("factors", fibrad_view_factors(&config, &spheres, options, &run, &factors));
     return factors;
 }

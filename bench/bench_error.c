@@ -13,10 +13,10 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-static fibrad_bed_factors *rows_of(const struct bed *bed, uint32_t directions, uint32_t points, int raw,
+static fibrad_bed_matrix *rows_of(const struct bed *bed, uint32_t directions, uint32_t points, int raw,
                                    const unsigned char *wanted) {
     const fibrad_beam_rule rule = {.directions = directions, .points = points};
-    const fibrad_bed_options options = {.beam = &rule, .raw = raw, .wanted = wanted};
+    const fibrad_bed_rule options = {.beam = &rule, .raw = raw, .wanted = wanted};
     return bench_factors(bed, &options, 0);
 }
 
@@ -34,14 +34,14 @@ int main(int argc, char **argv) {
     for (uint32_t i = 0; i < bed.n; i++)
         wanted[i] =
             fmin(fmin(fmin(bed.x[i], bed.y[i]), bed.z[i]), edge - fmax(fmax(bed.x[i], bed.y[i]), bed.z[i])) >= 4;
-    fibrad_bed_factors *truth = rows_of(&bed, fine, 0, 1, wanted);
+    fibrad_bed_matrix *truth = rows_of(&bed, fine, 0, 1, wanted);
     printf("# fibrad %s; random bed of 1000, radii 0.8-1.2, solid fraction 0.55; truth n = %u\n", fibrad_version(),
            fine);
     printf("directions,points,averaged,rows,median,mean,largest,seconds\n");
     for (size_t d = 0; d < (quick ? 1 : sizeof directions / sizeof *directions); d++)
         for (uint32_t points = 0; points <= 256; points = points ? 2 * points : 64)
             for (int raw = 1; raw >= 0; raw--) {
-                fibrad_bed_factors *factors = rows_of(&bed, directions[d], points, raw, NULL);
+                fibrad_bed_matrix *factors = rows_of(&bed, directions[d], points, raw, NULL);
                 uint32_t rows = 0;
                 double sum = 0;
                 for (uint32_t i = 0; i < bed.n; i++) {
@@ -53,9 +53,9 @@ int main(int argc, char **argv) {
                 printf("%u,%u,%d,%u,%.3g,%.3g,%.3g,%.3f\n", directions[d], points, !raw, rows, error[rows / 2],
                        sum / rows, error[rows - 1], factors->seconds);
                 fflush(stdout);
-                fibrad_bed_free(factors);
+                fibrad_bed_matrix_free(factors);
             }
-    fibrad_bed_free(truth);
+    fibrad_bed_matrix_free(truth);
     free(error);
     free(wanted);
     bed_free(&bed);

@@ -38,11 +38,11 @@ static void note(struct samples *samples, const fibrad_factors *matrix, const fi
 static void compare(const struct bed *bed, const fibrad_factors *truth, const unsigned char *wanted, uint32_t step,
                     bool raw) {
     const fibrad_beam_rule rule = {.directions = directions[step]};
-    const fibrad_bed_options options = {.beam = &rule, .raw = raw, .wanted = raw ? wanted : NULL};
-    fibrad_bed_factors *factors = bench_factors(bed, &options, 1);
+    const fibrad_bed_rule options = {.beam = &rule, .raw = raw, .wanted = raw ? wanted : NULL};
+    fibrad_bed_matrix *factors = bench_factors(bed, &options, 1);
     for (uint32_t i = 0; i < bed->n; ++i)
         if (wanted[i]) note(&kinds[step][!raw], &factors->matrix, truth, i);
-    fibrad_bed_free(factors);
+    fibrad_bed_matrix_free(factors);
 }
 
 /* Adds the rows of a bed to all kinds. */
@@ -51,12 +51,12 @@ static void add(const struct bed *bed) {
     unsigned char *wanted = bench_array(bed->n, 1);
     const uint32_t rows = bed->n < ROWS ? bed->n : ROWS;
     for (uint32_t k = 0; k < rows; ++k) wanted[(uint64_t)bed->n * (2 * k + 1) / (2 * rows)] = 1;
-    fibrad_bed_factors *truth = bench_factors(bed, &(fibrad_bed_options){.beam = &rule, .wanted = wanted}, 1);
+    fibrad_bed_matrix *truth = bench_factors(bed, &(fibrad_bed_rule){.beam = &rule, .wanted = wanted}, 1);
     for (uint32_t step = 0; step < STEPS; ++step) {
         compare(bed, &truth->matrix, wanted, step, true);
         if (step < ALL_ROWS) compare(bed, &truth->matrix, wanted, step, false);
     }
-    fibrad_bed_free(truth);
+    fibrad_bed_matrix_free(truth);
     free(wanted);
 }
 

@@ -156,7 +156,7 @@ static void measure_rows(const struct bench *bench, const struct bed *bed, doubl
     const fibrad_spheres spheres = bench_spheres(bed);
     const fibrad_scene_config config = bench_config(bed, FIBRAD_ISA_BEST);
     fibrad_run run = {.threads = 2};
-    fibrad_bed_factors *factors;
+    fibrad_bed_matrix *factors;
     double error = 0, size = 0, estimate = 0;
     bench_check("factors", fibrad_exchange_factors(&config, &spheres, &rule, NULL, &run, &factors));
     for (uint32_t k = 0; k < ROWS; ++k) {
@@ -173,7 +173,7 @@ static void measure_rows(const struct bench *bench, const struct bed *bed, doubl
     printf("rows,%.1f,%u,0,%.3e,%.3e,%.3e,%.3e,%.0f\n", emissivity, factors->directions, sqrt(error),
            sqrt(error / size), sqrt(estimate), factors->seconds, (double)factors->rays / bed->n);
     fflush(stdout);
-    fibrad_bed_free(factors);
+    fibrad_bed_matrix_free(factors);
 }
 
 static void find_truth(struct bench *bench, uint32_t paths) {

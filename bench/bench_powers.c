@@ -127,10 +127,10 @@ static void bench_patches(struct powers *p, const fibrad_heat_config *heat) {
     free(place);
 }
 
-static fibrad_bed_factors *make_factors(struct powers *p, double tolerance) {
+static fibrad_bed_matrix *make_factors(struct powers *p, double tolerance) {
     const fibrad_exchange_rule rule = {.emissivity = p->emissivity, .tolerance = tolerance};
     fibrad_run run = {.threads = 1};
-    fibrad_bed_factors *factors;
+    fibrad_bed_matrix *factors;
     bench_check("factors", fibrad_exchange_factors(&p->config, &p->spheres, &rule, NULL, &run, &factors));
     return factors;
 }
@@ -151,7 +151,7 @@ static void bench_factors_alone(struct powers *p, double tolerance) {
     char setting[40];
     const double begun = bench_thread_seconds();
     double one = 0;
-    fibrad_bed_factors *factors = make_factors(p, tolerance);
+    fibrad_bed_matrix *factors = make_factors(p, tolerance);
     for (int field = 0; field < p->fields; field++) {
         set_field(p, field);
         powers_by_factors(p, &factors->matrix);
@@ -160,7 +160,7 @@ static void bench_factors_alone(struct powers *p, double tolerance) {
     }
     snprintf(setting, sizeof setting, "%g", tolerance);
     print_costs(p, "factors", setting, one, bench_thread_seconds() - begun, one);
-    fibrad_bed_free(factors);
+    fibrad_bed_matrix_free(factors);
 }
 
 /* The change of the powers by D since the last correction, over their norm. */
@@ -177,7 +177,7 @@ static void bench_corrected(struct powers *p) {
     double *compared = bench_array(n, sizeof *compared), one = 0;
     const double begun = bench_thread_seconds();
     fibrad_radiation *radiation = trace_patches(p, NULL);
-    fibrad_bed_factors *factors = make_factors(p, ROUGH);
+    fibrad_bed_matrix *factors = make_factors(p, ROUGH);
     int solutions = 0;
     for (int field = 0; field < p->fields; field++) {
         set_field(p, field);
@@ -195,7 +195,7 @@ static void bench_corrected(struct powers *p) {
     snprintf(setting, sizeof setting, "%d by patches", solutions);
     print_costs(p, "corrected", setting, one, bench_thread_seconds() - begun, one);
     fibrad_radiation_free(radiation);
-    fibrad_bed_free(factors);
+    fibrad_bed_matrix_free(factors);
     free(compared);
 }
 

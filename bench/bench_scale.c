@@ -42,7 +42,7 @@ static int bench(uint32_t n, int threads) {
     if (status) return status;
     const fibrad_beam_rule rule = {.directions = LINES};
     const clock_t begun = clock();
-    fibrad_bed_factors *factors = bench_factors(&bed, &(fibrad_bed_options){.beam = &rule}, threads);
+    fibrad_bed_matrix *factors = bench_factors(&bed, &(fibrad_bed_rule){.beam = &rule}, threads);
     const double processor = (double)(clock() - begun) / CLOCKS_PER_SEC;
     printf("%u,%d,%llu,%.3f,%.2f,%.3f,%.0f,%.1e\n", bed.n, threads, (unsigned long long)factors->matrix.start[bed.n],
            factors->seconds, 1e6 * factors->seconds / bed.n, 1e6 * processor / bed.n / LINES, peak_bytes() / bed.n,
@@ -50,7 +50,7 @@ static int bench(uint32_t n, int threads) {
     fflush(stdout);
     if (!(factors->closure_error < 1e-12 && factors->reciprocity_error < 1e-14))
         status = message(STATUS_INPUT, "bench_scale: the rows are wrong");
-    fibrad_bed_free(factors);
+    fibrad_bed_matrix_free(factors);
     bed_free(&bed);
     return status;
 }

@@ -42,15 +42,15 @@ static void print(double ratio, const char *size, const struct cost *cost, doubl
 static void bench_whole(double ratio, const struct bed *bed, double *whole) {
     const fibrad_spheres spheres = bench_spheres(bed);
     const fibrad_scene_config config = bench_config(bed, FIBRAD_ISA_BEST);
-    const fibrad_bed_options options = {.beam = &(fibrad_beam_rule){.directions = DIRECTIONS}};
+    const fibrad_bed_rule options = {.beam = &(fibrad_beam_rule){.directions = DIRECTIONS}};
     fibrad_run run = {.threads = 1};
-    fibrad_bed_factors *factors;
+    fibrad_bed_matrix *factors;
     const double begun = bench_thread_seconds();
     bench_check("whole", fibrad_view_factors(&config, &spheres, &options, &run, &factors));
     const struct cost cost = {bench_thread_seconds() - begun, (double)factors->matrix.start[bed->n], bed->n};
     if (ratio <= 1) *whole = cost.seconds / cost.entries;
     print(ratio, "whole", &cost, *whole);
-    fibrad_bed_free(factors);
+    fibrad_bed_matrix_free(factors);
 }
 
 /* Large spheres come first in the bed. Every `skip`th small sphere is enough. equal: times of an entry of single rows,
@@ -106,14 +106,14 @@ static int bench_shell(uint32_t count) {
     struct bed bed = bed_empty();
     const int status = make_shell(&bed, count);
     const fibrad_spheres spheres = bench_spheres(&bed);
-    const fibrad_bed_options options = {.beam = &(fibrad_beam_rule){.directions = 50}};
+    const fibrad_bed_rule options = {.beam = &(fibrad_beam_rule){.directions = 50}};
     puts("shell_of,threads,seconds");
     for (int threads = 1; threads <= 2 && !status; ++threads) {
         fibrad_run run = {.threads = threads};
-        fibrad_bed_factors *factors;
+        fibrad_bed_matrix *factors;
         bench_check("shell", fibrad_view_factors(NULL, &spheres, &options, &run, &factors));
         printf("%u,%d,%.2f\n", count, threads, factors->seconds);
-        fibrad_bed_free(factors);
+        fibrad_bed_matrix_free(factors);
     }
     bed_free(&bed);
     return status;

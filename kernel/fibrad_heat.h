@@ -68,6 +68,12 @@ int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad
  *            _SIZE: walls, or small spheres beside large ones, need more patches than the memory has room for */
 int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene);
 
+/* Has the first solution of a new problem start from the last one of another problem of the same scene. A surface that
+ * has another number of patches starts from the mean of its radiosities.
+ *   Errors   _ARGUMENT
+ *            _STATE: `last` has no solution, or is of another scene; the new problem starts anew */
+int fibrad_heat_resume(fibrad_heat *heat, const fibrad_heat *last);
+
 /* Number of tasks for fibrad_heat_trace: one for each sphere, and some for the walls and for fine patches.
  *   Errors   0 if heat is NULL */
 uint32_t fibrad_heat_tasks(const fibrad_heat *heat);

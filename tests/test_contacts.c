@@ -218,7 +218,7 @@ static double end_temperature(const struct joint *j, const double *t, uint32_t e
 }
 
 /* Temperatures by Newton's method with exchange factors. t: first guess, and out. q: radiative powers, out. */
-static void by_newton(const struct joint *j, const fibrad_bed_factors *d, double *t, double *q) {
+static void by_newton(const struct joint *j, const fibrad_bed_matrix *d, double *t, double *q) {
     const uint32_t n = j->bed.n;
     static double matrix[MOST * MOST], left[MOST];
     for (int round = 0; round < 60; round++) {

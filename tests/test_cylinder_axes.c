@@ -129,7 +129,7 @@ TEST(beds_turn_with_the_axes) {
         double emissivity[40], temperature[40], wall[3] = {.5, .8, .3}, hot[3] = {500, 900, 300}, at_wall[3];
         for (uint32_t i = 0; i < can.bed.n; i++) emissivity[i] = .7, temperature[i] = 400 + 5 * i;
         assert_ok(fibrad_view_factors(&can.config, &spheres,
-                                      &(fibrad_bed_options){.beam = &(fibrad_beam_rule){.directions = 500}}, NULL, &f));
+                                      &(fibrad_bed_rule){.beam = &(fibrad_beam_rule){.directions = 500}}, NULL, &f));
         const fibrad_exchange_rule rule = {
             .emissivity = emissivity, .wall_emissivity = wall, .directions = 100, .paths = 1000};
         assert_ok(fibrad_exchange_factors(&can.config, &spheres, &rule, NULL, NULL, &d));

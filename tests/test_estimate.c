@@ -18,26 +18,26 @@ static const struct {
 } beds[] = {{"random", random_bed}, {"sparse", sparse_bed}, {"sizes 1:4", unequal_bed}, {"cubic", cubic_bed}};
 enum { BEDS = sizeof beds / sizeof *beds };
 
-static fibrad_bed_factors *rows(const struct bed *bed, const fibrad_beam_rule *rule, bool raw,
+static fibrad_bed_matrix *rows(const struct bed *bed, const fibrad_beam_rule *rule, bool raw,
                                 const unsigned char *wanted) {
     const fibrad_spheres spheres = bed_spheres(bed);
     const fibrad_scene_config config = bed_scene(bed, NULL);
-    const fibrad_bed_options options = {.beam = rule, .wanted = wanted, .raw = raw};
+    const fibrad_bed_rule options = {.beam = rule, .wanted = wanted, .raw = raw};
     fibrad_run run = {.threads = 1};
-    fibrad_bed_factors *factors = NULL;
+    fibrad_bed_matrix *factors = NULL;
     assert_ok(fibrad_view_factors(&config, &spheres, &options, &run, &factors));
     return factors;
 }
 
 /* Finds ROWS rows of a bed with many directions, and says which they are. */
-static fibrad_bed_factors *truth_of(const struct bed *bed, unsigned char wanted[1000]) {
+static fibrad_bed_matrix *truth_of(const struct bed *bed, unsigned char wanted[1000]) {
     ck_assert_uint_lt(bed->n, 1000);
     memset(wanted, 0, 1000);
     for (uint32_t k = 0; k < ROWS; k++) wanted[bed->n * (2 * k + 1) / (2 * ROWS)] = 1;
     return rows(bed, &(fibrad_beam_rule){.directions = 10000}, true, wanted);
 }
 
-static double distance_of(const fibrad_bed_factors *a, const fibrad_bed_factors *b, uint32_t i) {
+static double distance_of(const fibrad_bed_matrix *a, const fibrad_bed_matrix *b, uint32_t i) {
     const fibrad_row of_a = matrix_row(&a->matrix, i), of_b = matrix_row(&b->matrix, i);
     return row_distance(&of_a, &of_b);
 }
@@ -192,12 +192,12 @@ static double distance_with_walls(const fibrad_row *a, const fibrad_row *b, uint
     return sqrt(square);
 }
 
-static fibrad_bed_factors *rows_among(const struct bed *bed, const fibrad_scene_config *config,
+static fibrad_bed_matrix *rows_among(const struct bed *bed, const fibrad_scene_config *config,
                                       const fibrad_beam_rule *rule, bool raw, const unsigned char *wanted) {
     const fibrad_spheres spheres = bed_spheres(bed);
-    const fibrad_bed_options options = {.beam = rule, .wanted = wanted, .raw = raw};
+    const fibrad_bed_rule options = {.beam = rule, .wanted = wanted, .raw = raw};
     fibrad_run run = {.threads = 1};
-    fibrad_bed_factors *factors = NULL;
+    fibrad_bed_matrix *factors = NULL;
     assert_ok(fibrad_view_factors(config, &spheres, &options, &run, &factors));
     return factors;
 }
@@ -273,11 +273,11 @@ TEST(one_entry_is_no_luck) {
 
 /* ---- exchange factors ------------------------------------------------------------------------------------------- */
 
-static fibrad_bed_factors *exchange(const struct bed *bed, const fibrad_exchange_rule *rule, bool raw) {
+static fibrad_bed_matrix *exchange(const struct bed *bed, const fibrad_exchange_rule *rule, bool raw) {
     const fibrad_spheres spheres = bed_spheres(bed);
-    const fibrad_bed_options options = {.raw = raw};
+    const fibrad_bed_rule options = {.raw = raw};
     fibrad_run run = {.threads = 1};
-    fibrad_bed_factors *factors = NULL;
+    fibrad_bed_matrix *factors = NULL;
     assert_ok(fibrad_exchange_factors(NULL, &spheres, rule, &options, &run, &factors));
     return factors;
 }
@@ -308,8 +308,8 @@ LOOP_TEST(small_beside_large_sampled, 2) {
     const fibrad_spheres spheres = bed_spheres(&bed);
     const fibrad_beam_rule points = {.points = 64};
     const fibrad_cast_rule rays = {.rays = 20000};
-    const fibrad_bed_options options =
-        _i == 0 ? (fibrad_bed_options){.beam = &points} : (fibrad_bed_options){.cast = &rays};
+    const fibrad_bed_rule options =
+        _i == 0 ? (fibrad_bed_rule){.beam = &points} : (fibrad_bed_rule){.cast = &rays};
     double truth;
     OWNED_FACTORS *f = NULL;
     assert_ok(fibrad_pair_exact(.03, .3, 3e-5, &truth));

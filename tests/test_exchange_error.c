@@ -17,7 +17,7 @@ struct room {
 static const struct room rooms[] = {{8, 5, .3, .8, .02}, {15, 2, .6, .9, .5}, {12, 6, .1, .5, .3}, {6, 6, .8, .8, .1}};
 
 /* Computes the matrix of a room. */
-static fibrad_bed_factors *factors_of(const struct room *room, double tolerance, uint64_t seed) {
+static fibrad_bed_matrix *factors_of(const struct room *room, double tolerance, uint64_t seed) {
     static const int axis[WALLS] = {2, 0, 0, 1, 1, 2}, upper[WALLS] = {0, 0, 1, 0, 1, 1};
     double emissivity[MOST], wall_emissivity[WALLS];
     fibrad_wall wall[WALLS];
@@ -38,7 +38,7 @@ static fibrad_bed_factors *factors_of(const struct room *room, double tolerance,
     const fibrad_exchange_rule rule = {
         .emissivity = emissivity, .wall_emissivity = wall_emissivity, .tolerance = tolerance, .seed = seed};
     const fibrad_spheres spheres = spheres_of(&bed);
-    fibrad_bed_factors *factors = NULL;
+    fibrad_bed_matrix *factors = NULL;
     assert_ok(fibrad_exchange_factors(&scene, &spheres, &rule, NULL, NULL, &factors));
     return factors;
 }

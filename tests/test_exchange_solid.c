@@ -175,7 +175,7 @@ static struct hot_bed hot_bed(uint32_t n, double emissivity, double relative) {
     return h;
 }
 
-static fibrad_bed_factors *factors_of(const struct hot_bed *h, uint32_t paths, uint64_t seed) {
+static fibrad_bed_matrix *factors_of(const struct hot_bed *h, uint32_t paths, uint64_t seed) {
     const fibrad_spheres spheres = spheres_of(&h->bed);
     const fibrad_exchange_rule rule = {.emissivity = h->emissivity,
                                        .paths = paths,
@@ -183,7 +183,7 @@ static fibrad_bed_factors *factors_of(const struct hot_bed *h, uint32_t paths, u
                                        .seed = seed,
                                        .conductivity = h->relative,
                                        .node_emissivity = h->node};
-    fibrad_bed_factors *factors;
+    fibrad_bed_matrix *factors;
     assert_ok(fibrad_exchange_factors(&h->config, &spheres, &rule, NULL, NULL, &factors));
     return factors;
 }
@@ -255,12 +255,12 @@ TEST(good_conductors) {
     double power[2][MOST];
     const fibrad_spheres spheres = spheres_of(&h.bed);
     const fibrad_exchange_rule plain = {.emissivity = h.emissivity, .paths = 2000, .directions = 400, .seed = 1};
-    fibrad_bed_factors *one, *all = factors_of(&h, 2000, 1);
+    fibrad_bed_matrix *one, *all = factors_of(&h, 2000, 1);
     assert_ok(fibrad_exchange_factors(NULL, &spheres, &plain, NULL, NULL, &one));
     ck_assert(matrix_same_bits(&one->matrix, &all->matrix));
     powers_by_rows(&h, &one->matrix, power[0]);
-    fibrad_bed_free(one);
-    fibrad_bed_free(all);
+    fibrad_bed_matrix_free(one);
+    fibrad_bed_matrix_free(all);
     for (uint32_t i = 0; i < h.bed.n; ++i) {
         h.relative[i] = 1e6, h.node[i] = fibrad_node_emissivity(.7, 1e6);
         ck_assert_double_lt(h.node[i], .7);
@@ -268,7 +268,7 @@ TEST(good_conductors) {
     all = factors_of(&h, 2000, 1);
     powers_by_rows(&h, &all->matrix, power[1]);
     ck_assert_double_le(difference_of(power[1], power[0], h.bed.n), 1e-4);
-    fibrad_bed_free(all);
+    fibrad_bed_matrix_free(all);
 }
 
 /* Impossible numbers are refused: nodes without conductivities, nodes above the emissivity, k* too small or NaN. Both

@@ -10,11 +10,11 @@
 #include "scenes.h"
 #include "suite.h"
 
-static fibrad_bed_factors *factors_of(const struct bed *bed, const fibrad_scene_config *config,
+static fibrad_bed_matrix *factors_of(const struct bed *bed, const fibrad_scene_config *config,
                                       const fibrad_beam_rule *rule) {
     const fibrad_spheres spheres = spheres_of(bed);
-    fibrad_bed_factors *factors = NULL;
-    assert_ok(fibrad_view_factors(config, &spheres, &(fibrad_bed_options){.beam = rule}, NULL, &factors));
+    fibrad_bed_matrix *factors = NULL;
+    assert_ok(fibrad_view_factors(config, &spheres, &(fibrad_bed_rule){.beam = rule}, NULL, &factors));
     return factors;
 }
 
@@ -42,7 +42,7 @@ static double sum_of(const fibrad_factors *m, uint32_t i) {
     return sum;
 }
 
-static void check_closed(const fibrad_bed_factors *factors) {
+static void check_closed(const fibrad_bed_matrix *factors) {
     for (uint32_t i = 0; i < factors->matrix.n; i++) ck_assert_double_eq_tol(sum_of(&factors->matrix, i), 1, 1e-13);
     ck_assert_double_le(factors->reciprocity_error, 1e-16);
 }

@@ -54,7 +54,7 @@ TEST(view_factors_are_the_kernels) {
     for (int t = 0; t < 3; t++) {
         fibrad_run run = {.threads = threads[t]};
         OWNED_FACTORS *factors = NULL;
-        assert_ok(fibrad_view_factors(&config, &spheres, &(fibrad_bed_options){.beam = &rule}, &run, &factors));
+        assert_ok(fibrad_view_factors(&config, &spheres, &(fibrad_bed_rule){.beam = &rule}, &run, &factors));
         ck_assert(matrix_same_bits(&factors->matrix, &expected.factors));
         ck_assert_int_eq(factors->threads, threads[t]);
         ck_assert_uint_eq(factors->directions, fibrad_line_set_lines(40));
@@ -90,23 +90,23 @@ TEST(long_rows_are_divided) {
     const fibrad_beam_rule rule = {.directions = 60};
     unsigned char two[300] = {[1] = 1, [200] = 1};
     OWNED_MATRIX expected = kernel_matrix(&bed, &config, &rule, true);
-    fibrad_bed_factors *factors, *alone[3];
+    fibrad_bed_matrix *factors, *alone[3];
     for (int t = 0; t < 3; t++) {
         struct calls calls = {0};
         fibrad_run run = {.threads = threads[t], .progress = count_calls, .context = &calls};
-        fibrad_bed_options options = {.beam = &rule, .raw = 1};
+        fibrad_bed_rule options = {.beam = &rule, .raw = 1};
         assert_ok(fibrad_view_factors(&config, &spheres, &options, &run, &factors));
         ck_assert(matrix_same_bits(&factors->matrix, &expected.factors));
         ck_assert_uint_eq(factors->directions, 60);
         ck_assert(calls.ends == 1 && calls.total == 300);
-        fibrad_bed_free(factors);
+        fibrad_bed_matrix_free(factors);
         run.progress = NULL;
         options.wanted = two;
         assert_ok(fibrad_view_factors(&config, &spheres, &options, &run, &alone[t]));
         ck_assert(matrix_same_bits(&alone[t]->matrix, &alone[0]->matrix));
     }
     ck_assert_uint_gt(alone[0]->matrix.start[300], 100);
-    for (int t = 0; t < 3; t++) fibrad_bed_free(alone[t]);
+    for (int t = 0; t < 3; t++) fibrad_bed_matrix_free(alone[t]);
 }
 
 /* The same holds along lines, with masks and without. A bed of fewer spheres than threads has masks, too. */
@@ -122,7 +122,7 @@ TEST(long_rows_along_lines_are_divided) {
             for (int t = 0; t < 3; t++) {
                 fibrad_run run = {.threads = threads[t]};
                 OWNED_FACTORS *factors = NULL;
-                assert_ok(fibrad_view_factors(&config, &spheres, &(fibrad_bed_options){.beam = &rule}, &run, &factors));
+                assert_ok(fibrad_view_factors(&config, &spheres, &(fibrad_bed_rule){.beam = &rule}, &run, &factors));
                 ck_assert(matrix_same_bits(&factors->matrix, &expected.factors));
             }
         }
@@ -136,7 +136,7 @@ TEST(nothing_depends_on_threads) {
     const fibrad_spheres spheres = spheres_of(&bed);
     unsigned char wanted[200] = {0};
     wanted[3] = wanted[199] = 1;
-    const fibrad_bed_options options[] = {
+    const fibrad_bed_rule options[] = {
         {.beam = &(fibrad_beam_rule){.directions = 21}, .raw = 1},
         {.beam = &(fibrad_beam_rule){.tolerance = .02}},
         {.beam = &(fibrad_beam_rule){.tolerance = .02}, .wanted = wanted},
@@ -145,13 +145,13 @@ TEST(nothing_depends_on_threads) {
         {.surface = &(fibrad_surface_rule){.nodes = 13, .cutoff = 3}},
     };
     for (size_t k = 0; k < sizeof options / sizeof *options; k++) {
-        fibrad_bed_factors *first = NULL, *next;
+        fibrad_bed_matrix *first = NULL, *next;
         for (int t = 0; t < 3; t++) {
             fibrad_run run = {.threads = threads[t]};
             assert_ok(fibrad_view_factors(&config, &spheres, &options[k], &run, &next));
             if (first) {
                 ck_assert(matrix_same_bits(&first->matrix, &next->matrix));
-                fibrad_bed_free(next);
+                fibrad_bed_matrix_free(next);
             } else {
                 first = next;
             }
@@ -162,7 +162,7 @@ TEST(nothing_depends_on_threads) {
             ck_assert(wanted[i] ? matrix->error[i] <= .02 && matrix->start[i + 1] > matrix->start[i]
                                 : matrix->start[i + 1] == matrix->start[i] && matrix->escaped[i] == 0);
         ck_assert_int_eq(isnan(first->reciprocity_error) != 0, options[k].wanted != NULL);
-        fibrad_bed_free(first);
+        fibrad_bed_matrix_free(first);
     }
 }
 
@@ -175,7 +175,7 @@ TEST(exchange_does_not_depend_on_threads) {
     for (int i = 0; i < 150; i++) emissivity[i] = .3 + i / 300.;
     const fibrad_exchange_rule rule = {.emissivity = emissivity, .directions = 20, .paths = 50};
     const fibrad_displacement_rule carried = {.emissivity = emissivity, .paths = 50};
-    fibrad_bed_factors *first = NULL, *next;
+    fibrad_bed_matrix *first = NULL, *next;
     memset(moved, 0, sizeof moved);
     for (int t = 0; t < 3; t++) {
         fibrad_run run = {.threads = threads[t]};
@@ -183,14 +183,14 @@ TEST(exchange_does_not_depend_on_threads) {
         assert_ok(fibrad_exchange_factors(&config, &spheres, &rule, NULL, &run, &next));
         ck_assert_uint_gt(next->rays, 150 * 50);
         if (first) ck_assert(matrix_same_bits(&first->matrix, &next->matrix) && first->rays == next->rays);
-        fibrad_bed_free(first);
+        fibrad_bed_matrix_free(first);
         first = next;
         assert_ok(fibrad_displacements(&config, &spheres, &carried, NULL, &run, moved[t], &facts));
         ck_assert_int_eq(memcmp(moved[t], moved[0], sizeof moved[0]), 0);
         ck_assert_uint_eq(facts.spheres, 150);
     }
     ck_assert_double_lt(first->reciprocity_error, 1e-12);
-    fibrad_bed_free(first);
+    fibrad_bed_matrix_free(first);
 }
 
 /* Spheres that reflect all light have empty rows, which are no fault of closure. A bed of nothing but such spheres is
@@ -208,7 +208,7 @@ TEST(reflectors_have_empty_rows) {
             OWNED_FACTORS *factors = NULL;
             for (int i = 0; i < 150; i++) emissivity[i] = all || i % 5 == 0 ? 0 : .3;
             assert_ok(
-                fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_options){.raw = raw}, NULL, &factors));
+                fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_rule){.raw = raw}, NULL, &factors));
             ck_assert_double_le(factors->closure_error, 1e-12);
             if (!raw) ck_assert_double_le(factors->reciprocity_error, 1e-14);
             ck_assert(factors->reciprocity_error >= 0 && (factors->rays > 0) == !all);
@@ -248,8 +248,8 @@ TEST(factors_in_files) {
         .emissivity = emissivity, .wall_emissivity = wall_emissivity, .directions = 20, .paths = 50};
     ck_assert_ptr_nonnull(mkdtemp(folder));
     for (int k = 0; k < 3; k++) {
-        const fibrad_bed_options kept = {.walls = 1, .raw = k == 1, .drop = k == 2 ? 1e-3 : 0};
-        fibrad_bed_options filed = kept;
+        const fibrad_bed_rule kept = {.walls = 1, .raw = k == 1, .drop = k == 2 ? 1e-3 : 0};
+        fibrad_bed_rule filed = kept;
         OWNED_FACTORS *here = NULL, *there = NULL;
         fibrad_run run = {.threads = threads[k]};
         filed.scratch = folder;
@@ -260,9 +260,9 @@ TEST(factors_in_files) {
         ck_assert(is_filed(there->matrix.f, folder));
     }
     ck_assert_int_eq(rmdir(folder), 0); /* empty */
-    fibrad_bed_factors *none;
+    fibrad_bed_matrix *none;
     ck_assert_int_eq(
-        fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_options){.scratch = folder}, NULL, &none),
+        fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_rule){.scratch = folder}, NULL, &none),
         FIBRAD_E_FILE);
     ck_assert_ptr_null(none);
 }
@@ -272,12 +272,12 @@ TEST(full_disk) {
     OWNED_BED bed = packing(300, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     struct rlimit limit;
-    fibrad_bed_factors *none;
+    fibrad_bed_matrix *none;
     ck_assert_int_eq(getrlimit(RLIMIT_FSIZE, &limit), 0);
     limit.rlim_cur = 100000;
     signal(SIGXFSZ, SIG_IGN);
     ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &limit), 0);
-    const int status = fibrad_view_factors(NULL, &spheres, &(fibrad_bed_options){.scratch = "/tmp"}, NULL, &none);
+    const int status = fibrad_view_factors(NULL, &spheres, &(fibrad_bed_rule){.scratch = "/tmp"}, NULL, &none);
     limit.rlim_cur = limit.rlim_max;
     setrlimit(RLIMIT_FSIZE, &limit); /* the test itself writes, too */
     ck_assert_int_eq(status, FIBRAD_E_MEMORY);
@@ -289,7 +289,7 @@ TEST(full_disk) {
 TEST(faults_name_spheres) {
     OWNED_BED bed = packing(100, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
-    fibrad_bed_factors *factors = (void *)&bed;
+    fibrad_bed_matrix *factors = (void *)&bed;
     fibrad_run run = {.threads = 2};
     double emissivity[100];
     for (int i = 0; i < 100; i++) emissivity[i] = .5;
@@ -299,7 +299,7 @@ TEST(faults_name_spheres) {
     const uint32_t first = 3;
     for (int t = 0; t < 3; t++) {
         run.threads = threads[t];
-        const fibrad_bed_options raw = {.raw = 1};
+        const fibrad_bed_rule raw = {.raw = 1};
         assert_invalid(fibrad_exchange_factors(NULL, &spheres, &rule, &raw, &run, &factors));
         ck_assert(run.fault.first == first && run.fault.second == first && factors == NULL);
         /* paths must not meet spheres without emissivity: displacements of such beds are refused, too */
@@ -325,7 +325,7 @@ TEST(faults_of_divided_rows) {
     OWNED struct mesh *mesh = mesh_new();
     const fibrad_spheres spheres = spheres_of(&bed);
     fibrad_fault first = {0, 0, 0, 0, 0};
-    fibrad_bed_factors *factors;
+    fibrad_bed_matrix *factors;
     mesh_box(mesh, (const double[]){-9, -9, -9}, (const double[]){9, 9, 9}, 0);
     for (uint32_t t = 0; t < mesh->triangles.n; ++t) /* all see its back, which belongs to no wall */
         mesh->back[t] = mesh->front[t], mesh->front[t] = FIBRAD_NO_WALL;
@@ -348,7 +348,7 @@ TEST(arguments) {
     const fibrad_spheres spheres = spheres_of(&bed);
     OWNED_FACTORS *factors;
     fibrad_radiation *radiation;
-    const fibrad_bed_options two = {.beam = &(fibrad_beam_rule){0}, .cast = &(fibrad_cast_rule){0}},
+    const fibrad_bed_rule two = {.beam = &(fibrad_beam_rule){0}, .cast = &(fibrad_cast_rule){0}},
                              drop = {.drop = -1}, nan = {.drop = NAN},
                              points = {.beam = &(fibrad_beam_rule){.points = 3}},
                              between = {.beam = &(fibrad_beam_rule){.points = 192}};
@@ -372,13 +372,13 @@ TEST(arguments) {
     assert_invalid(fibrad_radiation_solve(NULL, NULL, NULL));
     fibrad_radiation_describe(NULL, NULL, NULL);
     fibrad_radiation_free(NULL);
-    fibrad_bed_free(NULL);
+    fibrad_bed_matrix_free(NULL);
     assert_ok(fibrad_view_factors(NULL, &(fibrad_spheres){0}, NULL, NULL, &factors));
     ck_assert(factors->matrix.n == 0 && factors->matrix.start[0] == 0);
-    fibrad_bed_free(factors);
-    const fibrad_bed_options tolerance = {.beam = &(fibrad_beam_rule){.tolerance = .1}};
+    fibrad_bed_matrix_free(factors);
+    const fibrad_bed_rule tolerance = {.beam = &(fibrad_beam_rule){.tolerance = .1}};
     assert_ok(fibrad_view_factors(NULL, &(fibrad_spheres){0}, &tolerance, NULL, &factors));
-    fibrad_bed_free(factors);
+    fibrad_bed_matrix_free(factors);
     omp_set_num_threads(1025); /* the number of OpenMP's threads, up to the largest that is allowed */
     assert_ok(fibrad_view_factors(NULL, &spheres, NULL, NULL, &factors));
     ck_assert_int_eq(factors->threads, 1024);
@@ -389,14 +389,14 @@ TEST(arguments) {
 TEST(progress_and_cancelling) {
     OWNED_BED bed = packing(200, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
-    const fibrad_bed_options options = {.beam = &(fibrad_beam_rule){.directions = 200}};
+    const fibrad_bed_rule options = {.beam = &(fibrad_beam_rule){.directions = 200}};
     for (int t = 0; t < 3; t++) {
         struct calls calls = {0};
         fibrad_run run = {.threads = threads[t], .progress = count_calls, .context = &calls};
-        fibrad_bed_factors *factors;
+        fibrad_bed_matrix *factors;
         assert_ok(fibrad_view_factors(NULL, &spheres, &options, &run, &factors));
         ck_assert(calls.ends == 1 && calls.total == 200 && calls.count >= 2);
-        fibrad_bed_free(factors);
+        fibrad_bed_matrix_free(factors);
         for (uint64_t at = 1; at <= 2; at++) {
             calls = (struct calls){.stop_at = at};
             ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &options, &run, &factors), FIBRAD_E_CANCELLED);
@@ -414,7 +414,7 @@ TEST(progress_of_short_rows) {
     const fibrad_spheres spheres = spheres_of(&bed);
     unsigned char wanted[8400] = {0};
     memset(wanted, 1, 400);
-    const fibrad_bed_options options = {.beam = &(fibrad_beam_rule){.directions = 8}, .wanted = wanted};
+    const fibrad_bed_rule options = {.beam = &(fibrad_beam_rule){.directions = 8}, .wanted = wanted};
     struct calls calls = {0};
     fibrad_run run = {.threads = 2, .progress = count_calls, .context = &calls};
     OWNED_FACTORS *factors = NULL;

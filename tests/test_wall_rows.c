@@ -7,12 +7,12 @@
 #include "suite.h"
 #include "meshes.h"
 
-static fibrad_bed_factors *factors_of(const struct bed *bed, const fibrad_scene_config *config,
-                                      const fibrad_exchange_rule *grey, const fibrad_bed_options *options) {
+static fibrad_bed_matrix *factors_of(const struct bed *bed, const fibrad_scene_config *config,
+                                      const fibrad_exchange_rule *grey, const fibrad_bed_rule *options) {
     const fibrad_spheres spheres = spheres_of(bed);
     fibrad_scene_config whole = *config;
-    fibrad_bed_options with_walls = *options;
-    fibrad_bed_factors *factors;
+    fibrad_bed_rule with_walls = *options;
+    fibrad_bed_matrix *factors;
     memcpy(whole.period, bed->period, sizeof whole.period);
     with_walls.walls = 1;
     const int status = grey ? fibrad_exchange_factors(&whole, &spheres, grey, &with_walls, NULL, &factors)
@@ -22,7 +22,7 @@ static fibrad_bed_factors *factors_of(const struct bed *bed, const fibrad_scene_
     return factors;
 }
 
-static double between(const fibrad_bed_factors *f, uint32_t b, uint32_t c) {
+static double between(const fibrad_bed_matrix *f, uint32_t b, uint32_t c) {
     return f->matrix.wall_wall[b * f->matrix.walls + c];
 }
 
@@ -31,13 +31,13 @@ static double emits(const struct bed *bed, const double *e, uint32_t i) {
     return 4 * PI * bed->r[i] * bed->r[i] * (e ? e[i] : 1);
 }
 
-static double wall_emits(const fibrad_bed_factors *f, const double *e, uint32_t b) {
+static double wall_emits(const fibrad_bed_matrix *f, const double *e, uint32_t b) {
     return f->wall_area[b] * (e ? e[b] : 1);
 }
 
 /* Checks that rows of walls add up to 1 with what they send to spheres, as those of spheres do, and that they are
  * reciprocal. */
-static void check_balance(const struct bed *bed, const fibrad_bed_factors *f, const double *e, const double *wall_e) {
+static void check_balance(const struct bed *bed, const fibrad_bed_matrix *f, const double *e, const double *wall_e) {
     const fibrad_factors *m = &f->matrix;
     for (uint32_t i = 0; i < m->n; i++)
         if (!e || e[i] > 0) ck_assert_double_eq_tol(matrix_total(m, i), 1, 1e-12);
@@ -77,7 +77,7 @@ TEST(empty_box) {
     fibrad_wall wall[6];
     for (int k = 0; k < 6; k++) wall[k] = plane_at(k / 2, k % 2, k % 2 * size[k / 2]);
     OWNED_FACTORS *f =
-        factors_of(&none, &(fibrad_scene_config){.wall = wall, .walls = 6}, NULL, &(fibrad_bed_options){.beam = &fine});
+        factors_of(&none, &(fibrad_scene_config){.wall = wall, .walls = 6}, NULL, &(fibrad_bed_rule){.beam = &fine});
     check_balance(&none, f, NULL, NULL);
     for (uint32_t b = 0; b < 6; b++) {
         const uint32_t axis = b / 2;
@@ -100,7 +100,7 @@ TEST(empty_cylinder) {
         const fibrad_wall wall[3] = {turned_wall(cylinder_at(3, -4, r), turn), turned_wall(plane_at(2, 0, 1), turn),
                                      turned_wall(plane_at(2, 1, 1 + h), turn)};
         OWNED_FACTORS *f = factors_of(&none, &(fibrad_scene_config){.wall = wall, .walls = 3}, NULL,
-                                      &(fibrad_bed_options){.beam = &fine});
+                                      &(fibrad_bed_rule){.beam = &fine});
         const double end_end = discs(r, h), side_end = r / (2 * h) * (1 - end_end);
         check_balance(&none, f, NULL, NULL);
         ck_assert_double_eq_tol(between(f, 1, 2), end_end, 4e-4);
@@ -118,32 +118,32 @@ TEST(open_and_periodic) {
                                plane_at(2, 0, 0)};
     const fibrad_plane lid = {2, 1, .6}, below = {2, 0, -1};
     const fibrad_scene_config open = {.wall = box, .walls = 5, .opening = &lid, .openings = 1};
-    OWNED_FACTORS *f = factors_of(&none, &open, NULL, &(fibrad_bed_options){.beam = &fine});
+    OWNED_FACTORS *f = factors_of(&none, &open, NULL, &(fibrad_bed_rule){.beam = &fine});
     check_balance(&none, f, NULL, NULL);
     for (uint32_t c = 0; c < 4; c++) ck_assert_double_eq_tol(between(f, 4, c), adjacent(1, 1, .6), 4e-4);
     ck_assert_double_eq_tol(f->matrix.wall_escaped[4], opposite(1, 1, .6), 4e-4);
     ck_assert_double_eq_tol(f->matrix.wall_escaped[0], adjacent(1, .6, 1), 4e-4);
-    fibrad_bed_free(f);
+    fibrad_bed_matrix_free(f);
 
     struct bed duct = bed_empty();
     duct.period[1] = .7;
     const fibrad_wall sides[] = {plane_at(0, 0, 0), plane_at(0, 1, 2), plane_at(2, 1, 1)};
     f = factors_of(&duct, &(fibrad_scene_config){.wall = sides, .walls = 3, .opening = &below, .openings = 1}, NULL,
-                   &(fibrad_bed_options){.beam = &fine});
+                   &(fibrad_bed_rule){.beam = &fine});
     check_balance(&duct, f, NULL, NULL);
     ck_assert_double_eq_tol(f->wall_area[2], 1.4, 1e-14);
     ck_assert_double_eq_tol(f->matrix.wall_escaped[2], sqrt(2) - 1, 1e-3); /* crossed strings */
     ck_assert_double_eq_tol(between(f, 2, 0), 1 - sqrt(.5), 1e-3);
-    fibrad_bed_free(f);
+    fibrad_bed_matrix_free(f);
 
     struct bed plates = bed_empty();
     plates.period[0] = 3, plates.period[1] = .7;
     const fibrad_wall two[] = {plane_at(2, 0, 0), plane_at(2, 1, 2)};
-    f = factors_of(&plates, &(fibrad_scene_config){.wall = two, .walls = 2}, NULL, &(fibrad_bed_options){0});
+    f = factors_of(&plates, &(fibrad_scene_config){.wall = two, .walls = 2}, NULL, &(fibrad_bed_rule){0});
     check_balance(&plates, f, NULL, NULL);
     ck_assert_double_eq_tol(between(f, 1, 0), 1, 1e-13);
-    fibrad_bed_free(f);
-    f = factors_of(&plates, &(fibrad_scene_config){.wall = two, .walls = 1}, NULL, &(fibrad_bed_options){0});
+    fibrad_bed_matrix_free(f);
+    f = factors_of(&plates, &(fibrad_scene_config){.wall = two, .walls = 1}, NULL, &(fibrad_bed_rule){0});
     ck_assert_double_eq_tol(f->matrix.wall_escaped[0], 1, 1e-13);
     ck_assert_double_eq(between(f, 0, 0), 0);
 }
@@ -157,7 +157,7 @@ TEST(grey_plates) {
     const double e[2] = {.3, .6}, all = 1 - .7 * .4;
     const fibrad_exchange_rule rule = {.wall_emissivity = e, .paths = 40000};
     OWNED_FACTORS *f =
-        factors_of(&plates, &(fibrad_scene_config){.wall = two, .walls = 2}, &rule, &(fibrad_bed_options){0});
+        factors_of(&plates, &(fibrad_scene_config){.wall = two, .walls = 2}, &rule, &(fibrad_bed_rule){0});
     check_balance(&plates, f, NULL, e);
     ck_assert_double_eq_tol(between(f, 0, 1), .6 / all, 3e-3);
     ck_assert_double_eq_tol(between(f, 0, 0), .4 * .3 / all, 3e-3);
@@ -300,7 +300,7 @@ LOOP_TEST(against_plain_walls, 6) {
         for (uint32_t k = 0; k < 64; k++) room.e[k] = room.wall_e[k % 6] = 1;
     const fibrad_scene_config config = {
         .wall = room.wall, .walls = room.walls, .opening = &room.opening, .openings = room.openings};
-    OWNED_FACTORS *f = factors_of(&room.bed, &config, black ? NULL : &rule, &(fibrad_bed_options){0});
+    OWNED_FACTORS *f = factors_of(&room.bed, &config, black ? NULL : &rule, &(fibrad_bed_rule){0});
     const fibrad_factors *m = &f->matrix;
     uint64_t state = 4711;
     check_balance(&room.bed, f, black ? NULL : room.e, black ? NULL : room.wall_e);
@@ -327,7 +327,7 @@ TEST(plates_and_a_dense_bed) {
     bed.period[2] = 0;
     const fibrad_wall two[] = {plane_at(2, 0, -.5), plane_at(2, 1, top + .5)};
     const fibrad_scene_config config = {.wall = two, .walls = 2};
-    OWNED_FACTORS *f = factors_of(&bed, &config, NULL, &(fibrad_bed_options){0});
+    OWNED_FACTORS *f = factors_of(&bed, &config, NULL, &(fibrad_bed_rule){0});
     check_balance(&bed, f, NULL, NULL);
     ck_assert_double_lt(between(f, 0, 1), 1e-3);
     ck_assert_double_eq(between(f, 0, 0), 0);
@@ -349,12 +349,12 @@ TEST(flat_rooms) {
     OWNED_BED bed = BED({1, 2, .02, .015}, {-9, 4, .021, .019});
     const fibrad_wall tube[3] = {cylinder_at(0, 0, 80), plane_at(2, 0, 0), plane_at(2, 1, .04)};
     OWNED_FACTORS *f =
-        factors_of(&bed, &(fibrad_scene_config){.wall = tube, .walls = 3}, NULL, &(fibrad_bed_options){0});
+        factors_of(&bed, &(fibrad_scene_config){.wall = tube, .walls = 3}, NULL, &(fibrad_bed_rule){0});
     check_balance(&bed, f, NULL, NULL);
     ck_assert_double_eq_tol(between(f, 1, 2), discs(80, .04), 1e-4);
-    fibrad_bed_free(f);
+    fibrad_bed_matrix_free(f);
     bed.period[0] = 23, bed.period[1] = 16;
-    f = factors_of(&bed, &(fibrad_scene_config){.wall = tube + 1, .walls = 2}, NULL, &(fibrad_bed_options){0});
+    f = factors_of(&bed, &(fibrad_scene_config){.wall = tube + 1, .walls = 2}, NULL, &(fibrad_bed_rule){0});
     check_balance(&bed, f, NULL, NULL);
     ck_assert_double_eq_tol(between(f, 0, 1), 1, 1e-4);
 }
@@ -367,7 +367,7 @@ TEST(other_orders_and_axes) {
     const fibrad_exchange_rule rule = {
         .emissivity = room.e, .wall_emissivity = room.wall_e, .directions = 300, .paths = 4000};
     OWNED_FACTORS *f =
-        factors_of(&room.bed, &(fibrad_scene_config){.wall = room.wall, .walls = 6}, &rule, &(fibrad_bed_options){0});
+        factors_of(&room.bed, &(fibrad_scene_config){.wall = room.wall, .walls = 6}, &rule, &(fibrad_bed_rule){0});
     check_balance(&room.bed, f, room.e, room.wall_e);
     for (uint32_t b = 0; b < 6; b++)
         ck_assert(between(f, 3, b) == 0 && between(f, b, 3) == 0 && f->matrix.wall_escaped[3] == 0);
@@ -385,7 +385,7 @@ TEST(other_orders_and_axes) {
     const fibrad_exchange_rule turned_rule = {
         .emissivity = room.e, .wall_emissivity = wall_e, .directions = 300, .paths = 4000};
     OWNED_FACTORS *g =
-        factors_of(&turned, &(fibrad_scene_config){.wall = wall, .walls = 6}, &turned_rule, &(fibrad_bed_options){0});
+        factors_of(&turned, &(fibrad_scene_config){.wall = wall, .walls = 6}, &turned_rule, &(fibrad_bed_rule){0});
     check_balance(&turned, g, room.e, wall_e);
     for (uint32_t b = 0; b < 6; b++) {
         double square = 0;
@@ -399,10 +399,10 @@ TEST(tolerance_and_raw_rows) {
     OWNED_BY(room_free) struct room room = make_room(0, 6, 9);
     const fibrad_scene_config config = {.wall = room.wall, .walls = 6};
     fibrad_exchange_rule rule = {.emissivity = room.e, .wall_emissivity = room.wall_e, .tolerance = 2e-3};
-    OWNED_FACTORS *f = factors_of(&room.bed, &config, &rule, &(fibrad_bed_options){0});
+    OWNED_FACTORS *f = factors_of(&room.bed, &config, &rule, &(fibrad_bed_rule){0});
     rule.tolerance = 0, rule.paths = 6000, rule.directions = 1000, rule.seed = 5;
-    OWNED_FACTORS *truth = factors_of(&room.bed, &config, &rule, &(fibrad_bed_options){0});
-    OWNED_FACTORS *raw = factors_of(&room.bed, &config, &rule, &(fibrad_bed_options){.raw = 1});
+    OWNED_FACTORS *truth = factors_of(&room.bed, &config, &rule, &(fibrad_bed_rule){0});
+    OWNED_FACTORS *raw = factors_of(&room.bed, &config, &rule, &(fibrad_bed_rule){.raw = 1});
     ck_assert_double_eq(raw->matrix.wall_correction, 0);
     for (uint32_t b = 0; b < 6; b++) {
         double square = 0, of_raw = 0;
@@ -426,14 +426,14 @@ TEST(same_bits_of_walls) {
     for (int k = 0; k < isas.count; k++) {
         const fibrad_scene_config config = {.isa = isas.set[k], .wall = room.wall, .walls = room.walls};
         fibrad_run run = {.threads = 1 + k};
-        fibrad_bed_factors *f;
-        assert_ok(fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_options){.walls = 1}, &run, &f));
+        fibrad_bed_matrix *f;
+        assert_ok(fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_rule){.walls = 1}, &run, &f));
         if (first) {
             ck_assert(matrix_same_bits(&f->matrix, &first->matrix));
             ck_assert_mem_eq(f->matrix.wall_wall, first->matrix.wall_wall, 9 * sizeof(double));
             ck_assert_mem_eq(f->matrix.wall_escaped, first->matrix.wall_escaped, 3 * sizeof(double));
             ck_assert_mem_eq(f->matrix.wall_error, first->matrix.wall_error, 3 * sizeof(double));
-            fibrad_bed_free(f);
+            fibrad_bed_matrix_free(f);
         } else {
             first = f;
         }
@@ -567,7 +567,7 @@ TEST(a_plate_and_its_images) {
     bed.period[2] = 3;
     const fibrad_scene_config config = {.wall = mesh->wall, .walls = 1, .triangles = &mesh->triangles};
     OWNED_FACTORS *f =
-        factors_of(&bed, &config, NULL, &(fibrad_bed_options){.beam = &(fibrad_beam_rule){.directions = 1000}});
+        factors_of(&bed, &config, NULL, &(fibrad_bed_rule){.beam = &(fibrad_beam_rule){.directions = 1000}});
     ck_assert_double_eq_tol(between(f, 0, 0), opposite(EDGE, EDGE, 3), 6e-3);
 }
 
@@ -580,7 +580,7 @@ TEST(triangles_face_their_images) {
     mesh_triangle(mesh, mesh_vertex(mesh, 1, 8, 1), mesh_vertex(mesh, 8, 5, 2), mesh_vertex(mesh, 3, 1, 8), 0, 0);
     const fibrad_scene_config config = {.wall = mesh->wall, .walls = 1, .triangles = &mesh->triangles};
     OWNED_FACTORS *f =
-        factors_of(&bed, &config, NULL, &(fibrad_bed_options){.beam = &(fibrad_beam_rule){.directions = 1000}});
+        factors_of(&bed, &config, NULL, &(fibrad_bed_rule){.beam = &(fibrad_beam_rule){.directions = 1000}});
     check_balance(&bed, f, NULL, NULL);
     ck_assert_double_gt(between(f, 0, 0), .3);
     ck_assert_double_lt(f->matrix.wall_correction, .02);

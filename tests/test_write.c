@@ -29,7 +29,7 @@ static double f[] = {0.1, 1.0 / 3, 5e-324, 0.75586818421612400e-1};
 static const unsigned char wanted[] = {1, 0, 1};
 static double row_sum[] = {0.1 + 1.0 / 3, 0, 0.0755868184216124}, escaped[] = {0.5, 0, 0.25}, error[] = {0.03, 0, 0.04};
 static double wall[3][2] = {{0.0625, 0.25}, {0, 0.125}, {0}}, area[] = {100, INFINITY};
-static const fibrad_bed_factors factors = {.matrix = {.n = 3,
+static const fibrad_bed_matrix factors = {.matrix = {.n = 3,
                                                       .walls = 2,
                                                       .start = start,
                                                       .col = col,
@@ -180,7 +180,7 @@ TEST(csv_has_walls_below_minus_one) {
 
     /* nothing is known of these walls, and there is a cutoff */
     const double beyond[] = {0.125, 0, 0}, none[] = {INFINITY, INFINITY}, emissivity[] = {1, 1, 1};
-    fibrad_bed_factors cut = factors;
+    fibrad_bed_matrix cut = factors;
     cut.matrix.beyond = beyond;
     cut.wall_area = none;
     const fibrad_exchange_rule grey = {.emissivity = emissivity, .wall_emissivity = none};
@@ -197,7 +197,7 @@ TEST(csv_has_walls_below_minus_one) {
 /* Rows of walls come after what the wall sends to the spheres. Walls without bounds have none, and null in JSON. */
 TEST(rows_of_walls_come_after_spheres) {
     static const double between[] = {0.5, 0.25, NAN, NAN}, leaves[] = {0.125, NAN}, off[] = {0.0625, NAN};
-    fibrad_bed_factors whole = factors;
+    fibrad_bed_matrix whole = factors;
     whole.matrix.wall_wall = between, whole.matrix.wall_escaped = leaves, whole.matrix.wall_error = off;
     const struct contents what = {.bed = &bed, .factors = &whole, .walls = &walls};
     write_text(write_csv, &what, true);
@@ -406,7 +406,7 @@ TEST(numpy_files_have_all_arrays) {
         }
         ck_assert_mem_eq(at, "PK\1\2", 4);
     }
-    fibrad_bed_factors whole = factors; /* with rows of walls */
+    fibrad_bed_matrix whole = factors; /* with rows of walls */
     whole.matrix.wall_wall = &wall[0][0], whole.matrix.wall_escaped = wall[1], whole.matrix.wall_error = wall[2];
     what.factors = &whole;
     write_text(write_npz, &what, true);

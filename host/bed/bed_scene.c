@@ -68,10 +68,11 @@ int bed_solve(const struct bed *bed, const struct walls *walls, uint32_t directi
     const fibrad_scene_config scene = bed_scene(bed, walls);
     const fibrad_spheres spheres = bed_spheres(bed);
     const fibrad_heat_config config = {.directions = directions};
-    fibrad_radiation *radiation = NULL;
-    int status = fibrad_radiation_new(&radiation, &scene, &spheres, &config, run);
-    if (!status) status = fibrad_radiation_solve(radiation, sources, result);
-    fibrad_radiation_describe(radiation, NULL, &run->fault);
-    fibrad_radiation_free(radiation);
+    fibrad_bed *made;
+    int status = fibrad_bed_new(&made, &scene, &spheres, run);
+    if (!status) status = fibrad_bed_beams(made, &config);
+    if (!status) status = fibrad_bed_solve(made, sources, NULL, result);
+    fibrad_bed_describe(made, NULL, &run->fault);
+    fibrad_bed_free(made);
     return status;
 }

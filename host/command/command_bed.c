@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "bed/bed_scene.h"
+#include "simple/bed.h"
 #include "cli/message.h"
 #include "cli/output.h"
 #include "cli/targets.h"
@@ -21,7 +22,7 @@ struct bed_request {
     double cutoff, error; /* 0: none */
     bool raw;
     struct walls walls;
-    fibrad_bed_options options;
+    fibrad_bed_rule options;
 };
 
 /* Takes the argument of --targets, unless it is `all`. */
@@ -96,9 +97,7 @@ static int bed_choose(struct bed_request *request) {
         return message(STATUS_USAGE, "--error chooses the directions; leave out --directions");
     beam->tolerance = request->error;
     beam->cutoff = methods->surface.cutoff = methods->cast.cutoff = request->cutoff;
-    if (methods->method == METHOD_SURFACE)
-        request->options.surface = &methods->surface;
-    else if (methods->method != METHOD_BEAM)
+    if (methods->method != METHOD_BEAM)
         request->options.cast = &methods->cast;
     else
         request->options.beam = beam;
@@ -123,7 +122,7 @@ static int bed_parse(struct bed_request *request, int argc, char **argv) {
 
 static void bed_report(struct bed_request *request, const struct contents *what, const struct summary *summary) {
     static const char *const methods[] = {"exact", "beam", "surface", "cast", "mc"};
-    const fibrad_bed_factors *factors = what->factors;
+    const fibrad_bed_matrix *factors = what->factors;
     struct report *report = &request->bed.report;
     bed_options_report(&request->bed, what->bed, what->walls, &factors->facts);
     report_text(report, "method", methods[request->methods.method]);
@@ -157,21 +156,20 @@ static uint32_t view_rays(uint32_t sides) {
 static double mean_of_two(double a, double b) { return (a + b) / 2; }
 
 /* Computes what each side of the triangles of walls sees: spheres and surroundings. */
-static int bed_views(struct bed_request *request, const struct bed *bed, struct side_arrays *views) {
+static int bed_views(struct bed_request *request, const struct bed *bed, fibrad_bed *made, struct side_arrays *views) {
     enum { TO_SPHERES, OUT, QUANTITIES };
     static const struct side_quantity quantity[QUANTITIES] = {
         [TO_SPHERES] = {.name = {"F_spheres", "F_spheres_front", "F_spheres_back"}, .join = mean_of_two},
         [OUT] = {.name = {"F_surroundings", "F_surroundings_front", "F_surroundings_back"}, .join = mean_of_two}};
     const struct fibrad_triangles *triangles = &request->walls.meshes->triangles;
-    const fibrad_scene_config scene = bed_scene(bed, &request->walls);
-    const fibrad_spheres spheres = bed_spheres(bed);
     const uint32_t sides = 2 * triangles->n;
-    fibrad_run run = bed_options_run(&request->bed);
+    fibrad_fault fault;
     fibrad_side_view *view = malloc(sides * sizeof *view);
     int status = view ? side_arrays_begin(views, triangles, quantity, QUANTITIES) : message_memory();
     if (!status) {
-        status = fibrad_side_views(&scene, &spheres, view_rays(sides), &run, view);
-        status = bed_options_status(&request->bed, bed, status, &run.fault);
+        status = fibrad_bed_views(made, view_rays(sides), view);
+        fibrad_bed_describe(made, NULL, &fault);
+        status = bed_options_status(&request->bed, bed, status, &fault);
     }
     for (uint32_t s = 0; s < sides && !status; ++s) {
         views->quantity[TO_SPHERES].side[s] = view[s].spheres;
@@ -184,22 +182,28 @@ static int bed_views(struct bed_request *request, const struct bed *bed, struct 
 
 /* Computes the matrix of one frame and writes it to all outputs. */
 static int bed_matrix(struct bed_request *request, struct bed *bed) {
-    fibrad_bed_factors *factors;
+    fibrad_bed *made;
+    fibrad_bed_matrix *factors = NULL;
     struct contents what = {.wanted = request->options.wanted, .walls = &request->walls};
     struct side_arrays views = {0};
     struct summary summary;
-    int status = bed_options_factors(&request->bed, bed, &request->walls, NULL, &request->options, &factors);
-    if (status) return status;
+    int status = bed_options_make(&request->bed, bed, &request->walls, &made);
+    if (!status) status = bed_options_factors(&request->bed, bed, made, &request->options, &factors);
+    if (status) {
+        fibrad_bed_free(made);
+        return status;
+    }
     what.factors = factors;
     summary_make(&summary, &what);
     what.of_sides = &views;
-    if (request->bed.wall_vtp) status = bed_views(request, bed, &views);
+    if (request->bed.wall_vtp) status = bed_views(request, bed, made, &views);
     if (!status) status = bed_options_write(&request->bed, bed, &what);
     if (!status && request->bed.outputs.picture)
         status = plot_bed(&request->bed.picture, request->bed.name, &what, &request->bed.slice);
     if (!status) bed_report(request, &what, &summary);
     side_arrays_free(&views);
-    fibrad_bed_free(factors);
+    fibrad_bed_matrix_free(factors);
+    fibrad_bed_free(made);
     return status;
 }
 

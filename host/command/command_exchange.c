@@ -17,7 +17,7 @@ struct exchange_request {
     double zero; /* 0 of the unit of temperature [K] */
     struct walls walls;
     fibrad_exchange_rule rule;
-    fibrad_bed_options options;
+    fibrad_bed_rule options;
     bool raw;
 };
 
@@ -149,7 +149,7 @@ static void exchange_report_solid(struct exchange_request *request, const fibrad
 }
 
 static void exchange_report(struct exchange_request *request, const struct contents *what) {
-    const fibrad_bed_factors *factors = what->factors;
+    const fibrad_bed_matrix *factors = what->factors;
     struct report *report = &request->bed.report;
     struct summary summary;
     summary_make(&summary, what);
@@ -172,14 +172,18 @@ static void exchange_report(struct exchange_request *request, const struct conte
 
 /* Computes the factors of one frame and writes them to all outputs. */
 static int exchange_matrix(struct exchange_request *request, struct bed *bed) {
-    fibrad_bed_factors *factors;
-    int status = bed_options_factors(&request->bed, bed, &request->walls, &request->rule, &request->options, &factors);
+    fibrad_bed *made;
+    fibrad_bed_matrix *factors = NULL;
+    request->options.exchange = &request->rule;
+    int status = bed_options_make(&request->bed, bed, &request->walls, &made);
+    if (!status) status = bed_options_factors(&request->bed, bed, made, &request->options, &factors);
     struct contents what = {.factors = factors, .walls = &request->walls, .grey = &request->rule};
     if (!status) status = bed_options_write(&request->bed, bed, &what);
     if (!status && request->bed.outputs.picture)
         status = plot_bed(&request->bed.picture, request->bed.name, &what, &request->bed.slice);
     if (!status) exchange_report(request, &what);
-    fibrad_bed_free(factors);
+    fibrad_bed_matrix_free(factors);
+    fibrad_bed_free(made);
     return status;
 }
 

@@ -15,15 +15,6 @@ static int take_patches(const char *text, void *of_sphere) {
     return status;
 }
 
-static int take_model(const char *text, void *heat) {
-    struct heat *h = heat;
-    h->uniform = strcmp(text, "spheres") == 0;
-    h->by_patches = h->uniform || strcmp(text, "patches") == 0;
-    h->by_factors = strcmp(text, "factors") == 0;
-    if (h->by_patches || h->by_factors) return STATUS_OK;
-    return message(STATUS_USAGE, "--model: '%.40s' is none of patches, spheres and factors", text);
-}
-
 static const struct option heat_table[] = {
     {OPTION_EMISSIVITY_CURVES(struct heat, emissivities)},
     {OPTION_SOLID_CONDUCTIVITY(struct heat, solid)},
@@ -49,11 +40,6 @@ static const struct option heat_table[] = {
     OPTIONS_CONTACTS(struct heat),
     {0, "face", NULL, "find the emissivity of the open face of the bed, which has one temperature",
      TO_FLAG(struct heat, face.wanted)},
-    {0, "model", "NAME",
-     "patches (reflections from point to point), spheres (one radiosity for each sphere, for emissivities near 1) or, "
-     "with --until, factors (exchange factors, powers 2 to 5 % off) [patches; with --until factors "
-     "corrected by patches]",
-     TO_REQUEST(take_model)},
     {0, "patches", "P", "patches of each sphere, 24, 96 or 384 [" TEXT_OF(FIBRAD_HEAT_PATCHES_DEFAULT) "]",
      TO_FUNCTION(take_patches, struct heat, config.patches)},
     {0, "directions", "N",
@@ -148,20 +134,11 @@ static int check_heat(struct heat *h) {
         return message(STATUS_USAGE, "--error is for powers at one time, not for --until");
     if (h->given.timed && h->face.wanted)
         return message(STATUS_USAGE, "--face is for powers at one time, not for --until");
-    if (!h->given.timed && h->by_factors) return message(STATUS_USAGE, "--model factors is for --until");
     if (!h->emissivities.given) return message(STATUS_USAGE, "--emissivity is missing; see fibrad heat --help");
     if (h->error > 0 && counted)
         return message(
             STATUS_USAGE,
             "--error chooses directions and patches; leave out --directions, --points, --patches and --wall-rays");
-    if (h->error > 0 && h->uniform)
-        return message(STATUS_USAGE,
-                       "--error is for --model patches; --model spheres has an error that no directions reduce");
-    if (h->solid.given && (h->uniform || h->by_factors))
-        return message(STATUS_USAGE,
-                       "--solid-conductivity is for --model patches: in other models a sphere has no sides");
-    if (contacts_given(&h->contacts) && h->by_factors)
-        return message(STATUS_USAGE, "--model factors has no contacts; use --model patches");
     if (config->patches == 0) h->config.patches = FIBRAD_HEAT_PATCHES_DEFAULT;
     bed_options_quantity(&h->options, &h->emissivities, NULL);
     bed_options_quantity(&h->options, &h->solid, SOLID_UNIT);

@@ -112,7 +112,7 @@ static int join_scene(const struct joined *joined, fibrad_scene **scene, void **
 
 /* Makes the matrix of the rows in *block. The caller frees *block also after an error. */
 static int join_matrix(const struct join_request *request, const struct joined *joined, const fibrad_scene *scene,
-                       fibrad_bed_factors *factors, void **block) {
+                       fibrad_bed_matrix *factors, void **block) {
     const fibrad_matrix_rule rule = {.kind = joined->emissive ? FIBRAD_ROWS_EXCHANGE : FIBRAD_ROWS_AREAS,
                                      .emissivity = joined->emissive ? joined->emissivity : NULL,
                                      .raw = request->raw};
@@ -150,7 +150,7 @@ static void join_report(struct join_request *request, const struct joined *joine
 
 /* Writes the matrix and its summary. x: room for [3][n] numbers. */
 static int join_write(struct join_request *request, const struct joined *joined, double *x,
-                      const fibrad_bed_factors *factors) {
+                      const fibrad_bed_matrix *factors) {
     double unbounded[FIBRAD_WALLS_MAX];
     const size_t n = joined->n;
     for (size_t b = 0; b < FIBRAD_WALLS_MAX; ++b) unbounded[b] = INFINITY;
@@ -167,7 +167,7 @@ static int join_write(struct join_request *request, const struct joined *joined,
                             .timestep = (int64_t)joined->step};
     const struct walls walls = {.count = joined->walls};
     const fibrad_exchange_rule grey = {.emissivity = joined->emissivity, .wall_emissivity = unbounded};
-    fibrad_bed_factors with_areas = *factors;
+    fibrad_bed_matrix with_areas = *factors;
     with_areas.wall_area = unbounded; /* not known; INFINITY leaves out the rows of walls */
     const struct contents what = {.bed = &bed,
                                   .factors = &with_areas,
@@ -184,7 +184,7 @@ static int join_solve(struct join_request *request, const struct joined *joined)
     fibrad_scene *scene = NULL;
     void *scene_block = NULL, *matrix_block = NULL;
     double *x = malloc(3 * sizeof *x * joined->n + 1);
-    fibrad_bed_factors factors = {0};
+    fibrad_bed_matrix factors = {0};
     int status = x ? join_scene(joined, &scene, &scene_block) : message_memory();
     if (!status) status = join_matrix(request, joined, scene, &factors, &matrix_block);
     if (!status) status = interrupt_status();

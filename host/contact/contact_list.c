@@ -59,8 +59,6 @@ int fibrad_contact_list_of(struct contact_block *block, const fibrad_contact_rul
     return status;
 }
 
-void fibrad_contacts_free(fibrad_contact_list *list) { free(list); }
-
 /* A pair with gas between its surfaces. The radius of `small` is at most that of `large`, which may be infinite. */
 struct gas_pair {
     double distance, small, large;

@@ -8,6 +8,11 @@
 
 static inline double length_of(double x, double y, double z) { return sqrt(x * x + y * y + z * z); }
 
+/* Contacts of spheres that need not be a bed: they may lie inside one another or beyond walls. Otherwise as
+ * fibrad_bed_contacts. Free the list with free(). Errors: _ARGUMENT, _MEMORY. */
+int fibrad_contacts_find(const fibrad_scene_config *config, const fibrad_spheres *spheres,
+                         const fibrad_contact_rule *rule, fibrad_contact_list **list);
+
 /* Two ends that are near enough, as in fibrad_contact_list. */
 struct contact_found {
     uint32_t first, second;

@@ -67,10 +67,8 @@ int contacts_check(struct contact_options *options, struct bed_options *bed, boo
 
 /* Finds contacts of overlaps and gas. */
 static int find_contacts(struct contact_state *state, struct bed_options *bed_options, const struct bed *bed,
-                         const struct walls *walls, const struct quantity *solid) {
+                         fibrad_bed *made, const struct quantity *solid) {
     const struct contact_options *o = state->options;
-    const fibrad_scene_config scene = bed_scene(bed, walls);
-    const fibrad_spheres spheres = bed_spheres(bed);
     if (!o->spots && !o->gas) return STATUS_OK;
     state->of_solid = o->conductivity.given ? &o->conductivity : solid;
     state->rule = (fibrad_contact_rule){.spots = o->spots, .scale = o->scale, .gas_alone = solid->given};
@@ -81,7 +79,7 @@ static int find_contacts(struct contact_state *state, struct bed_options *bed_op
     int status = quantity_values(state->of_solid, bed, bed_options->name, "conductivity of the solid", 0,
                                  SOLID_CONDUCTIVITY_MIN, SOLID_CONDUCTIVITY_MAX, &state->solid);
     if (status) return status;
-    status = fibrad_contacts_find(&scene, &spheres, &state->rule, &state->list);
+    status = fibrad_bed_contacts(made, &state->rule, &state->list);
     return status ? bed_options_status(bed_options, bed, status, &(fibrad_fault){0}) : STATUS_OK;
 }
 
@@ -103,8 +101,8 @@ static int join_contacts(struct contact_state *state, uint32_t spheres, struct c
 }
 
 int contacts_begin(struct contact_state *state, const struct contact_options *options, struct bed_options *bed_options,
-                   const struct bed *bed, const struct walls *walls, const struct quantity *solid, double per_watt,
-                   fibrad_heat_sources *sources) {
+                   const struct bed *bed, fibrad_bed *made, const struct walls *walls, const struct quantity *solid,
+                   double per_watt, fibrad_heat_sources *sources) {
     struct contact_lines lines = {0};
     *state = (struct contact_state){.per_watt = per_watt};
     sources->contacts = 0;
@@ -113,7 +111,7 @@ int contacts_begin(struct contact_state *state, const struct contact_options *op
     int status = STATUS_OK;
     for (uint32_t k = 0; k < options->files && !status; ++k)
         status = contacts_read(options->file[k], bed, walls, &lines);
-    if (!status) status = find_contacts(state, bed_options, bed, walls, solid);
+    if (!status) status = find_contacts(state, bed_options, bed, made, solid);
     if (!status) status = join_contacts(state, bed->n, &lines);
     state->first = lines.first, state->second = lines.second, state->conductance = lines.conductance;
     if (status) return status;
@@ -131,7 +129,6 @@ void contacts_free(struct contact_state *state) {
     free(state->gas);
     free(state->solid);
     free(state->conducted);
-    fibrad_contacts_free(state->list);
     *state = (struct contact_state){0};
 }
 

@@ -71,7 +71,7 @@ struct contact_state {
     double *gas;                           /* [n - listed] conductivities [W/(m K)] */
     double *solid;                         /* [spheres] conductivities [W/(m K)]; NULL: not needed */
     const struct quantity *of_solid;       /* their option */
-    fibrad_contact_list *list;             /* contacts of overlaps and gas; NULL: none */
+    const fibrad_contact_list *list;       /* of the bed of the library: contacts of overlaps and gas; NULL: none */
     fibrad_contact_rule rule;
     double per_watt;        /* conductance over W/K */
     double wall[WALLS_MAX]; /* [W] conducted to walls */
@@ -87,11 +87,11 @@ bool contacts_given(const struct contact_options *options);
 int contacts_check(struct contact_options *options, struct bed_options *bed, bool solid);
 
 /* Reads and finds the contacts of a bed, whose unit of length is known, and points `sources` to them. solid:
- * --solid-conductivity. per_watt: as in contact_state. Call contacts_free also after an error. Status 0, STATUS_USAGE,
- * STATUS_INPUT, STATUS_FILE or STATUS_MEMORY. */
+ * --solid-conductivity. made: the bed of the library, which keeps the list. per_watt: as in contact_state. Call
+ * contacts_free also after an error. Status 0, STATUS_USAGE, STATUS_INPUT, STATUS_FILE or STATUS_MEMORY. */
 int contacts_begin(struct contact_state *state, const struct contact_options *options, struct bed_options *bed_options,
-                   const struct bed *bed, const struct walls *walls, const struct quantity *solid, double per_watt,
-                   fibrad_heat_sources *sources);
+                   const struct bed *bed, fibrad_bed *made, const struct walls *walls, const struct quantity *solid,
+                   double per_watt, fibrad_heat_sources *sources);
 void contacts_free(struct contact_state *state);
 
 /* Sets conductances that depend on temperatures [K], NaN: not known. */

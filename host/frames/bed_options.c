@@ -262,46 +262,53 @@ int bed_options_status(struct bed_options *options, const struct bed *bed, int s
 /* What an entry of the raw rows takes while rows are averaged. */
 enum { ENTRY_BYTES = 48 };
 
-static int compute_factors(struct bed_options *options, const struct bed *bed, const struct walls *walls,
-                           const fibrad_exchange_rule *rule, const fibrad_bed_options *rows,
-                           fibrad_bed_factors **factors) {
+int bed_options_make(struct bed_options *options, const struct bed *bed, const struct walls *walls, fibrad_bed **made) {
     const fibrad_scene_config scene = bed_scene(bed, walls);
     const fibrad_spheres spheres = bed_spheres(bed);
     fibrad_run run = bed_options_run(options);
-    const int status = rule ? fibrad_exchange_factors(&scene, &spheres, rule, rows, &run, factors)
-                            : fibrad_view_factors(&scene, &spheres, rows, &run, factors);
+    const int status = fibrad_bed_new(made, &scene, &spheres, &run);
+    if (!status) warn_beyond(*made, bed, walls, options->name);
     return bed_options_status(options, bed, status, &run.fault);
 }
 
-static int check_room(struct bed_options *options, const struct bed *bed, const struct walls *walls,
-                      const fibrad_exchange_rule *rule, const fibrad_bed_options *rows) {
+static int compute_factors(struct bed_options *options, const struct bed *bed, fibrad_bed *made,
+                           const fibrad_bed_rule *rows, fibrad_bed_matrix **factors) {
+    fibrad_fault fault;
+    const int status = fibrad_bed_factors(made, rows, factors);
+    fibrad_bed_describe(made, NULL, &fault);
+    return bed_options_status(options, bed, status, &fault);
+}
+
+/* Refuses a bed whose rows will not fit into memory, or onto the disk of rows->scratch. */
+static int check_room(struct bed_options *options, const struct bed *bed, fibrad_bed *made,
+                      const fibrad_bed_rule *rows) {
     enum { SAMPLE = 16, ENTRIES_MANY = 2000 };
-    fibrad_bed_options some = *rows;
-    fibrad_bed_factors *factors = NULL;
+    fibrad_bed_rule some = *rows;
+    fibrad_bed_matrix *factors = NULL;
     const double left = rows->scratch ? disk_left(rows->scratch) : memory_left();
     if (rows->wanted || (double)bed->n * ENTRIES_MANY * ENTRY_BYTES < left) return STATUS_OK;
     unsigned char *marks = calloc(bed->n, 1);
     if (!marks) return message_memory();
     for (uint32_t k = 0; k < SAMPLE; ++k) marks[(uint64_t)bed->n * k / SAMPLE] = 1;
     some.wanted = marks;
-    int status = compute_factors(options, bed, walls, rule, &some, &factors);
+    int status = compute_factors(options, bed, made, &some, &factors);
     const double bytes = status ? 0 : (double)factors->matrix.start[bed->n] / SAMPLE * bed->n * ENTRY_BYTES;
     if (!status)
         status = rows->scratch
                      ? disk_check(rows->scratch, bytes)
                      : memory_check(
                            bytes, "--cutoff, fewer directions or rays, or --targets take less; --scratch takes a disk");
-    fibrad_bed_free(factors);
+    fibrad_bed_matrix_free(factors);
     free(marks);
     return status;
 }
 
-int bed_options_factors(struct bed_options *options, const struct bed *bed, const struct walls *walls,
-                        const fibrad_exchange_rule *rule, fibrad_bed_options *rows, fibrad_bed_factors **factors) {
+int bed_options_factors(struct bed_options *options, const struct bed *bed, fibrad_bed *made, fibrad_bed_rule *rows,
+                        fibrad_bed_matrix **factors) {
     *factors = NULL;
     rows->scratch = options->scratch, rows->walls = 1;
-    int status = check_room(options, bed, walls, rule, rows);
-    if (!status) status = compute_factors(options, bed, walls, rule, rows, factors);
+    int status = check_room(options, bed, made, rows);
+    if (!status) status = compute_factors(options, bed, made, rows, factors);
     if (!status) warn_rows(&options->warned, bed, *factors);
     return status;
 }
@@ -347,8 +354,7 @@ int bed_options_walls(struct bed_options *options, const struct bed *bed, struct
     const int status = walls_of(&options->walls, bed, options->name, walls);
     if (!status) warn_walls(&options->warned, bed, walls);
     if (status || !walls->meshes) return status;
-    const int faced = meshes_face(walls->meshes, &spheres, bed->period);
-    return faced ? faced : warn_beyond(bed, walls, options->name);
+    return meshes_face(walls->meshes, &spheres, bed->period);
 }
 
 static void report_mesh(struct report *report, const struct walls *walls, uint32_t k) {

@@ -5,11 +5,9 @@
 #include "frames/beyond.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-#include "bed/bed_scene.h"
 #include "cli/message.h"
-#include "simple/heap.h"
+#include "simple/bed.h"
 
 enum { CROSSINGS_MOST = 10000 };
 #define STEP_BEHIND 1e-6 /* in mean edges: the ray goes on from a point so far behind the triangle that it has met */
@@ -54,19 +52,10 @@ static void look_for_one(const struct bed *bed, const struct meshes *meshes, con
     }
 }
 
-int warn_beyond(const struct bed *bed, const struct walls *walls, const char *file) {
-    const fibrad_scene_config config = bed_scene(bed, walls);
-    const fibrad_spheres none = {.n = 0};
+void warn_beyond(const fibrad_bed *made, const struct bed *bed, const struct walls *walls, const char *file) {
     bool any = false;
     double w[3];
-    fibrad_scene *scene;
-    void *block;
     for (uint32_t t = 0; walls->meshes && t < walls->meshes->triangles.n && !any; ++t)
         any = meshes_side(walls->meshes, t, false) != 0;
-    if (!any || !open_direction(bed, w)) return STATUS_OK;
-    const int status = fibrad_heap_scene(&scene, &block, &config, &none, NULL);
-    if (status == FIBRAD_E_MEMORY) return message_memory();
-    if (!status) look_for_one(bed, walls->meshes, scene, w, file);
-    free(block);
-    return STATUS_OK; /* the computation of the bed reports other errors */
+    if (any && open_direction(bed, w)) look_for_one(bed, walls->meshes, made->scene, w, file);
 }

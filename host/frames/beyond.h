@@ -4,9 +4,10 @@
 
 #include "bed/bed.h"
 #include "bed/wall_option.h"
+#include "simple/fibrad_host.h"
 
 /* Warns of the first sphere that lies wholly beyond a closed mesh with a wall on one side only: such a sphere is there
- * by mistake. Spheres that a mesh cuts are normal. file: name of the bed. Status 0 or STATUS_MEMORY. */
-int warn_beyond(const struct bed *bed, const struct walls *walls, const char *file);
+ * by mistake. Spheres that a mesh cuts are normal. made: the bed in the library. file: its name. */
+void warn_beyond(const fibrad_bed *made, const struct bed *bed, const struct walls *walls, const char *file);
 
 #endif

@@ -59,7 +59,7 @@ static bool is_new(struct warned *warned, enum kind kind) {
     return new;
 }
 
-void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_bed_factors *factors) {
+void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_bed_matrix *factors) {
     const fibrad_factors *matrix = &factors->matrix;
     const bool walls = matrix->wall_wall != NULL, meshed = factors->facts.triangles > 0;
     if (walls && matrix->wall_closure > CLOSED && is_new(warned, WALLS_OPEN))

@@ -64,6 +64,6 @@ void warn_surfaces(struct warned *warned, const struct bed *bed, const double *l
 
 /* Warns if rows of walls and rows of spheres contradict each other, or if closing changes a row of a sphere by more
  * than its error. */
-void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_bed_factors *factors);
+void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_bed_matrix *factors);
 
 #endif

@@ -2,7 +2,6 @@
 #include <gsl/gsl_math.h>
 #include <math.h>
 
-#include "bed/bed_scene.h"
 #include "cli/message.h"
 #include "heat/heat.h"
 
@@ -51,7 +50,16 @@ static struct ends ends_of(const struct bed *bed, const struct walls *walls) {
     return ends;
 }
 
-int face_begin(struct heat *h) {
+/* Adds an opening on each open side. Where there is none, it lies at the end of the spheres. */
+static void open_sides(const struct bed *bed, const struct ends *ends, struct walls *opened) {
+    for (int side = 0; side < 6; ++side) {
+        const int axis = side / 2, upper = side % 2;
+        if (ends->walled[side] || isfinite(upper ? ends->high[axis] : ends->low[axis])) continue;
+        opened->opening[opened->openings++] = (fibrad_plane){axis, upper, bed_reach(bed, axis, upper)};
+    }
+}
+
+int face_begin(struct heat *h, struct walls *opened) {
     const struct ends ends = ends_of(h->bed, &h->walls);
     struct face *face = &h->face;
     face->area = 0;
@@ -63,44 +71,33 @@ int face_begin(struct heat *h) {
     if (face->area == 0) return message(STATUS_USAGE, "--face: the bed has no open face");
     if (!(face->area < INFINITY))
         return message(STATUS_USAGE, "--face: an open face has no end; walls or periods must stand around it");
+    open_sides(h->bed, &ends, opened);
     return STATUS_OK;
 }
 
-/* The walls, with an opening on each open side. Where there is none, it lies at the end of the spheres. */
-static struct walls opened_walls(const struct bed *bed, const struct walls *walls, const struct ends *ends) {
-    struct walls all = *walls;
-    for (int side = 0; side < 6; ++side) {
-        const int axis = side / 2, upper = side % 2;
-        if (ends->walled[side] || isfinite(upper ? ends->high[axis] : ends->low[axis])) continue;
-        all.opening[all.openings++] = (fibrad_plane){axis, upper, bed_reach(bed, axis, upper)};
-    }
-    return all;
-}
-
-int face_solve(struct heat *h, const double *wall_emissivity, fibrad_run *run) {
+int face_solve(struct heat *h) {
     const struct bed *bed = h->bed;
     struct face *face = &h->face;
-    if (!face->wanted) return FIBRAD_OK;
+    if (!face->wanted) return STATUS_OK;
     const struct ends ends = ends_of(bed, &h->walls);
-    const struct walls all = opened_walls(bed, &h->walls, &ends);
-    const fibrad_scene_config scene = bed_scene(bed, &all);
-    const fibrad_spheres spheres = bed_spheres(bed);
     double of_walls[WALLS_MAX], mean = 0, sum = 0, square = 0;
-    for (uint32_t k = 0; k < h->walls.count; ++k) of_walls[k] = h->sources.insulated[k] ? 0 : wall_emissivity[k];
+    for (uint32_t k = 0; k < h->walls.count; ++k) of_walls[k] = h->sources.insulated[k] ? 0 : h->wall_emissivity[k];
     for (uint32_t i = 0; i < bed->n; ++i) mean += h->emissivity[i] / bed->n;
     const fibrad_wall_rule rule = {.emissivity = h->emissivity, .wall_emissivity = of_walls, .paths = FACE_PATHS};
     const double tolerance = FACE_TOLERANCE * sqrt(fmax(FACE_LEAST, mean));
+    fibrad_fault fault;
     int status = FIBRAD_OK;
     for (int side = 0; side < 6 && !status; ++side) {
         const double area = open_area(&ends, side);
         fibrad_wall_row row;
         if (!(area > 0)) continue;
-        const uint32_t opening = FIBRAD_OPENING(all.count, side / 2, side % 2);
-        status = fibrad_exchange_wall_row(&scene, &spheres, opening, &rule, tolerance, run, &row);
+        status =
+            fibrad_bed_wall_row(h->made, FIBRAD_OPENING(h->walls.count, side / 2, side % 2), &rule, tolerance, &row);
         sum += area * (1 - row.escaped), square += gsl_pow_2(area * FACE_ERROR * row.error);
     }
     face->emissivity = sum / face->area, face->error = sqrt(square) / face->area;
-    return status;
+    fibrad_bed_describe(h->made, NULL, &fault);
+    return bed_options_status(&h->options, bed, status, &fault);
 }
 
 void face_report(struct heat *h) {

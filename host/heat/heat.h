@@ -84,8 +84,7 @@ struct heat {
     struct face face;
     const char *wall_emissivities;
     struct quantity emissivities, solid;
-    fibrad_heat_config config;            /* directions 0: chosen by the emissivities of the bed */
-    bool uniform, by_patches, by_factors; /* --model; in time only: none of them means corrected factors */
+    fibrad_heat_config config; /* directions 0: chosen by the emissivities of the bed */
     /* --error: error allowed in powers, and in sigma T^4 of temperatures that are found, over their root mean squares;
      * 0: not given */
     double error;
@@ -93,7 +92,8 @@ struct heat {
     /* ---- the bed in hand, whose unit of length is known: what is given ---- */
     const struct bed *bed;
     struct walls walls;
-    struct given values;                            /* temperatures and powers */
+    fibrad_bed *made;    /* the same in the library; with --face it has openings on all open sides */
+    struct given values; /* temperatures and powers */
     double *emissivity, wall_emissivity[WALLS_MAX]; /* [spheres] changes where a table over T is given */
     /* [spheres] conductivities of the solid [W/(m K)], which change where a table over T is given, and the same in the
      * unit of sources.conductivity; NULL: spheres have one temperature each */
@@ -154,12 +154,13 @@ void heat_report(struct heat *heat);
  * summary. Status 0, STATUS_USAGE, STATUS_INPUT naming the line of a sphere, or as bed_options_status. */
 int heat_in_time(struct heat *heat);
 
-/* face.c: finds the area of the open faces. Status 0, or STATUS_USAGE if there is none or one has no end. */
-int face_begin(struct heat *heat);
+/* face.c: finds the area of the open faces, and adds the openings that the bed of the library needs there to `opened`.
+ * Status 0, or STATUS_USAGE if there is none or one has no end. */
+int face_begin(struct heat *heat, struct walls *opened);
 
 /* Finds the emissivity of the face. By Kirchhoff's law it is the fraction of black radiation from outside that spheres
- * and walls absorb: paths from the open faces tell it. Sets run->fault. Returns a status of the library. */
-int face_solve(struct heat *heat, const double *wall_emissivity, fibrad_run *run);
+ * and walls absorb: paths from the open faces tell it. Status 0, or as bed_options_status. */
+int face_solve(struct heat *heat);
 void face_report(struct heat *heat);
 
 /* lit_bed.c: light that falls on the bed; without light these functions do nothing. Finds absorptivities and allocates
@@ -168,11 +169,10 @@ void face_report(struct heat *heat);
 int light_begin(struct heat *heat);
 void light_free(struct light_state *state);
 
-/* Computes the light that is absorbed, by one of two objects of the library, and adds it to the powers of the sources.
- * These are then the sources of thermal radiation. They have pointers into the object. transient NULL: radiation
- * counts. unit: of powers, the square of the bed's length [m2] for watts, or 1. Returns a status of the library. */
-int light_absorb(struct heat *heat, fibrad_transient *transient, fibrad_radiation *radiation, double unit,
-                 fibrad_heat_sources *sources);
+/* Computes the light that is absorbed, and adds it to the powers of the sources. These are then the sources of thermal
+ * radiation. They have pointers into heat->made. unit: of powers, the square of the bed's length [m2] for watts, or 1.
+ * Returns a status of the library. */
+int light_absorb(struct heat *heat, double unit, fibrad_heat_sources *sources);
 
 /* Says why light_absorb has failed. Returns STATUS_USAGE; 0: nothing is wrong with the light. */
 int light_refuse(const struct heat *heat, int status, const fibrad_fault *fault);

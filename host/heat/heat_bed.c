@@ -75,6 +75,7 @@ static void warn_levels(struct heat *h) {
 /* Reads what is given of spheres and walls, and makes sure of the unit of length. */
 static int read_values(struct heat *h, struct bed *bed) {
     const char *needed = h->solid.given ? SOLID_NEEDS : contacts_given(&h->contacts) ? CONTACTS_NEED : NULL;
+    struct walls opened;
     int status = bed_options_walls(&h->options, bed, &h->walls);
     if (!status) status = given_values(&h->given, bed, h->options.name, &h->walls, &h->values);
     if (!status && !h->given.ambient && !walls_closed(&h->walls, bed))
@@ -83,11 +84,13 @@ static int read_values(struct heat *h, struct bed *bed) {
     if (!status) status = wall_emissivities(h->wall_emissivities, &h->walls, h->wall_emissivity);
     if (!status)
         status = quantity_values(&h->emissivities, bed, h->options.name, "emissivity", 0, 0, 1, &h->emissivity);
-    if (!status) status = face_begin(h);
+    opened = h->walls;
+    if (!status) status = face_begin(h, &opened);
     if (!status) status = light_begin(h);
     if (!status && !h->given.timed && !contacts_given(&h->contacts)) /* contacts: by the library */
         status = given_reflectors(&h->values, h->emissivity, &h->walls, h->wall_emissivity, bed, h->options.name);
-    return status ? status : bed_options_metres(&h->options, bed, needed);
+    if (!status) status = bed_options_metres(&h->options, bed, needed);
+    return status ? status : bed_options_make(&h->options, bed, &opened, &h->made);
 }
 
 int heat_begin(struct heat *h, struct bed *bed) {
@@ -104,9 +107,10 @@ int heat_begin(struct heat *h, struct bed *bed) {
     if (status) return status;
     const double unit = h->given.timed ? 1 : bed->metres * bed->metres; /* areas of the library are in the bed's unit */
     given_heat_sources(&h->values, bed->n, unit, sources);
-    sources->surroundings = h->given.surroundings, sources->uniform = h->uniform;
+    sources->surroundings = h->given.surroundings;
     sources->emissivity = h->emissivity, sources->wall_emissivity = h->wall_emissivity;
-    status = contacts_begin(&h->touching, &h->contacts, &h->options, bed, &h->walls, &h->solid, 1 / unit, sources);
+    status =
+        contacts_begin(&h->touching, &h->contacts, &h->options, bed, h->made, &h->walls, &h->solid, 1 / unit, sources);
     contacts_result(&h->touching, &h->result);
     return status;
 }
@@ -118,6 +122,7 @@ bool heat_insulates(const struct heat *h) {
 }
 
 void heat_end(struct heat *h) {
+    fibrad_bed_free(h->made);
     free(h->emissivity);
     light_free(&h->lit);
     contacts_free(&h->touching);
@@ -156,7 +161,7 @@ int heat_write(struct heat *h, const struct bed *bed, struct contents *what) {
     what->walls = &h->walls, what->result = &h->result;
     if (!what->sources) what->sources = &h->sources;
     what->light = h->lit.options ? &h->lit.result : NULL;
-    what->of_sides = h->by_factors ? NULL : &h->triangles;
+    what->of_sides = &h->triangles;
     const int status = bed_options_write(&h->options, bed, what);
     return status ? status : contacts_write(&h->touching, bed, &h->walls);
 }

@@ -180,6 +180,7 @@ int heat_run(struct heat *h) {
     h->used = fill_config(h, h->error > 0, heat_insulates(h));
     int status = heat_solve(h);
     if (!status && h->error > 0) status = improve(h);
+    if (!status) status = face_solve(h);
     h->seconds = progress_clock() - begun;
     if (!status) heat_excess_of(h, h->result.temperature, h->result.wall_temperature, excess);
     heat_warn_excess(h, excess);

@@ -144,7 +144,6 @@ void heat_report(struct heat *h) {
     const struct heat_figures *f = &h->figures;
     struct report *report = &h->options.report;
     bed_options_report(&h->options, h->bed, &h->walls, &h->facts);
-    report_text(report, "model", h->uniform ? "spheres" : "patches");
     quantity_report(&h->emissivities, "emissivity", report);
     quantity_report(&h->given.temperature, h->given.zero > 0 ? "temperature_C" : "temperature_K", report);
     quantity_report(&h->given.power, "power_W", report);

@@ -2,7 +2,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "bed/bed_scene.h"
 #include "cli/memory.h"
 #include "cli/message.h"
 #include "heat/heat.h"
@@ -77,44 +76,38 @@ static int check_memory(const struct heat *h) {
 /* Tolerance of the radiosities over heat->error: so small that it adds nothing to the error. */
 #define SOLVED 5e-3
 
-/* Solves the problem of an object of the library. Returns a status of the library. */
-static int solve_radiation(struct heat *h, fibrad_radiation *radiation, fibrad_run *run) {
+/* Solves the problem of the library. Returns a status of the library. */
+static int solve_made(struct heat *h) {
     fibrad_heat_sources sources = h->sources;
     double wall_emissivity[WALLS_MAX];
+    fibrad_law law = {heat_follow, h, h->emissivity, wall_emissivity};
     memcpy(wall_emissivity, h->wall_emissivity, sizeof wall_emissivity);
     if (h->error > 0) sources.tolerance = fmin(1e-5, SOLVED * h->error);
     if (isnan(sources.surroundings)) sources.surroundings = 0; /* closed bed: no radiation reaches the surroundings */
-    int status = light_absorb(h, NULL, radiation, 1, &sources);
-    if (!status)
-        status =
-            fibrad_radiation_settle(radiation, &sources, heat_follow, h, h->emissivity, wall_emissivity, &h->result);
-    if (!status && h->triangles.count) {
-        status = fibrad_radiation_sides(radiation, h->triangles.quantity[TRIANGLE_FLUX].side,
-                                        h->triangles.quantity[TRIANGLE_TEMPERATURE].side);
-        side_arrays_show(&h->triangles);
-    }
-    return status ? status : face_solve(h, wall_emissivity, run);
+    int status = light_absorb(h, 1, &sources);
+    if (!status) status = fibrad_bed_solve(h->made, &sources, &law, &h->result);
+    if (status || !h->triangles.count) return status;
+    status = fibrad_bed_sides(h->made, h->triangles.quantity[TRIANGLE_FLUX].side,
+                              h->triangles.quantity[TRIANGLE_TEMPERATURE].side);
+    side_arrays_show(&h->triangles);
+    return status;
 }
 
 int heat_solve(struct heat *h) {
     const double begun = progress_clock(), square_metres = h->bed->metres * h->bed->metres;
-    const fibrad_scene_config scene = bed_scene(h->bed, &h->walls);
-    const fibrad_spheres spheres = bed_spheres(h->bed);
-    fibrad_run run = bed_options_run(&h->options);
-    fibrad_radiation *radiation;
+    fibrad_fault fault;
     int status = check_memory(h);
     if (status) return status;
-    status = fibrad_radiation_new(&radiation, &scene, &spheres, &h->used, &run);
+    status = fibrad_bed_beams(h->made, &h->used);
     if (status == FIBRAD_E_UNSUPPORTED && h->seconds > 0) return status;
-    if (!status) status = solve_radiation(h, radiation, &run);
-    fibrad_radiation_describe(radiation, &h->facts, &run.fault);
-    fibrad_radiation_free(radiation);
+    if (!status) status = solve_made(h);
+    fibrad_bed_describe(h->made, &h->facts, &fault);
     if (status) progress_stop(&h->options.progress);
-    if (light_refuse(h, status, &run.fault)) return STATUS_USAGE;
-    const int refused = contacts_refuse(&h->touching, &h->options, h->bed, &h->walls, status, &run.fault);
+    if (light_refuse(h, status, &fault)) return STATUS_USAGE;
+    const int refused = contacts_refuse(&h->touching, &h->options, h->bed, &h->walls, status, &fault);
     if (refused) return refused;
     if (status == FIBRAD_E_UNSOLVABLE) return refuse_powers(h);
-    status = bed_options_status(&h->options, h->bed, status, &run.fault);
+    status = bed_options_status(&h->options, h->bed, status, &fault);
     if (status) return status;
     heat_find_temperatures(h);
     if (h->conductivity) warn_surfaces(&h->options.warned, h->bed, h->result.least_temperature);

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bed/bed_scene.h"
 #include "cli/message.h"
 #include "heat/heat.h"
 #include "plot/plot_time.h"
@@ -47,12 +46,11 @@ int time_check(struct time_options *time, struct bed_options *bed) {
 /* State of a run in time. */
 struct time_run {
     struct heat *heat;
-    struct bed bed; /* as it is written: its frame is the number of the output */
-    bool by_patches;
-    fibrad_transient *transient;
+    struct bed bed;              /* as it is written: its frame is the number of the output */
     fibrad_heat_sources sources; /* as they change with time */
     double square_metres;        /* square of the bed's unit of length [m2] */
     fibrad_span span;
+    fibrad_law law;
     double now;                                   /* [s] since the beginning */
     double wall[WALLS_MAX];                       /* temperatures of walls now [K] */
     double wall_energy[WALLS_MAX];                /* gained by walls during the last span [J] */
@@ -174,43 +172,29 @@ static int find_capacities(struct time_run *m, double **capacity) {
     return status;
 }
 
-/* A fibrad_emissivity_law. */
-static void follow_temperatures(void *time_run, const double *temperature, const double *wall_temperature,
-                                double *emissivity, double *wall_emissivity) {
-    const struct time_run *m = time_run;
-    heat_follow(m->heat, temperature, wall_temperature, emissivity, wall_emissivity);
-}
-
-/* Chooses the method of the library. Patches are needed if the temperature of a wall is to be found, if emissivities
- * follow temperatures, if spheres conduct, or if they are in contact. Else --model decides, whose default is corrected
- * factors. */
-static int choose_model(struct time_run *m) {
-    const struct heat *h = m->heat;
+/* How finely powers are resolved. Exchange factors are corrected seldom, so their beams have more points. Patches serve
+ * alone as fibrad_bed_advance says. Sets the law that surfaces follow. */
+static fibrad_heat_config choose_beams(struct time_run *m) {
+    enum { POINTS_CORRECTED = 128 };
+    struct heat *h = m->heat;
     const struct contact_options *contacts = h->touching.options;
     const bool bends = contacts && (contacts->gas_curve.n > 0 || quantity_curves(&contacts->conductivity));
-    const bool follow = quantity_curves(&h->emissivities) || quantity_curves(&h->solid) || bends;
-    m->by_patches = h->by_patches || follow || h->conductivity || contacts;
-    m->span.law = follow ? follow_temperatures : NULL;
-    if (follow && h->by_factors)
-        return message(STATUS_USAGE, "--model factors: emissivities cannot follow temperatures; use --model patches");
-    if (h->by_factors && h->sources.side_temperature)
-        return message(STATUS_USAGE,
-                       "--model factors: triangles cannot have temperatures of their own; use --model patches");
-    for (uint32_t k = 0; k < h->walls.count; ++k) {
-        if (!isnan(h->sources.wall_temperature[k])) continue;
-        m->by_patches = true;
-        if (h->by_factors)
-            return message(STATUS_USAGE,
-                           "--model factors: %s has no temperature; --model patches finds temperatures of walls",
-                           wall_name(&h->walls, k));
+    bool alone = h->conductivity || contacts;
+    fibrad_heat_config config = h->config;
+    if (quantity_curves(&h->emissivities) || quantity_curves(&h->solid) || bends) {
+        m->law = (fibrad_law){.follow = heat_follow, .context = h};
+        m->span.law = &m->law;
+        alone = true;
     }
-    return STATUS_OK;
+    for (uint32_t k = 0; k < h->walls.count; ++k) alone = alone || isnan(h->sources.wall_temperature[k]);
+    if (config.points == 0 && !alone) config.points = POINTS_CORRECTED;
+    return config;
 }
 
 static int library_status(struct time_run *m, int status) {
     struct heat *h = m->heat;
     fibrad_fault fault;
-    fibrad_transient_describe(m->transient, NULL, &fault);
+    fibrad_bed_describe(h->made, NULL, &fault);
     const int refused = contacts_refuse(&h->touching, &h->options, h->bed, &h->walls, status, &fault);
     if (refused) return refused;
     if (status != FIBRAD_E_UNSOLVABLE) return bed_options_status(&h->options, h->bed, status, &fault);
@@ -223,36 +207,25 @@ static int library_status(struct time_run *m, int status) {
  * off as thermal radiation what it absorbs. */
 static int absorb_light(struct time_run *m) {
     struct heat *h = m->heat;
-    const fibrad_scene_config scene = bed_scene(h->bed, &h->walls);
-    const fibrad_spheres spheres = bed_spheres(h->bed);
-    fibrad_run run = bed_options_run(&h->options);
-    fibrad_radiation *radiation = NULL;
-    int status = FIBRAD_OK;
+    fibrad_fault fault;
     if (!h->lit.options) return STATUS_OK;
     for (uint32_t k = 0; k < h->walls.count; ++k)
         if (m->sources.insulated[k] && h->lit.of_walls[k] > 0)
             return message(STATUS_USAGE, "--irradiate with --until: %s is insulated and needs --wall-absorptivity %s=0",
                            wall_name(&h->walls, k), wall_name(&h->walls, k));
-    if (!m->by_patches) status = fibrad_radiation_new(&radiation, &scene, &spheres, &h->config, &run);
-    if (!status)
-        status = light_absorb(h, m->by_patches ? m->transient : NULL, radiation, m->square_metres, &m->sources);
-    if (m->by_patches) fibrad_transient_describe(m->transient, NULL, &run.fault);
-    if (!m->by_patches) {
-        fibrad_radiation_describe(radiation, NULL, &run.fault);
-        fibrad_radiation_free(radiation);
-        m->sources.absorbed = NULL;
-    }
+    const int status = light_absorb(h, m->square_metres, &m->sources);
+    fibrad_bed_describe(h->made, NULL, &fault);
     if (status) progress_stop(&h->options.progress);
-    if (light_refuse(h, status, &run.fault)) return STATUS_USAGE;
-    return bed_options_status(&h->options, h->bed, status, &run.fault);
+    if (light_refuse(h, status, &fault)) return STATUS_USAGE;
+    return bed_options_status(&h->options, h->bed, status, &fault);
 }
 
 /* Fluxes of triangles in W/m2: those of the library are in watts per area in the bed's unit of length. */
 static int show_triangles(struct time_run *m) {
     struct side_arrays *triangles = &m->heat->triangles;
     double *flux = triangles->quantity[TRIANGLE_FLUX].side;
-    if (triangles->count == 0 || m->heat->by_factors) return FIBRAD_OK;
-    const int status = fibrad_transient_sides(m->transient, flux, triangles->quantity[TRIANGLE_TEMPERATURE].side);
+    if (triangles->count == 0) return FIBRAD_OK;
+    const int status = fibrad_bed_sides(m->heat->made, flux, triangles->quantity[TRIANGLE_TEMPERATURE].side);
     for (size_t s = 0; s < 2 * (size_t)triangles->n; ++s) flux[s] /= m->square_metres;
     side_arrays_show(triangles);
     return status;
@@ -265,7 +238,8 @@ static int write_state(struct time_run *m) {
     shown.temperature = m->span.temperature;
     heat_follow(h, shown.temperature, m->wall, h->emissivity, NULL);
     heat_excess_of(h, shown.temperature, m->wall, m->excess);
-    int status = fibrad_transient_powers(m->transient, &shown, &h->result);
+    shown.power = NULL; /* a sphere has a temperature or a power, not both */
+    int status = fibrad_bed_solve(h->made, &shown, NULL, &h->result);
     if (!status) status = show_triangles(m);
     status = library_status(m, status);
     if (status) return status;
@@ -285,7 +259,7 @@ static int advance(struct time_run *m, double time) {
     outside_at(m, time, wall, &surroundings);
     m->span.duration = time - m->now;
     m->span.wall_temperature = wall, m->span.surroundings = &surroundings;
-    const int status = fibrad_transient_advance(m->transient, &m->sources, &m->span);
+    const int status = fibrad_bed_advance(m->heat->made, &m->sources, &m->span);
     if (status) return library_status(m, status);
     m->steps += m->span.steps, m->refused += m->span.refused, m->sweeps += m->span.sweeps;
     m->corrections += m->span.corrections;
@@ -318,7 +292,6 @@ static void print_summary(struct time_run *m, const double *before, double secon
     struct heat *h = m->heat;
     const struct time_options *o = &h->time;
     struct report *report = &h->options.report;
-    fibrad_scene_facts facts;
     double supplied = 0, stored = 0, exchanged = 0;
     const struct time_point end = point_of(m, o->until, m->span.temperature);
     for (uint32_t i = 0; i < h->bed->n; ++i) {
@@ -328,10 +301,9 @@ static void print_summary(struct time_run *m, const double *before, double secon
     }
     double balance = stored - supplied + m->surroundings_energy;
     for (uint32_t k = 0; k < h->walls.count; ++k) balance += m->energy[k];
-    fibrad_transient_describe(m->transient, &facts, NULL);
-    bed_options_report(&h->options, h->bed, &h->walls, &facts);
+    bed_options_report(&h->options, h->bed, &h->walls, &h->facts);
     report_value(report, "until_s", o->until, 9);
-    report_text(report, "model", m->by_patches ? "patches" : h->by_factors ? "factors" : "corrected");
+    report_text(report, "model", m->corrections > 0 ? "corrected" : "patches");
     quantity_report(&h->emissivities, "emissivity", report);
     quantity_report(&h->solid, "solid_conductivity", report);
     if (m->lag > 0) report_value(report, "inner_lag_s", m->lag, 3);
@@ -392,17 +364,11 @@ static void warn_tables(const struct time_run *m) {
 /* Runs a bed from 0 to --until. before [spheres]: room for the initial temperatures. */
 static int run_bed(struct time_run *m, double *before) {
     struct heat *h = m->heat;
-    const fibrad_scene_config scene = bed_scene(h->bed, &h->walls);
-    const fibrad_spheres spheres = bed_spheres(h->bed);
-    const fibrad_transient_config config = {.method = m->by_patches   ? FIBRAD_TRANSIENT_PATCHES
-                                                      : h->by_factors ? FIBRAD_TRANSIENT_FACTORS
-                                                                      : FIBRAD_TRANSIENT_CORRECTED,
-                                            .heat = h->config};
     const double begun = progress_clock();
-    fibrad_run run = bed_options_run(&h->options);
-    int status = fibrad_transient_new(&m->transient, &scene, &spheres, &config, &run);
-    status = bed_options_status(&h->options, h->bed, status, &run.fault);
+    const fibrad_heat_config config = choose_beams(m);
+    int status = library_status(m, fibrad_bed_beams(h->made, &config));
     if (status) return status;
+    fibrad_bed_describe(h->made, &h->facts, NULL);
     status = absorb_light(m);
     if (!status) status = light_profile(h);
     outside_at(m, 0, m->wall, &m->sources.surroundings);
@@ -416,7 +382,6 @@ static int run_bed(struct time_run *m, double *before) {
         warn_tables(m);
         print_summary(m, before, progress_clock() - begun);
     }
-    fibrad_transient_free(m->transient);
     return status;
 }
 
@@ -436,8 +401,7 @@ int heat_in_time(struct heat *h) {
     for (uint32_t i = 0; i < n; ++i) result->power_error[i] = result->temperature_error[i] = NAN;
     result->surroundings_error = NAN;
     for (uint32_t k = 0; k < h->walls.count; ++k) result->wall_error[k] = result->wall_temperature_error[k] = NAN;
-    int status = choose_model(&m);
-    if (!status) status = find_capacities(&m, &capacity);
+    int status = find_capacities(&m, &capacity);
     m.span.capacity = capacity;
     if (!status) status = run_bed(&m, now + n);
     free(now);

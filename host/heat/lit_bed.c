@@ -48,8 +48,7 @@ static void add_absorbed(struct heat *h, fibrad_heat_sources *sources) {
     sources->absorbed = state->result.patches;
 }
 
-int light_absorb(struct heat *h, fibrad_transient *transient, fibrad_radiation *radiation, double unit,
-                 fibrad_heat_sources *sources) {
+int light_absorb(struct heat *h, double unit, fibrad_heat_sources *sources) {
     struct light_state *state = &h->lit;
     const struct light_options *options = state->options;
     fibrad_light scaled[LIGHTS_MAX];
@@ -58,16 +57,14 @@ int light_absorb(struct heat *h, fibrad_transient *transient, fibrad_radiation *
     fibrad_light_sources light = {.lights = options->lights,
                                   .light = scaled,
                                   .absorptivity = state->absorptivity,
-                                  .wall_absorptivity = state->of_walls,
-                                  .uniform = sources->uniform};
+                                  .wall_absorptivity = state->of_walls};
     state->result = (fibrad_light_result){.absorbed = state->absorbed,
                                           .absorbed_first = state->first,
                                           .absorbed_error = state->error,
                                           .wall_absorbed = state->wall,
                                           .wall_absorbed_first = state->wall_first,
                                           .wall_absorbed_error = state->wall_error};
-    const int status = transient ? fibrad_transient_shine(transient, &light, &state->result)
-                                 : fibrad_radiation_shine(radiation, &light, &state->result);
+    const int status = fibrad_bed_shine(h->made, &light, &state->result);
     state->failed = status;
     if (!status) add_absorbed(h, sources);
     return status;

@@ -1,17 +1,19 @@
-/* fibrad_host.h - fibrad with a heap and OpenMP: whole beds in one call.
+/* fibrad_host.h - fibrad with a heap and OpenMP: a bed, and what is asked of it.
  *
  * Index
  *   run      fibrad_run: threads, progress, cancelling
- *   factors  fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_exchange_wall_row,
- *            fibrad_side_views, fibrad_displacements
- *   heat     fibrad_radiation_new, _move, _solve, _sides, _settle, _shine, _describe, _free
- *   time     fibrad_transient_new, _move, _powers, _sides, _shine, _advance, _describe, _free
- *   contacts fibrad_contacts_find, _conduct, _free
+ *   bed      fibrad_bed_new, _move, _describe, _warnings, _free
+ *   factors  fibrad_bed_factors, fibrad_bed_matrix_free, fibrad_bed_wall_row, fibrad_view_factors
+ *   heat     fibrad_bed_beams, _solve, _sides, _shine, _advance
+ *   contacts fibrad_bed_contacts, fibrad_contacts_conduct
  *   kernel   fibrad_heap_resize, fibrad_host_sizeof
  *
- * Example   fibrad_bed_factors *bed;
- *           int status = fibrad_view_factors(NULL, &spheres, NULL, NULL, &bed);
- *           if (status == FIBRAD_OK) ... bed->matrix has the rows ...
+ * Example   fibrad_bed *bed;
+ *           fibrad_bed_matrix *factors;
+ *           int status = fibrad_bed_new(&bed, NULL, &spheres, NULL);
+ *           if (status == FIBRAD_OK) status = fibrad_bed_factors(bed, NULL, &factors);
+ *           if (status == FIBRAD_OK) ... factors->matrix has the rows ...
+ *           fibrad_bed_matrix_free(factors);
  *           fibrad_bed_free(bed);
  * Link      with libfibrad_host.a and libfibrad.a, or with libfibrad.so, which has both
  * Words     Units, words, defaults and the layout of comments are as in fibrad.h.
@@ -32,7 +34,6 @@
 #include "fibrad_heat.h"
 #include "fibrad_light.h"
 #include "fibrad_mesh.h"
-#include "fibrad_surface.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -57,10 +58,72 @@ typedef struct fibrad_run {
     fibrad_fault fault;        /* out: where an error is */
 } fibrad_run;
 
+/* ---- bed ------------------------------------------------------------------------------------------------------- */
+
+/* A bed: spheres, walls, openings and periods. The bed makes its scene, its threads, beams and lists of contacts when
+ * they are first needed, and keeps them. */
+typedef struct fibrad_bed fibrad_bed;
+
+/* Makes a bed. Positions, radii, ids, walls and triangles are copied.
+ *   Input    config: NULL: open on all sides, no walls
+ *            run: NULL for all defaults; threads, progress and context are kept for later calls
+ *   Output   bed: free with fibrad_bed_free
+ *            run->fault: where an error is
+ *   Errors   as fibrad_scene_init
+ *   Cost     that of fibrad_scene_init */
+int fibrad_bed_new(fibrad_bed **bed, const fibrad_scene_config *config, const fibrad_spheres *spheres, fibrad_run *run);
+
+/* Moves spheres and walls to other positions. Beams are traced again when they are next needed. The next solution
+ * begins with the last one: it agrees with that of a new bed within the tolerance of the sources, not to the bit.
+ * Factors, light and contacts have the bits of a new bed.
+ *   Input    config, spheres: the same number of spheres, and otherwise as for fibrad_heat_move
+ *   Errors   as fibrad_bed_new, and as fibrad_heat_move. A bed that is refused leaves the last bed in use. */
+int fibrad_bed_move(fibrad_bed *bed, const fibrad_scene_config *config, const fibrad_spheres *spheres);
+
+/* Facts of the bed, and where the last error was. Either output may be NULL. NULL for bed is allowed.
+ *   Errors   none */
+void fibrad_bed_describe(const fibrad_bed *bed, fibrad_scene_facts *facts, fibrad_fault *fault);
+
+/* What in a bed, in its factors or in its sources is probably a mistake. Results are computed all the same. */
+typedef enum fibrad_warning_code {
+    FIBRAD_WARNING_OVERLAP = 1,     /* spheres `first` and `second` overlap by value > .05 of the smaller radius; their
+                                       factors err by about `other` */
+    FIBRAD_WARNING_CUT = 2,         /* sphere `first` reaches through a plane or cylinder by value > .1 of its radius */
+    FIBRAD_WARNING_MESH_SIZE = 3,   /* the mesh is `value` long and the bed `other`, 200 times more or less */
+    FIBRAD_WARNING_MESH_PLACE = 4,  /* the mesh begins at `value` along axis `first`, beyond the bed's end at `other` */
+    FIBRAD_WARNING_COLD = 5,        /* no sphere is warmer than value < 150 K: degrees Celsius? */
+    FIBRAD_WARNING_ZERO = 6,        /* sphere `first` has 0 K, others up to `value` */
+    FIBRAD_WARNING_AROUND = 7,      /* `wall` or the surroundings have 5 K < value < 75 K: degrees Celsius? */
+    FIBRAD_WARNING_CLOSED = 8,      /* the surroundings have a temperature, but nothing leaves the bed */
+    FIBRAD_WARNING_SURFACE = 9,     /* part of the surface of sphere `first` comes out at value < 0 K */
+    FIBRAD_WARNING_STORE = 10,      /* sphere `first` stores `value` J/(m3 K), which no solid does */
+    FIBRAD_WARNING_OPEN_ROWS = 11,  /* sums of rows of walls are off by `value` */
+    FIBRAD_WARNING_APART = 12,      /* rows of walls and of spheres disagreed by `value` before they were closed */
+    FIBRAD_WARNING_CHANGED_ROW = 13 /* closing changed row `first` by `value` times its error */
+} fibrad_warning_code;
+
+typedef struct fibrad_warning {
+    int code;               /* a fibrad_warning_code */
+    uint32_t first, second; /* a sphere; another one */
+    uint32_t wall;          /* 1 + the index of a wall; 0: none */
+    uint32_t count;         /* spheres of which the warning is true; the fields are of the worst one */
+    double value, other;    /* as the code says */
+} fibrad_warning;
+
+/* Warnings of the bed as it is, of its last factors and of its last sources, at most one of each code.
+ *   Output   warning[FIBRAD_WARNINGS_MAX]
+ *   Errors   none. Returns the number of warnings. NULL for bed is allowed. */
+#define FIBRAD_WARNINGS_MAX 16
+uint32_t fibrad_bed_warnings(const fibrad_bed *bed, fibrad_warning *warning);
+
+/* Frees a bed. NULL is allowed.
+ *   Errors   none */
+void fibrad_bed_free(fibrad_bed *bed);
+
 /* ---- factors --------------------------------------------------------------------------------------------------- */
 
-/* Which rows of a bed are computed, and how. NULL or zeroed: all rows, reciprocal and closed. At most one of beam,
- * surface and cast is set.
+/* Which rows of a bed are computed, and how. NULL or zeroed: view factors, all rows, reciprocal and closed. At most one
+ * of beam, cast and exchange is set.
  *
  * Rows go along lines if all rows are wanted, raw is 0, and the rule is a beam rule or NULL. The number of lines is
  * then beam->directions, up to FIBRAD_LINES_EVEN_MAX. It is raised to the next built-in set. 0 stands for
@@ -78,19 +141,19 @@ typedef struct fibrad_run {
  * Raw rows are those before averaging. Files in the scratch folder take bytes for each entry of the raw rows. Rows
  * along lines have 16 for the row and 32 for the matrix. Other rows have 12 and 24. The files of the rows may be up to
  * twice as large. */
-typedef struct fibrad_bed_options {
-    const fibrad_beam_rule *beam;       /* NULL: the defaults, unless surface or cast is set */
-    const fibrad_surface_rule *surface; /* NULL: not by the surface method */
-    const fibrad_cast_rule *cast;       /* NULL: not by rays */
-    const unsigned char *wanted;        /* [spheres], not 0: compute this row; implies raw; NULL: all rows */
-    int raw;                            /* 1: leave the rows as the method gave them */
-    double drop;                        /* 0 to 1, as in fibrad_matrix_rule */
-    int walls;                          /* 1: rows of walls, too */
-    const char *scratch;                /* folder for unnamed files instead of memory, same bits; NULL: memory */
-} fibrad_bed_options;
+typedef struct fibrad_bed_rule {
+    const fibrad_beam_rule *beam;         /* NULL: the defaults, unless cast or exchange is set */
+    const fibrad_cast_rule *cast;         /* NULL: not by rays */
+    const fibrad_exchange_rule *exchange; /* exchange factors; NULL: view factors */
+    const unsigned char *wanted;          /* [spheres], not 0: compute this row; implies raw; NULL: all rows */
+    int raw;                              /* 1: leave the rows as the method gave them */
+    double drop;                          /* 0 to 1, as in fibrad_matrix_rule */
+    int walls;                            /* 1: rows of walls, too */
+    const char *scratch;                  /* folder for unnamed files instead of memory, same bits; NULL: memory */
+} fibrad_bed_rule;
 
 /* A matrix of factors, and facts of its computation. */
-typedef struct fibrad_bed_factors {
+typedef struct fibrad_bed_matrix {
     fibrad_factors matrix;    /* a row that is not wanted is empty */
     fibrad_scene_facts facts; /* of the scene */
     const double *wall_area;  /* L^2, [walls], as fibrad_scene_wall_area */
@@ -101,33 +164,27 @@ typedef struct fibrad_bed_factors {
     double seconds;           /* s, without the time for closure_error and reciprocity_error */
     double closure_error;     /* largest |sum - 1| of a raw row */
     double reciprocity_error; /* as fibrad_matrix_reciprocity; NaN if rows are missing */
-} fibrad_bed_factors;
+} fibrad_bed_matrix;
 
-/* View factors of a whole bed.
- *   Input    config: NULL: open on all sides, no walls
- *            options, run: NULL for all defaults
- *   Output   factors: free with fibrad_bed_free
- *   Errors   as fibrad_scene_init, fibrad_beam_row (_surface_row, _cast_row) and fibrad_matrix_init; _CANCELLED
+/* Factors of a bed: exchange factors if rule->exchange is set, else view factors. A tolerance in the rule is the error
+ * allowed in the final rows.
+ *   Input    rule: NULL for all defaults
+ *   Output   matrix: free with fibrad_bed_matrix_free; it does not need the bed
+ *   Errors   as fibrad_beam_row (_cast_row, _exchange_row) and fibrad_matrix_init; _CANCELLED
  *   Cost     that of all rows over the threads; memory up to 64 bytes per entry of the raw rows
- *   Source   docs/methods.md */
-int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
-                        const fibrad_bed_options *options, fibrad_run *run, fibrad_bed_factors **factors);
-
-/* Exchange factors of a whole bed. rule->tolerance is the error allowed in the final rows.
- *   Input    config: NULL: open on all sides, no walls
- *            rule: needed
- *            options, run: NULL for all defaults; options->beam, surface and cast must be NULL
- *   Output   factors: free with fibrad_bed_free
- *   Errors   as fibrad_scene_init, fibrad_exchange_row and fibrad_matrix_init; _CANCELLED
- *   Cost     as fibrad_view_factors
- *   Source   docs/methods_heat.md sections 2 to 4 */
-int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
-                            const fibrad_exchange_rule *rule, const fibrad_bed_options *options, fibrad_run *run,
-                            fibrad_bed_factors **factors);
+ *   Source   docs/methods.md; of exchange factors docs/methods_heat.md sections 2 to 4 */
+int fibrad_bed_factors(fibrad_bed *bed, const fibrad_bed_rule *rule, fibrad_bed_matrix **matrix);
 
 /* Frees factors. NULL is allowed.
  *   Errors   none */
-void fibrad_bed_free(fibrad_bed_factors *factors);
+void fibrad_bed_matrix_free(fibrad_bed_matrix *matrix);
+
+/* Factors of a bed in one call: fibrad_bed_new, _factors and _free.
+ *   Input    as for these
+ *   Output   matrix: free with fibrad_bed_matrix_free
+ *   Errors   as these */
+int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres, const fibrad_bed_rule *rule,
+                        fibrad_run *run, fibrad_bed_matrix **matrix);
 
 /* The row of one wall or opening: fibrad_exchange_wall and fibrad_exchange_wall_mean. The number of paths is doubled
  * until the error is at most `tolerance`, up to 2^24 paths.
@@ -135,66 +192,28 @@ void fibrad_bed_free(fibrad_bed_factors *factors);
  *            rule: needed
  *            tolerance: 0: any error is allowed
  *   Output   row
- *   Errors   as fibrad_scene_init and fibrad_exchange_wall; _CANCELLED
+ *   Errors   as fibrad_exchange_wall; _CANCELLED
  *   Cost     that of the paths */
-int fibrad_exchange_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t wall,
-                             const fibrad_wall_rule *rule, double tolerance, fibrad_run *run, fibrad_wall_row *row);
-
-/* What all triangles of a bed see: fibrad_triangle_views of each.
- *   Input    rays: from each side, 1 to 2^30
- *   Output   view[2 triangles]: element 2 t is the front and 2 t + 1 the back of the caller's triangle t
- *   Errors   as fibrad_scene_init and fibrad_triangle_views; _CANCELLED. After an error some elements may be written.
- */
-int fibrad_side_views(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t rays, fibrad_run *run,
-                      fibrad_side_view *view);
+int fibrad_bed_wall_row(fibrad_bed *bed, uint32_t wall, const fibrad_wall_rule *rule, double tolerance,
+                        fibrad_wall_row *row);
 
 /* How far the emission of spheres is carried: fibrad_exchange_displacement of each.
  *   Input    rule: needed
  *            wanted[spheres]: not 0: this sphere is wanted; NULL: all spheres
  *   Output   displacement[spheres]: elements that are not wanted stay as they are
- *            facts: of the scene; may be NULL
- *   Errors   as fibrad_scene_init and fibrad_exchange_displacement; _CANCELLED. After an error some elements may be
- *            written. */
-int fibrad_displacements(const fibrad_scene_config *config, const fibrad_spheres *spheres,
-                         const fibrad_displacement_rule *rule, const unsigned char *wanted, fibrad_run *run,
-                         fibrad_displacement *displacement, fibrad_scene_facts *facts);
+ *   Errors   as fibrad_exchange_displacement; _CANCELLED. After an error some elements may be written. */
+int fibrad_bed_displacements(fibrad_bed *bed, const fibrad_displacement_rule *rule, const unsigned char *wanted,
+                             fibrad_displacement *displacement);
 
 /* ---- heat ------------------------------------------------------------------------------------------------------ */
 
-/* A heat problem (fibrad_heat.h) of a bed that may move. */
-typedef struct fibrad_radiation fibrad_radiation;
-
-/* Makes the heat problem of a bed and traces its beams.
- *   Input    config: NULL: open on all sides, no walls
- *            heat_config: NULL for all defaults; `parts` is always 16
- *            run: NULL for all defaults; threads, progress and context are kept for later calls
- *   Output   radiation: free with fibrad_radiation_free
- *   Errors   as fibrad_scene_init, fibrad_heat_init and fibrad_heat_trace; _CANCELLED
- *   Cost     that of the traces over the threads
+/* How finely heat is resolved from now on (fibrad_heat.h), and traces the beams. The next solution begins with the last
+ * one. Without this call, the first call that needs beams takes the defaults.
+ *   Input    config: NULL for all defaults; `parts` is always 16
+ *   Errors   as fibrad_heat_init and fibrad_heat_trace; _CANCELLED
+ *   Cost     that of the traces over the threads; none if the beams are there
  *   Source   docs/methods_heat.md sections 5 to 9 */
-int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config *config, const fibrad_spheres *spheres,
-                         const fibrad_heat_config *heat_config, fibrad_run *run);
-
-/* Moves spheres and walls of a problem to other positions, and traces the beams again. The next solution begins with
- * the last one.
- *   Input    config, spheres: the same number of spheres, otherwise as for fibrad_heat_move
- *   Errors   as fibrad_radiation_new. A bed that is refused leaves the last bed in use. After an error in a trace,
- *            fibrad_radiation_solve returns FIBRAD_E_STATE until a move succeeds. */
-int fibrad_radiation_move(fibrad_radiation *radiation, const fibrad_scene_config *config,
-                          const fibrad_spheres *spheres);
-
-/* Net powers and temperatures for these sources.
- *   Input    sources: begin with fibrad_heat_sources_init
- *   Output   result: the caller's arrays, as for fibrad_heat_read
- *   Errors   as fibrad_heat_check, _begin, _step and _read; _CANCELLED
- *   Cost     that of the sweeps over the threads */
-int fibrad_radiation_solve(fibrad_radiation *radiation, const fibrad_heat_sources *sources, fibrad_heat_result *result);
-
-/* The last solution on the sides of triangles: fibrad_heat_read_sides.
- *   Output   flux[2 triangles], temperature[2 triangles]: may be NULL
- *   Errors   _ARGUMENT
- *            _STATE: there is no solution of this bed */
-int fibrad_radiation_sides(const fibrad_radiation *radiation, double *flux, double *temperature);
+int fibrad_bed_beams(fibrad_bed *bed, const fibrad_heat_config *config);
 
 /* A function of the caller: emissivities that depend on temperatures. The thread that made the call runs this function.
  * A temperature is NaN if it has not been found yet, if the wall is insulated, or if the emissivity is 0. The function
@@ -204,20 +223,33 @@ int fibrad_radiation_sides(const fibrad_radiation *radiation, double *flux, doub
 typedef void fibrad_emissivity_law(void *context, const double *temperature, const double *wall_temperature,
                                    double *emissivity, double *wall_emissivity);
 
-/* Net powers and temperatures with emissivities that follow a law. The call solves again until the emissivities change
- * by at most 1e-5. The law may also change the elements of sources->conductivity and of sources->conductance. The call
- * then goes on until each of these changes by at most 1e-4 of its value.
- *   Input    sources: emissivity and wall_emissivity are not used
- *            context: handed to law
- *            emissivity[spheres], wall_emissivity[walls]: first values, used where temperatures are unknown
- *   Output   emissivity, wall_emissivity: those of the solution
- *            result: temperature, and wall_temperature with walls, must be set
- *   Errors   as fibrad_radiation_solve
- *            _UNSOLVABLE: also if 100 solutions do not suffice
- *            After an error `emissivity` and `wall_emissivity` are as before. Conductivities and conductances are as
- *            the law has left them. */
-int fibrad_radiation_settle(fibrad_radiation *radiation, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
-                            void *context, double *emissivity, double *wall_emissivity, fibrad_heat_result *result);
+/* A law that emissivities follow. It may also change the elements of sources->conductivity and of sources->conductance.
+ */
+typedef struct fibrad_law {
+    fibrad_emissivity_law *follow;
+    void *context;           /* handed to follow */
+    double *emissivity;      /* [spheres], in: first values, used where temperatures are unknown; out: at the end */
+    double *wall_emissivity; /* [walls], likewise */
+} fibrad_law;
+
+/* Net powers and temperatures for these sources. With a law the call solves again until emissivities change by at most
+ * 1e-5, and conductivities and conductances by at most 1e-4 of their values.
+ *   Input    sources: begin with fibrad_heat_sources_init; with a law, emissivity and wall_emissivity are not used
+ *            law: NULL: emissivities are constant
+ *   Output   result: the caller's arrays, as for fibrad_heat_read; with a law, temperature, and wall_temperature with
+ *            walls, must be set
+ *   Errors   as fibrad_bed_beams, fibrad_heat_check, _begin, _step and _read; _CANCELLED
+ *            _UNSOLVABLE: also if 100 solutions do not satisfy the law
+ *            After an error the emissivities of the law are as before. Conductivities and conductances are as the law
+ *            has left them.
+ *   Cost     that of the sweeps over the threads */
+int fibrad_bed_solve(fibrad_bed *bed, const fibrad_heat_sources *sources, fibrad_law *law, fibrad_heat_result *result);
+
+/* The last solution on the sides of triangles: fibrad_heat_read_sides.
+ *   Output   flux[2 triangles], temperature[2 triangles]: may be NULL
+ *   Errors   _ARGUMENT
+ *            _STATE: there is no solution of the bed as it is */
+int fibrad_bed_sides(const fibrad_bed *bed, double *flux, double *temperature);
 
 /* Light from outside, and what absorbs it. Set the lights and the absorptivities. */
 typedef struct fibrad_light_sources {
@@ -226,7 +258,6 @@ typedef struct fibrad_light_sources {
     const double *absorptivity;      /* [spheres], 0 to 1, of the light */
     const double *wall_absorptivity; /* [walls], 0 to 1; NULL without walls */
     double tolerance;                /* as in fibrad_heat_sources; 0: 1e-5 */
-    int uniform;                     /* as in fibrad_heat_sources */
 } fibrad_light_sources;
 
 /* What is absorbed of light from outside. The arrays belong to the caller; those of errors may be NULL. */
@@ -253,95 +284,16 @@ typedef struct fibrad_light_result {
  * elements of `patches` are not scaled: for each surface they add up to what the solution says.
  *
  * Absorbed light heats a surface. If the temperature of the surface is given, add the absorbed light to the net power
- * in the result of fibrad_radiation_solve. If the temperature is to be found, add it to the power in the sources.
+ * in the result of fibrad_bed_solve. If the temperature is to be found, add it to the power in the sources.
  * Insulated walls have no power in the sources. They give off the absorbed light if sources.absorbed is
  * result->patches. Spheres that conduct need this array as well, to be hotter where they are lit. The array lasts until
  * the next move or shine.
  *   Output   result
- *   Errors   as fibrad_light_empty and fibrad_radiation_solve
+ *   Errors   as fibrad_light_empty and fibrad_bed_solve
  *            _UNSOLVABLE: nothing absorbs the light, and it cannot leave
  *   Cost     that of a solution
  *   Source   docs/methods_heat.md, Light from outside */
-int fibrad_radiation_shine(fibrad_radiation *radiation, const fibrad_light_sources *sources,
-                           fibrad_light_result *result);
-
-/* Facts of the scene in use, and where the last error was. Either output may be NULL. NULL for radiation is allowed.
- *   Errors   none */
-void fibrad_radiation_describe(const fibrad_radiation *radiation, fibrad_scene_facts *facts, fibrad_fault *fault);
-
-/* Frees the problem. NULL is allowed.
- *   Errors   none */
-void fibrad_radiation_free(fibrad_radiation *radiation);
-
-/* ---- time ------------------------------------------------------------------------------------------------------ */
-
-/* A bed whose temperatures change with time: C dT/dt = power + net radiative power. C is the heat capacity of a sphere
- * [J/K]. A sphere has one temperature. */
-typedef struct fibrad_transient fibrad_transient;
-
-/* How net radiative powers are found.
- *
- *   CORRECTED  by exchange factors, which patches correct from time to time. Powers are as accurate as by patches. Take
- *              this method for many steps at the same positions. The temperatures of walls must be given.
- *   PATCHES    by patches in every stage of a step. Take this method for a step or two at the same positions, and for
- *              walls whose temperatures are found.
- *   FACTORS    by exchange factors alone. Powers are 2 to 5 % off. The method takes little memory. The temperatures of
- *              walls must be given, and walls gain from spheres only.
- *
- * Exchange factors are computed by the first step after a move. */
-typedef enum fibrad_transient_method {
-    FIBRAD_TRANSIENT_CORRECTED = 0,
-    FIBRAD_TRANSIENT_PATCHES = 1,
-    FIBRAD_TRANSIENT_FACTORS = 2
-} fibrad_transient_method;
-
-/* How a bed is followed in time. Zeroed: CORRECTED. */
-typedef struct fibrad_transient_config {
-    int method;                    /* a fibrad_transient_method */
-    fibrad_exchange_rule exchange; /* for exchange factors; emissivities are those of the sources, not of this rule;
-                                      conductivity, node_emissivity and known must be NULL */
-    fibrad_heat_config heat;       /* for patches, as for fibrad_radiation_new; points 0: 128 if CORRECTED */
-} fibrad_transient_config;
-
-/* Makes a bed that changes with time. The bed is copied, its triangles included. If exchange.directions, paths and
- * tolerance are all 0, tolerance is 0.03, or 0.01 by FACTORS.
- *   Input    scene: NULL: open on all sides, no walls
- *            config: NULL for all defaults
- *            run: as for fibrad_radiation_new
- *   Output   transient: free with fibrad_transient_free
- *   Errors   as fibrad_scene_init; by CORRECTED and PATCHES also as fibrad_radiation_new
- *   Source   docs/methods_heat.md section 11 */
-int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres,
-                         const fibrad_transient_config *config, fibrad_run *run);
-
-/* Moves the spheres and walls to other positions.
- *   Input    scene, spheres: as for fibrad_radiation_move
- *   Errors   as fibrad_transient_new. A bed that is refused leaves the last bed in use. After an error in a trace,
- *            later calls return FIBRAD_E_STATE until a move succeeds. */
-int fibrad_transient_move(fibrad_transient *transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres);
-
-/* Net radiative powers at given temperatures of spheres. CORRECTED and PATCHES find them by patches, FACTORS by
- * exchange factors.
- *   Input    sources: temperature has no NaN; power is not used
- *   Output   result: as for fibrad_radiation_solve. FACTORS writes power, wall_power, surroundings_power, temperature
- *            and sweeps only.
- *   Errors   as fibrad_transient_advance */
-int fibrad_transient_powers(fibrad_transient *transient, const fibrad_heat_sources *sources,
-                            fibrad_heat_result *result);
-
-/* The last result of fibrad_transient_powers on the sides of triangles.
- *   Output   as fibrad_radiation_sides
- *   Errors   as fibrad_radiation_sides
- *            _STATE: also by FACTORS */
-int fibrad_transient_sides(const fibrad_transient *transient, double *flux, double *temperature);
-
-/* What the bed absorbs of light from outside.
- *   Input    sources: as for fibrad_radiation_shine
- *   Output   result: as for fibrad_radiation_shine; by PATCHES hand result->patches on as sources.absorbed
- *   Errors   as fibrad_radiation_shine
- *            _STATE: also by FACTORS */
-int fibrad_transient_shine(fibrad_transient *transient, const fibrad_light_sources *sources,
-                           fibrad_light_result *result);
+int fibrad_bed_shine(fibrad_bed *bed, const fibrad_light_sources *sources, fibrad_light_result *result);
 
 /* A function of the caller that is called after each step.
  *   Input    context: fibrad_span.context
@@ -364,48 +316,43 @@ typedef struct fibrad_span {
     double surroundings_power;      /* W, out: net radiative power at the end */
     double *wall_energy;            /* J, [walls], out: gained by radiation during the span; may be NULL */
     double surroundings_energy;     /* J, out: gained by radiation during the span */
+    fibrad_law *law;                /* called in each stage; NULL: emissivities are constant */
     fibrad_observe *observe;        /* NULL: none */
-    fibrad_emissivity_law *law;     /* called in each stage, by PATCHES only; NULL: emissivities are constant */
-    void *context;                  /* handed to observe and law */
+    void *context;                  /* handed to observe */
     double error;                   /* out: largest estimated relative error of a temperature in one step */
     uint64_t steps;                 /* out: steps taken */
     uint64_t refused;               /* out: steps tried and refused */
-    uint64_t sweeps;                /* out: sweeps over all beams (PATCHES) or all factors (CORRECTED, FACTORS) */
+    uint64_t sweeps;                /* out: sweeps over all beams or, where factors serve, over all factors */
     uint64_t corrections;           /* out: solutions by patches that correct factors */
 } fibrad_span;
 
-/* Advances the temperatures of spheres by a span of time. The scheme is implicit (SDIRK), of second order and L-stable:
- * small spheres among large ones do not limit the step. The energy that spheres lose by radiation is what walls and
- * surroundings gain, to rounding. The first automatic step of a span is as long as the last span has proposed.
+/* Advances the temperatures of spheres by a span of time: C dT/dt = power + net power, C being the heat capacity of a
+ * sphere [J/K]. The scheme is implicit (SDIRK), of second order and L-stable: small spheres among large ones do not
+ * limit the step. The energy that spheres lose by radiation is what walls and surroundings gain, to rounding. The first
+ * automatic step of a span is as long as the last span has proposed.
  *
- *   field of sources                 use
+ * Powers are those of patches. From the third step at the same positions on, exchange factors stand for patches, which
+ * correct the factors from time to time. Patches serve alone if there is a law, if spheres conduct, if there are
+ * contacts, or if the temperature of a wall is to be found.
+ *
+ *   field of sources                    use
  *   temperature, storage, reference     not used
- *   power                            constant
- *   emissivity, wall_emissivity      constant, or where a law begins
- *   wall_temperature, surroundings   at the beginning of the span; NaN (to be found) only by PATCHES
- *   wall_power, insulated            constant; by PATCHES only
- *   side_temperature                 constant; not by FACTORS
- *   conductivity                     by FACTORS it must be NULL
- *   conductance                      constant, or changed by a law; contacts by PATCHES only, on means of surfaces
- *   sigma, sweeps_max                as for fibrad_radiation_solve
- *   tolerance                        residual of a stage by patches; 0: a tenth of the span's tolerance
+ *   power                               constant
+ *   emissivity, wall_emissivity         constant, or where a law begins
+ *   wall_temperature, surroundings      at the beginning of the span; NaN: to be found
+ *   wall_power, insulated, side_temperature    constant
+ *   conductivity, conductance           constant, or changed by a law; contacts act on means of surfaces
+ *   sigma, sweeps_max                   as for fibrad_bed_solve
+ *   tolerance                           residual of a stage by patches; 0: a tenth of the span's tolerance
  *
  *   Input    sources: begin with fibrad_heat_sources_init
  *   Output   span: temperature, and the fields marked "out"
- *   Errors   _ARGUMENT: fibrad_transient_describe has the sphere at fault
+ *   Errors   _ARGUMENT: fibrad_bed_describe has the sphere at fault
  *            _UNSOLVABLE: a sphere would fall below 0 K
- *            as fibrad_exchange_factors or fibrad_radiation_solve
+ *            as fibrad_bed_factors or fibrad_bed_solve
  *   Cost     two or three solutions per step; with factors some milliseconds each for 1e4 spheres
  *   Source   R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006; docs/methods_heat.md section 11 */
-int fibrad_transient_advance(fibrad_transient *transient, const fibrad_heat_sources *sources, fibrad_span *span);
-
-/* Facts of the scene, and where the last error was, as fibrad_radiation_describe.
- *   Errors   none */
-void fibrad_transient_describe(const fibrad_transient *transient, fibrad_scene_facts *facts, fibrad_fault *fault);
-
-/* Frees the bed. NULL is allowed.
- *   Errors   none */
-void fibrad_transient_free(fibrad_transient *transient);
+int fibrad_bed_advance(fibrad_bed *bed, const fibrad_heat_sources *sources, fibrad_span *span);
 
 /* ---- contacts --------------------------------------------------------------------------------------------------- */
 
@@ -440,12 +387,10 @@ typedef struct fibrad_contact_list {
 /* Finds spheres that touch each other or walls, or that are near enough for gas to conduct. Walls are planes, the
  * cylinder and the fronts and backs of triangles. A sphere touches a wall of triangles once for each place that is
  * nearest to it.
- *   Input    config: NULL: open on all sides, no walls
- *   Output   list: free with fibrad_contacts_free
+ *   Output   list: the bed's, until the next fibrad_bed_contacts, _move or _free
  *   Errors   _ARGUMENT
  *   Cost     0.5 microseconds for each sphere within reach */
-int fibrad_contacts_find(const fibrad_scene_config *config, const fibrad_spheres *spheres,
-                         const fibrad_contact_rule *rule, fibrad_contact_list **list);
+int fibrad_bed_contacts(fibrad_bed *bed, const fibrad_contact_rule *rule, const fibrad_contact_list **list);
 
 /* What contacts conduct. A spot of radius a conducts 2 k a between spheres with 2/k = 1/k_i + 1/k_j, and 4 k_i a to a
  * wall. Gas conducts along lines parallel to the line of centres, out to where the surface of one sphere leaves the gas
@@ -459,10 +404,6 @@ int fibrad_contacts_find(const fibrad_scene_config *config, const fibrad_spheres
  *   Source   docs/methods_heat.md, section 16 */
 int fibrad_contacts_conduct(const fibrad_contact_list *list, const fibrad_contact_rule *rule, const double *solid,
                             const double *gas, double *conductance);
-
-/* Frees a list. NULL is allowed.
- *   Errors   none */
-void fibrad_contacts_free(fibrad_contact_list *list);
 
 /* ---- kernel ---------------------------------------------------------------------------------------------------- */
 

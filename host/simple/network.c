@@ -13,7 +13,7 @@
 enum { ROWS = 128, ITERATIONS_MAX = 2000 };
 
 struct fibrad_network {
-    fibrad_bed_factors *factors;
+    fibrad_bed_matrix *factors;
     double *weight;                                              /* [n] A e */
     double *diagonal;                                            /* [n] of L */
     double *outside;                                             /* [n] conductance to walls and surroundings */
@@ -22,7 +22,7 @@ struct fibrad_network {
 
 enum { ARRAYS = 8 };
 
-int fibrad_network_new(fibrad_network **network, fibrad_bed_factors *factors, const double *emissivity,
+int fibrad_network_new(fibrad_network **network, fibrad_bed_matrix *factors, const double *emissivity,
                        const double *area) {
     const fibrad_factors *d = &factors->matrix;
     const size_t n = d->n;
@@ -52,7 +52,7 @@ int fibrad_network_new(fibrad_network **network, fibrad_bed_factors *factors, co
 
 void fibrad_network_free(fibrad_network *w) {
     if (!w) return;
-    fibrad_bed_free(w->factors);
+    fibrad_bed_matrix_free(w->factors);
     free(w->weight);
     free(w);
 }

@@ -8,11 +8,11 @@ typedef struct fibrad_network fibrad_network;
 
 /* Makes a network of exchange factors of spheres. emissivity, area [n]: of the spheres. The network owns the factors
  * and frees them. After an error the caller still owns the factors. Errors: _MEMORY. */
-int fibrad_network_new(fibrad_network **network, fibrad_bed_factors *factors, const double *emissivity,
+int fibrad_network_new(fibrad_network **network, fibrad_bed_matrix *factors, const double *emissivity,
                        const double *area);
 void fibrad_network_free(fibrad_network *network);
 
-/* Finds powers and temperatures like fibrad_radiation_solve. All walls have temperatures in `sources`; their powers are
+/* Finds powers and temperatures like fibrad_bed_solve. All walls have temperatures in `sources`; their powers are
  * those from spheres alone. Spheres of unknown temperature have storage > 0 and a reference. allowed [n]: power that
  * each sphere may miss. Errors: _UNSOLVABLE: a temperature is below 0 K, or the iteration does not converge; the result
  * is written then, too. */

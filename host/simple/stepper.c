@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "simple/transient.h"
+#include "simple/bed.h"
 
 #define GAMMA     0.29289321881345247560 /* 1 - sqrt(1/2) */
 #define TOLERANCE 1e-4
@@ -26,7 +26,8 @@
 enum { NEWTON_MAX = 40 };
 
 struct stepper {
-    fibrad_transient *t;
+    fibrad_bed *bed;
+    fibrad_stepping *t;
     const fibrad_heat_sources *given;
     fibrad_span *span;
     double tolerance;
@@ -43,7 +44,7 @@ static double share_between(double from, double to, double share) { return from 
 static void set_outside(struct stepper *m, double time) {
     const double share = time / m->span->duration;
     const fibrad_span *span = m->span;
-    for (uint32_t b = 0; b < m->t->walls; ++b)
+    for (uint32_t b = 0; b < m->bed->facts.walls; ++b)
         m->t->wall_stage[b] = span->wall_temperature
                                   ? share_between(m->given->wall_temperature[b], span->wall_temperature[b], share)
                                   : m->given->wall_temperature[b];
@@ -53,8 +54,9 @@ static void set_outside(struct stepper *m, double time) {
 
 /* Sets emissivities at t->guess, which is near enough to the solution for second order. */
 static void set_surfaces(struct stepper *m) {
-    const fibrad_transient *t = m->t;
-    if (m->span->law) m->span->law(m->span->context, t->guess, t->wall_stage, t->emissivity, t->wall_emissivity);
+    const fibrad_stepping *t = m->t;
+    const fibrad_law *law = m->span->law;
+    if (law) law->follow(law->context, t->guess, t->wall_stage, t->emissivity, t->wall_emissivity);
 }
 
 /* Whether a sphere exchanges no heat with any other. */
@@ -64,20 +66,20 @@ static bool stands_alone(const struct stepper *m, uint32_t i) {
 
 /* Finds what contacts conduct from each sphere for each kelvin. */
 static void find_conducts(struct stepper *m) {
-    fibrad_transient *t = m->t;
-    for (uint32_t i = 0; i < t->n; ++i) t->conducts[i] = 0;
+    fibrad_stepping *t = m->t;
+    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) t->conducts[i] = 0;
     for (uint32_t k = 0; k < m->given->contacts; ++k) {
         const uint32_t i = m->given->contact_first[k], j = m->given->contact_second[k];
         if (i == j) continue;
-        if (i < t->n) t->conducts[i] += m->given->conductance[k];
-        if (j < t->n) t->conducts[j] += m->given->conductance[k];
+        if (i < m->bed->facts.spheres) t->conducts[i] += m->given->conductance[k];
+        if (j < m->bed->facts.spheres) t->conducts[j] += m->given->conductance[k];
     }
 }
 
 /* Makes the linear problem about t->guess. A sphere that exchanges no heat has no part in it. */
 static void linearise(struct stepper *m, double length) {
-    fibrad_transient *t = m->t;
-    for (uint32_t i = 0; i < t->n; ++i) {
+    fibrad_stepping *t = m->t;
+    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
         const double at = t->guess[i], rate = m->span->capacity[i] / length;
         const bool reflects = stands_alone(m, i);
         t->given[i] = reflects ? at : NAN;
@@ -90,9 +92,9 @@ static void linearise(struct stepper *m, double length) {
 /* Takes the solution of the linear problem. t->solution gets the temperatures that keep the energy, t->guess those
  * about which Newton's method goes on. Returns whether the two agree. */
 static bool accept_solution(struct stepper *m, double length) {
-    fibrad_transient *t = m->t;
+    fibrad_stepping *t = m->t;
     bool agree = true;
-    for (uint32_t i = 0; i < t->n; ++i) {
+    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
         const double at = t->guess[i], warmed = t->base[i] + length * power_of(m, i) / m->span->capacity[i];
         const bool reflects = stands_alone(m, i);
         const double found = reflects ? warmed : t->found[i], ratio = found / at;
@@ -106,10 +108,10 @@ static bool accept_solution(struct stepper *m, double length) {
 /* Makes temperatures agree with powers. A slow sphere takes all of the energy that it misses. A fast one, which follows
  * its neighbours at once, takes little of it. The energy still missing warms all spheres alike. */
 static void balance_energy(struct stepper *m, double length) {
-    fibrad_transient *t = m->t;
+    fibrad_stepping *t = m->t;
     double left = -m->result.surroundings_power, capacity = 0;
-    for (uint32_t b = 0; b < t->walls; ++b) left -= m->result.wall_power[b];
-    for (uint32_t i = 0; i < t->n; ++i) {
+    for (uint32_t b = 0; b < m->bed->facts.walls; ++b) left -= m->result.wall_power[b];
+    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
         const double rate = m->span->capacity[i] / length, at = t->solution[i];
         const double stiff =
             4 * m->given->sigma * at * at * at * t->area[i] * m->sources.emissivity[i] + t->conducts[i];
@@ -118,7 +120,7 @@ static void balance_energy(struct stepper *m, double length) {
         left += power_of(m, i) - rate * (t->solution[i] - t->base[i]);
         capacity += m->span->capacity[i];
     }
-    for (uint32_t i = 0; i < t->n; ++i) t->solution[i] += left * length / capacity;
+    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) t->solution[i] += left * length / capacity;
 }
 
 static bool all_positive(const double *values, uint32_t count) {
@@ -130,20 +132,20 @@ static bool all_positive(const double *values, uint32_t count) {
 /* Solves a stage that ends at `time` and starts at t->base. t->guess: where Newton's method begins. t->solution: out.
  * FIBRAD_E_UNSOLVABLE: a sphere would fall below 0 K. */
 static int solve_stage(struct stepper *m, int stage, double time, double length) {
-    fibrad_transient *t = m->t;
+    fibrad_stepping *t = m->t;
     set_outside(m, time);
     m->result.wall_power = m->stage_walls[stage];
     for (int k = 0; k < NEWTON_MAX; ++k) {
         set_surfaces(m);
         find_conducts(m);
         linearise(m, length);
-        const int status = fibrad_transient_solve(t, &m->sources, &m->result);
+        const int status = fibrad_stepping_solve(m->bed, &m->sources, &m->result);
         if (status && status != FIBRAD_E_UNSOLVABLE) return status;
         m->span->sweeps += m->result.sweeps;
         if (!accept_solution(m, length) || status) continue;
         balance_energy(m, length);
         m->to_surroundings[stage] = m->result.surroundings_power;
-        return all_positive(t->solution, t->n) ? FIBRAD_OK : FIBRAD_E_UNSOLVABLE;
+        return all_positive(t->solution, m->bed->facts.spheres) ? FIBRAD_OK : FIBRAD_E_UNSOLVABLE;
     }
     return FIBRAD_E_UNSOLVABLE;
 }
@@ -155,15 +157,15 @@ static double near_to(double guess, double temperature) {
 
 /* Tries a step. t->solution and *error: out. */
 static int try_step(struct stepper *m, double time, double step, double *error) {
-    fibrad_transient *t = m->t;
+    fibrad_stepping *t = m->t;
     const double length = GAMMA * step;
-    for (uint32_t i = 0; i < t->n; ++i) {
+    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
         t->base[i] = t->now[i];
         t->guess[i] = near_to(t->now[i] + length * t->slope[i], t->now[i]);
     }
     int status = solve_stage(m, 0, time + length, length);
     if (status) return status;
-    for (uint32_t i = 0; i < t->n; ++i) {
+    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
         const double change = t->solution[i] - t->now[i];
         t->first[i] = change;
         t->base[i] = t->now[i] + (1 - GAMMA) / GAMMA * change;
@@ -171,37 +173,38 @@ static int try_step(struct stepper *m, double time, double step, double *error) 
     }
     status = solve_stage(m, 1, time + step, length);
     *error = 0;
-    for (uint32_t i = 0; i < t->n && !status; ++i)
+    for (uint32_t i = 0; i < m->bed->facts.spheres && !status; ++i)
         *error = larger_of(*error, fabs(t->solution[i] - t->base[i] - t->first[i]) / t->solution[i]);
     return status;
 }
 
 static void accept_step(struct stepper *m, double step, double error) {
-    fibrad_transient *t = m->t;
+    fibrad_stepping *t = m->t;
     fibrad_span *span = m->span;
     const double share[2] = {(1 - GAMMA) * step, GAMMA * step};
-    for (uint32_t i = 0; i < t->n; ++i) {
+    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
         t->slope[i] = (t->solution[i] - t->base[i]) / (GAMMA * step);
         t->now[i] = t->solution[i];
     }
     for (int stage = 0; stage < 2; ++stage) {
-        for (uint32_t b = 0; b < t->walls; ++b) span->wall_energy[b] += share[stage] * m->stage_walls[stage][b];
+        for (uint32_t b = 0; b < m->bed->facts.walls; ++b)
+            span->wall_energy[b] += share[stage] * m->stage_walls[stage][b];
         span->surroundings_energy += share[stage] * m->to_surroundings[stage];
     }
     span->error = larger_of(span->error, error);
-    ++span->steps;
+    ++span->steps, ++t->steps;
 }
 
 /* The first step. The hottest surface would warm a sphere by its own temperature in a time; the step is sqrt(tolerance)
  * of the shortest such time. */
 static double first_step(const struct stepper *m) {
-    const fibrad_transient *t = m->t;
+    const fibrad_stepping *t = m->t;
     double hottest = m->given->surroundings, step = m->span->duration;
-    for (uint32_t b = 0; b < t->walls; ++b)
+    for (uint32_t b = 0; b < m->bed->facts.walls; ++b)
         hottest = larger_of(m->given->wall_temperature[b], hottest); /* NaN, not known: hottest stays */
-    for (uint32_t i = 0; i < t->n; ++i) hottest = larger_of(hottest, t->now[i]);
+    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) hottest = larger_of(hottest, t->now[i]);
     const double emission = m->given->sigma * (hottest * hottest) * (hottest * hottest);
-    for (uint32_t i = 0; i < t->n; ++i) {
+    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
         const double rate = t->area[i] * m->given->emissivity[i] * emission + fabs(power_of(m, i));
         if (rate > 0) step = smaller_of(step, sqrt(m->tolerance) * m->span->capacity[i] * t->now[i] / rate);
     }
@@ -214,20 +217,25 @@ static int compare(struct stepper *m, double time) {
     set_outside(m, time);
     now.temperature = m->t->now;
     now.wall_temperature = m->t->wall_stage, now.surroundings = m->sources.surroundings;
-    return fibrad_transient_compare(m->t, &now, &m->span->corrections);
+    return fibrad_stepping_compare(m->bed, &now, &m->span->corrections);
+}
+
+/* The next step of a span that begins. */
+static double next_step(const struct stepper *m) {
+    return m->span->step > 0 ? m->span->step : m->t->step > 0 ? m->t->step : first_step(m);
 }
 
 static int take_steps(struct stepper *m) {
-    fibrad_transient *t = m->t;
+    fibrad_stepping *t = m->t;
     fibrad_span *span = m->span;
     const bool fixed = span->step > 0;
-    double next = fixed ? span->step : t->step > 0 ? t->step : first_step(m), time = 0, error;
+    double next = next_step(m), time = 0, error;
     while (time < span->duration) {
         if (!(next > SMALLEST * span->duration)) return FIBRAD_E_UNSOLVABLE;
         const double rest = span->duration - time;
         const uint64_t parts = (uint64_t)(rest / next * (1 - 1e-9)) + 1; /* equal parts: no last step is much shorter */
         const double step = rest / (double)parts;
-        int status = fibrad_team_report(&t->radiation->team, "steps", span->steps, 0);
+        int status = fibrad_team_report(&m->bed->team, "steps", span->steps, 0);
         if (!status) status = compare(m, time);
         if (!status) status = try_step(m, time, step, &error);
         if (status && (fixed || status != FIBRAD_E_UNSOLVABLE)) return status;
@@ -246,137 +254,104 @@ static int take_steps(struct stepper *m) {
     return FIBRAD_OK;
 }
 
-/* Checks a span. t->fault: the first sphere with an invalid value. */
-static int check_span(fibrad_transient *t, const fibrad_heat_sources *s, const fibrad_span *span) {
-    t->fault = (fibrad_fault){t->n, t->n, UINT32_MAX, 0, 0};
-    if (t->n > 0 && (!span->temperature || !span->capacity)) return FIBRAD_E_ARGUMENT;
+/* Checks a span. bed->fault: the first sphere with an invalid value. */
+static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibrad_span *span) {
+    const uint32_t n = bed->facts.spheres, walls = bed->facts.walls;
+    if (n > 0 && (!span->temperature || !span->capacity || !s->emissivity)) return FIBRAD_E_ARGUMENT;
+    if (walls > 0 && !(s->wall_temperature && s->wall_emissivity)) return FIBRAD_E_ARGUMENT;
     if (!(span->duration > 0 && span->duration <= FIBRAD_DURATION_MAX && span->step >= 0 && span->tolerance >= 0 &&
-          span->tolerance < 1))
+          span->tolerance < 1) ||
+        (span->law && !span->law->follow))
         return FIBRAD_E_ARGUMENT;
-    for (uint32_t i = 0; i < t->n; ++i) {
-        t->fault = (fibrad_fault){i, i, UINT32_MAX, 0, FIBRAD_WHY_TEMPERATURE};
-        if (!(span->temperature[i] > 0 && span->temperature[i] <= FIBRAD_TEMPERATURE_MAX)) return FIBRAD_E_ARGUMENT;
-        t->fault.why = FIBRAD_WHY_CAPACITY;
-        if (!(span->capacity[i] > 0 && span->capacity[i] <= FIBRAD_CAPACITY_MAX)) return FIBRAD_E_ARGUMENT;
-        t->fault.why = FIBRAD_WHY_POWER;
-        if (s->power && !(fabs(s->power[i]) <= FIBRAD_POWER_MAX)) return FIBRAD_E_ARGUMENT;
+    for (uint32_t i = 0; i < n; ++i) {
+        const int why = !(span->temperature[i] > 0 && span->temperature[i] <= FIBRAD_TEMPERATURE_MAX)
+                            ? FIBRAD_WHY_TEMPERATURE
+                        : !(span->capacity[i] > 0 && span->capacity[i] <= FIBRAD_CAPACITY_MAX) ? FIBRAD_WHY_CAPACITY
+                        : s->power && !(fabs(s->power[i]) <= FIBRAD_POWER_MAX)                 ? FIBRAD_WHY_POWER
+                        : !(s->emissivity[i] >= 0 && s->emissivity[i] <= 1)                    ? FIBRAD_WHY_EMISSIVITY
+                                                                                               : 0;
+        if (why) bed->fault = (fibrad_fault){i, i, UINT32_MAX, 0, why};
+        if (why) return FIBRAD_E_ARGUMENT;
     }
-    t->fault = (fibrad_fault){t->n, t->n, UINT32_MAX, 0, 0};
+    if (s->contacts > 0 && !(s->contact_first && s->contact_second && s->conductance)) return FIBRAD_E_ARGUMENT;
+    for (uint32_t k = 0; k < s->contacts; ++k)
+        if (s->contact_first[k] >= n + walls || s->contact_second[k] >= n + walls) return FIBRAD_E_ARGUMENT;
     return FIBRAD_OK;
 }
 
-/* Whether the sources have the arrays they need, the emissivities lie in 0 to 1, and factors are not asked for spheres
- * that conduct. */
-static bool surfaces_given(const fibrad_transient *t, const fibrad_heat_sources *s) {
-    if (s->conductivity && t->config.method == FIBRAD_TRANSIENT_FACTORS) return false;
-    bool given = (t->n == 0 || s->emissivity) && (t->walls == 0 || (s->wall_temperature && s->wall_emissivity));
-    for (uint32_t i = 0; i < t->n && given; ++i) given = s->emissivity[i] >= 0 && s->emissivity[i] <= 1;
-    return given;
-}
-
-/* Whether the temperatures of walls and surroundings are known. Only PATCHES can do without. */
-static bool outside_known(const fibrad_transient *t, const fibrad_heat_sources *s) {
-    if (t->config.method == FIBRAD_TRANSIENT_PATCHES) return true;
-    bool known = s->surroundings >= 0 && s->surroundings <= FIBRAD_TEMPERATURE_MAX;
-    for (uint32_t b = 0; b < t->walls; ++b)
-        known = known && s->wall_temperature[b] >= 0 && s->wall_temperature[b] <= FIBRAD_TEMPERATURE_MAX &&
-                !(s->insulated && s->insulated[b]);
-    return known;
-}
-
-/* Whether contacts are possible and have ends. The rest is checked by the kernel. */
-static bool contacts_valid(const fibrad_transient *t, const fibrad_heat_sources *s) {
-    bool valid = s->contacts == 0 || (t->config.method == FIBRAD_TRANSIENT_PATCHES && s->contact_first &&
-                                      s->contact_second && s->conductance);
-    for (uint32_t k = 0; k < s->contacts && valid; ++k)
-        valid = s->contact_first[k] < t->n + t->walls && s->contact_second[k] < t->n + t->walls;
-    return valid;
-}
-
-static int powers_now(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
-    const int status = fibrad_transient_prepare(t, sources);
-    if (status) return status;
-    fibrad_heat_sources given = *sources; /* a sphere has a temperature or a power, not both */
-    given.power = NULL;
-    return t->config.method == FIBRAD_TRANSIENT_FACTORS
-               ? fibrad_network_solve(t->network, &t->radiation->team, sources, t->allowed, result)
-               : fibrad_radiation_solve(t->radiation, &given, result);
-}
-
-int fibrad_transient_powers(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
-    if (!t || !sources || !result || !surfaces_given(t, sources) || !outside_known(t, sources))
-        return FIBRAD_E_ARGUMENT;
-    if (t->n > 0 && (!sources->temperature || !result->power)) return FIBRAD_E_ARGUMENT;
-    if (!contacts_valid(t, sources)) return FIBRAD_E_ARGUMENT;
-    for (uint32_t i = 0; i < t->n; ++i)
-        if (!(sources->temperature[i] >= 0 && sources->temperature[i] <= FIBRAD_TEMPERATURE_MAX))
-            return FIBRAD_E_ARGUMENT;
-    const int status = fibrad_transient_begin(t);
-    return status ? status : fibrad_transient_end(t, powers_now(t, sources, result));
-}
-
-int fibrad_transient_sides(const fibrad_transient *t, double *flux, double *temperature) {
-    return t ? fibrad_radiation_sides(t->radiation, flux, temperature) : FIBRAD_E_ARGUMENT;
-}
-
-int fibrad_transient_shine(fibrad_transient *t, const fibrad_light_sources *sources, fibrad_light_result *result) {
-    int status = fibrad_transient_begin(t);
-    if (status) return status;
-    status = fibrad_radiation_shine(t->radiation, sources, result);
-    fibrad_radiation_describe(t->radiation, NULL, &t->fault);
-    return fibrad_transient_end(t, status);
+/* Whether exchange factors can stand for patches: surfaces stay as they are, spheres have one temperature each and no
+ * contacts, and the temperatures of walls and surroundings are known. */
+static bool factors_suffice(const fibrad_bed *bed, const fibrad_heat_sources *s, const fibrad_span *span) {
+    bool suffice = !span->law && !s->conductivity && s->contacts == 0;
+    suffice = suffice && s->surroundings >= 0 && s->surroundings <= FIBRAD_TEMPERATURE_MAX;
+    for (uint32_t b = 0; b < bed->facts.walls; ++b)
+        suffice = suffice && s->wall_temperature[b] >= 0 && s->wall_temperature[b] <= FIBRAD_TEMPERATURE_MAX &&
+                  !(s->insulated && s->insulated[b]);
+    return suffice;
 }
 
 /* Writes what a span has come to. */
 static void end_span(const struct stepper *m, fibrad_span *span) {
-    const fibrad_transient *t = m->t;
+    const fibrad_stepping *t = m->t;
+    const uint32_t n = m->bed->facts.spheres, walls = m->bed->facts.walls;
     const fibrad_span given = *span;
     *span = *m->span;
     span->wall_energy = given.wall_energy, span->surroundings_power = m->to_surroundings[1];
-    memcpy(span->temperature, t->now, t->n * sizeof *t->now);
-    if (span->power) memcpy(span->power, t->power, t->n * sizeof *t->power);
-    for (uint32_t b = 0; b < t->walls; ++b) {
+    memcpy(span->temperature, t->now, n * sizeof *t->now);
+    if (span->power) memcpy(span->power, t->power, n * sizeof *t->power);
+    for (uint32_t b = 0; b < walls; ++b) {
         if (span->wall_power) span->wall_power[b] = m->stage_walls[1][b];
         if (span->wall_energy) span->wall_energy[b] = m->span->wall_energy[b];
     }
+    for (uint32_t i = 0; i < n && span->law && span->law->emissivity; ++i) span->law->emissivity[i] = t->emissivity[i];
+    for (uint32_t b = 0; b < walls && span->law && span->law->wall_emissivity; ++b)
+        span->law->wall_emissivity[b] = t->wall_emissivity[b];
 }
 
-static int advance_span(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_span *span) {
+/* Exchange factors pay from the third step at the same positions on. */
+enum { STEPS_BY_PATCHES = 2 };
+
+static int advance_span(fibrad_bed *bed, const fibrad_heat_sources *sources, fibrad_span *span) {
+    fibrad_stepping *t = &bed->stepping;
+    const uint32_t n = bed->facts.spheres, walls = bed->facts.walls;
     fibrad_span now = *span;
-    struct stepper m = {.t = t,
+    struct stepper m = {.bed = bed,
+                        .t = t,
                         .given = sources,
                         .span = &now,
                         .tolerance = span->tolerance > 0 ? span->tolerance : TOLERANCE,
                         .sources = *sources,
                         .result = {.power = t->power, .temperature = t->found},
-                        .stage_walls = {t->wall_stage + t->walls, t->wall_stage + 2 * (size_t)t->walls}};
+                        .stage_walls = {t->wall_stage + walls, t->wall_stage + 2 * (size_t)walls}};
     m.sources.temperature = t->given, m.sources.power = t->source;
     m.sources.storage = t->storage, m.sources.reference = t->guess;
     m.sources.wall_temperature = t->wall_stage;
     if (!(m.sources.tolerance > 0)) m.sources.tolerance = RESIDUAL * m.tolerance;
+    memcpy(t->now, span->temperature, n * sizeof *t->now);
+    t->by_factors = factors_suffice(bed, sources, span) &&
+                    (t->network || (double)t->steps + span->duration / next_step(&m) > STEPS_BY_PATCHES);
+    const int status = fibrad_stepping_prepare(bed, sources);
+    if (status) return status;
     if (span->law) {
-        memcpy(t->emissivity, sources->emissivity, t->n * sizeof *t->emissivity);
-        for (uint32_t b = 0; b < t->walls; ++b) t->wall_emissivity[b] = sources->wall_emissivity[b];
+        memcpy(t->emissivity, sources->emissivity, n * sizeof *t->emissivity);
+        for (uint32_t b = 0; b < walls; ++b) t->wall_emissivity[b] = sources->wall_emissivity[b];
         m.sources.emissivity = t->emissivity, m.sources.wall_emissivity = t->wall_emissivity;
     }
     now.surroundings_energy = now.error = 0;
     now.steps = now.refused = now.sweeps = now.corrections = 0;
-    now.wall_energy = t->wall_stage + 3 * (size_t)t->walls;
-    for (uint32_t b = 0; b < t->walls; ++b) now.wall_energy[b] = 0;
-    memcpy(t->now, span->temperature, t->n * sizeof *t->now);
-    const int status = take_steps(&m);
-    if (!status) end_span(&m, span);
-    return status;
+    now.wall_energy = t->wall_stage + 3 * (size_t)walls;
+    for (uint32_t b = 0; b < walls; ++b) now.wall_energy[b] = 0;
+    const int ended = take_steps(&m);
+    if (!ended) end_span(&m, span);
+    return ended;
 }
 
-int fibrad_transient_advance(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_span *span) {
-    if (!t || !sources || !span || !surfaces_given(t, sources)) return FIBRAD_E_ARGUMENT;
-    int status = fibrad_transient_begin(t);
+int fibrad_bed_advance(fibrad_bed *bed, const fibrad_heat_sources *sources, fibrad_span *span) {
+    if (!bed || !sources || !span) return FIBRAD_E_ARGUMENT;
+    int status = fibrad_bed_begin(bed);
     if (status) return status;
-    status = check_span(t, sources, span);
-    if (!status && !(outside_known(t, sources) && contacts_valid(t, sources))) status = FIBRAD_E_ARGUMENT;
-    if (!status && span->law && t->config.method != FIBRAD_TRANSIENT_PATCHES) status = FIBRAD_E_ARGUMENT;
-    if (!status) status = fibrad_transient_prepare(t, sources);
-    if (!status) status = advance_span(t, sources, span);
-    return fibrad_transient_end(t, status);
+    status = check_span(bed, sources, span);
+    if (!status) status = fibrad_stepping_make(bed);
+    if (!status) status = advance_span(bed, sources, span);
+    return fibrad_bed_end(bed, status);
 }

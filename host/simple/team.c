@@ -36,6 +36,13 @@ void fibrad_team_close(fibrad_team *team) {
     *team = (fibrad_team){0};
 }
 
+void fibrad_team_forget(fibrad_team *team) {
+    for (int t = 0; t < team->threads; ++t) {
+        fibrad_scratch_close(&team->store[t]);
+        team->rows[t] = (fibrad_rows){.memory = {.resize = fibrad_scratch_resize, .context = &team->store[t]}};
+    }
+}
+
 int fibrad_team_scratch(fibrad_team *team, const char *folder) {
     int status = FIBRAD_OK;
     for (int t = 0; t < team->threads && !status; ++t) status = fibrad_scratch_open(&team->store[t], folder);

@@ -34,6 +34,9 @@ void fibrad_team_close(fibrad_team *team);
  * fibrad_scratch_open. */
 int fibrad_team_scratch(fibrad_team *team, const char *folder);
 
+/* Frees the rows. */
+void fibrad_team_forget(fibrad_team *team);
+
 /* Does a task. No other thread uses work[thread] and rows[thread] of the team meanwhile. Returns a status. */
 typedef int fibrad_team_task(void *job, int thread, uint32_t task);
 

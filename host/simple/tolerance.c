@@ -5,7 +5,7 @@
  * is lowered until the worst row has, after averaging, the error that the caller allows. */
 #include <math.h>
 
-#include "simple/job.h"
+#include "simple/rows.h"
 
 enum { PILOT = 50 }; /* lines to begin with */
 
@@ -19,21 +19,21 @@ static double worst_error(const fibrad_factors *matrix) {
     return worst;
 }
 
-int fibrad_job_tolerance(fibrad_job *job, const fibrad_beam_rule *rule, const fibrad_matrix_rule *average,
-                         fibrad_bed_factors **factors) {
+int fibrad_bed_tolerance_rows(fibrad_bed *bed, const fibrad_beam_rule *rule, const fibrad_matrix_rule *average,
+                              fibrad_bed_matrix **factors) {
     fibrad_beam_rule used = *rule;
-    fibrad_job_report report;
+    fibrad_rows_report report;
     used.tolerance = 0;
     if (!used.directions) used.directions = PILOT;
     for (;;) {
         if (used.directions <= FIBRAD_LINES_EVEN_MAX) used.directions = fibrad_line_set_lines(used.directions);
-        int status = fibrad_job_line_rows(job, &used, &report);
-        if (!status) status = fibrad_job_factors(job, average, &report, factors);
+        int status = fibrad_bed_line_rows(bed, &used, &report);
+        if (!status) status = fibrad_bed_average(bed, average, &report, factors);
         if (status) return status;
         const double worst = worst_error(&(*factors)->matrix);
         if (worst <= rule->tolerance || used.directions == FIBRAD_DIRECTIONS_MAX) return FIBRAD_OK;
         used.directions = fibrad_directions_for(used.directions, worst, rule->tolerance);
-        fibrad_bed_free(*factors);
+        fibrad_bed_matrix_free(*factors);
         *factors = NULL;
     }
 }
@@ -41,21 +41,21 @@ int fibrad_job_tolerance(fibrad_job *job, const fibrad_beam_rule *rule, const fi
 /* Rows are computed again for `spare` of the tolerance, as long as the worst error falls to `gain` of the last one. */
 static const double spare = 0.95, gain = 0.9;
 
-int fibrad_job_exchange(fibrad_job *job, fibrad_job_row *row, const fibrad_exchange_rule *rule,
-                        const fibrad_matrix_rule *average, fibrad_bed_factors **factors) {
+int fibrad_bed_exchange_rows(fibrad_bed *bed, fibrad_row_method *row, const fibrad_exchange_rule *rule,
+                             const fibrad_matrix_rule *average, fibrad_bed_matrix **factors) {
     fibrad_exchange_rule used = *rule;
-    fibrad_job_report report;
+    fibrad_rows_report report;
     double least = INFINITY;
     used.tolerance *= before_averaging;
     for (;;) {
-        int status = fibrad_job_rows(job, row, &used, NULL, NULL, &report);
-        if (!status) status = fibrad_job_factors(job, average, &report, factors);
+        int status = fibrad_bed_rows(bed, row, &used, NULL, &report);
+        if (!status) status = fibrad_bed_average(bed, average, &report, factors);
         if (status) return status;
         const double worst = worst_error(&(*factors)->matrix);
         if (worst <= rule->tolerance || worst > gain * least) return FIBRAD_OK;
         least = worst;
         used.tolerance *= spare * rule->tolerance / worst;
-        fibrad_bed_free(*factors);
+        fibrad_bed_matrix_free(*factors);
         *factors = NULL;
     }
 }

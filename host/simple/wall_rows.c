@@ -1,5 +1,5 @@
 /* wall_rows.c - rows of walls by paths, and what the triangles of walls see. SPDX-License-Identifier: MIT */
-#include "simple/job.h"
+#include "simple/rows.h"
 
 #include <math.h>
 
@@ -16,7 +16,7 @@ enum { VIEWS_AT_ONCE = 16 };
 
 /* Walls one behind the other, or one opening. */
 struct wall_tasks {
-    fibrad_job *job;
+    fibrad_bed *bed;
     fibrad_wall_rule rule;
     double tolerance;                 /* 0: none */
     uint32_t first, walls;            /* number of the first one, and how many */
@@ -30,7 +30,7 @@ static int run_part(void *tasks, int thread, uint32_t task) {
     fibrad_wall_rule rule = walls->rule;
     rule.paths = walls->paths[k];
     if (rule.paths == 0) return FIBRAD_OK;
-    return fibrad_exchange_wall(walls->job->scene, &walls->job->team.work[thread], walls->first + k, &rule, part,
+    return fibrad_exchange_wall(walls->bed->scene, &walls->bed->team.work[thread], walls->first + k, &rule, part,
                                 &walls->part[k][part], NULL);
 }
 
@@ -42,8 +42,8 @@ static uint32_t more_paths(uint32_t paths, double ratio) {
     return paths;
 }
 
-uint32_t fibrad_job_wall_paths(const fibrad_job *job, uint64_t paths) {
-    const uint64_t share = paths * job->facts.spheres / SPHERES_PER_SHARE, few = paths < FEW_PATHS ? paths : FEW_PATHS;
+uint32_t fibrad_bed_wall_paths(const fibrad_bed *bed, uint64_t paths) {
+    const uint64_t share = paths * bed->facts.spheres / SPHERES_PER_SHARE, few = paths < FEW_PATHS ? paths : FEW_PATHS;
     const uint64_t wanted = share > few ? share : few;
     uint32_t even = FIBRAD_WALL_PARTS;
     while (even < wanted && even < PATHS_MOST) even *= 2;
@@ -52,12 +52,12 @@ uint32_t fibrad_job_wall_paths(const fibrad_job *job, uint64_t paths) {
 
 /* Follows the paths of all tasks, more and more until each wall has its tolerance. row [walls]: those with paths. */
 static int run_rounds(struct wall_tasks *tasks, fibrad_wall_row *row) {
-    fibrad_job *job = tasks->job;
+    fibrad_bed *bed = tasks->bed;
     const double tolerance = tasks->tolerance;
     int status = FIBRAD_OK;
     for (bool again = true; again && !status;) {
-        status = fibrad_team_run(&job->team, "walls", tasks->walls * FIBRAD_WALL_PARTS, 1, run_part, tasks, NULL);
-        if (job->run) job->run->fault.triangle = job->team.triangle;
+        status = fibrad_team_run(&bed->team, "walls", tasks->walls * FIBRAD_WALL_PARTS, 1, run_part, tasks, NULL);
+        bed->fault.triangle = bed->team.triangle;
         again = false;
         for (uint32_t b = 0; b < tasks->walls && !status; ++b) {
             uint32_t *paths = &tasks->paths[b];
@@ -71,25 +71,22 @@ static int run_rounds(struct wall_tasks *tasks, fibrad_wall_row *row) {
     return status;
 }
 
-int fibrad_job_walls(fibrad_job *job, const fibrad_wall_rule *rule, double tolerance, fibrad_wall_row *row) {
-    struct wall_tasks tasks = {.job = job, .rule = *rule, .tolerance = tolerance, .walls = job->facts.walls};
+int fibrad_bed_wall_rows(fibrad_bed *bed, const fibrad_wall_rule *rule, double tolerance, fibrad_wall_row *row) {
+    struct wall_tasks tasks = {.bed = bed, .rule = *rule, .tolerance = tolerance, .walls = bed->facts.walls};
     for (uint32_t b = 0; b < tasks.walls; ++b) {
         row[b] = (fibrad_wall_row){0};
-        tasks.paths[b] = isfinite(fibrad_scene_wall_area(job->scene, b)) ? rule->paths : 0;
+        tasks.paths[b] = isfinite(fibrad_scene_wall_area(bed->scene, b)) ? rule->paths : 0;
     }
     return run_rounds(&tasks, row);
 }
 
-int fibrad_exchange_wall_row(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t wall,
-                             const fibrad_wall_rule *rule, double tolerance, fibrad_run *run, fibrad_wall_row *row) {
-    fibrad_job job;
+int fibrad_bed_wall_row(fibrad_bed *bed, uint32_t wall, const fibrad_wall_rule *rule, double tolerance,
+                        fibrad_wall_row *row) {
     if (!rule || !row) return FIBRAD_E_ARGUMENT;
-    struct wall_tasks tasks = {.job = &job, .rule = *rule, .tolerance = tolerance, .first = wall, .walls = 1};
+    struct wall_tasks tasks = {.bed = bed, .rule = *rule, .tolerance = tolerance, .first = wall, .walls = 1};
     tasks.paths[0] = rule->paths ? rule->paths : FIBRAD_WALL_PATHS_DEFAULT;
-    int status = fibrad_job_open(&job, config, spheres, run);
-    if (!status) status = run_rounds(&tasks, row);
-    fibrad_job_close(&job);
-    return status;
+    const int status = fibrad_bed_begin(bed);
+    return status ? status : fibrad_bed_end(bed, run_rounds(&tasks, row));
 }
 
 struct view_tasks {
@@ -111,15 +108,11 @@ static int run_view(void *view_tasks, int thread, uint32_t task) {
     return status;
 }
 
-int fibrad_side_views(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t rays, fibrad_run *run,
-                      fibrad_side_view *view) {
-    fibrad_job job;
-    int status = fibrad_job_open(&job, config, spheres, run);
-    if (!status && !view && job.facts.triangles > 0) status = FIBRAD_E_ARGUMENT;
-    struct view_tasks tasks = {job.scene, &job.team, rays, view};
-    if (!status)
-        status = fibrad_team_run(&job.team, "triangles", job.facts.triangles, VIEWS_AT_ONCE, run_view, &tasks, NULL);
-    if (run && status == FIBRAD_E_BACK) run->fault.triangle = job.team.triangle;
-    fibrad_job_close(&job);
-    return status;
+int fibrad_bed_views(fibrad_bed *bed, uint32_t rays, fibrad_side_view *view) {
+    int status = fibrad_bed_begin(bed);
+    if (status) return status;
+    struct view_tasks tasks = {bed->scene, &bed->team, rays, view};
+    status = fibrad_team_run(&bed->team, "triangles", bed->facts.triangles, VIEWS_AT_ONCE, run_view, &tasks, NULL);
+    bed->fault.triangle = bed->team.triangle;
+    return fibrad_bed_end(bed, status);
 }

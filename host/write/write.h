@@ -29,7 +29,7 @@ struct contents {
     bool series;               /* with columns frame and timestep, for several frames */
     const double *time;        /* [s] for a column of several times; NULL: one time */
 
-    const fibrad_bed_factors *factors;
+    const fibrad_bed_matrix *factors;
     const unsigned char *wanted;      /* [n] not 0: this row was computed; NULL: all rows */
     const fibrad_exchange_rule *grey; /* NULL: view factors; else exchange factors by this rule */
     const struct array *array;        /* [arrays] further arrays of a .npz */

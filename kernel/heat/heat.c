@@ -377,6 +377,29 @@ int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene) {
     return FIBRAD_OK;
 }
 
+/* The patches of a body begin with those of the last problem, or with their mean if their number is another. */
+static void resume_body(fibrad_heat *heat, const fibrad_heat *last, uint32_t b) {
+    const uint32_t from = last->first[b], n = last->first[b + 1] - from, to = heat->first[b];
+    const bool same = n == heat->first[b + 1] - to;
+    double sum = 0;
+    for (uint32_t k = 0; k < n; k++) sum += last->solution.radiosity[from + k];
+    for (uint32_t k = 0; k < heat->first[b + 1] - to; k++) {
+        heat->solution.radiosity[to + k] = same ? last->solution.radiosity[from + k] : n > 0 ? sum / n : 0;
+        heat->solution.detail[to + k] = same ? last->solution.detail[from + k] : 0;
+    }
+    heat->sources.emission[b] = last->sources.emission[b];
+}
+
+int fibrad_heat_resume(fibrad_heat *heat, const fibrad_heat *last) {
+    if (heat == NULL || last == NULL) return FIBRAD_E_ARGUMENT;
+    if (heat->scene != last->scene || heat->bodies != last->bodies || !last->solution.warm) return FIBRAD_E_STATE;
+    for (uint32_t b = 0; b < heat->bodies; b++) resume_body(heat, last, b);
+    heat->sources.light = last->sources.light;
+    heat->sources.sigma = last->sources.sigma, heat->sources.surroundings = last->sources.surroundings;
+    heat->solution.warm = true;
+    return FIBRAD_OK;
+}
+
 uint32_t fibrad_heat_tasks(const fibrad_heat *heat) { return heat != NULL ? tasks_for(heat->rows, heat->rays) : 0; }
 
 uint32_t fibrad_heat_parts(const fibrad_heat *heat) { return heat != NULL ? heat->config.parts : 0; }

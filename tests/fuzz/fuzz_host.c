@@ -54,7 +54,7 @@ static bool same(const fibrad_factors *a, const fibrad_factors *b) {
 }
 
 /* closed: all rows add up to 1, and pairs are reciprocal. */
-static void check_factors(const fibrad_bed_factors *bed, const struct session *s, bool closed) {
+static void check_factors(const fibrad_bed_matrix *bed, const struct session *s, bool closed) {
     const fibrad_factors *m = &bed->matrix;
     REQUIRE(m->n == s->contents.n && m->walls == s->contents.config.walls && m->start[0] == 0);
     REQUIRE(!(bed->closure_error > 1e-9) || !plain);
@@ -74,8 +74,8 @@ static void check_factors(const fibrad_bed_factors *bed, const struct session *s
     if (closed) REQUIRE(bed->reciprocity_error < 1e-12);
 }
 
-static int factors_of(struct session *s, const fibrad_exchange_rule *grey, const fibrad_bed_options *options,
-                      fibrad_bed_factors **bed) {
+static int factors_of(struct session *s, const fibrad_exchange_rule *grey, const fibrad_bed_rule *options,
+                      fibrad_bed_matrix **bed) {
     const fibrad_spheres *spheres = spheres_of(s);
     const fibrad_scene_config *config = &s->contents.config;
     return grey != NULL ? CALL(fibrad_exchange_factors(config, spheres, grey, options, &s->run, bed))
@@ -96,7 +96,7 @@ static void try_factors(struct session *s) {
                                        .directions = beam.directions,
                                        .paths = 1 + byte() % 32,
                                        .tolerance = which == 3 ? .2 + share() : 0};
-    fibrad_bed_options options = {.raw = byte() % 4 == 0, .walls = byte() % 2, .drop = which % 8 == 0 ? share() : 0};
+    fibrad_bed_rule options = {.raw = byte() % 4 == 0, .walls = byte() % 2, .drop = which % 8 == 0 ? share() : 0};
     if (method < 4) options.beam = &beam;
     if (method == 4) options.surface = &surface;
     if (method == 5) options.cast = &cast;
@@ -106,7 +106,7 @@ static void try_factors(struct session *s) {
     if (which == 239) options.scratch = "/nonexistent";
     for (uint32_t i = 0; i < SPHERES; i++) wanted[i] = which >> i % 4 & 1;
     if (method == 4 && shortest < 1) return; /* many images */
-    fibrad_bed_factors *bed = (fibrad_bed_factors *)s, *again;
+    fibrad_bed_matrix *bed = (fibrad_bed_matrix *)s, *again;
     const int status = factors_of(s, method > 5 ? &grey : NULL, &options, &bed);
     REQUIRE((status == FIBRAD_OK) == (bed != NULL));
     if (status != FIBRAD_OK) return;
@@ -115,9 +115,9 @@ static void try_factors(struct session *s) {
     any_run(s);
     if (s->reports == 0 && factors_of(s, method > 5 ? &grey : NULL, &options, &again) == FIBRAD_OK) {
         REQUIRE(same(&bed->matrix, &again->matrix));
-        fibrad_bed_free(again);
+        fibrad_bed_matrix_free(again);
     }
-    fibrad_bed_free(bed);
+    fibrad_bed_matrix_free(bed);
 }
 
 static void try_views(struct session *s) {

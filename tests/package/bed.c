@@ -8,13 +8,13 @@
 enum { N = 27 };
 
 static int print_factors(const fibrad_spheres *spheres) {
-    fibrad_bed_factors *bed;
+    fibrad_bed_matrix *bed;
     int status = fibrad_view_factors(NULL, spheres, NULL, NULL, &bed);
     if (status != FIBRAD_OK) return fprintf(stderr, "fibrad: %s\n", fibrad_status_text(status));
     for (uint32_t i = 0; i < bed->matrix.n; i++)
         for (uint64_t k = bed->matrix.start[i]; k < bed->matrix.start[i + 1]; k++)
             printf("F %u %u %.17g\n", (unsigned)i, (unsigned)bed->matrix.col[k], bed->matrix.f[k]);
-    fibrad_bed_free(bed);
+    fibrad_bed_matrix_free(bed);
     return 0;
 }
 

@@ -66,7 +66,7 @@ void rows_close(struct rows *rows);
 
 /* Computes row i by the rule of `method`. rows->col and rows->f get the entries, *row the other results. Returns a
  * status. */
-int rows_row(struct rows *rows, const fibrad_bed_options *method, uint32_t i, fibrad_row *row);
+int rows_row(struct rows *rows, const fibrad_bed_rule *method, uint32_t i, fibrad_row *row);
 
 /* ---- grey spheres of one emissivity, one thread ---- */
 
@@ -75,8 +75,8 @@ int rows_row(struct rows *rows, const fibrad_bed_options *method, uint32_t i, fi
 int grey_conduction(const struct bed *bed, double emissivity, double conductivity, uint32_t paths, double *factor);
 
 /* Exchange factors of a bed in a scene. The emissivities of spheres in `rule` are not used. Free the factors with
- * fibrad_bed_free. Returns a status. */
+ * fibrad_bed_matrix_free. Returns a status. */
 int grey_factors(const struct bed *bed, const fibrad_scene_config *scene, const fibrad_exchange_rule *rule,
-                 double emissivity, const fibrad_bed_options *options, fibrad_bed_factors **factors);
+                 double emissivity, const fibrad_bed_rule *options, fibrad_bed_matrix **factors);
 
 #endif

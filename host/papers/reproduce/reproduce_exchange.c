@@ -71,14 +71,14 @@ static void add_row_of_spheres(const struct bed *bed, const fibrad_factors *rows
 
 static int sphere_to_sphere(const struct bed *bed, const struct johnson_table *table,
                             struct line_fit fit[JOHNSON_ROWS]) {
-    fibrad_bed_factors *factors = NULL;
+    fibrad_bed_matrix *factors = NULL;
     unsigned char wanted[SPHERES] = {0};
     for (int i = 0; i < SPHERES; i += STRIDE) wanted[i] = 1;
-    const fibrad_bed_options some = {.wanted = wanted, .raw = 1};
+    const fibrad_bed_rule some = {.wanted = wanted, .raw = 1};
     const fibrad_scene_config box = bed_scene(bed, NULL);
     const int status = grey_factors(bed, &box, &rule, table->emissivity, &some, &factors);
     for (uint32_t i = 0; i < SPHERES && !status; i += STRIDE) add_row_of_spheres(bed, &factors->matrix, i, table, fit);
-    fibrad_bed_free(factors);
+    fibrad_bed_matrix_free(factors);
     return status;
 }
 
@@ -88,8 +88,8 @@ static int sphere_to_wall(const struct bed *layer, const struct johnson_table *t
     const fibrad_wall wall[2] = {{.kind = FIBRAD_WALL_PLANE, .plane = {.axis = 2, .at = 0}},
                                  {.kind = FIBRAD_WALL_PLANE, .plane = {.axis = 2, .upper = 1, .at = layer->high[2]}}};
     const double wall_emissivity[2] = {table->wall_emissivity, table->wall_emissivity};
-    const fibrad_bed_options raw = {.raw = 1};
-    fibrad_bed_factors *factors = NULL;
+    const fibrad_bed_rule raw = {.raw = 1};
+    fibrad_bed_matrix *factors = NULL;
     fibrad_scene_config scene = bed_scene(layer, NULL);
     fibrad_exchange_rule walled = rule;
     scene.wall = wall;
@@ -101,7 +101,7 @@ static int sphere_to_wall(const struct bed *layer, const struct johnson_table *t
         add_factor(table, fit, layer->z[i], factors->matrix.wall[2 * i]);
         add_factor(table, fit, layer->high[2] - layer->z[i], factors->matrix.wall[2 * i + 1]);
     }
-    fibrad_bed_free(factors);
+    fibrad_bed_matrix_free(factors);
     return status;
 }
 

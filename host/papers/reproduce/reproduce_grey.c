@@ -41,7 +41,7 @@ int grey_conduction(const struct bed *bed, double emissivity, double conductivit
 }
 
 int grey_factors(const struct bed *bed, const fibrad_scene_config *scene, const fibrad_exchange_rule *rule,
-                 double emissivity, const fibrad_bed_options *options, fibrad_bed_factors **factors) {
+                 double emissivity, const fibrad_bed_rule *options, fibrad_bed_matrix **factors) {
     const fibrad_spheres spheres = bed_spheres(bed);
     struct progress bar = {0};
     fibrad_run run = one_thread(&bar);

@@ -20,13 +20,13 @@ static const double face_emissivities[EMISSIVITIES] = {.2, .4, .6, .8, 1}, face_
 static int face_emissivity(const struct bed *layer, double emissivity, double *face) {
     const fibrad_scene_config open = bed_scene(layer, NULL);
     const fibrad_exchange_rule rule = {.directions = 89, .paths = 50};
-    const fibrad_bed_options raw = {.raw = 1};
-    fibrad_bed_factors *factors = NULL;
+    const fibrad_bed_rule raw = {.raw = 1};
+    fibrad_bed_matrix *factors = NULL;
     const int status = grey_factors(layer, &open, &rule, emissivity, &raw, &factors);
     double escaped = 0;
     for (uint32_t i = 0; i < layer->n && !status; ++i) escaped += factors->matrix.escaped[i];
     *face = 4 * PI * emissivity * escaped / (2 * layer->period[0] * layer->period[1]);
-    fibrad_bed_free(factors);
+    fibrad_bed_matrix_free(factors);
     return status;
 }
 

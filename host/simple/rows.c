@@ -1,12 +1,10 @@
-/* job.c - rows of a bed by many threads, and their matrix. SPDX-License-Identifier: MIT */
-#include "simple/job.h"
+/* rows.c - rows of a bed by many threads, and their matrix. SPDX-License-Identifier: MIT */
+#include "simple/rows.h"
 
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "simple/heap.h"
 
 #define ROWS_AT_ONCE 16 /* rows per task: few enough to divide a bed, enough to be neighbours in the cache */
 #define LONG_RATIO   8  /* the row of a sphere of more than this many mean radii is divided over the threads */
@@ -19,37 +17,13 @@
  */
 #define FILED_BYTES ((uint64_t)1 << 28)
 
-int fibrad_job_open(fibrad_job *job, const fibrad_scene_config *config, const fibrad_spheres *spheres,
-                    fibrad_run *run) {
-    const uint32_t n = spheres ? spheres->n : 0;
-    fibrad_fault fault = {n, n, UINT32_MAX, 0, 0};
-    *job = (fibrad_job){.run = run, .spheres = spheres, .begun = omp_get_wtime()};
-    if (run) run->fault = fault;
-    int status = fibrad_team_open(&job->team, run);
-    if (!status) status = fibrad_heap_scene(&job->scene, &job->block, config, spheres, &fault);
-    if (status && run) run->fault = fault;
-    if (!status) fibrad_scene_describe(job->scene, &job->facts);
-    return status;
-}
-
-int fibrad_job_scratch(fibrad_job *job, const char *folder) {
-    job->scratch = folder;
-    return fibrad_team_scratch(&job->team, folder);
-}
-
-void fibrad_job_close(fibrad_job *job) {
-    fibrad_team_close(&job->team);
-    free(job->block);
-}
-
 /* Rows that are being computed, one per task. */
 struct row_tasks {
-    fibrad_job *job;
-    fibrad_job_row *row;
+    fibrad_bed *bed;
+    fibrad_row_method *row;
     const void *rule;
-    const uint32_t *order; /* [tasks] spheres */
-    double *error;
-    fibrad_job_report *report; /* [threads] */
+    const uint32_t *order;      /* [tasks] spheres */
+    fibrad_rows_report *report; /* [threads] */
 };
 
 static double sum_of_row(const fibrad_row *row, uint32_t walls) {
@@ -62,23 +36,22 @@ static double sum_of_row(const fibrad_row *row, uint32_t walls) {
 
 /* Adds a row to the report of the thread that has computed the row. */
 static void note_row(const struct row_tasks *rows, int thread, const fibrad_row *row) {
-    fibrad_job_report *report = &rows->report[thread];
-    if (rows->error) rows->error[row->sphere] = row->error;
+    fibrad_rows_report *report = &rows->report[thread];
     ++report->rows;
     report->directions = row->directions > report->directions ? row->directions : report->directions;
     report->fallbacks += row->fallbacks;
-    const double sum = row->rows ? sum_of_row(row, rows->job->facts.walls) : 0;
+    const double sum = row->rows ? sum_of_row(row, rows->bed->facts.walls) : 0;
     if (sum != 0) /* 0: there is no row, or the sphere emits nothing */
         report->closure_error = larger_of(report->closure_error, fabs(sum - 1));
 }
 
 static int run_row(void *tasks, int thread, uint32_t task) {
     const struct row_tasks *rows = tasks;
-    fibrad_job *job = rows->job;
+    fibrad_bed *bed = rows->bed;
     const uint32_t i = rows->order[task];
-    fibrad_row row = {.rows = &job->team.rows[thread]};
+    fibrad_row row = {.rows = &bed->team.rows[thread]};
     uint64_t rays = 0;
-    const int status = rows->row(rows->rule, job->scene, &job->team.work[thread], i, &row, &rays);
+    const int status = rows->row(rows->rule, bed->scene, &bed->team.work[thread], i, &row, &rays);
     if (status) return status;
     row.sphere = i; /* rows of displacements leave it 0 */
     note_row(rows, thread, &row);
@@ -86,7 +59,7 @@ static int run_row(void *tasks, int thread, uint32_t task) {
     return FIBRAD_OK;
 }
 
-int fibrad_job_beam_row(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
+int fibrad_row_by_beams(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
                         uint64_t *rays) {
     (void)rays;
     return fibrad_beam_row(scene, work, i, rule, row);
@@ -94,7 +67,7 @@ int fibrad_job_beam_row(const void *rule, const fibrad_scene *scene, fibrad_work
 
 /* One row that is divided into parts, one per task. */
 struct part_tasks {
-    fibrad_job *job;
+    fibrad_bed *bed;
     fibrad_beam_rule rule;
     uint32_t sphere, parts, windows;
     fibrad_row_part part[PARTS_MAX];
@@ -105,16 +78,16 @@ static int run_row_part(void *tasks, int thread, uint32_t task) {
     const uint32_t n = t->windows;
     const uint32_t from = (uint32_t)((uint64_t)n * task / t->parts),
                    to = (uint32_t)((uint64_t)n * (task + 1) / t->parts);
-    return fibrad_beam_part(t->job->scene, &t->job->team.work[thread], t->sphere, &t->rule, from, to, &t->part[task]);
+    return fibrad_beam_part(t->bed->scene, &t->bed->team.work[thread], t->sphere, &t->rule, from, to, &t->part[task]);
 }
 
 /* Computes the row of tasks->sphere, by all threads. */
 static int run_divided(const struct row_tasks *rows, struct part_tasks *tasks) {
-    fibrad_team *team = &rows->job->team;
+    fibrad_team *team = &rows->bed->team;
     fibrad_row row = {.rows = &team->rows[0]};
     int status = fibrad_team_run(team, NULL, tasks->parts, 1, run_row_part, tasks, NULL);
     if (!status)
-        status = fibrad_beam_join(rows->job->scene, &team->work[0], tasks->sphere, &tasks->rule, tasks->part,
+        status = fibrad_beam_join(rows->bed->scene, &team->work[0], tasks->sphere, &tasks->rule, tasks->part,
                                   tasks->parts, &row);
     if (!status) note_row(rows, 0, &row);
     return status;
@@ -124,12 +97,12 @@ static int run_divided(const struct row_tasks *rows, struct part_tasks *tasks) {
  * fails; unchanged if none fails. */
 static int run_all_divided(const struct row_tasks *rows, uint32_t count, uint32_t all, uint32_t *failed) {
     const fibrad_beam_rule *rule = rows->rule;
-    fibrad_team *team = &rows->job->team;
+    fibrad_team *team = &rows->bed->team;
     struct part_tasks *tasks = calloc(1, sizeof *tasks);
     int status = tasks ? FIBRAD_OK : FIBRAD_E_MEMORY;
     double reported = -INFINITY;
     if (tasks) {
-        tasks->job = rows->job;
+        tasks->bed = rows->bed;
         if (rule) tasks->rule = *rule;
         if (!tasks->rule.directions && !tasks->rule.lines) tasks->rule.directions = FIBRAD_DIRECTIONS_DEFAULT;
         const uint32_t most = PARTS_EACH * (uint32_t)team->threads;
@@ -158,47 +131,45 @@ static int run_all_divided(const struct row_tasks *rows, uint32_t count, uint32_
  * a window, so its row takes long. The order is the same for any number of threads, and so is the row that fails first.
  * Returns the number of rows to be divided over the threads: those of the large spheres, or all rows if they are fewer
  * than threads. */
-static uint32_t put_long_first(const fibrad_job *job, fibrad_job_row *row, const fibrad_beam_rule *rule,
+static uint32_t put_long_first(const fibrad_bed *bed, fibrad_row_method *row, const fibrad_beam_rule *rule,
                                uint32_t *order, uint32_t count) {
-    const fibrad_spheres *s = job->spheres;
-    const size_t stride = s && s->stride_r ? s->stride_r : 1;
+    const fibrad_spheres *s = &bed->spheres;
     uint32_t longs = 0;
     double sum = 0;
-    if (row != fibrad_job_beam_row || (rule && rule->tolerance > 0)) return 0;
-    for (uint32_t i = 0; i < s->n; ++i) sum += s->r[i * stride];
+    if (row != fibrad_row_by_beams || (rule && rule->tolerance > 0)) return 0;
+    for (uint32_t i = 0; i < s->n; ++i) sum += s->r[i];
     for (uint32_t k = 0; k < count; ++k)
-        if (s->r[order[k] * stride] * s->n > LONG_RATIO * sum) {
+        if (s->r[order[k]] * s->n > LONG_RATIO * sum) {
             const uint32_t i = order[k];
             order[k] = order[longs], order[longs++] = i;
         }
-    if (job->team.threads == 1) return 0;
-    return count < (uint32_t)job->team.threads ? count : longs;
+    if (bed->team.threads == 1) return 0;
+    return count < (uint32_t)bed->team.threads ? count : longs;
 }
 
 /* Lists the wanted spheres in the order of the cells. Returns their number. */
-static uint32_t list_spheres(const fibrad_job *job, const unsigned char *wanted, uint32_t *order) {
+static uint32_t list_spheres(const fibrad_bed *bed, const unsigned char *wanted, uint32_t *order) {
     uint32_t count = 0;
-    for (uint32_t k = 0; k < job->facts.spheres; ++k) {
-        const uint32_t i = fibrad_scene_sphere(job->scene, k);
+    for (uint32_t k = 0; k < bed->facts.spheres; ++k) {
+        const uint32_t i = fibrad_scene_sphere(bed->scene, k);
         if (!wanted || wanted[i]) order[count++] = i;
     }
     return count;
 }
 
-int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, const unsigned char *wanted, double *error,
-                    fibrad_job_report *report) {
-    const uint32_t n = job->facts.spheres;
-    fibrad_team *team = &job->team;
+int fibrad_bed_rows(fibrad_bed *bed, fibrad_row_method *row, const void *rule, const unsigned char *wanted,
+                    fibrad_rows_report *report) {
+    const uint32_t n = bed->facts.spheres;
+    fibrad_team *team = &bed->team;
     uint32_t *order = malloc(((size_t)n + 1) * sizeof *order), failed;
-    fibrad_job_report *part = calloc((size_t)team->threads, sizeof *part);
+    fibrad_rows_report *part = calloc((size_t)team->threads, sizeof *part);
     int status = order && part ? FIBRAD_OK : FIBRAD_E_MEMORY;
-    *report = (fibrad_job_report){0};
-    if (error) memset(error, 0, n * sizeof *error);
+    *report = (fibrad_rows_report){0};
     for (int t = 0; t < team->threads; ++t) fibrad_rows_clear(&team->rows[t]);
     if (!status) {
-        struct row_tasks tasks = {job, row, rule, order, error, part};
-        const uint32_t count = list_spheres(job, wanted, order);
-        const uint32_t longs = put_long_first(job, row, rule, order, count);
+        struct row_tasks tasks = {bed, row, rule, order, part};
+        const uint32_t count = list_spheres(bed, wanted, order);
+        const uint32_t longs = put_long_first(bed, row, rule, order, count);
         failed = count;
         if (longs > 0) status = run_all_divided(&tasks, longs, count, &failed);
         if (!status) {
@@ -208,8 +179,7 @@ int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
             team->before = 0;
             failed += longs;
         }
-        if (status && job->run && failed < count)
-            job->run->fault = (fibrad_fault){order[failed], order[failed], team->triangle, 0, 0};
+        if (status && failed < count) bed->fault = (fibrad_fault){order[failed], order[failed], team->triangle, 0, 0};
     }
     for (int t = 0; t < team->threads && !status; ++t) {
         report->rows += part[t].rows;
@@ -256,20 +226,20 @@ static int take_lines(fibrad_beam_rule *rule, uint32_t lines, void **block) {
 
 /* Triangles are seen in one sense of each line, and the senses are spread less evenly than as many directions. So rows
  * among triangles go along directions. Few spheres have so many lines that these suffice. */
-int fibrad_job_line_rows(fibrad_job *job, const fibrad_beam_rule *beam, fibrad_job_report *report) {
+int fibrad_bed_line_rows(fibrad_bed *bed, const fibrad_beam_rule *beam, fibrad_rows_report *report) {
     fibrad_beam_rule rule = beam ? *beam : (fibrad_beam_rule){0};
     void *block = NULL;
     int status = FIBRAD_OK;
     if (takes_lines(&rule)) {
-        const uint32_t lines = rule.directions ? rule.directions : default_lines(&job->facts);
+        const uint32_t lines = rule.directions ? rule.directions : default_lines(&bed->facts);
         if (rule.points % 64 || rule.points > 256 || rule.points == 192) return FIBRAD_E_TABLE;
-        if (job->facts.triangles == 0 || default_lines(&job->facts) > FIBRAD_LINES_AMONG_WALLS)
+        if (bed->facts.triangles == 0 || default_lines(&bed->facts) > FIBRAD_LINES_AMONG_WALLS)
             status = take_lines(&rule, lines, &block);
         else
             rule.directions = lines, rule.chords = rule.chords ? rule.chords : FIBRAD_CHORDS_SUITED;
         if (rule.points > 0) rule.chords = rule.points / POINTS_PER_CHORD, rule.points = 0;
     }
-    if (!status) status = fibrad_job_rows(job, fibrad_job_beam_row, &rule, NULL, NULL, report);
+    if (!status) status = fibrad_bed_rows(bed, fibrad_row_by_beams, &rule, NULL, report);
     free(block);
     return status;
 }
@@ -278,71 +248,71 @@ int fibrad_job_line_rows(fibrad_job *job, const fibrad_beam_rule *beam, fibrad_j
 
 /* The number of tasks of averaging: some per thread. If rows are in files, there are more, so that the bytes that one
  * task writes stay in memory. */
-static uint32_t average_tasks(const fibrad_job *job) {
-    const fibrad_team *team = &job->team;
-    if (team->threads == 1 && !job->scratch) return 1;
+static uint32_t average_tasks(const fibrad_bed *bed) {
+    const fibrad_team *team = &bed->team;
+    if (team->threads == 1 && !bed->scratch) return 1;
     const uint32_t threads = (uint32_t)team->threads,
                    some = threads < AVERAGES_MAX / AVERAGES ? AVERAGES * threads : AVERAGES_MAX;
     const uint32_t tasks = threads > some ? threads : some;
     uint64_t bytes = 0;
-    for (int t = 0; t < team->threads && job->scratch; ++t)
+    for (int t = 0; t < team->threads && bed->scratch; ++t)
         bytes += 2 * team->rows[t].entries * (sizeof(double) + sizeof(uint32_t));
     const uint64_t more = bytes / FILED_BYTES < FILED_MAX ? bytes / FILED_BYTES : FILED_MAX;
     return more > tasks ? (uint32_t)more : tasks;
 }
 
-static int make_matrix(fibrad_job *job, const fibrad_matrix_rule *rule, fibrad_matrix **matrix, fibrad_scratch *store) {
-    fibrad_team *team = &job->team;
+static int make_matrix(fibrad_bed *bed, const fibrad_matrix_rule *rule, fibrad_matrix **matrix, fibrad_scratch *store) {
+    fibrad_team *team = &bed->team;
     fibrad_matrix_rule divided = *rule;
-    divided.tasks = average_tasks(job);
+    divided.tasks = average_tasks(bed);
     divided.parallel = fibrad_team_share, divided.context = team;
-    const size_t size = fibrad_matrix_size(job->scene, team->rows, (uint32_t)team->threads, &divided);
+    const size_t size = fibrad_matrix_size(bed->scene, team->rows, (uint32_t)team->threads, &divided);
     if (!size) return FIBRAD_E_ARGUMENT;
-    int status = fibrad_scratch_open(store, job->scratch);
+    int status = fibrad_scratch_open(store, bed->scratch);
     if (status) return status;
     if (!fibrad_scratch_resize(store, NULL, size)) return FIBRAD_E_MEMORY;
     status =
-        fibrad_matrix_init(matrix, store->block, size, job->scene, team->rows, (uint32_t)team->threads, &divided, NULL);
+        fibrad_matrix_init(matrix, store->block, size, bed->scene, team->rows, (uint32_t)team->threads, &divided, NULL);
     return status ? status : fibrad_matrix_close(*matrix);
 }
 
 /* Factors and the memory they own. */
 struct owned_factors {
-    fibrad_bed_factors factors; /* first: fibrad_bed_free casts its address to that of the whole */
-    fibrad_scratch store;       /* of the matrix */
+    fibrad_bed_matrix factors; /* first: fibrad_bed_matrix_free casts its address to that of the whole */
+    fibrad_scratch store;      /* of the matrix */
     double area[];
 };
 
-void fibrad_bed_free(fibrad_bed_factors *factors) {
+void fibrad_bed_matrix_free(fibrad_bed_matrix *factors) {
     if (!factors) return;
     fibrad_scratch_close(&((struct owned_factors *)factors)->store);
     free(factors);
 }
 
-int fibrad_job_factors(fibrad_job *job, const fibrad_matrix_rule *rule, const fibrad_job_report *report,
-                       fibrad_bed_factors **factors) {
-    const uint32_t walls = job->facts.walls;
+int fibrad_bed_average(fibrad_bed *bed, const fibrad_matrix_rule *rule, const fibrad_rows_report *report,
+                       fibrad_bed_matrix **factors) {
+    const uint32_t walls = bed->facts.walls;
     struct owned_factors *owned = calloc(1, sizeof *owned + walls * sizeof *owned->area);
     fibrad_matrix *matrix;
     if (!owned) return FIBRAD_E_MEMORY;
-    int status = make_matrix(job, rule, &matrix, &owned->store);
+    int status = make_matrix(bed, rule, &matrix, &owned->store);
     if (!status) status = fibrad_matrix_read(matrix, &owned->factors.matrix);
     if (status) {
-        fibrad_bed_free(&owned->factors);
+        fibrad_bed_matrix_free(&owned->factors);
         return status;
     }
-    fibrad_bed_factors *f = &owned->factors;
-    for (uint32_t b = 0; b < walls; ++b) owned->area[b] = fibrad_scene_wall_area(job->scene, b);
+    fibrad_bed_matrix *f = &owned->factors;
+    for (uint32_t b = 0; b < walls; ++b) owned->area[b] = fibrad_scene_wall_area(bed->scene, b);
     f->wall_area = owned->area;
-    f->facts = job->facts;
-    f->threads = job->team.threads;
+    f->facts = bed->facts;
+    f->threads = bed->team.threads;
     f->directions = report->directions;
     f->fallbacks = report->fallbacks;
     f->rays = report->rays;
     f->closure_error = report->closure_error;
-    f->seconds = omp_get_wtime() - job->begun;
+    f->seconds = omp_get_wtime() - bed->begun;
     f->reciprocity_error = NAN;
-    if (report->rows == job->facts.spheres) fibrad_matrix_reciprocity(matrix, &f->reciprocity_error);
+    if (report->rows == bed->facts.spheres) fibrad_matrix_reciprocity(matrix, &f->reciprocity_error);
     *factors = f;
     return FIBRAD_OK;
 }
