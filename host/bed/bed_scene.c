@@ -62,17 +62,3 @@ int bed_status(const struct bed *bed, const char *file, int status, const fibrad
     return message_at(STATUS_INPUT, file, bed->line[first], "sphere %lld: %s", (long long)bed_name(bed, first),
                       fibrad_status_text(status));
 }
-
-int bed_solve(const struct bed *bed, const struct walls *walls, uint32_t directions, const fibrad_heat_sources *sources,
-              fibrad_run *run, fibrad_heat_result *result) {
-    const fibrad_scene_config scene = bed_scene(bed, walls);
-    const fibrad_spheres spheres = bed_spheres(bed);
-    const fibrad_heat_config config = {.directions = directions};
-    fibrad_bed *made;
-    int status = fibrad_bed_new(&made, &scene, &spheres, run);
-    if (!status) status = fibrad_bed_beams(made, &config);
-    if (!status) status = fibrad_bed_solve(made, sources, NULL, result);
-    fibrad_bed_describe(made, NULL, &run->fault);
-    fibrad_bed_free(made);
-    return status;
-}

@@ -17,8 +17,4 @@ fibrad_scene_config bed_scene(const struct bed *bed, const struct walls *walls);
  * without a message. */
 int bed_status(const struct bed *bed, const char *file, int status, const fibrad_fault *fault);
 
-/* Solves a heat problem of a bed once. directions: of beams. Sets run->fault. Returns a status of the library. */
-int bed_solve(const struct bed *bed, const struct walls *walls, uint32_t directions, const fibrad_heat_sources *sources,
-              fibrad_run *run, fibrad_heat_result *result);
-
 #endif

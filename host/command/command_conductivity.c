@@ -302,26 +302,26 @@ static int conductivity_follow(struct conductivity_request *request, const struc
 
 /* Conductivities between plates along an axis, in W/(m K). Without a temperature there is F_E alone. */
 static int conductivity_plates(struct conductivity_request *request, const struct bed *bed, double kelvins, int axis,
-                               struct conduction_plates *plates) {
-    struct bed open = *bed;
-    open.period[axis] = 0;
-    const struct walls walls = plates_walls(&open, NULL, axis);
+                               struct conduction_plates *found) {
     const double any = kelvins > 0 ? kelvins : 1000, metres = bed->metres > 0 ? bed->metres : 1;
-    double *at = malloc(((size_t)bed->n + 1) * sizeof *at);
-    struct contact_state contacts;
+    double *at = malloc(((size_t)bed->n + 1) * sizeof *at), of_walls[WALLS_MAX];
+    struct contact_state contacts = {0};
     struct table_excess excess[2] = {{0}};
+    struct plates plates;
     fibrad_run run = bed_options_run(&request->bed);
-    fibrad_heat_sources sources = {.temperature = at, .wall_temperature = (const double[]){any, any}};
+    fibrad_heat_sources sources = {.temperature = at, .wall_temperature = of_walls};
     if (!at) return message_memory();
     for (uint32_t i = 0; i < bed->n; ++i) at[i] = any;
-    int status = contacts_begin(&contacts, &request->contacts, &request->bed, &open, &walls, &request->solid,
-                                1 / (metres * metres), &sources);
+    for (int k = 0; k < WALLS_MAX; ++k) of_walls[k] = any;
+    int status = plates_open(&plates, bed, &request->walls, axis, &run);
+    status = bed_options_status(&request->bed, bed, status, &run.fault);
+    if (!status)
+        status = contacts_begin(&contacts, &request->contacts, &request->bed, &plates.bed, plates.made, &plates.walls,
+                                &request->solid, 1 / (metres * metres), &sources);
     if (!status) {
-        contacts_excess(&contacts, &open, at, NULL, excess);
+        contacts_excess(&contacts, bed, at, NULL, excess);
         contacts_warn(&request->bed.warned, excess);
-        const struct plates_problem problem = {bed,
-                                               &request->walls,
-                                               request->rule.emissivity,
+        const struct plates_problem problem = {request->rule.emissivity,
                                                request->rule.conductivity,
                                                any,
                                                contacts_given(&request->contacts),
@@ -329,17 +329,19 @@ static int conductivity_plates(struct conductivity_request *request, const struc
                                                contacts.first,
                                                contacts.second,
                                                contacts.conductance};
-        status = plates_conduct(&problem, axis, &run, plates);
-        const int refused = contacts_refuse(&contacts, &request->bed, &open, &walls, status, &run.fault);
+        status = plates_conduct(&plates, &problem, found);
+        fibrad_bed_describe(plates.made, NULL, &run.fault);
+        const int refused = contacts_refuse(&contacts, &request->bed, bed, &plates.walls, status, &run.fault);
         status = refused ? refused : bed_options_status(&request->bed, bed, status, &run.fault);
     }
-    struct conduction_value *const in_metres[] = {&plates->radiation, &plates->conduction, &plates->both};
+    struct conduction_value *const in_metres[] = {&found->radiation, &found->conduction, &found->both};
     for (int k = 0; k < 3 && !status; ++k) in_metres[k]->k *= metres, in_metres[k]->error *= metres;
     contacts_free(&contacts);
+    plates_close(&plates);
     free(at);
-    if (!status && plates->spheres < PLATES_FITTED)
+    if (!status && found->spheres < PLATES_FITTED)
         return message_at(STATUS_INPUT, request->bed.name, 0,
-                          "%u spheres in the inner half along %c are too few for a line", plates->spheres, 'x' + axis);
+                          "%u spheres in the inner half along %c are too few for a line", found->spheres, 'x' + axis);
     return status;
 }
 

@@ -52,9 +52,9 @@ struct conduction_value {
 
 /* Conductivities of a bed between plates. */
 struct conduction_plates {
-    struct conduction_value factor; /* F_E by radiation */
+    struct conduction_value factor;                      /* F_E by radiation */
     struct conduction_value radiation, conduction, both; /* conduction: of the contacts without radiation */
-    bool touches; /* with contacts */
+    bool touches;                                        /* with contacts */
     uint32_t contacts;
     uint32_t spheres; /* in the inner half; 0: nothing was computed */
     double seconds;   /* time of computing [s] */
@@ -68,12 +68,12 @@ struct conduction {
     uint32_t emitters;
     uint64_t paths; /* from each emitter */
     uint64_t rays;
-    uint32_t flights;                  /* of a path whose displacements are correlated; 0: spheres do not conduct */
-    double factor[3], error[3];        /* F_E per axis and its standard error */
+    uint32_t flights;                   /* of a path whose displacements are correlated; 0: spheres do not conduct */
+    double factor[3], error[3];         /* F_E per axis and its standard error */
     struct conduction_plates plates[3]; /* set by the caller */
-    int axis;                          /* the wanted axis; -1: all three */
-    double temperature;                /* [K]; NaN: k is not known */
-    double k[3], k_error[3];           /* [W/(m K)] */
+    int axis;                           /* the wanted axis; -1: all three */
+    double temperature;                 /* [K]; NaN: k is not known */
+    double k[3], k_error[3];            /* [W/(m K)] */
     struct k_star k_star;
     /* increase of F_E if flights may be e times as long, because of slabs without spheres */
     double growth[3];

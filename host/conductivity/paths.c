@@ -262,7 +262,8 @@ static int follower_open(struct follower *f, const struct bed *bed, const unsign
     const fibrad_scene_config scene = bed_scene(bed, rule->walls);
     const fibrad_spheres spheres = bed_spheres(bed);
     *f = (struct follower){.bed = bed, .emits = emits, .rule = rule, .run = run};
-    f->how = (fibrad_displacement_rule){.emissivity = rule->emissivity, .wall_emissivity = mirrors, .conductivity = rule->conductivity};
+    f->how = (fibrad_displacement_rule){
+        .emissivity = rule->emissivity, .wall_emissivity = mirrors, .conductivity = rule->conductivity};
     f->order = calloc((size_t)bed->n + 1, sizeof *f->order);
     f->tally.moved = calloc((size_t)bed->n + 1, sizeof *f->tally.moved);
     int status = f->order && f->tally.moved ? fibrad_heap_scene(&f->scene, &f->block, &scene, &spheres, &run->fault)

@@ -9,6 +9,7 @@
 
 #include "bed/bed.h"
 #include "cli/output.h"
+#include "fibrad_surface.h"
 #include "simple/fibrad_host.h"
 
 /* The run of `fibrad reproduce`, and the current experiment. */
@@ -45,8 +46,7 @@ typedef int experiment(struct reproduce *reproduce);
 
 experiment reproduce_fig3, reproduce_fig4, reproduce_third_sphere, reproduce_fig10, reproduce_table1,
     reproduce_pebble_pair, reproduce_pebble_rays, reproduce_pebble_bed, reproduce_conductivity, reproduce_correlations,
-    reproduce_conducting, reproduce_contacts, reproduce_exchange, reproduce_exchange_wall,
-    reproduce_faces;
+    reproduce_conducting, reproduce_contacts, reproduce_exchange, reproduce_exchange_wall, reproduce_faces;
 
 /* ---- rows of a bed, one thread ---- */
 
@@ -64,9 +64,16 @@ struct rows {
 int rows_open(struct rows *rows, const struct bed *bed, bool periodic);
 void rows_close(struct rows *rows);
 
+/* A method: at most one rule is set; none: beams by default. */
+struct row_method {
+    const fibrad_beam_rule *beam;
+    const fibrad_surface_rule *surface;
+    const fibrad_cast_rule *cast;
+};
+
 /* Computes row i by the rule of `method`. rows->col and rows->f get the entries, *row the other results. Returns a
  * status. */
-int rows_row(struct rows *rows, const fibrad_bed_rule *method, uint32_t i, fibrad_row *row);
+int rows_row(struct rows *rows, const struct row_method *method, uint32_t i, fibrad_row *row);
 
 /* ---- grey spheres of one emissivity, one thread ---- */
 

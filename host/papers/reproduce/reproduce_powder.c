@@ -37,18 +37,18 @@ static int face_absorptances(const struct bed *layer, double face[EMISSIVITIES])
     const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
     struct progress bar = {0};
     fibrad_run run = {.threads = 1, .progress = progress_stage, .context = &bar};
-    fibrad_radiation *radiation = NULL;
+    fibrad_bed *made = NULL;
     double *of_light = malloc(3 * layer->n * sizeof *of_light);
-    int status = of_light ? fibrad_radiation_new(&radiation, &open, &spheres, NULL, &run) : FIBRAD_E_MEMORY;
+    int status = of_light ? fibrad_bed_new(&made, &open, &spheres, &run) : FIBRAD_E_MEMORY;
     for (int e = 0; e < EMISSIVITIES && !status; ++e) {
         for (uint32_t i = 0; i < layer->n; ++i) of_light[i] = face_emissivities[e];
         const fibrad_light_sources sources = {.light = &light, .lights = 1, .absorptivity = of_light};
         fibrad_light_result result = {.absorbed = of_light + layer->n, .absorbed_first = of_light + 2 * layer->n};
-        status = fibrad_radiation_shine(radiation, &sources, &result);
+        status = fibrad_bed_shine(made, &sources, &result);
         face[e] = 1 - (result.reflected + result.transmitted) / result.incident;
     }
     progress_stop(&bar);
-    fibrad_radiation_free(radiation);
+    fibrad_bed_free(made);
     free(of_light);
     return bed_status(layer, "bed", status, &run.fault);
 }
