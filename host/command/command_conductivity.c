@@ -300,48 +300,62 @@ static int conductivity_follow(struct conductivity_request *request, const struc
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
+/* Leaves out contacts with walls other than the plates, which are the first two. Returns how many are left. */
+static uint32_t contacts_of_plates(struct contact_state *contacts, uint32_t spheres) {
+    uint32_t kept = 0;
+    for (uint32_t k = 0; k < contacts->n; ++k) {
+        if (contacts->first[k] >= spheres + 2 || contacts->second[k] >= spheres + 2) continue;
+        contacts->first[kept] = contacts->first[k], contacts->second[kept] = contacts->second[k];
+        contacts->conductance[kept++] = contacts->conductance[k];
+    }
+    return kept;
+}
+
 /* Conductivities between plates along an axis, in W/(m K). Without a temperature there is F_E alone. */
 static int conductivity_plates(struct conductivity_request *request, const struct bed *bed, double kelvins, int axis,
-                               struct conduction_plates *found) {
+                               struct conduction_plates *plates) {
+    struct bed open = *bed;
+    open.period[axis] = 0;
+    const struct walls walls = plates_walls(&open, &request->walls, axis);
     const double any = kelvins > 0 ? kelvins : 1000, metres = bed->metres > 0 ? bed->metres : 1;
-    double *at = malloc(((size_t)bed->n + 1) * sizeof *at), of_walls[WALLS_MAX];
+    double *at = malloc(((size_t)bed->n + 1) * sizeof *at);
     struct contact_state contacts = {0};
     struct table_excess excess[2] = {{0}};
-    struct plates plates;
-    fibrad_run run = bed_options_run(&request->bed);
-    fibrad_heat_sources sources = {.temperature = at, .wall_temperature = of_walls};
+    fibrad_bed *made = NULL;
+    fibrad_fault fault;
+    fibrad_heat_sources sources = {.temperature = at, .wall_temperature = (const double[]){any, any}};
     if (!at) return message_memory();
     for (uint32_t i = 0; i < bed->n; ++i) at[i] = any;
-    for (int k = 0; k < WALLS_MAX; ++k) of_walls[k] = any;
-    int status = plates_open(&plates, bed, &request->walls, axis, &run);
-    status = bed_options_status(&request->bed, bed, status, &run.fault);
+    int status = bed_options_make(&request->bed, &open, &walls, &made);
     if (!status)
-        status = contacts_begin(&contacts, &request->contacts, &request->bed, &plates.bed, plates.made, &plates.walls,
-                                &request->solid, 1 / (metres * metres), &sources);
+        status = contacts_begin(&contacts, &request->contacts, &request->bed, &open, made, &walls, &request->solid,
+                                1 / (metres * metres), &sources);
     if (!status) {
-        contacts_excess(&contacts, bed, at, NULL, excess);
+        contacts_excess(&contacts, &open, at, NULL, excess);
         contacts_warn(&request->bed.warned, excess);
-        const struct plates_problem problem = {request->rule.emissivity,
+        const struct plates_problem problem = {bed,
+                                               &request->walls,
+                                               request->rule.emissivity,
                                                request->rule.conductivity,
                                                any,
                                                contacts_given(&request->contacts),
-                                               contacts.n,
+                                               contacts_of_plates(&contacts, bed->n),
                                                contacts.first,
                                                contacts.second,
                                                contacts.conductance};
-        status = plates_conduct(&plates, &problem, found);
-        fibrad_bed_describe(plates.made, NULL, &run.fault);
-        const int refused = contacts_refuse(&contacts, &request->bed, bed, &plates.walls, status, &run.fault);
-        status = refused ? refused : bed_options_status(&request->bed, bed, status, &run.fault);
+        status = plates_conduct(&problem, made, axis, plates);
+        fibrad_bed_describe(made, NULL, &fault);
+        const int refused = contacts_refuse(&contacts, &request->bed, &open, &walls, status, &fault);
+        status = refused ? refused : bed_options_status(&request->bed, bed, status, &fault);
     }
-    struct conduction_value *const in_metres[] = {&found->radiation, &found->conduction, &found->both};
+    struct conduction_value *const in_metres[] = {&plates->radiation, &plates->conduction, &plates->both};
     for (int k = 0; k < 3 && !status; ++k) in_metres[k]->k *= metres, in_metres[k]->error *= metres;
     contacts_free(&contacts);
-    plates_close(&plates);
+    fibrad_bed_free(made);
     free(at);
-    if (!status && found->spheres < PLATES_FITTED)
+    if (!status && plates->spheres < PLATES_FITTED)
         return message_at(STATUS_INPUT, request->bed.name, 0,
-                          "%u spheres in the inner half along %c are too few for a line", found->spheres, 'x' + axis);
+                          "%u spheres in the inner half along %c are too few for a line", plates->spheres, 'x' + axis);
     return status;
 }
 

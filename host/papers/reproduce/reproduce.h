@@ -64,8 +64,8 @@ struct rows {
 int rows_open(struct rows *rows, const struct bed *bed, bool periodic);
 void rows_close(struct rows *rows);
 
-/* A method: at most one rule is set; none: beams by default. */
-struct row_method {
+/* How rows are computed: one of them is set. */
+struct row_rule {
     const fibrad_beam_rule *beam;
     const fibrad_surface_rule *surface;
     const fibrad_cast_rule *cast;
@@ -73,7 +73,7 @@ struct row_method {
 
 /* Computes row i by the rule of `method`. rows->col and rows->f get the entries, *row the other results. Returns a
  * status. */
-int rows_row(struct rows *rows, const struct row_method *method, uint32_t i, fibrad_row *row);
+int rows_row(struct rows *rows, const struct row_rule *method, uint32_t i, fibrad_row *row);
 
 /* ---- grey spheres of one emissivity, one thread ---- */
 

@@ -19,7 +19,7 @@ static const char *const names[METHODS] = {"surface", "beam", "reference"};
 static int lattice_row_sum(struct rows *rows, int method, double distance, double *sum) {
     const fibrad_surface_rule surface = {.cutoff = distance};
     const fibrad_beam_rule beam = {.directions = method == 1 ? 0 : 8192, .cutoff = distance};
-    const struct row_method methods[2] = {{.surface = &surface}, {.beam = &beam}};
+    const struct row_rule methods[2] = {{.surface = &surface}, {.beam = &beam}};
     fibrad_row row;
     const int status = rows_row(rows, &methods[method > 0], 0, &row);
     *sum = 0;
@@ -113,7 +113,7 @@ static void add_factors(double *f, const struct rows *rows, const fibrad_row *ro
 
 static int make_truth(struct truth *truth, struct rows *rows) {
     const fibrad_beam_rule rule = {.directions = 16384, .cutoff = CUTOFF};
-    const struct row_method fine = {.beam = &rule};
+    const struct row_rule fine = {.beam = &rule};
     truth->n = rows->n;
     truth->count = rows->n < SAMPLE ? rows->n : SAMPLE;
     truth->f = calloc((size_t)truth->count * truth->n, sizeof *truth->f);
@@ -127,7 +127,7 @@ static int make_truth(struct truth *truth, struct rows *rows) {
 }
 
 /* The root mean square over rows of the Euclidean error of a row. */
-static int error_of(struct rows *rows, const struct row_method *method, const struct truth *truth, double *error) {
+static int error_of(struct rows *rows, const struct row_rule *method, const struct truth *truth, double *error) {
     double *difference = malloc(truth->n * sizeof *difference), square = 0;
     int status = difference ? STATUS_OK : message_memory();
     for (uint32_t k = 0; k < truth->count && !status; ++k) {
@@ -144,7 +144,7 @@ static int error_of(struct rows *rows, const struct row_method *method, const st
 }
 
 /* The time for all rows [s]. Rows of small beds are computed many times, for a time long enough to measure. */
-static int seconds_of(struct rows *rows, const struct row_method *method, double *seconds) {
+static int seconds_of(struct rows *rows, const struct row_rule *method, double *seconds) {
     const double begun = progress_clock();
     uint32_t times = 0;
     do {
@@ -164,7 +164,7 @@ static int fewest_directions(struct rows *rows, const struct truth *truth, doubl
     double found;
     rule->directions = FIBRAD_DIRECTIONS_MIN;
     for (;;) {
-        const struct row_method beam = {.beam = rule};
+        const struct row_rule beam = {.beam = rule};
         const int status = error_of(rows, &beam, truth, &found);
         if (status || found <= error || rule->directions > 8192) return status;
         rule->directions += rule->directions / 4;
@@ -180,7 +180,7 @@ struct rays_at {
 
 /* Measures the time of as many rays as give the error, extrapolated from 20,000 rays. */
 static int time_rays(struct rows *rows, const struct truth *truth, double error, struct rays_at *rays) {
-    const struct row_method method = {.cast = &rays->rule};
+    const struct row_rule method = {.cast = &rays->rule};
     rays->rule.rays = 20000;
     int status = error_of(rows, &method, truth, &rays->error);
     if (status) return status;
@@ -195,7 +195,7 @@ static int time_bed(struct reproduce *reproduce, struct rows *rows, double publi
     struct truth truth = {0};
     const fibrad_surface_rule surface_rule = {.cutoff = CUTOFF};
     fibrad_beam_rule beam_rule = {.cutoff = CUTOFF};
-    const struct row_method surface = {.surface = &surface_rule}, beam = {.beam = &beam_rule};
+    const struct row_rule surface = {.surface = &surface_rule}, beam = {.beam = &beam_rule};
     double error = 0, beam_error = 0, surface_seconds = 0, beam_seconds = 0;
     struct rays_at cast = {.rule.cutoff = CUTOFF}, mc = {.rule = {.random = 1, .cutoff = CUTOFF}};
     int status = make_truth(&truth, rows);

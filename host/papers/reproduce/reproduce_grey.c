@@ -47,15 +47,11 @@ int grey_factors(const struct bed *bed, const fibrad_scene_config *scene, const 
     fibrad_run run = one_thread(&bar);
     double *e = constant(bed->n, emissivity);
     fibrad_exchange_rule filled = *rule;
-    fibrad_bed_rule rule_of_bed = *options;
-    fibrad_bed *made = NULL;
-    filled.emissivity = e, rule_of_bed.exchange = &filled;
+    fibrad_bed_rule grey = *options;
+    filled.emissivity = e, grey.exchange = &filled;
     int status = e ? STATUS_OK : message_memory();
     if (!status) {
-        status = fibrad_bed_new(&made, scene, &spheres, &run);
-        if (!status) status = fibrad_bed_factors(made, &rule_of_bed, factors);
-        fibrad_bed_describe(made, NULL, &run.fault);
-        fibrad_bed_free(made);
+        status = fibrad_view_factors(scene, &spheres, &grey, &run, factors);
         progress_stop(&bar);
         status = bed_status(bed, "bed", status, &run.fault);
     }

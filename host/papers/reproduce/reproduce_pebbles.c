@@ -141,7 +141,7 @@ static double apart(const struct bed *bed, uint32_t i, uint32_t j) {
 
 static int collect_within(struct within *within, const struct bed *bed, struct rows *rows) {
     const fibrad_beam_rule rule = {.directions = 610};
-    const struct row_method beam = {.beam = &rule};
+    const struct row_rule beam = {.beam = &rule};
     for (uint32_t s = 0; s < SAMPLE; ++s) {
         const uint32_t i = s * (PEBBLES / SAMPLE);
         fibrad_row row;

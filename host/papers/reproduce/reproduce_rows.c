@@ -26,7 +26,7 @@ void rows_close(struct rows *rows) {
     *rows = (struct rows){0};
 }
 
-int rows_row(struct rows *rows, const struct row_method *method, uint32_t i, fibrad_row *row) {
+int rows_row(struct rows *rows, const struct row_rule *method, uint32_t i, fibrad_row *row) {
     int status;
     *row = (fibrad_row){.col = rows->col, .f = rows->f, .capacity = rows->n};
     if (method->surface)
