@@ -20,7 +20,7 @@ enum { LIGHTS_MAX = 32 };
          TO_TEXT(request, light.wall_absorptivity)},                                                                   \
     {                                                                                                                  \
         0, "profile", "AXIS[:BINS]:OUT",                                                                               \
-            "write the absorbed light against x, y or z: .csv, .svg or .png; a bin is one mean diameter [none]",       \
+            "write the absorbed light against x, y or z: .csv; a bin is one mean diameter [none]",       \
             TO_FUNCTION(profile_option, request, light)                                                                \
     }
 
