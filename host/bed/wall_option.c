@@ -20,8 +20,8 @@ static fibrad_wall wall_at(int number, double at) {
     return (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = plane_at(number, at)};
 }
 
-/* By fibrad_wall.cylinder.axis. */
-static const char *const cylinder_names[] = {"cylinder", "xcylinder", "ycylinder"};
+/* By fibrad_wall.cylinder.along. */
+static const char *const cylinder_names[] = {"xcylinder", "ycylinder", "cylinder"};
 
 static bool is_cylinder(const fibrad_wall *wall) { return wall->kind == FIBRAD_WALL_CYLINDER; }
 
@@ -30,11 +30,11 @@ static bool is_mesh(const fibrad_wall *wall) { return wall->kind == FIBRAD_WALL_
 const char *wall_name(const struct walls *walls, uint32_t k) {
     const fibrad_wall *wall = &walls->wall[k];
     if (is_mesh(wall)) return walls->meshes->name[k];
-    return is_cylinder(wall) ? cylinder_names[wall->cylinder.axis] : plane_name(&wall->plane);
+    return is_cylinder(wall) ? cylinder_names[wall->cylinder.along] : plane_name(&wall->plane);
 }
 
 bool wall_across(const fibrad_wall *wall, int axis) {
-    return is_cylinder(wall) ? axis != cylinder_along(wall) : !is_mesh(wall) && axis == wall->plane.axis;
+    return is_cylinder(wall) ? axis != wall->cylinder.along : !is_mesh(wall) && axis == wall->plane.axis;
 }
 
 static int plane_number(const fibrad_plane *plane) { return 2 * plane->axis + plane->upper; }
@@ -110,7 +110,7 @@ static bool take_number(const char **text, double *value) {
 
 /* Reads X,Y,R and moves *text behind them. axis: as in fibrad_wall.cylinder. */
 static int take_cylinder(int axis, const char **text, struct wall_options *options) {
-    static const char *const position[] = {"X,Y", "Y,Z", "X,Z"};
+    static const char *const position[] = {"Y,Z", "X,Z", "X,Y"};
     double c[3];
     bool good = take_number(text, &c[0]);
     for (int k = 1; k < 3 && good; ++k) good = *(*text)++ == ',' && take_number(text, &c[k]);
@@ -291,7 +291,7 @@ static int check_axes(const struct walls *walls, const struct bed *bed) {
             return message(STATUS_USAGE, "--wall: %s lies across a periodic axis", plane_names[k]);
         if (cylinder && wall_across(cylinder, k / 2))
             return message(STATUS_USAGE, "--wall: %s cannot be combined with a cylinder along %c", plane_names[k],
-                           "xyz"[cylinder_along(cylinder)]);
+                           "xyz"[cylinder->cylinder.along]);
         if (k % 2) lower = plane_of_side(walls, k - 1);
         if (lower && !(lower->at < wall->at))
             return message(STATUS_USAGE, "--wall: %s does not lie below %s", plane_names[k - 1], plane_names[k]);
@@ -299,7 +299,7 @@ static int check_axes(const struct walls *walls, const struct bed *bed) {
     for (int k = 0; k < 2 && cylinder; ++k)
         if (bed->period[cylinder_across(cylinder, k)] > 0)
             return message(STATUS_USAGE, "--wall: a cylinder along %c needs %c and %c axes that are not periodic",
-                           "xyz"[cylinder_along(cylinder)], "xyz"[cylinder_across(cylinder, 0)],
+                           "xyz"[cylinder->cylinder.along], "xyz"[cylinder_across(cylinder, 0)],
                            "xyz"[cylinder_across(cylinder, 1)]);
     return STATUS_OK;
 }

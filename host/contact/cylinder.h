@@ -6,12 +6,9 @@
 
 #include "fibrad.h"
 
-/* The axis along a cylinder, 0: x, 1: y, 2: z. */
-static inline int cylinder_along(const fibrad_wall *wall) { return (wall->cylinder.axis + 2) % 3; }
-
 /* The first (0) or the second (1) axis across a cylinder, in the order x, y, z. */
 static inline int cylinder_across(const fibrad_wall *wall, int k) {
-    const int along = cylinder_along(wall);
+    const int along = wall->cylinder.along;
     return k == 0 ? along == 0 : 2 - (along == 2);
 }
 

@@ -126,10 +126,10 @@ void fibrad_bed_free(fibrad_bed *bed);
  * of beam, cast and exchange is set.
  *
  * Rows go along lines if all rows are wanted, raw is 0, and the rule is a beam rule or NULL. The number of lines is
- * then beam->directions, up to FIBRAD_LINES_EVEN_MAX. It is raised to the next built-in set. 0 stands for
+ * then beam->directions, at most FIBRAD_LINES_EVEN_MAX. It is raised to the next set. 0 stands for
  * FIBRAD_LINES_DEFAULT, or among walls for FIBRAD_LINES_AMONG_WALLS. Scenes of few spheres have more: 40,000 over the
  * number of spheres. The field `points` then stands for masks: 64, 128 and 256 for 16, 32 and 64 chords. With more than
- * FIBRAD_LINES_EVEN_MAX, and in all other cases, rows go along directions. So they do among triangles if there are more
+ * 1,536, and in all other cases, rows go along directions. So they do among triangles if there are more
  * than 171 spheres; masks serve there, too. docs/methods.md, section 12.
  *
  * A tolerance in the beam rule raises the number of lines or directions. If raw is 0, it is the same number for all

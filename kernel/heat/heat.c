@@ -6,7 +6,7 @@
 #include "patches/subdivision.h"
 #include "patches/patch_beams_lanes.h"
 #include "patches/pencils.h"
-#include "sample/sphere_patch.h"
+#include "patches/sphere_patch.h"
 #include "heat/sweep.h"
 #include "patches/wall_patch.h"
 #include "sample/direction.h"

@@ -256,16 +256,9 @@ int fibrad_matrix_init(fibrad_matrix **out, void *memory, size_t size, const fib
     return FIBRAD_OK;
 }
 
-int fibrad_matrix_average(fibrad_matrix *m, uint32_t task) {
-    if (m == NULL || task >= m->tasks) return FIBRAD_E_ARGUMENT;
-    if (m->raw || !matrix_open(m) || m->part[task].done) return FIBRAD_E_STATE;
-    fibrad_matrix_average_part(m, &m->part[task]);
-    return FIBRAD_OK;
-}
-
-static void average_rest(void *matrix, uint32_t p) {
+static void average_part(void *matrix, uint32_t p) {
     fibrad_matrix *m = matrix;
-    if (!m->part[p].done) fibrad_matrix_average_part(m, &m->part[p]);
+    fibrad_matrix_average_part(m, &m->part[p]);
 }
 
 /* Parts that are moved at the same time. */
@@ -410,7 +403,7 @@ int fibrad_matrix_close(fibrad_matrix *m) {
     if (!matrix_open(m)) return FIBRAD_E_STATE;
     m->closed = true;
     if (m->raw) return FIBRAD_OK;
-    fibrad_matrix_share(m, m->tasks, average_rest, m);
+    fibrad_matrix_share(m, m->tasks, average_part, m);
     gather_parts(m);
     fibrad_matrix_balance(m);
     close_rows(m);
