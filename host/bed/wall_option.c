@@ -8,7 +8,7 @@
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/spelling.h"
-#include "contact/cylinder.h"
+#include "simple/cylinder.h"
 #include "text/text.h"
 
 static const char *const plane_names[PLANES] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};

@@ -188,7 +188,7 @@ static int bed_matrix(struct bed_request *request, struct bed *bed) {
     struct side_arrays views = {0};
     struct summary summary;
     int status = bed_options_make(&request->bed, bed, &request->walls, &made);
-    if (!status) status = bed_options_factors(&request->bed, bed, made, &request->options, &factors);
+    if (!status) status = bed_options_factors(&request->bed, bed, &request->walls, made, &request->options, &factors);
     if (status) {
         fibrad_bed_free(made);
         return status;

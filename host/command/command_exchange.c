@@ -176,7 +176,7 @@ static int exchange_matrix(struct exchange_request *request, struct bed *bed) {
     fibrad_bed_matrix *factors = NULL;
     request->options.exchange = &request->rule;
     int status = bed_options_make(&request->bed, bed, &request->walls, &made);
-    if (!status) status = bed_options_factors(&request->bed, bed, made, &request->options, &factors);
+    if (!status) status = bed_options_factors(&request->bed, bed, &request->walls, made, &request->options, &factors);
     struct contents what = {.factors = factors, .walls = &request->walls, .grey = &request->rule};
     if (!status) status = bed_options_write(&request->bed, bed, &what);
     if (!status && request->bed.outputs.picture)

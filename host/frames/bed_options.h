@@ -149,16 +149,16 @@ fibrad_run bed_options_run(struct bed_options *options);
  * bed_status. */
 int bed_options_status(struct bed_options *options, const struct bed *bed, int status, const fibrad_fault *fault);
 
-/* Makes the bed of the library, and warns if spheres and walls contradict each other. Free *made with fibrad_bed_matrix_free.
- * Returns the exit status, as bed_options_status. */
+/* Makes the bed of the library, and warns if spheres and walls contradict each other. Free *made with
+ * fibrad_bed_matrix_free. Returns the exit status, as bed_options_status. */
 int bed_options_make(struct bed_options *options, const struct bed *bed, const struct walls *walls, fibrad_bed **made);
 
 /* Computes the factors of a bed. Warns of rows that contradict each other. Refuses a bed whose rows will not fit into
  * memory, or onto the disk of rows->scratch. A few rows are made to estimate the size. Small beds and lists of targets
  * are not checked. Free *factors also after an error. Status 0, STATUS_MEMORY, STATUS_FILE if the disk is too small, or
  * as bed_options_status. */
-int bed_options_factors(struct bed_options *options, const struct bed *bed, fibrad_bed *made, fibrad_bed_rule *rows,
-                        fibrad_bed_matrix **factors);
+int bed_options_factors(struct bed_options *options, const struct bed *bed, const struct walls *walls, fibrad_bed *made,
+                        fibrad_bed_rule *rows, fibrad_bed_matrix **factors);
 
 /* The unit of length of a bed: that of the file, or else that of --length-unit. NULL: neither names one. */
 const char *bed_options_unit(const struct bed_options *options, const struct bed *bed);

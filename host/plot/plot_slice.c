@@ -7,7 +7,7 @@
 #include "bed/units.h"
 #include "cli/message.h"
 #include "cli/options.h"
-#include "contact/cylinder.h"
+#include "simple/cylinder.h"
 
 /* A wall is shown if its distance from the bed is at most this part of the bed's length. With farther walls the bed
  * would become too small in the picture. */

@@ -1,6 +1,6 @@
 /* cylinder.h - the axes of a wall that is a cylinder. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_CONTACT_CYLINDER_H
-#define FIBRAD_CONTACT_CYLINDER_H
+#ifndef FIBRAD_SIMPLE_CYLINDER_H
+#define FIBRAD_SIMPLE_CYLINDER_H
 
 #include <math.h>
 
