@@ -6,11 +6,7 @@
 #include "simple/fibrad_host.h"
 
 static inline void factors_free(fibrad_bed_matrix **factors) { fibrad_bed_matrix_free(*factors); }
-static inline void radiation_free(fibrad_radiation **radiation) { fibrad_radiation_free(*radiation); }
-static inline void transient_free(fibrad_transient **transient) { fibrad_transient_free(*transient); }
 
-#define OWNED_FACTORS   OWNED_BY(factors_free) fibrad_bed_matrix
-#define OWNED_RADIATION OWNED_BY(radiation_free) fibrad_radiation
-#define OWNED_TRANSIENT OWNED_BY(transient_free) fibrad_transient
+#define OWNED_FACTORS OWNED_BY(factors_free) fibrad_bed_matrix
 
 #endif

@@ -89,7 +89,9 @@ static int touching_radiate(struct touching_bed *t, double kelvins, double k_sol
                             double radius, double *k) {
     const double unit = 4 * FIBRAD_STEFAN_BOLTZMANN * pow(kelvins, 3) * 2 * radius;
     double factor = 0;
-    int status = touching_conduct(t, k_solid, k_gas, spot, GAS_LEAST / radius, k);
+    int status = STATUS_OK;
+    *k = 0;
+    if (k_gas > 0 || spot > 0) status = touching_conduct(t, k_solid, k_gas, spot, GAS_LEAST / radius, k);
     if (!status) status = grey_conduction(&t->bed, EMITTING, k_solid / unit, WALKS, &factor);
     *k += factor * unit;
     return status;
