@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "contact/contact_list.h"
-#include "contact/cylinder.h"
+#include "simple/cylinder.h"
 #include "simple/bed.h"
 
 enum { CLASSES_MAX = 64 };

@@ -16,7 +16,6 @@
 extern "C" {
 #include "cli/message.h"
 }
-#include "contact/cylinder.h"
 
 #include <algorithm>
 #include <climits>
@@ -236,7 +235,7 @@ void FixFibrad::read_wall(Words &words) {
     fibrad_wall wall = {};
     if (round) {
         wall.kind = FIBRAD_WALL_CYLINDER;
-        wall.cylinder.axis = (face - 5) % 3; // 0: z, 1: x, 2: y
+        wall.cylinder.along = face - 6;
         wall.cylinder.radius = words.number("the cylinder's radius", 0, huge);
     } else {
         wall.kind = FIBRAD_WALL_PLANE;
@@ -456,7 +455,7 @@ void FixFibrad::init() {
     if (strstr(update->integrate_style, "respa"))
         error->all(FLERR, std::string("fix fibrad: run_style must be verlet"));
     for (const fibrad_wall &wall : walls) {
-        const int along = cylinder_along(&wall);
+        const int along = wall.cylinder.along;
         if (wall.kind == FIBRAD_WALL_CYLINDER &&
             (domain->periodicity[(along + 1) % 3] || domain->periodicity[(along + 2) % 3]))
             error->all(FLERR, text("fix fibrad: wall %ccylinder needs open axes %c and %c: what is in it has no images "
@@ -532,7 +531,7 @@ void FixFibrad::list_output() {
         const fibrad_wall &wall = walls[w];
         const std::string name = wall.kind == FIBRAD_WALL_PLANE ? faces[2 * wall.plane.axis + wall.plane.upper]
                                  : wall.kind == FIBRAD_WALL_CYLINDER
-                                     ? std::string(1, "xyz"[cylinder_along(&wall)]) + "cylinder"
+                                     ? std::string(1, "xyz"[wall.cylinder.along]) + "cylinder"
                                      : "mesh";
         list += text(", [%d] wall ", 6 + w) + name;
         names += text(", [%d] T of wall ", 9 + count + w) + name;

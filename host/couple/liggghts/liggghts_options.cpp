@@ -52,7 +52,7 @@ bool numbers(const char *text, double low, double high, std::vector<double> *val
 }
 
 const char *const sides[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
-const char *const cylinders[] = {"cylinder", "xcylinder", "ycylinder"}; /* by fibrad_wall.cylinder.axis */
+const char *const cylinders[] = {"xcylinder", "ycylinder", "cylinder"}; /* by fibrad_wall.cylinder.along */
 
 /* Reads SIDE=open or SIDE=open,AT. */
 bool opening(const char *text, fibrad_plane *plane) {
