@@ -8,13 +8,6 @@ FIXTURE(make_folder, remove_folder)
     "ITEM: TIMESTEP\n" number "\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS " marks                                    \
     "\n0 8\n0 8\n0 8\nITEM: ATOMS radius x y z id\n" rows
 
-TEST(surface_method) {
-    ck_assert_double_eq(value_of("nf"), 55);
-    const double sum = value_of("row_sum_max"), error = value_of("error_estimate");
-    SUCCEED("factors", POLY, "--cutoff", "3");
-    ck_assert_double_eq_tol(value_of("row_sum_max"), sum, 3 * error);
-}
-
 TEST(tolerance) {
     SUCCEED("factors", POLY, "--error", "0.01");
     ck_assert_double_le(value_of("error_estimate"), .01);
