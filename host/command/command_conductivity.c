@@ -42,77 +42,78 @@ static int take_rays(const char *text, void *rays) {
 
 static const struct option conductivity_table[] = {
     {OPTION_EMISSIVITY(struct conductivity_request, emissivity)},
-    {OPTION_SOLID_CONDUCTIVITY(struct conductivity_request, solid)},
     {0, "temperature", "T",
-     "mean temperature, for k, or several: a list T,T,... or FROM:TO:STEP. Outputs have all of them [none: F_E only]",
+     "mean temperature, for k; or several: a list T,T,... or FROM:TO:STEP; outputs have all of them [none: F_E only]",
      TO_TEXT(struct conductivity_request, at)},
     {OPTION_TEMPERATURE_UNIT(struct conductivity_request, zero)},
     {0, "axis", "x|y|z", "axis of F_E and of --error [all three]",
      TO_FUNCTION(take_axis, struct conductivity_request, rule.axis)},
-    {0, "rays", "N", "paths from each sphere; the error falls as N^-0.5 [as many as --error needs]",
-     TO_WHOLE(struct conductivity_request, rule.paths, 1, FIBRAD_PATHS_MAX)},
-    {0, "error", "E", "standard error allowed, relative to F_E, 1e-4 to 1; paths are added until it is met [0.003]",
+    {0, "error", "E", "standard error allowed, relative to F_E; 1e-4 to 1; paths are added until it is met [0.003]",
      TO_NUMBER(struct conductivity_request, rule.error, 1e-4, 1)},
-    {0, "max-rays", "N", "approximate limit of the rays that --error may take in all [5e7]",
-     TO_FUNCTION(take_rays, struct conductivity_request, rule.max_rays)},
+    {OPTION_SOLID_CONDUCTIVITY(struct conductivity_request, solid)},
     {0, "steady", NULL,
-     "compute also F_E of the bed between two black plates, for spheres whose net power is 0. This is done along each "
-     "axis whose other two axes are periodic or end at walls",
+     "compute also F_E of the bed between two black plates; for spheres whose net power is 0, along each axis whose "
+     "other two axes are periodic or end at walls",
      TO_FLAG(struct conductivity_request, steady)},
     {0, "wall", "LIST",
-     "sides of the bed, which reflect everything: cylinder:X,Y,R, box, xmin, xmax ... as in fibrad heat; none of them "
-     "lies across the axis of F_E [none]",
+     "sides of the bed, which reflect all: cylinder:X,Y,R, box, xmin ...; as in fibrad heat, none of them across the "
+     "axis of F_E [none]",
      TO_FUNCTION(walls_option, struct bed_options, walls)},
     OPTIONS_CONTACTS(struct conductivity_request),
-    OPTIONS_CONTACTS_RARE(struct conductivity_request),
-    {0, "seed", "S", "seed of paths and directions [0]", TO_WHOLE(struct conductivity_request, rule.seed, 0, INFINITY)},
     OPTIONS_INPUT,
-    OPTIONS_INPUT_RARE,
     {OPTION_BED_OUTPUT("write F_E and k of each axis: .csv .json, - for standard output [summary only]")},
-    {OPTION_BED_FORMAT},
     OPTIONS_RUN,
+    OPTIONS_RARE,
+    {0, "rays", "N", "paths from each sphere; the error falls as N^-0.5 [as many as --error needs]",
+     TO_WHOLE(struct conductivity_request, rule.paths, 1, FIBRAD_PATHS_MAX)},
+    {0, "max-rays", "N", "approximate limit of the rays that --error may take in all [5e7]",
+     TO_FUNCTION(take_rays, struct conductivity_request, rule.max_rays)},
+    {0, "seed", "S", "seed of paths and directions [0]", TO_WHOLE(struct conductivity_request, rule.seed, 0, INFINITY)},
+    OPTIONS_CONTACTS_RARE(struct conductivity_request),
+    OPTIONS_INPUT_RARE,
+    {OPTION_BED_FORMAT},
     {.name = NULL}};
 
 static int conductivity_help(void) {
-    puts("fibrad conductivity FILE... --emissivity E [options]\n\n"
-         "Exchange factor F_E = k/(4 sigma T^3 d) of a bed of grey diffuse spheres along each axis. k is the\n"
-         "radiative conductivity of the bed [W/(m K)]. d is the mean diameter of the spheres [m]. Each sphere has\n"
-         "one temperature, unless --solid-conductivity says how well it conducts.\n");
-    options_print(conductivity_table);
-    printf("\n" FILES_MORE "\n"
-           "F_E is found with temperatures that rise linearly along the axis. All spheres absorb. Along open axes\n"
-           "only spheres deep inside the bed emit, %g mean diameters or more from the outermost centres (%g with\n"
-           "--solid-conductivity). With --axis, the bed\n"
-           "may be too thin for this along another axis. Spheres at any place along that other axis then emit. Where\n"
-           "a periodic bed has gaps, flights may be so long that F_E does not exist, or that its standard error\n"
-           "cannot be estimated. Then there is a warning.\n"
-           "\n"
-           "A bed in a container loses radiation through its sides, unless --wall has them: F_E is then that of a\n"
-           "tube or a box that goes on along the axis, over the area within the walls. Walls reflect diffusely.\n"
-           "\n",
-           CONDUCTION_MARGIN, CONDUCTION_MARGIN_WALK);
-    puts("Standard output ends with lines `key value`. F_E_x, F_E_y and F_E_z are the exchange factors.\n"
-         "F_E_x_error, F_E_y_error and F_E_z_error are their estimated standard errors. `unreliable` names the\n"
-         "axes whose F_E or error is not reliable. There, .csv has `reliable` 0 and the reason in `warning`.\n"
-         "With --temperature there are also k_x_W_mK to k_z_W_mK and\n"
-         "k_x_W_mK_error to k_z_W_mK_error. With --solid-conductivity k_star is k_s/(4 d sigma T^3), and F_E is\n"
-         "that of spheres whose temperatures differ from point to point. Without --solid-conductivity, if the unit\n"
-         "of length is known, the line `isothermal` has a k_s. Above this k_s, F_E with one temperature for each\n"
-         "sphere is right to 5 %.\n"
-         "\n" CONTACTS_MORE
-         "With --contacts or --gas-conductivity, --steady finds k_total of the bed with radiation and contacts,\n"
-         "k_radiation without contacts and k_conduction without radiation. Spheres within a diameter of a plate\n"
-         "have its temperature.\n"
-         "\n"
-         "Examples:\n"
-         "  fibrad conductivity pebbles.dump --emissivity 0.8 --steady --temperature 1000 --contacts hertz \\\n"
-         "      --contact-conductivity 30 --contact-scale 0.05\n"
-         "  fibrad conductivity packing.dump --emissivity 0.8\n"
-         "  fibrad conductivity packing.dump --emissivity 0.8 --axis z --temperature 1200 -o k.csv\n"
-         "  fibrad conductivity pebbles.dump --emissivity 0.8 --temperature 300:2000:100 --solid-conductivity 30 \\\n"
-         "      -o k.csv\n"
-         "  fibrad conductivity tube.dump --emissivity 0.8 --wall cylinder:0,0,0.03 --steady\n"
-         "  fibrad conductivity cell.csv --periodic 2,2,2 --emissivity 0.4 --error 0.001");
+    options_help(
+        "conductivity",
+        "fibrad conductivity FILE... --emissivity E [options]\n\n"
+        "Exchange factor F_E = k/(4 sigma T^3 d) of a bed of grey diffuse spheres along each axis. k is the\n"
+        "radiative conductivity of the bed [W/(m K)]. d is the mean diameter of the spheres [m]. Each sphere has\n"
+        "one temperature, unless --solid-conductivity says how well it conducts.\n",
+        conductivity_table,
+        (const char *const[]){
+            FILES_MORE, WALLS_MORE,
+            "F_E is found with temperatures that rise linearly along the axis. All spheres absorb. Along open axes\n"
+            "only spheres deep inside the bed emit, " TEXT_OF(
+                CONDUCTION_MARGIN) " mean diameters or more from the "
+                                   "outermost centres\n(" TEXT_OF(
+                                       CONDUCTION_MARGIN_WALK) " with --solid-conductivity). With --axis, the bed may "
+                                                               "be too thin for this along another\naxis. Spheres at "
+                                                               "any place along that other axis then emit. Where "
+                                                               "a periodic bed has gaps, flights may\nbe so long that "
+                                                               "F_E does not exist, or that its standard error "
+                                                               "cannot be estimated. Then there is a\nwarning.\n",
+            "A bed in a container loses radiation through its sides, unless --wall has them: F_E is then that of a\n"
+            "tube or a box that goes on along the axis, over the area within the walls. Walls reflect diffusely.\n",
+            "Standard output ends with lines `key value`. F_E_x, F_E_y and F_E_z are the exchange factors.\n"
+            "F_E_x_error, F_E_y_error and F_E_z_error are their estimated standard errors. `unreliable` names the\n"
+            "axes whose F_E or error is not reliable. There, .csv has `reliable` 0 and the reason in `warning`.\n"
+            "With --temperature there are also k_x_W_mK to k_z_W_mK and k_x_W_mK_error to k_z_W_mK_error. With\n"
+            "--solid-conductivity k_star is k_s/(4 d sigma T^3), and F_E is that of spheres whose temperatures differ\n"
+            "from point to point. Without --solid-conductivity, if the unit of length is known, the line\n"
+            "`isothermal` has a k_s. Above this k_s, F_E with one temperature for each sphere is right to 5 %.\n",
+            CONTACTS_MORE
+            "With --contacts or --gas-conductivity, --steady finds k_total of the bed with radiation and contacts,\n"
+            "k_radiation without contacts and k_conduction without radiation. Spheres within a diameter of a plate\n"
+            "have its temperature.\n",
+            NULL},
+        "Examples:\n"
+        "  fibrad conductivity packing.dump --emissivity 0.8 --axis z --temperature 1200 -o k.csv\n"
+        "  fibrad conductivity pebbles.dump --emissivity 0.8 --steady --temperature 1000 --contacts hertz \\\n"
+        "      --contact-conductivity 30 --contact-scale 0.05\n"
+        "  fibrad conductivity pebbles.dump --emissivity 0.8 --temperature 300:2000:100 --solid-conductivity 30\n"
+        "  fibrad conductivity tube.dump --emissivity 0.8 --wall cylinder:0,0,0.03 --steady\n");
     return STATUS_OK;
 }
 
