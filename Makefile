@@ -73,8 +73,9 @@ SIMPLE  := $(call sources,host/simple/*.c host/contact/*.c) # libfibrad_host.a
 HOST    := $(filter-out $(addprefix host/,simple/% contact/% couple/% python/% tables/%),$(call sources,host/*/*.c host/read/*/*.c host/papers/*/*.c)) # the program, besides main.c
 TESTS   := $(call sources,tests/test_*.c)
 SCRIPTS := $(filter-out tests/couple/% tests/freestanding/%,$(call sources,tests/check_*.sh tests/*/check_*.sh))
-# other machines, and what takes minutes: `make nightly`
-NIGHTLY := tests/check_dist.sh tests/check_tables.sh tests/couple/check_made.sh tests/couple/check_pages.sh
+# other machines, and what takes long: `make nightly`
+NIGHTLY := tests/check_dist.sh tests/check_tables.sh tests/couple/check_made.sh tests/couple/check_pages.sh \
+           tests/test_furnace.c tests/test_reproduce.c
 
 PEERS   := $(call sources,bench/bench_embree*.c) # built and run where Embree 3 is found (Debian: libembree-dev)
 COUNTED := bench/bench_instructions.c # linked with a library that counts its instructions, bench/count_cc.sh; on x86-64
@@ -241,7 +242,7 @@ test: deps
 	@echo "Building the tests"
 	@$(MAKE) -s --no-print-directory programs all man dist
 	@BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" \
-	    tests/run.sh $(filter-out $(NIGHTLY),$(COUPLE_SCRIPTS) $(SCRIPTS)) $(TEST_PROGRAMS)
+	    tests/run.sh $(filter-out $(NIGHTLY) $(NIGHTLY:%.c=$(BUILD)/%),$(COUPLE_SCRIPTS) $(SCRIPTS) $(TEST_PROGRAMS))
 
 ## test-ROOM: build and run the tests of one room, in seconds: test-heat, test-mesh, test-read ...; tests/rooms.txt has all
 ROOMS   = $(shell sed -n 's/^\([a-z]*\) .*/\1/p' tests/rooms.txt)
