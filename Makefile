@@ -226,7 +226,7 @@ demo: deps
 	@echo "Building $(BUILD)/fibrad"
 	@$(MAKE) -s --no-print-directory $(BUILD)/fibrad
 	@mkdir -p $(BUILD)/demo
-	$(BUILD)/fibrad bed $(DEMO_BED) --plot $(BUILD)/demo/bed.png -o $(BUILD)/demo/F.mtx
+	$(BUILD)/fibrad factors $(DEMO_BED) --plot $(BUILD)/demo/bed.png -o $(BUILD)/demo/F.mtx
 	@echo
 	@echo "The matrix of view factors: $(BUILD)/demo/F.mtx"
 	@echo "The picture of the bed:     $(BUILD)/demo/bed.png"
@@ -403,7 +403,7 @@ threads:
 	    LDFLAGS=-fsanitize=thread $(BUILD)/threads/fibrad
 	for t in 2 7; do \
 	    TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1" OMP_TOOL_LIBRARIES=libarcher.so \
-	    $(BUILD)/threads/fibrad bed $(DEMO_BED) --directions 21 --threads $$t -o $(BUILD)/threads/F.mtx || exit 1; \
+	    $(BUILD)/threads/fibrad factors $(DEMO_BED) --directions 21 --threads $$t -o $(BUILD)/threads/F.mtx || exit 1; \
 	done
 
 # $(1): flags, $(2): sources

@@ -78,9 +78,9 @@ static void write_place(FILE *command, const struct room *room, const struct kin
     if (room->round && wall == 2)
         fprintf(command, "cylinder:0,0,%.17g", room->size[0]);
     else if (kind->mesh)
-        fprintf(command, "%s=mesh:%s/%s.stl", name, folder, name);
+        fprintf(command, "mesh:%s/%s.stl", folder, name);
     else
-        fprintf(command, "%s=%.17g", name, wall % 2 ? room->size[room->round ? 2 : wall / 2] : 0);
+        fprintf(command, "%s:at=%.17g", name, wall % 2 ? room->size[room->round ? 2 : wall / 2] : 0);
 }
 
 static void write_command(char *text, size_t size, const char *folder, const struct room *room, const struct kind *kind,
@@ -95,15 +95,9 @@ static void write_command(char *text, size_t size, const char *folder, const str
     for (int wall = 0; wall < room->walls; wall++) {
         if (wall > 0) putc(',', command);
         write_place(command, room, kind, wall, folder);
-    }
-    fputs(" --wall-temperature ", command);
-    for (int wall = 0; wall < room->walls; wall++)
-        fprintf(command, "%s%s=%.17g", wall > 0 ? "," : "", wall_name_of(room, kind, wall),
-                1000 * room->temperature[room->spheres + wall]);
-    fputs(" --wall-emissivity ", command);
-    for (int wall = 0; wall < room->walls; wall++)
-        fprintf(command, "%s%s=%.17g", wall > 0 ? "," : "", wall_name_of(room, kind, wall),
+        fprintf(command, ":temperature=%.17g:emissivity=%.17g", 1000 * room->temperature[room->spheres + wall],
                 room->emissivity[room->spheres + wall]);
+    }
     fputs(" --quiet", command);
     fclose(command);
 }

@@ -13,9 +13,8 @@ static const struct {
     const char *name, *purpose;
     int (*run)(int argc, char **argv);
 } commands[] = {
-    {"bed", "view factors of all spheres of a file", command_bed},
     {"conductivity", "effective radiative conductivity of a bed of grey spheres", command_conductivity},
-    {"exchange", "exchange factors of grey spheres", command_exchange},
+    {"factors", "view factors or exchange factors of all spheres of a file", command_factors},
     {"furnace", "temperatures in a box with a medium that absorbs, emits and scatters", command_furnace},
     {"heat", "net radiative powers of grey spheres and walls", command_heat},
     {"join", "one matrix of the rows that the ranks of a simulation wrote", command_join},
@@ -28,7 +27,7 @@ enum { COMMANDS = sizeof commands / sizeof *commands };
 static int main_help(void) {
     printf("fibrad %s - view factors for thermal radiation between spheres\n\nCommands:\n", fibrad_version());
     for (size_t k = 0; k < COMMANDS; ++k) printf("  %-12s %s\n", commands[k].name, commands[k].purpose);
-    puts("\nfibrad COMMAND --help   options of a command, with defaults and examples\n"
+    puts("\nfibrad COMMAND --help   what most people need of a command; --help all: everything\n"
          "fibrad help COMMAND     the same\n"
          "fibrad -V, --version    version and instruction set in use\n\n"
          "Exit status: 0 success, 2 bad usage, 3 bad input, 4 trouble with a file, 5 out of memory, 128 + signal.");
@@ -43,6 +42,9 @@ static int main_version(void) {
 static int main_unknown(const char *name) {
     const char *names[COMMANDS];
     char hint[HINT_ROOM];
+    if (strcmp(name, "bed") == 0) return message(STATUS_USAGE, "fibrad bed is now fibrad factors");
+    if (strcmp(name, "exchange") == 0)
+        return message(STATUS_USAGE, "fibrad exchange is now fibrad factors, with --emissivity");
     for (size_t k = 0; k < COMMANDS; ++k) names[k] = commands[k].name;
     name_hint(hint, "", name, strlen(name), names, COMMANDS);
     return message(STATUS_USAGE, "unknown %s %.40s%s see fibrad --help", *name == '-' ? "option" : "command", name,
@@ -54,9 +56,9 @@ static int main_choose(int argc, char **argv) {
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) return main_help();
     if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0) return main_version();
     if (strcmp(name, "help") == 0 && argc == 2) return main_help();
-    if (strcmp(name, "help") == 0) { /* `help COMMAND` is `COMMAND --help` */
+    if (strcmp(name, "help") == 0) { /* `help COMMAND all` is `COMMAND --help all` */
         char help[] = "--help";
-        return main_choose(3, (char *[]){argv[0], argv[2], help, NULL});
+        return main_choose(argc > 3 ? 4 : 3, (char *[]){argv[0], argv[2], help, argc > 3 ? argv[3] : NULL, NULL});
     }
     for (size_t k = 0; k < COMMANDS; ++k)
         if (strcmp(name, commands[k].name) == 0) {

@@ -55,7 +55,7 @@ variant() {
 }
 
 matrix() { # THREADS
-    "$BUILD/fibrad" bed tests/data/poly2000.dump --positions --directions 55 --threads "$1" -o "$BUILD/bits/F.mtx" \
+    "$BUILD/fibrad" factors tests/data/poly2000.dump --positions --directions 55 --threads "$1" -o "$BUILD/bits/F.mtx" \
         >"$BUILD/bits/log" 2>&1 && sha256sum <"$BUILD/bits/F.mtx" | cut -d ' ' -f 1
 }
 

@@ -31,7 +31,7 @@ until_open() {
 
 # Signals during far more work than there is time for
 for pair in INT:130 TERM:143 HUP:129; do
-    "$fibrad" bed "$bed" --directions 65536 -o "$work/F.csv" >/dev/null 2>"$work/err" &
+    "$fibrad" factors "$bed" --directions 65536 -o "$work/F.csv" >/dev/null 2>"$work/err" &
     until_open $!
     kill -s "${pair%:*}" $!
     wait $!
@@ -46,17 +46,17 @@ wait $!
 verdict "SIGINT, furnace" $? 130 interrupted
 
 # Killed at once: no file has the given name. A temporary file may stay, and does not disturb the next run
-"$fibrad" bed "$bed" --directions 65536 -o "$work/F.csv" >/dev/null 2>&1 &
+"$fibrad" factors "$bed" --directions 65536 -o "$work/F.csv" >/dev/null 2>&1 &
 until_open $!
 kill -s KILL $!
 wait $! 2>/dev/null
 test -e "$work/F.csv" && complain "SIGKILL: a partial file"
-"$fibrad" bed "$bed" --directions 8 -o "$work/F.csv" >/dev/null 2>"$work/err" || complain "after SIGKILL: $(cat "$work/err")"
+"$fibrad" factors "$bed" --directions 8 -o "$work/F.csv" >/dev/null 2>"$work/err" || complain "after SIGKILL: $(cat "$work/err")"
 test -s "$work/F.csv" || complain "after SIGKILL: no file"
 
 # An older result stays as it is if the new run fails
 cp "$work/F.csv" "$work/old"
-(ulimit -f 64 && exec "$fibrad" bed "$bed" --directions 34 -o "$work/F.csv") >/dev/null 2>"$work/err"
+(ulimit -f 64 && exec "$fibrad" factors "$bed" --directions 34 -o "$work/F.csv") >/dev/null 2>"$work/err"
 status=$?
 cmp -s "$work/old" "$work/F.csv" || complain "a failed run changed the older result"
 rm -f "$work"/F.*
@@ -67,7 +67,7 @@ mkfifo "$work/pipe"
 exec 3<>"$work/pipe"
 exec 4>"$work/pipe"
 exec 3<&-
-"$fibrad" bed "$bed" --directions 8 >&4 2>"$work/err"
+"$fibrad" factors "$bed" --directions 8 >&4 2>"$work/err"
 verdict "SIGPIPE" $? 4 "standard output: Broken pipe"
 exec 4>&-
 
@@ -75,11 +75,11 @@ exec 4>&-
 mkdir "$work/disc"
 if mount -t tmpfs -o size=100k tmpfs "$work/disc" 2>/dev/null; then
     for ending in csv mtx vtp; do
-        "$fibrad" bed "$bed" --directions 34 -o "$work/disc/F.$ending" >/dev/null 2>"$work/err"
+        "$fibrad" factors "$bed" --directions 34 -o "$work/disc/F.$ending" >/dev/null 2>"$work/err"
         verdict "disc full, .$ending" $? 4 "No space left on device"
     done
     for ending in svg png; do
-        "$fibrad" bed "$bed" --directions 8 --plot "$work/disc/F.$ending" >/dev/null 2>"$work/err"
+        "$fibrad" factors "$bed" --directions 8 --plot "$work/disc/F.$ending" >/dev/null 2>"$work/err"
         verdict "disc full, .$ending" $? 4 "F.$ending: cannot be written: No space left on device"
     done
     umount "$work/disc"
@@ -89,7 +89,7 @@ fi
 
 # The folder of the output is gone when the file shall get its name
 mkdir "$work/gone"
-"$fibrad" bed "$bed" --directions 4000 --threads 1 -o "$work/gone/F.csv" >/dev/null 2>"$work/err" &
+"$fibrad" factors "$bed" --directions 4000 --threads 1 -o "$work/gone/F.csv" >/dev/null 2>"$work/err" &
 until_open $!
 kill -s STOP $! # for as long as it takes
 rm -rf "$work/gone"
@@ -98,12 +98,12 @@ wait $!
 verdict "folder gone" $? 4 "F.csv: cannot be written: No such file"
 
 # Not enough memory, from too little at the start to nearly enough: a clean failure or a complete result
-"$fibrad" bed "$bed" --directions 21 --threads 1 -o "$work/F.csv" >/dev/null 2>&1
+"$fibrad" factors "$bed" --directions 21 --threads 1 -o "$work/F.csv" >/dev/null 2>&1
 mv "$work/F.csv" "$work/whole"
 refused=0
 for limit in 8000 9000 10000 10500 11000 11500 12000 12500 13000 13500 14000 15000 16000 20000; do
     # shellcheck disable=SC3045  # dash and bash have it
-    (ulimit -v $limit && exec "$fibrad" bed "$bed" --directions 21 --threads 1 -o "$work/F.csv") >/dev/null 2>"$work/err"
+    (ulimit -v $limit && exec "$fibrad" factors "$bed" --directions 21 --threads 1 -o "$work/F.csv") >/dev/null 2>"$work/err"
     status=$?
     if test $status = 0; then
         cmp -s "$work/whole" "$work/F.csv" || complain "memory limit $limit KiB: another result"
@@ -119,6 +119,6 @@ test $refused -gt 0 || complain "no memory limit made the program run out of mem
 echo "$refused of 14 memory limits made the program run out of memory"
 
 # Input that cannot be read
-"$fibrad" bed /proc/self/mem -o "$work/F.csv" >/dev/null 2>"$work/err"
+"$fibrad" factors /proc/self/mem -o "$work/F.csv" >/dev/null 2>"$work/err"
 verdict "unreadable input" $? 4 "/proc/self/mem"
 exit $faults

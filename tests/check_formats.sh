@@ -12,7 +12,7 @@ faults=0
 rows() { # rows FILE OUT OPTIONS...: the matrix of a bed
     from=$1 to=$2
     shift 2
-    "$BUILD/fibrad" bed "$from" --directions 34 --threads 2 -o "$to" "$@" >/dev/null 2>"$work/said" && return
+    "$BUILD/fibrad" factors "$from" --directions 34 --threads 2 -o "$to" "$@" >/dev/null 2>"$work/said" && return
     cat "$work/said"
     return 1
 }
@@ -61,7 +61,7 @@ sed 's/^Atoms # hybrid/& sphere/' $beds/lammps_hybrid.data >"$work/hybrid.data"
 beds=$work check 0 hybrid.data
 
 # the program reads the files that it writes
-"$BUILD/fibrad" bed tests/data/formats/settled.csv --directions 34 -o "$work/own.vtp" >/dev/null 2>&1
+"$BUILD/fibrad" factors tests/data/formats/settled.csv --directions 34 -o "$work/own.vtp" >/dev/null 2>&1
 beds=$work check 0 own.vtp
 
 test $faults = 0

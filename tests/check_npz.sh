@@ -9,7 +9,7 @@ work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 printf 'x,y,z,r\n0,0,0,1\n9e9,0,0,1\n' >"$work/apart.csv"
 for bed in tests/data/mono2000.dump "$work/apart.csv"; do # the second has no entries
     for ending in npz csv; do
-        "$BUILD/fibrad" bed "$bed" --directions 8 --cutoff 3 --threads 2 -o "$work/F.$ending" >"$work/summary" 2>&1
+        "$BUILD/fibrad" factors "$bed" --directions 8 --cutoff 3 --threads 2 -o "$work/F.$ending" >"$work/summary" 2>&1
     done
     "$work/read_npz" "$work/F.npz" >"$work/read.csv"
     # the entries are the same to the bit; their digits differ
@@ -63,7 +63,7 @@ done
 
 # walls by their names, and which rows were computed
 if test -n "${scipy:-}"; then
-    "$BUILD/fibrad" bed tests/data/mono2000.dump --directions 21 --wall zmin,cylinder:6,6,9,zmax=open --targets 1-99 --quiet \
+    "$BUILD/fibrad" factors tests/data/mono2000.dump --directions 21 --wall zmin,cylinder:6,6,9,zmax:open --targets 1-99 --quiet \
         -o "$work/W.npz" -o "$work/W.csv" 2>"$work/said"
     "$scipy" - "$work/W.npz" "$work/W.csv" <<'END'
 import csv, sys, numpy

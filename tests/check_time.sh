@@ -21,7 +21,7 @@ is() { awk -v a="$1" -v b="$2" -v most="$3" 'BEGIN { exit !(a - b <= most && b -
 
 # A sphere of 2 cm into 0 K: 1/T^3 grows by 3 A e sigma/C a second, by nine times that of density rho c r/3.
 printf 'id,x,y,z,r,T\n5,0,0,0,20,1200\n' >"$work/one.csv"
-march "$work/one.csv" --length-unit mm --temperature T --ambient 0 --until 600 --every 200 -o "$work/one.out.csv" \
+march "$work/one.csv" --length-unit mm --temperature T --ambient 0 --until 600 --times every:200 -o "$work/one.out.csv" \
     -o "$work/cool.*.vtp" || fault "$(cat "$work/errors")"
 end=$(awk 'BEGIN { print (1200^-3 + 3 * 0.6 * 5.670374419e-8 * 3 / (800 * 2500 * 0.02) * 600)^(-1/3) }')
 is "$(value temperature_mean_K)" "$end" 0.05 || fault "one sphere ends at $(value temperature_mean_K) K, not $end K"
@@ -48,10 +48,11 @@ done
 # In a closed black box whose temperature follows a table, a mote follows the walls. Tables have times and a unit.
 printf '# seconds, degrees\ntime,T\n0,27\n100,827\n500,827\n' >"$work/ramp.csv"
 printf '0,0,0,0.001,300\n' | sed '1i x,y,z,r,T' >"$work/mote.csv"
-table=xmin=@$work/ramp.csv,xmax=@$work/ramp.csv,ymin=@$work/ramp.csv,ymax=@$work/ramp.csv
-planes=xmin=-1,xmax=1,ymin=-1,ymax=1,zmin=-1,zmax=1
-march "$work/mote.csv" --length-unit mm --temperature 27 --temperature-unit C --wall "$planes" \
-    --wall-temperature "$table,zmin=@$work/ramp.csv,zmax=@$work/ramp.csv" --until 300 --times 50,300 \
+planes=
+for axis in x y z; do
+    for side in min:at=-1 max:at=1; do planes=$planes,$axis$side:temperature=@$work/ramp.csv; done
+done
+march "$work/mote.csv" --length-unit mm --temperature 27 --temperature-unit C --wall "${planes#,}" --until 300 --times 50,300 \
     -o "$work/mote.out.csv" || fault "$(cat "$work/errors")"
 awk -F , '$2 == 0 { t[$1] = $3 } END { exit !(t[50] > 690 && t[50] < 700.15 && t[300] > 1100.1 && t[300] < 1100.2) }' \
     "$work/mote.out.csv" || fault "the mote does not follow the walls: $(grep ',0,' "$work/mote.out.csv")"
@@ -84,14 +85,13 @@ refused 2 'until needs --density' --ambient 300 --temperature T --until 60 --hea
 refused 2 'heat-capacity needs --until' --ambient 300 --temperature T --heat-capacity 800
 refused 2 'until needs --temperature' "$@" --power 3
 refused 3 'one.csv:2: the temperature is 0 K' "$@" --temperature 0
-refused 3 'back.csv:3: 10 is not above' "$@" --temperature T --wall zmin=-30 --wall-temperature "zmin=@$work/back.csv"
-refused 3 'cold.csv:2: the temperature is -1' "$@" --temperature T --wall zmin=-30 --wall-temperature "zmin=@$work/cold.csv"
+refused 3 'back.csv:3: 10 is not above' "$@" --temperature T --wall "zmin:at=-30:temperature=@$work/back.csv"
+refused 3 'cold.csv:2: the temperature is -1' "$@" --temperature T --wall "zmin:at=-30:temperature=@$work/cold.csv"
 refused 3 'cold.csv:2: the temperature is -1' --temperature T --ambient "@$work/cold.csv" --heat-capacity 1 --density 1 --until 9
-refused 2 'a table needs the name of its wall' "$@" --temperature T --wall zmin=-30 --wall-temperature "@$work/back.csv"
-refused 2 'there is no wall zmax' "$@" --temperature T --wall zmin=-30 --wall-temperature "zmax=@$work/ramp.csv,zmin=3"
+refused 2 'zmin has no temperature' "$@" --temperature T --wall zmin:at=-30
 refused 2 '3 is not above the time before' "$@" --temperature T --times 5,3
 refused 2 '90 is not above the time before, or not within 0 and 60' "$@" --temperature T --times 90
-refused 2 'cannot be combined' "$@" --temperature T --times 5 --every 3
+refused 2 'times every: .0. is not a number\|not within' "$@" --temperature T --times every:0
 refused 2 'put \* into its name' "$@" --temperature T -o "$work/x.vtp"
 refused 2 'model factors: emissivities cannot follow' "$@" --temperature T --emissivity "@$work/eps.csv" --model factors
 refused 2 'not for --until' "$@" --temperature T --error 0.01

@@ -19,7 +19,7 @@ sed 's/^75000$/76000/' a.dump >b.dump
 
 heat() { # COLUMN FILES AND OUTPUTS
     "$fibrad" heat --temperature "$@" --emissivity 0.5 --directions 13 --patches 24 --threads 2 --ambient 300 \
-        --wall zmin=0 --wall-temperature 900 --quiet
+        --wall zmin:at=0:temperature=900 --quiet
 }
 heat v_T a.dump -o q.csv -o q.json -o q.dump -o q.vtp -o - --format json >out.json
 cmp out.json q.json
@@ -34,7 +34,7 @@ heat temperature_K q.vtp --length-unit m --periodic 12,12,0 -o again.csv
 cmp again.csv q.csv
 heat T_K two.lammpstrj --frame all -o again.csv
 cut -d, -f2- two.csv | sed '2004,$s/^0/1/' | cmp - again.csv
-"$fibrad" bed a.dump --directions 13 --threads 2 --wall zmin,zmax --targets 1-999 --quiet -o F.csv -o F.json -o F.mtx -o F.vtp
+"$fibrad" factors a.dump --directions 13 --threads 2 --wall zmin,zmax --targets 1-999 --quiet -o F.csv -o F.json -o F.mtx -o F.vtp
 
 if ! command -v python3 >/dev/null; then
     echo "SKIP: no python3 to read what was written"

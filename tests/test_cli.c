@@ -9,23 +9,22 @@ FIXTURE(make_folder, remove_folder)
     "\n0 8\n0 8\n0 8\nITEM: ATOMS radius x y z id\n" rows
 
 TEST(surface_method) {
-    SUCCEED("bed", POLY, "--method", "surface", "--cutoff", "3");
     ck_assert_double_eq(value_of("nf"), 55);
     const double sum = value_of("row_sum_max"), error = value_of("error_estimate");
-    SUCCEED("bed", POLY, "--cutoff", "3");
+    SUCCEED("factors", POLY, "--cutoff", "3");
     ck_assert_double_eq_tol(value_of("row_sum_max"), sum, 3 * error);
 }
 
 TEST(tolerance) {
-    SUCCEED("bed", POLY, "--error", "0.01");
+    SUCCEED("factors", POLY, "--error", "0.01");
     ck_assert_double_le(value_of("error_estimate"), .01);
     ck_assert_double_gt(value_of("error_estimate"), .002);
     ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
     const double all = value_of("directions");
-    SUCCEED("bed", POLY, "--error", "0.001", "--targets", "3,7,1000-1009");
+    SUCCEED("factors", POLY, "--error", "0.001", "--targets", "3,7,1000-1009");
     ck_assert_double_le(value_of("error_estimate"), .001);
     ck_assert_double_gt(value_of("directions"), all);
-    SUCCEED("bed", POLY, "--error", "1e-7", "--targets", "3", "--cutoff", "1.1", "--points", "64");
+    SUCCEED("factors", POLY, "--error", "1e-7", "--targets", "3", "--cutoff", "1.1", "--points", "64");
     ck_assert_double_eq(value_of("directions"), 65536);
     ck_assert_double_gt(value_of("error_estimate"), 1e-7);
     assert_has(said, "warning: --error 1e-07 is not reached");
@@ -33,7 +32,7 @@ TEST(tolerance) {
 }
 
 TEST(summary) {
-    SUCCEED("bed", POLY, "--directions", "34");
+    SUCCEED("factors", POLY, "--directions", "34");
     static const char *const keys[] = {"spheres",     "directions",      "threads",        "seconds",
                                        "nonzeros",    "row_sum_min",     "row_sum_max",    "escaped_mean",
                                        "closure_max", "reciprocity_max", "error_estimate", "fallbacks"};
@@ -59,7 +58,7 @@ TEST(overlaps_warn_with_their_error) {
         const char *pair = write_file("o.csv", formatted("x,y,z,r\n0,0,0,1\n0,0,%g,%g\n", .7 + large[k], large[k]));
         const char *f = in_folder("of.csv"), *at;
         double factor, error;
-        SUCCEED("bed", pair, "--directions", "4000", "-o", f);
+        SUCCEED("factors", pair, "--directions", "4000", "-o", f);
         ck_assert_int_eq(sscanf(read_file(f), "%*s 0,1,%lf", &factor), 1);
         ck_assert_ptr_nonnull(at = strstr(said, "their view factors err by about "));
         ck_assert_int_eq(sscanf(at, "their view factors err by about %lf", &error), 1);
@@ -80,7 +79,7 @@ TEST(same_bytes_for_any_threads) {
     char *first = NULL;
     for (int k = 0; k < 3; ++k) {
         const char *out = in_folder("F.csv");
-        SUCCEED("bed", POLY, "--directions", "34", "--threads", threads[k], "-o", out);
+        SUCCEED("factors", POLY, "--directions", "34", "--threads", threads[k], "-o", out);
         ck_assert_double_eq(value_of("threads"), k == 0 ? 1 : k == 1 ? 2 : 7);
         read_same(out, &first);
     }
@@ -93,7 +92,7 @@ TEST(walls) {
     char *first = NULL;
     for (int k = 0; k < 2; ++k) {
         const char *out = in_folder("F.csv");
-        SUCCEED("bed", MONO, "--positions", "--directions", "50", "--wall", "auto", "--threads", k == 0 ? "1" : "3",
+        SUCCEED("factors", MONO, "--positions", "--directions", "50", "--wall", "auto", "--threads", k == 0 ? "1" : "3",
                 "-o", out, "--json", in_folder("F.json"));
         read_same(out, &first);
     }
@@ -131,25 +130,25 @@ TEST(walls) {
         mean += to[i][4] / SPHERES;
     }
     ck_assert_double_eq_tol(json_of(in_folder("F.json"), "wall_zmin_F"), mean, 1e-13);
-    SUCCEED("bed", PERIODIC, "--directions", "50", "--wall", "auto"); /* a deep bed sees all of an endless wall */
+    SUCCEED("factors", PERIODIC, "--directions", "50", "--wall", "auto"); /* a deep bed sees all of an endless wall */
     ck_assert_double_eq_tol(value_of("wall_zmin_F") * SPHERES * acos(-1), 12 * 12, .02);
     ck_assert_double_eq_tol(value_of("wall_zmax_F") * SPHERES * acos(-1), 12 * 12, .02);
-    SUCCEED("bed", MONO, "--directions", "13", "--wall", "cylinder:6,6,9,zmin,zmax=open", "--targets", "1-9");
+    SUCCEED("factors", MONO, "--directions", "13", "--wall", "cylinder:6,6,9,zmin,zmax:open", "--targets", "1-9");
     ck_assert_double_gt(value_of("wall_cylinder_F"), 0);
     static const struct {
         const char *cylinder, *name;
-    } along[] = {{"cylinder:6,7,2,zmin=3,zmax=13", "cylinder"},
-                 {"xcylinder:7,8,2,xmin=1,xmax=11", "xcylinder"},
-                 {"ycylinder:6,8,2,ymin=2,ymax=12", "ycylinder"}};
+    } along[] = {{"cylinder:6,7,2,zmin:at=3,zmax:at=13", "cylinder"},
+                 {"xcylinder:7,8,2,xmin:at=1,xmax:at=11", "xcylinder"},
+                 {"ycylinder:6,8,2,ymin:at=2,ymax:at=12", "ycylinder"}};
     const char *sphere = write_file("sphere.csv", "x,y,z,r\n6,7,8,1\n"), *picture = in_folder("sphere.svg");
     for (int k = 0; k < 3; ++k) { /* discs at a distance of 2.5 radii */
         char key[32];
         snprintf(key, sizeof key, "wall_%s_F", along[k].name);
-        SUCCEED("bed", sphere, "--wall", along[k].cylinder, "-o", in_folder("F.csv"), "--plot", picture);
+        SUCCEED("factors", sphere, "--wall", along[k].cylinder, "-o", in_folder("F.csv"), "--plot", picture);
         ck_assert_double_eq_tol(value_of(key), 2.5 / hypot(1, 2.5), 2e-6);
         ck_assert_double_eq_tol(value_of("escaped_mean"), 0, 1e-14);
     }
-    FAIL_WITH(3, "bed", MONO, "--wall", "zmin=2");
+    FAIL_WITH(3, "factors", MONO, "--wall", "zmin:at=2");
     expect_message(MONO ":", "lies beyond the wall zmin");
 }
 
@@ -169,11 +168,11 @@ static double number_of_line(const char *path, const char *end, int column) {
 TEST(a_box_without_a_lid) {
     const char *open = in_folder("open.csv"), *closed = in_folder("closed.csv"), *json = in_folder("open.json");
 #define STATE "--length-unit=mm", "--emissivity=.6", "--temperature=500", "--ambient=300", "--directions=30"
-    SUCCEED("heat", MONO, STATE, "--wall=box:open=zmax", "--wall-temperature=zmin=900,600", "--wall-emissivity=.4",
-            "-o", open, "--json", json, "--plot", in_folder("open.svg"));
-    const char *lid = formatted("--wall=box,zmax=%.17g", json_of(json, "open_zmax_at"));
-    SUCCEED("heat", MONO, STATE, lid, "--wall-temperature=zmin=900,zmax=300,600", "--wall-emissivity=zmax=1,.4", "-o",
-            closed);
+    const char *walls = "--wall=box:temperature=600:emissivity=.4,zmin:temperature=900:emissivity=.4";
+    SUCCEED("heat", MONO, STATE, walls, "--wall=zmax:open", "-o", open, "--json", json, "--plot",
+            in_folder("open.svg"));
+    const char *lid = formatted("--wall=zmax:at=%.17g:temperature=300", json_of(json, "open_zmax_at"));
+    SUCCEED("heat", MONO, STATE, lid, walls, "-o", closed);
 #undef STATE
     const char *const lines[] = {",xmin", ",ymax", ",zmin", "\n4,", "\n1000,"};
     for (size_t k = 0; k < sizeof lines / sizeof *lines; ++k)
@@ -181,9 +180,9 @@ TEST(a_box_without_a_lid) {
     ck_assert_double_gt(number_of_line(open, ",surroundings", 2), 1e-3);
     ck_assert_double_eq(number_of_line(open, ",surroundings", 2), number_of_line(closed, ",zmax", 2));
     ck_assert(isnan(number_of_line(open, ",zmax", 2)));
-    FAIL_WITH(3, "bed", MONO, "--wall", "box,zmax=13:open");
+    FAIL_WITH(3, "factors", MONO, "--wall", "box,zmax:open:at=13");
     expect_message(MONO ":", "reaches beyond an opening");
-    SUCCEED("bed", PERIODIC, "--directions=13", "--wall", "zmin,zmax=open");
+    SUCCEED("factors", PERIODIC, "--directions=13", "--wall", "zmin,zmax:open");
     ck_assert_double_gt(value_of("escaped_mean"), 0);
 }
 
@@ -195,7 +194,7 @@ TEST(rays) {
         char *text[3];
         for (int k = 0; k < 3; ++k) {
             const char *out = in_folder("F.csv");
-            SUCCEED("bed", POLY, "--method", methods[m], "--rays", "500", "--threads", k == 1 ? "3" : "1", "--seed",
+            SUCCEED("factors", POLY, "--method", methods[m], "--rays", "500", "--threads", k == 1 ? "3" : "1", "--seed",
                     k == 2 ? "1" : "0", "-o", out);
             ck_assert_double_eq(value_of("rays"), 500);
             ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
@@ -221,12 +220,10 @@ TEST(rows_in_files) {
     static const char *const names[2][3] = {{"a.csv", "a.npz", "a.json"}, {"b.csv", "b.npz", "b.json"}};
     const char *scratch = in_folder("scratch");
     ck_assert_int_eq(mkdir(scratch, 0777), 0);
-    SUCCEED("exchange", PERIODIC, "--emissivity=.5", "--directions=8", "--rays=9", "--wall=zmin",
-            "--wall-emissivity=.5", "-o", in_folder(names[0][0]), "-o", in_folder(names[0][1]), "-o",
-            in_folder(names[0][2]));
-    SUCCEED("exchange", PERIODIC, "--emissivity=.5", "--directions=8", "--rays=9", "--wall=zmin",
-            "--wall-emissivity=.5", "-o", in_folder(names[1][0]), "-o", in_folder(names[1][1]), "-o",
-            in_folder(names[1][2]), "--scratch", scratch);
+    SUCCEED("factors", PERIODIC, "--emissivity=.5", "--directions=8", "--rays=9", "--wall=zmin:emissivity=.5", "-o",
+            in_folder(names[0][0]), "-o", in_folder(names[0][1]), "-o", in_folder(names[0][2]));
+    SUCCEED("factors", PERIODIC, "--emissivity=.5", "--directions=8", "--rays=9", "--wall=zmin:emissivity=.5", "-o",
+            in_folder(names[1][0]), "-o", in_folder(names[1][1]), "-o", in_folder(names[1][2]), "--scratch", scratch);
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
     for (int k = 0; k < 3; ++k) {
         size_t first, second;
@@ -236,16 +233,16 @@ TEST(rows_in_files) {
     }
     ck_assert_int_eq(rmdir(scratch), 0); /* empty */
     remove_files(0);
-    FAIL_WITH(4, "bed", MONO, "--scratch", scratch);
+    FAIL_WITH(4, "factors", MONO, "--scratch", scratch);
     expect_message(scratch, "No such file or directory");
-    FAIL_WITH(4, "exchange", MONO, "--emissivity=.5", "--scratch", PERIODIC, "-o", in_folder("D.csv"));
+    FAIL_WITH(4, "factors", MONO, "--emissivity=.5", "--scratch", PERIODIC, "-o", in_folder("D.csv"));
     ck_assert_int_eq(remove_files(0), 0);
 }
 
 /* A line of this set of directions runs nearly along the layers of the bed. There a circle meets so many images that it
  * is followed in stretches. */
 TEST(a_line_along_layers) {
-    SUCCEED("bed", PERIODIC, "--directions", "362");
+    SUCCEED("factors", PERIODIC, "--directions", "362");
     ck_assert_double_eq(value_of("directions"), 362);
     ck_assert_double_lt(value_of("closure_max"), 1e-13);
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-15);
@@ -253,10 +250,10 @@ TEST(a_line_along_layers) {
 
 TEST(targets_and_formats) {
     const char *all = in_folder("all.csv"), *some = in_folder("some.csv"), *matrix = in_folder("all.mtx");
-    SUCCEED("bed", PERIODIC, "--positions", "--directions", "21", "--raw", "-o", all);
+    SUCCEED("factors", PERIODIC, "--positions", "--directions", "21", "--raw", "-o", all);
     ck_assert_double_lt(value_of("closure_max"), 1e-12);
-    SUCCEED("bed", PERIODIC, "--positions", "--directions", "21", "--raw", "-o", matrix);
-    SUCCEED("bed", PERIODIC, "--positions", "--directions", "21", "--targets", "1999,0,7-9,8", "-o", some);
+    SUCCEED("factors", PERIODIC, "--positions", "--directions", "21", "--raw", "-o", matrix);
+    SUCCEED("factors", PERIODIC, "--positions", "--directions", "21", "--targets", "1999,0,7-9,8", "-o", some);
     ck_assert(isnan(value_of("reciprocity_max")));
     char *all_text = read_file(all), *some_text = read_file(some), *matrix_text = read_file(matrix);
     char *row = strchr(some_text, '\n') + 1, *entry = matrix_text;
@@ -283,19 +280,19 @@ TEST(targets_and_formats) {
 TEST(frames_periods_and_ids) {
     const char *dump = write_file("two.dump", FRAME("0", "ff ff ff", "1 1 4 4 70\n1 7 4 4 5\n")
                                                   FRAME("1", "pp ff ff", "1 1 4 4 70\n1 7 4 4 5\n"));
-    SUCCEED("bed", dump, "--frame", "0");
+    SUCCEED("factors", dump, "--frame", "0");
     ck_assert_double_eq_tol(value_of("row_sum_min"), 0.00704, 1e-3);
     ck_assert_double_eq(value_of("nonzeros"), 2);
-    SUCCEED("bed", dump);
+    SUCCEED("factors", dump);
     const double across = value_of("row_sum_min");
     ck_assert_double_eq_tol(across, 0.0755868 + 0.0070444, 1e-3); /* seen across the face, and within the box */
-    SUCCEED("bed", dump, "--frame", "0", "--periodic", "8,0,0");
+    SUCCEED("factors", dump, "--frame", "0", "--periodic", "8,0,0");
     ck_assert_double_eq(value_of("row_sum_min"), across);
-    SUCCEED("bed", dump, "--periodic", "none", "--targets", "70", "-o", in_folder("ids.csv"));
+    SUCCEED("factors", dump, "--periodic", "none", "--targets", "70", "-o", in_folder("ids.csv"));
     ck_assert_double_lt(value_of("row_sum_min"), 0.01);
     assert_begins(read_file(in_folder("ids.csv")), "i,j,F,body\n70,5,");
     input = dump;
-    SUCCEED("bed", "-");
+    SUCCEED("factors", "-");
     ck_assert_double_eq(value_of("row_sum_min"), across);
     input = "/dev/null";
 }
@@ -335,8 +332,8 @@ TEST(temperatures) {
     double warm[2];
     for (int k = 0; k < 2; ++k) {
         SUCCEED("heat", file, "--emissivity", ".5", "--power", k ? "4e-3" : "4e3", "--length-unit", k ? "mm" : "m",
-                "--wall", "box", "--wall-temperature", "zmax=400,insulated", "--wall-power",
-                k ? "xmin=1e-2" : "xmin=1e4", "--wall-emissivity", ".6", "-o", out);
+                "--wall", "box:insulated:emissivity=.6,zmax:temperature=400:emissivity=.6", "--wall",
+                k ? "xmin:power=1e-2:emissivity=.6" : "xmin:power=1e4:emissivity=.6", "-o", out);
         read_powers(out, &sum, &largest, 1, &warm[k], &q);
         ck_assert_double_le(fabs(sum), 1e-12 * largest);
         ck_assert_double_eq_tol(q, k ? -4e-3 : -4e3, 1e-14 * fabs(q));
@@ -364,15 +361,13 @@ TEST(temperatures) {
     FAIL_WITH(3, "heat", file, "--emissivity", all, "--temperature", "600", "--ambient", "300");
     expect_message(table, ":2: 400 is not above the number before");
 
-    FAIL_WITH(3, "heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "4", "--wall", "box",
-              "--wall-temperature", "insulated");
+    FAIL_WITH(3, "heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "4", "--wall", "box:insulated");
     expect_message(file, "its powers add up to 12 W, not to 0");
-    FAIL_WITH(3, "heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "1:4,2:-8", "--wall", "box",
-              "--wall-temperature", "insulated");
+    FAIL_WITH(3, "heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "1:4,2:-8", "--wall",
+              "box:insulated");
     expect_message(file, "no temperature is given in this closed bed; give one, or --ambient");
-    FAIL_WITH(3, "heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "1:.15,2:-.1", "--wall", "box",
-              "--wall-power", "xmin=-.2", "--wall-temperature",
-              "xmax=insulated,ymin=insulated,ymax=insulated,zmin=insulated,zmax=insulated");
+    FAIL_WITH(3, "heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "1:.15,2:-.1", "--wall",
+              "box:insulated,xmin:power=-.2");
     expect_message(file, "no temperature is given in this closed bed; give one, or --ambient");
     ck_assert_int_eq(
         RUN("heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "-1e6", "--ambient", "300"), 3);
@@ -411,13 +406,13 @@ TEST(temperatures_to_an_error) {
         snprintf(bed + strlen(bed), 60, "%d,%d,%d,%g\n", 2 * (i % 3), 2 * (i / 3 % 3), 2 * (i / 9), .95 - .2 * (i % 4));
     const char *file = write_file("found.csv", bed), *out = in_folder("found.out.csv"), *fine = in_folder("fine.csv");
     double sum, largest, wall[2], q;
+#define WALL ":emissivity=.4"
     for (int k = 0; k < 4; ++k) { /* first finely, then to an error; open, then in a box */
         const char *to = k % 2 ? out : fine;
         SUCCEED("heat", file, "--length-unit", "m", "--emissivity", ".4", "--power", "4000", "--ambient=300",
                 k % 2 ? "--error=.004" : "--directions=1500", k % 2 ? "--threads=2" : "--patches=384", "-o", to,
-                k < 2 ? "--threads=2" : "--wall=box",
-                k < 2 ? "--threads=2" : "--wall-temperature=ymax=insulated,zmin=900,400",
-                k < 2 ? "--threads=2" : "--wall-power=xmin=20000", k < 2 ? "--threads=2" : "--wall-emissivity=.4");
+                k < 2 ? "--threads=2" : "--wall=box:temperature=400" WALL ",ymax:insulated" WALL,
+                k < 2 ? "--threads=2" : "--wall=xmin:power=20000" WALL ",zmin:temperature=900" WALL);
         assert_lacks(said, "is not reached");
         if (k >= 2) read_powers(to, &sum, &largest, -2, &wall[k % 2], &q);
         if (k % 2 == 0) continue;
@@ -442,9 +437,9 @@ TEST(powers) {
     /* walls are -2, -3 in the order given; the bytes are the same for any number of threads */
     char *text[2];
     for (int k = 0; k < 2; ++k) {
-        SUCCEED("heat", file, "--emissivity", "eps", "--temperature", "T", "--wall", "zmax=3,zmin=-1,cylinder:0,0,5",
-                "--wall-temperature", "zmin=400,zmax=700,500", "--wall-emissivity", "zmax=.5", "--threads",
-                k == 0 ? "1" : "3", "-o", out, "--json", in_folder("q.json"));
+        SUCCEED("heat", file, "--emissivity", "eps", "--temperature", "T", "--wall",
+                "zmax:at=3:temperature=700:emissivity=.5,zmin:at=-1:temperature=400,cylinder:0,0,5:temperature=500",
+                "--threads", k == 0 ? "1" : "3", "-o", out, "--json", in_folder("q.json"));
         text[k] = read_file(out);
     }
     ck_assert_str_eq(text[0], text[1]);
@@ -458,15 +453,15 @@ TEST(powers) {
     ck_assert_double_eq(t, 500);
 
     /* all have one temperature: figures are relative to what is emitted */
-    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "500", "--wall", "box", "--wall-temperature", "500",
-            "--wall-emissivity", ".2", "-o", out);
+    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "500", "--wall", "box:temperature=500:emissivity=.2",
+            "-o", out);
     read_powers(out, &sum, &largest, 0, &t, &q);
     ck_assert_double_le(largest, 1e-10 * 5.67e-8 * 500. * 500. * 500. * 500.);
     ck_assert_double_le(fabs(value_of("balance_of_emission")), 1e-12);
     ck_assert_double_le(value_of("error_of_emission"), 1e-9);
     ck_assert_double_eq_tol(value_of("emitted_W"), .3 * 5.670374419e-8 * pow(500, 4) * 4 * acos(-1) * 2.49, 1);
-    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "500", "--wall", "box", "--wall-temperature", "500",
-            "--error", ".01", "--length-unit", "m"); /* powers that are nothing but noise reach the error, too */
+    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "500", "--wall", "box:temperature=500", "--error",
+            ".01", "--length-unit", "m"); /* powers that are nothing but noise reach the error, too */
     ck_assert_str_eq(said, "");
 
     SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "T", "--ambient", "0", "--error", "0.01", "-o",
@@ -497,13 +492,13 @@ TEST(exchange_factors) {
         weight[i] = r * r * e;
     }
     const char *file = write_file("bed.csv", bed), *out = in_folder("D.csv"), *other = in_folder("E.csv");
-    SUCCEED("exchange", file, "--emissivity", "e", "--rays", "300", "--wall", "zmin=-1.5,zmax=4", "--wall-emissivity",
-            "zmin=0.5,zmax=0", "--threads", "1", "-o", out);
+    SUCCEED("factors", file, "--emissivity", "e", "--rays", "300", "--wall",
+            "zmin:at=-1.5:emissivity=.5,zmax:at=4:emissivity=0", "--threads", "1", "-o", out);
     ck_assert_double_lt(value_of("closure_max"), 1e-12);
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-12);
     ck_assert_double_lt(value_of("error_estimate"), .1);
-    SUCCEED("exchange", file, "--emissivity", "e", "--rays", "300", "--wall", "zmin=-1.5,zmax=4", "--wall-emissivity",
-            "zmin=0.5,zmax=0", "--threads", "3", "-o", other);
+    SUCCEED("factors", file, "--emissivity", "e", "--rays", "300", "--wall",
+            "zmin:at=-1.5:emissivity=.5,zmax:at=4:emissivity=0", "--threads", "3", "-o", other);
     char *text = read_file(out), *again = read_file(other);
     ck_assert_str_eq(text, again);
     assert_begins(text, "i,j,D,body\n");
@@ -520,13 +515,13 @@ TEST(exchange_factors) {
         ck_assert_double_eq_tol(sum[i], 1, 1e-12);
         for (int j = 0; j < N; ++j) ck_assert_double_eq_tol(weight[i] * d[i][j], weight[j] * d[j][i], 1e-14);
     }
-    SUCCEED("exchange", file, "--emissivity", "0.6", "--error", "0.02", "--drop", "0.001", "--threads", "2");
+    SUCCEED("factors", file, "--emissivity", "0.6", "--error", "0.02", "--drop", "0.001", "--threads", "2");
     ck_assert_double_lt(value_of("error_estimate"), .04);
     ck_assert_double_lt(value_of("closure_max"), 1e-12);
-    FAIL_WITH(3, "exchange", file, "--emissivity", "x");
+    FAIL_WITH(3, "factors", file, "--emissivity", "x");
     expect_message(file, "the emissivity is 2; it must be within 0 and 1");
-    FAIL_WITH(3, "exchange", file, "--emissivity", "missing");
-    FAIL_WITH(2, "exchange", file, "--emissivity", "e", "--wall-emissivity", "0.5");
+    FAIL_WITH(3, "factors", file, "--emissivity", "missing");
+    FAIL_WITH(2, "factors", file, "--emissivity", "e", "--wall", "emissivity=0.5");
     remove_files(0);
 }
 
@@ -551,11 +546,11 @@ TEST(conductivity) {
 }
 
 TEST(points_and_cutoff) {
-    SUCCEED("bed", POLY, "--directions", "34", "--points", "64");
+    SUCCEED("factors", POLY, "--directions", "34", "--points", "64");
     ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
     const double entries = value_of("nonzeros");
-    SUCCEED("bed", POLY, "--directions", "34", "--areas", "points", "--cutoff", "1.5");
+    SUCCEED("factors", POLY, "--directions", "34", "--areas", "points", "--cutoff", "1.5");
     ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
     ck_assert_double_lt(value_of("nonzeros"), entries / 2);
     ck_assert_double_gt(value_of("beyond_mean"), .1); /* for the most part on other spheres */
@@ -564,14 +559,14 @@ TEST(points_and_cutoff) {
 
 TEST(paraview_and_picture) {
     const char *points = in_folder("bed.vtp"), *svg = in_folder("bed.svg"), *png = in_folder("bed.png");
-    SUCCEED("bed", MONO, "--directions", "21", "-o", points, "--plot", svg);
+    SUCCEED("factors", MONO, "--directions", "21", "-o", points, "--plot", svg);
     char *text = read_file(points);
     assert_has(text, "NumberOfPoints=\"2000\"");
     assert_has(text, "</VTKFile>");
     text = read_file(svg);
     assert_has(text, "<svg");
     assert_has(text, "</svg>");
-    SUCCEED("bed", MONO, "--directions", "21", "--targets", "1-99", "--plot", png);
+    SUCCEED("factors", MONO, "--directions", "21", "--targets", "1-99", "--plot", png);
     assert_begins(read_file(png), "\x89PNG");
     ck_assert_int_eq(remove_files(0), 3);
 }
@@ -579,17 +574,10 @@ TEST(paraview_and_picture) {
 TEST(picture_without_gnuplot) {
     OWNED char *path = strdup(getenv("PATH"));
     ck_assert_int_eq(setenv("PATH", folder, 1), 0);
-    ck_assert_int_eq(
-        RUN("bed", write_file("a.csv", "x,y,z,r\n0,0,0,1\n"), "--plot", in_folder("a.png"), "-o", in_folder("F.csv")),
-        4);
+    ck_assert_int_eq(RUN("factors", write_file("a.csv", "x,y,z,r\n0,0,0,1\n"), "--plot", in_folder("a.png"), "-o",
+                         in_folder("F.csv")),
+                     4);
     ck_assert_int_eq(setenv("PATH", path, 1), 0);
     expect_message("", "gnuplot");
     ck_assert_int_eq(remove_files(0), 1); /* a.csv alone */
-}
-
-TEST(progress_when_asked) {
-    SUCCEED("bed", MONO, "--directions", "21", "--progress");
-    assert_has(said, "2000 of 2000 rows");
-    SUCCEED("bed", MONO, "--directions", "21");
-    assert_lacks(said, "2000 of 2000 rows");
 }

@@ -14,18 +14,42 @@ FIXTURE(make_folder, remove_folder)
 
 TEST(help_and_version) {
     SUCCEED("--help");
-    ck_assert(strstr(printed, "bed") && strstr(printed, "pair"));
+    ck_assert(strstr(printed, "factors") && strstr(printed, "pair"));
     SUCCEED("--version");
     assert_begins(printed, "fibrad ");
-    SUCCEED("bed", "--help");
+    SUCCEED("factors", "--help", "all");
     static const char *const options[] = {"--method",  "--directions", "--areas",    "--points",         "--cutoff",
                                           "--targets", "--threads",    "--periodic", "--frame",          "--positions",
                                           "--raw",     "--plot",       "-o",         "[233 directions;", "Example"};
     for (size_t k = 0; k < sizeof options / sizeof *options; ++k) assert_has(printed, options[k]);
-    ck_assert(strstr(printed, "--nf") && strstr(printed, "--rays"));
+    ck_assert(strstr(printed, "--emissivity") && strstr(printed, "--rays"));
     SUCCEED("pair", "1", "--help");
-    ck_assert(strstr(printed, "--obstacle") && strstr(printed, "--check") && strstr(printed, "--rays"));
+    ck_assert(strstr(printed, "--obstacle") && strstr(printed, "--check") && strstr(printed, "--nf"));
     ck_assert_str_eq(said, "");
+}
+
+/* The help of a command is one screen; --help all has every option. */
+TEST(help_is_short) {
+    static const struct {
+        const char *command;
+        int options, all;
+    } commands[] = {{"factors", 28, 45}, {"heat", 28, 45}, {"join", 28, 45}, {"pair", 28, 45}, {"furnace", 28, 45}};
+    for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k)
+        for (int all = 0; all < 2; ++all) {
+            int lines = 0, options = 0;
+            SUCCEED(commands[k].command, "--help", all ? "all" : NULL);
+            for (const char *at = printed; (at = strchr(at, '\n')); ++at) {
+                ++lines;
+                options += strncmp(at, "\n  -", 4) == 0;
+            }
+            ck_assert_msg(lines <= 50 || all, "%s: %d lines", commands[k].command, lines);
+            ck_assert_int_le(options, all ? commands[k].all : commands[k].options);
+        }
+    SUCCEED("help", "heat", "all");
+    assert_has(printed, "--wall-rays");
+    SUCCEED("heat", "--help");
+    assert_lacks(printed, "--wall-rays");
+    assert_has(printed, "fibrad heat --help all");
 }
 
 static const struct {
@@ -36,10 +60,13 @@ static const struct {
     {{"haet"}, "unknown command haet; did you mean heat? see fibrad --help"},
     {{"cond"}, "unknown command cond; did you mean conductivity?"},
     {{"heat", MONO, "--tempearture=9"}, "unknown option --tempearture; did you mean --temperature? see fibrad heat"},
-    {{"heat", MONO, "--wall_temperature", "9"}, "did you mean --wall-temperature?"},
-    {{"heat", MONO, "--wall-t", "9"}, "did you mean --wall-temperature?"},
+    {{"heat", MONO, "--solid_conductivity", "9"}, "did you mean --solid-conductivity?"},
+    {{"heat", MONO, "--solid-c", "9"}, "did you mean --solid-conductivity?"},
+    {{"heat", MONO, "--wall-temperature", "9"}, "--wall-temperature zmin=1200 is now --wall zmin:temperature=1200"},
+    {{"heat", MONO, "--wall-power=zmin=9"}, "--wall-power zmin=500 is now --wall zmin:power=500"},
     {{"heat", MONO, "-emissivity", ".5"}, "did you mean --emissivity?"},
-    {{"bed", MONO, "--emissivity", ".5"}, "unknown option --emissivity; see fibrad bed --help"},
+    {{"bed", MONO}, "fibrad bed is now fibrad factors"},
+    {{"exchange", MONO, "--emissivity=.5"}, "fibrad exchange is now fibrad factors, with --emissivity"},
     {{"heat", MONO, "--emissivity=1:Makefile", "--temperature=9"},
      "'Makefile' is not a list like 1:0.5,2:0.8; if Makefile is a table, write @Makefile"},
     {{"heat", MONO, "--emissivity=./Makefile", "--temperature=9"}, "if ./Makefile is a table, write @./Makefile"},
@@ -49,84 +76,79 @@ static const struct {
      "'Makefile' is not a number; if Makefile is a table, write @Makefile"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=@Makefile"},
      "--ambient takes tables with --until"},
-    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=9", "--wall=zmin",
-      "--wall-temperature=zmin=Makefile,9"},
-     "if Makefile is a table, write NAME=@Makefile"},
-    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=9", "--wall=zmin",
-      "--wall-temperature=zmin=@Makefile"},
-     "only --wall-temperature with --until takes tables"},
-    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=9", "--wall=zmin", "--wall-temperature=zmni=9"},
-     "there is no wall zmni; did you mean zmin? there are zmin"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=9", "--wall=zmin:temperature=Makefile"},
+     "if Makefile is a table, write @Makefile"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=9", "--wall=zmin:temperature=@Makefile"},
+     "--wall: zmin: '@Makefile' is a table; walls take tables with --until"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=9", "--wall=zmni:temperature=9"},
+     "--wall: 'zmni' is no wall; did you mean zmin?"},
     {{"--bad"}, "unknown option --bad; see fibrad --help"},
-    {{"bed"}, "FILE is missing"},
-    {{"bed", MONO, "--bad=3"}, "unknown option --bad; see fibrad bed --help"},
-    {{"bed", MONO, "-x"}, "unknown option -x; see fibrad bed --help"},
+    {{"factors"}, "FILE is missing"},
+    {{"factors", MONO, "--bad=3"}, "unknown option --bad; see fibrad factors --help"},
+    {{"factors", MONO, "-x"}, "unknown option -x; see fibrad factors --help"},
     {{"pair", "1", "1", "0", "--raw"}, "unknown option --raw; see fibrad pair --help"},
-    {{"bed", MONO, "-o"}, "--output needs an argument"},
-    {{"bed", MONO, "--wall", "zmin,top"},
-     "--wall: 'top' is none of auto, box, xmin ... zmax, cylinder:X,Y,R, xcylinder:Y,Z,R, ycylinder:X,Z,R, mesh:FILE "
-     "and NAME=mesh:FILE"},
-    {{"bed", MONO, "--wall", "zmin,zmin=3"}, "--wall: zmin is named twice"},
-    {{"bed", MONO, "--wall", "xmin,xmax,ymin,ymax,zmin"}, "add zmax=open (zmax=H:open"},
-    {{"bed", MONO, "--wall", "cylinder:6,6,9"}, "add zmin=open,zmax=open"},
-    {{"bed", MONO, "--wall", "xcylinder:6,6,19"}, "add xmin=open,xmax=open"},
-    {{"bed", MONO, "--wall", "xcylinder:6,6"}, "--wall: a cylinder is xcylinder:Y,Z,R with a radius R above 0"},
-    {{"bed", MONO, "--wall", "ycylinder:6,6,-1"}, "--wall: a cylinder is ycylinder:X,Z,R with a radius R above 0"},
-    {{"bed", MONO, "--wall", "ycylinder:6,6,19,zmin"}, "--wall: zmin cannot be combined with a cylinder along y"},
-    {{"bed", MONO, "--wall", "xcylinder:6,6,19,cylinder:6,6,9"},
+    {{"factors", MONO, "-o"}, "--output needs an argument"},
+    {{"factors", MONO, "--wall", "zmin,top"},
+     "--wall: 'top' is no wall; there are box, auto, xmin ... zmax, cylinder:X,Y,R, xcylinder:Y,Z,R, ycylinder:X,Z,R "
+     "and mesh:FILE"},
+    {{"factors", MONO, "--wall", "zmin=3"}, "--wall: zmin=3 is now zmin:at=3"},
+    {{"factors", MONO, "--wall", "zmin:temperature=3"},
+     "--wall: zmin: 'temperature' is of no use here; there are at, open"},
+    {{"factors", MONO, "--wall", "xmin,xmax,ymin,ymax,zmin"}, "add zmax:open (zmax:open:at=H"},
+    {{"factors", MONO, "--wall", "cylinder:6,6,9"}, "add zmin:open,zmax:open"},
+    {{"factors", MONO, "--wall", "xcylinder:6,6,19"}, "add xmin:open,xmax:open"},
+    {{"factors", MONO, "--wall", "xcylinder:6,6"}, "--wall: xcylinder: needs Y,Z,R, a place and a radius above 0"},
+    {{"factors", MONO, "--wall", "ycylinder:6,6,-1"}, "--wall: ycylinder: needs X,Z,R, a place and a radius above 0"},
+    {{"factors", MONO, "--wall", "ycylinder:6,6,19,zmin"}, "--wall: zmin cannot be combined with a cylinder along y"},
+    {{"factors", MONO, "--wall", "xcylinder:6,6,19,cylinder:6,6,9"},
      "--wall: there can be one cylinder, not xcylinder and cylinder too"},
-    {{"bed", PERIODIC, "--wall", "ycylinder:6,6,19"},
+    {{"factors", PERIODIC, "--wall", "ycylinder:6,6,19"},
      "--wall: a cylinder along y needs x and z axes that are not periodic"},
-    {{"bed", PERIODIC, "--wall", "zmin=0,zmin=open"}, "--wall: zmin is named twice"},
-    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=3", "--wall=box:open=zmax",
-      "--wall-temperature=zmax=600"},
-     "--wall-temperature: zmax is an opening"},
-    {{"exchange", MONO, "--emissivity=.5", "--wall=box:open=zmax", "--wall-emissivity=zmax=.5"},
-     "--wall-emissivity: zmax is an opening"},
-    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--wall=box:open=zmax", "--wall-temperature=600"},
+    {{"heat", MONO, "--wall=box,zmax:open:temperature=600"},
+     "--wall: zmax: open excludes temperature; an opening is as"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--wall=box:temperature=600,zmax:open"},
      "--ambient is missing: the bed is open"},
-    {{"bed", MONO, "--wall", "zmax=open", "--method", "surface"}, "--wall is for the methods beam, cast and mc"},
-    {{"bed", MONO, "--wall", "auto", "--method", "surface"}, "--wall is for the methods beam, cast and mc"},
-    {{"bed", PERIODIC, "--wall", "box"}, "lies across a periodic axis"},
-    {{"bed", MONO, "--raw=yes"}, "--raw takes no argument"},
-    {{"bed", MONO, "-o", "out.txt"}, "unknown ending; there are .csv, .mtx, .npz, .vtp and .json"},
-    {{"bed", MONO, "--plot", "out.pdf"}, "unknown ending; there are .svg and .png"},
-    {{"bed", MONO, "--slice=x=3"}, "--slice is for pictures of a bed at one time, by --plot"},
-    {{"bed", MONO, "--plot=bed.svg", "--slice=r=3"}, "--slice: 'r=3' is none of x=VALUE, y=VALUE and z=VALUE"},
-    {{"bed", MONO, "--plot=bed.svg", "--slice=z=99"}, "--slice: no sphere is at z = 99; spheres are from -0.000"},
-    {{"bed", MONO, "--frame", "2:1"}, "--frame: '2:1' is none of K, all, A:B, A:B:STEP, -1"},
-    {{"bed", MONO, "--frame", "-2"}, "--frame: '-2' is none of"},
-    {{"bed", MONO, "--frame", "0:9:0"}, "--frame: '0:9:0' is none of"},
-    {{"bed", MONO, "--frame=all", "--plot", "bed.svg"}, "--plot shows one frame"},
-    {{"bed", MONO, "--length-unit", "furlong"}, "--length-unit: 'furlong' is none of m, cm, mm"},
-    {{"bed", MONO, "--length-unit", "lj"}, "--length-unit: 'lj' is none of"},
-    {{"bed", MONO, "--radius", "0"}, "--radius: 0 is not within"},
-    {{"bed", MONO, "--radius", "1:2,1:3"}, "--radius: type 1 is named twice"},
-    {{"bed", MONO, "--radius", "1:2,x"}, "is not a list like 1:0.5,2:0.8"},
-    {{"bed", MONO, "--raw", "--drop=.1"}, "--drop needs rows that are averaged"},
-    {{"bed", MONO, "--method", "surface", "--nf", "56"}, "--nf: 56 is not built in; 8, 13, 21"},
-    {{"bed", MONO, "--nf", "55"}, "are for --method surface"},
-    {{"bed", MONO, "--method", "magic"}, "'magic' is not a method"},
-    {{"bed", MONO, "--method", "exact"}, "--method exact is for pairs only"},
-    {{"bed", MONO, "--rays", "100"}, "--rays and --seed are for --method cast and mc"},
-    {{"bed", MONO, "--method=cast", "--rays", "0"}, "--rays: '0' is not a whole number from 1 to 4294967295"},
-    {{"bed", MONO, "--method=mc", "--seed", "-1"}, "--seed: '-1'"},
-    {{"bed", MONO, "--method=cast", "--directions", "100"}, "are for --method beam"},
-    {{"exchange", MONO}, "--emissivity is missing"},
-    {{"exchange", MONO, "--emissivity", "-1"}, "--emissivity: -1 is not within"},
-    {{"exchange", MONO, "--emissivity", "1:2"}, "--emissivity: 2 is not within"},
-    {{"exchange", MONO, "--emissivity=.5", "--wall=zmin", "--wall-emissivity=.5,.6"},
-     "--wall-emissivity: two numbers have no name"},
-    {{"exchange", MONO, "--emissivity=.5", "--wall=zmin", "--wall-emissivity=zmax=.5"},
-     "there is no wall zmax; there are zmin"},
-    {{"exchange", MONO, "--emissivity=.5", "--wall=zmin", "--wall-emissivity=zmin=1.5"}, "1.5 is not within"},
-    {{"exchange", MONO, "--emissivity=.5", "--wall=zmin", "--wall-emissivity=zmin"},
-     "neither NAME=NUMBER nor a number"},
-    {{"exchange", MONO, "--emissivity=.5", "--wall-emissivity=.5"}, "--wall-emissivity: there are no walls"},
-    {{"exchange", MONO, "--emissivity", "1.5"}, "--emissivity: 1.5 is not within 0 and 1"},
-    {{"exchange", MONO, "--emissivity=.5", "--error=.1", "--rays=9"}, "leave out --rays"},
-    {{"exchange", MONO, "--emissivity=.5", "--raw", "--drop=.1"}, "--drop needs rows that are averaged"},
-    {{"exchange", MONO, "--emissivity=.5", "-o", "D.dump"}, "unknown ending; there are .csv, .mtx, .npz"},
+    {{"factors", MONO, "--method", "surface"}, "--method surface is of fibrad pair and fibrad reproduce"},
+    {{"factors", MONO, "--wall=auto:emissivity=.5"}, "--wall: emissivity needs --emissivity"},
+    {{"factors", MONO, "--solid-conductivity=3"}, "--solid-conductivity needs --emissivity"},
+    {{"factors", MONO, "--emissivity=.5", "--cutoff=3"},
+     "--method, --areas, --points and --cutoff are for view factors"},
+    {{"factors", MONO, "--emissivity=.5", "--error=1e-6"}, "--error: 1e-06 is not within 1e-05 and 1"},
+    {{"heat", MONO, "--every=60"}, "--every 60 is now --times every:60"},
+    {{"factors", PERIODIC, "--wall", "box"}, "lies across a periodic axis"},
+    {{"factors", MONO, "--raw=yes"}, "--raw takes no argument"},
+    {{"factors", MONO, "-o", "out.txt"}, "unknown ending; there are .csv, .mtx, .npz, .vtp and .json"},
+    {{"factors", MONO, "--plot", "out.pdf"}, "unknown ending; there are .svg and .png"},
+    {{"factors", MONO, "--slice=x=3"}, "--slice is for pictures of a bed at one time, by --plot"},
+    {{"factors", MONO, "--plot=bed.svg", "--slice=r=3"}, "--slice: 'r=3' is none of x=VALUE, y=VALUE and z=VALUE"},
+    {{"factors", MONO, "--plot=bed.svg", "--slice=z=99"}, "--slice: no sphere is at z = 99; spheres are from -0.000"},
+    {{"factors", MONO, "--frame", "2:1"}, "--frame: '2:1' is none of K, all, A:B, A:B:STEP, -1"},
+    {{"factors", MONO, "--frame", "-2"}, "--frame: '-2' is none of"},
+    {{"factors", MONO, "--frame", "0:9:0"}, "--frame: '0:9:0' is none of"},
+    {{"factors", MONO, "--frame=all", "--plot", "bed.svg"}, "--plot shows one frame"},
+    {{"factors", MONO, "--length-unit", "furlong"}, "--length-unit: 'furlong' is none of m, cm, mm"},
+    {{"factors", MONO, "--length-unit", "lj"}, "--length-unit: 'lj' is none of"},
+    {{"factors", MONO, "--radius", "0"}, "--radius: 0 is not within"},
+    {{"factors", MONO, "--radius", "1:2,1:3"}, "--radius: type 1 is named twice"},
+    {{"factors", MONO, "--radius", "1:2,x"}, "is not a list like 1:0.5,2:0.8"},
+    {{"factors", MONO, "--raw", "--drop=.1"}, "--drop needs rows that are averaged"},
+    {{"pair", "1", "1", "1", "--method", "surface", "--nf", "56"}, "--nf: 56 is not built in; 8, 13, 21"},
+    {{"pair", "1", "1", "1", "--nf", "55"}, "are for --method surface"},
+    {{"factors", MONO, "--nf", "55"}, "--method surface and --nf are of fibrad pair and fibrad reproduce"},
+    {{"factors", MONO, "--method", "magic"}, "'magic' is not a method"},
+    {{"factors", MONO, "--method", "exact"}, "--method exact is for pairs only"},
+    {{"factors", MONO, "--rays", "100"}, "--rays and --seed are for --method cast and mc"},
+    {{"factors", MONO, "--method=cast", "--rays", "0"}, "--rays: '0' is not a whole number from 1 to 4294967295"},
+    {{"factors", MONO, "--method=mc", "--seed", "-1"}, "--seed: '-1'"},
+    {{"factors", MONO, "--method=cast", "--directions", "100"}, "are for --method beam"},
+    {{"factors", MONO, "--emissivity", "-1"}, "--emissivity: -1 is not within"},
+    {{"factors", MONO, "--emissivity", "1:2"}, "--emissivity: 2 is not within"},
+    {{"factors", MONO, "--emissivity=.5", "--wall=zmin:emissivity=1.5"}, "zmin: emissivity: 1.5 is not within 0 and 1"},
+    {{"factors", MONO, "--emissivity=.5", "--wall=zmin:emissivity"}, "zmin: emissivity needs a value"},
+    {{"factors", MONO, "--emissivity", "1.5"}, "--emissivity: 1.5 is not within 0 and 1"},
+    {{"factors", MONO, "--emissivity=.5", "--error=.1", "--rays=9"}, "leave out --rays"},
+    {{"factors", MONO, "--emissivity=.5", "--raw", "--drop=.1"}, "--drop needs rows that are averaged"},
+    {{"factors", MONO, "--emissivity=.5", "-o", "D.dump"}, "unknown ending; there are .csv, .mtx, .npz"},
     {{"heat", "--emissivity=.5"}, "FILE is missing"},
     {{"heat", MONO, "--temperature", "v_T"}, "--emissivity is missing"},
     {{"heat", MONO, "--emissivity", ".5"}, "--temperature or --power is missing"},
@@ -135,66 +157,61 @@ static const struct {
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--model=fine"},
      "'fine' is none of patches, spheres and factors"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--error=.1", "--points=64"}, "leave out --directions"},
-    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--wall-temperature=3,4"}, "there are no walls"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--temperature-unit=F"}, "'F' is neither K nor C"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=-1"}, "--ambient: -1 is not within"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9"}, "--ambient is missing: the bed is open"},
-    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=3", "--wall=auto", "--wall-temperature=300,400"},
-     "two numbers have no name; name the walls, xmin=400 for example"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=3", "--wall=zmin"},
-     "--wall-temperature: zmin has no value; give zmin=NUMBER"},
+     "--wall: zmin has no temperature; give zmin:temperature=NUMBER, zmin:power=NUMBER or zmin:insulated"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--power=4"}, "a sphere has only one of them"},
     {{"heat", MONO, "--emissivity=.5", "--power=1e40"}, "--power: 1e40 is not within"},
-    {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin", "--wall-power=zmin=1",
-      "--wall-temperature=zmin=3"},
-     "zmin has both a temperature and a power"},
-    {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin", "--wall-power=zmin=1"},
-     "zmin is endless and needs a --wall-temperature"},
-    {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin", "--wall-temperature=isolated"},
-     "'isolated' is neither NAME=NUMBER nor a number"},
+    {{"heat", MONO, "--wall=zmin:power=1:temperature=3"}, "--wall: zmin: power excludes temperature"},
+    {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin:power=1"},
+     "--wall: zmin is endless and needs a temperature"},
+    {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin:temperature=hot"},
+     "'hot' is not a number"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "-o", "q.mtx"},
      "unknown ending; there are .csv, .vtp, .json, .dump"},
     {{"conductivity", MONO}, "--emissivity is missing"},
     {{"conductivity", "--emissivity", ".5"}, "FILE is missing"},
     {{"join"}, "FILE is missing"},
     {{"join", MONO, "-o", "D.dump"}, "unknown ending; there are .csv, .mtx, .npz"},
-    {{"bed", MONO, "--directions", "7"}, "'7' is not a whole number from 8 to 65536"},
-    {{"bed", MONO, "--error", "0"}, "--error: 0 is not within 1e-07 and 1"},
-    {{"bed", MONO, "--error", "1e-8"}, "--error: 1e-8 is not within 1e-07 and 1"},
-    {{"bed", MONO, "--error", "small"}, "--error: 'small' is not a number"},
-    {{"bed", MONO, "--error", "nan"}, "--error: 'nan' is not a number"},
-    {{"bed", MONO, "--error", ".01", "--directions", "100"}, "leave out --directions"},
-    {{"bed", MONO, "--error", ".01", "--method", "mc"}, "--error is for --method beam"},
-    {{"bed", MONO, "--directions", "65537"}, "--directions: '65537'"},
-    {{"bed", MONO, "--directions", "1e3"}, "--directions: '1e3'"},
-    {{"bed", MONO, "--directions", "-8"}, "--directions: '-8'"},
-    {{"bed", MONO, "--directions", ""}, "--directions: ''"},
-    {{"bed", MONO, "--points", "100"}, "64, 128 and 256 are"},
-    {{"bed", MONO, "--areas", "some"}, "'some' is neither exact nor points"},
-    {{"bed", MONO, "--areas", "exact", "--points", "64"}, "--points contradicts --areas exact"},
-    {{"bed", MONO, "--cutoff", "far"}, "--cutoff: 'far' is not a number"},
-    {{"bed", MONO, "--cutoff", "0"}, "--cutoff: 0 is not within"},
-    {{"bed", MONO, "--cutoff", "nan"}, "--cutoff: 'nan' is not a number"},
-    {{"bed", MONO, "--threads", "0"}, "--threads: '0'"},
-    {{"bed", MONO, "--periodic", "1,2"}, "three lengths LX,LY,LZ"},
-    {{"bed", MONO, "--periodic", "1,2,-3"}, "three lengths LX,LY,LZ"},
-    {{"bed", MONO, "--periodic", "1,2,3,4"}, "more than 3 numbers"},
-    {{"bed", MONO, "--periodic", "1,,3"}, "does not begin with a number"},
-    {{"bed", MONO, "--targets", ""}, "is not a list like 3,7,10-19"},
-    {{"bed", MONO, "--plot=build/a.svg", "--plot=build/b.svg"}, "--plot is given twice"},
-    {{"bed", MONO, "--json=build/a.json", "--json", "build/b.json"}, "--json is given twice"},
+    {{"factors", MONO, "--directions", "7"}, "'7' is not a whole number from 8 to 65536"},
+    {{"factors", MONO, "--error", "0"}, "--error: 0 is not within 1e-07 and 1"},
+    {{"factors", MONO, "--error", "1e-8"}, "--error: 1e-8 is not within 1e-07 and 1"},
+    {{"factors", MONO, "--error", "small"}, "--error: 'small' is not a number"},
+    {{"factors", MONO, "--error", "nan"}, "--error: 'nan' is not a number"},
+    {{"factors", MONO, "--error", ".01", "--directions", "100"}, "leave out --directions"},
+    {{"factors", MONO, "--error", ".01", "--method", "mc"}, "--error is for --method beam"},
+    {{"factors", MONO, "--directions", "65537"}, "--directions: '65537'"},
+    {{"factors", MONO, "--directions", "1e3"}, "--directions: '1e3'"},
+    {{"factors", MONO, "--directions", "-8"}, "--directions: '-8'"},
+    {{"factors", MONO, "--directions", ""}, "--directions: ''"},
+    {{"factors", MONO, "--points", "100"}, "64, 128 and 256 are"},
+    {{"factors", MONO, "--areas", "some"}, "'some' is neither exact nor points"},
+    {{"factors", MONO, "--areas", "exact", "--points", "64"}, "--points contradicts --areas exact"},
+    {{"factors", MONO, "--cutoff", "far"}, "--cutoff: 'far' is not a number"},
+    {{"factors", MONO, "--cutoff", "0"}, "--cutoff: 0 is not within"},
+    {{"factors", MONO, "--cutoff", "nan"}, "--cutoff: 'nan' is not a number"},
+    {{"factors", MONO, "--threads", "0"}, "--threads: '0'"},
+    {{"factors", MONO, "--periodic", "1,2"}, "three lengths LX,LY,LZ"},
+    {{"factors", MONO, "--periodic", "1,2,-3"}, "three lengths LX,LY,LZ"},
+    {{"factors", MONO, "--periodic", "1,2,3,4"}, "more than 3 numbers"},
+    {{"factors", MONO, "--periodic", "1,,3"}, "does not begin with a number"},
+    {{"factors", MONO, "--targets", ""}, "is not a list like 3,7,10-19"},
+    {{"factors", MONO, "--plot=build/a.svg", "--plot=build/b.svg"}, "--plot is given twice"},
+    {{"factors", MONO, "--json=build/a.json", "--json", "build/b.json"}, "--json is given twice"},
     {{"heat", MONO, "--profile=z:build/a.csv", "--profile=z:build/b.csv"}, "--profile is given twice"},
     {{"furnace", "--case=1", "-o", "build/a.csv", "-obuild/b.csv"}, "--output is given twice"},
-    {{"bed", MONO, "--targets", "1,,2"}, "is not a list like"},
-    {{"bed", MONO, "--targets", "5-3"}, "is not a list like"},
-    {{"bed", MONO, "--targets", "3-"}, "is not a list like"},
-    {{"bed", MONO, "--targets", "99999999999999999999"}, "is not a list like"},
-    {{"bed", MONO, "--targets", "0"},
+    {{"factors", MONO, "--targets", "1,,2"}, "is not a list like"},
+    {{"factors", MONO, "--targets", "5-3"}, "is not a list like"},
+    {{"factors", MONO, "--targets", "3-"}, "is not a list like"},
+    {{"factors", MONO, "--targets", "99999999999999999999"}, "is not a list like"},
+    {{"factors", MONO, "--targets", "0"},
      "there is no sphere 0 in frame 0 of tests/data/mono2000.dump; its spheres are 1 to 2000"},
-    {{"bed", MONO, "--targets=1-2000,7,5000000000"}, "there is no sphere 5000000000"},
-    {{"bed", MONO, "--targets", "1990-2001"}, "there is no sphere 2001 in frame 0 of"},
-    {{"bed", MONO, "--targets", "0-9"}, "there is no sphere 0 in frame 0 of"},
-    {{"bed", MONO, "--positions", "--targets", "0-2000"}, "its spheres are 0 to 1999"},
+    {{"factors", MONO, "--targets=1-2000,7,5000000000"}, "there is no sphere 5000000000"},
+    {{"factors", MONO, "--targets", "1990-2001"}, "there is no sphere 2001 in frame 0 of"},
+    {{"factors", MONO, "--targets", "0-9"}, "there is no sphere 0 in frame 0 of"},
+    {{"factors", MONO, "--positions", "--targets", "0-2000"}, "its spheres are 0 to 1999"},
     {{"pair", "1", "1"}, "R1, R2 and GAP are needed"},
     {{"pair", "1", "1", "0", "0"}, "three lengths are allowed, not also '0'"},
     {{"pair", "1", "-1", "0"}, "R2: -1 is not within"},
@@ -233,19 +250,19 @@ TEST(columns_meant) {
 /* The order of columns in the help is that in the file; .vtp of `exchange`. */
 TEST(help_is_true) {
     const char *columns = "i,T_K,q_W,q_error_W,T_error_K,body";
-    SUCCEED("heat", "--help");
+    SUCCEED("heat", "--help", "all");
     assert_has(printed, columns);
-    SUCCEED("exchange", "--help");
+    SUCCEED("factors", "--help");
     assert_has(printed, ".vtp)");
     const char *bed = write_file("two.csv", "x,y,z,r\n0,0,1,1\n3,0,1,1\n"), *csv = in_folder("q.csv");
-    SUCCEED("heat", bed, "--emissivity=.5", "--temperature=900", "--ambient=300", "--length-unit=m", "--wall=zmin=0",
-            "--wall-temperature=400", "-o", csv, "--json", in_folder("q.json"));
+    SUCCEED("heat", bed, "--emissivity=.5", "--temperature=900", "--ambient=300", "--length-unit=m",
+            "--wall=zmin:at=0:temperature=400", "-o", csv, "--json", in_folder("q.json"));
     assert_begins(read_file(csv), columns);
     double error;
     ck_assert_int_eq(sscanf(strstr(read_file(csv), "\n-2,"), "\n-2,%*[^,],%*[^,],%lf,,zmin", &error), 1);
     ck_assert_double_eq(json_of(in_folder("q.json"), "wall_zmin_error_W"), error);
     ck_assert_double_eq_tol(value_of("wall_zmin_error_W"), error, .05 * error);
-    SUCCEED("exchange", bed, "--emissivity=.5", "-o", in_folder("D.vtp"));
+    SUCCEED("factors", bed, "--emissivity=.5", "-o", in_folder("D.vtp"));
 }
 
 TEST(exact_pair) {
@@ -330,7 +347,7 @@ static const struct {
 
 LOOP_TEST(bad_input, sizeof bad_beds / sizeof *bad_beds) {
     const char *bed = write_file("bad.bed", bad_beds[_i].text);
-    FAIL_WITH(3, "bed", bed, "-o", in_folder("out.csv"), "--plot", in_folder("out.svg"));
+    FAIL_WITH(3, "factors", bed, "-o", in_folder("out.csv"), "--plot", in_folder("out.svg"));
     expect_message(formatted("%s%s", bed, bad_beds[_i].place), bad_beds[_i].reason);
     ck_assert_str_eq(printed, "");
     ck_assert_int_eq(remove_files(0), 1); /* bad.bed alone */
@@ -548,14 +565,14 @@ TEST(missing_rows) {
 
 TEST(file_trouble) {
     const char *bed = write_file("a.csv", "x,y,z,r\n0,0,0,1\n3,0,0,1\n");
-    FAIL_WITH(4, "bed", "no/such.dump");
+    FAIL_WITH(4, "factors", "no/such.dump");
     expect_message("no/such.dump: ", "No such file");
-    FAIL_WITH(4, "bed", folder);
+    FAIL_WITH(4, "factors", folder);
     expect_message(folder, "directory");
-    FAIL_WITH(4, "bed", bed, "-o", "no/such/F.csv");
+    FAIL_WITH(4, "factors", bed, "-o", "no/such/F.csv");
     expect_message("no/such/F.csv: ", "No such file");
     output = "/dev/full";
-    FAIL_WITH(4, "bed", bed);
+    FAIL_WITH(4, "factors", bed);
     output = NULL;
     expect_message("standard output", "No space left");
     ck_assert_int_eq(remove_files(0), 1);
@@ -567,13 +584,13 @@ TEST(full_disc) {
     ck_assert_int_eq(getrlimit(RLIMIT_FSIZE, &before), 0);
     const struct rlimit limit = {100000, before.rlim_max};
     ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &limit), 0);
-    FAIL_WITH(4, "bed", MONO, "--directions", "21", "-o", in_folder("F.csv"));
+    FAIL_WITH(4, "factors", MONO, "--directions", "21", "-o", in_folder("F.csv"));
     assert_has(said, "F.csv: cannot be written: File too large");
     ck_assert_int_eq(remove_files(0), 0);
-    FAIL_WITH(4, "bed", MONO, "--directions", "8", "--plot", in_folder("F.svg"));
+    FAIL_WITH(4, "factors", MONO, "--directions", "8", "--plot", in_folder("F.svg"));
     assert_has(said, "F.svg: cannot be written: File too large");
     ck_assert_int_eq(remove_files(0), 0);
-    FAIL_WITH(4, "bed", MONO, "--directions", "8", "--plot", in_folder("F.png"));
+    FAIL_WITH(4, "factors", MONO, "--directions", "8", "--plot", in_folder("F.png"));
     assert_has(said, "F.png: cannot be written: File too large");
     ck_assert_int_eq(remove_files(0), 0);
     ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &before), 0);
@@ -600,7 +617,7 @@ static int has_output_open(pid_t process) {
 LOOP_TEST(interrupted, 2) {
     static const int signals[] = {SIGINT, SIGTERM};
     const char *out = in_folder("F.csv");
-    const pid_t process = start(LIST("bed", MONO, "--directions", "65536", "-o", out));
+    const pid_t process = start(LIST("factors", MONO, "--directions", "65536", "-o", out));
     while (!has_output_open(process)) nanosleep(&(struct timespec){0, 10000000}, NULL);
     ck_assert_int_eq(kill(process, signals[_i]), 0);
     ck_assert_int_eq(finish(process), 128 + signals[_i]);

@@ -23,6 +23,11 @@ static const char *speck_at(double x, double y, double z) {
     return write_file("speck.csv", formatted("x,y,z,r\n%g,%g,%g,1e-4\n", x, y, z));
 }
 
+/* Six sides with the same words, the upper ones at these places. */
+#define PLANES(words, wide, high)                                                                                      \
+    "xmin:at=0" words ",xmax:at=" wide words ",ymin:at=0" words ",ymax:at=" wide words ",zmin:at=0" words              \
+    ",zmax:at=" high words
+
 #define SPECK_HEAT(speck, ...)                                                                                         \
     SUCCEED("heat", speck, "--length-unit", "m", "--emissivity", "1", "--temperature", "0", "--ambient", "0",          \
             __VA_ARGS__)
@@ -31,8 +36,8 @@ static const char *speck_at(double x, double y, double z) {
 TEST(a_hot_cube) {
     static struct soup cube;
     soup_cube(&cube, .1);
-    SPECK_HEAT(speck_at(9, 0, 0), "--wall", formatted("mesh:%s:normals", write_solid("cube.stl", &cube)),
-               "--wall-temperature", "1273.15");
+    SPECK_HEAT(speck_at(9, 0, 0), "--wall",
+               formatted("mesh:%s:normals:temperature=1273.15", write_solid("cube.stl", &cube)));
     ck_assert_double_eq_tol(value_of("wall_cube_W"), -35755.4, .1);
     ck_assert_double_eq_tol(value_of("surroundings_W"), 35755.4, .1);
 }
@@ -42,8 +47,9 @@ TEST(two_cubes_in_one_mesh) {
     static struct soup cubes;
     soup_box(&cubes, (const double[]){0, 0, 0}, (const double[]){1, 1, 1});
     soup_box(&cubes, (const double[]){2, 0, 0}, (const double[]){3, 1, 1});
-    SPECK_HEAT(speck_at(9, 0, 9), "--wall", formatted("mesh:%s:normals", write_solid("cubes.stl", &cubes)),
-               "--wall-temperature", "1000", "--wall-rays", "2000000");
+    SPECK_HEAT(speck_at(9, 0, 9), "--wall",
+               formatted("mesh:%s:normals:temperature=1000", write_solid("cubes.stl", &cubes)), "--wall-rays",
+               "2000000");
     const double power = (12 - 2 * .1998249) * SIGMA * 1e12;
     ck_assert_double_eq_tol(value_of("wall_cubes_W"), -power, 1e-3 * power);
     ck_assert_double_eq_tol(value_of("wall_cubes_W"), -power, 3 * value_of("wall_cubes_error_W"));
@@ -59,9 +65,9 @@ TEST(floor_and_wall_at_right_angles) {
         add_sheet(&floor, (const double[]){0, 0, 0}, (const double[]){1, 0, 0}, (const double[]){0, 1, 0});
         add_sheet(&wall, (const double[]){-gaps[k], 0, 0}, (const double[]){0, 1, 0}, (const double[]){0, 0, 1});
         SPECK_HEAT(speck_at(.5, .5, .5), "--wall",
-                   formatted("mesh:%s:normals,mesh:%s:normals", write_solid("floor.stl", &floor),
-                             write_solid("side.stl", &wall)),
-                   "--wall-temperature", "floor=1000,side=0", "--wall-rays", "1000000");
+                   formatted("mesh:%s:normals:temperature=1000,mesh:%s:normals:temperature=0",
+                             write_solid("floor.stl", &floor), write_solid("side.stl", &wall)),
+                   "--wall-rays", "1000000");
         const double all = SIGMA * 1e12;
         ck_assert_double_eq_tol(value_of("wall_side_W") / all, .2000438, 2e-4 + gaps[k]);
         ck_assert_double_eq_tol(value_of("wall_floor_W") / all, -1, 1e-4);
@@ -86,8 +92,9 @@ TEST(a_grey_bowl) {
         area += hypot(hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2]), u[0] * v[1] - u[1] * v[0]) / 2;
     }
     const double open = FACETS / 2. * sin(2 * PI / FACETS) * pow(sin(end), 2); /* of the polygon at the rim */
-    SPECK_HEAT(speck_at(9, 0, 9), "--wall", formatted("mesh:%s:both", write_solid("bowl.stl", &bowl)),
-               "--wall-temperature", "1000", "--wall-emissivity", "0.4", "--wall-rays", "1000000");
+    SPECK_HEAT(speck_at(9, 0, 9), "--wall",
+               formatted("mesh:%s:both:temperature=1000:emissivity=0.4", write_solid("bowl.stl", &bowl)), "--wall-rays",
+               "1000000");
     const double apparent = 1 / (1 + open / area * (1 / e - 1)), power = (e * area + apparent * open) * SIGMA * 1e12;
     ck_assert_double_eq_tol(value_of("wall_bowl_W"), -power, .003 * power);
 }
@@ -95,8 +102,7 @@ TEST(a_grey_bowl) {
 /* In a flat closed box at one temperature nothing flows. */
 TEST(a_flat_box_at_one_temperature) {
     SUCCEED("heat", write_file("flat.csv", "x,y,z,r\n3,4,.005,.004\n"), "--length-unit", "m", "--emissivity", "0.7",
-            "--temperature", "500", "--wall", "xmin=0,xmax=10,ymin=0,ymax=10,zmin=0,zmax=.01", "--wall-temperature",
-            "500", "--wall-emissivity", "0.3");
+            "--temperature", "500", "--wall", PLANES(":temperature=500:emissivity=.3", "10", ".01"));
     static const char *const sides[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
     const double one = .7 * 4 * PI * .004 * .004 * SIGMA * pow(500, 4); /* what the sphere emits */
     for (size_t k = 0; k < 6; ++k) ck_assert_double_eq_tol(value_of(formatted("wall_%s_W", sides[k])), 0, 1e-9 * one);
@@ -121,7 +127,7 @@ TEST(a_sphere_and_a_disc) {
         }
         for (int size = 0; size < 2; ++size) {
             const char *bed = write_file("one.csv", size ? "x,y,z,r\n0,0,1.5,1.4\n" : "x,y,z,r\n0,0,1.5,.1\n");
-            SUCCEED("bed", bed, "--wall", formatted("mesh:%s:both", write_solid("disc.stl", &disc)), "--directions",
+            SUCCEED("factors", bed, "--wall", formatted("mesh:%s:both", write_solid("disc.stl", &disc)), "--directions",
                     "4000");
             ck_assert_double_eq_tol(value_of("wall_disc_F"), (1 - 1 / hypot(1, radius[k] / a)) / 2, 1e-3);
         }
@@ -135,8 +141,8 @@ TEST(an_isothermal_room_in_time) {
     static const char *const models[] = {"patches", "factors"};
     for (size_t k = 0; k < 2; ++k) {
         SUCCEED("heat", bed, "--length-unit", "m", "--emissivity", "0.6", "--temperature", "600", "--wall",
-                "xmin=0,xmax=1,ymin=0,ymax=1,zmin=0,zmax=1", "--wall-temperature", "600", "--wall-emissivity", "0.5",
-                "--until", "1e6", "--heat-capacity", "800", "--density", "2500", "--model", models[k], "-o", csv);
+                PLANES(":temperature=600:emissivity=.5", "1", "1"), "--until", "1e6", "--heat-capacity", "800",
+                "--density", "2500", "--model", models[k], "-o", csv);
         ck_assert_double_eq_tol(value_of("temperature_min_K"), 600, 1e-6);
         ck_assert_double_eq_tol(value_of("temperature_max_K"), 600, 1e-6);
         ck_assert_double_eq_tol(value_of("stored_J"), 0, 1e-3);

@@ -228,7 +228,7 @@ TEST(across_a_thin_bed) {
     for (int k = 0; k < 49; ++k) sprintf(text + strlen(text), "%g,%g,0,1\n", pitch * (k % 7), pitch * (k / 7));
     const char *cell = write_file("cell.csv", text);
     free(text);
-    SUCCEED("bed", layer, "--targets", formatted("%d", LAYER * LAYER / 2), "--directions", "2000", "-o", out);
+    SUCCEED("factors", layer, "--targets", formatted("%d", LAYER * LAYER / 2), "--directions", "2000", "-o", out);
     double sum = 0;
     for (char *line = strchr(read_file(out), '\n') + 1; *line; line = strchr(line, '\n') + 1) {
         int i, j;

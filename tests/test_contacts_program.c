@@ -19,8 +19,7 @@ static double column(const char *file, int i, int k) {
     return strtod(at, NULL);
 }
 
-#define ROW                                                                                                            \
-    row(), "--length-unit", "m", "--ambient", "300", "--wall", "zmin", "--wall-temperature", "zmin=400", "--power", "P"
+#define ROW row(), "--length-unit", "m", "--ambient", "300", "--wall", "zmin:temperature=400", "--power", "P"
 
 /* Without emission the flows are known: all of the power goes to the floor. */
 TEST(a_row_conducts) {
@@ -212,7 +211,7 @@ TEST(options_at_fault) {
               "--contact-conductivity", "3");
     assert_has(said, "the file names no unit of length, which contacts need");
     FAIL_WITH(2, "heat", row(), "--length-unit", "m", "--ambient", "300", "--power", "P", "--emissivity", "0.8",
-              "--wall", "zmin", "--wall-temperature", "zmin=insulated", "--contacts", file);
+              "--wall", "zmin:insulated", "--contacts", file);
     assert_has(said, "wall zmin is in contact and needs one temperature or a power");
     FAIL_WITH(2, "heat", row(), "--length-unit", "m", "--ambient", "300", "--temperature", "500", "--emissivity", "0.8",
               "--contacts", contacts("i,j,W/K\n0,1,1\n"), "--until", "60", "--heat-capacity", "800", "--density",

@@ -19,7 +19,7 @@ static const struct {
 enum { BEDS = sizeof beds / sizeof *beds };
 
 static fibrad_bed_matrix *rows(const struct bed *bed, const fibrad_beam_rule *rule, bool raw,
-                                const unsigned char *wanted) {
+                               const unsigned char *wanted) {
     const fibrad_spheres spheres = bed_spheres(bed);
     const fibrad_scene_config config = bed_scene(bed, NULL);
     const fibrad_bed_rule options = {.beam = rule, .wanted = wanted, .raw = raw};
@@ -193,7 +193,7 @@ static double distance_with_walls(const fibrad_row *a, const fibrad_row *b, uint
 }
 
 static fibrad_bed_matrix *rows_among(const struct bed *bed, const fibrad_scene_config *config,
-                                      const fibrad_beam_rule *rule, bool raw, const unsigned char *wanted) {
+                                     const fibrad_beam_rule *rule, bool raw, const unsigned char *wanted) {
     const fibrad_spheres spheres = bed_spheres(bed);
     const fibrad_bed_rule options = {.beam = rule, .wanted = wanted, .raw = raw};
     fibrad_run run = {.threads = 1};
@@ -308,8 +308,7 @@ LOOP_TEST(small_beside_large_sampled, 2) {
     const fibrad_spheres spheres = bed_spheres(&bed);
     const fibrad_beam_rule points = {.points = 64};
     const fibrad_cast_rule rays = {.rays = 20000};
-    const fibrad_bed_rule options =
-        _i == 0 ? (fibrad_bed_rule){.beam = &points} : (fibrad_bed_rule){.cast = &rays};
+    const fibrad_bed_rule options = _i == 0 ? (fibrad_bed_rule){.beam = &points} : (fibrad_bed_rule){.cast = &rays};
     double truth;
     OWNED_FACTORS *f = NULL;
     assert_ok(fibrad_pair_exact(.03, .3, 3e-5, &truth));

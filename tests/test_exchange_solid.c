@@ -321,7 +321,7 @@ LOOP_TEST(errors_of_powers, 3) {
     const double noise = difference_of(found[0], found[1], h.bed.n) / sqrt(2);
     const char *solid = formatted("%.9g", bad_k[_i] * 8 * 5.670374419e-8 * 1e9);
     const char *period = formatted("%.17g,%.17g,%.17g", h.bed.period[0], h.bed.period[1], h.bed.period[2]);
-    SUCCEED("exchange", write_file("bad.csv", text), "--length-unit", "m", "--emissivity", "0.8", "--periodic", period,
+    SUCCEED("factors", write_file("bad.csv", text), "--length-unit", "m", "--emissivity", "0.8", "--periodic", period,
             "--temperature", "1000", "--solid-conductivity", solid, "--rays", "500", "--directions", "400");
     const double error = value_of("error_of_powers");
     ck_assert_msg(error > .4 * noise && error < 3 * noise, "%g for %g", error, noise);
@@ -330,7 +330,7 @@ LOOP_TEST(errors_of_powers, 3) {
 
 TEST(outputs) {
     const char *json = in_folder("D.json"), *npz = in_folder("D.npz");
-    SUCCEED("exchange", pebbles(), "--length-unit", "mm", "--emissivity", "0.8", "--solid-conductivity", "k",
+    SUCCEED("factors", pebbles(), "--length-unit", "mm", "--emissivity", "0.8", "--solid-conductivity", "k",
             "--temperature", "T", "-o", json, "-o", npz);
     double mean = 0, star = 0;
     for (int i = 0; i < 3; ++i) {
@@ -343,7 +343,7 @@ TEST(outputs) {
     ck_assert_ptr_nonnull(at);
     ck_assert_double_le(
         fabs(strtod(strchr(at, '[') + 1, NULL) - fibrad_node_emissivity(.8, 2 / (.24 * 5.670374419e-8 * 1e9))), 1e-12);
-    SUCCEED("exchange", pebbles(), "--emissivity", "0.8", "-o", json);
+    SUCCEED("factors", pebbles(), "--emissivity", "0.8", "-o", json);
     assert_lacks(read_file(json), "node_emissivity");
 }
 
@@ -367,12 +367,12 @@ TEST(mistakes) {
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
         const char *solid = wrong[k].solid, *kelvins = wrong[k].temperature;
         const int status = solid && kelvins
-                               ? RUN("exchange", file, "--length-unit", "mm", "--emissivity", "0.8",
+                               ? RUN("factors", file, "--length-unit", "mm", "--emissivity", "0.8",
                                      "--solid-conductivity", solid, "--temperature", kelvins)
-                               : RUN("exchange", file, "--length-unit", "mm", "--emissivity", "0.8",
+                               : RUN("factors", file, "--length-unit", "mm", "--emissivity", "0.8",
                                      solid ? "--solid-conductivity" : "--temperature", solid ? solid : kelvins);
         ck_assert_msg(status == wrong[k].status && strstr(said, wrong[k].reason), "%zu: %d, %s", k, status, said);
     }
-    FAIL_WITH(2, "exchange", file, "--emissivity", "0.8", "--solid-conductivity", "5", "--temperature", "900");
+    FAIL_WITH(2, "factors", file, "--emissivity", "0.8", "--solid-conductivity", "5", "--temperature", "900");
     assert_has(said, "--length-unit");
 }

@@ -11,7 +11,7 @@
 #include "suite.h"
 
 static fibrad_bed_matrix *factors_of(const struct bed *bed, const fibrad_scene_config *config,
-                                      const fibrad_beam_rule *rule) {
+                                     const fibrad_beam_rule *rule) {
     const fibrad_spheres spheres = spheres_of(bed);
     fibrad_bed_matrix *factors = NULL;
     assert_ok(fibrad_view_factors(config, &spheres, &(fibrad_bed_rule){.beam = rule}, NULL, &factors));

@@ -79,8 +79,7 @@ TEST(surfaces_below_zero_are_named) {
     const char *conductivity[] = {"2", "200"};
     for (int k = 0; k < 2; ++k) {
         SUCCEED("heat", file, "--length-unit", "mm", "--emissivity", "1", "--temperature", "300", "--ambient", "0",
-                "--wall", "zmin=-30", "--wall-temperature", "1200", "--wall-emissivity", "1", "--solid-conductivity",
-                conductivity[k]);
+                "--wall", "zmin:at=-30:temperature=1200", "--solid-conductivity", conductivity[k]);
         ck_assert_int_eq(value_of("surface_min_K") < 0, k == 0);
         ck_assert_int_eq(strstr(said, "one.csv:2: warning: sphere 0: its surface comes out at -") != NULL, k == 0);
     }

@@ -4,8 +4,12 @@
 
 static const char *bed; /* four spheres of radius 0.5 in a cup of side 2, whose lid is at 2.5 */
 
-#define CUP  "xmin=0,xmax=2,ymin=0,ymax=2,zmin=0,zmax=2.5:open"
-#define HEAT "heat", bed, "--length-unit", "m", "--emissivity", "0.8", "--ambient", "300", "--wall-temperature", "300"
+/* With words about its sides, and its floor. */
+#define CUP_OF(sides, floor)                                                                                           \
+    "xmin:at=0" sides ",xmax:at=2" sides ",ymin:at=0" sides ",ymax:at=2" sides ",zmin:at=0" floor ",zmax:open:at=2.5"
+#define CUP  CUP_OF(":temperature=300", ":temperature=300")
+#define COLD CUP_OF(":temperature=0", ":temperature=0")
+#define HEAT "heat", bed, "--length-unit", "m", "--emissivity", "0.8", "--ambient", "300"
 
 static void begin(void) {
     make_folder();
@@ -18,11 +22,11 @@ static double fractions(void) { return value_of("absorbed") + value_of("reflecte
 
 TEST(what_is_absorbed_is_said_and_written) {
     const char *csv = in_folder("q.csv"), *profile = in_folder("p.csv");
-    FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:1000", "--absorptivity", ".5",
-              "--wall-absorptivity", "zmin=.25,0", "-o", csv, "--profile", "z:2:.csv",
-              "--quiet"); /* a profile needs a name */
-    SUCCEED(HEAT, "--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:1000", "--absorptivity", ".5",
-            "--wall-absorptivity", "zmin=.25,0", "-o", csv, "--profile", formatted("z:2:%s", profile));
+    const char *cup = CUP_OF(":temperature=300:absorptivity=0", ":temperature=300:absorptivity=.25");
+    FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", cup, "--irradiate", "0,0,-1:1000", "--absorptivity", ".5",
+              "-o", csv, "--profile", "z:2:.csv", "--quiet"); /* a profile needs a name */
+    SUCCEED(HEAT, "--temperature", "300", "--wall", cup, "--irradiate", "0,0,-1:1000", "--absorptivity", ".5", "-o",
+            csv, "--profile", formatted("z:2:%s", profile));
     ck_assert_double_eq_tol(value_of("irradiated_W"), 4000, 1e-9);
     ck_assert_double_eq_tol(value_of("absorbed_first_W"), 1000 * (.5 * PI + .25 * (4 - PI)), .01);
     ck_assert_double_eq_tol(fractions(), 1, .01);
@@ -40,16 +44,14 @@ TEST(what_is_absorbed_is_said_and_written) {
 }
 
 TEST(light_heats) {
-    const char *wall = "zmin=insulated,insulated";
-    SUCCEED("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--wall", CUP,
-            "--wall-temperature", wall, "--power", "0", "--irradiate", "0,0,-1:1000");
+    SUCCEED("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--wall",
+            CUP_OF(":insulated", ":insulated"), "--power", "0", "--irradiate", "0,0,-1:1000");
     /* all light is absorbed, and all heat leaves through the lid */
     ck_assert_double_eq_tol(value_of("absorbed"), 1, 1e-6);
     ck_assert_double_eq_tol(value_of("surroundings_W"), 0, 1e-4); /* as much leaves as comes in */
     ck_assert_double_gt(value_of("temperature_min_K"), 300);
-    SUCCEED("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--wall", CUP,
-            "--wall-temperature", "0", "--temperature", "300", "--irradiate", "0,0,-1:1000", "--until", "10",
-            "--heat-capacity", "800", "--density", "2500");
+    SUCCEED("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--wall", COLD, "--temperature",
+            "300", "--irradiate", "0,0,-1:1000", "--until", "10", "--heat-capacity", "800", "--density", "2500");
     ck_assert_double_eq_tol(value_of("supplied_J"), 10 * 1000 * PI, 1);
 }
 
@@ -101,16 +103,16 @@ TEST(triangles_throw_shadows) {
     const double a[] = {0, 0, 2.2}, b[] = {1, 0, 2.2}, c[] = {1, 2, 2.2}, d[] = {0, 2, 2.2};
     roof.n = 0;
     soup_add(&roof, a, b, c), soup_add(&roof, a, c, d);
-    const char *wall = formatted(CUP ",roof=mesh:%s:both", write_solid("roof.stl", &roof));
+    const char *wall = formatted(COLD ",mesh:%s:both:name=roof:temperature=0", write_solid("roof.stl", &roof));
     SUCCEED("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--temperature", "0", "--wall",
-            wall, "--wall-temperature", "0", "--irradiate", "0,0,-1:1000");
+            wall, "--irradiate", "0,0,-1:1000");
     ck_assert_double_eq_tol(value_of("absorbed_first_W"), 4000, .1);
     ck_assert_double_eq_tol(value_of("wall_roof_absorbed_W"), 2000, 2);
     ck_assert_double_eq_tol(fractions(), 1, .01);
     ck_assert_double_le(fabs(value_of("balance_of_light")), 1e-12);
     FAIL_WITH(3, "heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--temperature", "0",
-              "--wall", formatted("roof=mesh:%s:normals", in_folder("roof.stl")), "--wall-temperature", "0",
-              "--irradiate", "0,0,1:1000");
+              "--wall", formatted("mesh:%s:name=roof:normals:temperature=0", in_folder("roof.stl")), "--irradiate",
+              "0,0,1:1000");
     assert_has(said, "the back of wall roof is seen");
 }
 
@@ -145,13 +147,13 @@ TEST(faces_have_an_emissivity) {
     ck_assert_double_gt(value_of("face_emissivity"), .9);
     ck_assert_double_lt(value_of("face_emissivity"), 1);
     SUCCEED("heat", "tests/data/monoper2000.dump", "--length-unit", "cm", "--emissivity", ".2", "--directions", "24",
-            "--temperature", "300", "--ambient", "300", "--wall", "zmin=-.1", "--wall-temperature", "300",
-            "--wall-emissivity", ".5", "--face");
+            "--temperature", "300", "--ambient", "300", "--wall", "zmin:at=-.1:temperature=300:emissivity=.5",
+            "--face");
     ck_assert_double_eq_tol(value_of("face_emissivity"), .39374, .0015 * .39374); /* by 4e6 plain rays */
     ck_assert_double_eq_tol(value_of("face_emissivity"), .39374, 2 * value_of("face_emissivity_error") + 1e-4);
     FAIL_WITH(2, "heat", bed, "--emissivity", ".5", "--temperature", "300", "--ambient", "300", "--face");
     expect_message("--face: an open face has no end", "walls or periods");
-    FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", "box", "--face");
+    FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", "box:temperature=300", "--face");
     expect_message("--face: the bed has no open face", "");
 }
 
@@ -188,8 +190,8 @@ TEST(refused_lights_are_named) {
         {"0,0,-1:5:box=1,0,0,1", CUP, "--irradiate: box=1,0,0,1", "X1 must be below X2"},
         {"1,0,0:5:box=0,1,0,1", CUP, "--irradiate: the box lies across z", ""},
         {"0,0,-1:5:disc=1,1,3,1:box=0,1,0,1", CUP, "--irradiate: a light has one disc or one box", ""},
-        {"0,0,1:1000", CUP, "--irradiate: no open face lets light 1 in", "zmax=H:open"},
-        {"1,0,-1:1000", "xmin=0,xmax=2,ymin=0,ymax=2,zmin=0,zmax=2.5", "--irradiate: no open face lets light 1 in", ""},
+        {"0,0,1:1000", CUP, "--irradiate: no open face lets light 1 in", "zmax:open:at=H"},
+        {"1,0,-1:1000", CUP ",zmax:at=2.5:temperature=300", "--irradiate: no open face lets light 1 in", ""},
         {"0,0,-1:5:disc=1,1,0.6,1", CUP, "--irradiate: the disc of light 1 lies inside the bed", "sphere"},
     };
     for (size_t k = 0; k < sizeof refused / sizeof *refused; ++k) {
@@ -204,11 +206,14 @@ TEST(refused_lights_are_named) {
     FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--absorptivity", "1.5");
     expect_message("--absorptivity", "1.5");
     FAIL_WITH(3, HEAT, "--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--absorptivity", "colour");
-    FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--wall-absorptivity",
-              "lid=.5");
-    expect_message("--wall-absorptivity", "lid");
+    FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", CUP, "--wall", "lid:absorptivity=.5", "--irradiate",
+              "0,0,-1:5");
+    expect_message("--wall: 'lid' is no wall", "zmax");
+    FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", CUP, "--wall", "zmin:at=0:temperature=300:absorptivity=.5");
+    expect_message("--wall: absorptivity needs --irradiate", "");
     FAIL_WITH(2, HEAT, "--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--profile", "w:p.csv");
     expect_message("--profile: 'w:p.csv'", "AXIS");
-    SUCCEED(HEAT, "--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--absorptivity", "0",
-            "--wall-absorptivity", "0");
+    SUCCEED(HEAT, "--temperature", "300", "--wall",
+            CUP_OF(":temperature=300:absorptivity=0", ":temperature=300:absorptivity=0"), "--irradiate", "0,0,-1:5",
+            "--absorptivity", "0");
 }

@@ -62,7 +62,7 @@ static const struct {
               {FACET("vertex 0 0 0\nvertex 1 0 0\nvertex 1 0 0\n"), "", "no triangle has an area"}};
 
 static void refuse(const char *path, const char *line, const char *reason) {
-    FAIL_WITH(3, "bed", MONO, "--wall", formatted("mesh:%s", path));
+    FAIL_WITH(3, "factors", MONO, "--wall", formatted("mesh:%s", path));
     expect_message(formatted("%s%s: ", path, line), reason);
 }
 
@@ -79,7 +79,7 @@ TEST(broken_binaries_are_refused) {
     refuse(write_binary("x.stl", &soup, "", 0), "", "triangle 7: a coordinate is not finite");
     soup.n = 0;
     refuse(write_binary("x.stl", &soup, "", 0), "", "no triangles");
-    FAIL_WITH(4, "bed", MONO, "--wall", "mesh:nothing.stl");
+    FAIL_WITH(4, "factors", MONO, "--wall", "mesh:nothing.stl");
     expect_message("nothing.stl: ", "No such file");
 }
 
@@ -263,22 +263,24 @@ TEST(names_of_meshes) {
     print_solid(file, "floor no 1", &soup, "\n", 9);
     fclose(file);
     struct wall_options options = {0};
-    ck_assert_int_eq(walls_option(wall_of("zmin=-9,mesh:", path, ",zmax"), &options), 0);
-    ck_assert_int_eq(walls_option(wall_of("tub=mesh:", path, ":both:scale=0.5"), &options), 0);
+    ck_assert_int_eq(walls_option(wall_of("zmin:at=-9,mesh:", path, ",zmax"), &options), 0);
+    ck_assert_int_eq(walls_option(wall_of("mesh:", path, ":name=tub:both:scale=0.5"), &options), 0);
     ck_assert_int_eq(walls_option(wall_of("mesh:", two, ":solids"), &options), 0);
+    ck_assert_int_eq(walls_settle(&options), 0);
     static const char *const names[] = {"zmin",           "my_box", "zmax",           "tub",
                                         "two_floor_no_1", "two_2",  "two_floor_no_2", "two_4"};
     ck_assert_uint_eq(options.walls.count, 8);
     for (uint32_t k = 0; k < 8; ++k) ck_assert_str_eq(wall_name(&options.walls, k), names[k]);
-    ck_assert_double_eq(fabs(options.walls.meshes->vertex[3 * 8]), 2);           /* the first of the second mesh */
-    ck_assert_int_eq(walls_option(wall_of("tub=mesh:", path, ""), &options), 2); /* twice */
+    ck_assert_double_eq(fabs(options.walls.meshes->vertex[3 * 8]), 2); /* the first of the second mesh */
     walls_free(&options);
-    static const char *const wrong[][2] = {{"zmin=mesh:", ""},   {"a-b=mesh:", ""},      {"=mesh:", ""},
-                                           {"beyond=mesh:", ""}, {"mesh:", ":bothh"},    {"mesh:", ":scale=0"},
-                                           {"mesh:", ":"},       {"mesh:", ",zmin,zmin"}};
+    static const char *const wrong[][2] = {
+        {"mesh:", ":name=zmin"}, {"mesh:", ":name=a-b"}, {"mesh:", ":name="}, {"mesh:", ":name=beyond"},
+        {"mesh:", ":bothh"},     {"mesh:", ":scale=0"},  {"mesh:", ":"},      {"tub=mesh:", ""}};
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
         OWNED_BY(walls_free) struct wall_options other = {0};
-        ck_assert_msg(walls_option(wall_of(wrong[k][0], path, wrong[k][1]), &other) == 2, "%s", wrong[k][0]);
+        int status = walls_option(wall_of(wrong[k][0], path, wrong[k][1]), &other);
+        if (!status) status = walls_settle(&other);
+        ck_assert_msg(status == 2, "%s FILE%s", wrong[k][0], wrong[k][1]);
     }
     ck_assert_int_eq(walls_option("mesh:", &(struct wall_options){0}), 2);
 }
@@ -317,11 +319,11 @@ TEST(rows_in_a_closed_mesh) {
     struct soup soup = cube();
     soup_flip(&soup, 0);
     const char *bed = write_file("bed.csv", BED), *box = write_solid("box.stl", &soup), *out = in_folder("w.vtp");
-    SUCCEED("bed", bed, "--wall", "xmin=-4,xmax=4,ymin=-4,ymax=4,zmin=-4,zmax=4");
+    SUCCEED("factors", bed, "--wall", "xmin:at=-4,xmax:at=4,ymin:at=-4,ymax:at=4,zmin:at=-4,zmax:at=4");
     double planes = 0;
     static const char *const names[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
     for (int k = 0; k < 6; ++k) planes += value_of(formatted("wall_%s_F", names[k]));
-    SUCCEED("bed", bed, "--wall", wall_of("tub=mesh:", box, ""), "--wall-vtp", out);
+    SUCCEED("factors", bed, "--wall", wall_of("mesh:", box, ":name=tub"), "--wall-vtp", out);
     ck_assert_double_eq_tol(value_of("wall_tub_F"), planes, 1e-3);
     ck_assert_double_eq_tol(value_of("wall_tub_area"), 384, 1e-3);
     ck_assert_double_eq(value_of("wall_tub_triangles"), 12);
@@ -337,7 +339,7 @@ TEST(rows_in_a_closed_mesh) {
     ck_assert_double_eq(fabs(grid.points[23]), 4);
     assert_has(text, "NumberOfPolys=\"12\"");
     free(grid.points);
-    FAIL_WITH(2, "bed", bed, "--wall-vtp", out);
+    FAIL_WITH(2, "factors", bed, "--wall-vtp", out);
     expect_message("--wall-vtp", "no --wall mesh:FILE");
 }
 
@@ -352,6 +354,7 @@ TEST(slice_through_a_mesh) {
     double end[2][2], length = 0;
     int pieces = 0, ends = 0;
     ck_assert_int_eq(walls_option(wall_of("mesh:", write_solid("box.stl", &soup), ""), &options), 0);
+    ck_assert_int_eq(walls_settle(&options), 0);
     ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.x = 1, .y = .3, .r = 3.5}), 0);
     plot_slice_of(&slice, &(struct plot_plane){0}, &bed, &options.walls);
     ck_assert(slice.low[0] == -4 && slice.high[2] == 4);
@@ -378,20 +381,20 @@ TEST(backs_of_meshes) {
     soup_box(&soup, (const double[]){-3, -3, -3}, (const double[]){0, 3, 3});
     const char *bed = write_file("bed.csv", BED "5,0,0,1,300\n"), *text = write_solid("half.stl", &soup);
     const char *binary = write_binary("half_b.stl", &soup, "", 0);
-    FAIL_WITH(3, "bed", bed, "--wall", wall_of("mesh:", text, ""));
+    FAIL_WITH(3, "factors", bed, "--wall", wall_of("mesh:", text, ""));
     assert_has(said, "the back of wall half is seen, at line ");
     assert_has(said, "half.stl:both makes both sides the wall");
     assert_has(said, "bed.csv:3: warning: all of sphere 1 lies beyond wall half");
-    FAIL_WITH(3, "bed", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "1");
+    FAIL_WITH(3, "factors", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "1");
     OWNED char *first = strdup(said);
     assert_has(said, "the back of wall half_b is seen, at triangle ");
-    FAIL_WITH(3, "bed", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "2");
+    FAIL_WITH(3, "factors", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "2");
     ck_assert_str_eq(said, first);
-    SUCCEED("bed", bed, "--wall", wall_of("mesh:", text, ":both")); /* the mesh cuts a sphere, so rows contradict */
+    SUCCEED("factors", bed, "--wall", wall_of("mesh:", text, ":both")); /* the mesh cuts a sphere, so rows contradict */
     assert_lacks(said, "back of wall");
     assert_lacks(said, "not closed");
     soup.n -= 2;
-    SUCCEED("bed", bed, "--wall", wall_of("mesh:", write_solid("half.stl", &soup), ":both"));
+    SUCCEED("factors", bed, "--wall", wall_of("mesh:", write_solid("half.stl", &soup), ":both"));
     expect_message(
         text, "warning: the mesh is not closed: 4 edges belong to one triangle, 0 to more than two; components: 1");
 }
@@ -407,22 +410,22 @@ static const char *write_column(const char *name, const char *head, int n, doubl
     return path;
 }
 
-#define STATE "--emissivity", "0.7", "--temperature", "T", "--wall-emissivity", "0.6", "--wall-vtp"
+#define STATE  "--emissivity", "0.7", "--temperature", "T", "--wall-vtp"
+#define AT_400 ":temperature=400:emissivity=0.6"
 
 /* The gains of triangles add up to the powers of their walls in the summary. */
 TEST(heat_of_triangles) {
     const struct soup soup = cube();
     const char *bed = write_file("bed.csv", BED), *box = write_solid("box.stl", &soup), *out = in_folder("q.vtp");
-    SUCCEED("heat", bed, "--length-unit", "cm", "--wall", wall_of("mesh:", box, ""), "--wall-temperature", "400", STATE,
-            out);
+    SUCCEED("heat", bed, "--length-unit", "cm", "--wall", wall_of("mesh:", box, AT_400), STATE, out);
     double kelvins[12], both[12], front[12];
     ck_assert_double_eq_tol(1e-4 * gain_of(out, "flux_W_m2", 0, 12) / value_of("wall_box_W"), 1, 1e-5);
     vtp_array(out, "temperature_K", kelvins, 12);
     for (int t = 0; t < 12; ++t) ck_assert_double_eq(kelvins[t], 400);
     assert_lacks(read_file(out), "front_W");
 
-    SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ":both"), "--wall-temperature", "400",
-            "--ambient", "300", STATE, out);
+    SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ":both" AT_400), "--ambient", "300",
+            STATE, out);
     ck_assert_double_eq_tol(gain_of(out, "flux_W_m2", 0, 12) / value_of("wall_box_W"), 1, 1e-5);
     const double outside = gain_of(out, "flux_front_W_m2", 0, 12); /* the fronts of the cube face outwards */
     ck_assert_double_eq_tol(outside, .6 * 384 * 5.670374419e-8 * (pow(300, 4) - pow(400, 4)), 1e-3 * fabs(outside));
@@ -436,14 +439,15 @@ TEST(heat_of_triangles) {
     memmove(rest.corner, rest.corner + 4, 8 * sizeof *rest.corner);
     print_solid(file, "low", &half, "\n", 17), print_solid(file, "side", &rest, "\n", 17);
     fclose(file);
-    SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", two, ":solids"), "--wall-temperature",
-            "two_low=400,insulated", STATE, out, "--ambient", "0");
+    SUCCEED("heat", bed, "--length-unit", "m", "--wall",
+            wall_of("mesh:", two, ":solids:insulated:emissivity=0.6,two_low:temperature=400"), STATE, out, "--ambient",
+            "0");
     ck_assert_double_eq_tol(gain_of(out, "flux_W_m2", 0, 4) / value_of("wall_two_low_W"), 1, 1e-5);
     vtp_array(out, "temperature_K", kelvins, 12), vtp_array(out, "flux_W_m2", both, 12);
     for (int t = 4; t < 12; ++t) ck_assert(both[t] == 0 && kelvins[t] > 400 && kelvins[t] < 700);
 
-    SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ""), "--wall-temperature", "400", STATE,
-            in_folder("t.*.vtp"), "--until", "10", "--heat-capacity", "800", "--density", "2500");
+    SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, AT_400), STATE, in_folder("t.*.vtp"),
+            "--until", "10", "--heat-capacity", "800", "--density", "2500");
     ck_assert_double_gt(gain_of(in_folder("t.0.vtp"), "flux_W_m2", 0, 12), 1);
 }
 
@@ -473,9 +477,8 @@ TEST(more_rays_for_triangles) {
     for (uint32_t t = 0; t < soup.n; ++t) fputs(t < 128 ? "500\n" : "300\n", file);
     fclose(file);
     for (int run = 0; run < 3; ++run) {
-        SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ""), "--wall-temperature",
-                wall_of("box=triangles:", column, ""), "--emissivity", "0.7", "--temperature", "300", "--wall-vtp", out,
-                "--wall-rays", rays[run]);
+        SUCCEED("heat", bed, "--length-unit", "m", "--wall", formatted("mesh:%s:temperatures=%s", box, column),
+                "--emissivity", "0.7", "--temperature", "300", "--wall-vtp", out, "--wall-rays", rays[run]);
         vtp_array(out, "flux_W_m2", flux[run], 768);
     }
     double off[2] = {0};
@@ -495,9 +498,9 @@ TEST(temperatures_of_triangles) {
     soup_cube(&soup, 4);
     const char *bed = write_file("bed.csv", BED), *box = write_solid("box.stl", &soup), *out = in_folder("q.vtp");
     const char *column = write_column("T.csv", "# of a case\nT [C]\n", 13, 100, 10);
+    const char *mesh = formatted("mesh:%s:temperatures=%s:emissivity=.6", box, column);
     double kelvins[12];
-    SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ""), "--temperature-unit", "C",
-            "--wall-temperature", wall_of("box=triangles:", column, ""), STATE, out);
+    SUCCEED("heat", bed, "--length-unit", "m", "--wall", mesh, "--temperature-unit", "C", STATE, out);
     vtp_array(out, "temperature_K", kelvins, 12);
     double mean = 0;
     for (int t = 0; t < 12; ++t) {
@@ -509,25 +512,22 @@ TEST(temperatures_of_triangles) {
 
     const struct {
         const char *text, *place, *reason;
-    } wrong[] = {{"1\n2\n3\n", "--wall-temperature: box: ", "3 numbers; "},
+    } wrong[] = {{"1\n2\n3\n", "--wall: temperatures of box: ", "3 numbers; "},
                  {"1\n-2\n", "T.csv:2: ", "the temperature is -2; it must be within 0 and"},
                  {"1\nnan\n", "T.csv:2: ", "temperature is not finite: 'nan'"},
                  {"1\n2 3\n", "T.csv:2: ", "2 columns instead of 1"},
                  {"T\n", "T.csv: ", "the table has no numbers"}};
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
-        column = write_file("T.csv", wrong[k].text);
-        FAIL_WITH(3, "heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ""), "--wall-temperature",
-                  wall_of("box=triangles:", column, ""), STATE, out);
+        write_file("T.csv", wrong[k].text);
+        FAIL_WITH(3, "heat", bed, "--length-unit", "m", "--wall", mesh, STATE, out);
         assert_has(said, wrong[k].place);
         assert_has(said, wrong[k].reason);
     }
     column = write_column("T.csv", "", 13, 100, 10);
-    const char *const lists[] = {"zmin=triangles:", "triangles:", "none=triangles:", "box=3,box=triangles:"};
-    for (size_t k = 0; k < sizeof lists / sizeof *lists; ++k)
-        FAIL_WITH(2, "heat", bed, "--length-unit", "m", "--wall", wall_of("zmin=-5,mesh:", box, ""),
-                  "--wall-temperature", wall_of(lists[k], column, ",300"), STATE, out);
-    FAIL_WITH(2, "heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ""), "--wall-temperature",
-              wall_of("box=triangles:", column, ""), STATE, in_folder("t.*.vtp"), "--until", "10", "--heat-capacity",
-              "800", "--density", "2500", "--model", "factors");
+    FAIL_WITH(2, "heat", bed, "--emissivity", "1", "--temperature", "T", "--wall",
+              formatted("zmin:at=-5:temperatures=%s", column));
+    assert_has(said, "zmin has no triangles");
+    FAIL_WITH(2, "heat", bed, "--length-unit", "m", "--wall", mesh, STATE, in_folder("t.*.vtp"), "--until", "10",
+              "--heat-capacity", "800", "--density", "2500", "--model", "factors");
     assert_has(said, "--model factors: triangles cannot have temperatures of their own");
 }

@@ -348,10 +348,9 @@ TEST(arguments) {
     const fibrad_spheres spheres = spheres_of(&bed);
     OWNED_FACTORS *factors;
     fibrad_radiation *radiation;
-    const fibrad_bed_rule two = {.beam = &(fibrad_beam_rule){0}, .cast = &(fibrad_cast_rule){0}},
-                             drop = {.drop = -1}, nan = {.drop = NAN},
-                             points = {.beam = &(fibrad_beam_rule){.points = 3}},
-                             between = {.beam = &(fibrad_beam_rule){.points = 192}};
+    const fibrad_bed_rule two = {.beam = &(fibrad_beam_rule){0}, .cast = &(fibrad_cast_rule){0}}, drop = {.drop = -1},
+                          nan = {.drop = NAN}, points = {.beam = &(fibrad_beam_rule){.points = 3}},
+                          between = {.beam = &(fibrad_beam_rule){.points = 192}};
     fibrad_run run = {.threads = -1}, many = {.threads = 1025};
     assert_invalid(fibrad_view_factors(NULL, NULL, NULL, NULL, &factors));
     assert_invalid(fibrad_view_factors(NULL, &spheres, NULL, NULL, NULL));

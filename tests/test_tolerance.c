@@ -7,21 +7,22 @@
 FIXTURE(make_folder, remove_folder)
 
 #define SIGMA 5.670374419e-8
-#define BOX   "xmin=0,xmax=1,ymin=0,ymax=1,zmin=0,zmax=1"
+#define BOX   "xmin:at=0" WARM ",xmax:at=1" WARM ",ymin:at=0" WARM ",ymax:at=1" WARM ",zmin:at=0" WARM ",zmax:at=1" WARM
+#define WARM  ":temperature=887.3643"
 
 /* Two black spheres are in a black box, one as far above its T^4 as the other is below. So each wall absorbs much, but
  * its net power is next to nothing. Powers are those of the closed form of two spheres. */
 TEST(walls_by_what_they_absorb) {
-    const double t[2] = {1000, 700}, wall = 887.3643, r = .15;
+    const double t[2] = {1000, 700}, wall = 887.3643 /* as in WARM */, r = .15;
     const double place[2][3] = {{.3, .35, .4}, {.65, .6, .55}};
     double f, distance = 0, square = 0, error = 0;
     for (int a = 0; a < 3; a++) distance += pow(place[1][a] - place[0][a], 2);
     ck_assert_int_eq(fibrad_pair_exact(r, r, sqrt(distance) - 2 * r, &f), 0);
     const char *text = formatted("x,y,z,r,T\n%g,%g,%g,%g,%g\n%g,%g,%g,%g,%g\n", place[0][0], place[0][1], place[0][2],
                                  r, t[0], place[1][0], place[1][1], place[1][2], r, t[1]);
-    const char *temperature = formatted("%.7g", wall), *powers = in_folder("q.csv");
+    const char *powers = in_folder("q.csv");
     SUCCEED("heat", write_file("bed.csv", text), "--length-unit", "m", "--emissivity", "1", "--temperature", "T",
-            "--wall", BOX, "--wall-temperature", temperature, "--error", ".002", "-o", powers);
+            "--wall", BOX, "--error", ".002", "-o", powers);
     ck_assert_str_eq(said, "");
     ck_assert_double_lt(value_of("directions"), 2000);
     ck_assert_double_gt(value_of("error_reached"), 0);
@@ -49,7 +50,7 @@ TEST(pair_behind_an_overlapping_obstacle) {
 
 /* These commands are asked for an error that they cannot reach. */
 static const char *const unreached[][16] = {
-    {"bed", "--error", "1e-7", "--points", "64"},
+    {"factors", "--error", "1e-7", "--points", "64"},
     {"heat", "--length-unit", "m", "--emissivity", ".9", "--temperature", "T", "--ambient", "300", "--error", "1e-5"}};
 
 LOOP_TEST(a_warning_where_it_is_not_reached, sizeof unreached / sizeof *unreached) {

@@ -8,7 +8,7 @@
 #include "meshes.h"
 
 static fibrad_bed_matrix *factors_of(const struct bed *bed, const fibrad_scene_config *config,
-                                      const fibrad_exchange_rule *grey, const fibrad_bed_rule *options) {
+                                     const fibrad_exchange_rule *grey, const fibrad_bed_rule *options) {
     const fibrad_spheres spheres = spheres_of(bed);
     fibrad_scene_config whole = *config;
     fibrad_bed_rule with_walls = *options;
@@ -348,8 +348,7 @@ TEST(plates_and_a_dense_bed) {
 TEST(flat_rooms) {
     OWNED_BED bed = BED({1, 2, .02, .015}, {-9, 4, .021, .019});
     const fibrad_wall tube[3] = {cylinder_at(0, 0, 80), plane_at(2, 0, 0), plane_at(2, 1, .04)};
-    OWNED_FACTORS *f =
-        factors_of(&bed, &(fibrad_scene_config){.wall = tube, .walls = 3}, NULL, &(fibrad_bed_rule){0});
+    OWNED_FACTORS *f = factors_of(&bed, &(fibrad_scene_config){.wall = tube, .walls = 3}, NULL, &(fibrad_bed_rule){0});
     check_balance(&bed, f, NULL, NULL);
     ck_assert_double_eq_tol(between(f, 1, 2), discs(80, .04), 1e-4);
     fibrad_bed_matrix_free(f);

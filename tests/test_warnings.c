@@ -30,44 +30,42 @@ static const struct {
     const char *words[20], *bed, *more, *reason; /* more: a further frame; reason: NULL if there is no warning */
 } said_of[] = {
     {{HEAT, "--temperature", "T"}, PLAIN, NULL, NULL},
-    {{HEAT, "--temperature", "T", "--wall", "box:open=zmax", "--wall-temperature", "500"}, PLAIN, NULL, NULL},
-    {{HEAT, "--temperature", "T", "--wall", "box", "--wall-temperature", "500"},
+    {{HEAT, "--temperature", "T", "--wall", "box:temperature=500,zmax:open"}, PLAIN, NULL, NULL},
+    {{HEAT, "--temperature", "T", "--wall", "box:temperature=500"},
      PLAIN,
      NULL,
      "--ambient has no effect: nothing leaves a bed"},
-    {{HEAT, "--temperature", "T", "--wall", "zmin", "--wall-temperature", "30"},
-     PLAIN,
-     NULL,
-     "zmin is 30 K; --temperature-unit C"},
+    {{HEAT, "--temperature", "T", "--wall", "zmin:temperature=30"}, PLAIN, NULL, "zmin is 30 K; --temperature-unit C"},
     {{HEAT, "--temperature", "T", "--periodic", ".1,.1,0"}, PLAIN, NULL, NULL},
     {{HEAT, "--temperature", "T", "--periodic", ".1,.2,0"},
      PLAIN,
      NULL,
      "--periodic is 0.2 along y, and the box of the file is 0.1 long"},
-    {{HEAT, "--temperature", "T", "--wall", "zmin=.012,zmax=.1", "--wall-temperature", "500"},
+    {{HEAT, "--temperature", "T", "--wall", "zmin:at=.012:temperature=500,zmax:at=.1:temperature=500"},
      PLAIN,
      NULL,
      "sphere 1 reaches through the wall zmin by 0.2 of its radius (1 such cases in all)"},
-    {{HEAT, "--temperature", "T", "--wall", "zmin=.0105", "--wall-temperature", "500"}, PLAIN, NULL, NULL},
-    {{HEAT, "--temperature", "T", "--wall", "cylinder:.05,.05,.05,zmin=0,zmax=.1:open", "--wall-temperature", "500"},
+    {{HEAT, "--temperature", "T", "--wall", "zmin:at=.0105:temperature=500"}, PLAIN, NULL, NULL},
+    {{HEAT, "--temperature", "T", "--wall",
+      "cylinder:.05,.05,.05:temperature=500,zmin:at=0:temperature=500,zmax:open:at=.1"},
      PLAIN,
      NULL,
      "through the wall cylinder by 0.24 of its radius (2 such cases in all)"},
-    {{"bed", "--wall", "auto"}, FRAME("0", SHRUNK, "", ROWS("", "", "")), NULL, "stand where the spheres end"},
-    {{"bed", "--wall", "zmin"}, FRAME("0", SHRUNK, "", ROWS("", "", "")), NULL, "stand where the spheres end"},
-    {{"bed", "--wall", "m=mesh:m.stl"}, PLAIN, CORNER(".3"), NULL},
-    {{"bed", "--wall", "m=mesh:m.stl"},
+    {{"factors", "--wall", "auto"}, FRAME("0", SHRUNK, "", ROWS("", "", "")), NULL, "stand where the spheres end"},
+    {{"factors", "--wall", "zmin"}, FRAME("0", SHRUNK, "", ROWS("", "", "")), NULL, "stand where the spheres end"},
+    {{"factors", "--wall", "mesh:m.stl"}, PLAIN, CORNER(".3"), NULL},
+    {{"factors", "--wall", "mesh:m.stl"},
      PLAIN,
      CORNER("300"),
      "the wall m is 300 long, the bed 0.08; is the mesh in the unit of the bed? mesh:FILE:scale=0.001 scales the mesh"},
-    {{"bed", "--wall", "m=mesh:m.stl:scale=1e-3"}, PLAIN, CORNER("300"), NULL},
-    {{"bed", "--wall", "m=mesh:m.stl:both"}, PLAIN, CORNER("3e-4"), "mesh:FILE:scale=1000 scales the mesh"},
-    {{"bed", "--wall", "m=mesh:m.stl:both"},
+    {{"factors", "--wall", "mesh:m.stl:scale=1e-3"}, PLAIN, CORNER("300"), NULL},
+    {{"factors", "--wall", "mesh:m.stl:both"}, PLAIN, CORNER("3e-4"), "mesh:FILE:scale=1000 scales the mesh"},
+    {{"factors", "--wall", "mesh:m.stl:both"},
      PLAIN,
      FAR_AWAY,
      "the wall m lies from 5 to 5.1 along x, the bed from 0.01"},
-    {{"bed", "--wall", "m=mesh:m.stl:both"}, PLAIN, WITHIN, "do triangles cut spheres?"},
-    {{"exchange", "--emissivity", ".5", "--wall", "m=mesh:m.stl:both", "--wall-emissivity", ".5"},
+    {{"factors", "--wall", "mesh:m.stl:both"}, PLAIN, WITHIN, "do triangles cut spheres?"},
+    {{"factors", "--emissivity", ".5", "--wall", "mesh:m.stl:both:emissivity=.5"},
      PLAIN,
      WITHIN,
      "do triangles cut spheres?"},
@@ -104,8 +102,8 @@ static const struct {
      FRAME("100", OPEN, " T", ROWS(" 600", " 0", " 700")), /* once for all frames */
      FRAME("200", OPEN, " T", ROWS(" 600", " 0", " 700")),
      "has 0 K"},
-    {{"bed", "--frame", "all"}, PLAIN, PLAIN, NULL},
-    {{"bed", "--frame", "all"},
+    {{"factors", "--frame", "all"}, PLAIN, PLAIN, NULL},
+    {{"factors", "--frame", "all"},
      FRAME("1000", OPEN, "", ROWS("", "", "")),
      FRAME("200", OPEN, "", ROWS("", "", "")),
      "timestep 200 follows timestep 1000; a pattern in quotes"}};
@@ -130,7 +128,7 @@ LOOP_TEST(one_warning_each, sizeof said_of / sizeof *said_of) {
     }
     for (; words[count]; ++count) {
         const char *path = mesh ? strstr(words[count], "m.stl") : NULL;
-        arguments[count] = path ? formatted("m=mesh:%s/%s", folder, path) : words[count];
+        arguments[count] = path ? formatted("mesh:%s/%s", folder, path) : words[count];
     }
     const char *const rest[] = {in_folder("bed.dump"), "--length-unit", "m", "--json", json};
     for (int k = 0; k < 5; ++k) arguments[count++] = rest[k];
@@ -148,17 +146,17 @@ LOOP_TEST(one_warning_each, sizeof said_of / sizeof *said_of) {
 TEST(walls_at_surfaces) {
     const char *bed = write_file("bed.dump", FRAME("0", SHRUNK, "", ROWS("", "", "")));
     static const char *const names[] = {"xmin", "ymin", "zmin", "xmax", "ymax", "zmax"};
-    SUCCEED("bed", bed, "--wall", "auto");
+    SUCCEED("factors", bed, "--wall", "auto");
     for (int k = 0; k < 6; ++k) {
         ck_assert_double_eq_tol(value_of(formatted("wall_%s_at", names[k])), k < 3 ? .01 : .09, 1e-9);
         ck_assert_double_eq_tol(value_of(formatted("wall_%s_area", names[k])), .08 * .08, 1e-8);
     }
-    SUCCEED("bed", bed, "--wall", "zmin=.015");
+    SUCCEED("factors", bed, "--wall", "zmin:at=.015");
     ck_assert_double_eq(value_of("wall_zmin_at"), .015);
-    SUCCEED("bed", write_file("bed.dump", PLAIN), "--wall", "auto");
+    SUCCEED("factors", write_file("bed.dump", PLAIN), "--wall", "auto");
     ck_assert_double_eq_tol(value_of("wall_zmax_at"), .1, 1e-12);
-    FAIL_WITH(3, "bed", write_file("bed.dump", FRAME("0", BOX("ff ff ff", "0", ".06"), "", ROWS("", "", ""))), "--wall",
-              "auto");
+    FAIL_WITH(3, "factors", write_file("bed.dump", FRAME("0", BOX("ff ff ff", "0", ".06"), "", ROWS("", "", ""))),
+              "--wall", "auto");
     assert_has(said, "the centre of sphere 3 lies beyond the wall xmax");
 }
 
@@ -166,11 +164,11 @@ TEST(walls_at_surfaces) {
 /* A plate goes through a bed. Closing takes something from the spheres that the plate cuts, of which rows know nothing.
  * Raw rows all add up to one. */
 TEST(closing_that_changes_much) {
-    const char *wall = formatted("auto,m=mesh:%s:both",
+    const char *wall = formatted("auto,mesh:%s:both",
                                  write_file("m.stl", "solid s\n" FACET("1 2 3", "11 3 9", "4 11 15") "endsolid s\n"));
-    SUCCEED("bed", "tests/data/mono2000.dump", "--cutoff", "3", "--wall", wall);
+    SUCCEED("factors", "tests/data/mono2000.dump", "--cutoff", "3", "--wall", wall);
     assert_has(said, "this changes what sphere");
-    SUCCEED("bed", "tests/data/mono2000.dump", "--raw", "--wall", wall);
+    SUCCEED("factors", "tests/data/mono2000.dump", "--raw", "--wall", wall);
     assert_lacks(said, "this changes what sphere");
     const char *closure = strstr(printed, "\nclosure_max ");
     ck_assert(closure != NULL && strtod(closure + 13, NULL) < 1e-12);
@@ -178,8 +176,8 @@ TEST(closing_that_changes_much) {
 
 TEST(mesh_extents_are_said) {
     const char *json = in_folder("summary.json");
-    const char *wall = formatted("m=mesh:%s:scale=2", write_file("m.stl", CORNER(".3")));
-    SUCCEED("bed", write_file("bed.dump", PLAIN), "--wall", wall, "--json", json);
+    const char *wall = formatted("mesh:%s:scale=2", write_file("m.stl", CORNER(".3")));
+    SUCCEED("factors", write_file("bed.dump", PLAIN), "--wall", wall, "--json", json);
     assert_has(printed, "\nwall_m_low 0 0 0\nwall_m_high 0.6 0.6 0.6\n");
     assert_has(read_file(json), "\"warnings\": []}");
 }

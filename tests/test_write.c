@@ -30,15 +30,15 @@ static const unsigned char wanted[] = {1, 0, 1};
 static double row_sum[] = {0.1 + 1.0 / 3, 0, 0.0755868184216124}, escaped[] = {0.5, 0, 0.25}, error[] = {0.03, 0, 0.04};
 static double wall[3][2] = {{0.0625, 0.25}, {0, 0.125}, {0}}, area[] = {100, INFINITY};
 static const fibrad_bed_matrix factors = {.matrix = {.n = 3,
-                                                      .walls = 2,
-                                                      .start = start,
-                                                      .col = col,
-                                                      .f = f,
-                                                      .escaped = escaped,
-                                                      .beyond = (double[3]){0},
-                                                      .error = error,
-                                                      .wall = &wall[0][0]},
-                                           .wall_area = area};
+                                                     .walls = 2,
+                                                     .start = start,
+                                                     .col = col,
+                                                     .f = f,
+                                                     .escaped = escaped,
+                                                     .beyond = (double[3]){0},
+                                                     .error = error,
+                                                     .wall = &wall[0][0]},
+                                          .wall_area = area};
 static const struct walls walls = {.count = 2,
                                    .wall = {{.kind = FIBRAD_WALL_CYLINDER, .cylinder = {0, 0, 9, 2}},
                                             {.kind = FIBRAD_WALL_PLANE, .plane = {2, 0, -9}}}};

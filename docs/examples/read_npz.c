@@ -1,9 +1,9 @@
 /* read_npz.c - example: reads a matrix of view factors from .npz and prints it. SPDX-License-Identifier: MIT
  *
  *     cc -std=c11 docs/examples/read_npz.c -o read_npz
- *     build/fibrad bed packing.dump -o F.npz && ./read_npz F.npz
+ *     build/fibrad factors packing.dump -o F.npz && ./read_npz F.npz
  *
- * Reads what `fibrad bed -o OUT.npz` writes, on a machine of the same byte order: uncompressed members one behind the
+ * Reads what `fibrad factors -o OUT.npz` writes, on a machine of the same byte order: uncompressed members one behind the
  * other, each a NumPy array. Rows and columns go by the spheres' ids. Member sizes are 64-bit numbers in an extra
  * field. Checksums are not looked at. */
 #include <inttypes.h>

@@ -13,15 +13,13 @@
 #include "cli/options.h"
 #include "cli/spelling.h"
 
-/* Reads the table whose path is the next item of a list. one: only its column y. Moves *text behind the item. */
-static int take_table(const char *what, const char **text, bool one, const struct curve_axes *axes, double low,
-                      double high, struct curve *curve) {
+/* Reads the table whose path is the next item of a list. Moves *text behind the item. */
+static int take_table(const char *what, const char **text, const struct curve_axes *axes, double low, double high,
+                      struct curve *curve) {
     const size_t length = strcspn(*text, ",");
     char *path = strndup(*text, length);
     *text += length;
-    const int status = !path ? message_memory()
-                       : one ? column_read(path, what, &axes->y, low, high, curve)
-                             : curve_read(path, what, axes, low, high, curve);
+    const int status = path ? curve_read(path, what, axes, low, high, curve) : message_memory();
     free(path);
     return status;
 }
@@ -40,7 +38,7 @@ static int take_value(const char *what, const char **text, double low, double hi
         return message(STATUS_USAGE, "%s: %g is not within %g and %g", what, *value, low, high);
     }
     ++*text;
-    const int status = take_table(what + strlen("--"), text, false, quantity->curves, low, high, curve);
+    const int status = take_table(what + strlen("--"), text, quantity->curves, low, high, curve);
     if (!status) *value = curve->y[curve->n / 2];
     return status;
 }
@@ -180,101 +178,6 @@ int quantity_values(const struct quantity *quantity, const struct bed *bed, cons
                           low, high);
     }
     return STATUS_OK;
-}
-
-/* Reads an item of a list: NAME=VALUE or VALUE. *wall: index of the wall, or WALLS_MAX without a name. Moves *text
- * behind the item. */
-static int take_wall_value(const char *option, const char **text, const char *word, const struct walls *walls,
-                           uint32_t *wall, double *value) {
-    const size_t length = strcspn(*text, "=,");
-    const bool named = (*text)[length] == '=';
-    *wall = named ? wall_index(walls, *text, length) : WALLS_MAX;
-    if (named && *wall == WALLS_MAX) return wall_unknown(option, walls, *text, length);
-    const char *number = named ? *text + length + 1 : *text;
-    const bool is_word = word && strcspn(number, ",") == strlen(word) && strncmp(number, word, strlen(word)) == 0;
-    char *end = (char *)number + (is_word ? strlen(word) : 0), table[HINT_ROOM];
-    if (*number == '@')
-        return message(STATUS_USAGE, "%s: '%.40s' is a table; only --wall-temperature with --until takes tables",
-                       option, *text);
-    *value = is_word ? INFINITY : strtod(number, &end);
-    if (end == number || (*end && *end != ','))
-        return message(STATUS_USAGE, "%s: '%.40s' is neither NAME=NUMBER nor a number%s", option, *text,
-                       table_hint(table, "NAME=", number));
-    *text = *end ? end + 1 : end;
-    return STATUS_OK;
-}
-
-#define TRIANGLES "triangles:"
-
-/* Whether an item is a table, with or without NAME=. */
-static bool names_table(const char *text, const struct wall_tables *tables) {
-    const size_t length = strcspn(text, "=,");
-    const char *value = text[length] == '=' ? text + length + 1 : text;
-    return tables && ((tables->timed && *value == '@') || strncmp(value, TRIANGLES, strlen(TRIANGLES)) == 0);
-}
-
-static int take_wall_table(const char *option, const char **text, double low, double high, const struct walls *walls,
-                           struct wall_tables *tables, uint32_t *wall, double *value) {
-    const size_t length = strcspn(*text, "=,");
-    if ((*text)[length] != '=')
-        return message(STATUS_USAGE, "%s: a table needs the name of its wall: zmin=%.60s", option, *text);
-    *wall = wall_index(walls, *text, length);
-    if (*wall == WALLS_MAX) return wall_unknown(option, walls, *text, length);
-    struct curve *curve = &tables->curve[*wall], *column = &tables->column[*wall];
-    if (curve->n > 0 || column->n > 0)
-        return message(STATUS_USAGE, "%s: %s has two values", option, wall_name(walls, *wall));
-    const bool timed = (*text)[length + 1] == '@';
-    *text += length + 1 + strlen(timed ? "@" : TRIANGLES);
-    const int status = take_table("temperature", text, !timed, tables->axes, low, high, timed ? curve : column);
-    if (!status) *value = timed ? curve_at(curve, 0) : column->y[0];
-    if (**text == ',') ++*text;
-    return status;
-}
-
-void wall_tables_free(struct wall_tables *tables) {
-    for (int k = 0; k < WALLS_MAX; ++k) curve_free(&tables->curve[k]), curve_free(&tables->column[k]);
-}
-
-int wall_list(const char *option, const char *text, const char *word, double low, double high,
-              const struct walls *walls, struct wall_tables *tables, struct wall_list *list) {
-    *list = (struct wall_list){.others = NAN};
-    if (text && walls->count == 0) return message(STATUS_USAGE, "%s: there are no walls", option);
-    while (text && *text) {
-        uint32_t wall = WALLS_MAX;
-        double value = 0;
-        const int status = names_table(text, tables)
-                               ? take_wall_table(option, &text, low, high, walls, tables, &wall, &value)
-                               : take_wall_value(option, &text, word, walls, &wall, &value);
-        if (status) return status;
-        if (!(value >= low && value <= high) && !(word && isinf(value)))
-            return message(STATUS_USAGE, "%s: %g is not within %g and %g", option, value, low, high);
-        const bool named = wall < WALLS_MAX;
-        if (named ? list->named[wall] : !isnan(list->others))
-            return message(STATUS_USAGE,
-                           named ? "%s: %s has two values, the second %g"
-                                 : "%s: two numbers have no name; name the walls, %s=%g for example",
-                           option, wall_name(walls, named ? wall : 0), value);
-        if (!named)
-            list->others = value;
-        else
-            list->named[wall] = true, list->value[wall] = value;
-    }
-    return STATUS_OK;
-}
-
-int wall_fractions(const char *option, const char *text, const struct walls *walls, const double otherwise[WALLS_MAX],
-                   double values[WALLS_MAX]) {
-    struct wall_list list;
-    const int status = wall_list(option, text, NULL, 0, 1, walls, NULL, &list);
-    for (uint32_t k = 0; k < walls->count && !status; ++k)
-        values[k] = list.named[k] ? list.value[k] : isnan(list.others) ? otherwise[k] : list.others;
-    return status;
-}
-
-int wall_emissivities(const char *text, const struct walls *walls, double emissivity[WALLS_MAX]) {
-    double black[WALLS_MAX];
-    for (uint32_t k = 0; k < WALLS_MAX; ++k) black[k] = 1;
-    return wall_fractions("--wall-emissivity", text, walls, black, emissivity);
 }
 
 void quantity_report(const struct quantity *quantity, const char *key, struct report *report) {

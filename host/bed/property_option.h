@@ -16,19 +16,13 @@
 
 /* Rows of tables of options, without braces. */
 #define OPTION_EMISSIVITY(request, field)                                                                              \
-    0, "emissivity", "E", "emissivity of all spheres, 0 to 1, or TYPE:E,..., or a column of the file",                 \
+    0, "emissivity", "E", "emissivity of all spheres, 0 to 1; or TYPE:E,..., or a column of the file",                 \
         TO_FUNCTION(emissivity_option, request, field)
 #define OPTION_EMISSIVITY_CURVES(request, field)                                                                       \
     0, "emissivity", "E",                                                                                              \
-        "emissivity of all spheres, 0 to 1, or @TABLE of temperatures [K] and emissivities, or "                       \
-        "TYPE:E,TYPE:@TABLE,..., "                                                                                     \
-        "or a column of the file",                                                                                     \
+        "emissivity of all spheres, 0 to 1; or TYPE:E,..., or a column of the file; @TABLE of temperatures [K] and "   \
+        "emissivities may stand for a number",                                                                         \
         TO_FUNCTION(emissivity_curves_option, request, field)
-#define OPTION_WALL_EMISSIVITY(request, field)                                                                         \
-    0, "wall-emissivity", "LIST",                                                                                      \
-        "emissivities of walls, 0 to 1, zmin=0.3,0.9 for example; a number without a name is for all others [1]",      \
-        TO_TEXT(request, field)
-
 /* A quantity of spheres that an option gives: a number for all spheres, a value for each type, or a column. */
 enum { QUANTITY_TYPES_MAX = 64 };
 struct quantity {
@@ -84,39 +78,10 @@ void quantity_follow(const struct quantity *quantity, const struct bed *bed, con
 int quantity_values(const struct quantity *quantity, const struct bed *bed, const char *file, const char *what,
                     double offset, double low, double high, double **values);
 
-/* A list such as zmin=1200,300: values with names of walls, and a number without a name for all other walls. */
-struct wall_list {
-    bool named[WALLS_MAX];
-    double value[WALLS_MAX]; /* if named */
-    double others;           /* the number without a name; NaN: none */
-};
-
-/* Tables in such a list: NAME=@TABLE over time, and NAME=triangles:FILE, a column of numbers, one per triangle. n = 0:
- * the wall has no table. Set `axes` and `timed` and zero the others; free with wall_tables_free. */
-struct wall_tables {
-    const struct curve_axes *axes; /* of temperatures over time */
-    bool timed;                    /* tables over time are allowed */
-    struct curve curve[WALLS_MAX], column[WALLS_MAX];
-};
-void wall_tables_free(struct wall_tables *tables);
-
-/* Reads such a list of values from low to high. word: a word that is allowed as a value and gives INFINITY; NULL: none.
- * text NULL: no list. tables NULL: tables are not allowed. The value of a wall with a table is that at time 0. With a
- * column it is the first number. Status 0, STATUS_USAGE if there is no wall of a name, or as curve_read. */
-int wall_list(const char *option, const char *text, const char *word, double low, double high,
-              const struct walls *walls, struct wall_tables *tables, struct wall_list *list);
-
 /* Report a quantity of spheres, if it was given, and values of walls. The key of a wall is wall_NAME with the ending.
  */
 void quantity_report(const struct quantity *quantity, const char *key, struct report *report);
 void wall_values_report(const struct walls *walls, const double *values, const char *ending, int digits,
                         struct report *report);
-
-/* Reads such a list of values from 0 to 1. A wall without a value has that of `otherwise`. Status 0 or STATUS_USAGE. */
-int wall_fractions(const char *option, const char *text, const struct walls *walls, const double otherwise[WALLS_MAX],
-                   double values[WALLS_MAX]);
-
-/* The same for --wall-emissivity. text NULL: all walls are black. */
-int wall_emissivities(const char *text, const struct walls *walls, double emissivity[WALLS_MAX]);
 
 #endif

@@ -22,9 +22,12 @@ struct walk {
     bool plain; /* `--` has come: no options follow */
 };
 
+static bool help_all;
+
 int option_help(const char *text, void *request) {
-    (void)text;
     (void)request;
+    if (text && strcmp(text, "all") != 0) return OPTION_LEFT;
+    help_all = text != NULL;
     return STATUS_HELP;
 }
 
@@ -82,6 +85,16 @@ static const struct option *find_option(const struct option *table, const char *
     return NULL;
 }
 
+/* Options that have another form since 0.3.0. */
+static const struct {
+    const char *old, *now;
+} renamed[] = {{"wall-temperature", "--wall-temperature zmin=1200 is now --wall zmin:temperature=1200"},
+               {"wall-power", "--wall-power zmin=500 is now --wall zmin:power=500"},
+               {"wall-emissivity", "--wall-emissivity zmin=0.8 is now --wall zmin:emissivity=0.8"},
+               {"wall-absorptivity", "--wall-absorptivity zmin=0.8 is now --wall zmin:absorptivity=0.8"},
+               {"every", "--every 60 is now --times every:60"},
+               {"nf", "--method surface and --nf are of fibrad pair and fibrad reproduce"}};
+
 static int unknown_option(const struct walk *walk, const char *text, size_t length) {
     enum { OPTIONS_MOST = 80 };
     const char *names[OPTIONS_MOST], *name = text + strspn(text, "-");
@@ -89,6 +102,9 @@ static int unknown_option(const struct walk *walk, const char *text, size_t leng
     size_t n = 0;
     for (const struct option *option = walk->table; option->name && n < OPTIONS_MOST; ++option)
         names[n++] = option->name;
+    for (size_t k = 0; k < sizeof renamed / sizeof *renamed; ++k)
+        if (strcspn(name, "=") == strlen(renamed[k].old) && strncmp(name, renamed[k].old, strlen(renamed[k].old)) == 0)
+            return message(STATUS_USAGE, "%s", renamed[k].now);
     name_hint(hint, "--", name, strcspn(name, "="), names, n);
     return message(STATUS_USAGE, "unknown option %.*s%s see fibrad %s --help", (int)length, text, hint, walk->command);
 }
@@ -137,18 +153,38 @@ static void print_wrapped(const char *text) {
     printf("%s\n", text);
 }
 
-void options_print(const struct option *table) {
-    for (; table->name; ++table) {
+/* Prints the part of a help up to the first ; and the default. */
+static void print_short(const char *help) {
+    char text[400];
+    const char *end = strchr(help, ';'), *standard = strrchr(help, '[');
+    const bool more = end && standard > end && help[strlen(help) - 1] == ']';
+    snprintf(text, sizeof text, "%.*s%s%s", end ? (int)(end - help) : 399, help, more ? " " : "", more ? standard : "");
+    print_wrapped(text);
+}
+
+static void print_table(const struct option *table, bool whole) {
+    for (; table->name && (whole || table->name[0] != '\n'); ++table) {
         char left[64];
         if (!table->help) continue;
+        const char *argument = table->argument ? table->argument : "";
         if (table->letter)
-            snprintf(left, sizeof left, "-%c, --%s %s", table->letter, table->name,
-                     table->argument ? table->argument : "");
+            snprintf(left, sizeof left, "-%c, --%s %s", table->letter, table->name, argument);
         else
-            snprintf(left, sizeof left, "--%s %s", table->name, table->argument ? table->argument : "");
+            snprintf(left, sizeof left, "--%s %s", table->name, argument);
         printf("  %-26s ", left);
-        print_wrapped(table->help);
+        (whole ? print_wrapped : print_short)(table->help);
     }
+}
+
+void options_print(const struct option *table) { print_table(table, true); }
+
+void options_help(const char *command, const char *begin, const struct option *table, const char *const *more,
+                  const char *end) {
+    printf("%s\n", begin);
+    print_table(table, help_all);
+    for (; help_all && *more; ++more) printf("\n%s", *more);
+    if (!help_all) printf("\nAll options, and what files and walls may be: fibrad %s --help all\n", command);
+    printf("\n%s", end);
 }
 
 static int read_number(const char *what, const char *text, const char *hint, double low, double high, double *value) {
@@ -209,10 +245,11 @@ int option_points(const char *text, void *points) {
     return STATUS_OK;
 }
 
+const char *const method_names[5] = {"exact", "beam", "surface", "cast", "mc"};
+
 int option_method(const char *text, void *method) {
-    static const char *const names[] = {"exact", "beam", "surface", "cast", "mc"};
-    for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
-        if (strcmp(text, names[k]) == 0) {
+    for (int k = 0; k < 5; ++k)
+        if (strcmp(text, method_names[k]) == 0) {
             *(enum method *)method = (enum method)k;
             return STATUS_OK;
         }

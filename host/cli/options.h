@@ -59,9 +59,13 @@ struct option {
 /* Rows of tables, without braces. */
 #define OPTION_THREADS(request, field)                                                                                 \
     0, "threads", "T", "number of threads, 1 to 1024 [all cores]", TO_COUNT(request, field, 1, 1024)
-#define OPTION_HELP 'h', "help", NULL, "this text", TO_REQUEST(option_help)
+#define OPTION_HELP 'h', "help", NULL, "this text", OPTION_OPTIONAL, 0, 0, 0, option_help
 
-/* Returns STATUS_HELP. */
+/* A row with braces. The rows behind it are shown by `--help all` alone. */
+#define OPTIONS_RARE                                                                                                   \
+    { .name = "\n" }
+
+/* Returns STATUS_HELP. The text `all` has options_help print everything. */
 int option_help(const char *text, void *request);
 
 /* Reads all arguments of a command into its request. Status 0, or that of the first argument that is refused. An
@@ -70,6 +74,12 @@ int options_read(const char *command, const struct option *table, int argc, char
 
 /* Prints the table, each option with its help. */
 void options_print(const struct option *table);
+
+/* Prints the help of a command: how it begins, its options, and how it ends. `--help all` prints all of them, and
+ * `more`, paragraphs that end with NULL. Else options behind OPTIONS_RARE are left out, and of the others the help goes
+ * up to its first ; and has the default. */
+void options_help(const char *command, const char *begin, const struct option *table, const char *const *more,
+                  const char *end);
 
 /* Reads a number, or a whole number, from low to high. The whole text must be the number. `what` names the number in
  * messages. _or_table: the message says how a table would be written if the text is the name of a file. Status 0 or
@@ -103,33 +113,25 @@ struct method_options {
 int option_method(const char *text, void *method);
 int option_nodes(const char *text, void *nodes);
 
-/* Rows of the options, with braces, for a request with a field `methods`. The row of --method is the command's. */
+/* Rows of the options, with braces, for a request with a field `methods`. The rows of --method and --directions are the
+ * command's, and --nf and --no-correction are of commands that have the surface method. */
 #define OPTIONS_METHODS(request)                                                                                       \
-    {0, "directions", "N",                                                                                             \
-     "beam: number of directions, " TEXT_DIRECTIONS                                                                    \
-     "; if all rows of a bed are computed, number of lines, which are directions and their opposites; the error "      \
-     "falls as N^-1.5 [" TEXT_OF(FIBRAD_DIRECTIONS_DEFAULT) " directions; " TEXT_OF(                                   \
-         FIBRAD_LINES_DEFAULT) " lines, " TEXT_OF(FIBRAD_LINES_AMONG_WALLS) " among walls, more for few spheres]",     \
-     TO_COUNT(request, methods.beam.directions, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX)},                        \
-        {0, "areas", "KIND", "beam: visible areas, exact or points [exact; along lines points, up to 724 lines]",      \
-         TO_TEXT(request, methods.areas)},                                                                             \
+    {0, "areas", "KIND", "beam: visible areas, exact or points [exact; along lines points, up to 724 lines]",          \
+     TO_TEXT(request, methods.areas)},                                                                                 \
         {0, "points", "M",                                                                                             \
          "beam: rays along each direction, 64, 128 or 256; along lines masks of 16, 32 or 64 chords; implies --areas " \
          "points [256]",                                                                                               \
          TO_FUNCTION(option_points, request, methods.beam.points)},                                                    \
-        {0, "nf", "N",                                                                                                 \
-         "surface: nodes on each sphere, a Fibonacci number from " TEXT_OF(FIBRAD_NODES_MIN) " to " TEXT_OF(           \
-             FIBRAD_NODES_MAX) " [" TEXT_OF(FIBRAD_NODES_DEFAULT) "]",                                                 \
-         TO_FUNCTION(option_nodes, request, methods.surface.nodes)},                                                   \
-        {0, "no-correction", NULL, "surface: plain sums [corrected by the exact factor without obstacles]",            \
-         TO_FLAG(request, methods.plain)},                                                                             \
         {0, "rays", "N",                                                                                               \
          "cast, mc: rays from a sphere; the error falls as N^-0.6 (cast) or N^-0.5 (mc) [" TEXT_OF(                    \
-             FIBRAD_RAYS_DEFAULT) "]",                                                                                 \
+             FIBRAD_RAYS_DEFAULT) "; exchange factors 400 paths]",                                                     \
          TO_COUNT(request, methods.cast.rays, 1, UINT32_MAX)},                                                         \
     {                                                                                                                  \
-        0, "seed", "S", "cast, mc: seed of the rays [0]", TO_TEXT(request, methods.seed)                               \
+        0, "seed", "S", "cast, mc, and exchange factors: seed of the rays [0]", TO_TEXT(request, methods.seed)         \
     }
+
+/* The names of methods, by enum method. */
+extern const char *const method_names[5];
 
 /* Completes the rules when all options have been read. Directions that are not given stay 0. Refuses options of other
  * methods, and those that contradict each other. Status 0 or STATUS_USAGE. */

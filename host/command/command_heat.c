@@ -17,29 +17,36 @@ static int take_patches(const char *text, void *of_sphere) {
 
 static const struct option heat_table[] = {
     {OPTION_EMISSIVITY_CURVES(struct heat, emissivities)},
-    {OPTION_SOLID_CONDUCTIVITY(struct heat, solid)},
     {0, "temperature", "T",
-     "temperature of all spheres, or TYPE:T,..., or a column of the file, blank or nan for spheres of --power",
+     "temperature of all spheres, or TYPE:T,..., or a column of the file; blank or nan for spheres of --power",
      TO_FUNCTION(temperature_option, struct heat, given.temperature)},
     {0, "power", "W",
-     "power that spheres of unknown temperature give off from inside, a number, TYPE:W,..., or a column of the "
-     "file, blank or nan for spheres of --temperature [W]",
+     "power that spheres of unknown temperature give off from inside [W]; a number, TYPE:W,..., or a column of the "
+     "file, blank or nan for spheres of --temperature",
      TO_FUNCTION(given_power_option, struct heat, given.power)},
     {0, "ambient", "T", "temperature of the black surroundings; needed unless walls and periods close the bed",
      TO_TEXT(struct heat, given.ambient)},
-    OPTIONS_WALL,
-    {0, "wall-temperature", "LIST",
-     "temperatures of walls, zmin=1200,zmax=insulated,300 for example; a number without a name is for all others; "
-     "NAME=triangles:FILE is a column of temperatures, one for each triangle of the mesh",
-     TO_TEXT(struct heat, given.wall_temperature)},
-    {0, "wall-power", "LIST", "powers that walls of unknown temperature give off, zmin=500 for example [W]",
-     TO_TEXT(struct heat, given.wall_power)},
-    {OPTION_WALL_EMISSIVITY(struct heat, wall_emissivities)},
+    {OPTION_WALL},
     {OPTION_TEMPERATURE_UNIT(struct heat, given.zero)},
-    OPTIONS_LIGHT(struct heat),
+    {0, "error", "E",
+     "error allowed in powers, relative to their root mean square; estimated, 1e-5 to 1; directions and patches are "
+     "added until it is met [none]",
+     TO_NUMBER(struct heat, error, 1e-5, 1)},
+    {OPTION_SOLID_CONDUCTIVITY(struct heat, solid)},
     OPTIONS_CONTACTS(struct heat),
+    OPTIONS_LIGHT(struct heat),
+    OPTIONS_TIME(struct heat),
+    OPTIONS_INPUT,
+    {OPTION_BED_OUTPUT(
+        "write the powers: .csv .dump (OVITO) .vtp (ParaView) .json, - for standard output [summary only]")},
+    {OPTION_PLOT("draw a picture by gnuplot, .svg or .png [none]")},
+    OPTIONS_RUN,
+    OPTIONS_RARE,
     {0, "face", NULL, "find the emissivity of the open face of the bed, which has one temperature",
      TO_FLAG(struct heat, face.wanted)},
+    OPTIONS_CONTACTS_RARE(struct heat),
+    {OPTION_PROFILE(struct heat)},
+    {OPTION_STEP(struct heat)},
     {0, "patches", "P", "patches of each sphere, 24, 96 or 384 [" TEXT_OF(FIBRAD_HEAT_PATCHES_DEFAULT) "]",
      TO_FUNCTION(take_patches, struct heat, config.patches)},
     {0, "directions", "N",
@@ -53,74 +60,57 @@ static const struct option heat_table[] = {
          FIBRAD_WALL_RAYS_DEFAULT) ", more with many "
                                    "beams or patches, or insulated walls]",
      TO_COUNT(struct heat, config.wall_rays, 1, FIBRAD_WALL_RAYS_MAX)},
-    {0, "error", "E",
-     "error allowed in powers, estimated, relative to their root mean square, 1e-5 to 1; directions and patches are "
-     "added until it is met; see below [none]",
-     TO_NUMBER(struct heat, error, 1e-5, 1)},
-    OPTIONS_TIME(struct heat),
-    OPTIONS_INPUT,
-    {OPTION_BED_OUTPUT(
-        "write the powers: .csv .dump (OVITO) .vtp (ParaView) .json, - for standard output [summary only]")},
+    {OPTION_WALL_VTP},
+    OPTIONS_INPUT_RARE,
     {OPTION_BED_FORMAT},
-    {OPTION_PLOT("draw a picture by gnuplot, .svg or .png [none]")},
     {OPTION_SLICE},
-    OPTIONS_RUN,
     {.name = NULL}};
 
 static int heat_help(void) {
-    puts("fibrad heat FILE... --emissivity E --temperature T --ambient T [options]\n\n"
-         "Net radiative powers [W] of all spheres of FILE, of walls and of the surroundings, all grey and diffuse.\n"
-         "A net power is above 0 where heat is gained. Where a power is given, the temperature is found [K].\n");
-    options_print(heat_table);
-    puts("\n" FILES_MORE "\n" WALLS_MORE "\n"
-         "Each sphere has a temperature or a power. With both options, each sphere has a value from one of them.\n"
-         "Example: --temperature 1:600 --power 2:5 gives 600 K to spheres of type 1, and 5 W to those of type 2.\n"
-         "Columns have a blank or nan where the other option counts. A single number beside a list or a column is\n"
-         "for the spheres that the list or column leaves out. A power is given off from inside, so the net power\n"
-         "is its negative. An insulated wall sends back all that arrives, point by point. A sphere of emissivity 0\n"
-         "reflects everything, gains nothing and has no temperature.\n"
-         "\n"
-         "--error E holds for the powers of the spheres together, for each wall, for the surroundings if a wall is\n"
-         "insulated, and for T^4 where temperatures are found. Each error is relative to a root mean square. Where\n"
-         "powers are below 1e-3 of what spheres emit or absorb, errors are relative to 1e-3 of what they emit or\n"
-         "absorb.\n"
-         "\n" LIGHT_MORE);
-    puts(CONTACTS_MORE
-         "\n"
-         "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
-         "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
-         "the temperature of a wall (zmin=@TABLE) or of the surroundings. The .csv then has the time in its first\n"
-         "column. A series of .vtp has a .pvd for ParaView.\n");
-    puts("@TABLE: A header has names and units, `t [min],T [C]` or `k [W/(m K)],T [K]`, and says which column is\n"
-         "which. Beyond the ends of a table its first or last value is taken, with a warning.\n"
-         "\n"
-         "--solid-conductivity: Spheres conduct, and T_K is the mean over the surface. A power comes from a source\n"
-         "that is spread evenly inside. Outputs have the least and the largest temperature of the surface, the\n"
-         "temperature of the centre, and their estimated errors: T_min_K, T_max_K, T_surface_error_K,\n"
-         "T_centre_K, T_centre_error_K. The unit of length must be known.\n"
-         "\n"
-         "The .csv has the columns i,T_K,q_W,q_error_W,T_error_K,body, with estimated errors. The surroundings are\n"
-         "i = -1. Walls are i = -2, -3, ... with their names in the column `body`. All q_W add up to zero.\n"
-         "\n"
-         "Several frames go into one .csv, .dump or .json with their numbers. If OUT has a *, each frame has a\n"
-         "file. Standard output ends with a summary of each frame, one `key value` on a line. Its balance and\n"
-         "error are relative to what the spheres emit, or to what they absorb if that is more.\n");
-    puts(
-        "\nExamples:\n"
+    options_help(
+        "heat",
+        "fibrad heat FILE... --emissivity E --temperature T --ambient T [options]\n\n"
+        "Net radiative powers [W] of all spheres of FILE, of walls and of the surroundings, all grey and diffuse.\n"
+        "A net power is above 0 where heat is gained. Where a power is given, the temperature is found [K].\n",
+        heat_table,
+        (const char *const[]){
+            FILES_MORE, WALLS_MORE WALLS_OF_HEAT,
+            "Each sphere has a temperature or a power. With both options, each sphere has a value from one of them.\n"
+            "Example: --temperature 1:600 --power 2:5 gives 600 K to spheres of type 1, and 5 W to those of type 2.\n"
+            "Columns have a blank or nan where the other option counts. A single number beside a list or a column is\n"
+            "for the spheres that the list or column leaves out. A power is given off from inside, so the net power\n"
+            "is its negative. An insulated wall sends back all that arrives, point by point. A sphere of emissivity 0\n"
+            "reflects everything, gains nothing and has no temperature.\n",
+            "--error E holds for the powers of the spheres together, for each wall, for the surroundings if a wall is\n"
+            "insulated, and for T^4 where temperatures are found. Each error is relative to a root mean square. Where\n"
+            "powers are below 1e-3 of what spheres emit or absorb, errors are relative to 1e-3 of what they emit or\n"
+            "absorb.\n",
+            LIGHT_MORE, CONTACTS_MORE,
+            "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
+            "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
+            "the temperature of a wall (zmin:temperature=@TABLE) or of the surroundings. The .csv then has the time "
+            "in\n"
+            "its first column. A series of .vtp has a .pvd for ParaView.\n",
+            "@TABLE: A header has names and units, `t [min],T [C]` or `k [W/(m K)],T [K]`, and says which column is\n"
+            "which. Beyond the ends of a table its first or last value is taken, with a warning.\n",
+            "--solid-conductivity: Spheres conduct, and T_K is the mean over the surface. A power comes from a source\n"
+            "that is spread evenly inside. Outputs have the least and the largest temperature of the surface, the\n"
+            "temperature of the centre, and their estimated errors: T_min_K, T_max_K, T_surface_error_K,\n"
+            "T_centre_K, T_centre_error_K. The unit of length must be known.\n",
+            "The .csv has the columns i,T_K,q_W,q_error_W,T_error_K,body, with estimated errors. The surroundings are\n"
+            "i = -1. Walls are i = -2, -3, ... with their names in the column `body`. All q_W add up to zero.\n",
+            "Several frames go into one .csv, .dump or .json with their numbers. If OUT has a *, each frame has a\n"
+            "file. Standard output ends with a summary of each frame, one `key value` on a line. Its balance and\n"
+            "error are relative to what the spheres emit, or to what they absorb if that is more.\n",
+            NULL},
+        "Examples:\n"
         "  fibrad heat packing.dump --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
-        "  fibrad heat 'bed.*.dump.gz' --frame all --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
-        "  fibrad heat packing.dump --emissivity 0.8 --power 40 --ambient 300 --wall box \\\n"
-        "      --wall-temperature zmin=1200,insulated -o q.csv\n"
-        "  fibrad heat spheres.csv --length-unit mm --emissivity eps --temperature T --temperature-unit C \\\n"
-        "      --wall box --wall-temperature zmin=900,20 -o q.csv\n"
+        "  fibrad heat packing.dump --emissivity 0.8 --power 40 --wall box:insulated,zmin:temperature=1200 \\\n"
+        "      --error 0.005 -o q.vtp\n"
+        "  fibrad heat 'bed.*.dump' --frame all --emissivity 1:0.3,2:0.9 --temperature T --ambient 300 \\\n"
+        "      --wall zmin:temperature=1200,zmax:open,cylinder:0,0,0.48:temperature=600:emissivity=0.4 -o q.csv\n"
         "  fibrad heat packing.dump --emissivity 0.8 --temperature 1200 --ambient @room.csv --until 3600 \\\n"
-        "      --heat-capacity 800 --density 2500 --every 60 -o 'cool.*.vtp' -o cool.csv --plot cool.png\n"
-        "  fibrad heat pebbles.csv --length-unit m --emissivity 0.8 --solid-conductivity 30 --power 500 \\\n"
-        "      --ambient 900 -o q.csv\n"
-        "  fibrad heat packing.dump --emissivity 1:0.3,2:0.9 --temperature v_T --wall zmin,zmax=open,cylinder:0,0,0.48 "
-        "\\\n"
-        "      --wall-temperature zmin=1200,cylinder=600 --wall-emissivity cylinder=0.4 --ambient 300 --error 0.005 "
-        "-o q.vtp");
+        "      --heat-capacity 800 --density 2500 --times every:60 -o 'cool.*.vtp' --plot cool.png\n");
     return STATUS_OK;
 }
 
@@ -169,7 +159,7 @@ static int heat_frame(void *heat, struct bed *bed) {
 }
 
 int command_heat(int argc, char **argv) {
-    struct heat heat = {0};
+    struct heat heat = {.options.walls.keys = WALL_HEAT | WALL_EMISSIVITY | WALL_ABSORPTIVITY};
     int status = options_read("heat", heat_table, argc, argv, &heat);
     if (!status) status = check_heat(&heat);
     const int ended = bed_options_end(&heat.options, status, heat_help, heat_frame, &heat);

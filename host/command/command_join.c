@@ -50,7 +50,7 @@ static int join_help(void) {
          "emissivities are 1.\n");
     options_print(join_table);
     puts("\n"
-         "Outputs have the form of fibrad exchange. In .csv the surroundings are j = -1 and walls are j = -2, -3,\n"
+         "Outputs have the form of fibrad factors. In .csv the surroundings are j = -1 and walls are j = -2, -3,\n"
          "... The next number is `beyond`, the fraction that leaves the cutoff and whose end is not followed. To give\n"
          "it back, multiply the entries of a row by 1/(1 - beyond). Rows are in the order of ids. .npz always has\n"
          "the ids.\n"

@@ -4,9 +4,8 @@
 
 /* Each command takes the arguments behind its name, prints its messages and returns the exit status. */
 int command_pair(int argc, char **argv);
-int command_bed(int argc, char **argv);
+int command_factors(int argc, char **argv);
 int command_conductivity(int argc, char **argv);
-int command_exchange(int argc, char **argv);
 int command_reproduce(int argc, char **argv);
 int command_furnace(int argc, char **argv);
 int command_heat(int argc, char **argv);

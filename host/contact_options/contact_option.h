@@ -16,19 +16,22 @@ enum { CONTACT_FILES_MAX = 8 };
 /* Rows of a table of options, without the outermost braces. */
 #define OPTIONS_CONTACTS(request)                                                                                      \
     {0, "contacts", "CONTACTS",                                                                                        \
-     "heat conducted through contacts: lens or hertz for spots from overlaps, or a file of conductances, i,j,W/K; "    \
-     "may be given several times, see below [none]",                                                                   \
+     "heat through contacts: lens, hertz, or a file of conductances; spots are from overlaps, the file has i,j,W/K; "  \
+     "may be given several times [none]",                                                                              \
      TO_FUNCTION(contacts_option, request, contacts)},                                                                 \
         {0, "contact-conductivity", "K",                                                                               \
-         "thermal conductivity of the solid at contacts [W/(m K)], as --solid-conductivity, but a sphere has one "     \
+         "conductivity of the solid at contacts [W/(m K)]; as --solid-conductivity, but a sphere has one "             \
          "temperature [--solid-conductivity]",                                                                         \
          TO_FUNCTION(contact_conductivity_option, request, contacts.conductivity)},                                    \
-        {0, "contact-scale", "S", "multiplies the radii of spots, since soft particles overlap too much [1]",          \
-         TO_NUMBER(request, contacts.scale, 1e-6, 1e6)},                                                               \
-        {0, "gas-conductivity", "KG",                                                                                  \
-         "thermal conductivity of the gas in narrow gaps [W/(m K)], or @TABLE of temperatures [K] and "                \
-         "conductivities [no gas]",                                                                                    \
-         TO_TEXT(request, contacts.gas)},                                                                              \
+    {                                                                                                                  \
+        0, "gas-conductivity", "KG",                                                                                   \
+            "thermal conductivity of the gas in narrow gaps [W/(m K)]; or @TABLE of temperatures [K] and "             \
+            "conductivities [no gas]",                                                                                 \
+            TO_TEXT(request, contacts.gas)                                                                             \
+    }
+#define OPTIONS_CONTACTS_RARE(request)                                                                                 \
+    {0, "contact-scale", "S", "multiplies the radii of spots, since soft particles overlap too much [1]",              \
+     TO_NUMBER(request, contacts.scale, 1e-6, 1e6)},                                                                   \
         {0, "gas-gap", "X", "gas conducts out to this distance from the smaller sphere, in its radii, up to 1 [0.65]", \
          TO_NUMBER(request, contacts.gap, 1e-6, 1)},                                                                   \
         {0, "gas-jump", "L", "length added to gaps, since narrow gaps conduct less [m] [0]",                           \

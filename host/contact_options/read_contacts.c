@@ -27,7 +27,7 @@ static uint32_t find_sphere(const struct bed *bed, int64_t name) {
 static int name_of_end(const struct lines *lines, const char *text, const struct bed *bed, const struct walls *walls,
                        uint32_t *end) {
     int64_t name;
-    const uint32_t wall = wall_index(walls, text, strlen(text));
+    const uint32_t wall = wall_index(walls, text);
     *end = bed->n + wall;
     if (wall < WALLS_MAX) return STATUS_OK;
     char *rest;

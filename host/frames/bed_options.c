@@ -157,9 +157,10 @@ int bed_options_check(struct bed_options *options, const char *command, enum con
         return message(STATUS_USAGE, "--slice is for pictures of a bed at one time, by --plot");
     if (options->timed && is_series(options))
         return message(STATUS_USAGE, "--until begins with one frame; choose it by --frame");
-    if (options->wall_vtp && !options->walls.walls.meshes)
+    int status = walls_settle(&options->walls);
+    if (!status && options->wall_vtp && !options->walls.walls.meshes)
         return message(STATUS_USAGE, "--wall-vtp: there is no --wall mesh:FILE");
-    const int status = options->radius.given ? columns_check(&options->columns_of_file) : STATUS_OK;
+    if (!status && options->radius.given) status = columns_check(&options->columns_of_file);
     if (status) return status;
     return outputs_check(&options->outputs, content, is_series(options) || options->timed);
 }

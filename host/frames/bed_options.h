@@ -25,16 +25,21 @@
  */
 #define OPTIONS_INPUT                                                                                                  \
     {0, "", NULL, NULL, TO_REQUEST(bed_files_option)},                                                                 \
-        {0, "radius", "R", "radius of all spheres, or TYPE:R,..., or a column of the file [r or radius]",              \
+        {0, "radius", "R", "radius of all spheres; TYPE:R,... or a column of the file [r or radius]",                  \
          TO_FUNCTION(bed_radius_option, struct bed_options, radius)},                                                  \
-        {0, "length-unit", "UNIT", "unit of length of files that name none: " UNITS_LENGTH " [m]",                     \
+        {0, "length-unit", "UNIT",                                                                                     \
+         "unit of length of files that name none, mm for example; it is one of " UNITS_LENGTH " [m]",                  \
          TO_FUNCTION(bed_unit_option, struct bed_options, length_unit)},                                               \
-        {0, "periodic", "LX,LY,LZ", "lengths of the periodic box, 0 for an open axis, or none [as the file says]",     \
+        {0, "periodic", "LX,LY,LZ", "lengths of the periodic box, 0 on open axes; or none [as the file says]",         \
          TO_REQUEST(bed_period_option)},                                                                               \
         {0, "frame", "K",                                                                                              \
-         "frame of the file, from 0; -1: the last; all; A:B or A:B:STEP: from A on, up to B - 1 [-1]",                 \
+         "frame of the file, from 0; -1: the last; all; A:B or A:B:STEP: from A on, up to B - 1 [the last]",           \
          TO_REQUEST(bed_frames_option)},                                                                               \
-        OPTIONS_COLUMNS(struct bed_options, columns_of_file), {                                                        \
+    {                                                                                                                  \
+        OPTION_COLUMNS(struct bed_options, columns_of_file)                                                            \
+    }
+#define OPTIONS_INPUT_RARE                                                                                             \
+    OPTIONS_ROWS(struct bed_options, columns_of_file), {                                                               \
         0, "positions", NULL, "name spheres by their positions in the file, from 0 [by ids]",                          \
             TO_FLAG(struct bed_options, positions)                                                                     \
     }
@@ -42,20 +47,15 @@
     {OPTION_THREADS(struct bed_options, threads)},                                                                     \
         {0, "json", "OUT", "write the summary as JSON, with all digits [none]",                                        \
          TO_PATH(struct bed_options, outputs.summary)},                                                                \
-        {0, "quiet", NULL, "print no summary and no progress", TO_FLAG(struct bed_options, quiet)},                    \
-        {0, "progress", NULL, "show progress even if standard error is not a terminal [off]",                          \
-         TO_FLAG(struct bed_options, progress.forced)},                                                                \
-    {                                                                                                                  \
+        {0, "quiet", NULL, "print no summary and no progress", TO_FLAG(struct bed_options, quiet)}, {                  \
         OPTION_HELP                                                                                                    \
     }
-#define OPTIONS_WALL                                                                                                   \
-    {0, "wall", "LIST",                                                                                                \
-     "walls: auto, box, xmin, xmax, ymin, ymax, zmin, zmax, cylinder:X,Y,R, mesh:FILE; see below [none]",              \
-     TO_FUNCTION(walls_option, struct bed_options, walls)},                                                            \
-    {                                                                                                                  \
-        0, "wall-vtp", "OUT", "write the triangles of the walls of mesh:FILE, a .vtp for ParaView [none]",             \
-            TO_REQUEST(bed_meshes_option)                                                                              \
-    }
+#define OPTION_WALL                                                                                                    \
+    0, "wall", "LIST", "walls: box, xmin ... zmax, zmax:open, cylinder:X,Y,R, mesh:FILE [none]",                       \
+        TO_FUNCTION(walls_option, struct bed_options, walls)
+#define OPTION_WALL_VTP                                                                                                \
+    0, "wall-vtp", "OUT", "write the triangles of the walls of mesh:FILE, a .vtp for ParaView [none]",                 \
+        TO_REQUEST(bed_meshes_option)
 
 /* Rows without braces: -o with its help, --format, --plot with its help, --slice for pictures that have one, and
  * --scratch for commands that make matrices. */

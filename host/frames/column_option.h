@@ -14,14 +14,15 @@ struct column_options {
     size_t texts;
 };
 
-/* Rows of tables of options, with braces. */
-#define OPTIONS_COLUMNS(request, columns)                                                                              \
-    {0, "columns", "LIST",                                                                                             \
-     "names of columns that the file calls otherwise, such as x=p_x,y=p_y,z=p_z,d=diameters,T=Temp; NAME [UNIT] says " \
-     "its unit; numbers from 1, x=1,y=2,z=3,r=4, if the file has no header",                                           \
-     TO_FUNCTION(columns_option, request, columns)},                                                                   \
-        {0, "only", "COLUMN=VALUE", "read only rows with this value, a text or a number; several must all hold",       \
-         TO_FUNCTION(only_option, request, columns)},                                                                  \
+/* A row of a table of options, without braces, and rows with them. */
+#define OPTION_COLUMNS(request, columns)                                                                               \
+    0, "columns", "LIST",                                                                                              \
+        "names of columns that the file calls otherwise, x=p_x,d=diameters; NAME [UNIT] says its "                     \
+        "unit; numbers from 1, x=1,y=2,z=3,r=4, if the file has no header",                                            \
+        TO_FUNCTION(columns_option, request, columns)
+#define OPTIONS_ROWS(request, columns)                                                                                 \
+    {0, "only", "COLUMN=VALUE", "read only rows with this value, a text or a number; several must all hold",           \
+     TO_FUNCTION(only_option, request, columns)},                                                                      \
     {                                                                                                                  \
         0, "skip", "COLUMN=VALUE", "leave out rows with this value; may be given several times",                       \
             TO_FUNCTION(skip_option, request, columns)                                                                 \

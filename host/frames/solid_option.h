@@ -21,8 +21,8 @@ extern const struct curve_axes solid_axes;
 /* A row of a table of options, without braces. */
 #define OPTION_SOLID_CONDUCTIVITY(request, field)                                                                      \
     0, "solid-conductivity", "K",                                                                                      \
-        "thermal conductivity of the solid of the spheres [W/(m K)], or @TABLE of temperatures [K] and "               \
-        "conductivities, or TYPE:K,TYPE:@TABLE,..., or a column of the file [infinite: one temperature a sphere]",     \
+        "thermal conductivity of the solid [W/(m K)]; a number, or @TABLE of temperatures [K] and "                    \
+        "conductivities, or TYPE:K,TYPE:@TABLE,..., or a column of the file [infinite]",                               \
         TO_FUNCTION(solid_option, request, field)
 
 /* Takes the argument of --solid-conductivity into a quantity. Status as table_option. */

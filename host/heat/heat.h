@@ -9,23 +9,23 @@
 
 #define SECONDS_MAX 1e15
 
-/* Rows of a table of options, without the outermost braces, for a request with a field `time`. */
+/* Rows of a table of options, for a request with a field `time`: without the outermost braces, and without braces. */
 #define OPTIONS_TIME(request)                                                                                          \
-    {0, "until", "S", "follow the temperatures up to S seconds, from those given [powers at one time]",                \
+    {0, "until", "S", "follow the temperatures up to S seconds; from those given [powers at one time]",                \
      TO_NUMBER(request, time.until, 1 / SECONDS_MAX, SECONDS_MAX)},                                                    \
         {0, "heat-capacity", "C",                                                                                      \
-         "specific heat of the spheres, a number, TYPE:C,..., or a column of the file [J/(kg K)]",                     \
+         "specific heat of the spheres [J/(kg K)]; a number, TYPE:C,..., or a column of the file",                     \
          TO_FUNCTION(capacity_option, request, time.capacity)},                                                        \
-        {0, "density", "RHO", "density of the spheres, a number, TYPE:RHO,..., or a column of the file [kg/m3]",       \
+        {0, "density", "RHO", "density of the spheres [kg/m3]; a number, TYPE:RHO,..., or a column of the file",       \
          TO_FUNCTION(density_option, request, time.density)},                                                          \
-        {0, "step", "S", "longest step in seconds, or auto for steps with errors of 1e-4 [auto]",                      \
-         TO_FUNCTION(step_option, request, time.step)},                                                                \
-        {0, "times", "LIST", "times of output in seconds, 0,10,60 for example [the end]",                              \
-         TO_TEXT(request, time.times)},                                                                                \
     {                                                                                                                  \
-        0, "every", "S", "output every S seconds, from 0 on",                                                          \
-            TO_NUMBER(request, time.every, 1 / SECONDS_MAX, SECONDS_MAX)                                               \
+        0, "times", "LIST", "times of output in seconds, 0,10,60 for example, or every:60 [the end]",                  \
+            TO_TEXT(request, time.times)                                                                               \
     }
+#define OPTION_STEP(request)                                                                                           \
+    0, "step", "S", "longest step in seconds, or auto for steps with errors of 1e-4 [auto]",                           \
+        TO_FUNCTION(step_option, request, time.step)
+
 /* Arguments of the options. Begin with zeroes. */
 struct time_options {
     double until, step, every; /* [s] 0: not given, automatic, not given */
@@ -82,7 +82,6 @@ struct heat {
     struct light_options light;
     struct contact_options contacts;
     struct face face;
-    const char *wall_emissivities;
     struct quantity emissivities, solid;
     fibrad_heat_config config; /* directions 0: chosen by the emissivities of the bed */
     /* --error: error allowed in powers, and in sigma T^4 of temperatures that are found, over their root mean squares;

@@ -78,7 +78,7 @@ static int read_values(struct heat *h, struct bed *bed) {
     if (!status && !h->given.ambient && !walls_closed(&h->walls, bed))
         status =
             message(STATUS_USAGE, "--ambient is missing: the bed is open, and the surroundings need a temperature");
-    if (!status) status = wall_emissivities(h->wall_emissivities, &h->walls, h->wall_emissivity);
+    for (uint32_t k = 0; k < h->walls.count && !status; ++k) h->wall_emissivity[k] = h->walls.said[k].emissivity;
     if (!status)
         status = quantity_values(&h->emissivities, bed, h->options.name, "emissivity", 0, 0, 1, &h->emissivity);
     opened = h->walls;

@@ -56,29 +56,46 @@ int given_check(struct given_options *options, struct bed_options *bed) {
     return find_surroundings(options);
 }
 
-/* Each wall has a temperature, has a power, or is insulated. A value with the wall's name goes before the number for
- * all other walls. */
+/* Finds the temperature of a wall from its words, in the unit of the options. NaN: it has none. */
+static int wall_temperature(const struct given_options *options, const struct wall_words *said, const char *name,
+                            struct curve *curve, struct curve *column, double *temperature) {
+    const double low = 0 - options->zero;
+    const struct curve_axes *axes = given_axes(options);
+    const char *text = said->temperature_text;
+    int status = STATUS_OK;
+    *temperature = said->temperature;
+    if (said->temperatures) {
+        status = column_read(said->temperatures, "temperature", &axes->y, low, TEMPERATURE_MAX, column);
+        if (!status) *temperature = column->y[0];
+    } else if (text && *text == '@' && !options->timed) {
+        return message(STATUS_USAGE, "--wall: %s: '%.60s' is a table; walls take tables with --until", name, text);
+    } else if (text && *text == '@') {
+        status = curve_read(text + 1, "temperature", axes, low, TEMPERATURE_MAX, curve);
+        if (!status) *temperature = curve_at(curve, 0);
+    } else if (text) {
+        status = options_number_or_table("--wall: a temperature", text, low, TEMPERATURE_MAX, temperature);
+    }
+    return status;
+}
+
+/* Each wall has a temperature, has a power, or is insulated. */
 static int given_walls(const struct given_options *options, const struct bed *bed, const struct walls *walls,
                        struct given *given) {
-    struct wall_list t, p;
-    int status = wall_list("--wall-temperature", options->wall_temperature, "insulated", 0 - options->zero,
-                           TEMPERATURE_MAX, walls, &given->tables, &t);
-    if (!status) status = wall_list("--wall-power", options->wall_power, NULL, -POWER_MAX, POWER_MAX, walls, NULL, &p);
+    int status = STATUS_OK;
     for (uint32_t k = 0; k < walls->count && !status; ++k) {
+        const struct wall_words *said = &walls->said[k];
         const char *name = wall_name(walls, k);
-        if (t.named[k] && p.named[k])
-            return message(STATUS_USAGE, "%s has both a temperature and a power; give only one of them", name);
-        const double temperature = t.named[k] ? t.value[k] : p.named[k] ? NAN : t.others;
-        given->wall_power[k] = p.named[k] ? p.value[k] : isnan(temperature) ? p.others : NAN;
-        given->insulated[k] = isinf(temperature) != 0;
-        given->wall_temperature[k] = given->insulated[k] ? NAN : temperature + options->zero;
-        if (isnan(temperature) && isnan(given->wall_power[k]))
+        double *temperature = &given->wall_temperature[k];
+        if (!(said->given & WALL_HEAT))
             return message(STATUS_USAGE,
-                           "--wall-temperature: %s has no value; give %s=NUMBER, one number for all, %s=insulated, or "
-                           "--wall-power",
-                           name, name, name);
-        if (isnan(temperature) && wall_endless(walls, bed, &walls->wall[k]))
-            return message(STATUS_USAGE, "--wall-power: %s is endless and needs a --wall-temperature", name);
+                           "--wall: %s has no temperature; give %s:temperature=NUMBER, %s:power=NUMBER or %s:insulated",
+                           name, name, name, name);
+        given->wall_power[k] = said->power;
+        given->insulated[k] = (said->given & WALL_INSULATED) != 0;
+        status = wall_temperature(options, said, name, &given->tables.curve[k], &given->tables.column[k], temperature);
+        *temperature += options->zero;
+        if (said->given & WALL_POWER && wall_endless(walls, bed, &walls->wall[k]))
+            return message(STATUS_USAGE, "--wall: %s is endless and needs a temperature", name);
     }
     return status;
 }
@@ -90,9 +107,9 @@ static int given_triangles(const struct walls *walls, uint32_t wall, const struc
     const struct mesh *mesh = walls->meshes ? mesh_of_wall(walls->meshes, wall) : NULL;
     const char *name = wall_name(walls, wall);
     double sum = 0, areas = 0;
-    if (!mesh) return message(STATUS_USAGE, "--wall-temperature: %s has no triangles", name);
+    if (!mesh) return message(STATUS_USAGE, "--wall: %s has no triangles", name);
     if (column->n != mesh->surface.given)
-        return message(STATUS_INPUT, "--wall-temperature: %s: %zu numbers; %s has %u triangles", name, column->n,
+        return message(STATUS_INPUT, "--wall: temperatures of %s: %zu numbers; %s has %u triangles", name, column->n,
                        mesh->file, mesh->surface.given);
     for (uint32_t t = 0; t < mesh->surface.n; ++t) {
         if (mesh_wall(mesh, t) != wall) continue;
@@ -154,7 +171,7 @@ int given_reflectors(const struct given *given, const double *emissivity, const 
                      const double *wall_emissivity, const struct bed *bed, const char *file) {
     for (uint32_t k = 0; k < walls->count; ++k)
         if (wall_emissivity[k] == 0 && !isnan(given->wall_power[k]) && given->wall_power[k] != 0)
-            return message(STATUS_USAGE, "--wall-power: %s has emissivity 0 and cannot give off a power",
+            return message(STATUS_USAGE, "--wall: %s has emissivity 0 and cannot give off a power",
                            wall_name(walls, k));
     for (uint32_t i = 0; i < bed->n; ++i)
         if (emissivity[i] == 0 && !isnan(given->power[i]) && given->power[i] != 0)
@@ -165,7 +182,7 @@ int given_reflectors(const struct given *given, const double *emissivity, const 
 
 int given_values(const struct given_options *options, const struct bed *bed, const char *file,
                  const struct walls *walls, struct given *given) {
-    *given = (struct given){.tables = {.axes = given_axes(options), .timed = options->timed}};
+    *given = (struct given){.temperature = NULL};
     int status = given_walls(options, bed, walls, given);
     if (!status) status = given_sides(walls, options->zero, given);
     if (!status)
@@ -186,7 +203,7 @@ void given_free(struct given *given) {
     free(given->temperature);
     free(given->power);
     free(given->side_temperature);
-    wall_tables_free(&given->tables);
+    for (int k = 0; k < WALLS_MAX; ++k) curve_free(&given->tables.curve[k]), curve_free(&given->tables.column[k]);
 }
 
 void given_heat_sources(struct given *given, uint32_t n, double square_metres, fibrad_heat_sources *sources) {

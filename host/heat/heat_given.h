@@ -7,13 +7,19 @@
 /* Arguments of the options. Begin with zeroes. */
 struct given_options {
     struct quantity temperature, power;
-    const char *ambient, *wall_temperature, *wall_power; /* NULL: not given */
-    double zero;                                         /* [K] 0 of the unit of temperature */
+    const char *ambient; /* NULL: not given */
+    double zero;         /* [K] 0 of the unit of temperature */
     /* Temperatures change with time. Then those of the options are initial ones. Each sphere has a temperature and may
      * have a power too. The temperatures of walls and surroundings may be tables over time, @TABLE. */
     bool timed;
     struct curve ambient_curve; /* n = 0: --ambient is a number */
     double surroundings;        /* [K] their temperature, of a table that at 0 s; NaN: not given */
+};
+
+/* Temperatures of walls from tables, in the unit of the options: over time, or of each triangle. n = 0: the wall has
+ * none. */
+struct wall_tables {
+    struct curve curve[WALLS_MAX], column[WALLS_MAX];
 };
 
 /* Temperatures and powers of one bed. NaN: not given. */
@@ -22,8 +28,8 @@ struct given {
     double *power;       /* [spheres] [W] */
     double wall_temperature[WALLS_MAX], wall_power[WALLS_MAX];
     unsigned char insulated[WALLS_MAX];
-    struct wall_tables tables; /* temperatures of walls, in the unit of the options */
-    double *side_temperature;  /* [2 triangles] [K] as in fibrad_heat_sources; NULL: no side has one of its own */
+    struct wall_tables tables;
+    double *side_temperature; /* [2 triangles] [K] as in fibrad_heat_sources; NULL: no side has one of its own */
 };
 
 /* Takes the argument of --power into a quantity. Status 0 or STATUS_USAGE. */

@@ -25,19 +25,22 @@ int step_option(const char *text, void *step) {
 int time_check(struct time_options *time, struct bed_options *bed) {
     const struct quantity *c = &time->capacity, *rho = &time->density;
     if (!(time->until > 0)) {
-        const char *needs = c->given          ? "--heat-capacity"
-                            : rho->given      ? "--density"
-                            : time->times     ? "--times"
-                            : time->every > 0 ? "--every"
-                            : time->step > 0  ? "--step"
-                                              : NULL;
+        const char *needs = c->given         ? "--heat-capacity"
+                            : rho->given     ? "--density"
+                            : time->times    ? "--times"
+                            : time->step > 0 ? "--step"
+                                             : NULL;
         return needs ? message(STATUS_USAGE, "%s needs --until", needs) : STATUS_OK;
     }
     if (!c->given) return message(STATUS_USAGE, "--until needs --heat-capacity");
     if (!rho->given) return message(STATUS_USAGE, "--until needs --density");
-    if (time->times && time->every > 0) return message(STATUS_USAGE, "--times and --every cannot be combined");
-    if (time->every > 0 && time->until / time->every > TIMES_MAX)
-        return message(STATUS_USAGE, "--every: more than %d times", TIMES_MAX);
+    if (time->times && strncmp(time->times, "every:", 6) == 0) {
+        const int status = options_number("--times every", time->times + 6, 1 / SECONDS_MAX, SECONDS_MAX, &time->every);
+        if (status) return status;
+        if (time->until / time->every > TIMES_MAX)
+            return message(STATUS_USAGE, "--times: more than %d times", TIMES_MAX);
+        time->times = NULL;
+    }
     bed_options_quantity(bed, &time->capacity, "J/(kg K)");
     bed_options_quantity(bed, &time->density, "kg/m3");
     return STATUS_OK;
@@ -211,7 +214,8 @@ static int absorb_light(struct time_run *m) {
     if (!h->lit.options) return STATUS_OK;
     for (uint32_t k = 0; k < h->walls.count; ++k)
         if (m->sources.insulated[k] && h->lit.of_walls[k] > 0)
-            return message(STATUS_USAGE, "--irradiate with --until: %s is insulated and needs --wall-absorptivity %s=0",
+            return message(STATUS_USAGE,
+                           "--irradiate with --until: %s is insulated and needs --wall %s:insulated:absorptivity=0",
                            wall_name(&h->walls, k), wall_name(&h->walls, k));
     const int status = light_absorb(h, m->square_metres, &m->sources);
     fibrad_bed_describe(h->made, NULL, &fault);

@@ -121,10 +121,10 @@ int absorptivity_option(const char *text, void *absorptivity) {
 }
 
 int light_check(struct light_options *options, struct bed_options *bed, const struct quantity *of_emissivity) {
-    const char *needs = options->absorptivity.given  ? "--absorptivity"
-                        : options->wall_absorptivity ? "--wall-absorptivity"
-                        : options->profile           ? "--profile"
-                                                     : NULL;
+    const char *needs = options->absorptivity.given                   ? "--absorptivity"
+                        : walls_keys(&bed->walls) & WALL_ABSORPTIVITY ? "--wall: absorptivity"
+                        : options->profile                            ? "--profile"
+                                                                      : NULL;
     if (options->lights == 0) return needs ? message(STATUS_USAGE, "%s needs --irradiate", needs) : STATUS_OK;
     if (!options->absorptivity.given && quantity_curves(of_emissivity))
         return message(STATUS_USAGE, "--irradiate: the emissivity follows the temperature; --absorptivity is missing");

@@ -7,22 +7,20 @@
 
 enum { LIGHTS_MAX = 32 };
 
-/* Rows of the table of options, for a request with a field `light`. */
+/* Rows of the table of options, for a request with a field `light`: with braces, and without. */
 #define OPTIONS_LIGHT(request)                                                                                         \
     {0, "irradiate", "LIGHT",                                                                                          \
-     "light from outside, DX,DY,DZ:FLUX: its direction, and its W/m2 across that direction; see below [none]",         \
+     "light from outside, DX,DY,DZ:FLUX; its direction, and its W/m2 across that direction [none]",                    \
      TO_FUNCTION(irradiate_option, request, light)},                                                                   \
-        {0, "absorptivity", "A",                                                                                       \
-         "absorptivity of all spheres for that light, 0 to 1, or TYPE:A,..., or a column of the file [emissivity]",    \
-         TO_FUNCTION(absorptivity_option, request, light.absorptivity)},                                               \
-        {0, "wall-absorptivity", "LIST",                                                                               \
-         "absorptivities of walls for that light, as --wall-emissivity [--wall-emissivity]",                           \
-         TO_TEXT(request, light.wall_absorptivity)},                                                                   \
     {                                                                                                                  \
-        0, "profile", "AXIS[:BINS]:OUT",                                                                               \
-            "write the absorbed light against x, y or z: .csv, .svg or .png; a bin is one mean diameter [none]",       \
-            TO_FUNCTION(profile_option, request, light)                                                                \
+        0, "absorptivity", "A",                                                                                        \
+            "absorptivity of all spheres for that light; 0 to 1, or TYPE:A,..., or a column of the file [emissivity]", \
+            TO_FUNCTION(absorptivity_option, request, light.absorptivity)                                              \
     }
+#define OPTION_PROFILE(request)                                                                                        \
+    0, "profile", "AXIS[:BINS]:OUT",                                                                                   \
+        "write the absorbed light against x, y or z: .csv, .svg or .png; a bin is one mean diameter [none]",           \
+        TO_FUNCTION(profile_option, request, light)
 
 /* A paragraph of --help. */
 #define LIGHT_MORE                                                                                                     \
@@ -31,7 +29,7 @@ enum { LIGHTS_MAX = 32 };
     "  :disc=X,Y,Z,R          a beam through a disc of radius R at right angles to it, before the bed\n"               \
     "  :box=X1,X2,Y1,Y2       a beam through a rectangle across z, at the lit end of the bed\n"                        \
     "Lengths are in the unit of the file. Without disc or box the light falls on all that is open. Between\n"          \
-    "side walls the light needs an opening at the height H of their rim (zmax=H:open). A surface absorbs the\n"        \
+    "side walls the light needs an opening at the height H of their rim (zmax:open:at=H). A surface absorbs the\n"     \
     "fraction --absorptivity of the light, is heated by it, and reflects the rest. q_W is the net power of\n"          \
     "light and thermal radiation together. The .csv has two more columns: absorbed_first_W is what is\n"               \
     "absorbed of light straight from outside, absorbed_W is all light that is absorbed. For the surroundings\n"        \
@@ -42,10 +40,9 @@ struct light_options {
     fibrad_light light[LIGHTS_MAX]; /* [lights] lengths in the bed's unit, flux in W/m2 */
     uint32_t lights;
     struct quantity absorptivity;
-    const char *wall_absorptivity; /* NULL: as emissivity */
-    char axis;                     /* of the profile; 0: none */
-    uint32_t bins;                 /* 0: one mean diameter each */
-    const char *profile;           /* path */
+    char axis;           /* of the profile; 0: none */
+    uint32_t bins;       /* 0: one mean diameter each */
+    const char *profile; /* path */
 };
 
 /* What light does to a bed. */

@@ -21,9 +21,10 @@ int light_begin(struct heat *h) {
         state->absorptivity = malloc((n + (size_t)1) * sizeof(double));
         if (state->absorptivity) memcpy(state->absorptivity, h->emissivity, n * sizeof(double));
     }
-    if (!status)
-        status = wall_fractions("--wall-absorptivity", options->wall_absorptivity, &h->walls, h->wall_emissivity,
-                                state->of_walls);
+    for (uint32_t k = 0; k < h->walls.count; ++k) {
+        const double absorptivity = h->walls.said[k].absorptivity;
+        state->of_walls[k] = isnan(absorptivity) ? h->wall_emissivity[k] : absorptivity;
+    }
     state->absorbed = calloc(4 * (n + (size_t)1), sizeof(double));
     if (state->absorbed)
         state->first = state->absorbed + n, state->error = state->first + n, state->power = state->error + n;
@@ -79,7 +80,7 @@ int light_refuse(const struct heat *h, int status, const fibrad_fault *fault) {
     case FIBRAD_WHY_DARK:
         return message(STATUS_USAGE,
                        "--irradiate: no open face lets light %u in; it needs an opening where it comes from, such as "
-                       "zmax=open, or zmax=H:open at the rim of side walls",
+                       "zmax:open, or zmax:open:at=H at the rim of side walls",
                        light);
     case FIBRAD_WHY_FOOTPRINT:
         return message(STATUS_USAGE,

@@ -17,12 +17,12 @@ static const struct {
     {0, 3, "CDF", "a NetCDF file; write a text dump"},
     {0, 6, "\x93NUMPY", "a NumPy array; write it by savetxt(..., header='x y z r')"},
     {0, 4, "PK\x03\x04", "a zip archive, as .npz and .xlsx are; export the spheres as CSV"},
-    {0, 3, "BZh", "packed by bzip2; try: bzcat FILE | fibrad bed -"},
+    {0, 3, "BZh", "packed by bzip2; try: bzcat FILE | fibrad factors -"},
     {0, 4,
      "\xfd"
      "7zX",
-     "packed by xz; try: xzcat FILE | fibrad bed -"},
-    {0, 4, "\x28\xb5\x2f\xfd", "packed by zstd; try: zstdcat FILE | fibrad bed -"},
+     "packed by xz; try: xzcat FILE | fibrad factors -"},
+    {0, 4, "\x28\xb5\x2f\xfd", "packed by zstd; try: zstdcat FILE | fibrad factors -"},
     {0, 4,
      "\x7f"
      "ELF",
@@ -65,8 +65,8 @@ static const struct {
 static const struct {
     const char *columns, *what;
 } own[] = {
-    {"i,j,F", "view factors, as fibrad bed writes them; give the file of the spheres"},
-    {"i,j,D", "exchange factors, as fibrad exchange writes them; give the file of the spheres"},
+    {"i,j,F", "view factors, as fibrad factors writes them; give the file of the spheres"},
+    {"i,j,D", "exchange factors, as fibrad factors writes them; give the file of the spheres"},
     {"i,T_K,q_W",
      "powers, as fibrad heat writes them, without centres of spheres; give the file of the spheres, or write .dump"},
     {"axis,F_E,", "conductivities, as fibrad conductivity writes them; give the file of the spheres"},

@@ -53,7 +53,7 @@ def test_the_estimated_error_is_kept(small):
 @pytest.mark.parametrize("bed", ["mono2000.dump", "monoper2000.dump"])
 def test_bits_are_those_of_the_program(bed, tree, program, tmp_path):
     path = tree / "tests" / "data" / bed
-    subprocess.run([program, "bed", path, "--directions", "60", "-o", tmp_path / "F.npz"], check=True,
+    subprocess.run([program, "factors", path, "--directions", "60", "-o", tmp_path / "F.npz"], check=True,
                    capture_output=True)
     columns = np.loadtxt(path, skiprows=9)
     columns = columns[np.argsort(columns[:, 0])]
@@ -66,7 +66,7 @@ def test_bits_are_those_of_the_program(bed, tree, program, tmp_path):
 def test_bits_of_exchange_are_those_of_the_program(small, program, tmp_path):
     table = np.column_stack([small.x, small.r])
     np.savetxt(tmp_path / "bed.csv", table, fmt="%.17g", delimiter=",", header="x,y,z,r", comments="")
-    subprocess.run([program, "exchange", tmp_path / "bed.csv", "--emissivity", "0.6", "--rays", "100", "-o",
+    subprocess.run([program, "factors", tmp_path / "bed.csv", "--emissivity", "0.6", "--rays", "100", "-o",
                     tmp_path / "D.npz"], check=True, capture_output=True)
     factors = fibrad.exchange_factors(small.x, small.r, 0.6, paths=100)
     assert same(factors, scipy.sparse.load_npz(tmp_path / "D.npz"))
@@ -81,10 +81,10 @@ def test_bits_with_ids_are_those_of_the_program(small, program, tmp_path):
     bed = fibrad.read(path)
     run = {"check": True, "capture_output": True}
     for method in (["--method", "cast", "--rays", "100"], ["--method", "mc", "--rays", "100"]):
-        subprocess.run([program, "bed", path, *method, "-o", tmp_path / "F.npz"], **run)
+        subprocess.run([program, "factors", path, *method, "-o", tmp_path / "F.npz"], **run)
         factors = fibrad.view_factors(bed.x, bed.r, method=method[1], rays=100, ids=bed.ids)
         assert same(factors, scipy.sparse.load_npz(tmp_path / "F.npz"))
-    subprocess.run([program, "exchange", path, "--emissivity", "0.6", "--rays", "100", "-o", tmp_path / "D.npz"], **run)
+    subprocess.run([program, "factors", path, "--emissivity", "0.6", "--rays", "100", "-o", tmp_path / "D.npz"], **run)
     factors = fibrad.exchange_factors(bed.x, bed.r, 0.6, paths=100, ids=bed.ids)
     assert same(factors, scipy.sparse.load_npz(tmp_path / "D.npz"))
     kelvins = 600 + 40 * bed.x[:, 0]

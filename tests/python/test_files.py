@@ -104,7 +104,7 @@ def test_sides_as_the_program_has_them(tmp_path, program, turned):
     outer = fibrad.Mesh.from_stl(path, [[5, 0, 0]], 1.0)
     seen = fibrad.view_factors([[5, 0, 0]], 1.0, directions=500, walls={"cube": outer}).wall("cube")[0]
     bed.write_text("x,y,z,r\n5,0,0,1\n")
-    said = subprocess.run([program, "bed", bed, "--directions", "500", "--wall", f"cube=mesh:{path}"], check=True,
+    said = subprocess.run([program, "factors", bed, "--directions", "500", "--wall", f"mesh:{path}:name=cube"], check=True,
                           capture_output=True, text=True).stdout
     assert float(dict(line.split(None, 1) for line in said.splitlines())["wall_cube_F"]) == pytest.approx(seen, rel=1e-5)
     assert 0.05 < seen < 0.5 and fibrad.Mesh.from_stl(path, [[0, 0, 0]], 1.0, sides="both").back is True

@@ -9,7 +9,7 @@ _fibrad_commands() { # PROGRAM
 }
 
 _fibrad_options() { # PROGRAM COMMAND
-    "$1" "$2" --help 2>/dev/null | sed -n 's/^  \(-[A-Za-z]\), \(--[a-z-]*\).*/\1 \2/p; s/^  \(--[a-z-]*\) .*/\1/p'
+    "$1" "$2" --help all 2>/dev/null | sed -n 's/^  \(-[A-Za-z]\), \(--[a-z-]*\).*/\1 \2/p; s/^  \(--[a-z-]*\) .*/\1/p'
 }
 
 _fibrad() {

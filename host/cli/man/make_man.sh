@@ -15,6 +15,6 @@ mkdir -p "$folder"
 purpose=$(sed -n '1s/^[^-]*- //p' "$folder/help")
 page fibrad "$purpose" <"$folder/help"
 sed -n '/^Commands:/,/^$/s/^  \([a-z]*\)  *\(.*\)/\1 \2/p' "$folder/help" | while read -r command purpose; do
-    "$fibrad" "$command" --help | page "fibrad-$command" "$purpose"
+    "$fibrad" "$command" --help all | page "fibrad-$command" "$purpose"
 done
 rm "$folder/help"

@@ -78,7 +78,17 @@ static const struct option pair_table[] = {
      TO_NUMBER(struct pair_request, error, 1e-12, 1)},
     {0, "check", NULL, "compare the exact factor with two of GSL's quadratures [off]",
      TO_FLAG(struct pair_request, check)},
+    {0, "directions", "N",
+     "beam: number of directions, " TEXT_DIRECTIONS
+     "; the error falls as N^-1.5 [" TEXT_OF(FIBRAD_DIRECTIONS_DEFAULT) "]",
+     TO_COUNT(struct pair_request, methods.beam.directions, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX)},
     OPTIONS_METHODS(struct pair_request),
+    {0, "nf", "N",
+     "surface: nodes on each sphere, a Fibonacci number from " TEXT_OF(FIBRAD_NODES_MIN) " to " TEXT_OF(
+         FIBRAD_NODES_MAX) " [" TEXT_OF(FIBRAD_NODES_DEFAULT) "]",
+     TO_FUNCTION(option_nodes, struct pair_request, methods.surface.nodes)},
+    {0, "no-correction", NULL, "surface: plain sums [corrected by the exact factor without obstacles]",
+     TO_FLAG(struct pair_request, methods.plain)},
     {0, "json", "OUT", "write the output as JSON, with all digits [none]", TO_PATH(struct pair_request, json)},
     {OPTION_HELP},
     {.name = NULL}};
