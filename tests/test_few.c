@@ -220,7 +220,7 @@ static int ascending(const void *a, const void *b) {
 
 /* So few spheres in so much space hide nothing from each other that counts. */
 TEST(dilute_rows_know_what_no_line_meets) {
-    enum { N = 140 };
+    enum { N = 280 };
     OWNED_BED bed = packing(N, 1, 1, 1e-6, 7, false);
     OWNED_FACTORS *factors = factors_of(&bed, NULL, NULL);
     double ratio[N];
