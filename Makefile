@@ -68,11 +68,11 @@ FUNCTIONS = '/^typedef/d; s/^[a-z].*[ *]\(fibrad_[a-z0-9_]*\)(.*/\1;/p'
 sources = $(sort $(wildcard $(1)))
 
 LANED   := $(call sources,kernel/*/*_lanes.c) # compiled once per instruction set
-KERNEL  := $(filter-out %_lanes.c kernel/sample/generate_%.c,$(call sources,kernel/*/*.c))
+KERNEL  := $(filter-out %_lanes.c,$(call sources,kernel/*/*.c))
 SIMPLE  := $(call sources,host/simple/*.c host/contact/*.c) # libfibrad_host.a
-HOST    := $(filter-out $(addprefix host/,simple/% contact/% couple/% python/%),$(call sources,host/*/*.c host/read/*/*.c host/papers/*/*.c)) # the program, besides main.c
+HOST    := $(filter-out $(addprefix host/,simple/% contact/% couple/% python/% tables/%),$(call sources,host/*/*.c host/read/*/*.c host/papers/*/*.c)) # the program, besides main.c
 TESTS   := $(call sources,tests/test_*.c)
-SCRIPTS := $(filter-out tests/couple/%,$(call sources,tests/check_*.sh tests/*/check_*.sh))
+SCRIPTS := $(filter-out tests/couple/% tests/freestanding/%,$(call sources,tests/check_*.sh tests/*/check_*.sh))
 
 PEERS   := $(call sources,bench/bench_embree*.c) # built and run where Embree 3 is found (Debian: libembree-dev)
 COUNTED := bench/bench_instructions.c # linked with a library that counts its instructions, bench/count_cc.sh; on x86-64
@@ -124,13 +124,13 @@ $(BUILD)/tables.o: $(BUILD)/tables.c
 $(BUILD)/tables.c: $(BUILD)/generate_tables
 	$< > $@
 
-$(BUILD)/generate_tables: kernel/sample/generate_tables.c
+$(BUILD)/generate_tables: host/tables/generate_tables.c
 	@mkdir -p $(@D)
 	$(HOSTCC) -O2 $(COMMON) $< -lm -o $@
 
 # writes kernel/sample/line_table.c anew, which takes minutes: build/generate_lines > kernel/sample/line_table.c
-$(BUILD)/generate_lines: kernel/sample/generate_lines.c kernel/sample/line.c kernel/sample/direction.c $(BUILD)/tables.c
-	$(HOSTCC) -O2 $(COMMON) -DFIBRAD_TABLE_LINES=0 $^ -lm -o $@
+$(BUILD)/generate_lines: host/tables/generate_lines.c kernel/sample/direction.c $(BUILD)/tables.c
+	$(HOSTCC) -O2 $(COMMON) $^ -lm -o $@
 
 # $(1): instruction set. In the source, FIBRAD_LANES_HEADER is the header of its lane type and FIBRAD_ISA_SUFFIX ends
 # the names of its external functions.
@@ -420,7 +420,7 @@ LINT_SCALAR  = -DFIBRAD_LANES_HEADER='"base/lanes/vec_scalar.h"' -DFIBRAD_ISA_SU
 ## lint: cppcheck and clang-tidy; .cppcheck and .clang-tidy have the exceptions and their reasons
 lint: cppcheck
 	printf '%s\n' $(KERNEL) $(LANED) | xargs -I{} -P 2 clang-tidy --quiet {} -- -std=c11 $(LINT_FLAGS) $(LINT_SCALAR)
-	printf '%s\n' $(SIMPLE) $(HOST) host/main.c $(wildcard kernel/sample/generate_*.c) | xargs -I{} -P 2 \
+	printf '%s\n' $(SIMPLE) $(HOST) host/main.c $(wildcard host/tables/generate_*.c) | xargs -I{} -P 2 \
 	    clang-tidy --quiet --checks=-clang-analyzer-core.* {} -- -std=c11 -fopenmp $(LINT_FLAGS)
 	@if command -v $(MPICC) >/dev/null; then printf '%s\n' $(COUPLE) $(COUPLE_WALLS) $(COUPLE_PROGRAMS) | xargs -I{} -P 2 \
 	    clang-tidy --quiet --checks=-clang-analyzer-core.*,-clang-analyzer-optin.mpi.* {} -- -std=c11 -fopenmp \
@@ -435,6 +435,7 @@ cppcheck:
 nightly: bits threads lint bench-quick programs
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
 	BUILD=$(BUILD) tests/check_tables.sh all
+	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" HOSTCC="$(HOSTCC)" tests/freestanding/check_freestanding.sh
 	BUILD=$(BUILD) NIGHTLY=1 $(BUILD)/tests/test_reproduce
 	$(MAKE) mutate
 	BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/couple/check_couple.sh all
@@ -457,8 +458,8 @@ deps:
 ## deps-ci: install the further packages that .ci/run needs
 deps-ci:
 	@$(DEPS) g++ clang clang-format clang-tidy cppcheck libomp-dev libclang-rt-14-dev shellcheck \
-	    gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user \
-	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm python3-numpy python3-scipy python3-pytest \
+	    gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user gcc-arm-none-eabi \
+	    qemu-system-arm python3-numpy python3-scipy python3-pytest \
 	    python3-venv python3-pip gfortran
 
 ## man: manual pages of the program and its commands, made from --help into build/man

@@ -46,7 +46,7 @@ static void bench_whole(struct centre *centre, uint32_t lines) {
 
 int main(int argc, char **argv) {
     static const uint32_t directions[] = {34, 55, 100, 200, 400, 800, 1600, 3200, 6400};
-    static const uint32_t lines[] = {16, 23, 32, 45, 55, 100, 181, 233, 362, 724, 1024, 2048}; /* built-in sets */
+    static const uint32_t lines[] = {16, 23, 32, 45, 55, 100, 181, 233, 362, 724, 1024};
     static const uint32_t rays[] = {1000, 10000, 100000, 1000000}, nodes[] = {21, 34, 55, 89, 144};
     const bool quick = argc > 1 && strcmp(argv[1], "quick") == 0;
     const size_t most = quick ? 2 : 100; /* settings of each method */

@@ -25,7 +25,7 @@ static uint64_t count(const fibrad_scene *scene, uint32_t n, uint32_t points, ui
     const size_t size = fibrad_line_set_size(DIRECTIONS);
     void *block = bench_array(1, size);
     fibrad_line_set *lines;
-    bench_check("lines", fibrad_line_set_init(&lines, block, size, DIRECTIONS, 0));
+    bench_check("lines", fibrad_line_set_init(&lines, block, size, DIRECTIONS));
     const fibrad_beam_rule rule = chords ? (fibrad_beam_rule){.lines = lines, .chords = chords}
                                          : (fibrad_beam_rule){.directions = DIRECTIONS, .points = points};
     fibrad_work work = BENCH_GROWING;

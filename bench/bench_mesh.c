@@ -245,7 +245,7 @@ static void bench_cylinders(const struct bed *from, int few) {
     fibrad_wall plane[WALLS], faceted[3] = {{.kind = FIBRAD_WALL_MESH}};
     bench_planes(plane, low, high);
     faceted[1] = smooth[1] = plane[4], faceted[2] = smooth[2] = plane[5];
-    smooth[0] = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {middle[0], middle[1], radius}};
+    smooth[0] = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {middle[0], middle[1], radius, 2}};
     bench_tube(&triangles, middle, radius, ends, FACETS, 1, false, 0);
     fibrad_scene *scene = bench_scene_in(&bed, faceted, 3, &triangles, &block[0]);
     bench_container("a cylinder of 2,000 triangles and a smooth one, between planes", &bed, scene,

@@ -39,7 +39,8 @@ static struct answer solve(const struct room *room, const fibrad_heat_config *co
         body[wall].plane.axis = axis, body[wall].plane.upper = wall % 2;
         body[wall].plane.at = wall % 2 ? room->size[axis] : 0;
     }
-    if (room->round) body[2].kind = FIBRAD_WALL_CYLINDER, body[2].cylinder.radius = room->size[0];
+    if (room->round)
+        body[2].kind = FIBRAD_WALL_CYLINDER, body[2].cylinder = (fibrad_cylinder){.radius = room->size[0], .along = 2};
     const fibrad_scene_config scene = {.wall = body, .walls = (uint32_t)room->walls};
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);

@@ -14,8 +14,8 @@
  *            5. fibrad_matrix_read    the matrix in compressed rows
  *   threads  Several threads may call fibrad_beam_row. Each has a fibrad_work and a fibrad_rows of its own. Hand all
  *            collections to fibrad_matrix_init.
- *   accuracy Rows along lines have about half the error in the matrix: make one set by fibrad_line_set_init, and set
- *            fibrad_beam_rule.lines. All threads share the set.
+ *   accuracy A matrix of rows along lines has about half the error of a matrix of rows along as many directions. Make
+ *            one set of lines by fibrad_line_set_init, and set fibrad_beam_rule.lines. All threads share the set.
  *
  * Example: the matrix of n spheres by one thread. docs/embedding.md has complete programs.
  *   static void *resize(void *context, void *block, size_t size) { return (void)context, realloc(block, size); }
@@ -43,8 +43,9 @@
  * Words
  *   wall           A plane, a cylinder or a mesh of triangles. Wall b is element b of fibrad_scene_config.wall.
  *   surroundings   What lies outside the scene, black. Radiation reaches them past everything, or through an opening.
- *   direction      A unit vector. Directions of a row are spread evenly.
- *   line           A direction and its opposite.
+ *   direction      A unit vector. The directions of a row are spread evenly.
+ *   line           A direction and its opposite. A row goes along directions or along lines, never along both.
+ *   window         The disc as which sphere i is seen along a direction or a line.
  *   entry, column  An entry is one factor of a row. Its column is the index of the sphere that receives.
  *   error of a row The root of the sum of the squared errors of the row's factors.
  *
@@ -78,8 +79,7 @@
  *              one row, computed by several threads     fibrad_beam_part, _join
  *              lines for the rows of a matrix           fibrad_line_set_lines, _size, _init, _count
  *   rows       a collection of rows                     fibrad_rows_add, _clear, _read
- *   matrix     all rows: averaged, reciprocal, closed   fibrad_matrix_size, _init, _average, _close, _read,
- *                                                       _reciprocity
+ *   matrix     all rows: averaged, reciprocal, closed   fibrad_matrix_size, _init, _close, _read, _reciprocity
  *   exchange   factors after reflections (grey)         fibrad_exchange_row, _wall, _wall_mean, _displacement
  *              spheres that conduct                     fibrad_relative_conductivity, fibrad_node_emissivity
  *              powers from rows                         fibrad_rows_flow, fibrad_flow
@@ -107,46 +107,36 @@ extern "C" {
 /* ---- status ---------------------------------------------------------------------------------------------------- */
 /* What a call returned. The numbers never change their meaning. The error for a null pointer is FIBRAD_E_ARGUMENT. The
  * error for a scene that is not complete is FIBRAD_E_STATE. A scene is complete once fibrad_scene_init has returned
- * FIBRAD_OK. A fibrad_heat refers to one scene. If a different scene has been made in the memory of this scene, calls
- * that read the scene return FIBRAD_E_STATE. FIBRAD_E_SUM has two causes: a row part was changed, or the library has a
- * fault. No status has the number -3. */
+ * FIBRAD_OK. */
 typedef enum fibrad_status {
     FIBRAD_OK = 0,
     FIBRAD_E_ARGUMENT = -1,     /* A pointer is null, or a value is out of its range, NaN or infinite. */
     FIBRAD_E_SIZE = -2,         /* The block is smaller than the `_size` function says. */
     FIBRAD_E_CAPACITY = -4,     /* An output is too small. `length` or memory.needed is the size that suffices. */
-    FIBRAD_E_TABLE = -5,        /* There is no built-in set of so many points. */
+    FIBRAD_E_TABLE = -5,        /* There is no set of so many points or lines. */
     FIBRAD_E_GEOMETRY = -6,     /* A centre lies inside another sphere, or a sphere reaches beyond an opening. */
     FIBRAD_E_WORK = -7,         /* Fixed work memory is too small. work.memory.needed is the size that suffices. */
-    FIBRAD_E_STATE = -8,        /* A call is missing, too early or repeated, or the scene was made anew. */
+    FIBRAD_E_STATE = -8,        /* A call is missing, too early or repeated, or another scene has taken its memory. */
     FIBRAD_E_ISA = -9,          /* This build or this machine lacks the instruction set. */
     FIBRAD_E_UNSUPPORTED = -10, /* The request is valid, but this version cannot compute it. */
     FIBRAD_E_MEMORY = -11,      /* A resize function or the heap has no more memory. */
     FIBRAD_E_CANCELLED = -12,   /* A progress function has asked to stop. */
     FIBRAD_E_UNSOLVABLE = -13,  /* No temperatures give the powers that were asked for. */
     FIBRAD_E_BACK = -14,        /* A ray met a side that belongs to no wall. The triangle is written to the output. */
-    FIBRAD_E_SUM = -15,         /* A row's sum is not 1 within 1e-9. The causes are above. */
+    FIBRAD_E_SUM = -15,         /* A row's sum is not 1 within 1e-9: its parts were changed, or the library errs. */
     FIBRAD_E_ENDLESS = -16,     /* The walls form a tube or a corner without end. Add a wall or an opening. */
     FIBRAD_E_FILE = -17         /* A file cannot be made, written or renamed. Only functions of the host return this. */
 } fibrad_status;
 
-/* The meaning of a status as one English phrase.
- *   Input    status: any number
- *   Output   never NULL
- *   Errors   none */
+/* The meaning of a status, which may be any number, as one English phrase. Never NULL. */
 const char *fibrad_status_text(int status);
 
-/* The FIBRAD_VERSION of the library that the program is linked with.
- *   Errors   none */
+/* The FIBRAD_VERSION of the library that the program is linked with. */
 const char *fibrad_version(void);
 
 /* ---- memory ---------------------------------------------------------------------------------------------------- */
-/* A function of the caller that makes a block larger, as realloc does.
- *   Input    context: fibrad_memory.context
- *            block: the present block, NULL at the first call
- *            size: bytes wanted
- *   Output   a block of `size` bytes with the contents of the old block. Return NULL if there is no memory. Then the
- *            old block must stay valid. */
+/* A function of the caller that makes a block larger, as realloc does. block: NULL at the first call. It returns a
+ * block of `size` bytes with the contents of the old block, or NULL if there is no memory. Then the old block stays. */
 typedef void *fibrad_resize(void *context, void *block, size_t size);
 
 /* A block of memory that the library fills and never frees. There are two kinds.
@@ -171,33 +161,23 @@ typedef enum fibrad_isa {
     FIBRAD_ISA_NEON = 5 /* aarch64 */
 } fibrad_isa;
 
-/* The widest instruction set that this build and this machine have.
- *   Errors   none
- *   Cost     microseconds */
+/* The widest instruction set that this build and this machine have. The call takes microseconds. */
 fibrad_isa fibrad_isa_best(void);
 
-/* The name of an instruction set.
- *   Input    isa: any number
- *   Output   "best", "scalar", "sse2", "avx2", "avx512" or "neon"; "?" for any other number
- *   Errors   none */
+/* "best", "scalar", "sse2", "avx2", "avx512" or "neon"; "?" for any other number. */
 const char *fibrad_isa_name(int isa);
 
-/* ---- direction, pair --------------------------------------------------------------------------------------------- */
+/* ---- direction, pair ------------------------------------------------------------------------------------------- */
 /* Direction k of the spherical Fibonacci set of n directions: z = 1 - (2k + 1)/n, azimuth = k golden angles.
- *   Input    k: 0 to n - 1
- *            n: FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX
- *   Output   direction[3]: a unit vector
+ *   Input    n: FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX
  *   Errors   _ARGUMENT
- *   Cost     one square root
  *   Source   R. Swinbank, R. J. Purser, Q. J. R. Meteorol. Soc. 132 (2006) 1769, with a half-integer offset in z */
 int fibrad_direction(uint32_t k, uint32_t n, double direction[3]);
 
 /* View factor F12 from sphere 1 to sphere 2 with nothing in between.
  *   Input    r1, r2: radii [L], FIBRAD_LENGTH_MIN to FIBRAD_LENGTH_MAX
- *            gap: distance of the surfaces [L], above -2 min(r1, r2). A negative gap is an overlap. The formula
- *            continues smoothly into overlaps.
- *   Output   f12: relative error at most 1e-14 if r1/r2 is within 1e-4 to 1e4. F12 is continuous and falls as the gap
- *            grows. r1^2 F12 = r2^2 F21 to rounding.
+ *            gap: distance of the surfaces [L], above -2 min(r1, r2). A negative gap is an overlap.
+ *   Output   f12: relative error at most 1e-14 if r1/r2 is within 1e-4 to 1e4. r1^2 F12 = r2^2 F21 to rounding.
  *   Errors   _ARGUMENT
  *   Cost     0.06 microseconds, 0.2 for overlaps
  *   Source   directional form of the exchange area, docs/methods.md section 2 */
@@ -228,10 +208,10 @@ typedef struct fibrad_plane {
     double at; /* L, coordinate of the plane on its axis */
 } fibrad_plane;
 
-/* A cylinder about an axis parallel to x, y or z. */
+/* A cylinder along an axis. */
 typedef struct fibrad_cylinder {
-    double x, y, radius; /* L, position on the two other axes, in the order x, y, z; and radius above 0 */
-    int axis;            /* of the cylinder, 0: z, 1: x, 2: y */
+    double x, y, radius; /* L: x and y of its middle if it lies along z, y and z along x, x and z along y; above 0 */
+    int along;           /* 0: x, 1: y, 2: z */
 } fibrad_cylinder;
 
 /* A wall. The number of a wall is its index in fibrad_scene_config.wall.
@@ -241,21 +221,13 @@ typedef struct fibrad_cylinder {
  *             planes.
  *   cylinder  There is at most one. The two axes across it then have no period and no planes.
  *   meshes    Their triangles may hide spheres from each other. fibrad_mesh.h has the rules for triangles.
+ *   openings  An opening is a plane where the container ends and the surroundings begin. Radiation that meets an
+ *             opening counts as `escaped`. An opening has no index, no temperature and no emissivity.
  *
- * Openings. An opening is a plane where the container ends and the surroundings begin. Radiation that meets an opening
- * counts as `escaped`. An opening has no index, no temperature and no emissivity. All rules for planes hold for
- * openings.
- *
- * Endless walls. An endless wall has an infinite area. A single plane may be endless. Two planes across the same axis
- * may be endless, too. An axis is closed if it has two planes or a period. It is also closed if
- * fibrad_occupancy.periodic is 1 for the axis.
- *
- *   the scene has                     must be closed
- *   planes across one axis            no axis
- *   planes across two or three axes   all three axes
- *   a cylinder                        its own axis
- *
- * Otherwise fibrad_scene_init returns FIBRAD_E_ENDLESS. */
+ * Endless walls. An axis is closed if it has two planes or a period, also that of an occupancy (fibrad_occupancy). If
+ * there are planes across two or three axes, all three axes must be closed. If there is a cylinder, its own axis must
+ * be closed. Otherwise fibrad_scene_init returns FIBRAD_E_ENDLESS. Planes across one axis alone may be endless: they
+ * have an infinite area. */
 typedef struct fibrad_wall {
     int kind;                 /* a fibrad_wall_kind */
     fibrad_plane plane;       /* used by FIBRAD_WALL_PLANE */
@@ -263,9 +235,9 @@ typedef struct fibrad_wall {
 } fibrad_wall;
 
 /* Divided beds. Several machines may divide the spheres of a bed. Each machine computes the rows of its own spheres,
- * with a cutoff. The cutoff is a distance between centres: a row leaves out the spheres that are farther from sphere i.
- * Let R be the largest radius. The scene of a machine needs all spheres whose centres lie within cutoff + 1.5 R of one
- * of its own centres. If no spheres overlap, cutoff + R suffices. No other sphere changes a bit of its rows, and
+ * with a cutoff. The cutoff is a distance between centres: a row leaves out the spheres that are farther from sphere
+ * i. Let R be the largest radius. The scene of a machine needs all spheres whose centres lie within cutoff + 1.5 R of
+ * one of its own centres. If no spheres overlap, cutoff + R suffices. No other sphere changes a bit of its rows, and
  * neither does the order of the spheres. Rows also depend on the walls, the occupancy and the ids.
  *
  * The fraction `beyond`. Radiation of sphere i ends at the first sphere within the cutoff that it meets. If it meets
@@ -279,8 +251,8 @@ typedef struct fibrad_wall {
  *
  * A periodic scene without a cutoff may have an occupancy of all its spheres. It then serves lines to walls, which
  * spread about the direction of their window: docs/methods.md section 11. */
-/* Where a bed has spheres: the marked cells of a box. There is no part of any sphere in other cells or outside the box.
- * The occupancy must stay as it is while the scene is used. All machines use the same occupancy.
+/* Where a bed has spheres: the marked cells of a box. There is no part of any sphere in other cells or outside the
+ * box. The occupancy must stay as it is while the scene is used. All machines use the same occupancy.
  *
  * Cell (x, y, z) has the number k = x + cells[0] (y + cells[1] z). It is marked if bit k % 64 of mark[k / 64] is 1. */
 typedef struct fibrad_occupancy {
@@ -343,10 +315,7 @@ typedef enum fibrad_why {
     FIBRAD_WHY_ALONE = 27         /* A sphere in contact has emissivity 0, and nothing sets its temperature. */
 } fibrad_why;
 
-/* The cause of a fault as English words. The words continue a sentence that begins with the name of a sphere or a wall.
- *   Input    why: any number
- *   Output   never NULL
- *   Errors   none */
+/* The cause of a fault, which may be any number, as words that continue a sentence: "sphere 3 ..." Never NULL. */
 const char *fibrad_why_text(int why);
 
 /* Where a fault is. */
@@ -357,11 +326,8 @@ typedef struct fibrad_fault {
     int why;                /* a fibrad_why */
 } fibrad_fault;
 
-/* Bytes that fibrad_scene_init needs: 5 KB, 52 per sphere, and 8 more per sphere with ids. Triangles need more:
- * fibrad_triangles_size.
- *   Input    n: number of spheres
- *            ids: 1 if fibrad_spheres.id is set, else 0
- *   Errors   0 if n is above FIBRAD_SPHERES_MAX */
+/* Bytes that fibrad_scene_init needs for n spheres: 5 KB, 52 per sphere, and 8 more per sphere if ids is 1, for
+ * fibrad_spheres.id. Triangles need more: fibrad_triangles_size. 0: n is above FIBRAD_SPHERES_MAX. */
 size_t fibrad_scene_size(uint32_t n, int ids);
 
 /* An upper bound of fibrad_scene_size(n, 0), for static memory. */
@@ -369,9 +335,9 @@ size_t fibrad_scene_size(uint32_t n, int ids);
 
 /* Makes a scene.
  *
- * Centres on a periodic axis are moved into the box. The box begins at the least coordinate of all centres. Spheres may
- * overlap each other and the walls, as they do in settled beds. No centre may lie inside another sphere or beyond a
- * wall. A part of a sphere may lie beyond a wall. Whatever leaves this part meets the wall at once.
+ * Centres on a periodic axis are moved into the box. The box begins at the least coordinate of all centres. Spheres
+ * may overlap each other and the walls, as they do in settled beds. No centre may lie inside another sphere or beyond
+ * a wall. A part of a sphere may lie beyond a wall. Whatever leaves this part meets the wall at once.
  *   Input    memory[size]: at least fibrad_scene_size(n, ids) + fibrad_triangles_size(triangles, n) bytes
  *            config: NULL for all defaults
  *            spheres
@@ -411,30 +377,26 @@ typedef struct fibrad_scene_facts {
     uint32_t triangles;            /* number of triangles */
 } fibrad_scene_facts;
 
-/* Reads the facts of a scene. A null pointer, or a scene that is not complete, leaves `facts` as they are.
- *   Errors   none */
+/* Reads the facts of a scene. A null pointer, or a scene that is not complete, leaves `facts` as they are. */
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
 
-/* Area of a wall or an opening [L^2]. Only the part that bounds the container counts. Along a periodic axis this is the
- * area of one period. For a mesh this is the sum over all sides that belong to the wall.
+/* Area of a wall or an opening [L^2]: the part that bounds the container, in one period. For a mesh this is the sum
+ * over all sides that belong to the wall.
  *   Input    wall: 0 to walls - 1, or FIBRAD_OPENING(walls, axis, upper)
- *   Output   infinity: the wall or opening is endless. NaN: there is none, or the scene is not complete.
- *   Errors   none */
+ *   Output   infinity: the wall or opening is endless. NaN: there is none, or the scene is not complete. */
 double fibrad_scene_wall_area(const fibrad_scene *scene, uint32_t wall);
 
 /* The number of an opening, for functions that take a wall or an opening. upper: 0 or 1, as in fibrad_plane */
 #define FIBRAD_OPENING(walls, axis, upper) ((uint32_t)(walls) + 2 * (uint32_t)(axis) + (uint32_t)(upper))
 
-/* Sphere k in the order of the grid's cells. In this order neighbours in space mostly follow each other. Each sphere
- * occurs once. Compute the rows of a large bed in this order: rows are faster if their data are still in the cache.
- *   Input    k: 0 to n - 1
- *   Errors   UINT32_MAX: k is out of range, or the scene is not complete */
+/* Sphere k, 0 to n - 1, in the order of the grid's cells. Each sphere occurs once. Compute the rows of a large bed in
+ * this order: rows are faster if their data are still in the cache. UINT32_MAX: k is out of range, or the scene is not
+ * complete. */
 uint32_t fibrad_scene_sphere(const fibrad_scene *scene, uint32_t k);
 
 /* ---- work ------------------------------------------------------------------------------------------------------ */
 /* Scratch memory of one thread. Set `memory`, and zero the rest. One fibrad_work serves any scenes and functions in
- * turn. After FIBRAD_E_WORK, call again with a block of memory.needed bytes. This call may return FIBRAD_E_WORK once
- * more and ask for a still larger block. */
+ * turn. After FIBRAD_E_WORK, call again with a block of memory.needed bytes. One row may ask more than once. */
 typedef struct fibrad_work {
     fibrad_memory memory;
     void *inside;      /* of the library; NULL at first */
@@ -450,10 +412,6 @@ typedef struct fibrad_work {
 #define FIBRAD_WORK_TRIANGLES             26784
 
 /* ---- row ------------------------------------------------------------------------------------------------------- */
-/* Words of this section. Seen along a direction, a sphere is a disc. This disc is its shadow disc. The shadow disc of
- * sphere i is the window of the direction. A beam is all parallel rays from sphere i through one window. Sphere i is
- * open in a direction if some rays of its beam meet no sphere. */
-
 typedef struct fibrad_rows fibrad_rows; /* a collection of rows, see below */
 
 /* One row of factors. The caller chooses where the entries go.
@@ -479,82 +437,71 @@ typedef struct fibrad_row {
     double escaped;      /* out: fraction that reaches the surroundings, through an opening or past everything */
     double beyond;       /* out: fraction that leaves the cutoff, and whose end is not computed */
     double error;        /* out: estimated error of the row; in the median it is twice the true error */
-    uint32_t directions; /* out: directions taken; rows by rays: 0 */
+    uint32_t directions; /* out: number of directions of a row along directions, else 0 */
     uint32_t fallbacks;  /* out: windows that needed a slower, more robust method; rows by rays: 0 */
     int symmetric;       /* out: 1 if A_i F_ij = A_j F_ji holds without averaging */
     uint32_t lines;      /* out: number of lines of a row along lines, else 0 */
     float *half;         /* [capacity], out, of a row along lines: half the difference of the factors by even and by odd
                             lines; infinity: the factor is exact, since nothing can come between both spheres. May be
                             NULL. Rows in a collection keep it. */
-    double noise, shares; /* out, of a row along lines: the part of `error` that comes from the points of windows, and
-                             the part that comes from the factors of walls and surroundings */
+    double noise;        /* out, of a row along lines: part of `error`, from the points of windows */
+    double shares;       /* out, of a row along lines: part of `error`, from the factors of walls and surroundings */
 } fibrad_row;
 
 /* ---- lines ----------------------------------------------------------------------------------------------------- */
-/* A set of lines, for the rows of a matrix. Each line has a sense, so that a set is also a set of directions. The lines
- * are spread evenly, and the directions are spread evenly, too. The factor between two spheres is the mean of both of
- * their rows. So it counts each line in both senses, and its error is about half of that by as many Fibonacci
- * directions. Walls and surroundings are seen in the sense of each line alone. If the scene has planes, openings or a
- * cylinder and no triangles, spheres near these walls or near the border of the bed see them in both senses. */
+/* A set of lines, for the rows of a matrix. A row looks along one of the two directions of each line. These are spread
+ * evenly, as the lines are. The factor between two spheres is the mean of both of their rows. So it counts both
+ * directions of each line. Walls and surroundings are seen along one direction of each line. If the scene has planes,
+ * openings or a cylinder and no triangles, spheres near these walls or near the border of the bed see both. */
 typedef struct fibrad_line_set fibrad_line_set;
 
-/* The number of lines of the smallest built-in set with at least `lines` lines. If there is none, `lines`.
- *   Errors   none */
+/* The number of lines of the smallest set with at least `lines` lines. 0: there is none. There are sets of 8, 11, 16,
+ * 23, 32, 45, 55, 64, 91, 100, 128, 181, 233, 256, 362, 512, 724 and 1024 lines. */
 uint32_t fibrad_line_set_lines(uint32_t lines);
 
-/* Bytes that fibrad_line_set_init needs.
- *   Input    lines: FIBRAD_DIRECTIONS_MIN to FIBRAD_LINES_EVEN_MAX
- *   Errors   0 */
+/* Bytes that fibrad_line_set_init needs. 0: there is no set of so many lines. */
 size_t fibrad_line_set_size(uint32_t lines);
 
 /* Makes a set of fibrad_line_set_lines(lines) lines. Threads may share the set.
  *   Input    memory[size]
  *            lines: FIBRAD_DIRECTIONS_MIN to FIBRAD_LINES_EVEN_MAX
- *            turn: seed of a random rotation of all lines together; 0: no rotation
  *   Output   set: a pointer into memory
- *   Errors   _ARGUMENT, _SIZE
- *   Cost     microseconds; up to 1 s if this build has no built-in set of so many lines
+ *   Errors   _ARGUMENT, _SIZE, _TABLE
+ *   Cost     microseconds
  *   Source   docs/methods.md section 12 */
-int fibrad_line_set_init(fibrad_line_set **set, void *memory, size_t size, uint32_t lines, uint64_t turn);
+int fibrad_line_set_init(fibrad_line_set **set, void *memory, size_t size, uint32_t lines);
 
-/* The number of lines of a set.
- *   Errors   0 */
+/* The number of lines of a set. NULL: 0. */
 uint32_t fibrad_line_set_count(const fibrad_line_set *set);
 
-/* For fibrad_beam_rule.chords. FIBRAD_CHORDS_NONE: exact areas. FIBRAD_CHORDS_SUITED: points on as many chords as suit
- * the number of lines or directions. */
+/* For fibrad_beam_rule.chords: exact areas; as many chords as suit the number of lines or directions. */
 #define FIBRAD_CHORDS_NONE   1
 #define FIBRAD_CHORDS_SUITED 2
 
-/* How a beam row is integrated. Zeroed: FIBRAD_DIRECTIONS_DEFAULT directions, exact areas, no cutoff, no tolerance. If
- * directions is 0 and there is a tolerance, rows begin with FIBRAD_DIRECTIONS_FIRST directions. */
+/* How a beam row is computed. Zeroed: FIBRAD_DIRECTIONS_DEFAULT directions, exact areas, no cutoff, no tolerance. */
 typedef struct fibrad_beam_rule {
-    uint32_t directions; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: see above */
-    uint32_t points;     /* 0: exact visible areas; 64, 128 or 256: that many points per window */
+    uint32_t directions; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: _DEFAULT, with a tolerance _FIRST */
+    uint32_t points;     /* 64, 128 or 256: that many points per window; 0: see chords */
     double cutoff;       /* L; spheres are left out if their centre is farther than (1 + 1e-12) cutoff; 0: no cutoff */
     double tolerance;    /* the error allowed; directions are added until it is met; 0: no tolerance */
-    uint64_t turn;       /* seed of a random turn of all directions about z, or about the only axis with walls. Each
-                            direction also moves along this axis, at most half way to the next one. 0: no turn */
-    const fibrad_line_set *lines; /* lines to take; directions, turn, tolerance, points are 0; NULL: directions */
-    uint32_t chords;              /* 16, 32 or 64: points on so many chords of each window, kept as bits of words;
-                                     or one of the two numbers above; 0: FIBRAD_CHORDS_SUITED along lines,
-                                     FIBRAD_CHORDS_NONE along directions */
+    uint64_t turn;       /* seed of a random turn of all directions about z, or about the only axis with walls; each
+                            direction also moves along this axis, at most half way to the next one; 0: no turn */
+    const fibrad_line_set *lines; /* lines to take; directions, turn, tolerance and points must be 0; NULL: none */
+    uint32_t chords; /* 16, 32 or 64: each window has 32 points on each of so many chords (masks); FIBRAD_CHORDS_NONE;
+                        FIBRAD_CHORDS_SUITED; 0: SUITED along lines, NONE along directions */
 } fibrad_beam_rule;
 
-/* Row i of the view factors of a scene, by parallel beams.
- *
- * There is one beam for each direction of the rule. Sphere j is visible in a fraction of each window. The factor to
- * sphere j is the mean of this fraction over all windows.
+/* Row i of the view factors of a scene, by parallel beams. A beam is all parallel rays from sphere i through one
+ * window. There is one beam for each direction or line of the rule. Sphere j is visible in a fraction of each window.
+ * The factor to sphere j is the mean of this fraction over all windows.
  *   exact areas  The fraction is a visible area over the area of the window. The error of the entries falls as
- *                directions^-1.5. The error of factors to walls falls a little more slowly. Suppose that sphere i sees
- *                no other sphere and cuts no wall. Then the factors to planes and to the cylinder are exact. With a
- *                cutoff they are not.
- *   points       Each point of the window is one ray. The fraction is the number of points that meet sphere j, divided
- *                by the number of all points.
+ *                directions^-1.5, that of factors to walls a little more slowly. If sphere i sees no other sphere and
+ *                cuts no wall, and there is no cutoff, the factors to planes and to the cylinder are exact.
+ *   points       Each point of the window is one ray. The fraction is that of the points that meet sphere j.
  *
  * In a periodic scene, all images of one sphere have one entry together. Sphere i may see its own images. A beam meets
- * no sphere farther away than 100 periods. If the tolerance asks for more than FIBRAD_DIRECTIONS_MAX directions, the
- * row is made with FIBRAD_DIRECTIONS_MAX directions, and row->error is above the tolerance.
+ * no sphere farther away than 100 periods. A row never has more than FIBRAD_DIRECTIONS_MAX directions. If these do not
+ * meet the tolerance, row->error is above it.
  *   Input    i: 0 to spheres - 1
  *            rule: NULL for all defaults
  *   Output   row
@@ -564,32 +511,24 @@ typedef struct fibrad_beam_rule {
 int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
                     fibrad_row *row);
 
-/* The number of directions to try next when a row's error is above the tolerance. The estimate uses the law
- * directions^-1.5.
- *   Input    directions: those of the row
- *            error: of the row, above tolerance
- *            tolerance: above 0
- *   Output   at least 6/5 of directions, at most FIBRAD_DIRECTIONS_MAX
- *   Errors   none
- *   Source   docs/methods.md section 3 */
+/* The number of directions to try next when a row of so many directions has an error above the tolerance, by the law
+ * directions^-1.5. At least 6/5 of `directions`, at most FIBRAD_DIRECTIONS_MAX. Source: docs/methods.md section 3. */
 uint32_t fibrad_directions_for(uint32_t directions, double error, double tolerance);
 
-/* A part of a beam row: what some of its directions contribute. The factors of a row come from sums over its windows.
- * These sums are the same to the bit in any order of the windows. A part has such sums over its own windows. Set
- * `memory`, and zero the rest. */
+/* A part of a beam row: sums over some of its windows. These sums are the same to the bit in any order of the windows.
+ * Set `memory`, and zero the rest. */
 typedef struct fibrad_row_part {
     fibrad_memory memory;         /* about 400 bytes, 36 for each sphere seen, and 2.5 KB if there are walls */
     uint64_t key;                 /* of the library: the row, rule and scene of this part; 0: none */
     size_t used;                  /* of the library: bytes of memory */
-    uint32_t from, to, fallbacks; /* of the library: the directions, and the windows left to the robust method */
+    uint32_t from, to, fallbacks; /* of the library: the windows, and those left to the robust method */
 } fibrad_row_part;
 
-/* Part of a beam row: what directions `from` to `to` - 1 of the row contribute. Several threads may compute
- * different parts of one row at the same time.
+/* Windows `from` to `to` - 1 of a beam row. Several threads may compute different parts of one row at the same time.
  *   Input    work: of the calling thread
  *            i: 0 to spheres - 1
  *            rule: as for fibrad_beam_row; NULL for all defaults
- *            from, to: 0 <= from < to <= directions of the rule
+ *            from, to: 0 <= from < to <= directions or lines of the rule
  *   Output   part: after an error it makes no row
  *   Errors   _ARGUMENT, _STATE, _TABLE, _WORK, _MEMORY, _BACK
  *            _CAPACITY: fixed part->memory is too small; part->memory.needed is the size that suffices
@@ -600,7 +539,7 @@ int fibrad_beam_part(const fibrad_scene *scene, fibrad_work *work, uint32_t i, c
 
 /* The row that the parts make up, the same to the bit as by fibrad_beam_row.
  *   Input    i, rule: as for the parts
- *            part[parts]: in ascending order of directions, without gaps
+ *            part[parts]: in ascending order of windows, without gaps
  *   Output   row
  *   Errors   as fibrad_beam_row
  *            _STATE: a part is missing, or belongs to another row, rule or scene
@@ -623,11 +562,9 @@ typedef struct fibrad_cast_means {
     double *angle;  /* radians, [row->capacity], out: mean angle between the rays and the line of centres */
 } fibrad_cast_means;
 
-/* Row i of the view factors of a scene, by rays.
- *
- * The origins are spread evenly over the sphere. The directions follow the cosine law. Each ray ends at the first
- * surface that it meets. A factor is the number of rays that end on a surface over the number of all rays. The error
- * falls as rays^-0.6 with quasi-random numbers and as rays^-0.5 with pseudo-random numbers.
+/* Row i of the view factors of a scene, by rays. The origins are spread evenly over the sphere. The directions follow
+ * the cosine law. Each ray ends at the first surface that it meets. A factor is the fraction of all rays that end on a
+ * surface. The error falls as rays^-0.6 with quasi-random numbers and as rays^-0.5 with pseudo-random numbers.
  *
  * A ray may start inside another sphere j that overlaps sphere i. Let c be the vector from centre i to centre j, and w
  * the direction of the ray. If c.w > 0, the ray meets sphere j at length 0. Otherwise the ray passes through sphere j.
@@ -652,32 +589,27 @@ struct fibrad_rows {
     uint64_t entries;  /* out: entries of all rows */
 };
 
-/* Appends a row that was computed elsewhere, on another machine for example. The row does not say which scene it is
- * from. A matrix takes it for a row of its own scene, if this scene has such a sphere. If the row is of another scene,
- * no call notices.
+/* Appends a row that was computed elsewhere, on another machine for example. A matrix takes it for a row of its own
+ * scene. If the row is of another scene, no call notices.
  *   Input    row: sphere, col, f, length, wall, escaped, beyond, error, symmetric. row->rows must be NULL. The columns
  *            ascend. Each factor is 0 to 1.01. Of a row along lines also lines, half, noise and shares.
  *            walls: elements of row->wall
  *   Errors   _ARGUMENT, _CAPACITY, _MEMORY */
 int fibrad_rows_add(fibrad_rows *rows, const fibrad_row *row, uint32_t walls);
 
-/* Removes all rows and keeps the memory. NULL is allowed.
- *   Errors   none */
+/* Removes all rows and keeps the memory. NULL is allowed. */
 void fibrad_rows_clear(fibrad_rows *rows);
 
-/* Reads the next row of a collection. The arrays of `row` lie in the collection, and row->rows is NULL. The arrays are
- * valid until a row is appended. The caller may write the columns, to number the spheres anew. The new columns must
- * ascend, too.
+/* Reads the next row of a collection, and returns 1, or 0 after the last row. The arrays of `row` lie in the collection
+ * until a row is appended, and row->rows is NULL. The caller may write the columns, ascending, to number spheres anew.
  *   Input    at: 0 at the first call; each call moves `at` to the next row
- *   Output   row
- *   Errors   none. Returns 1, or 0 after the last row. */
+ *   Output   row */
 int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
 
 /* ---- matrix ---------------------------------------------------------------------------------------------------- */
-/* The row of a wall. fibrad_exchange_wall makes one batch of the row. fibrad_exchange_wall_mean makes the row, the mean
- * of all batches. The factors of the row add up to 1. If the emissivity of the wall is 0, all factors of the row are 0.
- * Paths among surfaces that absorb little end after many rays. The fraction lost is what such paths still carry then.
- */
+/* The row of a wall, by fibrad_exchange_wall and fibrad_exchange_wall_mean. Its factors add up to 1. If the emissivity
+ * of the wall is 0, all are 0. Paths among surfaces that absorb little end after many rays: the fraction lost is what
+ * they still carry then. */
 typedef struct fibrad_wall_row {
     double wall[FIBRAD_WALLS_MAX]; /* factor to each wall; a batch may have a factor a little below 0, by chance */
     double spheres;                /* factor to all spheres together */
@@ -690,8 +622,8 @@ typedef struct fibrad_wall_row {
 /* Does piece k of a job. The library hands this function to fibrad_parallel. */
 typedef void fibrad_piece(void *job, uint32_t k);
 
-/* A function of the caller that uses the caller's threads. It calls piece(job, k) once for each k from 0 to pieces - 1,
- * in any order or at the same time. It returns when all pieces are done. */
+/* A function of the caller that uses the caller's threads. It calls piece(job, k) once for each k from 0 to pieces -
+ * 1, in any order or at the same time. It returns when all pieces are done. */
 typedef void fibrad_parallel(void *context, uint32_t pieces, fibrad_piece *piece, void *job);
 
 /* What the rows of a matrix hold. */
@@ -708,22 +640,20 @@ typedef struct fibrad_matrix_rule {
     int raw;                         /* 1: leave the rows as they are; a missing row is empty */
     const double *emissivity;        /* [spheres], 0 to 1, needed with FIBRAD_ROWS_EXCHANGE; else NULL */
     double drop;                     /* 0 to 1: pairs of entries are dropped if both are below `drop`; 0: keep all */
-    uint32_t tasks;                  /* number of tasks for threads, 1 to 1024; changes no bit; 0 means 1 */
+    uint32_t tasks;                  /* into how many tasks `parallel` divides, 1 to 1024; changes no bit; 0: 1 */
     const fibrad_wall_row *wall_row; /* [walls], copied; rows of endless walls are not read; NULL: no rows of walls */
     const double *wall_emissivity;   /* [walls], 0 to 1, read if wall_row is set; NULL: 1 */
     fibrad_parallel *parallel;       /* used by all calls for this matrix; NULL: the calling thread does all */
     void *context;                   /* handed to parallel */
 } fibrad_matrix_rule;
 
-/* A matrix of factors in compressed rows. The arrays belong to the matrix that they were read from. If walls have no
- * rows, the three arrays wall_wall, wall_escaped and wall_error are NULL. If walls have rows, the elements of these
- * arrays for an endless wall are NaN.
+/* A matrix of factors in compressed rows. The arrays belong to the matrix that they were read from. wall_wall,
+ * wall_escaped and wall_error are NULL if walls have no rows. Their elements for an endless wall are NaN.
  *
- * `changed` shows whether the raw rows agree with each other. Raw row i gives fractions of its radiation to walls, to
- * the surroundings and to `beyond`. The matrix changes these fractions. The change of row i is the root of the sum of
- * the squared differences. `changed` is the largest ratio of a row's change to the row's error. For rows along lines
- * that error is at least 5 times the error of the raw row. A value well above 1 means that the raw rows contradict each
- * other by more than their errors. */
+ * `changed` shows whether the raw rows agree with each other. The matrix changes what raw row i gives to walls, to the
+ * surroundings and to `beyond`. The change of row i is the root of the sum of the squared differences. `changed` is
+ * the largest ratio of a row's change to its error. For rows along lines this error is at least 5 times that of the
+ * raw row. A value well above 1 means that the raw rows contradict each other by more than their errors. */
 typedef struct fibrad_factors {
     uint32_t n, walls;          /* numbers of spheres and of walls */
     const uint64_t *start;      /* [n + 1], row i is elements start[i] to start[i + 1] - 1 of col and f */
@@ -744,11 +674,8 @@ typedef struct fibrad_factors {
 
 typedef struct fibrad_matrix fibrad_matrix; /* a matrix in the making */
 
-/* Bytes that fibrad_matrix_init needs. Let b be the number of walls. The call needs 24 bytes for each entry of the
- * rows, or 32 if all rows are along lines, and 104 + 8 b bytes for each sphere. With `raw` it needs 12 bytes for each
- * entry and 48 + 8 b bytes for each sphere.
- *   Input    as fibrad_matrix_init
- *   Errors   0 */
+/* Bytes that fibrad_matrix_init needs: 24 for each entry of the rows, or 32 if all rows are along lines, and 104 + 8 b
+ * for each sphere, b being the number of walls. With `raw` 12 for each entry, 48 + 8 b for each sphere. 0: error. */
 size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                           const fibrad_matrix_rule *rule);
 
@@ -766,44 +693,16 @@ size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, ui
 int fibrad_matrix_init(fibrad_matrix **matrix, void *memory, size_t size, const fibrad_scene *scene,
                        const fibrad_rows *rows, uint32_t count, const fibrad_matrix_rule *rule, uint32_t *sphere);
 
-/* Averages the rows of one task. Several threads may do different tasks at the same time. This call is optional:
- * fibrad_matrix_close does the tasks that are left. Let A = 4 pi r^2 be the area and e the emissivity of a sphere. Rows
- * i and j both estimate the same quantity. The matrix gets a mean of both estimates:
- *   FIBRAD_ROWS_AREAS      (A_i F_ij + A_j F_ji)/2
- *   FIBRAD_ROWS_SAMPLED    w_i A_i F_ij + w_j A_j F_ji
- *   FIBRAD_ROWS_EXCHANGE   w_i A_i e_i D_ij + w_j A_j e_j D_ji
- * The weights are w_i = A_j/(A_i + A_j) and w_j = A_i/(A_i + A_j). If only one of two factors along lines is exact
- * (fibrad_row.half), the matrix gets this one.
- *   Input    task: 0 to rule->tasks - 1
- *   Errors   _ARGUMENT
- *            _STATE: the task is done already, the rule says raw, the matrix is closed, or the rows have changed
- *   Cost     each task reads its own entries three times and searches all rows once
- *   Source   docs/methods.md section 5 */
-int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
-
-/* Ends the matrix. In the matrix A_i F_ij = A_j F_ji to rounding. The sum of every row that is not empty is 1 to
- * rounding. If the rows hold exchange factors, read D_ij for F_ij and A_i e_i for A_i, here and below.
- *
- * With `raw` nothing is changed. Otherwise the steps are
- *   1. All tasks that are left are averaged.
- *   2. Let rest_i be what row i leaves for walls, surroundings and `beyond` together. u_i is found with
- *      u_i (sum over j of F_ij u_j + rest_i) = 1. F_ij is multiplied by u_i u_j. Exact factors are not multiplied.
- *        FIBRAD_ROWS_     row i                                          rest_i
- *        AREAS            has an open window                             max(0, 1 - averaged sum)
- *                         has none, is along lines, and its averaged
- *                         sum is below 1 by more than 5 times its noise  1 - averaged sum
- *                         any other                                      0
- *        SAMPLED          any                                            max(0, 1 - raw sum)
- *        EXCHANGE         any                                            max(0, 1 - raw sum)
- *      If a sum is still above 1, F_ij is then multiplied by min(s_i, s_j), where s_i brings the sum of row i to 1.
- *   3. Let F_ic be the factors of row i to what is no sphere: c is a wall, `escaped` or `beyond`. They are scaled so
- *      that the sum of the row is 1. If all of them are 0, they become
- *      F_ic = (1 - sum over j of F_ij) T_c/(sum over c of T_c), where T_c is the sum over all rows k of A_k F_kc.
- *   4. This step is done if walls have rows. A_b F_bi = A_i F_ib gives the factors from wall b to spheres. For walls b
- *      and c, let s = (F_bc + F_cb)/(A_b + A_c). Then F_bc becomes A_c s, and F_cb becomes A_b s. Let p and q be any
- *      spheres or walls. Numbers v are found so that all rows have the sum 1 once each F_pq is multiplied by v_p v_q.
- *      `escaped` and `beyond` of row p are multiplied by v_p. If triangles cut spheres, such v may not exist. Then no
- *      factor is multiplied, and wall_closure equals wall_correction.
+/* Ends the matrix. In the matrix A_i F_ij = A_j F_ji to rounding, A being the areas of spheres. The sum of every row
+ * that is not empty is 1 to rounding. If the rows hold exchange factors, read D_ij for F_ij and A_i e_i for A_i, with
+ * the emissivity e_i. With `raw` nothing is changed. Otherwise the steps are
+ *   1. The matrix gets a mean of both estimates of A_i F_ij, that of row i and that of row j.
+ *   2. F_ij is multiplied by u_i u_j, so that the rows of spheres have the sum 1 together with what they leave for
+ *      walls, surroundings and `beyond`. Exact factors (fibrad_row.half) are not multiplied.
+ *   3. Factors to walls, `escaped` and `beyond` are scaled so that the sum of each row is 1. If a row has none, it
+ *      gets them in proportion to the sums over all rows.
+ *   4. If walls have rows, these are made reciprocal and closed together with the rows of spheres. If triangles cut
+ *      spheres, that may not be possible: then wall_closure equals wall_correction.
  *   5. If F_ij and F_ji are both below `drop`, both are removed. F_ii stays. The other entries are scaled so that the
  *      sums of the rows stay. The part of a sum that no scaling can restore is added to F_ii.
  *   Errors   _ARGUMENT
@@ -813,26 +712,25 @@ int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
 int fibrad_matrix_close(fibrad_matrix *matrix);
 
 /* Reads a matrix.
- *   Errors   _ARGUMENT
- *            _STATE: the matrix is not closed */
+ *   Errors   _ARGUMENT, _STATE (the matrix is not closed) */
 int fibrad_matrix_read(const fibrad_matrix *matrix, fibrad_factors *factors);
 
-/* How far a matrix is from reciprocity: the largest |A_i F_ij - A_j F_ji|/max(A_i, A_j) over all entries. An entry that
- * is absent counts as 0. For exchange factors A is area times emissivity.
- *   Output   largest
- *   Errors   _ARGUMENT
- *            _STATE: the matrix is not closed
- *   Cost     O(entries). Uses memory of the matrix: one call at a time */
+/* How far a matrix is from reciprocity: the largest |A_i F_ij - A_j F_ji|/max(A_i, A_j) over all entries. For exchange
+ * factors A is area times emissivity. Uses memory of the matrix: one call at a time.
+ *   Errors   _ARGUMENT, _STATE (the matrix is not closed) */
 int fibrad_matrix_reciprocity(const fibrad_matrix *matrix, double *largest);
 
 /* ---- exchange -------------------------------------------------------------------------------------------------- */
 /* How a row of exchange factors is computed. The exchange factor D_ij is the fraction of the emission of sphere i that
- * sphere j absorbs, directly or after diffuse reflections. All surfaces are grey and diffuse. A surface of emissivity 0
- * reflects everything.
+ * sphere j absorbs, directly or after diffuse reflections. All surfaces are grey and diffuse.
  *
- * Radiation first travels from sphere i to the surface that it meets. This first segment is a beam row. With up to 49
- * directions the beam row takes 64 points per window. With 50 to 144 directions it takes 256 points. With more
- * directions it takes exact areas. Then paths follow the reflections. */
+ * The first segment of all radiation is its way from sphere i to the surface that it meets. This is a beam row: with 64
+ * points per window up to 49 directions, with 256 up to 144, with exact areas beyond. Paths follow what is reflected.
+ *
+ * Further paths may be followed elsewhere, and their results given as `known`. Paths that begin at walls
+ * (fibrad_exchange_wall) can take the place of further paths. Let a wall have the area A_b and the emissivity e_b. If
+ * sphere i absorbs x of n paths from this wall, then the wall absorbs x of n A_i e_i/(A_b e_b) further paths of sphere
+ * i. If spheres conduct, e_i is node_emissivity. */
 typedef struct fibrad_exchange_rule {
     const double *emissivity;      /* [spheres], 0 to 1 */
     const double *wall_emissivity; /* [walls], 0 to 1; NULL without walls */
@@ -842,44 +740,31 @@ typedef struct fibrad_exchange_rule {
     double cutoff;                 /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
     double tolerance;              /* the error allowed; directions and paths are added until it is met; 0: none */
     const double *node_emissivity; /* [spheres], fibrad_node_emissivity of each; NULL: spheres have one temperature */
-    /* The error allowed of the part of the first segment that meets no sphere. If its estimate is larger, the first
-     * segment is computed once more, with more directions of 256 points. 0: any error is allowed. */
-    double open_error;
-    /* [spheres], k* and not k_s: fibrad_relative_conductivity of each sphere, at least
-     * FIBRAD_RELATIVE_CONDUCTIVITY_MIN. INFINITY: the sphere has one temperature. Needed with node_emissivity. */
-    const double *conductivity;
-    /* [walls + 1], or NULL: what each wall and, last, the surroundings absorb of further paths of sphere i. Further
-     * paths are followed outside this call. The unit is a path. What a path gives before its first reflection does not
-     * count. NaN: not counted. The factor to a wall is the mean over the paths of this call and the further paths.
-     * Other entries are scaled so that the sum of the row is 1.
-     *
-     * Paths that begin at walls (fibrad_exchange_wall) can take the place of further paths, by reciprocity. Let a wall
-     * have the area A_b and the emissivity e_b. If sphere i absorbs x of n paths from this wall, then the wall absorbs
-     * x of n A_i e_i/(A_b e_b) paths of sphere i. If spheres conduct, e_i is node_emissivity. */
-    const double *known;
-    double known_paths; /* number of the further paths, 0 or more; the same for all walls */
+    double open_error; /* the error allowed of what meets no sphere in the first segment; if its estimate is larger,
+                          the first segment is computed once more, with more directions of 256 points; 0: any */
+    const double *conductivity; /* [spheres], k*, FIBRAD_RELATIVE_CONDUCTIVITY_MIN to INFINITY (one temperature), of
+                                   fibrad_relative_conductivity, not k_s; needed with node_emissivity */
+    const double *known; /* [walls + 1], how many of the further paths each wall and, last, the surroundings absorb
+                            after at least one reflection; NaN: not counted; NULL: there are no further paths. The
+                            factor to a wall is the mean over the paths of this call and the further paths. */
+    double known_paths;  /* number of the further paths, 0 or more */
 } fibrad_exchange_rule;
 
 /* The relative conductivity k* = k_s/(4 d sigma T^3) of a sphere of diameter d. The smaller k* is, the more the
- * temperature differs from point to point on the sphere. Warning: exchange rules take k*, and sources of heat
- * (fibrad_heat.h) take k_s. Neither of them can notice that it was given the other number. k_s may be 1e8 k*.
- *   Input    conductivity: k_s of the solid. In SI units [W/(m K)]
- *            radius, temperature: of the sphere. In SI units [m], [K]
+ * temperature differs from point to point on the sphere. Exchange rules take k*. Sources of heat (fibrad_heat.h) take
+ * k_s. Neither notices the other number, which may be 1e8 times as large.
+ *   Input    conductivity, radius, temperature: of the sphere, in SI units [W/(m K)], [m], [K]
  *            sigma: the Stefan-Boltzmann constant in the same units, in SI units FIBRAD_STEFAN_BOLTZMANN
  *   Output   INFINITY at the temperature 0; NaN if an argument is NaN */
 double fibrad_relative_conductivity(double conductivity, double radius, double temperature, double sigma);
 
-/* The emissivity of a node. The temperature of a sphere that conducts differs from point to point. In rows with
- * rule->node_emissivity a node stands for such a sphere. Let sphere i have the mean temperature T_i, the net power q_i,
- * the area A_i and the emissivity e_i. E_i is sigma T_i^4. The emission at a point of the sphere is taken to be linear
- * in T about T_i. The node has the emissivity n_i and one value N_i:
- *
+/* The emissivity of a node. In rows with rule->node_emissivity a node stands for a sphere that conducts. Let sphere i
+ * have the mean temperature T_i, the net power q_i, the area A_i and the emissivity e_i. E_i is sigma T_i^4. Emission
+ * is taken to be linear in T about T_i. The node has the emissivity n_i and one value N_i:
  *     q_i = sum over j of A_i n_i D_ij (N_j - N_i),   N_i = E_i - (1/n_i - 1/e_i) q_i/A_i.
- *
- * The entries of the rows are the exchange factors D_ij between nodes. No D_ij is below 0, and
- * A_i n_i D_ij = A_j n_j D_ji. The sum over j includes walls and surroundings, and for these N is E. So the powers
- * follow from a linear system. For the matrix of such rows, set fibrad_matrix_rule.emissivity to the emissivities of
- * the nodes.
+ * The rows have the exchange factors D_ij between nodes, and A_i n_i D_ij = A_j n_j D_ji. The sum over j includes
+ * walls and surroundings, for which N is E. So the powers follow from a linear system. For the matrix of such rows,
+ * set fibrad_matrix_rule.emissivity to the emissivities of the nodes.
  *   Input    emissivity: 0 to 1
  *            conductivity: k*, from FIBRAD_RELATIVE_CONDUCTIVITY_MIN; INFINITY: the result is the emissivity
  *   Output   n, with 0 < n <= emissivity. If the emissivity is 0, n is 0.
@@ -888,22 +773,21 @@ double fibrad_relative_conductivity(double conductivity, double radius, double t
  *   Source   docs/methods_heat.md section 15 */
 double fibrad_node_emissivity(double emissivity, double conductivity);
 
-/* Row i of the exchange factors of a scene. row->f holds D_ij. Factors to walls, `escaped` and `beyond` count all
- * reflections, too. The sum of the row is 1 to rounding. The row of a sphere of emissivity 0 is empty, and its sum is
- * 0. No other row has an entry for such a sphere. The error falls as directions^-1.5 and paths^-0.5.
+/* Row i of the exchange factors of a scene. Factors to walls, `escaped` and `beyond` count all reflections, too. The
+ * sum of the row is 1 to rounding. The row of a sphere of emissivity 0 is empty, and no other row has an entry for it.
+ * The error falls as directions^-1.5 and paths^-0.5.
  *   Input    i: 0 to spheres - 1
  *            rule: needed
  *   Output   row
  *            rays: rays traced; may be NULL
  *   Errors   as fibrad_beam_row. The emissivities of sphere i, of walls, and of spheres that are met are checked.
- *   Cost     the beam row, and 0.1 to 0.2 microseconds per ray. A path has about 2 rays if the emissivity is 0.8, and
- *            14 if it is 0.2. If spheres conduct, these are the emissivities of the nodes. If work memory may grow,
- *            this function takes up to 6 MB more, for speed.
+ *   Cost     the beam row, and 0.1 to 0.2 microseconds per ray. A path has about 2 rays if the emissivity (of nodes)
+ *            is 0.8, and 14 if it is 0.2. Work memory that may grow takes up to 6 MB more, for speed.
  *   Source   docs/methods_heat.md section 2 */
 int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
                         fibrad_row *row, uint64_t *rays);
 
-/* The row of a wall or an opening is computed in this many batches of paths. The spread of the batches is the error. */
+/* Batches of paths of the row of a wall. Their spread is the error. */
 #define FIBRAD_WALL_PARTS 8
 
 /* How the row of a wall is computed. Zeroed: all surfaces are black. */
@@ -918,10 +802,9 @@ typedef struct fibrad_wall_rule {
 
 /* One batch of the row of a wall: the fractions of the wall's emission that walls, spheres and surroundings absorb.
  * The area that emits is the one that fibrad_scene_wall_area returns. Factors to single spheres follow from
- * reciprocity, A_b e_b D_bi = A_i e_i D_ib. A batch follows an eighth of rule->paths, and fewer paths if nearly nothing
- * absorbs. The error falls as paths^-0.6, at low emissivities as paths^-0.5.
- *
- * An opening has a row, too. It is black, and emits what the surroundings send through it.
+ * reciprocity, A_b e_b D_bi = A_i e_i D_ib. A batch follows an eighth of rule->paths, and fewer paths if nearly
+ * nothing absorbs. The error falls as paths^-0.6, at low emissivities as paths^-0.5. An opening has a row, too. It is
+ * black, and emits what the surroundings send through it.
  *   Input    wall: 0 to walls - 1, or FIBRAD_OPENING(walls, axis, upper)
  *            part: number of the batch, 0 to FIBRAD_WALL_PARTS - 1
  *            rule: needed
@@ -935,11 +818,8 @@ typedef struct fibrad_wall_rule {
 int fibrad_exchange_wall(const fibrad_scene *scene, fibrad_work *work, uint32_t wall, const fibrad_wall_rule *rule,
                          uint32_t part, fibrad_wall_row *row, uint64_t *reflected);
 
-/* The mean of all batches of a wall's row. The spread of the batches gives the standard error of the mean. The error is
- * this standard error plus the fraction lost (fibrad_wall_row). A mean below 0 becomes 0. Then the other factors are
- * scaled so that their sum is 1.
- *   Input    part[FIBRAD_WALL_PARTS]: all batches
- *   Output   mean
+/* The mean of all batches of a wall's row. Its error is the standard error of the mean plus the fraction lost
+ * (fibrad_wall_row). A mean below 0 becomes 0. Then the other factors are scaled so that their sum is 1.
  *   Errors   _ARGUMENT */
 int fibrad_exchange_wall_mean(const fibrad_wall_row part[FIBRAD_WALL_PARTS], fibrad_wall_row *mean);
 
@@ -951,7 +831,6 @@ typedef struct fibrad_displacement_rule {
     uint32_t flights;              /* if spheres conduct, 1 to FIBRAD_FLIGHTS_MAX; 0: FIBRAD_FLIGHTS_DEFAULT */
     uint32_t paths;                /* 1 to FIBRAD_PATHS_MAX; 0: FIBRAD_PATHS_DEFAULT */
     uint64_t seed;                 /* of random numbers, with the sphere's id */
-    double cutoff;                 /* L; paths end at this distance from centre i; 0: none */
 } fibrad_displacement_rule;
 
 /* How far the emission of a sphere is carried. */
@@ -965,21 +844,19 @@ typedef struct fibrad_displacement {
 /* Mean square displacement of the emission of sphere i, from its centre to the centre of the sphere that absorbs.
  * Periods that a path has crossed count. Emission that no sphere absorbs counts as displacement 0.
  *
- * With rule->conductivity spheres conduct. The result then shows how fast radiation spreads through the bed.
- * Temperatures differ from point to point on each sphere, and the net power of every sphere is 0. A path begins with an
- * arrival at sphere i. The starts of the paths are spread evenly over its surface. At each sphere the path is
- * reflected, or it is absorbed and given off at another point of the sphere. The way from one arrival to the next is a
- * flight. Let n be rule->flights. A path has 2 n flights. Let d[k] be the displacement of flight k along an axis. Then
- * `square` is the mean over all paths and over k = 1 to n of
+ * With rule->conductivity spheres conduct, and the net power of every sphere is 0. A path begins with an arrival at
+ * sphere i, evenly over its surface. At each sphere the path is reflected, or it is absorbed and given off at another
+ * point of the sphere. The way from one arrival to the next is a flight. With n = rule->flights a path has 2 n
+ * flights. Let d[k] be the displacement of flight k along an axis. Then `square` is the mean over all paths and over k
+ * = 1 to n of
  *   d[k] (d[k] + 2 (d[k+1] + ... + d[k+n-1]) + d[k+n]).
- * This estimates the mean square displacement of a long path, divided by its number of flights. The estimate leaves out
- * the correlation of flights that are more than n apart. For example, in a cubic lattice of emissivity 1 the sum of
- * `square` is 0.2 % too large with n = 12 at k* = 0.1. With n = 24 it is 0.2 % too large at k* = 0.01.
+ * This is the mean square displacement of a long path over its number of flights, but for the correlation of flights
+ * that are more than n apart. In a cubic lattice of emissivity 1 it is 0.2 % with 12 at k* = 0.1 and 24 at k* = 0.01.
  *   Input    i: 0 to spheres - 1
  *            rule: needed
  *   Output   displacement
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY, _BACK
- *            _UNSUPPORTED: spheres conduct, and the scene has walls or openings, or there is a cutoff
+ *            _UNSUPPORTED: spheres conduct, and the scene has walls or openings
  *   Cost     0.1 to 0.2 microseconds per ray; 2 n rays a path if spheres conduct
  *   Source   docs/methods_heat.md sections 12 and 14 */
 int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
@@ -998,13 +875,11 @@ typedef struct fibrad_flow {
     const double *made;           /* [spheres], when the row of each sphere was made; NULL: all at once */
 } fibrad_flow;
 
-/* Adds the powers that follow from rows of exchange factors. The collection may have rows of some spheres only.
- *
- * An entry D_ij moves the power A_i eps_i D_ij (E_j - E_i)/2 from sphere j to sphere i. The other half comes from row
- * j, on this or on another machine. If flow->made differs for i and j, row i alone moves the full power. The reason is
- * that an older row has no factor to a newer sphere. A factor to a wall or to the surroundings moves the full power,
- * since walls and surroundings have no rows here. All factors of a row are first multiplied by 1/(1 - beyond). Sphere i
- * gains exactly what the others lose, to the bit. Nothing flows between equal emissions.
+/* Adds the powers that follow from rows of exchange factors. The collection may have rows of some spheres only. All
+ * factors of a row are first multiplied by 1/(1 - beyond). An entry D_ij moves the power A_i eps_i D_ij (E_j - E_i)/2
+ * from sphere j to sphere i. The other half comes from row j, on this or on another machine. If flow->made differs for
+ * i and j, row i alone moves the full power, since an older row has no factor to a newer sphere. A factor to a wall or
+ * to the surroundings moves the full power. Sphere i gains exactly what the others lose, to the bit.
  *   Input    rows: a collection; its rows are taken in their order
  *            spheres, walls: lengths of the arrays in `flow`
  *   Output   flow: the powers

@@ -3,13 +3,12 @@
  * A surface is a sphere or a wall. Each surface has a given temperature, or it gives off a given power and its
  * temperature is found.
  *
- * Method     Surfaces are cut into patches. Beams of points connect the patches that see each other. A beam carries
- *            radiation both ways. Hence nothing flows at equal temperatures, and all powers add up to zero. Each patch
- *            has a radiosity J = eps E + (1 - eps) H. Here E = sigma T^4, and H is the radiation that arrives.
- *            Conjugate gradients find J, first on coarse patches, four times as large, then on the patches themselves.
- *            Each step of this search is a sweep: one pass over all beams. A sweep is divided into parts, which threads
- *            may do at the same time. Both results are extrapolated to patches of size 0: this gives the powers and
- *            temperatures.
+ * Method     Surfaces are cut into patches. A beam connects two patches that see each other, and carries radiation both
+ *            ways. Hence nothing flows at equal temperatures, and all powers add up to zero. Each patch has a
+ *            radiosity J = eps E + (1 - eps) H. Here E = sigma T^4, and H is the radiation that arrives. Conjugate
+ *            gradients find J, first on fours (four patches together), then on the patches themselves. Each step of
+ *            this search is a sweep: one pass over all beams, in parts that threads may do at the same time. Powers
+ *            and temperatures are extrapolated from both solutions to patches of size 0.
  * Sequence   1. fibrad_heat_init
  *            2. fibrad_heat_trace for every task
  *            3. fibrad_heat_begin
@@ -33,12 +32,11 @@ extern "C" {
 /* How finely the problem is resolved. A field of 0 stands for its default. The default of wall_rays is the largest of
  * three numbers: FIBRAD_WALL_RAYS_DEFAULT, 6 * directions * points, and 8 times the number of patches of all walls. */
 typedef struct fibrad_heat_config {
-    uint32_t
-        directions;   /* of beams from each sphere, FIBRAD_DIRECTIONS_MIN to _MAX; 0: FIBRAD_HEAT_DIRECTIONS_DEFAULT */
-    uint32_t points;  /* of each beam: 64, 128 or 256; 0: FIBRAD_HEAT_POINTS_DEFAULT */
-    uint32_t patches; /* of each sphere: 24, 96 or 384; 0: FIBRAD_HEAT_PATCHES_DEFAULT */
-    uint32_t parts;   /* of a sweep, 1 to FIBRAD_HEAT_PARTS_MAX; results depend on it by rounding; 0: _DEFAULT */
-    uint32_t wall_rays; /* least number of rays from all walls together, at most FIBRAD_WALL_RAYS_MAX; 0: see above */
+    uint32_t directions; /* of each sphere, FIBRAD_DIRECTIONS_MIN to _MAX; 0: FIBRAD_HEAT_DIRECTIONS_DEFAULT */
+    uint32_t points;     /* of each direction, where beams begin: 64, 128 or 256; 0: FIBRAD_HEAT_POINTS_DEFAULT */
+    uint32_t patches;    /* of each sphere: 24, 96 or 384; 0: FIBRAD_HEAT_PATCHES_DEFAULT */
+    uint32_t parts;      /* of a sweep, 1 to FIBRAD_HEAT_PARTS_MAX; results depend on it by rounding; 0: _DEFAULT */
+    uint32_t wall_rays;  /* least number of rays from all walls together, at most FIBRAD_WALL_RAYS_MAX; 0: see above */
 } fibrad_heat_config;
 
 /* A heat problem: the patches, beams and radiosities of a scene. */
@@ -102,37 +100,36 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *   emissivity 0, no contact  T            0 or NaN  not used
  *                             NaN          0         0, NaN
  *
- * `storage` makes the solution an implicit step in time. Let a sphere of heat capacity C have the temperature R at the
- * beginning of a step of length dt. Its h is C/(4 sigma R^3 dt).
+ * `storage` makes the solution an implicit step in time. A sphere of heat capacity C that has the temperature R at the
+ * beginning of a step of length dt has h = C/(4 sigma R^3 dt).
  *
  * Walls have the same choices with wall_temperature and wall_power, but no storage and no reference. An insulated wall
  * sends back all that arrives, point by point. Its temperature, emissivity and power are not used. The sides of a mesh
  * may have temperatures of their own if the wall has a given temperature. An endless wall (fibrad.h) must have a given
  * temperature, unless it reflects everything.
  *
- * A sphere with a finite conductivity has a temperature that differs from point to point. `temperature` is then the
- * mean over its surface. The inside is taken to be steady, with the power P - h sigma (T^4 - R^4) spread evenly.
- * Emission is taken to be linear in the difference from the mean (docs/methods_heat.md section 13). With
- * `conductivity`, `uniform` must be 0. `conductivity` is k_s of the solid, not k* of fibrad_relative_conductivity. It
- * is in units of sigma K^3 L. If lengths are in millimetres and sigma is in W/(m2 K4), a solid of 30 W/(m K) has the
- * conductivity 30/0.001.
+ * The temperature of a sphere with a finite conductivity differs from point to point. `temperature` is then the mean
+ * over its surface. Inside, the temperature is taken to be steady, and the power P - h sigma (T^4 - R^4) to be
+ * released evenly. Emission is taken to be linear in the difference from the mean (docs/methods_heat.md section 13).
+ * With `conductivity`, `uniform` must be 0. `conductivity` is k_s of the solid, not k* of
+ * fibrad_relative_conductivity. It is in units of sigma K^3 L. If lengths are in millimetres and sigma is in W/(m2
+ * K4), a solid of 30 W/(m K) has the conductivity 30/0.001.
  *
- * To a given power, add the light that the surface absorbs (fibrad_heat_sum_light). `absorbed` says which patches this
- * light heats:
+ * Light has two inputs. Its power (fibrad_heat_sum_light) is added to the given powers. `absorbed` has the light of
+ * each patch:
  *   a sphere with a finite conductivity  is hotter at the lit patches
  *   an insulated wall                    sends the light out as thermal radiation, at the same patch; it has no power
- *   any other sphere or wall             `absorbed` has no effect
+ *   any other sphere or wall             does not use `absorbed`
  *
- * Contacts conduct heat between spheres, and between spheres and walls. Contact k has the ends contact_first[k] and
- * contact_second[k]: an index of a sphere, or `spheres` plus the index of a wall. It carries the heat conductance[k]
- * times the difference of their temperatures. Several contacts may have the same ends. A contact of a sphere with
- * itself, across a period, carries nothing. A sphere of emissivity 0 that is in contact has a temperature. It may give
- * off a power. `conductance` is in units of sigma K^3 L^2. If lengths are in millimetres and sigma is in W/(m2 K4), 1
- * W/K is 1e6.
+ * Contact k conducts heat between contact_first[k] and contact_second[k]: each is an index of a sphere, or `spheres`
+ * plus the index of a wall. The heat is conductance[k] times the difference of their temperatures. Several contacts
+ * may have the same ends. A contact of a sphere with itself, across a period, carries nothing. A sphere of emissivity
+ * 0 that is in contact has a temperature, and may give off a power. `conductance` is in units of sigma K^3 L^2. If
+ * lengths are in millimetres and sigma is in W/(m2 K4), 1 W/K is 1e6.
  *
- * With `contact_places` the contacts of a sphere with a finite conductivity act at their places. The place of a contact
- * is where the line to the other centre leaves the sphere. For a plane or cylinder it is where the normal leaves the
- * sphere. Contacts with meshes act on the mean of the sphere's surface.
+ * With `contact_places` the contacts of a sphere with a finite conductivity act where the line to the other centre, or
+ * the normal of the plane or cylinder, leaves the sphere. Contacts with meshes act on the mean of the sphere's
+ * surface.
  *
  * The residual is the error of the equations for J, relative to what drives the radiation: differences of emission,
  * given powers and light. tolerance = 0 stands for one of three numbers:
@@ -140,11 +137,11 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *   1e-5   else, if a temperature is unknown and its storage is 0
  *   1e-3   else
  * The search also goes on until the power of each wall is settled to the tolerance. The tolerance is here relative to
- * the power, or to 5 % of what the wall absorbs, whichever is more. If a temperature is unknown, the tolerance of these
- * powers is 100 times as large, at most 1e-3.
+ * the power, or to 5 % of what the wall absorbs, whichever is more. If a temperature is unknown, the tolerance of
+ * these powers is 100 times as large, at most 1e-3.
  *
- * side_temperature is in the order of the caller's triangles. If sides share a patch, each side emits the mean of their
- * emissions. */
+ * side_temperature is in the order of the caller's triangles. If sides share a patch, each side emits the mean of
+ * their emissions. */
 typedef struct fibrad_heat_sources {
     const double *temperature; /* K, [spheres], 0 to FIBRAD_TEMPERATURE_MAX; NaN: unknown */
     const double *emissivity;  /* [spheres], 0 to 1 */
@@ -192,8 +189,8 @@ int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *source
  *   Cost     O(patches) */
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources);
 
-/* Does one part of a sweep. Between two steps each part is swept once. Several threads may sweep different parts at the
- * same time.
+/* Does one part of a sweep. Between two steps each part is swept once. Several threads may sweep different parts at
+ * the same time.
  *   Input    part: 0 to fibrad_heat_parts - 1
  *   Errors   _ARGUMENT
  *            _STATE: the part was swept already, or no solution was begun
@@ -205,10 +202,10 @@ int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
  *   Output   solved: 1 if the residual is below the tolerance, or after about sweeps_max sweeps; else 0
  *   Errors   _ARGUMENT
  *            _STATE: a part was not swept, no solution was begun, or the scene has changed
- *            _UNSOLVABLE: nothing gives the level of the temperatures (see Level), and one of two things is so.
- *            There are contacts, or the powers do not add up to zero
- *   Level    If all temperatures are unknown and nothing escapes, nothing gives the level of the temperatures. Then the
- *            mean emission, weighted by emissivity and area, is set to that of the surroundings. */
+ *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, and there are contacts or the powers do not
+ *            add up to zero
+ *   Level    If all temperatures are unknown and nothing escapes, any level of temperatures would do. The mean
+ *            emission, weighted by emissivity and area, is then that of the surroundings. */
 int fibrad_heat_step(fibrad_heat *heat, int *solved);
 
 /* The solution. The arrays belong to the caller. Where a field may be NULL, NULL means that it is not wanted.
@@ -256,16 +253,13 @@ typedef struct fibrad_heat_result {
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result);
 
 /* Reads the solution on the sides of triangles: element 2 t is the front and 2 t + 1 the back of the caller's triangle
- * t. A value is the mean over the patches of the side. Sides that share a patch have equal values. Flux times area,
- * summed over the sides of a mesh, is to rounding:
- *   a mesh that a plane or the cylinder cuts        none of the following
- *   a mesh that is insulated                        wall_power
- *   any other mesh, if sources.absorbed is NULL     wall_power
- *   any other mesh, if sources.absorbed is an array wall_power + the light that the mesh absorbs
+ * t. A value is the mean over the patches of the side. Sides that share a patch have equal values. If no plane and no
+ * cylinder cuts a mesh, its flux times area, summed over its sides, is to rounding wall_power; if the mesh is not
+ * insulated and sources.absorbed is set, wall_power plus the light that the mesh absorbs.
  *   Output   flux[2 triangles]: net power per area [sigma K^4]; may be NULL. NaN: the side belongs to no wall, or no
  *            beam and no ray reaches it.
- *            temperature[2 triangles]: [K]; may be NULL. NaN: the side belongs to no wall, its wall has no temperature,
- *            or its wall is insulated and no beam and no ray reaches the side.
+ *            temperature[2 triangles]: [K]; may be NULL. NaN: the side belongs to no wall, its wall has no
+ *            temperature, or its wall is insulated and no beam and no ray reaches the side.
  *   Errors   _ARGUMENT
  *            _STATE: there is no solution, or the scene has changed */
 int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temperature);

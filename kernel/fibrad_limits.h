@@ -20,9 +20,9 @@
 #define FIBRAD_DIRECTIONS_FIRST   100 /* with a tolerance: the number to begin with */
 
 /* Rows of a matrix along lines */
-#define FIBRAD_LINES_AMONG_WALLS 233  /* a built-in set; spheres far from walls see them in one sense */
-#define FIBRAD_LINES_DEFAULT     181  /* without walls; a built-in set */
-#define FIBRAD_LINES_EVEN_MAX    2048 /* lines of a set that is spread evenly; errors of larger sets were not measured */
+#define FIBRAD_LINES_AMONG_WALLS 233  /* spheres far from walls see them in one sense */
+#define FIBRAD_LINES_DEFAULT     181  /* without walls */
+#define FIBRAD_LINES_EVEN_MAX    1024 /* lines of the largest set */
 
 /* Rows by rays: rays of each sphere */
 #define FIBRAD_RAYS_DEFAULT 20000

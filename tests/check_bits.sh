@@ -69,12 +69,11 @@ fi
 
 test $# -gt 0 || variant built "$CC" -O2 "" "" scalar sse2 avx2 avx512
 test "${1:-}" != all || set -- gcc:-O0 gcc:-O2 gcc:-O3 gcc:-O3,-march=native \
-    clang:-O0 clang:-O2 clang:-O3 clang:-O3,-march=native aarch64:-O2 arm:-O2
+    clang:-O0 clang:-O2 clang:-O3 clang:-O3,-march=native aarch64:-O2
 for build; do
     level=$(echo "${build#*:}" | tr , ' ')
     case $build in
     aarch64:*) variant "aarch64$level" aarch64-linux-gnu-gcc "$level" qemu-aarch64 -static scalar neon ;;
-    arm:*) variant "arm$level" arm-linux-gnueabihf-gcc "$level" qemu-arm -static scalar ;;
     *) variant "$(echo "$build" | tr -d :,=)" "${build%:*}" "$level" "" "" scalar sse2 avx2 avx512 ;;
     esac
 done

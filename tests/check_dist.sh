@@ -67,7 +67,6 @@ needs() {
     fi
 }
 
-needs arm-linux-gnueabihf-gcc arm-linux-gnueabihf-nm
 case $(gcc -dumpmachine) in x86_64*) needs gcc nm -m32 -msse2 -mfpmath=sse -ffreestanding ;; esac
 test "${1:-}" = all || exit $faults
 variant gcc -O1 "" "" sse2 avx2
@@ -76,5 +75,4 @@ variant gcc "-O3 -march=native" "" "" scalar avx512
 variant clang -O2 "" "" scalar sse2 avx2 avx512
 variant clang "-O3 -march=native" "" "" scalar avx512
 variant aarch64-linux-gnu-gcc -O2 qemu-aarch64 -static scalar neon
-variant arm-linux-gnueabihf-gcc -O2 qemu-arm -static scalar
 exit $faults

@@ -15,11 +15,8 @@ static inline fibrad_wall_rule wall_rule(const fibrad_exchange_rule *of) {
 }
 
 static inline fibrad_displacement_rule displacement_rule(const fibrad_exchange_rule *of) {
-    return (fibrad_displacement_rule){.emissivity = of->emissivity,
-                                      .wall_emissivity = of->wall_emissivity,
-                                      .paths = of->paths,
-                                      .seed = of->seed,
-                                      .cutoff = of->cutoff};
+    return (fibrad_displacement_rule){
+        .emissivity = of->emissivity, .wall_emissivity = of->wall_emissivity, .paths = of->paths, .seed = of->seed};
 }
 
 /* Calls that take them. */

@@ -127,7 +127,7 @@ static inline fibrad_wall plane_at(int axis, int upper, double at) {
 }
 
 static inline fibrad_wall cylinder_at(double x, double y, double radius) {
-    return (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {x, y, radius, 0}};
+    return (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {x, y, radius, 2}};
 }
 
 /* A point whose coordinate on axis a was that on axis a - turn; walls and beds, too. Wall and point stay together. */
@@ -139,7 +139,7 @@ static inline void turned_point(const double at[3], int turn, double turned[3]) 
 static inline fibrad_wall turned_wall(fibrad_wall wall, int turn) {
     const double x = wall.cylinder.x, y = wall.cylinder.y;
     wall.plane.axis = (wall.plane.axis + turn) % 3;
-    wall.cylinder.axis = turn;
+    wall.cylinder.along = (2 + turn) % 3;
     if (turn == 2) wall.cylinder.x = y, wall.cylinder.y = x;
     return wall;
 }
@@ -301,11 +301,11 @@ static inline bool same_bits_with(const fibrad_row *a, const fibrad_row *b, uint
 }
 
 /* A set of lines. free(*set) frees it. */
-static inline fibrad_line_set *lines_of(uint32_t lines, uint64_t turn) {
+static inline fibrad_line_set *lines_of(uint32_t lines) {
     const size_t size = fibrad_line_set_size(lines);
     fibrad_line_set *set = NULL;
     void *block = block_of(size);
-    assert_ok(fibrad_line_set_init(&set, block, size, lines, turn));
+    assert_ok(fibrad_line_set_init(&set, block, size, lines));
     ck_assert_ptr_eq(set, block);
     return set;
 }
@@ -355,7 +355,7 @@ static inline struct matrix matrix_by_beams(const fibrad_scene *scene, const fib
 
 /* The same along lines. chords: as in fibrad_beam_rule. */
 static inline struct matrix matrix_by_lines(const fibrad_scene *scene, uint32_t lines, uint32_t chords, bool raw) {
-    OWNED fibrad_line_set *set = lines_of(lines, 0);
+    OWNED fibrad_line_set *set = lines_of(lines);
     return matrix_by_beams(scene, &(fibrad_beam_rule){.lines = set, .chords = chords}, raw);
 }
 

@@ -213,10 +213,6 @@ TEST(options_at_fault) {
     FAIL_WITH(2, "heat", row(), "--length-unit", "m", "--ambient", "300", "--power", "P", "--emissivity", "0.8",
               "--wall", "zmin:insulated", "--contacts", file);
     assert_has(said, "wall zmin is in contact and needs one temperature or a power");
-    FAIL_WITH(2, "heat", row(), "--length-unit", "m", "--ambient", "300", "--temperature", "500", "--emissivity", "0.8",
-              "--contacts", contacts("i,j,W/K\n0,1,1\n"), "--until", "60", "--heat-capacity", "800", "--density",
-              "2500", "--model", "factors");
-    assert_has(said, "--model factors has no contacts");
     FAIL_WITH(3, "heat", row(), "--length-unit", "m", "--ambient", "300", "--power", "P", "--emissivity", "0",
               "--contacts", contacts("i,j,W/K\n0,1,1\n"));
     assert_has(said, "row.csv:2: sphere 0 has emissivity 0, and nothing that it touches radiates or has a temperature");

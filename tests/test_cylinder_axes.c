@@ -173,14 +173,13 @@ TEST(cylinders_that_do_not_fit_are_refused) {
             OWNED_BED bed = BED({0, 0, 0, 1});
             fibrad_scene *scene;
             fibrad_wall wall[2] = {cylinder_at(0, 0, 3), plane_at(across, 0, -2)};
-            wall[0].cylinder.axis = axis;
-            const int along = (axis + 2) % 3;
+            wall[0].cylinder.along = axis;
             const bool valid = axis >= 0 && axis < 3;
             ck_assert_int_eq(scene_try(&scene, &bed, &(fibrad_scene_config){.wall = wall, .walls = 2}, NULL),
-                             valid && along == across ? FIBRAD_E_ENDLESS : FIBRAD_E_ARGUMENT);
+                             valid && axis == across ? FIBRAD_E_ENDLESS : FIBRAD_E_ARGUMENT);
             bed.period[across] = 8;
             const int status = scene_try(&scene, &bed, &(fibrad_scene_config){.wall = wall, .walls = 1}, NULL);
-            ck_assert_int_eq(status, valid && along == across ? FIBRAD_OK : FIBRAD_E_ARGUMENT);
+            ck_assert_int_eq(status, valid && axis == across ? FIBRAD_OK : FIBRAD_E_ARGUMENT);
             if (status == FIBRAD_OK) free(scene);
         }
 }

@@ -32,7 +32,7 @@ static fibrad_bed_matrix *factors_of(const struct room *room, double tolerance, 
         wall[k] = plane_at(axis[k], upper[k], k == 0 ? 0 : k == 5 ? 4.5 : upper[k] ? 2 : -2);
         wall_emissivity[k] = room->wall;
     }
-    if (room->walls == 2) wall[1] = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {0, 0, 2, 0}};
+    if (room->walls == 2) wall[1] = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {0, 0, 2, 2}};
     const bool open = room->walls == 2 || room->walls == 5;
     const fibrad_scene_config scene = {.wall = wall, .walls = room->walls, .opening = &lid, .openings = open};
     const fibrad_exchange_rule rule = {

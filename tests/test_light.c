@@ -202,7 +202,7 @@ TEST(a_cup_as_by_rays) {
         add_wall(&c, 2, 0, low[2]);
         add_opening(&c, 2, 1, high[2] + .5);
         c.wall[c.config.walls++] =
-            (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {middle[0], middle[1], round, 0}};
+            (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {middle[0], middle[1], round, 2}};
         c.plain.axis[0] = middle[0], c.plain.axis[1] = middle[1], c.plain.round = round;
         const fibrad_light light = along(d[k][0], d[k][1], d[k][2]);
         compare_turned(&c, &light);

@@ -1,4 +1,5 @@
-/* test_matrix_calls.c - collections of rows, and tasks, states and memory of matrices. SPDX-License-Identifier: MIT */
+/* test_matrix_calls.c - collections of rows, and threads, states and memory of matrices. SPDX-License-Identifier: MIT
+ */
 #include "matrices.h"
 
 static void at_once(void *calls, uint32_t pieces, fibrad_piece *piece, void *job) {
@@ -7,10 +8,9 @@ static void at_once(void *calls, uint32_t pieces, fibrad_piece *piece, void *job
     for (uint32_t k = 0; k < pieces; k++) piece(job, pieces - 1 - k);
 }
 
-/* Makes a matrix of `tasks` tasks. This function averages all but each `left`-th task, backwards or in several threads.
- * Closing does the tasks that are left. */
+/* Makes a matrix of `tasks` tasks, backwards in several threads or not. */
 static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
-                              fibrad_matrix_rule rule, uint32_t tasks, uint32_t left, bool threads) {
+                              fibrad_matrix_rule rule, uint32_t tasks, bool threads) {
     struct matrix m = {NULL, {0}};
     int calls = 0;
     rule.tasks = tasks;
@@ -19,11 +19,6 @@ static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows
     void *block = block_of(size);
     memset(block, 0xa5, size);
     assert_ok(fibrad_matrix_init(&m.matrix, block, size, scene, rows, count, &rule, NULL));
-    int failed = 0;
-#pragma omp parallel for num_threads(threads ? 4 : 1) schedule(dynamic, 1) reduction(+ : failed)
-    for (uint32_t k = 0; k < tasks; k++)
-        if (left == 0 || k % left != 0) failed += fibrad_matrix_average(m.matrix, tasks - 1 - k) != FIBRAD_OK;
-    ck_assert_int_eq(failed, 0);
     assert_ok(fibrad_matrix_close(m.matrix));
     assert_ok(fibrad_matrix_read(m.matrix, &m.factors));
     double largest, same;
@@ -36,7 +31,7 @@ static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows
     return m;
 }
 
-/* No bit depends on the number of tasks, on who averages them, nor on how rows are spread over collections. */
+/* No bit depends on the number of tasks, on threads, nor on how rows are spread over collections. */
 TEST(tasks_change_no_bit) {
     OWNED_BED bed = packing(150, .3, 1.5, .5, 3, true);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -54,9 +49,8 @@ TEST(tasks_change_no_bit) {
         OWNED_MATRIX whole = matrix_of(scene, &rows, 1, &rules[k]), other = matrix_of(scene, spread, 4, &rules[k]);
         ck_assert(matrix_same_bits(&whole.factors, &other.factors));
         for (uint32_t tasks = 1; tasks <= 1024; tasks += tasks < 16 ? 1 : 1008) {
-            for (uint32_t left = 0; left <= 3; left++) {
-                OWNED_MATRIX m =
-                    by_tasks(scene, left % 2 ? spread : &rows, left % 2 ? 4 : 1, rules[k], tasks, left, left == 0);
+            for (int way = 0; way < 4; way++) {
+                OWNED_MATRIX m = by_tasks(scene, way % 2 ? spread : &rows, way % 2 ? 4 : 1, rules[k], tasks, way < 2);
                 ck_assert(matrix_same_bits(&whole.factors, &m.factors));
             }
         }
@@ -81,18 +75,10 @@ TEST(calls_out_of_order_are_refused) {
         ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_E_STATE);
         ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_E_STATE);
         ck_assert(factors.n == 77 && factors.start == NULL && largest == -7);
-        assert_invalid(fibrad_matrix_average(m, 2));
-        assert_invalid(fibrad_matrix_average(m, UINT32_MAX));
-        if (!raw) {
-            assert_ok(fibrad_matrix_average(m, 1));
-            ck_assert_int_eq(fibrad_matrix_average(m, 1), FIBRAD_E_STATE);
-            assert_ok(fibrad_matrix_average(m, 0));
-        }
         assert_ok(fibrad_matrix_close(m));
         assert_ok(fibrad_matrix_read(m, &factors));
         const double first = factors.f[0];
         ck_assert_int_eq(fibrad_matrix_close(m), FIBRAD_E_STATE);
-        if (!raw) ck_assert_int_eq(fibrad_matrix_average(m, 0), FIBRAD_E_STATE);
         assert_ok(fibrad_matrix_read(m, &factors)); /* this may be repeated */
         ck_assert_double_eq(factors.f[0], first);
         assert_ok(fibrad_matrix_reciprocity(m, &largest));
@@ -101,7 +87,6 @@ TEST(calls_out_of_order_are_refused) {
     }
     fibrad_factors factors;
     double largest;
-    assert_invalid(fibrad_matrix_average(NULL, 0));
     assert_invalid(fibrad_matrix_close(NULL));
     assert_invalid(fibrad_matrix_read(NULL, &factors));
     assert_invalid(fibrad_matrix_reciprocity(NULL, &largest));

@@ -62,6 +62,26 @@ LOOP_TEST(a_square_below_turned_directions, 2) {
     ck_assert_double_eq_tol(mean, exact, 3.5 * sqrt(square / TURNS) + 1e-5);
 }
 
+/* A unit quaternion gives a rotation. For a uniform quaternion take a uniform point of the unit ball in four
+ * dimensions and divide it by its distance from the centre. Rejection finds such a point in three draws on average.
+ * Points near the centre are rejected too, since they have few digits. */
+static void random_rotation(uint64_t seed, double rotation[9]) {
+    fibrad_random random = fibrad_random_start(seed, 0);
+    double q[4], square;
+    do {
+        square = 0;
+        for (int k = 0; k < 4; k++) {
+            q[k] = 2 * fibrad_random_next(&random) - 1;
+            square += q[k] * q[k];
+        }
+    } while (!(square <= 1 && square > 1e-4));
+    const double s = 2 / square, a = q[0], b = q[1], c = q[2], d = q[3];
+    const double by_row[9] = {1 - s * (c * c + d * d), s * (b * c - a * d),     s * (b * d + a * c),
+                              s * (b * c + a * d),     1 - s * (b * b + d * d), s * (c * d - a * b),
+                              s * (b * d - a * c),     s * (c * d + a * b),     1 - s * (b * b + c * c)};
+    memcpy(rotation, by_row, sizeof by_row);
+}
+
 /* The plane of a triangle does not cut the sphere. So F is the solid angle of the triangle over 4 pi. */
 TEST(a_sphere_and_a_triangle) {
     double square = 0, worst[3] = {0};
@@ -72,7 +92,7 @@ TEST(a_sphere_and_a_triangle) {
         OWNED struct mesh *mesh = mesh_new();
         const double away = exp(uniform(log(1.05), log(30))), size = exp(uniform(log(.3), log(30)));
         double rotation[9], v[3][3];
-        fibrad_rotation((uint64_t)c + 1, rotation);
+        random_rotation((uint64_t)c + 1, rotation);
         for (int k = 0; k < 3; k++) {
             v[k][0] = uniform(-size, size), v[k][1] = uniform(-size, size), v[k][2] = away;
             turn_point(rotation, v[k]);

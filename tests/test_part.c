@@ -48,31 +48,6 @@ LOOP_TEST(rows_depend_on_what_is_near, KINDS) {
         }
 }
 
-/* The same holds for displacements. */
-TEST(displacements_depend_on_what_is_near) {
-    OWNED_MADE m;
-    make_kind(&m, &kinds[3]);
-    OWNED fibrad_scene *whole = part_scene(&m.part);
-    double *e = emissivities_of(&m.part), cutoff = 4;
-    OWNED_WORK work = work_growing();
-    for (uint32_t i = 0; i < m.part.n; i++) {
-        if (m.part.z[i] > 1.2) continue; /* paths go back and forth between spheres and the wall */
-        uint32_t own = UINT32_MAX;
-        OWNED_PART near = part_near(&m.part, i, cutoff + radius_most(&m.part) + 1e-6, &own);
-        OWNED fibrad_scene *little = part_scene(&near);
-        OWNED double *of_near = emissivities_of(&near);
-        fibrad_displacement_rule rule = {
-            .emissivity = e, .wall_emissivity = wall_emissivity, .paths = 200, .seed = 3, .cutoff = cutoff};
-        fibrad_displacement expected, found;
-        assert_ok(fibrad_exchange_displacement(whole, &work, i, &rule, &expected));
-        rule.emissivity = of_near;
-        assert_ok(fibrad_exchange_displacement(little, &work, own, &rule, &found));
-        ck_assert_int_eq(memcmp(&expected, &found, sizeof found), 0);
-        for (int axis = 0; axis < 3; axis++) ck_assert_double_lt(expected.square[axis], pow(cutoff + 1, 2));
-    }
-    free(e);
-}
-
 /* A periodic bed is compared with an open one that has images of the same ids. Coordinates have few digits, so that
  * images are where they should be to the bit. The sum of the factors to all images of a sphere is the factor to this
  * sphere: counts of points to the bit, sums of paths to rounding. */

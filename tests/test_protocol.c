@@ -237,19 +237,10 @@ TEST(matrix_calls_out_of_order_are_refused) {
     assert_ok(fibrad_matrix_init(&m, block, size, p->scene, &rows, 1, &rule, NULL));
     ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_E_STATE);
-    assert_invalid(fibrad_matrix_average(m, 5));
-    assert_invalid(fibrad_matrix_average(m, UINT32_MAX));
-    for (uint32_t task = 4; task > 1; task--) { /* some tasks are left: closing does them */
-        assert_ok(fibrad_matrix_average(m, task));
-        ck_assert_int_eq(fibrad_matrix_average(m, task), FIBRAD_E_STATE);
-        ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_E_STATE);
-    }
     ck_assert_uint_eq(factors.n, 77);
     ck_assert_double_eq(largest, 77);
     assert_ok(fibrad_matrix_close(m));
     ck_assert_int_eq(fibrad_matrix_close(m), FIBRAD_E_STATE);
-    for (uint32_t task = 0; task < 5; task++) ck_assert_int_eq(fibrad_matrix_average(m, task), FIBRAD_E_STATE);
-    assert_invalid(fibrad_matrix_average(m, 5));
     assert_ok(fibrad_matrix_read(m, &factors));
     ck_assert(matrix_same_bits(&factors, &book.factors));
     assert_ok(fibrad_matrix_reciprocity(m, &largest));
@@ -366,13 +357,11 @@ TEST(rows_that_change_make_no_matrix) {
     ck_assert_uint_eq(sphere, 0);
     assert_ok(fibrad_matrix_init(&matrix, block, size, scene, &rows, 1, NULL, NULL));
     fibrad_rows_clear(&rows);
-    ck_assert_int_eq(fibrad_matrix_average(matrix, 0), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_matrix_close(matrix), FIBRAD_E_STATE);
     fibrad_matrix *again = NULL;
     ck_assert_int_eq(fibrad_matrix_init(&again, block, size, scene, &fewer, 1, NULL, &sphere), FIBRAD_E_STATE);
     ck_assert(again == NULL && sphere == 0);
     ck_assert_int_eq(fibrad_matrix_close(matrix), FIBRAD_E_STATE);
-    ck_assert_int_eq(fibrad_matrix_average(matrix, 0), FIBRAD_E_STATE);
     const fibrad_rows both[] = {more, fewer};
     assert_ok(fibrad_matrix_init(&matrix, block, size, scene, both, 2, NULL, NULL));
     assert_ok(fibrad_matrix_close(matrix));

@@ -37,7 +37,7 @@ static fibrad_rows rows_one_by_one(const fibrad_scene *scene, uint32_t n, uint32
 static struct matrix kernel_matrix(const struct bed *bed, const fibrad_scene_config *config,
                                    const fibrad_beam_rule *rule, bool raw) {
     OWNED fibrad_scene *scene = scene_with(bed, config);
-    OWNED fibrad_line_set *lines = raw ? NULL : lines_of(rule->directions, rule->turn);
+    OWNED fibrad_line_set *lines = raw ? NULL : lines_of(rule->directions);
     const fibrad_beam_rule along = {.lines = lines, .chords = rule->points / 4, .cutoff = rule->cutoff};
     OWNED_ROWS rows = rows_one_by_one(scene, bed->n, config ? config->walls : 0, raw ? rule : &along);
     return matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = raw});

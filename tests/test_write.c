@@ -40,7 +40,7 @@ static const fibrad_bed_matrix factors = {.matrix = {.n = 3,
                                                      .wall = &wall[0][0]},
                                           .wall_area = area};
 static const struct walls walls = {.count = 2,
-                                   .wall = {{.kind = FIBRAD_WALL_CYLINDER, .cylinder = {0, 0, 9, 0}},
+                                   .wall = {{.kind = FIBRAD_WALL_CYLINDER, .cylinder = {0, 0, 9, 2}},
                                             {.kind = FIBRAD_WALL_PLANE, .plane = {2, 0, -9}}}};
 
 static char text[20000]; /* what a writer wrote */

@@ -8,7 +8,7 @@
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/spelling.h"
-#include "contact/cylinder.h"
+#include "simple/cylinder.h"
 #include "text/text.h"
 
 static fibrad_plane plane_at(int number, double at) { return (fibrad_plane){number / 2, number % 2, at}; }
@@ -20,11 +20,11 @@ static bool is_mesh(const fibrad_wall *wall) { return wall->kind == FIBRAD_WALL_
 const char *wall_name(const struct walls *walls, uint32_t k) {
     const fibrad_wall *wall = &walls->wall[k];
     if (is_mesh(wall)) return walls->meshes->name[k];
-    return is_cylinder(wall) ? wall_cylinder_names[wall->cylinder.axis] : plane_name(&wall->plane);
+    return is_cylinder(wall) ? wall_cylinder_names[wall->cylinder.along] : plane_name(&wall->plane);
 }
 
 bool wall_across(const fibrad_wall *wall, int axis) {
-    return is_cylinder(wall) ? axis != cylinder_along(wall) : !is_mesh(wall) && axis == wall->plane.axis;
+    return is_cylinder(wall) ? axis != wall->cylinder.along : !is_mesh(wall) && axis == wall->plane.axis;
 }
 
 static int plane_number(const fibrad_plane *plane) { return 2 * plane->axis + plane->upper; }
@@ -61,7 +61,7 @@ static struct wall_words *find_same(struct wall_options *options, const struct w
     for (struct wall_words *w = options->word; w < options->word + options->count; ++w) {
         if (w->shape != words->shape || w->shape == WALL_MESH || w->shape == WALL_NAMED) continue;
         if (w->shape == WALL_PLANE && plane_number(&w->wall.plane) != plane_number(&words->wall.plane)) continue;
-        if (w->shape == WALL_CYLINDER && w->wall.cylinder.axis != words->wall.cylinder.axis) continue;
+        if (w->shape == WALL_CYLINDER && w->wall.cylinder.along != words->wall.cylinder.along) continue;
         return w;
     }
     return NULL;
@@ -98,7 +98,7 @@ static int add_wall(struct walls *walls, const struct wall_words *words) {
     walls->wall[k] = words->wall, walls->said[k] = *words;
     if (is_cylinder(&words->wall) && cylinder_among(walls))
         return message(STATUS_USAGE, "--wall: there can be one cylinder, not %s and %s too",
-                       wall_cylinder_names[cylinder_among(walls)->cylinder.axis], wall_name(walls, k));
+                       wall_cylinder_names[cylinder_among(walls)->cylinder.along], wall_name(walls, k));
     if (wall_index(walls, wall_name(walls, k)) < WALLS_MAX)
         return message(STATUS_USAGE, "--wall: %s is the name of two walls", wall_name(walls, k));
     ++walls->count;
@@ -193,7 +193,7 @@ static int check_axes(const struct walls *walls, const struct bed *bed) {
             return message(STATUS_USAGE, "--wall: %s lies across a periodic axis", wall_plane_names[k]);
         if (cylinder && wall_across(cylinder, k / 2))
             return message(STATUS_USAGE, "--wall: %s cannot be combined with a cylinder along %c", wall_plane_names[k],
-                           "xyz"[cylinder_along(cylinder)]);
+                           "xyz"[cylinder->cylinder.along]);
         if (k % 2) lower = plane_of_side(walls, k - 1);
         if (lower && !(lower->at < wall->at))
             return message(STATUS_USAGE, "--wall: %s does not lie below %s", wall_plane_names[k - 1],
@@ -202,7 +202,7 @@ static int check_axes(const struct walls *walls, const struct bed *bed) {
     for (int k = 0; k < 2 && cylinder; ++k)
         if (bed->period[cylinder_across(cylinder, k)] > 0)
             return message(STATUS_USAGE, "--wall: a cylinder along %c needs %c and %c axes that are not periodic",
-                           "xyz"[cylinder_along(cylinder)], "xyz"[cylinder_across(cylinder, 0)],
+                           "xyz"[cylinder->cylinder.along], "xyz"[cylinder_across(cylinder, 0)],
                            "xyz"[cylinder_across(cylinder, 1)]);
     return STATUS_OK;
 }

@@ -11,18 +11,18 @@
 #include "cli/spelling.h"
 
 const char *const wall_plane_names[6] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
-const char *const wall_cylinder_names[3] = {"cylinder", "xcylinder", "ycylinder"};
+const char *const wall_cylinder_names[3] = {"xcylinder", "ycylinder", "cylinder"};
 
 static const struct shape {
     const char *name;
     enum wall_shape shape;
-    int number; /* of a plane, 2 axis + upper; of a cylinder, fibrad_wall.cylinder.axis */
+    int number; /* of a plane, 2 axis + upper; of a cylinder, fibrad_wall.cylinder.along */
 } shapes[] = {{"xmin", WALL_PLANE, 0},         {"xmax", WALL_PLANE, 1},         {"ymin", WALL_PLANE, 2},
               {"ymax", WALL_PLANE, 3},         {"zmin", WALL_PLANE, 4},         {"zmax", WALL_PLANE, 5},
               {"xlo", WALL_PLANE, 0},          {"xhi", WALL_PLANE, 1},          {"ylo", WALL_PLANE, 2},
               {"yhi", WALL_PLANE, 3},          {"zlo", WALL_PLANE, 4},          {"zhi", WALL_PLANE, 5},
-              {"cylinder", WALL_CYLINDER, 0},  {"xcylinder", WALL_CYLINDER, 1}, {"ycylinder", WALL_CYLINDER, 2},
-              {"zcylinder", WALL_CYLINDER, 0}, {"mesh", WALL_MESH, 0},          {"box", WALL_BOX, 0},
+              {"cylinder", WALL_CYLINDER, 2},  {"xcylinder", WALL_CYLINDER, 0}, {"ycylinder", WALL_CYLINDER, 1},
+              {"zcylinder", WALL_CYLINDER, 2}, {"mesh", WALL_MESH, 0},          {"box", WALL_BOX, 0},
               {"auto", WALL_AUTO, 0}};
 enum { SHAPES = sizeof shapes / sizeof *shapes };
 
@@ -115,7 +115,7 @@ static bool begin_wall(struct wall_words *wall, const char *word, unsigned allow
         wall->wall =
             (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = {shapes[k].number / 2, shapes[k].number % 2, NAN}};
     if (wall->shape == WALL_CYLINDER)
-        wall->wall = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder.axis = shapes[k].number};
+        wall->wall = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder.along = shapes[k].number};
     if (wall->shape == WALL_MESH) wall->wall.kind = FIBRAD_WALL_MESH;
     return true;
 }
@@ -127,8 +127,8 @@ static int shape_words(const struct wall_words *wall) {
 
 /* Takes these words. */
 static bool take_shape(struct wall_words *wall, const char *const *word, int count, char fault[WALL_FAULT]) {
-    static const char *const position[] = {"X,Y", "Y,Z", "X,Z"};
-    const int axis = wall->wall.cylinder.axis;
+    static const char *const position[] = {"Y,Z", "X,Z", "X,Y"};
+    const int axis = wall->wall.cylinder.along;
     double c[3] = {0};
     bool good = count >= shape_words(wall);
     if (wall->shape == WALL_MESH) {

@@ -81,7 +81,7 @@ bool wall_words_shape(const char *word);
 /* Says that a word is no shape, and which shapes there are. Returns false. */
 bool wall_words_no_shape(const char *word, char fault[WALL_FAULT]);
 
-/* The names of planes, by 2 axis + upper, and of cylinders, by fibrad_wall.cylinder.axis. */
+/* The names of planes, by 2 axis + upper, and of cylinders, by fibrad_wall.cylinder.along. */
 extern const char *const wall_plane_names[6], *const wall_cylinder_names[3];
 
 #ifdef __cplusplus

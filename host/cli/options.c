@@ -93,6 +93,8 @@ static const struct {
                {"wall-emissivity", "--wall-emissivity zmin=0.8 is now --wall zmin:emissivity=0.8"},
                {"wall-absorptivity", "--wall-absorptivity zmin=0.8 is now --wall zmin:absorptivity=0.8"},
                {"every", "--every 60 is now --times every:60"},
+               {"model", "--model is not needed any more: powers at one time are by patches, in time by factors that "
+                         "patches correct"},
                {"nf", "--method surface and --nf are of fibrad pair and fibrad reproduce"}};
 
 static int unknown_option(const struct walk *walk, const char *text, size_t length) {

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "couple/insitu.h"
-#include "simple/fibrad_host.h"
+#include "contact/contact_list.h"
 
 /* The indices of both ends in the list of particles; a wall has that of the wall plus the number of particles. */
 struct conductor {
@@ -97,7 +97,7 @@ static int find_conductors(const fibrad_insitu_build *b, const fibrad_insitu_con
         c[k] = (struct conductor){list->first[k], list->second[k], list->distance[k], conductance[k]};
     *count = list->n;
     if (!status) qsort(c, *count, sizeof *c, by_ends);
-    fibrad_contacts_free(list);
+    free(list);
     free(solid);
     return status;
 }

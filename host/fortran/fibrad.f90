@@ -44,7 +44,7 @@ module fibrad
 
     type, bind(C) :: c_cylinder
         real(c_double) :: x = 0, y = 0, radius = 0
-        integer(c_int) :: axis = 0
+        integer(c_int) :: along = 0
     end type c_cylinder
 
     type, bind(C), public :: fibrad_wall
@@ -183,7 +183,6 @@ module fibrad
         type(c_ptr) :: emissivity = c_null_ptr, wall_emissivity = c_null_ptr, conductivity = c_null_ptr
         integer(c_int32_t) :: flights = 0, paths = 0
         integer(c_int64_t) :: seed = 0
-        real(c_double) :: cutoff = 0
     end type c_displacement_rule
 
     type, bind(C) :: c_displacement
@@ -643,8 +642,8 @@ contains
         character(1), intent(in), optional :: along
         type(fibrad_wall) :: wall
         integer(c_int) :: axis
-        axis = 0
-        if (present(along)) axis = int(index('zxy', along), c_int) - 1
+        axis = 2
+        if (present(along)) axis = int(index('xyz', along), c_int) - 1
         wall%kind = 2
         wall%cylinder = c_cylinder(x, y, radius, axis)
     end function fibrad_cylinder

@@ -268,6 +268,7 @@ int bed_options_make(struct bed_options *options, const struct bed *bed, const s
     const fibrad_spheres spheres = bed_spheres(bed);
     fibrad_run run = bed_options_run(options);
     const int status = fibrad_bed_new(made, &scene, &spheres, &run);
+    if (!status) warn_made(&options->warned, bed, walls, *made, true);
     if (!status) warn_beyond(*made, bed, walls, options->name);
     return bed_options_status(options, bed, status, &run.fault);
 }
@@ -304,13 +305,13 @@ static int check_room(struct bed_options *options, const struct bed *bed, fibrad
     return status;
 }
 
-int bed_options_factors(struct bed_options *options, const struct bed *bed, fibrad_bed *made, fibrad_bed_rule *rows,
-                        fibrad_bed_matrix **factors) {
+int bed_options_factors(struct bed_options *options, const struct bed *bed, const struct walls *walls, fibrad_bed *made,
+                        fibrad_bed_rule *rows, fibrad_bed_matrix **factors) {
     *factors = NULL;
     rows->scratch = options->scratch, rows->walls = 1;
     int status = check_room(options, bed, made, rows);
     if (!status) status = compute_factors(options, bed, made, rows, factors);
-    if (!status) warn_rows(&options->warned, bed, *factors);
+    if (!status) warn_made(&options->warned, bed, walls, made, true);
     return status;
 }
 
@@ -353,7 +354,7 @@ int bed_options_write(struct bed_options *options, const struct bed *bed, struct
 int bed_options_walls(struct bed_options *options, const struct bed *bed, struct walls *walls) {
     const fibrad_spheres spheres = bed_spheres(bed);
     const int status = walls_of(&options->walls, bed, options->name, walls);
-    if (!status) warn_walls(&options->warned, bed, walls);
+    if (!status) warn_box(&options->warned, walls);
     if (status || !walls->meshes) return status;
     return meshes_face(walls->meshes, &spheres, bed->period);
 }
@@ -394,7 +395,6 @@ void bed_options_report(struct bed_options *options, const struct bed *bed, cons
     if (facts) report_value(report, "radius_min", facts->radius_min, 6);
     if (facts) report_value(report, "radius_max", facts->radius_max, 6);
     if (facts && facts->overlap_max > 0) report_value(report, "overlap_max", facts->overlap_max, 3);
-    if (facts) warn_overlap(&options->warned, bed, facts);
     if (bed->low[0] < bed->high[0]) {
         report_vector(report, "box_low", bed->low);
         report_vector(report, "box_high", bed->high);

@@ -157,8 +157,8 @@ int bed_options_make(struct bed_options *options, const struct bed *bed, const s
  * memory, or onto the disk of rows->scratch. A few rows are made to estimate the size. Small beds and lists of targets
  * are not checked. Free *factors also after an error. Status 0, STATUS_MEMORY, STATUS_FILE if the disk is too small, or
  * as bed_options_status. */
-int bed_options_factors(struct bed_options *options, const struct bed *bed, fibrad_bed *made, fibrad_bed_rule *rows,
-                        fibrad_bed_matrix **factors);
+int bed_options_factors(struct bed_options *options, const struct bed *bed, const struct walls *walls, fibrad_bed *made,
+                        fibrad_bed_rule *rows, fibrad_bed_matrix **factors);
 
 /* The unit of length of a bed: that of the file, or else that of --length-unit. NULL: neither names one. */
 const char *bed_options_unit(const struct bed_options *options, const struct bed *bed);

@@ -6,45 +6,27 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "contact/cylinder.h"
 
 enum kind {
     OTHER_NAMES,
     OTHER_ORDER,
     OTHER_PERIOD,
     OTHER_UNIT,
-    LARGE_OVERLAP,
-    CUT_BY_WALL,
     SHRUNK_BOX,
-    MESH_SIZE,
-    MESH_PLACE,
     CELSIUS,
-    ABSOLUTE_ZERO,
     HEAT_CAPACITY,
     DENSITY,
-    COLD_SURFACE,
     EMISSIVITY_TABLE,
     SOLID_TABLE,
     CONTACT_TABLE,
     GAS_TABLE,
     CLOSED_BED,
-    WALLS_OPEN,
-    WALLS_APART,
-    CLOSING
+    OF_THE_LIBRARY /* and then a fibrad_warning_code */
 };
 
-#define RADIUS_LARGE  0.1   /* [m] particles hardly have a larger mean radius */
-#define OVERLAP_LARGE 0.05  /* overlap over the smaller radius */
-#define CUT_LARGE     0.1   /* depth of a wall in a sphere over the radius */
-#define PERIOD_OFF    1e-3  /* relative: users type boxes with few digits */
-#define SIZES_APART   200.0 /* ratio of the sizes of mesh and bed; metres for millimetres make 1000 */
-#define COLD          150.0 /* [K] a bed is hardly colder everywhere */
-#define SPACE         5.0   /* [K] surroundings as cold as space are meant */
-#define WARM_CELSIUS  75.0  /* surroundings of 5 to 75 K are more likely of 5 to 75 C */
-#define CLOSED        1e-9  /* closed rows of walls add up to 1 within this */
-#define APART         0.1   /* sums of rows of walls may differ from 1 so much before closing; few directions: 0.01s */
-#define TIME_LEAST    1e-9  /* relative: times in hours are rounded */
-#define CHANGE_LARGE  1.5   /* change by closing over the error of a row; among thousands of rows chance makes 1 */
+#define RADIUS_LARGE 0.1  /* [m] particles hardly have a larger mean radius */
+#define PERIOD_OFF   1e-3 /* relative: users type boxes with few digits */
+#define TIME_LEAST   1e-9 /* relative: times in hours are rounded */
 /* Bounds with a margin of 2 beyond all solids, from aerogel to uranium. */
 #define CAPACITY_LOW  30.0 /* [J/(kg K)] */
 #define CAPACITY_HIGH 3e4
@@ -59,25 +41,88 @@ static bool is_new(struct warned *warned, enum kind kind) {
     return new;
 }
 
-void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_bed_matrix *factors) {
-    const fibrad_factors *matrix = &factors->matrix;
-    const bool walls = matrix->wall_wall != NULL, meshed = factors->facts.triangles > 0;
-    if (walls && matrix->wall_closure > CLOSED && is_new(warned, WALLS_OPEN))
+/* Prints what the library warns of, in words of the program. */
+static void word_rows(const struct warned *warned, const struct bed *bed, const fibrad_warning *w, bool meshed) {
+    const char *more = meshed ? "do triangles cut spheres? If not, more directions help" : "more directions help";
+    if (w->code == FIBRAD_WARNING_OPEN_ROWS)
         message_at(STATUS_OK, warned->file, 0,
                    "warning: rows of walls are not closed: their sums are off by %.2g, because they contradict the "
                    "rows of spheres%s",
-                   matrix->wall_closure, meshed ? "; do triangles cut spheres?" : "");
-    else if (walls && matrix->wall_correction > APART && is_new(warned, WALLS_APART))
+                   w->value, meshed ? "; do triangles cut spheres?" : "");
+    if (w->code == FIBRAD_WARNING_APART)
         message_at(STATUS_OK, warned->file, 0,
-                   "warning: rows of walls and of spheres disagreed by %.2g before they were closed; %s",
-                   matrix->wall_correction,
-                   meshed ? "do triangles cut spheres? If not, more directions help" : "more directions help");
-    else if (matrix->changed > CHANGE_LARGE && is_new(warned, CLOSING))
-        message_at(STATUS_OK, warned->file, bed->line[matrix->changed_row],
+                   "warning: rows of walls and of spheres disagreed by %.2g before they were closed; %s", w->value,
+                   more);
+    if (w->code == FIBRAD_WARNING_CHANGED_ROW)
+        message_at(STATUS_OK, warned->file, bed->line[w->first],
                    "warning: rows were scaled to add up to 1; this changes what sphere %lld gives to walls and "
                    "surroundings by %.2g times the error of its row; %s",
-                   (long long)bed_name(bed, matrix->changed_row), matrix->changed,
-                   meshed ? "do triangles cut this sphere? If not, more directions help" : "more directions help");
+                   (long long)bed_name(bed, w->first), w->value, more);
+}
+
+static void word_places(const struct warned *warned, const struct bed *bed, const struct walls *walls,
+                        const fibrad_warning *w) {
+    char place[2][BED_LINE_TEXT];
+    const char *wall = w->wall > 0 ? wall_name(walls, w->wall - 1) : "";
+    if (w->code == FIBRAD_WARNING_OVERLAP)
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: sphere %lld%s and sphere %lld%s overlap by %.3g of a radius, so their view factors err by "
+                   "about %.1g",
+                   (long long)bed_name(bed, w->first), bed_line_text(bed, w->first, place[0]),
+                   (long long)bed_name(bed, w->second), bed_line_text(bed, w->second, place[1]), w->value, w->other);
+    if (w->code == FIBRAD_WARNING_CUT)
+        message_at(STATUS_OK, warned->file, bed->line[w->first],
+                   "warning: sphere %lld reaches through the wall %s by %.2g of its radius (%u such cases in all); is "
+                   "the wall in the right place?",
+                   (long long)bed_name(bed, w->first), wall, w->value, w->count);
+    if (w->code == FIBRAD_WARNING_MESH_SIZE)
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: the wall %s is %.3g long, the bed %.3g; is the mesh in the unit of the bed? "
+                   "mesh:FILE:scale=%g scales the mesh",
+                   wall, w->value, w->other, w->value > w->other ? 1e-3 : 1e3);
+    if (w->code == FIBRAD_WARNING_MESH_PLACE)
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: the wall %s lies from %g to %g along %c, the bed from %g to %g; are both in the same "
+                   "place and unit?",
+                   wall, w->value, w->other, 'x' + (int)w->first, bed_reach(bed, (int)w->first, false),
+                   bed_reach(bed, (int)w->first, true));
+}
+
+static void word_temperatures(const struct warned *warned, const struct bed *bed, const struct walls *walls,
+                              const fibrad_warning *w) {
+    if (w->code == FIBRAD_WARNING_COLD)
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: no sphere is warmer than %g K; --temperature-unit C is for degrees Celsius", w->value);
+    if (w->code == FIBRAD_WARNING_AROUND)
+        message_at(STATUS_OK, warned->file, 0, "warning: %s is %g K; --temperature-unit C is for degrees Celsius",
+                   w->wall > 0 ? wall_name(walls, w->wall - 1) : "--ambient", w->value);
+    if (w->code == FIBRAD_WARNING_ZERO)
+        message_at(STATUS_OK, warned->file, bed->line[w->first],
+                   "warning: sphere %lld has 0 K (%u spheres in all), others have up to %g K; is a value missing? With "
+                   "--power, nan stands for an unknown temperature",
+                   (long long)bed_name(bed, w->first), w->count, w->value);
+    if (w->code == FIBRAD_WARNING_SURFACE)
+        message_at(STATUS_OK, warned->file, bed->line[w->first],
+                   "warning: sphere %lld: its surface comes out at %.0f K in one place; --solid-conductivity is for "
+                   "surfaces whose temperature differs little from its mean",
+                   (long long)bed_name(bed, w->first), w->value);
+}
+
+void warn_made(struct warned *warned, const struct bed *bed, const struct walls *walls, const fibrad_bed *made,
+               bool kelvins) {
+    fibrad_warning warning[FIBRAD_WARNINGS_MAX];
+    fibrad_scene_facts facts = {0};
+    const uint32_t count = fibrad_bed_warnings(made, warning);
+    fibrad_bed_describe(made, &facts, NULL);
+    for (uint32_t k = 0; k < count; ++k) {
+        const fibrad_warning *w = &warning[k];
+        const bool celsius = w->code == FIBRAD_WARNING_COLD || w->code == FIBRAD_WARNING_AROUND;
+        if (w->code == FIBRAD_WARNING_STORE || (celsius && !kelvins)) continue; /* STORE: warn_matter says more */
+        if (!is_new(warned, celsius ? CELSIUS : (enum kind)(OF_THE_LIBRARY + w->code))) continue;
+        word_places(warned, bed, walls, w);
+        word_temperatures(warned, bed, walls, w);
+        word_rows(warned, bed, w, facts.triangles > 0);
+    }
 }
 
 /* ---- frames ----------------------------------------------------------------------------------------------------- */
@@ -125,89 +170,13 @@ void warn_unit(struct warned *warned, const struct bed *bed) {
                    mean_radius(bed));
 }
 
-/* By how much the row of the smaller of two spheres errs that overlap by a share of its radius. Points of its surface
- * within the other sphere see only this sphere. In a row they see what lies beside it as well, in directions away from
- * it. These are the fraction (1 - cos t)/2 of all directions at an angle t from the line of centres. */
-static double overlap_error(const struct bed *bed, uint32_t first, uint32_t second, double overlap) {
-    const double small = fmin(bed->r[first], bed->r[second]), large = fmax(bed->r[first], bed->r[second]);
-    const double d = small + large - overlap * small;
-    const double rim = 1 - (d * d + small * small - large * large) / (2 * d * small);
-    return rim * rim / 8;
-}
-
-void warn_overlap(struct warned *warned, const struct bed *bed, const fibrad_scene_facts *facts) {
-    const uint32_t first = facts->overlap_pair[0], second = facts->overlap_pair[1];
-    char place[2][BED_LINE_TEXT];
-    if (facts->overlap_max > OVERLAP_LARGE && is_new(warned, LARGE_OVERLAP))
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: sphere %lld%s and sphere %lld%s overlap by %.3g of a radius, so their view factors err by "
-                   "about %.1g",
-                   (long long)bed_name(bed, first), bed_line_text(bed, first, place[0]),
-                   (long long)bed_name(bed, second), bed_line_text(bed, second, place[1]), facts->overlap_max,
-                   overlap_error(bed, first, second, facts->overlap_max));
-}
-
 /* ---- walls ------------------------------------------------------------------------------------------------------ */
 
-/* How far sphere i reaches beyond a plane or a cylinder. For a mesh: 0. */
-static double cut(const struct bed *bed, const fibrad_wall *wall, uint32_t i) {
-    const double at[3] = {bed->x[i], bed->y[i], bed->z[i]};
-    if (wall->kind == FIBRAD_WALL_CYLINDER) return cylinder_distance(wall, at) + bed->r[i] - wall->cylinder.radius;
-    if (wall->kind != FIBRAD_WALL_PLANE) return 0;
-    const double beyond = at[wall->plane.axis] - wall->plane.at;
-    return bed->r[i] + (wall->plane.upper ? beyond : -beyond);
-}
-
-static void warn_of_cuts(struct warned *warned, const struct bed *bed, const struct walls *walls) {
-    uint32_t count = 0, sphere = 0, wall = 0;
-    double worst = 0;
-    for (uint32_t k = 0; k < walls->count; ++k)
-        for (uint32_t i = 0; i < bed->n; ++i) {
-            const double depth = cut(bed, &walls->wall[k], i) / bed->r[i];
-            count += depth > CUT_LARGE;
-            if (depth > worst) worst = depth, sphere = i, wall = k;
-        }
-    if (count > 0 && is_new(warned, CUT_BY_WALL))
-        message_at(STATUS_OK, warned->file, bed->line[sphere],
-                   "warning: sphere %lld reaches through the wall %s by %.2g of its radius (%u such cases in all); is "
-                   "the wall in the right place?",
-                   (long long)bed_name(bed, sphere), wall_name(walls, wall), worst, count);
-}
-
-static double longest(const double low[3], const double high[3]) {
-    return fmax(fmax(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
-}
-
-static void warn_of_mesh(struct warned *warned, const struct bed *bed, const struct meshes *meshes, uint32_t wall) {
-    const double near = 2 * mean_radius(bed);
-    double low[3], high[3], from[3], to[3];
-    mesh_extents(meshes, wall, low, high);
-    for (int axis = 0; axis < 3; ++axis)
-        from[axis] = bed_reach(bed, axis, false), to[axis] = bed_reach(bed, axis, true);
-    const double ratio = longest(low, high) / longest(from, to);
-    if ((ratio > SIZES_APART || ratio < 1 / SIZES_APART) && is_new(warned, MESH_SIZE))
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: the wall %s is %.3g long, the bed %.3g; is the mesh in the unit of the bed? "
-                   "mesh:FILE:scale=%g scales the mesh",
-                   meshes->name[wall], longest(low, high), longest(from, to), ratio > 1 ? 1e-3 : 1e3);
-    for (int axis = 0; axis < 3; ++axis) {
-        if (bed->period[axis] > 0 || (low[axis] <= to[axis] + near && high[axis] >= from[axis] - near)) continue;
-        if (is_new(warned, MESH_PLACE))
-            message_at(STATUS_OK, warned->file, 0,
-                       "warning: the wall %s lies from %g to %g along %c, the bed from %g to %g; are both in the same "
-                       "place and unit?",
-                       meshes->name[wall], low[axis], high[axis], 'x' + axis, from[axis], to[axis]);
-    }
-}
-
-void warn_walls(struct warned *warned, const struct bed *bed, const struct walls *walls) {
+void warn_box(struct warned *warned, const struct walls *walls) {
     if (walls->moved && is_new(warned, SHRUNK_BOX))
         message_at(STATUS_OK, warned->file, 0,
                    "warning: the box of the file ends within spheres, as a box around centres does. Walls without a "
                    "coordinate stand where the spheres end. xmin=VALUE gives a coordinate");
-    warn_of_cuts(warned, bed, walls);
-    for (uint32_t k = 0; k < walls->count; ++k)
-        if (walls->wall[k].kind == FIBRAD_WALL_MESH) warn_of_mesh(warned, bed, walls->meshes, k);
 }
 
 /* ---- values ----------------------------------------------------------------------------------------------------- */
@@ -218,33 +187,11 @@ static bool names_celsius(const char *column) {
     return (length > 2 && strcmp(column + length - 2, "_C") == 0) || strstr(column, "elsius");
 }
 
-void warn_temperatures(struct warned *warned, const struct bed *bed, const char *column, double zero,
-                       const double *kelvins) {
-    uint32_t zeros = 0, first = 0;
-    double most = -1;
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        if (kelvins[i] > most) most = kelvins[i];
-        if (kelvins[i] == 0 && zeros++ == 0) first = i;
-    }
-    const bool named = zero == 0 && column && names_celsius(column);
-    if (named && is_new(warned, CELSIUS))
+void warn_celsius(struct warned *warned, const char *column) {
+    if (names_celsius(column) && is_new(warned, CELSIUS))
         message_at(STATUS_OK, warned->file, 0,
                    "warning: the column %.40s is taken as kelvins; --temperature-unit C is for degrees Celsius",
                    column);
-    if (zero == 0 && most > 0 && most < COLD && is_new(warned, CELSIUS))
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: no sphere is warmer than %g K; --temperature-unit C is for degrees Celsius", most);
-    if (zeros > 0 && most > 0 && is_new(warned, ABSOLUTE_ZERO))
-        message_at(STATUS_OK, warned->file, bed->line[first],
-                   "warning: sphere %lld has 0 K (%u spheres in all), others have up to %g K; is a value missing? With "
-                   "--power, nan stands for an unknown temperature",
-                   (long long)bed_name(bed, first), zeros, most);
-}
-
-void warn_around(struct warned *warned, const char *what, double kelvins) {
-    if (kelvins > SPACE && kelvins < WARM_CELSIUS && is_new(warned, CELSIUS))
-        message_at(STATUS_OK, warned->file, 0, "warning: %s is %g K; --temperature-unit C is for degrees Celsius", what,
-                   kelvins);
 }
 
 void warn_closed(struct warned *warned) {
@@ -298,14 +245,4 @@ void warn_times(struct warned *warned, const char *what, const struct curve *cur
         message_at(STATUS_OK, warned->file, 0,
                    "warning: the table of %s ends at %g s; from there to %g s its last temperature is taken", what,
                    last, until);
-}
-
-void warn_surfaces(struct warned *warned, const struct bed *bed, const double *least) {
-    uint32_t i = 0;
-    while (i < bed->n && !(least[i] < 0)) ++i;
-    if (i < bed->n && is_new(warned, COLD_SURFACE))
-        message_at(STATUS_OK, warned->file, bed->line[i],
-                   "warning: sphere %lld: its surface comes out at %.0f K in one place; --solid-conductivity is for "
-                   "surfaces whose temperature differs little from its mean",
-                   (long long)bed_name(bed, i), least[i]);
 }

@@ -31,21 +31,16 @@ void warn_periods(struct warned *warned, const struct bed *bed, const double per
 /* Warns if radii without a unit are too large for metres. */
 void warn_unit(struct warned *warned, const struct bed *bed);
 
-/* Warns of large overlaps. Small overlaps are common in DEM. Factors of spheres with large overlaps mean little. */
-void warn_overlap(struct warned *warned, const struct bed *bed, const fibrad_scene_facts *facts);
-
-/* Warns if a plane or a cylinder cuts spheres deeply, if a mesh differs much from the bed in size or place, and if the
- * file's box ends within spheres, so that the box cannot be made of walls. */
-void warn_walls(struct warned *warned, const struct bed *bed, const struct walls *walls);
-
-/* Warns if temperatures look like degrees Celsius taken as kelvins, or if some are 0 K. column: where they come from,
- * as the file calls it; NULL: from no column. zero: 0 of the unit of the option [K]. kelvins [bed->n]: NaN: not given.
+/* Warns of what the library finds in its bed, its sources and its factors. kelvins: temperatures are given in kelvins.
  */
-void warn_temperatures(struct warned *warned, const struct bed *bed, const char *column, double zero,
-                       const double *kelvins);
+void warn_made(struct warned *warned, const struct bed *bed, const struct walls *walls, const fibrad_bed *made,
+               bool kelvins);
 
-/* Warns if the temperature of the surroundings or of a wall looks like degrees Celsius. what: how messages name it. */
-void warn_around(struct warned *warned, const char *what, double kelvins);
+/* Warns if the file's box ends within spheres, so that the box cannot be made of walls. */
+void warn_box(struct warned *warned, const struct walls *walls);
+
+/* Warns if the name of a column of temperatures in kelvins says degrees Celsius. */
+void warn_celsius(struct warned *warned, const char *column);
 
 /* Warns of a temperature of the surroundings in a closed bed. */
 void warn_closed(struct warned *warned);
@@ -58,12 +53,5 @@ void warn_table(struct warned *warned, const char *option, const struct table_ex
 
 /* Warns if a table over times does not reach from 0 to `until` [s]. what: whose table. */
 void warn_times(struct warned *warned, const char *what, const struct curve *curve, double until);
-
-/* Warns if part of a surface comes out colder than 0 K. least: [bed->n], K, or NaN. */
-void warn_surfaces(struct warned *warned, const struct bed *bed, const double *least);
-
-/* Warns if rows of walls and rows of spheres contradict each other, or if closing changes a row of a sphere by more
- * than its error. */
-void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_bed_matrix *factors);
 
 #endif

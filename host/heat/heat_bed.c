@@ -59,16 +59,13 @@ static int find_conductivities(struct heat *h) {
 /* Warns of temperatures. If none is given within a closed bed, that of the surroundings is the level. */
 static void warn_levels(struct heat *h) {
     struct warned *warned = &h->options.warned;
-    const double zero = h->given.zero;
     bool known = false;
-    warn_temperatures(warned, h->bed, bed_options_column(&h->options, &h->given.temperature), zero,
-                      h->values.temperature);
+    const char *column = bed_options_column(&h->options, &h->given.temperature);
+    if (column && h->given.zero == 0) warn_celsius(warned, column);
     for (uint32_t i = 0; i < h->bed->n && !known; ++i) known = !isnan(h->values.temperature[i]);
     for (uint32_t k = 0; k < h->walls.count; ++k) {
         known = known || !isnan(h->values.wall_temperature[k]);
-        if (zero == 0) warn_around(warned, wall_name(&h->walls, k), h->values.wall_temperature[k]);
     }
-    if (h->given.ambient && zero == 0) warn_around(warned, "--ambient", h->given.surroundings);
     if (h->given.ambient && known && walls_closed(&h->walls, h->bed)) warn_closed(warned);
 }
 

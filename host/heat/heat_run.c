@@ -102,7 +102,8 @@ int heat_solve(struct heat *h) {
     if (status == FIBRAD_E_UNSUPPORTED && h->seconds > 0) return status;
     if (!status) status = solve_made(h);
     fibrad_bed_describe(h->made, &h->facts, &fault);
-    if (status) progress_stop(&h->options.progress);
+    progress_stop(&h->options.progress);
+    warn_made(&h->options.warned, h->bed, &h->walls, h->made, h->given.zero == 0);
     if (light_refuse(h, status, &fault)) return STATUS_USAGE;
     const int refused = contacts_refuse(&h->touching, &h->options, h->bed, &h->walls, status, &fault);
     if (refused) return refused;
@@ -110,7 +111,6 @@ int heat_solve(struct heat *h) {
     status = bed_options_status(&h->options, h->bed, status, &fault);
     if (status) return status;
     heat_find_temperatures(h);
-    if (h->conductivity) warn_surfaces(&h->options.warned, h->bed, h->result.least_temperature);
     light_add(h);
     scale_result(h, square_metres);
     contacts_scale(&h->touching, h->bed->n, h->walls.count);

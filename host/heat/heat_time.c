@@ -264,6 +264,7 @@ static int advance(struct time_run *m, double time) {
     m->span.duration = time - m->now;
     m->span.wall_temperature = wall, m->span.surroundings = &surroundings;
     const int status = fibrad_bed_advance(m->heat->made, &m->sources, &m->span);
+    warn_made(&m->heat->options.warned, m->heat->bed, &m->heat->walls, m->heat->made, m->heat->given.zero == 0);
     if (status) return library_status(m, status);
     m->steps += m->span.steps, m->refused += m->span.refused, m->sweeps += m->span.sweeps;
     m->corrections += m->span.corrections;

@@ -8,7 +8,7 @@
 #include "bed/units.h"
 #include "cli/message.h"
 #include "plot/gnuplot.h"
-#include "contact/cylinder.h"
+#include "simple/cylinder.h"
 
 enum { LAYERS_MAX = 60 };
 

@@ -7,7 +7,7 @@
 #include "bed/units.h"
 #include "cli/message.h"
 #include "cli/options.h"
-#include "contact/cylinder.h"
+#include "simple/cylinder.h"
 
 /* A wall is shown if its distance from the bed is at most this part of the bed's length. With farther walls the bed
  * would become too small in the picture. */
@@ -57,7 +57,7 @@ static void cylinder_lines(const struct plot_slice *slice, const fibrad_wall *wa
     enum { CHORDS = 90 };
     const double middle[2] = {wall->cylinder.x, wall->cylinder.y}, radius = wall->cylinder.radius;
     const double pi = 3.14159265358979323846;
-    const int along = cylinder_along(wall), up = slice->axis[1] == along,
+    const int along = wall->cylinder.along, up = slice->axis[1] == along,
               second = slice->across == cylinder_across(wall, 1);
     if (slice->across == along) {
         for (int c = 0; c < CHORDS; ++c) {

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "contact/contact_list.h"
+
 int fibrad_bed_begin(fibrad_bed *bed) {
     if (!bed) return FIBRAD_E_ARGUMENT;
     if (bed->busy) return FIBRAD_E_STATE;
@@ -109,6 +111,7 @@ static int place_bed(fibrad_bed *bed, const fibrad_scene_config *config, const f
     bed->traced = false;
     fibrad_scene_describe(scene, &bed->facts);
     fibrad_stepping_move(bed);
+    fibrad_bed_warn_of_places(bed);
     free(bed->contacts);
     bed->contacts = NULL;
     return FIBRAD_OK;
@@ -153,4 +156,16 @@ void fibrad_bed_free(fibrad_bed *bed) {
     free(bed->light);
     free(bed->places);
     free(bed);
+}
+
+int fibrad_bed_contacts(fibrad_bed *bed, const fibrad_contact_rule *rule, const fibrad_contact_list **list) {
+    if (!list) return FIBRAD_E_ARGUMENT;
+    *list = NULL;
+    int status = fibrad_bed_begin(bed);
+    if (status) return status;
+    free(bed->contacts);
+    bed->contacts = NULL;
+    status = fibrad_contacts_find(&bed->config, &bed->spheres, rule, &bed->contacts);
+    *list = bed->contacts;
+    return fibrad_bed_end(bed, status);
 }

@@ -55,6 +55,7 @@ struct fibrad_bed {
     double *light;    /* [patches] of the last fibrad_bed_shine; NULL: none */
     double *places;   /* memory of fibrad_heat_sources.contact_places in the last solution; NULL: none */
     fibrad_stepping stepping;
+    fibrad_warning warning[FIBRAD_WARNINGS_MAX]; /* by code - 1; code 0: none */
     /* ---- contacts ---- */
     fibrad_contact_list *contacts; /* NULL: none yet */
 };
@@ -96,6 +97,14 @@ int fibrad_stepping_compare(fibrad_bed *bed, const fibrad_heat_sources *sources,
 /* Finds powers and temperatures of sources whose spheres have storage, by factors or by patches. Errors: as
  * fibrad_network_solve or fibrad_bed_solve. */
 int fibrad_stepping_solve(fibrad_bed *bed, const fibrad_heat_sources *sources, fibrad_heat_result *result);
+
+/* Finds warnings: of positions and walls, which forgets all others; of sources, of which spheres have `temperature`
+ * (NULL: none is given); of surfaces that conduct; of heat capacities; of factors. */
+void fibrad_bed_warn_of_places(fibrad_bed *bed);
+void fibrad_bed_warn_of_sources(fibrad_bed *bed, const fibrad_heat_sources *sources, const double *temperature);
+void fibrad_bed_warn_of_surfaces(fibrad_bed *bed, const fibrad_heat_result *result);
+void fibrad_bed_warn_of_stores(fibrad_bed *bed, const double *capacity);
+void fibrad_bed_warn_of_rows(fibrad_bed *bed, const fibrad_factors *matrix);
 
 /* What all triangles of a bed see: fibrad_triangle_views of each. rays: from each side. view[2 triangles]: element 2 t
  * is the front and 2 t + 1 the back of the caller's triangle t. Errors: as fibrad_triangle_views; _CANCELLED. */

@@ -1,4 +1,4 @@
-/* factors.c - view factors, exchange factors and displacements of whole beds. SPDX-License-Identifier: MIT */
+/* factors.c - view factors and exchange factors of whole beds. SPDX-License-Identifier: MIT */
 #include <omp.h>
 
 #include "simple/rows.h"
@@ -137,6 +137,7 @@ static int factors_now(fibrad_bed *bed, const fibrad_bed_rule *rule, fibrad_bed_
     if (!status) status = fibrad_team_scratch(&bed->team, rule->scratch);
     if (!status) status = rule->exchange ? run_exchange(bed, rule, matrix) : run_options(bed, rule, matrix);
     fibrad_team_forget(&bed->team);
+    if (!status) fibrad_bed_warn_of_rows(bed, &(*matrix)->matrix);
     return status;
 }
 
@@ -162,30 +163,4 @@ int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres 
     if (run) fibrad_bed_describe(bed, NULL, &run->fault);
     fibrad_bed_free(bed);
     return status;
-}
-
-struct displaced {
-    const fibrad_displacement_rule *rule;
-    fibrad_displacement *to; /* [spheres] */
-};
-
-/* A fibrad_row_method that computes the displacement of one sphere. The row stays empty. */
-static int displacement_of(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
-                           uint64_t *rays) {
-    const struct displaced *how = rule;
-    (void)rays;
-    *row = (fibrad_row){0};
-    return fibrad_exchange_displacement(scene, work, i, how->rule, &how->to[i]);
-}
-
-int fibrad_bed_displacements(fibrad_bed *bed, const fibrad_displacement_rule *rule, const unsigned char *wanted,
-                             fibrad_displacement *displacement) {
-    fibrad_rows_report report;
-    const struct displaced how = {rule, displacement};
-    int status = fibrad_bed_begin(bed);
-    if (status) return status;
-    if (!rule || !displacement) status = FIBRAD_E_ARGUMENT;
-    if (!status) status = check_spheres(bed, rule->emissivity, NULL, rule->conductivity);
-    if (!status) status = fibrad_bed_rows(bed, displacement_of, &how, wanted, &report);
-    return fibrad_bed_end(bed, status);
 }

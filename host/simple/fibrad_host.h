@@ -84,36 +84,37 @@ int fibrad_bed_move(fibrad_bed *bed, const fibrad_scene_config *config, const fi
  *   Errors   none */
 void fibrad_bed_describe(const fibrad_bed *bed, fibrad_scene_facts *facts, fibrad_fault *fault);
 
-/* What in a bed, in its factors or in its sources is probably a mistake. Results are computed all the same. */
+/* What in a bed, in its factors or in its sources is probably a mistake. Results are computed all the same. The fields
+ * of fibrad_warning that a code uses are in its comment. */
 typedef enum fibrad_warning_code {
-    FIBRAD_WARNING_OVERLAP = 1,     /* spheres `first` and `second` overlap by value > .05 of the smaller radius; their
-                                       factors err by about `other` */
-    FIBRAD_WARNING_CUT = 2,         /* sphere `first` reaches through a plane or cylinder by value > .1 of its radius */
-    FIBRAD_WARNING_MESH_SIZE = 3,   /* the mesh is `value` long and the bed `other`, 200 times more or less */
-    FIBRAD_WARNING_MESH_PLACE = 4,  /* the mesh begins at `value` along axis `first`, beyond the bed's end at `other` */
-    FIBRAD_WARNING_COLD = 5,        /* no sphere is warmer than value < 150 K: degrees Celsius? */
-    FIBRAD_WARNING_ZERO = 6,        /* sphere `first` has 0 K, others up to `value` */
-    FIBRAD_WARNING_AROUND = 7,      /* `wall` or the surroundings have 5 K < value < 75 K: degrees Celsius? */
-    FIBRAD_WARNING_CLOSED = 8,      /* the surroundings have a temperature, but nothing leaves the bed */
-    FIBRAD_WARNING_SURFACE = 9,     /* part of the surface of sphere `first` comes out at value < 0 K */
-    FIBRAD_WARNING_STORE = 10,      /* sphere `first` stores `value` J/(m3 K), which no solid does */
-    FIBRAD_WARNING_OPEN_ROWS = 11,  /* sums of rows of walls are off by `value` */
-    FIBRAD_WARNING_APART = 12,      /* rows of walls and of spheres disagreed by `value` before they were closed */
-    FIBRAD_WARNING_CHANGED_ROW = 13 /* closing changed row `first` by `value` times its error */
+    FIBRAD_WARNING_OVERLAP = 1,    /* spheres first and second overlap by value, above .05, of the smaller radius; their
+                                      factors err by about other */
+    FIBRAD_WARNING_CUT = 2,        /* sphere first reaches through wall, a plane or cylinder, by value, above .1, of its
+                                      radius; count spheres do so */
+    FIBRAD_WARNING_MESH_SIZE = 3,  /* wall is value long and the bed other: 200 times more or less */
+    FIBRAD_WARNING_MESH_PLACE = 4, /* wall lies from value to other along axis first, away from the bed */
+    FIBRAD_WARNING_COLD = 5,       /* no sphere is warmer than value, below 150 K: degrees Celsius? */
+    FIBRAD_WARNING_ZERO = 6,       /* sphere first, one of count, has 0 K; others have up to value */
+    FIBRAD_WARNING_AROUND = 7,     /* wall, or the surroundings, have value, 5 to 75 K: degrees Celsius? */
+    FIBRAD_WARNING_SURFACE = 8,    /* part of the surface of sphere first comes out at value, below 0 K */
+    FIBRAD_WARNING_STORE = 9,      /* sphere first stores value J/(m3 K), if L is the metre: no solid does */
+    FIBRAD_WARNING_OPEN_ROWS = 10, /* sums of rows of walls are off by value */
+    FIBRAD_WARNING_APART = 11,     /* rows of walls and of spheres disagreed by value before they were closed */
+    FIBRAD_WARNING_CHANGED_ROW = 12 /* closing has changed row first by value times its error */
 } fibrad_warning_code;
+#define FIBRAD_WARNINGS_MAX 12
 
 typedef struct fibrad_warning {
     int code;               /* a fibrad_warning_code */
     uint32_t first, second; /* a sphere; another one */
-    uint32_t wall;          /* 1 + the index of a wall; 0: none */
-    uint32_t count;         /* spheres of which the warning is true; the fields are of the worst one */
-    double value, other;    /* as the code says */
+    uint32_t wall;          /* 1 + the index of a wall; 0: the surroundings, or none */
+    uint32_t count;         /* number of spheres; the warning is about the worst one */
+    double value, other;
 } fibrad_warning;
 
 /* Warnings of the bed as it is, of its last factors and of its last sources, at most one of each code.
  *   Output   warning[FIBRAD_WARNINGS_MAX]
  *   Errors   none. Returns the number of warnings. NULL for bed is allowed. */
-#define FIBRAD_WARNINGS_MAX 16
 uint32_t fibrad_bed_warnings(const fibrad_bed *bed, fibrad_warning *warning);
 
 /* Frees a bed. NULL is allowed.
@@ -126,10 +127,10 @@ void fibrad_bed_free(fibrad_bed *bed);
  * of beam, cast and exchange is set.
  *
  * Rows go along lines if all rows are wanted, raw is 0, and the rule is a beam rule or NULL. The number of lines is
- * then beam->directions, up to FIBRAD_LINES_EVEN_MAX. It is raised to the next built-in set. 0 stands for
+ * then beam->directions, at most FIBRAD_LINES_EVEN_MAX. It is raised to the next set. 0 stands for
  * FIBRAD_LINES_DEFAULT, or among walls for FIBRAD_LINES_AMONG_WALLS. Scenes of few spheres have more: 40,000 over the
  * number of spheres. The field `points` then stands for masks: 64, 128 and 256 for 16, 32 and 64 chords. With more than
- * FIBRAD_LINES_EVEN_MAX, and in all other cases, rows go along directions. So they do among triangles if there are more
+ * 1,536, and in all other cases, rows go along directions. So they do among triangles if there are more
  * than 171 spheres; masks serve there, too. docs/methods.md, section 12.
  *
  * A tolerance in the beam rule raises the number of lines or directions. If raw is 0, it is the same number for all
@@ -196,14 +197,6 @@ int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres 
  *   Cost     that of the paths */
 int fibrad_bed_wall_row(fibrad_bed *bed, uint32_t wall, const fibrad_wall_rule *rule, double tolerance,
                         fibrad_wall_row *row);
-
-/* How far the emission of spheres is carried: fibrad_exchange_displacement of each.
- *   Input    rule: needed
- *            wanted[spheres]: not 0: this sphere is wanted; NULL: all spheres
- *   Output   displacement[spheres]: elements that are not wanted stay as they are
- *   Errors   as fibrad_exchange_displacement; _CANCELLED. After an error some elements may be written. */
-int fibrad_bed_displacements(fibrad_bed *bed, const fibrad_displacement_rule *rule, const unsigned char *wanted,
-                             fibrad_displacement *displacement);
 
 /* ---- heat ------------------------------------------------------------------------------------------------------ */
 

@@ -116,7 +116,10 @@ static int settle(fibrad_bed *bed, const fibrad_heat_sources *sources, fibrad_la
 
 int fibrad_bed_solve(fibrad_bed *bed, const fibrad_heat_sources *sources, fibrad_law *law, fibrad_heat_result *result) {
     if (!sources || !result || (law && !law->follow)) return FIBRAD_E_ARGUMENT;
-    const int status = fibrad_bed_begin(bed);
+    int status = fibrad_bed_begin(bed);
     if (status) return status;
-    return fibrad_bed_end(bed, law ? settle(bed, sources, law, result) : fibrad_bed_solve_now(bed, sources, result));
+    fibrad_bed_warn_of_sources(bed, sources, sources->temperature);
+    status = law ? settle(bed, sources, law, result) : fibrad_bed_solve_now(bed, sources, result);
+    if (!status) fibrad_bed_warn_of_surfaces(bed, result);
+    return fibrad_bed_end(bed, status);
 }

@@ -38,7 +38,8 @@ static double sum_of_row(const fibrad_row *row, uint32_t walls) {
 static void note_row(const struct row_tasks *rows, int thread, const fibrad_row *row) {
     fibrad_rows_report *report = &rows->report[thread];
     ++report->rows;
-    report->directions = row->directions > report->directions ? row->directions : report->directions;
+    const uint32_t taken = row->directions + row->lines; /* one of both is 0 */
+    report->directions = taken > report->directions ? taken : report->directions;
     report->fallbacks += row->fallbacks;
     const double sum = row->rows ? sum_of_row(row, rows->bed->facts.walls) : 0;
     if (sum != 0) /* 0: there is no row, or the sphere emits nothing */
@@ -198,9 +199,9 @@ int fibrad_bed_rows(fibrad_bed *bed, fibrad_row_method *row, const void *rule, c
 /* Masks take the place of the points of a window: 16, 32 and 64 chords for 64, 128 and 256 points. */
 enum { POINTS_PER_CHORD = 4 };
 
-/* Rows along lines serve a matrix. With more lines than sets are made of, rows have directions. */
+/* Rows along lines serve a matrix. Directions alone can be turned. */
 static bool takes_lines(const fibrad_beam_rule *beam) {
-    return !beam->lines && beam->directions <= FIBRAD_LINES_EVEN_MAX;
+    return !beam->lines && !beam->turn && beam->directions <= FIBRAD_DIRECTIONS_AS_LINES;
 }
 
 /* The default number of lines. Small scenes have more lines, of which nobody feels the time: this many windows take
@@ -213,14 +214,15 @@ static uint32_t default_lines(const fibrad_scene_facts *facts) {
     return lines < FIBRAD_LINES_EVEN_MAX ? lines : FIBRAD_LINES_EVEN_MAX;
 }
 
-/* Makes a rule with so many lines. *block: out: to be freed. */
+/* Makes a rule with so many lines, or with those of the largest set. *block: out: to be freed. */
 static int take_lines(fibrad_beam_rule *rule, uint32_t lines, void **block) {
+    if (lines > FIBRAD_LINES_EVEN_MAX) lines = FIBRAD_LINES_EVEN_MAX;
     const size_t size = fibrad_line_set_size(lines);
     fibrad_line_set *set = NULL;
     if (!size) return FIBRAD_E_ARGUMENT;
     *block = malloc(size);
-    const int status = *block ? fibrad_line_set_init(&set, *block, size, lines, rule->turn) : FIBRAD_E_MEMORY;
-    rule->lines = set, rule->directions = 0, rule->turn = 0;
+    const int status = *block ? fibrad_line_set_init(&set, *block, size, lines) : FIBRAD_E_MEMORY;
+    rule->lines = set, rule->directions = 0;
     return status;
 }
 

@@ -25,9 +25,12 @@ typedef struct fibrad_rows_report {
 int fibrad_bed_rows(fibrad_bed *bed, fibrad_row_method *row, const void *rule, const unsigned char *wanted,
                     fibrad_rows_report *report);
 
+/* The matrix along the largest set of lines errs as much as a matrix along so many directions. */
+#define FIBRAD_DIRECTIONS_AS_LINES (FIBRAD_LINES_EVEN_MAX / 2 * 3)
+
 /* Empties the collections of the team and computes all rows of a matrix into them, along as many lines as the rule has
- * directions. With more than FIBRAD_LINES_EVEN_MAX of them, rows have directions. beam NULL: the defaults.
- * Errors: as fibrad_bed_rows. */
+ * directions, at most FIBRAD_LINES_EVEN_MAX. With more than FIBRAD_DIRECTIONS_AS_LINES, rows have directions. beam
+ * NULL: the defaults. Errors: as fibrad_bed_rows. */
 int fibrad_bed_line_rows(fibrad_bed *bed, const fibrad_beam_rule *beam, fibrad_rows_report *report);
 
 /* Makes the matrix of the rows that the team has collected. Errors: as fibrad_matrix_init, _MEMORY. */

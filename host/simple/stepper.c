@@ -352,6 +352,8 @@ int fibrad_bed_advance(fibrad_bed *bed, const fibrad_heat_sources *sources, fibr
     if (status) return status;
     status = check_span(bed, sources, span);
     if (!status) status = fibrad_stepping_make(bed);
+    if (!status) fibrad_bed_warn_of_sources(bed, sources, span->temperature);
+    if (!status) fibrad_bed_warn_of_stores(bed, span->capacity);
     if (!status) status = advance_span(bed, sources, span);
     return fibrad_bed_end(bed, status);
 }

@@ -26,13 +26,16 @@ int fibrad_bed_tolerance_rows(fibrad_bed *bed, const fibrad_beam_rule *rule, con
     used.tolerance = 0;
     if (!used.directions) used.directions = PILOT;
     for (;;) {
-        if (used.directions <= FIBRAD_LINES_EVEN_MAX) used.directions = fibrad_line_set_lines(used.directions);
+        const bool lines = used.directions <= FIBRAD_LINES_EVEN_MAX;
+        if (lines) used.directions = fibrad_line_set_lines(used.directions);
         int status = fibrad_bed_line_rows(bed, &used, &report);
         if (!status) status = fibrad_bed_average(bed, average, &report, factors);
         if (status) return status;
         const double worst = worst_error(&(*factors)->matrix);
         if (worst <= rule->tolerance || used.directions == FIBRAD_DIRECTIONS_MAX) return FIBRAD_OK;
         used.directions = fibrad_directions_for(used.directions, worst, rule->tolerance);
+        if (lines && used.directions > FIBRAD_LINES_EVEN_MAX) used.directions += used.directions / 2;
+        if (used.directions > FIBRAD_DIRECTIONS_MAX) used.directions = FIBRAD_DIRECTIONS_MAX;
         fibrad_bed_matrix_free(*factors);
         *factors = NULL;
     }

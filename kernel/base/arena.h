@@ -30,6 +30,19 @@ static inline void *fibrad_arena_take(fibrad_arena *arena, size_t count, size_t 
     return arena->base != NULL && arena->used <= arena->size ? arena->base + start : NULL;
 }
 
+/* Takes `count` numbers for each address of a list that ends with NULL. */
+static inline void fibrad_arena_doubles(fibrad_arena *arena, size_t count, double **const list[]) {
+    for (; *list != NULL; list++) **list = fibrad_arena_take(arena, count, sizeof ***list);
+}
+
+static inline void fibrad_arena_floats(fibrad_arena *arena, size_t count, float **const list[]) {
+    for (; *list != NULL; list++) **list = fibrad_arena_take(arena, count, sizeof ***list);
+}
+
+static inline void fibrad_arena_words(fibrad_arena *arena, size_t count, uint32_t **const list[]) {
+    for (; *list != NULL; list++) **list = fibrad_arena_take(arena, count, sizeof ***list);
+}
+
 /* The number of bytes that suffices wherever the block begins: the result of a `_size` function. 0: the number does
  * not fit into a size_t. */
 static inline size_t fibrad_arena_total(const fibrad_arena *arena) {

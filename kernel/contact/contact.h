@@ -18,7 +18,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define FIBRAD_CONTACT_ARRAYS 12u /* of doubles, [nodes] */
 
 typedef enum fibrad_contact_kind {
     FIBRAD_CONTACT_NONE,  /* the node has no contacts */

@@ -379,11 +379,10 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
     const fibrad_exchange_rule row = {.emissivity = rule->emissivity,
                                       .wall_emissivity = rule->wall_emissivity,
                                       .paths = rule->paths,
-                                      .seed = rule->seed,
-                                      .cutoff = rule->cutoff};
+                                      .seed = rule->seed};
     int status = exchange_begin(&task, scene, i, &row);
     if (status == FIBRAD_OK && conduct && rule->flights > FIBRAD_FLIGHTS_MAX) status = FIBRAD_E_ARGUMENT;
-    if (status == FIBRAD_OK && conduct && (scene->container.walls || scene->mesh.triangles > 0 || rule->cutoff > 0))
+    if (status == FIBRAD_OK && conduct && (scene->container.walls || scene->mesh.triangles > 0))
         status = FIBRAD_E_UNSUPPORTED;
     if (status == FIBRAD_OK)
         status = fibrad_work_open(work, scene, fibrad_tracer_least(), fibrad_tracer_best(scene), &space);

@@ -50,19 +50,17 @@ static fibrad_furnace *furnace_lay_out(fibrad_arena *arena, const fibrad_furnace
             f->wall_source[2 * a + side] = f->sources;
             f->sources += f->patches[a];
             f->at.wall[2 * a + side] = fibrad_arena_take(arena, f->patches[a], sizeof(double));
-            f->at.flux[a][side] = fibrad_arena_take(arena, f->faces[a], sizeof(double));
-            f->at.theta[a][side] = fibrad_arena_take(arena, f->faces[a], sizeof(double));
-            f->at.transverse[a][side] = fibrad_arena_take(arena, f->cells, sizeof(double));
-            f->gain[a][side] = fibrad_arena_take(arena, f->cells, sizeof(double));
-            f->feed[a][side] = fibrad_arena_take(arena, f->cells, sizeof(double));
+            fibrad_arena_doubles(arena, f->faces[a],
+                                 (double **const[]){&f->at.flux[a][side], &f->at.theta[a][side], NULL});
+            fibrad_arena_doubles(
+                arena, f->cells,
+                (double **const[]){&f->at.transverse[a][side], &f->gain[a][side], &f->feed[a][side], NULL});
         }
     }
     f->at.power = f->wall_power;
-    f->at.e = fibrad_arena_take(arena, f->cells, sizeof(double));
-    f->at.divergence = fibrad_arena_take(arena, f->cells, sizeof(double));
-    f->response = fibrad_arena_take(arena, f->cells, sizeof(double));
-    f->at.six_flux = fibrad_arena_take(arena, f->cells, sizeof(double));
-    f->traced = fibrad_arena_take(arena, f->cells, sizeof(double));
+    fibrad_arena_doubles(
+        arena, f->cells,
+        (double **const[]){&f->at.e, &f->at.divergence, &f->response, &f->at.six_flux, &f->traced, NULL});
     f->power = fibrad_arena_take(arena, f->sources, sizeof(double));
     f->first = fibrad_arena_take(arena, f->sources + 1, sizeof(uint64_t));
     return furnace;

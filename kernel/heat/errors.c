@@ -11,11 +11,10 @@
  *   5. Walls that send out too much or too little make all surfaces err that see them.
  *
  * The sum of these five is the *own sample* of a surface. It may be small by chance. Errors of surfaces of one kind are
- * what each surface exchanges times a random number that is nearly normally distributed (docs/notebook.md "Errors over
- * what spheres exchange"). So all samples of one kind, over
- * all that this kind exchanges, tell the error of each. The estimate is the mean of both: of the own sample, and of
- * what all samples tell. What is smooth from wall to wall or from sphere to sphere has no part in this mean: the size
- * of the patches of walls, and of meshes beside spheres.
+ * what each surface exchanges times a random number that is nearly normally distributed. So all samples of one kind,
+ * over all that this kind exchanges, tell the error of each. The estimate is the mean of both: of the own sample, and
+ * of what all samples tell. What is smooth from wall to wall or from sphere to sphere has no part in this mean: the
+ * size of the patches of walls, and of meshes beside spheres.
  *
  * A temperature that is found errs by the error of its emission, over the slope of sigma T^4. The samples are the same,
  * per area. All temperatures that are found have an error in common besides: if the powers of surfaces of given
@@ -27,82 +26,51 @@
 #include "patches/subdivision.h"
 #include "scene/walls.h"
 
-/* ---- measured constants ------------------------------------------------------------------------------------------
- * Each is an error over the quantity that the comment names. Behind the colon stands where it was measured. */
+/* ---- constants --------------------------------------------------------------------------------------------------
+ * Each is an error over the quantity behind it. Letters say where it was measured:
+ *   B  settled beds, bench_heat                       S  500 equal spheres, bench_heat, docs/heat.md "Settings"
+ *   W  16 scenes between walls, bench_walls           T  14 scenes between walls, bench_tolerance
+ *   D  seven dilute beds                              F  cups and boxes against closed forms
+ *   P  pairs of spheres of k* .01 to 1 against rings, docs/methods_heat.md section 13
+ *   R  cubes, cups and mono2000 with insulated walls, docs/methods_heat.md section 7
+ *   M  small spheres beside triangles against the same beside planes, which are divided
+ *   L  dim walls beside few spheres, tests/test_heat_walls.c residuals_are_estimated
+ *   H  240 pairs of spheres and 400 spheres of poly2000, docs/methods_heat.md section 13 */
 
-/* Beams: the difference between even and odd beams. Directions are evenly spread, so that the error is smaller than the
- * difference where several of them meet a sphere: settled beds, bench_heat and bench_walls. */
-#define BEAM_ERROR FIBRAD_HEAT_BEAM_ERROR
+/* 1. beams and rays */
+#define BEAM_ERROR          FIBRAD_HEAT_BEAM_ERROR /* B W: even minus odd beams */
+#define ONE_PARITY_ERROR    1.2                    /* D: the same times the share of spheres that one of both meets */
+#define BETWEEN_BEAMS_ERROR .25                    /* D: what one direction brings, in the share of open beams */
+#define FLOAT_ERROR         0x1p-25                /* what a surface exchanges: factors of pencils are floats */
+#define RAY_ERROR           FIBRAD_HEAT_RAY_ERROR  /* F: even minus odd rays of a wall, two independent sequences */
+#define RAY_SAMPLES         16                     /* F: most samples of a mesh, whose rays are in so many ranges */
 
-/* The same times the share of spheres that only even or only odd directions meet. Whether one direction meets a far
- * sphere or none does is chance: seven dilute beds, docs/notebook.md "Dilute beds". */
-#define ONE_PARITY_ERROR 1.2
+/* 2. patches */
+#define EXTRAPOLATION_ERROR .2   /* S: change by extrapolation, with PATCHES; as the root of the edge of a patch */
+#define PATCHES             96.0 /* of a sphere */
+#define UNEVEN_HALF_MORE    50   /* P: 1/(2 k*) of a sphere for which this error is half as large again */
+#define WALL_EXTRAPOLATION  .5   /* W: factor of this error for walls */
+#define MESH_SPOT_ERROR     .7   /* M: what goes back and forth between a sphere and patches of a mesh */
 
-/* What one direction brings, in the share of beams that meet no sphere: as above. */
-#define BETWEEN_BEAMS_ERROR .25
+/* 3. few beams on a patch: patches over beams, times the power */
+#define FEW_ON_SPHERES    .25 /* B, at emissivity .3: patches of spheres */
+#define FEW_ON_WALLS_SEEN 1.3 /* T: patches of walls that a sphere sees, whose beams are less even */
+#define FEW_ON_WALLS      .65 /* T: for walls themselves */
+#define FEW_AT_REFLECTORS .2  /* R: part of it that fibrad_heat_enlarged leaves at walls that send back all */
 
-/* What a surface exchanges: factors of pencils are floats, so this is their rounding and was not measured. */
-#define FLOAT_ERROR 0x1p-25
+/* 4. the steps of the solution to come */
+#define RESIDUAL_ERROR 2 /* L: what they would change */
 
-/* Rays: the difference between even and odd rays of a wall, which are two independent sequences: black cups and boxes
- * with closed forms, docs/notebook.md "Estimates of powers against closed forms". */
-#define RAY_ERROR FIBRAD_HEAT_RAY_ERROR
+/* hottest and coldest places, over their difference from the mean of the surface */
+#define FACING_ERROR    .015 /* H: that face a neighbour */
+#define NEIGHBOUR_ERROR .014 /* H: for each further neighbour, times the root of their number, with PATCHES */
+#define OPEN_ERROR      .07  /* H: that face none, with PATCHES */
+#define NEAR_WALL_ERROR .08  /* H: that face none and may have a wall near */
+#define PLACE_ERROR     .05  /* H: such a place minus the hottest or coldest patch */
 
-/* Largest number of samples of a mesh, whose rays are divided into so many ranges: as above. */
-#define RAY_SAMPLES 16
-
-/* Extrapolation: the change of a value by it, with PATCHES patches of a sphere; in proportion to the root of the edge
- * of a patch: 500 equal spheres, bench_heat, the table of docs/heat.md "Settings". */
-#define EXTRAPOLATION_ERROR .2
-#define PATCHES             96.0
-
-/* Twice the relative conductivity, inverse, of a sphere for which this error is half as large again. Spheres that
- * conduct badly have spots smaller than patches where they nearly touch: pairs of spheres of k* .01 to 1 against rings,
- * docs/methods_heat.md section 13. */
-#define UNEVEN_HALF_MORE 50
-
-/* Factor of this error for walls: 16 scenes between walls, bench_walls, docs/notebook.md "Between walls". */
-#define WALL_EXTRAPOLATION .5
-
-/* Few beams on a patch of spheres: patches over beams, times the power: bench_heat at emissivity .3. */
-#define FEW_ON_SPHERES .25
-
-/* The same on walls that a sphere sees, whose beams are less even, and for walls themselves: the 14 scenes of
- * bench_tolerance. */
-#define FEW_ON_WALLS_SEEN 1.3
-#define FEW_ON_WALLS      .65
-
-/* Part of this error of walls that send back all. The larger exchange areas of their beams and rays take away the rest
- * (fibrad_heat_enlarged): cubes, cups and mono2000 with insulated walls, docs/methods_heat.md section 7. */
-#define FEW_AT_REFLECTORS .2
-
-/* What goes back and forth between a sphere and a mesh whose patches are too large: small spheres beside triangles
- * against the same beside planes, which are divided (CHANGELOG.md 0.2.0, small spheres near walls). */
-#define MESH_SPOT_ERROR .7
-
-/* What the steps of the solution to come would change: dim walls beside few spheres, tests/test_heat_walls.c
- * residuals_are_estimated. */
-#define RESIDUAL_ERROR 2
-
-/* Hottest and coldest places, over their difference from the mean of the surface. Four constants for places: that face
- * a neighbour; for each further neighbour, whose light is that of patches (times the root of their number, with
- * PATCHES); that face none (with PATCHES); that face none and may have a wall near: 240 pairs of spheres and 400
- * spheres of poly2000, docs/methods_heat.md section 13. */
-#define FACING_ERROR    .015
-#define NEIGHBOUR_ERROR .014
-#define OPEN_ERROR      .07
-#define NEAR_WALL_ERROR .08
-
-/* The difference between such a place and the hottest or coldest patch: as above. */
-#define PLACE_ERROR .05
-
-/* Kinds with fewer samples than this take samples of the other kind besides: pairs of spheres, docs/notebook.md
- * "Estimates of powers against closed forms". */
-#define SAMPLES_ENOUGH 3
-
-/* Solutions with random signs of errors that contacts pass on. The standard error of their mean is a third: no constant
- * of a measurement. */
-#define SIGNS 8u
+/* numbers of samples */
+#define SAMPLES_ENOUGH 3  /* P: kinds with fewer take samples of the other kind besides */
+#define SIGNS          8u /* solutions with random signs; the standard error of their mean is a third */
 
 static double squared(double x) { return x * x; }
 

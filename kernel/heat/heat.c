@@ -6,7 +6,7 @@
 #include "patches/subdivision.h"
 #include "patches/patch_beams_lanes.h"
 #include "patches/pencils.h"
-#include "sample/sphere_patch.h"
+#include "patches/sphere_patch.h"
 #include "heat/sweep.h"
 #include "patches/wall_patch.h"
 #include "sample/direction.h"
@@ -90,11 +90,10 @@ static uint32_t tasks_for(uint32_t rows, uint32_t rays) {
 /* Takes the arrays of contacts, whose nodes are bodies. The contacts themselves are the caller's. */
 static void take_contacts(fibrad_arena *arena, fibrad_heat *heat) {
     fibrad_contacts *c = &heat->contacts;
-    double **const of_nodes[FIBRAD_CONTACT_ARRAYS] = {&c->temperature, &c->stiff,     &c->supply,  &c->load,
-                                                      &c->warming,     &c->direction, &c->gain,    &c->error,
-                                                      &c->diagonal,    &c->search,    &c->product, &c->missing};
-    for (size_t k = 0; k < FIBRAD_CONTACT_ARRAYS; k++)
-        *of_nodes[k] = fibrad_arena_take(arena, heat->bodies, sizeof(double));
+    fibrad_arena_doubles(arena, heat->bodies,
+                         (double **const[]){&c->temperature, &c->stiff, &c->supply, &c->load, &c->warming,
+                                            &c->direction, &c->gain, &c->error, &c->diagonal, &c->search, &c->product,
+                                            &c->missing, NULL});
     c->node = fibrad_arena_take(arena, heat->spheres + FIBRAD_WALLS_MAX, sizeof *c->node);
     c->kind = fibrad_arena_take(arena, heat->bodies, 1);
     c->nodes = heat->bodies;
@@ -116,17 +115,16 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     heat->solution.brought =
         fibrad_arena_take(arena, (size_t)others * heat->config.parts, sizeof *heat->solution.brought);
     heat->solution.back = fibrad_arena_take(arena, others, sizeof *heat->solution.back);
-    double **const of_patches[] = {&heat->solution.source,   &heat->solution.gathered,  &heat->solution.area,
-                                   &heat->solution.net,      &heat->solution.radiosity, &heat->solution.detail,
-                                   &heat->solution.direction};
-    for (size_t k = 0; k < sizeof of_patches / sizeof *of_patches; k++)
-        *of_patches[k] = fibrad_arena_take(arena, patches, sizeof(double));
-    double **const of_bodies[] = {&heat->sources.emissivity,  &heat->sources.emission, &heat->sources.given_power,
-                                  &heat->sources.storage,     &heat->solution.coarse,  &heat->solution.coarse_emission,
-                                  &heat->sources.temperature, &heat->solution.power,   &heat->samples.halves,
-                                  &heat->solution.drift,      &heat->solution.left,    &heat->solution.unsettled};
-    for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; k++)
-        *of_bodies[k] = fibrad_arena_take(arena, heat->bodies, sizeof(double));
+    fibrad_arena_doubles(arena, patches,
+                         (double **const[]){&heat->solution.source, &heat->solution.gathered, &heat->solution.area,
+                                            &heat->solution.net, &heat->solution.radiosity, &heat->solution.detail,
+                                            &heat->solution.direction, NULL});
+    fibrad_arena_doubles(arena, heat->bodies,
+                         (double **const[]){&heat->sources.emissivity, &heat->sources.emission,
+                                            &heat->sources.given_power, &heat->sources.storage, &heat->solution.coarse,
+                                            &heat->solution.coarse_emission, &heat->sources.temperature,
+                                            &heat->solution.power, &heat->samples.halves, &heat->solution.drift,
+                                            &heat->solution.left, &heat->solution.unsettled, NULL});
     for (uint32_t level = 0; level < 2; level++) {
         fibrad_harmonics *h = &heat->harmonics[level];
         h->patch = fibrad_arena_take(arena, FIBRAD_HARMONICS_KINDS * h->orbits, sizeof *h->patch);
@@ -134,8 +132,8 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
         h->value = fibrad_arena_take(arena, FIBRAD_HARMONICS_KINDS * h->orbits * h->many, sizeof *h->value);
     }
     take_contacts(arena, heat);
-    heat->sources.conductivity = fibrad_arena_take(arena, spheres, sizeof(double));
-    heat->sources.unevenness = fibrad_arena_take(arena, spheres, sizeof(double));
+    fibrad_arena_doubles(arena, spheres,
+                         (double **const[]){&heat->sources.conductivity, &heat->sources.unevenness, NULL});
     heat->solution.span = fibrad_arena_take(arena, spheres, sizeof *heat->solution.span);
     heat->normal = fibrad_arena_take(arena, 12 * (size_t)heat->config.patches, sizeof(double));
     heat->rings = fibrad_arena_take(arena, 1, sizeof *heat->rings);

@@ -6,7 +6,7 @@
 #include "patches/subdivision.h"
 #include "patches/problem.h"
 #include "light/light.h"
-#include "sample/sphere_patch.h"
+#include "patches/sphere_patch.h"
 
 #define SHINE_SPHERES 64u /* of a task */
 #define SHINE_RULE    4u  /* points along an edge of a patch, for what falls on it */

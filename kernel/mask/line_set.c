@@ -19,10 +19,6 @@ static fibrad_line_set *line_set_layout(fibrad_arena *arena, uint32_t n, fibrad_
 
 uint32_t fibrad_chords_for(uint32_t n) { return n <= 80 ? 16 : n <= 250 ? 32 : n <= 724 ? 64 : 0; }
 
-static bool line_count_valid(uint32_t lines) {
-    return lines >= FIBRAD_DIRECTIONS_MIN && lines <= FIBRAD_LINES_EVEN_MAX;
-}
-
 uint32_t fibrad_line_set_lines(uint32_t lines) { return fibrad_lines_next(lines); }
 
 uint32_t fibrad_line_set_count(const fibrad_line_set *set) { return set != NULL ? set->n : 0; }
@@ -30,8 +26,9 @@ uint32_t fibrad_line_set_count(const fibrad_line_set *set) { return set != NULL 
 size_t fibrad_line_set_size(uint32_t lines) {
     fibrad_arena arena = {0};
     fibrad_line_set fields = {0};
-    if (!line_count_valid(lines)) return 0;
-    line_set_layout(&arena, fibrad_lines_next(lines), &fields);
+    const uint32_t n = lines >= FIBRAD_DIRECTIONS_MIN ? fibrad_lines_next(lines) : 0;
+    if (n == 0) return 0;
+    line_set_layout(&arena, n, &fields);
     return fibrad_arena_total(&arena);
 }
 
@@ -49,20 +46,18 @@ static void frame_of_line(uint32_t n, const double (*line)[3], uint32_t k, doubl
     fibrad_cross(w, frame, frame + 3);
 }
 
-int fibrad_line_set_init(fibrad_line_set **made, void *memory, size_t size, uint32_t lines, uint64_t turn) {
+int fibrad_line_set_init(fibrad_line_set **made, void *memory, size_t size, uint32_t lines) {
     fibrad_arena arena = {0};
-    fibrad_line_set fields = {.turn = turn};
-    if (made == NULL || memory == NULL || !line_count_valid(lines)) return FIBRAD_E_ARGUMENT;
+    fibrad_line_set fields = {0};
+    if (made == NULL || memory == NULL || lines < FIBRAD_DIRECTIONS_MIN) return FIBRAD_E_ARGUMENT;
     const uint32_t n = fields.n = fibrad_lines_next(lines);
+    if (n == 0) return FIBRAD_E_TABLE;
     const int status = fibrad_arena_open(&arena, memory, size, fibrad_line_set_size(n));
     if (status != FIBRAD_OK) return status;
     fibrad_line_set *set = line_set_layout(&arena, n, &fields);
-    fibrad_lines_make(n, fields.line, fields.frame[0]); /* the frames are scratch at first */
-    double rotation[9];
-    if (turn != 0) fibrad_rotation(turn, rotation);
+    fibrad_lines_read(n, fields.line);
     for (uint32_t k = 0; k < n; k++) {
         frame_of_line(n, (const double(*)[3])fields.line, k, fields.frame[k]);
-        if (turn != 0) fibrad_rotate_axes(rotation, fields.frame[k]);
         if (fields.chords == 0) continue;
         fibrad_masks masks;
         fibrad_masks_open_scalar(&masks, fields.chords, 1, k);

@@ -6,9 +6,8 @@
 
 struct fibrad_line_set {
     uint32_t n;
-    uint64_t turn;
     double (*line)[3];  /* [n] as in the table */
-    double (*frame)[9]; /* [n] two unit vectors across each line, then its vector; all turned */
+    double (*frame)[9]; /* [n] two unit vectors across each line, then its vector */
     uint32_t chords;    /* that suit so many lines; 0: exact areas */
     uint32_t *word;     /* [n][chords] the points of open windows, masks of one word a chord */
     uint32_t *points;   /* [n] their number */

@@ -99,5 +99,4 @@ void fibrad_matrix_average_part(fibrad_matrix *m, fibrad_matrix_part *part) {
     transpose_part(m, part);
     for (uint32_t i = part->begin; i < part->end; i++) at = merge_row(m, i, at, &there);
     part->filled = at;
-    part->done = 1;
 }

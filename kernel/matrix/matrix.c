@@ -77,19 +77,14 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
     m->result.col = fibrad_arena_take(arena, (size_t)m->result.capacity, sizeof *m->result.col);
     m->result.f = fibrad_arena_take(arena, (size_t)m->result.capacity, sizeof *m->result.f);
     m->row = fibrad_arena_take(arena, n, sizeof(void *));
-    m->escaped = fibrad_arena_take(arena, n, sizeof *m->escaped);
-    m->beyond = fibrad_arena_take(arena, n, sizeof *m->beyond);
-    m->error = fibrad_arena_take(arena, n, sizeof *m->error);
+    fibrad_arena_doubles(arena, n, (double **const[]){&m->escaped, &m->beyond, &m->error, &m->r, NULL});
     m->wall = fibrad_arena_take(arena, n * m->walls, sizeof *m->wall);
     m->between = fibrad_arena_take(arena, m->enclosed ? m->walls * m->walls : 0, sizeof *m->between);
-    m->wall_escaped = fibrad_arena_take(arena, m->enclosed ? m->walls : 0, sizeof *m->wall_escaped);
-    m->wall_error = fibrad_arena_take(arena, m->enclosed ? m->walls : 0, sizeof *m->wall_error);
-    m->newton = fibrad_arena_take(arena, m->enclosed ? m->walls * (m->walls + 1) : 0, sizeof *m->newton);
-    m->before = fibrad_arena_take(arena, m->enclosed ? m->walls * (m->walls + 1) : 0, sizeof *m->before);
-    m->r = fibrad_arena_take(arena, n, sizeof *m->r);
+    const size_t enclosed = m->enclosed ? m->walls : 0;
+    fibrad_arena_doubles(arena, enclosed, (double **const[]){&m->wall_escaped, &m->wall_error, NULL});
+    fibrad_arena_doubles(arena, enclosed * (m->walls + 1), (double **const[]){&m->newton, &m->before, NULL});
     m->radius = fibrad_arena_take(arena, m->sampled ? n : 0, sizeof *m->radius);
-    m->area = fibrad_arena_take(arena, m->raw ? 0 : n, sizeof *m->area);
-    m->noise = fibrad_arena_take(arena, m->raw ? 0 : n, sizeof *m->noise);
+    fibrad_arena_doubles(arena, m->raw ? 0 : n, (double **const[]){&m->area, &m->noise, NULL});
     m->variance = fibrad_arena_take(arena, m->lines ? n : 0, sizeof *m->variance);
     const size_t halves = m->lines ? (size_t)m->result.capacity : 0;
     m->result.half = fibrad_arena_take(arena, halves, sizeof *m->result.half);
@@ -256,16 +251,9 @@ int fibrad_matrix_init(fibrad_matrix **out, void *memory, size_t size, const fib
     return FIBRAD_OK;
 }
 
-int fibrad_matrix_average(fibrad_matrix *m, uint32_t task) {
-    if (m == NULL || task >= m->tasks) return FIBRAD_E_ARGUMENT;
-    if (m->raw || !matrix_open(m) || m->part[task].done) return FIBRAD_E_STATE;
-    fibrad_matrix_average_part(m, &m->part[task]);
-    return FIBRAD_OK;
-}
-
-static void average_rest(void *matrix, uint32_t p) {
+static void average_part(void *matrix, uint32_t p) {
     fibrad_matrix *m = matrix;
-    if (!m->part[p].done) fibrad_matrix_average_part(m, &m->part[p]);
+    fibrad_matrix_average_part(m, &m->part[p]);
 }
 
 /* Parts that are moved at the same time. */
@@ -410,7 +398,7 @@ int fibrad_matrix_close(fibrad_matrix *m) {
     if (!matrix_open(m)) return FIBRAD_E_STATE;
     m->closed = true;
     if (m->raw) return FIBRAD_OK;
-    fibrad_matrix_share(m, m->tasks, average_rest, m);
+    fibrad_matrix_share(m, m->tasks, average_part, m);
     gather_parts(m);
     fibrad_matrix_balance(m);
     close_rows(m);

@@ -13,7 +13,6 @@ typedef struct fibrad_matrix_part {
     uint64_t to;                      /* place of the rows after all parts have been moved together */
     double worst;                     /* largest value of a row, for the present step */
     uint32_t worst_row;               /* the row with this value */
-    unsigned char done;
 } fibrad_matrix_part;
 
 /* Compressed rows under construction. */

@@ -5,7 +5,7 @@
 #include "patches/subdivision.h"
 #include "patches/patch_beams_lanes.h"
 #include "patches/pencils.h"
-#include "sample/sphere_patch.h"
+#include "patches/sphere_patch.h"
 #include "patches/wall_patch.h"
 #include "ray/tracer.h"
 #include "row/mesh_share_lanes.h"

@@ -9,7 +9,7 @@
 #include "base/arena.h"
 #include "base/constants.h"
 #include "pair/free_pair.h"
-#include "sample/sphere_patch.h"
+#include "patches/sphere_patch.h"
 
 /* Number of bodies that a row sees, times the solid fraction, over the square root of its beams. Measured in random
  * beds of equal spheres: 0.75 at the solid fraction 0.6, and 1.1 at 0.2. */

@@ -14,10 +14,10 @@
 #include "fibrad_heat.h"
 #include "base/sobol.h"
 #include "contact/contact.h"
-#include "sample/harmonics.h"
+#include "patches/harmonics.h"
 #include "mesh/mesh_patch.h"
 #include "rings/rings.h"
-#include "sample/sphere_patch.h"
+#include "patches/sphere_patch.h"
 #include "scene/scene.h"
 #include "workspace/workspace.h"
 

@@ -15,12 +15,9 @@ static void tracer_layout(fibrad_arena *arena, uint32_t lists, fibrad_tracer *tr
     tracer->nearby = fibrad_arena_take(arena, lists + tracer->cells, sizeof *tracer->nearby);
     tracer->cell = fibrad_arena_take(arena, tracer->cells, sizeof *tracer->cell);
     fibrad_candidates *of = &tracer->candidates;
-    double **const wide[] = {&of->x, &of->y, &of->z, &of->r, &of->clearance};
-    float **const narrow[] = {&of->fx, &of->fy, &of->fz, &of->fq};
-    for (size_t k = 0; k < sizeof wide / sizeof *wide; k++)
-        *wide[k] = fibrad_arena_take(arena, FIBRAD_CANDIDATES, sizeof **wide[k]);
-    for (size_t k = 0; k < sizeof narrow / sizeof *narrow; k++)
-        *narrow[k] = fibrad_arena_take(arena, FIBRAD_CANDIDATES, sizeof **narrow[k]);
+    fibrad_arena_doubles(arena, FIBRAD_CANDIDATES,
+                         (double **const[]){&of->x, &of->y, &of->z, &of->r, &of->clearance, NULL});
+    fibrad_arena_floats(arena, FIBRAD_CANDIDATES, (float **const[]){&of->fx, &of->fy, &of->fz, &of->fq, NULL});
     of->sphere = fibrad_arena_take(arena, FIBRAD_CANDIDATES, sizeof *of->sphere);
     of->periods = fibrad_arena_take(arena, FIBRAD_CANDIDATES, sizeof *of->periods);
     of->order = fibrad_arena_take(arena, FIBRAD_CANDIDATES, sizeof *of->order);

@@ -33,6 +33,7 @@ typedef struct beam_windows {
     bool turned; /* directions have been turned */
     bool both;   /* walls are also seen in the other sense of each line */
     fibrad_turning turning;
+    double size;            /* of a window that has no masks: its points, or its area */
     uint32_t chords, words; /* of masks; 0: none */
     fibrad_points points;   /* count 0: exact areas */
     uint32_t nearby;        /* directions whose numbers differ by this are near each other */
@@ -62,6 +63,7 @@ static int choose_windows(const fibrad_scene *scene, uint32_t i, const fibrad_be
     windows->words = fibrad_mask_words(scene, i);
     if (rule->chords > 0 && windows->words > 0) windows->chords = rule->chords * windows->words;
     windows->points.count = rule->points;
+    windows->size = rule->points > 0 ? rule->points : FIBRAD_PI;
     uint32_t next = 2;
     for (windows->nearby = 1; windows->nearby * next < NEARBY * rule->directions;) {
         next += windows->nearby;
@@ -244,6 +246,87 @@ static void keep_open(fibrad_workspace *work, fibrad_beam_sums *sums, double par
     sums->open[0] = sums->open[1] = 0;
 }
 
+/* Begins a row. Rows of 64 points have so few windows that directions of lines would spread widely. The open part of a
+ * window does not follow them that far. Factors of walls would be too large by up to 1.5 % at 14 windows. If such rows
+ * are turned at random, parallel lines have no bias. */
+static void begin_row(fibrad_workspace *work, const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule,
+                      beam_windows *windows) {
+    work->areas.overflow = false;
+    work->areas.fallbacks = 0;
+    work->windows = windows->count;
+    work->masks.regions = 0;
+    fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, FIBRAD_BEAM_STRIDE);
+    work->entries.masked = windows->chords > 0;
+    work->parallel = windows->turned && rule->points == FEW_POINTS;
+    work->turned = windows->turned;
+    if (!scene->container.walls) return;
+    work->walls->view = view_of_lines(work, windows->count);
+    windows->both = windows->lines != NULL && scene->mesh.triangles == 0 && near_walls(work);
+    fibrad_wall_sums_begin(&work->walls->sums, windows->count << windows->both);
+}
+
+/* What the windows of a row have in common. Directions do not pair off along the axis of walls. */
+static fibrad_window_set set_of_windows(const fibrad_scene *scene, const beam_windows *windows) {
+    const bool masked = windows->chords > 0;
+    const double square = 32.0 * windows->words * windows->chords; /* points of masks in the square about a window */
+    const double size = masked ? FIBRAD_PI / 4 * square : windows->size, most = masked ? square : windows->size;
+    const uint32_t directions = windows->count << windows->both;
+    return (fibrad_window_set){.frame = LANED(frame_of_beam),
+                               .from = windows,
+                               .directions = directions,
+                               .whole = size,
+                               .middle = {fibrad_grid_middle(directions), fibrad_grid_middle(most * directions),
+                                          fibrad_grid_middle(most * most * directions)},
+                               .mixed = windows->lines != NULL ||
+                                        (!windows->turned && fibrad_walls_only(&scene->container) < 2),
+                               .ends = windows->lines == NULL && !masked};
+}
+
+/* Adds up the windows of a range and the parts that were kept. Errors: _WORK, _BACK. */
+static int sum_windows(fibrad_workspace *work, beam_windows *windows, const fibrad_window_set *set,
+                       const fibrad_beam_range *range, fibrad_beam_sums *sums) {
+    for (uint32_t p = 0; p < range->parts; p++) fibrad_beam_add_kept(work, &range->part[p], sums);
+    LANED(begin_segments)(&work->segments);
+    for (uint32_t k = range->from; k < range->to; k++)
+        if (!add_window(work, windows, set, range->from, k, sums)) return fibrad_work_discs_missed(work);
+    if (windows->chords > 0) gather_counts(work);
+    sums->seen += work->masks.regions;
+    if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
+    return work->back != UINT32_MAX ? FIBRAD_E_BACK : FIBRAD_OK;
+}
+
+/* Sets what the row has besides spheres. parts: out: as in fibrad_wall_factors. */
+static void give_rest(fibrad_workspace *work, const beam_windows *windows, const fibrad_window_set *set,
+                      fibrad_beam_sums *sums, const fibrad_free_pairs *pairs, double scale, double parts[2],
+                      fibrad_row *row) {
+    const fibrad_scene *scene = work->scene;
+    if (scene->container.walls) LANED(fibrad_walls_complete)(work, set, parts);
+    if (windows->both) keep_open(work, sums, parts);
+    fibrad_entries_slots(&work->entries, scene, work->wall);
+    row->escaped = (sums->open[0] + sums->open[1] + work->wall[FIBRAD_ESCAPED]) * scale;
+    row->beyond = work->wall[FIBRAD_BEYOND] * scale;
+    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
+        if (fibrad_slot_of_wall(slot)) work->wall[slot] = fibrad_max(0, work->wall[slot]) * scale;
+    fibrad_free_pairs_share(pairs, work->wall, row);
+    fibrad_row_cut(scene, work->place, work->wall, row);
+    fibrad_row_walls(scene, work->wall, row);
+}
+
+/* Sets the error of a row along lines or by masks, from that of the difference of its halves. */
+static void set_error_of_halves(const fibrad_workspace *work, double gain, fibrad_row *row) {
+    if (row->half != NULL) fibrad_weigh_halves(work, row);
+    const double areas = fibrad_max(0, row->error * row->error - row->noise * row->noise);
+    row->error = fibrad_sqrt(gain * gain * areas + row->noise * row->noise + row->shares * row->shares);
+}
+
+/* Sets the error of a row along directions by exact areas or points. unseen: as in fibrad_free_pairs */
+static void set_error_of_directions(const fibrad_workspace *work, const double parts[2], double unseen, double scale,
+                                    fibrad_row *row) {
+    if (parts[0] > 0) row->error = fibrad_sqrt(row->error * row->error + parts[0] * scale * scale);
+    row->error = fibrad_entries_error(&work->entries, parts, row->error, scale);
+    if (unseen > 0) row->error = fibrad_sqrt(row->error * row->error + unseen * unseen);
+}
+
 int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i,
                              const fibrad_beam_rule *rule, const fibrad_beam_range *range, fibrad_row *row) {
     beam_windows windows;
@@ -253,86 +336,37 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     int status = choose_windows(scene, scene->place[i], rule, &windows);
     if (status != FIBRAD_OK) return status;
     windows.open = open;
-    const bool masked = windows.chords > 0;
-    work->areas.overflow = false;
-    work->areas.fallbacks = 0;
-    work->windows = windows.count;
-    work->masks.regions = 0;
-    fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, FIBRAD_BEAM_STRIDE);
-    work->entries.masked = masked;
-    /* Rows of 64 points have so few windows that directions of lines would spread widely. The open part of a window
-     * does not follow them that far. Factors of walls would be too large by up to 1.5 % at 14 windows. If such rows are
-     * turned at random, parallel lines have no bias. */
-    work->parallel = windows.turned && rule->points == FEW_POINTS;
-    work->turned = windows.turned;
-    /* directions do not pair off along the axis of walls */
-    const bool mixed = windows.lines != NULL || (!windows.turned && fibrad_walls_only(&scene->container) < 2);
-    const double each = rule->points > 0 ? rule->points : FIBRAD_PI;
-    const double square = 32.0 * windows.words * windows.chords; /* points of masks in the square about a window */
-    if (scene->container.walls) {
-        work->walls->view = view_of_lines(work, windows.count);
-        windows.both = windows.lines != NULL && scene->mesh.triangles == 0 && near_walls(work);
-    }
-    const uint32_t directions = windows.count << windows.both;
-    if (scene->container.walls) fibrad_wall_sums_begin(&work->walls->sums, directions);
-    const double size = masked ? FIBRAD_PI / 4 * square : each, most = masked ? square : each;
-    const fibrad_window_set set = {.frame = LANED(frame_of_beam),
-                                   .from = &windows,
-                                   .directions = directions,
-                                   .whole = size,
-                                   .middle = {fibrad_grid_middle(directions), fibrad_grid_middle(most * directions),
-                                              fibrad_grid_middle(most * most * directions)},
-                                   .mixed = mixed,
-                                   .ends = windows.lines == NULL && !masked};
-    for (uint32_t p = 0; p < range->parts; p++) fibrad_beam_add_kept(work, &range->part[p], &sums);
-    LANED(begin_segments)(&work->segments);
-    for (uint32_t k = range->from; k < range->to; k++)
-        if (!add_window(work, &windows, &set, range->from, k, &sums)) return fibrad_work_discs_missed(work);
-    if (masked) gather_counts(work);
-    sums.seen += work->masks.regions;
-    if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
-    if (work->back != UINT32_MAX) return FIBRAD_E_BACK;
+    const bool masked = windows.chords > 0, lines = windows.lines != NULL;
+    begin_row(work, scene, i, rule, &windows);
+    const fibrad_window_set set = set_of_windows(scene, &windows);
+    status = sum_windows(work, &windows, &set, range, &sums);
+    if (status != FIBRAD_OK) return status;
     row->fallbacks = work->areas.fallbacks;
     row->length = 0;
     if (range->kept != NULL) return fibrad_beam_keep(work, &sums, range->kept);
-    const double all = sums.whole[0] + sums.whole[1], scale = masked ? 1 / all : 1 / (windows.count * each);
-    for (int half = 0; half < 2 && windows.lines != NULL; half++)
-        work->entries.balance[half] = all / (2 * sums.whole[half]);
+
+    const double all = sums.whole[0] + sums.whole[1], scale = masked ? 1 / all : 1 / (windows.count * windows.size);
+    for (int half = 0; half < 2 && lines; half++) work->entries.balance[half] = all / (2 * sums.whole[half]);
     fibrad_free_pairs pairs = {.open = 1};
     if (range->exact) pairs = fibrad_free_pairs_find(work, scale);
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
     status = fibrad_free_pairs_segments(work, &pairs);
+    if (status == FIBRAD_OK) status = fibrad_entries_row(&work->entries, scene, scale, row);
     if (status != FIBRAD_OK) return status;
-    status = fibrad_entries_row(&work->entries, scene, scale, row);
-    if (status != FIBRAD_OK) return status;
-    if (scene->container.walls) LANED(fibrad_walls_complete)(work, &set, parts);
-    if (windows.both) keep_open(work, &sums, parts);
-    fibrad_entries_slots(&work->entries, scene, work->wall);
-    row->escaped = (sums.open[0] + sums.open[1] + work->wall[FIBRAD_ESCAPED]) * scale;
-    row->beyond = work->wall[FIBRAD_BEYOND] * scale;
-    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
-        if (fibrad_slot_of_wall(slot)) work->wall[slot] = fibrad_max(0, work->wall[slot]) * scale;
-    fibrad_free_pairs_share(&pairs, work->wall, row);
-    fibrad_row_cut(scene, work->place, work->wall, row);
-    fibrad_row_walls(scene, work->wall, row);
-    work->open_error = open_error_of(&windows);
-    row->lines = rule->lines != NULL ? windows.count : 0;
+    give_rest(work, &windows, &set, &sums, &pairs, scale, parts, row);
+
+    if (!lines) row->half = NULL;
+    row->directions = lines ? 0 : windows.count;
+    row->lines = lines ? windows.count : 0;
+    row->symmetric = 0;
     row->noise = masked ? noise_of(&windows, all, sums.seen) : 0;
     const double shares = (windows.both ? SHARES_BOTH : SHARES_ERROR) *
                           fibrad_sqrt(fibrad_max(parts[0], SHARES_FOURTHS * parts[1])) * scale;
     row->shares = fibrad_sqrt(shares * shares + pairs.unseen * pairs.unseen);
-    if (row->lines > 0 || masked) {
-        const double gain = row->lines > 0 ? LINES_ERROR : DIRECTIONS_ERROR;
-        if (row->lines > 0 && row->half != NULL) fibrad_weigh_halves(work, row);
-        const double areas = fibrad_max(0, row->error * row->error - row->noise * row->noise);
-        row->error = fibrad_sqrt(gain * gain * areas + row->noise * row->noise + row->shares * row->shares);
-    } else {
-        if (parts[0] > 0) row->error = fibrad_sqrt(row->error * row->error + parts[0] * scale * scale);
-        row->error = fibrad_entries_error(&work->entries, parts, row->error, scale);
-        if (pairs.unseen > 0) row->error = fibrad_sqrt(row->error * row->error + pairs.unseen * pairs.unseen);
-    }
-    if (row->lines == 0) row->half = NULL;
-    row->directions = windows.count;
-    row->symmetric = 0;
+    work->open_error = open_error_of(&windows);
+    if (lines || masked)
+        set_error_of_halves(work, lines ? LINES_ERROR : DIRECTIONS_ERROR, row);
+    else
+        set_error_of_directions(work, parts, pairs.unseen, scale, row);
     return fibrad_row_checked(scene, row);
 }

@@ -14,8 +14,8 @@ static uint64_t key_of(const fibrad_scene *scene, uint32_t i, const fibrad_beam_
     uint64_t cutoff;
     fibrad_copy(&cutoff, &rule->cutoff, sizeof cutoff);
     const fibrad_line_set *lines = rule->lines;
-    const uint64_t number[] = {i, (uint64_t)rule->directions << 32 | rule->points, cutoff,
-                               lines != NULL ? lines->turn : rule->turn, 2 * rule->chords + (lines != NULL)};
+    const uint64_t number[] = {i, (uint64_t)rule->directions << 32 | rule->points, cutoff, rule->turn,
+                               2 * rule->chords + (lines != NULL)};
     uint64_t key = scene->hash;
     for (int k = 0; k < 5; k++) key = fibrad_mix(key ^ fibrad_mix(number[k] + (uint64_t)k));
     return key;

@@ -93,33 +93,3 @@ void fibrad_turned_frame(const fibrad_turning *turn, uint32_t k, uint32_t direct
     for (int n = 0; n < 9; n += 3)
         for (int axis = 0; axis < 3; axis++) frame[n + axis] = about[n + (axis + 2 - turn->axis) % 3];
 }
-
-/* A unit quaternion gives a rotation. For a uniform quaternion take a uniform point of the unit ball in four
- * dimensions and divide it by its distance from the centre. Rejection finds such a point in three draws on average.
- * Points near the centre are rejected too, since they have few digits. */
-void fibrad_rotation(uint64_t seed, double rotation[9]) {
-    fibrad_random random = fibrad_random_start(seed, 0);
-    double q[4], square;
-    do {
-        square = 0;
-        for (int k = 0; k < 4; k++) {
-            q[k] = 2 * fibrad_random_next(&random) - 1;
-            square += q[k] * q[k];
-        }
-    } while (!(square <= 1 && square > 1e-4));
-    const double s = 2 / square, a = q[0], b = q[1], c = q[2], d = q[3];
-    const double by_row[9] = {1 - s * (c * c + d * d), s * (b * c - a * d),     s * (b * d + a * c),
-                              s * (b * c + a * d),     1 - s * (b * b + d * d), s * (c * d - a * b),
-                              s * (b * d - a * c),     s * (c * d + a * b),     1 - s * (b * b + c * c)};
-    fibrad_copy(rotation, by_row, sizeof by_row);
-}
-
-void fibrad_rotate_axes(const double rotation[9], double frame[9]) {
-    for (int n = 0; n < 9; n += 3) {
-        const double v[3] = {frame[n], frame[n + 1], frame[n + 2]};
-        for (int axis = 0; axis < 3; axis++) {
-            const double *row = rotation + 3 * axis;
-            frame[n + axis] = row[0] * v[0] + row[1] * v[1] + row[2] * v[2];
-        }
-    }
-}

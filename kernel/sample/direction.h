@@ -53,9 +53,4 @@ fibrad_turning fibrad_turning_of(uint64_t seed, int axis);
 /* As fibrad_beam_frame, for a direction that is turned. */
 void fibrad_turned_frame(const fibrad_turning *turn, uint32_t k, uint32_t directions, uint32_t points, double frame[9]);
 
-/* A random rotation, uniform over all rotations. It depends on the seed alone. The result is the rotation matrix,
- * which turns the axes of a frame. */
-void fibrad_rotation(uint64_t seed, double rotation[9]);
-void fibrad_rotate_axes(const double rotation[9], double frame[9]);
-
 #endif

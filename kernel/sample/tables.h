@@ -5,8 +5,7 @@
  *   -DFIBRAD_TABLE_AZIMUTHS=N  azimuths kept at hand: 0, 256, 1024, 4096 or 10946 (default), 16 N bytes. The others, up
  *                              to FIBRAD_DIRECTIONS_MAX, are summed from 16 KB of angles; the bits are the same.
  *   -DFIBRAD_TABLE_SURFACE=N   largest surface rule: 0 (none), 8, 13, ... 987 (default), about 104 N bytes.
- *   -DFIBRAD_TABLE_LINES=N     largest set of lines: 0 (none), 8, 11, ... 2048 (default), about 29 N bytes. The others
- *                              are computed, kernel/sample/line.h; they are nearly as even, but other lines.
+ *   -DFIBRAD_TABLE_LINES=N     largest set of lines: 0 (none), 8, 11, ... 1024 (default), about 31 N bytes.
  */
 #ifndef FIBRAD_SAMPLE_TABLES_H
 #define FIBRAD_SAMPLE_TABLES_H
@@ -21,7 +20,7 @@
 #define FIBRAD_TABLE_SURFACE 987
 #endif
 #ifndef FIBRAD_TABLE_LINES
-#define FIBRAD_TABLE_LINES 2048
+#define FIBRAD_TABLE_LINES 1024
 #endif
 
 /* Cosine and sine of k golden angles. The golden angle is pi (3 - sqrt 5). */

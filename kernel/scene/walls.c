@@ -21,7 +21,7 @@ static uint32_t slot_of_wall(const fibrad_wall *wall) {
     if (wall->kind == FIBRAD_WALL_PLANE) return slot_of_plane(&wall->plane);
     const bool valid = wall->kind == FIBRAD_WALL_CYLINDER && wall_length_valid(wall->cylinder.x) &&
                        wall_length_valid(wall->cylinder.y) && wall_length_valid(wall->cylinder.radius) &&
-                       wall->cylinder.radius > 0 && wall->cylinder.axis >= 0 && wall->cylinder.axis < 3;
+                       wall->cylinder.radius > 0 && wall->cylinder.along >= 0 && wall->cylinder.along < 3;
     return valid ? FIBRAD_CYLINDER : FIBRAD_WALLS;
 }
 
@@ -51,7 +51,7 @@ static int find_wall(const fibrad_scene_config *config, const fibrad_wall *wall,
 
 /* Whether an axis lies across the cylinder. */
 static bool is_across(const found_walls *found, uint32_t axis) {
-    return found->cylinder != NULL && axis != fibrad_cylinder_axis((uint32_t)found->cylinder->cylinder.axis, 2);
+    return found->cylinder != NULL && (int)axis != found->cylinder->cylinder.along;
 }
 
 /* Whether an axis is bounded on both sides or periodic. */
@@ -109,7 +109,7 @@ static void set_plane(fibrad_container *c, const fibrad_plane *plane) {
 /* The position is given in the order x, y, z. Of a cylinder along y, the first axis across it is z. */
 static void set_cylinder(fibrad_container *c, const fibrad_wall *wall) {
     const double at[2] = {wall->cylinder.x, wall->cylinder.y};
-    c->turn = (uint32_t)wall->cylinder.axis;
+    c->turn = (uint32_t)(wall->cylinder.along + 1) % 3;
     c->axis[0] = at[c->turn == 2], c->axis[1] = at[c->turn != 2], c->radius = wall->cylinder.radius;
 }
 

@@ -7,61 +7,44 @@
  * Windows of beds have about one arc per disc. */
 #define ARCS_PER_DISC 4u
 
-static double *doubles(fibrad_arena *arena, size_t count) { return fibrad_arena_take(arena, count, sizeof(double)); }
-
-static fibrad_arcs take_arcs(fibrad_arena *arena, size_t count) {
-    fibrad_arcs arcs;
-    arcs.a = doubles(arena, count), arcs.b = doubles(arena, count);
-    arcs.px = doubles(arena, count), arcs.py = doubles(arena, count);
-    arcs.qx = doubles(arena, count), arcs.qy = doubles(arena, count);
-    arcs.circle = doubles(arena, count);
-    arcs.count = 0;
-    return arcs;
+static void take_arcs(fibrad_arena *arena, size_t count, fibrad_arcs *arcs) {
+    fibrad_arena_doubles(
+        arena, count,
+        (double **const[]){&arcs->a, &arcs->b, &arcs->px, &arcs->py, &arcs->qx, &arcs->qy, &arcs->circle, NULL});
+    arcs->count = 0;
 }
 
-static void lay_out_arrangement(fibrad_arrangement *arrangement, fibrad_arena *arena, uint32_t discs, size_t circles) {
-    arrangement->arcs = ARCS_PER_DISC * discs + 4 * AREA_LANES;
-    size_t arcs = (size_t)arrangement->arcs + AREA_LANES;
-    arrangement->inverse = doubles(arena, circles);
-    arrangement->from = doubles(arena, circles), arrangement->to = doubles(arena, circles);
-    arrangement->sx = doubles(arena, circles), arrangement->sy = doubles(arena, circles);
-    arrangement->ex = doubles(arena, circles), arrangement->ey = doubles(arena, circles);
-    arrangement->hidden.from = doubles(arena, circles + AREA_LANES),
-    arrangement->hidden.to = doubles(arena, circles + AREA_LANES);
-    arrangement->hidden.circle = doubles(arena, circles + AREA_LANES);
-    arrangement->open = take_arcs(arena, arcs);
-    arrangement->left = take_arcs(arena, arcs);
-    arrangement->seconds = arrangement->arcs / 4;
-    arrangement->second[0] = take_arcs(arena, arrangement->seconds + AREA_LANES);
-    arrangement->second[1] = take_arcs(arena, arrangement->seconds + AREA_LANES);
+static void lay_out_arrangement(fibrad_arrangement *a, fibrad_arena *arena, uint32_t discs, size_t circles) {
+    a->arcs = ARCS_PER_DISC * discs + 4 * AREA_LANES;
+    a->seconds = a->arcs / 4;
+    fibrad_arena_doubles(arena, circles,
+                         (double **const[]){&a->inverse, &a->from, &a->to, &a->sx, &a->sy, &a->ex, &a->ey, NULL});
+    fibrad_arena_doubles(arena, circles + AREA_LANES,
+                         (double **const[]){&a->hidden.from, &a->hidden.to, &a->hidden.circle, NULL});
+    take_arcs(arena, (size_t)a->arcs + AREA_LANES, &a->open);
+    take_arcs(arena, (size_t)a->arcs + AREA_LANES, &a->left);
+    for (int k = 0; k < 2; k++) take_arcs(arena, a->seconds + AREA_LANES, &a->second[k]);
 }
 
-static void dense_layout(fibrad_dense *dense, fibrad_arena *arena, uint32_t discs) {
-    dense->cells_most = 4 * discs, dense->blocks_most = discs / 8 * 3 + 8, dense->discs_most = 8 * discs,
-    dense->cuts_most = discs / 2 + 1;
-    const size_t slots = (size_t)FIBRAD_DENSE_BLOCK * dense->blocks_most;
-    dense->px = doubles(arena, slots), dense->py = doubles(arena, slots);
-    dense->qx = doubles(arena, slots), dense->qy = doubles(arena, slots);
-    dense->cx = doubles(arena, slots), dense->cy = doubles(arena, slots);
-    dense->r = doubles(arena, slots), dense->circle = doubles(arena, slots);
-    dense->mx = fibrad_arena_take(arena, slots, sizeof(float)),
-    dense->my = fibrad_arena_take(arena, slots, sizeof(float));
-    dense->half = fibrad_arena_take(arena, slots, sizeof(float));
-    dense->near = fibrad_arena_take(arena, slots + 2 * AREA_LANES, sizeof(uint32_t));
-    dense->alive = fibrad_arena_take(arena, dense->blocks_most, sizeof(uint32_t));
-    dense->next = fibrad_arena_take(arena, dense->blocks_most, sizeof(uint32_t));
-    dense->first_block = fibrad_arena_take(arena, dense->cells_most, sizeof(uint32_t));
-    dense->first_disc = fibrad_arena_take(arena, dense->cells_most, sizeof(uint32_t));
-    dense->disc = fibrad_arena_take(arena, dense->discs_most, sizeof *dense->disc);
-    dense->cut = fibrad_arena_take(arena, dense->cuts_most, sizeof *dense->cut);
+static void dense_layout(fibrad_dense *d, fibrad_arena *arena, uint32_t discs) {
+    d->cells_most = 4 * discs, d->blocks_most = discs / 8 * 3 + 8, d->discs_most = 8 * discs,
+    d->cuts_most = discs / 2 + 1;
+    const size_t slots = (size_t)FIBRAD_DENSE_BLOCK * d->blocks_most;
+    fibrad_arena_doubles(arena, slots,
+                         (double **const[]){&d->px, &d->py, &d->qx, &d->qy, &d->cx, &d->cy, &d->r, &d->circle, NULL});
+    fibrad_arena_floats(arena, slots, (float **const[]){&d->mx, &d->my, &d->half, NULL});
+    d->near = fibrad_arena_take(arena, slots + 2 * AREA_LANES, sizeof(uint32_t));
+    fibrad_arena_words(arena, d->blocks_most, (uint32_t * *const[]){&d->alive, &d->next, NULL});
+    fibrad_arena_words(arena, d->cells_most, (uint32_t * *const[]){&d->first_block, &d->first_disc, NULL});
+    d->disc = fibrad_arena_take(arena, d->discs_most, sizeof *d->disc);
+    d->cut = fibrad_arena_take(arena, d->cuts_most, sizeof *d->cut);
 }
 
 void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t discs) {
     size_t circles =
         (size_t)discs + 2 < 2 * AREA_LANES ? 2 * AREA_LANES : (size_t)discs + 2; /* lookups load two vectors */
     areas->discs = discs;
-    areas->x = doubles(arena, circles), areas->y = doubles(arena, circles), areas->r = doubles(arena, circles);
-    areas->area = doubles(arena, circles);
+    fibrad_arena_doubles(arena, circles, (double **const[]){&areas->x, &areas->y, &areas->r, &areas->area, NULL});
     areas->whose = fibrad_arena_take(arena, circles, sizeof(uint32_t));
     areas->pieces = fibrad_arena_take(arena, 1, sizeof *areas->pieces);
     areas->boundary = fibrad_arena_take(arena, 1, sizeof *areas->boundary);

@@ -26,47 +26,27 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     size_t discs = (size_t)plan->discs + FIBRAD_LANES_MAX;
     fibrad_near *near = &work->near;
     near->capacity = (plan->near + 15) / 16 * 16;
-    near->fx = fibrad_arena_take(arena, near->capacity, sizeof(float));
-    near->fy = fibrad_arena_take(arena, near->capacity, sizeof(float));
-    near->fz = fibrad_arena_take(arena, near->capacity, sizeof(float));
-    near->fe = fibrad_arena_take(arena, near->capacity, sizeof(float));
-    near->fq = fibrad_arena_take(arena, near->capacity, sizeof(float));
-    near->fsquare = fibrad_arena_take(arena, near->capacity, sizeof(float));
+    fibrad_arena_floats(arena, near->capacity,
+                        (float **const[]){&near->fx, &near->fy, &near->fz, &near->fe, &near->fq, &near->fsquare, NULL});
+    fibrad_arena_doubles(arena, near->capacity, (double **const[]){&near->x, &near->y, &near->z, &near->r, NULL});
+    fibrad_arena_words(arena, near->capacity + discs, (uint32_t * *const[]){&near->sphere, &near->entry, NULL});
     near->count = fibrad_arena_take(arena, near->capacity, sizeof *near->count);
-    near->x = fibrad_arena_take(arena, near->capacity, sizeof(double));
-    near->y = fibrad_arena_take(arena, near->capacity, sizeof(double));
-    near->z = fibrad_arena_take(arena, near->capacity, sizeof(double));
-    near->r = fibrad_arena_take(arena, near->capacity, sizeof(double));
-    near->sphere = fibrad_arena_take(arena, near->capacity + discs, sizeof(uint32_t));
-    near->entry = fibrad_arena_take(arena, near->capacity + discs, sizeof(uint32_t));
     near->all = (fibrad_sight){.x = near->fx, .y = near->fy, .z = near->fz, .e = near->fe, .square = near->fsquare};
     near->all.near = fibrad_arena_take(arena, near->capacity, sizeof(uint32_t));
     near->sights = ((near->capacity < MOST_SEEN ? near->capacity : MOST_SEEN) / 4 + 15) / 16 * 16;
     for (int octant = 0; octant < 8; octant++) {
-        fibrad_sight *sight = &near->octant[octant];
-        sight->x = fibrad_arena_take(arena, near->sights, sizeof(float));
-        sight->y = fibrad_arena_take(arena, near->sights, sizeof(float));
-        sight->z = fibrad_arena_take(arena, near->sights, sizeof(float));
-        sight->e = fibrad_arena_take(arena, near->sights, sizeof(float));
-        sight->square = fibrad_arena_take(arena, near->sights, sizeof(float));
-        sight->near = fibrad_arena_take(arena, near->sights, sizeof(uint32_t));
+        fibrad_sight *s = &near->octant[octant];
+        fibrad_arena_floats(arena, near->sights, (float **const[]){&s->x, &s->y, &s->z, &s->e, &s->square, NULL});
+        s->near = fibrad_arena_take(arena, near->sights, sizeof(uint32_t));
     }
 
     fibrad_discs *disc = &work->disc;
     disc->capacity = plan->discs;
-    disc->depth = fibrad_arena_take(arena, discs, sizeof(double));
-    disc->u = fibrad_arena_take(arena, discs, sizeof(double));
-    disc->v = fibrad_arena_take(arena, discs, sizeof(double));
-    disc->r = fibrad_arena_take(arena, discs, sizeof(double));
-    disc->resolved = fibrad_arena_take(arena, discs, sizeof(double));
-    disc->fu = fibrad_arena_take(arena, discs, sizeof(float));
-    disc->fv = fibrad_arena_take(arena, discs, sizeof(float));
-    disc->square = fibrad_arena_take(arena, discs, sizeof(float));
-    disc->fdepth = fibrad_arena_take(arena, discs, sizeof(float));
+    fibrad_arena_doubles(arena, discs,
+                         (double **const[]){&disc->depth, &disc->u, &disc->v, &disc->r, &disc->resolved, NULL});
+    fibrad_arena_floats(arena, discs, (float **const[]){&disc->fu, &disc->fv, &disc->square, &disc->fdepth, NULL});
+    fibrad_arena_words(arena, discs, (uint32_t * *const[]){&disc->order, &disc->hidden_points, &disc->occluder, NULL});
     disc->near = fibrad_arena_take(arena, discs + near->capacity, sizeof(uint32_t));
-    disc->order = fibrad_arena_take(arena, discs, sizeof(uint32_t));
-    disc->hidden_points = fibrad_arena_take(arena, discs, sizeof(uint32_t));
-    disc->occluder = fibrad_arena_take(arena, discs, sizeof(uint32_t));
     for (int list = 0; list < 2; list++) disc->key[list] = fibrad_arena_take(arena, discs, sizeof(uint64_t));
     fibrad_areas_layout(&work->areas, arena, plan->discs);
 
@@ -75,12 +55,10 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     entries->slots = 16;
     while (entries->slots < plan->entries + plan->entries / 2) entries->slots *= 2;
     entries->at = fibrad_arena_take(arena, entries->slots, sizeof(uint32_t));
-    entries->slot = fibrad_arena_take(arena, entries->capacity, sizeof(uint32_t));
-    entries->sphere = fibrad_arena_take(arena, entries->capacity, sizeof(uint32_t));
+    fibrad_arena_words(arena, entries->capacity, (uint32_t * *const[]){&entries->slot, &entries->sphere, NULL});
     entries->part = fibrad_arena_take(arena, entries->capacity, sizeof *entries->part);
-    entries->lengths = fibrad_arena_take(arena, entries->capacity, sizeof(double));
-    entries->angles = fibrad_arena_take(arena, entries->capacity, sizeof(double));
-    entries->exact = fibrad_arena_take(arena, entries->capacity, sizeof(double));
+    fibrad_arena_doubles(arena, entries->capacity,
+                         (double **const[]){&entries->lengths, &entries->angles, &entries->exact, NULL});
     for (int list = 0; list < 2; list++)
         entries->key[list] = fibrad_arena_take(arena, entries->capacity, sizeof(uint64_t));
     work->segments.segment = fibrad_arena_take(arena, plan->segments, sizeof *work->segments.segment);

@@ -160,7 +160,7 @@ static int scene_part(void *memory, size_t size, const struct scene *s, int isa,
                      (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = {(int)k / 2, k % 2, k % 2 ? high : low}});
     if (s->bounds == CAN)
         add_wall(wall, 6,
-                 (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {middle, middle, .75 * (high - low), 0}});
+                 (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {middle, middle, .75 * (high - low), 2}});
     fibrad_scene_config config = part != NULL ? *part : (fibrad_scene_config){0};
     config.isa = isa, config.wall = wall, config.walls = walls;
     config.period[0] = config.period[1] = across, config.period[2] = s->bounds == PERIODIC ? period : 0;
@@ -182,9 +182,6 @@ static int matrix_of(const fibrad_scene *scene, const fibrad_matrix_rule *rule, 
     fibrad_matrix *matrix;
     if (fibrad_matrix_init(&matrix, matrix_memory, sizeof matrix_memory, scene, &rows, 1, rule, NULL) != FIBRAD_OK)
         return 1;
-    /* only some of the tasks: closing does the others */
-    for (uint32_t k = rule->tasks; k-- > rule->tasks / 2;)
-        if (fibrad_matrix_average(matrix, k) != FIBRAD_OK) return 1;
     return fibrad_matrix_close(matrix) != FIBRAD_OK || fibrad_matrix_read(matrix, factors) != FIBRAD_OK ||
            fibrad_matrix_reciprocity(matrix, reciprocity) != FIBRAD_OK;
 }
@@ -225,10 +222,7 @@ static int hash_beam(const struct scene *s, int isa, uint32_t points) {
  * lines, with a table and without. */
 static int hash_lines(const struct scene *s, int isa) {
     static unsigned char object[1 << 16];
-    static const struct {
-        uint32_t lines, chords;
-        uint64_t turn;
-    } kinds[] = {{34, FIBRAD_CHORDS_NONE, 0}, {21, 16, 5}, {34, 32, 0}, {23, 64, 0}};
+    static const struct { uint32_t lines, chords; } kinds[] = {{34, FIBRAD_CHORDS_NONE}, {21, 16}, {34, 32}, {23, 64}};
     fibrad_scene *scene;
     if (set_up(s, isa, &scene)) return 1;
     hash_begin();
@@ -236,7 +230,7 @@ static int hash_lines(const struct scene *s, int isa) {
         fibrad_line_set *set;
         fibrad_factors factors;
         double largest;
-        if (fibrad_line_set_init(&set, object, sizeof object, kinds[k].lines, kinds[k].turn) != FIBRAD_OK) return 1;
+        if (fibrad_line_set_init(&set, object, sizeof object, kinds[k].lines) != FIBRAD_OK) return 1;
         const fibrad_beam_rule rule = {.lines = set, .chords = kinds[k].chords, .cutoff = s->cutoff};
         fibrad_rows_clear(&rows);
         for (uint32_t i = 0; i < s->n; i++) {

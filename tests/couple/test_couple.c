@@ -239,7 +239,7 @@ static struct pile pile_of(const struct kind *kind) {
     if (kind->walls == PIPE) p.bed.opening = ends[2], p.bed.openings = 2;
     if (kind->walls >= TUBE)
         p.wall[p.bed.walls++] =
-            (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {box / 2 - 1, box / 2 - .75, box / 2}};
+            (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {box / 2 - 1, box / 2 - .75, box / 2, 2}};
     p.wall_emissivity[0] = kind->emissivity[0], p.wall_emissivity[1] = .5;
     return p;
 }
@@ -255,7 +255,7 @@ static void lay_along(struct pile *p, int axis) {
     const double x = p->wall->cylinder.x;
     const int periodic = p->bed.periodic[2];
     for (size_t i = 0; i < p->bed.n; ++i) turn_axes(p->x + 3 * i, axis);
-    p->wall->cylinder.axis = (axis + 1) % 3;
+    p->wall->cylinder.along = axis;
     p->bed.periodic[2] = 0, p->bed.periodic[axis] = periodic;
     if (p->bed.openings) p->bed.opening = ends[axis];
     if (axis == 1) p->wall->cylinder.x = p->wall->cylinder.y, p->wall->cylinder.y = x; /* x y z become z x y, y z x */
@@ -1036,7 +1036,7 @@ static double conductance_of_pair(const struct pile *p, const double *solid, siz
 static double conductance_of_wall(const struct pile *p, const double *solid, size_t i, const fibrad_wall *wall,
                                   bool hertz) {
     const double *x = p->x + 3 * i;
-    const int along = (wall->cylinder.axis + 2) % 3, u = along == 0, v = along == 2 ? 1 : 2;
+    const int along = wall->cylinder.along, u = along == 0, v = along == 2 ? 1 : 2;
     const double d = wall->kind == FIBRAD_WALL_PLANE
                          ? fabs(x[wall->plane.axis] - wall->plane.at)
                          : wall->cylinder.radius - hypot(x[u] - wall->cylinder.x, x[v] - wall->cylinder.y);
@@ -1155,7 +1155,7 @@ static void spoil(struct pile *p, enum fault fault) {
         p->wall_emissivity[1] = 2;
         break;
     case ENDLESS:
-        p->wall[1] = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {3, 3, 9}};
+        p->wall[1] = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {3, 3, 9, 2}};
         memset(p->bed.periodic, 0, sizeof p->bed.periodic);
         break;
     default:
@@ -1243,7 +1243,7 @@ static void cylinders_are_refused(fibrad_insitu *s) {
     static const char *const place[] = {"at (0.5, 9.5, 0.25): its centre lies beyond wall 1, the cylinder",
                                         "at (0.25, 0.5, 9.5): its centre lies beyond wall 1, the cylinder"};
     for (int axis = 0; axis < 2; ++axis) {
-        fibrad_wall tube = {.kind = FIBRAD_WALL_CYLINDER, .cylinder = {3, 4, 6, axis + 1}};
+        fibrad_wall tube = {.kind = FIBRAD_WALL_CYLINDER, .cylinder = {3, 4, 6, axis}};
         const fibrad_plane across[] = {{2, 0, -1}, {2, 1, 9}};
         const fibrad_wall both[] = {tube, tube}, floor[] = {tube, {.kind = FIBRAD_WALL_PLANE, .plane = across[0]}};
         double x[3] = {9.5, .25, .5};
@@ -1262,7 +1262,7 @@ static void cylinders_are_refused(fibrad_insitu *s) {
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "do not bound a box or a cylinder");
         bed.openings = 0, bed.periodic[axis] = 0;
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ENDLESS, "an opening");
-        tube.cylinder.axis = 3, bed.wall = &tube;
+        tube.cylinder.along = 3, bed.wall = &tube;
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "");
     }
 }

@@ -13,7 +13,7 @@ void *memcpy(void *restrict to, const void *restrict from, size_t bytes);
 void *memmove(void *to, const void *from, size_t bytes);
 void *memset(void *to, int byte, size_t bytes);
 
-#if defined(__ARM_FP) && (__ARM_FP & 8) || defined(__riscv_fdiv)
+#if defined(__ARM_FP) && (__ARM_FP & 8)
 static inline double fibrad_sqrt(double x) { return __builtin_sqrt(x); }
 #else
 static inline double fibrad_sqrt(double x) { return smoke_sqrt(x); }

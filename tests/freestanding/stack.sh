@@ -11,7 +11,7 @@ find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $
     cat "$2/frames"
     "$1" -dr "$2/libfibrad.a" | awk '
         /^[0-9a-f]+ <[^.].*>:$/ {gsub(/[<>:]/, "", $2); from = $2; sub(/\.(part|constprop|isra)\..*/, "", from)}
-        /R_ARM_(THM_)?(CALL|JUMP24)|R_RISCV_(CALL|JAL)/ {
+        /R_ARM_(THM_)?(CALL|JUMP24)/ {
             to = $NF; sub(/[-+].*/, "", to); sub(/^\.text\./, "", to); sub(/\.(part|constprop|isra)\..*/, "", to)
             if (to != from && to !~ /^\./) print "call", from, to}
         /\tblx\tr/ && from !~ /^(fibrad_surface_factor|fibrad_row_run|attempt|fibrad_memory_reserve|fit|fibrad_matrix_share|fibrad_walls_complete_scalar|add_hidden|each_overlap)$/ {

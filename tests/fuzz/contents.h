@@ -137,7 +137,7 @@ static inline struct contents any_contents(bool walled, bool meshed) {
                 (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = {(int)k / 2, k % 2, 8 * length()}};
     if (walled && byte() % 4 == 0)
         c.wall[c.config.walls++] =
-            (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {length(), length(), 4 * fabs(length())}};
+            (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {length(), length(), 4 * fabs(length()), 2}};
     if (walled && byte() == 1) c.wall[byte() % PLANES].kind = byte();
     if (walled && byte() == 1) c.wall[byte() % PLANES].plane.axis = (int)number();
     if (walled && byte() == 1) c.config.walls = number() % (PLANES + 2);

@@ -265,21 +265,13 @@ static void try_matrix(const fibrad_scene *scene, const fibrad_rows *rows, uint3
         REQUIRE(status == FIBRAD_E_SIZE);
     else if (expected != FIBRAD_E_ARGUMENT && !rule.raw)
         REQUIRE(status == expected);
-    bool done[1024] = {0}, closed = false;
+    bool closed = false;
     for (int step = matrix != NULL ? byte() % 16 : 0; step > 0; step--) {
-        const uint32_t task = number(), tasks = rule.tasks == 0 || rule.raw ? 1 : rule.tasks;
         fibrad_factors factors;
         double largest;
         if (byte() % 8 == 0) {
             REQUIRE(fibrad_matrix_close(matrix) == (closed ? FIBRAD_E_STATE : FIBRAD_OK));
             closed = true;
-        } else {
-            const int found = CALL(fibrad_matrix_average(matrix, task));
-            if (task >= tasks)
-                REQUIRE(found == FIBRAD_E_ARGUMENT);
-            else
-                REQUIRE(found == (closed || rule.raw || done[task] ? FIBRAD_E_STATE : FIBRAD_OK));
-            if (task < tasks) done[task] = true;
         }
         REQUIRE(fibrad_matrix_read(matrix, &factors) == (closed ? FIBRAD_OK : FIBRAD_E_STATE));
         REQUIRE(fibrad_matrix_reciprocity(matrix, &largest) == (closed ? FIBRAD_OK : FIBRAD_E_STATE));

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "contact/cylinder.h"
+#include "simple/cylinder.h"
 
 #define OPENING_SLACK 1e-12 /* a particle may reach this much beyond an opening, as in fibrad_scene_init */
 

@@ -330,7 +330,7 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
         The error allowed in every row. Directions are added until it is met. Default: none.
     directions : int, optional
         Directions of beams, 8 to 65536. The error falls as ``directions**-1.5``. Default: 233. If all rows
-        of a bed are averaged, it is the number of lines, up to 2048. Default: 181, among walls 233, and more for few
+        of a bed are averaged, it is the number of lines, up to 1024. Default: 181, among walls 233, and more for few
         spheres.
     points : {64, 128, 256}, optional
         Points of each window of a beam. Along lines they stand for masks of 16, 32 and 64 chords. Default: along lines

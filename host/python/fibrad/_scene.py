@@ -17,7 +17,7 @@ from ._values import Names, doubles, real, refuse
 _AXES = "xyz"
 _PLANES = {f"{axis}{end}": (k, upper) for k, axis in enumerate(_AXES) for upper, end in enumerate(("min", "max"))}
 _PLANE, _CYLINDER, _MESH = 1, 2, 3
-_CYLINDERS = ("cylinder", "xcylinder", "ycylinder")  # by fibrad_wall.cylinder.axis
+_CYLINDERS = ("xcylinder", "ycylinder", "cylinder")  # by fibrad_wall.cylinder.along
 _NO_WALL = 2**32 - 1
 _STRIDE_MAX = 2**32 - 1
 
@@ -165,8 +165,8 @@ class Mesh:
 
 
 def across_cylinder(axis: int) -> tuple[int, int]:
-    """The two axes across a cylinder, of fibrad_wall.cylinder.axis."""
-    return ((0, 1), (1, 2), (0, 2))[axis]
+    """The two axes across a cylinder, of fibrad_wall.cylinder.along."""
+    return ((1, 2), (0, 2), (0, 1))[axis]
 
 
 def _plane(name: str, at: Any) -> tuple[int, int, float]:
@@ -330,7 +330,7 @@ class Container:
     def _bounded(self, axis: int) -> bool:
         """Whether an axis has an end or a period: two planes, a period, or the cylinder across it."""
         ends = {f"{_AXES[axis]}min", f"{_AXES[axis]}max"}
-        round_it = any(axis in across_cylinder(cylinder.axis) for _, cylinder in self.cylinders())
+        round_it = any(axis in across_cylinder(cylinder.along) for _, cylinder in self.cylinders())
         return bool(self.period[axis] > 0 or ends <= {*self.names, *self.opened} or round_it)
 
     def closed(self) -> bool:

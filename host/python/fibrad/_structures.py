@@ -14,7 +14,7 @@ class Plane(Structure):
 
 
 class Cylinder(Structure):
-    _fields_ = [("x", c_double), ("y", c_double), ("radius", c_double), ("axis", c_int)]
+    _fields_ = [("x", c_double), ("y", c_double), ("radius", c_double), ("along", c_int)]
 
 
 class Wall(Structure):
@@ -114,8 +114,7 @@ class SideView(Structure):
 
 class DisplacementRule(Structure):
     _fields_ = [("emissivity", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)),
-                ("conductivity", POINTER(c_double)), ("flights", c_uint32), ("paths", c_uint32), ("seed", c_uint64),
-                ("cutoff", c_double)]
+                ("conductivity", POINTER(c_double)), ("flights", c_uint32), ("paths", c_uint32), ("seed", c_uint64)]
 
 
 class Displacement(Structure):

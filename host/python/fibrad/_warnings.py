@@ -52,7 +52,7 @@ def _warn_cuts(packing: Packing, container: Container) -> None:
         depth = (r + (beyond if upper else -beyond)) / r
         count, worst = count + int((depth > _CUT_LARGE).sum()), max(worst, (depth.max(), int(depth.argmax()), name))
     for name, cylinder in container.cylinders():
-        u, v = across_cylinder(cylinder.axis)
+        u, v = across_cylinder(cylinder.along)
         depth = (np.hypot(packing.x[:, u] - cylinder.x, packing.x[:, v] - cylinder.y) + r - cylinder.radius) / r
         count, worst = count + int((depth > _CUT_LARGE).sum()), max(worst, (depth.max(), int(depth.argmax()), name))
     if count:

@@ -3,8 +3,8 @@
  * The sphere is projected from its centre onto a cube. Each face of the cube is mapped so that equal squares have
  * images of about equal area on the sphere, and is then cut into squares. The cube is turned so that neither the
  * axes nor the contacts of common lattices lie on its edges. */
-#ifndef FIBRAD_SAMPLE_SPHERE_PATCH_H
-#define FIBRAD_SAMPLE_SPHERE_PATCH_H
+#ifndef FIBRAD_PATCHES_SPHERE_PATCH_H
+#define FIBRAD_PATCHES_SPHERE_PATCH_H
 
 #include "base/port.h"
 

@@ -1,7 +1,7 @@
 /* harmonics.c - spherical harmonics on the patches of a sphere. SPDX-License-Identifier: MIT */
 #include "base/constants.h"
-#include "sample/harmonics.h"
-#include "sample/sphere_patch.h"
+#include "patches/harmonics.h"
+#include "patches/sphere_patch.h"
 
 #define OCTANTS FIBRAD_HARMONICS_KINDS
 #define MOST    FIBRAD_HARMONICS_OF_KIND

@@ -243,7 +243,7 @@ static void write_surface(const char *name, int member) {
 
 int main(void) {
     prepare();
-    printf("/* tables.c - Fibonacci samples, written by kernel/sample/generate_tables.c; see kernel/sample/tables.h. "
+    printf("/* tables.c - Fibonacci samples, written by host/tables/generate_tables.c; see kernel/sample/tables.h. "
            "SPDX-License-Identifier: MIT */\n#include \"sample/tables.h\"\n");
     printf("\n#if FIBRAD_TABLE_AZIMUTHS != 0 && FIBRAD_TABLE_AZIMUTHS != 256 && FIBRAD_TABLE_AZIMUTHS != 1024 && \\\n"
            "    FIBRAD_TABLE_AZIMUTHS != 4096 && FIBRAD_TABLE_AZIMUTHS != 10946\n"

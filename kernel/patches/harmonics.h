@@ -9,8 +9,8 @@
  * the cube of patches, a kind keeps its values or changes all signs. So sums over the patches of an octant are enough.
  * Each kind has the degrees a + b + c, a + b + c + 2, and so on. The part of a pattern that the harmonics of a kind
  * leave over is treated as the next degree of the kind. */
-#ifndef FIBRAD_HARMONICS_H
-#define FIBRAD_HARMONICS_H
+#ifndef FIBRAD_PATCHES_HARMONICS_H
+#define FIBRAD_PATCHES_HARMONICS_H
 
 #include "fibrad.h"
 #include "base/port.h"

@@ -1,17 +1,14 @@
 /* cylinder.h - the axes of a wall that is a cylinder. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_CONTACT_CYLINDER_H
-#define FIBRAD_CONTACT_CYLINDER_H
+#ifndef FIBRAD_SIMPLE_CYLINDER_H
+#define FIBRAD_SIMPLE_CYLINDER_H
 
 #include <math.h>
 
 #include "fibrad.h"
 
-/* The axis along a cylinder, 0: x, 1: y, 2: z. */
-static inline int cylinder_along(const fibrad_wall *wall) { return (wall->cylinder.axis + 2) % 3; }
-
 /* The first (0) or the second (1) axis across a cylinder, in the order x, y, z. */
 static inline int cylinder_across(const fibrad_wall *wall, int k) {
-    const int along = cylinder_along(wall);
+    const int along = wall->cylinder.along;
     return k == 0 ? along == 0 : 2 - (along == 2);
 }
 
