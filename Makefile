@@ -73,6 +73,8 @@ SIMPLE  := $(call sources,host/simple/*.c host/contact/*.c) # libfibrad_host.a
 HOST    := $(filter-out $(addprefix host/,simple/% contact/% couple/% python/% tables/%),$(call sources,host/*/*.c host/read/*/*.c host/papers/*/*.c)) # the program, besides main.c
 TESTS   := $(call sources,tests/test_*.c)
 SCRIPTS := $(filter-out tests/couple/% tests/freestanding/%,$(call sources,tests/check_*.sh tests/*/check_*.sh))
+# other machines, and what takes minutes: `make nightly`
+NIGHTLY := tests/check_dist.sh tests/check_tables.sh tests/couple/check_made.sh tests/couple/check_pages.sh
 
 PEERS   := $(call sources,bench/bench_embree*.c) # built and run where Embree 3 is found (Debian: libembree-dev)
 COUNTED := bench/bench_instructions.c # linked with a library that counts its instructions, bench/count_cc.sh; on x86-64
@@ -99,7 +101,7 @@ COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
 .PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols calls format house budget map structures bench bench-quick \
-    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed sanitized threads clang-warnings lint cppcheck nightly deps deps-ci man install install-lib clean help need-libraries need-check
+    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed sanitized threads clang-warnings lint cppcheck nightly deps deps-ci deps-nightly man install install-lib clean help need-libraries need-check
 
 ## all: build/fibrad and the libraries (the default)
 all: $(BUILD)/fibrad lib lib-host
@@ -239,7 +241,7 @@ test: deps
 	@echo "Building the tests"
 	@$(MAKE) -s --no-print-directory programs all man dist
 	@BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" \
-	    tests/run.sh $(COUPLE_SCRIPTS) $(SCRIPTS) $(TEST_PROGRAMS)
+	    tests/run.sh $(filter-out $(NIGHTLY),$(COUPLE_SCRIPTS) $(SCRIPTS)) $(TEST_PROGRAMS)
 
 ## test-ROOM: build and run the tests of one room, in seconds: test-heat, test-mesh, test-read ...; tests/rooms.txt has all
 ROOMS   = $(shell sed -n 's/^\([a-z]*\) .*/\1/p' tests/rooms.txt)
@@ -431,15 +433,16 @@ cppcheck:
 	cppcheck --quiet -j 2 --std=c11 --error-exitcode=1 --enable=warning,portability,performance \
 	    --suppress=missingIncludeSystem --suppressions-list=.cppcheck $(LINT_FLAGS) $(LINT_SCALAR) kernel host
 
-## nightly: long checks that .ci/run leaves out: all bits, all sanitizers, clang-tidy, benches, broken lines, longer fuzzing
-nightly: bits threads lint bench-quick programs
+## nightly: what .ci/run leaves out: other compilers and machines, static checks, all of the couplings, long fuzzing
+WITH_MPI = BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)"
+nightly: deps-nightly bits threads lint clang-warnings bench-quick programs couple
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
 	BUILD=$(BUILD) tests/check_tables.sh all
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" HOSTCC="$(HOSTCC)" tests/freestanding/check_freestanding.sh
-	BUILD=$(BUILD) NIGHTLY=1 $(BUILD)/tests/test_reproduce
+	BUILD=$(BUILD) NIGHTLY=1 tests/run.sh $(TEST_PROGRAMS)
+	for coupling in couple lammps liggghts; do $(WITH_MPI) tests/couple/check_$$coupling.sh all || exit; done
+	for rest in pages made; do $(WITH_MPI) tests/couple/check_$$rest.sh || exit; done
 	$(MAKE) mutate
-	BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/couple/check_couple.sh all
-	BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/couple/check_lammps.sh all
 	$(MAKE) sanitized $(ALL_ISAS) OF_MEMORY="$(filter-out accuracy furnace reference reproduce,$(TESTS:tests/test_%.c=%))"
 	$(MAKE) fuzz-fixed $(ALL_ISAS) FUZZ_RUNS="read:40000 kernel:2000 host:300"
 	$(MAKE) fuzz $(ALL_ISAS) FUZZ_SECONDS=900
@@ -457,10 +460,12 @@ deps:
 
 ## deps-ci: install the further packages that .ci/run needs
 deps-ci:
-	@$(DEPS) g++ clang clang-format clang-tidy cppcheck libomp-dev libclang-rt-14-dev shellcheck \
-	    gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user gcc-arm-none-eabi \
-	    qemu-system-arm python3-numpy python3-scipy python3-pytest \
+	@$(DEPS) g++ clang clang-format libomp-dev libclang-rt-14-dev shellcheck python3-numpy python3-scipy python3-pytest \
 	    python3-venv python3-pip gfortran
+
+## deps-nightly: install the further packages that nightly needs
+deps-nightly: deps deps-ci deps-couple
+	@$(DEPS) clang-tidy cppcheck gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user gcc-arm-none-eabi qemu-system-arm
 
 ## man: manual pages of the program and its commands, made from --help into build/man
 man: $(BUILD)/man/fibrad.1

@@ -22,7 +22,8 @@ faults=$(
 
     find kernel -name '*.c' -exec awk '
         /^(static|FIBRAD_INLINE)[^=;]*\(/ && !/;$/ {
-            sub(/LANED\(/, ""); sub(/[()].*/, ""); sub(/.*[ *]/, ""); print $0 " " FILENAME
+            sub(/LANED\(/, ""); sub(/[()].*/, ""); sub(/.*[ *]/, "")
+            print $0 (FILENAME ~ /_lanes/ ? "_ISA" : "") " " FILENAME
         }' {} + | sort -u | awk '
         $1 == last { print $2 " and " file ": static " $1 } { last = $1; file = $2 }'
 
@@ -38,17 +39,27 @@ faults=$(
             grep -qE "(TEST\(|void |def )$name\>" "${source:-/dev/null}" || echo "docs/trust.md: no $name in $file"
         done
     done
-    for page in README.md SECURITY.md docs/*.md; do
-        grep -oE '\]\([^)#:]+' "$page" | sed 's|^](||' | while read -r link; do
-            test -e "$(dirname "$page")/$link" || echo "$page: no $link"
-        done
-        grep -oE '\]\([^):]*#[^)]+' "$page" | sed 's|^](||' | while IFS='#' read -r file heading; do
-            target=$page
-            test -n "$file" && target=$(dirname "$page")/$file
-            sed -n 's/^##* //p' "$target" | tr '[:upper:]' '[:lower:]' | sed 's/[^a-z0-9 _-]//g; s/ /-/g' |
-                grep -qxF -- "$heading" || echo "$page: no $file#$heading"
-        done
-    done
+    # lines "PAGE LINK FILE", FILE from here; a heading that is not there has no FILE
+    # shellcheck disable=SC2046  # pages
+    awk '
+        function slug(text) { text = tolower(text); gsub(/[^a-z0-9 _-]/, "", text); gsub(/ /, "-", text); return text }
+        !links { if (/^##* /) { sub(/^##* /, ""); heading[FILENAME "#" slug($0)] } next }
+        {
+            folder = FILENAME
+            sub(/[^\/]*$/, "", folder)
+            while (match($0, /\]\([^):]+\)/)) {
+                link = substr($0, RSTART + 2, RLENGTH - 3)
+                $0 = substr($0, RSTART + RLENGTH)
+                file = link
+                sub(/#.*/, "", file)
+                file = file == "" ? FILENAME : folder file
+                while (sub(/[^\/]+\/\.\.\//, "", file)) continue
+                at = index(link, "#")
+                if (at && !((file "#" substr(link, at + 1)) in heading)) file = ""
+                print FILENAME, link, file
+            }
+        }' $(ls README.md SECURITY.md docs/*.md) links=1 $(ls README.md SECURITY.md docs/*.md) |
+        while read -r page link file; do test -n "$file" && test -e "$file" || echo "$page: no $link"; done
 )
 test -z "$faults" && exit
 echo "$faults"

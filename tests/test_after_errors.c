@@ -111,35 +111,6 @@ TEST(light_in_little_memory) {
     ck_assert_int_gt(failed, 1);
 }
 
-TEST(light_on_patches_in_little_memory) {
-    const size_t size = fibrad_scene_size(CUBE, 0);
-    const fibrad_heat_config coarse = {.directions = 12, .patches = 24};
-    const fibrad_light light = {.direction = {.1, .2, -1}, .flux = 1, .half_angle = .1, .directions = 3};
-    OWNED void *block = block_of(size), *small = block_of(MOST);
-    const fibrad_scene *scene = crowded_scene(block, size);
-    const size_t bytes = fibrad_heat_size(&coarse, scene);
-    OWNED void *heat_block = block_of(bytes);
-    fibrad_heat *heat;
-    assert_ok(fibrad_heat_init(&heat, heat_block, bytes, &coarse, scene));
-    const size_t patches = fibrad_heat_patches(heat);
-    OWNED double *hits = calloc(patches, sizeof *hits), *before = calloc(patches, sizeof *hits);
-    for (size_t a = 0; a < patches; a++) hits[a] = before[a] = 1 + 1e-3 * (double)a;
-    int failed = 0, status = FIBRAD_E_WORK;
-    for (size_t room = STEP; status != FIBRAD_OK && room <= MOST; room += STEP) {
-        fibrad_work work = work_fixed(small, room);
-        fibrad_light_ends kept;
-        memset(&kept, 0xEE, sizeof kept);
-        status = fibrad_heat_shine(heat, &work, &light, 0, hits, &kept, NULL);
-        if (status == FIBRAD_OK) break;
-        ck_assert_int_eq(status, FIBRAD_E_WORK);
-        ck_assert_mem_eq(hits, before, patches * sizeof *hits);
-        ck_assert(is_all(&kept, sizeof kept, 0xEE));
-        failed++;
-    }
-    assert_ok(status);
-    ck_assert_int_gt(failed, 1);
-}
-
 /* No light comes into a closed box. All calls say so, and write nothing. */
 TEST(light_of_a_closed_box) {
     const double x = 0, r = 1;

@@ -295,35 +295,6 @@ TEST(clipping_agrees_with_the_arrangement) {
     for (int way = 0; way < 2; way++) ck_assert(part[way] > .05 && part[way] < .5); /* all have been tried */
 }
 
-/* In all instruction sets the same windows are degenerate, and the areas have the same bits. Every second window is
- * clipped for many discs. */
-TEST(windows_have_the_same_bits_everywhere) {
-    const struct isas isas = isas_there();
-    OWNED_AREAS areas = areas_make();
-    double first[MOST + 1], other[MOST + 1];
-    for (int round = 0; round < 6000; round++) {
-        struct window w = {0};
-        const struct method *method = round % 2 ? &dense : &both;
-        uint32_t n = 1 + (uint32_t)random_in(0, round % 10 < 2 ? 100 : 16);
-        double grid = round % 3 == 0 ? 4 : 1e6, scale = pow(10, random_in(-1, 1));
-        for (uint32_t k = 0; k < n; k++) {
-            double r = ceil(grid * random_in(.1, 1)) / grid * scale, d = (1 + r) * sqrt(random_in(0, 1));
-            double t = random_in(0, 6.2831853);
-            put(&w, round % 3 == 0 ? floor(4 * d * cos(t)) / 4 : d * cos(t), d * sin(t), r);
-        }
-        areas.fallbacks = 0;
-        measure(method, &areas, &w, first);
-        uint32_t doubts = areas.fallbacks;
-        for (int s = 1; s < isas.count; s++) {
-            areas.fallbacks = 0, isa = isas.set[s];
-            measure(method, &areas, &w, other);
-            ck_assert_uint_eq(areas.fallbacks, doubts);
-            ck_assert_mem_eq(first, other, (n + 1) * sizeof *first);
-        }
-        isa = FIBRAD_ISA_SCALAR;
-    }
-}
-
 /* The window has many small discs, then large ones and a degenerate one. So the arrangement begins in memory that dense
  * clipping has filled. The lanes beyond its last arc must not look up what is no circle. */
 TEST(the_arrangement_begins_where_dense_clipping_ends) {

@@ -60,26 +60,6 @@ TEST(hidden_sphere_is_not_seen) {
     ck_assert_uint_eq(hidden.length, 1);
 }
 
-/* Checks rows of a sphere of radius 1 among spheres of radius r, in layers up to 42 r above it. */
-static void check_shell(uint32_t count, double r) {
-    OWNED_BED bed = BED({0, 0, 0, 1});
-    for (uint32_t k = 0; k < count; k++) {
-        double w[3];
-        fibrad_direction(k, count, w);
-        const double d = 1 + r * (1.2 + 41 * fmod(k * .618033988749895, 1));
-        add_sphere(&bed, d * w[0], d * w[1], d * w[2], r);
-    }
-    OWNED_ROW row = beam(&bed, 0, (fibrad_beam_rule){.directions = 8}, FIBRAD_ISA_BEST);
-    ck_assert_uint_eq(row.fallbacks, 0);
-    ck_assert_double_eq_tol(row_sum(&row) + row.escaped, 1, 1e-12);
-}
-
-TEST(many_arcs_are_no_fallback) {
-    check_shell(60, .1);
-    check_shell(400, .1);
-    check_shell(20000, 5e-4);
-}
-
 /* Windows with discs far larger than the window are left to the robust method. Windows with hundreds of small discs
  * before a large one are not, nor are windows of beds. */
 TEST(fallbacks_are_counted) {
@@ -208,63 +188,6 @@ TEST(points_agree_with_areas) {
         square += pow(row_distance(&exact, &points), 2);
     }
     ck_assert_double_lt(sqrt(square / 20), 5e-4);
-}
-
-TEST(same_bits_in_every_instruction_set) {
-    OWNED_BED bed = packing(300, .5, 1.5, .55, 3, true);
-    const struct isas isas = isas_there();
-    for (uint32_t points = 0; points <= 128; points += 128)
-        for (uint32_t i = 0; i < bed.n; i += 23) {
-            fibrad_beam_rule rule = {.directions = 100, .points = points};
-            OWNED_ROW scalar = beam(&bed, i, rule, FIBRAD_ISA_SCALAR);
-            for (int s = 1; s < isas.count; s++) {
-                OWNED_ROW row = beam(&bed, i, rule, isas.set[s]);
-                ck_assert_msg(same_bits(&scalar, &row), "row %u differs in %s", i, fibrad_isa_name(isas.set[s]));
-            }
-        }
-}
-
-/* With the least memory there is room for few near spheres, so the others are looked up along each direction. This
- * changes the time alone, not the rows. */
-TEST(work_memory_is_a_matter_of_speed) {
-    struct bed beds[] = {packing(300, .5, 1.5, .55, 3, true), packing(400, .4, 1, .05, 4, false), lattice('p', 9),
-                         packing(400, .8, 1.2, .01, 5, true)};
-    for (size_t b = 0; b < sizeof beds / sizeof *beds; b++) {
-        OWNED fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
-        OWNED_ROW row = row_of(beds[b].n), grown = row_of(beds[b].n);
-        OWNED_WORK work = work_growing();
-        for (uint32_t i = 0; i < beds[b].n; i += 31) {
-            assert_ok(fibrad_beam_row(scene, &work, i, NULL, &grown));
-            const size_t least = beam_in_little(scene, i, NULL, &row);
-            ck_assert(same_bits(&row, &grown));
-            for (size_t more = 100; more <= 6400; more *= 2) { /* per cent */
-                beam_in(least / 100 * more + least % 100, scene, i, NULL, &row);
-                ck_assert(same_bits(&row, &grown));
-            }
-        }
-        bed_free(&beds[b]);
-    }
-}
-
-/* The same holds for a sphere so large that the first shell ends within a radius of it. */
-TEST(work_memory_of_a_large_sphere) {
-    OWNED_BED bed = BED({0, 0, 0, 5});
-    for (int k = 0; k < 19 * 19 * 19; k++) {
-        double x = .8 * (k % 19 - 9), y = .8 * (k / 19 % 19 - 9) + .1, z = .8 * (k / 361 - 9) + .2;
-        double d = sqrt(x * x + y * y + z * z);
-        if (d > 5.3 && d < 8) add_sphere(&bed, x, y, z, .3);
-    }
-    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_row rows[3] = {row_of(bed.n), row_of(bed.n), row_of(bed.n)};
-    const fibrad_beam_rule rule = {.directions = 8};
-    OWNED_WORK work = work_growing();
-    const size_t least = beam_in_little(scene, 0, &rule, &rows[0]);
-    beam_in(16 * least, scene, 0, &rule, &rows[1]);
-    assert_ok(fibrad_beam_row(scene, &work, 0, &rule, &rows[2]));
-    ck_assert(same_bits(&rows[0], &rows[1]));
-    ck_assert(same_bits(&rows[0], &rows[2]));
-    ck_assert_double_gt(row_sum(&rows[0]), .8);
-    for (int k = 0; k < 3; k++) row_free(&rows[k]);
 }
 
 /* The order of the spheres changes nothing, although a window that begins with many discs of two sizes has a grid that
@@ -435,44 +358,6 @@ TEST(spheres_at_equal_depth_are_seen_once) {
     }
 }
 
-TEST(crowded_rows_say_what_they_need) {
-    OWNED_BED bed = packing(300, .2, 2, .45, 6, false);
-    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    uint32_t largest = 0;
-    for (uint32_t i = 0; i < bed.n; i++)
-        if (bed.r[i] > bed.r[largest]) largest = i;
-    OWNED_ROW plenty = beam(&bed, largest, (fibrad_beam_rule){0}, FIBRAD_ISA_BEST);
-
-    OWNED_ROW row = row_of(bed.n);
-    row.capacity = 0;
-    row.escaped = row.error = row.beyond = -5;
-    row.sphere = row.directions = 12345;
-    row.length = 54321;
-    OWNED_FIXED work = work_fixed(NULL, 0);
-    int status = FIBRAD_E_WORK, for_row = 0, for_work = 0;
-    while (status != FIBRAD_OK) {
-        ck_assert_int_lt(for_work + for_row, 40);
-        status = fibrad_beam_row(scene, &work, largest, NULL, &row);
-        if (status == FIBRAD_OK) break;
-        ck_assert_double_eq(row.escaped, -5);
-        ck_assert_double_eq(row.error, -5);
-        ck_assert_double_eq(row.beyond, -5);
-        ck_assert(row.sphere == 12345 && row.directions == 12345);
-        if (status == FIBRAD_E_CAPACITY) {
-            for_row++;
-            ck_assert_uint_eq(row.length, plenty.length);
-            row.capacity = row.length;
-        } else {
-            for_work++;
-            ck_assert_uint_eq(row.length, for_row ? plenty.length : 54321);
-            ck_assert(work_again(&work, status));
-        }
-    }
-    ck_assert(for_work > 0 && for_row == 1);
-    ck_assert(same_bits(&row, &plenty));
-    ck_assert_uint_eq(row.sphere, largest);
-}
-
 /* A sphere with six neighbours needs room for six entries. Room for five is too little. */
 TEST(a_row_needs_an_entry_for_every_sphere_seen) {
     OWNED_BED bed = lattice('p', 2);
@@ -490,25 +375,6 @@ TEST(a_row_needs_an_entry_for_every_sphere_seen) {
             ck_assert_uint_eq(row.length, 6);
             for (uint32_t k = entries < 6 ? 0 : 6; k < bed.n; k++) ck_assert(row.col[k] == 99 && row.f[k] == -1);
         }
-}
-
-/* The ids that seed random paths change no beam. */
-TEST(ids_change_no_beam) {
-    OWNED_BED bed = packing(150, .5, 1.5, .5, 3, true);
-    fibrad_spheres spheres = spheres_of(&bed);
-    uint64_t id[150];
-    for (uint32_t i = 0; i < bed.n; i++) id[i] = 0x9e3779b97f4a7c15u * (i + 1);
-    spheres.id = id;
-    fibrad_scene_config config = {0};
-    memcpy(config.period, bed.period, sizeof config.period);
-    const size_t size = fibrad_scene_size(bed.n, 1);
-    OWNED void *block = block_of(size);
-    fibrad_scene *with = NULL, *without = scene_of(&bed, 0);
-    assert_ok(fibrad_scene_init(&with, block, size, &config, &spheres, NULL));
-    memset(id, 0, sizeof id); /* copied */
-    OWNED_MATRIX a = matrix_by_beams(with, NULL, true), b = matrix_by_beams(without, NULL, true);
-    ck_assert(matrix_same_bits(&a.factors, &b.factors));
-    free(without);
 }
 
 /* A sphere far beyond the others is large enough to be seen. Then only its direction and its angle matter, not its

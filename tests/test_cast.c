@@ -204,57 +204,6 @@ TEST(seeds_give_other_rays) {
     }
 }
 
-TEST(same_bits_in_every_instruction_set) {
-    OWNED_BED bed = packing(300, .5, 1.5, .55, 3, true);
-    const struct isas isas = isas_there();
-    for (int random = 0; random <= 1; random++)
-        for (uint32_t i = 0; i < bed.n; i += 23) {
-            const fibrad_cast_rule rule = {1001, random, i, 0};
-            double length[2][300], angle[2][300];
-            for (int k = 0; k < isas.count; k++) {
-                OWNED fibrad_scene *scene = scene_of(&bed, isas.set[k]);
-                OWNED_WORK work = work_growing();
-                OWNED_ROW scalar = cast(&bed, i, rule, FIBRAD_ISA_SCALAR), row = row_of(bed.n);
-                const int which = k > 0;
-                const fibrad_cast_means means = {length[which], angle[which]};
-                assert_ok(fibrad_cast_row(scene, &work, i, &rule, &row, &means));
-                ck_assert_msg(same_bits(&scalar, &row), "row %u differs in %s", i, fibrad_isa_name(isas.set[k]));
-                ck_assert_mem_eq(length[0], length[which], row.length * sizeof(double));
-                ck_assert_mem_eq(angle[0], angle[which], row.length * sizeof(double));
-            }
-        }
-}
-
-/* Spheres are kept near, or they are looked up along each ray for want of room. The rows are the same, also if spheres
- * overlap. */
-TEST(room_is_a_matter_of_speed) {
-    struct bed beds[] = {packing(300, .5, 1.5, .55, 3, true), packing(400, .4, 1, .05, 4, false),
-                         packing(400, .2, 2, .5, 11, false), lattice('p', 9)};
-    for (uint32_t i = 0; i < beds[2].n; i++) beds[2].r[i] *= 1.05;
-    for (size_t b = 0; b < sizeof beds / sizeof *beds; b++) {
-        OWNED fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
-        fibrad_row rows[2] = {row_of(beds[b].n), row_of(beds[b].n)};
-        for (uint32_t i = 0; i < beds[b].n; i += 31) {
-            for (int which = 0; which < 2; which++) {
-                const size_t size = FIBRAD_WORK_BYTES(4, beds[b].n);
-                fibrad_work work = which == 0 ? work_fixed(block_of(size), size) : work_growing();
-                const fibrad_cast_rule rule = {.rays = 2000};
-                assert_ok(fibrad_cast_row(scene, &work, i, &rule, &rows[which], NULL));
-                const fibrad_workspace *space = work.inside;
-                if (which == 0)
-                    ck_assert_uint_le(space->near.capacity, 64);
-                else
-                    ck_assert_uint_gt(space->near.capacity, 512);
-                free(work.memory.block);
-            }
-            ck_assert(same_bits(&rows[0], &rows[1]));
-        }
-        row_free(&rows[0]);
-        row_free(&rows[1]);
-        bed_free(&beds[b]);
-    }
-}
-
 TEST(scaling_by_powers_of_two_changes_no_bit) {
     OWNED_BED bed = packing(200, .8, 1.2, .5, 5, true), scaled = packing(200, .8, 1.2, .5, 5, true);
     OWNED_ROW row = cast(&bed, 11, (fibrad_cast_rule){2000, 0, 0, 9}, FIBRAD_ISA_BEST);
@@ -325,22 +274,5 @@ TEST(bad_arguments_and_short_arrays_are_refused) {
     const fibrad_row kept = matrix_row(&m.factors, 0);
     ck_assert(same_bits(&row, &kept));
     work_free(&work);
-
-    /* there is too little work memory: with the size that it asks for the call succeeds, with the same bits */
-    OWNED_ROW again = row_of(200);
-    void *block = block_of(64);
-    work = work_fixed(block, 64);
-    int status;
-    for (int attempt = 0; (status = fibrad_cast_row(scene, &work, 0, NULL, &again, NULL)) != FIBRAD_OK; attempt++) {
-        ck_assert_int_eq(status, FIBRAD_E_WORK);
-        ck_assert_uint_gt(work.memory.needed, work.memory.size);
-        ck_assert_uint_eq(again.length, 0);
-        ck_assert_int_lt(attempt, 30);
-        free(block);
-        block = block_of(work.memory.needed);
-        work = work_fixed(block, work.memory.needed);
-    }
-    ck_assert(same_bits(&row, &again));
     row_free(&row);
-    free(block);
 }

@@ -326,42 +326,6 @@ TEST(error_and_its_estimate) {
     ck_assert_double_gt(sqrt(tight), .001);
 }
 
-/* Row i has the same bits in any instruction set, after any other row, and with room for a few lists of near
- * spheres. */
-TEST(same_bits_always) {
-    OWNED_BED bed = packing(150, .3, 1, .5, 6, false);
-    const fibrad_wall walls[] = {plane_at(0, 0, bed.x[0] - 50), plane_at(0, 1, bed.x[0] + 50)};
-    fibrad_scene_config config = {.isa = FIBRAD_ISA_SCALAR, .wall = walls, .walls = 2};
-    OWNED double *e = calloc(bed.n, sizeof *e);
-    for (uint32_t i = 0; i < bed.n; i++) e[i] = .2 + .8 * bed_make_random(1, i);
-    const fibrad_exchange_rule rule = {.emissivity = e, .wall_emissivity = (double[]){.5, .5}};
-    OWNED fibrad_scene *scene = scene_with(&bed, &config);
-    OWNED_ROW row = exchange_in(scene, bed.n, 70, &rule);
-    fibrad_displacement displacement = {0};
-    fibrad_work work = work_growing();
-    assert_ok(displacement_of(scene, &work, 70, &rule, &displacement));
-    work_free(&work);
-    const size_t room = FIBRAD_WORK_BYTES(256, 150) + ((size_t)1 << 17);
-    const struct isas isas = isas_there();
-    for (int k = 0; k < 2 * isas.count; k++) { /* with much memory and with little */
-        config.isa = isas.set[k / 2];
-        OWNED fibrad_scene *other = scene_with(&bed, &config);
-        work = k % 2 ? work_fixed(block_of(room), room) : work_growing();
-        OWNED_ROW again = row_of(bed.n);
-        for (uint32_t i = 71; i-- > 68;) {
-            again.length = 0;
-            assert_ok(fibrad_exchange_row(other, &work, i, &rule, &again, NULL));
-            if (i == 70) ck_assert(same_bits_with(&row, &again, 2));
-        }
-        const fibrad_workspace *space = work.inside;
-        ck_assert_int_eq(((const fibrad_tracer *)space->extra)->lists < bed.n / 2, k % 2);
-        fibrad_displacement repeated = {0};
-        assert_ok(displacement_of(other, &work, 70, &rule, &repeated));
-        ck_assert_mem_eq(&displacement, &repeated, sizeof displacement);
-        free(work.memory.block);
-    }
-}
-
 /* Finds F_E of a lattice of unit spheres. */
 static double factor(const struct bed *bed, double solid, double emissivity, uint32_t paths) {
     OWNED double *e = constant(bed->n, emissivity);

@@ -58,15 +58,6 @@ TEST(the_order_of_walls_changes_but_roundings) {
     ck_assert_double_eq_tol(p.result.surroundings_power, q.result.surroundings_power, 1e-12 * largest);
 }
 
-TEST(instruction_sets_change_no_bit) {
-    OWNED_PROBLEM p = small_problem(FIBRAD_ISA_SCALAR, false, false);
-    const struct isas isas = isas_there();
-    for (int k = isas.count; k-- > 1;) {
-        OWNED_PROBLEM q = small_problem(isas.set[k], false, false);
-        assert_same_bits(&p, &q);
-    }
-}
-
 TEST(an_earlier_solution_saves_sweeps_and_changes_little) {
     OWNED_PROBLEM p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .3);
     p.config.directions = 40, p.sources.tolerance = 1e-6;

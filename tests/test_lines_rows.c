@@ -283,8 +283,8 @@ static void same_row(const fibrad_factors *a, const fibrad_factors *b, uint32_t 
     for (uint32_t k = 0; k < here.length; k++) ck_assert(here.f[k] == row_factor(&there, place[here.col[k]]));
 }
 
-/* Raw rows along lines have the same bits for every instruction set and in every order of the file. */
-LOOP_TEST(same_bits_everywhere, BEDS) {
+/* Raw rows along lines have the same bits in every order of the file. */
+LOOP_TEST(same_bits_in_any_order, BEDS) {
     static const uint32_t chords[] = {FIBRAD_CHORDS_NONE, 16, 32, 64};
     OWNED_BED bed = beds[_i]();
     struct bed other = bed_empty();
@@ -296,26 +296,22 @@ LOOP_TEST(same_bits_everywhere, BEDS) {
         add_sphere(&other, bed.x[from], bed.y[from], bed.z[from], bed.r[from]);
         place[from] = i, other_id[i] = 1000 - from, id[i] = 1000 - i;
     }
-    const struct isas isas = isas_there();
     for (int c = 0; c < 4; c++) {
         OWNED_MATRIX first = {NULL, {0}};
-        for (int k = 0; k < 2 * isas.count; k++) {
-            const bool moved = k % 2 == 1;
+        for (int moved = 0; moved < 2; moved++) {
             fibrad_spheres spheres = spheres_of(moved ? &other : &bed);
             spheres.id = moved ? other_id : id;
-            fibrad_scene_config config = {.isa = isas.set[k / 2]};
+            fibrad_scene_config config = {0};
             memcpy(config.period, bed.period, sizeof bed.period);
             const size_t size = fibrad_scene_size(bed.n, 1);
             OWNED void *block = block_of(size);
             fibrad_scene *scene;
             assert_ok(fibrad_scene_init(&scene, block, size, &config, &spheres, NULL));
             OWNED_MATRIX m = matrix_by_lines(scene, 34, chords[c], true);
-            if (k == 0)
+            if (!moved)
                 first = m, m = (struct matrix){NULL, {0}};
-            else if (moved)
-                for (uint32_t i = 0; i < bed.n; i++) same_row(&first.factors, &m.factors, i, place);
             else
-                ck_assert(matrix_same_bits(&first.factors, &m.factors));
+                for (uint32_t i = 0; i < bed.n; i++) same_row(&first.factors, &m.factors, i, place);
         }
     }
     bed_free(&other);

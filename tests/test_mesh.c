@@ -560,22 +560,6 @@ TEST(periodic_meshes) {
     ck_assert_double_eq_tol(row_factor(&cast, 1), row_factor(&row, 1), 3e-3);
 }
 
-/* The size FIBRAD_WORK_TRIANGLES is enough. */
-TEST(work_among_triangles) {
-    static unsigned char block[FIBRAD_WORK_BYTES(64, 64) + FIBRAD_WORK_TRIANGLES + 64];
-    static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
-    OWNED_BED bed = crowd(20, 4);
-    OWNED struct mesh *mesh = mesh_new();
-    mesh_box(mesh, low, high, 0);
-    OWNED fibrad_scene *scene = scene_of_mesh(&bed, mesh, 6);
-    OWNED_ROW row = row_of(bed.n);
-    for (size_t offset = 0; offset < 64; offset += 9) {
-        fibrad_work work = work_fixed(block + offset, sizeof block - 64);
-        for (uint32_t points = 0; points <= 256; points += 256)
-            assert_ok(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.points = points}, &row));
-    }
-}
-
 /* A sphere sees all others, which are as many as work memory begins with, and three meshes besides. So there are more
  * entries than spheres. This works in memory that grows, and in as much as FIBRAD_WORK_BYTES says. */
 TEST(more_entries_than_spheres) {
@@ -695,30 +679,4 @@ TEST(grey_meshes) {
     const double error = 5 * (mean[0].error + mean[1].error);
     for (int b = 0; b < 6; b++) ck_assert_double_eq_tol(mean[0].wall[b], mean[1].wall[b], error);
     for (int k = 0; k < 2; k++) free(scene[k]), row_free(&row[k]);
-}
-
-/* Rows of few windows, turned at random, give a floor of two triangles on the mean what they give to a plane. */
-TEST(few_turned_windows) {
-    OWNED_BED bed = bed_empty();
-    ck_assert_int_eq(bed_make_layer(&bed, 200, .5, 200, 3), 0);
-    OWNED struct mesh *mesh = mesh_new();
-    const double x = bed.period[0], y = bed.period[1];
-    const uint32_t corner[4] = {mesh_vertex(mesh, 0, 0, 0), mesh_vertex(mesh, x, 0, 0), mesh_vertex(mesh, x, y, 0),
-                                mesh_vertex(mesh, 0, y, 0)};
-    mesh_quad(mesh, corner, 0, FIBRAD_NO_WALL);
-    const fibrad_wall wall[2][2] = {{plane_at(2, 0, 0), plane_at(2, 1, bed.high[2])},
-                                    {{.kind = FIBRAD_WALL_MESH}, plane_at(2, 1, bed.high[2])}};
-    double sum[2] = {0};
-    for (int k = 0; k < 2; k++) {
-        OWNED fibrad_scene *scene = scene_with(
-            &bed, &(fibrad_scene_config){.wall = wall[k], .walls = 2, .triangles = k ? &mesh->triangles : NULL});
-        OWNED_WORK work = work_growing();
-        OWNED_ROW row = row_of(bed.n);
-        for (uint32_t n = 0; n < 2000; n++) {
-            const fibrad_beam_rule rule = {.directions = 24, .points = 64, .turn = n + 1};
-            assert_ok(fibrad_beam_row(scene, &work, n % bed.n, &rule, &row));
-            sum[k] += row.wall[0];
-        }
-    }
-    ck_assert_double_eq_tol(sum[1] / sum[0], 1, 1e-9);
 }

@@ -193,24 +193,6 @@ LOOP_TEST(turned_rows_average_to_the_fine_one, 3) {
     }
 }
 
-/* Of an even number of turned directions as many rise as fall. Of an odd number one more may. So a floor has half of
- * what a free sphere sends out, whether it cuts the sphere or not. */
-LOOP_TEST(a_floor_below_turned_directions, 3) {
-    OWNED_BED bed = BED({0, 0, 3, 1});
-    const fibrad_wall floor_below = plane_at(2, 0, 0);
-    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = &floor_below, .walls = 1});
-    OWNED_WORK work = work_growing();
-    OWNED_ROW row = row_of(1);
-    double mean = 0;
-    for (uint64_t turn = 1; turn <= 100; turn++) {
-        const fibrad_beam_rule rule = {.directions = _i > 1 ? 234 : 233, .turn = turn, .cutoff = _i == 1 ? 5 : 0};
-        assert_ok(fibrad_beam_row(scene, &work, 0, &rule, &row));
-        ck_assert_double_eq_tol(row.wall[0], .5, _i > 1 ? 1e-14 : 2.5e-3);
-        mean += row.wall[0] / 100;
-    }
-    ck_assert_double_eq_tol(mean, .5, 3e-4);
-}
-
 /* A sphere between a floor and a periodic layer that hides all above. What it sends down reaches the floor, and next to
  * nothing escapes. */
 LOOP_TEST(a_sphere_below_a_periodic_layer, 2) {

@@ -144,60 +144,6 @@ TEST(parts_that_were_changed_make_no_row) {
     free(part.memory.block);
 }
 
-/* Fixed memory that is too small says how much suffices. */
-TEST(fixed_memory_of_a_part_says_what_it_lacks) {
-    OWNED_BED bed = strewn(50, 9);
-    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    OWNED_WORK work = work_growing();
-    const fibrad_beam_rule rule = {.directions = 20};
-    fibrad_row_part part = {.memory = {.block = malloc(16), .size = 16}};
-    ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_E_CAPACITY);
-    const size_t needed = part.memory.needed;
-    ck_assert_uint_gt(needed, 16);
-    free(part.memory.block);
-    part.memory = (fibrad_memory){.block = malloc(needed), .size = needed};
-    assert_ok(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part));
-    free(part.memory.block);
-}
-
-/* For a resize function that fails once, at call number `fails`. */
-struct supply {
-    uint32_t asked, fails;
-};
-
-static void *resize_but_once(void *context, void *block, size_t size) {
-    struct supply *supply = context;
-    return supply->asked++ == supply->fails ? NULL : realloc(block, size);
-}
-
-/* If memory is refused once, at whatever call, this is an error. The next call gets memory, and makes the part that it
- * makes with plenty of memory. */
-TEST(memory_refused_once_is_no_lasting_error) {
-    OWNED_BED bed = strewn(50, 9);
-    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    OWNED_WORK work = work_growing();
-    OWNED_ROW one = row_of(50), joined = row_of(50);
-    const fibrad_beam_rule rule = {.directions = 20};
-    assert_ok(fibrad_beam_row(scene, &work, 1, &rule, &one));
-    uint32_t asked = 1;
-    for (uint32_t fails = 0; fails < asked; fails++) {
-        struct supply supply = {.fails = fails};
-        fibrad_row_part part = {.memory = {.resize = resize_but_once, .context = &supply}};
-        ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_E_MEMORY);
-        ck_assert_uint_eq(supply.asked, fails + 1);
-        ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &joined), FIBRAD_E_STATE);
-        assert_ok(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part));
-        asked = supply.asked - 1;
-        assert_ok(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &joined));
-        ck_assert(same_bits_with(&one, &joined, 0));
-        part.memory.size /= 2; /* less memory than the part was made in */
-        ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &joined),
-                         part.used > part.memory.size ? FIBRAD_E_STATE : FIBRAD_OK);
-        free(part.memory.block);
-    }
-    ck_assert_uint_eq(asked, 1);
-}
-
 /* A block of size 0 is too small. NULL that is said to have bytes is refused. */
 TEST(blocks_of_size_zero_are_too_small) {
     OWNED_BED bed = strewn(50, 9);

@@ -67,34 +67,6 @@ TEST(spheres_inside_others_are_found) {
     ck_assert_int_eq(fibrad_spheres_inside(&spheres, block, size - 1, part, other, &fault), FIBRAD_E_SIZE);
 }
 
-/* Scene and work memory at each of the 64 offsets from a boundary. */
-TEST(blocks_may_have_any_alignment) {
-    OWNED_BED bed = packing(80, .5, 1, .4, 3, true);
-    OWNED fibrad_scene *aligned = scene_of(&bed, 0);
-    OWNED_MATRIX expected = matrix_by_beams(aligned, &(fibrad_beam_rule){.directions = 34}, true);
-    const fibrad_spheres spheres = spheres_of(&bed);
-    fibrad_scene_config config = {0};
-    memcpy(config.period, bed.period, sizeof config.period);
-    const size_t size = fibrad_scene_size(bed.n, 0), work_size = FIBRAD_WORK_BYTES(1024, 200);
-    OWNED unsigned char *block = block_of(size + 64), *work_block = block_of(work_size + 128);
-    OWNED_ROW row = row_of(bed.n);
-    for (size_t offset = 0; offset < 64; offset++) {
-        fibrad_scene *scene = NULL;
-        memset(block, 0xa5, size + 64);
-        memset(work_block, 0x5a, work_size + 128);
-        assert_ok(fibrad_scene_init(&scene, block + offset, size, &config, &spheres, NULL));
-        fibrad_work work = work_fixed(work_block + offset, work_size);
-        for (uint32_t i = 0; i < bed.n; i += 9) {
-            const fibrad_row same = matrix_row(&expected.factors, i);
-            assert_ok(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 34}, &row));
-            ck_assert(same_bits(&row, &same));
-        }
-        ck_assert(bytes_are(work_block, 0, offset, 0x5a) && bytes_are(block, 0, offset, 0xa5));
-        ck_assert(bytes_are(block, offset + size, size + 64, 0xa5));
-        ck_assert(bytes_are(work_block, offset + work_size, work_size + 128, 0x5a));
-    }
-}
-
 /* Places are x[n][3] and radii are every fifth number. They give what arrays of their own give. */
 TEST(strides_change_no_bit) {
     OWNED_BED bed = packing(150, .5, 1, .4, 3, false);

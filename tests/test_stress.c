@@ -1,13 +1,10 @@
-/* test_stress.c - attempts to break the numerics: scale, distance from the origin, contact, ratio of radii, degenerate
- * windows, lattices along the beams, obstacles, random scenes by the million. SPDX-License-Identifier: MIT
+/* test_stress.c - attempts to break the numerics: distance from the origin, contact, ratio of radii, lattices along the
+ * beams, obstacles, random scenes by the million. SPDX-License-Identifier: MIT
  *
  * `make test` runs a part of each attack, and `make stress` (STRESS=1 in the environment) runs all. One line for each
  * attack tells the worst error that was seen and the tolerance. */
 #include <stdio.h>
 
-#define FIBRAD_ISA_SUFFIX _scalar
-#include "window/clip_lanes.h"
-#include "papers/pair/reference.h"
 #include "scenes.h"
 #include "suite.h"
 
@@ -40,14 +37,6 @@ static fibrad_row beam(const struct bed *bed, uint32_t i, uint32_t directions) {
     return row;
 }
 
-static fibrad_row rays(const struct bed *bed, uint32_t i, uint32_t number) {
-    OWNED fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
-    OWNED_WORK work = work_growing();
-    fibrad_row row = row_of(bed->n);
-    assert_ok(fibrad_cast_row(scene, &work, i, &(fibrad_cast_rule){.rays = number}, &row, NULL));
-    return row;
-}
-
 static double closure(const fibrad_row *row) { return fabs(row_sum(row) + row->escaped - 1); }
 
 static void move(struct bed *to, const struct bed *from, double factor, const double shift[3]) {
@@ -58,42 +47,6 @@ static void move(struct bed *to, const struct bed *from, double factor, const do
 }
 
 /* ---- scale and place -------------------------------------------------------------------------------------------- */
-
-TEST(pairs_at_every_scale) {
-    double two = 0, ten = 0;
-    for (uint64_t k = 0; k < rounds(200, 20000); k++) {
-        double r1 = pow(10, random_in(1, -3, 0)), r2 = pow(10, random_in(1, -3, 0));
-        double gap = k % 2 ? pow(10, random_in(1, -16, 3)) : -fmin(r1, r2) * pow(10, random_in(1, -16, .3));
-        double f = exact(r1, r2, gap);
-        for (int e = -400; e <= 400; e += all() ? 1 : 40) two += exact(ldexp(r1, e), ldexp(r2, e), ldexp(gap, e)) != f;
-        for (int e = -100; e <= 100; e += 10) {
-            double s = pow(10, e);
-            worst_of(&ten, fabs(exact(r1 * s, r2 * s, gap * s) / f - 1));
-        }
-    }
-    report("pairs times 2^k, k = -400 ... 400: results with other bits", two, 0);
-    report("pairs times 10^k, k = -100 ... 100: relative", ten, 1e-13);
-}
-
-TEST(rows_at_every_scale) {
-    static const double nowhere[3] = {0, 0, 0};
-    OWNED_BED bed = packing(100, .5, 1.5, .5, 3, false), scaled = packing(100, .5, 1.5, .5, 3, false);
-    OWNED_ROW row = beam(&bed, 42, 55), cast = rays(&bed, 42, 500);
-    double two = 0, two_cast = 0, ten = 0;
-    for (int k = -400; k <= 400; k += all() ? 1 : 25) {
-        move(&scaled, &bed, ldexp(1, k), nowhere);
-        OWNED_ROW by_two = beam(&scaled, 42, 55), cast_by_two = rays(&scaled, 42, 500);
-        two += !same_bits(&row, &by_two);
-        two_cast += !same_bits(&cast, &cast_by_two);
-        if (abs(k) > 100) continue;
-        move(&scaled, &bed, pow(10, k), nowhere);
-        OWNED_ROW by_ten = beam(&scaled, 42, 55);
-        worst_of(&ten, row_distance(&row, &by_ten));
-    }
-    report("rows times 2^k, k = -400 ... 400: results with other bits", two, 0);
-    report("rows by rays times 2^k: results with other bits", two_cast, 0);
-    report("rows times 10^k, k = -100 ... 100", ten, 1e-13);
-}
 
 /* The coordinates of a moved bed are rounded. The rounded bed is moved back without a further rounding. Its row tells
  * how much of the loss is the kernel's own. */
@@ -117,33 +70,6 @@ TEST(rows_far_from_the_origin) {
 }
 
 /* ---- contact ---------------------------------------------------------------------------------------------------- */
-
-/* Gaps go from an overlap of half the smaller radius to 1e12 radii, in steps that are fine near contact. F falls, and
- * two neighbours differ by no more than the slope there allows. */
-TEST(pairs_across_contact) {
-    static const double ratios[] = {1, .5, .1, 1e-3, 1e-6, 2, 10, 1e3, 1e6};
-    double rise = 0, jump = 0;
-    for (size_t q = 0; q < sizeof ratios / sizeof *ratios; q++) {
-        double r1 = 1, r2 = ratios[q], smaller = fmin(r1, r2), contact = exact(r1, r2, 0);
-        uint64_t steps = rounds(2000, 200000);
-        double last = exact(r1, r2, -.5 * smaller), last_gap = -.5 * smaller;
-        for (uint64_t k = 1; k <= 2 * steps; k++) {
-            double part = ((double)k - (double)steps) / (double)steps; /* (-1, 1] */
-            double gap = part < 0 ? -smaller * .5 * pow(10, 16 * (-part - 1)) : smaller * pow(10, 28 * part - 16);
-            if (part == 0) gap = 0;
-            double f = exact(r1, r2, gap);
-            worst_of(&rise, (f - last) / f);
-            /* the bound |dF/dgap| <= r2^2/(r1^2 smaller) is too large by a factor of two at least */
-            double allowed = fmin(1, r2 * r2 / (r1 * r1)) * fabs(gap - last_gap) / smaller;
-            if (fabs(gap) < 1e-3 * smaller) worst_of(&jump, (last - f - allowed) / contact);
-            last = f, last_gap = gap;
-        }
-        static const double tiny[] = {1e-300, -1e-300, 1e-16, -1e-16};
-        for (int k = 0; k < 4; k++) worst_of(&jump, fabs(exact(r1, r2, tiny[k] * smaller) / contact - 1) - 1e-15);
-    }
-    report("pairs, overlap .5 to gap 1e12, ratios 1e-6 ... 1e6: F rises by", rise, 1e-15);
-    report("pairs across contact: F jumps by", jump, 2e-15);
-}
 
 /* The same holds for beams: in each direction the disc moves out as the gap grows. */
 TEST(beams_across_contact) {
@@ -189,60 +115,6 @@ TEST(radius_ratios) {
     report("radius ratios 1 ... 1e6, beams from the smaller sphere: F", from_small, 3e-3);
     report("radius ratios 1 ... 1e6, beams from the larger sphere: F", from_large, 1e-4);
     report("radius ratios 1e-6 ... 1e6: sum + escaped - 1", open, 1e-12);
-}
-
-/* ---- windows ---------------------------------------------------------------------------------------------------- */
-
-#define DISCS 24
-
-/* Discs are drawn from few places and radii. So some are equal, concentric, tangent inside and outside, or as large as
- * the window, and three and more meet in one point. Every second disc is then moved by an ulp or a little more. */
-TEST(degenerate_windows) {
-    double worst = 0, open = 0;
-    fibrad_arena arena = {0};
-    fibrad_areas areas;
-    fibrad_areas_layout(&areas, &arena, DISCS);
-    size_t size = arena.used;
-    OWNED void *block = block_of(size);
-    memset(block, 0, size);
-    arena = (fibrad_arena){block, 0, size};
-    fibrad_areas_layout(&areas, &arena, DISCS);
-    const double h = sqrt(3) / 2;
-    const double places[] = {0, .5, 1, 1.5, 2, h, h / 2, .25, .75, sqrt(.5), sqrt(2)},
-                 radii[] = {1, .5, 2, h, .25, 1.5, .75, sqrt(.5)};
-    for (uint64_t round = 0; round < rounds(30000, 300000); round++) {
-        double u[DISCS], v[DISCS], r[DISCS], mine[DISCS] = {0}, expected[DISCS], rest_expected;
-        uint32_t n = 2 + (uint32_t)random_in(3, 0, round % 10 == 0 ? DISCS - 2 : 7);
-        uint32_t kinds = 2 + (uint32_t)random_in(3, 0, 7); /* a few kinds make many coincidences */
-        for (uint32_t k = 0; k < n; k++) {
-            u[k] = places[(int)random_in(3, 0, kinds + 2)] * (random_in(3, 0, 1) < .5 ? -1 : 1);
-            v[k] = places[(int)random_in(3, 0, kinds + 2)] * (random_in(3, 0, 1) < .5 ? -1 : 1);
-            r[k] = radii[(int)random_in(3, 0, kinds)];
-            double nudge = random_in(3, 0, 1);
-            if (nudge < .2) u[k] = nextafter(u[k], nudge < .1 ? 9 : -9);
-            if (nudge > .1 && nudge < .3) v[k] = nextafter(v[k], nudge < .2 ? 9 : -9);
-            if (nudge > .25 && nudge < .4) r[k] = nextafter(r[k], nudge < .3 ? 9 : -9);
-            if (nudge > .9) u[k] += pow(10, random_in(3, -16, -5));
-        }
-        fibrad_areas_begin_scalar(&areas);
-        uint32_t order[DISCS];
-        for (uint32_t k = 0; k < n; k++) order[k] = k;
-        fibrad_areas_discs_scalar(&areas, 0, order, n, u, v, r);
-        double rest = fibrad_areas_end_scalar(&areas), total = rest;
-        ck_assert(!areas.overflow);
-        for (uint32_t c = 1; c < areas.circles; c++) mine[areas.whose[c]] = areas.area[c];
-        ck_assert_int_eq(reference_window(n, u, v, r, expected, &rest_expected), REFERENCE_OK);
-        for (uint32_t k = 0; k < n; k++) {
-            worst_of(&worst, fabs(mine[k] - expected[k]));
-            total += mine[k];
-        }
-        worst_of(&worst, fabs(rest - rest_expected));
-        worst_of(&open, fabs(total - acos(-1)));
-    }
-    /* three circles that are tangent in one point within rounding meet at points 1.5e-8 apart, the root of the rounding
-     * error */
-    report("degenerate windows and 1 ulp beside them: visible area", worst, 1.5e-8);
-    report("degenerate windows: sum of areas + rest - pi", open, 1.5e-8);
 }
 
 /* Lattices are turned so that one of their axes lies along a beam, or a little beside it. The row agrees with that of
@@ -311,18 +183,6 @@ TEST(obstacle_across_a_pair) {
     report("obstacle across a pair: F above the free F by", above, 1e-14);
     report("obstacle across a pair: F jumps by", jump, 1e-14);
     report("obstacle gone: F differs from the free F by", left, 1e-14);
-}
-
-/* A dilute periodic box lets no light through in the end: only a few beams from a sphere find a channel without end. */
-TEST(sight_through_many_periods) {
-    OWNED_BED bed = BED({.1, .2, .3, .2});
-    for (int axis = 0; axis < 3; axis++) bed.period[axis] = 1;
-    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    OWNED_WORK work = work_growing();
-    OWNED_ROW row = row_of(1);
-    assert_ok(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 144}, &row));
-    report("dilute periodic box: escaped", row.escaped, .05);
-    report("dilute periodic box: sum + escaped - 1", closure(&row), 1e-12);
 }
 
 /* ---- random scenes ---------------------------------------------------------------------------------------------- */

@@ -125,20 +125,6 @@ TEST(skips_change_nothing) {
     ck_assert_uint_gt(partly, 200);
 }
 
-TEST(same_bits_in_every_instruction_set) {
-    const struct isas isas = isas_there();
-    for (int set = 1; set < isas.count; set++) {
-        for (uint32_t k = 0; k < 300; k++) {
-            scene s;
-            make_scene(&s, k);
-            const uint32_t nodes = fibonacci[k % 8];
-            const double a = factor(&s, nodes, k & 1, FIBRAD_ISA_SCALAR, NULL),
-                         b = factor(&s, nodes, k & 1, isas.set[set], NULL);
-            ck_assert_msg(memcmp(&a, &b, sizeof a) == 0, "scene %u: %.17g %.17g", k, a, b);
-        }
-    }
-}
-
 /* The third sphere touches both spheres. After the correction the error at 55 nodes against 987 is a third of the raw
  * error. */
 TEST(correction_divides_the_error_behind_a_third_sphere) {
@@ -200,30 +186,6 @@ TEST(scratch_and_strides_change_no_bit) {
         const fibrad_spheres strided = {&at[0][0], &at[0][1], &at[0][2], r, s.obstacles.n, .stride = 3, .stride_r = 5};
         assert_ok(fibrad_surface_pair(s.r1, s.r2, s.gap, &strided, &rule, scratch, &h, NULL));
         ck_assert(memcmp(&f, &h, sizeof f) == 0);
-    }
-}
-
-/* An instruction set that is not built in is reported as missing. */
-TEST(instruction_sets_not_built_in_are_missing) {
-    static const int lacking[] = {
-#ifndef FIBRAD_WITH_SSE2
-        FIBRAD_ISA_SSE2,
-#endif
-#ifndef FIBRAD_WITH_AVX2
-        FIBRAD_ISA_AVX2,
-#endif
-#ifndef FIBRAD_WITH_AVX512
-        FIBRAD_ISA_AVX512,
-#endif
-#ifndef FIBRAD_WITH_NEON
-        FIBRAD_ISA_NEON,
-#endif
-        0};
-    for (size_t k = 0; k + 1 < sizeof lacking / sizeof *lacking; k++) {
-        double f12 = 42;
-        const fibrad_surface_rule rule = {.isa = lacking[k]};
-        ck_assert_int_eq(fibrad_surface_pair(1, 1, 1, NULL, &rule, NULL, &f12, NULL), FIBRAD_E_ISA);
-        ck_assert(f12 == 42);
     }
 }
 

@@ -176,29 +176,6 @@ TEST(rows_of_a_matrix) {
     ck_assert_double_le(largest, 1e-15);
 }
 
-TEST(tells_what_it_needs) {
-    make(200, true);
-    const fibrad_surface_rule rule = {.cutoff = CUTOFF};
-    static uint32_t col_enough[MOST];
-    static double f_enough[MOST];
-    const fibrad_row enough = surface_row(0, &rule);
-    memcpy(col_enough, col, sizeof col), memcpy(f_enough, f, sizeof f);
-    OWNED_FIXED little = work_fixed(NULL, 0);
-    fibrad_row row = {.col = col, .f = f, .capacity = MOST, .length = 77};
-    int tries = 0;
-    while (work_again(&little, fibrad_surface_row(scene, &little, 0, &rule, &row))) {
-        ck_assert_uint_eq(row.length, 77);
-        ck_assert_int_lt(++tries, 5);
-    }
-    ck_assert_int_ge(tries, 1);
-    ck_assert_uint_eq(row.length, enough.length);
-    ck_assert_mem_eq(col, col_enough, row.length * sizeof *col);
-    ck_assert_mem_eq(f, f_enough, row.length * sizeof *f);
-    row.capacity = 3;
-    ck_assert_int_eq(fibrad_surface_row(scene, &little, 0, &rule, &row), FIBRAD_E_CAPACITY);
-    ck_assert_uint_eq(row.length, enough.length);
-}
-
 /* With three periods each way there are 7^3 images in the cube. A hundred periods and more are refused, and so is what
  * needs more memory than there can be. */
 TEST(bounds_the_search_for_images) {

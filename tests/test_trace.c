@@ -209,33 +209,6 @@ TEST(rays_from_any_point_meet_the_nearest) {
     }
 }
 
-/* All instruction sets, and any number of lists, give the same bits. */
-TEST(same_bits_everywhere) {
-    OWNED_BED bed = packing(400, .2, 1, .55, 2, true);
-    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    const struct isas isas = isas_there();
-    fibrad_work work[2];
-    fibrad_tracer *tracers[2] = {tracer_of(scene, FEW, &work[0]), tracer_of(scene, EACH, &work[1])};
-    for (uint32_t k = 0; k < 20000; k++) {
-        fibrad_random random = fibrad_random_start(3, k);
-        double n[3], w[3];
-        even(&random, n);
-        even(&random, w);
-        if (dot(n, w) < 0) continue;
-        fibrad_hit hit = {0}, other = {0}, third = {0};
-        fibrad_trace_scalar(tracers[0], k % bed.n, n, w, &hit);
-        fibrad_trace_point_scalar(scene, n, w, FIBRAD_NO_SIDE, &other);
-        for (int v = 0; v < isas.count; v++) {
-            fibrad_hit again = {0};
-            FIBRAD_VERSION_OF(fibrad_trace, isas.set[v])(tracers[1], k % bed.n, n, w, &again);
-            ck_assert_mem_eq(&hit, &again, sizeof hit);
-            FIBRAD_VERSION_OF(fibrad_trace_point, isas.set[v])(scene, n, w, FIBRAD_NO_SIDE, &third);
-            ck_assert_mem_eq(&other, &third, sizeof other);
-        }
-    }
-    for (int t = 0; t < 2; t++) work_free(&work[t]);
-}
-
 /* Rays that begin in cells with lists meet what rays without lists meet, to the bit. */
 LOOP_TEST(rays_from_cells_meet_what_others_meet, 3) {
     OWNED_BED bed = packing(400, _i == 2 ? .05 : .3, 1, .45, 4, _i == 1);
@@ -291,37 +264,6 @@ TEST(lists_belong_to_contents) {
         assert_ok(fibrad_work_open(&work, scene, extra, extra, &space));
         ck_assert_double_eq(length_along_x(fibrad_tracer_of(space, scene), &kept), distances[k] - 2);
         ck_assert_int_eq(kept, k % 2 == 1);
-    }
-}
-
-/* A block that is too small is left alone, and the call says what it lacks. A block that is large enough, of any
- * alignment, is used throughout. */
-TEST(memory_that_is_too_small_is_left_alone) {
-    OWNED_BED bed = BED({0, 0, 0, 1});
-    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_workspace *space = NULL;
-    const size_t extra = fibrad_tracer_least();
-    unsigned char small[64];
-    memset(small, 0x5a, sizeof small);
-    fibrad_work work = work_fixed(small, sizeof small);
-    ck_assert_int_eq(fibrad_work_open(&work, scene, extra, extra, &space), FIBRAD_E_WORK);
-    ck_assert_ptr_null(space);
-    ck_assert_uint_gt(work.memory.needed, extra);
-    for (size_t k = 0; k < sizeof small; k++) ck_assert_uint_eq(small[k], 0x5a);
-
-    const size_t size = work.memory.needed;
-    OWNED unsigned char *block = block_of(size + 128);
-    for (size_t shift = 0; shift < 64; shift += 7) {
-        memset(block, 0x5a, size + 128);
-        work = work_fixed(block + shift, size);
-        assert_ok(fibrad_work_open(&work, scene, extra, extra, &space));
-        fibrad_tracer *tracer = fibrad_tracer_of(space, scene);
-        ck_assert_uint_ge((uintptr_t)tracer, (uintptr_t)work.memory.block);
-        fibrad_hit hit;
-        fibrad_trace_scalar(tracer, 0, (const double[3]){1, 0, 0}, (const double[3]){1, 0, 0}, &hit);
-        ck_assert_uint_eq(hit.sphere, FIBRAD_NONE);
-        for (size_t k = 0; k < shift; k++) ck_assert_uint_eq(block[k], 0x5a);
-        for (size_t k = shift + size; k < size + 128; k++) ck_assert_uint_eq(block[k], 0x5a);
     }
 }
 

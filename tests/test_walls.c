@@ -682,26 +682,6 @@ TEST(walls_of_a_periodic_bed) {
     }
 }
 
-TEST(same_bits_in_every_instruction_set) {
-    OWNED_BED bed = packing(60, .6, 1.4, .3, 3, false);
-    struct container walls[2] = {{.planes = 63, .at = {-3, 40, -3, 40, -3, 40}},
-                                 {.planes = 16, .open = 32, .at = {-3, 40, -3, 40, -3, 40}}};
-    walls[1].cylinder[0] = walls[1].cylinder[1] = 5, walls[1].cylinder[2] = 30;
-    const struct isas isas = isas_there();
-    for (int k = 0; k < 2; k++)
-        for (uint32_t points = 0; points <= 256; points += 64) {
-            if (points == 192) continue;
-            for (uint32_t i = 0; i < bed.n; i += 13) {
-                OWNED_ROW scalar = beam(&bed, &walls[k], i, 101, points, FIBRAD_ISA_SCALAR);
-                for (int set = 1; set < isas.count; set++) {
-                    OWNED_ROW row = beam(&bed, &walls[k], i, 101, points, isas.set[set]);
-                    ck_assert_msg(same_bits_with(&scalar, &row, WALLS), "row %u differs in %s", i,
-                                  fibrad_isa_name(isas.set[set]));
-                }
-            }
-        }
-}
-
 /* Another order of the spheres and another unit of length change nothing but rounding. Other axes change no more than
  * the rule's error. */
 TEST(order_scale_and_axes) {

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/contact_list.h"
 #include "couple/insitu.h"
 #include "contact/contact_list.h"
 
