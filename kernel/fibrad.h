@@ -308,11 +308,10 @@ typedef enum fibrad_why {
     FIBRAD_WHY_DARK = 20,         /* No open face lets a light in. */
     FIBRAD_WHY_FOOTPRINT = 21,    /* A light through a disc (fibrad_light.h) meets a sphere before it meets the disc. */
     FIBRAD_WHY_CONDUCTIVITY = 22, /* A conductivity is not above 0. */
-    FIBRAD_WHY_UNIFORM = 23,      /* `uniform` (fibrad_heat.h) is set although spheres conduct. */
-    FIBRAD_WHY_CONTACT = 24,      /* A contact has an end that is neither a sphere nor a wall. */
-    FIBRAD_WHY_CONDUCTANCE = 25,  /* A conductance is negative or out of range. */
-    FIBRAD_WHY_TOUCHED = 26,      /* A wall in contact is insulated, or its sides have temperatures. */
-    FIBRAD_WHY_ALONE = 27         /* A sphere in contact has emissivity 0, and nothing sets its temperature. */
+    FIBRAD_WHY_CONTACT = 23,      /* A contact has an end that is neither a sphere nor a wall. */
+    FIBRAD_WHY_CONDUCTANCE = 24,  /* A conductance is negative or out of range. */
+    FIBRAD_WHY_TOUCHED = 25,      /* A wall in contact is insulated, or its sides have temperatures. */
+    FIBRAD_WHY_ALONE = 26         /* A sphere in contact has emissivity 0, and nothing sets its temperature. */
 } fibrad_why;
 
 /* The cause of a fault, which may be any number, as words that continue a sentence: "sphere 3 ..." Never NULL. */

@@ -194,7 +194,7 @@ static double patch_error(const fibrad_heat *heat, uint32_t b) {
 static double spot_error(const fibrad_heat *heat, uint32_t b) {
     const uint32_t mesh = fibrad_heat_body(heat, FIBRAD_MESHES);
     double back = 0;
-    if (b >= heat->spheres || heat->solution.group > 1) return 0;
+    if (b >= heat->spheres) return 0;
     for (uint32_t m = 0; m < heat->meshes; m++) back = fibrad_max(back, 1 - heat->sources.emissivity[mesh + m]);
     return MESH_SPOT_ERROR * back * fibrad_heat_comes_back(heat, b) * heat->solution.power[b];
 }
@@ -499,8 +499,7 @@ static void find_joined_errors(const fibrad_heat *heat, const fibrad_heat_errors
 
 void fibrad_heat_find_errors(const fibrad_heat *heat, fibrad_heat_errors *errors) {
     *errors = (fibrad_heat_errors){.all = spread_over(heat, 0, heat->patches)};
-    if (heat->solution.group == 1)
-        errors->few = FEW_ON_SPHERES * heat->config.patches * heat->thin / (2.0 * heat->beams);
+    errors->few = FEW_ON_SPHERES * heat->config.patches * heat->thin / (2.0 * heat->beams);
     errors->pool[1].samples = sample_all_rays(heat, errors);
     find_dim(heat, errors);
     find_sent(heat, errors);
