@@ -310,7 +310,7 @@ static int write_matrix(struct factors_request *request, struct bed *bed) {
     struct side_arrays views = {0};
     struct summary summary;
     int status = bed_options_make(&request->bed, bed, &request->walls, &made);
-    if (!status) status = bed_options_factors(&request->bed, bed, made, &request->options, &factors);
+    if (!status) status = bed_options_factors(&request->bed, bed, &request->walls, made, &request->options, &factors);
     if (!status && request->bed.wall_vtp && !request->emissivity.given) status = find_views(request, bed, made, &views);
     struct contents what = {.factors = factors,
                             .wanted = request->options.wanted,

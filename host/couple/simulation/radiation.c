@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "contact/cylinder.h"
+#include "simple/cylinder.h"
 #include "couple/ranks/collective.h"
 #include "text/read_number.h"
 
